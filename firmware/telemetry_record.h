@@ -1,0 +1,97 @@
+// telemetry_record.h - what tactd tells, and the only thing that host/ knows of it.
+//
+// A local SOCK_SEQPACKET socket, owner only, send-only, little-endian plain structs. Each message
+// begins with a MessageHeader. The first is one Hello that carries a file descriptor (SCM_RIGHTS) of
+// a sealed memory file with the meshes; then Frames follow at frame_rate_Hz. A client that does not
+// read loses frames, never delays anything.
+//
+// Memory file: organ vertices (3 float each, W, m), organ triangles (3 uint32 each), then the same
+// for the tool mesh (tool frame, m). Units are in the names; vectors are x, y, z in frame W.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+namespace tact::firmware {
+
+inline constexpr std::uint32_t kTelemetryMagic = 0x74636174;  // "tact"
+inline constexpr std::uint16_t kTelemetryVersion = 1;
+inline constexpr std::size_t kMaxSites = 4;   // probe spheres on the tool
+inline constexpr std::size_t kMaxRings = 32;  // profile points of one site
+
+enum class MessageKind : std::uint16_t { kHello = 1, kFrame = 2 };
+enum class State : std::uint8_t { kOff = 0, kReady = 1, kArmed = 2, kStopped = 3 };
+enum class SiteState : std::uint8_t { kFree = 0, kTouching = 1, kHeld = 2 };
+
+struct MessageHeader {
+  std::uint32_t magic = kTelemetryMagic;
+  std::uint16_t version = kTelemetryVersion;
+  MessageKind kind = MessageKind::kFrame;
+};
+
+struct Hello {
+  MessageHeader header{.kind = MessageKind::kHello};
+  std::uint32_t organ_vertices = 0, organ_triangles = 0;
+  std::uint32_t tool_vertices = 0, tool_triangles = 0;
+  std::uint32_t site_count = 0;  // probe spheres in use
+  std::uint32_t ring_count = 0;  // profile points in use, u_0 .. u_N
+  float ring_pitch_m = 0.0f;     // profile point j is at radius j * pitch around the site
+  float rate_Hz = 0.0f;
+  float frame_rate_Hz = 0.0f;
+  float force_limit_N = 0.0f;
+  float sphere_radius_m[kMaxSites] = {};
+  float sphere_offset_m[kMaxSites][3] = {};  // tool frame
+  std::uint8_t non_rt = 0;                   // 1: this PC gives no hard real time, force is capped
+  std::uint8_t simulated = 0;                // 1: the device is simulated, the hand may be moved
+  char scene_name[62] = {};
+  char device_name[64] = {};
+  char law_name[64] = {};
+  char hand_socket[108] = {};  // where a simulated device takes hand targets; empty for hardware
+};
+
+struct FrameSite {
+  float surface_point_m[3] = {};  // touched or held point of the undeformed surface
+  float normal[3] = {};           // outward unit normal there
+  float shift_m[3] = {};          // tangential displacement of the tissue at the site
+  float depth_m = 0.0f;           // press positive, pull negative
+  float profile_m[kMaxRings] = {};  // normal displacement of ring j, into the tissue positive
+  SiteState state = SiteState::kFree;
+  std::uint8_t pad[3] = {};
+};
+
+struct Frame {
+  MessageHeader header{.kind = MessageKind::kFrame};
+  std::uint64_t tick = 0;
+  std::int64_t time_ns = 0;  // since the loop started
+  std::uint64_t late_ticks = 0, skipped_ticks = 0, dropped_records = 0;
+  float tool_position_m[3] = {};
+  float tool_orientation[4] = {1, 0, 0, 0};  // w, x, y, z; tool frame to W
+  float tool_velocity_mps[3] = {};
+  float grip_ratio = 0.0f;
+  float force_N[3] = {};   // written to the device
+  float torque_Nm[3] = {};
+  float wanted_force_N[3] = {};  // asked by the law, before the gate
+  float worst_margin_us = 0.0f;  // least time left before the deadline since the last frame
+  float median_tick_us = 0.0f;   // of the ticks since the last frame
+  float peak_force_N = 0.0f;     // largest |force| since the last frame
+  std::uint16_t fault = 0;       // number in the fault table
+  std::uint16_t limit = 0;       // last limit that acted since the last frame, 0 none
+  State state = State::kOff;
+  std::uint8_t pad[3] = {};
+  FrameSite site[kMaxSites] = {};
+};
+
+static_assert(std::is_trivially_copyable_v<Hello> && std::is_trivially_copyable_v<Frame>);
+
+/// A hand target for a simulated device: one datagram to Hello::hand_socket. Moves the simulated
+/// hand, not the tool, and never a force.
+struct HandTarget {
+  std::uint32_t magic = kTelemetryMagic;
+  std::uint16_t version = kTelemetryVersion;
+  std::uint16_t pad = 0;
+  double position_m[3] = {};  // W
+  double grip_ratio = 0.0;    // 0 open, 1 closed
+};
+
+}  // namespace tact::firmware

@@ -1,0 +1,60 @@
+// device.h - one interface for every haptic device, simulated or real.
+//
+// Only frame W leaves a device (types.h). read and write are called once per tick, in this order,
+// from the loop thread; everything else belongs to set-up and shut-down.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "model/fault.h"
+#include "model/types.h"
+
+namespace tact::hal {
+
+using model::Fault;
+using model::Tool;
+using model::Vec3;
+using model::Wrench;
+
+/// One reading. A device that has nothing new leaves `fresh` false and the rest untouched.
+struct Sample {
+  Tool tool;
+  std::int64_t stamp_ns = 0;   // CLOCK_MONOTONIC when the device state was taken
+  std::uint64_t sequence = 0;  // counts device samples, never repeats
+  bool fresh = false;
+};
+
+/// What the hardware can do; the gate takes the smaller of this and the scene.
+struct DeviceInfo {
+  std::string name;
+  double max_force_N = 0.0;
+  double max_torque_Nm = 0.0;        // 0: the device has no torque
+  double workspace_radius_m = 0.0;   // cylinder about the W x axis, centred on the origin of W
+  double workspace_half_length_m = 0.0;
+};
+
+class Device {
+ public:
+  Device() = default;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+  virtual ~Device() = default;
+
+  virtual DeviceInfo info() const = 0;
+
+  /// Newest sample. Fault::kNone, or what is wrong with the device.
+  virtual Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE = 0;
+
+  /// Hand this wrench to the hardware, on top of its own gravity compensation.
+  virtual Fault write(const Wrench& wrench) RT_SAFE = 0;
+
+  /// What happens to a simulated device while the loop sleeps: one or more periods of physics.
+  /// Hardware lives by itself and does nothing here. Not part of the tick's measured time.
+  virtual void between_ticks(double elapsed_s) RT_SAFE { (void)elapsed_s; }
+
+  /// Zero force and power off; may block. Safe to call twice.
+  virtual void stop() = 0;
+};
+
+}  // namespace tact::hal

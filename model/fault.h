@@ -1,0 +1,46 @@
+// fault.h - everything that can limit or stop the force, by number.
+//
+// 0 is none; 1 to 99 is a limit that is acting while the loop goes on; 100 and above latch: force
+// goes to zero and only a stop leaves the state. Numbers are never reused.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "model/rt.h"
+
+namespace tact::model {
+
+enum class Fault : std::uint16_t {
+  kNone = 0,
+  kSampleHeld = 1,
+  kSampleStale = 2,
+  kNotArmed = 3,
+  kOutsideWorkspace = 4,
+  kForceLimited = 5,
+  kTorqueLimited = 6,
+  kSlewLimited = 7,
+  kRampingUp = 8,
+  kLawSaturated = 9,
+  kInternal = 100,
+  kForceNotFinite = 101,
+  kSampleNotFinite = 102,
+  kDeviceLost = 103,
+  kDeviceFailed = 104,
+};
+
+constexpr bool latches(Fault fault) RT_SAFE { return static_cast<std::uint16_t>(fault) >= 100; }
+
+struct FaultEntry {
+  Fault fault;
+  const char* name;   // short, for a status line
+  const char* cause;  // what happened
+  const char* cure;   // what to do
+};
+
+/// All entries, ascending by number. None of the texts is blank.
+std::span<const FaultEntry> fault_table();
+/// The entry of one fault; unknown numbers give kInternal's.
+const FaultEntry& describe(Fault fault);
+
+}  // namespace tact::model
