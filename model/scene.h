@@ -1,0 +1,75 @@
+// scene.h - one TOML file says everything: organ, law, contact, tool, device, hand, limits.
+//
+// Every key carries its unit in its name. An unknown or missing key, a wrong unit or a value out of
+// range is an error with file and line that says what is allowed. Set-up code only.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/contact.h"
+#include "model/hand_path.h"
+#include "model/mesh.h"
+#include "model/result.h"
+#include "model/rhombus_chain.h"
+
+namespace tact::model {
+
+struct Limits {
+  double force_N = 0.0;         // vector magnitude
+  double torque_Nm = 0.0;       // vector magnitude
+  double slew_N_per_s = 0.0;    // largest change of the force vector
+  double ramp_s = 0.0;          // fade-in after arming
+  double workspace_radius_m = 0.0;       // cylinder about the W x axis
+  double workspace_half_length_m = 0.0;  // along the W x axis
+};
+
+/// The simulated Delta's imperfections (DEVICES 5.6); its geometry is fixed in hal/sim.
+struct SimDeviceSettings {
+  double counts_per_turn = 0.0;               // of a joint
+  double sample_delay_s = 0.0;                // age of a sample when the loop gets it
+  double joint_friction_Nm = 0.0;             // Coulomb, per joint
+  double joint_damping_Nms_per_rad = 0.0;     // viscous, per joint
+  double observer_bandwidth_Hz = 0.0;         // of the velocity observer
+};
+
+struct DeviceSettings {
+  std::string kind;  // "sim-delta"
+  SimDeviceSettings sim;
+};
+
+struct OrganSettings {
+  std::string mesh_path;  // absolute
+  Vec3 position_m;        // of the mesh origin
+};
+
+struct ToolSettings {
+  std::string mesh_path;             // absolute
+  std::vector<ProbeSphere> spheres;  // 1 to kMaxSpheres
+};
+
+enum class LawKind { kRhombus, kRhombusPaperLiteral };
+
+struct Scene {
+  std::string path;  // of the TOML file
+  std::string name;
+  double rate_Hz = 0.0;
+  LawKind law = LawKind::kRhombus;
+  RhombusChainParameters rhombus;
+  std::size_t table_knots = 0;
+  ContactParameters contact;
+  OrganSettings organ;
+  ToolSettings tool;
+  DeviceSettings device;
+  HandSettings hand;
+  Limits limits;
+  double frame_rate_Hz = 0.0;
+  std::string hash;  // of the text after overrides, 16 hex digits
+  SurfaceMesh organ_mesh;  // in W, m
+  SurfaceMesh tool_mesh;   // tool frame, m
+};
+
+/// Read a scene and its meshes. `overrides` are "key.path=value" as TOML writes values.
+Result<Scene> load_scene(const std::string& path, const std::vector<std::string>& overrides);
+
+}  // namespace tact::model
