@@ -4,15 +4,16 @@
 // r: its radius, phi: signed distance of c to the undeformed surface, n = grad phi):
 //
 //   free      W = 0
-//   touching  W = U(d - slack) + k_t |t|^2 / 2,   d = r - phi,   |k_t t| <= mu F   (Coulomb cap)
-//   held      W = U(d)         + k_t |t|^2 / 2,   d and t measured in the frame of the moment of
-//             gripping, no cap, d may be negative (pull); ends when the grip opens or when the
-//             pulling force passes the tear force
+//   touching  W = U(d) + k_t |t|^2 / 2,   d = r - phi - slack,   k_t |t| <= mu F   (Coulomb cap)
+//   held      W = U(d) + k_t |t|^2 / 2,   d and t measured in the frame of the moment of gripping,
+//             no cap, d may be negative (pull); ends when the grip opens or when the pulling force
+//             passes the tear force
 //
-//   force on the tool  F = -grad W,  torque = sum (c - origin) x F
+//   force on the tool  F = -grad W,   torque = sum (c - origin) x F
 //
-// t: tangential displacement of the tissue, m. Changes of state never add energy: slack takes up
-// whatever depth the new state would have for free, and shrinks only as the tool withdraws.
+// t: tangential displacement of the tissue, m. A change of state never adds energy: slack takes up
+// whatever depth would come for free (arming inside the organ, letting go over a bump, a nearest
+// point that jumps) and shrinks only as the tool withdraws.
 #pragma once
 
 #include <array>
@@ -20,8 +21,8 @@
 #include <cstdint>
 #include <span>
 
-#include "model/fault.h"
 #include "model/law.h"
+#include "model/seed_grid.h"
 #include "model/site.h"
 #include "model/types.h"
 
@@ -37,24 +38,77 @@ struct ProbeSphere {
 struct ContactParameters {
   double friction_ratio = 0.0;             // mu, >= 0
   double sliding_stiffness_N_per_m = 0.0;  // k_t, >= 0
-  double tear_force_N = 0.0;               // > 0
+  double tear_force_N = 0.0;               // of one sphere, > 0
   double grip_close_ratio = 0.7;           // closing above this holds
   double grip_open_ratio = 0.5;            // opening below this lets go
 };
 
 enum class TouchState : std::uint8_t { kFree, kTouching, kHeld };
 
-/// One sphere's share of a tick, for telemetry and tests.
+/// One sphere's share of a tick.
 struct SphereTouch {
   TouchState state = TouchState::kFree;
   LawStatus law_status = LawStatus::kNoContact;
-  Vec3 surface_point_m;  // nearest (touching) or held point of the undeformed surface
-  Vec3 normal;           // outward
-  Vec3 shift_m;          // t
-  double depth_m = 0.0;  // the law's argument
+  Vec3 surface_point_m{};  // nearest (touching) or held point of the undeformed surface
+  Vec3 normal{};           // outward, unit
+  Vec3 shift_m{};          // t
+  double depth_m = 0.0;    // d
   double slack_m = 0.0;
   double energy_J = 0.0;  // W
-  Vec3 force_N;           // on the tool
+  Vec3 force_N{};         // on the tool
+};
+
+/// What contact is made of; everything outlives it.
+struct ContactScene {
+  const Law* law = nullptr;
+  ContactParameters parameters;
+  std::span<const ProbeSphere> spheres;  // 1 to kMaxSpheres
+  SurfaceView surface;
+  SeedGridView seeds;
+};
+
+class Contact {
+ public:
+  explicit Contact(const ContactScene& scene) : scene_(scene) {}
+
+  /// Where the spheres meet the surface: follows each site.
+  void touch(const Tool& tool) RT_SAFE;
+  /// What the tool feels there: states, laws, forces. Call after touch.
+  Wrench feel(const Tool& tool) RT_SAFE;
+  /// Forget every site, as at the start.
+  void reset() RT_SAFE;
+
+  std::span<const SphereTouch> touches() const RT_SAFE {
+    return {touch_.data(), scene_.spheres.size()};
+  }
+
+ private:
+  struct Probe {
+    Vec3 centre_m;                              // c
+    Vec3 moved_m;                               // since the last tick
+    double depth_m = 0.0;                       // r - phi
+    double deepened_m = 0.0;                    // beyond what the movement explains: free depth
+    Site site;                                  // followed
+    Seeds candidate{kNoTriangle, kNoTriangle};  // sheets watched while free
+    std::uint32_t cell = kNoTriangle;
+    bool seen = false;  // there was a tick before
+    Vec3 held_centre_m, held_normal, held_shift_m;
+    double held_depth_m = 0.0;
+  };
+
+  Site search(Probe& probe) RT_SAFE;
+  void watch_grip(double grip_ratio) RT_SAFE;
+  void change_state(const Probe& probe, SphereTouch& touch) RT_SAFE;
+  void feel_touching(Probe& probe, SphereTouch& touch) RT_SAFE;
+  void feel_held(const Probe& probe, SphereTouch& touch) RT_SAFE;
+  void hold(Probe& probe, SphereTouch& touch) RT_SAFE;
+  void let_go(const Probe& probe, SphereTouch& touch) RT_SAFE;
+
+  ContactScene scene_;
+  std::array<Probe, kMaxSpheres> probe_{};
+  std::array<SphereTouch, kMaxSpheres> touch_{};
+  bool closed_ = false;   // the grip, with hysteresis
+  bool closing_ = false;  // it closed in this tick
 };
 
 }  // namespace tact::model

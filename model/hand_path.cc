@@ -9,7 +9,8 @@ Vec3 between(const Vec3& a, const Vec3& b, double ratio) RT_SAFE { return a + ra
 
 }  // namespace
 
-HandWaypoint hand_target(const std::vector<HandWaypoint>& path, bool repeat, double time_s) RT_SAFE {
+HandWaypoint hand_target(const std::vector<HandWaypoint>& path, bool repeat,
+                         double time_s) RT_SAFE {
   if (path.empty()) return {};
   const double end_s = path.back().time_s;
   if (repeat && end_s > 0.0 && time_s > end_s) time_s = std::fmod(time_s, end_s);

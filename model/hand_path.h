@@ -12,9 +12,9 @@
 namespace tact::model {
 
 struct HandWaypoint {
-  double time_s = 0.0;  // ascending; the first is 0
-  Vec3 position_m;      // W
-  Vec3 rotation_rad;    // of the tool against its rest orientation, rotation vector in W
+  double time_s = 0.0;      // ascending; the first is 0
+  Vec3 position_m;          // W
+  Vec3 rotation_rad;        // of the tool against its rest orientation, rotation vector in W
   double grip_ratio = 0.0;  // 0 open, 1 closed
 };
 
@@ -23,8 +23,8 @@ struct HandSettings {
   double mass_kg = 0.0;
   double stiffness_N_per_m = 0.0;
   double damping_Ns_per_m = 0.0;
-  bool repeat = false;              // start over after the last waypoint
-  std::vector<HandWaypoint> path;   // at least one
+  bool repeat = false;             // start over after the last waypoint
+  std::vector<HandWaypoint> path;  // at least one
 };
 
 /// Where the hand wants to be at a time since the start; holds the last waypoint afterwards.

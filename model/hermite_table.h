@@ -59,8 +59,8 @@ class HermiteTable {
   CurvePoint evaluate(const Cell& c, double t) const RT_SAFE {
     return {.value = c.f0 + t * (c.m0 + t * (c.c2 + t * c.c3)),
             .slope = (c.m0 + t * (2.0 * c.c2 + t * 3.0 * c.c3)) / step_,
-            .integral = c.u0 + step_ * t *
-                                   (c.f0 + t * (c.m0 / 2.0 + t * (c.c2 / 3.0 + t * c.c3 / 4.0)))};
+            .integral =
+                c.u0 + step_ * t * (c.f0 + t * (c.m0 / 2.0 + t * (c.c2 / 3.0 + t * c.c3 / 4.0)))};
   }
 
   double step_ = 1.0;

@@ -22,13 +22,13 @@ inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFu;
 
 /// What the loop sees of a surface: spans of fixed size, nothing to own.
 struct SurfaceView {
-  std::span<const Vec3> vertex_m;                   // n
-  std::span<const TriangleCorners> triangle;        // m
-  std::span<const TriangleCorners> neighbour;       // m, across edge e; kNoTriangle on a boundary
-  std::span<const Vec3> face_normal;                // m, unit
-  std::span<const Vec3> vertex_normal;              // n, unit
-  std::span<const std::uint32_t> fan_start;         // n + 1, into fan
-  std::span<const std::uint32_t> fan;               // 3 m, triangles around each vertex
+  std::span<const Vec3> vertex_m;              // n
+  std::span<const TriangleCorners> triangle;   // m
+  std::span<const TriangleCorners> neighbour;  // m, across edge e; kNoTriangle on a boundary
+  std::span<const Vec3> face_normal;           // m, unit
+  std::span<const Vec3> vertex_normal;         // n, unit
+  std::span<const std::uint32_t> fan_start;    // n + 1, into fan
+  std::span<const std::uint32_t> fan;          // 3 m, triangles around each vertex
 };
 
 /// Owner of the arrays behind a SurfaceView.
@@ -46,9 +46,9 @@ struct SurfaceMesh {
   }
 };
 
-/// Topology and normals of a sound triangle list: every edge has one or two triangles, with opposite
-/// directions where two, and no triangle has zero area. Anything else is an error that names the
-/// first offending triangle (counted from 0).
+/// Topology and normals of a sound triangle list: every edge has one or two triangles, with
+/// opposite directions where two, and no triangle has zero area. Anything else is an error that
+/// names the first offending triangle (counted from 0).
 Result<SurfaceMesh> make_surface_mesh(std::vector<Vec3> vertex_m,
                                       std::vector<TriangleCorners> triangle);
 

@@ -20,8 +20,8 @@ const char* first_fault(const RhombusChainParameters& p) {
     return "tangential_stiffness_N_per_m must be finite and not below 0";
   if (!is_positive(p.growth)) return "growth must be finite and above 0";
   if (p.units < 1 || p.units > kMaxUnits) return "units must lie between 1 and 64";
-  const double largest = p.tangential_stiffness_N_per_m *
-                         std::exp(static_cast<double>(p.units - 1) / p.growth);
+  const double largest =
+      p.tangential_stiffness_N_per_m * std::exp(static_cast<double>(p.units - 1) / p.growth);
   if (!std::isfinite(largest)) return "growth is too small for so many units: exp overflows";
   return nullptr;
 }

@@ -17,8 +17,8 @@ PaperUnit paper_forward(const RhombusUnit& unit, double angle_change_rad) RT_SAF
   // (3)  F = kT dv tan(th) + kN dl
   out.force_N = kT * out.widening_m * std::tan(th) + kN * out.shortening_m;
   // (12)  the numerator's terms
-  out.energy_J = 0.5 * kN * out.shortening_m * out.shortening_m +
-                 0.5 * kT * out.widening_m * out.widening_m;
+  out.energy_J =
+      0.5 * kN * out.shortening_m * out.shortening_m + 0.5 * kT * out.widening_m * out.widening_m;
   return out;
 }
 
@@ -29,8 +29,7 @@ double paper_initial_stiffness_N_per_m(const RhombusUnit& unit) RT_SAFE {
 
 bool paper_is_singular(const RhombusUnit& unit) RT_SAFE {
   const double t = std::tan(unit.initial_angle_rad);
-  const double scale =
-      unit.normal_stiffness_N_per_m + unit.tangential_stiffness_N_per_m * t * t;
+  const double scale = unit.normal_stiffness_N_per_m + unit.tangential_stiffness_N_per_m * t * t;
   return paper_initial_stiffness_N_per_m(unit) <= 1e-9 * scale;
 }
 
@@ -40,7 +39,8 @@ PaperInverse paper_inverse(const RhombusUnit& unit, double force_N) RT_SAFE {
   const double th = unit.initial_angle_rad, two_a = 2.0 * unit.rod_length_m;
   const double kN = unit.normal_stiffness_N_per_m;
   const double b = unit.tangential_stiffness_N_per_m * std::tan(th);
-  // (3) is F = 2a (kN sin(th') + b cos(th')) - const, largest where tan(th') = kN / b, least at flat
+  // (3) is F = 2a (kN sin(th') + b cos(th')) - const, largest where tan(th') = kN / b, least at
+  // flat
   const double peak_rad = std::atan2(kN, b) - th, flat_rad = -th;
   const double end_rad = force_N > 0.0 ? peak_rad : flat_rad;
   PaperInverse out;

@@ -13,11 +13,11 @@ namespace tact::model {
 
 /// Equations (3) to (6) of one unit at a given change of angle.
 struct PaperUnit {
-  double shortening_m = 0.0;      // dl, (4)
-  double widening_m = 0.0;        // dv, (4)
+  double shortening_m = 0.0;       // dl, (4)
+  double widening_m = 0.0;         // dv, (4)
   double stiffness_N_per_m = 0.0;  // D, the denominator of (6)
-  double force_N = 0.0;           // (3)
-  double energy_J = 0.0;          // of both springs, as summed in (12)
+  double force_N = 0.0;            // (3)
+  double energy_J = 0.0;           // of both springs, as summed in (12)
 };
 PaperUnit paper_forward(const RhombusUnit& unit, double angle_change_rad) RT_SAFE;
 
@@ -30,7 +30,7 @@ bool paper_is_singular(const RhombusUnit& unit) RT_SAFE;
 struct PaperInverse {
   double angle_change_rad = 0.0;
   double lambda = 0.0;
-  PaperUnit unit;
+  PaperUnit unit{};
   double limit_N = 0.0;  // largest pull (F > 0) or press (F < 0) that has a solution
   LawStatus status = LawStatus::kOk;
 };

@@ -3,8 +3,8 @@
 //     x  shortening of the normal diagonal, m, press positive     f  force, N, press positive
 //     y  widening of the tangential diagonal, m                   theta'  angle of the rods, rad
 //
-// Equations RC-1 .. RC-7 of PHYSICS 1.3; valid from rods straight (x > -2a (1 - sin theta0)) to rods
-// flat (x = 2a sin theta0) or, when the tangential spring is stiff, to the snap before it.
+// Equations RC-1 .. RC-7 of PHYSICS 1.3; valid from rods straight (x > -2a (1 - sin theta0)) to
+// rods flat (x = 2a sin theta0) or, when the tangential spring is stiff, to the snap before it.
 #pragma once
 
 #include "model/law.h"
@@ -14,9 +14,9 @@ namespace tact::model {
 enum class UnitLimit : std::uint8_t { kFlat, kSnap };
 
 struct RhombusUnit {
-  double rod_length_m = 0.0;               // a
-  double initial_angle_rad = 0.0;          // theta0
-  double normal_stiffness_N_per_m = 0.0;   // kN
+  double rod_length_m = 0.0;                  // a
+  double initial_angle_rad = 0.0;             // theta0
+  double normal_stiffness_N_per_m = 0.0;      // kN
   double tangential_stiffness_N_per_m = 0.0;  // kT
 
   /// a, kN > 0, 0 < theta0 < pi/2, kT >= 0, all finite.

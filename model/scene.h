@@ -16,21 +16,21 @@
 namespace tact::model {
 
 struct Limits {
-  double force_N = 0.0;         // vector magnitude
-  double torque_Nm = 0.0;       // vector magnitude
-  double slew_N_per_s = 0.0;    // largest change of the force vector
-  double ramp_s = 0.0;          // fade-in after arming
+  double force_N = 0.0;                  // vector magnitude
+  double torque_Nm = 0.0;                // vector magnitude
+  double slew_N_per_s = 0.0;             // largest change of the force vector
+  double ramp_s = 0.0;                   // fade-in after arming
   double workspace_radius_m = 0.0;       // cylinder about the W x axis
   double workspace_half_length_m = 0.0;  // along the W x axis
 };
 
 /// The simulated Delta's imperfections (DEVICES 5.6); its geometry is fixed in hal/sim.
 struct SimDeviceSettings {
-  double counts_per_turn = 0.0;               // of a joint
-  double sample_delay_s = 0.0;                // age of a sample when the loop gets it
-  double joint_friction_Nm = 0.0;             // Coulomb, per joint
-  double joint_damping_Nms_per_rad = 0.0;     // viscous, per joint
-  double observer_bandwidth_Hz = 0.0;         // of the velocity observer
+  double counts_per_turn = 0.0;            // of a joint
+  double sample_delay_s = 0.0;             // age of a sample when the loop gets it
+  double joint_friction_Nm = 0.0;          // Coulomb, per joint
+  double joint_damping_Nms_per_rad = 0.0;  // viscous, per joint
+  double observer_bandwidth_Hz = 0.0;      // of the velocity observer
 };
 
 struct DeviceSettings {
@@ -64,7 +64,7 @@ struct Scene {
   HandSettings hand;
   Limits limits;
   double frame_rate_Hz = 0.0;
-  std::string hash;  // of the text after overrides, 16 hex digits
+  std::string hash;        // of the text after overrides, 16 hex digits
   SurfaceMesh organ_mesh;  // in W, m
   SurfaceMesh tool_mesh;   // tool frame, m
 };

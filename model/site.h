@@ -1,5 +1,30 @@
-// site.h - the point of a surface nearest to a probe, followed from tick to tick.
+// site.h - the point of a surface nearest to a probe centre p, followed from tick to tick.
+//
+//     phi   signed distance of p to the undeformed surface, m, positive outside
+//     q     nearest surface point      n = grad phi = sign (p - q) / |p - q|
+//
+// The walk goes from triangle to neighbouring triangle while the distance falls, at most
+// kMaxWalkSteps a call: its cost does not depend on the size of the mesh. It finds the local
+// minimum near its start, which is what contact wants: a probe pressed into a thin lobe must not
+// jump to the far side.
 #pragma once
 
 #include "model/mesh.h"
 #include "model/types.h"
+
+namespace tact::model {
+
+inline constexpr int kMaxWalkSteps = 64;
+inline constexpr std::uint32_t kMaxFan = 32;  // triangles looked at around one vertex
+
+struct Site {
+  std::uint32_t triangle = kNoTriangle;
+  Vec3 point_m;             // q
+  Vec3 normal;              // n, unit
+  double distance_m = 0.0;  // phi
+};
+
+/// Nearest point near `start`; `start` must be a triangle of the surface.
+Site follow(const SurfaceView& surface, std::uint32_t start, const Vec3& p_m) RT_SAFE;
+
+}  // namespace tact::model

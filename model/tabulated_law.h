@@ -1,8 +1,8 @@
 // tabulated_law.h - any closed-form law as the loop sees it: two Hermite tables, press and pull.
 //
 // 65 knots a side over [pull limit, 0] and [0, 0.95 press limit] reproduce the rhombus chain within
-// 1e-8 of its limit force (PHYSICS 0.4). Beyond the tables the force stays at the last knot's value,
-// the energy goes on with it, and the status is kSaturated.
+// 1e-8 of its limit force (PHYSICS 0.4). Beyond the tables the force stays at the last knot's
+// value, the energy goes on with it, and the status is kSaturated.
 #pragma once
 
 #include "model/hermite_table.h"

@@ -1,0 +1,113 @@
+#include "model/site.h"
+
+namespace tact::model {
+namespace {
+
+enum class Feature : std::uint8_t { kFace, kEdge, kCorner };
+
+struct Nearest {
+  Vec3 point_m;
+  double squared_m2 = 0.0;
+  std::uint32_t triangle = kNoTriangle;
+  Feature feature = Feature::kFace;
+  std::uint32_t index = 0;  // of the edge or corner
+};
+
+Nearest at(const Vec3& q, const Vec3& p, std::uint32_t t, Feature f, std::uint32_t i) RT_SAFE {
+  return {q, dot(p - q, p - q), t, f, i};
+}
+
+// Voronoi regions of a triangle [C. Ericson, Real-Time Collision Detection (2005) 5.1.5].
+Nearest nearest_on(const SurfaceView& s, std::uint32_t t, const Vec3& p) RT_SAFE {
+  const TriangleCorners& corner = s.triangle[t];
+  const Vec3 &a = s.vertex_m[corner[0]], &b = s.vertex_m[corner[1]], &c = s.vertex_m[corner[2]];
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+  if (d1 <= 0.0 && d2 <= 0.0) return at(a, p, t, Feature::kCorner, 0);
+  const Vec3 bp = p - b;
+  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+  if (d3 >= 0.0 && d4 <= d3) return at(b, p, t, Feature::kCorner, 1);
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0)
+    return at(a + (d1 / (d1 - d3)) * ab, p, t, Feature::kEdge, 0);
+  const Vec3 cp = p - c;
+  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+  if (d6 >= 0.0 && d5 <= d6) return at(c, p, t, Feature::kCorner, 2);
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0)
+    return at(a + (d2 / (d2 - d6)) * ac, p, t, Feature::kEdge, 2);
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0)
+    return at(b + ((d4 - d3) / ((d4 - d3) + (d5 - d6))) * (c - b), p, t, Feature::kEdge, 1);
+  const double sum = va + vb + vc;
+  return at(a + (vb / sum) * ab + (vc / sum) * ac, p, t, Feature::kFace, 0);
+}
+
+void try_triangle(const SurfaceView& s, std::uint32_t t, const Vec3& p, Nearest& best) RT_SAFE {
+  if (t == kNoTriangle) return;
+  const Nearest other = nearest_on(s, t, p);
+  if (other.squared_m2 < best.squared_m2) best = other;
+}
+
+// The best of the triangle's neighbours across the feature that holds the nearest point. From
+// inside the body the nearest point of a face may not be the nearest of its ring: all edges are
+// tried.
+Nearest step_from(const SurfaceView& s, const Nearest& here, const Vec3& p) RT_SAFE {
+  Nearest best = here;
+  const TriangleCorners& neighbour = s.neighbour[here.triangle];
+  switch (here.feature) {
+    case Feature::kFace:
+      if (dot(p - here.point_m, s.face_normal[here.triangle]) < 0.0)
+        for (const std::uint32_t t : neighbour) try_triangle(s, t, p, best);
+      break;
+    case Feature::kEdge:
+      try_triangle(s, neighbour[here.index], p, best);
+      break;
+    case Feature::kCorner: {
+      const std::uint32_t v = s.triangle[here.triangle][here.index];
+      const std::uint32_t begin = s.fan_start[v], end = s.fan_start[v + 1];
+      for (std::uint32_t i = begin; i < end && i < begin + kMaxFan; ++i)
+        try_triangle(s, s.fan[i], p, best);
+      break;
+    }
+  }
+  return best;
+}
+
+Vec3 pseudo_normal(const SurfaceView& s, const Nearest& at) RT_SAFE {
+  switch (at.feature) {
+    case Feature::kCorner:
+      return s.vertex_normal[s.triangle[at.triangle][at.index]];
+    case Feature::kEdge: {
+      const std::uint32_t other = s.neighbour[at.triangle][at.index];
+      if (other != kNoTriangle)
+        return normalized(s.face_normal[at.triangle] + s.face_normal[other]);
+      break;
+    }
+    case Feature::kFace:
+      break;
+  }
+  return s.face_normal[at.triangle];
+}
+
+}  // namespace
+
+Site follow(const SurfaceView& surface, std::uint32_t start, const Vec3& p_m) RT_SAFE {
+  Nearest here = nearest_on(surface, start, p_m);
+  for (int i = 0; i < kMaxWalkSteps; ++i) {
+    const Nearest next = step_from(surface, here, p_m);
+    if (next.triangle == here.triangle) break;
+    here = next;
+  }
+  const Vec3 outward = pseudo_normal(surface, here);
+  const Vec3 away = p_m - here.point_m;
+  const double length_m = norm(away);
+  const double sign = dot(away, outward) >= 0.0 ? 1.0 : -1.0;
+  constexpr double kOnSurface_m = 1e-9;  // below this the direction of p - q is rounding noise
+  return {.triangle = here.triangle,
+          .point_m = here.point_m,
+          .normal = length_m > kOnSurface_m ? (sign / length_m) * away : outward,
+          .distance_m = sign * length_m};
+}
+
+}  // namespace tact::model
