@@ -1,9 +1,9 @@
 // telemetry_record.h - what tactd tells, and the only thing that host/ knows of it.
 //
 // A local SOCK_SEQPACKET socket, owner only, send-only, little-endian plain structs. Each message
-// begins with a MessageHeader. The first is one Hello that carries a file descriptor (SCM_RIGHTS) of
-// a sealed memory file with the meshes; then Frames follow at frame_rate_Hz. A client that does not
-// read loses frames, never delays anything.
+// begins with a MessageHeader. The first is one Hello that carries a file descriptor (SCM_RIGHTS)
+// of a sealed memory file with the meshes; then Frames follow at frame_rate_Hz. A client that does
+// not read loses frames, never delays anything.
 //
 // Memory file: organ vertices (3 float each, W, m), organ triangles (3 uint32 each), then the same
 // for the tool mesh (tool frame, m). Units are in the names; vectors are x, y, z in frame W.
@@ -51,10 +51,10 @@ struct Hello {
 };
 
 struct FrameSite {
-  float surface_point_m[3] = {};  // touched or held point of the undeformed surface
-  float normal[3] = {};           // outward unit normal there
-  float shift_m[3] = {};          // tangential displacement of the tissue at the site
-  float depth_m = 0.0f;           // press positive, pull negative
+  float surface_point_m[3] = {};    // touched or held point of the undeformed surface
+  float normal[3] = {};             // outward unit normal there
+  float shift_m[3] = {};            // tangential displacement of the tissue at the site
+  float depth_m = 0.0f;             // press positive, pull negative
   float profile_m[kMaxRings] = {};  // normal displacement of ring j, into the tissue positive
   SiteState state = SiteState::kFree;
   std::uint8_t pad[3] = {};
@@ -69,7 +69,7 @@ struct Frame {
   float tool_orientation[4] = {1, 0, 0, 0};  // w, x, y, z; tool frame to W
   float tool_velocity_mps[3] = {};
   float grip_ratio = 0.0f;
-  float force_N[3] = {};   // written to the device
+  float force_N[3] = {};  // written to the device
   float torque_Nm[3] = {};
   float wanted_force_N[3] = {};  // asked by the law, before the gate
   float worst_margin_us = 0.0f;  // least time left before the deadline since the last frame

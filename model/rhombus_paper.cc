@@ -3,6 +3,15 @@
 #include <cmath>
 
 namespace tact::model {
+namespace {
+
+// 1e-9 (kN + kT tan^2(th)): a difference of the two terms below this is rounding.
+double negligible_N_per_m(const RhombusUnit& unit) RT_SAFE {
+  const double t = std::tan(unit.initial_angle_rad);
+  return 1e-9 * (unit.normal_stiffness_N_per_m + unit.tangential_stiffness_N_per_m * t * t);
+}
+
+}  // namespace
 
 PaperUnit paper_forward(const RhombusUnit& unit, double angle_change_rad) RT_SAFE {
   const double a = unit.rod_length_m, th = unit.initial_angle_rad;
@@ -28,9 +37,11 @@ double paper_initial_stiffness_N_per_m(const RhombusUnit& unit) RT_SAFE {
 }
 
 bool paper_is_singular(const RhombusUnit& unit) RT_SAFE {
-  const double t = std::tan(unit.initial_angle_rad);
-  const double scale = unit.normal_stiffness_N_per_m + unit.tangential_stiffness_N_per_m * t * t;
-  return paper_initial_stiffness_N_per_m(unit) <= 1e-9 * scale;
+  return paper_initial_stiffness_N_per_m(unit) <= negligible_N_per_m(unit);
+}
+
+bool paper_divides_by_zero(const RhombusUnit& unit, const PaperUnit& at) RT_SAFE {
+  return std::abs(at.stiffness_N_per_m) <= negligible_N_per_m(unit);
 }
 
 PaperInverse paper_inverse(const RhombusUnit& unit, double force_N) RT_SAFE {

@@ -26,6 +26,9 @@ double paper_initial_stiffness_N_per_m(const RhombusUnit& unit) RT_SAFE;
 /// D0 is zero or negative within rounding: the printed law has no meaning.
 bool paper_is_singular(const RhombusUnit& unit) RT_SAFE;
 
+/// (6) divides by D: no finite value where D is zero within rounding.
+bool paper_divides_by_zero(const RhombusUnit& unit, const PaperUnit& at) RT_SAFE;
+
 /// Equation (6) solved for the angle: force in, shape out.
 struct PaperInverse {
   double angle_change_rad = 0.0;

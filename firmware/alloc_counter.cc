@@ -1,0 +1,78 @@
+#include "firmware/alloc_counter.h"
+
+#include <cerrno>
+#include <cstddef>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define TACT_HEAP_IS_TAKEN
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || \
+    __has_feature(realtime_sanitizer)
+#define TACT_HEAP_IS_TAKEN
+#endif
+#endif
+
+namespace tact::firmware {
+namespace {
+
+thread_local bool watching = false;
+thread_local std::uint64_t counted = 0;
+
+[[maybe_unused]] inline void note_heap_call() {
+  if (watching) ++counted;
+}
+
+}  // namespace
+
+#ifdef TACT_HEAP_IS_TAKEN
+bool can_count_heap_calls() { return false; }
+#else
+bool can_count_heap_calls() { return true; }
+#endif
+
+HeapWatch::HeapWatch() {
+  counted = 0;
+  watching = true;
+}
+HeapWatch::~HeapWatch() { watching = false; }
+std::uint64_t HeapWatch::calls() const { return counted; }
+
+}  // namespace tact::firmware
+
+#ifndef TACT_HEAP_IS_TAKEN
+using tact::firmware::note_heap_call;
+
+extern "C" {
+void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* __libc_memalign(std::size_t, std::size_t);
+void __libc_free(void*);
+
+void* malloc(std::size_t size) {
+  note_heap_call();
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t count, std::size_t size) {
+  note_heap_call();
+  return __libc_calloc(count, size);
+}
+void* realloc(void* old, std::size_t size) {
+  note_heap_call();
+  return __libc_realloc(old, size);
+}
+void* memalign(std::size_t alignment, std::size_t size) {
+  note_heap_call();
+  return __libc_memalign(alignment, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) { return memalign(alignment, size); }
+int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
+  *out = memalign(alignment, size);
+  return *out == nullptr ? ENOMEM : 0;
+}
+void free(void* block) {
+  note_heap_call();
+  __libc_free(block);
+}
+}  // extern "C"
+#endif

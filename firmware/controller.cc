@@ -1,0 +1,45 @@
+#include "firmware/controller.h"
+
+#include <cmath>
+
+namespace tact::firmware {
+namespace {
+
+bool is_finite(const model::Tool& tool) RT_SAFE {
+  const model::Quat& q = tool.orientation;
+  return model::is_finite(tool.position_m) && model::is_finite(tool.velocity_mps) &&
+         model::is_finite(tool.angular_velocity_radps) && std::isfinite(tool.grip_ratio) &&
+         std::isfinite(q.w) && std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z);
+}
+
+}  // namespace
+
+void Controller::touch(const TickInput& input) RT_SAFE { contact_.touch(input.sample.tool); }
+
+void Controller::feel(const TickInput& input) RT_SAFE {
+  wanted_ = contact_.feel(input.sample.tool);
+}
+
+TickOutput Controller::judge(const TickInput& input) RT_SAFE {
+  const bool finite = is_finite(input.sample.tool);
+  Fault fault = finite ? Fault::kNone : Fault::kSampleNotFinite;
+  if (latches(input.device_fault)) fault = input.device_fault;
+  supervisor_.step(input.commands, input.sample.fresh && finite, fault);
+
+  const GateVerdict verdict = gate_.judge({.wanted = wanted_,
+                                           .position_m = input.sample.tool.position_m,
+                                           .fresh = input.sample.fresh,
+                                           .armed = supervisor_.armed()});
+  supervisor_.trip(verdict.fault);
+  Fault limit = verdict.limit;
+  for (const model::SphereTouch& touch : contact_.touches())
+    if (limit == Fault::kNone && touch.law_status == model::LawStatus::kSaturated)
+      limit = Fault::kLawSaturated;
+  return {.wanted = wanted_,
+          .written = verdict.wrench,
+          .state = supervisor_.state(),
+          .limit = limit,
+          .fault = supervisor_.fault()};
+}
+
+}  // namespace tact::firmware

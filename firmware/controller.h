@@ -1,0 +1,55 @@
+// controller.h - a tick without its device and its clock: touch, feel, judge.
+//
+// Everything that decides the force is in TickInput, so a recorded run gives the same bits again
+// (replay.h). The loop (rt_loop.h) calls the three phases and measures them.
+#pragma once
+
+#include "firmware/gate/gate.h"
+#include "firmware/supervisor.h"
+#include "hal/device.h"
+#include "model/contact.h"
+
+namespace tact::firmware {
+
+/// All that enters a tick from outside.
+struct TickInput {
+  hal::Sample sample;
+  Fault device_fault = Fault::kNone;
+  Commands commands;
+};
+
+/// All that leaves it.
+struct TickOutput {
+  Wrench wanted;   // by the law
+  Wrench written;  // after the gate
+  State state = State::kOff;
+  Fault limit = Fault::kNone;
+  Fault fault = Fault::kNone;  // latched
+};
+
+class Controller {
+ public:
+  Controller(const model::ContactScene& scene, const Gate& gate) : contact_(scene), gate_(gate) {}
+
+  void touch(const TickInput& input) RT_SAFE;
+  void feel(const TickInput& input) RT_SAFE;
+  TickOutput judge(const TickInput& input) RT_SAFE;
+
+  /// The three phases in a row.
+  TickOutput tick(const TickInput& input) RT_SAFE {
+    touch(input);
+    feel(input);
+    return judge(input);
+  }
+
+  std::span<const model::SphereTouch> touches() const RT_SAFE { return contact_.touches(); }
+  const Gate& gate() const RT_SAFE { return gate_; }
+
+ private:
+  model::Contact contact_;
+  Gate gate_;
+  Supervisor supervisor_;
+  Wrench wanted_;
+};
+
+}  // namespace tact::firmware

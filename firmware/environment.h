@@ -1,0 +1,21 @@
+// environment.h - the facts of a PC and a build that a measurement is worth nothing without.
+#pragma once
+
+#include <string>
+
+namespace tact::firmware {
+
+struct Environment {
+  std::string kernel_release, kernel_version;
+  bool realtime_kernel = false;
+  std::string cpu;
+  int cores = 0;
+  std::string clock_source;
+  std::string git_revision;  // of this build
+  std::string compiler;
+  std::string scene_hash;
+};
+
+Environment read_environment(const std::string& scene_hash);
+
+}  // namespace tact::firmware

@@ -1,0 +1,107 @@
+#include "firmware/report.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace tact::firmware {
+namespace {
+
+using nlohmann::json;
+
+const char* word(State state) {
+  constexpr std::array kWords{"off", "ready", "armed", "stopped"};
+  return kWords[static_cast<std::size_t>(state)];
+}
+
+json percentiles(const LatencyHistogram& h) {
+  return {{"count", h.count()},
+          {"p50_ns", h.percentile_ns(0.50)},
+          {"p99_ns", h.percentile_ns(0.99)},
+          {"p99.9_ns", h.percentile_ns(0.999)},
+          {"p99.99_ns", h.percentile_ns(0.9999)},
+          {"max_ns", h.max_ns()},
+          {"max_tick", h.max_tick()}};
+}
+
+json to_json(const Environment& e) {
+  return {{"kernel_release", e.kernel_release},
+          {"kernel_version", e.kernel_version},
+          {"realtime_kernel", e.realtime_kernel},
+          {"cpu", e.cpu},
+          {"cores", e.cores},
+          {"clock_source", e.clock_source},
+          {"git_revision", e.git_revision},
+          {"compiler", e.compiler},
+          {"scene_hash", e.scene_hash}};
+}
+
+json to_json(const ThreadCosts& c) {
+  return {{"allocations", c.heap_calls_known ? json(c.heap_calls) : json(nullptr)},
+          {"minor_page_faults", c.minor_faults},
+          {"major_page_faults", c.major_faults},
+          {"voluntary_context_switches", c.voluntary_switches},
+          {"involuntary_context_switches", c.involuntary_switches}};
+}
+
+}  // namespace
+
+json make_report(const RunFacts& facts, const LoopStatistics& loop, const Gate& gate,
+                 const Environment& environment) {
+  json phases, stages, shortfalls = json::array();
+  for (std::size_t i = 0; i < kPhaseCount; ++i) phases[kPhaseName[i]] = percentiles(loop.phase[i]);
+  for (std::size_t i = 0; i < kStageCount; ++i) stages[kStageName[i]] = gate.counters()[i];
+  for (const Shortfall& s : facts.shortfalls) shortfalls.push_back(s.sentence);
+  const model::FaultEntry& fault = model::describe(facts.fault);
+  return {{"scene", facts.scene_name},
+          {"device", facts.device_name},
+          {"rate_Hz", facts.rate_Hz},
+          {"duration_s", facts.duration_s},
+          {"non_rt", facts.non_rt},
+          {"shortfalls", shortfalls},
+          {"ticks", loop.ticks},
+          {"late", loop.late_ticks},
+          {"skipped", loop.skipped_ticks},
+          {"thread", to_json(facts.costs)},
+          {"phases", phases},
+          {"force_max_N", loop.max_force_N},
+          {"force_limit_N", facts.force_limit_N},
+          {"gate", stages},
+          {"state", word(facts.state)},
+          {"fault",
+           {{"number", static_cast<int>(facts.fault)},
+            {"name", fault.name},
+            {"cause", fault.cause},
+            {"cure", fault.cure}}},
+          {"dropped_records", facts.dropped_records},
+          {"dropped_frames", facts.dropped_frames},
+          {"force_hash", fmt::format("{:016x}", facts.force_hash)},
+          {"resident_peak_kB", facts.resident_peak_kB},
+          {"environment", to_json(environment)}};
+}
+
+std::string make_summary(const RunFacts& facts, const LoopStatistics& loop) {
+  const LatencyHistogram& total = loop.phase[static_cast<std::size_t>(Phase::kTotal)];
+  const LatencyHistogram& wake = loop.phase[static_cast<std::size_t>(Phase::kWake)];
+  const auto us = [](std::uint64_t ns) { return static_cast<double>(ns) * 1e-3; };
+  std::string out = fmt::format(
+      "{} on {}: {} ticks at {:g} Hz, {} late, {} skipped{}\n"
+      "  wake latency  p50 {:.1f} us, p99.9 {:.1f} us, max {:.1f} us at tick {}\n"
+      "  tick          p50 {:.1f} us, p99.9 {:.1f} us, max {:.1f} us at tick {}\n"
+      "  force         max {:.3f} N of {:.2f} N allowed, state {}, {} allocations, {} page faults",
+      facts.scene_name, facts.device_name, loop.ticks, facts.rate_Hz, loop.late_ticks,
+      loop.skipped_ticks, facts.non_rt ? ", non-rt" : "", us(wake.percentile_ns(0.5)),
+      us(wake.percentile_ns(0.999)), us(wake.max_ns()), wake.max_tick(),
+      us(total.percentile_ns(0.5)), us(total.percentile_ns(0.999)), us(total.max_ns()),
+      total.max_tick(), loop.max_force_N, facts.force_limit_N, word(facts.state),
+      facts.costs.heap_calls_known ? std::to_string(facts.costs.heap_calls) : "uncounted",
+      facts.costs.minor_faults + facts.costs.major_faults);
+  if (facts.fault != Fault::kNone) {
+    const model::FaultEntry& fault = model::describe(facts.fault);
+    out += fmt::format("\n  fault {}: {}: {}; {}", static_cast<int>(facts.fault), fault.name,
+                       fault.cause, fault.cure);
+  }
+  return out;
+}
+
+}  // namespace tact::firmware

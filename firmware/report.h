@@ -1,0 +1,42 @@
+// report.h - what a run tells when it ends: a JSON file for machines, a few lines for people.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "firmware/environment.h"
+#include "firmware/rt_loop.h"
+#include "firmware/rt_setup.h"
+
+namespace tact::firmware {
+
+/// Kernel's and allocator's view of the loop's thread between its first and its last tick.
+struct ThreadCosts {
+  std::uint64_t heap_calls = 0;
+  bool heap_calls_known = false;
+  long minor_faults = 0, major_faults = 0;
+  long voluntary_switches = 0, involuntary_switches = 0;
+};
+
+struct RunFacts {
+  std::string scene_name, device_name;
+  double rate_Hz = 0.0;
+  double duration_s = 0.0;
+  double force_limit_N = 0.0;
+  bool non_rt = false;
+  std::vector<Shortfall> shortfalls;
+  ThreadCosts costs;
+  std::uint64_t dropped_records = 0, dropped_frames = 0;
+  State state = State::kOff;
+  Fault fault = Fault::kNone;
+  std::uint64_t force_hash = 0;  // equal for equal runs; 0 when not computed
+  long resident_peak_kB = 0;
+};
+
+nlohmann::json make_report(const RunFacts& facts, const LoopStatistics& loop, const Gate& gate,
+                           const Environment& environment);
+std::string make_summary(const RunFacts& facts, const LoopStatistics& loop);
+
+}  // namespace tact::firmware

@@ -1,0 +1,91 @@
+// Nothing in here may wait but for the clock and the device; nothing locks, allocates, prints or
+// throws. The gate sees every force before the hand does.
+#include "firmware/rt_loop.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace tact::firmware {
+
+void RtLoop::run() RT_SAFE {
+  while (may_run()) step();
+  let_go();
+}
+
+void RtLoop::step() RT_SAFE {
+  const std::int64_t period_ns = settings_.period_ns;
+  if (statistics_.ticks == 0) due_ns_ = clock_.now_ns() + period_ns;
+  clock_.sleep_until_ns(due_ns_);
+  cycle(due_ns_);
+  due_ns_ += period_ns;  // absolute deadlines: one late tick does not delay the next
+  const std::int64_t behind_ns = clock_.now_ns() - due_ns_;
+  record_.margin_ns = -behind_ns;
+  std::int64_t skipped = 0;
+  if (behind_ns >= 0) {
+    skipped = behind_ns / period_ns + 1;
+    due_ns_ += skipped * period_ns;
+    ++statistics_.late_ticks;
+    statistics_.skipped_ticks += static_cast<std::uint64_t>(skipped);
+  }
+  device_.between_ticks(static_cast<double>((1 + skipped) * period_ns) * 1e-9);
+}
+
+void RtLoop::let_go() RT_SAFE { device_.write(Wrench{}); }
+
+bool RtLoop::may_run() const RT_SAFE {
+  if (requests_.stop.load(std::memory_order_relaxed)) return false;
+  return settings_.max_ticks == 0 || statistics_.ticks < settings_.max_ticks;
+}
+
+void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
+  const std::int64_t wake_ns = clock_.now_ns();
+  record_.tick = statistics_.ticks++;
+  record_.due_ns = due_ns;
+  keep(Phase::kWake, wake_ns - due_ns);
+
+  TickInput& input = record_.input;
+  input.commands = {.arm = requests_.arm.load(std::memory_order_relaxed),
+                    .stop = requests_.stop.load(std::memory_order_relaxed),
+                    .reset = requests_.reset.load(std::memory_order_relaxed)};
+  input.sample.fresh = false;
+  const Fault read_fault = device_.read(input.sample, wake_ns);  // sense
+  input.device_fault = read_fault != Fault::kNone ? read_fault : write_fault_;
+  const std::int64_t read_ns = clock_.now_ns();
+  keep(Phase::kRead, read_ns - wake_ns);
+
+  controller_.touch(input);  // touch
+  const std::int64_t touched_ns = clock_.now_ns();
+  keep(Phase::kTouch, touched_ns - read_ns);
+
+  controller_.feel(input);  // feel
+  const std::int64_t felt_ns = clock_.now_ns();
+  keep(Phase::kFeel, felt_ns - touched_ns);
+
+  record_.output = controller_.judge(input);  // judge
+  const std::int64_t judged_ns = clock_.now_ns();
+  keep(Phase::kJudge, judged_ns - felt_ns);
+
+  write_fault_ = device_.write(record_.output.written);  // push; judged in the next tick
+  const std::int64_t written_ns = clock_.now_ns();
+  keep(Phase::kWrite, written_ns - judged_ns);
+
+  statistics_.max_force_N = std::max(statistics_.max_force_N, norm(record_.output.written.force_N));
+  record_.late_ticks = statistics_.late_ticks;
+  record_.skipped_ticks = statistics_.skipped_ticks;
+  const auto touches = controller_.touches();
+  record_.site_count = static_cast<std::uint32_t>(touches.size());
+  std::copy(touches.begin(), touches.end(), record_.touch.begin());
+  ring_.push(record_);  // tell, or drop
+  const std::int64_t end_ns = clock_.now_ns();
+  keep(Phase::kTell, end_ns - written_ns);
+  keep(Phase::kTotal, end_ns - wake_ns);
+}
+
+void RtLoop::keep(Phase phase, std::int64_t duration_ns) RT_SAFE {
+  const auto i = static_cast<std::size_t>(phase);
+  statistics_.phase[i].record(duration_ns, record_.tick);
+  constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+  record_.phase_ns[i] = static_cast<std::int32_t>(std::clamp<std::int64_t>(duration_ns, 0, kMost));
+}
+
+}  // namespace tact::firmware

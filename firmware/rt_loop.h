@@ -1,0 +1,75 @@
+// rt_loop.h - the haptic loop: sense, touch, feel, judge, push, tell, on a fixed grid of deadlines.
+//
+// Deadlines are absolute: start + k period. A tick that ends after its own period is late; the
+// periods it has eaten are skipped and counted, the grid never shifts. What ends the loop, zero
+// force is written last.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "firmware/clock.h"
+#include "firmware/latency_histogram.h"
+#include "firmware/ring.h"
+
+namespace tact::firmware {
+
+/// What people ask of a running loop; written by ordinary threads.
+struct Requests {
+  std::atomic<bool> arm{false};
+  std::atomic<bool> stop{false};  // force to zero, then leave
+  std::atomic<bool> reset{false};
+};
+
+/// What a run leaves behind. Read it after run() has returned.
+struct LoopStatistics {
+  std::uint64_t ticks = 0;
+  std::uint64_t late_ticks = 0;     // ended after their own period
+  std::uint64_t skipped_ticks = 0;  // grid points that had no tick
+  double max_force_N = 0.0;         // written
+  std::array<LatencyHistogram, kPhaseCount> phase;
+};
+
+struct LoopSettings {
+  std::int64_t period_ns = 1'000'000;
+  std::uint64_t max_ticks = 0;  // 0: until a stop request
+};
+
+class RtLoop {
+ public:
+  RtLoop(const LoopSettings& settings, hal::Device& device, Controller& controller, Clock& clock,
+         Requests& requests, TickRing& ring)
+      : settings_(settings),
+        device_(device),
+        controller_(controller),
+        clock_(clock),
+        requests_(requests),
+        ring_(ring) {}
+
+  /// Steps until a stop request or max_ticks, then lets go.
+  void run() RT_SAFE;
+  /// Sleeps to the next deadline and does one tick.
+  void step() RT_SAFE;
+  bool may_run() const RT_SAFE;
+  /// Zero force to the device: the last thing that any loop does.
+  void let_go() RT_SAFE;
+  const LoopStatistics& statistics() const { return statistics_; }
+
+ private:
+  void cycle(std::int64_t due_ns) RT_SAFE;
+  void keep(Phase phase, std::int64_t duration_ns) RT_SAFE;
+
+  LoopSettings settings_;
+  hal::Device& device_;
+  Controller& controller_;
+  Clock& clock_;
+  Requests& requests_;
+  TickRing& ring_;
+  LoopStatistics statistics_;
+  TickRecord record_;
+  std::int64_t due_ns_ = 0;
+  Fault write_fault_ = Fault::kNone;
+};
+
+}  // namespace tact::firmware

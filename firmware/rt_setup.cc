@@ -1,0 +1,138 @@
+#include "firmware/rt_setup.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <malloc.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+
+#if defined(__x86_64__)
+#include <xmmintrin.h>
+#endif
+
+namespace tact::firmware {
+namespace {
+
+constexpr std::size_t kStackBytes = 256 * 1024;
+constexpr std::size_t kTouchedStackBytes = 128 * 1024;
+
+void lock_memory(std::vector<Shortfall>& shortfalls) {
+  mallopt(M_TRIM_THRESHOLD, -1);  // freed memory stays ours
+  mallopt(M_MMAP_MAX, 0);         // no block of its own mapping that goes back on free
+  mallopt(M_ARENA_MAX, 1);        // one heap, not one per thread
+  if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return;
+  shortfalls.push_back(
+      {fmt::format("memory is not locked ({}): a page fault can stop the loop for milliseconds; "
+                   "give the user memlock unlimited in /etc/security/limits.d/, or run as root",
+                   std::strerror(errno))});
+}
+
+// The kernel keeps the promise while the file stays open.
+int hold_power_latency(std::vector<Shortfall>& shortfalls) {
+  const int fd = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
+  const std::int32_t latency_us = 0;
+  if (fd >= 0 && write(fd, &latency_us, sizeof latency_us) == sizeof latency_us) return fd;
+  shortfalls.push_back({fmt::format(
+      "/dev/cpu_dma_latency: {}: the CPU may sleep deeply between ticks and wake late; give the "
+      "user write permission to it, or run as root",
+      std::strerror(errno))});
+  if (fd >= 0) close(fd);
+  return -1;
+}
+
+__attribute__((noinline)) void touch_stack() {
+  volatile char bytes[kTouchedStackBytes];
+  for (std::size_t i = 0; i < sizeof bytes; i += 1024) bytes[i] = 1;
+  static_cast<void>(bytes[0]);
+}
+
+int last_in_list(const std::string& list) {
+  const std::size_t at = list.find_last_of(",-");
+  const std::string last = at == std::string::npos ? list : list.substr(at + 1);
+  return last.empty() ? -1 : std::stoi(last);
+}
+
+}  // namespace
+
+bool kernel_is_realtime() {
+  utsname name{};
+  uname(&name);
+  if (std::strstr(name.version, "PREEMPT_RT") != nullptr) return true;
+  std::ifstream flag("/sys/kernel/realtime");
+  int value = 0;
+  return flag >> value && value == 1;
+}
+
+int choose_core(const RtSettings& settings) {
+  if (settings.core >= 0) return settings.core;
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  sched_getaffinity(0, sizeof allowed, &allowed);
+  std::ifstream isolated("/sys/devices/system/cpu/isolated");
+  std::string list;
+  if (std::getline(isolated, list) && !list.empty()) return last_in_list(list);
+  int core = 0;
+  for (int i = 0; i < CPU_SETSIZE; ++i)
+    if (CPU_ISSET(static_cast<std::size_t>(i), &allowed)) core = i;
+  return core;
+}
+
+ProcessSetup::ProcessSetup(std::vector<Shortfall>& shortfalls) {
+  if (!kernel_is_realtime())
+    shortfalls.push_back(
+        {"the kernel is not PREEMPT_RT: any driver can delay a tick by milliseconds; install "
+         "linux-image-rt-amd64 and boot it"});
+  lock_memory(shortfalls);
+  latency_fd_ = hold_power_latency(shortfalls);
+}
+
+ProcessSetup::~ProcessSetup() {
+  if (latency_fd_ >= 0) close(latency_fd_);
+}
+
+void use_small_thread_stacks() {
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstacksize(&attributes, kStackBytes);
+  pthread_setattr_default_np(&attributes);
+  pthread_attr_destroy(&attributes);
+}
+
+void flush_denormals() {
+#if defined(__x86_64__)
+  constexpr unsigned kFlushToZero = 0x8000, kDenormalsAreZero = 0x0040;
+  _mm_setcsr(_mm_getcsr() | kFlushToZero | kDenormalsAreZero);
+#endif
+}
+
+void enter_rt_thread(const RtSettings& settings, std::vector<Shortfall>& shortfalls) {
+  flush_denormals();
+  prctl(PR_SET_TIMERSLACK, 1);
+  const int core = choose_core(settings);
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  CPU_SET(static_cast<std::size_t>(core), &cores);
+  if (pthread_setaffinity_np(pthread_self(), sizeof cores, &cores) != 0)
+    shortfalls.push_back(
+        {fmt::format("core {} cannot be taken; choose another with --core", core)});
+  const sched_param priority{.sched_priority = settings.priority};
+  const int refused = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
+  if (refused != 0)
+    shortfalls.push_back(
+        {fmt::format("SCHED_FIFO priority {} is refused ({}): other programs can hold up the loop; "
+                     "give the user "
+                     "rtprio {} in /etc/security/limits.d/, or run as root",
+                     settings.priority, std::strerror(refused), settings.priority + 5)});
+  touch_stack();
+}
+
+}  // namespace tact::firmware

@@ -1,0 +1,292 @@
+#include "firmware/session.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+
+#include "firmware/alloc_counter.h"
+#include "firmware/report.h"
+#include "firmware/telemetry.h"
+#include "hal/open_device.h"
+
+namespace tact::firmware {
+namespace {
+
+using model::Error;
+using model::Result;
+
+constexpr double kNonRtForceShare = 0.25;
+constexpr timespec kStatusPeriod{.tv_sec = 0, .tv_nsec = 200'000'000};
+
+int fail(const std::string& sentence, int status) {
+  fmt::print(stderr, "tactd: {}\n", sentence);
+  return status;
+}
+
+std::vector<Shortfall> probe_rt_thread(const RtSettings& settings) {
+  std::vector<Shortfall> shortfalls;
+  std::thread([&] { enter_rt_thread(settings, shortfalls); }).join();
+  return shortfalls;
+}
+
+sigset_t block_stop_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  return signals;
+}
+
+std::string status_line(const Frame& frame, double rate_Hz) {
+  constexpr std::array kWords{"off", "ready", "armed", "stopped"};
+  const double force_N = std::hypot(frame.force_N[0], frame.force_N[1], frame.force_N[2]);
+  const Fault shown = static_cast<Fault>(frame.fault != 0 ? frame.fault : frame.limit);
+  return fmt::format(
+      "{:7.1f} s  {:g} Hz  late {}  skipped {}  tick {:5.1f} us  force {:6.3f} N  {}{}",
+      static_cast<double>(frame.time_ns) * 1e-9, rate_Hz, frame.late_ticks, frame.skipped_ticks,
+      static_cast<double>(frame.median_tick_us), force_N,
+      kWords[static_cast<std::size_t>(frame.state)],
+      shown == Fault::kNone ? "" : std::string("  ") + model::describe(shown).name);
+}
+
+// Everything of one run, in the order in which it comes to life.
+class Session {
+ public:
+  Session(const model::Scene& scene, const Options& options) : scene_(scene), options_(options) {
+    rt_.core = options.core;
+  }
+
+  int run();
+
+ private:
+  std::optional<Error> open();
+  std::optional<Error> open_telemetry();
+  void run_real_time();
+  void run_free();
+  void in_loop_thread();
+  void watch();
+  int report();
+  double force_share() const { return non_rt_ ? kNonRtForceShare : 1.0; }
+  std::int64_t period_ns() const { return std::llround(1e9 / scene_.rate_Hz); }
+
+  const model::Scene& scene_;
+  const Options& options_;
+  RtSettings rt_;
+  sigset_t stop_signals_{};
+  std::optional<ProcessSetup> process_;
+  std::vector<Shortfall> shortfalls_;
+  bool non_rt_ = false;
+  std::unique_ptr<model::Tissue> tissue_;
+  std::unique_ptr<hal::Device> device_;
+  std::unique_ptr<hal::HandSocket> hand_socket_;
+  std::unique_ptr<TickRing> ring_ = std::make_unique<TickRing>();
+  std::optional<Telemetry> telemetry_;
+  std::optional<Controller> controller_;
+  MonotonicClock monotonic_clock_;
+  SimulatedClock simulated_clock_;
+  std::optional<RtLoop> loop_;
+  Requests requests_;
+  std::atomic<bool> loop_ended_{false};
+  ThreadCosts costs_;
+};
+
+int Session::run() {
+  use_small_thread_stacks();
+  stop_signals_ = block_stop_signals();
+  if (!options_.free_run) {
+    process_.emplace(shortfalls_);
+    for (Shortfall& s : probe_rt_thread(rt_)) shortfalls_.push_back(std::move(s));
+    non_rt_ = !shortfalls_.empty();
+  }
+  for (const Shortfall& s : shortfalls_) fmt::print(stderr, "tactd: {}\n", s.sentence);
+  if (non_rt_ && options_.strict) return fail("refused by --strict: no hard real time here", 1);
+  if (non_rt_)
+    fmt::print(stderr, "tactd: no hard real time: force capped to {:g} %, records stamped non-rt\n",
+               100.0 * kNonRtForceShare);
+  if (const auto error = open()) return fail(error->sentence, 2);
+  if (options_.check) {
+    fmt::print("{}: sound. {} on {}, {} vertices, law range {:.1f} to {:.1f} mm\n", scene_.path,
+               scene_.name, device_->info().name, scene_.organ_mesh.vertex_m.size(),
+               1e3 * tissue_->law().range().pull_m, 1e3 * tissue_->law().range().press_m);
+    return 0;
+  }
+  if (const auto error = open_telemetry()) return fail(error->sentence, 2);
+  requests_.arm.store(true);
+  if (options_.free_run)
+    run_free();
+  else
+    run_real_time();
+  return report();
+}
+
+std::optional<Error> Session::open() {
+  auto tissue = model::make_tissue(scene_);
+  if (!tissue) return tissue.error();
+  tissue_ = std::move(*tissue);
+  auto device = hal::open_device(scene_);
+  if (!device) return device.error();
+  device_ = std::move(*device);
+  model::Limits limits = scene_.limits;
+  const hal::DeviceInfo info = device_->info();
+  limits.force_N = std::min(limits.force_N, info.max_force_N);
+  limits.torque_Nm = std::min(limits.torque_Nm, info.max_torque_Nm);
+  controller_.emplace(tissue_->contact_scene(),
+                      Gate(limits, static_cast<double>(period_ns()) * 1e-9, force_share()));
+  const auto asked_ticks = options_.ticks != 0
+                               ? options_.ticks
+                               : static_cast<std::uint64_t>(options_.seconds * scene_.rate_Hz);
+  Clock& clock = options_.free_run ? static_cast<Clock&>(simulated_clock_) : monotonic_clock_;
+  loop_.emplace(LoopSettings{.period_ns = period_ns(), .max_ticks = asked_ticks}, *device_,
+                *controller_, clock, requests_, *ring_);
+  return std::nullopt;
+}
+
+std::optional<Error> Session::open_telemetry() {
+  std::optional<TelemetrySocket> socket;
+  if (!options_.no_telemetry) {
+    std::string path = options_.socket_path;
+    if (path.empty()) {
+      auto directory = runtime_directory();
+      if (!directory) return directory.error();
+      path = *directory + "/telemetry.sock";
+    }
+    if (hal::is_simulated(*device_)) {
+      auto hand = hal::start_hand_socket(*device_, path + ".hand");
+      if (!hand) return hand.error();
+      hand_socket_ = std::move(*hand);
+    }
+    auto meshes = make_mesh_file(scene_);
+    if (!meshes) return meshes.error();
+    const HelloFacts facts{.device = device_->info(),
+                           .force_limit_N = controller_->gate().force_limit_N(),
+                           .non_rt = non_rt_,
+                           .hand_socket = hand_socket_ ? hand_socket_->path() : ""};
+    auto opened = TelemetrySocket::open(path, make_hello(scene_, *tissue_, facts), *meshes);
+    if (!opened) return opened.error();
+    socket.emplace(std::move(*opened));
+  }
+  std::optional<TickLogWriter> log;
+  if (!options_.record_path.empty()) {
+    LogHeader header;
+    header.period_ns = period_ns();
+    header.force_share = force_share();
+    header.non_rt = non_rt_ ? 1 : 0;
+    scene_.hash.copy(header.scene_hash, sizeof header.scene_hash - 1);
+    auto created = TickLogWriter::create(options_.record_path, header);
+    if (!created) return created.error();
+    log.emplace(std::move(*created));
+  }
+  telemetry_.emplace(*ring_, tissue_->law(), scene_.frame_rate_Hz, std::move(socket),
+                     std::move(log));
+  return std::nullopt;
+}
+
+void Session::run_free() {
+  flush_denormals();
+  const auto ticks_per_frame = static_cast<std::uint64_t>(scene_.rate_Hz / scene_.frame_rate_Hz);
+  const HeapWatch heap;
+  while (loop_->may_run()) {
+    loop_->step();
+    telemetry_->drain();
+    if (loop_->statistics().ticks % (ticks_per_frame + 1) != 0) continue;
+    telemetry_->publish();
+    const timespec no_wait{};
+    if (sigtimedwait(&stop_signals_, nullptr, &no_wait) > 0) requests_.stop.store(true);
+  }
+  loop_->let_go();
+}
+
+void Session::run_real_time() {
+  telemetry_->start();
+  std::thread loop_thread(&Session::in_loop_thread, this);
+  watch();
+  loop_thread.join();
+}
+
+void Session::in_loop_thread() {
+  std::vector<Shortfall> known;
+  enter_rt_thread(rt_, known);
+  rusage before{}, after{};
+  getrusage(RUSAGE_THREAD, &before);
+  {
+    const HeapWatch heap;
+    getrusage(RUSAGE_THREAD, &before);
+    loop_->run();
+    getrusage(RUSAGE_THREAD, &after);
+    costs_.heap_calls = heap.calls();
+  }
+  costs_.heap_calls_known = can_count_heap_calls();
+  costs_.minor_faults = after.ru_minflt - before.ru_minflt;
+  costs_.major_faults = after.ru_majflt - before.ru_majflt;
+  costs_.voluntary_switches = after.ru_nvcsw - before.ru_nvcsw;
+  costs_.involuntary_switches = after.ru_nivcsw - before.ru_nivcsw;
+  loop_ended_.store(true);
+}
+
+// The main thread while the loop runs: waits for signals, shows a line on a terminal.
+void Session::watch() {
+  const bool terminal = isatty(STDOUT_FILENO) != 0;
+  while (!loop_ended_.load()) {
+    if (sigtimedwait(&stop_signals_, nullptr, &kStatusPeriod) > 0) requests_.stop.store(true);
+    if (!terminal) continue;
+    fmt::print("\r\033[K{}", status_line(telemetry_->newest_frame(), scene_.rate_Hz));
+    std::fflush(stdout);
+  }
+  if (terminal) fmt::print("\n");
+}
+
+int Session::report() {
+  device_->stop();
+  if (hand_socket_) hand_socket_->stop();
+  const std::string log_trouble = telemetry_->stop();
+  const Frame last = telemetry_->newest_frame();
+  rusage process{};
+  getrusage(RUSAGE_SELF, &process);
+  const LoopStatistics& statistics = loop_->statistics();
+  const RunFacts facts{
+      .scene_name = scene_.name,
+      .device_name = device_->info().name,
+      .rate_Hz = scene_.rate_Hz,
+      .duration_s =
+          static_cast<double>(statistics.ticks + statistics.skipped_ticks) / scene_.rate_Hz,
+      .force_limit_N = controller_->gate().force_limit_N(),
+      .non_rt = non_rt_,
+      .shortfalls = shortfalls_,
+      .costs = costs_,
+      .dropped_records = ring_->dropped(),
+      .dropped_frames = telemetry_->dropped_frames(),
+      .state = last.state,
+      .fault = static_cast<Fault>(last.fault),
+      .force_hash = telemetry_->force_hash(),
+      .resident_peak_kB = process.ru_maxrss};
+  const std::string json =
+      make_report(facts, statistics, controller_->gate(), read_environment(scene_.hash)).dump(2);
+  if (options_.json_path == "-")
+    fmt::print("{}\n", json);
+  else
+    fmt::print("{}\n", make_summary(facts, statistics));
+  if (!options_.json_path.empty() && options_.json_path != "-") {
+    std::ofstream file(options_.json_path);
+    if (!(file << json << '\n')) return fail(options_.json_path + ": cannot be written", 2);
+  }
+  if (!log_trouble.empty()) return fail(log_trouble, 1);
+  return facts.fault == Fault::kNone ? 0 : 1;
+}
+
+}  // namespace
+
+int run_session(const model::Scene& scene, const Options& options) {
+  return Session(scene, options).run();
+}
+
+}  // namespace tact::firmware

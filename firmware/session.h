@@ -1,0 +1,13 @@
+// session.h - one run of tactd: a scene on its device, from set-up to report.
+#pragma once
+
+#include "firmware/options.h"
+#include "model/scene.h"
+
+namespace tact::firmware {
+
+/// Runs until Ctrl-C, the asked time, or a fault. Returns the exit status: 0 good, 1 a fault or a
+/// refusal, 2 bad input.
+int run_session(const model::Scene& scene, const Options& options);
+
+}  // namespace tact::firmware

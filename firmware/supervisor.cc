@@ -1,0 +1,35 @@
+#include "firmware/supervisor.h"
+
+namespace tact::firmware {
+
+State Supervisor::step(const Commands& commands, bool sample_good, Fault fault) RT_SAFE {
+  const bool reset_edge = commands.reset && !reset_before_;
+  reset_before_ = commands.reset;
+  trip(fault);
+  if (commands.stop) return state_ = State::kStopped;
+  switch (state_) {
+    case State::kOff:
+      if (sample_good) state_ = State::kReady;
+      break;
+    case State::kReady:
+      if (commands.arm) state_ = State::kArmed;
+      break;
+    case State::kArmed:
+      break;
+    case State::kStopped:
+      if (reset_edge && sample_good && !latches(fault) && !commands.arm) {
+        state_ = State::kReady;
+        fault_ = Fault::kNone;
+      }
+      break;
+  }
+  return state_;
+}
+
+void Supervisor::trip(Fault fault) RT_SAFE {
+  if (!latches(fault)) return;
+  if (fault_ == Fault::kNone) fault_ = fault;  // the first one is the cause
+  state_ = State::kStopped;
+}
+
+}  // namespace tact::firmware

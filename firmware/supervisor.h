@@ -1,0 +1,46 @@
+// supervisor.h - who may feel force: Off -> Ready -> Armed -> Stopped, faults latched.
+//
+//     Off      nothing known of the device        -> Ready    a good sample
+//     Ready    device good, force zero            -> Armed    arm request
+//     Armed    force passes the gate              -> Stopped  stop request or any fault >= 100
+//     Stopped  force zero, fault kept             -> Ready    rising edge of reset, all inputs good
+//
+// Reset never re-arms: arming is a request of its own.
+#pragma once
+
+#include "firmware/telemetry_record.h"
+#include "model/fault.h"
+
+namespace tact::firmware {
+
+using model::Fault;
+
+/// What people ask for; levels, sampled once per tick.
+struct Commands {
+  bool arm = false;
+  bool stop = false;
+  bool reset = false;
+
+  friend bool operator==(const Commands&, const Commands&) = default;
+};
+
+class Supervisor {
+ public:
+  /// One tick: `fault` is what the device and its sample gave, kNone if all is well.
+  State step(const Commands& commands, bool sample_good, Fault fault) RT_SAFE;
+
+  /// A fault found after step in the same tick: stops at once if it latches.
+  void trip(Fault fault) RT_SAFE;
+
+  State state() const RT_SAFE { return state_; }
+  /// The fault that stopped it; kNone after a stop request.
+  Fault fault() const RT_SAFE { return fault_; }
+  bool armed() const RT_SAFE { return state_ == State::kArmed; }
+
+ private:
+  State state_ = State::kOff;
+  Fault fault_ = Fault::kNone;
+  bool reset_before_ = false;
+};
+
+}  // namespace tact::firmware

@@ -1,0 +1,144 @@
+#include "firmware/telemetry_frame.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+namespace tact::firmware {
+namespace {
+
+template <std::size_t kSize>
+void put(char (&field)[kSize], const std::string& text) {
+  const std::size_t length = std::min(text.size(), kSize - 1);
+  std::memcpy(field, text.data(), length);
+  field[length] = '\0';
+}
+
+void put(float (&field)[3], const Vec3& v) {
+  field[0] = static_cast<float>(v.x);
+  field[1] = static_cast<float>(v.y);
+  field[2] = static_cast<float>(v.z);
+}
+
+float to_us(std::int64_t ns) { return static_cast<float>(static_cast<double>(ns) * 1e-3); }
+
+void append(std::vector<char>& bytes, const model::SurfaceMesh& mesh) {
+  const auto add = [&bytes](const void* data, std::size_t size) {
+    const char* from = static_cast<const char*>(data);
+    bytes.insert(bytes.end(), from, from + size);
+  };
+  for (const Vec3& v : mesh.vertex_m) {
+    float xyz[3];
+    put(xyz, v);
+    add(xyz, sizeof xyz);
+  }
+  for (const model::TriangleCorners& t : mesh.triangle) add(t.data(), sizeof t);
+}
+
+}  // namespace
+
+Hello make_hello(const model::Scene& scene, const model::Tissue& tissue, const HelloFacts& facts) {
+  Hello hello;
+  hello.organ_vertices = static_cast<std::uint32_t>(scene.organ_mesh.vertex_m.size());
+  hello.organ_triangles = static_cast<std::uint32_t>(scene.organ_mesh.triangle.size());
+  hello.tool_vertices = static_cast<std::uint32_t>(scene.tool_mesh.vertex_m.size());
+  hello.tool_triangles = static_cast<std::uint32_t>(scene.tool_mesh.triangle.size());
+  hello.site_count = static_cast<std::uint32_t>(scene.tool.spheres.size());
+  std::array<double, kMaxRings> ring_m{};
+  hello.ring_count = static_cast<std::uint32_t>(tissue.law().profile(0.0, ring_m));
+  hello.ring_pitch_m = static_cast<float>(tissue.law().ring_pitch_m());
+  hello.rate_Hz = static_cast<float>(scene.rate_Hz);
+  hello.frame_rate_Hz = static_cast<float>(scene.frame_rate_Hz);
+  hello.force_limit_N = static_cast<float>(facts.force_limit_N);
+  for (std::size_t i = 0; i < scene.tool.spheres.size(); ++i) {
+    hello.sphere_radius_m[i] = static_cast<float>(scene.tool.spheres[i].radius_m);
+    put(hello.sphere_offset_m[i], scene.tool.spheres[i].offset_m);
+  }
+  hello.non_rt = facts.non_rt ? 1 : 0;
+  hello.simulated = facts.hand_socket.empty() ? 0 : 1;
+  put(hello.scene_name, scene.name);
+  put(hello.device_name, facts.device.name);
+  put(hello.law_name, "rhombus chain, energy form");
+  put(hello.hand_socket, facts.hand_socket);
+  return hello;
+}
+
+model::Result<int> make_mesh_file(const model::Scene& scene) {
+  std::vector<char> bytes;
+  append(bytes, scene.organ_mesh);
+  append(bytes, scene.tool_mesh);
+  const int fd = memfd_create("tact-meshes", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+  std::size_t written = 0;
+  while (fd >= 0 && written < bytes.size()) {
+    const ssize_t n = write(fd, bytes.data() + written, bytes.size() - written);
+    if (n <= 0) break;
+    written += static_cast<std::size_t>(n);
+  }
+  if (fd < 0 || written < bytes.size())
+    return model::Error{std::string("telemetry mesh file: ") + std::strerror(errno) +
+                        "; free some memory and start again"};
+  fcntl(fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL);
+  return fd;
+}
+
+void FrameBuilder::add(const TickRecord& record) {
+  if (first_due_ns_ < 0) first_due_ns_ = record.due_ns;
+  const float margin_us = to_us(record.margin_ns);
+  worst_margin_us_ = tick_us_.empty() ? margin_us : std::min(worst_margin_us_, margin_us);
+  tick_us_.push_back(to_us(record.phase_ns[static_cast<std::size_t>(Phase::kTotal)]));
+  peak_force_N_ = std::max(peak_force_N_, static_cast<float>(norm(record.output.written.force_N)));
+  if (record.output.limit != Fault::kNone) limit_ = record.output.limit;
+  newest_ = record;
+}
+
+Frame FrameBuilder::take(std::uint64_t dropped_records) {
+  const TickRecord& r = newest_;
+  const hal::Tool& tool = r.input.sample.tool;
+  Frame frame;
+  frame.tick = r.tick;
+  frame.time_ns = r.due_ns - first_due_ns_;
+  frame.late_ticks = r.late_ticks;
+  frame.skipped_ticks = r.skipped_ticks;
+  frame.dropped_records = dropped_records;
+  put(frame.tool_position_m, tool.position_m);
+  const model::Quat& q = tool.orientation;
+  const double wxyz[4] = {q.w, q.x, q.y, q.z};
+  std::transform(wxyz, wxyz + 4, frame.tool_orientation,
+                 [](double v) { return static_cast<float>(v); });
+  put(frame.tool_velocity_mps, tool.velocity_mps);
+  frame.grip_ratio = static_cast<float>(tool.grip_ratio);
+  put(frame.force_N, r.output.written.force_N);
+  put(frame.torque_Nm, r.output.written.torque_Nm);
+  put(frame.wanted_force_N, r.output.wanted.force_N);
+  frame.worst_margin_us = worst_margin_us_;
+  const auto middle = tick_us_.begin() + static_cast<std::ptrdiff_t>(tick_us_.size() / 2);
+  std::nth_element(tick_us_.begin(), middle, tick_us_.end());
+  frame.median_tick_us = tick_us_.empty() ? 0.0f : *middle;
+  frame.peak_force_N = peak_force_N_;
+  frame.fault = static_cast<std::uint16_t>(r.output.fault);
+  frame.limit = static_cast<std::uint16_t>(limit_);
+  frame.state = r.output.state;
+  for (std::size_t i = 0; i < r.site_count; ++i) add_site(r.touch[i], frame.site[i]);
+  tick_us_.clear();
+  peak_force_N_ = 0.0f;
+  limit_ = Fault::kNone;
+  return frame;
+}
+
+void FrameBuilder::add_site(const model::SphereTouch& touch, FrameSite& site) const {
+  put(site.surface_point_m, touch.surface_point_m);
+  put(site.normal, touch.normal);
+  put(site.shift_m, touch.shift_m);
+  site.depth_m = static_cast<float>(touch.depth_m);
+  site.state = static_cast<SiteState>(touch.state);
+  if (touch.state == model::TouchState::kFree) return;
+  std::array<double, kMaxRings> ring_m{};
+  const std::size_t count = law_.profile(touch.depth_m, ring_m);
+  for (std::size_t j = 0; j < count; ++j) site.profile_m[j] = static_cast<float>(ring_m[j]);
+}
+
+}  // namespace tact::firmware

@@ -1,0 +1,49 @@
+// telemetry_frame.h - from tick records to what a viewer shows: one hello, then a frame now and
+// then.
+#pragma once
+
+#include <vector>
+
+#include "firmware/telemetry_record.h"
+#include "firmware/tick_record.h"
+#include "hal/device.h"
+#include "model/result.h"
+#include "model/scene.h"
+#include "model/tissue.h"
+
+namespace tact::firmware {
+
+struct HelloFacts {
+  hal::DeviceInfo device;
+  double force_limit_N = 0.0;
+  bool non_rt = false;
+  std::string hand_socket;  // empty: the device is not simulated
+};
+
+Hello make_hello(const model::Scene& scene, const model::Tissue& tissue, const HelloFacts& facts);
+/// A sealed memory file with the meshes as telemetry_record.h lays them out.
+model::Result<int> make_mesh_file(const model::Scene& scene);
+
+/// Gathers records; a frame shows the newest and the extremes since the frame before.
+class FrameBuilder {
+ public:
+  /// `law` outlives the builder; its profile is solved here, far from the loop.
+  explicit FrameBuilder(const model::Law& law) : law_(law) {}
+
+  void add(const TickRecord& record);
+  bool has_news() const { return !tick_us_.empty(); }
+  Frame take(std::uint64_t dropped_records);
+
+ private:
+  void add_site(const model::SphereTouch& touch, FrameSite& site) const;
+
+  const model::Law& law_;
+  TickRecord newest_;
+  std::int64_t first_due_ns_ = -1;
+  std::vector<float> tick_us_;  // since the last frame
+  float worst_margin_us_ = 0.0f;
+  float peak_force_N_ = 0.0f;
+  Fault limit_ = Fault::kNone;
+};
+
+}  // namespace tact::firmware

@@ -1,0 +1,72 @@
+#include "firmware/tick_log.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <type_traits>
+
+namespace tact::firmware {
+
+using model::Error;
+using model::Result;
+
+static_assert(std::is_trivially_copyable_v<LoggedTick>);
+
+Result<TickLogWriter> TickLogWriter::create(const std::string& path, const LogHeader& header) {
+  std::FILE* file = std::fopen(path.c_str(), "wbx");
+  if (file == nullptr)
+    return Error{fmt::format("{}: {}; name a new file in a folder that you may write to", path,
+                             std::strerror(errno))};
+  LogHeader full = header;
+  full.tick_bytes = sizeof(LoggedTick);
+  TickLogWriter writer(path, file, header.non_rt != 0);
+  if (std::fwrite(&full, sizeof full, 1, file) != 1)
+    return Error{fmt::format("{}: {}; free some space", path, std::strerror(errno))};
+  return writer;
+}
+
+void TickLogWriter::add(const TickRecord& record) {
+  if (!trouble_.empty()) return;
+  LoggedTick tick{.tick = record.tick,
+                  .non_rt = static_cast<std::uint8_t>(non_rt_ ? 1 : 0),
+                  .due_ns = record.due_ns,
+                  .wake_late_ns = record.phase_ns[static_cast<std::size_t>(Phase::kWake)],
+                  .input = record.input,
+                  .output = record.output};
+  if (std::fwrite(&tick, sizeof tick, 1, file_.get()) != 1)
+    trouble_ = fmt::format("{}: {} at tick {}; what came before is kept", path_,
+                           std::strerror(errno), record.tick);
+}
+
+std::string TickLogWriter::close() {
+  if (file_ == nullptr) return trouble_;
+  std::FILE* file = file_.release();
+  if (std::fclose(file) != 0 && trouble_.empty())
+    trouble_ = fmt::format("{}: {}; the end may be missing", path_, std::strerror(errno));
+  return trouble_;
+}
+
+Result<TickLogReader> TickLogReader::open(const std::string& path) {
+  std::FILE* file = std::fopen(path.c_str(), "rb");
+  if (file == nullptr)
+    return Error{
+        fmt::format("{}: {}; name a file that tactd --record wrote", path, std::strerror(errno))};
+  LogHeader header;
+  const bool whole = std::fread(&header, sizeof header, 1, file) == 1;
+  TickLogReader reader(file, header);
+  if (!whole || std::memcmp(header.magic, LogHeader{}.magic, sizeof header.magic) != 0)
+    return Error{path + ": is no tick log; name a file that tactd --record wrote"};
+  if (header.tick_bytes != sizeof(LoggedTick))
+    return Error{path + ": was written by another version of tactd; replay it with that one"};
+  reader.header_.scene_hash[sizeof header.scene_hash - 1] = '\0';
+  return reader;
+}
+
+bool TickLogReader::next(LoggedTick& tick) {
+  const std::size_t bytes = std::fread(&tick, 1, sizeof tick, file_.get());
+  truncated_ = bytes > 0 && bytes < sizeof tick;
+  return bytes == sizeof tick;
+}
+
+}  // namespace tact::firmware

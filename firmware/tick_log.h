@@ -1,0 +1,76 @@
+// tick_log.h - a run on disk, tick by tick: what came in and what went out.
+//
+// A header that names the scene (by hash) and the gate's force share, then one LoggedTick per tick
+// in the machine's own byte order. Enough to compute every force again, bit for bit (replay.h).
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "firmware/tick_record.h"
+#include "model/result.h"
+
+namespace tact::firmware {
+
+struct LogHeader {
+  char magic[8] = {'t', 'a', 'c', 't', 'l', 'o', 'g', '1'};
+  std::uint32_t tick_bytes = 0;  // sizeof(LoggedTick): a different build is refused
+  std::uint32_t pad = 0;
+  std::int64_t period_ns = 0;
+  double force_share = 1.0;  // of the scene's limits; below 1 without hard real time
+  std::uint8_t non_rt = 0;
+  char scene_hash[23] = {};
+};
+
+struct LoggedTick {
+  std::uint64_t tick = 0;
+  std::uint8_t non_rt = 0;  // stamped on every record of a PC without hard real time
+  std::int64_t due_ns = 0;
+  std::int32_t wake_late_ns = 0;
+  TickInput input;
+  TickOutput output;
+};
+
+/// Writes in an ordinary thread. A full disk ends the log, never the run.
+class TickLogWriter {
+ public:
+  static model::Result<TickLogWriter> create(const std::string& path, const LogHeader& header);
+  void add(const TickRecord& record);
+  /// Closes the file. An error sentence if not everything reached the disk, else empty.
+  std::string close();
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  TickLogWriter(std::string path, std::FILE* file, bool non_rt)
+      : path_(std::move(path)), file_(file), non_rt_(non_rt) {}
+
+  std::string path_;
+  std::unique_ptr<std::FILE, Closer> file_;
+  bool non_rt_;
+  std::string trouble_;
+};
+
+class TickLogReader {
+ public:
+  static model::Result<TickLogReader> open(const std::string& path);
+  const LogHeader& header() const { return header_; }
+  /// False at the end. A torn last tick counts as the end; see truncated().
+  bool next(LoggedTick& tick);
+  bool truncated() const { return truncated_; }
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  TickLogReader(std::FILE* file, const LogHeader& header) : file_(file), header_(header) {}
+
+  std::unique_ptr<std::FILE, Closer> file_;
+  LogHeader header_;
+  bool truncated_ = false;
+};
+
+}  // namespace tact::firmware

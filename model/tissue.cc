@@ -1,0 +1,27 @@
+#include "model/tissue.h"
+
+#include <algorithm>
+
+namespace tact::model {
+
+Result<std::unique_ptr<Tissue>> make_tissue(const Scene& scene) {
+  auto chain = make_rhombus_chain(scene.rhombus);
+  if (!chain) return Error{scene.path + ": " + chain.error().sentence};
+  auto owned = std::make_unique<RhombusChain>(std::move(*chain));
+  auto table = tabulate(*owned, scene.table_knots);
+  if (!table) return Error{scene.path + ": " + table.error().sentence};
+
+  std::unique_ptr<Tissue> tissue(new Tissue(std::move(owned), *table));
+  double reach_m = 0.0;
+  for (const ProbeSphere& sphere : scene.tool.spheres)
+    reach_m = std::max(reach_m, 2.0 * sphere.radius_m);
+  tissue->seeds_ = make_seed_grid(scene.organ_mesh.view(), reach_m);
+  tissue->contact_ = {.law = &tissue->table_,
+                      .parameters = scene.contact,
+                      .spheres = scene.tool.spheres,
+                      .surface = scene.organ_mesh.view(),
+                      .seeds = tissue->seeds_.view()};
+  return tissue;
+}
+
+}  // namespace tact::model
