@@ -69,10 +69,10 @@ inline Quat quat_from_rotation_vector(const Vec3& r_rad) RT_SAFE {
 
 /// What the device knows of the tool, frame W.
 struct Tool {
-  Vec3 position_m;
-  Quat orientation;
-  Vec3 velocity_mps;
-  Vec3 angular_velocity_radps;
+  Vec3 position_m{};
+  Quat orientation{};
+  Vec3 velocity_mps{};
+  Vec3 angular_velocity_radps{};
   double grip_ratio = 0.0;  // 0 open, 1 closed
 };
 
