@@ -39,6 +39,7 @@ std::vector<Shortfall> probe_rt_thread(const RtSettings& settings) {
 }
 
 sigset_t block_stop_signals() {
+  std::signal(SIGINT, SIG_DFL);  // a shell starts background programs with SIGINT ignored
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
@@ -214,10 +215,10 @@ void Session::run_real_time() {
 }
 
 void Session::in_loop_thread() {
+  pthread_setname_np(pthread_self(), "tact-loop");
   std::vector<Shortfall> known;
   enter_rt_thread(rt_, known);
   rusage before{}, after{};
-  getrusage(RUSAGE_THREAD, &before);
   {
     const HeapWatch heap;
     getrusage(RUSAGE_THREAD, &before);

@@ -1,0 +1,126 @@
+// The whole controller with the simulated Delta and its hand, for 60 simulated seconds of the
+// liver: touches, presses, holds, slides, pulls, tears, releases.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "firmware/alloc_counter.h"
+#include "firmware/replay.h"
+#include "firmware/rt_loop.h"
+#include "firmware/rt_setup.h"
+#include "hal/open_device.h"
+#include "model/tissue.h"
+
+namespace tact::firmware {
+namespace {
+
+struct Summary {
+  std::uint64_t hash = kHashStart;
+  int ticks = 0, touching = 0, held = 0, pulling = 0, sliding = 0, tears = 0, openings = 0;
+  double max_force_N = 0.0, max_pull_N = 0.0, max_depth_m = 0.0, max_step_N = 0.0;
+  double max_free_force_N = 0.0, max_torque_Nm = 0.0;
+  std::map<Fault, int> limits;
+  Fault fault = Fault::kNone;
+  std::uint64_t heap_calls = 0;
+};
+
+bool any_in(const TickRecord& r, model::TouchState state) {
+  for (std::uint32_t i = 0; i < r.site_count; ++i)
+    if (r.touch[i].state == state) return true;
+  return false;
+}
+
+void add(Summary& s, const TickRecord& r, const TickRecord& before) {
+  ++s.ticks;
+  s.hash = hash_wrench(s.hash, r.output.written);
+  const double force_N = norm(r.output.written.force_N);
+  s.max_force_N = std::max(s.max_force_N, force_N);
+  s.max_torque_Nm = std::max(s.max_torque_Nm, norm(r.output.written.torque_Nm));
+  s.max_step_N =
+      std::max(s.max_step_N, norm(r.output.written.force_N - before.output.written.force_N));
+  const bool held = any_in(r, model::TouchState::kHeld);
+  const bool touching = any_in(r, model::TouchState::kTouching);
+  s.held += held;
+  s.touching += touching;
+  if (!held && !touching)
+    s.max_free_force_N = std::max(s.max_free_force_N, norm(r.output.wanted.force_N));
+  if (held && r.output.wanted.force_N.z < 0.0) {
+    ++s.pulling;
+    s.max_pull_N = std::max(s.max_pull_N, -r.output.written.force_N.z);
+  }
+  if (touching && std::hypot(r.output.wanted.force_N.x, r.output.wanted.force_N.y) > 0.02)
+    ++s.sliding;
+  if (!held && any_in(before, model::TouchState::kHeld))
+    ++(r.input.sample.tool.grip_ratio > 0.7 ? s.tears : s.openings);
+  for (std::uint32_t i = 0; i < r.site_count; ++i)
+    s.max_depth_m = std::max(s.max_depth_m, r.touch[i].depth_m);
+  ++s.limits[r.output.limit];
+  if (r.output.fault != Fault::kNone) s.fault = r.output.fault;
+}
+
+Summary run_liver(double seconds) {
+  flush_denormals();
+  const auto scene = model::load_scene(TACT_SOURCE_DIR "/model/scenes/liver.toml", {});
+  EXPECT_TRUE(scene) << scene.error().sentence;
+  const auto tissue = std::move(*model::make_tissue(*scene));
+  const auto device = std::move(*hal::open_device(*scene));
+  Controller controller(tissue->contact_scene(), Gate(scene->limits, 1.0 / scene->rate_Hz, 1.0));
+  SimulatedClock clock;
+  Requests requests;
+  requests.arm.store(true);
+  const auto ring = std::make_unique<TickRing>();
+  RtLoop loop({.period_ns = std::llround(1e9 / scene->rate_Hz)}, *device, controller, clock,
+              requests, *ring);
+  Summary summary;
+  TickRecord record, before;
+  const auto ticks = static_cast<int>(seconds * scene->rate_Hz);
+  for (int i = 0; i < ticks; ++i) {
+    {
+      const HeapWatch watch;
+      loop.step();
+      summary.heap_calls += watch.calls();
+    }
+    while (ring->pop(record)) {
+      add(summary, record, before);
+      before = record;
+    }
+  }
+  return summary;
+}
+
+TEST(ClosedLoop, SixtySecondsOfLiverStayWithinBoundsOnBothSides) {
+  const Summary s = run_liver(60.0);
+  EXPECT_EQ(s.ticks, 60000);
+  EXPECT_EQ(s.fault, Fault::kNone);
+  // It is really there: touched, held, pulled, slid, torn, let go.
+  EXPECT_GT(s.touching, 10000);
+  EXPECT_GT(s.held, 3000);
+  EXPECT_GT(s.pulling, 1000);
+  EXPECT_GT(s.sliding, 500);
+  EXPECT_GE(s.tears, 2);
+  EXPECT_GE(s.openings, 2);
+  // A liver of 5 kPa under a fingertip-sized tool: a few tenths of a newton to about two.
+  EXPECT_GT(s.max_force_N, 0.4);
+  EXPECT_LT(s.max_force_N, 3.0);
+  EXPECT_GT(s.max_pull_N, 0.3);
+  EXPECT_LT(s.max_pull_N, 3.0);
+  EXPECT_GT(s.max_depth_m, 0.004);
+  EXPECT_LT(s.max_depth_m, 0.020);
+  EXPECT_GT(s.max_torque_Nm, 1e-5);
+  EXPECT_LT(s.max_torque_Nm, 0.2);
+  EXPECT_EQ(s.max_free_force_N, 0.0) << "no contact, no force";
+  EXPECT_LE(s.max_step_N, 1.0 + 1e-12) << "|dF| <= slew dt";
+  EXPECT_EQ(s.heap_calls, 0u);
+}
+
+TEST(ClosedLoop, TheSameRunGivesTheSameBits) {
+  const Summary a = run_liver(5.0), b = run_liver(5.0);
+  EXPECT_EQ(a.hash, b.hash);
+}
+
+}  // namespace
+}  // namespace tact::firmware

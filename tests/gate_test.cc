@@ -1,0 +1,192 @@
+#include "firmware/gate/gate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "tests/no_alloc.h"
+
+namespace tact::firmware {
+namespace {
+
+constexpr double kPeriod_s = 0.001;
+constexpr model::Limits kLimits{.force_N = 8.0,
+                                .torque_Nm = 0.2,
+                                .slew_N_per_s = 1000.0,
+                                .ramp_s = 0.5,
+                                .workspace_radius_m = 0.18,
+                                .workspace_half_length_m = 0.15};
+
+GateInput wanting(const Vec3& force_N) {
+  return {.wanted = {force_N, {}}, .position_m = {}, .fresh = true, .armed = true};
+}
+
+// A gate that has been armed long enough to be fully open and already passes this force.
+Gate open_gate(const Vec3& force_N = {}) {
+  Gate gate(kLimits, kPeriod_s, 1.0);
+  for (int i = 0; i < 1000; ++i) gate.judge(wanting(force_N));
+  return gate;
+}
+
+std::uint64_t count(const Gate& gate, Stage stage) {
+  return gate.counters()[static_cast<std::size_t>(stage)];
+}
+
+TEST(Gate, PassesASmallSteadyForceUntouched) {
+  Gate gate = open_gate({0.1, -0.2, 0.3});
+  const GateVerdict v = gate.judge(wanting({0.1, -0.2, 0.3}));
+  EXPECT_EQ(v.wrench.force_N, (Vec3{0.1, -0.2, 0.3}));
+  EXPECT_EQ(v.limit, Fault::kNone);
+}
+
+TEST(Gate, IsShutUnlessArmed) {
+  Gate gate(kLimits, kPeriod_s, 1.0);
+  GateInput input = wanting({1, 0, 0});
+  input.armed = false;
+  const GateVerdict v = gate.judge(input);
+  EXPECT_EQ(v.wrench, Wrench{});
+  EXPECT_EQ(v.limit, Fault::kNotArmed);
+  EXPECT_EQ(count(gate, Stage::kArmed), 1u);
+}
+
+TEST(Gate, NotANumberGivesZeroAtOnceAndLatches) {
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    Gate gate = open_gate({1, 0, 0});
+    const GateVerdict v = gate.judge(wanting({bad, 0, 0}));
+    EXPECT_EQ(v.wrench, Wrench{});
+    EXPECT_EQ(v.fault, Fault::kForceNotFinite);
+    EXPECT_EQ(count(gate, Stage::kFinite), 1u);
+  }
+}
+
+TEST(Gate, OneMissedSampleHoldsTheForce) {
+  Gate gate = open_gate({1, 0, 0});
+  GateInput stale = wanting({1, 0, 0});
+  stale.fresh = false;
+  const GateVerdict v = gate.judge(stale);
+  EXPECT_NEAR(v.wrench.force_N.x, 1.0, 1e-12);
+  EXPECT_EQ(v.limit, Fault::kSampleHeld);
+}
+
+TEST(Gate, FromTheSecondMissedSampleTheForceFadesToZeroInTenMilliseconds) {
+  Gate gate = open_gate({1, 0, 0});
+  GateInput stale = wanting({1, 0, 0});
+  stale.fresh = false;
+  gate.judge(stale);
+  double before_N = 1.0;
+  for (int i = 0; i < 10; ++i) {
+    const GateVerdict v = gate.judge(stale);
+    EXPECT_LT(v.wrench.force_N.x, before_N);
+    EXPECT_EQ(v.limit, Fault::kSampleStale);
+    before_N = v.wrench.force_N.x;
+  }
+  EXPECT_NEAR(before_N, 0.0, 1e-12);
+}
+
+TEST(Gate, TwentyMissedSamplesInARowLoseTheDevice) {
+  Gate gate = open_gate();
+  GateInput stale = wanting({});
+  stale.fresh = false;
+  for (int i = 1; i < 20; ++i) EXPECT_EQ(gate.judge(stale).fault, Fault::kNone) << i;
+  EXPECT_EQ(gate.judge(stale).fault, Fault::kDeviceLost);
+  // One good sample in between starts the count again.
+  Gate other = open_gate();
+  for (int i = 0; i < 19; ++i) other.judge(stale);
+  other.judge(wanting({}));
+  EXPECT_EQ(other.judge(stale).fault, Fault::kNone);
+}
+
+TEST(Gate, OutsideTheWorkspaceTheForceFadesAndComesBackInside) {
+  Gate gate = open_gate({1, 0, 0});
+  GateInput outside = wanting({1, 0, 0});
+  outside.position_m = {0, 0.19, 0};
+  const GateVerdict first = gate.judge(outside);
+  EXPECT_GT(first.wrench.force_N.x, 0.9) << "fades, never cuts";
+  EXPECT_EQ(first.limit, Fault::kOutsideWorkspace);
+  for (int i = 0; i < 60; ++i) gate.judge(outside);
+  EXPECT_EQ(gate.judge(outside).wrench.force_N.x, 0.0);
+  for (int i = 0; i < 60; ++i) gate.judge(wanting({1, 0, 0}));
+  EXPECT_NEAR(gate.judge(wanting({1, 0, 0})).wrench.force_N.x, 1.0, 1e-12);
+  outside.position_m = {0.151, 0, 0};
+  EXPECT_EQ(gate.judge(outside).limit, Fault::kOutsideWorkspace);
+}
+
+TEST(Gate, LimitsTheMagnitudeAndKeepsTheDirection) {
+  Gate gate = open_gate({30, 40, 0});
+  const GateVerdict v = gate.judge(wanting({30, 40, 0}));
+  EXPECT_NEAR(norm(v.wrench.force_N), 8.0, 1e-9);
+  EXPECT_NEAR(v.wrench.force_N.x / v.wrench.force_N.y, 0.75, 1e-12);
+  EXPECT_EQ(v.limit, Fault::kForceLimited);
+}
+
+TEST(Gate, WithoutHardRealTimeAQuarterOfTheForceIsLeft) {
+  Gate gate(kLimits, kPeriod_s, 0.25);
+  Vec3 last;
+  for (int i = 0; i < 1000; ++i) last = gate.judge(wanting({100, 0, 0})).wrench.force_N;
+  EXPECT_NEAR(last.x, 2.0, 1e-9);
+}
+
+TEST(Gate, LimitsTheTorque) {
+  Gate gate = open_gate();
+  GateInput twist = wanting({});
+  twist.wanted.torque_Nm = {0, 0, 5};
+  GateVerdict v;
+  for (int i = 0; i < 100; ++i) v = gate.judge(twist);
+  EXPECT_NEAR(v.wrench.torque_Nm.z, 0.2, 1e-9);
+  EXPECT_EQ(v.limit, Fault::kTorqueLimited);
+}
+
+TEST(Gate, RampsUpAfterArming) {
+  Gate gate(kLimits, kPeriod_s, 1.0);
+  double before_N = -1.0;
+  for (int i = 1; i <= 500; ++i) {
+    const double force_N = gate.judge(wanting({1, 0, 0})).wrench.force_N.x;
+    EXPECT_GT(force_N, before_N);
+    EXPECT_NEAR(force_N, i / 500.0, 0.01);
+    before_N = force_N;
+  }
+  GateInput off = wanting({1, 0, 0});
+  off.armed = false;
+  gate.judge(off);
+  EXPECT_LT(gate.judge(wanting({1, 0, 0})).wrench.force_N.x, 0.01) << "arming again ramps again";
+}
+
+TEST(Gate, KeepsEveryLimitOverRandomInputs) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> force(0.0, 6.0);
+  std::uniform_int_distribution<int> dice(0, 999);
+  Gate gate(kLimits, kPeriod_s, 1.0);
+  Wrench before;
+  bool armed = true;
+  for (int i = 0; i < 300000; ++i) {
+    if (dice(random) == 0) armed = !armed;
+    GateInput input{
+        .wanted = {{force(random), force(random), force(random)}, {0.1 * force(random), 0.0, 0.0}},
+        .position_m = {0, 0, dice(random) < 50 ? 0.2 : 0.0},
+        .fresh = dice(random) > 30,
+        .armed = armed};
+    if (dice(random) == 1) input.wanted.force_N.y = std::nan("");
+    const GateVerdict v = gate.judge(input);
+    ASSERT_TRUE(is_finite(v.wrench.force_N) && is_finite(v.wrench.torque_Nm));
+    ASSERT_LE(norm(v.wrench.force_N), 8.0);
+    ASSERT_LE(norm(v.wrench.torque_Nm), 0.2);
+    if (!armed || latches(v.fault)) {
+      ASSERT_EQ(v.wrench, Wrench{});
+    } else {
+      ASSERT_LE(norm(v.wrench.force_N - before.force_N), 1.0 + 1e-12) << "|dF| <= slew dt";
+    }
+    before = v.wrench;
+  }
+}
+
+TEST(Gate, LeavesTheHeapAlone) {
+  Gate gate = open_gate();
+  const tests::NoAlloc guard;
+  for (int i = 0; i < 100; ++i) gate.judge(wanting({100, 0, 0}));
+  EXPECT_EQ(guard.calls(), 0u);
+}
+
+}  // namespace
+}  // namespace tact::firmware

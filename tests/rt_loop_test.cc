@@ -1,0 +1,184 @@
+#include "firmware/rt_loop.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "hal/device.h"
+#include "model/tissue.h"
+#include "tests/no_alloc.h"
+#include "tests/test_scene.h"
+
+namespace tact::firmware {
+namespace {
+
+// A device on a string: presses the plate as told, and can be slow, silent or broken.
+class PuppetDevice final : public hal::Device {
+ public:
+  explicit PuppetDevice(SimulatedClock& clock) : clock_(clock) {}
+
+  hal::DeviceInfo info() const override { return {.name = "puppet", .max_force_N = 20.0}; }
+  Fault read(hal::Sample& sample, std::int64_t now_ns) RT_SAFE override {
+    clock_.pass_ns(slow_ns);
+    slow_ns = 0;
+    if (silent) return Fault::kNone;
+    sample.tool.position_m = {0, 0, height_m};
+    sample.stamp_ns = now_ns;
+    ++sample.sequence;
+    sample.fresh = true;
+    return fault;
+  }
+  Fault write(const Wrench& wrench) RT_SAFE override {
+    last = wrench;
+    ++writes;
+    return write_fault;
+  }
+  void between_ticks(double elapsed) RT_SAFE override { elapsed_s += elapsed; }
+  void stop() override {}
+
+  double height_m = 0.004 - 0.003;
+  std::int64_t slow_ns = 0;
+  bool silent = false;
+  Fault fault = Fault::kNone, write_fault = Fault::kNone;
+  Wrench last;
+  int writes = 0;
+  double elapsed_s = 0.0;
+
+ private:
+  SimulatedClock& clock_;
+};
+
+class RtLoopTest : public testing::Test {
+ protected:
+  void run_ticks(int n) {
+    for (int i = 0; i < n; ++i) loop.step();
+  }
+  // Comes down from above, as a hand does, so that the contact has no slack.
+  void press() {
+    device.height_m = 0.006;
+    requests.arm.store(true);
+    run_ticks(600);
+    for (; device.height_m > 0.001; device.height_m -= 0.00005) loop.step();
+    run_ticks(10);
+  }
+  TickRecord newest() {
+    TickRecord record, last;
+    while (ring->pop(record)) last = record;
+    return last;
+  }
+
+  model::Scene scene = tests::make_plate_scene();
+  std::unique_ptr<model::Tissue> tissue = std::move(*model::make_tissue(scene));
+  SimulatedClock clock;
+  PuppetDevice device{clock};
+  Controller controller{tissue->contact_scene(), Gate(scene.limits, 0.001, 1.0)};
+  Requests requests;
+  std::unique_ptr<TickRing> ring = std::make_unique<TickRing>();
+  RtLoop loop{{.period_ns = 1'000'000}, device, controller, clock, requests, *ring};
+};
+
+TEST_F(RtLoopTest, FeelsThePlateThroughTheGate) {
+  press();
+  EXPECT_NEAR(device.last.force_N.z, tissue->law().respond(0.003).force_N, 0.01);
+  EXPECT_EQ(newest().output.state, State::kArmed);
+}
+
+TEST_F(RtLoopTest, GivesNoForceUntilArmed) {
+  device.height_m = 0.006;
+  run_ticks(5);
+  for (; device.height_m > 0.001; device.height_m -= 0.0001) loop.step();
+  EXPECT_EQ(device.last, Wrench{});
+  EXPECT_EQ(newest().output.limit, Fault::kNotArmed);
+}
+
+TEST_F(RtLoopTest, LetsGoWhateverEndsTheLoop) {
+  press();
+  EXPECT_GT(device.last.force_N.z, 0.05);
+  requests.stop.store(true);
+  loop.run();
+  EXPECT_EQ(device.last, Wrench{});
+}
+
+TEST_F(RtLoopTest, ALateTickSkipsWholePeriodsAndNeverShiftsTheGrid) {
+  run_ticks(10);
+  const std::int64_t grid_ns = newest().due_ns % 1'000'000;
+  device.slow_ns = 3'400'000;  // eats three whole periods and a part
+  run_ticks(1);
+  run_ticks(1);
+  const TickRecord after = newest();
+  EXPECT_EQ(after.due_ns % 1'000'000, grid_ns);
+  EXPECT_EQ(after.late_ticks, 1u);
+  EXPECT_EQ(after.skipped_ticks, 3u);
+  EXPECT_EQ(loop.statistics().ticks + loop.statistics().skipped_ticks, 15u);
+}
+
+TEST_F(RtLoopTest, TheDeviceLivesThroughSkippedPeriodsToo) {
+  run_ticks(10);
+  device.slow_ns = 3'400'000;
+  run_ticks(1);
+  EXPECT_NEAR(device.elapsed_s, 0.014, 1e-9);
+}
+
+TEST_F(RtLoopTest, LetsGoWhenTheDeviceIsLost) {
+  press();
+  device.silent = true;
+  run_ticks(12);
+  EXPECT_NEAR(norm(device.last.force_N), 0.0, 1e-9) << "faded within 10 ms of the second miss";
+  EXPECT_EQ(newest().output.state, State::kArmed);
+  run_ticks(8);
+  EXPECT_EQ(newest().output.fault, Fault::kDeviceLost);
+  device.silent = false;
+  run_ticks(50);
+  EXPECT_EQ(device.last, Wrench{}) << "a fault stays latched";
+}
+
+TEST_F(RtLoopTest, LetsGoAtOnceWhenTheDeviceFails) {
+  press();
+  device.fault = Fault::kDeviceFailed;
+  run_ticks(1);
+  EXPECT_EQ(device.last, Wrench{});
+  EXPECT_EQ(newest().output.fault, Fault::kDeviceFailed);
+}
+
+TEST_F(RtLoopTest, AFailedWriteStopsInTheNextTick) {
+  press();
+  device.write_fault = Fault::kDeviceFailed;
+  run_ticks(2);
+  EXPECT_EQ(newest().output.state, State::kStopped);
+  EXPECT_EQ(device.last, Wrench{});
+}
+
+TEST_F(RtLoopTest, ASampleThatIsNotANumberStopsInTheSameTick) {
+  press();
+  device.height_m = std::nan("");
+  run_ticks(1);
+  EXPECT_EQ(device.last, Wrench{});
+  EXPECT_EQ(newest().output.fault, Fault::kSampleNotFinite);
+}
+
+TEST_F(RtLoopTest, AFullRingDropsRecordsAndChangesNothingElse) {
+  press();
+  const Wrench before = device.last;
+  run_ticks(10000);  // nobody empties the ring
+  EXPECT_GT(ring->dropped(), 0u);
+  EXPECT_NEAR(device.last.force_N.z, before.force_N.z, 1e-9);
+  EXPECT_EQ(loop.statistics().late_ticks, 0u);
+}
+
+TEST_F(RtLoopTest, LeavesTheHeapAlone) {
+  press();
+  const tests::NoAlloc guard;
+  run_ticks(2000);
+  EXPECT_EQ(guard.calls(), 0u);
+}
+
+TEST_F(RtLoopTest, StopsAfterTheAskedTicks) {
+  RtLoop short_loop({.period_ns = 1'000'000, .max_ticks = 7}, device, controller, clock, requests,
+                    *ring);
+  short_loop.run();
+  EXPECT_EQ(short_loop.statistics().ticks, 7u);
+}
+
+}  // namespace
+}  // namespace tact::firmware

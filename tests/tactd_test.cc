@@ -1,0 +1,213 @@
+// tactd as a person uses it: its command line, its files, its end.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+
+#include "firmware/alloc_counter.h"
+#include "firmware/rt_setup.h"
+#include "model/fault.h"
+#include "tests/program.h"
+
+namespace {
+
+using nlohmann::json;
+using tact::tests::Outcome;
+using tact::tests::run_program;
+
+const std::string kLiver = TACT_SOURCE_DIR "/model/scenes/liver.toml";
+
+class Tactd : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder = "/tmp/tactd-test-" + std::to_string(getpid());
+    std::filesystem::create_directory(folder);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+
+  std::string in_folder(const std::string& name) const { return folder + "/" + name; }
+  Outcome tactd(const std::string& arguments) const {
+    return run_program("tactd", "--socket " + in_folder("t.sock") + " " + arguments);
+  }
+  json report_of(const std::string& arguments) const {
+    const std::string path = in_folder("report.json");
+    const Outcome outcome = tactd(arguments + " --json " + path);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    std::ifstream file(path);
+    return json::parse(file, nullptr, false);
+  }
+
+  std::string folder;
+};
+
+bool has(const Outcome& outcome, const std::string& text) {
+  return outcome.output.find(text) != std::string::npos;
+}
+
+TEST_F(Tactd, ChecksAGoodSceneAndLeaves) {
+  const Outcome outcome = tactd(kLiver + " --check");
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_TRUE(has(outcome, "sound"));
+}
+
+TEST_F(Tactd, NamesFileAndLineOfABadScene) {
+  const std::string bad = in_folder("bad.toml");
+  std::ifstream good(kLiver);
+  std::ofstream file(bad);
+  std::string line;
+  for (int number = 1; std::getline(good, line); ++number)
+    file << (number == 3 ? "surprise_m = 1.0\n" : "") << line << '\n';
+  file.close();
+  const Outcome outcome = tactd(bad);
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_TRUE(has(outcome, bad + ":3: ")) << outcome.output;
+  EXPECT_TRUE(has(outcome, "surprise_m"));
+}
+
+TEST_F(Tactd, RefusesBadUsageWithStatusTwo) {
+  EXPECT_EQ(tactd("").status, 2);
+  EXPECT_EQ(tactd("/nowhere.toml").status, 2);
+  EXPECT_EQ(tactd(kLiver + " --unknown").status, 2);
+  EXPECT_EQ(tactd(kLiver + " --seconds -1").status, 2);
+  EXPECT_EQ(tactd(kLiver + " --set no_such_key=1").status, 2);
+  EXPECT_EQ(tactd(kLiver + " --free-run").status, 2);
+  EXPECT_EQ(tactd("--help").status, 0);
+}
+
+TEST_F(Tactd, RefusesToDriveADeviceWithTheLawAsPrinted) {
+  const Outcome outcome = tactd(kLiver + " --set law=rhombus_paper_literal --ticks 1");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_TRUE(has(outcome, "rhombus_paper_literal")) << outcome.output;
+}
+
+TEST_F(Tactd, PrintsEveryFaultWithItsCure) {
+  const Outcome outcome = tactd("--faults");
+  EXPECT_EQ(outcome.status, 0);
+  for (const auto& entry : tact::model::fault_table()) EXPECT_TRUE(has(outcome, entry.cure));
+}
+
+TEST_F(Tactd, ReportsWhatTheIssueAsksFor) {
+  const json report = report_of(kLiver + " --free-run --seconds 5");
+  EXPECT_EQ(report.at("ticks"), 5000);
+  for (const char* key : {"late", "skipped", "force_max_N", "gate", "fault", "non_rt"})
+    EXPECT_TRUE(report.contains(key)) << key;
+  for (const char* key : {"allocations", "minor_page_faults", "major_page_faults",
+                          "voluntary_context_switches", "involuntary_context_switches"})
+    EXPECT_TRUE(report.at("thread").contains(key)) << key;
+  for (const char* phase : {"wake", "read", "touch", "feel", "judge", "write", "tell", "total"})
+    for (const char* key : {"p50_ns", "p99_ns", "p99.9_ns", "p99.99_ns", "max_ns", "max_tick"})
+      EXPECT_TRUE(report.at("phases").at(phase).contains(key)) << phase << " " << key;
+  for (const char* stage : {"finite", "fresh", "armed", "workspace", "magnitude", "slew", "ramp"})
+    EXPECT_TRUE(report.at("gate").contains(stage)) << stage;
+  for (const char* key :
+       {"kernel_release", "realtime_kernel", "cpu", "clock_source", "git_revision", "scene_hash"})
+    EXPECT_TRUE(report.at("environment").contains(key)) << key;
+}
+
+TEST_F(Tactd, TwoRunsOnSimulatedTimeGiveTheSameForces) {
+  const json a = report_of(kLiver + " --free-run --seconds 5");
+  const json b = report_of(kLiver + " --free-run --seconds 5");
+  EXPECT_EQ(a.at("force_hash"), b.at("force_hash"));
+  EXPECT_NE(a.at("force_hash"), "0000000000000000");
+  const json c = report_of(kLiver + " --free-run --seconds 5 --set rhombus.growth=2.1");
+  EXPECT_NE(a.at("force_hash"), c.at("force_hash"));
+}
+
+TEST_F(Tactd, ReplaysARealTimeRunBitForBit) {
+  const std::string log = in_folder("run.tactlog");
+  report_of(kLiver + " --seconds 4 --record " + log);
+  const Outcome replayed = tactd(kLiver + " --replay " + log);
+  EXPECT_EQ(replayed.status, 0) << replayed.output;
+  EXPECT_TRUE(has(replayed, "4000 ticks computed again, 0 differ")) << replayed.output;
+  EXPECT_EQ(tactd(kLiver + " --set rhombus.growth=2.1 --replay " + log).status, 2);
+  EXPECT_EQ(tactd(kLiver + " --ticks 1 --record " + log).status, 2) << "never overwritten";
+}
+
+TEST_F(Tactd, TheLoopThreadNeverAllocatesAndNeverFaultsAPage) {
+  const json report = report_of(kLiver + " --seconds 3");
+  if (tact::firmware::can_count_heap_calls()) {
+    EXPECT_EQ(report.at("thread").at("allocations"), 0);
+    EXPECT_EQ(report.at("thread").at("minor_page_faults"), 0);
+  }
+  EXPECT_EQ(report.at("thread").at("major_page_faults"), 0);
+}
+
+TEST_F(Tactd, StrictRefusesAPCWithoutHardRealTime) {
+  const Outcome outcome = tactd(kLiver + " --strict --ticks 10");
+  if (tact::firmware::kernel_is_realtime()) {
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return;
+  }
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_TRUE(has(outcome, "PREEMPT_RT")) << outcome.output;
+  const json report = report_of(kLiver + " --ticks 10");
+  EXPECT_EQ(report.at("non_rt"), true);
+  EXPECT_NEAR(report.at("force_limit_N").get<double>(), 2.0, 1e-12) << "a quarter of 8 N";
+}
+
+TEST_F(Tactd, ControlCEndsItCleanly) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const std::string program = std::string(TACT_BINARY_DIR) + "/tactd";
+    const std::string socket = in_folder("t.sock");
+    const std::string report = in_folder("report.json");
+    execl(program.c_str(), "tactd", kLiver.c_str(), "--socket", socket.c_str(), "--json",
+          report.c_str(), nullptr);
+    _exit(127);
+  }
+  std::this_thread::sleep_for(std::chrono::seconds(2));
+  kill(child, SIGINT);
+  int ended = 0;
+  ASSERT_EQ(waitpid(child, &ended, 0), child);
+  EXPECT_TRUE(WIFEXITED(ended));
+  EXPECT_EQ(WEXITSTATUS(ended), 0);
+  std::ifstream file(in_folder("report.json"));
+  const json report = json::parse(file, nullptr, false);
+  EXPECT_GT(report.at("ticks").get<int>(), 100);
+  EXPECT_FALSE(std::filesystem::exists(in_folder("t.sock"))) << "cleans up after itself";
+}
+
+TEST_F(Tactd, TheLoopThreadMakesNoSystemCallButSleep) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const std::string program = std::string(TACT_BINARY_DIR) + "/tactd";
+    const std::string socket = in_folder("t.sock");
+    execl(program.c_str(), "tactd", kLiver.c_str(), "--socket", socket.c_str(), "--seconds", "6",
+          nullptr);
+    _exit(127);
+  }
+  std::this_thread::sleep_for(std::chrono::seconds(2));
+  std::string loop_thread;
+  for (const auto& task :
+       std::filesystem::directory_iterator("/proc/" + std::to_string(child) + "/task")) {
+    std::ifstream name(task.path() / "comm");
+    std::string text;
+    if (std::getline(name, text) && text == "tact-loop") loop_thread = task.path().filename();
+  }
+  ASSERT_FALSE(loop_thread.empty());
+  const std::string trace = in_folder("trace");
+  const std::string command =
+      "timeout -s INT 2 strace -qq -o " + trace + " -p " + loop_thread + " 2>&1";
+  (void)std::system(command.c_str());
+  int ended = 0;
+  waitpid(child, &ended, 0);
+  std::ifstream file(trace);
+  int sleeps = 0;
+  for (std::string line; std::getline(file, line);) {
+    if (line.rfind("clock_nanosleep(", 0) == 0 || line.rfind("restart_syscall(", 0) == 0 ||
+        line.find("resumed>") != std::string::npos) {
+      ++sleeps;
+      continue;
+    }
+    ADD_FAILURE() << "system call in the loop: " << line;
+  }
+  EXPECT_GT(sleeps, 100) << "the trace saw the loop";
+}
+
+}  // namespace

@@ -1,0 +1,114 @@
+"""The measurements behind tools/bench. Started by it: bench.py ROOT BUILD WORK SECONDS JSON_FILE."""
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import time
+
+ROOT, BUILD, WORK = (pathlib.Path(p) for p in sys.argv[1:4])
+SECONDS, OUT = float(sys.argv[4]), sys.argv[5]
+LIVER = ROOT / "model/scenes/liver.toml"
+rows = []
+
+
+def row(what, value, unit, goal, command):
+    rows.append({"what": what, "value": value, "unit": unit, "goal": goal, "command": command})
+    print(f"{what:46} {value:>10} {unit:8} {goal:18} {command}", flush=True)
+
+
+def tactd(*arguments):
+    report = WORK / "report.json"
+    subprocess.run([BUILD / "tactd", LIVER, "--socket", WORK / "t.sock", "--json", report,
+                    *arguments], check=True, capture_output=True)
+    return json.loads(report.read_text())
+
+
+def us(ns):
+    return round(ns / 1000, 1)
+
+
+def ticks():
+    report = tactd("--seconds", str(SECONDS))
+    total, wake = report["phases"]["total"], report["phases"]["wake"]
+    command = f"tactd liver.toml --seconds {SECONDS:g}"
+    row("tick, median", us(total["p50_ns"]), "us", "<= 3", command)
+    row("tick, p99.9", us(total["p99.9_ns"]), "us", "<= 20", command)
+    row("tick, worst seen", us(total["max_ns"]), "us", "", command)
+    row("wake-up, median", us(wake["p50_ns"]), "us", "", command)
+    row("wake-up, p99.9", us(wake["p99.9_ns"]), "us", "", command)
+    row("wake-up, worst seen", us(wake["max_ns"]), "us", "", command)
+    for phase in ("read", "touch", "feel", "judge", "write", "tell"):
+        row(f"  {phase}, median", report["phases"][phase]["p50_ns"], "ns", "", command)
+    row("ticks late", report["late"], f"of {report['ticks']}", "", command)
+    thread = report["thread"]
+    row("heap calls in the loop", thread["allocations"], "", "0", command)
+    row("page faults in the loop",
+        thread["minor_page_faults"] + thread["major_page_faults"], "", "0", command)
+    row("resident memory, peak", round(report["resident_peak_kB"] / 1024, 1), "MB", "<= 64", command)
+
+
+def mesh_size():
+    """The same liver, finer: one run after the other, twice, so that a drift of the machine shows."""
+    fine = WORK / "liver_fine.obj"
+    subprocess.run([BUILD / "tact-make-meshes", "--liver-vertices", "300000", "--out", WORK],
+                   check=True, capture_output=True)
+    made = max(WORK.glob("*.obj"), key=lambda p: p.stat().st_size)
+    made.rename(fine)
+    medians = {"coarse": [], "fine": []}
+    for _ in range(3):
+        for name, extra in (("coarse", []), ("fine", ["--set", f'organ.mesh="{fine}"'])):
+            report = tactd("--seconds", str(SECONDS / 2), *extra)
+            medians[name].append(report["phases"]["total"]["p50_ns"])
+    ratio = sorted(medians["fine"])[1] / sorted(medians["coarse"])[1]
+    row("tick at 300 000 vertices over 3 116", round(ratio, 2), "", "<= 1.2",
+        "tactd liver.toml --set organ.mesh=...")
+    fine.unlink()
+
+
+def loading():
+    subprocess.run([BUILD / "tact-make-meshes", "--liver-vertices", "1000000", "--out", WORK],
+                   check=True, capture_output=True)
+    big = max(WORK.glob("*.obj"), key=lambda p: p.stat().st_size)
+    start = time.monotonic()
+    told = subprocess.run([BUILD / "tact-mesh", big], check=True, capture_output=True, text=True)
+    row("load of an OBJ of a million vertices", round(time.monotonic() - start, 2), "s", "<= 3",
+        "tact-mesh FILE")
+    assert re.search(r"1.?000.?\d\d\d", told.stdout), told.stdout
+    big.unlink()
+
+
+def system_calls():
+    """What the loop's thread asks of the kernel while armed."""
+    run = subprocess.Popen([BUILD / "tactd", LIVER, "--socket", WORK / "t.sock", "--seconds", "6"],
+                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    time.sleep(2)
+    tasks = pathlib.Path(f"/proc/{run.pid}/task").iterdir()
+    loop = next(t.name for t in tasks if (t / "comm").read_text().strip() == "tact-loop")
+    trace = WORK / "trace"
+    subprocess.run(["timeout", "-s", "INT", "2", "strace", "-qq", "-o", trace, "-p", loop],
+                   capture_output=True)
+    run.wait()
+    names = {re.match(r"\w+", line).group() for line in trace.read_text().splitlines()
+             if re.match(r"\w+\(", line)}
+    row("system calls in the loop", ", ".join(sorted(names)), "", "sleep only", "strace -p LOOP")
+
+
+def page():
+    told = subprocess.run(["node", ROOT / "tests/browser/page_test.mjs", BUILD],
+                          capture_output=True, text=True).stdout
+    fps = re.search(r"([\d.]+) frames/s", told)
+    wire = re.search(r"([\d.]+) bytes", told)
+    command = "node tests/browser/page_test.mjs build"
+    row("page, headless Chromium, software", fps[1] if fps else "?", "frames/s", ">= 30", command)
+    row("wire, largest frame", wire[1] if wire else "?", "bytes", "<= 4096", command)
+
+
+def main():
+    for measure in (ticks, mesh_size, loading, system_calls, page):
+        measure()
+    if OUT:
+        pathlib.Path(OUT).write_text(json.dumps(rows, indent=2) + "\n")
+
+
+main()

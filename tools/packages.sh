@@ -1,0 +1,85 @@
+# packages.sh - sourced by run and check: installs Debian packages that are missing, after saying so.
+#
+#   need_packages "what for" package [package=command] ...
+#
+# A package counts as present when dpkg has it or, with =command, when the command exists.
+
+is_present() {
+  local package=${1%%=*} command=${1#*=}
+  if [ "$command" != "$1" ] && command -v "$command" >/dev/null 2>&1; then return 0; fi
+  [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ]
+}
+
+as_root() {
+  if [ "$(id -u)" -eq 0 ]; then "$@"
+  elif command -v sudo >/dev/null 2>&1; then sudo "$@"
+  else return 127; fi
+}
+
+need_packages() {
+  local what=$1 missing=() package
+  shift
+  for package in "$@"; do is_present "$package" || missing+=("${package%%=*}"); done
+  [ ${#missing[@]} -eq 0 ] && return 0
+  echo "tact: $what needs these Debian packages, installing them now:"
+  echo "      ${missing[*]}"
+  if [ "$(id -u)" -ne 0 ] && ! command -v sudo >/dev/null 2>&1; then
+    echo "tact: neither root nor sudo here; run this as root, then start again:" >&2
+    echo "      apt-get update && apt-get install -y ${missing[*]}" >&2
+    return 2
+  fi
+  local log
+  log=$(mktemp)
+  if as_root env DEBIAN_FRONTEND=noninteractive apt-get update >"$log" 2>&1 &&
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends \
+      "${missing[@]}" >>"$log" 2>&1; then
+    rm -f "$log"
+    return 0
+  fi
+  tail -n 15 "$log" >&2
+  echo "tact: apt-get failed (whole log: $log); mend the package sources, then start again" >&2
+  return 2
+}
+
+# What it takes to build the programs, and the page of the viewer.
+BUILD_PACKAGES=(g++ cmake ninja-build git ca-certificates libfmt-dev libcli11-dev
+  nlohmann-json3-dev libtomlplusplus-dev libboost-dev)
+PAGE_PACKAGES=(nodejs=node npm=npm)
+
+# build_programs BUILD_DIR TARGET... : configure when needed, then build quietly; the log on failure.
+build_programs() {
+  local build=$1 log
+  shift
+  log=$(mktemp)
+  local launcher=()
+  command -v ccache >/dev/null 2>&1 && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  if [ ! -f "$build/build.ninja" ]; then
+    cmake -S "$root" -B "$build" -G Ninja "${launcher[@]}" -DBUILD_TESTING=OFF >"$log" 2>&1 ||
+      { cat "$log" >&2; return 2; }
+  fi
+  if [ -t 1 ]; then
+    ninja -C "$build" "$@" || return 2
+  else
+    ninja -C "$build" "$@" >"$log" 2>&1 || { tail -n 40 "$log" >&2; return 2; }
+  fi
+  rm -f "$log"
+}
+
+# build_page PAGE_DIR : npm packages by lock file, then the bundled page; both only when changed.
+build_page() {
+  local page=$1 web="$root/host/web" log stamp
+  stamp=$(cat "$web"/package-lock.json "$web"/*.json "$web"/*.ts "$web"/index.html \
+    "$web"/src/* "$web"/public/* 2>/dev/null | sha256sum)
+  [ -f "$page/index.html" ] && [ "$(cat "$page/.stamp" 2>/dev/null)" = "$stamp" ] && return 0
+  log=$(mktemp)
+  if [ "$(sha256sum <"$web/package-lock.json")" != "$(cat "$web/node_modules/.stamp" 2>/dev/null)" ]
+  then
+    echo "tact: installing the page's npm packages (three, uplot, vite, typescript) in host/web"
+    (cd "$web" && npm ci --no-fund --no-audit) >"$log" 2>&1 || { tail -n 20 "$log" >&2; return 2; }
+    sha256sum <"$web/package-lock.json" >"$web/node_modules/.stamp"
+  fi
+  (cd "$web" && npm run build -- --outDir "$page" --emptyOutDir) >"$log" 2>&1 ||
+    { tail -n 20 "$log" >&2; return 2; }
+  echo "$stamp" >"$page/.stamp"
+  rm -f "$log"
+}
