@@ -1,0 +1,54 @@
+#include "hal/open_device.h"
+
+#include <fmt/core.h>
+
+#include <utility>
+
+#include "hal/sim/sim_delta.h"
+
+namespace tact::hal {
+namespace {
+
+using model::Error;
+using model::Result;
+
+using Opened = Result<std::unique_ptr<Device>>;
+
+Opened open_sim_delta(const model::Scene& scene) {
+  auto device = make_sim_delta(scene.device.sim, scene.hand);
+  if (!device) return Error{fmt::format("{}: {}", scene.path, device.error().sentence)};
+  return std::unique_ptr<Device>(std::move(*device));
+}
+
+struct Kind {
+  const char* name;
+  Opened (*open)(const model::Scene&);
+};
+constexpr Kind kKinds[] = {{"sim-delta", open_sim_delta}};
+
+}  // namespace
+
+Opened open_device(const model::Scene& scene) {
+  std::string known;
+  for (const Kind& kind : kKinds) {
+    if (scene.device.kind == kind.name) return kind.open(scene);
+    known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", kind.name);
+  }
+  return Error{fmt::format("{}: device.kind is \"{}\", which this build does not know; use {}",
+                           scene.path, scene.device.kind, known)};
+}
+
+bool is_simulated(const Device& device) {
+  return dynamic_cast<const SimDelta*>(&device) != nullptr;
+}
+
+Result<std::unique_ptr<HandSocket>> start_hand_socket(Device& device, const std::string& path) {
+  auto* simulated = dynamic_cast<SimDelta*>(&device);
+  if (simulated == nullptr) {
+    return Error{
+        fmt::format("{} has a real hand on it; start without a hand socket", device.info().name)};
+  }
+  return HandSocket::start(path, simulated->hand_targets());
+}
+
+}  // namespace tact::hal

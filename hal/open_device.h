@@ -1,0 +1,24 @@
+// open_device.h - from the scene's device.kind to a device: the one place that knows the names.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "hal/device.h"
+#include "hal/sim/hand_socket.h"
+#include "model/result.h"
+#include "model/scene.h"
+
+namespace tact::hal {
+
+/// Opens what scene.device names. Set-up only; may take as long as the hardware needs.
+model::Result<std::unique_ptr<Device>> open_device(const model::Scene& scene);
+
+/// True for a device whose hand is simulated and may be moved by a person.
+bool is_simulated(const Device& device);
+
+/// Lets a person move the hand of a simulated device; the device must outlive the socket.
+model::Result<std::unique_ptr<HandSocket>> start_hand_socket(Device& device,
+                                                             const std::string& path);
+
+}  // namespace tact::hal

@@ -1,0 +1,65 @@
+// delta_plant.h - the mechanics of the simulated delta, with the hand that holds it.
+//
+//     A v+ = M v + h (K^T (tau - tau_g) - I K^T (dK/dt v) + k (x_h - x) + b v_h) + K^T lambda
+//     A    = M + h c K^T K + (h b + h^2 k) 1,      x+ = x + h v+
+//
+//     M = I K^T K + m 1  mass of joints, platform and hand, kg;  thetadot = K v
+//     tau, tau_g         motor and gravity torque, N m;  c  viscous joint friction, N m s/rad
+//     k, b, x_h, v_h     spring, damper and aim of the hand
+//     lambda             impulse of Coulomb friction: what stops joint i, at most h tau_c
+//
+// I K^T (dK/dt v) is all that Coriolis and centrifugal forces leave in these coordinates. Dampers,
+// springs and stops are implicit in v, so any stiffness is stable and friction only takes energy.
+// Joint stops at -50 and 95 deg and a rim around the cylinder, 20 mm beyond its wall and 15 mm
+// beyond its ends, keep arms and rods well away from every singular pose. Frame D.
+#pragma once
+
+#include "hal/delta_dynamics.h"
+#include "hal/delta_kinematics.h"
+
+namespace tact::hal {
+
+struct JointFriction {
+  double coulomb_Nm = 0.0;
+  double viscous_Nms_per_rad = 0.0;
+};
+
+/// What the hand does in one step, frame D. All zero: no hand.
+struct HandPull {
+  double mass_kg = 0.0;
+  double stiffness_N_per_m = 0.0;
+  double damping_Ns_per_m = 0.0;
+  Vec3 aim_m;
+  Vec3 aim_velocity_mps;
+};
+
+class DeltaPlant {
+ public:
+  /// At rest at start_m, or in the middle of the workspace if that is out of reach.
+  DeltaPlant(const JointFriction& friction, const Vec3& start_m);
+
+  void step(double dt_s, const Joints& motor_Nm, const HandPull& hand) RT_SAFE;
+
+  const Vec3& position_m() const RT_SAFE { return position_m_; }
+  const Vec3& velocity_mps() const RT_SAFE { return velocity_mps_; }
+  const Joints& theta_rad() const RT_SAFE { return theta_rad_; }
+  /// Motion and gravity, without the hand; stops hold a little more while they are pressed.
+  double energy_J() const RT_SAFE;
+
+ private:
+  struct Implicit;  // what one step adds to A and to the right-hand side
+
+  void add_stops(double dt_s, const Mat3& k, Implicit& step) const RT_SAFE;
+  void add_rim(double dt_s, Implicit& step) const RT_SAFE;
+  Vec3 with_friction(const Vec3& free_mps, const Mat3& k, const Mat3& a_inverse,
+                     double most_Nms) const RT_SAFE;
+  void move(double dt_s, const Vec3& velocity_mps) RT_SAFE;
+
+  DeltaKinematics delta_;
+  JointFriction friction_;
+  Vec3 position_m_;
+  Vec3 velocity_mps_;
+  Joints theta_rad_{};
+};
+
+}  // namespace tact::hal

@@ -1,0 +1,118 @@
+#include "hal/sim/hand_socket.h"
+
+#include <fmt/core.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+namespace tact::hal {
+namespace {
+
+using model::Error;
+using model::Result;
+
+constexpr int kPollTimeout_ms = 50;
+constexpr double kFarthest_m = 1.0;  // no hand is farther from the middle of this device
+
+Error system_error(const std::string& path, const char* what) {
+  return {fmt::format("{}: {}: {}; choose a writable place for the hand socket", path, what,
+                      std::strerror(errno))};
+}
+
+int call_with_address(int (*call)(int, const sockaddr*, socklen_t), int descriptor,
+                      const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  path.copy(address.sun_path, sizeof address.sun_path - 1);
+  return call(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+}
+
+/// Removes the socket file of a process that is gone; refuses anything else that is in the way.
+Result<bool> clear_the_way(const std::string& path) {
+  struct stat status {};
+  if (lstat(path.c_str(), &status) != 0) {
+    if (errno == ENOENT) return true;
+    return system_error(path, "cannot look at it");
+  }
+  if (!S_ISSOCK(status.st_mode)) {
+    return Error{fmt::format("{}: is a file, not a socket; choose another name", path)};
+  }
+  const int probe = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const bool alive = probe >= 0 && call_with_address(connect, probe, path) == 0;
+  if (probe >= 0) close(probe);
+  if (alive) {
+    return Error{
+        fmt::format("{}: another process listens here; stop it or choose another name", path)};
+  }
+  if (unlink(path.c_str()) != 0) return system_error(path, "cannot replace the old socket");
+  return true;
+}
+
+}  // namespace
+
+bool is_sound(const HandTarget& target) RT_SAFE {
+  if (target.magic != kHandTargetMagic || target.version != kHandTargetVersion) return false;
+  for (const double x : target.position_m) {
+    if (!(std::abs(x) <= kFarthest_m)) return false;
+  }
+  return std::isfinite(target.grip_ratio);
+}
+
+Result<std::unique_ptr<HandSocket>> HandSocket::start(const std::string& path,
+                                                      LatestSlot<HandTarget>& newest) {
+  if (path.empty() || path.size() >= sizeof(sockaddr_un::sun_path)) {
+    return Error{fmt::format("hand socket: the path \"{}\" must have 1 to {} bytes; shorten it",
+                             path, sizeof(sockaddr_un::sun_path) - 1)};
+  }
+  if (const auto clear = clear_the_way(path); !clear) return clear.error();
+  const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (descriptor < 0) return system_error(path, "cannot make a socket");
+  // The mode of the file is that of the descriptor when it is bound: at no time is it open to
+  // others.
+  if (fchmod(descriptor, 0600) != 0 || call_with_address(bind, descriptor, path) != 0) {
+    const Error error = system_error(path, "cannot listen");
+    close(descriptor);
+    return error;
+  }
+  return std::unique_ptr<HandSocket>(new HandSocket(descriptor, path, newest));
+}
+
+HandSocket::HandSocket(int descriptor, std::string path, LatestSlot<HandTarget>& newest)
+    : descriptor_(descriptor),
+      path_(std::move(path)),
+      newest_(newest),
+      thread_([this] { listen(); }) {}
+
+HandSocket::~HandSocket() { stop(); }
+
+void HandSocket::stop() {
+  if (!thread_.joinable()) return;
+  stopping_ = true;
+  thread_.join();
+  close(descriptor_);
+  unlink(path_.c_str());
+}
+
+void HandSocket::listen() {
+  sigset_t all;
+  sigfillset(&all);
+  pthread_sigmask(SIG_BLOCK, &all, nullptr);  // signals are for the thread that waits for them
+  while (!stopping_) {
+    pollfd ready{.fd = descriptor_, .events = POLLIN, .revents = 0};
+    if (poll(&ready, 1, kPollTimeout_ms) <= 0) continue;
+    HandTarget target;
+    // MSG_TRUNC gives the true size, so that a longer datagram is not mistaken for a target.
+    const ssize_t size = recv(descriptor_, &target, sizeof target, MSG_TRUNC);
+    if (size == static_cast<ssize_t>(sizeof target) && is_sound(target)) newest_.write(target);
+  }
+}
+
+}  // namespace tact::hal

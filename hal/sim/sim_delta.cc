@@ -1,0 +1,244 @@
+#include "hal/sim/sim_delta.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "hal/sim/sim_delta_model.h"
+
+namespace tact::hal {
+namespace {
+
+using sim_delta::direction_D;
+using sim_delta::kGeometry;
+using sim_delta::kGravity_W_mps2;
+using sim_delta::kMasses;
+using sim_delta::point_D;
+using sim_delta::point_W;
+
+constexpr double kLongestStep_s = 0.25e-3;
+constexpr double kMostPhysics_s = 0.1;  // of one call
+constexpr double kMostDelay_s = 0.1;
+constexpr double kWristCountsPerTurn = 65536.0;
+constexpr double kJump_m = 5e-3, kJump_rad = 0.1;  // between two samples: a new start
+constexpr double kGripHalfWidth_m = 0.05;          // the hand holds the handle here, at both sides
+
+double counted_rad(double angle_rad, double counts_per_turn) RT_SAFE {
+  const double rad_per_count = 2.0 * std::numbers::pi / counts_per_turn;
+  return std::floor(angle_rad / rad_per_count + 0.5) * rad_per_count;
+}
+
+/// v, or the vector of this length along it; zero for NaN.
+Vec3 saturated(const Vec3& v, double most) RT_SAFE {
+  const double size = norm(v);
+  if (size <= most) return v;
+  return size < std::numeric_limits<double>::infinity() ? v * (most / size) : Vec3{};
+}
+
+/// The nearest point of the workspace cylinder.
+Vec3 inside_workspace_m(const Vec3& p_W) RT_SAFE {
+  const double radius_m = std::hypot(p_W.y, p_W.z);
+  const double shrink =
+      radius_m > sim_delta::kWorkspaceRadius_m ? sim_delta::kWorkspaceRadius_m / radius_m : 1.0;
+  return {std::clamp(p_W.x, -sim_delta::kWorkspaceHalfLength_m, sim_delta::kWorkspaceHalfLength_m),
+          shrink * p_W.y, shrink * p_W.z};
+}
+
+}  // namespace
+
+SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::HandSettings& hand)
+    : settings_(device),
+      delta_(kGeometry),
+      hand_(hand),
+      plant_({.coulomb_Nm = device.joint_friction_Nm,
+              .viscous_Nms_per_rad = device.joint_damping_Nms_per_rad},
+             point_D(inside_workspace_m(hand_.position_m()))),
+      wrist_(wrist_angles_rad(hand_.rotation_rad())),
+      velocity_(device.observer_bandwidth_Hz, kJump_m),
+      angular_velocity_(device.observer_bandwidth_Hz, kJump_rad),
+      shown_s_(-device.sample_delay_s) {
+  history_.fill(state_now());  // at rest here since before the start
+  history_[kHistory - 1].time_s = -2.0 * kMostDelay_s;
+  measured_ = delta_.pose(plant_.position_m(), plant_.theta_rad());
+  motor_Nm_ = gravity_torques_Nm(kGeometry, kMasses, measured_, direction_D(kGravity_W_mps2));
+}
+
+DeviceInfo SimDelta::info() const {
+  return {.name = "simulated delta 360 x 300 mm",
+          .max_force_N = sim_delta::kMaxForce_N,
+          .max_torque_Nm = sim_delta::kMaxTorque_Nm,
+          .workspace_radius_m = sim_delta::kWorkspaceRadius_m,
+          .workspace_half_length_m = sim_delta::kWorkspaceHalfLength_m};
+}
+
+Vec3 SimDelta::true_position_m() const RT_SAFE { return point_W(plant_.position_m()); }
+
+Fault SimDelta::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
+  sample.fresh = false;
+  const Fault broken = faults_.device.load(std::memory_order_relaxed);
+  if (broken != Fault::kNone) return broken;
+  const int drops = faults_.drop_samples.load(std::memory_order_relaxed);
+  if (drops > 0) {
+    faults_.drop_samples.store(drops - 1, std::memory_order_relaxed);
+    return Fault::kNone;
+  }
+  const State state = state_at(time_s_ - settings_.sample_delay_s);
+  if (!measure(state, sample.tool)) return Fault::kDeviceFailed;
+  if (faults_.nan_sample.load(std::memory_order_relaxed)) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    sample.tool.position_m = {nan, nan, nan};
+  }
+  sample.stamp_ns = now_ns - std::llround(1e9 * (time_s_ - state.time_s));
+  sample.sequence = ++sequence_;
+  sample.fresh = true;
+  return Fault::kNone;
+}
+
+/// Encoders, forward kinematics, observer: the way a real device would know its tool.
+bool SimDelta::measure(const State& state, Tool& tool) RT_SAFE {
+  Joints theta_rad{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    theta_rad[i] = counted_rad(state.theta_rad[i], settings_.counts_per_turn);
+  }
+  const DeltaForward forward = delta_.forward(theta_rad);
+  if (!forward.solved) return false;
+  measured_ = delta_.pose(forward.far_m, theta_rad);
+  const Vec3 wrist_rad{counted_rad(state.wrist_rad.x, kWristCountsPerTurn),
+                       counted_rad(state.wrist_rad.y, kWristCountsPerTurn),
+                       counted_rad(state.wrist_rad.z, kWristCountsPerTurn)};
+  const double elapsed_s = state.time_s - shown_s_;
+  shown_s_ = state.time_s;
+  tool.position_m = point_W(forward.far_m);
+  tool.velocity_mps = velocity_.step(tool.position_m, elapsed_s);
+  tool.orientation = wrist_orientation(wrist_rad);
+  tool.angular_velocity_radps =
+      wrist_angular_velocity_radps(wrist_rad, angular_velocity_.step(wrist_rad, elapsed_s));
+  tool.grip_ratio = state.grip_ratio;
+  return true;
+}
+
+Fault SimDelta::write(const Wrench& wrench) RT_SAFE {
+  const Fault broken = faults_.device.load(std::memory_order_relaxed);
+  if (broken != Fault::kNone) return broken;
+  if (!powered_) return Fault::kNone;
+  const bool sound = is_finite(wrench.force_N) && is_finite(wrench.torque_Nm);
+  const Wrench limited = sound ? Wrench{saturated(wrench.force_N, sim_delta::kMaxForce_N),
+                                        saturated(wrench.torque_Nm, sim_delta::kMaxTorque_Nm)}
+                               : Wrench{};
+  // tau = tau_g + s J^T F, one s for all joints
+  motor_Nm_ = gravity_torques_Nm(kGeometry, kMasses, measured_, direction_D(kGravity_W_mps2));
+  const Joints wanted_Nm = joint_torques_Nm(measured_, direction_D(limited.force_N));
+  const double ratio = saturation_ratio(motor_Nm_, wanted_Nm, sim_delta::kMaxJointTorque_Nm);
+  for (std::size_t i = 0; i < 3; ++i) motor_Nm_[i] += ratio * wanted_Nm[i];
+  wrist_Nm_ = limited.torque_Nm;
+  return sound ? Fault::kNone : Fault::kForceNotFinite;
+}
+
+void SimDelta::between_ticks(double elapsed_s) RT_SAFE {
+  if (!(elapsed_s > 0.0)) return;
+  steer_hand();
+  const double simulated_s = std::min(elapsed_s, kMostPhysics_s);
+  // The small allowance keeps 1 ms at four steps when the caller's arithmetic says 1.0000001 ms.
+  const int steps = std::max(1, static_cast<int>(std::ceil(simulated_s / kLongestStep_s - 1e-6)));
+  for (int i = 0; i < steps; ++i) step_physics(simulated_s / steps);
+}
+
+void SimDelta::steer_hand() RT_SAFE {
+  HandTarget target;
+  if (!hand_targets_.read(target)) return;
+  const double* p = target.position_m;
+  hand_.steer(inside_workspace_m({p[0], p[1], p[2]}), target.grip_ratio);
+}
+
+void SimDelta::step_physics(double dt_s) RT_SAFE {
+  hand_.step(dt_s);
+  const model::HandSettings& hand = hand_.settings();
+  plant_.step(dt_s, motor_Nm_,
+              {.mass_kg = hand.mass_kg,
+               .stiffness_N_per_m = hand.stiffness_N_per_m,
+               .damping_Ns_per_m = hand.damping_Ns_per_m,
+               .aim_m = point_D(hand_.position_m()),
+               .aim_velocity_mps = direction_D(hand_.velocity_mps())});
+  // A hand that holds the handle at a distance r turns it through the same spring: k r^2.
+  const double square_m2 = kGripHalfWidth_m * kGripHalfWidth_m;
+  wrist_.step(dt_s, wrist_Nm_,
+              {.stiffness_Nm_per_rad = hand.stiffness_N_per_m * square_m2,
+               .damping_Nms_per_rad = hand.damping_Ns_per_m * square_m2,
+               .aim_rad = wrist_angles_rad(hand_.rotation_rad())});
+  time_s_ += dt_s;
+  newest_ = (newest_ + 1) % kHistory;
+  history_[newest_] = state_now();
+}
+
+SimDelta::State SimDelta::state_now() const RT_SAFE {
+  return {.time_s = time_s_,
+          .theta_rad = plant_.theta_rad(),
+          .wrist_rad = wrist_.angles_rad(),
+          .grip_ratio = hand_.grip_ratio()};
+}
+
+const SimDelta::State& SimDelta::remembered(std::size_t steps_ago) const RT_SAFE {
+  return history_[(newest_ + kHistory - steps_ago) % kHistory];
+}
+
+/// Between the two steps around that time; the oldest remembered state if it is older.
+SimDelta::State SimDelta::state_at(double time_s) const RT_SAFE {
+  for (std::size_t ago = 0; ago + 1 < kHistory; ++ago) {
+    const State& late = remembered(ago);
+    const State& early = remembered(ago + 1);
+    if (early.time_s > time_s) continue;
+    const double span_s = late.time_s - early.time_s;
+    const double s = span_s > 0.0 ? std::min((time_s - early.time_s) / span_s, 1.0) : 1.0;
+    State out = early;
+    out.time_s = time_s;
+    for (std::size_t i = 0; i < 3; ++i) {
+      out.theta_rad[i] += s * (late.theta_rad[i] - early.theta_rad[i]);
+    }
+    out.wrist_rad += s * (late.wrist_rad - early.wrist_rad);
+    out.grip_ratio += s * (late.grip_ratio - early.grip_ratio);
+    return out;
+  }
+  return remembered(kHistory - 1);
+}
+
+void SimDelta::stop() {
+  powered_ = false;
+  motor_Nm_ = {};
+  wrist_Nm_ = {};
+}
+
+model::Result<std::unique_ptr<SimDelta>> make_sim_delta(const model::SimDeviceSettings& device,
+                                                        const model::HandSettings& hand) {
+  const auto refuse = [](const char* key, double value, const char* allowed) {
+    return model::Error{fmt::format("{} is {}; it must be {}", key, value, allowed)};
+  };
+  if (!(device.counts_per_turn >= 100.0 && device.counts_per_turn <= 1e9)) {
+    return refuse("counts_per_turn", device.counts_per_turn, "100 to 1e9");
+  }
+  if (!(device.sample_delay_s >= 0.0 && device.sample_delay_s <= kMostDelay_s)) {
+    return refuse("sample_delay_s", device.sample_delay_s, "0 to 0.1 s");
+  }
+  if (!(device.joint_friction_Nm >= 0.0 && device.joint_friction_Nm <= 10.0)) {
+    return refuse("joint_friction_Nm", device.joint_friction_Nm, "0 to 10 N m");
+  }
+  if (!(device.joint_damping_Nms_per_rad >= 0.0 && device.joint_damping_Nms_per_rad <= 100.0)) {
+    return refuse("joint_damping_Nms_per_rad", device.joint_damping_Nms_per_rad,
+                  "0 to 100 N m s/rad");
+  }
+  if (!(device.observer_bandwidth_Hz > 0.0 && device.observer_bandwidth_Hz <= 1e4)) {
+    return refuse("observer_bandwidth_Hz", device.observer_bandwidth_Hz, "above 0, at most 1e4 Hz");
+  }
+  const double hand_values[] = {hand.mass_kg, hand.stiffness_N_per_m, hand.damping_Ns_per_m};
+  for (const double value : hand_values) {
+    if (!(value >= 0.0 && value <= 1e6)) {
+      return refuse("a mass, stiffness or damping of the hand", value, "0 to 1e6");
+    }
+  }
+  if (hand.path.empty()) return model::Error{"the hand has no waypoint; give it at least one"};
+  return std::make_unique<SimDelta>(device, hand);
+}
+
+}  // namespace tact::hal

@@ -1,0 +1,93 @@
+// sim_delta.h - a haptic device that needs no hardware: delta, wrist, hand, encoders and delay.
+//
+// What a loop would meet on the real thing: positions counted by joint encoders and shown some time
+// later, velocity from the shared observer, forces turned into joint torques and held until the
+// next write, saturation that keeps the direction of the force, gravity that the device balances by
+// itself from the pose it has measured. Physics runs in between_ticks in steps of at most 0.25 ms.
+// The same calls give the same bits: no clock and no chance inside.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+
+#include "hal/delta_kinematics.h"
+#include "hal/device.h"
+#include "hal/latest_slot.h"
+#include "hal/sim/delta_plant.h"
+#include "hal/sim/hand_target.h"
+#include "hal/sim/sim_hand.h"
+#include "hal/sim/sim_wrist.h"
+#include "hal/velocity_observer.h"
+#include "model/result.h"
+#include "model/scene.h"
+
+namespace tact::hal {
+
+/// Misfortunes for tests; may be set from any thread.
+struct SimFaults {
+  std::atomic<int> drop_samples{0};         // so many reads find nothing fresh
+  std::atomic<bool> nan_sample{false};      // positions are NaN while set
+  std::atomic<Fault> device{Fault::kNone};  // read and write return this while set
+};
+
+class SimDelta final : public Device {
+ public:
+  /// Settings as checked by make_sim_delta().
+  SimDelta(const model::SimDeviceSettings& device, const model::HandSettings& hand);
+
+  DeviceInfo info() const override;
+  Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
+  Fault write(const Wrench& wrench) RT_SAFE override;
+  void between_ticks(double elapsed_s) RT_SAFE override;
+  void stop() override;
+
+  /// For the thread that receives steering (hand_socket.h).
+  LatestSlot<HandTarget>& hand_targets() { return hand_targets_; }
+  SimFaults& faults() { return faults_; }
+  /// The truth behind the encoders.
+  const DeltaPlant& plant() const { return plant_; }
+  const SimHand& hand() const { return hand_; }
+  Vec3 true_position_m() const RT_SAFE;
+
+ private:
+  struct State {  // what the encoders could see at one time
+    double time_s = 0.0;
+    Joints theta_rad{};
+    Vec3 wrist_rad;
+    double grip_ratio = 0.0;
+  };
+  static constexpr std::size_t kHistory = 1024;  // power of two; 0.25 s of steps of 0.25 ms
+
+  State state_now() const RT_SAFE;
+  State state_at(double time_s) const RT_SAFE;
+  const State& remembered(std::size_t steps_ago) const RT_SAFE;
+  void steer_hand() RT_SAFE;
+  void step_physics(double dt_s) RT_SAFE;
+  bool measure(const State& state, Tool& tool) RT_SAFE;
+
+  model::SimDeviceSettings settings_;
+  DeltaKinematics delta_;
+  SimHand hand_;
+  DeltaPlant plant_;
+  SimWrist wrist_;
+  VelocityObserver velocity_, angular_velocity_;
+
+  std::array<State, kHistory> history_;  // ring
+  std::size_t newest_ = 0;
+  double time_s_ = 0.0;
+  double shown_s_;      // time of the state that the last sample showed
+  DeltaPose measured_;  // of the last sample
+  Joints motor_Nm_{};   // held until the next write
+  Vec3 wrist_Nm_;
+  bool powered_ = true;
+  std::uint64_t sequence_ = 0;
+  LatestSlot<HandTarget> hand_targets_;
+  SimFaults faults_;
+};
+
+/// Refuses settings that no device can have.
+model::Result<std::unique_ptr<SimDelta>> make_sim_delta(const model::SimDeviceSettings& device,
+                                                        const model::HandSettings& hand);
+
+}  // namespace tact::hal
