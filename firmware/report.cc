@@ -9,11 +9,6 @@ namespace {
 
 using nlohmann::json;
 
-const char* word(State state) {
-  constexpr std::array kWords{"off", "ready", "armed", "stopped"};
-  return kWords[static_cast<std::size_t>(state)];
-}
-
 json percentiles(const LatencyHistogram& h) {
   return {{"count", h.count()},
           {"p50_ns", h.percentile_ns(0.50)},
@@ -44,6 +39,13 @@ json to_json(const ThreadCosts& c) {
           {"involuntary_context_switches", c.involuntary_switches}};
 }
 
+std::string duration_line(const char* what, const LatencyHistogram& h) {
+  const auto us = [](std::uint64_t ns) { return static_cast<double>(ns) * 1e-3; };
+  return fmt::format("  {:13} p50 {:.1f} us, p99.9 {:.1f} us, max {:.1f} us at tick {}\n", what,
+                     us(h.percentile_ns(0.5)), us(h.percentile_ns(0.999)), us(h.max_ns()),
+                     h.max_tick());
+}
+
 }  // namespace
 
 json make_report(const RunFacts& facts, const LoopStatistics& loop, const Gate& gate,
@@ -58,6 +60,7 @@ json make_report(const RunFacts& facts, const LoopStatistics& loop, const Gate& 
           {"rate_Hz", facts.rate_Hz},
           {"duration_s", facts.duration_s},
           {"non_rt", facts.non_rt},
+          {"simulated_time", facts.simulated_time},
           {"shortfalls", shortfalls},
           {"ticks", loop.ticks},
           {"late", loop.late_ticks},
@@ -67,7 +70,7 @@ json make_report(const RunFacts& facts, const LoopStatistics& loop, const Gate& 
           {"force_max_N", loop.max_force_N},
           {"force_limit_N", facts.force_limit_N},
           {"gate", stages},
-          {"state", word(facts.state)},
+          {"state", name_of(facts.state)},
           {"fault",
            {{"number", static_cast<int>(facts.fault)},
             {"name", fault.name},
@@ -81,21 +84,21 @@ json make_report(const RunFacts& facts, const LoopStatistics& loop, const Gate& 
 }
 
 std::string make_summary(const RunFacts& facts, const LoopStatistics& loop) {
-  const LatencyHistogram& total = loop.phase[static_cast<std::size_t>(Phase::kTotal)];
-  const LatencyHistogram& wake = loop.phase[static_cast<std::size_t>(Phase::kWake)];
-  const auto us = [](std::uint64_t ns) { return static_cast<double>(ns) * 1e-3; };
-  std::string out = fmt::format(
-      "{} on {}: {} ticks at {:g} Hz, {} late, {} skipped{}\n"
-      "  wake latency  p50 {:.1f} us, p99.9 {:.1f} us, max {:.1f} us at tick {}\n"
-      "  tick          p50 {:.1f} us, p99.9 {:.1f} us, max {:.1f} us at tick {}\n"
-      "  force         max {:.3f} N of {:.2f} N allowed, state {}, {} allocations, {} page faults",
-      facts.scene_name, facts.device_name, loop.ticks, facts.rate_Hz, loop.late_ticks,
-      loop.skipped_ticks, facts.non_rt ? ", non-rt" : "", us(wake.percentile_ns(0.5)),
-      us(wake.percentile_ns(0.999)), us(wake.max_ns()), wake.max_tick(),
-      us(total.percentile_ns(0.5)), us(total.percentile_ns(0.999)), us(total.max_ns()),
-      total.max_tick(), loop.max_force_N, facts.force_limit_N, word(facts.state),
-      facts.costs.heap_calls_known ? std::to_string(facts.costs.heap_calls) : "uncounted",
-      facts.costs.minor_faults + facts.costs.major_faults);
+  std::string out =
+      fmt::format("{} on {}: {} ticks at {:g} Hz, {} late, {} skipped{}\n", facts.scene_name,
+                  facts.device_name, loop.ticks, facts.rate_Hz, loop.late_ticks, loop.skipped_ticks,
+                  facts.non_rt ? ", non-rt" : "");
+  if (facts.simulated_time) {
+    out += "  simulated time: durations are not measured\n";
+  } else {
+    out += duration_line("wake latency", loop.phase[static_cast<std::size_t>(Phase::kWake)]);
+    out += duration_line("tick", loop.phase[static_cast<std::size_t>(Phase::kTotal)]);
+  }
+  out += fmt::format("  force         max {:.3f} N of {:.2f} N allowed, state {}", loop.max_force_N,
+                     facts.force_limit_N, name_of(facts.state));
+  if (facts.costs.heap_calls_known)
+    out += fmt::format(", {} allocations, {} page faults", facts.costs.heap_calls,
+                       facts.costs.minor_faults + facts.costs.major_faults);
   if (facts.fault != Fault::kNone) {
     const model::FaultEntry& fault = model::describe(facts.fault);
     out += fmt::format("\n  fault {}: {}: {}; {}", static_cast<int>(facts.fault), fault.name,

@@ -26,6 +26,7 @@ struct RunFacts {
   double duration_s = 0.0;
   double force_limit_N = 0.0;
   bool non_rt = false;
+  bool simulated_time = false;  // durations mean nothing
   std::vector<Shortfall> shortfalls;
   ThreadCosts costs;
   std::uint64_t dropped_records = 0, dropped_frames = 0;

@@ -15,6 +15,7 @@
 
 #include "firmware/alloc_counter.h"
 #include "firmware/report.h"
+#include "firmware/status_line.h"
 #include "firmware/telemetry.h"
 #include "hal/open_device.h"
 
@@ -46,18 +47,6 @@ sigset_t block_stop_signals() {
   sigaddset(&signals, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   return signals;
-}
-
-std::string status_line(const Frame& frame, double rate_Hz) {
-  constexpr std::array kWords{"off", "ready", "armed", "stopped"};
-  const double force_N = std::hypot(frame.force_N[0], frame.force_N[1], frame.force_N[2]);
-  const Fault shown = static_cast<Fault>(frame.fault != 0 ? frame.fault : frame.limit);
-  return fmt::format(
-      "{:7.1f} s  {:g} Hz  late {}  skipped {}  tick {:5.1f} us  force {:6.3f} N  {}{}",
-      static_cast<double>(frame.time_ns) * 1e-9, rate_Hz, frame.late_ticks, frame.skipped_ticks,
-      static_cast<double>(frame.median_tick_us), force_N,
-      kWords[static_cast<std::size_t>(frame.state)],
-      shown == Fault::kNone ? "" : std::string("  ") + model::describe(shown).name);
 }
 
 // Everything of one run, in the order in which it comes to life.
@@ -195,7 +184,6 @@ std::optional<Error> Session::open_telemetry() {
 void Session::run_free() {
   flush_denormals();
   const auto ticks_per_frame = static_cast<std::uint64_t>(scene_.rate_Hz / scene_.frame_rate_Hz);
-  const HeapWatch heap;
   while (loop_->may_run()) {
     loop_->step();
     telemetry_->drain();
@@ -262,6 +250,7 @@ int Session::report() {
           static_cast<double>(statistics.ticks + statistics.skipped_ticks) / scene_.rate_Hz,
       .force_limit_N = controller_->gate().force_limit_N(),
       .non_rt = non_rt_,
+      .simulated_time = options_.free_run,
       .shortfalls = shortfalls_,
       .costs = costs_,
       .dropped_records = ring_->dropped(),

@@ -1,6 +1,13 @@
 #include "firmware/supervisor.h"
 
+#include <array>
+
 namespace tact::firmware {
+
+const char* name_of(State state) {
+  constexpr std::array kNames{"off", "ready", "armed", "stopped"};
+  return kNames[static_cast<std::size_t>(state)];
+}
 
 State Supervisor::step(const Commands& commands, bool sample_good, Fault fault) RT_SAFE {
   const bool reset_edge = commands.reset && !reset_before_;

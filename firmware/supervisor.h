@@ -15,6 +15,8 @@ namespace tact::firmware {
 
 using model::Fault;
 
+const char* name_of(State state);
+
 /// What people ask for; levels, sampled once per tick.
 struct Commands {
   bool arm = false;
