@@ -4,6 +4,7 @@
 // range is an error with file and line that says what is allowed. Set-up code only.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -71,5 +72,11 @@ struct Scene {
 
 /// Read a scene and its meshes. `overrides` are "key.path=value" as TOML writes values.
 Result<Scene> load_scene(const std::string& path, const std::vector<std::string>& overrides);
+
+/// Why this scene must not drive a device, if so: for programs that hold one.
+std::optional<Error> check_drivable(const Scene& scene);
+
+/// Every key with unit, range, default or "required", and meaning: a page for people.
+std::string scene_reference();
 
 }  // namespace tact::model

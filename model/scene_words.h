@@ -2,7 +2,7 @@
 //
 // A key is a stem and a unit, rod_length + _m. Same stem, other unit: a wrong unit, not a wrong
 // key. Otherwise the nearest key is the one with the fewest edits (insert, delete, replace,
-// V. Levenshtein, Sov. Phys. Dokl. 10 (1966) 707), if these are at most a third of its length.
+// V. Levenshtein, Sov. Phys. Dokl. 10 (1966) 707), if these are at most half of its length.
 // Set-up code only.
 #pragma once
 
@@ -21,6 +21,9 @@ bool differs_only_in_unit(std::string_view key, std::string_view known);
 
 /// The known key that `key` was probably meant to be; npos where nothing is near.
 std::size_t nearest_key(std::string_view key, std::span<const std::string_view> known);
+
+/// Nothing that belongs in a line of text: a break, a bell, an escape.
+constexpr bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
 /// One line of printable text, at most 80 characters, whatever comes in: for values in messages.
 std::string on_one_line(std::string_view text);

@@ -1,0 +1,105 @@
+#include "model/scene.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "model/obj.h"
+#include "model/scene_keys.h"
+
+namespace tact::model {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A mesh file is named from the folder of the scene, wherever the program was started.
+std::string absolute_path(const std::string& scene_path, const std::string& file) {
+  std::error_code failed;
+  const fs::path folder = fs::absolute(scene_path, failed).parent_path();
+  return (folder / file).lexically_normal().string();
+}
+
+/// The mesh's own error names its file and line; one that is not there is the scene's error.
+Result<SurfaceMesh> load_mesh(const MeshText& text, const std::string& path) {
+  std::error_code failed;
+  if (!fs::is_regular_file(path, failed)) {
+    return Error{fmt::format("{}: {} is no file; name an OBJ file from the folder of the scene",
+                             text.place.where, path)};
+  }
+  Result<ObjMesh> loaded = load_obj(path, text.unit_m);
+  if (!loaded) return loaded.error();
+  return std::move(loaded->mesh);
+}
+
+std::optional<Error> load_meshes(const SceneText& text, Scene& scene) {
+  scene.organ.mesh_path = absolute_path(scene.path, text.organ_mesh.file);
+  scene.tool.mesh_path = absolute_path(scene.path, text.tool_mesh.file);
+  Result<SurfaceMesh> organ = load_mesh(text.organ_mesh, scene.organ.mesh_path);
+  if (!organ) return organ.error();
+  Result<SurfaceMesh> tool = load_mesh(text.tool_mesh, scene.tool.mesh_path);
+  if (!tool) return tool.error();
+  for (Vec3& vertex_m : organ->vertex_m) vertex_m += scene.organ.position_m;
+  scene.organ_mesh = std::move(*organ);
+  scene.tool_mesh = std::move(*tool);
+  return std::nullopt;
+}
+
+/// The reference, indented as a scene is; `margin` is that of the row before.
+std::string reference_line(const ReferenceRow& row, std::string& margin) {
+  const std::string times = row.fallback.empty() ? "" : "; " + row.fallback;
+  if (row.key.empty()) {
+    margin = "  ";
+    return fmt::format("\n{:<34} {}{}\n", row.allowed, row.meaning, times);
+  }
+  if (row.fallback.empty()) {  // the value that decides about the keys below it
+    margin = "    ";
+    return fmt::format("  {:<32} {}\n", fmt::format("{} = {}", row.key, row.allowed), row.meaning);
+  }
+  return fmt::format("{:<34} {:<29}  {:<8}  {}\n", margin + row.key, row.allowed, row.fallback,
+                     row.meaning);
+}
+
+}  // namespace
+
+Result<Scene> load_scene(const std::string& path, const std::vector<std::string>& overrides) {
+  const Result<SceneDocument> document = load_scene_document(path, overrides);
+  if (!document) return document.error();
+  SceneText text;
+  SceneVisit visit(&*document);
+  Keys::visit_root(visit, [&](Keys& root) { visit_scene(root, text); });
+  if (auto problem = visit.problem()) return *problem;
+
+  Scene& scene = text.scene;
+  scene.path = path;
+  scene.hash = document->hash;
+  const double tool_reach_m = reach_m(scene.tool.spheres, normalized(text.script.inward));
+  scene.hand.path = way_points(text.script, tool_reach_m, scene.limits, visit);
+  if (auto problem = visit.problem()) return *problem;
+  if (auto failed = load_meshes(text, scene)) return *failed;
+  return std::move(scene);
+}
+
+std::optional<Error> check_drivable(const Scene& scene) {
+  if (scene.law == LawKind::kRhombus) return std::nullopt;
+  return Error{
+      fmt::format("{}: law \"rhombus_paper_literal\" must not drive a device, its tangential "
+                  "spring pushes with "
+                  "the wrong sign and can pull the tool in; write law = \"rhombus\"",
+                  scene.path)};
+}
+
+std::string scene_reference() {
+  SceneText text;
+  SceneVisit visit(nullptr);
+  Keys::visit_root(visit, [&](Keys& root) { visit_scene(root, text); });
+  std::string reference =
+      "A scene is a TOML file. Numbers are SI; a key ends in its unit. The columns are key, "
+      "allowed,\n"
+      "default or required, meaning. W: +x to the operator, +y right, +z up, origin in the "
+      "middle.\n\n";
+  std::string margin;
+  for (const ReferenceRow& row : visit.rows()) reference += reference_line(row, margin);
+  return reference;
+}
+
+}  // namespace tact::model

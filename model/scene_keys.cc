@@ -1,0 +1,153 @@
+#include "model/scene_keys.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "model/hermite_table.h"
+
+namespace tact::model {
+namespace {
+
+constexpr std::array kLaws{
+    Choice{"rhombus", "energy-consistent spring chain"},
+    Choice{"rhombus_paper_literal", "as printed; for tools only, never drives a device"},
+};
+constexpr std::array kLawOf{LawKind::kRhombus, LawKind::kRhombusPaperLiteral};
+static_assert(kLaws.size() == kLawOf.size());
+
+constexpr std::size_t kFewestKnots = 17;
+constexpr std::size_t kDefaultKnots = 65;
+constexpr std::size_t kMostStrokes = 64;
+
+void visit_rhombus(Keys& k, SceneText& out) {
+  RhombusChainParameters& p = out.scene.rhombus;
+  k.number("rod_length_m", {1e-4, 0.1}, "length a of each rod", p.rod_length_m);
+  k.number("initial_angle_rad", {0.05, 1.5}, "angle of the rods to the surface at rest",
+           p.initial_angle_rad);
+  k.number("normal_stiffness_N_per_m", {0.01, 1e5}, "kN, along the normal",
+           p.normal_stiffness_N_per_m);
+  k.number("tangential_stiffness_N_per_m", {0.0, 1e5}, "kT of the first unit, along the surface",
+           p.tangential_stiffness_N_per_m);
+  k.number("growth", {0.1, 100.0}, "beta: unit i has kT exp((i - 1) / beta)", p.growth);
+  k.count("units", {1, kMaxUnits}, "rhombus units in series", p.units);
+  out.scene.table_knots = kDefaultKnots;
+  k.count("table_knots", {kFewestKnots, kMaxKnots}, "of the loop's look-up table, each side",
+          out.scene.table_knots, Need::kOptional);
+}
+
+void visit_mesh(Keys& k, MeshText& mesh) {
+  mesh.place = k.place_of("mesh");
+  k.text("mesh", "OBJ file, from the folder of the scene", mesh.file);
+  k.number("mesh_unit_m", {1e-6, 1.0}, "length of one unit of the file", mesh.unit_m,
+           Need::kOptional);
+}
+
+void visit_tool(Keys& k, SceneText& out) {
+  visit_mesh(k, out.tool_mesh);
+  k.entries("sphere", {1, kMaxSpheres}, "what touches the organ", [&](Keys& sphere) {
+    ProbeSphere& probe = out.scene.tool.spheres.emplace_back();
+    sphere.vector("offset_m", {-0.2, 0.2}, "of the centre from the tool's origin, tool frame",
+                  probe.offset_m);
+    sphere.number("radius_m", {5e-4, 0.05}, "of the sphere", probe.radius_m);
+  });
+}
+
+void visit_contact(Keys& k, ContactParameters& c) {
+  k.number("friction_ratio", {0.0, 2.0}, "largest sliding force over normal force",
+           c.friction_ratio);
+  k.number("sliding_stiffness_N_per_m", {0.0, 5000.0}, "of the tissue along the surface",
+           c.sliding_stiffness_N_per_m);
+  k.number("tear_force_N", {0.01, 20.0}, "a held site lets go above it, for each sphere",
+           c.tear_force_N);
+  k.number("grip_close_ratio", {0.05, 1.0}, "closing the grip above it holds the tissue",
+           c.grip_close_ratio, Need::kOptional);
+  k.number("grip_open_ratio", {0.0, 0.95}, "opening the grip below it lets go; < grip_close_ratio",
+           c.grip_open_ratio, Need::kOptional);
+  if (!(c.grip_open_ratio < c.grip_close_ratio)) {
+    k.refuse(
+        {"grip_open_ratio", "grip_close_ratio"},
+        fmt::format(
+            "contact.grip_open_ratio = {} must be below grip_close_ratio = {}; lower it or raise "
+            "grip_close_ratio",
+            c.grip_open_ratio, c.grip_close_ratio));
+  }
+}
+
+void visit_sim(Keys& k, SimDeviceSettings& sim) {
+  k.number("counts_per_turn", {100.0, 1e8}, "encoder counts of one turn of a joint",
+           sim.counts_per_turn);
+  k.number("sample_delay_s", {0.0, 0.005}, "age of a sample when the loop gets it",
+           sim.sample_delay_s);
+  k.number("joint_friction_Nm", {0.0, 1.0}, "Coulomb friction of each joint",
+           sim.joint_friction_Nm);
+  k.number("joint_damping_Nms_per_rad", {0.0, 1.0}, "viscous friction of each joint",
+           sim.joint_damping_Nms_per_rad);
+  k.number("observer_bandwidth_Hz", {1.0, 500.0}, "of the velocity observer",
+           sim.observer_bandwidth_Hz);
+}
+
+void visit_hand(Keys& k, SceneText& out) {
+  HandSettings& hand = out.scene.hand;
+  HandScript& script = out.script;
+  k.number("mass_kg", {0.01, 2.0}, "of the hand that moves with the handle", hand.mass_kg);
+  k.number("stiffness_N_per_m", {1.0, 5000.0}, "of the grasp, towards where the hand wants to be",
+           hand.stiffness_N_per_m);
+  k.number("damping_Ns_per_m", {0.0, 200.0}, "of the grasp", hand.damping_Ns_per_m);
+  k.flag("repeat", "start over after the last stroke", hand.repeat);
+  k.vector("home_m", {-0.5, 0.5}, "where the tool's origin starts, in W", script.home_m);
+  k.vector("site_m", {-0.5, 0.5}, "the point of the surface that is touched, in W", script.site_m);
+  k.vector("inward", {-1.0, 1.0}, "direction into the tissue there, any length but 0",
+           script.inward);
+  if (!(norm(script.inward) > 0.0)) {
+    k.refuse({"inward"}, "hand.inward has no direction; allowed: any length but 0");
+  }
+  k.entries("stroke", {0, kMostStrokes}, "what the hand does, in this order",
+            [&](Keys& stroke) { visit_stroke(stroke, script.strokes.emplace_back()); });
+  script.repeat = hand.repeat;
+  script.home_place = k.place_of("home_m");
+}
+
+void visit_limits(Keys& k, Limits& limits) {
+  k.number("force_N", {0.0, 20.0}, "largest force on the hand", limits.force_N);
+  k.number("torque_Nm", {0.0, 2.0}, "largest torque on the hand", limits.torque_Nm);
+  k.number("slew_N_per_s", {1.0, 1e4}, "largest change of the force", limits.slew_N_per_s);
+  k.number("ramp_s", {0.0, 10.0}, "fade-in of the force after arming", limits.ramp_s);
+  k.number("workspace_radius_m", {0.01, 0.5}, "of the cylinder about the x axis of W",
+           limits.workspace_radius_m);
+  k.number("workspace_half_length_m", {0.01, 0.5}, "of the cylinder, from the origin of W",
+           limits.workspace_half_length_m);
+}
+
+}  // namespace
+
+void visit_scene(Keys& k, SceneText& out) {
+  Scene& scene = out.scene;
+  std::size_t law = 0;
+  k.text("name", "of the scene, shown by the viewer", scene.name);
+  k.number("rate_Hz", {100.0, 4000.0}, "ticks of the control loop", scene.rate_Hz);
+  k.choice("law", kLaws, "of the tissue; the second never drives a device", law);
+  scene.law = kLawOf[law];
+  k.section("rhombus", "chain of rhombus units under the touched point",
+            [&](Keys& rhombus) { visit_rhombus(rhombus, out); });
+  k.section("organ", "what is touched", [&](Keys& organ) {
+    visit_mesh(organ, out.organ_mesh);
+    organ.vector("position_m", {-1.0, 1.0}, "of the mesh's origin, in W", scene.organ.position_m);
+  });
+  k.section("tool", "what touches it", [&](Keys& tool) { visit_tool(tool, out); });
+  k.section("contact", "between tool and organ",
+            [&](Keys& contact) { visit_contact(contact, scene.contact); });
+  k.section("device", "what the hand holds", [&](Keys& device) {
+    device.text("kind", "sim-delta is the simulated device", scene.device.kind);
+    device.section("sim", "imperfections of the simulated device",
+                   [&](Keys& sim) { visit_sim(sim, scene.device.sim); });
+  });
+  k.section("hand", "the simulated hand", [&](Keys& hand) { visit_hand(hand, out); });
+  k.section("limits", "what the gate lets through",
+            [&](Keys& limits) { visit_limits(limits, scene.limits); });
+  k.section("telemetry", "what the viewer gets", [&](Keys& telemetry) {
+    telemetry.number("frame_rate_Hz", {1.0, 240.0}, "frames for the viewer", scene.frame_rate_Hz);
+  });
+}
+
+}  // namespace tact::model
