@@ -19,6 +19,8 @@ static_assert(kLaws.size() == kLawOf.size());
 constexpr std::size_t kFewestKnots = 17;
 constexpr std::size_t kDefaultKnots = 65;
 constexpr std::size_t kMostStrokes = 64;
+constexpr std::size_t kMostUnits = 31;  // one ring each, as many as the viewer shows
+constexpr double kStaleFade_s = 0.010;  // a lost device must fade to zero in this time
 
 void visit_rhombus(Keys& k, SceneText& out) {
   RhombusChainParameters& p = out.scene.rhombus;
@@ -30,7 +32,7 @@ void visit_rhombus(Keys& k, SceneText& out) {
   k.number("tangential_stiffness_N_per_m", {0.0, 1e5}, "kT of the first unit, along the surface",
            p.tangential_stiffness_N_per_m);
   k.number("growth", {0.1, 100.0}, "beta: unit i has kT exp((i - 1) / beta)", p.growth);
-  k.count("units", {1, kMaxUnits}, "rhombus units in series", p.units);
+  k.count("units", {1, kMostUnits}, "rhombus units in series", p.units);
   out.scene.table_knots = kDefaultKnots;
   k.count("table_knots", {kFewestKnots, kMaxKnots}, "of the loop's look-up table, each side",
           out.scene.table_knots, Need::kOptional);
@@ -112,11 +114,17 @@ void visit_limits(Keys& k, Limits& limits) {
   k.number("force_N", {0.0, 20.0}, "largest force on the hand", limits.force_N);
   k.number("torque_Nm", {0.0, 2.0}, "largest torque on the hand", limits.torque_Nm);
   k.number("slew_N_per_s", {1.0, 1e4}, "largest change of the force", limits.slew_N_per_s);
-  k.number("ramp_s", {0.0, 10.0}, "fade-in of the force after arming", limits.ramp_s);
+  k.number("ramp_s", {0.1, 10.0}, "fade-in of the force after arming", limits.ramp_s);
   k.number("workspace_radius_m", {0.01, 0.5}, "of the cylinder about the x axis of W",
            limits.workspace_radius_m);
   k.number("workspace_half_length_m", {0.01, 0.5}, "of the cylinder, from the origin of W",
            limits.workspace_half_length_m);
+  if (!(limits.slew_N_per_s * kStaleFade_s >= limits.force_N)) {
+    k.refuse({"slew_N_per_s", "force_N"},
+             fmt::format("limits.slew_N_per_s = {} is too slow for force_N = {}: a lost device must "
+                         "fade to zero in 10 ms; allowed: {} or more",
+                         limits.slew_N_per_s, limits.force_N, limits.force_N / kStaleFade_s));
+  }
 }
 
 }  // namespace

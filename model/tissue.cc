@@ -11,6 +11,13 @@ Result<std::unique_ptr<Tissue>> make_tissue(const Scene& scene) {
   auto table = tabulate(*owned, scene.table_knots);
   if (!table) return Error{scene.path + ": " + table.error().sentence};
 
+  const double pull_limit_N = -table->respond(table->range().pull_m).force_N;
+  if (!(scene.contact.tear_force_N < pull_limit_N))
+    return Error{scene.path + ": contact.tear_force_N = " +
+                 std::to_string(scene.contact.tear_force_N) +
+                 " is never reached: the law pulls with " + std::to_string(pull_limit_N) +
+                 " N at most; allowed: less than that"};
+
   std::unique_ptr<Tissue> tissue(new Tissue(std::move(owned), *table));
   double reach_m = 0.0;
   for (const ProbeSphere& sphere : scene.tool.spheres)

@@ -73,7 +73,7 @@ TEST(Override, ThatIsWrongIsToldAsItWasTyped) {
       {"rate_Hz=nan", "rate_Hz = nan is not finite; allowed: 100 .. 4000 Hz"},
       {"rate_Hz=fast", "rate_Hz is text, not a number; allowed: 100 .. 4000 Hz"},
       {"rhombus.unit=5",
-       "rhombus.unit is no key here; did you mean units? allowed: 1 .. 64, whole"},
+       "rhombus.unit is no key here; did you mean units? allowed: 1 .. 31, whole"},
       {"hand.stroke.0.depth_mm=9",
        "hand.stroke.0.depth_mm has the wrong unit; write depth_m, allowed: 0 .. 0.05 "
        "m"},
@@ -89,6 +89,9 @@ TEST(Override, ThatIsWrongIsToldAsItWasTyped) {
       {"hand.home_m.2=0.05",
        "one element of an array cannot be set alone; set the whole array, or one key of an entry "
        "as in hand.stroke.0.duration_s=1"},
+      {"limits.slew_N_per_s=700",
+       "limits.slew_N_per_s = 700 is too slow for force_N = 8: a lost device must fade to zero in "
+       "10 ms; allowed: 800 or more"},
       {"contact.grip_open_ratio=0.9",
        "contact.grip_open_ratio = 0.9 must be below grip_close_ratio = 0.7; lower it or raise "
        "grip_close_ratio"},

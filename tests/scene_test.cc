@@ -82,7 +82,7 @@ TEST(Scene, HasWhatItsFileSays) {
   EXPECT_FALSE(scene->hand.repeat);
   EXPECT_EQ(scene->limits.force_N, 8.0);
   EXPECT_EQ(scene->limits.torque_Nm, 0.2);
-  EXPECT_EQ(scene->limits.slew_N_per_s, 400.0);
+  EXPECT_EQ(scene->limits.slew_N_per_s, 1000.0);
   EXPECT_EQ(scene->limits.ramp_s, 0.5);
   EXPECT_EQ(scene->limits.workspace_radius_m, 0.18);
   EXPECT_EQ(scene->limits.workspace_half_length_m, 0.15);
