@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# Both commands of the README on a machine that has only Debian 12's base system: a chroot from
+# debootstrap, this tree copied in as git knows it, tools/run and tools/check twice each.
+#
+#   tests/fresh_debian.sh [FOLDER]     needs root, debootstrap and 6 GB; FOLDER is kept for a next time
+set -eu
+root=$(cd "$(dirname "$0")/.." && pwd)
+base=${1:-$(mktemp -d)}
+mirror=http://deb.debian.org
+
+[ "$(id -u)" -eq 0 ] || { echo "fresh_debian.sh: needs root, for chroot; start it with sudo" >&2; exit 2; }
+command -v debootstrap >/dev/null || apt-get install -y debootstrap
+
+if [ ! -e "$base/etc/debian_version" ]; then
+  echo "fresh Debian 12 base system in $base"
+  debootstrap --variant=minbase bookworm "$base" $mirror/debian >/dev/null
+fi
+cat >"$base/etc/apt/sources.list" <<EOT
+deb $mirror/debian bookworm main
+deb $mirror/debian bookworm-updates main
+deb $mirror/debian-security bookworm-security main
+EOT
+cp /etc/resolv.conf "$base/etc/resolv.conf"
+# A network with a certificate authority of its own: the chroot trusts what this machine trusts.
+mkdir -p "$base/etc/ssl/certs"
+[ -e "$base/etc/ssl/certs/host.crt" ] || cp /etc/ssl/certs/ca-certificates.crt "$base/etc/ssl/certs/host.crt" || true
+
+rm -rf "$base/root/tact"
+mkdir -p "$base/root/tact"
+(cd "$root" && git ls-files -z | xargs -0 tar c) | tar x -C "$base/root/tact"
+for kind in proc sys dev; do mountpoint -q "$base/$kind" || mount --rbind "/$kind" "$base/$kind"; done
+leave() { for kind in dev sys proc; do umount -R -l "$base/$kind" 2>/dev/null || true; done; }
+trap leave EXIT
+
+inside() {
+  chroot "$base" env -i HOME=/root TERM=dumb LANG=C.UTF-8 \
+    PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
+    NODE_EXTRA_CA_CERTS=/etc/ssl/certs/host.crt bash -c "cd /root/tact && $*"
+}
+for round in first second; do
+  for command in './tools/run --headless --seconds 10' './tools/check'; do
+    echo "== $round time: $command"
+    start=$SECONDS
+    inside "$command"
+    echo "== took $((SECONDS - start)) s"
+  done
+done
