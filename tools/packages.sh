@@ -42,7 +42,7 @@ need_packages() {
 }
 
 # What it takes to build the programs, and the page of the viewer.
-BUILD_PACKAGES=(g++ cmake ninja-build git ca-certificates libfmt-dev libcli11-dev
+BUILD_PACKAGES=(g++ cmake ninja-build ca-certificates libfmt-dev libcli11-dev
   nlohmann-json3-dev libtomlplusplus-dev libboost-dev)
 PAGE_PACKAGES=(nodejs=node npm=npm)
 
