@@ -2,18 +2,24 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <cstring>
+#include <array>
+#include <bit>
 
 #include "firmware/rt_setup.h"
 
 namespace tact::firmware {
+namespace {
+
+// Bits, not values: -0 is not 0 here, and NaN is itself.
+std::array<unsigned char, sizeof(model::Wrench)> bits_of(const model::Wrench& wrench) {
+  static_assert(sizeof wrench == 6 * sizeof(double));
+  return std::bit_cast<std::array<unsigned char, sizeof(model::Wrench)>>(wrench);
+}
+
+}  // namespace
 
 std::uint64_t hash_wrench(std::uint64_t hash, const model::Wrench& wrench) {
-  static_assert(sizeof wrench == 6 * sizeof(double));
-  unsigned char bytes[sizeof wrench];
-  std::memcpy(bytes, &wrench, sizeof wrench);
-  for (const unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3u;
+  for (const unsigned char byte : bits_of(wrench)) hash = (hash ^ byte) * 0x100000001b3u;
   return hash;
 }
 
@@ -40,7 +46,7 @@ model::Result<ReplayOutcome> replay(const std::string& path, const model::Scene&
     }
     const TickOutput output = controller.tick(tick.input);
     outcome.force_hash = hash_wrench(outcome.force_hash, output.written);
-    if (std::memcmp(&output.written, &tick.output.written, sizeof output.written) == 0) continue;
+    if (bits_of(output.written) == bits_of(tick.output.written)) continue;
     if (outcome.different++ == 0) outcome.first_different = tick.tick;
   }
   outcome.truncated = log->truncated();

@@ -22,8 +22,8 @@
 namespace tact::firmware {
 namespace {
 
-constexpr std::size_t kStackBytes = 256 * 1024;
-constexpr std::size_t kTouchedStackBytes = 128 * 1024;
+constexpr std::size_t kStackBytes = std::size_t{256} * 1024;
+constexpr std::size_t kTouchedStackBytes = std::size_t{128} * 1024;
 
 void lock_memory(std::vector<Shortfall>& shortfalls) {
   mallopt(M_TRIM_THRESHOLD, -1);  // freed memory stays ours

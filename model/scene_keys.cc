@@ -120,10 +120,11 @@ void visit_limits(Keys& k, Limits& limits) {
   k.number("workspace_half_length_m", {0.01, 0.5}, "of the cylinder, from the origin of W",
            limits.workspace_half_length_m);
   if (!(limits.slew_N_per_s * kStaleFade_s >= limits.force_N)) {
-    k.refuse({"slew_N_per_s", "force_N"},
-             fmt::format("limits.slew_N_per_s = {} is too slow for force_N = {}: a lost device must "
-                         "fade to zero in 10 ms; allowed: {} or more",
-                         limits.slew_N_per_s, limits.force_N, limits.force_N / kStaleFade_s));
+    k.refuse(
+        {"slew_N_per_s", "force_N"},
+        fmt::format("limits.slew_N_per_s = {} is too slow for force_N = {}: a lost device must "
+                    "fade to zero in 10 ms; allowed: {} or more",
+                    limits.slew_N_per_s, limits.force_N, limits.force_N / kStaleFade_s));
   }
 }
 

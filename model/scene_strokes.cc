@@ -157,7 +157,7 @@ std::vector<HandWaypoint> way_points(const HandScript& script, double reach_m, c
     const std::string problem = place_problem(writer.position_m(), limits);
     // A release ends at home, which has been judged.
     if (!problem.empty() && stroke.action != Action::kRelease) {
-      refuse(stroke.place, name + " ends at " + problem);
+      refuse(stroke.place, fmt::format("{} ends at {}", name, problem));
     }
   }
   if (script.repeat && !script.strokes.empty() &&

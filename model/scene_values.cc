@@ -48,7 +48,7 @@ std::string number_problem(const toml::node& node, Range range, double& value) {
 std::string count_problem(const toml::node& node, CountRange range, std::size_t& value) {
   const Range bounds{static_cast<double>(range.low), static_cast<double>(range.high)};
   double given = 0.0;
-  const std::string problem = number_problem(node, bounds, given);
+  std::string problem = number_problem(node, bounds, given);
   if (!problem.empty()) return problem;
   if (!node.is_integer()) return fmt::format("= {} is written with a fraction", given);
   value = static_cast<std::size_t>(given);

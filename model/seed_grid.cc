@@ -46,7 +46,7 @@ class Seeder {
  private:
   Vec3 centre(std::uint32_t i) const {
     const auto& [nx, ny, nz] = view_.size;
-    const double x = i % nx, y = (i / nx) % ny, z = i / (nx * ny);
+    const std::uint32_t x = i % nx, y = (i / nx) % ny, z = i / (nx * ny);
     return view_.low_m + view_.cell_m * Vec3{x + 0.5, y + 0.5, z + 0.5};
   }
 

@@ -13,8 +13,8 @@ Result<std::unique_ptr<Tissue>> make_tissue(const Scene& scene) {
 
   const double pull_limit_N = -table->respond(table->range().pull_m).force_N;
   if (!(scene.contact.tear_force_N < pull_limit_N))
-    return Error{scene.path + ": contact.tear_force_N = " +
-                 std::to_string(scene.contact.tear_force_N) +
+    return Error{scene.path +
+                 ": contact.tear_force_N = " + std::to_string(scene.contact.tear_force_N) +
                  " is never reached: the law pulls with " + std::to_string(pull_limit_N) +
                  " N at most; allowed: less than that"};
 

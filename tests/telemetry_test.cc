@@ -192,18 +192,17 @@ TEST(Telemetry, ThreadAndLoopShareOnlyTheRing) {  // for the thread sanitizer
   const std::string path = fresh_socket_path();
   const model::Scene scene = tests::make_plate_scene();
   const auto tissue = std::move(*model::make_tissue(scene));
-  TickRing& ring = *new TickRing;  // large: not on the stack
-  Telemetry telemetry(ring, tissue->law(), 200.0, std::nullopt, std::nullopt);
+  const auto ring = std::make_unique<TickRing>();  // large: not on the stack
+  Telemetry telemetry(*ring, tissue->law(), 200.0, std::nullopt, std::nullopt);
   telemetry.start();
   TickRecord record;
   for (int i = 0; i < 20000; ++i) {
     record.tick = static_cast<std::uint64_t>(i);
-    ring.push(record);
+    ring->push(record);
     if (i % 1000 == 0) usleep(2000);
   }
   EXPECT_EQ(telemetry.stop(), "");
   EXPECT_GT(telemetry.newest_frame().tick, 0u);
-  delete &ring;
 }
 
 TEST(Telemetry, ASecondControllerOnTheSameSocketIsRefused) {

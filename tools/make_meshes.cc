@@ -69,7 +69,6 @@ std::optional<Error> write_shape(const std::string& directory, const std::string
 }  // namespace
 
 // The libraries throw when memory or standard output is gone; then the program may as well end.
-// NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int argc, char** argv) {
   CLI::App app{"Write the meshes that tact ships: OBJ, unit mm, the same bytes on every run."};
   std::string directory = ".";

@@ -61,7 +61,6 @@ std::string to_text(const ObjMesh& obj, const MeshSummary& sum) {
 }  // namespace
 
 // The libraries throw when memory or standard output is gone; then the program may as well end.
-// NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int argc, char** argv) {
   CLI::App app{
       "What is in this mesh file, and is it sound? Reads a Wavefront OBJ surface as tact does:\n"
