@@ -76,7 +76,12 @@ inline void check_profile(const model::Law& law) {
     EXPECT_NEAR(ring_m[0], d, 1e-9 * law.range().press_m);
     EXPECT_NEAR(ring_m[count - 1], 0.0, 1e-12);
     for (std::size_t j = 1; j < count; ++j)
-      EXPECT_LE(std::abs(ring_m[j]), std::abs(ring_m[j - 1]) + 1e-15);
+      EXPECT_LE(std::abs(ring_m[j]), std::abs(ring_m[j - 1]) + 1e-15) << "decays outward";
+    std::vector<double> near_m(64);
+    const double step_m = 1e-6 * law.range().press_m;
+    law.profile(d + step_m, near_m);
+    for (std::size_t j = 0; j < count; ++j)
+      EXPECT_NEAR(near_m[j], ring_m[j], 2.0 * step_m) << "no jump with depth";
   }
   EXPECT_GT(law.ring_pitch_m(), 0.0);
 }

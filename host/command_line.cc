@@ -1,0 +1,55 @@
+#include "host/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "host/telemetry_client.h"
+
+namespace tact::host {
+namespace {
+
+std::string page_beside_program() {
+  std::error_code wrong;
+  return (std::filesystem::read_symlink("/proc/self/exe", wrong).parent_path() / "page").string();
+}
+
+}  // namespace
+
+std::optional<int> parse_options(int argc, char** argv, Options& options) {
+  options.socket = default_telemetry_path();
+  CLI::App app{
+      "tact-view: shows what tactd does in a browser: the deforming tissue, the tool, the force "
+      "and\n"
+      "the time left before each deadline. It cannot command a force. Ctrl-C ends it.\n"
+      "Exit status: 0 good, 1 a recording is damaged or incomplete, 2 bad usage or input."};
+  app.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return std::string("tact-view: ") + error.what() + "; see tact-view --help\n";
+  });
+  app.add_option("--socket", options.socket, "tactd's telemetry socket")->capture_default_str();
+  app.add_option("--port", options.viewer.port, "port of the page; 0 takes any free one")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 65535));
+  app.add_option("--bind", options.viewer.bind_address,
+                 "IP address to serve on; any but loopback asks browsers for a token")
+      ->capture_default_str();
+  app.add_option("--page", options.viewer.page_folder,
+                 "folder of the built page (default: page/ beside this program)");
+  CLI::Option* record =
+      app.add_option("--record", options.record, "write all frames to this new file");
+  CLI::Option* open =
+      app.add_option("--open", options.open, "replay this recording instead of tactd");
+  app.add_option("--export", options.export_csv,
+                 "with --open: write this CSV file (m, s, N, us, as its columns say) and leave")
+      ->needs(open);
+  app.add_flag("--json", options.json, "say what is ready or done as one line of JSON");
+  record->excludes(open);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  if (options.viewer.page_folder.empty()) options.viewer.page_folder = page_beside_program();
+  return std::nullopt;
+}
+
+}  // namespace tact::host

@@ -1,0 +1,23 @@
+// command_line.h - what tact-view was asked to do.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "host/viewer_server.h"
+
+namespace tact::host {
+
+struct Options {
+  ViewerOptions viewer;
+  std::string socket;      // of tactd's telemetry
+  std::string record;      // new file for hello and frames
+  std::string open;        // recording to replay instead of tactd
+  std::string export_csv;  // with open: write this table and leave
+  bool json = false;
+};
+
+/// Fills the options; or the status to leave with, after --help or bad usage.
+std::optional<int> parse_options(int argc, char** argv, Options& options);
+
+}  // namespace tact::host

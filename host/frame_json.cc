@@ -1,0 +1,112 @@
+#include "host/frame_json.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <span>
+
+namespace tact::host {
+namespace {
+
+constexpr int kDigits = 4;
+constexpr int kPositionDigits = 6;
+
+void put(std::string& out, float value, int digits) {
+  if (std::isfinite(value)) {
+    fmt::format_to(std::back_inserter(out), "{:.{}g}", value, digits);
+  } else {
+    out += "null";
+  }
+}
+
+void put(std::string& out, const char* key, float value) {
+  fmt::format_to(std::back_inserter(out), ",\"{}\":", key);
+  put(out, value, kDigits);
+}
+
+void put(std::string& out, const char* key, std::span<const float> values, int digits = kDigits) {
+  fmt::format_to(std::back_inserter(out), ",\"{}\":[", key);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0) out += ',';
+    put(out, values[i], digits);
+  }
+  out += ']';
+}
+
+void put_site(std::string& out, std::size_t index, const firmware::FrameSite& site,
+              std::size_t rings) {
+  fmt::format_to(std::back_inserter(out), "{{\"site\":{},\"state\":{}", index,
+                 static_cast<int>(site.state));
+  put(out, "point_m", site.surface_point_m);
+  put(out, "normal", site.normal);
+  put(out, "shift_m", site.shift_m);
+  put(out, "depth_m", site.depth_m);
+  put(out, "u_m", std::span(site.profile_m).first(rings));
+  out += '}';
+}
+
+}  // namespace
+
+std::string frame_json(const Frame& frame, const Hello& hello) {
+  std::string out;
+  out.reserve(kMaxFrameJsonBytes);
+  fmt::format_to(std::back_inserter(out),
+                 "{{\"kind\":\"frame\",\"tick\":{},\"time_s\":{:.4f},\"state\":{},\"fault\":{},"
+                 "\"limit\":{},\"late\":{},\"skipped\":{},\"dropped\":{}",
+                 frame.tick, static_cast<double>(frame.time_ns) * 1e-9,
+                 static_cast<int>(frame.state), frame.fault, frame.limit, frame.late_ticks,
+                 frame.skipped_ticks, frame.dropped_records);
+  put(out, "tool_m", frame.tool_position_m, kPositionDigits);
+  put(out, "turn", frame.tool_orientation, kPositionDigits);
+  put(out, "velocity_mps", frame.tool_velocity_mps);
+  put(out, "grip_ratio", frame.grip_ratio);
+  put(out, "force_N", frame.force_N);
+  put(out, "torque_Nm", frame.torque_Nm);
+  put(out, "wanted_N", frame.wanted_force_N);
+  put(out, "margin_us", frame.worst_margin_us);
+  put(out, "tick_us", frame.median_tick_us);
+  put(out, "peak_N", frame.peak_force_N);
+  out += ",\"sites\":[";
+  const std::size_t sites = std::min<std::size_t>(hello.site_count, firmware::kMaxSites);
+  const std::size_t rings = std::min<std::size_t>(hello.ring_count, firmware::kMaxRings);
+  bool first = true;
+  for (std::size_t i = 0; i < sites; ++i) {
+    if (frame.site[i].state == firmware::SiteState::kFree) continue;
+    if (!first) out += ',';
+    first = false;
+    put_site(out, i, frame.site[i], rings);
+  }
+  out += "]}";
+  return out;
+}
+
+std::string scene_json(const Hello& hello) {
+  nlohmann::json spheres = nlohmann::json::array();
+  const std::size_t sites = std::min<std::size_t>(hello.site_count, firmware::kMaxSites);
+  for (std::size_t i = 0; i < sites; ++i) {
+    spheres.push_back(
+        {{"radius_m", hello.sphere_radius_m[i]}, {"offset_m", hello.sphere_offset_m[i]}});
+  }
+  const nlohmann::json scene{
+      {"scene", text_of(hello.scene_name)},
+      {"device", text_of(hello.device_name)},
+      {"law", text_of(hello.law_name)},
+      {"organ", {{"vertices", hello.organ_vertices}, {"triangles", hello.organ_triangles}}},
+      {"tool", {{"vertices", hello.tool_vertices}, {"triangles", hello.tool_triangles}}},
+      {"ring_count", hello.ring_count},
+      {"ring_pitch_m", hello.ring_pitch_m},
+      {"rate_Hz", hello.rate_Hz},
+      {"frame_rate_Hz", hello.frame_rate_Hz},
+      {"force_limit_N", hello.force_limit_N},
+      {"non_rt", hello.non_rt != 0},
+      {"simulated", hello.simulated != 0},
+      {"spheres", spheres},
+  };
+  // A name with broken UTF-8 is mended instead of throwing.
+  return scene.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace tact::host

@@ -1,0 +1,22 @@
+// frame_json.h - telemetry as JSON text for the page.
+//
+// One frame is at most kMaxFrameJsonBytes long whatever its numbers are: lengths and forces carry
+// four significant digits, the tool's position six, and only sites in contact are listed. A number
+// that is not finite becomes null, because JSON has no NaN.
+#pragma once
+
+#include <string>
+
+#include "host/telemetry_check.h"
+
+namespace tact::host {
+
+inline constexpr std::size_t kMaxFrameJsonBytes = 4096;
+
+/// {"kind":"frame","tick":..,"time_s":..,"tool_m":[x,y,z],...,"sites":[{"site":0,...,"u_m":[..]}]}
+std::string frame_json(const Frame& frame, const Hello& hello);
+
+/// What does not change while tactd runs: names, counts, limits, probe spheres.
+std::string scene_json(const Hello& hello);
+
+}  // namespace tact::host

@@ -1,0 +1,111 @@
+#include "host/live_session.h"
+
+#include <algorithm>
+#include <boost/asio/buffer.hpp>
+#include <boost/beast/core/buffers_to_string.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace tact::host {
+namespace {
+
+namespace beast = boost::beast;
+namespace websocket = boost::beast::websocket;
+using beast::error_code;
+
+constexpr std::size_t kMaxMessageBytes = 1024;
+constexpr double kFarthestHand_m = 1.0;  // beyond any device
+
+nlohmann::json parse(const std::string& text) {
+  return nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+}
+
+}  // namespace
+
+bool parse_hand(const std::string& text, double (&position_m)[3], double& grip_ratio) {
+  const nlohmann::json message = parse(text);
+  if (!message.is_object() || !message.contains("hand")) return false;
+  const nlohmann::json& hand = message["hand"];
+  if (!hand.is_object()) return false;
+  double value[4];
+  constexpr const char* kKeys[4] = {"x_m", "y_m", "z_m", "grip_ratio"};
+  for (int i = 0; i < 4; ++i) {
+    const auto found = hand.find(kKeys[i]);
+    if (found == hand.end() || !found->is_number()) return false;
+    value[i] = found->get<double>();
+    if (!std::isfinite(value[i]) || std::abs(value[i]) > kFarthestHand_m) return false;
+  }
+  std::copy(value, value + 3, position_m);
+  grip_ratio = std::clamp(value[3], 0.0, 1.0);
+  return true;
+}
+
+LiveSession::LiveSession(beast::tcp_stream stream, LiveView& view, const MoveHand& move_hand)
+    : socket_(std::move(stream)), view_(view), move_hand_(move_hand) {}
+
+LiveSession::~LiveSession() { view_.unsubscribe(*this); }
+
+void LiveSession::start(const Request& upgrade) {
+  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own timer
+  socket_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
+  socket_.read_message_max(kMaxMessageBytes);
+  error_code ignored;
+  beast::get_lowest_layer(socket_).socket().set_option(boost::asio::ip::tcp::no_delay(true),
+                                                       ignored);
+  socket_.async_accept(upgrade, [self = shared_from_this()](error_code wrong) {
+    if (wrong) return;
+    self->view_.subscribe(*self);
+    self->read_next();
+  });
+}
+
+void LiveSession::on_status(const Text& status) {
+  next_status_ = status;
+  write_next();
+}
+
+void LiveSession::on_frame(const Text& frame) {
+  next_frame_ = frame;  // one that still waits is dropped: newer is better than complete
+  write_next();
+}
+
+void LiveSession::write_next() {
+  if (writing_) return;
+  if (next_status_) {
+    writing_ = std::move(next_status_);
+  } else if (next_frame_ && sent_frames_ - seen_frames_ < kMaxUnseen) {
+    writing_ = std::move(next_frame_);
+    ++sent_frames_;
+  } else {
+    return;
+  }
+  socket_.text(true);
+  socket_.async_write(boost::asio::buffer(*writing_),
+                      [self = shared_from_this()](error_code wrong, std::size_t) {
+                        self->writing_.reset();
+                        if (!wrong) self->write_next();
+                      });
+}
+
+void LiveSession::read_next() {
+  socket_.async_read(in_, [self = shared_from_this()](error_code wrong, std::size_t) {
+    if (wrong) return self->view_.unsubscribe(*self);
+    self->take(beast::buffers_to_string(self->in_.data()));
+    self->in_.consume(self->in_.size());
+    self->read_next();
+  });
+}
+
+void LiveSession::take(const std::string& text) {
+  const nlohmann::json message = parse(text);
+  if (message.is_object() && message.contains("seen") && message["seen"].is_number_unsigned()) {
+    const std::uint64_t seen = message["seen"].get<std::uint64_t>();
+    seen_frames_ = std::clamp(seen, seen_frames_, sent_frames_);
+    write_next();
+  }
+  double position_m[3];
+  double grip_ratio = 0.0;
+  if (move_hand_ && parse_hand(text, position_m, grip_ratio)) move_hand_(position_m, grip_ratio);
+}
+
+}  // namespace tact::host

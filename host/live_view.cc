@@ -1,0 +1,76 @@
+#include "host/live_view.h"
+
+#include <nlohmann/json.hpp>
+
+#include "host/frame_json.h"
+
+namespace tact::host {
+namespace {
+
+const char* name_of(Link link) {
+  switch (link) {
+    case Link::kWaiting:
+      return "waiting";
+    case Link::kLive:
+      return "live";
+    case Link::kLost:
+      return "lost";
+    case Link::kReplay:
+      return "replay";
+  }
+  return "waiting";
+}
+
+}  // namespace
+
+LiveView::LiveView() { tell(Link::kWaiting, {}); }
+
+void LiveView::begin(const Hello& hello, MeshBytes mesh, Link link, const std::string& detail) {
+  hello_ = hello;
+  mesh_ = std::make_shared<const MeshBytes>(std::move(mesh));
+  ++scene_number_;
+  recent_.restart(static_cast<double>(hello.frame_rate_Hz));
+  tell(link, detail);
+}
+
+void LiveView::add(const Frame& frame) {
+  recent_.add(frame);
+  if (listeners_.empty()) return;
+  const Text text = std::make_shared<const std::string>(frame_json(frame, hello_));
+  for (LiveListener* listener : listeners_) listener->on_frame(text);
+}
+
+void LiveView::rewind() { recent_.restart(static_cast<double>(hello_.frame_rate_Hz)); }
+
+void LiveView::lose(const std::string& reason) {
+  tell(has_scene() ? Link::kLost : Link::kWaiting, reason);
+}
+
+void LiveView::subscribe(LiveListener& listener) {
+  listeners_.insert(&listener);
+  listener.on_status(status_);
+}
+
+void LiveView::tell(Link link, const std::string& detail) {
+  const nlohmann::json status{{"kind", "status"},
+                              {"link", name_of(link)},
+                              {"detail", detail},
+                              {"scene_number", scene_number_},
+                              {"kept_s", RecentFrames::kKeep_s}};
+  status_ = std::make_shared<const std::string>(
+      status.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  for (LiveListener* listener : listeners_) listener->on_status(status_);
+}
+
+std::shared_ptr<const Recording> LiveView::recent(std::uint64_t first_tick,
+                                                  std::uint64_t last_tick) const {
+  auto copy = std::make_shared<Recording>();
+  copy->hello = hello_;
+  if (mesh_) copy->mesh = *mesh_;
+  for (const Frame& frame : recent_.frames()) {
+    if (frame.tick >= first_tick && frame.tick <= last_tick) copy->frames.push_back(frame);
+  }
+  return copy;
+}
+
+}  // namespace tact::host

@@ -1,0 +1,60 @@
+// live_view.h - what every browser sees now: link, scene, newest frame, and the last minutes.
+//
+// One thread. Telemetry or a replay writes; sessions listen. Texts are made once and shared.
+#pragma once
+
+#include <memory>
+#include <set>
+#include <string>
+
+#include "host/recording.h"
+
+namespace tact::host {
+
+using Text = std::shared_ptr<const std::string>;
+
+enum class Link { kWaiting, kLive, kLost, kReplay };
+
+class LiveListener {
+ public:
+  virtual void on_status(const Text& status) = 0;
+  virtual void on_frame(const Text& frame) = 0;
+
+ protected:
+  ~LiveListener() = default;
+};
+
+class LiveView {
+ public:
+  LiveView();
+
+  // From telemetry or a replay:
+  void begin(const Hello& hello, MeshBytes mesh, Link link, const std::string& detail = {});
+  void add(const Frame& frame);
+  void rewind();  // a replay starts again: forget the frames
+  void lose(const std::string& reason);
+
+  // For sessions:
+  void subscribe(LiveListener& listener);
+  void unsubscribe(LiveListener& listener) { listeners_.erase(&listener); }
+  const Text& status() const { return status_; }
+  bool has_scene() const { return scene_number_ > 0; }
+  const Hello& hello() const { return hello_; }
+  const std::shared_ptr<const MeshBytes>& mesh() const { return mesh_; }
+  std::size_t listeners() const { return listeners_.size(); }
+
+  /// A copy of the kept frames with first_tick <= tick <= last_tick.
+  std::shared_ptr<const Recording> recent(std::uint64_t first_tick, std::uint64_t last_tick) const;
+
+ private:
+  void tell(Link link, const std::string& detail);
+
+  Hello hello_;
+  std::shared_ptr<const MeshBytes> mesh_;
+  std::uint64_t scene_number_ = 0;  // grows with every Hello: the page loads the scene again
+  Text status_;
+  RecentFrames recent_;
+  std::set<LiveListener*> listeners_;
+};
+
+}  // namespace tact::host

@@ -1,0 +1,191 @@
+#include "host/recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/crc.hpp>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+namespace tact::host {
+namespace {
+
+constexpr std::int64_t kFlush_ns = 1'000'000'000;
+
+template <typename T>
+void append(std::string& out, const T& value) {
+  out.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+std::uint32_t crc_of(const Frame& frame) {
+  boost::crc_32_type crc;
+  crc.process_bytes(&frame, sizeof frame);
+  return crc.checksum();
+}
+
+std::uint32_t crc_of(const Hello& hello, const MeshBytes& mesh) {
+  boost::crc_32_type crc;
+  crc.process_bytes(&hello, sizeof hello);
+  crc.process_bytes(mesh.data(), mesh.size());
+  return crc.checksum();
+}
+
+template <typename T>
+bool read(std::istream& in, T& value) {
+  return static_cast<bool>(in.read(reinterpret_cast<char*>(&value), sizeof value));
+}
+
+/// Header, scene and meshes. Empty, or why they cannot be used.
+std::string read_setup(std::istream& in, std::uint64_t file_bytes, Recording& recording) {
+  FileHeader header;
+  if (!read(in, header) || std::memcmp(header.magic, kRecordingMagic, sizeof header.magic) != 0) {
+    return "this is not a tact recording; give a file made with --record or the page's record "
+           "button";
+  }
+  if (header.version != kRecordingVersion || header.hello_bytes != sizeof(Hello) ||
+      header.frame_bytes != sizeof(Frame)) {
+    return fmt::format(
+        "recording version {} cannot be read by this tact-view (version {}); "
+        "open it with the tact-view that made it",
+        header.version, kRecordingVersion);
+  }
+  constexpr const char* kCutOff =
+      "the file ends before its first frame; nothing of it can be shown, record again";
+  if (!read(in, recording.hello)) return kCutOff;
+  if (header.mesh_bytes > file_bytes) return kCutOff;
+  recording.mesh.resize(header.mesh_bytes);
+  in.read(reinterpret_cast<char*>(recording.mesh.data()),
+          static_cast<std::streamsize>(recording.mesh.size()));
+  if (!in) return kCutOff;
+  if (crc_of(recording.hello, recording.mesh) != header.setup_crc) {
+    return "its scene part is damaged (checksum differs); nothing of it can be shown, record again";
+  }
+  std::string wrong = check_hello(recording.hello);
+  if (wrong.empty()) wrong = check_mesh(recording.hello, recording.mesh);
+  return wrong;
+}
+
+}  // namespace
+
+double Recording::length_s() const {
+  if (frames.empty()) return 0.0;
+  return static_cast<double>(frames.back().time_ns - frames.front().time_ns) * 1e-9;
+}
+
+std::string recording_start(const Hello& hello, const MeshBytes& mesh) {
+  FileHeader header{.version = kRecordingVersion,
+                    .hello_bytes = sizeof(Hello),
+                    .frame_bytes = sizeof(Frame),
+                    .setup_crc = crc_of(hello, mesh),
+                    .mesh_bytes = mesh.size()};
+  std::memcpy(header.magic, kRecordingMagic, sizeof header.magic);
+  std::string out;
+  append(out, header);
+  append(out, hello);
+  out.append(reinterpret_cast<const char*>(mesh.data()), mesh.size());
+  return out;
+}
+
+std::string recording_frame(const Frame& frame) {
+  std::string out;
+  append(out, FrameRecord{.frame = frame, .crc = crc_of(frame)});
+  return out;
+}
+
+ReadResult read_recording(const std::string& path) {
+  ReadResult result;
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  if (!in) {
+    result.damage = fmt::format("cannot be opened: {}; check the name", std::strerror(errno));
+    return result;
+  }
+  const auto file_bytes = static_cast<std::uint64_t>(std::max<std::streamoff>(in.tellg(), 0));
+  in.seekg(0);
+  Recording& recording = result.recording;
+  result.damage = read_setup(in, file_bytes, recording);
+  if (!result.damage.empty()) return result;
+
+  const std::uint64_t start = sizeof(FileHeader) + sizeof(Hello) + recording.mesh.size();
+  const std::uint64_t records = (file_bytes - start) / sizeof(FrameRecord);
+  const std::uint64_t left_bytes = (file_bytes - start) % sizeof(FrameRecord);
+  recording.frames.reserve(records);
+  std::uint64_t damaged = 0, first_damaged = 0;
+  FrameRecord record;
+  for (std::uint64_t i = 0; i < records && read(in, record); ++i) {
+    if (crc_of(record.frame) == record.crc && check_frame(record.frame).empty()) {
+      recording.frames.push_back(record.frame);
+    } else if (damaged++ == 0) {
+      first_damaged = start + i * sizeof(FrameRecord);
+    }
+  }
+  result.usable = !recording.frames.empty();
+  if (damaged > 0) {
+    result.damage = fmt::format("{} of {} frames are damaged, the first at byte {}; ", damaged,
+                                records, first_damaged);
+  }
+  if (left_bytes > 0) {
+    result.damage +=
+        fmt::format("the file is cut off inside a frame at byte {}; ", file_bytes - left_bytes);
+  }
+  if (!result.damage.empty() || !result.usable) {
+    result.damage += fmt::format("{} good frames ({:.1f} s) are kept", recording.frames.size(),
+                                 recording.length_s());
+  }
+  return result;
+}
+
+std::string RecordingWriter::open(const std::string& path, const Hello& hello,
+                                  const MeshBytes& mesh) {
+  path_ = path;
+  file_.reset(std::fopen(path.c_str(), "wbx"));  // x: fails when the file exists
+  if (!file_) {
+    const bool exists = errno == EEXIST;
+    return fmt::format("{}: {}; {}", path, std::strerror(errno),
+                       exists ? "choose another name, a recording is never overwritten"
+                              : "check that the folder exists and may be written");
+  }
+  flushed_ns_ = 0;
+  std::string wrong = put(recording_start(hello, mesh));
+  if (wrong.empty() && std::fflush(file_.get()) != 0) wrong = put({});
+  return wrong;
+}
+
+std::string RecordingWriter::put(const std::string& bytes) {
+  if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size() &&
+      std::ferror(file_.get()) == 0) {
+    return {};
+  }
+  std::string wrong = fmt::format("{}: {}; recording stopped, what was written before is kept",
+                                  path_, std::strerror(errno));
+  file_.reset();
+  return wrong;
+}
+
+std::string RecordingWriter::write(const Frame& frame) {
+  if (!file_) return {};
+  std::string wrong = put(recording_frame(frame));
+  if (wrong.empty() && frame.time_ns - flushed_ns_ >= kFlush_ns) {
+    flushed_ns_ = frame.time_ns;
+    if (std::fflush(file_.get()) != 0) wrong = put({});
+  }
+  return wrong;
+}
+
+std::string RecordingWriter::close() {
+  if (!file_) return {};
+  if (std::fclose(file_.release()) == 0) return {};
+  return fmt::format("{}: {}; the last second may be missing", path_, std::strerror(errno));
+}
+
+void RecentFrames::restart(double frame_rate_Hz) {
+  frames_.clear();
+  capacity_ = static_cast<std::size_t>(std::clamp(frame_rate_Hz, 1.0, 1000.0) * kKeep_s);
+}
+
+void RecentFrames::add(const Frame& frame) {
+  if (frames_.size() >= capacity_ && !frames_.empty()) frames_.pop_front();
+  frames_.push_back(frame);
+}
+
+}  // namespace tact::host

@@ -1,0 +1,100 @@
+#include "host/recording_csv.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <span>
+
+namespace tact::host {
+namespace {
+
+const char* name_of(firmware::State state) {
+  switch (state) {
+    case firmware::State::kOff:
+      return "off";
+    case firmware::State::kReady:
+      return "ready";
+    case firmware::State::kArmed:
+      return "armed";
+    case firmware::State::kStopped:
+      return "stopped";
+  }
+  return "unknown";
+}
+
+const char* name_of(firmware::SiteState state) {
+  switch (state) {
+    case firmware::SiteState::kFree:
+      return "free";
+    case firmware::SiteState::kTouching:
+      return "touching";
+    case firmware::SiteState::kHeld:
+      return "held";
+  }
+  return "unknown";
+}
+
+std::size_t sites_of(const Hello& hello) {
+  return std::min<std::size_t>(hello.site_count, firmware::kMaxSites);
+}
+std::size_t rings_of(const Hello& hello) {
+  return std::min<std::size_t>(hello.ring_count, firmware::kMaxRings);
+}
+
+void put(std::string& out, std::span<const float> values) {
+  for (const float value : values) fmt::format_to(std::back_inserter(out), ",{}", value);
+}
+void put(std::string& out, float value) { put(out, std::span(&value, 1)); }
+
+}  // namespace
+
+std::string csv_header(const Hello& hello) {
+  std::string out =
+      "tick,time_s,state,fault,limit,late_ticks,skipped_ticks,dropped_records,"
+      "tool_x_m,tool_y_m,tool_z_m,tool_qw,tool_qx,tool_qy,tool_qz,"
+      "tool_vx_mps,tool_vy_mps,tool_vz_mps,grip_ratio,force_x_N,force_y_N,force_z_N,"
+      "torque_x_Nm,torque_y_Nm,torque_z_Nm,wanted_x_N,wanted_y_N,wanted_z_N,"
+      "worst_margin_us,median_tick_us,peak_force_N";
+  for (std::size_t i = 1; i <= sites_of(hello); ++i) {
+    fmt::format_to(std::back_inserter(out),
+                   ",site{0}_state,site{0}_x_m,site{0}_y_m,site{0}_z_m,site{0}_normal_x,"
+                   "site{0}_normal_y,site{0}_normal_z,site{0}_shift_x_m,site{0}_shift_y_m,"
+                   "site{0}_shift_z_m,site{0}_depth_m",
+                   i);
+    for (std::size_t j = 0; j < rings_of(hello); ++j) {
+      fmt::format_to(std::back_inserter(out), ",site{}_u{}_m", i, j);
+    }
+  }
+  out += '\n';
+  return out;
+}
+
+void append_csv_row(std::string& out, const Frame& frame, const Hello& hello) {
+  fmt::format_to(std::back_inserter(out), "{},{:.9f},{},{},{},{},{},{}", frame.tick,
+                 static_cast<double>(frame.time_ns) * 1e-9, name_of(frame.state), frame.fault,
+                 frame.limit, frame.late_ticks, frame.skipped_ticks, frame.dropped_records);
+  put(out, frame.tool_position_m);
+  put(out, frame.tool_orientation);
+  put(out, frame.tool_velocity_mps);
+  put(out, frame.grip_ratio);
+  put(out, frame.force_N);
+  put(out, frame.torque_Nm);
+  put(out, frame.wanted_force_N);
+  put(out, frame.worst_margin_us);
+  put(out, frame.median_tick_us);
+  put(out, frame.peak_force_N);
+  for (std::size_t i = 0; i < sites_of(hello); ++i) {
+    const firmware::FrameSite& site = frame.site[i];
+    out += ',';
+    out += name_of(site.state);
+    put(out, site.surface_point_m);
+    put(out, site.normal);
+    put(out, site.shift_m);
+    put(out, site.depth_m);
+    put(out, std::span(site.profile_m).first(rings_of(hello)));
+  }
+  out += '\n';
+}
+
+}  // namespace tact::host

@@ -1,0 +1,74 @@
+// connection.ts - the WebSocket to tact-view: comes back by itself, answers every frame with a count
+// so that the server never sends more than this page can draw.
+
+import { split_meshes, type Frame, type Mesh, type Scene, type Status, type Vec } from "./protocol";
+
+export interface ConnectionEvents {
+  status(status: Status): void;
+  scene(scene: Scene, organ: Mesh, tool: Mesh): void;
+  frame(frame: Frame): void;
+  server_gone(): void;
+}
+
+const kRetry_ms = 1000;
+
+export class Connection {
+  frames = 0;
+  bytes = 0;
+  largest_frame_bytes = 0;
+  private socket: WebSocket | null = null;
+  private scene_number = 0;
+  private seen = 0; // frames of this socket
+
+  constructor(private readonly events: ConnectionEvents) {
+    this.open();
+  }
+
+  /** Where a simulated hand shall go. Dropped when nobody listens. */
+  move_hand(position_m: Vec, grip_ratio: number): void {
+    const [x_m, y_m, z_m] = position_m;
+    this.send({ hand: { x_m, y_m, z_m, grip_ratio } });
+  }
+
+  private open(): void {
+    const scheme = location.protocol === "https:" ? "wss" : "ws";
+    this.socket = new WebSocket(`${scheme}://${location.host}/live${location.search}`);
+    this.seen = 0;
+    this.socket.onmessage = (message) => this.take(String(message.data));
+    this.socket.onclose = () => {
+      this.events.server_gone();
+      setTimeout(() => this.open(), kRetry_ms);
+    };
+  }
+
+  private send(message: object): void {
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+
+  private take(text: string): void {
+    const message = JSON.parse(text) as Frame | Status;
+    if (message.kind === "frame") {
+      ++this.frames;
+      this.bytes += text.length; // the text is ASCII
+      this.largest_frame_bytes = Math.max(this.largest_frame_bytes, text.length);
+      this.send({ seen: ++this.seen });
+      this.events.frame(message);
+    } else {
+      this.events.status(message);
+      if (message.scene_number > 0 && message.scene_number !== this.scene_number) {
+        this.scene_number = message.scene_number;
+        this.load_scene(message.scene_number).catch(() => {
+          this.scene_number = 0; // the connection broke meanwhile: the next status tries again
+        });
+      }
+    }
+  }
+
+  private async load_scene(number: number): Promise<void> {
+    const [scene_answer, mesh_answer] = await Promise.all([fetch("scene.json"), fetch("mesh.bin")]);
+    if (!scene_answer.ok || !mesh_answer.ok) throw new Error("no scene yet");
+    const scene = (await scene_answer.json()) as Scene;
+    const { organ, tool } = split_meshes(scene, await mesh_answer.arrayBuffer());
+    if (number === this.scene_number) this.events.scene(scene, organ, tool);
+  }
+}

@@ -1,0 +1,88 @@
+// deform.ts - moves the vertices of the organ as the touched sites say. Only sites and profiles
+// travel from tactd; the mesh stays here.
+//
+//     d(v) = fade(v) (-n u(rho) + s w(rho))
+//
+//     n, s   normal and tangential shift at the site     rho  distance from the site in its tangent plane
+//     u      profile (profile.ts)                        w    u / u_0, the same shape
+//     fade   1 near the tangent plane and 0 a reach away or on skin that looks the other way, so that
+//            the far side of the organ stays where it is
+//
+// Where two sites reach the same vertex the larger displacement wins: their sum would count the
+// tissue between two jaws twice.
+
+import { Profile, smoothstep } from "./profile";
+import type { Site } from "./protocol";
+
+export interface Deformed {
+  moved: number; // vertices that moved by more than a micrometre
+  most_m: number; // largest displacement
+}
+
+export class Deformer {
+  private readonly profile: Profile;
+  private was_moved = false;
+  /** Length of each vertex's displacement, m. */
+  readonly travel_m: Float32Array;
+
+  constructor(
+    private readonly rest_m: Float32Array,
+    private readonly rest_normal: Float32Array,
+    ring_count: number,
+    ring_pitch_m: number,
+  ) {
+    this.profile = new Profile(ring_count, ring_pitch_m);
+    this.travel_m = new Float32Array(rest_m.length / 3);
+  }
+
+  /** Writes moved vertices to out_m. False when it left everything as it was. */
+  apply(sites: readonly Site[], out_m: Float32Array, result: Deformed): boolean {
+    result.moved = 0;
+    result.most_m = 0;
+    if (sites.length === 0 && !this.was_moved) return false;
+    out_m.set(this.rest_m);
+    this.travel_m.fill(0);
+    for (const site of sites) this.press(site, out_m);
+    for (const travel_m of this.travel_m) {
+      if (travel_m > 1e-6) ++result.moved;
+      if (travel_m > result.most_m) result.most_m = travel_m;
+    }
+    this.was_moved = sites.length > 0;
+    return true;
+  }
+
+  private press(site: Site, out_m: Float32Array): void {
+    this.profile.set(site.u_m);
+    const reach_m = this.profile.reach_m;
+    const [px, py, pz] = site.point_m;
+    const [nx, ny, nz] = site.normal;
+    const u0_m = site.u_m[0] ?? 0;
+    const per_u0 = Math.abs(u0_m) > 1e-9 ? 1 / u0_m : 0;
+    for (let i = 0; i < this.rest_m.length; i += 3) {
+      const x = this.rest_m[i] - px;
+      const y = this.rest_m[i + 1] - py;
+      const z = this.rest_m[i + 2] - pz;
+      const height_m = x * nx + y * ny + z * nz;
+      if (Math.abs(height_m) >= reach_m) continue;
+      const rho_m = Math.sqrt(Math.max(0, x * x + y * y + z * z - height_m * height_m));
+      if (rho_m >= reach_m) continue;
+      const facing =
+        this.rest_normal[i] * nx + this.rest_normal[i + 1] * ny + this.rest_normal[i + 2] * nz;
+      const fade =
+        (1 - smoothstep(0.4 * reach_m, reach_m, Math.abs(height_m))) * smoothstep(-0.4, 0.2, facing);
+      const u_m = this.profile.at(rho_m) * fade;
+      const w = u_m * per_u0;
+      // d = -n u + s w
+      const dx = site.shift_m[0] * w - nx * u_m;
+      const dy = site.shift_m[1] * w - ny * u_m;
+      const dz = site.shift_m[2] * w - nz * u_m;
+      const travel_m = Math.sqrt(dx * dx + dy * dy + dz * dz);
+      const vertex = i / 3;
+      if (!(travel_m > this.travel_m[vertex])) continue; // NaN never wins
+      this.travel_m[vertex] = travel_m;
+      out_m[i] = this.rest_m[i] + dx;
+      out_m[i + 1] = this.rest_m[i + 1] + dy;
+      out_m[i + 2] = this.rest_m[i + 2] + dz;
+    }
+  }
+}

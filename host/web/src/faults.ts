@@ -1,0 +1,100 @@
+// faults.ts - the words of model/fault.cc by number, and those of the states. A test of the
+// repository demands that they agree.
+
+export interface Fault {
+  name: string;
+  cause: string;
+  cure: string;
+}
+
+export const kFaults: Readonly<Record<number, Fault>> = {
+  0: { name: "none", cause: "nothing limits the force", cure: "nothing to do" },
+  1: {
+    name: "sample held",
+    cause: "the device gave no new sample this tick",
+    cure: "harmless when rare; if it repeats, check cable, hub and bus load",
+  },
+  2: {
+    name: "sample stale",
+    cause: "two or more samples in a row are missing; the force fades to zero",
+    cure: "check cable, hub and bus load",
+  },
+  3: {
+    name: "not armed",
+    cause: "the controller is not armed, the force is zero",
+    cure: "arm it when the tool is free",
+  },
+  4: {
+    name: "outside workspace",
+    cause: "the tool left the permitted workspace, the force fades to zero",
+    cure: "bring the tool back, or widen limits.workspace_* in the scene",
+  },
+  5: {
+    name: "force limited",
+    cause: "the wanted force is above limits.force_N",
+    cure: "press less, or soften the law in the scene",
+  },
+  6: {
+    name: "torque limited",
+    cause: "the wanted torque is above limits.torque_Nm",
+    cure: "shorten the tool's lever arm",
+  },
+  7: {
+    name: "slew limited",
+    cause: "the force changes faster than limits.slew_N_per_s",
+    cure: "harmless at a tear or a release; if it stays, soften the law",
+  },
+  8: {
+    name: "ramping up",
+    cause: "the force is being faded in after arming",
+    cure: "wait for limits.ramp_s",
+  },
+  9: {
+    name: "law saturated",
+    cause: "the tissue is pressed or pulled beyond the law's working range",
+    cure: "press less, or give the law more range in the scene",
+  },
+  100: {
+    name: "internal",
+    cause: "a value that cannot occur occurred",
+    cure: "report it with the recording; do not use the device until it is explained",
+  },
+  101: {
+    name: "force not finite",
+    cause: "the model produced NaN or infinity",
+    cure: "report it with the recording; check the scene's parameters",
+  },
+  102: {
+    name: "sample not finite",
+    cause: "the device reported NaN or infinity",
+    cure: "restart the device; if it repeats, its encoders or driver are broken",
+  },
+  103: {
+    name: "device lost",
+    cause: "20 samples in a row are missing",
+    cure: "check power and cable, then start tactd again",
+  },
+  104: {
+    name: "device failed",
+    cause: "the device reported an error",
+    cure: "read the device's own message above, mend it, then start tactd again",
+  },
+};
+
+/** Words for a number; one that this page does not know says so. */
+export function describe(number: number): Fault {
+  return (
+    kFaults[number] ?? {
+      name: `fault ${number}`,
+      cause: "this page does not know this number",
+      cure: "run tactd --faults, and use tactd and tact-view of one build",
+    }
+  );
+}
+
+export const kStates: readonly { name: string; words: string }[] = [
+  { name: "off", words: "no force" },
+  { name: "ready", words: "no force until armed" },
+  { name: "armed", words: "force is on" },
+  { name: "stopped", words: "force is off after a fault" },
+];

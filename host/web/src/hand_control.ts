@@ -1,0 +1,117 @@
+// hand_control.ts - the mouse as the hand of a simulated device: drag moves it in the picture's
+// plane, the wheel into the picture, G closes the grip. Only a wish is sent; forces stay in tactd.
+// The wish is repeated until a few seconds after the last move, or as long as the mode is on.
+
+import * as THREE from "three";
+import type { Stage } from "./stage";
+import type { Frame, Vec } from "./protocol";
+
+const kLeastGap_ms = 1000 / 60;
+const kWheel_m = 0.00002; // per wheel unit: a notch of 100 is 2 mm
+const kRepeat_ms = 250; // tactd forgets a target after a second
+const kForget_ms = 4000; // after the last move the hand goes back to its script
+
+export class HandControl {
+  /** Where the hand shall go; null while the mouse has nothing to say. */
+  target: THREE.Vector3 | null = null;
+  mode = false; // the mouse moves the hand without Shift
+  private grip_ratio = 0;
+  private tool_m: Vec | null = null;
+  private dragging = false;
+  private sent_ms = -Infinity;
+  private touched_ms = -Infinity;
+  private waiting = false;
+
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly stage: Stage,
+    private readonly allowed: () => boolean,
+    private readonly send: (position_m: Vec, grip_ratio: number) => void,
+  ) {
+    // Before the orbit controls, which listen on the same canvas.
+    const first = { capture: true };
+    canvas.addEventListener("pointerdown", (event) => this.begin(event), first);
+    canvas.addEventListener("pointermove", (event) => this.drag(event), first);
+    canvas.addEventListener("pointerup", (event) => this.end(event), first);
+    canvas.addEventListener("pointercancel", (event) => this.end(event), first);
+    canvas.addEventListener("wheel", (event) => this.wheel(event), { capture: true, passive: false });
+  }
+
+  /** The tool is where the next move starts. */
+  frame(frame: Frame, now_ms: number): void {
+    this.tool_m = frame.tool_m;
+    if (!this.target) this.grip_ratio = frame.grip_ratio ?? 0;
+    const holds = this.mode || this.dragging || now_ms - this.touched_ms < kForget_ms;
+    if (!holds || !this.allowed()) this.target = null;
+    else if (now_ms - this.sent_ms > kRepeat_ms) this.send_now();
+  }
+
+  toggle_grip(): void {
+    if (!this.allowed()) return;
+    this.grip_ratio = this.grip_ratio > 0.5 ? 0 : 1;
+    this.move(new THREE.Vector3());
+  }
+
+  private wanted(event: MouseEvent): boolean {
+    return this.allowed() && (this.mode || event.shiftKey);
+  }
+
+  private begin(event: PointerEvent): void {
+    if (event.button !== 0 || !this.wanted(event)) return;
+    event.stopImmediatePropagation();
+    this.canvas.setPointerCapture(event.pointerId);
+    this.dragging = true;
+  }
+
+  private drag(event: PointerEvent): void {
+    if (!this.dragging) return;
+    event.stopImmediatePropagation();
+    const camera = this.stage.camera;
+    const at = this.target ?? (this.tool_m ? new THREE.Vector3(...this.tool_m) : null);
+    if (!at) return;
+    // One pixel at the tool's distance: 2 d tan(fov / 2) / height
+    const distance_m = at.clone().sub(camera.position).dot(camera.getWorldDirection(new THREE.Vector3()));
+    const per_pixel_m =
+      (2 * distance_m * Math.tan((camera.fov * Math.PI) / 360)) / this.canvas.clientHeight;
+    const right = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 0);
+    const up = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 1);
+    this.move(
+      right.multiplyScalar(event.movementX * per_pixel_m).addScaledVector(up, -event.movementY * per_pixel_m),
+    );
+  }
+
+  private end(event: PointerEvent): void {
+    if (!this.dragging) return;
+    event.stopImmediatePropagation();
+    this.dragging = false;
+  }
+
+  private wheel(event: WheelEvent): void {
+    if (!this.wanted(event)) return;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+    const turn = event.deltaY !== 0 ? event.deltaY : event.deltaX; // Shift turns the wheel sideways
+    const into = this.stage.camera.getWorldDirection(new THREE.Vector3());
+    this.move(into.multiplyScalar(-turn * kWheel_m));
+  }
+
+  private move(by_m: THREE.Vector3): void {
+    if (!this.tool_m) return;
+    this.target ??= new THREE.Vector3(...this.tool_m);
+    this.target.add(by_m);
+    this.touched_ms = performance.now();
+    if (this.waiting) return; // the send that waits will take the newest target
+    const wait_ms = Math.max(0, this.sent_ms + kLeastGap_ms - this.touched_ms);
+    this.waiting = true;
+    setTimeout(() => {
+      this.waiting = false;
+      this.send_now();
+    }, wait_ms);
+  }
+
+  private send_now(): void {
+    if (!this.target) return;
+    this.sent_ms = performance.now();
+    this.send(this.target.toArray() as Vec, this.grip_ratio);
+  }
+}

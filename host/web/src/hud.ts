@@ -1,0 +1,125 @@
+// hud.ts - the panels: everything that is said in words and numbers.
+
+import { describe, kStates } from "./faults";
+import { length_of, type Frame, type Scene, type Status } from "./protocol";
+
+const kHold_ms = 1500; // a limit that acted for one tick stays readable this long
+const kRewrite_ms = 100; // numbers that change faster cannot be read
+
+export function by_id<T extends HTMLElement = HTMLElement>(id: string): T {
+  const found = document.getElementById(id);
+  if (!found) throw new Error(`index.html has no #${id}`);
+  return found as T;
+}
+
+function write(id: string, text: string): void {
+  const element = by_id(id);
+  if (element.textContent !== text) element.textContent = text;
+}
+
+function pill(id: string, text: string, tone: string): void {
+  write(id, text);
+  by_id(id).dataset.tone = tone;
+}
+
+export class Hud {
+  private limit = 0;
+  private limit_seen_ms = -Infinity;
+  private written_ms = 0;
+  private force_limit_N = 0;
+
+  scene(scene: Scene): void {
+    document.title = `tact: ${scene.scene}`;
+    this.force_limit_N = scene.force_limit_N;
+    write("scene", scene.scene);
+    write("law", scene.law);
+    write("device", `${scene.device} · ${Math.round(scene.rate_Hz)} Hz`);
+    write("force_of", `of ${Number(scene.force_limit_N.toPrecision(3))} N`);
+    const banner = by_id("banner");
+    banner.hidden = !scene.non_rt;
+    banner.textContent = "no hard real time on this PC: force capped at 25 %";
+  }
+
+  link(status: Status | null): void {
+    const detail = status?.detail ? ` (${status.detail})` : "";
+    if (!status) {
+      pill("link", "viewer gone", "bad");
+      this.notice("connection to tact-view lost; trying again …");
+    } else if (status.link === "live") {
+      pill("link", "live", "good");
+      this.notice("");
+    } else if (status.link === "replay") {
+      pill("link", `replay: ${status.detail}`, "plain");
+      this.notice("");
+    } else if (status.link === "lost") {
+      pill("link", "connection lost", "bad");
+      this.notice(`connection lost: tactd went away${detail}; waiting for it …`);
+    } else {
+      pill("link", "waiting for tactd", "wait");
+      this.notice(`waiting for tactd${detail} …`);
+    }
+  }
+
+  frame(frame: Frame, now_ms: number, fps: number): void {
+    if (frame.limit > 0 || frame.fault > 0) {
+      this.limit = frame.fault > 0 ? frame.fault : frame.limit;
+      this.limit_seen_ms = now_ms;
+    }
+    if (now_ms - this.written_ms < kRewrite_ms) return;
+    this.written_ms = now_ms;
+    const force_N = length_of(frame.force_N);
+    const share = Math.min(1, force_N / (this.force_limit_N || 1));
+    const state = kStates[frame.state] ?? { name: `state ${frame.state}`, words: "unknown" };
+    pill("state", state.name, ["plain", "wait", "good", "bad"][frame.state] ?? "bad");
+    write("state_words", state.words);
+    write("force", force_N.toFixed(2));
+    const bar = by_id("force_bar");
+    bar.style.transform = `scaleX(${share.toFixed(3)})`;
+    bar.dataset.tone = share > 0.95 ? "bad" : share > 0.5 ? "wait" : "good";
+    write("depth", Hud.depth(frame));
+    write("grip", Hud.grip(frame));
+    write("tick", `${(frame.tick_us ?? 0).toFixed(1)} µs`);
+    write("margin", `${(frame.margin_us ?? 0).toFixed(0)} µs`);
+    write("late", `${frame.late} · ${frame.skipped}`);
+    write("fps", `${fps.toFixed(0)} /s`);
+    this.fault(now_ms);
+  }
+
+  pressed(id: string, on: boolean): void {
+    by_id(id).classList.toggle("on", on);
+    by_id(id).setAttribute("aria-pressed", String(on));
+  }
+
+  private fault(now_ms: number): void {
+    const latched = this.limit >= 100;
+    const shown = this.limit > 0 && (latched || now_ms - this.limit_seen_ms < kHold_ms);
+    const box = by_id("fault");
+    box.hidden = !shown;
+    if (!shown) {
+      this.limit = 0;
+      return;
+    }
+    const words = describe(this.limit);
+    box.dataset.tone = latched ? "bad" : "wait";
+    write("fault_name", `${words.name} (${this.limit})`);
+    write("fault_cause", words.cause);
+    write("fault_cure", words.cure);
+  }
+
+  private notice(text: string): void {
+    const notice = by_id("notice");
+    notice.hidden = text === "";
+    notice.textContent = text;
+  }
+
+  private static depth(frame: Frame): string {
+    if (frame.sites.length === 0) return "free";
+    return frame.sites.map((site) => (site.depth_m * 1e3).toFixed(1)).join(" · ") + " mm";
+  }
+
+  private static grip(frame: Frame): string {
+    if (frame.sites.some((site) => site.state === 2)) return "holds tissue";
+    const percent = Math.round((frame.grip_ratio ?? 0) * 100);
+    return percent < 2 ? "open" : percent > 98 ? "closed" : `${percent} %`;
+  }
+}

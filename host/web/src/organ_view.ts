@@ -1,0 +1,110 @@
+// organ_view.ts - the tissue: warm, moist, paler where it is stretched.
+
+import * as THREE from "three";
+import { Deformer, type Deformed } from "./deform";
+import { look_material } from "./look";
+import type { Mesh, Scene, Site } from "./protocol";
+
+// Factors on the baked colour of the tissue (look.ts).
+const kFlesh = new THREE.Color(1.06, 1.06, 1.06);
+const kDark = new THREE.Color(0.8, 0.76, 0.78);
+const kPale = new THREE.Color(1.16, 1.45, 1.4);
+const kPale_m = 0.012; // displacement at which the tissue looks fully pale
+
+/** Smooth, repeatable unevenness of colour, -1 .. 1; a few waves are enough for an organ. */
+function mottle(x_m: number, y_m: number, z_m: number): number {
+  return (
+    Math.sin(x_m * 160 + 3 * Math.sin(y_m * 90)) *
+    Math.sin(y_m * 190 + 2 * Math.sin(z_m * 120)) *
+    Math.cos(z_m * 140 + 2 * Math.sin(x_m * 110))
+  );
+}
+
+export class OrganView {
+  readonly object: THREE.Mesh;
+  readonly deformed: Deformed = { moved: 0, most_m: 0 };
+  private readonly geometry = new THREE.BufferGeometry();
+  private readonly material: THREE.ShaderMaterial;
+  private readonly lines: THREE.Mesh<THREE.BufferGeometry, THREE.MeshBasicMaterial>;
+  private readonly deformer: Deformer;
+  private readonly rest_tint: Float32Array;
+
+  constructor(mesh: Mesh, scene: Scene, look: THREE.Texture) {
+    const position = new THREE.BufferAttribute(mesh.vertex_m.slice(), 3);
+    position.setUsage(THREE.DynamicDrawUsage);
+    this.geometry.setAttribute("position", position);
+    this.geometry.setIndex(new THREE.BufferAttribute(mesh.triangle, 1));
+    this.geometry.computeVertexNormals();
+    this.geometry.computeBoundingSphere();
+    this.rest_tint = OrganView.tints(mesh);
+    const tint = new THREE.BufferAttribute(this.rest_tint.slice(), 3);
+    tint.setUsage(THREE.DynamicDrawUsage);
+    this.geometry.setAttribute("tint", tint);
+    this.material = look_material(look);
+    this.object = new THREE.Mesh(this.geometry, this.material);
+    this.lines = new THREE.Mesh(this.geometry, OrganView.line_material());
+    this.lines.visible = false;
+    this.lines.frustumCulled = false;
+    this.object.add(this.lines);
+    this.object.frustumCulled = false; // its bounds move; it is nearly always in view
+    const rest_normal = (this.geometry.getAttribute("normal").array as Float32Array).slice();
+    this.deformer = new Deformer(mesh.vertex_m, rest_normal, scene.ring_count, scene.ring_pitch_m);
+  }
+
+  get vertex_count(): number {
+    return this.geometry.getAttribute("position").count;
+  }
+
+  /** Middle and radius of the undeformed organ. */
+  get bounds(): THREE.Sphere {
+    return this.geometry.boundingSphere ?? new THREE.Sphere(new THREE.Vector3(), 0.1);
+  }
+
+  set wireframe(on: boolean) {
+    this.lines.visible = on;
+  }
+
+  show(sites: readonly Site[]): void {
+    const position = this.geometry.getAttribute("position") as THREE.BufferAttribute;
+    if (!this.deformer.apply(sites, position.array as Float32Array, this.deformed)) return;
+    position.needsUpdate = true;
+    this.geometry.computeVertexNormals();
+    const tint = this.geometry.getAttribute("tint") as THREE.BufferAttribute;
+    this.pale(tint.array as Float32Array);
+    tint.needsUpdate = true;
+  }
+
+  dispose(): void {
+    this.geometry.dispose();
+    this.material.dispose();
+    this.lines.material.dispose();
+  }
+
+  /** Stretched tissue lets its blood go: it turns paler. */
+  private pale(tint: Float32Array): void {
+    tint.set(this.rest_tint);
+    const travel_m = this.deformer.travel_m;
+    for (let v = 0; v < travel_m.length; ++v) {
+      const stretch = Math.min(1, travel_m[v] / kPale_m);
+      const share = stretch * stretch;
+      if (share <= 0) continue;
+      tint[3 * v] += share * (kPale.r - tint[3 * v]);
+      tint[3 * v + 1] += share * (kPale.g - tint[3 * v + 1]);
+      tint[3 * v + 2] += share * (kPale.b - tint[3 * v + 2]);
+    }
+  }
+
+  private static line_material(): THREE.MeshBasicMaterial {
+    return new THREE.MeshBasicMaterial({ color: "#ffd9cc", wireframe: true, transparent: true, opacity: 0.35 });
+  }
+
+  private static tints(mesh: Mesh): Float32Array {
+    const out = new Float32Array(mesh.vertex_m.length);
+    const color = new THREE.Color();
+    for (let i = 0; i < out.length; i += 3) {
+      const share = mottle(mesh.vertex_m[i], mesh.vertex_m[i + 1], mesh.vertex_m[i + 2]);
+      color.lerpColors(kFlesh, kDark, 0.5 + 0.5 * share).toArray(out, i);
+    }
+    return out;
+  }
+}

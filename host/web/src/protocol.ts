@@ -1,0 +1,95 @@
+// protocol.ts - what tact-view sends, with its units in the names. Vectors are [x, y, z] in frame W:
+// +x towards the operator, +y to the right, +z up.
+
+export type Vec = [number, number, number];
+
+export interface Sphere {
+  radius_m: number;
+  offset_m: Vec; // tool frame
+}
+
+export interface Scene {
+  scene: string;
+  device: string;
+  law: string;
+  organ: { vertices: number; triangles: number };
+  tool: { vertices: number; triangles: number };
+  ring_count: number;
+  ring_pitch_m: number;
+  rate_Hz: number;
+  frame_rate_Hz: number;
+  force_limit_N: number;
+  non_rt: boolean;
+  simulated: boolean;
+  spheres: Sphere[];
+}
+
+/** A probe sphere in contact. */
+export interface Site {
+  site: number;
+  state: number; // 1 touching, 2 held
+  point_m: Vec; // on the undeformed surface
+  normal: Vec; // outward, unit
+  shift_m: Vec; // tangential displacement of the tissue
+  depth_m: number; // press positive
+  u_m: number[]; // displacement into the tissue at radius j * ring_pitch_m
+}
+
+export interface Frame {
+  kind: "frame";
+  tick: number;
+  time_s: number;
+  state: number;
+  fault: number;
+  limit: number;
+  late: number;
+  skipped: number;
+  dropped: number;
+  tool_m: Vec;
+  turn: [number, number, number, number]; // w, x, y, z
+  velocity_mps: Vec;
+  grip_ratio: number;
+  force_N: Vec;
+  torque_Nm: Vec;
+  wanted_N: Vec;
+  margin_us: number;
+  tick_us: number;
+  peak_N: number;
+  sites: Site[];
+}
+
+export type LinkName = "waiting" | "live" | "lost" | "replay";
+
+export interface Status {
+  kind: "status";
+  link: LinkName;
+  detail: string;
+  scene_number: number;
+  kept_s: number;
+}
+
+export interface Mesh {
+  vertex_m: Float32Array; // 3 per vertex
+  triangle: Uint32Array; // 3 per triangle
+}
+
+/** Takes organ and tool out of /mesh.bin: vertices, triangles, vertices, triangles. */
+export function split_meshes(scene: Scene, bytes: ArrayBuffer): { organ: Mesh; tool: Mesh } {
+  let at = 0;
+  const take = (part: { vertices: number; triangles: number }): Mesh => {
+    const vertex_m = new Float32Array(bytes, at, part.vertices * 3);
+    at += vertex_m.byteLength;
+    const triangle = new Uint32Array(bytes, at, part.triangles * 3);
+    at += triangle.byteLength;
+    return { vertex_m, triangle };
+  };
+  return { organ: take(scene.organ), tool: take(scene.tool) };
+}
+
+export function length_of(v: Vec): number {
+  return Math.hypot(v[0], v[1], v[2]);
+}
+
+export function dot(a: Vec, b: Vec): number {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}

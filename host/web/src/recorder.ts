@@ -1,0 +1,53 @@
+// recorder.ts - the record button. tact-view keeps the last minutes anyway; recording marks a part
+// of them by its ticks and saves it as a file that tact-view can open.
+
+import { by_id } from "./hud";
+import type { Frame } from "./protocol";
+
+function save(path: string, name: string): void {
+  const link = document.createElement("a");
+  link.href = path + location.search;
+  link.download = name;
+  link.click();
+}
+
+export class Recorder {
+  private first: Frame | null = null;
+  private last: Frame | null = null;
+
+  get on(): boolean {
+    return this.first !== null;
+  }
+
+  frame(frame: Frame): void {
+    if (this.last && frame.tick < this.last.tick) this.first = null; // another run began
+    this.last = frame;
+    if (!this.first) return;
+    by_id("record").firstChild!.textContent = `Stop ${(frame.time_s - this.first.time_s).toFixed(0)} s `;
+  }
+
+  start(): void {
+    this.first = this.last;
+    if (this.first) by_id("record").classList.add("recording");
+  }
+
+  /** Ends the recording and saves it; nothing if none runs. */
+  stop(): void {
+    if (this.first && this.last) {
+      const separator = location.search ? "&" : "?";
+      const ticks = `${separator}from_tick=${this.first.tick}&to_tick=${this.last.tick}`;
+      const link = document.createElement("a");
+      link.href = `recording.tact${location.search}${ticks}`;
+      link.download = `${document.title.replace(/[^a-z0-9]+/gi, "-")}.tact`;
+      link.click();
+    }
+    this.first = null;
+    const button = by_id("record");
+    button.classList.remove("recording");
+    button.firstChild!.textContent = "Record ";
+  }
+
+  save_table(): void {
+    save("recording.csv", "recording.csv");
+  }
+}

@@ -1,0 +1,112 @@
+// stage.ts - light, ground, camera and the drawing loop. W as everywhere: +x towards the operator,
+// +y to the right, +z up; the camera starts on the operator's side, a little above.
+
+import * as THREE from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { make_ground } from "./ground";
+import { kSteel, kTissue, paint } from "./look";
+
+const kSlow_fps = 40; // below this the picture gets coarser, because smooth matters more than sharp
+const kCoarsest = 0.6;
+
+/** True where a processor draws instead of a graphics card. */
+function draws_in_software(): boolean {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const info = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = gl && info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software/i.test(name);
+}
+
+export class Stage {
+  readonly scene = new THREE.Scene();
+  readonly camera = new THREE.PerspectiveCamera(32, 1, 0.005, 5);
+  readonly controls: OrbitControls;
+
+  readonly tissue: THREE.Texture;
+  readonly steel: THREE.Texture;
+  fps = 0;
+  private readonly renderer: THREE.WebGLRenderer;
+  private home = new THREE.Sphere(new THREE.Vector3(), 0.1);
+  private ground: THREE.Object3D | null = null;
+  private readonly adapts: boolean;
+  private sharpness = Math.min(window.devicePixelRatio, 2);
+  private frames = 0;
+  private counted_since_ms = performance.now();
+
+  constructor(canvas: HTMLCanvasElement, draw: (now_ms: number) => void) {
+    // #sharp in the address is for still pictures: full quality whatever it costs.
+    const sharp = location.hash === "#sharp";
+    const software = draws_in_software();
+    this.adapts = !sharp;
+    if (software && !sharp) this.sharpness = 0.8;
+    this.renderer = new THREE.WebGLRenderer({
+      canvas,
+      alpha: true, // the page's own gradient is the background
+      antialias: sharp || !software,
+      powerPreference: "high-performance",
+    });
+    this.tissue = paint(kTissue);
+    this.steel = paint(kSteel);
+    this.add_lights();
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = true;
+    this.controls.minDistance = 0.04;
+    this.controls.maxDistance = 1.5;
+    this.go_home();
+    this.resize();
+    window.addEventListener("resize", () => this.resize());
+    this.renderer.setAnimationLoop((now_ms) => {
+      draw(now_ms);
+      this.controls.update();
+      this.renderer.render(this.scene, this.camera);
+      this.count(now_ms);
+    });
+  }
+
+  /** Puts an organ in the middle of the picture. */
+  set_home(bounds: THREE.Sphere, floor_m: number): void {
+    this.home = bounds.clone();
+    if (this.ground) this.scene.remove(this.ground);
+    this.ground = make_ground(bounds.radius);
+    this.ground.position.set(bounds.center.x, bounds.center.y, floor_m);
+    this.scene.add(this.ground);
+    this.go_home();
+  }
+
+  go_home(): void {
+    const r = this.home.radius;
+    this.controls.target.copy(this.home.center).add(new THREE.Vector3(0, 0, 0.22 * r));
+    this.camera.position.copy(this.home.center).add(new THREE.Vector3(3.4 * r, 1.5 * r, 2.2 * r));
+    this.controls.update();
+  }
+
+  /** For the force arrow; tissue and steel bring their light along. */
+  private add_lights(): void {
+    const key = new THREE.DirectionalLight("#fff1e3", 2.2);
+    key.position.set(0.5, 0.7, 1.1);
+    this.scene.add(key, new THREE.HemisphereLight("#c4d6ea", "#3a1c18", 1.2));
+  }
+
+  private resize(): void {
+    this.renderer.setPixelRatio(this.sharpness);
+    this.renderer.setSize(window.innerWidth, window.innerHeight, false);
+    this.camera.aspect = window.innerWidth / Math.max(1, window.innerHeight);
+    this.camera.updateProjectionMatrix();
+  }
+
+  private count(now_ms: number): void {
+    ++this.frames;
+    const elapsed_ms = now_ms - this.counted_since_ms;
+    if (elapsed_ms < 1000) return;
+    this.fps = (this.frames * 1000) / elapsed_ms;
+    this.frames = 0;
+    this.counted_since_ms = now_ms;
+    const hidden = elapsed_ms > 3000; // a page in the background is not slow
+    if (this.adapts && this.fps < kSlow_fps && !hidden && this.sharpness > kCoarsest) {
+      this.sharpness = Math.max(kCoarsest, this.sharpness * 0.85);
+      this.resize();
+    }
+  }
+}

@@ -1,0 +1,134 @@
+// tool_view.ts - the instrument, its probe spheres, the force on the hand, and the mark of the hand.
+
+import * as THREE from "three";
+import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
+import { look_material } from "./look";
+import { dot, length_of, type Frame, type Mesh, type Scene, type Vec } from "./protocol";
+
+const kTouch = new THREE.Color("#7fd1c7");
+const kHeld = new THREE.Color("#f2b04e");
+const kCalm = new THREE.Color("#7fd1c7");
+const kStrong = new THREE.Color("#f2b04e");
+const kLimit = new THREE.Color("#ff5d52");
+const kArrow_m = 0.08; // length at the force limit
+
+/** Unit cylinder and cone along +y, scaled by set(). */
+class Arrow {
+  readonly object = new THREE.Group();
+  private readonly material = new THREE.MeshLambertMaterial();
+  private readonly shaft = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 16), this.material);
+  private readonly head = new THREE.Mesh(new THREE.ConeGeometry(1, 1, 20), this.material);
+  private readonly direction = new THREE.Vector3();
+
+  constructor() {
+    this.object.add(this.shaft, this.head);
+    this.object.visible = false;
+  }
+
+  /**
+   * At a point along a force; colour and length say its share of the limit. A force into the tissue
+   * ends at the point instead of starting there, so that the tissue does not hide it.
+   */
+  set(at_m: THREE.Vector3, force_N: Vec, share: number, into_tissue: boolean): void {
+    this.object.visible = share > 0.002;
+    if (!this.object.visible) return;
+    // The root makes small forces visible: soft tissue needs a few percent of what a device can do.
+    const length_m = kArrow_m * Math.sqrt(Math.min(1, share));
+    const head_m = Math.min(0.011, 0.45 * length_m);
+    const radius_m = 0.0011;
+    this.shaft.scale.set(radius_m, length_m - head_m, radius_m);
+    this.shaft.position.y = 0.5 * (length_m - head_m);
+    this.head.scale.set(0.0032, head_m, 0.0032);
+    this.head.position.y = length_m - 0.5 * head_m;
+    this.direction.set(...force_N).normalize();
+    this.object.position.copy(at_m).addScaledVector(this.direction, into_tissue ? -length_m : 0);
+    this.object.quaternion.setFromUnitVectors(THREE.Object3D.DEFAULT_UP, this.direction);
+    if (share < 0.5) this.material.color.lerpColors(kCalm, kStrong, 2 * share);
+    else this.material.color.lerpColors(kStrong, kLimit, Math.min(1, 2 * share - 1));
+    this.material.emissive.copy(this.material.color).multiplyScalar(0.45);
+  }
+}
+
+export class ToolView {
+  readonly object = new THREE.Group();
+  private readonly tool = new THREE.Group();
+  private readonly arrow = new Arrow();
+  private readonly mark: THREE.Mesh; // where the mouse wants the hand to be
+  private readonly spheres: THREE.Mesh<THREE.SphereGeometry, THREE.MeshBasicMaterial>[] = [];
+  private readonly from_m = new THREE.Vector3();
+
+  constructor(
+    mesh: Mesh,
+    private readonly scene: Scene,
+    look: THREE.Texture,
+  ) {
+    let geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(mesh.vertex_m, 3));
+    geometry.setIndex(new THREE.BufferAttribute(mesh.triangle, 1));
+    geometry = toCreasedNormals(geometry, Math.PI / 5);
+    const count = geometry.getAttribute("position").count;
+    geometry.setAttribute("tint", new THREE.BufferAttribute(new Float32Array(3 * count).fill(1), 3));
+    const steel = look_material(look);
+    steel.side = THREE.DoubleSide;
+    this.tool.add(new THREE.Mesh(geometry, steel));
+    for (const sphere of scene.spheres) this.add_sphere(sphere.radius_m, sphere.offset_m);
+    this.mark = new THREE.Mesh(
+      new THREE.SphereGeometry(0.004, 20, 12),
+      new THREE.MeshBasicMaterial({ color: "#f2b04e", transparent: true, opacity: 0.45 }),
+    );
+    this.mark.visible = false;
+    this.object.add(this.tool, this.arrow.object, this.mark);
+  }
+
+  show(frame: Frame): void {
+    const [w, x, y, z] = frame.turn;
+    this.tool.position.set(...frame.tool_m);
+    this.tool.quaternion.set(x, y, z, w).normalize();
+    this.spheres.forEach((sphere, index) => {
+      const site = frame.sites.find((candidate) => candidate.site === index);
+      sphere.material.opacity = site ? 0.42 : 0.16;
+      sphere.material.color.copy(site?.state === 2 ? kHeld : kTouch);
+    });
+    const share = length_of(frame.force_N) / (this.scene.force_limit_N || 1);
+    const into_tissue = frame.sites.some((site) => dot(site.normal, frame.force_N) < 0);
+    this.arrow.set(this.contact_middle(frame), frame.force_N, share, into_tissue);
+  }
+
+  /** null hides the mark. */
+  show_hand_target(position_m: Vec | null): void {
+    this.mark.visible = position_m !== null;
+    if (position_m) this.mark.position.set(...position_m);
+  }
+
+  dispose(): void {
+    this.object.traverse((part) => {
+      if (!(part instanceof THREE.Mesh)) return;
+      (part.geometry as THREE.BufferGeometry).dispose();
+      (part.material as THREE.Material).dispose();
+    });
+  }
+
+  private add_sphere(radius_m: number, offset_m: Vec): void {
+    const sphere = new THREE.Mesh(
+      new THREE.SphereGeometry(radius_m, 20, 14),
+      new THREE.MeshBasicMaterial({ color: kTouch, transparent: true, opacity: 0.16 }),
+    );
+    sphere.position.set(...offset_m);
+    this.spheres.push(sphere);
+    this.tool.add(sphere);
+  }
+
+  /** The force acts where the spheres touch; without contact, at the tool's origin. */
+  private contact_middle(frame: Frame): THREE.Vector3 {
+    this.from_m.set(0, 0, 0);
+    let count = 0;
+    for (const site of frame.sites) {
+      const offset_m = this.scene.spheres[site.site]?.offset_m;
+      if (!offset_m) continue;
+      this.from_m.add(new THREE.Vector3(...offset_m));
+      ++count;
+    }
+    if (count > 0) this.from_m.divideScalar(count);
+    return this.from_m.applyQuaternion(this.tool.quaternion).add(this.tool.position);
+  }
+}

@@ -1,0 +1,247 @@
+// The page in Chromium against the real controller: does a person see what tactd does?
+//
+//     node tests/browser/page_test.mjs BUILD_DIR      (tactd, tact-view and page/ are there)
+//
+// CHROMIUM names another browser. Pictures: BUILD_DIR/page.png, and page_hand.png with the mouse in
+// use. Prints "N passed, M failed"; exit status 0 or 1.
+import { spawn } from "node:child_process";
+import { existsSync, mkdtempSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const root = fileURLToPath(new URL("../../", import.meta.url));
+const { chromium } = createRequire(join(root, "host/web/package.json"))("playwright-core");
+
+const build = resolve(process.argv[2] ?? join(root, "build"));
+const scene = join(root, "model/scenes/liver.toml");
+const folder = mkdtempSync(join(tmpdir(), "tact-browser-"));
+const socket = join(folder, "telemetry.sock");
+const kVertices = 3116;
+const kLeast_fps = 30;
+const kMostFrameBytes = 4096;
+
+const children = new Set();
+let passed = 0;
+let failed = 0;
+
+function check(sentence, holds, seen = "") {
+  holds ? ++passed : ++failed;
+  console.log(`${holds ? "ok    " : "FAILED"} ${sentence}${seen === "" ? "" : ` (${seen})`}`);
+}
+
+function start(program, args) {
+  const child = spawn(join(build, program), args, { stdio: ["ignore", "pipe", "inherit"] });
+  children.add(child);
+  child.ended = new Promise((done) => child.on("exit", (status) => {
+    children.delete(child);
+    done(status);
+  }));
+  return child;
+}
+
+async function stop(child) {
+  child.kill("SIGINT");
+  return child.ended;
+}
+
+/** The first line of a program's output. */
+function first_line(child) {
+  return new Promise((done, fail) => {
+    let text = "";
+    child.stdout.on("data", (data) => {
+      text += data;
+      if (text.includes("\n")) done(text.slice(0, text.indexOf("\n")));
+    });
+    child.ended.then((status) => fail(new Error(`${child.spawnfile} left with status ${status}`)));
+  });
+}
+
+function start_tactd() {
+  const child = start("tactd", [scene, "--socket", socket]);
+  child.stdout.resume();
+  return child;
+}
+
+async function start_browser() {
+  return chromium.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args: [
+      "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
+      "--disable-background-networking", "--disable-component-update", "--disable-sync",
+    ],
+  });
+}
+
+const size = { width: 1280, height: 800 };
+const numbers = (page) => page.evaluate(() => ({ ...window.tact }));
+const waits = (page, condition, timeout = 20000) =>
+  page.waitForFunction(condition, null, { timeout, polling: 50 }).then(() => true, () => false);
+const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+
+async function measure_fps(page, seconds) {
+  return page.evaluate(async (duration_ms) => {
+    const begin = performance.now();
+    let count = 0;
+    while (performance.now() - begin < duration_ms) {
+      await new Promise((done) => requestAnimationFrame(done));
+      ++count;
+    }
+    return (count * 1000) / (performance.now() - begin);
+  }, seconds * 1000);
+}
+
+/** The page before, while and after the controller runs. */
+async function check_view(page, url) {
+  await page.goto(url);
+  check("waits for tactd in words", await waits(page, () =>
+    document.getElementById("notice").textContent.includes("waiting for tactd")));
+  const tactd = start_tactd();
+  check("finds tactd by itself", await waits(page, () => window.tact.link === "live"));
+  check("shows the scene's name", await waits(page, () =>
+    document.getElementById("scene").textContent === "liver" && document.title === "tact: liver"));
+  check("shows the liver", await waits(page, () => window.tact.vertex_count > 0) &&
+    (await numbers(page)).vertex_count === kVertices, `${(await numbers(page)).vertex_count} vertices`);
+  const before = await numbers(page);
+  check("deforms it by more than a millimetre within 20 s",
+    await waits(page, () => window.tact.most_ever_m > 0.001),
+    `${((await numbers(page)).most_ever_m * 1e3).toFixed(2)} mm`);
+  const pressed = await numbers(page);
+  check("moves only the vertices around the tool",
+    pressed.moved_vertices > 10 && pressed.moved_vertices < 0.9 * kVertices, pressed.moved_vertices);
+  check("moves the tool", distance(before.tool_m, pressed.tool_m) > 0.005,
+    `${(distance(before.tool_m, pressed.tool_m) * 1e3).toFixed(1)} mm`);
+  check("shows a force", await waits(page, () => Number(document.getElementById("force").textContent) > 0.05));
+  check("says the state in words", (await page.textContent("#state")) === "armed");
+  return tactd;
+}
+
+async function check_speed(page) {
+  const fps = await measure_fps(page, 5);
+  check(`draws at least ${kLeast_fps} pictures per second`, fps >= kLeast_fps, fps.toFixed(1));
+  const { frames, bytes, largest_frame_bytes } = await numbers(page);
+  check(`gets frames of at most ${kMostFrameBytes} bytes`,
+    frames > 100 && largest_frame_bytes <= kMostFrameBytes,
+    `largest ${largest_frame_bytes}, mean ${(bytes / frames).toFixed(0)} of ${frames}`);
+}
+
+async function check_pause(page) {
+  await page.keyboard.press("p");
+  await page.waitForTimeout(200);
+  const first = await numbers(page);
+  await page.waitForTimeout(700);
+  const second = await numbers(page);
+  check("freezes the picture on pause", second.paused && first.tick === second.tick);
+  check("still hears tactd on pause", second.frames > first.frames);
+  await page.click("#pause");
+  check("goes on after pause", await waits(page, () => !window.tact.paused && window.tact.tick > 0) &&
+    (await page.waitForFunction((tick) => window.tact.tick > tick, second.tick).then(() => true)));
+}
+
+async function check_recording(page) {
+  await page.keyboard.press("r");
+  await page.waitForTimeout(1200);
+  const [file] = await Promise.all([page.waitForEvent("download", { timeout: 10000 }), page.keyboard.press("r")]);
+  const path = join(folder, "page.tact");
+  await file.saveAs(path);
+  const table = join(folder, "page.csv");
+  const convert = start("tact-view", ["--open", path, "--export", table, "--json"]);
+  const summary = JSON.parse(await first_line(convert));
+  check("records what it shows into a sound file",
+    summary.damage === "" && summary.length_s > 0.5 && summary.frames > 20, `${summary.frames} frames`);
+  return path;
+}
+
+async function check_hand(page) {
+  await page.waitForTimeout(300);
+  const before = await numbers(page);
+  await page.keyboard.down("Shift");
+  await page.mouse.move(640, 300);
+  await page.mouse.down();
+  for (let i = 1; i <= 25; ++i) {
+    await page.mouse.move(640 + 8 * i, 300 - 6 * i);
+    await page.waitForTimeout(20);
+  }
+  await page.screenshot({ path: join(build, "page_hand.png") });
+  await page.mouse.up();
+  await page.keyboard.up("Shift");
+  await page.waitForTimeout(1000);
+  const after = await numbers(page);
+  const up_m = after.tool_m[2] - before.tool_m[2];
+  const right_m = after.tool_m[1] - before.tool_m[1];
+  check("moves the hand with the mouse, up and to the right", up_m > 0.01 && right_m > 0.01,
+    `${(right_m * 1e3).toFixed(0)} mm right, ${(up_m * 1e3).toFixed(0)} mm up`);
+  const held = await numbers(page);
+  await page.waitForTimeout(500);
+  check("leaves the hand where the mouse left it", distance(held.tool_m, (await numbers(page)).tool_m) < 0.003);
+  await page.keyboard.press("g");
+  check("closes the grip", await waits(page, () => ["closed", "holds tissue"].includes(
+    document.getElementById("grip").textContent), 5000));
+}
+
+async function check_loss(page, tactd) {
+  check("tactd ends cleanly", (await stop(tactd)) === 0);
+  check("says that the connection is lost", await waits(page, () =>
+    document.getElementById("notice").textContent.includes("connection lost"), 5000));
+  const again = start_tactd();
+  check("comes back when tactd does", await waits(page, () => window.tact.link === "live"));
+  return again;
+}
+
+/** Full quality, whatever it costs here: for the eye. */
+async function take_picture(browser, url) {
+  const page = await browser.newPage({ viewport: size });
+  await page.goto(`${url}#sharp`);
+  check("shows the tissue being pulled to a second browser", await waits(page, () =>
+    window.tact.most_m > 0.006 && document.getElementById("depth").textContent.startsWith("-"), 60000));
+  await page.screenshot({ path: join(build, "page.png") });
+  await page.close();
+}
+
+async function check_replay(browser, recording) {
+  const viewer = start("tact-view", ["--open", recording, "--port", "0", "--json"]);
+  const page = await browser.newPage({ viewport: size });
+  await page.goto(JSON.parse(await first_line(viewer)).url);
+  check("replays the recording", await waits(page, () => window.tact.link === "replay" && window.tact.tick > 0) &&
+    (await page.textContent("#link")).includes("page.tact"));
+  await page.close();
+  check("tact-view ends cleanly", (await stop(viewer)) === 0);
+}
+
+async function run() {
+  for (const part of ["tactd", "tact-view", "page/index.html"]) {
+    if (!existsSync(join(build, part))) throw new Error(`${join(build, part)} is missing; build it first`);
+  }
+  const viewer = start("tact-view", ["--socket", socket, "--port", "0", "--json"]);
+  const { url } = JSON.parse(await first_line(viewer));
+  const browser = await start_browser();
+  const page = await browser.newPage({ viewport: size });
+  const complaints = [];
+  page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
+  page.on("pageerror", (error) => complaints.push(String(error)));
+  let tactd = await check_view(page, url);
+  await check_speed(page);
+  await check_pause(page);
+  const recording = await check_recording(page);
+  await check_hand(page);
+  tactd = await check_loss(page, tactd);
+  check("has no error on the console", complaints.length === 0, complaints.slice(0, 3).join("; "));
+  await page.close();
+  await take_picture(browser, url);
+  await check_replay(browser, recording);
+  await browser.close();
+  await stop(tactd);
+  await stop(viewer);
+}
+
+try {
+  await run();
+} catch (error) {
+  check(`runs to its end: ${error.message.split("\n")[0]}`, false);
+} finally {
+  for (const child of children) child.kill("SIGKILL");
+  rmSync(folder, { recursive: true, force: true });
+}
+console.log(`${passed} passed, ${failed} failed`);
+process.exit(failed === 0 ? 0 : 1);

@@ -1,0 +1,91 @@
+#include "host/frame_json.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "tests/telemetry_source.h"
+
+namespace tact::host {
+namespace {
+
+Hello busiest_hello() {
+  Hello hello = test::make_hello(3, 1, 3, 1);
+  hello.site_count = firmware::kMaxSites;
+  hello.ring_count = firmware::kMaxRings;
+  return hello;
+}
+
+TEST(FrameJson, FitsIntoFourKilobytesWhateverItsNumbersAre) {
+  const float longest = -std::numeric_limits<float>::min();  // -1.175e-38
+  Frame frame = test::make_frame(longest, firmware::SiteState::kHeld);
+  frame.tick = frame.late_ticks = frame.skipped_ticks = frame.dropped_records = UINT64_MAX;
+  frame.time_ns = INT64_MIN;
+  frame.fault = frame.limit = UINT16_MAX;
+  const std::string text = frame_json(frame, busiest_hello());
+  EXPECT_LE(text.size(), kMaxFrameJsonBytes);
+  EXPECT_GT(text.size(), 1500u);  // the profiles are really in it
+  EXPECT_TRUE(nlohmann::json::accept(text));
+}
+
+TEST(FrameJson, SaysNullForNumbersThatAreNotFinite) {
+  const Frame frame =
+      test::make_frame(std::numeric_limits<float>::quiet_NaN(), firmware::SiteState::kTouching);
+  const auto json = nlohmann::json::parse(frame_json(frame, busiest_hello()), nullptr, false);
+  ASSERT_FALSE(json.is_discarded());
+  EXPECT_TRUE(json["force_N"][2].is_null());
+  EXPECT_TRUE(json["sites"][3]["u_m"][31].is_null());
+  EXPECT_TRUE(json["margin_us"].is_null());
+}
+
+TEST(FrameJson, ListsOnlySitesInContactWithTheRingsInUse) {
+  Frame frame = test::make_frame(0.002f, firmware::SiteState::kFree);
+  frame.site[1].state = firmware::SiteState::kHeld;
+  const Hello hello = test::make_hello(3, 1, 3, 1);  // 2 sites, 11 rings
+  const auto json = nlohmann::json::parse(frame_json(frame, hello), nullptr, false);
+  ASSERT_EQ(json["sites"].size(), 1u);
+  EXPECT_EQ(json["sites"][0]["site"], 1);
+  EXPECT_EQ(json["sites"][0]["state"], 2);
+  EXPECT_EQ(json["sites"][0]["u_m"].size(), 11u);
+}
+
+TEST(FrameJson, KeepsForceToFourDigitsAndPositionToAMicrometre) {
+  Frame frame;
+  frame.force_N[2] = 1.23456f;
+  frame.tool_position_m[0] = 0.123456f;
+  frame.time_ns = 1'500'000'000;
+  const auto json = nlohmann::json::parse(frame_json(frame, busiest_hello()), nullptr, false);
+  EXPECT_NEAR(json["force_N"][2].get<double>(), 1.23456, 5e-4);
+  EXPECT_NEAR(json["tool_m"][0].get<double>(), 0.123456, 5e-7);
+  EXPECT_EQ(json["time_s"], 1.5);
+  EXPECT_TRUE(json["sites"].empty());
+}
+
+TEST(FrameJson, DoesNotTrustCountsBeyondTheArrays) {
+  Hello hello = busiest_hello();
+  hello.site_count = hello.ring_count = UINT32_MAX;
+  const Frame frame = test::make_frame(1.0f, firmware::SiteState::kHeld);
+  const auto json = nlohmann::json::parse(frame_json(frame, hello), nullptr, false);
+  EXPECT_EQ(json["sites"].size(), firmware::kMaxSites);
+}
+
+TEST(SceneJson, SaysWhatTheHelloSays) {
+  const auto json = nlohmann::json::parse(scene_json(test::make_hello(5, 6, 7, 8)), nullptr, false);
+  EXPECT_EQ(json["scene"], "liver (synthetic)");
+  EXPECT_EQ(json["organ"]["triangles"], 6);
+  EXPECT_EQ(json["tool"]["vertices"], 7);
+  EXPECT_EQ(json["spheres"].size(), 2u);
+  EXPECT_EQ(json["simulated"], true);
+  EXPECT_EQ(json["non_rt"], false);
+}
+
+TEST(SceneJson, SurvivesANameWithoutEndAndWithBrokenUtf8) {
+  Hello hello = test::make_hello(3, 1, 3, 1);
+  std::memset(hello.scene_name, 0xFF, sizeof hello.scene_name);
+  EXPECT_TRUE(nlohmann::json::accept(scene_json(hello)));
+}
+
+}  // namespace
+}  // namespace tact::host
