@@ -91,6 +91,8 @@ ProcessSetup::ProcessSetup(std::vector<Shortfall>& shortfalls) {
     shortfalls.push_back(
         {"the kernel is not PREEMPT_RT: any driver can delay a tick by milliseconds; install "
          "linux-image-rt-amd64 and boot it"});
+  prctl(PR_SET_THP_DISABLE, 1, 0, 0,
+        0);  // joining pages into huge ones takes them away for a moment
   lock_memory(shortfalls);
   latency_fd_ = hold_power_latency(shortfalls);
 }
