@@ -84,14 +84,4 @@ struct Frame {
 
 static_assert(std::is_trivially_copyable_v<Hello> && std::is_trivially_copyable_v<Frame>);
 
-/// A hand target for a simulated device: one datagram to Hello::hand_socket. Moves the simulated
-/// hand, not the tool, and never a force.
-struct HandTarget {
-  std::uint32_t magic = kTelemetryMagic;
-  std::uint16_t version = kTelemetryVersion;
-  std::uint16_t pad = 0;
-  double position_m[3] = {};  // W
-  double grip_ratio = 0.0;    // 0 open, 1 closed
-};
-
 }  // namespace tact::firmware
