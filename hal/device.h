@@ -29,8 +29,8 @@ struct Sample {
 struct DeviceInfo {
   std::string name;
   double max_force_N = 0.0;
-  double max_torque_Nm = 0.0;        // 0: the device has no torque
-  double workspace_radius_m = 0.0;   // cylinder about the W x axis, centred on the origin of W
+  double max_torque_Nm = 0.0;       // 0: the device has no torque
+  double workspace_radius_m = 0.0;  // cylinder about the W x axis, centred on the origin of W
   double workspace_half_length_m = 0.0;
 };
 

@@ -14,7 +14,7 @@ namespace tact::model {
 struct HandWaypoint {
   double time_s = 0.0;      // ascending; the first is 0
   Vec3 position_m;          // W
-  Vec3 rotation_rad{};        // of the tool against its rest orientation, rotation vector in W
+  Vec3 rotation_rad{};      // of the tool against its rest orientation, rotation vector in W
   double grip_ratio = 0.0;  // 0 open, 1 closed
 };
 
