@@ -55,4 +55,12 @@ inline model::SurfaceMesh make_ball(double radius_m, int levels) {
   return *model::make_surface_mesh(v, t);
 }
 
+/// The same ball seen from inside: a bowl all round, its surface faces the origin.
+inline model::SurfaceMesh make_bowl(double radius_m, int levels) {
+  const model::SurfaceMesh ball = make_ball(radius_m, levels);
+  std::vector<model::TriangleCorners> turned;
+  for (const auto& [a, b, c] : ball.triangle) turned.push_back({a, c, b});
+  return *model::make_surface_mesh(ball.vertex_m, turned);
+}
+
 }  // namespace tact::tests
