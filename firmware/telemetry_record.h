@@ -78,10 +78,14 @@ struct Frame {
   std::uint16_t fault = 0;       // number in the fault table
   std::uint16_t limit = 0;       // last limit that acted since the last frame, 0 none
   State state = State::kOff;
-  std::uint8_t pad[3] = {};
+  std::uint8_t pad[7] = {};
   FrameSite site[kMaxSites] = {};
 };
 
 static_assert(std::is_trivially_copyable_v<Hello> && std::is_trivially_copyable_v<Frame>);
+// No hidden padding: recordings are checked by a sum over all bytes, and padding has no value.
+static_assert(sizeof(FrameSite) == (10 + kMaxRings) * sizeof(float) + 4);
+static_assert(sizeof(Frame) == 48 + 23 * sizeof(float) + 12 + kMaxSites * sizeof(FrameSite));
+static_assert(sizeof(Hello) == 114 + 62 + 64 + 64 + 108);
 
 }  // namespace tact::firmware

@@ -131,7 +131,7 @@ TEST(DeltaKinematics, SaturationScalesAllJointsTogether) {
   EXPECT_EQ(saturation_ratio({6.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 5.0), 0.0);
   EXPECT_EQ(saturation_ratio({0.0, 0.0, 0.0}, {kNan, 0.0, 0.0}, 5.0), 0.0);
   EXPECT_EQ(saturation_ratio({kNan, 0.0, 0.0}, {1.0, 0.0, 0.0}, 5.0), 0.0);
-  EXPECT_EQ(saturation_ratio({}, {INFINITY, 0.0, 0.0}, 5.0), 0.0);
+  EXPECT_EQ(saturation_ratio({}, {std::numeric_limits<double>::infinity(), 0.0, 0.0}, 5.0), 0.0);
 }
 
 TEST(DeltaKinematics, LeavesTheHeapAlone) {

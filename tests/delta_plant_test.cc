@@ -153,7 +153,7 @@ TEST(DeltaPlant, NanStopsItInsteadOfSpreading) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   DeltaPlant plant({.coulomb_Nm = 0.01, .viscous_Nms_per_rad = 0.01}, kStart);
   plant.step(kStep_s, {nan, 0.0, 0.0}, {});
-  plant.step(kStep_s, {INFINITY, 0.0, 0.0}, {});
+  plant.step(kStep_s, {std::numeric_limits<double>::infinity(), 0.0, 0.0}, {});
   EXPECT_EQ(plant.position_m(), kStart);
   EXPECT_EQ(plant.velocity_mps(), Vec3{});
 }

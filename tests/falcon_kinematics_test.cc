@@ -67,7 +67,8 @@ TEST(FalconKinematics, CountsAndAnglesAgree) {
 
 TEST(FalconKinematics, BadAnglesKeepTheStartAndSayUnsolved) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const Joints bad[] = {{nan, 0.5, 0.5}, {40.0, -40.0, 40.0}, {INFINITY, 0.0, 0.0}};
+  const Joints bad[] = {
+      {nan, 0.5, 0.5}, {40.0, -40.0, 40.0}, {std::numeric_limits<double>::infinity(), 0.0, 0.0}};
   for (const Joints& angles : bad) {
     const FalconForward forward = kFalcon.forward(angles, kFalconHome);
     EXPECT_FALSE(forward.solved);

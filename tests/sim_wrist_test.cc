@@ -57,7 +57,7 @@ TEST(SimWrist, AngularVelocityIsTheRateOfTheOrientation) {
 TEST(SimWrist, AimsBeyondTheRangeAreBroughtInside) {
   const Vec3 angles = wrist_angles_rad({1.5, 0.0, 0.0});
   EXPECT_DOUBLE_EQ(angles.x, 20_deg);
-  EXPECT_TRUE(is_finite(wrist_angles_rad({INFINITY, 0.0, 0.0})));
+  EXPECT_TRUE(is_finite(wrist_angles_rad({std::numeric_limits<double>::infinity(), 0.0, 0.0})));
 }
 
 TEST(SimWrist, NanStopsItInsteadOfSpreading) {

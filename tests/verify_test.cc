@@ -141,7 +141,7 @@ TEST(VerifyReport, NumbersPassWithinTheLargerOfBothTolerances) {
 
 TEST(VerifyReport, NanAndInfinityAreValues) {
   const Tolerance t{.rel = 1e-3, .abs = {{"force", 0.5}}, .kind_of = {{"f", "force"}}};
-  const double nan = std::nan(""), inf = INFINITY;
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(passes(nan, "NaN", t));
   EXPECT_TRUE(passes("NaN", "NaN", t));
   EXPECT_FALSE(passes(nan, 1.0, t));
