@@ -1,4 +1,4 @@
-// clock.h - the only door to time. Everything else gets time as an argument.
+// clock.h - the only door to time on the way of a tick. All of it gets time as an argument.
 #pragma once
 
 #include <cstdint>

@@ -14,7 +14,12 @@ bool is_finite(const model::Tool& tool) RT_SAFE {
 
 }  // namespace
 
-void Controller::touch(const TickInput& input) RT_SAFE { contact_.touch(input.sample.tool); }
+// A tool that moved unseen starts anew: whatever depth it has by then comes without force.
+void Controller::touch(const TickInput& input) RT_SAFE {
+  if (input.sample.fresh && missed_ >= 2) contact_.reset();
+  missed_ = input.sample.fresh ? 0 : missed_ + 1;
+  contact_.touch(input.sample.tool);
+}
 
 void Controller::feel(const TickInput& input) RT_SAFE {
   wanted_ = contact_.feel(input.sample.tool);
@@ -24,7 +29,12 @@ TickOutput Controller::judge(const TickInput& input) RT_SAFE {
   const bool finite = is_finite(input.sample.tool);
   Fault fault = finite ? Fault::kNone : Fault::kSampleNotFinite;
   if (latches(input.device_fault)) fault = input.device_fault;
+  const bool armed_before = supervisor_.armed();
   supervisor_.step(input.commands, input.sample.fresh && finite, fault);
+  if (supervisor_.armed() && !armed_before) {  // arming inside the organ pushes nothing
+    contact_.reset();
+    wanted_ = {};
+  }
 
   const GateVerdict verdict = gate_.judge({.wanted = wanted_,
                                            .position_m = input.sample.tool.position_m,
@@ -35,11 +45,12 @@ TickOutput Controller::judge(const TickInput& input) RT_SAFE {
   for (const model::SphereTouch& touch : contact_.touches())
     if (limit == Fault::kNone && touch.law_status == model::LawStatus::kSaturated)
       limit = Fault::kLawSaturated;
-  return {.wanted = wanted_,
-          .written = verdict.wrench,
-          .state = supervisor_.state(),
-          .limit = limit,
-          .fault = supervisor_.fault()};
+  newest_ = {.wanted = wanted_,
+             .written = verdict.wrench,
+             .state = supervisor_.state(),
+             .limit = limit,
+             .fault = supervisor_.fault()};
+  return newest_;
 }
 
 }  // namespace tact::firmware

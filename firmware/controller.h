@@ -44,12 +44,16 @@ class Controller {
 
   std::span<const model::SphereTouch> touches() const RT_SAFE { return contact_.touches(); }
   const Gate& gate() const RT_SAFE { return gate_; }
+  /// Of the last tick; for after the loop.
+  const TickOutput& newest() const { return newest_; }
 
  private:
   model::Contact contact_;
   Gate gate_;
   Supervisor supervisor_;
   Wrench wanted_;
+  TickOutput newest_;
+  std::uint32_t missed_ = 0;  // samples in a row
 };
 
 }  // namespace tact::firmware

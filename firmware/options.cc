@@ -13,9 +13,10 @@ Parsed parse_options(int argc, char** argv) {
       "usage or input."};
   app.add_option("SCENE", o.scene_path, "scene file (TOML), e.g. model/scenes/liver.toml");
   app.add_option("--set", o.overrides, "KEY=VALUE override of a scene key, may be repeated")
-      ->take_all();
+      ->take_all()
+      ->allow_extra_args(false);
   auto* seconds = app.add_option("--seconds", o.seconds, "stop after this time, s");
-  seconds->check(CLI::PositiveNumber);
+  seconds->check(CLI::Range(1e-3, 1e7));
   app.add_option("--ticks", o.ticks, "stop after this many ticks")->excludes(seconds);
   app.add_option("--json", o.json_path, "write the report to this file when done, - for stdout");
   app.add_flag("--check", o.check, "check scene, meshes, law and device, then leave");

@@ -35,7 +35,7 @@ model::Result<ReplayOutcome> replay(const std::string& path, const model::Scene&
         path, header.scene_hash, scene.hash)};
   flush_denormals();  // as in the loop's thread
   const double period_s = static_cast<double>(header.period_ns) * 1e-9;
-  Controller controller(tissue.contact_scene(), Gate(scene.limits, period_s, header.force_share));
+  Controller controller(tissue.contact_scene(), Gate(header.limits, period_s, header.force_share));
   ReplayOutcome outcome;
   outcome.force_hash = kHashStart;
   LoggedTick tick;

@@ -45,6 +45,8 @@ sigset_t block_stop_signals() {
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGHUP);  // a closed terminal must not leave a force behind
+  sigaddset(&signals, SIGQUIT);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   return signals;
 }
@@ -78,6 +80,7 @@ class Session {
   bool non_rt_ = false;
   std::unique_ptr<model::Tissue> tissue_;
   std::unique_ptr<hal::Device> device_;
+  model::Limits limits_;
   std::unique_ptr<hal::HandSocket> hand_socket_;
   std::unique_ptr<TickRing> ring_ = std::make_unique<TickRing>();
   std::optional<Telemetry> telemetry_;
@@ -126,15 +129,13 @@ std::optional<Error> Session::open() {
   auto device = hal::open_device(scene_);
   if (!device) return device.error();
   device_ = std::move(*device);
-  model::Limits limits = scene_.limits;
-  const hal::DeviceInfo info = device_->info();
-  limits.force_N = std::min(limits.force_N, info.max_force_N);
-  limits.torque_Nm = std::min(limits.torque_Nm, info.max_torque_Nm);
+  limits_ = limits_for(scene_.limits, device_->info());
   controller_.emplace(tissue_->contact_scene(),
-                      Gate(limits, static_cast<double>(period_ns()) * 1e-9, force_share()));
-  const auto asked_ticks = options_.ticks != 0
-                               ? options_.ticks
-                               : static_cast<std::uint64_t>(options_.seconds * scene_.rate_Hz);
+                      Gate(limits_, static_cast<double>(period_ns()) * 1e-9, force_share()));
+  const auto asked_ticks =
+      options_.ticks != 0
+          ? options_.ticks
+          : static_cast<std::uint64_t>(std::ceil(options_.seconds * scene_.rate_Hz));
   Clock& clock = options_.free_run ? static_cast<Clock&>(simulated_clock_) : monotonic_clock_;
   loop_.emplace(LoopSettings{.period_ns = period_ns(), .max_ticks = asked_ticks}, *device_,
                 *controller_, clock, requests_, *ring_);
@@ -169,6 +170,7 @@ std::optional<Error> Session::open_telemetry() {
   if (!options_.record_path.empty()) {
     LogHeader header;
     header.period_ns = period_ns();
+    header.limits = limits_;
     header.force_share = force_share();
     header.non_rt = non_rt_ ? 1 : 0;
     scene_.hash.copy(header.scene_hash, sizeof header.scene_hash - 1);
@@ -176,8 +178,8 @@ std::optional<Error> Session::open_telemetry() {
     if (!created) return created.error();
     log.emplace(std::move(*created));
   }
-  telemetry_.emplace(*ring_, tissue_->law(), scene_.frame_rate_Hz, std::move(socket),
-                     std::move(log));
+  telemetry_.emplace(*ring_, FrameBuilder(tissue_->law(), non_rt_), scene_.frame_rate_Hz,
+                     std::move(socket), std::move(log));
   return std::nullopt;
 }
 
@@ -238,7 +240,6 @@ int Session::report() {
   device_->stop();
   if (hand_socket_) hand_socket_->stop();
   const std::string log_trouble = telemetry_->stop();
-  const Frame last = telemetry_->newest_frame();
   rusage process{};
   getrusage(RUSAGE_SELF, &process);
   const LoopStatistics& statistics = loop_->statistics();
@@ -255,8 +256,8 @@ int Session::report() {
       .costs = costs_,
       .dropped_records = ring_->dropped(),
       .dropped_frames = telemetry_->dropped_frames(),
-      .state = last.state,
-      .fault = static_cast<Fault>(last.fault),
+      .state = controller_->newest().state,
+      .fault = controller_->newest().fault,
       .force_hash = telemetry_->force_hash(),
       .resident_peak_kB = process.ru_maxrss};
   const std::string json =

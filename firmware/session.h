@@ -6,8 +6,8 @@
 
 namespace tact::firmware {
 
-/// Runs until Ctrl-C, the asked time, or a fault. Returns the exit status: 0 good, 1 a fault or a
-/// refusal, 2 bad input.
+/// Runs until Ctrl-C or the asked time; a fault stops the force and is told at the end. Returns the
+/// exit status: 0 good, 1 a fault or a refusal, 2 bad input.
 int run_session(const model::Scene& scene, const Options& options);
 
 }  // namespace tact::firmware

@@ -19,7 +19,7 @@ State Supervisor::step(const Commands& commands, bool sample_good, Fault fault) 
       if (sample_good) state_ = State::kReady;
       break;
     case State::kReady:
-      if (commands.arm) state_ = State::kArmed;
+      if (commands.arm && sample_good) state_ = State::kArmed;
       break;
     case State::kArmed:
       break;

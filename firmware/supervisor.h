@@ -1,7 +1,7 @@
 // supervisor.h - who may feel force: Off -> Ready -> Armed -> Stopped, faults latched.
 //
 //     Off      nothing known of the device        -> Ready    a good sample
-//     Ready    device good, force zero            -> Armed    arm request
+//     Ready    device good, force zero            -> Armed    arm request, good sample
 //     Armed    force passes the gate              -> Stopped  stop request or any fault >= 100
 //     Stopped  force zero, fault kept             -> Ready    rising edge of reset, all inputs good
 //

@@ -6,10 +6,10 @@
 
 namespace tact::firmware {
 
-Telemetry::Telemetry(TickRing& ring, const model::Law& law, double frame_rate_Hz,
+Telemetry::Telemetry(TickRing& ring, FrameBuilder builder, double frame_rate_Hz,
                      std::optional<TelemetrySocket> socket, std::optional<TickLogWriter> log)
     : ring_(ring),
-      builder_(law),
+      builder_(std::move(builder)),
       frame_period_s_(1.0 / frame_rate_Hz),
       socket_(std::move(socket)),
       log_(std::move(log)),

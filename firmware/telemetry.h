@@ -17,7 +17,7 @@ namespace tact::firmware {
 class Telemetry {
  public:
   /// Without a socket or a log it only drains the ring for the status line.
-  Telemetry(TickRing& ring, const model::Law& law, double frame_rate_Hz,
+  Telemetry(TickRing& ring, FrameBuilder builder, double frame_rate_Hz,
             std::optional<TelemetrySocket> socket, std::optional<TickLogWriter> log);
   ~Telemetry();
   Telemetry(const Telemetry&) = delete;

@@ -122,6 +122,7 @@ Frame FrameBuilder::take(std::uint64_t dropped_records) {
   frame.fault = static_cast<std::uint16_t>(r.output.fault);
   frame.limit = static_cast<std::uint16_t>(limit_);
   frame.state = r.output.state;
+  frame.non_rt = non_rt_ ? 1 : 0;
   for (std::size_t i = 0; i < r.site_count; ++i) add_site(r.touch[i], frame.site[i]);
   tick_us_.clear();
   peak_force_N_ = 0.0f;

@@ -28,7 +28,7 @@ model::Result<int> make_mesh_file(const model::Scene& scene);
 class FrameBuilder {
  public:
   /// `law` outlives the builder; its profile is solved here, far from the loop.
-  explicit FrameBuilder(const model::Law& law) : law_(law) {}
+  FrameBuilder(const model::Law& law, bool non_rt) : law_(law), non_rt_(non_rt) {}
 
   void add(const TickRecord& record);
   bool has_news() const { return !tick_us_.empty(); }
@@ -38,6 +38,7 @@ class FrameBuilder {
   void add_site(const model::SphereTouch& touch, FrameSite& site) const;
 
   const model::Law& law_;
+  bool non_rt_;
   TickRecord newest_;
   std::int64_t first_due_ns_ = -1;
   std::vector<float> tick_us_;  // since the last frame

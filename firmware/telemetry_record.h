@@ -78,7 +78,8 @@ struct Frame {
   std::uint16_t fault = 0;       // number in the fault table
   std::uint16_t limit = 0;       // last limit that acted since the last frame, 0 none
   State state = State::kOff;
-  std::uint8_t pad[7] = {};
+  std::uint8_t non_rt = 0;  // stamped on every record of a PC without hard real time
+  std::uint8_t pad[6] = {};
   FrameSite site[kMaxSites] = {};
 };
 

@@ -15,10 +15,11 @@
 namespace tact::firmware {
 
 struct LogHeader {
-  char magic[8] = {'t', 'a', 'c', 't', 'l', 'o', 'g', '1'};
+  char magic[8] = {'t', 'a', 'c', 't', 'l', 'o', 'g', '2'};
   std::uint32_t tick_bytes = 0;  // sizeof(LoggedTick): a different build is refused
   std::uint32_t pad = 0;
   std::int64_t period_ns = 0;
+  model::Limits limits{};    // of scene and device together
   double force_share = 1.0;  // of the scene's limits; below 1 without hard real time
   std::uint8_t non_rt = 0;
   char scene_hash[23] = {};

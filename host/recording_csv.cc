@@ -51,7 +51,7 @@ void put(std::string& out, float value) { put(out, std::span(&value, 1)); }
 
 std::string csv_header(const Hello& hello) {
   std::string out =
-      "tick,time_s,state,fault,limit,late_ticks,skipped_ticks,dropped_records,"
+      "tick,time_s,non_rt,state,fault,limit,late_ticks,skipped_ticks,dropped_records,"
       "tool_x_m,tool_y_m,tool_z_m,tool_qw,tool_qx,tool_qy,tool_qz,"
       "tool_vx_mps,tool_vy_mps,tool_vz_mps,grip_ratio,force_x_N,force_y_N,force_z_N,"
       "torque_x_Nm,torque_y_Nm,torque_z_Nm,wanted_x_N,wanted_y_N,wanted_z_N,"
@@ -71,9 +71,10 @@ std::string csv_header(const Hello& hello) {
 }
 
 void append_csv_row(std::string& out, const Frame& frame, const Hello& hello) {
-  fmt::format_to(std::back_inserter(out), "{},{:.9f},{},{},{},{},{},{}", frame.tick,
-                 static_cast<double>(frame.time_ns) * 1e-9, name_of(frame.state), frame.fault,
-                 frame.limit, frame.late_ticks, frame.skipped_ticks, frame.dropped_records);
+  fmt::format_to(std::back_inserter(out), "{},{:.9f},{},{},{},{},{},{},{}", frame.tick,
+                 static_cast<double>(frame.time_ns) * 1e-9, frame.non_rt, name_of(frame.state),
+                 frame.fault, frame.limit, frame.late_ticks, frame.skipped_ticks,
+                 frame.dropped_records);
   put(out, frame.tool_position_m);
   put(out, frame.tool_orientation);
   put(out, frame.tool_velocity_mps);

@@ -51,7 +51,7 @@ void Contact::touch(const Tool& tool) RT_SAFE {
     const double depth_m = scene_.spheres[i].radius_m - probe.site.distance_m;
     // A distance cannot change by more than the movement: the rest is a nearest point that jumped.
     const double before_m = probe.seen ? probe.depth_m : 0.0;
-    probe.deepened_m = at_least_zero(depth_m - at_least_zero(before_m) - norm(probe.moved_m));
+    probe.deepened_m = at_least_zero(depth_m - before_m - norm(probe.moved_m));
     probe.depth_m = depth_m;
     probe.seen = true;
   }
@@ -119,7 +119,7 @@ void Contact::hold(Probe& probe, SphereTouch& touch) RT_SAFE {
   touch.state = TouchState::kHeld;
 }
 
-void Contact::feel_held(const Probe& probe, SphereTouch& touch) RT_SAFE {
+void Contact::feel_held(Probe& probe, SphereTouch& touch) RT_SAFE {
   const Vec3 moved_m = probe.centre_m - probe.held_centre_m;
   touch.normal = probe.held_normal;
   touch.depth_m = probe.held_depth_m - dot(moved_m, touch.normal);
@@ -134,7 +134,7 @@ void Contact::feel_held(const Probe& probe, SphereTouch& touch) RT_SAFE {
   if (!(pull_N <= scene_.parameters.tear_force_N)) {
     let_go(probe, touch);
     change_state(probe, touch);
-    if (touch.state == TouchState::kTouching) touch.force_N = {}, touch.energy_J = 0.0;
+    if (touch.state == TouchState::kTouching) feel_touching(probe, touch);
   }
 }
 

@@ -100,7 +100,7 @@ class Contact {
   void watch_grip(double grip_ratio) RT_SAFE;
   void change_state(const Probe& probe, SphereTouch& touch) RT_SAFE;
   void feel_touching(Probe& probe, SphereTouch& touch) RT_SAFE;
-  void feel_held(const Probe& probe, SphereTouch& touch) RT_SAFE;
+  void feel_held(Probe& probe, SphereTouch& touch) RT_SAFE;
   void hold(Probe& probe, SphereTouch& touch) RT_SAFE;
   void let_go(const Probe& probe, SphereTouch& touch) RT_SAFE;
 

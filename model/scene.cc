@@ -6,6 +6,7 @@
 
 #include "model/obj.h"
 #include "model/scene_keys.h"
+#include "model/scene_words.h"
 
 namespace tact::model {
 namespace {
@@ -44,6 +45,20 @@ std::optional<Error> load_meshes(const SceneText& text, Scene& scene) {
   return std::nullopt;
 }
 
+/// Text, overrides and meshes: the same hash, the same forces.
+std::string whole_hash(const std::string& text_hash, const Scene& scene) {
+  TextHash hash;
+  hash.add(text_hash);
+  for (const SurfaceMesh* mesh : {&scene.organ_mesh, &scene.tool_mesh}) {
+    const auto bytes = [&hash](const auto& list) {
+      hash.add({reinterpret_cast<const char*>(list.data()), list.size() * sizeof list[0]});
+    };
+    bytes(mesh->vertex_m);
+    bytes(mesh->triangle);
+  }
+  return hash.hex();
+}
+
 /// The reference, indented as a scene is; `margin` is that of the row before.
 std::string reference_line(const ReferenceRow& row, std::string& margin) {
   const std::string times = row.fallback.empty() ? "" : "; " + row.fallback;
@@ -71,11 +86,11 @@ Result<Scene> load_scene(const std::string& path, const std::vector<std::string>
 
   Scene& scene = text.scene;
   scene.path = path;
-  scene.hash = document->hash;
   const double tool_reach_m = reach_m(scene.tool.spheres, normalized(text.script.inward));
   scene.hand.path = way_points(text.script, tool_reach_m, scene.limits, visit);
   if (auto problem = visit.problem()) return *problem;
   if (auto failed = load_meshes(text, scene)) return *failed;
+  scene.hash = whole_hash(document->hash, scene);
   return std::move(scene);
 }
 

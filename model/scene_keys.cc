@@ -119,12 +119,14 @@ void visit_limits(Keys& k, Limits& limits) {
            limits.workspace_radius_m);
   k.number("workspace_half_length_m", {0.01, 0.5}, "of the cylinder, from the origin of W",
            limits.workspace_half_length_m);
-  if (!(limits.slew_N_per_s * kStaleFade_s >= limits.force_N)) {
+  // The gate keeps force_N / ramp_s of the slew for its ramp.
+  const double least_N_per_s = limits.force_N / kStaleFade_s + limits.force_N / limits.ramp_s;
+  if (!(limits.slew_N_per_s >= least_N_per_s)) {
     k.refuse(
         {"slew_N_per_s", "force_N"},
         fmt::format("limits.slew_N_per_s = {} is too slow for force_N = {}: a lost device must "
                     "fade to zero in 10 ms; allowed: {} or more",
-                    limits.slew_N_per_s, limits.force_N, limits.force_N / kStaleFade_s));
+                    limits.slew_N_per_s, limits.force_N, least_N_per_s));
   }
 }
 

@@ -74,6 +74,23 @@ Nearest step_from(const SurfaceView& s, const Nearest& here, const Vec3& p) RT_S
   return best;
 }
 
+bool is_rim_corner(const SurfaceView& s, std::uint32_t v) RT_SAFE {
+  for (std::uint32_t i = s.fan_start[v]; i < s.fan_start[v + 1] && i < s.fan_start[v] + kMaxFan;
+       ++i)
+    for (std::uint32_t e = 0; e < 3; ++e) {
+      const TriangleCorners& t = s.triangle[s.fan[i]];
+      const bool touches = t[e] == v || t[(e + 1) % 3] == v;
+      if (touches && s.neighbour[s.fan[i]][e] == kNoTriangle) return true;
+    }
+  return false;
+}
+
+// Beyond the rim of an open surface there is no inside to be pushed out of.
+bool is_on_rim(const SurfaceView& s, const Nearest& at) RT_SAFE {
+  if (at.feature == Feature::kEdge) return s.neighbour[at.triangle][at.index] == kNoTriangle;
+  return at.feature == Feature::kCorner && is_rim_corner(s, s.triangle[at.triangle][at.index]);
+}
+
 Vec3 pseudo_normal(const SurfaceView& s, const Nearest& at) RT_SAFE {
   switch (at.feature) {
     case Feature::kCorner:
@@ -102,7 +119,7 @@ Site follow(const SurfaceView& surface, std::uint32_t start, const Vec3& p_m) RT
   const Vec3 outward = pseudo_normal(surface, here);
   const Vec3 away = p_m - here.point_m;
   const double length_m = norm(away);
-  const double sign = dot(away, outward) >= 0.0 ? 1.0 : -1.0;
+  const double sign = dot(away, outward) >= 0.0 || is_on_rim(surface, here) ? 1.0 : -1.0;
   constexpr double kOnSurface_m = 1e-9;  // below this the direction of p - q is rounding noise
   return {.triangle = here.triangle,
           .point_m = here.point_m,

@@ -15,7 +15,7 @@
 namespace tact::model {
 
 inline constexpr int kMaxWalkSteps = 64;
-inline constexpr std::uint32_t kMaxFan = 32;  // triangles looked at around one vertex
+inline constexpr std::uint32_t kMaxFan = 128;  // triangles looked at around one vertex
 
 struct Site {
   std::uint32_t triangle = kNoTriangle;

@@ -18,6 +18,13 @@ Result<std::unique_ptr<Tissue>> make_tissue(const Scene& scene) {
                  " is never reached: the law pulls with " + std::to_string(pull_limit_N) +
                  " N at most; allowed: less than that"};
 
+  const std::vector<std::uint32_t>& fans = scene.organ_mesh.fan_start;
+  for (std::size_t v = 0; v + 1 < fans.size(); ++v)
+    if (fans[v + 1] - fans[v] > kMaxFan)
+      return Error{scene.organ.mesh_path + ": " + std::to_string(fans[v + 1] - fans[v]) +
+                   " triangles meet in one vertex; allowed: " + std::to_string(kMaxFan) +
+                   ", remesh it there"};
+
   std::unique_ptr<Tissue> tissue(new Tissue(std::move(owned), *table));
   double reach_m = 0.0;
   for (const ProbeSphere& sphere : scene.tool.spheres)

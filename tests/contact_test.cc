@@ -128,6 +128,7 @@ TEST(Contact, TakesEnergyFromEveryClosedStrokeThatRubs) {
   const Bench bench(tests::make_ball(50_mm, 5));
   std::mt19937 random(5);
   std::uniform_real_distribution<double> size(1_mm, 8_mm);
+  bool touched = false;
   for (int loop = 0; loop < 20; ++loop) {
     Contact contact = bench.contact();
     const double across_m = size(random), deep_m = size(random);
@@ -144,7 +145,9 @@ TEST(Contact, TakesEnergyFromEveryClosedStrokeThatRubs) {
       felt_before = felt;
     }
     EXPECT_LE(work_on_hand_J, 1e-9) << "loop " << loop;
+    touched = touched || work_on_hand_J < -1e-6;
   }
+  EXPECT_TRUE(touched) << "rubbing costs energy";
 }
 
 TEST(Contact, SlidingFrictionStaysInsideItsCone) {
@@ -200,6 +203,26 @@ TEST(Contact, TearsAboveTheTearForceAndHoldsAgainOnlyAfterOpening) {
   feel_at(contact, {0, 0, 3_mm}, 0.0);
   feel_at(contact, {0, 0, 3_mm}, 1.0);
   EXPECT_EQ(contact.touches()[0].state, TouchState::kHeld);
+}
+
+TEST(Contact, ATearWhilePressingLeavesThePressWithoutAClick) {
+  const Bench bench = plate_bench();
+  Contact contact = bench.contact();
+  glide(contact, {0, 0, 6_mm}, {0, 0, 2_mm});
+  feel_at(contact, {0, 0, 2_mm}, 1.0);
+  const double pressing_N = bench.law.respond(2_mm).force_N;
+  for (double x = 0.0; x < 10_mm; x += 0.05_mm)  // torn sideways at 100 N/m * 6 mm = 0.6 N
+    EXPECT_NEAR(feel_at(contact, {x, 0, 2_mm}, 1.0).force_N.z, pressing_N, 1e-9);
+  EXPECT_EQ(contact.touches()[0].state, TouchState::kTouching);
+}
+
+TEST(Contact, BeyondTheRimOfAnOpenSurfaceNothingPullsTheToolBack) {
+  const Bench bench = plate_bench();
+  Contact contact = bench.contact();
+  glide(contact, {45_mm, 0, 6_mm}, {45_mm, 0, 1_mm});
+  glide(contact, {45_mm, 0, 1_mm}, {53_mm, 0, -3_mm});
+  glide(contact, {53_mm, 0, -3_mm}, {60_mm, 0, -10_mm});
+  EXPECT_EQ(feel_at(contact, {60_mm, 0, -10_mm}), Wrench{});
 }
 
 TEST(Contact, LettingGoNeverAddsEnergy) {

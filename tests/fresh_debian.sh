@@ -3,8 +3,9 @@
 # debootstrap, this tree copied in as git knows it, tools/run and tools/check twice each.
 #
 #   tests/fresh_debian.sh [FOLDER]     needs root, debootstrap and 6 GB; FOLDER is kept for a next time
-set -eu
+set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
+keep=${1:+yes}
 base=${1:-$(mktemp -d)}
 mirror=http://deb.debian.org
 
@@ -28,8 +29,15 @@ mkdir -p "$base/etc/ssl/certs"
 rm -rf "$base/root/tact"
 mkdir -p "$base/root/tact"
 (cd "$root" && git ls-files -z | xargs -0 tar c) | tar x -C "$base/root/tact"
-for kind in proc sys dev; do mountpoint -q "$base/$kind" || mount --rbind "/$kind" "$base/$kind"; done
-leave() { for kind in dev sys proc; do umount -R -l "$base/$kind" 2>/dev/null || true; done; }
+for kind in proc sys dev; do
+  mountpoint -q "$base/$kind" && continue
+  mount --rbind "/$kind" "$base/$kind"
+  mount --make-rslave "$base/$kind"  # what is unmounted there stays mounted here
+done
+leave() {
+  for kind in dev sys proc; do umount -R -l "$base/$kind" 2>/dev/null || true; done
+  [ "$keep" = yes ] || rm -rf --one-file-system "$base"
+}
 trap leave EXIT
 
 inside() {

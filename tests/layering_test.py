@@ -22,6 +22,10 @@ FORBIDDEN = re.compile(
     r"\b(new|delete|throw|malloc|printf|puts|dynamic_cast)\b"
     r"|std::(vector|string|function|map|mutex|lock_guard|unique_lock|cout|cerr|make_unique|make_shared)\b"
     r"|fmt::|\.(push_back|emplace_back|resize|reserve|lock)\(")
+# What physics has no use for: threads, clocks, descriptors.
+FOREIGN_TO_MODEL = re.compile(
+    r"\s*#include <(thread|mutex|condition_variable|chrono|future|semaphore|unistd\.h|fcntl\.h|"
+    r"pthread\.h|sched\.h|poll\.h|signal\.h|csignal|sys/[a-z]+\.h|linux/[a-z]+\.h|time\.h|ctime)>")
 MAX_LINES = 300
 COMMENT = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.S)
 
@@ -33,6 +37,8 @@ def blank(match):
 
 def include_breaches(path, room, text):
     for number, line in enumerate(text.splitlines(), 1):
+        if room == "model" and FOREIGN_TO_MODEL.match(line):
+            yield f"{path}:{number}: model/ knows no thread, clock or descriptor: {line.strip()}"
         found = re.match(r'\s*#include "([^"]+)"', line)
         if found and not any(found[1].startswith(a) for a in ALLOWED[room]):
             yield f"{path}:{number}: {room}/ may not include {found[1]}"

@@ -162,7 +162,7 @@ TEST(RecordingCsv, HasOneNameForEveryColumn) {
   std::string row;
   append_csv_row(row, test::make_frame(1.0f, firmware::SiteState::kHeld), hello);
   EXPECT_EQ(columns(row), columns(csv_header(hello)));
-  EXPECT_EQ(columns(row), 31 + 2 * (11 + 11));
+  EXPECT_EQ(columns(row), 32 + 2 * (11 + 11));
   EXPECT_EQ(std::count(row.begin(), row.end(), '\n'), 1);
 }
 
@@ -172,7 +172,7 @@ TEST(RecordingCsv, ReadsBackToTheSameFloat) {
   std::string row;
   append_csv_row(row, frame, Hello{});
   std::string cell = row;
-  for (int i = 0; i < 19; ++i) cell.erase(0, cell.find(',') + 1);  // force_x_N is column 20
+  for (int i = 0; i < 20; ++i) cell.erase(0, cell.find(',') + 1);  // force_x_N is column 21
   EXPECT_EQ(std::stof(cell), frame.force_N[0]);
 }
 

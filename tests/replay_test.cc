@@ -23,7 +23,7 @@ class ReplayTest : public testing::Test {
   }
   void TearDown() override { std::remove(path.c_str()); }
 
-  // A run with everything in it that decides forces: late ticks, missed samples, a stop.
+  // A run with everything in it that decides forces: late ticks and arming.
   void record(int ticks) {
     auto device = std::move(*hal::open_device(scene));
     auto ring = std::make_unique<TickRing>();
@@ -34,6 +34,7 @@ class ReplayTest : public testing::Test {
     RtLoop loop({.period_ns = 1'000'000}, *device, controller, clock, requests, *ring);
     LogHeader header;
     header.period_ns = 1'000'000;
+    header.limits = scene.limits;
     header.force_share = 0.25;
     header.non_rt = 1;
     scene.hash.copy(header.scene_hash, sizeof header.scene_hash - 1);

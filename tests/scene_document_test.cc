@@ -91,7 +91,7 @@ TEST(Override, ThatIsWrongIsToldAsItWasTyped) {
        "as in hand.stroke.0.duration_s=1"},
       {"limits.slew_N_per_s=700",
        "limits.slew_N_per_s = 700 is too slow for force_N = 8: a lost device must fade to zero in "
-       "10 ms; allowed: 800 or more"},
+       "10 ms; allowed: 816 or more"},
       {"contact.grip_open_ratio=0.9",
        "contact.grip_open_ratio = 0.9 must be below grip_close_ratio = 0.7; lower it or raise "
        "grip_close_ratio"},

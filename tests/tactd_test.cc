@@ -7,9 +7,12 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "firmware/alloc_counter.h"
 #include "firmware/rt_setup.h"
@@ -49,6 +52,31 @@ class Tactd : public testing::Test {
 
 bool has(const Outcome& outcome, const std::string& text) {
   return outcome.output.find(text) != std::string::npos;
+}
+
+std::string field(const std::string& path, const std::string& name) {
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);)
+    if (line.rfind(name + ":", 0) == 0) return line.substr(name.size() + 1);
+  return "";
+}
+
+// What the kernel says of the running loop: FIFO 80 on one core, memory locked. A user without the
+// rights is told so by tactd; this needs root, as the test machine has it.
+void expect_real_time_thread(pid_t process, const std::string& thread) {
+  if (geteuid() != 0) return;
+  const std::string task = "/proc/" + std::to_string(process) + "/task/" + thread;
+  std::ifstream stat(task + "/stat");
+  std::string text;
+  std::getline(stat, text);
+  std::istringstream fields(text.substr(text.rfind(')') + 2));  // from field 3 on
+  std::vector<std::string> value{std::istream_iterator<std::string>(fields), {}};
+  EXPECT_EQ(value.at(40 - 3), "80") << "real-time priority";
+  EXPECT_EQ(value.at(41 - 3), "1") << "SCHED_FIFO";
+  EXPECT_EQ(field(task + "/status", "Cpus_allowed_list").find_first_of(",-"), std::string::npos)
+      << "one core";
+  if (!tact::firmware::can_count_heap_calls()) return;  // sanitizers do not let memory be locked
+  EXPECT_GT(std::stol(field(task + "/status", "VmLck")), 4000) << "kB locked";
 }
 
 TEST_F(Tactd, ChecksAGoodSceneAndLeaves) {
@@ -201,6 +229,7 @@ TEST_F(Tactd, TheLoopThreadMakesNoSystemCallButSleep) {
     if (std::getline(name, text) && text == "tact-loop") loop_thread = task.path().filename();
   }
   ASSERT_FALSE(loop_thread.empty());
+  expect_real_time_thread(child, loop_thread);
   const std::string trace = in_folder("trace");
   const std::string command =
       "timeout -s INT 2 strace -qq -o " + trace + " -p " + loop_thread + " 2>&1";

@@ -75,7 +75,7 @@ class WholeController {
         device_(std::move(*hal::open_device(scene_))),
         controller_(tissue_->contact_scene(), Gate(scene_.limits, 0.001, 1.0)),
         loop_({.period_ns = 1'000'000}, *device_, controller_, clock_, requests_, *ring_),
-        telemetry_(*ring_, tissue_->law(), 60.0, open(path), std::nullopt) {
+        telemetry_(*ring_, FrameBuilder(tissue_->law(), true), 60.0, open(path), std::nullopt) {
     requests_.arm.store(true);
   }
 
@@ -152,6 +152,7 @@ TEST(Telemetry, FramesCarryTheProfileOfTheTouchedSite) {
   EXPECT_LT(frame.site[0].profile_m[5], frame.site[0].profile_m[0]);
   EXPECT_EQ(frame.site[0].profile_m[10], 0.0f);
   EXPECT_GT(frame.peak_force_N, 0.05f);
+  EXPECT_EQ(frame.non_rt, 1);
 }
 
 TEST(Telemetry, IsForItsOwnerOnly) {
@@ -193,7 +194,7 @@ TEST(Telemetry, ThreadAndLoopShareOnlyTheRing) {  // for the thread sanitizer
   const model::Scene scene = tests::make_plate_scene();
   const auto tissue = std::move(*model::make_tissue(scene));
   const auto ring = std::make_unique<TickRing>();  // large: not on the stack
-  Telemetry telemetry(*ring, tissue->law(), 200.0, std::nullopt, std::nullopt);
+  Telemetry telemetry(*ring, FrameBuilder(tissue->law(), false), 200.0, std::nullopt, std::nullopt);
   telemetry.start();
   TickRecord record;
   for (int i = 0; i < 20000; ++i) {

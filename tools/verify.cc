@@ -43,7 +43,8 @@ std::vector<Verifier> known_verifiers() {
 /// The vectors beside the sources: upwards from here, then upwards from the program.
 Result<std::string> default_directory() {
   std::error_code ignored;
-  for (fs::path start : {fs::current_path(ignored), fs::read_symlink("/proc/self/exe", ignored)}) {
+  for (const fs::path& start :
+       {fs::current_path(ignored), fs::read_symlink("/proc/self/exe", ignored)}) {
     for (fs::path at = start; !at.empty(); at = at.parent_path()) {
       if (fs::is_directory(at / kVectors, ignored)) return (at / kVectors).string();
       if (at == at.root_path()) break;

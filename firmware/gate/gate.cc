@@ -15,6 +15,16 @@ Wrench operator*(double share, const Wrench& w) RT_SAFE {
 
 }  // namespace
 
+model::Limits limits_for(const model::Limits& scene, const hal::DeviceInfo& device) {
+  model::Limits limits = scene;
+  limits.force_N = std::fmin(scene.force_N, device.max_force_N);
+  limits.torque_Nm = std::fmin(scene.torque_Nm, device.max_torque_Nm);
+  limits.workspace_radius_m = std::fmin(scene.workspace_radius_m, device.workspace_radius_m);
+  limits.workspace_half_length_m =
+      std::fmin(scene.workspace_half_length_m, device.workspace_half_length_m);
+  return limits;
+}
+
 Gate::Gate(const model::Limits& limits, double period_s, double force_share)
     : period_s_(period_s),
       force_limit_N_(force_share * limits.force_N),
@@ -40,7 +50,7 @@ GateVerdict Gate::judge(const GateInput& input) RT_SAFE {
     verdict.fault = Fault::kForceNotFinite;
     ++counter_[static_cast<std::size_t>(Stage::kFinite)];
   }
-  check_fresh(input.fresh, verdict);
+  check_fresh(input, verdict);
   if (!input.armed || latches(verdict.fault)) {
     note(Stage::kArmed, Fault::kNotArmed, verdict);
     let_go();
@@ -62,8 +72,8 @@ void Gate::note(Stage stage, Fault reason, GateVerdict& verdict) RT_SAFE {
   verdict.limit = reason;
 }
 
-void Gate::check_fresh(bool fresh, GateVerdict& verdict) RT_SAFE {
-  missed_ = fresh ? 0 : missed_ + 1;
+void Gate::check_fresh(const GateInput& input, GateVerdict& verdict) RT_SAFE {
+  missed_ = input.fresh || !input.armed ? 0 : missed_ + 1;  // a device may take its time to wake
   const double level = fresh_.step(missed_ < 2, period_s_);
   if (missed_ > 0 || level < 1.0)
     note(Stage::kFresh, missed_ == 1 ? Fault::kSampleHeld : Fault::kSampleStale, verdict);

@@ -18,6 +18,7 @@
 
 #include "firmware/gate/fader.h"
 #include "firmware/gate/limiter.h"
+#include "hal/device.h"
 #include "model/fault.h"
 #include "model/scene.h"
 #include "model/types.h"
@@ -39,6 +40,9 @@ enum class Stage : std::uint8_t {
 inline constexpr std::size_t kStageCount = 7;
 inline constexpr std::array<const char*, kStageCount> kStageName{
     "finite", "fresh", "armed", "workspace", "magnitude", "slew", "ramp"};
+
+/// What holds for this scene on this device: the smaller of the two, everywhere.
+model::Limits limits_for(const model::Limits& scene, const hal::DeviceInfo& device);
 
 struct GateInput {
   Wrench wanted;
@@ -65,7 +69,7 @@ class Gate {
 
  private:
   void note(Stage stage, Fault reason, GateVerdict& verdict) RT_SAFE;
-  void check_fresh(bool fresh, GateVerdict& verdict) RT_SAFE;
+  void check_fresh(const GateInput& input, GateVerdict& verdict) RT_SAFE;
   bool inside_workspace(const Vec3& position_m) const RT_SAFE;
   void limit(GateVerdict& verdict) RT_SAFE;
   void let_go() RT_SAFE;
