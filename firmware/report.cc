@@ -80,6 +80,7 @@ json make_report(const RunFacts& facts, const LoopStatistics& loop, const Gate& 
           {"dropped_frames", facts.dropped_frames},
           {"force_hash", fmt::format("{:016x}", facts.force_hash)},
           {"resident_peak_kB", facts.resident_peak_kB},
+          {"law_table_bytes", facts.law_table_bytes},
           {"environment", to_json(environment)}};
 }
 

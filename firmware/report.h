@@ -34,6 +34,7 @@ struct RunFacts {
   Fault fault = Fault::kNone;
   std::uint64_t force_hash = 0;  // equal for equal runs; 0 when not computed
   long resident_peak_kB = 0;
+  std::size_t law_table_bytes = 0;
 };
 
 nlohmann::json make_report(const RunFacts& facts, const LoopStatistics& loop, const Gate& gate,

@@ -259,7 +259,8 @@ int Session::report() {
       .state = controller_->newest().state,
       .fault = controller_->newest().fault,
       .force_hash = telemetry_->force_hash(),
-      .resident_peak_kB = process.ru_maxrss};
+      .resident_peak_kB = process.ru_maxrss,
+      .law_table_bytes = sizeof(model::TabulatedLaw)};
   const std::string json =
       make_report(facts, statistics, controller_->gate(), read_environment(scene_.hash)).dump(2);
   if (options_.json_path == "-")

@@ -149,6 +149,8 @@ const numbers = {
   get tick() { return shown?.tick ?? 0; },
   get state() { return shown?.state ?? 0; },
   get paused() { return paused; },
+  get wireframe() { return wireframe; },
+  get camera_m() { return stage.camera.position.toArray(); },
 };
 export type TactNumbers = Readonly<typeof numbers>;
 declare global {
