@@ -45,7 +45,9 @@ class RtLoop {
         controller_(controller),
         clock_(clock),
         requests_(requests),
-        ring_(ring) {}
+        ring_(ring) {
+    record_.margin_ns = settings.period_ns;  // before the first tick nothing is used up
+  }
 
   /// Steps until a stop request or max_ticks, then lets go.
   void run() RT_SAFE;

@@ -227,10 +227,13 @@ void Session::in_loop_thread() {
 // The main thread while the loop runs: waits for signals, shows a line on a terminal.
 void Session::watch() {
   const bool terminal = isatty(STDOUT_FILENO) != 0;
+  Frame before = telemetry_->newest_frame();
   while (!loop_ended_.load()) {
     if (sigtimedwait(&stop_signals_, nullptr, &kStatusPeriod) > 0) requests_.stop.store(true);
     if (!terminal) continue;
-    fmt::print("\r\033[K{}", status_line(telemetry_->newest_frame(), scene_.rate_Hz));
+    const Frame newest = telemetry_->newest_frame();
+    fmt::print("\r\033[K{}", status_line(newest, before));
+    before = newest;
     std::fflush(stdout);
   }
   if (terminal) fmt::print("\n");

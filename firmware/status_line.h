@@ -7,7 +7,8 @@
 
 namespace tact::firmware {
 
-/// Time, rate, late ticks, force, state, and the fault or limit that acts.
-std::string status_line(const Frame& frame, double rate_Hz);
+/// Time, rate, late ticks, force, state, and the fault or limit that acts. The rate is measured:
+/// ticks over time since `before`; 0 when no time has passed.
+std::string status_line(const Frame& frame, const Frame& before);
 
 }  // namespace tact::firmware

@@ -13,7 +13,7 @@ constexpr std::array kTable{
                "two or more samples in a row are missing; the force fades to zero",
                "check cable, hub and bus load"},
     FaultEntry{Fault::kNotArmed, "not armed", "the controller is not armed, the force is zero",
-               "arm it when the tool is free"},
+               "it arms by itself once the device gives good samples and no fault stands"},
     FaultEntry{Fault::kOutsideWorkspace, "outside workspace",
                "the tool left the permitted workspace, the force fades to zero",
                "bring the tool back, or widen limits.workspace_* in the scene"},
@@ -38,7 +38,7 @@ constexpr std::array kTable{
     FaultEntry{Fault::kDeviceLost, "device lost", "20 samples in a row are missing",
                "check power and cable, then start tactd again"},
     FaultEntry{Fault::kDeviceFailed, "device failed", "the device reported an error",
-               "read the device's own message above, mend it, then start tactd again"},
+               "check power, cable and driver of the device, then start tactd again"},
 };
 
 }  // namespace

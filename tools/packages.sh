@@ -21,7 +21,7 @@ need_packages() {
   shift
   for package in "$@"; do is_present "$package" || missing+=("${package%%=*}"); done
   [ ${#missing[@]} -eq 0 ] && return 0
-  echo "tact: $what needs these Debian packages, installing them now:"
+  echo "tact: missing for $what, installing these Debian packages now:"
   echo "      ${missing[*]}"
   if [ "$(id -u)" -ne 0 ] && ! command -v sudo >/dev/null 2>&1; then
     echo "tact: neither root nor sudo here; run this as root, then start again:" >&2

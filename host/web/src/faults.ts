@@ -22,7 +22,7 @@ export const kFaults: Readonly<Record<number, Fault>> = {
   3: {
     name: "not armed",
     cause: "the controller is not armed, the force is zero",
-    cure: "arm it when the tool is free",
+    cure: "it arms by itself once the device gives good samples and no fault stands",
   },
   4: {
     name: "outside workspace",
@@ -77,7 +77,7 @@ export const kFaults: Readonly<Record<number, Fault>> = {
   104: {
     name: "device failed",
     cause: "the device reported an error",
-    cure: "read the device's own message above, mend it, then start tactd again",
+    cure: "check power, cable and driver of the device, then start tactd again",
   },
 };
 
