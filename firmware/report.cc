@@ -100,6 +100,10 @@ std::string make_summary(const RunFacts& facts, const LoopStatistics& loop) {
   if (facts.costs.heap_calls_known)
     out += fmt::format(", {} allocations, {} page faults", facts.costs.heap_calls,
                        facts.costs.minor_faults + facts.costs.major_faults);
+  if (loop.max_force_N == 0.0 && facts.duration_s > 5.0 && facts.fault == Fault::kNone)
+    out +=
+        "\n  nothing was touched: see organ.position_m, organ.mesh_unit_m and hand.site_m in the "
+        "scene";
   if (facts.fault != Fault::kNone) {
     const model::FaultEntry& fault = model::describe(facts.fault);
     out += fmt::format("\n  fault {}: {}: {}; {}", static_cast<int>(facts.fault), fault.name,

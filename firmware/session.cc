@@ -113,6 +113,9 @@ int Session::run() {
                1e3 * tissue_->law().range().pull_m, 1e3 * tissue_->law().range().press_m);
     return 0;
   }
+  if (!options_.json_path.empty() && options_.json_path != "-" &&
+      !std::ofstream(options_.json_path, std::ios::app))
+    return fail(options_.json_path + ": cannot be written; name a file in a folder of yours", 2);
   if (const auto error = open_telemetry()) return fail(error->sentence, 2);
   requests_.arm.store(true);
   if (options_.free_run)
@@ -151,20 +154,20 @@ std::optional<Error> Session::open_telemetry() {
       if (!directory) return directory.error();
       path = *directory + "/telemetry.sock";
     }
-    if (hal::is_simulated(*device_)) {
-      auto hand = hal::start_hand_socket(*device_, path + ".hand");
-      if (!hand) return hand.error();
-      hand_socket_ = std::move(*hand);
-    }
     auto meshes = make_mesh_file(scene_);
     if (!meshes) return meshes.error();
     const HelloFacts facts{.device = device_->info(),
                            .force_limit_N = controller_->gate().force_limit_N(),
                            .non_rt = non_rt_,
-                           .hand_socket = hand_socket_ ? hand_socket_->path() : ""};
+                           .hand_socket = hal::is_simulated(*device_) ? path + ".hand" : ""};
     auto opened = TelemetrySocket::open(path, make_hello(scene_, *tissue_, facts), *meshes);
     if (!opened) return opened.error();
     socket.emplace(std::move(*opened));
+    if (hal::is_simulated(*device_)) {
+      auto hand = hal::start_hand_socket(*device_, facts.hand_socket);
+      if (!hand) return hand.error();
+      hand_socket_ = std::move(*hand);
+    }
   }
   std::optional<TickLogWriter> log;
   if (!options_.record_path.empty()) {

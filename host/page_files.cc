@@ -50,7 +50,7 @@ std::string PageFiles::load(const std::string& folder) {
     files_[url] = {mime_of(it->path()), std::move(content)};
   }
   if (find("/") == nullptr) {
-    return fmt::format("{}: no page there; build it (cmake --build does) or give --page", folder);
+    return fmt::format("{}: no page there; tools/run builds it; or give --page", folder);
   }
   return {};
 }

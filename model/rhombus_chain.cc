@@ -47,6 +47,9 @@ Result<RhombusChain> make_rhombus_chain(const RhombusChainParameters& p) {
   chain.ring_pitch_m_ = 2.0 * p.rod_length_m * std::cos(p.initial_angle_rad);
   chain.range_ = {.pull_m = chain.solve_force(-chain.force_limit_N()).depth_m,
                   .press_m = chain.solve_force(chain.force_limit_N()).depth_m};
+  // Without tangential springs nothing hardens: stop short of straight rods.
+  if (p.tangential_stiffness_N_per_m == 0.0)
+    chain.range_.pull_m = std::fmax(chain.range_.pull_m, 0.95 * chain.straight_m_);
   return chain;
 }
 

@@ -24,8 +24,9 @@ std::string absolute_path(const std::string& scene_path, const std::string& file
 Result<SurfaceMesh> load_mesh(const MeshText& text, const std::string& path) {
   std::error_code failed;
   if (!fs::is_regular_file(path, failed)) {
-    return Error{fmt::format("{}: {} is no file; name an OBJ file from the folder of the scene",
-                             text.place.where, path)};
+    return Error{
+        fmt::format("{}: {} is no file; name an OBJ file, absolute or from the folder of the scene",
+                    text.place.where, path)};
   }
   Result<ObjMesh> loaded = load_obj(path, text.unit_m);
   if (!loaded) return loaded.error();

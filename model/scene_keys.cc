@@ -40,7 +40,7 @@ void visit_rhombus(Keys& k, SceneText& out) {
 
 void visit_mesh(Keys& k, MeshText& mesh) {
   mesh.place = k.place_of("mesh");
-  k.text("mesh", "OBJ file, from the folder of the scene", mesh.file);
+  k.text("mesh", "OBJ file, absolute or from the folder of the scene", mesh.file);
   k.number("mesh_unit_m", {1e-6, 1.0}, "length of one unit of the file", mesh.unit_m,
            Need::kOptional);
 }

@@ -172,11 +172,11 @@ TEST(Scene, RefusesAFileThatIsNone) {
 TEST(Scene, RefusesAMeshThatIsNoneAtTheLineThatNamesIt) {
   EXPECT_EQ(complaint(kPlain, {"organ.mesh=no.obj"}),
             "--set organ.mesh=no.obj: " + kData +
-                "no.obj is no file; name an OBJ file from the folder of the scene");
+                "no.obj is no file; name an OBJ file, absolute or from the folder of the scene");
   const std::string path = edited("\"box.obj\"", "\"no.obj\"");
   EXPECT_EQ(complaint(path),
             name_of(path) + ":13: " + std::string(TACT_BINARY_DIR) +
-                "/no.obj is no file; name an OBJ file from the folder of the scene");
+                "/no.obj is no file; name an OBJ file, absolute or from the folder of the scene");
   // A mesh that is broken complains for itself.
   EXPECT_TRUE(complaint(kPlain, {"organ.mesh=plain.toml"}).starts_with("plain.toml:"));
 }

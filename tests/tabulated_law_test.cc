@@ -67,6 +67,18 @@ TEST(TabulatedLaw, FitsInto64KilobytesWithEveryKnot) {
   EXPECT_LE(sizeof(TabulatedLaw), 64u * 1024u);
 }
 
+TEST(TabulatedLaw, TakesAChainWithoutTangentialSprings) {
+  const auto chain = make_rhombus_chain({.rod_length_m = 5_mm,
+                                         .initial_angle_rad = 30_deg,
+                                         .normal_stiffness_N_per_m = 150.0,
+                                         .tangential_stiffness_N_per_m = 0.0,
+                                         .growth = 2.0,
+                                         .units = 10});
+  const auto table = tabulate(*chain, 65);
+  ASSERT_TRUE(table) << table.error().sentence;
+  EXPECT_NEAR(table->respond(-5_mm).force_N, -15.0 * 5_mm, 1e-12);  // springs in series
+}
+
 // A law whose force falls with depth cannot be inverted and must not be felt.
 class FallingLaw final : public Law {
  public:

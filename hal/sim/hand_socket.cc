@@ -50,7 +50,7 @@ Result<bool> clear_the_way(const std::string& path) {
   if (probe >= 0) close(probe);
   if (alive) {
     return Error{
-        fmt::format("{}: another process listens here; stop it or choose another name", path)};
+        fmt::format("{}: another process listens here; stop it, or choose another --socket", path)};
   }
   if (unlink(path.c_str()) != 0) return system_error(path, "cannot replace the old socket");
   return true;
