@@ -34,7 +34,7 @@ struct LawResponse {
 };
 
 struct LawRange {
-  double pull_m = 0.0;   // <= 0
+  double pull_m = 0.0;   // <= 0; 0: this law cannot pull
   double press_m = 0.0;  // > 0
 };
 

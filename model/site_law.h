@@ -1,0 +1,61 @@
+// site_law.h - what contact asks of the tissue under each probe sphere, every tick.
+//
+//     W(d, s)   potential, J, of the depth d at the place s of the undeformed surface
+//     F = dW/dd           along the outward normal, as a Law gives it
+//     G = dW/ds           tangential, N: a tissue that differs from place to place, or is dented
+//                         beside the tool, also pushes sideways; without it, sliding makes energy
+//
+// A site law may remember (relaxation, a mass-spring patch): respond() may be called more than once
+// a tick for one sphere, the last call counts, and advance() ends the tick. Implementations:
+// elastic_field.h (closed-form laws, relaxation), spring_patch.h (stepped).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "model/law.h"
+#include "model/mesh.h"
+#include "model/types.h"
+
+namespace tact::model {
+
+inline constexpr std::size_t kMaxSpheres = 4;
+
+/// A point of the undeformed surface: a triangle and its corners' weights, which sum to 1.
+struct Place {
+  std::uint32_t triangle = kNoTriangle;
+  std::array<double, 3> weight{};
+};
+
+/// What one sphere does to the tissue.
+struct Indentation {
+  std::size_t sphere = 0;  // below kMaxSpheres
+  Place place;
+  Vec3 normal{};         // outward, unit, at the place
+  double depth_m = 0.0;  // d; below 0 only while held
+  bool held = false;
+};
+
+struct SiteResponse {
+  LawResponse law;
+  Vec3 slope_N{};  // G, tangential to the touched triangle
+};
+
+class SiteLaw {
+ public:
+  virtual ~SiteLaw() = default;
+  /// NaN gives zero force and kInvalid.
+  virtual SiteResponse respond(const Indentation& in) RT_SAFE = 0;
+  /// The sphere is free: forget what it did.
+  virtual void leave(std::size_t sphere) RT_SAFE = 0;
+  /// The end of a tick; its length is fixed when the law is made.
+  virtual void advance() RT_SAFE = 0;
+  /// Radial displacement profile as in Law::profile: for telemetry, from any thread; it must not
+  /// read what advance() writes. A law that tells its shape otherwise returns 0.
+  virtual std::size_t profile(const Indentation& in, std::span<double> ring_m) const RT_SAFE = 0;
+  virtual double ring_pitch_m() const RT_SAFE = 0;
+};
+
+}  // namespace tact::model
