@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "firmware/alloc_counter.h"
+#include "firmware/law_check.h"
 #include "firmware/report.h"
 #include "firmware/status_line.h"
 #include "firmware/telemetry.h"
@@ -132,6 +133,8 @@ std::optional<Error> Session::open() {
   auto device = hal::open_device(scene_);
   if (!device) return device.error();
   device_ = std::move(*device);
+  if (auto problem = check_renderable(scene_, *tissue_, device_->info())) return problem;
+  if (auto problem = check_budget(scene_)) return problem;
   limits_ = limits_for(scene_.limits, device_->info());
   controller_.emplace(tissue_->contact_scene(),
                       Gate(limits_, static_cast<double>(period_ns()) * 1e-9, force_share()));
@@ -181,7 +184,7 @@ std::optional<Error> Session::open_telemetry() {
     if (!created) return created.error();
     log.emplace(std::move(*created));
   }
-  telemetry_.emplace(*ring_, FrameBuilder(tissue_->law(), non_rt_), scene_.frame_rate_Hz,
+  telemetry_.emplace(*ring_, FrameBuilder(tissue_->law().site_law(), non_rt_), scene_.frame_rate_Hz,
                      std::move(socket), std::move(log));
   return std::nullopt;
 }
@@ -266,7 +269,7 @@ int Session::report() {
       .fault = controller_->newest().fault,
       .force_hash = telemetry_->force_hash(),
       .resident_peak_kB = process.ru_maxrss,
-      .law_table_bytes = sizeof(model::TabulatedLaw)};
+      .law_table_bytes = tissue_->law().memory_bytes()};
   const std::string json =
       make_report(facts, statistics, controller_->gate(), read_environment(scene_.hash)).dump(2);
   if (options_.json_path == "-")

@@ -49,8 +49,9 @@ Hello make_hello(const model::Scene& scene, const model::Tissue& tissue, const H
   hello.tool_triangles = static_cast<std::uint32_t>(scene.tool_mesh.triangle.size());
   hello.site_count = static_cast<std::uint32_t>(scene.tool.spheres.size());
   std::array<double, kMaxRings> ring_m{};
-  hello.ring_count = static_cast<std::uint32_t>(tissue.law().profile(0.0, ring_m));
-  hello.ring_pitch_m = static_cast<float>(tissue.law().ring_pitch_m());
+  hello.ring_count = static_cast<std::uint32_t>(
+      tissue.law().site_law().profile({.place = {.triangle = 0, .weight = {1, 0, 0}}}, ring_m));
+  hello.ring_pitch_m = static_cast<float>(tissue.law().site_law().ring_pitch_m());
   hello.rate_Hz = static_cast<float>(scene.rate_Hz);
   hello.frame_rate_Hz = static_cast<float>(scene.frame_rate_Hz);
   hello.force_limit_N = static_cast<float>(facts.force_limit_N);
@@ -62,7 +63,7 @@ Hello make_hello(const model::Scene& scene, const model::Tissue& tissue, const H
   hello.simulated = facts.hand_socket.empty() ? 0 : 1;
   put(hello.scene_name, scene.name);
   put(hello.device_name, facts.device.name);
-  put(hello.law_name, "rhombus chain, energy form");
+  put(hello.law_name, tissue.law().title());
   put(hello.hand_socket, facts.hand_socket);
   return hello;
 }
@@ -138,7 +139,8 @@ void FrameBuilder::add_site(const model::SphereTouch& touch, FrameSite& site) co
   site.state = static_cast<SiteState>(touch.state);
   if (touch.state == model::TouchState::kFree) return;
   std::array<double, kMaxRings> ring_m{};
-  const std::size_t count = law_.profile(touch.depth_m, ring_m);
+  const std::size_t count = law_.profile(
+      {.place = touch.place, .normal = touch.normal, .depth_m = touch.depth_m}, ring_m);
   for (std::size_t j = 0; j < count; ++j) site.profile_m[j] = static_cast<float>(ring_m[j]);
 }
 

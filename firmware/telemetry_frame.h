@@ -28,7 +28,7 @@ model::Result<int> make_mesh_file(const model::Scene& scene);
 class FrameBuilder {
  public:
   /// `law` outlives the builder; its profile is solved here, far from the loop.
-  FrameBuilder(const model::Law& law, bool non_rt) : law_(law), non_rt_(non_rt) {}
+  FrameBuilder(const model::SiteLaw& law, bool non_rt) : law_(law), non_rt_(non_rt) {}
 
   void add(const TickRecord& record);
   bool has_news() const { return !tick_us_.empty(); }
@@ -37,7 +37,7 @@ class FrameBuilder {
  private:
   void add_site(const model::SphereTouch& touch, FrameSite& site) const;
 
-  const model::Law& law_;
+  const model::SiteLaw& law_;
   bool non_rt_;
   TickRecord newest_;
   std::int64_t first_due_ns_ = -1;

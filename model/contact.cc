@@ -10,9 +10,24 @@ Vec3 tangential(const Vec3& v, const Vec3& normal) RT_SAFE { return v - dot(v, n
 
 double at_least_zero(double v) RT_SAFE { return v > 0.0 ? v : 0.0; }
 
+// The part of a tangential vector along which the nearest point can move: all of it on a face, the
+// edge's share on an edge, nothing in a vertex.
+Vec3 movable(const SurfaceView& s, const Place& place, const Vec3& v) RT_SAFE {
+  const TriangleCorners& corner = s.triangle[place.triangle];
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (place.weight[i] != 0.0) continue;
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    if (place.weight[j] == 0.0 || place.weight[k] == 0.0) return {};
+    const Vec3 along = normalized(s.vertex_m[corner[k]] - s.vertex_m[corner[j]]);
+    return dot(v, along) * along;
+  }
+  return v;
+}
+
 }  // namespace
 
 void Contact::reset() RT_SAFE {
+  for (std::size_t i = 0; i < kMaxSpheres; ++i) scene_.law->leave(i);
   probe_ = {};
   touch_ = {};
   closed_ = closing_ = false;
@@ -27,10 +42,10 @@ Site Contact::search(Probe& probe) RT_SAFE {
     probe.candidate = scene_.seeds.cell[cell];
   }
   Site best = follow(surface, probe.candidate[0], probe.centre_m);
-  probe.candidate[0] = best.triangle;
+  probe.candidate[0] = best.place.triangle;
   if (probe.candidate[1] == kNoTriangle) return best;
   const Site other = follow(surface, probe.candidate[1], probe.centre_m);
-  probe.candidate[1] = other.triangle;
+  probe.candidate[1] = other.place.triangle;
   return std::abs(other.distance_m) < std::abs(best.distance_m) ? other : best;
 }
 
@@ -41,13 +56,14 @@ void Contact::touch(const Tool& tool) RT_SAFE {
     if (!is_finite(centre_m)) {
       probe = {};
       touch_[i] = {};
+      scene_.law->leave(i);
       continue;
     }
     probe.moved_m = probe.seen ? centre_m - probe.centre_m : Vec3{};
     probe.centre_m = centre_m;
     probe.site = touch_[i].state == TouchState::kFree
                      ? search(probe)
-                     : follow(scene_.surface, probe.site.triangle, centre_m);
+                     : follow(scene_.surface, probe.site.place.triangle, centre_m);
     const double depth_m = scene_.spheres[i].radius_m - probe.site.distance_m;
     // A distance cannot change by more than the movement: the rest is a nearest point that jumped.
     const double before_m = probe.seen ? probe.depth_m : 0.0;
@@ -71,6 +87,7 @@ Wrench Contact::feel(const Tool& tool) RT_SAFE {
     sum.force_N += touch.force_N;
     sum.torque_Nm += cross(probe.centre_m - tool.position_m, touch.force_N);
   }
+  scene_.law->advance();
   return sum;
 }
 
@@ -85,29 +102,44 @@ void Contact::change_state(const Probe& probe, SphereTouch& touch) RT_SAFE {
   if (touch.state == TouchState::kHeld && !closed_) let_go(probe, touch);
   if (touch.state == TouchState::kHeld) return;
   if (!(probe.depth_m > 0.0)) {
-    touch = {.surface_point_m = probe.site.point_m, .normal = probe.site.normal};
+    touch = {.place = probe.site.place,
+             .surface_point_m = probe.site.point_m,
+             .normal = probe.site.normal};
+    scene_.law->leave(index_of(touch));
   } else {
     touch.state = TouchState::kTouching;
   }
 }
 
+SiteResponse Contact::ask_law(SphereTouch& touch) RT_SAFE {
+  const SiteResponse site = scene_.law->respond({.sphere = index_of(touch),
+                                                 .place = touch.place,
+                                                 .normal = touch.normal,
+                                                 .depth_m = touch.depth_m,
+                                                 .held = touch.state == TouchState::kHeld});
+  touch.law_status = site.law.status;
+  return site;
+}
+
 void Contact::feel_touching(Probe& probe, SphereTouch& touch) RT_SAFE {
   const ContactParameters& p = scene_.parameters;
+  touch.place = probe.site.place;
   touch.surface_point_m = probe.site.point_m;
   touch.normal = probe.site.normal;
   // d = r - phi - slack
   touch.slack_m = std::min(touch.slack_m + probe.deepened_m, probe.depth_m);
   touch.depth_m = probe.depth_m - touch.slack_m;
-  const LawResponse law = scene_.law->respond(touch.depth_m);
-  touch.law_status = law.status;
+  const SiteResponse site = ask_law(touch);
+  const LawResponse& law = site.law;
   // t moves with the tool in the tangent plane, up to k_t |t| = mu F
   touch.shift_m = tangential(touch.shift_m + probe.moved_m, touch.normal);
   const double k_t = p.sliding_stiffness_N_per_m;
   const double spring_N = k_t * norm(touch.shift_m);
   const double cap_N = p.friction_ratio * law.force_N;
   if (spring_N > cap_N) touch.shift_m *= cap_N / spring_N;
-  // F = F(d) n - k_t t
-  touch.force_N = law.force_N * touch.normal - k_t * touch.shift_m;
+  // F = F(d) n - k_t t - dU/ds
+  touch.force_N = law.force_N * touch.normal - k_t * touch.shift_m -
+                  movable(scene_.surface, touch.place, site.slope_N);
   touch.energy_J = law.energy_J + 0.5 * k_t * dot(touch.shift_m, touch.shift_m);
 }
 
@@ -124,8 +156,7 @@ void Contact::feel_held(Probe& probe, SphereTouch& touch) RT_SAFE {
   touch.normal = probe.held_normal;
   touch.depth_m = probe.held_depth_m - dot(moved_m, touch.normal);
   touch.shift_m = probe.held_shift_m + tangential(moved_m, touch.normal);
-  const LawResponse law = scene_.law->respond(touch.depth_m);
-  touch.law_status = law.status;
+  const LawResponse law = ask_law(touch).law;
   const double k_t = scene_.parameters.sliding_stiffness_N_per_m;
   // F = F(d) n - k_t t, F(d) < 0 while pulling
   touch.force_N = law.force_N * touch.normal - k_t * touch.shift_m;
@@ -141,6 +172,7 @@ void Contact::feel_held(Probe& probe, SphereTouch& touch) RT_SAFE {
 // Back to the surface with no more depth than the held site had, and no stored shift.
 void Contact::let_go(const Probe& probe, SphereTouch& touch) RT_SAFE {
   touch.state = TouchState::kTouching;
+  scene_.law->leave(index_of(touch));
   touch.slack_m = at_least_zero(probe.depth_m - at_least_zero(touch.depth_m));
   touch.shift_m = {};
 }

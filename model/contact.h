@@ -4,16 +4,17 @@
 // r: its radius, phi: signed distance of c to the undeformed surface, n = grad phi):
 //
 //   free      W = 0
-//   touching  W = U(d) + k_t |t|^2 / 2,   d = r - phi - slack,   k_t |t| <= mu F   (Coulomb cap)
-//   held      W = U(d) + k_t |t|^2 / 2,   d and t measured in the frame of the moment of gripping,
-//             no cap, d may be negative (pull); ends when the grip opens or when the pulling force
-//             passes the tear force
+//   touching  W = U(d, s) + k_t |t|^2 / 2,   d = r - phi - slack,   k_t |t| <= mu F  (Coulomb cap)
+//   held      W = U(d, s) + k_t |t|^2 / 2,   d, s and t measured in the frame of the moment of
+//             gripping, no cap, d may be negative (pull); ends when the grip opens or when the
+//             pulling force passes the tear force
 //
 //   force on the tool  F = -grad W,   torque = sum (c - origin) x F
 //
-// t: tangential displacement of the tissue, m. A change of state never adds energy: slack takes up
-// whatever depth would come for free (arming inside the organ, letting go over a bump, a nearest
-// point that jumps) and shrinks only as the tool withdraws.
+// U is the site law's (site_law.h), s the place on the surface; as s follows the tool, the slope of
+// U along the surface is felt too. t: tangential displacement of the tissue, m. A change of state
+// never adds energy: slack takes up whatever depth would come for free (arming inside the organ,
+// letting go over a bump, a nearest point that jumps) and shrinks only as the tool withdraws.
 #pragma once
 
 #include <array>
@@ -21,14 +22,11 @@
 #include <cstdint>
 #include <span>
 
-#include "model/law.h"
 #include "model/seed_grid.h"
-#include "model/site.h"
+#include "model/site_law.h"
 #include "model/types.h"
 
 namespace tact::model {
-
-inline constexpr std::size_t kMaxSpheres = 4;
 
 struct ProbeSphere {
   Vec3 offset_m;          // from the tool's origin, tool frame
@@ -49,6 +47,7 @@ enum class TouchState : std::uint8_t { kFree, kTouching, kHeld };
 struct SphereTouch {
   TouchState state = TouchState::kFree;
   LawStatus law_status = LawStatus::kNoContact;
+  Place place;             // of surface_point_m
   Vec3 surface_point_m{};  // nearest (touching) or held point of the undeformed surface
   Vec3 normal{};           // outward, unit
   Vec3 shift_m{};          // t
@@ -60,7 +59,7 @@ struct SphereTouch {
 
 /// What contact is made of; everything outlives it.
 struct ContactScene {
-  const Law* law = nullptr;
+  SiteLaw* law = nullptr;  // may remember: one contact each
   ContactParameters parameters;
   std::span<const ProbeSphere> spheres;  // 1 to kMaxSpheres
   SurfaceView surface;
@@ -69,7 +68,7 @@ struct ContactScene {
 
 class Contact {
  public:
-  explicit Contact(const ContactScene& scene) : scene_(scene) {}
+  explicit Contact(const ContactScene& scene) : scene_(scene) { reset(); }
 
   /// Where the spheres meet the surface: follows each site.
   void touch(const Tool& tool) RT_SAFE;
@@ -103,6 +102,10 @@ class Contact {
   void feel_held(Probe& probe, SphereTouch& touch) RT_SAFE;
   void hold(Probe& probe, SphereTouch& touch) RT_SAFE;
   void let_go(const Probe& probe, SphereTouch& touch) RT_SAFE;
+  SiteResponse ask_law(SphereTouch& touch) RT_SAFE;
+  std::size_t index_of(const SphereTouch& touch) const RT_SAFE {
+    return static_cast<std::size_t>(&touch - touch_.data());
+  }
 
   ContactScene scene_;
   std::array<Probe, kMaxSpheres> probe_{};

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "model/obj.h"
@@ -87,6 +88,8 @@ Result<Scene> load_scene(const std::string& path, const std::vector<std::string>
 
   Scene& scene = text.scene;
   scene.path = path;
+  if (!text.compliance_map.file.empty())
+    scene.compliance.map_path = absolute_path(path, text.compliance_map.file);
   const double tool_reach_m = reach_m(scene.tool.spheres, normalized(text.script.inward));
   scene.hand.path = way_points(text.script, tool_reach_m, scene.limits, visit);
   if (auto problem = visit.problem()) return *problem;
@@ -95,13 +98,23 @@ Result<Scene> load_scene(const std::string& path, const std::vector<std::string>
   return std::move(scene);
 }
 
+bool Scene::describes(LawKind kind) const {
+  return std::find(described.begin(), described.end(), section_of(kind)) != described.end();
+}
+
 std::optional<Error> check_drivable(const Scene& scene) {
-  if (scene.law == LawKind::kRhombus) return std::nullopt;
-  return Error{
-      fmt::format("{}: law \"rhombus_paper_literal\" must not drive a device, its tangential "
-                  "spring pushes with "
-                  "the wrong sign and can pull the tool in; write law = \"rhombus\"",
-                  scene.path)};
+  if (scene.law == LawKind::kRhombusPaperLiteral)
+    return Error{
+        fmt::format("{}: law \"rhombus_paper_literal\" must not drive a device, its tangential "
+                    "spring pushes with "
+                    "the wrong sign and can pull the tool in; write law = \"rhombus\"",
+                    scene.path)};
+  if (scene.law == LawKind::kHexSheetPaper)
+    return Error{fmt::format(
+        "{}: law \"hex_sheet_paper\" must not drive a device, its force does not belong to its "
+        "shape and grows with the number of rings; write law = \"hex_sheet\"",
+        scene.path)};
+  return std::nullopt;
 }
 
 std::string scene_reference() {

@@ -10,9 +10,9 @@
 
 #include "model/contact.h"
 #include "model/hand_path.h"
+#include "model/law_settings.h"
 #include "model/mesh.h"
 #include "model/result.h"
-#include "model/rhombus_chain.h"
 
 namespace tact::model {
 
@@ -49,15 +49,22 @@ struct ToolSettings {
   std::vector<ProbeSphere> spheres;  // 1 to kMaxSpheres
 };
 
-enum class LawKind { kRhombus, kRhombusPaperLiteral };
-
 struct Scene {
   std::string path;  // of the TOML file
   std::string name;
   double rate_Hz = 0.0;
   LawKind law = LawKind::kRhombus;
+  std::vector<LawKind> described;  // laws that have a section
   RhombusChainParameters rhombus;
-  std::size_t table_knots = 0;
+  DiscStackParameters disc_stack;
+  HexSheetParameters hex_sheet;  // rings 0: as few as the tolerance allows
+  ComplianceSettings compliance;
+  std::size_t table_knots = 65;
+  std::optional<LinearPullParameters> pull;
+  std::vector<PronyTerm> relaxation;
+  std::optional<ElasticSettings> elastic;
+  std::vector<ReferenceSite> reference_sites;
+  std::optional<ToleranceSettings> tolerance;
   ContactParameters contact;
   OrganSettings organ;
   ToolSettings tool;
@@ -68,6 +75,9 @@ struct Scene {
   std::string hash;        // of text, overrides and meshes, 16 hex digits
   SurfaceMesh organ_mesh;  // in W, m
   SurfaceMesh tool_mesh;   // tool frame, m
+
+  /// Does the scene hold the numbers of this law?
+  bool describes(LawKind kind) const;
 };
 
 /// Read a scene and its meshes. `overrides` are "key.path=value" as TOML writes values.

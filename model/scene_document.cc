@@ -142,7 +142,7 @@ class Override {
 
 }  // namespace
 
-Place SceneDocument::place_of(const toml::node& node) const {
+TextPlace SceneDocument::place_of(const toml::node& node) const {
   const toml::source_region& source = node.source();
   if (source.path && *source.path != path) return {.where = *source.path};
   return {.where = fmt::format("{}:{}", path, source.begin.line), .line = source.begin.line};

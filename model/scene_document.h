@@ -16,7 +16,7 @@
 
 namespace tact::model {
 
-struct Place {
+struct TextPlace {
   std::string where;       // "liver.toml:12" or "--set key=value"
   std::uint32_t line = 0;  // 0 for an override
 };
@@ -26,7 +26,7 @@ struct SceneDocument {
   toml::table root;
   std::string hash;  // of the text and the overrides, 16 hex digits
 
-  Place place_of(const toml::node& node) const;
+  TextPlace place_of(const toml::node& node) const;
 };
 
 /// Parse the file and lay the overrides over it in order; the meaning of keys is not looked at.

@@ -2,41 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
-#include "model/hermite_table.h"
+#include "model/scene_laws.h"
 
 namespace tact::model {
 namespace {
 
-constexpr std::array kLaws{
-    Choice{"rhombus", "energy-consistent spring chain"},
-    Choice{"rhombus_paper_literal", "as printed; for tools only, never drives a device"},
-};
-constexpr std::array kLawOf{LawKind::kRhombus, LawKind::kRhombusPaperLiteral};
-static_assert(kLaws.size() == kLawOf.size());
-
-constexpr std::size_t kFewestKnots = 17;
-constexpr std::size_t kDefaultKnots = 65;
 constexpr std::size_t kMostStrokes = 64;
-constexpr std::size_t kMostUnits = 31;  // one ring each, as many as the viewer shows
 constexpr double kStaleFade_s = 0.010;  // a lost device must fade to zero in this time
-
-void visit_rhombus(Keys& k, SceneText& out) {
-  RhombusChainParameters& p = out.scene.rhombus;
-  k.number("rod_length_m", {1e-4, 0.1}, "length a of each rod", p.rod_length_m);
-  k.number("initial_angle_rad", {0.05, 1.5}, "angle of the rods to the surface at rest",
-           p.initial_angle_rad);
-  k.number("normal_stiffness_N_per_m", {0.01, 1e5}, "kN, along the normal",
-           p.normal_stiffness_N_per_m);
-  k.number("tangential_stiffness_N_per_m", {0.0, 1e5}, "kT of the first unit, along the surface",
-           p.tangential_stiffness_N_per_m);
-  k.number("growth", {0.1, 100.0}, "beta: unit i has kT exp((i - 1) / beta)", p.growth);
-  k.count("units", {1, kMostUnits}, "rhombus units in series", p.units);
-  out.scene.table_knots = kDefaultKnots;
-  k.count("table_knots", {kFewestKnots, kMaxKnots}, "of the loop's look-up table, each side",
-          out.scene.table_knots, Need::kOptional);
-}
 
 void visit_mesh(Keys& k, MeshText& mesh) {
   mesh.place = k.place_of("mesh");
@@ -134,13 +106,11 @@ void visit_limits(Keys& k, Limits& limits) {
 
 void visit_scene(Keys& k, SceneText& out) {
   Scene& scene = out.scene;
-  std::size_t law = 0;
   k.text("name", "of the scene, shown by the viewer", scene.name);
   k.number("rate_Hz", {100.0, 4000.0}, "ticks of the control loop", scene.rate_Hz);
-  k.choice("law", kLaws, "of the tissue; the second never drives a device", law);
-  scene.law = kLawOf[law];
-  k.section("rhombus", "chain of rhombus units under the touched point",
-            [&](Keys& rhombus) { visit_rhombus(rhombus, out); });
+  visit_laws(k, out);
+  visit_law_options(k, scene);
+  visit_truth(k, scene);
   k.section("organ", "what is touched", [&](Keys& organ) {
     visit_mesh(organ, out.organ_mesh);
     organ.vector("position_m", {-1.0, 1.0}, "of the mesh's origin, in W", scene.organ.position_m);

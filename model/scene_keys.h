@@ -18,7 +18,13 @@ namespace tact::model {
 struct MeshText {
   std::string file;  // relative to the scene file
   double unit_m = 0.001;
-  Place place;
+  TextPlace place;
+};
+
+/// Another file as the scene names it.
+struct FileText {
+  std::string file;  // relative to the scene file
+  TextPlace place;
 };
 
 /// A scene before its meshes are read and its strokes become way points.
@@ -26,6 +32,7 @@ struct SceneText {
   Scene scene;
   MeshText organ_mesh;
   MeshText tool_mesh;
+  FileText compliance_map;
   HandScript script;
 };
 

@@ -21,7 +21,7 @@ std::string names_of(std::span<const Choice> choices) {
 
 }  // namespace
 
-void SceneVisit::note(ProblemKind kind, const Place& place, const std::string& sentence) {
+void SceneVisit::note(ProblemKind kind, const TextPlace& place, const std::string& sentence) {
   problems_.push_back({kind, place.line, fmt::format("{}: {}", place.where, sentence)});
 }
 
@@ -92,20 +92,25 @@ void Keys::one_of(std::string_view key, std::span<const Choice> choices,
   if (index) further(*index);
 }
 
-void Keys::section(std::string_view key, std::string_view meaning, const Inside& inside) {
+bool Keys::section(std::string_view key, std::string_view meaning, const Inside& inside,
+                   Need need) {
+  const std::string times = need == Need::kOptional ? "optional" : "";
   if (!visit_.document()) {
     Keys keys(visit_, nullptr, path_to(key));
-    visit_.add({keys.path_, "", fmt::format("[{}]", keys.path_), "", std::string(meaning)});
-    return inside(keys);
+    visit_.add({keys.path_, "", fmt::format("[{}]", keys.path_), times, std::string(meaning)});
+    inside(keys);
+    return true;
   }
-  const toml::node* node = take(key, fmt::format("a section [{}]", path_to(key)), meaning);
-  if (!node) return;
+  const toml::node* node = take(key, fmt::format("a section [{}]", path_to(key)), meaning, times);
+  if (!node) return false;
   if (!node->is_table()) {
-    return judge(*node, key, fmt::format("is {}, not a section", type_name(*node)));
+    judge(*node, key, fmt::format("is {}, not a section", type_name(*node)));
+    return false;
   }
   Keys keys(visit_, node->as_table(), path_to(key));
   inside(keys);
   keys.finish();
+  return true;
 }
 
 void Keys::entries(std::string_view key, CountRange range, std::string_view meaning,
@@ -140,7 +145,7 @@ void Keys::entries(std::string_view key, CountRange range, std::string_view mean
   }
 }
 
-Place Keys::place_of(std::string_view key) const {
+TextPlace Keys::place_of(std::string_view key) const {
   if (!table_) return {};
   const toml::node* node = table_->get(key);
   return visit_.document()->place_of(node ? *node : *table_);
@@ -148,9 +153,9 @@ Place Keys::place_of(std::string_view key) const {
 
 void Keys::refuse(std::initializer_list<std::string_view> keys, const std::string& sentence) {
   if (!table_) return;
-  Place told = place_of(*keys.begin());
+  TextPlace told = place_of(*keys.begin());
   for (const std::string_view key : keys) {
-    const Place place = place_of(key);
+    const TextPlace place = place_of(key);
     if (place.line == 0) told = place;  // an override: what was just typed
   }
   visit_.note(ProblemKind::kConflict, told, sentence);

@@ -46,7 +46,7 @@ class SceneVisit {
   const SceneDocument* document() const { return document_; }
   const std::vector<ReferenceRow>& rows() const { return rows_; }
   void add(ReferenceRow row) { rows_.push_back(std::move(row)); }
-  void note(ProblemKind kind, const Place& place, const std::string& sentence);
+  void note(ProblemKind kind, const TextPlace& place, const std::string& sentence);
   /// The problem to tell, if there is one.
   std::optional<Error> problem() const;
 
@@ -80,8 +80,9 @@ class Keys {
   void choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning,
               std::size_t& out);
 
-  /// [key]
-  void section(std::string_view key, std::string_view meaning, const Inside& inside);
+  /// [key]; true when it is there.
+  bool section(std::string_view key, std::string_view meaning, const Inside& inside,
+               Need need = Need::kRequired);
   /// [[key]], visited once for each entry.
   void entries(std::string_view key, CountRange range, std::string_view meaning,
                const Inside& inside);
@@ -90,7 +91,7 @@ class Keys {
               const std::function<void(std::size_t)>& further);
 
   /// Where a key stands, or else its section.
-  Place place_of(std::string_view key) const;
+  TextPlace place_of(std::string_view key) const;
   /// These keys contradict each other; told at the overridden one, or else at the first.
   void refuse(std::initializer_list<std::string_view> keys, const std::string& sentence);
 

@@ -140,7 +140,7 @@ double reach_m(std::span<const ProbeSphere> spheres, const Vec3& inward) {
 
 std::vector<HandWaypoint> way_points(const HandScript& script, double reach_m, const Limits& limits,
                                      SceneVisit& visit) {
-  const auto refuse = [&](const Place& place, const std::string& why) {
+  const auto refuse = [&](const TextPlace& place, const std::string& why) {
     visit.note(ProblemKind::kConflict, place, why);
   };
   const std::string home_problem = place_problem(script.home_m, limits);

@@ -30,7 +30,7 @@ struct Stroke {
   double depth_m = 0.0;   // press
   double height_m = 0.0;  // pull, tear
   Vec3 offset_m{};        // slide
-  Place place{};          // in the scene file
+  TextPlace place{};      // in the scene file
 };
 
 struct HandScript {
@@ -39,7 +39,7 @@ struct HandScript {
   Vec3 inward;  // any length but zero
   bool repeat = false;
   std::vector<Stroke> strokes;
-  Place home_place;  // in the scene file
+  TextPlace home_place;  // in the scene file
 };
 
 /// The keys of one [[hand.stroke]].

@@ -24,6 +24,8 @@ constexpr std::array kUnits{
     UnitName{"_Nm", "N m"},
     UnitName{"_kg", "kg"},
     UnitName{"_Hz", "Hz"},
+    UnitName{"_Pa", "Pa"},
+    UnitName{"_us", "us"},
     UnitName{"_m", "m"},
     UnitName{"_s", "s"},
     UnitName{"_N", "N"},

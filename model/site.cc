@@ -5,16 +5,23 @@ namespace {
 
 enum class Feature : std::uint8_t { kFace, kEdge, kCorner };
 
+using Weights = std::array<double, 3>;  // of the corners, sum 1
+
 struct Nearest {
   Vec3 point_m;
   double squared_m2 = 0.0;
-  std::uint32_t triangle = kNoTriangle;
+  Place place;
   Feature feature = Feature::kFace;
   std::uint32_t index = 0;  // of the edge or corner
 };
 
-Nearest at(const Vec3& q, const Vec3& p, std::uint32_t t, Feature f, std::uint32_t i) RT_SAFE {
-  return {q, dot(p - q, p - q), t, f, i};
+struct Spot {
+  Vec3 point_m;
+  Weights weight{};
+};
+
+Nearest at(const Spot& q, const Vec3& p, std::uint32_t t, Feature f, std::uint32_t i) RT_SAFE {
+  return {q.point_m, dot(p - q.point_m, p - q.point_m), {t, q.weight}, f, i};
 }
 
 // Voronoi regions of a triangle [C. Ericson, Real-Time Collision Detection (2005) 5.1.5].
@@ -23,24 +30,30 @@ Nearest nearest_on(const SurfaceView& s, std::uint32_t t, const Vec3& p) RT_SAFE
   const Vec3 &a = s.vertex_m[corner[0]], &b = s.vertex_m[corner[1]], &c = s.vertex_m[corner[2]];
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
-  if (d1 <= 0.0 && d2 <= 0.0) return at(a, p, t, Feature::kCorner, 0);
+  if (d1 <= 0.0 && d2 <= 0.0) return at({a, {1, 0, 0}}, p, t, Feature::kCorner, 0);
   const Vec3 bp = p - b;
   const double d3 = dot(ab, bp), d4 = dot(ac, bp);
-  if (d3 >= 0.0 && d4 <= d3) return at(b, p, t, Feature::kCorner, 1);
+  if (d3 >= 0.0 && d4 <= d3) return at({b, {0, 1, 0}}, p, t, Feature::kCorner, 1);
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0)
-    return at(a + (d1 / (d1 - d3)) * ab, p, t, Feature::kEdge, 0);
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
+    const double w = d1 / (d1 - d3);
+    return at({a + w * ab, {1.0 - w, w, 0}}, p, t, Feature::kEdge, 0);
+  }
   const Vec3 cp = p - c;
   const double d5 = dot(ab, cp), d6 = dot(ac, cp);
-  if (d6 >= 0.0 && d5 <= d6) return at(c, p, t, Feature::kCorner, 2);
+  if (d6 >= 0.0 && d5 <= d6) return at({c, {0, 0, 1}}, p, t, Feature::kCorner, 2);
   const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0)
-    return at(a + (d2 / (d2 - d6)) * ac, p, t, Feature::kEdge, 2);
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
+    const double w = d2 / (d2 - d6);
+    return at({a + w * ac, {1.0 - w, 0, w}}, p, t, Feature::kEdge, 2);
+  }
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0)
-    return at(b + ((d4 - d3) / ((d4 - d3) + (d5 - d6))) * (c - b), p, t, Feature::kEdge, 1);
-  const double sum = va + vb + vc;
-  return at(a + (vb / sum) * ab + (vc / sum) * ac, p, t, Feature::kFace, 0);
+  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
+    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return at({b + w * (c - b), {0, 1.0 - w, w}}, p, t, Feature::kEdge, 1);
+  }
+  const double sum = va + vb + vc, v = vb / sum, w = vc / sum;
+  return at({a + v * ab + w * ac, {1.0 - v - w, v, w}}, p, t, Feature::kFace, 0);
 }
 
 void try_triangle(const SurfaceView& s, std::uint32_t t, const Vec3& p, Nearest& best) RT_SAFE {
@@ -54,17 +67,17 @@ void try_triangle(const SurfaceView& s, std::uint32_t t, const Vec3& p, Nearest&
 // tried.
 Nearest step_from(const SurfaceView& s, const Nearest& here, const Vec3& p) RT_SAFE {
   Nearest best = here;
-  const TriangleCorners& neighbour = s.neighbour[here.triangle];
+  const TriangleCorners& neighbour = s.neighbour[here.place.triangle];
   switch (here.feature) {
     case Feature::kFace:
-      if (dot(p - here.point_m, s.face_normal[here.triangle]) < 0.0)
+      if (dot(p - here.point_m, s.face_normal[here.place.triangle]) < 0.0)
         for (const std::uint32_t t : neighbour) try_triangle(s, t, p, best);
       break;
     case Feature::kEdge:
       try_triangle(s, neighbour[here.index], p, best);
       break;
     case Feature::kCorner: {
-      const std::uint32_t v = s.triangle[here.triangle][here.index];
+      const std::uint32_t v = s.triangle[here.place.triangle][here.index];
       const std::uint32_t begin = s.fan_start[v], end = s.fan_start[v + 1];
       for (std::uint32_t i = begin; i < end && i < begin + kMaxFan; ++i)
         try_triangle(s, s.fan[i], p, best);
@@ -87,24 +100,24 @@ bool is_rim_corner(const SurfaceView& s, std::uint32_t v) RT_SAFE {
 
 // Beyond the rim of an open surface there is no inside to be pushed out of.
 bool is_on_rim(const SurfaceView& s, const Nearest& at) RT_SAFE {
-  if (at.feature == Feature::kEdge) return s.neighbour[at.triangle][at.index] == kNoTriangle;
-  return at.feature == Feature::kCorner && is_rim_corner(s, s.triangle[at.triangle][at.index]);
+  if (at.feature == Feature::kEdge) return s.neighbour[at.place.triangle][at.index] == kNoTriangle;
+  return at.feature == Feature::kCorner && is_rim_corner(s, s.triangle[at.place.triangle][at.index]);
 }
 
 Vec3 pseudo_normal(const SurfaceView& s, const Nearest& at) RT_SAFE {
   switch (at.feature) {
     case Feature::kCorner:
-      return s.vertex_normal[s.triangle[at.triangle][at.index]];
+      return s.vertex_normal[s.triangle[at.place.triangle][at.index]];
     case Feature::kEdge: {
-      const std::uint32_t other = s.neighbour[at.triangle][at.index];
+      const std::uint32_t other = s.neighbour[at.place.triangle][at.index];
       if (other != kNoTriangle)
-        return normalized(s.face_normal[at.triangle] + s.face_normal[other]);
+        return normalized(s.face_normal[at.place.triangle] + s.face_normal[other]);
       break;
     }
     case Feature::kFace:
       break;
   }
-  return s.face_normal[at.triangle];
+  return s.face_normal[at.place.triangle];
 }
 
 }  // namespace
@@ -113,7 +126,7 @@ Site follow(const SurfaceView& surface, std::uint32_t start, const Vec3& p_m) RT
   Nearest here = nearest_on(surface, start, p_m);
   for (int i = 0; i < kMaxWalkSteps; ++i) {
     const Nearest next = step_from(surface, here, p_m);
-    if (next.triangle == here.triangle) break;
+    if (next.place.triangle == here.place.triangle) break;
     here = next;
   }
   const Vec3 outward = pseudo_normal(surface, here);
@@ -121,7 +134,7 @@ Site follow(const SurfaceView& surface, std::uint32_t start, const Vec3& p_m) RT
   const double length_m = norm(away);
   const double sign = dot(away, outward) >= 0.0 || is_on_rim(surface, here) ? 1.0 : -1.0;
   constexpr double kOnSurface_m = 1e-9;  // below this the direction of p - q is rounding noise
-  return {.triangle = here.triangle,
+  return {.place = here.place,
           .point_m = here.point_m,
           .normal = length_m > kOnSurface_m ? (sign / length_m) * away : outward,
           .distance_m = sign * length_m};

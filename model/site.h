@@ -9,6 +9,8 @@
 // jump to the far side.
 #pragma once
 
+#include <array>
+
 #include "model/mesh.h"
 #include "model/types.h"
 
@@ -17,8 +19,15 @@ namespace tact::model {
 inline constexpr int kMaxWalkSteps = 64;
 inline constexpr std::uint32_t kMaxFan = 128;  // triangles looked at around one vertex
 
-struct Site {
+/// A point of the undeformed surface: a triangle and its corners' weights, which sum to 1. A corner
+/// that does not count has exactly 0: one such on an edge, two in a vertex.
+struct Place {
   std::uint32_t triangle = kNoTriangle;
+  std::array<double, 3> weight{};
+};
+
+struct Site {
+  Place place;              // of q
   Vec3 point_m;             // q
   Vec3 normal;              // n, unit
   double distance_m = 0.0;  // phi

@@ -10,29 +10,21 @@
 // elastic_field.h (closed-form laws, relaxation), spring_patch.h (stepped).
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 
 #include "model/law.h"
-#include "model/mesh.h"
+#include "model/site.h"
 #include "model/types.h"
 
 namespace tact::model {
 
 inline constexpr std::size_t kMaxSpheres = 4;
 
-/// A point of the undeformed surface: a triangle and its corners' weights, which sum to 1.
-struct Place {
-  std::uint32_t triangle = kNoTriangle;
-  std::array<double, 3> weight{};
-};
-
 /// What one sphere does to the tissue.
 struct Indentation {
   std::size_t sphere = 0;  // below kMaxSpheres
-  Place place;
+  Place place{};
   Vec3 normal{};         // outward, unit, at the place
   double depth_m = 0.0;  // d; below 0 only while held
   bool held = false;

@@ -19,6 +19,7 @@ HermiteTable table_to(const Law& law, double end_m, std::size_t knots) {
 
 LawResponse TabulatedLaw::respond(double depth_m) const RT_SAFE {
   if (!std::isfinite(depth_m)) return {.status = LawStatus::kInvalid};
+  if (depth_m < 0.0 && !can_pull_) return {.status = LawStatus::kNoContact};
   const HermiteTable& table = depth_m < 0.0 ? pull_ : press_;
   const double end_m = table.end();
   const bool beyond = std::abs(depth_m) > std::abs(end_m);
@@ -33,7 +34,8 @@ Result<TabulatedLaw> tabulate(const Law& law, std::size_t knots) {
   const LawRange range = law.range();
   TabulatedLaw out(law);
   out.press_ = table_to(law, kPressShare * range.press_m, knots);
-  out.pull_ = table_to(law, range.pull_m, knots);
+  out.can_pull_ = range.pull_m < 0.0;
+  if (out.can_pull_) out.pull_ = table_to(law, range.pull_m, knots);
   const std::size_t checks = 8 * knots;
   double before_N = law.respond(range.pull_m).force_N;
   for (std::size_t i = 1; i <= checks; ++i) {

@@ -14,7 +14,7 @@ namespace tact::model {
 class TabulatedLaw final : public Law {
  public:
   LawResponse respond(double depth_m) const RT_SAFE override;
-  LawRange range() const RT_SAFE override { return {pull_.end(), press_.end()}; }
+  LawRange range() const RT_SAFE override { return {can_pull_ ? pull_.end() : 0.0, press_.end()}; }
   /// Solved directly, not from a table: for telemetry and tools, outside the loop.
   std::size_t profile(double depth_m, std::span<double> ring_m) const RT_SAFE override {
     return source_->profile(depth_m, ring_m);
@@ -27,6 +27,7 @@ class TabulatedLaw final : public Law {
 
   const Law* source_;
   HermiteTable press_, pull_;
+  bool can_pull_ = false;
 };
 
 /// Tables of a law that outlives them. An error if the force does not grow with depth.

@@ -1,30 +1,27 @@
-// tissue.h - a loaded scene made ready to touch: law, table, surface and seeds in one owner.
+// tissue.h - a loaded scene made ready to touch: law, surface and seeds in one owner.
 #pragma once
 
 #include <memory>
 
 #include "model/contact.h"
 #include "model/result.h"
-#include "model/rhombus_chain.h"
 #include "model/scene.h"
-#include "model/tabulated_law.h"
+#include "model/tissue_law.h"
 
 namespace tact::model {
 
 class Tissue {
  public:
-  /// What a Contact needs; valid as long as this object and its scene.
+  /// What a Contact needs; valid as long as this object and its scene. One contact at a time: the
+  /// law may remember.
   const ContactScene& contact_scene() const { return contact_; }
-  const TabulatedLaw& law() const { return table_; }
-  const RhombusChain& direct_law() const { return *chain_; }
+  const TissueLaw& law() const { return *law_; }
 
  private:
   friend Result<std::unique_ptr<Tissue>> make_tissue(const Scene&);
-  Tissue(std::unique_ptr<RhombusChain> chain, const TabulatedLaw& table)
-      : chain_(std::move(chain)), table_(table) {}
+  explicit Tissue(std::unique_ptr<TissueLaw> law) : law_(std::move(law)) {}
 
-  std::unique_ptr<RhombusChain> chain_;  // the table points to it
-  TabulatedLaw table_;
+  std::unique_ptr<TissueLaw> law_;
   SeedGrid seeds_;
   ContactScene contact_;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "model/elastic_field.h"
 #include "model/rhombus_chain.h"
 #include "model/tabulated_law.h"
 #include "model/units.h"
@@ -21,8 +22,8 @@ struct Bench {
   explicit Bench(SurfaceMesh m, std::vector<ProbeSphere> s = {{{}, kRadius_m}})
       : mesh(std::move(m)), seeds(make_seed_grid(mesh.view(), 20_mm)), spheres(std::move(s)) {}
 
-  Contact contact() const {
-    return Contact({.law = &law,
+  Contact contact() {
+    return Contact({.law = &field,
                     .parameters = parameters,
                     .spheres = spheres,
                     .surface = mesh.view(),
@@ -36,6 +37,8 @@ struct Bench {
                                             .growth = 2.0,
                                             .units = 10});
   TabulatedLaw law = *tabulate(chain, 65);
+  const Law* curve = &law;
+  ElasticField field{{.curves = {&curve, 1}, .coordinate = {}, .surface = {}, .relaxation = {}}};
   SurfaceMesh mesh;
   SeedGrid seeds;
   std::vector<ProbeSphere> spheres;
@@ -58,14 +61,14 @@ void glide(Contact& contact, const Vec3& from_m, const Vec3& to_m, double grip_r
 }
 
 TEST(Contact, IsSilentAboveTheSurface) {
-  const Bench bench = plate_bench();
+  Bench bench = plate_bench();
   Contact contact = bench.contact();
   EXPECT_EQ(feel_at(contact, {0, 0, kRadius_m + 1_mm}), Wrench{});
   EXPECT_EQ(contact.touches()[0].state, TouchState::kFree);
 }
 
 TEST(Contact, PressesBackAlongTheNormalWithTheForceOfTheLaw) {
-  const Bench bench = plate_bench();
+  Bench bench = plate_bench();
   Contact contact = bench.contact();
   glide(contact, {0, 0, kRadius_m + 1_mm}, {0, 0, kRadius_m - 3_mm});
   const Wrench w = feel_at(contact, {0, 0, kRadius_m - 3_mm});
@@ -74,8 +77,8 @@ TEST(Contact, PressesBackAlongTheNormalWithTheForceOfTheLaw) {
 }
 
 TEST(Contact, LeverArmsOfTheSpheresGiveTheTorque) {
-  const Bench bench(tests::make_plate(100_mm, 20),
-                    {{{5_mm, 0, 0}, kRadius_m}, {{5_mm, 8_mm, -1_mm}, kRadius_m}});
+  Bench bench(tests::make_plate(100_mm, 20),
+              {{{5_mm, 0, 0}, kRadius_m}, {{5_mm, 8_mm, -1_mm}, kRadius_m}});
   Contact contact = bench.contact();
   const Vec3 deep{0, 0, kRadius_m - 2_mm};
   glide(contact, deep + Vec3{0, 0, 5_mm}, deep);
@@ -87,7 +90,7 @@ TEST(Contact, LeverArmsOfTheSpheresGiveTheTorque) {
 }
 
 TEST(Contact, NeverPullsOnAToolThatDoesNotHold) {
-  const Bench bench(tests::make_ball(50_mm, 4));
+  Bench bench(tests::make_ball(50_mm, 4));
   Contact contact = bench.contact();
   std::mt19937 random(3);
   std::normal_distribution<double> nudge(0.0, 0.3_mm);
@@ -101,7 +104,7 @@ TEST(Contact, NeverPullsOnAToolThatDoesNotHold) {
 }
 
 TEST(Contact, ForceIsTheSlopeOfItsPotential) {
-  const Bench bench(tests::make_ball(50_mm, 5));
+  Bench bench(tests::make_ball(50_mm, 5));
   for (const double grip : {0.0, 1.0}) {
     const Vec3 p{2_mm, 3_mm, 50_mm};
     const double h = 1e-7;
@@ -125,7 +128,7 @@ TEST(Contact, ForceIsTheSlopeOfItsPotential) {
 }
 
 TEST(Contact, TakesEnergyFromEveryClosedStrokeThatRubs) {
-  const Bench bench(tests::make_ball(50_mm, 5));
+  Bench bench(tests::make_ball(50_mm, 5));
   std::mt19937 random(5);
   std::uniform_real_distribution<double> size(1_mm, 8_mm);
   bool touched = false;
@@ -151,7 +154,7 @@ TEST(Contact, TakesEnergyFromEveryClosedStrokeThatRubs) {
 }
 
 TEST(Contact, SlidingFrictionStaysInsideItsCone) {
-  const Bench bench = plate_bench();
+  Bench bench = plate_bench();
   Contact contact = bench.contact();
   glide(contact, {0, 0, 6_mm}, {0, 0, 0});
   glide(contact, {0, 0, 0}, {20_mm, 0, 0});
@@ -177,7 +180,7 @@ TEST(Contact, HoldingPullsAndHasNoFrictionCap) {
 }
 
 TEST(Contact, LetsGoWhenTheGripOpens) {
-  const Bench bench = plate_bench();
+  Bench bench = plate_bench();
   Contact contact = bench.contact();
   glide(contact, {0, 0, 6_mm}, {0, 0, 3_mm});
   feel_at(contact, {0, 0, 3_mm}, 1.0);
@@ -188,7 +191,7 @@ TEST(Contact, LetsGoWhenTheGripOpens) {
 }
 
 TEST(Contact, TearsAboveTheTearForceAndHoldsAgainOnlyAfterOpening) {
-  const Bench bench = plate_bench();
+  Bench bench = plate_bench();
   Contact contact = bench.contact();
   glide(contact, {0, 0, 6_mm}, {0, 0, 3_mm});
   feel_at(contact, {0, 0, 3_mm}, 1.0);
@@ -206,7 +209,7 @@ TEST(Contact, TearsAboveTheTearForceAndHoldsAgainOnlyAfterOpening) {
 }
 
 TEST(Contact, ATearWhilePressingLeavesThePressWithoutAClick) {
-  const Bench bench = plate_bench();
+  Bench bench = plate_bench();
   Contact contact = bench.contact();
   glide(contact, {0, 0, 6_mm}, {0, 0, 2_mm});
   feel_at(contact, {0, 0, 2_mm}, 1.0);
@@ -217,7 +220,7 @@ TEST(Contact, ATearWhilePressingLeavesThePressWithoutAClick) {
 }
 
 TEST(Contact, BeyondTheRimOfAnOpenSurfaceNothingPullsTheToolBack) {
-  const Bench bench = plate_bench();
+  Bench bench = plate_bench();
   Contact contact = bench.contact();
   glide(contact, {45_mm, 0, 6_mm}, {45_mm, 0, 1_mm});
   glide(contact, {45_mm, 0, 1_mm}, {53_mm, 0, -3_mm});
@@ -248,7 +251,7 @@ TEST(Contact, LettingGoNeverAddsEnergy) {
 }
 
 TEST(Contact, StartingInsideTheOrganPushesNothing) {
-  const Bench bench = plate_bench();
+  Bench bench = plate_bench();
   Contact contact = bench.contact();
   EXPECT_EQ(feel_at(contact, {0, 0, -8_mm}), Wrench{});
   // Withdrawing pays the slack back; pressing again from there is felt.
@@ -259,7 +262,7 @@ TEST(Contact, StartingInsideTheOrganPushesNothing) {
 }
 
 TEST(Contact, NaNFromTheDeviceGivesNoForceAndForgetsTheSite) {
-  const Bench bench = plate_bench();
+  Bench bench = plate_bench();
   Contact contact = bench.contact();
   glide(contact, {0, 0, 6_mm}, {0, 0, 2_mm});
   EXPECT_EQ(feel_at(contact, {std::nan(""), 0, 2_mm}), Wrench{});
@@ -267,7 +270,7 @@ TEST(Contact, NaNFromTheDeviceGivesNoForceAndForgetsTheSite) {
 }
 
 TEST(Contact, LeavesTheHeapAlone) {
-  const Bench bench = plate_bench();
+  Bench bench = plate_bench();
   Contact contact = bench.contact();
   const tests::NoAlloc guard;
   glide(contact, {0, 0, 6_mm}, {5_mm, 0, 0});

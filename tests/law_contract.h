@@ -5,6 +5,9 @@
 // Force is the slope of energy; a closed stroke never returns energy; rest stays at rest; the force
 // grows with depth; the profile starts at the depth, decays and ends at zero; NaN gives zero force;
 // nothing touches the heap. Dimensions: check_dimensions rescales metre, kilogram and second.
+//
+// A law that cannot pull (range().pull_m = 0) has to prove these for presses only, and that it
+// feels nothing outside the surface.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -31,6 +34,7 @@ inline std::vector<double> depths_across(const model::LawRange& range, int count
 inline void check_force_is_slope_of_energy(const model::Law& law) {
   const double step_m = 1e-6 * law.range().press_m;
   for (const double d : depths_across(law.range(), 40)) {
+    if (law.range().pull_m == 0.0 && d < step_m) continue;  // no slope across the surface
     const auto ahead = law.respond(d + step_m), behind = law.respond(d - step_m);
     const auto here = law.respond(d);
     const double scale_N = std::abs(law.respond(law.range().press_m).force_N);
@@ -68,6 +72,21 @@ inline void check_rest_and_growth(const model::Law& law) {
   }
 }
 
+inline void check_outside(const model::Law& law) {
+  if (law.range().pull_m < 0.0) return;
+  EXPECT_EQ(law.range().pull_m, 0.0);
+  for (const double share : {-1e-9, -0.5, -10.0}) {
+    const auto outside = law.respond(share * law.range().press_m);
+    EXPECT_EQ(outside.status, model::LawStatus::kNoContact);
+    EXPECT_EQ(outside.force_N, 0.0);
+    EXPECT_EQ(outside.stiffness_N_per_m, 0.0);
+    EXPECT_EQ(outside.energy_J, 0.0);
+    std::vector<double> ring_m(64, -1.0);
+    const std::size_t count = law.profile(share * law.range().press_m, ring_m);
+    for (std::size_t j = 0; j < count; ++j) EXPECT_EQ(ring_m[j], 0.0);
+  }
+}
+
 inline void check_profile(const model::Law& law) {
   for (const double d : depths_across(law.range(), 10)) {
     std::vector<double> ring_m(64, -1.0);
@@ -101,6 +120,7 @@ inline void check_law_contract(const model::Law& law) {
   check_force_is_slope_of_energy(law);
   check_closed_stroke_returns_no_energy(law);
   check_rest_and_growth(law);
+  check_outside(law);
   check_profile(law);
   check_bad_depths(law);
   const NoAlloc guard;

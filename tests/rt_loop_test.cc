@@ -80,7 +80,7 @@ class RtLoopTest : public testing::Test {
 
 TEST_F(RtLoopTest, FeelsThePlateThroughTheGate) {
   press();
-  EXPECT_NEAR(device.last.force_N.z, tissue->law().respond(0.003).force_N, 0.01);
+  EXPECT_NEAR(device.last.force_N.z, tissue->law().curve()->respond(0.003).force_N, 0.01);
   EXPECT_EQ(newest().output.state, State::kArmed);
 }
 
@@ -102,7 +102,7 @@ TEST_F(RtLoopTest, ArmingInsideTheOrganPushesNothing) {
   EXPECT_EQ(device.last, Wrench{}) << "the depth from before arming comes without force";
   device.height_m -= 0.0005;
   run_ticks(100);
-  EXPECT_NEAR(device.last.force_N.z, tissue->law().respond(0.0005).force_N, 1e-6);
+  EXPECT_NEAR(device.last.force_N.z, tissue->law().curve()->respond(0.0005).force_N, 1e-6);
 }
 
 TEST_F(RtLoopTest, ADeviceThatWakesSlowlyIsNotLost) {

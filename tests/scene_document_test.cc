@@ -20,7 +20,7 @@ std::string complaint(const std::vector<std::string>& overrides) {
 TEST(Override, SetsNumbersTextFlagsAndArrays) {
   const Result<Scene> scene =
       load_scene(kPlain, {"rate_Hz=2000", "name=a word", "name=\"two words\"", "hand.repeat=true",
-                          "organ.position_m=[0.01, 0, -2e-2]", "rhombus.table_knots=129",
+                          "organ.position_m=[0.01, 0, -2e-2]", "table_knots=129",
                           "device.kind=none/of-this.world"});
   ASSERT_TRUE(scene) << scene.error().sentence;
   EXPECT_EQ(scene->rate_Hz, 2000.0);

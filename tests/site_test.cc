@@ -35,7 +35,7 @@ Site query(const SurfaceView& surface, const SeedGridView& seeds, const Vec3& p)
   for (const std::uint32_t seed : seeds.cell[seeds.cell_of(p)]) {
     if (seed == kNoTriangle) continue;
     const Site site = follow(surface, seed, p);
-    if (best.triangle == kNoTriangle || std::abs(site.distance_m) < std::abs(best.distance_m))
+    if (best.place.triangle == kNoTriangle || std::abs(site.distance_m) < std::abs(best.distance_m))
       best = site;
   }
   return best;
@@ -61,14 +61,36 @@ TEST(Site, NormalIsTheGradientOfTheDistance) {
     const Site here = follow(ball.view(), 0, p);
     const double h = 1e-7;
     const auto slope = [&](const Vec3& e) {
-      return (follow(ball.view(), here.triangle, p + h * e).distance_m -
-              follow(ball.view(), here.triangle, p - h * e).distance_m) /
+      return (follow(ball.view(), here.place.triangle, p + h * e).distance_m -
+              follow(ball.view(), here.place.triangle, p - h * e).distance_m) /
              (2 * h);
     };
     const Vec3 gradient{slope({1, 0, 0}), slope({0, 1, 0}), slope({0, 0, 1})};
     if (std::abs(norm(gradient) - 1.0) > 1e-3) continue;  // on the seam of two facets, from inside
     EXPECT_NEAR(norm(gradient - here.normal), 0.0, 1e-4);
   }
+}
+
+TEST(Site, WeightsOfItsCornersGiveItsPoint) {
+  const SurfaceMesh ball = tests::make_ball(50_mm, 2);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  int corners_that_count[4] = {};
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 p = (40_mm + 30_mm * std::abs(uniform(random))) *
+                   normalized(Vec3{uniform(random), uniform(random), uniform(random)});
+    const Site site = follow(ball.view(), 0, p);
+    Vec3 point_m{};
+    int counts = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      point_m += site.place.weight[c] * ball.vertex_m[ball.triangle[site.place.triangle][c]];
+      counts += site.place.weight[c] != 0.0;
+    }
+    EXPECT_NEAR(norm(point_m - site.point_m), 0.0, 1e-12);
+    ++corners_that_count[counts];
+  }
+  for (int counts = 1; counts <= 3; ++counts)
+    EXPECT_GT(corners_that_count[counts], 10) << "vertices, edges and faces are met";
 }
 
 TEST(Site, GlobalQueryFindsWhatBruteForceFinds) {
@@ -86,14 +108,14 @@ TEST(Site, GlobalQueryFindsWhatBruteForceFinds) {
 
 TEST(Site, AShortMoveIsFollowedOverAFineSurface) {
   const SurfaceMesh ball = tests::make_ball(50_mm, 6);  // 32 768 triangles of about 1.5 mm
-  std::uint32_t triangle = follow(ball.view(), 0, {51_mm, 0, 0}).triangle;
+  std::uint32_t triangle = follow(ball.view(), 0, {51_mm, 0, 0}).place.triangle;
   for (int step = 0; step <= 2000; ++step) {  // 0.1 mm a tick round the equator and over the pole
     const double angle_rad = step * 0.1_mm / 51_mm;
     const Vec3 p =
         51_mm * Vec3{std::cos(angle_rad), std::sin(angle_rad) * 0.6, std::sin(angle_rad) * 0.8};
     const Site site = follow(ball.view(), triangle, p);
     EXPECT_NEAR(site.distance_m, 1_mm, 0.02_mm);
-    triangle = site.triangle;
+    triangle = site.place.triangle;
   }
 }
 
@@ -107,9 +129,9 @@ TEST(Site, PressingIntoAThinPlateDoesNotJumpToItsFarSide) {
   for (const auto& [a, b, c] : lower.triangle) t.push_back({a + shift, c + shift, b + shift});
   const SurfaceMesh sheets = *make_surface_mesh(v, t);
   const SeedGrid seeds = make_seed_grid(sheets.view(), 5_mm);
-  std::uint32_t triangle = query(sheets.view(), seeds.view(), {1_mm, 1_mm, 1_mm}).triangle;
+  std::uint32_t triangle = query(sheets.view(), seeds.view(), {1_mm, 1_mm, 1_mm}).place.triangle;
   for (double z = 1_mm; z > -3_mm; z -= 0.1_mm)
-    triangle = follow(sheets.view(), triangle, {1_mm, 1_mm, z}).triangle;
+    triangle = follow(sheets.view(), triangle, {1_mm, 1_mm, z}).place.triangle;
   EXPECT_NEAR(follow(sheets.view(), triangle, {1_mm, 1_mm, -3_mm}).distance_m, -3_mm, 1e-9);
   // And each sheet is found from its own side.
   EXPECT_NEAR(query(sheets.view(), seeds.view(), {1_mm, 1_mm, -5_mm}).distance_m, 1_mm, 1e-9);

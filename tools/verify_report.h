@@ -70,5 +70,8 @@ struct Verifier {
 
 std::span<const Verifier> kinematics_verifiers();
 std::span<const Verifier> rhombus_verifiers();
+std::span<const Verifier> tracking_verifiers();
+std::span<const Verifier> disc_verifiers();
+std::span<const Verifier> hex_verifiers();
 
 }  // namespace tact::tools

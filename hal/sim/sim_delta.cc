@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
+#include "hal/delta_at_tool.h"
 #include "hal/sim/sim_delta_model.h"
 
 namespace tact::hal {
@@ -36,6 +38,20 @@ Vec3 saturated(const Vec3& v, double most) RT_SAFE {
   const double size = norm(v);
   if (size <= most) return v;
   return size < std::numeric_limits<double>::infinity() ? v * (most / size) : Vec3{};
+}
+
+/// The middle and the edges of the workspace cylinder.
+std::vector<Vec3> corners_D() {
+  std::vector<Vec3> corners{point_D({})};
+  for (const double x_m : {-sim_delta::kWorkspaceHalfLength_m, sim_delta::kWorkspaceHalfLength_m}) {
+    corners.push_back(point_D({x_m, 0.0, 0.0}));
+    for (int i = 0; i < 12; ++i) {
+      const double angle_rad = i * std::numbers::pi / 6.0;
+      corners.push_back(point_D({x_m, sim_delta::kWorkspaceRadius_m * std::cos(angle_rad),
+                                 sim_delta::kWorkspaceRadius_m * std::sin(angle_rad)}));
+    }
+  }
+  return corners;
 }
 
 /// The nearest point of the workspace cylinder.
@@ -71,7 +87,13 @@ DeviceInfo SimDelta::info() const {
           .max_force_N = sim_delta::kMaxForce_N,
           .max_torque_Nm = sim_delta::kMaxTorque_Nm,
           .workspace_radius_m = sim_delta::kWorkspaceRadius_m,
-          .workspace_half_length_m = sim_delta::kWorkspaceHalfLength_m};
+          .workspace_half_length_m = sim_delta::kWorkspaceHalfLength_m,
+          .at_tool = delta_at_tool(delta_,
+                                   {.viscous_Nms_per_rad = settings_.joint_damping_Nms_per_rad,
+                                    .coulomb_Nm = settings_.joint_friction_Nm,
+                                    .counts_per_turn = settings_.counts_per_turn,
+                                    .delay_s = settings_.sample_delay_s},
+                                   corners_D())};
 }
 
 Vec3 SimDelta::true_position_m() const RT_SAFE { return point_W(plant_.position_m()); }

@@ -1,0 +1,152 @@
+#include "host/tracking/epnp.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <opencv2/calib3d.hpp>
+#include <vector>
+
+namespace tact::host {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kFlat = 1e-10;  // lambda_2 / lambda_1 at or below: on a line, EP-2
+constexpr double kSpot = 1e-12;  // radius over distance from the origin at or below: one place
+
+/// The points about their centroid, in units of their radius: the same numbers for any unit.
+struct Cloud {
+  Vector3d centroid_m = Vector3d::Zero();
+  double radius_m = 0.0;  // root mean square distance from the centroid; 0: on a line or a spot
+  std::vector<Vector3d> points;
+};
+
+Cloud cloud_of(std::span<const Vector3d> points_m) {
+  Cloud out;
+  double farthest_m = 0.0;
+  for (const Vector3d& p : points_m) {
+    out.centroid_m += p / static_cast<double>(points_m.size());
+    farthest_m = std::max(farthest_m, p.stableNorm());
+  }
+  double radius_m = 0.0;  // the largest, so that squares neither overflow nor vanish
+  for (const Vector3d& p : points_m) {
+    radius_m = std::max(radius_m, (p - out.centroid_m).stableNorm());
+  }
+  if (!(radius_m > kSpot * farthest_m)) return out;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const Vector3d& p : points_m) {
+    const Vector3d d = (p - out.centroid_m) / radius_m;
+    covariance += d * d.transpose() / static_cast<double>(points_m.size());
+  }
+  const Vector3d lambda =  // ascending
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly)
+          .eigenvalues();
+  if (!(lambda[1] > kFlat * lambda[2])) return out;
+  out.radius_m = radius_m * std::sqrt(covariance.trace());
+  for (const Vector3d& p : points_m) out.points.push_back((p - out.centroid_m) / out.radius_m);
+  return out;
+}
+
+/// Three points far apart: the one farthest out, the one farthest from it, the one that spans most.
+std::array<std::size_t, 3> widest_triangle(std::span<const Vector3d> points) {
+  const auto most = [&](auto measure) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      if (measure(points[i]) > measure(points[best])) best = i;
+    }
+    return best;
+  };
+  const std::size_t a = most([](const Vector3d& p) { return p.norm(); });
+  const std::size_t b = most([&](const Vector3d& p) { return (p - points[a]).norm(); });
+  const Vector3d side = points[b] - points[a];
+  return {a, b, most([&](const Vector3d& p) { return side.cross(p - points[a]).norm(); })};
+}
+
+/// What OpenCV takes.
+struct Views {
+  std::vector<cv::Point3d> points;
+  std::vector<cv::Point2d> pixels;
+
+  void add(const Vector3d& point, const Vector2d& pixel) {
+    points.emplace_back(point.x(), point.y(), point.z());
+    pixels.emplace_back(pixel.x(), pixel.y());
+  }
+};
+
+void add_poses(const std::vector<cv::Mat>& turns, const std::vector<cv::Mat>& shifts,
+               std::vector<Pose>& poses) {
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    const Vector3d turn(turns[i].at<double>(0), turns[i].at<double>(1), turns[i].at<double>(2));
+    const Vector3d t(shifts[i].at<double>(0), shifts[i].at<double>(1), shifts[i].at<double>(2));
+    if (!turn.allFinite() || !t.allFinite()) continue;
+    const double angle_rad = turn.norm();
+    Pose pose{.rotation = Quaterniond::Identity(), .position_m = t};
+    if (angle_rad > 0.0) pose.rotation = Eigen::AngleAxisd(angle_rad, turn / angle_rad);
+    poses.push_back(pose);
+  }
+}
+
+/// EP-3 .. EP-9 on all points, P3P on three. OpenCV speaks of trouble by exceptions.
+std::vector<Pose> starts(const Camera& camera, std::span<const Vector3d> points,
+                         std::span<const Vector2d> pixels_px) {
+  const cv::Matx33d lens(camera.fx_px, 0.0, camera.cx_px, 0.0, camera.fy_px, camera.cy_px, 0.0, 0.0,
+                         1.0);
+  Views all, triangle;
+  for (std::size_t i = 0; i < points.size(); ++i) all.add(points[i], pixels_px[i]);
+  for (const std::size_t i : widest_triangle(points)) triangle.add(points[i], pixels_px[i]);
+  std::vector<Pose> poses;
+  try {
+    std::vector<cv::Mat> turns, shifts;
+    cv::solvePnPGeneric(all.points, all.pixels, lens, cv::noArray(), turns, shifts, false,
+                        cv::SOLVEPNP_EPNP);
+    add_poses(turns, shifts, poses);
+  } catch (const cv::Exception&) {  // the other start remains
+  }
+  try {
+    std::vector<cv::Mat> turns, shifts;
+    cv::solveP3P(triangle.points, triangle.pixels, lens, cv::noArray(), turns, shifts,
+                 cv::SOLVEPNP_AP3P);
+    add_poses(turns, shifts, poses);
+  } catch (const cv::Exception&) {  // what EPnP found remains
+  }
+  return poses;
+}
+
+bool is_focal(double f_px) { return f_px > 0.0 && std::isfinite(f_px); }
+
+bool is_valid(const Camera& camera, std::span<const Vector3d> points_m,
+              std::span<const Vector2d> pixels_px) {
+  return is_focal(camera.fx_px) && is_focal(camera.fy_px) && std::isfinite(camera.cx_px) &&
+         std::isfinite(camera.cy_px) && points_m.size() == pixels_px.size() &&
+         std::ranges::all_of(points_m, [](const Vector3d& p) { return p.allFinite(); }) &&
+         std::ranges::all_of(pixels_px, [](const Vector2d& p) { return p.allFinite(); });
+}
+
+}  // namespace
+
+PoseEstimate estimate_pose(const Camera& camera, std::span<const Vector3d> points_m,
+                           std::span<const Vector2d> pixels_px) {
+  if (!is_valid(camera, points_m, pixels_px)) return {};
+  if (points_m.size() < 4) return {.status = PoseStatus::kTooFewPoints};
+  const Cloud cloud = cloud_of(points_m);
+  if (cloud.points.empty()) return {.status = PoseStatus::kDegenerate};
+
+  PoseEstimate out{.status = PoseStatus::kNoPose,
+                   .rms_px = std::numeric_limits<double>::infinity()};
+  for (const Pose& start : starts(camera, cloud.points, pixels_px)) {
+    const Pose pose = polish_pose(camera, cloud.points, pixels_px, start);
+    const double rms_px = reprojection_rms_px(camera, cloud.points, pixels_px, pose);
+    if (!(rms_px < out.rms_px)) continue;
+    out = {.status = PoseStatus::kOk, .pose = pose, .rms_px = rms_px};
+  }
+  if (out.status != PoseStatus::kOk) return {.status = PoseStatus::kNoPose};
+  // X = R (P - c) / r + t'  in units of r, so  t = r t' - R c
+  out.pose.rotation = canonical(out.pose.rotation);
+  out.pose.position_m = cloud.radius_m * out.pose.position_m - out.pose.rotation * cloud.centroid_m;
+  return out;
+}
+
+}  // namespace tact::host

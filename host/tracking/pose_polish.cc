@@ -1,0 +1,97 @@
+#include "host/tracking/pose_polish.h"
+
+#include <Eigen/QR>
+#include <cmath>
+#include <limits>
+
+namespace tact::host {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+constexpr double kStill = 1e-12;  // a step below this ends, rad and t over the depth
+constexpr int kHalvings = 40;
+
+Vector2d pixel_of(const Camera& camera, const Vector3d& x) {
+  return {camera.fx_px * x.x() / x.z() + camera.cx_px, camera.fy_px * x.y() / x.z() + camera.cy_px};
+}
+
+/// The pose after a small turn (rotation vector, in the camera's axes) and shift.
+Pose moved(const Pose& pose, const Vector6d& step) {
+  const Vector3d turn = step.head<3>();
+  const double angle_rad = turn.norm();
+  Pose out = pose;
+  if (angle_rad > 0.0) {
+    out.rotation = (Eigen::AngleAxisd(angle_rad, turn / angle_rad) * pose.rotation).normalized();
+  }
+  out.position_m += step.tail<3>();
+  return out;
+}
+
+/// The Gauss-Newton step: least squares of J step = pixel - (u, v).
+Vector6d gauss_newton_step(const Camera& camera, std::span<const Vector3d> points_m,
+                           std::span<const Vector2d> pixels_px, const Pose& pose) {
+  const auto rows = static_cast<Index>(2 * points_m.size());
+  Eigen::Matrix<double, Eigen::Dynamic, 6> jacobian(rows, 6);
+  Eigen::VectorXd residual(rows);
+  for (std::size_t i = 0; i < points_m.size(); ++i) {
+    const Vector3d turned = pose.rotation * points_m[i], x = turned + pose.position_m;
+    // du = fx (dX - X/Z dZ)/Z ,  dv = fy (dY - Y/Z dZ)/Z ,  dX = w x (R P) + dt
+    Eigen::Matrix<double, 2, 3> by_x;
+    by_x << camera.fx_px / x.z(), 0.0, -camera.fx_px * x.x() / (x.z() * x.z()),  //
+        0.0, camera.fy_px / x.z(), -camera.fy_px * x.y() / (x.z() * x.z());
+    const auto row = static_cast<Index>(2 * i);
+    for (Index axis = 0; axis < 3; ++axis) {
+      jacobian.block<2, 1>(row, axis) = by_x * Vector3d::Unit(axis).cross(turned);
+    }
+    jacobian.block<2, 3>(row, 3) = by_x;
+    residual.segment<2>(row) = pixels_px[i] - pixel_of(camera, x);
+  }
+  return jacobian.colPivHouseholderQr().solve(residual);
+}
+
+}  // namespace
+
+double reprojection_rms_px(const Camera& camera, std::span<const Vector3d> points_m,
+                           std::span<const Vector2d> pixels_px, const Pose& pose) {
+  double sum_px2 = 0.0;
+  for (std::size_t i = 0; i < points_m.size(); ++i) {
+    const Vector3d x = to_world(pose, points_m[i]);
+    if (!(x.z() > 0.0)) return std::numeric_limits<double>::infinity();
+    sum_px2 += (pixel_of(camera, x) - pixels_px[i]).squaredNorm();
+  }
+  return std::sqrt(sum_px2 / static_cast<double>(points_m.size()));
+}
+
+Pose polish_pose(const Camera& camera, std::span<const Vector3d> points_m,
+                 std::span<const Vector2d> pixels_px, const Pose& start) {
+  const auto rms_px = [&](const Pose& pose) {
+    return reprojection_rms_px(camera, points_m, pixels_px, pose);
+  };
+  Pose pose = start;
+  double best_px = rms_px(pose);
+  if (!std::isfinite(best_px)) return pose;
+  for (int i = 0; i < kPolishSteps; ++i) {
+    Vector6d step = gauss_newton_step(camera, points_m, pixels_px, pose);
+    if (!step.allFinite()) return pose;
+    Pose next = moved(pose, step);
+    double next_px = rms_px(next);
+    for (int h = 0; h < kHalvings && !(next_px < best_px); ++h) {
+      step *= 0.5;
+      next = moved(pose, step);
+      next_px = rms_px(next);
+    }
+    if (!(next_px < best_px)) return pose;  // at the bottom, to rounding
+    pose = next;
+    best_px = next_px;
+    if (step.head<3>().norm() < kStill && step.tail<3>().norm() < kStill * pose.position_m.norm()) {
+      break;
+    }
+  }
+  return pose;
+}
+
+}  // namespace tact::host

@@ -1,0 +1,36 @@
+// pose_polish.h - how well a pose explains the pixels of known points, and the best pose nearby.
+//
+//     X = R P + t , Z > 0 ;  u = fx X/Z + cx ,  v = fy Y/Z + cy                      EP-1
+//     rms^2 = (1/n) sum |(u, v) - pixel|^2
+//     Gauss-Newton on the pixel residual in (rotation vector, t) until it stands     EP-10
+//
+//     P  point in the object's axes, m     R, t  camera <- object, t in m, +Z forward
+//     fx, fy, cx, cy  pinhole without distortion, px     u, v  px
+//
+// A step that does not lessen rms is halved; points must stay before the camera. At most
+// kPolishSteps steps. Source: PHYSICS 5.2.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "host/tracking/coordinate_chain.h"
+
+namespace tact::host {
+
+struct Camera {
+  double fx_px = 0.0, fy_px = 0.0;  // > 0; 1 for normalised coordinates (tangents of angles)
+  double cx_px = 0.0, cy_px = 0.0;
+};
+
+inline constexpr int kPolishSteps = 100;
+
+/// Root mean square distance between seen and computed pixels; infinite unless all Z > 0.
+double reprojection_rms_px(const Camera& camera, std::span<const Eigen::Vector3d> points_m,
+                           std::span<const Eigen::Vector2d> pixels_px, const Pose& pose);
+
+/// EP-10 from `start`; points and pixels are as many, three or more.
+Pose polish_pose(const Camera& camera, std::span<const Eigen::Vector3d> points_m,
+                 std::span<const Eigen::Vector2d> pixels_px, const Pose& start);
+
+}  // namespace tact::host

@@ -1,0 +1,122 @@
+#include "model/fem/linear_solver.h"
+
+// MetisSupport uses std::cerr without including it.
+// clang-format off
+#include <iostream>
+#include <Eigen/MetisSupport>
+// clang-format on
+#include <Eigen/SparseCholesky>
+
+namespace tact::model::fem {
+namespace {
+
+using Cholesky = Eigen::SimplicialLLT<StiffnessMatrix, Eigen::Lower,
+                                      Eigen::MetisOrdering<StiffnessMatrix::StorageIndex>>;
+
+/// L x = f, then L' x = f, for `Width` loads side by side: x[row * Width + load].
+template <int Width>
+void solve_factored(const StiffnessMatrix& l, double* x) {
+  using Loads = Eigen::Array<double, Width, 1>;
+  const auto at = [x](std::int64_t row) { return Eigen::Map<Loads>(x + row * Width); };
+  const std::int32_t* start = l.outerIndexPtr();
+  const std::int32_t* row = l.innerIndexPtr();
+  const double* value = l.valuePtr();
+  const std::int32_t n = static_cast<std::int32_t>(l.cols());
+  for (std::int32_t j = 0; j < n; ++j) {  // the first entry of a column is its diagonal
+    const Loads here = at(j) / value[start[j]];
+    at(j) = here;
+    for (std::int32_t p = start[j] + 1; p < start[j + 1]; ++p) at(row[p]) -= value[p] * here;
+  }
+  for (std::int32_t j = n - 1; j >= 0; --j) {
+    Loads sum = at(j);
+    for (std::int32_t p = start[j] + 1; p < start[j + 1]; ++p) sum -= value[p] * at(row[p]);
+    at(j) = sum / value[start[j]];
+  }
+}
+
+}  // namespace
+
+struct LinearSolver::Factor {
+  FreeNodes free;
+  StiffnessMatrix lower;               // L
+  std::vector<std::int32_t> position;  // of each unknown in L
+  std::vector<double> work;
+
+  // Where component i of the node stands in `work`, in loads; only for free nodes.
+  std::size_t place(std::uint32_t node, std::size_t i) const {
+    return static_cast<std::size_t>(
+        position[static_cast<std::size_t>(free.first_unknown[node]) + i]);
+  }
+  bool is_fixed(std::uint32_t node) const { return free.first_unknown[node] == FreeNodes::kFixed; }
+  void add(std::span<const NodeLoad> load, std::size_t width, std::size_t column) {
+    for (const NodeLoad& one : load) {
+      if (is_fixed(one.node)) continue;
+      work[place(one.node, 0) * width + column] += one.force_N.x;
+      work[place(one.node, 1) * width + column] += one.force_N.y;
+      work[place(one.node, 2) * width + column] += one.force_N.z;
+    }
+  }
+  Vec3 displacement_m(std::uint32_t node, std::size_t width, std::size_t column) const {
+    if (is_fixed(node)) return {};
+    return {work[place(node, 0) * width + column], work[place(node, 1) * width + column],
+            work[place(node, 2) * width + column]};
+  }
+};
+
+LinearSolver::LinearSolver(std::unique_ptr<Factor> factor) : factor_(std::move(factor)) {}
+LinearSolver::LinearSolver(LinearSolver&&) noexcept = default;
+LinearSolver& LinearSolver::operator=(LinearSolver&&) noexcept = default;
+LinearSolver::~LinearSolver() = default;
+
+std::size_t LinearSolver::nodes() const { return factor_->free.first_unknown.size(); }
+std::size_t LinearSolver::unknowns() const { return factor_->position.size(); }
+std::size_t LinearSolver::factor_entries() const {
+  return static_cast<std::size_t>(factor_->lower.nonZeros());
+}
+std::size_t LinearSolver::memory_bytes() const {
+  return factor_entries() * (sizeof(double) + sizeof(std::int32_t));
+}
+
+void LinearSolver::solve(std::span<const NodeLoad> load, std::span<Vec3> displacement_m) {
+  Factor& f = *factor_;
+  f.work.assign(unknowns(), 0.0);
+  f.add(load, 1, 0);
+  solve_factored<1>(f.lower, f.work.data());
+  for (std::uint32_t node = 0; node < displacement_m.size(); ++node)
+    displacement_m[node] = f.displacement_m(node, 1, 0);
+}
+
+void LinearSolver::solve(std::span<const std::vector<NodeLoad>> loads,
+                         std::span<const std::uint32_t> wanted,
+                         std::span<std::vector<Vec3>> displacement_m) {
+  Factor& f = *factor_;
+  f.work.assign(unknowns() * kLoadsAtOnce, 0.0);
+  for (std::size_t c = 0; c < loads.size(); ++c) f.add(loads[c], kLoadsAtOnce, c);
+  solve_factored<kLoadsAtOnce>(f.lower, f.work.data());
+  for (std::size_t c = 0; c < loads.size(); ++c) {
+    displacement_m[c].resize(wanted.size());
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      displacement_m[c][i] = f.displacement_m(wanted[i], kLoadsAtOnce, c);
+  }
+}
+
+Result<LinearSolver> make_linear_solver(const TetMesh& mesh, const Elasticity& material,
+                                        const std::vector<std::uint32_t>& fixed) {
+  auto factor = std::make_unique<LinearSolver::Factor>();
+  factor->free = free_nodes(mesh.node_m.size(), fixed);
+  if (factor->free.unknowns == 0)
+    return Error{"finite elements: every node is fixed; make the fixed box smaller"};
+  const auto matrix = assemble_stiffness(mesh, material, factor->free);
+  if (!matrix) return matrix.error();
+  const Cholesky cholesky(*matrix);
+  if (cholesky.info() != Eigen::Success)
+    return Error{
+        "finite elements: the body is not held, or a node belongs to no element; make the "
+        "fixed box hold at least one triangle of the surface"};
+  factor->lower = cholesky.matrixL().nestedExpression();
+  const auto& order = cholesky.permutationP().indices();
+  factor->position.assign(order.data(), order.data() + order.size());
+  return LinearSolver(std::move(factor));
+}
+
+}  // namespace tact::model::fem

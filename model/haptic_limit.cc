@@ -1,0 +1,56 @@
+#include "model/haptic_limit.h"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace tact::model {
+namespace {
+
+bool is_not_negative(double v) RT_SAFE { return std::isfinite(v) && v >= 0.0; }
+
+bool is_valid(const DeviceAtTool& d) RT_SAFE {
+  return is_not_negative(d.damping_Ns_per_m) && is_not_negative(d.friction_N) &&
+         is_not_negative(d.position_step_m) && is_not_negative(d.delay_s);
+}
+
+}  // namespace
+
+HapticLimit haptic_limit(const DeviceAtTool& device, double rate_Hz,
+                         double virtual_damping_Ns_per_m, double lost_share) RT_SAFE {
+  if (!is_valid(device) || !(std::isfinite(rate_Hz) && rate_Hz > 0.0)) return {};
+  if (!std::isfinite(virtual_damping_Ns_per_m)) return {};
+  if (!(lost_share >= 0.0 && lost_share < 1.0)) return {};
+  // E[n^2] / E[n] of the holds, n T long, when each tick is lost with share p
+  const double hold_s = (1.0 + lost_share) / (1.0 - lost_share) / rate_Hz;
+  const double spare = device.damping_Ns_per_m - std::abs(virtual_damping_Ns_per_m);
+  HapticLimit limit;
+  // K_grow = (b - |B|) / (T/2 + t_d)
+  limit.grow_N_per_m = spare > 0.0 ? spare / (0.5 * hold_s + device.delay_s) : 0.0;
+  // K_quiet = 2 c / D
+  limit.quiet_N_per_m = device.position_step_m > 0.0
+                            ? 2.0 * device.friction_N / device.position_step_m
+                            : std::numeric_limits<double>::infinity();
+  return limit;
+}
+
+double largest_stable_stiffness_N_per_m(const DeviceAtTool& device, double rate_Hz) RT_SAFE {
+  return haptic_limit(device, rate_Hz).grow_N_per_m;
+}
+
+std::optional<Error> check_stiffness(const DeviceAtTool& device, double rate_Hz,
+                                     double stiffness_N_per_m) {
+  const double limit_N_per_m = largest_stable_stiffness_N_per_m(device, rate_Hz);
+  if (stiffness_N_per_m <= limit_N_per_m) return std::nullopt;
+  std::ostringstream sentence;
+  sentence.precision(3);
+  sentence << "stiffness " << stiffness_N_per_m
+           << " N/m is beyond the stable limit of this device, " << limit_N_per_m
+           << " N/m (damping " << device.damping_Ns_per_m << " N s/m, rate " << rate_Hz
+           << " Hz, delay " << 1e3 * device.delay_s
+           << " ms); make the tissue softer, raise the rate, shorten the delay, or take a device "
+              "with more damping";
+  return Error{sentence.str()};
+}
+
+}  // namespace tact::model

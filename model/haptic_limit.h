@@ -1,0 +1,56 @@
+// haptic_limit.h - how stiff a sampled spring may be before the loop makes energy of its own.
+//
+//     K_grow  = (b - |B|) / (T/2 + t_d)       beyond it an oscillation grows
+//     K_quiet = 2 c / D                       beyond it the tool may buzz by a count and never rest
+//     K_safe  = min(K_grow, K_quiet)          any hand, any pose: never a growing or lasting motion
+//
+//     K  stiffness of the spring shown, N/m        T    period of the loop, s
+//     b  viscous damping of the device, N s/m      t_d  age of the force beyond one hold, s
+//     B  virtual damping, N s/m                    D    step of the counted position, m
+//     c  Coulomb friction of the device, N
+//
+// b, c and D are those of the device at the tool, where they are worst. With t_d = 0 the first line
+// is K < 2 (b - |B|) / T (PHYSICS 0.2.3; Colgate, Schenkel, J. Robotic Systems 14 (1997) 37); for a
+// delay it is the same condition at low frequency. The second: friction must carry half the step
+// K D that the force makes where the count changes (Abbott, Okamura, IEEE T-RO 21 (2005) 952;
+// Diolaiti et al., IEEE T-RO 22 (2006) 256). Both take no help from the hand, so they hold for
+// every hand. If a share p of the ticks brings no fresh sample and the force is held, the mean
+// square of the holds grows and T becomes T (1 + p) / (1 - p). tools/stability measures all of
+// this.
+#pragma once
+
+#include <optional>
+
+#include "model/result.h"
+#include "model/rt.h"
+
+namespace tact::model {
+
+/// A haptic device as the hand meets it at the tool, at its worst pose.
+struct DeviceAtTool {
+  double damping_Ns_per_m = 0.0;  // b, >= 0
+  double friction_N = 0.0;        // c, >= 0
+  double position_step_m = 0.0;   // D, >= 0; 0: no counting
+  double delay_s = 0.0;           // t_d, >= 0
+};
+
+struct HapticLimit {
+  double grow_N_per_m = 0.0;   // K_grow
+  double quiet_N_per_m = 0.0;  // K_quiet; infinite without counting
+  double safe_N_per_m() const RT_SAFE {
+    return grow_N_per_m < quiet_N_per_m ? grow_N_per_m : quiet_N_per_m;
+  }
+};
+
+/// Bad numbers (NaN, below zero, rate of zero, lost share outside [0, 1)) give a limit of zero.
+HapticLimit haptic_limit(const DeviceAtTool& device, double rate_Hz,
+                         double virtual_damping_Ns_per_m = 0.0, double lost_share = 0.0) RT_SAFE;
+
+/// K_grow: what no spring of a scene may exceed.
+double largest_stable_stiffness_N_per_m(const DeviceAtTool& device, double rate_Hz) RT_SAFE;
+
+/// Why this device cannot show this stiffness at this rate, if so. Set-up code.
+std::optional<Error> check_stiffness(const DeviceAtTool& device, double rate_Hz,
+                                     double stiffness_N_per_m);
+
+}  // namespace tact::model

@@ -1,0 +1,182 @@
+#include "model/scene_laws.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "model/hermite_table.h"
+
+namespace tact::model {
+namespace {
+
+constexpr std::size_t kFewestKnots = 17;
+constexpr std::size_t kMostUnits = 31;  // one ring each, as many as the viewer shows
+constexpr std::size_t kMostSites = 64;
+constexpr std::size_t kMostVertices = 100'000'000;
+constexpr Range kDepth_m{1e-4, 0.1};
+
+constexpr std::array<Choice, kLawNames.size()> law_choices() {
+  std::array<Choice, kLawNames.size()> out{};
+  std::transform(kLawNames.begin(), kLawNames.end(), out.begin(), [](const LawName& law) {
+    return Choice{law.name, law.meaning};
+  });
+  return out;
+}
+constexpr auto kLaws = law_choices();
+
+void visit_rhombus(Keys& k, Scene& scene) {
+  RhombusChainParameters& p = scene.rhombus;
+  k.number("rod_length_m", {1e-4, 0.1}, "length a of each rod", p.rod_length_m);
+  k.number("initial_angle_rad", {0.05, 1.5}, "angle of the rods to the surface at rest",
+           p.initial_angle_rad);
+  k.number("normal_stiffness_N_per_m", {0.01, 1e5}, "kN, along the normal",
+           p.normal_stiffness_N_per_m);
+  k.number("tangential_stiffness_N_per_m", {0.0, 1e5}, "kT of the first unit, along the surface",
+           p.tangential_stiffness_N_per_m);
+  k.number("growth", {0.1, 100.0}, "beta: unit i has kT exp((i - 1) / beta)", p.growth);
+  k.count("units", {1, kMostUnits}, "rhombus units in series", p.units);
+}
+
+constexpr std::array kDiscForms{
+    Choice{"almen-laszlo", "the disc as it is: stiffness jumps at every layer"},
+    Choice{"linear", "its secant: one linear spring"},
+};
+constexpr std::array kFormOf{DiscForm::kAlmenLaszlo, DiscForm::kLinear};
+static_assert(kDiscForms.size() == kFormOf.size());
+
+void visit_disc_stack(Keys& k, Scene& scene) {
+  DiscStackParameters& p = scene.disc_stack;
+  std::size_t form = 0;
+  k.choice("form", kDiscForms, "almen-laszlo: stiffness jumps at each layer; linear: one spring",
+           form);
+  p.form = kFormOf[form];
+  k.number("outer_diameter_m", {1e-6, 0.1}, "D of a disc", p.disc.outer_diameter_m);
+  k.number("inner_diameter_m", {1e-6, 0.1}, "d of a disc", p.disc.inner_diameter_m);
+  k.number("thickness_m", {1e-7, 0.1}, "l of a disc", p.disc.thickness_m);
+  k.number("free_height_m", {1e-7, 0.1}, "H0 of a disc, above its thickness", p.disc.free_height_m);
+  k.number("youngs_modulus_Pa", {1.0, 1e13}, "E of a disc", p.disc.youngs_modulus_Pa);
+  k.number("poisson_ratio", {0.0, 0.495}, "mu of a disc", p.disc.poisson_ratio);
+  k.number("first_delay_s", {1e-9, 1.0}, "t1: layer i is late by t1 q^(i-1)",
+           p.delays.first_delay_s);
+  k.number("delay_growth_ratio", {0.1, 100.0}, "q", p.delays.delay_ratio);
+  k.number("refresh_rate_Hz", {1.0, 1e5}, "no layer moves later than its period",
+           p.delays.refresh_rate_Hz);
+  k.count("layers", {1, kMostUnits}, "discs at most", p.delays.layers);
+}
+
+constexpr std::array kHexWeights{
+    Choice{"node", "a body spring per node: an elastic foundation"},
+    Choice{"ring", "a body spring per ring"},
+};
+constexpr std::array kWeightOf{HexWeight::kNode, HexWeight::kRing};
+static_assert(kHexWeights.size() == kWeightOf.size());
+
+void visit_hex_sheet(Keys& k, Scene& scene) {
+  HexSheetParameters& p = scene.hex_sheet;
+  std::size_t weight = 0;
+  k.choice("weight", kHexWeights, "body springs: one per node, or one per ring", weight);
+  p.weight = kWeightOf[weight];
+  k.number("ring_pitch_m", {1e-4, 0.05}, "r, length of a surface spring", p.ring_pitch_m);
+  k.number("contact_stiffness_N_per_m", {0.0, 1e5}, "K_N0, body spring at the contact",
+           p.contact_stiffness_N_per_m);
+  k.number("body_stiffness_N_per_m", {0.01, 1e5}, "K_N, the other body springs",
+           p.body_stiffness_N_per_m);
+  k.number("surface_stiffness_N_per_m", {0.0, 1e6}, "K_T, springs along the surface",
+           p.surface_stiffness_N_per_m);
+  k.number("tension_N", {0.0, 100.0}, "T0, of the surface springs at rest", p.tension_N);
+  k.number("working_depth_m", kDepth_m, "press and pull up to here", p.working_depth_m);
+  k.count("rings", {1, kMaxHexRings}, "m; by default the fewest that meet [tolerance]", p.rings,
+          Need::kOptional);
+}
+
+void visit_compliance(Keys& k, SceneText& out) {
+  ComplianceSettings& c = out.scene.compliance;
+  out.compliance_map.place = k.place_of("map");
+  k.text("map", "file of tact-condense, absolute or from the folder of the scene",
+         out.compliance_map.file);
+  k.number("working_depth_m", kDepth_m, "press and pull up to here", c.working_depth_m);
+  k.count("curves", {2, 65}, "of the family, soft to stiff", c.curves, Need::kOptional);
+}
+
+}  // namespace
+
+void visit_laws(Keys& k, SceneText& out) {
+  Scene& scene = out.scene;
+  std::size_t law = 0;
+  k.count("table_knots", {kFewestKnots, kMaxKnots}, "of the loop's look-up table, each side",
+          scene.table_knots, Need::kOptional);
+  k.one_of("law", kLaws, [&law](std::size_t chosen) { law = chosen; });
+  scene.law = kLawNames[law].kind;
+  const auto section = [&](LawKind kind, std::string_view meaning, const Keys::Inside& inside) {
+    if (k.section(name_of(kind), meaning, inside, Need::kOptional)) scene.described.push_back(kind);
+  };
+  section(LawKind::kRhombus, "chain of rhombus units under the touched point",
+          [&](Keys& rhombus) { visit_rhombus(rhombus, scene); });
+  section(LawKind::kDiscStack, "coned discs under the touched point, flat one after the other",
+          [&](Keys& discs) { visit_disc_stack(discs, scene); });
+  section(LawKind::kHexSheet, "a skin of hexagonal rings on body springs",
+          [&](Keys& sheet) { visit_hex_sheet(sheet, scene); });
+  section(LawKind::kCompliance, "the elastic organ of [elastic], condensed to its surface",
+          [&](Keys& compliance) { visit_compliance(compliance, out); });
+
+  if (scene.law == LawKind::kAuto || scene.describes(scene.law)) return;
+  k.refuse({"law"}, fmt::format("law = \"{}\" has no section [{}]; write it or choose another law",
+                                name_of(scene.law), name_of(section_of(scene.law))));
+}
+
+void visit_law_options(Keys& k, Scene& scene) {
+  LinearPullParameters pull;
+  const auto visit_pull = [&](Keys& keys) {
+    keys.number("stiffness_N_per_m", {0.01, 1e5}, "of a held site pulled outward",
+                pull.stiffness_N_per_m);
+    keys.number("limit_m", kDepth_m, "beyond it the force stays", pull.limit_m);
+  };
+  if (k.section("pull", "a linear spring for held sites, instead of the law's own pull", visit_pull,
+                Need::kOptional)) {
+    scene.pull = pull;
+  }
+  k.entries("relaxation", {0, kMaxPronyTerms}, "a Prony term: force that fades at held depth",
+            [&](Keys& keys) {
+              PronyTerm& term = scene.relaxation.emplace_back();
+              keys.number("share_ratio", {1e-6, 1.0}, "of the force at once", term.share);
+              keys.number("time_s", {1e-4, 1e5}, "in which it fades to 1/e", term.time_s);
+            });
+}
+
+void visit_truth(Keys& k, Scene& scene) {
+  ElasticSettings elastic;
+  const auto visit_elastic = [&](Keys& keys) {
+    keys.number("youngs_modulus_Pa", {1.0, 1e9}, "E", elastic.youngs_modulus_Pa);
+    keys.number("poisson_ratio", {0.0, 0.495}, "nu", elastic.poisson_ratio);
+    keys.vector("fixed_min_m", {-1.0, 1.0}, "low corner of the box whose triangles are held",
+                elastic.fixed_min_m);
+    keys.vector("fixed_max_m", {-1.0, 1.0}, "high corner; both in the mesh's own frame",
+                elastic.fixed_max_m);
+  };
+  if (k.section("elastic", "the organ as a linear elastic body, for tact-reference and compliance",
+                visit_elastic, Need::kOptional)) {
+    scene.elastic = elastic;
+  }
+  k.entries("reference_site", {0, kMostSites}, "a vertex where tact-reference solves",
+            [&](Keys& keys) {
+              ReferenceSite& site = scene.reference_sites.emplace_back();
+              keys.count("vertex", {0, kMostVertices}, "of the organ's mesh, from 0", site.vertex);
+              keys.flag("held_out", "not used by tact-fit, only to judge", site.held_out);
+            });
+  ToleranceSettings tolerance;
+  const auto visit_tolerance = [&](Keys& keys) {
+    keys.number("force_error_ratio", {0.001, 10.0}, "RMS error of the force over its peak",
+                tolerance.force_error_ratio);
+    keys.number("shape_error_ratio", {0.001, 10.0}, "RMS error of the shape over the depth",
+                tolerance.shape_error_ratio);
+    keys.number("tick_budget_us", {0.1, 1e4}, "p99.9 of the law's share of a tick",
+                tolerance.tick_budget_us);
+  };
+  if (k.section("tolerance", "what is good enough: tact-plan chooses by it", visit_tolerance,
+                Need::kOptional)) {
+    scene.tolerance = tolerance;
+  }
+}
+
+}  // namespace tact::model

@@ -1,0 +1,171 @@
+#include "model/tissue_law.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/elastic_field.h"
+#include "model/hex_paper.h"
+#include "model/tabulated_law.h"
+
+namespace tact::model {
+namespace {
+
+constexpr double kRingTolerance = 0.01;  // of the force, where the scene states none
+
+}  // namespace
+
+// Curves first (add_*), then finish(), which measures what was built.
+class TissueLawBuilder {
+ public:
+  explicit TissueLawBuilder(const Scene& scene) : scene_(scene) {}
+
+  std::optional<Error> build(LawKind kind);
+  std::unique_ptr<TissueLaw> take() { return std::move(law_); }
+
+ private:
+  using Step = std::optional<Error>;
+
+  Step add_rhombus();
+  Step add_disc_stack();
+  Step add_hex_sheet();
+  Step add_hex_paper();
+  Step add_table(const Law& direct);
+  Result<const Law*> with_pull(const Law& press);
+  Step finish_field();
+  void measure(const Law& curve);
+
+  /// Keeps a law and returns where it lives.
+  template <typename L>
+  L& keep(L&& law) {
+    auto owned = std::make_unique<std::decay_t<L>>(std::forward<L>(law));
+    auto& place = *owned;
+    law_->owned_.push_back(std::move(owned));
+    return place;
+  }
+  Error blame(const Error& error) const { return {scene_.path + ": " + error.sentence}; }
+
+  const Scene& scene_;
+  std::unique_ptr<TissueLaw> law_ = std::make_unique<TissueLaw>();
+};
+
+std::optional<Error> TissueLawBuilder::build(LawKind kind) {
+  switch (kind) {
+    case LawKind::kRhombus:
+      return add_rhombus();
+    case LawKind::kDiscStack:
+      return add_disc_stack();
+    case LawKind::kHexSheet:
+      return add_hex_sheet();
+    case LawKind::kHexSheetPaper:
+      return add_hex_paper();
+    default:
+      return Error{
+          fmt::format("{}: law \"{}\" cannot be felt; choose another", scene_.path, name_of(kind))};
+  }
+}
+
+TissueLawBuilder::Step TissueLawBuilder::add_rhombus() {
+  law_->title_ = "rhombus chain, energy form";
+  auto chain = make_rhombus_chain(scene_.rhombus);
+  if (!chain) return blame(chain.error());
+  return add_table(keep(std::move(*chain)));
+}
+
+// Closed form already: a table would smooth the steps that the discs have.
+TissueLawBuilder::Step TissueLawBuilder::add_disc_stack() {
+  law_->title_ = scene_.disc_stack.form == DiscForm::kLinear ? "disc stack, linear"
+                                                             : "disc stack, Almen-Laszlo";
+  auto stack = make_disc_stack(scene_.disc_stack);
+  if (!stack) return blame(stack.error());
+  auto pulled = with_pull(keep(std::move(*stack)));
+  if (!pulled) return pulled.error();
+  law_->curves_.push_back(*pulled);
+  law_->memory_bytes_ += sizeof(DiscStack);
+  return finish_field();
+}
+
+TissueLawBuilder::Step TissueLawBuilder::add_hex_sheet() {
+  law_->title_ = "hexagonal sheet, energy form";
+  auto parameters = scene_.hex_sheet;
+  if (parameters.rings == 0) {
+    const double tolerance_ratio =
+        scene_.tolerance ? scene_.tolerance->force_error_ratio : kRingTolerance;
+    auto rings = rings_for_tolerance(parameters, tolerance_ratio);
+    if (!rings) return blame(rings.error());
+    parameters.rings = *rings;
+  }
+  auto sheet = make_hex_sheet(parameters);
+  if (!sheet) return blame(sheet.error());
+  return add_table(keep(std::move(*sheet)));
+}
+
+TissueLawBuilder::Step TissueLawBuilder::add_hex_paper() {
+  law_->title_ = "hexagonal sheet, as printed";
+  const HexSheetParameters& p = scene_.hex_sheet;
+  auto sheet = make_hex_paper({.ring_pitch_m = p.ring_pitch_m,
+                               .body_stiffness_N_per_m = p.body_stiffness_N_per_m,
+                               .rings = p.rings == 0 ? kMaxHexRings : p.rings,
+                               .weight = p.weight,
+                               .working_depth_m = p.working_depth_m});
+  if (!sheet) return blame(sheet.error());
+  return add_table(keep(std::move(*sheet)));
+}
+
+/// Press as the law gives it, pull as [pull] says.
+Result<const Law*> TissueLawBuilder::with_pull(const Law& press) {
+  if (!scene_.pull) return &press;
+  auto pulled = make_linear_pull(press, *scene_.pull);
+  if (!pulled) return blame(pulled.error());
+  return &keep(std::move(*pulled));
+}
+
+TissueLawBuilder::Step TissueLawBuilder::add_table(const Law& direct) {
+  auto law = with_pull(direct);
+  if (!law) return law.error();
+  auto table = tabulate(**law, scene_.table_knots);
+  if (!table) return blame(table.error());
+  law_->curves_.push_back(&keep(std::move(*table)));
+  law_->memory_bytes_ += sizeof(TabulatedLaw);
+  return finish_field();
+}
+
+TissueLawBuilder::Step TissueLawBuilder::finish_field() {
+  auto relaxation = make_relaxation(scene_.relaxation, 1.0 / scene_.rate_Hz);
+  if (!relaxation) return blame(relaxation.error());
+  law_->memory_bytes_ += law_->coordinate_.size() * sizeof(float);
+  for (const Law* curve : law_->curves_) measure(*curve);
+  law_->site_law_ =
+      std::make_unique<ElasticField>(ElasticFieldParts{.curves = law_->curves_,
+                                                       .coordinate = law_->coordinate_,
+                                                       .surface = scene_.organ_mesh.view(),
+                                                       .relaxation = *relaxation});
+  return std::nullopt;
+}
+
+// Curves are ordered soft to stiff: the last one decides the stiffness, the first one the pull.
+void TissueLawBuilder::measure(const Law& curve) {
+  constexpr int kSteps = 200;
+  const LawRange range = curve.range();
+  const bool first = &curve == law_->curves_.front();
+  if (first) law_->range_ = range;
+  law_->range_.pull_m = std::max(law_->range_.pull_m, range.pull_m);
+  law_->range_.press_m = std::min(law_->range_.press_m, range.press_m);
+  const double pull_N = range.pull_m < 0.0 ? -curve.respond(range.pull_m).force_N : 0.0;
+  law_->pull_limit_N_ = first ? pull_N : std::min(law_->pull_limit_N_, pull_N);
+  for (int i = 0; i <= kSteps; ++i) {
+    const double depth_m = range.pull_m + (range.press_m - range.pull_m) * i / kSteps;
+    const LawResponse r = curve.respond(depth_m);
+    if (r.force_N < -scene_.contact.tear_force_N) continue;  // lets go before
+    law_->stiffness_N_per_m_ = std::max(law_->stiffness_N_per_m_, r.stiffness_N_per_m);
+  }
+}
+
+Result<std::unique_ptr<TissueLaw>> make_tissue_law(const Scene& scene, LawKind kind) {
+  TissueLawBuilder builder(scene);
+  if (auto failed = builder.build(kind)) return *failed;
+  return builder.take();
+}
+
+}  // namespace tact::model

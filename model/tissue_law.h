@@ -1,0 +1,51 @@
+// tissue_law.h - a scene's law made ready to touch: the one owner of curves, tables and memory.
+//
+// Set-up code; what it hands out (SiteLaw) is what the loop calls.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/result.h"
+#include "model/scene.h"
+#include "model/site_law.h"
+
+namespace tact::model {
+
+class TissueLaw {
+ public:
+  SiteLaw& site_law() const { return *site_law_; }
+  /// The closed-form law felt where nothing varies, or in the middle of a family; null if stepped.
+  const Law* curve() const { return curves_.empty() ? nullptr : curves_[curves_.size() / 2]; }
+  /// Its working range; of a stepped law, the range that its parameters state.
+  LawRange range() const { return range_; }
+  /// Largest pull it can give, N; 0: it cannot pull.
+  double pull_limit_N() const { return pull_limit_N_; }
+  /// Largest dF/dd inside the range and short of the tear force, N/m: what device and rate must be
+  /// able to render.
+  double stiffness_N_per_m() const { return stiffness_N_per_m_; }
+  /// Bytes that the loop may touch.
+  std::size_t memory_bytes() const { return memory_bytes_; }
+  /// For people.
+  const std::string& title() const { return title_; }
+
+ private:
+  friend class TissueLawBuilder;
+
+  std::vector<std::unique_ptr<Law>> owned_;  // direct laws first, then what stands on them
+  std::vector<const Law*> curves_;           // what the field reads
+  std::vector<float> coordinate_;            // of each vertex in the family
+  std::unique_ptr<SiteLaw> site_law_;
+  LawRange range_;
+  double pull_limit_N_ = 0.0;
+  double stiffness_N_per_m_ = 0.0;
+  std::size_t memory_bytes_ = 0;
+  std::string title_;
+};
+
+/// `kind` with the scene's numbers, whatever law the scene itself chooses; the scene outlives it.
+/// The error names the scene's file and what its parameters lack.
+Result<std::unique_ptr<TissueLaw>> make_tissue_law(const Scene& scene, LawKind kind);
+
+}  // namespace tact::model

@@ -1,0 +1,47 @@
+#include "model/linear_pull.h"
+
+#include <gtest/gtest.h>
+
+#include "model/rhombus_chain.h"
+#include "model/tabulated_law.h"
+#include "model/units.h"
+#include "tests/law_contract.h"
+
+namespace tact::model {
+namespace {
+
+RhombusChain make_chain() {
+  return *make_rhombus_chain({.rod_length_m = 5_mm,
+                              .initial_angle_rad = 30_deg,
+                              .normal_stiffness_N_per_m = 150.0,
+                              .tangential_stiffness_N_per_m = 180.0,
+                              .growth = 2.0,
+                              .units = 10});
+}
+
+TEST(LinearPull, KeepsTheLawContractDirectlyAndFromATable) {
+  const RhombusChain chain = make_chain();
+  const LinearPull law = *make_linear_pull(chain, {.stiffness_N_per_m = 60.0, .limit_m = 10_mm});
+  tests::check_law_contract(law);
+  tests::check_law_contract(*tabulate(law, 65));
+}
+
+TEST(LinearPull, PressesAsTheLawAndPullsAsASpring) {
+  const RhombusChain chain = make_chain();
+  const LinearPull law = *make_linear_pull(chain, {.stiffness_N_per_m = 60.0, .limit_m = 10_mm});
+  EXPECT_EQ(law.respond(4_mm).force_N, chain.respond(4_mm).force_N);
+  EXPECT_NEAR(law.respond(-4_mm).force_N, -0.24, 1e-12);
+  EXPECT_NEAR(law.respond(-12_mm).force_N, -0.6, 1e-12);
+  EXPECT_EQ(law.respond(-12_mm).status, LawStatus::kSaturated);
+  // U = k L^2 / 2 + k L (12 mm - L)
+  EXPECT_NEAR(law.respond(-12_mm).energy_J, 0.5 * 60.0 * 1e-4 + 0.6 * 2e-3, 1e-12);
+}
+
+TEST(LinearPull, RefusesNumbersWithoutMeaning) {
+  const RhombusChain chain = make_chain();
+  EXPECT_FALSE(make_linear_pull(chain, {.stiffness_N_per_m = 0.0, .limit_m = 10_mm}));
+  EXPECT_FALSE(make_linear_pull(chain, {.stiffness_N_per_m = 60.0, .limit_m = -1.0}));
+}
+
+}  // namespace
+}  // namespace tact::model

@@ -1,0 +1,41 @@
+// gmsh.h - a closed triangle surface filled with tetrahedra by the program gmsh.
+//
+// The surface stays exactly as it is: its vertices are the first nodes of the body, in order, and
+// its triangles are faces of elements. Inside, the edge length grows from the point of interest,
+//
+//     h(x) = min(largest, fine + growth max(0, |x - at| - radius))
+//
+// Elements are quadratic with straight edges. Needs gmsh 4.8 or later (Debian: gmsh).
+// Source: C. Geuzaine, J.-F. Remacle, Int. J. Numer. Meth. Eng. 79 (2009) 1309.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "model/fem/tet_mesh.h"
+#include "model/mesh.h"
+#include "model/result.h"
+
+namespace tact::tools {
+
+/// Edge lengths around a point of interest.
+struct EdgeLengths {
+  model::Vec3 at_m{};
+  double radius_m = 0.0;   // up to here `fine`
+  double fine_m = 0.0;
+  double growth = 0.0;     // of the edge per distance beyond the radius
+  double largest_m = 0.0;  // 0: no limit
+
+  /// h(x)
+  double at(const model::Vec3& p_m) const;
+};
+
+/// Fills the surface. An error says what to install, or keeps gmsh's log and says where.
+model::Result<model::fem::TetMesh> fill_with_gmsh(
+    std::span<const model::Vec3> vertex_m, std::span<const model::TriangleCorners> triangle,
+    const EdgeLengths& lengths);
+
+/// "4.8.4", of the gmsh in PATH.
+model::Result<std::string> gmsh_version();
+
+}  // namespace tact::tools

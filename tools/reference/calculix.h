@@ -1,0 +1,59 @@
+// calculix.h - one elastic body, some nodes moved, solved by the program CalculiX (ccx).
+//
+// Elements C3D10, isotropic linear elastic. Moved nodes have their own axes: x along `direction`.
+// With large strain (NLGEOM) the material is neo-Hookean with the same E and nu at small strain:
+//
+//     W = C10 (I1' - 3) + (J - 1)^2 / D1,   C10 = G / 2, D1 = 2 / K        (CalculiX manual 6.8)
+//
+// with G = E / (2 (1 + nu)), K = E / (3 (1 - 2 nu)). Needs ccx 2.20 (Debian: calculix-ccx).
+// Source: G. Dhondt, The Finite Element Method for Three-Dimensional Thermomechanical
+// Applications, Wiley 2004.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/fem/tet_mesh.h"
+#include "model/result.h"
+
+namespace tact::tools {
+
+struct Elasticity {
+  double youngs_modulus_Pa = 0.0;
+  double poisson_ratio = 0.0;
+};
+
+/// A node and how far it goes.
+struct MovedNode {
+  std::uint32_t node = 0;
+  double along_m = 0.0;  // along the direction of the load
+};
+
+struct ElasticLoad {
+  model::Vec3 direction{};       // unit
+  std::vector<MovedNode> moved;  // not held ones
+  bool sideways_held = false;    // of the moved nodes: a bond; else they slide without friction
+  bool large_strain = false;
+};
+
+struct ElasticProblem {
+  const model::fem::TetMesh* body = nullptr;
+  Elasticity material{};
+  std::vector<std::uint32_t> held;      // do not move at all
+  ElasticLoad load{};
+  std::vector<std::uint32_t> reported;  // whose displacement is wanted
+};
+
+struct ElasticAnswer {
+  model::Vec3 force_N{};                  // that moves the moved nodes
+  std::vector<model::Vec3> displacement_m;  // of the reported nodes, in their order
+};
+
+/// Solves on one core. On failure the folder with deck and log stays, and the error says where.
+model::Result<ElasticAnswer> solve_with_calculix(const ElasticProblem& problem);
+
+/// "2.20", of the ccx in PATH.
+model::Result<std::string> calculix_version();
+
+}  // namespace tact::tools

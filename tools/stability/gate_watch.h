@@ -1,0 +1,69 @@
+// gate_watch.h - the gate of the controller between a tissue and a device, with a witness.
+//
+// Whatever a law or an unstable loop asks for, the written force must keep |F| <= limit and, from
+// tick to tick, |dF| <= slew dt; a latched fault may cut to zero at once.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/gate/gate.h"
+
+namespace tact::tools {
+
+/// The limits of the liver scene.
+inline constexpr model::Limits kSceneLimits{.force_N = 8.0,
+                                            .torque_Nm = 0.2,
+                                            .slew_N_per_s = 1000.0,
+                                            .ramp_s = 0.5,
+                                            .workspace_radius_m = 0.18,
+                                            .workspace_half_length_m = 0.15};
+
+class GateWatch {
+ public:
+  explicit GateWatch(double rate_Hz)
+      : gate_(kSceneLimits, 1.0 / rate_Hz, 1.0),
+        step_limit_N_(kSceneLimits.slew_N_per_s / rate_Hz),
+        ramp_ticks_(static_cast<int>(2.0 * kSceneLimits.ramp_s * rate_Hz)) {}
+
+  /// Arms and waits until the gate is fully open under this force.
+  void open(double wanted_N) {
+    for (int i = 0; i < ramp_ticks_; ++i) written_N_ = write(wanted_N, true);
+    max_force_N_ = max_step_N_ = 0.0;
+  }
+
+  /// One tick: the force written for the one wanted.
+  double step(double wanted_N, bool fresh) {
+    const double now_N = write(wanted_N, fresh);
+    max_force_N_ = std::max(max_force_N_, std::abs(now_N));
+    if (armed_) max_step_N_ = std::max(max_step_N_, std::abs(now_N - written_N_));
+    written_N_ = now_N;
+    return now_N;
+  }
+
+  bool is_latched() const { return !armed_; }
+  double written_N() const { return written_N_; }
+  double max_force_N() const { return max_force_N_; }
+  double max_step_N() const { return max_step_N_; }
+  bool kept_bounds() const {
+    return max_force_N_ <= kSceneLimits.force_N && max_step_N_ <= step_limit_N_ + 1e-12;
+  }
+
+ private:
+  double write(double wanted_N, bool fresh) {
+    firmware::GateInput input{.wanted = {}, .position_m = {}, .fresh = fresh, .armed = armed_};
+    input.wanted.force_N.x = wanted_N;
+    const firmware::GateVerdict verdict = gate_.judge(input);
+    if (verdict.fault != model::Fault::kNone) armed_ = false;  // as the supervisor does
+    return verdict.wrench.force_N.x;
+  }
+
+  firmware::Gate gate_;
+  double step_limit_N_;
+  int ramp_ticks_;
+  bool armed_ = true;
+  double written_N_ = 0.0;
+  double max_force_N_ = 0.0, max_step_N_ = 0.0;
+};
+
+}  // namespace tact::tools

@@ -1,0 +1,114 @@
+#include "tools/stability/laws.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "model/disc_stack.h"
+#include "model/hex_paper.h"
+#include "model/hex_sheet.h"
+#include "model/rhombus_chain.h"
+
+namespace tact::tools {
+namespace {
+
+constexpr double kDegree_rad = std::numbers::pi / 180.0;
+
+template <typename L>
+void add(std::vector<NamedLaw>& laws, const char* name, const model::Result<L>& law,
+         const char* beyond) {
+  if (law) laws.push_back({name, std::make_shared<L>(*law), beyond});
+}
+
+/// The chain of PHYSICS 1.4 at another angle, or with stiffer tangential springs.
+model::RhombusChainParameters chain(double angle_deg, double tangential_N_per_m) {
+  return {.rod_length_m = 0.010,
+          .initial_angle_rad = angle_deg * kDegree_rad,
+          .normal_stiffness_N_per_m = 1500.0,
+          .tangential_stiffness_N_per_m = tangential_N_per_m,
+          .growth = 2.0,
+          .units = 10};
+}
+
+/// The chain of the liver scene.
+constexpr model::RhombusChainParameters kLiver{.rod_length_m = 0.005,
+                                               .initial_angle_rad = 30.0 * kDegree_rad,
+                                               .normal_stiffness_N_per_m = 150.0,
+                                               .tangential_stiffness_N_per_m = 180.0,
+                                               .growth = 2.0,
+                                               .units = 10};
+
+/// A tissue of 500 N/m in layers of 0.9 mm (PHYSICS 2.3.5).
+model::Result<model::DiscStack> discs(model::DiscForm form, double cone_ratio, double first_s) {
+  return model::make_disc_stack(
+      model::Disc{.outer_diameter_m = 8e-3,
+                  .stiffness_N_per_m = 500.0,
+                  .travel_m = 0.9e-3,
+                  .cone_ratio = cone_ratio},
+      form,
+      {.first_delay_s = first_s, .delay_ratio = 1.1, .refresh_rate_Hz = 1000.0, .layers = 24});
+}
+
+constexpr model::HexSheetParameters kSheet{.ring_pitch_m = 2e-3,
+                                           .contact_stiffness_N_per_m = 20.0,
+                                           .body_stiffness_N_per_m = 20.0,
+                                           .surface_stiffness_N_per_m = 200.0,
+                                           .tension_N = 0.1,
+                                           .rings = 15,
+                                           .weight = model::HexWeight::kNode,
+                                           .working_depth_m = 8e-3};
+
+std::vector<NamedLaw> make_laws() {
+  using model::DiscForm;
+  std::vector<NamedLaw> laws;
+  add(laws, "rhombus (liver)", model::make_rhombus_chain(kLiver),
+      "rods flat: the force stays at its limit");
+  add(laws, "rhombus (30 deg)", model::make_rhombus_chain(chain(30.0, 1800.0)),
+      "rods flat: the force stays at its limit");
+  add(laws, "rhombus (snaps)", model::make_rhombus_chain(chain(45.0, 60000.0)),
+      "a unit snaps: the stiffness is zero there and the force stays");
+  add(laws, "discs linear", discs(DiscForm::kLinear, 0.4, 1e-5),
+      "all layers flat: the force stays at its limit");
+  add(laws, "discs eta 0.4", discs(DiscForm::kAlmenLaszlo, 0.4, 1e-5),
+      "all layers flat: the force stays at its limit");
+  add(laws, "discs eta 1.4", discs(DiscForm::kAlmenLaszlo, 1.4, 1e-5),
+      "next to sqrt 2 every layer ends without stiffness");
+  add(laws, "discs slow", discs(DiscForm::kAlmenLaszlo, 0.4, 2e-4),
+      "the modelled delay ends the stack after a few layers");
+  add(laws, "hex sheet", model::make_hex_sheet(kSheet), "the force stays at the working depth's");
+  model::HexSheetParameters bare = kSheet;
+  bare.tension_N = 0.0;
+  add(laws, "hex sheet no tension", model::make_hex_sheet(bare),
+      "the dent is a spike and the force stays");
+  add(laws, "hex printed ring",
+      model::make_hex_paper({.ring_pitch_m = 2e-3,
+                             .body_stiffness_N_per_m = 50.0,
+                             .rings = 25,
+                             .weight = model::HexWeight::kRing,
+                             .working_depth_m = 8e-3}),
+      "the force stays; it would grow with the number of rings");
+  add(laws, "hex printed node",
+      model::make_hex_paper({.ring_pitch_m = 2e-3,
+                             .body_stiffness_N_per_m = 50.0,
+                             .rings = 25,
+                             .weight = model::HexWeight::kNode,
+                             .working_depth_m = 8e-3}),
+      "20 N/mm: the gate limits the force from 0.4 mm on");
+  return laws;
+}
+
+}  // namespace
+
+const std::vector<NamedLaw>& probed_laws() {
+  static const std::vector<NamedLaw> laws = make_laws();
+  return laws;
+}
+
+double steepest_N_per_m(const model::Law& law, double depth_m) {
+  constexpr int kSamples = 200;
+  double most = 0.0;
+  for (int i = 1; i <= kSamples; ++i)
+    most = std::max(most, law.respond(depth_m * i / kSamples).stiffness_N_per_m);
+  return most;
+}
+
+}  // namespace tact::tools

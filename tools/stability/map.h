@@ -1,0 +1,44 @@
+// map.h - one map of tact-stability: a table of independent cells, what it must show, its pictures.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/common/picture.h"
+#include "tools/common/table.h"
+
+namespace tact::tools {
+
+/// A sentence about a whole table that must be true.
+struct Finding {
+  bool holds = false;
+  std::string sentence;
+};
+
+enum class Grid { kFull, kQuick };
+
+struct Map {
+  char letter = '?';  // of --map
+  const char* name = "";
+  const char* purpose = "";  // for --help
+  std::vector<Column> (*columns)() = nullptr;
+  std::size_t (*jobs)(Grid grid) = nullptr;
+  Row (*run)(std::size_t job, Grid grid) = nullptr;
+  std::vector<Finding> (*judge)(const Table& table) = nullptr;
+  std::vector<Picture> (*pictures)(Grid grid) = nullptr;
+};
+
+/// All maps, in the order of their letters.
+std::vector<Map> all_maps();
+
+Map integrator_map();
+Map printed_rhombus_map();
+Map law_limit_map();
+Map loop_map();
+Map law_loop_map();
+Map delta_loop_map();
+Map tick_map();
+Map loss_map();
+
+}  // namespace tact::tools

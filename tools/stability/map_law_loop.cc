@@ -1,0 +1,123 @@
+// The closed haptic loop on every law: is its tangent stiffness what the wall's K is?
+//
+// Per cell one law, held at one depth of its range and shaken by a hair; its force is scaled by the
+// largest factor without growth. If the theory of the wall carries over, factor times tangent is
+// K_grow of model/haptic_limit.h, whatever the law.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/stability/axes.h"
+#include "tools/stability/gate_watch.h"
+#include "tools/stability/haptic_loop.h"
+#include "tools/stability/laws.h"
+#include "tools/stability/map.h"
+#include "tools/stability/pictures.h"
+
+namespace tact::tools {
+namespace {
+
+struct Settings {
+  std::vector<double> depth_ratio, damping_Ns_per_m, delay_s;
+};
+
+Settings settings(Grid grid) {
+  if (grid == Grid::kQuick)
+    return {.depth_ratio = {0.2, 0.7}, .damping_Ns_per_m = {1.0}, .delay_s = {0.5e-3}};
+  return {.depth_ratio = {0.05, 0.2, 0.4, 0.6, 0.8, 0.95},
+          .damping_Ns_per_m = {0.3, 1.0, 3.0},
+          .delay_s = {0.0, 0.5e-3, 2e-3}};
+}
+
+Axes<4> axes(Grid grid) {
+  const Settings s = settings(grid);
+  return {
+      {probed_laws().size(), s.delay_s.size(), s.damping_Ns_per_m.size(), s.depth_ratio.size()}};
+}
+
+std::vector<Column> columns() {
+  return {{"law", CellKind::kWord},    {"delay_s"},
+          {"damping_Ns_per_m"},        {"depth_m"},
+          {"tangent_N_per_m"},         {"theory_grow_N_per_m"},
+          {"largest_tangent_N_per_m"}, {"measured_over_theory"},
+          {"damping_needed_Ns_per_m"}, {"gate_max_force_N"},
+          {"gate_max_step_N"},         {"beyond_the_line", CellKind::kWord}};
+}
+
+/// The law three times stiffer than what is stable, every force through the gate.
+void run_gated(const LoopCase& loop, const TissueForce& tissue, GateWatch& gate) {
+  LoopCase shaken = loop;
+  shaken.kick_m = 1e-3;
+  gate.open(std::min(tissue(loop.balance_m), kSceneLimits.force_N));
+  run_loop(shaken, tissue, [&](double wanted_N, bool fresh) { return gate.step(wanted_N, fresh); });
+}
+
+Row run(std::size_t job, Grid grid) {
+  const Settings s = settings(grid);
+  const auto [which, delay, damping, depth] = axes(grid).at(job);
+  const NamedLaw& named = probed_laws()[which];
+  const double range_m = named.law->range().press_m;
+  LoopCase loop;
+  loop.device.damping_Ns_per_m = s.damping_Ns_per_m[damping];
+  loop.device.delay_s = s.delay_s[delay];
+  loop.balance_m = s.depth_ratio[depth] * range_m;
+  loop.kick_m = 1e-4 * range_m;
+  const TissueForce tissue = [&](double depth_m) { return named.law->respond(depth_m).force_N; };
+  const double theory = model::haptic_limit(loop.device, loop.rate_Hz).grow_N_per_m;
+  const double tangent = named.law->respond(loop.balance_m).stiffness_N_per_m;
+  const double guess = theory / tangent;
+  const double factor = largest_factor(loop, tissue, Verdict::kGrow, 0.02 * guess, 50.0 * guess);
+  GateWatch gate(loop.rate_Hz);
+  run_gated(
+      loop, [&](double depth_m) { return 3.0 * factor * tissue(depth_m); }, gate);
+  // what the law as it is asks of the device at its steepest point
+  const double needed =
+      steepest_N_per_m(*named.law, range_m) * (0.5 / loop.rate_Hz + loop.device.delay_s);
+  return {named.name,
+          loop.device.delay_s,
+          loop.device.damping_Ns_per_m,
+          loop.balance_m,
+          tangent,
+          theory,
+          factor * tangent,
+          factor * tangent / theory,
+          needed,
+          gate.max_force_N(),
+          gate.max_step_N(),
+          std::string(gate.kept_bounds() ? "grows to the limits of the gate" : "OUT OF BOUNDS")};
+}
+
+std::vector<Finding> judge(const Table& t) {
+  double low = 1e9, high = 0.0;
+  std::size_t in_bounds = 0;
+  for (const Row& row : t.rows()) {
+    const double ratio = t.number(row, "measured_over_theory");
+    low = std::min(low, ratio);
+    high = std::max(high, ratio);
+    in_bounds += t.word(row, "beyond_the_line") == "OUT OF BOUNDS" ? 0 : 1;
+  }
+  return {{low > 0.9 && high < 1.2,
+           fmt::format("every law at every depth loses stability where its tangent passes "
+                       "b / (T/2 + t_d): measured {:.3f} to {:.3f} of it",
+                       low, high)},
+          {in_bounds == t.rows().size(),
+           fmt::format("three times beyond the line the gate keeps |F| and |dF| in bounds in {} of "
+                       "{} cells",
+                       in_bounds, t.rows().size())}};
+}
+
+}  // namespace
+
+Map law_loop_map() {
+  return {.letter = 'c',
+          .name = "loop_laws",
+          .purpose = "largest stable tangent of every law, at depths of its range",
+          .columns = columns,
+          .jobs = [](Grid grid) { return axes(grid).jobs(); },
+          .run = run,
+          .judge = judge,
+          .pictures = law_loop_pictures};
+}
+
+}  // namespace tact::tools

@@ -1,0 +1,159 @@
+// The closed haptic loop on a wall F = K x: how stiff may it be?
+//
+// Per cell: the largest K without growth and the largest K that comes to rest, beside K_grow and
+// K_safe of model/haptic_limit.h; then the same loop at three times the measured limit, through the
+// gate. "bare" is the hand that gives no help: it pushes with a constant force.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tools/stability/axes.h"
+#include "tools/stability/gate_watch.h"
+#include "tools/stability/haptic_loop.h"
+#include "tools/stability/map.h"
+#include "tools/stability/pictures.h"
+
+namespace tact::tools {
+namespace {
+
+struct Hand {
+  const char* name;
+  HandAtTool at_tool;
+};
+constexpr Hand kHands[] = {
+    {"bare", {}},
+    {"light", {.mass_kg = 0.15, .stiffness_N_per_m = 600.0, .damping_Ns_per_m = 15.0}},
+    {"firm", {.mass_kg = 0.4, .stiffness_N_per_m = 1500.0, .damping_Ns_per_m = 30.0}},
+};
+
+struct Settings {
+  std::vector<double> damping_Ns_per_m, rate_Hz, delay_s, step_m, friction_N;
+  std::vector<Hand> hands{std::begin(kHands), std::end(kHands)};
+};
+
+Settings settings(Grid grid) {
+  if (grid == Grid::kQuick)
+    return {.damping_Ns_per_m = {0.5, 2.0, 10.0},
+            .rate_Hz = {1000.0},
+            .delay_s = {0.0, 1e-3},
+            .step_m = {0.0, 24e-6},
+            .friction_N = {0.0, 0.1},
+            .hands = {kHands[0], kHands[2]}};
+  return {.damping_Ns_per_m = {0.2, 0.5, 1.0, 2.0, 5.0, 10.0},
+          .rate_Hz = {500.0, 1000.0, 2000.0, 4000.0},
+          .delay_s = {0.0, 0.5e-3, 1e-3, 3e-3},
+          .step_m = {0.0, 5e-6, 10e-6, 24e-6, 50e-6, 100e-6},
+          .friction_N = {0.0, 0.02, 0.1, 0.3}};
+}
+
+Axes<6> axes(const Settings& s) {
+  return {{s.rate_Hz.size(), s.delay_s.size(), s.friction_N.size(), s.hands.size(), s.step_m.size(),
+           s.damping_Ns_per_m.size()}};
+}
+
+std::vector<Column> columns() {
+  return {{"rate_Hz"},
+          {"delay_s"},
+          {"friction_N"},
+          {"hand", CellKind::kWord},
+          {"position_step_m"},
+          {"damping_Ns_per_m"},
+          {"theory_grow_N_per_m"},
+          {"theory_safe_N_per_m"},
+          {"largest_without_growth_N_per_m"},
+          {"largest_at_rest_N_per_m"},
+          {"gate_max_force_N"},
+          {"gate_max_step_N"},
+          {"gate_swing_m"},
+          {"beyond_the_line", CellKind::kWord}};
+}
+
+/// Three times too stiff, pressed with 2 N, every force through the gate.
+LoopRun run_gated(LoopCase loop, double stiffness_N_per_m, GateWatch& gate) {
+  constexpr double kPush_N = 2.0;
+  loop.balance_m = kPush_N / stiffness_N_per_m;
+  gate.open(kPush_N);
+  return run_loop(
+      loop, [&](double depth_m) { return stiffness_N_per_m * depth_m; },
+      [&](double wanted_N, bool fresh) { return gate.step(wanted_N, fresh); });
+}
+
+Row run(std::size_t job, Grid grid) {
+  const Settings s = settings(grid);
+  const auto [rate, delay, friction, hand, step, damping] = axes(s).at(job);
+  LoopCase loop;
+  loop.device = {.damping_Ns_per_m = s.damping_Ns_per_m[damping],
+                 .friction_N = s.friction_N[friction],
+                 .position_step_m = s.step_m[step],
+                 .delay_s = s.delay_s[delay]};
+  loop.rate_Hz = s.rate_Hz[rate];
+  loop.hand = s.hands[hand].at_tool;
+  const model::HapticLimit theory = model::haptic_limit(loop.device, loop.rate_Hz);
+  const double grow_N_per_m = largest_wall_N_per_m(loop, Verdict::kGrow);
+  LoopCase patient = loop;  // close to the line it rings for long
+  patient.duration_s *= 3.0;
+  const double rest_N_per_m = largest_wall_N_per_m(patient, Verdict::kBuzz);
+  GateWatch gate(loop.rate_Hz);
+  const LoopRun gated = run_gated(loop, 3.0 * std::max(grow_N_per_m, 1.0), gate);
+  return {loop.rate_Hz,
+          loop.device.delay_s,
+          loop.device.friction_N,
+          std::string(s.hands[hand].name),
+          loop.device.position_step_m,
+          loop.device.damping_Ns_per_m,
+          theory.grow_N_per_m,
+          theory.safe_N_per_m(),
+          grow_N_per_m,
+          rest_N_per_m,
+          gate.max_force_N(),
+          gate.max_step_N(),
+          gated.last_swing_m,
+          std::string(gate.kept_bounds() ? "grows to the limits of the gate" : "OUT OF BOUNDS")};
+}
+
+std::vector<Finding> judge(const Table& t) {
+  double least_grow = 1e9, least_rest = 1e9, low = 1e9, high = 0.0;
+  std::size_t out_of_bounds = 0;
+  for (const Row& row : t.rows()) {
+    const double theory = t.number(row, "theory_grow_N_per_m");
+    const double safe = t.number(row, "theory_safe_N_per_m");
+    const double ratio = t.number(row, "largest_without_growth_N_per_m") / theory;
+    least_grow = std::min(least_grow, ratio);
+    if (safe > 0.0)
+      least_rest = std::min(least_rest, t.number(row, "largest_at_rest_N_per_m") / safe);
+    if (t.word(row, "hand") == "bare" && !(t.number(row, "friction_N") > 0.0)) {
+      low = std::min(low, ratio);
+      high = std::max(high, ratio);
+    }
+    out_of_bounds += t.word(row, "beyond_the_line") == "OUT OF BOUNDS" ? 1 : 0;
+  }
+  return {
+      {least_grow > 0.95, fmt::format("no cell grows below K = b / (T/2 + t_d): the least measured "
+                                      "limit is {:.3f} of it",
+                                      least_grow)},
+      {least_rest > 0.95, fmt::format("every cell below min(b / (T/2 + t_d), 2 c / D) comes to "
+                                      "rest: the least measured limit is {:.3f} of it",
+                                      least_rest)},
+      {low > 0.95 && high < 1.25, fmt::format("without hand and friction the measured limit is "
+                                              "{:.3f} to {:.3f} of b / (T/2 + t_d)",
+                                              low, high)},
+      {out_of_bounds == 0, fmt::format("three times beyond the line the gate keeps |F| and |dF| in "
+                                       "bounds in {} of {} cells",
+                                       t.rows().size() - out_of_bounds, t.rows().size())},
+  };
+}
+
+}  // namespace
+
+Map loop_map() {
+  return {.letter = 'c',
+          .name = "loop",
+          .purpose = "largest stable wall over damping, rate, delay, encoder, friction, hand",
+          .columns = columns,
+          .jobs = [](Grid grid) { return axes(settings(grid)).jobs(); },
+          .run = run,
+          .judge = judge,
+          .pictures = loop_pictures};
+}
+
+}  // namespace tact::tools

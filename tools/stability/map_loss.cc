@@ -1,0 +1,103 @@
+// A burst of lost samples: what each policy does to the hand.
+//
+// The tool is 2 N deep in a wall of 1 kN/m when the samples stop, and the hand goes on moving: in,
+// or out with 0.1 m/s. Per length of the burst: the force at its end, and the energy that the hand
+// got beyond what the wall itself would have given back, if the controller
+//
+//     holds   the last force for ever
+//     gate    holds one tick, fades to zero within 10 ms, latches at 20 (firmware/gate/gate.h)
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/stability/axes.h"
+#include "tools/stability/gate_watch.h"
+#include "tools/stability/map.h"
+#include "tools/stability/pictures.h"
+
+namespace tact::tools {
+namespace {
+
+constexpr double kRates_Hz[] = {1000.0, 4000.0};
+constexpr double kSpeed_mps = 0.1;
+constexpr double kWall_N_per_m = 1000.0;
+constexpr double kPush_N = 2.0;
+constexpr std::size_t kLongest = 41;  // 0 .. 40 ticks
+
+Axes<2> axes(Grid grid) { return {{grid == Grid::kQuick ? 1 : std::size(kRates_Hz), kLongest}}; }
+
+std::vector<Column> columns() {
+  return {{"rate_Hz"},         {"lost_in_a_row"},    {"hold_force_N"},
+          {"gate_force_N"},    {"hold_gift_J"},      {"gate_gift_J"},
+          {"gate_max_step_N"}, {"gate_max_force_N"}, {"state", CellKind::kWord}};
+}
+
+Row run(std::size_t job, Grid grid) {
+  const auto [rate, lost] = axes(grid).at(job);
+  const double period_s = 1.0 / kRates_Hz[rate];
+  GateWatch gate(kRates_Hz[rate]);
+  gate.open(kPush_N);
+  double depth_m = kPush_N / kWall_N_per_m, hold_J = 0.0, gate_J = 0.0;
+  for (std::size_t i = 0; i < lost; ++i) {
+    gate.step(kPush_N, false);
+    // the hand withdraws: a force pushes it on its way; the wall's own share is not a gift
+    const double way_m = std::min(kSpeed_mps * period_s, depth_m);
+    const double wall_J = kWall_N_per_m * (depth_m - 0.5 * way_m) * way_m;
+    hold_J += kPush_N * kSpeed_mps * period_s - wall_J;
+    gate_J += gate.written_N() * kSpeed_mps * period_s - wall_J;
+    depth_m -= way_m;
+  }
+  const char* state = lost == 0                ? "fresh"
+                      : lost == 1              ? "held"
+                      : gate.is_latched()      ? "latched"
+                      : gate.written_N() > 0.0 ? "fading"
+                                               : "zero";
+  return {kRates_Hz[rate],
+          static_cast<double>(lost),
+          kPush_N,
+          gate.written_N(),
+          hold_J,
+          gate_J,
+          gate.max_step_N(),
+          gate.max_force_N(),
+          std::string(state)};
+}
+
+std::vector<Finding> judge(const Table& t) {
+  double worst_hold_J = 0.0, worst_gate_J = 0.0, worst_step = 0.0;
+  bool ends_at_zero = true, latches = true;
+  for (const Row& row : t.rows()) {
+    worst_hold_J = std::max(worst_hold_J, t.number(row, "hold_gift_J"));
+    worst_gate_J = std::max(worst_gate_J, t.number(row, "gate_gift_J"));
+    const double rate_Hz = t.number(row, "rate_Hz"), lost = t.number(row, "lost_in_a_row");
+    worst_step = std::max(worst_step,
+                          t.number(row, "gate_max_step_N") * rate_Hz / kSceneLimits.slew_N_per_s);
+    if ((lost - 2.0) / rate_Hz >= 0.010) ends_at_zero &= t.number(row, "gate_force_N") == 0.0;
+    latches &= (t.word(row, "state") == "latched") == (lost >= 20.0);
+  }
+  return {{ends_at_zero, "10 ms after the second lost sample the force is zero, or latched at 20"},
+          {latches, "20 lost in a row latch, 19 do not"},
+          {worst_gate_J < worst_hold_J,
+           fmt::format("a hand that withdraws is given at most {:.2f} mJ by the gate, {:.2f} mJ by "
+                       "a held force and still growing",
+                       1e3 * worst_gate_J, 1e3 * worst_hold_J)},
+          {worst_step <= 1.0 + 1e-9,
+           fmt::format("letting go never changes the force faster than {:.2f} of the slew limit",
+                       worst_step)}};
+}
+
+}  // namespace
+
+Map loss_map() {
+  return {.letter = 'd',
+          .name = "loss",
+          .purpose = "a burst of lost samples: hold, fade, latch, and what the hand gets",
+          .columns = columns,
+          .jobs = [](Grid grid) { return axes(grid).jobs(); },
+          .run = run,
+          .judge = judge,
+          .pictures = loss_pictures};
+}
+
+}  // namespace tact::tools

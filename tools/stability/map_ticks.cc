@@ -1,0 +1,117 @@
+// Lost and late ticks: how much stiffness does a force that is held too long cost?
+//
+// lost: a tick brings no fresh sample with chance p and the force is held.
+// late: a tick eats n more periods with chance p; the force is held through them.
+// Theory: holds of n_i periods make K v^2 n_i^2 T^2 / 2 of energy each, damping takes b v^2 n_i T,
+//
+//     K < 2 b / T  E[n] / E[n^2]      lost: E[n]/E[n^2] = (1 - p) / (1 + p)
+//                                     late: ((1-p) + p (1+n)) / ((1-p) + p (1+n)^2)
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tools/stability/axes.h"
+#include "tools/stability/gate_watch.h"
+#include "tools/stability/haptic_loop.h"
+#include "tools/stability/map.h"
+#include "tools/stability/pictures.h"
+
+namespace tact::tools {
+namespace {
+
+/// Additional periods that an event eats; 0: lost samples.
+constexpr int kEaten[] = {0, 1, 3, 9};
+constexpr double kDamping_Ns_per_m[] = {0.5, 2.0};
+
+std::vector<double> shares(Grid grid) {
+  if (grid == Grid::kQuick) return {0.0, 0.1, 0.5};
+  return {0.0, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8};
+}
+
+Axes<3> axes(Grid grid) {
+  return {{std::size(kEaten), std::size(kDamping_Ns_per_m), shares(grid).size()}};
+}
+
+std::vector<Column> columns() {
+  return {{"event", CellKind::kWord}, {"periods_held"},
+          {"damping_Ns_per_m"},       {"share"},
+          {"theory_N_per_m"},         {"largest_without_growth_N_per_m"},
+          {"measured_over_theory"},   {"gate_max_force_N"},
+          {"gate_max_step_N"},        {"beyond_the_line", CellKind::kWord}};
+}
+
+double theory_N_per_m(const LoopCase& loop) {
+  if (loop.late_periods == 0)
+    return model::haptic_limit(loop.device, loop.rate_Hz, 0.0, loop.lost_share).grow_N_per_m;
+  const double p = loop.late_share, n = 1.0 + loop.late_periods;
+  const double share = (1.0 - p + p * n) / (1.0 - p + p * n * n);
+  return share * model::haptic_limit(loop.device, loop.rate_Hz).grow_N_per_m;
+}
+
+Row run(std::size_t job, Grid grid) {
+  const auto [event, damping, share] = axes(grid).at(job);
+  LoopCase loop;
+  loop.device.damping_Ns_per_m = kDamping_Ns_per_m[damping];
+  loop.late_periods = kEaten[event];
+  (loop.late_periods == 0 ? loop.lost_share : loop.late_share) = shares(grid)[share];
+  loop.duration_s = grid == Grid::kQuick ? 10.0 : 30.0;
+  loop.seed = 17;
+  const double theory = theory_N_per_m(loop);
+  const double measured = largest_wall_N_per_m(loop, Verdict::kGrow);
+  constexpr double kPush_N = 2.0;
+  const double stiffness = 3.0 * measured;
+  GateWatch gate(loop.rate_Hz);
+  gate.open(kPush_N);
+  loop.balance_m = kPush_N / stiffness;
+  run_loop(
+      loop, [&](double depth_m) { return stiffness * depth_m; },
+      [&](double wanted_N, bool fresh) { return gate.step(wanted_N, fresh); });
+  const char* what = !gate.kept_bounds() ? "OUT OF BOUNDS"
+                     : gate.is_latched() ? "20 lost in a row: the gate lets go and latches"
+                                         : "grows to the limits of the gate";
+  return {std::string(loop.late_periods == 0 ? "lost" : "late"),
+          1.0 + loop.late_periods,
+          loop.device.damping_Ns_per_m,
+          shares(grid)[share],
+          theory,
+          measured,
+          measured / theory,
+          gate.max_force_N(),
+          gate.max_step_N(),
+          std::string(what)};
+}
+
+std::vector<Finding> judge(const Table& t) {
+  double low = 1e9, high = 0.0;
+  std::size_t in_bounds = 0;
+  for (const Row& row : t.rows()) {
+    const double ratio = t.number(row, "measured_over_theory");
+    low = std::min(low, ratio);
+    high = std::max(high, ratio);
+    in_bounds += t.word(row, "beyond_the_line") == "OUT OF BOUNDS" ? 0 : 1;
+  }
+  return {
+      {low > 0.7 && high < 1.5,
+       fmt::format("held forces cost stiffness as (2 b / T) E[n] / E[n^2] says: measured {:.3f} "
+                   "to {:.3f} of it",
+                   low, high)},
+      {in_bounds == t.rows().size(),
+       fmt::format("three times beyond the line the gate keeps |F| and |dF| in bounds in {} of "
+                   "{} cells",
+                   in_bounds, t.rows().size())}};
+}
+
+}  // namespace
+
+Map tick_map() {
+  return {.letter = 'd',
+          .name = "ticks",
+          .purpose = "largest stable wall over the share of lost and of late ticks",
+          .columns = columns,
+          .jobs = [](Grid grid) { return axes(grid).jobs(); },
+          .run = run,
+          .judge = judge,
+          .pictures = tick_pictures};
+}
+
+}  // namespace tact::tools

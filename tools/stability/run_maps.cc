@@ -1,0 +1,103 @@
+#include "tools/stability/run_maps.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "tools/common/interrupt.h"
+
+namespace tact::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using model::Error;
+using model::Result;
+
+Table empty_table(const Map& map, const StabilityOptions& options, const Shard& shard) {
+  return {map.name, map.columns(), map.jobs(options.grid), shard};
+}
+
+Result<Table> computed(const Map& map, const StabilityOptions& options) {
+  Table table = empty_table(map, options, options.shard);
+  const auto rows = sweep<Row>(table.jobs(), {.label = map.name, .shard = options.shard},
+                               [&](std::size_t job) { return map.run(job, options.grid); });
+  if (!rows)
+    return Error{fmt::format("interrupted; nothing of the map \"{}\" was written", map.name)};
+  for (const Row& row : *rows) table.add(row);
+  return table;
+}
+
+/// Table, verdict and pictures of a whole map; of a shard the table alone.
+Result<MapReport> finished(const Map& map, const Table& table, const StabilityOptions& options,
+                           bool is_whole) {
+  MapReport report{.name = map.name, .rows = table.rows().size(), .findings = {}, .files = {}};
+  auto files = table.write(options.out);
+  if (!files) return files.error();
+  report.files = std::move(*files);
+  if (!is_whole) return report;
+  report.findings = map.judge(table);
+  if (!options.draw_pictures || map.pictures == nullptr) return report;
+  for (const Picture& picture : map.pictures(options.grid)) {
+    const auto drawn = draw(picture, options.out);
+    if (!drawn) return drawn.error();
+    report.files.insert(report.files.end(), drawn->begin(), drawn->end());
+  }
+  return report;
+}
+
+/// The given CSVs by the table that they are a part of.
+Result<std::map<std::string, std::vector<std::string>>> sorted(
+    const std::vector<std::string>& files) {
+  std::map<std::string, std::vector<std::string>> of_table;
+  for (const std::string& path : files) {
+    const auto name = table_of_file(path);
+    if (!name) return name.error();
+    of_table[*name].push_back(path);
+  }
+  return of_table;
+}
+
+bool is_chosen(const Map& map, const StabilityOptions& options) {
+  if (!options.only.empty()) return options.only == map.name;
+  return options.letters.find(map.letter) != std::string::npos;
+}
+
+Result<std::vector<MapReport>> merged(const StabilityOptions& options) {
+  const auto of_table = sorted(options.merge);
+  if (!of_table) return of_table.error();
+  std::vector<MapReport> reports;
+  for (const Map& map : all_maps()) {
+    const auto files = of_table->find(map.name);
+    if (files == of_table->end()) continue;
+    const auto table = merge_table(empty_table(map, options, {}), files->second);
+    if (!table) return table.error();
+    auto report = finished(map, *table, options, true);
+    if (!report) return report.error();
+    reports.push_back(std::move(*report));
+  }
+  return reports;
+}
+
+}  // namespace
+
+Result<std::vector<MapReport>> run_maps(const StabilityOptions& options) {
+  std::error_code error;
+  fs::create_directories(options.out, error);
+  if (error) return Error{fmt::format("{}: {}; name another folder", options.out, error.message())};
+  const InterruptWatch watch;
+  if (!options.merge.empty()) return merged(options);
+  std::vector<MapReport> reports;
+  for (const Map& map : all_maps()) {
+    if (!is_chosen(map, options)) continue;
+    const auto table = computed(map, options);
+    if (!table) return table.error();
+    auto report = finished(map, *table, options, options.shard.is_whole());
+    if (!report) return report.error();
+    reports.push_back(std::move(*report));
+  }
+  return reports;
+}
+
+}  // namespace tact::tools
