@@ -6,8 +6,9 @@
 //     U(d, s)  = (1 - f) U_k(d) + f U_(k+1)(d),    f = kappa(s) - k
 //     dU/ds    = (U_(k+1)(d) - U_k(d)) grad kappa
 //
-// so the field has one potential and no stroke along the surface makes energy. A tick costs at most
-// 2 (1 + terms) look-ups a sphere, whatever the mesh.
+// so the field has one potential and no stroke along the surface makes energy. Press and pull may
+// have a coordinate each: U = 0 between them. A tick costs at most 2 (1 + terms) look-ups a sphere,
+// whatever the mesh.
 #pragma once
 
 #include <array>
@@ -22,6 +23,7 @@ namespace tact::model {
 struct ElasticFieldParts {
   std::span<const Law* const> curves;  // one or more, at least as stiff as the one before
   std::span<const float> coordinate;   // kappa, n vertices, 0 .. curves - 1; empty with one curve
+  std::span<const float> pull_coordinate;  // the same for d < 0; empty: as coordinate
   SurfaceView surface;
   Relaxation relaxation;
 };
@@ -41,9 +43,15 @@ class ElasticField final : public SiteLaw {
     std::size_t low = 0;    // k
     double fraction = 0.0;  // f
   };
-  Blend blend_at(const Place& place) const RT_SAFE;
-  LawResponse respond_at(const Blend& blend, double depth_m, double& energy_step_J) const RT_SAFE;
-  Vec3 coordinate_slope(std::uint32_t triangle) const RT_SAFE;
+  /// One part of the potential: the law at one stretch, and what it adds along the surface.
+  struct Part {
+    LawResponse law;
+    Vec3 slope_N{};
+  };
+  std::span<const float> coordinate(double depth_m) const RT_SAFE;
+  Blend blend_at(const Place& place, double depth_m) const RT_SAFE;
+  Part part_at(const Place& place, double depth_m) const RT_SAFE;
+  Vec3 coordinate_slope(std::uint32_t triangle, double depth_m) const RT_SAFE;
 
   ElasticFieldParts parts_;
   std::array<RelaxationState, kMaxSpheres> now_{}, next_{};

@@ -14,6 +14,7 @@
 #include <span>
 
 #include "model/law.h"
+#include "model/patch_shape.h"
 #include "model/site.h"
 #include "model/types.h"
 
@@ -48,6 +49,11 @@ class SiteLaw {
   /// read what advance() writes. A law that tells its shape otherwise returns 0.
   virtual std::size_t profile(const Indentation& in, std::span<double> ring_m) const RT_SAFE = 0;
   virtual double ring_pitch_m() const RT_SAFE = 0;
+  /// Loop thread: what such a law shows instead of a profile; false: the profile says all.
+  virtual bool shape(PatchShape& out) RT_SAFE {
+    (void)out;
+    return false;
+  }
 };
 
 }  // namespace tact::model

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/compliance_family.h"
+#include "model/compliance_file.h"
 #include "model/elastic_field.h"
 #include "model/hex_paper.h"
 #include "model/tabulated_law.h"
@@ -13,6 +15,27 @@ namespace tact::model {
 namespace {
 
 constexpr double kRingTolerance = 0.01;  // of the force, where the scene states none
+
+/// The scene's compliance map, which must be of its organ.
+Result<ComplianceMap> read_scene_map(const Scene& scene) {
+  const std::string cure = "; run tact-condense " + scene.path;
+  if (!scene.elastic)
+    return Error{scene.path +
+                 ": compliance needs a section [elastic]: modulus, Poisson's ratio "
+                 "and where the organ is held"};
+  auto map = read_compliance_map(scene.compliance.map_path);
+  if (!map) return Error{map.error().sentence + cure};
+  const ElasticSettings& e = *scene.elastic;
+  if (map->mesh_hash != surface_hash(scene.organ_mesh.view()))
+    return Error{scene.compliance.map_path + " belongs to another organ mesh" + cure};
+  if (map->poisson_ratio != e.poisson_ratio || !(map->fixed_min_m == e.fixed_min_m) ||
+      !(map->fixed_max_m == e.fixed_max_m))
+    return Error{
+        fmt::format("{} was made for Poisson's ratio {} or another held box than [elastic] "
+                    "says{}",
+                    scene.compliance.map_path, map->poisson_ratio, cure)};
+  return map;
+}
 
 }  // namespace
 
@@ -31,6 +54,7 @@ class TissueLawBuilder {
   Step add_disc_stack();
   Step add_hex_sheet();
   Step add_hex_paper();
+  Step add_compliance();
   Step add_table(const Law& direct);
   Result<const Law*> with_pull(const Law& press);
   Step finish_field();
@@ -60,6 +84,8 @@ std::optional<Error> TissueLawBuilder::build(LawKind kind) {
       return add_hex_sheet();
     case LawKind::kHexSheetPaper:
       return add_hex_paper();
+    case LawKind::kCompliance:
+      return add_compliance();
     default:
       return Error{
           fmt::format("{}: law \"{}\" cannot be felt; choose another", scene_.path, name_of(kind))};
@@ -113,6 +139,24 @@ TissueLawBuilder::Step TissueLawBuilder::add_hex_paper() {
   return add_table(keep(std::move(*sheet)));
 }
 
+TissueLawBuilder::Step TissueLawBuilder::add_compliance() {
+  law_->title_ = "linear elastic compliance";
+  auto map = read_scene_map(scene_);
+  if (!map) return map.error();
+  auto family =
+      make_compliance_family(*map, {.youngs_modulus_Pa = scene_.elastic->youngs_modulus_Pa,
+                                    .tip_radius_m = scene_.tool.spheres[0].radius_m,
+                                    .working_depth_m = scene_.compliance.working_depth_m,
+                                    .curves = scene_.compliance.curves,
+                                    .table_knots = scene_.table_knots});
+  if (!family) return blame(family.error());
+  for (ComplianceCurve& curve : family->curve) law_->curves_.push_back(&keep(std::move(curve)));
+  law_->press_coordinate_ = std::move(family->press_coordinate);
+  law_->pull_coordinate_ = std::move(family->pull_coordinate);
+  law_->memory_bytes_ += law_->curves_.size() * sizeof(ComplianceCurve);
+  return finish_field();
+}
+
 /// Press as the law gives it, pull as [pull] says.
 Result<const Law*> TissueLawBuilder::with_pull(const Law& press) {
   if (!scene_.pull) return &press;
@@ -134,11 +178,13 @@ TissueLawBuilder::Step TissueLawBuilder::add_table(const Law& direct) {
 TissueLawBuilder::Step TissueLawBuilder::finish_field() {
   auto relaxation = make_relaxation(scene_.relaxation, 1.0 / scene_.rate_Hz);
   if (!relaxation) return blame(relaxation.error());
-  law_->memory_bytes_ += law_->coordinate_.size() * sizeof(float);
+  law_->memory_bytes_ +=
+      (law_->press_coordinate_.size() + law_->pull_coordinate_.size()) * sizeof(float);
   for (const Law* curve : law_->curves_) measure(*curve);
   law_->site_law_ =
       std::make_unique<ElasticField>(ElasticFieldParts{.curves = law_->curves_,
-                                                       .coordinate = law_->coordinate_,
+                                                       .coordinate = law_->press_coordinate_,
+                                                       .pull_coordinate = law_->pull_coordinate_,
                                                        .surface = scene_.organ_mesh.view(),
                                                        .relaxation = *relaxation});
   return std::nullopt;

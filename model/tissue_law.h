@@ -35,7 +35,8 @@ class TissueLaw {
 
   std::vector<std::unique_ptr<Law>> owned_;  // direct laws first, then what stands on them
   std::vector<const Law*> curves_;           // what the field reads
-  std::vector<float> coordinate_;            // of each vertex in the family
+  std::vector<float> press_coordinate_;      // of each vertex in the family; empty: one curve
+  std::vector<float> pull_coordinate_;
   std::unique_ptr<SiteLaw> site_law_;
   LawRange range_;
   double pull_limit_N_ = 0.0;

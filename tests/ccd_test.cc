@@ -43,8 +43,8 @@ Joints angles(std::initializer_list<double> angles_rad) {
 std::vector<Vector3d> targets(int count, double spread_m) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> side(-spread_m, spread_m);
-  std::vector<Vector3d> out;
-  for (int i = 0; i < count; ++i) out.emplace_back(side(random), 1.2 + side(random), side(random));
+  std::vector<Vector3d> out(static_cast<std::size_t>(count));
+  for (Vector3d& at : out) at = Vector3d(side(random), 1.2 + side(random), side(random));
   return out;
 }
 
@@ -77,10 +77,23 @@ TEST(Ccd, KeepsBoneLengthsAndLimitsWhereverTheTargetIs) {
   }
 }
 
-TEST(Ccd, AMoreSweepNeverLeadsAwayFromTheTargetWithHinges) {
+TEST(Ccd, AFreeJointPointsTheEndAtTheTargetHoweverItsParentsAreTurned) {
+  Chain chain = arm();
+  chain.bones[2].cone_rad = pi;
+  Joints start = arm_start();
+  start[0].rotation = Quaterniond(0.8, 0.4, 0.4, 0.2);
+  start[2].rotation = Quaterniond(0.5, -0.5, 0.5, 0.5);
+  const Vector3d wrist_m = joint_points_m(chain, start)[2];
+  for (const Vector3d& target_m : targets(20, 1.0)) {
+    const ReachResult at = reach(chain, start, {.target_m = target_m, .sweeps = 1, .root = 2});
+    EXPECT_EQ(at.points_m[2], wrist_m);
+    EXPECT_NEAR(at.error_m, std::abs((target_m - wrist_m).norm() - 0.18), 1e-14);
+  }
+}
+
+TEST(Ccd, AnotherSweepNeverLeadsAwayFromTheTargetWithHinges) {
   Chain chain = planar({0.3, 0.25, 0.2, 0.1}, -1.5, 1.5);
-  for (std::size_t i = 0; i < 4; ++i)
-    chain.bones[i].hinge = Vector3d::Unit(i % 3) + Vector3d::UnitZ();
+  for (int i = 0; i < 4; ++i) chain.bones[i].hinge = Vector3d::Unit(i % 3) + Vector3d::UnitZ();
   for (const Vector3d& target_m : targets(40, 0.6)) {
     double last_m = 1e9;
     for (int sweeps = 0; sweeps < 12; ++sweeps) {

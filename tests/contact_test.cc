@@ -38,7 +38,11 @@ struct Bench {
                                             .units = 10});
   TabulatedLaw law = *tabulate(chain, 65);
   const Law* curve = &law;
-  ElasticField field{{.curves = {&curve, 1}, .coordinate = {}, .surface = {}, .relaxation = {}}};
+  ElasticField field{{.curves = {&curve, 1},
+                      .coordinate = {},
+                      .pull_coordinate = {},
+                      .surface = {},
+                      .relaxation = {}}};
   SurfaceMesh mesh;
   SeedGrid seeds;
   std::vector<ProbeSphere> spheres;

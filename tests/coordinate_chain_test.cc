@@ -26,9 +26,9 @@ void expect_same(const Pose& got, const Pose& want, double tolerance) {
   EXPECT_LT(got.rotation.angularDistance(want.rotation), tolerance);
 }
 
-const Pose kTracker = pose({0.3, -0.7, 1.9}, {0.1, 1.2, -0.4});
-const Pose kBone = pose({-1.1, 0.2, 0.5}, {0.3, 1.0, -0.1});
-const Pose kTrackerLater = pose({2.0, 0.4, -2.5}, {-0.6, 0.9, 0.8});
+const Pose tracker_then = pose({0.3, -0.7, 1.9}, {0.1, 1.2, -0.4});
+const Pose bone_then = pose({-1.1, 0.2, 0.5}, {0.3, 1.0, -0.1});
+const Pose tracker_now = pose({2.0, 0.4, -2.5}, {-0.6, 0.9, 0.8});
 
 TEST(CoordinateChain, MatchesPenAndPaper) {
   // A quarter turn about x takes z to -y; the quarter turn about z that follows takes -y to x.
@@ -43,8 +43,8 @@ TEST(CoordinateChain, MatchesPenAndPaper) {
 
 TEST(CoordinateChain, TheMatrixForRowVectorsIsTheSameMap) {
   const Vector3d p(0.4, -0.3, 0.2);
-  const Eigen::RowVector4d world = p.homogeneous().transpose() * row_vector_matrix(kTracker);
-  expect_near(world.head<3>().transpose(), to_world(kTracker, p), 1e-15);
+  const Eigen::RowVector4d world = p.homogeneous().transpose() * row_vector_matrix(tracker_then);
+  expect_near(world.head<3>().transpose(), to_world(tracker_then, p), 1e-15);
   EXPECT_EQ(world[3], 1.0);
 }
 
@@ -57,33 +57,33 @@ TEST(CoordinateChain, OfTwoQuaternionsThatTurnAlikeItNamesOne) {
 }
 
 TEST(CoordinateChain, ABoneIsWhereItWasBoundAndMovesRigidlyWithItsTracker) {
-  const Pose offset = bind(kTracker, kBone);
-  expect_same(drive(kTracker, offset), kBone, 1e-14);
+  const Pose offset = bind(tracker_then, bone_then);
+  expect_same(drive(tracker_then, offset), bone_then, 1e-14);
   // What the tracker sees of the bone never changes.
-  const Pose bone = drive(kTrackerLater, offset);
-  expect_same(bind(kTrackerLater, bone), offset, 1e-14);
-  EXPECT_NEAR((bone.position_m - kTrackerLater.position_m).norm(),
-              (kBone.position_m - kTracker.position_m).norm(), 1e-14);
+  const Pose bone = drive(tracker_now, offset);
+  expect_same(bind(tracker_now, bone), offset, 1e-14);
+  EXPECT_NEAR((bone.position_m - tracker_now.position_m).norm(),
+              (bone_then.position_m - tracker_then.position_m).norm(), 1e-14);
 }
 
 TEST(CoordinateChain, MovingTheWorldMovesTheBoneAlike) {
   const Pose world = pose({-0.2, 1.3, 0.8}, {5.0, -3.0, 1.0});
-  const Pose offset = bind(kTracker, kBone);
+  const Pose offset = bind(tracker_then, bone_then);
   // drive(A, B) is "A after B": carrying the tracker elsewhere carries the bone there too.
-  expect_same(drive(drive(world, kTrackerLater), offset),
-              drive(world, drive(kTrackerLater, offset)), 1e-14);
+  expect_same(drive(drive(world, tracker_now), offset), drive(world, drive(tracker_now, offset)),
+              1e-14);
 }
 
 TEST(CoordinateChain, BetweenTakesTheShorterWayWhateverTheSigns) {
-  Pose to = kBone;
+  Pose to = bone_then;
   for (int sign = 0; sign < 2; ++sign) {
-    expect_same(between(kTracker, to, 0.0), kTracker, 1e-14);
-    expect_same(between(kTracker, to, 1.0), kBone, 1e-14);
-    const Pose middle = between(kTracker, to, 0.5);
-    const double whole_rad = kTracker.rotation.angularDistance(kBone.rotation);
-    EXPECT_NEAR(middle.rotation.angularDistance(kTracker.rotation), whole_rad / 2.0, 1e-14);
-    EXPECT_NEAR(middle.rotation.angularDistance(kBone.rotation), whole_rad / 2.0, 1e-14);
-    expect_near(middle.position_m, (kTracker.position_m + kBone.position_m) / 2.0, 1e-15);
+    expect_same(between(tracker_then, to, 0.0), tracker_then, 1e-14);
+    expect_same(between(tracker_then, to, 1.0), bone_then, 1e-14);
+    const Pose middle = between(tracker_then, to, 0.5);
+    const double whole_rad = tracker_then.rotation.angularDistance(bone_then.rotation);
+    EXPECT_NEAR(middle.rotation.angularDistance(tracker_then.rotation), whole_rad / 2.0, 1e-14);
+    EXPECT_NEAR(middle.rotation.angularDistance(bone_then.rotation), whole_rad / 2.0, 1e-14);
+    expect_near(middle.position_m, (tracker_then.position_m + bone_then.position_m) / 2.0, 1e-15);
     to.rotation.coeffs() *= -1.0;
   }
 }

@@ -55,8 +55,11 @@ struct Bench {
   Spring soft{50.0}, middle{100.0}, stiff{200.0};
   std::array<const Law*, 3> curves{&soft, &middle, &stiff};
   std::vector<float> coordinate = wavy(mesh);
-  ElasticField field{
-      {.curves = curves, .coordinate = coordinate, .surface = mesh.view(), .relaxation = {}}};
+  ElasticField field{{.curves = curves,
+                      .coordinate = coordinate,
+                      .pull_coordinate = {},
+                      .surface = mesh.view(),
+                      .relaxation = {}}};
 };
 
 TEST(ElasticField, BlendsNeighbouringLawsByTheCoordinateOfThePlace) {
@@ -64,8 +67,11 @@ TEST(ElasticField, BlendsNeighbouringLawsByTheCoordinateOfThePlace) {
   Spring soft(50.0), middle(100.0), stiff(200.0);
   const std::array<const Law*, 3> curves{&soft, &middle, &stiff};
   const std::vector<float> coordinate(plate.vertex_m.size(), 1.25f);
-  ElasticField field(
-      {.curves = curves, .coordinate = coordinate, .surface = plate.view(), .relaxation = {}});
+  ElasticField field({.curves = curves,
+                      .coordinate = coordinate,
+                      .pull_coordinate = {},
+                      .surface = plate.view(),
+                      .relaxation = {}});
   const Indentation in{.place = {.triangle = 3, .weight = {0.2, 0.3, 0.5}}, .depth_m = 2e-3};
   const SiteResponse r = field.respond(in);
   EXPECT_NEAR(r.law.force_N, (0.75 * 100.0 + 0.25 * 200.0) * 2e-3, 1e-12);
@@ -82,8 +88,11 @@ TEST(ElasticField, CoordinatesAtBothEndsGiveTheOutermostLaws) {
   const std::array<const Law*, 2> curves{&soft, &stiff};
   for (const float end : {0.0f, 1.0f}) {
     const std::vector<float> coordinate(plate.vertex_m.size(), end);
-    ElasticField field(
-        {.curves = curves, .coordinate = coordinate, .surface = plate.view(), .relaxation = {}});
+    ElasticField field({.curves = curves,
+                        .coordinate = coordinate,
+                        .pull_coordinate = {},
+                        .surface = plate.view(),
+                        .relaxation = {}});
     const auto r = field.respond({.place = {.triangle = 0, .weight = {1, 0, 0}}, .depth_m = 1e-3});
     EXPECT_NEAR(r.law.force_N, end == 0.0f ? 0.05 : 0.2, 1e-9);
   }
@@ -150,7 +159,11 @@ TEST(ElasticField, AClosedStrokeOverSoftAndStiffPlacesReturnsNoEnergy) {
 TEST(ElasticField, NotANumberGivesZeroForceAndNoMemory) {
   Spring spring(100.0);
   const Law* curve = &spring;
-  ElasticField field({.curves = {&curve, 1}, .coordinate = {}, .surface = {}, .relaxation = {}});
+  ElasticField field({.curves = {&curve, 1},
+                      .coordinate = {},
+                      .pull_coordinate = {},
+                      .surface = {},
+                      .relaxation = {}});
   const auto bad = field.respond({.depth_m = std::nan("")});
   EXPECT_EQ(bad.law.status, LawStatus::kInvalid);
   EXPECT_EQ(bad.law.force_N, 0.0);

@@ -180,6 +180,12 @@ TEST(Epnp, RefusesWhatHasNoAnswer) {
   }
   EXPECT_EQ(status([](View& v) { std::ranges::fill(v.points_m, Vector3d(0.1, 0.1, 0.1)); }),
             PoseStatus::kDegenerate);
+  EXPECT_EQ(status([&](View& v) {  // one place, but for the last digit
+              std::ranges::fill(v.points_m, Vector3d(1e3, 2e3, 3e3));
+              for (int i = 0; i < 3; ++i)
+                v.points_m[static_cast<std::size_t>(i)][i] = std::nextafter(1e3 * (i + 1), inf);
+            }),
+            PoseStatus::kDegenerate);
   EXPECT_EQ(status([&](View& v) { v.pixels_px[2][0] = nan; }), PoseStatus::kInvalid);
   EXPECT_EQ(status([&](View& v) { v.points_m[5][1] = inf; }), PoseStatus::kInvalid);
   EXPECT_EQ(status([&](View& v) { v.camera.cx_px = nan; }), PoseStatus::kInvalid);

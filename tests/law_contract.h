@@ -47,15 +47,19 @@ inline void check_force_is_slope_of_energy(const model::Law& law) {
 inline void check_closed_stroke_returns_no_energy(const model::Law& law) {
   // Trapezoid rule over press, release, pull, release: a hold rule would make energy by itself.
   const int steps = 4000;
+  const double scale_J = law.respond(0.9 * law.range().press_m).energy_J;
   double work_J = 0.0, before_m = 0.0;
+  model::LawResponse before = law.respond(0.0);
   for (int i = 1; i <= steps; ++i) {
     const double phase = 2.0 * std::numbers::pi * i / steps;
     const double wave = std::sin(phase);
     const double d = 0.9 * wave * (wave > 0.0 ? law.range().press_m : -law.range().pull_m);
-    work_J += 0.5 * (law.respond(d).force_N + law.respond(before_m).force_N) * (d - before_m);
+    const model::LawResponse at = law.respond(d);
+    work_J += 0.5 * (at.force_N + before.force_N) * (d - before_m);
+    EXPECT_NEAR(at.energy_J, work_J, 1e-4 * scale_J) << "what went in is stored, at " << d << " m";
+    before = at;
     before_m = d;
   }
-  const double scale_J = law.respond(0.9 * law.range().press_m).energy_J;
   EXPECT_NEAR(work_J, 0.0, 1e-5 * scale_J);
 }
 

@@ -47,8 +47,11 @@ struct Felt {
   }
   PowerLaw law;
   const Law* curve = &law;
-  ElasticField field{
-      {.curves = {&curve, 1}, .coordinate = {}, .surface = {}, .relaxation = two_terms()}};
+  ElasticField field{{.curves = {&curve, 1},
+                      .coordinate = {},
+                      .pull_coordinate = {},
+                      .surface = {},
+                      .relaxation = two_terms()}};
   LawResponse response;
   bool held;
 };

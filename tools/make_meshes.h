@@ -35,6 +35,10 @@ model::Result<Shape> make_liver_shape(std::size_t vertices);
 /// 174 vertices, 348 triangles, one hole between pivot and spring.
 model::Result<Shape> make_forceps_shape();
 
+/// Heart on its back, 120 x 90 x 80 mm: apex towards +x, front towards +z, three open stumps of
+/// vessels towards -x. 10 026 vertices, 19 409 triangles, 645 edges on the rims.
+model::Result<Shape> make_heart_shape();
+
 /// Least angle of all triangles, degrees.
 double least_angle_deg(const Shape& shape);
 

@@ -73,5 +73,6 @@ std::span<const Verifier> rhombus_verifiers();
 std::span<const Verifier> tracking_verifiers();
 std::span<const Verifier> disc_verifiers();
 std::span<const Verifier> hex_verifiers();
+std::span<const Verifier> spring_verifiers();
 
 }  // namespace tact::tools

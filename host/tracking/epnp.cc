@@ -50,19 +50,24 @@ Cloud cloud_of(std::span<const Vector3d> points_m) {
   return out;
 }
 
-/// Three points far apart: the one farthest out, the one farthest from it, the one that spans most.
-std::array<std::size_t, 3> widest_triangle(std::span<const Vector3d> points) {
-  const auto most = [&](auto measure) {
+/// Four points far apart: the one farthest out, then three times the one farthest from those taken.
+std::array<std::size_t, 4> widest_four(std::span<const Vector3d> points) {
+  std::array<std::size_t, 4> taken{};
+  const auto gap = [&](std::size_t i, std::size_t count) {
+    double least = count == 0 ? points[i].norm() : std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < count; ++k) {
+      least = std::min(least, (points[i] - points[taken[k]]).norm());
+    }
+    return least;
+  };
+  for (std::size_t count = 0; count < 4; ++count) {
     std::size_t best = 0;
     for (std::size_t i = 1; i < points.size(); ++i) {
-      if (measure(points[i]) > measure(points[best])) best = i;
+      if (gap(i, count) > gap(best, count)) best = i;
     }
-    return best;
-  };
-  const std::size_t a = most([](const Vector3d& p) { return p.norm(); });
-  const std::size_t b = most([&](const Vector3d& p) { return (p - points[a]).norm(); });
-  const Vector3d side = points[b] - points[a];
-  return {a, b, most([&](const Vector3d& p) { return side.cross(p - points[a]).norm(); })};
+    taken[count] = best;
+  }
+  return taken;
 }
 
 /// What OpenCV takes.
@@ -89,28 +94,38 @@ void add_poses(const std::vector<cv::Mat>& turns, const std::vector<cv::Mat>& sh
   }
 }
 
-/// EP-3 .. EP-9 on all points, P3P on three. OpenCV speaks of trouble by exceptions.
+/// EP-3 .. EP-9 on all points, P3P on four triangles. OpenCV speaks of trouble by exceptions;
+/// what the other starts found remains.
 std::vector<Pose> starts(const Camera& camera, std::span<const Vector3d> points,
                          std::span<const Vector2d> pixels_px) {
   const cv::Matx33d lens(camera.fx_px, 0.0, camera.cx_px, 0.0, camera.fy_px, camera.cy_px, 0.0, 0.0,
                          1.0);
-  Views all, triangle;
-  for (std::size_t i = 0; i < points.size(); ++i) all.add(points[i], pixels_px[i]);
-  for (const std::size_t i : widest_triangle(points)) triangle.add(points[i], pixels_px[i]);
   std::vector<Pose> poses;
-  try {
-    std::vector<cv::Mat> turns, shifts;
+  const auto collect = [&](auto solve) {
+    try {
+      std::vector<cv::Mat> turns, shifts;
+      solve(turns, shifts);
+      add_poses(turns, shifts, poses);
+    } catch (const cv::Exception&) {
+    }
+  };
+  Views all;
+  for (std::size_t i = 0; i < points.size(); ++i) all.add(points[i], pixels_px[i]);
+  collect([&](auto& turns, auto& shifts) {
     cv::solvePnPGeneric(all.points, all.pixels, lens, cv::noArray(), turns, shifts, false,
                         cv::SOLVEPNP_EPNP);
-    add_poses(turns, shifts, poses);
-  } catch (const cv::Exception&) {  // the other start remains
-  }
-  try {
-    std::vector<cv::Mat> turns, shifts;
-    cv::solveP3P(triangle.points, triangle.pixels, lens, cv::noArray(), turns, shifts,
-                 cv::SOLVEPNP_AP3P);
-    add_poses(turns, shifts, poses);
-  } catch (const cv::Exception&) {  // what EPnP found remains
+  });
+  const std::array<std::size_t, 4> four = widest_four(points);
+  for (const std::size_t left_out : four) {
+    Views triangle;
+    for (const std::size_t i : four) {
+      if (i != left_out) triangle.add(points[i], pixels_px[i]);
+    }
+    if (triangle.points.size() != 3) continue;  // two of the four are one point
+    collect([&](auto& turns, auto& shifts) {
+      cv::solveP3P(triangle.points, triangle.pixels, lens, cv::noArray(), turns, shifts,
+                   cv::SOLVEPNP_AP3P);
+    });
   }
   return poses;
 }

@@ -5,12 +5,12 @@
 //                           (eigenvalues of their covariance, descending)                  EP-2
 //             kNoPose       no pose has all points before the camera
 //
-// Two starts by OpenCV (calib3d): EPnP [1] on all points (EP-3 .. EP-9), and P3P [2] on their
-// widest triangle, because from EPnP alone the pose is missed in 3 of 100 views of four points and
-// in 12 to 49 of 100 of a flat object (2000 random views without noise, polished; epnp_test shows
-// it). Each pose they find is polished on the pixels (EP-10); the one with the smallest rms is
-// kept. With noise, few or flat points and a distant view a mirrored pose can explain the pixels
-// better than the true one: use n >= 6 points that are not in a plane.
+// Two starts by OpenCV (calib3d): EPnP [1] on all points (EP-3 .. EP-9), and P3P [2] on the four
+// triangles of the four widest points, because from EPnP alone the pose is missed in 3 of 100 views
+// of four points and in 12 to 49 of 100 of a flat object (2000 random views without noise,
+// polished; epnp_test shows it). Each pose they find is polished on the pixels (EP-10); the one
+// with the smallest rms is kept. With noise, few or flat points and a distant view a mirrored pose
+// can explain the pixels better than the true one: use n >= 6 points that are not in a plane.
 //
 // Points in any unit of length; t comes in the same. A sweep tracker that measures angles gives
 // u = tan azimuth, v = tan elevation with fx = fy = 1, cx = cy = 0. Not for the force loop.

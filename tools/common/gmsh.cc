@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <unordered_map>
@@ -42,6 +43,19 @@ bool write_surface(const std::string& path, std::span<const Vec3> vertex_m,
   return bool(file);
 }
 
+/// Distance from ball or circle, mm, as gmsh's MathEval reads it.
+std::string distance_text(const EdgeLengths& h) {
+  const Vec3 o = h.at_m * kMm;
+  const double radius_mm = h.radius_m * kMm;
+  const std::string from_centre_2 =
+      fmt::format("((x - ({}))^2 + (y - ({}))^2 + (z - ({}))^2)", o.x, o.y, o.z);
+  if (h.axis == Vec3{}) return fmt::format("Max(0, Sqrt{} - {})", from_centre_2, radius_mm);
+  const std::string height = fmt::format("(({}) * (x - ({})) + ({}) * (y - ({})) + ({}) * (z - ({})))",
+                                         h.axis.x, o.x, h.axis.y, o.y, h.axis.z, o.z);
+  return fmt::format("Sqrt((Sqrt(Max(0, {} - {}^2)) - {})^2 + {}^2)", from_centre_2, height,
+                     radius_mm, height);
+}
+
 bool write_script(const std::string& path, const EdgeLengths& h) {
   std::ofstream file(path);
   const double largest_mm = h.largest_m > 0.0 ? h.largest_m * kMm : 1e9;
@@ -49,15 +63,13 @@ bool write_script(const std::string& path, const EdgeLengths& h) {
       "Merge \"surface.msh\";\n"
       "Surface Loop(1) = {{1}};\nVolume(1) = {{1}};\n"
       "Field[1] = MathEval;\n"
-      "Field[1].F = \"Min({}, {} + {} * Max(0, Sqrt((x - ({}))^2 + (y - ({}))^2 + (z - ({}))^2) "
-      "- {}))\";\n"
+      "Field[1].F = \"Min({}, {} + {} * {})\";\n"
       "Background Field = 1;\n"
       "Mesh.CharacteristicLengthExtendFromBoundary = 0;\n"
       "Mesh.CharacteristicLengthFromPoints = 0;\n"
       "Mesh.Algorithm3D = 1;\nMesh.Optimize = 1;\n"
       "Mesh.MshFileVersion = 2.2;\nMesh.Binary = 0;\nMesh.SaveAll = 1;\n",
-      largest_mm, h.fine_m * kMm, h.growth, h.at_m.x * kMm, h.at_m.y * kMm, h.at_m.z * kMm,
-      h.radius_m * kMm);
+      largest_mm, h.fine_m * kMm, h.growth, distance_text(h));
   file.close();
   return bool(file);
 }
@@ -144,8 +156,14 @@ void add_middles(TetMesh& body) {
 }  // namespace
 
 double EdgeLengths::at(const Vec3& p_m) const {
-  // h = min(largest, fine + growth max(0, |x - at| - radius))
-  const double h_m = fine_m + growth * std::max(0.0, norm(p_m - at_m) - radius_m);
+  const Vec3 r = p_m - at_m;
+  double away_m = std::max(0.0, norm(r) - radius_m);  // from the ball
+  if (axis != Vec3{}) {                               // from the circle
+    const double height_m = dot(r, axis);
+    away_m = std::hypot(norm(r - height_m * axis) - radius_m, height_m);
+  }
+  // h = min(largest, fine + growth distance)
+  const double h_m = fine_m + growth * away_m;
   return largest_m > 0.0 ? std::min(largest_m, h_m) : h_m;
 }
 
@@ -165,6 +183,7 @@ Result<TetMesh> fill_with_gmsh(std::span<const Vec3> vertex_m,
                    .log_path = folder->file("gmsh.log"),
                    .package = "gmsh",
                    .time_limit_s = kTimeLimit_s,
+                   .any_status = false,
                    .environment = {}});
   if (!said) {
     if (!was_interrupted(said.error())) folder->keep();
@@ -194,6 +213,7 @@ Result<std::string> gmsh_version() {
                            .log_path = folder->file("gmsh.log"),
                            .package = "gmsh",
                            .time_limit_s = 60.0,
+                           .any_status = false,
                            .environment = {}});
   if (said) while (!said->empty() && said->back() <= ' ') said->pop_back();
   return said;

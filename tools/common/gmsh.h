@@ -1,9 +1,10 @@
 // gmsh.h - a closed triangle surface filled with tetrahedra by the program gmsh.
 //
 // The surface stays exactly as it is: its vertices are the first nodes of the body, in order, and
-// its triangles are faces of elements. Inside, the edge length grows from the point of interest,
+// its triangles are faces of elements. Inside, the edge length grows from where it matters,
 //
-//     h(x) = min(largest, fine + growth max(0, |x - at| - radius))
+//     h(x) = min(largest, fine + growth max(0, |x - at| - radius))        a ball
+//     h(x) = min(largest, fine + growth distance of x from the circle)    a circle
 //
 // Elements are quadratic with straight edges. Needs gmsh 4.8 or later (Debian: gmsh).
 // Source: C. Geuzaine, J.-F. Remacle, Int. J. Numer. Meth. Eng. 79 (2009) 1309.
@@ -18,12 +19,13 @@
 
 namespace tact::tools {
 
-/// Edge lengths around a point of interest.
+/// Edge lengths around a ball, or around a circle if `axis` is not zero.
 struct EdgeLengths {
   model::Vec3 at_m{};
-  double radius_m = 0.0;   // up to here `fine`
+  model::Vec3 axis{};      // unit, of the circle
+  double radius_m = 0.0;   // of ball or circle
   double fine_m = 0.0;
-  double growth = 0.0;     // of the edge per distance beyond the radius
+  double growth = 0.0;     // of the edge per distance
   double largest_m = 0.0;  // 0: no limit
 
   /// h(x)

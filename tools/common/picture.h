@@ -1,9 +1,9 @@
 // picture.h - a picture by gnuplot: SVG for pages, PNG for everything else.
 //
 // The script plots files of its own folder and names neither terminal nor output. It is kept beside
-// the picture as NAME.gp, so anyone can draw it again, or another way:
+// the picture as NAME.gp, so anyone can draw it again, or another way, from that folder:
 //
-//     gnuplot -e "directory='DIR'; kind='png'" DIR/NAME.gp
+//     gnuplot -e "kind='png'" NAME.gp
 #pragma once
 
 #include <string>

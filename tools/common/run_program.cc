@@ -113,7 +113,7 @@ Result<std::string> run_program(const ProgramCall& call) {
   while (waitpid(*child, &status, WNOHANG) == 0) {
     if (is_interrupted()) {
       end(*child);
-      return Error{std::string(kInterrupted)};
+      return interruption();
     }
     if (call.time_limit_s > 0.0 &&
         Clock::now() - begun > std::chrono::duration<double>(call.time_limit_s)) {
@@ -123,14 +123,16 @@ Result<std::string> run_program(const ProgramCall& call) {
     }
     std::this_thread::sleep_for(10ms);
   }
-  if (is_interrupted()) return Error{std::string(kInterrupted)};
+  if (is_interrupted()) return interruption();
   std::string text = read_all(call.log_path);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return text;
+  if (WIFEXITED(status) && (call.any_status || WEXITSTATUS(status) == 0)) return text;
   const std::string how = WIFEXITED(status) ? fmt::format("status {}", WEXITSTATUS(status))
                                             : fmt::format("signal {}", WTERMSIG(status));
   return Error{fmt::format("{} ended with {}; all it printed is in {}, at the end:{}", call.program,
                            how, call.log_path, tail(text))};
 }
+
+Error interruption() { return Error{std::string(kInterrupted)}; }
 
 bool was_interrupted(const Error& error) { return error.sentence == kInterrupted; }
 

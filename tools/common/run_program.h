@@ -19,6 +19,7 @@ struct ProgramCall {
   std::string log_path;      // absolute, of everything it prints
   std::string package;       // the Debian package that has it, for the sentence when it is missing
   double time_limit_s = 0.0;  // 0: none
+  bool any_status = false;    // some programs end well with a status above 0
   std::vector<std::pair<std::string, std::string>> environment;  // on top of ours
 };
 
@@ -26,7 +27,8 @@ struct ProgramCall {
 /// what to install), interrupted, over its time, or its last lines and where all of them are.
 model::Result<std::string> run_program(const ProgramCall& call);
 
-/// True for the error of a Ctrl-C, which is no failure of the program.
+/// The error of a Ctrl-C, which is no failure of the program, and is it that one?
+model::Error interruption();
 bool was_interrupted(const model::Error& error);
 
 /// A new empty folder below the system's temporary one, gone when this object is.

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "tools/reference/refine_surface.h"
-
 namespace tact::tools {
 namespace {
 
@@ -33,10 +31,12 @@ bool HeldBox::holds(const Vec3& p) const {
 }
 
 model::Result<OrganBody> make_organ_body(const model::SurfaceMesh& surface,
-                                         const EdgeLengths& lengths, const HeldBox& held) {
+                                         const EdgeLengths& lengths, const HeldBox& held,
+                                         const std::optional<Circle>& circle) {
   EdgeLengths on_surface = lengths;
   on_surface.largest_m = 0.0;
-  const Triangles fine = refine_surface({surface.vertex_m, surface.triangle}, on_surface);
+  Triangles fine = refine_surface({surface.vertex_m, surface.triangle}, on_surface);
+  if (circle) fine = cut_along(std::move(fine), *circle, 2.0 * circle->radius_m);
   auto mesh = fill_with_gmsh(fine.vertex_m, fine.triangle, lengths);
   if (!mesh) return mesh.error();
   OrganBody body{.mesh = std::move(*mesh), .face = {}, .normal = {}, .held_node = {}};

@@ -7,12 +7,14 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "model/fem/tet_mesh.h"
 #include "model/mesh.h"
 #include "model/result.h"
 #include "tools/common/gmsh.h"
+#include "tools/reference/refine_surface.h"
 
 namespace tact::tools {
 
@@ -32,10 +34,11 @@ struct OrganBody {
   std::vector<std::uint32_t> held_node;
 };
 
-/// Refines the surface around `lengths.at_m`, fills it and finds the held nodes. `largest_m` of the
-/// lengths counts inside only. An error if nothing is held.
+/// Refines the surface around `lengths.at_m`, draws the circle on it, fills it and finds the held
+/// nodes. `largest_m` of the lengths counts inside only. An error if nothing is held.
 model::Result<OrganBody> make_organ_body(const model::SurfaceMesh& surface,
-                                         const EdgeLengths& lengths, const HeldBox& held);
+                                         const EdgeLengths& lengths, const HeldBox& held,
+                                         const std::optional<Circle>& circle = {});
 
 /// Nodes, each once, of the faces that `wanted` chooses by number.
 std::vector<std::uint32_t> nodes_of_faces(const OrganBody& body,

@@ -1,6 +1,7 @@
 #include "tools/reference/refine_surface.h"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 
 namespace tact::tools {
@@ -91,7 +92,74 @@ void split(Triangles& s, Middles& middles) {
   s.triangle = std::move(out);
 }
 
+/// Cuts one triangle that no edge leaves twice: `side` is -1, 0 or 1 at each corner.
+void cut(Triangles& s, Middles& cuts, const Circle& circle, const TriangleCorners& t,
+         const std::vector<int>& side, std::vector<TriangleCorners>& out) {
+  const auto crossing = [&](std::uint32_t p, std::uint32_t q) {
+    const auto [at, is_new] = cuts.try_emplace(key(p, q), kUnset);
+    if (!is_new) return at->second;
+    const Vec3 a = s.vertex_m[std::min(p, q)], b = s.vertex_m[std::max(p, q)];
+    double low = 0.0, high = 1.0;  // along a to b; the distance from the axis may be curved
+    const bool starts_inside = circle.away_m(a) < circle.radius_m;
+    for (int i = 0; i < 50; ++i) {
+      const double half = 0.5 * (low + high);
+      const bool inside = circle.away_m(a + half * (b - a)) < circle.radius_m;
+      (inside == starts_inside ? low : high) = half;
+    }
+    at->second = static_cast<std::uint32_t>(s.vertex_m.size());
+    s.vertex_m.push_back(a + low * (b - a));
+    return at->second;
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];
+    if (side[a] == 0 && side[b] * side[c] < 0) {  // from a corner through the edge opposite
+      const std::uint32_t m = crossing(b, c);
+      out.push_back({a, b, m});
+      out.push_back({a, m, c});
+      return;
+    }
+    if (side[a] * side[b] < 0 && side[a] * side[c] < 0) {  // cuts corner a off
+      const std::uint32_t m = crossing(a, b), n = crossing(c, a);
+      out.push_back({a, m, n});
+      out.push_back({m, b, c});
+      out.push_back({m, c, n});
+      return;
+    }
+  }
+  out.push_back(t);
+}
+
 }  // namespace
+
+double Circle::away_m(const Vec3& p_m) const {
+  const Vec3 r = p_m - at_m;
+  return norm(r - dot(r, axis) * axis);
+}
+
+Triangles cut_along(Triangles surface, const Circle& circle, double reach_m) {
+  constexpr double kNear = 0.2;  // of the shortest edge at a vertex
+  std::vector<double> shortest_m(surface.vertex_m.size(), 1e9);
+  for (const TriangleCorners& t : surface.triangle) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t p = t[k], q = t[(k + 1) % 3];
+      const double length_m = norm(surface.vertex_m[p] - surface.vertex_m[q]);
+      shortest_m[p] = std::min(shortest_m[p], length_m);
+      shortest_m[q] = std::min(shortest_m[q], length_m);
+    }
+  }
+  std::vector<int> side(surface.vertex_m.size(), 0);  // 0 far away too: nothing is cut there
+  for (std::size_t i = 0; i < side.size(); ++i) {
+    const double beyond_m = circle.away_m(surface.vertex_m[i]) - circle.radius_m;
+    if (norm(surface.vertex_m[i] - circle.at_m) > reach_m) continue;
+    if (std::abs(beyond_m) > kNear * shortest_m[i]) side[i] = beyond_m < 0.0 ? -1 : 1;
+  }
+  Middles cuts;
+  std::vector<TriangleCorners> out;
+  const std::vector<TriangleCorners> old = std::move(surface.triangle);
+  for (const TriangleCorners& t : old) cut(surface, cuts, circle, t, side, out);
+  surface.triangle = std::move(out);
+  return surface;
+}
 
 Triangles refine_surface(Triangles surface, const EdgeLengths& lengths) {
   for (;;) {

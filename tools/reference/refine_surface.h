@@ -21,4 +21,18 @@ struct Triangles {
 /// `fine` must be above 0.
 Triangles refine_surface(Triangles surface, const EdgeLengths& lengths);
 
+/// A circle about an axis, drawn on the surface by a cylinder.
+struct Circle {
+  model::Vec3 at_m{};
+  model::Vec3 axis{};  // unit
+  double radius_m = 0.0;
+
+  /// Distance of a point from the axis.
+  double away_m(const model::Vec3& p_m) const;
+};
+
+/// Splits edges within `reach_m` of the circle's middle where they cross the circle, so that every
+/// triangle is inside or outside. A vertex nearer than a fifth of the edge counts as on the circle.
+Triangles cut_along(Triangles surface, const Circle& circle, double reach_m);
+
 }  // namespace tact::tools

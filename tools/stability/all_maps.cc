@@ -2,6 +2,9 @@
 
 namespace tact::tools {
 
-std::vector<Map> all_maps() { return {loop_map(), law_loop_map(), tick_map(), loss_map()}; }
+std::vector<Map> all_maps() {
+  return {integrator_map(), printed_rhombus_map(), law_limit_map(), law_line_map(), loop_map(),
+          law_loop_map(),   delta_loop_map(),      tick_map(),      loss_map()};
+}
 
 }  // namespace tact::tools

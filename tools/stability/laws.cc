@@ -2,21 +2,33 @@
 
 #include <algorithm>
 #include <numbers>
+#include <type_traits>
 
 #include "model/disc_stack.h"
 #include "model/hex_paper.h"
 #include "model/hex_sheet.h"
 #include "model/rhombus_chain.h"
+#include "model/tabulated_law.h"
 
 namespace tact::tools {
 namespace {
 
 constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
+constexpr std::size_t kKnots = 65;
+
+/// Laws that solve equations are felt through a table, the others directly.
 template <typename L>
 void add(std::vector<NamedLaw>& laws, const char* name, const model::Result<L>& law,
          const char* beyond) {
-  if (law) laws.push_back({name, std::make_shared<L>(*law), beyond});
+  if (!law) return;
+  const auto direct = std::make_shared<const L>(*law);
+  std::shared_ptr<const model::Law> felt = direct;
+  if constexpr (std::is_same_v<L, model::RhombusChain> || std::is_same_v<L, model::HexSheet>) {
+    if (auto table = model::tabulate(*direct, kKnots))
+      felt = std::make_shared<const model::TabulatedLaw>(*table);
+  }
+  laws.push_back({name, direct, felt, beyond});
 }
 
 /// The chain of PHYSICS 1.4 at another angle, or with stiffer tangential springs.

@@ -12,6 +12,7 @@ namespace tact::tools {
 struct NamedLaw {
   std::string name;
   std::shared_ptr<const model::Law> law;
+  std::shared_ptr<const model::Law> felt;  // as the loop reads it: a table, if it has one
   std::string beyond;  // what a press beyond its range does, in words without commas
 };
 

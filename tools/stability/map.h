@@ -35,6 +35,7 @@ std::vector<Map> all_maps();
 Map integrator_map();
 Map printed_rhombus_map();
 Map law_limit_map();
+Map law_line_map();
 Map loop_map();
 Map law_loop_map();
 Map delta_loop_map();

@@ -57,15 +57,15 @@ Row run(std::size_t job, Grid grid) {
   const Settings s = settings(grid);
   const auto [which, delay, damping, depth] = axes(grid).at(job);
   const NamedLaw& named = probed_laws()[which];
-  const double range_m = named.law->range().press_m;
+  const double range_m = named.felt->range().press_m;
   LoopCase loop;
   loop.device.damping_Ns_per_m = s.damping_Ns_per_m[damping];
   loop.device.delay_s = s.delay_s[delay];
   loop.balance_m = s.depth_ratio[depth] * range_m;
   loop.kick_m = 1e-4 * range_m;
-  const TissueForce tissue = [&](double depth_m) { return named.law->respond(depth_m).force_N; };
+  const TissueForce tissue = [&](double depth_m) { return named.felt->respond(depth_m).force_N; };
   const double theory = model::haptic_limit(loop.device, loop.rate_Hz).grow_N_per_m;
-  const double tangent = named.law->respond(loop.balance_m).stiffness_N_per_m;
+  const double tangent = named.felt->respond(loop.balance_m).stiffness_N_per_m;
   const double guess = theory / tangent;
   const double factor = largest_factor(loop, tissue, Verdict::kGrow, 0.02 * guess, 50.0 * guess);
   GateWatch gate(loop.rate_Hz);
@@ -73,7 +73,7 @@ Row run(std::size_t job, Grid grid) {
       loop, [&](double depth_m) { return 3.0 * factor * tissue(depth_m); }, gate);
   // what the law as it is asks of the device at its steepest point
   const double needed =
-      steepest_N_per_m(*named.law, range_m) * (0.5 / loop.rate_Hz + loop.device.delay_s);
+      steepest_N_per_m(*named.felt, range_m) * (0.5 / loop.rate_Hz + loop.device.delay_s);
   return {named.name,
           loop.device.delay_s,
           loop.device.damping_Ns_per_m,

@@ -79,7 +79,7 @@ std::vector<Finding> judge(const Table& t) {
   return {{ends_at_zero, "10 ms after the second lost sample the force is zero, or latched at 20"},
           {latches, "20 lost in a row latch, 19 do not"},
           {worst_gate_J < worst_hold_J,
-           fmt::format("a hand that withdraws is given at most {:.2f} mJ by the gate, {:.2f} mJ by "
+           fmt::format("a hand that withdraws is given at most {:.3f} mJ by the gate, {:.3f} mJ by "
                        "a held force and still growing",
                        1e3 * worst_gate_J, 1e3 * worst_hold_J)},
           {worst_step <= 1.0 + 1e-9,

@@ -10,6 +10,7 @@ namespace tact::tools {
 std::vector<Picture> integrator_pictures(Grid grid);
 std::vector<Picture> printed_rhombus_pictures(Grid grid);
 std::vector<Picture> law_limit_pictures(Grid grid);
+std::vector<Picture> law_line_pictures(Grid grid);
 std::vector<Picture> loop_pictures(Grid grid);
 std::vector<Picture> law_loop_pictures(Grid grid);
 std::vector<Picture> tick_pictures(Grid grid);

@@ -1,0 +1,41 @@
+// condensation.h - the linear elastic organ reduced to what its surface tells a tool:
+// ComplianceMap.
+//
+// For every vertex of the surface three unit loads (normal and two tangential) over a Hertz patch
+// of radius a0 (hertz_load.h), one solve each with the factored organ (linear_solver.h), at E = 1
+// Pa:
+//
+//     C_pq  = sum_a w_a e_p . u_a^(q)           compliance as the patch feels it, m/N
+//     r E   = C_nn - 3 / (5 E* a0)              the rest likewise with C_t; see compliance_map.h
+//     g_j E = mean over the ring j of  n . u^(n) - u_half(rho)
+//
+// Ring j gathers the nodes of the skin at straight distance rho from the vertex that look its way,
+// weighted by a hat of width one pitch. Elements near the surface should be no longer than about
+// a0 / 1.5, inside the body too: flat elements behind a fine surface make r too small. Offline
+// only.
+#pragma once
+
+#include <functional>
+
+#include "model/compliance_map.h"
+#include "model/fem/tet_mesh.h"
+#include "model/mesh.h"
+#include "model/result.h"
+
+namespace tact::model::fem {
+
+struct CondensationSettings {
+  double poisson_ratio = 0.0;
+  Vec3 fixed_min_m{}, fixed_max_m{};  // skin triangles with all corners in this box are held
+  double patch_radius_m = 0.0;        // a0
+  double ring_pitch_m = 0.0;
+  std::size_t rings = 0;
+  /// Called between steps; false stops the work.
+  std::function<bool(std::size_t done, std::size_t vertices)> progress;
+};
+
+/// `body` fills `surface`: its first nodes are the surface's vertices, in order.
+Result<ComplianceMap> condense(const TetMesh& body, const SurfaceView& surface,
+                               const CondensationSettings& settings);
+
+}  // namespace tact::model::fem

@@ -1,0 +1,76 @@
+#include "tools/condense/condense_organ.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tools/common/gmsh.h"
+
+namespace tact::tools {
+namespace {
+
+using model::Error;
+using model::Result;
+
+constexpr double kRingPitch_m = 0.002;
+constexpr std::size_t kRings = 20;
+constexpr double kElementsInPatch = 2.0;  // patch radius over element edge: r within 2 % of C_half
+
+}  // namespace
+
+double median_edge_m(const model::SurfaceView& surface) {
+  std::vector<double> edge_m;
+  for (const auto& t : surface.triangle)
+    for (std::size_t i = 0; i < 3; ++i)
+      edge_m.push_back(norm(surface.vertex_m[t[i]] - surface.vertex_m[t[(i + 1) % 3]]));
+  if (edge_m.empty()) return 0.0;
+  const auto middle = edge_m.begin() + static_cast<std::ptrdiff_t>(edge_m.size() / 2);
+  std::nth_element(edge_m.begin(), middle, edge_m.end());
+  return *middle;
+}
+
+Result<CondenseInput> condense_input(const model::Scene& scene) {
+  if (!scene.elastic)
+    return Error{fmt::format(
+        "{}: has no [elastic]; add it with youngs_modulus_Pa, poisson_ratio, fixed_min_m and "
+        "fixed_max_m, or give them with --set",
+        scene.path)};
+  CondenseInput input{.surface = scene.organ_mesh};
+  for (model::Vec3& p : input.surface.vertex_m) p -= scene.organ.position_m;
+  input.settings.organ = {.poisson_ratio = scene.elastic->poisson_ratio,
+                          .fixed_min_m = scene.elastic->fixed_min_m,
+                          .fixed_max_m = scene.elastic->fixed_max_m,
+                          .ring_pitch_m = kRingPitch_m,
+                          .rings = kRings,
+                          .progress = {}};
+  return input;
+}
+
+Result<model::ComplianceMap> condense_organ(const CondenseInput& input, CondenseFacts& facts) {
+  const model::SurfaceView surface = input.surface.view();
+  const std::size_t open = summarize(input.surface).boundary_edges;
+  if (open > 0)
+    return Error{
+        fmt::format("the organ's surface has {} open edges, so it has no inside; close it", open)};
+  const double edge_m = median_edge_m(surface);
+  CondenseSettings settings = input.settings;
+  if (settings.mesh_size_m <= 0.0) settings.mesh_size_m = edge_m;
+  settings.organ.patch_radius_m = settings.patch_radius_m > 0.0
+                                      ? settings.patch_radius_m
+                                      : kElementsInPatch * std::max(settings.mesh_size_m, edge_m);
+  if (settings.organ.progress && !settings.organ.progress(0, surface.vertex_m.size()))
+    return Error{"interrupted"};
+  const auto body = fill_with_gmsh(surface.vertex_m, surface.triangle,
+                                   {.at_m = {},
+                                    .radius_m = 0.0,
+                                    .fine_m = settings.mesh_size_m,
+                                    .growth = 0.0,
+                                    .largest_m = 0.0});
+  if (!body) return body.error();
+  facts = {.nodes = body->node_m.size(),
+           .elements = body->element.size(),
+           .mesh_size_m = settings.mesh_size_m};
+  return model::fem::condense(*body, surface, settings.organ);
+}
+
+}  // namespace tact::tools

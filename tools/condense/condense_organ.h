@@ -1,0 +1,43 @@
+// condense_organ.h - from a closed surface to its ComplianceMap: fill with gmsh, condense.
+#pragma once
+
+#include <string>
+
+#include "model/compliance_map.h"
+#include "model/fem/condensation.h"
+#include "model/mesh.h"
+#include "model/result.h"
+#include "model/scene.h"
+
+namespace tact::tools {
+
+struct CondenseSettings {
+  double mesh_size_m = 0.0;     // edge of an element inside the body; 0: median edge of the surface
+  double patch_radius_m = 0.0;  // a0; 0: twice the larger of mesh size and median edge
+  model::fem::CondensationSettings organ{};  // its patch radius is set from the above
+};
+
+/// An organ to condense, in its own frame.
+struct CondenseInput {
+  model::SurfaceMesh surface;
+  CondenseSettings settings{};
+};
+
+/// What was built, for people.
+struct CondenseFacts {
+  std::size_t nodes = 0, elements = 0;
+  double mesh_size_m = 0.0;
+};
+
+/// The scene's organ and [elastic]. An error if the scene lacks the section.
+model::Result<CondenseInput> condense_input(const model::Scene& scene);
+
+/// Median length of the edges, m.
+double median_edge_m(const model::SurfaceView& surface);
+
+/// Minutes for a few thousand vertices. An error if the surface is open, gmsh fails, or it was
+/// interrupted.
+model::Result<model::ComplianceMap> condense_organ(const CondenseInput& input,
+                                                   CondenseFacts& facts);
+
+}  // namespace tact::tools

@@ -1,0 +1,11 @@
+// block.h - a round block standing on its held bottom, to check the solver where the answer is known.
+#pragma once
+
+#include "tools/reference/indentation.h"
+
+namespace tact::tools {
+
+/// Vertex 0 is the middle of the top, z = 0; the block stands on z = -height.
+model::Result<Organ> make_block(double radius_m, double height_m, const Elasticity& material);
+
+}  // namespace tact::tools

@@ -1,0 +1,35 @@
+#include "tools/reference/half_space.h"
+
+#include <cmath>
+
+namespace tact::tools {
+
+double contact_modulus_Pa(const Elasticity& m) {
+  // E* = E / (1 - nu^2)
+  return m.youngs_modulus_Pa / (1.0 - m.poisson_ratio * m.poisson_ratio);
+}
+
+double flat_punch_force_N(const Elasticity& material, double radius_m, double depth_m) {
+  // F = 2 E* a d
+  return 2.0 * contact_modulus_Pa(material) * radius_m * depth_m;
+}
+
+double sphere_contact_radius_m(double sphere_radius_m, double depth_m) {
+  // With t = a / R: d / R = t artanh(t), which rises with t. Halve the interval to the last bit.
+  const double wanted = depth_m / sphere_radius_m;
+  double low = 0.0, high = 1.0;
+  for (int i = 0; i < 60; ++i) {
+    const double t = 0.5 * (low + high);
+    (t < 1.0 && t * std::atanh(t) < wanted ? low : high) = t;
+  }
+  return low * sphere_radius_m;
+}
+
+double sphere_force_N(const Elasticity& material, double sphere_radius_m, double depth_m) {
+  const double R = sphere_radius_m, a = sphere_contact_radius_m(R, depth_m);  // NOLINT
+  // F = E* ((R^2 + a^2) / 2 ln((R + a) / (R - a)) - a R)
+  return contact_modulus_Pa(material) *
+         ((R * R + a * a) / 2.0 * std::log((R + a) / (R - a)) - a * R);
+}
+
+}  // namespace tact::tools

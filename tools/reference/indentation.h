@@ -1,0 +1,56 @@
+// indentation.h - a tool on one site of an organ: what is moved, what force that takes, what shape.
+//
+// press: a rigid frictionless sphere of radius R goes in by d along the inward vertex normal. Nodes
+// of the faces whose centre is within the contact radius a of the axis follow it,
+//
+//     u_n = d - (R - sqrt(R^2 - rho^2)) - s
+//
+// rho distance from the axis, s how far the resting surface lies below the site's tangent plane (an
+// organ is not flat). They slide freely sideways. a is that of the half-space (half_space.h): the
+// force is largest for the true a, so an error of 10 % in a is 1.5 % of F (J. R. Barber, J. Elast.
+// 4 (1974) 31). pull: the faces within R of the axis move outward as one piece, bonded.
+#pragma once
+
+#include "model/mesh.h"
+#include "tools/common/reference_data.h"
+#include "tools/reference/calculix.h"
+#include "tools/reference/organ_body.h"
+
+namespace tact::tools {
+
+/// Everything about the organ that does not depend on the site.
+struct Organ {
+  model::SurfaceMesh surface;  // mesh's own frame
+  std::string hash;            // of the surface
+  HeldBox held{};
+  Elasticity material{};
+};
+
+struct Indentation {
+  std::uint32_t vertex = 0;
+  double tool_radius_m = 0.0;
+  double depth_m = 0.0;  // > 0 press, < 0 pull
+  bool large_strain = false;
+  int level = 2;              // of the mesh, kCoarsestLevel to kFinestLevel
+  double contact_ratio = 1.0;  // of the contact radius, to see what an error in it does
+};
+
+inline constexpr int kCoarsestLevel = 1;
+inline constexpr int kFinestLevel = 4;
+inline constexpr double kRingPitch_m = 1e-3;
+inline constexpr int kRings = 31;  // 0 .. 30 mm
+
+/// The mesh for a level; `at_m` is the site.
+EdgeLengths edge_lengths(const Organ& organ, const Indentation& what);
+
+/// Meshes and solves. The error ratio is left at 0: it takes two levels.
+model::Result<ReferenceCase> solve(const Organ& organ, const Indentation& what);
+
+/// Mean of u over the rings k * pitch around `at_m`, k = 0 .. rings - 1, along the lines where the
+/// faces that look along `outward` cut the spheres of these radii. A ring that meets no such face
+/// has the value of the one before. `u` by node.
+std::vector<double> ring_means(const OrganBody& body, const model::Vec3& at_m,
+                               const model::Vec3& outward, const std::vector<double>& u, int rings,
+                               double pitch_m);
+
+}  // namespace tact::tools

@@ -1,0 +1,153 @@
+// tact-reference: what an elastic organ really does under the scene's tool, by finite elements.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "tools/common/interrupt.h"
+#include "tools/common/run_program.h"
+#include "tools/common/sweep.h"
+#include "tools/common/table.h"
+#include "tools/reference/reference_plan.h"
+#include "tools/reference/self_check.h"
+
+namespace {
+
+using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
+using tact::model::Error;
+using tact::model::Result;
+
+struct Options {
+  std::string scene, out, cache = default_cache_directory(), self_check;
+  std::vector<std::string> overrides;
+  std::vector<std::uint32_t> sites, large_strain_sites;
+  std::vector<double> depths_m;
+  int level = 2;
+  unsigned jobs = 1;
+  bool json = false;
+};
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("scene", o.scene, "scene file (TOML) with [elastic] and [[reference_site]]");
+  app.add_option("--out", o.out, "file to write; without it, a table of forces only");
+  app.add_option("--set", o.overrides, "one key of the scene, as KEY=VALUE; repeatable");
+  app.add_option("--sites", o.sites, "vertices of the organ's mesh, instead of the scene's")
+      ->delimiter(',');
+  app.add_option("--depths", o.depths_m, "m, above 0, rising; press and pull")->delimiter(',');
+  app.add_option("--large-strain", o.large_strain_sites,
+                 "sites that are also pulled with large strain (slow)")
+      ->delimiter(',');
+  app.add_option("--level", o.level, "mesh, 1 coarse to 4 fine; each about twice the time")
+      ->check(CLI::Range(kCoarsestLevel, kFinestLevel))
+      ->capture_default_str();
+  app.add_option("--cache", o.cache, "folder of solved cases")->capture_default_str();
+  app.add_option("--jobs", o.jobs, "solves at a time; each takes a core and about 1 GB")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  app.add_flag("--json", o.json, "print the result as JSON");
+  app.add_option("--self-check", o.self_check,
+                 "instead of a scene: compare with the known answers in this folder "
+                 "(tests/data/reference)");
+  app.footer(
+      "Needs gmsh and CalculiX: apt install gmsh calculix-ccx. Solved cases are kept and reused.\n"
+      "Exit status: 0 solved, 1 a check failed or Ctrl-C, 2 bad usage or input.");
+  app.failure_message([](const CLI::App*, const CLI::Error& e) {
+    return fmt::format("tact-reference: {}; see tact-reference --help\n", e.what());
+  });
+}
+
+int fail(const Error& error) {
+  const bool interrupted = was_interrupted(error);
+  fmt::print(stderr, "tact-reference: {}\n",
+             interrupted ? "interrupted; what was solved is kept, the same command goes on from there"
+                         : error.sentence);
+  return interrupted ? 1 : 2;
+}
+
+Result<ReferencePlan> make_plan(const Options& o) {
+  if (o.scene.empty()) return Error{"no scene given; see tact-reference --help"};
+  const auto scene = tact::model::load_scene(o.scene, o.overrides);
+  if (!scene) return scene.error();
+  auto plan = plan_of(*scene);
+  if (!plan) return plan;
+  if (!o.sites.empty()) plan->sites = o.sites;
+  if (!o.depths_m.empty()) plan->depths_m = o.depths_m;
+  plan->large_strain_sites = o.large_strain_sites;
+  plan->level = o.level;
+  if (auto error = check(*plan)) return std::move(*error);
+  return plan;
+}
+
+Result<ReferenceData> solve_plan(const ReferencePlan& plan, const Options& o) {
+  const auto solver = solver_versions();
+  if (!solver) return solver.error();
+  const SolveCache cache(o.cache);
+  const std::vector<Indentation> cases = cases_of(plan);
+  std::vector<ReferenceCase> solved(cases.size());
+  std::mutex mutex;
+  std::optional<Error> first_error;
+  const auto work = [&](std::size_t job) {
+    {
+      const std::lock_guard lock(mutex);
+      if (first_error) return;
+    }
+    auto result = solve_once(plan.organ, cases[job], *solver, cache);
+    if (result) {
+      solved[job] = std::move(*result);
+      return;
+    }
+    const std::lock_guard lock(mutex);
+    if (!first_error) first_error = result.error();
+  };
+  const bool whole =
+      run_jobs(cases.size(), {.label = "tact-reference", .shard = {}, .threads = o.jobs}, work);
+  if (first_error) return *first_error;
+  if (!whole) return interruption();
+  return assemble(plan, solved, *solver);
+}
+
+void print_table(const ReferenceData& data) {
+  fmt::print("{:>6} {:>9} {:>11} {:>10} {:>11}  {}\n", "vertex", "depth mm", "contact mm", "force N",
+             "mesh err %", "material");
+  for (const SolvedSite& site : data.sites)
+    for (const ReferenceCase& c : site.cases)
+      fmt::print("{:>6} {:>9.3g} {:>11.3f} {:>10.5f} {:>11.2f}  {}\n", site.vertex, c.depth_m * 1e3,
+                 c.contact_radius_m * 1e3, c.force_N, c.force_error_ratio * 100.0,
+                 c.large_strain ? "neo-Hookean" : "linear");
+}
+
+}  // namespace
+
+// The libraries throw when memory or standard output is gone; then the program may as well end.
+int main(int argc, char** argv) {
+  CLI::App app{"Solve press and pull of the scene's organ with gmsh and CalculiX."};
+  Options options;
+  add_options(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  const InterruptWatch watch;
+  if (!options.self_check.empty()) {
+    const auto good = self_check(options.self_check);
+    return good ? (*good ? 0 : 1) : fail(good.error());
+  }
+  const auto plan = make_plan(options);
+  if (!plan) return fail(plan.error());
+  const auto data = solve_plan(*plan, options);
+  if (!data) return fail(data.error());
+  const std::string text = reference_text(*data);
+  if (!options.out.empty()) {
+    if (const auto written = write_whole_file(options.out, text); !written)
+      return fail(written.error());
+  }
+  if (options.json) {
+    fmt::print("{}", text);
+  } else {
+    print_table(*data);
+  }
+  return 0;
+}

@@ -1,0 +1,181 @@
+#include "tools/reference/reference_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace tact::tools {
+namespace {
+
+using model::Error;
+
+constexpr double kDefaultDepths_m[] = {1e-3, 2e-3, 3.5e-3, 5e-3, 7e-3, 10e-3};
+constexpr double kUnitPull_m = -1e-3;
+
+bool among(const std::vector<std::uint32_t>& list, std::uint32_t vertex) {
+  return std::find(list.begin(), list.end(), vertex) != list.end();
+}
+
+/// The solved cases of one site, by what they are.
+struct SiteCases {
+  std::vector<const ReferenceCase*> press;
+  const ReferenceCase* press_coarse[2] = {nullptr, nullptr};  // least and largest depth
+  const ReferenceCase* pull = nullptr;
+  const ReferenceCase* pull_coarse = nullptr;
+  std::vector<const ReferenceCase*> large_strain;
+};
+
+double change(const ReferenceCase* fine, const ReferenceCase* coarse) {
+  return coarse == nullptr ? 0.0 : std::abs(fine->force_N - coarse->force_N) / std::abs(fine->force_N);
+}
+
+ReferenceCase scaled(const ReferenceCase& unit, double depth_m) {
+  ReferenceCase out = unit;
+  const double ratio = depth_m / unit.depth_m;
+  out.depth_m = depth_m;
+  out.force_N *= ratio;
+  for (double& u_m : out.profile_m) u_m *= ratio;
+  return out;
+}
+
+std::vector<ReferenceCase> cases_of_site(const SiteCases& s, const ReferencePlan& plan) {
+  std::vector<ReferenceCase> out;
+  const double least_m = plan.depths_m.front(), largest_m = plan.depths_m.back();
+  for (const ReferenceCase* c : s.press) {
+    const bool nearer_least = c->depth_m - least_m < largest_m - c->depth_m;
+    out.push_back(*c);
+    out.back().force_error_ratio = change(s.press[nearer_least ? 0 : s.press.size() - 1],
+                                          s.press_coarse[nearer_least ? 0 : 1]);
+  }
+  const double pull_error = change(s.pull, s.pull_coarse);
+  for (const double d_m : plan.depths_m) {
+    out.push_back(scaled(*s.pull, -d_m));
+    out.back().force_error_ratio = pull_error;
+  }
+  for (const ReferenceCase* c : s.large_strain) {
+    out.push_back(*c);
+    out.back().force_error_ratio = pull_error;
+  }
+  return out;
+}
+
+}  // namespace
+
+model::Result<ReferencePlan> plan_of(const model::Scene& scene) {
+  if (!scene.elastic) {
+    return Error{fmt::format(
+        "{}: has no [elastic]; add it with youngs_modulus_Pa, poisson_ratio, fixed_min_m and "
+        "fixed_max_m, or give them with --set",
+        scene.path)};
+  }
+  ReferencePlan plan;
+  plan.organ.surface = scene.organ_mesh;
+  for (model::Vec3& p : plan.organ.surface.vertex_m) p -= scene.organ.position_m;
+  plan.organ.hash = mesh_hash(plan.organ.surface);
+  plan.organ.held = {scene.elastic->fixed_min_m, scene.elastic->fixed_max_m};
+  plan.organ.material = {scene.elastic->youngs_modulus_Pa, scene.elastic->poisson_ratio};
+  plan.mesh_name = std::filesystem::path(scene.organ.mesh_path).filename().string();
+  plan.tool_radius_m = scene.tool.spheres.front().radius_m;
+  for (const auto& site : scene.reference_sites)
+    plan.sites.push_back(static_cast<std::uint32_t>(site.vertex));
+  plan.depths_m.assign(std::begin(kDefaultDepths_m), std::end(kDefaultDepths_m));
+  return plan;
+}
+
+model::Result<std::string> solver_versions() {
+  const auto gmsh = gmsh_version();
+  if (!gmsh) return gmsh;
+  const auto ccx = calculix_version();
+  if (!ccx) return ccx;
+  return fmt::format("CalculiX {}, gmsh {}", *ccx, *gmsh);
+}
+
+std::optional<Error> check(const ReferencePlan& plan) {
+  if (plan.sites.empty()) {
+    return Error{"no site to solve; add [[reference_site]] to the scene, or give --sites"};
+  }
+  const auto summary = model::summarize(plan.organ.surface);
+  if (summary.boundary_edges > 0) {
+    return Error{fmt::format("{} has {} open edges, so it has no inside; close the surface",
+                             plan.mesh_name, summary.boundary_edges)};
+  }
+  for (const std::uint32_t vertex : plan.sites) {
+    if (vertex >= summary.vertices) {
+      return Error{fmt::format("site {} is no vertex of {}; they are 0 to {}", vertex,
+                               plan.mesh_name, summary.vertices - 1)};
+    }
+    if (plan.organ.held.holds(plan.organ.surface.vertex_m[vertex]))
+      return Error{fmt::format("site {} lies in the box that is held; choose another", vertex)};
+  }
+  for (const std::uint32_t vertex : plan.large_strain_sites)
+    if (!among(plan.sites, vertex))
+      return Error{fmt::format("large strain at {}, which is no site; add it to --sites", vertex)};
+  if (plan.depths_m.empty() || !(plan.depths_m.front() > 0.0) ||
+      std::adjacent_find(plan.depths_m.begin(), plan.depths_m.end(), std::greater_equal<>()) !=
+          plan.depths_m.end())
+    return Error{"depths must be above 0 and rise"};
+  return std::nullopt;
+}
+
+std::vector<Indentation> cases_of(const ReferencePlan& plan) {
+  std::vector<Indentation> out;
+  for (const std::uint32_t vertex : plan.sites) {
+    const auto add = [&](double depth_m, int level, bool large_strain) {
+      out.push_back({.vertex = vertex,
+                     .tool_radius_m = plan.tool_radius_m,
+                     .depth_m = depth_m,
+                     .large_strain = large_strain,
+                     .level = level});
+    };
+    for (const double d_m : plan.depths_m) add(d_m, plan.level, false);
+    add(kUnitPull_m, plan.level, false);
+    if (plan.level > kCoarsestLevel) {
+      add(plan.depths_m.front(), plan.level - 1, false);
+      if (plan.depths_m.size() > 1) add(plan.depths_m.back(), plan.level - 1, false);
+      add(kUnitPull_m, plan.level - 1, false);
+    }
+    if (!among(plan.large_strain_sites, vertex)) continue;
+    for (const double d_m : plan.depths_m) add(-d_m, kCoarsestLevel, true);
+  }
+  return out;
+}
+
+ReferenceData assemble(const ReferencePlan& plan, const std::vector<ReferenceCase>& solved,
+                       const std::string& solver) {
+  ReferenceData data{.mesh = plan.mesh_name,
+                     .mesh_hash = plan.organ.hash,
+                     .solver = solver,
+                     .youngs_modulus_Pa = plan.organ.material.youngs_modulus_Pa,
+                     .poisson_ratio = plan.organ.material.poisson_ratio,
+                     .fixed_min_m = plan.organ.held.min_m,
+                     .fixed_max_m = plan.organ.held.max_m,
+                     .tool_radius_m = plan.tool_radius_m,
+                     .ring_pitch_m = kRingPitch_m,
+                     .sites = {}};
+  const std::vector<Indentation> cases = cases_of(plan);
+  for (const std::uint32_t vertex : plan.sites) {
+    SiteCases s;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      if (cases[i].vertex != vertex) continue;
+      const bool fine = cases[i].level == plan.level;
+      if (cases[i].large_strain) {
+        s.large_strain.push_back(&solved[i]);
+      } else if (!solved[i].is_press()) {
+        (fine ? s.pull : s.pull_coarse) = &solved[i];
+      } else if (fine) {
+        s.press.push_back(&solved[i]);
+      } else {
+        s.press_coarse[cases[i].depth_m == plan.depths_m.front() ? 0 : 1] = &solved[i];
+      }
+    }
+    data.sites.push_back({.vertex = vertex,
+                          .point_m = plan.organ.surface.vertex_m[vertex],
+                          .direction = -plan.organ.surface.vertex_normal[vertex],
+                          .cases = cases_of_site(s, plan)});
+  }
+  return data;
+}
+
+}  // namespace tact::tools

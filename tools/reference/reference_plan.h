@@ -1,0 +1,44 @@
+// reference_plan.h - which cases make the reference of an organ, and how they become one file.
+//
+// Per site: press at every depth; pull once, since it is linear, scaled to every depth; and for
+// some sites pull with large strain, which says how far linear is wrong. The mesh error of a force
+// is its change from the next coarser level: measured at the least and the largest press depth and
+// for pull; a depth between takes the nearer one's.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/scene.h"
+#include "tools/reference/solve_cache.h"
+
+namespace tact::tools {
+
+struct ReferencePlan {
+  Organ organ;
+  std::string mesh_name;
+  double tool_radius_m = 0.0;
+  std::vector<std::uint32_t> sites;
+  std::vector<double> depths_m;  // above 0, rising
+  std::vector<std::uint32_t> large_strain_sites;  // also among sites
+  int level = 2;
+};
+
+/// Organ, tool and sites of a scene; depths, level and large strain stay as they are by default.
+model::Result<ReferencePlan> plan_of(const model::Scene& scene);
+
+/// "CalculiX 2.20, gmsh 4.8.4"; an error says what to install.
+model::Result<std::string> solver_versions();
+
+/// An error names the vertex or depth that cannot be solved.
+std::optional<model::Error> check(const ReferencePlan& plan);
+
+/// Every solve of the plan, each once.
+std::vector<Indentation> cases_of(const ReferencePlan& plan);
+
+/// Puts solved cases together; `solved` in the order of cases_of.
+ReferenceData assemble(const ReferencePlan& plan, const std::vector<ReferenceCase>& solved,
+                       const std::string& solver);
+
+}  // namespace tact::tools

@@ -1,0 +1,106 @@
+#include "tools/reference/solve_cache.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "model/scene_words.h"
+#include "tools/common/table.h"
+
+namespace tact::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using model::Vec3;
+using nlohmann::json;
+
+constexpr int kMethod = 1;  // raise it whenever the same key would give another answer
+
+std::string text_of(const Vec3& v) { return fmt::format("{:.9g} {:.9g} {:.9g}", v.x, v.y, v.z); }
+
+std::string hash_of(const std::string& text) {
+  model::TextHash hash;
+  hash.add(text);
+  return hash.hex();
+}
+
+}  // namespace
+
+std::string SolveCache::path_of(const std::string& key) const {
+  return (fs::path(directory_) / (hash_of(key) + ".json")).string();
+}
+
+std::optional<ReferenceCase> SolveCache::find(const std::string& key) const {
+  std::ifstream file(path_of(key), std::ios::binary);
+  if (!file) return std::nullopt;
+  try {  // the library reports by exceptions; they end here
+    const json j = json::parse(file);
+    if (j.at("key").get<std::string>() != key) return std::nullopt;
+    return ReferenceCase{.depth_m = j.at("depth_m").get<double>(),
+                         .large_strain = j.at("large_strain").get<bool>(),
+                         .force_N = j.at("force_N").get<double>(),
+                         .contact_radius_m = j.at("contact_radius_m").get<double>(),
+                         .profile_m = j.at("profile_m").get<std::vector<double>>()};
+  } catch (const json::exception&) {
+    return std::nullopt;
+  }
+}
+
+std::optional<model::Error> SolveCache::keep(const std::string& key,
+                                             const ReferenceCase& solved) const {
+  std::error_code ignored;  // write_whole_file says it better
+  fs::create_directories(directory_, ignored);
+  const json j{{"key", key},
+               {"depth_m", solved.depth_m},
+               {"large_strain", solved.large_strain},
+               {"force_N", solved.force_N},
+               {"contact_radius_m", solved.contact_radius_m},
+               {"profile_m", solved.profile_m}};
+  const auto written = write_whole_file(path_of(key), j.dump(1) + "\n");
+  if (written) return std::nullopt;
+  return written.error();
+}
+
+std::string default_cache_directory() {
+  const char* cache = std::getenv("XDG_CACHE_HOME");
+  const char* home = std::getenv("HOME");
+  if (cache != nullptr && *cache != '\0') return std::string(cache) + "/tact/reference";
+  return std::string(home != nullptr ? home : "/tmp") + "/.cache/tact/reference";
+}
+
+std::string mesh_hash(const model::SurfaceMesh& mesh) {
+  model::TextHash hash;
+  for (const Vec3& p : mesh.vertex_m) {
+    hash.add(fmt::format("{} {} {}", std::llround(p.x * 1e9), std::llround(p.y * 1e9),
+                         std::llround(p.z * 1e9)));
+  }
+  for (const auto& t : mesh.triangle) hash.add(fmt::format("{} {} {}", t[0], t[1], t[2]));
+  return hash.hex();
+}
+
+std::string cache_key(const Organ& organ, const Indentation& what, const std::string& solver) {
+  const EdgeLengths edges = edge_lengths(organ, what);
+  return fmt::format(
+      "method {}, {}; mesh {}; E {:.9g} Pa, nu {:.9g}; held {} to {} m; vertex {}, radius {:.9g} m, "
+      "depth {:.9g} m, {}; contact {:.9g}; edges {:.9g} m, growth {:.9g}, to {:.9g} m",
+      kMethod, solver, organ.hash, organ.material.youngs_modulus_Pa, organ.material.poisson_ratio,
+      text_of(organ.held.min_m), text_of(organ.held.max_m), what.vertex, what.tool_radius_m,
+      what.depth_m, what.large_strain ? "large strain" : "linear", what.contact_ratio, edges.fine_m,
+      edges.growth, edges.largest_m);
+}
+
+model::Result<ReferenceCase> solve_once(const Organ& organ, const Indentation& what,
+                                        const std::string& solver, const SolveCache& cache) {
+  const std::string key = cache_key(organ, what, solver);
+  if (auto found = cache.find(key)) return std::move(*found);
+  auto solved = solve(organ, what);
+  if (!solved) return solved;
+  if (auto error = cache.keep(key, *solved)) return std::move(*error);
+  return solved;
+}
+
+}  // namespace tact::tools

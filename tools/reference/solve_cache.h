@@ -1,0 +1,43 @@
+// solve_cache.h - solved cases on disk, one file each, found again by everything they depend on.
+//
+// The key is a text that names mesh, material, held box, site, load, mesh level, method and solver;
+// the file's name is its hash and the file repeats the whole key, so two keys are never mixed up. A
+// file that cannot be read counts as absent: the case is solved again.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "tools/reference/indentation.h"
+
+namespace tact::tools {
+
+class SolveCache {
+ public:
+  /// The folder is made at the first keep().
+  explicit SolveCache(std::string directory) : directory_(std::move(directory)) {}
+
+  std::optional<ReferenceCase> find(const std::string& key) const;
+  /// The error says which file could not be written.
+  std::optional<model::Error> keep(const std::string& key, const ReferenceCase& solved) const;
+
+  std::string path_of(const std::string& key) const;
+
+ private:
+  std::string directory_;
+};
+
+/// $XDG_CACHE_HOME/tact/reference, else ~/.cache/tact/reference.
+std::string default_cache_directory();
+
+/// Of vertices (to the nanometre) and triangles, 16 hex digits.
+std::string mesh_hash(const model::SurfaceMesh& mesh);
+
+/// `solver`: names and versions of the programs.
+std::string cache_key(const Organ& organ, const Indentation& what, const std::string& solver);
+
+/// From the cache, or solved and kept.
+model::Result<ReferenceCase> solve_once(const Organ& organ, const Indentation& what,
+                                        const std::string& solver, const SolveCache& cache);
+
+}  // namespace tact::tools

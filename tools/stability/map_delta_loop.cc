@@ -1,0 +1,268 @@
+// Spot checks with the whole controller: loop, contact, gate and the simulated Delta with its hand.
+//
+// A wall is pressed with 2 N in the middle of the workspace; the largest stiffness without lasting
+// oscillation is found by bisection, once with the controller (rt_loop.h on a simulated clock,
+// hal/sim) and once with the independent loop of one degree of freedom that has the same mass,
+// damping, delay and hand. The Delta moves in steps of h <= 0.25 ms that see their own end, which
+// is worth K h / 2 of damping: it must agree in kind, and lies above the theory.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "firmware/rt_loop.h"
+#include "hal/open_device.h"
+#include "hal/sim/sim_delta.h"
+#include "hal/sim/sim_delta_model.h"
+#include "model/tissue.h"
+#include "tools/stability/axes.h"
+#include "tools/stability/gate_watch.h"
+#include "tools/stability/haptic_loop.h"
+#include "tools/stability/map.h"
+
+namespace tact::tools {
+namespace {
+
+using model::Vec3;
+
+constexpr double kPlantStep_s = 0.25e-3;  // of hal/sim, at most
+constexpr double kRadius_m = 0.004;       // of the tip
+constexpr double kPush_N = 2.0;
+constexpr double kHandMass_kg = 0.05, kHand_N_per_m = 50.0;
+constexpr double kApproach_s = 2.0, kFirst_s = 4.0, kRun_s = 10.0, kWindow_s = 1.0;
+
+struct Settings {
+  std::vector<double> rate_Hz, delay_s, damping_Nms_per_rad;
+  double precision = 1.05;
+};
+
+Settings settings(Grid grid) {
+  if (grid == Grid::kQuick)
+    return {.rate_Hz = {1000.0},
+            .delay_s = {0.5e-3},
+            .damping_Nms_per_rad = {0.05, 0.2},
+            .precision = 1.2};
+  return {.rate_Hz = {1000.0, 4000.0},
+          .delay_s = {0.0, 0.5e-3, 2e-3},
+          .damping_Nms_per_rad = {0.02, 0.05, 0.2}};
+}
+
+Axes<3> axes(const Settings& s) {
+  return {{s.rate_Hz.size(), s.delay_s.size(), s.damping_Nms_per_rad.size()}};
+}
+
+std::vector<Column> columns() {
+  return {{"rate_Hz"},
+          {"delay_s"},
+          {"joint_damping_Nms_per_rad"},
+          {"damping_at_tool_Ns_per_m"},
+          {"mass_at_tool_kg"},
+          {"theory_grow_N_per_m"},
+          {"theory_with_steps_N_per_m"},
+          {"one_degree_N_per_m"},
+          {"controller_N_per_m"},
+          {"controller_over_theory_with_steps"},
+          {"max_force_N"},
+          {"max_step_N"},
+          {"beyond_the_line", CellKind::kWord}};
+}
+
+/// A square plate in z = 0 that faces up.
+model::SurfaceMesh make_plate() {
+  constexpr double kHalf_m = 0.1;
+  const std::vector<Vec3> corner{{-kHalf_m, -kHalf_m, 0},
+                                 {kHalf_m, -kHalf_m, 0},
+                                 {kHalf_m, kHalf_m, 0},
+                                 {-kHalf_m, kHalf_m, 0}};
+  return *model::make_surface_mesh(corner, {{0, 1, 2}, {0, 2, 3}});
+}
+
+/// One rhombus without tangential spring is a linear spring: a wall of kN.
+model::Scene wall_scene(double stiffness_N_per_m, double rate_Hz,
+                        const model::SimDeviceSettings& device) {
+  model::Scene scene;
+  scene.path = "wall";
+  scene.rate_Hz = rate_Hz;
+  scene.law = model::LawKind::kRhombus;
+  scene.described = {model::LawKind::kRhombus};
+  scene.rhombus = {.rod_length_m = 0.1,
+                   .initial_angle_rad = 0.5,
+                   .normal_stiffness_N_per_m = stiffness_N_per_m,
+                   .tangential_stiffness_N_per_m = 0.0,
+                   .growth = 1.0,
+                   .units = 1};
+  scene.contact.tear_force_N = 1.0;
+  scene.tool.spheres = {{{}, kRadius_m}};
+  scene.device.kind = "sim-delta";
+  scene.device.sim = device;
+  scene.limits = kSceneLimits;
+  scene.organ_mesh = make_plate();
+  // the hand's spring is stretched by the push when the tool rests at its depth
+  const double aim_m = kRadius_m - kPush_N / stiffness_N_per_m - kPush_N / kHand_N_per_m;
+  scene.hand.mass_kg = kHandMass_kg;
+  scene.hand.stiffness_N_per_m = kHand_N_per_m;
+  scene.hand.path = {{.time_s = 0.0, .position_m = {0, 0, 0.01}},
+                     {.time_s = kApproach_s, .position_m = {0, 0, aim_m}}};
+  return scene;
+}
+
+struct Swing {
+  double low_m = 1.0, high_m = -1.0;
+
+  void add(double z_m) {
+    low_m = std::min(low_m, z_m);
+    high_m = std::max(high_m, z_m);
+  }
+  double size_m() const { return high_m - low_m; }
+};
+
+struct ControllerRun {
+  bool grows = true;
+  double max_force_N = 0.0, max_step_N = 0.0;
+};
+
+ControllerRun run_controller(double stiffness_N_per_m, double rate_Hz,
+                             const model::SimDeviceSettings& device_settings) {
+  const model::Scene scene = wall_scene(stiffness_N_per_m, rate_Hz, device_settings);
+  const auto tissue = model::make_tissue(scene);
+  const auto device = hal::make_sim_delta(scene.device.sim, scene.hand);
+  if (!tissue || !device) return {};
+  firmware::Controller controller((*tissue)->contact_scene(),
+                                  firmware::Gate(scene.limits, 1.0 / rate_Hz, 1.0));
+  firmware::SimulatedClock clock;
+  firmware::Requests requests;
+  requests.arm.store(true);
+  const auto ring = std::make_unique<firmware::TickRing>();
+  firmware::RtLoop loop({.period_ns = std::llround(1e9 / rate_Hz)}, **device, controller, clock,
+                        requests, *ring);
+  ControllerRun out;
+  firmware::TickRecord record, before;
+  Swing first, last;
+  const int ticks = static_cast<int>(kRun_s * rate_Hz);
+  for (int i = 0; i < ticks; ++i) {
+    loop.step();
+    while (ring->pop(record)) {
+      const Vec3& force_N = record.output.written.force_N;
+      out.max_force_N = std::max(out.max_force_N, norm(force_N));
+      out.max_step_N = std::max(out.max_step_N, norm(force_N - before.output.written.force_N));
+      before = record;
+    }
+    const double now_s = i / rate_Hz, z_m = (*device)->true_position_m().z;
+    if (now_s >= kFirst_s && now_s < kFirst_s + kWindow_s) first.add(z_m);
+    if (now_s >= kRun_s - kWindow_s) last.add(z_m);
+  }
+  // what does not get smaller, grows or bounces; a micrometre is rest
+  out.grows = last.size_m() > 1e-6 && last.size_m() > 0.98 * first.size_m();
+  return out;
+}
+
+double largest_by_controller(double rate_Hz, const model::SimDeviceSettings& device, double low,
+                             double high, double precision) {
+  if (run_controller(low, rate_Hz, device).grows) return 0.0;
+  while (high / low > precision) {
+    const double middle = std::sqrt(low * high);
+    (run_controller(middle, rate_Hz, device).grows ? high : low) = middle;
+  }
+  return std::sqrt(low * high);
+}
+
+/// The device along z in the middle of the workspace.
+struct AtTool {
+  double damping_Ns_per_m = 0.0, mass_kg = 0.0;
+};
+AtTool at_tool(double joint_damping_Nms_per_rad) {
+  const hal::DeltaKinematics delta(hal::sim_delta::kGeometry);
+  const Vec3 p_D = hal::sim_delta::point_D({0.0, 0.0, kRadius_m});
+  const hal::DeltaPose pose = delta.pose(p_D, delta.inverse(p_D).theta_rad);
+  const Vec3 up_D = hal::sim_delta::direction_D({0.0, 0.0, 1.0});
+  AtTool out;
+  // b = c |K e|^2,  m = e . M e
+  for (const double rate : hal::joint_rates_radps(pose, up_D))
+    out.damping_Ns_per_m += joint_damping_Nms_per_rad * rate * rate;
+  const model::Mat3 mass =
+      hal::task_inertia_kg(hal::sim_delta::kGeometry, hal::sim_delta::kMasses, pose);
+  out.mass_kg = dot(up_D, mass * up_D);
+  return out;
+}
+
+Row run(std::size_t job, Grid grid) {
+  const Settings s = settings(grid);
+  const auto [rate, delay, damping] = axes(s).at(job);
+  const model::SimDeviceSettings device{.counts_per_turn = 1e7,
+                                        .sample_delay_s = s.delay_s[delay],
+                                        .joint_friction_Nm = 0.0,
+                                        .joint_damping_Nms_per_rad = s.damping_Nms_per_rad[damping],
+                                        .observer_bandwidth_Hz = 40.0};
+  const AtTool tool = at_tool(device.joint_damping_Nms_per_rad);
+  LoopCase loop;
+  loop.device = {.damping_Ns_per_m = tool.damping_Ns_per_m, .delay_s = device.sample_delay_s};
+  loop.rate_Hz = s.rate_Hz[rate];
+  loop.mass_kg = tool.mass_kg;
+  loop.hand = {.mass_kg = kHandMass_kg, .stiffness_N_per_m = kHand_N_per_m};
+  const double theory = model::haptic_limit(loop.device, loop.rate_Hz).grow_N_per_m;
+  // the steps of the simulated Delta see their own end: worth K h / 2 of damping
+  const double period_s = 1.0 / loop.rate_Hz, step_s = std::min(kPlantStep_s, period_s);
+  const double with_steps =
+      loop.device.damping_Ns_per_m / (0.5 * period_s + loop.device.delay_s - 0.5 * step_s);
+  const double measured =
+      largest_by_controller(loop.rate_Hz, device, 0.3 * theory, 10.0 * theory, s.precision);
+  const ControllerRun beyond = run_controller(3.0 * measured, loop.rate_Hz, device);
+  const double step_limit_N = kSceneLimits.slew_N_per_s / loop.rate_Hz + 1e-12;
+  const bool bounded =
+      beyond.max_force_N <= kSceneLimits.force_N && beyond.max_step_N <= step_limit_N;
+  return {loop.rate_Hz,
+          loop.device.delay_s,
+          device.joint_damping_Nms_per_rad,
+          tool.damping_Ns_per_m,
+          tool.mass_kg,
+          theory,
+          with_steps,
+          largest_wall_N_per_m(loop, Verdict::kGrow),
+          measured,
+          measured / with_steps,
+          beyond.max_force_N,
+          beyond.max_step_N,
+          std::string(!bounded       ? "OUT OF BOUNDS"
+                      : beyond.grows ? "bounces on the surface within the limits of the gate"
+                                     : "comes to rest")};
+}
+
+std::vector<Finding> judge(const Table& t) {
+  double least = 1e9, low = 1e9, high = 0.0;
+  std::size_t in_bounds = 0;
+  for (const Row& row : t.rows()) {
+    least =
+        std::min(least, t.number(row, "controller_N_per_m") / t.number(row, "theory_grow_N_per_m"));
+    in_bounds += t.word(row, "beyond_the_line") != "OUT OF BOUNDS";
+    const double ratio = t.number(row, "controller_over_theory_with_steps");
+    if (!(ratio > 0.0)) continue;  // one step a period and no delay: nothing is held
+    low = std::min(low, ratio);
+    high = std::max(high, ratio);
+  }
+  return {{least > 0.9, fmt::format("the whole controller with the simulated Delta is stable up to "
+                                    "b / (T/2 + t_d): the least measured limit is {:.2f} of it",
+                                    least)},
+          {low > 0.85 && high < 1.3,
+           fmt::format("it loses stability at {:.2f} to {:.2f} of b / (T/2 + t_d - h/2), h the "
+                       "step of its plant",
+                       low, high)},
+          {in_bounds == t.rows().size(),
+           fmt::format("three times beyond it |F| and |dF| stay in bounds in {} of {} cells",
+                       in_bounds, t.rows().size())}};
+}
+
+}  // namespace
+
+Map delta_loop_map() {
+  return {.letter = 'c',
+          .name = "loop_delta",
+          .purpose = "spot checks: the real controller with the simulated Delta and its hand",
+          .columns = columns,
+          .jobs = [](Grid grid) { return axes(settings(grid)).jobs(); },
+          .run = run,
+          .judge = judge,
+          .pictures = nullptr};
+}
+
+}  // namespace tact::tools

@@ -1,0 +1,128 @@
+// Integrators of a mass on springs: does the oscillator grow where its amplification matrix says?
+//
+// Per cell of z = h omega and damping ratio zeta: M of PHYSICS MA-10 to MA-15 gives the spectral
+// radius; the step itself (model/integrators.h) is run from two starts, (x, h v) = (1, 0) and (0,
+// 1), and the growth a step of what comes out is measured over the second half of the run.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/integrator_stability.h"
+#include "tools/stability/axes.h"
+#include "tools/stability/map.h"
+#include "tools/stability/pictures.h"
+#include "tools/stability/probed_methods.h"
+
+namespace tact::tools {
+namespace {
+
+constexpr int kSteps = 20'000;
+constexpr int kChunk = 50;          // between two normalisations: 15^50 is still a number
+constexpr double kGrows = 5e-5;     // a step, in the logarithm: what kSteps can tell from 0
+constexpr double kRounding = 1e-9;  // of the spectral radius
+
+struct Cells {
+  std::size_t z = 0, zeta = 0;
+};
+Cells cells(Grid grid) { return grid == Grid::kQuick ? Cells{15, 9} : Cells{60, 41}; }
+
+double z_of(std::size_t i, Grid grid) {
+  return 4.0 * static_cast<double>(i + 1) / static_cast<double>(cells(grid).z);
+}
+double zeta_of(std::size_t i, Grid grid) {
+  return 2.0 * static_cast<double>(i) / static_cast<double>(cells(grid).zeta - 1);
+}
+
+std::vector<Column> columns() {
+  return {{"method", CellKind::kWord},
+          {"zeta"},
+          {"z"},
+          {"theory_growth_per_step"},
+          {"measured_growth_per_step"},
+          {"theory", CellKind::kWord},
+          {"measured", CellKind::kWord}};
+}
+
+/// ln of the growth a step, over the second half of the run.
+double measured_log_growth(const model::Method& method, double z, double zeta) {
+  // m = 1 kg, omega = 1 rad/s: h = z, c = 2 zeta
+  const model::Oscillator oscillator{
+      .mass_kg = 1.0, .damping_Ns_per_m = 2.0 * zeta, .stiffness_N_per_m = 1.0};
+  model::OscillatorState a{.position_m = 1.0}, b{.velocity_mps = 1.0 / z};
+  double log_norm = 0.0, half = 0.0;
+  for (int i = 0; i < kSteps; i += kChunk) {
+    for (int k = 0; k < kChunk; ++k) {
+      a = model::step(oscillator, a, method, z);
+      b = model::step(oscillator, b, method, z);
+    }
+    const double norm = std::hypot(std::hypot(a.position_m, z * a.velocity_mps),
+                                   std::hypot(b.position_m, z * b.velocity_mps));
+    if (!(norm > 0.0)) return -1.0;  // died out: nothing left to measure
+    log_norm += std::log(norm);
+    for (model::OscillatorState* s : {&a, &b}) {
+      s->position_m /= norm;
+      s->velocity_mps /= norm;
+    }
+    if (i + kChunk == kSteps / 2) half = log_norm;
+  }
+  return (log_norm - half) / (0.5 * kSteps);
+}
+
+Row run(std::size_t job, Grid grid) {
+  const auto [which, i, j] =
+      Axes<3>{{std::size(kProbedMethods), cells(grid).zeta, cells(grid).z}}.at(job);
+  const ProbedMethod& probed = kProbedMethods[which];
+  const double zeta = zeta_of(i, grid), z = z_of(j, grid);
+  const double radius = model::spectral_radius(model::amplification(probed.method, z, zeta));
+  const double growth = measured_log_growth(probed.method, z, zeta);
+  return {std::string(probed.name),
+          zeta,
+          z,
+          radius,
+          std::exp(growth),
+          std::string(radius > 1.0 + kRounding ? "grows" : "bounded"),
+          std::string(growth > kGrows ? "grows" : "bounded")};
+}
+
+std::vector<Finding> judge(const Table& t) {
+  std::size_t agree = 0;
+  double worst = 0.0;
+  std::string rest;
+  for (const Row& row : t.rows()) {
+    const double theory = t.number(row, "theory_growth_per_step");
+    if (theory > 0.5)
+      worst = std::max(worst, std::abs(t.number(row, "measured_growth_per_step") / theory - 1.0));
+    if (t.word(row, "theory") == t.word(row, "measured")) {
+      ++agree;
+      continue;
+    }
+    rest += fmt::format("\n        {} z {:.4g} zeta {:.3g}: radius {:.6f}", t.word(row, "method"),
+                        t.number(row, "z"), t.number(row, "zeta"), theory);
+  }
+  const double share = static_cast<double>(agree) / static_cast<double>(t.rows().size());
+  return {{share >= 0.995,
+           fmt::format("the oscillator grows where its amplification matrix says in {:.3f} % of {} "
+                       "cells{}{}",
+                       100.0 * share, t.rows().size(),
+                       rest.empty() ? "" : "; the others, right on the line:", rest)},
+          {worst < 1e-3,
+           fmt::format("growth a step agrees within {:.1e}, where it is above 1/2", worst)}};
+}
+
+}  // namespace
+
+Map integrator_map() {
+  return {
+      .letter = 'a',
+      .name = "integrators",
+      .purpose = "growth of the oscillator over step and damping, every integrator",
+      .columns = columns,
+      .jobs =
+          [](Grid grid) { return std::size(kProbedMethods) * cells(grid).zeta * cells(grid).z; },
+      .run = run,
+      .judge = judge,
+      .pictures = integrator_pictures};
+}
+
+}  // namespace tact::tools

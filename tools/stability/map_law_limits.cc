@@ -1,0 +1,117 @@
+// Every law up to its limit and beyond, pressed and pulled through the gate.
+//
+// Per cell one law and one depth, in shares of its range: the force, tangent and status of the law
+// there, and what the gate has written when a tool has come there from rest with 0.2 m/s, 1 kHz.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/stability/axes.h"
+#include "tools/stability/gate_watch.h"
+#include "tools/stability/laws.h"
+#include "tools/stability/map.h"
+#include "tools/stability/pictures.h"
+
+namespace tact::tools {
+namespace {
+
+constexpr double kRate_Hz = 1000.0;
+constexpr double kSpeed_mps = 0.2;
+
+std::size_t depths(Grid grid) { return grid == Grid::kQuick ? 9 : 161; }
+
+/// -1.5 .. 2.5 times the range.
+double depth_share(std::size_t i, Grid grid) {
+  return -1.5 + 4.0 * static_cast<double>(i) / static_cast<double>(depths(grid) - 1);
+}
+
+std::vector<Column> columns() {
+  return {{"law", CellKind::kWord},
+          {"depth_ratio"},
+          {"depth_m"},
+          {"force_N"},
+          {"force_ratio"},
+          {"tangent_ratio"},
+          {"status", CellKind::kWord},
+          {"gate_force_N"},
+          {"gate_max_force_N"},
+          {"gate_max_step_N"},
+          {"gate", CellKind::kWord},
+          {"beyond_the_line", CellKind::kWord}};
+}
+
+const char* word(model::LawStatus status) {
+  switch (status) {
+    case model::LawStatus::kOk:
+      return "ok";
+    case model::LawStatus::kNoContact:
+      return "no contact";
+    case model::LawStatus::kSaturated:
+      return "saturated";
+    case model::LawStatus::kSingular:
+      return "singular";
+    case model::LawStatus::kInvalid:
+      return "invalid";
+  }
+  return "?";
+}
+
+Row run(std::size_t job, Grid grid) {
+  const auto [which, depth] = Axes<2>{{probed_laws().size(), depths(grid)}}.at(job);
+  const NamedLaw& named = probed_laws()[which];
+  const double range_m = named.law->range().press_m;
+  const double share = depth_share(depth, grid), depth_m = share * range_m;
+  GateWatch gate(kRate_Hz);
+  gate.open(0.0);
+  const int ticks = static_cast<int>(std::ceil(std::abs(depth_m) / kSpeed_mps * kRate_Hz));
+  for (int i = 1; i <= ticks; ++i)
+    gate.step(named.felt->respond(depth_m * i / ticks).force_N, true);
+  const model::LawResponse at = named.law->respond(depth_m);
+  const double edge_N = named.law->respond(range_m).force_N;
+  const double tangent = named.law->respond(1e-3 * range_m).stiffness_N_per_m;
+  return {named.name,
+          share,
+          depth_m,
+          at.force_N,
+          at.force_N / edge_N,
+          at.stiffness_N_per_m / tangent,
+          std::string(word(at.status)),
+          gate.written_N(),
+          gate.max_force_N(),
+          gate.max_step_N(),
+          std::string(gate.kept_bounds() ? "in bounds" : "OUT OF BOUNDS"),
+          named.beyond};
+}
+
+std::vector<Finding> judge(const Table& t) {
+  std::size_t in_bounds = 0, told = 0, beyond = 0, finite = 0;
+  for (const Row& row : t.rows()) {
+    in_bounds += t.word(row, "gate") == "in bounds";
+    finite += std::isfinite(t.number(row, "force_N"));
+    if (t.number(row, "depth_ratio") <= 1.0) continue;
+    ++beyond;
+    told += t.word(row, "status") == "saturated";
+  }
+  return {{finite == t.rows().size(), "no law gives a force that is not a number"},
+          {told == beyond,
+           fmt::format("beyond its range every law says so: {} of {} cells", told, beyond)},
+          {in_bounds == t.rows().size(),
+           fmt::format("through the gate |F| and |dF| stay in bounds in {} of {} cells", in_bounds,
+                       t.rows().size())}};
+}
+
+}  // namespace
+
+Map law_limit_map() {
+  return {.letter = 'b',
+          .name = "law_limits",
+          .purpose = "every law pressed and pulled beyond its range, through the gate",
+          .columns = columns,
+          .jobs = [](Grid grid) { return probed_laws().size() * depths(grid); },
+          .run = run,
+          .judge = judge,
+          .pictures = law_limit_pictures};
+}
+
+}  // namespace tact::tools

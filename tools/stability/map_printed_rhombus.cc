@@ -1,0 +1,133 @@
+// The rhombus chain as its source prints it: where does it stop making sense?
+//
+// Equations (3), (4), (6), (11) as printed let the tangential springs help the load. Per cell of
+// angle theta0 and kT/kN: the first unit of ten that gets longer while it is pressed, measured on
+// the printed force at a small press, beside
+//
+//     kN = kT1 exp((i - 1)/beta) tan^2(theta0)        singular at unit i, PHYSICS 1.2.3
+//
+// and what the printed force (12) is of the force that the springs really store, 1/2 for small
+// presses. The energy form resists in every cell.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "model/rhombus_paper.h"
+#include "tools/stability/axes.h"
+#include "tools/stability/map.h"
+#include "tools/stability/pictures.h"
+
+namespace tact::tools {
+namespace {
+
+constexpr double kDegree_rad = std::numbers::pi / 180.0;
+constexpr int kUnits = 10;
+constexpr double kGrowth = 2.0;       // beta
+constexpr double kSmall_rad = -1e-6;  // a press that only shows the slope
+constexpr double kPress_rad = -0.02;  // a press that can be seen
+
+struct Cells {
+  std::size_t angles = 0, ratios = 0;
+};
+Cells cells(Grid grid) { return grid == Grid::kQuick ? Cells{18, 12} : Cells{90, 60}; }
+
+double angle_deg(std::size_t i, Grid grid) {
+  return 3.0 + 57.0 * (static_cast<double>(i) + 0.5) / static_cast<double>(cells(grid).angles);
+}
+/// kT/kN from 0.1 to 10.
+double spring_ratio(std::size_t i, Grid grid) {
+  return std::pow(
+      10.0, -1.0 + 2.0 * (static_cast<double>(i) + 0.5) / static_cast<double>(cells(grid).ratios));
+}
+
+std::vector<Column> columns() {
+  return {{"angle_deg"},
+          {"kT_over_kN"},
+          {"first_failing_unit"},
+          {"theory_first_failing_unit"},
+          {"printed_stiffness_ratio"},
+          {"energy_stiffness_ratio"},
+          {"printed_force_12_ratio"},
+          {"what_happens", CellKind::kWord}};
+}
+
+model::RhombusUnit unit_of(double angle_rad, double ratio, int i) {
+  return {.rod_length_m = 0.010,
+          .initial_angle_rad = angle_rad,
+          .normal_stiffness_N_per_m = 1500.0,
+          .tangential_stiffness_N_per_m = 1500.0 * ratio * std::exp(i / kGrowth)};
+}
+
+/// Counted from 1; kUnits + 1: none.
+int first_failing(double angle_rad, double ratio) {
+  for (int i = 0; i < kUnits; ++i) {
+    const model::PaperUnit at = model::paper_forward(unit_of(angle_rad, ratio, i), kSmall_rad);
+    if (!(at.force_N / at.shortening_m > 0.0)) return i + 1;
+  }
+  return kUnits + 1;
+}
+
+int theory_first_failing(double angle_rad, double ratio) {
+  const double tangent = std::tan(angle_rad);
+  // i > 1 + beta ln(kN / (kT1 tan^2(theta0)))
+  const double last_good = 1.0 + kGrowth * std::log(1.0 / (ratio * tangent * tangent));
+  return last_good < 1.0 ? 1 : std::min(kUnits + 1, static_cast<int>(std::floor(last_good)) + 1);
+}
+
+Row run(std::size_t job, Grid grid) {
+  const auto [angle, ratio] = Axes<2>{{cells(grid).angles, cells(grid).ratios}}.at(job);
+  const double angle_rad = angle_deg(angle, grid) * kDegree_rad;
+  const double kT_over_kN = spring_ratio(ratio, grid);
+  const model::RhombusUnit unit = unit_of(angle_rad, kT_over_kN, 0);
+  const model::PaperUnit small = model::paper_forward(unit, kSmall_rad);
+  const model::PaperUnit pressed = model::paper_forward(unit, kPress_rad * angle_rad);
+  const model::UnitResponse energy = model::respond(unit, -pressed.shortening_m);
+  const int first = first_failing(angle_rad, kT_over_kN);
+  const char* what = first > kUnits ? "softer than the springs"
+                     : first == 1   ? "the surface pulls the tool in"
+                                    : "deeper units get longer while pressed";
+  return {angle_deg(angle, grid),
+          kT_over_kN,
+          static_cast<double>(first),
+          static_cast<double>(theory_first_failing(angle_rad, kT_over_kN)),
+          small.force_N / small.shortening_m / unit.normal_stiffness_N_per_m,
+          model::respond(unit, 0.0).stiffness_N_per_m / unit.normal_stiffness_N_per_m,
+          pressed.energy_J / -pressed.shortening_m / energy.force_N,
+          std::string(what)};
+}
+
+std::vector<Finding> judge(const Table& t) {
+  std::size_t agree = 0, energy_resists = 0;
+  double low = 1e9, high = 0.0;
+  for (const Row& row : t.rows()) {
+    agree += t.number(row, "first_failing_unit") == t.number(row, "theory_first_failing_unit");
+    energy_resists += t.number(row, "energy_stiffness_ratio") >= 1.0;
+    low = std::min(low, t.number(row, "printed_force_12_ratio"));
+    high = std::max(high, t.number(row, "printed_force_12_ratio"));
+  }
+  const double share = static_cast<double>(agree) / static_cast<double>(t.rows().size());
+  const double line_deg = std::atan(std::sqrt(1.5 / 1.8)) / kDegree_rad;
+  return {{share >= 0.995, fmt::format("the printed chain fails at the unit that the formula says "
+                                       "in {:.2f} % of cells; the liver's first unit at {:.3f} deg",
+                                       100.0 * share, line_deg)},
+          {energy_resists == t.rows().size(), "the energy form resists in every cell"},
+          {low > 0.499 && high < 0.53,
+           fmt::format("(12) is {:.4f} to {:.4f} of the force of the stored energy", low, high)}};
+}
+
+}  // namespace
+
+Map printed_rhombus_map() {
+  return {.letter = 'b',
+          .name = "printed_rhombus",
+          .purpose = "where the printed rhombus law turns its sign, by angle, springs and unit",
+          .columns = columns,
+          .jobs = [](Grid grid) { return cells(grid).angles * cells(grid).ratios; },
+          .run = run,
+          .judge = judge,
+          .pictures = printed_rhombus_pictures};
+}
+
+}  // namespace tact::tools

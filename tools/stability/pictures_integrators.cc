@@ -1,0 +1,67 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "model/integrator_stability.h"
+#include "tools/stability/pictures.h"
+#include "tools/stability/probed_methods.h"
+
+namespace tact::tools {
+namespace {
+
+constexpr double kMost = 4.0;  // z shown
+
+/// z_max over zeta, as a data block that a script can plot.
+std::string theory_block(int number, const model::Method& method) {
+  constexpr int kPoints = 200;
+  std::string out = fmt::format("$theory{} << EOD\nz_max,zeta\n", number);
+  for (int i = 0; i <= kPoints; ++i) {
+    const double zeta = 2.0 * i / kPoints;
+    out += fmt::format("{:.5g},{:.5g}\n",
+                       std::fmin(model::largest_stable_z(method, zeta), kMost + 1.0), zeta);
+  }
+  return out + "EOD\n";
+}
+
+}  // namespace
+
+std::vector<Picture> integrator_pictures(Grid grid) {
+  const double dz = grid == Grid::kQuick ? 4.0 / 15.0 : 4.0 / 60.0;
+  const double dzeta = grid == Grid::kQuick ? 2.0 / 8.0 : 2.0 / 40.0;
+  std::string script =
+      fmt::format("f = 'integrators.csv'\ndz = {:.6g}\ndzeta = {:.6g}\n", dz / 2.0, dzeta / 2.0);
+  script += R"gp(
+set multiplot layout 2,4 title \
+  "Growth of a damped oscillator: cells measured, black line z_{max} of the amplification matrix" \
+  font ',14'
+set xrange [0:4]
+set yrange [-0.025:2]
+set xlabel "z = h omega"
+set ylabel "damping ratio zeta"
+set key off
+set style fill solid noborder
+set label 1 "bounded" at graph 0.05,0.93 front
+set label 2 "grows\nwithout\nlimit" at graph 0.77,0.5 front
+)gp";
+  int number = 0;
+  for (const ProbedMethod& probed : kProbedMethods) {
+    ++number;
+    script += theory_block(number, probed.method);
+    if (probed.method.integrator == model::Integrator::kImplicitEuler)
+      script += "set label 1 \"bounded everywhere\"\nunset label 2\n";
+    script += fmt::format(
+        "set title '{0}'\n"
+        "plot f using (strcol(2) eq '{0}' && strcol(8) eq 'bounded' ? $4 : NaN):3:(dz):(dzeta) "
+        "with boxxyerror lc rgb '#a6cee3', \\\n"
+        "     f using (strcol(2) eq '{0}' && strcol(8) eq 'grows' ? $4 : NaN):3:(dz):(dzeta) "
+        "with boxxyerror lc rgb '#fdbf6f', \\\n"
+        "     $theory{1} using 1:2 with lines lc rgb '#000000' lw 2.5, \\\n"
+        "     f using (strcol(2) eq '{0}' && strcol(7) ne strcol(8) ? $4 : NaN):3 with points pt 2 "
+        "lc rgb '#e31a1c'\n",
+        probed.name, number);
+  }
+  script += "unset multiplot\n";
+  return {{.name = "integrators", .width_px = 1600, .height_px = 850, .script = script}};
+}
+
+}  // namespace tact::tools
