@@ -25,6 +25,10 @@ void Controller::feel(const TickInput& input) RT_SAFE {
   wanted_ = contact_.feel(input.sample.tool);
 }
 
+void Controller::tell_shape() RT_SAFE {
+  if (contact_.shape(shape_)) shapes_.write(shape_);
+}
+
 TickOutput Controller::judge(const TickInput& input) RT_SAFE {
   const bool finite = is_finite(input.sample.tool);
   Fault fault = finite ? Fault::kNone : Fault::kSampleNotFinite;

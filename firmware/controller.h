@@ -7,6 +7,7 @@
 #include "firmware/gate/gate.h"
 #include "firmware/supervisor.h"
 #include "hal/device.h"
+#include "hal/latest_slot.h"
 #include "model/contact.h"
 
 namespace tact::firmware {
@@ -27,6 +28,8 @@ struct TickOutput {
   Fault fault = Fault::kNone;  // latched
 };
 
+using ShapeSlot = hal::LatestSlot<model::PatchShape>;
+
 class Controller {
  public:
   Controller(const model::ContactScene& scene, const Gate& gate) : contact_(scene), gate_(gate) {}
@@ -42,6 +45,10 @@ class Controller {
     return judge(input);
   }
 
+  /// What a stepped law looks like now goes to the slot; nothing for laws with a profile.
+  void tell_shape() RT_SAFE;
+  ShapeSlot& shapes() { return shapes_; }
+
   std::span<const model::SphereTouch> touches() const RT_SAFE { return contact_.touches(); }
   const Gate& gate() const RT_SAFE { return gate_; }
   /// Of the last tick; for after the loop.
@@ -53,6 +60,8 @@ class Controller {
   Supervisor supervisor_;
   Wrench wanted_;
   TickOutput newest_;
+  model::PatchShape shape_;
+  ShapeSlot shapes_;
   std::uint32_t missed_ = 0;  // samples in a row
 };
 

@@ -76,6 +76,8 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   record_.site_count = static_cast<std::uint32_t>(touches.size());
   std::copy(touches.begin(), touches.end(), record_.touch.begin());
   ring_.push(record_);  // tell, or drop
+  if (settings_.ticks_per_shape != 0 && record_.tick % settings_.ticks_per_shape == 0)
+    controller_.tell_shape();
   const std::int64_t end_ns = clock_.now_ns();
   keep(Phase::kTell, end_ns - written_ns);
   keep(Phase::kTotal, end_ns - wake_ns);

@@ -33,7 +33,8 @@ struct LoopStatistics {
 
 struct LoopSettings {
   std::int64_t period_ns = 1'000'000;
-  std::uint64_t max_ticks = 0;  // 0: until a stop request
+  std::uint64_t max_ticks = 0;        // 0: until a stop request
+  std::uint64_t ticks_per_shape = 0;  // 0: never
 };
 
 class RtLoop {

@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <csignal>
@@ -70,6 +71,7 @@ class Session {
   void watch();
   int report();
   double force_share() const { return non_rt_ ? kNonRtForceShare : 1.0; }
+  std::uint64_t ticks_per_shape() const;
   std::int64_t period_ns() const { return std::llround(1e9 / scene_.rate_Hz); }
 
   const model::Scene& scene_;
@@ -143,9 +145,17 @@ std::optional<Error> Session::open() {
           ? options_.ticks
           : static_cast<std::uint64_t>(std::ceil(options_.seconds * scene_.rate_Hz));
   Clock& clock = options_.free_run ? static_cast<Clock&>(simulated_clock_) : monotonic_clock_;
-  loop_.emplace(LoopSettings{.period_ns = period_ns(), .max_ticks = asked_ticks}, *device_,
-                *controller_, clock, requests_, *ring_);
+  loop_.emplace(
+      LoopSettings{
+          .period_ns = period_ns(), .max_ticks = asked_ticks, .ticks_per_shape = ticks_per_shape()},
+      *device_, *controller_, clock, requests_, *ring_);
   return std::nullopt;
+}
+
+/// As often as a viewer looks.
+std::uint64_t Session::ticks_per_shape() const {
+  return std::max<std::uint64_t>(1,
+                                 static_cast<std::uint64_t>(scene_.rate_Hz / scene_.frame_rate_Hz));
 }
 
 std::optional<Error> Session::open_telemetry() {
@@ -184,8 +194,9 @@ std::optional<Error> Session::open_telemetry() {
     if (!created) return created.error();
     log.emplace(std::move(*created));
   }
-  telemetry_.emplace(*ring_, FrameBuilder(tissue_->law().site_law(), non_rt_), scene_.frame_rate_Hz,
-                     std::move(socket), std::move(log));
+  telemetry_.emplace(*ring_,
+                     FrameBuilder(tissue_->law().site_law(), controller_->shapes(), non_rt_),
+                     scene_.frame_rate_Hz, std::move(socket), std::move(log));
   return std::nullopt;
 }
 

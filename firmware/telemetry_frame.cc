@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace tact::firmware {
 namespace {
@@ -125,10 +127,29 @@ Frame FrameBuilder::take(std::uint64_t dropped_records) {
   frame.state = r.output.state;
   frame.non_rt = non_rt_ ? 1 : 0;
   for (std::size_t i = 0; i < r.site_count; ++i) add_site(r.touch[i], frame.site[i]);
+  add_patch(frame.patch);
   tick_us_.clear();
   peak_force_N_ = 0.0f;
   limit_ = Fault::kNone;
   return frame;
+}
+
+void FrameBuilder::add_patch(FramePatch& patch) {
+  static_assert(kMaxPatchVertices == model::kMaxShapeNodes && kMaxCutsTold == model::kCutWindow);
+  constexpr double kMost_um = std::numeric_limits<std::int16_t>::max();
+  shapes_.read(shape_);  // or the one before
+  patch.vertex_count = shape_.node_count;
+  patch.cut_total = shape_.cut_total;
+  patch.cut_first = shape_.cut_first;
+  patch.cut_count = shape_.cut_count;
+  std::copy(shape_.vertex.begin(), shape_.vertex.end(), patch.vertex);
+  std::copy(shape_.cut_triangle.begin(), shape_.cut_triangle.end(), patch.cut_triangle);
+  for (std::size_t i = 0; i < shape_.node_count; ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double um = 1e6 * static_cast<double>(shape_.displacement_m[i][k]);
+      patch.displacement_um[i][k] =
+          static_cast<std::int16_t>(std::clamp(std::round(um), -kMost_um, kMost_um));
+    }
 }
 
 void FrameBuilder::add_site(const model::SphereTouch& touch, FrameSite& site) const {

@@ -27,8 +27,9 @@ model::Result<int> make_mesh_file(const model::Scene& scene);
 /// Gathers records; a frame shows the newest and the extremes since the frame before.
 class FrameBuilder {
  public:
-  /// `law` outlives the builder; its profile is solved here, far from the loop.
-  FrameBuilder(const model::SiteLaw& law, bool non_rt) : law_(law), non_rt_(non_rt) {}
+  /// `law` and `shapes` outlive the builder; profiles are solved here, far from the loop.
+  FrameBuilder(const model::SiteLaw& law, ShapeSlot& shapes, bool non_rt)
+      : law_(law), shapes_(shapes), non_rt_(non_rt) {}
 
   void add(const TickRecord& record);
   bool has_news() const { return !tick_us_.empty(); }
@@ -36,8 +37,11 @@ class FrameBuilder {
 
  private:
   void add_site(const model::SphereTouch& touch, FrameSite& site) const;
+  void add_patch(FramePatch& patch);
 
   const model::SiteLaw& law_;
+  ShapeSlot& shapes_;
+  model::PatchShape shape_;
   bool non_rt_;
   TickRecord newest_;
   std::int64_t first_due_ns_ = -1;

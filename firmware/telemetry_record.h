@@ -16,9 +16,11 @@
 namespace tact::firmware {
 
 inline constexpr std::uint32_t kTelemetryMagic = 0x74636174;  // "tact"
-inline constexpr std::uint16_t kTelemetryVersion = 1;
-inline constexpr std::size_t kMaxSites = 4;   // probe spheres on the tool
-inline constexpr std::size_t kMaxRings = 32;  // profile points of one site
+inline constexpr std::uint16_t kTelemetryVersion = 2;
+inline constexpr std::size_t kMaxSites = 4;            // probe spheres on the tool
+inline constexpr std::size_t kMaxRings = 32;           // profile points of one site
+inline constexpr std::size_t kMaxPatchVertices = 180;  // told one by one
+inline constexpr std::size_t kMaxCutsTold = 32;        // in one frame
 
 enum class MessageKind : std::uint16_t { kHello = 1, kFrame = 2 };
 enum class State : std::uint8_t { kOff = 0, kReady = 1, kArmed = 2, kStopped = 3 };
@@ -60,6 +62,17 @@ struct FrameSite {
   std::uint8_t pad[3] = {};
 };
 
+/// What a mass-spring law shows instead of profiles: vertices that are not at rest, and the cut
+/// triangles, told in a window over their list that moves on from frame to frame.
+struct FramePatch {
+  std::uint32_t vertex_count = 0;                 // in use
+  std::uint32_t cut_total = 0, cut_first = 0;     // of the list, so far; first one told here
+  std::uint32_t cut_count = 0;                    // told here
+  std::uint32_t vertex[kMaxPatchVertices] = {};   // of the organ mesh
+  std::uint32_t cut_triangle[kMaxCutsTold] = {};  // of the organ mesh
+  std::int16_t displacement_um[kMaxPatchVertices][3] = {};  // from rest, W
+};
+
 struct Frame {
   MessageHeader header{.kind = MessageKind::kFrame};
   std::uint64_t tick = 0;
@@ -81,12 +94,16 @@ struct Frame {
   std::uint8_t non_rt = 0;  // stamped on every record of a PC without hard real time
   std::uint8_t pad[6] = {};
   FrameSite site[kMaxSites] = {};
+  FramePatch patch;
 };
 
 static_assert(std::is_trivially_copyable_v<Hello> && std::is_trivially_copyable_v<Frame>);
 // No hidden padding: recordings are checked by a sum over all bytes, and padding has no value.
 static_assert(sizeof(FrameSite) == (10 + kMaxRings) * sizeof(float) + 4);
-static_assert(sizeof(Frame) == 48 + 23 * sizeof(float) + 12 + kMaxSites * sizeof(FrameSite));
+static_assert(sizeof(FramePatch) == 16 + kMaxPatchVertices * 10 + kMaxCutsTold * 4);
+static_assert(sizeof(Frame) ==
+              48 + 23 * sizeof(float) + 12 + kMaxSites * sizeof(FrameSite) + sizeof(FramePatch));
+static_assert(sizeof(Frame) <= 4096);
 static_assert(sizeof(Hello) == 114 + 62 + 64 + 64 + 108);
 
 }  // namespace tact::firmware

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <string_view>
+#include <vector>
 
 namespace tact::host {
 namespace {
@@ -48,6 +51,31 @@ void put_site(std::string& out, std::size_t index, const firmware::FrameSite& si
   out += '}';
 }
 
+/// RFC 4648, with padding.
+void put_base64(std::string& out, std::span<const std::uint8_t> bytes) {
+  constexpr std::string_view kDigit =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t have = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t three = 0;
+    for (std::size_t k = 0; k < 3; ++k) three = three << 8 | (k < have ? bytes[i + k] : 0u);
+    for (std::size_t k = 0; k < 4; ++k) out += k <= have ? kDigit[three >> (18 - 6 * k) & 63] : '=';
+  }
+}
+
+void put_patch(std::string& out, const firmware::FramePatch& patch) {
+  const std::size_t n = std::min<std::size_t>(patch.vertex_count, firmware::kMaxPatchVertices);
+  const std::size_t cuts = std::min<std::size_t>(patch.cut_count, firmware::kMaxCutsTold);
+  std::vector<std::uint8_t> bytes(n * (sizeof patch.vertex[0] + sizeof patch.displacement_um[0]));
+  const std::size_t vertex_bytes = n * sizeof patch.vertex[0];
+  std::memcpy(bytes.data(), patch.vertex, vertex_bytes);
+  std::memcpy(bytes.data() + vertex_bytes, patch.displacement_um, bytes.size() - vertex_bytes);
+  fmt::format_to(std::back_inserter(out), ",\"patch\":{{\"count\":{},\"moved\":\"", n);
+  put_base64(out, bytes);
+  fmt::format_to(std::back_inserter(out), "\",\"cut_total\":{},\"cut\":[{}]}}", patch.cut_total,
+                 fmt::join(patch.cut_triangle, patch.cut_triangle + cuts, ","));
+}
+
 }  // namespace
 
 std::string frame_json(const Frame& frame, const Hello& hello) {
@@ -79,7 +107,9 @@ std::string frame_json(const Frame& frame, const Hello& hello) {
     first = false;
     put_site(out, i, frame.site[i], rings);
   }
-  out += "]}";
+  out += ']';
+  if (rings == 0) put_patch(out, frame.patch);
+  out += '}';
   return out;
 }
 

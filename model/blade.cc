@@ -1,7 +1,5 @@
 #include "model/blade.h"
 
-#include <algorithm>
-
 namespace tact::model {
 namespace {
 
@@ -27,6 +25,7 @@ BladeSweep sweep(const Blade& blade, const Tool& from, const Tool& to) RT_SAFE {
 }
 
 bool crosses(const BladeSweep& s, const Vec3& p_m, const Vec3& q_m) RT_SAFE {
+  if (!is_finite(s.from_a_m + s.from_b_m + s.to_a_m + s.to_b_m + p_m + q_m)) return false;
   return passes(s.from_a_m, s.from_b_m, s.to_b_m, p_m, q_m) ||
          passes(s.from_a_m, s.to_b_m, s.to_a_m, p_m, q_m);
 }

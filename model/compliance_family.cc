@@ -7,7 +7,7 @@
 namespace tact::model {
 namespace {
 
-constexpr std::size_t kMaxCurves = 64;
+constexpr std::size_t kMaxCurves = 65;
 
 /// r and r_pull of every vertex, m/N.
 struct Give {
@@ -61,7 +61,7 @@ std::vector<double> rings_near(const ComplianceMap& map, std::span<const float> 
 Result<ComplianceFamily> make_compliance_family(const ComplianceMap& map,
                                                 const ComplianceFamilyParameters& p) {
   if (p.curves < 2 || p.curves > kMaxCurves)
-    return Error{"compliance: curves must lie between 2 and 64"};
+    return Error{"compliance: curves must lie between 2 and 65"};
   if (map.vertices() == 0) return Error{"compliance: the map has no vertices"};
   const ElasticTip tip{.youngs_modulus_Pa = p.youngs_modulus_Pa,
                        .poisson_ratio = map.poisson_ratio,

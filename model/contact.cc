@@ -31,6 +31,7 @@ void Contact::reset() RT_SAFE {
   probe_ = {};
   touch_ = {};
   closed_ = closing_ = false;
+  before_.reset();
 }
 
 // A free probe watches the two sheets that its cell names; one in contact follows its own site.
@@ -87,8 +88,15 @@ Wrench Contact::feel(const Tool& tool) RT_SAFE {
     sum.force_N += touch.force_N;
     sum.torque_Nm += cross(probe.centre_m - tool.position_m, touch.force_N);
   }
+  use_blade(tool);
   scene_.law->advance();
   return sum;
+}
+
+void Contact::use_blade(const Tool& tool) RT_SAFE {
+  if (!scene_.blade) return;
+  if (before_) scene_.law->cut(sweep(*scene_.blade, *before_, tool));
+  before_ = tool;
 }
 
 void Contact::watch_grip(double grip_ratio) RT_SAFE {

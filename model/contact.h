@@ -20,8 +20,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
+#include "model/blade.h"
 #include "model/seed_grid.h"
 #include "model/site_law.h"
 #include "model/types.h"
@@ -64,6 +66,7 @@ struct ContactScene {
   std::span<const ProbeSphere> spheres;  // 1 to kMaxSpheres
   SurfaceView surface;
   SeedGridView seeds;
+  std::optional<Blade> blade;  // cuts what it passes through
 };
 
 class Contact {
@@ -76,6 +79,9 @@ class Contact {
   Wrench feel(const Tool& tool) RT_SAFE;
   /// Forget every site, as at the start.
   void reset() RT_SAFE;
+
+  /// See SiteLaw::shape.
+  bool shape(PatchShape& out) RT_SAFE { return scene_.law->shape(out); }
 
   std::span<const SphereTouch> touches() const RT_SAFE {
     return {touch_.data(), scene_.spheres.size()};
@@ -96,6 +102,7 @@ class Contact {
   };
 
   Site search(Probe& probe) RT_SAFE;
+  void use_blade(const Tool& tool) RT_SAFE;
   void watch_grip(double grip_ratio) RT_SAFE;
   void change_state(const Probe& probe, SphereTouch& touch) RT_SAFE;
   void feel_touching(Probe& probe, SphereTouch& touch) RT_SAFE;
@@ -110,8 +117,9 @@ class Contact {
   ContactScene scene_;
   std::array<Probe, kMaxSpheres> probe_{};
   std::array<SphereTouch, kMaxSpheres> touch_{};
-  bool closed_ = false;   // the grip, with hysteresis
-  bool closing_ = false;  // it closed in this tick
+  bool closed_ = false;         // the grip, with hysteresis
+  bool closing_ = false;        // it closed in this tick
+  std::optional<Tool> before_;  // of the last tick: where the blade was
 };
 
 }  // namespace tact::model

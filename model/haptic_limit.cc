@@ -43,7 +43,7 @@ std::optional<Error> check_stiffness(const DeviceAtTool& device, double rate_Hz,
   const double limit_N_per_m = largest_stable_stiffness_N_per_m(device, rate_Hz);
   if (stiffness_N_per_m <= limit_N_per_m) return std::nullopt;
   std::ostringstream sentence;
-  sentence.precision(3);
+  sentence.precision(4);
   sentence << "stiffness " << stiffness_N_per_m
            << " N/m is beyond the stable limit of this device, " << limit_N_per_m
            << " N/m (damping " << device.damping_Ns_per_m << " N s/m, rate " << rate_Hz

@@ -64,7 +64,7 @@ double searched_limit(int order, double zeta) {
   const auto stable = [&](double z) {
     return growth(z * (turn - zeta), order) < 1.0 && growth(z * (-turn - zeta), order) < 1.0;
   };
-  const double step = 1.0 / (256.0 * (zeta + std::abs(turn)));
+  const double step = 1.0 / (64.0 * (zeta + std::abs(turn)));
   double low = 0.0, high = step;
   while (stable(high)) low = high, high += step;  // a polynomial grows at last
   for (int i = 0; i < 60; ++i) {

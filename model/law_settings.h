@@ -15,6 +15,7 @@
 #include "model/linear_pull.h"
 #include "model/relaxation.h"
 #include "model/rhombus_chain.h"
+#include "model/spring_patch.h"
 #include "model/types.h"
 
 namespace tact::model {

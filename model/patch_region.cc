@@ -187,6 +187,9 @@ std::size_t PatchRegion::cut(const BladeSweep& sweep) RT_SAFE {
       ++k;
       continue;
     }
+    const PatchEdge& edge = surface_.edge[spring_edge_[k]];
+    const double stretch_m = edge.length_m - s.rest_length_m;
+    cut_energy_J_ += 0.5 * s.stiffness_N_per_m * stretch_m * stretch_m;
     --springs_;
     spring_[k] = spring_[springs_];
     spring_edge_[k] = spring_edge_[springs_];

@@ -52,6 +52,7 @@ class PatchRegion {
   std::uint32_t slot_of(std::uint32_t vertex) const RT_SAFE { return slot_of_[vertex]; }
   Vec3 moved_m(std::uint32_t vertex) const RT_SAFE;
   std::size_t spring_count() const RT_SAFE { return springs_; }
+  std::size_t spring_capacity() const RT_SAFE { return spring_.size(); }
   /// In the order of the cut.
   std::span<const std::uint32_t> cut_triangles() const RT_SAFE {
     return {cut_triangle_.data(), cut_triangles_};

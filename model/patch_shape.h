@@ -11,8 +11,8 @@
 
 namespace tact::model {
 
-inline constexpr std::size_t kMaxShapeNodes = 224;
-inline constexpr std::size_t kCutWindow = 64;
+inline constexpr std::size_t kMaxShapeNodes = 180;
+inline constexpr std::size_t kCutWindow = 32;
 
 struct PatchShape {
   std::uint32_t node_count = 0;  // in use

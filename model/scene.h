@@ -47,6 +47,7 @@ struct OrganSettings {
 struct ToolSettings {
   std::string mesh_path;             // absolute
   std::vector<ProbeSphere> spheres;  // 1 to kMaxSpheres
+  std::optional<Blade> blade;
 };
 
 struct Scene {
@@ -58,6 +59,7 @@ struct Scene {
   RhombusChainParameters rhombus;
   DiscStackParameters disc_stack;
   HexSheetParameters hex_sheet;  // rings 0: as few as the tolerance allows
+  SpringPatchParameters spring_patch;
   ComplianceSettings compliance;
   std::size_t table_knots = 65;
   std::optional<LinearPullParameters> pull;

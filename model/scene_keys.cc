@@ -25,6 +25,15 @@ void visit_tool(Keys& k, SceneText& out) {
                   probe.offset_m);
     sphere.number("radius_m", {5e-4, 0.05}, "of the sphere", probe.radius_m);
   });
+  Blade blade;
+  const auto visit_blade = [&](Keys& keys) {
+    keys.vector("from_m", {-0.2, 0.2}, "one end of the edge, tool frame", blade.a_m);
+    keys.vector("to_m", {-0.2, 0.2}, "the other end", blade.b_m);
+  };
+  if (k.section("blade", "a cutting edge, for law = \"spring_patch\"", visit_blade,
+                Need::kOptional)) {
+    out.scene.tool.blade = blade;
+  }
 }
 
 void visit_contact(Keys& k, ContactParameters& c) {

@@ -90,6 +90,46 @@ void visit_hex_sheet(Keys& k, Scene& scene) {
           Need::kOptional);
 }
 
+constexpr std::array<Choice, kIntegratorNames.size()> integrator_choices() {
+  std::array<Choice, kIntegratorNames.size()> out{};
+  std::transform(kIntegratorNames.begin(), kIntegratorNames.end(), out.begin(),
+                 [](const IntegratorName& i) {
+                   return Choice{i.name, ""};
+                 });
+  return out;
+}
+constexpr auto kIntegrators = integrator_choices();
+
+void visit_spring_patch(Keys& k, Scene& scene) {
+  SpringPatchParameters& p = scene.spring_patch;
+  k.number("surface_stiffness_N_per_m", {0.01, 1e5}, "of a spring along an edge of the mesh",
+           p.tissue.surface_stiffness_N_per_m);
+  k.number("body_stiffness_N_per_m", {0.001, 1e5}, "from a vertex to its place at rest",
+           p.tissue.body_stiffness_N_per_m);
+  k.number("damping_time_s", {0.0, 1.0}, "tau: a surface spring k has the damping tau k",
+           p.tissue.damping_time_s);
+  k.number("body_damping_time_s", {0.0, 1.0}, "the same for the body springs",
+           p.tissue.body_damping_time_s);
+  k.number("pretension_ratio", {0.0, 0.5}, "stretch of the edges at rest: opens a cut",
+           p.tissue.pretension_ratio);
+  k.number("coupling_stiffness_N_per_m", {0.01, 1e5}, "of the spring between tool and vertices",
+           p.coupling_stiffness_N_per_m);
+  k.number("node_mass_kg", {1e-7, 1.0}, "of a vertex", p.node_mass_kg);
+  k.number("working_depth_m", kDepth_m, "press and pull up to here", p.working_depth_m);
+  k.count("nodes", {16, kMaxPatchNodes}, "vertices that move, nearest the contact", p.nodes);
+  std::size_t integrator = static_cast<std::size_t>(p.method.integrator);
+  k.choice("integrator", kIntegrators, "how a tick is stepped", integrator);
+  p.method.integrator = kIntegratorNames[integrator].integrator;
+  k.number("alpha_ratio", {0.1, 1.0}, "of midpoint-averaging; 0.375 makes energy", p.method.alpha,
+           Need::kOptional);
+  std::size_t iterations = static_cast<std::size_t>(p.iterations);
+  k.count("iterations", {1, 100}, "of implicit-euler", iterations, Need::kOptional);
+  p.iterations = static_cast<int>(iterations);
+  std::size_t substeps = static_cast<std::size_t>(p.substeps);
+  k.count("substeps", {1, 16}, "of a tick", substeps, Need::kOptional);
+  p.substeps = static_cast<int>(substeps);
+}
+
 void visit_compliance(Keys& k, SceneText& out) {
   ComplianceSettings& c = out.scene.compliance;
   out.compliance_map.place = k.place_of("map");
@@ -117,6 +157,8 @@ void visit_laws(Keys& k, SceneText& out) {
           [&](Keys& discs) { visit_disc_stack(discs, scene); });
   section(LawKind::kHexSheet, "a skin of hexagonal rings on body springs",
           [&](Keys& sheet) { visit_hex_sheet(sheet, scene); });
+  section(LawKind::kSpringPatch, "masses and springs on the organ's mesh near the contact",
+          [&](Keys& patch) { visit_spring_patch(patch, scene); });
   section(LawKind::kCompliance, "the elastic organ of [elastic], condensed to its surface",
           [&](Keys& compliance) { visit_compliance(compliance, out); });
 

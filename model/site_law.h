@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <span>
 
+#include "model/blade.h"
 #include "model/law.h"
 #include "model/patch_shape.h"
 #include "model/site.h"
@@ -43,6 +44,8 @@ class SiteLaw {
   virtual SiteResponse respond(const Indentation& in) RT_SAFE = 0;
   /// The sphere is free: forget what it did.
   virtual void leave(std::size_t sphere) RT_SAFE = 0;
+  /// A blade went through the tissue since the last tick; most laws cannot be cut.
+  virtual void cut(const BladeSweep&) RT_SAFE {}
   /// The end of a tick; its length is fixed when the law is made.
   virtual void advance() RT_SAFE = 0;
   /// Radial displacement profile as in Law::profile: for telemetry, from any thread; it must not

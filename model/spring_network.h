@@ -78,7 +78,7 @@ double stored_energy_J(const SpringNetwork& network) RT_SAFE;
 double kinetic_energy_J(const SpringNetwork& network) RT_SAFE;
 
 struct StepRule {
-  Method method;
+  Method method{};
   double step_s = 0.0;
   int iterations = 10;  // of implicit Euler
 };

@@ -55,22 +55,19 @@ Bounds bounds_of(const SpringNetwork& network, const ProbeLoad& probe) {
 }
 
 std::string text(const char* format, double v) {
-  char buffer[32];
+  char buffer[128];
   std::snprintf(buffer, sizeof buffer, format, v);
   return buffer;
 }
 
-}  // namespace
-
-StepLimit step_limit(const SpringNetwork& network, const Method& method, const ProbeLoad& probe) {
-  const Bounds bounds = bounds_of(network, probe);
+StepLimit limit_of(const Bounds& bounds, const Method& method) {
   StepLimit out{.step_s = kInfinity,
                 .omega_radps = bounds.omega_radps,
                 .critical_radps = bounds.omega_radps,
                 .fastest_node = bounds.fastest_node};
   if (bounds.omega_radps == 0.0) return out;
-  for (int octave_quarter = 0; octave_quarter <= 48; ++octave_quarter) {
-    const double omega = bounds.omega_radps * std::exp2(-0.25 * octave_quarter);
+  for (int quarter = 0; quarter <= 48; ++quarter) {  // of an octave
+    const double omega = bounds.omega_radps * std::exp2(-0.25 * quarter);
     const double low = 0.5 * bounds.low_s * omega;
     const double high = 0.5 * (bounds.high_s * omega + bounds.drag_per_s / omega);
     for (int share = 0; share <= 4; ++share) {
@@ -85,25 +82,43 @@ StepLimit step_limit(const SpringNetwork& network, const Method& method, const P
   return out;
 }
 
+/// How many times the mass would do; empty if mass is no cure.
+std::string mass_advice(const Bounds& bounds, const StepRule& rule) {
+  for (double factor = 1.25; factor < 1e4; factor *= 1.25) {
+    Bounds heavier = bounds;
+    heavier.omega_radps /= std::sqrt(factor);
+    heavier.drag_per_s /= factor;
+    if (rule.step_s <= limit_of(heavier, rule.method).step_s)
+      return text(", %.3g times the mass", factor);
+  }
+  return "";
+}
+
+}  // namespace
+
+StepLimit step_limit(const SpringNetwork& network, const Method& method, const ProbeLoad& probe) {
+  return limit_of(bounds_of(network, probe), method);
+}
+
 std::optional<Error> check_step(const SpringNetwork& network, const StepRule& rule,
                                 const ProbeLoad& probe) {
   if (!(rule.step_s > 0.0) || std::isinf(rule.step_s))
     return Error{"springs: the step must be finite and above 0 s"};
-  const StepLimit limit = step_limit(network, rule.method, probe);
+  const Bounds bounds = bounds_of(network, probe);
+  const StepLimit limit = limit_of(bounds, rule.method);
   if (rule.step_s <= limit.step_s) return std::nullopt;
-  const std::string name(name_of(rule.method.integrator));
-  const std::string mode = text("%.4g rad/s", limit.critical_radps) +
-                           text(" at damping ratio %.3g", limit.critical_zeta);
+  const std::string what = "springs: " + std::string(name_of(rule.method.integrator));
+  const std::string mode = text("a mode of %.4g rad/s", limit.critical_radps) +
+                           text(" with damping ratio %.3g", limit.critical_zeta);
   if (!(limit.step_s > 0.0))
-    return Error{"springs: " + name + " is stable with no step at " + mode +
+    return Error{what + " is stable with no step for " + mode +
                  "; add damping to every spring, or take midpoint-averaging with alpha 0.5"};
-  // the mass that would do scales with the square of the step while zeta stays
-  return Error{"springs: " + name + " blows up with a step of " + text("%.4g s", rule.step_s) +
-               ": a mode near node " + std::to_string(limit.fastest_node) + " reaches " + mode +
-               text(" and allows %.4g s", limit.step_s) + "; take " +
-               text("%.0f times as many substeps", std::ceil(rule.step_s / limit.step_s)) +
-               text(", %.3g times the mass", std::pow(rule.step_s / limit.step_s, 2)) +
-               ", softer springs or implicit-euler"};
+  return Error{what + text(" blows up with a step of %.4g s: ", rule.step_s) + mode +
+               text(" allows %.4g s", limit.step_s) + " (node " +
+               std::to_string(limit.fastest_node) +
+               text(" is the fastest); take %.0f times the substeps",
+                    std::ceil(rule.step_s / limit.step_s)) +
+               mass_advice(bounds, rule) + ", softer springs or implicit-euler"};
 }
 
 }  // namespace tact::model

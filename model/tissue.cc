@@ -30,7 +30,8 @@ Result<std::unique_ptr<Tissue>> make_tissue(const Scene& scene) {
                       .parameters = scene.contact,
                       .spheres = scene.tool.spheres,
                       .surface = scene.organ_mesh.view(),
-                      .seeds = tissue->seeds_.view()};
+                      .seeds = tissue->seeds_.view(),
+                      .blade = scene.tool.blade};
   return tissue;
 }
 

@@ -55,6 +55,7 @@ class TissueLawBuilder {
   Step add_hex_sheet();
   Step add_hex_paper();
   Step add_compliance();
+  Step add_spring_patch();
   Step add_table(const Law& direct);
   Result<const Law*> with_pull(const Law& press);
   Step finish_field();
@@ -86,6 +87,8 @@ std::optional<Error> TissueLawBuilder::build(LawKind kind) {
       return add_hex_paper();
     case LawKind::kCompliance:
       return add_compliance();
+    case LawKind::kSpringPatch:
+      return add_spring_patch();
     default:
       return Error{
           fmt::format("{}: law \"{}\" cannot be felt; choose another", scene_.path, name_of(kind))};
@@ -155,6 +158,22 @@ TissueLawBuilder::Step TissueLawBuilder::add_compliance() {
   law_->pull_coordinate_ = std::move(family->pull_coordinate);
   law_->memory_bytes_ += law_->curves_.size() * sizeof(ComplianceCurve);
   return finish_field();
+}
+
+// The hand meets no more than the virtual spring, whatever the nodes do in one tick.
+TissueLawBuilder::Step TissueLawBuilder::add_spring_patch() {
+  law_->title_ =
+      "mass-spring patch, " + std::string(name_of(scene_.spring_patch.method.integrator));
+  SpringPatchParameters parameters = scene_.spring_patch;
+  parameters.tick_s = 1.0 / scene_.rate_Hz;
+  parameters.spheres = scene_.tool.spheres.size();
+  auto patch = make_spring_patch(scene_.organ_mesh.view(), parameters);
+  if (!patch) return blame(patch.error());
+  law_->range_ = {-parameters.working_depth_m, parameters.working_depth_m};
+  law_->stiffness_N_per_m_ = parameters.coupling_stiffness_N_per_m;
+  law_->memory_bytes_ = (*patch)->memory_bytes();
+  law_->site_law_ = std::move(*patch);
+  return std::nullopt;
 }
 
 /// Press as the law gives it, pull as [pull] says.

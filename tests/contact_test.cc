@@ -27,7 +27,8 @@ struct Bench {
                     .parameters = parameters,
                     .spheres = spheres,
                     .surface = mesh.view(),
-                    .seeds = seeds.view()});
+                    .seeds = seeds.view(),
+                    .blade = {}});
   }
 
   RhombusChain chain = *make_rhombus_chain({.rod_length_m = 5_mm,

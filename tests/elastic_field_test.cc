@@ -47,7 +47,8 @@ struct Bench {
                     .parameters = {.sliding_stiffness_N_per_m = 0.0, .tear_force_N = 10.0},
                     .spheres = {&sphere, 1},
                     .surface = mesh.view(),
-                    .seeds = seeds.view()});
+                    .seeds = seeds.view(),
+                    .blade = {}});
   }
   SurfaceMesh mesh;
   SeedGrid seeds;

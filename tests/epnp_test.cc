@@ -73,7 +73,7 @@ TEST(Epnp, FindsThePoseExactlyWithoutNoise) {
   Views views;
   for (const int count : {4, 5, 6, 12}) {
     for (const bool flat : {false, true}) {
-      for (int i = 0; i < 100; ++i) {
+      for (int i = 0; i < 40; ++i) {
         const View view = views.next(count, flat, 0.0);
         const PoseEstimate got = view.estimate();
         ASSERT_EQ(got.status, PoseStatus::kOk);
@@ -104,7 +104,7 @@ TEST(Epnp, AloneItMissesFlatObjectsAndSomeOfFourPoints) {
 TEST(Epnp, NoPoseNearTheTruthExplainsThePixelsBetter) {
   Views views;
   for (const int count : {4, 6, 20}) {
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < 50; ++i) {
       const View view = views.next(count, i % 2 == 0, 0.5);
       const Pose near = polish_pose(view.camera, view.points_m, view.pixels_px, view.truth);
       const double near_px = reprojection_rms_px(view.camera, view.points_m, view.pixels_px, near);
@@ -116,14 +116,14 @@ TEST(Epnp, NoPoseNearTheTruthExplainsThePixelsBetter) {
 TEST(Epnp, LeavesAsMuchResidualAsTheNoiseHas) {
   // 2 n numbers, 6 of them spent on the pose: E[n rms^2] = (2 n - 6) sigma^2.
   Views views;
-  const int count = 20, trials = 200;
+  const int count = 20, trials = 100;
   const double sigma_px = 0.5;
   double sum_px2 = 0.0;
   for (int i = 0; i < trials; ++i) {
     const double rms_px = views.next(count, false, sigma_px).estimate().rms_px;
     sum_px2 += count * rms_px * rms_px / (2 * count - 6);
   }
-  EXPECT_NEAR(sum_px2 / trials / (sigma_px * sigma_px), 1.0, 0.06);
+  EXPECT_NEAR(sum_px2 / trials / (sigma_px * sigma_px), 1.0, 0.08);
 }
 
 TEST(Epnp, TheUnitOfLengthOnlyScalesThePosition) {

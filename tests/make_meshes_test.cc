@@ -1,19 +1,18 @@
 // The shipped meshes: what they must be, and that the generator gives the same bytes again.
+// Expected sizes are those of the scenes, in m; a mesh file is in mm.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "model/obj.h"
+#include "tests/mesh_checks.h"
 #include "tests/mesh_files.h"
 
 namespace tact::tests {
 namespace {
 
 using model::MeshSummary;
-using model::SurfaceMesh;
-using model::TriangleCorners;
-using model::Vec3;
 
 std::string shipped(const std::string& name) {
   return std::string(TACT_SOURCE_DIR) + "/model/scenes/meshes/" + name;
@@ -28,67 +27,19 @@ SurfaceMesh load(const std::string& path) {
   return std::move(obj->mesh);
 }
 
-// V - E + F: 2 for a ball, 0 for a ring. A closed surface has E = 3 F / 2.
+// V - E + F: 2 for each ball, 0 for a ring, 1 less for each rim. E = (3 F + rim edges) / 2.
 int euler(const MeshSummary& sum) {
-  return static_cast<int>(sum.vertices) - static_cast<int>(sum.triangles) / 2;
-}
-
-double least_angle_deg(const SurfaceMesh& mesh) {
-  double least_rad = 4.0;
-  for (const TriangleCorners& t : mesh.triangle) {
-    for (std::size_t e = 0; e < 3; ++e) {
-      const Vec3 a_m = mesh.vertex_m[t[(e + 1) % 3]] - mesh.vertex_m[t[e]];
-      const Vec3 b_m = mesh.vertex_m[t[(e + 2) % 3]] - mesh.vertex_m[t[e]];
-      least_rad = std::min(least_rad, std::atan2(norm(cross(a_m, b_m)), dot(a_m, b_m)));
-    }
-  }
-  return least_rad * 180.0 / M_PI;
-}
-
-bool crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 n = cross(b - a, c - a);
-  const double from = dot(p - a, n), to = dot(q - a, n);
-  if (!(from * to < 0.0)) return false;
-  const Vec3 x = p + (from / (from - to)) * (q - p);
-  return dot(cross(b - a, x - a), n) > 0.0 && dot(cross(c - b, x - b), n) > 0.0 &&
-         dot(cross(a - c, x - c), n) > 0.0;
-}
-
-// Edges of one triangle that pass through another one with no corner in common.
-int self_crossings(const SurfaceMesh& mesh) {
-  const auto at = [&](std::uint32_t t, std::size_t e) -> const Vec3& {
-    return mesh.vertex_m[mesh.triangle[t][e]];
-  };
-  const auto low_y = [&](std::uint32_t t) {
-    return std::min({at(t, 0).y, at(t, 1).y, at(t, 2).y});
-  };
-  const auto high_y = [&](std::uint32_t t) {
-    return std::max({at(t, 0).y, at(t, 1).y, at(t, 2).y});
-  };
-  std::vector<std::uint32_t> order(mesh.triangle.size());
-  for (std::uint32_t t = 0; t < order.size(); ++t) order[t] = t;
-  std::sort(order.begin(), order.end(), [&](auto s, auto t) { return low_y(s) < low_y(t); });
-  int found = 0;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const std::uint32_t s = order[i];
-    for (std::size_t j = i + 1; j < order.size() && low_y(order[j]) <= high_y(s); ++j) {
-      const std::uint32_t t = order[j];
-      const TriangleCorners &a = mesh.triangle[s], &b = mesh.triangle[t];
-      if (std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end()) continue;
-      for (std::size_t e = 0; e < 3; ++e) {
-        found += crosses(at(s, e), at(s, (e + 1) % 3), at(t, 0), at(t, 1), at(t, 2));
-        found += crosses(at(t, e), at(t, (e + 1) % 3), at(s, 0), at(s, 1), at(s, 2));
-      }
-    }
-  }
-  return found;
+  const auto edges = static_cast<int>(3 * sum.triangles + sum.boundary_edges) / 2;
+  return static_cast<int>(sum.vertices) - edges + static_cast<int>(sum.triangles);
 }
 
 TEST(MakeMeshes, GivesTheShippedFilesByteForByte) {
   const TempDirectory temp;
   const Ran ran = run_apart(temp, "tact-make-meshes", "--out " + temp.path());
   ASSERT_EQ(ran.status, 0) << ran.err;
-  for (const std::string name : {"liver_3116.obj", "forceps_174.obj"}) {
+  for (const std::string name :
+       {"liver_3116.obj", "forceps_174.obj", "heart_10026.obj", "hand_2865.obj", "skin.obj",
+        "injector.obj", "gum.obj", "blade.obj"}) {
     const std::string made = read_text(temp.path() + "/" + name);
     EXPECT_GT(made.size(), 5000u);
     EXPECT_TRUE(made == read_text(shipped(name))) << name << " differs";
@@ -171,6 +122,95 @@ TEST(MakeMeshes, ForcepsHaveTwoTipsAtTheOriginAndTheHandleAbove) {
   EXPECT_EQ(left, 6);
 }
 
+struct Expected {
+  const char* file;
+  std::size_t vertices, triangles, rim_edges;
+  int euler;
+  Vec3 size_m;
+  double least_angle_deg;
+};
+
+TEST(MakeMeshes, EveryNewMeshIsSoundAndOfItsCountsAndSize) {
+  const std::vector<Expected> all{
+      {"heart_10026.obj", 10026, 19409, 645, 2 - 3, {0.126, 0.092, 0.077}, 18.0},
+      {"hand_2865.obj", 2865, 5722, 0, 2 + 2, {0.059, 0.102, 0.180}, 25.0},
+      {"skin.obj", 3000, 5996, 0, 2, {0.080, 0.120, 0.030}, 30.0},
+      {"injector.obj", 482, 960, 0, 2, {0.024, 0.024, 0.112}, 15.0},
+      {"gum.obj", 2300, 4596, 0, 2, {0.0495, 0.0596, 0.015}, 28.0},
+      {"blade.obj", 107, 210, 0, 2, {0.0084, 0.0032, 0.140}, 2.0}};  // a thin wedge
+  for (const Expected& e : all) {
+    const SurfaceMesh mesh = load(shipped(e.file));
+    const MeshSummary sum = summarize(mesh);
+    EXPECT_EQ(sum.vertices, e.vertices) << e.file;
+    EXPECT_EQ(sum.triangles, e.triangles) << e.file;
+    EXPECT_EQ(sum.boundary_edges, e.rim_edges) << e.file;
+    EXPECT_EQ(euler(sum), e.euler) << e.file;
+    EXPECT_EQ(self_crossings(mesh), 0) << e.file;
+    EXPECT_GT(sum.volume_m3, 0.0) << e.file;
+    EXPECT_LT(norm(sum.high_m - sum.low_m - e.size_m), 0.001) << e.file;
+    EXPECT_GT(least_angle_deg(mesh), e.least_angle_deg) << e.file;
+  }
+}
+
+TEST(MakeMeshes, HeartIsOnePieceWithThreeOpenVessels) {
+  const SurfaceMesh heart = load(shipped("heart_10026.obj"));
+  EXPECT_EQ(parts(heart, [](std::size_t, std::size_t) { return true; }), 1);
+  const auto on_rim = [&](std::size_t t, std::size_t e) {
+    return heart.neighbour[t][e] == model::kNoTriangle;
+  };
+  EXPECT_EQ(parts(heart, on_rim), 3);
+  for (std::size_t t = 0; t < heart.triangle.size(); ++t) {
+    for (std::size_t e = 0; e < 3; ++e) {  // all at the base, far from the front and the apex
+      if (!on_rim(t, e)) continue;
+      EXPECT_LT(heart.vertex_m[heart.triangle[t][e]].x, -0.040);
+    }
+  }
+}
+
+TEST(MakeMeshes, HandIsTwoClosedPiecesWithTheFingertipAtTheOrigin) {
+  const SurfaceMesh hand = load(shipped("hand_2865.obj"));
+  EXPECT_EQ(parts(hand, [](std::size_t, std::size_t) { return true; }), 2);
+  EXPECT_NEAR(summarize(hand).low_m.z, 0.0, 0.0002);
+  for (const Vec3& p_m : hand.vertex_m) {  // the tip is a ball of 6.5 mm
+    if (p_m.z > 0.006) continue;
+    EXPECT_NEAR(norm(p_m - Vec3{0, 0, 0.0065}), 0.0065, 0.0001);
+  }
+}
+
+TEST(MakeMeshes, GumHasEvenTrianglesWhereTheBladeGoes) {
+  const SurfaceMesh gum = load(shipped("gum.obj"));
+  double sum_m = 0.0;
+  int edges = 0;
+  for (const TriangleCorners& t : gum.triangle) {
+    for (std::size_t e = 0; e < 3; ++e) {
+      const Vec3 &a_m = gum.vertex_m[t[e]], &b_m = gum.vertex_m[t[(e + 1) % 3]];
+      if (std::min(a_m.z, b_m.z) < 0.003) continue;
+      EXPECT_GT(norm(b_m - a_m), 0.0007);
+      EXPECT_LT(norm(b_m - a_m), 0.0024);
+      sum_m += norm(b_m - a_m);
+      ++edges;
+    }
+  }
+  EXPECT_GT(edges, 3000);
+  EXPECT_NEAR(sum_m / edges, 0.0015, 0.0001);
+}
+
+TEST(MakeMeshes, ToolsStartAtTheOrigin) {
+  const SurfaceMesh injector = load(shipped("injector.obj"));
+  for (const Vec3& p_m : injector.vertex_m) {  // a blunt ball of 2.5 mm
+    if (p_m.z > 0.0025) continue;
+    EXPECT_NEAR(norm(p_m - Vec3{0, 0, 0.0025}), 0.0025, 1e-6);
+  }
+  const SurfaceMesh blade = load(shipped("blade.obj"));
+  int edge = 0;
+  for (const Vec3& p_m : blade.vertex_m) {  // below 24 mm only the edge reaches x = 0
+    if (p_m.z > 0.0241 || p_m.x < 0.0) continue;
+    EXPECT_EQ(norm(Vec3{p_m.x, p_m.y, 0.0}), 0.0);
+    ++edge;
+  }
+  EXPECT_EQ(edge, 6);
+}
+
 TEST(MakeMeshes, LiverComesInAnySizeWithTheSameShape) {
   const TempDirectory temp;
   const MeshSummary reference = summarize(load(shipped("liver_3116.obj")));
@@ -192,7 +232,7 @@ TEST(MakeMeshes, LiverComesInAnySizeWithTheSameShape) {
 TEST(MakeMeshes, RefusesBadUsageInOneLine) {
   const TempDirectory temp;
   for (const std::string arguments :
-       {"", "--out /nowhere/at/all", "--out . --liver-vertices 49", "--out . --heart"}) {
+       {"", "--out /nowhere/at/all", "--out . --liver-vertices 49", "--out . --kidney"}) {
     const Ran ran = run_apart(temp, "tact-make-meshes", arguments);
     EXPECT_EQ(ran.status, 2) << arguments;
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;

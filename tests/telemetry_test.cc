@@ -75,7 +75,8 @@ class WholeController {
         device_(std::move(*hal::open_device(scene_))),
         controller_(tissue_->contact_scene(), Gate(scene_.limits, 0.001, 1.0)),
         loop_({.period_ns = 1'000'000}, *device_, controller_, clock_, requests_, *ring_),
-        telemetry_(*ring_, FrameBuilder(tissue_->law().site_law(), true), 60.0, open(path), std::nullopt) {
+        telemetry_(*ring_, FrameBuilder(tissue_->law().site_law(), controller_.shapes(), true),
+                   60.0, open(path), std::nullopt) {
     requests_.arm.store(true);
   }
 
@@ -194,7 +195,9 @@ TEST(Telemetry, ThreadAndLoopShareOnlyTheRing) {  // for the thread sanitizer
   const model::Scene scene = tests::make_plate_scene();
   const auto tissue = std::move(*model::make_tissue(scene));
   const auto ring = std::make_unique<TickRing>();  // large: not on the stack
-  Telemetry telemetry(*ring, FrameBuilder(tissue->law().site_law(), false), 200.0, std::nullopt, std::nullopt);
+  const auto shapes = std::make_unique<ShapeSlot>();
+  Telemetry telemetry(*ring, FrameBuilder(tissue->law().site_law(), *shapes, false), 200.0,
+                      std::nullopt, std::nullopt);
   telemetry.start();
   TickRecord record;
   for (int i = 0; i < 20000; ++i) {

@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <system_error>
 
 namespace {
 
@@ -21,8 +24,24 @@ using tact::tools::Shape;
 constexpr std::size_t kLiverVertices = 3116;  // as in the published tests of the rhombus chain
 constexpr std::size_t kMostVertices = 9'000'000;
 
+struct Mesh {
+  const char* name;
+  bool counted;  // its file name tells the number of vertices
+  Result<Shape> (*make)();
+};
+
+// The liver comes in any size and has its own row in main().
+constexpr std::array<Mesh, 7> kMeshes{{{"forceps", true, tact::tools::make_forceps_shape},
+                                       {"heart", true, tact::tools::make_heart_shape},
+                                       {"hand", true, tact::tools::make_hand_shape},
+                                       {"skin", false, tact::tools::make_skin_shape},
+                                       {"injector", false, tact::tools::make_injector_shape},
+                                       {"gum", false, tact::tools::make_gum_shape},
+                                       {"blade", false, tact::tools::make_blade_shape}}};
+
 struct Wanted {
   std::string name;
+  bool counted = false;
   Result<Shape> shape;
 };
 
@@ -44,12 +63,13 @@ std::string obj_text(const std::string& name, const Shape& shape) {
   return fmt::to_string(text);
 }
 
-std::optional<Error> write_shape(const std::string& directory, const std::string& name,
-                                 const Shape& shape) {
+std::optional<Error> write_shape(const std::string& directory, const Wanted& wanted) {
+  const std::string& name = wanted.name;
+  const Shape& shape = wanted.shape.value();
   const auto mesh = tact::model::make_surface_mesh(shape.vertex_mm, shape.triangle);
   if (!mesh) return Error{name + ": " + mesh.error().sentence};
-  const fs::path path =
-      fs::path(directory) / fmt::format("{}_{}.obj", name, shape.vertex_mm.size());
+  const std::string count = wanted.counted ? fmt::format("_{}", shape.vertex_mm.size()) : "";
+  const fs::path path = fs::path(directory) / fmt::format("{}{}.obj", name, count);
   std::ofstream file(path, std::ios::binary);
   file << obj_text(name, shape);
   file.close();
@@ -72,11 +92,15 @@ std::optional<Error> write_shape(const std::string& directory, const std::string
 int main(int argc, char** argv) {
   CLI::App app{"Write the meshes that tact ships: OBJ, unit mm, the same bytes on every run."};
   std::string directory = ".";
-  bool liver = false, forceps = false;
+  bool liver = false;
+  std::array<bool, kMeshes.size()> asked{};
   std::size_t liver_vertices = kLiverVertices;
   app.add_option("--out", directory, "directory to write to")->required();
   app.add_flag("--liver", liver, "only the meshes named: liver");
-  app.add_flag("--forceps", forceps, "only the meshes named: forceps");
+  for (std::size_t i = 0; i < kMeshes.size(); ++i) {
+    const std::string name = kMeshes[i].name;
+    app.add_flag("--" + name, asked[i], "only the meshes named: " + name);
+  }
   app.add_option("--liver-vertices", liver_vertices,
                  "vertices of the liver, 50 to 9000000; the shape stays")
       ->capture_default_str()
@@ -90,14 +114,22 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
   }
-  const bool all = !liver && !forceps;
+  std::error_code ignored;
+  if (!fs::is_directory(directory, ignored)) {  // said before the work, not after
+    fmt::print(stderr, "tact-make-meshes: {}: no such directory; make it first\n", directory);
+    return 2;
+  }
+  const bool all = !liver && std::find(asked.begin(), asked.end(), true) == asked.end();
   std::vector<Wanted> wanted;
-  if (liver || all) wanted.push_back({"liver", tact::tools::make_liver_shape(liver_vertices)});
-  if (forceps || all) wanted.push_back({"forceps", tact::tools::make_forceps_shape()});
+  if (liver || all)
+    wanted.push_back({"liver", true, tact::tools::make_liver_shape(liver_vertices)});
+  for (std::size_t i = 0; i < kMeshes.size(); ++i) {
+    if (asked[i] || all) wanted.push_back({kMeshes[i].name, kMeshes[i].counted, kMeshes[i].make()});
+  }
   for (const Wanted& w : wanted) {
     std::optional<Error> error;
-    if (!w.shape) error = w.shape.error();
-    if (w.shape) error = write_shape(directory, w.name, w.shape.value());
+    if (!w.shape) error = Error{w.name + ": " + w.shape.error().sentence};
+    if (w.shape) error = write_shape(directory, w);
     if (!error) continue;
     fmt::print(stderr, "tact-make-meshes: {}\n", error->sentence);
     return 2;

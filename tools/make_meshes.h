@@ -1,9 +1,11 @@
 // make_meshes.h - the shapes that tact ships, grown from formulas: same bytes on every run.
 //
-// A body is a smooth map of the unit sphere, so it is closed and has V vertices and 2 V - 4
-// triangles for any V. The tool is a tube bent into a loop, so it has 2 V. A further shape is a new
+// Three ways to a surface: a smooth map of the unit sphere (liver), the zero of a field
+// (make_meshes_field.h: heart, hand, skin, gum) and rings of points (forceps, injector, blade).
+// A closed body of V vertices has 2 V - 4 triangles, one with a hole 2 V. A further shape is a new
 // make_..._shape() and a row in the table of make_meshes.cc. Lengths here are millimetres, the unit
-// of the files; triangles are counter-clockwise from outside.
+// of the files; triangles are counter-clockwise from outside. Organs have their top towards +z,
+// tools their tip at the origin and their handle towards +z.
 #pragma once
 
 #include <cstddef>
@@ -35,9 +37,25 @@ model::Result<Shape> make_liver_shape(std::size_t vertices);
 /// 174 vertices, 348 triangles, one hole between pivot and spring.
 model::Result<Shape> make_forceps_shape();
 
-/// Heart on its back, 120 x 90 x 80 mm: apex towards +x, front towards +z, three open stumps of
+/// Heart on its back, 126 x 92 x 77 mm: apex towards +x, front towards +z, three open stumps of
 /// vessels towards -x. 10 026 vertices, 19 409 triangles, 645 edges on the rims.
 model::Result<Shape> make_heart_shape();
+
+/// Right hand with its forefinger down to the origin, and a cuff: two closed bodies, 180 mm tall,
+/// 2 865 vertices, 5 722 triangles.
+model::Result<Shape> make_hand_shape();
+
+/// Pad of skin with what lies under it, 80 x 120 x 30 mm: 3 000 vertices, closed.
+model::Result<Shape> make_skin_shape();
+
+/// Injector: blunt round tip of 2.5 mm, 112 mm tall, 482 vertices, closed.
+model::Result<Shape> make_injector_shape();
+
+/// Gum of a jaw: U-shaped ridge, 50 x 60 x 15 mm, open towards -x, edges of 1.5 mm on its top.
+model::Result<Shape> make_gum_shape();
+
+/// Scalpel: edge from the origin up the z axis to 24 mm, facing +x; 140 mm tall, 107 vertices.
+model::Result<Shape> make_blade_shape();
 
 /// Least angle of all triangles, degrees.
 double least_angle_deg(const Shape& shape);

@@ -28,12 +28,14 @@ Editor::Editor(Shape shape)
     : p_(std::move(shape.vertex_mm)),
       triangle_(std::move(shape.triangle)),
       fan_(p_.size()),
-      on_rim_(p_.size(), false),
+      on_rim_(p_.size(), true),  // not known yet
       vertices_(p_.size()) {
   for (std::uint32_t t = 0; t < triangle_.size(); ++t) {
     for (const std::uint32_t v : triangle_[t]) fan_[v].push_back(t);
   }
-  for (const Edge& e : edges()) {
+  const std::vector<Edge> all = edges();
+  on_rim_.assign(p_.size(), false);
+  for (const Edge& e : all) {
     if (e.rim) on_rim_[e.a] = on_rim_[e.b] = true;
   }
 }
@@ -80,7 +82,7 @@ std::vector<Edge> Editor::edges() const {
     if (t[0] == t[1]) continue;
     for (std::size_t e = 0; e < 3; ++e) {
       const std::uint32_t a = t[e], b = t[(e + 1) % 3];
-      const bool rim = between(a, b).count == 1;
+      const bool rim = on_rim_[a] && on_rim_[b] && between(a, b).count == 1;
       if (a < b || rim) found.push_back({a, b, rim});
     }
   }

@@ -57,7 +57,7 @@ class Editor {
   void leave(std::uint32_t v, std::uint32_t t);
   bool keeps_facing(std::uint32_t gone, std::uint32_t kept) const;
 
-  std::vector<model::Vec3> p_;                  // mm
+  std::vector<model::Vec3> p_;                    // mm
   std::vector<model::TriangleCorners> triangle_;  // a removed one has three equal corners
   std::vector<std::vector<std::uint32_t>> fan_;   // triangles round each vertex
   std::vector<bool> on_rim_;

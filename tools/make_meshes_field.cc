@@ -45,8 +45,8 @@ class Grid {
 
  private:
   Vec3 place(std::size_t node) const {
-    return low_ + cell_mm_ * Vec3{double(node % nx_), double(node / nx_ % ny_),
-                                  double(node / nx_ / ny_)};
+    return low_ +
+           cell_mm_ * Vec3{double(node % nx_), double(node / nx_ % ny_), double(node / nx_ / ny_)};
   }
 
   bool inside(std::size_t node) const { return value_[node] < 0.0; }
@@ -59,12 +59,13 @@ class Grid {
     for (const auto& t : kTetrahedra) {
       std::vector<std::size_t> in, out;
       for (const std::size_t c : t) (inside(corner[c]) ? in : out).push_back(corner[c]);
-      if (in.size() == 2) add({at(in[0], out[0]), at(in[0], out[1]), at(in[1], out[1]),
-                               at(in[1], out[0])}, in[0], out[0]);
-      if (in.size() == 1) add({at(in[0], out[0]), at(in[0], out[1]), at(in[0], out[2])}, in[0],
-                              out[0]);
-      if (in.size() == 3) add({at(in[0], out[0]), at(in[1], out[0]), at(in[2], out[0])}, in[0],
-                              out[0]);
+      if (in.size() == 2)
+        add({at(in[0], out[0]), at(in[0], out[1]), at(in[1], out[1]), at(in[1], out[0])}, in[0],
+            out[0]);
+      if (in.size() == 1)
+        add({at(in[0], out[0]), at(in[0], out[1]), at(in[0], out[2])}, in[0], out[0]);
+      if (in.size() == 3)
+        add({at(in[0], out[0]), at(in[1], out[0]), at(in[2], out[0])}, in[0], out[0]);
     }
   }
 
@@ -110,8 +111,8 @@ void open_at(const Cut& cut, Shape& shape) {
   }
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> made;
   const auto on_plane = [&](std::uint32_t a, std::uint32_t b) {
-    const auto [entry, fresh] = made.try_emplace(
-        std::minmax(a, b), static_cast<std::uint32_t>(shape.vertex_mm.size()));
+    const auto [entry, fresh] =
+        made.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(shape.vertex_mm.size()));
     if (fresh) {
       const auto [from, to] = entry->first;
       const double t = beyond_mm[from] / (beyond_mm[from] - beyond_mm[to]);

@@ -17,7 +17,7 @@ using Field = std::function<double(const model::Vec3&)>;
 /// Where a body is cut off and left open: a flat rim, square to a vessel.
 struct Cut {
   model::Vec3 centre_mm{};
-  model::Vec3 outward{};   // unit, along the vessel, away from the body
+  model::Vec3 outward{};  // unit, along the vessel, away from the body
   double reach_mm = 0.0;  // only what lies this near to the centre is cut
 };
 
@@ -44,12 +44,18 @@ const Cut& nearest_cut(const Body& body, const model::Vec3& p_mm);
 
 // Parts.
 
-/// Round bar from a to b whose radius goes from one to the other.
+/// Round bar from a to b whose radius goes from one to the other: two balls and the cone that
+/// touches both. The ends lie further apart than the radii differ.
 inline double bar_mm(const model::Vec3& p, const model::Vec3& a, double a_radius_mm,
                      const model::Vec3& b, double b_radius_mm) {
-  const model::Vec3 along = b - a;
-  const double t = std::clamp(dot(p - a, along) / dot(along, along), 0.0, 1.0);
-  return norm(p - a - t * along) - (a_radius_mm + t * (b_radius_mm - a_radius_mm));
+  const model::Vec3 along = normalized(b - a);
+  const double length_mm = norm(b - a), y = dot(p - a, along), x = norm(p - a - y * along);
+  const double sine = (a_radius_mm - b_radius_mm) / length_mm;  // of the cone's half angle
+  const double cosine = std::sqrt(1.0 - sine * sine);
+  const double foot_mm = y - x * sine / cosine;  // where the cone's normal through p meets the axis
+  if (foot_mm < 0.0) return norm(p - a) - a_radius_mm;
+  if (foot_mm > length_mm) return norm(p - b) - b_radius_mm;
+  return x * cosine + y * sine - a_radius_mm;
 }
 
 /// Ellipsoid; exact at its surface, and near enough around it.

@@ -5,7 +5,6 @@
 //     A = (sqrt(3)/2) sum h^2     area of V near equilateral triangles pairs of edge h = s ratio(p)
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "tools/make_meshes_edit.h"
 #include "tools/make_meshes_field.h"
@@ -19,11 +18,11 @@ using model::norm;
 using model::TriangleCorners;
 using model::Vec3;
 
-constexpr int kRounds = 8;         // of splitting and collapsing to size
-constexpr int kRepairs = 4;        // of edges that came out short on the way to the counts
+constexpr int kRounds = 8;            // of splitting and collapsing to size
+constexpr int kRepairs = 4;           // of edges that came out short on the way to the counts
 constexpr int kMostCorrections = 60;  // rounds towards the exact count
-constexpr int kPolish = 24;        // rounds of flipping and centring at the end
-constexpr int kRimSteps = 8;       // a line settles slower than a surface
+constexpr int kPolish = 24;           // rounds of flipping and centring at the end
+constexpr int kRimSteps = 8;          // a line settles slower than a surface
 constexpr double kLong = 1.40, kShort = 0.72;  // of the wanted length
 
 struct Measured {
@@ -43,7 +42,7 @@ class Grower {
         if (m.ratio > kLong) split(m.edge);
       }
       collapse_short(true);
-      fprintf(stderr,"round %d V %zu rim %zu s %g\n",round,count(false),count(true),scale_mm_);settle(2);
+      settle(2);
     }
     bool met = correct(true, rim_edges);
     for (int round = 0; met && round < kRepairs; ++round) {
@@ -129,7 +128,7 @@ class Grower {
         grow ? ++have : --have;
         ++done;
       }
-      fprintf(stderr,"correct %d %zu of %zu\n",int(rim),count(rim),wanted);settle(3);
+      settle(3);
     }
     return count(rim) == wanted;
   }
@@ -177,7 +176,7 @@ class Grower {
       }
     }
     for (std::uint32_t v = 0; v < p.size(); ++v) {
-      if (!editor_.is_alive(v) || editor_.is_on_rim(v)) continue;
+      if (!(weight[v] > 0.0) || editor_.is_on_rim(v)) continue;
       p[v] += 0.8 * (sum[v] / weight[v] - p[v]);
       put_on_surface(v, 1);
     }

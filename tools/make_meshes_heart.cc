@@ -17,6 +17,7 @@ using model::Vec3;
 
 constexpr std::size_t kVertices = 10'026;
 constexpr std::size_t kRimEdges = 645;
+constexpr double kReach_mm = 19.0;  // past the end of each vessel, short of its neighbours
 
 struct Vessel {
   Vec3 root_mm{}, end_mm{};
@@ -25,14 +26,12 @@ struct Vessel {
 };
 
 constexpr std::array<Vessel, 3> kVessels{{
-    {{-20, 0, 8}, {-72, -4, 16}, 15.0, 13.0, 0.85},     // aorta
-    {{-14, -14, 20}, {-60, 30, 30}, 15.0, 12.0, 0.85},  // lung artery, crosses over the aorta
-    {{-36, -28, -4}, {-72, -40, 4}, 14.0, 10.0, 0.80},  // vena cava
+    {{-20, 0, 8}, {-72, -8, 14}, 15.0, 13.0, 0.92},     // aorta
+    {{-14, -14, 20}, {-57, 34, 28}, 15.0, 12.0, 0.92},  // lung artery, crosses over the aorta
+    {{-36, -28, -4}, {-72, -40, 4}, 14.0, 10.0, 0.90},  // vena cava
 }};
 
-Vec3 cut_centre_mm(const Vessel& v) {
-  return v.root_mm + v.cut_ratio * (v.end_mm - v.root_mm);
-}
+Vec3 cut_centre_mm(const Vessel& v) { return v.root_mm + v.cut_ratio * (v.end_mm - v.root_mm); }
 
 double heart_mm(const Vec3& p) {
   const double left = bar_mm(p, {-12, 8, -2}, 35.0, {42, 8, -8}, 12.0);
@@ -55,7 +54,7 @@ double edge_ratio(const Vec3& p) {
     const double beside_mm = out_mm - radius_mm;
     near_mm = std::min(near_mm, std::sqrt(over_mm * over_mm + beside_mm * beside_mm));
   }
-  return std::min(0.42 + 0.28 * near_mm, 2.0);
+  return std::min(0.35 + 0.28 * near_mm, 2.0);
 }
 
 }  // namespace
@@ -63,7 +62,7 @@ double edge_ratio(const Vec3& p) {
 model::Result<Shape> make_heart_shape() {
   Body body{heart_mm, edge_ratio, {-100, -60, -60}, {70, 60, 60}, 2.7, {}};
   for (const Vessel& v : kVessels) {
-    body.cuts.push_back({cut_centre_mm(v), normalized(v.end_mm - v.root_mm), 23.0});
+    body.cuts.push_back({cut_centre_mm(v), normalized(v.end_mm - v.root_mm), kReach_mm});
   }
   return make_grown(body, kVertices, kRimEdges);
 }

@@ -1,6 +1,7 @@
 #include "host/tracking/pose_polish.h"
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,8 +13,11 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-constexpr double kStill = 1e-12;  // a step below this ends, rad and t over the depth
-constexpr int kHalvings = 40;
+constexpr double kStill = 1e-12;  // a step below this ends it: rad, and shift over distance
+constexpr double kFine = 1e-8;    // a step below this that does not shrink is rounding
+// At the bottom rms is flat: a pose moves by 1e-8 while rms moves by rounding.
+constexpr double kFlat = 1.0 + 1e-12;
+constexpr int kHalvings = 16;
 
 Vector2d pixel_of(const Camera& camera, const Vector3d& x) {
   return {camera.fx_px * x.x() / x.z() + camera.cx_px, camera.fy_px * x.y() / x.z() + camera.cy_px};
@@ -72,24 +76,24 @@ Pose polish_pose(const Camera& camera, std::span<const Vector3d> points_m,
     return reprojection_rms_px(camera, points_m, pixels_px, pose);
   };
   Pose pose = start;
-  double best_px = rms_px(pose);
+  double best_px = rms_px(pose), last_size = std::numeric_limits<double>::infinity();
   if (!std::isfinite(best_px)) return pose;
   for (int i = 0; i < kPolishSteps; ++i) {
     Vector6d step = gauss_newton_step(camera, points_m, pixels_px, pose);
     if (!step.allFinite()) return pose;
     Pose next = moved(pose, step);
     double next_px = rms_px(next);
-    for (int h = 0; h < kHalvings && !(next_px < best_px); ++h) {
+    for (int h = 0; h < kHalvings && !(next_px <= kFlat * best_px); ++h) {
       step *= 0.5;
       next = moved(pose, step);
       next_px = rms_px(next);
     }
-    if (!(next_px < best_px)) return pose;  // at the bottom, to rounding
+    if (!(next_px <= kFlat * best_px)) return pose;  // no way down
     pose = next;
-    best_px = next_px;
-    if (step.head<3>().norm() < kStill && step.tail<3>().norm() < kStill * pose.position_m.norm()) {
-      break;
-    }
+    best_px = std::min(best_px, next_px);
+    const double size = step.head<3>().norm() + step.tail<3>().norm() / pose.position_m.norm();
+    if (size < kStill || (size < kFine && size >= last_size)) break;
+    last_size = size;
   }
   return pose;
 }

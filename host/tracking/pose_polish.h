@@ -7,7 +7,7 @@
 //     P  point in the object's axes, m     R, t  camera <- object, t in m, +Z forward
 //     fx, fy, cx, cy  pinhole without distortion, px     u, v  px
 //
-// A step that does not lessen rms is halved; points must stay before the camera. At most
+// A step that raises rms is halved; points must stay before the camera. At most
 // kPolishSteps steps. Source: PHYSICS 5.2.
 #pragma once
 
@@ -23,7 +23,7 @@ struct Camera {
   double cx_px = 0.0, cy_px = 0.0;
 };
 
-inline constexpr int kPolishSteps = 100;
+inline constexpr int kPolishSteps = 50;
 
 /// Root mean square distance between seen and computed pixels; infinite unless all Z > 0.
 double reprojection_rms_px(const Camera& camera, std::span<const Eigen::Vector3d> points_m,

@@ -44,6 +44,15 @@ const std::array<Gradients, 4>& gauss_gradients() {
   return points;
 }
 
+/// Is every middle node nearer to the middle of its edge than a quarter of the edge?
+bool middles_in_order(const TetMesh& mesh, const TetNodes& nodes) {
+  for (std::size_t e = 0; e < kEdge.size(); ++e) {
+    const Vec3 &p = mesh.node_m[nodes[kEdge[e][0]]], &q = mesh.node_m[nodes[kEdge[e][1]]];
+    if (!(norm(mesh.node_m[nodes[4 + e]] - 0.5 * (p + q)) < 0.25 * norm(p - q))) return false;
+  }
+  return true;
+}
+
 /// False if the element has no positive volume at a Gauss point.
 bool element_stiffness(const TetMesh& mesh, const TetNodes& nodes, double lambda_Pa, double mu_Pa,
                        ElementStiffness& k) {
@@ -99,6 +108,9 @@ Result<StiffnessMatrix> assemble_stiffness(const TetMesh& mesh, const Elasticity
   ElementStiffness k;
   for (std::size_t e = 0; e < mesh.element.size(); ++e) {
     const TetNodes& nodes = mesh.element[e];
+    if (!middles_in_order(mesh, nodes))
+      return Error{"finite elements: the middle nodes of element " + std::to_string(e) +
+                   " (counted from 0) do not lie in the order of tet_mesh.h"};
     if (!element_stiffness(mesh, nodes, lambda_Pa, mu_Pa, k))
       return Error{"finite elements: element " + std::to_string(e) +
                    " (counted from 0) is inside out or flat; mesh the body again, finer"};

@@ -6,6 +6,7 @@
 #include <Eigen/MetisSupport>
 // clang-format on
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 
 namespace tact::model::fem {
 namespace {
@@ -32,6 +33,18 @@ void solve_factored(const StiffnessMatrix& l, double* x) {
     for (std::int32_t p = start[j] + 1; p < start[j + 1]; ++p) sum -= value[p] * at(row[p]);
     at(j) = sum / value[start[j]];
   }
+}
+
+/// Do the nodes span an area? On a point or a line the body could still turn.
+bool hold_still(const TetMesh& mesh, const std::vector<std::uint32_t>& fixed) {
+  if (fixed.empty()) return false;
+  const Vec3 o = mesh.node_m[fixed[0]];
+  Vec3 far{};
+  for (const std::uint32_t node : fixed)
+    if (norm(mesh.node_m[node] - o) > norm(far)) far = mesh.node_m[node] - o;
+  return std::any_of(fixed.begin(), fixed.end(), [&](std::uint32_t node) {
+    return norm(cross(far, mesh.node_m[node] - o)) > 1e-6 * dot(far, far);
+  });
 }
 
 }  // namespace
@@ -102,6 +115,10 @@ void LinearSolver::solve(std::span<const std::vector<NodeLoad>> loads,
 
 Result<LinearSolver> make_linear_solver(const TetMesh& mesh, const Elasticity& material,
                                         const std::vector<std::uint32_t>& fixed) {
+  const Error loose{
+      "finite elements: the body is not held, or a node belongs to no element; make the fixed box "
+      "hold at least one triangle of the surface"};
+  if (!hold_still(mesh, fixed)) return loose;
   auto factor = std::make_unique<LinearSolver::Factor>();
   factor->free = free_nodes(mesh.node_m.size(), fixed);
   if (factor->free.unknowns == 0)
@@ -109,10 +126,7 @@ Result<LinearSolver> make_linear_solver(const TetMesh& mesh, const Elasticity& m
   const auto matrix = assemble_stiffness(mesh, material, factor->free);
   if (!matrix) return matrix.error();
   const Cholesky cholesky(*matrix);
-  if (cholesky.info() != Eigen::Success)
-    return Error{
-        "finite elements: the body is not held, or a node belongs to no element; make the "
-        "fixed box hold at least one triangle of the surface"};
+  if (cholesky.info() != Eigen::Success) return loose;
   factor->lower = cholesky.matrixL().nestedExpression();
   const auto& order = cholesky.permutationP().indices();
   factor->position.assign(order.data(), order.data() + order.size());

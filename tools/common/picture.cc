@@ -29,7 +29,8 @@ std::string head(const Picture& p) {
       "set encoding utf8\n"
       "set border lc rgb '#444444'\n"
       "set grid lc rgb '#dddddd'\n"
-      "set key font ',10'\n",
+      "set key font ',10' opaque\n"
+      "set style textbox opaque noborder fillcolor rgb '#ffffff'\n",
       p.name, p.width_px, p.height_px);
   int i = 0;
   for (const char* ink : kInk) out += fmt::format("set linetype {} lc rgb '{}'\n", ++i, ink);

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
+#include <stdexcept>
 
 namespace tact::tools {
 namespace {
@@ -28,8 +29,13 @@ std::string text_of(const Cell& cell) {
   return fmt::format("{:.6g}", number + 0.0);
 }
 
+/// Throws on damage, as the standard library does.
 double number_of(const std::string& text) {
-  return text == "nan" ? std::numeric_limits<double>::quiet_NaN() : std::stod(text);
+  if (text == "nan") return std::numeric_limits<double>::quiet_NaN();
+  std::size_t used = 0;
+  const double number = std::stod(text, &used);
+  if (used != text.size()) throw std::invalid_argument("not a number");
+  return number;
 }
 
 std::vector<std::string> split(const std::string& line) {
@@ -198,7 +204,8 @@ Result<Table> merge_table(const Table& empty, const std::vector<std::string>& fi
                       path, line->shard.index, count)};
     for (int number = 3; std::getline(stream, text); ++number) {
       auto row = read_row(text, empty.columns());
-      if (!row || row->job >= rows.size() || !line->shard.owns(row->job))
+      const bool is_torn = stream.eof();  // the last line has an end too
+      if (!row || is_torn || row->job >= rows.size() || !line->shard.owns(row->job))
         return Error{fmt::format("{}:{}: damaged row; run shard {}/{} again", path, number,
                                  line->shard.index, count)};
       if (rows[row->job])

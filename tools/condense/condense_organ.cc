@@ -14,6 +14,7 @@ using model::Result;
 
 constexpr double kRingPitch_m = 0.002;
 constexpr std::size_t kRings = 20;
+constexpr double kInside = 1.2;           // element edge over the surface's median edge
 constexpr double kElementsInPatch = 2.0;  // patch radius over element edge: r within 2 % of C_half
 
 }  // namespace
@@ -54,7 +55,7 @@ Result<model::ComplianceMap> condense_organ(const CondenseInput& input, Condense
         fmt::format("the organ's surface has {} open edges, so it has no inside; close it", open)};
   const double edge_m = median_edge_m(surface);
   CondenseSettings settings = input.settings;
-  if (settings.mesh_size_m <= 0.0) settings.mesh_size_m = edge_m;
+  if (settings.mesh_size_m <= 0.0) settings.mesh_size_m = kInside * edge_m;
   settings.organ.patch_radius_m = settings.patch_radius_m > 0.0
                                       ? settings.patch_radius_m
                                       : kElementsInPatch * std::max(settings.mesh_size_m, edge_m);

@@ -34,8 +34,8 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--out", o.out, "compliance map to write")->required();
   app.add_option("--set", o.overrides, "one key of the scene, as KEY=VALUE; repeatable");
   app.add_option("--mesh-size-m", o.mesh_size_m,
-                 "edge of an element inside the organ, m (default: median edge of its surface); "
-                 "half as long is about 20 times the work")
+                 "edge of an element inside the organ, m (default: 1.2 median edges of its "
+                 "surface); half as long is about 20 times the work")
       ->check(CLI::PositiveNumber);
   app.add_option("--patch-radius-m", o.patch_radius_m,
                  "a0 of the loaded patch, m (default: two elements); the result hardly depends on "

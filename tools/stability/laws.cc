@@ -1,9 +1,11 @@
 #include "tools/stability/laws.h"
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 #include <type_traits>
 
+#include "model/compliance_law.h"
 #include "model/disc_stack.h"
 #include "model/hex_paper.h"
 #include "model/hex_sheet.h"
@@ -49,15 +51,14 @@ constexpr model::RhombusChainParameters kLiver{.rod_length_m = 0.005,
                                                .growth = 2.0,
                                                .units = 10};
 
-/// A tissue of 500 N/m in layers of 0.9 mm (PHYSICS 2.3.5).
+/// A tissue of 500 N/m in six layers of 3.6 mm (PHYSICS 2.3.5).
 model::Result<model::DiscStack> discs(model::DiscForm form, double cone_ratio, double first_s) {
   return model::make_disc_stack(
       model::Disc{.outer_diameter_m = 8e-3,
                   .stiffness_N_per_m = 500.0,
-                  .travel_m = 0.9e-3,
+                  .travel_m = 3.6e-3,
                   .cone_ratio = cone_ratio},
-      form,
-      {.first_delay_s = first_s, .delay_ratio = 1.1, .refresh_rate_Hz = 1000.0, .layers = 24});
+      form, {.first_delay_s = first_s, .delay_ratio = 1.1, .refresh_rate_Hz = 1000.0, .layers = 6});
 }
 
 constexpr model::HexSheetParameters kSheet{.ring_pitch_m = 2e-3,
@@ -68,6 +69,22 @@ constexpr model::HexSheetParameters kSheet{.ring_pitch_m = 2e-3,
                                            .rings = 15,
                                            .weight = model::HexWeight::kNode,
                                            .working_depth_m = 8e-3};
+
+/// Liver under a 4 mm tip, at a place that gives a little more than a half-space.
+model::Result<model::ComplianceCurve> compliance() {
+  constexpr double kGive_m_per_N = 2e-3;
+  constexpr std::size_t kRings = 12;
+  std::array<double, kRings> ring{};
+  for (std::size_t j = 0; j < kRings; ++j)
+    ring[j] = kGive_m_per_N * (1.0 - static_cast<double>(j + 1) / kRings);
+  return model::make_compliance_curve(
+      {.tip = {.youngs_modulus_Pa = 5000.0, .poisson_ratio = 0.45, .radius_m = 4e-3},
+       .regular_m_per_N = kGive_m_per_N,
+       .working_depth_m = 0.01,
+       .ring_pitch_m = 2.5e-3,
+       .ring_m_per_N = ring,
+       .table_knots = 65});
+}
 
 std::vector<NamedLaw> make_laws() {
   using model::DiscForm;
@@ -105,6 +122,7 @@ std::vector<NamedLaw> make_laws() {
                              .weight = model::HexWeight::kNode,
                              .working_depth_m = 8e-3}),
       "20 N/mm: the gate limits the force from 0.4 mm on");
+  add(laws, "compliance", compliance(), "the force stays at the working depth's");
   return laws;
 }
 

@@ -19,7 +19,7 @@ namespace {
 constexpr double kRate_Hz = 1000.0;
 constexpr double kSpeed_mps = 0.2;
 
-std::size_t depths(Grid grid) { return grid == Grid::kQuick ? 9 : 161; }
+std::size_t depths(Grid grid) { return grid == Grid::kQuick ? 9 : 401; }
 
 /// -1.5 .. 2.5 times the range.
 double depth_share(std::size_t i, Grid grid) {
@@ -32,7 +32,7 @@ std::vector<Column> columns() {
           {"depth_m"},
           {"force_N"},
           {"force_ratio"},
-          {"tangent_ratio"},
+          {"tangent_over_mean_ratio"},
           {"status", CellKind::kWord},
           {"gate_force_N"},
           {"gate_max_force_N"},
@@ -69,13 +69,12 @@ Row run(std::size_t job, Grid grid) {
     gate.step(named.felt->respond(depth_m * i / ticks).force_N, true);
   const model::LawResponse at = named.law->respond(depth_m);
   const double edge_N = named.law->respond(range_m).force_N;
-  const double tangent = named.law->respond(1e-3 * range_m).stiffness_N_per_m;
   return {named.name,
           share,
           depth_m,
           at.force_N,
           at.force_N / edge_N,
-          at.stiffness_N_per_m / tangent,
+          at.stiffness_N_per_m * range_m / edge_N,
           std::string(word(at.status)),
           gate.written_N(),
           gate.max_force_N(),

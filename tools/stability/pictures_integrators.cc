@@ -32,7 +32,7 @@ std::vector<Picture> integrator_pictures(Grid grid) {
       fmt::format("f = 'integrators.csv'\ndz = {:.6g}\ndzeta = {:.6g}\n", dz / 2.0, dzeta / 2.0);
   script += R"gp(
 set multiplot layout 2,4 title \
-  "Growth of a damped oscillator: cells measured, black line z_{max} of the amplification matrix" \
+  "Growth of a damped oscillator: cells measured, black line z_{max} of the amplification matrix, red crosses: they disagree" \
   font ',14'
 set xrange [0:4]
 set yrange [-0.025:2]
@@ -40,8 +40,8 @@ set xlabel "z = h omega"
 set ylabel "damping ratio zeta"
 set key off
 set style fill solid noborder
-set label 1 "bounded" at graph 0.05,0.93 front
-set label 2 "grows\nwithout\nlimit" at graph 0.77,0.5 front
+set label 1 "bounded" at 0.12,0.68 front
+set label 2 "grows without limit" at 1.8,1.6 front
 )gp";
   int number = 0;
   for (const ProbedMethod& probed : kProbedMethods) {

@@ -6,13 +6,16 @@
 namespace tact::tools {
 
 std::vector<Picture> printed_rhombus_pictures(Grid grid) {
+  const bool quick = grid == Grid::kQuick;
   return {{.name = "printed_rhombus",
            .width_px = 1200,
            .height_px = 800,
-           .script = fmt::format("size = {}\n", grid == Grid::kQuick ? 3.0 : 0.75) + R"gp(
+           .script = fmt::format("dx = {}\ndy = {}\n", quick ? 57.0 / 36 : 57.0 / 180,
+                                 quick ? 1.0 / 12 : 1.0 / 60) +
+                     R"gp(
 f = 'printed_rhombus.csv'
 set title "The rhombus chain as printed: which unit of ten is the first to get longer while pressed\n\
-cells measured, lines theory: kN = kT exp((i-1)/beta) tan^2(theta0), beta = 2"
+cells measured, lines theory: kN = kT exp((i-1)/beta) tan^2(theta0), beta = 2, i = 1 (thick) to 10"
 set xlabel "angle theta0 of the rods, degrees"
 set ylabel "kT / kN of the first unit"
 set logscale y
@@ -20,17 +23,20 @@ set xrange [3:60]
 set yrange [0.1:10]
 set cbrange [0.5:11.5]
 set palette maxcolors 11
-set palette defined (0.5 '#8c2d04', 2 '#d94801', 5 '#fdae6b', 9 '#fee6ce', 10.4 '#f7f7f7', 11 '#c7e9c0')
+set palette defined (0.5 '#c6510a', 4 '#f59a4f', 9 '#fde3c8', \
+  10.4 '#fdf3e8', 10.5 '#b7e0b5', 11.5 '#b7e0b5')
 set cblabel "first unit that fails (11: none of ten)"
 set cbtics 1
 set key off
-set label 1 "the surface pulls the tool in" at 47,5.5 center front tc '#ffffff'
-set label 2 "deeper units get longer\nwhile the surface is pressed" at 24,1.4 center front
-set label 3 "softer than its own springs" at 11,0.18 center front
-set label 4 "  liver: 1.2, 42.392 deg" at 42.392,1.2 point pt 7 front
+set style fill solid noborder
+set label 1 "the surface pulls the tool in" at 47,5.5 center front boxed
+set label 2 "deeper units get longer\nwhile the surface is pressed" at 27,0.75 center front boxed
+set label 3 "softer than its own springs" at 9.5,0.16 center front boxed
+set label 4 "  liver: 1.2, 42.392 deg" at 42.392,1.2 \
+  point pt 7 ps 1.5 front boxed
 set samples 500
-plot f using 2:3:4 with points pt 5 ps size lc palette, \
-     for [i=1:10] exp(-(i-1)/2.0)/tan(x*pi/180)**2 lc rgb '#000000' lw (i == 1 ? 2.5 : 0.8)
+plot f using 2:3:($2-dx):($2+dx):($3*10**-dy):($3*10**dy):4 with boxxyerror lc palette, \
+     for [i=1:10] exp(-(i-1)/2.0)/tan(x*pi/180)**2 lc rgb '#000000' lw (i == 1 ? 2.5 : 0.7)
 )gp"}};
 }
 
@@ -44,8 +50,9 @@ set xrange [-1.5:2.5]
 set yrange [-2.2:2.2]
 set key top left
 set arrow 1 from 1,-2.2 to 1,2.2 nohead lc rgb '#999999' dt 3
-set label 1 "beyond the range:\nforce stays, 'saturated'" at 1.1,1.9
-set label 2 "within\nthe range" at 0.3,-1.7
+set label 1 "beyond: force stays,\nstatus 'saturated'" at 1.1,1.6
+set label 2 "within the range" at 0.1,-1.7
+set label 3 "pulled" at -1.4,-2.0
 plot 0 lc rgb '#444444' notitle)gp";
   const auto curves = [&](int column) {
     int i = 0;
@@ -58,12 +65,13 @@ plot 0 lc rgb '#444444' notitle)gp";
   };
   curves(6);
   script += R"gp(
-set ylabel "tangent stiffness / tangent at touch"
-set yrange [-0.1:4]
+set ylabel "tangent stiffness / mean stiffness of the range"
+set yrange [-0.1:3.2]
 set key top right
-set arrow 1 from 1,-0.1 to 1,4
-set label 1 "no stiffness left" at 1.1,0.3
-unset label 2
+set arrow 1 from 1,-0.1 to 1,3.2 nohead lc rgb '#999999' dt 3
+set label 1 "no stiffness left" at 1.1,0.15
+set label 2 "stiff: needs damping" at 0.05,3.05
+set label 3 "pulled" at -1.4,0.15
 plot 0 lc rgb '#444444' notitle)gp";
   curves(7);
   script += "\nunset multiplot\n";
@@ -93,7 +101,7 @@ set logscale x
 set xlabel "rate of the loop, Hz"
 set ylabel "layers that move"
 set xrange [200:9000]
-set label 1 "beyond: the force stays (time budget)" at 700,38
+set label 1 "beyond: the force stays (time budget)" at 900,25
 set label 2 "the stack deforms" at 300,8
 plot f using (of('disc_rate', 3)):4 with points pt 7 lc 1 title "measured", \
      log(1 + 0.1/(x*2e-5))/log(1.1) lc 'black' dt 2 title "T_i = 1/rate"
@@ -115,14 +123,14 @@ set xlabel "rings m"
 set ylabel "force, N"
 set logscale xy
 set xrange [2.5:70]
-set yrange [0.3:1000]
+set yrange [0.2:20000]
 set key top left
-set label 1 "printed: no limit" at 12,150
-set label 2 "energy form: converged at m = 10" at 9,1.6
+set label 1 "printed: no limit" at 25,30
+set label 2 "energy form: has a limit" at 22,1.1
 plot f using (of('hex_node', 3)):4 with points pt 7 lc 2 title "printed, spring per node", \
-     98.75*(x/25)**2 lc 2 dt 2 title "~ m^2", \
+     98.75*(x/25)**2 lc 2 dt 2 title "in proportion to m^2", \
      f using (of('hex_ring', 3)):4 with points pt 7 lc 5 title "printed, spring per ring", \
-     2.323*(x/25) lc 5 dt 2 title "~ m", \
+     2.323*(x/25) lc 5 dt 2 title "in proportion to m", \
      f using (of('hex_sheet', 3)):4 with points pt 7 lc 1 title "energy form", \
      2.5806 lc 1 dt 2 notitle
 unset multiplot

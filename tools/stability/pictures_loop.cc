@@ -23,7 +23,7 @@ set xrange [0.15:13]
 set yrange [50:200000]
 set key bottom right
 set label 1 "oscillation grows\nuntil the gate limits it" at 0.2,60000
-set label 2 "comes to rest" at 2,150
+set label 2 "comes to rest" at 0.8,100
 plot for [i=1:4] r = word(rates, i)+0 f using \
        (cell(r, 0, 0, 'bare') && $6 == 0 ? $7 : NaN):10 \
        with points pt 7 ps 1.1 lc i title word(rates, i)." Hz", \
@@ -47,11 +47,11 @@ set title "Encoder and friction: b = 10 N s/m, 1 kHz, no delay, no help"
 set logscale x
 set xlabel "step D of the counted position, mm"
 set xrange [4e-3:0.13]
-set yrange [100:200000]
+set yrange [20:200000]
 set key bottom left
-set label 1 "oscillation grows until the gate limits it" at 5e-3,80000
-set label 2 "buzzes by a count or two:\nfelt, but does not grow" at 3e-2,9000
-set label 3 "comes to rest" at 1.5e-2,200
+set label 1 "oscillation grows until the gate limits it" at 5e-3,90000 front boxed
+set label 2 "buzzes by a count or two:\nfelt, but does not grow" at 4.2e-2,12000 front boxed
+set label 3 "comes to rest" at 5.5e-3,2500
 plot f using (cell(1000, 0, 0, 'bare') && $7 == 10 && $6 > 0 ? $6*1e3 : NaN):10 \
        with points pt 7 ps 1.1 lc 'black' title "c = 0: does not grow below", \
      for [i=1:3] c = word(frictions, i)+0 f using \
@@ -68,7 +68,7 @@ set xrange [0.15:13]
 set yrange [50:200000]
 set key bottom right
 set label 1 "hands help: the line holds for every hand" at 0.2,100000
-set label 2 "comes to rest" at 2,150
+set label 2 "comes to rest" at 0.4,70
 hands = "bare light firm"
 what = "'no help, constant push' 'light: 0.15 kg, 600 N/m, 15 N s/m' 'firm: 0.4 kg, 1500 N/m, 30 N s/m'"
 plot for [i=1:3] f using (cell(1000, 0.5e-3, 0, word(hands, i)) && $6 == 0 ? $7 : NaN):10 \

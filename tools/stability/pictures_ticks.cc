@@ -10,12 +10,12 @@ points measured, lines theory: K = (2 b / T) E[n] / E[n^2], n periods held"
 set logscale y
 set xlabel "share p of ticks that are lost, or late"
 set ylabel "stiffness K, N/m"
-set xrange [-0.01:0.82]
+set xrange [0:0.82]
 set yrange [100:10000]
 set key bottom left
 set label 1 "oscillation grows: the gate clips it,\nfades at the second loss in a row,\n\
 lets go and latches at the 20th" at 0.45,4500
-set label 2 "stable: a lost sample is a force held longer" at 0.25,130
+set label 2 "stable: a lost sample is a force held longer" at 0.3,230
 n1(p) = 4000 * (1 - p) / (1 + p)
 late(p, n) = 4000 * (1 - p + p*n) / (1 - p + p*n*n)
 plot f using (strcol(2) eq 'lost' && $4 == 2 ? $5 : NaN):7 with points pt 7 ps 1.1 lc 1 \
@@ -49,8 +49,8 @@ unset arrow
 set ylabel "energy given to the hand, mJ"
 set yrange [*:*]
 set key top left
-set label 1 "active: the loop drives the hand" at 22,4
-set label 2 "passive" at 35,-1.2
+set label 1 "active: the loop drives the hand" at 12,3.5
+set label 2 "passive: the hand gets less than the wall owes it" at 21,-0.5
 plot f using ($2 == 1000 ? $3 : NaN):($6*1e3) with linespoints pt 7 ps 0.7 lc 2 \
        title "held for ever, beyond what the wall gives back", \
      f using ($2 == 1000 ? $3 : NaN):($7*1e3) with linespoints pt 7 ps 0.7 lc 1 \

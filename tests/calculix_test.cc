@@ -1,0 +1,132 @@
+#include "tools/reference/calculix.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "tools/common/gmsh.h"
+
+namespace tact::tools {
+namespace {
+
+using model::Vec3;
+using model::fem::TetMesh;
+
+constexpr double kSide_m = 0.01;
+constexpr Elasticity kTissue{.youngs_modulus_Pa = 5000.0, .poisson_ratio = 0.45};
+
+/// A cube from the origin, counter-clockwise triangles seen from outside.
+const TetMesh& cube() {
+  static const TetMesh body = [] {
+    std::vector<Vec3> vertex;
+    for (int i = 0; i < 8; ++i)
+      vertex.push_back(kSide_m * Vec3{i & 1 ? 1.0 : 0.0, i & 2 ? 1.0 : 0.0, i & 4 ? 1.0 : 0.0});
+    const std::vector<model::TriangleCorners> triangle{
+        {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+        {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    const auto filled = fill_with_gmsh(
+        vertex, triangle,
+        {.at_m = {}, .axis = {}, .radius_m = 1.0, .fine_m = 0.5 * kSide_m, .growth = 0.0});
+    EXPECT_TRUE(filled) << filled.error().sentence;
+    return filled ? *filled : TetMesh{};
+  }();
+  return body;
+}
+
+/// The cube with every node told where to go by `along_m` on its surface; nothing is held.
+ElasticProblem moved_along(const Vec3& direction, double (*along_m)(const Vec3&), bool bonded) {
+  ElasticProblem p{.body = &cube(),
+                   .material = kTissue,
+                   .held = {},
+                   .load = {.direction = direction, .moved = {}, .sideways_held = bonded},
+                   .reported = {}};
+  for (std::uint32_t n = 0; n < p.body->node_m.size(); ++n) {
+    const Vec3& x = p.body->node_m[n];
+    const bool outside = std::min({x.x, x.y, x.z}) < 1e-9 ||
+                         std::max({x.x, x.y, x.z}) > kSide_m - 1e-9;
+    if (outside) p.load.moved.push_back({n, along_m(x)});
+    p.reported.push_back(n);
+  }
+  return p;
+}
+
+TEST(Gmsh, FillsACubeToItsVolumeAndKeepsItsVertices) {
+  const TetMesh& body = cube();
+  ASSERT_GT(body.element.size(), 5U);
+  EXPECT_NEAR(volume_m3(body), 1e-6, 1e-18);
+  EXPECT_EQ(body.node_m[7], (Vec3{kSide_m, kSide_m, kSide_m}));
+  for (const auto& e : body.element) {  // middles are where C3D10 wants them
+    EXPECT_EQ(body.node_m[e[4]], 0.5 * (body.node_m[e[0]] + body.node_m[e[1]]));
+    EXPECT_EQ(body.node_m[e[6]], 0.5 * (body.node_m[e[2]] + body.node_m[e[0]]));
+    EXPECT_EQ(body.node_m[e[9]], 0.5 * (body.node_m[e[2]] + body.node_m[e[3]]));
+  }
+}
+
+TEST(Gmsh, RefusesAnOpenSurface) {
+  const std::vector<Vec3> vertex{{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {0, 0, 0.01}};
+  const std::vector<model::TriangleCorners> triangle{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}};
+  const auto body = fill_with_gmsh(
+      vertex, triangle, {.at_m = {}, .axis = {}, .radius_m = 1.0, .fine_m = 0.01, .growth = 0.0});
+  EXPECT_FALSE(body);
+}
+
+TEST(CalculiX, PassesThePatchTest) {
+  // A linear displacement is in the element's space: inside it must be linear too, exactly.
+  const Vec3 direction = normalized(Vec3{0.3, -0.5, 0.8});
+  const auto linear = [](const Vec3& x) { return 1e-3 * (2.0 * x.x - x.y + 0.5 * x.z); };
+  const auto answer = solve_with_calculix(moved_along(direction, linear, true));
+  ASSERT_TRUE(answer) << answer.error().sentence;
+  for (std::uint32_t n = 0; n < cube().node_m.size(); ++n) {
+    const Vec3 off_m = answer->displacement_m[n] - linear(cube().node_m[n]) * direction;
+    EXPECT_LT(norm(off_m), 1e-6 * 1e-3 * kSide_m) << "node " << n;
+  }
+  EXPECT_LT(norm(answer->force_N), 1e-9) << "constant stress has no resultant";
+}
+
+/// Force on the moved top of a cube that stands on rollers: free sideways, so stress is uniaxial.
+model::Result<ElasticAnswer> stretch(double along_m, bool large_strain) {
+  ElasticProblem p{.body = &cube(),
+                   .material = kTissue,
+                   .held = {0},  // the corner at the origin; the rest of the bottom slides
+                   .load = {.direction = {0, 0, 1}, .moved = {}, .large_strain = large_strain},
+                   .reported = {7}};
+  for (std::uint32_t n = 1; n < p.body->node_m.size(); ++n) {
+    const double z_m = p.body->node_m[n].z;
+    if (z_m < 1e-9) p.load.moved.push_back({n, 0.0});
+    if (z_m > kSide_m - 1e-9) p.load.moved.push_back({n, along_m});
+  }
+  return solve_with_calculix(p);
+}
+
+TEST(CalculiX, GivesYoungsModulusInTension) {
+  const auto answer = stretch(1e-5, false);
+  ASSERT_TRUE(answer) << answer.error().sentence;
+  // Top and bottom forces cancel but for the one held corner's share: the corner's height tells it
+  // all. u_x = -nu * strain * x relative to the corner at the origin, up to a turn about z.
+  const Vec3 u = answer->displacement_m[0];
+  EXPECT_NEAR(u.z, 1e-5, 1e-15);
+  const double sideways_m = std::hypot(kSide_m + u.x, kSide_m + u.y) - std::hypot(kSide_m, kSide_m);
+  EXPECT_NEAR(sideways_m, -0.45 * 1e-5 * std::sqrt(2.0), 1e-3 * 1e-5);
+}
+
+TEST(CalculiX, SaysWhatToInstall) {
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", "/nowhere", 1);
+  const auto version = calculix_version();
+  const auto gmsh = gmsh_version();
+  setenv("PATH", path.c_str(), 1);
+  ASSERT_FALSE(version);
+  EXPECT_EQ(version.error().sentence, "ccx is not installed; apt install calculix-ccx");
+  ASSERT_FALSE(gmsh);
+  EXPECT_EQ(gmsh.error().sentence, "gmsh is not installed; apt install gmsh");
+}
+
+TEST(CalculiX, TellsItsVersion) {
+  const auto version = calculix_version();
+  ASSERT_TRUE(version) << version.error().sentence;
+  EXPECT_EQ(version->substr(0, 2), "2.") << *version;
+}
+
+}  // namespace
+}  // namespace tact::tools

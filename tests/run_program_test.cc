@@ -1,0 +1,104 @@
+#include "tools/common/run_program.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <thread>
+
+#include "tools/common/interrupt.h"
+
+namespace tact::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using model::Result;
+
+ScratchFolder folder() {
+  auto made = ScratchFolder::make("tact-run-program-test");
+  EXPECT_TRUE(made) << made.error().sentence;
+  return std::move(*made);
+}
+
+Result<std::string> run(const ScratchFolder& where, const std::string& program,
+                        std::vector<std::string> arguments, double time_limit_s = 10.0) {
+  return run_program({.program = program,
+                      .arguments = std::move(arguments),
+                      .directory = where.path(),
+                      .log_path = where.file("log"),
+                      .package = "the-package",
+                      .time_limit_s = time_limit_s,
+                      .environment = {{"TACT_TEST", "a value"}}});
+}
+
+TEST(RunProgram, KeepsWhatWasPrintedAndTakesArgumentsAsTheyAre) {
+  const auto where = folder();
+  const auto said = run(where, "printf", {"%s|", "a b", "$HOME", "'\"*"});
+  ASSERT_TRUE(said) << said.error().sentence;
+  EXPECT_EQ(*said, "a b|$HOME|'\"*|");
+}
+
+TEST(RunProgram, RunsInItsFolderWithItsEnvironment) {
+  const auto where = folder();
+  const auto said = run(where, "sh", {"-c", "pwd; echo $TACT_TEST; echo to stderr >&2"});
+  ASSERT_TRUE(said) << said.error().sentence;
+  EXPECT_EQ(*said, fs::canonical(where.path()).string() + "\na value\nto stderr\n");
+}
+
+TEST(RunProgram, SaysWhatToInstall) {
+  const auto where = folder();
+  const auto said = run(where, "no-such-program-of-tact", {});
+  ASSERT_FALSE(said);
+  EXPECT_EQ(said.error().sentence,
+            "no-such-program-of-tact is not installed; apt install the-package");
+}
+
+TEST(RunProgram, TellsTheLastLinesOfAFailure) {
+  const auto where = folder();
+  const auto said = run(where, "sh", {"-c", "seq 100; echo the cause; exit 3"});
+  ASSERT_FALSE(said);
+  const std::string& sentence = said.error().sentence;
+  EXPECT_NE(sentence.find("status 3"), std::string::npos) << sentence;
+  EXPECT_NE(sentence.find("the cause"), std::string::npos) << sentence;
+  EXPECT_NE(sentence.find(where.file("log")), std::string::npos) << sentence;
+  EXPECT_EQ(sentence.find("\n50\n"), std::string::npos) << "only the end belongs in a message";
+  EXPECT_FALSE(was_interrupted(said.error()));
+}
+
+TEST(RunProgram, EndsAProgramAndItsChildrenAfterTheTimeLimit) {
+  const auto where = folder();
+  const auto said = run(where, "sh", {"-c", "sleep 60 & echo $!; wait"}, 0.3);
+  ASSERT_FALSE(said);
+  EXPECT_NE(said.error().sentence.find("took longer than 0.3 s"), std::string::npos)
+      << said.error().sentence;
+}
+
+TEST(RunProgram, EndsAProgramAtCtrlC) {
+  const auto where = folder();
+  const InterruptWatch watch;
+  std::jthread ctrl_c([] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    std::raise(SIGINT);
+  });
+  const auto said = run(where, "sleep", {"60"});
+  ASSERT_FALSE(said);
+  EXPECT_TRUE(was_interrupted(said.error())) << said.error().sentence;
+}
+
+TEST(ScratchFolder, IsGoneAfterwardsUnlessKept) {
+  std::string gone, kept;
+  {
+    auto a = folder(), b = folder();
+    gone = a.path();
+    kept = b.path();
+    EXPECT_NE(gone, kept);
+    b.keep();
+  }
+  EXPECT_FALSE(fs::exists(gone));
+  EXPECT_TRUE(fs::exists(kept));
+  fs::remove_all(kept);
+}
+
+}  // namespace
+}  // namespace tact::tools

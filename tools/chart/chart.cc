@@ -1,0 +1,216 @@
+#include "tools/chart/chart.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "tools/chart/peers.h"
+#include "tools/common/run_program.h"
+
+namespace tact::tools {
+namespace {
+
+using model::Error;
+using model::Result;
+using model::Scene;
+
+struct Made {
+  ChartRow row;
+  std::unique_ptr<Subject> subject;  // what is timed
+};
+
+std::string without_commas(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == ',' || c == '"' || c == '\n'; }, ';');
+  return text;
+}
+
+Result<std::unique_ptr<Subject>> make_subject(const Scene& scene, const Variant& variant,
+                                              const std::vector<ProbeCase>& cases) {
+  if (variant.is_peer()) return make_peer({scene, cases}, variant);
+  return make_law_subject(scene, variant.sizes);
+}
+
+/// Judged without relaxation, as the reference is elastic; timed as the scene has it.
+Made make_and_judge(const Scene& scene, const Scene& elastic, const Variant& variant,
+                    const std::vector<ProbeCase>& cases, double pitch_m) {
+  Made made{.row = {.variant = variant}, .subject = nullptr};
+  auto subject = make_subject(elastic, variant, cases);
+  if (!subject) {
+    made.row.failure = subject.error().sentence;
+    return made;
+  }
+  const Accuracy accuracy = measure_accuracy(**subject, cases, pitch_m);
+  made.row.errors = accuracy.errors;
+  made.row.settle_ticks = accuracy.settle_ticks;
+  made.row.given = (*subject)->given();
+  if (!variant.is_peer() && !scene.relaxation.empty()) {
+    subject = make_subject(scene, variant, cases);
+    if (!subject) {
+      made.row.failure = subject.error().sentence;
+      return made;
+    }
+  }
+  made.row.memory_bytes = (*subject)->memory_bytes();
+  made.subject = std::move(*subject);
+  return made;
+}
+
+std::vector<SpeedAndError> points_of(const Table& table, const std::vector<std::size_t>& rows) {
+  std::vector<SpeedAndError> out;
+  for (const std::size_t i : rows)
+    out.push_back({.tick_us = table.number(table.rows()[i], "tick_median_us"),
+                   .error_ratio = table.number(table.rows()[i], "force_rms_ratio")});
+  return out;
+}
+
+std::vector<std::size_t> rows_of(const Table& table, const std::string& kind) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < table.rows().size(); ++i)
+    if (table.word(table.rows()[i], "kind") == kind) out.push_back(i);
+  return out;
+}
+
+}  // namespace
+
+Result<std::vector<ChartRow>> measure_chart(const Scene& scene, const ReferenceData& reference,
+                                            const ChartOptions& options) {
+  const auto cases = cases_of(scene, reference);
+  if (!cases) return cases.error();
+  const std::vector<Variant> variants = variants_of(scene, options.wish);
+  if (variants.empty())
+    return Error{
+        fmt::format("{}: none of the wanted laws is described; write its section or "
+                    "leave out --laws",
+                    scene.path)};
+  Scene elastic = scene;
+  elastic.relaxation.clear();
+  std::vector<Made> made(variants.size());
+  const SweepOptions sweep_options{.label = "tact-chart, accuracy", .shard = options.shard};
+  const bool judged = run_jobs(variants.size(), sweep_options, [&](std::size_t job) {
+    made[job] = make_and_judge(scene, elastic, variants[job], *cases, reference.ring_pitch_m);
+  });
+  if (!judged) return interruption();
+  const auto path = moving_probe(scene, cases->front());
+  const SweepOptions one_by_one{.label = "tact-chart, time", .shard = options.shard, .threads = 1};
+  const bool timed = run_jobs(variants.size(), one_by_one, [&](std::size_t job) {
+    if (!made[job].subject) return;
+    made[job].row.timing = measure_time(*made[job].subject, path, options.timing);
+    made[job].subject.reset();
+  });
+  if (!timed) return interruption();
+  std::vector<ChartRow> rows;
+  for (std::size_t job = options.shard.index; job < made.size(); job += options.shard.count)
+    rows.push_back(std::move(made[job].row));
+  return rows;
+}
+
+Table empty_chart(std::size_t variants, const Shard& shard) {
+  const auto word = [](const char* name) { return Column{name, CellKind::kWord}; };
+  const auto number = [](const char* name) { return Column{name, CellKind::kNumber}; };
+  return {"chart",
+          {word("kind"),
+           word("family"),
+           word("size"),
+           word("form"),
+           number("table_knots"),
+           number("layers"),
+           number("rings"),
+           number("nodes"),
+           number("curves"),
+           number("force_rms_ratio"),
+           number("force_worst_ratio"),
+           number("press_rms_ratio"),
+           number("pull_rms_ratio"),
+           number("held_out_rms_ratio"),
+           number("worst_site_rms_ratio"),
+           number("within_jnd_ratio"),
+           number("shape_rms_ratio"),
+           number("shape_worst_ratio"),
+           number("cases"),
+           number("settle_ticks"),
+           number("memory_bytes"),
+           word("given"),
+           word("failure"),
+           word("scene_hash"),
+           word("reference_hash"),
+           word("revision"),
+           word("machine"),
+           number("tick_median_us"),
+           number("tick_p999_us"),
+           number("instructions"),
+           number("ticks")},
+          variants,
+          shard};
+}
+
+Row table_row(const ChartRow& row, const Provenance& provenance) {
+  const model::LawSizes& sizes = row.variant.sizes;
+  const bool measured = row.failure.empty();
+  const auto number = [&](auto value) {
+    return Cell(measured ? static_cast<double>(value) : std::numeric_limits<double>::quiet_NaN());
+  };
+  const auto count = [](std::size_t value) { return Cell(static_cast<double>(value)); };
+  const ErrorSummary& e = row.errors;
+  const char* form = !sizes.disc_form                               ? "-"
+                     : *sizes.disc_form == model::DiscForm::kLinear ? "linear"
+                                                                    : "almen-laszlo";
+  const auto or_dash = [](const std::string& text) {
+    return Cell(text.empty() ? "-" : without_commas(text));
+  };
+  return {Cell(row.variant.is_peer() ? "peer" : "tact"),
+          Cell(row.variant.family()),
+          Cell(row.variant.size()),
+          Cell(form),
+          count(sizes.table_knots),
+          count(sizes.layers),
+          count(sizes.rings),
+          count(sizes.nodes),
+          count(sizes.curves),
+          number(e.force_rms),
+          number(e.force_worst),
+          number(e.press_rms),
+          number(e.pull_rms),
+          number(e.held_out_rms),
+          number(e.worst_site_rms),
+          number(e.within_jnd),
+          number(e.shape_rms),
+          number(e.shape_worst),
+          number(e.cases),
+          number(row.settle_ticks),
+          number(row.memory_bytes),
+          or_dash(row.given),
+          or_dash(row.failure),
+          Cell(provenance.scene_hash),
+          Cell(provenance.reference_hash),
+          or_dash(provenance.revision),
+          or_dash(provenance.machine),
+          number(row.timing.median_us),
+          number(row.timing.p999_us),
+          number(row.timing.instructions),
+          number(row.timing.ticks)};
+}
+
+std::vector<std::size_t> front_rows(const Table& table) {
+  const auto rows = rows_of(table, "tact");
+  std::vector<std::size_t> out;
+  for (const std::size_t i : front_of(points_of(table, rows))) out.push_back(rows[i]);
+  return out;
+}
+
+std::vector<std::size_t> peers_ahead(const Table& table) {
+  const auto front = points_of(table, front_rows(table));
+  const auto peers = rows_of(table, "peer");
+  const auto points = points_of(table, peers);
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < peers.size(); ++i) {
+    const bool faster_and_better = std::any_of(front.begin(), front.end(), [&](const auto& ours) {
+      return points[i].tick_us < ours.tick_us && points[i].error_ratio < ours.error_ratio;
+    });
+    if (faster_and_better) out.push_back(peers[i]);
+  }
+  return out;
+}
+
+}  // namespace tact::tools

@@ -1,0 +1,54 @@
+// chart.h - speed against accuracy: one row for every law and size of a scene, and for the peers.
+//
+// First all rows are made and judged on all cores, then timed one after the other, so that they do
+// not disturb each other. The errors are the same on every machine; times belong to the row's
+// machine.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tools/chart/measure.h"
+#include "tools/chart/variants.h"
+#include "tools/common/sweep.h"
+#include "tools/common/table.h"
+
+namespace tact::tools {
+
+struct ChartRow {
+  Variant variant{};
+  std::string failure{};  // empty: it was measured
+  ErrorSummary errors{};
+  int settle_ticks = 0;
+  Timing timing{};
+  std::size_t memory_bytes = 0;
+  std::string given{};
+};
+
+/// Where numbers come from; part of every row, so that merged tables stay honest.
+struct Provenance {
+  std::string scene_hash, reference_hash, revision, machine;
+};
+
+struct ChartOptions {
+  VariantWish wish;
+  Shard shard;
+  TimingSettings timing;
+};
+
+/// Rows of the shard, in order. An error names what does not fit together, or says that Ctrl-C
+/// ended it.
+model::Result<std::vector<ChartRow>> measure_chart(const model::Scene& scene,
+                                                   const ReferenceData& reference,
+                                                   const ChartOptions& options);
+
+/// A table without rows, for the shard and for merging.
+Table empty_chart(std::size_t variants, const Shard& shard);
+Row table_row(const ChartRow& row, const Provenance& provenance);
+/// Of a whole table: the rows on the front of tact's laws, fastest first.
+std::vector<std::size_t> front_rows(const Table& table);
+/// Peers that beat the front in both; empty is what tact promises.
+std::vector<std::size_t> peers_ahead(const Table& table);
+
+}  // namespace tact::tools

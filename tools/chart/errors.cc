@@ -1,0 +1,97 @@
+#include "tools/chart/errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace tact::tools {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Root of the mean square of what it is given; NaN of nothing.
+class Rms {
+ public:
+  void add(double e) {
+    sum_ += e * e;
+    ++count_;
+  }
+  double value() const { return count_ > 0 ? std::sqrt(sum_ / static_cast<double>(count_)) : kNan; }
+
+ private:
+  double sum_ = 0.0;
+  std::size_t count_ = 0;
+};
+
+double shape_error(const Sample& s) {
+  Rms rms;
+  for (std::size_t j = 0; j < std::min(s.ring_m.size(), s.reference_ring_m.size()); ++j) {
+    const double e = s.ring_m[j] - s.reference_ring_m[j];
+    if (std::isfinite(e)) rms.add(e / s.depth_m);
+  }
+  return rms.value();
+}
+
+}  // namespace
+
+ErrorSummary summarize(std::span<const Sample> samples) {
+  ErrorSummary out{.cases = samples.size()};
+  double peak_N = 0.0;
+  std::map<std::size_t, double> site_peak_N;
+  for (const Sample& s : samples) {
+    peak_N = std::max(peak_N, std::abs(s.reference_N));
+    site_peak_N[s.site] = std::max(site_peak_N[s.site], std::abs(s.reference_N));
+  }
+  Rms all, press, pull, held_out, shape;
+  std::map<std::size_t, Rms> of_site;
+  std::size_t felt_right = 0;
+  for (const Sample& s : samples) {
+    const double e_N = s.force_N - s.reference_N;
+    const double e = e_N / peak_N;
+    all.add(e);
+    (s.depth_m > 0.0 ? press : pull).add(e);
+    if (s.held_out) held_out.add(e);
+    of_site[s.site].add(e_N / site_peak_N[s.site]);
+    out.force_worst = std::max(out.force_worst, std::abs(e));
+    if (std::abs(e_N) <= kJustNoticeable * std::abs(s.reference_N)) ++felt_right;
+    const double u = shape_error(s);
+    if (!std::isfinite(u)) continue;
+    shape.add(u);
+    out.shape_worst = std::max(out.shape_worst, u);
+  }
+  for (const auto& [site, rms] : of_site)
+    out.worst_site_rms = std::max(out.worst_site_rms, rms.value());
+  out.force_rms = all.value();
+  out.press_rms = press.value();
+  out.pull_rms = pull.value();
+  out.held_out_rms = held_out.value();
+  out.shape_rms = shape.value();
+  out.within_jnd = samples.empty()
+                       ? kNan
+                       : static_cast<double>(felt_right) / static_cast<double>(samples.size());
+  return out;
+}
+
+bool dominates(const SpeedAndError& a, const SpeedAndError& b) {
+  const bool no_worse = a.tick_us <= b.tick_us && a.error_ratio <= b.error_ratio;
+  return no_worse && (a.tick_us < b.tick_us || a.error_ratio < b.error_ratio);
+}
+
+std::vector<std::size_t> front_of(std::span<const SpeedAndError> points) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (std::isfinite(points[i].tick_us) && std::isfinite(points[i].error_ratio))
+      order.push_back(i);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return points[a].tick_us < points[b].tick_us || (points[a].tick_us == points[b].tick_us &&
+                                                     points[a].error_ratio < points[b].error_ratio);
+  });
+  std::vector<std::size_t> front;
+  for (const std::size_t i : order)
+    if (front.empty() || points[i].error_ratio < points[front.back()].error_ratio)
+      front.push_back(i);
+  return front;
+}
+
+}  // namespace tact::tools

@@ -1,0 +1,52 @@
+// errors.h - how far a law is from the reference, in numbers: pure functions over samples.
+//
+//     force   e = F - F_ref;        RMS and worst over sites and depths, of the peak |F_ref|
+//     shape   e_j = u_j - u_ref,j;  RMS over the rings of a case, of its |depth|; then RMS and
+//     worst
+//             over the cases
+//
+// Press and pull count alike. A case is felt as right where |e| is at most 7 % of |F_ref|: the
+// least difference of force that a hand can tell (kJustNoticeable).
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace tact::tools {
+
+inline constexpr double kJustNoticeable = 0.07;  // of a force
+
+/// One depth at one site.
+struct Sample {
+  std::size_t site = 0;
+  bool held_out = false;  // no law was fitted to this site
+  double depth_m = 0.0;   // press above 0
+  double force_N = 0.0;
+  double reference_N = 0.0;
+  std::vector<double> ring_m, reference_ring_m;  // NaN: not known, not compared
+};
+
+struct ErrorSummary {
+  std::size_t cases = 0;
+  double force_rms = 0.0, force_worst = 0.0;  // of the peak
+  double press_rms = 0.0, pull_rms = 0.0;     // of the peak; NaN without such a case
+  double held_out_rms = 0.0;                  // of the peak; NaN without such a site
+  double worst_site_rms = 0.0;                // of that site's own peak
+  double within_jnd = 0.0;                    // share of the cases
+  double shape_rms = 0.0, shape_worst = 0.0;  // of the depth
+};
+
+ErrorSummary summarize(std::span<const Sample> samples);
+
+/// A point of the chart: smaller is better in both.
+struct SpeedAndError {
+  double tick_us = 0.0;
+  double error_ratio = 0.0;
+};
+
+bool dominates(const SpeedAndError& a, const SpeedAndError& b);
+/// The points that no other dominates, fastest first; of equal points the first.
+std::vector<std::size_t> front_of(std::span<const SpeedAndError> points);
+
+}  // namespace tact::tools

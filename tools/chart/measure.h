@@ -1,0 +1,64 @@
+// measure.h - runs a subject over the reference's sites and depths, and times its tick.
+//
+// Errors are quasi-static: a stepped subject ticks at one depth until its force stays within
+// 0.1 % over 50 ticks, or for kMostSettleTicks. Relaxation is not asked: the reference is elastic.
+// Time is that of a probe that moves, one site, warm, each tick on its own, less what reading the
+// clock costs. The p99.9 is that of the quietest of some rounds: a shared machine pauses programs
+// at random, and what is asked here is the law.
+#pragma once
+
+#include <vector>
+
+#include "tools/chart/errors.h"
+#include "tools/chart/subject.h"
+#include "tools/common/reference_data.h"
+
+namespace tact::tools {
+
+inline constexpr int kMostSettleTicks = 4000;
+
+/// One depth at one site of the scene's mesh.
+struct ProbeCase {
+  std::size_t site = 0;
+  bool held_out = false;
+  model::Indentation in;
+  double reference_N = 0.0;
+  std::vector<double> reference_ring_m;
+};
+
+/// The linear cases of the reference on the scene's mesh. An error if they are of another mesh or
+/// another tip.
+model::Result<std::vector<ProbeCase>> cases_of(const model::Scene& scene,
+                                               const ReferenceData& reference);
+
+struct SettledForce {
+  double force_N = 0.0;
+  int ticks = 0;
+};
+SettledForce settle(Subject& subject, const model::Indentation& in);
+
+struct Accuracy {
+  std::vector<Sample> samples;
+  ErrorSummary errors;
+  int settle_ticks = 0;  // the longest; 1 of a law without inertia
+};
+Accuracy measure_accuracy(Subject& subject, const std::vector<ProbeCase>& cases, double pitch_m);
+
+/// A probe that goes round on the surface while it sinks in and comes back.
+std::vector<model::Indentation> moving_probe(const model::Scene& scene, const ProbeCase& at);
+
+struct TimingSettings {
+  std::size_t ticks = 20000;  // a round
+  int rounds = 3;
+  double limit_s = 20.0;  // a slow peer: fewer ticks
+};
+
+struct Timing {
+  double median_us = 0.0, p999_us = 0.0;
+  double instructions = 0.0;  // per tick; NaN where the machine does not count them
+  std::size_t ticks = 0;      // a round
+};
+Timing measure_time(Subject& subject, const std::vector<model::Indentation>& path,
+                    const TimingSettings& settings);
+
+}  // namespace tact::tools

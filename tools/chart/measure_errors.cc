@@ -1,0 +1,111 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/chart/measure.h"
+
+namespace tact::tools {
+namespace {
+
+using model::Error;
+using model::Indentation;
+using model::Result;
+using model::Vec3;
+
+constexpr double kSamePoint_m = 1e-4;
+constexpr double kSameRadius_ratio = 0.01;
+
+/// The vertex as a place: one of its triangles, all the weight on its corner.
+model::Place place_of(const model::SurfaceMesh& mesh, std::uint32_t vertex) {
+  model::Place place{.triangle = mesh.fan[mesh.fan_start[vertex]], .weight = {}};
+  for (std::size_t c = 0; c < 3; ++c)
+    if (mesh.triangle[place.triangle][c] == vertex) place.weight[c] = 1.0;
+  return place;
+}
+
+bool is_held_out(const model::Scene& scene, std::uint32_t vertex) {
+  return std::any_of(scene.reference_sites.begin(), scene.reference_sites.end(),
+                     [&](const auto& s) { return s.vertex == vertex && s.held_out; });
+}
+
+}  // namespace
+
+Result<std::vector<ProbeCase>> cases_of(const model::Scene& scene, const ReferenceData& reference) {
+  const double radius_m = scene.tool.spheres[0].radius_m;
+  if (std::abs(reference.tool_radius_m - radius_m) > kSameRadius_ratio * radius_m)
+    return Error{fmt::format(
+        "{}: the tool's first sphere has radius {:g} mm, the reference was solved with {:g} mm; "
+        "run tact-reference {}",
+        scene.path, radius_m * 1e3, reference.tool_radius_m * 1e3, scene.path)};
+  std::vector<ProbeCase> cases;
+  for (std::size_t i = 0; i < reference.sites.size(); ++i) {
+    const SolvedSite& site = reference.sites[i];
+    const auto& vertices = scene.organ_mesh.vertex_m;
+    const bool same =
+        site.vertex < vertices.size() &&
+        norm(vertices[site.vertex] - scene.organ.position_m - site.point_m) < kSamePoint_m;
+    if (!same)
+      return Error{
+          fmt::format("{}: vertex {} is not where the reference of {} has it; run tact-reference "
+                      "{}",
+                      scene.path, site.vertex, reference.mesh, scene.path)};
+    for (const ReferenceCase& c : site.cases) {
+      if (c.large_strain) continue;
+      const Indentation in{.sphere = 0,
+                           .place = place_of(scene.organ_mesh, site.vertex),
+                           .normal = -site.direction,
+                           .depth_m = c.depth_m,
+                           .held = !c.is_press()};
+      cases.push_back({.site = i,
+                       .held_out = is_held_out(scene, site.vertex),
+                       .in = in,
+                       .reference_N = c.force_N,
+                       .reference_ring_m = c.profile_m});
+    }
+  }
+  return cases;
+}
+
+SettledForce settle(Subject& subject, const Indentation& in) {
+  constexpr int kWindow = 50;
+  constexpr double kSteady_ratio = 1e-3;
+  if (!subject.is_stepped()) return {.force_N = subject.tick(in), .ticks = 1};
+  double low_N = 0.0, high_N = 0.0;
+  for (int i = 0; i < kMostSettleTicks; ++i) {
+    const double force_N = subject.tick(in);
+    if (i % kWindow == 0) low_N = high_N = force_N;
+    low_N = std::min(low_N, force_N);
+    high_N = std::max(high_N, force_N);
+    const double size_N = std::max(std::abs(low_N), std::abs(high_N));
+    if (i % kWindow == kWindow - 1 && high_N - low_N <= kSteady_ratio * size_N)
+      return {.force_N = force_N, .ticks = i + 1};
+  }
+  return {.force_N = 0.5 * (low_N + high_N), .ticks = kMostSettleTicks};
+}
+
+Accuracy measure_accuracy(Subject& subject, const std::vector<ProbeCase>& cases, double pitch_m) {
+  Accuracy out;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const ProbeCase& c = cases[i];
+    const bool elsewhere =
+        i > 0 && (cases[i - 1].site != c.site || cases[i - 1].in.held != c.in.held);
+    if (elsewhere) subject.release();
+    const SettledForce settled = settle(subject, c.in);
+    Sample sample{.site = c.site,
+                  .held_out = c.held_out,
+                  .depth_m = c.in.depth_m,
+                  .force_N = settled.force_N,
+                  .reference_N = c.reference_N,
+                  .ring_m = std::vector<double>(c.reference_ring_m.size()),
+                  .reference_ring_m = c.reference_ring_m};
+    subject.shape(c.in, pitch_m, sample.ring_m);
+    out.settle_ticks = std::max(out.settle_ticks, settled.ticks);
+    out.samples.push_back(std::move(sample));
+  }
+  subject.release();
+  out.errors = summarize(out.samples);
+  return out;
+}
+
+}  // namespace tact::tools

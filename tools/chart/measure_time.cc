@@ -1,0 +1,112 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "model/site.h"
+#include "tools/chart/instructions.h"
+#include "tools/chart/measure.h"
+
+namespace tact::tools {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using model::Indentation;
+using model::Vec3;
+
+constexpr std::size_t kPathTicks = 1000;  // one turn
+constexpr double kPathRadius_m = 0.004;
+constexpr std::size_t kMostWarmTicks = 500;
+constexpr std::size_t kFewestTicks = 100;
+
+double ns_between(Clock::time_point a, Clock::time_point b) {
+  return static_cast<double>(std::chrono::duration_cast<std::chrono::nanoseconds>(b - a).count());
+}
+
+double at_share(std::vector<double>& values, double share) {
+  const auto last = static_cast<double>(values.size() - 1);
+  const auto n = static_cast<std::ptrdiff_t>(std::lround(share * last));
+  std::nth_element(values.begin(), values.begin() + n, values.end());
+  return values[static_cast<std::size_t>(n)];
+}
+
+/// What two readings of the clock cost by themselves.
+double clock_cost_ns() {
+  std::vector<double> cost_ns(2000);
+  for (double& c : cost_ns) {
+    const auto begin = Clock::now();
+    c = ns_between(begin, Clock::now());
+  }
+  return at_share(cost_ns, 0.5);
+}
+
+}  // namespace
+
+std::vector<Indentation> moving_probe(const model::Scene& scene, const ProbeCase& at) {
+  constexpr double kShallow_m = 0.001, kDeep_m = 0.009;
+  const auto view = scene.organ_mesh.view();
+  const Vec3 centre = point_of(view, at.in.place);
+  const Vec3 side = std::abs(at.in.normal.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 e1 = normalized(cross(at.in.normal, side)), e2 = cross(at.in.normal, e1);
+  std::vector<Indentation> path(kPathTicks, at.in);
+  std::uint32_t triangle = at.in.place.triangle;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const double turn_rad = 2.0 * M_PI * static_cast<double>(i) / kPathTicks;
+    const Vec3 away = std::cos(turn_rad) * e1 + std::sin(turn_rad) * e2;
+    path[i].place = follow(view, triangle, centre + kPathRadius_m * away).place;
+    triangle = path[i].place.triangle;
+    path[i].held = false;
+    path[i].depth_m = kShallow_m + (kDeep_m - kShallow_m) * 0.5 * (1.0 - std::cos(2.0 * turn_rad));
+  }
+  return path;
+}
+
+Timing measure_time(Subject& subject, const std::vector<Indentation>& path,
+                    const TimingSettings& settings) {
+  std::size_t at = 0;
+  const auto next = [&]() -> const Indentation& {
+    const Indentation& in = path[at];
+    at = at + 1 == path.size() ? 0 : at + 1;
+    return in;
+  };
+  const auto warm_begin = Clock::now();
+  std::size_t warm_ticks = 0;
+  while (warm_ticks < kMostWarmTicks &&
+         ns_between(warm_begin, Clock::now()) < 0.05e9 * settings.limit_s) {
+    subject.tick(next());
+    ++warm_ticks;
+  }
+  const double tick_s = 1e-9 * ns_between(warm_begin, Clock::now()) /
+                        static_cast<double>(std::max<std::size_t>(1, warm_ticks));
+  const double room = settings.limit_s / (tick_s * settings.rounds);
+  const std::size_t ticks = std::clamp(static_cast<std::size_t>(std::min(room, 1e9)), kFewestTicks,
+                                       std::max(kFewestTicks, settings.ticks));
+  const double cost_ns = clock_cost_ns();
+  Timing best{.p999_us = std::numeric_limits<double>::infinity(),
+              .instructions = std::numeric_limits<double>::quiet_NaN(),
+              .ticks = ticks};
+  std::vector<double> tick_ns(ticks);
+  for (int round = 0; round < settings.rounds; ++round) {
+    for (double& t : tick_ns) {
+      const Indentation& in = next();
+      const auto begin = Clock::now();
+      subject.tick(in);
+      t = std::max(0.0, ns_between(begin, Clock::now()) - cost_ns);
+    }
+    const double p999_us = 1e-3 * at_share(tick_ns, 0.999);
+    if (p999_us >= best.p999_us) continue;
+    best.p999_us = p999_us;
+    best.median_us = 1e-3 * at_share(tick_ns, 0.5);
+  }
+  const InstructionCounter counter;
+  if (counter.is_available()) {
+    const std::size_t counted = std::min<std::size_t>(ticks, 1000);
+    const auto before = counter.read();
+    for (std::size_t i = 0; i < counted; ++i) subject.tick(next());
+    best.instructions = static_cast<double>(counter.read() - before) / static_cast<double>(counted);
+  }
+  subject.release();
+  return best;
+}
+
+}  // namespace tact::tools

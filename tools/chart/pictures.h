@@ -1,0 +1,16 @@
+// pictures.h - the chart as a picture: force error over time per tick, shape error below.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/result.h"
+#include "tools/common/table.h"
+
+namespace tact::tools {
+
+/// Draws chart.svg and chart.png of a whole table; returns their paths and those of the data.
+model::Result<std::vector<std::string>> draw_chart(const Table& table, const std::string& title,
+                                                   const std::string& directory);
+
+}  // namespace tact::tools

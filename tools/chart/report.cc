@@ -1,0 +1,128 @@
+#include "tools/chart/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace tact::tools {
+namespace {
+
+using model::Error;
+using model::Result;
+using nlohmann::ordered_json;
+
+constexpr const char* kSchema = "tact-chart/1";
+
+/// Numbers as Table::to_json writes them: those that are not finite are words.
+Cell cell_of(const nlohmann::json& value, CellKind kind) {
+  if (kind == CellKind::kWord) return value.get<std::string>();
+  return value.is_number() ? value.get<double>() : std::nan("");
+}
+
+std::string text_or_dash(double value, double scale, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", scale * value, digits) : "-";
+}
+
+}  // namespace
+
+std::string csv_head(const std::string& command, const Provenance& provenance) {
+  return fmt::format("# command: {}\n# scene: {}\n# reference: {}\n# revision: {}\n# machine: {}\n",
+                     command, provenance.scene_hash, provenance.reference_hash, provenance.revision,
+                     provenance.machine);
+}
+
+Result<std::vector<std::string>> write_chart(const Table& table, bool is_whole,
+                                             const std::string& command,
+                                             const Provenance& provenance,
+                                             const std::string& directory) {
+  if (!is_whole) return table.write(directory);
+  const std::string stem = (std::filesystem::path(directory) / table.name()).string();
+  ordered_json json = ordered_json::parse(table.to_json());
+  ordered_json document{{"schema", kSchema},
+                        {"command", command},
+                        {"scene", provenance.scene_hash},
+                        {"reference", provenance.reference_hash},
+                        {"revision", provenance.revision},
+                        {"machine", provenance.machine},
+                        {"rows", json["rows"]}};
+  const auto csv = write_whole_file(stem + ".csv", csv_head(command, provenance) + table.to_csv());
+  if (!csv) return csv.error();
+  const auto written = write_whole_file(stem + ".json", document.dump(1) + "\n");
+  if (!written) return written.error();
+  return std::vector<std::string>{stem + ".csv", stem + ".json"};
+}
+
+Result<Table> read_chart(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file)
+    return Error{fmt::format("{}: cannot be read; make it with tact-chart SCENE --out DIR", path)};
+  try {  // the library reports by exceptions; they end here
+    const auto document = nlohmann::json::parse(file);
+    if (document.value("schema", "") != kSchema)
+      return Error{
+          fmt::format("{}: is no chart of this version; make it again with tact-chart", path)};
+    const auto& rows = document.at("rows");
+    Table table = empty_chart(rows.size(), {});
+    for (const auto& row : rows) {
+      Row cells;
+      for (const Column& column : table.columns())
+        cells.push_back(cell_of(row.at(column.name), column.kind));
+      table.add(std::move(cells));
+    }
+    return table;
+  } catch (const nlohmann::json::exception& e) {
+    return Error{fmt::format("{}: {}; make it again with tact-chart", path, e.what())};
+  }
+}
+
+std::optional<Error> check_same_source(const Table& table) {
+  for (const char* column : {"scene_hash", "reference_hash", "revision"})
+    for (const Row& row : table.rows())
+      if (table.word(row, column) != table.word(table.rows().front(), column))
+        return Error{fmt::format("shards differ in {}: {} and {}; run all shards of one version",
+                                 column, table.word(table.rows().front(), column),
+                                 table.word(row, column))};
+  return std::nullopt;
+}
+
+std::string chart_text(const Table& table) {
+  std::string out = fmt::format("{:<34} {:>8} {:>8} {:>8} {:>7} {:>8} {:>9} {:>9} {:>8} {:>9}\n",
+                                "law and size", "force %", "worst %", "held o %", "in JND",
+                                "shape %", "median us", "p99.9 us", "instr.", "memory kB");
+  const auto front = front_rows(table);
+  for (std::size_t i = 0; i < table.rows().size(); ++i) {
+    const Row& row = table.rows()[i];
+    const auto number = [&](const char* column) { return table.number(row, column); };
+    const bool on_front = std::find(front.begin(), front.end(), i) != front.end();
+    const bool is_peer = table.word(row, "kind") == "peer";
+    const std::string name = fmt::format("{}{} {}",
+                                         is_peer    ? "peer "
+                                         : on_front ? "* "
+                                                    : "  ",
+                                         table.word(row, "family"), table.word(row, "size"));
+    if (table.word(row, "failure") != "-") {
+      out += fmt::format("{:<34} not measured: {}\n", name, table.word(row, "failure"));
+      continue;
+    }
+    const double instructions = number("instructions");
+    out += fmt::format("{:<34} {:>8} {:>8} {:>8} {:>7} {:>8} {:>9} {:>9} {:>8} {:>9}\n", name,
+                       text_or_dash(number("force_rms_ratio"), 100.0, 2),
+                       text_or_dash(number("force_worst_ratio"), 100.0, 2),
+                       text_or_dash(number("held_out_rms_ratio"), 100.0, 2),
+                       text_or_dash(number("within_jnd_ratio"), 100.0, 0) + " %",
+                       text_or_dash(number("shape_rms_ratio"), 100.0, 2),
+                       text_or_dash(number("tick_median_us"), 1.0, 3),
+                       text_or_dash(number("tick_p999_us"), 1.0, 3),
+                       std::isfinite(instructions) ? fmt::format("{:.0f}", instructions) : "n/a",
+                       text_or_dash(number("memory_bytes"), 1e-3, 1));
+  }
+  return out +
+         "* on the front of tact: no other law is both faster and nearer to the reference.\n"
+         "instr. n/a: this machine does not count instructions, not available.\n";
+}
+
+}  // namespace tact::tools

@@ -1,0 +1,30 @@
+// report.h - the chart as files and as text: CSV and JSON that say where they come from.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/result.h"
+#include "tools/chart/chart.h"
+
+namespace tact::tools {
+
+/// "# command: ..." and so on: how to make these numbers again. Ends in a line end.
+std::string csv_head(const std::string& command, const Provenance& provenance);
+
+/// chart.csv and chart.json of a whole table; of a shard the CSV that merging reads.
+model::Result<std::vector<std::string>> write_chart(const Table& table, bool is_whole,
+                                                    const std::string& command,
+                                                    const Provenance& provenance,
+                                                    const std::string& directory);
+
+/// The rows of a chart.json.
+model::Result<Table> read_chart(const std::string& path);
+
+/// All rows must be of the same scene and reference.
+std::optional<model::Error> check_same_source(const Table& table);
+
+/// For a terminal.
+std::string chart_text(const Table& table);
+
+}  // namespace tact::tools

@@ -1,0 +1,143 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "model/site.h"
+#include "model/tissue_law.h"
+#include "tools/chart/subject.h"
+
+namespace tact::tools {
+namespace {
+
+using model::Indentation;
+using model::Place;
+using model::Result;
+using model::SurfaceView;
+using model::Vec3;
+
+constexpr std::size_t kMaxRings = 128;
+constexpr int kRestTicks = 3000;       // at most, for a body with inertia to come to rest
+constexpr double kRestSpeed_m = 1e-9;  // a tick
+
+class LawSubject final : public Subject {
+ public:
+  LawSubject(std::unique_ptr<model::Scene> scene, std::unique_ptr<model::TissueLaw> law)
+      : scene_(std::move(scene)), law_(std::move(law)) {
+    dent_m_.resize(scene_->organ_mesh.vertex_m.size());
+  }
+
+  double tick(const Indentation& in) override {
+    const double force_N = law_->site_law().respond(in).law.force_N;
+    law_->site_law().advance();
+    return force_N;
+  }
+
+  void release() override {
+    law_->site_law().leave(0);
+    law_->site_law().advance();
+    if (is_stepped()) wait_for_rest();
+  }
+
+  void shape(const Indentation& in, double pitch_m, std::span<double> ring_m) override {
+    if (is_stepped()) {
+      fill_dents(in.normal);
+      ring_means(scene_->organ_mesh.view(), in, pitch_m, dent_m_, ring_m);
+      return;
+    }
+    std::array<double, kMaxRings> own{};
+    const std::size_t rings = law_->site_law().profile(in, own);
+    const double own_pitch_m = law_->site_law().ring_pitch_m();
+    for (std::size_t k = 0; k < ring_m.size(); ++k) {
+      // linear between the law's rings, zero beyond the last
+      const double x = static_cast<double>(k) * pitch_m / own_pitch_m;
+      const auto j = static_cast<std::size_t>(x);
+      const double t = x - static_cast<double>(j);
+      const auto at = [&](std::size_t i) { return i < std::min(rings, kMaxRings) ? own[i] : 0.0; };
+      ring_m[k] = (1.0 - t) * at(j) + t * at(j + 1);
+    }
+  }
+
+  bool is_stepped() const override { return law_->curve() == nullptr; }
+  std::size_t memory_bytes() const override { return law_->memory_bytes(); }
+  std::string given() const override { return "parameters of the scene"; }
+
+ private:
+  void fill_dents(const Vec3& normal) {
+    std::fill(dent_m_.begin(), dent_m_.end(), 0.0);
+    if (!law_->site_law().shape(shape_)) return;
+    for (std::uint32_t i = 0; i < shape_.node_count; ++i) {
+      const auto& [x, y, z] = shape_.displacement_m[i];
+      const Vec3 moved_m{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
+      dent_m_[shape_.vertex[i]] = -dot(moved_m, normal);
+    }
+  }
+
+  void wait_for_rest() {
+    constexpr int kLookEvery = 50;
+    double before_m = 0.0;
+    for (int i = 0; i < kRestTicks; ++i) {
+      law_->site_law().advance();
+      if (i % kLookEvery != 0) continue;
+      fill_dents({0.0, 0.0, 1.0});
+      double sum_m = 0.0;
+      for (const double d_m : dent_m_) sum_m += std::abs(d_m);
+      if (i > 0 && std::abs(sum_m - before_m) < kRestSpeed_m) return;
+      before_m = sum_m;
+    }
+  }
+
+  std::unique_ptr<model::Scene> scene_;
+  std::unique_ptr<model::TissueLaw> law_;
+  model::PatchShape shape_{};
+  std::vector<double> dent_m_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Subject>> make_law_subject(const model::Scene& scene,
+                                                  const model::LawSizes& sizes) {
+  auto own = std::make_unique<model::Scene>(scene);
+  use_sizes(sizes, *own);
+  auto law = make_tissue_law(*own, sizes.law);
+  if (!law) return law.error();
+  return std::unique_ptr<Subject>(std::make_unique<LawSubject>(std::move(own), std::move(*law)));
+}
+
+Vec3 point_of(const SurfaceView& surface, const Place& place) {
+  Vec3 point{};
+  for (std::size_t i = 0; i < 3; ++i)
+    point += place.weight[i] * surface.vertex_m[surface.triangle[place.triangle][i]];
+  return point;
+}
+
+void ring_means(const SurfaceView& surface, const Indentation& in, double pitch_m,
+                std::span<const double> dent_m, std::span<double> ring_m) {
+  constexpr int kDirections = 24;
+  const Vec3 centre = point_of(surface, in.place);
+  const Vec3 side = std::abs(in.normal.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 e1 = normalized(cross(in.normal, side)), e2 = cross(in.normal, e1);
+  std::array<std::uint32_t, kDirections> triangle{};
+  triangle.fill(in.place.triangle);
+  for (std::size_t k = 0; k < ring_m.size(); ++k) {
+    const double radius_m = static_cast<double>(k) * pitch_m;
+    double sum_m = 0.0;
+    int points = 0;
+    for (std::size_t i = 0; i < kDirections; ++i) {
+      const double angle_rad = 2.0 * M_PI * static_cast<double>(i) / kDirections;
+      const Vec3 way = std::cos(angle_rad) * e1 + std::sin(angle_rad) * e2;
+      const model::Site at = follow(surface, triangle[i], centre + radius_m * way);
+      triangle[i] = at.place.triangle;
+      // past a rim the nearest point stays behind: that is no point of this ring
+      if (std::abs(norm(at.point_m - centre) - radius_m) > 0.5 * pitch_m + 0.1 * radius_m) continue;
+      for (std::size_t c = 0; c < 3; ++c)
+        sum_m += at.place.weight[c] * dent_m[surface.triangle[at.place.triangle][c]];
+      ++points;
+    }
+    ring_m[k] = points > 0 ? sum_m / points : std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+}  // namespace tact::tools

@@ -1,0 +1,104 @@
+#include "tools/fit/fit_answer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "model/tissue_law.h"
+
+namespace tact::tools {
+namespace {
+
+using model::Indentation;
+using model::Result;
+using model::SiteLaw;
+using model::Vec3;
+
+constexpr std::size_t kMostRings = 128;
+constexpr int kMostTicks = 4000;     // for a body with inertia to come to rest
+constexpr int kRestTicks = 25;       // the force stands still for so long
+constexpr double kRestRatio = 1e-6;  // a tick, of the force
+
+Indentation touch(const FitSite& site, const FitSample& sample) {
+  Indentation in{.depth_m = sample.depth_m, .held = sample.depth_m < 0.0};
+  if (site.at) in.place = site.at->place, in.normal = site.at->normal;
+  return in;
+}
+
+double settled_force_N(SiteLaw& law, const Indentation& in) {
+  double force_N = 0.0;
+  for (int tick = 0, still = 0; tick < kMostTicks && still < kRestTicks; ++tick) {
+    const double now_N = law.respond(in).law.force_N;
+    law.advance();
+    still = std::abs(now_N - force_N) <= kRestRatio * std::abs(now_N) ? still + 1 : 0;
+    force_N = now_N;
+  }
+  return force_N;
+}
+
+void read_profile(const SiteLaw& law, const Indentation& in, std::span<const double> radius_m,
+                  std::vector<double>& ring_m) {
+  std::array<double, kMostRings> own{};
+  const std::size_t rings = std::min(law.profile(in, own), kMostRings);
+  const auto at = [&](std::size_t j) { return j < rings ? own[j] : 0.0; };
+  for (const double r_m : radius_m) {
+    const double x = std::min(r_m / law.ring_pitch_m(), static_cast<double>(kMostRings));
+    const auto j = static_cast<std::size_t>(x);
+    const double t = x - static_cast<double>(j);
+    ring_m.push_back((1.0 - t) * at(j) + t * at(j + 1));
+  }
+}
+
+/// Vertices within a ring pitch of a radius, the nearer the heavier.
+void read_shape(SiteLaw& law, const model::SurfaceMesh& surface, const Indentation& in,
+                std::span<const double> radius_m, std::vector<double>& ring_m) {
+  model::PatchShape shape{};
+  law.shape(shape);
+  Vec3 centre{};
+  for (std::size_t i = 0; i < 3; ++i)
+    centre += in.place.weight[i] * surface.vertex_m[surface.triangle[in.place.triangle][i]];
+  for (const double r_m : radius_m) {
+    double sum = 0.0, weights = 0.0;
+    for (std::uint32_t i = 0; i < shape.node_count; ++i) {
+      const double away_m = norm(surface.vertex_m[shape.vertex[i]] - centre);
+      const double weight = r_m > 0.0 ? 1.0 - std::abs(away_m - r_m) / law.ring_pitch_m()
+                                      : (away_m == 0.0 ? 1.0 : 0.0);
+      if (!(weight > 0.0)) continue;
+      const auto& u = shape.displacement_m[i];
+      sum -= weight * dot(Vec3{static_cast<double>(u[0]), static_cast<double>(u[1]),
+                               static_cast<double>(u[2])},
+                          in.normal);
+      weights += weight;
+    }
+    ring_m.push_back(weights > 0.0 ? sum / weights : std::nan(""));
+  }
+}
+
+}  // namespace
+
+Result<std::vector<FitAnswer>> answers_of(const model::Scene& scene, model::LawKind kind,
+                                          const FitData& data) {
+  auto made = make_tissue_law(scene, kind);
+  if (!made) return made.error();
+  SiteLaw& law = (*made)->site_law();
+  const bool is_stepped = (*made)->curve() == nullptr;
+  std::vector<FitAnswer> out;
+  for (const FitSite& site : data.sites) {
+    for (const FitSample& sample : site.samples) {
+      const Indentation in = touch(site, sample);
+      FitAnswer& answer = out.emplace_back();
+      law.leave(0);
+      law.advance();
+      answer.force_N = is_stepped ? settled_force_N(law, in) : law.respond(in).law.force_N;
+      if (sample.ring_m.empty()) continue;
+      if (is_stepped) {
+        read_shape(law, scene.organ_mesh, in, data.ring_radius_m, answer.ring_m);
+      } else {
+        read_profile(law, in, data.ring_radius_m, answer.ring_m);
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace tact::tools

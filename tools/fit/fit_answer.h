@@ -1,0 +1,25 @@
+// fit_answer.h - what a scene's law answers where the data was measured.
+//
+// Quasi-static: every sample is asked from rest, without relaxation; a stepped law (spring_patch)
+// is ticked until its force stands still. The shape is linear between the law's rings, zero beyond
+// the last; of a stepped law it is the mean of the vertices near each radius.
+#pragma once
+
+#include <vector>
+
+#include "model/result.h"
+#include "model/scene.h"
+#include "tools/fit/fit_data.h"
+
+namespace tact::tools {
+
+struct FitAnswer {
+  double force_N = 0.0;
+  std::vector<double> ring_m{};  // at the radii of the data; NaN: not known
+};
+
+/// One answer a sample, in the order of sites and samples. An error says why there is no such law.
+model::Result<std::vector<FitAnswer>> answers_of(const model::Scene& scene, model::LawKind kind,
+                                                 const FitData& data);
+
+}  // namespace tact::tools

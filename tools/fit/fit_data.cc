@@ -1,0 +1,91 @@
+#include "tools/fit/fit_data.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace tact::tools {
+
+using model::Error;
+using model::Result;
+
+double FitData::peak_N() const {
+  double peak = 0.0;
+  for (const FitSite& site : sites)
+    for (const FitSample& s : site.samples) peak = std::max(peak, std::abs(s.force_N));
+  return peak;
+}
+
+double FitData::deepest_m() const {
+  double deepest = 0.0;
+  for (const FitSite& site : sites)
+    for (const FitSample& s : site.samples) deepest = std::max(deepest, s.depth_m);
+  return deepest;
+}
+
+double FitData::farthest_pull_m() const {
+  double farthest = 0.0;
+  for (const FitSite& site : sites)
+    for (const FitSample& s : site.samples) farthest = std::max(farthest, -s.depth_m);
+  return farthest;
+}
+
+bool FitData::has_shapes() const {
+  return std::any_of(sites.begin(), sites.end(), [](const FitSite& site) {
+    return std::any_of(site.samples.begin(), site.samples.end(),
+                       [](const FitSample& s) { return !s.ring_m.empty(); });
+  });
+}
+
+bool FitData::has_places() const {
+  return std::all_of(sites.begin(), sites.end(),
+                     [](const FitSite& site) { return site.at.has_value(); });
+}
+
+std::optional<FitPlace> place_at_vertex(const model::SurfaceMesh& surface, std::size_t vertex) {
+  if (vertex >= surface.vertex_m.size()) return std::nullopt;
+  if (surface.fan_start[vertex] == surface.fan_start[vertex + 1]) return std::nullopt;
+  FitPlace out{.normal = surface.vertex_normal[vertex]};
+  out.place.triangle = surface.fan[surface.fan_start[vertex]];
+  const model::TriangleCorners& corner = surface.triangle[out.place.triangle];
+  for (std::size_t i = 0; i < 3; ++i) out.place.weight[i] = corner[i] == vertex ? 1.0 : 0.0;
+  return out;
+}
+
+Result<FitData> fit_data_of(const ReferenceData& reference, const model::Scene& scene,
+                            bool large_strain) {
+  FitData data{.source = fmt::format("{}, E = {:g} Pa, nu = {:g}, tool radius {:g} m",
+                                     reference.mesh, reference.youngs_modulus_Pa,
+                                     reference.poisson_ratio, reference.tool_radius_m)};
+  std::size_t rings = 0;
+  for (const SolvedSite& solved : reference.sites) {
+    FitSite site{.name = std::to_string(solved.vertex),
+                 .at = place_at_vertex(scene.organ_mesh, solved.vertex)};
+    if (!site.at)
+      return Error{
+          fmt::format("site {} of the reference is no vertex of {}; make the reference "
+                      "again with tact-reference {}",
+                      solved.vertex, scene.organ.mesh_path, scene.path)};
+    site.at->normal = -solved.direction;
+    for (const model::ReferenceSite& known : scene.reference_sites)
+      if (known.vertex == solved.vertex) site.held_out = known.held_out;
+    for (const ReferenceCase& c : solved.cases) {
+      if (c.large_strain != large_strain) continue;
+      site.samples.push_back({.depth_m = c.depth_m, .force_N = c.force_N, .ring_m = c.profile_m});
+      rings = std::max(rings, c.profile_m.size());
+    }
+    if (!site.samples.empty()) data.sites.push_back(std::move(site));
+  }
+  if (std::none_of(data.sites.begin(), data.sites.end(),
+                   [](const FitSite& site) { return !site.held_out; }))
+    return Error{large_strain ? "the reference has no large-strain case at a site to fit; make it "
+                                "with tact-reference --large-strain"
+                              : "every site of the reference is held out; leave one to fit"};
+  for (FitSite& site : data.sites)
+    for (FitSample& s : site.samples) s.ring_m.resize(rings, std::nan(""));
+  for (std::size_t k = 0; k < rings; ++k)
+    data.ring_radius_m.push_back(static_cast<double>(k) * reference.ring_pitch_m);
+  return data;
+}
+
+}  // namespace tact::tools

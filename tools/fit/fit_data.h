@@ -1,0 +1,60 @@
+// fit_data.h - what a law is fitted to: forces, and the shape where known, over depth at some
+// sites.
+//
+// Signs as in a law: depth > 0 presses, < 0 pulls; the force has the sign of the depth; ring k is
+// the displacement into the tissue at the radius ring_radius_m[k] from the site. It comes from the
+// reference (tact-reference) or from a bench (fit_csv.h).
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/result.h"
+#include "model/scene.h"
+#include "model/site.h"
+#include "tools/common/reference_data.h"
+
+namespace tact::tools {
+
+struct FitSample {
+  double depth_m = 0.0;
+  double force_N = 0.0;
+  std::vector<double> ring_m{};  // one per radius, or empty; NaN: not known
+};
+
+/// Where laws that differ from place to place are asked.
+struct FitPlace {
+  model::Place place{};
+  model::Vec3 normal{};  // outward, unit
+};
+
+struct FitSite {
+  std::string name;
+  bool held_out = false;  // not fitted, only judged
+  std::optional<FitPlace> at{};
+  std::vector<FitSample> samples{};
+};
+
+struct FitData {
+  std::string source;  // for people
+  std::vector<double> ring_radius_m{};
+  std::vector<FitSite> sites{};
+
+  double peak_N() const;           // largest |force|
+  double deepest_m() const;        // largest depth, 0 without press
+  double farthest_pull_m() const;  // largest -depth, 0 without pull
+  bool has_shapes() const;
+  /// Every site has a place on the organ.
+  bool has_places() const;
+};
+
+/// The vertex as a place, if the surface has it.
+std::optional<FitPlace> place_at_vertex(const model::SurfaceMesh& surface, std::size_t vertex);
+
+/// The scene says which sites are held out. `large_strain`: those cases instead of the linear ones.
+model::Result<FitData> fit_data_of(const ReferenceData& reference, const model::Scene& scene,
+                                   bool large_strain);
+
+}  // namespace tact::tools

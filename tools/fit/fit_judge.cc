@@ -1,0 +1,183 @@
+#include "tools/fit/fit_judge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tact::tools {
+namespace {
+
+/// Sums up to a Residual.
+class Errors {
+ public:
+  void add(double error_N) {
+    sum_ += error_N * error_N;
+    worst_N_ = std::max(worst_N_, std::abs(error_N));
+    ++count_;
+  }
+  Residual of_peak(double peak_N) const {
+    return {.samples = count_,
+            .rms_N = count_ > 0 ? std::sqrt(sum_ / static_cast<double>(count_)) : 0.0,
+            .worst_N = worst_N_,
+            .peak_N = peak_N};
+  }
+
+ private:
+  std::size_t count_ = 0;
+  double sum_ = 0.0, worst_N_ = 0.0;
+};
+
+/// Root of a mean of squares; NaN of nothing.
+struct Mean {
+  double sum = 0.0;
+  int count = 0;
+
+  void add(double e) {
+    if (std::isfinite(e)) sum += e * e, ++count;
+  }
+  double root() const { return count > 0 ? std::sqrt(sum / count) : std::nan(""); }
+};
+
+struct Point {
+  double depth_m, force_N;
+};
+
+/// dF/dd of the second half of the press over that of the first, by straight lines; NaN: too few.
+double growth_of_slope(std::vector<Point> points) {
+  points.push_back({0.0, 0.0});
+  std::sort(points.begin(), points.end(),
+            [](const Point& a, const Point& b) { return a.depth_m < b.depth_m; });
+  constexpr std::size_t kFewest = 4;
+  if (points.size() < kFewest) return std::nan("");
+  const auto slope = [&](bool second) {
+    const double middle_m = 0.5 * points.back().depth_m;
+    double n = 0.0, d = 0.0, f = 0.0, dd = 0.0, df = 0.0;
+    for (const Point& p : points) {
+      if (second ? p.depth_m < middle_m : p.depth_m > middle_m) continue;
+      n += 1.0, d += p.depth_m, f += p.force_N;
+      dd += p.depth_m * p.depth_m, df += p.depth_m * p.force_N;
+    }
+    return (n * df - d * f) / (n * dd - d * d);
+  };
+  return slope(true) / slope(false) - 1.0;
+}
+
+std::string word_of(double growth) {
+  constexpr double kNone = 0.005;
+  if (std::abs(growth) < kNone) return "stays";
+  return fmt::format("{} by {:.0f} %", growth < 0.0 ? "falls" : "grows", 100.0 * std::abs(growth));
+}
+
+/// Mean over sites of how dF/dd grows in press, in the data and by the law.
+std::string slope_reason(const FitData& data, std::span<const FitAnswer> answers) {
+  double of_data = 0.0, of_law = 0.0;
+  int sites = 0;
+  std::size_t i = 0;
+  for (const FitSite& site : data.sites) {
+    std::vector<Point> measured, felt;
+    for (const FitSample& s : site.samples) {
+      const FitAnswer& answer = answers[i++];
+      if (!(s.depth_m > 0.0)) continue;
+      measured.push_back({s.depth_m, s.force_N});
+      felt.push_back({s.depth_m, answer.force_N});
+    }
+    const double a = growth_of_slope(measured), b = growth_of_slope(felt);
+    if (!std::isfinite(a) || !std::isfinite(b)) continue;
+    of_data += a, of_law += b, ++sites;
+  }
+  if (sites == 0) return {};
+  of_data /= sites, of_law /= sites;
+  if (std::abs(of_data - of_law) < kNoticeable) return {};
+  const auto way = [](double growth) {
+    return growth > kNoticeable ? "hardens" : growth < -kNoticeable ? "softens" : "is linear";
+  };
+  return fmt::format(
+      "{} in press while the data {}: from its first to its second half dF/dd {}, "
+      "in the data it {}",
+      way(of_law), way(of_data), word_of(of_law), word_of(of_data));
+}
+
+std::vector<std::string> reasons_of(const FitData& data, std::span<const FitAnswer> answers,
+                                    const Judgement& j, bool scale_by_site, double press_limit_m) {
+  std::vector<std::string> reasons;
+  if (press_limit_m < data.deepest_m())
+    reasons.push_back(fmt::format("its force stays from {:.3g} mm on, the data goes to {:.3g} mm",
+                                  1e3 * press_limit_m, 1e3 * data.deepest_m()));
+  if (const std::string slope = slope_reason(data, answers); !slope.empty())
+    reasons.push_back(slope);
+  const auto [low, high] = std::minmax_element(
+      j.sites.begin(), j.sites.end(),
+      [](const SiteResidual& a, const SiteResidual& b) { return a.best_scale < b.best_scale; });
+  const double spread = (high->best_scale - low->best_scale) / (high->best_scale + low->best_scale);
+  if (!scale_by_site && spread > kNoticeable)
+    reasons.push_back(
+        fmt::format("one stiffness for all sites: sites differ by ±{:.0f} %, from "
+                    "{} to {}",
+                    100.0 * spread, low->name, high->name));
+  if (reasons.empty()) reasons.emplace_back("its curve has another form than the data");
+  return reasons;
+}
+
+}  // namespace
+
+double best_scale(std::span<const FitSample> samples, std::span<const FitAnswer> answers) {
+  double sum_ab = 0.0, sum_aa = 0.0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    sum_ab += answers[i].force_N * samples[i].force_N;
+    sum_aa += answers[i].force_N * answers[i].force_N;
+  }
+  return sum_aa > 0.0 ? sum_ab / sum_aa : 1.0;
+}
+
+double shape_error(const FitSample& sample, const FitAnswer& answer) {
+  Mean rms;
+  if (sample.depth_m != 0.0)
+    for (std::size_t k = 0; k < std::min(sample.ring_m.size(), answer.ring_m.size()); ++k)
+      rms.add((answer.ring_m[k] - sample.ring_m[k]) / sample.depth_m);
+  return rms.root();
+}
+
+Judgement judge(const FitData& data, std::span<const FitAnswer> answers, bool scale_by_site,
+                double press_limit_m) {
+  Judgement out;
+  Errors fitted, held_out, press, pull;
+  Mean shape, held_out_shape;
+  std::size_t first = 0;
+  for (const FitSite& site : data.sites) {
+    const auto own = answers.subspan(first, site.samples.size());
+    first += site.samples.size();
+    SiteResidual row{.name = site.name, .held_out = site.held_out};
+    row.best_scale = best_scale(site.samples, own);
+    if (scale_by_site) row.scale = row.best_scale;
+    Errors of_site;
+    Mean site_shape;
+    double peak_N = 0.0;
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const FitSample& s = site.samples[i];
+      const double error_N = row.scale * own[i].force_N - s.force_N;
+      peak_N = std::max(peak_N, std::abs(s.force_N));
+      of_site.add(error_N);
+      (site.held_out ? held_out : fitted).add(error_N);
+      (s.depth_m < 0.0 ? pull : press).add(error_N);
+      const double u = shape_error(s, own[i]);
+      site_shape.add(u);
+      (site.held_out ? held_out_shape : shape).add(u);
+    }
+    row.force = of_site.of_peak(peak_N);
+    row.shape_rms = site_shape.root();
+    out.sites.push_back(row);
+  }
+  const double peak_N = data.peak_N();
+  out.fitted = fitted.of_peak(peak_N);
+  out.held_out = held_out.of_peak(peak_N);
+  out.press = press.of_peak(peak_N);
+  out.pull = pull.of_peak(peak_N);
+  out.shape_rms = shape.root();
+  out.held_out_shape_rms = held_out_shape.root();
+  out.follows = out.fitted.rms_ratio() <= kNoticeable && out.held_out.rms_ratio() <= kNoticeable;
+  if (!out.follows) out.reasons = reasons_of(data, answers, out, scale_by_site, press_limit_m);
+  return out;
+}
+
+}  // namespace tact::tools

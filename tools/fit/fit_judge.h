@@ -1,0 +1,59 @@
+// fit_judge.h - how far a law stays from the data, and whether it can follow it at all.
+//
+//     force   e = F - F_data            RMS and worst in N, and of the peak |F_data| of all sites
+//     shape   e_j = u_j - u_data,j      RMS over the rings, of |depth|, then RMS over the samples
+//
+// A site's own row is judged by the site's own peak. A law cannot follow where its RMS, on the
+// fitted or on the held-out sites, is above 7 % of the peak: the least difference of force that a
+// hand can tell. Then the reasons say why: it softens or hardens otherwise than the data, it ends
+// too early, sites differ too much for one law.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/fit/fit_answer.h"
+#include "tools/fit/fit_data.h"
+
+namespace tact::tools {
+
+inline constexpr double kNoticeable = 0.07;  // of a force
+
+struct Residual {
+  std::size_t samples = 0;
+  double rms_N = 0.0, worst_N = 0.0;
+  double peak_N = 0.0;
+
+  double rms_ratio() const { return peak_N > 0.0 ? rms_N / peak_N : 0.0; }
+  double worst_ratio() const { return peak_N > 0.0 ? worst_N / peak_N : 0.0; }
+};
+
+struct SiteResidual {
+  std::string name;
+  bool held_out = false;
+  Residual force{};
+  double scale = 1.0;       // that the law's force was multiplied with here
+  double best_scale = 1.0;  // that would suit this site best
+  double shape_rms = 0.0;   // of the depth; NaN without shapes
+};
+
+struct Judgement {
+  Residual fitted, held_out;                         // held_out: of the peak of all sites too
+  Residual press, pull;                              // of all sites
+  double shape_rms = 0.0, held_out_shape_rms = 0.0;  // NaN without shapes
+  std::vector<SiteResidual> sites;
+  std::vector<std::string> reasons;  // why it cannot follow
+  bool follows = false;
+};
+
+/// The factor for the law's force that suits a site best.
+double best_scale(std::span<const FitSample> samples, std::span<const FitAnswer> answers);
+/// RMS of the shape over rings that both know, of the depth; NaN if there is none.
+double shape_error(const FitSample& sample, const FitAnswer& answer);
+
+/// `answers` in the order of the data; `scale_by_site`: each site has its best factor.
+Judgement judge(const FitData& data, std::span<const FitAnswer> answers, bool scale_by_site,
+                double press_limit_m);
+
+}  // namespace tact::tools

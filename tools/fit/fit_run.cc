@@ -1,0 +1,182 @@
+#include "tools/fit/fit_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/tissue_law.h"
+#include "tools/fit/fit_search.h"
+
+namespace tact::tools {
+namespace {
+
+using model::Error;
+using model::Result;
+using model::Scene;
+
+/// The samples of the sites that are fitted.
+FitData fitted_part(const FitData& data) {
+  FitData part = data;
+  std::erase_if(part.sites, [](const FitSite& site) { return site.held_out; });
+  return part;
+}
+
+/// One scene whose numbers are turned, and the residuals of the law that it makes.
+class Fit {
+ public:
+  Fit(const FitLaw& law, const Scene& scene, const FitData& data, const FitOptions& options)
+      : law_(law), data_(fitted_part(data)), options_(options), scene_(scene) {
+    scene_.relaxation.clear();  // forces at once
+    reach(scene_, data);
+    for (const FitSite& site : data_.sites) samples_ += site.samples.size();
+    with_shapes_ = options.shape_weight > 0.0 && data_.has_shapes();
+    peak_N_ = data_.peak_N();
+    for (const FitParameter& p : law.parameters)
+      scene_value_.push_back(std::clamp(p.in(scene_), p.low, p.high));
+  }
+
+  SearchProblem problem() {
+    SearchProblem out{
+        .residuals = samples_ * (with_shapes_ ? 2 : 1),
+        .difference = law_.difference,
+        .most_evaluations = law_.most_evaluations / static_cast<int>(law_.starts.size())};
+    for (const FitParameter& p : law_.parameters) {
+      out.low.push_back(std::log(p.low));
+      out.high.push_back(std::log(p.high));
+    }
+    out.residual = [this](std::span<const double> x, std::span<double> r) {
+      set(x);
+      const auto answers = answers_of(scene_, law_.kind, data_);
+      if (answers) fill(*answers, r);
+      return answers.has_value();
+    };
+    return out;
+  }
+
+  /// The scene's numbers times the start's ratios, stiffnesses then scaled to the data's force.
+  std::vector<double> start(const std::vector<double>& ratios) {
+    std::vector<double> x;
+    for (std::size_t i = 0; i < law_.parameters.size(); ++i) {
+      const FitParameter& p = law_.parameters[i];
+      x.push_back(std::log(std::clamp(scene_value_[i] * ratios[i], p.low, p.high)));
+    }
+    set(x);
+    const auto answers = answers_of(scene_, law_.kind, data_);
+    if (!answers) return x;
+    const double factor = press_factor(*answers);
+    for (std::size_t i = 0; i < law_.parameters.size(); ++i) {
+      const FitParameter& p = law_.parameters[i];
+      if (p.is_stiffness)
+        x[i] = std::clamp(x[i] + std::log(factor), std::log(p.low), std::log(p.high));
+    }
+    return x;
+  }
+
+  void set(std::span<const double> x) {
+    for (std::size_t i = 0; i < x.size(); ++i) law_.parameters[i].in(scene_) = std::exp(x[i]);
+    if (law_.follow) law_.follow(scene_);
+  }
+  const Scene& scene() const { return scene_; }
+  Scene& scene() { return scene_; }
+
+ private:
+  double press_factor(const std::vector<FitAnswer>& answers) const {
+    double sum_ab = 0.0, sum_aa = 0.0;
+    std::size_t i = 0;
+    for (const FitSite& site : data_.sites)
+      for (const FitSample& s : site.samples) {
+        const double force_N = answers[i++].force_N;
+        if (!(s.depth_m > 0.0)) continue;
+        sum_ab += force_N * s.force_N, sum_aa += force_N * force_N;
+      }
+    return sum_ab > 0.0 && sum_aa > 0.0 ? sum_ab / sum_aa : 1.0;
+  }
+
+  void fill(std::span<const FitAnswer> answers, std::span<double> r) const {
+    const double share = 1.0 / std::sqrt(static_cast<double>(samples_));
+    std::size_t i = 0;
+    for (const FitSite& site : data_.sites) {
+      const auto own = answers.subspan(i, site.samples.size());
+      const double scale = options_.scale_by_site ? best_scale(site.samples, own) : 1.0;
+      for (std::size_t k = 0; k < own.size(); ++k, ++i) {
+        r[i] = share * (scale * own[k].force_N - site.samples[k].force_N) / peak_N_;
+        if (!with_shapes_) continue;
+        const double u = shape_error(site.samples[k], own[k]);
+        r[samples_ + i] = std::isfinite(u) ? share * options_.shape_weight * u : 0.0;
+      }
+    }
+  }
+
+  const FitLaw& law_;
+  FitData data_;
+  FitOptions options_;
+  Scene scene_;
+  std::vector<double> scene_value_;
+  std::size_t samples_ = 0;
+  bool with_shapes_ = false;
+  double peak_N_ = 0.0;
+};
+
+FittedKey key_of(const FitParameter& p, Scene& scene) {
+  constexpr double kNear = 1.001;
+  const double value = p.in(scene);
+  return {p.section, p.key, value, value < kNear * p.low || value > p.high / kNear};
+}
+
+/// Working depths that reach() had to raise belong into the scene too.
+void add_raised(const FitLaw& law, const Scene& before, const Scene& after,
+                std::vector<FittedKey>& keys) {
+  const auto add = [&keys](const char* section, const char* key, double was, double is) {
+    if (is != was) keys.push_back({section, key, is, false});
+  };
+  using enum model::LawKind;
+  if (law.kind == kHexSheet || law.kind == kHexSheetPaper)
+    add("hex_sheet", "working_depth_m", before.hex_sheet.working_depth_m,
+        after.hex_sheet.working_depth_m);
+  if (law.kind == kCompliance)
+    add("compliance", "working_depth_m", before.compliance.working_depth_m,
+        after.compliance.working_depth_m);
+  if (law.kind == kSpringPatch)
+    add("spring_patch", "working_depth_m", before.spring_patch.working_depth_m,
+        after.spring_patch.working_depth_m);
+  const bool has_pull =
+      std::any_of(keys.begin(), keys.end(), [](const FittedKey& k) { return k.section == "pull"; });
+  if (has_pull)
+    add("pull", "limit_m", before.pull ? before.pull->limit_m : 0.0, after.pull->limit_m);
+}
+
+}  // namespace
+
+Result<FittedLaw> fit_law(const FitLaw& law, const Scene& scene, const FitData& data,
+                          const FitOptions& options) {
+  if (law.by_place && !data.has_places())
+    return Error{
+        fmt::format("{} differs from place to place: write the vertex of the organ into a "
+                    "column site of {}",
+                    law.name, data.source)};
+  if (const auto possible = make_tissue_law(scene, law.kind); !possible) return possible.error();
+  Fit fit(law, scene, data, options);
+  const SearchProblem problem = fit.problem();
+  SearchResult best;
+  FittedLaw out{.name = law.name, .choice = law.choice};
+  for (const std::vector<double>& ratios : law.starts) {
+    SearchResult found = search(problem, fit.start(ratios));
+    out.evaluations += found.evaluations;
+    if (best.x.empty() || found.sum_of_squares < best.sum_of_squares) best = std::move(found);
+  }
+  fit.set(best.x);
+  const auto made = make_tissue_law(fit.scene(), law.kind);
+  if (!made) return made.error();
+  auto answers = answers_of(fit.scene(), law.kind, data);
+  if (!answers) return answers.error();
+  out.title = (*made)->title();
+  out.answers = std::move(*answers);
+  out.judged = judge(data, out.answers, options.scale_by_site, (*made)->range().press_m);
+  for (const FitParameter& p : law.parameters) out.keys.push_back(key_of(p, fit.scene()));
+  for (const FitParameter& p : law.followers) out.keys.push_back(key_of(p, fit.scene()));
+  add_raised(law, scene, fit.scene(), out.keys);
+  return out;
+}
+
+}  // namespace tact::tools
