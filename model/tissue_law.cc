@@ -209,7 +209,7 @@ TissueLawBuilder::Step TissueLawBuilder::finish_field() {
   return std::nullopt;
 }
 
-// Curves are ordered soft to stiff: the last one decides the stiffness, the first one the pull.
+// The stiffest curve decides what must be rendered, the narrowest range what is valid everywhere.
 void TissueLawBuilder::measure(const Law& curve) {
   constexpr int kSteps = 200;
   const LawRange range = curve.range();
@@ -218,7 +218,7 @@ void TissueLawBuilder::measure(const Law& curve) {
   law_->range_.pull_m = std::max(law_->range_.pull_m, range.pull_m);
   law_->range_.press_m = std::min(law_->range_.press_m, range.press_m);
   const double pull_N = range.pull_m < 0.0 ? -curve.respond(range.pull_m).force_N : 0.0;
-  law_->pull_limit_N_ = first ? pull_N : std::min(law_->pull_limit_N_, pull_N);
+  law_->pull_limit_N_ = std::max(law_->pull_limit_N_, pull_N);
   for (int i = 0; i <= kSteps; ++i) {
     const double depth_m = range.pull_m + (range.press_m - range.pull_m) * i / kSteps;
     const LawResponse r = curve.respond(depth_m);

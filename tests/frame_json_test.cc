@@ -87,5 +87,38 @@ TEST(SceneJson, SurvivesANameWithoutEndAndWithBrokenUtf8) {
   EXPECT_TRUE(nlohmann::json::accept(scene_json(hello)));
 }
 
+TEST(FrameJson, TellsDisplacedVerticesAndCutsOfALawWithoutProfiles) {
+  Frame frame{};
+  frame.patch.vertex_count = 2;
+  frame.patch.vertex[0] = 7;
+  frame.patch.vertex[1] = 70'000;
+  const std::int16_t moved_um[2][3] = {{1, -2, 3}, {32767, 0, -1}};
+  std::memcpy(frame.patch.displacement_um, moved_um, sizeof moved_um);
+  frame.patch.cut_total = 40;
+  frame.patch.cut_count = 2;
+  frame.patch.cut_triangle[0] = 11;
+  frame.patch.cut_triangle[1] = 12;
+  Hello hello = test::make_hello(3, 1, 3, 1);
+  hello.ring_count = 0;
+  const auto patch = nlohmann::json::parse(frame_json(frame, hello)).at("patch");
+  EXPECT_EQ(patch.at("count"), 2);
+  EXPECT_EQ(patch.at("moved"), "BwAAAHARAQABAP7/AwD/fwAA//8=") << "the same bytes as in the page's own test";
+  EXPECT_EQ(patch.at("cut_total"), 40);
+  EXPECT_EQ(patch.at("cut"), (std::vector<int>{11, 12}));
+  hello.ring_count = 3;
+  EXPECT_FALSE(nlohmann::json::parse(frame_json(frame, hello)).contains("patch"));
+}
+
+TEST(FrameJson, StaysInItsLengthWithAFullPatch) {
+  Frame frame{};
+  frame.patch.vertex_count = firmware::kMaxPatchVertices;
+  frame.patch.cut_total = 4'000'000;
+  frame.patch.cut_count = firmware::kMaxCutsTold;
+  for (auto& triangle : frame.patch.cut_triangle) triangle = 3'999'999;
+  Hello hello = busiest_hello();
+  hello.ring_count = 0;
+  EXPECT_LE(frame_json(frame, hello).size(), kMaxFrameJsonBytes);
+}
+
 }  // namespace
 }  // namespace tact::host

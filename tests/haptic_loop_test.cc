@@ -51,7 +51,7 @@ TEST(HapticLoop, CountsWithoutFrictionBuzzButDoNotGrow) {
   const LoopRun run = run_loop(loop, wall(0.5 * theory(loop)));
   EXPECT_EQ(run.verdict, Verdict::kBuzz);
   EXPECT_GT(run.last_swing_m, 1e-7);
-  EXPECT_LT(run.last_swing_m, 3.0 * 24e-6) << "a count or two";
+  EXPECT_LT(run.last_swing_m, 5.0 * 24e-6) << "a few counts";
 }
 
 TEST(HapticLoop, FrictionCarriesHalfACountUpToTwiceFrictionOverStep) {

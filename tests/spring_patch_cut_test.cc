@@ -114,6 +114,7 @@ TEST(SpringPatchCut, StaysOpenWhenTheToolGoesElsewhere) {
   std::vector<Vec3> open_m;
   const std::vector<std::uint32_t> lips(pressed.patch().region().lips().begin(),
                                         pressed.patch().region().lips().end());
+  open_m.reserve(lips.size());
   for (const std::uint32_t v : lips) open_m.push_back(pressed.patch().region().moved_m(v));
   for (int i = 0; i <= 400; ++i) {
     pressed.move_to(0.0001 * i, -0.0001 * i, 1e-6);

@@ -3,7 +3,7 @@
 // The fingertip is at the origin, the arm goes towards +z, the palm faces +x, the thumb is at -y.
 //
 //     2 865 vertices and 5 722 triangles:  V - E + F = V - F/2 = 4,  two closed bodies of 2 each:
-//     hand  2 465 vertices, 4 926 triangles;  cuff round the wrist's end  400 vertices, 796.
+//     hand  2 465 vertices, 4 926 triangles;  cuff above the wrist  400 vertices, 796.
 #include <array>
 
 #include "tools/make_meshes_field.h"

@@ -1,4 +1,6 @@
 // The published cases of the integrators: one oscillator, its stability, the claims, and a network.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 #include <string>
@@ -119,7 +121,7 @@ void verify_claims(const json& file, Report& report) {
       std::string best;
       for (const auto& [name, want] : methods.items()) {
         const RmsError got = rms_error(one_case, method_named(name), h);
-        const std::string where = step + " " + name + " ";
+        const std::string where = fmt::format("{} {} ", step, name);
         report.compare(where + "rms_x", got.position_m, want.at("rms_x"), true, abs, tolerance.rel);
         report.compare(where + "rms_v", got.velocity_mps, want.at("rms_v"), true, abs,
                        tolerance.rel);

@@ -134,7 +134,8 @@ bool read_answer(const std::string& path, const ElasticProblem& p, ElasticAnswer
   for (const MovedNode& m : p.load.moved) {
     const auto found = force_mN.find(m.node);
     if (found == force_mN.end() || !is_finite(found->second)) return false;
-    answer.force_N += axes.from_deck(found->second) * kNPerMN;
+    answer.moved_force_N.push_back(axes.from_deck(found->second) * kNPerMN);
+    answer.force_N += answer.moved_force_N.back();
   }
   for (const std::uint32_t n : p.reported) {
     const auto found = displacement_mm.find(n);

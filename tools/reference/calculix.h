@@ -46,7 +46,8 @@ struct ElasticProblem {
 };
 
 struct ElasticAnswer {
-  model::Vec3 force_N{};                  // that moves the moved nodes
+  model::Vec3 force_N{};                    // that moves the moved nodes
+  std::vector<model::Vec3> moved_force_N;   // of each, in their order
   std::vector<model::Vec3> displacement_m;  // of the reported nodes, in their order
 };
 

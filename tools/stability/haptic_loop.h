@@ -7,7 +7,7 @@
 // beside it. What happens then is the verdict:
 //
 //     rest   it comes to rest (with D > 0: the count stands still)
-//     buzz   it keeps moving, by less than the kick: a count or two
+//     buzz   it keeps moving, by less than the kick: a few counts
 //     grow   the motion grows
 //
 // Nothing here is shared with the loop that drives devices (firmware/), so the two can be compared.

@@ -50,7 +50,7 @@ set xrange [4e-3:0.13]
 set yrange [20:200000]
 set key bottom left
 set label 1 "oscillation grows until the gate limits it" at 5e-3,90000 front boxed
-set label 2 "buzzes by a count or two:\nfelt, but does not grow" at 4.2e-2,12000 front boxed
+set label 2 "buzzes by a few counts:\nfelt, but does not grow" at 4.2e-2,12000 front boxed
 set label 3 "comes to rest" at 5.5e-3,2500
 plot f using (cell(1000, 0, 0, 'bare') && $7 == 10 && $6 > 0 ? $6*1e3 : NaN):10 \
        with points pt 7 ps 1.1 lc 'black' title "c = 0: does not grow below", \

@@ -9,11 +9,11 @@
 namespace tact::tools {
 
 struct StabilityOptions {
-  std::string out;                 // folder, made if need be
-  std::string letters;             // maps to make, "abcd"
-  std::string only;                // one map by its name; empty: all of the letters
-  Shard shard{};                   // our part of every map
-  std::vector<std::string> merge;  // CSVs of shards instead of a run
+  std::string out{};                 // folder, made if need be
+  std::string letters{};             // maps to make, "abcd"
+  std::string only{};                // one map by its name; empty: all of the letters
+  Shard shard{};                     // our part of every map
+  std::vector<std::string> merge{};  // CSVs of shards instead of a run
   Grid grid = Grid::kFull;
   bool draw_pictures = true;
 };

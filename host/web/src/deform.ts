@@ -8,9 +8,11 @@
 //     fade   1 near the tangent plane and 0 a reach away or on skin that looks the other way, so that
 //            the far side of the organ stays where it is
 //
+// A mass-spring tissue names its displaced vertices itself (patch.ts).
 // Where two sites reach the same vertex the larger displacement wins: their sum would count the
 // tissue between two jaws twice.
 
+import type { Moved } from "./patch";
 import { Profile, smoothstep } from "./profile";
 import type { Site } from "./protocol";
 
@@ -36,19 +38,33 @@ export class Deformer {
   }
 
   /** Writes moved vertices to out_m. False when it left everything as it was. */
-  apply(sites: readonly Site[], out_m: Float32Array, result: Deformed): boolean {
+  apply(sites: readonly Site[], moved: Moved | null, out_m: Float32Array, result: Deformed): boolean {
     result.moved = 0;
     result.most_m = 0;
-    if (sites.length === 0 && !this.was_moved) return false;
+    const anything = sites.length > 0 || (moved !== null && moved.vertex.length > 0);
+    if (!anything && !this.was_moved) return false;
     out_m.set(this.rest_m);
     this.travel_m.fill(0);
-    for (const site of sites) this.press(site, out_m);
+    if (moved) this.place(moved, out_m);
+    else for (const site of sites) this.press(site, out_m);
     for (const travel_m of this.travel_m) {
       if (travel_m > 1e-6) ++result.moved;
       if (travel_m > result.most_m) result.most_m = travel_m;
     }
-    this.was_moved = sites.length > 0;
+    this.was_moved = anything;
     return true;
+  }
+
+  private place(moved: Moved, out_m: Float32Array): void {
+    for (let i = 0; i < moved.vertex.length; ++i) {
+      const v = moved.vertex[i];
+      if (v >= this.travel_m.length) continue;
+      const [dx, dy, dz] = moved.displacement_m.subarray(3 * i, 3 * i + 3);
+      out_m[3 * v] += dx;
+      out_m[3 * v + 1] += dy;
+      out_m[3 * v + 2] += dz;
+      this.travel_m[v] = Math.sqrt(dx * dx + dy * dy + dz * dz);
+    }
   }
 
   private press(site: Site, out_m: Float32Array): void {

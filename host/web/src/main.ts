@@ -79,7 +79,7 @@ function draw(now_ms: number): void {
   if (organ && tool && newest) {
     shown = newest;
     newest = null;
-    organ.show(shown.sites);
+    organ.show(shown.sites, shown.patch);
     tool.show(shown);
     hand.frame(shown, now_ms);
     hud.frame(shown, now_ms, stage.fps);
@@ -142,6 +142,7 @@ const numbers = {
   get bytes() { return connection.bytes; },
   get largest_frame_bytes() { return connection.largest_frame_bytes; },
   get moved_vertices() { return organ?.deformed.moved ?? 0; },
+  get cut_triangles() { return organ?.cut_triangles ?? 0; },
   get most_m() { return organ?.deformed.most_m ?? 0; },
   get most_ever_m() { return most_ever_m; },
   get tool_m() { return shown ? [...shown.tool_m] : null; },

@@ -3,7 +3,9 @@
 import * as THREE from "three";
 import { Deformer, type Deformed } from "./deform";
 import { look_material } from "./look";
-import type { Mesh, Scene, Site } from "./protocol";
+import { Cuts, decode_moved } from "./patch";
+import type { Mesh, Patch, Scene, Site } from "./protocol";
+import { Wound } from "./wound";
 
 // Factors on the baked colour of the tissue (look.ts).
 const kFlesh = new THREE.Color(1.06, 1.06, 1.06);
@@ -28,12 +30,14 @@ export class OrganView {
   private readonly lines: THREE.Mesh<THREE.BufferGeometry, THREE.MeshBasicMaterial>;
   private readonly deformer: Deformer;
   private readonly rest_tint: Float32Array;
+  private readonly cuts = new Cuts();
+  private readonly wound: Wound;
 
-  constructor(mesh: Mesh, scene: Scene, look: THREE.Texture) {
+  constructor(private readonly mesh: Mesh, scene: Scene, look: THREE.Texture) {
     const position = new THREE.BufferAttribute(mesh.vertex_m.slice(), 3);
     position.setUsage(THREE.DynamicDrawUsage);
     this.geometry.setAttribute("position", position);
-    this.geometry.setIndex(new THREE.BufferAttribute(mesh.triangle, 1));
+    this.geometry.setIndex(new THREE.BufferAttribute(mesh.triangle.slice(), 1));
     this.geometry.computeVertexNormals();
     this.geometry.computeBoundingSphere();
     this.rest_tint = OrganView.tints(mesh);
@@ -45,7 +49,8 @@ export class OrganView {
     this.lines = new THREE.Mesh(this.geometry, OrganView.line_material());
     this.lines.visible = false;
     this.lines.frustumCulled = false;
-    this.object.add(this.lines);
+    this.wound = new Wound(mesh.triangle);
+    this.object.add(this.lines, this.wound.object);
     this.object.frustumCulled = false; // its bounds move; it is nearly always in view
     const rest_normal = (this.geometry.getAttribute("normal").array as Float32Array).slice();
     this.deformer = new Deformer(mesh.vertex_m, rest_normal, scene.ring_count, scene.ring_pitch_m);
@@ -64,17 +69,36 @@ export class OrganView {
     this.lines.visible = on;
   }
 
-  show(sites: readonly Site[]): void {
+  get cut_triangles(): number {
+    return this.cuts.triangles.size;
+  }
+
+  show(sites: readonly Site[], patch?: Patch): void {
+    if (patch && this.cuts.learn(patch)) this.open();
     const position = this.geometry.getAttribute("position") as THREE.BufferAttribute;
-    if (!this.deformer.apply(sites, position.array as Float32Array, this.deformed)) return;
+    const vertex_m = position.array as Float32Array;
+    const moved = patch ? decode_moved(patch) : null;
+    if (!this.deformer.apply(sites, moved, vertex_m, this.deformed)) return;
     position.needsUpdate = true;
     this.geometry.computeVertexNormals();
+    this.wound.follow(vertex_m, this.geometry.getAttribute("normal").array as Float32Array);
     const tint = this.geometry.getAttribute("tint") as THREE.BufferAttribute;
     this.pale(tint.array as Float32Array);
     tint.needsUpdate = true;
   }
 
+  /** Cut triangles are no longer skin: their corners fall together. */
+  private open(): void {
+    const index = this.geometry.getIndex() as THREE.BufferAttribute;
+    const corner = index.array as Uint32Array;
+    corner.set(this.mesh.triangle);
+    for (const t of this.cuts.triangles) corner.fill(corner[3 * t], 3 * t, 3 * t + 3);
+    index.needsUpdate = true;
+    this.wound.open(this.cuts.triangles);
+  }
+
   dispose(): void {
+    this.wound.dispose();
     this.geometry.dispose();
     this.material.dispose();
     this.lines.material.dispose();

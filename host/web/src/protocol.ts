@@ -35,6 +35,14 @@ export interface Site {
   u_m: number[]; // displacement into the tissue at radius j * ring_pitch_m
 }
 
+/** Of a law without profiles: vertices that are not at rest, and cut triangles. */
+export interface Patch {
+  count: number;
+  moved: string; // base64, see patch.ts
+  cut_total: number; // so far
+  cut: number[]; // some of them
+}
+
 export interface Frame {
   kind: "frame";
   tick: number;
@@ -56,6 +64,7 @@ export interface Frame {
   tick_us: number;
   peak_N: number;
   sites: Site[];
+  patch?: Patch;
 }
 
 export type LinkName = "waiting" | "live" | "lost" | "replay";

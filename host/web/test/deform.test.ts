@@ -36,7 +36,7 @@ function pressed(sites: Site[]): { rest_m: Float32Array; out_m: Float32Array; mo
   const { rest_m, normal } = slab();
   const out_m = rest_m.slice();
   const result = { moved: 0, most_m: 0 };
-  new Deformer(rest_m, normal, 32, kPitch_m).apply(sites, out_m, result);
+  new Deformer(rest_m, normal, 32, kPitch_m).apply(sites, null, out_m, result);
   return { rest_m, out_m, ...result };
 }
 
@@ -109,11 +109,11 @@ test("Release brings every vertex back", () => {
   const out_m = rest_m.slice();
   const deformer = new Deformer(rest_m, normal, 32, kPitch_m);
   const result = { moved: 0, most_m: 0 };
-  assert.equal(deformer.apply([site()], out_m, result), true);
+  assert.equal(deformer.apply([site()], null, out_m, result), true);
   assert.ok(result.moved > 100);
-  assert.equal(deformer.apply([], out_m, result), true);
+  assert.equal(deformer.apply([], null, out_m, result), true);
   assert.deepEqual(out_m, rest_m);
-  assert.equal(deformer.apply([], out_m, result), false);
+  assert.equal(deformer.apply([], null, out_m, result), false);
 });
 
 test("Numbers that are missing leave the mesh whole", () => {

@@ -1,0 +1,88 @@
+#include "tools/reference/reference_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tools/reference/block.h"
+
+namespace tact::tools {
+namespace {
+
+ReferencePlan plan() {
+  auto organ = make_block(0.05, 0.05, {.youngs_modulus_Pa = 1000.0, .poisson_ratio = 0.45});
+  EXPECT_TRUE(organ) << organ.error().sentence;
+  return {.organ = std::move(*organ),
+          .mesh_name = "block.obj",
+          .tool_radius_m = 5e-3,
+          .sites = {0, 3},
+          .depths_m = {1e-3, 2e-3, 9e-3},
+          .large_strain_sites = {3},
+          .level = 2};
+}
+
+/// A made-up answer: F = d, 1 % more for each level coarser, 5 % more at the least depth.
+ReferenceCase answer(const Indentation& what, const ReferencePlan& p) {
+  const bool coarse = what.level < p.level;
+  const double more = coarse ? (what.depth_m == p.depths_m.front() ? 1.05 : 1.01) : 1.0;
+  return {.depth_m = what.depth_m,
+          .large_strain = what.large_strain,
+          .force_N = what.depth_m * more,
+          .contact_radius_m = 1e-3,
+          .profile_m = {what.depth_m, 0.5 * what.depth_m}};
+}
+
+TEST(ReferencePlan, SolvesEveryDepthAndTheCoarseOnesForTheError) {
+  const ReferencePlan p = plan();
+  const auto cases = cases_of(p);
+  // A site: three presses, one pull; least, largest and pull coarser. Site 3: three more pulls.
+  EXPECT_EQ(cases.size(), 2U * 7U + 3U);
+  for (const Indentation& c : cases)
+    EXPECT_TRUE(!c.large_strain || c.vertex == 3U);
+}
+
+TEST(ReferencePlan, PutsTheFileTogether) {
+  const ReferencePlan p = plan();
+  std::vector<ReferenceCase> solved;
+  for (const Indentation& c : cases_of(p)) solved.push_back(answer(c, p));
+  const ReferenceData data = assemble(p, solved, "by hand");
+  ASSERT_EQ(data.sites.size(), 2U);
+  ASSERT_EQ(data.sites[0].cases.size(), 6U);
+  ASSERT_EQ(data.sites[1].cases.size(), 9U);
+  const auto& cases = data.sites[0].cases;
+  const double depths_m[] = {1e-3, 2e-3, 9e-3, -1e-3, -2e-3, -9e-3};
+  const double errors[] = {0.05, 0.05, 0.01, 0.01, 0.01, 0.01};  // of the nearer depth
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_DOUBLE_EQ(cases[i].depth_m, depths_m[i]);
+    EXPECT_NEAR(cases[i].force_N, depths_m[i], 1e-15) << "pull is one solve, scaled";
+    EXPECT_NEAR(cases[i].profile_m[1], 0.5 * depths_m[i], 1e-15);
+    EXPECT_NEAR(cases[i].force_error_ratio, errors[i], 1e-12) << i;
+  }
+  EXPECT_TRUE(data.sites[1].cases[8].large_strain);
+  EXPECT_EQ(data.sites[0].direction, (model::Vec3{0.0, 0.0, -1.0}));
+}
+
+TEST(ReferencePlan, RefusesWhatCannotBeSolved) {
+  const auto sentence = [](auto change) {
+    ReferencePlan p = plan();
+    change(p);
+    const auto error = check(p);
+    return error ? error->sentence : std::string("fine");
+  };
+  EXPECT_EQ(sentence([](ReferencePlan&) {}), "fine");
+  EXPECT_EQ(sentence([](ReferencePlan& p) { p.sites = {0, 434}; }),
+            "site 434 is no vertex of block.obj; they are 0 to 433");
+  EXPECT_EQ(sentence([](ReferencePlan& p) { p.sites = {3, 217}; }),
+            "site 217 lies in the box that is held; choose another");
+  EXPECT_EQ(sentence([](ReferencePlan& p) { p.sites.clear(); }),
+            "no site to solve; add [[reference_site]] to the scene, or give --sites");
+  EXPECT_EQ(sentence([](ReferencePlan& p) { p.large_strain_sites = {5}; }),
+            "large strain at 5, which is no site; add it to --sites");
+  for (const std::vector<double>& bad :
+       {std::vector<double>{}, {0.0, 1e-3}, {2e-3, 1e-3}, {1e-3, 1e-3}, {std::nan("")}})
+    EXPECT_EQ(sentence([&](ReferencePlan& p) { p.depths_m = bad; }),
+              "depths must be above 0 and rise");
+}
+
+}  // namespace
+}  // namespace tact::tools

@@ -1,0 +1,103 @@
+#include "tools/reference/solve_cache.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "tools/common/run_program.h"
+#include "tools/reference/block.h"
+
+namespace tact::tools {
+namespace {
+
+Organ block() {
+  auto organ = make_block(0.05, 0.05, {.youngs_modulus_Pa = 1000.0, .poisson_ratio = 0.45});
+  EXPECT_TRUE(organ) << organ.error().sentence;
+  organ->hash = mesh_hash(organ->surface);
+  return std::move(*organ);
+}
+
+ScratchFolder folder() {
+  auto made = ScratchFolder::make("tact-solve-cache-test");
+  EXPECT_TRUE(made) << made.error().sentence;
+  return std::move(*made);
+}
+
+constexpr Indentation kPress{.vertex = 0, .tool_radius_m = 5e-3, .depth_m = 1e-3};
+
+TEST(SolveCache, FindsWhatItKeptAndNothingElse) {
+  const auto where = folder();
+  const SolveCache cache(where.file("new/folder"));
+  EXPECT_FALSE(cache.find("a key"));
+  const ReferenceCase solved{.depth_m = 1e-3,
+                             .large_strain = true,
+                             .force_N = 0.1 / 3.0,
+                             .contact_radius_m = 2e-3,
+                             .profile_m = {1e-3, 1e-3 / 7.0}};
+  ASSERT_FALSE(cache.keep("a key", solved));
+  const auto found = cache.find("a key");
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->force_N, solved.force_N) << "to the last bit";
+  EXPECT_EQ(found->profile_m, solved.profile_m);
+  EXPECT_TRUE(found->large_strain);
+  EXPECT_FALSE(cache.find("another key"));
+}
+
+TEST(SolveCache, ADamagedFileCountsAsAbsent) {
+  const auto where = folder();
+  const SolveCache cache(where.path());
+  ASSERT_FALSE(cache.keep("a key", {.depth_m = 1e-3, .profile_m = {}}));
+  std::ofstream(cache.path_of("a key")) << "{\"key\": \"a key\", \"depth_m\":";
+  EXPECT_FALSE(cache.find("a key"));
+  std::ofstream(cache.path_of("a key")) << "{\"key\": \"a key with the same hash\"}";
+  EXPECT_FALSE(cache.find("a key"));
+}
+
+TEST(SolveCache, TheKeyNamesEverythingThatChangesTheAnswer) {
+  const Organ organ = block();
+  const std::string key = cache_key(organ, kPress, "solver 1");
+  EXPECT_EQ(cache_key(organ, kPress, "solver 1"), key);
+  EXPECT_NE(cache_key(organ, kPress, "solver 2"), key);
+  for (int change = 0; change < 6; ++change) {
+    Indentation other = kPress;
+    if (change == 0) other.vertex = 1;
+    if (change == 1) other.tool_radius_m = 4e-3;
+    if (change == 2) other.depth_m = -1e-3;
+    if (change == 3) other.large_strain = true;
+    if (change == 4) other.level = 3;
+    if (change == 5) other.contact_ratio = 1.1;
+    EXPECT_NE(cache_key(organ, other, "solver 1"), key) << change;
+  }
+  for (int change = 0; change < 4; ++change) {
+    Organ other = organ;
+    if (change == 0) other.material.youngs_modulus_Pa = 2000.0;
+    if (change == 1) other.material.poisson_ratio = 0.4;
+    if (change == 2) other.held.max_m.z = -0.02;
+    if (change == 3) {
+      other.surface.vertex_m[5].x += 1e-6;
+      other.hash = mesh_hash(other.surface);
+    }
+    EXPECT_NE(cache_key(other, kPress, "solver 1"), key) << change;
+  }
+}
+
+TEST(SolveCache, AHitDoesNotRunTheSolver) {
+  const auto where = folder();
+  const SolveCache cache(where.path());
+  const Organ organ = block();
+  ASSERT_FALSE(cache.keep(cache_key(organ, kPress, "s"),
+                          {.depth_m = 1e-3, .force_N = 42.0, .profile_m = {1e-3}}));
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", "/nowhere", 1);  // no gmsh, no ccx
+  const auto hit = solve_once(organ, kPress, "s", cache);
+  const auto miss = solve_once(organ, kPress, "another solver", cache);
+  setenv("PATH", path.c_str(), 1);
+  ASSERT_TRUE(hit) << hit.error().sentence;
+  EXPECT_EQ(hit->force_N, 42.0);
+  ASSERT_FALSE(miss);
+  EXPECT_EQ(miss.error().sentence, "gmsh is not installed; apt install gmsh");
+}
+
+}  // namespace
+}  // namespace tact::tools
