@@ -62,6 +62,7 @@ struct Scene {
   SpringPatchParameters spring_patch;
   ComplianceSettings compliance;
   std::size_t table_knots = 65;
+  bool varies_by_place = false;  // closed-form laws are scaled as [compliance] says
   std::optional<LinearPullParameters> pull;
   std::vector<PronyTerm> relaxation;
   std::optional<ElasticSettings> elastic;

@@ -146,6 +146,8 @@ void visit_laws(Keys& k, SceneText& out) {
   std::size_t law = 0;
   k.count("table_knots", {kFewestKnots, kMaxKnots}, "of the loop's look-up table, each side",
           scene.table_knots, Need::kOptional);
+  k.flag("varies_by_place", "a closed-form law is scaled from place to place by [compliance]",
+         scene.varies_by_place, Need::kOptional);
   k.one_of("law", kLaws, [&law](std::size_t chosen) { law = chosen; });
   scene.law = kLawNames[law].kind;
   const auto section = [&](LawKind kind, std::string_view meaning, const Keys::Inside& inside) {
@@ -162,6 +164,9 @@ void visit_laws(Keys& k, SceneText& out) {
   section(LawKind::kCompliance, "the elastic organ of [elastic], condensed to its surface",
           [&](Keys& compliance) { visit_compliance(compliance, out); });
 
+  if (scene.varies_by_place && !scene.describes(LawKind::kCompliance))
+    k.refuse({"varies_by_place"},
+             "varies_by_place = true needs a section [compliance]; write it or leave the key out");
   if (scene.law == LawKind::kAuto || scene.describes(scene.law)) return;
   k.refuse({"law"}, fmt::format("law = \"{}\" has no section [{}]; write it or choose another law",
                                 name_of(scene.law), name_of(section_of(scene.law))));

@@ -45,8 +45,9 @@ void Keys::text(std::string_view key, std::string_view meaning, std::string& out
   if (node) judge(*node, key, text_problem(*node, out));
 }
 
-void Keys::flag(std::string_view key, std::string_view meaning, bool& out) {
-  const toml::node* node = take(key, "true or false", meaning);
+void Keys::flag(std::string_view key, std::string_view meaning, bool& out, Need need) {
+  const std::string fallback = need == Need::kOptional ? fmt::format("{}", out) : "";
+  const toml::node* node = take(key, "true or false", meaning, fallback);
   if (node) judge(*node, key, flag_problem(*node, out));
 }
 

@@ -70,7 +70,7 @@ class Keys {
   static void visit_root(SceneVisit& visit, const Inside& inside);
 
   void text(std::string_view key, std::string_view meaning, std::string& out);
-  void flag(std::string_view key, std::string_view meaning, bool& out);
+  void flag(std::string_view key, std::string_view meaning, bool& out, Need need = Need::kRequired);
   void number(std::string_view key, Range range, std::string_view meaning, double& out,
               Need need = Need::kRequired);
   void count(std::string_view key, CountRange range, std::string_view meaning, std::size_t& out,

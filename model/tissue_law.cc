@@ -9,6 +9,7 @@
 #include "model/compliance_file.h"
 #include "model/elastic_field.h"
 #include "model/hex_paper.h"
+#include "model/scaled_law.h"
 #include "model/tabulated_law.h"
 
 namespace tact::model {
@@ -37,6 +38,25 @@ Result<ComplianceMap> read_scene_map(const Scene& scene) {
   return map;
 }
 
+/// How stiff each vertex is at this depth, over the vertex in the middle of them all.
+std::vector<float> stiffness_factors(const ComplianceFamily& family,
+                                     const std::vector<float>& coordinate, double depth_m) {
+  std::vector<double> curve_N;
+  for (const ComplianceCurve& c : family.curve) curve_N.push_back(c.respond(depth_m).force_N);
+  std::vector<float> factor;
+  for (const float kappa : coordinate) {
+    const auto k = std::min(static_cast<std::size_t>(kappa), curve_N.size() - 2);
+    const double f = static_cast<double>(kappa) - static_cast<double>(k);
+    factor.push_back(static_cast<float>(curve_N[k] + f * (curve_N[k + 1] - curve_N[k])));
+  }
+  std::vector<float> sorted = factor;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const float median = *middle;
+  for (float& f : factor) f /= median;
+  return factor;
+}
+
 }  // namespace
 
 // Curves first (add_*), then finish(), which measures what was built.
@@ -58,6 +78,9 @@ class TissueLawBuilder {
   Step add_spring_patch();
   Step add_table(const Law& direct);
   Result<const Law*> with_pull(const Law& press);
+  Step finish_curve(const Law& curve);
+  Step scale_by_place(const Law& curve);
+  Result<ComplianceFamily> read_family() const;
   Step finish_field();
   void measure(const Law& curve);
 
@@ -110,9 +133,8 @@ TissueLawBuilder::Step TissueLawBuilder::add_disc_stack() {
   if (!stack) return blame(stack.error());
   auto pulled = with_pull(keep(std::move(*stack)));
   if (!pulled) return pulled.error();
-  law_->curves_.push_back(*pulled);
   law_->memory_bytes_ += sizeof(DiscStack);
-  return finish_field();
+  return finish_curve(**pulled);
 }
 
 TissueLawBuilder::Step TissueLawBuilder::add_hex_sheet() {
@@ -142,8 +164,7 @@ TissueLawBuilder::Step TissueLawBuilder::add_hex_paper() {
   return add_table(keep(std::move(*sheet)));
 }
 
-TissueLawBuilder::Step TissueLawBuilder::add_compliance() {
-  law_->title_ = "linear elastic compliance";
+Result<ComplianceFamily> TissueLawBuilder::read_family() const {
   auto map = read_scene_map(scene_);
   if (!map) return map.error();
   auto family =
@@ -153,10 +174,45 @@ TissueLawBuilder::Step TissueLawBuilder::add_compliance() {
                                     .curves = scene_.compliance.curves,
                                     .table_knots = scene_.table_knots});
   if (!family) return blame(family.error());
+  return family;
+}
+
+TissueLawBuilder::Step TissueLawBuilder::add_compliance() {
+  law_->title_ = "linear elastic compliance";
+  auto family = read_family();
+  if (!family) return family.error();
   for (ComplianceCurve& curve : family->curve) law_->curves_.push_back(&keep(std::move(curve)));
   law_->press_coordinate_ = std::move(family->press_coordinate);
   law_->pull_coordinate_ = std::move(family->pull_coordinate);
   law_->memory_bytes_ += law_->curves_.size() * sizeof(ComplianceCurve);
+  return finish_field();
+}
+
+/// One law everywhere, or scaled from place to place.
+TissueLawBuilder::Step TissueLawBuilder::finish_curve(const Law& curve) {
+  if (scene_.varies_by_place) return scale_by_place(curve);
+  law_->curves_.push_back(&curve);
+  return finish_field();
+}
+
+// Energies are linear in the factor, so two curves are enough: the softest and the stiffest place.
+TissueLawBuilder::Step TissueLawBuilder::scale_by_place(const Law& curve) {
+  auto family = read_family();
+  if (!family) return family.error();
+  const double depth_m = 0.5 * scene_.compliance.working_depth_m;
+  std::vector<float> press = stiffness_factors(*family, family->press_coordinate, depth_m);
+  std::vector<float> pull = stiffness_factors(*family, family->pull_coordinate, -depth_m);
+  const auto [press_low, press_high] = std::minmax_element(press.begin(), press.end());
+  const auto [pull_low, pull_high] = std::minmax_element(pull.begin(), pull.end());
+  const float low = std::min(*press_low, *pull_low), high = std::max(*press_high, *pull_high);
+  const float span = high > low ? high - low : 1.0F;
+  for (std::vector<float>* factors : {&press, &pull})
+    for (float& f : *factors) f = (f - low) / span;
+  law_->title_ += ", scaled by place";
+  law_->curves_ = {&keep(ScaledLaw(curve, static_cast<double>(low))),
+                   &keep(ScaledLaw(curve, static_cast<double>(low + span)))};
+  law_->press_coordinate_ = std::move(press);
+  law_->pull_coordinate_ = std::move(pull);
   return finish_field();
 }
 
@@ -189,9 +245,8 @@ TissueLawBuilder::Step TissueLawBuilder::add_table(const Law& direct) {
   if (!law) return law.error();
   auto table = tabulate(**law, scene_.table_knots);
   if (!table) return blame(table.error());
-  law_->curves_.push_back(&keep(std::move(*table)));
   law_->memory_bytes_ += sizeof(TabulatedLaw);
-  return finish_field();
+  return finish_curve(keep(std::move(*table)));
 }
 
 TissueLawBuilder::Step TissueLawBuilder::finish_field() {

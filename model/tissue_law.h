@@ -20,7 +20,8 @@ class TissueLaw {
   const Law* curve() const { return curves_.empty() ? nullptr : curves_[curves_.size() / 2]; }
   /// Its working range; of a stepped law, the range that its parameters state.
   LawRange range() const { return range_; }
-  /// Largest pull it can give, at its stiffest place, N; 0: it cannot pull, or its parameters do not tell.
+  /// Largest pull it can give, at its stiffest place, N; 0: it cannot pull, or its parameters do
+  /// not tell.
   double pull_limit_N() const { return pull_limit_N_; }
   /// Largest dF/dd inside the range and short of the tear force, N/m: what device and rate must be
   /// able to render.

@@ -23,9 +23,9 @@ const TetMesh& cube() {
     std::vector<Vec3> vertex;
     for (int i = 0; i < 8; ++i)
       vertex.push_back(kSide_m * Vec3{i & 1 ? 1.0 : 0.0, i & 2 ? 1.0 : 0.0, i & 4 ? 1.0 : 0.0});
-    const std::vector<model::TriangleCorners> triangle{
-        {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-        {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    const std::vector<model::TriangleCorners> triangle{{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6},
+                                                       {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3},
+                                                       {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
     const auto filled = fill_with_gmsh(
         vertex, triangle,
         {.at_m = {}, .axis = {}, .radius_m = 1.0, .fine_m = 0.5 * kSide_m, .growth = 0.0});
@@ -44,8 +44,8 @@ ElasticProblem moved_along(const Vec3& direction, double (*along_m)(const Vec3&)
                    .reported = {}};
   for (std::uint32_t n = 0; n < p.body->node_m.size(); ++n) {
     const Vec3& x = p.body->node_m[n];
-    const bool outside = std::min({x.x, x.y, x.z}) < 1e-9 ||
-                         std::max({x.x, x.y, x.z}) > kSide_m - 1e-9;
+    const bool outside =
+        std::min({x.x, x.y, x.z}) < 1e-9 || std::max({x.x, x.y, x.z}) > kSide_m - 1e-9;
     if (outside) p.load.moved.push_back({n, along_m(x)});
     p.reported.push_back(n);
   }
@@ -106,7 +106,8 @@ TEST(CalculiX, GivesYoungsModulusInTension) {
 
 /// Work of squeezing the cube along z with its sides confined.
 double confined_work_J(bool large_strain) {
-  ElasticProblem p = moved_along({0, 0, 1}, [](const Vec3& x) { return -1e-3 * x.z; }, true);
+  ElasticProblem p = moved_along(
+      {0, 0, 1}, [](const Vec3& x) { return -1e-3 * x.z; }, true);
   p.load.large_strain = large_strain;
   const auto answer = solve_with_calculix(p);
   EXPECT_TRUE(answer) << answer.error().sentence;

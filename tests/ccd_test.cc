@@ -93,7 +93,8 @@ TEST(Ccd, AFreeJointPointsTheEndAtTheTargetHoweverItsParentsAreTurned) {
 
 TEST(Ccd, AnotherSweepNeverLeadsAwayFromTheTargetWithHinges) {
   Chain chain = planar({0.3, 0.25, 0.2, 0.1}, -1.5, 1.5);
-  for (int i = 0; i < 4; ++i) chain.bones[i].hinge = Vector3d::Unit(i % 3) + Vector3d::UnitZ();
+  Eigen::Index axis = 0;
+  for (Bone& bone : chain.bones) bone.hinge = Vector3d::Unit(axis++ % 3) + Vector3d::UnitZ();
   for (const Vector3d& target_m : targets(40, 0.6)) {
     double last_m = 1e9;
     for (int sweeps = 0; sweeps < 12; ++sweeps) {

@@ -25,8 +25,8 @@ TEST(CondenseOrgan, FillsASurfaceAndFindsItSoftestFarFromWhereItIsHeld) {
   const auto map = condense_organ(input, facts);
   ASSERT_TRUE(map) << map.error().sentence;
   EXPECT_GT(facts.elements, 100u);
-  EXPECT_NEAR(facts.mesh_size_m, 1.2 * median_edge_m(input.surface.view()), 1e-12);
-  EXPECT_NEAR(map->patch_radius_m, 2.0 * facts.mesh_size_m, 1e-12);
+  EXPECT_NEAR(facts.mesh_size_m, 1.5 * median_edge_m(input.surface.view()), 1e-12);
+  EXPECT_NEAR(map->patch_radius_m, 1.6 * facts.mesh_size_m, 1e-12);
   ASSERT_EQ(map->vertices(), input.surface.vertex_m.size());
   std::size_t top = 0, bottom = 0;
   for (std::size_t v = 0; v < map->vertices(); ++v) {

@@ -27,12 +27,20 @@ TEST(HalfSpace, ForceRisesByThePunchStiffnessOfItsContact) {
   // dF/dd = 2 E* a, whatever the shape of the tool
   for (const double d : {0.5e-3, 2e-3, 5e-3, 12e-3}) {
     const double h = 1e-7;
-    const double slope = (sphere_force_N(kTissue, kRadius_m, d + h) -
-                          sphere_force_N(kTissue, kRadius_m, d - h)) /
-                         (2.0 * h);
+    const double slope =
+        (sphere_force_N(kTissue, kRadius_m, d + h) - sphere_force_N(kTissue, kRadius_m, d - h)) /
+        (2.0 * h);
     const double a = sphere_contact_radius_m(kRadius_m, d);
     EXPECT_NEAR(slope, flat_punch_force_N(kTissue, a, 1.0), 1e-5 * slope);
     EXPECT_LT(a, kRadius_m);
+  }
+}
+
+TEST(HalfSpace, KnowsTheContactByDepthOrByForce) {
+  for (const double d : {1e-6, 1e-3, 5e-3, 12e-3}) {
+    const double force_N = sphere_force_N(kTissue, kRadius_m, d);
+    EXPECT_NEAR(sphere_contact_radius_under_m(kTissue, kRadius_m, force_N),
+                sphere_contact_radius_m(kRadius_m, d), 1e-9 * kRadius_m);
   }
 }
 

@@ -16,16 +16,13 @@ using model::Vec3;
 /// Six-node faces over a plate, enough for ring_means.
 OrganBody plate_body() {
   const model::SurfaceMesh plate = tests::make_plate(0.08, 40);
-  OrganBody body{.mesh = {plate.vertex_m, {}},
-                 .face = {},
-                 .normal = plate.face_normal,
-                 .held_node = {}};
+  OrganBody body{
+      .mesh = {plate.vertex_m, {}}, .face = {}, .normal = plate.face_normal, .held_node = {}};
   for (const auto& t : plate.triangle) {
     FaceNodes nodes{t[0], t[1], t[2], 0, 0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
       nodes[3 + k] = static_cast<std::uint32_t>(body.mesh.node_m.size());
-      body.mesh.node_m.push_back(0.5 *
-                                 (plate.vertex_m[t[k]] + plate.vertex_m[t[(k + 1) % 3]]));
+      body.mesh.node_m.push_back(0.5 * (plate.vertex_m[t[k]] + plate.vertex_m[t[(k + 1) % 3]]));
     }
     body.face.push_back(nodes);
   }

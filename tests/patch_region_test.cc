@@ -60,6 +60,62 @@ TEST(PatchRegion, SurfaceBalancesItsPretensionAtRest) {
   EXPECT_GT(pull_N, 1e-3) << "a curved surface has a net pull to balance";
 }
 
+TEST(PatchRegion, BodyStiffnessIsSharedByArea) {
+  const SurfaceMesh mesh = tests::make_plate(0.1, 20);
+  const PatchSurface surface = make_patch_surface(mesh.view(), soft_patch().tissue);
+  double sum_N_per_m = 0.0;
+  for (const double a : surface.anchor_N_per_m) sum_N_per_m += a;
+  EXPECT_NEAR(sum_N_per_m / 441.0, 5.0, 1e-12);
+  // a corner of one triangle has a sixth of what six around a vertex give
+  const auto [least, most] =
+      std::minmax_element(surface.anchor_N_per_m.begin(), surface.anchor_N_per_m.end());
+  EXPECT_NEAR(*most / *least, 6.0, 1e-9);
+}
+
+// Every vertex anywhere, moving at random, and then another region: energy is not made.
+TEST(PatchRegion, GatheringMakesNoEnergyBeyondItsDebt) {
+  const SurfaceMesh mesh = tests::make_plate(0.1, 20);
+  for (const double speed_mps : {0.0, 0.01, 1.0}) {
+    PatchRegion region(make_patch_surface(mesh.view(), soft_patch().tissue), 0.002, 100);
+    const auto energy_J = [&region] {
+      const SpringNetwork now = region.network({});
+      return stored_energy_J(now) + kinetic_energy_J(now) - region.rest_energy_J();
+    };
+    std::array<std::uint32_t, 1> triangle{420};
+    region.gather(triangle);
+    for (std::uint32_t i = 0; i < 100; ++i) {
+      const SpringNodes node = region.network({}).node;
+      if (node.inverse_mass_per_kg[i] == 0.0) continue;
+      node.position_m[i].z = -0.002 * std::exp(-0.03 * i);
+      node.velocity_mps[i] = {0.0, speed_mps * std::sin(i), speed_mps};
+    }
+    for (const std::uint32_t next : {424u, 432u, 420u, 440u}) {
+      triangle[0] = next;
+      const double before_J = energy_J(), owed_J = region.handover_debt_J();
+      region.gather(triangle);
+      EXPECT_LE(energy_J(), before_J + region.handover_debt_J() - owed_J + 1e-15);
+    }
+  }
+}
+
+TEST(PatchRegion, AStayingVertexKeepsItsDent) {
+  SpringPatchParameters p = soft_patch();
+  p.nodes = 60;
+  PressedPatch pressed(p);
+  for (int i = 0; i < 300; ++i) {
+    pressed.move_to(0.0, 0.0, 0.004);
+    pressed.advance();
+  }
+  const PatchRegion& region = pressed.patch().region();
+  const std::uint32_t touched = region.vertices()[0];
+  const Vec3 dent_m = region.moved_m(touched);
+  pressed.move_to(0.012, 0.0, 1e-6);
+  pressed.advance();
+  EXPECT_NE(region.vertices()[0], touched) << "gathered anew";
+  ASSERT_NE(region.slot_of(touched), kNoSlot);
+  EXPECT_NEAR(norm(region.moved_m(touched) - dent_m), 0.0, 0.1 * norm(dent_m));
+}
+
 TEST(PatchRegion, ALeavingVertexReturnsToRest) {
   SpringPatchParameters p = soft_patch();
   p.nodes = 60;

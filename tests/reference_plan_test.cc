@@ -37,8 +37,7 @@ TEST(ReferencePlan, SolvesEveryDepthAndTheCoarseOnesForTheError) {
   const auto cases = cases_of(p);
   // A site: three presses, one pull; least, largest and pull coarser. Site 3: three more pulls.
   EXPECT_EQ(cases.size(), 2U * 7U + 3U);
-  for (const Indentation& c : cases)
-    EXPECT_TRUE(!c.large_strain || c.vertex == 3U);
+  for (const Indentation& c : cases) EXPECT_TRUE(!c.large_strain || c.vertex == 3U);
 }
 
 TEST(ReferencePlan, PutsTheFileTogether) {
@@ -70,9 +69,13 @@ TEST(ReferencePlan, RefusesWhatCannotBeSolved) {
     return error ? error->sentence : std::string("fine");
   };
   EXPECT_EQ(sentence([](ReferencePlan&) {}), "fine");
-  EXPECT_EQ(sentence([](ReferencePlan& p) { p.sites = {0, 434}; }),
+  EXPECT_EQ(sentence([](ReferencePlan& p) {
+              p.sites = {0, 434};
+            }),
             "site 434 is no vertex of block.obj; they are 0 to 433");
-  EXPECT_EQ(sentence([](ReferencePlan& p) { p.sites = {3, 217}; }),
+  EXPECT_EQ(sentence([](ReferencePlan& p) {
+              p.sites = {3, 217};
+            }),
             "site 217 lies in the box that is held; choose another");
   EXPECT_EQ(sentence([](ReferencePlan& p) { p.sites.clear(); }),
             "no site to solve; add [[reference_site]] to the scene, or give --sites");

@@ -7,6 +7,7 @@
 
 #include "tools/common/run_program.h"
 #include "tools/reference/block.h"
+#include "tools/reference/half_space.h"
 
 namespace tact::tools {
 namespace {
@@ -24,7 +25,8 @@ ScratchFolder folder() {
   return std::move(*made);
 }
 
-constexpr Indentation kPress{.vertex = 0, .tool_radius_m = 5e-3, .depth_m = 1e-3};
+constexpr Indentation kPress{
+    .vertex = 0, .tool_radius_m = 5e-3, .depth_m = 1e-3, .contact_radius_m = 2.2e-3};
 
 TEST(SolveCache, FindsWhatItKeptAndNothingElse) {
   const auto where = folder();
@@ -66,7 +68,7 @@ TEST(SolveCache, TheKeyNamesEverythingThatChangesTheAnswer) {
     if (change == 2) other.depth_m = -1e-3;
     if (change == 3) other.large_strain = true;
     if (change == 4) other.level = 3;
-    if (change == 5) other.contact_ratio = 1.1;
+    if (change == 5) other.contact_radius_m = 2e-3;
     EXPECT_NE(cache_key(organ, other, "solver 1"), key) << change;
   }
   for (int change = 0; change < 4; ++change) {
@@ -97,6 +99,29 @@ TEST(SolveCache, AHitDoesNotRunTheSolver) {
   EXPECT_EQ(hit->force_N, 42.0);
   ASSERT_FALSE(miss);
   EXPECT_EQ(miss.error().sentence, "gmsh is not installed; apt install gmsh");
+}
+
+TEST(SolveCache, TheContactRadiusIsThatUnderTheForceOfACoarseSolve) {
+  const auto where = folder();
+  const SolveCache cache(where.path());
+  const Organ organ = block();
+  Indentation asked = kPress;
+  asked.contact_radius_m = 0.0;
+  asked.level = 3;
+  Indentation probe = asked, pressed = asked;
+  probe.level = kCoarsestLevel;
+  const double force_N = 3e-3;
+  pressed.contact_radius_m = sphere_contact_radius_under_m(organ.material, 5e-3, force_N);
+  EXPECT_LT(pressed.contact_radius_m, sphere_contact_radius_m(5e-3, 1e-3)) << "it gives way";
+  const auto keep = [&](const Indentation& what, double solved_N) {
+    EXPECT_FALSE(cache.keep(cache_key(organ, what, "s"),
+                            {.depth_m = 1e-3, .force_N = solved_N, .profile_m = {1e-3}}));
+  };
+  keep(probe, force_N);
+  keep(pressed, 3.1e-3);
+  const auto solved = solve_once(organ, asked, "s", cache);
+  ASSERT_TRUE(solved) << solved.error().sentence;
+  EXPECT_EQ(solved->force_N, 3.1e-3);
 }
 
 }  // namespace

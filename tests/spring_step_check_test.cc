@@ -42,8 +42,10 @@ TEST(SpringStepCheck, MatchesPenAndPaper) {
   // a moving neighbour counts twice, a probe once
   net.inverse_mass_per_kg[0] = 1e-9;
   EXPECT_NEAR(step_limit(net.view(), kHalf, kNoProbe).omega_radps, std::sqrt(275.0 / 0.002), 1e-9);
+  net.inverse_mass_per_kg[3] = 1e-9;
+  EXPECT_NEAR(step_limit(net.view(), kHalf, kNoProbe).omega_radps, std::sqrt(350.0 / 0.002), 1e-9);
   EXPECT_NEAR(step_limit(net.view(), kHalf, {.stiffness_N_per_m = 100.0}).omega_radps,
-              std::sqrt(375.0 / 0.002), 1e-9);
+              std::sqrt(450.0 / 0.002), 1e-9);
 }
 
 // With h = 1 ms and damping ratios up to 1/2 the source allows about 1400 rad/s.

@@ -43,7 +43,10 @@ need_packages() {
 
 # What it takes to build the programs, and the page of the viewer.
 BUILD_PACKAGES=(g++ cmake ninja-build ca-certificates libfmt-dev libcli11-dev
-  nlohmann-json3-dev libtomlplusplus-dev libboost-dev)
+  nlohmann-json3-dev libtomlplusplus-dev libboost-dev libeigen3-dev)
+# What the measuring tools call or link besides.
+TOOL_PACKAGES=(gmsh calculix-ccx gnuplot-nox libmetis-dev libbullet-dev libopencv-core-dev
+  libopencv-calib3d-dev)
 PAGE_PACKAGES=(nodejs=node npm=npm)
 
 # build_programs BUILD_DIR TARGET... : configure when needed, then build quietly; the log on failure.

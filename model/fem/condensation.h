@@ -11,7 +11,7 @@
 //
 // Ring j gathers the nodes of the skin at straight distance rho from the vertex that look its way,
 // weighted by a hat of width one pitch. Elements near the surface should be no longer than about
-// a0 / 2, inside the body too: flat elements behind a fine surface make r too small. Offline
+// a0 / 1.6, inside the body too: flat elements behind a fine surface make r too small. Offline
 // only.
 #pragma once
 

@@ -50,8 +50,9 @@ std::string distance_text(const EdgeLengths& h) {
   const std::string from_centre_2 =
       fmt::format("((x - ({}))^2 + (y - ({}))^2 + (z - ({}))^2)", o.x, o.y, o.z);
   if (h.axis == Vec3{}) return fmt::format("Max(0, Sqrt{} - {})", from_centre_2, radius_mm);
-  const std::string height = fmt::format("(({}) * (x - ({})) + ({}) * (y - ({})) + ({}) * (z - ({})))",
-                                         h.axis.x, o.x, h.axis.y, o.y, h.axis.z, o.z);
+  const std::string height =
+      fmt::format("(({}) * (x - ({})) + ({}) * (y - ({})) + ({}) * (z - ({})))", h.axis.x, o.x,
+                  h.axis.y, o.y, h.axis.z, o.z);
   return fmt::format("Sqrt((Sqrt(Max(0, {} - {}^2)) - {})^2 + {}^2)", from_centre_2, height,
                      radius_mm, height);
 }
@@ -215,7 +216,8 @@ Result<std::string> gmsh_version() {
                            .time_limit_s = 60.0,
                            .any_status = false,
                            .environment = {}});
-  if (said) while (!said->empty() && said->back() <= ' ') said->pop_back();
+  if (said)
+    while (!said->empty() && said->back() <= ' ') said->pop_back();
   return said;
 }
 

@@ -22,8 +22,8 @@ namespace tact::tools {
 /// Edge lengths around a ball, or around a circle if `axis` is not zero.
 struct EdgeLengths {
   model::Vec3 at_m{};
-  model::Vec3 axis{};      // unit, of the circle
-  double radius_m = 0.0;   // of ball or circle
+  model::Vec3 axis{};     // unit, of the circle
+  double radius_m = 0.0;  // of ball or circle
   double fine_m = 0.0;
   double growth = 0.0;     // of the edge per distance
   double largest_m = 0.0;  // 0: no limit
@@ -33,9 +33,9 @@ struct EdgeLengths {
 };
 
 /// Fills the surface. An error says what to install, or keeps gmsh's log and says where.
-model::Result<model::fem::TetMesh> fill_with_gmsh(
-    std::span<const model::Vec3> vertex_m, std::span<const model::TriangleCorners> triangle,
-    const EdgeLengths& lengths);
+model::Result<model::fem::TetMesh> fill_with_gmsh(std::span<const model::Vec3> vertex_m,
+                                                  std::span<const model::TriangleCorners> triangle,
+                                                  const EdgeLengths& lengths);
 
 /// "4.8.4", of the gmsh in PATH.
 model::Result<std::string> gmsh_version();

@@ -57,8 +57,7 @@ ReferenceData data_of(const json& j) {
 /// What a reader may rely on; empty if all is well.
 std::string complaint(const ReferenceData& data) {
   if (data.sites.empty()) return "no site";
-  if (!(data.tool_radius_m > 0.0) || !(data.ring_pitch_m > 0.0) ||
-      !(data.youngs_modulus_Pa > 0.0))
+  if (!(data.tool_radius_m > 0.0) || !(data.ring_pitch_m > 0.0) || !(data.youngs_modulus_Pa > 0.0))
     return "tool_radius_m, ring_pitch_m and youngs_modulus_Pa must be above 0";
   for (const SolvedSite& site : data.sites) {
     if (std::abs(norm(site.direction) - 1.0) > 1e-4)
@@ -72,7 +71,9 @@ std::string complaint(const ReferenceData& data) {
   return {};
 }
 
-std::string text_of(const Vec3& v) { return fmt::format("[{:.7g}, {:.7g}, {:.7g}]", v.x, v.y, v.z); }
+std::string text_of(const Vec3& v) {
+  return fmt::format("[{:.7g}, {:.7g}, {:.7g}]", v.x, v.y, v.z);
+}
 
 std::string text_of(const ReferenceCase& c) {
   std::string profile;
@@ -86,7 +87,8 @@ std::string text_of(const ReferenceCase& c) {
 
 std::string text_of(const SolvedSite& site) {
   std::string cases;
-  for (const ReferenceCase& c : site.cases) cases += (cases.empty() ? "\n  " : ",\n  ") + text_of(c);
+  for (const ReferenceCase& c : site.cases)
+    cases += (cases.empty() ? "\n  " : ",\n  ") + text_of(c);
   return fmt::format("{{\"vertex\": {}, \"point_m\": {}, \"direction\": {}, \"cases\": [{}]}}",
                      site.vertex, text_of(site.point_m), text_of(site.direction), cases);
 }
@@ -96,8 +98,8 @@ std::string text_of(const SolvedSite& site) {
 Result<ReferenceData> read_reference(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) {
-    return Error{fmt::format("{}: cannot be read; check the name, or make it with tact-reference",
-                             path)};
+    return Error{
+        fmt::format("{}: cannot be read; check the name, or make it with tact-reference", path)};
   }
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   try {  // the library reports by exceptions; they end here

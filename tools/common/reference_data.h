@@ -28,9 +28,9 @@ struct ReferenceCase {
 };
 
 struct SolvedSite {
-  std::uint32_t vertex = 0;   // of the organ's mesh
-  model::Vec3 point_m{};      // in the mesh's own frame
-  model::Vec3 direction{};    // into the tissue, unit
+  std::uint32_t vertex = 0;          // of the organ's mesh
+  model::Vec3 point_m{};             // in the mesh's own frame
+  model::Vec3 direction{};           // into the tissue, unit
   std::vector<ReferenceCase> cases;  // linear press, linear pull, then large strain; by depth
 };
 

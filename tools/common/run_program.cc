@@ -141,8 +141,8 @@ Result<ScratchFolder> ScratchFolder::make(const std::string& name) {
   const fs::path base = fs::temp_directory_path(failed);
   std::string path = (base / (name + "-XXXXXX")).string();
   if (failed || mkdtemp(path.data()) == nullptr) {
-    return Error{fmt::format("no folder {} can be made; check that TMPDIR exists and has room",
-                             path)};
+    return Error{
+        fmt::format("no folder {} can be made; check that TMPDIR exists and has room", path)};
   }
   return ScratchFolder(path);
 }

@@ -1,4 +1,5 @@
-// run_program.h - runs another program without a shell: no quoting, a time limit, Ctrl-C ends it too.
+// run_program.h - runs another program without a shell: no quoting, a time limit, Ctrl-C ends it
+// too.
 //
 // The program's standard output and standard error go to one file, which stays when it fails. It
 // reads nothing. It is a process group of its own, so that nothing of it survives the end of ours.
@@ -15,9 +16,9 @@ namespace tact::tools {
 struct ProgramCall {
   std::string program;  // looked for in PATH
   std::vector<std::string> arguments;
-  std::string directory;     // where it runs
-  std::string log_path;      // absolute, of everything it prints
-  std::string package;       // the Debian package that has it, for the sentence when it is missing
+  std::string directory;      // where it runs
+  std::string log_path;       // absolute, of everything it prints
+  std::string package;        // the Debian package that has it, for the sentence when it is missing
   double time_limit_s = 0.0;  // 0: none
   bool any_status = false;    // some programs end well with a status above 0
   std::vector<std::pair<std::string, std::string>> environment;  // on top of ours

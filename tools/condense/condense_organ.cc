@@ -14,8 +14,8 @@ using model::Result;
 
 constexpr double kRingPitch_m = 0.002;
 constexpr std::size_t kRings = 20;
-constexpr double kInside = 1.2;           // element edge over the surface's median edge
-constexpr double kElementsInPatch = 2.0;  // patch radius over element edge: r within 2 % of C_half
+constexpr double kInside = 1.5;           // element edge over the surface's median edge
+constexpr double kElementsInPatch = 1.6;  // patch radius over element edge: r within 2 % of C_half
 
 }  // namespace
 
@@ -61,12 +61,9 @@ Result<model::ComplianceMap> condense_organ(const CondenseInput& input, Condense
                                       : kElementsInPatch * std::max(settings.mesh_size_m, edge_m);
   if (settings.organ.progress && !settings.organ.progress(0, surface.vertex_m.size()))
     return Error{"interrupted"};
-  const auto body = fill_with_gmsh(surface.vertex_m, surface.triangle,
-                                   {.at_m = {},
-                                    .radius_m = 0.0,
-                                    .fine_m = settings.mesh_size_m,
-                                    .growth = 0.0,
-                                    .largest_m = 0.0});
+  EdgeLengths lengths;
+  lengths.fine_m = settings.mesh_size_m;
+  const auto body = fill_with_gmsh(surface.vertex_m, surface.triangle, lengths);
   if (!body) return body.error();
   facts = {.nodes = body->node_m.size(),
            .elements = body->element.size(),

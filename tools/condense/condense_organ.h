@@ -13,8 +13,8 @@ namespace tact::tools {
 
 struct CondenseSettings {
   double mesh_size_m =
-      0.0;  // edge of an element inside the body; 0: 1.2 median edges of the surface
-  double patch_radius_m = 0.0;               // a0; 0: twice the larger of mesh size and median edge
+      0.0;  // edge of an element inside the body; 0: 1.5 median edges of the surface
+  double patch_radius_m = 0.0;  // a0; 0: 1.6 times the larger of mesh size and median edge
   model::fem::CondensationSettings organ{};  // its patch radius is set from the above
 };
 

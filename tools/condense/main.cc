@@ -34,11 +34,11 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--out", o.out, "compliance map to write")->required();
   app.add_option("--set", o.overrides, "one key of the scene, as KEY=VALUE; repeatable");
   app.add_option("--mesh-size-m", o.mesh_size_m,
-                 "edge of an element inside the organ, m (default: 1.2 median edges of its "
+                 "edge of an element inside the organ, m (default: 1.5 median edges of its "
                  "surface); half as long is about 20 times the work")
       ->check(CLI::PositiveNumber);
   app.add_option("--patch-radius-m", o.patch_radius_m,
-                 "a0 of the loaded patch, m (default: two elements); the result hardly depends on "
+                 "a0 of the loaded patch, m (default: 1.6 elements); the result hardly depends on "
                  "it")
       ->check(CLI::PositiveNumber);
   app.add_option("--ring-pitch-m", o.ring_pitch_m, "of the shape around a place, m (default 0.002)")

@@ -38,7 +38,7 @@ struct FitSite {
 };
 
 struct FitData {
-  std::string source;  // for people
+  std::string source{};  // for people
   std::vector<double> ring_radius_m{};
   std::vector<FitSite> sites{};
 

@@ -1,4 +1,5 @@
-// block.h - a round block standing on its held bottom, to check the solver where the answer is known.
+// block.h - a round block standing on its held bottom, to check the solver where the answer is
+// known.
 #pragma once
 
 #include "tools/reference/indentation.h"

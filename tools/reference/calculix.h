@@ -40,7 +40,7 @@ struct ElasticLoad {
 struct ElasticProblem {
   const model::fem::TetMesh* body = nullptr;
   Elasticity material{};
-  std::vector<std::uint32_t> held;      // do not move at all
+  std::vector<std::uint32_t> held;  // do not move at all
   ElasticLoad load{};
   std::vector<std::uint32_t> reported;  // whose displacement is wanted
 };

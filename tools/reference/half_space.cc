@@ -3,6 +3,20 @@
 #include <cmath>
 
 namespace tact::tools {
+namespace {
+
+/// Where a rising function is zero between 0 and 1: halve the interval to the last bit.
+template <typename Function>
+double root(const Function& f) {
+  double low = 0.0, high = 1.0;
+  for (int i = 0; i < 60; ++i) {
+    const double t = 0.5 * (low + high);
+    (t < 1.0 && f(t) < 0.0 ? low : high) = t;
+  }
+  return low;
+}
+
+}  // namespace
 
 double contact_modulus_Pa(const Elasticity& m) {
   // E* = E / (1 - nu^2)
@@ -15,14 +29,9 @@ double flat_punch_force_N(const Elasticity& material, double radius_m, double de
 }
 
 double sphere_contact_radius_m(double sphere_radius_m, double depth_m) {
-  // With t = a / R: d / R = t artanh(t), which rises with t. Halve the interval to the last bit.
+  // t = a / R: d / R = t artanh(t)
   const double wanted = depth_m / sphere_radius_m;
-  double low = 0.0, high = 1.0;
-  for (int i = 0; i < 60; ++i) {
-    const double t = 0.5 * (low + high);
-    (t < 1.0 && t * std::atanh(t) < wanted ? low : high) = t;
-  }
-  return low * sphere_radius_m;
+  return sphere_radius_m * root([wanted](double t) { return t * std::atanh(t) - wanted; });
 }
 
 double sphere_force_N(const Elasticity& material, double sphere_radius_m, double depth_m) {
@@ -30,6 +39,14 @@ double sphere_force_N(const Elasticity& material, double sphere_radius_m, double
   // F = E* ((R^2 + a^2) / 2 ln((R + a) / (R - a)) - a R)
   return contact_modulus_Pa(material) *
          ((R * R + a * a) / 2.0 * std::log((R + a) / (R - a)) - a * R);
+}
+
+double sphere_contact_radius_under_m(const Elasticity& material, double sphere_radius_m,
+                                     double force_N) {
+  // t = a / R: F / (E* R^2) = (1 + t^2) artanh(t) - t
+  const double R = sphere_radius_m;  // NOLINT
+  const double wanted = force_N / (contact_modulus_Pa(material) * R * R);
+  return R * root([wanted](double t) { return (1.0 + t * t) * std::atanh(t) - t - wanted; });
 }
 
 }  // namespace tact::tools

@@ -144,8 +144,9 @@ Result<ReferenceCase> solve(const Organ& organ, const Indentation& what) {
                          .reported = nodes_of_faces(*body, [](std::size_t) { return true; })};
   problem.load.large_strain = what.large_strain;
   if (out.is_press()) {
-    out.contact_radius_m = what.contact_ratio *
-                           sphere_contact_radius_m(what.tool_radius_m, what.depth_m);
+    out.contact_radius_m = what.contact_radius_m > 0.0
+                               ? what.contact_radius_m
+                               : sphere_contact_radius_m(what.tool_radius_m, what.depth_m);
     problem.load.moved = press(*body, tool, what, out.contact_radius_m);
   } else {
     out.contact_radius_m = what.tool_radius_m;

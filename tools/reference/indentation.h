@@ -6,9 +6,11 @@
 //     u_n = d - (R - sqrt(R^2 - rho^2)) - s
 //
 // rho distance from the axis, s how far the resting surface lies below the site's tangent plane (an
-// organ is not flat). They slide freely sideways. a is that of the half-space (half_space.h): the
-// force is largest for the true a, so an error of 10 % in a is 1.5 % of F (J. R. Barber, J. Elast.
-// 4 (1974) 31). pull: the faces within R of the axis move outward as one piece, bonded.
+// organ is not flat). They slide freely sideways. The force is largest for the true a (J. R.
+// Barber, J. Elast. 4 (1974) 31), so an error of 10 % in a is about 1.5 % of F. Where the organ
+// gives way as a whole the tip presses in less than d: solve_once (solve_cache.h) takes the a that
+// the half-space has under the force of a first, coarse solve. pull: the faces within R of the axis
+// move outward as one piece, bonded.
 #pragma once
 
 #include "model/mesh.h"
@@ -31,8 +33,8 @@ struct Indentation {
   double tool_radius_m = 0.0;
   double depth_m = 0.0;  // > 0 press, < 0 pull
   bool large_strain = false;
-  int level = 2;              // of the mesh, kCoarsestLevel to kFinestLevel
-  double contact_ratio = 1.0;  // of the contact radius, to see what an error in it does
+  int level = 2;                  // of the mesh, kCoarsestLevel to kFinestLevel
+  double contact_radius_m = 0.0;  // of a press; 0: that of the half-space at this depth
 };
 
 inline constexpr int kCoarsestLevel = 1;

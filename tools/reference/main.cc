@@ -61,8 +61,9 @@ void add_options(CLI::App& app, Options& o) {
 int fail(const Error& error) {
   const bool interrupted = was_interrupted(error);
   fmt::print(stderr, "tact-reference: {}\n",
-             interrupted ? "interrupted; what was solved is kept, the same command goes on from there"
-                         : error.sentence);
+             interrupted
+                 ? "interrupted; what was solved is kept, the same command goes on from there"
+                 : error.sentence);
   return interrupted ? 1 : 2;
 }
 
@@ -109,8 +110,8 @@ Result<ReferenceData> solve_plan(const ReferencePlan& plan, const Options& o) {
 }
 
 void print_table(const ReferenceData& data) {
-  fmt::print("{:>6} {:>9} {:>11} {:>10} {:>11}  {}\n", "vertex", "depth mm", "contact mm", "force N",
-             "mesh err %", "material");
+  fmt::print("{:>6} {:>9} {:>11} {:>10} {:>11}  {}\n", "vertex", "depth mm", "contact mm",
+             "force N", "mesh err %", "material");
   for (const SolvedSite& site : data.sites)
     for (const ReferenceCase& c : site.cases)
       fmt::print("{:>6} {:>9.3g} {:>11.3f} {:>10.5f} {:>11.2f}  {}\n", site.vertex, c.depth_m * 1e3,

@@ -29,7 +29,7 @@ struct HeldBox {
 
 struct OrganBody {
   model::fem::TetMesh mesh;
-  std::vector<FaceNodes> face;     // of the refined surface
+  std::vector<FaceNodes> face;      // of the refined surface
   std::vector<model::Vec3> normal;  // of each face, outward, unit
   std::vector<std::uint32_t> held_node;
 };

@@ -28,7 +28,8 @@ struct SiteCases {
 };
 
 double change(const ReferenceCase* fine, const ReferenceCase* coarse) {
-  return coarse == nullptr ? 0.0 : std::abs(fine->force_N - coarse->force_N) / std::abs(fine->force_N);
+  return coarse == nullptr ? 0.0
+                           : std::abs(fine->force_N - coarse->force_N) / std::abs(fine->force_N);
 }
 
 ReferenceCase scaled(const ReferenceCase& unit, double depth_m) {

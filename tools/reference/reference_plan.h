@@ -20,7 +20,7 @@ struct ReferencePlan {
   std::string mesh_name;
   double tool_radius_m = 0.0;
   std::vector<std::uint32_t> sites;
-  std::vector<double> depths_m;  // above 0, rising
+  std::vector<double> depths_m;                   // above 0, rising
   std::vector<std::uint32_t> large_strain_sites;  // also among sites
   int level = 2;
 };

@@ -45,10 +45,9 @@ Result<bool> check_block(double size_m, const std::vector<Known>& cases) {
   if (!block) return block.error();
   bool good = true;
   for (const Known& known : cases) {
-    const auto solved = solve(*block, {.vertex = 0,
-                                       .tool_radius_m = kRadius_m,
-                                       .depth_m = known.depth_m,
-                                       .level = kLevel});
+    const auto solved =
+        solve(*block,
+              {.vertex = 0, .tool_radius_m = kRadius_m, .depth_m = known.depth_m, .level = kLevel});
     if (!solved) return solved.error();
     good &= judge(known, solved->force_N);
   }
@@ -143,11 +142,12 @@ Result<bool> check_organ(const std::string& folder) {
 
 Result<bool> self_check(const std::string& folder) {
   // Block 50 x 50 mm, E = 1 kPa, nu = 0.45: FEniCS, contact by penalty; the bond: CalculiX.
-  const auto block = check_block(0.05, {{"block, sphere R 5 mm at 1 mm", 1e-3, 3.801e-3, 0.015},
-                                        {"block, sphere R 5 mm at 2 mm", 2e-3, 10.68e-3, 0.015},
-                                        {"block, sphere R 5 mm at 5 mm", 5e-3, 40.46e-3, 0.015},
-                                        {"block, sphere R 5 mm at 10 mm", 10e-3, 103.5e-3, 0.02},
-                                        {"block, bonded disc pulled 1 mm", -1e-3, -13.722e-3, 0.03}});
+  const auto block =
+      check_block(0.05, {{"block, sphere R 5 mm at 1 mm", 1e-3, 3.801e-3, 0.015},
+                         {"block, sphere R 5 mm at 2 mm", 2e-3, 10.68e-3, 0.015},
+                         {"block, sphere R 5 mm at 5 mm", 5e-3, 40.46e-3, 0.015},
+                         {"block, sphere R 5 mm at 10 mm", 10e-3, 103.5e-3, 0.02},
+                         {"block, bonded disc pulled 1 mm", -1e-3, -13.722e-3, 0.03}});
   if (!block) return block;
   const auto exact_N = [](double depth_m) { return sphere_force_N(kTissue, kRadius_m, depth_m); };
   const auto space = check_block(1.0, {{"half-space, sphere at 1 mm", 1e-3, exact_N(1e-3), 0.015},

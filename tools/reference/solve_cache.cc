@@ -10,6 +10,7 @@
 
 #include "model/scene_words.h"
 #include "tools/common/table.h"
+#include "tools/reference/half_space.h"
 
 namespace tact::tools {
 namespace {
@@ -84,23 +85,46 @@ std::string mesh_hash(const model::SurfaceMesh& mesh) {
 
 std::string cache_key(const Organ& organ, const Indentation& what, const std::string& solver) {
   const EdgeLengths edges = edge_lengths(organ, what);
+  const std::string contact =
+      what.contact_radius_m > 0.0 ? fmt::format("{:.4g} m", what.contact_radius_m) : "1";
   return fmt::format(
-      "method {}, {}; mesh {}; E {:.9g} Pa, nu {:.9g}; held {} to {} m; vertex {}, radius {:.9g} m, "
-      "depth {:.9g} m, {}; contact {:.9g}; edges {:.9g} m, growth {:.9g}, to {:.9g} m",
+      "method {}, {}; mesh {}; E {:.9g} Pa, nu {:.9g}; held {} to {} m; vertex {}, radius {:.9g} "
+      "m, "
+      "depth {:.9g} m, {}; contact {}; edges {:.9g} m, growth {:.9g}, to {:.9g} m",
       kMethod, solver, organ.hash, organ.material.youngs_modulus_Pa, organ.material.poisson_ratio,
       text_of(organ.held.min_m), text_of(organ.held.max_m), what.vertex, what.tool_radius_m,
-      what.depth_m, what.large_strain ? "large strain" : "linear", what.contact_ratio, edges.fine_m,
+      what.depth_m, what.large_strain ? "large strain" : "linear", contact, edges.fine_m,
       edges.growth, edges.largest_m);
 }
 
-model::Result<ReferenceCase> solve_once(const Organ& organ, const Indentation& what,
-                                        const std::string& solver, const SolveCache& cache) {
+namespace {
+
+/// As asked, from the cache or solved and kept.
+model::Result<ReferenceCase> solve_or_find(const Organ& organ, const Indentation& what,
+                                           const std::string& solver, const SolveCache& cache) {
   const std::string key = cache_key(organ, what, solver);
   if (auto found = cache.find(key)) return std::move(*found);
   auto solved = solve(organ, what);
   if (!solved) return solved;
   if (auto error = cache.keep(key, *solved)) return std::move(*error);
   return solved;
+}
+
+}  // namespace
+
+model::Result<ReferenceCase> solve_once(const Organ& organ, const Indentation& what,
+                                        const std::string& solver, const SolveCache& cache) {
+  if (what.depth_m < 0.0 || what.contact_radius_m > 0.0) {
+    return solve_or_find(organ, what, solver, cache);
+  }
+  Indentation probe = what;
+  probe.level = kCoarsestLevel;
+  const auto first = solve_or_find(organ, probe, solver, cache);
+  if (!first) return first;
+  Indentation pressed = what;
+  pressed.contact_radius_m =
+      sphere_contact_radius_under_m(organ.material, what.tool_radius_m, first->force_N);
+  return solve_or_find(organ, pressed, solver, cache);
 }
 
 }  // namespace tact::tools

@@ -36,7 +36,8 @@ std::string mesh_hash(const model::SurfaceMesh& mesh);
 /// `solver`: names and versions of the programs.
 std::string cache_key(const Organ& organ, const Indentation& what, const std::string& solver);
 
-/// From the cache, or solved and kept.
+/// From the cache, or solved and kept. A press without a contact radius is solved coarsely first;
+/// that force gives the radius (see indentation.h).
 model::Result<ReferenceCase> solve_once(const Organ& organ, const Indentation& what,
                                         const std::string& solver, const SolveCache& cache);
 
