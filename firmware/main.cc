@@ -3,7 +3,9 @@
 
 #include "firmware/replay.h"
 #include "firmware/session.h"
+#include "model/plan_file.h"
 #include "model/scene.h"
+#include "model/scene_words.h"
 
 namespace {
 
@@ -40,6 +42,23 @@ int run_replay(const model::Scene& scene, const std::string& path) {
                   1);
 }
 
+/// law = "auto": what tact-plan chose on this machine. The choice counts in the scene's hash, so a
+/// recording is never replayed with another law.
+std::optional<model::Error> choose_law(model::Scene& scene) {
+  if (scene.law != model::LawKind::kAuto) return std::nullopt;
+  const auto plan = model::find_plan(scene);
+  if (!plan) return plan.error();
+  model::use_sizes(plan->sizes, scene);
+  const std::string choice = model::text_of(plan->sizes);
+  fmt::print(stderr, "tactd: law \"auto\" is {}: p99.9 {:.3g} us, force error {:.1f} %\n", choice,
+             plan->tick_p999_us, 100.0 * plan->force_error_ratio);
+  model::TextHash hash;
+  hash.add(scene.hash);
+  hash.add(choice);
+  scene.hash = hash.hex();
+  return std::nullopt;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -54,8 +73,9 @@ int main(int argc, char** argv) {
     fmt::print("{}", model::scene_reference());
     return 0;
   }
-  const auto scene = model::load_scene(options.scene_path, options.overrides);
+  auto scene = model::load_scene(options.scene_path, options.overrides);
   if (!scene) return complain(scene.error().sentence, 2);
+  if (const auto trouble = choose_law(*scene)) return complain(trouble->sentence, 2);
   if (const auto refusal = model::check_drivable(*scene)) return complain(refusal->sentence, 2);
   if (!options.replay_path.empty()) return run_replay(*scene, options.replay_path);
   return firmware::run_session(*scene, options);

@@ -1,5 +1,4 @@
-// integrators.h - six ways to step a mass on springs, and one step of the oscillator m x'' + c x' +
-// k x = f.
+// integrators.h - six ways to step masses on springs, and a step of one: m x'' + c x' + k x = f.
 //
 //     explicit Euler        MA-2   x+ = x + h v                  v+ = v + h a(x, v)
 //     improved Euler        MA-3   v+ = v + h a(x, v)            x+ = x + h v+

@@ -1,5 +1,4 @@
-// spring_network.h - masses joined by springs: forces, stored energy, and one step of each
-// integrator.
+// spring_network.h - masses joined by springs: forces, stored energy, a step of each integrator.
 //
 //     MA-1  f_i = load_i - g_i v_i - a_i (x_i - X_i) + sum_j [ k (|D| - L0) + c (v_j - v_i).u ] u
 //           D = x_j - x_i,  u = D / |D|;  a spring of no length is skipped

@@ -1,5 +1,4 @@
-// spring_patch.h - masses and springs near the contact, stepped every tick: the SiteLaw with
-// inertia.
+// spring_patch.h - masses and springs near the contact, stepped every tick: a law with inertia.
 //
 //     nodes     vertices of the surface near the contact (patch_region.h), mass m each
 //     springs   along the edges, and from every node to its rest position (patch_surface.h)

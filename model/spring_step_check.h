@@ -1,9 +1,8 @@
 // spring_step_check.h - is this step short enough for these springs? Asked once, before the loop.
 //
-//     omega_i^2 <= (sum over its springs of k (1 + [other end moves]) + a_i + q) / m_i     every
-//     node at every omega up to the largest:  zeta between  tau_low omega / 2
-//                                        and  (tau_high omega + max g_i / m_i / omega) / 2
-//     h <= 0.8 z_max(zeta) / omega                                              else refused
+//     every node       omega_i^2 <= (sum of k (1 + [other end moves]) + a_i + q) / m_i
+//     every omega up   tau_low omega / 2 <= zeta <= (tau_high omega + max (g_i / m_i) / omega) / 2
+//     to the largest   h <= 0.8 z_max(zeta) / omega, else refused
 //
 //     k, a  spring, anchor, N/m    q  probes, N/m    m  mass, kg    g  drag, N s/m    tau  c / k, s
 //

@@ -76,7 +76,9 @@ TEST(FitJudge, ARhombusChainCannotFollowARoundTip) {
   model::Scene scene = tests::make_plate_scene();
   scene.described = {model::LawKind::kRhombus};
   const FitData data{.sites = {power_site("a", 0.5, 1.5)}};
-  const auto fitted = fit_law(fit_laws_of(scene, data)[0], scene, data, {});
+  FitLaw law = fit_laws_of(scene, data)[0];
+  law.most_evaluations = 300;
+  const auto fitted = fit_law(law, scene, data, {});
   ASSERT_TRUE(fitted) << fitted.error().sentence;
   const Judgement& j = fitted->judged;
   EXPECT_FALSE(j.follows);

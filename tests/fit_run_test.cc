@@ -103,13 +103,15 @@ FittedLaw fit(const std::string& name, const Scene& start, const FitData& data,
 
 TEST(FitRun, FindsTheRhombusChainThatMadeTheData) {
   Scene truth = make_scene();
+  truth.rhombus.units = 4;  // 10 mm go nearly to the end: deep enough to tell the springs apart
   truth.pull = {.stiffness_N_per_m = 45.0, .limit_m = 8_mm};
   FitData data{.sites = {make_site(truth, 100, 8_mm)}};
   answer(truth, LawKind::kRhombus, data, true);
-  Scene start = make_scene();
-  start.rhombus.rod_length_m *= 1.4;
-  start.rhombus.initial_angle_rad = 0.8;
-  start.rhombus.normal_stiffness_N_per_m = 700.0;
+  Scene start = truth;
+  start.pull.reset();
+  start.rhombus.rod_length_m *= 1.2;
+  start.rhombus.initial_angle_rad = 0.6;
+  start.rhombus.normal_stiffness_N_per_m = 300.0;
   start.rhombus.tangential_stiffness_N_per_m = 90.0;
   start.rhombus.growth = 4.0;
   const FittedLaw fitted = fit("rhombus", start, data);
@@ -123,7 +125,12 @@ TEST(FitRun, FindsTheRhombusChainThatMadeTheData) {
   EXPECT_NEAR(fitted.keys[5].value, 45.0, 0.01);  // pull.stiffness_N_per_m
   // With noise of 1 % the curve stays, within less than the noise.
   spoil(data);
-  EXPECT_LT(fit("rhombus", start, data).judged.fitted.rms_ratio(), 0.012);
+  FitLaw quick = law_named(start, data, "rhombus");
+  quick.most_evaluations = 200;
+  const auto noisy = fit_law(quick, start, data, {});
+  ASSERT_TRUE(noisy);
+  EXPECT_LT(noisy->judged.fitted.rms_ratio(), 0.012);
+  EXPECT_NEAR(noisy->keys[5].value, 45.0, 1.0);
 }
 
 TEST(FitRun, FindsTheDiscStackThatMadeTheData) {
@@ -220,17 +227,17 @@ TEST(FitRun, FindsTheModulusOfAnElasticOrgan) {
 
 TEST(FitRun, KeepsThePatchAsSoftAsTheDataAndItsMassInProportion) {
   Scene truth = make_scene();
-  truth.organ_mesh = tests::make_plate(0.06, 10);
+  truth.organ_mesh = tests::make_plate(0.06, 8);
   truth.spring_patch = {.tissue = {.surface_stiffness_N_per_m = 40.0,
                                    .body_stiffness_N_per_m = 10.0,
                                    .damping_time_s = 0.004,
                                    .body_damping_time_s = 0.004},
                         .coupling_stiffness_N_per_m = 120.0,
-                        .node_mass_kg = 0.002,
+                        .node_mass_kg = 0.008,
                         .working_depth_m = 12_mm,
-                        .nodes = 64};
-  FitData data{.sites = {make_site(truth, 60, 0.0)}};
-  data.sites[0].samples = {{.depth_m = 3_mm}, {.depth_m = 6_mm}, {.depth_m = 10_mm}};
+                        .nodes = 40};
+  FitData data{.sites = {make_site(truth, 40, 0.0)}};
+  data.sites[0].samples = {{.depth_m = 10_mm}};
   answer(truth, LawKind::kSpringPatch, data, true);
   Scene start = truth;
   start.spring_patch.tissue.surface_stiffness_N_per_m = 80.0;
@@ -243,7 +250,7 @@ TEST(FitRun, KeepsThePatchAsSoftAsTheDataAndItsMassInProportion) {
   const double springs = value_of(fitted, "surface_stiffness_N_per_m") +
                          value_of(fitted, "body_stiffness_N_per_m") +
                          value_of(fitted, "coupling_stiffness_N_per_m");
-  EXPECT_NEAR(value_of(fitted, "node_mass_kg") / springs, 0.002 / 210.0, 1e-9);
+  EXPECT_NEAR(value_of(fitted, "node_mass_kg") / springs, 0.008 / 210.0, 1e-9);
 }
 
 }  // namespace

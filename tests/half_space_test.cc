@@ -36,14 +36,6 @@ TEST(HalfSpace, ForceRisesByThePunchStiffnessOfItsContact) {
   }
 }
 
-TEST(HalfSpace, KnowsTheContactByDepthOrByForce) {
-  for (const double d : {1e-6, 1e-3, 5e-3, 12e-3}) {
-    const double force_N = sphere_force_N(kTissue, kRadius_m, d);
-    EXPECT_NEAR(sphere_contact_radius_under_m(kTissue, kRadius_m, force_N),
-                sphere_contact_radius_m(kRadius_m, d), 1e-9 * kRadius_m);
-  }
-}
-
 TEST(HalfSpace, AgreesWithTheIndependentSolution) {
   // Block of radius and height 2 m, E = 1 kPa, nu = 0.45, sphere R = 5 mm, by FEniCS. Its mesh is
   // 0.2 mm at the tip: good to 1 %.

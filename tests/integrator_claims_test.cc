@@ -1,5 +1,4 @@
-// The claims of the midpoint-averaging source (PHYSICS 4.3, X18 to X20): what does not hold,
-// failing.
+// What the source of midpoint-averaging claims and what does not hold (PHYSICS 4.3, X18 to X20).
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -21,7 +21,7 @@ inline model::SpringPatchParameters soft_patch() {
           .coupling_stiffness_N_per_m = 300.0,
           .node_mass_kg = 0.002,
           .working_depth_m = 0.01,
-          .nodes = 200};
+          .nodes = 120};
 }
 
 /// One sphere on z = 0 whose place and depth are given tick by tick.

@@ -86,10 +86,10 @@ TEST(PatchRegion, GatheringMakesNoEnergyBeyondItsDebt) {
     for (std::uint32_t i = 0; i < 100; ++i) {
       const SpringNodes node = region.network({}).node;
       if (node.inverse_mass_per_kg[i] == 0.0) continue;
-      node.position_m[i].z = -0.002 * std::exp(-0.03 * i);
+      node.position_m[i].x += 0.002 * std::exp(-0.03 * i);
       node.velocity_mps[i] = {0.0, speed_mps * std::sin(i), speed_mps};
     }
-    for (const std::uint32_t next : {424u, 432u, 420u, 440u}) {
+    for (const std::uint32_t next : {426u, 436u, 420u, 440u}) {
       triangle[0] = next;
       const double before_J = energy_J(), owed_J = region.handover_debt_J();
       region.gather(triangle);
@@ -134,7 +134,7 @@ TEST(PatchRegion, ALeavingVertexReturnsToRest) {
 
 // Small regions that are gathered anew again and again, at once and in the middle of motion.
 TEST(PatchRegion, HandingOverNeverGivesTheToolEnergy) {
-  for (const std::size_t nodes : {40u, 80u, 200u}) {
+  for (const std::size_t nodes : {40u, 80u, 120u}) {
     for (const double stretch : {0.0, 0.1}) {
       for (const double speed_m : {0.00005, 0.0005}) {  // a tick
         SpringPatchParameters p = soft_patch();
@@ -143,7 +143,7 @@ TEST(PatchRegion, HandingOverNeverGivesTheToolEnergy) {
         PressedPatch pressed(p);
         double most_J = 0.0, least_J = 0.0;
         const int ticks = static_cast<int>(0.12 / speed_m);
-        for (int stroke = 0; stroke < 4; ++stroke) {
+        for (int stroke = 0; stroke < 2; ++stroke) {
           for (int i = 1; i <= ticks; ++i) {
             const double phase = 2.0 * std::numbers::pi * i / ticks;
             pressed.move_to(0.02 * std::sin(phase), 0.012 * std::sin(2.0 * phase),

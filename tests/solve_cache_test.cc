@@ -7,6 +7,7 @@
 
 #include "tools/common/run_program.h"
 #include "tools/reference/block.h"
+#include "tools/reference/contact_radius.h"
 #include "tools/reference/half_space.h"
 
 namespace tact::tools {
@@ -101,27 +102,36 @@ TEST(SolveCache, AHitDoesNotRunTheSolver) {
   EXPECT_EQ(miss.error().sentence, "gmsh is not installed; apt install gmsh");
 }
 
-TEST(SolveCache, TheContactRadiusIsThatUnderTheForceOfACoarseSolve) {
+TEST(SolveCache, APressWithoutARadiusIsSolvedCoarselyFirst) {
   const auto where = folder();
   const SolveCache cache(where.path());
   const Organ organ = block();
   Indentation asked = kPress;
   asked.contact_radius_m = 0.0;
-  asked.level = 3;
-  Indentation probe = asked, pressed = asked;
-  probe.level = kCoarsestLevel;
-  const double force_N = 3e-3;
-  pressed.contact_radius_m = sphere_contact_radius_under_m(organ.material, 5e-3, force_N);
-  EXPECT_LT(pressed.contact_radius_m, sphere_contact_radius_m(5e-3, 1e-3)) << "it gives way";
-  const auto keep = [&](const Indentation& what, double solved_N) {
-    EXPECT_FALSE(cache.keep(cache_key(organ, what, "s"),
-                            {.depth_m = 1e-3, .force_N = solved_N, .profile_m = {1e-3}}));
+  const std::string path = std::getenv("PATH");
+  const auto solve_without_programs = [&] {
+    setenv("PATH", "/nowhere", 1);
+    auto result = solve_once(organ, asked, "s", cache);
+    setenv("PATH", path.c_str(), 1);
+    return result;
   };
-  keep(probe, force_N);
-  keep(pressed, 3.1e-3);
-  const auto solved = solve_once(organ, asked, "s", cache);
+  EXPECT_FALSE(solve_without_programs());
+  Indentation probe = kPress;
+  probe.depth_m = 5e-3;
+  probe.level = kCoarsestLevel;
+  probe.contact_radius_m = 0.75 * 5e-3;
+  const double probe_N = 0.9 * sphere_force_N(organ.material, 5e-3, 5e-3);
+  ASSERT_FALSE(cache.keep(cache_key(organ, probe, "s"),
+                          {.depth_m = 5e-3, .force_N = probe_N, .profile_m = {}}));
+  const TipContact tip(organ.material, 5e-3, {}, 1e-3);  // the block's top is flat
+  Indentation pressed = kPress;
+  pressed.contact_radius_m = tip.radius_m(1e-3, tip.give_m_per_N(5e-3, probe_N));
+  EXPECT_LT(pressed.contact_radius_m, 0.99 * sphere_contact_radius_m(5e-3, 1e-3));
+  ASSERT_FALSE(cache.keep(cache_key(organ, pressed, "s"),
+                          {.depth_m = 1e-3, .force_N = 42.0, .profile_m = {}}));
+  const auto solved = solve_without_programs();
   ASSERT_TRUE(solved) << solved.error().sentence;
-  EXPECT_EQ(solved->force_N, 3.1e-3);
+  EXPECT_EQ(solved->force_N, 42.0);
 }
 
 }  // namespace

@@ -8,8 +8,7 @@
 
 namespace tact::tests {
 
-/// cells x cells squares with diagonals in z = 0, corners fixed, a shaken start if `shake_m` is not
-/// 0.
+/// cells x cells squares with diagonals in z = 0, corners fixed; shake_m displaces the start.
 struct SpringNet {
   std::vector<model::Vec3> position_m, velocity_mps, rest_m, load_N;
   std::vector<double> inverse_mass_per_kg, anchor_N_per_m, drag_Ns_per_m;

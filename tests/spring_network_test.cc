@@ -151,7 +151,7 @@ TEST(SpringNetwork, EveryIntegratorFindsTheSameRest) {
   for (const auto& entry : kIntegratorNames) {
     SpringNet net = make_net(6, {.damping_Ns_per_m = 0.1, .drag_Ns_per_m = 0.1});
     net.load_N[24] = {0.0, 0.0, -0.02};
-    run(net, rule(entry.integrator, 0.0005), 8000);
+    run(net, rule(entry.integrator, 0.0005), 3000);
     depth_m.push_back(net.position_m[24].z);
   }
   for (const double d : depth_m) EXPECT_NEAR(d / depth_m[0], 1.0, 1e-6);

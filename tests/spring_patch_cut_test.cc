@@ -29,7 +29,7 @@ SpringPatchParameters stretched() {
 }
 
 /// Touched in the middle for long enough to have settled.
-void settle(PressedPatch& pressed, double depth_m, int ticks = 1500) {
+void settle(PressedPatch& pressed, double depth_m, int ticks = 800) {
   for (int i = 0; i < ticks; ++i) {
     pressed.move_to(0.001, 0.0024, depth_m);
     pressed.advance();
@@ -78,7 +78,7 @@ TEST(SpringPatchCut, PretensionPullsTheLipsApart) {
     settle(pressed, 1e-6, 1);
     pressed.patch().cut(stroke(-0.0201, 0.0199, 0.0024));
     pressed.patch().leave(0);
-    pressed.advance(2000);
+    pressed.advance(800);
     // vertices of the rows y = 0 and y = 5 mm at x = 0
     const auto& mesh = pressed.mesh();
     double low_m = 0.0, high_m = 0.0;

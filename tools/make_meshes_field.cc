@@ -56,6 +56,9 @@ class Grid {
     for (std::size_t c = 0; c < 8; ++c) {
       corner[c] = ((k + (c >> 2)) * ny_ + j + (c >> 1 & 1)) * nx_ + i + (c & 1);
     }
+    const auto is_inside = [&](std::size_t c) { return inside(c); };
+    const auto all = std::count_if(corner.begin(), corner.end(), is_inside);
+    if (all == 0 || all == 8) return;  // most cubes
     for (const auto& t : kTetrahedra) {
       std::vector<std::size_t> in, out;
       for (const std::size_t c : t) (inside(corner[c]) ? in : out).push_back(corner[c]);

@@ -68,12 +68,12 @@ bool element_stiffness(const TetMesh& mesh, const TetNodes& nodes, double lambda
     if (!(volume_m3 > 0.0)) return false;
     const Gradients g = reference * jacobian.inverse();
     const Eigen::Matrix<double, 10, 10> dots = volume_m3 * mu_Pa * (g * g.transpose());
-    for (int a = 0; a < 10; ++a)
-      for (int b = 0; b < 10; ++b) {
+    for (Eigen::Index a = 0; a < 10; ++a)
+      for (Eigen::Index b = 0; b < 10; ++b) {
         // lambda N_a,i N_b,j + mu (N_a,j N_b,i + delta_ij N_a,k N_b,k)
         k.block<3, 3>(3 * a, 3 * b) += volume_m3 * (lambda_Pa * g.row(a).transpose() * g.row(b) +
                                                     mu_Pa * g.row(b).transpose() * g.row(a));
-        for (int i = 0; i < 3; ++i) k(3 * a + i, 3 * b + i) += dots(a, b);
+        for (Eigen::Index i = 0; i < 3; ++i) k(3 * a + i, 3 * b + i) += dots(a, b);
       }
   }
   return true;

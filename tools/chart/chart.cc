@@ -140,7 +140,8 @@ Table empty_chart(std::size_t variants, const Shard& shard) {
            number("tick_median_us"),
            number("tick_p999_us"),
            number("instructions"),
-           number("ticks")},
+           number("ticks"),
+           number("paused")},
           variants,
           shard};
 }
@@ -189,7 +190,8 @@ Row table_row(const ChartRow& row, const Provenance& provenance) {
           number(row.timing.median_us),
           number(row.timing.p999_us),
           number(row.timing.instructions),
-          number(row.timing.ticks)};
+          number(row.timing.ticks),
+          number(row.timing.paused)};
 }
 
 std::vector<std::size_t> front_rows(const Table& table) {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -84,6 +85,9 @@ Result<Table> table_of(const Options& o, const Scene& scene, const ReferenceData
   const auto rows = measure_chart(scene, reference, o.chart);
   if (!rows) return rows.error();
   Table table = empty_chart(all, o.chart.shard);
+  const auto failed = [](const ChartRow& row) { return !row.failure.empty(); };
+  if (std::all_of(rows->begin(), rows->end(), failed) && o.chart.shard.is_whole())
+    return Error{rows->front().failure};
   for (const ChartRow& row : *rows) table.add(table_row(row, provenance));
   return table;
 }

@@ -3,8 +3,10 @@
 // Errors are quasi-static: a stepped subject ticks at one depth until its force stays within
 // 0.1 % over 50 ticks, or for kMostSettleTicks. Relaxation is not asked: the reference is elastic.
 // Time is that of a probe that moves, one site, warm, each tick on its own, less what reading the
-// clock costs. The p99.9 is that of the quietest of some rounds: a shared machine pauses programs
-// at random, and what is asked here is the law.
+// clock costs; the median of very short ticks is that of the mean of a few. What is asked is the
+// law, not the load of the machine: ticks in which the system ran another program are counted and
+// left out, and of some rounds the one with the least p99.9 counts. The loop itself runs where
+// nothing else does.
 #pragma once
 
 #include <vector>
@@ -57,6 +59,7 @@ struct Timing {
   double median_us = 0.0, p999_us = 0.0;
   double instructions = 0.0;  // per tick; NaN where the machine does not count them
   std::size_t ticks = 0;      // a round
+  std::size_t paused = 0;     // of these, left out of the p99.9
 };
 Timing measure_time(Subject& subject, const std::vector<model::Indentation>& path,
                     const TimingSettings& settings);

@@ -90,7 +90,7 @@ std::optional<Error> check_same_source(const Table& table) {
 }
 
 std::string chart_text(const Table& table) {
-  std::string out = fmt::format("{:<34} {:>8} {:>8} {:>8} {:>7} {:>8} {:>9} {:>9} {:>8} {:>9}\n",
+  std::string out = fmt::format("{:<40} {:>8} {:>8} {:>8} {:>7} {:>8} {:>9} {:>9} {:>8} {:>9}\n",
                                 "law and size", "force %", "worst %", "held o %", "in JND",
                                 "shape %", "median us", "p99.9 us", "instr.", "memory kB");
   const auto front = front_rows(table);
@@ -105,11 +105,11 @@ std::string chart_text(const Table& table) {
                                                     : "  ",
                                          table.word(row, "family"), table.word(row, "size"));
     if (table.word(row, "failure") != "-") {
-      out += fmt::format("{:<34} not measured: {}\n", name, table.word(row, "failure"));
+      out += fmt::format("{:<40} not measured: {}\n", name, table.word(row, "failure"));
       continue;
     }
     const double instructions = number("instructions");
-    out += fmt::format("{:<34} {:>8} {:>8} {:>8} {:>7} {:>8} {:>9} {:>9} {:>8} {:>9}\n", name,
+    out += fmt::format("{:<40} {:>8} {:>8} {:>8} {:>7} {:>8} {:>9} {:>9} {:>8} {:>9}\n", name,
                        text_or_dash(number("force_rms_ratio"), 100.0, 2),
                        text_or_dash(number("force_worst_ratio"), 100.0, 2),
                        text_or_dash(number("held_out_rms_ratio"), 100.0, 2),

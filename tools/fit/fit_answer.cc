@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <optional>
 
 #include "model/tissue_law.h"
 
@@ -36,13 +38,13 @@ double settled_force_N(SiteLaw& law, const Indentation& in) {
   return force_N;
 }
 
-void read_profile(const SiteLaw& law, const Indentation& in, std::span<const double> radius_m,
+/// `own`: the rings that the law gives, `pitch_m` apart.
+void read_profile(std::span<const double> own, double pitch_m, std::span<const double> radius_m,
                   std::vector<double>& ring_m) {
-  std::array<double, kMostRings> own{};
-  const std::size_t rings = std::min(law.profile(in, own), kMostRings);
+  const std::size_t rings = own.size();
   const auto at = [&](std::size_t j) { return j < rings ? own[j] : 0.0; };
   for (const double r_m : radius_m) {
-    const double x = std::min(r_m / law.ring_pitch_m(), static_cast<double>(kMostRings));
+    const double x = std::min(r_m / pitch_m, static_cast<double>(kMostRings));
     const auto j = static_cast<std::size_t>(x);
     const double t = x - static_cast<double>(j);
     ring_m.push_back((1.0 - t) * at(j) + t * at(j + 1));
@@ -74,10 +76,54 @@ void read_shape(SiteLaw& law, const model::SurfaceMesh& surface, const Indentati
   }
 }
 
+/// Chain or sheet, solved once for every depth.
+Result<std::vector<FitAnswer>> solved_answers(const model::Law& press, const model::Scene& scene,
+                                              const FitData& data) {
+  const model::Law* law = &press;
+  std::optional<model::LinearPull> pulled;
+  if (scene.pull) {
+    auto made = make_linear_pull(press, *scene.pull);
+    if (!made) return made.error();
+    law = &pulled.emplace(std::move(*made));
+  }
+  std::map<double, FitAnswer> known;
+  std::vector<FitAnswer> out;
+  for (const FitSite& site : data.sites) {
+    for (const FitSample& sample : site.samples) {
+      const auto [at, is_new] = known.try_emplace(sample.depth_m);
+      FitAnswer& answer = at->second;
+      if (is_new) answer.force_N = law->respond(sample.depth_m).force_N;
+      if (answer.ring_m.empty() && !sample.ring_m.empty()) {
+        std::array<double, kMostRings> own{};
+        const std::size_t rings = std::min(law->profile(sample.depth_m, own), kMostRings);
+        read_profile({own.data(), rings}, law->ring_pitch_m(), data.ring_radius_m, answer.ring_m);
+      }
+      out.push_back(answer);
+    }
+  }
+  return out;
+}
+
+Result<std::vector<FitAnswer>> solve(const model::Scene& scene, model::LawKind kind,
+                                     const FitData& data) {
+  if (kind == model::LawKind::kRhombus) {
+    const auto chain = make_rhombus_chain(scene.rhombus);
+    return chain ? solved_answers(*chain, scene, data) : chain.error();
+  }
+  const auto sheet = make_hex_sheet(scene.hex_sheet);
+  return sheet ? solved_answers(*sheet, scene, data) : sheet.error();
+}
+
+bool is_solved(const model::Scene& scene, model::LawKind kind) {
+  return kind == model::LawKind::kRhombus ||
+         (kind == model::LawKind::kHexSheet && scene.hex_sheet.rings > 0);
+}
+
 }  // namespace
 
 Result<std::vector<FitAnswer>> answers_of(const model::Scene& scene, model::LawKind kind,
-                                          const FitData& data) {
+                                          const FitData& data, AnswerBy by) {
+  if (by == AnswerBy::kSolving && is_solved(scene, kind)) return solve(scene, kind, data);
   auto made = make_tissue_law(scene, kind);
   if (!made) return made.error();
   SiteLaw& law = (*made)->site_law();
@@ -94,7 +140,9 @@ Result<std::vector<FitAnswer>> answers_of(const model::Scene& scene, model::LawK
       if (is_stepped) {
         read_shape(law, scene.organ_mesh, in, data.ring_radius_m, answer.ring_m);
       } else {
-        read_profile(law, in, data.ring_radius_m, answer.ring_m);
+        std::array<double, kMostRings> own{};
+        const std::size_t rings = std::min(law.profile(in, own), kMostRings);
+        read_profile({own.data(), rings}, law.ring_pitch_m(), data.ring_radius_m, answer.ring_m);
       }
     }
   }

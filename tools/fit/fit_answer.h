@@ -18,8 +18,13 @@ struct FitAnswer {
   std::vector<double> ring_m{};  // at the radii of the data; NaN: not known
 };
 
+/// As the loop feels it, from its tables; or, where a search asks thousands of times for a few
+/// depths, the chain and the sheet solved at these depths alone (the same within 1e-6).
+enum class AnswerBy { kLoop, kSolving };
+
 /// One answer a sample, in the order of sites and samples. An error says why there is no such law.
 model::Result<std::vector<FitAnswer>> answers_of(const model::Scene& scene, model::LawKind kind,
-                                                 const FitData& data);
+                                                 const FitData& data,
+                                                 AnswerBy by = AnswerBy::kLoop);
 
 }  // namespace tact::tools

@@ -63,7 +63,14 @@ FitLaw coned_disc_stack(const Scene& scene) {
   law.parameters.push_back({"disc_stack", "free_height_m", (1.0 + kFlattestCone) * thickness_m,
                             (1.0 + kSteepestCone) * thickness_m,
                             [](Scene& s) -> double& { return s.disc_stack.disc.free_height_m; }});
-  law.starts = {{1, 1}, {1, 1.05}, {1, 1.2}};
+  // each height has its own texture and its own local minimum: begin at many
+  constexpr int kHeights = 12;
+  const double now_m = scene.disc_stack.disc.free_height_m;
+  law.starts.clear();
+  for (int i = 0; i < kHeights; ++i) {
+    const double cone = kFlattestCone + (kSteepestCone - kFlattestCone) * (i + 0.5) / kHeights;
+    law.starts.push_back({1, (1.0 + cone) * thickness_m / now_m});
+  }
   return law;
 }
 

@@ -47,7 +47,7 @@ class Fit {
     }
     out.residual = [this](std::span<const double> x, std::span<double> r) {
       set(x);
-      const auto answers = answers_of(scene_, law_.kind, data_);
+      const auto answers = answers_of(scene_, law_.kind, data_, AnswerBy::kSolving);
       if (answers) fill(*answers, r);
       return answers.has_value();
     };
@@ -62,7 +62,7 @@ class Fit {
       x.push_back(std::log(std::clamp(scene_value_[i] * ratios[i], p.low, p.high)));
     }
     set(x);
-    const auto answers = answers_of(scene_, law_.kind, data_);
+    const auto answers = answers_of(scene_, law_.kind, data_, AnswerBy::kSolving);
     if (!answers) return x;
     const double factor = press_factor(*answers);
     for (std::size_t i = 0; i < law_.parameters.size(); ++i) {
@@ -118,6 +118,26 @@ class Fit {
   double peak_N_ = 0.0;
 };
 
+/// A short search from every start, a long one from the best of them.
+SearchResult search_from_all(const FitLaw& law, Fit& fit, int& evaluations) {
+  constexpr double kShort = 0.1;
+  SearchProblem problem = fit.problem();
+  const auto go = [&](const std::vector<double>& start) {
+    SearchResult found = search(problem, start);
+    evaluations += found.evaluations;
+    return found;
+  };
+  SearchResult best;
+  if (law.starts.size() > 1)
+    problem.most_evaluations = static_cast<int>(kShort * law.most_evaluations);
+  for (const std::vector<double>& ratios : law.starts) {
+    SearchResult found = go(fit.start(ratios));
+    if (best.x.empty() || found.sum_of_squares < best.sum_of_squares) best = std::move(found);
+  }
+  problem.most_evaluations = law.most_evaluations;
+  return law.starts.size() > 1 ? go(best.x) : best;
+}
+
 FittedKey key_of(const FitParameter& p, Scene& scene) {
   constexpr double kNear = 1.001;
   const double value = p.in(scene);
@@ -157,14 +177,8 @@ Result<FittedLaw> fit_law(const FitLaw& law, const Scene& scene, const FitData& 
                     law.name, data.source)};
   if (const auto possible = make_tissue_law(scene, law.kind); !possible) return possible.error();
   Fit fit(law, scene, data, options);
-  const SearchProblem problem = fit.problem();
-  SearchResult best;
   FittedLaw out{.name = law.name, .choice = law.choice};
-  for (const std::vector<double>& ratios : law.starts) {
-    SearchResult found = search(problem, fit.start(ratios));
-    out.evaluations += found.evaluations;
-    if (best.x.empty() || found.sum_of_squares < best.sum_of_squares) best = std::move(found);
-  }
+  const SearchResult best = search_from_all(law, fit, out.evaluations);
   fit.set(best.x);
   const auto made = make_tissue_law(fit.scene(), law.kind);
   if (!made) return made.error();

@@ -6,7 +6,8 @@
 //     e_shape  RMS error of the shape over the rings, of the depth     w  weight, 0.1 by default
 //
 // So an error of the shape of 10 % of the depth counts like one of the force of 1 % of the peak.
-// From several fixed starts, each first scaled to the force of the data; the best is kept.
+// From several fixed starts, each first scaled to the force of the data: a short search from each,
+// a long one from the best. What is reported is the law as the loop feels it.
 #pragma once
 
 #include <string>

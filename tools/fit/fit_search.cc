@@ -79,10 +79,11 @@ class Functor {
 SearchResult search(const SearchProblem& problem, const std::vector<double>& start) {
   Functor functor(problem);
   Eigen::LevenbergMarquardt<Functor> solver(functor);
-  solver.parameters.xtol = 1e-9;
-  solver.parameters.ftol = 1e-12;
-  // the solver counts a set of slopes as one evaluation
-  solver.parameters.maxfev = problem.most_evaluations / (1 + static_cast<int>(functor.inputs()));
+  solver.parameters.xtol = 1e-6;
+  solver.parameters.ftol = 1e-7;
+  // the solver does not count the slopes: two evaluations an unknown
+  solver.parameters.maxfev =
+      std::max(2, problem.most_evaluations / (1 + 2 * static_cast<int>(functor.inputs())));
   VectorXd x = Eigen::Map<const VectorXd>(start.data(), functor.inputs());
   solver.minimize(x);
   VectorXd r(functor.values());

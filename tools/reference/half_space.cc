@@ -41,12 +41,4 @@ double sphere_force_N(const Elasticity& material, double sphere_radius_m, double
          ((R * R + a * a) / 2.0 * std::log((R + a) / (R - a)) - a * R);
 }
 
-double sphere_contact_radius_under_m(const Elasticity& material, double sphere_radius_m,
-                                     double force_N) {
-  // t = a / R: F / (E* R^2) = (1 + t^2) artanh(t) - t
-  const double R = sphere_radius_m;  // NOLINT
-  const double wanted = force_N / (contact_modulus_Pa(material) * R * R);
-  return R * root([wanted](double t) { return (1.0 + t * t) * std::atanh(t) - t - wanted; });
-}
-
 }  // namespace tact::tools

@@ -23,8 +23,4 @@ double sphere_contact_radius_m(double sphere_radius_m, double depth_m);
 
 double sphere_force_N(const Elasticity& material, double sphere_radius_m, double depth_m);
 
-/// a of a sphere that is pressed with a force above 0.
-double sphere_contact_radius_under_m(const Elasticity& material, double sphere_radius_m,
-                                     double force_N);
-
 }  // namespace tact::tools

@@ -7,10 +7,10 @@
 //
 // rho distance from the axis, s how far the resting surface lies below the site's tangent plane (an
 // organ is not flat). They slide freely sideways. The force is largest for the true a (J. R.
-// Barber, J. Elast. 4 (1974) 31), so an error of 10 % in a is about 1.5 % of F. Where the organ
-// gives way as a whole the tip presses in less than d: solve_once (solve_cache.h) takes the a that
-// the half-space has under the force of a first, coarse solve. pull: the faces within R of the axis
-// move outward as one piece, bonded.
+// Barber, J. Elast. 4 (1974) 31), so a small error in a is a much smaller one in F. On a half-space
+// a is known (half_space.h); where the organ gives way as a whole or its surface falls away it is
+// smaller, and solve_once (solve_cache.h) finds it (contact_radius.h). pull: the faces within R of
+// the axis move outward as one piece, bonded.
 #pragma once
 
 #include "model/mesh.h"
@@ -48,11 +48,10 @@ EdgeLengths edge_lengths(const Organ& organ, const Indentation& what);
 /// Meshes and solves. The error ratio is left at 0: it takes two levels.
 model::Result<ReferenceCase> solve(const Organ& organ, const Indentation& what);
 
-/// Mean of u over the rings k * pitch around `at_m`, k = 0 .. rings - 1, along the lines where the
-/// faces that look along `outward` cut the spheres of these radii. A ring that meets no such face
-/// has the value of the one before. `u` by node.
+/// Mean of u (by node) over the rings at k * kRingPitch_m from `at_m`, straight distance, along the
+/// faces that look along `outward`; `middle_u` is ring 0.
 std::vector<double> ring_means(const OrganBody& body, const model::Vec3& at_m,
-                               const model::Vec3& outward, const std::vector<double>& u, int rings,
-                               double pitch_m);
+                               const model::Vec3& outward, const std::vector<double>& u,
+                               double middle_u);
 
 }  // namespace tact::tools

@@ -138,7 +138,8 @@ std::vector<Indentation> cases_of(const ReferencePlan& plan) {
       add(kUnitPull_m, plan.level - 1, false);
     }
     if (!among(plan.large_strain_sites, vertex)) continue;
-    for (const double d_m : plan.depths_m) add(-d_m, kCoarsestLevel, true);
+    for (const double d_m : plan.depths_m)
+      if (2.0 * d_m >= plan.depths_m.back()) add(-d_m, kCoarsestLevel, true);
   }
   return out;
 }

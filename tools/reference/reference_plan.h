@@ -1,7 +1,8 @@
 // reference_plan.h - which cases make the reference of an organ, and how they become one file.
 //
 // Per site: press at every depth; pull once, since it is linear, scaled to every depth; and for
-// some sites pull with large strain, which says how far linear is wrong. The mesh error of a force
+// some sites pull from half the largest depth on with large strain, on the coarsest mesh, which
+// says how far linear is wrong. The mesh error of a force
 // is its change from the next coarser level: measured at the least and the largest press depth and
 // for pull; a depth between takes the nearer one's.
 #pragma once

@@ -10,7 +10,7 @@
 
 #include "model/scene_words.h"
 #include "tools/common/table.h"
-#include "tools/reference/half_space.h"
+#include "tools/reference/contact_radius.h"
 
 namespace tact::tools {
 namespace {
@@ -19,7 +19,10 @@ namespace fs = std::filesystem;
 using model::Vec3;
 using nlohmann::json;
 
-constexpr int kMethod = 1;  // raise it whenever the same key would give another answer
+constexpr int kMethod = 2;  // raise it whenever the same key would give another answer
+
+constexpr double kProbeContact = 0.75;  // of R at depth R: a little less than a half-space has
+constexpr int kFallRings = 17;
 
 std::string text_of(const Vec3& v) { return fmt::format("{:.9g} {:.9g} {:.9g}", v.x, v.y, v.z); }
 
@@ -86,7 +89,7 @@ std::string mesh_hash(const model::SurfaceMesh& mesh) {
 std::string cache_key(const Organ& organ, const Indentation& what, const std::string& solver) {
   const EdgeLengths edges = edge_lengths(organ, what);
   const std::string contact =
-      what.contact_radius_m > 0.0 ? fmt::format("{:.4g} m", what.contact_radius_m) : "1";
+      what.contact_radius_m > 0.0 ? fmt::format("{:.4g} m", what.contact_radius_m) : "half-space";
   return fmt::format(
       "method {}, {}; mesh {}; E {:.9g} Pa, nu {:.9g}; held {} to {} m; vertex {}, radius {:.9g} "
       "m, "
@@ -117,13 +120,19 @@ model::Result<ReferenceCase> solve_once(const Organ& organ, const Indentation& w
   if (what.depth_m < 0.0 || what.contact_radius_m > 0.0) {
     return solve_or_find(organ, what, solver, cache);
   }
-  Indentation probe = what;
+  Indentation probe = what;  // the same for every depth
+  probe.depth_m = what.tool_radius_m;
   probe.level = kCoarsestLevel;
+  probe.contact_radius_m = kProbeContact * what.tool_radius_m;
   const auto first = solve_or_find(organ, probe, solver, cache);
   if (!first) return first;
+  const TipContact tip(
+      organ.material, what.tool_radius_m,
+      surface_fall_m(organ.surface, what.vertex, kFallRings, what.tool_radius_m / (kFallRings - 1)),
+      what.tool_radius_m / (kFallRings - 1));
   Indentation pressed = what;
   pressed.contact_radius_m =
-      sphere_contact_radius_under_m(organ.material, what.tool_radius_m, first->force_N);
+      tip.radius_m(what.depth_m, tip.give_m_per_N(probe.depth_m, first->force_N));
   return solve_or_find(organ, pressed, solver, cache);
 }
 

@@ -9,7 +9,8 @@
 namespace tact::tools {
 namespace {
 
-constexpr double kMost = 4.0;  // z shown
+constexpr double kMost = 4.0;      // z shown
+constexpr double kOverlap = 1.06;  // of cells, so that no seam shows
 
 /// z_max over zeta, as a data block that a script can plot.
 std::string theory_block(int number, const model::Method& method) {
@@ -28,11 +29,11 @@ std::string theory_block(int number, const model::Method& method) {
 std::vector<Picture> integrator_pictures(Grid grid) {
   const double dz = grid == Grid::kQuick ? 4.0 / 15.0 : 4.0 / 60.0;
   const double dzeta = grid == Grid::kQuick ? 2.0 / 8.0 : 2.0 / 40.0;
-  std::string script =
-      fmt::format("f = 'integrators.csv'\ndz = {:.6g}\ndzeta = {:.6g}\n", dz / 2.0, dzeta / 2.0);
+  std::string script = fmt::format("f = 'integrators.csv'\ndz = {:.6g}\ndzeta = {:.6g}\n",
+                                   kOverlap * dz / 2.0, kOverlap * dzeta / 2.0);
   script += R"gp(
-set multiplot layout 2,4 title \
-  "Growth of a damped oscillator: cells measured, black line z_{max} of the amplification matrix, red crosses: they disagree" \
+set multiplot layout 2,4 title "Growth of a damped oscillator: cells measured, \
+black line z_{max} of the amplification matrix, red crosses: they disagree" \
   font ',14'
 set xrange [0:4]
 set yrange [-0.025:2]

@@ -5,17 +5,23 @@
 
 namespace tact::tools {
 
+namespace {
+
+constexpr double kOverlap = 1.06;  // of cells, so that no seam shows
+
+}  // namespace
+
 std::vector<Picture> printed_rhombus_pictures(Grid grid) {
   const bool quick = grid == Grid::kQuick;
   return {{.name = "printed_rhombus",
            .width_px = 1200,
            .height_px = 800,
-           .script = fmt::format("dx = {}\ndy = {}\n", quick ? 57.0 / 36 : 57.0 / 180,
-                                 quick ? 1.0 / 12 : 1.0 / 60) +
+           .script = fmt::format("dx = {}\ndy = {}\n", kOverlap * (quick ? 57.0 / 36 : 57.0 / 180),
+                                 kOverlap * (quick ? 1.0 / 12 : 1.0 / 60)) +
                      R"gp(
 f = 'printed_rhombus.csv'
-set title "The rhombus chain as printed: which unit of ten is the first to get longer while pressed\n\
-cells measured, lines theory: kN = kT exp((i-1)/beta) tan^2(theta0), beta = 2, i = 1 (thick) to 10"
+set title "The rhombus chain as printed: which of ten units is first to get longer while pressed\n\
+cells measured, lines: kN = kT exp((i-1)/beta) tan^2(theta0), beta = 2, i = 1 (thick) .. 10"
 set xlabel "angle theta0 of the rods, degrees"
 set ylabel "kT / kN of the first unit"
 set logscale y

@@ -70,7 +70,8 @@ set key bottom right
 set label 1 "hands help: the line holds for every hand" at 0.2,100000
 set label 2 "comes to rest" at 0.4,70
 hands = "bare light firm"
-what = "'no help, constant push' 'light: 0.15 kg, 600 N/m, 15 N s/m' 'firm: 0.4 kg, 1500 N/m, 30 N s/m'"
+what = "'no help, constant push' 'light: 0.15 kg, 600 N/m, 15 N s/m' \
+'firm: 0.4 kg, 1500 N/m, 30 N s/m'"
 plot for [i=1:3] f using (cell(1000, 0.5e-3, 0, word(hands, i)) && $6 == 0 ? $7 : NaN):10 \
        with points pt 7 ps 1.1 lc i+4 title word(what, i), \
      x/1e-3 lc 'black' dt 2 title "K = b / (T/2 + t_d)"

@@ -5,7 +5,7 @@ namespace tact::tools {
 std::vector<Picture> tick_pictures(Grid) {
   return {{.name = "ticks", .width_px = 1200, .height_px = 700, .script = R"gp(
 f = 'ticks.csv'
-set title "Lost and late ticks: largest stable stiffness, 1 kHz, b = 2 N s/m, no help from the hand\n\
+set title "Lost and late ticks: largest stable stiffness, 1 kHz, b = 2 N s/m, bare device\n\
 points measured, lines theory: K = (2 b / T) E[n] / E[n^2], n periods held"
 set logscale y
 set xlabel "share p of ticks that are lost, or late"

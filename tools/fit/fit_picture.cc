@@ -1,0 +1,70 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "tools/common/picture.h"
+#include "tools/common/table.h"
+#include "tools/fit/fit_report.h"
+
+namespace tact::tools {
+namespace {
+
+/// One row a sample: what was measured, then what each law says (with its site's factor).
+std::string rows_of(const FitReport& report) {
+  std::string out = "site,held_out,depth_mm,data_N";
+  for (const FittedLaw& law : report.laws) out += "," + law.name + "_N";
+  out += "\n";
+  std::size_t i = 0;
+  for (std::size_t s = 0; s < report.data->sites.size(); ++s) {
+    const FitSite& site = report.data->sites[s];
+    std::vector<std::pair<double, std::size_t>> order;
+    for (const FitSample& sample : site.samples) order.push_back({sample.depth_m, i++});
+    std::sort(order.begin(), order.end());
+    const std::size_t first = i - site.samples.size();
+    for (const auto& [depth_m, at] : order) {
+      out += fmt::format("{},{},{:.6g},{:.6g}", site.name, site.held_out ? 1 : 0, 1e3 * depth_m,
+                         site.samples[at - first].force_N);
+      for (const FittedLaw& law : report.laws)
+        out += fmt::format(",{:.6g}", law.judged.sites[s].scale * law.answers[at].force_N);
+      out += "\n";
+    }
+    out += "\n";  // lines end with their site
+  }
+  return out;
+}
+
+std::string script_of(const FitReport& report, const std::string& csv) {
+  constexpr std::size_t kColours = std::size(kInk);
+  std::string plots = fmt::format(
+      "'{0}' skip 1 using 3:($2==0?$4:NaN) with points pt 7 ps 0.8 lc rgb '#000000' title 'data', "
+      "'{0}' skip 1 using 3:($2==1?$4:NaN) with points pt 6 ps 0.9 lc rgb '#000000' title "
+      "'data, held out'",
+      csv);
+  for (std::size_t k = 0; k < report.laws.size(); ++k)
+    plots += fmt::format(
+        ", '{}' skip 1 using 3:{} with lines lw 1.5 lc rgb '{}' title '{} ({:.1f} %)'", csv, k + 5,
+        kInk[k % kColours], report.laws[k].title, 100.0 * report.laws[k].judged.fitted.rms_ratio());
+  return "set datafile separator ','\nset xlabel 'depth, mm (pull below 0)'\n"
+         "set ylabel 'force, N'\nset key top left\nset grid lc rgb '#dddddd'\n"
+         "plot " +
+         plots + "\n";
+}
+
+}  // namespace
+
+model::Result<std::vector<std::string>> draw_fit(const FitReport& report, const std::string& file) {
+  namespace fs = std::filesystem;
+  if (!report.data || report.laws.empty())
+    return model::Error{
+        "no law was fitted, so there is nothing to draw; give --data or --reference"};
+  const fs::path path(file);
+  const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
+  const std::string csv = path.stem().string() + ".csv";
+  auto rows = write_whole_file((fs::path(folder) / csv).string(), rows_of(report));
+  if (!rows) return rows.error();
+  return draw({.name = path.stem().string(), .script = script_of(report, csv)}, folder);
+}
+
+}  // namespace tact::tools

@@ -1,0 +1,36 @@
+// fit_report.h - a fit for people, for a scene and for machines: text, TOML, JSON, a picture.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/result.h"
+#include "tools/fit/fit_prony.h"
+#include "tools/fit/fit_run.h"
+
+namespace tact::tools {
+
+/// Everything that one call fitted.
+struct FitReport {
+  std::optional<FitData> data{};
+  std::vector<FittedLaw> laws{};
+  std::vector<std::string> notes{};  // laws that could not be fitted, and why
+  std::optional<PronyFit> relaxation{};
+
+  /// At least one law follows the data, and the relaxation is good: what was asked for exists.
+  bool follows() const;
+  /// Least residual on the held-out sites, or on the fitted ones without any, first.
+  void sort();
+};
+
+std::string text_of(const FitReport& report);
+/// Sections to paste into a scene. Where two laws turn the same key, the first one has it and the
+/// other's line is a comment.
+std::string toml_of(const FitReport& report);
+nlohmann::ordered_json json_of(const FitReport& report);
+/// FILE.svg, FILE.png and what they were drawn from; returns the paths.
+model::Result<std::vector<std::string>> draw_fit(const FitReport& report, const std::string& file);
+
+}  // namespace tact::tools

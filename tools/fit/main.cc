@@ -1,0 +1,189 @@
+// tact-fit: which numbers let a law of the scene follow measured forces, and how far it stays off.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+
+#include "model/tissue_law.h"
+#include "tools/common/table.h"
+#include "tools/fit/fit_csv.h"
+#include "tools/fit/fit_report.h"
+
+namespace {
+
+using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
+using tact::model::Error;
+using tact::model::Result;
+using tact::model::Scene;
+
+struct Options {
+  std::string scene, data, relaxation, reference, out, picture;
+  std::vector<std::string> overrides, held_out, laws{"all"};
+  BenchColumns columns;
+  FitOptions fit;
+  std::size_t terms = 0;
+  double held_depth_m = 0.0;
+  bool large_strain = false, json = false;
+};
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("SCENE", o.scene, "scene file (TOML) that describes the laws")->required();
+  app.add_option("--law", o.laws,
+                 "which laws, by name: rhombus, disc_stack (both forms), disc_stack_linear, "
+                 "disc_stack_almen_laszlo, hex_sheet, hex_sheet_paper, compliance, spring_patch")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--reference", o.reference, "JSON of tact-reference; its held-out sites judge");
+  app.add_option("--data", o.data, "CSV of a bench: depth_m,force_N[,site][,u_0_m,...]");
+  app.add_option("--relaxation", o.relaxation, "CSV of a bench at held depth: time_s,force_N");
+  app.add_option("--set", o.overrides, "one key of the scene, as KEY=VALUE; repeatable");
+  app.add_option("--held-out", o.held_out, "sites of --data that only judge")->delimiter(',');
+  app.add_option("--depth-column", o.columns.depth, "name in --data")->capture_default_str();
+  app.add_option("--force-column", o.columns.force, "name in both CSVs")->capture_default_str();
+  app.add_option("--time-column", o.columns.time, "name in --relaxation")->capture_default_str();
+  app.add_option("--depth-unit-m", o.columns.depth_unit_m, "m in one unit; 0.001 for mm")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--force-unit-N", o.columns.force_unit_N, "N in one unit; 0.001 for mN")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--time-unit-s", o.columns.time_unit_s, "s in one unit")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--shape-weight", o.fit.shape_weight,
+                 "what an error of the shape (of the depth) counts against one of the force (of "
+                 "the peak); 0: forces alone")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_flag("--scale-by-site", o.fit.scale_by_site, "each site has its own factor of the force");
+  app.add_flag("--large-strain", o.large_strain, "the reference's cases with large strain");
+  app.add_option("--terms", o.terms, "of --relaxation (default: the fewest with RMS below 2 %)")
+      ->check(CLI::Range(1, 3));
+  app.add_option("--held-depth-m", o.held_depth_m,
+                 "of --relaxation: fits how the scene's law fades at that depth, not the force")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--out", o.out, "TOML to write: sections to paste into the scene");
+  app.add_option("--picture", o.picture, "SVG to draw (and PNG), with gnuplot");
+  app.add_flag("--json", o.json, "print one JSON object, SI units");
+  app.footer(
+      "Residuals are root mean squares over all samples, in % of the largest force; a law that "
+      "stays\nabove 7 %, the least difference of force that people feel, cannot follow.\n"
+      "Exit status: 0 fitted (one law at least), 1 no law can follow, 2 bad usage or input.");
+  app.failure_message([](const CLI::App*, const CLI::Error& e) {
+    return fmt::format("tact-fit: {}; see tact-fit --help\n", e.what());
+  });
+}
+
+Result<FitData> read_data(const Options& o, const Scene& scene) {
+  if (!o.reference.empty()) {
+    const auto reference = read_reference(o.reference);
+    if (!reference) return reference.error();
+    return fit_data_of(*reference, scene, o.large_strain);
+  }
+  auto data = read_bench_csv(o.data, o.columns, o.held_out);
+  if (!data) return data;
+  for (FitSite& site : data->sites) {  // a site named by a vertex has a place
+    const bool is_number = !site.name.empty() && site.name.size() < 10 &&
+                           std::all_of(site.name.begin(), site.name.end(),
+                                       [](char c) { return c >= '0' && c <= '9'; });
+    if (is_number) site.at = place_at_vertex(scene.organ_mesh, std::stoul(site.name));
+  }
+  return data;
+}
+
+bool is_chosen(const FitLaw& law, const std::vector<std::string>& names) {
+  return std::any_of(names.begin(), names.end(), [&law](const std::string& name) {
+    return name == "all" || name == law.name || name == name_of(law.kind);
+  });
+}
+
+std::optional<Error> fit_laws(const Options& o, const Scene& scene, FitReport& report) {
+  auto data = read_data(o, scene);
+  if (!data) return data.error();
+  report.data = std::move(*data);
+  for (const FitLaw& law : fit_laws_of(scene, *report.data)) {
+    if (!is_chosen(law, o.laws)) continue;
+    auto fitted = fit_law(law, scene, *report.data, o.fit);
+    if (fitted) {
+      report.laws.push_back(std::move(*fitted));
+    } else {
+      report.notes.push_back(law.name + " was not fitted: " + fitted.error().sentence);
+    }
+  }
+  if (!report.laws.empty()) return std::nullopt;
+  if (!report.notes.empty()) return Error{report.notes.front()};
+  return Error{
+      fmt::format("{} describes no law named {}; write its section or choose another with "
+                  "--law",
+                  scene.path, fmt::join(o.laws, ", "))};
+}
+
+/// How the scene's law feels a stretch that has faded to the share e of the held depth.
+std::optional<Error> fit_relaxation(const Options& o, Scene scene, FitReport& report) {
+  const auto held = read_relaxation_csv(o.relaxation, o.columns);
+  if (!held) return held.error();
+  PronyOptions options{.terms = o.terms};
+  scene.relaxation.clear();
+  std::unique_ptr<tact::model::TissueLaw> law;
+  if (o.held_depth_m > 0.0) {
+    auto made = make_tissue_law(scene, scene.law);
+    if (!made) return made.error();
+    law = std::move(*made);
+    const tact::model::Law* curve = law->curve();
+    if (curve == nullptr)
+      return Error{"--held-depth-m needs a closed-form law; a spring patch has its own damping"};
+    if (!(o.held_depth_m <= curve->range().press_m))
+      return Error{fmt::format("--held-depth-m {} is beyond the law's {:.4g} m", o.held_depth_m,
+                               curve->range().press_m)};
+    const double full_N = curve->respond(o.held_depth_m).force_N;
+    options.stretch_to_force = [curve, full_N, depth_m = o.held_depth_m](double e) {
+      return curve->respond(e * depth_m).force_N / full_N;
+    };
+  }
+  auto fit = fit_prony(*held, options);
+  if (!fit) return Error{o.relaxation + ": " + fit.error().sentence};
+  report.relaxation = std::move(*fit);
+  return std::nullopt;
+}
+
+int fail(const std::string& sentence) {
+  fmt::print(stderr, "tact-fit: {}\n", sentence);
+  return 2;
+}
+
+}  // namespace
+
+// The libraries throw when memory or standard output is gone; then the program may as well end.
+int main(int argc, char** argv) {
+  CLI::App app{
+      "Fit the laws of a scene to measured forces (and shapes), say how far each stays off, and "
+      "say when\na law cannot follow. Prints the keys to paste into the scene."};
+  Options o;
+  add_options(app, o);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  if (o.data.empty() && o.reference.empty() && o.relaxation.empty())
+    return fail("nothing to fit to; give --reference, --data or --relaxation");
+  if (!o.data.empty() && !o.reference.empty())
+    return fail("--data and --reference exclude each other; fit one after the other");
+  const auto scene = tact::model::load_scene(o.scene, o.overrides);
+  if (!scene) return fail(scene.error().sentence);
+  FitReport report;
+  if (!o.data.empty() || !o.reference.empty())
+    if (const auto error = fit_laws(o, *scene, report)) return fail(error->sentence);
+  if (!o.relaxation.empty())
+    if (const auto error = fit_relaxation(o, *scene, report)) return fail(error->sentence);
+  report.sort();
+  if (!o.out.empty())
+    if (const auto written = write_whole_file(o.out, toml_of(report)); !written)
+      return fail(written.error().sentence);
+  if (!o.picture.empty())
+    if (const auto drawn = draw_fit(report, o.picture); !drawn) return fail(drawn.error().sentence);
+  if (o.json) {
+    fmt::print("{}\n", json_of(report).dump(2));
+  } else {
+    fmt::print("{}", text_of(report));
+  }
+  return report.follows() ? 0 : 1;
+}
