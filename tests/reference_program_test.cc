@@ -30,10 +30,10 @@ TEST(ReferenceProgram, RefusesWhatCannotBeSolved) {
   expect_refusal(kLiver + " --sites 99999",
                  "site 99999 is no vertex of liver_3116.obj; they are 0 to 3115");
   expect_refusal(kLiver + " --sites 1714 --depths 0.002,0.001", "depths must be above 0 and rise");
-  expect_refusal(kLiver + " --sites 125",
-                 "site 125 lies in the box that is held; choose another");
-  expect_refusal("--self-check /nowhere", "/nowhere/organ_patch.json: cannot be read; give the "
-                                          "folder tests/data/reference");
+  expect_refusal(kLiver + " --sites 125", "site 125 lies in the box that is held; choose another");
+  expect_refusal("--self-check /nowhere",
+                 "/nowhere/organ_patch.json: cannot be read; give the "
+                 "folder tests/data/reference");
 }
 
 TEST(ReferenceProgram, SaysWhatToInstallAndLeavesNoFile) {

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "tools/common/interrupt.h"
@@ -68,10 +69,17 @@ TEST(RunProgram, TellsTheLastLinesOfAFailure) {
 
 TEST(RunProgram, EndsAProgramAndItsChildrenAfterTheTimeLimit) {
   const auto where = folder();
-  const auto said = run(where, "sh", {"-c", "sleep 60 & echo $!; wait"}, 0.3);
+  const auto said = run(where, "sh", {"-c", "sleep 60 & echo $!; wait"}, 0.5);
   ASSERT_FALSE(said);
-  EXPECT_NE(said.error().sentence.find("took longer than 0.3 s"), std::string::npos)
+  EXPECT_NE(said.error().sentence.find("took longer than 0.5 s"), std::string::npos)
       << said.error().sentence;
+  pid_t child = 0;
+  std::ifstream(where.file("log")) >> child;
+  ASSERT_GT(child, 1);
+  const std::string state = "/proc/" + std::to_string(child) + "/stat";
+  std::string number, name, letter = "Z";  // gone, or a zombie that nobody has asked for yet
+  std::ifstream(state) >> number >> name >> letter;
+  EXPECT_EQ(letter, "Z");
 }
 
 TEST(RunProgram, EndsAProgramAtCtrlC) {

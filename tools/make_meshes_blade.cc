@@ -54,6 +54,7 @@ std::vector<Vec3> points(const Section& s) {
 
 model::Result<Shape> make_blade_shape() {
   std::vector<std::vector<Vec3>> ring;
+  ring.reserve(kSections.size());
   for (const Section& s : kSections) ring.push_back(points(s));
   return make_loft({0, 0, 0}, ring, {-4, 0, 140});
 }

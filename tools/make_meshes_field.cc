@@ -45,8 +45,8 @@ class Grid {
 
  private:
   Vec3 place(std::size_t node) const {
-    return low_ +
-           cell_mm_ * Vec3{double(node % nx_), double(node / nx_ % ny_), double(node / nx_ / ny_)};
+    const std::size_t i = node % nx_, j = node / nx_ % ny_, k = node / nx_ / ny_;
+    return low_ + cell_mm_ * Vec3{double(i), double(j), double(k)};
   }
 
   bool inside(std::size_t node) const { return value_[node] < 0.0; }

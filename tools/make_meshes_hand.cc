@@ -87,7 +87,7 @@ model::Result<Shape> make_hand_shape() {
   auto both = make_grown(hand, kHandVertices, 0);
   if (!both) return both;
   const auto second = make_grown(cuff, kCuffVertices, 0);
-  if (!second) return second;
+  if (!second) return second.error();
   const auto first = static_cast<std::uint32_t>(both->vertex_mm.size());
   both->vertex_mm.insert(both->vertex_mm.end(), second->vertex_mm.begin(), second->vertex_mm.end());
   for (const auto& t : second->triangle) {

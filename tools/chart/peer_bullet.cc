@@ -4,7 +4,7 @@
 //     volume    links along the edges of the tetrahedra that fill the surface (gmsh)
 //
 // The tip is a penalty spring on the touched triangle, F = q (d - w), as in spring_mesh. Bullet has
-// no modulus: its free stiffness (shape matching, or that of the links) is found by bisection until
+// no modulus: its free stiffness (shape matching, or that of the links) is tried until
 // the mean force at 5 mm fits; if it does not within Bullet's range 0 .. 1, the nearest is taken
 // and said. Built only where Bullet is there: apt install libbullet-dev.
 #include "tools/chart/peers.h"
@@ -44,8 +44,8 @@ using model::Vec3;
 constexpr double kDensity_kg_per_m3 = 1060.0;
 constexpr double kCoupling_N_per_m = 300.0;  // q: as spring_mesh
 constexpr double kDamping_ratio = 0.02;      // of the velocity, a tick
-constexpr int kRestTicks = 1500;
-constexpr int kBisections = 12;
+constexpr int kTrials = 8;
+constexpr double kFitted_ratio = 0.02;
 
 btVector3 to_bullet(const Vec3& v) {
   return {static_cast<btScalar>(v.x), static_cast<btScalar>(v.y), static_cast<btScalar>(v.z)};
@@ -99,7 +99,11 @@ Result<BodyPlan> surface_or_volume(const Scene& scene, bool volume) {
 class BulletPeer final : public Subject {
  public:
   BulletPeer(const Scene& scene, const BodyPlan& plan, int iterations, double stiffness)
-      : scene_(scene), iterations_(iterations), stiffness_(stiffness), volume_(plan.volume) {
+      : scene_(scene),
+        rest_m_(plan.point_m),
+        iterations_(iterations),
+        stiffness_(stiffness),
+        volume_(plan.volume) {
     world_.setGravity({0, 0, 0});
     world_.getWorldInfo().m_gravity = {0, 0, 0};
     std::vector<btVector3> points;
@@ -150,7 +154,11 @@ class BulletPeer final : public Subject {
   }
 
   void release() override {
-    for (int i = 0; i < kRestTicks; ++i) step();
+    for (std::size_t i = 0; i < rest_m_.size(); ++i) {
+      btSoftBody::Node& node = body_->m_nodes[static_cast<int>(i)];
+      node.m_x = node.m_q = to_bullet(rest_m_[i]);
+      node.m_v = node.m_f = {0, 0, 0};
+    }
   }
 
   void shape(const Indentation& in, double pitch_m, std::span<double> ring_m) override {
@@ -181,6 +189,7 @@ class BulletPeer final : public Subject {
   void step() { world_.stepSimulation(static_cast<btScalar>(1.0 / scene_.rate_Hz), 0); }
 
   const Scene& scene_;
+  const std::vector<Vec3> rest_m_;
   int iterations_;
   double stiffness_;
   bool volume_, fitted_ = true;
@@ -205,14 +214,24 @@ Result<std::unique_ptr<Subject>> make_bullet_peer(const PeerInput& input, bool v
     BulletPeer trial(input.scene, *plan, iterations, stiffness);
     return mean_force_N(trial, fit);
   };
-  double low = 1e-5, high = 1.0;  // of Bullet's stiffness: the force grows with it
-  for (int i = 0; i < kBisections; ++i) {
-    const double middle = std::sqrt(low * high);
-    (force_N(middle) < wanted_N ? low : high) = middle;
+  // the force grows with Bullet's stiffness, roughly as a power: false position in logarithms
+  struct Trial {
+    double stiffness, force_N;
+  };
+  Trial low{1e-4, force_N(1e-4)}, high{1.0, force_N(1.0)};
+  double stiffness = high.force_N < wanted_N ? high.stiffness : low.stiffness;
+  if (low.force_N < wanted_N && high.force_N > wanted_N) {
+    for (int i = 0; i < kTrials; ++i) {
+      const double share = std::log(wanted_N / low.force_N) / std::log(high.force_N / low.force_N);
+      stiffness =
+          low.stiffness * std::pow(high.stiffness / low.stiffness, std::clamp(share, 0.1, 0.9));
+      const double now_N = force_N(stiffness);
+      if (std::abs(now_N - wanted_N) < kFitted_ratio * wanted_N) break;
+      (now_N < wanted_N ? low : high) = {stiffness, now_N};
+    }
   }
-  const double stiffness = std::sqrt(low * high);
   auto peer = std::make_unique<BulletPeer>(input.scene, *plan, iterations, stiffness);
-  peer->set_fitted(std::abs(mean_force_N(*peer, fit) - wanted_N) < 0.05 * wanted_N);
+  peer->set_fitted(std::abs(mean_force_N(*peer, fit) - wanted_N) < 2.0 * kFitted_ratio * wanted_N);
   return std::unique_ptr<Subject>(std::move(peer));
 }
 

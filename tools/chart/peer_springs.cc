@@ -27,8 +27,6 @@ constexpr double kDensity_kg_per_m3 = 1060.0;
 // Where the scene has no patch. N/m, N/m, s, s, -: an edge four times as stiff as a body spring.
 constexpr model::PatchTissue kTissue{40.0, 10.0, 0.005, 0.005, 0.0};
 constexpr double kCoupling_N_per_m = 300.0;
-constexpr int kMostRestTicks = 2000;
-constexpr double kRestEnergy_J = 1e-12;
 
 struct Springs {
   model::PatchTissue tissue;
@@ -91,11 +89,6 @@ class SpringPeer final : public Subject {
   }
 
   void release() override {
-    probe_.stiffness_N_per_m = 0.0;
-    for (int i = 0; i < kMostRestTicks; ++i) {
-      stepper_.step(network(), rule_);
-      if (kinetic_energy_J(network()) < kRestEnergy_J) break;
-    }
     position_ = scene_.organ_mesh.vertex_m;
     std::fill(velocity_.begin(), velocity_.end(), Vec3{});
   }

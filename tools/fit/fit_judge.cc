@@ -176,7 +176,11 @@ Judgement judge(const FitData& data, std::span<const FitAnswer> answers, bool sc
   out.shape_rms = shape.root();
   out.held_out_shape_rms = held_out_shape.root();
   out.follows = out.fitted.rms_ratio() <= kNoticeable && out.held_out.rms_ratio() <= kNoticeable;
-  if (!out.follows) out.reasons = reasons_of(data, answers, out, scale_by_site, press_limit_m);
+  const bool suits_all = std::all_of(out.sites.begin(), out.sites.end(), [](const auto& site) {
+    return site.force.rms_ratio() <= kNoticeable;
+  });
+  if (!out.follows || !suits_all)
+    out.reasons = reasons_of(data, answers, out, scale_by_site, press_limit_m);
   return out;
 }
 

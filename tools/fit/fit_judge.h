@@ -5,8 +5,8 @@
 //
 // A site's own row is judged by the site's own peak. A law cannot follow where its RMS, on the
 // fitted or on the held-out sites, is above 7 % of the peak: the least difference of force that a
-// hand can tell. Then the reasons say why: it softens or hardens otherwise than the data, it ends
-// too early, sites differ too much for one law.
+// hand can tell. Then, and where a single site stays above that, the reasons say why: it softens or
+// hardens otherwise than the data, it ends too early, sites differ too much for one law.
 #pragma once
 
 #include <span>
@@ -43,7 +43,7 @@ struct Judgement {
   Residual press, pull;                              // of all sites
   double shape_rms = 0.0, held_out_shape_rms = 0.0;  // NaN without shapes
   std::vector<SiteResidual> sites;
-  std::vector<std::string> reasons;  // why it cannot follow
+  std::vector<std::string> reasons;  // why it cannot follow, at some site at least
   bool follows = false;
 };
 

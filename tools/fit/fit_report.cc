@@ -170,7 +170,8 @@ std::string toml_of(const FitReport& report) {
         "\n# {}: RMS {} of the peak, held-out sites {}\n", law.title,
         percent(law.judged.fitted.rms_ratio()),
         law.judged.held_out.samples > 0 ? percent(law.judged.held_out.rms_ratio()) : "-");
-    for (const std::string& reason : law.judged.reasons) out += "# cannot follow: " + reason + "\n";
+    for (const std::string& reason : law.judged.reasons)
+      out += (law.judged.follows ? "# limit: " : "# cannot follow: ") + reason + "\n";
     out += toml_of_keys(law, written);
   }
   if (report.relaxation) out += "\n" + toml_of_relaxation(*report.relaxation);

@@ -1,5 +1,6 @@
 #include "tools/reference/block.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -64,7 +65,8 @@ model::Result<Organ> make_block(double radius_m, double height_m, const Elastici
   return Organ{.surface = std::move(*surface),
                .hash = {},
                .held = {{-far_m, -far_m, -far_m}, {far_m, far_m, -height_m * (1.0 - 1e-9)}},
-               .material = material};
+               .material = material,
+               .size_ratio = std::max(1.0, radius_m / 0.05)};
 }
 
 }  // namespace tact::tools

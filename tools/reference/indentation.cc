@@ -78,7 +78,7 @@ EdgeLengths edge_lengths(const Organ& organ, const Indentation& what) {
           .radius_m = (bonded ? 1.0 : kFineRadius) * a_m,
           .fine_m = (bonded ? level.bond : level.fine) * a_m,
           .growth = level.growth,
-          .largest_m = level.largest_m};
+          .largest_m = level.largest_m * organ.size_ratio};
 }
 
 std::vector<double> ring_means(const OrganBody& body, const Vec3& at_m, const Vec3& outward,

@@ -26,6 +26,7 @@ struct Organ {
   std::string hash;            // of the surface
   HeldBox held{};
   Elasticity material{};
+  double size_ratio = 1.0;  // of the edges far inside: 1 suits a body as large as a hand
 };
 
 struct Indentation {
