@@ -43,22 +43,26 @@ need_packages() {
 
 # What it takes to build the programs, and the page of the viewer.
 BUILD_PACKAGES=(g++ cmake ninja-build ca-certificates libfmt-dev libcli11-dev
-  nlohmann-json3-dev libtomlplusplus-dev libboost-dev libeigen3-dev)
+  nlohmann-json3-dev libtomlplusplus-dev libboost-dev)
 # What the measuring tools call or link besides.
-TOOL_PACKAGES=(gmsh calculix-ccx gnuplot-nox libmetis-dev libbullet-dev libopencv-core-dev
+TOOL_PACKAGES=(libeigen3-dev gmsh calculix-ccx gnuplot-nox libmetis-dev libbullet-dev libopencv-core-dev
   libopencv-calib3d-dev)
 PAGE_PACKAGES=(nodejs=node npm=npm)
 
 # build_programs BUILD_DIR TARGET... : configure when needed, then build quietly; the log on failure.
 build_programs() {
-  local build=$1 log
+  local build=$1 log tools=OFF target
   shift
   log=$(mktemp)
   local launcher=()
   command -v ccache >/dev/null 2>&1 && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-  if [ ! -f "$build/build.ninja" ]; then
-    cmake -S "$root" -B "$build" -G Ninja "${launcher[@]}" -DBUILD_TESTING=OFF >"$log" 2>&1 ||
-      { cat "$log" >&2; return 2; }
+  for target in "$@"; do  # the measuring tools need more packages than the controller
+    case $target in tactd | tact-view | tact-mesh) ;; *) tools=ON ;; esac
+  done
+  if [ ! -f "$build/build.ninja" ] ||
+    { [ $tools = ON ] && grep -q '^TACT_TOOLS:BOOL=OFF' "$build/CMakeCache.txt"; }; then
+    cmake -S "$root" -B "$build" -G Ninja "${launcher[@]}" -DBUILD_TESTING=OFF \
+      -DTACT_TOOLS=$tools >"$log" 2>&1 || { cat "$log" >&2; return 2; }
   fi
   if ninja -C "$build" -n "$@" 2>/dev/null | grep -q 'no work to do'; then
     :

@@ -216,6 +216,23 @@ async function take_picture(browser, url) {
   await page.close();
 }
 
+/** Another scene from its first touch; the picture is BUILD_DIR/page_NAME.png. */
+async function check_scene(browser, name, sentence, condition) {
+  const own_socket = join(folder, `${name}.sock`);
+  const viewer = start("tact-view", ["--socket", own_socket, "--port", "0", "--json"]);
+  const { url } = JSON.parse(await first_line(viewer));
+  const tactd = start("tactd", [join(root, `model/scenes/${name}.toml`), "--socket", own_socket]);
+  tactd.stdout.resume();
+  const page = await browser.newPage({ viewport: size });
+  await page.goto(`${url}#sharp`);
+  check(sentence, await waits(page, condition, 60000), JSON.stringify(await page.evaluate(() =>
+    ({ moved: window.tact.moved_vertices, most_mm: 1e3 * window.tact.most_ever_m, cut: window.tact.cut_triangles }))));
+  await page.screenshot({ path: join(build, `page_${name}.png`) });
+  await page.close();
+  await stop(tactd);
+  await stop(viewer);
+}
+
 async function check_replay(browser, recording) {
   const viewer = start("tact-view", ["--open", recording, "--port", "0", "--json"]);
   const page = await browser.newPage({ viewport: size });
@@ -248,6 +265,11 @@ async function run() {
   await page.close();
   await take_picture(browser, url);
   await check_replay(browser, recording);
+  await check_scene(browser, "heart", "shows the heart dented by a finger", () =>
+    window.tact.most_m > 0.003 && window.tact.vertex_count === 10026);
+  await check_scene(browser, "skin", "shows the skin dented by an injector", () => window.tact.most_m > 0.003);
+  await check_scene(browser, "gum", "shows a cut that opens in the gum", () =>
+    window.tact.cut_triangles >= 8 && window.tact.most_m > 0.0005);
   await browser.close();
   await stop(tactd);
   await stop(viewer);

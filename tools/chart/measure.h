@@ -52,7 +52,7 @@ std::vector<model::Indentation> moving_probe(const model::Scene& scene, const Pr
 struct TimingSettings {
   std::size_t ticks = 20000;  // a round
   int rounds = 3;
-  double limit_s = 20.0;  // a slow peer: fewer ticks
+  double limit_s = 12.0;  // a slow peer: fewer ticks
 };
 
 struct Timing {

@@ -222,7 +222,8 @@ Result<std::unique_ptr<Subject>> make_bullet_peer(const PeerInput& input, bool v
   double stiffness = high.force_N < wanted_N ? high.stiffness : low.stiffness;
   if (low.force_N < wanted_N && high.force_N > wanted_N) {
     for (int i = 0; i < kTrials; ++i) {
-      const double share = std::log(wanted_N / low.force_N) / std::log(high.force_N / low.force_N);
+      const double least_N = std::max(low.force_N, 1e-3 * wanted_N);  // it may give way for good
+      const double share = std::log(wanted_N / least_N) / std::log(high.force_N / least_N);
       stiffness =
           low.stiffness * std::pow(high.stiffness / low.stiffness, std::clamp(share, 0.1, 0.9));
       const double now_N = force_N(stiffness);

@@ -48,7 +48,8 @@ std::vector<std::string> environment_of(const ProgramCall& call) {
     for (const auto& [name, value] : call.environment) replaced |= entry.starts_with(name + "=");
     if (!replaced) out.emplace_back(entry);
   }
-  for (const auto& [name, value] : call.environment) out.push_back(name + "=" + value);
+  for (const auto& [name, value] : call.environment)
+    out.push_back(fmt::format("{}={}", name, value));
   return out;
 }
 

@@ -71,11 +71,10 @@ void write_material(Text out, const Elasticity& m, bool large_strain) {
   const double E_kPa = m.youngs_modulus_Pa * kKPa, nu = m.poisson_ratio;  // NOLINT
   fmt::format_to(out, "*MATERIAL,NAME=TISSUE\n");
   if (large_strain) {
-    const double shear_kPa = E_kPa / (2.0 * (1.0 + nu));
-    const double bulk_kPa = E_kPa / (3.0 * (1.0 - 2.0 * nu));
-    // C10 = G / 2, D1 = 2 / K
-    fmt::format_to(out, "*HYPERELASTIC,NEO HOOKE\n{:.12g},{:.12g}\n", 0.5 * shear_kPa,
-                   2.0 / bulk_kPa);
+    // kPa; C10 = G / 2, D1 = 2 / K
+    const double shear = E_kPa / (2.0 * (1.0 + nu));
+    const double bulk = E_kPa / (3.0 * (1.0 - 2.0 * nu));
+    fmt::format_to(out, "*HYPERELASTIC,NEO HOOKE\n{:.12g},{:.12g}\n", 0.5 * shear, 2.0 / bulk);
   } else {
     fmt::format_to(out, "*ELASTIC\n{:.12g},{:.12g}\n", E_kPa, nu);
   }
@@ -127,13 +126,13 @@ bool read_vectors(std::istream& file, const std::string& heading,
 bool read_answer(const std::string& path, const ElasticProblem& p, ElasticAnswer& answer) {
   std::ifstream file(path);
   const Axes axes = axes_along(p.load.direction);
-  std::unordered_map<std::uint32_t, Vec3> force_mN, displacement_mm;
-  if (!read_vectors(file, "forces (fx,fy,fz) for set MOVED", force_mN) ||
+  std::unordered_map<std::uint32_t, Vec3> force_by_node, displacement_mm;  // mN, mm
+  if (!read_vectors(file, "forces (fx,fy,fz) for set MOVED", force_by_node) ||
       !read_vectors(file, "displacements (vx,vy,vz) for set REPORTED", displacement_mm))
     return false;
   for (const MovedNode& m : p.load.moved) {
-    const auto found = force_mN.find(m.node);
-    if (found == force_mN.end() || !is_finite(found->second)) return false;
+    const auto found = force_by_node.find(m.node);
+    if (found == force_by_node.end() || !is_finite(found->second)) return false;
     answer.moved_force_N.push_back(axes.from_deck(found->second) * kNPerMN);
     answer.force_N += answer.moved_force_N.back();
   }

@@ -86,9 +86,9 @@ model::Result<ReferencePlan> plan_of(const model::Scene& scene) {
 }
 
 model::Result<std::string> solver_versions() {
-  const auto gmsh = gmsh_version();
+  auto gmsh = gmsh_version();
   if (!gmsh) return gmsh;
-  const auto ccx = calculix_version();
+  auto ccx = calculix_version();
   if (!ccx) return ccx;
   return fmt::format("CalculiX {}, gmsh {}", *ccx, *gmsh);
 }

@@ -128,7 +128,7 @@ Result<bool> check_organ(const std::string& folder) {
     const HeldBox held{{-1.0, -1.0, -1.0}, {1.0, j.at("fixed_max_y_m").get<double>(), 1.0}};
     bool good = true;
     for (const json& c : j.at("cases")) {
-      const auto one = check_patch(organ->mesh, held, c);
+      auto one = check_patch(organ->mesh, held, c);
       if (!one) return one;
       good &= *one;
     }
@@ -141,22 +141,21 @@ Result<bool> check_organ(const std::string& folder) {
 }  // namespace
 
 Result<bool> self_check(const std::string& folder) {
-  const auto organ = check_organ(folder);
+  auto organ = check_organ(folder);
   if (!organ) return organ;
   // Block 50 x 50 mm, E = 1 kPa, nu = 0.45: FEniCS, contact by penalty; the bond: CalculiX.
-  const auto block =
-      check_block(0.05, {{"block, sphere R 5 mm at 1 mm", 1e-3, 3.801e-3, 0.02},
-                         {"block, sphere R 5 mm at 2 mm", 2e-3, 10.68e-3, 0.02},
-                         {"block, sphere R 5 mm at 5 mm", 5e-3, 40.46e-3, 0.02},
-                         {"block, sphere R 5 mm at 10 mm", 10e-3, 103.5e-3, 0.02},
-                         {"block, bonded disc pulled 1 mm", -1e-3, -13.722e-3, 0.03}});
+  auto block = check_block(0.05, {{"block, sphere R 5 mm at 1 mm", 1e-3, 3.801e-3, 0.02},
+                                  {"block, sphere R 5 mm at 2 mm", 2e-3, 10.68e-3, 0.02},
+                                  {"block, sphere R 5 mm at 5 mm", 5e-3, 40.46e-3, 0.02},
+                                  {"block, sphere R 5 mm at 10 mm", 10e-3, 103.5e-3, 0.02},
+                                  {"block, bonded disc pulled 1 mm", -1e-3, -13.722e-3, 0.03}});
   if (!block) return block;
   const auto sphere_N = [](double depth_m) { return sphere_force_N(kTissue, kRadius_m, depth_m); };
   // A bond is 0.3 % stiffer than a frictionless punch at this nu.
   const double punch_N = -1.003 * flat_punch_force_N(kTissue, kRadius_m, 1e-3);
-  const auto space = check_block(1.0, {{"half-space, sphere at 1 mm", 1e-3, sphere_N(1e-3), 0.02},
-                                       {"half-space, sphere at 5 mm", 5e-3, sphere_N(5e-3), 0.02},
-                                       {"half-space, bonded disc", -1e-3, punch_N, 0.03}});
+  auto space = check_block(1.0, {{"half-space, sphere at 1 mm", 1e-3, sphere_N(1e-3), 0.02},
+                                 {"half-space, sphere at 5 mm", 5e-3, sphere_N(5e-3), 0.02},
+                                 {"half-space, bonded disc", -1e-3, punch_N, 0.03}});
   if (!space) return space;
   return *organ && *block && *space;
 }

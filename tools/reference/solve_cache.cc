@@ -124,7 +124,7 @@ model::Result<ReferenceCase> solve_once(const Organ& organ, const Indentation& w
   probe.depth_m = what.tool_radius_m;
   probe.level = kCoarsestLevel;
   probe.contact_radius_m = kProbeContact * what.tool_radius_m;
-  const auto first = solve_or_find(organ, probe, solver, cache);
+  auto first = solve_or_find(organ, probe, solver, cache);
   if (!first) return first;
   const TipContact tip(
       organ.material, what.tool_radius_m,

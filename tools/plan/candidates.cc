@@ -1,0 +1,65 @@
+#include "tools/plan/candidates.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tact::tools {
+namespace {
+
+using model::Error;
+
+/// Names in a table hold no comma or quote.
+std::string as_word(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == ',' || c == '"'; }, ';');
+  return text;
+}
+
+}  // namespace
+
+std::vector<Candidate> candidates_of(const Table& table) {
+  std::vector<Candidate> out;
+  for (const Row& row : table.rows()) {
+    if (table.word(row, "kind") != "tact" || table.word(row, "failure") != "-") continue;
+    const auto count = [&](const char* column) {
+      return static_cast<std::size_t>(table.number(row, column));
+    };
+    model::LawSizes sizes{.table_knots = count("table_knots"),
+                          .layers = count("layers"),
+                          .rings = count("rings"),
+                          .nodes = count("nodes"),
+                          .curves = count("curves")};
+    for (const model::LawName& name : model::kLawNames)
+      if (name.name == table.word(row, "family")) sizes.law = name.kind;
+    const std::string& form = table.word(row, "form");
+    if (form != "-")
+      sizes.disc_form = form == "linear" ? model::DiscForm::kLinear : model::DiscForm::kAlmenLaszlo;
+    out.push_back({.sizes = sizes,
+                   .force_error_ratio = table.number(row, "force_rms_ratio"),
+                   .shape_error_ratio = table.number(row, "shape_rms_ratio"),
+                   .tick_median_us = table.number(row, "tick_median_us"),
+                   .tick_p999_us = table.number(row, "tick_p999_us"),
+                   .memory_bytes = table.number(row, "memory_bytes")});
+  }
+  return out;
+}
+
+std::optional<Error> check_chart_fits(const Table& table, const model::Scene& scene,
+                                      const std::string& path) {
+  const std::string machine = as_word(model::machine_name());
+  for (const Row& row : table.rows()) {
+    if (table.word(row, "scene_hash") != scene.hash)
+      return Error{
+          fmt::format("{}: the chart of another scene, or of this one before a change; run "
+                      "tact-chart {} again",
+                      path, scene.path)};
+    if (table.word(row, "machine") != machine)
+      return Error{fmt::format("{}: measured on another machine, {}; run tact-chart {} here", path,
+                               table.word(row, "machine"), scene.path)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace tact::tools

@@ -1,0 +1,20 @@
+// candidates.h - candidates for a plan from a chart: read from its file, or measured now.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/result.h"
+#include "tools/chart/chart.h"
+#include "tools/plan/choose.h"
+
+namespace tact::tools {
+
+/// Tact's rows of a chart; those that could not be measured are left out.
+std::vector<Candidate> candidates_of(const Table& table);
+
+/// An error if the chart is of another scene or another machine: then its times say nothing here.
+std::optional<model::Error> check_chart_fits(const Table& table, const model::Scene& scene,
+                                             const std::string& path);
+
+}  // namespace tact::tools

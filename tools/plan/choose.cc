@@ -1,0 +1,118 @@
+#include "tools/plan/choose.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace tact::tools {
+namespace {
+
+using model::ToleranceSettings;
+
+bool is_measured(const Candidate& c) {
+  return std::isfinite(c.force_error_ratio) && std::isfinite(c.shape_error_ratio) &&
+         std::isfinite(c.tick_p999_us) && std::isfinite(c.tick_median_us);
+}
+
+std::string text_of(const Candidate& c) {
+  return fmt::format("{}: force {:.2g} %, shape {:.2g} %, {:.3g} us (p99.9 {:.3g} us), {:.3g} kB",
+                     model::text_of(c.sizes), 100.0 * c.force_error_ratio,
+                     100.0 * c.shape_error_ratio, c.tick_median_us, c.tick_p999_us,
+                     1e-3 * c.memory_bytes);
+}
+
+/// What stands between a candidate and being enough, each with its cure.
+std::string lacks(const Candidate& c, const ToleranceSettings& t) {
+  std::string out;
+  const auto add = [&out](const std::string& part) { out += (out.empty() ? "" : "; ") + part; };
+  if (c.force_error_ratio > t.force_error_ratio)
+    add(
+        fmt::format("force error {:.3g} above tolerance.force_error_ratio = {:.3g}: fit the law "
+                    "(tact-fit), describe a nearer one ([compliance]) or allow {:.3g}",
+                    c.force_error_ratio, t.force_error_ratio, c.force_error_ratio));
+  if (c.shape_error_ratio > t.shape_error_ratio)
+    add(
+        fmt::format("shape error {:.3g} above tolerance.shape_error_ratio = {:.3g}: describe a law "
+                    "with a wider shape ([compliance]) or allow {:.3g}",
+                    c.shape_error_ratio, t.shape_error_ratio, c.shape_error_ratio));
+  if (c.tick_p999_us > t.tick_budget_us)
+    add(
+        fmt::format("p99.9 of {:.3g} us above tolerance.tick_budget_us = {:.3g}: allow more or use "
+                    "a faster machine",
+                    c.tick_p999_us, t.tick_budget_us));
+  return out;
+}
+
+/// The fastest of those left, memory deciding among times that cannot be told apart.
+std::size_t least_of(std::span<const Candidate> candidates, const std::vector<std::size_t>& among) {
+  double fastest_us = candidates[among.front()].tick_median_us;
+  for (const std::size_t i : among) fastest_us = std::min(fastest_us, candidates[i].tick_median_us);
+  std::size_t best = among.size();
+  for (std::size_t k = 0; k < among.size(); ++k) {
+    const Candidate& c = candidates[among[k]];
+    if (c.tick_median_us > (1.0 + kSameTime_ratio) * fastest_us) continue;
+    const auto key = [](const Candidate& x) {
+      return std::pair{x.memory_bytes, x.force_error_ratio};
+    };
+    if (best == among.size() || key(c) < key(candidates[among[best]])) best = k;
+  }
+  return among[best];
+}
+
+}  // namespace
+
+bool is_enough(const Candidate& c, const ToleranceSettings& t) {
+  return is_measured(c) && excess_ratio(c, t) <= 1.0;
+}
+
+double excess_ratio(const Candidate& c, const ToleranceSettings& t) {
+  return std::max({c.force_error_ratio / t.force_error_ratio,
+                   c.shape_error_ratio / t.shape_error_ratio, c.tick_p999_us / t.tick_budget_us});
+}
+
+Choice choose(std::span<const Candidate> candidates, const ToleranceSettings& tolerance) {
+  std::vector<std::size_t> enough;
+  Choice out;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Candidate& c = candidates[i];
+    if (is_enough(c, tolerance)) enough.push_back(i);
+    const bool nearer =
+        is_measured(c) && (!out.chosen || excess_ratio(c, tolerance) <
+                                              excess_ratio(candidates[*out.chosen], tolerance));
+    if (nearer) out.chosen = i;
+  }
+  if (!out.chosen) {
+    out.reason = "no law of the scene could be measured";
+    return out;
+  }
+  if (enough.empty()) {
+    const Candidate& nearest = candidates[*out.chosen];
+    out.reason = fmt::format("no law meets [tolerance]; nearest is {}. {}", text_of(nearest),
+                             lacks(nearest, tolerance));
+    return out;
+  }
+  out.meets = true;
+  out.chosen = least_of(candidates, enough);
+  const Candidate& least = candidates[*out.chosen];
+  const auto same_law = [&](std::size_t i) { return candidates[i].sizes.law == least.sizes.law; };
+  std::vector<std::size_t> others;
+  for (const std::size_t i : enough)
+    if (!same_law(i)) others.push_back(i);
+  if (others.empty()) {
+    for (const std::size_t i : enough)
+      if (i != *out.chosen) others.push_back(i);
+  }
+  out.reason = fmt::format(
+      "{} of {} measured laws and sizes meet [tolerance]; of these it is the fastest, within {:g} "
+      "% "
+      "the smallest. {}",
+      enough.size(), candidates.size(), 100.0 * kSameTime_ratio, text_of(least));
+  if (others.empty()) return out;
+  out.runner_up = least_of(candidates, others);
+  out.reason += fmt::format(". Runner-up: {}", text_of(candidates[*out.runner_up]));
+  return out;
+}
+
+}  // namespace tact::tools

@@ -1,0 +1,45 @@
+// choose.h - the least law that is good enough: a pure function over measured candidates.
+//
+//     enough   force_error <= wanted, shape_error <= wanted, tick p99.9 <= budget
+//     least    by time, then by memory, then by the smaller force error
+//
+// Times of two candidates count as equal within 10 %: a clock tells them no better, and the next
+// measurement would turn them round. If none is enough, the nearest is the one whose worst excess
+// over a limit, as a ratio, is smallest.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "model/plan_file.h"
+
+namespace tact::tools {
+
+inline constexpr double kSameTime_ratio = 0.10;
+
+/// One measured law and size.
+struct Candidate {
+  model::LawSizes sizes;
+  double force_error_ratio = 0.0;  // RMS, of the peak
+  double shape_error_ratio = 0.0;  // RMS, of the depth
+  double tick_median_us = 0.0;
+  double tick_p999_us = 0.0;
+  double memory_bytes = 0.0;
+};
+
+struct Choice {
+  bool meets = false;                    // chosen is enough
+  std::optional<std::size_t> chosen;     // or the nearest
+  std::optional<std::size_t> runner_up;  // the next that is enough, of another law if there is one
+  std::string reason;
+};
+
+bool is_enough(const Candidate& c, const model::ToleranceSettings& tolerance);
+/// The largest of its errors and its time over their limits; at most 1: it is enough.
+double excess_ratio(const Candidate& c, const model::ToleranceSettings& tolerance);
+
+/// Candidates with a number that is not finite are never chosen; none at all: no choice.
+Choice choose(std::span<const Candidate> candidates, const model::ToleranceSettings& tolerance);
+
+}  // namespace tact::tools
