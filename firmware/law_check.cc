@@ -70,4 +70,10 @@ std::optional<model::Error> check_budget(const model::Scene& scene) {
       scene.path, (*twin)->title(), median_us, budget_us)};
 }
 
+std::optional<model::Error> check_law(const model::Scene& scene, const model::Tissue& tissue,
+                                      const hal::DeviceInfo& device) {
+  if (auto problem = check_renderable(scene, tissue, device)) return problem;
+  return check_budget(scene);
+}
+
 }  // namespace tact::firmware

@@ -24,4 +24,8 @@ double measure_law_us(const model::Scene& scene, const model::TissueLaw& twin);
 /// A twin's measure_law_us against [tolerance] tick_budget_us; nothing to say without one.
 std::optional<model::Error> check_budget(const model::Scene& scene);
 
+/// Both, the device first.
+std::optional<model::Error> check_law(const model::Scene& scene, const model::Tissue& tissue,
+                                      const hal::DeviceInfo& device);
+
 }  // namespace tact::firmware

@@ -71,7 +71,10 @@ class Session {
   void watch();
   int report();
   double force_share() const { return non_rt_ ? kNonRtForceShare : 1.0; }
-  std::uint64_t ticks_per_shape() const;
+  // As often as a viewer looks.
+  std::uint64_t ticks_per_shape() const {
+    return std::max(1ul, static_cast<std::uint64_t>(scene_.rate_Hz / scene_.frame_rate_Hz));
+  }
   std::int64_t period_ns() const { return std::llround(1e9 / scene_.rate_Hz); }
 
   const model::Scene& scene_;
@@ -135,8 +138,7 @@ std::optional<Error> Session::open() {
   auto device = hal::open_device(scene_);
   if (!device) return device.error();
   device_ = std::move(*device);
-  if (auto problem = check_renderable(scene_, *tissue_, device_->info())) return problem;
-  if (auto problem = check_budget(scene_)) return problem;
+  if (auto problem = check_law(scene_, *tissue_, device_->info())) return problem;
   limits_ = limits_for(scene_.limits, device_->info());
   controller_.emplace(tissue_->contact_scene(),
                       Gate(limits_, static_cast<double>(period_ns()) * 1e-9, force_share()));
@@ -150,12 +152,6 @@ std::optional<Error> Session::open() {
           .period_ns = period_ns(), .max_ticks = asked_ticks, .ticks_per_shape = ticks_per_shape()},
       *device_, *controller_, clock, requests_, *ring_);
   return std::nullopt;
-}
-
-/// As often as a viewer looks.
-std::uint64_t Session::ticks_per_shape() const {
-  return std::max<std::uint64_t>(1,
-                                 static_cast<std::uint64_t>(scene_.rate_Hz / scene_.frame_rate_Hz));
 }
 
 std::optional<Error> Session::open_telemetry() {

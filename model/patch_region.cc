@@ -11,8 +11,11 @@ constexpr std::size_t kSpringsPerNode = 4;  // a closed surface has fewer than 3
 
 }  // namespace
 
-PatchRegion::PatchRegion(PatchSurface surface, double node_mass_kg, std::size_t nodes)
-    : surface_(std::move(surface)), inverse_mass_per_kg_(1.0 / node_mass_kg) {
+PatchRegion::PatchRegion(PatchSurface surface, double node_mass_kg, std::size_t nodes,
+                         const Relaxation& relaxation)
+    : surface_(std::move(surface)),
+      inverse_mass_per_kg_(1.0 / node_mass_kg),
+      memory_(relaxation, nodes) {
   for (auto* ids : {&vertex_, &old_vertex_, &ring_}) ids->resize(nodes);
   for (auto* v : {&position_, &velocity_, &old_position_, &old_velocity_, &rest_, &load_})
     v->resize(nodes);
@@ -31,7 +34,7 @@ PatchRegion::PatchRegion(PatchSurface surface, double node_mass_kg, std::size_t 
 
 std::size_t PatchRegion::memory_bytes() const {
   const std::size_t n = slot_of_.size();
-  return surface_.memory_bytes() +
+  return surface_.memory_bytes() + memory_.memory_bytes() +
          capacity() * (3 * sizeof(std::uint32_t) + 6 * sizeof(Vec3) + 3 * sizeof(double)) +
          spring_.size() * (sizeof(Spring) + sizeof(std::uint32_t)) +
          n * (sizeof(std::uint32_t) + 3 * sizeof(float) + 1) + edge_is_cut_.size() +
@@ -40,7 +43,7 @@ std::size_t PatchRegion::memory_bytes() const {
 
 SpringNetwork PatchRegion::network(std::span<const ProbeSpring> probes) RT_SAFE {
   const std::size_t n = count_;
-  return {.node = {.position_m = {position_.data(), n},
+  return {.node = {.position_m = relaxes() ? memory_.felt_m(n) : std::span(position_.data(), n),
                    .velocity_mps = {velocity_.data(), n},
                    .rest_m = {rest_.data(), n},
                    .load_N = {load_.data(), n},
@@ -101,6 +104,7 @@ void PatchRegion::gather(std::span<const std::uint32_t> triangles) RT_SAFE {
   std::swap(vertex_, old_vertex_);
   std::swap(position_, old_position_);
   std::swap(velocity_, old_velocity_);
+  memory_.set_aside();
   const std::size_t old_count = count_;
   for (std::size_t i = 0; i < old_count; ++i) {
     const std::uint32_t v = old_vertex_[i];
@@ -122,14 +126,17 @@ void PatchRegion::gather(std::span<const std::uint32_t> triangles) RT_SAFE {
     anchor_[i] = surface_.anchor_N_per_m[v];
     drag_[i] = surface_.tissue.body_damping_time_s * anchor_[i];
     inverse_[i] = inverse_mass_per_kg_;
+    memory_.forget(i, rest_[i]);
   }
   for (std::size_t i = 0; i < old_count; ++i) {
     const std::uint32_t slot = slot_of_[old_vertex_[i]];
     if (slot == kNoSlot) continue;
     position_[slot] = old_position_[i];
     velocity_[slot] = old_velocity_[i];
+    memory_.keep(slot, i);
   }
   connect();
+  memory_.renew(network({}), {position_.data(), count_});
   take_from_velocities(free_energy_J() - before_J);
 }
 
@@ -161,14 +168,21 @@ void PatchRegion::connect() RT_SAFE {
     }
     if (inverse_[i] > 0.0) continue;
     velocity_[i] = {};
-    if (is_lip_[vertex_[i]] == 0) position_[i] = rest_[i];
+    if (is_lip_[vertex_[i]] != 0) continue;
+    position_[i] = rest_[i];
+    memory_.forget(i, rest_[i]);
   }
 }
 
 // Stored and moving, above the same springs at rest.
 double PatchRegion::free_energy_J() RT_SAFE {
+  return stored_energy_J() - (rest_energy_J_ - cut_energy_J_) + kinetic_energy_J(network({}));
+}
+
+double PatchRegion::stored_energy_J() RT_SAFE {
   const SpringNetwork now = network({});
-  return stored_energy_J(now) - (rest_energy_J_ - cut_energy_J_) + kinetic_energy_J(now);
+  return relaxes() ? memory_.stored_energy_J(now, {position_.data(), count_})
+                   : model::stored_energy_J(now);
 }
 
 void PatchRegion::take_from_velocities(double energy_J) RT_SAFE {
@@ -195,6 +209,7 @@ std::size_t PatchRegion::cut(const BladeSweep& sweep) RT_SAFE {
     spring_edge_[k] = spring_edge_[springs_];
     ++cuts;
   }
+  if (cuts > 0) memory_.renew(network({}), {position_.data(), count_});
   return cuts;
 }
 

@@ -5,7 +5,8 @@
 // so every vertex that moves has all its springs. A vertex that leaves the region returns to rest,
 // except on the lips of a cut, which keep the displacement that they had. What a return adds to the
 // stored energy is taken from the velocities of those that stay; what they do not have is the debt:
-// handover_debt_J, small, since the rim is where nothing moves.
+// handover_debt_J, small, since the rim is where nothing moves. With relaxation (patch_memory.h) a
+// vertex that leaves also forgets how it was stretched, lips too.
 //
 // Gathering costs the region, not the mesh. Cuts are marks on edges; the list of cut triangles and
 // of lips has a fixed capacity, and a blade that finds it full cuts no more.
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "model/blade.h"
+#include "model/patch_memory.h"
 #include "model/patch_surface.h"
 #include "model/spring_network.h"
 
@@ -29,7 +31,8 @@ inline constexpr std::uint32_t kNoSlot = 0xFFFFFFFFu;
 class PatchRegion {
  public:
   /// Memory is taken here. nodes: 4 .. kMaxPatchNodes.
-  PatchRegion(PatchSurface surface, double node_mass_kg, std::size_t nodes);
+  PatchRegion(PatchSurface surface, double node_mass_kg, std::size_t nodes,
+              const Relaxation& relaxation = {});
 
   /// Around these triangles, nearest first.
   void gather(std::span<const std::uint32_t> triangles) RT_SAFE;
@@ -40,7 +43,17 @@ class PatchRegion {
   /// Removes the springs that the blade passes through; returns how many.
   std::size_t cut(const BladeSweep& sweep) RT_SAFE;
 
+  /// What is stepped; with relaxation its positions are what the springs feel, and flow() after
+  /// the last step of a tick tells the vertices where they are.
   SpringNetwork network(std::span<const ProbeSpring> probes) RT_SAFE;
+  void flow() RT_SAFE { memory_.flow({position_.data(), count_}, {rest_.data(), count_}); }
+  bool relaxes() const RT_SAFE { return memory_.is_on(); }
+  /// How far a vertex of the region is from where its springs feel it.
+  Vec3 flowed_m(std::uint32_t slot) const RT_SAFE {
+    return memory_.flowed_m(slot, position_[slot]);
+  }
+  /// Springs, anchors and loads, shared out over the terms of the relaxation.
+  double stored_energy_J() RT_SAFE;
   /// Energy of the springs in the region, as if none were cut, with all vertices at rest.
   double rest_energy_J() const RT_SAFE { return rest_energy_J_; }
   double handover_debt_J() const RT_SAFE { return handover_debt_J_; }
@@ -71,6 +84,7 @@ class PatchRegion {
 
   PatchSurface surface_;
   double inverse_mass_per_kg_;
+  PatchMemory memory_;
   // of the region, by slot; old_ is the state before gathering
   std::vector<std::uint32_t> vertex_, old_vertex_, ring_;
   std::vector<Vec3> position_, velocity_, old_position_, old_velocity_, rest_, load_;

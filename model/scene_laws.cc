@@ -90,15 +90,16 @@ void visit_hex_sheet(Keys& k, Scene& scene) {
           Need::kOptional);
 }
 
-constexpr std::array<Choice, kIntegratorNames.size()> integrator_choices() {
-  std::array<Choice, kIntegratorNames.size()> out{};
-  std::transform(kIntegratorNames.begin(), kIntegratorNames.end(), out.begin(),
-                 [](const IntegratorName& i) {
-                   return Choice{i.name, ""};
-                 });
-  return out;
-}
-constexpr auto kIntegrators = integrator_choices();
+constexpr std::array kIntegrators{
+    Choice{"explicit-euler", "grows without damping; for comparison"},
+    Choice{"improved-euler", "semi-implicit: one evaluation, stable to 2 / omega undamped"},
+    Choice{"midpoint-averaging", "two evaluations, second order at alpha 1/2"},
+    Choice{"rk2", "two evaluations, grows without damping"},
+    Choice{"rk4", "four evaluations, fourth order"},
+    Choice{"implicit-euler", "stable at every step, damps; a fixed number of iterations"},
+};
+static_assert(std::ranges::equal(kIntegrators, kIntegratorNames, {}, &Choice::name,
+                                 &IntegratorName::name));
 
 void visit_spring_patch(Keys& k, Scene& scene) {
   SpringPatchParameters& p = scene.spring_patch;
@@ -148,7 +149,7 @@ void visit_laws(Keys& k, SceneText& out) {
           scene.table_knots, Need::kOptional);
   k.flag("varies_by_place", "a closed-form law is scaled from place to place by [compliance]",
          scene.varies_by_place, Need::kOptional);
-  k.one_of("law", kLaws, [&law](std::size_t chosen) { law = chosen; });
+  k.choice("law", kLaws, "of the tissue", law);
   scene.law = kLawNames[law].kind;
   const auto section = [&](LawKind kind, std::string_view meaning, const Keys::Inside& inside) {
     if (k.section(name_of(kind), meaning, inside, Need::kOptional)) scene.described.push_back(kind);

@@ -72,6 +72,8 @@ void Keys::vector(std::string_view key, Range each, std::string_view meaning, Ve
 
 void Keys::choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning,
                   std::size_t& out) {
+  constexpr std::size_t kMostOnALine = 4;
+  if (!visit_.document() && choices.size() > kMostOnALine) return describe(key, choices);
   const toml::node* node = take(key, names_of(choices), meaning);
   if (node) out = match(key, choices, *node).value_or(out);
 }
@@ -80,8 +82,7 @@ void Keys::one_of(std::string_view key, std::span<const Choice> choices,
                   const std::function<void(std::size_t)>& further) {
   if (!visit_.document()) {
     for (std::size_t i = 0; i < choices.size(); ++i) {
-      const std::string value = fmt::format("\"{}\"", choices[i].name);
-      visit_.add({path_, std::string(key), value, "", std::string(choices[i].meaning)});
+      describe(key, choices.subspan(i, 1));
       further(i);
     }
     return;
@@ -91,6 +92,14 @@ void Keys::one_of(std::string_view key, std::span<const Choice> choices,
       node ? match(key, choices, *node) : std::optional<std::size_t>{};
   all_named_ = index.has_value();
   if (index) further(*index);
+}
+
+/// A row for each choice.
+void Keys::describe(std::string_view key, std::span<const Choice> choices) {
+  for (const Choice& choice : choices) {
+    const std::string value = fmt::format("\"{}\"", choice.name);
+    visit_.add({path_, std::string(key), value, "", std::string(choice.meaning)});
+  }
 }
 
 bool Keys::section(std::string_view key, std::string_view meaning, const Inside& inside,

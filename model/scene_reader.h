@@ -76,7 +76,7 @@ class Keys {
   void count(std::string_view key, CountRange range, std::string_view meaning, std::size_t& out,
              Need need = Need::kRequired);
   void vector(std::string_view key, Range each, std::string_view meaning, Vec3& out);
-  /// `out` becomes the index of the choice.
+  /// `out` becomes the index of the choice. Many choices get a row each in the reference.
   void choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning,
               std::size_t& out);
 
@@ -108,6 +108,7 @@ class Keys {
                          std::string fallback = {});
   std::optional<std::size_t> match(std::string_view key, std::span<const Choice> choices,
                                    const toml::node& node);
+  void describe(std::string_view key, std::span<const Choice> choices);
   void judge(const toml::node& node, std::string_view key, std::string_view problem);
   void finish();
   std::string unknown_sentence(std::string_view key) const;

@@ -76,7 +76,7 @@ bool is_a_place(const Place& place, const SurfaceView& mesh) RT_SAFE {
 
 SpringPatch::SpringPatch(PatchSurface surface, const SpringPatchParameters& parameters)
     : parameters_(parameters),
-      region_(std::move(surface), parameters.node_mass_kg, parameters.nodes),
+      region_(std::move(surface), parameters.node_mass_kg, parameters.nodes, parameters.relaxation),
       stepper_(region_.capacity(), region_.spring_capacity()) {
   gathered_.fill(kNoTriangle);
   double sum_m = 0.0;
@@ -177,7 +177,11 @@ std::span<const ProbeSpring> SpringPatch::probes() RT_SAFE {
       const std::uint32_t v = mesh.triangle[touch.place.triangle][c];
       probe.node[c] = region_.slot_of(v);
       probe.push[c] = -mesh.vertex_normal[v];
-      if (probe.node[c] == kNoSlot) inside = false;
+      if (probe.node[c] == kNoSlot) {
+        inside = false;
+      } else if (region_.relaxes()) {  // the network is stepped at z, the tool meets u
+        probe.depth_m -= probe.weight[c] * dot(probe.push[c], region_.flowed_m(probe.node[c]));
+      }
     }
     if (inside) ++count;
   }
@@ -191,6 +195,10 @@ void SpringPatch::advance() RT_SAFE {
   const StepRule rule = rule_of(parameters_);
   double energy_J = 0.0;
   for (int i = 0; i < parameters_.substeps; ++i) energy_J = stepper_.step(network, rule);
+  if (region_.relaxes()) {
+    region_.flow();
+    energy_J = region_.stored_energy_J();
+  }
   network_energy_J_ = energy_J - region_.rest_energy_J();
   broke_ = !std::isfinite(energy_J);
   if (!broke_) return;
@@ -201,7 +209,7 @@ void SpringPatch::advance() RT_SAFE {
 
 double SpringPatch::stored_energy_J() RT_SAFE {
   const SpringNetwork network = region_.network(probes());
-  double energy_J = model::stored_energy_J(network) - region_.rest_energy_J();
+  double energy_J = region_.stored_energy_J() - region_.rest_energy_J();
   for (const ProbeSpring& probe : network.probe) {
     const double f =
         probe_force_N(probe, dent_m(probe, network.node.position_m, network.node.rest_m));

@@ -12,7 +12,7 @@
 // meet in one tick, it never pulls unless the site is held, and its reaction falls on the corners
 // with the same weights and directions with which w is read. So W is one potential for any place,
 // also across an edge, and the tool can only get back what it stored; springs and drag take the
-// rest.
+// rest. Tissue that relaxes shares its energy out (patch_memory.h); the virtual spring does not.
 //
 // Valid for |d| <= working_depth_m; beyond, the force is that of the limit and kSaturated. Cost a
 // tick: the region's nodes, whatever the mesh. Should the nodes leave the finite numbers, they are
@@ -39,8 +39,9 @@ struct SpringPatchParameters {
   std::size_t spheres = 1;  // of the tool, 1 .. kMaxSpheres
   std::size_t nodes = 500;  // 16 .. kMaxPatchNodes
   Method method{};
-  int iterations = 10;  // of implicit Euler, 1 .. 100
-  int substeps = 1;     // 1 .. 16
+  int iterations = 10;      // of implicit Euler, 1 .. 100
+  int substeps = 1;         // 1 .. 16
+  Relaxation relaxation{};  // made for tick_s; of springs and anchors, not of the coupling
 };
 
 class SpringPatch final : public SiteLaw {

@@ -223,6 +223,9 @@ TissueLawBuilder::Step TissueLawBuilder::add_spring_patch() {
   SpringPatchParameters parameters = scene_.spring_patch;
   parameters.tick_s = 1.0 / scene_.rate_Hz;
   parameters.spheres = scene_.tool.spheres.size();
+  auto relaxation = make_relaxation(scene_.relaxation, parameters.tick_s);
+  if (!relaxation) return blame(relaxation.error());
+  parameters.relaxation = *relaxation;
   auto patch = make_spring_patch(scene_.organ_mesh.view(), parameters);
   if (!patch) return blame(patch.error());
   law_->range_ = {-parameters.working_depth_m, parameters.working_depth_m};

@@ -32,7 +32,7 @@ ReferenceData make_reference() {
 TEST(FitData, KeepsTheLinearCasesAndTheSitesThatTheSceneHoldsOut) {
   model::Scene scene = tests::make_plate_scene();
   scene.reference_sites = {{.vertex = 30}, {.vertex = 200, .held_out = true}};
-  const auto data = fit_data_of(make_reference(), scene, false);
+  const auto data = fit_data_of(make_reference(), scene, {}, false);
   ASSERT_TRUE(data) << data.error().sentence;
   ASSERT_EQ(data->sites.size(), 2U);
   EXPECT_FALSE(data->sites[0].held_out);
@@ -44,7 +44,7 @@ TEST(FitData, KeepsTheLinearCasesAndTheSitesThatTheSceneHoldsOut) {
   EXPECT_TRUE(std::isnan(data->sites[0].samples[1].ring_m[1]));  // not known there
   EXPECT_TRUE(data->has_places());
   EXPECT_EQ(data->sites[0].at->normal, (model::Vec3{0, 0, 1}));
-  const auto large = fit_data_of(make_reference(), scene, true);
+  const auto large = fit_data_of(make_reference(), scene, {}, true);
   ASSERT_TRUE(large);
   EXPECT_EQ(large->sites[0].samples.size(), 1U);
   EXPECT_EQ(large->deepest_m(), 9_mm);
@@ -54,11 +54,16 @@ TEST(FitData, RefusesAnotherOrganAndNothingToFit) {
   model::Scene scene = tests::make_plate_scene();
   ReferenceData reference = make_reference();
   reference.sites[1].vertex = 1000000;
-  const auto stranger = fit_data_of(reference, scene, false);
+  const auto stranger = fit_data_of(reference, scene, {}, false);
   ASSERT_FALSE(stranger);
   EXPECT_NE(stranger.error().sentence.find("site 1000000"), std::string::npos);
-  scene.reference_sites = {{.vertex = 30, .held_out = true}, {.vertex = 200, .held_out = true}};
-  EXPECT_FALSE(fit_data_of(make_reference(), scene, false));
+  EXPECT_FALSE(fit_data_of(make_reference(), scene, {"31"}, false));  // no such site
+  scene.reference_sites = {{.vertex = 30, .held_out = true}};
+  const auto rest = fit_data_of(make_reference(), scene, {"200"}, false);
+  ASSERT_FALSE(rest);
+  EXPECT_NE(rest.error().sentence.find("leave one to fit"), std::string::npos);
+  scene.reference_sites.push_back({.vertex = 200, .held_out = true});
+  EXPECT_FALSE(fit_data_of(make_reference(), scene, {}, false));
 }
 
 TEST(FitData, AVertexIsAPlaceWithAllItsWeight) {

@@ -79,8 +79,9 @@ TEST(Override, ThatIsWrongIsToldAsItWasTyped) {
        "m"},
       {"hnad.mass_kg=1", "hnad is no key here; did you mean hand? allowed: a section [hand]"},
       {"a.b.c=1",
-       "a is no key here; allowed here: name, rate_Hz, law, rhombus, organ, tool, "
-       "contact, device, hand, limits, telemetry"},
+       "a is no key here; allowed here: name, rate_Hz, table_knots, varies_by_place, law, rhombus, "
+       "disc_stack, hex_sheet, spring_patch, compliance, pull, relaxation, elastic, "
+       "reference_site, tolerance, organ, tool, contact, device, hand, limits, telemetry"},
       {"organ=5", "organ is a number, not a section; allowed: a section [organ]"},
       {"organ.mesh.x=5", "mesh is a value, not a section; set it without a dot"},
       {"hand.stroke.7.depth_m=0", "no entry 7 here; the scene has 7, counted from 0"},

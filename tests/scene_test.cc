@@ -141,6 +141,17 @@ TEST(Scene, NamesTheMissingKeyAndTheLineOfItsSection) {
             "missing; allowed: 0 .. 0.1 m");
 }
 
+TEST(Scene, RefusesALawThatItDoesNotDescribe) {
+  const std::string said = complaint(edited("law = \"rhombus\"", "law = \"hex_sheet\""));
+  EXPECT_NE(said.find("law = \"hex_sheet\" has no section [hex_sheet]; write it or choose another"),
+            said.npos)
+      << said;
+  const std::string varies =
+      complaint(edited("law = \"rhombus\"", "law = \"rhombus\"\nvaries_by_place = true"));
+  EXPECT_NE(varies.find("varies_by_place = true needs a section [compliance]"), varies.npos)
+      << varies;
+}
+
 TEST(Scene, RefusesKeysThatContradictEachOther) {
   const std::string name = "scene_RefusesKeysThatContradictEachOther.toml";
   EXPECT_EQ(complaint(edited("tear_force_N = 0.6", "tear_force_N = 0.6\ngrip_close_ratio = 0.4")),

@@ -29,9 +29,10 @@ struct DeltaPlant::Implicit {
   Mat3 a;            // A
   Vec3 momentum_Ns;  // right-hand side without friction
 
-  /// A spring-damper along n, w = n . v, that is `excess` beyond its rest: implicit in v.
+  /// A spring-damper along n that is `excess` beyond its rest half a step from now, before v+ has
+  /// done its half: implicit in v+.
   void resist(double dt_s, const Vec3& n, double excess, double stiffness, double damping) RT_SAFE {
-    a = a + (dt_s * damping + dt_s * dt_s * stiffness) * outer(n, n);
+    a = a + (dt_s * damping + 0.5 * dt_s * dt_s * stiffness) * outer(n, n);
     momentum_Ns -= (dt_s * stiffness * excess) * n;
   }
 };
@@ -54,10 +55,11 @@ void DeltaPlant::step(double dt_s, const Joints& motor_Nm, const HandPull& hand)
   const auto torque_Nm = [&](std::size_t i) RT_SAFE {
     return motor_Nm[i] - gravity_Nm[i] - joint_inertia * drift[i];
   };
+  const Vec3 ahead_m = position_m_ + 0.5 * dt_s * velocity_mps_;  // x+ without v+
   const Vec3 force_N = k_transposed * Vec3{torque_Nm(0), torque_Nm(1), torque_Nm(2)} +
-                       hand.stiffness_N_per_m * (hand.aim_m - position_m_) +
+                       hand.stiffness_N_per_m * (hand.aim_m - ahead_m) +
                        hand.damping_Ns_per_m * hand.aim_velocity_mps;
-  const double hand_kg = dt_s * hand.damping_Ns_per_m + dt_s * dt_s * hand.stiffness_N_per_m;
+  const double hand_kg = dt_s * hand.damping_Ns_per_m + 0.5 * dt_s * dt_s * hand.stiffness_N_per_m;
   Implicit step{
       .a = mass_kg + (dt_s * friction_.viscous_Nms_per_rad) * (k_transposed * k) +
            model::diagonal(hand_kg),
@@ -76,21 +78,25 @@ void DeltaPlant::add_stops(double dt_s, const Mat3& k, Implicit& step) const RT_
     const double below_rad = theta_rad_[i] - kGeometry.theta_min_rad;
     const double excess_rad = above_rad > 0.0 ? above_rad : below_rad < 0.0 ? below_rad : 0.0;
     if (!(std::abs(excess_rad) > 0.0)) continue;
-    step.resist(dt_s, k.row[i], excess_rad, kStopStiffness_Nm_per_rad, kStopDamping_Nms_per_rad);
+    const double ahead_rad = 0.5 * dt_s * dot(k.row[i], velocity_mps_);
+    step.resist(dt_s, k.row[i], excess_rad + ahead_rad, kStopStiffness_Nm_per_rad,
+                kStopDamping_Nms_per_rad);
   }
 }
 
 void DeltaPlant::add_rim(double dt_s, Implicit& step) const RT_SAFE {
+  const double ahead_s = 0.5 * dt_s;
   const double radius_m = std::hypot(position_m_.x, position_m_.y);
   if (radius_m > kRimRadius_m) {
     const Vec3 outward{position_m_.x / radius_m, position_m_.y / radius_m, 0.0};
-    step.resist(dt_s, outward, radius_m - kRimRadius_m, kRimStiffness_N_per_m,
-                kRimDamping_Ns_per_m);
+    step.resist(dt_s, outward, radius_m - kRimRadius_m + ahead_s * dot(outward, velocity_mps_),
+                kRimStiffness_N_per_m, kRimDamping_Ns_per_m);
   }
   const double along_m = position_m_.z - sim_delta::kMiddle_D_m;
   if (std::abs(along_m) > kRimHalfLength_m) {
     const double excess_m = along_m - std::copysign(kRimHalfLength_m, along_m);
-    step.resist(dt_s, {0.0, 0.0, 1.0}, excess_m, kRimStiffness_N_per_m, kRimDamping_Ns_per_m);
+    step.resist(dt_s, {0.0, 0.0, 1.0}, excess_m + ahead_s * velocity_mps_.z, kRimStiffness_N_per_m,
+                kRimDamping_Ns_per_m);
   }
 }
 
@@ -118,7 +124,7 @@ Vec3 DeltaPlant::with_friction(const Vec3& free_mps, const Mat3& k, const Mat3& 
 }
 
 void DeltaPlant::move(double dt_s, const Vec3& velocity_mps) RT_SAFE {
-  const Vec3 next_m = position_m_ + dt_s * velocity_mps;
+  const Vec3 next_m = position_m_ + 0.5 * dt_s * (velocity_mps_ + velocity_mps);
   const DeltaInverse inverse = delta_.inverse(next_m);
   if (!inverse.reachable || !is_finite(velocity_mps)) {  // rods pulled tight, or NaN: dead stop
     velocity_mps_ = {};

@@ -1,7 +1,8 @@
 // delta_plant.h - the mechanics of the simulated delta, with the hand that holds it.
 //
-//     A v+ = M v + h (K^T (tau - tau_g) - I K^T (dK/dt v) + k (x_h - x) + b v_h) + K^T lambda
-//     A    = M + h c K^T K + (h b + h^2 k) 1,      x+ = x + h v+
+//     A v+ = M v + h (K^T (tau - tau_g) - I K^T (dK/dt v) + k (x_h - x - h v / 2) + b v_h)
+//            + K^T lambda
+//     A    = M + h c K^T K + (h b + h^2 k / 2) 1,      x+ = x + h (v + v+) / 2
 //
 //     M = I K^T K + m 1  mass of joints, platform and hand, kg;  thetadot = K v
 //     tau, tau_g         motor and gravity torque, N m;  c  viscous joint friction, N m s/rad
@@ -9,7 +10,9 @@
 //     lambda             impulse of Coulomb friction: what stops joint i, at most h tau_c
 //
 // I K^T (dK/dt v) is all that Coriolis and centrifugal forces leave in these coordinates. Dampers,
-// springs and stops are implicit in v, so any stiffness is stable and friction only takes energy.
+// springs and stops are implicit in v+ and x+, so any stiffness is stable and friction only takes
+// energy. A force that is held over the step moves the tool as far as it really would: with
+// x+ = x + h v+ the loop would see h / 2 ahead, worth K h / 2 of damping for a wall of stiffness K.
 // Joint stops at -50 and 95 deg and a rim around the cylinder, 20 mm beyond its wall and 15 mm
 // beyond its ends, keep arms and rods well away from every singular pose. Frame D.
 #pragma once

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "tools/chart/peers.h"
+#include "tools/chart/chart_peers.h"
 #include "tools/common/run_program.h"
 
 namespace tact::tools {

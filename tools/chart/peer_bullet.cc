@@ -1,13 +1,14 @@
 // Bullet's soft body under the same tip: position-based dynamics, one step a tick.
 //
-//     surface   links along the edges and across two of them, and matching to the shape at rest
+//     surface   links along the edges and across two of them, and matching to the shape at rest,
+//               kMT = kLST^2
 //     volume    links along the edges of the tetrahedra that fill the surface (gmsh)
 //
 // The tip is a penalty spring on the touched triangle, F = q (d - w), as in spring_mesh. Bullet has
 // no modulus: its free stiffness (shape matching, or that of the links) is tried until
 // the mean force at 5 mm fits; if it does not within Bullet's range 0 .. 1, the nearest is taken
 // and said. Built only where Bullet is there: apt install libbullet-dev.
-#include "tools/chart/peers.h"
+#include "tools/chart/chart_peers.h"
 
 #ifndef TACT_HAS_BULLET
 
@@ -114,7 +115,7 @@ class BulletPeer final : public Subject {
     for (const auto& t : scene.organ_mesh.triangle)
       body_->appendFace(static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2]));
     auto& material = *body_->m_materials[0];
-    material.m_kLST = static_cast<btScalar>(volume_ ? stiffness : 1.0);
+    material.m_kLST = static_cast<btScalar>(volume_ ? stiffness : std::sqrt(stiffness));
     if (!volume_) body_->generateBendingConstraints(2);
     body_->randomizeConstraints();
     auto& settings = body_->m_cfg;
@@ -177,7 +178,7 @@ class BulletPeer final : public Subject {
         "{} nodes and {} links; {} position iterations and one step a tick of {:g} ms; {} = {:.3g} "
         "so that the mean force at 5 mm is {}",
         body_->m_nodes.size(), body_->m_links.size(), iterations_, 1e3 / scene_.rate_Hz,
-        volume_ ? "kLST" : "kLST = 1 and kMT", stiffness_, fitted_ ? "right" : "nearest");
+        volume_ ? "kLST" : "kMT = kLST squared", stiffness_, fitted_ ? "right" : "nearest");
   }
   void set_fitted(bool fitted) { fitted_ = fitted; }
 

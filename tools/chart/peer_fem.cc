@@ -18,7 +18,7 @@
 #include "model/compliance_tip.h"
 #include "model/fem/hertz_load.h"
 #include "model/fem/linear_solver.h"
-#include "tools/chart/peers.h"
+#include "tools/chart/chart_peers.h"
 #include "tools/common/gmsh.h"
 #include "tools/condense/condense_organ.h"
 

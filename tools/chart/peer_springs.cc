@@ -11,7 +11,7 @@
 #include "model/mesh.h"
 #include "model/patch_surface.h"
 #include "model/spring_network.h"
-#include "tools/chart/peers.h"
+#include "tools/chart/chart_peers.h"
 
 namespace tact::tools {
 namespace {

@@ -23,6 +23,7 @@ struct Point {
 
 /// gnuplot reads no underscore as such, and a label must be short: "65 knots" is 65.
 std::string label(const std::string& size) {
+  if (std::count(size.begin(), size.end(), ' ') > 1) return " ";  // two sizes: the legend is enough
   std::string out;
   for (const char c : size.substr(0, size.find(' '))) out += c == '_' ? '-' : c;
   return out;
@@ -36,17 +37,11 @@ std::string shown(const std::string& family) {
 
 double percent(double ratio) { return 100.0 * std::max(ratio, kLeastError_ratio); }
 
-std::string block(const std::string& name, const std::vector<Point>& points) {
-  std::string out = fmt::format("${} << EOD\ntick_us,force,shape,size\n", name);
-  for (const Point& p : points)
-    out += fmt::format("{:.6g},{:.6g},{:.6g},{}\n", p.tick_us, p.force, p.shape, p.size);
-  return out + "EOD\n";
-}
-
 struct Families {
   std::vector<std::string> order;
   std::map<std::string, std::vector<Point>> points;
   std::map<std::string, bool> is_peer;
+  double least_us = 1e9, most_us = 0.0, most_force = 0.0;  // of all points
 };
 
 Families families_of(const Table& table) {
@@ -61,46 +56,104 @@ Families families_of(const Table& table) {
     out.is_peer[family] = table.word(row, "kind") == "peer";
     std::string size = table.word(row, "size");
     if (form != "-" && size.starts_with(form)) size = size.substr(form.size() + 1);
-    out.points[family].push_back({tick_us, percent(table.number(row, "force_rms_ratio")),
-                                  percent(table.number(row, "shape_rms_ratio")), label(size)});
+    const Point p{tick_us, percent(table.number(row, "force_rms_ratio")),
+                  percent(table.number(row, "shape_rms_ratio")), label(size)};
+    out.points[family].push_back(p);
+    out.least_us = std::min(out.least_us, p.tick_us);
+    out.most_us = std::max(out.most_us, p.tick_us);
+    out.most_force = std::max(out.most_force, p.force);
   }
   return out;
 }
 
-std::vector<Point> front_points(const Table& table) {
+/// Sizes whose points lie on each other share one label: "17..129".
+void share_labels(std::vector<Point>& points, double Point::*error) {
+  constexpr double kSame = 0.1;  // of a decade
+  for (std::size_t first = 0; first < points.size();) {
+    std::size_t end = first + 1;
+    const auto is_close = [&](const Point& p) {
+      return std::abs(std::log10(p.tick_us / points[first].tick_us)) < kSame &&
+             std::abs(std::log10(p.*error / (points[first].*error))) < kSame;
+    };
+    while (end < points.size() && is_close(points[end])) ++end;
+    std::string last = points[first].size;
+    for (std::size_t i = first; i < end; ++i)
+      if (points[i].size != " ") last = points[i].size;
+    if (last != points[first].size) points[first].size += ".." + last;
+    for (std::size_t i = first + 1; i < end; ++i) points[i].size = " ";
+    first = end;
+  }
+}
+
+/// Of front points that lie close together the best alone keeps its name.
+void keep_best_names(std::vector<Point>& front) {
+  constexpr double kClose = 0.2;  // of a decade
+  for (std::size_t i = 0; i + 1 < front.size(); ++i) {
+    const bool close = std::log10(front[i + 1].tick_us / front[i].tick_us) < kClose &&
+                       std::log10(front[i].force / front[i + 1].force) < kClose;
+    if (close) front[i].size = " ";
+  }
+}
+
+/// The line that no law of tact passes: from the top, step by step, to the right edge.
+std::vector<Point> front_points(const Table& table, const Families& families) {
   std::vector<Point> out;
   for (const std::size_t i : front_rows(table)) {
     const Row& row = table.rows()[i];
     out.push_back({table.number(row, "tick_median_us"),
-                   percent(table.number(row, "force_rms_ratio")),
-                   percent(table.number(row, "shape_rms_ratio")), ""});
+                   percent(table.number(row, "force_rms_ratio")), 0.0,
+                   shown(table.word(row, "family")) + " " + table.word(row, "size")});
   }
+  if (out.empty()) return out;
+  keep_best_names(out);
+  out.insert(out.begin(), {out.front().tick_us, 2.0 * families.most_force, 0.0, " "});
+  out.push_back({2.0 * families.most_us, out.back().force, 0.0, " "});
   return out;
 }
 
 /// One panel: column 2 or 3 of the data over column 1.
 std::string panel(const Families& families, int column, bool with_front) {
   std::string out = "plot ";
-  if (with_front) out += "$front using 1:2 with steps lw 3 lc rgb '#bbbbbb' title 'front of tact'";
+  if (with_front)
+    out +=
+        "$front using 1:2 with steps lw 4 lc rgb '#c8c8c8' title 'front of tact', "
+        "$front using 1:2:4 with labels right offset -1,-0.9 font ',9' tc rgb '#777777' notitle, ";
   int law = 0, peer = 0;
   for (std::size_t i = 0; i < families.order.size(); ++i) {
     const std::string& family = families.order[i];
     const bool is_peer = families.is_peer.at(family);
-    static constexpr const char* kPeerInk[] = {"#D55E00", "#CC3311", "#A52A2A", "#E69F00"};
+    static constexpr const char* kPeerInk[] = {"#D55E00", "#CC3311", "#882255", "#E69F00"};
     static constexpr const char* kLawInk[] = {"#0072B2", "#009E73", "#56B4E9", "#004D73",
                                               "#6A3D9A", "#44AA99", "#332288"};
     const char* ink = is_peer ? kPeerInk[peer % 4] : kLawInk[law % 7];
-    const int symbol = is_peer ? 5 + 2 * (peer % 4) : 4 + law % 7 * 2;
+    const int symbol = is_peer ? 5 + 2 * (peer % 4) : 4 + law % 5 * 2;
     (is_peer ? peer : law) += 1;
     const std::string title =
-        column == 2 ? fmt::format("'{}{}'", is_peer ? "peer: " : "", shown(family)) : "''";
+        with_front ? fmt::format("title '{}{}'", is_peer ? "peer: " : "", shown(family))
+                   : "notitle";
+    const char* side = i % 2 == 0 ? "left offset 0.8,0.4" : "left offset 0.8,-0.4";
     out += fmt::format(
-        "{0}$family{1} using 1:{2} with linespoints pt {3} ps 1.2 lw 1 dt 3 lc rgb '{4}' title {5}"
-        ", $family{1} using 1:{2}:4 with labels left offset 0.6,0.5 font ',8' tc rgb '{4}' "
-        "notitle",
-        out.back() == ' ' ? "" : ", ", i, column, symbol, ink, title);
+        "{0}$data{1} using 1:2 with linespoints pt {2} ps 1.3 lw 1 dt 3 lc rgb '{3}' {4}, "
+        "$data{1} using 1:2:4 with labels {5} font ',8' tc rgb '{3}' notitle",
+        i == 0 ? "" : ", ", i + (column == 2 ? 0 : 100), symbol, ink, title, side);
   }
   return out + "\n";
+}
+
+std::string data_blocks(const Families& families) {
+  std::string out;
+  for (std::size_t i = 0; i < families.order.size(); ++i)
+    for (const int column : {2, 3}) {
+      auto points = families.points.at(families.order[i]);
+      const auto error = column == 2 ? &Point::force : &Point::shape;
+      share_labels(points, error);
+      out += fmt::format("$data{} << EOD\ntick_us,error_percent,x,size\n",
+                         i + (column == 2 ? 0 : 100));
+      for (const Point& p : points)
+        out += fmt::format("{:.6g},{:.6g},0,{}\n", p.tick_us, p.*error, p.size);
+      out += "EOD\n";
+    }
+  return out;
 }
 
 }  // namespace
@@ -108,28 +161,33 @@ std::string panel(const Families& families, int column, bool with_front) {
 Result<std::vector<std::string>> draw_chart(const Table& table, const std::string& title,
                                             const std::string& directory) {
   const Families families = families_of(table);
-  std::string script;
-  for (std::size_t i = 0; i < families.order.size(); ++i)
-    script += block(fmt::format("family{}", i), families.points.at(families.order[i]));
-  script += block("front", front_points(table));
+  std::string script = data_blocks(families);
+  script += "$front << EOD\ntick_us,force,x,size\n";
+  for (const Point& p : front_points(table, families))
+    script += fmt::format("{:.6g},{:.6g},0,{}\n", p.tick_us, p.force, p.size);
+  script += "EOD\n";
   script += fmt::format(
       "set multiplot title '{}'\n"
       "set logscale xy\n"
-      "set xrange [0.01:*]\n"
-      "set format x '%g'\n"
-      "set key outside right top font ',9'\n"
-      "set lmargin 9\nset rmargin 26\n"
-      "set size 1,0.62\nset origin 0,0.34\n"
+      "set xrange [{:.3g}:{:.3g}]\nset yrange [*:{:.3g}]\n"
+      "set format x '%g'\nset format y '%g'\n"
+      "set key outside right top font ',9' Left reverse\n"
+      "set lmargin 9\nset rmargin 28\n"
+      "set size 1,0.63\nset origin 0,0.33\n"
       "set ylabel 'force error, RMS, % of the peak'\n"
-      "set label 1 'a hand feels no difference below 7 %' at graph 0.01, first 7.6 font ',8' "
+      "set label 1 'a hand can tell a difference of 7 %' at graph 0.5, first 7 center offset 0,0.5 "
+      "font "
+      "',8' "
       "tc rgb '#555555'\n"
       "set arrow 1 from graph 0, first 7 to graph 1, first 7 nohead dt 2 lc rgb '#555555'\n",
-      title);
+      title, families.least_us / 6.0, 3.0 * families.most_us, 2.0 * families.most_force);
   script += panel(families, 2, true);
   script +=
       "unset label 1\nunset arrow 1\n"
-      "set size 1,0.34\nset origin 0,0\n"
-      "set xlabel 'time of a tick, median, {/Symbol m}s  (number at a point: its size)'\n"
+      "set yrange [*:*]\n"
+      "set size 1,0.33\nset origin 0,0\n"
+      "set xlabel 'time of a tick, median, us  (beside a point: knots, layers, rings, nodes, "
+      "curves; of fem mm, else iterations)'\n"
       "set ylabel 'shape error, RMS, %'\n";
   script += panel(families, 3, false);
   script += "unset multiplot\n";

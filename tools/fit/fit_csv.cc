@@ -171,16 +171,7 @@ Result<FitData> read_bench_csv(const std::string& path, const BenchColumns& colu
   }
   if (rows < kFewestRows)
     return Error{fmt::format("{}: {} rows; a fit needs {} at least", path, rows, kFewestRows)};
-  for (const std::string& name : held_out) {
-    const auto at = std::find_if(data.sites.begin(), data.sites.end(),
-                                 [&name](const FitSite& site) { return site.name == name; });
-    if (at == data.sites.end())
-      return Error{fmt::format("{}: no site \"{}\" to hold out; check its name", path, name)};
-    at->held_out = true;
-  }
-  if (std::all_of(data.sites.begin(), data.sites.end(),
-                  [](const FitSite& site) { return site.held_out; }))
-    return Error{fmt::format("{}: every site is held out; leave one to fit", path)};
+  if (auto error = hold_out(data, held_out)) return std::move(*error);
   if (!(data.peak_N() > 0.0))
     return Error{fmt::format("{}: every force is 0; nothing can be fitted to that", path)};
   return data;

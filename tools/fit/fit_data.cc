@@ -52,8 +52,23 @@ std::optional<FitPlace> place_at_vertex(const model::SurfaceMesh& surface, std::
   return out;
 }
 
+std::optional<Error> hold_out(FitData& data, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    const auto at = std::find_if(data.sites.begin(), data.sites.end(),
+                                 [&name](const FitSite& site) { return site.name == name; });
+    if (at == data.sites.end())
+      return Error{
+          fmt::format("{}: no site \"{}\" to hold out; check its name", data.source, name)};
+    at->held_out = true;
+  }
+  if (std::all_of(data.sites.begin(), data.sites.end(),
+                  [](const FitSite& site) { return site.held_out; }))
+    return Error{fmt::format("{}: every site is held out; leave one to fit", data.source)};
+  return std::nullopt;
+}
+
 Result<FitData> fit_data_of(const ReferenceData& reference, const model::Scene& scene,
-                            bool large_strain) {
+                            const std::vector<std::string>& held_out, bool large_strain) {
   FitData data{.source = fmt::format("{}, E = {:g} Pa, nu = {:g}, tool radius {:g} m",
                                      reference.mesh, reference.youngs_modulus_Pa,
                                      reference.poisson_ratio, reference.tool_radius_m)};
@@ -76,11 +91,12 @@ Result<FitData> fit_data_of(const ReferenceData& reference, const model::Scene& 
     }
     if (!site.samples.empty()) data.sites.push_back(std::move(site));
   }
-  if (std::none_of(data.sites.begin(), data.sites.end(),
-                   [](const FitSite& site) { return !site.held_out; }))
-    return Error{large_strain ? "the reference has no large-strain case at a site to fit; make it "
-                                "with tact-reference --large-strain"
-                              : "every site of the reference is held out; leave one to fit"};
+  if (data.sites.empty())
+    return Error{
+        fmt::format("the reference has no case {} large strain; make it with "
+                    "tact-reference{}",
+                    large_strain ? "with" : "without", large_strain ? " --large-strain" : "")};
+  if (auto error = hold_out(data, held_out)) return std::move(*error);
   for (FitSite& site : data.sites)
     for (FitSample& s : site.samples) s.ring_m.resize(rings, std::nan(""));
   for (std::size_t k = 0; k < rings; ++k)

@@ -53,8 +53,12 @@ struct FitData {
 /// The vertex as a place, if the surface has it.
 std::optional<FitPlace> place_at_vertex(const model::SurfaceMesh& surface, std::size_t vertex);
 
-/// The scene says which sites are held out. `large_strain`: those cases instead of the linear ones.
+/// Marks sites by name. An error names one that is not there, or says that none is left to fit.
+std::optional<model::Error> hold_out(FitData& data, const std::vector<std::string>& names);
+
+/// The scene says which sites are held out, `held_out` names more. `large_strain`: those cases
+/// instead of the linear ones.
 model::Result<FitData> fit_data_of(const ReferenceData& reference, const model::Scene& scene,
-                                   bool large_strain);
+                                   const std::vector<std::string>& held_out, bool large_strain);
 
 }  // namespace tact::tools

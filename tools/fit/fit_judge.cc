@@ -92,10 +92,13 @@ std::string slope_reason(const FitData& data, std::span<const FitAnswer> answers
   const auto way = [](double growth) {
     return growth > kNoticeable ? "hardens" : growth < -kNoticeable ? "softens" : "is linear";
   };
-  return fmt::format(
-      "{} in press while the data {}: from its first to its second half dF/dd {}, "
-      "in the data it {}",
-      way(of_law), way(of_data), word_of(of_law), word_of(of_data));
+  const std::string law_way = way(of_law), data_way = way(of_data);
+  const std::string what =
+      law_way != data_way ? fmt::format("{} in press while the data {}", law_way, data_way)
+                          : fmt::format("{} in press {} than the data", law_way,
+                                        std::abs(of_law) > std::abs(of_data) ? "more" : "less");
+  return fmt::format("{}: from its first to its second half dF/dd {}, in the data it {}", what,
+                     word_of(of_law), word_of(of_data));
 }
 
 std::vector<std::string> reasons_of(const FitData& data, std::span<const FitAnswer> answers,

@@ -112,7 +112,8 @@ FitLaw spring_patch(const Scene& scene) {
              .kind = LawKind::kSpringPatch,
              .by_place = true,
              .difference = 0.02,
-             .most_evaluations = 150};
+             .most_evaluations = 60,
+             .is_slow = true};
   law.parameters = {
       spring("spring_patch", "surface_stiffness_N_per_m",
              [p](Scene& s) -> double& { return p(s).tissue.surface_stiffness_N_per_m; }),
@@ -175,11 +176,11 @@ void reach(Scene& scene, const FitData& data) {
     return;
   }
   // Bonded tissue is linear in pull: the least squares of F = k d.
-  double sum_Fd = 0.0, sum_dd = 0.0;
+  double sum_fd = 0.0, sum_dd = 0.0;
   for (const FitSite& site : data.sites)
     for (const FitSample& s : site.samples)
-      if (s.depth_m < 0.0) sum_Fd += s.force_N * s.depth_m, sum_dd += s.depth_m * s.depth_m;
-  scene.pull = {.stiffness_N_per_m = std::clamp(sum_Fd / sum_dd, 0.01, 1e5),
+      if (s.depth_m < 0.0) sum_fd += s.force_N * s.depth_m, sum_dd += s.depth_m * s.depth_m;
+  scene.pull = {.stiffness_N_per_m = std::clamp(sum_fd / sum_dd, 0.01, 1e5),
                 .limit_m = std::max(1e-4, data.farthest_pull_m())};
 }
 

@@ -21,13 +21,15 @@ std::string rows_of(const FitReport& report) {
     const FitSite& site = report.data->sites[s];
     std::vector<std::pair<double, std::size_t>> order;
     for (const FitSample& sample : site.samples) order.push_back({sample.depth_m, i++});
-    std::sort(order.begin(), order.end());
     const std::size_t first = i - site.samples.size();
+    order.push_back({0.0, i});  // every law passes through rest
+    std::sort(order.begin(), order.end());
     for (const auto& [depth_m, at] : order) {
       out += fmt::format("{},{},{:.6g},{:.6g}", site.name, site.held_out ? 1 : 0, 1e3 * depth_m,
-                         site.samples[at - first].force_N);
+                         at < i ? site.samples[at - first].force_N : std::nan(""));
       for (const FittedLaw& law : report.laws)
-        out += fmt::format(",{:.6g}", law.judged.sites[s].scale * law.answers[at].force_N);
+        out += fmt::format(",{:.6g}",
+                           at < i ? law.judged.sites[s].scale * law.answers[at].force_N : 0.0);
       out += "\n";
     }
     out += "\n";  // lines end with their site
@@ -38,15 +40,15 @@ std::string rows_of(const FitReport& report) {
 std::string script_of(const FitReport& report, const std::string& csv) {
   constexpr std::size_t kColours = std::size(kInk);
   std::string plots = fmt::format(
-      "'{0}' skip 1 using 3:($2==0?$4:NaN) with points pt 7 ps 0.8 lc rgb '#000000' title 'data', "
-      "'{0}' skip 1 using 3:($2==1?$4:NaN) with points pt 6 ps 0.9 lc rgb '#000000' title "
+      "'{0}' using 3:($2==0?$4:NaN) with points pt 7 ps 0.8 lc rgb '#000000' title 'data', "
+      "'{0}' using 3:($2==1?$4:NaN) with points pt 6 ps 0.9 lc rgb '#000000' title "
       "'data, held out'",
       csv);
   for (std::size_t k = 0; k < report.laws.size(); ++k)
-    plots += fmt::format(
-        ", '{}' skip 1 using 3:{} with lines lw 1.5 lc rgb '{}' title '{} ({:.1f} %)'", csv, k + 5,
-        kInk[k % kColours], report.laws[k].title, 100.0 * report.laws[k].judged.fitted.rms_ratio());
-  return "set datafile separator ','\nset xlabel 'depth, mm (pull below 0)'\n"
+    plots += fmt::format(", '{}' using 3:{} with lines lw 1.5 lc rgb '{}' title '{} ({:.1f} %)'",
+                         csv, k + 5, kInk[k % kColours], report.laws[k].title,
+                         100.0 * report.laws[k].judged.fitted.rms_ratio());
+  return "set xlabel 'depth, mm (pull below 0)'\n"
          "set ylabel 'force, N'\nset key top left\nset grid lc rgb '#dddddd'\n"
          "plot " +
          plots + "\n";

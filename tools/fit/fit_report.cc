@@ -145,10 +145,11 @@ std::string text_of(const FitReport& report) {
   std::string out;
   if (report.data)
     out += fmt::format(
-        "data       {}: {} sites, peak {:.3g} N, press to {:.3g} mm, pull to {:.3g} "
+        "data       {}: {} site{}, peak {:.3g} N, press to {:.3g} mm, pull to {:.3g} "
         "mm\n",
-        report.data->source, report.data->sites.size(), report.data->peak_N(),
-        1e3 * report.data->deepest_m(), 1e3 * report.data->farthest_pull_m());
+        report.data->source, report.data->sites.size(), report.data->sites.size() == 1 ? "" : "s",
+        report.data->peak_N(), 1e3 * report.data->deepest_m(),
+        1e3 * report.data->farthest_pull_m());
   for (const FittedLaw& law : report.laws) out += text_of_law(law);
   if (const auto& r = report.relaxation) {
     out += fmt::format("\nrelaxation: {:.3g} N at once, {} terms, RMS {} of it, worst {}{}\n",

@@ -15,10 +15,29 @@ using model::Error;
 using model::Result;
 using model::Scene;
 
-/// The samples of the sites that are fitted.
-FitData fitted_part(const FitData& data) {
+/// The deepest press and pull of a site, and the ones nearest to half of them.
+void thin(FitSite& site) {
+  std::vector<FitSample> kept;
+  for (const double sign : {1.0, -1.0}) {
+    double deepest_m = 0.0;
+    for (const FitSample& s : site.samples) deepest_m = std::max(deepest_m, sign * s.depth_m);
+    if (!(deepest_m > 0.0)) continue;
+    for (const double share : {0.5, 1.0}) {
+      const double wanted_m = sign * share * deepest_m;
+      kept.push_back(*std::min_element(
+          site.samples.begin(), site.samples.end(), [&](const FitSample& a, const FitSample& b) {
+            return std::abs(a.depth_m - wanted_m) < std::abs(b.depth_m - wanted_m);
+          }));
+    }
+  }
+  site.samples = std::move(kept);
+}
+
+/// The samples that are fitted.
+FitData fitted_part(const FitData& data, const FitLaw& law) {
   FitData part = data;
   std::erase_if(part.sites, [](const FitSite& site) { return site.held_out; });
+  if (law.is_slow) std::for_each(part.sites.begin(), part.sites.end(), thin);
   return part;
 }
 
@@ -26,7 +45,7 @@ FitData fitted_part(const FitData& data) {
 class Fit {
  public:
   Fit(const FitLaw& law, const Scene& scene, const FitData& data, const FitOptions& options)
-      : law_(law), data_(fitted_part(data)), options_(options), scene_(scene) {
+      : law_(law), data_(fitted_part(data, law)), options_(options), scene_(scene) {
     scene_.relaxation.clear();  // forces at once
     reach(scene_, data);
     for (const FitSite& site : data_.sites) samples_ += site.samples.size();
@@ -96,9 +115,11 @@ class Fit {
   void fill(std::span<const FitAnswer> answers, std::span<double> r) const {
     const double share = 1.0 / std::sqrt(static_cast<double>(samples_));
     std::size_t i = 0;
+    double log_scales = 0.0;
     for (const FitSite& site : data_.sites) {
       const auto own = answers.subspan(i, site.samples.size());
       const double scale = options_.scale_by_site ? best_scale(site.samples, own) : 1.0;
+      log_scales += std::log(std::max(scale, 1e-9));
       for (std::size_t k = 0; k < own.size(); ++k, ++i) {
         r[i] = share * (scale * own[k].force_N - site.samples[k].force_N) / peak_N_;
         if (!with_shapes_) continue;
@@ -106,6 +127,9 @@ class Fit {
         r[samples_ + i] = std::isfinite(u) ? share * options_.shape_weight * u : 0.0;
       }
     }
+    // With a factor for each site, one for all is free: their geometric mean shall be 1.
+    constexpr double kMeanWeight = 0.1;
+    r.back() = kMeanWeight * log_scales / static_cast<double>(data_.sites.size());
   }
 
   const FitLaw& law_;
@@ -175,7 +199,8 @@ Result<FittedLaw> fit_law(const FitLaw& law, const Scene& scene, const FitData& 
         fmt::format("{} differs from place to place: write the vertex of the organ into a "
                     "column site of {}",
                     law.name, data.source)};
-  if (const auto possible = make_tissue_law(scene, law.kind); !possible) return possible.error();
+  if (law.by_place)  // what such a law stands on may be missing
+    if (const auto possible = make_tissue_law(scene, law.kind); !possible) return possible.error();
   Fit fit(law, scene, data, options);
   FittedLaw out{.name = law.name, .choice = law.choice};
   const SearchResult best = search_from_all(law, fit, out.evaluations);

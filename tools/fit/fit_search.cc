@@ -24,6 +24,7 @@ class Functor {
   using InputType = VectorXd;
   using ValueType = VectorXd;
   using JacobianType = MatrixXd;
+  // NOLINTNEXTLINE(readability-identifier-naming): Eigen's names
   enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
 
   explicit Functor(const SearchProblem& problem) : problem_(problem), inside_(problem.low.size()) {}

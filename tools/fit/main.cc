@@ -38,7 +38,8 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--data", o.data, "CSV of a bench: depth_m,force_N[,site][,u_0_m,...]");
   app.add_option("--relaxation", o.relaxation, "CSV of a bench at held depth: time_s,force_N");
   app.add_option("--set", o.overrides, "one key of the scene, as KEY=VALUE; repeatable");
-  app.add_option("--held-out", o.held_out, "sites of --data that only judge")->delimiter(',');
+  app.add_option("--held-out", o.held_out, "sites that only judge, beside those of the scene")
+      ->delimiter(',');
   app.add_option("--depth-column", o.columns.depth, "name in --data")->capture_default_str();
   app.add_option("--force-column", o.columns.force, "name in both CSVs")->capture_default_str();
   app.add_option("--time-column", o.columns.time, "name in --relaxation")->capture_default_str();
@@ -76,7 +77,7 @@ Result<FitData> read_data(const Options& o, const Scene& scene) {
   if (!o.reference.empty()) {
     const auto reference = read_reference(o.reference);
     if (!reference) return reference.error();
-    return fit_data_of(*reference, scene, o.large_strain);
+    return fit_data_of(*reference, scene, o.held_out, o.large_strain);
   }
   auto data = read_bench_csv(o.data, o.columns, o.held_out);
   if (!data) return data;

@@ -9,7 +9,7 @@
 #include "tools/chart/report.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/run_program.h"
-#include "tools/plan/candidates.h"
+#include "tools/plan/plan.h"
 
 namespace {
 

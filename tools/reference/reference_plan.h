@@ -1,10 +1,10 @@
 // reference_plan.h - which cases make the reference of an organ, and how they become one file.
 //
-// Per site: press at every depth; pull once, since it is linear, scaled to every depth; and for
-// some sites pull from half the largest depth on with large strain, on the coarsest mesh, which
-// says how far linear is wrong. The mesh error of a force
-// is its change from the next coarser level: measured at the least and the largest press depth and
-// for pull; a depth between takes the nearer one's.
+// Per site: press at every depth; pull once, since it is linear, scaled to every depth. For some
+// sites also pull with large strain, from half the largest depth on and on the coarsest mesh: it
+// says how far linear is wrong. The mesh error of a force comes from its change from the next
+// coarser level, solved at the least and the largest press depth and for pull; a depth between
+// takes the nearer one's.
 #pragma once
 
 #include <cstdint>

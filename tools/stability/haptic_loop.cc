@@ -152,7 +152,13 @@ LoopRun run_loop(const LoopCase& loop, const TissueForce& tissue, const Judge& j
 
 double largest_factor(const LoopCase& loop, const TissueForce& tissue, Verdict worse, double low,
                       double high) {
+  return largest_factor(loop, TissueMaker([&tissue] { return tissue; }), worse, low, high);
+}
+
+double largest_factor(const LoopCase& loop, const TissueMaker& fresh, Verdict worse, double low,
+                      double high) {
   const auto holds = [&](double factor) {
+    const TissueForce tissue = fresh();
     return run_loop(loop, [&](double depth_m) { return factor * tissue(depth_m); }).verdict < worse;
   };
   if (!holds(low)) return 0.0;
@@ -167,7 +173,7 @@ double largest_factor(const LoopCase& loop, const TissueForce& tissue, Verdict w
 double largest_wall_N_per_m(const LoopCase& loop, Verdict worse) {
   LoopCase at = loop;
   at.balance_m = between_counts_m(loop.balance_m, loop.device.position_step_m);
-  const auto wall = [](double depth_m) { return depth_m; };  // 1 N/m
+  const TissueForce wall = [](double depth_m) { return depth_m; };  // 1 N/m
   return largest_factor(at, wall, worse, 1.0, 1e7);
 }
 

@@ -43,6 +43,8 @@ struct LoopCase {
 
 /// Force of the tissue at a counted depth, N; press positive, pushes out.
 using TissueForce = std::function<double(double depth_m)>;
+/// Makes such a tissue, settled at the balance: one with memory is new for each run.
+using TissueMaker = std::function<TissueForce()>;
 /// What stands between tissue and device, once per tick: the force written for the one wanted.
 using Judge = std::function<double(double wanted_N, bool fresh)>;
 
@@ -65,6 +67,10 @@ LoopRun run_loop(const LoopCase& loop, const TissueForce& tissue, const Judge& j
 /// Largest factor on the tissue's force, within [low, high], with a verdict better than `worse`:
 /// bisection in the logarithm down to one percent; 0 if even `low` is too stiff.
 double largest_factor(const LoopCase& loop, const TissueForce& tissue, Verdict worse, double low,
+                      double high);
+
+/// The same for a tissue with memory.
+double largest_factor(const LoopCase& loop, const TissueMaker& fresh, Verdict worse, double low,
                       double high);
 
 /// The same for a wall F = K x: the largest K, N/m.

@@ -11,6 +11,7 @@
 #include "model/hex_sheet.h"
 #include "model/rhombus_chain.h"
 #include "model/tabulated_law.h"
+#include "tools/stability/memory_laws.h"
 
 namespace tact::tools {
 namespace {
@@ -30,7 +31,27 @@ void add(std::vector<NamedLaw>& laws, const char* name, const model::Result<L>& 
     if (auto table = model::tabulate(*direct, kKnots))
       felt = std::make_shared<const model::TabulatedLaw>(*table);
   }
-  laws.push_back({name, direct, felt, beyond});
+  laws.push_back({name, direct, felt, beyond, direct->range().press_m});
+}
+
+/// Laws with memory; the one that relaxes is the last closed-form law.
+void add_memory(std::vector<NamedLaw>& laws) {
+  if (!laws.empty()) {
+    const NamedLaw& closed = laws.back();
+    laws.push_back({.name = closed.name + " relaxing",
+                    .law = nullptr,
+                    .felt = nullptr,
+                    .beyond = "each part of the force stays at the working depth's and fades",
+                    .range_m = closed.range_m,
+                    .make_site = relaxing_maker(closed.felt)});
+  }
+  for (const bool relaxes : {false, true})
+    laws.push_back({.name = relaxes ? "spring patch relaxing" : "spring patch",
+                    .law = nullptr,
+                    .felt = nullptr,
+                    .beyond = "the nodes are pushed no further: the force stays",
+                    .range_m = kPatchRange_m,
+                    .make_site = patch_maker(relaxes)});
 }
 
 /// The chain of PHYSICS 1.4 at another angle, or with stiffer tangential springs.
@@ -123,6 +144,7 @@ std::vector<NamedLaw> make_laws() {
                              .working_depth_m = 8e-3}),
       "20 N/mm: the gate limits the force from 0.4 mm on");
   add(laws, "compliance", compliance(), "the force stays at the working depth's");
+  add_memory(laws);
   return laws;
 }
 
@@ -133,11 +155,12 @@ const std::vector<NamedLaw>& probed_laws() {
   return laws;
 }
 
-double steepest_N_per_m(const model::Law& law, double depth_m) {
+double steepest_N_per_m(const NamedLaw& named) {
   constexpr int kSamples = 200;
+  FeltTissue tissue = named.fresh();
   double most = 0.0;
   for (int i = 1; i <= kSamples; ++i)
-    most = std::max(most, law.respond(depth_m * i / kSamples).stiffness_N_per_m);
+    most = std::max(most, tissue.tick(named.range_m * i / kSamples).stiffness_N_per_m);
   return most;
 }
 

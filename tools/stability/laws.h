@@ -6,20 +6,27 @@
 #include <vector>
 
 #include "model/law.h"
+#include "tools/stability/felt_tissue.h"
 
 namespace tact::tools {
 
 struct NamedLaw {
   std::string name;
-  std::shared_ptr<const model::Law> law;
+  std::shared_ptr<const model::Law> law;   // none if the law has memory
   std::shared_ptr<const model::Law> felt;  // as the loop reads it: a table, if it has one
-  std::string beyond;  // what a press beyond its range does, in words without commas
+  std::string beyond;        // what a press beyond its range does, in words without commas
+  double range_m = 0.0;      // of the press
+  SiteLawMaker make_site{};  // of a law with memory
+
+  bool remembers() const { return static_cast<bool>(make_site); }
+  /// Untouched until now.
+  FeltTissue fresh() const { return {felt, make_site}; }
 };
 
 /// Made once; a law that this build cannot make is left out.
 const std::vector<NamedLaw>& probed_laws();
 
-/// Largest dF/dd between rest and `depth_m`, N/m.
-double steepest_N_per_m(const model::Law& law, double depth_m);
+/// Largest dF/dd that its law gives between rest and its range, N/m.
+double steepest_N_per_m(const NamedLaw& named);
 
 }  // namespace tact::tools

@@ -1,7 +1,8 @@
 // Every law up to its limit and beyond, pressed and pulled through the gate.
 //
 // Per cell one law and one depth, in shares of its range: the force, tangent and status of the law
-// there, and what the gate has written when a tool has come there from rest with 0.2 m/s, 1 kHz.
+// there, and what the gate has written when a tool has come there from rest with 0.2 m/s, 1 kHz. Of
+// a law with memory: what it gives when it has settled there.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -60,15 +61,17 @@ const char* word(model::LawStatus status) {
 Row run(std::size_t job, Grid grid) {
   const auto [which, depth] = Axes<2>{{probed_laws().size(), depths(grid)}}.at(job);
   const NamedLaw& named = probed_laws()[which];
-  const double range_m = named.law->range().press_m;
+  const double range_m = named.range_m;
   const double share = depth_share(depth, grid), depth_m = share * range_m;
   GateWatch gate(kRate_Hz);
   gate.open(0.0);
   const int ticks = static_cast<int>(std::ceil(std::abs(depth_m) / kSpeed_mps * kRate_Hz));
-  for (int i = 1; i <= ticks; ++i)
-    gate.step(named.felt->respond(depth_m * i / ticks).force_N, true);
-  const model::LawResponse at = named.law->respond(depth_m);
-  const double edge_N = named.law->respond(range_m).force_N;
+  FeltTissue tissue = named.fresh();
+  for (int i = 1; i <= ticks; ++i) gate.step(tissue.tick(depth_m * i / ticks).force_N, true);
+  const model::LawResponse at =
+      named.remembers() ? tissue.settle(depth_m) : named.law->respond(depth_m);
+  const double edge_N = named.remembers() ? named.fresh().settle(range_m).force_N
+                                          : named.law->respond(range_m).force_N;
   return {named.name,
           share,
           depth_m,

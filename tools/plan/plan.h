@@ -1,4 +1,5 @@
-// candidates.h - candidates for a plan from a chart: read from its file, or measured now.
+// plan.h - what tact-plan chooses from: the candidates of a chart, if it is of this scene and
+// machine.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-#include "tools/plan/candidates.h"
+#include "tools/plan/plan.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "tools/chart/peers.h"
+#include "tools/chart/chart_peers.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// peers.h - other ways to make an organ feel soft, given the same mesh, sites, tip and truth.
+// chart_peers.h - other ways to make an organ feel soft, given the same mesh, sites, tip and truth.
 //
 //     fem             the whole organ as quadratic tetrahedra, one solve a tick with a factor made
 //                     beforehand; E and nu of the scene

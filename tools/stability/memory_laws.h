@@ -1,0 +1,20 @@
+// memory_laws.h - the laws with memory that the maps probe: springs and masses, and relaxation.
+//
+// All at 1 kHz, on a square plate of 100 mm with triangles of 5 mm. Two terms fade so fast (30 and
+// 100 ms) that a run of 3 s sees all of them.
+#pragma once
+
+#include <memory>
+
+#include "model/law.h"
+#include "tools/stability/felt_tissue.h"
+
+namespace tact::tools {
+
+inline constexpr double kPatchRange_m = 0.01;
+
+/// Makers of a mass-spring patch, and of a closed-form law that relaxes.
+SiteLawMaker patch_maker(bool relaxes);
+SiteLawMaker relaxing_maker(std::shared_ptr<const model::Law> law);
+
+}  // namespace tact::tools
