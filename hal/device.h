@@ -33,7 +33,7 @@ struct DeviceInfo {
   double max_torque_Nm = 0.0;       // 0: the device has no torque
   double workspace_radius_m = 0.0;  // cylinder about the W x axis, centred on the origin of W
   double workspace_half_length_m = 0.0;
-  model::DeviceAtTool at_tool;  // what bounds the stiffness it can show
+  model::DeviceAtTool at_tool{};  // what bounds the stiffness it can show
 };
 
 class Device {

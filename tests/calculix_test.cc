@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 
 #include "tools/common/gmsh.h"
+#include "tools/common/run_program.h"
 
 namespace tact::tools {
 namespace {
@@ -64,12 +66,18 @@ TEST(Gmsh, FillsACubeToItsVolumeAndKeepsItsVertices) {
   }
 }
 
-TEST(Gmsh, RefusesAnOpenSurface) {
+TEST(Gmsh, RefusesAnOpenSurfaceAndKeepsItsLog) {
+  auto where = ScratchFolder::make("tact-calculix-test");  // for the log, so that it goes too
+  ASSERT_TRUE(where) << where.error().sentence;
+  setenv("TMPDIR", where->path().c_str(), 1);
   const std::vector<Vec3> vertex{{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {0, 0, 0.01}};
   const std::vector<model::TriangleCorners> triangle{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}};
   const auto body = fill_with_gmsh(
       vertex, triangle, {.at_m = {}, .axis = {}, .radius_m = 1.0, .fine_m = 0.01, .growth = 0.0});
-  EXPECT_FALSE(body);
+  unsetenv("TMPDIR");
+  ASSERT_FALSE(body);
+  EXPECT_NE(body.error().sentence.find(where->path()), std::string::npos) << body.error().sentence;
+  EXPECT_FALSE(std::filesystem::is_empty(where->path()));
 }
 
 TEST(CalculiX, PassesThePatchTest) {

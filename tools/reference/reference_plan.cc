@@ -13,6 +13,8 @@ using model::Error;
 
 constexpr double kDefaultDepths_m[] = {1e-3, 2e-3, 3.5e-3, 5e-3, 7e-3, 10e-3};
 constexpr double kUnitPull_m = -1e-3;
+// Of the tool's radius: near 1.5 the elements at the rim of the bond turn inside out.
+constexpr double kLargeStrainDepth = 1.3;
 
 bool among(const std::vector<std::uint32_t>& list, std::uint32_t vertex) {
   return std::find(list.begin(), list.end(), vertex) != list.end();
@@ -141,8 +143,9 @@ std::vector<Indentation> cases_of(const ReferencePlan& plan) {
       add(kUnitPull_m, plan.level - 1, false);
     }
     if (!among(plan.large_strain_sites, vertex)) continue;
-    for (const double d_m : plan.depths_m)
-      if (2.0 * d_m >= plan.depths_m.back()) add(-d_m, kCoarsestLevel, true);
+    const double most_m = kLargeStrainDepth * plan.tool_radius_m;
+    const auto beyond = std::upper_bound(plan.depths_m.begin(), plan.depths_m.end(), most_m);
+    if (beyond != plan.depths_m.begin()) add(-*std::prev(beyond), kCoarsestLevel, true);
   }
   return out;
 }

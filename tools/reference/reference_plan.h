@@ -1,7 +1,7 @@
 // reference_plan.h - which cases make the reference of an organ, and how they become one file.
 //
 // Per site: press at every depth; pull once, since it is linear, scaled to every depth. For some
-// sites also pull with large strain, from half the largest depth on and on the coarsest mesh: it
+// sites also pull with large strain, at the largest depth up to 1.3 R and on the coarsest mesh: it
 // says how far linear is wrong. The mesh error of a force comes from its change from the next
 // coarser level, solved at the least and the largest press depth and for pull; a depth between
 // takes the nearer one's.

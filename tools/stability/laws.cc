@@ -31,7 +31,7 @@ void add(std::vector<NamedLaw>& laws, const char* name, const model::Result<L>& 
     if (auto table = model::tabulate(*direct, kKnots))
       felt = std::make_shared<const model::TabulatedLaw>(*table);
   }
-  laws.push_back({name, direct, felt, beyond, direct->range().press_m});
+  laws.push_back({name, direct, felt, beyond, direct->range().press_m, felt->range().press_m});
 }
 
 /// Laws with memory; the one that relaxes is the last closed-form law.
@@ -43,6 +43,7 @@ void add_memory(std::vector<NamedLaw>& laws) {
                     .felt = nullptr,
                     .beyond = "each part of the force stays at the working depth's and fades",
                     .range_m = closed.range_m,
+                    .felt_range_m = closed.felt_range_m,
                     .make_site = relaxing_maker(closed.felt)});
   }
   for (const bool relaxes : {false, true})
@@ -51,6 +52,7 @@ void add_memory(std::vector<NamedLaw>& laws) {
                     .felt = nullptr,
                     .beyond = "the nodes are pushed no further: the force stays",
                     .range_m = kPatchRange_m,
+                    .felt_range_m = kPatchRange_m,
                     .make_site = patch_maker(relaxes)});
 }
 
@@ -160,7 +162,7 @@ double steepest_N_per_m(const NamedLaw& named) {
   FeltTissue tissue = named.fresh();
   double most = 0.0;
   for (int i = 1; i <= kSamples; ++i)
-    most = std::max(most, tissue.tick(named.range_m * i / kSamples).stiffness_N_per_m);
+    most = std::max(most, tissue.tick(named.felt_range_m * i / kSamples).stiffness_N_per_m);
   return most;
 }
 

@@ -14,9 +14,10 @@ struct NamedLaw {
   std::string name;
   std::shared_ptr<const model::Law> law;   // none if the law has memory
   std::shared_ptr<const model::Law> felt;  // as the loop reads it: a table, if it has one
-  std::string beyond;        // what a press beyond its range does, in words without commas
-  double range_m = 0.0;      // of the press
-  SiteLawMaker make_site{};  // of a law with memory
+  std::string beyond;         // what a press beyond its range does, in words without commas
+  double range_m = 0.0;       // of the press
+  double felt_range_m = 0.0;  // of the table
+  SiteLawMaker make_site{};   // of a law with memory
 
   bool remembers() const { return static_cast<bool>(make_site); }
   /// Untouched until now.

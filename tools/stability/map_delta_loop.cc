@@ -150,8 +150,9 @@ ControllerRun run_controller(double stiffness_N_per_m, double rate_Hz,
     if (now_s >= kFirst_s && now_s < kFirst_s + kWindow_s) first.add(z_m);
     if (now_s >= kRun_s - kWindow_s) last.add(z_m);
   }
-  // what does not get smaller, grows or bounces; a micrometre is rest
-  out.grows = last.size_m() > 1e-6 && last.size_m() > 0.98 * first.size_m();
+  // what does not get smaller grows, what still leaves the surface bounces; a micrometre is rest
+  out.grows =
+      last.size_m() > 1e-6 && (last.size_m() > 0.98 * first.size_m() || last.high_m > kRadius_m);
   return out;
 }
 

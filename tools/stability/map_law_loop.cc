@@ -66,7 +66,7 @@ Row run(std::size_t job, Grid grid) {
   const Settings s = settings(grid);
   const auto [which, delay, damping, depth] = axes(grid).at(job);
   const NamedLaw& named = probed_laws()[which];
-  const double range_m = named.range_m;
+  const double range_m = named.felt_range_m;
   LoopCase loop;
   loop.device.damping_Ns_per_m = s.damping_Ns_per_m[damping];
   loop.device.delay_s = s.delay_s[delay];
@@ -76,7 +76,10 @@ Row run(std::size_t job, Grid grid) {
   const double theory = model::haptic_limit(loop.device, loop.rate_Hz).grow_N_per_m;
   const double tangent = named.fresh().settle(loop.balance_m).stiffness_N_per_m;
   const double guess = theory / tangent;
-  const double factor = largest_factor(loop, fresh, Verdict::kGrow, 0.02 * guess, 50.0 * guess);
+  // far below the tangent of one tick a loop with memory is too slow for a run, far above still
+  // holds
+  const double low = named.remembers() ? 0.85 : 0.02, high = named.remembers() ? 500.0 : 50.0;
+  const double factor = largest_factor(loop, fresh, Verdict::kGrow, low * guess, high * guess);
   const TissueForce tissue = fresh();
   GateWatch gate(loop.rate_Hz);
   run_gated(

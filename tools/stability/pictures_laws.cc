@@ -152,9 +152,9 @@ set logscale xy
 set xlabel "theory: b / (T/2 + t_d), N/m"
 set ylabel "measured: largest stable tangent dF/dd, N/m"
 set xrange [80:20000]
-set yrange [60:15000]
+set yrange [60:200000]
 set key bottom right
-set label 1 "oscillation grows until the gate limits it" at 120,6000
+set label 1 "oscillation grows until the gate limits it" at 120,60000
 set label 2 "comes to rest" at 1500,130
 plot x lc 'black' dt 2 title "theory")gp";
   int i = 0;  // laws side by side, or they would hide each other
