@@ -6,12 +6,15 @@
 namespace tact::model {
 namespace {
 
+constexpr double kBesideRest = 1e-9;
 constexpr double kPressShare = 0.95;  // the slope of a snapping chain is infinite at its very limit
 
 HermiteTable table_to(const Law& law, double end_m, std::size_t knots) {
-  return {end_m / static_cast<double>(knots - 1), knots, [&law](double depth_m) {
-            const LawResponse r = law.respond(depth_m);
-            return CurvePoint{.value = r.force_N, .slope = r.stiffness_N_per_m};
+  return {end_m / static_cast<double>(knots - 1), knots, [&law, end_m](double depth_m) {
+            // At rest each side has its own slope: a law may pull softer than it presses.
+            const double side_m = depth_m == 0.0 ? kBesideRest * end_m : depth_m;
+            return CurvePoint{.value = law.respond(depth_m).force_N,
+                              .slope = law.respond(side_m).stiffness_N_per_m};
           }};
 }
 

@@ -48,6 +48,19 @@ TEST(DeltaPlant, AForceAcceleratesTheApparentMass) {
   EXPECT_LT(norm(plant.velocity_mps() / 1e-6 - expected_mps2), 1e-9);
 }
 
+TEST(DeltaPlant, AHeldForceMovesItAsFarAsItReallyWould) {
+  // a t^2 / 2 after one step and after twenty; with x+ = x + h v+ it would be h / 2 ahead
+  for (const int steps : {1, 20}) {
+    DeltaPlant plant({}, kStart);
+    const Vec3 force_N{2.0, 1.0, -3.0};
+    const Vec3 a_mps2 = inverse(task_inertia_kg(kGeometry, kMasses, pose_of(plant))) * force_N;
+    for (int i = 0; i < steps; ++i) plant.step(kStep_s, motors_Nm(plant, force_N), {});
+    const double t_s = steps * kStep_s;
+    EXPECT_LT(norm(plant.position_m() - kStart - 0.5 * t_s * t_s * a_mps2),
+              2e-3 * 0.5 * t_s * t_s * norm(a_mps2));
+  }
+}
+
 TEST(DeltaPlant, WithoutFrictionEnergyComesFromTheMotorsAlone) {
   // Coriolis terms, gravity and changing mass included: what the motors do is what the device has.
   const auto worst_error_J = [](double dt_s) {

@@ -37,6 +37,14 @@ TEST(LinearPull, PressesAsTheLawAndPullsAsASpring) {
   EXPECT_NEAR(law.respond(-12_mm).energy_J, 0.5 * 60.0 * 1e-4 + 0.6 * 2e-3, 1e-12);
 }
 
+TEST(LinearPull, ATableOfItPullsExactlyLinearlyHoweverStiffThePress) {
+  const RhombusChain chain = make_chain();  // 53 N/m at rest
+  const LinearPull law = *make_linear_pull(chain, {.stiffness_N_per_m = 2.0, .limit_m = 10_mm});
+  const TabulatedLaw table = *tabulate(law, 17);
+  for (int i = 1; i <= 100; ++i)
+    EXPECT_NEAR(table.respond(-i * 0.1_mm).force_N, -2.0 * i * 0.1_mm, 1e-9);
+}
+
 TEST(LinearPull, RefusesNumbersWithoutMeaning) {
   const RhombusChain chain = make_chain();
   EXPECT_FALSE(make_linear_pull(chain, {.stiffness_N_per_m = 0.0, .limit_m = 10_mm}));

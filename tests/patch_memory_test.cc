@@ -206,6 +206,7 @@ TEST(PatchMemory, WhoLeavesForgetsAndTheToolGainsNothing) {
 
 TEST(PatchMemory, ASceneThatFadesMakesAPatchThatFades) {
   Scene scene;
+  scene.rate_Hz = 1000.0;
   scene.spring_patch = stiffly_coupled({});
   scene.organ_mesh = tests::make_plate(0.1, 20);
   scene.tool.spheres = {{{}, 0.004}};

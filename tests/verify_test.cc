@@ -42,7 +42,7 @@ TEST(Verify, EveryPublishedKinematicsCasePasses) {
 }
 
 TEST(Verify, EveryPublishedCaseOfTheSourcesPasses) {
-  const Outcome out = run("");  // all files beside the sources
+  const Outcome out = run(kVectors);
   EXPECT_EQ(out.status, 0) << out.output;
   for (const char* line : {"000_rhombus_chain.json: ", "000_rhombus_paper.json: ",
                            "000_rhombus_unit.json: ", "001_disc_constants.json: 19 passed",

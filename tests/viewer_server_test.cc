@@ -102,7 +102,10 @@ TEST_F(Viewer, KeepsServingWhenBrowsersLeave) {
     read(socket);
   }
   Frame frame;
-  for (frame.tick = 1; frame.tick <= 50; ++frame.tick) source_->send(frame);
+  for (frame.tick = 1; frame.tick <= 50; ++frame.tick) {
+    source_->send(frame);  // the queue of a local socket holds about 40
+    if (frame.tick % 20 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
   EXPECT_TRUE(wait_until([this] { return frames_ == 50 && view_.listeners() == 0; }));
 }
 
@@ -189,7 +192,7 @@ TEST_F(Viewer, GivesTheKeptFramesAsATableAndAsARecording) {
   Frame frame;
   for (frame.tick = 1; frame.tick <= 600; ++frame.tick) {
     source_->send(frame);
-    if (frame.tick % 50 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    if (frame.tick % 20 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   ASSERT_TRUE(wait_until([this] { return frames_ == 600; }));
   const std::string table = get("/recording.csv").body();

@@ -86,7 +86,7 @@ SiteLawMaker patch_maker(bool relaxes) {
   };
 }
 
-SiteLawMaker relaxing_maker(std::shared_ptr<const model::Law> law) {
+SiteLawMaker relaxing_maker(const std::shared_ptr<const model::Law>& law) {
   const model::Relaxation relaxation = *model::make_relaxation(kTerms, kTick_s);
   return [law, relaxation] { return std::make_unique<RelaxingLaw>(law, relaxation); };
 }

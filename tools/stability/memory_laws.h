@@ -15,6 +15,6 @@ inline constexpr double kPatchRange_m = 0.01;
 
 /// Makers of a mass-spring patch, and of a closed-form law that relaxes.
 SiteLawMaker patch_maker(bool relaxes);
-SiteLawMaker relaxing_maker(std::shared_ptr<const model::Law> law);
+SiteLawMaker relaxing_maker(const std::shared_ptr<const model::Law>& law);
 
 }  // namespace tact::tools

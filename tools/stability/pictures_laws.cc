@@ -146,7 +146,8 @@ unset multiplot
 std::vector<Picture> law_loop_pictures(Grid) {
   std::string script = R"gp(
 f = 'loop_laws.csv'
-set title "Every law loses stability where its tangent stiffness passes K = b / (T/2 + t_d)\n\
+set title "A closed-form law loses stability where its tangent stiffness passes b / (T/2 + t_d),\n\
+also one that relaxes; the nodes of a patch give way, so it holds further\n\
 each law at several depths of its range, 1 kHz, no help from the hand"
 set logscale xy
 set xlabel "theory: b / (T/2 + t_d), N/m"
@@ -155,7 +156,7 @@ set xrange [80:20000]
 set yrange [60:200000]
 set key bottom right
 set label 1 "oscillation grows until the gate limits it" at 120,60000
-set label 2 "comes to rest" at 1500,130
+set label 2 "comes to rest" at 1000,130
 plot x lc 'black' dt 2 title "theory")gp";
   int i = 0;  // laws side by side, or they would hide each other
   for (const NamedLaw& named : probed_laws()) {
