@@ -101,7 +101,8 @@ bool is_rim_corner(const SurfaceView& s, std::uint32_t v) RT_SAFE {
 // Beyond the rim of an open surface there is no inside to be pushed out of.
 bool is_on_rim(const SurfaceView& s, const Nearest& at) RT_SAFE {
   if (at.feature == Feature::kEdge) return s.neighbour[at.place.triangle][at.index] == kNoTriangle;
-  return at.feature == Feature::kCorner && is_rim_corner(s, s.triangle[at.place.triangle][at.index]);
+  return at.feature == Feature::kCorner &&
+         is_rim_corner(s, s.triangle[at.place.triangle][at.index]);
 }
 
 Vec3 pseudo_normal(const SurfaceView& s, const Nearest& at) RT_SAFE {

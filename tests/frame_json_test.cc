@@ -102,7 +102,8 @@ TEST(FrameJson, TellsDisplacedVerticesAndCutsOfALawWithoutProfiles) {
   hello.ring_count = 0;
   const auto patch = nlohmann::json::parse(frame_json(frame, hello)).at("patch");
   EXPECT_EQ(patch.at("count"), 2);
-  EXPECT_EQ(patch.at("moved"), "BwAAAHARAQABAP7/AwD/fwAA//8=") << "the same bytes as in the page's own test";
+  EXPECT_EQ(patch.at("moved"), "BwAAAHARAQABAP7/AwD/fwAA//8=")
+      << "the same bytes as in the page's own test";
   EXPECT_EQ(patch.at("cut_total"), 40);
   EXPECT_EQ(patch.at("cut"), (std::vector<int>{11, 12}));
   hello.ring_count = 3;

@@ -44,14 +44,13 @@ TEST(Verify, EveryPublishedKinematicsCasePasses) {
 TEST(Verify, EveryPublishedCaseOfTheSourcesPasses) {
   const Outcome out = run(kVectors);
   EXPECT_EQ(out.status, 0) << out.output;
-  for (const char* line : {"000_rhombus_chain.json: ", "000_rhombus_paper.json: ",
-                           "000_rhombus_unit.json: ", "001_disc_constants.json: 19 passed",
-                           "001_disc_patent_printed.json: 1 passed", "001_disc_stack.json: 66 passed",
-                           "002_hex_energy.json: 30 passed", "002_hex_paper.json: 52 passed",
-                           "003_ccd.json: 29 passed", "003_epnp.json: 25 passed",
-                           "003_leg_ik.json: 14 passed", "003_transform.json: 19 passed",
-                           "004_claims.json: ", "004_network.json: ", "004_oscillator.json: ",
-                           "004_stability.json: "}) {
+  for (const char* line :
+       {"000_rhombus_chain.json: ", "000_rhombus_paper.json: ", "000_rhombus_unit.json: ",
+        "001_disc_constants.json: 19 passed", "001_disc_patent_printed.json: 1 passed",
+        "001_disc_stack.json: 66 passed", "002_hex_energy.json: 30 passed",
+        "002_hex_paper.json: 52 passed", "003_ccd.json: 29 passed", "003_epnp.json: 25 passed",
+        "003_leg_ik.json: 14 passed", "003_transform.json: 19 passed", "004_claims.json: ",
+        "004_network.json: ", "004_oscillator.json: ", "004_stability.json: "}) {
     EXPECT_NE(out.output.find(line), std::string::npos) << line;
   }
 }
