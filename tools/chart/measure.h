@@ -6,7 +6,7 @@
 // clock costs; the median of very short ticks is that of the mean of a few. What is asked is the
 // law, not the load of the machine: ticks in which the system ran another program are counted and
 // left out, ticks above 0.1 ms are timed by the processor time of the thread, and of some rounds
-// the one with the least p99.9 counts. The loop itself runs where nothing else does.
+// the least median and the least p99.9 count. The loop itself runs where nothing else does.
 #pragma once
 
 #include <vector>

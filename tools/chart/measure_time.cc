@@ -104,7 +104,9 @@ Timing measure_time(Subject& subject, const std::vector<Indentation>& path,
   const double cost_ns = clock_cost_ns();
   // ticks shorter than the clock's step: the median is that of the mean of a few
   const auto batch = static_cast<std::size_t>(std::clamp(kBatch_s / tick_s, 1.0, 64.0));
-  Timing best{.p999_us = std::numeric_limits<double>::infinity(),
+  constexpr double kNever_us = std::numeric_limits<double>::infinity();
+  Timing best{.median_us = kNever_us,
+              .p999_us = kNever_us,
               .instructions = std::numeric_limits<double>::quiet_NaN(),
               .ticks = ticks};
   std::vector<double> tick_ns, batch_ns;
@@ -134,9 +136,9 @@ Timing measure_time(Subject& subject, const std::vector<Indentation>& path,
     }
     if (tick_ns.empty()) continue;
     const double p999_us = 1e-3 * at_share(tick_ns, 0.999);
+    best.median_us = std::min(best.median_us, 1e-3 * at_share(batch > 1 ? batch_ns : tick_ns, 0.5));
     if (p999_us >= best.p999_us) continue;
     best.p999_us = p999_us;
-    best.median_us = 1e-3 * at_share(batch > 1 ? batch_ns : tick_ns, 0.5);
     best.paused = ticks - tick_ns.size();
   }
   const InstructionCounter counter;
