@@ -199,7 +199,9 @@ TEST(Chart, ShardsMergeToTheSameNumbers) {
   }
   const auto merged = merge_table(empty_chart(whole.jobs(), {}), files);
   ASSERT_TRUE(merged) << merged.error().sentence;
-  EXPECT_FALSE(check_same_source(*merged));
+  EXPECT_FALSE(check_same_source(*merged, {"scene", "truth", "r2", "there"}));
+  EXPECT_TRUE(check_same_source(*merged, {"scene after a change", "truth", "r1", "here"}));
+  EXPECT_EQ(machines_of(*merged), "here");
   ASSERT_EQ(merged->rows().size(), whole.rows().size());
   for (std::size_t r = 0; r < whole.rows().size(); ++r)
     for (std::size_t c = 0; c < whole.column("tick_median_us"); ++c) {

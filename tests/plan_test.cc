@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/program.h"
 #include "tests/test_scene.h"
 
 namespace tact::tools {
@@ -169,6 +170,17 @@ TEST_F(PlanFile, RefusesWhatIsMissingDamagedOrStale) {
   other = plan_;
   other.sizes.law = LawKind::kHexSheet;
   expect_cure(model::read_plan(write(plan_text(other)), scene_), "no law hex_sheet");
+}
+
+TEST(Program, SaysWhatIsMissing) {
+  const std::string scene = std::string(TACT_SOURCE_DIR) + "/model/scenes/liver.toml";
+  const auto plan = tests::run_program("tact-plan", scene);
+  EXPECT_EQ(plan.status, 2);
+  EXPECT_TRUE(has(plan.output, "give --reference FILE")) << plan.output;
+  const auto chart = tests::run_program("tact-chart", scene + " --out x --reference none.json");
+  EXPECT_EQ(chart.status, 2);
+  EXPECT_TRUE(has(chart.output, "tact-reference")) << chart.output;
+  EXPECT_EQ(tests::run_program("tact-chart", "--help").status, 0);
 }
 
 }  // namespace

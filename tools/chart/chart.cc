@@ -59,6 +59,7 @@ Made make_and_judge(const Scene& scene, const Scene& elastic, const Variant& var
 
 std::vector<SpeedAndError> points_of(const Table& table, const std::vector<std::size_t>& rows) {
   std::vector<SpeedAndError> out;
+  out.reserve(rows.size());
   for (const std::size_t i : rows)
     out.push_back({.tick_us = table.number(table.rows()[i], "tick_median_us"),
                    .error_ratio = table.number(table.rows()[i], "force_rms_ratio")});

@@ -79,7 +79,7 @@ Result<Table> table_of(const Options& o, const Scene& scene, const ReferenceData
   if (!o.merge.empty()) {
     auto merged = merge_table(empty_chart(all, {}), o.merge);
     if (!merged) return merged;
-    if (auto mixed = check_same_source(*merged)) return std::move(*mixed);
+    if (auto mixed = check_same_source(*merged, provenance)) return std::move(*mixed);
     return merged;
   }
   const auto rows = measure_chart(scene, reference, o.chart);
@@ -137,12 +137,13 @@ int main(int argc, char** argv) {
   if (!scene) return fail(scene.error());
   const auto reference = read_reference(o.reference);
   if (!reference) return fail(reference.error());
-  const Provenance provenance{.scene_hash = scene->hash,
-                              .reference_hash = hash_of_file(o.reference),
-                              .revision = tact::firmware::read_environment({}).git_revision,
-                              .machine = tact::model::machine_name()};
+  Provenance provenance{.scene_hash = scene->hash,
+                        .reference_hash = hash_of_file(o.reference),
+                        .revision = tact::firmware::read_environment({}).git_revision,
+                        .machine = tact::model::machine_name()};
   const auto table = table_of(o, *scene, *reference, provenance);
   if (!table) return fail(table.error());
+  if (!o.merge.empty()) provenance.machine = machines_of(*table);
   std::error_code ignored;
   std::filesystem::create_directories(o.out, ignored);
   std::string command;

@@ -1,12 +1,14 @@
 #include "tools/chart/report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace tact::tools {
 namespace {
@@ -79,14 +81,24 @@ Result<Table> read_chart(const std::string& path) {
   }
 }
 
-std::optional<Error> check_same_source(const Table& table) {
-  for (const char* column : {"scene_hash", "reference_hash", "revision"})
-    for (const Row& row : table.rows())
-      if (table.word(row, column) != table.word(table.rows().front(), column))
-        return Error{fmt::format("shards differ in {}: {} and {}; run all shards of one version",
-                                 column, table.word(table.rows().front(), column),
-                                 table.word(row, column))};
+std::optional<Error> check_same_source(const Table& table, const Provenance& provenance) {
+  const auto differs = [&](const char* column, const std::string& wanted) {
+    return std::any_of(table.rows().begin(), table.rows().end(),
+                       [&](const Row& row) { return table.word(row, column) != wanted; });
+  };
+  if (differs("scene_hash", provenance.scene_hash))
+    return Error{"a shard was measured with another scene; run its shards again with this one"};
+  if (differs("reference_hash", provenance.reference_hash))
+    return Error{"a shard was judged by another reference; run its shards again with this one"};
+  if (!table.rows().empty() && differs("revision", table.word(table.rows()[0], "revision")))
+    return Error{"shards are of different revisions of tact; run all with one build"};
   return std::nullopt;
+}
+
+std::string machines_of(const Table& table) {
+  std::set<std::string> names;
+  for (const Row& row : table.rows()) names.insert(table.word(row, "machine"));
+  return fmt::format("{}", fmt::join(names, " + "));
 }
 
 std::string chart_text(const Table& table) {

@@ -21,8 +21,10 @@ model::Result<std::vector<std::string>> write_chart(const Table& table, bool is_
 /// The rows of a chart.json.
 model::Result<Table> read_chart(const std::string& path);
 
-/// All rows must be of the same scene and reference.
-std::optional<model::Error> check_same_source(const Table& table);
+/// Merged rows must all be of this scene and reference, and of one revision.
+std::optional<model::Error> check_same_source(const Table& table, const Provenance& provenance);
+/// Where the rows were measured: "a + b".
+std::string machines_of(const Table& table);
 
 /// For a terminal.
 std::string chart_text(const Table& table);

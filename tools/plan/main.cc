@@ -103,7 +103,7 @@ void print(const Options& o, const std::vector<Candidate>& candidates, const Cho
 
 Result<std::string> keep(const Candidate& c, const Scene& scene) {
   const auto path = tact::model::plan_path(scene.hash);
-  if (!path) return path;
+  if (!path) return path.error();
   return tact::model::write_plan({.sizes = c.sizes,
                                   .tick_p999_us = c.tick_p999_us,
                                   .force_error_ratio = c.force_error_ratio,
