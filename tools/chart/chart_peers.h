@@ -29,7 +29,7 @@ model::Result<std::unique_ptr<Subject>> make_spring_peer(const PeerInput& input,
 model::Result<std::unique_ptr<Subject>> make_bullet_peer(const PeerInput& input, bool volume,
                                                          int iterations);
 
-/// Any of them; the error of a peer that this build lacks says what to install.
+/// Any of them.
 model::Result<std::unique_ptr<Subject>> make_peer(const PeerInput& input, const Variant& variant);
 
 /// Vertices of the surface in the box that the scene holds.

@@ -7,19 +7,7 @@
 // The tip is a penalty spring on the touched triangle, F = q (d - w), as in spring_mesh. Bullet has
 // no modulus: its free stiffness (shape matching, or that of the links) is tried until
 // the mean force at 5 mm fits; if it does not within Bullet's range 0 .. 1, the nearest is taken
-// and said. Built only where Bullet is there: apt install libbullet-dev.
-#include "tools/chart/chart_peers.h"
-
-#ifndef TACT_HAS_BULLET
-
-namespace tact::tools {
-model::Result<std::unique_ptr<Subject>> make_bullet_peer(const PeerInput&, bool, int) {
-  return model::Error{"built without Bullet; apt install libbullet-dev and build again"};
-}
-}  // namespace tact::tools
-
-#else
-
+// and said.
 #include <BulletSoftBody/btSoftBodyHelpers.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
@@ -31,6 +19,7 @@ model::Result<std::unique_ptr<Subject>> make_bullet_peer(const PeerInput&, bool,
 #include <set>
 
 #include "model/fem/boundary.h"
+#include "tools/chart/chart_peers.h"
 #include "tools/common/gmsh.h"
 #include "tools/condense/condense_organ.h"
 
@@ -239,4 +228,3 @@ Result<std::unique_ptr<Subject>> make_bullet_peer(const PeerInput& input, bool v
 
 }  // namespace tact::tools
 
-#endif
