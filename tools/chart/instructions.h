@@ -1,26 +1,25 @@
-// instructions.h - how many instructions this thread has executed, where Linux lets us count them.
+// instructions.h - what a call costs in instructions: the same number on an idle and a busy
+// machine.
 //
-// Needs a processor with a counter (virtual machines often hide it) and
-// kernel.perf_event_paranoid <= 2. Kernel instructions are not counted.
+// Counted by the processor where Linux lets us (perf_event_open; virtual machines often hide the
+// counter). Else a copy of this process is stepped through the call one instruction at a time:
+// exact, but some 40 us each, so a call of more than kMostSteps is not counted. Instructions of the
+// kernel are not counted.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
+#include <functional>
 
 namespace tact::tools {
 
-class InstructionCounter {
- public:
-  InstructionCounter();
-  ~InstructionCounter();
-  InstructionCounter(const InstructionCounter&) = delete;
-  InstructionCounter& operator=(const InstructionCounter&) = delete;
+inline constexpr std::size_t kMostSteps = 300'000;  // of all calls together
 
-  bool is_available() const { return file_ >= 0; }
-  /// Since the counter was made; 0 where not available.
-  std::uint64_t read() const;
+/// Mean over up to `calls` calls; NaN where neither way works or one call is too long. Stepped, the
+/// calls happen in the copy alone.
+double instructions_per_call(const std::function<void()>& call, std::size_t calls);
 
- private:
-  int file_ = -1;
-};
+/// The second way by itself, for tests.
+double instructions_by_steps(const std::function<void()>& call, std::size_t calls,
+                             std::size_t most_steps = kMostSteps);
 
 }  // namespace tact::tools

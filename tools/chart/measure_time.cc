@@ -21,6 +21,7 @@ constexpr std::size_t kPathTicks = 1000;  // one turn
 constexpr double kPathRadius_m = 0.004;
 constexpr std::size_t kMostWarmTicks = 500;
 constexpr std::size_t kFewestTicks = 100;
+constexpr std::size_t kCountedTicks = 20;
 constexpr double kBatch_s = 2e-6;
 constexpr double kLongTick_s = 100e-6;
 
@@ -141,13 +142,9 @@ Timing measure_time(Subject& subject, const std::vector<Indentation>& path,
     best.p999_us = p999_us;
     best.paused = ticks - tick_ns.size();
   }
-  const InstructionCounter counter;
-  if (counter.is_available()) {
-    const std::size_t counted = std::min<std::size_t>(ticks, 1000);
-    const auto before = counter.read();
-    for (std::size_t i = 0; i < counted; ++i) subject.tick(next());
-    best.instructions = static_cast<double>(counter.read() - before) / static_cast<double>(counted);
-  }
+  if (tick_s < kLongTick_s)
+    best.instructions =
+        instructions_per_call([&] { subject.tick(next()); }, std::min(ticks, kCountedTicks));
   subject.release();
   return best;
 }

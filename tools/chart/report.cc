@@ -134,7 +134,7 @@ std::string chart_text(const Table& table) {
   }
   return out +
          "* on the front of tact: no other law is both faster and nearer to the reference.\n"
-         "instr. n/a: this machine does not count instructions, not available.\n";
+         "instr. n/a: too many to step through, and this processor lets nobody count them.\n";
 }
 
 }  // namespace tact::tools
