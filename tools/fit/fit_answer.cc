@@ -114,7 +114,9 @@ Result<std::vector<FitAnswer>> solve(const model::Scene& scene, model::LawKind k
   return sheet ? solved_answers(*sheet, scene, data) : sheet.error();
 }
 
+/// Not where the curve is scaled from place to place: that is done to tables.
 bool is_solved(const model::Scene& scene, model::LawKind kind) {
+  if (scene.varies_by_place) return false;
   return kind == model::LawKind::kRhombus ||
          (kind == model::LawKind::kHexSheet && scene.hex_sheet.rings > 0);
 }

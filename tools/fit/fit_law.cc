@@ -162,6 +162,22 @@ std::vector<FitLaw> fit_laws_of(const Scene& scene, const FitData& data) {
   return laws;
 }
 
+std::size_t keep_parameters(FitLaw& law, const std::vector<std::string>& names) {
+  std::size_t kept = 0;
+  for (std::size_t i = law.parameters.size(); i-- > 0;) {
+    const FitParameter& p = law.parameters[i];
+    const bool is_kept = std::any_of(names.begin(), names.end(), [&p](const std::string& name) {
+      return name == p.key || name == p.section + "." + p.key;
+    });
+    if (!is_kept) continue;
+    const auto at = static_cast<std::ptrdiff_t>(i);
+    law.parameters.erase(law.parameters.begin() + at);
+    for (std::vector<double>& start : law.starts) start.erase(start.begin() + at);
+    ++kept;
+  }
+  return kept;
+}
+
 void reach(Scene& scene, const FitData& data) {
   const double deepest_m = std::max(data.deepest_m(), data.farthest_pull_m());
   for (double* working_depth_m :

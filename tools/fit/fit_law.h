@@ -50,6 +50,10 @@ struct FitLaw {
 /// The laws that the scene describes, for data like this; names are unique.
 std::vector<FitLaw> fit_laws_of(const model::Scene& scene, const FitData& data);
 
+/// Takes parameters out of the search: those named here, by "key" or "section.key", stay as the
+/// scene has them. Returns how many were taken out.
+std::size_t keep_parameters(FitLaw& law, const std::vector<std::string>& names);
+
 /// Raises working depths and the limit of the pull to what the data needs.
 void reach(model::Scene& scene, const FitData& data);
 

@@ -57,7 +57,7 @@ class Fit {
 
   SearchProblem problem() {
     SearchProblem out{
-        .residuals = samples_ * (with_shapes_ ? 2 : 1),
+        .residuals = samples_ * (with_shapes_ ? 2 : 1) + 1,
         .difference = law_.difference,
         .most_evaluations = law_.most_evaluations / static_cast<int>(law_.starts.size())};
     for (const FitParameter& p : law_.parameters) {
@@ -194,11 +194,10 @@ void add_raised(const FitLaw& law, const Scene& before, const Scene& after,
 
 Result<FittedLaw> fit_law(const FitLaw& law, const Scene& scene, const FitData& data,
                           const FitOptions& options) {
-  if (law.by_place && !data.has_places())
-    return Error{
-        fmt::format("{} differs from place to place: write the vertex of the organ into a "
-                    "column site of {}",
-                    law.name, data.source)};
+  if ((law.by_place || scene.varies_by_place) && !data.has_places())
+    return Error{fmt::format(
+        "{} differs from place to place: write the vertex of the organ into a column site of {}{}",
+        law.name, data.source, law.by_place ? "" : ", or --set varies_by_place=false")};
   if (law.by_place)  // what such a law stands on may be missing
     if (const auto possible = make_tissue_law(scene, law.kind); !possible) return possible.error();
   Fit fit(law, scene, data, options);

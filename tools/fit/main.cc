@@ -19,7 +19,7 @@ using tact::model::Scene;
 
 struct Options {
   std::string scene, data, relaxation, reference, out, picture;
-  std::vector<std::string> overrides, held_out, laws{"all"};
+  std::vector<std::string> overrides, held_out, keep, laws{"all"};
   BenchColumns columns;
   FitOptions fit;
   std::size_t terms = 0;
@@ -38,6 +38,8 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--data", o.data, "CSV of a bench: depth_m,force_N[,site][,u_0_m,...]");
   app.add_option("--relaxation", o.relaxation, "CSV of a bench at held depth: time_s,force_N");
   app.add_option("--set", o.overrides, "one key of the scene, as KEY=VALUE; repeatable");
+  app.add_option("--keep", o.keep, "keys of the law that stay as the scene has them")
+      ->delimiter(',');
   app.add_option("--held-out", o.held_out, "sites that only judge, beside those of the scene")
       ->delimiter(',');
   app.add_option("--depth-column", o.columns.depth, "name in --data")->capture_default_str();
@@ -100,8 +102,12 @@ std::optional<Error> fit_laws(const Options& o, const Scene& scene, FitReport& r
   auto data = read_data(o, scene);
   if (!data) return data.error();
   report.data = std::move(*data);
-  for (const FitLaw& law : fit_laws_of(scene, *report.data)) {
+  std::size_t kept = 0;
+  for (FitLaw& law : fit_laws_of(scene, *report.data)) {
     if (!is_chosen(law, o.laws)) continue;
+    kept += keep_parameters(law, o.keep);
+    if (law.parameters.empty())
+      return Error{fmt::format("--keep leaves nothing of {} to fit; keep fewer keys", law.name)};
     auto fitted = fit_law(law, scene, *report.data, o.fit);
     if (fitted) {
       report.laws.push_back(std::move(*fitted));
@@ -109,6 +115,9 @@ std::optional<Error> fit_laws(const Options& o, const Scene& scene, FitReport& r
       report.notes.push_back(law.name + " was not fitted: " + fitted.error().sentence);
     }
   }
+  if (kept < o.keep.size() && !report.laws.empty())
+    return Error{fmt::format("--keep {}: no chosen law fits all of these keys; see what it prints",
+                             fmt::join(o.keep, ","))};
   if (!report.laws.empty()) return std::nullopt;
   if (!report.notes.empty()) return Error{report.notes.front()};
   return Error{
