@@ -48,6 +48,8 @@ class SiteLaw {
   virtual void cut(const BladeSweep&) RT_SAFE {}
   /// The end of a tick; its length is fixed when the law is made.
   virtual void advance() RT_SAFE = 0;
+  /// The law left the finite numbers and gives zero force; true until every sphere has left.
+  virtual bool broke() const RT_SAFE { return false; }
   /// Radial displacement profile as in Law::profile: for telemetry, from any thread; it must not
   /// read what advance() writes. A law that tells its shape otherwise returns 0.
   virtual std::size_t profile(const Indentation& in, std::span<double> ring_m) const RT_SAFE = 0;
