@@ -16,23 +16,33 @@ bool is_finite(const model::Tool& tool) RT_SAFE {
 
 // A tool that moved unseen starts anew: whatever depth it has by then comes without force.
 void Controller::touch(const TickInput& input) RT_SAFE {
-  if (input.sample.fresh && missed_ >= 2) contact_.reset();
-  missed_ = input.sample.fresh ? 0 : missed_ + 1;
+  unseen_ += input.skipped_periods;
+  if (input.sample.fresh && unseen_ >= 2) contact_.reset();
+  unseen_ = input.sample.fresh ? 0 : unseen_ + 1;
   contact_.touch(input.sample.tool);
 }
 
 void Controller::feel(const TickInput& input) RT_SAFE {
-  wanted_ = contact_.feel(input.sample.tool);
+  wanted_ = contact_.feel(input.sample.tool, supervisor_.armed());
 }
 
 void Controller::tell_shape() RT_SAFE {
   if (contact_.shape(shape_)) shapes_.write(shape_);
 }
 
+// The device's own word counts first, then what the samples, the law and the clock tell.
+Fault Controller::find_fault(const TickInput& input) RT_SAFE {
+  const bool too_late = late_watch_.step(input.skipped_periods);
+  if (latches(input.device_fault)) return input.device_fault;
+  if (!is_finite(input.sample.tool)) return Fault::kSampleNotFinite;
+  if (law_.broke()) return Fault::kLawBroke;
+  if (too_late && supervisor_.armed()) return Fault::kLoopLate;
+  return Fault::kNone;
+}
+
 TickOutput Controller::judge(const TickInput& input) RT_SAFE {
   const bool finite = is_finite(input.sample.tool);
-  Fault fault = finite ? Fault::kNone : Fault::kSampleNotFinite;
-  if (latches(input.device_fault)) fault = input.device_fault;
+  const Fault fault = find_fault(input);
   const bool armed_before = supervisor_.armed();
   supervisor_.step(input.commands, input.sample.fresh && finite, fault);
   if (supervisor_.armed() && !armed_before) {  // arming inside the organ pushes nothing

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "firmware/gate/gate.h"
+#include "firmware/late_watch.h"
 #include "firmware/supervisor.h"
 #include "hal/device.h"
 #include "hal/latest_slot.h"
@@ -17,6 +18,7 @@ struct TickInput {
   hal::Sample sample;
   Fault device_fault = Fault::kNone;
   Commands commands;
+  std::uint32_t skipped_periods = 0;  // between the tick before and this one
 };
 
 /// All that leaves it.
@@ -32,7 +34,9 @@ using ShapeSlot = hal::LatestSlot<model::PatchShape>;
 
 class Controller {
  public:
-  Controller(const model::ContactScene& scene, const Gate& gate) : contact_(scene), gate_(gate) {}
+  /// Without hard real time the late watch bears single stalls.
+  Controller(const model::ContactScene& scene, const Gate& gate, bool hard_real_time = true)
+      : law_(*scene.law), contact_(scene), gate_(gate), late_watch_(hard_real_time) {}
 
   void touch(const TickInput& input) RT_SAFE;
   void feel(const TickInput& input) RT_SAFE;
@@ -55,14 +59,18 @@ class Controller {
   const TickOutput& newest() const { return newest_; }
 
  private:
+  Fault find_fault(const TickInput& input) RT_SAFE;
+
+  const model::SiteLaw& law_;
   model::Contact contact_;
   Gate gate_;
+  LateWatch late_watch_;
   Supervisor supervisor_;
   Wrench wanted_;
   TickOutput newest_;
   model::PatchShape shape_;
   ShapeSlot shapes_;
-  std::uint32_t missed_ = 0;  // samples in a row
+  std::uint64_t unseen_ = 0;  // periods in a row without a sample
 };
 
 }  // namespace tact::firmware

@@ -35,7 +35,8 @@ model::Result<ReplayOutcome> replay(const std::string& path, const model::Scene&
         path, header.scene_hash, scene.hash)};
   flush_denormals();  // as in the loop's thread
   const double period_s = static_cast<double>(header.period_ns) * 1e-9;
-  Controller controller(tissue.contact_scene(), Gate(header.limits, period_s, header.force_share));
+  Controller controller(tissue.contact_scene(), Gate(header.limits, period_s, header.force_share),
+                        header.non_rt == 0);
   ReplayOutcome outcome;
   outcome.force_hash = kHashStart;
   LoggedTick tick;

@@ -27,6 +27,8 @@ void RtLoop::step() RT_SAFE {
     ++statistics_.late_ticks;
     statistics_.skipped_ticks += static_cast<std::uint64_t>(skipped);
   }
+  constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max();
+  record_.input.skipped_periods = static_cast<std::uint32_t>(std::min(skipped, kMost));
   device_.between_ticks(static_cast<double>((1 + skipped) * period_ns) * 1e-9);
 }
 
@@ -34,7 +36,9 @@ void RtLoop::let_go() RT_SAFE { device_.write(Wrench{}); }
 
 bool RtLoop::may_run() const RT_SAFE {
   if (requests_.stop.load(std::memory_order_relaxed)) return false;
-  return settings_.max_ticks == 0 || statistics_.ticks < settings_.max_ticks;
+  const std::uint64_t periods = statistics_.ticks + statistics_.skipped_ticks;
+  return (settings_.max_ticks == 0 || statistics_.ticks < settings_.max_ticks) &&
+         (settings_.max_periods == 0 || periods < settings_.max_periods);
 }
 
 void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {

@@ -34,6 +34,7 @@ struct LoopStatistics {
 struct LoopSettings {
   std::int64_t period_ns = 1'000'000;
   std::uint64_t max_ticks = 0;        // 0: until a stop request
+  std::uint64_t max_periods = 0;      // ticks and skipped periods together; 0: no limit
   std::uint64_t ticks_per_shape = 0;  // 0: never
 };
 
@@ -50,7 +51,7 @@ class RtLoop {
     record_.margin_ns = settings.period_ns;  // before the first tick nothing is used up
   }
 
-  /// Steps until a stop request or max_ticks, then lets go.
+  /// Steps until a stop request, max_ticks or max_periods, then lets go.
   void run() RT_SAFE;
   /// Sleeps to the next deadline and does one tick.
   void step() RT_SAFE;

@@ -141,16 +141,16 @@ std::optional<Error> Session::open() {
   if (auto problem = check_law(scene_, *tissue_, device_->info())) return problem;
   limits_ = limits_for(scene_.limits, device_->info());
   controller_.emplace(tissue_->contact_scene(),
-                      Gate(limits_, static_cast<double>(period_ns()) * 1e-9, force_share()));
-  const auto asked_ticks =
-      options_.ticks != 0
-          ? options_.ticks
-          : static_cast<std::uint64_t>(std::ceil(options_.seconds * scene_.rate_Hz));
+                      Gate(limits_, static_cast<double>(period_ns()) * 1e-9, force_share()),
+                      !non_rt_);
+  const auto asked_periods =
+      static_cast<std::uint64_t>(std::ceil(options_.seconds * scene_.rate_Hz));
   Clock& clock = options_.free_run ? static_cast<Clock&>(simulated_clock_) : monotonic_clock_;
-  loop_.emplace(
-      LoopSettings{
-          .period_ns = period_ns(), .max_ticks = asked_ticks, .ticks_per_shape = ticks_per_shape()},
-      *device_, *controller_, clock, requests_, *ring_);
+  loop_.emplace(LoopSettings{.period_ns = period_ns(),
+                             .max_ticks = options_.ticks,
+                             .max_periods = asked_periods,
+                             .ticks_per_shape = ticks_per_shape()},
+                *device_, *controller_, clock, requests_, *ring_);
   return std::nullopt;
 }
 

@@ -55,8 +55,15 @@ Result<TickLogReader> TickLogReader::open(const std::string& path) {
   LogHeader header;
   const bool whole = std::fread(&header, sizeof header, 1, file) == 1;
   TickLogReader reader(file, header);
-  if (!whole || std::memcmp(header.magic, LogHeader{}.magic, sizeof header.magic) != 0)
+  const LogHeader ours;
+  constexpr std::size_t kVersionAt = sizeof header.magic - 1;
+  if (!whole || std::memcmp(header.magic, ours.magic, kVersionAt) != 0)
     return Error{path + ": is no tick log; name a file that tactd --record wrote"};
+  if (header.magic[kVersionAt] != ours.magic[kVersionAt])
+    return Error{fmt::format(
+        "{}: is a tick log of version {}, this tactd reads version {}; replay it with the build "
+        "that recorded it",
+        path, header.magic[kVersionAt], ours.magic[kVersionAt])};
   if (header.tick_bytes != sizeof(LoggedTick))
     return Error{path + ": was written by another version of tactd; replay it with that one"};
   reader.header_.scene_hash[sizeof header.scene_hash - 1] = '\0';

@@ -74,7 +74,7 @@ void Contact::touch(const Tool& tool) RT_SAFE {
   }
 }
 
-Wrench Contact::feel(const Tool& tool) RT_SAFE {
+Wrench Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
   watch_grip(tool.grip_ratio);
   Wrench sum;
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
@@ -88,14 +88,14 @@ Wrench Contact::feel(const Tool& tool) RT_SAFE {
     sum.force_N += touch.force_N;
     sum.torque_Nm += cross(probe.centre_m - tool.position_m, touch.force_N);
   }
-  use_blade(tool);
+  use_blade(tool, blade_may_cut);
   scene_.law->advance();
   return sum;
 }
 
-void Contact::use_blade(const Tool& tool) RT_SAFE {
+void Contact::use_blade(const Tool& tool, bool may_cut) RT_SAFE {
   if (!scene_.blade) return;
-  if (before_) scene_.law->cut(sweep(*scene_.blade, *before_, tool));
+  if (may_cut && before_) scene_.law->cut(sweep(*scene_.blade, *before_, tool));
   before_ = tool;
 }
 

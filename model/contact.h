@@ -75,8 +75,9 @@ class Contact {
 
   /// Where the spheres meet the surface: follows each site.
   void touch(const Tool& tool) RT_SAFE;
-  /// What the tool feels there: states, laws, forces. Call after touch.
-  Wrench feel(const Tool& tool) RT_SAFE;
+  /// What the tool feels there: states, laws, forces. Call after touch. A blade cuts only if it
+  /// may.
+  Wrench feel(const Tool& tool, bool blade_may_cut = true) RT_SAFE;
   /// Forget every site, as at the start.
   void reset() RT_SAFE;
 
@@ -102,7 +103,7 @@ class Contact {
   };
 
   Site search(Probe& probe) RT_SAFE;
-  void use_blade(const Tool& tool) RT_SAFE;
+  void use_blade(const Tool& tool, bool may_cut) RT_SAFE;
   void watch_grip(double grip_ratio) RT_SAFE;
   void change_state(const Probe& probe, SphereTouch& touch) RT_SAFE;
   void feel_touching(Probe& probe, SphereTouch& touch) RT_SAFE;

@@ -27,6 +27,8 @@ enum class Fault : std::uint16_t {
   kSampleNotFinite = 102,
   kDeviceLost = 103,
   kDeviceFailed = 104,
+  kLoopLate = 105,
+  kLawBroke = 106,
 };
 
 constexpr bool latches(Fault fault) RT_SAFE { return static_cast<std::uint16_t>(fault) >= 100; }

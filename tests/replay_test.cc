@@ -27,7 +27,8 @@ class ReplayTest : public testing::Test {
   void record(int ticks) {
     auto device = std::move(*hal::open_device(scene));
     auto ring = std::make_unique<TickRing>();
-    Controller controller(tissue->contact_scene(), Gate(scene.limits, 0.001, 0.25));
+    Controller controller(tissue->contact_scene(), Gate(scene.limits, 0.001, 0.25),
+                          /*hard_real_time=*/false);
     SimulatedClock clock;
     Requests requests;
     requests.arm.store(true);
@@ -41,6 +42,7 @@ class ReplayTest : public testing::Test {
     auto log = std::move(*TickLogWriter::create(path, header));
     TickRecord record;
     for (int i = 0; i < ticks; ++i) {
+      if (i == 1300) clock.pass_ns(30'300'000);  // a fault, were this hard real time
       if (i == 1500) clock.pass_ns(5'300'000);
       loop.step();
       while (ring->pop(record)) log.add(record);
@@ -103,6 +105,18 @@ TEST_F(ReplayTest, WhatIsNoLogIsRefused) {
   std::ofstream(path) << "hello, this is no log at all, but it is long enough for a header, surely";
   EXPECT_FALSE(replay(path, scene, *tissue));
   EXPECT_FALSE(replay("/nowhere/at/all", scene, *tissue));
+}
+
+TEST_F(ReplayTest, ALogOfAnotherVersionIsRefusedByItsNumber) {
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(7);
+  file.put('2');
+  file.close();
+  const auto outcome = replay(path, scene, *tissue);
+  ASSERT_FALSE(outcome);
+  EXPECT_NE(outcome.error().sentence.find("version 2, this tactd reads version 3"),
+            std::string::npos)
+      << outcome.error().sentence;
 }
 
 TEST_F(ReplayTest, EveryRecordOfAPCWithoutHardRealTimeIsStamped) {

@@ -203,5 +203,37 @@ TEST_F(RtLoopTest, StopsAfterTheAskedTicks) {
   EXPECT_EQ(short_loop.statistics().ticks, 7u);
 }
 
+TEST_F(RtLoopTest, SkippedPeriodsCountInTheAskedTime) {
+  RtLoop timed({.period_ns = 1'000'000, .max_periods = 50}, device, controller, clock, requests,
+               *ring);
+  while (timed.may_run()) {
+    device.slow_ns = 9'500'000;  // ten periods each, nine of them skipped
+    timed.step();
+  }
+  EXPECT_EQ(timed.statistics().ticks, 5u);
+  EXPECT_EQ(timed.statistics().skipped_ticks, 45u);
+}
+
+TEST_F(RtLoopTest, AStallOfTwentyPeriodsEndsTheForce) {
+  press();
+  device.slow_ns = 20'500'000;
+  run_ticks(2);
+  EXPECT_EQ(newest().input.skipped_periods, 20u);
+  EXPECT_EQ(device.last, Wrench{});
+  run_ticks(50);
+  EXPECT_EQ(newest().output.fault, Fault::kLoopLate) << "latched";
+  EXPECT_EQ(device.last, Wrench{});
+}
+
+TEST_F(RtLoopTest, ALoopThatIsLateInEveryTickIsStopped) {
+  press();
+  for (int i = 0; i < 21; ++i) {
+    device.slow_ns = 1'100'000;
+    loop.step();
+  }
+  EXPECT_EQ(newest().output.fault, Fault::kLoopLate);
+  EXPECT_EQ(device.last, Wrench{});
+}
+
 }  // namespace
 }  // namespace tact::firmware

@@ -150,7 +150,7 @@ TEST_F(Tactd, TwoRunsOnSimulatedTimeGiveTheSameForces) {
 
 TEST_F(Tactd, ReplaysARealTimeRunBitForBit) {
   const std::string log = in_folder("run.tactlog");
-  report_of(kLiver + " --seconds 4 --record " + log);
+  report_of(kLiver + " --ticks 4000 --record " + log);
   const Outcome replayed = tactd(kLiver + " --replay " + log);
   EXPECT_EQ(replayed.status, 0) << replayed.output;
   EXPECT_TRUE(has(replayed, "4000 ticks computed again, 0 differ")) << replayed.output;

@@ -79,6 +79,17 @@ export const kFaults: Readonly<Record<number, Fault>> = {
     cause: "the device reported an error",
     cure: "check power, cable and driver of the device, then start tactd again",
   },
+  105: {
+    name: "loop late",
+    cause:
+      "the loop missed its deadlines: 20 periods at once or 20 ticks in a row, 100 in a row without hard real time",
+    cure: "choose a smaller law (tact-plan names one) or a lower rate_Hz, and free the loop's core of other work",
+  },
+  106: {
+    name: "law broke",
+    cause: "the tissue's law blew up and gives no force that can be trusted",
+    cure: "make its step shorter or its springs softer (spring_patch.substeps, integrator), then start tactd again",
+  },
 };
 
 /** Words for a number; one that this page does not know says so. */
