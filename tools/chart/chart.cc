@@ -15,6 +15,8 @@ using model::Error;
 using model::Result;
 using model::Scene;
 
+constexpr double kSameTime = 1.1;  // of two medians of one machine
+
 struct Made {
   ChartRow row;
   std::unique_ptr<Subject> subject;  // what is timed
@@ -197,19 +199,26 @@ Row table_row(const ChartRow& row, const Provenance& provenance) {
 
 std::vector<std::size_t> front_rows(const Table& table) {
   const auto rows = rows_of(table, "tact");
+  const auto points = points_of(table, rows);
+  const auto front = front_of(points);
   std::vector<std::size_t> out;
-  for (const std::size_t i : front_of(points_of(table, rows))) out.push_back(rows[i]);
+  for (std::size_t k = 0; k < front.size(); ++k) {
+    const bool is_last = k + 1 == front.size();
+    if (is_last || points[front[k + 1]].tick_us > kSameTime * points[front[k]].tick_us)
+      out.push_back(rows[front[k]]);
+  }
   return out;
 }
 
 std::vector<std::size_t> peers_ahead(const Table& table) {
-  const auto front = points_of(table, front_rows(table));
+  const auto laws = points_of(table, rows_of(table, "tact"));
+  const auto front = front_of(laws);
   const auto peers = rows_of(table, "peer");
   const auto points = points_of(table, peers);
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < peers.size(); ++i) {
-    const bool faster_and_better = std::any_of(front.begin(), front.end(), [&](const auto& ours) {
-      return points[i].tick_us < ours.tick_us && points[i].error_ratio < ours.error_ratio;
+    const bool faster_and_better = std::any_of(front.begin(), front.end(), [&](std::size_t k) {
+      return points[i].tick_us < laws[k].tick_us && points[i].error_ratio < laws[k].error_ratio;
     });
     if (faster_and_better) out.push_back(peers[i]);
   }

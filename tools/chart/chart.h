@@ -46,9 +46,10 @@ model::Result<std::vector<ChartRow>> measure_chart(const model::Scene& scene,
 /// A table without rows, for the shard and for merging.
 Table empty_chart(std::size_t variants, const Shard& shard);
 Row table_row(const ChartRow& row, const Provenance& provenance);
-/// Of a whole table: the rows on the front of tact's laws, fastest first.
+/// Of a whole table: the rows on the front of tact's laws, fastest first. Times within 10 % are the
+/// same time: of two such laws the nearer one stays.
 std::vector<std::size_t> front_rows(const Table& table);
-/// Peers that beat the front in both; empty is what tact promises.
+/// Peers that beat a law of the front in both, by however little; empty is what tact promises.
 std::vector<std::size_t> peers_ahead(const Table& table);
 
 }  // namespace tact::tools

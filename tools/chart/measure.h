@@ -53,6 +53,7 @@ struct TimingSettings {
   std::size_t ticks = 20000;  // a round
   int rounds = 3;
   double limit_s = 12.0;  // a slow peer: fewer ticks
+  bool instructions = true;
 };
 
 struct Timing {

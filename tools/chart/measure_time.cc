@@ -142,7 +142,7 @@ Timing measure_time(Subject& subject, const std::vector<Indentation>& path,
     best.p999_us = p999_us;
     best.paused = ticks - tick_ns.size();
   }
-  if (tick_s < kLongTick_s)
+  if (settings.instructions && tick_s < kLongTick_s)
     best.instructions =
         instructions_per_call([&] { subject.tick(next()); }, std::min(ticks, kCountedTicks));
   subject.release();

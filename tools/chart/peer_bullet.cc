@@ -227,4 +227,3 @@ Result<std::unique_ptr<Subject>> make_bullet_peer(const PeerInput& input, bool v
 }
 
 }  // namespace tact::tools
-

@@ -85,27 +85,16 @@ void share_labels(std::vector<Point>& points, double Point::*error) {
   }
 }
 
-/// Of front points that lie close together the best alone keeps its name.
-void keep_best_names(std::vector<Point>& front) {
-  constexpr double kClose = 0.2;  // of a decade
-  for (std::size_t i = 0; i + 1 < front.size(); ++i) {
-    const bool close = std::log10(front[i + 1].tick_us / front[i].tick_us) < kClose &&
-                       std::log10(front[i].force / front[i + 1].force) < kClose;
-    if (close) front[i].size = " ";
-  }
-}
-
 /// The line that no law of tact passes: from the top, step by step, to the right edge.
 std::vector<Point> front_points(const Table& table, const Families& families) {
   std::vector<Point> out;
   for (const std::size_t i : front_rows(table)) {
     const Row& row = table.rows()[i];
-    out.push_back({table.number(row, "tick_median_us"),
-                   percent(table.number(row, "force_rms_ratio")), 0.0,
-                   shown(table.word(row, "family")) + " " + table.word(row, "size")});
+    out.push_back(
+        {table.number(row, "tick_median_us"), percent(table.number(row, "force_rms_ratio")), 0.0,
+         fmt::format("{} {}", shown(table.word(row, "family")), table.word(row, "size"))});
   }
   if (out.empty()) return out;
-  keep_best_names(out);
   out.insert(out.begin(), {out.front().tick_us, 2.0 * families.most_force, 0.0, " "});
   out.push_back({2.0 * families.most_us, out.back().force, 0.0, " "});
   return out;
@@ -117,7 +106,7 @@ std::string panel(const Families& families, int column, bool with_front) {
   if (with_front)
     out +=
         "$front using 1:2 with steps lw 4 lc rgb '#c8c8c8' title 'front of tact', "
-        "$front using 1:2:4 with labels right offset -1,-0.9 font ',9' tc rgb '#777777' notitle, ";
+        "$front using 1:2:4 with labels left offset 3,-1.2 font ',10' tc rgb '#555555' notitle, ";
   int law = 0, peer = 0;
   for (std::size_t i = 0; i < families.order.size(); ++i) {
     const std::string& family = families.order[i];

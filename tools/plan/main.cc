@@ -55,7 +55,7 @@ Result<std::vector<Candidate>> measure(const Options& o, const Scene& scene) {
   if (!reference) return reference.error();
   ChartOptions options;
   options.wish.peers = false;
-  options.timing = {.ticks = 20000, .rounds = 2, .limit_s = 2.0};
+  options.timing = {.ticks = 20000, .rounds = 2, .limit_s = 2.0, .instructions = false};
   const auto rows = measure_chart(scene, *reference, options);
   if (!rows) return rows.error();
   Table table = empty_chart(rows->size(), {});
