@@ -59,8 +59,14 @@ ElasticField::Part ElasticField::part_at(const Place& place, double depth_m) con
           .slope_N = step_J * coordinate_slope(place.triangle, depth_m)};
 }
 
+// Where nothing varies, the place does not matter.
+bool ElasticField::is_known(const Indentation& in) const RT_SAFE {
+  return in.sphere < kMaxSpheres && std::isfinite(in.depth_m) &&
+         (parts_.curves.size() < 2 || is_a_place(in.place, parts_.surface));
+}
+
 SiteResponse ElasticField::respond(const Indentation& in) RT_SAFE {
-  if (!std::isfinite(in.depth_m)) return {.law = {.status = LawStatus::kInvalid}};
+  if (!is_known(in)) return {.law = {.status = LawStatus::kInvalid}};
   const Relaxation& relaxation = parts_.relaxation;
   next_[in.sphere] = relaxation.after(now_[in.sphere], in.depth_m, in.held);
   SiteResponse sum{};
@@ -78,6 +84,7 @@ SiteResponse ElasticField::respond(const Indentation& in) RT_SAFE {
 }
 
 std::size_t ElasticField::profile(const Indentation& in, std::span<double> ring_m) const RT_SAFE {
+  if (!is_known(in)) return 0;
   const Blend blend = blend_at(in.place, in.depth_m);
   const std::size_t count = parts_.curves[blend.low]->profile(in.depth_m, ring_m);
   if (parts_.curves.size() < 2) return count;

@@ -48,6 +48,7 @@ class ElasticField final : public SiteLaw {
     LawResponse law;
     Vec3 slope_N{};
   };
+  bool is_known(const Indentation& in) const RT_SAFE;
   std::span<const float> coordinate(double depth_m) const RT_SAFE;
   Blend blend_at(const Place& place, double depth_m) const RT_SAFE;
   Part part_at(const Place& place, double depth_m) const RT_SAFE;

@@ -26,6 +26,9 @@ struct Place {
   std::array<double, 3> weight{};
 };
 
+/// Is it a triangle of the surface, with finite weights?
+bool is_a_place(const Place& place, const SurfaceView& surface) RT_SAFE;
+
 struct Site {
   Place place;              // of q
   Vec3 point_m;             // q

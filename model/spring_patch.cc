@@ -12,6 +12,7 @@ namespace tact::model {
 namespace {
 
 constexpr double kShownMove_m = 1e-6;
+constexpr double kLostDents = 10.0;  // a dent of so many working depths is no tissue any more
 constexpr std::size_t kShownLips = kMaxShapeNodes / 2;
 
 bool is_positive(double v) { return std::isfinite(v) && v > 0.0; }
@@ -67,11 +68,6 @@ std::optional<Error> check_everywhere(const PatchSurface& surface, const SpringP
        .damping_time_s = p.tissue.damping_time_s});
 }
 
-bool is_a_place(const Place& place, const SurfaceView& mesh) RT_SAFE {
-  return place.triangle < mesh.triangle.size() && std::isfinite(place.weight[0]) &&
-         std::isfinite(place.weight[1]) && std::isfinite(place.weight[2]);
-}
-
 }  // namespace
 
 SpringPatch::SpringPatch(PatchSurface surface, const SpringPatchParameters& parameters)
@@ -102,6 +98,14 @@ std::size_t SpringPatch::memory_bytes() const {
   return sizeof *this + region_.memory_bytes() + stepper_.memory_bytes();
 }
 
+// Broken tissue stays so until nothing touches it: a fresh patch under a pressed tool would kick.
+void SpringPatch::leave(std::size_t sphere) RT_SAFE {
+  if (sphere >= kMaxSpheres) return;
+  touch_[sphere] = {};
+  if (std::none_of(touch_.begin(), touch_.end(), [](const Touch& t) { return t.active; }))
+    broke_ = false;
+}
+
 SiteResponse SpringPatch::respond(const Indentation& in) RT_SAFE {
   if (in.sphere >= kMaxSpheres) return {.law = {.status = LawStatus::kInvalid}};
   Touch& touch = touch_[in.sphere];
@@ -113,6 +117,7 @@ SiteResponse SpringPatch::respond(const Indentation& in) RT_SAFE {
   const double limit_m = parameters_.working_depth_m;
   const double depth_m = std::clamp(in.depth_m, -limit_m, limit_m);
   touch = {.active = true, .held = in.held, .depth_m = depth_m, .place = in.place};
+  if (broke_) return {.law = {.status = LawStatus::kSingular}};
 
   const TriangleCorners& corner = mesh.triangle[in.place.triangle];
   std::array<double, 3> dent{};
@@ -122,7 +127,10 @@ SiteResponse SpringPatch::respond(const Indentation& in) RT_SAFE {
     w_m += in.place.weight[c] * dent[c];
   }
   const double q = parameters_.coupling_stiffness_N_per_m;
-  if (!std::isfinite(w_m)) return {.law = {.status = LawStatus::kSingular}};
+  if (!(std::abs(w_m) <= kLostDents * limit_m)) {
+    give_up();
+    return {.law = {.status = LawStatus::kSingular}};
+  }
   const double stretch_m = in.held ? depth_m - w_m : std::max(depth_m - w_m, 0.0);
   SiteResponse out{.law = {.force_N = q * stretch_m,
                            .stiffness_N_per_m = stretch_m != 0.0 ? q : 0.0,
@@ -133,7 +141,6 @@ SiteResponse SpringPatch::respond(const Indentation& in) RT_SAFE {
     out.law.stiffness_N_per_m = 0.0;
     out.law.status = LawStatus::kSaturated;
   }
-  if (broke_) out.law.status = LawStatus::kSingular;
   // G = -F grad w;  grad w = n x (sum of w_i (edge opposite i)) / (2 area)
   const Vec3 &a = mesh.vertex_m[corner[0]], &b = mesh.vertex_m[corner[1]],
              &c = mesh.vertex_m[corner[2]];
@@ -189,6 +196,7 @@ std::span<const ProbeSpring> SpringPatch::probes() RT_SAFE {
 }
 
 void SpringPatch::advance() RT_SAFE {
+  if (broke_) return;
   follow_touches();
   const SpringNetwork network = region_.network(probes());
   if (network.node.position_m.empty()) return;
@@ -200,8 +208,11 @@ void SpringPatch::advance() RT_SAFE {
     energy_J = region_.stored_energy_J();
   }
   network_energy_J_ = energy_J - region_.rest_energy_J();
-  broke_ = !std::isfinite(energy_J);
-  if (!broke_) return;
+  if (!std::isfinite(energy_J)) give_up();
+}
+
+void SpringPatch::give_up() RT_SAFE {
+  broke_ = true;
   region_.rest();
   gathered_.fill(kNoTriangle);
   network_energy_J_ = 0.0;

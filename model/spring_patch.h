@@ -15,8 +15,9 @@
 // rest. Tissue that relaxes shares its energy out (patch_memory.h); the virtual spring does not.
 //
 // Valid for |d| <= working_depth_m; beyond, the force is that of the limit and kSaturated. Cost a
-// tick: the region's nodes, whatever the mesh. Should the nodes leave the finite numbers, they are
-// put to rest and the tick tells kSingular; the step check at make keeps that from happening.
+// tick: the region's nodes, whatever the mesh. Should the nodes leave the finite numbers, or a dent
+// ten times the working depth, they are put to rest and the patch gives zero force and kSingular
+// until every sphere has left; the step check at make keeps that from happening.
 // Source: PHYSICS 4; coupling and cut are ours.
 #pragma once
 
@@ -47,9 +48,10 @@ struct SpringPatchParameters {
 class SpringPatch final : public SiteLaw {
  public:
   SiteResponse respond(const Indentation& in) RT_SAFE override;
-  void leave(std::size_t sphere) RT_SAFE override { touch_[sphere] = {}; }
+  void leave(std::size_t sphere) RT_SAFE override;
   void cut(const BladeSweep& sweep) RT_SAFE override { region_.cut(sweep); }
   void advance() RT_SAFE override;
+  bool broke() const RT_SAFE override { return broke_; }
   std::size_t profile(const Indentation&, std::span<double>) const RT_SAFE override { return 0; }
   double ring_pitch_m() const RT_SAFE override { return ring_pitch_m_; }
 
@@ -66,6 +68,7 @@ class SpringPatch final : public SiteLaw {
  private:
   friend Result<std::unique_ptr<SpringPatch>> make_spring_patch(const SurfaceView&,
                                                                 const SpringPatchParameters&);
+  friend struct SpringPatchBreaker;  // of the tests: throws a node out of the finite numbers
   struct Touch {
     bool active = false;
     bool held = false;
@@ -76,6 +79,7 @@ class SpringPatch final : public SiteLaw {
   SpringPatch(PatchSurface surface, const SpringPatchParameters& parameters);
   std::span<const ProbeSpring> probes() RT_SAFE;
   void follow_touches() RT_SAFE;
+  void give_up() RT_SAFE;
 
   SpringPatchParameters parameters_;
   PatchRegion region_;

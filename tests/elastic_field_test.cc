@@ -172,6 +172,24 @@ TEST(ElasticField, NotANumberGivesZeroForceAndNoMemory) {
   EXPECT_NEAR(field.respond({.depth_m = 1e-3}).law.force_N, 0.1, 1e-12);
 }
 
+TEST(ElasticField, APlaceThatTheSurfaceDoesNotHaveGivesZeroForce) {
+  Bench bench(tests::make_plate(100_mm, 4));
+  const double nan = std::nan("");
+  const auto triangles = static_cast<std::uint32_t>(bench.mesh.triangle.size());
+  for (const Indentation& in :
+       {Indentation{.place = {}, .depth_m = 1e-3},
+        Indentation{.place = {triangles, {0.3, 0.3, 0.4}}, .depth_m = 1e-3},
+        Indentation{.place = {0, {nan, 0.5, 0.5}}, .depth_m = 1e-3},
+        Indentation{.sphere = kMaxSpheres, .place = {0, {0.3, 0.3, 0.4}}, .depth_m = 1e-3}}) {
+    const SiteResponse r = bench.field.respond(in);
+    EXPECT_EQ(r.law.status, LawStatus::kInvalid);
+    EXPECT_EQ(r.law.force_N, 0.0);
+    EXPECT_EQ(r.slope_N, Vec3{});
+    std::array<double, 4> ring_m{};
+    EXPECT_EQ(bench.field.profile(in, ring_m), 0u);
+  }
+}
+
 TEST(ElasticField, DoesNotTouchTheHeap) {
   Bench bench(tests::make_plate(100_mm, 10));
   const tests::NoAlloc guard;
