@@ -177,10 +177,11 @@ void Contact::feel_held(Probe& probe, SphereTouch& touch) RT_SAFE {
   }
 }
 
-// Back to the surface with no more depth than the held site had, and no stored shift.
+// Back to the surface with no more depth than the held site had, and no stored shift. Pressed
+// tissue remembers on: forgotten relaxation would come back as a stiffer push.
 void Contact::let_go(const Probe& probe, SphereTouch& touch) RT_SAFE {
   touch.state = TouchState::kTouching;
-  scene_.law->leave(index_of(touch));
+  if (!(touch.depth_m > 0.0)) scene_.law->leave(index_of(touch));
   touch.slack_m = at_least_zero(probe.depth_m - at_least_zero(touch.depth_m));
   touch.shift_m = {};
 }

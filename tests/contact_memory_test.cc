@@ -1,0 +1,120 @@
+// Letting go of tissue that remembers: neither the grip nor a tear gives energy back.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "model/contact.h"
+#include "model/elastic_field.h"
+#include "model/rhombus_chain.h"
+#include "model/units.h"
+#include "tests/shapes.h"
+
+namespace tact::model {
+namespace {
+
+constexpr double kRadius_m = 4_mm;
+
+struct RelaxingBench {
+  Contact contact() {
+    return Contact({.law = &field,
+                    .parameters = parameters,
+                    .spheres = {&sphere, 1},
+                    .surface = mesh.view(),
+                    .seeds = seeds.view(),
+                    .blade = {}});
+  }
+  RhombusChain chain = *make_rhombus_chain({.rod_length_m = 5_mm,
+                                            .initial_angle_rad = 30_deg,
+                                            .normal_stiffness_N_per_m = 150.0,
+                                            .tangential_stiffness_N_per_m = 180.0,
+                                            .growth = 2.0,
+                                            .units = 10});
+  const Law* curve = &chain;
+  SurfaceMesh mesh = tests::make_plate(100_mm, 20);
+  SeedGrid seeds = make_seed_grid(mesh.view(), 20_mm);
+  ProbeSphere sphere{{}, kRadius_m};
+  std::vector<PronyTerm> terms{{.share = 0.3, .time_s = 0.2}, {.share = 0.4, .time_s = 2.0}};
+  ElasticField field{{.curves = {&curve, 1},
+                      .coordinate = {},
+                      .pull_coordinate = {},
+                      .surface = {},
+                      .relaxation = *make_relaxation(terms, 0.001)}};
+  ContactParameters parameters{
+      .friction_ratio = 0.4, .sliding_stiffness_N_per_m = 100.0, .tear_force_N = 10.0};
+};
+
+struct Felt {
+  double energy_J = 0.0, force_N = 0.0;
+};
+
+Felt feel(Contact& contact, const Vec3& at_m, double grip_ratio, int ticks = 1) {
+  Wrench w;
+  for (int i = 0; i < ticks; ++i) {
+    const Tool tool{.position_m = at_m, .grip_ratio = grip_ratio};
+    contact.touch(tool);
+    w = contact.feel(tool);
+  }
+  return {contact.touches()[0].energy_J, w.force_N.z};
+}
+
+/// Presses to a depth, closes the grip there and stays.
+Felt press_and_hold(Contact& contact, double depth_m, int ticks) {
+  for (int i = 0; i <= 100; ++i) feel(contact, {0, 0, kRadius_m - depth_m * i / 100.0}, 0.0);
+  return feel(contact, {0, 0, kRadius_m - depth_m}, 1.0, ticks);
+}
+
+TEST(ContactMemory, OpeningTheGripInRelaxedTissueNeverAddsEnergy) {
+  RelaxingBench bench;
+  Contact contact = bench.contact();
+  const Vec3 deep_m{0, 0, kRadius_m - 5_mm};
+  const Felt fresh = press_and_hold(contact, 5_mm, 1);
+  const Felt relaxed = feel(contact, deep_m, 1.0, 5000);
+  EXPECT_LT(relaxed.force_N, 0.6 * fresh.force_N) << "it did relax";
+  const Felt open = feel(contact, deep_m, 0.0);
+  EXPECT_EQ(contact.touches()[0].state, TouchState::kTouching);
+  EXPECT_LE(open.energy_J, relaxed.energy_J + 1e-15);
+  EXPECT_NEAR(open.force_N, relaxed.force_N, 1e-3 * relaxed.force_N);
+}
+
+TEST(ContactMemory, ASidewaysTearInRelaxedTissueNeverAddsEnergy) {
+  RelaxingBench bench;
+  bench.parameters.tear_force_N = 0.6;
+  Contact contact = bench.contact();
+  Felt before = press_and_hold(contact, 5_mm, 5000);
+  for (double x_m = 0.0; contact.touches()[0].state == TouchState::kHeld; x_m += 0.05_mm) {
+    ASSERT_LT(x_m, 10_mm);
+    const Felt now = feel(contact, {x_m, 0, kRadius_m - 5_mm}, 1.0);
+    if (contact.touches()[0].state != TouchState::kHeld) {
+      EXPECT_LE(now.energy_J, before.energy_J);
+      EXPECT_NEAR(now.force_N, before.force_N, 1e-3 * before.force_N);
+    }
+    before = now;
+  }
+}
+
+TEST(ContactMemory, LettingGoWhileATermIsPulledDropsThatTerm) {
+  // Relaxed at 5 mm and drawn back to 1 mm: what relaxed pulls now, and free tissue cannot.
+  RelaxingBench bench;
+  Contact contact = bench.contact();
+  press_and_hold(contact, 5_mm, 20000);
+  const Felt held = feel(contact, {0, 0, kRadius_m - 1_mm}, 1.0);
+  EXPECT_LT(held.force_N, 0.0);
+  const Felt open = feel(contact, {0, 0, kRadius_m - 1_mm}, 0.0);
+  EXPECT_LE(open.energy_J, held.energy_J);
+  EXPECT_GT(open.force_N, 0.0);
+  EXPECT_LT(open.force_N, bench.chain.respond(1_mm).force_N);
+}
+
+TEST(ContactMemory, LettingGoOfAPullForgets) {
+  RelaxingBench bench;
+  Contact contact = bench.contact();
+  press_and_hold(contact, 1_mm, 1);
+  feel(contact, {0, 0, kRadius_m + 3_mm}, 1.0, 3000);
+  feel(contact, {0, 0, kRadius_m + 3_mm}, 0.0);
+  const Felt again = feel(contact, {0, 0, kRadius_m - 2_mm}, 0.0);
+  EXPECT_NEAR(again.force_N, bench.chain.respond(2_mm).force_N, 2e-3 * again.force_N);
+}
+
+}  // namespace
+}  // namespace tact::model
