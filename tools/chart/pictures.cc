@@ -80,7 +80,7 @@ void share_labels(std::vector<Point>& points, double Point::*error) {
     for (std::size_t i = first; i < end; ++i)
       if (points[i].size != " ") last = points[i].size;
     if (last != points[first].size) points[first].size += ".." + last;
-    for (std::size_t i = first + 1; i < end; ++i) points[i].size = " ";
+    for (std::size_t i = first + 1; i < end; ++i) points[i].size.assign(1, ' ');
     first = end;
   }
 }
