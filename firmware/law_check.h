@@ -7,25 +7,45 @@
 
 #include <optional>
 
+#include "firmware/rt_setup.h"
 #include "hal/device.h"
 #include "model/scene.h"
 #include "model/tissue.h"
 
 namespace tact::firmware {
 
-/// All spheres on the stiffest place at once, pressed and slid, against haptic_limit.h.
-std::optional<model::Error> check_renderable(const model::Scene& scene, const model::Tissue& tissue,
-                                             const hal::DeviceInfo& device);
+struct StiffnessMargin {
+  double needed_N_per_m = 0.0;  // by all spheres together
+  double limit_N_per_m = 0.0;   // of device and rate (haptic_limit.h)
+};
 
-/// Median time of a law's share of a tick on this machine, us, all spheres pressed. What it presses
-/// is forgotten: a law that remembers must be measured on a twin, not on the one that will be felt.
-double measure_law_us(const model::Scene& scene, const model::TissueLaw& twin);
+/// All spheres on the stiffest place at once, pressed and slid. The error says which key is too
+/// stiff, and to what it must fall.
+model::Result<StiffnessMargin> check_renderable(const model::Scene& scene,
+                                                const model::Tissue& tissue,
+                                                const hal::DeviceInfo& device);
 
-/// A twin's measure_law_us against [tolerance] tick_budget_us; nothing to say without one.
-std::optional<model::Error> check_budget(const model::Scene& scene);
+/// Time of a law's share of a tick on this machine.
+struct LawTime {
+  double median_us = 0.0;
+  double p999_us = 0.0;  // 99.9 % of the ticks are at most this long
+};
 
-/// Both, the device first.
-std::optional<model::Error> check_law(const model::Scene& scene, const model::Tissue& tissue,
-                                      const hal::DeviceInfo& device);
+/// All spheres pressed, each on its way round a small circle, so that a patch gathers anew; a blade
+/// that stands still is asked for too. What it presses is forgotten: a law that remembers must be
+/// measured on a twin, not on the one that will be felt. About 0.2 s at most.
+LawTime measure_law(const model::Scene& scene, model::SiteLaw& twin, double deepest_m);
+
+struct TimeMargin {
+  LawTime measured;
+  bool tail_counts = false;  // p99.9 was judged, else the median
+  double judged_us = 0.0;
+  double budget_us = 0.0;  // [tolerance] tick_budget_us, or half a period without one
+};
+
+/// A twin against the budget. With hard real time it runs as the loop will and its p99.9 counts; a
+/// stock kernel takes the processor away at will, so there only the median tells about the law.
+model::Result<TimeMargin> check_budget(const model::Scene& scene,
+                                       const std::optional<RtSettings>& hard_real_time);
 
 }  // namespace tact::firmware

@@ -56,6 +56,7 @@ json make_report(const RunFacts& facts, const LoopStatistics& loop, const Gate& 
   for (const Shortfall& s : facts.shortfalls) shortfalls.push_back(s.sentence);
   const model::FaultEntry& fault = model::describe(facts.fault);
   return {{"scene", facts.scene_name},
+          {"law", facts.law_title},
           {"device", facts.device_name},
           {"rate_Hz", facts.rate_Hz},
           {"duration_s", facts.duration_s},
@@ -86,9 +87,9 @@ json make_report(const RunFacts& facts, const LoopStatistics& loop, const Gate& 
 
 std::string make_summary(const RunFacts& facts, const LoopStatistics& loop) {
   std::string out =
-      fmt::format("{} on {}: {} ticks at {:g} Hz, {} late, {} skipped{}\n", facts.scene_name,
-                  facts.device_name, loop.ticks, facts.rate_Hz, loop.late_ticks, loop.skipped_ticks,
-                  facts.non_rt ? ", non-rt" : "");
+      fmt::format("{}, law {}, on {}: {} ticks at {:g} Hz, {} late, {} skipped{}\n",
+                  facts.scene_name, facts.law_title, facts.device_name, loop.ticks, facts.rate_Hz,
+                  loop.late_ticks, loop.skipped_ticks, facts.non_rt ? ", non-rt" : "");
   if (facts.simulated_time) {
     out += "  simulated time: durations are not measured\n";
   } else {
@@ -109,6 +110,21 @@ std::string make_summary(const RunFacts& facts, const LoopStatistics& loop) {
     out += fmt::format("\n  fault {}: {}: {}; {}", static_cast<int>(facts.fault), fault.name,
                        fault.cause, fault.cure);
   }
+  return out;
+}
+
+std::string make_check_line(const model::Scene& scene, const std::string& device_name,
+                            const model::TissueLaw& law, const StiffnessMargin& stiffness,
+                            const std::optional<TimeMargin>& time) {
+  std::string out = fmt::format(
+      "{}: sound. {} on {}, {} vertices; law {}, range {:.1f} to {:.1f} mm, stiffness {:.4g} of "
+      "{:.4g} N/m",
+      scene.path, scene.name, device_name, scene.organ_mesh.vertex_m.size(), law.title(),
+      1e3 * law.range().pull_m, 1e3 * law.range().press_m, stiffness.needed_N_per_m,
+      stiffness.limit_N_per_m);
+  if (time)
+    out += fmt::format(", {:.3g} of {:g} us a tick ({})", time->judged_us, time->budget_us,
+                       time->tail_counts ? "p99.9" : "median");
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "firmware/environment.h"
+#include "firmware/law_check.h"
 #include "firmware/rt_loop.h"
 #include "firmware/rt_setup.h"
 
@@ -21,7 +22,7 @@ struct ThreadCosts {
 };
 
 struct RunFacts {
-  std::string scene_name, device_name;
+  std::string scene_name, law_title, device_name;
   double rate_Hz = 0.0;
   double duration_s = 0.0;
   double force_limit_N = 0.0;
@@ -40,5 +41,9 @@ struct RunFacts {
 nlohmann::json make_report(const RunFacts& facts, const LoopStatistics& loop, const Gate& gate,
                            const Environment& environment);
 std::string make_summary(const RunFacts& facts, const LoopStatistics& loop);
+/// What --check found; without a time where none was measured.
+std::string make_check_line(const model::Scene& scene, const std::string& device_name,
+                            const model::TissueLaw& law, const StiffnessMargin& stiffness,
+                            const std::optional<TimeMargin>& time);
 
 }  // namespace tact::firmware

@@ -18,8 +18,7 @@
 #include "firmware/law_check.h"
 #include "firmware/report.h"
 #include "firmware/status_line.h"
-#include "firmware/telemetry.h"
-#include "hal/open_device.h"
+#include "firmware/telemetry_setup.h"
 
 namespace tact::firmware {
 namespace {
@@ -85,7 +84,9 @@ class Session {
   std::vector<Shortfall> shortfalls_;
   bool non_rt_ = false;
   std::unique_ptr<model::Tissue> tissue_;
-  std::unique_ptr<hal::Device> device_;
+  hal::OpenDevice device_;  // off when the session ends, whatever ended it
+  StiffnessMargin stiffness_;
+  std::optional<TimeMargin> time_;
   model::Limits limits_;
   std::unique_ptr<hal::HandSocket> hand_socket_;
   std::unique_ptr<TickRing> ring_ = std::make_unique<TickRing>();
@@ -114,9 +115,8 @@ int Session::run() {
                100.0 * kNonRtForceShare);
   if (const auto error = open()) return fail(error->sentence, 2);
   if (options_.check) {
-    fmt::print("{}: sound. {} on {}, {} vertices, law range {:.1f} to {:.1f} mm\n", scene_.path,
-               scene_.name, device_->info().name, scene_.organ_mesh.vertex_m.size(),
-               1e3 * tissue_->law().range().pull_m, 1e3 * tissue_->law().range().press_m);
+    fmt::print("{}\n",
+               make_check_line(scene_, device_->info().name, tissue_->law(), stiffness_, time_));
     return 0;
   }
   if (!options_.json_path.empty() && options_.json_path != "-" &&
@@ -138,7 +138,14 @@ std::optional<Error> Session::open() {
   auto device = hal::open_device(scene_);
   if (!device) return device.error();
   device_ = std::move(*device);
-  if (auto problem = check_law(scene_, *tissue_, device_->info())) return problem;
+  const auto stiffness = check_renderable(scene_, *tissue_, device_->info());
+  if (!stiffness) return stiffness.error();
+  stiffness_ = *stiffness;
+  if (!options_.free_run) {  // simulated time waits for any law
+    const auto time = check_budget(scene_, non_rt_ ? std::nullopt : std::optional(rt_));
+    if (!time) return time.error();
+    time_ = *time;
+  }
   limits_ = limits_for(scene_.limits, device_->info());
   controller_.emplace(tissue_->contact_scene(),
                       Gate(limits_, static_cast<double>(period_ns()) * 1e-9, force_share()),
@@ -155,44 +162,20 @@ std::optional<Error> Session::open() {
 }
 
 std::optional<Error> Session::open_telemetry() {
-  std::optional<TelemetrySocket> socket;
-  if (!options_.no_telemetry) {
-    std::string path = options_.socket_path;
-    if (path.empty()) {
-      auto directory = runtime_directory();
-      if (!directory) return directory.error();
-      path = *directory + "/telemetry.sock";
-    }
-    auto meshes = make_mesh_file(scene_);
-    if (!meshes) return meshes.error();
-    const HelloFacts facts{.device = device_->info(),
-                           .force_limit_N = controller_->gate().force_limit_N(),
-                           .non_rt = non_rt_,
-                           .hand_socket = hal::is_simulated(*device_) ? path + ".hand" : ""};
-    auto opened = TelemetrySocket::open(path, make_hello(scene_, *tissue_, facts), *meshes);
-    if (!opened) return opened.error();
-    socket.emplace(std::move(*opened));
-    if (hal::is_simulated(*device_)) {
-      auto hand = hal::start_hand_socket(*device_, facts.hand_socket);
-      if (!hand) return hand.error();
-      hand_socket_ = std::move(*hand);
-    }
-  }
-  std::optional<TickLogWriter> log;
-  if (!options_.record_path.empty()) {
-    LogHeader header;
-    header.period_ns = period_ns();
-    header.limits = limits_;
-    header.force_share = force_share();
-    header.non_rt = non_rt_ ? 1 : 0;
-    scene_.hash.copy(header.scene_hash, sizeof header.scene_hash - 1);
-    auto created = TickLogWriter::create(options_.record_path, header);
-    if (!created) return created.error();
-    log.emplace(std::move(*created));
-  }
+  auto outlets = open_outlets({.scene = scene_,
+                               .options = options_,
+                               .tissue = *tissue_,
+                               .device = *device_,
+                               .limits = limits_,
+                               .period_ns = period_ns(),
+                               .force_share = force_share(),
+                               .force_limit_N = controller_->gate().force_limit_N(),
+                               .non_rt = non_rt_});
+  if (!outlets) return outlets.error();
+  hand_socket_ = std::move(outlets->hand);
   telemetry_.emplace(*ring_,
                      FrameBuilder(tissue_->law().site_law(), controller_->shapes(), non_rt_),
-                     scene_.frame_rate_Hz, std::move(socket), std::move(log));
+                     scene_.frame_rate_Hz, std::move(outlets->socket), std::move(outlets->log));
   return std::nullopt;
 }
 
@@ -261,6 +244,7 @@ int Session::report() {
   const LoopStatistics& statistics = loop_->statistics();
   const RunFacts facts{
       .scene_name = scene_.name,
+      .law_title = tissue_->law().title(),
       .device_name = device_->info().name,
       .rate_Hz = scene_.rate_Hz,
       .duration_s =

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "model/fault.h"
@@ -33,9 +34,13 @@ struct DeviceInfo {
   double max_torque_Nm = 0.0;       // 0: the device has no torque
   double workspace_radius_m = 0.0;  // cylinder about the W x axis, centred on the origin of W
   double workspace_half_length_m = 0.0;
-  model::DeviceAtTool at_tool{};  // what bounds the stiffness it can show
+  /// What bounds the stiffness it can show; a device without it is never felt.
+  std::optional<model::DeviceAtTool> at_tool{};
+  std::string damping_key{};  // of the scene; empty: the damping is the hardware's own
 };
 
+/// An open device makes no force before the first write. Its destructor zeroes the force and
+/// powers off, as stop() does.
 class Device {
  public:
   Device() = default;
@@ -55,7 +60,7 @@ class Device {
   /// Hardware lives by itself and does nothing here. Not part of the tick's measured time.
   virtual void between_ticks(double elapsed_s) RT_SAFE { (void)elapsed_s; }
 
-  /// Zero force and power off; may block. Safe to call twice.
+  /// Zero force and power off; may block. Safe to call twice, and at any time after opening.
   virtual void stop() = 0;
 };
 

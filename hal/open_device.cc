@@ -12,12 +12,12 @@ namespace {
 using model::Error;
 using model::Result;
 
-using Opened = Result<std::unique_ptr<Device>>;
+using Opened = Result<OpenDevice>;
 
 Opened open_sim_delta(const model::Scene& scene) {
   auto device = make_sim_delta(scene.device.sim, scene.hand);
   if (!device) return Error{fmt::format("{}: {}", scene.path, device.error().sentence)};
-  return std::unique_ptr<Device>(std::move(*device));
+  return OpenDevice(device->release());
 }
 
 struct Kind {
@@ -27,6 +27,11 @@ struct Kind {
 constexpr Kind kKinds[] = {{"sim-delta", open_sim_delta}};
 
 }  // namespace
+
+void StopAndDelete::operator()(Device* device) const {
+  device->stop();
+  delete device;
+}
 
 Opened open_device(const model::Scene& scene) {
   std::string known;

@@ -11,8 +11,14 @@
 
 namespace tact::hal {
 
+/// Stops the device before it goes: no early exit leaves a force or power behind.
+struct StopAndDelete {
+  void operator()(Device* device) const;
+};
+using OpenDevice = std::unique_ptr<Device, StopAndDelete>;
+
 /// Opens what scene.device names. Set-up only; may take as long as the hardware needs.
-model::Result<std::unique_ptr<Device>> open_device(const model::Scene& scene);
+model::Result<OpenDevice> open_device(const model::Scene& scene);
 
 /// True for a device whose hand is simulated and may be moved by a person.
 bool is_simulated(const Device& device);

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 namespace tact::model {
 namespace {
@@ -36,21 +35,6 @@ HapticLimit haptic_limit(const DeviceAtTool& device, double rate_Hz,
 
 double largest_stable_stiffness_N_per_m(const DeviceAtTool& device, double rate_Hz) RT_SAFE {
   return haptic_limit(device, rate_Hz).grow_N_per_m;
-}
-
-std::optional<Error> check_stiffness(const DeviceAtTool& device, double rate_Hz,
-                                     double stiffness_N_per_m) {
-  const double limit_N_per_m = largest_stable_stiffness_N_per_m(device, rate_Hz);
-  if (stiffness_N_per_m <= limit_N_per_m) return std::nullopt;
-  std::ostringstream sentence;
-  sentence.precision(4);
-  sentence << "stiffness " << stiffness_N_per_m
-           << " N/m is beyond the stable limit of this device, " << limit_N_per_m
-           << " N/m (damping " << device.damping_Ns_per_m << " N s/m, rate " << rate_Hz
-           << " Hz, delay " << 1e3 * device.delay_s
-           << " ms); make the tissue softer, raise the rate, shorten the delay, or take a device "
-              "with more damping";
-  return Error{sentence.str()};
 }
 
 }  // namespace tact::model

@@ -20,9 +20,6 @@
 // this.
 #pragma once
 
-#include <optional>
-
-#include "model/result.h"
 #include "model/rt.h"
 
 namespace tact::model {
@@ -49,9 +46,5 @@ HapticLimit haptic_limit(const DeviceAtTool& device, double rate_Hz,
 
 /// K_grow: what no spring of a scene may exceed.
 double largest_stable_stiffness_N_per_m(const DeviceAtTool& device, double rate_Hz) RT_SAFE;
-
-/// Why this device cannot show this stiffness at this rate, if so. Set-up code.
-std::optional<Error> check_stiffness(const DeviceAtTool& device, double rate_Hz,
-                                     double stiffness_N_per_m);
 
 }  // namespace tact::model

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "tests/test_scene.h"
 
 namespace tact::firmware {
@@ -10,47 +12,119 @@ namespace {
 
 hal::DeviceInfo device_with(double damping_Ns_per_m) {
   hal::DeviceInfo device;
-  device.at_tool = {.damping_Ns_per_m = damping_Ns_per_m, .delay_s = 0.0005};
+  device.at_tool = model::DeviceAtTool{.damping_Ns_per_m = damping_Ns_per_m, .delay_s = 0.0005};
+  device.damping_key = "device.sim.joint_damping_Nms_per_rad";
   return device;
 }
 
-TEST(LawCheck, RefusesAStiffnessBeyondTheDevicesLimitAndSaysWhatToChange) {
+bool has(const model::Error& error, const std::string& part) {
+  return error.sentence.find(part) != std::string::npos;
+}
+
+TEST(LawCheck, RefusesAStiffnessBeyondTheDevicesLimitAndSaysWhichKeyToChange) {
   model::Scene scene = tests::make_plate_scene();
   const auto tissue = std::move(*model::make_tissue(scene));
   // One sphere, 100 N/m along the surface: K < b / (T/2 + t_d) = 1000 b.
-  EXPECT_GE(tissue->law().stiffness_N_per_m(), 50.0);
-  EXPECT_LE(tissue->law().stiffness_N_per_m(), 100.0);
-  EXPECT_FALSE(check_renderable(scene, *tissue, device_with(0.101)));
+  const auto fits = check_renderable(scene, *tissue, device_with(0.101));
+  ASSERT_TRUE(fits) << fits.error().sentence;
+  EXPECT_NEAR(fits->needed_N_per_m, 100.0, 1e-9);
+  EXPECT_NEAR(fits->limit_N_per_m, 101.0, 1e-9);
   const auto refused = check_renderable(scene, *tissue, device_with(0.099));
-  ASSERT_TRUE(refused);
-  EXPECT_NE(refused->sentence.find("plate.toml: 1 spheres of up to 100 N/m"), std::string::npos);
-  EXPECT_NE(refused->sentence.find("make the tissue softer"), std::string::npos);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(
+      refused.error().sentence,
+      "plate.toml: contact.sliding_stiffness_N_per_m is too stiff: 100 N/m on 1 sphere is 100 "
+      "N/m, this device is stable to 99 N/m at 1000 Hz; lower it to 99 N/m or less, raise "
+      "rate_Hz, or raise device.sim.joint_damping_Nms_per_rad");
   scene.tool.spheres.push_back({{}, 0.004});  // two spheres push at once
-  EXPECT_TRUE(check_renderable(scene, *tissue, device_with(0.101)));
+  const auto two = check_renderable(scene, *tissue, device_with(0.101));
+  ASSERT_FALSE(two);
+  EXPECT_TRUE(has(two.error(), "100 N/m on 2 spheres is 200 N/m")) << two.error().sentence;
+  EXPECT_TRUE(has(two.error(), "to 50.5 N/m or less")) << two.error().sentence;
+}
+
+TEST(LawCheck, NamesTheLawWhereItIsTheStifferOne) {
+  model::Scene scene = tests::make_plate_scene();
+  scene.contact.sliding_stiffness_N_per_m = 1.0;
+  const auto tissue = std::move(*model::make_tissue(scene));
+  EXPECT_GT(tissue->law().stiffness_N_per_m(), 50.0);
+  hal::DeviceInfo device = device_with(0.05);
+  device.damping_key.clear();
+  const auto refused = check_renderable(scene, *tissue, device);
+  ASSERT_FALSE(refused);
+  EXPECT_TRUE(has(refused.error(), "law rhombus is too stiff")) << refused.error().sentence;
+  EXPECT_TRUE(has(refused.error(), "soften [rhombus] to 50 N/m")) << refused.error().sentence;
+  EXPECT_TRUE(has(refused.error(), "take a device with more damping")) << refused.error().sentence;
+}
+
+TEST(LawCheck, RefusesADeviceThatDoesNotTellItsDamping) {
+  const model::Scene scene = tests::make_plate_scene();
+  const auto tissue = std::move(*model::make_tissue(scene));
+  const auto refused = check_renderable(scene, *tissue, {.name = "mute"});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().sentence,
+            "device mute does not tell its damping at the tool: fill DeviceInfo::at_tool");
 }
 
 TEST(LawCheck, RefusesALawThatCannotKeepItsBudget) {
   model::Scene scene = tests::make_plate_scene();
-  EXPECT_FALSE(check_budget(scene)) << "no budget, nothing to say";
-  scene.tolerance = {.force_error_ratio = 0.07, .shape_error_ratio = 0.2, .tick_budget_us = 1e6};
-  EXPECT_FALSE(check_budget(scene));
-  scene.tolerance->tick_budget_us = 1e-4;
-  const auto refused = check_budget(scene);
-  ASSERT_TRUE(refused);
-  EXPECT_NE(refused->sentence.find("tolerance.tick_budget_us is 0.0001"), std::string::npos);
-  EXPECT_NE(refused->sentence.find("tact-plan"), std::string::npos);
+  const auto free = check_budget(scene, {});
+  ASSERT_TRUE(free) << free.error().sentence;
+  EXPECT_EQ(free->budget_us, 500.0) << "without a tolerance: half a period";
+  EXPECT_GT(free->measured.median_us, 0.0);
+  EXPECT_LE(free->measured.median_us, free->measured.p999_us);
+  EXPECT_EQ(free->judged_us, free->measured.median_us);
+  scene.tolerance = {.force_error_ratio = 0.07, .shape_error_ratio = 0.2, .tick_budget_us = 1e-4};
+  const auto refused = check_budget(scene, {});
+  ASSERT_FALSE(refused);
+  for (const char* part : {"tolerance.tick_budget_us is 0.0001", "tact-plan", "median"})
+    EXPECT_TRUE(has(refused.error(), part)) << refused.error().sentence;
 }
 
-TEST(LawCheck, MeasuringLeavesTheFeltTissueAlone) {
+TEST(LawCheck, WithHardRealTimeTheTailIsJudged) {
   model::Scene scene = tests::make_plate_scene();
-  const auto tissue = std::move(*model::make_tissue(scene));
-  const auto ask = [&] {
-    return tissue->law().site_law().respond({.place = {0, {1, 0, 0}}, .depth_m = 1e-3});
-  };
-  const double before_N = ask().law.force_N;
   scene.tolerance = {.force_error_ratio = 0.07, .shape_error_ratio = 0.2, .tick_budget_us = 1e6};
-  EXPECT_FALSE(check_law(scene, *tissue, device_with(10.0)));
-  EXPECT_EQ(ask().law.force_N, before_N);
+  const auto judged = check_budget(scene, RtSettings{});
+  ASSERT_TRUE(judged) << judged.error().sentence;
+  EXPECT_EQ(judged->judged_us, judged->measured.p999_us);
+  scene.tolerance->tick_budget_us = 1e-4;
+  const auto refused = check_budget(scene, RtSettings{});
+  ASSERT_FALSE(refused);
+  EXPECT_TRUE(has(refused.error(), "(p99.9)")) << refused.error().sentence;
+}
+
+// A patch that stays where it is costs less than one that follows the hand: count what is asked.
+class AskedLaw final : public model::SiteLaw {
+ public:
+  model::SiteResponse respond(const model::Indentation& in) RT_SAFE override {
+    asked.insert(in.place.triangle);
+    return {};
+  }
+  void leave(std::size_t) RT_SAFE override {}
+  void cut(const model::BladeSweep& sweep) RT_SAFE override {
+    ++cuts;
+    moved = moved || !(sweep.from_a_m == sweep.to_a_m && sweep.from_b_m == sweep.to_b_m);
+  }
+  void advance() RT_SAFE override {}
+  std::size_t profile(const model::Indentation&, std::span<double>) const RT_SAFE override {
+    return 0;
+  }
+  double ring_pitch_m() const RT_SAFE override { return 1e-3; }
+
+  std::set<std::uint32_t> asked;
+  int cuts = 0;
+  bool moved = false;
+};
+
+TEST(LawCheck, MeasuresAContactThatWalksAndABladeThatCutsNothing) {
+  model::Scene scene = tests::make_plate_scene();
+  scene.tool.blade = model::Blade{.a_m = {}, .b_m = {0, 0, 0.01}};
+  AskedLaw law;
+  const LawTime time = measure_law(scene, law, 0.001);
+  EXPECT_GT(law.asked.size(), 10u) << "triangles on the way";
+  EXPECT_GT(law.cuts, 100);
+  EXPECT_FALSE(law.moved) << "an edge that stands still cuts nothing";
+  EXPECT_GT(time.median_us, 0.0);
 }
 
 }  // namespace

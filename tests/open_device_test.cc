@@ -24,7 +24,10 @@ class RealDevice final : public Device {
   DeviceInfo info() const override { return {.name = "a real one"}; }
   Fault read(Sample&, std::int64_t) RT_SAFE override { return Fault::kNone; }
   Fault write(const Wrench&) RT_SAFE override { return Fault::kNone; }
-  void stop() override {}
+  void stop() override {
+    if (stops != nullptr) ++*stops;
+  }
+  int* stops = nullptr;
 };
 
 TEST(OpenDevice, OpensTheSimulatedDelta) {
@@ -32,6 +35,16 @@ TEST(OpenDevice, OpensTheSimulatedDelta) {
   ASSERT_TRUE(device) << device.error().sentence;
   EXPECT_EQ((*device)->info().name, "simulated delta 360 x 300 mm");
   EXPECT_TRUE(is_simulated(**device));
+}
+
+TEST(OpenDevice, IsStoppedWhateverEndsItsHolder) {
+  int stops = 0;
+  {
+    auto* real = new RealDevice;
+    real->stops = &stops;
+    const tact::hal::OpenDevice device(real);
+  }
+  EXPECT_EQ(stops, 1);
 }
 
 TEST(OpenDevice, AnUnknownKindListsTheKnownOnes) {

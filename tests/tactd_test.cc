@@ -83,6 +83,19 @@ TEST_F(Tactd, ChecksAGoodSceneAndLeaves) {
   const Outcome outcome = tactd(kLiver + " --check");
   EXPECT_EQ(outcome.status, 0) << outcome.output;
   EXPECT_TRUE(has(outcome, "sound"));
+  for (const char* part : {"law rhombus chain", "stiffness ", " of 354.", " of 50 us a tick"})
+    EXPECT_TRUE(has(outcome, part)) << part << " in: " << outcome.output;
+}
+
+TEST_F(Tactd, RefusesALawThatNeedsMoreThanHalfAPeriod) {
+  const std::string slow = TACT_SOURCE_DIR
+      "/model/scenes/gum.toml --set spring_patch.integrator=implicit-euler --set "
+      "spring_patch.iterations=100 --set spring_patch.substeps=16 --set spring_patch.nodes=1024";
+  const Outcome refused = tactd(slow + " --check");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_TRUE(has(refused, "half a period of rate_Hz is 500 us")) << refused.output;
+  const Outcome simulated = tactd(slow + " --free-run --ticks 1");
+  EXPECT_EQ(simulated.status, 0) << "simulated time waits: " << simulated.output;
 }
 
 TEST_F(Tactd, NamesFileAndLineOfABadScene) {
@@ -121,9 +134,10 @@ TEST_F(Tactd, PrintsEveryFaultWithItsCure) {
   for (const auto& entry : tact::model::fault_table()) EXPECT_TRUE(has(outcome, entry.cure));
 }
 
-TEST_F(Tactd, ReportsWhatTheIssueAsksFor) {
+TEST_F(Tactd, AReportHoldsEveryNumberThatProvesARun) {
   const json report = report_of(kLiver + " --free-run --seconds 5");
   EXPECT_EQ(report.at("ticks"), 5000);
+  EXPECT_EQ(report.at("law").get<std::string>().rfind("rhombus chain", 0), 0u);
   for (const char* key : {"late", "skipped", "force_max_N", "gate", "fault", "non_rt"})
     EXPECT_TRUE(report.contains(key)) << key;
   for (const char* key : {"allocations", "minor_page_faults", "major_page_faults",

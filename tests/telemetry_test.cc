@@ -100,7 +100,7 @@ class WholeController {
 
   model::Scene scene_ = tests::make_plate_scene();
   std::unique_ptr<model::Tissue> tissue_;
-  std::unique_ptr<hal::Device> device_;
+  hal::OpenDevice device_;
   Controller controller_;
   SimulatedClock clock_;
   Requests requests_;

@@ -93,7 +93,8 @@ DeviceInfo SimDelta::info() const {
                                     .coulomb_Nm = settings_.joint_friction_Nm,
                                     .counts_per_turn = settings_.counts_per_turn,
                                     .delay_s = settings_.sample_delay_s},
-                                   corners_D())};
+                                   corners_D()),
+          .damping_key = "device.sim.joint_damping_Nms_per_rad"};
 }
 
 Vec3 SimDelta::true_position_m() const RT_SAFE { return point_W(plant_.position_m()); }
