@@ -66,6 +66,15 @@ std::optional<std::string> first_fault(const Header& h) {
   return std::nullopt;
 }
 
+bool all_finite(const ComplianceMap& map) {
+  const auto finite = [](float v) { return std::isfinite(v); };
+  return std::ranges::all_of(map.regular_times_E_per_m, finite) &&
+         std::ranges::all_of(map.ring_times_E_per_m, finite) &&
+         std::ranges::all_of(map.sideways_times_E_per_m, [&](const SidewaysGive& s) {
+           return finite(s.n1) && finite(s.n2) && finite(s.s1) && finite(s.s2);
+         });
+}
+
 }  // namespace
 
 Result<ComplianceMap> read_compliance_map(const std::string& path) {
@@ -107,6 +116,7 @@ Result<ComplianceMap> read_compliance_map(const std::string& path) {
   take(bytes, &sum, 1);
   if (sum != checksum({content.data(), content.size() - sizeof sum}))
     return broken("is damaged: its checksum is wrong");
+  if (!all_finite(map)) return broken("holds a value that is no finite number");
   return map;
 }
 
@@ -126,6 +136,10 @@ Result<std::size_t> write_compliance_map(const ComplianceMap& map, const std::st
   if (const auto fault = first_fault(head); fault || !complete)
     return Error{fmt::format("{}: not written, the map is not complete{}", path,
                              fault ? ": " + *fault : std::string())};
+  if (!all_finite(map))
+    return Error{path +
+                 ": not written, the map holds a value that is no finite number; solve it again "
+                 "with another mesh size or patch radius"};
   std::string bytes(kMagic);
   append(bytes, &head, 1);
   bytes += map.mesh_hash;
@@ -145,6 +159,14 @@ Result<std::size_t> write_compliance_map(const ComplianceMap& map, const std::st
     return Error{path + ": cannot be written; is there such a folder, and room on the disk?"};
   }
   return bytes.size();
+}
+
+std::string compliance_checksum(const std::string& path) {
+  std::string sum(sizeof(std::uint64_t), '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(-static_cast<std::streamoff>(sum.size()), std::ios::end);
+  file.read(sum.data(), static_cast<std::streamsize>(sum.size()));
+  return file ? sum : std::string();
 }
 
 std::string surface_hash(const SurfaceView& surface) {

@@ -24,6 +24,9 @@ Result<ComplianceMap> read_compliance_map(const std::string& path);
 /// All or nothing: a reader never sees half a file. Returns the bytes written.
 Result<std::size_t> write_compliance_map(const ComplianceMap& map, const std::string& path);
 
+/// The checksum that the file ends with, 8 bytes as they stand there; empty where there is none.
+std::string compliance_checksum(const std::string& path);
+
 /// Same shape, same hash, wherever the surface stands: triangles, and vertices relative to the
 /// first one in steps of 0.1 um. 16 hex digits.
 std::string surface_hash(const SurfaceView& surface);

@@ -14,10 +14,10 @@
 //
 // What is wrong with it (PHYSICS 3.3): horizontal balance alone fixes the shape, so vertical
 // balance cannot hold with equal body springs, and the force grows without limit with m instead of
-// converging. Yet F depends on d alone, so no stroke makes energy and a scene may name it: the law
-// here is a table of HX-12 over the depth whose exact integral is the energy. [D] Pulled, it is its
-// own mirror image. The source's 50 N/m and 2 mm are meant for one body spring per ring: per node
-// they reach 3.3 N at 0.165 mm.
+// converging. Yet F depends on d alone, so no stroke makes energy: the law here is a table of HX-12
+// over the depth whose exact integral is the energy. [D] It is for tools only and never drives a
+// device (scene.h, check_drivable). Pulled, it is its own mirror image. The source's 50 N/m and 2
+// mm are meant for one body spring per ring: per node they reach 3.3 N at 0.165 mm.
 #pragma once
 
 #include <array>

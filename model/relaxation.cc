@@ -32,9 +32,11 @@ Result<Relaxation> make_relaxation(std::span<const PronyTerm> terms, double tick
     out.share_[++out.count_] = term.share;
     out.share_[0] -= term.share;
   }
-  if (!(out.share_[0] >= 0.0))
+  constexpr double kRounding = 1e-12;  // 1 - 0.8 - 0.2 is a little below 0
+  if (!(out.share_[0] >= -kRounding))
     return Error{"relaxation: the shares add up to " + std::to_string(1.0 - out.share_[0]) +
                  "; allowed: 1 or less, the rest is the force that stays"};
+  out.share_[0] = std::max(out.share_[0], 0.0);
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "model/compliance_file.h"
 #include "model/obj.h"
 #include "model/scene_keys.h"
 #include "model/scene_words.h"
@@ -47,7 +48,11 @@ std::optional<Error> load_meshes(const SceneText& text, Scene& scene) {
   return std::nullopt;
 }
 
-/// Text, overrides and meshes: the same hash, the same forces.
+bool needs_compliance(const Scene& scene) {
+  return scene.varies_by_place || scene.law == LawKind::kCompliance || scene.law == LawKind::kAuto;
+}
+
+/// Text, overrides, meshes and the compliance map if felt: the same hash, the same forces.
 std::string whole_hash(const std::string& text_hash, const Scene& scene) {
   TextHash hash;
   hash.add(text_hash);
@@ -58,6 +63,7 @@ std::string whole_hash(const std::string& text_hash, const Scene& scene) {
     bytes(mesh->vertex_m);
     bytes(mesh->triangle);
   }
+  if (needs_compliance(scene)) hash.add(compliance_checksum(scene.compliance.map_path));
   return hash.hex();
 }
 

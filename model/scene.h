@@ -75,7 +75,7 @@ struct Scene {
   HandSettings hand;
   Limits limits;
   double frame_rate_Hz = 0.0;
-  std::string hash;        // of text, overrides and meshes, 16 hex digits
+  std::string hash;        // of text, overrides, meshes and a map that is felt, 16 hex digits
   SurfaceMesh organ_mesh;  // in W, m
   SurfaceMesh tool_mesh;   // tool frame, m
 

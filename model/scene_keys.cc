@@ -33,6 +33,11 @@ void visit_tool(Keys& k, SceneText& out) {
   if (k.section("blade", "a cutting edge, for law = \"spring_patch\"", visit_blade,
                 Need::kOptional)) {
     out.scene.tool.blade = blade;
+    const LawKind law = out.scene.law;
+    if (law != LawKind::kSpringPatch && law != LawKind::kAuto)
+      k.refuse({"blade"}, fmt::format("tool.blade cuts nothing with law = \"{}\"; write law = "
+                                      "\"spring_patch\" or leave [tool.blade] out",
+                                      name_of(law)));
   }
 }
 

@@ -86,7 +86,7 @@ void visit_hex_sheet(Keys& k, Scene& scene) {
            p.surface_stiffness_N_per_m);
   k.number("tension_N", {0.0, 100.0}, "T0, of the surface springs at rest", p.tension_N);
   k.number("working_depth_m", kDepth_m, "press and pull up to here", p.working_depth_m);
-  k.count("rings", {1, kMaxHexRings}, "m; by default the fewest that meet [tolerance]", p.rings,
+  k.count("rings", {0, kMaxHexRings}, "m; 0: the fewest that meet [tolerance]", p.rings,
           Need::kOptional);
 }
 
@@ -147,7 +147,7 @@ void visit_laws(Keys& k, SceneText& out) {
   std::size_t law = 0;
   k.count("table_knots", {kFewestKnots, kMaxKnots}, "of the loop's look-up table, each side",
           scene.table_knots, Need::kOptional);
-  k.flag("varies_by_place", "a closed-form law is scaled from place to place by [compliance]",
+  k.flag("varies_by_place", "rhombus, disc_stack, hex_sheet are scaled as [compliance] gives",
          scene.varies_by_place, Need::kOptional);
   k.choice("law", kLaws, "of the tissue", law);
   scene.law = kLawNames[law].kind;
@@ -168,6 +168,12 @@ void visit_laws(Keys& k, SceneText& out) {
   if (scene.varies_by_place && !scene.describes(LawKind::kCompliance))
     k.refuse({"varies_by_place"},
              "varies_by_place = true needs a section [compliance]; write it or leave the key out");
+  if (scene.varies_by_place &&
+      (scene.law == LawKind::kCompliance || scene.law == LawKind::kSpringPatch))
+    k.refuse({"varies_by_place", "law"},
+             fmt::format("varies_by_place = true does nothing to law = \"{}\", which knows its "
+                         "places; leave the key out or choose another law",
+                         name_of(scene.law)));
   if (scene.law == LawKind::kAuto || scene.describes(scene.law)) return;
   k.refuse({"law"}, fmt::format("law = \"{}\" has no section [{}]; write it or choose another law",
                                 name_of(scene.law), name_of(section_of(scene.law))));
@@ -180,8 +186,9 @@ void visit_law_options(Keys& k, Scene& scene) {
                 pull.stiffness_N_per_m);
     keys.number("limit_m", kDepth_m, "beyond it the force stays", pull.limit_m);
   };
-  if (k.section("pull", "a linear spring for held sites, instead of the law's own pull", visit_pull,
-                Need::kOptional)) {
+  if (k.section("pull",
+                "held sites pull on this spring; compliance and spring_patch keep their own pull",
+                visit_pull, Need::kOptional)) {
     scene.pull = pull;
   }
   k.entries("relaxation", {0, kMaxPronyTerms}, "a Prony term: force that fades at held depth",

@@ -6,55 +6,39 @@
 #include <cmath>
 
 #include "model/compliance_family.h"
-#include "model/compliance_file.h"
 #include "model/elastic_field.h"
 #include "model/hex_paper.h"
 #include "model/scaled_law.h"
 #include "model/tabulated_law.h"
+#include "model/tissue_map.h"
 
 namespace tact::model {
 namespace {
 
 constexpr double kRingTolerance = 0.01;  // of the force, where the scene states none
 
-/// The scene's compliance map, which must be of its organ.
-Result<ComplianceMap> read_scene_map(const Scene& scene) {
-  const std::string cure = "; run tact-condense " + scene.path;
-  if (!scene.elastic)
-    return Error{scene.path +
-                 ": compliance needs a section [elastic]: modulus, Poisson's ratio "
-                 "and where the organ is held"};
-  auto map = read_compliance_map(scene.compliance.map_path);
-  if (!map) return Error{map.error().sentence + cure};
-  const ElasticSettings& e = *scene.elastic;
-  if (map->mesh_hash != surface_hash(scene.organ_mesh.view()))
-    return Error{scene.compliance.map_path + " belongs to another organ mesh" + cure};
-  if (map->poisson_ratio != e.poisson_ratio || !(map->fixed_min_m == e.fixed_min_m) ||
-      !(map->fixed_max_m == e.fixed_max_m))
-    return Error{
-        fmt::format("{} was made for Poisson's ratio {} or another held box than [elastic] "
-                    "says{}",
-                    scene.compliance.map_path, map->poisson_ratio, cure)};
-  return map;
+/// Largest slope between two depths; those at the ends are seen from inside.
+double stiffest_N_per_m(const Law& law, double from_m, double to_m) {
+  constexpr int kSteps = 200;
+  double most_N_per_m = 0.0;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double ratio = std::clamp(static_cast<double>(i) / kSteps, 1e-6, 1.0 - 1e-6);
+    const LawResponse r = law.respond(from_m + ratio * (to_m - from_m));
+    most_N_per_m = std::max(most_N_per_m, r.stiffness_N_per_m);
+  }
+  return most_N_per_m;
 }
 
-/// How stiff each vertex is at this depth, over the vertex in the middle of them all.
-std::vector<float> stiffness_factors(const ComplianceFamily& family,
-                                     const std::vector<float>& coordinate, double depth_m) {
-  std::vector<double> curve_N;
-  for (const ComplianceCurve& c : family.curve) curve_N.push_back(c.respond(depth_m).force_N);
-  std::vector<float> factor;
-  for (const float kappa : coordinate) {
-    const auto k = std::min(static_cast<std::size_t>(kappa), curve_N.size() - 2);
-    const double f = static_cast<double>(kappa) - static_cast<double>(k);
-    factor.push_back(static_cast<float>(curve_N[k] + f * (curve_N[k + 1] - curve_N[k])));
+/// How far out a held site comes before it tears, or the end of the law's range, m, <= 0.
+double tear_depth_m(const Law& law, double tear_force_N) {
+  const auto holds = [&](double depth_m) { return law.respond(depth_m).force_N >= -tear_force_N; };
+  double torn_m = law.range().pull_m, held_m = 0.0;
+  if (holds(torn_m)) return torn_m;
+  for (int i = 0; i < 50; ++i) {
+    const double middle_m = 0.5 * (torn_m + held_m);
+    (holds(middle_m) ? held_m : torn_m) = middle_m;
   }
-  std::vector<float> sorted = factor;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const float median = *middle;
-  for (float& f : factor) f /= median;
-  return factor;
+  return torn_m;
 }
 
 }  // namespace
@@ -80,7 +64,6 @@ class TissueLawBuilder {
   Result<const Law*> with_pull(const Law& press);
   Step finish_curve(const Law& curve);
   Step scale_by_place(const Law& curve);
-  Result<ComplianceFamily> read_family() const;
   Step finish_field();
   void measure(const Law& curve);
 
@@ -119,7 +102,7 @@ std::optional<Error> TissueLawBuilder::build(LawKind kind) {
 }
 
 TissueLawBuilder::Step TissueLawBuilder::add_rhombus() {
-  law_->title_ = "rhombus chain, energy form";
+  law_->title_ = fmt::format("rhombus chain, energy form, {} units", scene_.rhombus.units);
   auto chain = make_rhombus_chain(scene_.rhombus);
   if (!chain) return blame(chain.error());
   return add_table(keep(std::move(*chain)));
@@ -127,10 +110,12 @@ TissueLawBuilder::Step TissueLawBuilder::add_rhombus() {
 
 // Closed form already: a table would smooth the steps that the discs have.
 TissueLawBuilder::Step TissueLawBuilder::add_disc_stack() {
-  law_->title_ = scene_.disc_stack.form == DiscForm::kLinear ? "disc stack, linear"
-                                                             : "disc stack, Almen-Laszlo";
   auto stack = make_disc_stack(scene_.disc_stack);
   if (!stack) return blame(stack.error());
+  law_->title_ =
+      fmt::format("disc stack, {}, {} layers",
+                  scene_.disc_stack.form == DiscForm::kLinear ? "linear" : "Almen-Laszlo",
+                  stack->layer_count());
   auto pulled = with_pull(keep(std::move(*stack)));
   if (!pulled) return pulled.error();
   law_->memory_bytes_ += sizeof(DiscStack);
@@ -138,7 +123,6 @@ TissueLawBuilder::Step TissueLawBuilder::add_disc_stack() {
 }
 
 TissueLawBuilder::Step TissueLawBuilder::add_hex_sheet() {
-  law_->title_ = "hexagonal sheet, energy form";
   auto parameters = scene_.hex_sheet;
   if (parameters.rings == 0) {
     const double tolerance_ratio =
@@ -147,39 +131,28 @@ TissueLawBuilder::Step TissueLawBuilder::add_hex_sheet() {
     if (!rings) return blame(rings.error());
     parameters.rings = *rings;
   }
+  law_->title_ = fmt::format("hexagonal sheet, energy form, {} rings", parameters.rings);
   auto sheet = make_hex_sheet(parameters);
   if (!sheet) return blame(sheet.error());
   return add_table(keep(std::move(*sheet)));
 }
 
 TissueLawBuilder::Step TissueLawBuilder::add_hex_paper() {
-  law_->title_ = "hexagonal sheet, as printed";
   const HexSheetParameters& p = scene_.hex_sheet;
+  const std::size_t rings = p.rings == 0 ? kMaxHexRings : p.rings;
+  law_->title_ = fmt::format("hexagonal sheet, as printed, {} rings", rings);
   auto sheet = make_hex_paper({.ring_pitch_m = p.ring_pitch_m,
                                .body_stiffness_N_per_m = p.body_stiffness_N_per_m,
-                               .rings = p.rings == 0 ? kMaxHexRings : p.rings,
+                               .rings = rings,
                                .weight = p.weight,
                                .working_depth_m = p.working_depth_m});
   if (!sheet) return blame(sheet.error());
   return add_table(keep(std::move(*sheet)));
 }
 
-Result<ComplianceFamily> TissueLawBuilder::read_family() const {
-  auto map = read_scene_map(scene_);
-  if (!map) return map.error();
-  auto family =
-      make_compliance_family(*map, {.youngs_modulus_Pa = scene_.elastic->youngs_modulus_Pa,
-                                    .tip_radius_m = scene_.tool.spheres[0].radius_m,
-                                    .working_depth_m = scene_.compliance.working_depth_m,
-                                    .curves = scene_.compliance.curves,
-                                    .table_knots = scene_.table_knots});
-  if (!family) return blame(family.error());
-  return family;
-}
-
 TissueLawBuilder::Step TissueLawBuilder::add_compliance() {
-  law_->title_ = "linear elastic compliance";
-  auto family = read_family();
+  law_->title_ = fmt::format("linear elastic compliance, {} curves", scene_.compliance.curves);
+  auto family = read_scene_family(scene_);
   if (!family) return family.error();
   for (ComplianceCurve& curve : family->curve) law_->curves_.push_back(&keep(std::move(curve)));
   law_->press_coordinate_ = std::move(family->press_coordinate);
@@ -197,7 +170,7 @@ TissueLawBuilder::Step TissueLawBuilder::finish_curve(const Law& curve) {
 
 // Energies are linear in the factor, so two curves are enough: the softest and the stiffest place.
 TissueLawBuilder::Step TissueLawBuilder::scale_by_place(const Law& curve) {
-  auto family = read_family();
+  auto family = read_scene_family(scene_);
   if (!family) return family.error();
   const double depth_m = 0.5 * scene_.compliance.working_depth_m;
   std::vector<float> press = stiffness_factors(*family, family->press_coordinate, depth_m);
@@ -218,8 +191,9 @@ TissueLawBuilder::Step TissueLawBuilder::scale_by_place(const Law& curve) {
 
 // The hand meets no more than the virtual spring, whatever the nodes do in one tick.
 TissueLawBuilder::Step TissueLawBuilder::add_spring_patch() {
-  law_->title_ =
-      "mass-spring patch, " + std::string(name_of(scene_.spring_patch.method.integrator));
+  const std::size_t nodes = std::min(scene_.spring_patch.nodes, scene_.organ_mesh.vertex_m.size());
+  law_->title_ = fmt::format("mass-spring patch, {} nodes, {}", nodes,
+                             name_of(scene_.spring_patch.method.integrator));
   SpringPatchParameters parameters = scene_.spring_patch;
   parameters.tick_s = 1.0 / scene_.rate_Hz;
   parameters.spheres = scene_.tool.spheres.size();
@@ -269,20 +243,18 @@ TissueLawBuilder::Step TissueLawBuilder::finish_field() {
 
 // The stiffest curve decides what must be rendered, the narrowest range what is valid everywhere.
 void TissueLawBuilder::measure(const Law& curve) {
-  constexpr int kSteps = 200;
   const LawRange range = curve.range();
   const bool first = &curve == law_->curves_.front();
   if (first) law_->range_ = range;
   law_->range_.pull_m = std::max(law_->range_.pull_m, range.pull_m);
   law_->range_.press_m = std::min(law_->range_.press_m, range.press_m);
-  const double pull_N = range.pull_m < 0.0 ? -curve.respond(range.pull_m).force_N : 0.0;
-  law_->pull_limit_N_ = std::max(law_->pull_limit_N_, pull_N);
-  for (int i = 0; i <= kSteps; ++i) {
-    const double depth_m = range.pull_m + (range.press_m - range.pull_m) * i / kSteps;
-    const LawResponse r = curve.respond(depth_m);
-    if (r.force_N < -scene_.contact.tear_force_N) continue;  // lets go before
-    law_->stiffness_N_per_m_ = std::max(law_->stiffness_N_per_m_, r.stiffness_N_per_m);
+  double most_N_per_m = stiffest_N_per_m(curve, 0.0, range.press_m);
+  if (range.pull_m < 0.0) {
+    law_->pull_limit_N_ = std::max(law_->pull_limit_N_, -curve.respond(range.pull_m).force_N);
+    const double torn_m = tear_depth_m(curve, scene_.contact.tear_force_N);
+    most_N_per_m = std::max(most_N_per_m, stiffest_N_per_m(curve, torn_m, 0.0));
   }
+  law_->stiffness_N_per_m_ = std::max(law_->stiffness_N_per_m_, most_N_per_m);
 }
 
 Result<std::unique_ptr<TissueLaw>> make_tissue_law(const Scene& scene, LawKind kind) {

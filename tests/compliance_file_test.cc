@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 
 #include "tests/shapes.h"
 
@@ -93,6 +94,35 @@ TEST_F(ComplianceFile, TellsEveryDamage) {
     bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
     EXPECT_NE(verdict(bytes), "") << "byte " << at << " changed, and nobody noticed";
   }
+}
+
+TEST_F(ComplianceFile, RefusesWhatIsNoFiniteNumber) {
+  for (const float bad :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    for (int list = 0; list < 3; ++list) {
+      ComplianceMap map = small_map();
+      (list == 0   ? map.regular_times_E_per_m[1]
+       : list == 1 ? map.sideways_times_E_per_m[0].s1
+                   : map.ring_times_E_per_m[4]) = bad;
+      const auto written = write_compliance_map(map, path_);
+      ASSERT_FALSE(written);
+      EXPECT_NE(written.error().sentence.find("no finite number"), std::string::npos);
+    }
+    // the last ring, in a file whose checksum is right
+    std::string bytes = content_.substr(0, content_.size() - 8);
+    std::memcpy(bytes.data() + bytes.size() - 4, &bad, 4);
+    std::uint64_t sum = 0xcbf29ce484222325u;
+    for (const char c : bytes) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+    bytes.append(reinterpret_cast<const char*>(&sum), sizeof sum);
+    EXPECT_TRUE(says(bytes, "no finite number")) << verdict(bytes);
+  }
+}
+
+TEST_F(ComplianceFile, EndsWithItsChecksum) {
+  EXPECT_EQ(compliance_checksum(path_), content_.substr(content_.size() - 8));
+  EXPECT_EQ(compliance_checksum(path_ + ".missing"), "");
+  std::ofstream(path_, std::ios::binary) << "short";
+  EXPECT_EQ(compliance_checksum(path_), "");
 }
 
 TEST_F(ComplianceFile, TellsThatThereIsNone) {

@@ -141,6 +141,7 @@ TEST(Condensation, RefusesWhatItCannotSolve) {
   };
   EXPECT_TRUE(refused([](auto& s) { s.fixed_max_m = s.fixed_min_m; }));
   EXPECT_TRUE(refused([](auto& s) { s.patch_radius_m = 0.0; }));
+  EXPECT_TRUE(refused([](auto& s) { s.patch_radius_m = 1e-5; })) << "between the points of a sum";
   EXPECT_TRUE(refused([](auto& s) { s.rings = 32; }));
   EXPECT_TRUE(refused([](auto& s) { s.poisson_ratio = 0.5; }));
   Organ shifted = block();

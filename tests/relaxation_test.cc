@@ -157,6 +157,17 @@ TEST(Relaxation, RefusesTermsWithoutMeaning) {
   EXPECT_FALSE(make_relaxation({}, 0.0));
 }
 
+TEST(Relaxation, SharesThatAddUpToOneButForRoundingLeaveNothing) {
+  for (const auto& terms : {std::vector<PronyTerm>{{0.8, 1.0}, {0.2, 2.0}},
+                            std::vector<PronyTerm>{{0.7, 1.0}, {0.2, 2.0}, {0.1, 3.0}}}) {
+    const auto made = make_relaxation(terms, kTick_s);
+    ASSERT_TRUE(made) << made.error().sentence;
+    EXPECT_GE(made->share(0), 0.0);
+    EXPECT_LT(made->share(0), 1e-12);
+  }
+  EXPECT_FALSE(make_relaxation(std::vector<PronyTerm>{{0.8, 1.0}, {0.200001, 2.0}}, kTick_s));
+}
+
 TEST(Relaxation, DoesNotTouchTheHeap) {
   Felt felt(1.5);
   const tests::NoAlloc guard;

@@ -11,6 +11,8 @@
 #include <iterator>
 #include <regex>
 
+#include "model/compliance_file.h"
+
 namespace tact::model {
 namespace {
 
@@ -217,6 +219,43 @@ TEST(Scene, HashChangesWithTheTextAndWithEachOverride) {
   EXPECT_NE(plain, hash(kPlain, {"rate_Hz=1000"}));
   EXPECT_NE(hash(kPlain, {"rate_Hz=1000"}), hash(kPlain, {"rate_Hz=2000"}));
   EXPECT_NE(plain, hash(kLiver, {}));
+}
+
+TEST(Scene, HashChangesWithTheComplianceMapThatIsFelt) {
+  const std::string path = std::string(TACT_BINARY_DIR) + "/scene_hash.compliance";
+  const auto hash = [&path](float give, const std::string& law) {
+    const ComplianceMap map{.poisson_ratio = 0.45,
+                            .patch_radius_m = 0.008,
+                            .ring_pitch_m = 0.002,
+                            .rings = 1,
+                            .mesh_hash = "0123456789abcdef",
+                            .regular_times_E_per_m = {give},
+                            .sideways_times_E_per_m = {{1.0F, 2.0F, 3.0F, 4.0F}},
+                            .ring_times_E_per_m = {1.0F}};
+    EXPECT_TRUE(write_compliance_map(map, path));
+    const auto scene = load_scene(kLiver, {"compliance.map=" + path, law});
+    EXPECT_TRUE(scene) << scene.error().sentence;
+    return scene ? scene->hash : "";
+  };
+  for (const char* felt : {"law=compliance", "varies_by_place=true", "law=auto"}) {
+    EXPECT_EQ(hash(40.0F, felt), hash(40.0F, felt));
+    EXPECT_NE(hash(40.0F, felt), hash(40.1F, felt)) << felt;
+  }
+  EXPECT_EQ(hash(40.0F, "law=rhombus"), hash(40.1F, "law=rhombus")) << "this law has no map";
+}
+
+TEST(Scene, RefusesKeysThatDoNothing) {
+  const std::string blade =
+      complaint(kLiver, {"tool.blade.from_m=[0, 0, 0]", "tool.blade.to_m=[0, 0, 0.02]"});
+  EXPECT_NE(blade.find("tool.blade cuts nothing with law = \"rhombus\"; write law = "), blade.npos)
+      << blade;
+  for (const std::string law : {"compliance", "spring_patch"}) {
+    const std::string said = complaint(kLiver, {"law=" + law, "varies_by_place=true"});
+    EXPECT_NE(said.find("does nothing to law = \"" + law + "\""), said.npos) << said;
+  }
+  EXPECT_TRUE(load_scene(kLiver, {"varies_by_place=true"}));
+  EXPECT_TRUE(load_scene(
+      kLiver, {"law=spring_patch", "tool.blade.from_m=[0, 0, 0]", "tool.blade.to_m=[0, 0, 0.02]"}));
 }
 
 }  // namespace

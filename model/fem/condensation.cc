@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <string>
 
 #include "model/compliance_file.h"
 #include "model/compliance_law.h"
@@ -59,7 +61,7 @@ class Condenser {
     }
   }
 
-  bool run(ComplianceMap& map);
+  std::optional<Error> run(ComplianceMap& map);
 
  private:
   void load(std::size_t slot, std::uint32_t vertex);
@@ -130,23 +132,34 @@ void Condenser::read_rings(std::size_t slot, std::uint32_t vertex, std::span<flo
     sum[low] += (1.0 - high_share) * g, weights[low] += 1.0 - high_share;
     sum[low + 1] += high_share * g, weights[low + 1] += high_share;
   }
-  double before = sum[0] / weights[0];  // the vertex itself is there
+  // at rho = 0, should no skin beside it count
+  double before = dot(n, moved(slot, 0, vertex)) -
+                  hertz_displacement_m_per_N(unit_, settings_.patch_radius_m, 0.0);
+  if (weights[0] > 1e-3) before = sum[0] / weights[0];
   for (std::size_t j = 1; j <= ring.size(); ++j) {
     if (weights[j] > 1e-3) before = sum[j] / weights[j];  // beyond an edge: as the last ring
     ring[j - 1] = static_cast<float>(before);
   }
 }
 
-bool Condenser::run(ComplianceMap& map) {
+std::optional<Error> Condenser::run(ComplianceMap& map) {
+  const Error stopped{"condensation: stopped"};
   const auto count = static_cast<std::uint32_t>(surface_.vertex_m.size());
   for (std::uint32_t first = 0; first < count; first += kVerticesAtOnce) {
-    if (settings_.progress && !settings_.progress(first, count)) return false;
+    if (settings_.progress && !settings_.progress(first, count)) return stopped;
     const std::uint32_t here = std::min(static_cast<std::uint32_t>(kVerticesAtOnce), count - first);
-    for (std::uint32_t slot = 0; slot < here; ++slot) load(slot, first + slot);
+    for (std::uint32_t slot = 0; slot < here; ++slot) {
+      load(slot, first + slot);
+      if (patch_[slot].empty())
+        return Error{"condensation: a patch of " + std::to_string(settings_.patch_radius_m) +
+                     " m is too small for the elements at vertex " + std::to_string(first + slot) +
+                     "; make the patch wider or the elements finer"};
+    }
     solver_.solve({loads_.data(), here * kAxes}, skin_, moved_m_);
     for (std::uint32_t slot = 0; slot < here; ++slot) read(slot, first + slot, map);
   }
-  return !settings_.progress || settings_.progress(count, count);
+  if (settings_.progress && !settings_.progress(count, count)) return stopped;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -176,8 +189,8 @@ Result<ComplianceMap> condense(const TetMesh& body, const SurfaceView& surface,
   map.regular_times_E_per_m.resize(n);
   map.sideways_times_E_per_m.resize(n);
   map.ring_times_E_per_m.resize(n * settings.rings);
-  if (!Condenser(body, surface, settings, std::move(boundary), std::move(*solver)).run(map))
-    return Error{"condensation: stopped"};
+  Condenser condenser(body, surface, settings, std::move(boundary), std::move(*solver));
+  if (auto failed = condenser.run(map)) return *failed;
   return map;
 }
 

@@ -27,7 +27,8 @@ struct NodeWeight {
   double weight = 0.0;  // w_a
 };
 
-/// Weights of the patch around a node of the skin, mid-side nodes too; sum 1.
+/// Weights of the patch around a node of the skin, mid-side nodes too; sum 1. Empty where the patch
+/// is too small for the triangles: it falls between the points at which the pressure is summed.
 std::vector<NodeWeight> hertz_weights(const TetMesh& mesh, const Boundary& boundary,
                                       std::uint32_t centre, double radius_m);
 
