@@ -16,7 +16,8 @@ void add_probes(const SpringNetwork& network, std::span<const Vec3> x, std::span
     double rate_mps = 0.0;
     for (std::size_t c = 0; c < 3; ++c)
       rate_mps += probe.weight[c] * dot(probe.push[c], v[probe.node[c]]);
-    const double total_N = push_N - probe.damping_Ns_per_m * rate_mps;
+    double total_N = push_N - probe.damping_Ns_per_m * rate_mps;
+    if (!probe.held && !(total_N > 0.0)) total_N = 0.0;
     for (std::size_t c = 0; c < 3; ++c)
       f[probe.node[c]] += total_N * probe.weight[c] * probe.push[c];
   }
@@ -51,17 +52,16 @@ double forces(const SpringNetwork& network, std::span<const Vec3> x, std::span<c
   }
   for (const Spring& s : network.spring) {
     const Vec3 along_m = x[s.j] - x[s.i];
-    const double square = dot(along_m, along_m);
-    if (!(square > 0.0)) continue;
-    const double length_m = std::sqrt(square);
-    const Vec3 u = (1.0 / length_m) * along_m;
+    const double length_m = norm(along_m);
     const double stretch_m = length_m - s.rest_length_m;
-    // MA-1  k (|D| - L0) + c (v_j - v_i).u
     const double tension_N = s.stiffness_N_per_m * stretch_m;
+    energy_J += 0.5 * tension_N * stretch_m;
+    if (!(length_m > 0.0)) continue;
+    // MA-1  k (|D| - L0) + c (v_j - v_i).u
+    const Vec3 u = (1.0 / length_m) * along_m;
     const Vec3 pull_N = (tension_N + s.damping_Ns_per_m * dot(v[s.j] - v[s.i], u)) * u;
     f[s.i] += pull_N;
     f[s.j] -= pull_N;
-    energy_J += 0.5 * tension_N * stretch_m;
   }
   add_probes(network, x, v, f);
   return energy_J;

@@ -1,9 +1,11 @@
 // spring_network.h - masses joined by springs: forces, stored energy, a step of each integrator.
 //
 //     MA-1  f_i = load_i - g_i v_i - a_i (x_i - X_i) + sum_j [ k (|D| - L0) + c (v_j - v_i).u ] u
-//           D = x_j - x_i,  u = D / |D|;  a spring of no length is skipped
+//           D = x_j - x_i,  u = D / |D|;  a spring of no length has energy, but
+//           no direction to pull in
 //     probe f = q (depth - w),  w = sum of weight_i p_i.(x_i - X_i)    along p_i on node i:
-//           a virtual spring from the tool; it never pulls unless held
+//           a virtual spring from the tool; unless held it never pulls, nor does its damping of
+//           the nodes (but implicit Euler, which keeps both for the step that it begins pushing)
 //
 //     x, v, X  position, velocity, rest position    load  constant force, N    g  drag, N s/m
 //     a  anchor, N/m: the body under the surface    k, c, L0  of a spring      p  unit, inward

@@ -166,6 +166,35 @@ TEST(SpringNetwork, SkipsASpringOfNoLength) {
   }
 }
 
+TEST(SpringNetwork, ASpringOfNoLengthKeepsItsEnergyInBothCounts) {
+  SpringNet net = make_net(2, {.shake_m = 1e-3});
+  net.position_m[4] = net.position_m[3];
+  std::vector<Vec3> f(net.rest_m.size());
+  const double energy_J = forces(net.view(), net.position_m, net.velocity_mps, f);
+  EXPECT_NEAR(energy_J, stored_energy_J(net.view()), 1e-12 * energy_J);
+}
+
+// Nodes that flee from an unheld tool faster than it pushes are let go, not drawn back.
+TEST(SpringNetwork, DampingUnderAToolPullsOnlyIfHeld) {
+  SpringNet net = make_net(1, {.anchor_N_per_m = 0.0});
+  net.spring.clear();
+  ProbeSpring probe{.node = {0, 1, 2},
+                    .weight = {0.5, 0.25, 0.25},
+                    .depth_m = 0.001,
+                    .stiffness_N_per_m = 300.0,
+                    .damping_Ns_per_m = 2.0};
+  probe.push.fill({0, 0, -1});
+  for (Vec3& v : net.velocity_mps) v = {0, 0, -1.0};  // 0.3 N of push, 2 N of damping
+  std::vector<Vec3> f(net.rest_m.size());
+  for (const bool held : {false, true}) {
+    probe.held = held;
+    SpringNetwork network = net.view();
+    network.probe = {&probe, 1};
+    forces(network, net.position_m, net.velocity_mps, f);
+    EXPECT_NEAR(f[0].z, held ? 0.5 * 1.7 : 0.0, 1e-12);
+  }
+}
+
 TEST(SpringNetwork, HasConsistentDimensions) {
   const double m = 1e3, kg = 7.0, s = 0.3;
   const double force = kg * m / (s * s), stiff = kg / (s * s), damp = kg / s;
