@@ -3,11 +3,12 @@
 // Press, a rigid sphere without friction [Sneddon, Int. J. Eng. Sci. 3 (1965) 47]: the contact
 // patch grows as the tip sinks in. With a = R tanh s,
 //
-//     CT-1   d = (a/2) ln((R + a) / (R - a))                                  = R s tanh s
-//     CT-2   F = E* [(R^2 + a^2)/2 ln((R + a) / (R - a)) - a R]               = E* [(R^2 + a^2) s -
-//     a R] CT-3   dF/dd = 2 E* a CT-4   u(rho) = d - R + sqrt(R^2 - rho^2) rho <= a
-//            u(rho) = (2/pi) integral of (d - R q tanh q) / sqrt(rho^2 - t^2) dt, t = R tanh q in 0
-//            .. a
+//     CT-1   d = (a/2) ln((R + a) / (R - a))                       = R s tanh s
+//     CT-2   F = E* [(R^2 + a^2)/2 ln((R + a) / (R - a)) - a R]    = E* [(R^2 + a^2) s - a R]
+//     CT-3   dF/dd = 2 E* a
+//     CT-4   u(rho) = d - R + sqrt(R^2 - rho^2)                                       rho <= a
+//            u(rho) = (2/pi) integral of (d - R q tanh q) / sqrt(rho^2 - t^2) dt      rho > a
+//                     over t = R tanh q = 0 .. a
 //
 // Pull, a bonded disc that moves without turning [Johnson, Contact Mechanics (1985), 3.7; Mindlin
 // 1949]:

@@ -1,9 +1,8 @@
 // haptic_limit.h - how stiff a sampled spring may be before the loop makes energy of its own.
 //
-//     K_grow  = (b - |B|) / (T/2 + t_d)       beyond it an oscillation grows
-//     K_quiet = 2 c / D                       beyond it the tool may buzz by a few counts and never
-//     rest K_safe  = min(K_grow, K_quiet)          any hand, any pose: never a growing or lasting
-//     motion
+//     K_grow  = (b - |B|) / (T/2 + t_d)    beyond it an oscillation grows
+//     K_quiet = 2 c / D                    beyond it the tool may buzz by a few counts, never rest
+//     K_safe  = min(K_grow, K_quiet)       any hand, any pose: no growing and no lasting motion
 //
 //     K  stiffness of the spring shown, N/m        T    period of the loop, s
 //     b  viscous damping of the device, N s/m      t_d  age of the force beyond one hold, s

@@ -1,7 +1,7 @@
 // integrator_stability.h - up to which step an integrator keeps an oscillator from growing.
 //
-//     z = h omega,  omega = sqrt(k / m),  zeta = c / (2 m omega);  state (x, h v):  state+ = M
-//     state
+//     z = h omega,  omega = sqrt(k / m),  zeta = c / (2 m omega)
+//     state (x, h v):  state+ = M state
 //
 //     MA-10..15  M of each integrator
 //     MA-16      stable  <=>  det M < 1,  1 - tr M + det M > 0,  1 + tr M + det M > 0      (Jury)

@@ -10,8 +10,8 @@
 //     implicit Euler        MA-9   v+ = (v + h (f - k x) / m) / (1 + h c / m + h^2 k / m),
 //                                  x+ = x + h v+
 //
-//     x  position, m    v  velocity, m/s    a  acceleration, m/s^2    h  step, s    alpha  in (0,
-//     1]
+//     x  position, m    v  velocity, m/s    a  acceleration, m/s^2    h  step, s
+//     alpha  in (0, 1]
 //
 // Improved Euler is the semi-implicit (symplectic) one, not Heun's. The source of
 // midpoint-averaging tries alpha = 1/2, 3/8 and 5/8; only 1/2 is fit for use: 3/8 makes energy

@@ -1,8 +1,8 @@
 // patch_memory.h - relaxation of a spring patch: what its springs feel of where its nodes are.
 //
-//     z = g_0 u + sum of g_i e_i        springs and anchors act at X + z, as relaxation.h shares
-//     out a tick   e_i += du,  z += du      the step of an integrator: elastic, nothing flows
-//              e_i <- a_i e_i           then each term flows for the tick with u held: exact
+//     z = g_0 u + sum of g_i e_i           springs and anchors act at X + z (shares: relaxation.h)
+//     a tick   e_i += du,  z += du         the step of an integrator: elastic, nothing flows
+//              e_i <- a_i e_i              then each term flows for the tick with u held: exact
 //     W = g_0 U(u) + sum of g_i U(e_i) - c.(u - z)
 //
 //     u  displacement, m   e_i  stretch of term i, m   X  rest, m   a_i  exp(-dt / tau_i)

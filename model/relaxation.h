@@ -5,8 +5,8 @@
 //
 //     W   = g_0 U(d) + sum g_i U(e_i)            F = g_0 F(d) + sum g_i F(e_i)
 //     e_i' = d' - e_i / tau_i                    exact for a depth that is linear over the tick:
-//     e_i <- a_i e_i + b_i (d - d_before),       a_i = exp(-dt / tau_i),  b_i = (1 - a_i) tau_i /
-//     dt
+//     e_i <- a_i e_i + b_i (d - d_before)        a_i = exp(-dt / tau_i)
+//                                                b_i = (1 - a_i) tau_i / dt
 //
 // The term's dashpot loses g_i F(e_i) e_i / tau_i >= 0: passive for every law whose force has the
 // sign of its depth, which memory acting on the force instead (a convolution) is not. A linear law

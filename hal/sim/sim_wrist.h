@@ -4,8 +4,8 @@
 //     I addot_i = torque_i + k (a_h - a_i) - (b + b_w) adot_i,    |a_i| <= 20 deg
 //
 //     a_i  axis angles, rad;  e_i  axis directions in W;  T  torque of the motors on the hand, N m
-//     k, b  spring and damper of the hand that aims at a_h, N m/rad, N m s/rad;  b_w  of the
-//     bearings
+//     k, b  spring and damper of the hand that aims at a_h, N m/rad, N m s/rad
+//     b_w   damping of the bearings, N m s/rad
 //
 // The axes have equal inertia, are balanced and do not notice the motion of the platform.
 #pragma once

@@ -9,8 +9,8 @@
 //
 //     q  Hamilton quaternion (w, x, y, z), unit; of q and -q, which turn alike, the one with w > 0,
 //        at w = 0 the one whose first number of x, y, z that is not 0 is positive
-//     p  point, m     o  origin of the local axes in the world, m     alpha, beta, gamma  angles,
-//     rad
+//     p  point, m     o  origin of the local axes in the world, m
+//     alpha, beta, gamma  angles, rad
 //
 // The source gives neither the order of the angles nor the direction of o; TR-1 and TR-4 are the
 // choice of PHYSICS 5.1. For display and registration, not for the force loop.
