@@ -2,8 +2,7 @@
 //
 //     force   e = F - F_ref;        RMS and worst over sites and depths, of the peak |F_ref|
 //     shape   e_j = u_j - u_ref,j;  RMS over the rings of a case, of its |depth|; then RMS and
-//     worst
-//             over the cases
+//             worst over the cases
 //
 // Press and pull count alike. A case is felt as right where |e| is at most 7 % of |F_ref|: the
 // least difference of force that a hand can tell (kJustNoticeable).
