@@ -5,7 +5,6 @@
 #include "firmware/session.h"
 #include "model/plan_file.h"
 #include "model/scene.h"
-#include "model/scene_words.h"
 
 namespace {
 
@@ -42,29 +41,38 @@ int run_replay(const model::Scene& scene, const std::string& path) {
                   1);
 }
 
-/// law = "auto": what tact-plan chose on this machine. The choice counts in the scene's hash, so a
-/// recording is never replayed with another law.
-std::optional<model::Error> choose_law(model::Scene& scene) {
-  if (scene.law != model::LawKind::kAuto) return std::nullopt;
-  const auto plan = model::find_plan(scene);
+/// The --set values of a recorded run: they replay it, unless some are given anew.
+model::Result<std::vector<std::string>> recorded_overrides(const std::string& path) {
+  const auto log = firmware::TickLogReader::open(path);
+  if (!log) return log.error();
+  return log->header().overrides_of_run();
+}
+
+/// The scene to be felt. law = "auto" becomes what tact-plan chose on this machine, as --set values
+/// that a tick log keeps, so a recording is replayed without the plan.
+model::Result<model::Scene> load(firmware::Options& options) {
+  if (!options.replay_path.empty() && options.overrides.empty()) {
+    auto recorded = recorded_overrides(options.replay_path);
+    if (!recorded) return recorded.error();
+    options.overrides = std::move(*recorded);
+  }
+  auto scene = model::load_scene(options.scene_path, options.overrides);
+  if (!scene || scene->law != model::LawKind::kAuto) return scene;
+  const auto plan = model::find_plan(*scene, options.overrides);
   if (!plan) return plan.error();
-  model::use_sizes(plan->sizes, scene);
-  const std::string choice = model::text_of(plan->sizes);
-  fmt::print(stderr, "tactd: law \"auto\" is {}: p99.9 {:.3g} us, force error {:.1f} %\n", choice,
-             plan->tick_p999_us, 100.0 * plan->force_error_ratio);
-  model::TextHash hash;
-  hash.add(scene.hash);
-  hash.add(choice);
-  scene.hash = hash.hex();
-  return std::nullopt;
+  const auto choice = model::overrides_of(plan->sizes, *scene);
+  fmt::print(stderr, "tactd: law \"auto\" is{}: p99.9 {:.3g} us, force error {:.1f} %\n",
+             model::command_text(choice), plan->tick_p999_us, 100.0 * plan->force_error_ratio);
+  options.overrides.insert(options.overrides.end(), choice.begin(), choice.end());
+  return model::load_scene(options.scene_path, options.overrides);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const firmware::Parsed parsed = firmware::parse_options(argc, argv);
+  firmware::Parsed parsed = firmware::parse_options(argc, argv);
   if (parsed.leave) return parsed.status;
-  const firmware::Options& options = parsed.options;
+  firmware::Options& options = parsed.options;
   if (options.faults) {
     print_faults();
     return 0;
@@ -73,9 +81,8 @@ int main(int argc, char** argv) {
     fmt::print("{}", model::scene_reference());
     return 0;
   }
-  auto scene = model::load_scene(options.scene_path, options.overrides);
+  const auto scene = load(options);
   if (!scene) return complain(scene.error().sentence, 2);
-  if (const auto trouble = choose_law(*scene)) return complain(trouble->sentence, 2);
   if (const auto refusal = model::check_drivable(*scene)) return complain(refusal->sentence, 2);
   if (!options.replay_path.empty()) return run_replay(*scene, options.replay_path);
   return firmware::run_session(*scene, options);

@@ -24,7 +24,8 @@ Parsed parse_options(int argc, char** argv) {
   app.add_option("--core", o.core, "CPU core of the loop (default: an isolated one, or the last)");
   auto* record = app.add_option("--record", o.record_path, "log every tick to this new file");
   app.add_option("--replay", o.replay_path,
-                 "compute a recorded run again and compare the forces bit for bit")
+                 "compute a recorded run again, with its --set values, and compare the forces bit "
+                 "for bit")
       ->excludes(record);
   app.add_option("--socket", o.socket_path,
                  "telemetry socket (default: tact/telemetry.sock in XDG_RUNTIME_DIR, or in "

@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "firmware/rt_setup.h"
+#include "model/plan_file.h"
 
 namespace tact::firmware {
 namespace {
@@ -30,9 +31,13 @@ model::Result<ReplayOutcome> replay(const std::string& path, const model::Scene&
   const LogHeader& header = log->header();
   if (scene.hash != header.scene_hash)
     return model::Error{fmt::format(
-        "{}: was recorded with another scene (hash {}, this one has {}); replay it with "
-        "the scene and the --set values of that run",
-        path, header.scene_hash, scene.hash)};
+        "{}: was recorded with another scene (hash {}, this one has {}); replay it with the scene "
+        "of "
+        "that run, unchanged, and {}",
+        path, header.scene_hash, scene.hash,
+        header.overrides[0] == '\0'
+            ? "no --set"
+            : "with" + model::command_text(header.overrides_of_run()) + " or no --set at all")};
   flush_denormals();  // as in the loop's thread
   const double period_s = static_cast<double>(header.period_ns) * 1e-9;
   Controller controller(tissue.contact_scene(), Gate(header.limits, period_s, header.force_share),

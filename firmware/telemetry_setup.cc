@@ -1,5 +1,7 @@
 #include "firmware/telemetry_setup.h"
 
+#include <fmt/format.h>
+
 namespace tact::firmware {
 namespace {
 
@@ -37,6 +39,11 @@ Result<TickLogWriter> open_log(const RunSetup& run) {
   header.force_share = run.force_share;
   header.non_rt = run.non_rt ? 1 : 0;
   run.scene.hash.copy(header.scene_hash, sizeof header.scene_hash - 1);
+  if (!header.keep_overrides(run.options.overrides))
+    return Error{
+        fmt::format("{}: has no room for --set values of more than {} letters; write them "
+                    "into the scene",
+                    run.options.record_path, sizeof header.overrides - 1)};
   return TickLogWriter::create(run.options.record_path, header);
 }
 

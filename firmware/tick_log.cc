@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <sstream>
 #include <type_traits>
 
 namespace tact::firmware {
@@ -12,6 +13,21 @@ using model::Error;
 using model::Result;
 
 static_assert(std::is_trivially_copyable_v<LoggedTick>);
+
+bool LogHeader::keep_overrides(const std::vector<std::string>& of_run) {
+  std::string text;
+  for (const std::string& one : of_run) text += one + '\n';
+  if (text.size() >= sizeof overrides) return false;
+  text.copy(overrides, text.size());
+  return true;
+}
+
+std::vector<std::string> LogHeader::overrides_of_run() const {
+  std::vector<std::string> out;
+  std::istringstream lines(overrides);
+  for (std::string one; std::getline(lines, one);) out.push_back(one);
+  return out;
+}
 
 Result<TickLogWriter> TickLogWriter::create(const std::string& path, const LogHeader& header) {
   std::FILE* file = std::fopen(path.c_str(), "wbx");
@@ -67,6 +83,7 @@ Result<TickLogReader> TickLogReader::open(const std::string& path) {
   if (header.tick_bytes != sizeof(LoggedTick))
     return Error{path + ": was written by another version of tactd; replay it with that one"};
   reader.header_.scene_hash[sizeof header.scene_hash - 1] = '\0';
+  reader.header_.overrides[sizeof header.overrides - 1] = '\0';
   return reader;
 }
 

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "firmware/tick_record.h"
 #include "model/result.h"
@@ -24,6 +25,11 @@ struct LogHeader {
   double force_share = 1.0;  // of the scene's limits; below 1 without hard real time
   std::uint8_t non_rt = 0;
   char scene_hash[23] = {};
+  char overrides[1024] = {};  // of the run, its law included; one a line
+
+  /// False if they are too long.
+  bool keep_overrides(const std::vector<std::string>& of_run);
+  std::vector<std::string> overrides_of_run() const;
 };
 
 struct LoggedTick {

@@ -15,25 +15,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The counts of LawSizes by their names in the file.
+/// The counts of LawSizes by their names in the file and in the scene.
 struct Count {
   const char* key;
   std::size_t LawSizes::*value;
   const char* word;  // for people
+  const char* scene_key;
 };
 constexpr std::array kCounts{
-    Count{"table_knots", &LawSizes::table_knots, "knots"},
-    Count{"layers", &LawSizes::layers, "layers"},
-    Count{"rings", &LawSizes::rings, "rings"},
-    Count{"nodes", &LawSizes::nodes, "nodes"},
-    Count{"curves", &LawSizes::curves, "curves"},
+    Count{"table_knots", &LawSizes::table_knots, "knots", "table_knots"},
+    Count{"layers", &LawSizes::layers, "layers", "disc_stack.layers"},
+    Count{"rings", &LawSizes::rings, "rings", "hex_sheet.rings"},
+    Count{"nodes", &LawSizes::nodes, "nodes", "spring_patch.nodes"},
+    Count{"curves", &LawSizes::curves, "curves", "compliance.curves"},
 };
 
 const char* name_of(DiscForm form) { return form == DiscForm::kLinear ? "linear" : "almen-laszlo"; }
-
-Error broken(const std::string& path, const Scene& scene, const std::string& what) {
-  return {fmt::format("{}: {}; run tact-plan {}", path, what, scene.path)};
-}
 
 /// Empty if all is there, else what is missing or has no meaning.
 std::string fill(const toml::table& root, Plan& plan) {
@@ -87,6 +84,35 @@ void use_sizes(const LawSizes& sizes, Scene& scene) {
   use(sizes.nodes, scene.spring_patch.nodes);
   use(sizes.curves, scene.compliance.curves);
   if (sizes.disc_form) scene.disc_stack.form = *sizes.disc_form;
+}
+
+std::vector<std::string> overrides_of(const LawSizes& sizes, const Scene& scene) {
+  std::vector<std::string> out{fmt::format("law={}", name_of(sizes.law))};
+  if (sizes.disc_form) out.push_back(fmt::format("disc_stack.form={}", name_of(*sizes.disc_form)));
+  for (const Count& count : kCounts)
+    if (sizes.*count.value != 0)
+      out.push_back(fmt::format("{}={}", count.scene_key, sizes.*count.value));
+  const bool knows_its_places =
+      sizes.law == LawKind::kCompliance || sizes.law == LawKind::kSpringPatch;
+  if (scene.varies_by_place && knows_its_places) out.emplace_back("varies_by_place=false");
+  return out;
+}
+
+std::string command_text(const std::vector<std::string>& overrides) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.=/+,:";
+  std::string out;
+  for (const std::string& one : overrides) {
+    out += " --set ";
+    if (one.find_first_not_of(kPlain) == std::string::npos) {
+      out += one;
+      continue;
+    }
+    out += '\'';
+    for (const char c : one) c == '\'' ? out += "'\\''" : out += c;
+    out += '\'';
+  }
+  return out;
 }
 
 std::string machine_name() {
@@ -146,28 +172,35 @@ Result<std::string> write_plan(const Plan& plan, const std::string& path) {
   return path;
 }
 
-Result<Plan> read_plan(const std::string& path, const Scene& scene) {
+Result<Plan> read_plan(const std::string& path, const Scene& scene,
+                       const std::vector<std::string>& overrides) {
+  const auto broken = [&](const std::string& what) {
+    return Error{
+        fmt::format("{}: {}; run tact-plan {}{} --reference FILE, FILE from tact-reference {} "
+                    "--out FILE",
+                    path, what, scene.path, command_text(overrides), scene.path)};
+  };
   std::error_code ignored;
-  if (!fs::exists(path, ignored)) return broken(path, scene, "no plan for this scene");
+  if (!fs::exists(path, ignored)) return broken("no plan for this scene");
   Plan plan;
   try {  // the library reports by exceptions; they end here
     const std::string wrong = fill(toml::parse_file(path), plan);
-    if (!wrong.empty()) return broken(path, scene, wrong);
+    if (!wrong.empty()) return broken(wrong);
   } catch (const toml::parse_error& e) {
-    return broken(path, scene, fmt::format("damaged, {}", e.description()));
+    return broken(fmt::format("damaged, {}", e.description()));
   }
-  if (plan.scene_hash != scene.hash) return broken(path, scene, "the plan of another scene");
+  if (plan.scene_hash != scene.hash) return broken("the plan of another scene");
   if (plan.machine != machine_name())
-    return broken(path, scene, fmt::format("measured on another machine, {}", plan.machine));
+    return broken(fmt::format("measured on another machine, {}", plan.machine));
   if (!scene.describes(plan.sizes.law))
-    return broken(path, scene, fmt::format("the scene has no law {}", name_of(plan.sizes.law)));
+    return broken(fmt::format("the scene has no law {}", name_of(plan.sizes.law)));
   return plan;
 }
 
-Result<Plan> find_plan(const Scene& scene) {
+Result<Plan> find_plan(const Scene& scene, const std::vector<std::string>& overrides) {
   const auto path = plan_path(scene.hash);
   if (!path) return path.error();
-  return read_plan(*path, scene);
+  return read_plan(*path, scene, overrides);
 }
 
 }  // namespace tact::model

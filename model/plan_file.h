@@ -8,6 +8,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "model/result.h"
 #include "model/scene.h"
@@ -29,6 +30,10 @@ struct LawSizes {
 std::string text_of(const LawSizes& sizes);
 /// The scene with this law and these sizes.
 void use_sizes(const LawSizes& sizes, Scene& scene);
+/// The same as --set values, so that a run can be named and repeated without the plan.
+std::vector<std::string> overrides_of(const LawSizes& sizes, const Scene& scene);
+/// " --set KEY=VALUE" for each, quoted for a shell where it must be.
+std::string command_text(const std::vector<std::string>& overrides);
 
 struct Plan {
   LawSizes sizes;
@@ -47,9 +52,11 @@ Result<std::string> plan_path(const std::string& scene_hash);
 std::string plan_text(const Plan& plan);
 /// All or nothing; makes the folder. Returns the path.
 Result<std::string> write_plan(const Plan& plan, const std::string& path);
-/// `scene` is the one to be felt: its hash and this machine must be the plan's.
-Result<Plan> read_plan(const std::string& path, const Scene& scene);
+/// `scene` is the one to be felt: its hash and this machine must be the plan's. The overrides it
+/// was loaded with go into the cure.
+Result<Plan> read_plan(const std::string& path, const Scene& scene,
+                       const std::vector<std::string>& overrides);
 /// The plan of this scene on this machine, from the cache.
-Result<Plan> find_plan(const Scene& scene);
+Result<Plan> find_plan(const Scene& scene, const std::vector<std::string>& overrides);
 
 }  // namespace tact::model

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <sstream>
 #include <string_view>
 
 #include "model/scene_words.h"
@@ -65,6 +66,9 @@ class Override {
  public:
   explicit Override(std::string_view text) : text_(text), where_("--set " + on_one_line(text)) {}
 
+  /// The key and its value as TOML writes it: law=auto and law="auto" mean the same.
+  const std::string& meaning() const { return meaning_; }
+
   std::optional<Error> lay_over(toml::table& root) {
     const std::size_t equals = text_.find('=');
     if (equals == text_.npos) return error("there is no '='", kShape);
@@ -119,7 +123,7 @@ class Override {
     return std::nullopt;
   }
 
-  std::optional<Error> put(toml::table& parent, std::string_view value) const {
+  std::optional<Error> put(toml::table& parent, std::string_view value) {
     // Parsed under its own name, so that the new node knows where it came from.
     Result<toml::table> parsed = parse_toml(fmt::format("{} = {}", rest_, value), where_);
     if (!parsed && is_bare_word(value)) {
@@ -128,6 +132,9 @@ class Override {
     if (!parsed) {
       return error("the value is not TOML", "write a number, true, false, \"text\" or [1, 2, 3]");
     }
+    std::ostringstream meaning;
+    meaning << text_.substr(0, text_.find('=')) << '\n' << *parsed;
+    meaning_ = meaning.str();
     for (auto&& [key, node] : *parsed) {
       node.visit([&, &name = key](auto& concrete) {
         parent.insert_or_assign(name.str(), std::move(concrete));
@@ -137,7 +144,7 @@ class Override {
   }
 
   std::string_view text_, rest_;
-  std::string where_;
+  std::string where_, meaning_;
 };
 
 }  // namespace
@@ -157,8 +164,9 @@ Result<SceneDocument> load_scene_document(const std::string& path,
   TextHash hash;
   hash.add(*text);
   for (const std::string& one : overrides) {
-    hash.add(one);
-    if (auto failed = Override(one).lay_over(*root)) return *failed;
+    Override change(one);
+    if (auto failed = change.lay_over(*root)) return *failed;
+    hash.add(change.meaning());
   }
   return SceneDocument{.path = path, .root = std::move(*root), .hash = hash.hex()};
 }

@@ -131,9 +131,14 @@ class PlanFile : public testing::Test {
   void expect_cure(const model::Result<model::Plan>& read, const std::string& what) const {
     ASSERT_FALSE(read) << what;
     EXPECT_TRUE(has(read.error().sentence, what)) << read.error().sentence;
-    EXPECT_TRUE(has(read.error().sentence, "run tact-plan plate.toml")) << read.error().sentence;
+    EXPECT_TRUE(
+        has(read.error().sentence,
+            "run tact-plan plate.toml --set law=auto --set 'name=\"a b\"' --reference FILE, "
+            "FILE from tact-reference plate.toml --out FILE"))
+        << read.error().sentence;
   }
 
+  const std::vector<std::string> kSet{"law=auto", "name=\"a b\""};
   const std::string folder_ = testing::TempDir() + "/tact_plan_test";
   model::Scene scene_ = tests::make_plate_scene();
   model::Plan plan_;
@@ -144,7 +149,7 @@ TEST_F(PlanFile, IsFoundAgainByTheSceneAndSetsItsLawAndSizes) {
   const auto path = model::plan_path(scene_.hash);
   ASSERT_TRUE(path);
   ASSERT_TRUE(model::write_plan(plan_, *path));
-  const auto read = model::find_plan(scene_);
+  const auto read = model::find_plan(scene_, {});
   unsetenv("XDG_CACHE_HOME");
   ASSERT_TRUE(read) << read.error().sentence;
   EXPECT_EQ(model::plan_text(*read), model::plan_text(plan_));
@@ -155,21 +160,23 @@ TEST_F(PlanFile, IsFoundAgainByTheSceneAndSetsItsLawAndSizes) {
 }
 
 TEST_F(PlanFile, RefusesWhatIsMissingDamagedOrStale) {
-  expect_cure(model::read_plan(folder_ + "/none.toml", scene_), "no plan for this scene");
-  expect_cure(model::read_plan(write("law = \"comp"), scene_), "damaged");
-  expect_cure(model::read_plan(write("law = \"glue\"\n"), scene_), "no law");
-  expect_cure(model::read_plan(write("law = \"auto\"\n"), scene_), "no law");
-  expect_cure(model::read_plan(write("law = \"rhombus\"\ncurves = -3\n"), scene_), "out of range");
-  expect_cure(model::read_plan(write("law = \"rhombus\"\n"), scene_), "tick_p999_us is missing");
+  expect_cure(model::read_plan(folder_ + "/none.toml", scene_, kSet), "no plan for this scene");
+  expect_cure(model::read_plan(write("law = \"comp"), scene_, kSet), "damaged");
+  expect_cure(model::read_plan(write("law = \"glue\"\n"), scene_, kSet), "no law");
+  expect_cure(model::read_plan(write("law = \"auto\"\n"), scene_, kSet), "no law");
+  expect_cure(model::read_plan(write("law = \"rhombus\"\ncurves = -3\n"), scene_, kSet),
+              "out of range");
+  expect_cure(model::read_plan(write("law = \"rhombus\"\n"), scene_, kSet),
+              "tick_p999_us is missing");
   model::Plan other = plan_;
   other.machine = "1 x another processor";
-  expect_cure(model::read_plan(write(plan_text(other)), scene_), "another machine");
+  expect_cure(model::read_plan(write(plan_text(other)), scene_, kSet), "another machine");
   other = plan_;
   other.scene_hash = "fedcba9876543210";
-  expect_cure(model::read_plan(write(plan_text(other)), scene_), "another scene");
+  expect_cure(model::read_plan(write(plan_text(other)), scene_, kSet), "another scene");
   other = plan_;
   other.sizes.law = LawKind::kHexSheet;
-  expect_cure(model::read_plan(write(plan_text(other)), scene_), "no law hex_sheet");
+  expect_cure(model::read_plan(write(plan_text(other)), scene_, kSet), "no law hex_sheet");
 }
 
 TEST(Program, SaysWhatIsMissing) {
@@ -177,7 +184,8 @@ TEST(Program, SaysWhatIsMissing) {
   const auto plan = tests::run_program("tact-plan", scene);
   EXPECT_EQ(plan.status, 2);
   EXPECT_TRUE(has(plan.output, "give --reference FILE")) << plan.output;
-  const auto chart = tests::run_program("tact-chart", scene + " --out x --reference none.json");
+  const auto chart = tests::run_program(
+      "tact-chart", scene + " --out " + testing::TempDir() + " --reference none.json");
   EXPECT_EQ(chart.status, 2);
   EXPECT_TRUE(has(chart.output, "tact-reference")) << chart.output;
   EXPECT_EQ(tests::run_program("tact-chart", "--help").status, 0);

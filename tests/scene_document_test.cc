@@ -31,6 +31,17 @@ TEST(Override, SetsNumbersTextFlagsAndArrays) {
   EXPECT_EQ(scene->device.kind, "none/of-this.world") << "a bare word is text";
 }
 
+TEST(Override, CountsByItsMeaningNotByItsSpelling) {
+  const auto hash = [](const std::string& text) {
+    const Result<SceneDocument> document = load_scene_document(kPlain, {text});
+    return document ? document->hash : document.error().sentence;
+  };
+  EXPECT_EQ(hash("law=auto"), hash("law=\"auto\""));
+  EXPECT_EQ(hash("rate_Hz=2000"), hash("rate_Hz= 2000"));
+  EXPECT_NE(hash("law=auto"), hash("law=rhombus"));
+  EXPECT_NE(hash("limits.force_N=2"), hash("device.force_N=2"));
+}
+
 TEST(Override, ReachesOneEntryOfAnArrayOfSections) {
   const Result<Scene> plain = load_scene(kPlain, {});
   const Result<Scene> scene =

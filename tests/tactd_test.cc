@@ -17,6 +17,7 @@
 #include "firmware/alloc_counter.h"
 #include "firmware/rt_setup.h"
 #include "model/fault.h"
+#include "model/plan_file.h"
 #include "tests/program.h"
 
 namespace {
@@ -170,6 +171,31 @@ TEST_F(Tactd, ReplaysARealTimeRunBitForBit) {
   EXPECT_TRUE(has(replayed, "4000 ticks computed again, 0 differ")) << replayed.output;
   EXPECT_EQ(tactd(kLiver + " --set rhombus.growth=2.1 --replay " + log).status, 2);
   EXPECT_EQ(tactd(kLiver + " --ticks 1 --record " + log).status, 2) << "never overwritten";
+}
+
+TEST_F(Tactd, ARunOfAnAutomaticLawIsReplayedWithoutThePlan) {
+  using namespace tact::model;  // NOLINT(google-build-using-namespace): of this test
+  ASSERT_EQ(setenv("XDG_CACHE_HOME", folder.c_str(), 1), 0);
+  const std::string log = in_folder("auto.tactlog");
+  const Outcome unplanned = tactd(kLiver + " --set law=auto --free-run --ticks 3");
+  EXPECT_EQ(unplanned.status, 2);
+  EXPECT_TRUE(has(unplanned, "run tact-plan " + kLiver + " --set law=auto --reference FILE"));
+  const auto scene = load_scene(kLiver, {"law=\"auto\""});
+  ASSERT_TRUE(scene) << scene.error().sentence;
+  ASSERT_TRUE(write_plan({.sizes = {.law = LawKind::kRhombus, .table_knots = 33},
+                          .machine = machine_name(),
+                          .scene_hash = scene->hash},
+                         *plan_path(scene->hash)));
+  const Outcome run = tactd(kLiver + " --set law=auto --free-run --ticks 900 --record " + log);
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_TRUE(has(run, "--set law=rhombus --set table_knots=33")) << run.output;
+  std::filesystem::remove_all(in_folder("tact"));
+  const Outcome replayed = tactd(kLiver + " --replay " + log);
+  EXPECT_TRUE(has(replayed, "900 ticks computed again, 0 differ")) << replayed.output;
+  const Outcome other = tactd(kLiver + " --set law=rhombus --replay " + log);
+  EXPECT_EQ(other.status, 2);
+  EXPECT_TRUE(has(other, "with --set law=auto --set law=rhombus --set table_knots=33 or no --set"));
+  unsetenv("XDG_CACHE_HOME");
 }
 
 TEST_F(Tactd, TheLoopThreadNeverAllocatesAndNeverFaultsAPage) {
