@@ -15,8 +15,6 @@ using model::Error;
 using model::Result;
 using model::Scene;
 
-constexpr double kSameTime = 1.1;  // of two medians of one machine
-
 struct Made {
   ChartRow row;
   std::unique_ptr<Subject> subject;  // what is timed
@@ -90,13 +88,14 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene, const ReferenceD
   Scene elastic = scene;
   elastic.relaxation.clear();
   std::vector<Made> made(variants.size());
-  const SweepOptions sweep_options{.label = "tact-chart, accuracy", .shard = options.shard};
+  const SweepOptions sweep_options{.label = options.label + ", accuracy", .shard = options.shard};
   const bool judged = run_jobs(variants.size(), sweep_options, [&](std::size_t job) {
     made[job] = make_and_judge(scene, elastic, variants[job], *cases, reference.ring_pitch_m);
   });
   if (!judged) return interruption();
   const auto path = moving_probe(scene, cases->front());
-  const SweepOptions one_by_one{.label = "tact-chart, time", .shard = options.shard, .threads = 1};
+  const SweepOptions one_by_one{
+      .label = options.label + ", time", .shard = options.shard, .threads = 1};
   const bool timed = run_jobs(variants.size(), one_by_one, [&](std::size_t job) {
     if (!made[job].subject) return;
     made[job].row.timing = measure_time(*made[job].subject, path, options.timing);
@@ -201,11 +200,12 @@ std::vector<std::size_t> front_rows(const Table& table) {
   const auto rows = rows_of(table, "tact");
   const auto points = points_of(table, rows);
   const auto front = front_of(points);
-  std::vector<std::size_t> out;
-  for (std::size_t k = 0; k < front.size(); ++k) {
-    const bool is_last = k + 1 == front.size();
-    if (is_last || points[front[k + 1]].tick_us > kSameTime * points[front[k]].tick_us)
-      out.push_back(rows[front[k]]);
+  std::vector<std::size_t> out;  // from the slow end: each against the last that stayed
+  double kept_us = std::numeric_limits<double>::infinity();
+  for (auto k = front.rbegin(); k != front.rend(); ++k) {
+    if ((1.0 + kSameTime_ratio) * points[*k].tick_us >= kept_us) continue;
+    kept_us = points[*k].tick_us;
+    out.insert(out.begin(), rows[*k]);
   }
   return out;
 }

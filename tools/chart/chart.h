@@ -32,6 +32,7 @@ struct Provenance {
 };
 
 struct ChartOptions {
+  std::string label = "tact-chart";  // before the progress
   VariantWish wish;
   Shard shard;
   TimingSettings timing;

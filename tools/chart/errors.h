@@ -38,6 +38,9 @@ struct ErrorSummary {
 
 ErrorSummary summarize(std::span<const Sample> samples);
 
+/// Medians of one machine within this of each other are one time.
+inline constexpr double kSameTime_ratio = 0.10;
+
 /// A point of the chart: smaller is better in both.
 struct SpeedAndError {
   double tick_us = 0.0;

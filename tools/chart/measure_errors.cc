@@ -4,17 +4,15 @@
 #include <cmath>
 
 #include "tools/chart/measure.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/reference_fits.h"
 
 namespace tact::tools {
 namespace {
 
-using model::Error;
 using model::Indentation;
 using model::Result;
 using model::Vec3;
-
-constexpr double kSamePoint_m = 1e-4;
-constexpr double kSameRadius_ratio = 0.01;
 
 /// The vertex as a place: one of its triangles, all the weight on its corner.
 model::Place place_of(const model::SurfaceMesh& mesh, std::uint32_t vertex) {
@@ -32,24 +30,11 @@ bool is_held_out(const model::Scene& scene, std::uint32_t vertex) {
 }  // namespace
 
 Result<std::vector<ProbeCase>> cases_of(const model::Scene& scene, const ReferenceData& reference) {
-  const double radius_m = scene.tool.spheres[0].radius_m;
-  if (std::abs(reference.tool_radius_m - radius_m) > kSameRadius_ratio * radius_m)
-    return Error{fmt::format(
-        "{}: the tool's first sphere has radius {:g} mm, the reference was solved with {:g} mm; "
-        "run tact-reference {}",
-        scene.path, radius_m * 1e3, reference.tool_radius_m * 1e3, scene.path)};
+  if (auto differs = check_reference_fits(reference, scene, ModulusOf::kSame))
+    return std::move(*differs);
   std::vector<ProbeCase> cases;
   for (std::size_t i = 0; i < reference.sites.size(); ++i) {
     const SolvedSite& site = reference.sites[i];
-    const auto& vertices = scene.organ_mesh.vertex_m;
-    const bool same =
-        site.vertex < vertices.size() &&
-        norm(vertices[site.vertex] - scene.organ.position_m - site.point_m) < kSamePoint_m;
-    if (!same)
-      return Error{
-          fmt::format("{}: vertex {} is not where the reference of {} has it; run tact-reference "
-                      "{}",
-                      scene.path, site.vertex, reference.mesh, scene.path)};
     for (const ReferenceCase& c : site.cases) {
       if (c.large_strain) continue;
       const Indentation in{.sphere = 0,
@@ -78,6 +63,7 @@ SettledForce settle(Subject& subject, const Indentation& in) {
     low_N = std::min(low_N, force_N);
     high_N = std::max(high_N, force_N);
     const double size_N = std::max(std::abs(low_N), std::abs(high_N));
+    if (i % kWindow == 0 && is_interrupted()) break;  // the run will say so
     if (i % kWindow == kWindow - 1 && high_N - low_N <= kSteady_ratio * size_N)
       return {.force_N = force_N, .ticks = i + 1};
   }

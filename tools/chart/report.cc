@@ -61,12 +61,15 @@ Result<std::vector<std::string>> write_chart(const Table& table, bool is_whole,
 Result<Table> read_chart(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file)
-    return Error{fmt::format("{}: cannot be read; make it with tact-chart SCENE --out DIR", path)};
+    return Error{fmt::format(
+        "{}: cannot be read; make it: tact-chart SCENE --reference FILE --out DIR", path)};
   try {  // the library reports by exceptions; they end here
     const auto document = nlohmann::json::parse(file);
     if (document.value("schema", "") != kSchema)
       return Error{
-          fmt::format("{}: is no chart of this version; make it again with tact-chart", path)};
+          fmt::format("{}: is no chart of this version; make it again: tact-chart SCENE "
+                      "--reference FILE --out DIR",
+                      path)};
     const auto& rows = document.at("rows");
     Table table = empty_chart(rows.size(), {});
     for (const auto& row : rows) {
@@ -77,7 +80,8 @@ Result<Table> read_chart(const std::string& path) {
     }
     return table;
   } catch (const nlohmann::json::exception& e) {
-    return Error{fmt::format("{}: {}; make it again with tact-chart", path, e.what())};
+    return Error{fmt::format("{}: {}; make it again: tact-chart SCENE --reference FILE --out DIR",
+                             path, e.what())};
   }
 }
 
@@ -101,11 +105,11 @@ std::string machines_of(const Table& table) {
   return fmt::format("{}", fmt::join(names, " + "));
 }
 
-std::string chart_text(const Table& table) {
+std::string chart_text(const Table& table, bool is_whole) {
   std::string out = fmt::format("{:<40} {:>8} {:>8} {:>8} {:>7} {:>8} {:>9} {:>9} {:>8} {:>9}\n",
                                 "law and size", "force %", "worst %", "held o %", "in JND",
                                 "shape %", "median us", "p99.9 us", "instr.", "memory kB");
-  const auto front = front_rows(table);
+  const auto front = is_whole ? front_rows(table) : std::vector<std::size_t>{};
   for (std::size_t i = 0; i < table.rows().size(); ++i) {
     const Row& row = table.rows()[i];
     const auto number = [&](const char* column) { return table.number(row, column); };

@@ -26,7 +26,7 @@ std::optional<model::Error> check_same_source(const Table& table, const Provenan
 /// Where the rows were measured: "a + b".
 std::string machines_of(const Table& table);
 
-/// For a terminal.
-std::string chart_text(const Table& table);
+/// For a terminal; the front is marked in a whole table alone.
+std::string chart_text(const Table& table, bool is_whole);
 
 }  // namespace tact::tools

@@ -98,22 +98,25 @@ std::string text_of(const SolvedSite& site) {
 Result<ReferenceData> read_reference(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) {
-    return Error{
-        fmt::format("{}: cannot be read; check the name, or make it with tact-reference", path)};
+    return Error{fmt::format(
+        "{}: cannot be read; check the name, or make it: tact-reference SCENE --out FILE", path)};
   }
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   try {  // the library reports by exceptions; they end here
     const json j = json::parse(text);
     if (j.value("schema", "") != kSchema) {
-      return Error{fmt::format("{}: \"schema\" is not \"{}\"; make it again with tact-reference",
-                               path, kSchema)};
+      return Error{fmt::format(
+          "{}: \"schema\" is not \"{}\"; make it again: tact-reference SCENE --out FILE", path,
+          kSchema)};
     }
     ReferenceData data = data_of(j);
     if (const std::string bad = complaint(data); !bad.empty())
-      return Error{fmt::format("{}: {}; make it again with tact-reference", path, bad)};
+      return Error{
+          fmt::format("{}: {}; make it again: tact-reference SCENE --out FILE", path, bad)};
     return data;
   } catch (const json::exception& e) {
-    return Error{fmt::format("{}: {}; make it again with tact-reference", path, e.what())};
+    return Error{
+        fmt::format("{}: {}; make it again: tact-reference SCENE --out FILE", path, e.what())};
   }
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "tools/common/reference_fits.h"
+
 namespace tact::tools {
 
 using model::Error;
@@ -69,6 +71,8 @@ std::optional<Error> hold_out(FitData& data, const std::vector<std::string>& nam
 
 Result<FitData> fit_data_of(const ReferenceData& reference, const model::Scene& scene,
                             const std::vector<std::string>& held_out, bool large_strain) {
+  if (auto differs = check_reference_fits(reference, scene, ModulusOf::kAny))
+    return std::move(*differs);
   FitData data{.source = fmt::format("{}, E = {:g} Pa, nu = {:g}, tool radius {:g} m",
                                      reference.mesh, reference.youngs_modulus_Pa,
                                      reference.poisson_ratio, reference.tool_radius_m)};
@@ -76,11 +80,6 @@ Result<FitData> fit_data_of(const ReferenceData& reference, const model::Scene& 
   for (const SolvedSite& solved : reference.sites) {
     FitSite site{.name = std::to_string(solved.vertex),
                  .at = place_at_vertex(scene.organ_mesh, solved.vertex)};
-    if (!site.at)
-      return Error{
-          fmt::format("site {} of the reference is no vertex of {}; make the reference "
-                      "again with tact-reference {}",
-                      solved.vertex, scene.organ.mesh_path, scene.path)};
     site.at->normal = -solved.direction;
     for (const model::ReferenceSite& known : scene.reference_sites)
       if (known.vertex == solved.vertex) site.held_out = known.held_out;
@@ -93,9 +92,10 @@ Result<FitData> fit_data_of(const ReferenceData& reference, const model::Scene& 
   }
   if (data.sites.empty())
     return Error{
-        fmt::format("the reference has no case {} large strain; make it with "
-                    "tact-reference{}",
-                    large_strain ? "with" : "without", large_strain ? " --large-strain" : "")};
+        fmt::format("the reference has no case {} large strain; solve it again: tact-reference {}"
+                    "{} --out FILE",
+                    large_strain ? "with" : "without", scene.path,
+                    large_strain ? " --large-strain SITES" : "")};
   if (auto error = hold_out(data, held_out)) return std::move(*error);
   for (FitSite& site : data.sites)
     for (FitSample& s : site.samples) s.ring_m.resize(rings, std::nan(""));

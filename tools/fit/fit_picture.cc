@@ -63,7 +63,7 @@ model::Result<std::vector<std::string>> draw_fit(const FitReport& report, const 
         "no law was fitted, so there is nothing to draw; give --data or --reference"};
   const fs::path path(file);
   const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
-  const std::string csv = path.stem().string() + ".csv";
+  const std::string csv = path.stem().string() + ".points.csv";
   auto rows = write_whole_file((fs::path(folder) / csv).string(), rows_of(report));
   if (!rows) return rows.error();
   return draw({.name = path.stem().string(), .script = script_of(report, csv)}, folder);

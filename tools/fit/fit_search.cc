@@ -5,6 +5,8 @@
 #include <cmath>
 #include <unsupported/Eigen/NonLinearOptimization>
 
+#include "tools/common/interrupt.h"
+
 namespace tact::tools {
 namespace {
 
@@ -65,7 +67,8 @@ class Functor {
     clamp(x);
     for (Index i = 0; i < inputs(); ++i)
       r[values() - inputs() + i] = kOutOfBounds * (x[i] - inside_[at(i)]);
-    const bool is_law = problem_.residual(inside_, {r.data(), problem_.residuals});
+    const bool is_law =
+        !is_interrupted() && problem_.residual(inside_, {r.data(), problem_.residuals});
     if (!is_law || !r.allFinite()) r.head(values() - inputs()).setConstant(kNoLaw);
     return is_law && r.allFinite();
   }

@@ -6,6 +6,9 @@
 #include <cmath>
 
 #include "model/tissue_law.h"
+#include "tools/common/program.h"
+#include "tools/common/run_program.h"
+#include "tools/common/sweep.h"
 #include "tools/common/table.h"
 #include "tools/fit/fit_csv.h"
 #include "tools/fit/fit_report.h"
@@ -18,8 +21,9 @@ using tact::model::Result;
 using tact::model::Scene;
 
 struct Options {
-  std::string scene, data, relaxation, reference, out, picture;
-  std::vector<std::string> overrides, held_out, keep, laws{"all"};
+  SceneArguments scene;
+  std::string data, relaxation, reference, out, picture;
+  std::vector<std::string> held_out, keep, laws{"all"};
   BenchColumns columns;
   FitOptions fit;
   std::size_t terms = 0;
@@ -28,7 +32,7 @@ struct Options {
 };
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("SCENE", o.scene, "scene file (TOML) that describes the laws")->required();
+  o.scene.add_to(app, "the laws to fit");
   app.add_option("--law", o.laws,
                  "which laws, by name: rhombus, disc_stack (both forms), disc_stack_linear, "
                  "disc_stack_almen_laszlo, hex_sheet, hex_sheet_paper, compliance, spring_patch")
@@ -37,7 +41,6 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--reference", o.reference, "JSON of tact-reference; its held-out sites judge");
   app.add_option("--data", o.data, "CSV of a bench: depth_m,force_N[,site][,u_0_m,...]");
   app.add_option("--relaxation", o.relaxation, "CSV of a bench at held depth: time_s,force_N");
-  app.add_option("--set", o.overrides, "one key of the scene, as KEY=VALUE; repeatable");
   app.add_option("--keep", o.keep, "keys of the law that stay as the scene has them")
       ->delimiter(',');
   app.add_option("--held-out", o.held_out, "sites that only judge, beside those of the scene")
@@ -66,13 +69,6 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--out", o.out, "TOML to write: sections to paste into the scene");
   app.add_option("--picture", o.picture, "SVG to draw (and PNG), with gnuplot");
   app.add_flag("--json", o.json, "print one JSON object, SI units");
-  app.footer(
-      "Residuals are root mean squares over all samples, in % of the largest force; a law that "
-      "stays\nabove 7 %, the least difference of force that people feel, cannot follow.\n"
-      "Exit status: 0 fitted (one law at least), 1 no law can follow, 2 bad usage or input.");
-  app.failure_message([](const CLI::App*, const CLI::Error& e) {
-    return fmt::format("tact-fit: {}; see tact-fit --help\n", e.what());
-  });
 }
 
 Result<FitData> read_data(const Options& o, const Scene& scene) {
@@ -92,38 +88,58 @@ Result<FitData> read_data(const Options& o, const Scene& scene) {
   return data;
 }
 
-bool is_chosen(const FitLaw& law, const std::vector<std::string>& names) {
-  return std::any_of(names.begin(), names.end(), [&law](const std::string& name) {
-    return name == "all" || name == law.name || name == name_of(law.kind);
-  });
+bool answers_to(const FitLaw& law, const std::string& name) {
+  return name == "all" || name == law.name || name == name_of(law.kind);
+}
+
+/// The laws of the scene that --law names, without the parameters that --keep names.
+Result<std::vector<FitLaw>> chosen_laws(const Options& o, const Scene& scene, const FitData& data) {
+  std::vector<FitLaw> all = fit_laws_of(scene, data), chosen;
+  for (const std::string& name : o.laws) {
+    bool is_known = false;
+    for (const FitLaw& law : all) {
+      if (!answers_to(law, name)) continue;
+      is_known = true;
+      const bool is_new = std::none_of(chosen.begin(), chosen.end(),
+                                       [&](const FitLaw& c) { return c.name == law.name; });
+      if (is_new) chosen.push_back(law);
+    }
+    if (!is_known)
+      return Error{fmt::format("{} describes no law \"{}\"; write its section or correct --law",
+                               scene.path, name)};
+  }
+  for (const std::string& key : o.keep) {
+    std::size_t kept = 0;
+    for (FitLaw& law : chosen) kept += keep_parameters(law, {key});
+    if (kept == 0)
+      return Error{fmt::format("--keep {}: no chosen law fits that key; leave it out", key)};
+  }
+  for (const FitLaw& law : chosen)
+    if (law.parameters.empty())
+      return Error{fmt::format("--keep leaves nothing of {} to fit; keep fewer keys", law.name)};
+  return chosen;
 }
 
 std::optional<Error> fit_laws(const Options& o, const Scene& scene, FitReport& report) {
   auto data = read_data(o, scene);
   if (!data) return data.error();
   report.data = std::move(*data);
-  std::size_t kept = 0;
-  for (FitLaw& law : fit_laws_of(scene, *report.data)) {
-    if (!is_chosen(law, o.laws)) continue;
-    kept += keep_parameters(law, o.keep);
-    if (law.parameters.empty())
-      return Error{fmt::format("--keep leaves nothing of {} to fit; keep fewer keys", law.name)};
-    auto fitted = fit_law(law, scene, *report.data, o.fit);
-    if (fitted) {
-      report.laws.push_back(std::move(*fitted));
+  const auto laws = chosen_laws(o, scene, *report.data);
+  if (!laws) return laws.error();
+  std::vector<std::optional<Result<FittedLaw>>> fitted(laws->size());
+  const bool whole = run_jobs(laws->size(), {.label = "tact-fit"}, [&](std::size_t i) {
+    fitted[i] = fit_law((*laws)[i], scene, *report.data, o.fit);
+  });
+  if (!whole) return interruption();
+  for (std::size_t i = 0; i < laws->size(); ++i) {
+    if (*fitted[i]) {
+      report.laws.push_back(std::move(**fitted[i]));
     } else {
-      report.notes.push_back(law.name + " was not fitted: " + fitted.error().sentence);
+      report.notes.push_back((*laws)[i].name + " was not fitted: " + fitted[i]->error().sentence);
     }
   }
-  if (kept < o.keep.size() && !report.laws.empty())
-    return Error{fmt::format("--keep {}: no chosen law fits all of these keys; see what it prints",
-                             fmt::join(o.keep, ","))};
-  if (!report.laws.empty()) return std::nullopt;
-  if (!report.notes.empty()) return Error{report.notes.front()};
-  return Error{
-      fmt::format("{} describes no law named {}; write its section or choose another with "
-                  "--law",
-                  scene.path, fmt::join(o.laws, ", "))};
+  if (report.laws.empty()) return Error{report.notes.front()};
+  return std::nullopt;
 }
 
 /// How the scene's law feels a stretch that has faded to the share e of the held depth.
@@ -154,42 +170,46 @@ std::optional<Error> fit_relaxation(const Options& o, Scene scene, FitReport& re
   return std::nullopt;
 }
 
-int fail(const std::string& sentence) {
-  fmt::print(stderr, "tact-fit: {}\n", sentence);
-  return 2;
+/// What must be right before minutes of work.
+std::optional<Error> check_options(const Options& o) {
+  if (o.data.empty() && o.reference.empty() && o.relaxation.empty())
+    return Error{"nothing to fit to; give --reference, --data or --relaxation"};
+  if (!o.data.empty() && !o.reference.empty())
+    return Error{"--data and --reference exclude each other; fit one after the other"};
+  for (const std::string& output : {o.out, o.picture})
+    if (auto error = check_output(output, {o.scene.path, o.data, o.relaxation, o.reference}))
+      return error;
+  return std::nullopt;
 }
 
 }  // namespace
 
 // The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
-  CLI::App app{
+  Program program(
+      "tact-fit",
       "Fit the laws of a scene to measured forces (and shapes), say how far each stays off, and "
-      "say when\na law cannot follow. Prints the keys to paste into the scene."};
+      "say when\na law cannot follow. Prints the keys to paste into the scene.",
+      "Residuals are root mean squares over all samples, in % of the largest force; a law that "
+      "stays\nabove 7 %, the least difference of force that people feel, cannot follow: a failed "
+      "check if none can.");
   Options o;
-  add_options(app, o);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  }
-  if (o.data.empty() && o.reference.empty() && o.relaxation.empty())
-    return fail("nothing to fit to; give --reference, --data or --relaxation");
-  if (!o.data.empty() && !o.reference.empty())
-    return fail("--data and --reference exclude each other; fit one after the other");
-  const auto scene = tact::model::load_scene(o.scene, o.overrides);
-  if (!scene) return fail(scene.error().sentence);
+  add_options(program.options(), o);
+  if (const auto status = program.parse(argc, argv)) return *status;
+  if (const auto error = check_options(o)) return program.fail(*error);
+  const auto scene = o.scene.load();
+  if (!scene) return program.fail(scene.error());
   FitReport report;
   if (!o.data.empty() || !o.reference.empty())
-    if (const auto error = fit_laws(o, *scene, report)) return fail(error->sentence);
+    if (const auto error = fit_laws(o, *scene, report)) return program.fail(*error);
   if (!o.relaxation.empty())
-    if (const auto error = fit_relaxation(o, *scene, report)) return fail(error->sentence);
+    if (const auto error = fit_relaxation(o, *scene, report)) return program.fail(*error);
   report.sort();
   if (!o.out.empty())
     if (const auto written = write_whole_file(o.out, toml_of(report)); !written)
-      return fail(written.error().sentence);
+      return program.fail(written.error());
   if (!o.picture.empty())
-    if (const auto drawn = draw_fit(report, o.picture); !drawn) return fail(drawn.error().sentence);
+    if (const auto drawn = draw_fit(report, o.picture); !drawn) return program.fail(drawn.error());
   if (o.json) {
     fmt::print("{}\n", json_of(report).dump(2));
   } else {

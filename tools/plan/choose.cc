@@ -105,9 +105,8 @@ Choice choose(std::span<const Candidate> candidates, const ToleranceSettings& to
       if (i != *out.chosen) others.push_back(i);
   }
   out.reason = fmt::format(
-      "{} of {} measured laws and sizes meet [tolerance]; of these it is the fastest, within {:g} "
-      "% "
-      "the smallest. {}",
+      "{} of {} measured laws and sizes meet [tolerance]; of these it is the fastest, "
+      "within {:g} % the smallest. {}",
       enough.size(), candidates.size(), 100.0 * kSameTime_ratio, text_of(least));
   if (others.empty()) return out;
   out.runner_up = least_of(candidates, others);

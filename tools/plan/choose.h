@@ -13,10 +13,9 @@
 #include <string>
 
 #include "model/plan_file.h"
+#include "tools/chart/errors.h"
 
 namespace tact::tools {
-
-inline constexpr double kSameTime_ratio = 0.10;
 
 /// One measured law and size.
 struct Candidate {

@@ -2,13 +2,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "model/scene.h"
 #include "tools/chart/report.h"
-#include "tools/common/interrupt.h"
-#include "tools/common/run_program.h"
+#include "tools/common/program.h"
 #include "tools/plan/plan.h"
 
 namespace {
@@ -20,40 +18,26 @@ using tact::model::Result;
 using tact::model::Scene;
 
 struct Options {
-  std::string scene, reference, chart;
-  std::vector<std::string> overrides;
+  SceneArguments scene;
+  std::string reference, chart;
   bool json = false, dry_run = false;
 };
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("SCENE", o.scene, "scene file (TOML) with [tolerance]")->required();
+  o.scene.add_to(app, "[tolerance]");
   auto* chart = app.add_option("--chart", o.chart, "chart.json of tact-chart, of this machine");
   app.add_option("--reference", o.reference,
                  "without a chart: measure now against this JSON of tact-reference (a minute)")
       ->excludes(chart);
-  app.add_option("--set", o.overrides, "one key of the scene, as KEY=VALUE; repeatable");
   app.add_flag("--dry-run", o.dry_run, "choose, but leave the plan of tactd as it is");
   app.add_flag("--json", o.json, "print one JSON object; times in us, errors as ratios");
-  app.footer(
-      "The plan is kept in $XDG_CACHE_HOME/tact/plan (or ~/.cache); tactd reads it when the scene\n"
-      "says law = \"auto\".\n"
-      "Exit status: 0 a law is good enough, 1 none is or Ctrl-C, 2 bad usage or input.");
-  app.failure_message([](const CLI::App*, const CLI::Error& e) {
-    return fmt::format("tact-plan: {}; see tact-plan --help\n", e.what());
-  });
-}
-
-int fail(const Error& error) {
-  const bool interrupted = was_interrupted(error);
-  fmt::print(stderr, "tact-plan: {}\n",
-             interrupted ? "interrupted; the plan is as it was" : error.sentence);
-  return interrupted ? 1 : 2;
 }
 
 Result<std::vector<Candidate>> measure(const Options& o, const Scene& scene) {
   const auto reference = read_reference(o.reference);
   if (!reference) return reference.error();
   ChartOptions options;
+  options.label = "tact-plan";
   options.wish.peers = false;
   options.timing = {.ticks = 20000, .rounds = 2, .limit_s = 2.0, .instructions = false};
   const auto rows = measure_chart(scene, *reference, options);
@@ -68,7 +52,7 @@ Result<std::vector<Candidate>> find_candidates(const Options& o, const Scene& sc
   if (o.chart.empty())
     return Error{
         "nothing to choose by; give --reference FILE (tact-reference SCENE --out FILE) or "
-        "--chart FILE (tact-chart SCENE --out DIR)"};
+        "--chart DIR/chart.json (tact-chart SCENE --reference FILE --out DIR)"};
   const auto table = read_chart(o.chart);
   if (!table) return table.error();
   if (auto wrong = check_chart_fits(*table, scene, o.chart)) return std::move(*wrong);
@@ -101,9 +85,17 @@ void print(const Options& o, const std::vector<Candidate>& candidates, const Cho
   fmt::print("{}\n", out.dump(2));
 }
 
-Result<std::string> keep(const Candidate& c, const Scene& scene) {
+/// Writes the plan that tactd reads, or takes away the one that is no longer good enough.
+Result<std::string> keep(const Choice& choice, const std::vector<Candidate>& candidates,
+                         const Scene& scene) {
   const auto path = tact::model::plan_path(scene.hash);
   if (!path) return path.error();
+  if (!choice.meets) {
+    std::error_code ignored;
+    std::filesystem::remove(*path, ignored);
+    return std::string{};
+  }
+  const Candidate& c = candidates[*choice.chosen];
   return tact::model::write_plan({.sizes = c.sizes,
                                   .tick_p999_us = c.tick_p999_us,
                                   .force_error_ratio = c.force_error_ratio,
@@ -117,29 +109,28 @@ Result<std::string> keep(const Candidate& c, const Scene& scene) {
 
 // The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
-  CLI::App app{
-      "Choose the least law and size that meets the scene's [tolerance] on this machine: no more\n"
-      "model than the scene needs."};
+  Program program(
+      "tact-plan",
+      "Choose the least law and size that meets the scene's [tolerance] on this machine:"
+      "\nno more model than the scene needs.",
+      "The plan is kept in $XDG_CACHE_HOME/tact/plan (or ~/.cache); tactd reads it when\n"
+      "the scene says law = \"auto\". When no law is good enough there is no plan.");
   Options o;
-  add_options(app, o);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  }
-  const InterruptWatch watch;
-  const auto scene = tact::model::load_scene(o.scene, o.overrides);
-  if (!scene) return fail(scene.error());
+  add_options(program.options(), o);
+  if (const auto status = program.parse(argc, argv)) return *status;
+  constexpr const char* kKept = "the plan is as it was";
+  const auto scene = o.scene.load();
+  if (!scene) return program.fail(scene.error());
   if (!scene->tolerance)
-    return fail({o.scene + ": has no [tolerance]; add force_error_ratio, shape_error_ratio and "
-                           "tick_budget_us"});
+    return program.fail({scene->path + ": has no [tolerance]; add force_error_ratio, "
+                                       "shape_error_ratio and tick_budget_us"});
   const auto candidates = find_candidates(o, *scene);
-  if (!candidates) return fail(candidates.error());
+  if (!candidates) return program.fail(candidates.error(), kKept);
   const Choice choice = choose(*candidates, *scene->tolerance);
   std::string written;
-  if (choice.meets && !o.dry_run) {
-    const auto path = keep((*candidates)[*choice.chosen], *scene);
-    if (!path) return fail(path.error());
+  if (!o.dry_run) {
+    const auto path = keep(choice, *candidates, *scene);
+    if (!path) return program.fail(path.error());
     written = *path;
   }
   print(o, *candidates, choice, written);

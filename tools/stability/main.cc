@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "tools/common/interrupt.h"
+#include "tools/common/program.h"
 #include "tools/stability/run_maps.h"
 
 namespace {
@@ -23,8 +23,7 @@ std::string help_of_maps() {
          "\nEach map becomes a table (CSV and JSON, SI units in the column names) and pictures "
          "(SVG "
          "and\nPNG by gnuplot, with the script). A second run gives the same bytes. Over several "
-         "machines: run\n--shard 0/4 to 3/4, then --merge *.shard-*.csv with the same --quick.\n"
-         "Exit status: 0 every finding holds, 1 one does not or Ctrl-C, 2 bad usage or input.";
+         "machines: run\n--shard 0/4 to 3/4, then --merge *.shard-*.csv with the same --quick.";
 }
 
 void print_text(const std::vector<MapReport>& reports) {
@@ -57,57 +56,42 @@ bool all_hold(const std::vector<MapReport>& reports) {
   });
 }
 
-int complain(const std::string& sentence, int status) {
-  fmt::print(stderr, "tact-stability: {}\n", sentence);
-  return status;
-}
-
 }  // namespace
 
 // The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
-  CLI::App app{
+  tact::tools::Program program(
+      "tact-stability",
       "Where do the methods and the closed haptic loop stop being stable? Measured cell by cell, "
-      "against\ntheory, and what the safety gate lets through beyond the line."};
+      "against\ntheory, and what the safety gate lets through beyond the line.",
+      help_of_maps());
   StabilityOptions options;
+  tact::tools::SweepArguments sweep;
   std::vector<std::string> letters{"a", "b", "c", "d"};
-  std::string shard_text;
-  bool quick = false, as_json = false, no_pictures = false;
+  bool as_json = false;
+  CLI::App& app = program.options();
   app.add_option("--out", options.out, "folder for tables and pictures; made if need be")
       ->required();
   app.add_option("--map", letters, "which maps, by letter: a,b,c,d or fewer (default: all)")
       ->delimiter(',')
       ->check(CLI::IsMember({"a", "b", "c", "d"}));
   app.add_option("--only", options.only, "one map by its name");
-  app.add_option("--shard", shard_text, "i/n: every n-th cell from i on, 0 <= i < n");
-  app.add_option("--merge", options.merge, "CSVs of all shards: the table of one whole run");
-  app.add_flag("--quick", quick, "coarse grids, seconds instead of minutes");
-  app.add_flag("--no-pictures", no_pictures, "tables alone; needs no gnuplot");
+  sweep.add_to(app, "cell", "coarse grids, seconds instead of minutes");
   app.add_flag("--json", as_json, "print one JSON document");
-  app.footer(help_of_maps());
-  app.failure_message([](const CLI::App*, const CLI::Error& e) {
-    return fmt::format("tact-stability: {}; see tact-stability --help\n", e.what());
-  });
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  }
-  if (!shard_text.empty()) {
-    const auto shard = tact::tools::parse_shard(shard_text);
-    if (!shard) return complain(shard.error().sentence, 2);
-    options.shard = *shard;
-  }
+  if (const auto status = program.parse(argc, argv)) return *status;
+  if (const auto error = sweep.prepare(options.out)) return program.fail(*error);
+  options.shard = sweep.shard;
+  options.merge = sweep.merge;
   for (const std::string& letter : letters) options.letters += letter;
-  options.grid = quick ? tact::tools::Grid::kQuick : tact::tools::Grid::kFull;
-  options.draw_pictures = !no_pictures;
-  const auto reports = tact::tools::run_maps(options);
-  if (!reports) return complain(reports.error().sentence, tact::tools::is_interrupted() ? 1 : 2);
-  if (reports->empty()) return complain("no map chosen; --help lists their names", 2);
+  options.grid = sweep.quick ? tact::tools::Grid::kQuick : tact::tools::Grid::kFull;
+  options.draw_pictures = !sweep.no_pictures;
+  const auto run = tact::tools::run_maps(options);
   if (as_json) {
-    fmt::print("{}\n", to_json(*reports).dump(2));
+    fmt::print("{}\n", to_json(run.reports).dump(2));
   } else {
-    print_text(*reports);
+    print_text(run.reports);
   }
-  return all_hold(*reports) ? 0 : 1;
+  if (run.error)
+    return program.fail(*run.error, fmt::format("{} maps are written", run.reports.size()));
+  return all_hold(run.reports) ? 0 : 1;
 }

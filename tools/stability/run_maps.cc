@@ -2,16 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <map>
 #include <optional>
 
-#include "tools/common/interrupt.h"
+#include "tools/common/run_program.h"
 
 namespace tact::tools {
 namespace {
 
-namespace fs = std::filesystem;
 using model::Error;
 using model::Result;
 
@@ -23,8 +21,7 @@ Result<Table> computed(const Map& map, const StabilityOptions& options) {
   Table table = empty_table(map, options, options.shard);
   const auto rows = sweep<Row>(table.jobs(), {.label = map.name, .shard = options.shard},
                                [&](std::size_t job) { return map.run(job, options.grid); });
-  if (!rows)
-    return Error{fmt::format("interrupted; nothing of the map \"{}\" was written", map.name)};
+  if (!rows) return interruption();
   for (const Row& row : *rows) table.add(row);
   return table;
 }
@@ -64,40 +61,39 @@ bool is_chosen(const Map& map, const StabilityOptions& options) {
   return options.letters.find(map.letter) != std::string::npos;
 }
 
-Result<std::vector<MapReport>> merged(const StabilityOptions& options) {
+MapsRun merged(const StabilityOptions& options) {
   const auto of_table = sorted(options.merge);
-  if (!of_table) return of_table.error();
-  std::vector<MapReport> reports;
+  if (!of_table) return {{}, of_table.error()};
+  MapsRun run;
   for (const Map& map : all_maps()) {
     const auto files = of_table->find(map.name);
     if (files == of_table->end()) continue;
     const auto table = merge_table(empty_table(map, options, {}), files->second);
-    if (!table) return table.error();
+    if (!table) return {std::move(run.reports), table.error()};
     auto report = finished(map, *table, options, true);
-    if (!report) return report.error();
-    reports.push_back(std::move(*report));
+    if (!report) return {std::move(run.reports), report.error()};
+    run.reports.push_back(std::move(*report));
   }
-  return reports;
+  return run;
 }
 
 }  // namespace
 
-Result<std::vector<MapReport>> run_maps(const StabilityOptions& options) {
-  std::error_code error;
-  fs::create_directories(options.out, error);
-  if (error) return Error{fmt::format("{}: {}; name another folder", options.out, error.message())};
-  const InterruptWatch watch;
+MapsRun run_maps(const StabilityOptions& options) {
   if (!options.merge.empty()) return merged(options);
-  std::vector<MapReport> reports;
+  MapsRun run;
+  bool any = false;
   for (const Map& map : all_maps()) {
     if (!is_chosen(map, options)) continue;
+    any = true;
     const auto table = computed(map, options);
-    if (!table) return table.error();
+    if (!table) return {std::move(run.reports), table.error()};
     auto report = finished(map, *table, options, options.shard.is_whole());
-    if (!report) return report.error();
-    reports.push_back(std::move(*report));
+    if (!report) return {std::move(run.reports), report.error()};
+    run.reports.push_back(std::move(*report));
   }
-  return reports;
+  if (!any) run.error = Error{"no map chosen; --help lists their names"};
+  return run;
 }
 
 }  // namespace tact::tools

@@ -1,6 +1,7 @@
 // run_maps.h - from options to tables, findings and pictures on disk.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,11 @@ struct MapReport {
   std::vector<std::string> files;
 };
 
-/// An error if something could not be read, written or drawn, or if Ctrl-C came; the tables that
-/// are named in no report were not written.
-model::Result<std::vector<MapReport>> run_maps(const StabilityOptions& options);
+struct MapsRun {
+  std::vector<MapReport> reports;     // what is on disk, finished
+  std::optional<model::Error> error;  // what ended the run early; interruption() after Ctrl-C
+};
+
+MapsRun run_maps(const StabilityOptions& options);
 
 }  // namespace tact::tools
