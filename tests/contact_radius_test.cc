@@ -50,7 +50,9 @@ TEST(TipContact, TakesTheGiveOfTheOrganFromOneSolve) {
 
 TEST(SurfaceFall, OfABallIsItsCap) {
   const model::SurfaceMesh ball = tests::make_ball(0.03, 5);
-  const auto fall_m = surface_fall_m(ball, 4, 17, kPitch_m);
+  const auto found = surface_fall_m(ball, 4, 17, kPitch_m);
+  ASSERT_TRUE(found) << found.error().sentence;
+  const std::vector<double>& fall_m = *found;
   ASSERT_EQ(fall_m.size(), 17U);
   EXPECT_EQ(fall_m[0], 0.0);
   for (std::size_t k = 4; k < 17; ++k) {
@@ -60,8 +62,9 @@ TEST(SurfaceFall, OfABallIsItsCap) {
 }
 
 TEST(SurfaceFall, OfAPlateIsNothing) {
-  for (const double fall_m : surface_fall_m(tests::make_plate(0.1, 10), 60, 17, kPitch_m))
-    EXPECT_NEAR(fall_m, 0.0, 1e-15);
+  const auto flat = surface_fall_m(tests::make_plate(0.1, 10), 60, 17, kPitch_m);
+  ASSERT_TRUE(flat) << flat.error().sentence;
+  for (const double fall_m : *flat) EXPECT_NEAR(fall_m, 0.0, 1e-15);
 }
 
 }  // namespace

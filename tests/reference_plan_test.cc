@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "tools/reference/block.h"
 
@@ -79,14 +80,27 @@ TEST(ReferencePlan, RefusesWhatCannotBeSolved) {
               p.sites = {3, 217};
             }),
             "site 217 lies in the box that is held; choose another");
+  EXPECT_EQ(sentence([](ReferencePlan& p) {
+              p.sites = {0, 3, 0};
+            }),
+            "site 0 is there twice; give it once");
   EXPECT_EQ(sentence([](ReferencePlan& p) { p.sites.clear(); }),
             "no site to solve; add [[reference_site]] to the scene, or give --sites");
   EXPECT_EQ(sentence([](ReferencePlan& p) { p.large_strain_sites = {5}; }),
             "large strain at 5, which is no site; add it to --sites");
-  for (const std::vector<double>& bad :
-       {std::vector<double>{}, {0.0, 1e-3}, {2e-3, 1e-3}, {1e-3, 1e-3}, {std::nan("")}})
+  for (const std::vector<double>& bad : {std::vector<double>{},
+                                         {0.0, 1e-3},
+                                         {2e-3, 1e-3},
+                                         {1e-3, 1e-3},
+                                         {std::nan("")},
+                                         {1e-3, std::nan("")},
+                                         {std::nan(""), 1e-3},
+                                         {1e-3, std::numeric_limits<double>::infinity()},
+                                         {0.1}})
     EXPECT_EQ(sentence([&](ReferencePlan& p) { p.depths_m = bad; }),
-              "depths must be above 0 and rise");
+              "--depths must rise, all above 0 and at most 0.025 m (5 tool radii); give metres: "
+              "0.001,0.002");
+  EXPECT_EQ(sentence([](ReferencePlan& p) { p.depths_m = {0.025}; }), "fine");
 }
 
 }  // namespace

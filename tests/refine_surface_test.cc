@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 
 #include "tests/shapes.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/run_program.h"
 #include "tools/reference/block.h"
 
 namespace tact::tools {
@@ -20,6 +23,13 @@ Triangles block() {
   auto organ = make_block(0.05, 0.05, {});
   EXPECT_TRUE(organ) << organ.error().sentence;
   return {organ->surface.vertex_m, organ->surface.triangle};
+}
+
+/// Refined as asked; an error fails the test.
+Triangles refined(Triangles coarse, const EdgeLengths& lengths) {
+  auto fine = refine_surface(std::move(coarse), lengths);
+  EXPECT_TRUE(fine) << fine.error().sentence;
+  return std::move(*fine);
 }
 
 /// The surface of triangles that must be sound; an error fails the test.
@@ -43,7 +53,7 @@ double least_angle_rad(const Triangles& s) {
 
 TEST(RefineSurface, KeepsTheSurfaceClosedAndItsVolume) {
   const Triangles coarse = block();
-  const Triangles fine = refine_surface(coarse, kFine);
+  const Triangles fine = refined(coarse, kFine);
   const auto before = model::summarize(sound(coarse)), after = model::summarize(sound(fine));
   EXPECT_EQ(after.boundary_edges, 0U);
   EXPECT_NEAR(after.volume_m3, before.volume_m3, 1e-12 * before.volume_m3);
@@ -53,13 +63,13 @@ TEST(RefineSurface, KeepsTheSurfaceClosedAndItsVolume) {
 
 TEST(RefineSurface, KeepsTheNumbersOfOldVertices) {
   const Triangles coarse = block();
-  const Triangles fine = refine_surface(coarse, kFine);
+  const Triangles fine = refined(coarse, kFine);
   for (std::size_t i = 0; i < coarse.vertex_m.size(); ++i)
     EXPECT_EQ(fine.vertex_m[i], coarse.vertex_m[i]);
 }
 
 TEST(RefineSurface, LeavesNoEdgeLongerThanAsked) {
-  const Triangles fine = refine_surface(block(), kFine);
+  const Triangles fine = refined(block(), kFine);
   for (const auto& t : fine.triangle) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 &p = fine.vertex_m[t[k]], &q = fine.vertex_m[t[(k + 1) % 3]];
@@ -71,7 +81,29 @@ TEST(RefineSurface, LeavesNoEdgeLongerThanAsked) {
 
 TEST(RefineSurface, KeepsAnglesAboveHalfOfTheSmallest) {
   const Triangles coarse = block();
-  EXPECT_GE(least_angle_rad(refine_surface(coarse, kFine)), 0.5 * least_angle_rad(coarse) - 1e-9);
+  EXPECT_GE(least_angle_rad(refined(coarse, kFine)), 0.5 * least_angle_rad(coarse) - 1e-9);
+}
+
+TEST(RefineSurface, RefusesEdgesThatCannotBeReached) {
+  // In order: no length, none, too small for numbers, too many triangles.
+  const double nan = std::nan("");
+  for (const auto& [radius_m, fine_m] :
+       {std::pair{4e-3, nan}, {4e-3, 0.0}, {0.0, 1e-30}, {4e-3, 1e-6}}) {
+    EdgeLengths none = kFine;
+    none.radius_m = radius_m;
+    none.fine_m = fine_m;
+    const auto endless = refine_surface(block(), none);
+    ASSERT_FALSE(endless) << fine_m;
+    EXPECT_NE(endless.error().sentence.find("ask for a larger depth"), std::string::npos);
+  }
+}
+
+TEST(RefineSurface, StopsAtCtrlC) {
+  const InterruptWatch watch;
+  std::raise(SIGINT);
+  const auto fine = refine_surface(block(), kFine);
+  ASSERT_FALSE(fine);
+  EXPECT_TRUE(was_interrupted(fine.error()));
 }
 
 TEST(RefineSurface, FollowsACircleToo) {
@@ -86,7 +118,7 @@ TEST(RefineSurface, FollowsACircleToo) {
 
 TEST(CutAlong, PutsEveryTriangleInsideOrOutsideOfTheCircle) {
   const Circle circle{.at_m = {0.0, 0.0, 0.0}, .axis = {0.0, 0.0, -1.0}, .radius_m = 4e-3};
-  const Triangles coarse = refine_surface(block(), kFine);
+  const Triangles coarse = refined(block(), kFine);
   const Triangles cut = cut_along(coarse, circle, 8e-3);
   const auto before = model::summarize(sound(coarse)), after = model::summarize(sound(cut));
   EXPECT_EQ(after.boundary_edges, 0U);

@@ -25,6 +25,7 @@ InterruptWatch::InterruptWatch() {
 InterruptWatch::~InterruptWatch() {
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
+  pressed.store(false);
 }
 
 bool is_interrupted() { return pressed.load(); }

@@ -12,7 +12,7 @@ class InterruptWatch {
   InterruptWatch& operator=(const InterruptWatch&) = delete;
 };
 
-/// True once Ctrl-C was pressed under a watch.
+/// True once Ctrl-C was pressed under a watch that still lives.
 bool is_interrupted();
 
 }  // namespace tact::tools

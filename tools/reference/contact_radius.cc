@@ -77,23 +77,24 @@ double TipContact::radius_m(double wanted_m, double give_m_per_N) const {
               [&](double a) { return depth_m(a) + give_m_per_N * force_N(a) - wanted_m; });
 }
 
-std::vector<double> surface_fall_m(const model::SurfaceMesh& surface, std::uint32_t vertex,
-                                   int rings, double pitch_m) {
+model::Result<std::vector<double>> surface_fall_m(const model::SurfaceMesh& surface,
+                                                  std::uint32_t vertex, int rings, double pitch_m) {
   const Vec3 at_m = surface.vertex_m[vertex];
   const Circle axis{at_m, -surface.vertex_normal[vertex], 0.0};
   const double reach_m = rings * pitch_m;
-  const Triangles fine = refine_surface({surface.vertex_m, surface.triangle}, {.at_m = at_m,
-                                                                               .axis = {},
-                                                                               .radius_m = reach_m,
-                                                                               .fine_m = pitch_m,
-                                                                               .growth = 1.0,
-                                                                               .largest_m = 0.0});
+  const auto fine = refine_surface({surface.vertex_m, surface.triangle}, {.at_m = at_m,
+                                                                          .axis = {},
+                                                                          .radius_m = reach_m,
+                                                                          .fine_m = pitch_m,
+                                                                          .growth = 1.0,
+                                                                          .largest_m = 0.0});
+  if (!fine) return fine.error();
   RingMeans means(rings, pitch_m, 0.0);
-  for (const auto& t : fine.triangle) {
+  for (const auto& t : fine->triangle) {
     std::array<Vec3, 3> p{};
     std::array<double, 3> rho{}, fall{};
     for (std::size_t k = 0; k < 3; ++k) {
-      p[k] = fine.vertex_m[t[k]];
+      p[k] = fine->vertex_m[t[k]];
       rho[k] = axis.away_m(p[k]);
       fall[k] = dot(p[k] - at_m, axis.axis);
     }

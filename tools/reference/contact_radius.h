@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "model/mesh.h"
+#include "model/result.h"
 #include "tools/reference/calculix.h"
 
 namespace tact::tools {
@@ -40,7 +41,7 @@ class TipContact {
 };
 
 /// s around a vertex, at distances k * pitch from its normal, k = 0 .. rings - 1.
-std::vector<double> surface_fall_m(const model::SurfaceMesh& surface, std::uint32_t vertex,
-                                   int rings, double pitch_m);
+model::Result<std::vector<double>> surface_fall_m(const model::SurfaceMesh& surface,
+                                                  std::uint32_t vertex, int rings, double pitch_m);
 
 }  // namespace tact::tools

@@ -35,7 +35,9 @@ model::Result<OrganBody> make_organ_body(const model::SurfaceMesh& surface,
                                          const std::optional<Circle>& circle) {
   EdgeLengths on_surface = lengths;
   on_surface.largest_m = 0.0;
-  Triangles fine = refine_surface({surface.vertex_m, surface.triangle}, on_surface);
+  auto refined = refine_surface({surface.vertex_m, surface.triangle}, on_surface);
+  if (!refined) return refined.error();
+  Triangles fine = std::move(*refined);
   if (circle) fine = cut_along(std::move(fine), *circle, 2.0 * circle->radius_m);
   auto mesh = fill_with_gmsh(fine.vertex_m, fine.triangle, lengths);
   if (!mesh) return mesh.error();

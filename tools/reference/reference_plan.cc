@@ -15,6 +15,7 @@ constexpr double kDefaultDepths_m[] = {1e-3, 2e-3, 3.5e-3, 5e-3, 7e-3, 10e-3};
 constexpr double kUnitPull_m = -1e-3;
 // Of the tool's radius: near 1.5 the elements at the rim of the bond turn inside out.
 constexpr double kLargeStrainDepth = 1.3;
+constexpr double kMostDepth = 5.0;  // of the tool's radius
 
 bool among(const std::vector<std::uint32_t>& list, std::uint32_t vertex) {
   return std::find(list.begin(), list.end(), vertex) != list.end();
@@ -108,6 +109,8 @@ std::optional<Error> check(const ReferencePlan& plan) {
                              plan.mesh_name, summary.boundary_edges)};
   }
   for (const std::uint32_t vertex : plan.sites) {
+    if (std::count(plan.sites.begin(), plan.sites.end(), vertex) > 1)
+      return Error{fmt::format("site {} is there twice; give it once", vertex)};
     if (vertex >= summary.vertices) {
       return Error{fmt::format("site {} is no vertex of {}; they are 0 to {}", vertex,
                                plan.mesh_name, summary.vertices - 1)};
@@ -118,11 +121,18 @@ std::optional<Error> check(const ReferencePlan& plan) {
   for (const std::uint32_t vertex : plan.large_strain_sites)
     if (!among(plan.sites, vertex))
       return Error{fmt::format("large strain at {}, which is no site; add it to --sites", vertex)};
-  if (plan.depths_m.empty() || !(plan.depths_m.front() > 0.0) ||
-      std::adjacent_find(plan.depths_m.begin(), plan.depths_m.end(), std::greater_equal<>()) !=
-          plan.depths_m.end())
-    return Error{"depths must be above 0 and rise"};
-  return std::nullopt;
+  const double most_m = kMostDepth * plan.tool_radius_m;
+  bool good = !plan.depths_m.empty();
+  double last_m = 0.0;
+  for (const double d_m : plan.depths_m) {
+    good &= d_m > last_m && d_m <= most_m;  // a NaN is neither
+    last_m = d_m;
+  }
+  if (good) return std::nullopt;
+  return Error{
+      fmt::format("--depths must rise, all above 0 and at most {:.3g} m ({:g} tool radii); give "
+                  "metres: 0.001,0.002",
+                  most_m, kMostDepth)};
 }
 
 std::vector<Indentation> cases_of(const ReferencePlan& plan) {

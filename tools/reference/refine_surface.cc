@@ -1,8 +1,13 @@
 #include "tools/reference/refine_surface.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+
+#include "tools/common/interrupt.h"
+#include "tools/common/run_program.h"
 
 namespace tact::tools {
 namespace {
@@ -11,6 +16,9 @@ using model::TriangleCorners;
 using model::Vec3;
 
 constexpr std::uint32_t kUnset = 0xFFFFFFFFU;
+// Two rounds halve a triangle's edges: from 0.1 m to 0.1 um, far below any tool.
+constexpr int kMostRounds = 40;
+constexpr std::size_t kMostTriangles = 1000000;  // gmsh would need days for the body of more
 using Middles = std::unordered_map<std::uint64_t, std::uint32_t>;  // of the edges to split
 
 std::uint64_t key(std::uint32_t a, std::uint32_t b) {
@@ -161,12 +169,19 @@ Triangles cut_along(Triangles surface, const Circle& circle, double reach_m) {
   return surface;
 }
 
-Triangles refine_surface(Triangles surface, const EdgeLengths& lengths) {
-  for (;;) {
+model::Result<Triangles> refine_surface(Triangles surface, const EdgeLengths& lengths) {
+  const bool has_goal = lengths.fine_m > 0.0;  // a NaN is none
+  for (int round = 0; has_goal && round < kMostRounds && surface.triangle.size() < kMostTriangles;
+       ++round) {
+    if (is_interrupted()) return interruption();
     Middles middles = edges_to_split(surface, lengths);
     if (middles.empty()) return surface;
     split(surface, middles);
   }
+  return model::Error{
+      fmt::format("the surface around ({:.4g}, {:.4g}, {:.4g}) m cannot be refined to edges of "
+                  "{:.3g} m; ask for a larger depth or a larger tool radius",
+                  lengths.at_m.x, lengths.at_m.y, lengths.at_m.z, lengths.fine_m)};
 }
 
 }  // namespace tact::tools

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "model/mesh.h"
+#include "model/result.h"
 #include "tools/common/gmsh.h"
 
 namespace tact::tools {
@@ -18,8 +19,8 @@ struct Triangles {
   std::vector<model::TriangleCorners> triangle;
 };
 
-/// `fine` must be above 0.
-Triangles refine_surface(Triangles surface, const EdgeLengths& lengths);
+/// An error if the edges asked for are too short to be reached, or Ctrl-C was pressed.
+model::Result<Triangles> refine_surface(Triangles surface, const EdgeLengths& lengths);
 
 /// A circle about an axis, drawn on the surface by a cylinder.
 struct Circle {

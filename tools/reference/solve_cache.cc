@@ -126,10 +126,10 @@ model::Result<ReferenceCase> solve_once(const Organ& organ, const Indentation& w
   probe.contact_radius_m = kProbeContact * what.tool_radius_m;
   auto first = solve_or_find(organ, probe, solver, cache);
   if (!first) return first;
-  const TipContact tip(
-      organ.material, what.tool_radius_m,
-      surface_fall_m(organ.surface, what.vertex, kFallRings, what.tool_radius_m / (kFallRings - 1)),
-      what.tool_radius_m / (kFallRings - 1));
+  const double pitch_m = what.tool_radius_m / (kFallRings - 1);
+  auto fall_m = surface_fall_m(organ.surface, what.vertex, kFallRings, pitch_m);
+  if (!fall_m) return fall_m.error();
+  const TipContact tip(organ.material, what.tool_radius_m, std::move(*fall_m), pitch_m);
   Indentation pressed = what;
   pressed.contact_radius_m =
       tip.radius_m(what.depth_m, tip.give_m_per_N(probe.depth_m, first->force_N));
