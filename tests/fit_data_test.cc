@@ -10,7 +10,7 @@ namespace {
 
 using model::operator""_mm;
 
-ReferenceData make_reference() {
+ReferenceData make_reference(const model::Scene& scene) {
   ReferenceData data{.mesh = "plate.obj",
                      .mesh_hash = "",
                      .solver = "",
@@ -20,7 +20,10 @@ ReferenceData make_reference() {
                      .ring_pitch_m = 2_mm,
                      .sites = {}};
   for (const std::uint32_t vertex : {30U, 200U}) {
-    SolvedSite site{.vertex = vertex, .point_m = {}, .direction = {0, 0, -1}, .cases = {}};
+    SolvedSite site{.vertex = vertex,
+                    .point_m = scene.organ_mesh.vertex_m[vertex] - scene.organ.position_m,
+                    .direction = {0, 0, -1},
+                    .cases = {}};
     site.cases = {{.depth_m = 5_mm, .force_N = 0.2, .profile_m = {5_mm, 3_mm}},
                   {.depth_m = -5_mm, .force_N = -0.3, .profile_m = {-5_mm}},
                   {.depth_m = 9_mm, .large_strain = true, .force_N = 0.5, .profile_m = {9_mm}}};
@@ -32,7 +35,7 @@ ReferenceData make_reference() {
 TEST(FitData, KeepsTheLinearCasesAndTheSitesThatTheSceneHoldsOut) {
   model::Scene scene = tests::make_plate_scene();
   scene.reference_sites = {{.vertex = 30}, {.vertex = 200, .held_out = true}};
-  const auto data = fit_data_of(make_reference(), scene, {}, false);
+  const auto data = fit_data_of(make_reference(scene), scene, {}, false);
   ASSERT_TRUE(data) << data.error().sentence;
   ASSERT_EQ(data->sites.size(), 2U);
   EXPECT_FALSE(data->sites[0].held_out);
@@ -44,7 +47,7 @@ TEST(FitData, KeepsTheLinearCasesAndTheSitesThatTheSceneHoldsOut) {
   EXPECT_TRUE(std::isnan(data->sites[0].samples[1].ring_m[1]));  // not known there
   EXPECT_TRUE(data->has_places());
   EXPECT_EQ(data->sites[0].at->normal, (model::Vec3{0, 0, 1}));
-  const auto large = fit_data_of(make_reference(), scene, {}, true);
+  const auto large = fit_data_of(make_reference(scene), scene, {}, true);
   ASSERT_TRUE(large);
   EXPECT_EQ(large->sites[0].samples.size(), 1U);
   EXPECT_EQ(large->deepest_m(), 9_mm);
@@ -52,18 +55,18 @@ TEST(FitData, KeepsTheLinearCasesAndTheSitesThatTheSceneHoldsOut) {
 
 TEST(FitData, RefusesAnotherOrganAndNothingToFit) {
   model::Scene scene = tests::make_plate_scene();
-  ReferenceData reference = make_reference();
+  ReferenceData reference = make_reference(scene);
   reference.sites[1].vertex = 1000000;
   const auto stranger = fit_data_of(reference, scene, {}, false);
   ASSERT_FALSE(stranger);
-  EXPECT_NE(stranger.error().sentence.find("site 1000000"), std::string::npos);
-  EXPECT_FALSE(fit_data_of(make_reference(), scene, {"31"}, false));  // no such site
+  EXPECT_NE(stranger.error().sentence.find("vertex 1000000"), std::string::npos);
+  EXPECT_FALSE(fit_data_of(make_reference(scene), scene, {"31"}, false));  // no such site
   scene.reference_sites = {{.vertex = 30, .held_out = true}};
-  const auto rest = fit_data_of(make_reference(), scene, {"200"}, false);
+  const auto rest = fit_data_of(make_reference(scene), scene, {"200"}, false);
   ASSERT_FALSE(rest);
   EXPECT_NE(rest.error().sentence.find("leave one to fit"), std::string::npos);
   scene.reference_sites.push_back({.vertex = 200, .held_out = true});
-  EXPECT_FALSE(fit_data_of(make_reference(), scene, {}, false));
+  EXPECT_FALSE(fit_data_of(make_reference(scene), scene, {}, false));
 }
 
 TEST(FitData, AVertexIsAPlaceWithAllItsWeight) {

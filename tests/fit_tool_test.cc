@@ -91,9 +91,27 @@ TEST_F(FitTool, RefusesBadInputWithOneSentence) {
   };
   refused(kScene, "nothing to fit to");
   refused(kScene + " --data " + file("bad.csv"), "bad.csv:3: force_N: \"x\" is no number");
-  refused(kScene + " --law jelly --data " + press(1.0), "describes no law named jelly");
+  refused(kScene + " --law jelly --data " + press(1.0), "describes no law \"jelly\"");
+  refused(kScene + " --law rhombus,jelly --data " + press(1.0), "describes no law \"jelly\"");
+  refused(kScene + " --law rhombus --keep jelly --data " + press(1.0), "--keep jelly");
+  refused(kScene + " --law disc_stack_linear --keep youngs_modulus_Pa --data " + press(1.0),
+          "leaves nothing of disc_stack_linear");
   refused(kScene + " --reference " + file("none.json"), "none.json: cannot be read");
   refused("none.toml --data " + file("bad.csv"), "none.toml");
+}
+
+TEST_F(FitTool, NeverWritesOverWhatWasMeasured) {
+  const std::string data = press(1.0), csv = file("press.csv");  // and its columns
+  const auto before = std::filesystem::file_size(csv);
+  const auto same =
+      run_program("tact-fit", kScene + " --law disc_stack_linear --data " + data + " --out " + csv);
+  EXPECT_EQ(same.status, 2) << same.output;
+  EXPECT_NE(same.output.find("would be overwritten"), std::string::npos) << same.output;
+  const std::string picture = std::filesystem::path(csv).replace_extension(".svg").string();
+  const auto drawn = run_program(
+      "tact-fit", kScene + " --law disc_stack_linear --data " + data + " --picture " + picture);
+  EXPECT_TRUE(std::filesystem::exists(picture)) << drawn.output;
+  EXPECT_EQ(std::filesystem::file_size(csv), before);
 }
 
 }  // namespace
