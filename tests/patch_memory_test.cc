@@ -102,29 +102,32 @@ TEST(PatchMemory, EveryIntegratorEndsAtTheForceThatStays) {
 
 // Any path of the tool along the surface and into it, 3 mm deep: what is stored and moves is never
 // more than what the hand gave.
-TEST(PatchMemory, PassiveOverRandomStrokes) {
-  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
-    for (const bool held : {false, true}) {
-      PressedPatch pressed(fading_patch({{0.4, 0.02}, {0.3, 0.2}}));
-      SpringPatch& patch = pressed.patch();
-      std::uint32_t chance = seed;
-      double x_m = 0.001, y_m = 0.002, d_m = 0.0, most_J = 0.0;
-      for (int i = 0; i < 1200; ++i) {
-        x_m += 0.0002 * noise(chance);
-        y_m += 0.0002 * noise(chance);
-        d_m = 0.98 * d_m + 0.001 * noise(chance);
-        pressed.move_to(x_m, y_m, d_m, held);
-        pressed.advance();
-        most_J = std::fmax(most_J, pressed.work_J());
-        const double kept_J = patch.stored_energy_J() + patch.kinetic_energy_J();
-        // unless held, the trapezoid misses where in a tick the tool lets go
-        const double error_J = held ? 1e-12 : 0.05 * most_J + 1e-6;
-        ASSERT_LE(kept_J, pressed.work_J() + patch.region().handover_debt_J() + error_J)
-            << seed << ", tick " << i;
-      }
-      EXPECT_GT(most_J, 1e-4);
-    }
+void expect_passive(double stride_m, bool held, std::uint32_t seed) {
+  PressedPatch pressed(fading_patch({{0.4, 0.02}, {0.3, 0.2}}));
+  SpringPatch& patch = pressed.patch();
+  std::uint32_t chance = seed;
+  double x_m = 0.001, y_m = 0.002, d_m = 0.0, most_J = 0.0;
+  // held: rounding; else the trapezoid misses where in a tick the tool lets go, about q dd^2 / 8
+  const double error_J = held ? 1e-12 : 2e-6;
+  for (int i = 0; i < 1200; ++i) {
+    x_m += stride_m * noise(chance);
+    y_m += stride_m * noise(chance);
+    d_m = 0.98 * d_m + 0.001 * noise(chance);
+    pressed.move_to(x_m, y_m, d_m, held);
+    pressed.advance();
+    most_J = std::fmax(most_J, pressed.work_J());
+    const double kept_J = patch.stored_energy_J() + patch.kinetic_energy_J();
+    ASSERT_LE(kept_J, pressed.work_J() + patch.region().handover_debt_J() + error_J)
+        << seed << ", tick " << i;
   }
+  EXPECT_GT(most_J, 1e-3);
+  EXPECT_LT(patch.region().handover_debt_J(), 1e-4 * most_J);
+}
+
+TEST(PatchMemory, PassiveOverRandomStrokes) {
+  for (const double stride_m : {0.0002, 0.001})  // in one region, and from region to region
+    for (std::uint32_t seed = 1; seed <= 3; ++seed)
+      for (const bool held : {false, true}) expect_passive(stride_m, held, seed);
 }
 
 TEST(PatchMemory, EnergyFallsWhileTheDepthIsHeld) {
