@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -69,6 +70,17 @@ TEST(ReferenceData, ComesBackAsItWasWritten) {
   EXPECT_FALSE(back->sites[0].cases[1].is_press());
   EXPECT_TRUE(back->sites[0].cases[1].large_strain);
   EXPECT_EQ(back->sites[0].cases[1].profile_m, (std::vector<double>{-0.002, -0.002, -0.0005}));
+}
+
+TEST(ReferenceData, AnErrorThatIsNotKnownIsNull) {
+  ReferenceData data = example();
+  data.sites[0].cases[0].force_error_ratio = std::nan("");
+  const std::string text = reference_text(data);
+  EXPECT_NE(text.find("\"force_error_ratio\": null,"), std::string::npos) << text;
+  const auto back = read_text(text);
+  ASSERT_TRUE(back) << back.error().sentence;
+  EXPECT_TRUE(std::isnan(back->sites[0].cases[0].force_error_ratio));
+  EXPECT_EQ(back->sites[0].cases[1].force_error_ratio, 0.01);
 }
 
 TEST(ReferenceData, NamesTheFileAndTheKeyOfADamage) {

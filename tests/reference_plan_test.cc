@@ -33,6 +33,12 @@ ReferenceCase answer(const Indentation& what, const ReferencePlan& p) {
           .profile_m = {what.depth_m, 0.5 * what.depth_m}};
 }
 
+ReferenceData made_up(const ReferencePlan& p) {
+  std::vector<ReferenceCase> solved;
+  for (const Indentation& c : cases_of(p)) solved.push_back(answer(c, p));
+  return assemble(p, solved, "by hand");
+}
+
 TEST(ReferencePlan, SolvesEveryDepthAndTheCoarseOnesForTheError) {
   const ReferencePlan p = plan();
   const auto cases = cases_of(p);
@@ -45,9 +51,7 @@ TEST(ReferencePlan, SolvesEveryDepthAndTheCoarseOnesForTheError) {
 
 TEST(ReferencePlan, PutsTheFileTogether) {
   const ReferencePlan p = plan();
-  std::vector<ReferenceCase> solved;
-  for (const Indentation& c : cases_of(p)) solved.push_back(answer(c, p));
-  const ReferenceData data = assemble(p, solved, "by hand");
+  const ReferenceData data = made_up(p);
   ASSERT_EQ(data.sites.size(), 2U);
   ASSERT_EQ(data.sites[0].cases.size(), 6U);
   ASSERT_EQ(data.sites[1].cases.size(), 7U);
@@ -61,7 +65,25 @@ TEST(ReferencePlan, PutsTheFileTogether) {
     EXPECT_NEAR(cases[i].force_error_ratio, 7.0 / 3.0 * errors[i], 1e-12) << i;
   }
   EXPECT_TRUE(data.sites[1].cases[6].large_strain);
+  // Solved at the coarsest level: what is left there is 1 / 0.3 of the change.
+  EXPECT_NEAR(data.sites[1].cases[6].force_error_ratio, 0.01 / 0.3, 1e-12);
   EXPECT_EQ(data.sites[0].direction, (model::Vec3{0.0, 0.0, -1.0}));
+}
+
+TEST(ReferencePlan, OneDepthHasItsOwnError) {
+  ReferencePlan p = plan();
+  p.depths_m = {2e-3};
+  const ReferenceData data = made_up(p);
+  ASSERT_EQ(data.sites[0].cases.size(), 2U);
+  EXPECT_NEAR(data.sites[0].cases[0].force_error_ratio, 7.0 / 3.0 * 0.05, 1e-12);
+}
+
+TEST(ReferencePlan, TheCoarsestLevelHasNoErrorThatIsKnown) {
+  ReferencePlan p = plan();
+  p.level = kCoarsestLevel;
+  const ReferenceData data = made_up(p);
+  for (const SolvedSite& site : data.sites)
+    for (const ReferenceCase& c : site.cases) EXPECT_TRUE(std::isnan(c.force_error_ratio));
 }
 
 TEST(ReferencePlan, RefusesWhatCannotBeSolved) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 namespace tact::tools {
@@ -21,12 +22,16 @@ Vec3 vector_of(const json& j) {
   return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
 }
 
+double error_of(const json& j) {
+  return j.is_null() ? std::numeric_limits<double>::quiet_NaN() : j.get<double>();
+}
+
 ReferenceCase case_of(const json& j) {
   return {.depth_m = j.at("depth_m").get<double>(),
           .large_strain = j.at("large_strain").get<bool>(),
           .force_N = j.at("force_N").get<double>(),
           .contact_radius_m = j.at("contact_radius_m").get<double>(),
-          .force_error_ratio = j.at("force_error_ratio").get<double>(),
+          .force_error_ratio = error_of(j.at("force_error_ratio")),
           .profile_m = j.at("profile_m").get<std::vector<double>>()};
 }
 
@@ -81,8 +86,10 @@ std::string text_of(const ReferenceCase& c) {
     profile += fmt::format("{}{:.4g}", profile.empty() ? "" : ", ", u_m);
   return fmt::format(
       "{{\"depth_m\": {:.6g}, \"large_strain\": {}, \"force_N\": {:.6g}, "
-      "\"contact_radius_m\": {:.6g}, \"force_error_ratio\": {:.3g},\n   \"profile_m\": [{}]}}",
-      c.depth_m, c.large_strain, c.force_N, c.contact_radius_m, c.force_error_ratio, profile);
+      "\"contact_radius_m\": {:.6g}, \"force_error_ratio\": {},\n   \"profile_m\": [{}]}}",
+      c.depth_m, c.large_strain, c.force_N, c.contact_radius_m,
+      std::isfinite(c.force_error_ratio) ? fmt::format("{:.3g}", c.force_error_ratio) : "null",
+      profile);
 }
 
 std::string text_of(const SolvedSite& site) {

@@ -21,7 +21,7 @@ struct ReferenceCase {
   bool large_strain = false;
   double force_N = 0.0;
   double contact_radius_m = 0.0;
-  double force_error_ratio = 0.0;  // of the mesh: what its change by refinement leaves
+  double force_error_ratio = 0.0;  // of the mesh: what refinement would change; NaN: not known
   std::vector<double> profile_m;   // ring k at radius k * ring_pitch_m
 
   bool is_press() const { return depth_m > 0.0; }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -114,8 +115,11 @@ void print_table(const ReferenceData& data) {
              "force N", "mesh err %", "material");
   for (const SolvedSite& site : data.sites)
     for (const ReferenceCase& c : site.cases)
-      fmt::print("{:>6} {:>9.3g} {:>11.3f} {:>10.5f} {:>11.2f}  {}\n", site.vertex, c.depth_m * 1e3,
-                 c.contact_radius_m * 1e3, c.force_N, c.force_error_ratio * 100.0,
+      fmt::print("{:>6} {:>9.3g} {:>11.3f} {:>10.5f} {:>11}  {}\n", site.vertex, c.depth_m * 1e3,
+                 c.contact_radius_m * 1e3, c.force_N,
+                 std::isfinite(c.force_error_ratio)
+                     ? fmt::format("{:.2f}", c.force_error_ratio * 100.0)
+                     : "-",
                  c.large_strain ? "neo-Hookean" : "linear");
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 namespace tact::tools {
 namespace {
@@ -15,6 +16,7 @@ constexpr double kDefaultDepths_m[] = {1e-3, 2e-3, 3.5e-3, 5e-3, 7e-3, 10e-3};
 constexpr double kUnitPull_m = -1e-3;
 // Of the tool's radius: near 1.5 the elements at the rim of the bond turn inside out.
 constexpr double kLargeStrainDepth = 1.3;
+constexpr double kShrink = 0.7;  // of edges, and of the error, from level to level
 constexpr double kMostDepth = 5.0;  // of the tool's radius
 
 bool among(const std::vector<std::uint32_t>& list, std::uint32_t vertex) {
@@ -30,12 +32,13 @@ struct SiteCases {
   std::vector<const ReferenceCase*> large_strain;
 };
 
-/// What is left of the error at the finer level. Edges shrink by 0.7 from level to level and the
-/// error with them (the rim of a contact is singular), so the rest of the series is 0.7 / 0.3 of
-/// the last change.
+/// What is left of the error at the finer level; NaN without a coarser one. Edges shrink by 0.7
+/// from level to level and the error with them (the rim of a contact is singular), so the rest of
+/// the series is 0.7 / 0.3 of the last change.
 double remaining_error(const ReferenceCase* fine, const ReferenceCase* coarse) {
-  if (coarse == nullptr) return 0.0;
-  return 0.7 / 0.3 * std::abs(fine->force_N - coarse->force_N) / std::abs(fine->force_N);
+  if (coarse == nullptr) return std::numeric_limits<double>::quiet_NaN();
+  return kShrink / (1.0 - kShrink) * std::abs(fine->force_N - coarse->force_N) /
+         std::abs(fine->force_N);
 }
 
 ReferenceCase scaled(const ReferenceCase& unit, double depth_m) {
@@ -52,18 +55,21 @@ std::vector<ReferenceCase> cases_of_site(const SiteCases& s, const ReferencePlan
   const double least_m = plan.depths_m.front(), largest_m = plan.depths_m.back();
   for (const ReferenceCase* c : s.press) {
     const bool nearer_least = c->depth_m - least_m < largest_m - c->depth_m;
+    const std::size_t end = nearer_least || s.press.size() == 1 ? 0 : 1;
     out.push_back(*c);
-    out.back().force_error_ratio = remaining_error(s.press[nearer_least ? 0 : s.press.size() - 1],
-                                                   s.press_coarse[nearer_least ? 0 : 1]);
+    out.back().force_error_ratio =
+        remaining_error(end == 0 ? s.press.front() : s.press.back(), s.press_coarse[end]);
   }
   const double pull_error = remaining_error(s.pull, s.pull_coarse);
   for (const double d_m : plan.depths_m) {
     out.push_back(scaled(*s.pull, -d_m));
     out.back().force_error_ratio = pull_error;
   }
+  // Large strain is solved at the coarsest level, where the error is larger.
+  const double coarsest_error = pull_error / std::pow(kShrink, plan.level - kCoarsestLevel);
   for (const ReferenceCase* c : s.large_strain) {
     out.push_back(*c);
-    out.back().force_error_ratio = pull_error;
+    out.back().force_error_ratio = coarsest_error;
   }
   return out;
 }

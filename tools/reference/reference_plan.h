@@ -4,7 +4,7 @@
 // sites also pull with large strain, at the largest depth up to 1.3 R and on the coarsest mesh: it
 // says how far linear is wrong. The mesh error of a force comes from its change from the next
 // coarser level, solved at the least and the largest press depth and for pull; a depth between
-// takes the nearer one's.
+// takes the nearer one's. At the coarsest level it is not known: NaN, null in the file.
 #pragma once
 
 #include <cstdint>
