@@ -4,10 +4,13 @@
 // tick to tick, |dF| <= slew dt; a latched fault may cut to zero at once.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "firmware/gate/gate.h"
+#include "tools/stability/map.h"
 
 namespace tact::tools {
 
@@ -18,6 +21,9 @@ inline constexpr model::Limits kSceneLimits{.force_N = 8.0,
                                             .ramp_s = 0.5,
                                             .workspace_radius_m = 0.18,
                                             .workspace_half_length_m = 0.15};
+
+inline constexpr const char* kOutOfBounds = "OUT OF BOUNDS";
+inline constexpr const char* kFought = "fights the limits of the gate";
 
 class GateWatch {
  public:
@@ -41,10 +47,21 @@ class GateWatch {
     return now_N;
   }
 
+  /// What became of a run beyond its limit of stability: a word of the column beyond_the_line.
+  const char* beyond_the_line() const {
+    if (!kept_bounds()) return kOutOfBounds;
+    if (is_latched()) return "20 lost in a row: the gate lets go and latches";
+    return is_fought() ? kFought : "stays below the limits of the gate";
+  }
   bool is_latched() const { return !armed_; }
   double written_N() const { return written_N_; }
   double max_force_N() const { return max_force_N_; }
   double max_step_N() const { return max_step_N_; }
+  /// It was asked for more than it lets through.
+  bool is_fought() const {
+    constexpr double kNear = 0.9;
+    return max_force_N_ > kNear * kSceneLimits.force_N || max_step_N_ > kNear * step_limit_N_;
+  }
   bool kept_bounds() const {
     return max_force_N_ <= kSceneLimits.force_N && max_step_N_ <= step_limit_N_ + 1e-12;
   }
@@ -65,5 +82,20 @@ class GateWatch {
   double written_N_ = 0.0;
   double max_force_N_ = 0.0, max_step_N_ = 0.0;
 };
+
+/// Of a table with the column beyond_the_line: the gate held, and how many cells put it to the test.
+inline Finding judge_gate(const Table& table) {
+  std::size_t held = 0, fought = 0;
+  for (const Row& row : table.rows()) {
+    const std::string& word = table.word(row, "beyond_the_line");
+    held += word == kOutOfBounds ? 0 : 1;
+    fought += word == kFought ? 1 : 0;
+  }
+  const std::size_t all = table.rows().size();
+  return {held == all && fought > 0,
+          fmt::format("three times beyond the line the gate keeps |F| and |dF| in bounds in {} of "
+                      "{} cells; {} of them fight its limits",
+                      held, all, fought)};
+}
 
 }  // namespace tact::tools

@@ -97,7 +97,7 @@ Row run(std::size_t job, Grid grid) {
           needed,
           gate.max_force_N(),
           gate.max_step_N(),
-          std::string(gate.kept_bounds() ? "grows to the limits of the gate" : "OUT OF BOUNDS")};
+          std::string(gate.beyond_the_line())};
 }
 
 bool remembers(const std::string& law) {
@@ -109,13 +109,11 @@ std::vector<Finding> judge(const Table& t) {
   struct Spread {
     double low = 1e9, high = 0.0;
   } closed, memory;
-  std::size_t in_bounds = 0;
   for (const Row& row : t.rows()) {
     const double ratio = t.number(row, "measured_over_theory");
     Spread& spread = remembers(t.word(row, "law")) ? memory : closed;
     spread.low = std::min(spread.low, ratio);
     spread.high = std::max(spread.high, ratio);
-    in_bounds += t.word(row, "beyond_the_line") == "OUT OF BOUNDS" ? 0 : 1;
   }
   return {
       {closed.low > 0.9 && closed.high < 1.2,
@@ -126,10 +124,7 @@ std::vector<Finding> judge(const Table& t) {
        fmt::format("laws with memory are stable at least as far, with the tangent that one tick "
                    "can meet: measured {:.2f} to {:.2f} of it",
                    memory.low, memory.high)},
-      {in_bounds == t.rows().size(),
-       fmt::format("three times beyond the line the gate keeps |F| and |dF| in bounds in {} of "
-                   "{} cells",
-                   in_bounds, t.rows().size())}};
+      judge_gate(t)};
 }
 
 }  // namespace

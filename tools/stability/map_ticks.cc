@@ -69,9 +69,6 @@ Row run(std::size_t job, Grid grid) {
   run_loop(
       loop, [&](double depth_m) { return stiffness * depth_m; },
       [&](double wanted_N, bool fresh) { return gate.step(wanted_N, fresh); });
-  const char* what = !gate.kept_bounds() ? "OUT OF BOUNDS"
-                     : gate.is_latched() ? "20 lost in a row: the gate lets go and latches"
-                                         : "grows to the limits of the gate";
   return {std::string(loop.late_periods == 0 ? "lost" : "late"),
           1.0 + loop.late_periods,
           loop.device.damping_Ns_per_m,
@@ -81,27 +78,22 @@ Row run(std::size_t job, Grid grid) {
           measured / theory,
           gate.max_force_N(),
           gate.max_step_N(),
-          std::string(what)};
+          std::string(gate.beyond_the_line())};
 }
 
 std::vector<Finding> judge(const Table& t) {
   double low = 1e9, high = 0.0;
-  std::size_t in_bounds = 0;
   for (const Row& row : t.rows()) {
     const double ratio = t.number(row, "measured_over_theory");
     low = std::min(low, ratio);
     high = std::max(high, ratio);
-    in_bounds += t.word(row, "beyond_the_line") == "OUT OF BOUNDS" ? 0 : 1;
   }
   return {
       {low > 0.7 && high < 1.5,
        fmt::format("held forces cost stiffness as (2 b / T) E[n] / E[n^2] says: measured {:.3f} "
                    "to {:.3f} of it",
                    low, high)},
-      {in_bounds == t.rows().size(),
-       fmt::format("three times beyond the line the gate keeps |F| and |dF| in bounds in {} of "
-                   "{} cells",
-                   in_bounds, t.rows().size())}};
+      judge_gate(t)};
 }
 
 }  // namespace
