@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <sstream>
 
 #include "model/disc_stack.h"
 #include "tests/test_scene.h"
@@ -183,7 +184,19 @@ TEST(Chart, GivesEveryLawARowWithTheErrorWorkedByHand) {
     EXPECT_NE(std::find(families.begin(), families.end(), law), families.end()) << law;
 }
 
-TEST(Chart, ShardsMergeToTheSameNumbers) {
+/// The CSV without the columns that are measured: those from the median time on.
+std::string computed_part(const Table& table) {
+  std::istringstream lines(table.to_csv());
+  std::string line, out;
+  while (std::getline(lines, line)) {
+    std::size_t end = 0;  // the number of the job comes first
+    for (std::size_t c = 0; c <= table.column("tick_median_us"); ++c) end = line.find(',', end) + 1;
+    out += line.substr(0, end) + "\n";
+  }
+  return out;
+}
+
+TEST(Chart, ShardsMergeToTheSameBytes) {
   const model::Scene scene = make_scene();
   const ReferenceData truth = linear_truth(30.0);
   const std::string folder = scratch_folder("chart_shards");
@@ -202,16 +215,7 @@ TEST(Chart, ShardsMergeToTheSameNumbers) {
   EXPECT_FALSE(check_same_source(*merged, {"scene", "truth", "r2", "there"}));
   EXPECT_TRUE(check_same_source(*merged, {"scene after a change", "truth", "r1", "here"}));
   EXPECT_EQ(machines_of(*merged), "here");
-  ASSERT_EQ(merged->rows().size(), whole.rows().size());
-  for (std::size_t r = 0; r < whole.rows().size(); ++r)
-    for (std::size_t c = 0; c < whole.column("tick_median_us"); ++c) {
-      const Cell &a = whole.rows()[r][c], &b = merged->rows()[r][c];
-      if (whole.columns()[c].kind == CellKind::kWord) {
-        EXPECT_EQ(std::get<std::string>(a), std::get<std::string>(b));
-      } else if (!std::isnan(std::get<double>(a))) {
-        EXPECT_NEAR(std::get<double>(a), std::get<double>(b), 1e-5 * std::abs(std::get<double>(a)));
-      }
-    }
+  EXPECT_EQ(computed_part(*merged), computed_part(whole)) << "byte for byte; times are measured";
   EXPECT_FALSE(merge_table(empty_chart(whole.jobs(), {}), {files[0]}));  // the other is missing
 }
 

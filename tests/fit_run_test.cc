@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/fit_fixture.h"
 
 namespace tact::tools {
@@ -59,6 +61,19 @@ TEST(FitRun, FindsTheDiscStackThatMadeTheData) {
   EXPECT_NEAR(value_of(fit("disc_stack_linear", start, data), "youngs_modulus_Pa"), 5200.0, 1.0);
   spoil(data);
   EXPECT_NEAR(value_of(fit("disc_stack_linear", start, data), "youngs_modulus_Pa"), 5200.0, 52.0);
+}
+
+TEST(FitRun, DoesNotDependOnTheOrderOfTheRows) {
+  const Scene scene = make_scene();
+  FitData data{.sites = {make_site(scene, 100, 0.0)}};
+  answer(scene, LawKind::kDiscStack, data, false);
+  for (FitSample& s : data.sites[0].samples) s.force_N *= 1.0 + 100.0 * s.depth_m;  // no law's
+  const auto modulus_Pa = [&] {
+    return value_of(fit("disc_stack_linear", scene, data), "youngs_modulus_Pa");
+  };
+  const double rising_Pa = modulus_Pa();
+  std::reverse(data.sites[0].samples.begin(), data.sites[0].samples.end());
+  EXPECT_NEAR(modulus_Pa(), rising_Pa, 1e-3 * rising_Pa);
 }
 
 TEST(FitRun, FindsTheConedDiscsThatMadeTheData) {

@@ -36,7 +36,7 @@ struct FitLaw {
   bool by_place = false;        // differs from place to place
   std::string choice{};         // key = "word" of its section that makes this law, or empty
   double difference = 1e-4;     // of a slope, in the logarithm
-  int most_evaluations = 2000;  // from all starts
+  int most_evaluations = 2000;  // of the long search; a tenth from every start before
   bool is_slow = false;         // fitted to the deepest samples of a site and those half as deep
   std::vector<FitParameter> parameters{};
   /// Ratios to the scene's own numbers where the search starts, one vector each.

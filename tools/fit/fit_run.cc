@@ -24,10 +24,12 @@ void thin(FitSite& site) {
     if (!(deepest_m > 0.0)) continue;
     for (const double share : {0.5, 1.0}) {
       const double wanted_m = sign * share * deepest_m;
-      kept.push_back(*std::min_element(
+      const FitSample& nearest = *std::min_element(
           site.samples.begin(), site.samples.end(), [&](const FitSample& a, const FitSample& b) {
             return std::abs(a.depth_m - wanted_m) < std::abs(b.depth_m - wanted_m);
-          }));
+          });
+      const bool is_new = kept.empty() || kept.back().depth_m != nearest.depth_m;
+      if (is_new) kept.push_back(nearest);
     }
   }
   site.samples = std::move(kept);
@@ -56,10 +58,9 @@ class Fit {
   }
 
   SearchProblem problem() {
-    SearchProblem out{
-        .residuals = samples_ * (with_shapes_ ? 2 : 1) + 1,
-        .difference = law_.difference,
-        .most_evaluations = law_.most_evaluations / static_cast<int>(law_.starts.size())};
+    SearchProblem out{.residuals = samples_ * (with_shapes_ ? 2 : 1) + 1,
+                      .difference = law_.difference,
+                      .most_evaluations = law_.most_evaluations};
     for (const FitParameter& p : law_.parameters) {
       out.low.push_back(std::log(p.low));
       out.high.push_back(std::log(p.high));
@@ -158,8 +159,9 @@ SearchResult search_from_all(const FitLaw& law, Fit& fit, int& evaluations) {
     SearchResult found = go(fit.start(ratios));
     if (best.x.empty() || found.sum_of_squares < best.sum_of_squares) best = std::move(found);
   }
+  if (law.starts.size() == 1) return best;
   problem.most_evaluations = law.most_evaluations;
-  return law.starts.size() > 1 ? go(best.x) : best;
+  return go(best.x);
 }
 
 FittedKey key_of(const FitParameter& p, Scene& scene) {
