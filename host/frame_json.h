@@ -1,6 +1,6 @@
 // frame_json.h - telemetry as JSON text for the page.
 //
-// One frame is at most kMaxFrameJsonBytes long whatever its numbers are: lengths and forces carry
+// One frame that check_frame lets pass is at most kMaxFrameJsonBytes long: lengths and forces carry
 // four significant digits, the tool's position six, and only sites in contact are listed. A number
 // that is not finite becomes null, because JSON has no NaN. A law without profiles shows displaced
 // vertices instead, in base64: n vertex numbers (uint32), then n displacements (3 int16, um).

@@ -43,12 +43,17 @@ std::string read_setup(std::istream& in, std::uint64_t file_bytes, Recording& re
     return "this is not a tact recording; give a file made with --record or the page's record "
            "button";
   }
-  if (header.version != kRecordingVersion || header.hello_bytes != sizeof(Hello) ||
-      header.frame_bytes != sizeof(Frame)) {
+  if (header.version != kRecordingVersion) {
     return fmt::format(
         "recording version {} cannot be read by this tact-view (version {}); "
         "open it with the tact-view that made it",
         header.version, kRecordingVersion);
+  }
+  if (header.hello_bytes != sizeof(Hello) || header.frame_bytes != sizeof(Frame)) {
+    return fmt::format(
+        "its frames have {} bytes, those of this tact-view {}, though both say version {}; open it "
+        "with the build that made it",
+        header.frame_bytes, sizeof(Frame), kRecordingVersion);
   }
   constexpr const char* kCutOff =
       "the file ends before its first frame; nothing of it can be shown, record again";
@@ -113,7 +118,7 @@ ReadResult read_recording(const std::string& path) {
   std::uint64_t damaged = 0, first_damaged = 0;
   FrameRecord record;
   for (std::uint64_t i = 0; i < records && read(in, record); ++i) {
-    if (crc_of(record.frame) == record.crc && check_frame(record.frame).empty()) {
+    if (crc_of(record.frame) == record.crc && check_frame(record.frame, recording.hello).empty()) {
       recording.frames.push_back(record.frame);
     } else if (damaged++ == 0) {
       first_damaged = start + i * sizeof(FrameRecord);

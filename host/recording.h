@@ -16,7 +16,7 @@
 namespace tact::host {
 
 inline constexpr char kRecordingMagic[8] = {'t', 'a', 'c', 't', 'r', 'e', 'c', '\n'};
-inline constexpr std::uint32_t kRecordingVersion = 1;
+inline constexpr std::uint32_t kRecordingVersion = 2;  // 2: displaced vertices, cuts
 
 struct FileHeader {
   char magic[8] = {};

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <span>
 
@@ -47,6 +48,16 @@ void put(std::string& out, std::span<const float> values) {
 }
 void put(std::string& out, float value) { put(out, std::span(&value, 1)); }
 
+/// Cuts so far, vertices told one by one, and the largest displacement of those.
+void put_patch(std::string& out, const firmware::FramePatch& patch) {
+  const auto n = std::min<std::size_t>(patch.vertex_count, firmware::kMaxPatchVertices);
+  double most_um = 0.0;
+  for (const auto& [x, y, z] : std::span(patch.displacement_um).first(n)) {
+    most_um = std::max(most_um, std::hypot(x, y, z));
+  }
+  fmt::format_to(std::back_inserter(out), ",{},{},{:.6f}", patch.cut_total, n, 1e-6 * most_um);
+}
+
 }  // namespace
 
 std::string csv_header(const Hello& hello) {
@@ -55,7 +66,7 @@ std::string csv_header(const Hello& hello) {
       "tool_x_m,tool_y_m,tool_z_m,tool_qw,tool_qx,tool_qy,tool_qz,"
       "tool_vx_mps,tool_vy_mps,tool_vz_mps,grip_ratio,force_x_N,force_y_N,force_z_N,"
       "torque_x_Nm,torque_y_Nm,torque_z_Nm,wanted_x_N,wanted_y_N,wanted_z_N,"
-      "worst_margin_us,median_tick_us,peak_force_N";
+      "worst_margin_us,median_tick_us,peak_force_N,cut_triangles,patch_vertices,patch_most_m";
   for (std::size_t i = 1; i <= sites_of(hello); ++i) {
     fmt::format_to(std::back_inserter(out),
                    ",site{0}_state,site{0}_x_m,site{0}_y_m,site{0}_z_m,site{0}_normal_x,"
@@ -85,6 +96,7 @@ void append_csv_row(std::string& out, const Frame& frame, const Hello& hello) {
   put(out, frame.worst_margin_us);
   put(out, frame.median_tick_us);
   put(out, frame.peak_force_N);
+  put_patch(out, frame.patch);
   for (std::size_t i = 0; i < sites_of(hello); ++i) {
     const firmware::FrameSite& site = frame.site[i];
     out += ',';

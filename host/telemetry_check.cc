@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -38,6 +39,24 @@ std::string check_part(std::span<const std::byte> part, std::uint32_t vertices, 
       return fmt::format("triangle {} of the {} mesh names vertex {} of {}",
                          (at - triangle_start) / kTripleBytes, name, vertex, vertices);
     }
+  }
+  return {};
+}
+
+std::string check_patch(const firmware::FramePatch& patch, const Hello& hello) {
+  if (patch.vertex_count > firmware::kMaxPatchVertices ||
+      patch.cut_count > firmware::kMaxCutsTold) {
+    return "a frame tells more displaced vertices or cuts than fit";
+  }
+  if (patch.cut_total > hello.organ_triangles || patch.cut_count > patch.cut_total) {
+    return "a frame tells more cuts than the organ has triangles";
+  }
+  const auto names_only = [](std::span<const std::uint32_t> ids, std::uint32_t below) {
+    return std::all_of(ids.begin(), ids.end(), [below](std::uint32_t id) { return id < below; });
+  };
+  if (!names_only(std::span(patch.vertex).first(patch.vertex_count), hello.organ_vertices) ||
+      !names_only(std::span(patch.cut_triangle).first(patch.cut_count), hello.organ_triangles)) {
+    return "a frame names a vertex or triangle that the organ does not have";
   }
   return {};
 }
@@ -80,8 +99,16 @@ std::string check_mesh(const Hello& hello, std::span<const std::byte> mesh) {
   return wrong;
 }
 
-std::string check_frame(const Frame& frame) {
-  return check_header(frame.header, firmware::MessageKind::kFrame);
+std::string check_frame(const Frame& frame, const Hello& hello) {
+  if (std::string wrong = check_header(frame.header, firmware::MessageKind::kFrame);
+      !wrong.empty()) {
+    return wrong;
+  }
+  if (frame.state > firmware::State::kStopped) return "a frame has a state that is none";
+  for (const firmware::FrameSite& site : frame.site) {
+    if (site.state > firmware::SiteState::kHeld) return "a frame has a site whose state is none";
+  }
+  return check_patch(frame.patch, hello);
 }
 
 }  // namespace tact::host

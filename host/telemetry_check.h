@@ -29,8 +29,9 @@ std::string check_hello(const Hello& hello);
 /// Size, finite vertices, and triangles that name existing vertices.
 std::string check_mesh(const Hello& hello, std::span<const std::byte> mesh);
 
-/// Header of a Frame. Its numbers may be NaN: that is something to show, not to hide.
-std::string check_frame(const Frame& frame);
+/// Header of a Frame, its states, and a patch that names existing vertices and triangles. Lengths
+/// and forces may be NaN: that is something to show, not to hide.
+std::string check_frame(const Frame& frame, const Hello& hello);
 
 /// A text of a wire struct: ends at the first NUL or with the array.
 template <std::size_t n>

@@ -186,7 +186,7 @@ bool TelemetryClient::read_message() {
   } else if (got == sizeof(Frame)) {
     Frame frame;
     std::memcpy(&frame, bytes, sizeof frame);
-    wrong = check_frame(frame);
+    wrong = check_frame(frame, hello_);
     if (wrong.empty()) events_.frame(frame);
   } else {
     wrong = "a telemetry frame has an unexpected size; use tactd and tact-view of one build";

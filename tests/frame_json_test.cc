@@ -18,13 +18,18 @@ Hello busiest_hello() {
   return hello;
 }
 
-TEST(FrameJson, FitsIntoFourKilobytesWhateverItsNumbersAre) {
+// Every site held, every number as long as it can be.
+Frame longest_frame() {
   const float longest = -std::numeric_limits<float>::min();  // -1.175e-38
   Frame frame = test::make_frame(longest, firmware::SiteState::kHeld);
   frame.tick = frame.late_ticks = frame.skipped_ticks = frame.dropped_records = UINT64_MAX;
   frame.time_ns = INT64_MIN;
   frame.fault = frame.limit = UINT16_MAX;
-  const std::string text = frame_json(frame, busiest_hello());
+  return frame;
+}
+
+TEST(FrameJson, StaysInItsLengthWhateverItsNumbersAre) {
+  const std::string text = frame_json(longest_frame(), busiest_hello());
   EXPECT_LE(text.size(), kMaxFrameJsonBytes);
   EXPECT_GT(text.size(), 1500u);  // the profiles are really in it
   EXPECT_TRUE(nlohmann::json::accept(text));
@@ -110,15 +115,44 @@ TEST(FrameJson, TellsDisplacedVerticesAndCutsOfALawWithoutProfiles) {
   EXPECT_FALSE(nlohmann::json::parse(frame_json(frame, hello)).contains("patch"));
 }
 
-TEST(FrameJson, StaysInItsLengthWithAFullPatch) {
-  Frame frame{};
+TEST(FrameJson, StaysInItsLengthWithAFullPatchAndEverySiteHeld) {
+  Frame frame = longest_frame();
   frame.patch.vertex_count = firmware::kMaxPatchVertices;
-  frame.patch.cut_total = 4'000'000;
+  frame.patch.cut_total = 4'000'000;  // of the largest mesh that check_hello lets pass
   frame.patch.cut_count = firmware::kMaxCutsTold;
   for (auto& triangle : frame.patch.cut_triangle) triangle = 3'999'999;
   Hello hello = busiest_hello();
   hello.ring_count = 0;
-  EXPECT_LE(frame_json(frame, hello).size(), kMaxFrameJsonBytes);
+  hello.organ_vertices = hello.organ_triangles = 4'000'000;
+  ASSERT_EQ(check_hello(hello), "");
+  ASSERT_EQ(check_frame(frame, hello), "");
+  const std::string text = frame_json(frame, hello);
+  EXPECT_LE(text.size(), kMaxFrameJsonBytes);
+  EXPECT_GT(text.size(), kMaxFrameJsonBytes - 200) << "the bound is no larger than it must be";
+  EXPECT_TRUE(nlohmann::json::accept(text));
+}
+
+TEST(CheckFrame, RefusesPatchesThatNameWhatIsNotThere) {
+  const Hello hello = test::make_hello(3, 2, 3, 1);
+  Frame good{};
+  good.patch.vertex_count = 2;
+  good.patch.vertex[1] = 2;
+  good.patch.cut_total = good.patch.cut_count = 2;
+  good.patch.cut_triangle[1] = 1;
+  EXPECT_EQ(check_frame(good, hello), "");
+  const auto refuses = [&](auto spoil) {
+    Frame frame = good;
+    spoil(frame);
+    return !check_frame(frame, hello).empty();
+  };
+  EXPECT_TRUE(refuses([](Frame& f) { f.patch.vertex[1] = 3; }));
+  EXPECT_TRUE(refuses([](Frame& f) { f.patch.cut_triangle[1] = 2; }));
+  EXPECT_TRUE(refuses([](Frame& f) { f.patch.vertex_count = firmware::kMaxPatchVertices + 1; }));
+  EXPECT_TRUE(refuses([](Frame& f) { f.patch.cut_count = firmware::kMaxCutsTold + 1; }));
+  EXPECT_TRUE(refuses([](Frame& f) { f.patch.cut_total = 1; }));
+  EXPECT_TRUE(refuses([](Frame& f) { f.patch.cut_total = 3; }));
+  EXPECT_TRUE(refuses([](Frame& f) { f.state = firmware::State{4}; }));
+  EXPECT_TRUE(refuses([](Frame& f) { f.site[3].state = firmware::SiteState{3}; }));
 }
 
 }  // namespace

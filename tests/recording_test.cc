@@ -100,6 +100,13 @@ TEST_F(RecordingFile, IsRefusedWhenAnotherVersionMadeIt) {
   EXPECT_NE(read.damage.find("version"), std::string::npos) << read.damage;
 }
 
+TEST_F(RecordingFile, OfOtherSizesButTheSameVersionSaysSo) {
+  flip_byte(offsetof(FileHeader, frame_bytes));
+  const ReadResult read = read_recording(path_);
+  EXPECT_FALSE(read.usable);
+  EXPECT_NE(read.damage.find("though both say version 2"), std::string::npos) << read.damage;
+}
+
 TEST_F(RecordingFile, SurvivesEveryLength) {
   for (std::uint64_t size = first_frame_byte() + 900; size > 0; size = size * 9 / 10) {
     std::filesystem::resize_file(path_, size);
@@ -162,8 +169,22 @@ TEST(RecordingCsv, HasOneNameForEveryColumn) {
   std::string row;
   append_csv_row(row, test::make_frame(1.0f, firmware::SiteState::kHeld), hello);
   EXPECT_EQ(columns(row), columns(csv_header(hello)));
-  EXPECT_EQ(columns(row), 32 + 2 * (11 + 11));
+  EXPECT_EQ(columns(row), 35 + 2 * (11 + 11));
   EXPECT_EQ(std::count(row.begin(), row.end(), '\n'), 1);
+}
+
+TEST(RecordingCsv, TellsCutsAndTheLargestDisplacementOfAPatch) {
+  Frame frame;
+  frame.patch.cut_total = 40;
+  frame.patch.vertex_count = 2;
+  frame.patch.displacement_um[0][2] = -1500;
+  frame.patch.displacement_um[1][0] = 3000;
+  frame.patch.displacement_um[1][1] = -4000;
+  frame.patch.displacement_um[2][0] = 32767;  // not in use
+  std::string row;
+  append_csv_row(row, frame, Hello{});
+  EXPECT_NE(row.find(",40,2,0.005000\n"), std::string::npos) << row;
+  EXPECT_NE(csv_header({}).find(",cut_triangles,patch_vertices,patch_most_m\n"), std::string::npos);
 }
 
 TEST(RecordingCsv, ReadsBackToTheSameFloat) {
