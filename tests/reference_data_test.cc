@@ -95,8 +95,10 @@ TEST(ReferenceData, NamesTheFileAndTheKeyOfADamage) {
   expect_error(text, "]}\n", "", "parse error");
   const auto none = read_reference("/nowhere/at/all.json");
   ASSERT_FALSE(none);
-  EXPECT_EQ(none.error().sentence,
-            "/nowhere/at/all.json: cannot be read; check the name, or make it with tact-reference");
+  EXPECT_EQ(
+      none.error().sentence,
+      "/nowhere/at/all.json: cannot be read; check the name, or make it: tact-reference SCENE "
+      "--out FILE");
 }
 
 TEST(ReferenceData, ShipsTheLiver) {

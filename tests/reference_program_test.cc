@@ -1,8 +1,11 @@
 // tact-reference as a person meets it: what it says when something is missing or wrong.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 
 #include "tests/program.h"
@@ -10,6 +13,7 @@
 namespace tact::tests {
 namespace {
 
+namespace fs = std::filesystem;
 const std::string kLiver = TACT_SOURCE_DIR "/model/scenes/liver.toml";
 
 void expect_refusal(const std::string& arguments, const std::string& sentence) {
@@ -47,6 +51,38 @@ TEST(ReferenceProgram, SaysWhatToInstallAndLeavesNoFile) {
                  "gmsh is not installed; apt install gmsh");
   setenv("PATH", path.c_str(), 1);
   EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+/// A program in this folder that does as the shell script says.
+void make_program(const fs::path& path, const std::string& script) {
+  std::ofstream(path) << "#!/bin/sh\n" << script << "\n";
+  fs::permissions(path, fs::perms::owner_all);
+}
+
+TEST(ReferenceProgram, JobsOfOneSiteShareItsCoarseSolve) {
+  const auto folder = fs::path(testing::TempDir()) / "reference_program_test";
+  fs::create_directories(folder);
+  make_program(folder / "gmsh",
+               "[ \"$1\" = --version ] && echo 4.8.4 && exit\n"
+               "echo once >> " +
+                   (folder / "calls").string() + "; sleep 0.5; exit 3");
+  make_program(folder / "ccx", "echo This is Version 2.20");
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", (folder.string() + ":" + path).c_str(), 1);
+  setenv("TMPDIR", folder.c_str(), 1);  // for what a failure keeps
+  const Outcome outcome = run_program(
+      "tact-reference", kLiver + " --sites 1714 --jobs 4 --cache " + (folder / "cache").string());
+  setenv("PATH", path.c_str(), 1);
+  unsetenv("TMPDIR");
+  EXPECT_NE(outcome.output.find("gmsh ended with status 3"), std::string::npos) << outcome.output;
+  std::ifstream calls(folder / "calls");
+  EXPECT_EQ(std::count(std::istreambuf_iterator<char>(calls), {}, '\n'), 1) << "solves at once";
+  fs::remove_all(folder);
+}
+
+TEST(ReferenceProgram, TriesItsFileBeforeTheWork) {
+  expect_refusal(kLiver + " --sites 1714 --out /nowhere/liver.json",
+                 "/nowhere/liver.json: its folder cannot be written to; make it or name another");
 }
 
 }  // namespace

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "tools/common/run_program.h"
 #include "tools/reference/block.h"
@@ -48,6 +50,34 @@ TEST(SolveCache, FindsWhatItKeptAndNothingElse) {
   EXPECT_EQ(found->profile_m, solved.profile_m);
   EXPECT_TRUE(found->large_strain);
   EXPECT_FALSE(cache.find("another key"));
+}
+
+TEST(SolveCache, ManyMayKeepTheSameCaseAtOnce) {
+  const auto where = folder();
+  const SolveCache cache(where.path());
+  const ReferenceCase solved{
+      .depth_m = 1e-3, .force_N = 0.25, .profile_m = std::vector<double>(3000, 1.0 / 3.0)};
+  std::atomic<int> failed{0};
+  {
+    std::vector<std::jthread> threads;
+    for (int t = 0; t < 4; ++t)
+      threads.emplace_back([&] {
+        for (int i = 0; i < 50; ++i) failed += cache.keep("a key", solved) ? 1 : 0;
+      });
+  }
+  EXPECT_EQ(failed, 0);
+  ASSERT_TRUE(cache.find("a key"));
+  for (const auto& entry : fs::directory_iterator(where.path()))
+    EXPECT_EQ(entry.path().string(), cache.path_of("a key")) << "nothing else is left behind";
+}
+
+TEST(SolveCache, SaysWhatToDoWithoutRoom) {
+  const auto where = folder();
+  // No file can be made here: the name is longer than any file system takes.
+  const SolveCache nowhere(where.file(std::string(300, 'x')));
+  const auto error = nowhere.keep("a key", {.depth_m = 1e-3, .profile_m = {}});
+  ASSERT_TRUE(error);
+  EXPECT_NE(error->sentence.find("name another --cache"), std::string::npos) << error->sentence;
 }
 
 TEST(SolveCache, ADamagedFileCountsAsAbsent) {

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
-#include "tools/common/interrupt.h"
+#include "tools/common/program.h"
 #include "tools/common/run_program.h"
 #include "tools/common/sweep.h"
 #include "tools/common/table.h"
@@ -51,21 +51,6 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--self-check", o.self_check,
                  "instead of a scene: compare with the known answers in this folder "
                  "(tests/data/reference)");
-  app.footer(
-      "Needs gmsh and CalculiX: apt install gmsh calculix-ccx. Solved cases are kept and reused.\n"
-      "Exit status: 0 solved, 1 a check failed or Ctrl-C, 2 bad usage or input.");
-  app.failure_message([](const CLI::App*, const CLI::Error& e) {
-    return fmt::format("tact-reference: {}; see tact-reference --help\n", e.what());
-  });
-}
-
-int fail(const Error& error) {
-  const bool interrupted = was_interrupted(error);
-  fmt::print(stderr, "tact-reference: {}\n",
-             interrupted
-                 ? "interrupted; what was solved is kept, the same command goes on from there"
-                 : error.sentence);
-  return interrupted ? 1 : 2;
 }
 
 Result<ReferencePlan> make_plan(const Options& o) {
@@ -82,11 +67,11 @@ Result<ReferencePlan> make_plan(const Options& o) {
   return plan;
 }
 
-Result<ReferenceData> solve_plan(const ReferencePlan& plan, const Options& o) {
-  const auto solver = solver_versions();
-  if (!solver) return solver.error();
+/// In their order; stops at the first error.
+Result<std::vector<ReferenceCase>> solve_all(const Organ& organ,
+                                             const std::vector<Indentation>& cases,
+                                             const std::string& solver, const Options& o) {
   const SolveCache cache(o.cache);
-  const std::vector<Indentation> cases = cases_of(plan);
   std::vector<ReferenceCase> solved(cases.size());
   std::mutex mutex;
   std::optional<Error> first_error;
@@ -95,7 +80,7 @@ Result<ReferenceData> solve_plan(const ReferencePlan& plan, const Options& o) {
       const std::lock_guard lock(mutex);
       if (first_error) return;
     }
-    auto result = solve_once(plan.organ, cases[job], *solver, cache);
+    auto result = solve_once(organ, cases[job], solver, cache);
     if (result) {
       solved[job] = std::move(*result);
       return;
@@ -107,7 +92,21 @@ Result<ReferenceData> solve_plan(const ReferencePlan& plan, const Options& o) {
       run_jobs(cases.size(), {.label = "tact-reference", .shard = {}, .threads = o.jobs}, work);
   if (first_error) return *first_error;
   if (!whole) return interruption();
-  return assemble(plan, solved, *solver);
+  return solved;
+}
+
+Result<ReferenceData> solve_plan(const ReferencePlan& plan, const Options& o) {
+  const auto solver = solver_versions();
+  if (!solver) return solver.error();
+  // First what all presses of a site need, so that no two of them solve it at the same time.
+  std::vector<Indentation> probes;
+  for (const std::uint32_t vertex : plan.sites)
+    probes.push_back(probe_of(vertex, plan.tool_radius_m));
+  const auto probed = solve_all(plan.organ, probes, *solver, o);
+  if (!probed) return probed.error();
+  const auto solved = solve_all(plan.organ, cases_of(plan), *solver, o);
+  if (!solved) return solved.error();
+  return assemble(plan, *solved, *solver);
 }
 
 void print_table(const ReferenceData& data) {
@@ -127,19 +126,20 @@ void print_table(const ReferenceData& data) {
 
 // The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
-  CLI::App app{"Solve press and pull of the scene's organ with gmsh and CalculiX."};
+  Program program(
+      "tact-reference", "Solve press and pull of the scene's organ with gmsh and CalculiX.",
+      "Needs gmsh and CalculiX: apt install gmsh calculix-ccx. Solved cases are kept and reused.");
   Options options;
-  add_options(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  }
-  const InterruptWatch watch;
+  add_options(program.options(), options);
+  if (const auto status = program.parse(argc, argv)) return *status;
+  const auto fail = [&program](const Error& error) {
+    return program.fail(error, "what was solved is kept, the same command goes on from there");
+  };
   if (!options.self_check.empty()) {
     const auto good = self_check(options.self_check);
     return good ? (*good ? 0 : 1) : fail(good.error());
   }
+  if (auto error = check_output(options.out, {options.scene})) return fail(*error);
   const auto plan = make_plan(options);
   if (!plan) return fail(plan.error());
   const auto data = solve_plan(*plan, options);

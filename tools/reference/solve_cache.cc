@@ -1,7 +1,9 @@
 #include "tools/reference/solve_cache.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -64,9 +66,15 @@ std::optional<model::Error> SolveCache::keep(const std::string& key,
                {"force_N", solved.force_N},
                {"contact_radius_m", solved.contact_radius_m},
                {"profile_m", solved.profile_m}};
-  const auto written = write_whole_file(path_of(key), j.dump(1) + "\n");
-  if (written) return std::nullopt;
-  return written.error();
+  // Under a name that nobody else has, then in one step under its own.
+  static std::atomic<unsigned> files{0};
+  const std::string path = path_of(key), mine = fmt::format("{}.{}-{}", path, getpid(), files++);
+  const auto written = write_whole_file(mine, j.dump(1) + "\n");
+  std::error_code failed;
+  if (written) fs::rename(mine, path, failed);
+  if ((written && !failed) || find(key)) return std::nullopt;
+  return model::Error{fmt::format(
+      "{}: cannot be written; check the folder and the space, or name another --cache", path)};
 }
 
 std::string default_cache_directory() {
@@ -91,9 +99,8 @@ std::string cache_key(const Organ& organ, const Indentation& what, const std::st
   const std::string contact =
       what.contact_radius_m > 0.0 ? fmt::format("{:.4g} m", what.contact_radius_m) : "half-space";
   return fmt::format(
-      "method {}, {}; mesh {}; E {:.9g} Pa, nu {:.9g}; held {} to {} m; vertex {}, radius {:.9g} "
-      "m, "
-      "depth {:.9g} m, {}; contact {}; edges {:.9g} m, growth {:.9g}, to {:.9g} m",
+      "method {}, {}; mesh {}; E {:.9g} Pa, nu {:.9g}; held {} to {} m; vertex {}, "
+      "radius {:.9g} m, depth {:.9g} m, {}; contact {}; edges {:.9g} m, growth {:.9g}, to {:.9g} m",
       kMethod, solver, organ.hash, organ.material.youngs_modulus_Pa, organ.material.poisson_ratio,
       text_of(organ.held.min_m), text_of(organ.held.max_m), what.vertex, what.tool_radius_m,
       what.depth_m, what.large_strain ? "large strain" : "linear", contact, edges.fine_m,
@@ -115,15 +122,20 @@ model::Result<ReferenceCase> solve_or_find(const Organ& organ, const Indentation
 
 }  // namespace
 
+Indentation probe_of(std::uint32_t vertex, double tool_radius_m) {
+  return {.vertex = vertex,
+          .tool_radius_m = tool_radius_m,
+          .depth_m = tool_radius_m,
+          .level = kCoarsestLevel,
+          .contact_radius_m = kProbeContact * tool_radius_m};
+}
+
 model::Result<ReferenceCase> solve_once(const Organ& organ, const Indentation& what,
                                         const std::string& solver, const SolveCache& cache) {
   if (what.depth_m < 0.0 || what.contact_radius_m > 0.0) {
     return solve_or_find(organ, what, solver, cache);
   }
-  Indentation probe = what;  // the same for every depth
-  probe.depth_m = what.tool_radius_m;
-  probe.level = kCoarsestLevel;
-  probe.contact_radius_m = kProbeContact * what.tool_radius_m;
+  const Indentation probe = probe_of(what.vertex, what.tool_radius_m);
   auto first = solve_or_find(organ, probe, solver, cache);
   if (!first) return first;
   const double pitch_m = what.tool_radius_m / (kFallRings - 1);

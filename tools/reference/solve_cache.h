@@ -18,7 +18,8 @@ class SolveCache {
   explicit SolveCache(std::string directory) : directory_(std::move(directory)) {}
 
   std::optional<ReferenceCase> find(const std::string& key) const;
-  /// The error says which file could not be written.
+  /// Any number of threads and programs may keep the same case: one of them wins, all succeed. The
+  /// error says which file could not be written.
   std::optional<model::Error> keep(const std::string& key, const ReferenceCase& solved) const;
 
   std::string path_of(const std::string& key) const;
@@ -35,6 +36,9 @@ std::string mesh_hash(const model::SurfaceMesh& mesh);
 
 /// `solver`: names and versions of the programs.
 std::string cache_key(const Organ& organ, const Indentation& what, const std::string& solver);
+
+/// The coarse solve that every press on a vertex needs first.
+Indentation probe_of(std::uint32_t vertex, double tool_radius_m);
 
 /// From the cache, or solved and kept. A press without a contact radius is solved coarsely first;
 /// that force gives the radius (see indentation.h).
