@@ -1,6 +1,8 @@
 #include "tools/common/run_program.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
@@ -102,6 +104,75 @@ TEST(RunProgram, EndsAProgramAtCtrlC) {
   const auto said = run(where, "sleep", {"60"});
   ASSERT_FALSE(said);
   EXPECT_TRUE(was_interrupted(said.error())) << said.error().sentence;
+}
+
+pid_t written_number(const std::string& path) {
+  using namespace std::chrono_literals;
+  pid_t number = 0;
+  for (int i = 0; i < 1000 && number == 0; ++i, std::this_thread::sleep_for(5ms))
+    std::ifstream(path) >> number;
+  return number;
+}
+
+TEST(RunProgram, EndsAProgramAtAClosedTerminalAndAtTermination) {
+  for (const int signal : {SIGHUP, SIGTERM}) {
+    const auto where = folder();
+    const InterruptWatch watch;
+    std::jthread sender([signal] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      std::raise(signal);
+      if (signal == SIGHUP) std::raise(signal);  // some terminals tell it twice
+    });
+    const auto said = run(where, "sleep", {"60"});
+    ASSERT_FALSE(said);
+    EXPECT_TRUE(was_interrupted(said.error())) << said.error().sentence;
+  }
+}
+
+TEST(RunProgram, ASecondCtrlCLeavesNoProgramBehind) {
+  const auto where = folder();
+  const pid_t ours = fork();
+  if (ours == 0) {  // a program of ours, that a person ends with two quick presses
+    const InterruptWatch watch;
+    const std::jthread hand([&] {
+      if (written_number(where.file("log")) == 0) _exit(1);
+      std::raise(SIGINT);
+      std::raise(SIGINT);
+    });
+    (void)run(where, "sh", {"-c", "sleep 60 & echo $!; wait"}, 20.0);
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(ours, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  const pid_t grandchild = written_number(where.file("log"));
+  ASSERT_GT(grandchild, 1);
+  EXPECT_TRUE(goes_away(grandchild)) << "process " << grandchild << " goes on";
+}
+
+TEST(RunProgram, EndsWhatItsLeaderLeavesBehind) {
+  const auto where = folder();
+  const auto said = run(where, "sh", {"-c", "sleep 60 & echo $!"});
+  ASSERT_TRUE(said) << said.error().sentence;
+  EXPECT_TRUE(goes_away(std::stoi(*said)));
+}
+
+TEST(RunProgram, AnEndThatNobodyCanKnowIsAnError) {
+  const auto where = folder();
+  std::signal(SIGCHLD, SIG_IGN);  // a parent may hand this down
+  const auto said = run(where, "false", {});
+  std::signal(SIGCHLD, SIG_DFL);
+  ASSERT_FALSE(said);
+  EXPECT_NE(said.error().sentence.find("SIGCHLD is ignored"), std::string::npos)
+      << said.error().sentence;
+}
+
+TEST(RunProgram, AProgramTakesTheSignalsThatWeTake) {
+  const auto where = folder();
+  const auto said = run(where, "grep", {"SigBlk", "/proc/self/status"});
+  ASSERT_TRUE(said) << said.error().sentence;
+  EXPECT_EQ(*said, "SigBlk:\t0000000000000000\n");
 }
 
 TEST(ScratchFolder, IsGoneAfterwardsUnlessKept) {

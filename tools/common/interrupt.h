@@ -1,15 +1,22 @@
 // interrupt.h - Ctrl-C as a question that long work asks between its steps.
 #pragma once
 
+#include <array>
+#include <csignal>
+
 namespace tact::tools {
 
-/// While it lives, the first Ctrl-C (or SIGTERM) is remembered; a second one ends the program.
+/// While it lives, the first Ctrl-C, SIGTERM or closed terminal is remembered. A second Ctrl-C or
+/// SIGTERM ends the program at once, with status 130 or 143, and what runs for it (run_program.h).
 class InterruptWatch {
  public:
   InterruptWatch();
   ~InterruptWatch();
   InterruptWatch(const InterruptWatch&) = delete;
   InterruptWatch& operator=(const InterruptWatch&) = delete;
+
+ private:
+  std::array<struct sigaction, 3> before_{};
 };
 
 /// True once Ctrl-C was pressed under a watch that still lives.

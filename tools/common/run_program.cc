@@ -18,6 +18,7 @@
 #include <string_view>
 #include <thread>
 
+#include "tools/common/child_groups.h"
 #include "tools/common/interrupt.h"
 
 namespace tact::tools {
@@ -53,7 +54,26 @@ std::vector<std::string> environment_of(const ProgramCall& call) {
   return out;
 }
 
-/// The child, or the errno that kept it from starting.
+/// Kills what is left of the group, and how its leader ended. Nothing if nobody can know.
+std::optional<int> end(pid_t child) {
+  kill(-child, SIGKILL);
+  forget_child_group(child);  // the number may belong to another from the next line on
+  int status = 0;
+  pid_t ended = -1;
+  do ended = waitpid(child, &status, 0);
+  while (ended < 0 && errno == EINTR);
+  if (ended != child) return std::nullopt;
+  return status;
+}
+
+/// Still running? It stays a zombie, so that its number is not used again.
+bool is_running(pid_t child) {
+  siginfo_t info{};
+  return waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         info.si_pid == 0;
+}
+
+/// The child, in the table of those to end; or a sentence about what kept it from starting.
 Result<pid_t> start(const ProgramCall& call) {
   std::vector<std::string> words{call.program};
   words.insert(words.end(), call.arguments.begin(), call.arguments.end());
@@ -67,13 +87,25 @@ Result<pid_t> start(const ProgramCall& call) {
   posix_spawn_file_actions_addchdir_np(&files, call.directory.c_str());
   posix_spawnattr_t how;
   posix_spawnattr_init(&how);
-  posix_spawnattr_setflags(&how, POSIX_SPAWN_SETPGROUP);
+  posix_spawnattr_setflags(&how, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
   posix_spawnattr_setpgroup(&how, 0);
   pid_t child = -1;
-  const int failed = posix_spawnp(&child, call.program.c_str(), &files, &how,
-                                  pointers(words).data(), pointers(settings).data());
+  int failed = 0;
+  bool remembered = true;
+  {
+    StartOfChild start;
+    posix_spawnattr_setsigmask(&how, &start.signals_before());
+    failed = posix_spawnp(&child, call.program.c_str(), &files, &how, pointers(words).data(),
+                          pointers(settings).data());
+    if (failed == 0) remembered = start.remember(child);
+  }
   posix_spawnattr_destroy(&how);
   posix_spawn_file_actions_destroy(&files);
+  if (!remembered) {
+    end(child);
+    return Error{
+        fmt::format("{} is one program too many at a time; use fewer --jobs", call.program)};
+  }
   if (failed == 0) return child;
   const bool has_folder = fs::is_directory(call.directory);
   if (failed == ENOENT && has_folder) {
@@ -81,12 +113,6 @@ Result<pid_t> start(const ProgramCall& call) {
   }
   return Error{fmt::format("{} does not start in {}: {}", call.program, call.directory,
                            has_folder ? std::strerror(failed) : "no such folder")};
-}
-
-void end(pid_t child) {
-  kill(-child, SIGKILL);
-  int status = 0;
-  waitpid(child, &status, 0);
 }
 
 std::string read_all(const std::string& path) {
@@ -110,8 +136,7 @@ Result<std::string> run_program(const ProgramCall& call) {
   const auto begun = Clock::now();
   const auto child = start(call);
   if (!child) return child.error();
-  int status = 0;
-  while (waitpid(*child, &status, WNOHANG) == 0) {
+  while (is_running(*child)) {
     if (is_interrupted()) {
       end(*child);
       return interruption();
@@ -124,11 +149,16 @@ Result<std::string> run_program(const ProgramCall& call) {
     }
     std::this_thread::sleep_for(10ms);
   }
+  const auto status = end(*child);
   if (is_interrupted()) return interruption();
+  if (!status)
+    return Error{fmt::format(
+        "how {} ended cannot be known, since SIGCHLD is ignored; start from a plain shell",
+        call.program)};
   std::string text = read_all(call.log_path);
-  if (WIFEXITED(status) && (call.any_status || WEXITSTATUS(status) == 0)) return text;
-  const std::string how = WIFEXITED(status) ? fmt::format("status {}", WEXITSTATUS(status))
-                                            : fmt::format("signal {}", WTERMSIG(status));
+  if (WIFEXITED(*status) && (call.any_status || WEXITSTATUS(*status) == 0)) return text;
+  const std::string how = WIFEXITED(*status) ? fmt::format("status {}", WEXITSTATUS(*status))
+                                             : fmt::format("signal {}", WTERMSIG(*status));
   return Error{fmt::format("{} ended with {}; all it printed is in {}, at the end:{}", call.program,
                            how, call.log_path, tail(text))};
 }

@@ -2,7 +2,10 @@
 // too.
 //
 // The program's standard output and standard error go to one file, which stays when it fails. It
-// reads nothing. It is a process group of its own, so that nothing of it survives the end of ours.
+// reads nothing. It is a process group of its own, and the whole group is killed when its leader
+// has ended, at its time limit, at Ctrl-C, SIGTERM or a closed terminal (interrupt.h). A second
+// Ctrl-C kills it too but leaves the scratch folder; a SIGKILL of ours leaves both: the program
+// goes on to its own end, without a time limit.
 #pragma once
 
 #include <string>
