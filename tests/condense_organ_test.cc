@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/shapes.h"
+#include "tools/common/run_program.h"
 
 namespace tact::tools {
 namespace {
@@ -49,7 +50,14 @@ TEST(CondenseOrgan, StopsWhenAsked) {
   CondenseInput input = ball();
   input.settings.organ.progress = [](std::size_t, std::size_t) { return false; };
   CondenseFacts facts;
-  EXPECT_FALSE(condense_organ(input, facts));
+  const auto before = condense_organ(input, facts);
+  ASSERT_FALSE(before);
+  EXPECT_TRUE(was_interrupted(before.error())) << before.error().sentence;
+  // In the middle of the vertices too.
+  input.settings.organ.progress = [](std::size_t done, std::size_t) { return done == 0; };
+  const auto within = condense_organ(input, facts);
+  ASSERT_FALSE(within);
+  EXPECT_TRUE(was_interrupted(within.error())) << within.error().sentence;
 }
 
 TEST(CondenseOrgan, TakesTheOrganOfTheSceneInItsOwnFrame) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "tools/common/gmsh.h"
+#include "tools/common/run_program.h"
 
 namespace tact::tools {
 namespace {
@@ -59,8 +60,14 @@ Result<model::ComplianceMap> condense_organ(const CondenseInput& input, Condense
   settings.organ.patch_radius_m = settings.patch_radius_m > 0.0
                                       ? settings.patch_radius_m
                                       : kElementsInPatch * std::max(settings.mesh_size_m, edge_m);
-  if (settings.organ.progress && !settings.organ.progress(0, surface.vertex_m.size()))
-    return Error{"interrupted"};
+  bool stopped = false;
+  if (const auto goes_on = settings.organ.progress) {
+    settings.organ.progress = [goes_on, &stopped](std::size_t done, std::size_t vertices) {
+      stopped |= !goes_on(done, vertices);
+      return !stopped;
+    };
+    if (!settings.organ.progress(0, surface.vertex_m.size())) return interruption();
+  }
   EdgeLengths lengths;
   lengths.fine_m = settings.mesh_size_m;
   const auto body = fill_with_gmsh(surface.vertex_m, surface.triangle, lengths);
@@ -68,7 +75,9 @@ Result<model::ComplianceMap> condense_organ(const CondenseInput& input, Condense
   facts = {.nodes = body->node_m.size(),
            .elements = body->element.size(),
            .mesh_size_m = settings.mesh_size_m};
-  return model::fem::condense(*body, surface, settings.organ);
+  auto map = model::fem::condense(*body, surface, settings.organ);
+  if (stopped) return interruption();
+  return map;
 }
 
 }  // namespace tact::tools

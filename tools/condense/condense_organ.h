@@ -12,10 +12,12 @@
 namespace tact::tools {
 
 struct CondenseSettings {
-  double mesh_size_m =
-      0.0;  // edge of an element inside the body; 0: 1.5 median edges of the surface
-  double patch_radius_m = 0.0;  // a0; 0: 1.6 times the larger of mesh size and median edge
-  model::fem::CondensationSettings organ{};  // its patch radius is set from the above
+  /// Edge of an element inside the body; 0: 1.5 median edges of the surface.
+  double mesh_size_m = 0.0;
+  /// a0; 0: 1.6 times the larger of mesh size and median edge.
+  double patch_radius_m = 0.0;
+  /// Its patch radius is set from the above.
+  model::fem::CondensationSettings organ{};
 };
 
 /// An organ to condense, in its own frame.

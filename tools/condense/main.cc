@@ -4,13 +4,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "model/compliance_file.h"
-#include "model/scene.h"
 #include "tools/common/interrupt.h"
+#include "tools/common/program.h"
 #include "tools/condense/condense_organ.h"
 
 namespace {
@@ -21,45 +22,39 @@ using tact::tools::CondenseFacts;
 using tact::tools::CondenseInput;
 
 struct Options {
-  std::string scene, out;
-  std::vector<std::string> overrides;
+  tact::tools::SceneArguments scene;
+  std::string out;
   double mesh_size_m = 0.0, patch_radius_m = 0.0;
   double ring_pitch_m = 0.0;
   std::size_t rings = 0;
   bool json = false;
 };
 
+/// A length in metres above 0.
+std::string check_length(const std::string& text) {
+  double length_m = 0.0;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, length_m);
+  if (error == std::errc{} && rest == end && length_m > 0.0 && length_m < 1.0) return {};
+  return fmt::format("{} is no length of an organ; give metres, above 0 and below 1", text);
+}
+
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("SCENE", o.scene, "scene file (TOML) with [elastic]")->required();
+  o.scene.add_to(app, "[elastic]");
   app.add_option("--out", o.out, "compliance map to write")->required();
-  app.add_option("--set", o.overrides, "one key of the scene, as KEY=VALUE; repeatable");
   app.add_option("--mesh-size-m", o.mesh_size_m,
                  "edge of an element inside the organ, m (default: 1.5 median edges of its "
                  "surface); half as long is about 20 times the work")
-      ->check(CLI::PositiveNumber);
+      ->check(check_length);
   app.add_option("--patch-radius-m", o.patch_radius_m,
                  "a0 of the loaded patch, m (default: 1.6 elements); the result hardly depends on "
                  "it")
-      ->check(CLI::PositiveNumber);
+      ->check(check_length);
   app.add_option("--ring-pitch-m", o.ring_pitch_m, "of the shape around a place, m (default 0.002)")
-      ->check(CLI::PositiveNumber);
+      ->check(check_length);
   app.add_option("--rings", o.rings, "of the shape, 1 to 31 (default 20)")
       ->check(CLI::Range(1, 31));
   app.add_flag("--json", o.json, "print one JSON object, SI units");
-  app.footer(
-      "Needs gmsh: apt install gmsh. The map holds r E (1/m): Young's modulus may change without "
-      "a new map,\nPoisson's ratio, the held box and the mesh may not.\n"
-      "Exit status: 0 written, 1 Ctrl-C, 2 bad usage or input.");
-  app.failure_message([](const CLI::App*, const CLI::Error& e) {
-    return fmt::format("tact-condense: {}; see tact-condense --help\n", e.what());
-  });
-}
-
-int fail(const std::string& sentence) {
-  const bool interrupted = tact::tools::is_interrupted();
-  fmt::print(stderr, "tact-condense: {}\n",
-             interrupted ? "interrupted; nothing was written" : sentence);
-  return interrupted ? 1 : 2;
 }
 
 bool show_progress(std::size_t done, std::size_t vertices) {
@@ -117,22 +112,22 @@ void report(const Options& o, const ComplianceMap& map, const CondenseFacts& fac
 
 // The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
-  CLI::App app{
+  tact::tools::Program program(
+      "tact-condense",
       "Condense the scene's organ: solve it by finite elements under a small load at every vertex\n"
       "of its surface, and keep how much more it gives there than an endless block would. The\n"
-      "compliance law then costs a look-up a tick. Minutes of work, done once for a mesh."};
+      "compliance law then costs a look-up a tick. Minutes of work, done once for a mesh.",
+      "Needs gmsh: apt install gmsh. The map holds r E (1/m): Young's modulus may change without "
+      "a new map,\nPoisson's ratio, the held box and the mesh may not.");
   Options o;
-  add_options(app, o);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  }
-  const tact::tools::InterruptWatch watch;
-  const auto scene = tact::model::load_scene(o.scene, o.overrides);
-  if (!scene) return fail(scene.error().sentence);
+  add_options(program.options(), o);
+  if (const auto status = program.parse(argc, argv)) return *status;
+  if (const auto error = tact::tools::check_output(o.out, {o.scene.path}))
+    return program.fail(*error);
+  const auto scene = o.scene.load();
+  if (!scene) return program.fail(scene.error());
   auto input = tact::tools::condense_input(*scene);
-  if (!input) return fail(input.error().sentence);
+  if (!input) return program.fail(input.error());
   input->settings.mesh_size_m = o.mesh_size_m;
   input->settings.patch_radius_m = o.patch_radius_m;
   if (o.ring_pitch_m > 0.0) input->settings.organ.ring_pitch_m = o.ring_pitch_m;
@@ -141,9 +136,9 @@ int main(int argc, char** argv) {
   const auto start = std::chrono::steady_clock::now();
   CondenseFacts facts;
   const auto map = tact::tools::condense_organ(*input, facts);
-  if (!map) return fail(map.error().sentence);
+  if (!map) return program.fail(map.error());
   const auto bytes = write_compliance_map(*map, o.out);
-  if (!bytes) return fail(bytes.error().sentence);
+  if (!bytes) return program.fail(bytes.error());
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   report(o, *map, facts, *bytes, took.count());
   return 0;
