@@ -7,13 +7,16 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "firmware/rt_loop.h"
 #include "hal/open_device.h"
+#include "host/frame_json.h"
 #include "tests/test_scene.h"
 
 namespace tact::firmware {
@@ -207,6 +210,42 @@ TEST(Telemetry, ThreadAndLoopShareOnlyTheRing) {  // for the thread sanitizer
   }
   EXPECT_EQ(telemetry.stop(), "");
   EXPECT_GT(telemetry.newest_frame().tick, 0u);
+}
+
+// The whole way of a patch: springs, shape, slot, frame, text for the page. One thread steps, the
+// other tells; nothing that arrives may be half of one shape and half of another.
+TEST(Telemetry, TheShapeOfAPatchReachesThePageWhole) {
+  const auto scene = model::load_scene(TACT_SOURCE_DIR "/model/scenes/gum.toml", {});
+  ASSERT_TRUE(scene) << scene.error().sentence;
+  const auto tissue = std::move(*model::make_tissue(*scene));
+  const auto device = std::move(*hal::open_device(*scene));
+  Controller controller(tissue->contact_scene(), Gate(scene->limits, 0.001, 1.0));
+  SimulatedClock clock;
+  Requests requests;
+  requests.arm.store(true);
+  const auto ring = std::make_unique<TickRing>();
+  RtLoop loop({.period_ns = 1'000'000, .ticks_per_shape = 4}, *device, controller, clock, requests,
+              *ring);
+  Telemetry telemetry(*ring, FrameBuilder(tissue->law().site_law(), controller.shapes(), false),
+                      1000.0, std::nullopt, std::nullopt);
+  const Hello hello = make_hello(*scene, *tissue, {.device = device->info(), .hand_socket = ""});
+  telemetry.start();
+  std::uint32_t displaced = 0;
+  for (int i = 0; i < 6000; ++i) {
+    loop.step();
+    if (i % 50 != 0) continue;
+    const Frame frame = telemetry.newest_frame();
+    ASSERT_EQ(host::check_frame(frame, hello), "") << "tick " << frame.tick;
+    const auto patch = nlohmann::json::parse(host::frame_json(frame, hello)).at("patch");
+    ASSERT_EQ(patch.at("count"), frame.patch.vertex_count);
+    ASSERT_EQ(patch.at("cut").size(), frame.patch.cut_count);
+    displaced = std::max(displaced, frame.patch.vertex_count);
+    usleep(500);
+  }
+  EXPECT_EQ(telemetry.stop(), "");
+  EXPECT_GT(displaced, 10u);
+  EXPECT_GT(telemetry.newest_frame().patch.cut_total, 10u);
+  EXPECT_EQ(telemetry.newest_frame().fault, 0);
 }
 
 TEST(Telemetry, ASecondControllerOnTheSameSocketIsRefused) {
