@@ -231,7 +231,7 @@ TEST(Telemetry, TheShapeOfAPatchReachesThePageWhole) {
   const Hello hello = make_hello(*scene, *tissue, {.device = device->info(), .hand_socket = ""});
   telemetry.start();
   std::uint32_t displaced = 0;
-  for (int i = 0; i < 6000; ++i) {
+  for (int i = 0; i < 8000; ++i) {
     loop.step();
     if (i % 50 != 0) continue;
     const Frame frame = telemetry.newest_frame();
