@@ -1,5 +1,7 @@
 #include "firmware/options.h"
 
+#include <sched.h>
+
 #include <CLI/CLI.hpp>
 
 namespace tact::firmware {
@@ -11,6 +13,9 @@ Parsed parse_options(int argc, char** argv) {
       "tactd: the haptic controller. Runs one scene on one device at the scene's fixed rate.\n"
       "Ctrl-C: force to zero, clean exit. Exit status: 0 good, 1 a fault or a difference, 2 bad "
       "usage or input."};
+  app.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return std::string("tactd: ") + error.what() + "; see tactd --help\n";
+  });
   app.add_option("SCENE", o.scene_path, "scene file (TOML), e.g. model/scenes/liver.toml");
   app.add_option("--set", o.overrides, "KEY=VALUE override of a scene key, may be repeated")
       ->take_all()
@@ -21,7 +26,8 @@ Parsed parse_options(int argc, char** argv) {
   app.add_option("--json", o.json_path, "write the report to this file when done, - for stdout");
   app.add_flag("--check", o.check, "check scene, meshes, law and device, then leave");
   app.add_flag("--strict", o.strict, "refuse to run where the PC gives no hard real time");
-  app.add_option("--core", o.core, "CPU core of the loop (default: an isolated one, or the last)");
+  app.add_option("--core", o.core, "CPU core of the loop (default: an isolated one, or the last)")
+      ->check(CLI::Range(0, CPU_SETSIZE - 1));
   auto* record = app.add_option("--record", o.record_path, "log every tick to this new file");
   app.add_option("--replay", o.replay_path,
                  "compute a recorded run again, with its --set values, and compare the forces bit "

@@ -1,4 +1,5 @@
-// ring.h - the one way out of the loop: wait-free, fixed capacity, drops when full, never waits.
+// ring.h - the way of every tick out of the loop: wait-free, fixed capacity, drops when full, never
+// waits. Only a patch's shape goes another way, through the controller's latest-value slot.
 #pragma once
 
 #include <atomic>

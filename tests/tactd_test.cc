@@ -120,7 +120,11 @@ TEST_F(Tactd, RefusesBadUsageWithStatusTwo) {
   EXPECT_EQ(tactd(kLiver + " --seconds -1").status, 2);
   EXPECT_EQ(tactd(kLiver + " --set no_such_key=1").status, 2);
   EXPECT_EQ(tactd(kLiver + " --free-run").status, 2);
+  EXPECT_EQ(tactd(kLiver + " --core -5").status, 2);
   EXPECT_EQ(tactd("--help").status, 0);
+  const Outcome outcome = tactd(kLiver + " --seconds -1");
+  EXPECT_EQ(outcome.output.rfind("tactd: --seconds", 0), 0u) << outcome.output;
+  EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << "one line";
 }
 
 TEST_F(Tactd, RefusesToDriveADeviceWithTheLawAsPrinted) {
