@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -51,7 +52,7 @@ Result<std::string> default_directory() {
       if (at == at.root_path()) break;
     }
   }
-  return Error{fmt::format("no {} here or above; name the files or use --dir", kVectors)};
+  return Error{fmt::format("no {} here or above; name the vector files", kVectors)};
 }
 
 Result<std::vector<std::string>> files_of(const std::vector<std::string>& paths) {
@@ -77,20 +78,21 @@ Result<std::vector<std::string>> files_of(const std::vector<std::string>& paths)
 Result<FileReport> verify_file(const std::string& path) {
   std::ifstream stream(path);
   if (!stream) return Error{fmt::format("{}: cannot be read; check the name", path)};
-  try {  // the JSON library reports damage by exceptions
+  try {  // the libraries report damage by exceptions
     const json file = json::parse(stream);
     const std::string key = file.contains("law") ? "law" : "schema";
     FileReport out{fs::path(path).filename().string(), file.value(key, ""), {}};
     for (const Verifier& verifier : known_verifiers()) {
       if (verifier.law != out.law) continue;
       verifier.verify(file, out.report);
-      return out;
+      if (out.report.passed() + out.report.failed() > 0) return out;
+      return Error{fmt::format("{}: holds no case, so it proves nothing; take a fresh copy", path)};
     }
     return Error{
         fmt::format("{}: this build does not know the {} \"{}\"; leave the file out or "
                     "take a build that knows it",
                     path, key, out.law)};
-  } catch (const json::exception& damage) {
+  } catch (const std::exception& damage) {
     return Error{
         fmt::format("{}: damaged vector file: {}; take a fresh copy", path, damage.what())};
   }
@@ -164,17 +166,17 @@ int main(int argc, char** argv) {
       "N, N m, kg).\nExit status: 0 all passed, 1 a case failed, 2 a file is unreadable or "
       "unknown."};
   std::vector<std::string> paths;
-  std::string directory;
   bool as_json = false;
   app.add_option("files", paths,
                  "vector files or directories of them (default: tests/data/vectors)");
-  app.add_option("--dir", directory, "a directory of vector files");
   app.add_flag("--json", as_json, "print one JSON document");
+  app.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return fmt::format("tact-verify: {}; see tact-verify --help\n", error.what());
+  });
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  if (!directory.empty()) paths.push_back(directory);
   return run(paths, as_json);
 }

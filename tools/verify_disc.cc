@@ -1,6 +1,5 @@
 // The published cases of the disc stack: constants of a disc, the stack, and the printed example.
 #include <cmath>
-#include <limits>
 
 #include "model/disc_stack.h"
 #include "tools/verify_report.h"
@@ -14,11 +13,6 @@ using model::DiscStackState;
 using model::LawStatus;
 using model::LayerDelays;
 using nlohmann::json;
-
-/// A number, or the string that JSON has no number for.
-double number(const json& v) {
-  return v.is_string() ? std::numeric_limits<double>::quiet_NaN() : v.get<double>();
-}
 
 model::DiscDimensions dimensions_of(const json& p) {
   return {.outer_diameter_m = number(p.at("D")),
@@ -135,15 +129,6 @@ json printed_results(const json& one_case) {
   for (std::size_t i = 1; i <= 4; ++i)
     got["T" + std::to_string(i)] = model::delay_through_layer_s(delays, i);
   return got;
-}
-
-template <json (*kResults)(const json&)>
-void verify_cases(const json& file, Report& report) {
-  const Tolerance tolerance = Tolerance::of_file(file);
-  for (const json& one_case : file.at("cases")) {
-    report.begin_case(one_case.at("id"));
-    report.compare_all(kResults(one_case), one_case.at("expect"), tolerance.for_case(one_case));
-  }
 }
 
 constexpr Verifier kVerifiers[] = {

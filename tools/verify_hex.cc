@@ -1,5 +1,4 @@
 // The published cases of the hexagonal surface: in its energy form, and as printed.
-#include <limits>
 
 #include "model/hex_paper.h"
 #include "model/hex_sheet.h"
@@ -11,11 +10,6 @@ namespace {
 using model::HexWeight;
 using model::LawStatus;
 using nlohmann::json;
-
-/// A number, or the string that JSON has no number for.
-double number(const json& v) {
-  return v.is_string() ? std::numeric_limits<double>::quiet_NaN() : v.get<double>();
-}
 
 json refused() {
   return {{"status", "INVALID_ARGUMENT"}, {"F", 0.0}, {"F_ring", 0.0}, {"F_node", 0.0}};
@@ -87,15 +81,6 @@ json paper_results(const json& one_case) {
           {"lm_over_r", at.rim_slope},
           {"F_ring", model::paper_force_N(at, stiffness_N_per_m, HexWeight::kRing)},
           {"F_node", model::paper_force_N(at, stiffness_N_per_m, HexWeight::kNode)}};
-}
-
-template <json (*kResults)(const json&)>
-void verify_cases(const json& file, Report& report) {
-  const Tolerance tolerance = Tolerance::of_file(file);
-  for (const json& one_case : file.at("cases")) {
-    report.begin_case(one_case.at("id"));
-    report.compare_all(kResults(one_case), one_case.at("expect"), tolerance.for_case(one_case));
-  }
 }
 
 constexpr Verifier kVerifiers[] = {

@@ -42,6 +42,11 @@ Tolerance Tolerance::for_case(const json& one_case) const {
   return out;
 }
 
+double number(const json& value) {
+  const std::optional<double> known = as_number(value);
+  return known ? *known : value.get<double>();
+}
+
 void Report::begin_case(const std::string& id) {
   id_ = id;
   id_failed_ = false;

@@ -1,7 +1,7 @@
 // verify_report.h - how a recomputed value is compared with a published one, and who recomputes it.
 //
-//     pass:  |got - want| <= max(abs[kind], rel |want|),  element by element,  kind =
-//     field_kinds[field]
+//     pass:  |got - want| <= max(abs[kind], rel |want|),  element by element,
+//            kind = field_kinds[field]
 //
 // A kind without an entry in abs has abs 0; a case may carry its own tolerance. A number whose
 // field has no kind, a string and a boolean must be equal; fields that the file does not expect are
@@ -61,6 +61,20 @@ class Report {
   int failed_ = 0;
   std::vector<Failure> failures_;
 };
+
+/// A number, or NaN, Infinity or -Infinity as a string. Another string is damage, which the library
+/// reports by an exception.
+double number(const nlohmann::json& value);
+
+/// For a file whose cases have id, expect and all that `kResults` wants: the recomputed fields.
+template <nlohmann::json (*kResults)(const nlohmann::json& one_case)>
+void verify_cases(const nlohmann::json& file, Report& report) {
+  const Tolerance tolerance = Tolerance::of_file(file);
+  for (const nlohmann::json& one_case : file.at("cases")) {
+    report.begin_case(one_case.at("id"));
+    report.compare_all(kResults(one_case), one_case.at("expect"), tolerance.for_case(one_case));
+  }
+}
 
 /// Recomputes all cases of one kind of file.
 struct Verifier {

@@ -1,6 +1,5 @@
 // The published cases of the rhombus law: one unit, the chain, and the law as printed.
 #include <cmath>
-#include <limits>
 
 #include "model/rhombus_chain.h"
 #include "model/rhombus_paper.h"
@@ -12,15 +11,6 @@ namespace {
 using model::LawStatus;
 using model::RhombusUnit;
 using nlohmann::json;
-
-/// A number, or one of the strings that JSON has no number for.
-double number(const json& v) {
-  if (!v.is_string()) return v.get<double>();
-  const std::string text = v.get<std::string>();
-  if (text == "Infinity") return std::numeric_limits<double>::infinity();
-  if (text == "-Infinity") return -std::numeric_limits<double>::infinity();
-  return std::numeric_limits<double>::quiet_NaN();
-}
 
 const char* word(LawStatus status) {
   switch (status) {
@@ -162,15 +152,6 @@ json paper_results(const json& one_case) {
           {"dv", at.unit.widening_m},
           {"lam", at.lambda},
           {force_N > 0.0 ? "F_max" : "F_min", at.limit_N}};
-}
-
-template <json (*kResults)(const json&)>
-void verify_cases(const json& file, Report& report) {
-  const Tolerance tolerance = Tolerance::of_file(file);
-  for (const json& one_case : file.at("cases")) {
-    report.begin_case(one_case.at("id"));
-    report.compare_all(kResults(one_case), one_case.at("expect"), tolerance.for_case(one_case));
-  }
 }
 
 constexpr Verifier kVerifiers[] = {

@@ -18,15 +18,6 @@ using host::JointKind;
 using host::Pose;
 using nlohmann::json;
 
-/// A number, or one of the strings that JSON has no number for.
-double number(const json& v) {
-  if (!v.is_string()) return v.get<double>();
-  const std::string text = v.get<std::string>();
-  if (text == "Infinity") return std::numeric_limits<double>::infinity();
-  if (text == "-Infinity") return -std::numeric_limits<double>::infinity();
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
 Vector2d vector_2(const json& v) { return {number(v.at(0)), number(v.at(1))}; }
 Vector3d vector_3(const json& v) { return {number(v.at(0)), number(v.at(1)), number(v.at(2))}; }
 Vector3d in_plane(const json& v) { return {number(v.at(0)), number(v.at(1)), 0.0}; }
@@ -150,15 +141,6 @@ json ccd_results(const json& one_case) {
   return {{"status", word(at.status)}, {"points", points},
           {"error", at.error_m},       {"sweeps", at.sweeps},
           {"updates", at.updates},     {planar ? "angles" : "swing", swing}};
-}
-
-template <json (*kResults)(const json&)>
-void verify_cases(const json& file, Report& report) {
-  const Tolerance tolerance = Tolerance::of_file(file);
-  for (const json& one_case : file.at("cases")) {
-    report.begin_case(one_case.at("id"));
-    report.compare_all(kResults(one_case), one_case.at("expect"), tolerance.for_case(one_case));
-  }
 }
 
 const char* word(host::PoseStatus status) {
