@@ -177,12 +177,40 @@ void Contact::feel_held(Probe& probe, SphereTouch& touch) RT_SAFE {
   }
 }
 
-// Back to the surface with no more depth than the held site had, and no stored shift. Pressed
-// tissue remembers on: forgotten relaxation would come back as a stiffer push.
+// The tool may have been dragged to where tissue is stiffer: the largest depth, up to that held,
+// that stores no more here than the held one does there. kHalvings bound the work.
+double Contact::affordable_depth_m(const Probe& probe, const SphereTouch& held) RT_SAFE {
+  constexpr int kHalvings = 12;
+  const auto energy_J = [&](const Place& place, const Vec3& normal, double depth_m, bool is_held)
+                            RT_SAFE {
+                              return scene_.law
+                                  ->respond({.sphere = index_of(held),
+                                             .place = place,
+                                             .normal = normal,
+                                             .depth_m = depth_m,
+                                             .held = is_held})
+                                  .law.energy_J;
+                            };
+  double high_m = std::min(probe.depth_m, held.depth_m), low_m = 0.0;
+  if (!(high_m > 0.0)) return 0.0;
+  const double held_J = energy_J(held.place, held.normal, held.depth_m, true);
+  const auto affords = [&](double depth_m) RT_SAFE {
+    return energy_J(probe.site.place, probe.site.normal, depth_m, false) <= held_J;
+  };
+  if (affords(high_m)) return high_m;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle_m = 0.5 * (low_m + high_m);
+    (affords(middle_m) ? low_m : high_m) = middle_m;
+  }
+  return low_m;
+}
+
+// Back to the surface with no more depth or energy than the held site had, and no stored shift.
+// Pressed tissue remembers on: forgotten relaxation would come back as a stiffer push.
 void Contact::let_go(const Probe& probe, SphereTouch& touch) RT_SAFE {
   touch.state = TouchState::kTouching;
+  touch.slack_m = at_least_zero(probe.depth_m - affordable_depth_m(probe, touch));
   if (!(touch.depth_m > 0.0)) scene_.law->leave(index_of(touch));
-  touch.slack_m = at_least_zero(probe.depth_m - at_least_zero(touch.depth_m));
   touch.shift_m = {};
 }
 

@@ -14,7 +14,8 @@
 // U is the site law's (site_law.h), s the place on the surface; as s follows the tool, the slope of
 // U along the surface is felt too. t: tangential displacement of the tissue, m. A change of state
 // never adds energy: slack takes up whatever depth would come for free (arming inside the organ,
-// letting go over a bump, a nearest point that jumps) and shrinks only as the tool withdraws.
+// letting go over a bump or stiffer tissue, a nearest point that jumps) and shrinks only as the tool
+// withdraws.
 #pragma once
 
 #include <array>
@@ -110,6 +111,7 @@ class Contact {
   void feel_held(Probe& probe, SphereTouch& touch) RT_SAFE;
   void hold(Probe& probe, SphereTouch& touch) RT_SAFE;
   void let_go(const Probe& probe, SphereTouch& touch) RT_SAFE;
+  double affordable_depth_m(const Probe& probe, const SphereTouch& held) RT_SAFE;
   SiteResponse ask_law(SphereTouch& touch) RT_SAFE;
   std::size_t index_of(const SphereTouch& touch) const RT_SAFE {
     return static_cast<std::size_t>(&touch - touch_.data());

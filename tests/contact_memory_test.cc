@@ -1,6 +1,8 @@
 // Letting go of tissue that remembers: neither the grip nor a tear gives energy back.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -64,6 +66,20 @@ Felt press_and_hold(Contact& contact, double depth_m, int ticks) {
   return feel(contact, {0, 0, kRadius_m - depth_m}, 1.0, ticks);
 }
 
+class Spring final : public Law {
+ public:
+  explicit Spring(double k_N_per_m) : k_(k_N_per_m) {}
+  LawResponse respond(double d) const RT_SAFE override {
+    return {k_ * d, k_, 0.5 * k_ * d * d, LawStatus::kOk};
+  }
+  LawRange range() const RT_SAFE override { return {-0.02, 0.02}; }
+  std::size_t profile(double, std::span<double>) const RT_SAFE override { return 0; }
+  double ring_pitch_m() const RT_SAFE override { return 1e-3; }
+
+ private:
+  double k_;
+};
+
 TEST(ContactMemory, OpeningTheGripInRelaxedTissueNeverAddsEnergy) {
   RelaxingBench bench;
   Contact contact = bench.contact();
@@ -104,6 +120,37 @@ TEST(ContactMemory, LettingGoWhileATermIsPulledDropsThatTerm) {
   EXPECT_LE(open.energy_J, held.energy_J);
   EXPECT_GT(open.force_N, 0.0);
   EXPECT_LT(open.force_N, bench.chain.respond(1_mm).force_N);
+}
+
+TEST(ContactMemory, LettingGoOverStifferTissueNeverAddsEnergy) {
+  const Spring soft(50.0), stiff(200.0);
+  const std::array<const Law*, 2> curves{&soft, &stiff};
+  for (const bool relaxes : {false, true}) {
+    RelaxingBench bench;
+    bench.parameters.sliding_stiffness_N_per_m = 10.0;
+    std::vector<float> coordinate;  // stiffer by 3 N/m a millimetre, along x
+    for (const Vec3& v : bench.mesh.vertex_m)
+      coordinate.push_back(std::clamp(0.02F * static_cast<float>(v.x / 1_mm), 0.0F, 1.0F));
+    bench.field =
+        ElasticField({.curves = curves,
+                      .coordinate = coordinate,
+                      .pull_coordinate = {},
+                      .surface = bench.mesh.view(),
+                      .relaxation = relaxes ? *make_relaxation(bench.terms, 0.001) : Relaxation()});
+    Contact contact = bench.contact();
+    press_and_hold(contact, 5_mm, 500);
+    const Vec3 aside_m{30_mm, 0, kRadius_m - 5_mm};
+    feel(contact, aside_m, 1.0);
+    const double shift_J = 0.5 * 10.0 * 30_mm * 30_mm;
+    const Felt held = feel(contact, aside_m, 1.0, 500);
+    const Felt open = feel(contact, aside_m, 0.0);
+    EXPECT_EQ(contact.touches()[0].state, TouchState::kTouching);
+    EXPECT_LE(open.energy_J, held.energy_J - shift_J + 1e-12);
+    EXPECT_GT(open.energy_J, 0.98 * (held.energy_J - shift_J)) << "nor takes what it need not";
+    EXPECT_GT(contact.touches()[0].slack_m, 1_mm);
+    // what was taken up is paid back only by withdrawing
+    EXPECT_LE(feel(contact, aside_m, 0.0, 10).force_N, open.force_N + 1e-12);
+  }
 }
 
 TEST(ContactMemory, LettingGoOfAPullForgets) {
