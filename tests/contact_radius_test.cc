@@ -34,7 +34,7 @@ TEST(TipContact, OnABallIsHertzOfBothRadii) {
   const double both_m = 1.0 / (1.0 / kRadius_m + 1.0 / ball_m), a_m = 0.2e-3;
   // a^2 = R d, F = 4/3 E* a^3 / R
   EXPECT_NEAR(tip.depth_m(a_m), a_m * a_m / both_m, 2e-3 * a_m * a_m / both_m);
-  const double hertz_N = 4.0 / 3.0 * contact_modulus_Pa(kTissue) * a_m * a_m * a_m / both_m;
+  const double hertz_N = 4.0 / 3.0 * kTissue.contact_modulus_Pa() * a_m * a_m * a_m / both_m;
   EXPECT_NEAR(tip.force_N(a_m), hertz_N, 3e-3 * hertz_N);
 }
 

@@ -19,7 +19,7 @@ TEST(HalfSpace, IsHertzAtSmallDepth) {
   // a^2 = R d, F = 4/3 E* sqrt(R) d^(3/2)
   const double d = 1e-6;
   EXPECT_NEAR(sphere_contact_radius_m(kRadius_m, d), std::sqrt(kRadius_m * d), 1e-3 * 7e-5);
-  const double hertz_N = 4.0 / 3.0 * contact_modulus_Pa(kTissue) * std::sqrt(kRadius_m * d) * d;
+  const double hertz_N = 4.0 / 3.0 * kTissue.contact_modulus_Pa() * std::sqrt(kRadius_m * d) * d;
   EXPECT_NEAR(sphere_force_N(kTissue, kRadius_m, d), hertz_N, 1e-3 * hertz_N);
 }
 

@@ -10,9 +10,6 @@ namespace {
 using Gradients = Eigen::Matrix<double, 10, 3>;          // dN_a / dx_i, 1/m
 using ElementStiffness = Eigen::Matrix<double, 30, 30>;  // row 3 a + i
 
-constexpr std::array<std::array<std::size_t, 2>, 6> kEdge{
-    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
-
 /// dN_a / dL_i at the barycentric point L, where L_0 = 1 - L_1 - L_2 - L_3.
 Gradients reference_gradients(const std::array<double, 4>& l) {
   Eigen::Matrix<double, 4, 3> dl;  // dL / d(L_1, L_2, L_3)
@@ -22,7 +19,7 @@ Gradients reference_gradients(const std::array<double, 4>& l) {
   for (std::size_t a = 0; a < 4; ++a)
     g.row(static_cast<int>(a)) = (4.0 * l[a] - 1.0) * dl.row(static_cast<int>(a));
   for (std::size_t e = 0; e < 6; ++e) {
-    const auto [p, q] = kEdge[e];
+    const auto [p, q] = kTetEdge[e];
     g.row(static_cast<int>(4 + e)) =
         4.0 * (l[p] * dl.row(static_cast<int>(q)) + l[q] * dl.row(static_cast<int>(p)));
   }
@@ -46,8 +43,8 @@ const std::array<Gradients, 4>& gauss_gradients() {
 
 /// Is every middle node nearer to the middle of its edge than a quarter of the edge?
 bool middles_in_order(const TetMesh& mesh, const TetNodes& nodes) {
-  for (std::size_t e = 0; e < kEdge.size(); ++e) {
-    const Vec3 &p = mesh.node_m[nodes[kEdge[e][0]]], &q = mesh.node_m[nodes[kEdge[e][1]]];
+  for (std::size_t e = 0; e < kTetEdge.size(); ++e) {
+    const Vec3 &p = mesh.node_m[nodes[kTetEdge[e][0]]], &q = mesh.node_m[nodes[kTetEdge[e][1]]];
     if (!(norm(mesh.node_m[nodes[4 + e]] - 0.5 * (p + q)) < 0.25 * norm(p - q))) return false;
   }
   return true;

@@ -18,6 +18,8 @@ using model::Error;
 using model::Result;
 using model::TriangleCorners;
 using model::Vec3;
+using model::fem::edge_key;
+using model::fem::kTetEdge;
 using model::fem::TetMesh;
 
 constexpr double kTimeLimit_s = 1800.0;
@@ -137,17 +139,14 @@ bool read_body(const std::string& text, std::span<const Vec3> vertex_m, TetMesh&
 
 /// Middles of all edges, each once, in the order of TetNodes.
 void add_middles(TetMesh& body) {
-  constexpr std::array<std::array<std::size_t, 2>, 6> kEdges{
-      {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
   std::unordered_map<std::uint64_t, std::uint32_t> middle;
   for (auto& e : body.element) {
     const Vec3 o = body.node_m[e[0]];
     const Vec3 a = body.node_m[e[1]] - o, b = body.node_m[e[2]] - o, c = body.node_m[e[3]] - o;
     if (dot(a, cross(b, c)) < 0.0) std::swap(e[1], e[2]);
-    for (std::size_t k = 0; k < kEdges.size(); ++k) {
-      const std::uint32_t p = e[kEdges[k][0]], q = e[kEdges[k][1]];
-      const std::uint64_t key = std::uint64_t{std::min(p, q)} << 32U | std::max(p, q);
-      const auto [at, is_new] = middle.try_emplace(key, body.node_m.size());
+    for (std::size_t k = 0; k < kTetEdge.size(); ++k) {
+      const std::uint32_t p = e[kTetEdge[k][0]], q = e[kTetEdge[k][1]];
+      const auto [at, is_new] = middle.try_emplace(edge_key(p, q), body.node_m.size());
       if (is_new) body.node_m.push_back(0.5 * (body.node_m[p] + body.node_m[q]));
       e[4 + k] = at->second;
     }

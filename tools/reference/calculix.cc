@@ -72,7 +72,7 @@ void write_material(Text out, const Elasticity& m, bool large_strain) {
   fmt::format_to(out, "*MATERIAL,NAME=TISSUE\n");
   if (large_strain) {
     // kPa; C10 = G / 2, D1 = 2 / K
-    const double shear = E_kPa / (2.0 * (1.0 + nu));
+    const double shear = m.shear_modulus_Pa() * kKPa;
     const double bulk = E_kPa / (3.0 * (1.0 - 2.0 * nu));
     fmt::format_to(out, "*HYPERELASTIC,NEO HOOKE\n{:.12g},{:.12g}\n", 0.5 * shear, 2.0 / bulk);
   } else {

@@ -14,15 +14,13 @@
 #include <string>
 #include <vector>
 
+#include "model/fem/elasticity.h"
 #include "model/fem/tet_mesh.h"
 #include "model/result.h"
 
 namespace tact::tools {
 
-struct Elasticity {
-  double youngs_modulus_Pa = 0.0;
-  double poisson_ratio = 0.0;
-};
+using model::fem::Elasticity;
 
 /// A node and how far it goes.
 struct MovedNode {

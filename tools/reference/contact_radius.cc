@@ -32,7 +32,7 @@ double root(double high, const Function& f) {
 
 TipContact::TipContact(const Elasticity& material, double sphere_radius_m,
                        std::vector<double> fall_m, double pitch_m)
-    : modulus_Pa_(contact_modulus_Pa(material)),
+    : modulus_Pa_(material.contact_modulus_Pa()),
       sphere_radius_m_(sphere_radius_m),
       fall_m_(std::move(fall_m)),
       pitch_m_(pitch_m) {}

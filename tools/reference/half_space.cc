@@ -18,14 +18,9 @@ double root(const Function& f) {
 
 }  // namespace
 
-double contact_modulus_Pa(const Elasticity& m) {
-  // E* = E / (1 - nu^2)
-  return m.youngs_modulus_Pa / (1.0 - m.poisson_ratio * m.poisson_ratio);
-}
-
 double flat_punch_force_N(const Elasticity& material, double radius_m, double depth_m) {
   // F = 2 E* a d
-  return 2.0 * contact_modulus_Pa(material) * radius_m * depth_m;
+  return 2.0 * material.contact_modulus_Pa() * radius_m * depth_m;
 }
 
 double sphere_contact_radius_m(double sphere_radius_m, double depth_m) {
@@ -37,7 +32,7 @@ double sphere_contact_radius_m(double sphere_radius_m, double depth_m) {
 double sphere_force_N(const Elasticity& material, double sphere_radius_m, double depth_m) {
   const double R = sphere_radius_m, a = sphere_contact_radius_m(R, depth_m);  // NOLINT
   // F = E* ((R^2 + a^2) / 2 ln((R + a) / (R - a)) - a R)
-  return contact_modulus_Pa(material) *
+  return material.contact_modulus_Pa() *
          ((R * R + a * a) / 2.0 * std::log((R + a) / (R - a)) - a * R);
 }
 

@@ -1,6 +1,6 @@
 // half_space.h - exact indentation of a flat, deep, linear elastic body without friction.
 //
-//     E* = E / (1 - nu^2)
+//     E* = E / (1 - nu^2), Elasticity::contact_modulus_Pa
 //     flat punch of radius a      F = 2 E* a d
 //     sphere of radius R          d = (a / 2) ln((R + a) / (R - a))
 //                                 F = E* ((R^2 + a^2) / 2 ln((R + a) / (R - a)) - a R)
@@ -12,9 +12,6 @@
 #include "tools/reference/calculix.h"
 
 namespace tact::tools {
-
-/// E*, Pa.
-double contact_modulus_Pa(const Elasticity& material);
 
 double flat_punch_force_N(const Elasticity& material, double radius_m, double depth_m);
 

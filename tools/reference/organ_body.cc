@@ -7,19 +7,15 @@ namespace tact::tools {
 namespace {
 
 using model::Vec3;
-
-std::uint64_t key(std::uint32_t a, std::uint32_t b) {
-  return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
-}
+using model::fem::edge_key;
+using model::fem::kTetEdge;
 
 /// Middle node of every element edge.
 std::unordered_map<std::uint64_t, std::uint32_t> middles_of(const model::fem::TetMesh& mesh) {
-  constexpr std::array<std::array<std::size_t, 2>, 6> kEdges{
-      {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
   std::unordered_map<std::uint64_t, std::uint32_t> out;
   for (const auto& e : mesh.element)
-    for (std::size_t k = 0; k < kEdges.size(); ++k)
-      out[key(e[kEdges[k][0]], e[kEdges[k][1]])] = e[4 + k];
+    for (std::size_t k = 0; k < kTetEdge.size(); ++k)
+      out[edge_key(e[kTetEdge[k][0]], e[kTetEdge[k][1]])] = e[4 + k];
   return out;
 }
 
@@ -46,7 +42,7 @@ model::Result<OrganBody> make_organ_body(const model::SurfaceMesh& surface,
   for (const auto& t : fine.triangle) {
     FaceNodes nodes{t[0], t[1], t[2], 0, 0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto found = middle.find(key(t[k], t[(k + 1) % 3]));
+      const auto found = middle.find(edge_key(t[k], t[(k + 1) % 3]));
       if (found == middle.end()) {
         return model::Error{"gmsh changed the surface; ask tact-mesh whether it crosses itself"};
       }

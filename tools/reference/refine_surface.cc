@@ -14,16 +14,13 @@ namespace {
 
 using model::TriangleCorners;
 using model::Vec3;
+using model::fem::edge_key;
 
 constexpr std::uint32_t kUnset = 0xFFFFFFFFU;
 // Two rounds halve a triangle's edges: from 0.1 m to 0.1 um, far below any tool.
 constexpr int kMostRounds = 40;
 constexpr std::size_t kMostTriangles = 1000000;  // gmsh would need days for the body of more
 using Middles = std::unordered_map<std::uint64_t, std::uint32_t>;  // of the edges to split
-
-std::uint64_t key(std::uint32_t a, std::uint32_t b) {
-  return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
-}
 
 /// Edge k joins corners k and (k + 1) % 3. Equal lengths: the smaller key, so neighbours agree.
 std::size_t longest_edge(const Triangles& s, const TriangleCorners& t) {
@@ -33,7 +30,7 @@ std::size_t longest_edge(const Triangles& s, const TriangleCorners& t) {
     const std::uint32_t p = t[k], q = t[(k + 1) % 3];
     const Vec3 e = s.vertex_m[std::min(p, q)] - s.vertex_m[std::max(p, q)];
     const double length_m2 = dot(e, e);
-    const bool tie = length_m2 == best_m2 && key(p, q) < key(t[best], t[(best + 1) % 3]);
+    const bool tie = length_m2 == best_m2 && edge_key(p, q) < edge_key(t[best], t[(best + 1) % 3]);
     if (length_m2 > best_m2 || tie) best = k;
     best_m2 = std::max(best_m2, length_m2);
   }
@@ -45,23 +42,23 @@ Middles edges_to_split(const Triangles& s, const EdgeLengths& lengths) {
   for (const TriangleCorners& t : s.triangle) {
     const std::size_t k = longest_edge(s, t);
     const Vec3 &p = s.vertex_m[t[k]], &q = s.vertex_m[t[(k + 1) % 3]];
-    if (norm(q - p) > lengths.at(0.5 * (p + q))) out[key(t[k], t[(k + 1) % 3])] = kUnset;
+    if (norm(q - p) > lengths.at(0.5 * (p + q))) out[edge_key(t[k], t[(k + 1) % 3])] = kUnset;
   }
   for (bool changed = !out.empty(); changed;) {  // to the neighbours, until all agree
     changed = false;
     for (const TriangleCorners& t : s.triangle) {
       bool touched = false;
-      for (std::size_t k = 0; k < 3; ++k) touched |= out.count(key(t[k], t[(k + 1) % 3])) > 0;
+      for (std::size_t k = 0; k < 3; ++k) touched |= out.count(edge_key(t[k], t[(k + 1) % 3])) > 0;
       if (!touched) continue;
       const std::size_t k = longest_edge(s, t);
-      changed |= out.try_emplace(key(t[k], t[(k + 1) % 3]), kUnset).second;
+      changed |= out.try_emplace(edge_key(t[k], t[(k + 1) % 3]), kUnset).second;
     }
   }
   return out;
 }
 
 std::uint32_t middle_of(Triangles& s, Middles& middles, std::uint32_t p, std::uint32_t q) {
-  const auto found = middles.find(key(p, q));
+  const auto found = middles.find(edge_key(p, q));
   if (found == middles.end()) return kUnset;
   if (found->second == kUnset) {
     found->second = static_cast<std::uint32_t>(s.vertex_m.size());
@@ -104,7 +101,7 @@ void split(Triangles& s, Middles& middles) {
 void cut(Triangles& s, Middles& cuts, const Circle& circle, const TriangleCorners& t,
          const std::vector<int>& side, std::vector<TriangleCorners>& out) {
   const auto crossing = [&](std::uint32_t p, std::uint32_t q) {
-    const auto [at, is_new] = cuts.try_emplace(key(p, q), kUnset);
+    const auto [at, is_new] = cuts.try_emplace(edge_key(p, q), kUnset);
     if (!is_new) return at->second;
     const Vec3 a = s.vertex_m[std::min(p, q)], b = s.vertex_m[std::max(p, q)];
     double low = 0.0, high = 1.0;  // along a to b; the distance from the axis may be curved
