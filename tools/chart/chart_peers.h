@@ -7,7 +7,7 @@
 //     bullet_volume   Bullet's soft body of the same surface filled with tetrahedra
 //
 // Those without E are fitted first: their mean force at the reference's press nearest to 5 mm is
-// the reference's. All are held where the scene says, at rest under no load, 1 kHz.
+// the reference's. All are held where the scene says, at rest under no load, at the scene's rate.
 #pragma once
 
 #include <vector>

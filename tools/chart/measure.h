@@ -57,10 +57,10 @@ struct TimingSettings {
 };
 
 struct Timing {
-  double median_us = 0.0, p999_us = 0.0;
-  double instructions = 0.0;  // per tick; NaN where the machine does not count them
-  std::size_t ticks = 0;      // a round
-  std::size_t paused = 0;     // of these, left out of the p99.9
+  double median_us = 0.0, p999_us = 0.0;  // of fewer than 1000 ticks the worst is the p99.9
+  double instructions = 0.0;              // per tick; NaN where they are too many to count
+  std::size_t ticks = 0;                  // a round
+  std::size_t paused = 0;                 // of these, left out of the p99.9
 };
 Timing measure_time(Subject& subject, const std::vector<model::Indentation>& path,
                     const TimingSettings& settings);

@@ -6,7 +6,7 @@
 //
 // The tip is a penalty spring on the touched triangle, F = q (d - w), as in spring_mesh. Bullet has
 // no modulus: its free stiffness (shape matching, or that of the links) is tried until
-// the mean force at 5 mm fits; if it does not within Bullet's range 0 .. 1, the nearest is taken
+// the mean force at 5 mm fits within 4 %; if it does not between 1e-4 and 1, the nearest is taken
 // and said.
 #include <BulletSoftBody/btSoftBodyHelpers.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
@@ -21,6 +21,7 @@
 #include "model/fem/boundary.h"
 #include "tools/chart/chart_peers.h"
 #include "tools/common/gmsh.h"
+#include "tools/common/interrupt.h"
 #include "tools/condense/condense_organ.h"
 
 namespace tact::tools {
@@ -209,19 +210,21 @@ Result<std::unique_ptr<Subject>> make_bullet_peer(const PeerInput& input, bool v
     double stiffness, force_N;
   };
   Trial low{1e-4, force_N(1e-4)}, high{1.0, force_N(1.0)};
-  double stiffness = high.force_N < wanted_N ? high.stiffness : low.stiffness;
+  const auto miss = [&](const Trial& t) { return std::abs(t.force_N - wanted_N); };
+  Trial best = miss(low) < miss(high) ? low : high;
   if (low.force_N < wanted_N && high.force_N > wanted_N) {
     for (int i = 0; i < kTrials; ++i) {
       const double least_N = std::max(low.force_N, 1e-3 * wanted_N);  // it may give way for good
       const double share = std::log(wanted_N / least_N) / std::log(high.force_N / least_N);
-      stiffness =
+      const double stiffness =
           low.stiffness * std::pow(high.stiffness / low.stiffness, std::clamp(share, 0.1, 0.9));
-      const double now_N = force_N(stiffness);
-      if (std::abs(now_N - wanted_N) < kFitted_ratio * wanted_N) break;
-      (now_N < wanted_N ? low : high) = {stiffness, now_N};
+      const Trial now{stiffness, force_N(stiffness)};
+      if (miss(now) < miss(best)) best = now;
+      if (miss(now) < kFitted_ratio * wanted_N || is_interrupted()) break;
+      (now.force_N < wanted_N ? low : high) = now;
     }
   }
-  auto peer = std::make_unique<BulletPeer>(input.scene, *plan, iterations, stiffness);
+  auto peer = std::make_unique<BulletPeer>(input.scene, *plan, iterations, best.stiffness);
   peer->set_fitted(std::abs(mean_force_N(*peer, fit) - wanted_N) < 2.0 * kFitted_ratio * wanted_N);
   return std::unique_ptr<Subject>(std::move(peer));
 }

@@ -21,8 +21,7 @@ class Subject {
   virtual double tick(const model::Indentation& in) = 0;
   /// The probe is gone; a body with inertia comes to rest.
   virtual void release() = 0;
-  /// Displacement into the tissue at radius k * pitch_m around the place, as after the last tick;
-  /// NaN where there is no surface.
+  /// Displacement into the tissue at radius k * pitch_m around the place, as after the last tick.
   virtual void shape(const model::Indentation& in, double pitch_m, std::span<double> ring_m) = 0;
   /// It needs several ticks to reach its force.
   virtual bool is_stepped() const = 0;
@@ -36,8 +35,7 @@ model::Result<std::unique_ptr<Subject>> make_law_subject(const model::Scene& sce
                                                          const model::LawSizes& sizes);
 
 /// Mean over the ring at radius k * pitch_m, k = 0, 1, ..., of a field that is linear over each
-/// triangle (dent_m: one entry a vertex): points in 24 directions, put back onto the surface. NaN
-/// where the surface ends.
+/// triangle (dent_m: one entry a vertex), over the same lines as the reference's (ring_means.h).
 void ring_means(const model::SurfaceView& surface, const model::Indentation& in, double pitch_m,
                 std::span<const double> dent_m, std::span<double> ring_m);
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "model/site.h"
 #include "model/tissue_law.h"
 #include "tools/chart/subject.h"
+#include "tools/common/ring_means.h"
 
 namespace tact::tools {
 namespace {
@@ -115,29 +117,23 @@ Vec3 point_of(const SurfaceView& surface, const Place& place) {
 
 void ring_means(const SurfaceView& surface, const Indentation& in, double pitch_m,
                 std::span<const double> dent_m, std::span<double> ring_m) {
-  constexpr int kDirections = 24;
   const Vec3 centre = point_of(surface, in.place);
-  const Vec3 side = std::abs(in.normal.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 e1 = normalized(cross(in.normal, side)), e2 = cross(in.normal, e1);
-  std::array<std::uint32_t, kDirections> triangle{};
-  triangle.fill(in.place.triangle);
-  for (std::size_t k = 0; k < ring_m.size(); ++k) {
-    const double radius_m = static_cast<double>(k) * pitch_m;
-    double sum_m = 0.0;
-    int points = 0;
-    for (std::size_t i = 0; i < kDirections; ++i) {
-      const double angle_rad = 2.0 * M_PI * static_cast<double>(i) / kDirections;
-      const Vec3 way = std::cos(angle_rad) * e1 + std::sin(angle_rad) * e2;
-      const model::Site at = follow(surface, triangle[i], centre + radius_m * way);
-      triangle[i] = at.place.triangle;
-      // past a rim the nearest point stays behind: that is no point of this ring
-      if (std::abs(norm(at.point_m - centre) - radius_m) > 0.5 * pitch_m + 0.1 * radius_m) continue;
-      for (std::size_t c = 0; c < 3; ++c)
-        sum_m += at.place.weight[c] * dent_m[surface.triangle[at.place.triangle][c]];
-      ++points;
+  double middle_m = 0.0;
+  for (std::size_t c = 0; c < 3; ++c)
+    middle_m += in.place.weight[c] * dent_m[surface.triangle[in.place.triangle][c]];
+  RingMeans means(static_cast<int>(ring_m.size()), pitch_m, middle_m);
+  for (const model::TriangleCorners& corner : surface.triangle) {
+    std::array<Vec3, 3> p{};
+    std::array<double, 3> rho{}, value{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      p[c] = surface.vertex_m[corner[c]];
+      rho[c] = norm(p[c] - centre);
+      value[c] = dent_m[corner[c]];
     }
-    ring_m[k] = points > 0 ? sum_m / points : std::numeric_limits<double>::quiet_NaN();
+    const Vec3 outward = normalized(cross(p[1] - p[0], p[2] - p[0]));
+    if (dot(outward, in.normal) >= kFacing) means.add_triangle(p, rho, value);
   }
+  std::ranges::copy(means.means(), ring_m.begin());
 }
 
 }  // namespace tact::tools

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "tools/reference/half_space.h"
+#include "tools/common/ring_means.h"
 #include "tools/reference/refine_surface.h"
-#include "tools/reference/ring_means.h"
 
 namespace tact::tools {
 namespace {
@@ -15,7 +14,6 @@ using model::Vec3;
 
 constexpr int kSteps = 200;        // of the integrals, midpoint rule
 constexpr double kWidest = 0.999;  // of R
-constexpr double kFacing = 0.1;    // cosine: a triangle looks the tool's way
 
 /// Where a rising function is zero between 0 and `high`: halve the interval.
 template <typename Function>

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "tools/common/ring_means.h"
 #include "tools/reference/half_space.h"
-#include "tools/reference/ring_means.h"
 
 namespace tact::tools {
 namespace {
@@ -14,7 +14,6 @@ using model::Result;
 using model::Vec3;
 
 constexpr double kFineRadius = 1.1;    // of the contact radius: up to here the mesh is finest
-constexpr double kFacing = 0.1;        // cosine: a face looks the tool's way
 constexpr double kSphereShare = 0.99;  // of R: beyond, a sphere's side is too steep to touch
 
 struct Levels {

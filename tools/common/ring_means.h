@@ -11,6 +11,9 @@
 
 namespace tact::tools {
 
+/// Cosine of a triangle's normal with the site's: the others are the organ's far side.
+inline constexpr double kFacing = 0.1;
+
 class RingMeans {
  public:
   /// Rings 0 .. rings - 1; ring 0 is the middle itself, whose value the caller knows.

@@ -1,4 +1,4 @@
-#include "tools/reference/ring_means.h"
+#include "tools/common/ring_means.h"
 
 #include <algorithm>
 
