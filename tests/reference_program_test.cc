@@ -1,5 +1,7 @@
 // tact-reference as a person meets it: what it says when something is missing or wrong.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -60,7 +62,8 @@ void make_program(const fs::path& path, const std::string& script) {
 }
 
 TEST(ReferenceProgram, JobsOfOneSiteShareItsCoarseSolve) {
-  const auto folder = fs::path(testing::TempDir()) / "reference_program_test";
+  const auto folder =
+      fs::path(testing::TempDir()) / fmt::format("reference_program_test.{}", getpid());
   fs::create_directories(folder);
   make_program(folder / "gmsh",
                "[ \"$1\" = --version ] && echo 4.8.4 && exit\n"

@@ -129,6 +129,19 @@ TEST(RunProgram, EndsAProgramAtAClosedTerminalAndAtTermination) {
   }
 }
 
+TEST(InterruptWatch, LetsNohupBeAndForgetsWhatItEndsWith) {
+  std::signal(SIGHUP, SIG_IGN);
+  {
+    const InterruptWatch watch;
+    std::raise(SIGHUP);
+    EXPECT_FALSE(is_interrupted());
+    std::raise(SIGINT);
+    EXPECT_TRUE(is_interrupted());
+  }
+  EXPECT_FALSE(is_interrupted());
+  EXPECT_EQ(std::signal(SIGHUP, SIG_DFL), SIG_IGN);
+}
+
 TEST(RunProgram, ASecondCtrlCLeavesNoProgramBehind) {
   const auto where = folder();
   const pid_t ours = fork();

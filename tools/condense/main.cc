@@ -47,8 +47,7 @@ void add_options(CLI::App& app, Options& o) {
                  "surface); half as long is about 20 times the work")
       ->check(check_length);
   app.add_option("--patch-radius-m", o.patch_radius_m,
-                 "a0 of the loaded patch, m (default: 1.6 elements); the result hardly depends on "
-                 "it")
+                 "a0 of the loaded patch, m (default: 1.6 elements); of little effect")
       ->check(check_length);
   app.add_option("--ring-pitch-m", o.ring_pitch_m, "of the shape around a place, m (default 0.002)")
       ->check(check_length);

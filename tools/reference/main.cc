@@ -36,7 +36,8 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--set", o.overrides, "one key of the scene, as KEY=VALUE; repeatable");
   app.add_option("--sites", o.sites, "vertices of the organ's mesh, instead of the scene's")
       ->delimiter(',');
-  app.add_option("--depths", o.depths_m, "m, above 0, rising; press and pull")->delimiter(',');
+  app.add_option("--depths", o.depths_m, "m, above 0, rising, at most 5 tool radii; press and pull")
+      ->delimiter(',');
   app.add_option("--large-strain", o.large_strain_sites,
                  "sites that are also pulled with large strain (slow)")
       ->delimiter(',');

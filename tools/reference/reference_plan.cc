@@ -16,7 +16,7 @@ constexpr double kDefaultDepths_m[] = {1e-3, 2e-3, 3.5e-3, 5e-3, 7e-3, 10e-3};
 constexpr double kUnitPull_m = -1e-3;
 // Of the tool's radius: near 1.5 the elements at the rim of the bond turn inside out.
 constexpr double kLargeStrainDepth = 1.3;
-constexpr double kShrink = 0.7;  // of edges, and of the error, from level to level
+constexpr double kShrink = 0.7;     // of edges, and of the error, from level to level
 constexpr double kMostDepth = 5.0;  // of the tool's radius
 
 bool among(const std::vector<std::uint32_t>& list, std::uint32_t vertex) {
