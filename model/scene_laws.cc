@@ -225,10 +225,8 @@ void visit_truth(Keys& k, Scene& scene) {
                 tolerance.force_error_ratio);
     keys.number("shape_error_ratio", {0.001, 10.0}, "RMS error of the shape over the depth",
                 tolerance.shape_error_ratio);
-    keys.number(
-        "tick_budget_us", {0.1, 1e4},
-        "p99.9 of the law's share of a tick; tactd without hard real time judges the median",
-        tolerance.tick_budget_us);
+    keys.number("tick_budget_us", {0.1, 1e4}, "of the law, p99.9; non-rt: median",
+                tolerance.tick_budget_us);
   };
   if (k.section("tolerance", "what is good enough: tact-plan chooses by it", visit_tolerance,
                 Need::kOptional)) {
