@@ -114,6 +114,7 @@ TEST(Ccd, AChainOfHingesAboutZStaysInItsPlane) {
   for (const Vector3d& p : at.points_m) EXPECT_EQ(p.z(), 0.0);
 }
 
+// X21  "CCD converges": not a straight chain that points at its target.
 TEST(Ccd, AStraightChainThatPointsAtItsTargetStalls) {
   // The source claims no exception. Every joint already sees the end in line with the target.
   const Reach goal{.target_m = {0.4, 0.0, 0.0}, .sweeps = 200};

@@ -148,6 +148,7 @@ TEST(Epnp, TheOrderOfThePointsDoesNotMatter) {
   EXPECT_LT(distance(view.estimate().pose, before), 1e-8);
 }
 
+// X21  the hardware of the source sweeps angles; it is no camera.
 TEST(Epnp, TakesTangentsOfAnglesFromASweepTracker) {
   Views views;
   const Camera tangents{.fx_px = 1.0, .fy_px = 1.0};
