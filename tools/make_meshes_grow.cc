@@ -28,6 +28,7 @@ constexpr double kLong = 1.40, kShort = 0.72;  // of the wanted length
 struct Measured {
   double ratio = 0.0;  // length over wanted length
   Edge edge;
+  std::size_t order = 0;  // of the triangles
 };
 
 class Grower {
@@ -81,8 +82,9 @@ class Grower {
   // All edges, the longest or the shortest first; equal ones in the order of the triangles.
   std::vector<Measured> measured(bool longest_first) {
     std::vector<Measured> all;
-    for (const Edge& e : editor_.edges()) all.push_back({ratio_of(e), e});
-    std::stable_sort(all.begin(), all.end(), [&](const Measured& m, const Measured& n) {
+    for (const Edge& e : editor_.edges()) all.push_back({ratio_of(e), e, all.size()});
+    std::sort(all.begin(), all.end(), [&](const Measured& m, const Measured& n) {
+      if (m.ratio == n.ratio) return m.order < n.order;
       return longest_first ? m.ratio > n.ratio : m.ratio < n.ratio;
     });
     return all;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
 
 namespace tact::tools {
 namespace {
@@ -83,9 +84,9 @@ std::vector<std::size_t> front_of(std::span<const SpeedAndError> points) {
   for (std::size_t i = 0; i < points.size(); ++i)
     if (std::isfinite(points[i].tick_us) && std::isfinite(points[i].error_ratio))
       order.push_back(i);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return points[a].tick_us < points[b].tick_us || (points[a].tick_us == points[b].tick_us &&
-                                                     points[a].error_ratio < points[b].error_ratio);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::tuple(points[a].tick_us, points[a].error_ratio, a) <
+           std::tuple(points[b].tick_us, points[b].error_ratio, b);
   });
   std::vector<std::size_t> front;
   for (const std::size_t i : order)

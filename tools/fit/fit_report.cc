@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace tact::tools {
 namespace {
@@ -136,8 +137,8 @@ bool FitReport::follows() const {
 }
 
 void FitReport::sort() {
-  std::stable_sort(laws.begin(), laws.end(), [](const FittedLaw& a, const FittedLaw& b) {
-    return judged_ratio(a) < judged_ratio(b);
+  std::sort(laws.begin(), laws.end(), [](const FittedLaw& a, const FittedLaw& b) {
+    return std::tuple(judged_ratio(a), a.name) < std::tuple(judged_ratio(b), b.name);
   });
 }
 
