@@ -55,6 +55,19 @@ double at_share(const std::vector<double>& ascending, double share) {
   return ascending[static_cast<std::size_t>(std::ceil(share * last))];
 }
 
+/// The key or section to change when the law is too stiff.
+std::string stiff_key(const model::Scene& scene, const model::TissueLaw& law) {
+  if (scene.law == model::LawKind::kCompliance) return "elastic.youngs_modulus_Pa";
+  if (scene.pull && law.pull_is_stiffer()) return "pull.stiffness_N_per_m";
+  return fmt::format("[{}]", model::name_of(scene.law));
+}
+
+/// Never above it, so that the number printed is one that is accepted.
+double rounded_down(double value) {
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 3.0);
+  return value > 0.0 ? unit * std::floor(value / unit) : 0.0;
+}
+
 std::string spheres_in_words(std::size_t n) {
   return n == 1 ? "1 sphere" : fmt::format("{} spheres", n);
 }
@@ -87,8 +100,8 @@ Result<StiffnessMargin> check_renderable(const model::Scene& scene, const model:
       "{:g} Hz; {} to {:.4g} N/m or less, raise rate_Hz{}",
       scene.path, what, one_N_per_m, spheres_in_words(spheres),
       static_cast<double>(spheres) * one_N_per_m, limit_N_per_m, scene.rate_Hz,
-      is_law ? fmt::format("soften [{}]", model::name_of(scene.law)) : "lower it",
-      limit_N_per_m / static_cast<double>(spheres),
+      is_law ? "soften " + stiff_key(scene, tissue.law()) : "lower it",
+      rounded_down(limit_N_per_m / static_cast<double>(spheres)),
       device.damping_key.empty() ? std::string(", or take a device with more damping")
                                  : fmt::format(", or raise {}", device.damping_key))};
 }
@@ -144,8 +157,7 @@ Result<TimeMargin> check_budget(const model::Scene& scene,
   if (margin.judged_us <= margin.budget_us) return margin;
   return Error{fmt::format(
       "{}: {} needs {:.1f} us a tick here ({}), {} {:g} us; choose a smaller model (tact-plan "
-      "names "
-      "one), {} or take a faster machine",
+      "names one), {} or take a faster machine",
       scene.path, (*twin)->title(), margin.judged_us,
       margin.tail_counts ? "p99.9" : "median: without hard real time the tail is the kernel's",
       scene.tolerance ? "tolerance.tick_budget_us is" : "half a period of rate_Hz is",

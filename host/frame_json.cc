@@ -68,8 +68,10 @@ void put_patch(std::string& out, const firmware::FramePatch& patch) {
   const std::size_t cuts = std::min<std::size_t>(patch.cut_count, firmware::kMaxCutsTold);
   std::vector<std::uint8_t> bytes(n * (sizeof patch.vertex[0] + sizeof patch.displacement_um[0]));
   const std::size_t vertex_bytes = n * sizeof patch.vertex[0];
-  std::memcpy(bytes.data(), patch.vertex, vertex_bytes);
-  std::memcpy(bytes.data() + vertex_bytes, patch.displacement_um, bytes.size() - vertex_bytes);
+  if (n > 0) {  // an empty vector has no address to copy to
+    std::memcpy(bytes.data(), patch.vertex, vertex_bytes);
+    std::memcpy(bytes.data() + vertex_bytes, patch.displacement_um, bytes.size() - vertex_bytes);
+  }
   fmt::format_to(std::back_inserter(out), ",\"patch\":{{\"count\":{},\"moved\":\"", n);
   put_base64(out, bytes);
   fmt::format_to(std::back_inserter(out), "\",\"cut_total\":{},\"cut\":[{}]}}", patch.cut_total,

@@ -43,7 +43,7 @@ constexpr std::array kTable{
                "the loop missed its deadlines: 20 periods at once or 20 ticks in a row, 100 in a "
                "row without hard real time",
                "choose a smaller law (tact-plan names one) or a lower rate_Hz, and free the loop's "
-               "core of other work"},
+               "core of other work, then start tactd again"},
     FaultEntry{Fault::kLawBroke, "law broke",
                "the tissue's law blew up and gives no force that can be trusted",
                "make its step shorter or its springs softer (spring_patch.substeps, integrator), "

@@ -17,6 +17,9 @@ namespace {
 
 constexpr double kRingTolerance = 0.01;  // of the force, where the scene states none
 
+/// NaN is the stiffest of all, so that what must bound it refuses it.
+double stiffer_N_per_m(double a, double b) { return a >= b || std::isnan(a) ? a : b; }
+
 /// Largest slope between two depths; those at the ends are seen from inside.
 double stiffest_N_per_m(const Law& law, double from_m, double to_m) {
   constexpr int kSteps = 200;
@@ -24,7 +27,7 @@ double stiffest_N_per_m(const Law& law, double from_m, double to_m) {
   for (int i = 0; i <= kSteps; ++i) {
     const double ratio = std::clamp(static_cast<double>(i) / kSteps, 1e-6, 1.0 - 1e-6);
     const LawResponse r = law.respond(from_m + ratio * (to_m - from_m));
-    most_N_per_m = std::max(most_N_per_m, r.stiffness_N_per_m);
+    most_N_per_m = stiffer_N_per_m(most_N_per_m, r.stiffness_N_per_m);
   }
   return most_N_per_m;
 }
@@ -203,7 +206,7 @@ TissueLawBuilder::Step TissueLawBuilder::add_spring_patch() {
   auto patch = make_spring_patch(scene_.organ_mesh.view(), parameters);
   if (!patch) return blame(patch.error());
   law_->range_ = {-parameters.working_depth_m, parameters.working_depth_m};
-  law_->stiffness_N_per_m_ = parameters.coupling_stiffness_N_per_m;
+  law_->press_stiffness_N_per_m_ = parameters.coupling_stiffness_N_per_m;
   law_->memory_bytes_ = (*patch)->memory_bytes();
   law_->site_law_ = std::move(*patch);
   return std::nullopt;
@@ -248,13 +251,14 @@ void TissueLawBuilder::measure(const Law& curve) {
   if (first) law_->range_ = range;
   law_->range_.pull_m = std::max(law_->range_.pull_m, range.pull_m);
   law_->range_.press_m = std::min(law_->range_.press_m, range.press_m);
-  double most_N_per_m = stiffest_N_per_m(curve, 0.0, range.press_m);
+  law_->press_stiffness_N_per_m_ =
+      stiffer_N_per_m(law_->press_stiffness_N_per_m_, stiffest_N_per_m(curve, 0.0, range.press_m));
   if (range.pull_m < 0.0) {
     law_->pull_limit_N_ = std::max(law_->pull_limit_N_, -curve.respond(range.pull_m).force_N);
     const double torn_m = tear_depth_m(curve, scene_.contact.tear_force_N);
-    most_N_per_m = std::max(most_N_per_m, stiffest_N_per_m(curve, torn_m, 0.0));
+    law_->pull_stiffness_N_per_m_ =
+        stiffer_N_per_m(law_->pull_stiffness_N_per_m_, stiffest_N_per_m(curve, torn_m, 0.0));
   }
-  law_->stiffness_N_per_m_ = std::max(law_->stiffness_N_per_m_, most_N_per_m);
 }
 
 Result<std::unique_ptr<TissueLaw>> make_tissue_law(const Scene& scene, LawKind kind) {

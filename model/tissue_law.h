@@ -3,6 +3,7 @@
 // Set-up code; what it hands out (SiteLaw) is what the loop calls.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,7 +26,14 @@ class TissueLaw {
   double pull_limit_N() const { return pull_limit_N_; }
   /// Largest dF/dd inside the range and short of the tear force, N/m: what device and rate must be
   /// able to render.
-  double stiffness_N_per_m() const { return stiffness_N_per_m_; }
+  double stiffness_N_per_m() const {  // NaN stays NaN
+    return pull_is_stiffer() ? pull_stiffness_N_per_m_ : press_stiffness_N_per_m_;
+  }
+  /// The stiffest slope is one of pull, where [pull] or the law itself makes it.
+  bool pull_is_stiffer() const {
+    return pull_stiffness_N_per_m_ > press_stiffness_N_per_m_ ||
+           std::isnan(pull_stiffness_N_per_m_);
+  }
   /// Bytes that the loop may touch.
   std::size_t memory_bytes() const { return memory_bytes_; }
   /// For people.
@@ -41,7 +49,7 @@ class TissueLaw {
   std::unique_ptr<SiteLaw> site_law_;
   LawRange range_;
   double pull_limit_N_ = 0.0;
-  double stiffness_N_per_m_ = 0.0;
+  double press_stiffness_N_per_m_ = 0.0, pull_stiffness_N_per_m_ = 0.0;
   std::size_t memory_bytes_ = 0;
   std::string title_;
 };

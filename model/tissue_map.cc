@@ -22,7 +22,7 @@ Result<ComplianceMap> read_scene_map(const Scene& scene) {
         fmt::format("{}: compliance.map names {}, no such file; correct it, or make it: {}",
                     scene.path, path, command)};
   auto map = read_compliance_map(path);
-  if (!map) return map.error();
+  if (!map) return Error{fmt::format("{}: {}", map.error().sentence, command)};
   const ElasticSettings& e = *scene.elastic;
   if (map->mesh_hash != surface_hash(scene.organ_mesh.view()))
     return Error{fmt::format("{} belongs to another organ mesh; make one: {}", path, command)};

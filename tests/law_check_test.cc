@@ -43,6 +43,17 @@ TEST(LawCheck, RefusesAStiffnessBeyondTheDevicesLimitAndSaysWhichKeyToChange) {
   EXPECT_TRUE(has(two.error(), "to 50.5 N/m or less")) << two.error().sentence;
 }
 
+TEST(LawCheck, NamesThePullWhereItIsTheStifferOne) {
+  model::Scene scene = tests::make_plate_scene();
+  scene.contact.sliding_stiffness_N_per_m = 1.0;
+  scene.pull = {.stiffness_N_per_m = 4000.0, .limit_m = 0.01};
+  const auto tissue = std::move(*model::make_tissue(scene));
+  const auto refused = check_renderable(scene, *tissue, device_with(0.05));
+  ASSERT_FALSE(refused);
+  EXPECT_TRUE(has(refused.error(), "soften pull.stiffness_N_per_m to 50 N/m"))
+      << refused.error().sentence;
+}
+
 TEST(LawCheck, NamesTheLawWhereItIsTheStifferOne) {
   model::Scene scene = tests::make_plate_scene();
   scene.contact.sliding_stiffness_N_per_m = 1.0;

@@ -106,7 +106,7 @@ TEST(Plan, ReadsTactsRowsOfAChart) {
   scene.hash = "another";
   const auto wrong = check_chart_fits(table, scene, "chart.json");
   ASSERT_TRUE(wrong);
-  EXPECT_TRUE(has(wrong->sentence, "run tact-chart plate.toml")) << wrong->sentence;
+  EXPECT_TRUE(has(wrong->sentence, "tact-chart plate.toml")) << wrong->sentence;
 }
 
 class PlanFile : public testing::Test {

@@ -74,6 +74,7 @@ TEST(Output, IsTriedBeforeTheWork) {
   EXPECT_TRUE(fs::is_directory(folder));
   EXPECT_TRUE(check_output("/nowhere/at/all.toml", {}));
   EXPECT_FALSE(check_output(folder + "/new.toml", {}));
+  EXPECT_TRUE(check_output(folder, {})) << "a folder";
   EXPECT_FALSE(check_output("", {}));
   fs::remove_all(testing::TempDir() + "tact-program-test");
 }

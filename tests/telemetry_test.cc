@@ -213,7 +213,8 @@ TEST(Telemetry, ThreadAndLoopShareOnlyTheRing) {  // for the thread sanitizer
 }
 
 // The whole way of a patch: springs, shape, slot, frame, text for the page. One thread steps, the
-// other tells; nothing that arrives may be half of one shape and half of another.
+// other tells; what arrives names only what the organ has. (That no shape is half of another is for
+// latest_slot_test and, here, the thread sanitizer.)
 TEST(Telemetry, TheShapeOfAPatchReachesThePageWhole) {
   const auto scene = model::load_scene(TACT_SOURCE_DIR "/model/scenes/gum.toml", {});
   ASSERT_TRUE(scene) << scene.error().sentence;

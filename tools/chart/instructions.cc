@@ -14,6 +14,8 @@
 #include <limits>
 #include <new>
 
+#include "tools/common/interrupt.h"
+
 namespace tact::tools {
 namespace {
 
@@ -60,6 +62,7 @@ double step(pid_t child, const Progress& progress, std::size_t most_steps) {
   std::uint64_t seen = 0, first = 0, last = 0;
   for (std::uint64_t steps = 1; steps <= most_steps; ++steps) {
     int status = 0;
+    if (steps % 1000 == 0 && is_interrupted()) break;
     if (ptrace(PTRACE_SINGLESTEP, child, nullptr, nullptr) != 0 ||
         waitpid(child, &status, 0) != child || !WIFSTOPPED(status))
       break;

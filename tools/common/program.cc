@@ -85,6 +85,8 @@ std::optional<Error> check_output(const std::string& output,
   for (const std::string& input : inputs)
     if (!input.empty() && fs::equivalent(output, input, failed))
       return Error{fmt::format("{}: would be overwritten, and is read; name another", output)};
+  if (fs::is_directory(output, failed))
+    return Error{fmt::format("{}: is a folder; name a file", output)};
   const fs::path folder = fs::absolute(output).parent_path();
   if (!fs::is_directory(folder) || access(folder.c_str(), W_OK) != 0)
     return Error{

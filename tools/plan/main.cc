@@ -47,7 +47,7 @@ Result<std::vector<Candidate>> measure(const Options& o, const Scene& scene) {
   return candidates_of(table);
 }
 
-Result<std::vector<Candidate>> find_candidates(const Options& o, const Scene& scene) {
+Result<std::vector<Candidate>> all_candidates(const Options& o, const Scene& scene) {
   if (!o.reference.empty()) return measure(o, scene);
   if (o.chart.empty())
     return Error{
@@ -57,6 +57,18 @@ Result<std::vector<Candidate>> find_candidates(const Options& o, const Scene& sc
   if (!table) return table.error();
   if (auto wrong = check_chart_fits(*table, scene, o.chart)) return std::move(*wrong);
   return candidates_of(*table);
+}
+
+/// What a blade cannot cut is no choice for a scene with one.
+Result<std::vector<Candidate>> find_candidates(const Options& o, const Scene& scene) {
+  auto candidates = all_candidates(o, scene);
+  if (!candidates || !scene.tool.blade) return candidates;
+  std::erase_if(*candidates, [](const Candidate& c) {
+    return c.sizes.law != tact::model::LawKind::kSpringPatch;
+  });
+  if (candidates->empty())
+    return Error{scene.path + ": tool.blade cuts nothing but spring_patch; write [spring_patch]"};
+  return candidates;
 }
 
 nlohmann::json to_json(const Candidate& c) {

@@ -51,13 +51,15 @@ std::optional<Error> check_chart_fits(const Table& table, const model::Scene& sc
   const std::string machine = as_word(model::machine_name());
   for (const Row& row : table.rows()) {
     if (table.word(row, "scene_hash") != scene.hash)
-      return Error{
-          fmt::format("{}: the chart of another scene, or of this one before a change; run "
-                      "tact-chart {} again",
-                      path, scene.path)};
+      return Error{fmt::format(
+          "{}: the chart of another scene, or of this one before a change; chart it again: "
+          "tact-chart {} --reference FILE --out DIR",
+          path, scene.path)};
     if (table.word(row, "machine") != machine)
-      return Error{fmt::format("{}: measured on another machine, {}; run tact-chart {} here", path,
-                               table.word(row, "machine"), scene.path)};
+      return Error{
+          fmt::format("{}: measured on another machine, {}; chart it here: tact-chart {} "
+                      "--reference FILE --out DIR",
+                      path, table.word(row, "machine"), scene.path)};
   }
   return std::nullopt;
 }

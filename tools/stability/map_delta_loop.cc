@@ -8,8 +8,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <memory>
 
 #include "firmware/rt_loop.h"
@@ -127,7 +128,11 @@ ControllerRun run_controller(double stiffness_N_per_m, double rate_Hz,
   const model::Scene scene = wall_scene(stiffness_N_per_m, rate_Hz, device_settings);
   const auto tissue = model::make_tissue(scene);
   const auto device = hal::make_sim_delta(scene.device.sim, scene.hand);
-  assert(tissue && device);  // the scene is ours, above
+  if (!tissue || !device) {  // the scene is ours, above: a map of nothing would prove nothing
+    fmt::print(stderr, "tact-stability: {}\n",
+               tissue ? device.error().sentence : tissue.error().sentence);
+    std::abort();
+  }
   firmware::Controller controller((*tissue)->contact_scene(),
                                   firmware::Gate(scene.limits, 1.0 / rate_Hz, 1.0));
   firmware::SimulatedClock clock;

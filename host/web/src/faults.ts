@@ -83,7 +83,7 @@ export const kFaults: Readonly<Record<number, Fault>> = {
     name: "loop late",
     cause:
       "the loop missed its deadlines: 20 periods at once or 20 ticks in a row, 100 in a row without hard real time",
-    cure: "choose a smaller law (tact-plan names one) or a lower rate_Hz, and free the loop's core of other work",
+    cure: "choose a smaller law (tact-plan names one) or a lower rate_Hz, and free the loop's core of other work, then start tactd again",
   },
   106: {
     name: "law broke",
