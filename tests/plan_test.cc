@@ -139,7 +139,8 @@ class PlanFile : public testing::Test {
   }
 
   const std::vector<std::string> kSet{"law=auto", "name=\"a b\""};
-  const std::string folder_ = testing::TempDir() + "/tact_plan_test";
+  const std::string folder_ = testing::TempDir() + "tact_plan_" +
+                              testing::UnitTest::GetInstance()->current_test_info()->name();
   model::Scene scene_ = tests::make_plate_scene();
   model::Plan plan_;
 };

@@ -39,7 +39,8 @@ ReferenceData example() {
 }
 
 model::Result<ReferenceData> read_text(const std::string& text) {
-  const std::string path = fs::path(testing::TempDir()) / "reference_data_test.json";
+  const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+  const std::string path = fs::path(testing::TempDir()) / ("reference_data_" + name + ".json");
   std::ofstream(path) << text;
   auto data = read_reference(path);
   fs::remove(path);
