@@ -260,7 +260,7 @@ TEST_F(Tactd, TheLoopThreadMakesNoSystemCallButSleep) {
   if (child == 0) {
     const std::string program = std::string(TACT_BINARY_DIR) + "/tactd";
     const std::string socket = in_folder("t.sock");
-    execl(program.c_str(), "tactd", kLiver.c_str(), "--socket", socket.c_str(), "--seconds", "6",
+    execl(program.c_str(), "tactd", kLiver.c_str(), "--socket", socket.c_str(), "--seconds", "20",
           nullptr);
     _exit(127);
   }
@@ -277,19 +277,22 @@ TEST_F(Tactd, TheLoopThreadMakesNoSystemCallButSleep) {
   const std::string trace = in_folder("trace");
   const std::string command =
       "timeout -s INT 2 strace -qq -o " + trace + " -p " + loop_thread + " 2>&1";
-  (void)std::system(command.c_str());
+  int sleeps = 0;
+  for (int attempt = 0; attempt < 4 && sleeps <= 100; ++attempt) {  // a busy machine attaches late
+    (void)std::system(command.c_str());
+    std::ifstream file(trace);
+    for (std::string line; std::getline(file, line);) {
+      if (line.rfind("clock_nanosleep(", 0) == 0 || line.rfind("restart_syscall(", 0) == 0 ||
+          line.find("resumed>") != std::string::npos) {
+        ++sleeps;
+        continue;
+      }
+      ADD_FAILURE() << "system call in the loop: " << line;
+    }
+  }
+  kill(child, SIGINT);
   int ended = 0;
   waitpid(child, &ended, 0);
-  std::ifstream file(trace);
-  int sleeps = 0;
-  for (std::string line; std::getline(file, line);) {
-    if (line.rfind("clock_nanosleep(", 0) == 0 || line.rfind("restart_syscall(", 0) == 0 ||
-        line.find("resumed>") != std::string::npos) {
-      ++sleeps;
-      continue;
-    }
-    ADD_FAILURE() << "system call in the loop: " << line;
-  }
   EXPECT_GT(sleeps, 100) << "the trace saw the loop";
 }
 
