@@ -32,10 +32,12 @@ struct TickOutput {
 
 using ShapeSlot = hal::LatestSlot<model::PatchShape>;
 
+inline constexpr bool kHardRealTime = true;
+
 class Controller {
  public:
   /// Without hard real time the late watch bears single stalls.
-  Controller(const model::ContactScene& scene, const Gate& gate, bool hard_real_time = true)
+  Controller(const model::ContactScene& scene, const Gate& gate, bool hard_real_time)
       : law_(*scene.law), contact_(scene), gate_(gate), late_watch_(hard_real_time) {}
 
   void touch(const TickInput& input) RT_SAFE;

@@ -78,7 +78,7 @@ class Contact {
   void touch(const Tool& tool) RT_SAFE;
   /// What the tool feels there: states, laws, forces. Call after touch. A blade cuts only if it
   /// may.
-  Wrench feel(const Tool& tool, bool blade_may_cut = true) RT_SAFE;
+  Wrench feel(const Tool& tool, bool blade_may_cut) RT_SAFE;
   /// Forget every site, as at the start.
   void reset() RT_SAFE;
 

@@ -72,7 +72,8 @@ Summary run(const model::Scene& scene, double seconds) {
   flush_denormals();
   const auto tissue = std::move(*model::make_tissue(scene));
   const auto device = std::move(*hal::open_device(scene));
-  Controller controller(tissue->contact_scene(), Gate(scene.limits, 1.0 / scene.rate_Hz, 1.0));
+  Controller controller(tissue->contact_scene(), Gate(scene.limits, 1.0 / scene.rate_Hz, 1.0),
+                        kHardRealTime);
   SimulatedClock clock;
   Requests requests;
   requests.arm.store(true);

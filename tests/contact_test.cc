@@ -57,7 +57,7 @@ Bench plate_bench() { return Bench(tests::make_plate(100_mm, 20)); }
 Wrench feel_at(Contact& contact, const Vec3& position_m, double grip_ratio = 0.0) {
   const Tool tool{.position_m = position_m, .grip_ratio = grip_ratio};
   contact.touch(tool);
-  return contact.feel(tool);
+  return contact.feel(tool, true);
 }
 
 void glide(Contact& contact, const Vec3& from_m, const Vec3& to_m, double grip_ratio = 0.0) {

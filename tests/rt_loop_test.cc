@@ -72,7 +72,7 @@ class RtLoopTest : public testing::Test {
   std::unique_ptr<model::Tissue> tissue = std::move(*model::make_tissue(scene));
   SimulatedClock clock;
   PuppetDevice device{clock};
-  Controller controller{tissue->contact_scene(), Gate(scene.limits, 0.001, 1.0)};
+  Controller controller{tissue->contact_scene(), Gate(scene.limits, 0.001, 1.0), kHardRealTime};
   Requests requests;
   std::unique_ptr<TickRing> ring = std::make_unique<TickRing>();
   RtLoop loop{{.period_ns = 1'000'000}, device, controller, clock, requests, *ring};

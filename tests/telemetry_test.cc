@@ -76,7 +76,7 @@ class WholeController {
   explicit WholeController(const std::string& path)
       : tissue_(std::move(*model::make_tissue(scene_))),
         device_(std::move(*hal::open_device(scene_))),
-        controller_(tissue_->contact_scene(), Gate(scene_.limits, 0.001, 1.0)),
+        controller_(tissue_->contact_scene(), Gate(scene_.limits, 0.001, 1.0), kHardRealTime),
         loop_({.period_ns = 1'000'000}, *device_, controller_, clock_, requests_, *ring_),
         telemetry_(*ring_, FrameBuilder(tissue_->law().site_law(), controller_.shapes(), true),
                    60.0, open(path), std::nullopt) {
@@ -220,7 +220,7 @@ TEST(Telemetry, TheShapeOfAPatchReachesThePageWhole) {
   ASSERT_TRUE(scene) << scene.error().sentence;
   const auto tissue = std::move(*model::make_tissue(*scene));
   const auto device = std::move(*hal::open_device(*scene));
-  Controller controller(tissue->contact_scene(), Gate(scene->limits, 0.001, 1.0));
+  Controller controller(tissue->contact_scene(), Gate(scene->limits, 0.001, 1.0), kHardRealTime);
   SimulatedClock clock;
   Requests requests;
   requests.arm.store(true);

@@ -134,7 +134,8 @@ ControllerRun run_controller(double stiffness_N_per_m, double rate_Hz,
     std::abort();
   }
   firmware::Controller controller((*tissue)->contact_scene(),
-                                  firmware::Gate(scene.limits, 1.0 / rate_Hz, 1.0));
+                                  firmware::Gate(scene.limits, 1.0 / rate_Hz, 1.0),
+                                  firmware::kHardRealTime);
   firmware::SimulatedClock clock;
   firmware::Requests requests;
   requests.arm.store(true);
