@@ -83,6 +83,16 @@ TEST(Choose, NeverTakesWhatWasNotMeasured) {
   EXPECT_FALSE(choose({}, kTolerance).chosen);
 }
 
+TEST(Plan, OfABladeTakesWhatCanBeCutAlone) {
+  std::vector<Candidate> candidates(3);
+  candidates[0].sizes.law = LawKind::kCompliance;
+  candidates[1].sizes.law = LawKind::kSpringPatch;
+  candidates[2].sizes.law = LawKind::kRhombus;
+  keep_what_cuts(candidates);
+  ASSERT_EQ(candidates.size(), 1U);
+  EXPECT_EQ(candidates[0].sizes.law, LawKind::kSpringPatch);
+}
+
 TEST(Plan, ReadsTactsRowsOfAChart) {
   Table table = empty_chart(3, {});
   const Provenance here{"0123456789abcdef", "truth", "r1", model::machine_name()};

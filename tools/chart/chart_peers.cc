@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/reference/organ_body.h"
+
 namespace tact::tools {
 namespace {
 
 constexpr double kFitDepth_m = 0.005;
-
-bool in_box(const model::Vec3& p, const model::Vec3& low, const model::Vec3& high) {
-  return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y && p.z >= low.z &&
-         p.z <= high.z;
-}
 
 }  // namespace
 
@@ -36,9 +33,9 @@ std::vector<std::uint32_t> held_vertices(const model::Scene& scene) {
   std::vector<std::uint32_t> held;
   if (!scene.elastic) return held;
   const auto& mesh = scene.organ_mesh;
+  const HeldBox box{scene.elastic->fixed_min_m, scene.elastic->fixed_max_m};
   const auto is_inside = [&](std::uint32_t v) {
-    return in_box(mesh.vertex_m[v] - scene.organ.position_m, scene.elastic->fixed_min_m,
-                  scene.elastic->fixed_max_m);
+    return box.holds(mesh.vertex_m[v] - scene.organ.position_m);
   };
   for (const auto& t : mesh.triangle)
     if (std::all_of(t.begin(), t.end(), is_inside)) held.insert(held.end(), t.begin(), t.end());

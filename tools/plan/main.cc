@@ -59,13 +59,10 @@ Result<std::vector<Candidate>> all_candidates(const Options& o, const Scene& sce
   return candidates_of(*table);
 }
 
-/// What a blade cannot cut is no choice for a scene with one.
 Result<std::vector<Candidate>> find_candidates(const Options& o, const Scene& scene) {
   auto candidates = all_candidates(o, scene);
   if (!candidates || !scene.tool.blade) return candidates;
-  std::erase_if(*candidates, [](const Candidate& c) {
-    return c.sizes.law != tact::model::LawKind::kSpringPatch;
-  });
+  keep_what_cuts(*candidates);
   if (candidates->empty())
     return Error{scene.path + ": tool.blade cuts nothing but spring_patch; write [spring_patch]"};
   return candidates;

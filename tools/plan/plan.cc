@@ -46,6 +46,11 @@ std::vector<Candidate> candidates_of(const Table& table) {
   return out;
 }
 
+void keep_what_cuts(std::vector<Candidate>& candidates) {
+  std::erase_if(candidates,
+                [](const Candidate& c) { return c.sizes.law != model::LawKind::kSpringPatch; });
+}
+
 std::optional<Error> check_chart_fits(const Table& table, const model::Scene& scene,
                                       const std::string& path) {
   const std::string machine = as_word(model::machine_name());

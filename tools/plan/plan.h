@@ -18,4 +18,7 @@ std::vector<Candidate> candidates_of(const Table& table);
 std::optional<model::Error> check_chart_fits(const Table& table, const model::Scene& scene,
                                              const std::string& path);
 
+/// What a blade cannot cut is no choice for a scene with one.
+void keep_what_cuts(std::vector<Candidate>& candidates);
+
 }  // namespace tact::tools

@@ -144,7 +144,6 @@ LoopRun run_loop(const LoopCase& loop, const TissueForce& tissue, const Judge& j
       return run;
     }
   }
-  run.first_swing_m = first.swing_m();
   run.last_swing_m = last.swing_m();
   run.verdict = verdict_of(first, last, step_m > 0.0);
   return run;

@@ -53,9 +53,9 @@ const char* name_of(Verdict verdict);
 
 struct LoopRun {
   Verdict verdict = Verdict::kRest;
-  double first_swing_m = 0.0, last_swing_m = 0.0;  // peak to peak, first and last third
-  double max_force_N = 0.0;                        // written
-  double max_step_N = 0.0;                         // written, from tick to tick
+  double last_swing_m = 0.0;  // peak to peak, last third
+  double max_force_N = 0.0;   // written
+  double max_step_N = 0.0;    // written, from tick to tick
 };
 
 /// The depth nearest to `depth_m` where the count changes: the worst place to balance.
