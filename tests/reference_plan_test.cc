@@ -22,9 +22,9 @@ ReferencePlan plan() {
           .level = 2};
 }
 
-/// A made-up answer: F = d, 1 % more for each level coarser, 5 % more at the least depth.
+/// A made-up answer: F = d, 1 % more at the coarser level, 5 % more at the least depth.
 ReferenceCase answer(const Indentation& what, const ReferencePlan& p) {
-  const bool coarse = what.level < p.level;
+  const bool coarse = what.level < (what.large_strain ? kCoarsestLevel : p.level);
   const double more = coarse ? (what.depth_m == p.depths_m.front() ? 1.05 : 1.01) : 1.0;
   return {.depth_m = what.depth_m,
           .large_strain = what.large_strain,
@@ -34,7 +34,7 @@ ReferenceCase answer(const Indentation& what, const ReferencePlan& p) {
 }
 
 ReferenceData made_up(const ReferencePlan& p) {
-  std::vector<ReferenceCase> solved;
+  std::vector<std::optional<ReferenceCase>> solved;
   for (const Indentation& c : cases_of(p)) solved.push_back(answer(c, p));
   return assemble(p, solved, "by hand");
 }
@@ -42,11 +42,15 @@ ReferenceData made_up(const ReferencePlan& p) {
 TEST(ReferencePlan, SolvesEveryDepthAndTheCoarseOnesForTheError) {
   const ReferencePlan p = plan();
   const auto cases = cases_of(p);
-  // A site: three presses, one pull; least, largest and pull coarser. Site 3: one more pull, at
-  // 2 mm, since 9 mm is too far for it.
-  EXPECT_EQ(cases.size(), 2U * 7U + 1U);
-  for (const Indentation& c : cases)
-    EXPECT_TRUE(!c.large_strain || (c.vertex == 3U && c.depth_m == -2e-3));
+  // A site: three presses, one pull; least, largest and pull coarser. With large strain: three
+  // presses and two pulls, since 9 mm is too far for one; least and largest of both coarser.
+  EXPECT_EQ(cases.size(), 2U * 7U + 5U + 4U);
+  for (const Indentation& c : cases) {
+    if (!c.large_strain) continue;
+    EXPECT_EQ(c.vertex, 3U);
+    EXPECT_TRUE(c.level == kCoarsestLevel || c.depth_m != 2e-3);
+    EXPECT_GT(c.depth_m, -3e-3);
+  }
 }
 
 TEST(ReferencePlan, PutsTheFileTogether) {
@@ -54,7 +58,7 @@ TEST(ReferencePlan, PutsTheFileTogether) {
   const ReferenceData data = made_up(p);
   ASSERT_EQ(data.sites.size(), 2U);
   ASSERT_EQ(data.sites[0].cases.size(), 6U);
-  ASSERT_EQ(data.sites[1].cases.size(), 7U);
+  ASSERT_EQ(data.sites[1].cases.size(), 11U);
   const auto& cases = data.sites[0].cases;
   const double depths_m[] = {1e-3, 2e-3, 9e-3, -1e-3, -2e-3, -9e-3};
   const double errors[] = {0.05, 0.05, 0.01, 0.01, 0.01, 0.01};  // of the nearer depth
@@ -64,10 +68,30 @@ TEST(ReferencePlan, PutsTheFileTogether) {
     EXPECT_NEAR(cases[i].profile_m[1], 0.5 * depths_m[i], 1e-15);
     EXPECT_NEAR(cases[i].force_error_ratio, 7.0 / 3.0 * errors[i], 1e-12) << i;
   }
-  EXPECT_TRUE(data.sites[1].cases[6].large_strain);
-  // Solved at the coarsest level: what is left there is 1 / 0.3 of the change.
-  EXPECT_NEAR(data.sites[1].cases[6].force_error_ratio, 0.01 / 0.3, 1e-12);
+  // Its own; where a bond is drawn out the error falls slower.
+  const double large_errors[] = {7.0 / 3.0 * 0.05, 7.0 / 3.0 * 0.05, 7.0 / 3.0 * 0.01, 0.04, 0.04};
+  for (std::size_t i = 0; i < 5; ++i) {
+    const ReferenceCase& c = data.sites[1].cases[6 + i];
+    EXPECT_TRUE(c.large_strain);
+    EXPECT_DOUBLE_EQ(c.depth_m, depths_m[i]);
+    EXPECT_NEAR(c.force_error_ratio, large_errors[i], 1e-12) << i;
+  }
   EXPECT_EQ(data.sites[0].direction, (model::Vec3{0.0, 0.0, -1.0}));
+}
+
+TEST(ReferencePlan, ALargeStrainThatHasNoSolutionIsLeftOut) {
+  const ReferencePlan p = plan();
+  std::vector<std::optional<ReferenceCase>> solved;
+  for (const Indentation& c : cases_of(p)) {
+    const bool no_end = c.large_strain && c.depth_m == 9e-3;
+    solved.push_back(no_end ? std::nullopt : std::optional(answer(c, p)));
+  }
+  const auto data = assemble(p, solved, "by hand");
+  const auto& cases = data.sites[1].cases;
+  ASSERT_EQ(cases.size(), 10U);
+  EXPECT_DOUBLE_EQ(cases[7].depth_m, 2e-3);
+  EXPECT_TRUE(std::isnan(cases[7].force_error_ratio)) << "its coarser solve is missing";
+  EXPECT_DOUBLE_EQ(cases[8].depth_m, -1e-3);
 }
 
 TEST(ReferencePlan, OneDepthHasItsOwnError) {
@@ -83,7 +107,8 @@ TEST(ReferencePlan, TheCoarsestLevelHasNoErrorThatIsKnown) {
   p.level = kCoarsestLevel;
   const ReferenceData data = made_up(p);
   for (const SolvedSite& site : data.sites)
-    for (const ReferenceCase& c : site.cases) EXPECT_TRUE(std::isnan(c.force_error_ratio));
+    for (const ReferenceCase& c : site.cases)
+      EXPECT_EQ(std::isnan(c.force_error_ratio), !c.large_strain) << "which has its own levels";
 }
 
 TEST(ReferencePlan, RefusesWhatCannotBeSolved) {

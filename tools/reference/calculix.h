@@ -5,17 +5,20 @@
 //
 //     W = C10 (I1' - 3) + (J - 1)^2 / D1,   C10 = G / 2, D1 = 2 / K        (CalculiX manual 6.8)
 //
-// with G = E / (2 (1 + nu)), K = E / (3 (1 - 2 nu)). Needs ccx 2.20 (Debian: calculix-ccx).
+// with G = E / (2 (1 + nu)), K = E / (3 (1 - 2 nu)). Either nodes are moved by known ways, or a
+// rigid ball comes and what touches it is found. Needs ccx 2.20 (Debian: calculix-ccx).
 // Source: G. Dhondt, The Finite Element Method for Three-Dimensional Thermomechanical
 // Applications, Wiley 2004.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "model/fem/elasticity.h"
 #include "model/fem/tet_mesh.h"
+#include "model/mesh.h"
 #include "model/result.h"
 
 namespace tact::tools {
@@ -28,11 +31,20 @@ struct MovedNode {
   double along_m = 0.0;  // along the direction of the load
 };
 
+/// A rigid frictionless ball that goes along the direction of the load.
+struct BallContact {
+  double radius_m = 0.0;
+  model::Vec3 centre_m{};  // before it moves
+  double along_m = 0.0;
+  std::vector<model::TriangleCorners> face;  // that it may touch, by their corners
+};
+
 struct ElasticLoad {
   model::Vec3 direction{};       // unit
   std::vector<MovedNode> moved;  // not held ones
   bool sideways_held = false;    // of the moved nodes: a bond; else they slide without friction
   bool large_strain = false;
+  std::optional<BallContact> ball{};  // needs large strain, and some nodes held
 };
 
 struct ElasticProblem {
@@ -44,7 +56,7 @@ struct ElasticProblem {
 };
 
 struct ElasticAnswer {
-  model::Vec3 force_N{};                    // that moves the moved nodes
+  model::Vec3 force_N{};                    // that moves the moved nodes, or the ball
   std::vector<model::Vec3> moved_force_N;   // of each, in their order
   std::vector<model::Vec3> displacement_m;  // of the reported nodes, in their order
 };

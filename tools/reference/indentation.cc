@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tools/common/ring_means.h"
+#include "tools/reference/ball_press.h"
 #include "tools/reference/half_space.h"
 
 namespace tact::tools {
@@ -22,21 +23,17 @@ struct Levels {
   double growth;     // of the edge with distance
   double largest_m;  // edge inside the body
 };
-constexpr std::array<Levels, kFinestLevel> kLevels{{{0.35, 0.12, 0.6, 14e-3},
-                                                    {0.25, 0.08, 0.5, 12e-3},
-                                                    {0.175, 0.05, 0.42, 10e-3},
-                                                    {0.125, 0.032, 0.35, 8e-3}}};
+constexpr std::array<Levels, kFinestLevel - kRoughLevel + 1> kLevels{{{0.5, 0.17, 0.72, 16e-3},
+                                                                      {0.35, 0.12, 0.6, 14e-3},
+                                                                      {0.25, 0.08, 0.5, 12e-3},
+                                                                      {0.175, 0.05, 0.42, 10e-3},
+                                                                      {0.125, 0.032, 0.35, 8e-3}}};
+// At large strain the rim of a bond draws its elements out; beyond this, of their edge, CalculiX
+// stalls.
+constexpr double kMostDrawnOut = 8.0;
 
 /// How far a point lies beyond the site along the tool's way.
 double along_m(const Circle& tool, const Vec3& p_m) { return dot(p_m - tool.at_m, tool.axis); }
-
-std::function<bool(std::size_t)> faces_within(const OrganBody& body, const Circle& tool) {
-  return [&body, tool](std::size_t f) {
-    const Vec3 c = centre_m(body, f);
-    return tool.away_m(c) <= tool.radius_m && std::abs(along_m(tool, c)) < 2.0 * tool.radius_m &&
-           dot(body.normal[f], tool.axis) < -kFacing;
-  };
-}
 
 std::vector<MovedNode> press(const OrganBody& body, const Circle& tool, const Indentation& what) {
   const double R = what.tool_radius_m;  // NOLINT
@@ -59,6 +56,19 @@ std::vector<MovedNode> pull(const OrganBody& body, const Circle& tool, const Ind
   return moved;
 }
 
+ElasticLoad load_of(const OrganBody& body, const Circle& rim, const Indentation& what) {
+  ElasticLoad load{.direction = rim.axis, .moved = {}, .large_strain = what.large_strain};
+  if (what.depth_m < 0.0) {
+    load.moved = pull(body, rim, what);
+    load.sideways_held = true;
+  } else if (what.large_strain) {
+    load.ball = ball_on(body, {rim.at_m, rim.axis, what.tool_radius_m}, what.depth_m);
+  } else {
+    load.moved = press(body, rim, what);
+  }
+  return load;
+}
+
 double contact_radius_of(const Indentation& what) {
   if (what.depth_m < 0.0) return what.tool_radius_m;
   return what.contact_radius_m > 0.0 ? what.contact_radius_m
@@ -69,13 +79,18 @@ double contact_radius_of(const Indentation& what) {
 
 EdgeLengths edge_lengths(const Organ& organ, const Indentation& what) {
   const Levels& level =
-      kLevels[static_cast<std::size_t>(std::clamp(what.level, kCoarsestLevel, kFinestLevel) - 1)];
+      kLevels[static_cast<std::size_t>(std::clamp(what.level, kRoughLevel, kFinestLevel))];
   const bool bonded = what.depth_m < 0.0;  // stress is singular at the rim of a bond
   const double a_m = contact_radius_of(what);
+  double fine_m = (bonded ? level.bond : level.fine) * a_m;
+  if (bonded && what.large_strain) {
+    const double coarser = level.bond / kLevels[kCoarsestLevel].bond;
+    fine_m = std::max(fine_m, -what.depth_m / kMostDrawnOut * coarser);
+  }
   return {.at_m = organ.surface.vertex_m[what.vertex],
           .axis = bonded ? -organ.surface.vertex_normal[what.vertex] : Vec3{},
           .radius_m = (bonded ? 1.0 : kFineRadius) * a_m,
-          .fine_m = (bonded ? level.bond : level.fine) * a_m,
+          .fine_m = fine_m,
           .growth = level.growth,
           .largest_m = level.largest_m * organ.size_ratio};
 }
@@ -109,27 +124,27 @@ Result<ReferenceCase> solve(const Organ& organ, const Indentation& what) {
                    contact_radius_of(what)};
   const auto body = make_organ_body(organ.surface, edge_lengths(organ, what), organ.held, rim);
   if (!body) return body.error();
-  ReferenceCase out{.depth_m = what.depth_m,
-                    .large_strain = what.large_strain,
-                    .contact_radius_m = rim.radius_m,
-                    .profile_m = {}};
-  ElasticProblem problem{
-      .body = &body->mesh,
-      .material = organ.material,
-      .held = body->held_node,
-      .load = {.direction = rim.axis,
-               .moved = out.is_press() ? press(*body, rim, what) : pull(*body, rim, what),
-               .sideways_held = !out.is_press(),
-               .large_strain = what.large_strain},
-      .reported = nodes_of_faces(*body, [](std::size_t) { return true; })};
+  ElasticProblem problem{.body = &body->mesh,
+                         .material = organ.material,
+                         .held = body->held_node,
+                         .load = load_of(*body, rim, what),
+                         .reported = nodes_of_faces(*body, [](std::size_t) { return true; })};
   const auto answer = solve_with_calculix(problem);
   if (!answer) return answer.error();
-  out.force_N = dot(answer->force_N, rim.axis);
+  std::vector<Vec3> displacement_m(body->mesh.node_m.size());
   std::vector<double> inward_m(body->mesh.node_m.size(), 0.0);
-  for (std::size_t i = 0; i < problem.reported.size(); ++i)
+  for (std::size_t i = 0; i < problem.reported.size(); ++i) {
+    displacement_m[problem.reported[i]] = answer->displacement_m[i];
     inward_m[problem.reported[i]] = dot(answer->displacement_m[i], rim.axis);
-  out.profile_m = ring_means(*body, rim.at_m, -rim.axis, inward_m, inward_m[what.vertex]);
-  return out;
+  }
+  const auto& ball = problem.load.ball;
+  return ReferenceCase{
+      .depth_m = what.depth_m,
+      .large_strain = what.large_strain,
+      .force_N = dot(answer->force_N, rim.axis),
+      .contact_radius_m =
+          ball ? touched_radius_m(*body, *ball, rim.axis, displacement_m) : rim.radius_m,
+      .profile_m = ring_means(*body, rim.at_m, -rim.axis, inward_m, inward_m[what.vertex])};
 }
 
 }  // namespace tact::tools

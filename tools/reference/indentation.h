@@ -9,8 +9,10 @@
 // organ is not flat). They slide freely sideways. The force is largest for the true a (J. R.
 // Barber, J. Elast. 4 (1974) 31), so a small error in a is a much smaller one in F. On a half-space
 // a is known (half_space.h); where the organ gives way as a whole or its surface falls away it is
-// smaller, and solve_once (solve_cache.h) finds it (contact_radius.h). pull: the faces within R of
-// the axis move outward as one piece, bonded.
+// smaller, and solve_once (solve_cache.h) finds it (contact_radius.h). At large strain the surface
+// slides along the sphere and no radius tells which nodes touch: the sphere comes as a rigid body
+// and the contact is found while it goes in (ball_press.h). pull: the faces within R of the axis
+// move outward as one piece, bonded.
 #pragma once
 
 #include "model/mesh.h"
@@ -34,10 +36,11 @@ struct Indentation {
   double tool_radius_m = 0.0;
   double depth_m = 0.0;  // > 0 press, < 0 pull
   bool large_strain = false;
-  int level = 2;                  // of the mesh, kCoarsestLevel to kFinestLevel
+  int level = 2;                  // of the mesh, kRoughLevel to kFinestLevel
   double contact_radius_m = 0.0;  // of a press; 0: that of the half-space at this depth
 };
 
+inline constexpr int kRoughLevel = 0;  // for the error of the coarsest level only
 inline constexpr int kCoarsestLevel = 1;
 inline constexpr int kFinestLevel = 4;
 inline constexpr double kRingPitch_m = 1e-3;

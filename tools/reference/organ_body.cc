@@ -1,7 +1,10 @@
 #include "tools/reference/organ_body.h"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
+
+#include "tools/common/ring_means.h"
 
 namespace tact::tools {
 namespace {
@@ -73,6 +76,15 @@ std::vector<std::uint32_t> nodes_of_faces(const OrganBody& body,
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
+}
+
+std::function<bool(std::size_t)> faces_within(const OrganBody& body, const Circle& circle) {
+  return [&body, circle](std::size_t f) {
+    const Vec3 c = centre_m(body, f);
+    return circle.away_m(c) <= circle.radius_m &&
+           std::abs(dot(c - circle.at_m, circle.axis)) < 2.0 * circle.radius_m &&
+           dot(body.normal[f], circle.axis) < -kFacing;
+  };
 }
 
 double area_m2(const OrganBody& body, const std::function<bool(std::size_t)>& wanted) {

@@ -44,6 +44,10 @@ model::Result<OrganBody> make_organ_body(const model::SurfaceMesh& surface,
 std::vector<std::uint32_t> nodes_of_faces(const OrganBody& body,
                                           const std::function<bool(std::size_t)>& wanted);
 
+/// Chooses the faces whose centre lies within the circle's radius of its axis, not much below or
+/// above its middle, and that look against the axis.
+std::function<bool(std::size_t)> faces_within(const OrganBody& body, const Circle& circle);
+
 /// Area of the chosen faces, m^2.
 double area_m2(const OrganBody& body, const std::function<bool(std::size_t)>& wanted);
 

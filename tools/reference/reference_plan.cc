@@ -14,22 +14,24 @@ using model::Error;
 
 constexpr double kDefaultDepths_m[] = {1e-3, 2e-3, 3.5e-3, 5e-3, 7e-3, 10e-3};
 constexpr double kUnitPull_m = -1e-3;
-// Of the tool's radius: near 1.5 the elements at the rim of the bond turn inside out.
-constexpr double kLargeStrainDepth = 1.3;
-constexpr double kShrink = 0.7;     // of edges, and of the error, from level to level
+constexpr double kShrink = 0.7;  // of edges, and of the error, from level to level
+// Of the error where a bond is drawn out far: measured on a block with a known answer.
+constexpr double kShrinkDrawnOut = 0.8;
+constexpr double kLargePull = 1.3;  // of the tool's radius; the rim needs coarse elements beyond
 constexpr double kMostDepth = 5.0;  // of the tool's radius
 
 bool among(const std::vector<std::uint32_t>& list, std::uint32_t vertex) {
   return std::find(list.begin(), list.end(), vertex) != list.end();
 }
 
-/// The solved cases of one site, by what they are.
+/// One way to load a site, least depth first.
+struct Series {
+  std::vector<const ReferenceCase*> fine;
+  std::vector<const ReferenceCase*> coarse;  // one level coarser, at the ends
+};
+
 struct SiteCases {
-  std::vector<const ReferenceCase*> press;
-  const ReferenceCase* press_coarse[2] = {nullptr, nullptr};  // least and largest depth
-  const ReferenceCase* pull = nullptr;
-  const ReferenceCase* pull_coarse = nullptr;
-  std::vector<const ReferenceCase*> large_strain;
+  Series press, pull, large_press, large_pull;
 };
 
 /// What is left of the error at the finer level; NaN without a coarser one. Edges shrink by 0.7
@@ -37,8 +39,16 @@ struct SiteCases {
 /// the series is 0.7 / 0.3 of the last change.
 double remaining_error(const ReferenceCase* fine, const ReferenceCase* coarse) {
   if (coarse == nullptr) return std::numeric_limits<double>::quiet_NaN();
-  return kShrink / (1.0 - kShrink) * std::abs(fine->force_N - coarse->force_N) /
+  const double shrink = fine->large_strain && !fine->is_press() ? kShrinkDrawnOut : kShrink;
+  return shrink / (1.0 - shrink) * std::abs(fine->force_N - coarse->force_N) /
          std::abs(fine->force_N);
+}
+
+std::vector<double> large_strain_depths_m(const ReferencePlan& plan, bool pull) {
+  if (!pull) return plan.depths_m;
+  const double most_m = kLargePull * plan.tool_radius_m;
+  return {plan.depths_m.begin(),
+          std::upper_bound(plan.depths_m.begin(), plan.depths_m.end(), most_m)};
 }
 
 ReferenceCase scaled(const ReferenceCase& unit, double depth_m) {
@@ -50,27 +60,35 @@ ReferenceCase scaled(const ReferenceCase& unit, double depth_m) {
   return out;
 }
 
+/// Of the same depth, or none.
+const ReferenceCase* coarser_of(const Series& series, const ReferenceCase* fine) {
+  for (const ReferenceCase* c : series.coarse)
+    if (c->depth_m == fine->depth_m) return c;
+  return nullptr;
+}
+
+/// Each with the error of the end of the series that is nearer in depth.
+void add_with_errors(const Series& series, std::vector<ReferenceCase>& out) {
+  for (const ReferenceCase* c : series.fine) {
+    const ReferenceCase *first = series.fine.front(), *last = series.fine.back();
+    const bool nearer_first =
+        std::abs(c->depth_m - first->depth_m) < std::abs(c->depth_m - last->depth_m);
+    const ReferenceCase* end = nearer_first ? first : last;
+    out.push_back(*c);
+    out.back().force_error_ratio = remaining_error(end, coarser_of(series, end));
+  }
+}
+
 std::vector<ReferenceCase> cases_of_site(const SiteCases& s, const ReferencePlan& plan) {
   std::vector<ReferenceCase> out;
-  const double least_m = plan.depths_m.front(), largest_m = plan.depths_m.back();
-  for (const ReferenceCase* c : s.press) {
-    const bool nearer_least = c->depth_m - least_m < largest_m - c->depth_m;
-    const std::size_t end = nearer_least || s.press.size() == 1 ? 0 : 1;
-    out.push_back(*c);
-    out.back().force_error_ratio =
-        remaining_error(end == 0 ? s.press.front() : s.press.back(), s.press_coarse[end]);
-  }
-  const double pull_error = remaining_error(s.pull, s.pull_coarse);
+  add_with_errors(s.press, out);
+  const ReferenceCase* pull = s.pull.fine.front();
   for (const double d_m : plan.depths_m) {
-    out.push_back(scaled(*s.pull, -d_m));
-    out.back().force_error_ratio = pull_error;
+    out.push_back(scaled(*pull, -d_m));
+    out.back().force_error_ratio = remaining_error(pull, coarser_of(s.pull, pull));
   }
-  // Large strain is solved at the coarsest level, where the error is larger.
-  const double coarsest_error = pull_error / std::pow(kShrink, plan.level - kCoarsestLevel);
-  for (const ReferenceCase* c : s.large_strain) {
-    out.push_back(*c);
-    out.back().force_error_ratio = coarsest_error;
-  }
+  add_with_errors(s.large_press, out);
+  add_with_errors(s.large_pull, out);
   return out;
 }
 
@@ -159,14 +177,18 @@ std::vector<Indentation> cases_of(const ReferencePlan& plan) {
       add(kUnitPull_m, plan.level - 1, false);
     }
     if (!among(plan.large_strain_sites, vertex)) continue;
-    const double most_m = kLargeStrainDepth * plan.tool_radius_m;
-    const auto beyond = std::upper_bound(plan.depths_m.begin(), plan.depths_m.end(), most_m);
-    if (beyond != plan.depths_m.begin()) add(-*std::prev(beyond), kCoarsestLevel, true);
+    for (const double way : {1.0, -1.0}) {
+      const std::vector<double> depths_m = large_strain_depths_m(plan, way < 0.0);
+      for (const double d_m : depths_m) add(way * d_m, kCoarsestLevel, true);
+      if (!depths_m.empty()) add(way * depths_m.front(), kRoughLevel, true);
+      if (depths_m.size() > 1) add(way * depths_m.back(), kRoughLevel, true);
+    }
   }
   return out;
 }
 
-ReferenceData assemble(const ReferencePlan& plan, const std::vector<ReferenceCase>& solved,
+ReferenceData assemble(const ReferencePlan& plan,
+                       const std::vector<std::optional<ReferenceCase>>& solved,
                        const std::string& solver) {
   ReferenceData data{.mesh = plan.mesh_name,
                      .mesh_hash = plan.organ.hash,
@@ -182,17 +204,11 @@ ReferenceData assemble(const ReferencePlan& plan, const std::vector<ReferenceCas
   for (const std::uint32_t vertex : plan.sites) {
     SiteCases s;
     for (std::size_t i = 0; i < cases.size(); ++i) {
-      if (cases[i].vertex != vertex) continue;
-      const bool fine = cases[i].level == plan.level;
-      if (cases[i].large_strain) {
-        s.large_strain.push_back(&solved[i]);
-      } else if (!solved[i].is_press()) {
-        (fine ? s.pull : s.pull_coarse) = &solved[i];
-      } else if (fine) {
-        s.press.push_back(&solved[i]);
-      } else {
-        s.press_coarse[cases[i].depth_m == plan.depths_m.front() ? 0 : 1] = &solved[i];
-      }
+      if (cases[i].vertex != vertex || !solved[i]) continue;
+      const bool press = solved[i]->is_press(), large = cases[i].large_strain;
+      Series& series = large ? (press ? s.large_press : s.large_pull) : (press ? s.press : s.pull);
+      const bool fine = cases[i].level == (large ? kCoarsestLevel : plan.level);
+      (fine ? series.fine : series.coarse).push_back(&*solved[i]);
     }
     data.sites.push_back({.vertex = vertex,
                           .point_m = plan.organ.surface.vertex_m[vertex],

@@ -1,13 +1,14 @@
 // reference_plan.h - which cases make the reference of an organ, and how they become one file.
 //
 // Per site: press at every depth; pull once, since it is linear, scaled to every depth. For some
-// sites also pull with large strain, at the largest depth up to 1.3 R and on the coarsest mesh: it
-// says how far linear is wrong. The mesh error of a force comes from its change from the next
-// coarser level, solved at the least and the largest press depth and for pull; a depth between
-// takes the nearer one's. At the coarsest level it is not known: NaN, null in the file.
+// sites also press and pull with large strain, at every depth (a pull up to 1.3 R) and on the
+// coarsest mesh: it says how far linear is wrong. The mesh error of a force comes from its change from the next coarser level,
+// solved at the least and the largest depth and for linear pull; a depth between takes the nearer
+// one's. For linear cases at the coarsest level it is not known: NaN, null in the file.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,8 +39,10 @@ std::optional<model::Error> check(const ReferencePlan& plan);
 /// Every solve of the plan, each once.
 std::vector<Indentation> cases_of(const ReferencePlan& plan);
 
-/// Puts solved cases together; `solved` in the order of cases_of.
-ReferenceData assemble(const ReferencePlan& plan, const std::vector<ReferenceCase>& solved,
+/// Puts solved cases together; `solved` in the order of cases_of. A case with large strain may be
+/// missing.
+ReferenceData assemble(const ReferencePlan& plan,
+                       const std::vector<std::optional<ReferenceCase>>& solved,
                        const std::string& solver);
 
 }  // namespace tact::tools

@@ -28,6 +28,7 @@ struct Known {
   double depth_m = 0.0;
   double force_N = 0.0;
   double bar_ratio = 0.0;  // of the force
+  bool large_strain = false;
 };
 
 bool judge(const Known& known, double force_N) {
@@ -45,9 +46,11 @@ Result<bool> check_block(double size_m, const std::vector<Known>& cases) {
   if (!block) return block.error();
   bool good = true;
   for (const Known& known : cases) {
-    const auto solved =
-        solve(*block,
-              {.vertex = 0, .tool_radius_m = kRadius_m, .depth_m = known.depth_m, .level = kLevel});
+    const auto solved = solve(*block, {.vertex = 0,
+                                       .tool_radius_m = kRadius_m,
+                                       .depth_m = known.depth_m,
+                                       .large_strain = known.large_strain,
+                                       .level = known.large_strain ? kCoarsestLevel : kLevel});
     if (!solved) return solved.error();
     good &= judge(known, solved->force_N);
   }
@@ -150,6 +153,14 @@ Result<bool> self_check(const std::string& folder) {
                                   {"block, sphere R 5 mm at 10 mm", 10e-3, 103.5e-3, 0.02},
                                   {"block, bonded disc pulled 1 mm", -1e-3, -13.722e-3, 0.03}});
   if (!block) return block;
+  // The same body, neo-Hookean, FEniCS.
+  auto large = check_block(0.05, {{"large strain, sphere at 1 mm", 1e-3, 3.776e-3, 0.03, true},
+                                  {"large strain, sphere at 2 mm", 2e-3, 10.57e-3, 0.03, true},
+                                  {"large strain, sphere at 5 mm", 5e-3, 39.16e-3, 0.03, true},
+                                  {"large strain, sphere at 10 mm", 10e-3, 89.1e-3, 0.03, true},
+                                  {"large strain, disc pulled 1 mm", -1e-3, -13.76e-3, 0.06, true},
+                                  {"large strain, disc pulled 5 mm", -5e-3, -63.4e-3, 0.06, true}});
+  if (!large) return large;
   const auto sphere_N = [](double depth_m) { return sphere_force_N(kTissue, kRadius_m, depth_m); };
   // A bond is 0.3 % stiffer than a frictionless punch at this nu.
   const double punch_N = -1.003 * flat_punch_force_N(kTissue, kRadius_m, 1e-3);
@@ -157,7 +168,7 @@ Result<bool> self_check(const std::string& folder) {
                                  {"half-space, sphere at 5 mm", 5e-3, sphere_N(5e-3), 0.02},
                                  {"half-space, bonded disc", -1e-3, punch_N, 0.03}});
   if (!space) return space;
-  return *organ && *block && *space;
+  return *organ && *block && *large && *space;
 }
 
 }  // namespace tact::tools
