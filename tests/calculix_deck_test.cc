@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+
 #include "tools/reference/rigid_ball.h"
 
 namespace tact::tools {

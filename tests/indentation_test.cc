@@ -59,6 +59,25 @@ TEST(RingMeans, DoNotSeeTheFarSide) {
     EXPECT_NEAR(mean, 1.0, 1e-12);
 }
 
+TEST(Indentation, APullWithLargeStrainHasEdgesItCanDrawOut) {
+  const auto block = make_block(0.05, 0.05, {.youngs_modulus_Pa = 1000.0, .poisson_ratio = 0.45});
+  ASSERT_TRUE(block) << block.error().sentence;
+  const auto fine_m = [&](double depth_m, bool large_strain, int level) {
+    return edge_lengths(*block, {.vertex = 0,
+                                 .tool_radius_m = 5e-3,
+                                 .depth_m = depth_m,
+                                 .large_strain = large_strain,
+                                 .level = level})
+        .fine_m;
+  };
+  EXPECT_DOUBLE_EQ(fine_m(-6.5e-3, false, kCoarsestLevel), 0.12 * 5e-3) << "linear: any depth";
+  EXPECT_DOUBLE_EQ(fine_m(-1e-3, true, kCoarsestLevel), 0.12 * 5e-3);
+  EXPECT_DOUBLE_EQ(fine_m(-6.5e-3, true, kCoarsestLevel), 6.5e-3 / 8.0);
+  EXPECT_NEAR(fine_m(-6.5e-3, true, kRoughLevel), 6.5e-3 / 8.0 / 0.7, 0.02e-3)
+      << "coarser, so that the error can be told";
+  EXPECT_GT(fine_m(5e-3, true, kRoughLevel), 1.3 * fine_m(5e-3, true, kCoarsestLevel));
+}
+
 TEST(Indentation, OfABlockIsThatOfAnIndependentSolution) {
   // Round block 50 x 50 mm, E = 1 kPa, nu = 0.45, sphere R = 5 mm: 40.46 mN at 5 mm (FEniCS).
   const auto block = make_block(0.05, 0.05, {.youngs_modulus_Pa = 1000.0, .poisson_ratio = 0.45});

@@ -83,6 +83,50 @@ TEST(ReferenceProgram, JobsOfOneSiteShareItsCoarseSolve) {
   fs::remove_all(folder);
 }
 
+// Solves every linear case by 1 mN a moved node, and no other.
+const char* const kLinearOnly = R"([ "$1" = -v ] && echo This is Version 2.20 && exit
+grep -q NLGEOM case.inp && echo no convergence && exit 201
+awk -F, '/^[*]/ { set = "" } /^[*]NSET/ { set = $2; next }
+  set == "NSET=MOVED" { for (i = 1; i <= NF; ++i) if ($i) moved = moved $i " 1 0 0\n" }
+  set == "NSET=REPORTED" { for (i = 1; i <= NF; ++i) if ($i) reported = reported $i " 0 0 0\n" }
+  END {
+    print "forces (fx,fy,fz) for set MOVED and time 1\n\n" moved
+    print "displacements (vx,vy,vz) for set REPORTED and time 1\n\n" reported
+  }' case.inp > case.dat)";
+
+TEST(ReferenceProgram, TellsWhichLargeStrainHasNoSolutionAndKeepsTheRest) {
+  const auto folder =
+      fs::path(testing::TempDir()) / fmt::format("reference_program_test.large.{}", getpid());
+  fs::create_directories(folder);
+  make_program(folder / "ccx", kLinearOnly);
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", (folder.string() + ":" + path).c_str(), 1);
+  setenv("TMPDIR", folder.c_str(), 1);  // for what a failure keeps
+  const Outcome outcome =
+      run_program("tact-reference", kLiver +
+                                        " --sites 1714 --depths 0.002,0.007 --level 1 "
+                                        "--large-strain 1714 --cache " +
+                                        (folder / "cache").string());
+  setenv("PATH", path.c_str(), 1);
+  unsetenv("TMPDIR");
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  for (const char* what : {"press of 2 mm", "press of 7 mm", "pull of 2 mm"})
+    EXPECT_NE(outcome.output.find(
+                  fmt::format("tact-reference: left out: vertex 1714, {} with large strain: "
+                              "CalculiX found no solution: ccx ended with status 201",
+                              what)),
+              std::string::npos)
+        << outcome.output;
+  EXPECT_EQ(outcome.output.find("pull of 7 mm"), std::string::npos) << "beyond 1.3 radii of 4 mm";
+  EXPECT_EQ(outcome.output.find("neo-Hookean"), std::string::npos);
+  std::size_t rows = 0;
+  for (auto at = outcome.output.find("  linear\n"); at != std::string::npos;
+       at = outcome.output.find("  linear\n", at + 1))
+    ++rows;
+  EXPECT_EQ(rows, 4U) << "press and pull, 2 and 7 mm";
+  fs::remove_all(folder);
+}
+
 TEST(ReferenceProgram, TriesItsFileBeforeTheWork) {
   expect_refusal(kLiver + " --sites 1714 --out /nowhere/liver.json",
                  "/nowhere/liver.json: its folder cannot be written to; make it or name another");

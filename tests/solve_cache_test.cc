@@ -107,6 +107,11 @@ TEST(SolveCache, TheKeyNamesEverythingThatChangesTheAnswer) {
     if (change == 5) other.contact_radius_m = 2e-3;
     EXPECT_NE(cache_key(organ, other, "solver 1"), key) << change;
   }
+  Indentation ball = kPress;
+  ball.large_strain = true;
+  EXPECT_NE(cache_key(organ, ball, "solver 1").find("ball"), std::string::npos)
+      << "its method has a number of its own";
+  EXPECT_EQ(key.find("ball"), std::string::npos);
   for (int change = 0; change < 4; ++change) {
     Organ other = organ;
     if (change == 0) other.material.youngs_modulus_Pa = 2000.0;

@@ -20,7 +20,7 @@ struct ReferenceCase {
   double depth_m = 0.0;
   bool large_strain = false;
   double force_N = 0.0;
-  double contact_radius_m = 0.0;
+  double contact_radius_m = 0.0;   // at rest; at large strain of what touches in the end
   double force_error_ratio = 0.0;  // of the mesh: what refinement would change; NaN: not known
   std::vector<double> profile_m;   // ring k at radius k * ring_pitch_m
 
@@ -31,7 +31,7 @@ struct SolvedSite {
   std::uint32_t vertex = 0;          // of the organ's mesh
   model::Vec3 point_m{};             // in the mesh's own frame
   model::Vec3 direction{};           // into the tissue, unit
-  std::vector<ReferenceCase> cases;  // linear press, linear pull, then large strain; by depth
+  std::vector<ReferenceCase> cases;  // linear press and pull, then large; by depth
 };
 
 struct ReferenceData {

@@ -1,5 +1,6 @@
 #include "tools/reference/ball_press.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -37,7 +38,9 @@ double touched_radius_m(const OrganBody& body, const BallContact& contact, const
       p[k] = body.mesh.node_m[corners[k]] + displacement_m[corners[k]];
       if (norm(p[k] - centre_m) < (1.0 + kTouching) * contact.radius_m) touching += 1.0 / 3.0;
     }
-    area_m2 += touching * 0.5 * std::abs(dot(cross(p[1] - p[0], p[2] - p[0]), axis));
+    // Tissue that folds in over the ball's widest circle is not seen along the way.
+    const double seen_m2 = -0.5 * dot(cross(p[1] - p[0], p[2] - p[0]), axis);
+    area_m2 += touching * std::max(0.0, seen_m2);
   }
   return std::sqrt(area_m2 / std::numbers::pi);
 }

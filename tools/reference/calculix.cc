@@ -17,6 +17,7 @@ using model::Result;
 using model::Vec3;
 
 constexpr double kTimeLimit_s = 4.0 * 3600.0;
+constexpr const char* kNoSolution = "CalculiX found no solution";
 
 /// Node and three numbers on each line below a heading; false if there is no such heading.
 bool read_vectors(std::istream& file, const std::string& heading,
@@ -58,12 +59,12 @@ bool read_answer(const std::string& path, const ElasticProblem& p, ElasticAnswer
     const auto itself = [](std::uint32_t n) { return n; };
     if (!read_forces(file, "HELD", p.held, itself, force_mN)) return false;
     // What is held keeps the body from following the ball.
-    for (const Vec3& f : force_mN) answer.force_N -= axes.from_deck(f) * kDeckForce_N;
+    for (const Vec3& f : force_mN) answer.force_N -= axes.from_deck(f) * kNPerMN;
   } else {
     const auto node_of = [](const MovedNode& m) { return m.node; };
     if (!read_forces(file, "MOVED", p.load.moved, node_of, force_mN)) return false;
     for (const Vec3& f : force_mN) {
-      answer.moved_force_N.push_back(axes.from_deck(f) * kDeckForce_N);
+      answer.moved_force_N.push_back(axes.from_deck(f) * kNPerMN);
       answer.force_N += answer.moved_force_N.back();
     }
   }
@@ -73,7 +74,7 @@ bool read_answer(const std::string& path, const ElasticProblem& p, ElasticAnswer
   for (const std::uint32_t n : p.reported) {
     const auto found = displacement_mm.find(n);
     if (found == displacement_mm.end() || !is_finite(found->second)) return false;
-    answer.displacement_m.push_back(axes.from_deck(found->second) / kDeckLength);
+    answer.displacement_m.push_back(axes.from_deck(found->second) / kMmPerM);
   }
   return true;
 }
@@ -104,15 +105,18 @@ Result<ElasticAnswer> solve_with_calculix(const ElasticProblem& problem) {
   const auto said = run_ccx(*folder, {"-i", "case"}, false);
   if (!said) {
     if (!was_interrupted(said.error())) folder->keep();
-    return said.error();
+    if (said.error().sentence.rfind("ccx ended", 0) != 0) return said.error();
+    return Error{fmt::format("{}: {}", kNoSolution, said.error().sentence)};
   }
   ElasticAnswer answer;
   if (read_answer(folder->file("case.dat"), problem, answer)) return answer;
-  Error error{fmt::format("CalculiX found no solution; its deck case.inp and ccx.log are in {}",
-                          folder->path())};
+  Error error{
+      fmt::format("{}; its deck case.inp and ccx.log are in {}", kNoSolution, folder->path())};
   folder->keep();
   return error;
 }
+
+bool found_no_solution(const Error& error) { return error.sentence.rfind(kNoSolution, 0) == 0; }
 
 Result<std::string> calculix_version() {
   auto folder = ScratchFolder::make("tact-ccx");

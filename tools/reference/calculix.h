@@ -1,6 +1,6 @@
-// calculix.h - one elastic body, some nodes moved, solved by the program CalculiX (ccx).
+// calculix.h - one elastic body under a load, solved by the program CalculiX (ccx).
 //
-// Elements C3D10, isotropic linear elastic. Moved nodes have their own axes: x along `direction`.
+// The body's elements are C3D10, isotropic linear elastic. Moved nodes have their own axes: x along `direction`.
 // With large strain (NLGEOM) the material is neo-Hookean with the same E and nu at small strain:
 //
 //     W = C10 (I1' - 3) + (J - 1)^2 / D1,   C10 = G / 2, D1 = 2 / K        (CalculiX manual 6.8)
@@ -57,12 +57,15 @@ struct ElasticProblem {
 
 struct ElasticAnswer {
   model::Vec3 force_N{};                    // that moves the moved nodes, or the ball
-  std::vector<model::Vec3> moved_force_N;   // of each, in their order
+  std::vector<model::Vec3> moved_force_N;   // of each moved node, in their order
   std::vector<model::Vec3> displacement_m;  // of the reported nodes, in their order
 };
 
 /// Solves on one core. On failure the folder with deck and log stays, and the error says where.
 model::Result<ElasticAnswer> solve_with_calculix(const ElasticProblem& problem);
+
+/// Did CalculiX run and give up? Anything else is a fault of the machine.
+bool found_no_solution(const model::Error& error);
 
 /// "2.20", of the ccx in PATH.
 model::Result<std::string> calculix_version();

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
 #include <iterator>
-#include <map>
+#include <set>
 
 #include "tools/reference/rigid_ball.h"
 
@@ -18,8 +20,8 @@ constexpr double kKPa = 1e-3;
 constexpr int kNumbersPerLine = 8;
 constexpr double kBallStiffness = 5000.0;  // of E / R: sinks in by 1e-4 of R and less
 
-constexpr double kLargestStep = 0.2;
-constexpr double kBallStep = 0.1;  // of R
+constexpr double kLargestStep = 0.2;  // of the way
+constexpr double kBallStep = 0.1;     // of R
 
 using Text = std::back_insert_iterator<fmt::memory_buffer>;
 
@@ -41,7 +43,7 @@ void write_nodes(Text out, const char* name, const std::vector<Vec3>& nodes_mm,
 
 void write_body(Text out, const model::fem::TetMesh& body, const DeckAxes& axes) {
   std::vector<Vec3> nodes_mm;
-  for (const Vec3& p_m : body.node_m) nodes_mm.push_back(axes.to_deck(p_m) * kDeckLength);
+  for (const Vec3& p_m : body.node_m) nodes_mm.push_back(axes.to_deck(p_m) * kMmPerM);
   write_nodes(out, "ALL", nodes_mm, 0);
   fmt::format_to(out, "*ELEMENT,TYPE=C3D10,ELSET=BODY\n");
   std::size_t number = 0;
@@ -76,50 +78,49 @@ void write_touched(Text out, const model::fem::TetMesh& body,
     std::sort(corners.begin(), corners.end());
     return corners;
   };
-  std::map<model::TriangleCorners, std::pair<std::size_t, std::size_t>> face_of;
+  std::set<model::TriangleCorners> touched;
+  for (const auto& corners : faces) touched.insert(in_order(corners));
+  fmt::format_to(out, "*SURFACE,NAME=TOUCHED,TYPE=ELEMENT\n");
   for (std::size_t e = 0; e < body.element.size(); ++e)
     for (std::size_t f = 0; f < kFace.size(); ++f) {
       const auto& n = body.element[e];
-      face_of[in_order({n[kFace[f][0]], n[kFace[f][1]], n[kFace[f][2]]})] = {e + 1, f + 1};
+      if (touched.count(in_order({n[kFace[f][0]], n[kFace[f][1]], n[kFace[f][2]]})) > 0)
+        fmt::format_to(out, "{},S{}\n", e + 1, f + 1);
     }
-  fmt::format_to(out, "*SURFACE,NAME=TOUCHED,TYPE=ELEMENT\n");
-  for (const auto& corners : faces) {
-    const auto& [element, face] = face_of.at(in_order(corners));
-    fmt::format_to(out, "{},S{}\n", element, face);
-  }
 }
 
 void write_ball(Text out, const ElasticProblem& p, const DeckAxes& axes) {
   const BallContact& contact = *p.load.ball;
   const RigidBall ball = make_rigid_ball(contact.radius_m);
-  const Vec3 centre_mm = axes.to_deck(contact.centre_m) * kDeckLength;
+  const Vec3 centre_mm = axes.to_deck(contact.centre_m) * kMmPerM;
   std::vector<Vec3> nodes_mm;
-  for (const Vec3& at_m : ball.node_m) nodes_mm.push_back(centre_mm + at_m * kDeckLength);
+  for (const Vec3& at_m : ball.node_m) nodes_mm.push_back(centre_mm + at_m * kMmPerM);
   const std::size_t first_node = p.body->node_m.size();
   std::size_t element = p.body->element.size();
   write_nodes(out, "BALL", nodes_mm, first_node);
   fmt::format_to(out, "*ELEMENT,TYPE=C3D15,ELSET=BALL\n");
   for (const WedgeNodes& wedge : ball.wedge) {
     fmt::format_to(out, "{}", ++element);
-    for (std::size_t k = 0; k < wedge.size(); ++k)  // a line holds 16
+    for (std::size_t k = 0; k < wedge.size(); ++k)  // at most 16 numbers a line
       fmt::format_to(out, "{}{}", k == 12 ? ",\n" : ",", first_node + wedge[k] + 1);
     fmt::format_to(out, "\n");
   }
   const double E_kPa = p.material.youngs_modulus_Pa * kKPa;  // NOLINT
+  // Every node of the ball is moved by the same way: its own stiffness does not matter.
   fmt::format_to(out,
-                 "*MATERIAL,NAME=STEEL\n*ELASTIC\n{:.12g},0.3\n"
-                 "*SOLID SECTION,ELSET=BALL,MATERIAL=STEEL\n*SURFACE,NAME=BALL,TYPE=ELEMENT\n"
+                 "*MATERIAL,NAME=BALL\n*ELASTIC\n{:.12g},0.3\n"
+                 "*SOLID SECTION,ELSET=BALL,MATERIAL=BALL\n*SURFACE,NAME=BALL,TYPE=ELEMENT\n"
                  "BALL,S2\n",
-                 E_kPa * 1e3);
+                 E_kPa);
   write_touched(out, *p.body, contact.face);
   fmt::format_to(out,
                  "*SURFACE INTERACTION,NAME=SLIDES\n"
                  "*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR\n{:.12g}\n"
                  "*CONTACT PAIR,INTERACTION=SLIDES,TYPE=MORTAR\nTOUCHED,BALL\n",
-                 kBallStiffness * E_kPa / (contact.radius_m * kDeckLength));
+                 kBallStiffness * E_kPa / (contact.radius_m * kMmPerM));
 }
 
-/// Of the way.
+/// The largest step, as a part of the way.
 double largest_step(const ElasticLoad& load) {
   if (!load.ball) return kLargestStep;
   return std::min(kLargestStep, kBallStep * load.ball->radius_m / load.ball->along_m);
@@ -133,11 +134,10 @@ void write_way(Text out, const ElasticLoad& load) {
   }
   fmt::format_to(out, "*BOUNDARY\n");
   for (const MovedNode& m : load.moved) {
-    fmt::format_to(out, "{},1,1,{:.12g}\n", m.node + 1, m.along_m * kDeckLength);
+    fmt::format_to(out, "{},1,1,{:.12g}\n", m.node + 1, m.along_m * kMmPerM);
     if (load.sideways_held) fmt::format_to(out, "{},2,3\n", m.node + 1);
   }
-  if (load.ball)
-    fmt::format_to(out, "BALL,1,1,{:.12g}\nBALL,2,3\n", load.ball->along_m * kDeckLength);
+  if (load.ball) fmt::format_to(out, "BALL,1,1,{:.12g}\nBALL,2,3\n", load.ball->along_m * kMmPerM);
 }
 
 }  // namespace
@@ -150,6 +150,7 @@ DeckAxes deck_axes(const Vec3& direction) {
 }
 
 std::string deck_of(const ElasticProblem& p) {
+  assert(!p.load.ball || (p.load.large_strain && p.load.moved.empty() && !p.held.empty()));
   fmt::memory_buffer text;
   const Text out(text);
   const DeckAxes axes = deck_axes(p.load.direction);

@@ -3,7 +3,7 @@
 // Units are mm, kPa and mN: CalculiX's tolerances suit numbers near one.
 //
 // A ball touches by mortar contact (S. Sitzmann, K. Willner, B. Wohlmuth, Int. J. Numer. Meth.
-// Engng 103 (2015) 60): pressure is weighed over faces, not collected at nodes, so it holds on the
+// Engng 103 (2015) 60): pressure is weighted over faces, not collected at nodes, so it holds on the
 // quadratic faces of C3D10 and at large sliding. CalculiX keeps the direction of a contact through
 // a step, so a ball goes by a tenth of its radius at a time: at two radii deep, steps of a fifth
 // give 3 % more force, of a twentieth 1 % less.
@@ -15,8 +15,8 @@
 
 namespace tact::tools {
 
-inline constexpr double kDeckLength = 1e3;  // mm in a metre
-inline constexpr double kDeckForce_N = 1e-3;
+inline constexpr double kMmPerM = 1e3;
+inline constexpr double kNPerMN = 1e-3;
 
 /// Right-handed, x along a direction. The deck has these axes, so that a moved node needs no
 /// equation between its coordinates.

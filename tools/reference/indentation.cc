@@ -28,8 +28,8 @@ constexpr std::array<Levels, kFinestLevel - kRoughLevel + 1> kLevels{{{0.5, 0.17
                                                                       {0.25, 0.08, 0.5, 12e-3},
                                                                       {0.175, 0.05, 0.42, 10e-3},
                                                                       {0.125, 0.032, 0.35, 8e-3}}};
-// At large strain the rim of a bond draws its elements out; beyond this, of their edge, CalculiX
-// stalls.
+// A pull of more of their edges than this draws the elements at a bond's rim out so far that
+// CalculiX stalls.
 constexpr double kMostDrawnOut = 8.0;
 
 /// How far a point lies beyond the site along the tool's way.

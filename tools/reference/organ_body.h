@@ -44,8 +44,8 @@ model::Result<OrganBody> make_organ_body(const model::SurfaceMesh& surface,
 std::vector<std::uint32_t> nodes_of_faces(const OrganBody& body,
                                           const std::function<bool(std::size_t)>& wanted);
 
-/// Chooses the faces whose centre lies within the circle's radius of its axis, not much below or
-/// above its middle, and that look against the axis.
+/// Chooses the faces whose centre lies within the circle's radius of its axis, at most two radii
+/// above or below its middle, and that look against the axis. `body` must outlive it.
 std::function<bool(std::size_t)> faces_within(const OrganBody& body, const Circle& circle);
 
 /// Area of the chosen faces, m^2.

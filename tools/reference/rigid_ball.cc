@@ -10,11 +10,10 @@ namespace {
 using model::TriangleCorners;
 using model::Vec3;
 
-constexpr int kHalvings = 3;           // of an octahedron's edges: 0.2 R
-constexpr double kBack = -0.5;         // cosine to the pole, beyond which nothing can touch
-constexpr double kInner = 0.8;         // of the radius
-constexpr double kMiddle = 0.9;        // of the radius
-constexpr std::size_t kOutsideOf = 6;  // nodes of a six-node face
+constexpr int kHalvings = 3;     // of an octahedron's edges: 0.2 R
+constexpr double kBack = -0.5;   // cosine to the pole, beyond which nothing can touch
+constexpr double kInner = 0.8;   // of the radius
+constexpr double kMiddle = 0.9;  // of the radius
 
 /// Points on the unit sphere, each once.
 struct Sphere {
@@ -69,7 +68,7 @@ RigidBall make_rigid_ball(double radius_m) {
       middle(sphere, kMiddle * radius_m, ball);
   for (const auto& [a, b, c] : triangles) {
     if ((sphere.point[a].x + sphere.point[b].x + sphere.point[c].x) / 3.0 < kBack) continue;
-    const std::array<std::uint32_t, kOutsideOf> face{
+    const std::array<std::uint32_t, 6> face{
         a, b, c, sphere.middle(a, b), sphere.middle(b, c), sphere.middle(c, a)};
     WedgeNodes wedge{};
     for (std::size_t k = 0; k < 3; ++k) {

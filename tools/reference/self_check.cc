@@ -28,7 +28,6 @@ struct Known {
   double depth_m = 0.0;
   double force_N = 0.0;
   double bar_ratio = 0.0;  // of the force
-  bool large_strain = false;
 };
 
 bool judge(const Known& known, double force_N) {
@@ -41,7 +40,8 @@ bool judge(const Known& known, double force_N) {
   return good;
 }
 
-Result<bool> check_block(double size_m, const std::vector<Known>& cases) {
+Result<bool> check_block(double size_m, const std::vector<Known>& cases,
+                         bool large_strain = false) {
   const auto block = make_block(size_m, size_m, kTissue);
   if (!block) return block.error();
   bool good = true;
@@ -49,10 +49,11 @@ Result<bool> check_block(double size_m, const std::vector<Known>& cases) {
     const auto solved = solve(*block, {.vertex = 0,
                                        .tool_radius_m = kRadius_m,
                                        .depth_m = known.depth_m,
-                                       .large_strain = known.large_strain,
-                                       .level = known.large_strain ? kCoarsestLevel : kLevel});
-    if (!solved) return solved.error();
-    good &= judge(known, solved->force_N);
+                                       .large_strain = large_strain,
+                                       .level = large_strain ? kCoarsestLevel : kLevel});
+    if (!solved && !found_no_solution(solved.error())) return solved.error();
+    if (!solved) fmt::print("{}: {}\n", known.name, solved.error().sentence);
+    good &= solved && judge(known, solved->force_N);
   }
   return good;
 }
@@ -153,13 +154,16 @@ Result<bool> self_check(const std::string& folder) {
                                   {"block, sphere R 5 mm at 10 mm", 10e-3, 103.5e-3, 0.02},
                                   {"block, bonded disc pulled 1 mm", -1e-3, -13.722e-3, 0.03}});
   if (!block) return block;
-  // The same body, neo-Hookean, FEniCS.
-  auto large = check_block(0.05, {{"large strain, sphere at 1 mm", 1e-3, 3.776e-3, 0.03, true},
-                                  {"large strain, sphere at 2 mm", 2e-3, 10.57e-3, 0.03, true},
-                                  {"large strain, sphere at 5 mm", 5e-3, 39.16e-3, 0.03, true},
-                                  {"large strain, sphere at 10 mm", 10e-3, 89.1e-3, 0.03, true},
-                                  {"large strain, disc pulled 1 mm", -1e-3, -13.76e-3, 0.06, true},
-                                  {"large strain, disc pulled 5 mm", -5e-3, -63.4e-3, 0.06, true}});
+  // The same block, neo-Hookean, all by FEniCS. Bars: the coarsest mesh has 3 % under a sphere, and
+  // at the rim of a bond 6 %.
+  auto large = check_block(0.05,
+                           {{"large strain, sphere at 1 mm", 1e-3, 3.776e-3, 0.03},
+                            {"large strain, sphere at 2 mm", 2e-3, 10.57e-3, 0.03},
+                            {"large strain, sphere at 5 mm", 5e-3, 39.16e-3, 0.03},
+                            {"large strain, sphere at 10 mm", 10e-3, 89.1e-3, 0.03},
+                            {"large strain, disc pulled 1 mm", -1e-3, -13.76e-3, 0.06},
+                            {"large strain, disc pulled 5 mm", -5e-3, -63.4e-3, 0.06}},
+                           true);
   if (!large) return large;
   const auto sphere_N = [](double depth_m) { return sphere_force_N(kTissue, kRadius_m, depth_m); };
   // A bond is 0.3 % stiffer than a frictionless punch at this nu.

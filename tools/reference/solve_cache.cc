@@ -21,7 +21,9 @@ namespace fs = std::filesystem;
 using model::Vec3;
 using nlohmann::json;
 
-constexpr int kMethod = 2;  // raise it whenever the same key would give another answer
+// Raise them whenever the same key would give another answer.
+constexpr int kMethod = 2;
+constexpr int kBallMethod = 1;  // calculix_deck.cc, rigid_ball.cc, ball_press.cc
 
 constexpr double kProbeContact = 0.75;  // of R at depth R: a little less than a half-space has
 constexpr int kFallRings = 17;
@@ -96,8 +98,9 @@ std::string mesh_hash(const model::SurfaceMesh& mesh) {
 
 std::string cache_key(const Organ& organ, const Indentation& what, const std::string& solver) {
   const EdgeLengths edges = edge_lengths(organ, what);
-  const std::string contact =
+  std::string contact =
       what.contact_radius_m > 0.0 ? fmt::format("{:.4g} m", what.contact_radius_m) : "half-space";
+  if (what.large_strain && what.depth_m > 0.0) contact += fmt::format(", ball {}", kBallMethod);
   return fmt::format(
       "method {}, {}; mesh {}; E {:.9g} Pa, nu {:.9g}; held {} to {} m; vertex {}, "
       "radius {:.9g} m, depth {:.9g} m, {}; contact {}; edges {:.9g} m, growth {:.9g}, to {:.9g} m",
