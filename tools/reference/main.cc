@@ -66,6 +66,13 @@ Result<ReferencePlan> make_plan(const Options& o) {
   plan->large_strain_sites = o.large_strain_sites;
   plan->level = o.level;
   if (auto error = check(*plan)) return std::move(*error);
+  const double most_m = kLargePull * plan->tool_radius_m;
+  if (!plan->large_strain_sites.empty() && plan->depths_m.back() > most_m) {
+    fmt::print(stderr,
+               "tact-reference: left out: pulls with large strain beyond {:.3g} mm ({:g} tool "
+               "radii); no mesh that stands them is fine enough\n",
+               most_m * 1e3, kLargePull);
+  }
   return plan;
 }
 

@@ -18,7 +18,6 @@ constexpr double kShrink = 0.7;  // of edges, and of the error, from level to le
 // Measured on the block of --self-check: 5 mm with edges of 0.43, 0.3, 0.2 and 0.12 of the radius
 // is 10.3, 9.2, 7.2 and 4.6 % above the known answer.
 constexpr double kShrinkOfLargePull = 0.8;
-constexpr double kLargePull = 1.3;  // of the tool's radius; the rim needs coarse elements beyond
 constexpr double kMostDepth = 5.0;  // of the tool's radius
 
 bool among(const std::vector<std::uint32_t>& list, std::uint32_t vertex) {

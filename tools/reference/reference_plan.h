@@ -19,6 +19,10 @@
 
 namespace tact::tools {
 
+/// The deepest pull with large strain, of the tool's radius: elements at the rim of the bond that
+/// stand more are too coarse to be true.
+inline constexpr double kLargePull = 1.3;
+
 struct ReferencePlan {
   Organ organ;
   std::string mesh_name;
