@@ -242,6 +242,8 @@ void verify_boot(const json& ftdi, Report& report) {
             want.at("retry"));
       equal(report, "null first", sent_while_booting(image, device(true, "")), sent);
     } else {
+      equal(report, "upload", want.at("upload"), true);
+      equal(report, "echo", want.at("echo"), true);
       const auto chunk = want.at("chunk").get<std::size_t>();
       for (std::size_t done = 0; done < image.size(); done += chunk) {
         const auto rest = std::span(image).subspan(done);

@@ -111,7 +111,9 @@ FalconBootAction FalconBoot::heard(const FalconBootInput& input) noexcept {
   switch (stage_) {
     case Stage::kReport:
       for (const std::uint8_t byte : input.bytes) {
-        if (stream_.push(byte)) return enter(Stage::kReady, input.now_ms);
+        const auto report = stream_.push(byte);
+        // A boot ROM in the middle of an image echoes the question, which looks like a report.
+        if (report && encode(*report) != kAskForReport) return enter(Stage::kReady, input.now_ms);
       }
       break;
     case Stage::kGreet:
