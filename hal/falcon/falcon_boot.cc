@@ -51,7 +51,6 @@ FalconBootAction FalconBoot::enter(Stage stage, std::int64_t now_ms) noexcept {
   stage_ = stage;
   request_ = 0;
   tries_ = 0;
-  if (stage == Stage::kUpload) echoed_ = chunk_echoed_ = 0;
   if (stage == Stage::kReady) return {.what = What::kReady};
   if (requests().empty()) return exchange(now_ms);
   return {.what = What::kControl, .request = requests()[request_++]};
@@ -64,7 +63,7 @@ FalconBootAction FalconBoot::exchange(std::int64_t now_ms) noexcept {
   ++tries_;
   switch (stage_) {
     case Stage::kReport:
-      stream_.reset();
+      if (tries_ == 1) stream_.reset();  // what came before is purged
       return write(kAskForReport, settings_.report_wait_ms);
     case Stage::kGreet:
       return write(kFalconGreeting, settings_.greeting_wait_ms);

@@ -10,7 +10,7 @@ void FalconStream::drop() RT_SAFE {
 }
 
 std::optional<FalconReport> FalconStream::push(std::uint8_t byte) RT_SAFE {
-  if (byte == kFalconStart || !falcon_report_may_have(byte, size_)) drop();
+  if (!falcon_report_may_have(byte, size_)) drop();  // a start byte may stand at place 0 only
   if (size_ == 0 && byte != kFalconStart) {
     ++dropped_bytes_;
     return std::nullopt;
