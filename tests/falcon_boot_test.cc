@@ -130,9 +130,10 @@ TEST(FalconBoot, AnEchoThatIsLongerThanTheWordIsDamage) {
       reply.assign(kFalconGreetingReply.begin(), kFalconGreetingReply.end());
     if (action.what == What::kWrite && action.bytes.size() == 1) reply.assign(1, 0x41);
     const bool wrote = action.what == What::kWrite;
-    action = boot.next({.now_ms = guard * 1000, .clear_to_send = true});
+    action = boot.next({.now_ms = guard * std::int64_t{1000}, .clear_to_send = true});
     if (wrote && !reply.empty())
-      action = boot.next({.now_ms = guard * 1000, .bytes = reply, .clear_to_send = true});
+      action =
+          boot.next({.now_ms = guard * std::int64_t{1000}, .bytes = reply, .clear_to_send = true});
   }
   FAIL() << "no part of the image was sent";
 }
@@ -229,7 +230,7 @@ TEST(FalconBoot, EveryFaultHasWordsOfItsOwn) {
 TEST(FalconBoot, LeavesTheHeapAlone) {
   FalconBoot boot(kImage);
   const tests::NoAlloc guard;
-  for (int step = 0; step < 200; ++step) (void)boot.next({.now_ms = step * 100});
+  for (int step = 0; step < 200; ++step) (void)boot.next({.now_ms = step * std::int64_t{100}});
   EXPECT_EQ(guard.calls(), 0u);
 }
 

@@ -3,14 +3,8 @@
 #include <algorithm>
 
 namespace tact::hal {
-namespace {
 
 using What = FalconBootAction::What;
-
-// Zero force. The homing request stays set, or a device that is homed might forget it.
-const FalconPacket kAskForReport = encode(FalconCommand{.lights = kFalconRed, .homing = true});
-
-}  // namespace
 
 std::span<const FtdiRequest> FalconBoot::requests() const noexcept {
   switch (stage_) {
@@ -64,7 +58,7 @@ FalconBootAction FalconBoot::exchange(std::int64_t now_ms) noexcept {
   switch (stage_) {
     case Stage::kReport:
       if (tries_ == 1) stream_.reset();  // what came before is purged
-      return write(kAskForReport, settings_.report_wait_ms);
+      return write(question_, settings_.report_wait_ms);
     case Stage::kGreet:
       return write(kFalconGreeting, settings_.greeting_wait_ms);
     case Stage::kSpeed:  // the boot ROM says by CTS when it listens
@@ -112,7 +106,7 @@ FalconBootAction FalconBoot::heard(const FalconBootInput& input) noexcept {
       for (const std::uint8_t byte : input.bytes) {
         const auto report = stream_.push(byte);
         // A boot ROM in the middle of an image echoes the question, which looks like a report.
-        if (report && encode(*report) != kAskForReport) return enter(Stage::kReady, input.now_ms);
+        if (report && encode(*report) != question_) return enter(Stage::kReady, input.now_ms);
       }
       break;
     case Stage::kGreet:

@@ -122,6 +122,8 @@ class FalconBoot {
   Stage stage_ = Stage::kOpen;
   FalconBootAction::What last_ = FalconBootAction::What::kReopen;
   FalconBootFault fault_ = FalconBootFault::kNone;
+  // Zero force. The homing request stays set, or a device that is homed might forget it.
+  FalconPacket question_ = encode(FalconCommand{.motor = {}, .lights = kFalconRed, .homing = true});
   FalconStream stream_;
   std::size_t request_ = 0;  // of this stage's, the next one
   int attempt_ = 1, tries_ = 0, wait_ms_ = 0;
