@@ -1,4 +1,4 @@
-#include "hal/falcon_kinematics.h"
+#include "hal/falcon/falcon_kinematics.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 
 #include "hal/delta_dynamics.h"
 #include "hal/delta_kinematics.h"
-#include "hal/falcon_kinematics.h"
+#include "hal/falcon/falcon_kinematics.h"
 #include "tools/verify_report.h"
 
 namespace tact::tools {

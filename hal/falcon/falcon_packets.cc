@@ -1,0 +1,107 @@
+#include "hal/falcon/falcon_packets.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tact::hal {
+namespace {
+
+constexpr std::size_t kInfoPlace = 13, kExtraPlace = 14, kEndPlace = 15;
+constexpr int kNibblesPerWord = 4;
+
+FalconPacket packet(const FalconWords& words, unsigned info) RT_SAFE {
+  FalconPacket out{};
+  out[0] = kFalconStart;
+  std::size_t place = 1;
+  for (const int word : words) {
+    unsigned rest = static_cast<unsigned>(word);
+    for (int i = 0; i < kNibblesPerWord; ++i, rest >>= 4) {
+      out[place++] = static_cast<std::uint8_t>(kFalconZero + (rest & 0xFu));
+    }
+  }
+  out[kInfoPlace] = static_cast<std::uint8_t>(kFalconZero + info);
+  out[kExtraPlace] = kFalconZero;
+  out[kEndPlace] = kFalconEnd;
+  return out;
+}
+
+bool is_packet(std::span<const std::uint8_t> bytes) RT_SAFE {
+  if (bytes.size() != kFalconPacketSize) return false;
+  for (std::size_t i = 0; i < kFalconPacketSize; ++i) {
+    if (!falcon_report_may_have(bytes[i], i)) return false;
+  }
+  return true;
+}
+
+FalconWords words_of(std::span<const std::uint8_t> bytes) RT_SAFE {
+  FalconWords out{};
+  std::size_t place = 1;
+  for (int& word : out) {
+    unsigned bits = 0;
+    for (int i = 0; i < kNibblesPerWord; ++i) {
+      bits |= static_cast<unsigned>(bytes[place++] - kFalconZero) << (4 * i);
+    }
+    word = static_cast<std::int16_t>(bits);
+  }
+  return out;
+}
+
+}  // namespace
+
+bool falcon_report_may_have(std::uint8_t byte, std::size_t place) RT_SAFE {
+  if (place == 0) return byte == kFalconStart;
+  if (place < kInfoPlace) return byte >= kFalconZero && byte <= kFalconZero + 0xF;
+  if (place == kInfoPlace) return byte >= kFalconZero && byte <= kFalconZero + 0x7F;
+  if (place == kExtraPlace) return byte != kFalconStart && byte != kFalconEnd;
+  return place == kEndPlace && byte == kFalconEnd;
+}
+
+FalconWords falcon_motor_words(const std::array<double, 3>& wanted) RT_SAFE {
+  double largest = 0.0;
+  for (const double word : wanted) {
+    if (!std::isfinite(word)) return {};
+    largest = std::max(largest, std::abs(word));
+  }
+  const double range = kFalconMotorMax;
+  const double scale = largest > range ? range / largest : 1.0;
+  FalconWords out{};
+  for (std::size_t i = 0; i < 3; ++i) out[i] = static_cast<int>(std::lround(wanted[i] * scale));
+  return out;
+}
+
+FalconPacket encode(const FalconCommand& command) RT_SAFE {
+  FalconWords words{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    words[i] = std::clamp(command.motor[i], -kFalconMotorMax, kFalconMotorMax);
+  }
+  const unsigned homing = command.homing ? kFalconHomingRequest : 0u;
+  return packet(words, (command.lights & unsigned{kFalconLights}) | homing);
+}
+
+FalconPacket encode(const FalconReport& report) RT_SAFE {
+  return packet(report.counts,
+                (report.homed & unsigned{kFalconAllHomed}) << 4 | (report.buttons & 0xFu));
+}
+
+std::optional<FalconCommand> decode_falcon_command(std::span<const std::uint8_t> bytes) RT_SAFE {
+  if (!is_packet(bytes)) return std::nullopt;
+  const unsigned info = bytes[kInfoPlace] - unsigned{kFalconZero};
+  if (info > 0xFu) return std::nullopt;
+  const FalconWords words = words_of(bytes);
+  for (const int word : words) {
+    if (std::abs(word) > kFalconMotorMax) return std::nullopt;
+  }
+  return FalconCommand{.motor = words,
+                       .lights = static_cast<std::uint8_t>(info & kFalconLights),
+                       .homing = (info & kFalconHomingRequest) != 0};
+}
+
+std::optional<FalconReport> decode_falcon_report(std::span<const std::uint8_t> bytes) RT_SAFE {
+  if (!is_packet(bytes)) return std::nullopt;
+  const unsigned info = bytes[kInfoPlace] - unsigned{kFalconZero};
+  return FalconReport{.counts = words_of(bytes),
+                      .buttons = static_cast<std::uint8_t>(info & 0xFu),
+                      .homed = static_cast<std::uint8_t>(info >> 4)};
+}
+
+}  // namespace tact::hal
