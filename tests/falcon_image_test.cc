@@ -16,7 +16,8 @@ using Verdict = FalconImageVerdict;
 
 std::string digest_of(const Bytes& bytes) {
   std::string out;
-  for (const std::uint8_t byte : sha256(bytes)) {
+  const Sha256 digest = sha256(bytes).value();
+  for (const std::uint8_t byte : digest) {
     out += "0123456789ABCDEF"[byte >> 4];
     out += "0123456789abcdef"[byte & 0xF];  // mixed case on purpose
   }

@@ -32,7 +32,7 @@ FalconImageVerdict check_falcon_image(std::span<const std::uint8_t> image,
   const auto wanted = digest_of(wanted_sha256);
   if (!wanted_sha256.empty() && !wanted) return FalconImageVerdict::kBadDigest;
   if (image.empty() || image.size() > kFalconImageMax_bytes) return FalconImageVerdict::kWrongSize;
-  const Sha256 digest = sha256(image);
+  const auto digest = sha256(image);
   if (wanted) {
     return digest == *wanted ? FalconImageVerdict::kAsNamed : FalconImageVerdict::kOtherDigest;
   }

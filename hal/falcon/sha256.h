@@ -1,16 +1,18 @@
 // sha256.h - the SHA-256 digest of a file's bytes: is this image the one its owner meant?
 //
-// Source: FIPS 180-4, sections 4.1.2, 5 and 6.2. For start-up, not for secrets.
+// By OpenSSL's libcrypto. For start-up.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 namespace tact::hal {
 
 using Sha256 = std::array<std::uint8_t, 32>;
 
-Sha256 sha256(std::span<const std::uint8_t> message) noexcept;
+/// Nothing if the library refuses.
+std::optional<Sha256> sha256(std::span<const std::uint8_t> message) noexcept;
 
 }  // namespace tact::hal
