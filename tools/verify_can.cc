@@ -1,4 +1,5 @@
-// The published CAN frames: SocketCAN's error frames and bits on the bus, and ODrive's messages.
+// The published CAN frames: SocketCAN's error frames and bits on the bus, ODrive's messages; the
+// frames of CiA 402 are in verify_can_cia402.cc.
 #include "tools/verify_can.h"
 
 #include <fmt/core.h>
@@ -239,6 +240,7 @@ void verify_odrive(const json& file, Report& report) {
 constexpr Verifier kVerifiers[] = {
     {"can_socketcan/1", verify_socketcan},
     {"can_odrive/1", verify_odrive},
+    {"can_cia402/1", verify_cia402},
 };
 
 }  // namespace

@@ -41,6 +41,7 @@ bool refuses_damage(const hal::CanFrame& sound, Decode decode) {
          !decode(remote) && !decode(stranger);
 }
 
+/// Of verify_can_cia402.cc.
 void verify_cia402(const nlohmann::json& file, Report& report);
 
 }  // namespace tact::tools
