@@ -42,6 +42,7 @@ TEST(CanFrame, WhatCannotBeOnAnElevenBitBusIsNotPacked) {
   frame.length = 9;
   EXPECT_FALSE(pack_can_frame(frame));
   EXPECT_EQ(can_bits_on_bus(frame).most, 0);
+  EXPECT_TRUE(frame.payload().empty());
 }
 
 TEST(CanFrame, DamagedBytesAreNoFrame) {
@@ -107,6 +108,49 @@ TEST(CanFrame, ExactBitsAreWithinTheirBoundsAndBoundsAreThoseOfTheBudget) {
   }
   EXPECT_EQ(can_bits_on_bus(make_can_frame(1, 4)).most, 95);
   EXPECT_EQ(can_bits_on_bus(make_can_frame(1, 8)).most, 135);
+}
+
+/// The same count, the long way: a row of bits, its remainder by division, then the stuffing.
+int bits_the_long_way(const CanFrame& frame) {
+  std::vector<int> bits{0};
+  const auto append = [&bits](unsigned value, int count) {
+    while (count-- > 0) bits.push_back(static_cast<int>(value >> count & 1u));
+  };
+  append(frame.id, 11);
+  append(frame.rtr ? 4 : 0, 3);
+  append(frame.length, 4);
+  for (int i = 0; i < (frame.rtr ? 0 : frame.length); ++i) {
+    append(frame.data[static_cast<std::size_t>(i)], 8);
+  }
+  std::vector<int> rest = bits;
+  rest.resize(bits.size() + 15);
+  const std::vector<int> divisor{1, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1};  // 2^15 + 0x4599
+  for (std::size_t i = 0; i < bits.size(); ++i) {
+    if (rest[i] == 0) continue;
+    for (std::size_t j = 0; j < divisor.size(); ++j) rest[i + j] ^= divisor[j];
+  }
+  bits.insert(bits.end(), rest.end() - 15, rest.end());
+  std::vector<int> wire;
+  for (const int bit : bits) {
+    wire.push_back(bit);
+    if (wire.size() >= 5 &&
+        std::all_of(wire.end() - 5, wire.end(), [&](int b) { return b == bit; }))
+      wire.push_back(1 - bit);
+  }
+  return static_cast<int>(wire.size()) + 13;
+}
+
+TEST(CanFrame, ExactBitsAreThoseOfALongDivisionAndAPlainStuffing) {
+  unsigned seed = 1;
+  for (int i = 0; i < 3000; ++i) {
+    const auto next = [&seed] { return (seed = seed * 1664525u + 1013904223u) >> 16; };
+    CanFrame frame = make_can_frame(next() & kCanLargestId, static_cast<std::uint8_t>(next() % 9));
+    frame.rtr = next() % 8 == 0;
+    for (std::uint8_t& byte : frame.data) {
+      byte = static_cast<std::uint8_t>(next() % 3 == 0 ? next() : next() % 2 * 0xF0u);
+    }
+    ASSERT_EQ(can_bits_on_bus(frame).exact, bits_the_long_way(frame)) << i;
+  }
 }
 
 TEST(CanFrame, ARemoteRequestCostsNoDataBits) {

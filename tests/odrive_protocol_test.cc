@@ -125,6 +125,7 @@ TEST(OdriveProtocol, EveryReplyComesFromItsNodeItsMessageAndInFull) {
     CanFrame wide = sound;
     wide.id |= 0x800;
     EXPECT_FALSE(decode(wide, 7)) << name;
+    EXPECT_FALSE(decode(wide, 64 + 7)) << name;
   };
   check("version", decode_odrive_version, OdriveCommand::kGetVersion);
   check("heartbeat", decode_odrive_heartbeat, OdriveCommand::kHeartbeat);

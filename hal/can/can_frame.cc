@@ -7,9 +7,7 @@
 namespace tact::hal {
 namespace {
 
-constexpr std::uint32_t kExtendedFlag = 1u << 31;
 constexpr std::uint32_t kRemoteFlag = 1u << 30;
-constexpr std::uint32_t kErrorFlag = 1u << 29;
 
 bool is_sound(const CanFrame& frame) RT_SAFE {
   return frame.id <= kCanLargestId && frame.length <= 8;
@@ -66,7 +64,7 @@ std::optional<CanFrameBytes> pack_can_frame(const CanFrame& frame) RT_SAFE {
 std::optional<CanFrame> unpack_can_frame(std::span<const std::uint8_t> bytes) RT_SAFE {
   if (bytes.size() != kCanFrameBytes) return std::nullopt;
   const std::uint32_t word = get_u32(bytes, 0);
-  if ((word & (kExtendedFlag | kErrorFlag)) != 0) return std::nullopt;
+  // The flag of an extended or an error frame stays, which makes the identifier too large.
   CanFrame frame{
       .id = word & ~kRemoteFlag, .rtr = (word & kRemoteFlag) != 0, .length = bytes[4], .data = {}};
   if (!is_sound(frame)) return std::nullopt;

@@ -31,9 +31,9 @@ struct CanFrame {
   std::uint8_t length = 0;             // of the data, bytes, 0 to 8
   std::array<std::uint8_t, 8> data{};  // zero beyond `length`
 
-  /// What a receiver may read.
+  /// What a receiver may read: nothing of a request, nothing of a length that cannot be.
   std::span<const std::uint8_t> payload() const RT_SAFE {
-    return std::span(data).first(rtr ? 0 : length);
+    return std::span(data).first(rtr || length > 8 ? 0 : length);
   }
   bool operator==(const CanFrame&) const = default;
 };
