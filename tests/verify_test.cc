@@ -46,6 +46,9 @@ TEST(Verify, EveryPublishedCasePassesAndNoneIsMissing) {
                                              {"004_network.json", 11},
                                              {"004_oscillator.json", 39},
                                              {"004_stability.json", 42},
+                                             {"can_cia402.json", 352},
+                                             {"can_odrive.json", 144},
+                                             {"can_socketcan.json", 85},
                                              {"falcon_packets.json", 95},
                                              {"kinematics_delta.json", 120},
                                              {"kinematics_falcon.json", 54},
@@ -54,7 +57,7 @@ TEST(Verify, EveryPublishedCasePassesAndNoneIsMissing) {
   const Outcome out = run(kVectors + " --json");
   EXPECT_EQ(out.status, 0) << out.output;
   const json report = json::parse(out.output);
-  EXPECT_EQ(report.at("passed"), 1135);
+  EXPECT_EQ(report.at("passed"), 1716);
   EXPECT_EQ(report.at("failed"), 0);
   std::map<std::string, int> passed;
   for (const json& file : report.at("files"))

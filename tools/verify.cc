@@ -1,4 +1,4 @@
-// tact-verify: do the laws and kinematics give the published numbers on this machine?
+// tact-verify: do laws, kinematics and frames give the published numbers on this machine?
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -37,7 +37,7 @@ std::vector<Verifier> known_verifiers() {
   for (const auto& table : {tact::tools::kinematics_verifiers(), tact::tools::rhombus_verifiers(),
                             tact::tools::tracking_verifiers(), tact::tools::disc_verifiers(),
                             tact::tools::hex_verifiers(), tact::tools::spring_verifiers(),
-                            tact::tools::falcon_verifiers()}) {
+                            tact::tools::falcon_verifiers(), tact::tools::can_verifiers()}) {
     known.insert(known.end(), table.begin(), table.end());
   }
   return known;

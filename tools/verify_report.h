@@ -89,5 +89,6 @@ std::span<const Verifier> disc_verifiers();
 std::span<const Verifier> hex_verifiers();
 std::span<const Verifier> spring_verifiers();
 std::span<const Verifier> falcon_verifiers();
+std::span<const Verifier> can_verifiers();
 
 }  // namespace tact::tools

@@ -1,0 +1,66 @@
+// can_frame.h - one frame of a classic CAN bus with an 11-bit identifier, and its cost in bits.
+//
+// Bytes are those of SocketCAN's `struct can_frame` (linux/can.h), 16 of them, little endian:
+//
+//     0-3  identifier, with flags: bit 31 extended, bit 30 remote request, bit 29 error frame
+//     4    length, 0 to 8          5-7  not used here          8-15  data
+//
+// Bits are those of ISO 11898-1 for 8 n data bits: 34 + 8 n from the start of frame to the end of
+// the checksum, where a bit of the other sign follows five equal ones ("stuffing"), then 13 fixed
+// ones: three delimiters and acknowledge, 7 end of frame, 3 intermission. At 1 Mbit/s a bit is 1
+// us.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "model/rt.h"
+
+namespace tact::hal {
+
+inline constexpr std::uint32_t kCanLargestId = 0x7FF;
+inline constexpr std::size_t kCanFrameBytes = 16;
+using CanFrameBytes = std::array<std::uint8_t, kCanFrameBytes>;
+
+struct CanFrame {
+  std::uint32_t id = 0;                // 0 to 0x7FF; the lower one wins the bus
+  bool rtr = false;                    // a request for this identifier: a length but no data
+  std::uint8_t length = 0;             // of the data, bytes, 0 to 8
+  std::array<std::uint8_t, 8> data{};  // zero beyond `length`
+
+  /// What a receiver may read: nothing of a request, nothing of a length that cannot be.
+  std::span<const std::uint8_t> payload() const RT_SAFE {
+    return std::span(data).first(rtr || length > 8 ? 0 : length);
+  }
+  bool operator==(const CanFrame&) const = default;
+};
+
+/// A data frame of `length` bytes, at most 8, all zero.
+constexpr CanFrame make_can_frame(std::uint32_t id, std::uint8_t length) RT_SAFE {
+  return {.id = id, .rtr = false, .length = length, .data = {}};
+}
+
+/// Whether it is a data frame of this identifier and length: what a decoder asks first.
+constexpr bool is_data(const CanFrame& frame, std::uint32_t id, std::size_t length) RT_SAFE {
+  return !frame.rtr && frame.id == id && frame.length == length;
+}
+
+/// Nothing if identifier or length are outside their ranges.
+std::optional<CanFrameBytes> pack_can_frame(const CanFrame& frame) RT_SAFE;
+/// Nothing for an error frame (see can_error.h), an extended identifier, a length above 8 or any
+/// number of bytes but 16. Data beyond the length, and all of a remote request, is zeroed.
+std::optional<CanFrame> unpack_can_frame(std::span<const std::uint8_t> bytes) RT_SAFE;
+
+struct CanBits {
+  int exact = 0;  // with the stuff bits of these very bytes
+  int least = 0;  // no stuff bit
+  int most = 0;   // a stuff bit after every fourth: the budget of a cycle
+};
+
+/// Bits on the bus, intermission included; zero for a frame that cannot be packed.
+CanBits can_bits_on_bus(const CanFrame& frame) RT_SAFE;
+
+}  // namespace tact::hal

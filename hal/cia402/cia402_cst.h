@@ -1,0 +1,50 @@
+// cia402_cst.h - cyclic synchronous torque: what goes to a CiA 402 drive and comes back each cycle.
+//
+//     RPDO1, 0x200 + node: controlword u16, target torque i16                     to the drive
+//     TPDO1, 0x180 + node: statusword u16, position i32, torque i16               after each SYNC
+//
+// Torque is in thousandths of the rated torque (objects 6071, 6077; the rated one is 6076, in
+// 0.001 N m); position in the drive's own increments (6064). CiA 402-2 and CiA 301, little endian.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "hal/can/can_frame.h"
+#include "hal/cia402/canopen_frames.h"
+
+namespace tact::hal {
+
+/// Nothing unless the torque is finite and the rated torque finite and above zero. Rounded to the
+/// nearest, halves to even; beyond 16 bits the largest that fits.
+std::optional<std::int16_t> cst_torque_permille(double torque_Nm, double rated_torque_Nm) RT_SAFE;
+/// Zero if the rated torque is not finite and above zero.
+double cst_torque_Nm(std::int16_t torque_permille, double rated_torque_Nm) RT_SAFE;
+
+std::optional<CanFrame> cst_command(int node, std::uint16_t controlword,
+                                    std::int16_t torque_permille) RT_SAFE;
+
+struct CstSample {
+  std::uint16_t statusword;  // see cia402_state.h
+  std::int32_t position_increments;
+  std::int16_t torque_permille;
+};
+std::optional<CstSample> decode_cst_sample(const CanFrame& frame, int node) RT_SAFE;
+
+struct CstConfiguration {
+  int host_node = 127;
+  std::uint16_t host_timeout_ms = 20;  // without the host's heartbeat the drive stops
+  std::uint16_t drive_heartbeat_ms = 10;
+  std::uint8_t period_ms = 1;  // of SYNC
+  /// 255: torque is applied as it arrives; 1: at the next SYNC, a cycle later, if the drive insists.
+  std::uint8_t command_transmission_type = 255;
+};
+inline constexpr std::size_t kCstWrites = 21;
+using CstWrites = std::array<SdoWrite, kCstWrites>;
+/// What to write to the drive, in this order, while it is pre-operational: heartbeats, quick stop
+/// when the host is lost, the two messages above, period, and the mode. A message is switched off
+/// while its mapping changes. Nothing for a node that cannot be or is the host's, or a time of zero.
+std::optional<CstWrites> cst_configuration(int node, const CstConfiguration& wanted) RT_SAFE;
+
+}  // namespace tact::hal

@@ -1,0 +1,29 @@
+// odrive_errors.h - what an ODrive's error bits mean, in words and with the cure.
+//
+// Bits of `axis_error` in the heartbeat, and of 0.6's `active_errors` and `disarm_reason`, as the
+// enumerations ODrive.Error (0.6) and AxisError (0.5) of the maker's reference name them. The two
+// generations use the same bits for different things.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "model/rt.h"
+
+namespace tact::hal {
+
+struct OdriveErrorWords {
+  std::uint32_t bit;
+  const char* name;      // the maker's, to search for
+  const char* sentence;  // for a person: what happened, what to do
+};
+
+std::span<const OdriveErrorWords> odrive_error_words() RT_SAFE;     // 0.6
+std::span<const OdriveErrorWords> odrive_error_words_05() RT_SAFE;  // 0.5
+
+/// The words of the lowest bit that is set, an entry of its own for a bit that no table has.
+/// Nothing for no error.
+const OdriveErrorWords* first_odrive_error(std::uint32_t axis_error) RT_SAFE;
+const OdriveErrorWords* first_odrive_error_05(std::uint32_t axis_error) RT_SAFE;
+
+}  // namespace tact::hal
