@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <vector>
 
 #include "tests/program.h"
 
@@ -85,7 +86,10 @@ TEST(ReferenceProgram, JobsOfOneSiteShareItsCoarseSolve) {
 
 // Solves every linear case by 1 mN a moved node, and no other.
 const char* const kLinearOnly = R"([ "$1" = -v ] && echo This is Version 2.20 && exit
-grep -q NLGEOM case.inp && echo no convergence && exit 201
+if grep -q NLGEOM case.inp; then
+  grep -q CONTACT case.inp && echo ball >> "$TMPDIR/loads" || echo bond >> "$TMPDIR/loads"
+  echo no convergence; exit 201
+fi
 awk -F, '/^[*]/ { set = "" } /^[*]NSET/ { set = $2; next }
   set == "NSET=MOVED" { for (i = 1; i <= NF; ++i) if ($i) moved = moved $i " 1 0 0\n" }
   set == "NSET=REPORTED" { for (i = 1; i <= NF; ++i) if ($i) reported = reported $i " 0 0 0\n" }
@@ -126,6 +130,10 @@ TEST(ReferenceProgram, TellsWhichLargeStrainHasNoSolutionAndKeepsTheRest) {
        at = outcome.output.find("  linear\n", at + 1))
     ++rows;
   EXPECT_EQ(rows, 4U) << "press and pull, 2 and 7 mm";
+  std::ifstream file(folder / "loads");
+  const std::vector<std::string> loads{std::istream_iterator<std::string>(file), {}};
+  EXPECT_EQ(std::count(loads.begin(), loads.end(), "ball"), 4) << "2 and 7 mm at two levels";
+  EXPECT_EQ(std::count(loads.begin(), loads.end(), "bond"), 2) << "2 mm at two levels";
   fs::remove_all(folder);
 }
 
