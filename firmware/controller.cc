@@ -44,7 +44,9 @@ TickOutput Controller::judge(const TickInput& input) RT_SAFE {
   const bool finite = is_finite(input.sample.tool);
   const Fault fault = find_fault(input);
   const bool armed_before = supervisor_.armed();
-  supervisor_.step(input.commands, input.sample.fresh && finite, fault);
+  supervisor_.step(
+      input.commands,
+      {.sample_good = input.sample.fresh && finite, .ready = input.ready, .fault = fault});
   if (supervisor_.armed() && !armed_before) {  // arming inside the organ pushes nothing
     contact_.reset();
     wanted_ = {};

@@ -18,6 +18,7 @@ struct TickInput {
   hal::Sample sample;
   Fault device_fault = Fault::kNone;
   Commands commands;
+  bool ready = true;                  // lines and device would let a force through
   std::uint32_t skipped_periods = 0;  // between the tick before and this one
 };
 

@@ -1,6 +1,9 @@
 // tactd: the haptic controller.
 #include <fmt/format.h>
 
+#include <fstream>
+
+#include "firmware/device_list.h"
 #include "firmware/replay.h"
 #include "firmware/session.h"
 #include "model/plan_file.h"
@@ -19,6 +22,19 @@ void print_faults() {
   fmt::print("{:>4}  {:18}  {}\n", "no", "name", "cause; cure");
   for (const model::FaultEntry& f : model::fault_table())
     fmt::print("{:>4}  {:18}  {}; {}\n", static_cast<int>(f.fault), f.name, f.cause, f.cure);
+}
+
+int print_devices(const std::string& json_path) {
+  const auto parts = hal::list_devices();
+  if (json_path != "-") fmt::print("{}", firmware::devices_as_text(parts));
+  if (json_path.empty()) return 0;
+  const std::string json = firmware::devices_as_json(parts);
+  if (json_path == "-") {
+    fmt::print("{}", json);
+  } else if (!(std::ofstream(json_path) << json)) {
+    return complain(json_path + ": cannot be written; name a file in a folder of yours", 2);
+  }
+  return 0;
 }
 
 int run_replay(const model::Scene& scene, const std::string& path) {
@@ -77,6 +93,7 @@ int main(int argc, char** argv) {
     print_faults();
     return 0;
   }
+  if (options.list_devices) return print_devices(options.json_path);
   if (options.help_scene) {
     fmt::print("{}", model::scene_reference());
     return 0;

@@ -23,8 +23,12 @@ Parsed parse_options(int argc, char** argv) {
   auto* seconds = app.add_option("--seconds", o.seconds, "stop after this time, s");
   seconds->check(CLI::Range(1e-3, 1e7));
   app.add_option("--ticks", o.ticks, "stop after this many ticks")->excludes(seconds);
-  app.add_option("--json", o.json_path, "write the report to this file when done, - for stdout");
+  app.add_option(
+      "--json", o.json_path,
+      "write the report to this file when done, - for stdout; with --list-devices that list");
   app.add_flag("--check", o.check, "check scene, meshes, law and device, then leave");
+  app.add_flag("--arm", o.arm,
+               "hardware: force as soon as the device is ready, without SIGUSR2 of the operator");
   app.add_flag("--strict", o.strict, "refuse to run where the PC gives no hard real time");
   app.add_option("--core", o.core, "CPU core of the loop (default: an isolated one, or the last)")
       ->check(CLI::Range(0, CPU_SETSIZE - 1));
@@ -40,10 +44,13 @@ Parsed parse_options(int argc, char** argv) {
   app.add_flag("--free-run", o.free_run,
                "simulated time, as fast as the CPU allows; needs --ticks or --seconds");
   app.add_flag("--faults", o.faults, "print every fault with its cause and cure, then leave");
+  app.add_flag("--list-devices", o.list_devices,
+               "print what is plugged in, what it lacks and the cure, then leave");
   app.add_flag("--help-scene", o.help_scene, "print every scene key with its range, then leave");
   try {
     app.parse(argc, argv);
-    if (o.scene_path.empty() && !o.faults && !o.help_scene) throw CLI::RequiredError("SCENE");
+    if (o.scene_path.empty() && !o.faults && !o.help_scene && !o.list_devices)
+      throw CLI::RequiredError("SCENE");
     if (o.free_run && o.seconds == 0.0 && o.ticks == 0)
       throw CLI::ValidationError("--free-run", "needs --ticks or --seconds");
   } catch (const CLI::ParseError& error) {

@@ -16,11 +16,13 @@ struct Options {
   std::string record_path, replay_path;
   std::string socket_path;  // empty: in the runtime directory
   bool check = false;       // load everything, then leave
+  bool arm = false;         // hardware: force as soon as the device is ready
   bool strict = false;      // refuse to run without hard real time
   bool free_run = false;    // simulated time, as fast as the CPU allows
   bool no_telemetry = false;
   bool faults = false;      // print the fault table
   bool help_scene = false;  // print every scene key
+  bool list_devices = false;
   int core = -1;
 };
 

@@ -32,8 +32,7 @@ model::Result<ReplayOutcome> replay(const std::string& path, const model::Scene&
   if (scene.hash != header.scene_hash)
     return model::Error{fmt::format(
         "{}: was recorded with another scene (hash {}, this one has {}); replay it with the scene "
-        "of "
-        "that run, unchanged, and {}",
+        "of that run, unchanged, and {}",
         path, header.scene_hash, scene.hash,
         header.overrides[0] == '\0'
             ? "no --set"

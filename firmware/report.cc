@@ -76,7 +76,12 @@ json make_report(const RunFacts& facts, const LoopStatistics& loop, const Gate& 
            {{"number", static_cast<int>(facts.fault)},
             {"name", fault.name},
             {"cause", fault.cause},
+            {"trouble", facts.trouble},
             {"cure", fault.cure}}},
+          {"stop",  // CLOCK_MONOTONIC; 0: never
+           {{"missed_ns", loop.stop.missed_ns},
+            {"fault_ns", loop.stop.fault_ns},
+            {"zero_ns", loop.stop.zero_ns}}},
           {"dropped_records", facts.dropped_records},
           {"dropped_frames", facts.dropped_frames},
           {"force_hash", fmt::format("{:016x}", facts.force_hash)},
@@ -107,8 +112,8 @@ std::string make_summary(const RunFacts& facts, const LoopStatistics& loop) {
         "scene";
   if (facts.fault != Fault::kNone) {
     const model::FaultEntry& fault = model::describe(facts.fault);
-    out += fmt::format("\n  fault {}: {}: {}; {}", static_cast<int>(facts.fault), fault.name,
-                       fault.cause, fault.cure);
+    out += fmt::format("\n  fault {}: {}: {}{}{}; {}", static_cast<int>(facts.fault), fault.name,
+                       fault.cause, facts.trouble.empty() ? "" : ": ", facts.trouble, fault.cure);
   }
   return out;
 }

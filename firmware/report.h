@@ -33,6 +33,7 @@ struct RunFacts {
   std::uint64_t dropped_records = 0, dropped_frames = 0;
   State state = State::kOff;
   Fault fault = Fault::kNone;
+  std::string trouble;           // what the device says of it
   std::uint64_t force_hash = 0;  // equal for equal runs; 0 when not computed
   long resident_peak_kB = 0;
   std::size_t law_table_bytes = 0;

@@ -32,7 +32,34 @@ void RtLoop::step() RT_SAFE {
   device_.between_ticks(static_cast<double>((1 + skipped) * period_ns) * 1e-9);
 }
 
-void RtLoop::let_go() RT_SAFE { device_.write(Wrench{}); }
+void RtLoop::let_go() RT_SAFE {
+  lines_.write({.healthy = false, .armed = false, .faulted = true});
+  device_.permit(false);
+  device_.write(Wrench{});
+}
+
+// The lines' word counts before the device's.
+Fault RtLoop::sense(std::int64_t now_ns) RT_SAFE {
+  const Fault lines_fault = lines_.read(now_ns);
+  record_.input.sample.fresh = false;
+  const Fault read_fault = device_.read(record_.input.sample, now_ns);
+  for (const Fault fault : {lines_fault, read_fault, write_fault_})
+    if (fault != Fault::kNone) return fault;
+  return Fault::kNone;
+}
+
+// A fault takes the drives' permission before it takes their force. The heartbeat of this tick
+// vouches for the one before it: that one is over, and was in time.
+void RtLoop::push() RT_SAFE {
+  const TickOutput& output = record_.output;
+  const bool stopped = output.state == State::kStopped;
+  const Fault lines_fault = lines_.write({.healthy = !stopped && record_.margin_ns > 0,
+                                          .armed = output.state == State::kArmed,
+                                          .faulted = stopped});
+  device_.permit(lines_.enabled());
+  const Fault device_fault = device_.write(output.written);
+  write_fault_ = lines_fault != Fault::kNone ? lines_fault : device_fault;
+}
 
 bool RtLoop::may_run() const RT_SAFE {
   if (requests_.stop.load(std::memory_order_relaxed)) return false;
@@ -43,6 +70,7 @@ bool RtLoop::may_run() const RT_SAFE {
 
 void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   const std::int64_t wake_ns = clock_.now_ns();
+  lines_.scope(true);
   record_.tick = statistics_.ticks++;
   record_.due_ns = due_ns;
   keep(Phase::kWake, wake_ns - due_ns);
@@ -51,9 +79,8 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   input.commands = {.arm = requests_.arm.load(std::memory_order_relaxed),
                     .stop = requests_.stop.load(std::memory_order_relaxed),
                     .reset = requests_.reset.load(std::memory_order_relaxed)};
-  input.sample.fresh = false;
-  const Fault read_fault = device_.read(input.sample, wake_ns);  // sense
-  input.device_fault = read_fault != Fault::kNone ? read_fault : write_fault_;
+  input.device_fault = sense(wake_ns);  // sense
+  input.ready = lines_.enabled() && device_.ready();
   const std::int64_t read_ns = clock_.now_ns();
   keep(Phase::kRead, read_ns - wake_ns);
 
@@ -69,9 +96,12 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   const std::int64_t judged_ns = clock_.now_ns();
   keep(Phase::kJudge, judged_ns - felt_ns);
 
-  write_fault_ = device_.write(record_.output.written);  // push; judged in the next tick
+  push();  // push
+  lines_.scope(false);
   const std::int64_t written_ns = clock_.now_ns();
   keep(Phase::kWrite, written_ns - judged_ns);
+  stop_watch_.step(input, record_.output, wake_ns, written_ns);
+  statistics_.stop = stop_watch_.times();
 
   statistics_.max_force_N = std::max(statistics_.max_force_N, norm(record_.output.written.force_N));
   record_.late_ticks = statistics_.late_ticks;

@@ -12,6 +12,8 @@
 #include "firmware/clock.h"
 #include "firmware/latency_histogram.h"
 #include "firmware/ring.h"
+#include "firmware/stop_times.h"
+#include "hal/safety_lines.h"
 
 namespace tact::firmware {
 
@@ -28,6 +30,7 @@ struct LoopStatistics {
   std::uint64_t late_ticks = 0;     // ended after their own period
   std::uint64_t skipped_ticks = 0;  // grid points that had no tick
   double max_force_N = 0.0;         // written
+  StopTimes stop;
   std::array<LatencyHistogram, kPhaseCount> phase;
 };
 
@@ -40,10 +43,11 @@ struct LoopSettings {
 
 class RtLoop {
  public:
-  RtLoop(const LoopSettings& settings, hal::Device& device, Controller& controller, Clock& clock,
-         Requests& requests, TickRing& ring)
+  RtLoop(const LoopSettings& settings, hal::Device& device, hal::SafetyLines& lines,
+         Controller& controller, Clock& clock, Requests& requests, TickRing& ring)
       : settings_(settings),
         device_(device),
+        lines_(lines),
         controller_(controller),
         clock_(clock),
         requests_(requests),
@@ -56,16 +60,19 @@ class RtLoop {
   /// Sleeps to the next deadline and does one tick.
   void step() RT_SAFE;
   bool may_run() const RT_SAFE;
-  /// Zero force to the device: the last thing that any loop does.
+  /// Power permission away and zero force to the device: the last thing that any loop does.
   void let_go() RT_SAFE;
   const LoopStatistics& statistics() const { return statistics_; }
 
  private:
   void cycle(std::int64_t due_ns) RT_SAFE;
+  Fault sense(std::int64_t now_ns) RT_SAFE;
+  void push() RT_SAFE;
   void keep(Phase phase, std::int64_t duration_ns) RT_SAFE;
 
   LoopSettings settings_;
   hal::Device& device_;
+  hal::SafetyLines& lines_;
   Controller& controller_;
   Clock& clock_;
   Requests& requests_;
@@ -73,7 +80,8 @@ class RtLoop {
   LoopStatistics statistics_;
   TickRecord record_;
   std::int64_t due_ns_ = 0;
-  Fault write_fault_ = Fault::kNone;
+  Fault write_fault_ = Fault::kNone;  // judged in the next tick
+  StopWatch stop_watch_;
 };
 
 }  // namespace tact::firmware

@@ -131,10 +131,14 @@ void enter_rt_thread(const RtSettings& settings, std::vector<Shortfall>& shortfa
   if (refused != 0)
     shortfalls.push_back(
         {fmt::format("SCHED_FIFO priority {} is refused ({}): other programs can hold up the loop; "
-                     "give the user "
-                     "rtprio {} in /etc/security/limits.d/, or run as root",
+                     "give the user rtprio {} in /etc/security/limits.d/, or run as root",
                      settings.priority, std::strerror(refused), settings.priority + 5)});
   touch_stack();
+}
+
+void leave_rt_thread() {
+  const sched_param ordinary{};
+  pthread_setschedparam(pthread_self(), SCHED_OTHER, &ordinary);
 }
 
 }  // namespace tact::firmware

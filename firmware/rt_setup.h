@@ -36,6 +36,8 @@ class ProcessSetup {
 void use_small_thread_stacks();
 /// Call first in the loop's thread.
 void enter_rt_thread(const RtSettings& settings, std::vector<Shortfall>& shortfalls);
+/// Call last there: a thread that gives its memory back at FIFO priority holds up all others.
+void leave_rt_thread();
 /// Denormals are zero: they cost a hundred times a normal number. Same bits in loop and replay.
 void flush_denormals();
 

@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <csignal>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -16,9 +14,11 @@
 
 #include "firmware/alloc_counter.h"
 #include "firmware/law_check.h"
+#include "firmware/operator_signals.h"
+#include "firmware/operator_view.h"
 #include "firmware/report.h"
-#include "firmware/status_line.h"
 #include "firmware/telemetry_setup.h"
+#include "hal/gpio/gpio_lines.h"
 
 namespace tact::firmware {
 namespace {
@@ -38,18 +38,6 @@ std::vector<Shortfall> probe_rt_thread(const RtSettings& settings) {
   std::vector<Shortfall> shortfalls;
   std::thread([&] { enter_rt_thread(settings, shortfalls); }).join();
   return shortfalls;
-}
-
-sigset_t block_stop_signals() {
-  std::signal(SIGINT, SIG_DFL);  // a shell starts background programs with SIGINT ignored
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  sigaddset(&signals, SIGHUP);  // a closed terminal must not leave a force behind
-  sigaddset(&signals, SIGQUIT);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  return signals;
 }
 
 // Everything of one run, in the order in which it comes to life.
@@ -79,11 +67,12 @@ class Session {
   const model::Scene& scene_;
   const Options& options_;
   RtSettings rt_;
-  sigset_t stop_signals_{};
+  std::optional<OperatorSignals> operator_;
   std::optional<ProcessSetup> process_;
   std::vector<Shortfall> shortfalls_;
   bool non_rt_ = false;
   std::unique_ptr<model::Tissue> tissue_;
+  std::unique_ptr<hal::SafetyLines> lines_;
   hal::OpenDevice device_;  // off when the session ends, whatever ended it
   StiffnessMargin stiffness_;
   std::optional<TimeMargin> time_;
@@ -102,7 +91,7 @@ class Session {
 
 int Session::run() {
   use_small_thread_stacks();
-  stop_signals_ = block_stop_signals();
+  operator_.emplace();
   if (!options_.free_run) {
     process_.emplace(shortfalls_);
     for (Shortfall& s : probe_rt_thread(rt_)) shortfalls_.push_back(std::move(s));
@@ -123,7 +112,7 @@ int Session::run() {
       !std::ofstream(options_.json_path, std::ios::app))
     return fail(options_.json_path + ": cannot be written; name a file in a folder of yours", 2);
   if (const auto error = open_telemetry()) return fail(error->sentence, 2);
-  requests_.arm.store(true);
+  requests_.arm.store(options_.arm || hal::is_simulated(scene_.device));
   if (options_.free_run)
     run_free();
   else
@@ -135,6 +124,13 @@ std::optional<Error> Session::open() {
   auto tissue = model::make_tissue(scene_);
   if (!tissue) return tissue.error();
   tissue_ = std::move(*tissue);
+  if (options_.free_run && !hal::is_simulated(scene_.device))
+    return Error{fmt::format(
+        "{}: --free-run is simulated time, and device.kind \"{}\" is hardware; leave it out",
+        scene_.path, scene_.device.kind)};
+  auto lines = hal::open_safety_lines(scene_.device.lines);
+  if (!lines) return Error{fmt::format("{}: {}", scene_.path, lines.error().sentence)};
+  lines_ = std::move(*lines);
   auto device = hal::open_device(scene_);
   if (!device) return device.error();
   device_ = std::move(*device);
@@ -157,7 +153,7 @@ std::optional<Error> Session::open() {
                              .max_ticks = options_.ticks,
                              .max_periods = asked_periods,
                              .ticks_per_shape = ticks_per_shape()},
-                *device_, *controller_, clock, requests_, *ring_);
+                *device_, *lines_, *controller_, clock, requests_, *ring_);
   return std::nullopt;
 }
 
@@ -187,8 +183,7 @@ void Session::run_free() {
     telemetry_->drain();
     if (loop_->statistics().ticks % (ticks_per_frame + 1) != 0) continue;
     telemetry_->publish();
-    const timespec no_wait{};
-    if (sigtimedwait(&stop_signals_, nullptr, &no_wait) > 0) requests_.stop.store(true);
+    operator_->obey(requests_, {});
   }
   loop_->let_go();
 }
@@ -212,6 +207,8 @@ void Session::in_loop_thread() {
     getrusage(RUSAGE_THREAD, &after);
     costs_.heap_calls = heap.calls();
   }
+  leave_rt_thread();
+  device_->stop();  // at once: drives watch for their host
   costs_.heap_calls_known = can_count_heap_calls();
   costs_.minor_faults = after.ru_minflt - before.ru_minflt;
   costs_.major_faults = after.ru_majflt - before.ru_majflt;
@@ -220,22 +217,19 @@ void Session::in_loop_thread() {
   loop_ended_.store(true);
 }
 
-// The main thread while the loop runs: waits for signals, shows a line on a terminal.
+// The main thread while the loop runs: waits for signals, tells what happens.
 void Session::watch() {
-  const bool terminal = isatty(STDOUT_FILENO) != 0;
-  Frame before = telemetry_->newest_frame();
+  OperatorView view(*device_, *lines_, requests_.arm.load());
   while (!loop_ended_.load()) {
-    if (sigtimedwait(&stop_signals_, nullptr, &kStatusPeriod) > 0) requests_.stop.store(true);
-    if (!terminal) continue;
-    const Frame newest = telemetry_->newest_frame();
-    fmt::print("\r\033[K{}", status_line(newest, before));
-    before = newest;
-    std::fflush(stdout);
+    operator_->obey(requests_, kStatusPeriod);
+    view.show(telemetry_->newest_frame());
   }
-  if (terminal) fmt::print("\n");
+  view.end();
 }
 
 int Session::report() {
+  const std::string trouble = trouble_behind(controller_->newest().fault, *device_, *lines_);
+  lines_->stop();
   device_->stop();
   if (hand_socket_) hand_socket_->stop();
   const std::string log_trouble = telemetry_->stop();
@@ -258,6 +252,7 @@ int Session::report() {
       .dropped_frames = telemetry_->dropped_frames(),
       .state = controller_->newest().state,
       .fault = controller_->newest().fault,
+      .trouble = trouble,
       .force_hash = telemetry_->force_hash(),
       .resident_peak_kB = process.ru_maxrss,
       .law_table_bytes = tissue_->law().memory_bytes()};

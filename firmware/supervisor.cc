@@ -9,22 +9,23 @@ const char* name_of(State state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
-State Supervisor::step(const Commands& commands, bool sample_good, Fault fault) RT_SAFE {
+State Supervisor::step(const Commands& commands, const Findings& found) RT_SAFE {
   const bool reset_edge = commands.reset && !reset_before_;
   reset_before_ = commands.reset;
-  trip(fault);
+  trip(found.fault);
   if (commands.stop) return state_ = State::kStopped;
   switch (state_) {
     case State::kOff:
-      if (sample_good) state_ = State::kReady;
+      if (found.sample_good) state_ = State::kReady;
       break;
     case State::kReady:
-      if (commands.arm && sample_good) state_ = State::kArmed;
+      if (commands.arm && found.sample_good && found.ready) state_ = State::kArmed;
       break;
-    case State::kArmed:
+    case State::kArmed:  // power that comes back must not bring a force with it
+      if (!found.ready) trip(Fault::kPowerLost);
       break;
     case State::kStopped:
-      if (reset_edge && sample_good && !latches(fault) && !commands.arm) {
+      if (reset_edge && found.sample_good && !latches(found.fault) && !commands.arm) {
         state_ = State::kReady;
         fault_ = Fault::kNone;
       }

@@ -1,8 +1,9 @@
 // supervisor.h - who may feel force: Off -> Ready -> Armed -> Stopped, faults latched.
 //
 //     Off      nothing known of the device        -> Ready    a good sample
-//     Ready    device good, force zero            -> Armed    arm request, good sample
-//     Armed    force passes the gate              -> Stopped  stop request or any fault >= 100
+//     Ready    device good, force zero            -> Armed    arm request, good sample, power on
+//     Armed    force passes the gate              -> Stopped  stop request, power lost or any fault
+//                                                             >= 100
 //     Stopped  force zero, fault kept             -> Ready    rising edge of reset, all inputs good
 //
 // Reset never re-arms: arming is a request of its own.
@@ -26,10 +27,17 @@ struct Commands {
   friend bool operator==(const Commands&, const Commands&) = default;
 };
 
+/// What a tick found out before it decides.
+struct Findings {
+  bool sample_good = false;
+  bool ready = true;           // a force would reach the hand
+  Fault fault = Fault::kNone;  // of the lines, the device, its sample, the law or the clock
+};
+
 class Supervisor {
  public:
-  /// One tick: `fault` is what the device and its sample gave, kNone if all is well.
-  State step(const Commands& commands, bool sample_good, Fault fault) RT_SAFE;
+  /// One tick.
+  State step(const Commands& commands, const Findings& found) RT_SAFE;
 
   /// A fault found after step in the same tick: stops at once if it latches.
   void trip(Fault fault) RT_SAFE;

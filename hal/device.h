@@ -1,7 +1,10 @@
 // device.h - one interface for every haptic device, simulated or real.
 //
-// Only frame W leaves a device (types.h). read and write are called once per tick, in this order,
-// from the loop thread; everything else belongs to set-up and shut-down.
+// Only frame W leaves a device (types.h). read, ready, permit and write are called once per tick, in this
+// order, from the loop thread; everything else belongs to set-up and shut-down. What can be found
+// out before the loop is found out while opening, with a sentence; drives are powered by the loop
+// alone, so that none is ever without commands. A fault of the device stays until it is opened
+// again: a bus that comes back by itself moves nothing.
 #pragma once
 
 #include <cstdint>
@@ -50,8 +53,17 @@ class Device {
 
   virtual DeviceInfo info() const = 0;
 
-  /// Newest sample. Fault::kNone, or what is wrong with the device.
+  /// Newest sample; none is fresh until the device knows where it is. Fault::kNone, or what is
+  /// wrong with the device.
   virtual Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE = 0;
+
+  /// May the drives have power in this tick? Safety lines decide; without lines always true.
+  virtual void permit(bool powered) RT_SAFE { (void)powered; }
+
+  /// Would a force of this tick reach the hand? A device whose motors are off may still tell where it
+  /// is, with fresh samples: nothing is armed before this is true, and what is armed stops when it no
+  /// longer is.
+  virtual bool ready() const RT_SAFE { return true; }
 
   /// Hand this wrench to the hardware, on top of its own gravity compensation.
   virtual Fault write(const Wrench& wrench) RT_SAFE = 0;
@@ -59,6 +71,10 @@ class Device {
   /// What happens to a simulated device while the loop sleeps: one or more periods of physics.
   /// Hardware lives by itself and does nothing here. Not part of the tick's measured time.
   virtual void between_ticks(double elapsed_s) RT_SAFE { (void)elapsed_s; }
+
+  /// What lies behind the latched fault, for a person: which part, why, the cure. Empty when there
+  /// is no more to say than the fault's own words. Any thread, at any time.
+  virtual std::string trouble() const { return {}; }
 
   /// Zero force and power off; may block. Safe to call twice, and at any time after opening.
   virtual void stop() = 0;

@@ -4,6 +4,10 @@
 
 #include <utility>
 
+#include "hal/cia402/cia402_delta.h"
+#include "hal/falcon/falcon_device.h"
+#include "hal/force_dimension/force_dimension_device.h"
+#include "hal/odrive/odrive_delta.h"
 #include "hal/sim/sim_delta.h"
 
 namespace tact::hal {
@@ -20,11 +24,23 @@ Opened open_sim_delta(const model::Scene& scene) {
   return OpenDevice(device->release());
 }
 
+/// A device's own function; its sentences get the scene in front.
+template <Result<std::unique_ptr<Device>> (*open)(const model::Scene&)>
+Opened opened(const model::Scene& scene) {
+  auto device = open(scene);
+  if (!device) return Error{fmt::format("{}: {}", scene.path, device.error().sentence)};
+  return OpenDevice(device->release());
+}
+
 struct Kind {
   const char* name;
   Opened (*open)(const model::Scene&);
 };
-constexpr Kind kKinds[] = {{"sim-delta", open_sim_delta}};
+constexpr Kind kKinds[] = {{"sim-delta", open_sim_delta},
+                           {"can-odrive", opened<open_can_odrive>},
+                           {"can-cia402", opened<open_can_cia402>},
+                           {"falcon", opened<open_falcon>},
+                           {"force-dimension", opened<open_force_dimension>}};
 
 }  // namespace
 
@@ -42,6 +58,8 @@ Opened open_device(const model::Scene& scene) {
   return Error{fmt::format("{}: device.kind is \"{}\", which this build does not know; use {}",
                            scene.path, scene.device.kind, known)};
 }
+
+bool is_simulated(const model::DeviceSettings& settings) { return settings.kind == "sim-delta"; }
 
 bool is_simulated(const Device& device) {
   return dynamic_cast<const SimDelta*>(&device) != nullptr;

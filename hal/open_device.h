@@ -20,6 +20,8 @@ using OpenDevice = std::unique_ptr<Device, StopAndDelete>;
 /// Opens what scene.device names. Set-up only; may take as long as the hardware needs.
 model::Result<OpenDevice> open_device(const model::Scene& scene);
 
+/// True for a kind that is no hardware: it may be run on simulated time.
+bool is_simulated(const model::DeviceSettings& settings);
 /// True for a device whose hand is simulated and may be moved by a person.
 bool is_simulated(const Device& device);
 

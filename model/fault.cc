@@ -48,6 +48,39 @@ constexpr std::array kTable{
                "the tissue's law blew up and gives no force that can be trusted",
                "make its step shorter or its springs softer (spring_patch.substeps, integrator), "
                "then start tactd again"},
+    FaultEntry{Fault::kEmergencyStop, "emergency stop", "a channel of the e-stop is open",
+               "make sure that nobody is in danger, release the e-stop, then reset and arm"},
+    FaultEntry{Fault::kLinesDiffer, "lines differ",
+               "the two channels of the e-stop disagreed for more than 50 ms",
+               "a wire, contact or input is broken: mend it before anybody holds the device"},
+    FaultEntry{Fault::kLinesLost, "lines lost", "the GPIO chip of the safety lines does not answer",
+               "check the chip and its driver (gpiodetect), then start tactd again"},
+    FaultEntry{Fault::kDeadManReleased, "dead man released", "the dead-man switch is open",
+               "hold it, then reset and arm"},
+    FaultEntry{Fault::kBusDown, "bus down", "the CAN interface went down or takes no frames",
+               "bring it up (ip link set can0 up type can bitrate 1000000), check cable and "
+               "termination, then start tactd again"},
+    FaultEntry{Fault::kBusOff, "bus off",
+               "the CAN controller is error passive, or has left the bus",
+               "check bit rate, termination and cable; ip link set can0 down, then up; then start "
+               "tactd again"},
+    FaultEntry{Fault::kDriveFault, "drive fault", "a drive reported an error",
+               "the sentence beside it says which and why; mend the cause, then start tactd again"},
+    FaultEntry{Fault::kDriveSilent, "drive silent", "a drive's heartbeat is missing",
+               "check its supply and its cable, then start tactd again"},
+    FaultEntry{Fault::kDeviceUnplugged, "device unplugged", "the USB device is gone",
+               "plug it in again, then start tactd again"},
+    FaultEntry{Fault::kDeviceGarbled, "device garbled",
+               "what the device sends cannot be understood, or repeats old samples",
+               "check cable and hub and keep other traffic off its bus, then start tactd again"},
+    FaultEntry{Fault::kHomingLost, "homing lost", "the device no longer knows where it is",
+               "start tactd again and home it"},
+    FaultEntry{Fault::kForceOff, "force off", "the device itself switched its forces off",
+               "the sentence beside it says why; mend the cause, then start tactd again"},
+    FaultEntry{Fault::kPowerLost, "power lost",
+               "the motors lost their power while armed: the enable line fell, as after a pause of "
+               "the heartbeat, or the device switched them off",
+               "find out why (late ticks, enable line, supply), then reset and arm"},
 };
 
 }  // namespace

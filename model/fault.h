@@ -29,6 +29,19 @@ enum class Fault : std::uint16_t {
   kDeviceFailed = 104,
   kLoopLate = 105,
   kLawBroke = 106,
+  kEmergencyStop = 107,
+  kLinesDiffer = 108,
+  kLinesLost = 109,
+  kDeadManReleased = 110,
+  kBusDown = 111,
+  kBusOff = 112,
+  kDriveFault = 113,
+  kDriveSilent = 114,
+  kDeviceUnplugged = 115,
+  kDeviceGarbled = 116,
+  kHomingLost = 117,
+  kForceOff = 118,
+  kPowerLost = 119,
 };
 
 constexpr bool latches(Fault fault) RT_SAFE { return static_cast<std::uint16_t>(fault) >= 100; }

@@ -96,6 +96,8 @@ Result<Scene> load_scene(const std::string& path, const std::vector<std::string>
   scene.path = path;
   if (!text.compliance_map.file.empty())
     scene.compliance.map_path = absolute_path(path, text.compliance_map.file);
+  std::string& firmware = scene.device.falcon.firmware_path;
+  if (!firmware.empty()) firmware = absolute_path(path, firmware);
   const double tool_reach_m = reach_m(scene.tool.spheres, normalized(text.script.inward));
   scene.hand.path = way_points(text.script, tool_reach_m, scene.limits, visit);
   if (auto problem = visit.problem()) return *problem;
@@ -110,11 +112,10 @@ bool Scene::describes(LawKind kind) const {
 
 std::optional<Error> check_drivable(const Scene& scene) {
   if (scene.law == LawKind::kRhombusPaperLiteral)
-    return Error{
-        fmt::format("{}: law \"rhombus_paper_literal\" must not drive a device, its tangential "
-                    "spring pushes with "
-                    "the wrong sign and can pull the tool in; write law = \"rhombus\"",
-                    scene.path)};
+    return Error{fmt::format(
+        "{}: law \"rhombus_paper_literal\" must not drive a device, its tangential "
+        "spring pushes with the wrong sign and can pull the tool in; write law = \"rhombus\"",
+        scene.path)};
   if (scene.law == LawKind::kHexSheetPaper)
     return Error{fmt::format(
         "{}: law \"hex_sheet_paper\" must not drive a device, its force does not belong to its "

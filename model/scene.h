@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "model/contact.h"
+#include "model/device_settings.h"
 #include "model/hand_path.h"
 #include "model/law_settings.h"
 #include "model/mesh.h"
@@ -23,20 +24,6 @@ struct Limits {
   double ramp_s = 0.0;                   // fade-in after arming
   double workspace_radius_m = 0.0;       // cylinder about the W x axis
   double workspace_half_length_m = 0.0;  // along the W x axis
-};
-
-/// The simulated Delta's imperfections (DEVICES 5.6); its geometry is fixed in hal/sim.
-struct SimDeviceSettings {
-  double counts_per_turn = 0.0;            // of a joint
-  double sample_delay_s = 0.0;             // age of a sample when the loop gets it
-  double joint_friction_Nm = 0.0;          // Coulomb, per joint
-  double joint_damping_Nms_per_rad = 0.0;  // viscous, per joint
-  double observer_bandwidth_Hz = 0.0;      // of the velocity observer
-};
-
-struct DeviceSettings {
-  std::string kind;  // "sim-delta"
-  SimDeviceSettings sim;
 };
 
 struct OrganSettings {

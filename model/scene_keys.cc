@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "model/scene_device.h"
 #include "model/scene_laws.h"
 
 namespace tact::model {
@@ -62,19 +63,6 @@ void visit_contact(Keys& k, ContactParameters& c) {
   }
 }
 
-void visit_sim(Keys& k, SimDeviceSettings& sim) {
-  k.number("counts_per_turn", {100.0, 1e8}, "encoder counts of one turn of a joint",
-           sim.counts_per_turn);
-  k.number("sample_delay_s", {0.0, 0.005}, "age of a sample when the loop gets it",
-           sim.sample_delay_s);
-  k.number("joint_friction_Nm", {0.0, 1.0}, "Coulomb friction of each joint",
-           sim.joint_friction_Nm);
-  k.number("joint_damping_Nms_per_rad", {0.0, 1.0}, "viscous friction of each joint",
-           sim.joint_damping_Nms_per_rad);
-  k.number("observer_bandwidth_Hz", {1.0, 500.0}, "of the velocity observer",
-           sim.observer_bandwidth_Hz);
-}
-
 void visit_hand(Keys& k, SceneText& out) {
   HandSettings& hand = out.scene.hand;
   HandScript& script = out.script;
@@ -132,11 +120,8 @@ void visit_scene(Keys& k, SceneText& out) {
   k.section("tool", "what touches it", [&](Keys& tool) { visit_tool(tool, out); });
   k.section("contact", "between tool and organ",
             [&](Keys& contact) { visit_contact(contact, scene.contact); });
-  k.section("device", "what the hand holds", [&](Keys& device) {
-    device.text("kind", "sim-delta is the simulated device", scene.device.kind);
-    device.section("sim", "imperfections of the simulated device",
-                   [&](Keys& sim) { visit_sim(sim, scene.device.sim); });
-  });
+  k.section("device", "what the hand holds",
+            [&](Keys& device) { visit_device(device, scene.device); });
   k.section("hand", "the simulated hand", [&](Keys& hand) { visit_hand(hand, out); });
   k.section("limits", "what the gate lets through",
             [&](Keys& limits) { visit_limits(limits, scene.limits); });

@@ -40,8 +40,10 @@ void Keys::visit_root(SceneVisit& visit, const Inside& inside) {
   keys.finish();
 }
 
-void Keys::text(std::string_view key, std::string_view meaning, std::string& out) {
-  const toml::node* node = take(key, "text", meaning);
+void Keys::text(std::string_view key, std::string_view meaning, std::string& out, Need need) {
+  const std::string fallback = need == Need::kOptional ? fmt::format("\"{}\"", out) : "";
+  const toml::node* node = take(key, "text", meaning, fallback);
+  if (node && need == Need::kOptional && node->value<std::string>() == "") return out.clear();
   if (node) judge(*node, key, text_problem(*node, out));
 }
 
@@ -65,16 +67,21 @@ void Keys::count(std::string_view key, CountRange range, std::string_view meanin
   if (node) judge(*node, key, count_problem(*node, range, out));
 }
 
-void Keys::vector(std::string_view key, Range each, std::string_view meaning, Vec3& out) {
-  const toml::node* node = take(key, "[x, y, z], each " + range_text(each, key), meaning);
+void Keys::vector(std::string_view key, Range each, std::string_view meaning, Vec3& out,
+                  Need need) {
+  const std::string fallback =
+      need == Need::kOptional ? fmt::format("[{:.5g}, {:.5g}, {:.5g}]", out.x, out.y, out.z) : "";
+  const toml::node* node = take(key, "[x, y, z], each " + range_text(each, key), meaning, fallback);
   if (node) judge(*node, key, vector_problem(*node, each, out));
 }
 
 void Keys::choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning,
-                  std::size_t& out) {
+                  std::size_t& out, Need need) {
   constexpr std::size_t kMostOnALine = 4;
   if (!visit_.document() && choices.size() > kMostOnALine) return describe(key, choices);
-  const toml::node* node = take(key, names_of(choices), meaning);
+  const std::string fallback =
+      need == Need::kOptional ? fmt::format("\"{}\"", choices[out].name) : "";
+  const toml::node* node = take(key, names_of(choices), meaning, fallback);
   if (node) out = match(key, choices, *node).value_or(out);
 }
 

@@ -69,16 +69,18 @@ class Keys {
   /// Visits the whole document, or describes it.
   static void visit_root(SceneVisit& visit, const Inside& inside);
 
-  void text(std::string_view key, std::string_view meaning, std::string& out);
+  void text(std::string_view key, std::string_view meaning, std::string& out,
+            Need need = Need::kRequired);
   void flag(std::string_view key, std::string_view meaning, bool& out, Need need = Need::kRequired);
   void number(std::string_view key, Range range, std::string_view meaning, double& out,
               Need need = Need::kRequired);
   void count(std::string_view key, CountRange range, std::string_view meaning, std::size_t& out,
              Need need = Need::kRequired);
-  void vector(std::string_view key, Range each, std::string_view meaning, Vec3& out);
+  void vector(std::string_view key, Range each, std::string_view meaning, Vec3& out,
+              Need need = Need::kRequired);
   /// `out` becomes the index of the choice. Many choices get a row each in the reference.
   void choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning,
-              std::size_t& out);
+              std::size_t& out, Need need = Need::kRequired);
 
   /// [key]; true when it is there.
   bool section(std::string_view key, std::string_view meaning, const Inside& inside,

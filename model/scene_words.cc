@@ -17,9 +17,14 @@ struct UnitName {
 // Longest first, so that _N_per_m is not read as _m.
 constexpr std::array kUnits{
     UnitName{"_Nms_per_rad", "N m s/rad"},
+    UnitName{"_words_per_Nm", "word/(N m)"},
     UnitName{"_Ns_per_m", "N s/m"},
+    UnitName{"_turns_per_s", "turn/s"},
     UnitName{"_N_per_m", "N/m"},
     UnitName{"_N_per_s", "N/s"},
+    UnitName{"_turns", "turn"},
+    UnitName{"_words", "word"},
+    UnitName{"_kgm2", "kg m^2"},
     UnitName{"_rad", "rad"},
     UnitName{"_Nm", "N m"},
     UnitName{"_kg", "kg"},
@@ -29,6 +34,7 @@ constexpr std::array kUnits{
     UnitName{"_m", "m"},
     UnitName{"_s", "s"},
     UnitName{"_N", "N"},
+    UnitName{"_A", "A"},
 };
 
 const UnitName* find_unit(std::string_view key) {

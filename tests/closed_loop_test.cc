@@ -76,10 +76,11 @@ Summary run(const model::Scene& scene, double seconds) {
                         kHardRealTime);
   SimulatedClock clock;
   Requests requests;
+  hal::NoSafetyLines lines;
   requests.arm.store(true);
   const auto ring = std::make_unique<TickRing>();
   RtLoop loop({.period_ns = std::llround(1e9 / scene.rate_Hz), .ticks_per_shape = 16}, *device,
-              controller, clock, requests, *ring);
+              lines, controller, clock, requests, *ring);
   Summary summary;
   TickRecord record, before;
   const auto ticks = static_cast<int>(seconds * scene.rate_Hz);

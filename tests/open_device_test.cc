@@ -52,7 +52,7 @@ TEST(OpenDevice, AnUnknownKindListsTheKnownOnes) {
   ASSERT_FALSE(device);
   EXPECT_EQ(device.error().sentence,
             "liver.toml: device.kind is \"sim-dleta\", which this build does not know; use "
-            "\"sim-delta\"");
+            "\"sim-delta\", \"can-odrive\", \"can-cia402\", \"falcon\", \"force-dimension\"");
 }
 
 TEST(OpenDevice, PassesOnWhatTheDeviceRefuses) {

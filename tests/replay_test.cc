@@ -31,8 +31,9 @@ class ReplayTest : public testing::Test {
                           /*hard_real_time=*/false);
     SimulatedClock clock;
     Requests requests;
+    hal::NoSafetyLines lines;
     requests.arm.store(true);
-    RtLoop loop({.period_ns = 1'000'000}, *device, controller, clock, requests, *ring);
+    RtLoop loop({.period_ns = 1'000'000}, *device, lines, controller, clock, requests, *ring);
     LogHeader header;
     header.period_ns = 1'000'000;
     header.limits = scene.limits;
@@ -114,7 +115,7 @@ TEST_F(ReplayTest, ALogOfAnotherVersionIsRefusedByItsNumber) {
   file.close();
   const auto outcome = replay(path, scene, *tissue);
   ASSERT_FALSE(outcome);
-  EXPECT_NE(outcome.error().sentence.find("version 2, this tactd reads version 3"),
+  EXPECT_NE(outcome.error().sentence.find("version 2, this tactd reads version 4"),
             std::string::npos)
       << outcome.error().sentence;
 }

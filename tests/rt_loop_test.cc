@@ -2,81 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include <memory>
 #include <vector>
 
-#include "hal/device.h"
-#include "model/tissue.h"
 #include "tests/no_alloc.h"
-#include "tests/test_scene.h"
+#include "tests/puppet_loop.h"
 
 namespace tact::firmware {
 namespace {
 
-// A device on a string: presses the plate as told, and can be slow, silent or broken.
-class PuppetDevice final : public hal::Device {
- public:
-  explicit PuppetDevice(SimulatedClock& clock) : clock_(clock) {}
-
-  hal::DeviceInfo info() const override { return {.name = "puppet", .max_force_N = 20.0}; }
-  Fault read(hal::Sample& sample, std::int64_t now_ns) RT_SAFE override {
-    clock_.pass_ns(slow_ns);
-    slow_ns = 0;
-    if (silent) return Fault::kNone;
-    sample.tool.position_m = {0, 0, height_m};
-    sample.stamp_ns = now_ns;
-    ++sample.sequence;
-    sample.fresh = true;
-    return fault;
-  }
-  Fault write(const Wrench& wrench) RT_SAFE override {
-    last = wrench;
-    ++writes;
-    return write_fault;
-  }
-  void between_ticks(double elapsed) RT_SAFE override { elapsed_s += elapsed; }
-  void stop() override {}
-
-  double height_m = 0.004 - 0.003;
-  std::int64_t slow_ns = 0;
-  bool silent = false;
-  Fault fault = Fault::kNone, write_fault = Fault::kNone;
-  Wrench last;
-  int writes = 0;
-  double elapsed_s = 0.0;
-
- private:
-  SimulatedClock& clock_;
-};
-
-class RtLoopTest : public testing::Test {
- protected:
-  void run_ticks(int n) {
-    for (int i = 0; i < n; ++i) loop.step();
-  }
-  // Comes down from above, as a hand does, so that the contact has no slack.
-  void press() {
-    device.height_m = 0.006;
-    requests.arm.store(true);
-    run_ticks(600);
-    for (; device.height_m > 0.001; device.height_m -= 0.00005) loop.step();
-    run_ticks(10);
-  }
-  TickRecord newest() {
-    TickRecord record, last;
-    while (ring->pop(record)) last = record;
-    return last;
-  }
-
-  model::Scene scene = tests::make_plate_scene();
-  std::unique_ptr<model::Tissue> tissue = std::move(*model::make_tissue(scene));
-  SimulatedClock clock;
-  PuppetDevice device{clock};
-  Controller controller{tissue->contact_scene(), Gate(scene.limits, 0.001, 1.0), kHardRealTime};
-  Requests requests;
-  std::unique_ptr<TickRing> ring = std::make_unique<TickRing>();
-  RtLoop loop{{.period_ns = 1'000'000}, device, controller, clock, requests, *ring};
-};
+using RtLoopTest = PuppetLoop;
 
 TEST_F(RtLoopTest, FeelsThePlateThroughTheGate) {
   press();
@@ -197,15 +131,15 @@ TEST_F(RtLoopTest, LeavesTheHeapAlone) {
 }
 
 TEST_F(RtLoopTest, StopsAfterTheAskedTicks) {
-  RtLoop short_loop({.period_ns = 1'000'000, .max_ticks = 7}, device, controller, clock, requests,
-                    *ring);
+  RtLoop short_loop({.period_ns = 1'000'000, .max_ticks = 7}, device, lines, controller, clock,
+                    requests, *ring);
   short_loop.run();
   EXPECT_EQ(short_loop.statistics().ticks, 7u);
 }
 
 TEST_F(RtLoopTest, SkippedPeriodsCountInTheAskedTime) {
-  RtLoop timed({.period_ns = 1'000'000, .max_periods = 50}, device, controller, clock, requests,
-               *ring);
+  RtLoop timed({.period_ns = 1'000'000, .max_periods = 50}, device, lines, controller, clock,
+               requests, *ring);
   while (timed.may_run()) {
     device.slow_ns = 9'500'000;  // ten periods each, nine of them skipped
     timed.step();

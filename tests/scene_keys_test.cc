@@ -19,6 +19,7 @@ namespace {
 
 const std::string kScenes = TACT_SOURCE_DIR "/model/scenes/";
 const std::string kLiver = kScenes + "liver.toml";
+const std::string kDevices = TACT_SOURCE_DIR "/tools/deploy/devices.toml";
 
 std::vector<ReferenceRow> reference_rows() {
   SceneText text;
@@ -44,8 +45,9 @@ void collect(const toml::table& table, const std::string& path, std::set<std::st
 
 std::set<std::string> keys_of_shipped_scenes() {
   std::set<std::string> keys;
-  for (const char* name : {"liver", "heart", "skin", "gum"}) {
-    const Result<SceneDocument> document = load_scene_document(kScenes + name + ".toml", {});
+  for (const std::string& path :
+       {kLiver, kScenes + "heart.toml", kScenes + "skin.toml", kScenes + "gum.toml", kDevices}) {
+    const Result<SceneDocument> document = load_scene_document(path, {});
     EXPECT_TRUE(document) << document.error().sentence;
     if (document) collect(document->root, "", keys);
   }
@@ -68,16 +70,42 @@ TEST(SceneReference, HasEveryKeyOfTheShippedScenesAndTheyHaveEveryKey) {
   EXPECT_GT(reference.size(), 45u);
 }
 
+TEST(SceneReference, TheSectionsOfRealDevicesHoldTheDefaultsAndFitAScene) {
+  std::ifstream liver(kLiver), devices(kDevices);
+  std::string text{std::istreambuf_iterator<char>(liver), {}};
+  const std::string sections{std::istreambuf_iterator<char>(devices), {}};
+  const std::string path = testing::TempDir() + "on_real_devices.toml";
+  constexpr const char* kMeshes = "\"meshes/";  // named from another folder
+  for (auto at = text.find(kMeshes); at != text.npos; at = text.find(kMeshes, at + kScenes.size()))
+    text.insert(at + 1, kScenes);
+  const auto section = text.find("[device]"), next = text.find("# Soft tissue needs");
+  ASSERT_NE(section, text.npos);
+  ASSERT_NE(next, text.npos);
+  std::ofstream(path) << text.substr(0, section) << sections << text.substr(next);
+  const Result<Scene> scene = load_scene(path, {});
+  ASSERT_TRUE(scene) << scene.error().sentence;
+  const DeviceSettings fresh;
+  EXPECT_EQ(scene->device.kind, "can-odrive");
+  EXPECT_EQ(scene->device.delta.forearm_m, fresh.delta.forearm_m);
+  EXPECT_NEAR(scene->device.delta.azimuth_rad.z, fresh.delta.azimuth_rad.z, 1e-6);
+  EXPECT_EQ(scene->device.can.node, fresh.can.node);
+  EXPECT_EQ(scene->device.can.homing, fresh.can.homing);
+  EXPECT_EQ(scene->device.falcon.gain_words_per_Nm, fresh.falcon.gain_words_per_Nm);
+  EXPECT_EQ(scene->device.force_dimension.watchdog_s, fresh.force_dimension.watchdog_s);
+  EXPECT_FALSE(scene->device.lines.wired());
+}
+
 TEST(SceneReference, SaysOfEveryKeyWhatIsAllowedAndWhatItMeans) {
   for (const ReferenceRow& row : reference_rows()) {
     EXPECT_FALSE(row.allowed.empty()) << row.section << "." << row.key;
     EXPECT_FALSE(row.meaning.empty()) << row.section << "." << row.key;
     if (row.allowed.find(" .. ") == std::string::npos || row.key.empty()) continue;
     // A number without a unit is a ratio, a count, or one of these.
-    const bool named = row.key.ends_with("_ratio") || row.allowed.ends_with("whole") ||
-                       row.key == "growth" || row.key == "inward" || row.key == "counts_per_turn" ||
-                       row.key == "sphere" || row.key == "reference_site" ||
-                       row.key == "relaxation";
+    const bool named =
+        row.key.ends_with("_ratio") || row.allowed.ends_with("whole") || row.key == "growth" ||
+        row.key == "inward" || row.key.starts_with("counts_per_") || row.key == "sphere" ||
+        row.key == "node" || row.key == "direction" || row.key == "id" ||
+        row.section == "device.lines" || row.key == "reference_site" || row.key == "relaxation";
     EXPECT_EQ(unit_of_key(row.key).empty(), named) << row.section << "." << row.key;
   }
 }

@@ -77,7 +77,7 @@ class WholeController {
       : tissue_(std::move(*model::make_tissue(scene_))),
         device_(std::move(*hal::open_device(scene_))),
         controller_(tissue_->contact_scene(), Gate(scene_.limits, 0.001, 1.0), kHardRealTime),
-        loop_({.period_ns = 1'000'000}, *device_, controller_, clock_, requests_, *ring_),
+        loop_({.period_ns = 1'000'000}, *device_, lines_, controller_, clock_, requests_, *ring_),
         telemetry_(*ring_, FrameBuilder(tissue_->law().site_law(), controller_.shapes(), true),
                    60.0, open(path), std::nullopt) {
     requests_.arm.store(true);
@@ -104,6 +104,7 @@ class WholeController {
   model::Scene scene_ = tests::make_plate_scene();
   std::unique_ptr<model::Tissue> tissue_;
   hal::OpenDevice device_;
+  hal::NoSafetyLines lines_;
   Controller controller_;
   SimulatedClock clock_;
   Requests requests_;
@@ -222,11 +223,12 @@ TEST(Telemetry, TheShapeOfAPatchReachesThePageWhole) {
   const auto device = std::move(*hal::open_device(*scene));
   Controller controller(tissue->contact_scene(), Gate(scene->limits, 0.001, 1.0), kHardRealTime);
   SimulatedClock clock;
+  hal::NoSafetyLines lines;
   Requests requests;
   requests.arm.store(true);
   const auto ring = std::make_unique<TickRing>();
-  RtLoop loop({.period_ns = 1'000'000, .ticks_per_shape = 4}, *device, controller, clock, requests,
-              *ring);
+  RtLoop loop({.period_ns = 1'000'000, .ticks_per_shape = 4}, *device, lines, controller, clock,
+              requests, *ring);
   Telemetry telemetry(*ring, FrameBuilder(tissue->law().site_law(), controller.shapes(), false),
                       1000.0, std::nullopt, std::nullopt);
   const Hello hello = make_hello(*scene, *tissue, {.device = device->info(), .hand_socket = ""});

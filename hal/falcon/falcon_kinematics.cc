@@ -8,8 +8,9 @@ namespace {
 
 constexpr double kThighAtZero_rad = 35_deg;
 constexpr double kRadPerCount = 2.0 * std::numbers::pi / 1280.0 * (14.25 / 110.0);
-constexpr int kNewtonSteps = 12;  // from home; 3 are enough after a move of 1 mm
-constexpr int kHalvings = 6;      // the first step from home may overshoot the reach at the far end
+constexpr int kNewtonSteps = 12;      // from home; 3 are enough after a move of 1 mm
+constexpr double kClose_rad = 1e-12;  // 1e-13 m: a further step gains rounding errors only
+constexpr int kHalvings = 6;  // the first step from home may overshoot the reach at the far end
 
 Vec3 difference_rad(const Joints& wanted_rad, const FalconInverse& legs) RT_SAFE {
   return {wanted_rad[0] - legs.thigh_rad[0], wanted_rad[1] - legs.thigh_rad[1],
@@ -74,7 +75,7 @@ FalconForward FalconKinematics::forward(const Joints& thigh_rad,
   FalconInverse legs = inverse(p_m);
   double error_rad = legs.reachable ? norm(difference_rad(thigh_rad, legs)) : 0.0;
   bool moved = legs.reachable;
-  for (int step = 0; step < kNewtonSteps && moved; ++step) {
+  for (int step = 0; step < kNewtonSteps && moved && error_rad > kClose_rad; ++step) {
     moved = false;
     // p <- p + K^-1 (theta - theta(p)), half of it as often as that leaves the reach or gets worse
     Vec3 move_m = model::inverse(joint_rate_matrix(legs)) * difference_rad(thigh_rad, legs);

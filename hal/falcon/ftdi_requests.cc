@@ -38,8 +38,7 @@ const char* ftdi_line_error(std::uint8_t bit) RT_SAFE {
   switch (bit) {
     case kFtdiOverrun:
       return "bytes were lost in the USB adapter: the PC fetched them too late; plug the device "
-             "into a "
-             "port of its own, without a hub, and end other programs";
+             "into a port of its own, without a hub, and end other programs";
     case kFtdiParity:
       return "a byte arrived with wrong parity: the serial line is disturbed or set up wrongly; "
              "unplug the device and plug it in again";

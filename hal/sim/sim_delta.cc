@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hal/delta_at_tool.h"
+#include "hal/saturation.h"
 #include "hal/sim/sim_delta_model.h"
 
 namespace tact::hal {
@@ -31,13 +32,6 @@ constexpr double kGripHalfWidth_m = 0.05;          // the hand holds the handle 
 double counted_rad(double angle_rad, double counts_per_turn) RT_SAFE {
   const double rad_per_count = 2.0 * std::numbers::pi / counts_per_turn;
   return std::floor(angle_rad / rad_per_count + 0.5) * rad_per_count;
-}
-
-/// v, or the vector of this length along it; zero for NaN.
-Vec3 saturated(const Vec3& v, double most) RT_SAFE {
-  const double size = norm(v);
-  if (size <= most) return v;
-  return size < std::numeric_limits<double>::infinity() ? v * (most / size) : Vec3{};
 }
 
 /// The middle and the edges of the workspace cylinder.
@@ -146,7 +140,11 @@ bool SimDelta::measure(const State& state, Tool& tool) RT_SAFE {
 Fault SimDelta::write(const Wrench& wrench) RT_SAFE {
   const Fault broken = faults_.device.load(std::memory_order_relaxed);
   if (broken != Fault::kNone) return broken;
-  if (!powered_) return Fault::kNone;
+  if (!powered_ || !permitted_) {  // motors without power hold nothing
+    motor_Nm_ = {};
+    wrist_Nm_ = {};
+    return Fault::kNone;
+  }
   const bool sound = is_finite(wrench.force_N) && is_finite(wrench.torque_Nm);
   const Wrench limited = sound ? Wrench{saturated(wrench.force_N, sim_delta::kMaxForce_N),
                                         saturated(wrench.torque_Nm, sim_delta::kMaxTorque_Nm)}

@@ -39,6 +39,8 @@ class SimDelta final : public Device {
   DeviceInfo info() const override;
   Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
   Fault write(const Wrench& wrench) RT_SAFE override;
+  void permit(bool powered) RT_SAFE override { permitted_ = powered; }
+  bool ready() const RT_SAFE override { return permitted_; }
   void between_ticks(double elapsed_s) RT_SAFE override;
   void stop() override;
 
@@ -80,7 +82,8 @@ class SimDelta final : public Device {
   DeltaPose measured_;  // of the last sample
   Joints motor_Nm_{};   // held until the next write
   Vec3 wrist_Nm_;
-  bool powered_ = true;
+  bool powered_ = true;    // until stop()
+  bool permitted_ = true;  // by the safety lines, in this tick
   std::uint64_t sequence_ = 0;
   LatestSlot<HandTarget> hand_targets_;
   SimFaults faults_;

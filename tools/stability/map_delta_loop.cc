@@ -138,10 +138,11 @@ ControllerRun run_controller(double stiffness_N_per_m, double rate_Hz,
                                   firmware::kHardRealTime);
   firmware::SimulatedClock clock;
   firmware::Requests requests;
+  hal::NoSafetyLines lines;
   requests.arm.store(true);
   const auto ring = std::make_unique<firmware::TickRing>();
-  firmware::RtLoop loop({.period_ns = std::llround(1e9 / rate_Hz)}, **device, controller, clock,
-                        requests, *ring);
+  firmware::RtLoop loop({.period_ns = std::llround(1e9 / rate_Hz)}, **device, lines, controller,
+                        clock, requests, *ring);
   ControllerRun out;
   firmware::TickRecord record, before;
   Swing first, last;

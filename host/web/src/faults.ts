@@ -90,6 +90,72 @@ export const kFaults: Readonly<Record<number, Fault>> = {
     cause: "the tissue's law blew up and gives no force that can be trusted",
     cure: "make its step shorter or its springs softer (spring_patch.substeps, integrator), then start tactd again",
   },
+  107: {
+    name: "emergency stop",
+    cause: "a channel of the e-stop is open",
+    cure: "make sure that nobody is in danger, release the e-stop, then reset and arm",
+  },
+  108: {
+    name: "lines differ",
+    cause: "the two channels of the e-stop disagreed for more than 50 ms",
+    cure: "a wire, contact or input is broken: mend it before anybody holds the device",
+  },
+  109: {
+    name: "lines lost",
+    cause: "the GPIO chip of the safety lines does not answer",
+    cure: "check the chip and its driver (gpiodetect), then start tactd again",
+  },
+  110: {
+    name: "dead man released",
+    cause: "the dead-man switch is open",
+    cure: "hold it, then reset and arm",
+  },
+  111: {
+    name: "bus down",
+    cause: "the CAN interface went down or takes no frames",
+    cure: "bring it up (ip link set can0 up type can bitrate 1000000), check cable and termination, then start tactd again",
+  },
+  112: {
+    name: "bus off",
+    cause: "the CAN controller is error passive, or has left the bus",
+    cure: "check bit rate, termination and cable; ip link set can0 down, then up; then start tactd again",
+  },
+  113: {
+    name: "drive fault",
+    cause: "a drive reported an error",
+    cure: "the sentence beside it says which and why; mend the cause, then start tactd again",
+  },
+  114: {
+    name: "drive silent",
+    cause: "a drive's heartbeat is missing",
+    cure: "check its supply and its cable, then start tactd again",
+  },
+  115: {
+    name: "device unplugged",
+    cause: "the USB device is gone",
+    cure: "plug it in again, then start tactd again",
+  },
+  116: {
+    name: "device garbled",
+    cause: "what the device sends cannot be understood, or repeats old samples",
+    cure: "check cable and hub and keep other traffic off its bus, then start tactd again",
+  },
+  117: {
+    name: "homing lost",
+    cause: "the device no longer knows where it is",
+    cure: "start tactd again and home it",
+  },
+  118: {
+    name: "force off",
+    cause: "the device itself switched its forces off",
+    cure: "the sentence beside it says why; mend the cause, then start tactd again",
+  },
+  119: {
+    name: "power lost",
+    cause:
+      "the motors lost their power while armed: the enable line fell, as after a pause of the heartbeat, or the device switched them off",
+    cure: "find out why (late ticks, enable line, supply), then reset and arm",
+  },
 };
 
 /** Words for a number; one that this page does not know says so. */

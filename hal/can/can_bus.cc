@@ -1,0 +1,164 @@
+#include "hal/can/can_bus.h"
+
+#include <fmt/core.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace tact::hal {
+namespace {
+
+constexpr std::uint8_t kind_of(CanCause cause) { return static_cast<std::uint8_t>(cause); }
+
+/// Full now, perhaps not in the next tick. Everything else does not mend itself.
+bool is_no_room(int error) RT_SAFE {
+  return error == ENOBUFS || error == EAGAIN || error == EINTR || error == ENOMEM;
+}
+
+/// The sentence of the worst thing that these bits say.
+const char* sentence_of(std::uint32_t bits, std::span<const CanErrorWords> words,
+                        std::uint32_t only) {
+  for (const CanErrorWords& one : words) {
+    if ((bits & only & one.bit) != 0) return one.sentence;
+  }
+  return nullptr;
+}
+
+std::string error_frame_words(std::uint32_t code) {
+  constexpr auto kGone = static_cast<std::uint32_t>(CanErrorClass::kBusOff) |
+                         static_cast<std::uint32_t>(CanErrorClass::kRestarted);
+  constexpr auto kPassive = static_cast<std::uint32_t>(CanControllerState::kRxPassive) |
+                            static_cast<std::uint32_t>(CanControllerState::kTxPassive);
+  const std::uint32_t classes = code & 0xFFFFu, controller = code >> 16;
+  if (const char* words = sentence_of(classes, can_error_class_words(), kGone)) return words;
+  if (const char* words = sentence_of(controller, can_controller_words(), kPassive)) return words;
+  return "The CAN controller left its normal state: check cable, termination and bit rate.";
+}
+
+}  // namespace
+
+std::span<const CanReceived> CanBus::receive() RT_SAFE {
+  const int n = socket_->receive(arrivals_);
+  cut_ = n == static_cast<int>(arrivals_.size());
+  counts_.cut_reads += cut_ ? 1 : 0;
+  if (n < 0) {
+    latch_.set({.fault = Fault::kBusDown,
+                .kind = kind_of(CanCause::kCall),
+                .code = static_cast<std::uint32_t>(-n)});
+    return {};
+  }
+  std::size_t frames = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
+    const CanArrival& arrival = arrivals_[i];
+    if (const auto frame = unpack_can_frame(arrival.bytes)) {
+      received_[frames++] = {.frame = *frame, .age_ns = arrival.age_ns};
+    } else if (const auto error = decode_can_error(arrival.bytes)) {
+      judge(*error);
+    } else {
+      ++counts_.unreadable;
+    }
+  }
+  return std::span(received_).first(frames);
+}
+
+void CanBus::judge(const CanError& error) RT_SAFE {
+  ++counts_.error_frames;
+  classes_seen_ |= error.classes;
+  controller_seen_ = static_cast<std::uint8_t>(controller_seen_ | error.controller);
+  // "Restarted" alone: bus-off was missed, and the drives' state is not known any more.
+  const bool gone =
+      error.action == CanErrorAction::kDisableDrives || error.has(CanErrorClass::kRestarted);
+  if (!gone) return;
+  latch_.set(
+      {.fault = Fault::kBusOff,
+       .kind = kind_of(CanCause::kErrorFrame),
+       .code = (error.classes & 0xFFFFu) | static_cast<std::uint32_t>(error.controller) << 16});
+}
+
+void CanBus::push(const std::optional<CanFrame>& frame) RT_SAFE {
+  const auto bytes = frame ? pack_can_frame(*frame) : std::nullopt;
+  if (!bytes || batched_ == batch_.size()) {
+    batch_whole_ = false;
+    return;
+  }
+  batch_[batched_++] = *bytes;
+}
+
+void CanBus::send() RT_SAFE {
+  const std::size_t wanted = batched_;
+  const bool whole = batch_whole_;
+  batched_ = 0;
+  batch_whole_ = true;
+  if (wanted == 0 && whole) return;
+  const int n = socket_->send(std::span(batch_).first(wanted));
+  if (n < 0 && !is_no_room(-n)) {
+    latch_.set({.fault = Fault::kBusDown,
+                .kind = kind_of(CanCause::kCall),
+                .code = static_cast<std::uint32_t>(-n)});
+  }
+  if (whole && n == static_cast<int>(wanted)) {
+    missed_in_a_row_ = 0;
+    return;
+  }
+  miss();
+}
+
+void CanBus::miss() RT_SAFE {
+  ++counts_.missed_cycles;
+  if (++missed_in_a_row_ < kMostMissedInARow) return;
+  latch_.set({.fault = Fault::kBusDown, .kind = kind_of(CanCause::kNoRoom)});
+}
+
+std::string can_bus_trouble(const FaultCause& cause, const std::string& interface) {
+  switch (static_cast<CanCause>(cause.kind)) {
+    case CanCause::kCall:
+      return fmt::format(
+          "{}: {}; is the adapter plugged in and the interface up? ip link set {} up type can "
+          "bitrate 1000000",
+          interface, std::strerror(static_cast<int>(cause.code)), interface);
+    case CanCause::kNoRoom:
+      return fmt::format(
+          "{} took no frames for {} ticks: nobody acknowledges, or its queue is too short; are the "
+          "drives powered? ip link set {} txqueuelen 100",
+          interface, CanBus::kMostMissedInARow, interface);
+    case CanCause::kErrorFrame:
+      return fmt::format("{}: {}", interface, error_frame_words(cause.code));
+    case CanCause::kFirstOwn:
+      break;
+  }
+  return {};
+}
+
+std::string silent_bus_trouble(const CanBus& bus, const std::string& interface) {
+  const auto classes = [&bus](CanErrorClass one) {
+    return (bus.error_classes_seen() & static_cast<std::uint32_t>(one)) != 0;
+  };
+  const auto controller = [&bus](CanControllerState one) {
+    return (bus.controller_seen() & static_cast<std::uint8_t>(one)) != 0;
+  };
+  const bool disturbed = classes(CanErrorClass::kBusOff) || classes(CanErrorClass::kProtocol) ||
+                         classes(CanErrorClass::kBusError) ||
+                         controller(CanControllerState::kRxPassive);
+  const bool unheard = classes(CanErrorClass::kNoAck) ||
+                       controller(CanControllerState::kTxPassive) ||
+                       bus.cause().kind == kind_of(CanCause::kNoRoom);
+  if (unheard && !classes(CanErrorClass::kBusOff)) {
+    return fmt::format(
+        "nobody on {} acknowledges a frame: switch the drives on and connect them; if they are on, "
+        "give {} their bit rate",
+        interface, interface);
+  }
+  if (disturbed) {
+    return fmt::format(
+        "{0} understands nothing of what is on the bus: give it the drives' bit rate (sudo ip link "
+        "set {0} down; sudo ip link set {0} up type can bitrate 1000000) and check both 120 ohm "
+        "terminators",
+        interface);
+  }
+  if (bus.fault() != Fault::kNone) return can_bus_trouble(bus.cause(), interface);
+  return fmt::format(
+      "no drive is heard on {}: are they on, at its bit rate and at the nodes of device.can.node?",
+      interface);
+}
+
+}  // namespace tact::hal

@@ -1,0 +1,96 @@
+// can_bus.h - one CAN bus in a tick: everything that came in, one batch out, and how the bus is.
+//
+//     receive()  once per tick: one system call, at most 64 frames; error frames are judged here
+//     push()     frames of this tick, in order of importance;   send()  one system call for all
+//
+// A batch that the kernel does not take whole (ENOBUFS, EAGAIN) is a missed cycle: counted, never
+// repeated, for the force in it is old by then; twenty in a row are a bus that takes no frames.
+// Error passive, bus-off and a controller that came back by itself latch kBusOff, an interface that
+// goes away kBusDown, until the bus is opened again.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "hal/can/can_error.h"
+#include "hal/can/can_frame.h"
+#include "hal/can/can_socket.h"
+#include "hal/can/fault_latch.h"
+
+namespace tact::hal {
+
+using model::Fault;
+
+struct CanReceived {
+  CanFrame frame;
+  std::int64_t age_ns = 0;
+};
+
+struct CanBusCounts {
+  std::uint64_t missed_cycles = 0;  // batches that were not sent whole
+  std::uint64_t error_frames = 0;
+  std::uint64_t unreadable = 0;  // neither data nor error frame of ours
+  std::uint64_t cut_reads = 0;   // the kernel may have had more than one call takes
+};
+
+/// Kinds of FaultCause that a bus has; a device's own begin at kFirstOwn.
+enum class CanCause : std::uint8_t {
+  kCall = 1,        // code: errno
+  kNoRoom = 2,      // twenty batches in a row
+  kErrorFrame = 3,  // code: classes, controller state << 16
+  kFirstOwn = 16,
+};
+
+class CanBus {
+ public:
+  static constexpr int kMostMissedInARow = 20;
+
+  explicit CanBus(std::unique_ptr<CanSocket> socket) : socket_(std::move(socket)) {}
+
+  /// Data frames and requests since the last call, oldest first; valid until the next call.
+  std::span<const CanReceived> receive() RT_SAFE;
+  /// The last receive() was full: newer frames may still wait.
+  bool cut() const RT_SAFE { return cut_; }
+
+  /// For the batch of this tick; what cannot be a frame, or is more than 16, is a missed cycle.
+  void push(const std::optional<CanFrame>& frame) RT_SAFE;
+  void send() RT_SAFE;
+
+  Fault fault() const RT_SAFE { return latch_.fault(); }
+  FaultCause cause() const RT_SAFE { return latch_.cause(); }
+  const CanBusCounts& counts() const RT_SAFE { return counts_; }
+  /// All error classes and controller states of error frames so far: why nobody answers at start.
+  std::uint32_t error_classes_seen() const RT_SAFE { return classes_seen_; }
+  std::uint8_t controller_seen() const RT_SAFE { return controller_seen_; }
+  CanSocket& socket() { return *socket_; }
+
+ private:
+  void judge(const CanError& error) RT_SAFE;
+  void miss() RT_SAFE;
+
+  std::unique_ptr<CanSocket> socket_;
+  std::array<CanArrival, CanSocket::kMostReceived> arrivals_{};
+  std::array<CanReceived, CanSocket::kMostReceived> received_{};
+  std::array<CanFrameBytes, CanSocket::kMostSent> batch_{};
+  std::size_t batched_ = 0;
+  bool batch_whole_ = true;
+  bool cut_ = false;
+  int missed_in_a_row_ = 0;
+  std::uint32_t classes_seen_ = 0;
+  std::uint8_t controller_seen_ = 0;
+  CanBusCounts counts_;
+  FaultLatch latch_;
+};
+
+/// What a cause of the bus means, with the cure; empty for causes that are not the bus's.
+std::string can_bus_trouble(const FaultCause& cause, const std::string& interface);
+
+/// Set-up: why nobody was heard at all, as far as the bus itself says.
+std::string silent_bus_trouble(const CanBus& bus, const std::string& interface);
+
+}  // namespace tact::hal

@@ -1,0 +1,184 @@
+#include "hal/can/can_delta.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "hal/delta_at_tool.h"
+#include "hal/saturation.h"
+#include "model/units.h"
+
+namespace tact::hal {
+namespace {
+
+using model::operator""_deg;
+
+constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+constexpr double kStopSlack_rad = 2_deg;  // stops give, encoders are not exact
+constexpr double kJump_m = 5e-3;          // between two samples: a new start of the velocity
+constexpr std::int64_t kLongGap_ns = 20'000'000;
+constexpr Vec3 kGravity_W_mps2{0.0, 0.0, -9.81};
+
+Joints joints_of(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+/// The middle and the edges of the workspace cylinder.
+std::vector<Vec3> corners_D(const CanDelta& delta, const model::DeltaSettings& settings) {
+  std::vector<Vec3> corners{delta.point_D({})};
+  const double half_m = settings.workspace_half_length_m, radius_m = settings.workspace_radius_m;
+  for (const double x_m : {-half_m, half_m}) {
+    corners.push_back(delta.point_D({x_m, 0.0, 0.0}));
+    for (int i = 0; i < 12; ++i) {
+      const double angle_rad = i * std::numbers::pi / 6.0;
+      corners.push_back(
+          delta.point_D({x_m, radius_m * std::cos(angle_rad), radius_m * std::sin(angle_rad)}));
+    }
+  }
+  return corners;
+}
+
+double in_deg(double angle_rad) { return angle_rad * 360.0 / kTurn_rad; }
+
+}  // namespace
+
+DeltaGeometry delta_geometry(const model::DeltaSettings& delta) {
+  return {.base_radius_m = delta.base_radius_m,
+          .platform_radius_m = delta.platform_radius_m,
+          .upper_arm_m = delta.upper_arm_m,
+          .forearm_m = delta.forearm_m,
+          .azimuth_rad = joints_of(delta.azimuth_rad),
+          .theta_min_rad = delta.theta_min_rad,
+          .theta_max_rad = delta.theta_max_rad};
+}
+
+DeltaMasses delta_masses(const model::DeltaSettings& delta) {
+  return {.arm_kg = delta.arm_kg,
+          .arm_com_m = delta.arm_com_m,
+          .arm_inertia_kgm2 = delta.arm_inertia_kgm2,
+          .rotor_inertia_kgm2 = delta.rotor_inertia_kgm2,
+          .gear_ratio = delta.gear_ratio,
+          .forearm_kg = delta.forearm_kg,
+          .platform_kg = delta.platform_kg};
+}
+
+CanDelta::CanDelta(const model::DeltaSettings& delta, const model::CanSettings& can)
+    : settings_(delta),
+      masses_(delta_masses(delta)),
+      delta_(delta_geometry(delta)),
+      direction_(joints_of(can.direction)),
+      zero_turns_(joints_of(can.zero_turns)),
+      home_rad_(joints_of(can.home_rad)),
+      velocity_(delta.observer_bandwidth_Hz, kJump_m) {}
+
+void CanDelta::home_on_jig(const Joints& motor_turns) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    // zero = turns - direction gear theta_home / 2 pi
+    zero_turns_[i] =
+        motor_turns[i] - direction_[i] * settings_.gear_ratio * home_rad_[i] / kTurn_rad;
+  }
+}
+
+Joints CanDelta::theta_rad(const Joints& motor_turns) const RT_SAFE {
+  Joints theta_rad{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    theta_rad[i] =
+        kTurn_rad * direction_[i] * (motor_turns[i] - zero_turns_[i]) / settings_.gear_ratio;
+  }
+  return theta_rad;
+}
+
+std::optional<FaultCause> CanDelta::doubt(const Joints& theta_rad,
+                                          const DeltaForward& pose) const RT_SAFE {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const bool inside = theta_rad[i] >= settings_.theta_min_rad - kStopSlack_rad &&
+                        theta_rad[i] <= settings_.theta_max_rad + kStopSlack_rad;
+    if (inside) continue;
+    const double mrad = std::abs(theta_rad[i]) < 1e6 ? 1000.0 * theta_rad[i] : 1e9;
+    return FaultCause{.fault = Fault::kHomingLost,
+                      .axis = static_cast<std::uint8_t>(i),
+                      .kind = static_cast<std::uint8_t>(HomingCause::kBeyondStop),
+                      .code = static_cast<std::uint32_t>(static_cast<std::int32_t>(mrad))};
+  }
+  if (pose.solved) return std::nullopt;
+  return FaultCause{.fault = Fault::kHomingLost,
+                    .kind = static_cast<std::uint8_t>(HomingCause::kRodsApart)};
+}
+
+std::optional<model::Error> CanDelta::check_home(const Joints& motor_turns) const {
+  const Joints theta = theta_rad(motor_turns);
+  const auto cause = doubt(theta, delta_.forward(theta));
+  if (!cause) return std::nullopt;
+  return model::Error{"the delta is not homed: " + homing_trouble(*cause, settings_)};
+}
+
+std::optional<FaultCause> CanDelta::measure(const Joints& motor_turns, std::int64_t stamp_ns,
+                                            Tool& tool) RT_SAFE {
+  const Joints theta = theta_rad(motor_turns);
+  const DeltaForward forward = delta_.forward(theta);
+  if (const auto cause = doubt(theta, forward)) return cause;
+  pose_ = delta_.pose(forward.far_m, theta);
+  if (!has_pose_ || stamp_ns - stamp_ns_ > kLongGap_ns) velocity_.reset();
+  const double elapsed_s = 1e-9 * static_cast<double>(stamp_ns - stamp_ns_);
+  stamp_ns_ = stamp_ns;
+  has_pose_ = true;
+  tool = Tool{};
+  tool.position_m = point_W(forward.far_m);
+  tool.velocity_mps = velocity_.step(tool.position_m, elapsed_s);
+  return std::nullopt;
+}
+
+Joints CanDelta::motor_torques_Nm(const Vec3& force_N, double ratio) const RT_SAFE {
+  Joints torque_Nm{};
+  if (!has_pose_) return torque_Nm;
+  const Vec3 force = is_finite(force_N) ? saturated(force_N, settings_.max_force_N) : Vec3{};
+  // tau = tau_g + s J^T F, one s for all joints
+  torque_Nm = gravity_torques_Nm(delta_.geometry(), masses_, pose_, direction_D(kGravity_W_mps2));
+  const Joints wanted_Nm = joint_torques_Nm(pose_, direction_D(force));
+  const double within = saturation_ratio(torque_Nm, wanted_Nm, settings_.max_joint_torque_Nm);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double most_Nm = settings_.max_joint_torque_Nm;  // gravity alone may be above it
+    const double joint_Nm = std::clamp(torque_Nm[i] + within * wanted_Nm[i], -most_Nm, most_Nm);
+    torque_Nm[i] = ratio * direction_[i] * joint_Nm / settings_.gear_ratio;
+  }
+  return torque_Nm;
+}
+
+DeviceInfo CanDelta::info(std::string name, double counts_per_turn, double delay_s) const {
+  return {.name = std::move(name),
+          .max_force_N = settings_.max_force_N,
+          .max_torque_Nm = 0.0,
+          .workspace_radius_m = settings_.workspace_radius_m,
+          .workspace_half_length_m = settings_.workspace_half_length_m,
+          .at_tool = delta_at_tool(delta_,
+                                   {.viscous_Nms_per_rad = settings_.joint_damping_Nms_per_rad,
+                                    .coulomb_Nm = settings_.joint_friction_Nm,
+                                    .counts_per_turn = counts_per_turn,
+                                    .delay_s = delay_s},
+                                   corners_D(*this, settings_)),
+          .damping_key = "device.delta.joint_damping_Nms_per_rad"};
+}
+
+std::string can_arm_name(std::size_t axis, const model::CanSettings& can) {
+  return fmt::format("arm {} (node {} on {})", axis + 1, can.node[axis], can.interface);
+}
+
+std::string homing_trouble(const FaultCause& cause, const model::DeltaSettings& delta) {
+  switch (static_cast<HomingCause>(cause.kind)) {
+    case HomingCause::kBeyondStop:
+      return fmt::format(
+          "arm {} would be at {:.0f} degrees, beyond its stops of {:.0f} and {:.0f}: put the arms "
+          "on the jig and start tactd again, or correct zero_turns, direction or home_rad in "
+          "device.can",
+          cause.axis + 1, in_deg(1e-3 * static_cast<std::int32_t>(cause.code)),
+          in_deg(delta.theta_min_rad), in_deg(delta.theta_max_rad));
+    case HomingCause::kRodsApart:
+      return "no platform can lie where the three arms would be: put the arms on the jig and start "
+             "tactd again, or correct device.can and device.delta";
+  }
+  return {};
+}
+
+}  // namespace tact::hal

@@ -1,0 +1,85 @@
+// can_delta.h - a delta of one's own between turns of three motors and the tool in W.
+//
+//     theta_i = 2 pi direction_i (turns_i - zero_i) / gear        rad, from the motor's turns
+//     tau_i   = direction_i (tau_g,i + s (J^T F)_i) / gear        N m, at the motor
+//
+//     W x = D z - middle,   W y = -D y,   W z = D x               the delta lies on its side
+//
+// tau_g holds the arms at the pose that was measured last; s is one for a force within the limits
+// of force and joint torque and shrinks all of F alike beyond them, so its direction stays. Shared
+// by all drives on CAN. Angles beyond the joint stops, or rods that cannot meet, say that the zero
+// is wrong: a homing that is lost.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "hal/can/fault_latch.h"
+#include "hal/delta_dynamics.h"
+#include "hal/delta_kinematics.h"
+#include "hal/device.h"
+#include "hal/velocity_observer.h"
+#include "model/device_settings.h"
+#include "model/result.h"
+
+namespace tact::hal {
+
+DeltaGeometry delta_geometry(const model::DeltaSettings& delta);
+DeltaMasses delta_masses(const model::DeltaSettings& delta);
+
+/// Kinds of FaultCause of a lost homing.
+enum class HomingCause : std::uint8_t {
+  kBeyondStop = 8,  // code: the arm's angle, mrad, two's complement
+  kRodsApart = 9,
+};
+
+class CanDelta {
+ public:
+  CanDelta(const model::DeltaSettings& delta, const model::CanSettings& can);
+
+  /// Set-up: the arms rest at home_rad now, so zero is where that says.
+  void home_on_jig(const Joints& motor_turns);
+  /// Set-up: why these turns cannot be right, if so.
+  std::optional<model::Error> check_home(const Joints& motor_turns) const;
+
+  Joints theta_rad(const Joints& motor_turns) const RT_SAFE;
+  /// Tool pose and velocity of a sample taken at stamp_ns. A cause: the homing is lost, and the
+  /// tool is untouched.
+  std::optional<FaultCause> measure(const Joints& motor_turns, std::int64_t stamp_ns,
+                                    Tool& tool) RT_SAFE;
+  /// At the motors, for a force at the tool in W, gravity of the last pose included, all times
+  /// `ratio`. Zero before the first pose; gravity alone for a force that is not finite.
+  Joints motor_torques_Nm(const Vec3& force_N, double ratio = 1.0) const RT_SAFE;
+
+  /// `delay_s`: from position to force, beyond one hold; `counts_per_turn` of an arm.
+  DeviceInfo info(std::string name, double counts_per_turn, double delay_s) const;
+
+  Vec3 direction_W(const Vec3& v_D) const RT_SAFE { return {v_D.z, -v_D.y, v_D.x}; }
+  Vec3 direction_D(const Vec3& v_W) const RT_SAFE { return {v_W.z, -v_W.y, v_W.x}; }
+  Vec3 point_W(const Vec3& p_D) const RT_SAFE {
+    return direction_W(p_D - Vec3{0.0, 0.0, settings_.middle_m});
+  }
+  Vec3 point_D(const Vec3& p_W) const RT_SAFE {
+    return direction_D(p_W) + Vec3{0.0, 0.0, settings_.middle_m};
+  }
+
+ private:
+  std::optional<FaultCause> doubt(const Joints& theta_rad, const DeltaForward& pose) const RT_SAFE;
+
+  model::DeltaSettings settings_;
+  DeltaMasses masses_;
+  DeltaKinematics delta_;
+  Joints direction_{}, zero_turns_{}, home_rad_{};
+  VelocityObserver velocity_;
+  DeltaPose pose_;
+  bool has_pose_ = false;
+  std::int64_t stamp_ns_ = 0;
+};
+
+/// "arm 2 (node 2 on can0)".
+std::string can_arm_name(std::size_t axis, const model::CanSettings& can);
+
+/// What a cause of a lost homing means, with the cure; empty for other causes.
+std::string homing_trouble(const FaultCause& cause, const model::DeltaSettings& delta);
+
+}  // namespace tact::hal

@@ -1,0 +1,63 @@
+// can_link.h - is this CAN interface fit for a force? Asked once, before the loop.
+//
+// The kernel's answer to RTM_GETLINK (rtnetlink(7), linux/if_link.h, linux/can/netlink.h):
+//
+//     nlmsghdr 16 bytes, ifinfomsg 16 bytes (type u16 at 2, index i32 at 4, flags u32 at 8), then
+//     attributes: length u16, type u16, value, padded to 4:  LINKINFO 18 { KIND 1, DATA 2 {
+//     BITTIMING 1 { bit rate u32, .. }, STATE 4 u32, RESTART_MS 6 u32 } }
+//
+// A virtual bus (vcan, vxcan) has no DATA: no bit rate, no state, and nothing to refuse. The
+// interface is configured from outside; nothing here changes it. Set-up code only.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "hal/can/can_socket.h"
+#include "model/result.h"
+
+namespace tact::hal {
+
+/// Of the controller, in the kernel's order.
+enum class CanLinkState : std::uint32_t {
+  kActive,
+  kWarning,
+  kPassive,
+  kBusOff,
+  kStopped,
+  kSleeping,
+};
+
+struct CanLink {
+  int index = 0;
+  bool is_can = false;
+  bool up = false;
+  bool only_local = false;               // vcan: a bus that ends in this kernel's loopback
+  std::optional<std::uint32_t> bitrate;  // bit/s
+  std::optional<CanLinkState> state;
+  std::optional<std::uint32_t> restart_ms;
+};
+
+/// Of one netlink message; nothing if it is no link or is cut short.
+std::optional<CanLink> decode_can_link(std::span<const std::uint8_t> message);
+
+/// Why it must not be used, if so. `cycle_bits`: of all frames of a tick, at worst stuffing.
+std::optional<model::Error> check_can_link(const CanLink& link, const std::string& name,
+                                           int cycle_bits, double rate_Hz);
+
+/// Asks the kernel. An error: no such interface, or the kernel's own words.
+model::Result<CanLink> read_can_link(const std::string& name);
+
+/// A raw socket for data frames of exactly these identifiers, and for error frames.
+model::Result<std::unique_ptr<CanSocket>> open_can_socket(const std::string& name, int index,
+                                                          std::span<const std::uint32_t> ids);
+
+/// All of the above, in this order.
+model::Result<std::unique_ptr<CanSocket>> open_checked_can(const std::string& name, int cycle_bits,
+                                                           double rate_Hz,
+                                                           std::span<const std::uint32_t> ids);
+
+}  // namespace tact::hal

@@ -1,0 +1,67 @@
+// can_socket.h - the kernel's side of a CAN bus: many frames in one call each way, none ever waits.
+//
+// Any socket whose datagrams are the 16 bytes of `struct can_frame` (can_frame.h): SocketCAN's raw
+// sockets, and a socketpair for tests. Buffers belong to the object and are set up once. The age of
+// a frame is the time since the kernel stamped it (SO_TIMESTAMPNS), as a difference of the same
+// clock, so the clocks of kernel and loop never mix; a step of the wall clock can make a frame look
+// old for one tick, which counts as a missing one. Without a stamp the age is 0.
+#pragma once
+
+#include <sys/socket.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <ctime>
+#include <span>
+
+#include "hal/can/can_frame.h"
+
+namespace tact::hal {
+
+struct CanArrival {
+  CanFrameBytes bytes{};
+  std::int64_t age_ns = 0;
+};
+
+class CanSocket {
+ public:
+  static constexpr std::size_t kMostReceived = 64, kMostSent = 16;  // in one call
+
+  /// Takes the file over and asks it for time stamps.
+  explicit CanSocket(int fd);
+  CanSocket(const CanSocket&) = delete;
+  CanSocket& operator=(const CanSocket&) = delete;
+  virtual ~CanSocket();
+
+  /// recvmmsg: how many frames, oldest first; 0 for none; -errno. Datagrams of another length come
+  /// as zeroes, which are no frame of ours.
+  virtual int receive(std::span<CanArrival> out) RT_SAFE;
+  /// sendmmsg: how many frames the kernel took; -errno if none.
+  virtual int send(std::span<const CanFrameBytes> frames) RT_SAFE;
+
+  /// Set-up only: until a frame is there, or this long.
+  virtual void wait(int timeout_ms);
+  /// Set-up only: CLOCK_MONOTONIC.
+  virtual std::int64_t now_ns();
+
+ protected:
+  int fd() const RT_SAFE { return fd_; }
+
+ private:
+  std::int64_t age_ns(const msghdr& message, const timespec& now) const RT_SAFE;
+
+  struct alignas(alignof(cmsghdr)) Control {
+    std::array<std::uint8_t, 64> bytes;
+  };
+  int fd_;
+  std::array<mmsghdr, kMostReceived> in_{};
+  std::array<iovec, kMostReceived> in_place_{};
+  std::array<CanFrameBytes, kMostReceived> in_bytes_{};
+  std::array<Control, kMostReceived> in_control_{};
+  std::array<mmsghdr, kMostSent> out_{};
+  std::array<iovec, kMostSent> out_place_{};
+  std::array<CanFrameBytes, kMostSent> out_bytes_{};
+};
+
+}  // namespace tact::hal

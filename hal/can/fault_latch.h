@@ -1,0 +1,54 @@
+// fault_latch.h - the first fault of a device stays, with its cause, for the loop and for words.
+//
+// The loop's thread sets it; any thread may read it. One 64-bit word holds it all, so a reader
+// never sees half of it: fault 16 bits, axis 8, kind of cause 8, code 32.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "model/fault.h"
+
+namespace tact::hal {
+
+struct FaultCause {
+  model::Fault fault = model::Fault::kNone;
+  std::uint8_t axis = 0;   // 0, 1, 2
+  std::uint8_t kind = 0;   // of the device's own list
+  std::uint32_t code = 0;  // means what the kind says
+};
+
+class FaultLatch {
+ public:
+  model::Fault fault() const RT_SAFE { return cause().fault; }
+
+  /// Keeps the first one.
+  void set(const FaultCause& cause) RT_SAFE {
+    if (fault() == model::Fault::kNone) word_.store(packed(cause), std::memory_order_relaxed);
+  }
+  /// The same fault, better known: a code often comes a frame later than the state.
+  void explain(const FaultCause& cause) RT_SAFE {
+    const FaultCause old = this->cause();
+    if (old.fault == cause.fault && old.axis == cause.axis) {
+      word_.store(packed(cause), std::memory_order_relaxed);
+    }
+  }
+  FaultCause cause() const RT_SAFE {
+    const std::uint64_t word = word_.load(std::memory_order_relaxed);
+    return {.fault = static_cast<model::Fault>(word >> 48),
+            .axis = static_cast<std::uint8_t>(word >> 40),
+            .kind = static_cast<std::uint8_t>(word >> 32),
+            .code = static_cast<std::uint32_t>(word)};
+  }
+
+ private:
+  static constexpr std::uint64_t packed(const FaultCause& cause) RT_SAFE {
+    return static_cast<std::uint64_t>(cause.fault) << 48 |
+           static_cast<std::uint64_t>(cause.axis) << 40 |
+           static_cast<std::uint64_t>(cause.kind) << 32 | cause.code;
+  }
+  static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
+  std::atomic<std::uint64_t> word_{0};
+};
+
+}  // namespace tact::hal

@@ -1,0 +1,253 @@
+#include "hal/cia402/cia402_bring_up.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hal/can/can_delta.h"
+#include "hal/cia402/canopen_words.h"
+#include "hal/cia402/cia402_state.h"
+#include "hal/cia402/sdo_client.h"
+
+namespace tact::hal {
+namespace {
+
+using model::Error;
+using model::Result;
+
+constexpr int kSettle_ms = 1000, kRest_ms = 100, kOperational_ms = 500;
+constexpr double kRest_turns = 0.02;  // of a motor between two looks
+constexpr std::uint32_t kProfile402 = 402, kTorqueMode = 1u << 9;
+
+class BringUp {
+ public:
+  BringUp(CanBus& bus, const model::CanSettings& can, double rate_Hz)
+      : bus_(bus),
+        can_(can),
+        rate_Hz_(rate_Hz),
+        sdo_(bus, [this](const CanFrame& frame) { take(frame); }) {}
+
+  Result<Cia402Start> run() {
+    Cia402Start start;
+    if (auto error = find_all()) return *error;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (const auto step : {&BringUp::identify, &BringUp::configure, &BringUp::make_calm}) {
+        if (auto error = (this->*step)(i)) return *error;
+      }
+      if (auto error = learn(i, start)) return *error;
+    }
+    if (auto error = rest(start)) return *error;
+    if (auto error = start_all()) return *error;
+    return start;
+  }
+
+ private:
+  Error wrong(std::size_t i, const std::string& words) const {
+    if (bus_.fault() != Fault::kNone) return Error{can_bus_trouble(bus_.cause(), can_.interface)};
+    return Error{fmt::format("{} {}", can_arm_name(i, can_), words)};
+  }
+
+  std::optional<Error> get(std::size_t i, std::uint16_t index, std::uint8_t sub,
+                           std::uint32_t& value) {
+    SdoFailure failure;
+    const auto got = sdo_.read(can_.node[i], index, sub, failure);
+    if (!got) return wrong(i, sdo_failure_words(failure, index, sub));
+    value = *got;
+    return std::nullopt;
+  }
+  std::optional<Error> set(std::size_t i, const SdoWrite& what) {
+    const auto failure = sdo_.write(can_.node[i], what);
+    if (failure) return wrong(i, sdo_failure_words(*failure, what.index, what.sub));
+    return std::nullopt;
+  }
+
+  std::optional<Error> find_all() {
+    for (const int node : can_.node) bus_.push(canopen_nmt(NmtCommand::kPreOperational, node));
+    bus_.send();
+    std::array<bool, 3> answers{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      SdoFailure failure;
+      answers[i] = sdo_.read(can_.node[i], 0x1000, 0, failure).has_value() || !failure.silent;
+    }
+    if (std::none_of(answers.begin(), answers.end(), [](bool yes) { return yes; })) {
+      return Error{silent_bus_trouble(bus_, can_.interface)};
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!answers[i]) return wrong(i, "does not answer: is it on, and does it have this node?");
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Error> identify(std::size_t i) {
+    std::uint32_t type = 0;
+    if (auto error = get(i, 0x1000, 0, type)) return error;
+    if ((type & 0xFFFFu) != kProfile402) {
+      return wrong(i,
+                   fmt::format("is no CiA 402 drive (device type 0x{:08X}): is it the right node, "
+                               "and is its profile 402 switched on?",
+                               type));
+    }
+    SdoFailure none;  // an optional setting
+    const auto modes = sdo_.read(can_.node[i], 0x6502, 0, none);
+    if (modes && (*modes & kTorqueMode) == 0) {
+      return wrong(i,
+                   "cannot do cyclic synchronous torque: update its firmware, or take a drive "
+                   "that can");
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Error> configure(std::size_t i) {
+    const auto writes = cst_configuration(can_.node[i], cst_settings(can_, rate_Hz_));
+    if (!writes) return wrong(i, "cannot have this node: device.can.node takes 1 to 126");
+    for (const SdoWrite& one : *writes) {
+      if (auto error = set(i, one)) return error;
+    }
+    sdo_.write(can_.node[i], {.index = 0x605A, .sub = 0, .value = 0, .size = 2});  // optional
+    return std::nullopt;
+  }
+
+  /// Without power and without an old fault.
+  std::optional<Error> make_calm(std::size_t i) {
+    const auto command = [this, i](std::uint16_t word) {
+      return set(i, {.index = 0x6040, .sub = 0, .value = word, .size = 2});
+    };
+    std::uint32_t status = 0;
+    if (auto error = command(kControlDisableVoltage)) return error;
+    const std::int64_t end_ns = bus_.socket().now_ns() + kSettle_ms * 1'000'000LL;
+    bool reset = false;
+    while (true) {
+      if (auto error = get(i, 0x6041, 0, status)) return error;
+      const Cia402State state = cia402_state(static_cast<std::uint16_t>(status));
+      if (state == Cia402State::kSwitchOnDisabled || state == Cia402State::kReady) {
+        return std::nullopt;
+      }
+      if (state == Cia402State::kFault && !reset) {
+        reset = true;
+        if (auto error = command(kControlFaultReset)) return error;
+        if (auto error = command(kControlDisableVoltage)) return error;
+      }
+      if (bus_.socket().now_ns() > end_ns) return not_calm(i, state);
+      sdo_.wait(10);
+    }
+  }
+
+  Error not_calm(std::size_t i, Cia402State state) {
+    std::uint32_t code = 0;
+    if (state == Cia402State::kFault && !get(i, 0x603F, 0, code) && code != 0) {
+      return wrong(i, fmt::format("keeps a fault: {} (code 0x{:04X})",
+                                  emergency_sentence(static_cast<std::uint16_t>(code)), code));
+    }
+    return wrong(i, fmt::format("stays in state {}: switch it off and on, and read its errors with "
+                                "its maker's program",
+                                cia402_state_name(state)));
+  }
+
+  std::optional<Error> learn(std::size_t i, Cia402Start& start) {
+    std::uint32_t rated = 0;  // 0.001 N m
+    if (auto error = get(i, 0x6076, 0, rated)) return error;
+    if (rated == 0) {
+      return wrong(i, "has a rated torque of zero: set object 6076 with its maker's program");
+    }
+    start.rated_torque_Nm[i] = 1e-3 * rated;
+    return position(i, start.motor_turns[i]);
+  }
+
+  std::optional<Error> position(std::size_t i, double& turns) {
+    std::uint32_t counts = 0;
+    if (auto error = get(i, 0x6064, 0, counts)) return error;
+    turns = static_cast<std::int32_t>(counts) / can_.counts_per_motor_turn;
+    return std::nullopt;
+  }
+
+  std::optional<Error> rest(Cia402Start& start) {
+    if (can_.homing != model::Homing::kJig) return std::nullopt;
+    sdo_.wait(kRest_ms);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double before_turns = start.motor_turns[i];
+      if (auto error = position(i, start.motor_turns[i])) return error;
+      if (std::abs(start.motor_turns[i] - before_turns) > kRest_turns) {
+        return wrong(i, "moves: let the arms rest on the jig until tactd is ready");
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Error> start_all() {
+    for (const int node : can_.node) bus_.push(canopen_nmt(NmtCommand::kStart, node));
+    bus_.send();
+    operational_ = {};
+    for (int i = 0; i < kOperational_ms / 10; ++i) {
+      sdo_.wait(10);
+      if (operational_[0] && operational_[1] && operational_[2]) return std::nullopt;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!operational_[i]) {
+        return wrong(i, "does not say that it is operational: does it send its heartbeat (1017)?");
+      }
+    }
+    return std::nullopt;
+  }
+
+  void take(const CanFrame& frame) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto state = decode_canopen_heartbeat(frame, can_.node[i]);
+      if (state) operational_[i] = *state == NmtState::kOperational;
+    }
+  }
+
+  CanBus& bus_;
+  const model::CanSettings& can_;
+  double rate_Hz_;
+  std::array<bool, 3> operational_{};
+  SdoClient sdo_;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> cia402_ids(const model::CanSettings& can) {
+  std::vector<std::uint32_t> ids;
+  for (const int node : can.node) {
+    for (const std::uint32_t base : {0x080u, 0x180u, 0x580u, 0x700u}) {  // EMCY TPDO SDO heartbeat
+      ids.push_back(base + static_cast<std::uint32_t>(node));
+    }
+  }
+  return ids;
+}
+
+int cia402_cycle_bits() {
+  const auto most = [](std::uint8_t length) {
+    return can_bits_on_bus(make_can_frame(0, length)).most;
+  };
+  return most(0) + 3 * (most(4) + most(8));
+}
+
+CstConfiguration cst_settings(const model::CanSettings& can, double rate_Hz) {
+  CstConfiguration out;
+  out.period_ms = static_cast<std::uint8_t>(std::lround(1000.0 / rate_Hz));
+  out.command_transmission_type = can.command_at_sync ? 1 : 255;
+  return out;
+}
+
+Result<Cia402Start> bring_up_cia402(CanBus& bus, const model::CanSettings& can, double rate_Hz) {
+  const double period_ms = 1000.0 / rate_Hz;
+  if (!(period_ms >= 1.0 && period_ms <= 10.0) || period_ms != std::floor(period_ms)) {
+    return Error{fmt::format(
+        "rate_Hz is {}, but SYNC of CiA 402 drives has a period of 1 to 10 whole ms: take 1000, "
+        "500, 250, 200, 125 or 100",
+        rate_Hz)};
+  }
+  for (const int node : can.node) {
+    if (is_canopen_node(node) && node != CstConfiguration{}.host_node) continue;
+    return Error{fmt::format(
+        "device.can.node has {}, but a CANopen drive's node is 1 to 126 (127 is tactd's)", node)};
+  }
+  if (can.homing == model::Homing::kIndex) {
+    return Error{
+        "device.can.homing \"index\" is for ODrives: CiA 402 drives need \"absolute\" or \"jig\""};
+  }
+  return BringUp(bus, can, rate_Hz).run();
+}
+
+}  // namespace tact::hal

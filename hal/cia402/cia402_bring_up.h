@@ -1,0 +1,38 @@
+// cia402_bring_up.h - three CiA 402 drives from power-on to operational, without torque.
+//
+//     NMT pre-operational -> device type 402 (1000), torque mode (6502) -> the settings of
+//     cia402_cst.h, each reply checked -> quick stop disables (605A = 0, where the drive has it) ->
+//     rated torque (6076) -> old fault reset -> position (6064) -> NMT start -> heartbeats say so
+//
+// A quick stop that ramps would drive the arm against the hand, so the drive lets go instead. The
+// host's own heartbeat is not sent here: a drive watches it from the first one on, and that is the
+// loop's. CiA 301, CiA 402-2. Set-up code: blocks, at most some seconds.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "hal/can/can_bus.h"
+#include "hal/cia402/cia402_cst.h"
+#include "hal/delta_kinematics.h"
+#include "model/device_settings.h"
+#include "model/result.h"
+
+namespace tact::hal {
+
+struct Cia402Start {
+  std::array<double, 3> rated_torque_Nm{};
+  Joints motor_turns{};  // of arms at rest
+};
+
+/// What the device needs to hear.
+std::vector<std::uint32_t> cia402_ids(const model::CanSettings& can);
+/// Of all frames of a tick at worst stuffing.
+int cia402_cycle_bits();
+/// For one drive at this rate.
+CstConfiguration cst_settings(const model::CanSettings& can, double rate_Hz);
+
+model::Result<Cia402Start> bring_up_cia402(CanBus& bus, const model::CanSettings& can,
+                                           double rate_Hz);
+
+}  // namespace tact::hal

@@ -1,0 +1,72 @@
+#include "hal/cia402/sdo_client.h"
+
+#include <fmt/core.h>
+
+#include "hal/cia402/canopen_words.h"
+
+namespace tact::hal {
+namespace {
+
+constexpr int kReply_ms = 300;
+constexpr std::int64_t kMs_ns = 1'000'000;
+
+}  // namespace
+
+std::optional<SdoReply> SdoClient::ask(int node, const std::optional<CanFrame>& request,
+                                       std::uint16_t index, std::uint8_t sub) {
+  CanSocket& socket = bus_.socket();
+  bus_.push(request);
+  bus_.send();
+  std::optional<SdoReply> ours;
+  for (const std::int64_t end_ns = socket.now_ns() + kReply_ms * kMs_ns;
+       !ours && bus_.fault() == Fault::kNone && socket.now_ns() < end_ns;) {
+    socket.wait(kReply_ms);
+    for (const CanReceived& one : bus_.receive()) {
+      const auto reply = decode_canopen_sdo(one.frame, node);
+      if (reply && reply->index == index && reply->sub == sub) {
+        ours = reply;
+      } else {
+        others_(one.frame);
+      }
+    }
+  }
+  return ours;
+}
+
+std::optional<SdoFailure> SdoClient::write(int node, const SdoWrite& what) {
+  const auto reply = ask(node, canopen_sdo_download(node, what), what.index, what.sub);
+  if (!reply || reply->kind == SdoReplyKind::kUpload) return SdoFailure{.silent = true};
+  if (reply->kind == SdoReplyKind::kAbort) return SdoFailure{.abort_code = reply->value};
+  return std::nullopt;
+}
+
+std::optional<std::uint32_t> SdoClient::read(int node, std::uint16_t index, std::uint8_t sub,
+                                             SdoFailure& failure) {
+  const auto reply = ask(node, canopen_sdo_upload(node, index, sub), index, sub);
+  failure = {.silent = !reply || reply->kind == SdoReplyKind::kDownloadDone};
+  if (failure.silent) return std::nullopt;
+  if (reply->kind == SdoReplyKind::kUpload) return reply->value;
+  failure.abort_code = reply->value;
+  return std::nullopt;
+}
+
+void SdoClient::wait(int time_ms) {
+  CanSocket& socket = bus_.socket();
+  const std::int64_t end_ns = socket.now_ns() + time_ms * kMs_ns;
+  while (bus_.fault() == Fault::kNone && socket.now_ns() < end_ns) {
+    socket.wait(1);
+    for (const CanReceived& one : bus_.receive()) others_(one.frame);
+  }
+}
+
+std::string sdo_failure_words(const SdoFailure& failure, std::uint16_t index, std::uint8_t sub) {
+  if (failure.silent) {
+    return fmt::format(
+        "does not answer when asked for setting 0x{:04X}:{:02X}: check its supply and the cable",
+        index, sub);
+  }
+  return fmt::format("refuses setting 0x{:04X}:{:02X}: {} (abort code 0x{:08X})", index, sub,
+                     sdo_abort_sentence(failure.abort_code), failure.abort_code);
+}
+
+}  // namespace tact::hal

@@ -1,0 +1,216 @@
+#include "hal/falcon/falcon_device.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hal/falcon/falcon_at_tool.h"
+#include "hal/falcon/falcon_frame.h"
+
+namespace tact::hal {
+namespace {
+
+using What = FalconTrouble::What;
+
+constexpr double kGravity_mps2 = 9.81;
+constexpr double kJump_m = 5e-3;              // between two samples: a new start
+constexpr double kDeadBandRamp_words = 20.0;  // a force near zero does not chatter
+constexpr int kSilentTicks = 3;
+constexpr std::int64_t kSilent_ns = 2'500'000;    // 3 ticks of 1 ms, with their jitter
+constexpr std::int64_t kGarbled_ns = 17'000'000;  // named before the gate gives up at 20 ticks
+constexpr std::int64_t kMute_ns = 500'000'000;    // whether anyone is armed or not
+constexpr int kMuteTicks = 20;
+constexpr double kMostCounts_per_s = 250e3;  // 6 m/s where the counts are finest
+constexpr double kMostCountsAtOnce = 250.0;
+
+double component(const Vec3& v, std::size_t i) RT_SAFE { return i == 0 ? v.x : i == 1 ? v.y : v.z; }
+
+bool is_pressed(const FalconReport& report, std::uint8_t button) RT_SAFE {
+  return (report.buttons & button) != 0;
+}
+
+}  // namespace
+
+FalconDevice::FalconDevice(const model::FalconSettings& settings, std::unique_ptr<FalconPipe> pipe)
+    : settings_(settings),
+      pipe_(std::move(pipe)),
+      velocity_(settings.observer_bandwidth_Hz, kJump_m),
+      trouble_(FalconTrouble{.what = What::kNotHomed}.packed()) {}
+
+FalconDevice::~FalconDevice() { stop(); }
+
+DeviceInfo FalconDevice::info() const {
+  return {.name = "Novint Falcon",
+          .max_force_N = falcon_max_force_N(kinematics_, settings_),
+          .max_torque_Nm = 0.0,
+          .workspace_radius_m = kFalconRadius_m,
+          .workspace_half_length_m = kFalconHalfLength_m,
+          .at_tool = falcon_at_tool(kinematics_, settings_),
+          .damping_key = "device.falcon.joint_damping_Nms_per_rad"};
+}
+
+Fault FalconDevice::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
+  sample.fresh = false;
+  now_ns_ = now_ns;
+  if (stopped_) return fault_;
+  if (heard_ns_ == 0) heard_ns_ = now_ns;  // silence begins with the loop
+  check_pipe();
+  FalconReply reply;
+  if (fault_ == Fault::kNone && pipe_->newest(reply) && take(reply, now_ns)) {
+    sample.tool = {.position_m = falcon_point_W(position_m_),
+                   .velocity_mps = velocity_mps_,
+                   .grip_ratio = is_pressed(reply.report, kFalconCentre) ? 1.0 : 0.0};
+    sample.stamp_ns = reply.stamp_ns;
+    sample.sequence = reply.sequence;
+    sample.fresh = true;
+  }
+  judge_silence(now_ns);
+  return fault_;
+}
+
+/// A new sample of a homed device that answers a command in time.
+bool FalconDevice::take(const FalconReply& reply, std::int64_t now_ns) RT_SAFE {
+  const std::uint64_t answers = exchange_.answered(reply.sequence - sequence_, now_ns);
+  sequence_ = reply.sequence;
+  if (answers == 0) return false;
+  const bool homed = follow_homing(reply.report);
+  if (fault_ != Fault::kNone) return false;
+  if (homed && !locate(reply)) {
+    ++misfits_;
+    return false;
+  }
+  heard_ns_ = now_ns;
+  misses_ = -1;  // this read is none
+  misfits_ = 0;
+  dropped_before_ = pipe_->health().dropped_bytes;
+  return homed;
+}
+
+bool FalconDevice::follow_homing(const FalconReport& report) RT_SAFE {
+  const bool homed = report.all_homed();
+  if (homed_ && !homed)
+    latch(Fault::kHomingLost, {.what = What::kHomingLost, .homed = report.homed});
+  if (homed_ || fault_ != Fault::kNone) return homed;
+  const FalconTrouble state{.what = homed ? What::kNone : What::kNotHomed, .homed = report.homed};
+  trouble_.store(state.packed(), std::memory_order_relaxed);
+  if (!homed) return false;
+  homed_ = true;  // the counts jump with it; nothing was believed before
+  return true;
+}
+
+/// Where the grip is; false for counts that no hand can make, or no pose has.
+bool FalconDevice::locate(const FalconReply& reply) RT_SAFE {
+  const double elapsed_s = 1e-9 * static_cast<double>(reply.stamp_ns - stamp_ns_);
+  Joints thigh_rad{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const int counts = reply.report.counts[i];
+    thigh_rad[i] = falcon_thigh_rad(counts);
+    if (stamp_ns_ != 0 &&
+        std::abs(counts - counts_[i]) > kMostCountsAtOnce + kMostCounts_per_s * elapsed_s)
+      return false;
+  }
+  FalconForward forward = kinematics_.forward(thigh_rad, position_m_);
+  if (!forward.solved) forward = kinematics_.forward(thigh_rad, kFalconHome);
+  if (!forward.solved) return false;
+  position_m_ = forward.position_m;
+  rates_ = kinematics_.joint_rate_matrix(kinematics_.inverse(position_m_));
+  velocity_mps_ = velocity_.step(falcon_point_W(position_m_), elapsed_s);
+  counts_ = reply.report.counts;
+  stamp_ns_ = reply.stamp_ns;
+  return true;
+}
+
+void FalconDevice::judge_silence(std::int64_t now_ns) RT_SAFE {
+  ++misses_;
+  if (fault_ != Fault::kNone || misses_ < kSilentTicks) return;
+  const FalconPipeHealth health = pipe_->health();
+  const std::int64_t silence_ns = now_ns - heard_ns_;
+  const bool babbles = misfits_ > 0 || health.dropped_bytes != dropped_before_;
+  if (babbles && silence_ns >= kGarbled_ns)
+    latch(Fault::kDeviceGarbled, {.what = What::kGarbled, .line_errors = health.line_errors});
+  if (silence_ns >= kMute_ns && misses_ >= kMuteTicks)
+    latch(Fault::kDeviceLost, {.what = What::kSilent});
+}
+
+void FalconDevice::check_pipe() RT_SAFE {
+  const FalconPipeHealth health = pipe_->health();
+  const auto error = static_cast<std::uint16_t>(health.error);
+  switch (health.end) {
+    case FalconPipeEnd::kOpen:
+      return;
+    case FalconPipeEnd::kUnplugged:
+      return latch(Fault::kDeviceUnplugged, {.what = What::kUnplugged, .error = error});
+    case FalconPipeEnd::kStalled:
+      return latch(Fault::kDeviceFailed, {.what = What::kStalled, .error = error});
+    case FalconPipeEnd::kBroken:
+      return latch(Fault::kDeviceFailed, {.what = What::kBroken, .error = error});
+  }
+}
+
+/// The first fault stays.
+void FalconDevice::latch(Fault fault, const FalconTrouble& trouble) RT_SAFE {
+  if (fault_ != Fault::kNone) return;
+  fault_ = fault;
+  trouble_.store(trouble.packed(), std::memory_order_relaxed);
+}
+
+/// A short silence takes nothing from it: that is the gate's to judge.
+bool FalconDevice::ready() const RT_SAFE {
+  return homed_ && powered_ && !stopped_ && fault_ == Fault::kNone && stamp_ns_ != 0;
+}
+
+Fault FalconDevice::write(const Wrench& wrench) RT_SAFE {
+  if (stopped_) return fault_;
+  const bool sound = is_finite(wrench.force_N);
+  const bool silent = misses_ >= kSilentTicks && now_ns_ - heard_ns_ >= kSilent_ns;
+  words_ = ready() && !silent ? words_for(sound ? wrench.force_N : Vec3{}) : FalconWords{};
+  if (fault_ != Fault::kNone || exchange_.may_send(now_ns_)) {  // zeros wait for no answer
+    if (pipe_->submit(encode(command(words_))))
+      exchange_.sent(now_ns_);
+    else
+      check_pipe();  // gone is known in this tick; full is a missed cycle
+  }
+  if (fault_ != Fault::kNone) return fault_;
+  return sound ? Fault::kNone : Fault::kForceNotFinite;
+}
+
+/// tau = tau_gravity + s K^-T F, one s for all axes; then words.
+FalconWords FalconDevice::words_for(const Vec3& force_W_N) const RT_SAFE {
+  const Vec3 weight_N{0.0, 0.0, kGravity_mps2 * settings_.moving_mass_kg};
+  const Joints held_Nm = falcon_torques_Nm(rates_, falcon_direction_D(weight_N));
+  const Joints wanted_Nm = falcon_torques_Nm(rates_, falcon_direction_D(force_W_N));
+  Joints held{}, wanted{};  // 1 is all that an axis can do
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double most_words = kFalconMotorMax - component(settings_.dead_band_words, i);
+    const double per_Nm = component(settings_.gain_words_per_Nm, i) / most_words;
+    held[i] = per_Nm * held_Nm[i];
+    wanted[i] = per_Nm * wanted_Nm[i];
+  }
+  const double ratio = saturation_ratio(held, wanted, 1.0);
+  std::array<double, 3> words{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double torque_Nm = held_Nm[i] + ratio * wanted_Nm[i];
+    const double useful = component(settings_.gain_words_per_Nm, i) * torque_Nm;
+    const double share = std::clamp(useful / kDeadBandRamp_words, -1.0, 1.0);
+    words[i] = -(useful + component(settings_.dead_band_words, i) * share);
+  }
+  return falcon_motor_words(words);
+}
+
+FalconCommand FalconDevice::command(const FalconWords& words) const RT_SAFE {
+  const bool ready = homed_ && fault_ == Fault::kNone;
+  const std::uint8_t light = !ready ? kFalconRed : powered_ ? kFalconGreen : kFalconBlue;
+  return {.motor = words, .lights = light, .homing = !homed_ || settings_.keep_homing};
+}
+
+std::string FalconDevice::trouble() const {
+  return in_words(FalconTrouble::unpacked(trouble_.load(std::memory_order_relaxed)));
+}
+
+void FalconDevice::stop() {
+  if (stopped_) return;
+  stopped_ = true;
+  words_ = {};
+  pipe_->stop(encode(FalconCommand{.lights = kFalconRed}));
+}
+
+}  // namespace tact::hal

@@ -1,0 +1,84 @@
+// falcon_device.h - a Novint Falcon as a Device: homing, positions, forces, faults.
+//
+//     force -> K^T tau = F -> words = -(gain tau + dead band)   (a positive word lowers a thigh)
+//
+// Zero words with the homing request until all three axes are homed; then samples are fresh. One
+// command leaves with each write. Without an answer for three ticks of 1 ms the words are zero until
+// one comes. Unplugged, stalled, broken, garbled, unhomed or silent devices latch a fault; each write
+// after it sends zero words, and stop() too, since a Falcon may hold its last ones for ever. Lights:
+// red no force may come, blue ready, green with power.
+#pragma once
+
+#include <atomic>
+#include <memory>
+
+#include "hal/device.h"
+#include "hal/falcon/falcon_exchange.h"
+#include "hal/falcon/falcon_kinematics.h"
+#include "hal/falcon/falcon_pipe.h"
+#include "hal/falcon/falcon_trouble.h"
+#include "hal/velocity_observer.h"
+#include "model/device_settings.h"
+#include "model/result.h"
+#include "model/scene.h"
+
+namespace tact::hal {
+
+class FalconDevice final : public Device {
+ public:
+  /// A Falcon whose firmware runs.
+  FalconDevice(const model::FalconSettings& settings, std::unique_ptr<FalconPipe> pipe);
+  ~FalconDevice() override;
+
+  DeviceInfo info() const override;
+  Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
+  bool ready() const RT_SAFE override;
+  void permit(bool powered) RT_SAFE override { powered_ = powered; }
+  Fault write(const Wrench& wrench) RT_SAFE override;
+  std::string trouble() const override;
+  void stop() override;
+
+  /// What the last write sent; for calibration.
+  const FalconWords& words() const RT_SAFE { return words_; }
+  Vec3 position_D_m() const RT_SAFE { return position_m_; }
+
+ private:
+  bool take(const FalconReply& reply, std::int64_t now_ns) RT_SAFE;
+  bool follow_homing(const FalconReport& report) RT_SAFE;
+  bool locate(const FalconReply& reply) RT_SAFE;
+  void judge_silence(std::int64_t now_ns) RT_SAFE;
+  void check_pipe() RT_SAFE;
+  void latch(Fault fault, const FalconTrouble& trouble) RT_SAFE;
+  FalconWords words_for(const Vec3& force_W_N) const RT_SAFE;
+  FalconCommand command(const FalconWords& words) const RT_SAFE;
+
+  model::FalconSettings settings_;
+  FalconKinematics kinematics_;
+  std::unique_ptr<FalconPipe> pipe_;
+  FalconExchange exchange_;
+  VelocityObserver velocity_;
+
+  Vec3 position_m_ = kFalconHome;  // frame D
+  Vec3 velocity_mps_;              // frame W
+  Mat3 rates_{};                   // K there; zero makes no force
+  FalconWords counts_{};           // of the last good sample
+  std::int64_t stamp_ns_ = 0;      // of it; 0: none since homing
+  std::uint64_t sequence_ = 0;     // of the last report seen
+  std::int64_t now_ns_ = 0;
+  std::int64_t heard_ns_ = 0;  // when the last good report was read
+  std::uint64_t dropped_before_ = 0;
+  std::uint64_t misfits_ = 0;  // reports that cannot be, since the last good one
+  int misses_ = 0;             // reads in a row without a good report
+  bool homed_ = false, powered_ = true, stopped_ = false;
+  FalconWords words_{};
+  Fault fault_ = Fault::kNone;
+  std::atomic<std::uint64_t> trouble_{0};
+};
+
+/// Finds, wakes and takes the Falcon that the scene means; up to 20 s.
+model::Result<std::unique_ptr<Device>> open_falcon(const model::Scene& scene);
+/// The same, for a program that calibrates it.
+model::Result<std::unique_ptr<FalconDevice>> open_falcon_device(
+    const model::FalconSettings& settings);
+
+}  // namespace tact::hal

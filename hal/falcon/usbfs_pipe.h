@@ -1,0 +1,53 @@
+// usbfs_pipe.h - a Falcon's packets on usbfs transfers that exist before the loop starts.
+//
+// Four IN transfers are always under way; the thread waits for one, hands its report over and
+// submits it again. Commands are submitted by the loop itself: one system call, at most two under
+// way, none free is a missed cycle. Nothing is allocated after the start. After an end by an error the
+// thread stays for the commands.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+
+#include "hal/falcon/falcon_receiver.h"
+#include "hal/falcon/usb_thread.h"
+#include "hal/falcon/usbfs_port.h"
+
+namespace tact::hal {
+
+class UsbfsPipe final : public FalconPipe {
+ public:
+  static constexpr std::size_t kIn = 4, kOut = 2;
+
+  /// Submits the IN transfers and starts the thread; an error says what to do.
+  static model::Result<std::unique_ptr<FalconPipe>> start(std::unique_ptr<UsbfsPort> port);
+  ~UsbfsPipe() override;
+
+  bool submit(const FalconPacket& command) RT_SAFE override;
+  bool newest(FalconReply& reply) RT_SAFE override { return receiver_.newest(reply); }
+  FalconPipeHealth health() const RT_SAFE override { return receiver_.health(); }
+  void stop(const FalconPacket& last) override;
+  const UsbThread& thread() const { return thread_; }
+
+ private:
+  explicit UsbfsPipe(std::unique_ptr<UsbfsPort> port);
+  void run();
+  /// Did that bring anything? `urb` is under way again or at rest.
+  bool completed(usbdevfs_urb& urb);
+  void command_completed(int error);
+  bool any_busy(std::size_t from) const;
+  bool send_last(const FalconPacket& last);
+  void finish(int error) RT_SAFE;
+
+  std::unique_ptr<UsbfsPort> port_;
+  FalconReceiver receiver_;
+  // IN first. Each alone: a URB ends in an array of no fixed size.
+  std::array<std::unique_ptr<usbdevfs_urb>, kIn + kOut> urbs_;
+  std::array<std::atomic<bool>, kIn + kOut> busy_{};  // OUT: set by the loop, cleared by the thread
+  std::atomic<int> command_error_{0};                 // errno of the last command that came back
+  std::atomic<bool> stopping_{false};
+  UsbThread thread_;
+};
+
+}  // namespace tact::hal

@@ -1,0 +1,75 @@
+#include "hal/force_dimension/device_types.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace tact::hal {
+namespace {
+
+using model::Error;
+
+constexpr ForceDimensionType omega(int code, const char* name, bool wrist) {
+  return {code, name, 12.0, 0.0, 0.075, 0.055, 1e-5, wrist};
+}
+constexpr ForceDimensionType sigma(int code, const char* name, double torque_Nm, bool wrist) {
+  return {code, name, 12.0, torque_Nm, 0.095, 0.065, 1e-5, wrist};
+}
+constexpr ForceDimensionType lambda(int code, const char* name, double torque_Nm, bool wrist) {
+  return {code, name, 12.0, torque_Nm, 0.1125, 0.085, 1e-5, wrist};
+}
+
+constexpr std::array kTypes{
+    ForceDimensionType{63, "delta.3", 20.0, 0.0, 0.15, 0.13, 2e-5, false},
+    omega(33, "omega.3", false),
+    omega(34, "omega.6 right", true),
+    omega(36, "omega.6 left", true),
+    omega(35, "omega.7 right", true),
+    omega(37, "omega.7 left", true),
+    sigma(206, "sigma.3", 0.0, false),
+    sigma(104, "sigma.7 right", 0.2, true),
+    sigma(105, "sigma.7 left", 0.2, true),
+    lambda(203, "lambda.3", 0.0, false),
+    lambda(108, "lambda.7 right", 0.2, true),
+    lambda(109, "lambda.7 left", 0.2, true),
+};
+
+struct Refused {
+  int code;
+  const char* name;
+  const char* why;
+};
+constexpr const char* kDropped =
+    "current SDKs list it among the devices that they no longer support, so no library can read it "
+    "safely; use a delta.3, omega, sigma or lambda";
+constexpr const char* kController =
+    "it is a bare controller, whose mechanism and limits tact cannot know; use a delta.3, omega, "
+    "sigma or lambda";
+constexpr std::array kRefused{
+    Refused{31, "3-DOF", kDropped},
+    Refused{32, "OMEGA", kDropped},
+    Refused{61, "6-DOF", kDropped},
+    Refused{62, "6-DOF 500", kDropped},
+    Refused{64, "delta.6", kDropped},
+    Refused{60, "Novint Falcon", "tact drives it by itself; set device.kind = \"falcon\""},
+    Refused{81, "controller", kController},
+    Refused{82, "controller HR", kController},
+    Refused{91, "custom device", kController},
+};
+
+}  // namespace
+
+model::Result<ForceDimensionType> force_dimension_type(int code) {
+  for (const ForceDimensionType& type : kTypes)
+    if (type.code == code) return type;
+  for (const Refused& refused : kRefused)
+    if (refused.code == code)
+      return Error{
+          fmt::format("the device is a {} (type {}): {}", refused.name, code, refused.why)};
+  return Error{fmt::format(
+      "Force Dimension's library calls the device type {}, which tact does not know: its limits "
+      "are unknown; use a delta.3, omega, sigma or lambda",
+      code)};
+}
+
+}  // namespace tact::hal

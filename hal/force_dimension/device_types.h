@@ -1,0 +1,24 @@
+// device_types.h - which of Force Dimension's devices tact knows, and how strong each may be.
+//
+// Forces and radii are the defaults of CHAI3D (chai3d.org, devices/CDeltaDevices.cpp), where they
+// are below the data sheet; lengths and resolutions are those of the maker's data sheets.
+#pragma once
+
+#include "model/result.h"
+
+namespace tact::hal {
+
+struct ForceDimensionType {
+  int code = 0;  // dhdGetSystemType
+  const char* name = "";
+  double max_force_N = 0.0;
+  double max_torque_Nm = 0.0;  // 0: its wrist, if any, has no motors
+  double radius_m = 0.0, half_length_m = 0.0;
+  double resolution_m = 0.0;
+  bool wrist = false;  // it measures an orientation
+};
+
+/// The type of this code, or why it cannot be used and what can.
+model::Result<ForceDimensionType> force_dimension_type(int code);
+
+}  // namespace tact::hal

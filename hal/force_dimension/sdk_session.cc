@@ -1,0 +1,134 @@
+#include "hal/force_dimension/sdk_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "hal/force_dimension/sdk_words.h"
+#include "hal/udev_rules.h"
+
+namespace tact::hal {
+namespace {
+
+using model::Error;
+using model::ForceDimensionSettings;
+using model::Result;
+
+constexpr int kWarmUpCycles = 400;
+constexpr double kWatchdogUnit_s = 125e-6;
+
+Error failed(const SdkFunctions& sdk, const char* what) {
+  return Error{fmt::format("the Force Dimension device refuses to {}: {}", what,
+                           words_of_sdk_error(sdk.error_get_last()))};
+}
+
+Result<char> open_device(const SdkFunctions& sdk, int wanted) {
+  const int count = sdk.device_count();
+  if (count <= 0)
+    return Error{fmt::format(
+        "no Force Dimension device is found: switch its supply on, plug in its USB cable and end "
+        "other programs that use it; if only root finds it, this udev rule is missing: {}; {}",
+        kForceDimensionRule, kRuleCure)};
+  if (wanted < 0 && count > 1)
+    return Error{fmt::format(
+        "{} Force Dimension devices are here; say which one by device.force_dimension.id, 0 to {}",
+        count, count - 1)};
+  if (wanted >= count)
+    return Error{fmt::format(
+        "device.force_dimension.id is {}, but here {}; set it to -1", wanted,
+        count == 1 ? "is only one device" : fmt::format("are only devices 0 to {}", count - 1))};
+  const int id = sdk.open_id(static_cast<char>(std::max(wanted, 0)));
+  if (id < 0) return failed(sdk, "open");
+  return static_cast<char>(id);
+}
+
+/// What the device itself lacks, with the cure.
+std::optional<Error> find_shortfall(const SdkSession& s) {
+  SdkStatusWords status{};
+  if (s.sdk.status(status.data(), s.id) < 0) return failed(s.sdk, "tell its status");
+  if (status[kSdkPower] == 0)
+    return Error{fmt::format("the {} has no power; switch its supply on", s.type.name)};
+  if (status[kSdkError] != 0)
+    return Error{
+        fmt::format("the {} reports an error of its own; switch it off and on, then calibrate it",
+                    s.type.name)};
+  const bool wrist_lost =
+      s.type.wrist && status[kSdkWristDetected] != 0 && status[kSdkWristInit] == 0;
+  if (status[kSdkReset] != 0 || wrist_lost) {
+    const bool by_hand = s.type.code == 63;
+    return Error{fmt::format(
+        "the {} is not calibrated; {}, then start tactd again", s.type.name,
+        by_hand ? "sweep each axis by hand from stop to stop until its status light is steady"
+                : "keep its workspace clear, run HapticInit of the maker's SDK (the device moves "
+                  "by itself)")};
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> configure(const SdkSession& s, const ForceDimensionSettings& settings) {
+  const auto watchdog = static_cast<unsigned char>(
+      std::clamp(std::round(settings.watchdog_s / kWatchdogUnit_s), 1.0, 255.0));
+  if (s.sdk.enable_force(0, s.id) < 0) return failed(s.sdk, "keep its forces off");
+  if (s.sdk.enable_expert_mode() < 0) return failed(s.sdk, "enter expert mode");
+  if (s.sdk.set_time_guard(0, s.id) < 0) return failed(s.sdk, "switch its time guard off");
+  if (s.sdk.set_watchdog(watchdog, s.id) < 0) return failed(s.sdk, "start its watchdog");
+  if (settings.effector_mass_kg > 0.0) {
+    if (s.sdk.set_effector_mass == nullptr)
+      return Error{
+          "the library has no dhdSetEffectorMass; remove device.force_dimension.effector_mass_kg, "
+          "or use a newer SDK"};
+    if (s.sdk.set_effector_mass(settings.effector_mass_kg, s.id) < 0)
+      return failed(s.sdk, "take device.force_dimension.effector_mass_kg");
+  }
+  if (s.sdk.set_gravity_compensation(1, s.id) < 0) return failed(s.sdk, "balance its own weight");
+  return std::nullopt;
+}
+
+/// Read and zero force, as the loop will do, while the forces are off.
+std::optional<Error> warm_up(const SdkSession& s) {
+  double x_m = 0.0, y_m = 0.0, z_m = 0.0, rotation[3][3] = {};
+  for (int i = 0; i < kWarmUpCycles; ++i) {
+    if (s.sdk.pose(&x_m, &y_m, &z_m, rotation, s.id) < 0) return failed(s.sdk, "tell its pose");
+    if (s.sdk.set_force(0, 0, 0, 0, 0, 0, 0, s.id) < 0) return failed(s.sdk, "take a zero force");
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<SdkSession> open_sdk_session(const ForceDimensionSettings& settings) {
+  const auto sdk = load_sdk(settings.library);
+  if (!sdk) return sdk.error();
+  const auto id = open_device(*sdk, settings.id);
+  if (!id) return id.error();
+  SdkSession session{.sdk = *sdk, .id = *id, .type = {}};
+  const auto type = force_dimension_type(sdk->system_type(*id));
+  std::optional<Error> error;
+  if (type) {
+    session.type = *type;
+    error = find_shortfall(session);
+    if (!error) error = configure(session, settings);
+    if (!error) error = warm_up(session);
+  } else {
+    error = type.error();
+  }
+  if (error) {
+    close_sdk_session(session);
+    return *error;
+  }
+  unsigned short number = 0;
+  if (sdk->serial_number != nullptr && sdk->serial_number(&number, *id) >= 0)
+    session.serial_number = number;
+  return session;
+}
+
+void close_sdk_session(const SdkSession& s) {
+  s.sdk.set_force(0, 0, 0, 0, 0, 0, 0, s.id);
+  s.sdk.enable_force(0, s.id);
+  s.sdk.stop(s.id);
+  s.sdk.close(s.id);
+}
+
+}  // namespace tact::hal

@@ -1,0 +1,28 @@
+// sdk_session.h - a Force Dimension device from "the library is loaded" to "ready for the loop".
+//
+// Opened, of a known type, calibrated, configured once in expert mode (time guard off, so that no
+// call waits; watchdog on, so that a dead PC lets go), and called some hundred times with its
+// forces off, so that the library has touched all its memory. Set-up code only; tact locks its
+// memory before, and the library's heap with it.
+#pragma once
+
+#include "hal/force_dimension/device_types.h"
+#include "hal/force_dimension/sdk_library.h"
+#include "model/device_settings.h"
+
+namespace tact::hal {
+
+struct SdkSession {
+  SdkFunctions sdk;
+  char id = 0;
+  ForceDimensionType type;
+  int serial_number = 0;  // 0: the library does not tell
+};
+
+/// Leaves nothing open when it fails.
+model::Result<SdkSession> open_sdk_session(const model::ForceDimensionSettings& settings);
+
+/// Zero force, forces off, closed. May block.
+void close_sdk_session(const SdkSession& session);
+
+}  // namespace tact::hal

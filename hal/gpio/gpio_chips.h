@@ -1,0 +1,38 @@
+// gpio_chips.h - the GPIO chips of this PC, and which of them a loop may not wait for.
+//
+// A chip behind USB, I2C or SPI answers after milliseconds and its driver sleeps meanwhile; the
+// kernel knows (can_sleep) but does not tell user space, so the buses above the chip are read from
+// sysfs: /sys/bus/gpio/devices/gpiochipN and the `subsystem` links of its parents. Label and number
+// of lines come from the chip itself (linux/gpio.h, GPIO_GET_CHIPINFO_IOCTL). Set-up code only.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace tact::hal {
+
+/// Where the kernel shows itself; other folders in tests.
+struct SystemRoots {
+  std::string sys = "/sys";
+  std::string dev = "/dev";
+};
+
+struct GpioChip {
+  std::string name;   // gpiochip0
+  std::string path;   // /dev/gpiochip0
+  std::string label;  // of its driver; empty when it may not be opened
+  int lines = -1;     // -1: not known
+  std::string bus;    // of the slow bus it hangs on, as "usb"; empty: it does not sleep
+  int error = 0;      // errno of opening it
+};
+
+/// All chips, by number.
+std::vector<GpioChip> find_gpio_chips(const SystemRoots& roots = {});
+
+/// What is there, for a sentence: `gpiochip0 "pinctrl-intel", gpiochip1 "mcp2221"`.
+std::string name_chips(const std::vector<GpioChip>& chips);
+
+/// The first subsystem above `device` (a folder of sysfs) that sleeps, or nothing.
+std::string sleeping_bus(const std::string& device, const std::string& sys_root);
+
+}  // namespace tact::hal

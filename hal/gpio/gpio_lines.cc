@@ -1,0 +1,270 @@
+#include "hal/gpio/gpio_lines.h"
+
+#include <fmt/format.h>
+#include <gpiod.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "hal/gpio/safety_logic.h"
+#include "hal/udev_rules.h"
+
+namespace tact::hal {
+namespace {
+
+using model::Error;
+using model::Fault;
+using model::LinesSettings;
+using model::Result;
+
+constexpr const char* kConsumer = "tactd";
+constexpr std::size_t kMaxLines = 3;
+using Values = std::array<int, kMaxLines>;
+
+struct CloseChip {
+  void operator()(gpiod_chip* chip) const { gpiod_chip_close(chip); }  // releases its lines, too
+};
+using ChipHandle = std::unique_ptr<gpiod_chip, CloseChip>;
+
+// One ioctl each, on a chip that is known not to sleep; libgpiod only copies the values.
+#if defined(__clang__) && __clang_major__ >= 20
+#pragma clang diagnostic push
+#pragma clang diagnostic ignored "-Wfunction-effects"
+#endif
+bool get_levels(gpiod_line_bulk& lines, Values& values) RT_SAFE {
+  return gpiod_line_get_value_bulk(&lines, values.data()) == 0;
+}
+bool set_levels(gpiod_line_bulk& lines, const Values& values) RT_SAFE {
+  return gpiod_line_set_value_bulk(&lines, values.data()) == 0;
+}
+#if defined(__clang__) && __clang_major__ >= 20
+#pragma clang diagnostic pop
+#endif
+
+/// Lines of one direction, requested and moved together. Each level knows its place in the request.
+class LineGroup {
+ public:
+  LineGroup() { gpiod_line_bulk_init(&bulk_); }
+
+  /// Adds a line and tells its place; -1 for a line that is not wired.
+  int add(gpiod_chip* chip, int offset) {
+    if (offset < 0) return -1;
+    gpiod_line* line = gpiod_chip_get_line(chip, static_cast<unsigned>(offset));
+    if (line == nullptr) return -1;
+    gpiod_line_bulk_add(&bulk_, line);
+    return static_cast<int>(bulk_.num_lines) - 1;
+  }
+  bool empty() const RT_SAFE { return bulk_.num_lines == 0; }
+  gpiod_line_bulk& bulk() RT_SAFE { return bulk_; }
+
+ private:
+  gpiod_line_bulk bulk_{};
+};
+
+struct Groups {
+  LineGroup inputs, outputs, scope;
+  int estop_a = -1, estop_b = -1, dead_man = -1;
+  int enable = -1, heartbeat = -1, led = -1;
+};
+
+class GpioLines final : public SafetyLines {
+ public:
+  GpioLines(ChipHandle chip, const Groups& lines)
+      : chip_(std::move(chip)),
+        lines_(lines),
+        logic_({.estop = lines.estop_a >= 0, .dead_man = lines.dead_man >= 0}) {}
+  ~GpioLines() override { release(); }
+  GpioLines(const GpioLines&) = delete;
+  GpioLines& operator=(const GpioLines&) = delete;
+
+  Fault read(std::int64_t now_ns) RT_SAFE override {
+    Values values{};
+    if (!lost() && !lines_.inputs.empty() && !get_levels(lines_.inputs.bulk(), values)) lose();
+    const Fault fault = logic_.judge({.estop_a = level(values, lines_.estop_a),
+                                      .estop_b = level(values, lines_.estop_b),
+                                      .dead_man = level(values, lines_.dead_man)},
+                                     now_ns);
+    return lost() ? Fault::kLinesLost : fault;
+  }
+
+  Fault write(const LinesTick& tick) RT_SAFE override {
+    const SafetyOutputs outputs = logic_.drive(tick);
+    Values values{};
+    place(values, lines_.enable, outputs.enable);
+    place(values, lines_.heartbeat, outputs.heartbeat);
+    place(values, lines_.led, outputs.led);
+    if (!lost() && !lines_.outputs.empty() && !set_levels(lines_.outputs.bulk(), values)) lose();
+    return lost() ? Fault::kLinesLost : Fault::kNone;
+  }
+
+  bool enabled() const RT_SAFE override { return !lost() && logic_.enabled(); }
+
+  void scope(bool up) RT_SAFE override {
+    if (!lost() && !lines_.scope.empty()) set_levels(lines_.scope.bulk(), {up ? 1 : 0});
+  }
+
+  std::string trouble() const override {
+    return words(lost() ? LinesCause::kChipLost : logic_.cause());
+  }
+
+  void stop() override { release(); }
+
+ private:
+  static bool level(const Values& values, int place) RT_SAFE {
+    return place >= 0 && values[static_cast<std::size_t>(place)] != 0;
+  }
+  static void place(Values& values, int place, bool high) RT_SAFE {
+    if (place >= 0) values[static_cast<std::size_t>(place)] = high ? 1 : 0;
+  }
+  bool lost() const RT_SAFE { return lost_.load(std::memory_order_relaxed); }
+  void lose() RT_SAFE { lost_.store(true, std::memory_order_relaxed); }
+
+  void release() {
+    if (chip_ == nullptr) return;
+    if (!lines_.outputs.empty()) set_levels(lines_.outputs.bulk(), {});
+    scope(false);
+    lose();
+    chip_.reset();
+  }
+
+  ChipHandle chip_;
+  Groups lines_;
+  SafetyLogic logic_;
+  std::atomic<bool> lost_{false};
+};
+
+struct NamedOffset {
+  const char* key;
+  int offset;
+};
+std::array<NamedOffset, 7> offsets_of(const LinesSettings& s) {
+  return {{{"estop_a", s.estop_a},
+           {"estop_b", s.estop_b},
+           {"dead_man", s.dead_man},
+           {"enable", s.enable},
+           {"heartbeat", s.heartbeat},
+           {"led", s.led},
+           {"scope", s.scope}}};
+}
+
+Error not_permitted(const GpioChip& chip) {
+  return Error{fmt::format("{} \"{}\" may not be opened; its udev rule is missing: {}; {}",
+                           chip.path, chip.label, kGpioRule, kRuleCure)};
+}
+
+Error why_not_requested(gpiod_chip* handle, const GpioChip& chip, const LinesSettings& settings,
+                        int error) {
+  if (error == EACCES || error == EPERM) return not_permitted(chip);
+  for (const auto& [key, offset] : offsets_of(settings)) {
+    if (offset < 0) continue;
+    gpiod_line* line = gpiod_chip_get_line(handle, static_cast<unsigned>(offset));
+    if (line == nullptr || gpiod_line_is_requested(line) || !gpiod_line_is_used(line)) continue;
+    const char* user = gpiod_line_consumer(line);
+    return Error{fmt::format(
+        "device.lines.{} is line {} of {} \"{}\", which {} uses already; end it, or choose another "
+        "line (gpioinfo {} shows them)",
+        key, offset, chip.name, chip.label, user == nullptr ? "the kernel" : user, chip.name)};
+  }
+  return Error{fmt::format("the lines of {} \"{}\" cannot be requested: {}; gpioinfo {} shows them",
+                           chip.name, chip.label, std::strerror(error), chip.name)};
+}
+
+bool request(Groups& lines) {
+  const Values low{};
+  if (!lines.inputs.empty() && gpiod_line_request_bulk_input(&lines.inputs.bulk(), kConsumer) != 0)
+    return false;
+  if (!lines.outputs.empty() &&
+      gpiod_line_request_bulk_output(&lines.outputs.bulk(), kConsumer, low.data()) != 0)
+    return false;
+  return lines.scope.empty() ||
+         gpiod_line_request_bulk_output(&lines.scope.bulk(), kConsumer, low.data()) == 0;
+}
+
+Groups group(gpiod_chip* chip, const LinesSettings& s) {
+  Groups lines;
+  lines.estop_a = lines.inputs.add(chip, s.estop_a);
+  lines.estop_b = lines.inputs.add(chip, s.estop_b);
+  lines.dead_man = lines.inputs.add(chip, s.dead_man);
+  lines.enable = lines.outputs.add(chip, s.enable);
+  lines.heartbeat = lines.outputs.add(chip, s.heartbeat);
+  lines.led = lines.outputs.add(chip, s.led);
+  lines.scope.add(chip, s.scope);
+  return lines;
+}
+
+}  // namespace
+
+Result<GpioChip> choose_chip(const std::vector<GpioChip>& chips, const std::string& wanted) {
+  std::error_code no_file;
+  const std::string path = std::filesystem::weakly_canonical(wanted, no_file).string();  // a link
+  const GpioChip* found = nullptr;
+  const GpioChip* closed = nullptr;
+  for (const GpioChip& chip : chips) {
+    if (chip.error != 0 && chip.bus.empty()) closed = &chip;
+    if (path != chip.path && wanted != chip.label && wanted != chip.name) continue;
+    if (found != nullptr)
+      return Error{fmt::format("device.lines.chip \"{}\" fits {} and {}; name its path instead",
+                               wanted, found->path, chip.path)};
+    found = &chip;
+  }
+  if (found == nullptr && closed != nullptr) found = closed;  // its label could not be read
+  if (found == nullptr)
+    return Error{fmt::format(
+        "device.lines.chip is \"{}\", but {}; load the driver of the board that the lines are "
+        "wired to, or correct the name",
+        wanted,
+        chips.empty() ? "this PC shows no GPIO chip" : "here are only " + name_chips(chips))};
+  if (!found->bus.empty())
+    return Error{fmt::format(
+        "{} \"{}\" hangs on {}, where every access waits for milliseconds: it cannot carry safety "
+        "lines; use a chip on PCI, LPC or the processor itself",
+        found->name, found->label, found->bus)};
+  if (found->error == EACCES || found->error == EPERM) return not_permitted(*found);
+  if (found->error != 0)
+    return Error{fmt::format("{} cannot be opened: {}; check its driver (dmesg)", found->path,
+                             std::strerror(found->error))};
+  return *found;
+}
+
+Result<bool> check_offsets(const LinesSettings& settings, const GpioChip& chip) {
+  const auto lines = offsets_of(settings);
+  bool any = false;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (lines[i].offset < 0) continue;
+    any = true;
+    if (lines[i].offset >= chip.lines)
+      return Error{fmt::format("device.lines.{} is {}, but {} \"{}\" has lines 0 to {}",
+                               lines[i].key, lines[i].offset, chip.name, chip.label,
+                               chip.lines - 1)};
+    for (std::size_t j = 0; j < i; ++j)
+      if (lines[j].offset == lines[i].offset)
+        return Error{fmt::format("device.lines.{} and {} are both line {}; give each its own",
+                                 lines[j].key, lines[i].key, lines[i].offset)};
+  }
+  if (!any)
+    return Error{fmt::format(
+        "device.lines names the chip {} but no line of it; set estop_a, estop_b, enable or others",
+        settings.chip)};
+  return true;
+}
+
+Result<std::unique_ptr<SafetyLines>> open_safety_lines(const LinesSettings& settings,
+                                                       const SystemRoots& roots) {
+  if (!settings.wired()) return std::unique_ptr<SafetyLines>(new NoSafetyLines);
+  const auto chip = choose_chip(find_gpio_chips(roots), settings.chip);
+  if (!chip) return chip.error();
+  if (const auto good = check_offsets(settings, *chip); !good) return good.error();
+  ChipHandle handle(gpiod_chip_open(chip->path.c_str()));
+  if (handle == nullptr)
+    return Error{fmt::format("{} cannot be opened: {}; check its driver (dmesg)", chip->path,
+                             std::strerror(errno))};
+  Groups lines = group(handle.get(), settings);
+  if (!request(lines)) return why_not_requested(handle.get(), *chip, settings, errno);
+  return std::unique_ptr<SafetyLines>(new GpioLines(std::move(handle), lines));
+}
+
+}  // namespace tact::hal

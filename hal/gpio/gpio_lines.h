@@ -1,0 +1,30 @@
+// gpio_lines.h - safety lines on a GPIO chip, by libgpiod 1.6.
+//
+// Inputs are one request and outputs are one request, so a tick costs one ioctl for all levels and
+// one for all outputs; the scope line has its own request and costs two more. Outputs start low and
+// go low in stop(); what they do after a crash is up to their pull-down resistors. Once the chip
+// has failed to answer, the lines stay lost until they are opened again.
+//
+// Source: libgpiod 1.6 (gpiod.h, gpiod_line_*_bulk), linux/gpio.h.
+#pragma once
+
+#include <memory>
+
+#include "hal/gpio/gpio_chips.h"
+#include "hal/safety_lines.h"
+#include "model/device_settings.h"
+#include "model/result.h"
+
+namespace tact::hal {
+
+/// Lines of scene.device.lines, outputs low; NoSafetyLines when none is wired. Set-up only.
+model::Result<std::unique_ptr<SafetyLines>> open_safety_lines(const model::LinesSettings& settings,
+                                                              const SystemRoots& roots = {});
+
+/// The chip that is meant: by path, label or name, and on no bus where every access sleeps.
+model::Result<GpioChip> choose_chip(const std::vector<GpioChip>& chips, const std::string& wanted);
+
+/// The first thing wrong with the line numbers: outside the chip, used twice, none at all.
+model::Result<bool> check_offsets(const model::LinesSettings& settings, const GpioChip& chip);
+
+}  // namespace tact::hal

@@ -1,0 +1,95 @@
+#include "hal/gpio/safety_logic.h"
+
+namespace tact::hal {
+
+using model::Fault;
+
+const char* words(LinesCause cause) {
+  switch (cause) {
+    case LinesCause::kNone:
+      break;
+    case LinesCause::kDeadManOpen:
+      return "the dead-man switch is open; hold it, then reset and arm";
+    case LinesCause::kOneOpen:
+      return "one channel of the e-stop opened for a moment: it was pressed briefly, or a wire is "
+             "loose; check device.lines.estop_a and estop_b, then reset and arm";
+    case LinesCause::kBothOpen:
+      return "both channels of the e-stop are open: it is pressed, or has no supply; release it, "
+             "then reset and arm";
+    case LinesCause::kAStaysOpen:
+      return "channel A of the e-stop stays open while channel B is closed: mend the wire or the "
+             "contact of A, press and release the e-stop, then reset and arm";
+    case LinesCause::kBStaysOpen:
+      return "channel B of the e-stop stays open while channel A is closed: mend the wire or the "
+             "contact of B, press and release the e-stop, then reset and arm";
+    case LinesCause::kAStaysClosed:
+      return "channel A of the e-stop did not open with channel B: A is welded or shorted, or a "
+             "wire of B broke; mend it, press and release the e-stop, then reset and arm";
+    case LinesCause::kBStaysClosed:
+      return "channel B of the e-stop did not open with channel A: B is welded or shorted, or a "
+             "wire of A broke; mend it, press and release the e-stop, then reset and arm";
+    case LinesCause::kChipLost:
+      return "the GPIO chip of device.lines does not answer any more: check it and its driver "
+             "(gpiodetect lists the chips), then start tactd again";
+  }
+  return "";
+}
+
+void SafetyLogic::compare(const SafetyLevels& levels) RT_SAFE {
+  if (levels.estop_a == levels.estop_b) {
+    differing_ = false;
+    agreed_closed_ = levels.estop_a;
+    if (!levels.estop_a) unproven_ = false;
+    return;
+  }
+  if (!differing_) differ_since_ns_ = now_ns_;
+  differing_ = true;
+  if (now_ns_ - differ_since_ns_ <= kDiscrepancy_ns) return;
+  unproven_ = true;
+  // The channel that has not moved since they agreed is the one to look at.
+  const bool a_moved = levels.estop_a != agreed_closed_;
+  if (agreed_closed_)
+    stuck_ = a_moved ? LinesCause::kBStaysClosed : LinesCause::kAStaysClosed;
+  else
+    stuck_ = a_moved ? LinesCause::kBStaysOpen : LinesCause::kAStaysOpen;
+}
+
+Fault SafetyLogic::judge(const SafetyLevels& levels, std::int64_t now_ns) RT_SAFE {
+  now_ns_ = now_ns;
+  LinesCause cause = LinesCause::kNone;
+  const bool stood = fault_ != Fault::kNone;
+  fault_ = Fault::kNone;
+  if (wiring_.dead_man && !levels.dead_man) {
+    fault_ = Fault::kDeadManReleased;
+    cause = LinesCause::kDeadManOpen;
+  }
+  if (wiring_.estop) {
+    compare(levels);
+    if (unproven_) {
+      fault_ = Fault::kLinesDiffer;
+      cause = stuck_;
+    } else if (!levels.estop_a || !levels.estop_b) {
+      fault_ = Fault::kEmergencyStop;
+      cause = levels.estop_a == levels.estop_b ? LinesCause::kBothOpen : LinesCause::kOneOpen;
+    }
+  }
+  if (fault_ != Fault::kNone && (!stood || cause > this->cause()))
+    cause_.store(cause, std::memory_order_relaxed);
+  return fault_;
+}
+
+SafetyOutputs SafetyLogic::drive(const LinesTick& tick) RT_SAFE {
+  const bool good = fault_ == Fault::kNone && !tick.faulted;
+  if (!good || now_ns_ - last_toggle_ns_ > kHeartbeatPause_ns) beating_ = false;
+  if (good && tick.healthy) {
+    outputs_.heartbeat = !outputs_.heartbeat;
+    last_toggle_ns_ = now_ns_;
+    if (!beating_) heartbeat_since_ns_ = now_ns_;
+    beating_ = true;
+  }
+  outputs_.enable = beating_ && now_ns_ - heartbeat_since_ns_ >= kHeartbeatBeforeEnable_ns;
+  outputs_.led = tick.armed;
+  return outputs_;
+}
+
+}  // namespace tact::hal

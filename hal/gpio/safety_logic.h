@@ -1,0 +1,87 @@
+// safety_logic.h - what the levels of the safety lines mean, and what the outputs answer. Pure.
+//
+//   e-stop, two normally closed channels:  high = closed = good, low = open, broken wire or no power
+//   one channel open                       -> kEmergencyStop, at once
+//   channels differ for more than 50 ms    -> kLinesDiffer, until both have been open together: only
+//                                             then is a contact that sticks known to be mended
+//   dead-man low                           -> kDeadManReleased, at once
+//   heartbeat   toggles after every healthy tick; the relay beside it drops after some 10 ms without
+//   enable      100 ms after the heartbeat has begun; gone in the tick of a fault, or when the
+//               heartbeat has paused for more than 10 ms: lines need well over 100 ticks a second
+//
+// The supervisor keeps a fault until the operator resets; here it stands while its cause does. Two
+// channels that watch each other: ISO 13850, ISO 13849-1 category 3.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "hal/safety_lines.h"
+
+namespace tact::hal {
+
+inline constexpr std::int64_t kDiscrepancy_ns = 50'000'000;
+inline constexpr std::int64_t kHeartbeatBeforeEnable_ns = 100'000'000;
+inline constexpr std::int64_t kHeartbeatPause_ns = 10'000'000;
+
+/// Which inputs exist; what is not wired is good.
+struct SafetyWiring {
+  bool estop = false;  // both channels
+  bool dead_man = false;
+};
+
+struct SafetyLevels {
+  bool estop_a = false, estop_b = false, dead_man = false;
+};
+
+struct SafetyOutputs {
+  bool enable = false, heartbeat = false, led = false;
+};
+
+/// Why the lines stop the force. Ascending: the more telling cause replaces the one before.
+enum class LinesCause : std::uint8_t {
+  kNone,
+  kDeadManOpen,
+  kOneOpen,  // for now: a channel of a good switch opens a little before the other
+  kBothOpen,
+  kAStaysOpen,    // both were open, B has closed: wire or contact of A
+  kBStaysOpen,    // the same the other way round
+  kAStaysClosed,  // both were closed, B has opened: A is welded or shorted, or B's wire broke
+  kBStaysClosed,
+  kChipLost,
+};
+
+/// One sentence for a person; empty for kNone.
+const char* words(LinesCause cause);
+
+class SafetyLogic {
+ public:
+  explicit SafetyLogic(const SafetyWiring& wiring) : wiring_(wiring) {}
+
+  /// Levels of this tick. kNone, or what stands.
+  model::Fault judge(const SafetyLevels& levels, std::int64_t now_ns) RT_SAFE;
+  /// Outputs of this tick, after judge().
+  SafetyOutputs drive(const LinesTick& tick) RT_SAFE;
+
+  bool enabled() const RT_SAFE { return outputs_.enable && fault_ == model::Fault::kNone; }
+  /// The most telling cause of the fault that stands, or of the last one. Any thread.
+  LinesCause cause() const RT_SAFE { return cause_.load(std::memory_order_relaxed); }
+
+ private:
+  void compare(const SafetyLevels& levels) RT_SAFE;
+
+  SafetyWiring wiring_;
+  model::Fault fault_ = model::Fault::kNone;
+  std::atomic<LinesCause> cause_{LinesCause::kNone};
+  SafetyOutputs outputs_;
+  std::int64_t now_ns_ = 0;
+  std::int64_t differ_since_ns_ = 0;
+  std::int64_t heartbeat_since_ns_ = 0, last_toggle_ns_ = 0;
+  bool agreed_closed_ = false;  // what the channels last agreed on
+  bool differing_ = false;
+  bool unproven_ = false;  // they differed for too long and have not been open together since
+  LinesCause stuck_ = LinesCause::kNone;
+  bool beating_ = false;
+};
+
+}  // namespace tact::hal

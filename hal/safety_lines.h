@@ -1,0 +1,56 @@
+// safety_lines.h - the wires beside the device: e-stop and dead-man in, enable and heartbeat out.
+//
+// The PC is never the safety device: the lines watch an e-stop chain that works without them, add
+// one more permission in series, and prove that the loop is alive. Once per tick, in this order:
+// scope(true), read, write, scope(false). Enable comes after 100 ms of heartbeat with good inputs,
+// goes at the first fault before anything else is told, and returns only after a reset.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "model/fault.h"
+#include "model/rt.h"
+
+namespace tact::hal {
+
+/// What the tick that ends has found.
+struct LinesTick {
+  bool healthy = false;  // no fault stands and the tick was in time: the heartbeat may toggle
+  bool armed = false;    // for the status light
+  bool faulted = false;  // a fault stands: enable goes now, not when the heartbeat is missed
+};
+
+class SafetyLines {
+ public:
+  SafetyLines() = default;
+  SafetyLines(const SafetyLines&) = delete;
+  SafetyLines& operator=(const SafetyLines&) = delete;
+  virtual ~SafetyLines() = default;
+
+  /// Levels of now. kNone, or why force must be zero; the fault stands while its cause does.
+  virtual model::Fault read(std::int64_t now_ns) RT_SAFE = 0;
+  /// Outputs of this tick; kLinesLost when they cannot be set.
+  virtual model::Fault write(const LinesTick& tick) RT_SAFE = 0;
+  /// May the drives have power?
+  virtual bool enabled() const RT_SAFE = 0;
+  /// The scope line; nothing where none is wired.
+  virtual void scope(bool up) RT_SAFE = 0;
+  /// What lies behind the fault of the lines, for a person: which channel, why, the cure. Empty when
+  /// there is no more to say than the fault's own words. Any thread, at any time.
+  virtual std::string trouble() const { return {}; }
+  /// Everything to its safe level; may block.
+  virtual void stop() = 0;
+};
+
+/// Where no line is wired.
+class NoSafetyLines final : public SafetyLines {
+ public:
+  model::Fault read(std::int64_t) RT_SAFE override { return model::Fault::kNone; }
+  model::Fault write(const LinesTick&) RT_SAFE override { return model::Fault::kNone; }
+  bool enabled() const RT_SAFE override { return true; }
+  void scope(bool) RT_SAFE override {}
+  void stop() override {}
+};
+
+}  // namespace tact::hal

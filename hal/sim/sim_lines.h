@@ -1,0 +1,57 @@
+// sim_lines.h - safety lines without wires: the levels are what a test or a person sets.
+//
+// The same logic as behind the GPIO chip (hal/gpio/safety_logic.h), the same answers when the chip
+// is lost; inputs may be set from any thread.
+#pragma once
+
+#include <atomic>
+
+#include "hal/gpio/safety_logic.h"
+
+namespace tact::hal {
+
+class SimLines final : public SafetyLines {
+ public:
+  struct Inputs {
+    std::atomic<bool> estop_a{true}, estop_b{true}, dead_man{true};
+    std::atomic<bool> chip_lost{false};  // every call fails from now on
+  };
+
+  explicit SimLines(const SafetyWiring& wiring = {.estop = true, .dead_man = true})
+      : logic_(wiring) {}
+
+  model::Fault read(std::int64_t now_ns) RT_SAFE override {
+    if (inputs_.chip_lost.load(std::memory_order_relaxed)) lost_ = true;
+    const model::Fault fault =
+        logic_.judge({.estop_a = inputs_.estop_a.load(std::memory_order_relaxed),
+                      .estop_b = inputs_.estop_b.load(std::memory_order_relaxed),
+                      .dead_man = inputs_.dead_man.load(std::memory_order_relaxed)},
+                     now_ns);
+    return lost_ ? model::Fault::kLinesLost : fault;
+  }
+  model::Fault write(const LinesTick& tick) RT_SAFE override {
+    if (inputs_.chip_lost.load(std::memory_order_relaxed)) lost_ = true;
+    if (lost_) return outputs_ = {}, model::Fault::kLinesLost;
+    outputs_ = logic_.drive(tick);
+    return model::Fault::kNone;
+  }
+  bool enabled() const RT_SAFE override { return !lost_ && logic_.enabled(); }
+  void scope(bool up) RT_SAFE override { scope_ = up; }
+  std::string trouble() const override {
+    return words(lost_ ? LinesCause::kChipLost : logic_.cause());
+  }
+  void stop() override { outputs_ = {}, lost_ = true; }
+
+  Inputs& inputs() { return inputs_; }
+  const SafetyOutputs& outputs() const { return outputs_; }
+  bool scope_is_up() const { return scope_; }
+
+ private:
+  Inputs inputs_;
+  SafetyLogic logic_;
+  SafetyOutputs outputs_;
+  std::atomic<bool> lost_{false};
+  bool scope_ = false;
+};
+
+}  // namespace tact::hal

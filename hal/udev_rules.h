@@ -1,0 +1,18 @@
+// udev_rules.h - the rules of tools/deploy/60-tact.rules, word for word, for the sentences that say
+// why something may not be opened. Source: man 7 udev.
+#pragma once
+
+namespace tact::hal {
+
+inline constexpr const char* kFalconRule =
+    R"(SUBSYSTEM=="usb", ATTR{idVendor}=="0403", ATTR{idProduct}=="cb48", GROUP="haptics", MODE="0660")";
+inline constexpr const char* kForceDimensionRule =
+    R"(SUBSYSTEM=="usb", ATTR{idVendor}=="1451", GROUP="haptics", MODE="0660")";
+inline constexpr const char* kGpioRule =
+    R"(SUBSYSTEM=="gpio", KERNEL=="gpiochip[0-9]*", GROUP="haptics", MODE="0660")";
+
+/// The cure of every missing permission, to follow the rule that is missing.
+inline constexpr const char* kRuleCure =
+    "sudo tools/deploy/install installs it; then sudo adduser $USER haptics, and log in again";
+
+}  // namespace tact::hal

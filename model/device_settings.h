@@ -1,0 +1,114 @@
+// device_settings.h - what a scene says about the device and the lines beside it.
+//
+// Plain numbers and names; what they mean to a device is said in hal/. Defaults are those of the
+// example delta (hal/sim/sim_delta_model.h) and of the makers' manuals, so a scene names what
+// differs. Set-up code only.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "model/types.h"
+
+namespace tact::model {
+
+/// The simulated Delta's imperfections; its geometry is fixed in hal/sim.
+struct SimDeviceSettings {
+  double counts_per_turn = 0.0;            // of a joint
+  double sample_delay_s = 0.0;             // age of a sample when the loop gets it
+  double joint_friction_Nm = 0.0;          // Coulomb, per joint
+  double joint_damping_Nms_per_rad = 0.0;  // viscous, per joint
+  double observer_bandwidth_Hz = 0.0;      // of the velocity observer
+};
+
+/// A delta of one's own, on its side: its z axis points at the operator (types.h, frame W).
+struct DeltaSettings {
+  double base_radius_m = 0.180;      // shoulder axes
+  double platform_radius_m = 0.050;  // ends of the rods
+  double upper_arm_m = 0.260;
+  double forearm_m = 0.400;
+  Vec3 azimuth_rad{0.0, 2.0943951023931953, 4.1887902047863905};  // of arms 1, 2, 3
+  double theta_min_rad = -0.8727, theta_max_rad = 1.6581;         // stops of an arm
+  double arm_kg = 0.25, arm_com_m = 0.09, arm_inertia_kgm2 = 0.0056;
+  double rotor_inertia_kgm2 = 6e-5;
+  double gear_ratio = 10.0;   // motor turns per turn of an arm
+  double forearm_kg = 0.08;   // both rods of one arm
+  double platform_kg = 0.20;  // with the handle
+  double middle_m = 0.345;    // origin of W, from the plane of the motors
+  double workspace_radius_m = 0.18, workspace_half_length_m = 0.15;
+  double max_force_N = 20.0;
+  double max_joint_torque_Nm = 7.4;
+  double joint_friction_Nm = 0.01;          // Coulomb
+  double joint_damping_Nms_per_rad = 0.05;  // viscous, what the device really has
+  double counts_per_turn = 100'000.0;       // of an arm
+  double observer_bandwidth_Hz = 40.0;
+};
+
+/// How a delta on CAN knows its arms' angles.
+enum class Homing {
+  kAbsolute,  // absolute encoders: zero_turns holds for good
+  kIndex,     // the drives turn to the index pulse at start, then zero_turns holds
+  kJig,       // the arms rest on a jig at home_rad when tactd starts
+};
+
+/// Three drives on one bus.
+struct CanSettings {
+  std::string interface = "can0";
+  std::array<int, 3> node{1, 2, 3};
+  Homing homing = Homing::kJig;
+  Vec3 zero_turns;                // of the motor, where the arm is at 0 rad
+  Vec3 direction{1.0, 1.0, 1.0};  // 1 or -1: sign of the motor's turn for a rising arm
+  Vec3 home_rad;                  // of the arms on the jig
+  // ODrive
+  double max_velocity_turns_per_s = 0.0;  // of the motor, where the drive gives up
+  double max_current_A = 0.0;             // both or none; 0: the drive's own limits stay
+  bool short_torque = true;               // 4 bytes of torque, not 8: 32 us less on the bus
+  // CiA 402
+  double counts_per_motor_turn = 10'000.0;
+  bool command_at_sync = false;  // RPDO type 1, if the drive insists
+};
+
+enum class UsbTransport { kUsbfs, kLibusb };
+
+struct FalconSettings {
+  UsbTransport transport = UsbTransport::kUsbfs;
+  std::string bus_path;         // "1-2.3"; empty: the only one
+  std::string firmware_path;    // absolute; empty: its firmware must be running
+  std::string firmware_sha256;  // empty: only images that are known
+  bool event_character = true;  // the USB chip answers at once, without its 1 ms timer
+  bool keep_homing = true;      // the homing request stays set while it runs
+  Vec3 gain_words_per_Nm{10'000.0, 10'000.0, 10'000.0};  // by tact-calibrate, axis 1, 2, 3
+  Vec3 dead_band_words;                                  // before an axis moves at all
+  double moving_mass_kg = 0.0;  // held up by the motors, at the grip; 0: not held
+  double observer_bandwidth_Hz = 40.0;
+  double joint_friction_Nm = 0.02, joint_damping_Nms_per_rad = 0.01;
+};
+
+struct ForceDimensionSettings {
+  std::string library = "libdhd.so.3";  // name or path; the maker's, never part of tact
+  int id = -1;                          // -1: the only device
+  double watchdog_s = 0.004;            // the device lets go by itself; at most 0.0318
+  double effector_mass_kg = 0.0;        // 0: the maker's value
+  double damping_Ns_per_m = 1.0;        // what the device itself has, at the handle
+};
+
+/// Lines of one GPIO chip, by offset; -1: not wired.
+struct LinesSettings {
+  std::string chip;  // label or path; empty: no lines
+  int estop_a = -1, estop_b = -1;
+  int dead_man = -1;
+  int enable = -1, heartbeat = -1, led = -1, scope = -1;
+  bool wired() const { return !chip.empty(); }
+};
+
+struct DeviceSettings {
+  std::string kind;  // "sim-delta", "can-odrive", "can-cia402", "falcon", "force-dimension"
+  SimDeviceSettings sim{};
+  DeltaSettings delta{};
+  CanSettings can{};
+  FalconSettings falcon{};
+  ForceDimensionSettings force_dimension{};
+  LinesSettings lines{};
+};
+
+}  // namespace tact::model

@@ -1,0 +1,36 @@
+// From any bytes, cut anywhere, come exactly the reports that stand in them whole.
+#include <vector>
+
+#include "hal/falcon/falcon_stream.h"
+#include "tests/fuzz/fuzz.h"
+
+namespace {
+
+using namespace tact;
+using fuzz::require;
+
+/// The same by looking at every place: slower, and without a memory.
+std::vector<hal::FalconReport> whole_reports(fuzz::Bytes bytes) {
+  std::vector<hal::FalconReport> found;
+  for (std::size_t at = 0; at + hal::kFalconPacketSize <= bytes.size(); ++at)
+    if (const auto report = hal::decode_falcon_report(bytes.subspan(at, hal::kFalconPacketSize)))
+      found.push_back(*report);
+  return found;
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const fuzz::Bytes input(data, size);
+  hal::FalconStream stream;
+  std::vector<hal::FalconReport> reports;
+  for (const std::uint8_t byte : input)
+    if (const auto report = stream.push(byte)) reports.push_back(*report);
+  require(reports == whole_reports(input));
+  require(stream.reports() == reports.size());
+  require(size == hal::kFalconPacketSize * reports.size() + stream.dropped_bytes() +
+                      stream.waiting_bytes());
+  for (const hal::FalconReport& report : reports)
+    require(hal::decode_falcon_report(hal::encode(report)) == report);
+  return 0;
+}

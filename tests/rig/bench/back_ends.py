@@ -1,0 +1,67 @@
+"""The devices of the bench. One entry names what the scene says, what the guest starts before
+tactd, which programs it needs, and the system calls of every FIFO thread, at most, per tick."""
+from bench.case import BackEnd
+
+# 100 N/m along the surface are more than a delta on CAN can show: its samples are a period old.
+SLIDE = 'contact.sliding_stiffness_N_per_m=70'
+
+SLEEP = {("tact-loop", "sys_clock_nanosleep"): 1}
+CAN_CALLS = SLEEP | {("tact-loop", "sys_recvmmsg"): 1, ("tact-loop", "sys_sendmmsg"): 1}
+
+SIM_DELTA = BackEnd("sim-delta", settings=('device.kind="sim-delta"',), system_calls=SLEEP)
+
+
+# e-stop A and B, dead-man in; enable and heartbeat out
+SIM_DELTA_LINES = BackEnd(
+    "sim-delta with lines",
+    settings=('device.kind="sim-delta"', 'device.lines.chip="tact-lines"', "device.lines.estop_a=0",
+              "device.lines.estop_b=1", "device.lines.dead_man=2", "device.lines.enable=3",
+              "device.lines.heartbeat=4"),
+    setup="gpio_sim up tact-lines 8\nfor i in 0 1 2; do line[$i]=$(gpio_sim path $i); pull $i up; done",
+    system_calls=SLEEP | {("tact-loop", "sys_ioctl"): 2})
+
+
+def drives(protocol, options=""):
+    """Sets up the bus and the drives of a delta; EMULATOR holds further options of a case."""
+    return f"can up\nstart_emulator tact-rig-drives --protocol {protocol} {options} $EMULATOR"
+
+
+def odrive(protocol):
+    return BackEnd(protocol, settings=('device.kind="can-odrive"', 'device.can.homing="absolute"', SLIDE),
+                   setup=drives(protocol), programs=("tact-rig-drives",), system_calls=CAN_CALLS)
+
+
+ODRIVE06, ODRIVE05 = odrive("odrive06"), odrive("odrive05")
+CIA402 = BackEnd("cia402", settings=('device.kind="can-cia402"', 'device.can.homing="absolute"', SLIDE),
+                 setup=drives("cia402"), programs=("tact-rig-drives",), system_calls=CAN_CALLS)
+
+
+# The bus's own thread waits, reaps and submits; libusb's needs more for the same.
+USB_CALLS = {
+    "usbfs": {("tact-loop", "sys_ioctl"): 1, ("tact-usb", "sys_ioctl"): 3},
+    "libusb": {("tact-loop", "sys_write"): 1, ("tact-usb", "sys_read"): 1, ("tact-usb", "sys_poll"): 5,
+               ("tact-usb", "sys_ioctl"): 6},
+}
+
+
+def falcon(transport, boot="--running", setup=""):
+    """usbfs: the loop submits, the bus's thread reaps; libusb: the thread does both."""
+    return BackEnd(f"falcon-{transport}",
+                   settings=('device.kind="falcon"', f'device.falcon.transport="{transport}"', SLIDE),
+                   setup=f"{setup}usb up\nstart_emulator tact-rig-falcon {boot} $EMULATOR\nusb raise",
+                   programs=("tact-rig-falcon",),
+                   system_calls=SLEEP | USB_CALLS[transport])
+
+
+FALCON_USBFS, FALCON_LIBUSB = falcon("usbfs"), falcon("libusb")
+# In its boot ROM. It takes any image of this size; the digest is that of these bytes.
+FALCON_COLD = falcon("usbfs", boot="--image-bytes 8492", setup=(
+    "head -c 8492 /dev/zero | tr '\\0' 'T' >/tmp/firmware.bin\n"
+    "DEVICE+=(--set 'device.falcon.firmware=\"/tmp/firmware.bin\"' --set "
+    "\"device.falcon.firmware_sha256='$(sha256sum </tmp/firmware.bin | cut -d' ' -f1)'\")\n"))
+FORCE_DIMENSION = BackEnd(
+    "force-dimension",
+    settings=('device.kind="force-dimension"', SLIDE,
+              'device.force_dimension.library="/tact/bin/libtact-stub-dhd.so"'),
+    programs=("libtact-stub-dhd.so",),
+    system_calls=SLEEP | {("tact-fd", "sys_clock_nanosleep"): 4})  # the library's own rate, 4 kHz

@@ -1,0 +1,157 @@
+"""Faults: what is required of each, and the table that a run writes."""
+import dataclasses
+import json
+
+
+@dataclasses.dataclass(frozen=True)
+class Latches:
+    """The fault is latched under `name`; the force is zero `zero_ms` after that; nothing moves."""
+    name: str
+    detect_ms: float            # from the injection to the first tick that knows
+    zero_ms: float = 1.0        # from that tick to the first with zero force; negative: zero before
+    exit_status: str = "1"
+    motors_ms: float = None     # from the injection to no force in the emulated motors
+
+    def judge(self, run):
+        ticks, wrong = run.ticks, []
+        detected, zero = ticks.get("detected"), ticks.get("zero")
+        if not ticks.get("pushed_before") or ticks.get("force_before_N", 0.0) == 0.0:
+            wrong.append("no force when the fault came: it proves nothing")
+        if not detected or detected["fault"] != self.name:
+            wrong.append(f"latched '{(detected or {}).get('fault')}', not '{self.name}'")
+        elif detected["after_ms"] > self.detect_ms:
+            wrong.append(f"seen after {detected['after_ms']:.2f} ms, bound {self.detect_ms} ms")
+        if not zero:
+            wrong.append("the force never became zero")
+        elif detected and zero["after_ms"] - detected["after_ms"] > self.zero_ms:
+            wrong.append(f"zero {zero['after_ms'] - detected['after_ms']:.2f} ms after that, "
+                         f"bound {self.zero_ms} ms")
+        if ticks.get("moved_after_N") != 0.0 or ticks.get("armed_ticks_after") != 0:
+            wrong.append(f"it moved again: {ticks.get('moved_after_N')} N, armed for "
+                         f"{ticks.get('armed_ticks_after')} ticks")
+        if ticks.get("end_state") != "stopped" or ticks.get("end_fault") != self.name:
+            wrong.append(f"ended {ticks.get('end_state')} with '{ticks.get('end_fault')}': not latched")
+        if run.text("tactd.status").strip() != self.exit_status:
+            wrong.append(f"exit status {run.text('tactd.status').strip()}, not {self.exit_status}")
+        if self.motors_ms is not None:
+            wrong += motors_let_go(run, self.motors_ms)
+        return wrong
+
+    def row(self, run):
+        detected, zero = run.ticks.get("detected") or {}, run.ticks.get("zero") or {}
+        after, zero_after = detected.get("after_ms"), zero.get("after_ms")
+        return {"detected_as": detected.get("fault", "nothing"), "detected_ms": after,
+                "zero_ms": None if None in (after, zero_after) else zero_after - after,
+                "bound": f"{self.detect_ms:g} + {self.zero_ms:g} ms",
+                "moved_after_N": run.ticks.get("moved_after_N")}
+
+
+OF_THE_DEVICE = {"bus down", "bus off", "drive fault", "drive silent", "device unplugged",
+                 "device garbled", "homing lost", "device failed"}
+
+
+def attempt(required):
+    """bash: what must not bring a force back. A fault of the device outlives a reset; of all others,
+    arming alone changes nothing."""
+    if not isinstance(required, Latches):
+        return ""
+    reset = "kill -USR1 $tactd; sleep .06; " if required.name in OF_THE_DEVICE else ""
+    return f"{reset}kill -USR2 $tactd"
+
+
+def motors_let_go(run, within_ms, since_ns=None):
+    """What the motors on the other side of the bus did: no torque in time, and none after it."""
+    told = (run.emulator.get("faults") or [{}])[0]
+    since_ns = since_ns or told.get("injected_ns") or run.ticks.get("injected_ns") or 0
+    zero_ns = told.get("torque_zero_ns")
+    if not since_ns or not zero_ns:
+        return [f"the motors kept their force: {told}"]
+    took_ms, again_N = (zero_ns - since_ns) / 1e6, told["largest_after_zero_N"]
+    wrong = []
+    if took_ms > within_ms:
+        wrong.append(f"the motors let go after {took_ms:.2f} ms, bound {within_ms} ms")
+    if again_N >= 0.05:
+        wrong.append(f"the motors pushed again: {again_N:.3f} N")
+    return wrong
+
+
+@dataclasses.dataclass(frozen=True)
+class RidesThrough:
+    """What must not stop tactd: no fault, and at most so many periods lost at once."""
+    most_skipped: int = 0
+    fades: bool = False         # samples must have been missed
+
+    def judge(self, run):
+        ticks, wrong = run.ticks, []
+        if ticks.get("injected_ns", 0) == 0 or not ticks.get("first_tick_after"):
+            wrong.append("nothing was injected while tactd ran: it proves nothing")
+        if any(fault.get("acts") == 0 for fault in run.emulator.get("faults") or ()):
+            wrong.append("the emulator changed nothing: it proves nothing")
+        if self.fades and not ticks.get("limited"):
+            wrong.append("no sample was missed: it proves nothing")
+        if ticks.get("detected") or ticks.get("end_state") != "armed":
+            wrong.append(f"stopped by '{ticks.get('end_fault')}', ended {ticks.get('end_state')}")
+        if ticks.get("most_skipped_at_once", 1 << 30) > self.most_skipped:
+            wrong.append(f"{ticks.get('most_skipped_at_once')} periods lost at once, "
+                         f"{self.most_skipped} allowed")
+        if run.text("tactd.status").strip() != "0":
+            wrong.append(f"exit status {run.text('tactd.status').strip()}")
+        return wrong
+
+    def row(self, run):
+        lost = run.ticks.get("most_skipped_at_once")
+        return {"detected_as": "rides through", "detected_ms": None, "zero_ms": None,
+                "bound": f"{self.most_skipped} periods lost, {lost} were", "moved_after_N": None}
+
+
+@dataclasses.dataclass(frozen=True)
+class StoppedByDrives:
+    """tactd is gone without a word: the drives' own watchdogs take the force."""
+    within_ms: float
+    trips: int
+
+    def judge(self, run):
+        wrong = []
+        if run.emulator.get("watchdog_trips") != self.trips:
+            wrong.append(f"{run.emulator.get('watchdog_trips')} watchdogs tripped, not {self.trips}")
+        if run.text("tactd.status").strip() != "137":
+            wrong.append(f"exit status {run.text('tactd.status').strip()}: it was not killed")
+        if run.ticks.get("force_before_N", 0.0) == 0.0:
+            wrong.append("no force when it was killed: it proves nothing")
+        oldest_ms = run.emulator.get("oldest_command_ns", 1e12) / 1e6
+        if oldest_ms > self.within_ms:
+            wrong.append(f"a torque was held for {oldest_ms:.2f} ms, bound {self.within_ms} ms")
+        return wrong
+
+    def row(self, run):
+        return {"detected_as": "by the drives", "detected_ms": None,
+                "zero_ms": run.emulator.get("oldest_command_ns", 0) / 1e6,
+                "bound": f"{self.within_ms:g} ms", "moved_after_N": None}
+
+
+def write_table(runs, folder):
+    """faults.md and faults.json in `folder`, a row for every run with a fault."""
+    rows = []
+    for run in runs:
+        if run.case.fault is not None:
+            rows.append({"fault": run.case.name, "back_end": run.case.back_end.name,
+                         "seed": run.seed, **run.case.fault.row(run),
+                         "verdict": "good" if not run.complaints else "; ".join(run.complaints)})
+    (folder / "faults.json").write_text(json.dumps(rows, indent=2) + "\n")
+    lines = ["# Faults on the virtual bench", "",
+             "Times are guest time: ms from the injection to the tick that knows, ms from that tick "
+             "to zero force.", "",
+             "| fault | back end | detected as | injected to detected | detected to zero | bound | "
+             "moved afterwards | verdict |", "|---|---|---|---|---|---|---|---|"]
+    for row in rows:
+        lines.append("| " + " | ".join(
+            [row["fault"], row["back_end"], row["detected_as"], ms(row["detected_ms"]),
+             ms(row["zero_ms"]), row["bound"],
+             "-" if row["moved_after_N"] is None else f"{row['moved_after_N']:g} N",
+             row["verdict"]]) + " |")
+    (folder / "faults.md").write_text("\n".join(lines) + "\n")
+    return rows
+
+
+def ms(value):
+    return "-" if value is None else f"{value:.2f} ms"

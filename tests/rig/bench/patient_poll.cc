@@ -1,0 +1,71 @@
+// patient_poll: loaded into QEMU (LD_PRELOAD), keeps its main loop asleep while the guest computes.
+//
+// While idle guest time is skipped (-icount sleep=off), QEMU 7.2's main loop moves the clock on when
+// it finds the virtual CPU halted. It also looks when its own poll times out or wakes for nothing,
+// and if that falls between the guest's `hlt` and the CPU thread's account of the instructions
+// before it, they are counted after the jump: one wake-up is a microsecond late, and the run is no
+// longer the same. A busy host makes that happen every few seconds. So here
+//   - a time-out becomes one second: the CPU thread wakes the main loop each time it goes idle;
+//   - a poll returns once the CPU thread waits on its condition, or after a second.
+// The CPU thread holds QEMU's big lock when it says that it is idle and gives it up in the wait
+// itself, so the main loop, which takes that lock next, finds all instructions accounted.
+//
+// Source: QEMU 7.2, softmmu/icount.c icount_start_warp_timer(), util/main-loop.c main_loop_wait(),
+// accel/tcg/tcg-accel-ops-rr.c rr_cpu_thread_fn().
+#include <dlfcn.h>
+#include <linux/futex.h>
+#include <poll.h>
+#include <pthread.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <climits>
+#include <csignal>
+#include <cstdint>
+#include <cstring>
+#include <ctime>
+
+namespace {
+
+constexpr timespec kSecond{.tv_sec = 1, .tv_nsec = 0};
+std::atomic<std::uint32_t> idle{1};  // the CPU thread waits; also before that thread lives
+static_assert(sizeof idle == sizeof(std::uint32_t));
+
+void futex(int operation, std::uint32_t value, const timespec* limit) {
+  syscall(SYS_futex, &idle, operation | FUTEX_PRIVATE_FLAG, value, limit, nullptr, 0);
+}
+
+/// Of the one thread that runs all virtual CPUs, "ALL CPUs/TCG" (-name debug-threads=on).
+bool is_cpu_thread() {
+  static thread_local const bool answer = [] {
+    char name[16] = {};
+    prctl(PR_GET_NAME, name);
+    return std::strstr(name, "/TCG") != nullptr;
+  }();
+  return answer;
+}
+
+}  // namespace
+
+extern "C" int pthread_cond_wait(pthread_cond_t* condition, pthread_mutex_t* mutex) {
+  using Function = int (*)(pthread_cond_t*, pthread_mutex_t*);
+  static const auto real =
+      reinterpret_cast<Function>(dlvsym(RTLD_NEXT, "pthread_cond_wait", "GLIBC_2.3.2"));
+  if (!is_cpu_thread()) return real(condition, mutex);
+  idle.store(1);
+  futex(FUTEX_WAKE, INT_MAX, nullptr);
+  const int result = real(condition, mutex);
+  idle.store(0);
+  return result;
+}
+
+extern "C" int ppoll(pollfd* files, nfds_t count, const timespec* limit, const sigset_t* mask) {
+  using Function = int (*)(pollfd*, nfds_t, const timespec*, const sigset_t*);
+  static const auto real = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "ppoll"));
+  const bool shorter = limit != nullptr && limit->tv_sec == 0 && limit->tv_nsec > 0;
+  const int ready = real(files, count, shorter ? &kSecond : limit, mask);
+  if (gettid() == getpid() && idle.load() == 0) futex(FUTEX_WAIT, 0, &kSecond);
+  return ready;
+}

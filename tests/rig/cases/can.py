@@ -1,0 +1,56 @@
+"""Drives on CAN: tactd's own bus code, the kernel's, and three emulated drives that swing an arm."""
+from bench import checks
+from bench.back_ends import CIA402, ODRIVE05, ODRIVE06
+from bench.case import Case
+
+SOUND = (checks.hard_real_time, checks.no_fault, checks.no_late_tick, checks.touched,
+         checks.pressed_by_hand)
+
+
+def alive(back_end):
+    return Case(f"{back_end.name}-alive", "a delta on CAN presses the liver for 10 s", back_end,
+                "control $SECONDS_OF_RUN\nfinish\nmeasure_peer 5", SOUND, timed=True,
+                seeds=(1, 2))
+
+
+def swept(back_end):
+    return Case(f"{back_end.name}-sweep", "no interleaving with other work loses a tick or a sample",
+                back_end, "noise $SEED\ncontrol $SECONDS_OF_RUN\nfinish",
+                (checks.hard_real_time, checks.no_fault, checks.no_late_tick, checks.touched), sweep=True,
+                seconds=1.5, variables={"EMULATOR": "--hand-tempo 2.5 --phase-us $((SEED * 137 % 1000))"})
+
+
+def recorded(back_end, bus_check):
+    return Case(f"{back_end.name}-recorded", "the bus as candump sees it, frame by frame", back_end,
+                "candump -L can1 >$RESULTS/candump.txt & background+=($!)\n"
+                "control $SECONDS_OF_RUN\nfinish",
+                (checks.hard_real_time, checks.no_fault, bus_check), seconds=0.9,
+                variables={"EMULATOR": "--hand-tempo 2.5"})
+
+
+def calls(back_end):
+    return Case(f"{back_end.name}-system-calls", "one call in, one call out, and sleep", back_end,
+                "control $SECONDS_OF_RUN\nsleep .3\n"
+                "system_calls $tactd 1 >$RESULTS/system_calls.txt\nfinish",
+                (checks.hard_real_time, checks.no_fault, checks.system_calls_as_listed), seconds=1.8)
+
+
+def refused(back_end, name, emulator, *words):
+    return Case(f"{back_end.name}-{name}", "refused before any force, with the cure", back_end,
+                "refused", (checks.refused(*words),), variables={"EMULATOR": emulator})
+
+
+CASES = [
+    *(alive(back_end) for back_end in (ODRIVE06, ODRIVE05, CIA402)),
+    swept(ODRIVE06),
+    recorded(ODRIVE06, checks.bus_of_odrives),
+    recorded(CIA402, checks.bus_of_cia402),
+    *(calls(back_end) for back_end in (ODRIVE06, CIA402)),
+    refused(ODRIVE06, "unpowered", "--fault unpowered@0", "are they on"),
+    refused(CIA402, "unpowered", "--fault unpowered@0", "are they on"),
+    Case("odrive06-bus-down", "refused before any force, with the cure", ODRIVE06,
+         "ip link set can0 down\nrefused", (checks.refused("ip link set can0 up"),)),
+    refused(ODRIVE06, "no-ack", "--fault unpowered@0 --clock start " +
+            " ".join(f"--fault no-ack-frame@{time}" for time in (0.4, 0.6, 0.8, 1.0, 1.2)),
+            "acknowledge"),
+]

@@ -1,0 +1,104 @@
+"""What goes wrong on a CAN bus and in drives, while tactd presses 10 mm deep, 0.9 s after enabling."""
+from bench import checks
+from bench.back_ends import CIA402, ODRIVE05, ODRIVE06
+from bench.case import Case
+from bench.faults import Latches, RidesThrough, StoppedByDrives, attempt
+
+# `ip link set down` needs some 15 ms before the kernel says so.
+AT = "0.9"           # s after the drives are enabled: pressing
+TEMPO = "--hand-tempo 2.5"
+RAMP_ms = 12.0       # a missed sample holds, from the second the force fades in 10 ms
+REAL_TIME = (checks.hard_real_time,)
+# The same happens on ODrives in every run.
+LONG = {("cia402", name) for name in ("link-down", "error-passive", "duplicated", "reordered", "wrong-node")}
+LONG |= {("odrive05", "drive-fault")}
+
+
+def kind_of(order):
+    return order.partition("@")[0].partition(":")[0]
+
+
+def committed(back_end, kind, sentence, required, options=""):
+    """A fault that the emulated drives commit by themselves."""
+    return Case(f"{back_end.name}-{kind_of(kind)}", sentence, back_end,
+                f"control $SECONDS_OF_RUN\nsleep 1.5\n{attempt(required)}\nfinish",
+                REAL_TIME, fault=required, seconds=1.9, long_only=(back_end.name, kind_of(kind)) in LONG,
+                variables={"EMULATOR": f"{TEMPO} --fault {kind} {options}"})
+
+
+def done_to(back_end, name, sentence, harm, required, seconds=1.9, proofs=REAL_TIME):
+    """A fault of the bus itself: the script waits until tactd presses, then does the harm."""
+    return Case(f"{back_end.name}-{name}", sentence, back_end,
+                f"control $SECONDS_OF_RUN\nsleep {AT}\n{harm}\nsleep .4\n{attempt(required)}\nfinish",
+                proofs, fault=required, seconds=seconds, long_only=(back_end.name, name) in LONG,
+                variables={"EMULATOR": TEMPO})
+
+
+def error_frame(back_end, name, frame, required):
+    return done_to(back_end, name, "an error frame of the controller stops the force for good",
+                   f"inject cansend can1 {frame}", required)
+
+
+def lost(detect_ms=23.0):
+    """Samples stay out: faded to zero after a hold, latched after twenty."""
+    return Latches("device lost", detect_ms=detect_ms, zero_ms=RAMP_ms - 19.5, motors_ms=RAMP_ms + 2.5)
+
+
+CASES = [
+    # What the bus does.
+    done_to(ODRIVE06, "link-down", "an interface that goes down stops the force for good",
+            "inject ip link set can0 down", Latches("bus down", detect_ms=25)),
+    done_to(CIA402, "link-down", "an interface that goes down stops the force for good",
+            "inject ip link set can0 down; sleep .2; ip link set can0 up",
+            Latches("bus down", detect_ms=25)),
+    error_frame(ODRIVE06, "bus-off", "20000040#0000000000000000", Latches("bus off", detect_ms=12)),
+    error_frame(CIA402, "bus-off", "20000040#0000000000000000", Latches("bus off", detect_ms=12)),
+    error_frame(ODRIVE06, "error-passive", "20000004#0030000000000000",
+                Latches("bus off", detect_ms=12)),
+    error_frame(CIA402, "error-passive", "20000004#0030000000000000",
+                Latches("bus off", detect_ms=12)),
+    done_to(ODRIVE06, "no-buffers", "a bus that takes no frames is a missed cycle; the drives stop",
+            "inject tc qdisc replace dev can0 root netem limit 1 delay 1s",
+            Latches("bus down", detect_ms=80)),
+    # What happens to frames.
+    committed(ODRIVE06, f"lost@{AT}+40", "frames that stay out: fade, then a latched fault",
+              lost()),
+    committed(CIA402, f"lost@{AT}+40", "frames that stay out: fade, then a latched fault", lost()),
+    committed(ODRIVE06, f"duplicated@{AT}+300", "a frame that comes twice is one sample",
+              RidesThrough()),
+    committed(CIA402, f"duplicated@{AT}+300", "a frame that comes twice is one sample",
+              RidesThrough()),
+    committed(ODRIVE06, f"reordered@{AT}+300", "frames of a tick may come in any order",
+              RidesThrough()),
+    committed(CIA402, f"reordered@{AT}+300", "frames of a tick may come in any order",
+              RidesThrough()),
+    committed(ODRIVE06, f"stale:2@1.1+200", "an old position again, while the arm moves: no sample",
+              lost(30.0)),
+    committed(ODRIVE06, f"wrong-node:2@{AT}+60", "frames of a foreign node are nobody's", lost()),
+    committed(CIA402, f"wrong-node:2@{AT}+60", "frames of a foreign node are nobody's", lost()),
+    committed(ODRIVE06, f"garbage:1@{AT}+60", "positions that jump about are those of no arm",
+              Latches("homing lost", detect_ms=5, motors_ms=7)),
+    # What happens to drives.
+    committed(ODRIVE06, f"drive-fault:2@{AT}", "a drive that reports an error stops all three",
+              Latches("drive fault", detect_ms=103, motors_ms=104)),
+    committed(ODRIVE05, f"drive-fault:2@{AT}", "a drive that reports an error stops all three",
+              Latches("drive fault", detect_ms=103)),
+    committed(CIA402, f"drive-fault:2@{AT}", "a drive that reports an error stops all three",
+              Latches("drive fault", detect_ms=3, motors_ms=5)),
+    committed(CIA402, f"emcy:3@{AT}", "an emergency message stops all three",
+              Latches("drive fault", detect_ms=3, motors_ms=5)),
+    committed(ODRIVE06, f"heartbeat-missing:1@{AT}+600", "a drive without heartbeat stops all three",
+              Latches("drive silent", detect_ms=355, motors_ms=357)),
+    committed(CIA402, f"heartbeat-missing:1@{AT}+600", "a drive without heartbeat stops all three",
+              Latches("drive silent", detect_ms=40, motors_ms=42)),
+    committed(ODRIVE06, f"silent:3@{AT}+600", "a drive that falls silent: fade, then a latched fault",
+              lost()),
+    # What happens to tactd.
+    done_to(ODRIVE06, "killed", "a controller that is killed: the drives' own watchdogs stop them",
+            "inject kill -KILL $tactd; sleep .1", StoppedByDrives(within_ms=12, trips=3), proofs=()),
+    done_to(CIA402, "killed", "a controller that is killed: the drives miss its heartbeat and stop",
+            "inject kill -KILL $tactd; sleep .1", StoppedByDrives(within_ms=25, trips=3), proofs=()),
+    done_to(ODRIVE06, "stopped", "drives that stopped a sleeping controller's force keep it stopped",
+            "kill -STOP $tactd; sleep .05; inject kill -CONT $tactd",
+            Latches("drive fault", detect_ms=3)),
+]

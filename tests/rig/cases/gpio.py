@@ -1,0 +1,65 @@
+"""Safety lines on the kernel's simulated GPIO chip, beside the simulated delta."""
+from bench import checks
+from bench.back_ends import SIM_DELTA_LINES
+from bench.case import Case
+from bench.faults import Latches, RidesThrough
+
+REAL_TIME = (checks.hard_real_time, checks.no_late_tick)
+PRESSING = "control $SECONDS_OF_RUN\nsleep 3.2\n"  # 10 mm deep, enabled since 0.1 s
+A, B, DEAD_MAN, ENABLE, HEARTBEAT = range(5)
+
+
+def fault(name, sentence, harm, required, also=(), shown=True):
+    return Case(f"lines-{name}", sentence, SIM_DELTA_LINES, f"{PRESSING}{harm}\nfinish",
+                (*REAL_TIME, *((checks.permission_gone,) if shown else ()), *also), fault=required, seconds=3.8)
+
+
+def at_once(name):
+    """An input is read in every tick; the shell that pulls it needs some 0.2 ms."""
+    return Latches(name, detect_ms=1.5)
+
+
+OUTPUTS = f"gpio_sim get {ENABLE} >$RESULTS/enable.txt\n"
+
+CASES = [
+    Case("lines-alive", "enable comes with the heartbeat, and every tick reads and sets all lines",
+         SIM_DELTA_LINES,
+         f"control $SECONDS_OF_RUN\nsleep .05\ngpio_sim get {ENABLE} >$RESULTS/enable_early.txt\n"
+         f"sleep .4\n{OUTPUTS}"
+         f"for i in $(seq 40); do gpio_sim get {HEARTBEAT}; sleep .0013; done >$RESULTS/heartbeat.txt\n"
+         "system_calls $tactd 2 >$RESULTS/system_calls.txt\nfinish\nmeasure_peer 5",
+         (*REAL_TIME, checks.no_fault, checks.touched, checks.system_calls_as_listed,
+          checks.lines_alive), timed=True, seconds=5, seeds=(1, 2)),
+    fault("estop-a", "channel A alone stops the force in the tick that reads it",
+          f"inject pull {A} down; sleep .03; {OUTPUTS}", at_once("emergency stop")),
+    fault("estop-b", "channel B alone stops the force in the tick that reads it",
+          f"inject pull {B} down; sleep .03; {OUTPUTS}", at_once("emergency stop")),
+    fault("estop", "both channels stop the force, and a released button alone moves nothing",
+          f"inject pull {A} down; pull {B} down; sleep .05; {OUTPUTS}"
+          f"pull {A} up; pull {B} up", at_once("emergency stop")),
+    fault("discrepancy", "channels that disagree for 50 ms are a fault that no reset clears",
+          f"inject pull {B} down; sleep .1; {OUTPUTS}pull {B} up; sleep .05\n"
+          "kill -USR1 $tactd; sleep .1; kill -USR2 $tactd", at_once("emergency stop"),
+          (checks.told("channel A of the e-stop did not open with channel B"),)),
+    fault("stuck", "a channel that sticks is told by name, and no reset clears it",
+          f"inject pull {A} down; sleep .1; {OUTPUTS}pull {A} up; sleep .05\n"
+          "kill -USR1 $tactd; sleep .1; kill -USR2 $tactd", at_once("emergency stop"),
+          (checks.told("channel B of the e-stop did not open with channel A"),)),
+    fault("dead-man", "a released dead-man stops the force",
+          f"inject pull {DEAD_MAN} down; sleep .03; {OUTPUTS}", at_once("dead man released")),
+    fault("chip-removed", "a chip that is gone stops the force",
+          "inject gpio_sim remove", Latches("lines lost", detect_ms=30), shown=False),
+    Case("lines-killed", "a killed controller makes no more edges: the relay beside it drops",
+         SIM_DELTA_LINES,
+         f"{PRESSING}kill -KILL $tactd; sleep .02\n"
+         f"for i in $(seq 20); do gpio_sim get {HEARTBEAT}; sleep .0013; done >$RESULTS/heartbeat.txt\n"
+         "finish", (checks.no_more_edges,), seconds=5),
+    Case("lines-chip-missing", "refused before any force, with the cure", SIM_DELTA_LINES,
+         "gpio_sim down\nrefused", (checks.refused("GPIO chip"),)),
+    Case("lines-reset", "an e-stop is left by reset and then arm, in this order, and only so",
+         SIM_DELTA_LINES,
+         f"control $SECONDS_OF_RUN\nsleep 1\ninject pull {A} down; pull {B} down; sleep .1\n"
+         f"pull {A} up; pull {B} up; sleep .1\nkill -USR2 $tactd; sleep .1\n"
+         "kill -USR1 $tactd; sleep .3; kill -USR2 $tactd\nfinish",
+         (checks.hard_real_time, checks.armed_again), seconds=4),
+]

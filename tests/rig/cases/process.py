@@ -1,0 +1,52 @@
+"""What other programs and people do to tactd while it pushes on the hand, 3.5 s into the liver."""
+from bench import checks
+from bench.back_ends import SIM_DELTA
+from bench.case import Case
+from bench.faults import Latches, RidesThrough
+
+DEEP = "control $SECONDS_OF_RUN\nsleep 3.4\n"  # the hand holds 10 mm of depth from 3.0 to 4.0 s
+UNMOVED = (checks.hard_real_time, checks.no_late_tick, checks.whole_run, checks.touched,
+           checks.same_forces)
+
+
+def hog(milliseconds):
+    """A program that keeps the CPU for so long at FIFO 95, above everything that tactd has."""
+    return (f"inject chrt -f 95 bash -c 'end=$((${{EPOCHREALTIME/./}} + {milliseconds}000)); "
+            "while ((${EPOCHREALTIME/./} < end)); do :; done'")
+
+
+def fault(name, sentence, harm, required, also=()):
+    """A case of 6 s: run deep into the tissue, do the harm, wait for the end."""
+    return Case(name, sentence, SIM_DELTA, f"{DEEP}{harm}\nfinish", also, fault=required, seconds=6)
+
+
+CASES = [
+    fault("stopped-50-ms", "a process that was stopped does not push again on its own",
+          "kill -STOP $tactd; sleep .05; inject kill -CONT $tactd",
+          Latches("loop late", detect_ms=2), (checks.hard_real_time,)),
+    fault("hog-fifo-95-3-ms", "a short loss of the CPU costs ticks, not the run",
+          hog(3),
+          RidesThrough(most_skipped=19), (checks.hard_real_time,)),
+    fault("hog-fifo-95-40-ms", "a long loss of the CPU to a higher priority stops the force for good",
+          hog(40),
+          Latches("loop late", detect_ms=60), (checks.hard_real_time,)),
+    fault("hog-cpu", "ordinary load takes nothing from the loop",
+          "inject true; stress-ng -q --seed 1 --cpu 1 --switch 1 --timeout 1s",
+          RidesThrough(), UNMOVED),
+    fault("memory-pressure", "memory that is short elsewhere is never short in the loop",
+          "inject true; stress-ng -q --seed 1 --vm 1 --vm-bytes 90% --vm-keep --timeout 1s",
+          RidesThrough(), UNMOVED),
+    fault("viewer-stalled", "a viewer that never reads costs neither a tick nor a force",
+          "tact-view --record /tmp/seen --socket $SOCKET >$RESULTS/view.log 2>&1 & viewer=$!\n"
+          "sleep .3; inject kill -STOP $viewer; sleep 2; kill -KILL $viewer",
+          RidesThrough(), UNMOVED),
+    fault("clock-step", "the time of day may jump, the loop does not know it",
+          "inject date -s '2031-05-05 05:05:05'; sleep .5; date -s '2001-01-01'",
+          RidesThrough(), UNMOVED),
+    Case("exit-beside-fifo", "tactd's end is not felt by another real-time loop, FIFO 50",
+         SIM_DELTA, "control $SECONDS_OF_RUN\nmeasure_peer 3 50 &\nfinish",
+         (checks.hard_real_time, checks.no_fault, checks.peer_undisturbed(200_000)), seconds=2),
+    Case("killed-beside-fifo", "nor is its sudden death",
+         SIM_DELTA, "control $SECONDS_OF_RUN\nmeasure_peer 3 50 &\nsleep 1\nkill -KILL $tactd\nfinish",
+         (checks.peer_undisturbed(200_000),), seconds=10),
+]

@@ -1,0 +1,19 @@
+"""The simulated delta: tactd itself on a PREEMPT_RT kernel, without a bus."""
+from bench import checks
+from bench.back_ends import SIM_DELTA
+from bench.case import Case
+
+SOUND = (checks.hard_real_time, checks.no_fault, checks.no_late_tick, checks.whole_run, checks.touched)
+
+CASES = [
+    Case("liver", "tactd keeps hard real time, wakes like cyclictest, and two runs are the same bits",
+         SIM_DELTA, "control $SECONDS_OF_RUN\nfinish\nmeasure_peer 10",
+         (*SOUND, checks.same_forces), seeds=(1, 1, 2, 3), timed=True),
+    Case("liver-sweep", "no interleaving with other work changes a force or makes a tick late",
+         SIM_DELTA, "noise $SEED\ncontrol $SECONDS_OF_RUN\nfinish",
+         (*SOUND, checks.same_forces), sweep=True, seconds=6),
+    Case("liver-system-calls", "the loop asks the kernel for nothing but sleep",
+         SIM_DELTA,
+         "control $SECONDS_OF_RUN\nsystem_calls $tactd 3 >$RESULTS/system_calls.txt\nfinish",
+         (*SOUND, checks.system_calls_as_listed), seconds=5),
+]

@@ -1,0 +1,43 @@
+"""A Falcon on USB, by both transports, and the maker's library of the others as a stub."""
+from bench import checks
+from bench.back_ends import FALCON_COLD, FALCON_LIBUSB, FALCON_USBFS, FORCE_DIMENSION
+from bench.case import Case
+
+SOUND = (checks.hard_real_time, checks.no_fault, checks.no_late_tick, checks.touched)
+
+
+def alive(back_end, *also):
+    return Case(f"{back_end.name}-alive", "the device presses the liver for 10 s", back_end,
+                "control $SECONDS_OF_RUN\nfinish\nmeasure_peer 5", (*SOUND, *also), timed=True,
+                seeds=(1, 2))
+
+
+def swept(back_end):
+    return Case(f"{back_end.name}-sweep", "no interleaving with other work loses a tick or a sample",
+                back_end, "noise $SEED\ncontrol $SECONDS_OF_RUN\nfinish",
+                (checks.hard_real_time, checks.no_fault, checks.no_late_tick, checks.touched), sweep=True,
+                long_only=True, seconds=1.5, variables={"EMULATOR": "--homing-ms 100 --hand-tempo 2.5"})
+
+
+def calls(back_end):
+    return Case(f"{back_end.name}-system-calls", "one call for the device, and sleep", back_end,
+                "control $SECONDS_OF_RUN\nsleep .3\n"
+                "system_calls $tactd 1 >$RESULTS/system_calls.txt\nfinish",
+                (checks.hard_real_time, checks.no_fault, checks.system_calls_as_listed), seconds=1.8)
+
+
+CASES = [
+    alive(FALCON_USBFS, checks.pressed_by_hand),
+    alive(FALCON_LIBUSB, checks.pressed_by_hand),
+    alive(FORCE_DIMENSION),
+    swept(FALCON_USBFS),
+    *(calls(back_end) for back_end in (FALCON_USBFS, FALCON_LIBUSB, FORCE_DIMENSION)),
+    Case("falcon-upload", "a Falcon without firmware gets its owner's file, and is homed", FALCON_COLD,
+         "control $SECONDS_OF_RUN\nfinish", (checks.hard_real_time, checks.no_fault), seconds=2.5,
+         variables={"EMULATOR": "--homing-ms 100 --hand-tempo 2.5"}),
+    Case("falcon-no-firmware", "a Falcon without firmware and without a file is refused",
+         FALCON_COLD, "DEVICE+=(--set 'device.falcon.firmware=\"\"')\nrefused",
+         (checks.refused("firmware"),)),
+    Case("falcon-absent", "no Falcon is told with the cure", FORCE_DIMENSION,
+         "usb up\nDEVICE=(--set 'device.kind=\"falcon\"')\nrefused", (checks.refused("0403:cb48"),)),
+]

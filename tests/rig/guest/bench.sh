@@ -1,0 +1,94 @@
+# bench.sh - what the script of a case may call; sourced by it in the guest.
+#
+#   control SECONDS [tactd option...]   starts tactd on $SCENE, back when its loop ticks; pid $tactd
+#   inject COMMAND...                   notes the time, then does the harm (builtins cost no fork)
+#   pull LINE up|down                   a switch on a line of the simulated chip, without a fork
+#   refused                             runs a tactd that must not start
+#   finish                              waits for tactd; its report, what the tick log says of the fault
+#   start_emulator PROGRAM [option...]  in the background, back when it says "ready"; pid $emulator
+#   measure_peer SECONDS [PRIORITY]     cyclictest: a bare 1 kHz FIFO loop, its wake-up times in ns
+#   noise SEED                          repeatable bursts of other work, SCHED_OTHER and FIFO 60
+#
+# $SCENE, DEVICE=(tactd options) and $SEED are set by the case; results are files in $RESULTS.
+SOCKET=/tmp/telemetry.sock
+background=() injected=0
+
+control() {
+  sleep "$(printf '.000%03d' $((SEED * 137 % 1000)))"  # another seed, another phase against the kernel's own clocks
+  clock_offset_ns=$(tact-rig-ticks --clock-offset)
+  tactd "$SCENE" "${DEVICE[@]}" --seconds "$1" --strict --arm --json $RESULTS/report.json \
+    --record /tmp/ticks --socket $SOCKET "${@:2}" >$RESULTS/tactd.log 2>&1 &
+  tactd=$!
+  until grep -qs tact-loop /proc/$tactd/task/*/comm; do
+    kill -0 $tactd 2>/dev/null || return 1
+    sleep .01
+  done
+}
+
+inject() {
+  injected=$((${EPOCHREALTIME/./} * 1000 + clock_offset_ns))
+  "$@"
+}
+
+# tactd must not even start: its sentence and its exit status are the result.
+refused() {
+  timeout 60 tactd "$SCENE" "${DEVICE[@]}" --seconds 1 --strict --socket $SOCKET \
+    >$RESULTS/tactd.log 2>&1
+  echo $? >$RESULTS/tactd.status
+  [ ${#background[@]} -eq 0 ] || kill "${background[@]}" 2>/dev/null
+}
+
+pull() { echo "pull-$2" >"${line[$1]}/pull"; }
+
+finish() {
+  wait $tactd
+  echo $? >$RESULTS/tactd.status
+  [ ${#background[@]} -eq 0 ] || kill "${background[@]}" 2>/dev/null
+  wait
+  [ $injected != 0 ] || told_by_emulator
+  tact-rig-ticks /tmp/ticks --at $injected >$RESULTS/ticks.json
+  sha256sum /tmp/ticks >$RESULTS/ticks.sha256
+}
+
+# The time of a fault that the emulator committed by itself.
+told_by_emulator() {
+  local told=$(<$RESULTS/emulator.json)
+  [[ $told =~ \"injected_ns\":([0-9]+) ]] && injected=${BASH_REMATCH[1]}
+  return 0
+}
+
+start_emulator() {
+  "$@" >$RESULTS/emulator.json 2>$RESULTS/emulator.log &
+  emulator=$!
+  background+=($emulator)
+  until grep -qs ready $RESULTS/emulator.log; do
+    kill -0 $emulator 2>/dev/null || return 1
+    sleep .01
+  done
+}
+
+noise() {
+  burst_of_work "$1" 300 80 &
+  background+=($!)
+  burst_of_work $(($1 + 1000)) 60 80 &
+  background+=($!)
+  chrt -f -p 60 $!
+}
+
+# burst_of_work SEED TURNS PAUSE_MS: forever, a burst of up to TURNS, a pause of up to PAUSE_MS.
+burst_of_work() {
+  local turns
+  RANDOM=$1
+  while :; do
+    turns=$((RANDOM % $2))
+    while ((turns-- > 0)); do :; done
+    sleep .0$((RANDOM % $3 + 10))
+  done
+}
+
+# measure_peer SECONDS [PRIORITY]: wake-up times of a bare 1 kHz FIFO loop, ns: what tactd is held
+# against, and what shows whether it disturbs others.
+measure_peer() {
+  cyclictest -m -q -N -p "${2:-80}" -i 1000 -D "$1" -h 20000 >/tmp/peer
+  grep -E '^(# [MTH]|[0-9]+ 0*[1-9])' /tmp/peer >$RESULTS/peer.txt
+}

@@ -1,0 +1,149 @@
+// tact-rig-ticks: what a tick log says about a fault: when it was seen, when the force was zero,
+// what moved afterwards.
+//
+// Times are CLOCK_MONOTONIC, ns, of a tick's wake-up; the force it decides is written within the
+// same tick. "Zero" is the first tick after the fault from which on every written force and torque
+// is 0, so a force that comes back shows as a late zero and as moved_after_N.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdint>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "firmware/supervisor.h"
+#include "firmware/tick_log.h"
+
+namespace tact::rig {
+namespace {
+
+using firmware::LoggedTick;
+using nlohmann::json;
+
+std::int64_t now_ns(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return std::int64_t{1'000'000'000} * now.tv_sec + now.tv_nsec;
+}
+
+// What a script adds to its own wall clock to get the loop's clock.
+void print_clock_offset() { fmt::print("{}\n", now_ns(CLOCK_MONOTONIC) - now_ns(CLOCK_REALTIME)); }
+
+std::int64_t woke_ns(const LoggedTick& tick) { return tick.due_ns + tick.wake_late_ns; }
+double force_N(const LoggedTick& tick) { return norm(tick.output.written.force_N); }
+bool pushes(const LoggedTick& tick) {
+  return force_N(tick) != 0.0 || norm(tick.output.written.torque_Nm) != 0.0;
+}
+
+/// The ticks of one run, with the fault at `injected_ns` (0: none) in view.
+class FaultStory {
+ public:
+  explicit FaultStory(std::int64_t injected_ns) : injected_ns_(injected_ns) {}
+
+  void add(const LoggedTick& tick) {
+    ++ticks_;
+    skipped_ += tick.input.skipped_periods;
+    most_skipped_ = std::max(most_skipped_, tick.input.skipped_periods);
+    last_ = tick;
+    const bool after = injected_ns_ != 0 && woke_ns(tick) >= injected_ns_;
+    if (!after) {
+      if (pushes(tick)) pushed_before_ = true;
+      force_before_N_ = force_N(tick);
+      return;
+    }
+    if (!first_after_) first_after_ = tick;
+    if (!detected_ && tick.output.fault != model::Fault::kNone) detected_ = tick;
+    if (!limited_ && limits(tick)) limited_ = tick;
+    if (pushes(tick)) {
+      zero_.reset();
+      last_push_ = tick;
+    } else if (!zero_) {
+      zero_ = tick;
+    }
+    if (first_zero_) moved_after_N_ = std::max(moved_after_N_, force_N(tick));
+    if (!first_zero_ && detected_ && !pushes(tick)) first_zero_ = tick;
+    if (detected_ && tick.output.state == firmware::State::kArmed) ++armed_after_;
+  }
+
+  json to_json() const {
+    json out{{"ticks", ticks_},
+             {"skipped", skipped_},
+             {"most_skipped_at_once", most_skipped_},
+             {"injected_ns", injected_ns_},
+             {"force_before_N", force_before_N_},
+             {"pushed_before", pushed_before_},
+             {"moved_after_N", moved_after_N_},
+             {"armed_ticks_after", armed_after_}};
+    tell(out, "first_tick_after", first_after_);
+    tell(out, "limited", limited_);
+    tell(out, "detected", detected_);
+    tell(out, "zero", zero_);
+    if (last_) out["end_state"] = firmware::name_of(last_->output.state);
+    if (last_) out["end_fault"] = model::describe(last_->output.fault).name;
+    return out;
+  }
+
+ private:
+  // A sample that is missing, before anything latches.
+  static bool limits(const LoggedTick& tick) {
+    return tick.output.limit == model::Fault::kSampleHeld ||
+           tick.output.limit == model::Fault::kSampleStale;
+  }
+
+  void tell(json& out, const char* what, const std::optional<LoggedTick>& tick) const {
+    if (!tick) {
+      out[what] = nullptr;
+      return;
+    }
+    out[what] = {{"tick", tick->tick},
+                 {"time_ns", woke_ns(*tick)},
+                 {"after_ms", 1e-6 * static_cast<double>(woke_ns(*tick) - injected_ns_)},
+                 {"fault", model::describe(tick->output.fault).name},
+                 {"limit", model::describe(tick->output.limit).name}};
+  }
+
+  std::int64_t injected_ns_;
+  std::uint64_t ticks_ = 0, skipped_ = 0, armed_after_ = 0;
+  std::uint32_t most_skipped_ = 0;
+  double force_before_N_ = 0.0, moved_after_N_ = 0.0;
+  bool pushed_before_ = false;
+  std::optional<LoggedTick> first_after_, limited_, detected_, zero_, first_zero_, last_push_,
+      last_;
+};
+
+int tell_story(const std::string& path, std::int64_t injected_ns) {
+  auto log = firmware::TickLogReader::open(path);
+  if (!log) {
+    fmt::print(stderr, "tact-rig-ticks: {}\n", log.error().sentence);
+    return 2;
+  }
+  FaultStory story(injected_ns);
+  for (LoggedTick tick; log->next(tick);) story.add(tick);
+  fmt::print("{}\n", story.to_json().dump(2));
+  return 0;
+}
+
+}  // namespace
+}  // namespace tact::rig
+
+int main(int argc, char** argv) {
+  CLI::App app{"tact-rig-ticks: what a tick log says about a fault, as JSON."};
+  std::string path;
+  std::int64_t injected_ns = 0;
+  bool clock_offset = false;
+  app.add_option("LOG", path, "written by tactd --record");
+  app.add_option("--at", injected_ns, "when the fault came, CLOCK_MONOTONIC, ns");
+  app.add_flag("--clock-offset", clock_offset, "print CLOCK_MONOTONIC - CLOCK_REALTIME, ns");
+  CLI11_PARSE(app, argc, argv);
+  if (clock_offset) {
+    tact::rig::print_clock_offset();
+    return 0;
+  }
+  if (path.empty()) {
+    fmt::print(stderr, "tact-rig-ticks: name a tick log; see --help\n");
+    return 2;
+  }
+  return tact::rig::tell_story(path, injected_ns);
+}

@@ -1,0 +1,94 @@
+#include "hal/falcon/usbfs_pipe.h"
+
+#include <gtest/gtest.h>
+#include <sched.h>
+
+#include <vector>
+
+#include "tests/usbfs_bus.h"
+
+namespace tact::tests {
+namespace {
+
+TEST(UsbfsPipe, ReportsArriveStampedAndTheTransfersStayUnderWay) {
+  Bus bus;
+  const auto pipe = start(bus);
+  for (std::uint64_t i = 1; i <= 20; ++i) {
+    const std::int64_t before_ns = monotonic_ns();
+    bus.send(transfer_of({.counts = {static_cast<int>(i), -5, 6}, .homed = 7}));
+    const FalconReply reply = wait_for_reply(*pipe, i);
+    EXPECT_EQ(reply.sequence, i);
+    EXPECT_EQ(reply.report.counts[0], static_cast<int>(i));
+    EXPECT_GE(reply.stamp_ns, before_ns);
+    EXPECT_LE(reply.stamp_ns, monotonic_ns());
+  }
+  EXPECT_TRUE(bus.wait_for([&] { return bus.in.size() == UsbfsPipe::kIn; }));
+}
+
+TEST(UsbfsPipe, TheNewestOfSeveralReportsWinsAndAllAreCounted) {
+  Bus bus;
+  const auto pipe = start(bus);
+  std::vector<std::uint8_t> both = transfer_of({.counts = {1, 1, 1}});
+  const FalconPacket second = encode(FalconReport{.counts = {2, 2, 2}});
+  both.insert(both.end(), second.begin(), second.end());
+  bus.send(both);
+  const FalconReply reply = wait_for_reply(*pipe, 2);
+  EXPECT_EQ(reply.sequence, 2u);
+  EXPECT_EQ(reply.report.counts[0], 2);
+}
+
+TEST(UsbfsPipe, CommandsLeaveUnchangedAndInOrder) {
+  Bus bus;
+  const auto pipe = start(bus);
+  for (int i = 0; i < 50; ++i) {
+    const FalconPacket packet = encode(FalconCommand{.motor = {i, -i, 7}});
+    for (int tries = 0; !pipe->submit(packet) && tries < 1000; ++tries) usb_pause_ns(100'000);
+  }
+  ASSERT_TRUE(bus.wait_for([&] { return bus.commands.size() == 50; }));
+  for (int i = 0; i < 50; ++i)
+    EXPECT_EQ(bus.commands[static_cast<std::size_t>(i)],
+              encode(FalconCommand{.motor = {i, -i, 7}}));
+}
+
+TEST(UsbfsPipe, NeverMoreThanTwoCommandsAreUnderWay) {
+  Bus bus;
+  bus.swallow_out = true;
+  const auto pipe = start(bus);
+  EXPECT_TRUE(pipe->submit(last_command));
+  EXPECT_TRUE(pipe->submit(last_command));
+  EXPECT_FALSE(pipe->submit(last_command));
+  EXPECT_EQ(pipe->health().end, FalconPipeEnd::kOpen);  // a missed cycle
+  bus.change([&] { bus.finish(bus.out, 0, 16); });
+  bool taken = false;
+  for (int i = 0; i < 1000 && !taken; ++i, usb_pause_ns(1'000'000))
+    taken = pipe->submit(last_command);
+  EXPECT_TRUE(taken);
+}
+
+TEST(UsbfsPipe, StoppingSendsTheLastCommandEndsTheThreadAndClosesTheNode) {
+  Bus bus;
+  auto pipe = start(bus);
+  pipe->stop(last_command);
+  pipe->stop(last_command);
+  ASSERT_EQ(bus.commands.size(), 1u);
+  EXPECT_EQ(bus.commands[0], last_command);
+  EXPECT_TRUE(bus.closed);
+  EXPECT_TRUE(bus.in.empty());
+  EXPECT_TRUE(thread_of(*pipe).ended());
+  EXPECT_EQ(thread_of(*pipe).last_policy(), SCHED_OTHER);
+}
+
+TEST(UsbfsPipe, StoppingDoesNotWaitForADeviceThatTakesNothing) {
+  Bus bus;
+  bus.swallow_out = true;
+  auto pipe = start(bus);
+  pipe->submit(last_command);
+  pipe->submit(last_command);
+  const std::int64_t before_ns = monotonic_ns();
+  pipe->stop(last_command);
+  EXPECT_LT(monotonic_ns() - before_ns, 1'000'000'000);
+  EXPECT_TRUE(bus.closed);
+}
+
+}  // namespace
+}  // namespace tact::tests

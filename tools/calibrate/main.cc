@@ -1,0 +1,187 @@
+// tact-calibrate: what a device's motor commands are worth, from weights hung on it.
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <vector>
+
+#include "firmware/clock.h"
+#include "hal/falcon/falcon_balance.h"
+#include "hal/falcon/falcon_calibration.h"
+#include "hal/falcon/falcon_device.h"
+#include "tools/common/program.h"
+
+namespace {
+
+using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
+using tact::firmware::MonotonicClock;
+using tact::hal::FalconBalance;
+using tact::hal::FalconBalanceRamp;
+using tact::hal::FalconDevice;
+using tact::hal::Sample;
+using tact::model::Error;
+using tact::model::Fault;
+using tact::model::Result;
+
+constexpr std::int64_t kPeriod_ns = 1'000'000;
+constexpr int kMostMissed = 20;  // samples in a row
+
+struct Options {
+  std::string device;
+  SceneArguments scene;
+  std::vector<double> masses_kg{0.05, 0.1, 0.2, 0.3};
+  int poses = 3;
+};
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("DEVICE", o.device, "falcon")->required()->check(CLI::IsMember({"falcon"}));
+  o.scene.add_to(app, "[device.falcon]");
+  app.add_option("--masses_kg", o.masses_kg, "what you hang on the grip, one after the other")
+      ->expected(2, 20)
+      ->check(CLI::Range(0.0, 0.5))
+      ->capture_default_str();
+  app.add_option("--poses", o.poses, "supports of different height and place")
+      ->check(CLI::Range(2, 10))
+      ->capture_default_str();
+}
+
+/// Runs the device at 1 kHz; `tick` gives the force up and says whether to go on.
+template <typename Tick>
+Fault run(FalconDevice& device, Sample& sample, Tick tick) {
+  MonotonicClock clock;
+  std::int64_t due_ns = clock.now_ns() + kPeriod_ns;
+  Fault fault = Fault::kNone;
+  bool more = true;
+  while (more && fault == Fault::kNone) {
+    clock.sleep_until_ns(due_ns);
+    due_ns += kPeriod_ns;
+    fault = device.read(sample, clock.now_ns());
+    double up_N = 0.0;
+    more = tick(up_N) && !is_interrupted();
+    const Fault written = device.write({.force_N = {0.0, 0.0, more ? up_N : 0.0}, .torque_Nm = {}});
+    if (fault == Fault::kNone) fault = written;
+  }
+  device.write({});
+  return fault;
+}
+
+void ask(const std::string& question) {
+  fmt::print("{} ", question);
+  std::fflush(stdout);
+}
+
+/// True for "yes", false for anything else, and for Ctrl-C.
+bool read_yes() {
+  std::string answer;
+  return std::getline(std::cin, answer) && !is_interrupted() && answer == "yes";
+}
+
+/// Meanwhile the device is asked on, without force: one that is left alone stops answering.
+bool agrees(FalconDevice& device, const std::string& question) {
+  ask(question);
+  Sample sample;
+  const Fault fault = run(device, sample, [](double&) {
+    pollfd terminal{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
+    return poll(&terminal, 1, 0) == 0;
+  });
+  return fault == Fault::kNone && read_yes();
+}
+
+Error failed(const FalconDevice& device, Fault fault) {
+  const std::string trouble = device.trouble();
+  return Error{trouble.empty() ? tact::model::describe(fault).cause : trouble};
+}
+
+Result<FalconBalance> balance(FalconDevice& device, double mass_kg) {
+  Sample sample;
+  FalconBalanceRamp ramp({});
+  int missed = 0;
+  const Fault fault = run(device, sample, [&, held_N = 0.0](double& up_N) mutable {
+    missed = sample.fresh ? 0 : missed + 1;
+    if (sample.fresh)
+      held_N = ramp.step(sample.tool.position_m.z, norm(sample.tool.velocity_mps), device.words(),
+                         1e-9 * kPeriod_ns);
+    up_N = held_N;
+    return missed < kMostMissed && !ramp.ended();
+  });
+  if (fault != Fault::kNone) return failed(device, fault);
+  if (ramp.state() == FalconBalanceRamp::State::kBalanced)
+    return FalconBalance{
+        .position_m = device.position_D_m(), .mass_kg = mass_kg, .words = ramp.words()};
+  return Error{ramp.ended() ? ramp.advice() : "the device did not answer: measure it again"};
+}
+
+std::optional<Error> home(FalconDevice& device) {
+  fmt::print("{}\n", device.trouble());
+  Sample sample;
+  const Fault fault = run(device, sample, [&](double&) { return !sample.fresh; });
+  if (fault != Fault::kNone) return failed(device, fault);
+  if (!sample.fresh) return Error{"it is not homed"};
+  return std::nullopt;
+}
+
+Result<std::vector<FalconBalance>> measure(FalconDevice& device, const Options& o) {
+  std::vector<FalconBalance> samples;
+  for (int pose = 1; pose <= o.poses; ++pose) {
+    for (const double mass_kg : o.masses_kg) {
+      if (!agrees(
+              device,
+              fmt::format("pose {} of {}: rest the grip on its support, hang {:.0f} g on it, hands "
+                          "off. It will lift by 2 mm. Ready (yes)?",
+                          pose, o.poses, 1000.0 * mass_kg)))
+        return Error{device.trouble().empty() ? "not agreed to" : device.trouble()};
+      const auto sample = balance(device, mass_kg);
+      if (is_interrupted()) return Error{"interrupted"};
+      if (!sample) {
+        fmt::print("left out: {}\n", sample.error().sentence);
+        if (device.trouble().empty()) continue;
+        return sample.error();
+      }
+      fmt::print("balanced with the words {:.0f} {:.0f} {:.0f}\n", sample->words[0],
+                 sample->words[1], sample->words[2]);
+      samples.push_back(*sample);
+    }
+  }
+  return samples;
+}
+
+Result<tact::hal::FalconCalibration> calibrate(const Options& o,
+                                               tact::model::FalconSettings settings) {
+  settings.moving_mass_kg = 0.0;  // the words shall be those of the load alone
+  settings.dead_band_words = {};
+  auto device = tact::hal::open_falcon_device(settings);
+  if (!device) return device.error();
+  if (auto error = home(**device)) return std::move(*error);
+  const auto samples = measure(**device, o);
+  (*device)->stop();
+  if (!samples) return samples.error();
+  return tact::hal::fit_falcon(*samples);
+}
+
+}  // namespace
+
+// The libraries throw when memory or standard output is gone; then the program may as well end.
+int main(int argc, char** argv) {
+  Program program(
+      "tact-calibrate",
+      "Find what a Falcon's motor words are worth: hang known masses on its grip at several\n"
+      "poses; prints the lines of [device.falcon] to paste into the scene.",
+      "The device moves, by 2 mm and with at most 6 N: it asks before each motion, on a terminal.\n"
+      "Masses in kg.");
+  Options o;
+  add_options(program.options(), o);
+  if (const auto status = program.parse(argc, argv)) return *status;
+  if (isatty(STDIN_FILENO) == 0 || isatty(STDOUT_FILENO) == 0)
+    return program.fail({"asks before anything moves, so it needs a terminal: start it from one"});
+  const auto scene = o.scene.load();
+  if (!scene) return program.fail(scene.error());
+  ask("The grip will move by itself, with at most 6 N. Keep faces and cups away. Go on (yes)?");
+  if (!read_yes()) return program.fail({"not agreed to: nothing moved"});
+  const auto found = calibrate(o, scene->device.falcon);
+  if (!found) return program.fail(found.error(), "no force is left");
+  fmt::print("\n# {} masses at {} poses; the fit leaves {:.0f} words\n{}", o.masses_kg.size(),
+             o.poses, found->residual_words, tact::hal::scene_lines(*found));
+  return 0;
+}
