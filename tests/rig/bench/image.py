@@ -49,7 +49,8 @@ def digest(*parts):
     """Twelve hexadecimal digits over strings, bytes and the content of files."""
     total = hashlib.sha256()
     for part in parts:
-        data = part.read_bytes() if isinstance(part, pathlib.Path) else str(part).encode()
+        data = (part.read_bytes() if isinstance(part, pathlib.Path) else
+                part if isinstance(part, bytes) else str(part).encode())
         total.update(hashlib.sha256(data).digest())
     return total.hexdigest()[:12]
 

@@ -1,4 +1,4 @@
-"""QEMU as a machine that counts time in instructions: boot once, snapshot, then run cases from it.
+"""QEMU as a machine that counts time in instructions: boot once, load the programs, run cases from there.
 
 -icount shift=0,sleep=off: one instruction is one nanosecond and idle time is skipped; one CPU, one
 clock, seeded random numbers, input by fw_cfg (read without interrupts), no disk and no network. The
@@ -16,7 +16,7 @@ import time
 from bench.image import RigError, digest
 
 QEMU = "qemu-system-x86_64"
-READY, DONE = b"TACT-READY", b"TACT-DONE"
+READY, LOADED, DONE = b"TACT-READY", b"TACT-LOADED", b"TACT-DONE"
 KERNEL_ARGUMENTS = ("console=ttyS0 quiet panic=-1 nokaslr norandmaps tsc=reliable mitigations=off "
                     "no_timer_check noirqdebug")
 MEMORY_MB = 768
@@ -35,25 +35,37 @@ class Machine:
         self.environment = {**os.environ, "LD_PRELOAD": str(preload)}  # see patient_poll.cc
         version = subprocess.run([QEMU, "--version"], capture_output=True, text=True, check=True)
         key = digest(version.stdout, MACHINE, KERNEL_ARGUMENTS, str(initramfs.parent.name))
-        self.snapshot = folder / f"snapshot-{key}"
+        self.booted, self.loaded = folder / f"booted-{key}", None
 
     def boot(self):
-        """Makes the snapshot if there is none."""
-        if self.snapshot.exists():
-            return
-        self.snapshot.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=self.snapshot.parent) as scratch:
+        """Makes the snapshot of the booted guest if there is none."""
+        if not self.booted.exists():
+            self.booted.parent.mkdir(parents=True, exist_ok=True)
+            self.take_snapshot(self.booted, "WAIT", b"", READY)
+
+    def load(self, files_tar):
+        """Brings the files of a tar into the guest that all later runs start from. Kept like the booted
+        one: the moment at which a snapshot is taken is this host's, and a replay needs the same."""
+        self.loaded = self.booted.with_name(f"loaded-{digest(self.booted.name, files_tar)}")
+        if not self.loaded.exists():
+            for old in sorted(self.booted.parent.glob("loaded-*"), key=os.path.getmtime)[:-1]:
+                old.unlink()
+            self.take_snapshot(self.loaded, "LOAD", files_tar, LOADED,
+                               ["-incoming", f"exec:cat {self.booted}"])
+
+    def take_snapshot(self, target, word, files_tar, until, options=()):
+        with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
             work = pathlib.Path(scratch)
             console = work / "console"
             console.touch()
-            write_input(work, "WAIT", b"")
+            write_input(work, word, files_tar)
             said = (work / "qemu").open("wb")
             qemu = subprocess.Popen(
-                [*self.arguments(work, seed=1), "-serial", f"file:{console}", "-serial", "null",
+                [*self.arguments(work, seed=1), *options, "-serial", f"file:{console}", "-serial", "null",
                  "-monitor", "stdio"], stdin=subprocess.PIPE, stdout=said, stderr=said,
                 env=self.environment)
             try:
-                wait_for_word(qemu, console, work / "qemu")
+                wait_for_word(qemu, console, work / "qemu", until)
                 orders = f'migrate "exec:cat >{work}/state"\nquit\n'
                 qemu.communicate(orders.encode(), timeout=BOOT_LIMIT_S)
             except subprocess.TimeoutExpired:
@@ -64,29 +76,24 @@ class Machine:
                 said.close()
             if not (work / "state").exists() or (work / "state").stat().st_size < 1 << 20:
                 raise RigError(f"QEMU wrote no snapshot: {(work / 'qemu').read_text()[-500:]}")
-            (work / "state").rename(self.snapshot)
+            (work / "state").rename(target)
 
-    def run(self, script, files_tar, seed, limit_s):
-        """Runs the bash text `script` with the files of a tar; returns an Outcome."""
+    def run(self, script, seed, limit_s):
+        """Runs the bash text `script` in the loaded guest; returns an Outcome."""
         with tempfile.TemporaryDirectory() as scratch:
             work = pathlib.Path(scratch)
-            write_input(work, "GO", with_script(files_tar, script))
+            write_input(work, "GO", tar_of_case(script))
             start = time.monotonic()
             with (work / "said").open("wb") as said:
-                command = [*self.arguments(work, seed), "-incoming", f"exec:cat {self.snapshot}",
+                command = [*self.arguments(work, seed), "-incoming", f"exec:cat {self.loaded}",
                            "-serial", f"file:{work}/console", "-serial", f"file:{work}/results"]
-                try:
-                    subprocess.run(command, stdin=subprocess.DEVNULL, stdout=said,
-                                   stderr=subprocess.STDOUT, timeout=limit_s, check=False,
-                                   env=self.environment)
-                    timed_out = False
-                except subprocess.TimeoutExpired:
-                    timed_out = True
+                qemu = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=said,
+                                        stderr=subprocess.STDOUT, env=self.environment)
+                in_time = wait_for_end(qemu, work / "console", start + limit_s)
             results = (work / "results").read_bytes() if (work / "results").exists() else b""
             console = (work / "said").read_bytes() + (
                 (work / "console").read_bytes() if (work / "console").exists() else b"")
-            return Outcome(results, console, timed_out,
-                           time.monotonic() - start)
+            return Outcome(results, console, not in_time, time.monotonic() - start)
 
     def arguments(self, work, seed):
         return [QEMU, *MACHINE, "-seed", str(seed), "-kernel", str(self.vmlinuz),
@@ -120,17 +127,13 @@ def write_input(work, word, files):
     (work / "files").write_bytes(files or b"\0" * 1024)
 
 
-def with_script(files_tar, script):
-    """The tar again, with `case` in front of it."""
+def tar_of_case(script):
     buffer = io.BytesIO()
     with tarfile.open(fileobj=buffer, mode="w") as tar:
         entry = tarfile.TarInfo("case")
         data = script.encode()
         entry.size = len(data)
         tar.addfile(entry, io.BytesIO(data))
-        with tarfile.open(fileobj=io.BytesIO(files_tar)) as files:
-            for member in files:
-                tar.addfile(member, files.extractfile(member) if member.isreg() else None)
     return buffer.getvalue()
 
 
@@ -152,10 +155,24 @@ def make_tar(entries):
     return buffer.getvalue()
 
 
-def wait_for_word(qemu, console, said):
+def wait_for_word(qemu, console, said, word):
     deadline = time.monotonic() + BOOT_LIMIT_S
-    while READY not in console.read_bytes():
+    while word not in console.read_bytes():
         if qemu.poll() is not None or time.monotonic() > deadline:
             raise RigError("the guest does not boot: " + said.read_text(errors="replace")[-500:] +
                            console.read_text(errors="replace")[-500:])
         time.sleep(0.1)
+
+
+def wait_for_end(qemu, console, deadline):
+    """False if the deadline came first. The results are written before DONE is said, so the guest need not
+    switch itself off."""
+    try:
+        while qemu.poll() is None and time.monotonic() < deadline:
+            if console.exists() and DONE in console.read_bytes():
+                return True
+            time.sleep(0.02)
+        return qemu.poll() is not None
+    finally:
+        qemu.kill()
+        qemu.wait()
