@@ -71,6 +71,12 @@ class Run:
         """What the device on the other side saw; empty without one."""
         return parse(self.text("emulator.json"))
 
+    @functools.cached_property
+    def threads(self):
+        """{(FIFO thread, what): how often}, as the kernel's tracing counted; empty without it."""
+        rows = [line.split() for line in self.text("threads.txt").splitlines()]
+        return {(thread, what): int(count) for thread, what, count in rows}
+
     @property
     def name(self):
         return f"{self.case.name}, seed {self.seed}"

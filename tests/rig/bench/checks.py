@@ -98,19 +98,26 @@ def peer_percentile_ns(text, share):
     return None
 
 
-def system_calls_as_listed(run):
-    """Every FIFO thread makes the listed system calls and no others, per tick."""
+def threads_as_listed(run):
+    """Every FIFO thread makes the listed system calls and no others, per tick; it takes no page fault,
+    never changes its CPU, and leaves it for its own calls and those of its device's thread alone."""
     allowed = run.case.back_end.system_calls
-    counts = [line.split() for line in run.text("system_calls.txt").splitlines()]
-    loop = {call: int(n) for thread, call, n in counts if thread == "tact-loop"}
-    ticks = loop.get("sys_clock_nanosleep", 0)
+    counts = run.threads
+    ticks = counts.get(("tact-loop", "sys_clock_nanosleep"), 0)
     if ticks < 1000:
         return [f"the tracing saw {ticks} ticks of the loop: it proves nothing"]
     wrong = []
-    for thread, call, n in counts:
-        most = allowed.get((thread, call), 0)
-        if int(n) > most * ticks * 1.001 + 2 * (most > 0):
-            wrong.append(f"{thread} calls {call} {int(n) / ticks:.3f} times a tick, {most} are listed")
+    for (thread, what), n in counts.items():
+        if what.startswith("sys_"):
+            most = allowed.get((thread, what), 0)
+            if n > most * ticks * 1.001 + 2 * (most > 0):
+                wrong.append(f"{thread} calls {what} {n / ticks:.3f} times a tick, {most} are listed")
+        elif what == "switch":  # counted right after the calls, for about as long
+            calls = sum(k for (_, call), k in counts.items() if call.startswith("sys_"))
+            if thread == "tact-loop" and not 0.8 * ticks <= n <= 1.2 * calls:
+                wrong.append(f"{thread} left the CPU {n} times in {ticks} ticks with {calls} calls")
+        elif n != 0:
+            wrong.append(f"{thread}: {n} times {what}, not 0")
     return wrong
 
 

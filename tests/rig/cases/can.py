@@ -29,10 +29,10 @@ def recorded(back_end, bus_check):
 
 
 def calls(back_end):
-    return Case(f"{back_end.name}-system-calls", "one call in, one call out, and sleep", back_end,
+    return Case(f"{back_end.name}-threads", "one call in, one call out, and sleep", back_end,
                 "control $SECONDS_OF_RUN\nsleep .3\n"
-                "system_calls $tactd 1 >$RESULTS/system_calls.txt\nfinish",
-                (checks.hard_real_time, checks.no_fault, checks.system_calls_as_listed), seconds=1.8)
+                "trace_threads $tactd 1 >$RESULTS/threads.txt\nfinish",
+                (checks.hard_real_time, checks.no_fault, checks.threads_as_listed), seconds=3)
 
 
 def refused(back_end, name, emulator, *words):

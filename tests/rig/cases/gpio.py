@@ -29,9 +29,9 @@ CASES = [
          f"for i in $(seq 40); do gpio_sim get {HEARTBEAT}; sleep .0013; done >$RESULTS/heartbeat.txt\n"
          "finish\nmeasure_peer 5",
          (*REAL_TIME, checks.no_fault, checks.touched, checks.lines_alive), timed=True, seeds=(1, 2)),
-    Case("lines-system-calls", "one call reads all lines, one sets them",
-         SIM_DELTA_LINES, "control $SECONDS_OF_RUN\nsystem_calls $tactd 1 >$RESULTS/system_calls.txt\nfinish",
-         (checks.hard_real_time, checks.no_fault, checks.system_calls_as_listed), seconds=1.5),
+    Case("lines-threads", "one call reads all lines, one sets them",
+         SIM_DELTA_LINES, "control $SECONDS_OF_RUN\ntrace_threads $tactd 1 >$RESULTS/threads.txt\nfinish",
+         (checks.hard_real_time, checks.no_fault, checks.threads_as_listed), seconds=2.6),
     fault("estop-a", "channel A alone stops the force in the tick that reads it",
           f"inject pull {A} down; sleep .03; {OUTPUTS}", at_once("emergency stop")),
     fault("estop-b", "channel B alone stops the force in the tick that reads it",
