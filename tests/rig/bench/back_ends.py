@@ -11,6 +11,16 @@ CAN_CALLS = SLEEP | {("tact-loop", "sys_recvmmsg"): 1, ("tact-loop", "sys_sendmm
 SIM_DELTA = BackEnd("sim-delta", settings=('device.kind="sim-delta"',), system_calls=SLEEP)
 
 
+def law(scene, *settings):
+    """Another law on the simulated delta, by the scene that ships it or by a setting."""
+    name = ", ".join((scene, *(setting.replace('"', "") for setting in settings)))
+    return BackEnd(name, settings=('device.kind="sim-delta"', *settings), system_calls=SLEEP,
+                   scene=f"model/scenes/{scene}.toml")
+
+
+# The 300 masses of gum take 0.64 million instructions a tick, more than half a period: 150 of them.
+LAWS = (law("heart"), law("skin"), law("liver", 'law="compliance"'), law("gum", "spring_patch.nodes=150"))
+
 # e-stop A and B, dead-man in; enable and heartbeat out
 SIM_DELTA_LINES = BackEnd(
     "sim-delta with lines",

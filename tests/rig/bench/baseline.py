@@ -27,9 +27,13 @@ def measure(runs, of_seeds=min):
             for back_end, seeds in reports.items()}
 
 
+def read(path):
+    return json.loads(path.read_text()) if path.exists() else {}
+
+
 def compare(measured, path):
     """Complaints, one sentence for each number that grew by more than 5 %."""
-    known = json.loads(path.read_text()) if path.exists() else {}
+    known = read(path)
     wrong = []
     for back_end, phases in measured.items():
         if back_end not in known:
@@ -48,7 +52,8 @@ def compare(measured, path):
 
 
 def write(runs, path):
-    """Replaces the back ends that were measured, keeps the others."""
-    known = json.loads(path.read_text()) if path.exists() else {}
+    """Replaces the back ends that were measured, keeps the others; returns all."""
+    known = read(path)
     known.update(measure(runs, statistics.median_high))
     path.write_text(json.dumps(dict(sorted(known.items())), indent=2) + "\n")
+    return known

@@ -1,6 +1,6 @@
 """The simulated delta: tactd itself on a PREEMPT_RT kernel, without a bus."""
 from bench import checks
-from bench.back_ends import SIM_DELTA
+from bench.back_ends import LAWS, SIM_DELTA
 from bench.case import Case
 
 SOUND = (checks.hard_real_time, checks.no_fault, checks.no_late_tick, checks.whole_run, checks.touched)
@@ -12,6 +12,9 @@ CASES = [
     Case("liver-sweep", "no interleaving with other work changes a force or makes a tick late",
          SIM_DELTA, "noise $SEED\ncontrol $SECONDS_OF_RUN\nfinish",
          (*SOUND, checks.same_forces), sweep=True, seconds=6),
+    *(Case(f"law-{back_end.name.partition(', spring')[0].replace(', law=', '-')}", "every law keeps hard real time, and its longest path is known",
+           back_end, "control $SECONDS_OF_RUN\nfinish\nmeasure_peer 3", (*SOUND, checks.same_forces), timed=True)
+      for back_end in LAWS),
     Case("liver-threads", "the loop asks the kernel for nothing but sleep",
          SIM_DELTA,
          "control $SECONDS_OF_RUN\ntrace_threads $tactd 1.5 >$RESULTS/threads.txt\nfinish",
