@@ -1,0 +1,158 @@
+// tact-soak: a day at the device in simulated time, as fast as the CPU allows.
+//
+// The whole controller with the simulated delta and its safety lines: random strokes, faults, stops,
+// late ticks and operators by a seed; after each tick every promise is checked. The same seed gives
+// the same hash with every compiler.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "firmware/alloc_counter.h"
+#include "firmware/replay.h"
+#include "firmware/rt_loop.h"
+#include "firmware/rt_setup.h"
+#include "model/tissue.h"
+#include "tests/soak/mischief.h"
+#include "tests/soak/promises.h"
+
+namespace tact::soak {
+namespace {
+
+std::atomic<bool> interrupted{false};
+
+struct Outcome {
+  std::uint64_t ticks = 0, skipped = 0, armed_ticks = 0, pushing_ticks = 0, stops = 0;
+  std::uint64_t broken = 0, heap_calls = 0;
+  std::int64_t grown_kB = 0;  // resident memory, from a tenth of the way to the end
+  std::uint64_t force_hash = firmware::kHashStart;
+  std::string first;
+};
+
+std::int64_t resident_kB() {
+  std::int64_t size = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> size >> resident;
+  return resident * (sysconf(_SC_PAGESIZE) / 1024);
+}
+
+void count(const firmware::TickRecord& record, firmware::State before, Outcome& outcome) {
+  const firmware::TickOutput& output = record.output;
+  outcome.force_hash = firmware::hash_wrench(outcome.force_hash, output.written);
+  if (output.state == firmware::State::kArmed) ++outcome.armed_ticks;
+  if (norm(output.written.force_N) > 0.0) ++outcome.pushing_ticks;
+  if (output.state == firmware::State::kStopped && before != output.state) ++outcome.stops;
+}
+
+model::Result<Outcome> soak(const model::Scene& scene, std::uint64_t ticks, std::uint64_t seed) {
+  const auto tissue = model::make_tissue(scene);
+  if (!tissue) return tissue.error();
+  auto device = hal::make_sim_delta(scene.device.sim, scene.hand);
+  if (!device) return device.error();
+  hal::SimLines lines;
+  firmware::SimulatedClock clock;
+  firmware::Requests requests;
+  const auto ring = std::make_unique<firmware::TickRing>();
+  const std::int64_t period_ns = std::llround(1e9 / scene.rate_Hz);
+  const model::Limits limits = firmware::limits_for(scene.limits, (*device)->info());
+  const auto controller = std::make_unique<firmware::Controller>(
+      (*tissue)->contact_scene(),
+      firmware::Gate(limits, static_cast<double>(period_ns) * 1e-9, 1.0), firmware::kHardRealTime);
+  firmware::RtLoop loop({.period_ns = period_ns}, **device, lines, *controller, clock, requests,
+                        *ring);
+  Mischief mischief(seed, scene.hand, period_ns);
+  Promises promises(limits, period_ns);
+  Outcome outcome;
+  firmware::State state = firmware::State::kOff;
+  firmware::TickRecord record;
+  std::int64_t early_kB = 0;
+  firmware::flush_denormals();
+  for (; outcome.ticks < ticks && !interrupted.load(); ++outcome.ticks) {
+    mischief.step(**device, lines, clock, requests, state == firmware::State::kStopped);
+    {
+      const firmware::HeapWatch heap;
+      loop.step();
+      outcome.heap_calls += heap.calls();
+    }
+    ring->pop(record);
+    promises.check(record);
+    count(record, state, outcome);
+    state = record.output.state;
+    if (outcome.ticks == ticks / 10) early_kB = resident_kB();
+    if (isatty(STDERR_FILENO) != 0 && outcome.ticks % 1'000'000 == 0)
+      fmt::print(stderr, "\rtact-soak: {} of {} million ticks", outcome.ticks / 1'000'000,
+                 ticks / 1'000'000);
+  }
+  if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\n");
+  outcome.grown_kB = resident_kB() - early_kB;
+  outcome.skipped = loop.statistics().skipped_ticks;
+  outcome.broken = promises.broken();
+  outcome.first = promises.first();
+  return outcome;
+}
+
+nlohmann::ordered_json to_json(const Outcome& outcome, std::uint64_t seed) {
+  return {{"ticks", outcome.ticks},
+          {"seed", seed},
+          {"skipped", outcome.skipped},
+          {"armed_ticks", outcome.armed_ticks},
+          {"pushing_ticks", outcome.pushing_ticks},
+          {"stops", outcome.stops},
+          {"promises_broken", outcome.broken},
+          {"first_broken", outcome.first},
+          {"heap_calls", outcome.heap_calls},
+          {"resident_grown_kB", outcome.grown_kB},
+          {"force_hash", fmt::format("{:016x}", outcome.force_hash)}};
+}
+
+// A soak that never pushed or never stopped proves nothing.
+std::string complaint(const Outcome& outcome) {
+  constexpr std::int64_t kPageNoise_kB = 256;
+  if (outcome.broken != 0) return fmt::format("{} broken, first {}", outcome.broken, outcome.first);
+  if (firmware::can_count_heap_calls() && outcome.heap_calls != 0)
+    return fmt::format("{} heap calls in the loop", outcome.heap_calls);
+  if (firmware::can_count_heap_calls() && outcome.grown_kB > kPageNoise_kB)
+    return fmt::format("resident memory grew by {} kB", outcome.grown_kB);
+  if (outcome.pushing_ticks < outcome.ticks / 10 || outcome.stops == 0 || outcome.skipped == 0)
+    return fmt::format("{} of {} ticks pushed, {} stops, {} skipped: it proves nothing",
+                       outcome.pushing_ticks, outcome.ticks, outcome.stops, outcome.skipped);
+  return {};
+}
+
+int run(const std::string& path, std::uint64_t ticks, std::uint64_t seed) {
+  const auto scene = model::load_scene(path, {});
+  if (!scene) {
+    fmt::print(stderr, "tact-soak: {}\n", scene.error().sentence);
+    return 2;
+  }
+  std::signal(SIGINT, [](int) { interrupted.store(true); });
+  const auto outcome = soak(*scene, ticks, seed);
+  if (!outcome) {
+    fmt::print(stderr, "tact-soak: {}\n", outcome.error().sentence);
+    return 2;
+  }
+  fmt::print("{}\n", to_json(*outcome, seed).dump(2));
+  const std::string wrong = complaint(*outcome);
+  if (!wrong.empty()) fmt::print(stderr, "tact-soak: {}\n", wrong);
+  return wrong.empty() && !interrupted.load() ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace tact::soak
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "tact-soak: random strokes, faults, stops and operators in simulated time; checks every "
+      "tick."};
+  std::string scene;
+  std::uint64_t ticks = 200'000, seed = 1;
+  app.add_option("SCENE", scene, "scene file with the simulated delta")->required();
+  app.add_option("--ticks", ticks, "how many; a day at 1 kHz has 86400000 (200000)");
+  app.add_option("--seed", seed, "another day (1)");
+  CLI11_PARSE(app, argc, argv);
+  return tact::soak::run(scene, ticks, seed);
+}

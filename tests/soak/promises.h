@@ -1,0 +1,38 @@
+// promises.h - what must be true after each tick, whatever came in.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "firmware/tick_record.h"
+#include "model/scene.h"
+
+namespace tact::soak {
+
+class Promises {
+ public:
+  /// Limits of scene and device together (firmware::limits_for).
+  Promises(const model::Limits& limits, std::int64_t period_ns)
+      : limits_(limits), period_ns_(period_ns) {}
+
+  void check(const firmware::TickRecord& record);
+
+  std::uint64_t broken() const { return broken_; }
+  /// The first one that broke, with its tick; empty when all were kept.
+  const std::string& first() const { return first_; }
+
+ private:
+  void expect(bool kept, const char* promise, std::uint64_t tick);
+  void check_force(const firmware::TickRecord& record);
+  void check_state(const firmware::TickRecord& record);
+
+  model::Limits limits_;
+  std::int64_t period_ns_;
+  std::int64_t first_due_ns_ = 0;
+  firmware::TickRecord before_{};
+  bool begun_ = false;
+  std::uint64_t broken_ = 0;
+  std::string first_;
+};
+
+}  // namespace tact::soak
