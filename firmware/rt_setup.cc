@@ -7,13 +7,13 @@
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
-#include <sys/utsname.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
+
+#include "firmware/pc_check.h"
 
 #if defined(__x86_64__)
 #include <xmmintrin.h>
@@ -30,10 +30,8 @@ void lock_memory(std::vector<Shortfall>& shortfalls) {
   mallopt(M_MMAP_MAX, 0);         // no block of its own mapping that goes back on free
   mallopt(M_ARENA_MAX, 1);        // one heap, not one per thread
   if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return;
-  shortfalls.push_back(
-      {fmt::format("memory is not locked ({}): a page fault can stop the loop for milliseconds; "
-                   "give the user memlock unlimited in /etc/security/limits.d/, or run as root",
-                   std::strerror(errno))});
+  shortfalls.push_back({fmt::format("memory is not locked ({}): {}; {}", std::strerror(errno),
+                                    kMemoryReason.why, kMemoryReason.cure)});
 }
 
 // The kernel keeps the promise while the file stays open.
@@ -41,10 +39,8 @@ int hold_power_latency(std::vector<Shortfall>& shortfalls) {
   const int fd = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
   const std::int32_t latency_us = 0;
   if (fd >= 0 && write(fd, &latency_us, sizeof latency_us) == sizeof latency_us) return fd;
-  shortfalls.push_back({fmt::format(
-      "/dev/cpu_dma_latency: {}: the CPU may sleep deeply between ticks and wake late; give the "
-      "user write permission to it, or run as root",
-      std::strerror(errno))});
+  shortfalls.push_back({fmt::format("/dev/cpu_dma_latency: {}: {}; {}", std::strerror(errno),
+                                    kPowerReason.why, kPowerReason.cure)});
   if (fd >= 0) close(fd);
   return -1;
 }
@@ -55,31 +51,18 @@ __attribute__((noinline)) void touch_stack() {
   static_cast<void>(bytes[0]);
 }
 
-int last_in_list(const std::string& list) {
-  const std::size_t at = list.find_last_of(",-");
-  const std::string last = at == std::string::npos ? list : list.substr(at + 1);
-  return last.empty() ? -1 : std::stoi(last);
-}
-
 }  // namespace
 
-bool kernel_is_realtime() {
-  utsname name{};
-  uname(&name);
-  if (std::strstr(name.version, "PREEMPT_RT") != nullptr) return true;
-  std::ifstream flag("/sys/kernel/realtime");
-  int value = 0;
-  return flag >> value && value == 1;
-}
+bool kernel_is_realtime() { return is_realtime_kernel(PcFiles{}); }
 
 int choose_core(const RtSettings& settings) {
   if (settings.core >= 0) return settings.core;
   cpu_set_t allowed;
   CPU_ZERO(&allowed);
   sched_getaffinity(0, sizeof allowed, &allowed);
-  std::ifstream isolated("/sys/devices/system/cpu/isolated");
-  std::string list;
-  if (std::getline(isolated, list) && !list.empty()) return last_in_list(list);
+  const auto isolated =
+      parse_cpu_list(PcFiles{}.line("/sys/devices/system/cpu/isolated").value_or(""));
+  if (!isolated.empty()) return isolated.back();
   int core = 0;
   for (int i = 0; i < CPU_SETSIZE; ++i)
     if (CPU_ISSET(static_cast<std::size_t>(i), &allowed)) core = i;
@@ -88,9 +71,8 @@ int choose_core(const RtSettings& settings) {
 
 ProcessSetup::ProcessSetup(std::vector<Shortfall>& shortfalls) {
   if (!kernel_is_realtime())
-    shortfalls.push_back(
-        {"the kernel is not PREEMPT_RT: any driver can delay a tick by milliseconds; install "
-         "linux-image-rt-amd64 and boot it"});
+    shortfalls.push_back({fmt::format("the kernel is not PREEMPT_RT: {}; {}", kKernelReason.why,
+                                      kKernelReason.cure)});
   prctl(PR_SET_THP_DISABLE, 1, 0, 0,
         0);  // joining pages into huge ones takes them away for a moment
   lock_memory(shortfalls);
@@ -130,9 +112,8 @@ void enter_rt_thread(const RtSettings& settings, std::vector<Shortfall>& shortfa
   const int refused = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
   if (refused != 0)
     shortfalls.push_back(
-        {fmt::format("SCHED_FIFO priority {} is refused ({}): other programs can hold up the loop; "
-                     "give the user rtprio {} in /etc/security/limits.d/, or run as root",
-                     settings.priority, std::strerror(refused), settings.priority + 5)});
+        {fmt::format("SCHED_FIFO priority {} is refused ({}): {}; {}", settings.priority,
+                     std::strerror(refused), kPriorityReason.why, kPriorityReason.cure)});
   touch_stack();
 }
 

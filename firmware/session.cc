@@ -16,6 +16,7 @@
 #include "firmware/law_check.h"
 #include "firmware/operator_signals.h"
 #include "firmware/operator_view.h"
+#include "firmware/pc_check.h"
 #include "firmware/report.h"
 #include "firmware/telemetry_setup.h"
 #include "hal/gpio/gpio_lines.h"
@@ -38,6 +39,13 @@ std::vector<Shortfall> probe_rt_thread(const RtSettings& settings) {
   std::vector<Shortfall> shortfalls;
   std::thread([&] { enter_rt_thread(settings, shortfalls); }).join();
   return shortfalls;
+}
+
+// The short form of tact-doctor: what of this PC will make the loop late, in one line.
+void tell_red_rows(const RtSettings& settings) {
+  const std::string red =
+      name_red_rows(check_pc({.files = PcFiles{}, .core = choose_core(settings)}));
+  if (!red.empty()) fmt::print(stderr, "tactd: {}\n", red);
 }
 
 // Everything of one run, in the order in which it comes to life.
@@ -98,6 +106,7 @@ int Session::run() {
     non_rt_ = !shortfalls_.empty();
   }
   for (const Shortfall& s : shortfalls_) fmt::print(stderr, "tactd: {}\n", s.sentence);
+  if (!options_.free_run) tell_red_rows(rt_);
   if (non_rt_ && options_.strict) return fail("refused by --strict: no hard real time here", 1);
   if (non_rt_)
     fmt::print(stderr, "tactd: no hard real time: force capped to {:g} %, records stamped non-rt\n",
