@@ -25,6 +25,13 @@ class LatencyHistogram {
   std::uint64_t max_ns() const RT_SAFE { return max_ns_; }
   std::uint64_t max_tick() const RT_SAFE { return max_tick_; }
 
+  /// Calls each(lowest_ns, highest_ns, samples) for every bucket that holds a sample, in order.
+  template <typename Each>
+  void for_each_bucket(Each each) const {
+    for (std::size_t i = 0; i < kBuckets; ++i)
+      if (bucket_[i] != 0) each(i == 0 ? 0 : highest_in(i - 1) + 1, highest_in(i), bucket_[i]);
+  }
+
   /// Least value v such that at least this share of the samples is <= v, up to the bucket's width;
   /// 0 without samples.
   std::uint64_t percentile_ns(double share) const RT_SAFE {

@@ -19,6 +19,15 @@ json percentiles(const LatencyHistogram& h) {
           {"max_tick", h.max_tick()}};
 }
 
+std::string duration_line(const char* what, const LatencyHistogram& h) {
+  const auto us = [](std::uint64_t ns) { return static_cast<double>(ns) * 1e-3; };
+  return fmt::format("  {:13} p50 {:.1f} us, p99.9 {:.1f} us, max {:.1f} us at tick {}\n", what,
+                     us(h.percentile_ns(0.5)), us(h.percentile_ns(0.999)), us(h.max_ns()),
+                     h.max_tick());
+}
+
+}  // namespace
+
 json to_json(const Environment& e) {
   return {{"kernel_release", e.kernel_release},
           {"kernel_version", e.kernel_version},
@@ -38,15 +47,6 @@ json to_json(const ThreadCosts& c) {
           {"voluntary_context_switches", c.voluntary_switches},
           {"involuntary_context_switches", c.involuntary_switches}};
 }
-
-std::string duration_line(const char* what, const LatencyHistogram& h) {
-  const auto us = [](std::uint64_t ns) { return static_cast<double>(ns) * 1e-3; };
-  return fmt::format("  {:13} p50 {:.1f} us, p99.9 {:.1f} us, max {:.1f} us at tick {}\n", what,
-                     us(h.percentile_ns(0.5)), us(h.percentile_ns(0.999)), us(h.max_ns()),
-                     h.max_tick());
-}
-
-}  // namespace
 
 json make_report(const RunFacts& facts, const LoopStatistics& loop, const Gate& gate,
                  const Environment& environment) {

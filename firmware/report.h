@@ -8,18 +8,11 @@
 
 #include "firmware/environment.h"
 #include "firmware/law_check.h"
+#include "firmware/loop_parts.h"
 #include "firmware/rt_loop.h"
 #include "firmware/rt_setup.h"
 
 namespace tact::firmware {
-
-/// Kernel's and allocator's view of the loop's thread between its first and its last tick.
-struct ThreadCosts {
-  std::uint64_t heap_calls = 0;
-  bool heap_calls_known = false;
-  long minor_faults = 0, major_faults = 0;
-  long voluntary_switches = 0, involuntary_switches = 0;
-};
 
 struct RunFacts {
   std::string scene_name, law_title, device_name;
@@ -39,6 +32,8 @@ struct RunFacts {
   std::size_t law_table_bytes = 0;
 };
 
+nlohmann::json to_json(const Environment& environment);
+nlohmann::json to_json(const ThreadCosts& costs);
 nlohmann::json make_report(const RunFacts& facts, const LoopStatistics& loop, const Gate& gate,
                            const Environment& environment);
 std::string make_summary(const RunFacts& facts, const LoopStatistics& loop);

@@ -12,14 +12,12 @@
 #include <optional>
 #include <thread>
 
-#include "firmware/alloc_counter.h"
-#include "firmware/law_check.h"
+#include "firmware/loop_parts.h"
 #include "firmware/operator_signals.h"
 #include "firmware/operator_view.h"
 #include "firmware/pc_check.h"
 #include "firmware/report.h"
 #include "firmware/telemetry_setup.h"
-#include "hal/gpio/gpio_lines.h"
 
 namespace tact::firmware {
 namespace {
@@ -27,18 +25,11 @@ namespace {
 using model::Error;
 using model::Result;
 
-constexpr double kNonRtForceShare = 0.25;
 constexpr timespec kStatusPeriod{.tv_sec = 0, .tv_nsec = 200'000'000};
 
 int fail(const std::string& sentence, int status) {
   fmt::print(stderr, "tactd: {}\n", sentence);
   return status;
-}
-
-std::vector<Shortfall> probe_rt_thread(const RtSettings& settings) {
-  std::vector<Shortfall> shortfalls;
-  std::thread([&] { enter_rt_thread(settings, shortfalls); }).join();
-  return shortfalls;
 }
 
 // The short form of tact-doctor: what of this PC will make the loop late, in one line.
@@ -65,12 +56,13 @@ class Session {
   void in_loop_thread();
   void watch();
   int report();
-  double force_share() const { return non_rt_ ? kNonRtForceShare : 1.0; }
+  PartsSetup parts_setup() const {
+    return {.simulated_time = options_.free_run, .non_rt = non_rt_, .rt = rt_};
+  }
   // As often as a viewer looks.
   std::uint64_t ticks_per_shape() const {
     return std::max(1ul, static_cast<std::uint64_t>(scene_.rate_Hz / scene_.frame_rate_Hz));
   }
-  std::int64_t period_ns() const { return std::llround(1e9 / scene_.rate_Hz); }
 
   const model::Scene& scene_;
   const Options& options_;
@@ -79,16 +71,9 @@ class Session {
   std::optional<ProcessSetup> process_;
   std::vector<Shortfall> shortfalls_;
   bool non_rt_ = false;
-  std::unique_ptr<model::Tissue> tissue_;
-  std::unique_ptr<hal::SafetyLines> lines_;
-  hal::OpenDevice device_;  // off when the session ends, whatever ended it
-  StiffnessMargin stiffness_;
-  std::optional<TimeMargin> time_;
-  model::Limits limits_;
+  LoopParts parts_;
   std::unique_ptr<hal::HandSocket> hand_socket_;
-  std::unique_ptr<TickRing> ring_ = std::make_unique<TickRing>();
   std::optional<Telemetry> telemetry_;
-  std::optional<Controller> controller_;
   MonotonicClock monotonic_clock_;
   SimulatedClock simulated_clock_;
   std::optional<RtLoop> loop_;
@@ -113,8 +98,8 @@ int Session::run() {
                100.0 * kNonRtForceShare);
   if (const auto error = open()) return fail(error->sentence, 2);
   if (options_.check) {
-    fmt::print("{}\n",
-               make_check_line(scene_, device_->info().name, tissue_->law(), stiffness_, time_));
+    fmt::print("{}\n", make_check_line(scene_, parts_.device->info().name, parts_.tissue->law(),
+                                       parts_.stiffness, parts_.time));
     return 0;
   }
   if (!options_.json_path.empty() && options_.json_path != "-" &&
@@ -130,57 +115,36 @@ int Session::run() {
 }
 
 std::optional<Error> Session::open() {
-  auto tissue = model::make_tissue(scene_);
-  if (!tissue) return tissue.error();
-  tissue_ = std::move(*tissue);
-  if (options_.free_run && !hal::is_simulated(scene_.device))
-    return Error{fmt::format(
-        "{}: --free-run is simulated time, and device.kind \"{}\" is hardware; leave it out",
-        scene_.path, scene_.device.kind)};
-  auto lines = hal::open_safety_lines(scene_.device.lines);
-  if (!lines) return Error{fmt::format("{}: {}", scene_.path, lines.error().sentence)};
-  lines_ = std::move(*lines);
-  auto device = hal::open_device(scene_);
-  if (!device) return device.error();
-  device_ = std::move(*device);
-  const auto stiffness = check_renderable(scene_, *tissue_, device_->info());
-  if (!stiffness) return stiffness.error();
-  stiffness_ = *stiffness;
-  if (!options_.free_run) {  // simulated time waits for any law
-    const auto time = check_budget(scene_, non_rt_ ? std::nullopt : std::optional(rt_));
-    if (!time) return time.error();
-    time_ = *time;
-  }
-  limits_ = limits_for(scene_.limits, device_->info());
-  controller_.emplace(tissue_->contact_scene(),
-                      Gate(limits_, static_cast<double>(period_ns()) * 1e-9, force_share()),
-                      !non_rt_);
+  auto parts = open_loop_parts(scene_, parts_setup());
+  if (!parts) return parts.error();
+  parts_ = std::move(*parts);
   const auto asked_periods =
       static_cast<std::uint64_t>(std::ceil(options_.seconds * scene_.rate_Hz));
   Clock& clock = options_.free_run ? static_cast<Clock&>(simulated_clock_) : monotonic_clock_;
-  loop_.emplace(LoopSettings{.period_ns = period_ns(),
+  loop_.emplace(LoopSettings{.period_ns = period_ns(scene_),
                              .max_ticks = options_.ticks,
                              .max_periods = asked_periods,
                              .ticks_per_shape = ticks_per_shape()},
-                *device_, *lines_, *controller_, clock, requests_, *ring_);
+                *parts_.device, *parts_.lines, *parts_.controller, clock, requests_, *parts_.ring);
   return std::nullopt;
 }
 
 std::optional<Error> Session::open_telemetry() {
   auto outlets = open_outlets({.scene = scene_,
                                .options = options_,
-                               .tissue = *tissue_,
-                               .device = *device_,
-                               .limits = limits_,
-                               .period_ns = period_ns(),
-                               .force_share = force_share(),
-                               .force_limit_N = controller_->gate().force_limit_N(),
+                               .tissue = *parts_.tissue,
+                               .device = *parts_.device,
+                               .limits = parts_.limits,
+                               .period_ns = period_ns(scene_),
+                               .force_share = parts_setup().force_share(),
+                               .force_limit_N = parts_.controller->gate().force_limit_N(),
                                .non_rt = non_rt_});
   if (!outlets) return outlets.error();
   hand_socket_ = std::move(outlets->hand);
-  telemetry_.emplace(*ring_,
-                     FrameBuilder(tissue_->law().site_law(), controller_->shapes(), non_rt_),
-                     scene_.frame_rate_Hz, std::move(outlets->socket), std::move(outlets->log));
+  telemetry_.emplace(
+      *parts_.ring,
+      FrameBuilder(parts_.tissue->law().site_law(), parts_.controller->shapes(), non_rt_),
+      scene_.frame_rate_Hz, std::move(outlets->socket), std::move(outlets->log));
   return std::nullopt;
 }
 
@@ -205,30 +169,14 @@ void Session::run_real_time() {
 }
 
 void Session::in_loop_thread() {
-  pthread_setname_np(pthread_self(), "tact-loop");
-  std::vector<Shortfall> known;
-  enter_rt_thread(rt_, known);
-  rusage before{}, after{};
-  {
-    const HeapWatch heap;
-    getrusage(RUSAGE_THREAD, &before);
-    loop_->run();
-    getrusage(RUSAGE_THREAD, &after);
-    costs_.heap_calls = heap.calls();
-  }
-  leave_rt_thread();
-  device_->stop();  // at once: drives watch for their host
-  costs_.heap_calls_known = can_count_heap_calls();
-  costs_.minor_faults = after.ru_minflt - before.ru_minflt;
-  costs_.major_faults = after.ru_majflt - before.ru_majflt;
-  costs_.voluntary_switches = after.ru_nvcsw - before.ru_nvcsw;
-  costs_.involuntary_switches = after.ru_nivcsw - before.ru_nivcsw;
+  costs_ = run_as_loop_thread(rt_, [this] { loop_->run(); });
+  parts_.device->stop();  // at once: drives watch for their host
   loop_ended_.store(true);
 }
 
 // The main thread while the loop runs: waits for signals, tells what happens.
 void Session::watch() {
-  OperatorView view(*device_, *lines_, requests_.arm.load());
+  OperatorView view(*parts_.device, *parts_.lines, requests_.arm.load());
   while (!loop_ended_.load()) {
     operator_->obey(requests_, kStatusPeriod);
     view.show(telemetry_->newest_frame());
@@ -237,9 +185,10 @@ void Session::watch() {
 }
 
 int Session::report() {
-  const std::string trouble = trouble_behind(controller_->newest().fault, *device_, *lines_);
-  lines_->stop();
-  device_->stop();
+  const std::string trouble =
+      trouble_behind(parts_.controller->newest().fault, *parts_.device, *parts_.lines);
+  parts_.lines->stop();
+  parts_.device->stop();
   if (hand_socket_) hand_socket_->stop();
   const std::string log_trouble = telemetry_->stop();
   rusage process{};
@@ -247,26 +196,27 @@ int Session::report() {
   const LoopStatistics& statistics = loop_->statistics();
   const RunFacts facts{
       .scene_name = scene_.name,
-      .law_title = tissue_->law().title(),
-      .device_name = device_->info().name,
+      .law_title = parts_.tissue->law().title(),
+      .device_name = parts_.device->info().name,
       .rate_Hz = scene_.rate_Hz,
       .duration_s =
           static_cast<double>(statistics.ticks + statistics.skipped_ticks) / scene_.rate_Hz,
-      .force_limit_N = controller_->gate().force_limit_N(),
+      .force_limit_N = parts_.controller->gate().force_limit_N(),
       .non_rt = non_rt_,
       .simulated_time = options_.free_run,
       .shortfalls = shortfalls_,
       .costs = costs_,
-      .dropped_records = ring_->dropped(),
+      .dropped_records = parts_.ring->dropped(),
       .dropped_frames = telemetry_->dropped_frames(),
-      .state = controller_->newest().state,
-      .fault = controller_->newest().fault,
+      .state = parts_.controller->newest().state,
+      .fault = parts_.controller->newest().fault,
       .trouble = trouble,
       .force_hash = telemetry_->force_hash(),
       .resident_peak_kB = process.ru_maxrss,
-      .law_table_bytes = tissue_->law().memory_bytes()};
+      .law_table_bytes = parts_.tissue->law().memory_bytes()};
   const std::string json =
-      make_report(facts, statistics, controller_->gate(), read_environment(scene_.hash)).dump(2);
+      make_report(facts, statistics, parts_.controller->gate(), read_environment(scene_.hash))
+          .dump(2);
   if (options_.json_path == "-")
     fmt::print("{}\n", json);
   else

@@ -67,14 +67,14 @@ std::optional<int> end(pid_t child) {
 }
 
 /// Still running? It stays a zombie, so that its number is not used again.
-bool is_running(pid_t child) {
+bool still_runs(pid_t child) {
   siginfo_t info{};
   return waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
          info.si_pid == 0;
 }
 
 /// The child, in the table of those to end; or a sentence about what kept it from starting.
-Result<pid_t> start(const ProgramCall& call) {
+Result<pid_t> start_child(const ProgramCall& call) {
   std::vector<std::string> words{call.program};
   words.insert(words.end(), call.arguments.begin(), call.arguments.end());
   std::vector<std::string> settings = environment_of(call);
@@ -134,9 +134,9 @@ std::string tail(const std::string& text) {
 Result<std::string> run_program(const ProgramCall& call) {
   using namespace std::chrono_literals;
   const auto begun = Clock::now();
-  const auto child = start(call);
+  const auto child = start_child(call);
   if (!child) return child.error();
-  while (is_running(*child)) {
+  while (still_runs(*child)) {
     if (is_interrupted()) {
       end(*child);
       return interruption();
@@ -162,6 +162,18 @@ Result<std::string> run_program(const ProgramCall& call) {
   return Error{fmt::format("{} ended with {}; all it printed is in {}, at the end:{}", call.program,
                            how, call.log_path, tail(text))};
 }
+
+Result<RunningProgram> RunningProgram::start(const ProgramCall& call) {
+  const auto child = start_child(call);
+  if (!child) return child.error();
+  return RunningProgram(*child);
+}
+
+RunningProgram::~RunningProgram() {
+  if (child_ > 0) end(child_);
+}
+
+bool RunningProgram::is_running() const { return child_ > 0 && still_runs(child_); }
 
 Error interruption() { return Error{std::string(kInterrupted)}; }
 

@@ -31,6 +31,26 @@ struct ProgramCall {
 /// what to install), interrupted, over its time, or its last lines and where all of them are.
 model::Result<std::string> run_program(const ProgramCall& call);
 
+/// A program that runs beside us until its object goes: then its whole group is killed. A time limit
+/// and the status do not count here.
+class RunningProgram {
+ public:
+  /// An error says what to install.
+  static model::Result<RunningProgram> start(const ProgramCall& call);
+  RunningProgram(RunningProgram&& other) noexcept : child_(std::exchange(other.child_, -1)) {}
+  RunningProgram(const RunningProgram&) = delete;
+  RunningProgram& operator=(const RunningProgram&) = delete;
+  RunningProgram& operator=(RunningProgram&&) = delete;
+  ~RunningProgram();
+
+  /// False once it has ended by itself.
+  bool is_running() const;
+
+ private:
+  explicit RunningProgram(int child) : child_(child) {}
+  int child_ = -1;  // leads its group
+};
+
 /// The error of a Ctrl-C, which is no failure of the program, and is it that one?
 model::Error interruption();
 bool was_interrupted(const model::Error& error);

@@ -1,0 +1,89 @@
+#include "firmware/loop_parts.h"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <thread>
+
+#include "firmware/alloc_counter.h"
+#include "hal/gpio/gpio_lines.h"
+
+namespace tact::firmware {
+
+using model::Error;
+using model::Result;
+
+std::int64_t period_ns(const model::Scene& scene) { return std::llround(1e9 / scene.rate_Hz); }
+
+Result<LoopParts> open_loop_parts(const model::Scene& scene, const PartsSetup& setup) {
+  LoopParts parts;
+  auto tissue = model::make_tissue(scene);
+  if (!tissue) return tissue.error();
+  parts.tissue = std::move(*tissue);
+  if (setup.simulated_time && !hal::is_simulated(scene.device))
+    return Error{fmt::format(
+        "{}: --free-run is simulated time, and device.kind \"{}\" is hardware; leave it out",
+        scene.path, scene.device.kind)};
+  auto lines = hal::open_safety_lines(scene.device.lines);
+  if (!lines) return Error{fmt::format("{}: {}", scene.path, lines.error().sentence)};
+  parts.lines = std::move(*lines);
+  auto device = hal::open_device(scene);
+  if (!device) return device.error();
+  parts.device = std::move(*device);
+  const auto stiffness = check_renderable(scene, *parts.tissue, parts.device->info());
+  if (!stiffness) return stiffness.error();
+  parts.stiffness = *stiffness;
+  if (!setup.simulated_time) {
+    const auto time = check_budget(scene, setup.non_rt ? std::nullopt : std::optional(setup.rt));
+    if (!time) return time.error();
+    parts.time = *time;
+  }
+  parts.limits = limits_for(scene.limits, parts.device->info());
+  parts.controller = std::make_unique<Controller>(
+      parts.tissue->contact_scene(),
+      Gate(parts.limits, static_cast<double>(period_ns(scene)) * 1e-9, setup.force_share()),
+      !setup.non_rt);
+  parts.ring = std::make_unique<TickRing>();
+  return parts;
+}
+
+std::vector<Shortfall> probe_rt_thread(const RtSettings& settings) {
+  std::vector<Shortfall> shortfalls;
+  std::thread([&] { enter_rt_thread(settings, shortfalls); }).join();
+  return shortfalls;
+}
+
+void add_to(ThreadCosts& sum, const ThreadCosts& more) {
+  sum.heap_calls += more.heap_calls;
+  sum.heap_calls_known = more.heap_calls_known;
+  sum.minor_faults += more.minor_faults;
+  sum.major_faults += more.major_faults;
+  sum.voluntary_switches += more.voluntary_switches;
+  sum.involuntary_switches += more.involuntary_switches;
+}
+
+ThreadCosts run_as_loop_thread(const RtSettings& settings, const std::function<void()>& loop) {
+  pthread_setname_np(pthread_self(), "tact-loop");
+  std::vector<Shortfall> known;
+  enter_rt_thread(settings, known);
+  ThreadCosts costs;
+  rusage before{}, after{};
+  {
+    const HeapWatch heap;
+    getrusage(RUSAGE_THREAD, &before);
+    loop();
+    getrusage(RUSAGE_THREAD, &after);
+    costs.heap_calls = heap.calls();
+  }
+  leave_rt_thread();
+  costs.heap_calls_known = can_count_heap_calls();
+  costs.minor_faults = after.ru_minflt - before.ru_minflt;
+  costs.major_faults = after.ru_majflt - before.ru_majflt;
+  costs.voluntary_switches = after.ru_nvcsw - before.ru_nvcsw;
+  costs.involuntary_switches = after.ru_nivcsw - before.ru_nivcsw;
+  return costs;
+}
+
+}  // namespace tact::firmware

@@ -1,0 +1,66 @@
+// loop_parts.h - everything that a tick touches, opened and checked in the order in which it comes
+// to life, and the thread it runs in. Set-up code: `tactd` and `tact-jitter` run the same loop.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "firmware/controller.h"
+#include "firmware/law_check.h"
+#include "firmware/ring.h"
+#include "firmware/rt_setup.h"
+#include "hal/open_device.h"
+#include "hal/safety_lines.h"
+#include "model/scene.h"
+#include "model/tissue.h"
+
+namespace tact::firmware {
+
+/// Of the force, where the PC gives no hard real time.
+inline constexpr double kNonRtForceShare = 0.25;
+
+struct PartsSetup {
+  bool simulated_time = false;  // waits for any law, so no law is too slow
+  bool non_rt = false;          // caps the force; simulated time is never late
+  RtSettings rt;
+
+  double force_share() const { return non_rt ? kNonRtForceShare : 1.0; }
+};
+
+struct LoopParts {
+  std::unique_ptr<model::Tissue> tissue;
+  std::unique_ptr<hal::SafetyLines> lines;
+  hal::OpenDevice device;  // off when the parts go, whatever ended them
+  StiffnessMargin stiffness;
+  std::optional<TimeMargin> time;
+  model::Limits limits;  // of scene and device together
+  std::unique_ptr<Controller> controller;
+  std::unique_ptr<TickRing> ring;
+};
+
+/// Opens the device of the scene and checks that the law may be felt on it.
+model::Result<LoopParts> open_loop_parts(const model::Scene& scene, const PartsSetup& setup);
+
+/// Of one tick, from the scene's rate.
+std::int64_t period_ns(const model::Scene& scene);
+
+/// What this PC does not give a loop of these settings; tried out in a thread that ends again.
+std::vector<Shortfall> probe_rt_thread(const RtSettings& settings);
+
+/// Kernel's and allocator's view of the loop's thread between its first and its last tick.
+struct ThreadCosts {
+  std::uint64_t heap_calls = 0;
+  bool heap_calls_known = false;
+  long minor_faults = 0, major_faults = 0;
+  long voluntary_switches = 0, involuntary_switches = 0;
+};
+
+/// Of several runs together.
+void add_to(ThreadCosts& sum, const ThreadCosts& more);
+
+/// Runs `loop` as the loop's thread, which this one becomes and then leaves again.
+ThreadCosts run_as_loop_thread(const RtSettings& settings, const std::function<void()>& loop);
+
+}  // namespace tact::firmware

@@ -1,0 +1,17 @@
+// jitter_page.h - a measurement as one HTML file that needs nothing else: no network, no script.
+#pragma once
+
+#include <string>
+
+#include "tools/jitter/jitter_report.h"
+
+namespace tact::tools {
+
+/// `histogram_svg`: the picture itself; empty where none was drawn.
+std::string make_page(const JitterResult& result, const std::string& command,
+                      const std::string& histogram_svg);
+
+/// Text that HTML would read as its own, made plain.
+std::string escape_html(const std::string& text);
+
+}  // namespace tact::tools

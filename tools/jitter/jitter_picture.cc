@@ -1,0 +1,77 @@
+#include "tools/jitter/jitter_picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/common/picture.h"
+#include "tools/common/table.h"
+
+namespace tact::tools {
+namespace {
+
+constexpr double kFirst_us = 0.1;
+constexpr int kPerDecade = 20;
+
+std::size_t bin_of(std::uint64_t ns) {
+  const double decades =
+      std::log10(std::max(1e-3 * static_cast<double>(ns), kFirst_us) / kFirst_us);
+  return static_cast<std::size_t>(decades * kPerDecade + 1e-9);
+}
+
+std::vector<NamedSeries> drawn_series(const JitterResult& result) {
+  std::vector<NamedSeries> drawn;
+  for (const NamedSeries& named : series_of(result))
+    for (const char* key : {"wake", "peer_wake", "total", "deadline_to_force"})
+      if (named.key == key) drawn.push_back(named);
+  return drawn;
+}
+
+}  // namespace
+
+std::string make_histogram_csv(const JitterResult& result) {
+  const auto drawn = drawn_series(result);
+  std::vector<std::vector<std::uint64_t>> samples(drawn.size());
+  std::size_t bins = 0;
+  for (std::size_t i = 0; i < drawn.size(); ++i)
+    drawn[i].series->histogram.for_each_bucket(
+        [&](std::uint64_t low_ns, std::uint64_t high_ns, std::uint64_t count) {
+          const std::size_t bin = bin_of((low_ns + high_ns) / 2);
+          if (bin >= samples[i].size()) samples[i].resize(bin + 1);
+          samples[i][bin] += count;
+          bins = std::max(bins, bin + 1);
+        });
+  std::string out = "from_us";
+  for (const NamedSeries& named : drawn) out += "," + named.key;
+  for (std::size_t bin = 0; bin <= bins; ++bin) {  // the last one is empty: steps end there
+    out +=
+        fmt::format("\n{:.6g}", kFirst_us * std::pow(10.0, static_cast<double>(bin) / kPerDecade));
+    for (const auto& column : samples)
+      out += fmt::format(",{}", bin < column.size() ? column[bin] : 0);
+  }
+  return out + "\n";
+}
+
+model::Result<std::vector<std::string>> draw_histogram(const JitterResult& result,
+                                                       const std::string& directory) {
+  const auto drawn = drawn_series(result);
+  if (auto written = write_whole_file(directory + "/histogram.csv", make_histogram_csv(result));
+      !written)
+    return written.error();
+  std::string script = fmt::format(
+      "set logscale xy\nset xlabel 'us, from this value on'\nset ylabel 'samples in a bucket of a "
+      "twentieth decade'\nset yrange [0.5:*]\nset format y '10^{{%L}}'\nset key top right\n"
+      "set title \"{} ticks at {:g} Hz, {}\" noenhanced\nplot ",
+      result.sink->ticks(), result.rate_Hz,
+      result.load.empty() ? std::string("idle") : "load " + result.load);
+  for (std::size_t i = 0; i < drawn.size(); ++i)
+    // A step is drawn down to half a sample where a bucket is empty: zero has no logarithm.
+    script += fmt::format(
+        "{}'histogram.csv' using 1:(${} > 0 ? ${} : 0.5) with steps lw 2 lt {} title '{}'",
+        i == 0 ? "" : ", ", i + 2, i + 2, i + 1, drawn[i].title);
+  return draw({.name = "histogram", .width_px = 1000, .height_px = 520, .script = script + "\n"},
+              directory);
+}
+
+}  // namespace tact::tools

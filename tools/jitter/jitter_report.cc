@@ -1,0 +1,173 @@
+#include "tools/jitter/jitter_report.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "firmware/report.h"
+
+namespace tact::tools {
+namespace {
+
+using firmware::LatencyHistogram;
+using firmware::Phase;
+using nlohmann::json;
+
+json series_json(const JitterResult& result, const NamedSeries& named) {
+  const LatencyHistogram& h = named.series->histogram;
+  json out{{"title", named.title},
+           {"samples", h.count()},
+           {"max_ns", h.max_ns()},
+           {"max_tick", h.max_tick()},
+           {"max_at_s", seconds_into(result, named.series->max_at_ns)}};
+  for (const Share& share : kShares) {
+    const auto ns = percentile_ns(h, share.value);
+    out[std::string(share.name) + "_ns"] = ns ? json(*ns) : json(nullptr);
+  }
+  json buckets = json::array();
+  h.for_each_bucket([&](std::uint64_t low_ns, std::uint64_t high_ns, std::uint64_t samples) {
+    buckets.push_back({low_ns, high_ns, samples});
+  });
+  out["buckets_ns"] = buckets;
+  return out;
+}
+
+json late_json(const JitterResult& result, const LateTick& late) {
+  json phases;
+  for (std::size_t i = 0; i < firmware::kPhaseCount; ++i)
+    phases[firmware::kPhaseName[i]] = late.times.phase_ns[i];
+  return {{"tick", late.times.tick},
+          {"at_s", seconds_into(result, late.times.due_ns)},
+          {"due_ns", late.times.due_ns},
+          {"deadline_to_force_ns", late.worst_ns},
+          {"skipped_before", late.times.skipped_before},
+          {"phases_ns", phases},
+          {"kernel_counted", late.attribution}};
+}
+
+}  // namespace
+
+std::vector<NamedSeries> series_of(const JitterResult& result) {
+  const TickSink& sink = *result.sink;
+  std::vector<NamedSeries> all;
+  const auto add = [&](const char* key, const char* title, const Series& series) {
+    if (series.histogram.max_ns() > 0) all.push_back({key, title, &series});
+  };
+  add("wake", "wake-up", sink.phase(Phase::kWake));
+  if (result.peer) add("peer_wake", "wake-up of cyclictest", *result.peer);
+  add("every_wake", "every wake-up", sink.every_wake());
+  for (const Phase p :
+       {Phase::kRead, Phase::kTouch, Phase::kFeel, Phase::kJudge, Phase::kWrite, Phase::kTell}) {
+    const char* name = firmware::kPhaseName[static_cast<std::size_t>(p)];
+    add(name, name, sink.phase(p));
+  }
+  add("total", "tick", sink.phase(Phase::kTotal));
+  if (!result.scene_hash.empty())
+    add("deadline_to_force", "deadline to force", sink.deadline_to_force());
+  add("round_trip", "device round trip", sink.round_trip());
+  return all;
+}
+
+std::optional<std::uint64_t> percentile_ns(const LatencyHistogram& histogram, double share) {
+  if (static_cast<double>(histogram.count()) * (1.0 - share) < 1.0 - 1e-9) return std::nullopt;
+  return histogram.percentile_ns(share);
+}
+
+std::optional<double> ratio_to_peer(const JitterResult& result) {
+  if (!result.peer) return std::nullopt;
+  const auto own = percentile_ns(result.sink->phase(Phase::kWake).histogram, 0.999);
+  const auto peer = percentile_ns(result.peer->histogram, 0.999);
+  if (!own || !peer || *peer == 0) return std::nullopt;
+  return static_cast<double>(*own) / static_cast<double>(*peer);
+}
+
+double seconds_into(const JitterResult& result, std::int64_t at_ns) {
+  return at_ns == 0 ? 0.0 : 1e-9 * static_cast<double>(at_ns - result.sink->first_due_ns());
+}
+
+std::string in_us(std::optional<std::uint64_t> duration_ns) {
+  if (!duration_ns) return "-";
+  const double us = 1e-3 * static_cast<double>(*duration_ns);
+  return us >= 100.0 ? fmt::format("{:.0f}", us) : fmt::format("{:.3g}", us);
+}
+
+std::string make_headline(const JitterResult& result) {
+  const TickSink& sink = *result.sink;
+  return fmt::format(
+      "{}: {} ticks at {:g} Hz in {:g} s on core {}, FIFO {}, {}{}; {} late, {} skipped{}{}",
+      result.subject, sink.ticks(), result.rate_Hz, result.measured_s, result.core, result.priority,
+      result.load.empty() ? "idle" : "load " + result.load,
+      result.scene_hash.empty() || result.armed ? "" : ", not armed (force is zero)", sink.late(),
+      sink.skipped(),
+      sink.unseen() > 0 ? fmt::format(", {} not seen by this program", sink.unseen()) : "",
+      result.non_rt ? ", non-rt" : "");
+}
+
+std::string make_summary(const JitterResult& result) {
+  std::string out = make_headline(result) + fmt::format("\n{:24} {:>9}", "us", "samples");
+  for (const Share& share : kShares) out += fmt::format(" {:>8}", share.name);
+  out += fmt::format(" {:>8}\n", "largest");
+  for (const NamedSeries& named : series_of(result)) {
+    const LatencyHistogram& h = named.series->histogram;
+    out += fmt::format("  {:22} {:>9}", named.title, h.count());
+    for (const Share& share : kShares)
+      out += fmt::format(" {:>8}", in_us(percentile_ns(h, share.value)));
+    out += fmt::format(" {:>8}", in_us(h.max_ns()));
+    out += named.key == "peer_wake" ? "\n"
+                                    : fmt::format("  tick {}, {:.3f} s\n", h.max_tick(),
+                                                  seconds_into(result, named.series->max_at_ns));
+  }
+  out += fmt::format("the largest is that of {} ticks: it bounds nothing\n", result.sink->ticks());
+  if (const auto ratio = ratio_to_peer(result))
+    out += fmt::format("wake-up p99.9 is {:.2f} of cyclictest's in the same run\n", *ratio);
+  const auto& thread = result.thread;
+  out += fmt::format("loop's thread: {} heap calls, {} page faults, {} involuntary switches\n",
+                     thread.heap_calls_known ? std::to_string(thread.heap_calls) : "unknown",
+                     thread.minor_faults + thread.major_faults, thread.involuntary_switches);
+  out += fmt::format("around it: {}\n", describe(result.costs));
+  out += fmt::format("{} ticks over {} us from deadline to force", result.sink->over_threshold(),
+                     in_us(static_cast<std::uint64_t>(result.sink->threshold_ns())));
+  const auto late = result.sink->late_ticks();
+  for (std::size_t i = 0; i < std::min<std::size_t>(late.size(), 3); ++i)
+    out += fmt::format("\n  {} us at tick {}, {:.3f} s: {}",
+                       in_us(static_cast<std::uint64_t>(late[i].worst_ns)), late[i].times.tick,
+                       seconds_into(result, late[i].times.due_ns), late[i].attribution);
+  if (!result.fault.empty()) out += "\nfault " + result.fault;
+  return out;
+}
+
+json to_json(const JitterResult& result, const std::string& command) {
+  json series, late = json::array(), shortfalls = json::array();
+  for (const NamedSeries& named : series_of(result)) series[named.key] = series_json(result, named);
+  for (const LateTick& tick : result.sink->late_ticks()) late.push_back(late_json(result, tick));
+  for (const firmware::Shortfall& s : result.shortfalls) shortfalls.push_back(s.sentence);
+  const auto ratio = ratio_to_peer(result);
+  return {{"format", "tact-jitter 1"},
+          {"command", command},
+          {"subject", result.subject},
+          {"rate_Hz", result.rate_Hz},
+          {"measured_s", result.measured_s},
+          {"core", result.core},
+          {"priority", result.priority},
+          {"load", result.load},
+          {"armed", result.armed},
+          {"non_rt", result.non_rt},
+          {"shortfalls", shortfalls},
+          {"ticks", result.sink->ticks()},
+          {"late", result.sink->late()},
+          {"skipped", result.sink->skipped()},
+          {"unseen", result.sink->unseen()},
+          {"threshold_ns", result.sink->threshold_ns()},
+          {"over_threshold", result.sink->over_threshold()},
+          {"series", series},
+          {"wake_p99.9_over_peer", ratio ? json(*ratio) : json(nullptr)},
+          {"thread", firmware::to_json(result.thread)},
+          {"kernel", to_json(result.costs)},
+          {"late_ticks", late},
+          {"marked_in_ftrace", result.has_marker},
+          {"fault", result.fault},
+          {"pc", firmware::to_json(result.pc)},
+          {"environment", firmware::to_json(result.environment)}};
+}
+
+}  // namespace tact::tools

@@ -1,0 +1,233 @@
+#include "tools/jitter/jitter_run.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "firmware/rt_loop.h"
+#include "tools/jitter/bare_loop.h"
+#include "tools/jitter/live_line.h"
+#include "tools/jitter/load.h"
+#include "tools/jitter/marker.h"
+#include "tools/jitter/peer.h"
+
+namespace tact::tools {
+namespace {
+
+using namespace firmware;  // NOLINT(google-build-using-namespace): the loop it measures
+using namespace std::chrono_literals;
+using model::Error;
+using model::Result;
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr double kBareRate_Hz = 1000.0;
+constexpr double kLongestSlice_s = 5.0;
+constexpr double kThresholdShare = 0.1;  // of the period: what integrators allow a wake-up
+constexpr auto kDrainPeriod = 5ms;       // 20 ticks at 4 kHz, of 4096 that the ring holds
+constexpr auto kCostPeriod = 100ms;
+constexpr auto kLoadNeeds = 1s;  // until all of its processes run
+
+// Everything of one measurement, in the order in which it comes to life.
+class Run {
+ public:
+  explicit Run(const JitterOptions& options) : options_(options) {}
+  Result<JitterResult> run();
+
+ private:
+  std::optional<Error> open();
+  std::optional<Error> measure();
+  bool run_slice(double duration_s);
+  void follow(const std::atomic<bool>& ended);
+  void drain();
+  void explain();
+  bool is_hardware() const { return !options_.bare && !hal::is_simulated(scene_->device); }
+  // Drives and safety lines hold a pause for a fault.
+  bool in_one_piece() const { return is_hardware() || (scene_ && scene_->device.lines.wired()); }
+  std::int64_t loop_period_ns() const { return std::llround(1e9 / result_.rate_Hz); }
+  TickRing& ring() { return options_.bare ? *bare_ring_ : *parts_.ring; }
+
+  const JitterOptions& options_;
+  JitterResult result_;
+  RtSettings rt_;
+  std::optional<ProcessSetup> process_;
+  std::optional<model::Scene> scene_;
+  LoopParts parts_;
+  std::unique_ptr<TickRing> bare_ring_;
+  MonotonicClock clock_;
+  Requests requests_;
+  std::optional<TraceMarker> marker_;
+  std::optional<LiveLine> live_;
+  PcFiles files_;
+  std::atomic<int> loop_thread_{0};
+  Costs before_;
+  SteadyClock::time_point costs_due_;
+};
+
+Result<JitterResult> Run::run() {
+  use_small_thread_stacks();
+  rt_.core = options_.core;
+  process_.emplace(result_.shortfalls);
+  for (Shortfall& s : probe_rt_thread(rt_)) result_.shortfalls.push_back(std::move(s));
+  result_.non_rt = !result_.shortfalls.empty();
+  result_.core = choose_core(rt_);
+  result_.priority = rt_.priority;
+  if (auto error = open()) return *error;
+  const double threshold_us =
+      options_.threshold_us > 0.0 ? options_.threshold_us : kThresholdShare * 1e6 / result_.rate_Hz;
+  result_.sink = std::make_unique<TickSink>(SinkSettings{
+      .period_ns = loop_period_ns(), .threshold_ns = std::llround(1e3 * threshold_us)});
+  marker_.emplace(files_, options_.stop_trace);
+  result_.has_marker = marker_->is_open();
+  if (options_.stop_trace && !marker_->is_open())
+    return Error{
+        "/sys/kernel/tracing/trace_marker cannot be written; be root and mount tracefs: "
+        "sudo mount -t tracefs tracefs /sys/kernel/tracing"};
+  result_.pc = check_pc({.files = files_, .core = result_.core});
+  result_.environment = read_environment(result_.scene_hash);
+  if (auto error = measure()) return *error;
+  if (!options_.bare) {
+    const model::FaultEntry& fault = model::describe(parts_.controller->newest().fault);
+    if (fault.fault != model::Fault::kNone)
+      result_.fault = fmt::format("{}: {}; {}", fault.name, fault.cause, fault.cure);
+    parts_.lines->stop();
+    parts_.device->stop();
+  }
+  return std::move(result_);
+}
+
+std::optional<Error> Run::open() {
+  result_.rate_Hz = options_.rate_Hz > 0.0 ? options_.rate_Hz : kBareRate_Hz;
+  result_.subject = "bare loop";
+  if (options_.bare) {
+    bare_ring_ = std::make_unique<TickRing>();
+    return std::nullopt;
+  }
+  SceneArguments arguments = options_.scene;
+  if (options_.rate_Hz > 0.0)
+    arguments.overrides.push_back(fmt::format("rate_Hz={}", options_.rate_Hz));
+  auto scene = arguments.load();
+  if (!scene) return scene.error();
+  scene_ = std::move(*scene);
+  if (auto refusal = model::check_drivable(*scene_)) return refusal;
+  auto parts = open_loop_parts(*scene_, {.non_rt = result_.non_rt, .rt = rt_});
+  if (!parts) return parts.error();
+  parts_ = std::move(*parts);
+  result_.rate_Hz = scene_->rate_Hz;
+  result_.scene_hash = scene_->hash;
+  result_.subject = fmt::format("{} on {}, law {}", scene_->name, parts_.device->info().name,
+                                parts_.tissue->law().title());
+  result_.armed = options_.arm || !is_hardware();
+  requests_.arm.store(result_.armed);
+  return std::nullopt;
+}
+
+std::optional<Error> Run::measure() {
+  auto folder = ScratchFolder::make("tact-jitter");
+  if (!folder) return folder.error();
+  std::optional<RunningProgram> load;
+  if (!options_.load.empty()) {
+    auto started = start_load(options_.load, *folder);
+    if (!started) return started.error();
+    load.emplace(std::move(*started));
+    result_.load = fmt::format("{}", fmt::join(options_.load, ","));
+    std::this_thread::sleep_for(kLoadNeeds);
+    if (!load->is_running()) return Error{"stress-ng ended at once; try its --load alone by hand"};
+  }
+  if (options_.peer) result_.peer.emplace();
+  if (options_.live) live_.emplace(options_.duration_s);
+  for (const double slice_s : slices_of(options_.duration_s, options_.peer && !in_one_piece())) {
+    if (!run_slice(slice_s)) return interruption();
+    if (!options_.peer) continue;
+    if (auto error = run_cyclictest({.core = result_.core,
+                                     .priority = result_.priority,
+                                     .period_ns = loop_period_ns(),
+                                     .duration_s = slice_s},
+                                    *folder, *result_.peer))
+      return error;
+  }
+  if (load && !load->is_running()) return Error{"stress-ng ended before the loop; nothing counts"};
+  return std::nullopt;
+}
+
+bool Run::run_slice(double duration_s) {
+  const auto periods = static_cast<std::uint64_t>(std::ceil(duration_s * result_.rate_Hz));
+  std::optional<RtLoop> loop;
+  std::optional<BareLoop> bare;
+  if (options_.bare)
+    bare.emplace(loop_period_ns(), periods, clock_, requests_.stop, ring());
+  else
+    loop.emplace(LoopSettings{.period_ns = loop_period_ns(), .max_periods = periods},
+                 *parts_.device, *parts_.lines, *parts_.controller, clock_, requests_, ring());
+  result_.sink->begin_slice();
+  std::atomic<bool> ended{false};
+  ThreadCosts costs;
+  loop_thread_.store(0);
+  std::thread thread([&] {
+    costs = run_as_loop_thread(rt_, [&] {
+      loop_thread_.store(gettid());
+      loop ? loop->run() : bare->run();
+    });
+    if (is_hardware()) parts_.device->stop();  // at once: drives watch for their host
+    ended.store(true);
+  });
+  follow(ended);
+  thread.join();
+  drain();
+  add_to(result_.thread, costs);
+  result_.measured_s += duration_s;
+  return !is_interrupted();
+}
+
+// The ordinary thread beside the loop: empties the ring, reads the kernel's counters, shows a line.
+void Run::follow(const std::atomic<bool>& ended) {
+  while (loop_thread_.load() == 0 && !ended.load()) std::this_thread::sleep_for(1ms);
+  before_ = read_costs(files_, loop_thread_.load(), result_.core);
+  costs_due_ = SteadyClock::now() + kCostPeriod;
+  while (!ended.load()) {
+    if (is_interrupted()) requests_.stop.store(true);
+    drain();
+    if (SteadyClock::now() >= costs_due_) explain();
+    if (live_) live_->show(*result_.sink);
+    std::this_thread::sleep_for(kDrainPeriod);
+  }
+  drain();
+  explain();
+  if (live_) live_->clear();
+}
+
+void Run::drain() {
+  TickRecord record;
+  while (ring().pop(record)) result_.sink->add(record);
+}
+
+// What the kernel counted since the last look belongs to the late ticks since then.
+void Run::explain() {
+  costs_due_ = SteadyClock::now() + kCostPeriod;
+  const Costs now = read_costs(files_, loop_thread_.load(), result_.core);
+  const Costs delta = now - before_;
+  for (LateTick* late : result_.sink->new_late_ticks()) {
+    late->attribution = describe(delta);
+    marker_->write(fmt::format("tact-jitter: tick {} due {} ns came to its force {} us late",
+                               late->times.tick, late->times.due_ns, late->worst_ns / 1000));
+  }
+  // The thread may be gone by now, and its counters with it; the last full reading counts.
+  add_to(result_.costs, delta);
+  before_ = now;
+}
+
+}  // namespace
+
+Result<JitterResult> run_jitter(const JitterOptions& options) { return Run(options).run(); }
+
+std::vector<double> slices_of(double duration_s, bool takes_turns) {
+  if (!takes_turns) return {duration_s};
+  const double slices = std::max(2.0, std::ceil(duration_s / kLongestSlice_s));
+  return std::vector<double>(static_cast<std::size_t>(slices), duration_s / slices);
+}
+
+}  // namespace tact::tools

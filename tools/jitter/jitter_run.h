@@ -1,0 +1,62 @@
+// jitter_run.h - one measurement: the loop of a scene on its device, or a bare one, with load and
+// peer if they are asked for.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/environment.h"
+#include "firmware/loop_parts.h"
+#include "firmware/pc_check.h"
+#include "model/result.h"
+#include "tools/common/program.h"
+#include "tools/jitter/costs.h"
+#include "tools/jitter/tick_sink.h"
+
+namespace tact::tools {
+
+struct JitterOptions {
+  SceneArguments scene;
+  bool bare = false;  // no scene, no device: the kernel alone
+  bool arm = false;   // hardware: with force; a simulated device always has it
+  int core = -1;
+  double duration_s = 10.0;
+  double rate_Hz = 0.0;       // 0: the scene's, or 1000 of a bare loop
+  double threshold_us = 0.0;  // 0: a tenth of the period
+  std::vector<std::string> load;
+  bool peer = false;  // cyclictest
+  bool stop_trace = false;
+  bool live = false;  // a line on the terminal while it runs
+};
+
+struct JitterResult {
+  std::string subject;     // "liver on simulated delta ..., law ..." or "bare loop"
+  std::string scene_hash;  // empty for a bare loop
+  double rate_Hz = 0.0;
+  double measured_s = 0.0;  // of the loop's own slices
+  int core = 0, priority = 0;
+  bool armed = false;
+  bool non_rt = false;
+  std::vector<firmware::Shortfall> shortfalls;
+  std::string load;  // "cpu,memory"; empty: none
+  std::unique_ptr<TickSink> sink;
+  firmware::ThreadCosts thread;
+  Costs costs;
+  bool has_marker = false;  // late ticks are marked in the kernel's trace
+  std::optional<Series> peer;
+  std::string fault;  // name and cause; empty: none
+  std::vector<firmware::PcRow> pc;
+  firmware::Environment environment;
+};
+
+/// Runs it. Ctrl-C ends the loop early, with zero force; what was measured until then is the error's
+/// loss.
+model::Result<JitterResult> run_jitter(const JitterOptions& options);
+
+/// How the run is cut where a peer takes turns: at least two slices of at most 5 s. A device that is
+/// hardware runs in one piece, as its own watchdog would meet the pauses.
+std::vector<double> slices_of(double duration_s, bool takes_turns);
+
+}  // namespace tact::tools

@@ -1,0 +1,26 @@
+// live_line.h - a run in one line of the terminal, while it runs.
+#pragma once
+
+#include <chrono>
+
+#include "tools/jitter/tick_sink.h"
+
+namespace tact::tools {
+
+class LiveLine {
+ public:
+  explicit LiveLine(double duration_s) : duration_s_(duration_s) {}
+
+  /// A few times a second; does nothing in between. Goes to standard error.
+  void show(const TickSink& sink);
+  void clear();
+
+ private:
+  double duration_s_;
+  std::chrono::steady_clock::time_point due_{};
+};
+
+/// "12.3 s  12300 ticks  late 0  wake p50 5.2 p99.9 31 max 80 us".
+std::string make_live_line(const TickSink& sink, double elapsed_s, double duration_s);
+
+}  // namespace tact::tools

@@ -1,0 +1,24 @@
+// load.h - a load beside the loop, by stress-ng: what a PC does while somebody works on it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/result.h"
+#include "tools/common/run_program.h"
+
+namespace tact::tools {
+
+/// Kinds of load: cpu, memory, disk, net.
+const std::vector<std::string>& load_kinds();
+
+/// The arguments of stress-ng for these kinds on so many CPUs; its files go below `folder`.
+std::vector<std::string> stress_arguments(const std::vector<std::string>& kinds, unsigned cpus,
+                                          const std::string& folder);
+
+/// Starts it in a process group of its own. It ends with its object, and with us.
+model::Result<RunningProgram> start_load(const std::vector<std::string>& kinds,
+                                         const ScratchFolder& folder);
+
+}  // namespace tact::tools

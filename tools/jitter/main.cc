@@ -1,0 +1,160 @@
+// tact-jitter: latency and jitter of the loop that a person runs, and of each of its phases.
+#include <fmt/format.h>
+#include <sched.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tools/common/table.h"
+#include "tools/jitter/jitter_compare.h"
+#include "tools/jitter/jitter_page.h"
+#include "tools/jitter/jitter_picture.h"
+#include "tools/jitter/load.h"
+#include "tools/jitter/tick_trace.h"
+
+namespace {
+
+using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
+using nlohmann::json;
+using tact::model::Error;
+
+struct Options {
+  JitterOptions run;
+  std::string out, json_path, peer;
+  bool no_pictures = false;
+  std::string before, after;
+  double gate_percent = 0.0;
+};
+
+void add_run_options(CLI::App& app, Options& o) {
+  app.add_option("SCENE", o.run.scene.path, "scene file (TOML) whose loop and device are measured");
+  app.add_option("--set", o.run.scene.overrides, "one key of the scene, as KEY=VALUE; repeatable")
+      ->take_all()
+      ->allow_extra_args(false);
+  app.add_flag("--bare", o.run.bare, "no scene: an empty loop, what the kernel alone gives");
+  app.add_option("--duration", o.run.duration_s, "of the loop, s")
+      ->check(CLI::Range(0.1, 1e7))
+      ->capture_default_str();
+  app.add_option("--rate", o.run.rate_Hz, "ticks per second, Hz (default: the scene's, or 1000)")
+      ->check(CLI::Range(100.0, 4000.0));
+  app.add_option("--core", o.run.core,
+                 "CPU core of the loop (default: an isolated one, or the last)")
+      ->check(CLI::Range(0, CPU_SETSIZE - 1));
+  app.add_option("--load", o.run.load,
+                 "beside the loop, by stress-ng: cpu,memory,disk,net or fewer")
+      ->delimiter(',')
+      ->check(CLI::IsMember(load_kinds()));
+  app.add_option("--peer", o.peer, "cyclictest: takes turns with the loop, on its core")
+      ->check(CLI::IsMember({"cyclictest"}));
+  app.add_option("--threshold", o.run.threshold_us,
+                 "from deadline to force, us: ticks above are listed with what the kernel counted, "
+                 "and marked in ftrace where it may be written (default: a tenth of the period)")
+      ->check(CLI::Range(1.0, 1e6));
+  app.add_flag("--stop-trace", o.run.stop_trace, "the first of them ends the recording of ftrace");
+  app.add_flag("--arm", o.run.arm, "hardware: with force; without it the force is always zero");
+  app.add_option("--out", o.out,
+                 "folder for jitter.json, report.html, histogram.svg and .csv, and "
+                 "ticks.perfetto-trace for ui.perfetto.dev; made if need be");
+  app.add_flag("--no-pictures", o.no_pictures, "no histogram; needs no gnuplot");
+  app.add_option("--json", o.json_path, "write the result to this file too, - for stdout alone");
+}
+
+CLI::App* add_compare(CLI::App& app, Options& o) {
+  CLI::App* compare = app.add_subcommand("compare", "two results side by side; is B worse than A?");
+  compare->add_option("A", o.before, "jitter.json of the run before")->required();
+  compare->add_option("B", o.after, "jitter.json of the run after")->required();
+  compare
+      ->add_option("--gate", o.gate_percent,
+                   "%: fail if p50, p99 or p99.9 of wake-up, tick or deadline to force grew by "
+                   "more, and by more than 1 us")
+      ->check(CLI::Range(0.1, 1e4));
+  compare->add_option("--json", o.json_path, "write the result to this file, - for stdout alone");
+  return compare;
+}
+
+/// To the file, or to standard output; nothing without a path.
+std::optional<Error> write_json(const json& result, const std::string& path) {
+  const std::string text = result.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+  if (path == "-") fmt::print("{}", text);
+  if (path.empty() || path == "-") return std::nullopt;
+  if (auto written = write_whole_file(path, text); !written) return written.error();
+  return std::nullopt;
+}
+
+std::string read_file(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+std::optional<Error> write_folder(const JitterResult& result, const Options& o,
+                                  const std::string& command) {
+  if (auto error = write_json(to_json(result, command), o.out + "/jitter.json")) return error;
+  std::string svg;
+  if (!o.no_pictures) {
+    if (auto drawn = draw_histogram(result, o.out); !drawn) return drawn.error();
+    svg = read_file(o.out + "/histogram.svg");
+  }
+  const std::pair<const char*, std::string> files[] = {
+      {"report.html", make_page(result, command, svg)},
+      {"ticks.perfetto-trace", make_tick_trace(result.sink->kept_ticks(), boottime_offset_ns())}};
+  for (const auto& [name, content] : files)
+    if (auto written = write_whole_file(o.out + "/" + name, content); !written)
+      return written.error();
+  return std::nullopt;
+}
+
+int compare(const Program& program, const Options& o) {
+  const auto before = load_result(o.before), after = load_result(o.after);
+  if (!before) return program.fail(before.error());
+  if (!after) return program.fail(after.error());
+  const auto gate = o.gate_percent > 0.0 ? std::optional(1e-2 * o.gate_percent) : std::nullopt;
+  const auto comparison = compare_results(*before, *after, gate);
+  if (!comparison) return program.fail(comparison.error());
+  if (o.json_path != "-") fmt::print("{}", make_comparison_text(*comparison));
+  if (auto error = write_json(to_json(*comparison), o.json_path)) return program.fail(*error);
+  if (gate && !comparison->judged_any())
+    return program.fail(Error{"nothing could be judged: too few samples; measure for longer"});
+  return comparison->is_worse() ? 1 : 0;
+}
+
+int measure(const Program& program, Options& o) {
+  if (o.run.bare != o.run.scene.path.empty())
+    return program.fail(Error{"name one SCENE, or --bare for an empty loop; see --help"});
+  if (!o.out.empty())
+    if (auto error = prepare_folder(o.out)) return program.fail(*error);
+  if (o.json_path != "-")
+    if (auto error = check_output(o.json_path, {o.run.scene.path})) return program.fail(*error);
+  o.run.peer = !o.peer.empty();
+  o.run.live = isatty(STDERR_FILENO) != 0;
+  const auto result = run_jitter(o.run);
+  if (!result) return program.fail(result.error());
+  if (o.json_path != "-") fmt::print("{}\n", make_summary(*result));
+  if (auto error = write_json(o.json_path.empty() ? json() : to_json(*result, program.command()),
+                              o.json_path))
+    return program.fail(*error);
+  if (!o.out.empty())
+    if (auto error = write_folder(*result, o, program.command()))
+      return program.fail(*error, "its files are not complete");
+  return result->fault.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+// The libraries throw when memory or standard output is gone; then the program may as well end.
+int main(int argc, char** argv) {
+  Program program(
+      "tact-jitter",
+      "Latency and jitter of the loop that a person runs: the scene's law on its device, at its "
+      "rate, phase by\nphase. `tact-jitter compare A B` puts two results side by side.",
+      "Times are us on screen and ns in files. \"largest\" is that of the run and bounds nothing.");
+  Options options;
+  CLI::App& app = program.options();
+  add_run_options(app, options);
+  const CLI::App* comparing = add_compare(app, options);
+  if (const auto status = program.parse(argc, argv)) return *status;
+  return comparing->parsed() ? compare(program, options) : measure(program, options);
+}

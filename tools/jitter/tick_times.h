@@ -1,0 +1,45 @@
+// tick_times.h - what one tick of a loop took, and the series of durations that ticks add up to.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "firmware/latency_histogram.h"
+#include "firmware/tick_record.h"
+
+namespace tact::tools {
+
+/// CLOCK_MONOTONIC and ns throughout.
+struct TickTimes {
+  std::uint64_t tick = 0;  // over all slices of a run
+  std::int64_t due_ns = 0;
+  std::uint32_t skipped_before = 0;  // grid points that had no tick, just before this one
+  std::array<std::int32_t, firmware::kPhaseCount> phase_ns{};
+
+  std::int32_t phase(firmware::Phase p) const { return phase_ns[static_cast<std::size_t>(p)]; }
+  std::int64_t wake_ns() const { return due_ns + phase(firmware::Phase::kWake); }
+  std::int64_t read_end_ns() const { return wake_ns() + phase(firmware::Phase::kRead); }
+  /// From its deadline to the force written.
+  std::int64_t deadline_to_force_ns() const {
+    using enum firmware::Phase;
+    std::int64_t sum = 0;
+    for (const auto p : {kWake, kRead, kTouch, kFeel, kJudge, kWrite}) sum += phase(p);
+    return sum;
+  }
+  std::int64_t written_ns() const { return due_ns + deadline_to_force_ns(); }
+};
+
+/// Durations of one kind: a histogram, and when the largest was met.
+struct Series {
+  firmware::LatencyHistogram histogram;
+  std::int64_t max_at_ns = 0;  // CLOCK_MONOTONIC
+
+  void record(std::int64_t duration_ns, std::uint64_t tick, std::int64_t at_ns) {
+    const std::uint64_t before_ns = histogram.max_ns();
+    histogram.record(duration_ns, tick);
+    if (histogram.count() == 1 || histogram.max_ns() > before_ns) max_at_ns = at_ns;
+  }
+};
+
+}  // namespace tact::tools
