@@ -103,7 +103,7 @@ PcRow throttling_row(const PcFiles& files) {
   const bool off = runtime_us < 0.0;
   // At the usual 95 % it only meets a loop that has run away, and then it keeps the PC usable.
   row.verdict = off || runtime_us >= 0.95 * period_us ? Verdict::kGreen : Verdict::kRed;
-  row.found = off ? "off" : fmt::format("{:g} of {:g} us are theirs", runtime_us, period_us);
+  row.found = off ? "off" : fmt::format("{:.0f} of {:.0f} us are theirs", runtime_us, period_us);
   return row;
 }
 

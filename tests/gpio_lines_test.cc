@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "hal/gpio/edge_watch.h"
 #include "hal/udev_rules.h"
 #include "tests/no_alloc.h"
 
@@ -118,6 +119,16 @@ TEST_F(Sysfs, APcWithoutChipsSaysSo) {
   EXPECT_EQ(opened.error().sentence,
             "device.lines.chip is \"pci-idio-16\", but this PC shows no GPIO chip; load the driver "
             "of the board that the lines are wired to, or correct the name");
+}
+
+TEST_F(Sysfs, EdgesAreWatchedUnderTheSameRulesAsSafetyLines) {
+  const auto none = open_edge_watch("board", 3, roots());
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().sentence.find("no GPIO chip"), std::string::npos);
+  chip(0, {"platform", "usb"});
+  const auto slow = open_edge_watch("gpiochip0", 3, roots());
+  ASSERT_FALSE(slow);
+  EXPECT_NE(slow.error().sentence.find("hangs on usb"), std::string::npos);
 }
 
 TEST_F(Sysfs, WithoutAChipInTheSceneNothingIsWatchedAndNothingIsInTheWay) {

@@ -136,7 +136,7 @@ TEST_F(PcCheck, AClockBehindASystemCallIsRed) {
 
 TEST_F(PcCheck, ThrottlingIsRedWhenTheLoopCouldMeetIt) {
   put("/proc/sys/kernel/sched_rt_runtime_us", "100000\n");
-  expect_red("RT throttling", "100000 of 1e+06 us", "sched_rt_runtime_us=950000");
+  expect_red("RT throttling", "100000 of 1000000 us", "sched_rt_runtime_us=950000");
   put("/proc/sys/kernel/sched_rt_runtime_us", "-1\n");
   EXPECT_EQ(row("RT throttling").verdict, Verdict::kGreen);
 }

@@ -171,6 +171,38 @@ TEST(RunProgram, EndsWhatItsLeaderLeavesBehind) {
   EXPECT_TRUE(goes_away(std::stoi(*said)));
 }
 
+TEST(RunningProgram, GoesWithItsWholeGroupWhenItsObjectGoes) {
+  const auto where = folder();
+  pid_t grandchild = 0;
+  {
+    const auto running = RunningProgram::start({.program = "sh",
+                                                .arguments = {"-c", "sleep 60 & echo $!; wait"},
+                                                .directory = where.path(),
+                                                .log_path = where.file("log"),
+                                                .package = {},
+                                                .environment = {}});
+    ASSERT_TRUE(running) << running.error().sentence;
+    grandchild = written_number(where.file("log"));
+    ASSERT_GT(grandchild, 1);
+    EXPECT_TRUE(running->is_running());
+  }
+  EXPECT_TRUE(goes_away(grandchild)) << "process " << grandchild << " goes on";
+}
+
+TEST(RunningProgram, IsKnownToHaveEnded) {
+  const auto where = folder();
+  const auto running = RunningProgram::start({.program = "true",
+                                              .arguments = {},
+                                              .directory = where.path(),
+                                              .log_path = where.file("log"),
+                                              .package = {},
+                                              .environment = {}});
+  ASSERT_TRUE(running) << running.error().sentence;
+  for (int i = 0; i < 500 && running->is_running(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_FALSE(running->is_running());
+}
+
 TEST(RunProgram, AnEndThatNobodyCanKnowIsAnError) {
   const auto where = folder();
   std::signal(SIGCHLD, SIG_IGN);  // a parent may hand this down

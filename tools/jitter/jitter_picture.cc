@@ -65,11 +65,15 @@ model::Result<std::vector<std::string>> draw_histogram(const JitterResult& resul
       "set title \"{} ticks at {:g} Hz, {}\" noenhanced\nplot ",
       result.sink->ticks(), result.rate_Hz,
       result.load.empty() ? std::string("idle") : "load " + result.load);
-  for (std::size_t i = 0; i < drawn.size(); ++i)
-    // A step is drawn down to half a sample where a bucket is empty: zero has no logarithm.
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    // A step is drawn down to half a sample where a bucket is empty: zero has no logarithm. The
+    // peer tells whole microseconds, which leaves gaps: points.
+    const bool of_peer = drawn[i].key == "peer_wake";
     script += fmt::format(
-        "{}'histogram.csv' using 1:(${} > 0 ? ${} : 0.5) with steps lw 2 lt {} title '{}'",
-        i == 0 ? "" : ", ", i + 2, i + 2, i + 1, drawn[i].title);
+        "{0}'histogram.csv' using 1:(${1} > 0 ? ${1} : {2}) with {3} lw 2 lt {4} title '{5}'",
+        i == 0 ? "" : ", ", i + 2, of_peer ? "1/0" : "0.5",
+        of_peer ? "points pt 7 ps 0.5" : "steps", i + 1, drawn[i].title);
+  }
   return draw({.name = "histogram", .width_px = 1000, .height_px = 520, .script = script + "\n"},
               directory);
 }

@@ -65,6 +65,7 @@ std::vector<NamedSeries> series_of(const JitterResult& result) {
   if (!result.scene_hash.empty())
     add("deadline_to_force", "deadline to force", sink.deadline_to_force());
   add("round_trip", "device round trip", sink.round_trip());
+  if (result.pin) add("pin", "input to force, at the pin", result.pin->pulses());
   return all;
 }
 
@@ -104,12 +105,12 @@ std::string make_headline(const JitterResult& result) {
 }
 
 std::string make_summary(const JitterResult& result) {
-  std::string out = make_headline(result) + fmt::format("\n{:24} {:>9}", "us", "samples");
+  std::string out = make_headline(result) + fmt::format("\n{:28} {:>9}", "us", "samples");
   for (const Share& share : kShares) out += fmt::format(" {:>8}", share.name);
   out += fmt::format(" {:>8}\n", "largest");
   for (const NamedSeries& named : series_of(result)) {
     const LatencyHistogram& h = named.series->histogram;
-    out += fmt::format("  {:22} {:>9}", named.title, h.count());
+    out += fmt::format("  {:26} {:>9}", named.title, h.count());
     for (const Share& share : kShares)
       out += fmt::format(" {:>8}", in_us(percentile_ns(h, share.value)));
     out += fmt::format(" {:>8}", in_us(h.max_ns()));
@@ -160,6 +161,7 @@ json to_json(const JitterResult& result, const std::string& command) {
           {"threshold_ns", result.sink->threshold_ns()},
           {"over_threshold", result.sink->over_threshold()},
           {"series", series},
+          {"pin_edges_unpaired", result.pin ? json(result.pin->unpaired()) : json(nullptr)},
           {"wake_p99.9_over_peer", ratio ? json(*ratio) : json(nullptr)},
           {"thread", firmware::to_json(result.thread)},
           {"kernel", to_json(result.costs)},

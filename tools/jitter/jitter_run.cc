@@ -30,7 +30,8 @@ constexpr double kLongestSlice_s = 5.0;
 constexpr double kThresholdShare = 0.1;  // of the period: what integrators allow a wake-up
 constexpr auto kDrainPeriod = 5ms;       // 20 ticks at 4 kHz, of 4096 that the ring holds
 constexpr auto kCostPeriod = 100ms;
-constexpr auto kLoadNeeds = 1s;  // until all of its processes run
+constexpr double kLoadLeft_s = 60.0;  // beyond the run: it ends by itself should we be killed
+constexpr auto kLoadNeeds = 1s;       // until all of its processes run
 
 // Everything of one measurement, in the order in which it comes to life.
 class Run {
@@ -41,7 +42,7 @@ class Run {
  private:
   std::optional<Error> open();
   std::optional<Error> measure();
-  bool run_slice(double duration_s);
+  bool run_slice(double duration_s, bool last);
   void follow(const std::atomic<bool>& ended);
   void drain();
   void explain();
@@ -62,6 +63,7 @@ class Run {
   Requests requests_;
   std::optional<TraceMarker> marker_;
   std::optional<LiveLine> live_;
+  std::optional<LoopBack> loop_back_;
   PcFiles files_;
   std::atomic<int> loop_thread_{0};
   Costs before_;
@@ -90,6 +92,7 @@ Result<JitterResult> Run::run() {
   result_.pc = check_pc({.files = files_, .core = result_.core});
   result_.environment = read_environment(result_.scene_hash);
   if (auto error = measure()) return *error;
+  if (loop_back_) result_.pin.emplace(loop_back_->stop());
   if (!options_.bare) {
     const model::FaultEntry& fault = model::describe(parts_.controller->newest().fault);
     if (fault.fault != model::Fault::kNone)
@@ -110,6 +113,8 @@ std::optional<Error> Run::open() {
   SceneArguments arguments = options_.scene;
   if (options_.rate_Hz > 0.0)
     arguments.overrides.push_back(fmt::format("rate_Hz={}", options_.rate_Hz));
+  if (options_.scope_pin >= 0)
+    arguments.overrides.push_back(fmt::format("device.lines.scope={}", options_.scope_pin));
   auto scene = arguments.load();
   if (!scene) return scene.error();
   scene_ = std::move(*scene);
@@ -121,6 +126,11 @@ std::optional<Error> Run::open() {
   result_.scene_hash = scene_->hash;
   result_.subject = fmt::format("{} on {}, law {}", scene_->name, parts_.device->info().name,
                                 parts_.tissue->law().title());
+  if (options_.loop_back >= 0) {
+    auto edges = hal::open_edge_watch(scene_->device.lines.chip, options_.loop_back);
+    if (!edges) return edges.error();
+    loop_back_.emplace(std::move(*edges), loop_period_ns());
+  }
   result_.armed = options_.arm || !is_hardware();
   requests_.arm.store(result_.armed);
   return std::nullopt;
@@ -131,7 +141,7 @@ std::optional<Error> Run::measure() {
   if (!folder) return folder.error();
   std::optional<RunningProgram> load;
   if (!options_.load.empty()) {
-    auto started = start_load(options_.load, *folder);
+    auto started = start_load(options_.load, *folder, kLoadLeft_s + 3.0 * options_.duration_s);
     if (!started) return started.error();
     load.emplace(std::move(*started));
     result_.load = fmt::format("{}", fmt::join(options_.load, ","));
@@ -140,8 +150,10 @@ std::optional<Error> Run::measure() {
   }
   if (options_.peer) result_.peer.emplace();
   if (options_.live) live_.emplace(options_.duration_s);
-  for (const double slice_s : slices_of(options_.duration_s, options_.peer && !in_one_piece())) {
-    if (!run_slice(slice_s)) return interruption();
+  const auto slices = slices_of(options_.duration_s, options_.peer && !in_one_piece());
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    const double slice_s = slices[i];
+    if (!run_slice(slice_s, i + 1 == slices.size())) return interruption();
     if (!options_.peer) continue;
     if (auto error = run_cyclictest({.core = result_.core,
                                      .priority = result_.priority,
@@ -154,7 +166,9 @@ std::optional<Error> Run::measure() {
   return std::nullopt;
 }
 
-bool Run::run_slice(double duration_s) {
+// Letting go takes the power of an armed device away, which is a fault in the next slice: between
+// slices, which only a simulated device has, the loop pauses with its last force.
+bool Run::run_slice(double duration_s, bool last) {
   const auto periods = static_cast<std::uint64_t>(std::ceil(duration_s * result_.rate_Hz));
   std::optional<RtLoop> loop;
   std::optional<BareLoop> bare;
@@ -170,7 +184,9 @@ bool Run::run_slice(double duration_s) {
   std::thread thread([&] {
     costs = run_as_loop_thread(rt_, [&] {
       loop_thread_.store(gettid());
-      loop ? loop->run() : bare->run();
+      if (bare) bare->run();
+      while (loop && !last && loop->may_run()) loop->step();
+      if (loop && (last || requests_.stop.load())) loop->run();  // what is left, then let go
     });
     if (is_hardware()) parts_.device->stop();  // at once: drives watch for their host
     ended.store(true);

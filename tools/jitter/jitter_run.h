@@ -13,6 +13,7 @@
 #include "model/result.h"
 #include "tools/common/program.h"
 #include "tools/jitter/costs.h"
+#include "tools/jitter/loop_back.h"
 #include "tools/jitter/tick_sink.h"
 
 namespace tact::tools {
@@ -28,7 +29,8 @@ struct JitterOptions {
   std::vector<std::string> load;
   bool peer = false;  // cyclictest
   bool stop_trace = false;
-  bool live = false;  // a line on the terminal while it runs
+  int scope_pin = -1, loop_back = -1;  // lines of device.lines.chip, wired together; -1: none
+  bool live = false;                   // a line on the terminal while it runs
 };
 
 struct JitterResult {
@@ -46,7 +48,8 @@ struct JitterResult {
   Costs costs;
   bool has_marker = false;  // late ticks are marked in the kernel's trace
   std::optional<Series> peer;
-  std::string fault;  // name and cause; empty: none
+  std::optional<PulseMeter> pin;  // input to force, at the scope pin
+  std::string fault;              // name and cause; empty: none
   std::vector<firmware::PcRow> pc;
   firmware::Environment environment;
 };

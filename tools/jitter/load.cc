@@ -1,6 +1,7 @@
 #include "tools/jitter/load.h"
 
 #include <algorithm>
+#include <cmath>
 #include <thread>
 
 namespace tact::tools {
@@ -11,9 +12,10 @@ const std::vector<std::string>& load_kinds() {
 }
 
 std::vector<std::string> stress_arguments(const std::vector<std::string>& kinds, unsigned cpus,
-                                          const std::string& folder) {
+                                          const std::string& folder, double longest_s) {
   const std::string all = std::to_string(cpus);
-  std::vector<std::string> out{"--temp-path", folder, "--oomable"};
+  std::vector<std::string> out{"--temp-path", folder, "--oomable", "--timeout",
+                               std::to_string(std::llround(longest_s)) + "s"};
   const auto add = [&](std::initializer_list<std::string> more) {
     out.insert(out.end(), more.begin(), more.end());
   };
@@ -27,14 +29,15 @@ std::vector<std::string> stress_arguments(const std::vector<std::string>& kinds,
 }
 
 model::Result<RunningProgram> start_load(const std::vector<std::string>& kinds,
-                                         const ScratchFolder& folder) {
+                                         const ScratchFolder& folder, double longest_s) {
   const unsigned cpus = std::max(1U, std::thread::hardware_concurrency());
-  return RunningProgram::start({.program = "stress-ng",
-                                .arguments = stress_arguments(kinds, cpus, folder.path()),
-                                .directory = folder.path(),
-                                .log_path = folder.file("stress-ng.txt"),
-                                .package = "stress-ng",
-                                .environment = {}});
+  return RunningProgram::start(
+      {.program = "stress-ng",
+       .arguments = stress_arguments(kinds, cpus, folder.path(), longest_s),
+       .directory = folder.path(),
+       .log_path = folder.file("stress-ng.txt"),
+       .package = "stress-ng",
+       .environment = {}});
 }
 
 }  // namespace tact::tools

@@ -13,12 +13,13 @@ namespace tact::tools {
 /// Kinds of load: cpu, memory, disk, net.
 const std::vector<std::string>& load_kinds();
 
-/// The arguments of stress-ng for these kinds on so many CPUs; its files go below `folder`.
+/// The arguments of stress-ng for these kinds on so many CPUs; its files go below `folder`, and it
+/// ends by itself after `longest_s`.
 std::vector<std::string> stress_arguments(const std::vector<std::string>& kinds, unsigned cpus,
-                                          const std::string& folder);
+                                          const std::string& folder, double longest_s);
 
 /// Starts it in a process group of its own. It ends with its object, and with us.
 model::Result<RunningProgram> start_load(const std::vector<std::string>& kinds,
-                                         const ScratchFolder& folder);
+                                         const ScratchFolder& folder, double longest_s);
 
 }  // namespace tact::tools

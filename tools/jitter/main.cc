@@ -54,6 +54,13 @@ void add_run_options(CLI::App& app, Options& o) {
                  "and marked in ftrace where it may be written (default: a tenth of the period)")
       ->check(CLI::Range(1.0, 1e6));
   app.add_flag("--stop-trace", o.run.stop_trace, "the first of them ends the recording of ftrace");
+  auto* back = app.add_option("--loop-back", o.run.loop_back,
+                              "input line of device.lines.chip that the scope pin is wired to: "
+                              "input to force is measured at the pin");
+  app.add_option("--scope-pin", o.run.scope_pin,
+                 "output line of that chip (default: device.lines.scope of the scene)")
+      ->check(CLI::Range(0, 1023))
+      ->needs(back->check(CLI::Range(0, 1023)));
   app.add_flag("--arm", o.run.arm, "hardware: with force; without it the force is always zero");
   app.add_option("--out", o.out,
                  "folder for jitter.json, report.html, histogram.svg and .csv, and "

@@ -1,0 +1,41 @@
+// edge_watch.h - when a GPIO line rose and fell, by the kernel's clock in its interrupt: a scope pin
+// wired back to a second line of the same chip is measured without a scope. Set-up and ordinary
+// threads only; the loop never touches it.
+//
+// Times are CLOCK_MONOTONIC, as Linux stamps line events since 5.7. The kernel keeps 16 edges; who
+// reads too slowly loses the newest. Source: libgpiod 1.6 (gpiod.h, gpiod_line_event_*).
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hal/gpio/gpio_chips.h"
+#include "model/result.h"
+
+namespace tact::hal {
+
+struct Edge {
+  bool rising = false;
+  std::int64_t time_ns = 0;
+};
+
+class EdgeWatch {
+ public:
+  EdgeWatch() = default;
+  EdgeWatch(const EdgeWatch&) = delete;
+  EdgeWatch& operator=(const EdgeWatch&) = delete;
+  virtual ~EdgeWatch() = default;
+
+  /// Waits at most so long for an edge, and returns all that are there, in order.
+  virtual std::vector<Edge> read(std::chrono::milliseconds longest) = 0;
+};
+
+/// The line becomes an input. `chip`: label, name or path, as device.lines.chip has it. An error
+/// says which line, who uses it, or what the chip is.
+model::Result<std::unique_ptr<EdgeWatch>> open_edge_watch(const std::string& chip, int line,
+                                                          const SystemRoots& roots = {});
+
+}  // namespace tact::hal
