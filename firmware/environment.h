@@ -11,7 +11,9 @@ struct Environment {
   std::string cpu;
   int cores = 0;
   std::string clock_source;
-  std::string git_revision;  // of this build
+  std::string microcode;        // of the first CPU
+  std::string boot_parameters;  // of the kernel
+  std::string git_revision;     // of this build
   std::string compiler;
   std::string scene_hash;
 };

@@ -35,6 +35,8 @@ json to_json(const Environment& e) {
           {"cpu", e.cpu},
           {"cores", e.cores},
           {"clock_source", e.clock_source},
+          {"microcode", e.microcode},
+          {"boot_parameters", e.boot_parameters},
           {"git_revision", e.git_revision},
           {"compiler", e.compiler},
           {"scene_hash", e.scene_hash}};

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -12,7 +13,6 @@
 #include "tools/jitter/jitter_compare.h"
 #include "tools/jitter/jitter_page.h"
 #include "tools/jitter/jitter_picture.h"
-#include "tools/jitter/load.h"
 #include "tools/jitter/peer.h"
 
 namespace tact::tools {
@@ -32,7 +32,7 @@ std::string read_file(const std::string& path) {
   return text.str();
 }
 
-/// Ticks of 5 us wake-up, the last of them of 2 ms.
+/// Ticks of 5.2 and 5.4 us wake-up, the last of them of 2 ms.
 JitterResult small_result(std::uint64_t ticks) {
   JitterResult result;
   result.subject = "bare <loop> & 'friends'";
@@ -44,7 +44,14 @@ JitterResult small_result(std::uint64_t ticks) {
     firmware::TickRecord record;
     record.tick = i;
     record.due_ns = 1'000'000'000 + static_cast<std::int64_t>(i) * 1'000'000;
-    record.phase_ns = {i + 1 == ticks ? 2'000'000 : 5'000, 100, 200, 300, 400, 500, 600, 2'100};
+    record.phase_ns = {i + 1 == ticks ? 2'000'000 : i % 2 == 0 ? 5'200 : 5'400,
+                       100,
+                       200,
+                       300,
+                       400,
+                       500,
+                       600,
+                       2'100};
     result.sink->add(record);
   }
   result.pc = {{.name = "kernel",
@@ -59,7 +66,7 @@ TEST(Report, APercentileWithNoSampleBeyondItIsNotTold) {
   const JitterResult result = small_result(1000);
   const auto& wake = result.sink->phase(firmware::Phase::kWake).histogram;
   EXPECT_EQ(percentile_ns(wake, 0.999), wake.percentile_ns(0.999));
-  EXPECT_LT(*percentile_ns(wake, 0.999), 6'000u) << "999 of 1000 took 5 us";
+  EXPECT_LT(*percentile_ns(wake, 0.999), 6'000u) << "999 of 1000 took 5.4 us at most";
   EXPECT_FALSE(percentile_ns(wake, 0.9999));
   EXPECT_EQ(to_json(result, "c")["series"]["wake"]["p99.99_ns"], nullptr);
   EXPECT_FALSE(percentile_ns(firmware::LatencyHistogram{}, 0.5));
@@ -90,7 +97,7 @@ TEST(Report, TheRatioToThePeerNeedsSamplesOfBoth) {
   EXPECT_FALSE(ratio_to_peer(result));
   result.peer.emplace();
   EXPECT_FALSE(ratio_to_peer(result));
-  for (std::uint64_t i = 0; i < 1000; ++i) result.peer->record(2'500, i, 0);
+  for (std::uint64_t i = 0; i < 1000; ++i) result.peer->record(2'700, i, 0);
   EXPECT_NEAR(*ratio_to_peer(result), 2.0, 2.0 / 32);
 }
 
@@ -118,8 +125,6 @@ TEST(Report, ThePictureHasEverySample) {
     wake += std::strtoull(line.c_str() + line.find(',') + 1, nullptr, 10);
   EXPECT_EQ(wake, 1000u);
 }
-
-// --- compare
 
 json result_with(std::uint64_t p99_ns) {
   return {{"format", "tact-jitter 1"},
@@ -159,8 +164,6 @@ TEST(Compare, TellsWhichConditionsDiffer) {
   EXPECT_FALSE(compare_results(json::object(), other, 0.1)) << "no result at all";
 }
 
-// --- what runs beside the loop
-
 TEST(Peer, CountsCyclictestsSamplesAtTheUpperEdgeOfTheirMicrosecond) {
   Series series;
   const auto error = add_cyclictest(
@@ -182,17 +185,6 @@ TEST(Peer, TakesTurnsInSlicesOfFiveSecondsAtMost) {
   for (const char* word : {"-p80", "-a3", "-i250", "-l8000", "-m"})
     EXPECT_EQ(std::count(arguments.begin(), arguments.end(), word), 1) << word;
 }
-
-TEST(Load, EveryKindLoadsSomethingElse) {
-  std::vector<std::vector<std::string>> all;
-  for (const std::string& kind : load_kinds())
-    all.push_back(stress_arguments({kind}, 4, "/x", 90.0));
-  for (std::size_t i = 0; i < all.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) EXPECT_NE(all[i], all[j]);
-  EXPECT_GT(stress_arguments(load_kinds(), 4, "/x", 90.0).size(), all[0].size());
-}
-
-// --- the programs
 
 class Folder : public testing::Test {
  protected:
@@ -260,10 +252,12 @@ TEST_F(JitterProgram, ABareLoopFeelsNothing) {
   EXPECT_FALSE(result["series"].contains("deadline_to_force"));
 }
 
-TEST_F(JitterProgram, CtrlCEndsItInOneLine) {
+TEST_F(JitterProgram, CtrlCEndsItAtOnceInOneLine) {
+  const auto begun = std::chrono::steady_clock::now();
   const auto run = run_program(
       "tact-jitter", "--bare --duration 60 2>&1 & pid=$!; sleep 0.7; kill -INT $pid; wait $pid");
   EXPECT_EQ(run.status, 1) << run.output;
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(30));
   EXPECT_TRUE(has(run.output, "tact-jitter: interrupted; nothing was written")) << run.output;
 }
 

@@ -55,7 +55,8 @@ class PcCheck : public testing::Test {
     put(cpus + "cpu3/cpufreq/scaling_governor", "performance\n");
     put(cpus + "cpu3/topology/thread_siblings_list", "3\n");
     put("/dev/cpu_dma_latency", "");
-    put("/proc/irq/24/smp_affinity_list", "0-1\n");
+    put("/proc/irq/24/smp_affinity_list", "0-3\n");
+    put("/proc/irq/24/effective_affinity_list", "0\n");  // where it really goes
     fs::create_directories(root + "/proc/irq/24/xhci_hcd");
     put("/proc/irq/25/smp_affinity_list", "0-3\n");  // nobody waits for it
     put("/proc/90/task/90/comm", "irq/24-xhci_hcd\n");

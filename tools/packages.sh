@@ -46,7 +46,7 @@ BUILD_PACKAGES=(g++ cmake ninja-build ca-certificates libfmt-dev libcli11-dev
   nlohmann-json3-dev libtomlplusplus-dev libboost-dev libssl-dev libusb-1.0-0-dev libgpiod-dev)
 # What the measuring tools call or link besides.
 TOOL_PACKAGES=(libeigen3-dev gmsh calculix-ccx gnuplot-nox libmetis-dev libbullet-dev libopencv-core-dev
-  libopencv-calib3d-dev)
+  libopencv-calib3d-dev rt-tests=cyclictest stress-ng=stress-ng)
 PAGE_PACKAGES=(nodejs=node npm=npm)
 
 # build_programs BUILD_DIR TARGET... : configure when needed, then build quietly; the log on failure.

@@ -62,7 +62,8 @@ Result<Comparison> compare_results(const json& before, const json& after,
   Comparison out;
   for (const char* key : {"subject", "rate_Hz", "load", "armed", "core", "priority", "non_rt"})
     note_unlike(before, after, key, out.unlike);
-  for (const char* key : {"kernel_release", "cpu", "clock_source", "compiler", "scene_hash"})
+  for (const char* key : {"kernel_release", "boot_parameters", "cpu", "microcode", "clock_source",
+                          "compiler", "scene_hash"})
     note_unlike(before.value("environment", json::object()),
                 after.value("environment", json::object()), key, out.unlike);
   for (const auto& [name, series] : before["series"].items()) {

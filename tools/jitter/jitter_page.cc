@@ -115,7 +115,8 @@ std::string environment_table(const JitterResult& result) {
   std::string out = "<table>";
   const std::pair<const char*, std::string> facts[] = {
       {"kernel", e.kernel_release + " " + e.kernel_version},
-      {"CPU", fmt::format("{}, {} online", e.cpu, e.cores)},
+      {"booted with", e.boot_parameters},
+      {"CPU", fmt::format("{}, microcode {}, {} online", e.cpu, e.microcode, e.cores)},
       {"clock", e.clock_source},
       {"tact", e.git_revision},
       {"compiler", e.compiler},
