@@ -112,9 +112,11 @@ std::vector<LateTick*> TickSink::new_late_ticks() {
 
 std::vector<LateTick> TickSink::late_ticks() const {
   std::vector<LateTick> all;
+  all.reserve(late_ticks_.size());
   for (const auto& [tick, late] : late_ticks_) all.push_back(late);
-  std::stable_sort(all.begin(), all.end(),
-                   [](const LateTick& a, const LateTick& b) { return a.worst_ns > b.worst_ns; });
+  std::sort(all.begin(), all.end(), [](const LateTick& a, const LateTick& b) {
+    return a.worst_ns != b.worst_ns ? a.worst_ns > b.worst_ns : a.times.tick < b.times.tick;
+  });
   return all;
 }
 
@@ -122,6 +124,7 @@ std::vector<TickTimes> TickSink::kept_ticks() const {
   std::map<std::uint64_t, TickTimes> all = around_late_;
   all.insert(newest_.begin(), newest_.end());
   std::vector<TickTimes> ticks;
+  ticks.reserve(all.size());
   for (const auto& [tick, times] : all) ticks.push_back(times);
   return ticks;
 }
