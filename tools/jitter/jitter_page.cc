@@ -51,7 +51,7 @@ std::string late_table(const JitterResult& result) {
   const std::string threshold = in_us(static_cast<std::uint64_t>(result.sink->threshold_ns()));
   std::string out = fmt::format(
       "<p>{} ticks took more than {} us from their deadline to the force; the worst {} are listed, "
-      "with what the kernel counted within the same 0.1 s{}.</p>\n",
+      "with what the kernel counted around it, in how long a time{}.</p>\n",
       result.sink->over_threshold(), threshold, std::min<std::size_t>(late.size(), 20),
       result.has_marker ? " and marked in its trace (tact-jitter)" : "");
   if (late.empty()) return out;

@@ -1,6 +1,7 @@
 #include "tools/jitter/jitter_run.h"
 
 #include <fmt/format.h>
+#include <pthread.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -29,6 +30,7 @@ constexpr double kBareRate_Hz = 1000.0;
 constexpr double kLongestSlice_s = 5.0;
 constexpr double kThresholdShare = 0.1;  // of the period: what integrators allow a wake-up
 constexpr auto kDrainPeriod = 5ms;       // 20 ticks at 4 kHz, of 4096 that the ring holds
+constexpr int kFollowPriority = 5;       // above all ordinary work, below anything of a loop
 constexpr auto kCostPeriod = 100ms;
 constexpr double kLoadLeft_s = 60.0;  // beyond the run: it ends by itself should we be killed
 constexpr auto kLoadNeeds = 1s;       // until all of its processes run
@@ -67,7 +69,7 @@ class Run {
   PcFiles files_;
   std::atomic<int> loop_thread_{0};
   Costs before_;
-  SteadyClock::time_point costs_due_;
+  SteadyClock::time_point looked_;  // at the kernel's counters
 };
 
 Result<JitterResult> Run::run() {
@@ -199,21 +201,25 @@ bool Run::run_slice(double duration_s, bool last) {
   return !is_interrupted();
 }
 
-// The ordinary thread beside the loop: empties the ring, reads the kernel's counters, shows a line.
+// The thread beside the loop: empties the ring, reads the kernel's counters, shows a line. Under load
+// an ordinary thread gets no CPU for longer than the ring lasts; where FIFO is refused it stays one.
 void Run::follow(const std::atomic<bool>& ended) {
+  const sched_param above_the_load{.sched_priority = kFollowPriority};
+  pthread_setschedparam(pthread_self(), SCHED_FIFO, &above_the_load);
   while (loop_thread_.load() == 0 && !ended.load()) std::this_thread::sleep_for(1ms);
   before_ = read_costs(files_, loop_thread_.load(), result_.core);
-  costs_due_ = SteadyClock::now() + kCostPeriod;
+  looked_ = SteadyClock::now();
   while (!ended.load()) {
     if (is_interrupted()) requests_.stop.store(true);
     drain();
-    if (SteadyClock::now() >= costs_due_) explain();
+    if (SteadyClock::now() - looked_ >= kCostPeriod) explain();
     if (live_) live_->show(*result_.sink);
     std::this_thread::sleep_for(kDrainPeriod);
   }
   drain();
   explain();
   if (live_) live_->clear();
+  leave_rt_thread();  // what is started from here on is ordinary
 }
 
 void Run::drain() {
@@ -223,11 +229,12 @@ void Run::drain() {
 
 // What the kernel counted since the last look belongs to the late ticks since then.
 void Run::explain() {
-  costs_due_ = SteadyClock::now() + kCostPeriod;
   const Costs now = read_costs(files_, loop_thread_.load(), result_.core);
   const Costs delta = now - before_;
+  const std::chrono::duration<double> looked_away = SteadyClock::now() - looked_;
+  looked_ = SteadyClock::now();
   for (LateTick* late : result_.sink->new_late_ticks()) {
-    late->attribution = describe(delta);
+    late->attribution = fmt::format("{} (in {:.2f} s)", describe(delta), looked_away.count());
     marker_->write(fmt::format("tact-jitter: tick {} due {} ns came to its force {} us late",
                                late->times.tick, late->times.due_ns, late->worst_ns / 1000));
   }
