@@ -252,13 +252,17 @@ TEST_F(JitterProgram, ABareLoopFeelsNothing) {
   EXPECT_FALSE(result["series"].contains("deadline_to_force"));
 }
 
-TEST_F(JitterProgram, CtrlCEndsItAtOnceInOneLine) {
+TEST_F(JitterProgram, CtrlCEndsItAtOnceAndKeepsWhatWasMeasured) {
   const auto begun = std::chrono::steady_clock::now();
-  const auto run = run_program(
-      "tact-jitter", "--bare --duration 60 2>&1 & pid=$!; sleep 0.7; kill -INT $pid; wait $pid");
-  EXPECT_EQ(run.status, 1) << run.output;
+  const auto run =
+      run_program("tact-jitter", "--bare --duration 60 --json " + scratch.file("j") +
+                                     " 2>&1 & pid=$!; sleep 0.7; kill -INT $pid; wait $pid");
   EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(30));
-  EXPECT_TRUE(has(run.output, "tact-jitter: interrupted; nothing was written")) << run.output;
+  EXPECT_EQ(run.status, 1) << run.output;
+  EXPECT_TRUE(has(run.output, "tact-jitter: interrupted; what was measured")) << run.output;
+  const json result = json::parse(read_file(scratch.file("j")));
+  EXPECT_EQ(result["interrupted"], true);
+  EXPECT_LT(result["series"]["every_wake"]["samples"], 30'000);
 }
 
 TEST_F(JitterProgram, RefusesBadUsageWithACure) {

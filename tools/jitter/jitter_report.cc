@@ -95,13 +95,13 @@ std::string in_us(std::optional<std::uint64_t> duration_ns) {
 std::string make_headline(const JitterResult& result) {
   const TickSink& sink = *result.sink;
   return fmt::format(
-      "{}: {} ticks at {:g} Hz in {:g} s on core {}, FIFO {}, {}{}; {} late, {} skipped{}{}",
+      "{}: {} ticks at {:g} Hz in {:.6g} s on core {}, FIFO {}, {}{}; {} late, {} skipped{}{}{}",
       result.subject, sink.ticks(), result.rate_Hz, result.measured_s, result.core, result.priority,
       result.load.empty() ? "idle" : "load " + result.load,
       result.scene_hash.empty() || result.armed ? "" : ", not armed (force is zero)", sink.late(),
       sink.skipped(),
       sink.unseen() > 0 ? fmt::format(", {} not seen by this program", sink.unseen()) : "",
-      result.non_rt ? ", non-rt" : "");
+      result.interrupted ? ", ended by Ctrl-C" : "", result.non_rt ? ", non-rt" : "");
 }
 
 std::string make_summary(const JitterResult& result) {
@@ -152,6 +152,7 @@ json to_json(const JitterResult& result, const std::string& command) {
           {"priority", result.priority},
           {"load", result.load},
           {"armed", result.armed},
+          {"interrupted", result.interrupted},
           {"non_rt", result.non_rt},
           {"shortfalls", shortfalls},
           {"ticks", result.sink->ticks()},

@@ -44,7 +44,7 @@ class Run {
  private:
   std::optional<Error> open();
   std::optional<Error> measure();
-  bool run_slice(double duration_s, bool last);
+  void run_slice(double duration_s, bool last);
   void follow(const std::atomic<bool>& ended);
   void drain();
   void explain();
@@ -155,22 +155,29 @@ std::optional<Error> Run::measure() {
   const auto slices = slices_of(options_.duration_s, options_.peer && !in_one_piece());
   for (std::size_t i = 0; i < slices.size(); ++i) {
     const double slice_s = slices[i];
-    if (!run_slice(slice_s, i + 1 == slices.size())) return interruption();
+    run_slice(slice_s, i + 1 == slices.size());
+    if (is_interrupted()) break;
     if (!options_.peer) continue;
     if (auto error = run_cyclictest({.core = result_.core,
                                      .priority = result_.priority,
                                      .period_ns = loop_period_ns(),
                                      .duration_s = slice_s},
-                                    *folder, *result_.peer))
-      return error;
+                                    *folder, *result_.peer)) {
+      if (!was_interrupted(*error)) return error;
+      break;
+    }
   }
+  const TickSink& sink = *result_.sink;
+  result_.interrupted = is_interrupted();
+  result_.measured_s =
+      static_cast<double>(sink.ticks() + sink.skipped() + sink.unseen()) / result_.rate_Hz;
   if (load && !load->is_running()) return Error{"stress-ng ended before the loop; nothing counts"};
   return std::nullopt;
 }
 
 // Letting go takes the power of an armed device away, which is a fault in the next slice: between
 // slices, which only a simulated device has, the loop pauses with its last force.
-bool Run::run_slice(double duration_s, bool last) {
+void Run::run_slice(double duration_s, bool last) {
   const auto periods = static_cast<std::uint64_t>(std::ceil(duration_s * result_.rate_Hz));
   std::optional<RtLoop> loop;
   std::optional<BareLoop> bare;
@@ -197,8 +204,6 @@ bool Run::run_slice(double duration_s, bool last) {
   thread.join();
   drain();
   add_to(result_.thread, costs);
-  result_.measured_s += duration_s;
-  return !is_interrupted();
 }
 
 // The thread beside the loop: empties the ring, reads the kernel's counters, shows a line. Under load

@@ -40,6 +40,7 @@ struct JitterResult {
   double measured_s = 0.0;  // of the loop's own slices
   int core = 0, priority = 0;
   bool armed = false;
+  bool interrupted = false;  // by Ctrl-C
   bool non_rt = false;
   std::vector<firmware::Shortfall> shortfalls;
   std::string load;  // "cpu,memory"; empty: none
@@ -54,8 +55,7 @@ struct JitterResult {
   firmware::Environment environment;
 };
 
-/// Runs it. Ctrl-C ends the loop early, with zero force; what was measured until then is the error's
-/// loss.
+/// Runs it. Ctrl-C ends the loop early, with zero force; what was measured until then is kept.
 model::Result<JitterResult> run_jitter(const JitterOptions& options);
 
 /// How the run is cut where a peer takes turns: at least two slices of at most 5 s. A device that is

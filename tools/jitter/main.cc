@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tools/common/run_program.h"
 #include "tools/common/table.h"
 #include "tools/jitter/jitter_compare.h"
 #include "tools/jitter/jitter_page.h"
@@ -101,7 +102,7 @@ std::optional<Error> write_folder(const JitterResult& result, const Options& o,
                                   const std::string& command) {
   if (auto error = write_json(to_json(result, command), o.out + "/jitter.json")) return error;
   std::string svg;
-  if (!o.no_pictures) {
+  if (!o.no_pictures && !result.interrupted) {  // after Ctrl-C no program is started any more
     if (auto drawn = draw_histogram(result, o.out); !drawn) return drawn.error();
     svg = read_file(o.out + "/histogram.svg");
   }
@@ -146,6 +147,8 @@ int measure(const Program& program, Options& o) {
   if (!o.out.empty())
     if (auto error = write_folder(*result, o, program.command()))
       return program.fail(*error, "its files are not complete");
+  if (result->interrupted)
+    return program.fail(interruption(), "what was measured until then is told, without a picture");
   return result->fault.empty() ? 0 : 1;
 }
 
