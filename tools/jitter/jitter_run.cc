@@ -35,6 +35,30 @@ constexpr auto kCostPeriod = 100ms;
 constexpr double kLoadLeft_s = 60.0;  // beyond the run: it ends by itself should we be killed
 constexpr auto kLoadNeeds = 1s;       // until all of its processes run
 
+// Above the load and off the loop's core while it lives: to look at the kernel's counters takes the
+// kernel some 100 us, in which no other thread of that core wakes. Where FIFO is refused the thread
+// stays an ordinary one; on a PC of one core it stays there.
+class Follower {
+ public:
+  explicit Follower(int loop_core) {
+    pthread_getaffinity_np(pthread_self(), sizeof before_, &before_);
+    cpu_set_t others = before_;
+    CPU_CLR(static_cast<std::size_t>(loop_core), &others);
+    if (CPU_COUNT(&others) > 0) pthread_setaffinity_np(pthread_self(), sizeof others, &others);
+    const sched_param above_the_load{.sched_priority = kFollowPriority};
+    pthread_setschedparam(pthread_self(), SCHED_FIFO, &above_the_load);
+  }
+  ~Follower() {
+    leave_rt_thread();  // what is started from here on is ordinary
+    pthread_setaffinity_np(pthread_self(), sizeof before_, &before_);
+  }
+  Follower(const Follower&) = delete;
+  Follower& operator=(const Follower&) = delete;
+
+ private:
+  cpu_set_t before_{};
+};
+
 // Everything of one measurement, in the order in which it comes to life.
 class Run {
  public:
@@ -206,11 +230,10 @@ void Run::run_slice(double duration_s, bool last) {
   add_to(result_.thread, costs);
 }
 
-// The thread beside the loop: empties the ring, reads the kernel's counters, shows a line. Under load
-// an ordinary thread gets no CPU for longer than the ring lasts; where FIFO is refused it stays one.
+// The thread beside the loop: empties the ring, reads the kernel's counters, shows a line. As an
+// ordinary thread it would get no CPU under load for longer than the ring lasts.
 void Run::follow(const std::atomic<bool>& ended) {
-  const sched_param above_the_load{.sched_priority = kFollowPriority};
-  pthread_setschedparam(pthread_self(), SCHED_FIFO, &above_the_load);
+  const Follower follower(result_.core);
   while (loop_thread_.load() == 0 && !ended.load()) std::this_thread::sleep_for(1ms);
   before_ = read_costs(files_, loop_thread_.load(), result_.core);
   looked_ = SteadyClock::now();
@@ -224,7 +247,6 @@ void Run::follow(const std::atomic<bool>& ended) {
   drain();
   explain();
   if (live_) live_->clear();
-  leave_rt_thread();  // what is started from here on is ordinary
 }
 
 void Run::drain() {
