@@ -165,7 +165,7 @@ std::optional<Error> Session::open_telemetry() {
                                .limits = limits_,
                                .period_ns = period_ns(),
                                .force_share = force_share(),
-                               .force_limit_N = controller_->gate().force_limit_N(),
+                               .gate = controller_->gate(),
                                .non_rt = non_rt_});
   if (!outlets) return outlets.error();
   hand_socket_ = std::move(outlets->hand);
