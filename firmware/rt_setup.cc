@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <thread>
 
 #if defined(__x86_64__)
 #include <xmmintrin.h>
@@ -23,6 +24,7 @@ namespace tact::firmware {
 namespace {
 
 constexpr std::size_t kStackBytes = std::size_t{256} * 1024;
+constexpr int kWatchAboveLoop = 5;
 constexpr std::size_t kTouchedStackBytes = std::size_t{128} * 1024;
 
 void lock_memory(std::vector<Shortfall>& shortfalls) {
@@ -129,11 +131,38 @@ void enter_rt_thread(const RtSettings& settings, std::vector<Shortfall>& shortfa
   const sched_param priority{.sched_priority = settings.priority};
   const int refused = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
   if (refused != 0)
-    shortfalls.push_back(
-        {fmt::format("SCHED_FIFO priority {} is refused ({}): other programs can hold up the loop; "
-                     "give the user rtprio {} in /etc/security/limits.d/, or run as root",
-                     settings.priority, std::strerror(refused), settings.priority + 5)});
+    shortfalls.push_back({fmt::format(
+        "SCHED_FIFO priority {} is refused ({}): other programs can hold up the loop; "
+        "give the user rtprio {} in /etc/security/limits.d/, or run as root",
+        settings.priority, std::strerror(refused), settings.priority + kWatchAboveLoop)});
   touch_stack();
+}
+
+void enter_watch_thread(const RtSettings& loop, std::vector<Shortfall>& shortfalls) {
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  sched_getaffinity(getpid(), sizeof cores, &cores);  // of the main thread
+  CPU_CLR(static_cast<std::size_t>(choose_core(loop)), &cores);
+  if (CPU_COUNT(&cores) > 0) pthread_setaffinity_np(pthread_self(), sizeof cores, &cores);
+  const int wanted = loop.priority + kWatchAboveLoop;
+  const sched_param priority{.sched_priority = wanted};
+  const bool loop_may = sched_getscheduler(0) == SCHED_FIFO;  // else that is told already
+  const int refused = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
+  if (refused != 0 && loop_may)
+    shortfalls.push_back(
+        {fmt::format("SCHED_FIFO priority {} is refused ({}): the watch above the loop cannot stop "
+                     "it in time; give the user rtprio {} in /etc/security/limits.d/",
+                     wanted, std::strerror(refused), wanted)});
+  touch_stack();
+}
+
+std::vector<Shortfall> probe_rt_threads(const RtSettings& loop) {
+  std::vector<Shortfall> shortfalls;
+  std::thread([&] {
+    enter_rt_thread(loop, shortfalls);
+    enter_watch_thread(loop, shortfalls);
+  }).join();
+  return shortfalls;
 }
 
 void leave_rt_thread() {

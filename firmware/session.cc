@@ -4,19 +4,16 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <thread>
 
-#include "firmware/alloc_counter.h"
 #include "firmware/law_check.h"
+#include "firmware/loop_threads.h"
 #include "firmware/operator_signals.h"
 #include "firmware/operator_view.h"
-#include "firmware/report.h"
 #include "firmware/telemetry_setup.h"
 #include "hal/gpio/gpio_lines.h"
 
@@ -34,12 +31,6 @@ int fail(const std::string& sentence, int status) {
   return status;
 }
 
-std::vector<Shortfall> probe_rt_thread(const RtSettings& settings) {
-  std::vector<Shortfall> shortfalls;
-  std::thread([&] { enter_rt_thread(settings, shortfalls); }).join();
-  return shortfalls;
-}
-
 // Everything of one run, in the order in which it comes to life.
 class Session {
  public:
@@ -52,10 +43,10 @@ class Session {
  private:
   std::optional<Error> open();
   std::optional<Error> open_telemetry();
+  std::optional<Error> open_call_filter();
   void run_real_time();
   void run_free();
-  void in_loop_thread();
-  void watch();
+  void watch(LoopThreads& threads);
   int report();
   double force_share() const { return non_rt_ ? kNonRtForceShare : 1.0; }
   // As often as a viewer looks.
@@ -85,7 +76,7 @@ class Session {
   SimulatedClock simulated_clock_;
   std::optional<RtLoop> loop_;
   Requests requests_;
-  std::atomic<bool> loop_ended_{false};
+  std::unique_ptr<CallFilter> filter_;
   ThreadCosts costs_;
 };
 
@@ -94,7 +85,8 @@ int Session::run() {
   operator_.emplace();
   if (!options_.free_run) {
     process_.emplace(shortfalls_);
-    for (Shortfall& s : probe_rt_thread(rt_)) shortfalls_.push_back(std::move(s));
+    if (auto limited = lift_rttime_limit()) shortfalls_.push_back(std::move(*limited));
+    for (Shortfall& s : probe_rt_threads(rt_)) shortfalls_.push_back(std::move(s));
     non_rt_ = !shortfalls_.empty();
   }
   for (const Shortfall& s : shortfalls_) fmt::print(stderr, "tactd: {}\n", s.sentence);
@@ -112,6 +104,7 @@ int Session::run() {
       !std::ofstream(options_.json_path, std::ios::app))
     return fail(options_.json_path + ": cannot be written; name a file in a folder of yours", 2);
   if (const auto error = open_telemetry()) return fail(error->sentence, 2);
+  if (const auto error = open_call_filter()) return fail(error->sentence, 1);
   requests_.arm.store(options_.arm || hal::is_simulated(scene_.device));
   if (options_.free_run)
     run_free();
@@ -169,9 +162,22 @@ std::optional<Error> Session::open_telemetry() {
                                .non_rt = non_rt_});
   if (!outlets) return outlets.error();
   hand_socket_ = std::move(outlets->hand);
+  if (!outlets->no_black_box.empty()) fmt::print(stderr, "tactd: {}\n", outlets->no_black_box);
   telemetry_.emplace(*ring_,
                      FrameBuilder(tissue_->law().site_law(), controller_->shapes(), non_rt_),
-                     scene_.frame_rate_Hz, std::move(outlets->socket), std::move(outlets->log));
+                     scene_.frame_rate_Hz, std::move(outlets->sinks), &requests_.fault);
+  return std::nullopt;
+}
+
+std::optional<Error> Session::open_call_filter() {
+  if (options_.free_run || options_.no_seccomp) return std::nullopt;
+  auto filter = CallFilter::make(device_->loop_calls(), lines_->loop_calls(), requests_);
+  if (filter) {
+    filter_ = std::move(*filter);
+    return std::nullopt;
+  }
+  if (options_.seccomp) return Error{"refused by --seccomp: " + filter.error().sentence};
+  fmt::print(stderr, "tactd: {}\n", filter.error().sentence);
   return std::nullopt;
 }
 
@@ -190,39 +196,37 @@ void Session::run_free() {
 
 void Session::run_real_time() {
   telemetry_->start();
-  std::thread loop_thread(&Session::in_loop_thread, this);
-  watch();
-  loop_thread.join();
-}
-
-void Session::in_loop_thread() {
-  pthread_setname_np(pthread_self(), "tact-loop");
-  std::vector<Shortfall> known;
-  enter_rt_thread(rt_, known);
-  rusage before{}, after{};
-  {
-    const HeapWatch heap;
-    getrusage(RUSAGE_THREAD, &before);
-    loop_->run();
-    getrusage(RUSAGE_THREAD, &after);
-    costs_.heap_calls = heap.calls();
-  }
-  leave_rt_thread();
-  device_->stop();  // at once: drives watch for their host
-  costs_.heap_calls_known = can_count_heap_calls();
-  costs_.minor_faults = after.ru_minflt - before.ru_minflt;
-  costs_.major_faults = after.ru_majflt - before.ru_majflt;
-  costs_.voluntary_switches = after.ru_nvcsw - before.ru_nvcsw;
-  costs_.involuntary_switches = after.ru_nivcsw - before.ru_nivcsw;
-  loop_ended_.store(true);
+  LoopThreads threads({.loop = *loop_,
+                       .device = *device_,
+                       .lines = *lines_,
+                       .requests = requests_,
+                       .filter = filter_.get(),
+                       .rt = rt_,
+                       .period_ns = period_ns(),
+                       .hard_real_time = !non_rt_});
+  watch(threads);
+  threads.join();
+  costs_ = threads.costs();
 }
 
 // The main thread while the loop runs: waits for signals, tells what happens.
-void Session::watch() {
+void Session::watch(LoopThreads& threads) {
   OperatorView view(*device_, *lines_, requests_.arm.load());
-  while (!loop_ended_.load()) {
-    operator_->obey(requests_, kStatusPeriod);
+  BlackBox* const black_box = telemetry_->black_box();
+  const auto show = [&] {
     view.show(telemetry_->newest_frame());
+    if (black_box == nullptr) return;
+    for (const std::string& sentence : black_box->news()) view.tell(sentence);
+  };
+  while (!threads.ended()) {
+    operator_->obey(requests_, kStatusPeriod);
+    show();
+    if (!threads.hangs()) continue;
+    telemetry_->stop();
+    show();
+    view.tell(
+        "the loop does not come back, so tactd ends without it: switch the device's power off");
+    threads.leave_behind(1);
   }
   view.end();
 }
@@ -233,6 +237,9 @@ int Session::report() {
   device_->stop();
   if (hand_socket_) hand_socket_->stop();
   const std::string log_trouble = telemetry_->stop();
+  BlackBox* const black_box = telemetry_->black_box();
+  for (const std::string& sentence : black_box ? black_box->news() : std::vector<std::string>{})
+    fmt::print(stderr, "tactd: {}\n", sentence);
   rusage process{};
   getrusage(RUSAGE_SELF, &process);
   const LoopStatistics& statistics = loop_->statistics();
@@ -255,7 +262,9 @@ int Session::report() {
       .trouble = trouble,
       .force_hash = telemetry_->force_hash(),
       .resident_peak_kB = process.ru_maxrss,
-      .law_table_bytes = tissue_->law().memory_bytes()};
+      .law_table_bytes = tissue_->law().memory_bytes(),
+      .call_filter = filter_ != nullptr,
+      .black_boxes = black_box ? black_box->files() : std::vector<std::string>{}};
   const std::string json =
       make_report(facts, statistics, controller_->gate(), read_environment(scene_.hash)).dump(2);
   if (options_.json_path == "-")

@@ -42,6 +42,10 @@ enum class Fault : std::uint16_t {
   kHomingLost = 117,
   kForceOff = 118,
   kPowerLost = 119,
+  kLoopStalled = 120,
+  kDeviceStalled = 121,
+  kLoopRanAway = 122,
+  kForbiddenCall = 123,
 };
 
 constexpr bool latches(Fault fault) RT_SAFE { return static_cast<std::uint16_t>(fault) >= 100; }
