@@ -84,6 +84,7 @@ Error no_filter(const char* why) {
 class Filter final : public CallFilter {
  public:
   Filter(Context context, Requests& requests) : context_(std::move(context)) {
+    refused.store(-1);
     guarded.store(&requests);
     struct sigaction action {};
     action.sa_sigaction = on_refused;

@@ -39,7 +39,7 @@ class CallFilter {
   CallFilter() = default;
 };
 
-/// The first call that was refused in this process, for a person; empty without one. Any thread.
+/// The first call that the newest filter refused, for a person; empty without one. Any thread.
 std::string refused_call();
 
 }  // namespace tact::firmware
