@@ -123,8 +123,9 @@ TEST_F(WatchedLoop, ABusyCallThatNeverReturnsLosesTheEnableLine) {
   device.busy.store(true);
   ASSERT_TRUE(soon([this] { return lines.drops.load() > 0; }));
   EXPECT_EQ(requests.fault.load(), Fault::kLoopRanAway) << "50 ms come before 250";
+  EXPECT_TRUE(requests.stop.load()) << "it is told to leave";
   device.busy.store(false);
-  thread.join();  // it was told to leave
+  finish();
   EXPECT_EQ(device.last, Wrench{});
 }
 
