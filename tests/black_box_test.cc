@@ -32,7 +32,7 @@ class BlackBoxTest : public testing::Test {
 
   std::unique_ptr<BlackBox> make() const {
     const auto tissue = std::move(*model::make_tissue(scene));
-    BlackBoxRun run{.folder = folder,
+    BlackBoxRun run{.folder = folder + "/kept",
                     .scene_name = "plate / 2",
                     .header = {},
                     .hello = make_hello(scene, *tissue, {.device = {}, .hand_socket = ""}),
@@ -105,7 +105,7 @@ TEST_F(BlackBoxTest, SeveralFaultsOfARunGiveSeveralFilesAndNoneIsWrittenOver) {
     EXPECT_GT(kept.size(), before) << "each holds what came before, too";
     before = kept.size();
   }
-  EXPECT_EQ(static_cast<int>(std::distance(fs::directory_iterator(folder), {})), 3);
+  EXPECT_EQ(static_cast<int>(std::distance(fs::directory_iterator(folder + "/kept"), {})), 3);
 }
 
 TEST_F(BlackBoxTest, ALoopThatGivesNoMoreTicksIsNotWaitedFor) {
@@ -199,7 +199,10 @@ TEST_F(BlackBoxTest, AFolderThatCannotBeWrittenIsRefusedWithItsCure) {
   EXPECT_NE(refused.error().sentence.find("--black-box"), std::string::npos);
   const auto made = black_box_folder(folder + "/new/one");
   ASSERT_TRUE(made);
-  EXPECT_TRUE(fs::is_directory(*made));
+  EXPECT_FALSE(fs::exists(*made)) << "a run without faults leaves nothing behind";
+  ASSERT_EQ(setenv("XDG_STATE_HOME", folder.c_str(), 1), 0);
+  EXPECT_EQ(*black_box_folder(""), folder + "/tact/black-box");
+  unsetenv("XDG_STATE_HOME");
 }
 
 // tactd itself. strace holds its loop in its sleep, as a driver would that hangs.

@@ -70,10 +70,11 @@ Result<std::string> black_box_folder(const std::string& asked) {
     folder = state / "tact" / "black-box";
   }
   std::error_code failed;
-  fs::create_directories(folder, failed);
-  int wrong = failed.value();
-  if (wrong == 0 && access(folder.c_str(), W_OK | X_OK) != 0) wrong = errno;
-  if (wrong == 0 && !fs::is_directory(folder, failed)) wrong = ENOTDIR;
+  fs::path there = fs::absolute(folder, failed);
+  while (!fs::exists(there, failed) && there.has_relative_path()) there = there.parent_path();
+  int wrong = 0;
+  if (access(there.c_str(), W_OK | X_OK) != 0) wrong = errno;
+  if (!fs::is_directory(there, failed)) wrong = ENOTDIR;
   if (wrong != 0)
     return Error{
         fmt::format("{}: {}: no black box can be written there; name a folder of yours "
@@ -107,6 +108,8 @@ std::vector<Frame> with_last_ticks(const Kept& kept) {
 Result<std::string> write_black_box(const BlackBoxRun& run, const Kept& kept) {
   LogHeader header = run.header;
   header.ticks = kept.ticks.size();
+  std::error_code failed;  // the file then cannot be made either, and says so
+  fs::create_directories(run.folder, failed);
   const std::string path = free_path(run, kept.fault);
   auto log = TickLogWriter::create(path, header);
   if (!log) return log.error();

@@ -29,8 +29,8 @@ struct BlackBoxRun {
   int mesh_fd = -1;  // the memory file of telemetry_frame.h
 };
 
-/// `asked`, or $XDG_STATE_HOME/tact/black-box, or that below ~/.local/state; made if it is missing.
-/// An error if nothing can be written there.
+/// `asked`, or $XDG_STATE_HOME/tact/black-box, or that below ~/.local/state; not made yet. An
+/// error if nothing can be written there.
 model::Result<std::string> black_box_folder(const std::string& asked);
 
 /// The new file's path; an error names what did not reach the disk.

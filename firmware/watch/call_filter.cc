@@ -111,7 +111,8 @@ Result<std::unique_ptr<CallFilter>> CallFilter::make(std::span<const int> of_dev
   if (!kAnswers) return no_filter("it is not made for this processor");
   if (!can_count_heap_calls()) return no_filter("a sanitizer makes calls of its own");
   Context context(seccomp_init(SCMP_ACT_TRAP));
-  constexpr scmp_datum_t kWhole = ~scmp_datum_t{0}, kCommand = FUTEX_CMD_MASK & 0xffffffffu;
+  constexpr scmp_datum_t kWhole = ~scmp_datum_t{0},
+                         kCommand = static_cast<unsigned>(FUTEX_CMD_MASK);
   std::array<int, kEveryLoop.size()> every{};
   for (std::size_t i = 0; i < every.size(); ++i) every[i] = static_cast<int>(kEveryLoop[i]);
   const bool good = context != nullptr && allow(context.get(), every) &&
