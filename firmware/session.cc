@@ -47,6 +47,11 @@ class Session {
   void run_real_time();
   void run_free();
   void watch(LoopThreads& threads);
+  // Also of a loop that ended before it could tell what the watch had found.
+  Fault last_fault() const {
+    const Fault latched = controller_->newest().fault;
+    return latched != Fault::kNone ? latched : requests_.fault.load();
+  }
   int report();
   double force_share() const { return non_rt_ ? kNonRtForceShare : 1.0; }
   // As often as a viewer looks.
@@ -232,7 +237,8 @@ void Session::watch(LoopThreads& threads) {
 }
 
 int Session::report() {
-  const std::string trouble = trouble_behind(controller_->newest().fault, *device_, *lines_);
+  const Fault fault = last_fault();
+  const std::string trouble = trouble_behind(fault, *device_, *lines_);
   lines_->stop();
   device_->stop();
   if (hand_socket_) hand_socket_->stop();
@@ -258,7 +264,7 @@ int Session::report() {
       .dropped_records = ring_->dropped(),
       .dropped_frames = telemetry_->dropped_frames(),
       .state = controller_->newest().state,
-      .fault = controller_->newest().fault,
+      .fault = fault,
       .trouble = trouble,
       .force_hash = telemetry_->force_hash(),
       .resident_peak_kB = process.ru_maxrss,

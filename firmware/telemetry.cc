@@ -24,7 +24,10 @@ std::string Telemetry::stop() {
   if (thread_.joinable()) thread_.join();
   drain();
   publish();
-  if (sinks_.black_box) sinks_.black_box->finish();
+  if (sinks_.black_box) {
+    sinks_.black_box->stands(watch_fault());  // of a loop that ended before it could tell
+    sinks_.black_box->finish();
+  }
   return sinks_.log ? sinks_.log->close() : std::string();
 }
 
@@ -50,15 +53,21 @@ void Telemetry::drain() {
   }
 }
 
-// A loop that stands still sends nothing, so what the watch found goes into the last frame again.
+// What the watch found goes into the next frame, and into the last one again when the loop stands
+// still and sends nothing.
 std::optional<Frame> Telemetry::next_frame() {
-  if (builder_.has_news()) return builder_.take(ring_.dropped());
-  const Fault found = watch_fault_ == nullptr ? Fault::kNone : watch_fault_->load();
-  if (sinks_.black_box) sinks_.black_box->stands(found);
-  if (found == Fault::kNone || newest_.fault != 0) return std::nullopt;
-  Frame frame = newest_;
-  frame.fault = static_cast<std::uint16_t>(found);
-  frame.state = State::kStopped;
+  const Fault found = watch_fault();
+  std::optional<Frame> frame;
+  if (builder_.has_news()) {
+    frame = builder_.take(ring_.dropped());
+  } else {
+    if (sinks_.black_box) sinks_.black_box->stands(found);
+    if (found != Fault::kNone && newest_.fault == 0) frame = newest_;
+  }
+  if (frame && frame->fault == 0 && found != Fault::kNone) {
+    frame->fault = static_cast<std::uint16_t>(found);
+    frame->state = State::kStopped;
+  }
   return frame;
 }
 

@@ -51,6 +51,9 @@ class Telemetry {
  private:
   void run();
   std::optional<Frame> next_frame();
+  Fault watch_fault() const {
+    return watch_fault_ == nullptr ? Fault::kNone : watch_fault_->load();
+  }
 
   TickRing& ring_;
   FrameBuilder builder_;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "firmware/telemetry.h"
 #include "firmware/watch/runaway.h"
 #include "tests/watched_loop.h"
 
@@ -144,6 +145,28 @@ TEST(Runaway, AThreadThatSleepsNowAndThenIsNone) {
   }).join();
   EXPECT_EQ(requests.fault.load(), Fault::kNone);
   EXPECT_FALSE(requests.stop.load());
+}
+
+TEST(WatchTold, WhatTheWatchFoundIsShownAlthoughTheLoopGivesNoTicks) {
+  const model::Scene scene = tests::make_plate_scene();
+  const auto tissue = std::move(*model::make_tissue(scene));
+  const auto ring = std::make_unique<TickRing>();
+  const auto shapes = std::make_unique<ShapeSlot>();
+  std::atomic<Fault> found{Fault::kNone};
+  Telemetry telemetry(*ring, FrameBuilder(tissue->law().site_law(), *shapes, false), 60.0, Sinks{},
+                      &found);
+  TickRecord record;
+  record.tick = 7;
+  record.output.state = State::kArmed;
+  ring->push(record);
+  telemetry.drain();
+  telemetry.publish();
+  EXPECT_EQ(telemetry.newest_frame().state, State::kArmed);
+  found.store(Fault::kLoopStalled);
+  telemetry.publish();
+  EXPECT_EQ(telemetry.newest_frame().fault, 120);
+  EXPECT_EQ(telemetry.newest_frame().state, State::kStopped);
+  EXPECT_EQ(telemetry.newest_frame().tick, 7u);
 }
 
 }  // namespace

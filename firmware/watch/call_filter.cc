@@ -131,7 +131,7 @@ std::string refused_call() {
   const int call = refused.load();
   if (call < 0) return {};
   char* name = seccomp_syscall_resolve_num_arch(SCMP_ARCH_NATIVE, call);
-  const std::string text =
+  std::string text =
       name == nullptr ? fmt::format("system call {}", call) : fmt::format("{}({})", name, call);
   std::free(name);  // NOLINT(cppcoreguidelines-no-malloc): libseccomp's
   return text;
