@@ -99,7 +99,7 @@ TEST_F(WatchedLoop, ALoopThatNeverSleepsEndsWithZeroForce) {
   SleeplessClock sleepless;
   loop.emplace(LoopSettings{.period_ns = kMs}, device, lines, controller, sleepless, requests,
                *ring);
-  bool allowed = false;
+  std::atomic<bool> allowed{false};
   const RunawayGuard guard(requests);
   thread = std::thread([&] {
     become_real_time(allowed);
@@ -116,7 +116,7 @@ TEST_F(WatchedLoop, ALoopThatNeverSleepsEndsWithZeroForce) {
 }
 
 TEST_F(WatchedLoop, ABusyCallThatNeverReturnsLosesTheEnableLine) {
-  bool allowed = false;
+  std::atomic<bool> allowed{false};
   const RunawayGuard guard(requests);
   watch.start({});
   start([&allowed] { become_real_time(allowed); }, [] { leave_rt_thread(); });

@@ -90,7 +90,7 @@ class WatchedLoop : public testing::Test {
     return what();
   }
   // The lowest real-time priority: it must not stand in the way of other tests' loops.
-  static void become_real_time(bool& allowed) {
+  static void become_real_time(std::atomic<bool>& allowed) {
     const sched_param lowest{.sched_priority = 1};
     allowed = pthread_setschedparam(pthread_self(), SCHED_FIFO, &lowest) == 0;
   }
