@@ -5,9 +5,9 @@
 #include <sys/resource.h>
 
 #include <cmath>
-#include <thread>
 
 #include "firmware/alloc_counter.h"
+#include "firmware/watch/call_filter.h"
 #include "hal/gpio/gpio_lines.h"
 
 namespace tact::firmware {
@@ -49,12 +49,6 @@ Result<LoopParts> open_loop_parts(const model::Scene& scene, const PartsSetup& s
   return parts;
 }
 
-std::vector<Shortfall> probe_rt_thread(const RtSettings& settings) {
-  std::vector<Shortfall> shortfalls;
-  std::thread([&] { enter_rt_thread(settings, shortfalls); }).join();
-  return shortfalls;
-}
-
 void add_to(ThreadCosts& sum, const ThreadCosts& more) {
   sum.heap_calls += more.heap_calls;
   sum.heap_calls_known = more.heap_calls_known;
@@ -64,10 +58,12 @@ void add_to(ThreadCosts& sum, const ThreadCosts& more) {
   sum.involuntary_switches += more.involuntary_switches;
 }
 
-ThreadCosts run_as_loop_thread(const RtSettings& settings, const std::function<void()>& loop) {
+ThreadCosts run_as_loop_thread(const RtSettings& settings, const std::function<void()>& loop,
+                               CallFilter* filter) {
   pthread_setname_np(pthread_self(), "tact-loop");
   std::vector<Shortfall> known;
   enter_rt_thread(settings, known);
+  if (filter != nullptr) filter->enter_thread();  // tried when it was made
   ThreadCosts costs;
   rusage before{}, after{};
   {
@@ -77,6 +73,7 @@ ThreadCosts run_as_loop_thread(const RtSettings& settings, const std::function<v
     getrusage(RUSAGE_THREAD, &after);
     costs.heap_calls = heap.calls();
   }
+  if (filter != nullptr) filter->leave_loop();
   leave_rt_thread();
   costs.heap_calls_known = can_count_heap_calls();
   costs.minor_faults = after.ru_minflt - before.ru_minflt;

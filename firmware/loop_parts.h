@@ -21,6 +21,8 @@ namespace tact::firmware {
 /// Of the force, where the PC gives no hard real time.
 inline constexpr double kNonRtForceShare = 0.25;
 
+class CallFilter;
+
 struct PartsSetup {
   bool simulated_time = false;  // waits for any law, so no law is too slow
   bool non_rt = false;          // caps the force; simulated time is never late
@@ -46,9 +48,6 @@ model::Result<LoopParts> open_loop_parts(const model::Scene& scene, const PartsS
 /// Of one tick, from the scene's rate.
 std::int64_t period_ns(const model::Scene& scene);
 
-/// What this PC does not give a loop of these settings; tried out in a thread that ends again.
-std::vector<Shortfall> probe_rt_thread(const RtSettings& settings);
-
 /// Kernel's and allocator's view of the loop's thread between its first and its last tick.
 struct ThreadCosts {
   std::uint64_t heap_calls = 0;
@@ -60,7 +59,9 @@ struct ThreadCosts {
 /// Of several runs together.
 void add_to(ThreadCosts& sum, const ThreadCosts& more);
 
-/// Runs `loop` as the loop's thread, which this one becomes and then leaves again.
-ThreadCosts run_as_loop_thread(const RtSettings& settings, const std::function<void()>& loop);
+/// Runs `loop` as the loop's thread, which this one becomes and then leaves again; behind the filter,
+/// if there is one, which stays with the thread to its end.
+ThreadCosts run_as_loop_thread(const RtSettings& settings, const std::function<void()>& loop,
+                               CallFilter* filter = nullptr);
 
 }  // namespace tact::firmware

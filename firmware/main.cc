@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "firmware/device_list.h"
 #include "firmware/replay.h"
@@ -18,23 +19,43 @@ int complain(const std::string& sentence, int status) {
   return status;
 }
 
-void print_faults() {
+void print_fault_lines() {
   fmt::print("{:>4}  {:18}  {}\n", "no", "name", "cause; cure");
   for (const model::FaultEntry& f : model::fault_table())
     fmt::print("{:>4}  {:18}  {}; {}\n", static_cast<int>(f.fault), f.name, f.cause, f.cure);
 }
 
+std::string faults_as_json() {
+  nlohmann::json list = nlohmann::json::array();
+  for (const model::FaultEntry& f : model::fault_table())
+    list.push_back({{"number", static_cast<int>(f.fault)},
+                    {"name", f.name},
+                    {"cause", f.cause},
+                    {"cure", f.cure},
+                    {"latches", model::latches(f.fault)}});
+  return list.dump(2) + "\n";
+}
+
+/// A list for --json PATH; nothing without one.
+int write_json(const std::string& path, const std::string& json) {
+  if (path.empty()) return 0;
+  if (path == "-") {
+    fmt::print("{}", json);
+  } else if (!(std::ofstream(path) << json)) {
+    return complain(path + ": cannot be written; name a file in a folder of yours", 2);
+  }
+  return 0;
+}
+
+int print_faults(const std::string& json_path) {
+  if (json_path != "-") print_fault_lines();
+  return write_json(json_path, faults_as_json());
+}
+
 int print_devices(const std::string& json_path) {
   const auto parts = hal::list_devices();
   if (json_path != "-") fmt::print("{}", firmware::devices_as_text(parts));
-  if (json_path.empty()) return 0;
-  const std::string json = firmware::devices_as_json(parts);
-  if (json_path == "-") {
-    fmt::print("{}", json);
-  } else if (!(std::ofstream(json_path) << json)) {
-    return complain(json_path + ": cannot be written; name a file in a folder of yours", 2);
-  }
-  return 0;
+  return write_json(json_path, firmware::devices_as_json(parts));
 }
 
 int run_replay(const model::Scene& scene, const std::string& path) {
@@ -89,10 +110,7 @@ int main(int argc, char** argv) {
   firmware::Parsed parsed = firmware::parse_options(argc, argv);
   if (parsed.leave) return parsed.status;
   firmware::Options& options = parsed.options;
-  if (options.faults) {
-    print_faults();
-    return 0;
-  }
+  if (options.faults) return print_faults(options.json_path);
   if (options.list_devices) return print_devices(options.json_path);
   if (options.help_scene) {
     fmt::print("{}", model::scene_reference());

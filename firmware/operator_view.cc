@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "firmware/status_line.h"
+#include "firmware/watch/call_filter.h"
 
 namespace tact::firmware {
 
@@ -13,6 +14,7 @@ using model::Fault;
 
 std::string trouble_behind(Fault fault, const hal::Device& device, const hal::SafetyLines& lines) {
   if (fault == Fault::kNone) return {};
+  if (fault == Fault::kForbiddenCall) return refused_call();
   const bool of_lines = fault >= Fault::kEmergencyStop && fault <= Fault::kDeadManReleased;
   return of_lines ? lines.trouble() : device.trouble();
 }

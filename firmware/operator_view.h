@@ -17,12 +17,12 @@ class OperatorView {
 
   /// A few times a second, with the newest frame. Faults go to standard error.
   void show(const Frame& newest);
+  /// One sentence to standard error, beside the live line.
+  void tell(const std::string& sentence) const;
   /// Ends the live line.
   void end() const;
 
  private:
-  void tell(const std::string& sentence) const;
-
   const hal::Device& device_;
   const hal::SafetyLines& lines_;
   bool terminal_, arms_itself_;

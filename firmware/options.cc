@@ -23,9 +23,9 @@ Parsed parse_options(int argc, char** argv) {
   auto* seconds = app.add_option("--seconds", o.seconds, "stop after this time, s");
   seconds->check(CLI::Range(1e-3, 1e7));
   app.add_option("--ticks", o.ticks, "stop after this many ticks")->excludes(seconds);
-  app.add_option(
-      "--json", o.json_path,
-      "write the report to this file when done, - for stdout; with --list-devices that list");
+  app.add_option("--json", o.json_path,
+                 "write the report to this file when done, - for stdout; with --list-devices or "
+                 "--faults that list");
   app.add_flag("--check", o.check, "check scene, meshes, law and device, then leave");
   app.add_flag("--arm", o.arm,
                "hardware: force as soon as the device is ready, without SIGUSR2 of the operator");
@@ -43,6 +43,16 @@ Parsed parse_options(int argc, char** argv) {
   app.add_flag("--no-telemetry", o.no_telemetry, "open no socket");
   app.add_flag("--free-run", o.free_run,
                "simulated time, as fast as the CPU allows; needs --ticks or --seconds");
+  auto* black_box = app.add_option(
+      "--black-box", o.black_box_folder,
+      "folder for the last 10 s before each fault, one file each (default: tact/black-box in "
+      "XDG_STATE_HOME, or in ~/.local/state)");
+  app.add_flag("--no-black-box", o.no_black_box, "keep no such files")->excludes(black_box);
+  auto* seccomp = app.add_flag("--seccomp", o.seccomp,
+                               "refuse to run where the loop's system calls cannot be filtered "
+                               "(default: filter if it can be)");
+  app.add_flag("--no-seccomp", o.no_seccomp, "let the loop make any system call")
+      ->excludes(seccomp);
   app.add_flag("--faults", o.faults, "print every fault with its cause and cure, then leave");
   app.add_flag("--list-devices", o.list_devices,
                "print what is plugged in, what it lacks and the cure, then leave");

@@ -23,6 +23,10 @@ struct Options {
   bool faults = false;      // print the fault table
   bool help_scene = false;  // print every scene key
   bool list_devices = false;
+  std::string black_box_folder;  // empty: below the user's state folder
+  bool no_black_box = false;
+  bool seccomp = false;     // refuse to run without the call filter
+  bool no_seccomp = false;  // run without it
   int core = -1;
 };
 

@@ -37,6 +37,10 @@ model::Result<ReplayOutcome> replay(const std::string& path, const model::Scene&
         header.overrides[0] == '\0'
             ? "no --set"
             : "with" + model::command_text(header.overrides_of_run()) + " or no --set at all")};
+  if (header.ticks != 0)
+    return model::Error{path +
+                        ": is a black box, which begins in the middle of a run; tact-view --open "
+                        "shows it, tactd --record keeps a run from its start"};
   flush_denormals();  // as in the loop's thread
   const double period_s = static_cast<double>(header.period_ns) * 1e-9;
   Controller controller(tissue.contact_scene(), Gate(header.limits, period_s, header.force_share),

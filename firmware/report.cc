@@ -88,6 +88,8 @@ json make_report(const RunFacts& facts, const LoopStatistics& loop, const Gate& 
            {{"missed_ns", loop.stop.missed_ns},
             {"fault_ns", loop.stop.fault_ns},
             {"zero_ns", loop.stop.zero_ns}}},
+          {"call_filter", facts.call_filter},
+          {"black_boxes", facts.black_boxes},
           {"dropped_records", facts.dropped_records},
           {"dropped_frames", facts.dropped_frames},
           {"force_hash", fmt::format("{:016x}", facts.force_hash)},

@@ -30,6 +30,8 @@ struct RunFacts {
   std::uint64_t force_hash = 0;  // equal for equal runs; 0 when not computed
   long resident_peak_kB = 0;
   std::size_t law_table_bytes = 0;
+  bool call_filter = false;              // on the loop's thread
+  std::vector<std::string> black_boxes;  // files that this run left
 };
 
 nlohmann::json to_json(const Environment& environment);

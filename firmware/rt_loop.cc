@@ -10,11 +10,15 @@ namespace tact::firmware {
 void RtLoop::run() RT_SAFE {
   while (may_run()) step();
   let_go();
+  progress_.end();
 }
 
 void RtLoop::step() RT_SAFE {
   const std::int64_t period_ns = settings_.period_ns;
-  if (statistics_.ticks == 0) due_ns_ = clock_.now_ns() + period_ns;
+  if (statistics_.ticks == 0) {
+    due_ns_ = clock_.now_ns() + period_ns;
+    progress_.begin(due_ns_);
+  }
   clock_.sleep_until_ns(due_ns_);
   cycle(due_ns_);
   due_ns_ += period_ns;  // absolute deadlines: one late tick does not delay the next
@@ -33,17 +37,25 @@ void RtLoop::step() RT_SAFE {
 }
 
 void RtLoop::let_go() RT_SAFE {
+  progress_.enter(Place::kLines);
   lines_.write({.healthy = false, .armed = false, .faulted = true});
+  progress_.enter(Place::kDevice);
   device_.permit(false);
   device_.write(Wrench{});
+  progress_.enter(Place::kOwn);
 }
 
-// The lines' word counts before the device's.
+// The lines' word counts before the device's. The watch's comes last to be asked, as it may be about
+// the calls of this very tick, and first to be told.
 Fault RtLoop::sense(std::int64_t now_ns) RT_SAFE {
+  progress_.enter(Place::kLines);
   const Fault lines_fault = lines_.read(now_ns);
   record_.input.sample.fresh = false;
+  progress_.enter(Place::kDevice);
   const Fault read_fault = device_.read(record_.input.sample, now_ns);
-  for (const Fault fault : {lines_fault, read_fault, write_fault_})
+  progress_.enter(Place::kOwn);
+  const Fault watch_fault = requests_.fault.load(std::memory_order_relaxed);
+  for (const Fault fault : {watch_fault, lines_fault, read_fault, write_fault_})
     if (fault != Fault::kNone) return fault;
   return Fault::kNone;
 }
@@ -53,11 +65,14 @@ Fault RtLoop::sense(std::int64_t now_ns) RT_SAFE {
 void RtLoop::push() RT_SAFE {
   const TickOutput& output = record_.output;
   const bool stopped = output.state == State::kStopped;
+  progress_.enter(Place::kLines);
   const Fault lines_fault = lines_.write({.healthy = !stopped && record_.margin_ns > 0,
                                           .armed = output.state == State::kArmed,
                                           .faulted = stopped});
+  progress_.enter(Place::kDevice);
   device_.permit(lines_.enabled());
   const Fault device_fault = device_.write(output.written);
+  progress_.enter(Place::kOwn);
   write_fault_ = lines_fault != Fault::kNone ? lines_fault : device_fault;
 }
 
@@ -70,6 +85,7 @@ bool RtLoop::may_run() const RT_SAFE {
 
 void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   const std::int64_t wake_ns = clock_.now_ns();
+  progress_.tick();
   lines_.scope(true);
   record_.tick = statistics_.ticks++;
   record_.due_ns = due_ns;

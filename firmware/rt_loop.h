@@ -13,15 +13,22 @@
 #include "firmware/latency_histogram.h"
 #include "firmware/ring.h"
 #include "firmware/stop_times.h"
+#include "firmware/watch/progress.h"
 #include "hal/safety_lines.h"
 
 namespace tact::firmware {
 
-/// What people ask of a running loop; written by ordinary threads.
+/// What people and the watch ask of a running loop; written by other threads and signal handlers.
 struct Requests {
   std::atomic<bool> arm{false};
   std::atomic<bool> stop{false};  // force to zero, then leave
   std::atomic<bool> reset{false};
+  std::atomic<Fault> fault{Fault::kNone};  // of the watch; the first stays to the end of the run
+
+  void trip(Fault found) RT_SAFE {
+    Fault none = Fault::kNone;
+    fault.compare_exchange_strong(none, found, std::memory_order_relaxed);
+  }
 };
 
 /// What a run leaves behind. Read it after run() has returned.
@@ -65,6 +72,8 @@ class RtLoop {
   /// Power permission away and zero force to the device: the last thing that any loop does.
   void let_go() RT_SAFE;
   const LoopStatistics& statistics() const { return statistics_; }
+  /// For the watch, at any time.
+  const Progress& progress() const { return progress_; }
 
  private:
   void cycle(std::int64_t due_ns) RT_SAFE;
@@ -84,6 +93,7 @@ class RtLoop {
   std::int64_t due_ns_ = 0;
   Fault write_fault_ = Fault::kNone;  // judged in the next tick
   StopWatch stop_watch_;
+  Progress progress_;
 };
 
 }  // namespace tact::firmware

@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <thread>
 
 #include "firmware/pc_check.h"
 
@@ -23,6 +24,7 @@ namespace tact::firmware {
 namespace {
 
 constexpr std::size_t kStackBytes = std::size_t{256} * 1024;
+constexpr int kWatchAboveLoop = 5;
 constexpr std::size_t kTouchedStackBytes = std::size_t{128} * 1024;
 
 void lock_memory(std::vector<Shortfall>& shortfalls) {
@@ -115,6 +117,33 @@ void enter_rt_thread(const RtSettings& settings, std::vector<Shortfall>& shortfa
         {fmt::format("SCHED_FIFO priority {} is refused ({}): {}; {}", settings.priority,
                      std::strerror(refused), kPriorityReason.why, kPriorityReason.cure)});
   touch_stack();
+}
+
+void enter_watch_thread(const RtSettings& loop, std::vector<Shortfall>& shortfalls) {
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  sched_getaffinity(getpid(), sizeof cores, &cores);  // of the main thread
+  CPU_CLR(static_cast<std::size_t>(choose_core(loop)), &cores);
+  if (CPU_COUNT(&cores) > 0) pthread_setaffinity_np(pthread_self(), sizeof cores, &cores);
+  const int wanted = loop.priority + kWatchAboveLoop;
+  const sched_param priority{.sched_priority = wanted};
+  const bool loop_may = sched_getscheduler(0) == SCHED_FIFO;  // else that is told already
+  const int refused = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
+  if (refused != 0 && loop_may)
+    shortfalls.push_back(
+        {fmt::format("SCHED_FIFO priority {} is refused ({}): the watch above the loop cannot stop "
+                     "it in time; give the user rtprio {} in /etc/security/limits.d/",
+                     wanted, std::strerror(refused), wanted)});
+  touch_stack();
+}
+
+std::vector<Shortfall> probe_rt_threads(const RtSettings& loop) {
+  std::vector<Shortfall> shortfalls;
+  std::thread([&] {
+    enter_rt_thread(loop, shortfalls);
+    enter_watch_thread(loop, shortfalls);
+  }).join();
+  return shortfalls;
 }
 
 void leave_rt_thread() {

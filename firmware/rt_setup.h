@@ -15,7 +15,7 @@ struct Shortfall {
 };
 
 struct RtSettings {
-  int priority = 80;  // SCHED_FIFO of the loop
+  int priority = 80;  // SCHED_FIFO of the loop; its watch has 5 more
   int core = -1;      // -1: an isolated core if there is one, else the last allowed one
 };
 
@@ -36,6 +36,10 @@ class ProcessSetup {
 void use_small_thread_stacks();
 /// Call first in the loop's thread.
 void enter_rt_thread(const RtSettings& settings, std::vector<Shortfall>& shortfalls);
+/// The same for the watch above that loop: its priority + 5, on any core but the loop's.
+void enter_watch_thread(const RtSettings& loop, std::vector<Shortfall>& shortfalls);
+/// What both would be refused.
+std::vector<Shortfall> probe_rt_threads(const RtSettings& loop);
 /// Call last there: a thread that gives its memory back at FIFO priority holds up all others.
 void leave_rt_thread();
 /// Denormals are zero: they cost a hundred times a normal number. Same bits in loop and replay.

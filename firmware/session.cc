@@ -4,15 +4,14 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <thread>
 
 #include "firmware/loop_parts.h"
+#include "firmware/loop_threads.h"
 #include "firmware/operator_signals.h"
 #include "firmware/operator_view.h"
 #include "firmware/pc_check.h"
@@ -51,10 +50,15 @@ class Session {
  private:
   std::optional<Error> open();
   std::optional<Error> open_telemetry();
+  std::optional<Error> open_call_filter();
   void run_real_time();
   void run_free();
-  void in_loop_thread();
-  void watch();
+  void watch(LoopThreads& threads);
+  // Also of a loop that ended before it could tell what the watch had found.
+  Fault last_fault() const {
+    const Fault latched = parts_.controller->newest().fault;
+    return latched != Fault::kNone ? latched : requests_.fault.load();
+  }
   int report();
   PartsSetup parts_setup() const {
     return {.simulated_time = options_.free_run, .non_rt = non_rt_, .rt = rt_};
@@ -78,7 +82,7 @@ class Session {
   SimulatedClock simulated_clock_;
   std::optional<RtLoop> loop_;
   Requests requests_;
-  std::atomic<bool> loop_ended_{false};
+  std::unique_ptr<CallFilter> filter_;
   ThreadCosts costs_;
 };
 
@@ -87,7 +91,8 @@ int Session::run() {
   operator_.emplace();
   if (!options_.free_run) {
     process_.emplace(shortfalls_);
-    for (Shortfall& s : probe_rt_thread(rt_)) shortfalls_.push_back(std::move(s));
+    if (auto limited = lift_rttime_limit()) shortfalls_.push_back(std::move(*limited));
+    for (Shortfall& s : probe_rt_threads(rt_)) shortfalls_.push_back(std::move(s));
     non_rt_ = !shortfalls_.empty();
   }
   for (const Shortfall& s : shortfalls_) fmt::print(stderr, "tactd: {}\n", s.sentence);
@@ -106,6 +111,7 @@ int Session::run() {
       !std::ofstream(options_.json_path, std::ios::app))
     return fail(options_.json_path + ": cannot be written; name a file in a folder of yours", 2);
   if (const auto error = open_telemetry()) return fail(error->sentence, 2);
+  if (const auto error = open_call_filter()) return fail(error->sentence, 1);
   requests_.arm.store(options_.arm || hal::is_simulated(scene_.device));
   if (options_.free_run)
     run_free();
@@ -141,10 +147,24 @@ std::optional<Error> Session::open_telemetry() {
                                .non_rt = non_rt_});
   if (!outlets) return outlets.error();
   hand_socket_ = std::move(outlets->hand);
+  if (!outlets->no_black_box.empty()) fmt::print(stderr, "tactd: {}\n", outlets->no_black_box);
   telemetry_.emplace(
       *parts_.ring,
       FrameBuilder(parts_.tissue->law().site_law(), parts_.controller->shapes(), non_rt_),
-      scene_.frame_rate_Hz, std::move(outlets->socket), std::move(outlets->log));
+      scene_.frame_rate_Hz, std::move(outlets->sinks), &requests_.fault);
+  return std::nullopt;
+}
+
+std::optional<Error> Session::open_call_filter() {
+  if (options_.free_run || options_.no_seccomp) return std::nullopt;
+  auto filter =
+      CallFilter::make(parts_.device->loop_calls(), parts_.lines->loop_calls(), requests_);
+  if (filter) {
+    filter_ = std::move(*filter);
+    return std::nullopt;
+  }
+  if (options_.seccomp) return Error{"refused by --seccomp: " + filter.error().sentence};
+  fmt::print(stderr, "tactd: {}\n", filter.error().sentence);
   return std::nullopt;
 }
 
@@ -163,34 +183,51 @@ void Session::run_free() {
 
 void Session::run_real_time() {
   telemetry_->start();
-  std::thread loop_thread(&Session::in_loop_thread, this);
-  watch();
-  loop_thread.join();
-}
-
-void Session::in_loop_thread() {
-  costs_ = run_as_loop_thread(rt_, [this] { loop_->run(); });
-  parts_.device->stop();  // at once: drives watch for their host
-  loop_ended_.store(true);
+  LoopThreads threads({.loop = *loop_,
+                       .device = *parts_.device,
+                       .lines = *parts_.lines,
+                       .requests = requests_,
+                       .filter = filter_.get(),
+                       .rt = rt_,
+                       .period_ns = period_ns(scene_),
+                       .hard_real_time = !non_rt_});
+  watch(threads);
+  threads.join();
+  costs_ = threads.costs();
 }
 
 // The main thread while the loop runs: waits for signals, tells what happens.
-void Session::watch() {
+void Session::watch(LoopThreads& threads) {
   OperatorView view(*parts_.device, *parts_.lines, requests_.arm.load());
-  while (!loop_ended_.load()) {
-    operator_->obey(requests_, kStatusPeriod);
+  BlackBox* const black_box = telemetry_->black_box();
+  const auto show = [&] {
     view.show(telemetry_->newest_frame());
+    if (black_box == nullptr) return;
+    for (const std::string& sentence : black_box->news()) view.tell(sentence);
+  };
+  while (!threads.ended()) {
+    operator_->obey(requests_, kStatusPeriod);
+    show();
+    if (!threads.hangs()) continue;
+    telemetry_->stop();
+    show();
+    view.tell(
+        "the loop does not come back, so tactd ends without it: switch the device's power off");
+    threads.leave_behind(1);
   }
   view.end();
 }
 
 int Session::report() {
-  const std::string trouble =
-      trouble_behind(parts_.controller->newest().fault, *parts_.device, *parts_.lines);
+  const Fault fault = last_fault();
+  const std::string trouble = trouble_behind(fault, *parts_.device, *parts_.lines);
   parts_.lines->stop();
   parts_.device->stop();
   if (hand_socket_) hand_socket_->stop();
   const std::string log_trouble = telemetry_->stop();
+  BlackBox* const black_box = telemetry_->black_box();
+  for (const std::string& sentence : black_box ? black_box->news() : std::vector<std::string>{})
+    fmt::print(stderr, "tactd: {}\n", sentence);
   rusage process{};
   getrusage(RUSAGE_SELF, &process);
   const LoopStatistics& statistics = loop_->statistics();
@@ -209,11 +246,13 @@ int Session::report() {
       .dropped_records = parts_.ring->dropped(),
       .dropped_frames = telemetry_->dropped_frames(),
       .state = parts_.controller->newest().state,
-      .fault = parts_.controller->newest().fault,
+      .fault = fault,
       .trouble = trouble,
       .force_hash = telemetry_->force_hash(),
       .resident_peak_kB = process.ru_maxrss,
-      .law_table_bytes = parts_.tissue->law().memory_bytes()};
+      .law_table_bytes = parts_.tissue->law().memory_bytes(),
+      .call_filter = filter_ != nullptr,
+      .black_boxes = black_box ? black_box->files() : std::vector<std::string>{}};
   const std::string json =
       make_report(facts, statistics, parts_.controller->gate(), read_environment(scene_.hash))
           .dump(2);

@@ -6,13 +6,13 @@
 
 namespace tact::firmware {
 
-Telemetry::Telemetry(TickRing& ring, FrameBuilder builder, double frame_rate_Hz,
-                     std::optional<TelemetrySocket> socket, std::optional<TickLogWriter> log)
+Telemetry::Telemetry(TickRing& ring, FrameBuilder builder, double frame_rate_Hz, Sinks sinks,
+                     const std::atomic<Fault>* watch_fault)
     : ring_(ring),
       builder_(std::move(builder)),
       frame_period_s_(1.0 / frame_rate_Hz),
-      socket_(std::move(socket)),
-      log_(std::move(log)),
+      sinks_(std::move(sinks)),
+      watch_fault_(watch_fault),
       force_hash_(kHashStart) {}
 
 Telemetry::~Telemetry() { stop(); }
@@ -24,7 +24,11 @@ std::string Telemetry::stop() {
   if (thread_.joinable()) thread_.join();
   drain();
   publish();
-  return log_ ? log_->close() : std::string();
+  if (sinks_.black_box) {
+    sinks_.black_box->stands(watch_fault());  // of a loop that ended before it could tell
+    sinks_.black_box->finish();
+  }
+  return sinks_.log ? sinks_.log->close() : std::string();
 }
 
 void Telemetry::run() {
@@ -44,19 +48,40 @@ void Telemetry::drain() {
   while (ring_.pop(record_)) {
     builder_.add(record_);
     force_hash_ = hash_wrench(force_hash_, record_.output.written);
-    if (log_) log_->add(record_);
+    if (sinks_.log) sinks_.log->add(record_);
+    if (sinks_.black_box) sinks_.black_box->add(record_);
   }
 }
 
-void Telemetry::publish() {
-  if (!builder_.has_news()) return;
-  const Frame frame = builder_.take(ring_.dropped());
-  if (socket_) {
-    socket_->send(frame);
-    dropped_frames_.store(socket_->dropped_frames(), std::memory_order_relaxed);
+// What the watch found goes into the next frame, and into the last one again when the loop stands
+// still and sends nothing.
+std::optional<Frame> Telemetry::next_frame() {
+  const Fault found = watch_fault();
+  std::optional<Frame> frame;
+  if (builder_.has_news()) {
+    frame = builder_.take(ring_.dropped());
+  } else {
+    if (sinks_.black_box) sinks_.black_box->stands(found);
+    if (found != Fault::kNone && newest_.fault == 0) frame = newest_;
   }
-  const std::lock_guard lock(newest_mutex_);
-  newest_ = frame;
+  if (frame && frame->fault == 0 && found != Fault::kNone) {
+    frame->fault = static_cast<std::uint16_t>(found);
+    frame->state = State::kStopped;
+  }
+  return frame;
+}
+
+void Telemetry::publish() {
+  if (const std::optional<Frame> frame = next_frame()) {
+    if (sinks_.black_box) sinks_.black_box->add(*frame);
+    if (sinks_.socket) {
+      sinks_.socket->send(*frame);
+      dropped_frames_.store(sinks_.socket->dropped_frames(), std::memory_order_relaxed);
+    }
+    const std::lock_guard lock(newest_mutex_);
+    newest_ = *frame;
+  }
+  if (sinks_.black_box) sinks_.black_box->work();
 }
 
 Frame Telemetry::newest_frame() const {

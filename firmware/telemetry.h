@@ -1,12 +1,14 @@
-// telemetry.h - the ordinary thread behind the ring: feeds viewers, the tick log and the status
-// line.
+// telemetry.h - the ordinary thread behind the ring: feeds viewers, the tick log, the black box and
+// the status line.
 #pragma once
 
 #include <atomic>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
 
+#include "firmware/black_box/black_box.h"
 #include "firmware/ring.h"
 #include "firmware/telemetry_frame.h"
 #include "firmware/telemetry_socket.h"
@@ -14,17 +16,25 @@
 
 namespace tact::firmware {
 
+/// Where ticks and frames go; what is missing gets none.
+struct Sinks {
+  std::optional<TelemetrySocket> socket{};
+  std::optional<TickLogWriter> log{};
+  std::unique_ptr<BlackBox> black_box{};
+};
+
 class Telemetry {
  public:
-  /// Without a socket or a log it only drains the ring for the status line.
-  Telemetry(TickRing& ring, FrameBuilder builder, double frame_rate_Hz,
-            std::optional<TelemetrySocket> socket, std::optional<TickLogWriter> log);
+  /// Without any sink it only drains the ring for the status line. `watch_fault` is what the watch has
+  /// found: a loop that gives no ticks any more cannot tell it.
+  Telemetry(TickRing& ring, FrameBuilder builder, double frame_rate_Hz, Sinks sinks,
+            const std::atomic<Fault>* watch_fault = nullptr);
   ~Telemetry();
   Telemetry(const Telemetry&) = delete;
   Telemetry& operator=(const Telemetry&) = delete;
 
   void start();
-  /// Takes what is left in the ring and ends the thread. Returns the log's trouble, empty if none.
+  /// Takes what is left in the ring, writes what the black box still keeps, and ends the thread. Returns the log's trouble, empty if none.
   std::string stop();
 
   /// By hand, for runs without real time: empties the ring, shows the newest.
@@ -32,18 +42,24 @@ class Telemetry {
   void publish();
 
   Frame newest_frame() const;
+  /// Null without one.
+  BlackBox* black_box() { return sinks_.black_box.get(); }
   std::uint64_t dropped_frames() const { return dropped_frames_.load(std::memory_order_relaxed); }
   /// Over all forces of the run, after stop(); 0 if the ring dropped any.
   std::uint64_t force_hash() const { return ring_.dropped() == 0 ? force_hash_ : 0; }
 
  private:
   void run();
+  std::optional<Frame> next_frame();
+  Fault watch_fault() const {
+    return watch_fault_ == nullptr ? Fault::kNone : watch_fault_->load();
+  }
 
   TickRing& ring_;
   FrameBuilder builder_;
   double frame_period_s_;
-  std::optional<TelemetrySocket> socket_;
-  std::optional<TickLogWriter> log_;
+  Sinks sinks_;
+  const std::atomic<Fault>* watch_fault_;
   std::atomic<bool> ending_{false};
   std::atomic<std::uint64_t> dropped_frames_{0};
   mutable std::mutex newest_mutex_;  // never met by the loop

@@ -26,6 +26,23 @@ void put(float (&field)[3], const Vec3& v) {
   field[2] = static_cast<float>(v.z);
 }
 
+// Tool, force and state of one tick.
+void put(Frame& frame, const TickInput& input, const TickOutput& output) {
+  const hal::Tool& tool = input.sample.tool;
+  put(frame.tool_position_m, tool.position_m);
+  const model::Quat& q = tool.orientation;
+  const double wxyz[4] = {q.w, q.x, q.y, q.z};
+  std::transform(wxyz, wxyz + 4, frame.tool_orientation,
+                 [](double v) { return static_cast<float>(v); });
+  put(frame.tool_velocity_mps, tool.velocity_mps);
+  frame.grip_ratio = static_cast<float>(tool.grip_ratio);
+  put(frame.force_N, output.written.force_N);
+  put(frame.torque_Nm, output.written.torque_Nm);
+  put(frame.wanted_force_N, output.wanted.force_N);
+  frame.fault = static_cast<std::uint16_t>(output.fault);
+  frame.state = output.state;
+}
+
 float to_us(std::int64_t ns) { return static_cast<float>(static_cast<double>(ns) * 1e-3); }
 
 void append(std::vector<char>& bytes, const model::SurfaceMesh& mesh) {
@@ -102,25 +119,27 @@ void FrameBuilder::add(const TickRecord& record) {
   newest_ = record;
 }
 
+Frame frame_of_tick(const Frame& picture, const LoggedTick& tick, std::int64_t time_ns) {
+  Frame frame = picture;
+  frame.tick = tick.tick;
+  frame.time_ns = time_ns;
+  put(frame, tick.input, tick.output);
+  frame.peak_force_N = static_cast<float>(norm(tick.output.written.force_N));
+  frame.rms_force_N = static_cast<float>(tick.output.rms_force_N);
+  frame.given_energy_J = static_cast<float>(tick.output.given_energy_J);
+  frame.limit = static_cast<std::uint16_t>(tick.output.limit);
+  return frame;
+}
+
 Frame FrameBuilder::take(std::uint64_t dropped_records) {
   const TickRecord& r = newest_;
-  const hal::Tool& tool = r.input.sample.tool;
   Frame frame;
   frame.tick = r.tick;
   frame.time_ns = r.due_ns - first_due_ns_;
   frame.late_ticks = r.late_ticks;
   frame.skipped_ticks = r.skipped_ticks;
   frame.dropped_records = dropped_records;
-  put(frame.tool_position_m, tool.position_m);
-  const model::Quat& q = tool.orientation;
-  const double wxyz[4] = {q.w, q.x, q.y, q.z};
-  std::transform(wxyz, wxyz + 4, frame.tool_orientation,
-                 [](double v) { return static_cast<float>(v); });
-  put(frame.tool_velocity_mps, tool.velocity_mps);
-  frame.grip_ratio = static_cast<float>(tool.grip_ratio);
-  put(frame.force_N, r.output.written.force_N);
-  put(frame.torque_Nm, r.output.written.torque_Nm);
-  put(frame.wanted_force_N, r.output.wanted.force_N);
+  put(frame, r.input, r.output);
   frame.worst_margin_us = worst_margin_us_;
   const auto middle = tick_us_.begin() + static_cast<std::ptrdiff_t>(tick_us_.size() / 2);
   std::nth_element(tick_us_.begin(), middle, tick_us_.end());
@@ -128,9 +147,7 @@ Frame FrameBuilder::take(std::uint64_t dropped_records) {
   frame.peak_force_N = peak_force_N_;
   frame.rms_force_N = static_cast<float>(r.output.rms_force_N);
   frame.given_energy_J = given_energy_J_;
-  frame.fault = static_cast<std::uint16_t>(r.output.fault);
   frame.limit = static_cast<std::uint16_t>(limit_);
-  frame.state = r.output.state;
   frame.non_rt = non_rt_ ? 1 : 0;
   for (std::size_t i = 0; i < r.site_count; ++i) add_site(r.touch[i], frame.site[i]);
   add_patch(frame.patch);

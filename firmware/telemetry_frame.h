@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "firmware/telemetry_record.h"
-#include "firmware/tick_record.h"
+#include "firmware/tick_log.h"
 #include "hal/device.h"
 #include "model/result.h"
 #include "model/scene.h"
@@ -25,6 +25,9 @@ struct HelloFacts {
 Hello make_hello(const model::Scene& scene, const model::Tissue& tissue, const HelloFacts& facts);
 /// A sealed memory file with the meshes as telemetry_record.h lays them out.
 model::Result<int> make_mesh_file(const model::Scene& scene);
+
+/// One tick in the picture of the frame before it.
+Frame frame_of_tick(const Frame& picture, const LoggedTick& tick, std::int64_t time_ns);
 
 /// Gathers records; a frame shows the newest and the extremes since the frame before.
 class FrameBuilder {

@@ -1,4 +1,4 @@
-// telemetry_setup.h - everything that leaves a run: viewer socket, hand socket, tick log.
+// telemetry_setup.h - everything that leaves a run: viewer socket, hand socket, tick log, black box.
 #pragma once
 
 #include <memory>
@@ -26,12 +26,13 @@ struct RunSetup {
 };
 
 struct Outlets {
-  std::optional<TelemetrySocket> socket;
+  Sinks sinks;
   std::unique_ptr<hal::HandSocket> hand;  // of a simulated device
-  std::optional<TickLogWriter> log;
+  std::string no_black_box;               // why there is none although nobody declined it
 };
 
-/// What the command line asks for; the rest stays empty.
+/// What the command line asks for; the rest stays empty. A black box whose usual folder cannot be
+/// written is done without; one that was asked for is an error.
 model::Result<Outlets> open_outlets(const RunSetup& run);
 
 }  // namespace tact::firmware

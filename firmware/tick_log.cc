@@ -35,6 +35,8 @@ Result<TickLogWriter> TickLogWriter::create(const std::string& path, const LogHe
     return Error{fmt::format("{}: {}; name a new file in a folder that you may write to", path,
                              std::strerror(errno))};
   LogHeader full = header;
+  std::memcpy(full.magic, kLogMagic, sizeof full.magic);
+  full.header_bytes = sizeof(LogHeader);
   full.tick_bytes = sizeof(LoggedTick);
   TickLogWriter writer(path, file, header.non_rt != 0);
   if (std::fwrite(&full, sizeof full, 1, file) != 1)
@@ -42,17 +44,27 @@ Result<TickLogWriter> TickLogWriter::create(const std::string& path, const LogHe
   return writer;
 }
 
-void TickLogWriter::add(const TickRecord& record) {
-  if (!trouble_.empty()) return;
-  LoggedTick tick{.tick = record.tick,
-                  .non_rt = static_cast<std::uint8_t>(non_rt_ ? 1 : 0),
-                  .due_ns = record.due_ns,
-                  .wake_late_ns = record.phase_ns[static_cast<std::size_t>(Phase::kWake)],
-                  .input = record.input,
-                  .output = record.output};
-  if (std::fwrite(&tick, sizeof tick, 1, file_.get()) != 1)
-    trouble_ = fmt::format("{}: {} at tick {}; what came before is kept", path_,
-                           std::strerror(errno), record.tick);
+LoggedTick LoggedTick::of(const TickRecord& record, bool non_rt) {
+  return {.tick = record.tick,
+          .non_rt = static_cast<std::uint8_t>(non_rt ? 1 : 0),
+          .due_ns = record.due_ns,
+          .wake_late_ns = record.phase_ns[static_cast<std::size_t>(Phase::kWake)],
+          .input = record.input,
+          .output = record.output};
+}
+
+void TickLogWriter::add(const LoggedTick& tick) {
+  if (trouble_.empty()) put(&tick, sizeof tick, fmt::format(" at tick {}", tick.tick));
+}
+
+void TickLogWriter::append(const std::string& bytes) {
+  if (trouble_.empty()) put(bytes.data(), bytes.size(), " in its pictures");
+}
+
+void TickLogWriter::put(const void* bytes, std::size_t size, const std::string& where) {
+  if (std::fwrite(bytes, size, 1, file_.get()) != 1)
+    trouble_ =
+        fmt::format("{}: {}{}; what came before is kept", path_, std::strerror(errno), where);
 }
 
 std::string TickLogWriter::close() {
@@ -71,16 +83,15 @@ Result<TickLogReader> TickLogReader::open(const std::string& path) {
   LogHeader header;
   const bool whole = std::fread(&header, sizeof header, 1, file) == 1;
   TickLogReader reader(file, header);
-  const LogHeader ours;
   constexpr std::size_t kVersionAt = sizeof header.magic - 1;
-  if (!whole || std::memcmp(header.magic, ours.magic, kVersionAt) != 0)
+  if (!whole || std::memcmp(header.magic, kLogMagic, kVersionAt) != 0)
     return Error{path + ": is no tick log; name a file that tactd --record wrote"};
-  if (header.magic[kVersionAt] != ours.magic[kVersionAt])
+  if (header.magic[kVersionAt] != kLogMagic[kVersionAt])
     return Error{fmt::format(
         "{}: is a tick log of version {}, this tactd reads version {}; replay it with the build "
         "that recorded it",
-        path, header.magic[kVersionAt], ours.magic[kVersionAt])};
-  if (header.tick_bytes != sizeof(LoggedTick))
+        path, header.magic[kVersionAt], kLogMagic[kVersionAt])};
+  if (header.tick_bytes != sizeof(LoggedTick) || header.header_bytes != sizeof(LogHeader))
     return Error{path + ": was written by another version of tactd; replay it with that one"};
   reader.header_.scene_hash[sizeof header.scene_hash - 1] = '\0';
   reader.header_.overrides[sizeof header.overrides - 1] = '\0';
@@ -88,6 +99,8 @@ Result<TickLogReader> TickLogReader::open(const std::string& path) {
 }
 
 bool TickLogReader::next(LoggedTick& tick) {
+  if (header_.ticks != 0 && read_ == header_.ticks) return false;
+  ++read_;
   const std::size_t bytes = std::fread(&tick, 1, sizeof tick, file_.get());
   truncated_ = bytes > 0 && bytes < sizeof tick;
   return bytes == sizeof tick;

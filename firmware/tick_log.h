@@ -1,7 +1,8 @@
 // tick_log.h - a run on disk, tick by tick: what came in and what went out.
 //
 // A header that names the scene (by hash) and the gate's force share, then one LoggedTick per tick
-// in the machine's own byte order. Enough to compute every force again, bit for bit (replay.h).
+// in the machine's own byte order. From the first tick on it is enough to compute every force again,
+// bit for bit (replay.h). A black box holds the last seconds before a fault, and pictures of them.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +11,13 @@
 #include <string>
 #include <vector>
 
+#include "firmware/recording_format.h"
 #include "firmware/tick_record.h"
 #include "model/result.h"
 
 namespace tact::firmware {
 
-struct LogHeader {
-  // The last letter is the format's version.
-  char magic[8] = {'t', 'a', 'c', 't', 'l', 'o', 'g', '5'};
-  std::uint32_t tick_bytes = 0;  // sizeof(LoggedTick): a different build is refused
-  std::uint32_t pad = 0;
+struct LogHeader : LogStart {
   std::int64_t period_ns = 0;
   model::Limits limits{};    // of scene and device together
   double force_share = 1.0;  // of the scene's limits; below 1 without hard real time
@@ -39,13 +37,18 @@ struct LoggedTick {
   std::int32_t wake_late_ns = 0;
   TickInput input;
   TickOutput output;
+
+  static LoggedTick of(const TickRecord& record, bool non_rt);
 };
 
 /// Writes in an ordinary thread. A full disk ends the log, never the run.
 class TickLogWriter {
  public:
   static model::Result<TickLogWriter> create(const std::string& path, const LogHeader& header);
-  void add(const TickRecord& record);
+  void add(const TickRecord& record) { add(LoggedTick::of(record, non_rt_)); }
+  void add(const LoggedTick& tick);
+  /// After the ticks that the header counts: a part of the recording.
+  void append(const std::string& bytes);
   /// Closes the file. An error sentence if not everything reached the disk, else empty.
   std::string close();
 
@@ -55,6 +58,8 @@ class TickLogWriter {
   };
   TickLogWriter(std::string path, std::FILE* file, bool non_rt)
       : path_(std::move(path)), file_(file), non_rt_(non_rt) {}
+
+  void put(const void* bytes, std::size_t size, const std::string& where);
 
   std::string path_;
   std::unique_ptr<std::FILE, Closer> file_;
@@ -78,6 +83,7 @@ class TickLogReader {
 
   std::unique_ptr<std::FILE, Closer> file_;
   LogHeader header_;
+  std::uint64_t read_ = 0;
   bool truncated_ = false;
 };
 

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "model/fault.h"
@@ -71,6 +72,10 @@ class Device {
   /// What happens to a simulated device while the loop sleeps: one or more periods of physics.
   /// Hardware lives by itself and does nothing here. Not part of the tick's measured time.
   virtual void between_ticks(double elapsed_s) RT_SAFE { (void)elapsed_s; }
+
+  /// System calls that read, permit and write make, by number (sys/syscall.h). The loop's thread may
+  /// make no other: one that is missing here stops the force.
+  virtual std::span<const int> loop_calls() const { return {}; }
 
   /// What lies behind the latched fault, for a person: which part, why, the cure. Empty when there
   /// is no more to say than the fault's own words. Any thread, at any time.

@@ -36,8 +36,8 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
                  "folder of the built page (default: page/ beside this program)");
   CLI::Option* record =
       app.add_option("--record", options.record, "write all frames to this new file");
-  CLI::Option* open =
-      app.add_option("--open", options.open, "replay this recording instead of tactd");
+  CLI::Option* open = app.add_option(
+      "--open", options.open, "replay this recording, or a black box of tactd, instead of tactd");
   app.add_option("--export", options.export_csv,
                  "with --open: write this CSV file (m, s, N, us, as its columns say) and leave")
       ->needs(open);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/crc.hpp>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -13,27 +12,35 @@ namespace {
 
 constexpr std::int64_t kFlush_ns = 1'000'000'000;
 
-template <typename T>
-void append(std::string& out, const T& value) {
-  out.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-std::uint32_t crc_of(const Frame& frame) {
-  boost::crc_32_type crc;
-  crc.process_bytes(&frame, sizeof frame);
-  return crc.checksum();
-}
-
-std::uint32_t crc_of(const Hello& hello, const MeshBytes& mesh) {
-  boost::crc_32_type crc;
-  crc.process_bytes(&hello, sizeof hello);
-  crc.process_bytes(mesh.data(), mesh.size());
-  return crc.checksum();
-}
+using firmware::crc_of;
 
 template <typename T>
 bool read(std::istream& in, T& value) {
   return static_cast<bool>(in.read(reinterpret_cast<char*>(&value), sizeof value));
+}
+
+/// A black box holds a recording behind its ticks: goes there. Empty, or why there is none.
+std::string skip_ticks(std::istream& in, std::uint64_t file_bytes, std::uint64_t& start) {
+  firmware::LogStart log;
+  constexpr std::size_t kVersionAt = sizeof log.magic - 1;
+  const bool is_log = read(in, log) && std::memcmp(log.magic, firmware::kLogMagic, kVersionAt) == 0;
+  in.clear();
+  in.seekg(0);
+  if (!is_log) return {};
+  if (log.magic[kVersionAt] != firmware::kLogMagic[kVersionAt])
+    return fmt::format(
+        "a tick log of version {} cannot be read by this tact-view (version {}); open it with the "
+        "build that made it",
+        log.magic[kVersionAt], firmware::kLogMagic[kVersionAt]);
+  if (log.ticks == 0)
+    return "this tick log holds no pictures, only what a replay needs; tactd --replay computes it "
+           "again, a black box or a recording of tact-view can be shown";
+  if (log.tick_bytes == 0 || log.ticks > file_bytes / log.tick_bytes ||
+      log.header_bytes + log.ticks * log.tick_bytes >= file_bytes)
+    return "this black box is cut off before its pictures; its ticks are read by tactd's build";
+  start = log.header_bytes + log.ticks * log.tick_bytes;
+  in.seekg(static_cast<std::streamoff>(start));
+  return {};
 }
 
 /// Header, scene and meshes. Empty, or why they cannot be used.
@@ -78,26 +85,6 @@ double Recording::length_s() const {
   return static_cast<double>(frames.back().time_ns - frames.front().time_ns) * 1e-9;
 }
 
-std::string recording_start(const Hello& hello, const MeshBytes& mesh) {
-  FileHeader header{.version = kRecordingVersion,
-                    .hello_bytes = sizeof(Hello),
-                    .frame_bytes = sizeof(Frame),
-                    .setup_crc = crc_of(hello, mesh),
-                    .mesh_bytes = mesh.size()};
-  std::memcpy(header.magic, kRecordingMagic, sizeof header.magic);
-  std::string out;
-  append(out, header);
-  append(out, hello);
-  out.append(reinterpret_cast<const char*>(mesh.data()), mesh.size());
-  return out;
-}
-
-std::string recording_frame(const Frame& frame) {
-  std::string out;
-  append(out, FrameRecord{.frame = frame, .crc = crc_of(frame)});
-  return out;
-}
-
 ReadResult read_recording(const std::string& path) {
   ReadResult result;
   std::ifstream in(path, std::ios::binary | std::ios::ate);
@@ -108,10 +95,12 @@ ReadResult read_recording(const std::string& path) {
   const auto file_bytes = static_cast<std::uint64_t>(std::max<std::streamoff>(in.tellg(), 0));
   in.seekg(0);
   Recording& recording = result.recording;
-  result.damage = read_setup(in, file_bytes, recording);
+  std::uint64_t start = 0;
+  result.damage = skip_ticks(in, file_bytes, start);
+  if (result.damage.empty()) result.damage = read_setup(in, file_bytes, recording);
   if (!result.damage.empty()) return result;
 
-  const std::uint64_t start = sizeof(FileHeader) + sizeof(Hello) + recording.mesh.size();
+  start += sizeof(FileHeader) + sizeof(Hello) + recording.mesh.size();
   const std::uint64_t records = (file_bytes - start) / sizeof(FrameRecord);
   const std::uint64_t left_bytes = (file_bytes - start) % sizeof(FrameRecord);
   recording.frames.reserve(records);

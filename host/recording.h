@@ -1,8 +1,7 @@
 // recording.h - a run of tactd in one file, and the last minutes of it in memory.
 //
-// File: FileHeader, Hello, meshes, then one FrameRecord per frame; little-endian, fixed sizes, so a
-// damaged frame costs that frame only. Every part has a CRC-32 (polynomial 0x04C11DB7, as zlib).
-// A damaged or cut-off file gives what is good of it and one sentence about the rest.
+// The file is laid out in firmware/recording_format.h; a black box of tactd holds one, too. A damaged
+// or cut-off file gives what is good of it and one sentence about the rest.
 #pragma once
 
 #include <cstdio>
@@ -11,26 +10,17 @@
 #include <string>
 #include <vector>
 
+#include "firmware/recording_format.h"
 #include "host/telemetry_check.h"
 
 namespace tact::host {
 
-inline constexpr char kRecordingMagic[8] = {'t', 'a', 'c', 't', 'r', 'e', 'c', '\n'};
-inline constexpr std::uint32_t kRecordingVersion = 3;  // 3: energy and RMS of the force
-
-struct FileHeader {
-  char magic[8] = {};
-  std::uint32_t version = 0;
-  std::uint32_t hello_bytes = 0, frame_bytes = 0;
-  std::uint32_t setup_crc = 0;  // of Hello and meshes
-  std::uint64_t mesh_bytes = 0;
-};
-
-struct FrameRecord {
-  Frame frame;
-  std::uint32_t crc = 0;  // of frame
-  std::uint32_t pad = 0;
-};
+using firmware::FileHeader;
+using firmware::FrameRecord;
+using firmware::kRecordingMagic;
+using firmware::kRecordingVersion;
+using firmware::recording_frame;
+using firmware::recording_start;
 
 struct Recording {
   Hello hello;
@@ -39,10 +29,6 @@ struct Recording {
 
   double length_s() const;
 };
-
-/// The bytes that begin a file, and those of one frame.
-std::string recording_start(const Hello& hello, const MeshBytes& mesh);
-std::string recording_frame(const Frame& frame);
 
 struct ReadResult {
   Recording recording;

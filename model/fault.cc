@@ -94,6 +94,21 @@ constexpr std::array kTable{
                "the motors lost their power while armed: the enable line fell, as after a pause of "
                "the heartbeat, or the device switched them off",
                "find out why (late ticks, enable line, supply), then reset and arm"},
+    FaultEntry{Fault::kLoopStalled, "loop stalled",
+               "no tick for 20 periods, 250 ms without hard real time: the loop hangs, or has lost "
+               "its core",
+               "free the loop's core of other work, then start tactd again; if it repeats, report "
+               "it with the black box"},
+    FaultEntry{
+        Fault::kDeviceStalled, "device stalled",
+        "a call to the device did not come back for 20 periods, 250 ms without hard real time",
+        "check power, cable and driver of the device (dmesg), then start tactd again"},
+    FaultEntry{Fault::kLoopRanAway, "loop ran away",
+               "a real-time thread kept its core for 50 ms without sleeping",
+               "report it with the black box, then start tactd again"},
+    FaultEntry{Fault::kForbiddenCall, "forbidden call",
+               "the loop made a system call that its device does not list",
+               "report it with the black box; --no-seccomp runs without this check"},
     FaultEntry{Fault::kEnergyOverdrawn, "energy overdrawn",
                "the device gave more energy to the hand than limits.energy_J: the tool jumped, or "
                "the loop paused, under force",

@@ -46,6 +46,10 @@ enum class Fault : std::uint16_t {
   kHomingLost = 117,
   kForceOff = 118,
   kPowerLost = 119,
+  kLoopStalled = 120,
+  kDeviceStalled = 121,
+  kLoopRanAway = 122,
+  kForbiddenCall = 123,
   kEnergyOverdrawn = 130,
   kPowerExceeded = 131,
 };

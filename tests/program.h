@@ -14,10 +14,9 @@ struct Outcome {
   std::string output;  // standard output and standard error together
 };
 
-/// `arguments` go through the shell.
-inline Outcome run_program(const std::string& name, const std::string& arguments) {
-  const std::string command = std::string(TACT_BINARY_DIR) + "/" + name + " " + arguments + " 2>&1";
-  std::FILE* pipe = popen(command.c_str(), "r");
+/// Any command of the shell.
+inline Outcome run_command(const std::string& command) {
+  std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
   Outcome outcome;
   std::array<char, 4096> part{};
   while (std::fgets(part.data(), static_cast<int>(part.size()), pipe) != nullptr)
@@ -25,6 +24,11 @@ inline Outcome run_program(const std::string& name, const std::string& arguments
   const int ended = pclose(pipe);
   outcome.status = WIFEXITED(ended) ? WEXITSTATUS(ended) : -1;
   return outcome;
+}
+
+/// `arguments` go through the shell.
+inline Outcome run_program(const std::string& name, const std::string& arguments) {
+  return run_command(std::string(TACT_BINARY_DIR) + "/" + name + " " + arguments);
 }
 
 }  // namespace tact::tests

@@ -52,9 +52,11 @@ TEST_F(RtLoopTest, ADeviceThatWakesSlowlyIsNotLost) {
 TEST_F(RtLoopTest, LetsGoWhateverEndsTheLoop) {
   press();
   EXPECT_GT(device.last.force_N.z, 0.05);
+  EXPECT_TRUE(loop.progress().running());
   requests.stop.store(true);
   loop.run();
   EXPECT_EQ(device.last, Wrench{});
+  EXPECT_FALSE(loop.progress().running()) << "the watch has nothing left to watch";
 }
 
 TEST_F(RtLoopTest, ALateTickSkipsWholePeriodsAndNeverShiftsTheGrid) {

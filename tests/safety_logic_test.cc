@@ -224,6 +224,23 @@ TEST(SimLines, AreLostForGoodWithTheirChip) {
   EXPECT_NE(lines.trouble().find("gpiodetect"), std::string::npos);
 }
 
+TEST(SimLines, OnceDroppedByTheWatchStayLowWhateverTheLoopWrites) {
+  SimLines lines;
+  std::int64_t now_ns = 0;
+  const auto tick = [&] {
+    lines.read(now_ns += kMs);
+    lines.write(kHealthy);
+  };
+  for (int i = 0; i < 150; ++i) tick();
+  ASSERT_TRUE(lines.enabled() && lines.outputs().enable);
+  lines.drop();
+  EXPECT_FALSE(lines.enabled() || lines.outputs().enable || lines.outputs().heartbeat) << "at once";
+  for (int i = 0; i < 300; ++i) {
+    tick();
+    ASSERT_FALSE(lines.enabled() || lines.outputs().enable || lines.outputs().heartbeat);
+  }
+}
+
 TEST(SimLines, LeaveTheHeapAlone) {
   SimLines lines;
   const tests::NoAlloc guard;

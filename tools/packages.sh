@@ -43,7 +43,7 @@ need_packages() {
 
 # What it takes to build the programs, and the page of the viewer.
 BUILD_PACKAGES=(g++ cmake ninja-build ca-certificates libfmt-dev libcli11-dev
-  nlohmann-json3-dev libtomlplusplus-dev libboost-dev libssl-dev libusb-1.0-0-dev libgpiod-dev)
+  nlohmann-json3-dev libtomlplusplus-dev libboost-dev libssl-dev libusb-1.0-0-dev libgpiod-dev libseccomp-dev)
 # What the measuring tools call or link besides.
 TOOL_PACKAGES=(libeigen3-dev gmsh calculix-ccx gnuplot-nox libmetis-dev libbullet-dev libopencv-core-dev
   libopencv-calib3d-dev rt-tests=cyclictest stress-ng=stress-ng)

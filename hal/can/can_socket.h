@@ -8,6 +8,7 @@
 #pragma once
 
 #include <sys/socket.h>
+#include <sys/syscall.h>
 
 #include <array>
 #include <cstddef>
@@ -27,6 +28,7 @@ struct CanArrival {
 class CanSocket {
  public:
   static constexpr std::size_t kMostReceived = 64, kMostSent = 16;  // in one call
+  static constexpr std::array kLoopCalls{SYS_recvmmsg, SYS_sendmmsg};
 
   /// Takes the file over and asks it for time stamps.
   explicit CanSocket(int fd);

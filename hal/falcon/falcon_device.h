@@ -35,6 +35,7 @@ class FalconDevice final : public Device {
   bool ready() const RT_SAFE override;
   void permit(bool powered) RT_SAFE override { powered_ = powered; }
   Fault write(const Wrench& wrench) RT_SAFE override;
+  std::span<const int> loop_calls() const override { return pipe_->loop_calls(); }
   std::string trouble() const override;
   void stop() override;
 

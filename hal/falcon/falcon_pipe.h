@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "hal/falcon/falcon_packets.h"
 
@@ -43,6 +44,8 @@ class FalconPipe {
   /// One command, at most one system call; false: not taken, the cycle is missed. After any end but
   /// kUnplugged too.
   virtual bool submit(const FalconPacket& command) RT_SAFE = 0;
+  /// The system call of submit, by number; none where it makes none.
+  virtual std::span<const int> loop_calls() const { return {}; }
   /// The newest report, or false when there is none since the last call. Loop thread.
   virtual bool newest(FalconReply& reply) RT_SAFE = 0;
   /// Any thread.

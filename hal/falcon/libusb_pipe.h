@@ -7,6 +7,7 @@
 #pragma once
 
 #include <poll.h>
+#include <sys/syscall.h>
 
 #include <array>
 #include <atomic>
@@ -29,6 +30,10 @@ class LibusbPipe final : public FalconPipe {
   ~LibusbPipe() override;
 
   bool submit(const FalconPacket& command) RT_SAFE override;
+  std::span<const int> loop_calls() const override {
+    static constexpr std::array kCalls{SYS_write};
+    return kCalls;
+  }
   bool newest(FalconReply& reply) RT_SAFE override { return receiver_.newest(reply); }
   FalconPipeHealth health() const RT_SAFE override { return receiver_.health(); }
   void stop(const FalconPacket& last) override;

@@ -6,6 +6,8 @@
 // thread stays for the commands.
 #pragma once
 
+#include <sys/syscall.h>
+
 #include <array>
 #include <atomic>
 #include <memory>
@@ -25,6 +27,10 @@ class UsbfsPipe final : public FalconPipe {
   ~UsbfsPipe() override;
 
   bool submit(const FalconPacket& command) RT_SAFE override;
+  std::span<const int> loop_calls() const override {
+    static constexpr std::array kCalls{SYS_ioctl};
+    return kCalls;
+  }
   bool newest(FalconReply& reply) RT_SAFE override { return receiver_.newest(reply); }
   FalconPipeHealth health() const RT_SAFE override { return receiver_.health(); }
   void stop(const FalconPacket& last) override;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <gpiod.h>
+#include <sys/syscall.h>
 
 #include <array>
 #include <atomic>
@@ -94,14 +95,26 @@ class GpioLines final : public SafetyLines {
   Fault write(const LinesTick& tick) RT_SAFE override {
     const SafetyOutputs outputs = logic_.drive(tick);
     Values values{};
-    place(values, lines_.enable, outputs.enable);
-    place(values, lines_.heartbeat, outputs.heartbeat);
+    place(values, lines_.enable, outputs.enable && !dropped());
+    place(values, lines_.heartbeat, outputs.heartbeat && !dropped());
     place(values, lines_.led, outputs.led);
     if (!lost() && !lines_.outputs.empty() && !set_levels(lines_.outputs.bulk(), values)) lose();
     return lost() ? Fault::kLinesLost : Fault::kNone;
   }
 
-  bool enabled() const RT_SAFE override { return !lost() && logic_.enabled(); }
+  bool enabled() const RT_SAFE override { return !lost() && !dropped() && logic_.enabled(); }
+
+  // libgpiod keeps the last level of each line in plain memory that nobody reads: two threads here
+  // disturb no more than that.
+  void drop() RT_SAFE override {
+    dropped_.store(true, std::memory_order_relaxed);
+    if (!lost() && !lines_.outputs.empty()) set_levels(lines_.outputs.bulk(), {});
+  }
+
+  std::span<const int> loop_calls() const override {
+    static constexpr std::array kCalls{SYS_ioctl};
+    return kCalls;
+  }
 
   void scope(bool up) RT_SAFE override {
     if (!lost() && !lines_.scope.empty()) set_levels(lines_.scope.bulk(), {up ? 1 : 0});
@@ -122,6 +135,7 @@ class GpioLines final : public SafetyLines {
   }
   bool lost() const RT_SAFE { return lost_.load(std::memory_order_relaxed); }
   void lose() RT_SAFE { lost_.store(true, std::memory_order_relaxed); }
+  bool dropped() const RT_SAFE { return dropped_.load(std::memory_order_relaxed); }
 
   void release() {
     if (chip_ == nullptr) return;
@@ -134,7 +148,7 @@ class GpioLines final : public SafetyLines {
   ChipHandle chip_;
   Groups lines_;
   SafetyLogic logic_;
-  std::atomic<bool> lost_{false};
+  std::atomic<bool> lost_{false}, dropped_{false};
 };
 
 struct NamedOffset {

@@ -45,6 +45,7 @@ class OdriveDelta final : public Device {
     return phase_ == Phase::kReady && permitted_ && latch_.fault() == Fault::kNone;
   }
   Fault write(const Wrench& wrench) RT_SAFE override;
+  std::span<const int> loop_calls() const override { return CanSocket::kLoopCalls; }
   std::string trouble() const override;
   void stop() override;
 

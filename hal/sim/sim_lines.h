@@ -35,7 +35,8 @@ class SimLines final : public SafetyLines {
     outputs_ = logic_.drive(tick);
     return model::Fault::kNone;
   }
-  bool enabled() const RT_SAFE override { return !lost_ && logic_.enabled(); }
+  bool enabled() const RT_SAFE override { return !lost_ && !dropped_ && logic_.enabled(); }
+  void drop() RT_SAFE override { dropped_ = true; }
   void scope(bool up) RT_SAFE override { scope_ = up; }
   std::string trouble() const override {
     return words(lost_ ? LinesCause::kChipLost : logic_.cause());
@@ -43,14 +44,14 @@ class SimLines final : public SafetyLines {
   void stop() override { outputs_ = {}, lost_ = true; }
 
   Inputs& inputs() { return inputs_; }
-  const SafetyOutputs& outputs() const { return outputs_; }
+  SafetyOutputs outputs() const { return dropped_ ? SafetyOutputs{} : outputs_; }
   bool scope_is_up() const { return scope_; }
 
  private:
   Inputs inputs_;
   SafetyLogic logic_;
   SafetyOutputs outputs_;
-  std::atomic<bool> lost_{false};
+  std::atomic<bool> lost_{false}, dropped_{false};
   bool scope_ = false;
 };
 

@@ -100,7 +100,7 @@ Result<JitterResult> Run::run() {
   use_small_thread_stacks();
   rt_.core = options_.core;
   process_.emplace(result_.shortfalls);
-  for (Shortfall& s : probe_rt_thread(rt_)) result_.shortfalls.push_back(std::move(s));
+  for (Shortfall& s : probe_rt_threads(rt_)) result_.shortfalls.push_back(std::move(s));
   result_.non_rt = !result_.shortfalls.empty();
   result_.core = choose_core(rt_);
   result_.priority = rt_.priority;

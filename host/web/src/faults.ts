@@ -176,6 +176,26 @@ export const kFaults: Readonly<Record<number, Fault>> = {
       "the motors lost their power while armed: the enable line fell, as after a pause of the heartbeat, or the device switched them off",
     cure: "find out why (late ticks, enable line, supply), then reset and arm",
   },
+  120: {
+    name: "loop stalled",
+    cause: "no tick for 20 periods, 250 ms without hard real time: the loop hangs, or has lost its core",
+    cure: "free the loop's core of other work, then start tactd again; if it repeats, report it with the black box",
+  },
+  121: {
+    name: "device stalled",
+    cause: "a call to the device did not come back for 20 periods, 250 ms without hard real time",
+    cure: "check power, cable and driver of the device (dmesg), then start tactd again",
+  },
+  122: {
+    name: "loop ran away",
+    cause: "a real-time thread kept its core for 50 ms without sleeping",
+    cure: "report it with the black box, then start tactd again",
+  },
+  123: {
+    name: "forbidden call",
+    cause: "the loop made a system call that its device does not list",
+    cure: "report it with the black box; --no-seccomp runs without this check",
+  },
   130: {
     name: "energy overdrawn",
     cause:

@@ -30,6 +30,12 @@ CASES = [
     fault("hog-fifo-95-40-ms", "a long loss of the CPU to a higher priority stops the force for good",
           hog(40),
           Latches("loop late", detect_ms=60), (checks.hard_real_time,)),
+    fault("loop-held-60-ms", "a loop that does not come back from a call is stopped by the watch above it",
+          # strace holds it inside its sleep, above everything but the watch
+          "held=$(grep -ls tact-loop /proc/$tactd/task/*/comm); held=${held%/comm}\n"
+          "inject timeout 1 chrt -f 84 strace -qq -o /dev/null -p ${held##*/} "
+          "-e inject=clock_nanosleep:delay_exit=60000:when=1",
+          Latches("loop stalled", detect_ms=150), (checks.hard_real_time,)),
     fault("hog-cpu", "ordinary load takes nothing from the loop",
           "inject true; stress-ng -q --seed 1 --cpu 1 --switch 1 --timeout 1s",
           RidesThrough(), UNMOVED),

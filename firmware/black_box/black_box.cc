@@ -1,0 +1,76 @@
+#include "firmware/black_box/black_box.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace tact::firmware {
+
+BlackBox::BlackBox(BlackBoxRun run, double rate_Hz, double frame_rate_Hz)
+    : run_(std::move(run)),
+      ticks_(static_cast<std::size_t>(kKeep_s * rate_Hz)),
+      frames_(static_cast<std::size_t>(kKeep_s * frame_rate_Hz)),
+      ticks_after_(static_cast<std::uint64_t>(kAfter_s * rate_Hz)) {}
+
+BlackBox::~BlackBox() {
+  finish();
+  if (run_.mesh_fd >= 0) close(run_.mesh_fd);
+}
+
+void BlackBox::add(const TickRecord& record) {
+  ticks_.add(LoggedTick::of(record, run_.header.non_rt != 0));
+  if (to_wait_ > 0) --to_wait_;
+  const Fault fault = record.output.fault;
+  if (fault != before_ && fault != Fault::kNone && waiting_ == Fault::kNone) {
+    waiting_ = fault;
+    to_wait_ = ticks_after_;
+  }
+  before_ = fault;
+}
+
+void BlackBox::stands(Fault fault) {
+  if (fault == Fault::kNone || before_ != Fault::kNone) return;
+  before_ = waiting_ = fault;
+  to_wait_ = 0;
+}
+
+void BlackBox::work() {
+  if (waiting_ == Fault::kNone || to_wait_ > 0 || writing_.load()) return;
+  if (writer_.joinable()) writer_.join();
+  writing_.store(true);
+  writer_ = std::thread([this, kept = Kept{waiting_, ticks_.all(), frames_.all()}] {
+    write(kept);
+    writing_.store(false);
+  });
+  waiting_ = Fault::kNone;
+}
+
+void BlackBox::finish() {
+  if (writer_.joinable()) writer_.join();
+  to_wait_ = 0;
+  work();
+  if (writer_.joinable()) writer_.join();
+}
+
+void BlackBox::write(const Kept& kept) {
+  const auto path = write_black_box(run_, kept);
+  const std::lock_guard lock(told_mutex_);
+  if (!path) {
+    news_.push_back("black box: " + path.error().sentence);
+    return;
+  }
+  files_.push_back(*path);
+  news_.push_back(fmt::format("black box of fault {}: {}; tact-view --open shows it",
+                              static_cast<int>(kept.fault), *path));
+}
+
+std::vector<std::string> BlackBox::news() {
+  const std::lock_guard lock(told_mutex_);
+  return std::exchange(news_, {});
+}
+
+std::vector<std::string> BlackBox::files() const {
+  const std::lock_guard lock(told_mutex_);
+  return files_;
+}
+
+}  // namespace tact::firmware

@@ -1,0 +1,124 @@
+#include "firmware/black_box/black_box_file.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+
+#include "firmware/telemetry_frame.h"
+
+namespace tact::firmware {
+namespace {
+
+namespace fs = std::filesystem;
+using model::Error;
+using model::Result;
+
+constexpr std::int64_t kEveryTick_ns = 500'000'000;
+
+std::vector<std::byte> read_all(int fd) {
+  const off_t size = lseek(fd, 0, SEEK_END);
+  std::vector<std::byte> bytes(size > 0 ? static_cast<std::size_t>(size) : 0);
+  std::size_t read = 0;
+  while (read < bytes.size()) {
+    const ssize_t n = pread(fd, bytes.data() + read, bytes.size() - read, static_cast<off_t>(read));
+    if (n <= 0) break;
+    read += static_cast<std::size_t>(n);
+  }
+  return bytes;
+}
+
+// Letters, digits and dashes, whatever a scene is called.
+std::string plain(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(),
+      [](unsigned char c) { return std::isalnum(c) == 0 && c != '.' && c != '_'; }, '-');
+  return text;
+}
+
+std::string free_path(const BlackBoxRun& run, Fault fault) {
+  const std::time_t now = std::time(nullptr);
+  const std::string stem =
+      fmt::format("{}/{}-{:%Y%m%dT%H%M%SZ}-{}-{}", run.folder, plain(run.scene_name),
+                  fmt::gmtime(now), static_cast<int>(fault), plain(model::describe(fault).name));
+  std::string path = stem + ".tactlog";
+  for (int n = 2; fs::exists(path); ++n) path = fmt::format("{}-{}.tactlog", stem, n);
+  return path;
+}
+
+}  // namespace
+
+Result<std::string> black_box_folder(const std::string& asked) {
+  const auto variable = [](const char* name) {
+    const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): before threads
+    return fs::path(value == nullptr ? "" : value);
+  };
+  fs::path folder = asked;
+  if (folder.empty()) {
+    fs::path state = variable("XDG_STATE_HOME");
+    if (state.empty() && !variable("HOME").empty()) state = variable("HOME") / ".local" / "state";
+    if (state.empty())
+      return Error{
+          "no folder for the black box: neither XDG_STATE_HOME nor HOME is set; set one, or name a "
+          "folder with --black-box"};
+    folder = state / "tact" / "black-box";
+  }
+  std::error_code failed;
+  fs::path there = fs::absolute(folder, failed);
+  while (!fs::exists(there, failed) && there.has_relative_path()) there = there.parent_path();
+  int wrong = 0;
+  if (access(there.c_str(), W_OK | X_OK) != 0) wrong = errno;
+  if (!fs::is_directory(there, failed)) wrong = ENOTDIR;
+  if (wrong != 0)
+    return Error{
+        fmt::format("{}: {}: no black box can be written there; name a folder of yours "
+                    "with --black-box, or run with --no-black-box",
+                    folder.string(), std::strerror(wrong))};
+  return folder.string();
+}
+
+std::vector<Frame> with_last_ticks(const Kept& kept) {
+  std::vector<Frame> out;
+  if (kept.frames.empty() || kept.ticks.empty()) return kept.frames;
+  const auto tick = [&kept](std::uint64_t number) {
+    return std::lower_bound(kept.ticks.begin(), kept.ticks.end(), number,
+                            [](const LoggedTick& t, std::uint64_t n) { return t.tick < n; });
+  };
+  const std::int64_t from_ns = kept.ticks.back().due_ns - kEveryTick_ns;
+  for (std::size_t i = 0; i < kept.frames.size(); ++i) {
+    const Frame& picture = kept.frames[i];
+    out.push_back(picture);
+    const bool last = i + 1 == kept.frames.size();
+    const auto shown = tick(picture.tick);
+    if (shown == kept.ticks.end() || shown->tick != picture.tick) continue;
+    const auto end = last ? kept.ticks.end() : tick(kept.frames[i + 1].tick);
+    for (auto t = shown + 1; t < end; ++t)
+      if (t->due_ns >= from_ns)
+        out.push_back(frame_of_tick(picture, *t, picture.time_ns + t->due_ns - shown->due_ns));
+  }
+  return out;
+}
+
+Result<std::string> write_black_box(const BlackBoxRun& run, const Kept& kept) {
+  LogHeader header = run.header;
+  header.ticks = kept.ticks.size();
+  std::error_code failed;  // the file then cannot be made either, and says so
+  fs::create_directories(run.folder, failed);
+  const std::string path = free_path(run, kept.fault);
+  auto log = TickLogWriter::create(path, header);
+  if (!log) return log.error();
+  for (const LoggedTick& tick : kept.ticks) log->add(tick);
+  log->append(recording_start(run.hello, read_all(run.mesh_fd)));
+  for (const Frame& frame : with_last_ticks(kept)) log->append(recording_frame(frame));
+  const std::string trouble = log->close();
+  if (!trouble.empty()) return Error{trouble};
+  return path;
+}
+
+}  // namespace tact::firmware

@@ -1,0 +1,35 @@
+// newest_ones.h - the last so many of what was added, oldest first; all room is taken at the start.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace tact::firmware {
+
+template <typename T>
+class NewestOnes {
+ public:
+  explicit NewestOnes(std::size_t most) : items_(std::max<std::size_t>(most, 1)) {}
+
+  void add(const T& item) {
+    items_[next_] = item;
+    next_ = (next_ + 1) % items_.size();
+    size_ = std::min(size_ + 1, items_.size());
+  }
+  std::size_t size() const { return size_; }
+  /// A copy, oldest first.
+  std::vector<T> all() const {
+    std::vector<T> out;
+    out.reserve(size_);
+    for (std::size_t i = 0; i < size_; ++i)
+      out.push_back(items_[(next_ + items_.size() - size_ + i) % items_.size()]);
+    return out;
+  }
+
+ private:
+  std::vector<T> items_;
+  std::size_t next_ = 0, size_ = 0;
+};
+
+}  // namespace tact::firmware

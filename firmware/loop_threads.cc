@@ -1,0 +1,57 @@
+#include "firmware/loop_threads.h"
+
+#include <unistd.h>
+
+#include <csignal>
+
+#include "firmware/loop_parts.h"
+
+namespace tact::firmware {
+namespace {
+
+constexpr std::int64_t kPatience_ns = 2'000'000'000;
+constexpr unsigned kLastWords_s = 2;
+
+}  // namespace
+
+LoopThreads::LoopThreads(const GuardedLoop& guarded)
+    : guarded_(guarded),
+      runaway_(guarded.requests),
+      watch_(StallWatch(guarded.period_ns, guarded.hard_real_time), guarded.loop.progress(),
+             guarded.requests, guarded.lines) {
+  watch_.start(guarded_.rt);
+  keeper_ = std::thread(&LoopThreads::keep, this);
+}
+
+// Outside the loop's thread, whose filter would let a device's stop do nothing.
+void LoopThreads::keep() {
+  std::thread([this] {
+    costs_ = run_as_loop_thread(
+        guarded_.rt, [this] { guarded_.loop.run(); }, guarded_.filter);
+  }).join();
+  watch_.stop();
+  guarded_.device.stop();  // at once: drives watch for their host
+  ended_.store(true);
+}
+
+bool LoopThreads::hangs() {
+  if (!guarded_.requests.stop.load() || !guarded_.loop.progress().running()) return false;
+  const std::int64_t now_ns = MonotonicClock().now_ns();
+  if (asked_ns_ == 0) asked_ns_ = now_ns;
+  return now_ns - asked_ns_ > kPatience_ns;
+}
+
+void LoopThreads::join() {
+  if (keeper_.joinable()) keeper_.join();
+}
+
+// The device may be in the middle of a call that hangs, so its stop may hang, too: SIGALRM ends that.
+void LoopThreads::leave_behind(int status) {
+  guarded_.lines.drop();
+  std::signal(SIGALRM, [](int) { _exit(1); });
+  alarm(kLastWords_s);
+  guarded_.device.stop();
+  _exit(status);
+}
+
+}  // namespace tact::firmware

@@ -1,0 +1,61 @@
+// loop_threads.h - the loop with the threads around it, from its first tick to the device's rest.
+//
+//     tact-loop    the loop behind its call filter (watch/call_filter.h)
+//     tact-watch   above it (watch/loop_watch.h)
+//     keeper       starts the loop; stops the device as soon as it has ended
+//     main         signals, status line (Session::watch)
+//
+// A loop that does not end when it is asked to is left behind: the process ends without it.
+#pragma once
+
+#include <optional>
+
+#include "firmware/report.h"
+#include "firmware/watch/call_filter.h"
+#include "firmware/watch/loop_watch.h"
+#include "firmware/watch/runaway.h"
+
+namespace tact::firmware {
+
+struct GuardedLoop {
+  RtLoop& loop;
+  hal::Device& device;
+  hal::SafetyLines& lines;
+  Requests& requests;
+  CallFilter* filter = nullptr;  // none: any call is allowed
+  RtSettings rt;
+  std::int64_t period_ns = 0;
+  bool hard_real_time = false;
+};
+
+class LoopThreads {
+ public:
+  explicit LoopThreads(const GuardedLoop& guarded);
+  ~LoopThreads() { join(); }
+  LoopThreads(const LoopThreads&) = delete;
+  LoopThreads& operator=(const LoopThreads&) = delete;
+
+  bool ended() const { return ended_.load(); }
+  /// Asked to stop, and 2 s later still not at its end. Call a few times a second.
+  bool hangs();
+  /// After ended().
+  void join();
+  /// After hangs(): lines low, zero force if the device still answers, and out. The kernel closes
+  /// what is open; drives with a watchdog let go when they hear nothing.
+  [[noreturn]] void leave_behind(int status);
+  /// After join().
+  const ThreadCosts& costs() const { return costs_; }
+
+ private:
+  void keep();
+
+  GuardedLoop guarded_;
+  RunawayGuard runaway_;
+  LoopWatch watch_;
+  std::atomic<bool> ended_{false};
+  std::int64_t asked_ns_ = 0;  // when the stop request was first seen; 0: not yet
+  ThreadCosts costs_;
+  std::thread keeper_;
+};
+
+}  // namespace tact::firmware

@@ -1,0 +1,140 @@
+#include "firmware/watch/call_filter.h"
+
+#include <fmt/format.h>
+#include <linux/futex.h>
+#include <sched.h>
+#include <seccomp.h>
+#include <sys/syscall.h>
+#include <ucontext.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <thread>
+
+#include "firmware/alloc_counter.h"
+
+namespace tact::firmware {
+namespace {
+
+using model::Error;
+using model::Result;
+
+// Sleep, clock, return from a signal handler; then what glibc needs to end a thread.
+constexpr std::array kEveryLoop{
+    SYS_clock_nanosleep, SYS_clock_gettime, SYS_restart_syscall, SYS_rt_sigreturn,
+    SYS_rt_sigprocmask,  SYS_getrusage,     SYS_madvise,         SYS_exit};
+
+std::atomic<Requests*> guarded{nullptr};
+std::atomic<int> refused{-1};  // number of the first refused call
+thread_local bool in_loop = false;
+
+// What the caller of the refused call gets.
+[[maybe_unused]] constexpr bool kAnswers =
+#if defined(__x86_64__) || defined(__aarch64__)
+    true;
+#else
+    false;
+#endif
+void answer([[maybe_unused]] ucontext_t& context, [[maybe_unused]] long long result) {
+#if defined(__x86_64__)
+  context.uc_mcontext.gregs[REG_RAX] = result;
+#elif defined(__aarch64__)
+  context.uc_mcontext.regs[0] = static_cast<unsigned long long>(result);
+#endif
+}
+
+// In the thread that called, lock-free stores only. A wait for a lock is answered with "try again":
+// glibc takes any other error for broken memory.
+void on_refused(int, siginfo_t* info, void* context) {
+  answer(*static_cast<ucontext_t*>(context), info->si_syscall == SYS_futex ? -EAGAIN : -EPERM);
+  Requests* requests = guarded.load();
+  if (requests == nullptr || !in_loop) return;
+  int none = -1;
+  refused.compare_exchange_strong(none, info->si_syscall);
+  requests->trip(Fault::kForbiddenCall);
+}
+
+struct Release {
+  void operator()(scmp_filter_ctx context) const { seccomp_release(context); }
+};
+using Context = std::unique_ptr<void, Release>;
+
+bool allow(void* filter, std::span<const int> calls) {
+  for (const int call : calls) {
+    const int failed = seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 0);
+    if (failed != 0 && failed != -EEXIST) return false;
+  }
+  return true;
+}
+
+bool allow_with(void* filter, int call, unsigned argument, scmp_datum_t mask, scmp_datum_t value) {
+  const scmp_arg_cmp only{
+      .arg = argument, .op = SCMP_CMP_MASKED_EQ, .datum_a = mask, .datum_b = value};
+  return seccomp_rule_add_array(filter, SCMP_ACT_ALLOW, call, 1, &only) == 0;
+}
+
+Error no_filter(const char* why) {
+  return Error{fmt::format(
+      "the loop's system calls are not filtered: {}; --no-seccomp says that this is meant", why)};
+}
+
+class Filter final : public CallFilter {
+ public:
+  Filter(Context context, Requests& requests) : context_(std::move(context)) {
+    refused.store(-1);
+    guarded.store(&requests);
+    struct sigaction action {};
+    action.sa_sigaction = on_refused;
+    action.sa_flags = SA_SIGINFO;
+    sigaction(SIGSYS, &action, nullptr);
+  }
+  ~Filter() override { guarded.store(nullptr); }
+
+  int enter_thread() override {
+    in_loop = true;
+    return -seccomp_load(context_.get());
+  }
+  void leave_loop() override { in_loop = false; }
+
+ private:
+  Context context_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<CallFilter>> CallFilter::make(std::span<const int> of_device,
+                                                     std::span<const int> of_lines,
+                                                     Requests& requests) {
+  if (!kAnswers) return no_filter("it is not made for this processor");
+  if (!can_count_heap_calls()) return no_filter("a sanitizer makes calls of its own");
+  Context context(seccomp_init(SCMP_ACT_TRAP));
+  constexpr scmp_datum_t kWhole = ~scmp_datum_t{0},
+                         kCommand = static_cast<unsigned>(FUTEX_CMD_MASK);
+  std::array<int, kEveryLoop.size()> every{};
+  for (std::size_t i = 0; i < every.size(); ++i) every[i] = static_cast<int>(kEveryLoop[i]);
+  const bool good = context != nullptr && allow(context.get(), every) &&
+                    allow(context.get(), of_device) && allow(context.get(), of_lines) &&
+                    allow_with(context.get(), SYS_futex, 1, kCommand, FUTEX_WAKE) &&
+                    allow_with(context.get(), SYS_sched_setscheduler, 1, kWhole, SCHED_OTHER);
+  if (!good) return no_filter("libseccomp cannot make it");
+  std::unique_ptr<CallFilter> filter(new Filter(std::move(context), requests));
+  int refused_by_kernel = 0;  // in a thread that ends at once: nothing takes a filter back
+  std::thread([&] { refused_by_kernel = filter->enter_thread(); }).join();
+  if (refused_by_kernel != 0) return no_filter(std::strerror(refused_by_kernel));
+  return filter;
+}
+
+std::string refused_call() {
+  const int call = refused.load();
+  if (call < 0) return {};
+  char* name = seccomp_syscall_resolve_num_arch(SCMP_ARCH_NATIVE, call);
+  std::string text =
+      name == nullptr ? fmt::format("system call {}", call) : fmt::format("{}({})", name, call);
+  std::free(name);  // NOLINT(cppcoreguidelines-no-malloc): libseccomp's
+  return text;
+}
+
+}  // namespace tact::firmware

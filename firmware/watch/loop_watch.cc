@@ -1,0 +1,43 @@
+#include "firmware/watch/loop_watch.h"
+
+#include <pthread.h>
+
+namespace tact::firmware {
+
+void LoopWatch::start(const RtSettings& loop) {
+  thread_ = std::thread([this, loop] {
+    pthread_setname_np(pthread_self(), "tact-watch");
+    std::vector<Shortfall> known;
+    enter_watch_thread(loop, known);
+    run();
+    leave_rt_thread();
+  });
+}
+
+void LoopWatch::stop() {
+  ending_.store(true, std::memory_order_relaxed);
+  if (thread_.joinable()) thread_.join();
+}
+
+void LoopWatch::run() RT_SAFE {
+  while (!ending_.load(std::memory_order_relaxed)) {
+    clock_.sleep_until_ns(next_ns(clock_.now_ns()));
+    check();
+  }
+}
+
+void LoopWatch::check() RT_SAFE {
+  const Fault found = stall_.step(progress_);
+  if (found != Fault::kNone) requests_.trip(found);
+  if (requests_.fault.load(std::memory_order_relaxed) != Fault::kNone) lines_.drop();
+}
+
+// On one core the watch would else delay the loop's wake-up, each time by its own.
+std::int64_t LoopWatch::next_ns(std::int64_t now_ns) const RT_SAFE {
+  const std::int64_t check_ns = stall_.check_ns();
+  const std::int64_t grid_ns = progress_.grid_ns() + stall_.period_ns() / 2;
+  if (progress_.grid_ns() == 0 || now_ns < grid_ns) return now_ns + check_ns;
+  return grid_ns + ((now_ns - grid_ns) / check_ns + 1) * check_ns;
+}
+
+}  // namespace tact::firmware

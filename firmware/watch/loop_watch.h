@@ -1,0 +1,50 @@
+// loop_watch.h - the thread above the loop: when the loop cannot stop the force, it does.
+//
+// It wakes every 5 periods, half a period away from the loop's own grid, above the loop's priority
+// and on another core where there is one. When the loop stalls, hangs in a call or runs away
+// (runaway.h), or a call of it was refused (call_filter.h):
+//
+//     the fault is set for the loop   zero force in the first tick that comes, latched until the end
+//     enable and heartbeat drop       by this thread itself, at this check and every one after
+//
+// It cannot write to the device: a call of the loop may be under way there. Without an enable line
+// the drives' own watchdogs have to act. No lock, no heap: only Progress, Requests and the lines.
+#pragma once
+
+#include <thread>
+
+#include "firmware/clock.h"
+#include "firmware/rt_loop.h"
+#include "firmware/rt_setup.h"
+#include "firmware/watch/stall_watch.h"
+
+namespace tact::firmware {
+
+class LoopWatch {
+ public:
+  LoopWatch(const StallWatch& stall, const Progress& progress, Requests& requests,
+            hal::SafetyLines& lines)
+      : stall_(stall), progress_(progress), requests_(requests), lines_(lines) {}
+  ~LoopWatch() { stop(); }
+  LoopWatch(const LoopWatch&) = delete;
+  LoopWatch& operator=(const LoopWatch&) = delete;
+
+  void start(const RtSettings& loop);
+  void stop();
+  /// One check, at any time.
+  void check() RT_SAFE;
+
+ private:
+  void run() RT_SAFE;
+  std::int64_t next_ns(std::int64_t now_ns) const RT_SAFE;
+
+  StallWatch stall_;
+  const Progress& progress_;
+  Requests& requests_;
+  hal::SafetyLines& lines_;
+  MonotonicClock clock_;
+  std::atomic<bool> ending_{false};
+  std::thread thread_;
+};
+
+}  // namespace tact::firmware

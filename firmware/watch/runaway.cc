@@ -1,0 +1,60 @@
+#include "firmware/watch/runaway.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+
+namespace tact::firmware {
+namespace {
+
+std::atomic<Requests*> guarded{nullptr};
+static_assert(std::atomic<Requests*>::is_always_lock_free);
+
+// In whatever thread; lock-free stores only. A loop that does not sleep must end: nothing else
+// would give its core back.
+void on_runaway(int) {
+  Requests* requests = guarded.load();
+  if (requests == nullptr) return;
+  requests->trip(Fault::kLoopRanAway);
+  requests->stop.store(true);
+}
+
+}  // namespace
+
+std::optional<Shortfall> lift_rttime_limit() {
+  rlimit limit{};
+  getrlimit(RLIMIT_RTTIME, &limit);
+  if (limit.rlim_cur == RLIM_INFINITY && limit.rlim_max == RLIM_INFINITY) return std::nullopt;
+  const rlimit none{.rlim_cur = RLIM_INFINITY, .rlim_max = RLIM_INFINITY};
+  if (setrlimit(RLIMIT_RTTIME, &none) == 0) return std::nullopt;
+  const rlimit most{.rlim_cur = limit.rlim_max, .rlim_max = limit.rlim_max};
+  setrlimit(RLIMIT_RTTIME, &most);
+  if (limit.rlim_max == RLIM_INFINITY) return std::nullopt;
+  return Shortfall{fmt::format(
+      "the kernel kills a real-time thread of this session after {} us without a sleep "
+      "(RLIMIT_RTTIME), without a word; start tactd after ulimit -R unlimited, or mend rttime in "
+      "/etc/security/limits.d/",
+      limit.rlim_max)};
+}
+
+RunawayGuard::RunawayGuard(Requests& requests, rlim_t longest_us) {
+  guarded.store(&requests);
+  struct sigaction action {};
+  action.sa_handler = on_runaway;
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGXCPU, &action, nullptr);
+  getrlimit(RLIMIT_RTTIME, &before_);
+  const rlimit ours{.rlim_cur = std::min(longest_us, before_.rlim_max),
+                    .rlim_max = before_.rlim_max};
+  setrlimit(RLIMIT_RTTIME, &ours);
+}
+
+// The handler stays: a signal that is still on its way must not end the process.
+RunawayGuard::~RunawayGuard() {
+  setrlimit(RLIMIT_RTTIME, &before_);
+  guarded.store(nullptr);
+}
+
+}  // namespace tact::firmware

@@ -1,0 +1,259 @@
+// The last seconds before a fault: what is kept, what reaches the disk, what a person then sees.
+#include "firmware/black_box/black_box.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "firmware/telemetry_frame.h"
+#include "host/recording.h"
+#include "tests/program.h"
+#include "tests/test_scene.h"
+
+namespace tact::firmware {
+namespace {
+
+namespace fs = std::filesystem;
+
+class BlackBoxTest : public testing::Test {
+ protected:
+  BlackBoxTest()
+      : folder(testing::TempDir() + "tact-black-box-" + std::to_string(getpid()) + "-" +
+               testing::UnitTest::GetInstance()->current_test_info()->name()) {
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+  }
+  ~BlackBoxTest() override { fs::remove_all(folder); }
+
+  std::unique_ptr<BlackBox> make() const {
+    const auto tissue = std::move(*model::make_tissue(scene));
+    BlackBoxRun run{.folder = folder + "/kept",
+                    .scene_name = "plate / 2",
+                    .header = {},
+                    .hello = make_hello(scene, *tissue, {.device = {}, .hand_socket = ""}),
+                    .mesh_fd = *make_mesh_file(scene)};
+    run.header.period_ns = 1'000'000;
+    return std::make_unique<BlackBox>(std::move(run), 1000.0, 50.0);
+  }
+  // Ticks as the telemetry thread gives them, a frame every 20.
+  void ticks(BlackBox& box, int n, Fault fault = Fault::kNone) {
+    for (int i = 0; i < n; ++i, ++tick) {
+      TickRecord record;
+      record.tick = tick;
+      record.due_ns = static_cast<std::int64_t>(tick) * 1'000'000;
+      record.output.fault = fault;
+      record.output.state = fault == Fault::kNone ? State::kArmed : State::kStopped;
+      record.output.written.force_N.z =
+          fault == Fault::kNone ? 0.001 * static_cast<double>(tick) : 0;
+      box.add(record);
+      if (tick % 20 != 0) continue;
+      Frame frame;
+      frame.tick = tick;
+      frame.time_ns = record.due_ns;
+      frame.state = record.output.state;
+      frame.fault = static_cast<std::uint16_t>(fault);
+      box.add(frame);
+      box.work();
+    }
+  }
+  static std::vector<LoggedTick> logged(const std::string& path) {
+    std::vector<LoggedTick> out;
+    auto log = TickLogReader::open(path);
+    EXPECT_TRUE(log);
+    for (LoggedTick one; log && log->next(one);) out.push_back(one);
+    return out;
+  }
+
+  model::Scene scene = tests::make_plate_scene();
+  std::string folder;
+  std::uint64_t tick = 0;
+};
+
+TEST_F(BlackBoxTest, HoldsEveryTickOfTheLastTenSecondsAndAQuarterAfterTheFault) {
+  const auto box = make();
+  ticks(*box, 15'000);
+  EXPECT_TRUE(box->files().empty()) << "no fault, no file";
+  ticks(*box, 1000, Fault::kDeviceLost);
+  box->finish();
+  ASSERT_EQ(box->files().size(), 1u);
+  const auto kept = logged(box->files()[0]);
+  ASSERT_EQ(kept.size(), 10'000u);
+  for (std::size_t i = 1; i < kept.size(); ++i) ASSERT_EQ(kept[i].tick, kept[i - 1].tick + 1);
+  EXPECT_EQ(kept.front().output.written.force_N.z, 0.001 * static_cast<double>(kept.front().tick));
+  EXPECT_GE(kept.back().tick, 15'250u) << "shows the force going";
+  EXPECT_LE(kept.back().tick, 15'280u) << "and no more than that";
+  EXPECT_NE(box->files()[0].find("plate---2-"), std::string::npos) << box->files()[0];
+  EXPECT_NE(box->files()[0].find("-103-device-lost"), std::string::npos) << box->files()[0];
+}
+
+TEST_F(BlackBoxTest, SeveralFaultsOfARunGiveSeveralFilesAndNoneIsWrittenOver) {
+  const auto box = make();
+  for (int round = 0; round < 3; ++round) {
+    ticks(*box, 500);
+    ticks(*box, 400, Fault::kEmergencyStop);
+    box->finish();  // within one second: the same name but for a number
+  }
+  ASSERT_EQ(box->files().size(), 3u);
+  std::size_t before = 0;
+  for (const std::string& path : box->files()) {
+    const auto kept = logged(path);
+    EXPECT_GT(kept.size(), before) << "each holds what came before, too";
+    before = kept.size();
+  }
+  EXPECT_EQ(static_cast<int>(std::distance(fs::directory_iterator(folder + "/kept"), {})), 3);
+}
+
+TEST_F(BlackBoxTest, ALoopThatGivesNoMoreTicksIsNotWaitedFor) {
+  const auto box = make();
+  ticks(*box, 500);
+  box->stands(Fault::kNone);
+  box->work();
+  EXPECT_TRUE(box->files().empty());
+  box->stands(Fault::kLoopStalled);
+  box->work();
+  for (int i = 0; i < 5000 && box->files().empty(); ++i) usleep(1000);
+  ASSERT_EQ(box->files().size(), 1u);
+  EXPECT_EQ(logged(box->files()[0]).size(), 500u);
+  ticks(*box, 500, Fault::kLoopStalled);  // it came back: the same fault is no second one
+  box->finish();
+  EXPECT_EQ(box->files().size(), 1u);
+}
+
+TEST_F(BlackBoxTest, TheViewerShowsItWithEveryTickOfTheLastHalfSecond) {
+  const auto box = make();
+  ticks(*box, 3000);
+  ticks(*box, 300, Fault::kDeviceLost);
+  box->finish();
+  const host::ReadResult read = host::read_recording(box->files().at(0));
+  ASSERT_TRUE(read.usable) << read.damage;
+  EXPECT_EQ(read.damage, "");
+  const auto& frames = read.recording.frames;
+  EXPECT_EQ(read.recording.hello.organ_vertices, scene.organ_mesh.vertex_m.size());
+  std::size_t single = 0;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    ASSERT_GT(frames[i].time_ns, frames[i - 1].time_ns);
+    if (frames[i].tick == frames[i - 1].tick + 1) ++single;
+  }
+  EXPECT_GE(single, 499u);
+  EXPECT_LE(single, 520u);
+  EXPECT_EQ(frames.back().fault, 103);
+  const auto at = std::find_if(frames.begin(), frames.end(),
+                               [](const Frame& frame) { return frame.tick == 2999; });
+  ASSERT_NE(at, frames.end());
+  EXPECT_FLOAT_EQ(at->force_N[2], 2.999f) << "the tick's own force";
+  EXPECT_EQ(at->fault, 0);
+}
+
+TEST_F(BlackBoxTest, AnOrdinaryTickLogIsRefusedByTheViewerWithAReason) {
+  const std::string path = folder + "/run.tactlog";
+  auto log = std::move(*TickLogWriter::create(path, {}));
+  log.add(TickRecord{});
+  ASSERT_EQ(log.close(), "");
+  const host::ReadResult read = host::read_recording(path);
+  EXPECT_FALSE(read.usable);
+  EXPECT_NE(read.damage.find("holds no pictures"), std::string::npos) << read.damage;
+}
+
+TEST_F(BlackBoxTest, ACutOffFileKeepsItsTicksAndSaysThatThePicturesAreMissing) {
+  const auto box = make();
+  ticks(*box, 500);
+  ticks(*box, 300, Fault::kDeviceLost);
+  box->finish();
+  const std::string path = box->files().at(0);
+  fs::resize_file(path, sizeof(LogHeader) + 300 * sizeof(LoggedTick) + 7);
+  EXPECT_EQ(logged(path).size(), 300u);
+  EXPECT_NE(host::read_recording(path).damage.find("cut off"), std::string::npos);
+}
+
+TEST_F(BlackBoxTest, AFullDiskIsToldAndCostsNothingElse) {
+  const auto box = make();
+  ticks(*box, 2000);
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{.rlim_cur = 100'000, .rlim_max = before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);  // as of a disk with so much room
+  ticks(*box, 300, Fault::kDeviceLost);
+  box->finish();
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_TRUE(box->files().empty());
+  auto news = box->news();
+  ASSERT_EQ(news.size(), 1u);
+  EXPECT_NE(news[0].find("what came before is kept"), std::string::npos) << news[0];
+  EXPECT_TRUE(box->news().empty()) << "told once";
+  ticks(*box, 100);
+  ticks(*box, 300, Fault::kEmergencyStop);
+  box->finish();
+  EXPECT_EQ(box->files().size(), 1u) << "the next fault is tried again";
+}
+
+TEST_F(BlackBoxTest, AFolderThatCannotBeWrittenIsRefusedWithItsCure) {
+  std::ofstream(folder + "/file") << "no folder";
+  const auto refused = black_box_folder(folder + "/file");
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().sentence.find("--black-box"), std::string::npos);
+  const auto made = black_box_folder(folder + "/new/one");
+  ASSERT_TRUE(made);
+  EXPECT_FALSE(fs::exists(*made)) << "a run without faults leaves nothing behind";
+  ASSERT_EQ(setenv("XDG_STATE_HOME", folder.c_str(), 1), 0);
+  EXPECT_EQ(*black_box_folder(""), folder + "/tact/black-box");
+  unsetenv("XDG_STATE_HOME");
+}
+
+// tactd itself. strace holds its loop in its sleep, as a driver would that hangs.
+class StalledTactd : public BlackBoxTest {
+ protected:
+  std::string run(const std::string& held_us) const {
+    const std::string script = folder + "/run.sh";
+    std::ofstream(script)
+        << TACT_BINARY_DIR "/tactd " << kLiver << " --no-telemetry --seconds 20 --black-box "
+        << folder << "/kept --json " << folder << "/report.json & tactd=$!\n"
+        << "until loop=$(grep -ls tact-loop /proc/$tactd/task/*/comm); do sleep .05; done\n"
+        << "sleep 1; loop=${loop%/comm}; loop=${loop##*/}\n"
+        << "grep Seccomp: /proc/$tactd/task/$loop/status\n"
+        << "timeout -s INT 6 strace -qq -o /dev/null -p $loop -e "
+           "inject=clock_nanosleep:delay_exit="
+        << held_us << ":when=20 >/dev/null 2>&1 &\n"
+        << "for i in {1..80}; do compgen -G '" << folder
+        << "/kept/*' >/dev/null && break; sleep .1; "
+        << "done\nsleep .5; kill -INT $tactd; wait $tactd; echo ended $?\n";
+    return tests::run_command("bash " + script).output;
+  }
+  static constexpr const char* kLiver = TACT_SOURCE_DIR "/model/scenes/liver.toml";
+};
+
+TEST_F(StalledTactd, StopsNamesTheFaultAndLeavesAFileThatTactViewShows) {
+  const std::string told = run("400000");
+  EXPECT_NE(told.find("ended 1"), std::string::npos) << told;
+  EXPECT_NE(told.find("fault 120, loop stalled"), std::string::npos) << told;
+  std::ifstream file(folder + "/report.json");
+  const auto report = nlohmann::json::parse(file, nullptr, false);
+  ASSERT_FALSE(report.is_discarded()) << told;
+  EXPECT_EQ(report.at("fault").at("number"), 120);
+  EXPECT_EQ(told.find("Seccomp:\t2") != std::string::npos, report.at("call_filter").get<bool>());
+  ASSERT_EQ(report.at("black_boxes").size(), 1u) << told;
+  const std::string kept = report.at("black_boxes")[0];
+  const tests::Outcome shown = tests::run_program(
+      "tact-view", "--open " + kept + " --export " + folder + "/table.csv --json");
+  EXPECT_EQ(shown.status, 0) << shown.output;
+  const tests::Outcome replayed =
+      tests::run_program("tactd", std::string(kLiver) + " --replay " + kept);
+  EXPECT_EQ(replayed.status, 2);
+  EXPECT_NE(replayed.output.find("is a black box"), std::string::npos) << replayed.output;
+}
+
+TEST_F(StalledTactd, EndsEvenIfItsLoopNeverComesBack) {
+  const std::string told = run("60000000");
+  EXPECT_NE(told.find("ended 1"), std::string::npos) << told;
+  EXPECT_NE(told.find("fault 120, loop stalled"), std::string::npos) << told;
+  EXPECT_NE(told.find("the loop does not come back"), std::string::npos) << told;
+  EXPECT_NE(told.find("black box of fault 120"), std::string::npos) << told;
+}
+
+}  // namespace
+}  // namespace tact::firmware

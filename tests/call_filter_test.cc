@@ -1,0 +1,95 @@
+// Which system calls a loop's thread may make, asked of the kernel itself.
+#include "firmware/watch/call_filter.h"
+
+#include <gtest/gtest.h>
+#include <sys/prctl.h>
+
+#include <map>
+#include <mutex>
+
+#include "firmware/alloc_counter.h"
+#include "tests/watched_loop.h"
+
+namespace tact::firmware {
+namespace {
+
+class FilteredLoop : public WatchedLoop {
+ protected:
+  void make(std::span<const int> of_device) {
+    auto made = CallFilter::make(of_device, {}, requests);
+    if (!can_count_heap_calls() || prctl(PR_GET_SECCOMP) < 0)
+      GTEST_SKIP() << "a sanitizer, or a kernel without seccomp";
+    ASSERT_TRUE(made) << made.error().sentence;
+    filter = std::move(*made);
+  }
+  void start_filtered() {
+    start([this] { entered = filter->enter_thread(); }, [this] { filter->leave_loop(); });
+  }
+  // What the tick of that sample told; they are taken out of the ring in one go.
+  Fault fault_of(std::uint64_t sequence) {
+    TickRecord record;
+    while (ring->pop(record)) told[record.input.sample.sequence] = record.output.fault;
+    return told.at(sequence);
+  }
+  std::map<std::uint64_t, Fault> told;
+  std::unique_ptr<CallFilter> filter;
+  int entered = -1;
+};
+
+TEST_F(FilteredLoop, NeedsNoCallThatIsNotListed) {
+  make({});
+  if (filter == nullptr) return;
+  start_filtered();
+  finish();  // the end of its thread included
+  EXPECT_EQ(entered, 0);
+  EXPECT_EQ(requests.fault.load(), Fault::kNone) << refused_call();
+  EXPECT_EQ(refused_call(), "");
+}
+
+TEST_F(FilteredLoop, AForbiddenCallFailsAndStopsTheForceInTheSameTick) {
+  make({});
+  if (filter == nullptr) return;
+  watch.start({});
+  start_filtered();
+  device.calls.store(true);
+  ASSERT_TRUE(soon([this] { return lines.drops.load() > 0; })) << "the watch hears of it, too";
+  finish();
+  EXPECT_EQ(device.answer, -1) << "it did not reach the kernel";
+  EXPECT_EQ(requests.fault.load(), Fault::kForbiddenCall);
+  EXPECT_NE(refused_call().find("getppid"), std::string::npos) << refused_call();
+  EXPECT_EQ(device.last, Wrench{});
+  EXPECT_EQ(fault_of(device.called_at), Fault::kForbiddenCall);
+  EXPECT_EQ(fault_of(device.called_at - 1), Fault::kNone);
+  EXPECT_GT(ask_parent(), 0) << "other threads call what they like";
+}
+
+TEST_F(FilteredLoop, WhatTheDeviceListsPasses) {
+  constexpr std::array kListed{static_cast<int>(SYS_getppid)};
+  make(kListed);
+  if (filter == nullptr) return;
+  start_filtered();
+  device.calls.store(true);
+  ASSERT_TRUE(soon([this] { return !device.calls.load(); }));
+  finish();
+  EXPECT_EQ(device.answer, getppid());
+  EXPECT_EQ(requests.fault.load(), Fault::kNone);
+}
+
+TEST_F(FilteredLoop, ALockThatHadToBeWaitedForIsNoticed) {
+  make({});
+  if (filter == nullptr) return;
+  std::mutex lock;
+  lock.lock();
+  thread = std::thread([&] {
+    entered = filter->enter_thread();
+    const std::lock_guard waits(lock);
+    filter->leave_loop();
+  });
+  EXPECT_TRUE(soon([this] { return requests.fault.load() == Fault::kForbiddenCall; }));
+  lock.unlock();
+  thread.join();
+  EXPECT_NE(refused_call().find("futex"), std::string::npos) << refused_call();
+}
+
+}  // namespace
+}  // namespace tact::firmware
