@@ -1,19 +1,6 @@
 #include "firmware/controller.h"
 
-#include <cmath>
-
 namespace tact::firmware {
-namespace {
-
-bool is_finite(const model::Tool& tool) RT_SAFE {
-  const model::Quat& q = tool.orientation;
-  return model::is_finite(tool.position_m) && model::is_finite(tool.velocity_mps) &&
-         model::is_finite(tool.angular_velocity_radps) && std::isfinite(tool.grip_ratio) &&
-         std::isfinite(q.w) && std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z);
-}
-
-}  // namespace
-
 // A tool that moved unseen starts anew: whatever depth it has by then comes without force.
 void Controller::touch(const TickInput& input) RT_SAFE {
   unseen_ += input.skipped_periods;
@@ -53,9 +40,10 @@ TickOutput Controller::judge(const TickInput& input) RT_SAFE {
   }
 
   const GateVerdict verdict = gate_.judge({.wanted = wanted_,
-                                           .position_m = input.sample.tool.position_m,
+                                           .tool = input.sample.tool,
                                            .fresh = input.sample.fresh,
-                                           .armed = supervisor_.armed()});
+                                           .armed = supervisor_.armed(),
+                                           .skipped_periods = input.skipped_periods});
   supervisor_.trip(verdict.fault);
   Fault limit = verdict.limit;
   for (const model::SphereTouch& touch : contact_.touches())
@@ -65,7 +53,9 @@ TickOutput Controller::judge(const TickInput& input) RT_SAFE {
              .written = verdict.wrench,
              .state = supervisor_.state(),
              .limit = limit,
-             .fault = supervisor_.fault()};
+             .fault = supervisor_.fault(),
+             .given_energy_J = gate_.given_energy_J(),
+             .rms_force_N = gate_.rms_force_N()};
   return newest_;
 }
 

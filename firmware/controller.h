@@ -28,7 +28,9 @@ struct TickOutput {
   Wrench written;  // after the gate
   State state = State::kOff;
   Fault limit = Fault::kNone;
-  Fault fault = Fault::kNone;  // latched
+  Fault fault = Fault::kNone;   // latched
+  double given_energy_J = 0.0;  // by the device since arming, more than it took
+  double rms_force_N = 0.0;     // written, over limits.thermal_time_s
 };
 
 using ShapeSlot = hal::LatestSlot<model::PatchShape>;

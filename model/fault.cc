@@ -29,6 +29,21 @@ constexpr std::array kTable{
     FaultEntry{Fault::kLawSaturated, "law saturated",
                "the tissue is pressed or pulled beyond the law's working range",
                "press less, or give the law more range in the scene"},
+    FaultEntry{
+        Fault::kTooFast, "too fast",
+        "the tool moves faster than limits.speed_mps or turns faster than limits.turn_radps, "
+        "the force fades to zero",
+        "move slower, or raise the limit in the scene"},
+    FaultEntry{Fault::kEnergyLimited, "energy limited",
+               "the device has given its energy budget to the hand; the force is damped",
+               "soften the law, raise rate_Hz or take a device with more damping; a larger "
+               "limits.energy_J lets it shake more"},
+    FaultEntry{Fault::kContinuousLimited, "continuous limited",
+               "the RMS of the force nears limits.continuous_force_N",
+               "press less or rest; the motors bear their peak for a while only"},
+    FaultEntry{Fault::kPowerLimited, "power limited",
+               "force times speed of the tool nears limits.power_W",
+               "let the tool go back slower, or soften the law"},
     FaultEntry{Fault::kInternal, "internal", "a value that cannot occur occurred",
                "report it with the recording; do not use the device until it is explained"},
     FaultEntry{Fault::kForceNotFinite, "force not finite", "the model produced NaN or infinity",
@@ -81,6 +96,14 @@ constexpr std::array kTable{
                "the motors lost their power while armed: the enable line fell, as after a pause of "
                "the heartbeat, or the device switched them off",
                "find out why (late ticks, enable line, supply), then reset and arm"},
+    FaultEntry{Fault::kEnergyOverdrawn, "energy overdrawn",
+               "the device gave more energy to the hand than limits.energy_J: the tool jumped, or "
+               "the loop paused, under force",
+               "check for lost samples and late ticks, then reset and arm"},
+    FaultEntry{Fault::kPowerExceeded, "power exceeded",
+               "the tool sped up so fast under force that its power passed limits.power_W",
+               "hold the tool firmly, then reset and arm; raise limits.power_W if hands move so "
+               "fast"},
 };
 
 }  // namespace

@@ -22,6 +22,10 @@ enum class Fault : std::uint16_t {
   kSlewLimited = 7,
   kRampingUp = 8,
   kLawSaturated = 9,
+  kTooFast = 10,
+  kEnergyLimited = 11,
+  kContinuousLimited = 12,
+  kPowerLimited = 13,
   kInternal = 100,
   kForceNotFinite = 101,
   kSampleNotFinite = 102,
@@ -42,6 +46,8 @@ enum class Fault : std::uint16_t {
   kHomingLost = 117,
   kForceOff = 118,
   kPowerLost = 119,
+  kEnergyOverdrawn = 130,
+  kPowerExceeded = 131,
 };
 
 constexpr bool latches(Fault fault) RT_SAFE { return static_cast<std::uint16_t>(fault) >= 100; }

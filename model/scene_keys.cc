@@ -4,12 +4,12 @@
 
 #include "model/scene_device.h"
 #include "model/scene_laws.h"
+#include "model/scene_limits.h"
 
 namespace tact::model {
 namespace {
 
 constexpr std::size_t kMostStrokes = 64;
-constexpr double kStaleFade_s = 0.010;  // a lost device must fade to zero in this time
 
 void visit_mesh(Keys& k, MeshText& mesh) {
   mesh.place = k.place_of("mesh");
@@ -84,26 +84,6 @@ void visit_hand(Keys& k, SceneText& out) {
   script.home_place = k.place_of("home_m");
 }
 
-void visit_limits(Keys& k, Limits& limits) {
-  k.number("force_N", {0.0, 20.0}, "largest force on the hand", limits.force_N);
-  k.number("torque_Nm", {0.0, 2.0}, "largest torque on the hand", limits.torque_Nm);
-  k.number("slew_N_per_s", {1.0, 1e4}, "largest change of the force", limits.slew_N_per_s);
-  k.number("ramp_s", {0.1, 10.0}, "fade-in of the force after arming", limits.ramp_s);
-  k.number("workspace_radius_m", {0.01, 0.5}, "of the cylinder about the x axis of W",
-           limits.workspace_radius_m);
-  k.number("workspace_half_length_m", {0.01, 0.5}, "of the cylinder, from the origin of W",
-           limits.workspace_half_length_m);
-  // The gate keeps force_N / ramp_s of the slew for its ramp.
-  const double least_N_per_s = limits.force_N / kStaleFade_s + limits.force_N / limits.ramp_s;
-  if (!(limits.slew_N_per_s >= least_N_per_s)) {
-    k.refuse(
-        {"slew_N_per_s", "force_N"},
-        fmt::format("limits.slew_N_per_s = {} is too slow for force_N = {}: a lost device must "
-                    "fade to zero in 10 ms; allowed: {} or more",
-                    limits.slew_N_per_s, limits.force_N, least_N_per_s));
-  }
-}
-
 }  // namespace
 
 void visit_scene(Keys& k, SceneText& out) {
@@ -124,7 +104,7 @@ void visit_scene(Keys& k, SceneText& out) {
             [&](Keys& device) { visit_device(device, scene.device); });
   k.section("hand", "the simulated hand", [&](Keys& hand) { visit_hand(hand, out); });
   k.section("limits", "what the gate lets through",
-            [&](Keys& limits) { visit_limits(limits, scene.limits); });
+            [&](Keys& limits) { visit_limits(limits, scene.rate_Hz, scene.limits); });
   k.section("telemetry", "what the viewer gets", [&](Keys& telemetry) {
     telemetry.number("frame_rate_Hz", {1.0, 240.0}, "frames for the viewer", scene.frame_rate_Hz);
   });

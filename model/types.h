@@ -84,4 +84,14 @@ struct Wrench {
   friend constexpr bool operator==(const Wrench&, const Wrench&) = default;
 };
 
+inline bool is_finite(const Tool& tool) RT_SAFE {
+  const Quat& q = tool.orientation;
+  return is_finite(tool.position_m) && is_finite(tool.velocity_mps) &&
+         is_finite(tool.angular_velocity_radps) && std::isfinite(tool.grip_ratio) &&
+         std::isfinite(q.w) && std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z);
+}
+inline bool is_finite(const Wrench& w) RT_SAFE {
+  return is_finite(w.force_N) && is_finite(w.torque_Nm);
+}
+
 }  // namespace tact::model

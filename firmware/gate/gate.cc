@@ -2,15 +2,50 @@
 
 #include <cmath>
 
+#include "firmware/gate/workspace.h"
+
 namespace tact::firmware {
 namespace {
 
 constexpr double kStaleFade_s = 0.010;
 constexpr double kWorkspaceFade_s = 0.050;
 constexpr std::uint32_t kLostAfter = 20;  // missed samples in a row
+// Room for the tool to speed up while the force falls at its slew.
+constexpr double kPowerAim = 0.75;
 
 Wrench operator*(double share, const Wrench& w) RT_SAFE {
   return {share * w.force_N, share * w.torque_Nm};
+}
+
+double power_W(const Wrench& w, const model::Tool& tool) RT_SAFE {
+  return dot(w.force_N, tool.velocity_mps) + dot(w.torque_Nm, tool.angular_velocity_radps);
+}
+
+/// All fades after the slew stage together change the force by less than the room between the slew
+/// and this, so that the written force keeps |dF| <= slew dt. A slew too slow for its ramp keeps at
+/// least a tenth.
+double slew_step_N(const model::Limits& limits, double force_limit_N, double period_s) {
+  const double step_N = limits.slew_N_per_s * period_s;
+  const double ramp_step_N = force_limit_N * period_s / limits.ramp_s;
+  return std::fmax(step_N - ramp_step_N, 0.1 * step_N);
+}
+
+EnergyTankSettings tank_settings(const model::Limits& limits, double force_limit_N, double lever_m,
+                                 double period_s) {
+  return {.budget_J = limits.energy_J,
+          .recovery_W = limits.recovery_W,
+          .speed_mps = limits.speed_mps,
+          .turn_radps = limits.turn_radps,
+          .force_limit_N = force_limit_N,
+          .lever_m = lever_m,
+          .slew_N_per_s = slew_step_N(limits, force_limit_N, period_s) / period_s,
+          .period_s = period_s};
+}
+
+ThermalLimit thermal_limit(const model::Limits& limits, double peak, double period_s) {
+  const double share =
+      limits.force_N > 0.0 ? std::fmin(limits.continuous_force_N / limits.force_N, 1.0) : 1.0;
+  return {peak, share * peak, period_s / limits.thermal_time_s};
 }
 
 }  // namespace
@@ -26,50 +61,50 @@ model::Limits limits_for(const model::Limits& scene, const hal::DeviceInfo& devi
 }
 
 Gate::Gate(const model::Limits& limits, double period_s, double force_share)
-    : period_s_(period_s),
+    : limits_(limits),
+      period_s_(period_s),
       force_limit_N_(force_share * limits.force_N),
       torque_limit_Nm_(force_share * limits.torque_Nm),
-      workspace_radius_m_(limits.workspace_radius_m),
-      workspace_half_length_m_(limits.workspace_half_length_m),
+      lever_m_(force_limit_N_ > 0.0 ? torque_limit_Nm_ / force_limit_N_ : 0.0),
+      force_step_N_(slew_step_N(limits, force_limit_N_, period_s)),
+      torque_step_Nm_(lever_m_ * force_step_N_),
       fresh_(kStaleFade_s, kStaleFade_s),
       workspace_(kWorkspaceFade_s, kWorkspaceFade_s),
-      ramp_(limits.ramp_s, limits.ramp_s) {
-  // All fades after the slew stage together change the force by less than this per tick, so that
-  // the written force keeps |dF| <= slew dt. A slew too slow for its ramp keeps at least a tenth.
-  const double slew_step_N = limits.slew_N_per_s * period_s;
-  const double ramp_step_N = force_limit_N_ * period_s / limits.ramp_s;
-  force_step_N_ = std::fmax(slew_step_N - ramp_step_N, 0.1 * slew_step_N);
-  torque_step_Nm_ = force_limit_N_ > 0.0 ? force_step_N_ * torque_limit_Nm_ / force_limit_N_ : 0.0;
+      speed_(kWorkspaceFade_s, kWorkspaceFade_s),
+      ramp_(limits.ramp_s, limits.ramp_s),
+      tank_(tank_settings(limits, force_limit_N_, lever_m_, period_s)),
+      warm_force_(thermal_limit(limits, force_limit_N_, period_s)),
+      warm_torque_(thermal_limit(limits, torque_limit_Nm_, period_s)) {
   ramp_.set(0.0);
 }
 
 GateVerdict Gate::judge(const GateInput& input) RT_SAFE {
   GateVerdict verdict{.wrench = input.wanted};
-  if (!is_finite(input.wanted.force_N) || !is_finite(input.wanted.torque_Nm)) {
-    verdict.wrench = {};
-    verdict.fault = Fault::kForceNotFinite;
-    ++counter_[static_cast<std::size_t>(Stage::kFinite)];
-  }
+  check_finite(input, verdict);
   check_fresh(input, verdict);
+  check_energy(input, verdict);
   if (!input.armed || latches(verdict.fault)) {
     note(Stage::kArmed, Fault::kNotArmed, verdict);
-    let_go();
-    verdict.wrench = {};
-    return verdict;
+    return let_go(verdict);
   }
-  const double inside = workspace_.step(inside_workspace(input.position_m), period_s_);
-  if (inside < 1.0) note(Stage::kWorkspace, Fault::kOutsideWorkspace, verdict);
-  verdict.wrench = inside * verdict.wrench;
-  limit(verdict);
-  const double ramp = ramp_.step(true, period_s_);
-  if (ramp < 1.0) note(Stage::kRamp, Fault::kRampingUp, verdict);
-  verdict.wrench = ramp * verdict.wrench;
+  fade_outside(input.tool, verdict);
+  limit(input.tool, verdict);
+  ramp_up(input.tool, verdict);
+  if (latches(verdict.fault)) return let_go(verdict);
+  written_ = verdict.wrench;
   return verdict;
 }
 
 void Gate::note(Stage stage, Fault reason, GateVerdict& verdict) RT_SAFE {
   ++counter_[static_cast<std::size_t>(stage)];
-  verdict.limit = reason;
+  (latches(reason) ? verdict.fault : verdict.limit) = reason;
+}
+
+void Gate::check_finite(const GateInput& input, GateVerdict& verdict) RT_SAFE {
+  if (!is_finite(input.tool)) note(Stage::kFinite, Fault::kSampleNotFinite, verdict);
+  if (is_finite(input.wanted)) return;
+  note(Stage::kFinite, Fault::kForceNotFinite, verdict);
+  verdict.wrench = {};
 }
 
 void Gate::check_fresh(const GateInput& input, GateVerdict& verdict) RT_SAFE {
@@ -81,26 +116,70 @@ void Gate::check_fresh(const GateInput& input, GateVerdict& verdict) RT_SAFE {
   verdict.wrench = level * verdict.wrench;
 }
 
-bool Gate::inside_workspace(const Vec3& p) const RT_SAFE {
-  return std::hypot(p.y, p.z) <= workspace_radius_m_ && std::abs(p.x) <= workspace_half_length_m_;
+// What was written before this tick has done its work by now: its energy and its heat.
+void Gate::check_energy(const GateInput& input, GateVerdict& verdict) RT_SAFE {
+  const double periods = 1.0 + input.skipped_periods;
+  tank_.observe(input.tool, input.fresh && is_finite(input.tool), periods, written_);
+  warm_force_.heat(norm(written_.force_N), periods);
+  warm_torque_.heat(norm(written_.torque_Nm), periods);
+  if (input.armed && tank_.is_overdrawn())
+    note(Stage::kPassivity, Fault::kEnergyOverdrawn, verdict);
 }
 
-void Gate::limit(GateVerdict& verdict) RT_SAFE {
+void Gate::fade_outside(const model::Tool& tool, GateVerdict& verdict) RT_SAFE {
+  const double inside = workspace_.step(is_inside(limits_, tool.position_m), period_s_);
+  const double slow = speed_.step(is_slow(limits_, tool), period_s_);
+  if (slow < 1.0) note(Stage::kWorkspace, Fault::kTooFast, verdict);
+  if (inside < 1.0) note(Stage::kWorkspace, Fault::kOutsideWorkspace, verdict);
+  verdict.wrench = inside * slow * verdict.wrench;
+}
+
+void Gate::limit(const model::Tool& tool, GateVerdict& verdict) RT_SAFE {
   Wrench& w = verdict.wrench;
-  if (limit_magnitude(w.force_N, force_limit_N_))
-    note(Stage::kMagnitude, Fault::kForceLimited, verdict);
-  if (limit_magnitude(w.torque_Nm, torque_limit_Nm_))
-    note(Stage::kMagnitude, Fault::kTorqueLimited, verdict);
-  const bool slow_force = limit_slew(w.force_N, before_.force_N, force_step_N_);
-  const bool slow_torque = limit_slew(w.torque_Nm, before_.torque_Nm, torque_step_Nm_);
-  if (slow_force || slow_torque) note(Stage::kSlew, Fault::kSlewLimited, verdict);
+  const double passive_N = tank_.allowed_N(), passive_Nm = lever_m_ * passive_N;
+  const double warm_N = warm_force_.allowed(), warm_Nm = warm_torque_.allowed();
+  const bool damped = tank_.damp(w);
+  const bool braked = (passive_N < warm_N && limit_magnitude(w.force_N, passive_N)) |
+                      (passive_Nm < warm_Nm && limit_magnitude(w.torque_Nm, passive_Nm));
+  if (damped || braked) note(Stage::kPassivity, Fault::kEnergyLimited, verdict);
+  if (limit_magnitude(w.force_N, warm_N))
+    note(Stage::kMagnitude,
+         warm_N < force_limit_N_ ? Fault::kContinuousLimited : Fault::kForceLimited, verdict);
+  if (limit_magnitude(w.torque_Nm, warm_Nm))
+    note(Stage::kMagnitude,
+         warm_Nm < torque_limit_Nm_ ? Fault::kContinuousLimited : Fault::kTorqueLimited, verdict);
+  const Radius radius{.force_N = std::fmin(warm_N, passive_N),
+                      .torque_Nm = std::fmin(warm_Nm, passive_Nm)};
+  if (step_towards(w, radius)) note(Stage::kSlew, Fault::kSlewLimited, verdict);
+  if (limit_surplus(w, tool.velocity_mps, tool.angular_velocity_radps,
+                    kPowerAim * limits_.power_W)) {
+    note(Stage::kPower, Fault::kPowerLimited, verdict);
+    step_towards(w, radius);
+  }
   before_ = w;
 }
 
+bool Gate::step_towards(Wrench& w, const Radius& radius) const RT_SAFE {
+  const bool slow = approach(w.force_N, before_.force_N, force_step_N_, radius.force_N);
+  return approach(w.torque_Nm, before_.torque_Nm, torque_step_Nm_, radius.torque_Nm) || slow;
+}
+
+void Gate::ramp_up(const model::Tool& tool, GateVerdict& verdict) RT_SAFE {
+  const double ramp = ramp_.step(true, period_s_);
+  if (ramp < 1.0) note(Stage::kRamp, Fault::kRampingUp, verdict);
+  verdict.wrench = ramp * verdict.wrench;
+  if (!(power_W(verdict.wrench, tool) <= limits_.power_W))
+    note(Stage::kPower, Fault::kPowerExceeded, verdict);
+}
+
 // Zero now: what comes after starts from zero and ramps up again.
-void Gate::let_go() RT_SAFE {
+GateVerdict Gate::let_go(GateVerdict verdict) RT_SAFE {
   before_ = {};
   ramp_.set(0.0);
+  tank_.refill();
+  written_ = {};
+  verdict.wrench = {};
+  return verdict;
 }
 
 }  // namespace tact::firmware

@@ -1,23 +1,38 @@
 // gate.h - the one way from the model to the device. Every force passes every stage, in this order:
 //
-//   finite     NaN or infinity: zero, latches
+//   finite     NaN or infinity in force or sample: zero, latches
 //   fresh      one missed sample holds, from the second the force fades to zero in 10 ms, 20 latch
 //   armed      zero unless the supervisor says armed
-//   workspace  outside the permitted cylinder the force fades to zero in 50 ms
-//   magnitude  |F| and |T| as vectors
+//   workspace  outside the permitted cylinder, or faster than permitted, it fades to zero in 50 ms
+//   passivity  gives no more energy than it took and has a budget for (energy_tank.h)
+//   magnitude  |F| and |T| as vectors: peak, and RMS over a time (thermal_limit.h)
 //   slew       |dF| and |dT| per tick
+//   power      F . v + T . w
 //   ramp       fades in after arming
 //
+// For every sequence of inputs, of the written force, unless a fault stops it at once:
+//
+//   |F| <= force_N, RMS <= continuous_force_N, |dF| <= slew_N_per_s dt, F . v <= power_W,
+//   energy given since arming <= energy_J + recovery_W t        (torque likewise)
+//
+// Who comes later keeps what came before: magnitude and ramp only shorten; slew and power move
+// within the slew's step and inside the radius that magnitude and passivity allow, which never
+// shrinks faster than the slew. Two things cannot be had at once with a slew, so they latch: a
+// force whose power the tool's own acceleration brought above the limit (the stage aims at three
+// quarters of it), and a step of the tool, longer than its permitted speed makes it, that overdrew
+// the energy, by that one tick's worth.
+//
 // Each stage has a reason code (model/fault.h) and a counter. Saturates and fades, never cuts to
-// zero in one step unless stopped. Speed, passivity and power join this list where DESIGN 5 puts
-// them.
+// zero in one step unless stopped.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
+#include "firmware/gate/energy_tank.h"
 #include "firmware/gate/fader.h"
 #include "firmware/gate/limiter.h"
+#include "firmware/gate/thermal_limit.h"
 #include "hal/device.h"
 #include "model/fault.h"
 #include "model/scene.h"
@@ -26,29 +41,31 @@
 namespace tact::firmware {
 
 using model::Fault;
-using model::Wrench;
 
 enum class Stage : std::uint8_t {
   kFinite,
   kFresh,
   kArmed,
   kWorkspace,
+  kPassivity,
   kMagnitude,
   kSlew,
+  kPower,
   kRamp,
 };
-inline constexpr std::size_t kStageCount = 7;
+inline constexpr std::size_t kStageCount = 9;
 inline constexpr std::array<const char*, kStageCount> kStageName{
-    "finite", "fresh", "armed", "workspace", "magnitude", "slew", "ramp"};
+    "finite", "fresh", "armed", "workspace", "passivity", "magnitude", "slew", "power", "ramp"};
 
 /// What holds for this scene on this device: the smaller of the two, everywhere.
 model::Limits limits_for(const model::Limits& scene, const hal::DeviceInfo& device);
 
 struct GateInput {
   Wrench wanted;
-  Vec3 position_m;  // of the tool, W
+  model::Tool tool;  // of the newest sample
   bool fresh = false;
   bool armed = false;
+  std::uint32_t skipped_periods = 0;  // between the tick before and this one
 };
 
 struct GateVerdict {
@@ -66,21 +83,37 @@ class Gate {
   /// How often each stage acted.
   const std::array<std::uint64_t, kStageCount>& counters() const RT_SAFE { return counter_; }
   double force_limit_N() const RT_SAFE { return force_limit_N_; }
+  double energy_budget_J() const RT_SAFE { return limits_.energy_J; }
+  /// Since arming, more than was taken; below zero: more was taken.
+  double given_energy_J() const RT_SAFE { return tank_.given_J(); }
+  double rms_force_N() const RT_SAFE { return warm_force_.rms(); }
 
  private:
-  void note(Stage stage, Fault reason, GateVerdict& verdict) RT_SAFE;
-  void check_fresh(const GateInput& input, GateVerdict& verdict) RT_SAFE;
-  bool inside_workspace(const Vec3& position_m) const RT_SAFE;
-  void limit(GateVerdict& verdict) RT_SAFE;
-  void let_go() RT_SAFE;
+  struct Radius {
+    double force_N, torque_Nm;
+  };
 
+  void note(Stage stage, Fault reason, GateVerdict& verdict) RT_SAFE;
+  void check_finite(const GateInput& input, GateVerdict& verdict) RT_SAFE;
+  void check_fresh(const GateInput& input, GateVerdict& verdict) RT_SAFE;
+  void check_energy(const GateInput& input, GateVerdict& verdict) RT_SAFE;
+  void fade_outside(const model::Tool& tool, GateVerdict& verdict) RT_SAFE;
+  void limit(const model::Tool& tool, GateVerdict& verdict) RT_SAFE;
+  void ramp_up(const model::Tool& tool, GateVerdict& verdict) RT_SAFE;
+  bool step_towards(Wrench& wanted, const Radius& radius) const RT_SAFE;
+  GateVerdict let_go(GateVerdict verdict) RT_SAFE;
+
+  model::Limits limits_;
   double period_s_;
   double force_limit_N_, torque_limit_Nm_;
+  double lever_m_;                        // torque limit over force limit; 0: no torque
   double force_step_N_, torque_step_Nm_;  // slew per tick, less the room that the ramp needs
-  double workspace_radius_m_, workspace_half_length_m_;
-  Fader fresh_, workspace_, ramp_;
+  Fader fresh_, workspace_, speed_, ramp_;
+  EnergyTank tank_;
+  ThermalLimit warm_force_, warm_torque_;
   std::uint32_t missed_ = 0;  // samples in a row
-  Wrench before_;             // after slew, before ramp
+  Wrench before_;             // after power, before ramp
+  Wrench written_;
   std::array<std::uint64_t, kStageCount> counter_{};
 };
 

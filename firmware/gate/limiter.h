@@ -1,9 +1,13 @@
-// limiter.h - magnitude and slew of one vector: force or torque.
+// limiter.h - what every stage of the gate does to a vector: shorten it, hold it back, take from it
+// along a motion.
 //
-//     magnitude   |F| <= limit                   direction kept
-//     slew        |F - F_before| <= step         moves straight towards the wanted vector
+//     magnitude   |F| <= limit                             direction kept
+//     approach    |F - F_before| <= step, |F| <= radius    or `step` nearer to radius than before
+//     surplus     F . d + T . a <= most                    least change of each, along its motion
 //
-// Guards are written so that NaN falls to zero.
+// Approach shortens what is too long first and turns with what is left of the step: a straight line
+// to the goal would leave a shrinking radius more slowly than the step allows. Guards are written
+// so that NaN falls to zero.
 #pragma once
 
 #include "model/types.h"
@@ -11,6 +15,7 @@
 namespace tact::firmware {
 
 using model::Vec3;
+using model::Wrench;
 
 /// True if it had to shorten v.
 inline bool limit_magnitude(Vec3& v, double limit) RT_SAFE {
@@ -23,11 +28,32 @@ inline bool limit_magnitude(Vec3& v, double limit) RT_SAFE {
   return true;
 }
 
-/// True if it had to hold v back.
-inline bool limit_slew(Vec3& v, const Vec3& before, double step) RT_SAFE {
-  Vec3 change = v - before;
-  if (!limit_magnitude(change, step)) return false;
-  v = before + change;
+/// One tick from `before` towards v. True if v was out of reach.
+inline bool approach(Vec3& v, const Vec3& before, double step, double radius) RT_SAFE {
+  const double length = norm(before);
+  const double reach = std::fmax(radius, length - step);
+  Vec3 from = before;
+  const double shrunk = limit_magnitude(from, reach) ? length - norm(from) : 0.0;
+  bool held = limit_magnitude(v, reach);
+  Vec3 change = v - from;
+  if (limit_magnitude(change, std::fmax(step - shrunk, 0.0))) {
+    v = from + change;
+    limit_magnitude(v, reach);  // by an ulp
+    held = true;
+  }
+  return held;
+}
+
+/// True if the wrench did more than `most` (>= 0) along the motion d, a: J for a displacement, W for
+/// a velocity. Only what pushes along the motion is made less; neither vector grows.
+inline bool limit_surplus(Wrench& w, const Vec3& d, const Vec3& a, double most) RT_SAFE {
+  const double pushed = std::fmax(dot(w.force_N, d), 0.0);
+  const double turned = std::fmax(dot(w.torque_Nm, a), 0.0);
+  if (!(pushed + turned > most)) return false;
+  const double too_much = 1.0 - most / (pushed + turned);
+  // F' = F - (1 - most / P) (F . d) d / |d|^2
+  if (pushed > 0.0) w.force_N -= (too_much * pushed / dot(d, d)) * d;
+  if (turned > 0.0) w.torque_Nm -= (too_much * turned / dot(a, a)) * a;
   return true;
 }
 

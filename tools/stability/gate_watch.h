@@ -14,13 +14,15 @@
 
 namespace tact::tools {
 
-/// The limits of the liver scene.
+/// The limits of the liver scene, but for the energy: where the loop loses stability is measured
+/// without the stage that would keep it stable.
 inline constexpr model::Limits kSceneLimits{.force_N = 8.0,
                                             .torque_Nm = 0.2,
                                             .slew_N_per_s = 1000.0,
                                             .ramp_s = 0.5,
                                             .workspace_radius_m = 0.18,
-                                            .workspace_half_length_m = 0.15};
+                                            .workspace_half_length_m = 0.15,
+                                            .energy_J = 1e9};
 
 inline constexpr const char* kOutOfBounds = "OUT OF BOUNDS";
 inline constexpr const char* kFought = "fights the limits of the gate";
@@ -68,7 +70,7 @@ class GateWatch {
 
  private:
   double write(double wanted_N, bool fresh) {
-    firmware::GateInput input{.wanted = {}, .position_m = {}, .fresh = fresh, .armed = armed_};
+    firmware::GateInput input{.wanted = {}, .tool = {}, .fresh = fresh, .armed = armed_};
     input.wanted.force_N.x = wanted_N;
     const firmware::GateVerdict verdict = gate_.judge(input);
     if (verdict.fault != model::Fault::kNone) armed_ = false;  // as the supervisor does

@@ -1,0 +1,71 @@
+#include "firmware/gate/energy_tank.h"
+
+#include <cmath>
+
+namespace tact::firmware {
+namespace {
+
+constexpr double kRounding_J = 1e-9;
+
+/// Rotation from one orientation to the next: its axis times 2 sin(angle / 2), within 0.1 % of the
+/// angle up to 0.15 rad and never more than it.
+Vec3 turn_rad(const model::Quat& from, const model::Quat& to) RT_SAFE {
+  const model::Quat q = to * conjugate(from);
+  return (q.w < 0.0 ? -2.0 : 2.0) * Vec3{q.x, q.y, q.z};
+}
+
+}  // namespace
+
+EnergyTank::EnergyTank(const EnergyTankSettings& settings)
+    : settings_(settings),
+      brake_mps_(settings.speed_mps + settings.lever_m * settings.turn_radps),
+      level_J_(settings.budget_J) {
+  const double m = settings.force_limit_N;
+  // R = u (m^2 / (2 s) + m dt)
+  const double need_J = brake_mps_ * m * (0.5 * m / settings.slew_N_per_s + settings.period_s);
+  reserve_J_ = std::fmin(need_J, 0.5 * settings.budget_J);
+}
+
+void EnergyTank::observe(const model::Tool& tool, bool fresh, double periods,
+                         const Wrench& held) RT_SAFE {
+  held_.force_N += periods * held.force_N;
+  held_.torque_Nm += periods * held.torque_Nm;
+  periods_ += periods;
+  unseen_J_ +=
+      periods * settings_.period_s *
+      (settings_.speed_mps * norm(held.force_N) + settings_.turn_radps * norm(held.torque_Nm));
+  if (!fresh) return;
+  const double share = 1.0 / periods_;
+  moved_m_ = is_placed_ ? share * (tool.position_m - position_m_) : Vec3{};
+  turned_rad_ = is_placed_ ? share * turn_rad(orientation_, tool.orientation) : Vec3{};
+  // E <- min(2 B, E - F . dx - T . da), then back towards B
+  const double budget_J = settings_.budget_J;
+  const double given_J = dot(held_.force_N, moved_m_) + dot(held_.torque_Nm, turned_rad_);
+  const double left_J = level_J_ - given_J;
+  level_J_ = left_J > 2.0 * budget_J ? 2.0 * budget_J : left_J;  // NaN stays, and is overdrawn
+  if (level_J_ < budget_J)
+    level_J_ = std::fmin(budget_J, level_J_ + settings_.recovery_W * settings_.period_s * periods_);
+  held_ = {};
+  periods_ = 0.0;
+  unseen_J_ = 0.0;
+  is_placed_ = true;
+  position_m_ = tool.position_m;
+  orientation_ = tool.orientation;
+}
+
+bool EnergyTank::damp(Wrench& wrench) const RT_SAFE {
+  const double room_J = std::fmax(level_J_ - unseen_J_ - reserve_J_, 0.0);
+  return limit_surplus(wrench, moved_m_, turned_rad_, room_J);
+}
+
+double EnergyTank::allowed_N() const RT_SAFE {
+  const double left_J = level_J_ - unseen_J_;
+  if (!is_placed_ || !(left_J > 0.0)) return 0.0;
+  // m^2 / (2 s) + m dt = E / u, solved for m
+  const double step_N = settings_.slew_N_per_s * settings_.period_s;
+  return std::sqrt(step_N * step_N + 2.0 * settings_.slew_N_per_s * left_J / brake_mps_) - step_N;
+}
+
+bool EnergyTank::is_overdrawn() const RT_SAFE { return !(level_J_ >= -kRounding_J); }
+
+}  // namespace tact::firmware

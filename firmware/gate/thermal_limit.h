@@ -1,0 +1,43 @@
+// thermal_limit.h - motors bear their peak for a while and their continuous force for ever.
+//
+//     dh/dt = (F^2 - h) / tau              h: square of the RMS of the force, first order
+//     A^2   = Fc^2 + kappa (Fc^2 - h)      allowed, at most Fp^2;  kappa = 2 (Fp^2 / Fc^2 - 1)
+//
+//     F    written force, N    Fp  peak, N    Fc  continuous, N, <= Fp    tau  time constant, s
+//
+// From half of the heat on the allowed force falls from Fp, and reaches Fc with the last of it: so
+// RMS <= Fc for every input, without a step. That needs (1 + kappa) T <= tau, and a fall that the
+// slew can follow: kappa Fp^2 / (2 Fc tau) <= slew. A scene that breaks either is refused.
+#pragma once
+
+#include <cmath>
+
+#include "model/rt.h"
+
+namespace tact::firmware {
+
+class ThermalLimit {
+ public:
+  ThermalLimit(double peak, double continuous, double share_per_period)
+      : peak_(peak),
+        continuous_squared_(continuous * continuous),
+        steepness_(continuous > 0.0 ? 2.0 * (peak * peak / continuous_squared_ - 1.0) : 0.0),
+        share_(share_per_period) {}
+
+  double allowed() const RT_SAFE {
+    const double room = continuous_squared_ - heat_;
+    const double squared = continuous_squared_ + steepness_ * std::fmax(room, 0.0);
+    return squared < peak_ * peak_ ? std::sqrt(squared) : peak_;
+  }
+  /// A force, or torque, that was held for this many periods.
+  void heat(double magnitude, double periods) RT_SAFE {
+    heat_ += std::fmin(share_ * periods, 1.0) * (magnitude * magnitude - heat_);
+  }
+  double rms() const RT_SAFE { return std::sqrt(heat_); }
+
+ private:
+  double peak_, continuous_squared_, steepness_, share_;
+  double heat_ = 0.0;  // h
+};
+
+}  // namespace tact::firmware

@@ -1,0 +1,23 @@
+// workspace.h - where the tool may be, and how fast, for a force to be let through.
+//
+// A cylinder about the W x axis, centred on its origin; NaN is outside and too fast.
+#pragma once
+
+#include <cmath>
+
+#include "model/scene.h"
+#include "model/types.h"
+
+namespace tact::firmware {
+
+inline bool is_inside(const model::Limits& limits, const model::Vec3& p_m) RT_SAFE {
+  return std::hypot(p_m.y, p_m.z) <= limits.workspace_radius_m &&
+         std::abs(p_m.x) <= limits.workspace_half_length_m;
+}
+
+inline bool is_slow(const model::Limits& limits, const model::Tool& tool) RT_SAFE {
+  return norm(tool.velocity_mps) <= limits.speed_mps &&
+         norm(tool.angular_velocity_radps) <= limits.turn_radps;
+}
+
+}  // namespace tact::firmware
