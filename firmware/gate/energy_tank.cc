@@ -22,8 +22,8 @@ EnergyTank::EnergyTank(const EnergyTankSettings& settings)
       level_J_(settings.budget_J) {
   const double m = settings.force_limit_N;
   // R = u (m^2 / (2 s) + m dt)
-  const double need_J = brake_mps_ * m * (0.5 * m / settings.slew_N_per_s + settings.period_s);
-  reserve_J_ = std::fmin(need_J, 0.5 * settings.budget_J);
+  need_J_ = brake_mps_ * m * (0.5 * m / settings.slew_N_per_s + settings.period_s);
+  reserve_J_ = std::fmin(need_J_, 0.5 * settings.budget_J);
 }
 
 void EnergyTank::observe(const model::Tool& tool, bool fresh, double periods,
@@ -31,10 +31,12 @@ void EnergyTank::observe(const model::Tool& tool, bool fresh, double periods,
   held_.force_N += periods * held.force_N;
   held_.torque_Nm += periods * held.torque_Nm;
   periods_ += periods;
-  unseen_J_ +=
-      periods * settings_.period_s *
-      (settings_.speed_mps * norm(held.force_N) + settings_.turn_radps * norm(held.torque_Nm));
-  if (!fresh) return;
+  if (!fresh) {  // at worst it moves along the force, as fast as it may
+    unseen_J_ +=
+        periods * settings_.period_s *
+        (settings_.speed_mps * norm(held.force_N) + settings_.turn_radps * norm(held.torque_Nm));
+    return;
+  }
   const double share = 1.0 / periods_;
   moved_m_ = is_placed_ ? share * (tool.position_m - position_m_) : Vec3{};
   turned_rad_ = is_placed_ ? share * turn_rad(orientation_, tool.orientation) : Vec3{};
@@ -45,9 +47,7 @@ void EnergyTank::observe(const model::Tool& tool, bool fresh, double periods,
   level_J_ = left_J > 2.0 * budget_J ? 2.0 * budget_J : left_J;  // NaN stays, and is overdrawn
   if (level_J_ < budget_J)
     level_J_ = std::fmin(budget_J, level_J_ + settings_.recovery_W * settings_.period_s * periods_);
-  held_ = {};
-  periods_ = 0.0;
-  unseen_J_ = 0.0;
+  forget_motion();
   is_placed_ = true;
   position_m_ = tool.position_m;
   orientation_ = tool.orientation;
@@ -61,6 +61,7 @@ bool EnergyTank::damp(Wrench& wrench) const RT_SAFE {
 double EnergyTank::allowed_N() const RT_SAFE {
   const double left_J = level_J_ - unseen_J_;
   if (!is_placed_ || !(left_J > 0.0)) return 0.0;
+  if (left_J >= need_J_) return settings_.force_limit_N;
   // m^2 / (2 s) + m dt = E / u, solved for m
   const double step_N = settings_.slew_N_per_s * settings_.period_s;
   return std::sqrt(step_N * step_N + 2.0 * settings_.slew_N_per_s * left_J / brake_mps_) - step_N;

@@ -21,7 +21,8 @@
 // as what a force gives at u while it falls at the slew is m^2 / (2 s) + m dt at most, and that is
 // there before the force is. So since arming the device gives at most B + Pr t more than it took,
 // in any t seconds 2 B + Pr t. A longer step (faster than the limit, or a period that lasted longer
-// without a sample) can overdraw by |F| times what it was longer, once: the gate latches then.
+// without a sample) can leave less than the brake needs: the gate latches in the tick in which the
+// tank is overdrawn, by less than what that one tick gave.
 #pragma once
 
 #include <cstdint>
@@ -55,12 +56,23 @@ class EnergyTank {
   bool is_overdrawn() const RT_SAFE;
   /// Given more than taken, J; -B: much was taken.
   double given_J() const RT_SAFE { return settings_.budget_J - level_J_; }
-  /// A new budget: nobody is pushed now.
-  void refill() RT_SAFE { level_J_ = settings_.budget_J; }
+  /// A new budget, as nobody is pushed now; no force before the next fresh sample.
+  void refill() RT_SAFE {
+    level_J_ = settings_.budget_J;
+    forget_motion();
+    is_placed_ = false;
+  }
 
  private:
+  void forget_motion() RT_SAFE {
+    held_ = {};
+    periods_ = 0.0;
+    unseen_J_ = 0.0;
+  }
+
   EnergyTankSettings settings_;
   double brake_mps_;       // u
+  double need_J_;          // of the brake, for the largest force
   double reserve_J_;       // R
   double level_J_;         // E
   double unseen_J_ = 0.0;  // at most given since the last fresh sample

@@ -120,8 +120,8 @@ void Gate::check_fresh(const GateInput& input, GateVerdict& verdict) RT_SAFE {
 void Gate::check_energy(const GateInput& input, GateVerdict& verdict) RT_SAFE {
   const double periods = 1.0 + input.skipped_periods;
   tank_.observe(input.tool, input.fresh && is_finite(input.tool), periods, written_);
-  warm_force_.heat(norm(written_.force_N), periods);
-  warm_torque_.heat(norm(written_.torque_Nm), periods);
+  warm_force_.heat(written_.force_N, periods);
+  warm_torque_.heat(written_.torque_Nm, periods);
   if (input.armed && tank_.is_overdrawn())
     note(Stage::kPassivity, Fault::kEnergyOverdrawn, verdict);
 }

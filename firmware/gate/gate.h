@@ -17,10 +17,10 @@
 //
 // Who comes later keeps what came before: magnitude and ramp only shorten; slew and power move
 // within the slew's step and inside the radius that magnitude and passivity allow, which never
-// shrinks faster than the slew. Two things cannot be had at once with a slew, so they latch: a
-// force whose power the tool's own acceleration brought above the limit (the stage aims at three
-// quarters of it), and a step of the tool, longer than its permitted speed makes it, that overdrew
-// the energy, by that one tick's worth.
+// shrinks faster than the slew. Two things cannot be had at once with a slew, so they latch: power
+// above the limit, when the tool speeds up faster than the force can fall (the stage aims at three
+// quarters of it), and overdrawn energy, when a step of the tool was longer than its permitted
+// speed makes it (by less than that one tick's worth).
 //
 // Each stage has a reason code (model/fault.h) and a counter. Saturates and fades, never cuts to
 // zero in one step unless stopped.

@@ -17,19 +17,26 @@ namespace tact::firmware {
 using model::Vec3;
 using model::Wrench;
 
+/// |v| <= limit, without a root where the squares tell: sqrt(fl(limit^2)) is limit, so they agree.
+inline bool is_within(const Vec3& v, double limit) RT_SAFE {
+  return (limit >= 0.0 && dot(v, v) <= limit * limit) || norm(v) <= limit;
+}
+
 /// True if it had to shorten v.
 inline bool limit_magnitude(Vec3& v, double limit) RT_SAFE {
+  if (is_within(v, limit)) return false;
   const double length = norm(v);
-  if (length <= limit) return false;
   // Scaled down a hair more than needed, so that rounding cannot leave |v| above the limit.
   constexpr double kRoundingRoom = 1.0 - 4e-16;
-  v = length > 0.0 ? (kRoundingRoom * limit / length) * v : Vec3{};
+  constexpr double kNothing = 1e-150;  // below it a square is a denormal, and a norm a guess
+  v = length > 0.0 && limit > kNothing ? (kRoundingRoom * limit / length) * v : Vec3{};
   if (!is_finite(v)) v = {};
   return true;
 }
 
 /// One tick from `before` towards v. True if v was out of reach.
 inline bool approach(Vec3& v, const Vec3& before, double step, double radius) RT_SAFE {
+  if (is_within(v, radius) && is_within(v - before, step)) return false;
   const double length = norm(before);
   const double reach = std::fmax(radius, length - step);
   Vec3 from = before;

@@ -12,7 +12,7 @@
 
 #include <cmath>
 
-#include "model/rt.h"
+#include "model/types.h"
 
 namespace tact::firmware {
 
@@ -29,9 +29,9 @@ class ThermalLimit {
     const double squared = continuous_squared_ + steepness_ * std::fmax(room, 0.0);
     return squared < peak_ * peak_ ? std::sqrt(squared) : peak_;
   }
-  /// A force, or torque, that was held for this many periods.
-  void heat(double magnitude, double periods) RT_SAFE {
-    heat_ += std::fmin(share_ * periods, 1.0) * (magnitude * magnitude - heat_);
+  /// By a force, or torque, that was held for this many periods.
+  void heat(const model::Vec3& held, double periods) RT_SAFE {
+    heat_ += std::fmin(share_ * periods, 1.0) * (dot(held, held) - heat_);
   }
   double rms() const RT_SAFE { return std::sqrt(heat_); }
 

@@ -5,19 +5,20 @@
 
 #include <cmath>
 
+#include "firmware/gate/limiter.h"
 #include "model/scene.h"
 #include "model/types.h"
 
 namespace tact::firmware {
 
 inline bool is_inside(const model::Limits& limits, const model::Vec3& p_m) RT_SAFE {
-  return std::hypot(p_m.y, p_m.z) <= limits.workspace_radius_m &&
+  return is_within({0.0, p_m.y, p_m.z}, limits.workspace_radius_m) &&
          std::abs(p_m.x) <= limits.workspace_half_length_m;
 }
 
 inline bool is_slow(const model::Limits& limits, const model::Tool& tool) RT_SAFE {
-  return norm(tool.velocity_mps) <= limits.speed_mps &&
-         norm(tool.angular_velocity_radps) <= limits.turn_radps;
+  return is_within(tool.velocity_mps, limits.speed_mps) &&
+         is_within(tool.angular_velocity_radps, limits.turn_radps);
 }
 
 }  // namespace tact::firmware

@@ -1,0 +1,196 @@
+// What gate.h promises, over random sequences: every sequence has a temper, and each is there to
+// break one promise. Seeds are fixed; TACT_LONG=1 runs a hundred times as many.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdlib>
+#include <limits>
+#include <random>
+
+#include "tests/gate_rules.h"
+#include "tests/no_alloc.h"
+
+namespace tact::tests {
+namespace {
+
+constexpr double kStep_m = kRulesLimits.speed_mps * kRulesPeriod_s;
+constexpr double kTurn_rad = kRulesLimits.turn_radps * kRulesPeriod_s;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kMost = std::numeric_limits<double>::max();
+constexpr double kLeast = std::numeric_limits<double>::min();
+constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
+constexpr std::array kOdd{0.0,
+                          -0.0,
+                          kDenormal,
+                          -kDenormal,
+                          kLeast,
+                          -kLeast,
+                          1e-3,
+                          -1e-3,
+                          7.9999,
+                          8.0,
+                          -8.0,
+                          1e6,
+                          1e300,
+                          -1e300,
+                          kMost,
+                          -kMost,
+                          kInfinity,
+                          -kInfinity,
+                          std::numeric_limits<double>::quiet_NaN()};
+
+/// What a sequence of inputs is after.
+enum class Temper {
+  kAny,     // anything, odd values included
+  kFollow,  // the tool flees with the force, as fast as permitted: energy
+  kRattle,  // to and fro as fast as permitted, pushed at every return: energy, against the guess
+  kPush,    // the largest force, held: heat
+  kThrow,   // the tool's velocity jumps: power
+  kJump,    // steps longer than permitted, positions again and reversed: overdraws
+  kLose,    // samples are missing, periods are skipped
+};
+constexpr int kTempers = 7;
+
+class Sequence {
+ public:
+  Sequence(std::uint64_t seed, Temper temper) : random_(seed), temper_(temper) {}
+
+  RuleTick next(const model::Wrench& written) {
+    ++tick_;
+    if (chance(0.002)) armed_ = !armed_;
+    if (chance(0.01)) wanted_ = {ball(chance(0.5) ? 100.0 : 6.0), ball(chance(0.5) ? 1.0 : 0.1)};
+    move(written);
+    RuleTick out{.gate = {.wanted = wanted_, .tool = {}, .fresh = true, .armed = armed_},
+                 .angle_rad = angle_rad_};
+    out.gate.tool.position_m = position_m_;
+    out.gate.tool.velocity_mps = velocity_mps_;
+    out.gate.tool.angular_velocity_radps = turning_radps_;
+    if (temper_ == Temper::kLose || temper_ == Temper::kAny) {
+      out.gate.fresh = !chance(0.3);
+      if (chance(0.02)) out.gate.skipped_periods = static_cast<std::uint32_t>(random_() % 40);
+    }
+    if (temper_ == Temper::kAny && chance(0.05)) spoil(out);
+    return out;
+  }
+
+ private:
+  bool chance(double p) { return unit_(random_) < p; }
+  double within(double most) { return most * (2.0 * unit_(random_) - 1.0); }
+  Vec3 ball(double most) { return {within(most), within(most), within(most)}; }
+
+  void move(const model::Wrench& written) {
+    Vec3 step_m = ball(0.5 * kStep_m);
+    double turn_rad = within(kTurn_rad);
+    if (temper_ == Temper::kFollow) {
+      step_m = kStep_m * 0.999999 * normalized(written.force_N);
+      turn_rad = written.torque_Nm.x > 0.0 ? 0.999999 * kTurn_rad : -0.999999 * kTurn_rad;
+    } else if (temper_ == Temper::kRattle) {
+      const double sign = tick_ / 2 % 2 == 0 ? 1.0 : -1.0;
+      step_m = {sign * kStep_m * 0.999999, 0, 0};
+      wanted_.force_N = {tick_ % 2 == 0 ? 50.0 * sign : -50.0 * sign, within(1.0), 0};
+    } else if (temper_ == Temper::kPush) {
+      step_m = {};
+      wanted_ = {{50, 0, 0}, {0, 1, 0}};
+    } else if (temper_ == Temper::kJump && chance(0.05)) {
+      step_m = chance(0.5) ? ball(0.1) : -1.0 * (position_m_ + past_m_);
+    }
+    past_m_ = position_m_;
+    position_m_ += step_m;
+    if (!(norm(position_m_) < 0.1) && temper_ != Temper::kFollow) position_m_ = {};
+    angle_rad_ += turn_rad;
+    velocity_mps_ = (position_m_ - past_m_) / kRulesPeriod_s;
+    turning_radps_ = {turn_rad / kRulesPeriod_s, 0, 0};
+    if (temper_ == Temper::kThrow && chance(0.1)) velocity_mps_ = ball(chance(0.5) ? 1.0 : 3.0);
+    if (temper_ == Temper::kFollow || temper_ == Temper::kRattle) {  // not what this is about
+      velocity_mps_ = turning_radps_ = {};
+      if (!(norm(position_m_) < 0.14)) armed_ = false, position_m_ = past_m_ = {};
+    }
+  }
+
+  void spoil(RuleTick& out) {
+    const std::array fields{&out.gate.wanted.force_N, &out.gate.wanted.torque_Nm,
+                            &out.gate.tool.position_m, &out.gate.tool.velocity_mps,
+                            &out.gate.tool.angular_velocity_radps};
+    Vec3& field = *fields[random_() % fields.size()];
+    const std::array numbers{&field.x, &field.y, &field.z, &out.angle_rad};
+    *numbers[random_() % numbers.size()] = kOdd[random_() % kOdd.size()];
+  }
+
+  std::mt19937_64 random_;
+  std::uniform_real_distribution<double> unit_{0.0, 1.0};
+  Temper temper_;
+  int tick_ = 0;
+  bool armed_ = true;
+  model::Wrench wanted_;
+  Vec3 position_m_, past_m_, velocity_mps_, turning_radps_;
+  double angle_rad_ = 0.0;
+};
+
+int times() { return std::getenv("TACT_LONG") != nullptr ? 100 : 1; }
+
+/// Many short sequences of one temper on one gate; the rule that broke, with its seed and tick.
+std::string run(Temper temper, GateRules& rules, std::uint64_t sequences, int ticks) {
+  for (std::uint64_t seed = 0; seed < sequences * static_cast<std::uint64_t>(times()); ++seed) {
+    Sequence sequence(seed, temper);
+    for (int tick = 0; tick < ticks; ++tick)
+      if (const char* broken = rules.judge(sequence.next(rules.verdict().wrench)))
+        return std::string(broken) + ": seed " + std::to_string(seed) + ", tick " +
+               std::to_string(tick);
+  }
+  return {};
+}
+
+std::uint64_t count(const GateRules& rules, firmware::Stage stage) {
+  return rules.gate().counters()[static_cast<std::size_t>(stage)];
+}
+
+TEST(GateProperties, EveryRuleHoldsForEverySequence) {
+  for (int temper = 0; temper < kTempers; ++temper) {
+    GateRules rules;
+    EXPECT_EQ(run(static_cast<Temper>(temper), rules, 400, 1000), "") << "temper " << temper;
+  }
+}
+
+TEST(GateProperties, WhoFleesWithTheForceGetsNoMoreThanTheBudgetAndMostOfIt) {
+  GateRules rules;
+  EXPECT_EQ(run(Temper::kFollow, rules, 50, 2000), "");
+  EXPECT_GT(rules.most_given_J(), 0.5 * kRulesLimits.energy_J);
+  EXPECT_GT(count(rules, firmware::Stage::kPassivity), 1000u);
+}
+
+TEST(GateProperties, WhoDefeatsTheGuessStillMeetsTheBrake) {
+  GateRules rules;
+  EXPECT_EQ(run(Temper::kRattle, rules, 50, 2000), "");
+  EXPECT_GT(rules.most_given_J(), 0.5 * kRulesLimits.energy_J);
+}
+
+TEST(GateProperties, WhoPushesForEverComesToTheContinuousForceFromBelow) {
+  GateRules rules;
+  RuleTick push;
+  push.gate.wanted.force_N = {50, 0, 0};
+  push.gate.fresh = push.gate.armed = true;
+  for (int i = 0; i < 10000; ++i) ASSERT_EQ(rules.judge(push), nullptr);
+  EXPECT_GT(rules.most_heat_ratio(), 0.999);
+  EXPECT_NEAR(rules.verdict().wrench.force_N.x, kRulesLimits.continuous_force_N, 0.01);
+  EXPECT_EQ(rules.verdict().limit, model::Fault::kContinuousLimited);
+}
+
+TEST(GateProperties, EveryStageHadItsSay) {
+  GateRules rules;
+  for (int temper = 0; temper < kTempers; ++temper)
+    EXPECT_EQ(run(static_cast<Temper>(temper), rules, 20, 1000), "");
+  for (std::size_t i = 0; i < firmware::kStageCount; ++i)
+    EXPECT_GT(rules.gate().counters()[i], 100u) << firmware::kStageName[i];
+}
+
+TEST(GateProperties, JudgingLeavesTheHeapAlone) {
+  GateRules rules;
+  Sequence sequence(1, Temper::kAny);
+  const NoAlloc guard;
+  for (int i = 0; i < 10000; ++i) rules.judge(sequence.next({}));
+  EXPECT_EQ(guard.calls(), 0u);
+}
+
+}  // namespace
+}  // namespace tact::tests

@@ -1,0 +1,157 @@
+// gate_rules.h - what must hold of every tick of the gate, whatever went in: the list of gate.h,
+// with its own accounts of energy and heat. Property tests and the fuzzer feed it.
+//
+// The tool turns about x alone, so that a rotation is an angle here and no quaternion.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "firmware/gate/gate.h"
+
+namespace tact::tests {
+
+using firmware::GateInput;
+using firmware::GateVerdict;
+using model::Vec3;
+
+inline constexpr double kRulesPeriod_s = 0.001;
+
+/// Every stage can be met within a few seconds.
+inline constexpr model::Limits kRulesLimits{.force_N = 8.0,
+                                            .torque_Nm = 0.2,
+                                            .slew_N_per_s = 1000.0,
+                                            .ramp_s = 0.1,
+                                            .workspace_radius_m = 0.18,
+                                            .workspace_half_length_m = 0.15,
+                                            .speed_mps = 1.0,
+                                            .turn_radps = 10.0,
+                                            .energy_J = 0.08,
+                                            .recovery_W = 0.01,
+                                            .continuous_force_N = 4.0,
+                                            .thermal_time_s = 0.5,
+                                            .power_W = 6.0};
+
+struct RuleTick {
+  GateInput gate;
+  double angle_rad = 0.0;  // of the tool about x
+};
+
+class GateRules {
+ public:
+  explicit GateRules(const model::Limits& limits = kRulesLimits)
+      : limits_(limits), gate_(limits, kRulesPeriod_s, 1.0) {}
+
+  /// One tick. The rule that it broke, or null.
+  const char* judge(RuleTick tick) {
+    GateInput& input = tick.gate;
+    input.tool.orientation = {std::cos(0.5 * tick.angle_rad), std::sin(0.5 * tick.angle_rad), 0, 0};
+    const bool sound = is_finite(input.tool);
+    account(tick, input.fresh && sound);
+    verdict_ = gate_.judge(input);
+    const bool stopped = !input.armed || latches(verdict_.fault);
+    const char* broken = broken_rule(input, sound, stopped);
+    before_ = verdict_.wrench;
+    if (stopped) start_anew();
+    return broken;
+  }
+
+  const GateVerdict& verdict() const { return verdict_; }
+  const firmware::Gate& gate() const { return gate_; }
+  double given_J() const { return given_J_; }
+  double most_given_J() const { return most_given_J_; }
+  double most_heat_ratio() const { return most_heat_ratio_; }
+
+ private:
+  // The energy and the heat of what was written before this tick.
+  void account(const RuleTick& tick, bool fresh) {
+    const double periods = 1.0 + tick.gate.skipped_periods;
+    const double share = std::min(periods * kRulesPeriod_s / limits_.thermal_time_s, 1.0);
+    heat_ += share * (dot(before_.force_N, before_.force_N) - heat_);
+    is_paused_ = is_paused_ || tick.gate.skipped_periods > 0;
+    is_overheated_ = is_overheated_ || is_paused_;
+    time_s_ += periods * kRulesPeriod_s;
+    held_s_ += periods * kRulesPeriod_s;
+    impulse_Ns_ += periods * kRulesPeriod_s * before_.force_N;
+    twist_Nms_ += periods * kRulesPeriod_s * before_.torque_Nm.x;
+    if (!fresh) return;
+    if (is_placed_) {
+      const Vec3 step_m = tick.gate.tool.position_m - position_m_;
+      const double turn = std::remainder(tick.angle_rad - angle_rad_, 2.0 * std::numbers::pi);
+      const double turn_rad = 2.0 * std::sin(0.5 * turn);
+      given_J_ += (dot(impulse_Ns_, step_m) + twist_Nms_ * turn_rad) / held_s_;
+      is_permitted_ = is_permitted_ && !is_paused_ && norm(step_m) <= limits_.speed_mps * held_s_ &&
+                      std::abs(turn_rad) <= limits_.turn_radps * held_s_;
+    }
+    is_placed_ = true;
+    is_paused_ = false;
+    position_m_ = tick.gate.tool.position_m;
+    angle_rad_ = tick.angle_rad;
+    impulse_Ns_ = {};
+    twist_Nms_ = held_s_ = 0.0;
+  }
+
+  const char* broken_rule(const GateInput& input, bool sound, bool stopped) {
+    constexpr double kRounding = 1e-9;
+    const model::Wrench& w = verdict_.wrench;
+    if (!is_finite(w)) return "the output is finite";
+    if (!is_finite(input.wanted) && verdict_.fault == model::Fault::kNone)
+      return "NaN and infinity latch";
+    if (!sound && verdict_.fault == model::Fault::kNone) return "a sample of NaN latches";
+    if (stopped && !(w == model::Wrench{})) return "zero unless armed and without a fault";
+    if (norm(w.force_N) > limits_.force_N) return "|F| <= force_N";
+    if (norm(w.torque_Nm) > limits_.torque_Nm) return "|T| <= torque_Nm";
+    const double step_N = limits_.slew_N_per_s * kRulesPeriod_s;
+    const double step_Nm = step_N * limits_.torque_Nm / limits_.force_N;
+    if (!stopped && norm(w.force_N - before_.force_N) > step_N + kRounding)
+      return "|dF| <= slew_N_per_s dt";
+    if (!stopped && norm(w.torque_Nm - before_.torque_Nm) > step_Nm + kRounding)
+      return "|dT| <= slew dt torque_Nm / force_N";
+    const double power_W = dot(w.force_N, input.tool.velocity_mps) +
+                           dot(w.torque_Nm, input.tool.angular_velocity_radps);
+    if (!stopped && !(power_W <= limits_.power_W)) return "F . v + T . w <= power_W";
+    const double heat_ratio = std::sqrt(heat_) / limits_.continuous_force_N;
+    most_heat_ratio_ = std::max(most_heat_ratio_, heat_ratio);
+    if (!is_overheated_ && heat_ratio > 1.0 + kRounding) return "RMS <= continuous_force_N";
+    return broken_energy_rule(stopped);
+  }
+
+  const char* broken_energy_rule(bool stopped) {
+    constexpr double kRounding_J = 1e-8;
+    const double budget_J = limits_.energy_J + limits_.recovery_W * time_s_ + kRounding_J;
+    const bool overdrawn = verdict_.fault == model::Fault::kEnergyOverdrawn;
+    if (!stopped && !(given_J_ <= budget_J)) return "beyond the budget it stops in the same tick";
+    if (is_permitted_ && !(given_J_ <= budget_J)) return "energy given <= energy_J + recovery_W t";
+    if (overdrawn && is_permitted_) return "without a step too long nothing is overdrawn";
+    if (is_permitted_) most_given_J_ = std::max(most_given_J_, given_J_);
+    return nullptr;
+  }
+
+  void start_anew() {
+    given_J_ = time_s_ = held_s_ = twist_Nms_ = 0.0;
+    impulse_Ns_ = {};
+    is_placed_ = false;
+    is_permitted_ = true;
+    is_overheated_ =
+        is_overheated_ && heat_ > limits_.continuous_force_N * limits_.continuous_force_N;
+  }
+
+  model::Limits limits_;
+  firmware::Gate gate_;
+  GateVerdict verdict_;
+  model::Wrench before_;
+  double heat_ = 0.0, most_heat_ratio_ = 0.0;
+  double given_J_ = 0.0, most_given_J_ = 0.0;  // since it was armed; where no step was too long
+  double time_s_ = 0.0, held_s_ = 0.0;         // since it was armed, since the last sample
+  Vec3 impulse_Ns_;
+  double twist_Nms_ = 0.0;
+  Vec3 position_m_;
+  double angle_rad_ = 0.0;
+  bool is_placed_ = false;
+  bool is_permitted_ = true;    // no step since it was armed was too long for its time
+  bool is_paused_ = false;      // periods were skipped since the last sample
+  bool is_overheated_ = false;  // by a force that was held for longer than the gate could know
+};
+
+}  // namespace tact::tests
