@@ -46,6 +46,7 @@ class GateRules {
   /// One tick. The rule that it broke, or null.
   const char* judge(RuleTick tick) {
     GateInput& input = tick.gate;
+    tick.angle_rad = std::remainder(tick.angle_rad, 4.0 * std::numbers::pi);  // a whole turn of q
     input.tool.orientation = {std::cos(0.5 * tick.angle_rad), std::sin(0.5 * tick.angle_rad), 0, 0};
     const bool sound = is_finite(input.tool);
     account(tick, input.fresh && sound);
@@ -53,7 +54,7 @@ class GateRules {
     const bool stopped = !input.armed || latches(verdict_.fault);
     const char* broken = broken_rule(input, sound, stopped);
     before_ = verdict_.wrench;
-    if (stopped) start_anew();
+    if (!input.armed) start_anew();
     return broken;
   }
 

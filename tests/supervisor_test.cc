@@ -2,6 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
 namespace tact::firmware {
 namespace {
 
@@ -113,6 +121,115 @@ TEST(Supervisor, PowerThatComesBackBringsNoForceWithIt) {
   EXPECT_EQ(s.step(kArm, {.sample_good = true, .ready = true, .fault = Fault::kNone}),
             State::kStopped);
   EXPECT_EQ(s.fault(), Fault::kPowerLost);
+}
+
+// tests/model/supervisor_rules.inc: what Spin has proved the properties of.
+struct Rule {
+  std::string from, to, latched;
+  std::vector<std::string> when;  // names, with ! before those that must be false
+};
+
+std::vector<Rule> load_rules() {
+  std::ifstream file(TACT_SOURCE_DIR "/tests/model/supervisor_rules.inc");
+  const std::regex row(R"(RULE\((\w+), +(\w+), +(\w+), +([^)]*)\))");
+  std::vector<Rule> rules;
+  for (std::string line; std::getline(file, line);) {
+    std::smatch found;
+    if (!std::regex_match(line, found, row)) continue;
+    Rule rule{found[1], found[2], found[3], {}};
+    std::istringstream words(found[4]);
+    for (std::string word; words >> word;)
+      if (word != "&&") rule.when.push_back(word);
+    rules.push_back(rule);
+  }
+  return rules;
+}
+
+using Inputs = std::map<std::string, bool>;
+
+bool holds(const Rule& rule, const Inputs& inputs) {
+  return std::all_of(rule.when.begin(), rule.when.end(), [&](const std::string& word) {
+    return word[0] == '!' ? !inputs.at(word.substr(1)) : inputs.at(word);
+  });
+}
+
+const std::map<std::string, State> kStates{{"OFF", State::kOff},
+                                           {"READY", State::kReady},
+                                           {"ARMED", State::kArmed},
+                                           {"STOPPED", State::kStopped}};
+
+struct Outcome {
+  State state;
+  Fault fault;
+};
+
+Outcome by_the_rules(const std::vector<Rule>& rules, Outcome now, const Inputs& inputs) {
+  for (const Rule& rule : rules) {
+    const bool here = rule.from == "ANY" || kStates.at(rule.from) == now.state;
+    if (!here || !holds(rule, inputs)) continue;
+    const Fault found = rule.latched == "POWER_LOST" ? Fault::kPowerLost : Fault::kDeviceFailed;
+    if (rule.latched == "CLEAR") now.fault = Fault::kNone;
+    if (rule.latched != "CLEAR" && rule.latched != "KEEP" && now.fault == Fault::kNone)
+      now.fault = found;
+    now.state = kStates.at(rule.to);
+    return now;
+  }
+  return now;
+}
+
+// Every state that it can be in: with a kept fault and without, after a reset request and without.
+Supervisor supervisor_in(State state, bool faulty, bool reset_before) {
+  Supervisor s;
+  const Commands reset{.reset = reset_before};
+  if (state == State::kOff) s.step(reset, {});
+  if (state == State::kReady) s.step(reset, {.sample_good = true});
+  if (state == State::kArmed) {
+    s.step({}, {.sample_good = true});
+    s.step({.arm = true, .reset = reset_before}, {.sample_good = true});
+  }
+  if (state == State::kStopped) s.step({.stop = true, .reset = reset_before}, {});
+  if (faulty) s.trip(Fault::kLoopLate);
+  return s;
+}
+
+TEST(Supervisor, DoesWhatItsRulesSayInEveryStateForEveryInput) {
+  const std::vector<Rule> rules = load_rules();
+  ASSERT_EQ(rules.size(), 6u);
+  int cases = 0;
+  for (const auto& [name, from] : kStates)
+    for (int bits = 0; bits < 256; ++bits) {
+      const auto bit = [bits](int i) { return (bits >> i & 1) != 0; };
+      const bool faulty = bit(7), reset_before = bit(6);
+      if (faulty && from != State::kStopped) continue;  // a kept fault is a stop
+      Supervisor s = supervisor_in(from, faulty, reset_before);
+      ASSERT_EQ(s.state(), from);
+      const Commands commands{.arm = bit(0), .stop = bit(1), .reset = bit(2)};
+      const Findings found{.sample_good = bit(3),
+                           .ready = bit(4),
+                           .fault = bit(5) ? Fault::kDeviceFailed : Fault::kForceLimited};
+      const Outcome wanted = by_the_rules(rules, {from, s.fault()},
+                                          {{"arm", commands.arm},
+                                           {"stop", commands.stop},
+                                           {"reset_edge", commands.reset && !reset_before},
+                                           {"sample_good", found.sample_good},
+                                           {"ready", found.ready},
+                                           {"fault_found", bit(5)}});
+      s.step(commands, found);
+      ASSERT_EQ(s.state(), wanted.state) << name << ", bits " << bits;
+      ASSERT_EQ(s.fault(), wanted.fault) << name << ", bits " << bits;
+      ++cases;
+    }
+  EXPECT_EQ(cases, 4 * 128 + 128);
+}
+
+TEST(Supervisor, AFaultOfTheGateStopsFromEveryStateAndTheFirstIsKept) {
+  for (const auto& [name, from] : kStates) {
+    Supervisor s = supervisor_in(from, false, false);
+    s.trip(Fault::kEnergyOverdrawn);
+    s.trip(Fault::kPowerExceeded);
+    EXPECT_EQ(s.state(), State::kStopped) << name;
+    EXPECT_EQ(s.fault(), Fault::kEnergyOverdrawn) << name;
+  }
 }
 
 }  // namespace

@@ -83,6 +83,7 @@ GateVerdict Gate::judge(const GateInput& input) RT_SAFE {
   check_finite(input, verdict);
   check_fresh(input, verdict);
   check_energy(input, verdict);
+  if (!input.armed) tank_.refill();
   if (!input.armed || latches(verdict.fault)) {
     note(Stage::kArmed, Fault::kNotArmed, verdict);
     return let_go(verdict);
@@ -139,9 +140,9 @@ void Gate::limit(const model::Tool& tool, GateVerdict& verdict) RT_SAFE {
   const double passive_N = tank_.allowed_N(), passive_Nm = lever_m_ * passive_N;
   const double warm_N = warm_force_.allowed(), warm_Nm = warm_torque_.allowed();
   const bool damped = tank_.damp(w);
-  const bool braked = (passive_N < warm_N && limit_magnitude(w.force_N, passive_N)) |
-                      (passive_Nm < warm_Nm && limit_magnitude(w.torque_Nm, passive_Nm));
-  if (damped || braked) note(Stage::kPassivity, Fault::kEnergyLimited, verdict);
+  const bool braked = passive_N < warm_N && limit_magnitude(w.force_N, passive_N);
+  const bool turn_braked = passive_Nm < warm_Nm && limit_magnitude(w.torque_Nm, passive_Nm);
+  if (damped || braked || turn_braked) note(Stage::kPassivity, Fault::kEnergyLimited, verdict);
   if (limit_magnitude(w.force_N, warm_N))
     note(Stage::kMagnitude,
          warm_N < force_limit_N_ ? Fault::kContinuousLimited : Fault::kForceLimited, verdict);
@@ -176,7 +177,6 @@ void Gate::ramp_up(const model::Tool& tool, GateVerdict& verdict) RT_SAFE {
 GateVerdict Gate::let_go(GateVerdict verdict) RT_SAFE {
   before_ = {};
   ramp_.set(0.0);
-  tank_.refill();
   written_ = {};
   verdict.wrench = {};
   return verdict;
