@@ -104,6 +104,9 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   statistics_.stop = stop_watch_.times();
 
   statistics_.max_force_N = std::max(statistics_.max_force_N, norm(record_.output.written.force_N));
+  statistics_.max_rms_force_N = std::max(statistics_.max_rms_force_N, record_.output.rms_force_N);
+  statistics_.max_given_energy_J =
+      std::max(statistics_.max_given_energy_J, record_.output.given_energy_J);
   record_.late_ticks = statistics_.late_ticks;
   record_.skipped_ticks = statistics_.skipped_ticks;
   const auto touches = controller_.touches();

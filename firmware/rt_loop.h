@@ -30,6 +30,8 @@ struct LoopStatistics {
   std::uint64_t late_ticks = 0;     // ended after their own period
   std::uint64_t skipped_ticks = 0;  // grid points that had no tick
   double max_force_N = 0.0;         // written
+  double max_rms_force_N = 0.0;     // written, over limits.thermal_time_s
+  double max_given_energy_J = 0.0;  // since arming, more than was taken
   StopTimes stop;
   std::array<LatencyHistogram, kPhaseCount> phase;
 };

@@ -137,7 +137,7 @@ std::optional<Error> Session::open_telemetry() {
                                .limits = parts_.limits,
                                .period_ns = period_ns(scene_),
                                .force_share = parts_setup().force_share(),
-                               .force_limit_N = parts_.controller->gate().force_limit_N(),
+                               .gate = parts_.controller->gate(),
                                .non_rt = non_rt_});
   if (!outlets) return outlets.error();
   hand_socket_ = std::move(outlets->hand);

@@ -57,6 +57,8 @@ Hello make_hello(const model::Scene& scene, const model::Tissue& tissue, const H
   hello.rate_Hz = static_cast<float>(scene.rate_Hz);
   hello.frame_rate_Hz = static_cast<float>(scene.frame_rate_Hz);
   hello.force_limit_N = static_cast<float>(facts.force_limit_N);
+  hello.continuous_force_N = static_cast<float>(facts.continuous_force_N);
+  hello.energy_budget_J = static_cast<float>(facts.energy_budget_J);
   for (std::size_t i = 0; i < scene.tool.spheres.size(); ++i) {
     hello.sphere_radius_m[i] = static_cast<float>(scene.tool.spheres[i].radius_m);
     put(hello.sphere_offset_m[i], scene.tool.spheres[i].offset_m);
@@ -91,6 +93,8 @@ model::Result<int> make_mesh_file(const model::Scene& scene) {
 void FrameBuilder::add(const TickRecord& record) {
   if (first_due_ns_ < 0) first_due_ns_ = record.due_ns;
   const float margin_us = to_us(record.margin_ns);
+  const auto given_J = static_cast<float>(record.output.given_energy_J);
+  given_energy_J_ = tick_us_.empty() ? given_J : std::max(given_energy_J_, given_J);
   worst_margin_us_ = tick_us_.empty() ? margin_us : std::min(worst_margin_us_, margin_us);
   tick_us_.push_back(to_us(record.phase_ns[static_cast<std::size_t>(Phase::kTotal)]));
   peak_force_N_ = std::max(peak_force_N_, static_cast<float>(norm(record.output.written.force_N)));
@@ -122,6 +126,8 @@ Frame FrameBuilder::take(std::uint64_t dropped_records) {
   std::nth_element(tick_us_.begin(), middle, tick_us_.end());
   frame.median_tick_us = tick_us_.empty() ? 0.0f : *middle;
   frame.peak_force_N = peak_force_N_;
+  frame.rms_force_N = static_cast<float>(r.output.rms_force_N);
+  frame.given_energy_J = given_energy_J_;
   frame.fault = static_cast<std::uint16_t>(r.output.fault);
   frame.limit = static_cast<std::uint16_t>(limit_);
   frame.state = r.output.state;

@@ -16,6 +16,8 @@ namespace tact::firmware {
 struct HelloFacts {
   hal::DeviceInfo device;
   double force_limit_N = 0.0;
+  double continuous_force_N = 0.0;
+  double energy_budget_J = 0.0;
   bool non_rt = false;
   std::string hand_socket;  // empty: the device is not simulated
 };
@@ -48,6 +50,7 @@ class FrameBuilder {
   std::vector<float> tick_us_;  // since the last frame
   float worst_margin_us_ = 0.0f;
   float peak_force_N_ = 0.0f;
+  float given_energy_J_ = 0.0f;
   Fault limit_ = Fault::kNone;
 };
 

@@ -16,7 +16,7 @@
 namespace tact::firmware {
 
 inline constexpr std::uint32_t kTelemetryMagic = 0x74636174;  // "tact"
-inline constexpr std::uint16_t kTelemetryVersion = 2;
+inline constexpr std::uint16_t kTelemetryVersion = 3;
 inline constexpr std::size_t kMaxSites = 4;            // probe spheres on the tool
 inline constexpr std::size_t kMaxRings = 32;           // profile points of one site
 inline constexpr std::size_t kMaxPatchVertices = 180;  // told one by one
@@ -42,6 +42,8 @@ struct Hello {
   float rate_Hz = 0.0f;
   float frame_rate_Hz = 0.0f;
   float force_limit_N = 0.0f;
+  float continuous_force_N = 0.0f;
+  float energy_budget_J = 0.0f;
   float sphere_radius_m[kMaxSites] = {};
   float sphere_offset_m[kMaxSites][3] = {};  // tool frame
   std::uint8_t non_rt = 0;                   // 1: this PC gives no hard real time, force is capped
@@ -88,6 +90,8 @@ struct Frame {
   float worst_margin_us = 0.0f;  // least time left before the deadline since the last frame
   float median_tick_us = 0.0f;   // of the ticks since the last frame
   float peak_force_N = 0.0f;     // largest |force| since the last frame
+  float rms_force_N = 0.0f;      // written, over limits.thermal_time_s
+  float given_energy_J = 0.0f;   // since arming, more than was taken: largest since the last frame
   std::uint16_t fault = 0;       // number in the fault table
   std::uint16_t limit = 0;       // last limit that acted since the last frame, 0 none
   State state = State::kOff;
@@ -102,8 +106,8 @@ static_assert(std::is_trivially_copyable_v<Hello> && std::is_trivially_copyable_
 static_assert(sizeof(FrameSite) == (10 + kMaxRings) * sizeof(float) + 4);
 static_assert(sizeof(FramePatch) == 16 + kMaxPatchVertices * 10 + kMaxCutsTold * 4);
 static_assert(sizeof(Frame) ==
-              48 + 23 * sizeof(float) + 12 + kMaxSites * sizeof(FrameSite) + sizeof(FramePatch));
+              48 + 25 * sizeof(float) + 12 + kMaxSites * sizeof(FrameSite) + sizeof(FramePatch));
 static_assert(sizeof(Frame) <= 4096);
-static_assert(sizeof(Hello) == 114 + 62 + 64 + 64 + 108);
+static_assert(sizeof(Hello) == 122 + 62 + 64 + 64 + 108);
 
 }  // namespace tact::firmware

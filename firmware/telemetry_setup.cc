@@ -19,7 +19,9 @@ std::optional<Error> open_sockets(const RunSetup& run, Outlets& out) {
   if (!meshes) return meshes.error();
   const bool simulated = hal::is_simulated(run.device);
   const HelloFacts facts{.device = run.device.info(),
-                         .force_limit_N = run.force_limit_N,
+                         .force_limit_N = run.gate.force_limit_N(),
+                         .continuous_force_N = run.gate.continuous_force_N(),
+                         .energy_budget_J = run.gate.energy_budget_J(),
                          .non_rt = run.non_rt,
                          .hand_socket = simulated ? path + ".hand" : ""};
   auto opened = TelemetrySocket::open(path, make_hello(run.scene, run.tissue, facts), *meshes);

@@ -21,7 +21,7 @@ struct RunSetup {
   model::Limits limits;  // of scene and device together
   std::int64_t period_ns = 0;
   double force_share = 1.0;
-  double force_limit_N = 0.0;
+  const Gate& gate;
   bool non_rt = false;
 };
 

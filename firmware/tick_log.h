@@ -17,7 +17,7 @@ namespace tact::firmware {
 
 struct LogHeader {
   // The last letter is the format's version.
-  char magic[8] = {'t', 'a', 'c', 't', 'l', 'o', 'g', '4'};
+  char magic[8] = {'t', 'a', 'c', 't', 'l', 'o', 'g', '5'};
   std::uint32_t tick_bytes = 0;  // sizeof(LoggedTick): a different build is refused
   std::uint32_t pad = 0;
   std::int64_t period_ns = 0;

@@ -99,6 +99,8 @@ std::string frame_json(const Frame& frame, const Hello& hello) {
   put(out, "margin_us", frame.worst_margin_us);
   put(out, "tick_us", frame.median_tick_us);
   put(out, "peak_N", frame.peak_force_N);
+  put(out, "rms_N", frame.rms_force_N);
+  put(out, "given_J", frame.given_energy_J);
   out += ",\"sites\":[";
   const std::size_t sites = std::min<std::size_t>(hello.site_count, firmware::kMaxSites);
   const std::size_t rings = std::min<std::size_t>(hello.ring_count, firmware::kMaxRings);
@@ -133,6 +135,8 @@ std::string scene_json(const Hello& hello) {
       {"rate_Hz", hello.rate_Hz},
       {"frame_rate_Hz", hello.frame_rate_Hz},
       {"force_limit_N", hello.force_limit_N},
+      {"continuous_force_N", hello.continuous_force_N},
+      {"energy_budget_J", hello.energy_budget_J},
       {"non_rt", hello.non_rt != 0},
       {"simulated", hello.simulated != 0},
       {"spheres", spheres},

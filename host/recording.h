@@ -16,7 +16,7 @@
 namespace tact::host {
 
 inline constexpr char kRecordingMagic[8] = {'t', 'a', 'c', 't', 'r', 'e', 'c', '\n'};
-inline constexpr std::uint32_t kRecordingVersion = 2;  // 2: displaced vertices, cuts
+inline constexpr std::uint32_t kRecordingVersion = 3;  // 3: energy and RMS of the force
 
 struct FileHeader {
   char magic[8] = {};

@@ -66,7 +66,8 @@ std::string csv_header(const Hello& hello) {
       "tool_x_m,tool_y_m,tool_z_m,tool_qw,tool_qx,tool_qy,tool_qz,"
       "tool_vx_mps,tool_vy_mps,tool_vz_mps,grip_ratio,force_x_N,force_y_N,force_z_N,"
       "torque_x_Nm,torque_y_Nm,torque_z_Nm,wanted_x_N,wanted_y_N,wanted_z_N,"
-      "worst_margin_us,median_tick_us,peak_force_N,cut_triangles,patch_vertices,patch_most_m";
+      "worst_margin_us,median_tick_us,peak_force_N,rms_force_N,given_energy_J,cut_triangles,patch_"
+      "vertices,patch_most_m";
   for (std::size_t i = 1; i <= sites_of(hello); ++i) {
     fmt::format_to(std::back_inserter(out),
                    ",site{0}_state,site{0}_x_m,site{0}_y_m,site{0}_z_m,site{0}_normal_x,"
@@ -96,6 +97,8 @@ void append_csv_row(std::string& out, const Frame& frame, const Hello& hello) {
   put(out, frame.worst_margin_us);
   put(out, frame.median_tick_us);
   put(out, frame.peak_force_N);
+  put(out, frame.rms_force_N);
+  put(out, frame.given_energy_J);
   put_patch(out, frame.patch);
   for (std::size_t i = 0; i < sites_of(hello); ++i) {
     const firmware::FrameSite& site = frame.site[i];

@@ -80,8 +80,8 @@ std::string check_hello(const Hello& hello) {
   }
   if (hello.site_count > firmware::kMaxSites) return "there are more probe spheres than fit";
   if (hello.ring_count > firmware::kMaxRings) return "there are more profile rings than fit";
-  for (const float value :
-       {hello.ring_pitch_m, hello.rate_Hz, hello.frame_rate_Hz, hello.force_limit_N}) {
+  for (const float value : {hello.ring_pitch_m, hello.rate_Hz, hello.frame_rate_Hz,
+                            hello.force_limit_N, hello.continuous_force_N, hello.energy_budget_J}) {
     if (!std::isfinite(value) || value < 0.0f) return "a number of the scene is not sensible";
   }
   return {};

@@ -29,11 +29,9 @@ constexpr std::array kTable{
     FaultEntry{Fault::kLawSaturated, "law saturated",
                "the tissue is pressed or pulled beyond the law's working range",
                "press less, or give the law more range in the scene"},
-    FaultEntry{
-        Fault::kTooFast, "too fast",
-        "the tool moves faster than limits.speed_mps or turns faster than limits.turn_radps, "
-        "the force fades to zero",
-        "move slower, or raise the limit in the scene"},
+    FaultEntry{Fault::kTooFast, "too fast",
+               "the tool is faster than limits.speed_mps or turn_radps, the force fades to zero",
+               "move slower, or raise the limit in the scene"},
     FaultEntry{Fault::kEnergyLimited, "energy limited",
                "the device has given its energy budget to the hand; the force is damped",
                "soften the law, raise rate_Hz or take a device with more damping; a larger "

@@ -104,7 +104,7 @@ TEST_F(RecordingFile, OfOtherSizesButTheSameVersionSaysSo) {
   flip_byte(offsetof(FileHeader, frame_bytes));
   const ReadResult read = read_recording(path_);
   EXPECT_FALSE(read.usable);
-  EXPECT_NE(read.damage.find("though both say version 2"), std::string::npos) << read.damage;
+  EXPECT_NE(read.damage.find("though both say version 3"), std::string::npos) << read.damage;
 }
 
 TEST_F(RecordingFile, SurvivesEveryLength) {
@@ -169,7 +169,7 @@ TEST(RecordingCsv, HasOneNameForEveryColumn) {
   std::string row;
   append_csv_row(row, test::make_frame(1.0f, firmware::SiteState::kHeld), hello);
   EXPECT_EQ(columns(row), columns(csv_header(hello)));
-  EXPECT_EQ(columns(row), 35 + 2 * (11 + 11));
+  EXPECT_EQ(columns(row), 37 + 2 * (11 + 11));
   EXPECT_EQ(std::count(row.begin(), row.end(), '\n'), 1);
 }
 

@@ -20,6 +20,7 @@ class ThermalLimit {
  public:
   ThermalLimit(double peak, double continuous, double share_per_period)
       : peak_(peak),
+        continuous_(continuous),
         continuous_squared_(continuous * continuous),
         steepness_(continuous > 0.0 ? 2.0 * (peak * peak / continuous_squared_ - 1.0) : 0.0),
         share_(share_per_period) {}
@@ -33,10 +34,11 @@ class ThermalLimit {
   void heat(const model::Vec3& held, double periods) RT_SAFE {
     heat_ += std::fmin(share_ * periods, 1.0) * (dot(held, held) - heat_);
   }
+  double continuous() const RT_SAFE { return continuous_; }
   double rms() const RT_SAFE { return std::sqrt(heat_); }
 
  private:
-  double peak_, continuous_squared_, steepness_, share_;
+  double peak_, continuous_, continuous_squared_, steepness_, share_;
   double heat_ = 0.0;  // h
 };
 

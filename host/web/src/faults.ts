@@ -54,6 +54,26 @@ export const kFaults: Readonly<Record<number, Fault>> = {
     cause: "the tissue is pressed or pulled beyond the law's working range",
     cure: "press less, or give the law more range in the scene",
   },
+  10: {
+    name: "too fast",
+    cause: "the tool is faster than limits.speed_mps or turn_radps, the force fades to zero",
+    cure: "move slower, or raise the limit in the scene",
+  },
+  11: {
+    name: "energy limited",
+    cause: "the device has given its energy budget to the hand; the force is damped",
+    cure: "soften the law, raise rate_Hz or take a device with more damping; a larger limits.energy_J lets it shake more",
+  },
+  12: {
+    name: "continuous limited",
+    cause: "the RMS of the force nears limits.continuous_force_N",
+    cure: "press less or rest; the motors bear their peak for a while only",
+  },
+  13: {
+    name: "power limited",
+    cause: "force times speed of the tool nears limits.power_W",
+    cure: "let the tool go back slower, or soften the law",
+  },
   100: {
     name: "internal",
     cause: "a value that cannot occur occurred",
@@ -155,6 +175,17 @@ export const kFaults: Readonly<Record<number, Fault>> = {
     cause:
       "the motors lost their power while armed: the enable line fell, as after a pause of the heartbeat, or the device switched them off",
     cure: "find out why (late ticks, enable line, supply), then reset and arm",
+  },
+  130: {
+    name: "energy overdrawn",
+    cause:
+      "the device gave more energy to the hand than limits.energy_J: the tool jumped, or the loop paused, under force",
+    cure: "check for lost samples and late ticks, then reset and arm",
+  },
+  131: {
+    name: "power exceeded",
+    cause: "the tool sped up so fast under force that its power passed limits.power_W",
+    cure: "hold the tool firmly, then reset and arm; raise limits.power_W if hands move so fast",
   },
 };
 

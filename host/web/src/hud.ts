@@ -27,10 +27,14 @@ export class Hud {
   private limit_seen_ms = -Infinity;
   private written_ms = 0;
   private force_limit_N = 0;
+  private continuous_force_N = 0;
+  private energy_budget_J = 0;
 
   scene(scene: Scene): void {
     document.title = `tact: ${scene.scene}`;
     this.force_limit_N = scene.force_limit_N;
+    this.continuous_force_N = scene.continuous_force_N;
+    this.energy_budget_J = scene.energy_budget_J;
     write("scene", scene.scene);
     write("law", scene.law);
     write("device", `${scene.device} · ${Math.round(scene.rate_Hz)} Hz`);
@@ -78,6 +82,8 @@ export class Hud {
     bar.dataset.tone = share > 0.95 ? "bad" : share > 0.5 ? "wait" : "good";
     write("depth", Hud.depth(frame));
     write("grip", Hud.grip(frame));
+    write("rms", `${(frame.rms_N ?? 0).toFixed(2)} of ${this.continuous_force_N.toPrecision(2)} N`);
+    write("energy", `${((frame.given_J ?? 0) * 1e3).toFixed(1)} of ${(this.energy_budget_J * 1e3).toPrecision(3)} mJ`);
     write("tick", `${(frame.tick_us ?? 0).toFixed(1)} µs`);
     write("margin", `${(frame.margin_us ?? 0).toFixed(0)} µs`);
     write("late", `${frame.late} · ${frame.skipped}`);

@@ -19,6 +19,8 @@ export interface Scene {
   rate_Hz: number;
   frame_rate_Hz: number;
   force_limit_N: number;
+  continuous_force_N: number;
+  energy_budget_J: number;
   non_rt: boolean;
   simulated: boolean;
   spheres: Sphere[];
@@ -63,6 +65,8 @@ export interface Frame {
   margin_us: number;
   tick_us: number;
   peak_N: number;
+  rms_N: number;
+  given_J: number; // more than was taken
   sites: Site[];
   patch?: Patch;
 }
