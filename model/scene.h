@@ -27,7 +27,7 @@ struct Limits {
   double speed_mps = 1.5;                // of the tool
   double turn_radps = 10.0;              // of the tool
   double energy_J = 0.1;                 // given to the hand beyond what was taken from it
-  double recovery_W = 0.01;              // of that budget
+  double recovery_W = 1e-4;              // of that budget
   double continuous_force_N = 20.0;      // largest RMS of the force; torque in proportion
   double thermal_time_s = 10.0;          // of that RMS
   double power_W = 20.0;                 // given to the hand

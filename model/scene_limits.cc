@@ -26,7 +26,7 @@ void visit_keys(Keys& k, Limits& limits) {
            kOptional);
   k.number("energy_J", {1e-3, 10.0}, "given to the hand since arming beyond what was taken",
            limits.energy_J, kOptional);
-  k.number("recovery_W", {0.0, 1.0}, "of that budget; a hand takes more by holding on",
+  k.number("recovery_W", {0.0, 1.0}, "of that budget; shaking that takes no more is not damped",
            limits.recovery_W, kOptional);
   k.number("continuous_force_N", {0.1, 20.0},
            "largest RMS of the force, force_N at most; of the torque in proportion",

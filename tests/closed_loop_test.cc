@@ -24,6 +24,7 @@ struct Summary {
   double max_force_N = 0.0, max_pull_N = 0.0, max_depth_m = 0.0, max_step_N = 0.0;
   double max_free_force_N = 0.0, max_torque_Nm = 0.0;
   std::map<Fault, int> limits;
+  double max_given_J = 0.0;
   Fault fault = Fault::kNone;
   std::uint64_t heap_calls = 0;
 };
@@ -59,6 +60,7 @@ void add(Summary& s, const TickRecord& r, const TickRecord& before) {
   for (std::uint32_t i = 0; i < r.site_count; ++i)
     s.max_depth_m = std::max(s.max_depth_m, r.touch[i].depth_m);
   ++s.limits[r.output.limit];
+  s.max_given_J = std::max(s.max_given_J, r.output.given_energy_J);
   if (r.output.fault != Fault::kNone) s.fault = r.output.fault;
 }
 
@@ -135,6 +137,10 @@ TEST_P(EveryScene, IsTouchedWithinItsLimitsAndLeavesTheHeapAlone) {
   EXPECT_GT(s.touching, 200);
   EXPECT_GT(s.max_force_N, 0.05);
   EXPECT_LT(s.max_force_N, scene.limits.force_N);
+  for (const Fault limit :
+       {Fault::kTooFast, Fault::kEnergyLimited, Fault::kContinuousLimited, Fault::kPowerLimited})
+    EXPECT_EQ(s.limits.count(limit), 0u) << describe(limit).name << ": for trouble, not for a scene";
+  EXPECT_LT(s.max_given_J, 0.1 * scene.limits.energy_J) << "tissue takes energy";
   EXPECT_GT(s.max_depth_m, 0.0005);
   EXPECT_LT(s.max_depth_m, 0.020);
   EXPECT_EQ(s.max_free_force_N, 0.0) << "no contact, no force";

@@ -176,6 +176,60 @@ TEST(GateProperties, WhoPushesForEverComesToTheContinuousForceFromBelow) {
   EXPECT_EQ(rules.verdict().limit, model::Fault::kContinuousLimited);
 }
 
+// A hand of 150 g leans with 1 N on a wall, on a device of 1 Ns/m at 1 kHz: stable to 2000 N/m.
+struct Wall {
+  double given_J = 0.0, swing_m = 0.0;  // at most; in the last second
+  bool is_latched = false;
+};
+
+Wall lean_on_wall(double stiffness_N_per_m, double budget_J) {
+  model::Limits limits = kRulesLimits;
+  limits.energy_J = budget_J;
+  limits.continuous_force_N = limits.force_N;
+  limits.power_W = 100.0;
+  limits.speed_mps = 10.0 * kRulesLimits.speed_mps;  // only the energy is in question
+  limits.slew_N_per_s = 1e4;
+  firmware::Gate gate(limits, kRulesPeriod_s, 1.0);
+  constexpr double kMass_kg = 0.15, kDamping_Ns_per_m = 1.0, kPush_N = 1.0, kStep_s = 0.25e-3;
+  double x_m = 0.001, v_mps = 0.0, low_m = 1.0, high_m = -1.0;
+  Wall out;
+  for (int tick = 0; tick < 40000; ++tick) {
+    firmware::GateInput input;
+    input.wanted.force_N.x = x_m < 0.0 ? -stiffness_N_per_m * x_m : 0.0;
+    input.tool.position_m.x = x_m;
+    input.tool.velocity_mps.x = v_mps;
+    input.fresh = input.armed = true;
+    const firmware::GateVerdict verdict = gate.judge(input);
+    out.is_latched = out.is_latched || latches(verdict.fault);
+    for (int i = 0; i < 4; ++i) {
+      v_mps +=
+          kStep_s / kMass_kg * (verdict.wrench.force_N.x - kPush_N - kDamping_Ns_per_m * v_mps);
+      x_m += kStep_s * v_mps;
+    }
+    out.given_J = std::max(out.given_J, gate.given_energy_J());
+    if (tick < 39000) continue;
+    low_m = std::min(low_m, x_m);
+    high_m = std::max(high_m, x_m);
+  }
+  out.swing_m = high_m - low_m;
+  return out;
+}
+
+TEST(GateProperties, AWallTooStiffForItsDeviceShakesWithoutTheEnergyStageAndNotWithIt) {
+  for (const double stiffness_N_per_m : {3000.0, 6000.0, 20000.0}) {
+    const Wall without = lean_on_wall(stiffness_N_per_m, 1e9);
+    const Wall with = lean_on_wall(stiffness_N_per_m, 0.08);
+    EXPECT_GT(without.swing_m, 5e-4) << stiffness_N_per_m;
+    EXPECT_LT(with.swing_m, 0.25 * without.swing_m) << stiffness_N_per_m;
+    EXPECT_GT(without.given_J, 0.08) << stiffness_N_per_m;
+    EXPECT_LT(with.given_J, 0.042) << "the damping begins at half of the budget";
+    EXPECT_FALSE(with.is_latched);
+  }
+  const Wall soft = lean_on_wall(1000.0, 0.08);
+  EXPECT_LT(soft.swing_m, 1e-5) << "within the device's stiffness there is nothing to damp";
+  EXPECT_LT(soft.given_J, 0.02);
+}
+
 TEST(GateProperties, EveryStageHadItsSay) {
   GateRules rules;
   for (int temper = 0; temper < kTempers; ++temper)
