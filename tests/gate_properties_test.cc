@@ -43,7 +43,7 @@ constexpr std::array kOdd{0.0,
 /// What a sequence of inputs is after.
 enum class Temper {
   kAny,     // anything, odd values included
-  kFollow,  // the tool flees with the force, as fast as permitted: energy
+  kFollow,  // the tool flees with the force, as fast as permitted, samples missing: energy
   kRattle,  // to and fro as fast as permitted, pushed at every return: energy, against the guess
   kPush,    // the largest force, held: heat
   kThrow,   // the tool's velocity jumps: power
@@ -54,7 +54,8 @@ constexpr int kTempers = 7;
 
 class Sequence {
  public:
-  Sequence(std::uint64_t seed, Temper temper) : random_(seed), temper_(temper) {}
+  Sequence(std::uint64_t seed, Temper temper)
+      : random_(seed), temper_(temper), is_lossy_(seed % 2 == 1) {}
 
   RuleTick next(const model::Wrench& written) {
     ++tick_;
@@ -66,6 +67,7 @@ class Sequence {
     out.gate.tool.position_m = position_m_;
     out.gate.tool.velocity_mps = velocity_mps_;
     out.gate.tool.angular_velocity_radps = turning_radps_;
+    if (temper_ == Temper::kFollow && is_lossy_) out.gate.fresh = !chance(0.5);
     if (temper_ == Temper::kLose || temper_ == Temper::kAny) {
       out.gate.fresh = !chance(0.3);
       if (chance(0.02)) out.gate.skipped_periods = static_cast<std::uint32_t>(random_() % 40);
@@ -120,6 +122,7 @@ class Sequence {
   std::mt19937_64 random_;
   std::uniform_real_distribution<double> unit_{0.0, 1.0};
   Temper temper_;
+  bool is_lossy_;
   int tick_ = 0;
   bool armed_ = true;
   model::Wrench wanted_;

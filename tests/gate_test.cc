@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -150,6 +151,63 @@ TEST(Gate, RampsUpAfterArming) {
   off.armed = false;
   gate.judge(off);
   EXPECT_LT(gate.judge(wanting({1, 0, 0})).wrench.force_N.x, 0.01) << "arming again ramps again";
+}
+
+TEST(Gate, TooFastTheForceFadesAndComesBackWhenItIsSlow) {
+  Gate gate = open_gate({0.1, 0, 0});
+  GateInput fast = wanting({0.1, 0, 0});
+  fast.tool.velocity_mps = {0, 1.6, 0};
+  const GateVerdict first = gate.judge(fast);
+  EXPECT_GT(first.wrench.force_N.x, 0.09) << "fades, never cuts";
+  EXPECT_EQ(first.limit, Fault::kTooFast);
+  for (int i = 0; i < 60; ++i) gate.judge(fast);
+  EXPECT_EQ(gate.judge(fast).wrench.force_N.x, 0.0);
+  for (int i = 0; i < 60; ++i) gate.judge(wanting({0.1, 0, 0}));
+  EXPECT_EQ(gate.judge(wanting({0.1, 0, 0})).limit, Fault::kNone);
+  fast.tool.velocity_mps = {};
+  fast.tool.angular_velocity_radps = {0, 0, 11};
+  EXPECT_EQ(gate.judge(fast).limit, Fault::kTooFast) << "turning counts too";
+}
+
+TEST(Gate, AToolThatSpeedsUpAsAHandDoesMeetsThePowerLimitWithoutAStop) {
+  model::Limits limits = kLimits;
+  limits.power_W = 4.0;
+  Gate gate(limits, kPeriod_s, 1.0);
+  for (int i = 0; i < 1000; ++i) gate.judge(wanting({7, 0, 0}));
+  GateInput input = wanting({7, 0, 0});
+  double most_W = 0.0;
+  for (; input.tool.velocity_mps.x < 1.4; input.tool.velocity_mps.x += 0.02) {  // 20 m/s2
+    const GateVerdict v = gate.judge(input);
+    ASSERT_EQ(v.fault, Fault::kNone);
+    most_W = std::max(most_W, v.wrench.force_N.x * input.tool.velocity_mps.x);
+  }
+  EXPECT_NEAR(most_W, 3.0, 0.01) << "three quarters of the limit";
+  EXPECT_EQ(gate.judge(input).limit, Fault::kPowerLimited);
+  input.tool.velocity_mps.x = 50.0;  // in one tick: no slew can follow
+  const GateVerdict v = gate.judge(input);
+  EXPECT_EQ(v.fault, Fault::kPowerExceeded);
+  EXPECT_EQ(v.wrench, Wrench{});
+}
+
+TEST(Gate, AToolThatJumpsUnderForceOverdrawsTheEnergyAndStaysStoppedUntilItIsDisarmed) {
+  Gate gate = open_gate({2, 0, 0});
+  GateInput jump = wanting({2, 0, 0});
+  jump.tool.position_m.x = 0.06;  // 2 N * 60 mm = 0.12 J, of 0.1 J
+  EXPECT_EQ(gate.judge(jump).fault, Fault::kEnergyOverdrawn);
+  EXPECT_EQ(gate.judge(jump).fault, Fault::kEnergyOverdrawn);
+  EXPECT_NEAR(gate.given_energy_J(), 0.12, 1e-6);
+  jump.armed = false;
+  EXPECT_EQ(gate.judge(jump).fault, Fault::kNone);
+  EXPECT_EQ(gate.given_energy_J(), 0.0);
+}
+
+TEST(Gate, AFaultFoundWhileArmedIsZeroInTheSameTick) {
+  Gate gate = open_gate({1, 0, 0});
+  GateInput bad = wanting({1, 0, 0});
+  bad.tool.velocity_mps.y = std::nan("");
+  const GateVerdict v = gate.judge(bad);
+  EXPECT_EQ(v.fault, Fault::kSampleNotFinite);
+  EXPECT_EQ(v.wrench, Wrench{});
 }
 
 TEST(Gate, LeavesTheHeapAlone) {
