@@ -1,4 +1,4 @@
-// fuzz.h - what every fuzzer of a decoder shares: bytes from anywhere, and rules that must hold.
+// fuzz.h - what every fuzzer shares: bytes from anywhere, and rules that must hold.
 //
 // A fuzzer is tests/fuzz/NAME_fuzz.cc with libFuzzer's entry point; its corpus, the inputs that
 // reach new code, is tests/fuzz/corpus/NAME. A rule that breaks traps, so that libFuzzer keeps the
@@ -15,7 +15,7 @@ namespace tact::fuzz {
 
 using Bytes = std::span<const std::uint8_t>;
 
-/// A rule of the decoder under test.
+/// A rule of what is under test.
 inline void require(bool rule) {
   if (!rule) __builtin_trap();
 }
