@@ -65,7 +65,7 @@ void refuse_small_budget(Keys& k, double rate_Hz, const Limits& limits) {
   const double least_J =
       speed_mps * force_N * (0.5 * force_N / slew_N_per_s(limits) + 1.0 / rate_Hz);
   if (limits.energy_J >= least_J) return;
-  k.refuse({"energy_J", "force_N"},
+  k.refuse({"energy_J", "force_N", "speed_mps"},
            fmt::format("limits.energy_J = {} is too little to let go of force_N = {} at speed_mps "
                        "= {}; allowed: {:.3f} or more, or a lower speed_mps",
                        limits.energy_J, force_N, limits.speed_mps, rounded_up(least_J)));

@@ -139,7 +139,8 @@ TEST_P(EveryScene, IsTouchedWithinItsLimitsAndLeavesTheHeapAlone) {
   EXPECT_LT(s.max_force_N, scene.limits.force_N);
   for (const Fault limit :
        {Fault::kTooFast, Fault::kEnergyLimited, Fault::kContinuousLimited, Fault::kPowerLimited})
-    EXPECT_EQ(s.limits.count(limit), 0u) << describe(limit).name << ": for trouble, not for a scene";
+    EXPECT_EQ(s.limits.count(limit), 0u)
+        << describe(limit).name << ": for trouble, not for a scene";
   EXPECT_LT(s.max_given_J, 0.1 * scene.limits.energy_J) << "tissue takes energy";
   EXPECT_GT(s.max_depth_m, 0.0005);
   EXPECT_LT(s.max_depth_m, 0.020);

@@ -101,6 +101,16 @@ TEST(Override, ThatIsWrongIsToldAsItWasTyped) {
       {"hand.home_m.2=0.05",
        "one element of an array cannot be set alone; set the whole array, or one key of an entry "
        "as in hand.stroke.0.duration_s=1"},
+      {"limits.energy_J=0.02",
+       "limits.energy_J = 0.02 is too little to let go of force_N = 8 at speed_mps = 1.5; allowed: "
+       "0.071 or more, or a lower speed_mps"},
+      {"limits.speed_mps=9",
+       "limits.energy_J = 0.1 is too little to let go of force_N = 8 at speed_mps = 9; allowed: "
+       "0.375 or more, or a lower speed_mps"},
+      {"limits.continuous_force_N=0.5",
+       "limits.thermal_time_s = 10 is too short to come from force_N = 8 to continuous_force_N = "
+       "0.5 "
+       "within the slew; allowed: 33.171 or more"},
       {"limits.slew_N_per_s=700",
        "limits.slew_N_per_s = 700 is too slow for force_N = 8: a lost device must fade to zero in "
        "10 ms; allowed: 816 or more"},
