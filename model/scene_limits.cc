@@ -29,7 +29,7 @@ void visit_keys(Keys& k, Limits& limits) {
   k.number("recovery_W", {0.0, 1.0}, "of that budget; shaking that takes no more is not damped",
            limits.recovery_W, kOptional);
   k.number("continuous_force_N", {0.1, 20.0},
-           "largest RMS of the force, force_N at most; of the torque in proportion",
+           "largest RMS of the force, at most force_N; torque in proportion",
            limits.continuous_force_N, kOptional);
   k.number("thermal_time_s", {0.1, 1000.0}, "time constant of that RMS", limits.thermal_time_s,
            kOptional);

@@ -115,7 +115,7 @@ TEST_F(ReplayTest, ALogOfAnotherVersionIsRefusedByItsNumber) {
   file.close();
   const auto outcome = replay(path, scene, *tissue);
   ASSERT_FALSE(outcome);
-  EXPECT_NE(outcome.error().sentence.find("version 2, this tactd reads version 5"),
+  EXPECT_NE(outcome.error().sentence.find("version 2, this tactd reads version 6"),
             std::string::npos)
       << outcome.error().sentence;
 }
