@@ -180,6 +180,7 @@ void CaseRun::keep(const firmware::TickRecord& record, bool cause) {
                    .commanded_N = out.wanted.force_N,
                    .gated_N = out.written.force_N,
                    .written_N = device_->written().force_N,
+                   .commanded_Nm = out.wanted.torque_Nm,
                    .gated_Nm = out.written.torque_Nm,
                    .written_Nm = device_->written().torque_Nm,
                    .tool = in.sample.tool,

@@ -16,7 +16,7 @@ namespace tact::tools {
 struct TickRow {
   double t_s = 0.0;  // since the case began; below 0: the gate opens
   Vec3 commanded_N, gated_N, written_N;
-  Vec3 gated_Nm, written_Nm;
+  Vec3 commanded_Nm, gated_Nm, written_Nm;
   model::Tool tool;  // as the gate saw it
   bool fresh = false;
   bool armed = false;

@@ -208,6 +208,14 @@ Result<std::vector<Case>> choose_cases(const std::string& names) {
   return chosen;
 }
 
+bool names_wall(const std::string& names) {
+  if (names == "all") return true;
+  std::istringstream in(names);
+  for (std::string name; std::getline(in, name, ',');)
+    if (name == kWallName) return true;
+  return false;
+}
+
 model::Limits limits_of(const Case& c, const model::Limits& limits) {
   model::Limits tight = limits;
   if (c.power_share < 1.0)

@@ -77,8 +77,9 @@ inline constexpr double kCause_s = 0.1;
 std::span<const Case> all_cases();
 /// "all", or names with commas. An error lists what there is.
 model::Result<std::vector<Case>> choose_cases(const std::string& names);
-/// The name of the Z-width test in --plan.
+/// The name of the Z-width test in --plan, and is it asked for?
 inline constexpr std::string_view kWallName = "stiff-wall";
+bool names_wall(const std::string& names);
 
 /// True for cases that only a simulated hand can run.
 inline bool needs_simulation(const Case& c) { return c.hand != HandMove::kStill; }
