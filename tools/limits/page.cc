@@ -59,8 +59,8 @@ std::string verdict(const LimitsReport& report) {
         "N.</p>\n",
         all);
   return fmt::format(
-      "<p class=\"verdict fail\">FAIL: {} of {} cases did not end as they must. Do not let anybody "
-      "hold this device.</p>\n",
+      "<p class=\"verdict fail\">FAIL: {} of {} cases did not end as they must. Nobody should hold a "
+      "device with these limits.</p>\n",
       failed, all);
 }
 
@@ -102,16 +102,22 @@ std::string limits_table(const LimitsReport& report) {
              l.speed_mps, l.workspace_radius_m, l.workspace_half_length_m, l.recovery_W);
 }
 
-std::string tightened(const CaseVerdict& v) {
-  if (v.subject.power_share < 1.0)
-    return fmt::format(" Here at most {:.3g} W.", v.limits.power_W);
-  if (v.subject.continuous_share < 1.0)
-    return fmt::format(" Here at most {:.3g} N RMS over {:g} s.", v.limits.continuous_force_N,
-                       v.limits.thermal_time_s);
-  return {};
+std::string tightened(const model::Limits& here, const model::Limits& all) {
+  std::string out;
+  if (here.power_W < all.power_W) out += fmt::format(" Here at most {:.3g} W.", here.power_W);
+  if (here.energy_J < all.energy_J) out += fmt::format(" Here at most {:.3g} J.", here.energy_J);
+  if (here.continuous_force_N < all.continuous_force_N)
+    out += fmt::format(" Here at most {:.3g} N RMS over {:g} s.", here.continuous_force_N,
+                       here.thermal_time_s);
+  return out;
 }
 
-std::string case_row(const CaseVerdict& v) {
+/// Four digits, and none of them an exponent.
+std::string plain(double value) {
+  return value < 1e4 ? fmt::format("{:.4g}", value) : fmt::format("{:.0f}", value);
+}
+
+std::string case_row(const CaseVerdict& v, const model::Limits& all) {
   std::string broken;
   for (const Check& c : v.checks)
     if (!c.holds) broken += fmt::format("<li class=bad>{}</li>", escaped(c.sentence));
@@ -121,10 +127,10 @@ std::string case_row(const CaseVerdict& v) {
   };
   const auto& allowed = v.subject.expected.zero_within_s;
   return fmt::format(
-      "<tr><td><b>{}</b></td><td>{}{}{}</td><td class=n>{:.4g} N</td><td class=n>{:.4g} N</td>"
+      "<tr><td><b>{}</b></td><td>{}{}{}</td><td class=n>{} N</td><td class=n>{:.4g} N</td>"
       "<td class=n>{:.3g} N</td><td class=n>{}</td><td class=n>{}</td><td>{}</td><td>{}</td>"
       "<td>{}</td></tr>\n",
-      v.subject.name, escaped(v.subject.what), tightened(v), broken, v.worst.commanded_N,
+      v.subject.name, escaped(v.subject.what), tightened(v.limits, all), broken, plain(v.worst.commanded_N),
       v.worst.force_N, v.overshoot_N, zero(v.worst.zero_s),
       allowed ? fmt::format("{:.0f} ms", std::floor(1e3 * *allowed)) : "-", v.acted_words(),
       v.fault == Fault::kNone ? "-" : model::describe(v.fault).name, mark(v.passed()));
@@ -135,7 +141,7 @@ std::string case_table(const LimitsReport& report) {
       "<h2>Cases</h2>\n<table><tr><th>Case</th><th>What happens</th><th class=n>Commanded</th>"
       "<th class=n>Written</th><th class=n>Over&shy;shoot</th><th class=n>Zero after</th>"
       "<th class=n>Allowed</th><th>Stages that acted</th><th>Fault that latched</th><th></th></tr>\n";
-  for (const CaseResult& r : report.cases) out += case_row(r.verdict);
+  for (const CaseResult& r : report.cases) out += case_row(r.verdict, report.limits);
   out += "</table>\n";
   std::string names;
   for (const std::string& name : report.not_run) names += (names.empty() ? "" : ", ") + name;

@@ -68,6 +68,7 @@ struct Case {
   double duration_s = 0.4;
   double power_share = 1.0;       // of F v at the limits of force and speed; below 1: tightened
   double continuous_share = 1.0;  // of force_N; below 1: tightened, with thermal_time_s = 0.5
+  double budget_share = 0.0;      // of the least energy_J that a scene may have; 0: as it is
   Expected expected{};
 };
 

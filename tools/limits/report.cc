@@ -138,7 +138,11 @@ json case_json(const CaseVerdict& v) {
           {"checks", checks_json(v.checks)}};
 }
 
-bool limits_alike(const Case& c) { return c.power_share >= 1.0 && c.continuous_share >= 1.0; }
+/// Nothing of it was made tighter.
+bool keeps_limits(const model::Limits& here, const model::Limits& all) {
+  return !(here.power_W < all.power_W || here.energy_J < all.energy_J ||
+           here.continuous_force_N < all.continuous_force_N);
+}
 
 Result<std::string> read_whole(const std::string& path) {
   std::ifstream file(path);
@@ -173,7 +177,7 @@ std::vector<LimitRow> limit_rows(const LimitsReport& report) {
     const std::vector<Check> bounds = check_bounds(w, v.limits, report.period_s);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       rows[i].holds = rows[i].holds && bounds[i].holds;
-      if (limits_alike(v.subject)) rows[i].largest = std::max(rows[i].largest, largest[i]);
+      if (keeps_limits(v.limits, l)) rows[i].largest = std::max(rows[i].largest, largest[i]);
     }
   }
   return rows;
@@ -212,6 +216,7 @@ json to_json(const LimitsReport& report) {
                    {"theory_N_per_m", report.wall->theory_N_per_m},
                    {"without_passivity_N_per_m", report.wall->without_N_per_m},
                    {"with_passivity_N_per_m", report.wall->with_N_per_m},
+                   {"rest_with_passivity_N_per_m", report.wall->rest_N_per_m},
                    {"with_is_a_least_value", report.wall->with_is_least},
                    {"z_width_ratio", report.wall->ratio()},
                    {"checks", checks_json(report.wall->checks)}};

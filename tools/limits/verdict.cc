@@ -197,24 +197,28 @@ Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limi
   return worst;
 }
 
-CaseVerdict judge_case(const CaseRun& run) {
-  const std::vector<TickRow>& rows = run.rows();
-  CaseVerdict v{.subject = run.subject(),
-                .limits = run.limits(),
-                .worst = extremes_of(rows, run.limits(), run.period_s()),
+CaseVerdict judge_rows(const Case& c, const std::vector<TickRow>& rows, const model::Limits& limits,
+                       double period_s) {
+  CaseVerdict v{.subject = c,
+                .limits = limits,
+                .worst = extremes_of(rows, limits, period_s),
                 .checks = {}};
-  v.overshoot_N = std::max(v.worst.force_N - v.limits.force_N, 0.0);
+  v.overshoot_N = std::max(v.worst.force_N - limits.force_N, 0.0);
   for (const TickRow& row : rows) {
     if (row.t_s >= 0.0) v.acted |= row.acted;
     if (v.fault == Fault::kNone) v.fault = row.fault;
   }
   Checks checks;
   checks.add(!rows.empty() && rows.back().t_s >= 0.0, "it armed, and the case began");
-  checks.add(check_bounds(v.worst, v.limits, run.period_s()));
+  checks.add(check_bounds(v.worst, limits, period_s));
   check_silence(checks, rows);
   check_expected(checks, v);
   v.checks = checks.list();
   return v;
+}
+
+CaseVerdict judge_case(const CaseRun& run) {
+  return judge_rows(run.subject(), run.rows(), run.limits(), run.period_s());
 }
 
 }  // namespace tact::tools

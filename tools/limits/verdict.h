@@ -51,6 +51,8 @@ Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limi
 /// The bounds above, each with its largest value.
 std::vector<Check> check_bounds(const Extremes& worst, const model::Limits& limits,
                                 double period_s);
+CaseVerdict judge_rows(const Case& c, const std::vector<TickRow>& rows, const model::Limits& limits,
+                       double period_s);
 CaseVerdict judge_case(const CaseRun& run);
 
 }  // namespace tact::tools

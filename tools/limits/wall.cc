@@ -69,6 +69,15 @@ double largest(const std::vector<WallPoint>& points, WallRun WallPoint::*which) 
   return most;
 }
 
+double largest_at_rest(const std::vector<WallPoint>& points) {
+  double most = 0.0;
+  for (const WallPoint& point : points) {
+    if (point.with.last_swing_m > kStill_m) break;
+    most = point.stiffness_N_per_m;
+  }
+  return most;
+}
+
 bool any_grows(const std::vector<WallPoint>& points, WallRun WallPoint::*which) {
   return std::any_of(points.begin(), points.end(),
                      [&](const WallPoint& p) { return (p.*which).grows; });
@@ -86,18 +95,20 @@ double worst_swing_m(const WallVerdict& v) {
 void judge(WallVerdict& v) {
   v.without_N_per_m = largest(v.points, &WallPoint::without);
   v.with_N_per_m = largest(v.points, &WallPoint::with);
+  v.rest_N_per_m = largest_at_rest(v.points);
   v.with_is_least = !any_grows(v.points, &WallPoint::with);
   const auto bounded = [](const WallPoint& p) { return p.without.in_bounds && p.with.in_bounds; };
   const bool grows = any_grows(v.points, &WallPoint::without);
   v.checks = {
-      {grows ? fmt::format("without the passivity stage the wall is unstable above {:.4g} N/m",
+      {grows ? fmt::format("without the passivity stage the wall is unstable above {:.0f} N/m",
                            v.without_N_per_m)
              : std::string("no wall became unstable: the test had nothing to show"),
        grows && v.without_N_per_m > 0.0},
-      {fmt::format("with it no motion grows up to {:.4g} N/m{}: {}{:.3g} times as stiff; at worst "
-                   "it still bounces by {:.2g} mm",
+      {fmt::format("with it no motion grows up to {:.0f} N/m{}: {}{:.3g} times as stiff. The tool "
+                   "comes to rest up to {:.0f} N/m and bounces by at most {:.2g} mm beyond",
                    v.with_N_per_m, v.with_is_least ? ", the stiffest tried" : "",
-                   v.with_is_least ? "at least " : "", v.ratio(), 1e3 * worst_swing_m(v)),
+                   v.with_is_least ? "at least " : "", v.ratio(), v.rest_N_per_m,
+                   1e3 * worst_swing_m(v)),
        v.ratio() > 1.0},
       {"force, slew, power and RMS stay in bounds at every stiffness, and energy with the stage",
        std::all_of(v.points.begin(), v.points.end(), bounded)}};
