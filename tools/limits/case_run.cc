@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kLead_s = 0.1;  // beyond the ramp
 constexpr double kSimulatedWait_s = 2.0, kRealWait_s = 60.0;
+constexpr double kLeverWithoutTorque_m = 0.05;
 constexpr double kHalfPlate_m = 4.0, kPlate_m = -1.0, kReach_m = 2.0;
 
 /// A plate far below and a sphere so large that it always touches: contact adds nothing to the
@@ -33,7 +34,8 @@ model::Scene plate_scene(const Case& c, const LimitsBench& bench, const model::L
                    .units = 1};
   scene.contact.tear_force_N = 0.01;
   // on a lever of twice torque over force the torque is the first to pass its limit
-  const double lever_m = limits.force_N > 0.0 ? 2.0 * limits.torque_Nm / limits.force_N : 0.0;
+  const bool turns = limits.force_N > 0.0 && limits.torque_Nm > 0.0;
+  const double lever_m = turns ? 2.0 * limits.torque_Nm / limits.force_N : kLeverWithoutTorque_m;
   scene.tool.spheres = {{{0, c.grip == Grip::kLever ? lever_m : 0.0, 0}, kReach_m}};
   scene.organ_mesh = *model::make_surface_mesh({{-kHalfPlate_m, -kHalfPlate_m, kPlate_m},
                                                 {kHalfPlate_m, -kHalfPlate_m, kPlate_m},
@@ -113,8 +115,8 @@ CaseRun::CaseRun(const Case& c, const LimitsBench& bench)
       scene_(plate_scene(c, bench, limits_)),
       tissue_(make_plate(scene_)),
       lead_ticks_(static_cast<int>(std::lround((limits_.ramp_s + kLead_s) / bench.period_s()))),
-      most_wait_ticks_(static_cast<int>(
-          (bench.device != nullptr ? kRealWait_s : kSimulatedWait_s) / bench.period_s())) {
+      most_wait_ticks_(static_cast<int>((bench.device != nullptr ? kRealWait_s : kSimulatedWait_s) /
+                                        bench.period_s())) {
   hal::Device* device = bench.device;
   hal::SafetyLines* lines = bench.lines;
   if (device == nullptr) {
@@ -161,6 +163,11 @@ bool CaseRun::play() {
     loop_->step();
     while (ring_->pop(record)) keep(record, cause);
     rows_.empty() ? ++waited : ++open;
+    // a device keeps its own fault until it is opened again: no use to wait
+    if (rows_.empty() && latches(record.output.fault)) {
+      refused_ = record.output.fault;
+      break;
+    }
     going = !is_interrupted();
   }
   loop_->let_go();

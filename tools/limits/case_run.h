@@ -20,7 +20,7 @@ struct TickRow {
   model::Tool tool;  // as the gate saw it
   bool fresh = false;
   bool armed = false;
-  bool cause = false;                // the case makes its trouble in this tick
+  bool cause = false;                 // the case makes its trouble in this tick
   std::uint32_t skipped_periods = 0;  // before this tick
   std::uint32_t acted = 0;            // one bit a stage
   Fault limit = Fault::kNone, fault = Fault::kNone;
@@ -62,6 +62,8 @@ class CaseRun {
   const std::vector<TickRow>& rows() const { return rows_; }
   const model::Limits& limits() const { return limits_; }  // judged by
   double period_s() const { return moment_.period_s; }
+  /// The fault that kept it from arming.
+  Fault refused() const { return refused_; }
 
  private:
   void keep(const firmware::TickRecord& record, bool cause);
@@ -85,6 +87,7 @@ class CaseRun {
   int lead_ticks_;       // after arming, until the gate is open
   int most_wait_ticks_;  // for arming
   std::array<std::uint64_t, firmware::kStageCount> counted_{};
+  Fault refused_ = Fault::kNone;
   std::int64_t begin_ns_ = 0;  // of t = 0
   std::vector<TickRow> rows_;
 };

@@ -22,7 +22,7 @@ bool has_cause(const Case& c) {
 
 std::string panel(const CaseResult& result) {
   const CaseVerdict& v = result.verdict;
-  const bool torque = v.subject.grip == Grip::kLever;
+  const bool torque = v.subject.grip == Grip::kLever && v.limits.torque_Nm > 0.0;
   const double limit = torque ? v.limits.torque_Nm : v.limits.force_N;
   std::string out = fmt::format(
       "set title \"{}{}\" noenhanced textcolor rgb '{}'\n"
@@ -46,9 +46,10 @@ std::string panel(const CaseResult& result) {
 
 Picture curves(const LimitsReport& report) {
   const int rows = (static_cast<int>(report.cases.size()) + kColumns - 1) / kColumns;
-  std::string script = fmt::format("set multiplot layout {},{}\nset xlabel 's' offset 0,0.7\n"
-                                   "set samples 2\nset tmargin 1.6\nset title offset 0,-0.6\n",
-                                   rows, kColumns);
+  std::string script = fmt::format(
+      "set multiplot layout {},{}\nset xlabel 's' offset 0,0.7\n"
+      "set samples 2\nset tmargin 1.6\nset title offset 0,-0.6\n",
+      rows, kColumns);
   for (const CaseResult& result : report.cases) script += panel(result);
   return {.name = "curves",
           .width_px = kWidth_px,

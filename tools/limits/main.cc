@@ -80,8 +80,7 @@ int test_limits(const Program& program, const Options& o) {
   else
     fmt::print("{}", to_text(*report));
   if (!files) return program.fail(files.error(), "the tables are written, the page is not");
-  if (!o.json)
-    fmt::print("{}: {}/limits.html\n", report->passed() ? "PASS" : "FAIL", o.out);
+  if (!o.json) fmt::print("{}: {}/limits.html\n", report->passed() ? "PASS" : "FAIL", o.out);
   return report->passed() ? 0 : 1;
 }
 
@@ -91,7 +90,8 @@ int test_limits(const Program& program, const Options& o) {
 int main(int argc, char** argv) {
   Program program(
       "tact-limits",
-      "Test of safety-limited force output: plays cases to the loop that drives the device, from a\n"
+      "Test of safety-limited force output: plays cases to the loop that drives the device, from "
+      "a\n"
       "step to a dead emergency stop, and judges what the device was handed.",
       "Writes limits.html (the report to hand on), limits.json, cases.csv, a trace of every tick\n"
       "for each case, wall.csv, and curves by gnuplot. Forces N, torques N m, energy J, power W,\n"

@@ -59,7 +59,8 @@ std::string verdict(const LimitsReport& report) {
         "N.</p>\n",
         all);
   return fmt::format(
-      "<p class=\"verdict fail\">FAIL: {} of {} cases did not end as they must. Nobody should hold a "
+      "<p class=\"verdict fail\">FAIL: {} of {} cases did not end as they must. Nobody should hold "
+      "a "
       "device with these limits.</p>\n",
       failed, all);
 }
@@ -130,8 +131,8 @@ std::string case_row(const CaseVerdict& v, const model::Limits& all) {
       "<tr><td><b>{}</b></td><td>{}{}{}</td><td class=n>{} N</td><td class=n>{:.4g} N</td>"
       "<td class=n>{:.3g} N</td><td class=n>{}</td><td class=n>{}</td><td>{}</td><td>{}</td>"
       "<td>{}</td></tr>\n",
-      v.subject.name, escaped(v.subject.what), tightened(v.limits, all), broken, plain(v.worst.commanded_N),
-      v.worst.force_N, v.overshoot_N, zero(v.worst.zero_s),
+      v.subject.name, escaped(v.subject.what), tightened(v.limits, all), broken,
+      plain(v.worst.commanded_N), v.worst.force_N, v.overshoot_N, zero(v.worst.zero_s),
       allowed ? fmt::format("{:.0f} ms", std::floor(1e3 * *allowed)) : "-", v.acted_words(),
       v.fault == Fault::kNone ? "-" : model::describe(v.fault).name, mark(v.passed()));
 }
@@ -140,7 +141,8 @@ std::string case_table(const LimitsReport& report) {
   std::string out =
       "<h2>Cases</h2>\n<table><tr><th>Case</th><th>What happens</th><th class=n>Commanded</th>"
       "<th class=n>Written</th><th class=n>Over&shy;shoot</th><th class=n>Zero after</th>"
-      "<th class=n>Allowed</th><th>Stages that acted</th><th>Fault that latched</th><th></th></tr>\n";
+      "<th class=n>Allowed</th><th>Stages that acted</th><th>Fault that "
+      "latched</th><th></th></tr>\n";
   for (const CaseResult& r : report.cases) out += case_row(r.verdict, report.limits);
   out += "</table>\n";
   std::string names;
@@ -149,7 +151,8 @@ std::string case_table(const LimitsReport& report) {
     out += fmt::format("<p>Not run, as they need the simulated hand: {}.</p>\n", escaped(names));
   return out +
          "<p class=quiet>Commanded and written: largest of the case. Zero after: from the cause to "
-         "zero force. Allowed: 0 where the force must be gone in the tick of the cause, 11 ms where "
+         "zero force. Allowed: 0 where the force must be gone in the tick of the cause, 11 ms "
+         "where "
          "it fades as samples are missing, 51 ms outside the workspace. A fault that has latched "
          "lets no force through until a person resets and arms again.</p>\n";
 }
@@ -159,11 +162,12 @@ std::string wall_section(const LimitsReport& report) {
   std::string out = "<h2>A wall that is too stiff</h2>\n<ul>";
   for (const Check& c : report.wall->checks)
     out += fmt::format("<li>{} {}</li>", mark(c.holds), escaped(c.sentence));
-  return out + fmt::format(
-                   "</ul>\n<p class=quiet>A light hand (200 N/m) presses a wall through the whole "
-                   "loop, stiffer each time by a quarter. The device alone, without its friction "
-                   "and the hand, bears {:.4g} N/m. Unstable: the tool swings wider and wider.</p>\n",
-                   report.wall->theory_N_per_m);
+  return out +
+         fmt::format(
+             "</ul>\n<p class=quiet>A light hand (200 N/m) presses a wall through the whole "
+             "loop, stiffer each time by a quarter. The device alone, without its friction "
+             "and the hand, bears {:.4g} N/m. Unstable: the tool swings wider and wider.</p>\n",
+             report.wall->theory_N_per_m);
 }
 
 /// A drawing without its XML head, to stand within the page; its names made its own.
@@ -199,7 +203,8 @@ std::string page_html(const LimitsReport& report, const std::vector<std::string>
   if (report.wall && svg.size() == (report.cases.empty() ? 1u : 2u)) out += inlined(svg.back(), 1);
   out +=
       "<h2>How it was tested</h2>\n<p>Each case arms the controller that drives the device, waits "
-      "until its force is fully let in, and commands a force as a tissue would. The force takes the "
+      "until its force is fully let in, and commands a force as a tissue would. The force takes "
+      "the "
       "way of every force: contact, gate, device. The limits are judged from what the device was "
       "handed, by sums of the test's own; the gate is not asked.</p>\n"
       "<p>What it does not show: that the device makes the force it is handed, that its emergency "

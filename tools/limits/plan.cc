@@ -110,9 +110,7 @@ const std::array kCases{
          .trouble = Trouble::kLateTick,
          .trouble_ticks = 1'000'000,
          .duration_s = 0.5,
-         .expected = {.stage = Stage::kArmed,
-                      .fault = Fault::kLoopLate,
-                      .zero_within_s = kLate_s}},
+         .expected = {.stage = Stage::kArmed, .fault = Fault::kLoopLate, .zero_within_s = kLate_s}},
     Case{.name = "e-stop",
          .what = "The emergency stop opens in mid-force.",
          .shape = Shape::kRamp,
@@ -202,8 +200,8 @@ Result<std::vector<Case>> choose_cases(const std::string& names) {
   std::istringstream in(names);
   for (std::string name; std::getline(in, name, ',');) {
     if (name == kWallName) continue;
-    const auto* found = std::find_if(kCases.begin(), kCases.end(),
-                                     [&](const Case& c) { return name == c.name; });
+    const auto* found =
+        std::find_if(kCases.begin(), kCases.end(), [&](const Case& c) { return name == c.name; });
     if (found == kCases.end())
       return Error{fmt::format("--plan {}: no such case; --list shows them all", name)};
     chosen.push_back(*found);

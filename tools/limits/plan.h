@@ -52,8 +52,8 @@ enum class Grip : std::uint8_t { kCentre, kLever };
 struct Expected {
   firmware::Stage stage = firmware::Stage::kMagnitude;  // must act in the case
   model::Fault fault = model::Fault::kNone;             // that latches
-  double least_peak_ratio = 0.0;                        // of the force limit: the case was no void one
-  std::optional<double> zero_within_s{};                // of the cause
+  double least_peak_ratio = 0.0;          // of the force limit: the case was no void one
+  std::optional<double> zero_within_s{};  // of the cause
 };
 
 struct Case {

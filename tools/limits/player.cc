@@ -9,7 +9,7 @@ namespace {
 constexpr double kRampTime_s = 0.8;
 constexpr double kImpulse_N = 1e6;
 constexpr double kFlip_s = 0.1, kChatter_s = 0.0025;  // half a wave
-constexpr double kHair_s = 1e-9;  // times are multiples of the period
+constexpr double kHair_s = 1e-9;                      // times are multiples of the period
 
 /// +1 and -1, each for so long.
 double square(double t_s, double half_s) RT_SAFE {
@@ -18,8 +18,7 @@ double square(double t_s, double half_s) RT_SAFE {
 
 }  // namespace
 
-Vec3 command_at(const Case& c, const Moment& now, const model::Tool& tool,
-                double limit_N) RT_SAFE {
+Vec3 command_at(const Case& c, const Moment& now, const model::Tool& tool, double limit_N) RT_SAFE {
   if (!now.playing) return {};
   const double size_N = c.size * limit_N;
   const bool after = now.after_cause();

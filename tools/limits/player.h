@@ -33,8 +33,7 @@ struct Moment {
 };
 
 /// What a case commands: force on the tool, by shape. Forces are shares of `limit_N`.
-Vec3 command_at(const Case& c, const Moment& now, const model::Tool& tool,
-                double limit_N) RT_SAFE;
+Vec3 command_at(const Case& c, const Moment& now, const model::Tool& tool, double limit_N) RT_SAFE;
 /// True in the ticks in which the case makes its trouble.
 bool in_trouble(const Case& c, const Moment& now) RT_SAFE;
 

@@ -15,8 +15,8 @@ namespace tact::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 using model::Result;
+using nlohmann::json;
 
 /// Length of a vector, with the sign of its z: what the curves show.
 double along_z(const Vec3& v) { return v.z < 0.0 ? -norm(v) : norm(v); }
@@ -56,38 +56,37 @@ Table case_table(const LimitsReport& report) {
 
 Table trace_table(const CaseResult& result) {
   Table table(std::string("trace_") + result.verdict.subject.name,
-              {{"t_s"},
-               {"commanded_N"},
-               {"gated_N"},
-               {"written_N"},
-               {"commanded_Nm"},
-               {"written_Nm"},
-               {"written_x_N"},
-               {"written_y_N"},
-               {"written_z_N"},
-               {"position_x_m"},
-               {"position_y_m"},
-               {"position_z_m"},
-               {"speed_mps"},
-               {"power_W"},
-               {"given_energy_J"},
-               {"rms_N"},
-               {"fresh"},
-               {"armed"},
-               {"skipped_periods"},
-               {"stages", CellKind::kWord},
-               {"limit"},
-               {"fault"}},
+              {{"t_s"},          {"commanded_N"},  {"gated_N"},         {"written_N"},
+               {"commanded_Nm"}, {"written_Nm"},   {"written_x_N"},     {"written_y_N"},
+               {"written_z_N"},  {"position_x_m"}, {"position_y_m"},    {"position_z_m"},
+               {"speed_mps"},    {"power_W"},      {"given_energy_J"},  {"rms_N"},
+               {"fresh"},        {"armed"},        {"skipped_periods"}, {"stages", CellKind::kWord},
+               {"limit"},        {"fault"}},
               result.rows.size());
   for (const TickRow& r : result.rows) {
     CaseVerdict stages;
     stages.acted = r.acted;
-    table.add({r.t_s, along_z(r.commanded_N), along_z(r.gated_N), along_z(r.written_N),
-               norm(r.commanded_Nm), norm(r.written_Nm), r.written_N.x, r.written_N.y,
-               r.written_N.z, r.tool.position_m.x, r.tool.position_m.y, r.tool.position_m.z,
-               norm(r.tool.velocity_mps), dot(r.written_N, r.tool.velocity_mps), r.given_J, r.rms_N,
-               r.fresh ? 1.0 : 0.0, r.armed ? 1.0 : 0.0, static_cast<double>(r.skipped_periods),
-               word_of(stages.acted_words()), static_cast<double>(r.limit),
+    table.add({r.t_s,
+               along_z(r.commanded_N),
+               along_z(r.gated_N),
+               along_z(r.written_N),
+               norm(r.commanded_Nm),
+               norm(r.written_Nm),
+               r.written_N.x,
+               r.written_N.y,
+               r.written_N.z,
+               r.tool.position_m.x,
+               r.tool.position_m.y,
+               r.tool.position_m.z,
+               norm(r.tool.velocity_mps),
+               dot(r.written_N, r.tool.velocity_mps),
+               r.given_J,
+               r.rms_N,
+               r.fresh ? 1.0 : 0.0,
+               r.armed ? 1.0 : 0.0,
+               static_cast<double>(r.skipped_periods),
+               word_of(stages.acted_words()),
+               static_cast<double>(r.limit),
                static_cast<double>(r.fault)});
   }
   return table;

@@ -36,8 +36,8 @@ struct LimitsReport {
 
 /// One limit, and what came nearest to it in all cases that left it as it is.
 struct LimitRow {
-  const char* name;    // for a reader
-  const char* key;     // of the scene
+  const char* name;  // for a reader
+  const char* key;   // of the scene
   const char* unit;
   double limit = 0.0, largest = 0.0;
   bool holds = true;  // in every case, tightened ones too

@@ -96,14 +96,12 @@ void check_silence(Checks& checks, const std::vector<TickRow>& rows) {
   const auto is_zero = [](const TickRow& r) {
     return r.written_N == Vec3{} && r.written_Nm == Vec3{};
   };
-  checks.add(all([](const TickRow& r) {
-               return is_finite(r.written_N) && is_finite(r.written_Nm);
-             }),
-             "every force written is a number");
-  checks.add(all([](const TickRow& r) {
-               return r.written_N == r.gated_N && r.written_Nm == r.gated_Nm;
-             }),
-             "the device was handed what the gate let through, bit for bit");
+  checks.add(
+      all([](const TickRow& r) { return is_finite(r.written_N) && is_finite(r.written_Nm); }),
+      "every force written is a number");
+  checks.add(
+      all([](const TickRow& r) { return r.written_N == r.gated_N && r.written_Nm == r.gated_Nm; }),
+      "the device was handed what the gate let through, bit for bit");
   checks.add(all([&](const TickRow& r) { return r.armed || is_zero(r); }),
              "no force while it was not armed");
   bool faulted = false;
@@ -120,8 +118,13 @@ void check_expected(Checks& checks, const CaseVerdict& v) {
              fmt::format("the stage {} acted", kStageName[static_cast<std::size_t>(e.stage)]));
   checks.add(v.fault == e.fault,
              e.fault == Fault::kNone
-                 ? fmt::format("no fault latched{}", v.fault == e.fault ? "" : fmt::format(": {}", model::describe(v.fault).name))
-                 : fmt::format("the fault \"{}\" latched{}", model::describe(e.fault).name, v.fault == e.fault ? "" : fmt::format(", not \"{}\"", model::describe(v.fault).name)));
+                 ? fmt::format(
+                       "no fault latched{}",
+                       v.fault == e.fault ? "" : fmt::format(": {}", model::describe(v.fault).name))
+                 : fmt::format("the fault \"{}\" latched{}", model::describe(e.fault).name,
+                               v.fault == e.fault
+                                   ? ""
+                                   : fmt::format(", not \"{}\"", model::describe(v.fault).name)));
   if (e.least_peak_ratio > 0.0)
     checks.add(v.worst.force_N >= e.least_peak_ratio * v.limits.force_N,
                fmt::format("the test had force: {:.4g} N, at least {:.4g} N asked", v.worst.force_N,
@@ -141,11 +144,12 @@ std::vector<Check> check_bounds(const Extremes& worst, const model::Limits& limi
   const double step_N = limits.slew_N_per_s * period_s;
   checks.add(worst.force_N <= limits.force_N,
              fmt::format("largest force {:.4g} N, limit {:.4g} N", worst.force_N, limits.force_N));
+  checks.add(worst.torque_Nm <= limits.torque_Nm,
+             fmt::format("largest torque {:.4g} N m, limit {:.4g} N m", worst.torque_Nm,
+                         limits.torque_Nm));
   checks.add(
-      worst.torque_Nm <= limits.torque_Nm,
-      fmt::format("largest torque {:.4g} N m, limit {:.4g} N m", worst.torque_Nm, limits.torque_Nm));
-  checks.add(worst.step_N <= step_N * kRounding,
-             fmt::format("largest change in a tick {:.4g} N, limit {:.4g} N", worst.step_N, step_N));
+      worst.step_N <= step_N * kRounding,
+      fmt::format("largest change in a tick {:.4g} N, limit {:.4g} N", worst.step_N, step_N));
   checks.add(worst.power_W <= limits.power_W * kRounding,
              fmt::format("largest power {:.4g} W, limit {:.4g} W", worst.power_W, limits.power_W));
   checks.add(worst.overdrawn_J <= 0.0,
@@ -164,7 +168,8 @@ bool CaseVerdict::passed() const {
 std::string CaseVerdict::acted_words() const {
   std::string words;
   for (std::size_t i = 0; i < kStageCount; ++i)
-    if ((acted >> i & 1u) != 0) words += fmt::format("{}{}", words.empty() ? "" : ", ", kStageName[i]);
+    if ((acted >> i & 1u) != 0)
+      words += fmt::format("{}{}", words.empty() ? "" : ", ", kStageName[i]);
   return words.empty() ? "none" : words;
 }
 
@@ -199,10 +204,8 @@ Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limi
 
 CaseVerdict judge_rows(const Case& c, const std::vector<TickRow>& rows, const model::Limits& limits,
                        double period_s) {
-  CaseVerdict v{.subject = c,
-                .limits = limits,
-                .worst = extremes_of(rows, limits, period_s),
-                .checks = {}};
+  CaseVerdict v{
+      .subject = c, .limits = limits, .worst = extremes_of(rows, limits, period_s), .checks = {}};
   v.overshoot_N = std::max(v.worst.force_N - limits.force_N, 0.0);
   for (const TickRow& row : rows) {
     if (row.t_s >= 0.0) v.acted |= row.acted;
@@ -218,7 +221,12 @@ CaseVerdict judge_rows(const Case& c, const std::vector<TickRow>& rows, const mo
 }
 
 CaseVerdict judge_case(const CaseRun& run) {
-  return judge_rows(run.subject(), run.rows(), run.limits(), run.period_s());
+  CaseVerdict v = judge_rows(run.subject(), run.rows(), run.limits(), run.period_s());
+  if (run.refused() == Fault::kNone) return v;
+  v.fault = run.refused();
+  v.checks.push_back(
+      {fmt::format("it could not be armed: {}", model::describe(v.fault).cause), false});
+  return v;
 }
 
 }  // namespace tact::tools

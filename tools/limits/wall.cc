@@ -14,8 +14,8 @@ constexpr double kDuration_s = 4.0;
 constexpr int kWindows = 8, kEarly = 2, kLast = 7;
 constexpr double kGrows = 1.02, kStill_m = 1e-4;
 constexpr double kRaise = 1.25;
-constexpr double kMost = 500.0;     // times the device's own limit
-constexpr int kBeyond = 10;         // points after the first that grows without the stage
+constexpr double kMost = 500.0;  // times the device's own limit
+constexpr int kBeyond = 10;      // points after the first that grows without the stage
 constexpr double kLeast_N_per_m = 50.0;
 
 /// As good as no stage: no run has so much energy.
@@ -87,8 +87,7 @@ bool any_grows(const std::vector<WallPoint>& points, WallRun WallPoint::*which) 
 double worst_swing_m(const WallVerdict& v) {
   double most = 0.0;
   for (const WallPoint& point : v.points)
-    if (point.stiffness_N_per_m <= v.with_N_per_m)
-      most = std::max(most, point.with.last_swing_m);
+    if (point.stiffness_N_per_m <= v.with_N_per_m) most = std::max(most, point.with.last_swing_m);
   return most;
 }
 

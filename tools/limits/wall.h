@@ -28,11 +28,11 @@ struct WallPoint {
 };
 
 struct WallVerdict {
-  std::vector<WallPoint> points;   // ascending
-  double theory_N_per_m = 0.0;     // of the device, without friction and hand
-  double without_N_per_m = 0.0;    // largest below which nothing grows; 0: none
+  std::vector<WallPoint> points;  // ascending
+  double theory_N_per_m = 0.0;    // of the device, without friction and hand
+  double without_N_per_m = 0.0;   // largest below which nothing grows; 0: none
   double with_N_per_m = 0.0;
-  double rest_N_per_m = 0.0;  // largest below which everything comes to rest, with the stage
+  double rest_N_per_m = 0.0;   // largest below which everything comes to rest, with the stage
   bool with_is_least = false;  // the search ended before it grew
   std::vector<Check> checks;
 
