@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tools/common/html.h"
 #include "tools/limits/report.h"
 
 namespace tact::tools {
@@ -26,23 +27,6 @@ tr{break-inside:avoid}
 svg{max-width:100%;height:auto}
 .key{display:inline-block;width:28px;height:0;border-top:3px solid;vertical-align:middle;margin:0 6px 0 18px}
 )css";
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
 
 const char* mark(bool holds) {
   return holds ? "<span class=ok>pass</span>" : "<span class=bad>FAIL</span>";
@@ -69,7 +53,7 @@ std::string facts(const LimitsReport& report) {
   const firmware::Environment& e = report.environment;
   std::string out = "<dl class=facts>\n";
   const auto add = [&](const char* name, const std::string& value) {
-    out += fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, escaped(value));
+    out += fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, escape_html(value));
   };
   add("Device", report.device_name + (report.simulated ? " (simulated, on simulated time)" : ""));
   add("Scene", fmt::format("{} ({}), hash {}", report.scene_name, report.scene_path, e.scene_hash));
@@ -121,7 +105,7 @@ std::string plain(double value) {
 std::string case_row(const CaseVerdict& v, const model::Limits& all) {
   std::string broken;
   for (const Check& c : v.checks)
-    if (!c.holds) broken += fmt::format("<li class=bad>{}</li>", escaped(c.sentence));
+    if (!c.holds) broken += fmt::format("<li class=bad>{}</li>", escape_html(c.sentence));
   if (!broken.empty()) broken = "<ul>" + broken + "</ul>";
   const auto zero = [](const std::optional<double>& s) {
     return s ? fmt::format("{:.0f} ms", 1e3 * *s) : std::string("-");
@@ -131,7 +115,7 @@ std::string case_row(const CaseVerdict& v, const model::Limits& all) {
       "<tr><td><b>{}</b></td><td>{}{}{}</td><td class=n>{} N</td><td class=n>{:.4g} N</td>"
       "<td class=n>{:.3g} N</td><td class=n>{}</td><td class=n>{}</td><td>{}</td><td>{}</td>"
       "<td>{}</td></tr>\n",
-      v.subject.name, escaped(v.subject.what), tightened(v.limits, all), broken,
+      v.subject.name, escape_html(v.subject.what), tightened(v.limits, all), broken,
       plain(v.worst.commanded_N), v.worst.force_N, v.overshoot_N, zero(v.worst.zero_s),
       allowed ? fmt::format("{:.0f} ms", std::floor(1e3 * *allowed)) : "-", v.acted_words(),
       v.fault == Fault::kNone ? "-" : model::describe(v.fault).name, mark(v.passed()));
@@ -148,7 +132,8 @@ std::string case_table(const LimitsReport& report) {
   std::string names;
   for (const std::string& name : report.not_run) names += (names.empty() ? "" : ", ") + name;
   if (!names.empty())
-    out += fmt::format("<p>Not run, as they need the simulated hand: {}.</p>\n", escaped(names));
+    out +=
+        fmt::format("<p>Not run, as they need the simulated hand: {}.</p>\n", escape_html(names));
   return out +
          "<p class=quiet>Commanded and written: largest of the case. Zero after: from the cause to "
          "zero force. Allowed: 0 where the force must be gone in the tick of the cause, 11 ms "
@@ -161,7 +146,7 @@ std::string wall_section(const LimitsReport& report) {
   if (!report.wall) return {};
   std::string out = "<h2>A wall that is too stiff</h2>\n<ul>";
   for (const Check& c : report.wall->checks)
-    out += fmt::format("<li>{} {}</li>", mark(c.holds), escaped(c.sentence));
+    out += fmt::format("<li>{} {}</li>", mark(c.holds), escape_html(c.sentence));
   return out +
          fmt::format(
              "</ul>\n<p class=quiet>A light hand (200 N/m) presses a wall through the whole "

@@ -8,7 +8,7 @@
 #include <memory>
 #include <thread>
 
-#include "firmware/rt_setup.h"
+#include "firmware/loop_parts.h"
 #include "hal/gpio/gpio_lines.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/run_program.h"
@@ -20,7 +20,6 @@ using model::Error;
 using model::Result;
 using Runs = std::vector<std::unique_ptr<CaseRun>>;
 
-constexpr double kNonRtForceShare = 0.25;  // as tactd caps it
 constexpr auto kProgressPeriod = std::chrono::milliseconds(100);
 
 Runs prepare(const std::vector<Case>& cases, const LimitsBench& bench) {
@@ -41,11 +40,8 @@ void play_in_real_time(const Runs& runs, hal::Device& device, const PlanOptions&
   std::atomic<std::size_t> done{0};
   std::atomic<bool> ended{false};
   std::thread loop([&] {
-    std::vector<firmware::Shortfall> known;
-    firmware::enter_rt_thread({}, known);
-    play(runs, done);
-    firmware::leave_rt_thread();
-    device.stop();
+    firmware::run_as_loop_thread({}, [&] { play(runs, done); });
+    device.stop();  // at once: drives watch for their host
     ended.store(true);
   });
   while (!ended.load()) {
@@ -53,11 +49,6 @@ void play_in_real_time(const Runs& runs, hal::Device& device, const PlanOptions&
     std::this_thread::sleep_for(kProgressPeriod);
   }
   loop.join();
-}
-
-/// What this PC does not give a thread of the loop.
-void probe_thread(std::vector<firmware::Shortfall>& shortfalls) {
-  std::thread([&] { firmware::enter_rt_thread({}, shortfalls); }).join();
 }
 
 LimitsReport begin_report(const model::Scene& scene, const hal::DeviceInfo& device) {
@@ -106,12 +97,11 @@ Result<LimitsReport> run_real(const model::Scene& scene, hal::Device& device,
   std::vector<firmware::Shortfall> shortfalls;
   firmware::use_small_thread_stacks();
   const firmware::ProcessSetup setup(shortfalls);
-  probe_thread(shortfalls);
-  const bool hard = shortfalls.empty();
+  const bool hard = shortfalls.empty() && firmware::probe_rt_thread({}).empty();
   const hal::DeviceInfo info = device.info();
   const LimitsBench bench{.scene = scene,
                           .limits = firmware::limits_for(scene.limits, info),
-                          .force_share = hard ? 1.0 : kNonRtForceShare,
+                          .force_share = hard ? 1.0 : firmware::kNonRtForceShare,
                           .hard_real_time = hard,
                           .device = &device,
                           .lines = lines->get(),
