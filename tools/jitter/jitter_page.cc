@@ -6,8 +6,6 @@
 
 #include "tools/common/html.h"
 
-#include "tools/common/html.h"
-
 namespace tact::tools {
 namespace {
 
