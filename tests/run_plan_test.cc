@@ -91,7 +91,7 @@ TEST(RunPlan, AGateWithOneLimitTooLargeFails) {
         Mutant{"continuous", enlarged<&Limits::continuous_force_N>, "largest RMS"},
         Mutant{"power", without<&Limits::power_W>, "largest power"},
         Mutant{"active-law", without<&Limits::energy_J>, "energy given"},
-        Mutant{"speed", without<&Limits::speed_mps>, "workspace acted"},
+        Mutant{"speed", without<&Limits::speed_mps>, "workspace did not act"},
         Mutant{"workspace", without<&Limits::workspace_radius_m>, "never came to zero"}}) {
     const LimitsReport wrong = plan(mutant.plan, mutant.gate_limits);
     EXPECT_FALSE(wrong.passed()) << mutant.plan;
@@ -191,7 +191,8 @@ TEST(Limits, AFailedCaseIsStatusOneAndSaysWhy) {
                           " --plan step,speed --no-pictures --set limits.speed_mps=10 --set "
                           "limits.energy_J=1");
   EXPECT_EQ(out.status, 1) << out.output;
-  EXPECT_NE(out.output.find("FAIL: the stage workspace acted"), std::string::npos) << out.output;
+  EXPECT_NE(out.output.find("FAIL: the stage workspace did not act"), std::string::npos)
+      << out.output;
   const std::string page = read("limits.html");
   EXPECT_NE(page.find("FAIL: 1 of 2 cases"), std::string::npos);
   std::filesystem::remove_all(folder());

@@ -23,7 +23,7 @@ constexpr double kWorkspace_s = 0.0515;
 constexpr double kLongestPeriod_s = 0.01;
 constexpr double kLate_s = 0.25;  // 100 late ticks of two periods, on a PC without hard real time
 
-const std::array kCases{
+constexpr std::array kCases{
     Case{.name = "ramp",
          .what = "The commanded force rises slowly to one and a half times the limit.",
          .shape = Shape::kRamp,

@@ -84,6 +84,7 @@ class Checks {
   void add(std::vector<Check> more) {
     for (Check& check : more) list_.push_back(std::move(check));
   }
+  void add(bool holds, const char* good, const char* broken) { add(holds, holds ? good : broken); }
   void add(bool holds, std::string sentence) { list_.push_back({std::move(sentence), holds}); }
   std::vector<Check> list() { return std::move(list_); }
 
@@ -103,19 +104,20 @@ void check_silence(Checks& checks, const std::vector<TickRow>& rows) {
       all([](const TickRow& r) { return r.written_N == r.gated_N && r.written_Nm == r.gated_Nm; }),
       "the device was handed what the gate let through, bit for bit");
   checks.add(all([&](const TickRow& r) { return r.armed || is_zero(r); }),
-             "no force while it was not armed");
+             "no force while it was not armed", "a force while it was not armed");
   bool faulted = false;
   checks.add(all([&](const TickRow& r) {
                faulted = faulted || latches(r.fault);
                return !faulted || is_zero(r);
              }),
-             "no force from a latched fault on");
+             "no force from a latched fault on", "a force from a latched fault on");
 }
 
 void check_expected(Checks& checks, const CaseVerdict& v) {
   const Expected& e = v.subject.expected;
-  checks.add((v.acted >> static_cast<unsigned>(e.stage) & 1u) != 0,
-             fmt::format("the stage {} acted", kStageName[static_cast<std::size_t>(e.stage)]));
+  const bool acted = (v.acted >> static_cast<unsigned>(e.stage) & 1u) != 0;
+  checks.add(acted, fmt::format("the stage {} {}", kStageName[static_cast<std::size_t>(e.stage)],
+                                acted ? "acted" : "did not act"));
   checks.add(v.fault == e.fault,
              e.fault == Fault::kNone
                  ? fmt::format(
@@ -212,7 +214,8 @@ CaseVerdict judge_rows(const Case& c, const std::vector<TickRow>& rows, const mo
     if (v.fault == Fault::kNone) v.fault = row.fault;
   }
   Checks checks;
-  checks.add(!rows.empty() && rows.back().t_s >= 0.0, "it armed, and the case began");
+  checks.add(!rows.empty() && rows.back().t_s >= 0.0, "it armed, and the case began",
+             "it did not arm, or the case did not begin");
   checks.add(check_bounds(v.worst, limits, period_s));
   check_silence(checks, rows);
   check_expected(checks, v);
