@@ -97,7 +97,7 @@ Result<LimitsReport> run_real(const model::Scene& scene, hal::Device& device,
   std::vector<firmware::Shortfall> shortfalls;
   firmware::use_small_thread_stacks();
   const firmware::ProcessSetup setup(shortfalls);
-  const bool hard = shortfalls.empty() && firmware::probe_rt_thread({}).empty();
+  const bool hard = shortfalls.empty() && firmware::probe_rt_threads({}).empty();
   const hal::DeviceInfo info = device.info();
   const LimitsBench bench{.scene = scene,
                           .limits = firmware::limits_for(scene.limits, info),

@@ -96,7 +96,9 @@ void judge(WallVerdict& v) {
   v.with_N_per_m = largest(v.points, &WallPoint::with);
   v.rest_N_per_m = largest_at_rest(v.points);
   v.with_is_least = !any_grows(v.points, &WallPoint::with);
-  const auto bounded = [](const WallPoint& p) { return p.without.in_bounds && p.with.in_bounds; };
+  const bool bounded = std::all_of(v.points.begin(), v.points.end(), [](const WallPoint& p) {
+    return p.without.in_bounds && p.with.in_bounds;
+  });
   const bool grows = any_grows(v.points, &WallPoint::without);
   v.checks = {
       {grows ? fmt::format("without the passivity stage the wall is unstable above {:.0f} N/m",
@@ -109,8 +111,11 @@ void judge(WallVerdict& v) {
                    v.with_is_least ? "at least " : "", v.ratio(), v.rest_N_per_m,
                    1e3 * worst_swing_m(v)),
        v.ratio() > 1.0},
-      {"force, slew, power and RMS stay in bounds at every stiffness, and energy with the stage",
-       std::all_of(v.points.begin(), v.points.end(), bounded)}};
+      {bounded
+           ? "force, slew, power and RMS stay in bounds at every stiffness, and energy with the "
+             "stage"
+           : "a limit was passed at some stiffness: column in_bounds of wall.csv",
+       bounded}};
 }
 
 }  // namespace
