@@ -40,8 +40,10 @@ std::string verdict(const LimitsReport& report) {
   if (report.passed())
     return fmt::format(
         "<p class=\"verdict pass\">PASS: in all {} cases the force kept every limit. Overshoot: 0 "
-        "N.</p>\n",
-        all);
+        "N.{}</p>\n",
+        all,
+        report.not_run.empty() ? ""
+                               : fmt::format(" {} cases were not run.", report.not_run.size()));
   return fmt::format(
       "<p class=\"verdict fail\">FAIL: {} of {} cases did not end as they must. Nobody should hold "
       "a "
