@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "tools/common/html.h"
+
 namespace tact::tools {
 namespace {
 
@@ -136,25 +138,6 @@ std::string peer_sentence(const JitterResult& result) {
 }
 
 }  // namespace
-
-std::string escape_html(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else if (c == '\'')
-      out += "&#39;";
-    else
-      out += c;
-  }
-  return out;
-}
 
 std::string make_page(const JitterResult& result, const std::string& command,
                       const std::string& histogram_svg) {

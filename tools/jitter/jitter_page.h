@@ -11,7 +11,4 @@ namespace tact::tools {
 std::string make_page(const JitterResult& result, const std::string& command,
                       const std::string& histogram_svg);
 
-/// Text that HTML would read as its own, made plain.
-std::string escape_html(const std::string& text);
-
 }  // namespace tact::tools

@@ -1,0 +1,82 @@
+// What tact-limits judges by, on rows written by hand.
+#include "tools/limits/verdict.h"
+
+#include <gtest/gtest.h>
+
+namespace tact::tools {
+namespace {
+
+using model::Limits;
+
+// Three ticks by hand: 2 N held while the tool moves 3 mm along it, then let go.
+std::vector<TickRow> three_ticks() {
+  std::vector<TickRow> rows(3);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].t_s = 0.001 * static_cast<double>(i);
+    rows[i].fresh = rows[i].armed = true;
+    rows[i].tool.position_m = {0, 0, 0.003 * static_cast<double>(i)};
+  }
+  rows[0].written_N = rows[0].gated_N = {0, 0, 2.0};
+  rows[1].written_N = rows[1].gated_N = {0, 0, 1.0};
+  return rows;
+}
+constexpr Limits kLimits{.force_N = 2.0,
+                         .torque_Nm = 0.1,
+                         .slew_N_per_s = 2000.0,
+                         .ramp_s = 0.1,
+                         .workspace_radius_m = 0.1,
+                         .workspace_half_length_m = 0.1,
+                         .energy_J = 0.01};
+
+bool holds(const std::vector<TickRow>& rows, const std::string& words, Limits limits = kLimits) {
+  for (const Check& c : judge_rows({}, rows, limits, 0.001).checks)
+    if (c.sentence.find(words) != std::string::npos) return c.holds;
+  ADD_FAILURE() << "no check says " << words;
+  return false;
+}
+
+TEST(Verdict, MatchesPenAndPaper) {
+  const Extremes worst = extremes_of(three_ticks(), kLimits, 0.001);
+  EXPECT_DOUBLE_EQ(worst.given_J, 2.0 * 0.003 + 1.0 * 0.003);
+  EXPECT_DOUBLE_EQ(worst.force_N, 2.0);
+  EXPECT_DOUBLE_EQ(worst.step_N, 2.0);
+  EXPECT_EQ(worst.overdrawn_J, 0.0);
+  Limits less = kLimits;
+  less.energy_J = 0.008;
+  less.recovery_W = 0.0;
+  EXPECT_FALSE(holds(three_ticks(), "energy given", less));
+  EXPECT_TRUE(holds(three_ticks(), "energy given"));
+}
+
+TEST(Verdict, AMissedSampleCountsTheMeanForceAlongTheWholeWay) {
+  std::vector<TickRow> rows = three_ticks();
+  rows[1].fresh = false;
+  EXPECT_DOUBLE_EQ(extremes_of(rows, kLimits, 0.001).given_J, 1.5 * 0.006);
+}
+
+TEST(Verdict, SeesAForceThatTheGateDidNotLetThrough) {
+  std::vector<TickRow> rows = three_ticks();
+  EXPECT_TRUE(holds(rows, "bit for bit"));
+  rows[1].written_N.x = 1e-12;
+  EXPECT_FALSE(holds(rows, "bit for bit"));
+}
+
+TEST(Verdict, SeesAForceThatIsNotArmedOrAfterAFault) {
+  std::vector<TickRow> rows = three_ticks();
+  EXPECT_TRUE(holds(rows, "while it was not armed"));
+  rows[1].armed = false;
+  EXPECT_FALSE(holds(rows, "while it was not armed"));
+  rows = three_ticks();
+  rows[0].fault = Fault::kEmergencyStop;
+  EXPECT_FALSE(holds(rows, "from a latched fault on"));
+}
+
+TEST(Verdict, CountsFromTheCauseToZero) {
+  std::vector<TickRow> rows = three_ticks();
+  EXPECT_FALSE(extremes_of(rows, kLimits, 0.001).zero_s) << "no cause";
+  rows[1].cause = true;
+  EXPECT_DOUBLE_EQ(*extremes_of(rows, kLimits, 0.001).zero_s, 0.001);
+}
+
+}  // namespace
+}  // namespace tact::tools

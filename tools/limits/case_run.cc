@@ -1,0 +1,205 @@
+#include "tools/limits/case_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "hal/sim/sim_delta.h"
+#include "tools/common/interrupt.h"
+
+namespace tact::tools {
+namespace {
+
+constexpr double kLead_s = 0.1;  // beyond the ramp
+constexpr double kSimulatedWait_s = 2.0, kRealWait_s = 60.0;
+constexpr double kLeverWithoutTorque_m = 0.05;
+constexpr double kHalfPlate_m = 4.0, kPlate_m = -1.0, kReach_m = 2.0;
+
+/// A plate far below and a sphere so large that it always touches: contact adds nothing to the
+/// command but its own way.
+model::Scene plate_scene(const Case& c, const LimitsBench& bench, const model::Limits& limits) {
+  model::Scene scene;
+  scene.path = "limits";
+  scene.rate_Hz = bench.scene.rate_Hz;
+  scene.law = model::LawKind::kRhombus;
+  scene.described = {model::LawKind::kRhombus};
+  scene.rhombus = {.rod_length_m = 0.1,
+                   .initial_angle_rad = 0.5,
+                   .normal_stiffness_N_per_m = 1.0,
+                   .tangential_stiffness_N_per_m = 0.0,
+                   .growth = 1.0,
+                   .units = 1};
+  scene.contact.tear_force_N = 0.01;
+  // on a lever of twice torque over force the torque is the first to pass its limit
+  const bool turns = limits.force_N > 0.0 && limits.torque_Nm > 0.0;
+  const double lever_m = turns ? 2.0 * limits.torque_Nm / limits.force_N : kLeverWithoutTorque_m;
+  scene.tool.spheres = {{{0, c.grip == Grip::kLever ? lever_m : 0.0, 0}, kReach_m}};
+  scene.organ_mesh = *model::make_surface_mesh({{-kHalfPlate_m, -kHalfPlate_m, kPlate_m},
+                                                {kHalfPlate_m, -kHalfPlate_m, kPlate_m},
+                                                {kHalfPlate_m, kHalfPlate_m, kPlate_m},
+                                                {-kHalfPlate_m, kHalfPlate_m, kPlate_m}},
+                                               {{0, 1, 2}, {0, 2, 3}});
+  return scene;
+}
+
+/// The scene is ours, so an error is a mistake of ours: without a plate nothing would be proved.
+std::unique_ptr<model::Tissue> make_plate(const model::Scene& scene) {
+  auto tissue = model::make_tissue(scene);
+  if (tissue) return std::move(*tissue);
+  fmt::print(stderr, "tact-limits: {}\n", tissue.error().sentence);
+  std::abort();
+}
+
+/// The hand of a case. Arming takes a second or less with the longest ramp of a scene added.
+model::HandSettings hand_of(const Case& c, const model::Limits& limits) {
+  model::HandSettings hand{.mass_kg = 0.2,
+                           .stiffness_N_per_m = 3000.0,
+                           .damping_Ns_per_m = 30.0,
+                           .repeat = false,
+                           .path = {}};
+  const double begin_s = 0.1 + limits.ramp_s + kLead_s + kCause_s;  // lines, ramp, lead, cause
+  const double away_m = limits.workspace_radius_m;
+  const auto path = [&](const Vec3& from_m, const Vec3& to_m, double in_s) {
+    hand.path = {{.time_s = 0.0, .position_m = from_m},
+                 {.time_s = begin_s, .position_m = from_m},
+                 {.time_s = begin_s + in_s, .position_m = to_m}};
+  };
+  switch (c.hand) {
+    case HandMove::kStill:
+      hand.path = {{.time_s = 0.0, .position_m = {}}};
+      break;
+    case HandMove::kSideways:  // a smooth stroke is 1.875 times as fast in its middle
+      path({0, -0.8 * away_m, 0}, {0, 0.8 * away_m, 0}, 1.6 * away_m / limits.speed_mps);
+      break;
+    case HandMove::kOutside:
+      path({0, 0.5 * away_m, 0}, {0, away_m + 0.01, 0}, 0.3);
+      break;
+    case HandMove::kUp:
+      path({0, 0, -0.4 * away_m}, {0, 0, 0.4 * away_m}, 2.0 * away_m / limits.speed_mps);
+      break;
+    case HandMove::kPress:  // light, so that what the loop does is seen
+      hand.stiffness_N_per_m = 200.0;
+      hand.damping_Ns_per_m = 1.0;
+      path({0, 0, 0.01}, {0, 0, -0.01}, 0.2);
+      break;
+  }
+  return hand;
+}
+
+std::uint32_t acted_since(std::array<std::uint64_t, firmware::kStageCount>& before,
+                          const std::array<std::uint64_t, firmware::kStageCount>& now) {
+  std::uint32_t acted = 0;
+  for (std::size_t i = 0; i < now.size(); ++i)
+    if (now[i] != before[i]) acted |= 1u << i;
+  before = now;
+  return acted;
+}
+
+}  // namespace
+
+model::Limits judged_limits(const Case& c, const LimitsBench& bench) {
+  model::Limits limits = limits_of(c, bench.limits);
+  limits.force_N *= bench.force_share;
+  limits.torque_Nm *= bench.force_share;
+  limits.continuous_force_N *= bench.force_share;
+  return limits;
+}
+
+CaseRun::CaseRun(const Case& c, const LimitsBench& bench)
+    : case_(c),
+      limits_(judged_limits(c, bench)),
+      moment_({.period_s = bench.period_s()}),
+      scene_(plate_scene(c, bench, limits_)),
+      tissue_(make_plate(scene_)),
+      lead_ticks_(static_cast<int>(std::lround((limits_.ramp_s + kLead_s) / bench.period_s()))),
+      most_wait_ticks_(static_cast<int>((bench.device != nullptr ? kRealWait_s : kSimulatedWait_s) /
+                                        bench.period_s())) {
+  hal::Device* device = bench.device;
+  hal::SafetyLines* lines = bench.lines;
+  if (device == nullptr) {
+    simulated_device_.reset(new hal::SimDelta(bench.scene.device.sim, hand_of(c, limits_)));
+    device = simulated_device_.get();
+    // without lines the watch of the loop is alone: with them a paused heartbeat stops it before
+    if (c.trouble == Trouble::kLateTick)
+      lines = &no_lines_;
+    else
+      lines = &simulated_lines_;
+    clock_ = std::make_unique<firmware::SimulatedClock>();
+  } else {
+    clock_ = std::make_unique<firmware::MonotonicClock>();
+  }
+  device_ = std::make_unique<PlayedDevice>(case_, moment_, *device, *clock_);
+  lines_ = std::make_unique<PlayedLines>(case_, moment_, *lines,
+                                         lines == &simulated_lines_ ? &simulated_lines_ : nullptr);
+  law_ = std::make_unique<CommandLaw>(case_, limits_.force_N, moment_, device_->tool());
+  model::ContactScene contact = tissue_->contact_scene();
+  contact.law = law_.get();
+  const model::Limits claimed = limits_of(c, bench.limits);
+  controller_ = std::make_unique<firmware::Controller>(
+      contact,
+      firmware::Gate(bench.gate_limits != nullptr ? bench.gate_limits(claimed) : claimed,
+                     moment_.period_s, bench.force_share),
+      bench.hard_real_time);
+  loop_ = std::make_unique<firmware::RtLoop>(
+      firmware::LoopSettings{.period_ns = std::llround(1e9 * moment_.period_s)}, *device_, *lines_,
+      *controller_, *clock_, requests_, *ring_);
+  rows_.reserve(static_cast<std::size_t>(lead_ticks_) +
+                static_cast<std::size_t>(c.duration_s / moment_.period_s) + 2);
+}
+
+bool CaseRun::play() {
+  const int ticks = static_cast<int>(std::lround(case_.duration_s / moment_.period_s));
+  requests_.arm.store(true);
+  firmware::TickRecord record;
+  int waited = 0, open = 0;
+  bool going = true;
+  while (going && waited < most_wait_ticks_ && open < lead_ticks_ + ticks) {
+    moment_.playing = open >= lead_ticks_;
+    moment_.ticks = open - lead_ticks_;
+    const bool cause = in_trouble(case_, moment_);
+    loop_->step();
+    while (ring_->pop(record)) keep(record, cause);
+    rows_.empty() ? ++waited : ++open;
+    // a device keeps its own fault until it is opened again: no use to wait
+    if (rows_.empty() && latches(record.output.fault)) {
+      refused_ = record.output.fault;
+      break;
+    }
+    going = !is_interrupted();
+  }
+  loop_->let_go();
+  return going;
+}
+
+void CaseRun::keep(const firmware::TickRecord& record, bool cause) {
+  const std::uint32_t acted = acted_since(counted_, controller_->gate().counters());
+  const bool armed = record.output.state == firmware::State::kArmed;
+  if (rows_.empty() && !armed) return;
+  if (rows_.size() == rows_.capacity()) return;
+  if (!moment_.playing || moment_.ticks == 0) begin_ns_ = record.due_ns;
+  const double lead_s = moment_.playing ? 0.0 : moment_.t_s();
+  const firmware::TickInput& in = record.input;
+  const firmware::TickOutput& out = record.output;
+  rows_.push_back({.t_s = lead_s + 1e-9 * static_cast<double>(record.due_ns - begin_ns_),
+                   .commanded_N = out.wanted.force_N,
+                   .gated_N = out.written.force_N,
+                   .written_N = device_->written().force_N,
+                   .commanded_Nm = out.wanted.torque_Nm,
+                   .gated_Nm = out.written.torque_Nm,
+                   .written_Nm = device_->written().torque_Nm,
+                   .tool = in.sample.tool,
+                   .fresh = in.sample.fresh,
+                   .armed = armed,
+                   .cause = cause,
+                   .skipped_periods = in.skipped_periods,
+                   .acted = acted,
+                   .limit = out.limit,
+                   .fault = out.fault,
+                   .given_J = out.given_energy_J,
+                   .rms_N = out.rms_force_N});
+}
+
+}  // namespace tact::tools

@@ -1,0 +1,108 @@
+// tact-limits: does the force keep its limits, whatever is commanded and whatever goes wrong?
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "tools/common/program.h"
+#include "tools/limits/consent.h"
+#include "tools/limits/run_plan.h"
+
+namespace {
+
+using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
+using tact::model::Error;
+using tact::model::Scene;
+
+struct Options {
+  std::string plan = "all", out, scene;
+  std::vector<std::string> overrides;
+  bool list = false, json = false, no_pictures = false, consent_from_stdin = false;
+};
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("--scene", o.scene, "scene file (TOML): its device and its limits are tested");
+  app.add_option("--set", o.overrides, "one key of the scene, as KEY=VALUE; repeatable");
+  app.add_option("--plan", o.plan, "all, or names of cases with commas")->capture_default_str();
+  app.add_option("--out", o.out, "folder of the report; made if need be");
+  app.add_flag("--list", o.list, "the cases and what they do, nothing else");
+  app.add_flag("--no-pictures", o.no_pictures, "tables and page without curves; needs no gnuplot");
+  app.add_flag("--consent-from-stdin", o.consent_from_stdin,
+               "read the words of consent from a pipe: for a test bench that nobody holds");
+  app.add_flag("--json", o.json, "print one JSON document");
+}
+
+int list_cases() {
+  for (const Case& c : all_cases()) fmt::print("{:16} {}\n", c.name, c.what);
+  fmt::print("{:16} {}\n", kWallName,
+             "A wall is made stiffer until it is unstable, without and with the passivity stage.");
+  return 0;
+}
+
+/// A real device moves only for a person who has typed that it may.
+std::optional<Error> ask_for_consent(const Options& o, const Scene& scene) {
+  if (!o.consent_from_stdin && (isatty(STDIN_FILENO) == 0 || isatty(STDERR_FILENO) == 0))
+    return Error{
+        "drives a real device to its limits, so it asks on a terminal first: start it from one "
+        "(--help names the flag for a bench that nobody holds)"};
+  const double force_N = scene.limits.force_N;
+  fmt::print(stderr, "{}Type: {}\n> ",
+             warning_text(scene.device.kind, force_N, scene.device.lines.wired()),
+             consent_words(force_N));
+  std::fflush(stderr);
+  return read_consent(std::cin, force_N);
+}
+
+void show_progress(std::size_t done, std::size_t all) {
+  fmt::print(stderr, "\r{} of {} cases ", done, all);
+  if (done == all) fmt::print(stderr, "\n");
+  std::fflush(stderr);
+}
+
+int test_limits(const Program& program, const Options& o) {
+  const auto cases = choose_cases(o.plan);
+  if (!cases) return program.fail(cases.error());
+  const auto scene = tact::model::load_scene(o.scene, o.overrides);
+  if (!scene) return program.fail(scene.error());
+  if (const auto error = prepare_folder(o.out)) return program.fail(*error);
+  if (!tact::hal::is_simulated(scene->device))
+    if (const auto refused = ask_for_consent(o, *scene)) return program.fail(*refused);
+  PlanOptions options{.cases = *cases, .wall = names_wall(o.plan)};
+  if (isatty(STDERR_FILENO) != 0) options.progress = show_progress;
+  auto report = run_plan(*scene, options);
+  if (!report) return program.fail(report.error());
+  report->command = program.command();
+  const auto files = write_report(*report, o.out, !o.no_pictures);
+  if (o.json)
+    fmt::print("{}\n", to_json(*report).dump(2));
+  else
+    fmt::print("{}", to_text(*report));
+  if (!files) return program.fail(files.error(), "the tables are written, the page is not");
+  if (!o.json) fmt::print("{}: {}/limits.html\n", report->passed() ? "PASS" : "FAIL", o.out);
+  return report->passed() ? 0 : 1;
+}
+
+}  // namespace
+
+// The libraries throw when memory or standard output is gone; then the program may as well end.
+int main(int argc, char** argv) {
+  Program program(
+      "tact-limits",
+      "Test of safety-limited force output: plays cases to the loop that drives the device, from "
+      "a\n"
+      "step to a dead emergency stop, and judges what the device was handed.",
+      "Writes limits.html (the report to hand on), limits.json, cases.csv, a trace of every tick\n"
+      "for each case, wall.csv, and curves by gnuplot. Forces N, torques N m, energy J, power W,\n"
+      "times s. The simulated device runs on simulated time. A real device runs in real time,\n"
+      "after a warning and words that a person types; cases that need the simulated hand are\n"
+      "left out there, and the report says so.");
+  Options o;
+  add_options(program.options(), o);
+  if (const auto status = program.parse(argc, argv)) return *status;
+  if (o.list) return list_cases();
+  if (o.scene.empty() || o.out.empty())
+    return program.fail({"--scene FILE and --out DIR are needed; see --help"});
+  return test_limits(program, o);
+}

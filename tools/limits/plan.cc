@@ -1,0 +1,241 @@
+#include "tools/limits/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+
+namespace tact::tools {
+namespace {
+
+using firmware::Stage;
+using model::Error;
+using model::Fault;
+using model::Result;
+
+// A missed sample is held, then the force fades in 10 ms; outside the workspace it takes 50 ms. One
+// tick is lost where the cause is noticed.
+constexpr double kAtOnce_s = 0.0;
+constexpr double kStale_s = 0.0115;
+constexpr double kWorkspace_s = 0.0515;
+constexpr double kLongestPeriod_s = 0.01;
+constexpr double kLate_s = 0.25;  // 100 late ticks of two periods, on a PC without hard real time
+
+constexpr std::array kCases{
+    Case{.name = "ramp",
+         .what = "The commanded force rises slowly to one and a half times the limit.",
+         .shape = Shape::kRamp,
+         .size = 1.5,
+         .duration_s = 1.0,
+         .expected = {.stage = Stage::kMagnitude, .least_peak_ratio = 0.999}},
+    Case{.name = "diagonal",
+         .what = "Each axis stays below the limit, the vector does not.",
+         .shape = Shape::kDiagonal,
+         .size = 0.9,
+         .expected = {.stage = Stage::kMagnitude, .least_peak_ratio = 0.999}},
+    Case{.name = "step",
+         .what = "The commanded force jumps from zero to the limit in one tick.",
+         .shape = Shape::kHold,
+         .size = 1.0,
+         .expected = {.stage = Stage::kSlew, .least_peak_ratio = 0.99}},
+    Case{.name = "impulse",
+         .what = "A million newtons are commanded for one tick.",
+         .shape = Shape::kImpulse,
+         .expected = {.stage = Stage::kMagnitude, .least_peak_ratio = 0.01}},
+    Case{.name = "sign-flip",
+         .what = "The commanded force changes its sign every 0.1 s, at the limit.",
+         .shape = Shape::kFlip,
+         .size = 1.0,
+         .duration_s = 0.6,
+         .expected = {.stage = Stage::kSlew, .least_peak_ratio = 0.9}},
+    Case{.name = "chatter",
+         .what = "The commanded force changes its sign 400 times a second (200 Hz), at the limit.",
+         .shape = Shape::kChatter,
+         .size = 1.0,
+         .expected = {.stage = Stage::kSlew, .least_peak_ratio = 0.05}},
+    Case{.name = "torque",
+         .what = "The force acts on a lever, so that the torque passes its limit before the force.",
+         .shape = Shape::kRamp,
+         .size = 1.0,
+         .grip = Grip::kLever,
+         .duration_s = 1.0,
+         .expected = {.stage = Stage::kMagnitude, .least_peak_ratio = 0.9}},
+    Case{.name = "nan-force",
+         .what = "The model computes NaN (not a number) in mid-force.",
+         .shape = Shape::kNan,
+         .size = 0.5,
+         .expected = {.stage = Stage::kFinite,
+                      .fault = Fault::kForceNotFinite,
+                      .least_peak_ratio = 0.45,
+                      .zero_within_s = kAtOnce_s}},
+    Case{.name = "infinite-force",
+         .what = "The model computes infinity in mid-force.",
+         .shape = Shape::kInfinity,
+         .size = 0.5,
+         .expected = {.stage = Stage::kFinite,
+                      .fault = Fault::kForceNotFinite,
+                      .least_peak_ratio = 0.45,
+                      .zero_within_s = kAtOnce_s}},
+    Case{.name = "nan-sample",
+         .what = "The device reports NaN as its position in mid-force.",
+         .shape = Shape::kHold,
+         .size = 0.5,
+         .trouble = Trouble::kNanSample,
+         .trouble_ticks = 1,
+         .expected = {.stage = Stage::kFinite,
+                      .fault = Fault::kSampleNotFinite,
+                      .zero_within_s = kAtOnce_s}},
+    Case{.name = "stale-samples",
+         .what = "The device gives no new sample for 15 ticks, then goes on.",
+         .shape = Shape::kRamp,
+         .size = 1.0,
+         .trouble = Trouble::kNoSample,
+         .trouble_ticks = 15,
+         .expected = {.stage = Stage::kFresh, .zero_within_s = kStale_s}},
+    Case{.name = "lost-device",
+         .what = "The device gives no new sample any more.",
+         .shape = Shape::kRamp,
+         .size = 1.0,
+         .trouble = Trouble::kNoSample,
+         .trouble_ticks = 1'000'000,
+         .expected = {.stage = Stage::kFresh,
+                      .fault = Fault::kDeviceLost,
+                      .zero_within_s = kStale_s}},
+    Case{.name = "late-ticks",
+         .what = "Every tick takes one and a half periods: the loop is too slow for its rate.",
+         .shape = Shape::kRamp,
+         .size = 1.0,
+         .trouble = Trouble::kLateTick,
+         .trouble_ticks = 1'000'000,
+         .duration_s = 0.5,
+         .expected = {.stage = Stage::kArmed, .fault = Fault::kLoopLate, .zero_within_s = kLate_s}},
+    Case{.name = "e-stop",
+         .what = "The emergency stop opens in mid-force.",
+         .shape = Shape::kRamp,
+         .size = 1.0,
+         .trouble = Trouble::kEmergencyStop,
+         .trouble_ticks = 1'000'000,
+         .expected = {.stage = Stage::kArmed,
+                      .fault = Fault::kEmergencyStop,
+                      .zero_within_s = kAtOnce_s}},
+    Case{.name = "e-stop-released",
+         .what = "The emergency stop opens for 50 ms and closes again: nothing moves by itself.",
+         .shape = Shape::kRamp,
+         .size = 1.0,
+         .trouble = Trouble::kEmergencyStop,
+         .trouble_ticks = 50,
+         .expected = {.stage = Stage::kArmed,
+                      .fault = Fault::kEmergencyStop,
+                      .zero_within_s = kAtOnce_s}},
+    Case{.name = "dead-man",
+         .what = "The dead-man switch is let go in mid-force.",
+         .shape = Shape::kRamp,
+         .size = 1.0,
+         .trouble = Trouble::kDeadMan,
+         .trouble_ticks = 1'000'000,
+         .expected = {.stage = Stage::kArmed,
+                      .fault = Fault::kDeadManReleased,
+                      .zero_within_s = kAtOnce_s}},
+    Case{.name = "device-fault",
+         .what = "The device reports a fault of its own in mid-force.",
+         .shape = Shape::kRamp,
+         .size = 1.0,
+         .trouble = Trouble::kDeviceFault,
+         .trouble_ticks = 1,
+         .expected = {.stage = Stage::kArmed,
+                      .fault = Fault::kDeviceFailed,
+                      .zero_within_s = kAtOnce_s}},
+    Case{.name = "speed",
+         .what = "The hand tears the tool sideways, faster than permitted.",
+         .shape = Shape::kHold,
+         .size = 0.5,
+         .hand = HandMove::kSideways,
+         .duration_s = 0.6,
+         .expected = {.stage = Stage::kWorkspace,
+                      .least_peak_ratio = 0.45,
+                      .zero_within_s = kWorkspace_s}},
+    Case{.name = "workspace",
+         .what = "The hand carries the tool out of the permitted workspace and stays there.",
+         .shape = Shape::kHold,
+         .size = 0.5,
+         .hand = HandMove::kOutside,
+         .duration_s = 0.8,
+         .expected = {.stage = Stage::kWorkspace,
+                      .least_peak_ratio = 0.45,
+                      .zero_within_s = kWorkspace_s}},
+    Case{.name = "power",
+         .what = "The tool moves along with the force; the power limit is made tighter.",
+         .shape = Shape::kHold,
+         .size = 0.8,
+         .hand = HandMove::kUp,
+         .duration_s = 0.6,
+         .power_share = 0.1,
+         .expected = {.stage = Stage::kPower, .least_peak_ratio = 0.3}},
+    Case{.name = "continuous",
+         .what = "The limit is commanded for long; the continuous limit is made half of it.",
+         .shape = Shape::kHold,
+         .size = 1.0,
+         .duration_s = 2.0,
+         .continuous_share = 0.5,
+         .expected = {.stage = Stage::kMagnitude, .least_peak_ratio = 0.99}},
+    Case{.name = "active-law",
+         .what = "A wrong law pushes along every motion, so that it gives energy without end.",
+         .shape = Shape::kPump,
+         .size = 60.0,
+         .hand = HandMove::kPress,
+         .duration_s = 3.0,
+         .budget_share = 1.1,
+         .expected = {.stage = Stage::kPassivity, .least_peak_ratio = 0.2}},
+};
+
+}  // namespace
+
+std::span<const Case> all_cases() { return kCases; }
+
+Result<std::vector<Case>> choose_cases(const std::string& names) {
+  if (names == "all") return std::vector<Case>(kCases.begin(), kCases.end());
+  std::vector<Case> chosen;
+  std::istringstream in(names);
+  for (std::string name; std::getline(in, name, ',');) {
+    if (name == kWallName) continue;
+    const auto* found =
+        std::find_if(kCases.begin(), kCases.end(), [&](const Case& c) { return name == c.name; });
+    if (found == kCases.end())
+      return Error{fmt::format("--plan {}: no such case; --list shows them all", name)};
+    chosen.push_back(*found);
+  }
+  if (names.empty()) return Error{"--plan: names no case; --list shows them all"};
+  return chosen;
+}
+
+bool names_wall(const std::string& names) {
+  if (names == "all") return true;
+  std::istringstream in(names);
+  for (std::string name; std::getline(in, name, ',');)
+    if (name == kWallName) return true;
+  return false;
+}
+
+model::Limits limits_of(const Case& c, const model::Limits& limits) {
+  model::Limits tight = limits;
+  if (c.budget_share > 0.0) {  // less than twice what the brake needs is refused in a scene
+    const double slew_N_per_s = limits.slew_N_per_s - limits.force_N / limits.ramp_s;
+    const double fall_s = 0.5 * limits.force_N / slew_N_per_s + kLongestPeriod_s;
+    const double need_J =
+        (limits.speed_mps * limits.force_N + limits.turn_radps * limits.torque_Nm) * fall_s;
+    tight.energy_J = std::min(limits.energy_J, c.budget_share * 2.0 * need_J);
+  }
+  if (c.power_share < 1.0)
+    tight.power_W = std::min(limits.power_W, c.power_share * limits.force_N * limits.speed_mps);
+  if (c.continuous_share < 1.0) {
+    constexpr double kWarm_s = 0.5;
+    tight.continuous_force_N =
+        std::min(limits.continuous_force_N, c.continuous_share * limits.force_N);
+    tight.thermal_time_s = std::min(limits.thermal_time_s, kWarm_s);
+  }
+  return tight;
+}
+
+}  // namespace tact::tools

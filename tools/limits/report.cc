@@ -1,0 +1,279 @@
+#include "tools/limits/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tools/common/table.h"
+
+namespace tact::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using model::Result;
+using nlohmann::json;
+
+/// Length of a vector, with the sign of its z: what the curves show.
+double along_z(const Vec3& v) { return v.z < 0.0 ? -norm(v) : norm(v); }
+
+std::string word_of(std::string text) {  // a word of a table has no comma
+  std::replace(text.begin(), text.end(), ',', ' ');
+  return text;
+}
+
+Table case_table(const LimitsReport& report) {
+  Table table("cases",
+              {{"case", CellKind::kWord},
+               {"passed"},
+               {"force_limit_N"},
+               {"largest_commanded_N"},
+               {"largest_written_N"},
+               {"overshoot_N"},
+               {"largest_torque_Nm"},
+               {"largest_step_N"},
+               {"largest_power_W"},
+               {"given_energy_J"},
+               {"largest_rms_N"},
+               {"time_to_zero_s"},
+               {"stages", CellKind::kWord},
+               {"fault"}},
+              report.cases.size());
+  for (const CaseResult& result : report.cases) {
+    const CaseVerdict& v = result.verdict;
+    table.add({std::string(v.subject.name), v.passed() ? 1.0 : 0.0, v.limits.force_N,
+               v.worst.commanded_N, v.worst.force_N, v.overshoot_N, v.worst.torque_Nm,
+               v.worst.step_N, v.worst.power_W, v.worst.given_J, v.worst.rms_N,
+               v.worst.zero_s.value_or(std::nan("")), word_of(v.acted_words()),
+               static_cast<double>(v.fault)});
+  }
+  return table;
+}
+
+Table trace_table(const CaseResult& result) {
+  Table table(std::string("trace_") + result.verdict.subject.name,
+              {{"t_s"},          {"commanded_N"},  {"gated_N"},         {"written_N"},
+               {"commanded_Nm"}, {"written_Nm"},   {"written_x_N"},     {"written_y_N"},
+               {"written_z_N"},  {"position_x_m"}, {"position_y_m"},    {"position_z_m"},
+               {"speed_mps"},    {"power_W"},      {"given_energy_J"},  {"rms_N"},
+               {"fresh"},        {"armed"},        {"skipped_periods"}, {"stages", CellKind::kWord},
+               {"limit"},        {"fault"}},
+              result.rows.size());
+  for (const TickRow& r : result.rows) {
+    CaseVerdict stages;
+    stages.acted = r.acted;
+    table.add({r.t_s,
+               along_z(r.commanded_N),
+               along_z(r.gated_N),
+               along_z(r.written_N),
+               norm(r.commanded_Nm),
+               norm(r.written_Nm),
+               r.written_N.x,
+               r.written_N.y,
+               r.written_N.z,
+               r.tool.position_m.x,
+               r.tool.position_m.y,
+               r.tool.position_m.z,
+               norm(r.tool.velocity_mps),
+               dot(r.written_N, r.tool.velocity_mps),
+               r.given_J,
+               r.rms_N,
+               r.fresh ? 1.0 : 0.0,
+               r.armed ? 1.0 : 0.0,
+               static_cast<double>(r.skipped_periods),
+               word_of(stages.acted_words()),
+               static_cast<double>(r.limit),
+               static_cast<double>(r.fault)});
+  }
+  return table;
+}
+
+Table wall_table(const WallVerdict& wall) {
+  Table table("wall",
+              {{"stiffness_N_per_m"},
+               {"without_early_swing_m"},
+               {"without_last_swing_m"},
+               {"without_grows"},
+               {"without_given_J"},
+               {"with_early_swing_m"},
+               {"with_last_swing_m"},
+               {"with_grows"},
+               {"with_given_J"},
+               {"in_bounds"}},
+              wall.points.size());
+  for (const WallPoint& p : wall.points)
+    table.add({p.stiffness_N_per_m, p.without.early_swing_m, p.without.last_swing_m,
+               p.without.grows ? 1.0 : 0.0, p.without.given_J, p.with.early_swing_m,
+               p.with.last_swing_m, p.with.grows ? 1.0 : 0.0, p.with.given_J,
+               p.without.in_bounds && p.with.in_bounds ? 1.0 : 0.0});
+  return table;
+}
+
+json checks_json(const std::vector<Check>& checks) {
+  json out = json::array();
+  for (const Check& c : checks) out.push_back({{"holds", c.holds}, {"sentence", c.sentence}});
+  return out;
+}
+
+json case_json(const CaseVerdict& v) {
+  return {{"case", v.subject.name},
+          {"what", v.subject.what},
+          {"passed", v.passed()},
+          {"force_limit_N", v.limits.force_N},
+          {"largest_commanded_N", v.worst.commanded_N},
+          {"largest_written_N", v.worst.force_N},
+          {"overshoot_N", v.overshoot_N},
+          {"largest_step_N", v.worst.step_N},
+          {"largest_power_W", v.worst.power_W},
+          {"given_energy_J", v.worst.given_J},
+          {"largest_rms_N", v.worst.rms_N},
+          {"time_to_zero_s", v.worst.zero_s ? json(*v.worst.zero_s) : json()},
+          {"stages", v.acted_words()},
+          {"fault", static_cast<int>(v.fault)},
+          {"checks", checks_json(v.checks)}};
+}
+
+/// Nothing of it was made tighter.
+bool keeps_limits(const model::Limits& here, const model::Limits& all) {
+  return !(here.power_W < all.power_W || here.energy_J < all.energy_J ||
+           here.continuous_force_N < all.continuous_force_N);
+}
+
+Result<std::string> read_whole(const std::string& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  if (!(text << file.rdbuf())) return model::Error{path + ": cannot be read"};
+  return text.str();
+}
+
+}  // namespace
+
+bool LimitsReport::passed() const {
+  return !(cases.empty() && !wall) && (!wall || wall->passed()) &&
+         std::all_of(cases.begin(), cases.end(),
+                     [](const CaseResult& r) { return r.verdict.passed(); });
+}
+
+std::vector<LimitRow> limit_rows(const LimitsReport& report) {
+  const model::Limits& l = report.limits;
+  std::vector<LimitRow> rows{
+      {"Force", "limits.force_N", "N", l.force_N},
+      {"Torque", "limits.torque_Nm", "N m", l.torque_Nm},
+      {"Change of the force in one tick", "limits.slew_N_per_s", "N",
+       l.slew_N_per_s * report.period_s},
+      {"Power given to the hand", "limits.power_W", "W", l.power_W},
+      {"Energy given to the hand since arming", "limits.energy_J", "J", l.energy_J},
+      {"RMS of the force", "limits.continuous_force_N", "N",
+       std::min(l.continuous_force_N, l.force_N)}};
+  for (const CaseResult& result : report.cases) {
+    const CaseVerdict& v = result.verdict;
+    const Extremes& w = v.worst;
+    const double largest[] = {w.force_N, w.torque_Nm, w.step_N, w.power_W, w.given_J, w.rms_N};
+    const std::vector<Check> bounds = check_bounds(w, v.limits, report.period_s);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      rows[i].holds = rows[i].holds && bounds[i].holds;
+      if (keeps_limits(v.limits, l)) rows[i].largest = std::max(rows[i].largest, largest[i]);
+    }
+  }
+  return rows;
+}
+
+json to_json(const LimitsReport& report) {
+  json limits = json::array(), cases = json::array();
+  for (const LimitRow& row : limit_rows(report))
+    limits.push_back({{"limit", row.name},
+                      {"key", row.key},
+                      {"unit", row.unit},
+                      {"value", row.limit},
+                      {"largest", row.largest},
+                      {"holds", row.holds}});
+  for (const CaseResult& result : report.cases) cases.push_back(case_json(result.verdict));
+  const firmware::Environment& e = report.environment;
+  json out{{"passed", report.passed()},
+           {"command", report.command},
+           {"started", report.started},
+           {"scene", report.scene_name},
+           {"scene_hash", e.scene_hash},
+           {"device", report.device_name},
+           {"simulated", report.simulated},
+           {"force_share", report.force_share},
+           {"rate_Hz", 1.0 / report.period_s},
+           {"limits", limits},
+           {"cases", cases},
+           {"not_run", report.not_run},
+           {"environment",
+            {{"kernel", e.kernel_release},
+             {"cpu", e.cpu},
+             {"revision", e.git_revision},
+             {"compiler", e.compiler}}}};
+  if (report.wall)
+    out["wall"] = {{"passed", report.wall->passed()},
+                   {"theory_N_per_m", report.wall->theory_N_per_m},
+                   {"without_passivity_N_per_m", report.wall->without_N_per_m},
+                   {"with_passivity_N_per_m", report.wall->with_N_per_m},
+                   {"rest_with_passivity_N_per_m", report.wall->rest_N_per_m},
+                   {"with_is_a_least_value", report.wall->with_is_least},
+                   {"z_width_ratio", report.wall->ratio()},
+                   {"checks", checks_json(report.wall->checks)}};
+  return out;
+}
+
+std::string to_text(const LimitsReport& report) {
+  std::string out;
+  for (const CaseResult& result : report.cases) {
+    const CaseVerdict& v = result.verdict;
+    out += fmt::format("{:4}  {:16} {:7.3f} N of {:.3g}, overshoot {:g}, zero {}, {}\n",
+                       v.passed() ? "ok" : "FAIL", v.subject.name, v.worst.force_N,
+                       v.limits.force_N, v.overshoot_N,
+                       v.worst.zero_s ? fmt::format("after {:.0f} ms", 1e3 * *v.worst.zero_s) : "-",
+                       v.acted_words());
+    for (const Check& c : v.checks)
+      if (!c.holds) out += fmt::format("      FAIL: {}\n", c.sentence);
+  }
+  if (report.wall) {
+    out += fmt::format("{:4}  {}\n", report.wall->passed() ? "ok" : "FAIL", kWallName);
+    for (const Check& c : report.wall->checks)
+      out += fmt::format("      {}{}\n", c.holds ? "" : "FAIL: ", c.sentence);
+  }
+  for (const std::string& name : report.not_run)
+    out += fmt::format("-     {:16} not run: needs the simulated hand\n", name);
+  return out;
+}
+
+Result<std::vector<std::string>> write_report(const LimitsReport& report,
+                                              const std::string& directory, bool draw_pictures) {
+  std::vector<std::string> files;
+  const auto write = [&](const std::string& name, const std::string& content) {
+    const std::string path = (fs::path(directory) / name).string();
+    auto written = write_whole_file(path, content);
+    if (written) files.push_back(path);
+    return written;
+  };
+  std::vector<Table> tables;
+  if (!report.cases.empty()) tables.push_back(case_table(report));
+  for (const CaseResult& result : report.cases) tables.push_back(trace_table(result));
+  if (report.wall) tables.push_back(wall_table(*report.wall));
+  for (const Table& table : tables)
+    if (auto done = write(table.name() + ".csv", table.to_csv()); !done) return done.error();
+  if (auto done = write("limits.json", to_json(report).dump(2) + "\n"); !done) return done.error();
+  std::vector<std::string> drawings;
+  if (draw_pictures) {
+    const auto drawn = draw_curves(report, directory);
+    if (!drawn) return drawn.error();
+    for (const std::string& path : *drawn) {
+      files.push_back(path);
+      if (fs::path(path).extension() != ".svg") continue;
+      auto svg = read_whole(path);
+      if (!svg) return svg.error();
+      drawings.push_back(std::move(*svg));
+    }
+  }
+  if (auto done = write("limits.html", page_html(report, drawings)); !done) return done.error();
+  return files;
+}
+
+}  // namespace tact::tools

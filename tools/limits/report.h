@@ -1,0 +1,62 @@
+// report.h - what a test of the limits leaves behind: JSON for machines, CSV of every tick, curves by
+// gnuplot, and one page that a safety officer can read.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/environment.h"
+#include "model/result.h"
+#include "tools/limits/wall.h"
+
+namespace tact::tools {
+
+struct CaseResult {
+  CaseVerdict verdict;
+  std::vector<TickRow> rows;
+};
+
+struct LimitsReport {
+  std::string command, started;  // as typed; UTC
+  std::string scene_name, scene_path, device_name;
+  bool simulated = true;
+  model::Limits limits{};  // in use: of scene, device and PC
+  double period_s = 0.001;
+  double force_share = 1.0;
+  bool hard_real_time = true;  // asked of the PC; simulated time needs none
+  firmware::Environment environment{};
+  std::vector<CaseResult> cases;
+  std::optional<WallVerdict> wall;
+  std::vector<std::string> not_run;  // names of cases that need a simulated hand
+
+  bool passed() const;
+};
+
+/// One limit, and what came nearest to it in all cases that left it as it is.
+struct LimitRow {
+  const char* name;  // for a reader
+  const char* key;   // of the scene
+  const char* unit;
+  double limit = 0.0, largest = 0.0;
+  bool holds = true;  // in every case, tightened ones too
+};
+std::vector<LimitRow> limit_rows(const LimitsReport& report);
+
+nlohmann::json to_json(const LimitsReport& report);
+/// A line for each case, on a terminal.
+std::string to_text(const LimitsReport& report);
+/// limits.json, cases.csv, a trace_NAME.csv for each case, wall.csv, curves.* and wall.*,
+/// limits.html. Returns the paths.
+model::Result<std::vector<std::string>> write_report(const LimitsReport& report,
+                                                     const std::string& directory,
+                                                     bool draw_pictures);
+
+/// The pictures beside the tables: paths without ending of the folder.
+model::Result<std::vector<std::string>> draw_curves(const LimitsReport& report,
+                                                    const std::string& directory);
+/// `svg`: the drawings, in their order; empty: without.
+std::string page_html(const LimitsReport& report, const std::vector<std::string>& svg);
+
+}  // namespace tact::tools

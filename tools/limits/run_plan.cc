@@ -1,0 +1,133 @@
+#include "tools/limits/run_plan.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <thread>
+
+#include "firmware/loop_parts.h"
+#include "hal/gpio/gpio_lines.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/run_program.h"
+
+namespace tact::tools {
+namespace {
+
+using model::Error;
+using model::Result;
+using Runs = std::vector<std::unique_ptr<CaseRun>>;
+
+constexpr auto kProgressPeriod = std::chrono::milliseconds(100);
+
+Runs prepare(const std::vector<Case>& cases, const LimitsBench& bench) {
+  Runs runs;
+  for (const Case& c : cases) runs.push_back(std::make_unique<CaseRun>(c, bench));
+  return runs;
+}
+
+/// Case after case without a pause: drives watch for their host.
+void play(const Runs& runs, std::atomic<std::size_t>& done) {
+  for (const auto& run : runs) {
+    if (!run->play()) return;
+    done.fetch_add(1);
+  }
+}
+
+void play_in_real_time(const Runs& runs, hal::Device& device, const PlanOptions& options) {
+  std::atomic<std::size_t> done{0};
+  std::atomic<bool> ended{false};
+  std::thread loop([&] {
+    firmware::run_as_loop_thread({}, [&] { play(runs, done); });
+    device.stop();  // at once: drives watch for their host
+    ended.store(true);
+  });
+  while (!ended.load()) {
+    if (options.progress) options.progress(done.load(), runs.size());
+    std::this_thread::sleep_for(kProgressPeriod);
+  }
+  loop.join();
+}
+
+LimitsReport begin_report(const model::Scene& scene, const hal::DeviceInfo& device) {
+  LimitsReport report;
+  report.started = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)));
+  report.scene_name = scene.name;
+  report.scene_path = scene.path;
+  report.device_name = device.name;
+  report.simulated = hal::is_simulated(scene.device);
+  report.period_s = 1.0 / scene.rate_Hz;
+  report.environment = firmware::read_environment(scene.hash);
+  return report;
+}
+
+Result<LimitsReport> finished(LimitsReport report, const Runs& runs, const LimitsBench& bench,
+                              const hal::DeviceInfo& device, bool wall) {
+  if (is_interrupted()) return interruption();
+  report.limits = judged_limits(Case{}, bench);
+  report.force_share = bench.force_share;
+  report.hard_real_time = bench.hard_real_time;
+  for (const auto& run : runs)
+    report.cases.push_back({.verdict = judge_case(*run), .rows = run->rows()});
+  if (wall) {
+    report.wall = measure_wall(bench, device);
+    if (!report.wall) return interruption();
+  }
+  return report;
+}
+
+Result<LimitsReport> run_simulated(const model::Scene& scene, const hal::DeviceInfo& info,
+                                   const PlanOptions& options) {
+  const LimitsBench bench{.scene = scene,
+                          .limits = firmware::limits_for(scene.limits, info),
+                          .gate_limits = options.gate_limits};
+  firmware::flush_denormals();
+  const Runs runs = prepare(options.cases, bench);
+  std::atomic<std::size_t> done{0};
+  play(runs, done);
+  return finished(begin_report(scene, info), runs, bench, info, options.wall);
+}
+
+Result<LimitsReport> run_real(const model::Scene& scene, hal::Device& device,
+                              const PlanOptions& options) {
+  auto lines = hal::open_safety_lines(scene.device.lines);
+  if (!lines) return Error{fmt::format("{}: {}", scene.path, lines.error().sentence)};
+  std::vector<firmware::Shortfall> shortfalls;
+  firmware::use_small_thread_stacks();
+  const firmware::ProcessSetup setup(shortfalls);
+  const bool hard = shortfalls.empty() && firmware::probe_rt_threads({}).empty();
+  const hal::DeviceInfo info = device.info();
+  const LimitsBench bench{.scene = scene,
+                          .limits = firmware::limits_for(scene.limits, info),
+                          .force_share = hard ? 1.0 : firmware::kNonRtForceShare,
+                          .hard_real_time = hard,
+                          .device = &device,
+                          .lines = lines->get(),
+                          .gate_limits = options.gate_limits};
+  LimitsReport report = begin_report(scene, info);
+  std::vector<Case> cases;
+  for (const Case& c : options.cases) {
+    if (needs_simulation(c))
+      report.not_run.emplace_back(c.name);
+    else
+      cases.push_back(c);
+  }
+  if (options.wall) report.not_run.emplace_back(kWallName);
+  const Runs runs = prepare(cases, bench);
+  play_in_real_time(runs, device, options);
+  (*lines)->stop();
+  return finished(std::move(report), runs, bench, info, false);
+}
+
+}  // namespace
+
+Result<LimitsReport> run_plan(const model::Scene& scene, const PlanOptions& options) {
+  auto device = hal::open_device(scene);
+  if (!device) return device.error();
+  if (hal::is_simulated(scene.device)) return run_simulated(scene, (*device)->info(), options);
+  return run_real(scene, **device, options);
+}
+
+}  // namespace tact::tools

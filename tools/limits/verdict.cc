@@ -1,0 +1,235 @@
+#include "tools/limits/verdict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tact::tools {
+namespace {
+
+using firmware::kStageCount;
+using firmware::kStageName;
+
+constexpr double kRounding = 1.0 + 1e-9;  // for sums and products; |F| has none
+
+/// Force that was held since the last sample, and the way that the next one shows.
+class EnergyAccount {
+ public:
+  explicit EnergyAccount(const model::Limits& limits) : limits_(limits) {}
+
+  void add(const TickRow& row, double period_s) {
+    const double periods = 1.0 + row.skipped_periods;
+    time_s_ += periods * period_s;
+    sum_.force_N += periods * held_.force_N;
+    sum_.torque_Nm += periods * held_.torque_Nm;
+    periods_ += periods;
+    held_ = {.force_N = row.written_N, .torque_Nm = row.written_Nm};
+    if (!row.fresh || !is_finite(row.tool)) return;
+    if (placed_) {
+      const Vec3 moved_m = row.tool.position_m - position_m_;
+      given_J_ += dot(sum_.force_N, moved_m) / periods_ + turned_J(row.tool.orientation);
+    }
+    largest_J_ = std::max(largest_J_, given_J_);
+    const double allowed_J = limits_.energy_J + limits_.recovery_W * time_s_;
+    overdrawn_J_ = std::max(overdrawn_J_, given_J_ - allowed_J * kRounding);
+    placed_ = true;
+    position_m_ = row.tool.position_m;
+    orientation_ = row.tool.orientation;
+    sum_ = {};
+    periods_ = 0.0;
+  }
+  double largest_J() const { return largest_J_; }
+  double overdrawn_J() const { return overdrawn_J_; }
+
+ private:
+  double turned_J(const model::Quat& now) const {
+    const model::Quat turn = now * conjugate(orientation_);
+    const double sign = turn.w < 0.0 ? -2.0 : 2.0;  // small turns: twice the vector part
+    return dot(sum_.torque_Nm, sign * Vec3{turn.x, turn.y, turn.z}) / periods_;
+  }
+
+  const model::Limits& limits_;
+  Wrench held_, sum_;
+  double periods_ = 0.0, time_s_ = 0.0;
+  bool placed_ = false;
+  Vec3 position_m_;
+  model::Quat orientation_;
+  double given_J_ = 0.0, largest_J_ = 0.0, overdrawn_J_ = 0.0;
+};
+
+bool is_outside(const TickRow& row, const model::Limits& limits) {
+  const Vec3& p = row.tool.position_m;
+  return std::hypot(p.y, p.z) > limits.workspace_radius_m ||
+         std::abs(p.x) > limits.workspace_half_length_m ||
+         norm(row.tool.velocity_mps) > limits.speed_mps;
+}
+
+bool is_cause(const TickRow& row, const model::Limits& limits) {
+  return row.t_s >= 0.0 && (row.cause || !is_finite(row.commanded_N) || is_outside(row, limits));
+}
+
+std::optional<double> time_to_zero_s(const std::vector<TickRow>& rows,
+                                     const model::Limits& limits) {
+  std::optional<double> since_s;
+  for (const TickRow& row : rows) {
+    if (!since_s && is_cause(row, limits)) since_s = row.t_s;
+    if (since_s && norm(row.written_N) == 0.0) return row.t_s - *since_s;
+  }
+  return std::nullopt;
+}
+
+class Checks {
+ public:
+  void add(std::vector<Check> more) {
+    for (Check& check : more) list_.push_back(std::move(check));
+  }
+  void add(bool holds, const char* good, const char* broken) { add(holds, holds ? good : broken); }
+  void add(bool holds, std::string sentence) { list_.push_back({std::move(sentence), holds}); }
+  std::vector<Check> list() { return std::move(list_); }
+
+ private:
+  std::vector<Check> list_;
+};
+
+void check_silence(Checks& checks, const std::vector<TickRow>& rows) {
+  const auto all = [&](auto holds) { return std::all_of(rows.begin(), rows.end(), holds); };
+  const auto is_zero = [](const TickRow& r) {
+    return r.written_N == Vec3{} && r.written_Nm == Vec3{};
+  };
+  checks.add(
+      all([](const TickRow& r) { return is_finite(r.written_N) && is_finite(r.written_Nm); }),
+      "every force written is a number");
+  checks.add(
+      all([](const TickRow& r) { return r.written_N == r.gated_N && r.written_Nm == r.gated_Nm; }),
+      "the device was handed what the gate let through, bit for bit");
+  checks.add(all([&](const TickRow& r) { return r.armed || is_zero(r); }),
+             "no force while it was not armed", "a force while it was not armed");
+  bool faulted = false;
+  checks.add(all([&](const TickRow& r) {
+               faulted = faulted || latches(r.fault);
+               return !faulted || is_zero(r);
+             }),
+             "no force from a latched fault on", "a force from a latched fault on");
+}
+
+void check_expected(Checks& checks, const CaseVerdict& v) {
+  const Expected& e = v.subject.expected;
+  const bool acted = (v.acted >> static_cast<unsigned>(e.stage) & 1u) != 0;
+  checks.add(acted, fmt::format("the stage {} {}", kStageName[static_cast<std::size_t>(e.stage)],
+                                acted ? "acted" : "did not act"));
+  checks.add(v.fault == e.fault,
+             e.fault == Fault::kNone
+                 ? fmt::format(
+                       "no fault latched{}",
+                       v.fault == e.fault ? "" : fmt::format(": {}", model::describe(v.fault).name))
+                 : fmt::format("the fault \"{}\" latched{}", model::describe(e.fault).name,
+                               v.fault == e.fault
+                                   ? ""
+                                   : fmt::format(", not \"{}\"", model::describe(v.fault).name)));
+  if (e.least_peak_ratio > 0.0)
+    checks.add(v.worst.force_N >= e.least_peak_ratio * v.limits.force_N,
+               fmt::format("the test had force: {:.4g} N, at least {:.4g} N asked", v.worst.force_N,
+                           e.least_peak_ratio * v.limits.force_N));
+  if (!e.zero_within_s) return;
+  checks.add(v.worst.zero_s && *v.worst.zero_s <= *e.zero_within_s,
+             v.worst.zero_s ? fmt::format("zero {:.4g} ms after the cause, allowed {:.4g} ms",
+                                          1e3 * *v.worst.zero_s, 1e3 * *e.zero_within_s)
+                            : std::string("the force never came to zero"));
+}
+
+}  // namespace
+
+std::vector<Check> check_bounds(const Extremes& worst, const model::Limits& limits,
+                                double period_s) {
+  Checks checks;
+  const double step_N = limits.slew_N_per_s * period_s;
+  checks.add(worst.force_N <= limits.force_N,
+             fmt::format("largest force {:.4g} N, limit {:.4g} N", worst.force_N, limits.force_N));
+  checks.add(worst.torque_Nm <= limits.torque_Nm,
+             fmt::format("largest torque {:.4g} N m, limit {:.4g} N m", worst.torque_Nm,
+                         limits.torque_Nm));
+  checks.add(
+      worst.step_N <= step_N * kRounding,
+      fmt::format("largest change in a tick {:.4g} N, limit {:.4g} N", worst.step_N, step_N));
+  checks.add(worst.power_W <= limits.power_W * kRounding,
+             fmt::format("largest power {:.4g} W, limit {:.4g} W", worst.power_W, limits.power_W));
+  checks.add(worst.overdrawn_J <= 0.0,
+             fmt::format("energy given {:.4g} J, budget {:.4g} J and {:.4g} W", worst.given_J,
+                         limits.energy_J, limits.recovery_W));
+  checks.add(worst.rms_N <= limits.continuous_force_N * kRounding,
+             fmt::format("largest RMS {:.4g} N, limit {:.4g} N", worst.rms_N,
+                         std::min(limits.continuous_force_N, limits.force_N)));
+  return checks.list();
+}
+
+bool CaseVerdict::passed() const {
+  return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.holds; });
+}
+
+std::string CaseVerdict::acted_words() const {
+  std::string words;
+  for (std::size_t i = 0; i < kStageCount; ++i)
+    if ((acted >> i & 1u) != 0)
+      words += fmt::format("{}{}", words.empty() ? "" : ", ", kStageName[i]);
+  return words.empty() ? "none" : words;
+}
+
+Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limits,
+                     double period_s) {
+  Extremes worst;
+  EnergyAccount energy(limits);
+  const double share = period_s / limits.thermal_time_s;
+  double heat = 0.0;
+  Vec3 before_N;
+  for (const TickRow& row : rows) {
+    const auto larger = [](double& most, double value) { most = std::max(most, value); };
+    larger(worst.force_N, norm(row.written_N));
+    larger(worst.torque_Nm, norm(row.written_Nm));
+    if (is_finite(row.commanded_N)) larger(worst.commanded_N, norm(row.commanded_N));
+    const bool stopped = !row.armed || latches(row.fault);  // then it goes to zero at once
+    if (!stopped) larger(worst.step_N, norm(row.written_N - before_N));
+    if (is_finite(row.tool))
+      larger(worst.power_W, dot(row.written_N, row.tool.velocity_mps) +
+                                dot(row.written_Nm, row.tool.angular_velocity_radps));
+    // the force of the tick before was held until now
+    heat += std::min(share * (1.0 + row.skipped_periods), 1.0) * (dot(before_N, before_N) - heat);
+    larger(worst.rms_N, std::sqrt(heat));
+    energy.add(row, period_s);
+    before_N = row.written_N;
+  }
+  worst.given_J = energy.largest_J();
+  worst.overdrawn_J = energy.overdrawn_J();
+  worst.zero_s = time_to_zero_s(rows, limits);
+  return worst;
+}
+
+CaseVerdict judge_rows(const Case& c, const std::vector<TickRow>& rows, const model::Limits& limits,
+                       double period_s) {
+  CaseVerdict v{
+      .subject = c, .limits = limits, .worst = extremes_of(rows, limits, period_s), .checks = {}};
+  v.overshoot_N = std::max(v.worst.force_N - limits.force_N, 0.0);
+  for (const TickRow& row : rows) {
+    if (row.t_s >= 0.0) v.acted |= row.acted;
+    if (v.fault == Fault::kNone) v.fault = row.fault;
+  }
+  Checks checks;
+  checks.add(!rows.empty() && rows.back().t_s >= 0.0, "it armed, and the case began",
+             "it did not arm, or the case did not begin");
+  checks.add(check_bounds(v.worst, limits, period_s));
+  check_silence(checks, rows);
+  check_expected(checks, v);
+  v.checks = checks.list();
+  return v;
+}
+
+CaseVerdict judge_case(const CaseRun& run) {
+  CaseVerdict v = judge_rows(run.subject(), run.rows(), run.limits(), run.period_s());
+  if (run.refused() == Fault::kNone) return v;
+  v.fault = run.refused();
+  v.checks.push_back(
+      {fmt::format("it could not be armed: {}", model::describe(v.fault).cause), false});
+  return v;
+}
+
+}  // namespace tact::tools

@@ -1,0 +1,58 @@
+// verdict.h - did the force keep its limits? Judged from the record of a case alone, with accounts
+// of its own: nothing here asks the gate what it thinks of itself.
+//
+//     |F| <= force_N     |T| <= torque_Nm     |dF| <= slew_N_per_s T     F . v + T . w <= power_W
+//     sum of F_(k-1) . (x_k - x_(k-1)) <= energy_J + recovery_W t        RMS <= continuous_force_N
+//     F = 0 exactly while not armed, and from a latched fault on
+//
+// F is what the device was handed last. Of missed samples the mean force counts along the way that
+// the next one shows.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/limits/case_run.h"
+
+namespace tact::tools {
+
+/// One thing that had to hold.
+struct Check {
+  std::string sentence;  // with the numbers
+  bool holds = false;
+};
+
+/// The worst of a record, for the report and for the checks.
+struct Extremes {
+  double force_N = 0.0, commanded_N = 0.0, torque_Nm = 0.0, step_N = 0.0, power_W = 0.0;
+  double given_J = 0.0;      // largest since arming
+  double overdrawn_J = 0.0;  // above budget and recovery; 0: never
+  double rms_N = 0.0;
+  std::optional<double> zero_s{};  // from the cause to zero force; none: no cause, or never zero
+};
+
+struct CaseVerdict {
+  Case subject{};
+  model::Limits limits{};
+  Extremes worst;
+  double overshoot_N = 0.0;  // of |F| above force_N
+  std::uint32_t acted = 0;   // stages, one bit each
+  Fault fault = Fault::kNone;
+  std::vector<Check> checks;
+
+  bool passed() const;
+  /// "slew, magnitude"
+  std::string acted_words() const;
+};
+
+Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limits,
+                     double period_s);
+/// The bounds above, each with its largest value.
+std::vector<Check> check_bounds(const Extremes& worst, const model::Limits& limits,
+                                double period_s);
+CaseVerdict judge_rows(const Case& c, const std::vector<TickRow>& rows, const model::Limits& limits,
+                       double period_s);
+CaseVerdict judge_case(const CaseRun& run);
+
+}  // namespace tact::tools
