@@ -35,6 +35,10 @@ constexpr std::array kUnits{
     UnitName{"_s", "s"},
     UnitName{"_N", "N"},
     UnitName{"_A", "A"},
+    UnitName{"_J", "J"},
+    UnitName{"_W", "W"},
+    UnitName{"_mps", "m/s"},
+    UnitName{"_radps", "rad/s"},
 };
 
 const UnitName* find_unit(std::string_view key) {
