@@ -63,8 +63,8 @@ ThreadCosts run_as_loop_thread(const RtSettings& settings, const std::function<v
   pthread_setname_np(pthread_self(), "tact-loop");
   std::vector<Shortfall> known;
   enter_rt_thread(settings, known);
-  if (filter != nullptr) filter->enter_thread();  // tried when it was made
   ThreadCosts costs;
+  costs.call_filter = filter != nullptr && filter->enter_thread() == 0;  // tried when it was made
   rusage before{}, after{};
   {
     const HeapWatch heap;

@@ -52,6 +52,7 @@ std::int64_t period_ns(const model::Scene& scene);
 struct ThreadCosts {
   std::uint64_t heap_calls = 0;
   bool heap_calls_known = false;
+  bool call_filter = false;  // was on
   long minor_faults = 0, major_faults = 0;
   long voluntary_switches = 0, involuntary_switches = 0;
 };

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 
 #include "firmware/loop_parts.h"
@@ -9,8 +10,11 @@
 namespace tact::firmware {
 namespace {
 
-constexpr std::int64_t kPatience_ns = 2'000'000'000;
-constexpr unsigned kLastWords_s = 2;
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kPatience_ns = 3'000'000'000;  // more than any device's stop may take
+constexpr auto kDeviceStop = 2000ms, kLook = 10ms;
+constexpr unsigned kLastWords_s = 6;
 
 }  // namespace
 
@@ -35,7 +39,7 @@ void LoopThreads::keep() {
 }
 
 bool LoopThreads::hangs() {
-  if (!guarded_.requests.stop.load() || !guarded_.loop.progress().running()) return false;
+  if (!guarded_.requests.stop.load() || ended_.load()) return false;
   const std::int64_t now_ns = MonotonicClock().now_ns();
   if (asked_ns_ == 0) asked_ns_ = now_ns;
   return now_ns - asked_ns_ > kPatience_ns;
@@ -45,12 +49,20 @@ void LoopThreads::join() {
   if (keeper_.joinable()) keeper_.join();
 }
 
-// The device may be in the middle of a call that hangs, so its stop may hang, too: SIGALRM ends that.
-void LoopThreads::leave_behind(int status) {
+// The device may be in the middle of a call that hangs, so its stop may hang, too, and so may the
+// disk: SIGALRM ends both.
+void LoopThreads::leave_behind(int status, const std::function<void()>& last_words) {
   guarded_.lines.drop();
   std::signal(SIGALRM, [](int) { _exit(1); });
   alarm(kLastWords_s);
-  guarded_.device.stop();
+  std::atomic<bool> stopped{false};
+  std::thread([&] {
+    guarded_.device.stop();
+    stopped.store(true);
+  }).detach();
+  for (auto waited = 0ms; !stopped.load() && waited < kDeviceStop; waited += kLook)
+    std::this_thread::sleep_for(kLook);
+  last_words();
   _exit(status);
 }
 

@@ -6,6 +6,7 @@
 
 #include "firmware/device_list.h"
 #include "firmware/replay.h"
+#include "firmware/say.h"
 #include "firmware/session.h"
 #include "model/plan_file.h"
 #include "model/scene.h"
@@ -13,16 +14,17 @@
 namespace {
 
 using namespace tact;
+using firmware::say;
 
 int complain(const std::string& sentence, int status) {
-  fmt::print(stderr, "tactd: {}\n", sentence);
+  say(stderr, "tactd: {}\n", sentence);
   return status;
 }
 
 void print_fault_lines() {
-  fmt::print("{:>4}  {:18}  {}\n", "no", "name", "cause; cure");
+  say(stdout, "{:>4}  {:18}  {}\n", "no", "name", "cause; cure");
   for (const model::FaultEntry& f : model::fault_table())
-    fmt::print("{:>4}  {:18}  {}; {}\n", static_cast<int>(f.fault), f.name, f.cause, f.cure);
+    say(stdout, "{:>4}  {:18}  {}; {}\n", static_cast<int>(f.fault), f.name, f.cause, f.cure);
 }
 
 std::string faults_as_json() {
@@ -40,7 +42,7 @@ std::string faults_as_json() {
 int write_json(const std::string& path, const std::string& json) {
   if (path.empty()) return 0;
   if (path == "-") {
-    fmt::print("{}", json);
+    say(stdout, "{}", json);
   } else if (!(std::ofstream(path) << json)) {
     return complain(path + ": cannot be written; name a file in a folder of yours", 2);
   }
@@ -54,7 +56,7 @@ int print_faults(const std::string& json_path) {
 
 int print_devices(const std::string& json_path) {
   const auto parts = hal::list_devices();
-  if (json_path != "-") fmt::print("{}", firmware::devices_as_text(parts));
+  if (json_path != "-") say(stdout, "{}", firmware::devices_as_text(parts));
   return write_json(json_path, firmware::devices_as_json(parts));
 }
 
@@ -63,9 +65,9 @@ int run_replay(const model::Scene& scene, const std::string& path) {
   if (!tissue) return complain(tissue.error().sentence, 2);
   const auto outcome = firmware::replay(path, scene, **tissue);
   if (!outcome) return complain(outcome.error().sentence, 2);
-  fmt::print("{}: {} ticks computed again, {} differ, force hash {:016x}\n", path, outcome->ticks,
-             outcome->different, outcome->force_hash);
-  if (outcome->truncated) fmt::print("{}: the last tick is torn and was left out\n", path);
+  say(stdout, "{}: {} ticks computed again, {} differ, force hash {:016x}\n", path, outcome->ticks,
+      outcome->different, outcome->force_hash);
+  if (outcome->truncated) say(stdout, "{}: the last tick is torn and was left out\n", path);
   if (outcome->gap_before != 0)
     return complain(fmt::format("{}: ticks {} to {} are missing, so the replay ends there; record "
                                 "to a faster disk",
@@ -98,8 +100,8 @@ model::Result<model::Scene> load(firmware::Options& options) {
   const auto plan = model::find_plan(*scene, options.overrides);
   if (!plan) return plan.error();
   const auto choice = model::overrides_of(plan->sizes, *scene);
-  fmt::print(stderr, "tactd: law \"auto\" is{}: p99.9 {:.3g} us, force error {:.1f} %\n",
-             model::command_text(choice), plan->tick_p999_us, 100.0 * plan->force_error_ratio);
+  say(stderr, "tactd: law \"auto\" is{}: p99.9 {:.3g} us, force error {:.1f} %\n",
+      model::command_text(choice), plan->tick_p999_us, 100.0 * plan->force_error_ratio);
   options.overrides.insert(options.overrides.end(), choice.begin(), choice.end());
   return model::load_scene(options.scene_path, options.overrides);
 }
@@ -113,7 +115,7 @@ int main(int argc, char** argv) {
   if (options.faults) return print_faults(options.json_path);
   if (options.list_devices) return print_devices(options.json_path);
   if (options.help_scene) {
-    fmt::print("{}", model::scene_reference());
+    say(stdout, "{}", model::scene_reference());
     return 0;
   }
   const auto scene = load(options);

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 
+#include "firmware/say.h"
 #include "firmware/status_line.h"
 #include "firmware/watch/call_filter.h"
 
@@ -40,17 +41,17 @@ void OperatorView::show(const Frame& newest) {
   } else if (newest.state == State::kReady && before_.state != State::kReady && !arms_itself_) {
     tell("ready, force is off: hold the device, then arm it (pkill -USR2 tactd)");
   }
-  if (terminal_) fmt::print("\r\033[K{}", status_line(newest, before_));
+  if (terminal_) say(stdout, "\r\033[K{}", status_line(newest, before_));
   std::fflush(stdout);
   before_ = newest;
 }
 
 void OperatorView::tell(const std::string& sentence) const {
-  fmt::print(stderr, "{}tactd: {}\n", terminal_ ? "\n" : "", sentence);
+  say(stderr, "{}tactd: {}\n", terminal_ ? "\n" : "", sentence);
 }
 
 void OperatorView::end() const {
-  if (terminal_) fmt::print("\n");
+  if (terminal_) say(stdout, "\n");
 }
 
 }  // namespace tact::firmware

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -16,6 +17,7 @@
 #include "firmware/operator_view.h"
 #include "firmware/pc_check.h"
 #include "firmware/report.h"
+#include "firmware/say.h"
 #include "firmware/telemetry_setup.h"
 
 namespace tact::firmware {
@@ -27,7 +29,7 @@ using model::Result;
 constexpr timespec kStatusPeriod{.tv_sec = 0, .tv_nsec = 200'000'000};
 
 int fail(const std::string& sentence, int status) {
-  fmt::print(stderr, "tactd: {}\n", sentence);
+  say(stderr, "tactd: {}\n", sentence);
   return status;
 }
 
@@ -35,7 +37,7 @@ int fail(const std::string& sentence, int status) {
 void tell_red_rows(const RtSettings& settings) {
   const std::string red =
       name_red_rows(check_pc({.files = PcFiles{}, .core = choose_core(settings)}));
-  if (!red.empty()) fmt::print(stderr, "tactd: {}\n", red);
+  if (!red.empty()) say(stderr, "tactd: {}\n", red);
 }
 
 // Everything of one run, in the order in which it comes to life.
@@ -95,16 +97,17 @@ int Session::run() {
     for (Shortfall& s : probe_rt_threads(rt_)) shortfalls_.push_back(std::move(s));
     non_rt_ = !shortfalls_.empty();
   }
-  for (const Shortfall& s : shortfalls_) fmt::print(stderr, "tactd: {}\n", s.sentence);
+  for (const Shortfall& s : shortfalls_) say(stderr, "tactd: {}\n", s.sentence);
   if (!options_.free_run) tell_red_rows(rt_);
   if (non_rt_ && options_.strict) return fail("refused by --strict: no hard real time here", 1);
   if (non_rt_)
-    fmt::print(stderr, "tactd: no hard real time: force capped to {:g} %, records stamped non-rt\n",
-               100.0 * kNonRtForceShare);
+    say(stderr, "tactd: no hard real time: force capped to {:g} %, records stamped non-rt\n",
+        100.0 * kNonRtForceShare);
   if (const auto error = open()) return fail(error->sentence, 2);
   if (options_.check) {
-    fmt::print("{}\n", make_check_line(scene_, parts_.device->info().name, parts_.tissue->law(),
-                                       parts_.stiffness, parts_.time));
+    say(stdout, "{}\n",
+        make_check_line(scene_, parts_.device->info().name, parts_.tissue->law(), parts_.stiffness,
+                        parts_.time));
     return 0;
   }
   if (!options_.json_path.empty() && options_.json_path != "-" &&
@@ -147,7 +150,7 @@ std::optional<Error> Session::open_telemetry() {
                                .non_rt = non_rt_});
   if (!outlets) return outlets.error();
   hand_socket_ = std::move(outlets->hand);
-  if (!outlets->no_black_box.empty()) fmt::print(stderr, "tactd: {}\n", outlets->no_black_box);
+  if (!outlets->no_black_box.empty()) say(stderr, "tactd: {}\n", outlets->no_black_box);
   telemetry_.emplace(
       *parts_.ring,
       FrameBuilder(parts_.tissue->law().site_law(), parts_.controller->shapes(), non_rt_),
@@ -164,7 +167,7 @@ std::optional<Error> Session::open_call_filter() {
     return std::nullopt;
   }
   if (options_.seccomp) return Error{"refused by --seccomp: " + filter.error().sentence};
-  fmt::print(stderr, "tactd: {}\n", filter.error().sentence);
+  say(stderr, "tactd: {}\n", filter.error().sentence);
   return std::nullopt;
 }
 
@@ -209,11 +212,12 @@ void Session::watch(LoopThreads& threads) {
     operator_->obey(requests_, kStatusPeriod);
     show();
     if (!threads.hangs()) continue;
-    telemetry_->stop();
-    show();
-    view.tell(
-        "the loop does not come back, so tactd ends without it: switch the device's power off");
-    threads.leave_behind(1);
+    threads.leave_behind(1, [&] {
+      view.tell(
+          "the loop does not come back, so tactd ends without it: switch the device's power off");
+      telemetry_->stop();
+      show();
+    });
   }
   view.end();
 }
@@ -227,7 +231,7 @@ int Session::report() {
   const std::string log_trouble = telemetry_->stop();
   BlackBox* const black_box = telemetry_->black_box();
   for (const std::string& sentence : black_box ? black_box->news() : std::vector<std::string>{})
-    fmt::print(stderr, "tactd: {}\n", sentence);
+    say(stderr, "tactd: {}\n", sentence);
   rusage process{};
   getrusage(RUSAGE_SELF, &process);
   const LoopStatistics& statistics = loop_->statistics();
@@ -251,15 +255,15 @@ int Session::report() {
       .force_hash = telemetry_->force_hash(),
       .resident_peak_kB = process.ru_maxrss,
       .law_table_bytes = parts_.tissue->law().memory_bytes(),
-      .call_filter = filter_ != nullptr,
+      .call_filter = costs_.call_filter,
       .black_boxes = black_box ? black_box->files() : std::vector<std::string>{}};
   const std::string json =
       make_report(facts, statistics, parts_.controller->gate(), read_environment(scene_.hash))
           .dump(2);
   if (options_.json_path == "-")
-    fmt::print("{}\n", json);
+    say(stdout, "{}\n", json);
   else
-    fmt::print("{}\n", make_summary(facts, statistics));
+    say(stdout, "{}\n", make_summary(facts, statistics));
   if (!options_.json_path.empty() && options_.json_path != "-") {
     std::ofstream file(options_.json_path);
     if (!(file << json << '\n')) return fail(options_.json_path + ": cannot be written", 2);
@@ -271,6 +275,7 @@ int Session::report() {
 }  // namespace
 
 int run_session(const model::Scene& scene, const Options& options) {
+  std::signal(SIGPIPE, SIG_IGN);  // who reads our sentences may go; the loop stays
   return Session(scene, options).run();
 }
 

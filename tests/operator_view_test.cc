@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/program.h"
 #include "tests/puppet_loop.h"
 
 namespace tact::firmware {
@@ -73,6 +74,17 @@ TEST_F(View, WhatADeviceWaitsForIsToldOnceUntilItIsReady) {
   EXPECT_NE(told(frame(State::kOff, Fault::kNone)).find("pull the grip out"), std::string::npos);
   EXPECT_EQ(told(frame(State::kOff, Fault::kNone)), "");
   EXPECT_EQ(told(frame(State::kArmed, Fault::kNone)), "") << "ready: nothing to wait for";
+}
+
+TEST(Sayings, WhatCannotBeSaidEndsNothing) {
+  const std::string report = testing::TempDir() + "unheard.json";
+  const tests::Outcome outcome =
+      tests::run_command(std::string(TACT_BINARY_DIR) +
+                         "/tactd " TACT_SOURCE_DIR
+                         "/model/scenes/liver.toml --free-run "
+                         "--seconds 1 --no-telemetry --json " +
+                         report + " >/dev/full 2>/dev/full; echo $?; grep -c force_hash " + report);
+  EXPECT_EQ(outcome.output, "0\n1\n");
 }
 
 }  // namespace

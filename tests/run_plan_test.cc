@@ -27,8 +27,10 @@ std::string liver() {
   return std::string("--scene ") + TACT_SOURCE_DIR + "/model/scenes/liver.toml";
 }
 
-LimitsReport plan(const std::string& names, Limits (*gate_limits)(const Limits&) = nullptr) {
-  const model::Scene scene = tests::make_plate_scene();
+LimitsReport plan(const std::string& names, Limits (*gate_limits)(const Limits&) = nullptr,
+                  double rate_Hz = 1000.0) {
+  model::Scene scene = tests::make_plate_scene();
+  scene.rate_Hz = rate_Hz;
   const auto report = run_plan(
       scene,
       {.cases = *choose_cases(names), .wall = names_wall(names), .gate_limits = gate_limits});
@@ -59,6 +61,14 @@ TEST(RunPlan, EveryCasePassesOnASoundGate) {
   ASSERT_TRUE(report.wall);
   EXPECT_GT(report.wall->ratio(), 2.0);
   EXPECT_GT(report.wall->without_N_per_m, report.wall->theory_N_per_m);
+}
+
+TEST(RunPlan, TimesToZeroHoldAtEveryRate) {
+  for (const double rate_Hz : {250.0, 500.0, 2000.0}) {
+    const LimitsReport report =
+        plan("stale-samples,lost-device,late-ticks,speed,workspace,e-stop", nullptr, rate_Hz);
+    EXPECT_TRUE(report.passed()) << rate_Hz << " Hz\n" << to_text(report);
+  }
 }
 
 // A gate with one limit too large: a mutant of each stage, by its settings.

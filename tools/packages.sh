@@ -47,6 +47,9 @@ BUILD_PACKAGES=(g++ cmake ninja-build ca-certificates libfmt-dev libcli11-dev
 # What the measuring tools call or link besides.
 TOOL_PACKAGES=(libeigen3-dev gmsh calculix-ccx gnuplot-nox libmetis-dev libbullet-dev libopencv-core-dev
   libopencv-calib3d-dev rt-tests=cyclictest stress-ng=stress-ng)
+# What the virtual bench needs on this side (tests/rig).
+RIG_PACKAGES=(qemu-system-x86=qemu-system-x86_64 cpio kmod zstd xz-utils mmdebstrap make g++
+  linux-headers-rt-amd64 linux-source-6.1)
 PAGE_PACKAGES=(nodejs=node npm=npm)
 
 # build_programs BUILD_DIR TARGET... : configure when needed, then build quietly; the log on failure.

@@ -94,8 +94,9 @@ class Filter final : public CallFilter {
   ~Filter() override { guarded.store(nullptr); }
 
   int enter_thread() override {
-    in_loop = true;
-    return -seccomp_load(context_.get());
+    const int refused_by_kernel = -seccomp_load(context_.get());  // frees memory behind the filter
+    in_loop = refused_by_kernel == 0;
+    return refused_by_kernel;
   }
   void leave_loop() override { in_loop = false; }
 
@@ -122,7 +123,10 @@ Result<std::unique_ptr<CallFilter>> CallFilter::make(std::span<const int> of_dev
   if (!good) return no_filter("libseccomp cannot make it");
   std::unique_ptr<CallFilter> filter(new Filter(std::move(context), requests));
   int refused_by_kernel = 0;  // in a thread that ends at once: nothing takes a filter back
-  std::thread([&] { refused_by_kernel = filter->enter_thread(); }).join();
+  std::thread([&] {
+    refused_by_kernel = filter->enter_thread();
+    filter->leave_loop();
+  }).join();
   if (refused_by_kernel != 0) return no_filter(std::strerror(refused_by_kernel));
   return filter;
 }

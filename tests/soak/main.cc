@@ -1,19 +1,20 @@
 // tact-soak: a day at the device in simulated time, as fast as the CPU allows.
 //
 // The whole controller with the simulated delta and its safety lines: random strokes, faults, stops,
-// late ticks and operators by a seed; after each tick every promise is checked. The same seed gives
+// late ticks and operators by a seed; after each tick its promises are checked: force,
+// slew, states, latching, the grid (energy, power and RMS: tests/gate_rules.h). The same seed gives
 // the same hash with every compiler.
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "firmware/alloc_counter.h"
+#include "firmware/loop_parts.h"
 #include "firmware/replay.h"
 #include "firmware/rt_loop.h"
 #include "firmware/rt_setup.h"
@@ -60,7 +61,7 @@ model::Result<Outcome> soak(const model::Scene& scene, std::uint64_t ticks, std:
   firmware::SimulatedClock clock;
   firmware::Requests requests;
   const auto ring = std::make_unique<firmware::TickRing>();
-  const std::int64_t period_ns = std::llround(1e9 / scene.rate_Hz);
+  const std::int64_t period_ns = firmware::period_ns(scene);
   const model::Limits limits = firmware::limits_for(scene.limits, (*device)->info());
   const auto controller = std::make_unique<firmware::Controller>(
       (*tissue)->contact_scene(),
@@ -86,7 +87,7 @@ model::Result<Outcome> soak(const model::Scene& scene, std::uint64_t ticks, std:
     count(record, state, outcome);
     state = record.output.state;
     if (outcome.ticks == ticks / 10) early_kB = resident_kB();
-    if (isatty(STDERR_FILENO) != 0 && outcome.ticks % 1'000'000 == 0)
+    if (outcome.ticks % 1'000'000 == 0 && isatty(STDERR_FILENO) != 0)
       fmt::print(stderr, "\rtact-soak: {} of {} million ticks", outcome.ticks / 1'000'000,
                  ticks / 1'000'000);
   }

@@ -12,7 +12,7 @@ namespace tact::tools {
 namespace {
 
 std::atomic<bool> pressed{false};
-constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
+constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 static_assert(std::atomic<bool>::is_always_lock_free, "may be set by a signal handler");
 
 void remember(int signal) {

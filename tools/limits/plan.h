@@ -54,6 +54,7 @@ struct Expected {
   model::Fault fault = model::Fault::kNone;             // that latches
   double least_peak_ratio = 0.0;          // of the force limit: the case was no void one
   std::optional<double> zero_within_s{};  // of the cause
+  double and_ticks = 0.0;                 // besides, at the rate of the run (at_rate)
 };
 
 struct Case {
@@ -73,6 +74,9 @@ struct Case {
 };
 
 inline constexpr double kCause_s = 0.1;
+
+/// The case as it is run at this rate: bounds in seconds, long enough to see the end of them.
+Case at_rate(Case c, double period_s);
 
 /// All cases but the wall (wall.h), in the order of the report.
 std::span<const Case> all_cases();

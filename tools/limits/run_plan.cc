@@ -24,7 +24,8 @@ constexpr auto kProgressPeriod = std::chrono::milliseconds(100);
 
 Runs prepare(const std::vector<Case>& cases, const LimitsBench& bench) {
   Runs runs;
-  for (const Case& c : cases) runs.push_back(std::make_unique<CaseRun>(c, bench));
+  for (const Case& c : cases)
+    runs.push_back(std::make_unique<CaseRun>(at_rate(c, bench.period_s()), bench));
   return runs;
 }
 

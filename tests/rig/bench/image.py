@@ -16,8 +16,6 @@ from bench import cpio
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 GUEST = ROOT / "tests" / "rig" / "guest"
 HEADERS = "linux-headers-rt-amd64"  # depends on the headers of the newest kernel of Debian 12
-HOST_PACKAGES = ("qemu-system-x86=qemu-system-x86_64 cpio kmod zstd xz-utils mmdebstrap make g++ "
-                 f"{HEADERS} linux-source-6.1")
 GUEST_PACKAGES = ("kmod udev iproute2 procps can-utils gpiod usbutils rt-tests stress-ng strace "
                   "libusb-1.0-0 libgpiod2 libfmt9 libssl3 libstdc++6 libtomlplusplus3")
 MODULES = ("configfs vcan vxcan can_raw can_bcm can_gw sch_netem vhci_hcd usbmon "
@@ -56,7 +54,7 @@ def digest(*parts):
 
 
 def install_host_packages():
-    script = f'. "{ROOT}/tools/packages.sh"; need_packages "the virtual bench" {HOST_PACKAGES}'
+    script = f'. "{ROOT}/tools/packages.sh"; need_packages "the virtual bench" "${{RIG_PACKAGES[@]}}"'
     if subprocess.run(["bash", "-c", script], check=False).returncode != 0:
         raise RigError("the packages of the virtual bench are missing and could not be installed")
 
