@@ -152,6 +152,11 @@ std::vector<Check> check_bounds(const Extremes& worst, const model::Limits& limi
   checks.add(
       worst.step_N <= step_N * kRounding,
       fmt::format("largest change in a tick {:.4g} N, limit {:.4g} N", worst.step_N, step_N));
+  const double step_Nm =  // in proportion
+      limits.force_N > 0.0 ? step_N * limits.torque_Nm / limits.force_N : 0.0;
+  checks.add(worst.step_Nm <= step_Nm * kRounding,
+             fmt::format("largest change of torque in a tick {:.4g} N m, limit {:.4g} N m",
+                         worst.step_Nm, step_Nm));
   checks.add(worst.power_W <= limits.power_W * kRounding,
              fmt::format("largest power {:.4g} W, limit {:.4g} W", worst.power_W, limits.power_W));
   checks.add(worst.overdrawn_J <= 0.0,
@@ -181,14 +186,17 @@ Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limi
   EnergyAccount energy(limits);
   const double share = period_s / limits.thermal_time_s;
   double heat = 0.0;
-  Vec3 before_N;
+  Vec3 before_N, before_Nm;
   for (const TickRow& row : rows) {
     const auto larger = [](double& most, double value) { most = std::max(most, value); };
     larger(worst.force_N, norm(row.written_N));
     larger(worst.torque_Nm, norm(row.written_Nm));
     if (is_finite(row.commanded_N)) larger(worst.commanded_N, norm(row.commanded_N));
     const bool stopped = !row.armed || latches(row.fault);  // then it goes to zero at once
-    if (!stopped) larger(worst.step_N, norm(row.written_N - before_N));
+    if (!stopped) {
+      larger(worst.step_N, norm(row.written_N - before_N));
+      larger(worst.step_Nm, norm(row.written_Nm - before_Nm));
+    }
     if (is_finite(row.tool))
       larger(worst.power_W, dot(row.written_N, row.tool.velocity_mps) +
                                 dot(row.written_Nm, row.tool.angular_velocity_radps));
@@ -197,6 +205,7 @@ Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limi
     larger(worst.rms_N, std::sqrt(heat));
     energy.add(row, period_s);
     before_N = row.written_N;
+    before_Nm = row.written_Nm;
   }
   worst.given_J = energy.largest_J();
   worst.overdrawn_J = energy.overdrawn_J();
