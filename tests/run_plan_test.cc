@@ -49,6 +49,7 @@ TEST(RunPlan, EveryCasePassesOnASoundGate) {
   const LimitsReport report = plan("all");
   EXPECT_TRUE(report.passed()) << to_text(report);
   EXPECT_EQ(report.cases.size(), all_cases().size());
+  EXPECT_EQ(limit_rows(report).size(), check_bounds({}, report.limits, report.period_s).size());
   std::uint32_t acted = 0;
   for (const CaseResult& result : report.cases) {
     EXPECT_EQ(result.verdict.overshoot_N, 0.0) << result.verdict.subject.name;

@@ -165,6 +165,8 @@ std::vector<LimitRow> limit_rows(const LimitsReport& report) {
       {"Torque", "limits.torque_Nm", "N m", l.torque_Nm},
       {"Change of the force in one tick", "limits.slew_N_per_s", "N",
        l.slew_N_per_s * report.period_s},
+      {"Change of the torque in one tick", "limits.slew_N_per_s", "N m",
+       torque_step_Nm(l, report.period_s)},
       {"Power given to the hand", "limits.power_W", "W", l.power_W},
       {"Energy given to the hand since arming", "limits.energy_J", "J", l.energy_J},
       {"RMS of the force", "limits.continuous_force_N", "N",
@@ -172,7 +174,8 @@ std::vector<LimitRow> limit_rows(const LimitsReport& report) {
   for (const CaseResult& result : report.cases) {
     const CaseVerdict& v = result.verdict;
     const Extremes& w = v.worst;
-    const double largest[] = {w.force_N, w.torque_Nm, w.step_N, w.power_W, w.given_J, w.rms_N};
+    const double largest[] = {w.force_N, w.torque_Nm, w.step_N, w.step_Nm,
+                              w.power_W, w.given_J,   w.rms_N};  // as check_bounds
     const std::vector<Check> bounds = check_bounds(w, v.limits, report.period_s);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       rows[i].holds = rows[i].holds && bounds[i].holds;

@@ -140,6 +140,11 @@ void check_expected(Checks& checks, const CaseVerdict& v) {
 
 }  // namespace
 
+double torque_step_Nm(const model::Limits& limits, double period_s) {
+  return limits.force_N > 0.0 ? limits.slew_N_per_s * period_s * limits.torque_Nm / limits.force_N
+                              : 0.0;
+}
+
 std::vector<Check> check_bounds(const Extremes& worst, const model::Limits& limits,
                                 double period_s) {
   Checks checks;
@@ -152,8 +157,7 @@ std::vector<Check> check_bounds(const Extremes& worst, const model::Limits& limi
   checks.add(
       worst.step_N <= step_N * kRounding,
       fmt::format("largest change in a tick {:.4g} N, limit {:.4g} N", worst.step_N, step_N));
-  const double step_Nm =  // in proportion
-      limits.force_N > 0.0 ? step_N * limits.torque_Nm / limits.force_N : 0.0;
+  const double step_Nm = torque_step_Nm(limits, period_s);
   checks.add(worst.step_Nm <= step_Nm * kRounding,
              fmt::format("largest change of torque in a tick {:.4g} N m, limit {:.4g} N m",
                          worst.step_Nm, step_Nm));

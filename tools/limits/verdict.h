@@ -49,6 +49,8 @@ struct CaseVerdict {
 
 Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limits,
                      double period_s);
+/// Largest change in a tick: the slew of the force, in proportion.
+double torque_step_Nm(const model::Limits& limits, double period_s);
 /// The bounds above, each with its largest value.
 std::vector<Check> check_bounds(const Extremes& worst, const model::Limits& limits,
                                 double period_s);
