@@ -60,8 +60,8 @@ struct ThreadCosts {
 /// Of several runs together.
 void add_to(ThreadCosts& sum, const ThreadCosts& more);
 
-/// Runs `loop` as the loop's thread, which this one becomes and then leaves again; behind the filter,
-/// if there is one, which stays with the thread to its end.
+/// Runs `loop` as the loop's thread, which this one becomes and then leaves again; behind the
+/// filter, if there is one, which stays with the thread to its end.
 ThreadCosts run_as_loop_thread(const RtSettings& settings, const std::function<void()>& loop,
                                CallFilter* filter = nullptr);
 

@@ -37,12 +37,14 @@ class LoopThreads {
   LoopThreads& operator=(const LoopThreads&) = delete;
 
   bool ended() const { return ended_.load(); }
-  /// Asked to stop, and 3 s later loop or device are still not at their end. Call a few times a second.
+  /// Asked to stop, and 3 s later loop or device are still not at their end. Call a few times a
+  /// second.
   bool hangs();
   /// After ended().
   void join();
-  /// After hangs(): lines low, zero force if the device still answers, the last words, and out within
-  /// 6 s. The kernel closes what is open; drives with a watchdog let go when they hear nothing.
+  /// After hangs(): lines low, zero force if the device still answers, the last words, and out
+  /// within 6 s. The kernel closes what is open; drives with a watchdog let go when they hear
+  /// nothing.
   [[noreturn]] void leave_behind(int status, const std::function<void()>& last_words);
   /// After join().
   const ThreadCosts& costs() const { return costs_; }

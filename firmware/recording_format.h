@@ -1,9 +1,10 @@
-// recording_format.h - the files that both tactd and tact-view know: a viewer's recording, and how a
-// tick log begins.
+// recording_format.h - the files that both tactd and tact-view know: a viewer's recording, and how
+// a tick log begins.
 //
 // Recording: FileHeader, Hello, meshes, then one FrameRecord per frame; little-endian, fixed sizes,
 // so a damaged frame costs that frame only. Every part has a CRC-32 (polynomial 0x04C11DB7, as
-// zlib).
+// zlib). In version 4 the operator's tracker ran: behind each frame stands one operator record of
+// the viewer (host/operator_record.h). tactd writes version 3.
 // Tick log: LogStart and what else belongs to its header (tick_log.h), then `ticks` records of
 // tick_bytes, in the machine's own layout, and a whole recording of the same seconds. Without a
 // number of ticks they go on to the end of the file, and no recording follows.
@@ -20,7 +21,8 @@
 namespace tact::firmware {
 
 inline constexpr char kRecordingMagic[8] = {'t', 'a', 'c', 't', 'r', 'e', 'c', '\n'};
-inline constexpr std::uint32_t kRecordingVersion = 3;  // 3: energy and RMS of the force
+inline constexpr std::uint32_t kRecordingVersion = 3;         // 3: energy and RMS of the force
+inline constexpr std::uint32_t kTrackedRecordingVersion = 4;  // 3 with the tracked operator
 
 struct FileHeader {
   char magic[8] = {};
@@ -60,8 +62,9 @@ inline std::uint32_t crc_of(const Hello& hello, std::span<const std::byte> mesh)
 }
 
 /// The bytes that begin a recording, and those of one frame.
-inline std::string recording_start(const Hello& hello, std::span<const std::byte> mesh) {
-  FileHeader header{.version = kRecordingVersion,
+inline std::string recording_start(const Hello& hello, std::span<const std::byte> mesh,
+                                   std::uint32_t version = kRecordingVersion) {
+  FileHeader header{.version = version,
                     .hello_bytes = sizeof(Hello),
                     .frame_bytes = sizeof(Frame),
                     .setup_crc = crc_of(hello, mesh),

@@ -45,8 +45,8 @@ void RtLoop::let_go() RT_SAFE {
   progress_.enter(Place::kOwn);
 }
 
-// The lines' word counts before the device's. The watch's comes last to be asked, as it may be about
-// the calls of this very tick, and first to be told.
+// The lines' word counts before the device's. The watch's comes last to be asked, as it may be
+// about the calls of this very tick, and first to be told.
 Fault RtLoop::sense(std::int64_t now_ns) RT_SAFE {
   progress_.enter(Place::kLines);
   const Fault lines_fault = lines_.read(now_ns);

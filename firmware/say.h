@@ -1,4 +1,5 @@
-// say.h - sentences to a terminal or pipe that may be gone: what cannot be said is no reason to end.
+// say.h - sentences to a terminal or pipe that may be gone: what cannot be said is no reason to
+// end.
 #pragma once
 
 #include <fmt/format.h>
@@ -8,8 +9,8 @@
 
 namespace tact::firmware {
 
-/// As fmt::print, but a write that fails is ignored; fmt's throws, which would end a process whose loop
-/// pushes.
+/// As fmt::print, but a write that fails is ignored; fmt's throws, which would end a process whose
+/// loop pushes.
 template <typename... T>
 void say(std::FILE* out, fmt::format_string<T...> sentence, T&&... words) {
   std::fputs(fmt::format(sentence, std::forward<T>(words)...).c_str(), out);

@@ -25,8 +25,8 @@ struct Sinks {
 
 class Telemetry {
  public:
-  /// Without any sink it only drains the ring for the status line. `watch_fault` is what the watch has
-  /// found: a loop that gives no ticks any more cannot tell it.
+  /// Without any sink it only drains the ring for the status line. `watch_fault` is what the watch
+  /// has found: a loop that gives no ticks any more cannot tell it.
   Telemetry(TickRing& ring, FrameBuilder builder, double frame_rate_Hz, Sinks sinks,
             const std::atomic<Fault>* watch_fault = nullptr);
   ~Telemetry();
@@ -34,7 +34,8 @@ class Telemetry {
   Telemetry& operator=(const Telemetry&) = delete;
 
   void start();
-  /// Takes what is left in the ring, writes what the black box still keeps, and ends the thread. Returns the log's trouble, empty if none.
+  /// Takes what is left in the ring, writes what the black box still keeps, and ends the thread.
+  /// Returns the log's trouble, empty if none.
   std::string stop();
 
   /// By hand, for runs without real time: empties the ring, shows the newest.

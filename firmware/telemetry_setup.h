@@ -1,4 +1,5 @@
-// telemetry_setup.h - everything that leaves a run: viewer socket, hand socket, tick log, black box.
+// telemetry_setup.h - everything that leaves a run: viewer socket, hand socket, tick log, black
+// box.
 #pragma once
 
 #include <memory>

@@ -1,8 +1,9 @@
 // tick_log.h - a run on disk, tick by tick: what came in and what went out.
 //
 // A header that names the scene (by hash) and the gate's force share, then one LoggedTick per tick
-// in the machine's own byte order. From the first tick on it is enough to compute every force again,
-// bit for bit (replay.h). A black box holds the last seconds before a fault, and pictures of them.
+// in the machine's own byte order. From the first tick on it is enough to compute every force
+// again, bit for bit (replay.h). A black box holds the last seconds before a fault, and pictures of
+// them.
 #pragma once
 
 #include <cstdint>

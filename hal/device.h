@@ -1,9 +1,9 @@
 // device.h - one interface for every haptic device, simulated or real.
 //
-// Only frame W leaves a device (types.h). read, ready, permit and write are called once per tick, in this
-// order, from the loop thread; everything else belongs to set-up and shut-down. What can be found
-// out before the loop is found out while opening, with a sentence; drives are powered by the loop
-// alone, so that none is ever without commands. A fault of the device stays until it is opened
+// Only frame W leaves a device (types.h). read, ready, permit and write are called once per tick,
+// in this order, from the loop thread; everything else belongs to set-up and shut-down. What can be
+// found out before the loop is found out while opening, with a sentence; drives are powered by the
+// loop alone, so that none is ever without commands. A fault of the device stays until it is opened
 // again: a bus that comes back by itself moves nothing.
 #pragma once
 
@@ -61,9 +61,9 @@ class Device {
   /// May the drives have power in this tick? Safety lines decide; without lines always true.
   virtual void permit(bool powered) RT_SAFE { (void)powered; }
 
-  /// Would a force of this tick reach the hand? A device whose motors are off may still tell where it
-  /// is, with fresh samples: nothing is armed before this is true, and what is armed stops when it no
-  /// longer is.
+  /// Would a force of this tick reach the hand? A device whose motors are off may still tell where
+  /// it is, with fresh samples: nothing is armed before this is true, and what is armed stops when
+  /// it no longer is.
   virtual bool ready() const RT_SAFE { return true; }
 
   /// Hand this wrench to the hardware, on top of its own gravity compensation.
@@ -73,8 +73,8 @@ class Device {
   /// Hardware lives by itself and does nothing here. Not part of the tick's measured time.
   virtual void between_ticks(double elapsed_s) RT_SAFE { (void)elapsed_s; }
 
-  /// System calls that read, permit and write make, by number (sys/syscall.h). The loop's thread may
-  /// make no other: one that is missing here stops the force.
+  /// System calls that read, permit and write make, by number (sys/syscall.h). The loop's thread
+  /// may make no other: one that is missing here stops the force.
   virtual std::span<const int> loop_calls() const { return {}; }
 
   /// What lies behind the latched fault, for a person: which part, why, the cure. Empty when there

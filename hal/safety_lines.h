@@ -37,13 +37,14 @@ class SafetyLines {
   virtual bool enabled() const RT_SAFE = 0;
   /// The scope line; nothing where none is wired.
   virtual void scope(bool up) RT_SAFE = 0;
-  /// Enable and heartbeat low, now and for good: for the watch above the loop, when the loop cannot.
-  /// Any thread, beside any other call; again when a write of the loop may have been under way.
+  /// Enable and heartbeat low, now and for good: for the watch above the loop, when the loop
+  /// cannot. Any thread, beside any other call; again when a write of the loop may have been under
+  /// way.
   virtual void drop() RT_SAFE {}
   /// System calls that the others make once per tick, by number.
   virtual std::span<const int> loop_calls() const { return {}; }
-  /// What lies behind the fault of the lines, for a person: which channel, why, the cure. Empty when
-  /// there is no more to say than the fault's own words. Any thread, at any time.
+  /// What lies behind the fault of the lines, for a person: which channel, why, the cure. Empty
+  /// when there is no more to say than the fault's own words. Any thread, at any time.
   virtual std::string trouble() const { return {}; }
   /// Everything to its safe level; may block.
   virtual void stop() = 0;

@@ -21,7 +21,10 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
       "tact-view: shows what tactd does in a browser: the deforming tissue, the tool, the force "
       "and\n"
       "the time left before each deadline. It cannot command a force. Ctrl-C ends it.\n"
-      "Exit status: 0 good, 1 a recording is damaged or incomplete, 2 bad usage or input."};
+      "Exit status: 0 good, 1 a recording is damaged or incomplete, or a registration failed\n"
+      "or has a residual above 2 mm (written all the same), 2 "
+      "bad usage\n"
+      "or input."};
   app.failure_message([](const CLI::App*, const CLI::Error& error) {
     return std::string("tact-view: ") + error.what() + "; see tact-view --help\n";
   });
@@ -41,8 +44,26 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
   app.add_option("--export", options.export_csv,
                  "with --open: write this CSV file (m, s, N, us, as its columns say) and leave")
       ->needs(open);
+  CLI::Option* tracking = app.add_option(
+      "--tracking", options.tracking,
+      "description of the operator's tracker, SCENE.tracking.toml (host/tracking/README.md)");
+  CLI::Option* registration =
+      app.add_flag("--register", options.registration,
+                   "with --tracking and a running tactd: find where the tracker stands from poses "
+                   "of the tracked tool, write SCENE.registration.toml and leave");
+  app.add_option("--poses", options.poses, "for --register")
+      ->capture_default_str()
+      ->check(CLI::Range(std::size_t{6}, std::size_t{200}))
+      ->needs(registration);
+  app.add_flag("--figure", options.figure,
+               "show the operator without a tracker, too: the arm that holds the tool");
+  app.add_option("--height", options.height_m, "the operator's body height, m")
+      ->capture_default_str()
+      ->check(CLI::Range(1.2, 2.2));
   app.add_flag("--json", options.json, "say what is ready or done as one line of JSON");
   record->excludes(open);
+  tracking->excludes(open);
+  registration->needs(tracking)->excludes(record);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

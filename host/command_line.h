@@ -10,10 +10,15 @@ namespace tact::host {
 
 struct Options {
   ViewerOptions viewer;
-  std::string socket;      // of tactd's telemetry
-  std::string record;      // new file for hello and frames
-  std::string open;        // recording to replay instead of tactd
-  std::string export_csv;  // with open: write this table and leave
+  std::string socket;         // of tactd's telemetry
+  std::string record;         // new file for hello and frames
+  std::string open;           // recording to replay instead of tactd
+  std::string export_csv;     // with open: write this table and leave
+  std::string tracking;       // description of the operator's tracker
+  bool registration = false;  // with tracking: find the tracker's place and leave
+  std::size_t poses = 12;     // for it
+  bool figure = false;        // show the operator, without a tracker too
+  double height_m = 1.75;     // the operator's
   bool json = false;
 };
 

@@ -7,6 +7,7 @@
 #include <boost/beast/http/write.hpp>
 #include <chrono>
 
+#include "host/operator_record.h"
 #include "host/recording_csv.h"
 
 namespace tact::host {
@@ -23,7 +24,10 @@ constexpr std::chrono::seconds kPatience{30};
 
 Download::Download(beast::tcp_stream stream, std::shared_ptr<const Recording> recording,
                    DownloadKind kind)
-    : stream_(std::move(stream)), recording_(std::move(recording)), kind_(kind) {}
+    : stream_(std::move(stream)),
+      recording_(std::move(recording)),
+      kind_(kind),
+      bodies_(bodies_in(*recording_)) {}
 
 void Download::start(Header header) {
   header_ = std::move(header);
@@ -35,8 +39,10 @@ void Download::start(Header header) {
 }
 
 std::string Download::first_part() const {
-  return kind_ == DownloadKind::kCsv ? csv_header(recording_->hello)
-                                     : recording_start(recording_->hello, recording_->mesh);
+  if (kind_ == DownloadKind::kCsv) return csv_header(recording_->hello, bodies_);
+  return recording_start(
+      recording_->hello, recording_->mesh,
+      recording_->operators.empty() ? kRecordingVersion : kTrackedRecordingVersion);
 }
 
 void Download::write_chunk(std::string part) {
@@ -54,10 +60,12 @@ void Download::write_next() {
   std::string part;
   const std::size_t end = std::min(next_ + kFramesPerPart, frames.size());
   for (; next_ < end; ++next_) {
+    const TrackedOperator* tracked = recording_->operator_at(next_);
     if (kind_ == DownloadKind::kCsv) {
-      append_csv_row(part, frames[next_], recording_->hello);
+      append_csv_row(part, frames[next_], recording_->hello, tracked, bodies_);
     } else {
       part += recording_frame(frames[next_]);
+      if (tracked != nullptr) part += operator_record(*tracked);
     }
   }
   write_chunk(std::move(part));

@@ -34,6 +34,7 @@ class Download : public std::enable_shared_from_this<Download> {
   boost::beast::tcp_stream stream_;
   std::shared_ptr<const Recording> recording_;
   DownloadKind kind_;
+  std::vector<BodyRole> bodies_;
   Header header_;
   boost::beast::http::response_serializer<boost::beast::http::empty_body> serializer_{header_};
   std::string part_;

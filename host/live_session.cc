@@ -64,17 +64,21 @@ void LiveSession::on_status(const Text& status) {
   write_next();
 }
 
-void LiveSession::on_frame(const Text& frame) {
+void LiveSession::on_frame(const Text& frame, const Text& beside) {
   next_frame_ = frame;  // one that still waits is dropped: newer is better than complete
+  next_beside_ = beside;
   write_next();
 }
 
 void LiveSession::write_next() {
   if (writing_) return;
-  if (next_status_) {
+  if (due_beside_) {
+    writing_ = std::move(due_beside_);
+  } else if (next_status_) {
     writing_ = std::move(next_status_);
   } else if (next_frame_ && sent_frames_ - seen_frames_ < kMaxUnseen) {
     writing_ = std::move(next_frame_);
+    due_beside_ = std::move(next_beside_);
     ++sent_frames_;
   } else {
     return;

@@ -1,9 +1,10 @@
 // live_session.h - one browser's WebSocket: status and frames out, hand targets in.
 //
-// Each frame is one JSON text (frame_json.h). The page answers {"seen": n} with the number of
-// frames it took so far; at most kMaxUnseen may be on the way, and of those that wait only the
-// newest is kept. So a slow browser sees fewer frames, never older ones, and holds up nobody. A
-// page may send {"hand":{"x_m":..,"y_m":..,"z_m":..,"grip_ratio":..}} for a simulated device.
+// Each frame is one JSON text (frame_json.h), and what belongs to it (figure_json.h) is the text
+// that follows. The page answers {"seen": n} with the number of frames it took so far; at most
+// kMaxUnseen may be on the way, and of those that wait only the newest is kept. So a slow browser
+// sees fewer frames, never older ones, and holds up nobody. A page may send
+// {"hand":{"x_m":..,"y_m":..,"z_m":..,"grip_ratio":..}} for a simulated device.
 #pragma once
 
 #include <boost/beast/core/flat_buffer.hpp>
@@ -34,7 +35,7 @@ class LiveSession final : public LiveListener, public std::enable_shared_from_th
   void start(const Request& upgrade);
 
   void on_status(const Text& status) override;
-  void on_frame(const Text& frame) override;
+  void on_frame(const Text& frame, const Text& beside) override;
 
  private:
   void read_next();
@@ -45,7 +46,8 @@ class LiveSession final : public LiveListener, public std::enable_shared_from_th
   boost::beast::flat_buffer in_;
   LiveView& view_;
   const MoveHand& move_hand_;
-  Text next_status_, next_frame_, writing_;
+  Text next_status_, next_frame_, next_beside_, writing_;
+  Text due_beside_;  // of the frame that was written last
   std::uint64_t sent_frames_ = 0, seen_frames_ = 0;
 };
 

@@ -29,15 +29,19 @@ void LiveView::begin(const Hello& hello, MeshBytes mesh, Link link, const std::s
   hello_ = hello;
   mesh_ = std::make_shared<const MeshBytes>(std::move(mesh));
   ++scene_number_;
+  if (companion_)
+    figure_ = std::make_shared<const std::string>(companion_->begin(hello, *mesh_).dump());
   recent_.restart(static_cast<double>(hello.frame_rate_Hz));
   tell(link, detail);
 }
 
-void LiveView::add(const Frame& frame) {
-  recent_.add(frame);
+void LiveView::add(const Frame& frame, const TrackedOperator* tracked) {
+  recent_.add(frame, tracked);
+  Text beside;
+  if (companion_) beside = std::make_shared<const std::string>(companion_->with(frame, tracked));
   if (listeners_.empty()) return;
   const Text text = std::make_shared<const std::string>(frame_json(frame, hello_));
-  for (LiveListener* listener : listeners_) listener->on_frame(text);
+  for (LiveListener* listener : listeners_) listener->on_frame(text, beside);
 }
 
 void LiveView::rewind() { recent_.restart(static_cast<double>(hello_.frame_rate_Hz)); }
@@ -52,11 +56,12 @@ void LiveView::subscribe(LiveListener& listener) {
 }
 
 void LiveView::tell(Link link, const std::string& detail) {
-  const nlohmann::json status{{"kind", "status"},
-                              {"link", name_of(link)},
-                              {"detail", detail},
-                              {"scene_number", scene_number_},
-                              {"kept_s", RecentFrames::kKeep_s}};
+  nlohmann::json status{{"kind", "status"},
+                        {"link", name_of(link)},
+                        {"detail", detail},
+                        {"scene_number", scene_number_},
+                        {"kept_s", RecentFrames::kKeep_s}};
+  if (figure_) status["figure"] = nlohmann::json::parse(*figure_);
   status_ = std::make_shared<const std::string>(
       status.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   for (LiveListener* listener : listeners_) listener->on_status(status_);
@@ -67,8 +72,12 @@ std::shared_ptr<const Recording> LiveView::recent(std::uint64_t first_tick,
   auto copy = std::make_shared<Recording>();
   copy->hello = hello_;
   if (mesh_) copy->mesh = *mesh_;
-  for (const Frame& frame : recent_.frames()) {
-    if (frame.tick >= first_tick && frame.tick <= last_tick) copy->frames.push_back(frame);
+  const bool is_tracked = !recent_.operators().empty();
+  for (std::size_t i = 0; i < recent_.frames().size(); ++i) {
+    const Frame& frame = recent_.frames()[i];
+    if (frame.tick < first_tick || frame.tick > last_tick) continue;
+    copy->frames.push_back(frame);
+    if (is_tracked) copy->operators.push_back(recent_.operators()[i]);
   }
   return copy;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <set>
 #include <string>
 
@@ -18,19 +19,34 @@ enum class Link { kWaiting, kLive, kLost, kReplay };
 class LiveListener {
  public:
   virtual void on_status(const Text& status) = 0;
-  virtual void on_frame(const Text& frame) = 0;
+  /// `beside` belongs to the frame and may be null.
+  virtual void on_frame(const Text& frame, const Text& beside) = 0;
 
  protected:
   ~LiveListener() = default;
+};
+
+/// What is told beside every frame, made by who knows more than telemetry: the operator's figure.
+class Companion {
+ public:
+  virtual ~Companion() = default;
+  /// For every scene; what it gives is the status's "figure".
+  virtual nlohmann::json begin(const Hello& hello, const MeshBytes& mesh) = 0;
+  /// One JSON text for each frame.
+  virtual std::string with(const Frame& frame, const TrackedOperator* tracked) = 0;
 };
 
 class LiveView {
  public:
   LiveView();
 
+  /// Before the first scene. It outlives the view; null: none.
+  void accompany(Companion* companion) { companion_ = companion; }
+
   // From telemetry or a replay:
   void begin(const Hello& hello, MeshBytes mesh, Link link, const std::string& detail = {});
-  void add(const Frame& frame);
+  /// `tracked` is the operator at this frame, if there is a tracker.
+  void add(const Frame& frame, const TrackedOperator* tracked = nullptr);
   void rewind();  // a replay starts again: forget the frames
   void lose(const std::string& reason);
 
@@ -53,6 +69,8 @@ class LiveView {
   std::shared_ptr<const MeshBytes> mesh_;
   std::uint64_t scene_number_ = 0;  // grows with every Hello: the page loads the scene again
   Text status_;
+  Companion* companion_ = nullptr;
+  Text figure_;  // of the companion, for this scene
   RecentFrames recent_;
   std::set<LiveListener*> listeners_;
 };

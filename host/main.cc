@@ -10,9 +10,12 @@
 #include <nlohmann/json.hpp>
 
 #include "host/command_line.h"
+#include "host/operator_figure.h"
 #include "host/playback.h"
 #include "host/recording_csv.h"
+#include "host/register_tracker.h"
 #include "host/telemetry_client.h"
+#include "host/tracking/operator_tracking.h"
 #include "host/viewer_server.h"
 
 namespace tact::host {
@@ -20,8 +23,10 @@ namespace {
 
 constexpr int kGood = 0, kCheckFailed = 1, kBadInput = 2;
 
+void warn(const std::string& sentence) { fmt::print(stderr, "tact-view: {}\n", sentence); }
+
 int fail(const std::string& sentence) {
-  fmt::print(stderr, "tact-view: {}\n", sentence);
+  warn(sentence);
   return kBadInput;
 }
 
@@ -38,15 +43,18 @@ std::string to_text(const nlohmann::json& json) {
 /// Writes every frame of every run to its own file: FILE, then FILE.2, FILE.3.
 class Recorder {
  public:
-  explicit Recorder(std::string path) : path_(std::move(path)) {}
+  Recorder(std::string path, bool is_tracked) : path_(std::move(path)), is_tracked_(is_tracked) {}
 
   void begin(const Hello& hello, const MeshBytes& mesh) {
     if (path_.empty()) return;
     note(writer_.close());
     ++runs_;
-    note(writer_.open(runs_ == 1 ? path_ : fmt::format("{}.{}", path_, runs_), hello, mesh));
+    note(writer_.open(runs_ == 1 ? path_ : fmt::format("{}.{}", path_, runs_), hello, mesh,
+                      is_tracked_));
   }
-  void add(const Frame& frame) { note(writer_.write(frame)); }
+  void add(const Frame& frame, const TrackedOperator* tracked) {
+    note(writer_.write(frame, tracked));
+  }
   void close() { note(writer_.close()); }
   bool failed() const { return failed_; }
 
@@ -59,6 +67,7 @@ class Recorder {
 
   RecordingWriter writer_;
   std::string path_;
+  bool is_tracked_;
   int runs_ = 0;
   bool failed_ = false;
 };
@@ -69,9 +78,10 @@ int export_csv(const Options& options, const ReadResult& read) {
   }
   std::ofstream out(options.export_csv, std::ios::binary);
   const Recording& recording = read.recording;
-  std::string text = csv_header(recording.hello);
-  for (const Frame& frame : recording.frames) {
-    append_csv_row(text, frame, recording.hello);
+  const std::vector<BodyRole> bodies = bodies_in(recording);
+  std::string text = csv_header(recording.hello, bodies);
+  for (std::size_t i = 0; i < recording.frames.size(); ++i) {
+    append_csv_row(text, recording.frames[i], recording.hello, recording.operator_at(i), bodies);
     out << text;
     text.clear();
   }
@@ -121,9 +131,19 @@ int show_live(const Options& options) {
                 ": exists already; a recording is never overwritten, choose "
                 "another name");
   }
-  LiveView view;  // outlives the sessions, which live in io
+  OperatorFigure figure(options.height_m);  // outlives the view
+  LiveView view;                            // outlives the sessions, which live in io
   boost::asio::io_context io(1);
-  Recorder recorder(options.record);
+  std::optional<OperatorTracking> tracking;
+  if (!options.tracking.empty()) {
+    tracking.emplace(io, warn);
+    if (const std::string wrong = tracking->open(options.tracking); !wrong.empty()) {
+      return fail(wrong);
+    }
+    if (const auto& shoulder_m = tracking->setup().shoulder_m) figure.put_shoulder_at(*shoulder_m);
+  }
+  if (options.figure || tracking) view.accompany(&figure);
+  Recorder recorder(options.record, tracking.has_value());
   TelemetryClient client(io, options.socket,
                          {.hello =
                               [&](const Hello& hello, MeshBytes mesh) {
@@ -132,25 +152,31 @@ int show_live(const Options& options) {
                               },
                           .frame =
                               [&](const Frame& frame) {
-                                recorder.add(frame);
-                                view.add(frame);
+                                const TrackedOperator* now = tracking ? &tracking->now() : nullptr;
+                                recorder.add(frame, now);
+                                view.add(frame, now);
                               },
                           .lost =
                               [&](const std::string& reason) {
-                                if (!reason.empty()) fmt::print(stderr, "tact-view: {}\n", reason);
+                                if (!reason.empty()) warn(reason);
                                 view.lose(reason);
                               }});
   ViewerServer server(io, view, [&client](const double(&position_m)[3], double grip_ratio) {
     client.move_hand(position_m, grip_ratio);
   });
-  const int status = serve(options, io, server, [&client] { client.start(); });
+  const int status = serve(options, io, server, [&client, &tracking] {
+    client.start();
+    if (tracking) tracking->start();
+  });
   recorder.close();
   return status == kGood && recorder.failed() ? kCheckFailed : status;
 }
 
 int show_recording(const Options& options, ReadResult read) {
-  LiveView view;  // outlives the sessions, which live in io
+  OperatorFigure figure(options.height_m);  // outlives the view
+  LiveView view;                            // outlives the sessions, which live in io
   boost::asio::io_context io(1);
+  if (options.figure || !read.recording.operators.empty()) view.accompany(&figure);
   ViewerServer server(io, view, nullptr);
   Playback playback(io, view, std::move(read.recording),
                     std::filesystem::path(options.open).filename().string());
@@ -159,6 +185,7 @@ int show_recording(const Options& options, ReadResult read) {
 }
 
 int run(const Options& options) {
+  if (options.registration) return register_tracker(options);
   if (options.open.empty()) return show_live(options);
   ReadResult read = read_recording(options.open);
   if (!read.damage.empty()) fmt::print(stderr, "tact-view: {}: {}\n", options.open, read.damage);

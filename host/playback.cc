@@ -34,8 +34,8 @@ void Playback::play_next() {
       next_ = 0;
       view_.rewind();
     }
-    const Frame& frame = recording_.frames[next_++];
-    view_.add(frame);
+    const Frame& frame = recording_.frames[next_];
+    view_.add(frame, recording_.operator_at(next_++));
     std::chrono::nanoseconds wait = kPause;
     if (next_ < recording_.frames.size()) {
       const std::int64_t gap_ns = recording_.frames[next_].time_ns - frame.time_ns;

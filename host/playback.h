@@ -1,5 +1,5 @@
-// playback.h - plays a recording into the view with its own timing, from the start again at the
-// end.
+// playback.h - plays a recording, the operator in it too, into the view with its own timing, from
+// the start again at the end.
 #pragma once
 
 #include <boost/asio/io_context.hpp>

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <fstream>
 
+#include "host/operator_record.h"
+
 namespace tact::host {
 namespace {
 
@@ -44,23 +46,25 @@ std::string skip_ticks(std::istream& in, std::uint64_t file_bytes, std::uint64_t
 }
 
 /// Header, scene and meshes. Empty, or why they cannot be used.
-std::string read_setup(std::istream& in, std::uint64_t file_bytes, Recording& recording) {
+std::string read_setup(std::istream& in, std::uint64_t file_bytes, Recording& recording,
+                       bool& is_tracked) {
   FileHeader header;
   if (!read(in, header) || std::memcmp(header.magic, kRecordingMagic, sizeof header.magic) != 0) {
     return "this is not a tact recording; give a file made with --record or the page's record "
            "button";
   }
-  if (header.version != kRecordingVersion) {
+  is_tracked = header.version == kTrackedRecordingVersion;
+  if (header.version != kRecordingVersion && !is_tracked) {
     return fmt::format(
-        "recording version {} cannot be read by this tact-view (version {}); "
+        "recording version {} cannot be read by this tact-view (version {} or {}); "
         "open it with the tact-view that made it",
-        header.version, kRecordingVersion);
+        header.version, kRecordingVersion, kTrackedRecordingVersion);
   }
   if (header.hello_bytes != sizeof(Hello) || header.frame_bytes != sizeof(Frame)) {
     return fmt::format(
         "its frames have {} bytes, those of this tact-view {}, though both say version {}; open it "
         "with the build that made it",
-        header.frame_bytes, sizeof(Frame), kRecordingVersion);
+        header.frame_bytes, sizeof(Frame), header.version);
   }
   constexpr const char* kCutOff =
       "the file ends before its first frame; nothing of it can be shown, record again";
@@ -76,6 +80,43 @@ std::string read_setup(std::istream& in, std::uint64_t file_bytes, Recording& re
   std::string wrong = check_hello(recording.hello);
   if (wrong.empty()) wrong = check_mesh(recording.hello, recording.mesh);
   return wrong;
+}
+
+/// All that is good from byte `start` on. Empty, or what is damaged, "; " at its end.
+std::string read_frames(std::istream& in, std::uint64_t start, std::uint64_t file_bytes,
+                        bool is_tracked, Recording& recording) {
+  const std::uint64_t stride = sizeof(FrameRecord) + (is_tracked ? sizeof(OperatorRecord) : 0);
+  const std::uint64_t records = (file_bytes - start) / stride;
+  const std::uint64_t left_bytes = (file_bytes - start) % stride;
+  recording.frames.reserve(records);
+  std::uint64_t damaged = 0, first_damaged = 0, damaged_operators = 0;
+  FrameRecord record;
+  OperatorRecord tracked;
+  for (std::uint64_t i = 0; i < records && read(in, record); ++i) {
+    if (is_tracked && !read(in, tracked)) break;
+    if (crc_of(record.frame) != record.crc || !check_frame(record.frame, recording.hello).empty()) {
+      if (damaged++ == 0) first_damaged = start + i * stride;
+      continue;
+    }
+    recording.frames.push_back(record.frame);
+    if (!is_tracked) continue;
+    const std::optional<TrackedOperator> seen = operator_of(tracked);
+    if (!seen) ++damaged_operators;
+    recording.operators.push_back(seen.value_or(TrackedOperator{}));
+  }
+  std::string damage;
+  if (damaged > 0) {
+    damage = fmt::format("{} of {} frames are damaged, the first at byte {}; ", damaged, records,
+                         first_damaged);
+  }
+  if (damaged_operators > 0) {
+    damage += fmt::format("{} of {} frames have lost their operator; ", damaged_operators, records);
+  }
+  if (left_bytes > 0) {
+    damage +=
+        fmt::format("the file is cut off inside a frame at byte {}; ", file_bytes - left_bytes);
+  }
+  return damage;
 }
 
 }  // namespace
@@ -96,32 +137,13 @@ ReadResult read_recording(const std::string& path) {
   in.seekg(0);
   Recording& recording = result.recording;
   std::uint64_t start = 0;
+  bool is_tracked = false;
   result.damage = skip_ticks(in, file_bytes, start);
-  if (result.damage.empty()) result.damage = read_setup(in, file_bytes, recording);
+  if (result.damage.empty()) result.damage = read_setup(in, file_bytes, recording, is_tracked);
   if (!result.damage.empty()) return result;
-
   start += sizeof(FileHeader) + sizeof(Hello) + recording.mesh.size();
-  const std::uint64_t records = (file_bytes - start) / sizeof(FrameRecord);
-  const std::uint64_t left_bytes = (file_bytes - start) % sizeof(FrameRecord);
-  recording.frames.reserve(records);
-  std::uint64_t damaged = 0, first_damaged = 0;
-  FrameRecord record;
-  for (std::uint64_t i = 0; i < records && read(in, record); ++i) {
-    if (crc_of(record.frame) == record.crc && check_frame(record.frame, recording.hello).empty()) {
-      recording.frames.push_back(record.frame);
-    } else if (damaged++ == 0) {
-      first_damaged = start + i * sizeof(FrameRecord);
-    }
-  }
+  result.damage = read_frames(in, start, file_bytes, is_tracked, recording);
   result.usable = !recording.frames.empty();
-  if (damaged > 0) {
-    result.damage = fmt::format("{} of {} frames are damaged, the first at byte {}; ", damaged,
-                                records, first_damaged);
-  }
-  if (left_bytes > 0) {
-    result.damage +=
-        fmt::format("the file is cut off inside a frame at byte {}; ", file_bytes - left_bytes);
-  }
   if (!result.damage.empty() || !result.usable) {
     result.damage += fmt::format("{} good frames ({:.1f} s) are kept", recording.frames.size(),
                                  recording.length_s());
@@ -130,8 +152,9 @@ ReadResult read_recording(const std::string& path) {
 }
 
 std::string RecordingWriter::open(const std::string& path, const Hello& hello,
-                                  const MeshBytes& mesh) {
+                                  const MeshBytes& mesh, bool is_tracked) {
   path_ = path;
+  is_tracked_ = is_tracked;
   file_.reset(std::fopen(path.c_str(), "wbx"));  // x: fails when the file exists
   if (!file_) {
     const bool exists = errno == EEXIST;
@@ -140,7 +163,8 @@ std::string RecordingWriter::open(const std::string& path, const Hello& hello,
                               : "check that the folder exists and may be written");
   }
   flushed_ns_ = 0;
-  std::string wrong = put(recording_start(hello, mesh));
+  std::string wrong =
+      put(recording_start(hello, mesh, is_tracked ? kTrackedRecordingVersion : kRecordingVersion));
   if (wrong.empty() && std::fflush(file_.get()) != 0) wrong = put({});
   return wrong;
 }
@@ -156,9 +180,11 @@ std::string RecordingWriter::put(const std::string& bytes) {
   return wrong;
 }
 
-std::string RecordingWriter::write(const Frame& frame) {
+std::string RecordingWriter::write(const Frame& frame, const TrackedOperator* tracked) {
   if (!file_) return {};
-  std::string wrong = put(recording_frame(frame));
+  std::string bytes = recording_frame(frame);
+  if (is_tracked_) bytes += operator_record(tracked != nullptr ? *tracked : TrackedOperator{});
+  std::string wrong = put(bytes);
   if (wrong.empty() && frame.time_ns - flushed_ns_ >= kFlush_ns) {
     flushed_ns_ = frame.time_ns;
     if (std::fflush(file_.get()) != 0) wrong = put({});
@@ -174,12 +200,17 @@ std::string RecordingWriter::close() {
 
 void RecentFrames::restart(double frame_rate_Hz) {
   frames_.clear();
+  operators_.clear();
   capacity_ = static_cast<std::size_t>(std::clamp(frame_rate_Hz, 1.0, 1000.0) * kKeep_s);
 }
 
-void RecentFrames::add(const Frame& frame) {
+void RecentFrames::add(const Frame& frame, const TrackedOperator* tracked) {
   if (frames_.size() >= capacity_ && !frames_.empty()) frames_.pop_front();
   frames_.push_back(frame);
+  if (tracked == nullptr && operators_.empty()) return;
+  operators_.push_back(tracked != nullptr ? *tracked : TrackedOperator{});
+  while (operators_.size() < frames_.size()) operators_.emplace_front();
+  while (operators_.size() > frames_.size()) operators_.pop_front();
 }
 
 }  // namespace tact::host

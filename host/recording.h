@@ -1,7 +1,8 @@
 // recording.h - a run of tactd in one file, and the last minutes of it in memory.
 //
-// The file is laid out in firmware/recording_format.h; a black box of tactd holds one, too. A damaged
-// or cut-off file gives what is good of it and one sentence about the rest.
+// The file is laid out in firmware/recording_format.h; a black box of tactd holds one, too. A
+// damaged or cut-off file gives what is good of it and one sentence about the rest. With a tracker
+// it also keeps the operator, frame by frame (operator_record.h).
 #pragma once
 
 #include <cstdio>
@@ -12,6 +13,7 @@
 
 #include "firmware/recording_format.h"
 #include "host/telemetry_check.h"
+#include "host/tracking/tracked_operator.h"
 
 namespace tact::host {
 
@@ -19,6 +21,7 @@ using firmware::FileHeader;
 using firmware::FrameRecord;
 using firmware::kRecordingMagic;
 using firmware::kRecordingVersion;
+using firmware::kTrackedRecordingVersion;
 using firmware::recording_frame;
 using firmware::recording_start;
 
@@ -26,7 +29,12 @@ struct Recording {
   Hello hello;
   MeshBytes mesh;
   std::vector<Frame> frames;
+  std::vector<TrackedOperator> operators;  // of each frame; none without a tracker
 
+  /// None without a tracker.
+  const TrackedOperator* operator_at(std::size_t frame) const {
+    return operators.empty() ? nullptr : &operators[frame];
+  }
   double length_s() const;
 };
 
@@ -41,8 +49,10 @@ ReadResult read_recording(const std::string& path);
 class RecordingWriter {
  public:
   /// Each returns an empty string, or what went wrong. After an error nothing more is written.
-  std::string open(const std::string& path, const Hello& hello, const MeshBytes& mesh);
-  std::string write(const Frame& frame);
+  std::string open(const std::string& path, const Hello& hello, const MeshBytes& mesh,
+                   bool is_tracked = false);
+  /// `tracked` only if is_tracked.
+  std::string write(const Frame& frame, const TrackedOperator* tracked = nullptr);
   std::string close();
 
  private:
@@ -54,19 +64,22 @@ class RecordingWriter {
   std::unique_ptr<std::FILE, Closer> file_;
   std::string path_;
   std::int64_t flushed_ns_ = 0;
+  bool is_tracked_ = false;
 };
 
-/// The newest frames, oldest first, bounded in time.
+/// The newest frames, oldest first, bounded in time, with the operator where one is tracked.
 class RecentFrames {
  public:
   void restart(double frame_rate_Hz);
-  void add(const Frame& frame);
+  void add(const Frame& frame, const TrackedOperator* tracked = nullptr);
   const std::deque<Frame>& frames() const { return frames_; }
+  const std::deque<TrackedOperator>& operators() const { return operators_; }
 
   static constexpr double kKeep_s = 300.0;
 
  private:
   std::deque<Frame> frames_;
+  std::deque<TrackedOperator> operators_;  // as many as frames, or none
   std::size_t capacity_ = 0;
 };
 

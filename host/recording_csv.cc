@@ -7,6 +7,8 @@
 #include <iterator>
 #include <span>
 
+#include "host/tracking/tracking_setup.h"
+
 namespace tact::host {
 namespace {
 
@@ -36,6 +38,20 @@ const char* name_of(firmware::SiteState state) {
   return "unknown";
 }
 
+const char* name_of(BodyState state) {
+  switch (state) {
+    case BodyState::kAbsent:
+      return "absent";
+    case BodyState::kTracked:
+      return "tracked";
+    case BodyState::kHeld:
+      return "held";
+    case BodyState::kLost:
+      return "lost";
+  }
+  return "unknown";
+}
+
 std::size_t sites_of(const Hello& hello) {
   return std::min<std::size_t>(hello.site_count, firmware::kMaxSites);
 }
@@ -58,9 +74,16 @@ void put_patch(std::string& out, const firmware::FramePatch& patch) {
   fmt::format_to(std::back_inserter(out), ",{},{},{:.6f}", patch.cut_total, n, 1e-6 * most_um);
 }
 
+void put_body(std::string& out, const TrackedBody& body) {
+  const Eigen::Quaterniond& q = body.raw.rotation;
+  const Eigen::Vector3d& p = body.raw.position_m;
+  fmt::format_to(std::back_inserter(out), ",{},{},{},{},{},{},{},{},{},{}", name_of(body.state),
+                 p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z(), body.rms_px, body.age_s);
+}
+
 }  // namespace
 
-std::string csv_header(const Hello& hello) {
+std::string csv_header(const Hello& hello, const std::vector<BodyRole>& bodies) {
   std::string out =
       "tick,time_s,non_rt,state,fault,limit,late_ticks,skipped_ticks,dropped_records,"
       "tool_x_m,tool_y_m,tool_z_m,tool_qw,tool_qx,tool_qy,tool_qz,"
@@ -78,11 +101,29 @@ std::string csv_header(const Hello& hello) {
       fmt::format_to(std::back_inserter(out), ",site{}_u{}_m", i, j);
     }
   }
+  for (const BodyRole role : bodies) {
+    fmt::format_to(std::back_inserter(out),
+                   ",{0}_state,{0}_x_m,{0}_y_m,{0}_z_m,{0}_qw,{0}_qx,{0}_qy,{0}_qz,{0}_rms_px,"
+                   "{0}_age_s",
+                   name_of(role));
+  }
   out += '\n';
   return out;
 }
 
-void append_csv_row(std::string& out, const Frame& frame, const Hello& hello) {
+std::vector<BodyRole> bodies_in(const Recording& recording) {
+  std::vector<BodyRole> out;
+  for (std::size_t i = 0; i < kBodyRoles; ++i) {
+    const bool is_present = std::ranges::any_of(recording.operators, [i](const TrackedOperator& o) {
+      return o.bodies[i].state != BodyState::kAbsent;
+    });
+    if (is_present) out.push_back(static_cast<BodyRole>(i));
+  }
+  return out;
+}
+
+void append_csv_row(std::string& out, const Frame& frame, const Hello& hello,
+                    const TrackedOperator* tracked, const std::vector<BodyRole>& bodies) {
   fmt::format_to(std::back_inserter(out), "{},{:.9f},{},{},{},{},{},{},{}", frame.tick,
                  static_cast<double>(frame.time_ns) * 1e-9, frame.non_rt, name_of(frame.state),
                  frame.fault, frame.limit, frame.late_ticks, frame.skipped_ticks,
@@ -110,6 +151,8 @@ void append_csv_row(std::string& out, const Frame& frame, const Hello& hello) {
     put(out, site.depth_m);
     put(out, std::span(site.profile_m).first(rings_of(hello)));
   }
+  const TrackedOperator none;
+  for (const BodyRole role : bodies) put_body(out, (tracked != nullptr ? *tracked : none)[role]);
   out += '\n';
 }
 

@@ -14,8 +14,8 @@
 // U is the site law's (site_law.h), s the place on the surface; as s follows the tool, the slope of
 // U along the surface is felt too. t: tangential displacement of the tissue, m. A change of state
 // never adds energy: slack takes up whatever depth would come for free (arming inside the organ,
-// letting go over a bump or stiffer tissue, a nearest point that jumps) and shrinks only as the tool
-// withdraws.
+// letting go over a bump or stiffer tissue, a nearest point that jumps) and shrinks only as the
+// tool withdraws.
 #pragma once
 
 #include <array>

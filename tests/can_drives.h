@@ -1,4 +1,5 @@
-// can_drives.h - a CAN bus of one socketpair for tests: the host's socket, and who plays the drives.
+// can_drives.h - a CAN bus of one socketpair for tests: the host's socket, and who plays the
+// drives.
 //
 // Time is made, not measured: every wait of the host lets one millisecond pass for the drives, and
 // every frame has the age that the test says. So bring-up with its seconds takes no time, and the

@@ -156,7 +156,8 @@ TEST_P(EveryScene, TheSameRunGivesTheSameBits) {
   EXPECT_EQ(a.hash, b.hash);
 }
 
-INSTANTIATE_TEST_SUITE_P(ClosedLoop, EveryScene, testing::Values("liver", "heart", "skin", "gum"),
+INSTANTIATE_TEST_SUITE_P(ClosedLoop, EveryScene,
+                         testing::Values("liver", "heart", "skin", "gum", "maintenance"),
                          [](const auto& one) { return std::string(one.param); });
 
 }  // namespace

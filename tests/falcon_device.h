@@ -1,7 +1,8 @@
-// falcon_device.h - a Falcon with its USB adapter, as far as waking goes, for the tests of falcon_boot.
+// falcon_device.h - a Falcon with its USB adapter, as far as waking goes, for the tests of
+// falcon_boot.
 //
-// It holds nothing of the real firmware and takes any image of image_size bytes. Each fault is a count of how
-// often it shall happen.
+// It holds nothing of the real firmware and takes any image of image_size bytes. Each fault is a
+// count of how often it shall happen.
 #pragma once
 
 #include <gtest/gtest.h>

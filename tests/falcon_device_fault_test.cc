@@ -221,6 +221,19 @@ TEST(FalconDeviceFault, WhatEndsThePipeLatchesAndIsNamed) {
   }
 }
 
+TEST(FalconDeviceFault, AfterItsThreadStoodInForTheLoopTheOldForceDoesNotComeBack) {
+  FalconBench bench;
+  bench.home();
+  bench.run(5, kPush_N);
+  EXPECT_NE(bench.words(), kNoWords);
+  bench.pipe->state.stood_in = true;  // and the loop comes back, with what it held
+  EXPECT_FALSE(bench.tick(kPush_N));
+  EXPECT_EQ(bench.fault, Fault::kLoopStalled);
+  EXPECT_EQ(bench.words(), kNoWords);
+  EXPECT_TRUE(names(bench, "gave the Falcon no command for 100 ms")) << bench.device.trouble();
+  expect_latched(bench, Fault::kLoopStalled);
+}
+
 TEST(FalconDeviceFault, AStallOrABrokenPipeBringsZerosAtOnceAndWhenItStops) {
   for (const FalconPipeEnd end : {FalconPipeEnd::kStalled, FalconPipeEnd::kBroken}) {
     FalconBench bench;

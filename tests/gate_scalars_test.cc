@@ -1,5 +1,5 @@
-// The scalar core of the gate over every class of float: zero, denormals, normals, the limit and its
-// neighbours, the largest, infinity, NaN, with both signs, in every combination.
+// The scalar core of the gate over every class of float: zero, denormals, normals, the limit and
+// its neighbours, the largest, infinity, NaN, with both signs, in every combination.
 #include <gtest/gtest.h>
 
 #include <cmath>

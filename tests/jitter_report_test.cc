@@ -13,7 +13,6 @@
 #include "tools/jitter/jitter_compare.h"
 #include "tools/jitter/jitter_page.h"
 #include "tools/jitter/jitter_picture.h"
-#include "tools/jitter/peer.h"
 
 namespace tact::tools {
 namespace {
@@ -101,6 +100,23 @@ TEST(Report, TheRatioToThePeerNeedsSamplesOfBoth) {
   EXPECT_NEAR(*ratio_to_peer(result), 2.0, 2.0 / 32);
 }
 
+TEST(Report, OneStallMovesTheRatioOfARunButNotTheMiddleOfItsTurns) {
+  JitterResult result = small_result(1000);
+  result.peer.emplace();
+  for (std::uint64_t i = 0; i < 1000; ++i) result.peer->record(2'700, i, 0);
+  EXPECT_EQ(to_json(result, "c")["wake_p99.9_over_peer_by_turn"], nullptr);
+  result.turn_ratios = {1.1, 0.9};
+  EXPECT_FALSE(has(make_summary(result), "turn by turn")) << "two turns have no middle";
+  result.turn_ratios = {1.1, 40.0, 0.9, 1.0, 1.2};
+  const json told = to_json(result, "c")["wake_p99.9_over_peer_by_turn"];
+  EXPECT_EQ(told["turns"], 5);
+  EXPECT_EQ(told["lower_quartile"], 1.0);
+  EXPECT_EQ(told["median"], 1.1);
+  EXPECT_EQ(told["upper_quartile"], 1.2);
+  EXPECT_TRUE(has(make_summary(result), "turn by turn 1.10 in the median of 5"));
+  EXPECT_TRUE(has(make_page(result, "c", ""), "turn by turn 1.10 in the median of 5"));
+}
+
 TEST(Report, ThePageNeedsNothingButItself) {
   const std::string page =
       make_page(small_result(1000), "tact-jitter <x>", "<?xml head?><svg>picture</svg>");
@@ -162,28 +178,6 @@ TEST(Compare, TellsWhichConditionsDiffer) {
   ASSERT_EQ(comparison->unlike.size(), 2u);
   EXPECT_TRUE(has(make_comparison_text(*comparison), "not alike: rate_Hz 1000 and 2000"));
   EXPECT_FALSE(compare_results(json::object(), other, 0.1)) << "no result at all";
-}
-
-TEST(Peer, CountsCyclictestsSamplesAtTheUpperEdgeOfTheirMicrosecond) {
-  Series series;
-  const auto error = add_cyclictest(
-      R"({"thread":{"0":{"histogram":{"2":3,"10":6},"cycles":10,"max":60000}}})", series);
-  ASSERT_FALSE(error) << error->sentence;
-  EXPECT_EQ(series.histogram.count(), 10u) << "the one beyond the histogram is the largest";
-  EXPECT_EQ(series.histogram.percentile_ns(0.3), 2'999u / 32 * 32 + 31);
-  EXPECT_EQ(series.histogram.max_ns(), 60'000'999u);
-  for (const char* bad : {"", "{}", "[]", R"({"thread":{"0":{"histogram":3}}})", R"({"thread":7})"})
-    EXPECT_TRUE(add_cyclictest(bad, series)) << bad;
-}
-
-TEST(Peer, TakesTurnsInSlicesOfFiveSecondsAtMost) {
-  EXPECT_EQ(slices_of(12.0, false), (std::vector<double>{12.0}));
-  EXPECT_EQ(slices_of(12.0, true), (std::vector<double>{4.0, 4.0, 4.0}));
-  EXPECT_EQ(slices_of(1.0, true).size(), 2u);
-  const auto arguments = cyclictest_arguments(
-      {.core = 3, .priority = 80, .period_ns = 250'000, .duration_s = 2.0}, "out.json");
-  for (const char* word : {"-p80", "-a3", "-i250", "-l8000", "-m"})
-    EXPECT_EQ(std::count(arguments.begin(), arguments.end(), word), 1) << word;
 }
 
 class Folder : public testing::Test {

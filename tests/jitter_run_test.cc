@@ -48,6 +48,15 @@ TickSink stalled_run() {
   return sink;
 }
 
+TEST(TickSink, ASliceHasTheWakeUpsOfItsOwnTicksAlone) {
+  TickSink sink = stalled_run();
+  sink.begin_slice();
+  for (std::uint64_t i = 0; i < 10; ++i)
+    sink.add(tick_at(i, static_cast<std::int64_t>(2000 + i) * kMs, 7'000));
+  EXPECT_EQ(sink.slice_wake().histogram.count(), 10u);
+  EXPECT_EQ(sink.slice_wake().histogram.max_ns(), 7'000u) << "the stall was in the slice before";
+}
+
 TEST(TickSink, AStallCountsForEveryPointOfTheGridThatItHid) {
   const TickSink sink = stalled_run();
   EXPECT_EQ(sink.ticks(), 950u);

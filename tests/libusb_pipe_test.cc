@@ -105,6 +105,37 @@ TEST_F(LibusbPipeTest, TheLoopsSideOfACommandLeavesTheHeapAlone) {
   EXPECT_TRUE(std::ranges::equal(usb.commands[0], packet));
 }
 
+TEST_F(LibusbPipeTest, ALoopThatFallsSilentIsReplacedByZerosWhichIsTold) {
+  const FalconPacket push = encode(FalconCommand{.motor = {900, 900, 900}});
+  EXPECT_FALSE(pipe->health().stood_in);
+  for (const bool answers : {true, false}) {  // the adapter's latency timer, or nothing at all
+    const std::size_t before = locked([&] { return usb.taken.size(); });
+    const std::int64_t before_ns = monotonic_ns();
+    EXPECT_TRUE(pipe->submit(push));
+    EXPECT_TRUE(wait_for([&] {
+      if (answers) send({0x01, 0x60});
+      return locked([&] { return usb.taken.size() == before + 2; });
+    }));
+    EXPECT_GE(monotonic_ns() - before_ns, LoopSilence::kSilence_ns);
+    locked([&] {
+      EXPECT_TRUE(std::ranges::equal(usb.taken[before], push));
+      EXPECT_TRUE(std::ranges::equal(usb.taken[before + 1], LoopSilence::zero()));
+    });
+    EXPECT_TRUE(pipe->health().stood_in);
+  }
+}
+
+TEST_F(LibusbPipeTest, SilenceIsCountedFromTheCommandAndNotFromTheReplyBefore) {
+  EXPECT_TRUE(pipe->submit(encode(FalconCommand{.motor = {900, 900, 900}})));
+  EXPECT_TRUE(wait_for([&] { return locked([&] { return usb.taken.size() == 1; }); }));
+  for (int i = 0; i < 5; ++i) {  // the first replies ever, some milliseconds later
+    send({0x01, 0x60});
+    usb_pause_ns(2'000'000);
+  }
+  EXPECT_FALSE(pipe->health().stood_in);
+  EXPECT_EQ(locked([&] { return usb.taken.size(); }), 1u);
+}
+
 TEST_F(LibusbPipeTest, TwoCommandsAreUnderWayAndTheNewestOfTheOthersFollows) {
   locked([&] { usb.keeps_out = true; });
   for (int i = 1; i <= 6; ++i) {

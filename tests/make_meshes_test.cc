@@ -39,7 +39,7 @@ TEST(MakeMeshes, GivesTheShippedFilesByteForByte) {
   ASSERT_EQ(ran.status, 0) << ran.err;
   for (const std::string name :
        {"liver_3116.obj", "forceps_174.obj", "heart_10026.obj", "hand_2865.obj", "skin.obj",
-        "injector.obj", "gum.obj", "blade.obj"}) {
+        "injector.obj", "gum.obj", "blade.obj", "cover.obj", "press.obj"}) {
     const std::string made = read_text(temp.path() + "/" + name);
     EXPECT_GT(made.size(), 5000u);
     EXPECT_TRUE(made == read_text(shipped(name))) << name << " differs";
@@ -137,7 +137,9 @@ TEST(MakeMeshes, EveryNewMeshIsSoundAndOfItsCountsAndSize) {
       {"skin.obj", 3000, 5996, 0, 2, {0.080, 0.120, 0.030}, 30.0},
       {"injector.obj", 482, 960, 0, 2, {0.024, 0.024, 0.112}, 15.0},
       {"gum.obj", 2300, 4596, 0, 2, {0.0495, 0.0596, 0.015}, 28.0},
-      {"blade.obj", 107, 210, 0, 2, {0.0084, 0.0032, 0.140}, 2.0}};  // a thin wedge
+      {"blade.obj", 107, 210, 0, 2, {0.0084, 0.0032, 0.140}, 2.0},  // a thin wedge
+      {"cover.obj", 10000, 19996, 0, 2 + 0, {0.104, 0.124, 0.0141}, 20.0},
+      {"press.obj", 738, 1472, 0, 2, {0.0232, 0.0232, 0.150}, 12.0}};
   for (const Expected& e : all) {
     const SurfaceMesh mesh = load(shipped(e.file));
     const MeshSummary sum = summarize(mesh);
@@ -195,11 +197,34 @@ TEST(MakeMeshes, GumHasEvenTrianglesWhereTheBladeGoes) {
   EXPECT_NEAR(sum_m / edges, 0.0015, 0.0001);
 }
 
+TEST(MakeMeshes, CoverIsAPlateAndAGasketThatLiesOnIt) {
+  const SurfaceMesh cover = load(shipped("cover.obj"));
+  EXPECT_EQ(parts(cover, [](std::size_t, std::size_t) { return true; }), 2);
+  std::size_t on_crest = 0;
+  for (std::size_t v = 0; v < cover.vertex_m.size(); ++v) {
+    const Vec3& p_m = cover.vertex_m[v];
+    if (v < 7200 || p_m.z < 0.006) continue;  // the plate's vertices come first
+    ++on_crest;
+    EXPECT_GT(cover.vertex_normal[v].z, 0.9);
+    EXPECT_LT(std::min(std::abs(std::abs(p_m.x) - 0.026), std::abs(std::abs(p_m.y) - 0.036)),
+              0.005);
+  }
+  EXPECT_GT(on_crest, 200u);
+  for (std::size_t v = 7200; v < cover.vertex_m.size(); ++v) {
+    EXPECT_GT(cover.vertex_m[v].z, 0.0) << "the gasket is on the plate, not in it";
+  }
+}
+
 TEST(MakeMeshes, ToolsStartAtTheOrigin) {
   const SurfaceMesh injector = load(shipped("injector.obj"));
   for (const Vec3& p_m : injector.vertex_m) {  // a blunt ball of 2.5 mm
     if (p_m.z > 0.0025) continue;
     EXPECT_NEAR(norm(p_m - Vec3{0, 0, 0.0025}), 0.0025, 1e-6);
+  }
+  const SurfaceMesh press = load(shipped("press.obj"));
+  for (const Vec3& p_m : press.vertex_m) {  // a ball of 4 mm
+    if (p_m.z > 0.006) continue;
+    EXPECT_NEAR(norm(p_m - Vec3{0, 0, 0.004}), 0.004, 1e-6);
   }
   const SurfaceMesh blade = load(shipped("blade.obj"));
   int edge = 0;

@@ -1,5 +1,5 @@
-// odrive_drives.h - three ODrives on the scripted bus: what they say each millisecond, and what they
-// heard. They know the protocol by the decoders that the vectors prove.
+// odrive_drives.h - three ODrives on the scripted bus: what they say each millisecond, and what
+// they heard. They know the protocol by the decoders that the vectors prove.
 #pragma once
 
 #include <algorithm>

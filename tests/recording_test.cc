@@ -11,7 +11,9 @@
 #include <iterator>
 #include <limits>
 
+#include "host/operator_record.h"
 #include "host/recording_csv.h"
+#include "tests/spoilt_file.h"
 #include "tests/telemetry_source.h"
 
 namespace tact::host {
@@ -40,13 +42,6 @@ class RecordingFile : public ::testing::Test {
   }
   std::uint64_t first_frame_byte() const {
     return sizeof(FileHeader) + sizeof(Hello) + mesh_.size();
-  }
-  void flip_byte(std::uint64_t at) {
-    std::fstream file(path_, std::ios::binary | std::ios::in | std::ios::out);
-    file.seekg(static_cast<std::streamoff>(at));
-    const int old = file.get();
-    file.seekp(static_cast<std::streamoff>(at));
-    file.put(static_cast<char>(old ^ 0x40));
   }
 
   std::string path_;
@@ -77,7 +72,7 @@ TEST_F(RecordingFile, KeepsEveryWholeFrameOfATruncatedFile) {
 }
 
 TEST_F(RecordingFile, LosesOnlyTheFrameThatIsDamaged) {
-  flip_byte(first_frame_byte() + 7 * sizeof(FrameRecord) + 300);
+  tests::flip_byte(path_, first_frame_byte() + 7 * sizeof(FrameRecord) + 300);
   const ReadResult read = read_recording(path_);
   ASSERT_TRUE(read.usable);
   ASSERT_EQ(read.recording.frames.size(), kFrames - 1);
@@ -87,21 +82,21 @@ TEST_F(RecordingFile, LosesOnlyTheFrameThatIsDamaged) {
 }
 
 TEST_F(RecordingFile, IsRefusedWhenItsSceneIsDamaged) {
-  flip_byte(sizeof(FileHeader) + sizeof(Hello) + 3);
+  tests::flip_byte(path_, sizeof(FileHeader) + sizeof(Hello) + 3);
   const ReadResult read = read_recording(path_);
   EXPECT_FALSE(read.usable);
   EXPECT_NE(read.damage.find("checksum"), std::string::npos) << read.damage;
 }
 
 TEST_F(RecordingFile, IsRefusedWhenAnotherVersionMadeIt) {
-  flip_byte(sizeof kRecordingMagic);
+  tests::flip_byte(path_, sizeof kRecordingMagic);
   const ReadResult read = read_recording(path_);
   EXPECT_FALSE(read.usable);
   EXPECT_NE(read.damage.find("version"), std::string::npos) << read.damage;
 }
 
 TEST_F(RecordingFile, OfOtherSizesButTheSameVersionSaysSo) {
-  flip_byte(offsetof(FileHeader, frame_bytes));
+  tests::flip_byte(path_, offsetof(FileHeader, frame_bytes));
   const ReadResult read = read_recording(path_);
   EXPECT_FALSE(read.usable);
   EXPECT_NE(read.damage.find("though both say version 3"), std::string::npos) << read.damage;

@@ -45,8 +45,8 @@ void collect(const toml::table& table, const std::string& path, std::set<std::st
 
 std::set<std::string> keys_of_shipped_scenes() {
   std::set<std::string> keys;
-  for (const std::string& path :
-       {kLiver, kScenes + "heart.toml", kScenes + "skin.toml", kScenes + "gum.toml", kDevices}) {
+  for (const std::string& path : {kLiver, kScenes + "heart.toml", kScenes + "skin.toml",
+                                  kScenes + "gum.toml", kScenes + "maintenance.toml", kDevices}) {
     const Result<SceneDocument> document = load_scene_document(path, {});
     EXPECT_TRUE(document) << document.error().sentence;
     if (document) collect(document->root, "", keys);

@@ -1,101 +1,137 @@
-// The trace, read by a parser that shares no code with its writer.
+// The trace of tact-jitter, read by Google's own protoc: what ui.perfetto.dev is given.
 #include "tools/jitter/tick_trace.h"
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <map>
+#include <sstream>
+#include <vector>
 
-#include "tools/jitter/tick_sink.h"
+#include "tests/program.h"
+#include "tools/common/run_program.h"
 
 namespace tact::tools {
 namespace {
 
-struct Field {
-  std::uint64_t number = 0, value = 0;
-  std::string bytes;
+using firmware::Phase;
+
+/// One packet as protoc prints it: "track_event.type" -> "TYPE_SLICE_BEGIN".
+using Packet = std::map<std::string, std::string>;
+
+std::vector<Packet> decode(const std::string& path) {
+  const auto text = tests::run_command(std::string("protoc --proto_path=") + TACT_SOURCE_DIR +
+                                       "/tests/data --decode=Trace track_event.proto <" + path);
+  EXPECT_EQ(text.status, 0) << text.output;
+  std::vector<Packet> packets;
+  std::vector<std::string> inside;
+  std::istringstream lines(text.output);
+  for (std::string line; std::getline(lines, line);) {
+    line.erase(0, line.find_first_not_of(' '));
+    if (line == "}") {
+      inside.pop_back();
+    } else if (line.ends_with(" {")) {
+      inside.push_back(line.substr(0, line.size() - 2));
+      if (inside.size() == 1) packets.emplace_back();
+    } else {
+      const auto colon = line.find(": ");
+      EXPECT_NE(colon, std::string::npos) << line << ": a field that the schema does not know";
+      std::string key;
+      for (std::size_t i = 1; i < inside.size(); ++i) key += inside[i] + ".";
+      packets.back()[key + line.substr(0, colon)] = line.substr(colon + 2);
+    }
+  }
+  return packets;
+}
+
+class PerfettoTraceFile : public testing::Test {
+ protected:
+  std::vector<Packet> written_and_decoded(const std::vector<TickTimes>& ticks) const {
+    const std::string path = scratch.file("ticks.perfetto-trace");
+    std::ofstream(path, std::ios::binary) << make_tick_trace(ticks, 1'000);
+    return decode(path);
+  }
+  ScratchFolder scratch = std::move(*ScratchFolder::make("tact-perfetto-test"));
 };
 
-std::uint64_t take_varint(const std::string& in, std::size_t& at) {
-  std::uint64_t value = 0;
-  for (unsigned shift = 0;; shift += 7) {
-    const auto byte = static_cast<unsigned char>(in.at(at++));
-    value |= std::uint64_t{byte & 0x7fU} << shift;
-    if (byte < 0x80) return value;
-  }
+TickTimes tick_at(std::uint64_t tick, std::int64_t due_ns, std::uint32_t skipped = 0) {
+  return {.tick = tick,
+          .due_ns = due_ns,
+          .skipped_before = skipped,
+          .phase_ns = {5'000, 300, 200, 100, 150, 80, 60, 5'890}};
 }
 
-std::vector<Field> fields_of(const std::string& message) {
-  std::vector<Field> fields;
-  for (std::size_t at = 0; at < message.size();) {
-    const std::uint64_t key = take_varint(message, at);
-    Field field{.number = key >> 3, .value = take_varint(message, at), .bytes = {}};
-    EXPECT_TRUE((key & 7) == 0 || (key & 7) == 2);
-    if ((key & 7) == 2) {
-      field.bytes = message.substr(at, field.value);
-      EXPECT_EQ(field.bytes.size(), field.value) << "a length that the file does not have";
-      at += field.value;
-    }
-    fields.push_back(field);
-  }
-  return fields;
-}
-
-const Field* find(const std::vector<Field>& fields, std::uint64_t number) {
-  for (const Field& f : fields)
-    if (f.number == number) return &f;
-  return nullptr;
-}
-
-TEST(Trace, SlicesNestOnTheirTracksAndTimesAreThoseOfTheTicks) {
-  TickSink sink({});
-  for (std::uint64_t i = 0; i < 3; ++i) {
-    firmware::TickRecord record;
-    record.tick = i;
-    record.due_ns = 1'000'000'000 + static_cast<std::int64_t>(i) * 1'000'000;
-    record.phase_ns = {i == 2 ? 2'000'000 : 5'000, 100, 200, 300, 400, 500, 600, 2'100};
-    sink.add(record);
-  }
-  constexpr std::int64_t kOffset_ns = 1'000'000'000'000;  // needs six bytes as a varint
-  const std::string bytes = make_tick_trace(sink.kept_ticks(), kOffset_ns);
-  std::map<std::uint64_t, std::string> track_name;
-  std::map<std::uint64_t, std::vector<std::string>> open;
-  std::map<std::uint64_t, std::uint64_t> newest_ns;
-  std::map<std::string, std::vector<std::uint64_t>> begun_ns;
-  std::vector<std::uint64_t> latencies;
-  for (const Field& packet : fields_of(bytes)) {
-    ASSERT_EQ(packet.number, 1u);
-    const auto fields = fields_of(packet.bytes);
-    ASSERT_NE(find(fields, 10), nullptr) << "every packet names its sequence";
-    if (const Field* descriptor = find(fields, 60)) {
-      const auto about = fields_of(descriptor->bytes);
-      track_name[find(about, 1)->value] = find(about, 2) != nullptr ? find(about, 2)->bytes : "";
-      continue;
-    }
-    const auto event = fields_of(find(fields, 11)->bytes);
-    const std::uint64_t type = find(event, 9)->value, track = find(event, 11)->value;
-    const std::uint64_t time_ns = find(fields, 8)->value;
-    ASSERT_TRUE(track_name.contains(track)) << "an event on a track that nobody described";
-    EXPECT_GE(time_ns, newest_ns[track]);
+TEST_F(PerfettoTraceFile, EverySliceEndsInItsTrackInOrderOfTime) {
+  const auto packets =
+      written_and_decoded({tick_at(1, 1'000'000), tick_at(2, 2'000'000), tick_at(5, 5'000'000, 2)});
+  std::map<std::string, int> depth;
+  std::map<std::string, std::uint64_t> newest_ns;
+  std::map<std::string, int> types;
+  for (const Packet& packet : packets) {
+    EXPECT_EQ(packet.at("trusted_packet_sequence_id"), "1");
+    if (!packet.contains("track_event.type")) continue;
+    const std::string &type = packet.at("track_event.type"),
+                      &track = packet.at("track_event.track_uuid");
+    ++types[type];
+    const std::uint64_t time_ns = std::stoull(packet.at("timestamp"));
+    EXPECT_GE(time_ns, newest_ns[track]) << type;
     newest_ns[track] = time_ns;
-    if (type == 1) {
-      open[track].push_back(find(event, 23)->bytes);
-      begun_ns[open[track].back()].push_back(time_ns);
-    } else if (type == 2) {
-      ASSERT_FALSE(open[track].empty());
-      open[track].pop_back();
-    } else if (type == 4) {
-      latencies.push_back(find(event, 30)->value);
-    }
+    depth[track] += type == "TYPE_SLICE_BEGIN" ? 1 : type == "TYPE_SLICE_END" ? -1 : 0;
+    EXPECT_GE(depth[track], 0) << "an end without a beginning";
+    EXPECT_LE(depth[track], 2) << "phases lie in their tick";
   }
-  for (const auto& [track, slices] : open) EXPECT_TRUE(slices.empty()) << track_name[track];
-  EXPECT_EQ(latencies, (std::vector<std::uint64_t>{5'000, 5'000, 2'000'000}));
-  const std::uint64_t first_wake_ns = kOffset_ns + 1'000'000'000 + 5'000;
-  EXPECT_EQ(begun_ns["tick 0"].at(0), first_wake_ns);
-  EXPECT_EQ(begun_ns["read"].at(0), first_wake_ns);
-  EXPECT_EQ(begun_ns["touch"].at(0), first_wake_ns + 100);
-  EXPECT_EQ(begun_ns["write"].at(0), first_wake_ns + 100 + 200 + 300 + 400);
-  EXPECT_EQ(begun_ns["tell"].size(), 2u) << "nobody told how the last tick ended";
-  EXPECT_EQ(begun_ns["wake"].size(), 3u);
+  for (const auto& [track, open] : depth) EXPECT_EQ(open, 0) << "track " << track;
+  // A wake-up, a tick and six phases each.
+  EXPECT_EQ(types["TYPE_SLICE_BEGIN"], 3 * 8);
+  EXPECT_EQ(types["TYPE_SLICE_END"], 3 * 8);
+  EXPECT_EQ(types["TYPE_COUNTER"], 3);
+  EXPECT_EQ(types["TYPE_INSTANT"], 1) << "the points of the grid that a late tick skipped";
+}
+
+TEST_F(PerfettoTraceFile, TracksAreNamedBelowOneProcess) {
+  const auto packets = written_and_decoded({tick_at(7, 7'000'000)});
+  std::map<std::string, std::string> name_of, parent_of;
+  for (const Packet& packet : packets) {
+    if (!packet.contains("track_descriptor.uuid")) continue;
+    const std::string& uuid = packet.at("track_descriptor.uuid");
+    if (packet.contains("track_descriptor.process.process_name")) {
+      EXPECT_EQ(packet.at("track_descriptor.process.process_name"), "\"tact-jitter\"");
+      name_of[uuid] = "process";
+    } else {
+      name_of[uuid] = packet.at("track_descriptor.name");
+      parent_of[uuid] = packet.at("track_descriptor.parent_uuid");
+    }
+    const auto unit = packet.find("track_descriptor.counter.unit_name");
+    EXPECT_TRUE(unit == packet.end() || unit->second == "\"ns\"");
+  }
+  EXPECT_EQ(name_of.size(), 4u) << "the process, its wake-ups, its ticks, the latency";
+  for (const auto& [uuid, parent] : parent_of) EXPECT_EQ(name_of[parent], "process") << uuid;
+  std::int64_t latency_ns = 0;
+  std::string wake_ns;
+  for (const Packet& packet : packets) {
+    if (!packet.contains("track_event.type")) continue;
+    EXPECT_TRUE(name_of.contains(packet.at("track_event.track_uuid")));
+    if (packet.at("track_event.type") == "TYPE_COUNTER")
+      latency_ns = std::stoll(packet.at("track_event.counter_value"));
+    if (packet.contains("track_event.name") && packet.at("track_event.name") == "\"tick 7\"")
+      wake_ns = packet.at("timestamp");
+  }
+  EXPECT_EQ(latency_ns, 5'000);
+  EXPECT_EQ(wake_ns, "7006000") << "7 ms, woken 5 us late, on a clock that is 1 us ahead";
+}
+
+TEST_F(PerfettoTraceFile, ARealLoopWritesOneThatProtocReads) {
+  const std::string out = scratch.file("run");
+  const auto run =
+      tests::run_program("tact-jitter", std::string(TACT_SOURCE_DIR) +
+                                            "/model/scenes/liver.toml --duration 0.2 --out " + out);
+  ASSERT_EQ(run.status, 0) << run.output;
+  std::size_t ticks = 0;
+  for (const Packet& packet : decode(out + "/ticks.perfetto-trace"))
+    if (const auto name = packet.find("track_event.name"); name != packet.end())
+      ticks += name->second.starts_with("\"tick ") ? 1 : 0;
+  EXPECT_GT(ticks, 100u);
+  EXPECT_LE(ticks, 200u);
 }
 
 }  // namespace

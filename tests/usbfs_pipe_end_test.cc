@@ -75,6 +75,15 @@ TEST(UsbfsPipeEnd, AfterAStallCommandsStillReachTheDeviceAndStoppingSendsTheLast
   EXPECT_EQ(bus.cleared, std::vector<unsigned>{kFalconEndpointIn});  // for who opens it next
 }
 
+TEST(UsbfsPipeEnd, AfterAStallASilentLoopIsReplacedByZerosToo) {
+  Bus bus;
+  const auto pipe = start(bus);
+  EXPECT_TRUE(pipe->submit(encode(FalconCommand{.motor = {900, 900, 900}})));
+  for (std::size_t i = 0; i < UsbfsPipe::kIn; ++i) bus.send({}, -EPIPE);  // nothing is under way
+  ASSERT_TRUE(bus.wait_for([&] { return bus.taken.size() == 2; }));
+  EXPECT_EQ(bus.taken[1], LoopSilence::zero());
+}
+
 TEST(UsbfsPipeEnd, AStalledCommandEndpointIsClearedForTheCommandsThatFollow) {
   Bus bus;
   bus.out_stalls = 1;

@@ -90,5 +90,45 @@ TEST(UsbfsPipe, StoppingDoesNotWaitForADeviceThatTakesNothing) {
   EXPECT_TRUE(bus.closed);
 }
 
+TEST(UsbfsPipe, ALoopThatFallsSilentIsReplacedByZerosWhichIsTold) {
+  Bus bus;
+  const auto pipe = start(bus);
+  const FalconPacket push = encode(FalconCommand{.motor = {900, 900, 900}});
+  const std::int64_t before_ns = monotonic_ns();
+  EXPECT_TRUE(pipe->submit(push));
+  EXPECT_FALSE(pipe->health().stood_in);
+  const auto taken = [&] {
+    const std::lock_guard lock(bus.mutex);
+    return bus.taken.size();
+  };
+  while (taken() < 2 && monotonic_ns() - before_ns < 5'000'000'000) {
+    bus.send({0x01, 0x60});  // the adapter's latency timer
+    usb_pause_ns(1'000'000);
+  }
+  EXPECT_GE(monotonic_ns() - before_ns, LoopSilence::kSilence_ns);
+  ASSERT_EQ(taken(), 2u);
+  EXPECT_EQ(bus.taken[1], LoopSilence::zero());
+  EXPECT_TRUE(pipe->health().stood_in);
+  EXPECT_TRUE(pipe->submit(push));
+  ASSERT_TRUE(bus.wait_for([&] { return bus.taken.size() == 3; }));
+  EXPECT_EQ(bus.taken[2], push);
+}
+
+TEST(UsbfsPipe, ZerosNeedNoTransferOfTheLoops) {
+  Bus bus;
+  bus.swallow_out = true;
+  const auto pipe = start(bus);
+  for (std::size_t i = 0; i < UsbfsPipe::kOut; ++i) EXPECT_TRUE(pipe->submit(zero_command));
+  for (int i = 0; i < 3000 && bus.wait_for([&] { return true; }); ++i) {
+    bus.send({0x01, 0x60});
+    usb_pause_ns(1'000'000);
+    const std::lock_guard lock(bus.mutex);
+    if (bus.commands.size() > UsbfsPipe::kOut) break;
+  }
+  const std::lock_guard lock(bus.mutex);
+  ASSERT_EQ(bus.commands.size(), UsbfsPipe::kOut + 1);
+  EXPECT_EQ(bus.commands.back(), LoopSilence::zero());
+}
+
 }  // namespace
 }  // namespace tact::tests

@@ -1,5 +1,5 @@
-// watched_loop.h - a loop on the real clock in a thread of its own, with a device that can hang, keep
-// its core busy or make a system call, and an enable line that a test may look at.
+// watched_loop.h - a loop on the real clock in a thread of its own, with a device that can hang,
+// keep its core busy or make a system call, and an enable line that a test may look at.
 #pragma once
 
 #include <gtest/gtest.h>

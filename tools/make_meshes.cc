@@ -31,13 +31,15 @@ struct Mesh {
 };
 
 // The liver comes in any size and has its own row in main().
-constexpr std::array<Mesh, 7> kMeshes{{{"forceps", true, tact::tools::make_forceps_shape},
+constexpr std::array<Mesh, 9> kMeshes{{{"forceps", true, tact::tools::make_forceps_shape},
                                        {"heart", true, tact::tools::make_heart_shape},
                                        {"hand", true, tact::tools::make_hand_shape},
                                        {"skin", false, tact::tools::make_skin_shape},
                                        {"injector", false, tact::tools::make_injector_shape},
                                        {"gum", false, tact::tools::make_gum_shape},
-                                       {"blade", false, tact::tools::make_blade_shape}}};
+                                       {"blade", false, tact::tools::make_blade_shape},
+                                       {"cover", false, tact::tools::make_cover_shape},
+                                       {"press", false, tact::tools::make_press_shape}}};
 
 struct Wanted {
   std::string name;

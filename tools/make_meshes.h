@@ -1,11 +1,11 @@
 // make_meshes.h - the shapes that tact ships, grown from formulas: same bytes on every run.
 //
 // Three ways to a surface: a smooth map of the unit sphere (liver), the zero of a field
-// (make_meshes_field.h: heart, hand, skin, gum) and rings of points (forceps, injector, blade).
-// A closed body of V vertices has 2 V - 4 triangles, one with a hole 2 V. A further shape is a new
-// make_..._shape() and a row in the table of make_meshes.cc. Lengths here are millimetres, the unit
-// of the files; triangles are counter-clockwise from outside. Organs have their top towards +z,
-// tools their tip at the origin and their handle towards +z.
+// (make_meshes_field.h: heart, hand, skin, gum, cover) and rings of points (forceps, injector,
+// blade, press). A closed body of V vertices has 2 V - 4 triangles, one with a hole 2 V. A further
+// shape is a new make_..._shape() and a row in the table of make_meshes.cc. Lengths here are
+// millimetres, the unit of the files; triangles are counter-clockwise from outside. Organs have
+// their top towards +z, tools their tip at the origin and their handle towards +z.
 #pragma once
 
 #include <cstddef>
@@ -56,6 +56,13 @@ model::Result<Shape> make_gum_shape();
 
 /// Scalpel: edge from the origin up the z axis to 24 mm, facing +x; 140 mm tall, 107 vertices.
 model::Result<Shape> make_blade_shape();
+
+/// Cover plate with bolts, 104 x 124 mm, top at z = 0, and on it a gasket 6.1 mm high: two closed
+/// bodies. 10 000 vertices, 19 996 triangles.
+model::Result<Shape> make_cover_shape();
+
+/// Pressing tool: ball of 4 mm on a shaft, handle from 52 to 150 mm: 738 vertices, closed.
+model::Result<Shape> make_press_shape();
 
 /// Least angle of all triangles, degrees.
 double least_angle_deg(const Shape& shape);

@@ -33,6 +33,9 @@ struct Body {
 /// Triangles are near equilateral; a body without cuts has no rim edges.
 model::Result<Shape> make_grown(const Body& body, std::size_t vertices, std::size_t rim_edges);
 
+/// A second body beside the first: one file, two pieces.
+void append(Shape& shape, const Shape& second);
+
 /// The surface as a grid of tetrahedra shows it: closed, then cut; sound, but of no good shape.
 Shape rough_surface(const Body& body);
 

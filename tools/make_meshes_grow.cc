@@ -215,4 +215,12 @@ model::Result<Shape> make_grown(const Body& body, std::size_t vertices, std::siz
   return Grower(body, vertices).grow(rim_edges);
 }
 
+void append(Shape& shape, const Shape& second) {
+  const auto first = static_cast<std::uint32_t>(shape.vertex_mm.size());
+  shape.vertex_mm.insert(shape.vertex_mm.end(), second.vertex_mm.begin(), second.vertex_mm.end());
+  for (const auto& t : second.triangle) {
+    shape.triangle.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+}
+
 }  // namespace tact::tools

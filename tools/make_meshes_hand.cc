@@ -88,11 +88,7 @@ model::Result<Shape> make_hand_shape() {
   if (!both) return both;
   const auto second = make_grown(cuff, kCuffVertices, 0);
   if (!second) return second.error();
-  const auto first = static_cast<std::uint32_t>(both->vertex_mm.size());
-  both->vertex_mm.insert(both->vertex_mm.end(), second->vertex_mm.begin(), second->vertex_mm.end());
-  for (const auto& t : second->triangle) {
-    both->triangle.push_back({first + t[0], first + t[1], first + t[2]});
-  }
+  append(*both, *second);
   return both;
 }
 

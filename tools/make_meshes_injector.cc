@@ -6,24 +6,15 @@
 //
 // 40 rings of 12 points and two ends: 482 vertices, 960 triangles.
 #include <array>
-#include <cmath>
-#include <numbers>
 
 #include "tools/make_meshes_loft.h"
 
 namespace tact::tools {
 namespace {
 
-using model::Vec3;
-
 constexpr int kPoints = 12;
 constexpr double kTip_mm = 2.5;  // radius
 constexpr double kTop_mm = 112.0;
-
-struct Turn {
-  double z_mm = 0.0, radius_mm = 0.0;
-  int steps = 1;  // rings from the turn before to this one
-};
 
 constexpr std::array<Turn, 16> kTurns{{{2.5, 2.5, 1},
                                        {24, 2.5, 7},
@@ -42,33 +33,16 @@ constexpr std::array<Turn, 16> kTurns{{{2.5, 2.5, 1},
                                        {112, 7, 1},
                                        {112, 3.5, 1}}};
 
-std::vector<Vec3> ring_at(double z_mm, double radius_mm) {
-  std::vector<Vec3> ring;
-  for (int i = 0; i < kPoints; ++i) {
-    const double angle_rad = 2.0 * std::numbers::pi * double(i) / kPoints;
-    ring.push_back({radius_mm * std::cos(angle_rad), radius_mm * std::sin(angle_rad), z_mm});
-  }
-  return ring;
-}
+constexpr std::array<double, 3> kBallAngle_deg{22.0, 45.0, 68.0};
 
 }  // namespace
 
 model::Result<Shape> make_injector_shape() {
-  std::vector<std::vector<Vec3>> ring;
-  for (const double angle_deg : {22.0, 45.0, 68.0}) {  // up the half ball
-    const double angle_rad = angle_deg * std::numbers::pi / 180.0;
-    ring.push_back(ring_at(kTip_mm * (1.0 - std::cos(angle_rad)), kTip_mm * std::sin(angle_rad)));
-  }
-  Turn last = kTurns.front();
-  for (const Turn& turn : kTurns) {
-    for (int i = 1; i <= turn.steps; ++i) {
-      const double way = double(i) / turn.steps;
-      ring.push_back(ring_at(last.z_mm + way * (turn.z_mm - last.z_mm),
-                             last.radius_mm + way * (turn.radius_mm - last.radius_mm)));
-    }
-    last = turn;
-  }
-  return make_loft({0, 0, 0}, ring, {0, 0, kTop_mm});
+  return make_turned({.points = kPoints,
+                      .ball_mm = kTip_mm,
+                      .ball_angle_deg = kBallAngle_deg,
+                      .turns = kTurns,
+                      .top_mm = kTop_mm});
 }
 
 }  // namespace tact::tools

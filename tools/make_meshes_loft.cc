@@ -1,5 +1,8 @@
 #include "tools/make_meshes_loft.h"
 
+#include <cmath>
+#include <numbers>
+
 namespace tact::tools {
 
 using model::Vec3;
@@ -33,6 +36,32 @@ Shape make_loft(const Vec3& bottom_mm, const std::vector<std::vector<Vec3>>& rin
     }
   }
   return shape;
+}
+
+Shape make_turned(const Turned& tool) {
+  std::vector<std::vector<Vec3>> ring;
+  const auto add_ring = [&](double z_mm, double radius_mm) {
+    ring.emplace_back();
+    for (int i = 0; i < tool.points; ++i) {
+      const double angle_rad = 2.0 * std::numbers::pi * double(i) / tool.points;
+      ring.back().push_back(
+          {radius_mm * std::cos(angle_rad), radius_mm * std::sin(angle_rad), z_mm});
+    }
+  };
+  for (const double angle_deg : tool.ball_angle_deg) {
+    const double angle_rad = angle_deg * std::numbers::pi / 180.0;
+    add_ring(tool.ball_mm * (1.0 - std::cos(angle_rad)), tool.ball_mm * std::sin(angle_rad));
+  }
+  Turn last = tool.turns.front();
+  for (const Turn& turn : tool.turns) {
+    for (int i = 1; i <= turn.steps; ++i) {
+      const double way = double(i) / turn.steps;
+      add_ring(last.z_mm + way * (turn.z_mm - last.z_mm),
+               last.radius_mm + way * (turn.radius_mm - last.radius_mm));
+    }
+    last = turn;
+  }
+  return make_loft({0, 0, 0}, ring, {0, 0, tool.top_mm});
 }
 
 }  // namespace tact::tools

@@ -43,10 +43,11 @@ need_packages() {
 
 # What it takes to build the programs, and the page of the viewer.
 BUILD_PACKAGES=(g++ cmake ninja-build ca-certificates libfmt-dev libcli11-dev
-  nlohmann-json3-dev libtomlplusplus-dev libboost-dev libssl-dev libusb-1.0-0-dev libgpiod-dev libseccomp-dev)
+  nlohmann-json3-dev libtomlplusplus-dev libboost-dev libssl-dev libusb-1.0-0-dev libgpiod-dev libseccomp-dev
+  libeigen3-dev libopencv-core-dev libopencv-calib3d-dev)
 # What the measuring tools call or link besides.
-TOOL_PACKAGES=(libeigen3-dev gmsh calculix-ccx gnuplot-nox libmetis-dev libbullet-dev libopencv-core-dev
-  libopencv-calib3d-dev rt-tests=cyclictest stress-ng=stress-ng)
+TOOL_PACKAGES=(gmsh calculix-ccx gnuplot-nox libmetis-dev libbullet-dev libbenchmark-dev
+  rt-tests=cyclictest stress-ng=stress-ng)
 # What the virtual bench needs on this side (tests/rig).
 RIG_PACKAGES=(qemu-system-x86=qemu-system-x86_64 cpio kmod zstd xz-utils mmdebstrap make g++
   linux-headers-rt-amd64 linux-source-6.1)
@@ -60,7 +61,7 @@ build_programs() {
   local launcher=()
   command -v ccache >/dev/null 2>&1 && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   for target in "$@"; do  # the measuring tools need more packages than the controller
-    case $target in tactd | tact-view | tact-mesh | tact-make-meshes | tact-rig-*) ;; *) tools=ON ;; esac
+    case $target in tactd | tact-view | tact-track-send | tact-mesh | tact-make-meshes | tact-rig-*) ;; *) tools=ON ;; esac
   done
   if [ ! -f "$build/build.ninja" ] ||
     { [ $tools = ON ] && grep -q '^TACT_TOOLS:BOOL=OFF' "$build/CMakeCache.txt"; }; then

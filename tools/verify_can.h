@@ -1,4 +1,5 @@
-// verify_can.h - frames in vector files: hexadecimal bytes, and all fields of a case, none left out.
+// verify_can.h - frames in vector files: hexadecimal bytes, and all fields of a case, none left
+// out.
 #pragma once
 
 #include <cstdint>

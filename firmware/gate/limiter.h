@@ -51,8 +51,8 @@ inline bool approach(Vec3& v, const Vec3& before, double step, double radius) RT
   return held;
 }
 
-/// True if the wrench did more than `most` (>= 0) along the motion d, a: J for a displacement, W for
-/// a velocity. Only what pushes along the motion is made less; neither vector grows.
+/// True if the wrench did more than `most` (>= 0) along the motion d, a: J for a displacement, W
+/// for a velocity. Only what pushes along the motion is made less; neither vector grows.
 inline bool limit_surplus(Wrench& w, const Vec3& d, const Vec3& a, double most) RT_SAFE {
   const double pushed = std::fmax(dot(w.force_N, d), 0.0);
   const double turned = std::fmax(dot(w.torque_Nm, a), 0.0);

@@ -1,4 +1,5 @@
-// call_filter.h - which system calls the loop's thread may make; any other ends in a stop (seccomp).
+// call_filter.h - which system calls the loop's thread may make; any other ends in a stop
+// (seccomp).
 //
 //     every loop      sleep and clock; return from a signal; the end of a thread
 //     its device      what Device::loop_calls and SafetyLines::loop_calls list

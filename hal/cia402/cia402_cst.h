@@ -37,14 +37,16 @@ struct CstConfiguration {
   std::uint16_t host_timeout_ms = 20;  // without the host's heartbeat the drive stops
   std::uint16_t drive_heartbeat_ms = 10;
   std::uint8_t period_ms = 1;  // of SYNC
-  /// 255: torque is applied as it arrives; 1: at the next SYNC, a cycle later, if the drive insists.
+  /// 255: torque is applied as it arrives; 1: at the next SYNC, a cycle later, if the drive
+  /// insists.
   std::uint8_t command_transmission_type = 255;
 };
 inline constexpr std::size_t kCstWrites = 21;
 using CstWrites = std::array<SdoWrite, kCstWrites>;
 /// What to write to the drive, in this order, while it is pre-operational: heartbeats, quick stop
 /// when the host is lost, the two messages above, period, and the mode. A message is switched off
-/// while its mapping changes. Nothing for a node that cannot be or is the host's, or a time of zero.
+/// while its mapping changes. Nothing for a node that cannot be or is the host's, or a time of
+/// zero.
 std::optional<CstWrites> cst_configuration(int node, const CstConfiguration& wanted) RT_SAFE;
 
 }  // namespace tact::hal

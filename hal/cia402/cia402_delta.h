@@ -8,9 +8,10 @@
 // SYNC is the last frame, so all drives sample at one time, and what they saw is there at the next
 // tick; a sample is fresh, with power or without, when all three have come since the last read.
 // Without samples the torques fade (sample_gap.h). Torque is zero until all three are enabled. When
-// they let go they are told not to wait for the host's heartbeat (heartbeat_guard.h). A drive that faults, leaves operation enabled or sends EMCY stops all three by
-// quick stop, and no fault is ever reset here: only opening the device anew does that. Without the
-// loop its heartbeat is missing and the drives stop by themselves (1016, 6007). CiA 301, CiA 402-2.
+// they let go they are told not to wait for the host's heartbeat (heartbeat_guard.h). A drive that
+// faults, leaves operation enabled or sends EMCY stops all three by quick stop, and no fault is
+// ever reset here: only opening the device anew does that. Without the loop its heartbeat is
+// missing and the drives stop by themselves (1016, 6007). CiA 301, CiA 402-2.
 #pragma once
 
 #include <array>

@@ -1,7 +1,8 @@
-// sdo_client.h - reading and writing the settings of CANopen drives, one at a time, before the loop.
+// sdo_client.h - reading and writing the settings of CANopen drives, one at a time, before the
+// loop.
 //
-// Expedited SDO of CiA 301: one request, one reply within 300 ms, or an abort code, which comes back
-// in words. Replies to other requests are not taken for ours. Set-up code: blocks.
+// Expedited SDO of CiA 301: one request, one reply within 300 ms, or an abort code, which comes
+// back in words. Replies to other requests are not taken for ours. Set-up code: blocks.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,5 @@
-// falcon_at_tool.h - what a Falcon's joints and motor words are worth at the grip, at the worst pose.
+// falcon_at_tool.h - what a Falcon's joints and motor words are worth at the grip, at the worst
+// pose.
 //
 //     b = b_joint / s^2,   c = c_joint / s,   D = s rad_per_count,
 //     F = min over poses and axes of (4095 - dead_i) / (gain_i |row i of K^-T|)

@@ -134,6 +134,8 @@ void FalconDevice::judge_silence(std::int64_t now_ns) RT_SAFE {
 void FalconDevice::check_pipe() RT_SAFE {
   const FalconPipeHealth health = pipe_->health();
   const auto error = static_cast<std::uint16_t>(health.error);
+  // The hand has felt zero since; what the gate would go on with is the force from before.
+  if (health.stood_in) return latch(Fault::kLoopStalled, {.what = What::kStoodIn});
   switch (health.end) {
     case FalconPipeEnd::kOpen:
       return;

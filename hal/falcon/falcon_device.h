@@ -3,10 +3,10 @@
 //     force -> K^T tau = F -> words = -(gain tau + dead band)   (a positive word lowers a thigh)
 //
 // Zero words with the homing request until all three axes are homed; then samples are fresh. One
-// command leaves with each write. Without an answer for three ticks of 1 ms the words are zero until
-// one comes. Unplugged, stalled, broken, garbled, unhomed or silent devices latch a fault; each write
-// after it sends zero words, and stop() too, since a Falcon may hold its last ones for ever. Lights:
-// red no force may come, blue ready, green with power.
+// command leaves with each write. Without an answer for three ticks of 1 ms the words are zero
+// until one comes. Unplugged, stalled, broken, garbled, unhomed or silent devices latch a fault;
+// each write after it sends zero words, and stop() too, since a Falcon may hold its last ones for
+// ever. Lights: red no force may come, blue ready, green with power.
 #pragma once
 
 #include <atomic>

@@ -3,8 +3,8 @@
 //     W x = device z - 0.120 m (towards the user),   W y = device x (right),   W z = device y (up)
 //
 // 0.120 m is the middle of the reach on the axis, 0.060 to 0.183 m. Within 40 mm of it every pose
-// is reachable and its transmission stays within a factor of 4.3. CHAI3D has the same radius and 8 N:
-// github.com/chai3d/chai3d, src/devices/CDeltaDevices.cpp.
+// is reachable and its transmission stays within a factor of 4.3. CHAI3D has the same radius and 8
+// N: github.com/chai3d/chai3d, src/devices/CDeltaDevices.cpp.
 #pragma once
 
 #include "model/types.h"

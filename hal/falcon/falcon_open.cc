@@ -14,8 +14,8 @@ namespace {
 using model::Error;
 using model::Result;
 
-/// libusb lets go first: transfers and claims belong to the open file. The chip is set up once more,
-/// should anything have touched it in between.
+/// libusb lets go first: transfers and claims belong to the open file. The chip is set up once
+/// more, should anything have touched it in between.
 Result<std::unique_ptr<FalconPipe>> open_usbfs_pipe(std::unique_ptr<FalconUsb> usb,
                                                     bool event_character) {
   const std::string path = usb->node();

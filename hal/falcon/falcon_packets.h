@@ -1,4 +1,5 @@
-// falcon_packets.h - the 16 bytes that a Novint Falcon and its host exchange once its firmware runs.
+// falcon_packets.h - the 16 bytes that a Novint Falcon and its host exchange once its firmware
+// runs.
 //
 //     3C | word 1 | word 2 | word 3 | info | extra | 3E        one report answers each command
 //
@@ -9,9 +10,10 @@
 //                                   0x10 0x20 0x40 axis 1, 2, 3 is homed
 //     extra  0x41 when sent; its meaning is unknown, so it is not read
 //
-// Axes seen from the front: 1 top, 2 right, 3 left. A positive motor word drives the thigh angle and
-// the counts down. Motor words have no unit until they are calibrated on the device. Neither 3C nor
-// 3E can occur inside. Source: the protocol as found by K. Machulis, github.com/libnifalcon/libnifalcon.
+// Axes seen from the front: 1 top, 2 right, 3 left. A positive motor word drives the thigh angle
+// and the counts down. Motor words have no unit until they are calibrated on the device. Neither 3C
+// nor 3E can occur inside. Source: the protocol as found by K. Machulis,
+// github.com/libnifalcon/libnifalcon.
 #pragma once
 
 #include <array>

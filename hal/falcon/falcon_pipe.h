@@ -3,8 +3,8 @@
 // One I/O thread waits for the bus and hands the newest report over; the loop never waits. A pipe
 // that has ended stays so: a device that comes back is opened anew. It brings no reports any more,
 // but carries commands as long as the device is there: a Falcon may hold its last motor words for
-// ever, so somebody must be able to send it zeros. A stall of the command endpoint is cleared for that
-// (USB 2.0, 9.4.5).
+// ever, so somebody must be able to send it zeros. A stall of the command endpoint is cleared for
+// that (USB 2.0, 9.4.5).
 #pragma once
 
 #include <cstdint>
@@ -32,6 +32,7 @@ struct FalconPipeHealth {
   int error = 0;                    // errno behind the end; 0: none
   std::uint64_t dropped_bytes = 0;  // of no report, and one for each transfer without its status
   std::uint8_t line_errors = 0;     // ftdi_requests.h, all that were seen
+  bool stood_in = false;            // for a silent loop, with zeros, ever (loop_silence.h)
 };
 
 class FalconPipe {

@@ -35,7 +35,8 @@ FalconPipeHealth FalconReceiver::health() const RT_SAFE {
   return {.end = static_cast<FalconPipeEnd>(code & 0xFFu),
           .error = static_cast<int>(code >> 8),
           .dropped_bytes = dropped_bytes_.load(std::memory_order_relaxed),
-          .line_errors = line_errors_.load(std::memory_order_relaxed)};
+          .line_errors = line_errors_.load(std::memory_order_relaxed),
+          .stood_in = stood_in_.load(std::memory_order_acquire)};
 }
 
 }  // namespace tact::hal

@@ -23,6 +23,9 @@ class FalconReceiver {
   /// The pipe has ended; the first end stays, but gone is gone after any of them. Any thread.
   void finish(FalconPipeEnd end, int error) RT_SAFE;
 
+  /// The pipe is about to send zeros in the loop's place.
+  void stand_in() RT_SAFE { stood_in_.store(true, std::memory_order_release); }
+
   bool newest(FalconReply& reply) RT_SAFE { return slot_.read(reply); }
   FalconPipeHealth health() const RT_SAFE;
   bool open() const RT_SAFE { return end_.load(std::memory_order_acquire) == 0; }
@@ -37,6 +40,7 @@ class FalconReceiver {
   std::atomic<bool> gone_{false};
   std::atomic<std::uint64_t> dropped_bytes_{0};
   std::atomic<std::uint8_t> line_errors_{0};
+  std::atomic<bool> stood_in_{false};
 };
 
 /// How a pipe takes failing transfers: some are noise, many in a row are the end. A thread of high

@@ -59,6 +59,10 @@ std::string in_words(const FalconTrouble& t) {
           "the Falcon has lost its home (axis {}): start again, then pull the grip all the way out "
           "and push it in",
           missing_axes(t.homed));
+    case FalconTrouble::What::kStoodIn:
+      return "the loop gave the Falcon no command for 100 ms, so its USB thread took the force "
+             "away: "
+             "free the loop's core of other work, then start again";
   }
   return {};
 }

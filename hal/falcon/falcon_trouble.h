@@ -18,6 +18,7 @@ struct FalconTrouble {
     kSilent,
     kGarbled,
     kHomingLost,
+    kStoodIn,
   };
   What what = What::kNone;
   std::uint8_t homed = 0;        // three bits, axis 1 first

@@ -146,7 +146,10 @@ void LibusbPipe::clear_command_halt() {
 
 /// The newest command, on a transfer that is free; else it waits for one.
 void LibusbPipe::submit_command() {
-  if (commands_.read(waiting_)) ++results_;
+  if (commands_.read(waiting_)) {
+    ++results_;
+    heard_ = waiting_.number;
+  }
   if (waiting_.number == 0) return;
   for (const auto& t : transfers_) {
     if (t->is_in || t->busy) continue;
@@ -158,6 +161,13 @@ void LibusbPipe::submit_command() {
   }
 }
 
+/// Under the number of the loop's last command: that is over, or this one replaces it.
+void LibusbPipe::stand_in_for_loop(std::int64_t now_ns) {
+  if (!silence_.is_due(heard_, now_ns)) return;
+  receiver_.stand_in();
+  waiting_ = {.packet = LoopSilence::zero(), .number = heard_};
+}
+
 /// Leaves for good as soon as the device is gone: waiting would then return at once, without end.
 void LibusbPipe::run() {
   // A thread's first allocation makes its arena, which takes 0.3 ms: now, not beside the loop.
@@ -166,7 +176,11 @@ void LibusbPipe::run() {
   while (!receiver_.gone() && !stopping_.load(std::memory_order_acquire)) {
     results_ = 0;
     const int ready = poll(fds_.data(), fds_.size(), kPollWait_ms);
-    if (ready == 0) continue;
+    if (ready == 0) {
+      stand_in_for_loop(monotonic_ns());
+      submit_command();
+      continue;
+    }
     turn();
     const FalconTurns::Next next = turns.turn(results_ > 0);
     if (next == FalconTurns::Next::kEnd) finish(last_error_);
@@ -188,6 +202,7 @@ void LibusbPipe::turn() {
   if (ready) libusb_handle_events_timeout_completed(usb_->context(), &now, nullptr);
   if (gone) return finish(ENODEV);  // nothing comes after a hang-up
   if (out_halted_) clear_command_halt();
+  stand_in_for_loop(monotonic_ns());  // a reply may be older than the command
   submit_command();
 }
 

@@ -2,8 +2,8 @@
 //
 // The library allocates and locks whenever it submits, so all of it stays in the I/O thread: the
 // loop leaves its command in a slot and wakes the thread by one eventfd write. Two commands at most
-// are under way; a newer one replaces one that waits. After an end by an error the thread stays for
-// the commands.
+// are under way; a newer one replaces one that waits. When the loop has gone silent the thread
+// sends zeros (loop_silence.h). After an end by an error the thread stays for the commands.
 #pragma once
 
 #include <poll.h>
@@ -17,6 +17,7 @@
 
 #include "hal/falcon/falcon_receiver.h"
 #include "hal/falcon/falcon_usb.h"
+#include "hal/falcon/loop_silence.h"
 #include "hal/falcon/usb_thread.h"
 
 namespace tact::hal {
@@ -58,6 +59,7 @@ class LibusbPipe final : public FalconPipe {
   void completed(Transfer& transfer);
   void submit_transfer(Transfer& transfer);
   void submit_command();
+  void stand_in_for_loop(std::int64_t now_ns);
   void clear_command_halt();
   bool send_last(const FalconPacket& last);
   void finish(int error) RT_SAFE;
@@ -74,6 +76,8 @@ class LibusbPipe final : public FalconPipe {
       transfers_{};  // IN first; thread's, once it runs
   LatestSlot<Command> commands_;
   Command waiting_;          // the newest; thread only
+  LoopSilence silence_;      // thread only
+  std::uint64_t heard_ = 0;  // number of the newest command of the loop; thread only
   std::vector<pollfd> fds_;  // the eventfd, then the library's
   int wake_fd_ = -1;
   int results_ = 0;  // of this turn

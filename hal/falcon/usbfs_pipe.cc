@@ -55,7 +55,8 @@ UsbfsPipe::~UsbfsPipe() { stop(encode(FalconCommand{.lights = kFalconRed})); }
 
 bool UsbfsPipe::submit(const FalconPacket& command) RT_SAFE {
   if (receiver_.gone()) return false;
-  for (std::size_t i = kIn; i < urbs_.size(); ++i) {
+  commands_.store(commands_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  for (std::size_t i = kIn; i < kOwn; ++i) {
     if (busy_[i].load(std::memory_order_acquire)) continue;
     std::memcpy(urbs_[i]->buffer, command.data(), command.size());
     busy_[i].store(true, std::memory_order_release);
@@ -75,14 +76,15 @@ void UsbfsPipe::finish(int error) RT_SAFE {
                    error);
 }
 
-/// Leaves for good as soon as the device is gone, or the kernel refuses to be waited for: waiting would
-/// then return at once, without end.
+/// Leaves for good as soon as the device is gone, or the kernel refuses to be waited for: waiting
+/// would then return at once, without end.
 void UsbfsPipe::run() {
   FalconTurns turns;
   int last_error = EIO;
   while (!(stopping_.load(std::memory_order_acquire) && !any_busy(0))) {
     if (receiver_.gone()) return;
     if (!receiver_.open() && !any_busy(0)) {  // nothing under way would never come back
+      stand_in_for_loop(monotonic_ns());
       usb_pause_ns(FalconTurns::kPause_ns);
       continue;
     }
@@ -115,9 +117,13 @@ bool UsbfsPipe::completed(usbdevfs_urb& urb) {
   const bool good = urb.status == 0 && (!is_in || size >= static_cast<int>(kFtdiStatusSize));
   if (urb.status == -EPIPE) finish(EPIPE);
   if (!is_in) command_completed(-urb.status);
-  if (is_in && urb.status == 0)
-    receiver_.take({static_cast<const std::uint8_t*>(urb.buffer), static_cast<std::size_t>(size)},
-                   monotonic_ns());
+  if (is_in) {  // also a device that has nothing to say answers at its latency timer
+    const std::int64_t now_ns = monotonic_ns();
+    if (urb.status == 0)
+      receiver_.take({static_cast<const std::uint8_t*>(urb.buffer), static_cast<std::size_t>(size)},
+                     now_ns);
+    stand_in_for_loop(now_ns);
+  }
   const bool again = is_in && !stopping_.load(std::memory_order_acquire) && receiver_.open();
   const int error = again ? port_->submit(urb) : 0;
   if (error != 0) finish(error);
@@ -125,14 +131,24 @@ bool UsbfsPipe::completed(usbdevfs_urb& urb) {
   return good || (discarded && stopping_.load(std::memory_order_acquire));
 }
 
-/// The command endpoint carries again before the next one: also what waits behind a refused command may
-/// be a force, and goes.
+/// The command endpoint carries again before the next one: also what waits behind a refused command
+/// may be a force, and goes.
 void UsbfsPipe::command_completed(int error) {
   command_error_.store(error, std::memory_order_relaxed);  // released with its busy_
   if (error != EPIPE) return;
-  for (std::size_t i = kIn; i < urbs_.size(); ++i) port_->discard(*urbs_[i]);
+  for (std::size_t i = kIn; i < kOwn; ++i) port_->discard(*urbs_[i]);
   static_cast<void>(
       port_->clear_halt(kFalconEndpointOut));  // refused: the next command stalls again
+}
+
+void UsbfsPipe::stand_in_for_loop(std::int64_t now_ns) {
+  if (!silence_.is_due(commands_.load(std::memory_order_relaxed), now_ns)) return;
+  if (busy_[kOwn].load(std::memory_order_acquire)) return;
+  receiver_.stand_in();
+  const FalconPacket zero = LoopSilence::zero();
+  std::memcpy(urbs_[kOwn]->buffer, zero.data(), zero.size());
+  busy_[kOwn].store(true, std::memory_order_release);
+  if (port_->submit(*urbs_[kOwn]) != 0) busy_[kOwn].store(false, std::memory_order_release);
 }
 
 bool UsbfsPipe::any_busy(std::size_t from) const {

@@ -2,7 +2,8 @@
 //
 // Four IN transfers are always under way; the thread waits for one, hands its report over and
 // submits it again. Commands are submitted by the loop itself: one system call, at most two under
-// way, none free is a missed cycle. Nothing is allocated after the start. After an end by an error the
+// way, none free is a missed cycle. A transfer of the thread's own carries zeros when the loop has
+// gone silent (loop_silence.h). Nothing is allocated after the start. After an end by an error the
 // thread stays for the commands.
 #pragma once
 
@@ -13,6 +14,7 @@
 #include <memory>
 
 #include "hal/falcon/falcon_receiver.h"
+#include "hal/falcon/loop_silence.h"
 #include "hal/falcon/usb_thread.h"
 #include "hal/falcon/usbfs_port.h"
 
@@ -20,7 +22,7 @@ namespace tact::hal {
 
 class UsbfsPipe final : public FalconPipe {
  public:
-  static constexpr std::size_t kIn = 4, kOut = 2;
+  static constexpr std::size_t kIn = 4, kOut = 2;  // and one OUT of the thread's own
 
   /// Submits the IN transfers and starts the thread; an error says what to do.
   static model::Result<std::unique_ptr<FalconPipe>> start(std::unique_ptr<UsbfsPort> port);
@@ -42,16 +44,20 @@ class UsbfsPipe final : public FalconPipe {
   /// Did that bring anything? `urb` is under way again or at rest.
   bool completed(usbdevfs_urb& urb);
   void command_completed(int error);
+  void stand_in_for_loop(std::int64_t now_ns);
   bool any_busy(std::size_t from) const;
   bool send_last(const FalconPacket& last);
   void finish(int error) RT_SAFE;
 
   std::unique_ptr<UsbfsPort> port_;
   FalconReceiver receiver_;
+  static constexpr std::size_t kOwn = kIn + kOut;
   // IN first. Each alone: a URB ends in an array of no fixed size.
-  std::array<std::unique_ptr<usbdevfs_urb>, kIn + kOut> urbs_;
-  std::array<std::atomic<bool>, kIn + kOut> busy_{};  // OUT: set by the loop, cleared by the thread
-  std::atomic<int> command_error_{0};                 // errno of the last command that came back
+  std::array<std::unique_ptr<usbdevfs_urb>, kOwn + 1> urbs_;
+  std::array<std::atomic<bool>, kOwn + 1> busy_{};  // OUT: set by the loop, cleared by the thread
+  std::atomic<std::uint64_t> commands_{0};          // that the loop has asked for
+  LoopSilence silence_;                             // thread only
+  std::atomic<int> command_error_{0};               // errno of the last command that came back
   std::atomic<bool> stopping_{false};
   UsbThread thread_;
 };

@@ -8,8 +8,8 @@
 //   "tact-fd-status", an ordinary thread: 20 times a second the status words. Forces that the device
 //   has switched off by itself, lost supply or calibration become a trouble that stays.
 //
-// After a trouble: zero force and forces off once, then not one call more; the device's own watchdog
-// does the rest.
+// After a trouble: zero force and forces off once, then not one call more; the device's own
+// watchdog does the rest.
 #pragma once
 
 #include <atomic>

@@ -3,12 +3,13 @@
 //     off --permit--> starting --three heartbeats say closed loop--> ready --not permitted--> off
 //     zero torque     zero torque, closed loop asked for            torques   zero torque, idle
 //
-// Every tick: one recvmmsg, one sendmmsg. A sample is fresh, with power or without, when a new position
-// has come and none of the three is older than one and a half periods: drives run on their own
-// clocks, so now and then a tick gets no frame of one axis and the next gets two. Its stamp is the
-// arrival of the oldest of the three. Without samples the torques fade (sample_gap.h). A fault sends zero torque and Estop, which a drive keeps until
-// its errors are cleared; only opening the device anew does that. Without the loop the drives' own
-// watchdogs stop them (ODrive: axis.config.enable_watchdog, watchdog_timeout 0.005 to 0.02 s).
+// Every tick: one recvmmsg, one sendmmsg. A sample is fresh, with power or without, when a new
+// position has come and none of the three is older than one and a half periods: drives run on their
+// own clocks, so now and then a tick gets no frame of one axis and the next gets two. Its stamp is
+// the arrival of the oldest of the three. Without samples the torques fade (sample_gap.h). A fault
+// sends zero torque and Estop, which a drive keeps until its errors are cleared; only opening the
+// device anew does that. Without the loop the drives' own watchdogs stop them (ODrive:
+// axis.config.enable_watchdog, watchdog_timeout 0.005 to 0.02 s).
 #pragma once
 
 #include <array>

@@ -26,11 +26,6 @@ Vector3d axis_across(const Vector3d& v) {
   return (across.norm() > kParallel ? across : Vector3d(v.cross(Vector3d::UnitX()))).normalized();
 }
 
-Quaterniond turn_of(const Bone& bone, const JointState& joint) {
-  if (bone.kind == JointKind::kBall) return joint.rotation;
-  return Quaterniond(AngleAxisd(joint.angle_rad, bone.hinge));
-}
-
 bool has_direction(const Vector3d& v) { return v.allFinite() && v.squaredNorm() > 0.0; }
 
 bool is_valid(const Bone& bone, const JointState& joint) {
@@ -113,20 +108,10 @@ class Mover {
     return true;
   }
 
-  /// A bone beyond its cone goes back along the great circle through rest.    (CC-7)
-  static Quaterniond within_cone(const Bone& bone, const Quaterniond& q) {
-    const Vector3d bone_now = q * bone.rest;
-    const double swing = angle_between(bone.rest, bone_now);
-    if (swing <= bone.cone_rad) return q;
-    const Vector3d across = bone.rest.cross(bone_now);
-    const Vector3d axis = across.norm() > kParallel ? across.normalized() : axis_across(bone.rest);
-    return (AngleAxisd(bone.cone_rad - swing, axis) * q).normalized();
-  }
-
   /// Forward kinematics from joint i outwards.
   void follow(std::size_t i) {
     for (; i < bones_.size(); ++i) {
-      const Quaterniond here = (parent_[i] * turn_of(bones_[i], joints_[i])).normalized();
+      const Quaterniond here = (parent_[i] * rotation_of(bones_[i], joints_[i])).normalized();
       points_m_[i + 1] = points_m_[i] + here * (bones_[i].length_m * bones_[i].rest);
       if (i + 1 < bones_.size()) parent_[i + 1] = here;
     }
@@ -155,9 +140,23 @@ Bone planar_bone(double length_m, double lo_rad, double hi_rad) {
   return {.length_m = length_m, .lo_rad = lo_rad, .hi_rad = hi_rad};
 }
 
+Quaterniond rotation_of(const Bone& bone, const JointState& joint) {
+  if (bone.kind == JointKind::kBall) return joint.rotation;
+  return Quaterniond(AngleAxisd(joint.angle_rad, bone.hinge));
+}
+
 double swing_rad(const Bone& bone, const JointState& joint) {
   if (bone.kind == JointKind::kHinge) return joint.angle_rad;
   return angle_between(bone.rest, joint.rotation * bone.rest);
+}
+
+Quaterniond within_cone(const Bone& bone, const Quaterniond& q) {
+  const Vector3d bone_now = q * bone.rest;
+  const double swing = angle_between(bone.rest, bone_now);
+  if (bone.kind == JointKind::kHinge || swing <= bone.cone_rad) return q;
+  const Vector3d across = bone.rest.cross(bone_now);
+  const Vector3d axis = across.norm() > kParallel ? across.normalized() : axis_across(bone.rest);
+  return (AngleAxisd(bone.cone_rad - swing, axis) * q).normalized();
 }
 
 std::vector<Vector3d> joint_points_m(const Chain& chain, std::span<const JointState> joints) {

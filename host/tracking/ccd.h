@@ -75,8 +75,13 @@ struct ReachResult {
 
 /// Where the joints and the end are; empty if the chain or a state is not valid.
 std::vector<Eigen::Vector3d> joint_points_m(const Chain& chain, std::span<const JointState> joints);
+/// Child <- parent, CC-9; a hinge's axis has length 1 here.
+Eigen::Quaterniond rotation_of(const Bone& bone, const JointState& joint);
 /// Angle of a bone: that of the hinge, or how far a ball is from rest.
 double swing_rad(const Bone& bone, const JointState& joint);
+/// A ball's rotation that takes the bone beyond its cone goes back along the great circle through
+/// rest, which has length 1 here (CC-7); a hinge has no cone.
+Eigen::Quaterniond within_cone(const Bone& bone, const Eigen::Quaterniond& q);
 
 /// The sub-root if the target is within 0.98 of the sub chain's length, else 0, the chest.
 std::size_t choose_root(const Chain& chain, std::span<const JointState> joints,

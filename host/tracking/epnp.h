@@ -9,8 +9,11 @@
 // triangles of the four widest points, because from EPnP alone the pose is missed in 3 of 100 views
 // of four points and in 12 to 49 of 100 of a flat object (2000 random views without noise,
 // polished; epnp_test shows it). Each pose they find is polished on the pixels (EP-10); the one
-// with the smallest rms is kept. With noise, few or flat points and a distant view a mirrored pose
-// can explain the pixels better than the true one: use n >= 6 points that are not in a plane.
+// with the smallest rms is kept. P3P is left out where EPnP is sure: six points or more, as thick
+// as 0.3 of their length (sqrt(lambda_3 / lambda_1)), and an rms below 1.5 mrad; that is five times
+// faster and was worse in none of 240 000 random views of such bodies. With noise, few or flat
+// points and a distant view a mirrored pose can explain the pixels better than the true one: use n
+// >= 6 points that are not in a plane.
 //
 // Points in any unit of length; t comes in the same. A sweep tracker that measures angles gives
 // u = tan azimuth, v = tan elevation with fx = fy = 1, cx = cy = 0. Not for the force loop.

@@ -7,7 +7,11 @@
 //     P  point in the object's axes, m     R, t  camera <- object, t in m, +Z forward
 //     fx, fy, cx, cy  pinhole without distortion, px     u, v  px
 //
-// A step that raises rms is halved; points must stay before the camera. At most
+// Several cameras that see one object at the same time (MarkerView): the unknown pose is
+// tracker <- object, X = E^-1 (R P + t) with E = tracker <- camera of each, and rms is over the
+// points of all; their pixels must be of one unit, so different cameras take tangents.
+//
+// A step that raises rms is halved; points must stay before their camera. At most
 // kPolishSteps steps. Source: PHYSICS 5.2.
 #pragma once
 
@@ -24,6 +28,21 @@ struct Camera {
 };
 
 inline constexpr int kPolishSteps = 50;
+
+/// What one camera sees of the object; points and pixels are as many, in the same order.
+struct MarkerView {
+  Camera camera{};
+  Pose eye{};  // tracker <- camera
+  std::span<const Eigen::Vector3d> points_m;
+  std::span<const Eigen::Vector2d> pixels_px;
+};
+
+/// Root mean square over the points of one or more views; infinite unless all Z > 0.
+double reprojection_rms_px(std::span<const MarkerView> views, const Pose& pose);
+
+/// EP-10 on the views together, from `start`: tracker <- object; three points or more. The result
+/// has no larger rms than the start.
+Pose polish_pose(std::span<const MarkerView> views, const Pose& start);
 
 /// Root mean square distance between seen and computed pixels; infinite unless all Z > 0.
 double reprojection_rms_px(const Camera& camera, std::span<const Eigen::Vector3d> points_m,

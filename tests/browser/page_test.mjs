@@ -5,98 +5,25 @@
 // CHROMIUM names another browser. Pictures: BUILD_DIR/page.png, and page_hand.png with the mouse in
 // use. Prints "N passed, M failed"; exit status 0 or 1.
 import { spawn } from "node:child_process";
-import { existsSync, mkdtempSync, rmSync } from "node:fs";
-import { createRequire } from "node:module";
-import { tmpdir } from "node:os";
-import { join, resolve } from "node:path";
-import { fileURLToPath } from "node:url";
+import { existsSync, readdirSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import { setTimeout as pause } from "node:timers/promises";
 
-const root = fileURLToPath(new URL("../../", import.meta.url));
-const { chromium } = createRequire(join(root, "host/web/package.json"))("playwright-core");
+import {
+  build, check, distance, first_line, folder, measure_fps, numbers, play, size, start, start_browser,
+  start_tactd, start_view, stop, waits,
+} from "./stage.mjs";
 
-const build = resolve(process.argv[2] ?? join(root, "build"));
-const scene = join(root, "model/scenes/liver.toml");
-const folder = mkdtempSync(join(tmpdir(), "tact-browser-"));
 const socket = join(folder, "telemetry.sock");
 const kVertices = 3116;
 const kMostFrameBytes = 4096;
-
-const children = new Set();
-let passed = 0;
-let failed = 0;
-
-function check(sentence, holds, seen = "") {
-  holds ? ++passed : ++failed;
-  console.log(`${holds ? "ok    " : "FAILED"} ${sentence}${seen === "" ? "" : ` (${seen})`}`);
-}
-
-function start(program, args) {
-  const child = spawn(join(build, program), args, { stdio: ["ignore", "pipe", "inherit"] });
-  children.add(child);
-  child.ended = new Promise((done) => child.on("exit", (status) => {
-    children.delete(child);
-    done(status);
-  }));
-  return child;
-}
-
-async function stop(child) {
-  child.kill("SIGINT");
-  return child.ended;
-}
-
-/** The first line of a program's output. */
-function first_line(child) {
-  return new Promise((done, fail) => {
-    let text = "";
-    child.stdout.on("data", (data) => {
-      text += data;
-      if (text.includes("\n")) done(text.slice(0, text.indexOf("\n")));
-    });
-    child.ended.then((status) => fail(new Error(`${child.spawnfile} left with status ${status}`)));
-  });
-}
-
-function start_tactd() {
-  const child = start("tactd", [scene, "--socket", socket]);
-  child.stdout.resume();
-  return child;
-}
-
-async function start_browser() {
-  return chromium.launch({
-    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    args: [
-      "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
-      "--disable-background-networking", "--disable-component-update", "--disable-sync",
-    ],
-  });
-}
-
-const size = { width: 1280, height: 800 };
-const numbers = (page) => page.evaluate(() => ({ ...window.tact }));
-const waits = (page, condition, timeout = 20000) =>
-  page.waitForFunction(condition, null, { timeout, polling: 50 }).then(() => true, () => false);
-const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-
-async function measure_fps(page, seconds) {
-  return page.evaluate(async (duration_ms) => {
-    const begin = performance.now();
-    let count = 0;
-    while (performance.now() - begin < duration_ms) {
-      await new Promise((done) => requestAnimationFrame(done));
-      ++count;
-    }
-    return (count * 1000) / (performance.now() - begin);
-  }, seconds * 1000);
-}
 
 /** The page before, while and after the controller runs. */
 async function check_view(page, url) {
   await page.goto(url);
   check("waits for tactd in words", await waits(page, () =>
     document.getElementById("notice").textContent.includes("waiting for tactd")));
-  const tactd = start_tactd();
+  const tactd = start_tactd("liver", socket);
   check("finds tactd by itself", await waits(page, () => window.tact.link === "live"));
   check("shows the scene's name", await waits(page, () =>
     document.getElementById("scene").textContent === "liver" && document.title === "tact: liver"));
@@ -201,7 +128,7 @@ async function check_loss(page, tactd) {
   check("tactd ends cleanly", (await stop(tactd)) === 0);
   check("says that the connection is lost", await waits(page, () =>
     document.getElementById("notice").textContent.includes("connection lost"), 5000));
-  const again = start_tactd();
+  const again = start_tactd("liver", socket);
   check("comes back when tactd does", await waits(page, () => window.tact.link === "live"));
   return again;
 }
@@ -219,10 +146,8 @@ async function take_picture(browser, url) {
 /** Another scene from its first touch; the picture is BUILD_DIR/page_NAME.png. */
 async function check_scene(browser, name, sentence, condition) {
   const own_socket = join(folder, `${name}.sock`);
-  const viewer = start("tact-view", ["--socket", own_socket, "--port", "0", "--json"]);
-  const { url } = JSON.parse(await first_line(viewer));
-  const tactd = start("tactd", [join(root, `model/scenes/${name}.toml`), "--socket", own_socket]);
-  tactd.stdout.resume();
+  const { viewer, url } = await start_view(["--socket", own_socket]);
+  const tactd = start_tactd(name, own_socket);
   const page = await browser.newPage({ viewport: size });
   await page.goto(`${url}#sharp`);
   check(sentence, await waits(page, condition, 60000), JSON.stringify(await page.evaluate(() =>
@@ -234,21 +159,53 @@ async function check_scene(browser, name, sentence, condition) {
 }
 
 async function check_replay(browser, recording) {
-  const viewer = start("tact-view", ["--open", recording, "--port", "0", "--json"]);
+  const { viewer, url } = await start_view(["--open", recording]);
   const page = await browser.newPage({ viewport: size });
-  await page.goto(JSON.parse(await first_line(viewer)).url);
+  await page.goto(url);
   check("replays the recording", await waits(page, () => window.tact.link === "replay" && window.tact.tick > 0) &&
     (await page.textContent("#link")).includes("page.tact"));
   await page.close();
   check("tact-view ends cleanly", (await stop(viewer)) === 0);
 }
 
-async function run() {
-  for (const part of ["tactd", "tact-view", "page/index.html"]) {
-    if (!existsSync(join(build, part))) throw new Error(`${join(build, part)} is missing; build it first`);
+/** The thread of tactd that has the loop, once it runs. */
+async function loop_of(tactd) {
+  for (;;) {
+    const tasks = `/proc/${tactd.pid}/task`;
+    const loop = readdirSync(tasks).find((id) =>
+      readFileSync(join(tasks, id, "comm"), "utf8").trim() === "tact-loop");
+    if (loop) return loop;
+    await pause(50);
   }
-  const viewer = start("tact-view", ["--socket", socket, "--port", "0", "--json"]);
-  const { url } = JSON.parse(await first_line(viewer));
+}
+
+/** A loop that strace holds in its sleep, as a driver would that hangs; its last seconds stay. */
+async function check_black_box(browser) {
+  const boxes = join(folder, "boxes");
+  const tactd = start_tactd("liver", join(folder, "stalled.sock"), ["--black-box", boxes]);
+  const loop = await loop_of(tactd);
+  await pause(3000);
+  spawn("timeout", ["-s", "INT", "6", "strace", "-qq", "-o", "/dev/null", "-p", loop, "-e",
+    "inject=clock_nanosleep:delay_exit=400000:when=20"], { stdio: "ignore" });
+  const kept = () => (existsSync(boxes) ? readdirSync(boxes) : []);
+  for (let i = 0; i < 100 && kept().length === 0; ++i) await pause(100);
+  check("a fault leaves a black box", kept().length === 1, kept().join(" "));
+  await pause(500);
+  await stop(tactd);
+  const { viewer, url } = await start_view(["--open", join(boxes, kept()[0])]);
+  const page = await browser.newPage({ viewport: size });
+  await page.goto(url);
+  check("shows the black box up to its fault", await waits(page, () => window.tact.link === "replay" &&
+    document.getElementById("fault_name").textContent.includes("loop stalled")),
+    await page.textContent("#fault_name"));
+  check("names the file it shows", (await page.textContent("#link")).includes(kept()[0]));
+  await page.screenshot({ path: join(build, "page_black_box.png") });
+  await page.close();
+  await stop(viewer);
+}
+
+async function run() {
+  const { viewer, url } = await start_view(["--socket", socket]);
   const browser = await start_browser();
   const page = await browser.newPage({ viewport: size });
   const complaints = [];
@@ -265,6 +222,7 @@ async function run() {
   await page.close();
   await take_picture(browser, url);
   await check_replay(browser, recording);
+  await check_black_box(browser);
   await check_scene(browser, "heart", "shows the heart dented by a finger", () =>
     window.tact.most_m > 0.003 && window.tact.vertex_count === 10026);
   await check_scene(browser, "skin", "shows the skin dented by an injector", () => window.tact.most_m > 0.003);
@@ -275,13 +233,4 @@ async function run() {
   await stop(viewer);
 }
 
-try {
-  await run();
-} catch (error) {
-  check(`runs to its end: ${error.message.split("\n")[0]}`, false);
-} finally {
-  for (const child of children) child.kill("SIGKILL");
-  rmSync(folder, { recursive: true, force: true });
-}
-console.log(`${passed} passed, ${failed} failed`);
-process.exit(failed === 0 ? 0 : 1);
+await play(run);

@@ -1,9 +1,9 @@
 // tact-soak: a day at the device in simulated time, as fast as the CPU allows.
 //
-// The whole controller with the simulated delta and its safety lines: random strokes, faults, stops,
-// late ticks and operators by a seed; after each tick its promises are checked: force,
-// slew, states, latching, the grid (energy, power and RMS: tests/gate_rules.h). The same seed gives
-// the same hash with every compiler.
+// The whole controller with the simulated delta and its safety lines: random strokes, faults,
+// stops, late ticks and operators by a seed; after each tick its promises are checked: force, slew,
+// states, latching, the grid (energy, power and RMS: tests/gate_rules.h). The same seed gives the
+// same hash with every compiler.
 #include <fmt/format.h>
 #include <unistd.h>
 

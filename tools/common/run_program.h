@@ -31,8 +31,8 @@ struct ProgramCall {
 /// what to install), interrupted, over its time, or its last lines and where all of them are.
 model::Result<std::string> run_program(const ProgramCall& call);
 
-/// A program that runs beside us until its object goes: then its whole group is killed. A time limit
-/// and the status do not count here.
+/// A program that runs beside us until its object goes: then its whole group is killed. A time
+/// limit and the status do not count here.
 class RunningProgram {
  public:
   /// An error says what to install.

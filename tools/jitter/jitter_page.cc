@@ -129,12 +129,10 @@ std::string environment_table(const JitterResult& result) {
 
 std::string peer_sentence(const JitterResult& result) {
   if (!result.peer) return {};
-  const auto ratio = ratio_to_peer(result);
   return fmt::format(
       "<p>cyclictest ran in turns with the loop, at the same priority and rate, on the same core, "
-      "under the same load. {}</p>\n",
-      ratio ? fmt::format("The loop's wake-up at p99.9 is <b>{:.2f}</b> of cyclictest's.", *ratio)
-            : "There are too few samples for a ratio at p99.9.");
+      "under the same load: <b>{}</b>.</p>\n",
+      compare_with_peer(result));
 }
 
 }  // namespace

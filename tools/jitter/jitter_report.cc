@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware/report.h"
+#include "tools/jitter/peer.h"
 
 namespace tact::tools {
 namespace {
@@ -45,6 +46,14 @@ json late_json(const JitterResult& result, const LateTick& late) {
           {"kernel_counted", late.attribution}};
 }
 
+json to_json(const std::optional<TurnRatios>& middle) {
+  if (!middle) return nullptr;
+  return {{"turns", middle->turns},
+          {"lower_quartile", middle->lower_quartile},
+          {"median", middle->median},
+          {"upper_quartile", middle->upper_quartile}};
+}
+
 }  // namespace
 
 std::vector<NamedSeries> series_of(const JitterResult& result) {
@@ -69,17 +78,21 @@ std::vector<NamedSeries> series_of(const JitterResult& result) {
   return all;
 }
 
-std::optional<std::uint64_t> percentile_ns(const LatencyHistogram& histogram, double share) {
-  if (static_cast<double>(histogram.count()) * (1.0 - share) < 1.0 - 1e-9) return std::nullopt;
-  return histogram.percentile_ns(share);
-}
-
 std::optional<double> ratio_to_peer(const JitterResult& result) {
   if (!result.peer) return std::nullopt;
-  const auto own = percentile_ns(result.sink->phase(Phase::kWake).histogram, 0.999);
-  const auto peer = percentile_ns(result.peer->histogram, 0.999);
-  if (!own || !peer || *peer == 0) return std::nullopt;
-  return static_cast<double>(*own) / static_cast<double>(*peer);
+  return ratio_at_p999(result.sink->phase(Phase::kWake), *result.peer);
+}
+
+std::string compare_with_peer(const JitterResult& result) {
+  const auto ratio = ratio_to_peer(result);
+  if (!ratio) return "Too few samples for a ratio at p99.9";
+  const auto middle = middle_of(result.turn_ratios);
+  return fmt::format(
+      "wake-up p99.9 is {:.2f} of cyclictest's in the same run{}", *ratio,
+      middle ? fmt::format(
+                   "; turn by turn {:.2f} in the median of {}, half of them {:.2f} to {:.2f}",
+                   middle->median, middle->turns, middle->lower_quartile, middle->upper_quartile)
+             : "");
 }
 
 double seconds_into(const JitterResult& result, std::int64_t at_ns) {
@@ -119,8 +132,7 @@ std::string make_summary(const JitterResult& result) {
                                                   seconds_into(result, named.series->max_at_ns));
   }
   out += fmt::format("the largest is that of {} ticks: it bounds nothing\n", result.sink->ticks());
-  if (const auto ratio = ratio_to_peer(result))
-    out += fmt::format("wake-up p99.9 is {:.2f} of cyclictest's in the same run\n", *ratio);
+  if (result.peer) out += compare_with_peer(result) + "\n";
   const auto& thread = result.thread;
   out += fmt::format("loop's thread: {} heap calls, {} page faults, {} involuntary switches\n",
                      thread.heap_calls_known ? std::to_string(thread.heap_calls) : "unknown",
@@ -164,6 +176,7 @@ json to_json(const JitterResult& result, const std::string& command) {
           {"series", series},
           {"pin_edges_unpaired", result.pin ? json(result.pin->unpaired()) : json(nullptr)},
           {"wake_p99.9_over_peer", ratio ? json(*ratio) : json(nullptr)},
+          {"wake_p99.9_over_peer_by_turn", to_json(middle_of(result.turn_ratios))},
           {"thread", firmware::to_json(result.thread)},
           {"kernel", to_json(result.costs)},
           {"late_ticks", late},

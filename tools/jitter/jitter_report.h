@@ -34,11 +34,10 @@ struct NamedSeries {
 
 /// Those that this run has measured, in the order of a tick.
 std::vector<NamedSeries> series_of(const JitterResult& result);
-/// Nothing without a sample beyond it.
-std::optional<std::uint64_t> percentile_ns(const firmware::LatencyHistogram& histogram,
-                                           double share);
 /// Wake-up at p99.9 over the peer's; nothing where one of them has too few samples.
 std::optional<double> ratio_to_peer(const JitterResult& result);
+/// The same as a clause, with the middle of the turns.
+std::string compare_with_peer(const JitterResult& result);
 
 /// One sentence about the run: what, how long, where, how many late.
 std::string make_headline(const JitterResult& result);

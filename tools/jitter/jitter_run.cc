@@ -182,14 +182,18 @@ std::optional<Error> Run::measure() {
     run_slice(slice_s, i + 1 == slices.size());
     if (is_interrupted()) break;
     if (!options_.peer) continue;
+    Series turn;
     if (auto error = run_cyclictest({.core = result_.core,
                                      .priority = result_.priority,
                                      .period_ns = loop_period_ns(),
                                      .duration_s = slice_s},
-                                    *folder, *result_.peer)) {
+                                    *folder, turn)) {
       if (!was_interrupted(*error)) return error;
       break;
     }
+    result_.peer->add(turn);
+    if (const auto ratio = ratio_at_p999(result_.sink->slice_wake(), turn))
+      result_.turn_ratios.push_back(*ratio);
   }
   const TickSink& sink = *result_.sink;
   result_.interrupted = is_interrupted();

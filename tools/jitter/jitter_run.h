@@ -49,6 +49,8 @@ struct JitterResult {
   Costs costs;
   bool has_marker = false;  // late ticks are marked in the kernel's trace
   std::optional<Series> peer;
+  std::vector<double>
+      turn_ratios;                // wake-up p99.9 over the peer's, of each turn with enough samples
   std::optional<PulseMeter> pin;  // input to force, at the scope pin
   std::string fault;              // name and cause; empty: none
   std::vector<firmware::PcRow> pc;
@@ -58,8 +60,8 @@ struct JitterResult {
 /// Runs it. Ctrl-C ends the loop early, with zero force; what was measured until then is kept.
 model::Result<JitterResult> run_jitter(const JitterOptions& options);
 
-/// How the run is cut where a peer takes turns: at least two slices of at most 5 s. A device that is
-/// hardware runs in one piece, as its own watchdog would meet the pauses.
+/// How the run is cut where a peer takes turns: at least two slices of at most 5 s. A device that
+/// is hardware runs in one piece, as its own watchdog would meet the pauses.
 std::vector<double> slices_of(double duration_s, bool takes_turns);
 
 }  // namespace tact::tools

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -19,6 +20,11 @@ std::int64_t upper_edge_ns(std::int64_t us) { return (us + 1) * kMicrosecond_ns 
 
 }  // namespace
 
+std::uint64_t cycles_of(const PeerCall& call) {
+  return static_cast<std::uint64_t>(
+      std::llround(call.duration_s * 1e9 / static_cast<double>(call.period_ns)));
+}
+
 std::vector<std::string> cyclictest_arguments(const PeerCall& call, const std::string& json_path) {
   return {"-q",
           "-m",
@@ -26,13 +32,13 @@ std::vector<std::string> cyclictest_arguments(const PeerCall& call, const std::s
           "-p" + std::to_string(call.priority),
           "-a" + std::to_string(call.core),
           "-i" + std::to_string(call.period_ns / kMicrosecond_ns),
-          "-l" + std::to_string(
-                     std::llround(call.duration_s * 1e9 / static_cast<double>(call.period_ns))),
+          "-l" + std::to_string(cycles_of(call)),
           "-h" + std::to_string(kBuckets_us),
           "--json=" + json_path};
 }
 
-std::optional<Error> add_cyclictest(const std::string& text, Series& series) {
+std::optional<Error> add_cyclictest(const std::string& text, std::uint64_t asked_cycles,
+                                    Series& series) {
   const auto json = nlohmann::json::parse(text, nullptr, false);
   const auto thread = json.is_object() && json.contains("thread") && json["thread"].is_object()
                           ? json["thread"].value("0", nlohmann::json())
@@ -41,6 +47,19 @@ std::optional<Error> add_cyclictest(const std::string& text, Series& series) {
       !thread.value("cycles", nlohmann::json()).is_number_unsigned() ||
       !thread.value("max", nlohmann::json()).is_number_unsigned())
     return Error{"cyclictest told no histogram of a thread; this reads rt-tests 2.4"};
+  const auto cycles = thread["cycles"].get<std::uint64_t>();
+  std::uint64_t counted = 0;
+  for (const auto& [us, samples] : thread["histogram"].items()) {
+    if (!samples.is_number_unsigned()) continue;
+    const auto more = samples.get<std::uint64_t>();
+    counted =
+        more > asked_cycles - std::min(counted, asked_cycles) ? asked_cycles + 1 : counted + more;
+  }
+  if (cycles > asked_cycles || counted > asked_cycles)
+    return Error{
+        fmt::format("cyclictest told more samples than the {} cycles it was asked for; "
+                    "this reads rt-tests 2.4",
+                    asked_cycles)};
   std::uint64_t told = 0;
   const auto add = [&](std::int64_t us, std::uint64_t samples) {
     for (std::uint64_t i = 0; i < samples; ++i)
@@ -50,9 +69,24 @@ std::optional<Error> add_cyclictest(const std::string& text, Series& series) {
   for (const auto& [us, samples] : thread["histogram"].items())
     if (samples.is_number_unsigned())
       add(std::strtoll(us.c_str(), nullptr, 10), samples.get<std::uint64_t>());
-  const auto cycles = thread["cycles"].get<std::uint64_t>();
   if (told < cycles) add(thread["max"].get<std::int64_t>(), cycles - told);
   return std::nullopt;
+}
+
+std::optional<double> ratio_at_p999(const Series& loop, const Series& peer) {
+  const auto own = percentile_ns(loop.histogram, 0.999);
+  const auto theirs = percentile_ns(peer.histogram, 0.999);
+  if (!own || !theirs || *theirs == 0) return std::nullopt;
+  return static_cast<double>(*own) / static_cast<double>(*theirs);
+}
+
+std::optional<TurnRatios> middle_of(std::vector<double> ratios) {
+  if (ratios.size() < 3) return std::nullopt;
+  std::ranges::sort(ratios);
+  const auto at = [&](double share) {
+    return ratios[static_cast<std::size_t>(share * static_cast<double>(ratios.size() - 1) + 0.5)];
+  };
+  return TurnRatios{ratios.size(), at(0.25), at(0.5), at(0.75)};
 }
 
 std::optional<Error> run_cyclictest(const PeerCall& call, const ScratchFolder& folder,
@@ -68,7 +102,7 @@ std::optional<Error> run_cyclictest(const PeerCall& call, const ScratchFolder& f
   if (!said) return said.error();
   std::ostringstream text;
   text << std::ifstream(json_path).rdbuf();
-  return add_cyclictest(text.str(), series);
+  return add_cyclictest(text.str(), cycles_of(call), series);
 }
 
 }  // namespace tact::tools

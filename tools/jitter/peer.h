@@ -2,6 +2,7 @@
 // slices that take turns with the loop's, so that both meet the same weather.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,13 +19,29 @@ struct PeerCall {
   double duration_s = 1.0;
 };
 
+/// Periods in the call's duration.
+std::uint64_t cycles_of(const PeerCall& call);
+
 /// The arguments of cyclictest; its JSON goes to `json_path`.
 std::vector<std::string> cyclictest_arguments(const PeerCall& call, const std::string& json_path);
 
 /// Adds what cyclictest has written to a series. Its buckets are whole microseconds; each counts at
 /// its upper edge, as ours do. Values beyond its histogram are known by number and largest alone:
-/// all of them count as the largest.
-std::optional<model::Error> add_cyclictest(const std::string& json, Series& series);
+/// all of them count as the largest. More samples than the cycles that were asked for: an error.
+std::optional<model::Error> add_cyclictest(const std::string& json, std::uint64_t asked_cycles,
+                                           Series& series);
+
+/// The loop's 99.9th percentile over the peer's; nothing where one of them has too few samples.
+std::optional<double> ratio_at_p999(const Series& loop, const Series& peer);
+
+/// The middle of the turns' ratios. One stall of a machine that others share decides p99.9 of the
+/// turn it falls into, and so of a short run; it does not move the middle of many turns.
+struct TurnRatios {
+  std::size_t turns = 0;
+  double lower_quartile = 0.0, median = 0.0, upper_quartile = 0.0;
+};
+/// Nothing of fewer than three turns.
+std::optional<TurnRatios> middle_of(std::vector<double> ratios);
 
 /// Runs it once and adds its samples.
 std::optional<model::Error> run_cyclictest(const PeerCall& call, const ScratchFolder& folder,

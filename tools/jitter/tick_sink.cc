@@ -18,6 +18,7 @@ void TickSink::begin_slice() {
   unfinished_.reset();  // its tell phase is not told any more
   handed_ns_.reset();
   base_ = ticks_ + unseen_;
+  slice_wake_ = {};
 }
 
 void TickSink::add(const firmware::TickRecord& record) {
@@ -42,6 +43,7 @@ void TickSink::add(const firmware::TickRecord& record) {
   }
   for (const Phase p : kOfThisTick)
     phases_[static_cast<std::size_t>(p)].record(times.phase(p), times.tick, times.due_ns);
+  slice_wake_.record(times.phase(Phase::kWake), times.tick, times.due_ns);
   // Oldest first: of equal maxima the series keep the first.
   for (std::int64_t j = times.skipped_before; j >= 0; --j) {
     const std::int64_t waited_ns = j * settings_.period_ns;

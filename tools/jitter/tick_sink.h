@@ -55,6 +55,8 @@ class TickSink {
   std::int64_t threshold_ns() const { return settings_.threshold_ns; }
 
   const Series& phase(firmware::Phase p) const { return phases_[static_cast<std::size_t>(p)]; }
+  /// Wake-up of the ticks since begin_slice().
+  const Series& slice_wake() const { return slice_wake_; }
   const Series& every_wake() const { return every_wake_; }
   const Series& deadline_to_force() const { return deadline_to_force_; }
   const Series& round_trip() const { return round_trip_; }
@@ -74,7 +76,7 @@ class TickSink {
 
   SinkSettings settings_;
   std::array<Series, firmware::kPhaseCount> phases_;
-  Series every_wake_, deadline_to_force_, round_trip_;
+  Series slice_wake_, every_wake_, deadline_to_force_, round_trip_;
   std::uint64_t ticks_ = 0, skipped_ = 0, late_ = 0, unseen_ = 0, over_threshold_ = 0;
   std::uint64_t base_ = 0;  // number of the slice's first tick
   std::int64_t first_due_ns_ = 0;

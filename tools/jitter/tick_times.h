@@ -1,8 +1,10 @@
 // tick_times.h - what one tick of a loop took, and the series of durations that ticks add up to.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "firmware/latency_histogram.h"
@@ -40,6 +42,20 @@ struct Series {
     histogram.record(duration_ns, tick);
     if (histogram.count() == 1 || histogram.max_ns() > before_ns) max_at_ns = at_ns;
   }
+  /// Its samples at their buckets' upper edges; of the larger one's maximum the tick and time.
+  void add(const Series& other) {
+    other.histogram.for_each_bucket([&](std::uint64_t, std::uint64_t highest, std::uint64_t n) {
+      const auto ns = static_cast<std::int64_t>(std::min(highest, other.histogram.max_ns()));
+      for (std::uint64_t i = 0; i < n; ++i) record(ns, other.histogram.max_tick(), other.max_at_ns);
+    });
+  }
 };
+
+/// Nothing without a sample beyond it.
+inline std::optional<std::uint64_t> percentile_ns(const firmware::LatencyHistogram& histogram,
+                                                  double share) {
+  if (static_cast<double>(histogram.count()) * (1.0 - share) < 1.0 - 1e-9) return std::nullopt;
+  return histogram.percentile_ns(share);
+}
 
 }  // namespace tact::tools

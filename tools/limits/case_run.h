@@ -2,10 +2,12 @@
 // verdict needs. Set up first, then play: a real device is never left alone between two cases.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
 #include "firmware/rt_loop.h"
+#include "firmware/watch/loop_watch.h"
 #include "hal/open_device.h"
 #include "model/tissue.h"
 #include "tools/limits/player.h"
@@ -55,7 +57,8 @@ class CaseRun {
   CaseRun(const CaseRun&) = delete;
   CaseRun& operator=(const CaseRun&) = delete;
 
-  /// The whole case; ends with zero force. Does not allocate. False after Ctrl-C.
+  /// The whole case; ends with zero force. Its ticks do not allocate. A real device is watched as
+  /// tactd's is: a call that hangs costs it the enable line. False after Ctrl-C.
   bool play();
 
   const Case& subject() const { return case_; }
@@ -66,6 +69,8 @@ class CaseRun {
   Fault refused() const { return refused_; }
 
  private:
+  std::int64_t loop_period_ns() const { return std::llround(1e9 * moment_.period_s); }
+  bool play_ticks();
   void keep(const firmware::TickRecord& record, bool cause);
 
   Case case_;
@@ -84,8 +89,9 @@ class CaseRun {
   firmware::Requests requests_;
   std::unique_ptr<firmware::TickRing> ring_ = std::make_unique<firmware::TickRing>();
   std::unique_ptr<firmware::RtLoop> loop_;
-  int lead_ticks_;       // after arming, until the gate is open
-  int most_wait_ticks_;  // for arming
+  std::unique_ptr<firmware::LoopWatch> watch_;  // of a real device
+  int lead_ticks_;                              // after arming, until the gate is open
+  int most_wait_ticks_;                         // for arming
   std::array<std::uint64_t, firmware::kStageCount> counted_{};
   Fault refused_ = Fault::kNone;
   std::int64_t begin_ns_ = 0;  // of t = 0

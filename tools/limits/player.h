@@ -99,6 +99,7 @@ class PlayedLines final : public hal::SafetyLines {
   Fault write(const hal::LinesTick& tick) RT_SAFE override { return lines_.write(tick); }
   bool enabled() const RT_SAFE override { return lines_.enabled(); }
   void scope(bool up) RT_SAFE override { lines_.scope(up); }
+  void drop() RT_SAFE override { lines_.drop(); }
   std::string trouble() const override { return lines_.trouble(); }
   void stop() override { lines_.stop(); }
 

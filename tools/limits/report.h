@@ -1,5 +1,5 @@
-// report.h - what a test of the limits leaves behind: JSON for machines, CSV of every tick, curves by
-// gnuplot, and one page that a safety officer can read.
+// report.h - what a test of the limits leaves behind: JSON for machines, CSV of every tick, curves
+// by gnuplot, and one page that a safety officer can read.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

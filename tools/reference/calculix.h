@@ -1,7 +1,8 @@
 // calculix.h - one elastic body under a load, solved by the program CalculiX (ccx).
 //
-// The body's elements are C3D10, isotropic linear elastic. Moved nodes have their own axes: x along `direction`.
-// With large strain (NLGEOM) the material is neo-Hookean with the same E and nu at small strain:
+// The body's elements are C3D10, isotropic linear elastic. Moved nodes have their own axes: x along
+// `direction`. With large strain (NLGEOM) the material is neo-Hookean with the same E and nu at
+// small strain:
 //
 //     W = C10 (I1' - 3) + (J - 1)^2 / D1,   C10 = G / 2, D1 = 2 / K        (CalculiX manual 6.8)
 //

@@ -85,7 +85,8 @@ class GateWatch {
   double max_force_N_ = 0.0, max_step_N_ = 0.0;
 };
 
-/// Of a table with the column beyond_the_line: the gate held, and how many cells put it to the test.
+/// Of a table with the column beyond_the_line: the gate held, and how many cells put it to the
+/// test.
 inline Finding judge_gate(const Table& table) {
   std::size_t held = 0, fought = 0;
   for (const Row& row : table.rows()) {

@@ -1,12 +1,13 @@
 // connection.ts - the WebSocket to tact-view: comes back by itself, answers every frame with a count
 // so that the server never sends more than this page can draw.
 
-import { split_meshes, type Frame, type Mesh, type Scene, type Status, type Vec } from "./protocol";
+import { split_meshes, type FigureFrame, type Frame, type Mesh, type Scene, type Status, type Vec } from "./protocol";
 
 export interface ConnectionEvents {
   status(status: Status): void;
   scene(scene: Scene, organ: Mesh, tool: Mesh): void;
   frame(frame: Frame): void;
+  figure(figure: FigureFrame): void;
   server_gone(): void;
 }
 
@@ -16,6 +17,7 @@ export class Connection {
   frames = 0;
   bytes = 0;
   largest_frame_bytes = 0;
+  largest_figure_bytes = 0;
   private socket: WebSocket | null = null;
   private scene_number = 0;
   private seen = 0; // frames of this socket
@@ -46,13 +48,16 @@ export class Connection {
   }
 
   private take(text: string): void {
-    const message = JSON.parse(text) as Frame | Status;
+    const message = JSON.parse(text) as Frame | FigureFrame | Status;
     if (message.kind === "frame") {
       ++this.frames;
       this.bytes += text.length; // the text is ASCII
       this.largest_frame_bytes = Math.max(this.largest_frame_bytes, text.length);
       this.send({ seen: ++this.seen });
       this.events.frame(message);
+    } else if (message.kind === "figure") {
+      this.largest_figure_bytes = Math.max(this.largest_figure_bytes, text.length);
+      this.events.figure(message);
     } else {
       this.events.status(message);
       if (message.scene_number > 0 && message.scene_number !== this.scene_number) {

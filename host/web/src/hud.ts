@@ -1,7 +1,7 @@
 // hud.ts - the panels: everything that is said in words and numbers.
 
 import { describe, kStates } from "./faults";
-import { length_of, type Frame, type Scene, type Status } from "./protocol";
+import { length_of, type FigureFrame, type Frame, type Scene, type Status } from "./protocol";
 
 const kHold_ms = 1500; // a limit that acted for one tick stays readable this long
 const kRewrite_ms = 100; // numbers that change faster cannot be read
@@ -89,6 +89,16 @@ export class Hud {
     write("late", `${frame.late} · ${frame.skipped}`);
     write("fps", `${fps.toFixed(0)} /s`);
     this.fault(now_ms);
+  }
+
+  /** Nothing to say hides the chip. */
+  tracking(figure: FigureFrame | null): void {
+    const chip = by_id("tracking");
+    chip.hidden = !figure || figure.trouble === 0;
+    if (figure && !chip.hidden) {
+      const subject = figure.trouble < 3 ? "tracking: " : "";
+      pill("tracking", subject + figure.words, figure.trouble === 2 ? "bad" : "wait");
+    }
   }
 
   pressed(id: string, on: boolean): void {

@@ -2,11 +2,13 @@
 
 import "./style.css";
 import { Connection } from "./connection";
+import { eyes_of, grip_error_m } from "./figure";
+import { FigureView } from "./figure_view";
 import { HandControl } from "./hand_control";
 import { by_id, Hud } from "./hud";
 import { OrganView } from "./organ_view";
 import { Plots } from "./plots";
-import type { Frame, Mesh, Scene, Status, Vec } from "./protocol";
+import type { FigureFrame, Frame, Mesh, Scene, Status, Vec } from "./protocol";
 import { Recorder } from "./recorder";
 import { Stage } from "./stage";
 import { ToolView } from "./tool_view";
@@ -25,6 +27,11 @@ let status: Status | null = null;
 let paused = false;
 let wireframe = false;
 let most_ever_m = 0;
+let figure: FigureView | null = null;
+let newest_figure: FigureFrame | null = null;
+let shown_figure: FigureFrame | null = null;
+let figure_on = true;
+let eyes_on = false;
 
 const stage = new Stage(canvas, draw);
 const hand = new HandControl(canvas, stage, may_move_hand, (position_m, grip_ratio) =>
@@ -34,13 +41,21 @@ const connection = new Connection({
   status: (now) => {
     status = now;
     hud.link(now);
-    if (now.link === "lost") recorder.stop();
+    take_skeleton(now);
+    if (now.link === "lost") {
+      hud.tracking(null);
+      recorder.stop();
+    }
   },
   scene: take_scene,
   frame: take_frame,
+  figure: (next) => {
+    if (!paused) newest_figure = next;
+  },
   server_gone: () => {
     status = null;
     hud.link(null);
+    hud.tracking(null); // what a chip said last is not known any more
     recorder.stop();
   },
 });
@@ -56,7 +71,7 @@ function take_scene(next: Scene, organ_mesh: Mesh, tool_mesh: Mesh): void {
     tool.dispose();
   }
   scene = next;
-  organ = new OrganView(organ_mesh, next, stage.tissue);
+  organ = new OrganView(organ_mesh, next);
   organ.wireframe = wireframe;
   tool = new ToolView(tool_mesh, next, stage.steel);
   stage.scene.add(organ.object, tool.object);
@@ -66,6 +81,52 @@ function take_scene(next: Scene, organ_mesh: Mesh, tool_mesh: Mesh): void {
   hud.scene(next);
   plots.spheres = next.spheres.length;
   by_id("hand").hidden = !next.simulated;
+}
+
+/** The figure is there if tact-view tells its skeleton; every scene has its own. */
+function take_skeleton(now: Status): void {
+  if (figure) {
+    stage.scene.remove(figure.object);
+    figure.dispose();
+  }
+  const was = figure !== null;
+  figure = now.figure ? new FigureView(now.figure) : null;
+  if (!figure) {
+    newest_figure = shown_figure = null;
+    hud.tracking(null);
+  }
+  newest_figure ??= shown_figure;
+  if (figure) stage.scene.add(figure.object);
+  if (was !== (figure !== null)) show_figure(figure_on);
+  by_id("figure").hidden = by_id("eyes").hidden = !figure;
+}
+
+function show_figure(on: boolean): void {
+  figure_on = on;
+  if (eyes_on) see_with_eyes(false);
+  stage.set_operator(figure !== null && on);
+  hud.pressed("figure", on);
+}
+
+/** Only when asked: a view that leaves by itself would be a surprise. Untracked, the figure's head. */
+function see_with_eyes(on: boolean): void {
+  eyes_on = on && figure !== null;
+  if (!eyes_on) stage.look_through(null);
+  hud.pressed("eyes", eyes_on);
+}
+
+function draw_figure(): void {
+  if (!figure || !status?.figure) return;
+  if (newest_figure) {
+    shown_figure = newest_figure;
+    newest_figure = null;
+    figure.show(shown_figure);
+    hud.tracking(status.link === "lost" ? null : shown_figure);
+  }
+  figure.object.visible = figure_on && shown_figure !== null;
+  if (!shown_figure) return;
+  if (eyes_on) stage.look_through(eyes_of(shown_figure, status.figure));
+  figure.clear_view(shown_figure, stage.camera.position);
 }
 
 function take_frame(frame: Frame): void {
@@ -85,11 +146,12 @@ function draw(now_ms: number): void {
     hud.frame(shown, now_ms, stage.fps);
     most_ever_m = Math.max(most_ever_m, organ.deformed.most_m);
   }
+  draw_figure();
   tool?.show_hand_target(hand.target ? (hand.target.toArray() as Vec) : null);
   if (!paused) plots.draw(now_ms);
 }
 
-const actions: Record<string, () => void> = {
+const actions: Record<string, () => unknown> = {
   p: () => {
     paused = !paused;
     hud.pressed("pause", paused);
@@ -106,7 +168,12 @@ const actions: Record<string, () => void> = {
     if (organ) organ.wireframe = wireframe;
     hud.pressed("wire", wireframe);
   },
-  v: () => stage.go_home(),
+  v: () => {
+    see_with_eyes(false);
+    stage.go_home();
+  },
+  f: () => figure && show_figure(!figure_on),
+  e: () => see_with_eyes(!eyes_on),
   g: () => hand.toggle_grip(),
   h: () => {
     const keys = by_id("keys");
@@ -122,7 +189,8 @@ window.addEventListener("keydown", (event) => {
   actions[event.key === " " ? "p" : event.key.toLowerCase()]?.();
 });
 const buttons: Record<string, string> = {
-  pause: "p", hand: "m", record: "r", csv: "c", wire: "w", home: "v", help: "h",
+  pause: "p", hand: "m", record: "r", csv: "c", wire: "w", home: "v", figure: "f", eyes: "e",
+  help: "h",
 };
 for (const [id, key] of Object.entries(buttons)) {
   by_id(id).addEventListener("click", (event) => {
@@ -151,6 +219,18 @@ const numbers = {
   get state() { return shown?.state ?? 0; },
   get paused() { return paused; },
   get wireframe() { return wireframe; },
+  get figure_on() { return figure !== null && figure_on; },
+  get eyes_on() { return eyes_on; },
+  /** Joints by name, m. */
+  get figure_m() {
+    const names = status?.figure?.joints;
+    if (!names || !shown_figure) return null;
+    const at = shown_figure.joint_m;
+    return Object.fromEntries(names.map((name, i) => [name, at.slice(3 * i, 3 * i + 3)]));
+  },
+  get grip_error_m() { return shown_figure && status?.figure ? grip_error_m(shown_figure, status.figure) : null; },
+  get tracking_words() { return shown_figure?.words ?? ""; },
+  get largest_figure_bytes() { return connection.largest_figure_bytes; },
   get camera_m() { return stage.camera.position.toArray(); },
 };
 export type TactNumbers = Readonly<typeof numbers>;

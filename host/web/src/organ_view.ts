@@ -1,8 +1,10 @@
-// organ_view.ts - the tissue: warm, moist, paler where it is stretched.
+// organ_view.ts - what is touched. Tissue is warm, moist and paler where it is stretched; another
+// material keeps the colours of its pieces (material.ts).
 
 import * as THREE from "three";
 import { Deformer, type Deformed } from "./deform";
-import { look_material } from "./look";
+import { look_material, paint } from "./look";
+import { material_of, pieces_of, type Material } from "./material";
 import { Cuts, decode_moved } from "./patch";
 import type { Mesh, Patch, Scene, Site } from "./protocol";
 import { Wound } from "./wound";
@@ -30,21 +32,26 @@ export class OrganView {
   private readonly lines: THREE.Mesh<THREE.BufferGeometry, THREE.MeshBasicMaterial>;
   private readonly deformer: Deformer;
   private readonly rest_tint: Float32Array;
+  private readonly is_flesh: boolean;
+  private readonly picture: THREE.Texture;
   private readonly cuts = new Cuts();
   private readonly wound: Wound;
 
-  constructor(private readonly mesh: Mesh, scene: Scene, look: THREE.Texture) {
+  constructor(private readonly mesh: Mesh, scene: Scene) {
+    const made_of = material_of(scene.scene);
+    this.is_flesh = made_of.pieces.length === 0;
+    this.picture = paint(made_of.look);
     const position = new THREE.BufferAttribute(mesh.vertex_m.slice(), 3);
     position.setUsage(THREE.DynamicDrawUsage);
     this.geometry.setAttribute("position", position);
     this.geometry.setIndex(new THREE.BufferAttribute(mesh.triangle.slice(), 1));
     this.geometry.computeVertexNormals();
     this.geometry.computeBoundingSphere();
-    this.rest_tint = OrganView.tints(mesh);
+    this.rest_tint = this.is_flesh ? OrganView.tints(mesh) : OrganView.piece_tints(mesh, made_of);
     const tint = new THREE.BufferAttribute(this.rest_tint.slice(), 3);
     tint.setUsage(THREE.DynamicDrawUsage);
     this.geometry.setAttribute("tint", tint);
-    this.material = look_material(look);
+    this.material = look_material(this.picture);
     this.object = new THREE.Mesh(this.geometry, this.material);
     this.lines = new THREE.Mesh(this.geometry, OrganView.line_material());
     this.lines.visible = false;
@@ -82,6 +89,7 @@ export class OrganView {
     position.needsUpdate = true;
     this.geometry.computeVertexNormals();
     this.wound.follow(vertex_m, this.geometry.getAttribute("normal").array as Float32Array);
+    if (!this.is_flesh) return;
     const tint = this.geometry.getAttribute("tint") as THREE.BufferAttribute;
     this.pale(tint.array as Float32Array);
     tint.needsUpdate = true;
@@ -101,6 +109,7 @@ export class OrganView {
     this.wound.dispose();
     this.geometry.dispose();
     this.material.dispose();
+    this.picture.dispose();
     this.lines.material.dispose();
   }
 
@@ -120,6 +129,14 @@ export class OrganView {
 
   private static line_material(): THREE.MeshBasicMaterial {
     return new THREE.MeshBasicMaterial({ color: "#ffd9cc", wireframe: true, transparent: true, opacity: 0.35 });
+  }
+
+  private static piece_tints(mesh: Mesh, made_of: Material): Float32Array {
+    const out = new Float32Array(mesh.vertex_m.length);
+    pieces_of(mesh).forEach((piece, v) => {
+      out.set(made_of.pieces[Math.min(piece, made_of.pieces.length - 1)], 3 * v);
+    });
+    return out;
   }
 
   private static tints(mesh: Mesh): Float32Array {

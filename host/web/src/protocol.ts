@@ -71,6 +71,41 @@ export interface Frame {
   patch?: Patch;
 }
 
+/** A round cone between two joints of the operator's figure. */
+export interface Capsule {
+  a: number;
+  b: number;
+  radius_a_m: number;
+  radius_b_m: number;
+  depth_ratio: number; // front to back
+  holds_tool: boolean;
+}
+
+/** What does not change of the figure; joints by number. */
+export interface Skeleton {
+  joints: string[];
+  capsules: Capsule[];
+  sides: [number, number]; // left and right hip
+  hand: number; // finger tips that hold the tool
+  head: number;
+}
+
+/** Follows the frame with the same tick. */
+export interface FigureFrame {
+  kind: "figure";
+  tick: number;
+  joint_m: number[]; // 3 per joint
+  grip_m: Vec;
+  head: [number, number, number, number]; // w, x, y, z; the face looks along its -x
+  reached: boolean;
+  error_mm: number;
+  sweeps: number;
+  updates: number;
+  full_chain: boolean;
+  trouble: number; // 0 none, 1 held, 2 lost, 3 out of reach
+  words: string;
+}
+
 export type LinkName = "waiting" | "live" | "lost" | "replay";
 
 export interface Status {
@@ -79,6 +114,7 @@ export interface Status {
   detail: string;
   scene_number: number;
   kept_s: number;
+  figure?: Skeleton;
 }
 
 export interface Mesh {

@@ -3,11 +3,15 @@
 
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { follow_share, type Eyes } from "./figure";
 import { make_ground } from "./ground";
-import { kSteel, kTissue, paint } from "./look";
+import { kSteel, paint } from "./look";
 
 const kSlow_fps = 40; // below this the picture gets coarser, because smooth matters more than sharp
 const kCoarsest = 0.6;
+const kSight_deg = 32;
+const kEyes_deg = 48; // a person sees more at once
+const kEyes_s = 0.15; // in which the eyes' camera goes two thirds of the way to the head
 
 /** True where a processor draws instead of a graphics card. */
 function draws_in_software(): boolean {
@@ -20,15 +24,18 @@ function draws_in_software(): boolean {
 
 export class Stage {
   readonly scene = new THREE.Scene();
-  readonly camera = new THREE.PerspectiveCamera(32, 1, 0.005, 5);
+  readonly camera = new THREE.PerspectiveCamera(kSight_deg, 1, 0.01, 12);
   readonly controls: OrbitControls;
 
-  readonly tissue: THREE.Texture;
   readonly steel: THREE.Texture;
   fps = 0;
   private readonly renderer: THREE.WebGLRenderer;
   private home = new THREE.Sphere(new THREE.Vector3(), 0.1);
   private ground: THREE.Object3D | null = null;
+  private with_operator = false;
+  private eyes: Eyes | null = null;
+  private readonly looks_at = new THREE.Vector3();
+  private drawn_ms = 0;
   private readonly adapts: boolean;
   private sharpness = Math.min(window.devicePixelRatio, 2);
   private frames = 0;
@@ -46,20 +53,21 @@ export class Stage {
       antialias: sharp || !software,
       powerPreference: "high-performance",
     });
-    this.tissue = paint(kTissue);
     this.steel = paint(kSteel);
     this.add_lights();
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = true;
     this.controls.minDistance = 0.04;
-    this.controls.maxDistance = 1.5;
+    this.controls.maxDistance = 4;
     this.go_home();
     this.resize();
     window.addEventListener("resize", () => this.resize());
     this.renderer.setAnimationLoop((now_ms) => {
       draw(now_ms);
-      this.controls.update();
+      if (this.eyes) this.see_with(this.eyes, follow_share((now_ms - this.drawn_ms) / 1000, kEyes_s));
+      else this.controls.update();
+      this.drawn_ms = now_ms;
       this.renderer.render(this.scene, this.camera);
       this.count(now_ms);
     });
@@ -75,11 +83,42 @@ export class Stage {
     this.go_home();
   }
 
+  /** The first view shows the tissue; with the operator, the tissue and the body above it. */
+  set_operator(shown: boolean): void {
+    this.with_operator = shown;
+    this.go_home();
+  }
+
   go_home(): void {
     const r = this.home.radius;
-    this.controls.target.copy(this.home.center).add(new THREE.Vector3(0, 0, 0.22 * r));
-    this.camera.position.copy(this.home.center).add(new THREE.Vector3(3.4 * r, 1.5 * r, 2.2 * r));
+    if (this.with_operator) {
+      this.controls.target.copy(this.home.center).add(new THREE.Vector3(0.17, 0.0, 0.235));
+      this.camera.position.copy(this.controls.target).add(new THREE.Vector3(-1.42, 0.95, 0.42));
+    } else {
+      this.controls.target.copy(this.home.center).add(new THREE.Vector3(0, 0, 0.22 * r));
+      this.camera.position.copy(this.home.center).add(new THREE.Vector3(3.4 * r, 1.5 * r, 2.2 * r));
+    }
     this.controls.update();
+  }
+
+  /** The camera where the operator's eyes are; null gives it back to the mouse. */
+  look_through(eyes: Eyes | null): void {
+    const begins = eyes !== null && this.eyes === null;
+    const ends = eyes === null && this.eyes !== null;
+    this.eyes = eyes;
+    this.controls.enabled = eyes === null;
+    if (begins || ends) {
+      this.camera.fov = eyes ? kEyes_deg : kSight_deg;
+      this.camera.updateProjectionMatrix();
+    }
+    if (begins && eyes) this.see_with(eyes, 1);
+    if (ends) this.go_home();
+  }
+
+  private see_with(eyes: Eyes, share: number): void {
+    this.camera.position.lerp(new THREE.Vector3(...eyes.at_m), share);
+    this.looks_at.lerp(new THREE.Vector3(...eyes.towards), share);
+    this.camera.lookAt(this.camera.position.clone().add(this.looks_at));
   }
 
   /** For the force arrow; tissue and steel bring their light along. */

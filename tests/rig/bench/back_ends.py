@@ -1,5 +1,7 @@
 """The devices of the bench. One entry names what the scene says, what the guest starts before
 tactd, which programs it needs, and the system calls of every FIFO thread, at most, per tick."""
+import dataclasses
+
 from bench.case import BackEnd
 
 # 100 N/m along the surface are more than a delta on CAN can show: its samples are a period old.
@@ -22,14 +24,35 @@ def law(scene, *settings):
 # The 300 masses of gum take 0.64 million instructions a tick, more than half a period: 150 of them.
 LAWS = (law("heart"), law("skin"), law("liver", 'law="compliance"'), law("gum", "spring_patch.nodes=150"))
 
+# No device: the gate alone.
+GATE = BackEnd("gate", programs=("tact-rig-gate",))
+
 # e-stop A and B, dead-man in; enable and heartbeat out
-SIM_DELTA_LINES = BackEnd(
-    "sim-delta with lines",
-    settings=('device.kind="sim-delta"', 'device.lines.chip="tact-lines"', "device.lines.estop_a=0",
-              "device.lines.estop_b=1", "device.lines.dead_man=2", "device.lines.enable=3",
-              "device.lines.heartbeat=4"),
-    setup="gpio_sim up tact-lines 8\nfor i in 0 1 2; do line[$i]=$(gpio_sim path $i); pull $i up; done",
-    system_calls=SLEEP | {("tact-loop", "sys_ioctl"): 2})
+LINES = ('device.lines.chip="tact-lines"', "device.lines.estop_a=0", "device.lines.estop_b=1",
+         "device.lines.dead_man=2", "device.lines.enable=3", "device.lines.heartbeat=4")
+LINES_UP = "gpio_sim up tact-lines 8\nfor i in 0 1 2; do line[$i]=$(gpio_sim path $i); pull $i up; done"
+SIM_DELTA_LINES = BackEnd("sim-delta with lines", settings=('device.kind="sim-delta"', *LINES), setup=LINES_UP,
+                          programs=("tact-rig-lines",), system_calls=SLEEP | {("tact-loop", "sys_ioctl"): 2})
+
+
+# A scope line that is wired back to an input. Gum's tick lasts some ten looks of the wire while it is
+# pressed, which is soon and for long.
+SCOPE, BACK = 5, 6
+LOOP_BACK = BackEnd("scope line wired back", scene="model/scenes/gum.toml",
+                    settings=('device.kind="sim-delta"', 'device.lines.chip="tact-lines"',
+                              f"device.lines.scope={SCOPE}", "spring_patch.nodes=100",
+                              "hand.stroke.0.duration_s=0.2", "hand.stroke.1.duration_s=0.2",
+                              "hand.stroke.2.duration_s=3"),
+                    setup="gpio_sim up tact-lines 8\nstart_emulator tact-rig-lines copy "
+                          f"$(gpio_sim path {SCOPE})/value $(gpio_sim path {BACK})/pull",
+                    programs=("tact-rig-lines", "tact-jitter"))
+
+
+def with_lines(back_end):
+    """The same device beside safety lines."""
+    return dataclasses.replace(back_end, name=f"{back_end.name} with lines",
+                               settings=(*back_end.settings, *LINES), setup=f"{LINES_UP}\n{back_end.setup}",
+                               programs=(*back_end.programs, "tact-rig-lines"))
 
 
 def drives(protocol, options=""):

@@ -4,7 +4,10 @@ One instruction is one nanosecond here, so a path is exact, and two things besid
 interrupt that falls into a phase, and the phase of this run against the kernel's clocks, which differs
 from seed to seed and from snapshot to snapshot. What is ours is there with every seed. So a number has
 grown when the shortest of the timed runs has, and `run` adds seeds before it says so; the baseline
-is the middle of six seeds. The longest wake-up is the kernel's path more than ours: it may grow by a
+is the middle of six seeds. Which phase an interrupt falls into is chance, so that each phase is
+held by itself; the longest tick as a whole, which almost always holds one, may hold one more: some
+interrupts come at the same point of every run, and another snapshot moves them all to a longer tick
+(measured: 13 700 to 14 600 of the same program). The longest wake-up is the kernel's path more than ours: it may grow by a
 quarter (and is held against cyclictest besides); its median like all others. With another kernel
 than the baseline's, so may all phases that call it.
 """
@@ -12,6 +15,7 @@ import json
 import statistics
 
 ALLOWED_GROWTH = 1.05
+INTERRUPT_NS = 1600     # the timer's, measured in read and in write
 KERNEL_GROWTH = 1.25
 CALLING = ("wake", "read", "write", "total")
 PHASES = ("wake", "read", "touch", "feel", "judge", "write", "tell", "total")
@@ -31,13 +35,23 @@ def measure(runs, of_seeds=min):
 
 def read(path):
     """{back end: phases} and the kernel that they were measured with."""
-    known = json.loads(path.read_text()) if path.exists() else {}
+    known = read_all(path)
     return known.get("back_ends", {}), known.get("kernel")
 
 
-def growth(phase, name, same_kernel):
+def read_all(path):
+    return json.loads(path.read_text()) if path.exists() else {}
+
+
+def read_gate(path):
+    """{stage: {way: instructions}}, see gate_paths.py."""
+    return read_all(path).get("gate", {})
+
+
+def most_allowed(phase, name, old, same_kernel):
     of_kernel = (phase, name) == ("wake", "longest_ns") or (phase in CALLING and not same_kernel)
-    return KERNEL_GROWTH if of_kernel else ALLOWED_GROWTH
+    one_more = INTERRUPT_NS if (phase, name) == ("total", "longest_ns") else 0
+    return old * (KERNEL_GROWTH if of_kernel else ALLOWED_GROWTH) + one_more
 
 
 def compare(measured, path, kernel):
@@ -51,7 +65,7 @@ def compare(measured, path, kernel):
         for phase, numbers in phases.items():
             for name, value in numbers.items():
                 old = known[back_end].get(phase, {}).get(name, 0)
-                if value > old * growth(phase, name, kernel == known_kernel):
+                if value > most_allowed(phase, name, old, kernel == known_kernel):
                     wrong.append(
                         f"{back_end}: {phase} {name.removesuffix('_ns')} took {old} instructions, now "
                         f"{value}: make it shorter, or change the baseline with a reason in the "
@@ -59,10 +73,10 @@ def compare(measured, path, kernel):
     return wrong
 
 
-def write(runs, path, kernel):
-    """Replaces the back ends that were measured, keeps the others; returns all."""
-    known, _ = read(path)
-    known.update(measure(runs, statistics.median_high))
-    told = {"kernel": kernel, "back_ends": dict(sorted(known.items()))}
+def write(runs, gate, path, kernel):
+    """Replaces the back ends and the gate's paths that were measured, keeps the others."""
+    known, old_kernel = read(path)
+    fresh = measure(runs, statistics.median_high)
+    told = {"kernel": kernel if fresh else old_kernel, "gate": gate or read_gate(path),
+            "back_ends": dict(sorted((known | fresh).items()))}
     path.write_text(json.dumps(told, indent=2) + "\n")
-    return known

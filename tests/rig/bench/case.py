@@ -72,6 +72,16 @@ class Run:
         return parse(self.text("emulator.json"))
 
     @functools.cached_property
+    def gate(self):
+        """What tact-rig-gate measured; empty where it did not run."""
+        return parse(self.text("gate.json"))
+
+    @functools.cached_property
+    def jitter(self):
+        """What tact-jitter measured; empty where it did not run."""
+        return parse(self.text("jitter.json"))
+
+    @functools.cached_property
     def threads(self):
         """{(FIFO thread, what): how often}, as the kernel's tracing counted; empty without it."""
         rows = [line.split() for line in self.text("threads.txt").splitlines()]

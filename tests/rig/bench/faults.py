@@ -5,10 +5,14 @@ import json
 
 @dataclasses.dataclass(frozen=True)
 class Latches:
-    """The fault is latched under `name`; the force is zero `zero_ms` after that; nothing moves."""
+    """The fault is latched under `name`; the force is zero in time; nothing moves again.
+
+    A stop is zero `zero_ms` after the tick that knows. A loss fades before it latches: it is zero
+    `faded_ms` after the injection."""
     name: str
     detect_ms: float            # from the injection to the first tick that knows
-    zero_ms: float = 1.0        # from that tick to the first with zero force; negative: zero before
+    zero_ms: float = 1.0        # from that tick to the first with zero force
+    faded_ms: float = None      # instead: from the injection to the first tick with zero force
     exit_status: str = "1"
     motors_ms: float = None     # from the injection to no force in the emulated motors
     or_first: str = ""          # another fault of the same harm, which may be seen first
@@ -24,7 +28,9 @@ class Latches:
             wrong.append(f"seen after {detected['after_ms']:.2f} ms, bound {self.detect_ms} ms")
         if not zero:
             wrong.append("the force never became zero")
-        elif detected and zero["after_ms"] - detected["after_ms"] > self.zero_ms:
+        elif self.faded_ms is not None and zero["after_ms"] > self.faded_ms:
+            wrong.append(f"zero after {zero['after_ms']:.2f} ms, bound {self.faded_ms} ms")
+        elif self.faded_ms is None and detected and zero["after_ms"] - detected["after_ms"] > self.zero_ms:
             wrong.append(f"zero {zero['after_ms'] - detected['after_ms']:.2f} ms after that, "
                          f"bound {self.zero_ms} ms")
         if ticks.get("moved_after_N") != 0.0 or ticks.get("armed_ticks_after") != 0:
@@ -40,10 +46,10 @@ class Latches:
 
     def row(self, run):
         detected, zero = run.ticks.get("detected") or {}, run.ticks.get("zero") or {}
-        after, zero_after = detected.get("after_ms"), zero.get("after_ms")
-        return {"detected_as": detected.get("fault", "nothing"), "detected_ms": after,
-                "zero_ms": None if None in (after, zero_after) else zero_after - after,
-                "bound": f"{self.detect_ms:g} + {self.zero_ms:g} ms",
+        return {"detected_as": detected.get("fault", "nothing"), "detected_ms": detected.get("after_ms"),
+                "zero_ms": zero.get("after_ms"),
+                "bound": f"{self.detect_ms:g}, " + (f"zero {self.zero_ms:g} later" if self.faded_ms is None
+                                                    else f"faded by {self.faded_ms:g}") + " ms",
                 "moved_after_N": run.ticks.get("moved_after_N")}
 
 
@@ -140,9 +146,9 @@ def write_table(runs, folder):
                          "verdict": "good" if not run.complaints else "; ".join(run.complaints)})
     (folder / "faults.json").write_text(json.dumps(rows, indent=2) + "\n")
     lines = ["# Faults on the virtual bench", "",
-             "Times are guest time: ms from the injection to the tick that knows, ms from that tick "
-             "to zero force.", "",
-             "| fault | back end | detected as | injected to detected | detected to zero | bound | "
+             "Times are guest time: ms from the injection to the tick that knows, and to the first with "
+             "zero force. A loss fades to zero before it latches.", "",
+             "| fault | back end | detected as | injected to detected | injected to zero | bound | "
              "moved afterwards | verdict |", "|---|---|---|---|---|---|---|---|"]
     for row in rows:
         lines.append("| " + " | ".join(

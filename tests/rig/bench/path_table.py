@@ -1,7 +1,13 @@
-"""The table of longest paths in firmware/README.md, made from the baseline of the bench."""
-from bench.baseline import PHASES
+"""The tables of longest paths in firmware/README.md, made from the baseline of the bench."""
+from bench import gate_paths
+from bench.baseline import PHASES, read, read_gate
 
 BEGIN, END = "<!-- made by tests/rig/run --write-baseline -->\n", "<!-- end -->\n"
+
+
+def tables(baseline):
+    """Of the phases of a tick, and of the stages of the gate."""
+    return table(read(baseline)[0]) + "\n" + gate_paths.table(read_gate(baseline))
 
 
 def table(known):
@@ -22,14 +28,14 @@ def split(readme):
     return head + begin, old, end + tail
 
 
-def write(known, path):
+def write(baseline, path):
     head, _, tail = split(path.read_text())
-    path.write_text(head + table(known) + tail)
+    path.write_text(head + tables(baseline) + tail)
 
 
-def compare(known, path):
-    """A complaint when the table is not the one that the baseline gives."""
+def compare(baseline, path):
+    """A complaint when the tables are not those that the baseline gives."""
     _, old, _ = split(path.read_text())
-    return [] if old == table(known) else [
-        f"{path.name} in {path.parent.name}/ has another table of longest paths than {len(known)} baselines "
-        "give: tests/rig/run --write-baseline"]
+    return [] if old == tables(baseline) else [
+        f"{path.name} in {path.parent.name}/ has other tables of longest paths than {baseline.name} gives: "
+        "tests/rig/run --write-baseline"]

@@ -1,10 +1,10 @@
 // patient_poll: loaded into QEMU (LD_PRELOAD), keeps its main loop asleep while the guest computes.
 //
-// While idle guest time is skipped (-icount sleep=off), QEMU 7.2's main loop moves the clock on when
-// it finds the virtual CPU halted. It also looks when its own poll times out or wakes for nothing,
-// and if that falls between the guest's `hlt` and the CPU thread's account of the instructions
-// before it, they are counted after the jump: one wake-up is a microsecond late, and the run is no
-// longer the same. A busy host makes that happen every few seconds. So here
+// While idle guest time is skipped (-icount sleep=off), QEMU 7.2's main loop moves the clock on
+// when it finds the virtual CPU halted. It also looks when its own poll times out or wakes for
+// nothing, and if that falls between the guest's `hlt` and the CPU thread's account of the
+// instructions before it, they are counted after the jump: one wake-up is a microsecond late, and
+// the run is no longer the same. A busy host makes that happen every few seconds. So here
 //   - a time-out becomes one second: the CPU thread wakes the main loop each time it goes idle;
 //   - a poll returns once the CPU thread waits on its condition, or after a second.
 // The CPU thread holds QEMU's big lock when it says that it is idle and gives it up in the wait

@@ -41,7 +41,7 @@ def error_frame(back_end, name, frame, required):
 
 def lost(detect_ms=23.0):
     """Samples stay out: faded to zero after a hold, latched after twenty."""
-    return Latches("device lost", detect_ms=detect_ms, zero_ms=RAMP_ms - 19.5, motors_ms=RAMP_ms + 2.5)
+    return Latches("device lost", detect_ms=detect_ms, faded_ms=RAMP_ms + 2.5, motors_ms=RAMP_ms + 2.5)
 
 
 CASES = [

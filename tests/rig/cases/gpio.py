@@ -1,6 +1,6 @@
 """Safety lines on the kernel's simulated GPIO chip, beside the simulated delta."""
-from bench import checks
-from bench.back_ends import SIM_DELTA_LINES
+from bench import checks, estop_times
+from bench.back_ends import CIA402, FALCON_USBFS, ODRIVE06, SIM_DELTA_LINES, with_lines
 from bench.case import Case
 from bench.faults import Latches, RidesThrough
 
@@ -17,6 +17,14 @@ def fault(name, sentence, harm, required, also=(), shown=True):
 def at_once(name):
     """An input is read in every tick; the shell that pulls it needs some 0.2 ms."""
     return Latches(name, detect_ms=1.5)
+
+
+def estop_at_any_phase(back_end, pressing_s, seconds, emulator="", bus_us=0.0, long_only=False):
+    return Case(f"{back_end.name.split()[0]}-estop-phases",
+                "zero is written one period and 100 us after the e-stop, wherever in the tick it opens",
+                back_end, f"control $SECONDS_OF_RUN\nsleep {pressing_s}\n{estop_times.SCRIPT}finish",
+                (*REAL_TIME, estop_times.InTime(bus_us)), seeds=tuple(range(1, len(estop_times.PHASES_us) + 1)),
+                seconds=seconds, long_only=long_only, variables={"EMULATOR": emulator})
 
 
 OUTPUTS = f"gpio_sim get {ENABLE} >$RESULTS/enable.txt\n"
@@ -64,4 +72,12 @@ CASES = [
          f"pull {A} up; pull {B} up; sleep .1\nkill -USR2 $tactd; sleep .1\n"
          "kill -USR1 $tactd; sleep .3; kill -USR2 $tactd\nfinish",
          (checks.hard_real_time, checks.armed_again), seconds=4),
+    estop_at_any_phase(SIM_DELTA_LINES, pressing_s=3.2, seconds=3.4),
+    # The emulated drives run below the loop on its core: they have a frame when its tick is over.
+    estop_at_any_phase(with_lines(ODRIVE06), pressing_s=1.1, seconds=1.3, bus_us=50.0, emulator="--hand-tempo 2.5"),
+    estop_at_any_phase(with_lines(CIA402), pressing_s=1.1, seconds=1.3, bus_us=50.0, emulator="--hand-tempo 2.5",
+                       long_only=True),
+    # Two microframes of the emulated bus lie between the write and the motors.
+    estop_at_any_phase(with_lines(FALCON_USBFS), pressing_s=1.3, seconds=1.5, bus_us=250.0, long_only=True,
+                       emulator="--homing-ms 100 --hand-tempo 2.5"),
 ]

@@ -1,6 +1,6 @@
 """The simulated delta: tactd itself on a PREEMPT_RT kernel, without a bus."""
-from bench import checks
-from bench.back_ends import LAWS, SIM_DELTA
+from bench import checks, gate_paths
+from bench.back_ends import GATE, LAWS, SIM_DELTA
 from bench.case import Case
 
 SOUND = (checks.hard_real_time, checks.no_fault, checks.no_late_tick, checks.whole_run, checks.touched)
@@ -9,6 +9,9 @@ CASES = [
     Case("liver", "tactd keeps hard real time, wakes like cyclictest, and two runs are the same bits",
          SIM_DELTA, "control $SECONDS_OF_RUN\nfinish\nmeasure_peer 10",
          (*SOUND, checks.same_forces), seeds=(1, 1), timed=True),
+    Case("liver-load", "with bursts of other work on its core, too, tactd wakes like cyclictest",
+         SIM_DELTA, "noise $SEED\ncontrol $SECONDS_OF_RUN\nfinish\nnoise $SEED\nmeasure_peer 6",
+         (*SOUND, checks.same_forces, checks.wakes_like_peer_too), seeds=(1, 2), seconds=6),
     Case("liver-sweep", "no interleaving with other work changes a force or makes a tick late",
          SIM_DELTA, "noise $SEED\ncontrol $SECONDS_OF_RUN\nfinish",
          (*SOUND, checks.same_forces), sweep=True, seconds=6),
@@ -19,4 +22,6 @@ CASES = [
          SIM_DELTA,
          "control $SECONDS_OF_RUN\ntrace_threads $tactd 1.5 >$RESULTS/threads.txt\nfinish",
          (*SOUND, checks.threads_as_listed), seconds=5),
+    Case("gate-stages", "the path of the gate is known for each of its stages", GATE,
+         "chrt -f 80 tact-rig-gate >$RESULTS/gate.json", (gate_paths.every_stage_acts,)),
 ]

@@ -1,8 +1,8 @@
 // can_bus.h - the emulated drives' end of the CAN cable, which can spoil what they say.
 //
-// A raw SocketCAN socket (Linux, Documentation/networking/can.rst). Faults of a FaultPlan act here on
-// what leaves; error frames are sent as ordinary frames with the error flag, as linux/can/error.h
-// has them, and reach every socket that asks for errors.
+// A raw SocketCAN socket (Linux, Documentation/networking/can.rst). Faults of a FaultPlan act here
+// on what leaves; error frames are sent as ordinary frames with the error flag, as
+// linux/can/error.h has them, and reach every socket that asks for errors.
 #pragma once
 
 #include <linux/can.h>

@@ -108,6 +108,8 @@ bool Cia402Drive::receive(const can_frame& frame, std::int64_t now_ns) {
     measure();
     send(CanRole::kOther, 0x580, dictionary_.serve(payload, is_operational()), now_ns);
     dictionary_.set(0x6061, 0, dictionary_.get(0x6060));
+    // A watch that was set anew begins with the next heartbeat (CiA 301, 7.5.2.19).
+    if (dictionary_.get(0x1016, 1) != consumer) host_ns_ = 0;
   } else if (consumer != 0 && id == 0x700 + (consumer >> 16 & 0x7F)) {
     host_ns_ = now_ns;
   } else if (id == dictionary_.get(0x1400, 1) && is_operational()) {

@@ -1,4 +1,5 @@
-// cia402_drive.h - an emulated CANopen servo drive in cyclic synchronous torque mode (CiA 301, 402).
+// cia402_drive.h - an emulated CANopen servo drive in cyclic synchronous torque mode (CiA 301,
+// 402).
 //
 //     boot-up -> pre-operational -> (SDO) -> NMT start -> operational: SYNC -> TPDO1, RPDO1 -> torque
 //     switch on disabled -6-> ready -7-> switched on -F-> operation enabled

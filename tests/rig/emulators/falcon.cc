@@ -1,7 +1,7 @@
 // tact-rig-falcon - an emulated Falcon on a port of the kernel's virtual USB host controller.
 //
-// USB adapter, boot ROM, upload, homing and one report per command, with the exact manipulator and a
-// hand behind it. It commits faults to order and tells what the controller did.
+// USB adapter, boot ROM, upload, homing and one report per command, with the exact manipulator and
+// a hand behind it. It commits faults to order and tells what the controller did.
 #include <cmath>
 #include <cstdio>
 

@@ -1,4 +1,5 @@
-// falcon_firmware.h - the emulated processor of the grip: boot ROM, upload, then one report per command.
+// falcon_firmware.h - the emulated processor of the grip: boot ROM, upload, then one report per
+// command.
 //
 //     reset (DTR rises) -> 0A 43 0D at 9600 baud -> 0A 44 2C 0D -> 41 at 142 857 baud -> 41
 //     -> every byte of the image comes back -> run at 1.5 Mbaud

@@ -8,8 +8,8 @@
 //     theta = 35 deg + counts x 360 deg / (1280 x 110 / 14.25)
 //
 // W: Wx = Fz - middle, Wy = Fx, Wz = Fy. Sources: R. Stamper, "A three degree of freedom parallel
-// manipulator with only translational degrees of freedom" (Univ. of Maryland, 1997); constants as in
-// github.com/libnifalcon/libnifalcon.
+// manipulator with only translational degrees of freedom" (Univ. of Maryland, 1997); constants as
+// in github.com/libnifalcon/libnifalcon.
 #pragma once
 
 #include <cmath>
@@ -31,7 +31,8 @@ std::optional<Pose> falcon_pose(const Vec3& position_m);
 
 class FalconMechanism final : public Mechanism {
  public:
-  /// `middle`: where the origin of W is on the device's axis, m; `weighing`: what gravity pulls, kg.
+  /// `middle`: where the origin of W is on the device's axis, m; `weighing`: what gravity pulls,
+  /// kg.
   FalconMechanism(double middle_m, double weighing_kg)
       : middle_m_(middle_m), weighing_kg_(weighing_kg) {}
   std::optional<Pose> pose(const Vec3& position_m) const override;

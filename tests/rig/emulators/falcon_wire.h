@@ -1,4 +1,5 @@
-// falcon_wire.h - the Falcon's 16 bytes both ways, and the status bytes its USB adapter puts in front.
+// falcon_wire.h - the Falcon's 16 bytes both ways, and the status bytes its USB adapter puts in
+// front.
 //
 //     3C | word 1 | word 2 | word 3 | info + 41 | 41 | 3E
 //     word: signed 16 bit, four bytes nibble + 41, least significant nibble first

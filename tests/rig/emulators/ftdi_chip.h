@@ -1,10 +1,11 @@
 // ftdi_chip.h - the emulated USB adapter between bulk packets and the serial line (FT232 class).
 //
 // Bytes take 10 bits of the line's baud each, both ways. An IN packet is ready when 62 bytes wait,
-// when the event character has come, when CTS changes, or when the latency timer ends: then with what
-// there is, or with the two status bytes alone. Vendor requests, all with bmRequestType 0x40 and no
-// data: 0 reset and purge, 1 modem lines, 2 flow, 3 divisor, 4 format, 6 event character, 9 latency;
-// 0xC0: 5 modem status, 10 latency. Sources: FTDI AN232B-04; Linux, drivers/usb/serial/ftdi_sio.h.
+// when the event character has come, when CTS changes, or when the latency timer ends: then with
+// what there is, or with the two status bytes alone. Vendor requests, all with bmRequestType 0x40
+// and no data: 0 reset and purge, 1 modem lines, 2 flow, 3 divisor, 4 format, 6 event character, 9
+// latency; 0xC0: 5 modem status, 10 latency. Sources: FTDI AN232B-04; Linux,
+// drivers/usb/serial/ftdi_sio.h.
 #pragma once
 
 #include <cstdint>

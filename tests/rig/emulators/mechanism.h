@@ -2,8 +2,8 @@
 //
 //     theta' = K v        tau = J^T F,  so  F = K^T tau        weight = -dV/dp
 //
-// Everything is in W (+x towards the operator, +y right, +z up, m, N, rad); theta and K have one row
-// per arm. Own reading of the public equations: nothing here comes from the drivers under test.
+// Everything is in W (+x towards the operator, +y right, +z up, m, N, rad); theta and K have one
+// row per arm. Own reading of the public equations: nothing here comes from the drivers under test.
 #pragma once
 
 #include <array>

@@ -3,10 +3,11 @@
 //     idle --index search--> idle        idle --closed loop, no error--> closed loop
 //     any error, e-stop or silent host -> idle with torque 0, latched until Clear_Errors
 //
-// The watchdog is fed by every frame to the axis in 0.5 and by set-points in 0.6, and runs in closed
-// loop. A set-point outlives idle, as nothing in the open firmware clears it: who enables without
-// asking for zero first gets the old torque. The torque is limited by current limit x torque constant. Reading of public documentation and
-// of the open firmware 0.5; nothing here comes from the drivers under test.
+// The watchdog is fed by every frame to the axis in 0.5 and by set-points in 0.6, and runs in
+// closed loop. A set-point outlives idle, as nothing in the open firmware clears it: who enables
+// without asking for zero first gets the old torque. The torque is limited by current limit x
+// torque constant. Reading of public documentation and of the open firmware 0.5; nothing here comes
+// from the drivers under test.
 #pragma once
 
 #include "tests/rig/emulators/can_bus.h"

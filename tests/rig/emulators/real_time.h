@@ -1,7 +1,8 @@
 // real_time.h - clock, priority and end of an emulator process. Linux, CLOCK_MONOTONIC, ns.
 //
-// The emulator stands for hardware: it runs as FIFO below the controller's loop. It leaves FIFO before
-// it exits, because a process that gives back its memory at FIFO priority holds up all below it.
+// The emulator stands for hardware: it runs as FIFO below the controller's loop. It leaves FIFO
+// before it exits, because a process that gives back its memory at FIFO priority holds up all below
+// it.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,8 @@ namespace tact::rig {
 
 std::int64_t monotonic_ns();
 
-/// Locked memory and SCHED_FIFO of this priority; 0 stays as it is. False: the sentence with the cure.
+/// Locked memory and SCHED_FIFO of this priority; 0 stays as it is. False: the sentence with the
+/// cure.
 bool enter_real_time(int priority, std::string& error);
 void leave_real_time();
 

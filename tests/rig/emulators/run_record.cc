@@ -42,6 +42,9 @@ RunRecord::RunRecord(double seconds, bool rows) {
 void RunRecord::watch(const Platform& platform, const Joints& tau_Nm, FaultPlan& faults,
                       std::int64_t now_ns) {
   const bool none = tau_Nm == Joints{};
+  if (!none) torque_zero_since_ns_ = 0;
+  if (none && had_torque_) torque_zero_since_ns_ = now_ns;
+  had_torque_ = !none;
   const double force_N = none ? 0.0 : model::norm(platform.hand_force_N(tau_Nm));
   largest_force_N_ = std::max(largest_force_N_, force_N);
   for (const double tau : tau_Nm) largest_torque_Nm_ = std::max(largest_torque_Nm_, std::abs(tau));
@@ -101,6 +104,7 @@ std::string RunRecord::json(const std::string& protocol, const Platform& platfor
                      {"travel_m", platform.travel_m()},
                      {"lowest_z_m", platform.lowest_z_m()},
                      {"oldest_command_ns", oldest_command_ns_},
+                     {"torque_zero_since_ns", when(torque_zero_since_ns_)},
                      {"watchdog_trips", watchdog_trips},
                      {"bus_cycle_ns", distribution(cycle_ns_)},
                      {"own_share_ns", distribution(own_ns_)},

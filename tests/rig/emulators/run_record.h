@@ -1,4 +1,5 @@
-// run_record.h - what the emulator saw of the controller: forces, ages, bus cycles; as JSON and CSV.
+// run_record.h - what the emulator saw of the controller: forces, ages, bus cycles; as JSON and
+// CSV.
 //
 // A bus cycle runs from its sign (SYNC received, estimates due, report sent) to the last of the
 // torques that follow it; the emulator's own share from that sign, or from the command, to its last
@@ -48,6 +49,8 @@ class RunRecord {
   std::vector<std::int64_t> cycle_ns_, own_ns_;
   std::vector<Row> rows_;
   std::int64_t cycle_start_ns_ = 0;
+  std::int64_t torque_zero_since_ns_ = 0;  // 0: there is torque, or never was
+  bool had_torque_ = false;
   std::array<std::int64_t, 3> commanded_ns_{};
   bool obeyed_ = false;    // the motors, at the last tick
   unsigned answered_ = 0;  // one bit per axis of this cycle

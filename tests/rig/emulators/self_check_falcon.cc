@@ -1,4 +1,5 @@
-// self_check_falcon.cc - the vectors of the Falcon's packets and of its adapter, from the device's side.
+// self_check_falcon.cc - the vectors of the Falcon's packets and of its adapter, from the device's
+// side.
 #include "tests/rig/emulators/falcon_wire.h"
 #include "tests/rig/emulators/ftdi_chip.h"
 #include "tests/rig/emulators/self_check.h"

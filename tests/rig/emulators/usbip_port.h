@@ -1,8 +1,8 @@
 // usbip_port.h - an emulated USB device on a port of vhci_hcd: URBs in, completions out.
 //
-// The kernel's virtual host controller speaks USB/IP (Documentation/usb/usbip_protocol.rst): headers
-// of 48 bytes, big endian, over a stream socket. One end of a socket pair goes to the driver, so
-// there is no network. Closing our end is a pulled cable.
+// The kernel's virtual host controller speaks USB/IP (Documentation/usb/usbip_protocol.rst):
+// headers of 48 bytes, big endian, over a stream socket. One end of a socket pair goes to the
+// driver, so there is no network. Closing our end is a pulled cable.
 #pragma once
 
 #include <cstdint>

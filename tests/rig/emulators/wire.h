@@ -37,8 +37,8 @@ constexpr std::size_t wire_size(WireType type) {
   }
 }
 
-/// Put one field into the payload, rounded to its step and held in its range; what does not fit into
-/// the payload is left out. `value` is finite unless the field is a float.
+/// Put one field into the payload, rounded to its step and held in its range; what does not fit
+/// into the payload is left out. `value` is finite unless the field is a float.
 void put_field(std::span<std::uint8_t> payload, const WireField& field, double value);
 /// One field of the payload; beyond its end there are zeros.
 double get_field(std::span<const std::uint8_t> payload, const WireField& field);

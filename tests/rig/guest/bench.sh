@@ -8,6 +8,7 @@
 #   start_emulator PROGRAM [option...]  in the background, back when it says "ready"; pid $emulator
 #   measure_peer SECONDS [PRIORITY]     cyclictest: a bare 1 kHz FIFO loop, its wake-up times in ns
 #   noise SEED                          repeatable bursts of other work, SCHED_OTHER and FIFO 60
+#   measure_jitter [tact-jitter option...]  with a line wired back, and what the emulator then says
 #
 # $SCENE, DEVICE=(tactd options) and $SEED are set by the case; results are files in $RESULTS.
 SOCKET=/tmp/telemetry.sock
@@ -65,6 +66,19 @@ start_emulator() {
     kill -0 $emulator 2>/dev/null || return 1
     sleep .01
   done
+}
+
+measure_jitter() {
+  tact-jitter "$SCENE" "${DEVICE[@]}" --duration "$SECONDS_OF_RUN" --json $RESULTS/jitter.json "$@" \
+    >$RESULTS/jitter.log 2>&1 &
+  local measuring=$! edges
+  # The thread of the line's interrupt: below the loop of the only core, two edges of a tick were one.
+  until edges=$(pgrep 'irq/.*tact-jit'); do kill -0 $measuring || break; sleep .01; done
+  [ -z "$edges" ] || chrt -f -p 95 $edges
+  wait $measuring
+  echo $? >$RESULTS/jitter.status
+  [ ${#background[@]} -eq 0 ] || kill "${background[@]}" 2>/dev/null
+  wait
 }
 
 noise() {

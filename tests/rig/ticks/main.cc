@@ -99,6 +99,7 @@ class FaultStory {
     }
     out[what] = {{"tick", tick->tick},
                  {"time_ns", woke_ns(*tick)},
+                 {"due_ns", tick->due_ns},
                  {"after_ms", 1e-6 * static_cast<double>(woke_ns(*tick) - injected_ns_)},
                  {"fault", model::describe(tick->output.fault).name},
                  {"limit", model::describe(tick->output.limit).name}};
@@ -125,6 +126,15 @@ int tell_story(const std::string& path, std::int64_t injected_ns) {
   return 0;
 }
 
+/// A deadline of a loop that still runs: all others lie whole periods from it.
+int tell_grid(const std::string& path) {
+  auto log = firmware::TickLogReader::open(path);
+  if (LoggedTick tick; log && log->next(tick)) return fmt::print("{}\n", tick.due_ns), 0;
+  fmt::print(stderr, "tact-rig-ticks: {}\n",
+             log ? path + " has no tick yet" : log.error().sentence);
+  return 2;
+}
+
 }  // namespace
 }  // namespace tact::rig
 
@@ -132,10 +142,11 @@ int main(int argc, char** argv) {
   CLI::App app{"tact-rig-ticks: what a tick log says about a fault, as JSON."};
   std::string path;
   std::int64_t injected_ns = 0;
-  bool clock_offset = false;
+  bool clock_offset = false, grid = false;
   app.add_option("LOG", path, "written by tactd --record");
   app.add_option("--at", injected_ns, "when the fault came, CLOCK_MONOTONIC, ns");
   app.add_flag("--clock-offset", clock_offset, "print CLOCK_MONOTONIC - CLOCK_REALTIME, ns");
+  app.add_flag("--grid", grid, "print a deadline of the loop, CLOCK_MONOTONIC, ns");
   CLI11_PARSE(app, argc, argv);
   if (clock_offset) {
     tact::rig::print_clock_offset();
@@ -145,5 +156,6 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "tact-rig-ticks: name a tick log; see --help\n");
     return 2;
   }
+  if (grid) return tact::rig::tell_grid(path);
   return tact::rig::tell_story(path, injected_ns);
 }

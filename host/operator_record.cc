@@ -1,0 +1,83 @@
+#include "host/operator_record.h"
+
+#include <algorithm>
+#include <boost/crc.hpp>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+
+namespace tact::host {
+namespace {
+
+constexpr auto kLastState = static_cast<std::uint8_t>(BodyState::kLost);
+constexpr auto kLastTrouble = static_cast<std::uint8_t>(TrackingTrouble::kOutOfOrder);
+
+std::uint32_t crc_of(const OperatorRecord& record) {
+  boost::crc_32_type crc;
+  crc.process_bytes(&record, offsetof(OperatorRecord, crc));
+  return crc.checksum();
+}
+
+template <typename T>
+void put(const Pose& pose, T (&position_m)[3], T (&rotation_wxyz)[4]) {
+  const Eigen::Quaterniond& q = pose.rotation;
+  const double wxyz[4] = {q.w(), q.x(), q.y(), q.z()};
+  std::ranges::transform(wxyz, rotation_wxyz, [](double part) { return static_cast<T>(part); });
+  std::ranges::transform(pose.position_m, position_m, [](double m) { return static_cast<T>(m); });
+}
+
+template <typename T>
+std::optional<Pose> take(const T (&position_m)[3], const T (&wxyz)[4]) {
+  double p[3], q[4];
+  std::ranges::transform(position_m, p, [](T m) { return static_cast<double>(m); });
+  std::ranges::transform(wxyz, q, [](T part) { return static_cast<double>(part); });
+  const Pose out{.rotation = {q[0], q[1], q[2], q[3]}, .position_m = {p[0], p[1], p[2]}};
+  const bool is_turn = std::abs(out.rotation.norm() - 1.0) < 1e-3;
+  if (!is_turn || !out.position_m.allFinite()) return std::nullopt;
+  return out;
+}
+
+std::optional<TrackedBody> take(const BodyRecord& record) {
+  const auto raw = take(record.raw_position_m, record.raw_rotation_wxyz);
+  const auto shown = take(record.shown_position_m, record.shown_rotation_wxyz);
+  if (!raw || !shown || record.state > kLastState || record.trouble > kLastTrouble) return {};
+  if (!std::isfinite(record.rms_px) || !std::isfinite(record.age_s)) return {};
+  return TrackedBody{
+      .state = static_cast<BodyState>(record.state),
+      .trouble = static_cast<TrackingTrouble>(record.trouble),
+      .pose = {.rotation = shown->rotation.normalized(), .position_m = shown->position_m},
+      .raw = *raw,
+      .rms_px = static_cast<double>(record.rms_px),
+      .age_s = static_cast<double>(record.age_s)};
+}
+
+}  // namespace
+
+std::string operator_record(const TrackedOperator& tracked) {
+  OperatorRecord record{.time_s = tracked.time_s};
+  for (std::size_t i = 0; i < kBodyRoles; ++i) {
+    const TrackedBody& body = tracked.bodies[i];
+    BodyRecord& out = record.body[i];
+    put(body.raw, out.raw_position_m, out.raw_rotation_wxyz);
+    put(body.pose, out.shown_position_m, out.shown_rotation_wxyz);
+    out.rms_px = static_cast<float>(body.rms_px);
+    out.age_s = static_cast<float>(body.age_s);
+    out.state = static_cast<std::uint8_t>(body.state);
+    out.trouble = static_cast<std::uint8_t>(body.trouble);
+  }
+  record.crc = crc_of(record);
+  return {reinterpret_cast<const char*>(&record), sizeof record};
+}
+
+std::optional<TrackedOperator> operator_of(const OperatorRecord& record) {
+  if (crc_of(record) != record.crc || !std::isfinite(record.time_s)) return std::nullopt;
+  TrackedOperator out{.time_s = record.time_s};
+  for (std::size_t i = 0; i < kBodyRoles; ++i) {
+    const auto body = take(record.body[i]);
+    if (!body) return std::nullopt;
+    out.bodies[i] = *body;
+  }
+  return out;
+}
+
+}  // namespace tact::host

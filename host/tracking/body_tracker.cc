@@ -1,0 +1,126 @@
+#include "host/tracking/body_tracker.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tact::host {
+namespace {
+
+// What noise and the calibration of two cameras may add to a motion.
+constexpr double kNoise_m = 0.02, kNoise_rad = 0.1;
+
+TrackingTrouble trouble_of(PoseStatus status) {
+  switch (status) {
+    case PoseStatus::kOk:
+      return TrackingTrouble::kNone;
+    case PoseStatus::kTooFewPoints:
+      return TrackingTrouble::kTooFewPoints;
+    case PoseStatus::kDegenerate:
+      return TrackingTrouble::kDegenerate;
+    case PoseStatus::kInvalid:
+      return TrackingTrouble::kInvalid;
+    case PoseStatus::kNoPose:
+      return TrackingTrouble::kNoPose;
+  }
+  return TrackingTrouble::kInvalid;
+}
+
+bool is_reachable(const Pose& from, const Pose& to, double since_s) {
+  const double period_s = std::min(since_s, kHold_s);  // a long gap does not make all places good
+  return (to.position_m - from.position_m).norm() <= kFastest_mps * period_s + kNoise_m &&
+         to.rotation.angularDistance(from.rotation) <= kFastest_radps * period_s + kNoise_rad;
+}
+
+}  // namespace
+
+void BodyTracker::begin_again() {
+  for (Stream& stream : streams_) stream = {};
+  anchored_ = false;
+  jump_poses_ = 0;
+}
+
+bool BodyTracker::is_frozen(Stream& stream, const Observation& seen) const {
+  if (seen.points.empty() || seen.points != stream.points) {
+    stream.points = seen.points;
+    stream.same_since_s = seen.time_s;
+  }
+  return seen.time_s - stream.same_since_s >= kFrozen_s;
+}
+
+bool BodyTracker::admit(std::size_t camera, const Observation& seen, double now_s) {
+  Stream& stream = streams_[camera];
+  seen_now_s_ = now_s;
+  has_seen_ = true;
+  const bool goes_on = seen.time_s > stream.time_s && seen.sequence > stream.sequence;
+  if (stream.started && !goes_on) {
+    if (std::abs(seen.time_s - stream.time_s) <= kRestart_s) {
+      body_.trouble = TrackingTrouble::kOutOfOrder;
+      return false;
+    }
+    begin_again();
+  }
+  stream.started = true;
+  stream.time_s = seen.time_s;
+  stream.sequence = seen.sequence;
+  if (is_frozen(stream, seen)) {
+    body_.trouble = TrackingTrouble::kFrozen;
+    return false;
+  }
+  return !(anchored_ && seen.time_s < good_.time_s - kTogether_s);  // another camera is ahead
+}
+
+bool BodyTracker::is_believed(const Timed& next) {
+  if (!anchored_ || is_reachable(good_.pose, next.pose, next.time_s - good_.time_s)) return true;
+  const bool agrees =
+      jump_poses_ > 0 && is_reachable(jump_.pose, next.pose, std::abs(next.time_s - jump_.time_s));
+  jump_poses_ = agrees ? jump_poses_ + 1 : 1;
+  jump_ = next;
+  return jump_poses_ >= kJumpPoses;
+}
+
+bool BodyTracker::take(const PoseEstimate& estimate, double time_s, double now_s) {
+  if (anchored_ && time_s <= good_.time_s) return false;
+  body_.trouble = trouble_of(estimate.status);
+  if (estimate.status != PoseStatus::kOk) return false;
+  const Timed next{.pose = estimate.pose, .time_s = time_s};
+  if (!is_believed(next)) {
+    body_.trouble = TrackingTrouble::kJump;
+    return false;
+  }
+  const bool breaks = !anchored_ || jump_poses_ >= kJumpPoses || time_s - good_.time_s > kLose_s;
+  if (breaks) filter_.reset();
+  jump_poses_ = 0;
+  anchored_ = has_good_ = true;
+  good_ = next;
+  good_now_s_ = now_s;
+  before_ = filter_;
+  show(estimate);
+  return true;
+}
+
+bool BodyTracker::refine(const PoseEstimate& estimate, double time_s) {
+  if (!anchored_ || time_s != good_.time_s || estimate.status != PoseStatus::kOk) return false;
+  body_.trouble = TrackingTrouble::kNone;
+  good_.pose = estimate.pose;
+  filter_ = before_;
+  show(estimate);
+  return true;
+}
+
+void BodyTracker::show(const PoseEstimate& estimate) {
+  body_.raw = estimate.pose;
+  body_.rms_px = estimate.rms_px;
+  body_.pose = filter_.next(estimate.pose, good_.time_s);
+}
+
+TrackedBody BodyTracker::at(double now_s) const {
+  TrackedBody out = body_;
+  if (!has_seen_ || now_s - seen_now_s_ > kHold_s) out.trouble = TrackingTrouble::kSilent;
+  out.age_s = has_good_ ? now_s - good_now_s_ : now_s;
+  out.state = !has_good_ || out.age_s > kLose_s ? BodyState::kLost
+              : out.age_s > kHold_s             ? BodyState::kHeld
+                                                : BodyState::kTracked;
+  return out;
+}
+
+}  // namespace tact::host

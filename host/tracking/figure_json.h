@@ -1,0 +1,25 @@
+// figure_json.h - the operator's figure as JSON text for the page.
+//
+//     once       {"joints":["pelvis",..],"capsules":[{"a":0,"b":1,"radius_a_m":..,"radius_b_m":..,
+//                "depth_ratio":..,"holds_tool":false},..],"sides":[15,10],"hand":14,"head":3}
+//     per frame  {"kind":"figure","tick":..,"joint_m":[x,y,z, x,y,z, ..],"head":[w,x,y,z],
+//                "grip_m":[..],"reached":true,"error_mm":..,"sweeps":..,"updates":..,
+//                "full_chain":false,"trouble":0,"words":"head lost (silent)"}
+//
+// A frame of the figure is a message of its own, after the frame that it belongs to: so a frame
+// with a full patch keeps its 4096 bytes. trouble: 0 none, 1 held, 2 lost, 3 out of reach.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "host/tracking/figure.h"
+
+namespace tact::host {
+
+inline constexpr std::size_t kMaxFigureJsonBytes = 1024;
+
+nlohmann::json skeleton_json(const BodyPlan& plan);
+std::string figure_json(const FigurePose& pose, std::uint64_t tick);
+
+}  // namespace tact::host

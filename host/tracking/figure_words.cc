@@ -1,0 +1,63 @@
+#include "host/tracking/figure_words.h"
+
+#include <algorithm>
+
+#include "host/tracking/figure.h"
+#include "host/tracking/tracking_setup.h"
+
+namespace tact::host {
+
+std::string words_for(BodyRole role) {
+  std::string out = name_of(role);
+  std::ranges::replace(out, '_', ' ');
+  return out;
+}
+
+const char* words_for(TrackingTrouble trouble) {
+  switch (trouble) {
+    case TrackingTrouble::kNone:
+      return "no pose";
+    case TrackingTrouble::kSilent:
+      return "silent";
+    case TrackingTrouble::kTooFewPoints:
+      return "too few points seen";
+    case TrackingTrouble::kDegenerate:
+      return "points on a line";
+    case TrackingTrouble::kInvalid:
+      return "a number that is none";
+    case TrackingTrouble::kNoPose:
+      return "no pose fits";
+    case TrackingTrouble::kJump:
+      return "it jumps";
+    case TrackingTrouble::kFrozen:
+      return "frozen";
+    case TrackingTrouble::kOutOfOrder:
+      return "out of order";
+  }
+  return "no pose";
+}
+
+void Figure::tell(const TrackedOperator& bodies) {
+  pose_.trouble = FigureTrouble::kNone;
+  pose_.words.clear();
+  const auto say = [this](FigureTrouble trouble, const std::string& words) {
+    if (trouble > pose_.trouble) pose_.words = words;
+    pose_.trouble = std::max(pose_.trouble, trouble);
+  };
+  for (std::size_t i = 0; i < kBodyRoles; ++i) {
+    const TrackedBody& body = bodies.bodies[i];
+    const auto role = static_cast<BodyRole>(i);
+    const bool bad = body.state == BodyState::kTracked && !is_good(body.pose);
+    const auto words = [&](const char* what) {
+      const TrackingTrouble why = bad ? TrackingTrouble::kInvalid : body.trouble;
+      return words_for(role) + ' ' + what + " (" + words_for(why) + ')';
+    };
+    if (body.state == BodyState::kLost) say(FigureTrouble::kLost, words("lost"));
+    if (body.state == BodyState::kHeld || bad) say(FigureTrouble::kHeld, words("held"));
+  }
+  if (!pose_.arm.reached) {
+    say(FigureTrouble::kOutOfReach, "the arm cannot reach the tool");
+  }
+}
+
+}  // namespace tact::host

@@ -1,0 +1,47 @@
+// observation.h - one look of one camera at one body, as it comes from a tracker: one JSON object
+// per UDP datagram or line of a file.
+//
+//     {"time_s": 12.0333, "sequence": 361, "camera": "front", "body": "head",
+//      "points": [[id, u, v], ...]}
+//
+//     time_s    of the tracker's own monotonic clock, s      sequence  counts per camera
+//     camera, body  names of the tracking description: 1 to 32 letters, digits, _ or -
+//     id        of a marker of the body      u, v  px, or tangents of a sweep tracker
+//
+// Any bytes give an observation or one sentence. Other keys are passed over.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tact::host {
+
+inline constexpr std::size_t kMaxMarkers = 64;
+inline constexpr std::size_t kMaxObservationBytes = 8192;
+
+struct SeenMarker {
+  std::uint32_t id = 0;
+  Eigen::Vector2d pixel_px = Eigen::Vector2d::Zero();  // or tangents
+
+  friend bool operator==(const SeenMarker&, const SeenMarker&) = default;
+};
+
+struct Observation {
+  double time_s = 0.0;
+  std::uint64_t sequence = 0;
+  std::string camera, body;
+  std::vector<SeenMarker> points;  // at most kMaxMarkers, ids differ, numbers finite
+
+  friend bool operator==(const Observation&, const Observation&) = default;
+};
+
+/// Empty and `out` filled; or what is wrong with the bytes, and what they should be.
+std::string parse_observation(std::string_view bytes, Observation& out);
+
+/// A name of a camera or a body: 1 to 32 letters, digits, _ or -.
+bool is_tracking_name(std::string_view name);
+
+}  // namespace tact::host

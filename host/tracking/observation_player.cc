@@ -1,0 +1,120 @@
+#include "host/tracking/observation_player.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/system/error_code.hpp>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <utility>
+
+#include "host/tracking/body_tracker.h"
+
+namespace tact::host {
+namespace {
+
+constexpr double kLongestGap_s = 60.0;  // a longer one is not waited out
+constexpr double kTurn_s = 1.0 / 60.0;  // from the last line to the first
+
+}  // namespace
+
+std::string read_observation_file(const std::string& path, ObservationFile& out, KeepText keep) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(path, failed)) {
+    return fmt::format("{}: no such file; give a file of observations, one per line", path);
+  }
+  if (std::filesystem::file_size(path, failed) > kLargestRecording_bytes) {
+    return fmt::format("{}: larger than {} MB; cut it into parts", path,
+                       kLargestRecording_bytes / 1'000'000);
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return fmt::format("{}: {}; check who may read it", path, std::strerror(errno));
+  std::size_t number = 0;
+  for (std::string line; std::getline(file, line);) {
+    ++number;
+    if (line.empty() || line == "\r") continue;
+    Observation seen;
+    const std::string wrong = parse_observation(line, seen);
+    if (wrong.empty()) {
+      out.lines.push_back(
+          {.text = keep == KeepText::kYes ? line : std::string(), .seen = std::move(seen)});
+    } else if (out.bad++ == 0) {
+      out.first_bad = fmt::format("{}:{}: {}", path, number, wrong);
+    }
+  }
+  if (!out.lines.empty()) return {};
+  return out.bad > 0 ? out.first_bad
+                     : fmt::format("{}: it is empty; give a file of observations", path);
+}
+
+std::string why_no_loop(const std::string& path, const ObservationFile& file) {
+  struct Span {
+    double first_s = 0.0, last_s = 0.0;
+  };
+  std::map<std::pair<std::string, std::string>, Span> spans;  // by camera and body
+  for (const PlayedLine& line : file.lines) {
+    const Observation& seen = line.seen;
+    Span& span =
+        spans.try_emplace({seen.camera, seen.body}, Span{seen.time_s, seen.time_s}).first->second;
+    span.last_s = std::max(span.last_s, seen.time_s);
+  }
+  for (const auto& [who, span] : spans) {
+    if (span.last_s - span.first_s > kRestart_s) continue;
+    return fmt::format(
+        "{}: camera {} looks at body {} for {:.2f} s, and a file that begins again at its end "
+        "needs more than {:g} s; record longer or leave these lines out",
+        path, who.first, who.second, span.last_s - span.first_s, kRestart_s);
+  }
+  return {};
+}
+
+ObservationPlayer::ObservationPlayer(boost::asio::io_context& io, std::vector<PlayedLine> lines,
+                                     const Options& options, Take take, End end)
+    : timer_(io),
+      lines_(std::move(lines)),
+      options_(options),
+      take_(std::move(take)),
+      end_(std::move(end)) {}
+
+void ObservationPlayer::start() {
+  next_ = 0;
+  timer_.expires_after(std::chrono::nanoseconds(0));
+  play();
+}
+
+void ObservationPlayer::stop() {
+  boost::system::error_code ignored;
+  timer_.cancel(ignored);
+}
+
+double ObservationPlayer::gap_s(std::size_t line) const {
+  return std::clamp(lines_[line].seen.time_s - lines_[line - 1].seen.time_s, 0.0, kLongestGap_s);
+}
+
+void ObservationPlayer::play() {
+  timer_.async_wait([this](boost::system::error_code wrong) {
+    if (wrong) return;
+    double wait_s = 0.0;
+    while (!(wait_s > 0.0)) {  // all that belongs to this moment; ends: kTurn_s > 0
+      take_(lines_[next_++]);
+      if (next_ < lines_.size()) {
+        wait_s = gap_s(next_);
+      } else {
+        next_ = 0;
+        wait_s = kTurn_s;
+        if (!options_.loop) return end_ ? end_() : void();
+      }
+    }
+    const std::chrono::duration<double> wait(wait_s / options_.speed_ratio);
+    // absolute: small delays do not add up
+    timer_.expires_at(timer_.expiry() +
+                      std::chrono::duration_cast<std::chrono::steady_clock::duration>(wait));
+    play();
+  });
+}
+
+}  // namespace tact::host

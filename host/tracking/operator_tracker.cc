@@ -1,0 +1,124 @@
+#include "host/tracking/operator_tracker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "host/tracking/robust_pose.h"
+
+namespace tact::host {
+namespace {
+
+Pose inverse(const Pose& pose) { return bind(pose, Pose{}); }
+
+/// The markers that both the body has and the camera sees.
+struct Markers {
+  std::vector<Eigen::Vector3d> points_m;
+  std::vector<Eigen::Vector2d> pixels_px;
+};
+
+Markers markers_of(const MarkerBody& body, const Observation& seen) {
+  Markers out;
+  for (const SeenMarker& point : seen.points) {
+    const auto marker = std::ranges::find(body.markers, point.id, &BodyMarker::id);
+    if (marker == body.markers.end()) continue;
+    out.points_m.push_back(marker->position_m);
+    out.pixels_px.push_back(point.pixel_px);
+  }
+  return out;
+}
+
+}  // namespace
+
+OperatorTracker::OperatorTracker(TrackingSetup setup)
+    : setup_(std::move(setup)),
+      trackers_(setup_.bodies.size(), BodyTracker(setup_.cameras.size())),
+      looks_(setup_.bodies.size(), std::vector<std::optional<Look>>(setup_.cameras.size())),
+      places_(setup_.cameras.size(), BodyTracker(1)) {}
+
+std::optional<Pose> OperatorTracker::camera_pose(std::size_t camera) const {
+  if (setup_.cameras[camera].pose) return setup_.cameras[camera].pose;
+  return places_[camera].last_pose();
+}
+
+std::optional<OperatorTracker::Joint> OperatorTracker::join(std::size_t body, std::size_t camera,
+                                                            const Look& look) const {
+  std::vector<BodyView> views{look.view};
+  std::optional<Joint> out;
+  for (std::size_t other = 0; other < setup_.cameras.size(); ++other) {
+    const std::optional<Look>& beside = looks_[body][other];
+    if (other == camera || !beside) continue;
+    if (!(std::abs(beside->time_s - look.time_s) <= kTogether_s)) continue;
+    views.push_back(beside->view);
+    const PoseEstimate joint = joint_pose(views);
+    if (joint.status != PoseStatus::kOk) {
+      views.pop_back();  // it contradicts the newest
+      continue;
+    }
+    out = {.estimate = joint, .time_s = std::max(out ? out->time_s : look.time_s, beside->time_s)};
+  }
+  return out;
+}
+
+void OperatorTracker::take(std::size_t body, std::size_t camera, Look look, PoseEstimate estimate,
+                           double now_s) {
+  const auto registered = [&](PoseEstimate e) {
+    e.pose = drive(setup_.registration, e.pose);
+    return e;
+  };
+  BodyTracker& tracker = trackers_[body];
+  estimate.pose = drive(look.view.eye, estimate.pose);
+  const bool enters = !tracker.repeats(camera);
+  const std::optional<Joint> joint = enters ? join(body, camera, look) : std::nullopt;
+  bool good = tracker.take(registered(joint ? joint->estimate : estimate), look.time_s, now_s);
+  if (!good && joint) good = tracker.refine(registered(joint->estimate), joint->time_s);
+  looks_[body][camera].reset();
+  if (good && enters) looks_[body][camera] = std::move(look);
+}
+
+std::string OperatorTracker::take(const Observation& seen, double now_s) {
+  const auto camera = std::ranges::find(setup_.cameras, seen.camera, &TrackingCamera::name);
+  if (camera == setup_.cameras.end()) {
+    return fmt::format("camera {} is not in {}; add it there", seen.camera, setup_.path);
+  }
+  const auto body = std::ranges::find(setup_.bodies, seen.body, &MarkerBody::name);
+  if (body == setup_.bodies.end()) {
+    return fmt::format("body {} is not in {}; add it there", seen.body, setup_.path);
+  }
+  const auto camera_at = static_cast<std::size_t>(camera - setup_.cameras.begin());
+  const bool is_base = !body->role;
+  if (is_base && camera->pose) return {};  // its place is known
+  const auto body_at = static_cast<std::size_t>(body - setup_.bodies.begin());
+  BodyTracker& tracker = is_base ? places_[camera_at] : trackers_[body_at];
+  if (!tracker.admit(is_base ? 0 : camera_at, seen, now_s)) return {};
+  const Markers markers = markers_of(*body, seen);
+  PoseEstimate estimate =
+      robust_pose(camera->lens, markers.points_m, markers.pixels_px, camera->outlier_px);
+  const std::optional<Pose> place = camera_pose(camera_at);
+  if (is_base) {
+    estimate.pose = inverse(estimate.pose);
+  } else if (estimate.status == PoseStatus::kOk && place) {
+    Look look{.time_s = seen.time_s,
+              .view = body_view(camera->lens, markers.points_m, markers.pixels_px,
+                                camera->outlier_px, estimate.pose)};
+    look.view.eye = *place;
+    take(body_at, camera_at, std::move(look), estimate, now_s);
+    return {};
+  } else if (estimate.status == PoseStatus::kOk) {
+    estimate.status = PoseStatus::kNoPose;  // the base was not seen yet
+  }
+  tracker.take(estimate, seen.time_s, now_s);
+  return {};
+}
+
+TrackedOperator OperatorTracker::at(double now_s) const {
+  TrackedOperator out{.time_s = now_s};
+  for (std::size_t i = 0; i < setup_.bodies.size(); ++i) {
+    if (const auto role = setup_.bodies[i].role) out[*role] = trackers_[i].at(now_s);
+  }
+  return out;
+}
+
+}  // namespace tact::host

@@ -1,0 +1,159 @@
+#include "host/tracking/tracking_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace tact::host {
+namespace {
+
+constexpr std::uintmax_t kLargestFile_bytes = 1'000'000;
+constexpr double kFarthest_m = 100.0;
+
+std::string on_one_line(std::string_view text) {
+  std::string out(text);
+  std::ranges::replace_if(
+      out, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return out;
+}
+
+}  // namespace
+
+std::string parse_toml_file(const std::string& path, toml::table& out) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(path, failed)) {
+    return fmt::format("{}: no such file; give the path of a tracking description", path);
+  }
+  if (std::filesystem::file_size(path, failed) > kLargestFile_bytes) {
+    return fmt::format("{}: too large; a tracking description has at most 1 MB", path);
+  }
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (!file) return fmt::format("{}: cannot be read; check who may read it", path);
+  try {
+    out = toml::parse(text, path);
+  } catch (const toml::parse_error& wrong) {
+    return fmt::format("{}:{}: not TOML: {}; correct this line", path, wrong.source().begin.line,
+                       on_one_line(wrong.description()));
+  }
+  return {};
+}
+
+void TrackingKeys::refuse(std::string_view key, const std::string& sentence) {
+  if (!wrong_.empty()) return;
+  const toml::node* node = table_.get(key);
+  const std::uint32_t line =
+      node != nullptr ? node->source().begin.line : table_.source().begin.line;
+  wrong_ = fmt::format("{}:{}: {}", path_, std::max(line, 1u), sentence);
+}
+
+void TrackingKeys::only(std::initializer_list<std::string_view> keys) {
+  for (const auto& [key, node] : table_) {
+    if (std::ranges::find(keys, key.str()) != keys.end()) continue;
+    refuse(key.str(), fmt::format("{} is not known here; write one of: {}", on_one_line(key.str()),
+                                  fmt::join(keys, ", ")));
+  }
+}
+
+double TrackingKeys::number(std::string_view key, double least, double most) {
+  const toml::node* node = table_.get(key);
+  const auto value = node != nullptr ? node->value<double>() : std::nullopt;
+  if (!value || !(*value >= least && *value <= most)) {
+    refuse(key,
+           fmt::format("{} must be a number from {:g} to {:g}; write it here", key, least, most));
+    return least;
+  }
+  return *value;
+}
+
+std::string TrackingKeys::text(std::string_view key) {
+  const toml::node* node = table_.get(key);
+  const auto value = node != nullptr ? node->value<std::string>() : std::nullopt;
+  if (!value || value->empty()) {
+    refuse(key, fmt::format("{} must be a text; write {} = \"...\"", key, key));
+    return {};
+  }
+  return *value;
+}
+
+bool TrackingKeys::flag(std::string_view key) {
+  const toml::node* node = table_.get(key);
+  if (node == nullptr) return false;
+  const auto value = node->value_exact<bool>();
+  if (!value) refuse(key, fmt::format("{} must be true or false", key));
+  return value.value_or(false);
+}
+
+bool TrackingKeys::read_numbers(const toml::node* node, std::size_t count, double most,
+                                std::vector<double>& out) const {
+  const toml::array* list = node != nullptr ? node->as_array() : nullptr;
+  if (list == nullptr || list->size() != count) return false;
+  for (const toml::node& item : *list) {
+    const auto value = item.value<double>();
+    if (!value || !(std::abs(*value) <= most)) return false;
+    out.push_back(*value);
+  }
+  return true;
+}
+
+std::vector<double> TrackingKeys::numbers(std::string_view key, std::size_t count, double most) {
+  std::vector<double> out;
+  if (!read_numbers(table_.get(key), count, most, out)) {
+    refuse(key, fmt::format("{} must be {} numbers of at most {:g}; write {} = [..]", key, count,
+                            most, key));
+    out.assign(count, 0.0);
+  }
+  return out;
+}
+
+std::vector<std::vector<double>> TrackingKeys::rows(std::string_view key, std::size_t count,
+                                                    double most) {
+  std::vector<std::vector<double>> out;
+  const toml::node* node = table_.get(key);
+  const toml::array* list = node != nullptr ? node->as_array() : nullptr;
+  bool good = list != nullptr;
+  for (std::size_t i = 0; good && i < list->size(); ++i) {
+    good = read_numbers(list->get(i), count, most, out.emplace_back());
+  }
+  if (!good) {
+    refuse(key, fmt::format("{} must be a list of lists of {} numbers of at most {:g}", key, count,
+                            most));
+    out.clear();
+  }
+  return out;
+}
+
+Pose TrackingKeys::pose() {
+  const std::vector<double> p = numbers("position_m", 3, kFarthest_m);
+  const std::vector<double> q = numbers("rotation_wxyz", 4, 1e6);
+  const auto rotation = rotation_from(std::array{q[0], q[1], q[2], q[3]});
+  if (!rotation) refuse("rotation_wxyz", "rotation_wxyz has no direction; no turn is [1, 0, 0, 0]");
+  return {.rotation = rotation.value_or(Eigen::Quaterniond::Identity()),
+          .position_m = {p[0], p[1], p[2]}};
+}
+
+void TrackingKeys::section(std::string_view key, const std::function<void(TrackingKeys&)>& visit) {
+  const toml::node* node = table_.get(key);
+  const toml::table* table = node != nullptr ? node->as_table() : nullptr;
+  if (table == nullptr) return refuse(key, fmt::format("[{}] is missing; add this section", key));
+  TrackingKeys keys(*table, path_, wrong_);
+  visit(keys);
+}
+
+void TrackingKeys::sections(std::string_view key, const std::function<void(TrackingKeys&)>& visit) {
+  const toml::node* node = table_.get(key);
+  const toml::array* list = node != nullptr ? node->as_array() : nullptr;
+  if (list == nullptr || list->empty() || !list->is_homogeneous(toml::node_type::table)) {
+    return refuse(key, fmt::format("[[{}]] is missing; add one or more", key));
+  }
+  for (const toml::node& item : *list) {
+    TrackingKeys keys(*item.as_table(), path_, wrong_);
+    visit(keys);
+  }
+}
+
+}  // namespace tact::host

@@ -1,0 +1,59 @@
+// tracking_setup.h - which cameras look, which marker bodies they see and where the tracker stands:
+// SCENE.tracking.toml, described in README.md.
+//
+// Set-up code only.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/tracking/pose_polish.h"
+#include "host/tracking/tracked_operator.h"
+
+namespace tact::host {
+
+struct TrackingCamera {
+  std::string name;
+  Camera lens{};
+  double outlier_px = 3.0;   // a marker farther than this from its computed pixel is no good
+  std::optional<Pose> pose;  // camera's axes to the tracker's; none: found from the base
+};
+
+struct BodyMarker {
+  std::uint32_t id = 0;
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  // in the body's axes
+};
+
+struct MarkerBody {
+  std::string name;
+  std::optional<BodyRole> role;  // none: the base, markers that stand in the tracker's frame
+  std::vector<BodyMarker> markers;
+  std::optional<Eigen::Vector3d> tip_m;  // of a tool: the point whose place the device knows
+};
+
+struct TrackingSetup {
+  std::string path;
+  std::uint16_t udp_port = 0;  // 0: `recording` is played
+  std::string recording;
+  std::vector<TrackingCamera> cameras;
+  std::vector<MarkerBody> bodies;
+  std::optional<Eigen::Vector3d> shoulder_m;  // of the operator, right, device's frame
+  Pose registration{};                        // tracker's frame to the device's
+  std::string registered_by;  // the file that says so; empty: none, the identity is taken
+
+  const MarkerBody* body_of(BodyRole role) const;
+};
+
+/// Fills `out`; or one line with what is wrong, where (file:line) and the cure.
+std::string load_tracking_setup(const std::string& path, TrackingSetup& out);
+
+/// SCENE.registration.toml beside SCENE.tracking.toml.
+std::string registration_path(const std::string& tracking_path);
+
+/// The role as the description writes it, such as "left_leg".
+const char* name_of(BodyRole role);
+
+}  // namespace tact::host

@@ -1,0 +1,112 @@
+// stage.mjs - what the browser tests share: real programs, a real Chromium, sentences that hold or not.
+import { spawn } from "node:child_process";
+import { existsSync, mkdtempSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
+
+export const root = fileURLToPath(new URL("../../", import.meta.url));
+const { chromium } = createRequire(join(root, "host/web/package.json"))("playwright-core");
+
+/** Where the programs and page/ are: the first argument of the test. */
+export const build = resolve(process.argv[2] ?? join(root, "build"));
+/** For sockets and files; gone at the end. */
+export const folder = mkdtempSync(join(tmpdir(), "tact-browser-"));
+export const size = { width: 1280, height: 800 };
+
+const children = new Set();
+let passed = 0;
+let failed = 0;
+
+export function check(sentence, holds, seen = "") {
+  holds ? ++passed : ++failed;
+  console.log(`${holds ? "ok    " : "FAILED"} ${sentence}${seen === "" ? "" : ` (${seen})`}`);
+}
+
+/** A program of BUILD_DIR; its standard output is first_line's, or nobody's. */
+export function start(program, args) {
+  const child = spawn(join(build, program), args, { stdio: ["ignore", "pipe", "inherit"] });
+  children.add(child);
+  child.ended = new Promise((done) => child.on("exit", (status) => {
+    children.delete(child);
+    done(status);
+  }));
+  return child;
+}
+
+/** tactd with a scene of model/scenes; its telemetry goes to `socket`. */
+export function start_tactd(scene, socket, args = []) {
+  const child = start("tactd", [join(root, `model/scenes/${scene}.toml`), "--socket", socket, ...args]);
+  child.stdout.resume();
+  return child;
+}
+
+export async function stop(child) {
+  child.kill("SIGINT");
+  return child.ended;
+}
+
+/** The first line of a program's output. */
+export function first_line(child) {
+  return new Promise((done, fail) => {
+    let text = "";
+    child.stdout.on("data", (data) => {
+      text += data;
+      if (text.includes("\n")) done(text.slice(0, text.indexOf("\n")));
+    });
+    child.ended.then((status) => fail(new Error(`${child.spawnfile} left with status ${status}`)));
+  });
+}
+
+/** tact-view on a free port, and its address. */
+export async function start_view(args) {
+  const viewer = start("tact-view", [...args, "--port", "0", "--json"]);
+  return { viewer, url: JSON.parse(await first_line(viewer)).url };
+}
+
+export async function start_browser() {
+  return chromium.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args: [
+      "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
+      "--disable-background-networking", "--disable-component-update", "--disable-sync",
+    ],
+  });
+}
+
+/** What the page tells of itself. */
+export const numbers = (page) => page.evaluate(() => ({ ...window.tact }));
+/** True when the condition holds in time. */
+export const waits = (page, condition, timeout = 20000) =>
+  page.waitForFunction(condition, null, { timeout, polling: 50 }).then(() => true, () => false);
+export const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+
+export async function measure_fps(page, seconds) {
+  return page.evaluate(async (duration_ms) => {
+    const begin = performance.now();
+    let count = 0;
+    while (performance.now() - begin < duration_ms) {
+      await new Promise((done) => requestAnimationFrame(done));
+      ++count;
+    }
+    return (count * 1000) / (performance.now() - begin);
+  }, seconds * 1000);
+}
+
+/** Runs a test to its end, tidies up, prints "N passed, M failed" and leaves. */
+export async function play(run) {
+  try {
+    for (const part of ["tactd", "tact-view", "page/index.html"]) {
+      if (!existsSync(join(build, part))) throw new Error(`${join(build, part)} is missing; build it first`);
+    }
+    await run();
+  } catch (error) {
+    check(`runs to its end: ${error.message.split("\n")[0]}`, false);
+  } finally {
+    for (const child of children) child.kill("SIGKILL");
+    rmSync(folder, { recursive: true, force: true });
+  }
+  console.log(`${passed} passed, ${failed} failed`);
+  process.exit(failed === 0 ? 0 : 1);
+}

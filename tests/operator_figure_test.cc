@@ -1,0 +1,145 @@
+#include "host/operator_figure.h"
+
+#include <limits>
+
+#include "host/frame_json.h"
+#include "tests/viewer_fixture.h"
+
+namespace tact::host {
+namespace {
+
+using test::Socket;
+using test::Viewer;
+
+/// One organ triangle, then a tool whose highest vertex is at 100 mm.
+MeshBytes mesh_with_tool() {
+  test::TinyMeshes meshes;
+  meshes.tool_m[1][2] = 0.1f;
+  return meshes.bytes();
+}
+
+Frame frame_at(float x_m, std::int64_t time_ns) {
+  Frame frame;
+  frame.time_ns = time_ns;
+  frame.tool_position_m[0] = x_m;
+  return frame;
+}
+
+nlohmann::json told(OperatorFigure& figure, const Frame& frame,
+                    const TrackedOperator* tracked = nullptr) {
+  return nlohmann::json::parse(figure.with(frame, tracked));
+}
+
+std::string seen(std::uint64_t frames) { return "{\"seen\":" + std::to_string(frames) + "}"; }
+
+TEST(OperatorFigure, TakesTheToolByTheUpperPartOfItsMesh) {
+  const Hello hello = test::make_hello(3, 1, 3, 1);
+  EXPECT_NEAR(grip_of(hello, mesh_with_tool()).z(), 0.08, 1e-6);
+  EXPECT_NEAR(grip_of(hello, {}).z(), FigureSettings{}.grip_m.z(), 1e-12);
+}
+
+TEST(OperatorFigure, HoldsTheToolThatTelemetryTells) {
+  OperatorFigure figure(1.75);
+  figure.begin(test::make_hello(3, 1, 3, 1), mesh_with_tool());
+  Frame frame = frame_at(0.02f, 0);
+  frame.tool_orientation[0] = 0.0f;  // half a turn about z: the grip stays above the tip
+  frame.tool_orientation[3] = 1.0f;
+  const auto json = told(figure, frame);
+  EXPECT_NEAR(json["grip_m"][0].get<double>(), 0.02, 1e-4);
+  EXPECT_NEAR(json["grip_m"][2].get<double>(), 0.08, 1e-4);
+}
+
+TEST(OperatorFigure, AToolThatIsNotFiniteStaysWhereItWas) {
+  OperatorFigure figure(1.75);
+  figure.begin(test::make_hello(3, 1, 3, 1), mesh_with_tool());
+  const auto before = told(figure, frame_at(0.02f, 0));
+  Frame none = frame_at(std::numeric_limits<float>::quiet_NaN(), 10'000'000);
+  none.tool_orientation[0] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(told(figure, none)["grip_m"], before["grip_m"]);
+  none = frame_at(0.5f, 20'000'000);
+  none.tool_orientation[0] = 0.0f;  // no rotation at all
+  EXPECT_EQ(told(figure, none)["grip_m"], before["grip_m"]);
+}
+
+TEST(OperatorFigure, TellsWhatTheTrackerLost) {
+  OperatorFigure figure(1.75);
+  TrackedOperator tracked;
+  tracked[BodyRole::kHead] = {.state = BodyState::kLost, .trouble = TrackingTrouble::kSilent};
+  EXPECT_EQ(told(figure, frame_at(0.0f, 0), &tracked)["words"], "head lost (silent)");
+  EXPECT_EQ(told(figure, frame_at(0.0f, 0))["words"], "");
+}
+
+TEST_F(Viewer, TellsTheFigureAfterEachFrameAndItsSkeletonWithTheStatus) {
+  OperatorFigure figure(1.75);
+  view_.accompany(&figure);
+  start();
+  start_source();
+  Socket socket(client_io_);
+  ASSERT_FALSE(open_live(socket, "http://localhost:1"));
+  const auto status = read(socket);
+  EXPECT_EQ(status.at("figure").at("joints").size(), kFigureJoints);
+  Frame frame;
+  for (frame.tick = 1; frame.tick <= 3; ++frame.tick) {
+    source_->send(frame);
+    const auto first = read(socket), second = read(socket);
+    EXPECT_EQ(first["kind"], "frame");
+    EXPECT_EQ(second["kind"], "figure");
+    EXPECT_EQ(first["tick"], frame.tick);
+    EXPECT_EQ(second["tick"], frame.tick);
+    socket.write(boost::asio::buffer(seen(frame.tick)));
+  }
+}
+
+TEST_F(Viewer, TellsTheFigureRightAfterItsFrameEvenIfAStatusCameMeanwhile) {
+  OperatorFigure figure(1.75);
+  view_.accompany(&figure);
+  start();
+  start_source();
+  Socket socket(client_io_);
+  ASSERT_FALSE(open_live(socket, "http://localhost:1"));
+  read(socket);
+  boost::asio::post(io_, [this] {  // the status waits while the frame is being written
+    view_.add(Frame{});
+    view_.lose("gone");
+  });
+  EXPECT_EQ(read(socket)["kind"], "frame");
+  EXPECT_EQ(read(socket)["kind"], "figure");
+  EXPECT_EQ(read(socket)["link"], "lost");
+}
+
+TEST_F(Viewer, GivesASlowBrowserTheFigureOfTheFrameThatItGets) {
+  OperatorFigure figure(1.75);
+  view_.accompany(&figure);
+  start();
+  start_source();
+  Socket socket(client_io_);
+  ASSERT_FALSE(open_live(socket, "http://localhost:1"));
+  read(socket);
+  Frame frame;
+  constexpr std::uint64_t kSent = 100;
+  for (frame.tick = 1; frame.tick <= kSent; ++frame.tick) {
+    source_->send(frame);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  ASSERT_TRUE(wait_until([this] { return frames_ == kSent; }));
+  for (std::uint64_t i = 1; i <= LiveSession::kMaxUnseen; ++i) {
+    EXPECT_EQ(read(socket)["tick"], i);
+    const auto beside = read(socket);
+    EXPECT_EQ(beside["kind"], "figure");
+    EXPECT_EQ(beside["tick"], i);
+  }
+  socket.write(boost::asio::buffer(seen(4)));
+  EXPECT_EQ(read(socket)["tick"], kSent);
+  EXPECT_EQ(read(socket)["tick"], kSent);
+}
+
+TEST_F(Viewer, HasNoFigureUnlessAsked) {
+  start();
+  start_source();
+  Socket socket(client_io_);
+  ASSERT_FALSE(open_live(socket, "http://localhost:1"));
+  EXPECT_FALSE(read(socket).contains("figure"));
+}
+
+}  // namespace
+}  // namespace tact::host

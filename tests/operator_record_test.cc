@@ -1,0 +1,186 @@
+// The tracked operator in a recording: it comes back, damage costs one frame's operator, and files
+// without one stay as they are.
+#include "host/operator_record.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "host/live_view.h"
+#include "host/recording_csv.h"
+#include "tests/spoilt_file.h"
+#include "tests/telemetry_source.h"
+#include "tests/tracking_views.h"
+
+namespace tact::host {
+namespace {
+
+constexpr std::size_t kFrames = 20;
+constexpr std::size_t kStride = sizeof(FrameRecord) + sizeof(OperatorRecord);
+
+TrackedOperator operator_at(std::size_t i) {
+  TrackedOperator out{.time_s = 0.1 * static_cast<double>(i)};
+  TrackedBody& hand = out[BodyRole::kHand];
+  hand.state = BodyState::kTracked;
+  hand.trouble = TrackingTrouble::kJump;
+  hand.raw = {.rotation = test::turn(0.3 + 0.1 * static_cast<double>(i), {1, 2, 3}),
+              .position_m = {0.1, 1.0 / 3.0, static_cast<double>(i)}};
+  hand.pose = {.rotation = test::turn(0.2, {3, 2, 1}), .position_m = {0.5, 0.25, -1.0}};
+  hand.rms_px = 0.5;
+  hand.age_s = 0.015625;
+  return out;
+}
+
+class TrackedFile : public ::testing::Test {
+ protected:
+  TrackedFile()
+      : path_("/tmp/tact-tracked-" + std::to_string(getpid()) + ".tact"),
+        first_(sizeof(FileHeader) + sizeof(Hello) + mesh_.size()) {
+    std::filesystem::remove(path_);
+    RecordingWriter writer;
+    EXPECT_EQ(writer.open(path_, hello_, mesh_, true), "");
+    for (std::size_t i = 0; i < kFrames; ++i) {
+      const TrackedOperator tracked = operator_at(i);
+      EXPECT_EQ(writer.write(frame(i), i == 3 ? nullptr : &tracked), "");
+    }
+    EXPECT_EQ(writer.close(), "");
+  }
+  ~TrackedFile() override { std::filesystem::remove(path_); }
+
+  static Frame frame(std::size_t i) {
+    Frame out = test::make_frame(static_cast<float>(i), firmware::SiteState::kTouching);
+    out.tick = i;
+    out.time_ns = static_cast<std::int64_t>(i) * 10'000'000;
+    return out;
+  }
+
+  std::string path_;
+  Hello hello_ = test::make_hello(3, 1, 3, 1);
+  MeshBytes mesh_ = test::TinyMeshes{}.bytes();
+  std::uint64_t first_;
+};
+
+TEST_F(TrackedFile, GivesTheOperatorBack) {
+  const ReadResult read = read_recording(path_);
+  ASSERT_EQ(read.damage, "");
+  ASSERT_EQ(read.recording.frames.size(), kFrames);
+  ASSERT_EQ(read.recording.operators.size(), kFrames);
+  for (const std::size_t i : {std::size_t{0}, std::size_t{7}}) {
+    const TrackedOperator& got = read.recording.operators[i];
+    const TrackedBody& hand = got[BodyRole::kHand];
+    const TrackedBody truth = operator_at(i)[BodyRole::kHand];
+    EXPECT_EQ(got.time_s, operator_at(i).time_s);
+    EXPECT_EQ(hand.state, truth.state);
+    EXPECT_EQ(hand.trouble, truth.trouble);
+    EXPECT_EQ(hand.raw.position_m, truth.raw.position_m);  // bit by bit
+    EXPECT_EQ(hand.raw.rotation.coeffs(), truth.raw.rotation.coeffs());
+    EXPECT_EQ(hand.pose.position_m, truth.pose.position_m);
+    EXPECT_LT(hand.pose.rotation.angularDistance(truth.pose.rotation), 1e-6);
+    EXPECT_EQ(hand.rms_px, 0.5);
+    EXPECT_EQ(hand.age_s, 0.015625);
+    EXPECT_EQ(got[BodyRole::kHead].state, BodyState::kAbsent);
+  }
+  EXPECT_EQ(read.recording.operators[3][BodyRole::kHand].state, BodyState::kAbsent);
+}
+
+TEST_F(TrackedFile, DamageOfOneOperatorCostsNoFrame) {
+  tests::flip_byte(path_,
+                   first_ + 5 * kStride + sizeof(FrameRecord) + offsetof(OperatorRecord, body) + 3);
+  const ReadResult read = read_recording(path_);
+  ASSERT_EQ(read.recording.frames.size(), kFrames);
+  EXPECT_EQ(read.recording.operators[5][BodyRole::kHand].state, BodyState::kAbsent);
+  EXPECT_EQ(read.recording.operators[6][BodyRole::kHand].state, BodyState::kTracked);
+  EXPECT_NE(read.damage.find("1 of 20 frames have lost their operator"), std::string::npos)
+      << read.damage;
+}
+
+TEST_F(TrackedFile, DamageOfAFrameTakesItsOperatorAlong) {
+  tests::flip_byte(path_, first_ + 5 * kStride + 100);
+  const ReadResult read = read_recording(path_);
+  ASSERT_EQ(read.recording.frames.size(), kFrames - 1);
+  ASSERT_EQ(read.recording.operators.size(), kFrames - 1);
+  EXPECT_EQ(read.recording.frames[5].tick, 6u);
+  EXPECT_EQ(read.recording.operators[5].time_s, operator_at(6).time_s);
+}
+
+TEST_F(TrackedFile, SurvivesEveryLength) {
+  for (std::uint64_t size = first_ + 3 * kStride + 5; size > 0; size = size * 19 / 20) {
+    std::filesystem::resize_file(path_, size);
+    const ReadResult read = read_recording(path_);
+    EXPECT_FALSE(read.damage.empty()) << size;
+    EXPECT_EQ(read.recording.frames.size(), read.recording.operators.size());
+    EXPECT_EQ(read.recording.frames.size(), size < first_ ? 0 : (size - first_) / kStride);
+  }
+}
+
+TEST_F(TrackedFile, WithoutATrackerTheFileIsTheOldOne) {
+  std::filesystem::remove(path_);
+  RecordingWriter writer;
+  ASSERT_EQ(writer.open(path_, hello_, mesh_), "");
+  ASSERT_EQ(writer.write(frame(0)), "");
+  ASSERT_EQ(writer.close(), "");
+  std::ifstream file(path_, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_EQ(bytes, recording_start(hello_, mesh_) + recording_frame(frame(0)));
+  FileHeader header;
+  std::memcpy(&header, bytes.data(), sizeof header);
+  EXPECT_EQ(header.version, kRecordingVersion);
+  const ReadResult read = read_recording(path_);
+  EXPECT_EQ(read.damage, "");
+  EXPECT_TRUE(read.recording.operators.empty());
+  EXPECT_EQ(read.recording.operator_at(0), nullptr);
+}
+
+TEST(OperatorRecord, WithoutSenseIsRefusedThoughItsSumIsRight) {
+  const auto accepts = [](auto change) {
+    TrackedOperator tracked = operator_at(1);
+    change(tracked[BodyRole::kHand]);
+    const std::string bytes = operator_record(tracked);
+    OperatorRecord record;
+    std::memcpy(&record, bytes.data(), sizeof record);
+    return operator_of(record).has_value();
+  };
+  EXPECT_TRUE(accepts([](TrackedBody&) {}));
+  EXPECT_FALSE(accepts([](TrackedBody& b) { b.raw.position_m.x() = std::nan(""); }));
+  EXPECT_FALSE(accepts([](TrackedBody& b) { b.pose.rotation.w() = 5.0; }));
+  EXPECT_FALSE(accepts([](TrackedBody& b) { b.rms_px = HUGE_VAL; }));
+  EXPECT_FALSE(accepts([](TrackedBody& b) { b.state = static_cast<BodyState>(4); }));
+  EXPECT_FALSE(accepts([](TrackedBody& b) { b.trouble = static_cast<TrackingTrouble>(9); }));
+}
+
+TEST_F(TrackedFile, TheTableHasTheRawPoseOfTheBodiesThatAreThere) {
+  const ReadResult read = read_recording(path_);
+  const std::vector<BodyRole> bodies = bodies_in(read.recording);
+  ASSERT_EQ(bodies, std::vector{BodyRole::kHand});
+  const std::string header = csv_header(hello_, bodies);
+  EXPECT_NE(header.find(",hand_state,hand_x_m,hand_y_m,hand_z_m,hand_qw,"), std::string::npos);
+  EXPECT_EQ(header.find("head_"), std::string::npos);
+  for (const std::size_t i : {std::size_t{2}, std::size_t{3}}) {
+    std::string row;
+    append_csv_row(row, read.recording.frames[i], hello_, read.recording.operator_at(i), bodies);
+    EXPECT_EQ(std::count(row.begin(), row.end(), ','),
+              std::count(header.begin(), header.end(), ','));
+    EXPECT_EQ(row.find(",tracked,0.1,0.3333333333333333,2,") != std::string::npos, i == 2) << row;
+    EXPECT_EQ(row.find(",absent,") != std::string::npos, i == 3) << row;
+  }
+}
+
+TEST(RecentFrames, KeepTheOperatorInStep) {
+  RecentFrames recent;
+  recent.restart(1.0);  // 300 frames
+  Frame frame;
+  for (frame.tick = 0; frame.tick < 500; ++frame.tick) {
+    const TrackedOperator tracked{.time_s = static_cast<double>(frame.tick)};
+    recent.add(frame, frame.tick < 10 ? nullptr : &tracked);
+    EXPECT_EQ(recent.operators().size(), frame.tick < 10 ? 0 : recent.frames().size());
+  }
+  for (std::size_t i = 0; i < 300; ++i) {
+    EXPECT_EQ(recent.operators()[i].time_s, static_cast<double>(recent.frames()[i].tick));
+  }
+}
+
+}  // namespace
+}  // namespace tact::host

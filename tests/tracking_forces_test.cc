@@ -1,0 +1,196 @@
+// Tracking is for the eyes: tactd gives the same forces, bit for bit, whether tact-view tracks the
+// operator beside it or nobody is there.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "firmware/replay.h"
+#include "host/recording.h"
+#include "tests/program.h"
+#include "tests/tracking_views.h"
+
+namespace tact {
+namespace {
+
+namespace fs = std::filesystem;
+const std::string kScenes = TACT_SOURCE_DIR "/model/scenes/";
+const std::string kLiver = kScenes + "liver.toml", kMaintenance = kScenes + "maintenance.toml";
+const std::string kDesk = "desk.tracking.toml";
+
+class Forces : public ::testing::Test {
+ protected:
+  Forces() : folder_("/tmp/tact-forces-" + std::to_string(getpid())) {
+    fs::create_directory(folder_);
+    test::write_file(in("index.html"), "<html>");
+    std::string lines;
+    const host::TrackingCamera eye = test::camera("front", host::Pose{});
+    std::mt19937 noise(3);
+    for (std::uint64_t i = 0; i < 120; ++i) {
+      const double time_s = static_cast<double>(i) / 60.0;
+      const host::Pose hand{.position_m = {0.1 * std::sin(3.0 * time_s), 0.0, 1.5}};
+      lines += test::line_of(test::look(eye, {}, "h", hand, time_s, i, &noise)) + "\n";
+    }
+    test::write_file(in("a.jsonl"), lines);
+    test::write_file(in(kDesk), test::description("recording = \"a.jsonl\"", {{"h", "hand"}},
+                                                  "[registration]\nposition_m = [0, 0, 0]\n"
+                                                  "rotation_wxyz = [1, 0, 0, 0]\n"));
+  }
+  ~Forces() override {
+    end_viewer();
+    fs::remove_all(folder_);
+  }
+
+  std::string in(const std::string& name) const { return folder_ + "/" + name; }
+  std::string bytes(const std::string& name) const {
+    std::ifstream file(in(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  void tactd(const std::string& arguments) const {
+    const tests::Outcome outcome =
+        tests::run_program("tactd", arguments + " --no-black-box --socket " + in("t.sock"));
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+  }
+  /// tact-view with the tracker, in a process of its own, recording.
+  void start_viewer(const std::string& recording) { start_viewer(recording, in(kDesk)); }
+  void start_viewer(const std::string& recording, const std::string& tracking) {
+    const std::string program = TACT_BINARY_DIR "/tact-view";
+    viewer_ = fork();
+    if (viewer_ == 0) {
+      if (std::freopen(in("ready").c_str(), "w", stdout) == nullptr) _exit(127);
+      execl(program.c_str(), "tact-view", "--port", "0", "--page", folder_.c_str(), "--socket",
+            in("t.sock").c_str(), "--tracking", tracking.c_str(), "--record", in(recording).c_str(),
+            nullptr);
+      _exit(127);
+    }
+    for (int i = 0; i < 2000 && bytes("ready").empty(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_FALSE(bytes("ready").empty());  // now it looks for tactd, four times a second
+  }
+  void end_viewer() {
+    if (viewer_ <= 0) return;
+    kill(viewer_, SIGINT);
+    waitpid(viewer_, nullptr, 0);
+    viewer_ = -1;
+    fs::remove(in("ready"));
+  }
+  /// Frames in which the operator's hand was tracked.
+  std::size_t tracked_frames(const std::string& recording) const {
+    const host::ReadResult read = host::read_recording(in(recording));
+    EXPECT_EQ(read.damage, "");
+    std::size_t out = 0;
+    for (const host::TrackedOperator& seen : read.recording.operators) {
+      out += seen[host::BodyRole::kHand].state == host::BodyState::kTracked ? 1 : 0;
+    }
+    return out;
+  }
+
+  struct Seen {
+    std::set<host::BodyState> states;
+    std::set<host::TrackingTrouble> troubles;
+  };
+  /// What the trackers of the operator went through.
+  Seen seen_in(const std::string& recording) const {
+    Seen out;
+    for (const host::TrackedOperator& at : host::read_recording(in(recording)).recording.operators)
+      for (const host::TrackedBody& body : at.bodies) {
+        out.states.insert(body.state);
+        out.troubles.insert(body.trouble);
+      }
+    return out;
+  }
+
+  /// Of every tick, what the law wanted and what the device got.
+  std::vector<std::uint64_t> forces(const std::string& log) const {
+    std::vector<std::uint64_t> out;
+    auto reader = firmware::TickLogReader::open(in(log));
+    EXPECT_TRUE(reader);
+    if (!reader) return out;
+    for (firmware::LoggedTick tick; reader->next(tick);) {
+      const std::uint64_t wanted = firmware::hash_wrench(firmware::kHashStart, tick.output.wanted);
+      out.push_back(firmware::hash_wrench(wanted, tick.output.written));
+    }
+    EXPECT_FALSE(reader->truncated());
+    return out;
+  }
+
+  std::string folder_;
+  pid_t viewer_ = -1;
+};
+
+TEST_F(Forces, OfAFreeRunAreTheSameBitsWithAndWithoutTracking) {
+  // Two minutes of simulated time are seconds of a real one: the viewer meets it.
+  const std::string run = kLiver + " --free-run --seconds 120";
+  tactd(run + " --no-telemetry --json " + in("alone.json"));
+  start_viewer("a.tact");
+  tactd(run + " --json " + in("seen.json"));
+  end_viewer();
+  EXPECT_GT(tracked_frames("a.tact"), 10u);
+  const auto alone = nlohmann::json::parse(bytes("alone.json"), nullptr, false);
+  const auto seen = nlohmann::json::parse(bytes("seen.json"), nullptr, false);
+  EXPECT_EQ(alone["force_hash"], seen["force_hash"]);
+  EXPECT_EQ(alone["ticks"], seen["ticks"]);
+  EXPECT_FALSE(alone["force_hash"].get<std::string>().empty());
+}
+
+TEST_F(Forces, AreTheSameInEveryTickOfTheLogs) {
+  const std::string run = kLiver + " --free-run --seconds 40 --record ";
+  tactd(run + in("alone.log"));
+  start_viewer("view.tact");
+  tactd(run + in("seen.log"));
+  end_viewer();
+  EXPECT_GT(tracked_frames("view.tact"), 1u);
+  const std::vector<std::uint64_t> alone = forces("alone.log"), seen = forces("seen.log");
+  ASSERT_GT(alone.size(), 30'000u);
+  EXPECT_EQ(alone, seen);
+  EXPECT_GT(std::set(alone.begin(), alone.end()).size(), 1000u);  // and they are forces
+}
+
+TEST_F(Forces, OfALiveRunAreThoseOfItsReplay) {
+  // What a live run meets depends on the clock; what it answers must depend on nothing else.
+  start_viewer("view.tact");
+  tactd(kLiver + " --seconds 3 --record " + in("live.log"));
+  end_viewer();
+  EXPECT_GT(tracked_frames("view.tact"), 30u);
+  tactd(kLiver + " --replay " + in("live.log"));
+}
+
+TEST_F(Forces, AreTheSameBitsWhileTrackersAreLostFrozenJumpOrComeOutOfOrder) {
+  // The recording of the scene has all of it in its 30 s, which are those of the wall's clock.
+  start_viewer("view.tact", kScenes + "maintenance.tracking.toml");
+  tactd(kMaintenance + " --seconds 31.5 --record " + in("live.log"));
+  tactd(kMaintenance + " --free-run --seconds 40 --record " + in("seen.log"));
+  end_viewer();
+  using enum host::TrackingTrouble;
+  const Seen seen = seen_in("view.tact");
+  EXPECT_TRUE(seen.states.contains(host::BodyState::kTracked));
+  EXPECT_TRUE(seen.states.contains(host::BodyState::kHeld));
+  EXPECT_TRUE(seen.states.contains(host::BodyState::kLost));
+  for (const host::TrackingTrouble trouble : {kSilent, kTooFewPoints, kJump, kFrozen, kOutOfOrder})
+    EXPECT_TRUE(seen.troubles.contains(trouble)) << "trouble " << static_cast<int>(trouble);
+
+  // Nobody looks now: the run that was tracked through all this gives the same forces again, ...
+  tactd(kMaintenance + " --replay " + in("live.log"));
+  const std::vector<std::uint64_t> live = forces("live.log");
+  EXPECT_GT(std::set(live.begin(), live.end()).size(), 1000u);
+  // ... and so does one of simulated time.
+  tactd(kMaintenance + " --free-run --seconds 40 --no-telemetry --record " + in("alone.log"));
+  const std::vector<std::uint64_t> alone = forces("alone.log");
+  ASSERT_EQ(alone.size(), 40'000u);
+  EXPECT_EQ(alone, forces("seen.log"));
+}
+
+}  // namespace
+}  // namespace tact
