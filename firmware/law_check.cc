@@ -110,6 +110,7 @@ LawTime measure_law(const model::Scene& scene, model::SiteLaw& twin, double deep
   const std::size_t spheres = scene.tool.spheres.size();
   const std::size_t triangles = scene.organ_mesh.triangle.size();
   std::vector<std::vector<model::Site>> ways;
+  ways.reserve(spheres);
   for (std::size_t i = 0; i < spheres; ++i)
     ways.push_back(circle(scene.organ_mesh, static_cast<std::uint32_t>((triangles * i) / spheres)));
   MonotonicClock clock;

@@ -64,7 +64,10 @@ std::vector<int> parse_cpu_list(const std::string& list) {
     int first = 0;
     if (!parse_number(at, end, first)) return {};
     int last = first;
-    if (at != end && *at == '-' && !parse_number(++at, end, last)) return {};
+    if (at != end && *at == '-') {
+      ++at;
+      if (!parse_number(at, end, last)) return {};
+    }
     for (int cpu = first; cpu <= last; ++cpu) cpus.push_back(cpu);
     if (at != end && *at == ',')
       ++at;

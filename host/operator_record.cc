@@ -31,7 +31,7 @@ std::optional<Pose> take(const T (&position_m)[3], const T (&wxyz)[4]) {
   double p[3], q[4];
   std::ranges::transform(position_m, p, [](T m) { return static_cast<double>(m); });
   std::ranges::transform(wxyz, q, [](T part) { return static_cast<double>(part); });
-  const Pose out{.rotation = {q[0], q[1], q[2], q[3]}, .position_m = {p[0], p[1], p[2]}};
+  Pose out{.rotation = {q[0], q[1], q[2], q[3]}, .position_m = {p[0], p[1], p[2]}};
   const bool is_turn = std::abs(out.rotation.norm() - 1.0) < 1e-3;
   if (!is_turn || !out.position_m.allFinite()) return std::nullopt;
   return out;

@@ -53,8 +53,10 @@ std::optional<Error> check_everywhere(const PatchSurface& surface, const SpringP
   std::vector<Vec3> rest(surface.mesh.vertex_m.begin(), surface.mesh.vertex_m.end());
   std::vector<Vec3> velocity(n);
   std::vector<double> inverse(n, 1.0 / p.node_mass_kg), drag;
+  drag.reserve(n);
   for (const double a : surface.anchor_N_per_m) drag.push_back(p.tissue.body_damping_time_s * a);
   std::vector<Spring> springs;
+  springs.reserve(surface.edge.size());
   const double k = p.tissue.surface_stiffness_N_per_m;
   for (const PatchEdge& e : surface.edge)
     springs.push_back({e.a, e.b, k, p.tissue.damping_time_s * k, surface.rest_length_m(e)});

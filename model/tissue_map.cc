@@ -58,6 +58,7 @@ Result<ComplianceFamily> read_scene_family(const Scene& scene) {
 std::vector<float> stiffness_factors(const ComplianceFamily& family,
                                      const std::vector<float>& coordinate, double depth_m) {
   std::vector<double> curve_N;
+  curve_N.reserve(family.curve.size());
   for (const ComplianceCurve& c : family.curve) curve_N.push_back(c.respond(depth_m).force_N);
   std::vector<float> factor;
   for (const float kappa : coordinate) {

@@ -25,7 +25,8 @@ class HeartbeatGuard {
 
   /// What to send in this tick, if anything, so that the watch becomes `wanted`.
   std::optional<CanFrame> step(bool wanted, int node, const CstConfiguration& can) RT_SAFE {
-    if (waiting_ticks_ > 0 && --waiting_ticks_ > 0) return std::nullopt;
+    if (waiting_ticks_ > 0) --waiting_ticks_;
+    if (waiting_ticks_ > 0) return std::nullopt;
     const bool settled = known_ && on_ == wanted;
     if (settled || (!wanted && refuses_off_)) return std::nullopt;
     known_ = false;

@@ -143,10 +143,10 @@ void Condenser::read_rings(std::size_t slot, std::uint32_t vertex, std::span<flo
 }
 
 std::optional<Error> Condenser::run(ComplianceMap& map) {
-  const Error stopped{"condensation: stopped"};
+  const auto stopped = [] { return Error{"condensation: stopped"}; };
   const auto count = static_cast<std::uint32_t>(surface_.vertex_m.size());
   for (std::uint32_t first = 0; first < count; first += kVerticesAtOnce) {
-    if (settings_.progress && !settings_.progress(first, count)) return stopped;
+    if (settings_.progress && !settings_.progress(first, count)) return stopped();
     const std::uint32_t here = std::min(static_cast<std::uint32_t>(kVerticesAtOnce), count - first);
     for (std::uint32_t slot = 0; slot < here; ++slot) {
       load(slot, first + slot);
@@ -158,7 +158,7 @@ std::optional<Error> Condenser::run(ComplianceMap& map) {
     solver_.solve({loads_.data(), here * kAxes}, skin_, moved_m_);
     for (std::uint32_t slot = 0; slot < here; ++slot) read(slot, first + slot, map);
   }
-  if (settings_.progress && !settings_.progress(count, count)) return stopped;
+  if (settings_.progress && !settings_.progress(count, count)) return stopped();
   return std::nullopt;
 }
 

@@ -1,6 +1,7 @@
 // hud.ts - the panels: everything that is said in words and numbers.
 
 import { describe, kStates } from "./faults";
+import { Pace } from "./pace";
 import { length_of, type FigureFrame, type Frame, type Scene, type Status } from "./protocol";
 
 const kHold_ms = 1500; // a limit that acted for one tick stays readable this long
@@ -25,7 +26,7 @@ function pill(id: string, text: string, tone: string): void {
 export class Hud {
   private limit = 0;
   private limit_seen_ms = -Infinity;
-  private written_ms = 0;
+  private readonly unwritten = new Pace<Frame>(kRewrite_ms);
   private force_limit_N = 0;
   private continuous_force_N = 0;
   private energy_budget_J = 0;
@@ -64,13 +65,18 @@ export class Hud {
     }
   }
 
-  frame(frame: Frame, now_ms: number, fps: number): void {
+  frame(frame: Frame, now_ms: number): void {
     if (frame.limit > 0 || frame.fault > 0) {
       this.limit = frame.fault > 0 ? frame.fault : frame.limit;
       this.limit_seen_ms = now_ms;
     }
-    if (now_ms - this.written_ms < kRewrite_ms) return;
-    this.written_ms = now_ms;
+    this.unwritten.add(frame);
+  }
+
+  /** Once per picture: the last frame before a silence is the one that tells why. */
+  draw(now_ms: number, fps: number): void {
+    const frame = this.unwritten.take(now_ms);
+    if (!frame) return;
     const force_N = length_of(frame.force_N);
     const share = Math.min(1, force_N / (this.force_limit_N || 1));
     const state = kStates[frame.state] ?? { name: `state ${frame.state}`, words: "unknown" };

@@ -143,9 +143,10 @@ function draw(now_ms: number): void {
     organ.show(shown.sites, shown.patch);
     tool.show(shown);
     hand.frame(shown, now_ms);
-    hud.frame(shown, now_ms, stage.fps);
+    hud.frame(shown, now_ms);
     most_ever_m = Math.max(most_ever_m, organ.deformed.most_m);
   }
+  hud.draw(now_ms, stage.fps);
   draw_figure();
   tool?.show_hand_target(hand.target ? (hand.target.toArray() as Vec) : null);
   if (!paused) plots.draw(now_ms);
