@@ -28,8 +28,8 @@ class Views {
  public:
   View next(std::size_t markers = 8, double scale = 1.0) {
     View out;
-    out.truth.rotation = Eigen::Quaterniond(normal(), normal(), normal(), normal()).normalized();
-    out.truth.position_m = Vector3d(0.3 * side(), 0.3 * side(), 2.0);
+    out.truth.rotation = Eigen::Quaterniond{normal(), normal(), normal(), normal()}.normalized();
+    out.truth.position_m = Vector3d{0.3 * side(), 0.3 * side(), 2.0};
     for (const BodyMarker& marker : test::eight_markers()) {
       if (out.points_m.size() < markers) out.points_m.push_back(scale * marker.position_m);
     }
@@ -40,8 +40,9 @@ class Views {
     view.pixels_px.clear();
     for (const Vector3d& p : view.points_m) {
       const Vector3d x = to_world(view.truth, p);
-      view.pixels_px.emplace_back(1200.0 * x.x() / x.z() + 960.0 + 0.5 * normal(),
-                                  1200.0 * x.y() / x.z() + 540.0 + 0.5 * normal());
+      const Vector2d noise_px{0.5 * normal(), 0.5 * normal()};  // braces fix the order of draws
+      view.pixels_px.emplace_back(1200.0 * x.x() / x.z() + 960.0 + noise_px.x(),
+                                  1200.0 * x.y() / x.z() + 540.0 + noise_px.y());
     }
   }
   double side() { return std::uniform_real_distribution<double>(-1.0, 1.0)(random_); }

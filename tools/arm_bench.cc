@@ -2,7 +2,6 @@
 //
 // Seven joints, warm start, a tool that presses, slides and wanders for 30 s at 60 frames/s, now
 // and then farther than the arm alone spans. The same with classical CCD over the full chain.
-#include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "host/tracking/figure.h"
+#include "tools/common/median_reporter.h"
 
 namespace {
 
@@ -48,56 +48,29 @@ std::vector<ArmGoal> goals(const tact::host::BodyPlan& plan) {
   return out;
 }
 
-/// Keeps the median over the repetitions by name and prints nothing.
-class MedianReporter : public benchmark::BenchmarkReporter {
- public:
-  // NOLINTBEGIN(readability-identifier-naming): the library's names
-  bool ReportContext(const Context&) override { return true; }
-  void ReportRuns(const std::vector<Run>& runs) override {
-    for (const Run& run : runs) {
-      if (run.aggregate_name == "median") {
-        median_us[run.run_name.function_name] = run.GetAdjustedCPUTime();
-      }
-    }
-  }
-  // NOLINTEND(readability-identifier-naming)
-  std::map<std::string, double> median_us;
-};
-
 void bench_arm(const std::string& name, RootRule rule) {
-  benchmark::RegisterBenchmark(name.c_str(),
-                               [rule](benchmark::State& state) {
-                                 const auto plan = tact::host::make_body_plan(1.75);
-                                 const std::vector<ArmGoal> all = goals(plan);
-                                 ToolArm arm(plan, rule);
-                                 std::size_t i = 0;
-                                 for (auto _ : state) {
-                                   arm.relax(kFrame_s / tact::host::kRelax_s);
-                                   benchmark::DoNotOptimize(arm.hold(all[i++ % all.size()]));
-                                 }
-                               })
-      ->Unit(benchmark::kMicrosecond)
-      ->Repetitions(15)
-      ->MinTime(0.1)
-      ->ReportAggregatesOnly(true);
+  tact::tools::repeat(benchmark::RegisterBenchmark(name.c_str(), [rule](benchmark::State& state) {
+    const auto plan = tact::host::make_body_plan(1.75);
+    const std::vector<ArmGoal> all = goals(plan);
+    ToolArm arm(plan, rule);
+    std::size_t i = 0;
+    for (auto _ : state) {
+      arm.relax(kFrame_s / tact::host::kRelax_s);
+      benchmark::DoNotOptimize(arm.hold(all[i++ % all.size()]));
+    }
+  }));
 }
 
 void bench_figure(const std::string& name) {
-  benchmark::RegisterBenchmark(
-      name.c_str(),
-      [](benchmark::State& state) {
-        const std::vector<Pose> all = motion();
-        tact::host::Figure figure;
-        double t_s = 0.0;
-        std::size_t i = 0;
-        for (auto _ : state) {
-          benchmark::DoNotOptimize(figure.update(t_s += kFrame_s, all[i++ % all.size()], {}));
-        }
-      })
-      ->Unit(benchmark::kMicrosecond)
-      ->Repetitions(15)
-      ->MinTime(0.1)
-      ->ReportAggregatesOnly(true);
+  tact::tools::repeat(benchmark::RegisterBenchmark(name.c_str(), [](benchmark::State& state) {
+    const std::vector<Pose> all = motion();
+    tact::host::Figure figure;
+    double t_s = 0.0;
+    std::size_t i = 0;
+    for (auto _ : state) {
+      benchmark::DoNotOptimize(figure.update(t_s += kFrame_s, all[i++ % all.size()], {}));
+    }
+  }));
 }
 
 }  // namespace
@@ -116,9 +89,7 @@ int main(int argc, char** argv) {
   bench_arm("arm", RootRule::kSubRootFirst);
   bench_arm("arm_full_chain", RootRule::kAlwaysFullChain);
   bench_figure("figure");
-  MedianReporter reporter;
-  benchmark::RunSpecifiedBenchmarks(&reporter);
-  const auto& us = reporter.median_us;
+  const auto us = tact::tools::median_times_us();
   if (json) {
     fmt::print("{}\n", nlohmann::json(us).dump());
   } else {

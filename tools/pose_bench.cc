@@ -5,7 +5,6 @@
 // front of the camera and up to 0.3 m beside its axis; Gaussian noise on both pixel coordinates.
 // With two cameras the second is as far away, its line of sight 30 to 120 degrees from the first's;
 // the time then is of one look: its own pose, and the joint one with the look of the other camera.
-#include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -20,6 +19,7 @@
 #include "host/tracking/joint_pose.h"
 #include "host/tracking/one_euro.h"
 #include "host/tracking/robust_pose.h"
+#include "tools/common/median_reporter.h"
 
 namespace {
 
@@ -57,15 +57,15 @@ class Views {
 
   View next() {
     View out;
-    out.truth.rotation = Quaterniond(normal(), normal(), normal(), normal()).normalized();
+    out.truth.rotation = Quaterniond{normal(), normal(), normal(), normal()}.normalized();
     out.truth.position_m = {0.3 * side(), 0.3 * side(), options_.distance_m};
     for (int i = 0; i < options_.markers; ++i) {
-      const Vector3d p = Vector3d(normal(), normal(), normal()).normalized();
+      const Vector3d p = Vector3d{normal(), normal(), normal()}.normalized();
       out.points_m.emplace_back(0.5 * options_.size_m * p);
     }
     // The second camera: the first, swung about the body.
     const double angle_rad = (75.0 + 45.0 * side()) / kDegrees;
-    const Vector3d axis = Vector3d(normal(), normal(), 0.0).normalized();
+    const Vector3d axis = Vector3d{normal(), normal(), 0.0}.normalized();
     out.eye.rotation = Eigen::AngleAxisd(angle_rad, axis);
     out.eye.position_m = out.truth.position_m - out.eye.rotation * out.truth.position_m;
     look(out);
@@ -77,15 +77,16 @@ class Views {
     picture(view.points_m, bind(view.eye, view.truth), view.beside_px);
   }
 
- private:
+ private:  // draws stand in braces, which fix their order
   void picture(const std::vector<Vector3d>& points_m, const Pose& pose,
                std::vector<Vector2d>& pixels_px) {
     pixels_px.clear();
     for (const Vector3d& p : points_m) {
       const Vector3d x = to_world(pose, p);
-      pixels_px.emplace_back(
-          kCamera.fx_px * x.x() / x.z() + kCamera.cx_px + options_.noise_px * normal(),
-          kCamera.fy_px * x.y() / x.z() + kCamera.cy_px + options_.noise_px * normal());
+      const Vector2d noise_px = {options_.noise_px * normal(), options_.noise_px * normal()};
+      const Vector2d px(kCamera.fx_px * x.x() / x.z() + kCamera.cx_px,
+                        kCamera.fy_px * x.y() / x.z() + kCamera.cy_px);
+      pixels_px.push_back(px + noise_px);
     }
   }
   double side() { return std::uniform_real_distribution<double>(-1.0, 1.0)(random_); }
@@ -126,31 +127,12 @@ nlohmann::json spread(const std::vector<double>& values_m) {
   return {{"median_mm", 1e3 * quantile(values_m, 0.5)}, {"p95_mm", 1e3 * quantile(values_m, 0.95)}};
 }
 
-/// Keeps the medians over the repetitions and prints nothing.
-class MedianReporter : public benchmark::BenchmarkReporter {
- public:
-  bool ReportContext(const Context&) override {
-    return true;
-  }                                                         // NOLINT(readability-identifier-naming)
-  void ReportRuns(const std::vector<Run>& runs) override {  // NOLINT(readability-identifier-naming)
-    for (const Run& run : runs) {
-      if (run.aggregate_name == "median") medians_us.push_back(run.GetAdjustedCPUTime());
-    }
-  }
-  std::vector<double> medians_us;  // in the order of the benchmarks
-};
-
 void time_each(const char* name, std::size_t views, auto solve_at) {
-  benchmark::RegisterBenchmark(name,
-                               [views, solve_at](benchmark::State& state) {
-                                 std::size_t i = 0;
-                                 for (auto _ : state)
-                                   benchmark::DoNotOptimize(solve_at(i++ % views));
-                               })
-      ->Unit(benchmark::kMicrosecond)
-      ->Repetitions(15)
-      ->MinTime(0.1)
-      ->ReportAggregatesOnly(true);
+  tact::tools::repeat(
+      benchmark::RegisterBenchmark(name, [views, solve_at](benchmark::State& state) {
+        std::size_t i = 0;
+        for (auto _ : state) benchmark::DoNotOptimize(solve_at(i++ % views));
+      }));
 }
 
 /// Of one camera's pose, and of a look that is joined with another camera's.
@@ -164,9 +146,8 @@ std::pair<double, double> median_times_us(const Options& options) {
   }
   time_each("pose", views.size(), [&](std::size_t i) { return solve(views[i]); });
   time_each("joint", views.size(), [&](std::size_t i) { return solve_both(views[i], beside[i]); });
-  MedianReporter reporter;
-  benchmark::RunSpecifiedBenchmarks(&reporter);
-  return {reporter.medians_us.at(0), reporter.medians_us.at(1)};
+  const auto us = tact::tools::median_times_us();
+  return {us.at("pose"), us.at("joint")};
 }
 
 /// Of two cameras: how far off the body's own origin is.
