@@ -119,6 +119,15 @@ def arm():
     row("  of the whole figure", round(told["figure"], 1), "us", "", "tact-arm-bench")
 
 
+def sub_root():
+    """What the two-bone start from the shoulder saves on the scene's recorded motion."""
+    scene = ROOT / "model/scenes/maintenance.toml"
+    told = json.loads(subprocess.run([BUILD / "tact-figure", scene, "--json"], capture_output=True,
+                                     text=True).stdout)
+    row("joint updates, whole chain over shoulder first", round(told["updates_ratio"], 2), "", ">= 2",
+        "tact-figure maintenance.toml")
+
+
 def page():
     told = subprocess.run(["node", ROOT / "tests/browser/page_test.mjs", BUILD],
                           capture_output=True, text=True).stdout
@@ -138,8 +147,18 @@ def page_with_figure():
     row("  without it, in its own first view", fps[2] if fps else "?", "frames/s", "", command)
 
 
+def page_with_operator():
+    """30 s of recorded motion, seen with the tracked head."""
+    told = subprocess.run(["node", ROOT / "tests/browser/maintenance_test.mjs", BUILD],
+                          capture_output=True, text=True).stdout
+    fps = re.search(r"([\d.]+) frames/s", told)
+    row("page with the tracked operator, 30 s", fps[1] if fps else "?", "frames/s", ">= 30",
+        "node tests/browser/maintenance_test.mjs build")
+
+
 def main():
-    for measure in (ticks, mesh_size, loading, system_calls, pose, arm, page, page_with_figure):
+    for measure in (ticks, mesh_size, loading, system_calls, pose, arm, sub_root, page,
+                    page_with_figure, page_with_operator):
         measure()
     if OUT:
         pathlib.Path(OUT).write_text(json.dumps(rows, indent=2) + "\n")

@@ -14,7 +14,7 @@ namespace tact::hal {
 
 class LoopSilence {
  public:
-  /// 20 periods at 200 Hz; the watch above the loop acts sooner at more, later at less.
+  /// The watch above the loop acts sooner with hard real time above 250 Hz, else later.
   static constexpr std::int64_t kSilence_ns = 100'000'000;
 
   /// `commands`: how many the loop has sent. True: silent for so long; again after as long.

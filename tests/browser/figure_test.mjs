@@ -64,7 +64,7 @@ async function check_keys(page) {
   check("draws picture after picture with the figure", fps > 1,
     `${fps.toFixed(1)} frames/s with the figure, ${fps_without.toFixed(1)} without`);
   const before = await numbers(page);
-  check("the view stays where it is until E", !before.eyes_on && distance(before.camera_m, with_it.camera_m) < 1e-3);
+  check("the view stays where it is while no head is tracked", !before.eyes_on && distance(before.camera_m, with_it.camera_m) < 1e-3);
   const title = await page.locator("#eyes").getAttribute("title");
   await page.keyboard.press("e");
   await page.waitForTimeout(800);

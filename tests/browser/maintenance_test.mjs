@@ -18,6 +18,7 @@ const observations = join(scenes, "maintenance.observations.jsonl");
 const kGrip_m = 0.12; // from the tip of press.obj to where it is held
 const kHold_m = 0.002;
 const kMotion_s = 30;
+const kEyes_m = 0.2; // from the head's joint to the eyes, and what a smooth camera lags behind
 const kMostBytes = 4096;
 
 /** tact-view with a tracker, tactd, and the page. */
@@ -57,6 +58,7 @@ function watch(page, seconds) {
         hand_m: at["right fingers"],
         tool_m: window.tact.tool_m,
         grip_error_m: window.tact.grip_error_m,
+        camera_m: window.tact.camera_m,
         words: window.tact.tracking_words,
         shown: document.getElementById("tracking").hidden ? "" : document.getElementById("tracking").textContent,
         force_N: Math.hypot(...window.tact.force_N),
@@ -82,6 +84,24 @@ function check_grip(when, samples) {
   const off_m = most(still, (sample) => Math.abs(distance(sample.hand_m, sample.tool_m) - kGrip_m));
   check(`... and so far from the tip of the drawn tool`, still.length > 20 && off_m < kHold_m,
     `worst ${mm(off_m)} of ${still.length} pictures`);
+}
+
+/** Since the head was tracked; then V chooses the first view, E the eyes again. */
+async function check_eyes(page, samples) {
+  const seen = samples.filter((sample) => sample.time_s > 2);
+  const far_m = most(seen, (sample) => distance(sample.camera_m, sample.head_m));
+  check("the camera follows the tracked head by itself", path_m(seen, "camera_m") > 0.3 && far_m < kEyes_m,
+    `${path_m(seen, "camera_m").toFixed(2)} m, never more than ${mm(far_m)} from it`);
+  await page.keyboard.press("v");
+  const home = await watch(page, 2);
+  const rest = home.filter((sample) => sample.time_s > 0.5);
+  check("V chooses the first view, and nothing else moves it", path_m(rest, "camera_m") < 1e-3 &&
+    rest.every((sample) => distance(sample.camera_m, sample.head_m) > 0.5));
+  await page.keyboard.press("e");
+  const again = (await watch(page, 1.5)).filter((sample) => sample.time_s > 1);
+  check("E looks with the operator's eyes again",
+    most(again, (sample) => distance(sample.camera_m, sample.head_m)) < kEyes_m);
+  await page.keyboard.press("e");
 }
 
 async function follow_the_recording(browser) {
@@ -110,17 +130,15 @@ async function follow_the_recording(browser) {
   check("presses the gasket", most(samples, (sample) => sample.force_N) > 0.5,
     `${most(samples, (sample) => sample.force_N).toFixed(2)} N`);
   const words = new Set(samples.map((sample) => sample.words));
-  check("tells that the waist was out of sight", [...words].some((word) => word.includes("waist lost")),
-    [...words].filter((word) => word).join("; "));
+  for (const trouble of ["waist lost", "held (frozen)"]) {
+    check(`tells in words: ${trouble}`, [...words].some((word) => word.includes(trouble)),
+      [...words].filter((word) => word).join("; "));
+  }
   check("says nothing while all is well", samples.filter((sample) => sample.words === "").length > 0.7 * samples.length);
   const { largest_frame_bytes, largest_figure_bytes } = await page.evaluate(() => ({ ...window.tact }));
   check(`gets frame and figure in at most ${kMostBytes} bytes`, largest_figure_bytes > 100 &&
     largest_frame_bytes + largest_figure_bytes <= kMostBytes, `${largest_frame_bytes} and ${largest_figure_bytes}`);
-  await page.keyboard.press("e");
-  await page.waitForTimeout(1500);
-  const [eyes_m, head_m] = await page.evaluate(() => [window.tact.camera_m, window.tact.figure_m["head"]]);
-  check("looks with the operator's eyes", distance(eyes_m, head_m) < 0.2, mm(distance(eyes_m, head_m)));
-  await page.keyboard.press("e");
+  await check_eyes(page, samples);
   await page.keyboard.press("f");
   check("hides the operator", await waits(page, () => !window.tact.figure_on));
   await stop_all(all);
@@ -179,6 +197,8 @@ async function take_picture(browser) {
   check("shows the operator pressing", await waits(all.page, () =>
     window.tact.figure_m !== null && window.tact.tracking_words === "" && window.tact.tick > 10000 &&
     Math.hypot(...(window.tact.force_N ?? [0])) > 0.9, 60000));
+  await all.page.keyboard.press("v");
+  await all.page.waitForTimeout(1000);
   await all.page.screenshot({ path: join(build, "page-maintenance.png") });
   await stop_all(all);
 }

@@ -38,7 +38,7 @@ struct Options {
 void add_options(CLI::App& app, Options& o) {
   app.add_option("DEVICE", o.device, "falcon")->required()->check(CLI::IsMember({"falcon"}));
   o.scene.add_to(app, "[device.falcon]");
-  app.add_option("--masses_kg", o.masses_kg, "what you hang on the grip, one after the other")
+  app.add_option("--masses-kg", o.masses_kg, "what you hang on the grip, one after the other")
       ->expected(2, 20)
       ->check(CLI::Range(0.0, 0.5))
       ->capture_default_str();

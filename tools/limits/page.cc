@@ -138,10 +138,10 @@ std::string case_table(const LimitsReport& report) {
         fmt::format("<p>Not run, as they need the simulated hand: {}.</p>\n", escape_html(names));
   return out +
          "<p class=quiet>Commanded and written: largest of the case. Zero after: from the cause to "
-         "zero force. Allowed: 0 where the force must be gone in the tick of the cause, 11 ms "
-         "where "
-         "it fades as samples are missing, 51 ms outside the workspace. A fault that has latched "
-         "lets no force through until a person resets and arms again.</p>\n";
+         "zero force. Allowed: 0 where the force must be gone in the tick of the cause; else the "
+         "time of the fade, of the way out of the workspace or of the late ticks, and some ticks. "
+         "A fault that has latched lets no force through until a person resets and arms "
+         "again.</p>\n";
 }
 
 std::string wall_section(const LimitsReport& report) {

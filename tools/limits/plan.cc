@@ -132,7 +132,7 @@ constexpr std::array kCases{
                       .fault = Fault::kEmergencyStop,
                       .zero_within_s = kAtOnce_s}},
     Case{.name = "e-stop-released",
-         .what = "The emergency stop opens for 50 ms and closes again: nothing moves by itself.",
+         .what = "The emergency stop opens for 50 ticks and closes again: nothing moves by itself.",
          .shape = Shape::kRamp,
          .size = 1.0,
          .trouble = Trouble::kEmergencyStop,

@@ -36,10 +36,12 @@ Table case_table(const LimitsReport& report) {
                {"overshoot_N"},
                {"largest_torque_Nm"},
                {"largest_step_N"},
+               {"largest_step_Nm"},
                {"largest_power_W"},
                {"given_energy_J"},
                {"largest_rms_N"},
                {"time_to_zero_s"},
+               {"allowed_zero_s"},
                {"stages", CellKind::kWord},
                {"fault"}},
               report.cases.size());
@@ -47,8 +49,9 @@ Table case_table(const LimitsReport& report) {
     const CaseVerdict& v = result.verdict;
     table.add({std::string(v.subject.name), v.passed() ? 1.0 : 0.0, v.limits.force_N,
                v.worst.commanded_N, v.worst.force_N, v.overshoot_N, v.worst.torque_Nm,
-               v.worst.step_N, v.worst.power_W, v.worst.given_J, v.worst.rms_N,
-               v.worst.zero_s.value_or(std::nan("")), word_of(v.acted_words()),
+               v.worst.step_N, v.worst.step_Nm, v.worst.power_W, v.worst.given_J, v.worst.rms_N,
+               v.worst.zero_s.value_or(std::nan("")),
+               v.subject.expected.zero_within_s.value_or(std::nan("")), word_of(v.acted_words()),
                static_cast<double>(v.fault)});
   }
   return table;
@@ -119,6 +122,8 @@ json checks_json(const std::vector<Check>& checks) {
   return out;
 }
 
+json or_null(const std::optional<double>& value) { return value ? json(*value) : json(); }
+
 json case_json(const CaseVerdict& v) {
   return {{"case", v.subject.name},
           {"what", v.subject.what},
@@ -127,11 +132,14 @@ json case_json(const CaseVerdict& v) {
           {"largest_commanded_N", v.worst.commanded_N},
           {"largest_written_N", v.worst.force_N},
           {"overshoot_N", v.overshoot_N},
+          {"largest_torque_Nm", v.worst.torque_Nm},
           {"largest_step_N", v.worst.step_N},
+          {"largest_step_Nm", v.worst.step_Nm},
           {"largest_power_W", v.worst.power_W},
           {"given_energy_J", v.worst.given_J},
           {"largest_rms_N", v.worst.rms_N},
-          {"time_to_zero_s", v.worst.zero_s ? json(*v.worst.zero_s) : json()},
+          {"time_to_zero_s", or_null(v.worst.zero_s)},
+          {"allowed_zero_s", or_null(v.subject.expected.zero_within_s)},
           {"stages", v.acted_words()},
           {"fault", static_cast<int>(v.fault)},
           {"checks", checks_json(v.checks)}};

@@ -32,6 +32,7 @@ let newest_figure: FigureFrame | null = null;
 let shown_figure: FigureFrame | null = null;
 let figure_on = true;
 let eyes_on = false;
+let view_chosen = false; // by a key or the mouse: from then on it changes for nobody else
 
 const stage = new Stage(canvas, draw);
 const hand = new HandControl(canvas, stage, may_move_hand, (position_m, grip_ratio) =>
@@ -108,7 +109,7 @@ function show_figure(on: boolean): void {
   hud.pressed("figure", on);
 }
 
-/** Only when asked: a view that leaves by itself would be a surprise. Untracked, the figure's head. */
+/** With a tracked head by itself, until a person chooses another view; when asked, with any head. */
 function see_with_eyes(on: boolean): void {
   eyes_on = on && figure !== null;
   if (!eyes_on) stage.look_through(null);
@@ -125,6 +126,7 @@ function draw_figure(): void {
   }
   figure.object.visible = figure_on && shown_figure !== null;
   if (!shown_figure) return;
+  if (shown_figure.head_tracked && figure_on && !view_chosen && !eyes_on) see_with_eyes(true);
   if (eyes_on) stage.look_through(eyes_of(shown_figure, status.figure));
   figure.clear_view(shown_figure, stage.camera.position);
 }
@@ -170,11 +172,15 @@ const actions: Record<string, () => unknown> = {
     hud.pressed("wire", wireframe);
   },
   v: () => {
+    view_chosen = true;
     see_with_eyes(false);
     stage.go_home();
   },
   f: () => figure && show_figure(!figure_on),
-  e: () => see_with_eyes(!eyes_on),
+  e: () => {
+    view_chosen = true;
+    see_with_eyes(!eyes_on);
+  },
   g: () => hand.toggle_grip(),
   h: () => {
     const keys = by_id("keys");
@@ -200,6 +206,8 @@ for (const [id, key] of Object.entries(buttons)) {
     actions[key]();
   });
 }
+
+stage.controls.addEventListener("start", () => (view_chosen = true));
 
 /** Read-only numbers for tests and for curious people in the console. */
 const numbers = {

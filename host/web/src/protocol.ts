@@ -104,6 +104,7 @@ export interface FigureFrame {
   full_chain: boolean;
   trouble: number; // 0 none, 1 held, 2 lost, 3 out of reach
   words: string;
+  head_tracked: boolean;
 }
 
 export type LinkName = "waiting" | "live" | "lost" | "replay";

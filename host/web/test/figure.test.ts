@@ -6,7 +6,7 @@ import type { FigureFrame, Skeleton } from "../src/protocol";
 const kSkeleton: Skeleton = { joints: ["pelvis", "head", "hand"], capsules: [], sides: [0, 1], hand: 2, head: 1 };
 const kFrame: FigureFrame = {
   kind: "figure", tick: 1, joint_m: [0, 0, 0, 0.4, -0.1, 0.5, 0, 0, 0.08], grip_m: [0, 0.003, 0.084],
-  head: [1, 0, 0, 0], reached: true, error_mm: 0, sweeps: 1, updates: 2, full_chain: false, trouble: 0, words: "",
+  head: [1, 0, 0, 0], reached: true, error_mm: 0, sweeps: 1, updates: 2, full_chain: false, trouble: 0, words: "", head_tracked: false,
 };
 const near = (a: number, b: number): void => assert.ok(Math.abs(a - b) < 1e-9, `${a} is not ${b}`);
 
