@@ -1,7 +1,7 @@
-// make_tracking.h - an operator at work as two cameras see him: markers, noise, hidden points.
+// seen_operator.h - an operator at work as two cameras see him: markers, noise, hidden points.
 //
-//     motion    make_tracking_motion.cc: where head, shoulder, waist and hand are at a time
-//     cameras   make_tracking_view.cc: what of it comes out as pixels, with what goes wrong
+//     motion    motion.cc: where head, shoulder, waist and hand are at a time
+//     cameras   view.cc: what of it comes out as pixels, with what goes wrong
 //
 // Everything is a formula and a seeded draw: the same bytes on every run. The operator stands at +x
 // of W (+x towards him, +y to his right, +z up), looks towards -x and works at the origin. The

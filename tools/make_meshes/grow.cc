@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/make_meshes_edit.h"
-#include "tools/make_meshes_field.h"
+#include "tools/make_meshes/edit.h"
+#include "tools/make_meshes/field.h"
 
 namespace tact::tools {
 namespace {

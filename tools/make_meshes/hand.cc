@@ -6,7 +6,7 @@
 //     hand  2 465 vertices, 4 926 triangles;  cuff above the wrist  400 vertices, 796.
 #include <array>
 
-#include "tools/make_meshes_field.h"
+#include "tools/make_meshes/field.h"
 
 namespace tact::tools {
 namespace {

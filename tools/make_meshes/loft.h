@@ -1,9 +1,9 @@
-// make_meshes_loft.h - a closed tool as a stack of rings with a point at each end.
+// loft.h - a closed tool as a stack of rings with a point at each end.
 #pragma once
 
 #include <span>
 
-#include "tools/make_meshes.h"
+#include "tools/make_meshes/meshes.h"
 
 namespace tact::tools {
 

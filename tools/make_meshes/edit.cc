@@ -1,4 +1,4 @@
-#include "tools/make_meshes_edit.h"
+#include "tools/make_meshes/edit.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-// make_meshes.h - the shapes that tact ships, grown from formulas: same bytes on every run.
+// meshes.h - the shapes that tact ships, grown from formulas: same bytes on every run.
 //
 // Three ways to a surface: a smooth map of the unit sphere (liver), the zero of a field
-// (make_meshes_field.h: heart, hand, skin, gum, cover) and rings of points (forceps, injector,
+// (field.h: heart, hand, skin, gum, cover) and rings of points (forceps, injector,
 // blade, press). A closed body of V vertices has 2 V - 4 triangles, one with a hole 2 V. A further
-// shape is a new make_..._shape() and a row in the table of make_meshes.cc. Lengths here are
+// shape is a new make_..._shape() and a row in the table of main.cc. Lengths here are
 // millimetres, the unit of the files; triangles are counter-clockwise from outside. Organs have
 // their top towards +z, tools their tip at the origin and their handle towards +z.
 #pragma once

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tools/make_meshes.h"
+#include "tools/make_meshes/meshes.h"
 
 namespace tact::tools {
 namespace {

@@ -1,4 +1,4 @@
-// make_meshes_edit.h - a triangle surface under change: edges are split, collapsed and flipped.
+// edit.h - a triangle surface under change: edges are split, collapsed and flipped.
 //
 // Every edit keeps the surface sound (at most two triangles on an edge, one fan round a vertex) and
 // refuses where it would not. Removed vertices and triangles stay as gaps until shape() packs them.
@@ -6,7 +6,7 @@
 
 #include <array>
 
-#include "tools/make_meshes.h"
+#include "tools/make_meshes/meshes.h"
 
 namespace tact::tools {
 

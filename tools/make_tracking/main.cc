@@ -1,13 +1,13 @@
 // tact-make-tracking: writes the tracked operator of the scene maintenance, the same bytes on every
 // run: what two cameras see in 30 s, and the tracking description that belongs to it.
-#include "tools/make_tracking.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+
+#include "tools/make_tracking/seen_operator.h"
 
 namespace {
 

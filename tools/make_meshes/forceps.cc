@@ -7,7 +7,7 @@
 // V - E + F = 174 - 522 + 348 = 0: a closed surface with one hole, between pivot and spring.
 #include <array>
 
-#include "tools/make_meshes.h"
+#include "tools/make_meshes/meshes.h"
 
 namespace tact::tools {
 namespace {

@@ -1,6 +1,4 @@
 // tact-make-meshes: writes the meshes that the scenes use, the same bytes on every run.
-#include "tools/make_meshes.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -12,6 +10,8 @@
 #include <fstream>
 #include <optional>
 #include <system_error>
+
+#include "tools/make_meshes/meshes.h"
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include <random>
 #include <utility>
 
-#include "tools/make_tracking.h"
+#include "tools/make_tracking/seen_operator.h"
 
 namespace tact::tools {
 namespace {

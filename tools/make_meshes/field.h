@@ -1,4 +1,4 @@
-// make_meshes_field.h - bodies as smooth blends of round parts, and the surface of such a body.
+// field.h - bodies as smooth blends of round parts, and the surface of such a body.
 //
 // A field gives the distance of a point to the surface, mm, negative inside; only its zero and its
 // sign must be exact. Nothing here calls more of the math library than sqrt, which every machine
@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/make_meshes.h"
+#include "tools/make_meshes/meshes.h"
 
 namespace tact::tools {
 

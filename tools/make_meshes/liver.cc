@@ -9,7 +9,7 @@
 // their top, so that the top stays a gentle dome for a tool to press on.
 #include <cmath>
 
-#include "tools/make_meshes.h"
+#include "tools/make_meshes/meshes.h"
 
 namespace tact::tools {
 namespace {

@@ -7,7 +7,7 @@
 // 46 rings of 16 points and two ends: 738 vertices, 1 472 triangles.
 #include <array>
 
-#include "tools/make_meshes_loft.h"
+#include "tools/make_meshes/loft.h"
 
 namespace tact::tools {
 namespace {

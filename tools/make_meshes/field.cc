@@ -3,7 +3,7 @@
 // Each cube is six tetrahedra round its diagonal (0,0,0)-(1,1,1), the same in every cube, so faces
 // match. A tetrahedron with inside and outside corners holds one or two triangles; their corners
 // lie on its edges, one per edge of the grid: a closed surface by construction.
-#include "tools/make_meshes_field.h"
+#include "tools/make_meshes/field.h"
 
 #include <array>
 #include <cmath>

@@ -3,7 +3,7 @@
 //     z' = z + s (5 (x/40)^2 + 2 (y/60)^2),  s = (z + 15) / 30
 //
 // bends the top of a rounded block into a gentle dome and leaves its bottom flat.
-#include "tools/make_meshes_field.h"
+#include "tools/make_meshes/field.h"
 
 namespace tact::tools {
 namespace {

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <array>
 
-#include "tools/make_meshes_field.h"
+#include "tools/make_meshes/field.h"
 
 namespace tact::tools {
 namespace {

@@ -7,7 +7,7 @@
 // 40 rings of 12 points and two ends: 482 vertices, 960 triangles.
 #include <array>
 
-#include "tools/make_meshes_loft.h"
+#include "tools/make_meshes/loft.h"
 
 namespace tact::tools {
 namespace {

@@ -5,7 +5,7 @@
 // were.
 #include <array>
 
-#include "tools/make_meshes_field.h"
+#include "tools/make_meshes/field.h"
 
 namespace tact::tools {
 namespace {

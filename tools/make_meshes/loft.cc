@@ -1,4 +1,4 @@
-#include "tools/make_meshes_loft.h"
+#include "tools/make_meshes/loft.h"
 
 #include <cmath>
 #include <numbers>

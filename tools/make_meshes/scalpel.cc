@@ -7,7 +7,7 @@
 // 15 sections of 7 points and two ends: 107 vertices, 210 triangles.
 #include <array>
 
-#include "tools/make_meshes_loft.h"
+#include "tools/make_meshes/loft.h"
 
 namespace tact::tools {
 namespace {

@@ -6,7 +6,7 @@
 //     bolts    eight hexagon heads on washers round the rim
 #include <array>
 
-#include "tools/make_meshes_field.h"
+#include "tools/make_meshes/field.h"
 
 namespace tact::tools {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <numbers>
 
-#include "tools/make_tracking.h"
+#include "tools/make_tracking/seen_operator.h"
 
 namespace tact::tools {
 namespace {
