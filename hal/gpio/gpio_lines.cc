@@ -243,7 +243,7 @@ Result<GpioChip> choose_chip(const std::vector<GpioChip>& chips, const std::stri
         chips.empty() ? "this PC shows no GPIO chip" : "here are only " + name_chips(chips))};
   if (!found->bus.empty())
     return Error{fmt::format(
-        "{} \"{}\" hangs on {}, where every access waits for milliseconds: it cannot carry safety "
+        "{} \"{}\" hangs on {}, where an access may wait for milliseconds: it cannot carry safety "
         "lines; use a chip on PCI, LPC or the processor itself",
         found->name, found->label, found->bus)};
   if (found->error == EACCES || found->error == EPERM) return not_permitted(*found);
