@@ -52,14 +52,16 @@ json to_json(const ThreadCosts& c) {
 
 json make_report(const RunFacts& facts, const LoopStatistics& loop, const Gate& gate,
                  const Environment& environment) {
-  json phases, stages, shortfalls = json::array();
+  json phases, stages, shortfalls = json::array(), counts = json::object();
   for (std::size_t i = 0; i < kPhaseCount; ++i) phases[kPhaseName[i]] = percentiles(loop.phase[i]);
   for (std::size_t i = 0; i < kStageCount; ++i) stages[kStageName[i]] = gate.counters()[i];
   for (const Shortfall& s : facts.shortfalls) shortfalls.push_back(s.sentence);
+  for (const hal::DeviceCount& one : facts.device_counts) counts[one.name] = one.count;
   const model::FaultEntry& fault = model::describe(facts.fault);
   return {{"scene", facts.scene_name},
           {"law", facts.law_title},
           {"device", facts.device_name},
+          {"device_counts", counts},
           {"rate_Hz", facts.rate_Hz},
           {"duration_s", facts.duration_s},
           {"non_rt", facts.non_rt},

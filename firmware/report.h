@@ -11,6 +11,7 @@
 #include "firmware/loop_parts.h"
 #include "firmware/rt_loop.h"
 #include "firmware/rt_setup.h"
+#include "hal/device.h"
 
 namespace tact::firmware {
 
@@ -23,6 +24,7 @@ struct RunFacts {
   bool simulated_time = false;  // durations mean nothing
   std::vector<Shortfall> shortfalls;
   ThreadCosts costs;
+  std::vector<hal::DeviceCount> device_counts;
   std::uint64_t dropped_records = 0, dropped_frames = 0;
   State state = State::kOff;
   Fault fault = Fault::kNone;

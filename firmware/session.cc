@@ -247,6 +247,7 @@ int Session::report() {
       .simulated_time = options_.free_run,
       .shortfalls = shortfalls_,
       .costs = costs_,
+      .device_counts = parts_.device->tally(),
       .dropped_records = parts_.ring->dropped(),
       .dropped_frames = telemetry_->dropped_frames(),
       .state = parts_.controller->newest().state,

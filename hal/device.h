@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "model/fault.h"
 #include "model/haptic_limit.h"
@@ -41,6 +42,12 @@ struct DeviceInfo {
   /// What bounds the stiffness it can show; a device without it is never felt.
   std::optional<model::DeviceAtTool> at_tool{};
   std::string damping_key{};  // of the scene; empty: the damping is the hardware's own
+};
+
+/// Something that a device counted, for the report.
+struct DeviceCount {
+  const char* name;
+  std::uint64_t count;
 };
 
 /// An open device makes no force before the first write. Its destructor zeroes the force and
@@ -80,6 +87,9 @@ class Device {
   /// What lies behind the latched fault, for a person: which part, why, the cure. Empty when there
   /// is no more to say than the fault's own words. Any thread, at any time.
   virtual std::string trouble() const { return {}; }
+
+  /// What it counted since it was opened, as frames that are nobody's; read when the loop has ended.
+  virtual std::vector<DeviceCount> tally() const { return {}; }
 
   /// Zero force and power off; may block. Safe to call twice, and at any time after opening.
   virtual void stop() = 0;

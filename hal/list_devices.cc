@@ -145,9 +145,9 @@ FoundPart gpio_part(const PartProbes& probes, const GpioChip& chip) {
                  .cure = {}};
   if (!chip.label.empty()) part.what += fmt::format(" \"{}\"", chip.label);
   if (chip.lines >= 0) part.what += fmt::format(", {} lines", chip.lines);
-  part.what += chip.bus.empty() ? ", does not sleep" : fmt::format(", sleeps (on {})", chip.bus);
+  part.what += chip.bus.empty() ? ", does not sleep" : fmt::format(", may sleep (on {})", chip.bus);
   if (!chip.bus.empty()) {
-    part.lacking = "every access waits for milliseconds, so it cannot carry safety lines";
+    part.lacking = "an access may wait for milliseconds, so it cannot carry safety lines";
     part.cure = "use a chip on PCI, LPC or the processor itself";
   } else {
     const int error = probes.access_error(chip.path);

@@ -93,6 +93,23 @@ TEST_F(Sysfs, AChipBehindASlowBusSleepsHoweverFarAbove) {
   EXPECT_EQ(chips[4].bus, "");
 }
 
+TEST_F(Sysfs, ABusThatIsNotKnownToBeFastIsTakenForSlow) {
+  chip(0, {"pci", "virtio"});
+  chip(1, {});
+  chip(2, {"", ""});
+  chip(3, {"pci", "pci_express", "", "pnp"});
+  chip(4, {"acpi", "platform", "isa"});
+  chip(5, {"platform", "amba"});
+  const auto chips = find_gpio_chips(roots());
+  ASSERT_EQ(chips.size(), 6u);
+  EXPECT_EQ(chips[0].bus, "virtio");
+  EXPECT_EQ(chips[1].bus, kUnknownBus);
+  EXPECT_EQ(chips[2].bus, kUnknownBus);
+  for (const std::size_t fast : {3u, 4u, 5u}) EXPECT_EQ(chips[fast].bus, "") << chips[fast].name;
+  EXPECT_TRUE(has(refusal(chips, "gpiochip0"), "hangs on virtio"));
+  EXPECT_EQ(slow_bus(roots().sys + "/no/such/folder", roots().sys), kUnknownBus);
+}
+
 TEST_F(Sysfs, AChipThatDoesNotAnswerIsNamedWithItsPath) {
   chip(0, {"pci"});
   auto lines = wired();

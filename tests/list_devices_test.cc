@@ -162,7 +162,7 @@ TEST_F(ListDevices, AGpioChipOnUsbIsShownAsNoGoodForSafety) {
   fs::create_directories(root_ + "/sys/bus/usb");
   fs::create_directory_symlink(root_ + "/sys/bus/usb", root_ + "/sys/devices/usb1/subsystem");
   fs::create_directory_symlink(chip, root_ + "/sys/bus/gpio/devices/gpiochip3");
-  EXPECT_EQ(only().what, "GPIO chip, sleeps (on usb)");
+  EXPECT_EQ(only().what, "GPIO chip, may sleep (on usb)");
   EXPECT_TRUE(has(only().lacking, "cannot carry safety lines"));
 }
 

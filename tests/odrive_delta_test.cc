@@ -227,6 +227,10 @@ TEST(OdriveDelta, FramesOfOtherNodesChangeNothing) {
   bench.tick();
   EXPECT_TRUE(bench.sample.fresh);
   EXPECT_EQ(dynamic_cast<OdriveDelta&>(*bench.device).counts().strays, 1u);
+  const auto tally = bench.device->tally();
+  ASSERT_FALSE(tally.empty());
+  EXPECT_STREQ(tally[0].name, "strays");
+  EXPECT_EQ(tally[0].count, 1u);
 }
 
 TEST(OdriveDelta, ASecondOpeningOfTheGateComesAfterStop) {

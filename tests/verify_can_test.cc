@@ -74,8 +74,22 @@ TEST(VerifyCan, EveryPublishedFrameOfTheKernelPassesAndEveryFieldIsLookedAt) {
 }
 
 TEST(VerifyCan, EveryPublishedFrameOfOdrivePassesAndEveryFieldIsLookedAt) {
-  check_file("can_odrive.json", 144,
+  check_file("can_odrive.json", 145,
              {{"encode", {}}, {"decode", {"data"}}, {"heartbeat_v0_5", {"data"}}});
+}
+
+TEST(VerifyCan, EveryCommandNumberOfOdriveIsLookedAtAndNoneMayBeMissing) {
+  json file = json::parse(std::ifstream(TACT_SOURCE_DIR "/tests/data/vectors/can_odrive.json"));
+  const json whole = file.at("commands");
+  for (const auto& [name, value] : whole.items()) {
+    file["commands"][name] = spoiled(value);
+    EXPECT_EQ(passed(file), 0) << name;
+    file["commands"].erase(name);
+    EXPECT_EQ(passed(file), 0) << name;
+    file["commands"] = whole;
+  }
+  file["commands"]["unheard_of"] = 5;
+  EXPECT_EQ(passed(file), 0);
 }
 
 TEST(VerifyCan, EveryPublishedFrameOfCia402PassesAndEveryFieldIsLookedAt) {

@@ -47,7 +47,7 @@ TEST(Verify, EveryPublishedCasePassesAndNoneIsMissing) {
                                              {"004_oscillator.json", 39},
                                              {"004_stability.json", 42},
                                              {"can_cia402.json", 352},
-                                             {"can_odrive.json", 144},
+                                             {"can_odrive.json", 145},
                                              {"can_socketcan.json", 85},
                                              {"falcon_packets.json", 95},
                                              {"kinematics_delta.json", 120},
@@ -57,7 +57,7 @@ TEST(Verify, EveryPublishedCasePassesAndNoneIsMissing) {
   const Outcome out = run(kVectors + " --json");
   EXPECT_EQ(out.status, 0) << out.output;
   const json report = json::parse(out.output);
-  EXPECT_EQ(report.at("passed"), 1716);
+  EXPECT_EQ(report.at("passed"), 1717);
   EXPECT_EQ(report.at("failed"), 0);
   std::map<std::string, int> passed;
   for (const json& file : report.at("files"))
@@ -111,7 +111,13 @@ TEST(Verify, EveryFieldOfEveryKinematicsFileIsLookedAt) {
     EXPECT_TRUE(fails("kinematics_falcon.json", json::json_pointer(at))) << field;
   }
   EXPECT_TRUE(fails("kinematics_falcon.json", json::json_pointer("/symmetric/3/p/2")));
-  EXPECT_TRUE(fails("kinematics_falcon.json", json::json_pointer("/constants/rad_per_count")));
+  EXPECT_TRUE(fails("kinematics_falcon.json", json::json_pointer("/symmetric/3/theta_deg")));
+  for (const char* field : {"a", "b", "c", "d", "e", "f", "r", "s", "phi/0", "phi/1", "phi/2",
+                            "encoder_slots", "counts_per_motor_rev", "shaft_diameter",
+                            "drum_diameter", "theta_at_zero_counts_deg", "rad_per_count"}) {
+    const std::string at = "/constants/" + std::string(field);
+    EXPECT_TRUE(fails("kinematics_falcon.json", json::json_pointer(at))) << field;
+  }
   for (const char* field : {"counts/1", "p_from_counts/0"}) {
     const std::string at = "/rows/9/" + std::string(field);
     EXPECT_TRUE(fails("kinematics_trajectory.json", json::json_pointer(at))) << field;

@@ -214,7 +214,35 @@ json odrive_decoded(const CanFrame& frame, const std::string& name, Report& repo
   return got;
 }
 
+/// Every published command and no other, by number.
+json odrive_commands() {
+  using Command = hal::OdriveCommand;
+  json numbers{{"get_version", Command::kGetVersion},
+               {"heartbeat", Command::kHeartbeat},
+               {"estop", Command::kEstop},
+               {"get_error", Command::kGetError},
+               {"set_axis_state", Command::kSetAxisState},
+               {"get_encoder_estimates", Command::kGetEncoderEstimates},
+               {"get_encoder_count_v05", Command::kGetEncoderCount05},
+               {"set_controller_mode", Command::kSetControllerMode},
+               {"set_input_pos", Command::kSetInputPosition},
+               {"set_input_vel", Command::kSetInputVelocity},
+               {"set_input_torque", Command::kSetInputTorque},
+               {"set_limits", Command::kSetLimits},
+               {"get_iq", Command::kGetIq},
+               {"get_temperature", Command::kGetTemperature},
+               {"get_bus_voltage_current", Command::kGetBusVoltageCurrent},
+               {"clear_errors", Command::kClearErrors},
+               {"get_torques", Command::kGetTorques},
+               {"get_powers", Command::kGetPowers}};
+  const json never_used{{"address", 0x06}, {"reboot", 0x16}, {"set_absolute_position", 0x19}};
+  numbers.update(never_used);
+  return numbers;
+}
+
 void verify_odrive(const json& file, Report& report) {
+  report.begin_case("commands");
+  compare_equal(report, odrive_commands(), file.at("commands"));
   int number = 0;
   for (const json& one : file.at("encode")) {
     report.begin_case("encode/" + std::to_string(number++));

@@ -195,6 +195,8 @@ void verify_trajectory(const json& file, Report& report) {
   }
 }
 
+double in_deg(double angle_rad) { return angle_rad * 180.0 / std::numbers::pi; }
+
 Joints falcon_thighs_rad(const json& counts) {
   return {hal::falcon_thigh_rad(counts.at(0)), hal::falcon_thigh_rad(counts.at(1)),
           hal::falcon_thigh_rad(counts.at(2))};
@@ -223,12 +225,36 @@ void verify_falcon_pose(const hal::FalconKinematics& falcon, const json& one, co
               tolerance.at("p"));
 }
 
+void verify_falcon_constants(const json& want, Report& report) {
+  constexpr double kRel = 1e-12;
+  const hal::FalconGeometry g;
+  const std::array<std::pair<const char*, double>, 8> lengths{{{"a", g.thigh_m},
+                                                               {"b", g.shin_m},
+                                                               {"c", g.platform_m},
+                                                               {"d", g.knee_link_m},
+                                                               {"e", g.ankle_link_m},
+                                                               {"f", g.side_shift_m},
+                                                               {"r", g.base_radius_m},
+                                                               {"s", g.base_shift_m}}};
+  for (const auto& [name, value] : lengths) compare_rel(report, name, value, want.at(name), kRel);
+  compare_rel(report, "phi", g.azimuth_rad, want.at("phi"), kRel);
+  compare_rel(report, "theta_at_zero_counts_deg", in_deg(hal::falcon_thigh_rad(0.0)),
+              want.at("theta_at_zero_counts_deg"), kRel);
+  const double rad_per_count = hal::falcon_thigh_rad(1.0) - hal::falcon_thigh_rad(0.0);
+  compare_rel(report, "rad_per_count", rad_per_count, want.at("rad_per_count"), kRel);
+  // The code has the parts only as this product: each of them, out of it and the others.
+  const double motor_rad = 2.0 * std::numbers::pi / want.at("counts_per_motor_rev").get<double>();
+  const double drum_m = want.at("drum_diameter"), shaft_m = want.at("shaft_diameter");
+  compare_rel(report, "counts_per_motor_rev", motor_rad * shaft_m / rad_per_count, drum_m, kRel);
+  compare_rel(report, "encoder_slots", want.at("counts_per_motor_rev").get<double>() / 4.0,
+              want.at("encoder_slots"), kRel);
+}
+
 void verify_falcon(const json& file, Report& report) {
   const hal::FalconKinematics falcon;
   const json& tolerance = file.at("tolerance");
   report.begin_case("constants");
-  compare_rel(report, "rad_per_count", hal::falcon_thigh_rad(1.0) - hal::falcon_thigh_rad(0.0),
-              file.at("constants").at("rad_per_count"), 1e-12);
+  verify_falcon_constants(file.at("constants"), report);
   int number = 0;
   for (const json& one : file.at("cases")) {
     report.begin_case("cases/" + std::to_string(number++));
@@ -241,6 +267,12 @@ void verify_falcon(const json& file, Report& report) {
         falcon.forward(falcon_thighs_rad(one.at("counts")), hal::kFalconHome);
     report.compare("solved", forward.solved, true, false, 0.0, 0.0);
     compare_abs(report, "p", to_json(forward.position_m), one.at("p"), tolerance.at("p"));
+    json thighs_deg = json::array(), want_deg = json::array();
+    for (const double thigh_rad : falcon_thighs_rad(one.at("counts"))) {
+      thighs_deg.push_back(in_deg(thigh_rad));
+      want_deg.push_back(one.at("theta_deg"));
+    }
+    compare_rel(report, "theta_deg", thighs_deg, want_deg, 1e-9);
   }
 }
 

@@ -109,6 +109,14 @@ void CanBus::miss() RT_SAFE {
   latch_.set({.fault = Fault::kBusDown, .kind = kind_of(CanCause::kNoRoom)});
 }
 
+std::vector<DeviceCount> with_bus(std::vector<DeviceCount> own, const CanBusCounts& bus) {
+  own.insert(own.end(), {{"missed_cycles", bus.missed_cycles},
+                         {"error_frames", bus.error_frames},
+                         {"unreadable", bus.unreadable},
+                         {"cut_reads", bus.cut_reads}});
+  return own;
+}
+
 std::string can_bus_trouble(const FaultCause& cause, const std::string& interface) {
   switch (static_cast<CanCause>(cause.kind)) {
     case CanCause::kCall:

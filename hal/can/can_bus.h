@@ -16,11 +16,13 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "hal/can/can_error.h"
 #include "hal/can/can_frame.h"
 #include "hal/can/can_socket.h"
 #include "hal/can/fault_latch.h"
+#include "hal/device.h"
 
 namespace tact::hal {
 
@@ -86,6 +88,9 @@ class CanBus {
   CanBusCounts counts_;
   FaultLatch latch_;
 };
+
+/// A device's own counts and those of its bus, by name.
+std::vector<DeviceCount> with_bus(std::vector<DeviceCount> own, const CanBusCounts& bus);
 
 /// What a cause of the bus means, with the cure; empty for causes that are not the bus's.
 std::string can_bus_trouble(const FaultCause& cause, const std::string& interface);

@@ -78,26 +78,26 @@ int CanSocket::receive(std::span<CanArrival> out) RT_SAFE {
   for (std::size_t i = 0; i < most; ++i) {
     in_[i].msg_hdr.msg_controllen = sizeof(Control);  // the kernel wrote what it used
   }
-  const int n = receive_batch(fd_, std::span(in_).first(most));
-  if (n == -EAGAIN || n == -EINTR) return 0;
-  if (n <= 0) return n;
-  const timespec now = wall_clock();
+  const int told = receive_batch(fd_, std::span(in_).first(most));
+  const int n = told == -EAGAIN || told == -EINTR ? 0 : told;
+  if (n < 0) return n;
+  const bool empties = static_cast<std::size_t>(n) < most && told != -EINTR;
+  stamps_.look(in_ns(wall_clock()), monotonic_ns(), empties);
   for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
     const bool whole = in_[i].msg_len == kCanFrameBytes;
-    out[i] = {.bytes = whole ? in_bytes_[i] : CanFrameBytes{},
-              .age_ns = age_ns(in_[i].msg_hdr, now)};
+    out[i] = {.bytes = whole ? in_bytes_[i] : CanFrameBytes{}, .age_ns = age_ns(in_[i].msg_hdr)};
   }
   return n;
 }
 
-std::int64_t CanSocket::age_ns(const msghdr& message, const timespec& now) const RT_SAFE {
+std::int64_t CanSocket::age_ns(const msghdr& message) const RT_SAFE {
   const auto* header = static_cast<const cmsghdr*>(message.msg_control);
   const bool stamped = message.msg_controllen >= CMSG_LEN(sizeof(timespec)) &&
                        header->cmsg_level == SOL_SOCKET && header->cmsg_type == SCM_TIMESTAMPNS;
   if (!stamped) return 0;
   timespec stamp{};
   std::memcpy(&stamp, CMSG_DATA(header), sizeof stamp);
-  return std::max<std::int64_t>(0, in_ns(now) - in_ns(stamp));
+  return stamps_.of(in_ns(stamp));
 }
 
 int CanSocket::send(std::span<const CanFrameBytes> frames) RT_SAFE {

@@ -3,8 +3,8 @@
 // Any socket whose datagrams are the 16 bytes of `struct can_frame` (can_frame.h): SocketCAN's raw
 // sockets, and a socketpair for tests. Buffers belong to the object and are set up once. The age of
 // a frame is the time since the kernel stamped it (SO_TIMESTAMPNS), as a difference of the same
-// clock, so the clocks of kernel and loop never mix; a step of the wall clock can make a frame look
-// old for one tick, which counts as a missing one. Without a stamp the age is 0.
+// clock, so the clocks of kernel and loop never mix; what a step of the wall clock does to it is in
+// stamp_age.h. Without a stamp the age is 0.
 #pragma once
 
 #include <sys/socket.h>
@@ -17,6 +17,7 @@
 #include <span>
 
 #include "hal/can/can_frame.h"
+#include "hal/can/stamp_age.h"
 
 namespace tact::hal {
 
@@ -51,12 +52,13 @@ class CanSocket {
   int fd() const RT_SAFE { return fd_; }
 
  private:
-  std::int64_t age_ns(const msghdr& message, const timespec& now) const RT_SAFE;
+  std::int64_t age_ns(const msghdr& message) const RT_SAFE;
 
   struct alignas(alignof(cmsghdr)) Control {
     std::array<std::uint8_t, 64> bytes;
   };
   int fd_;
+  StampAge stamps_;
   std::array<mmsghdr, kMostReceived> in_{};
   std::array<iovec, kMostReceived> in_place_{};
   std::array<CanFrameBytes, kMostReceived> in_bytes_{};

@@ -11,7 +11,9 @@
 // they let go they are told not to wait for the host's heartbeat (heartbeat_guard.h). A drive that
 // faults, leaves operation enabled or sends EMCY stops all three by quick stop, and no fault is
 // ever reset here: only opening the device anew does that. Without the loop its heartbeat is
-// missing and the drives stop by themselves (1016, 6007). CiA 301, CiA 402-2.
+// missing and the drives stop by themselves (1016, 6007). A drive that repeats an old position in
+// answer to a new SYNC cannot be told from one at rest: its sample has no velocity that would say
+// otherwise, as an ODrive's has (odrive_axis.h). CiA 301, CiA 402-2.
 #pragma once
 
 #include <array>
@@ -53,6 +55,10 @@ class Cia402Delta final : public Device {
   Fault write(const Wrench& wrench) RT_SAFE override;
   std::span<const int> loop_calls() const override { return CanSocket::kLoopCalls; }
   std::string trouble() const override;
+  std::vector<DeviceCount> tally() const override {
+    return with_bus({{"strays", counts_.strays}, {"old", counts_.old}, {"extra", counts_.extra}},
+                    bus_->counts());
+  }
   void stop() override;
 
   /// Set-up: why the positions at the start cannot be right, if so.

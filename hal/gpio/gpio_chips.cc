@@ -19,8 +19,14 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kPrefix = "gpiochip";
-constexpr std::array<std::string_view, 9> kSleeping{"usb",  "hid",    "i2c",     "i3c",     "spi",
-                                                    "spmi", "serial", "greybus", "mdio_bus"};
+constexpr std::string_view kOwn = "gpio";  // of the chip itself
+// Registers that the processor reads by itself. On every other bus a driver may have to wait.
+constexpr std::array<std::string_view, 7> kFast{"pci", "pci_express", "platform", "acpi",
+                                                "pnp", "isa",         "amba"};
+
+bool is_fast(std::string_view bus) {
+  return std::find(kFast.begin(), kFast.end(), bus) != kFast.end();
+}
 
 /// N of gpiochipN; -1 for other names.
 int number_of(const std::string& name) {
@@ -48,18 +54,21 @@ void ask_chip(GpioChip& chip) {
 
 }  // namespace
 
-std::string sleeping_bus(const std::string& device, const std::string& sys_root) {
+std::string slow_bus(const std::string& device, const std::string& sys_root) {
   std::error_code error;
   const fs::path root = fs::weakly_canonical(sys_root, error);
   fs::path folder = fs::canonical(device, error);
-  if (error) return {};
+  if (error) return kUnknownBus;
+  bool known = false;
   while (folder != root && folder.has_relative_path()) {
     const fs::path link = fs::read_symlink(folder / "subsystem", error);
-    std::string bus = error ? std::string() : link.filename().string();
-    if (std::find(kSleeping.begin(), kSleeping.end(), bus) != kSleeping.end()) return bus;
+    const std::string bus = error ? std::string() : link.filename().string();
     folder = folder.parent_path();
+    if (bus.empty() || bus == kOwn) continue;
+    if (!is_fast(bus)) return bus;
+    known = true;
   }
-  return {};
+  return known ? std::string() : kUnknownBus;
 }
 
 std::vector<GpioChip> find_gpio_chips(const SystemRoots& roots) {
@@ -69,7 +78,7 @@ std::vector<GpioChip> find_gpio_chips(const SystemRoots& roots) {
     const std::string name = entry.path().filename().string();
     if (number_of(name) < 0) continue;
     GpioChip chip{.name = name, .path = roots.dev + "/" + name, .label = {}, .bus = {}};
-    chip.bus = sleeping_bus(entry.path().string(), roots.sys);
+    chip.bus = slow_bus(entry.path().string(), roots.sys);
     ask_chip(chip);
     chips.push_back(std::move(chip));
   }

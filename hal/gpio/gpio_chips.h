@@ -1,9 +1,11 @@
 // gpio_chips.h - the GPIO chips of this PC, and which of them a loop may not wait for.
 //
-// A chip behind USB, I2C or SPI answers after milliseconds and its driver sleeps meanwhile; the
-// kernel knows (can_sleep) but does not tell user space, so the buses above the chip are read from
-// sysfs: /sys/bus/gpio/devices/gpiochipN and the `subsystem` links of its parents. Label and number
-// of lines come from the chip itself (linux/gpio.h, GPIO_GET_CHIPINFO_IOCTL). Set-up code only.
+// A chip behind USB, I2C, SPI or a virtual machine's queue answers after milliseconds and its driver
+// sleeps meanwhile; the kernel knows (can_sleep) but does not tell user space, so the buses above
+// the chip are read from sysfs: /sys/bus/gpio/devices/gpiochipN and the `subsystem` links of its
+// parents. All of them must be known to be fast: PCI, platform, ACPI, PnP, ISA, AMBA. A platform
+// driver that passes accesses on to another chip (gpio-aggregator) is not seen through. Label and
+// number of lines come from the chip itself (linux/gpio.h, GPIO_GET_CHIPINFO_IOCTL). Set-up only.
 #pragma once
 
 #include <string>
@@ -22,7 +24,7 @@ struct GpioChip {
   std::string path;   // /dev/gpiochip0
   std::string label;  // of its driver; empty when it may not be opened
   int lines = -1;     // -1: not known
-  std::string bus;    // of the slow bus it hangs on, as "usb"; empty: it does not sleep
+  std::string bus;    // of the slow or unknown bus it hangs on, as "usb"; empty: it is fast
   int error = 0;      // errno of opening it
 };
 
@@ -32,7 +34,10 @@ std::vector<GpioChip> find_gpio_chips(const SystemRoots& roots = {});
 /// What is there, for a sentence: `gpiochip0 "pinctrl-intel", gpiochip1 "mcp2221"`.
 std::string name_chips(const std::vector<GpioChip>& chips);
 
-/// The first subsystem above `device` (a folder of sysfs) that sleeps, or nothing.
-std::string sleeping_bus(const std::string& device, const std::string& sys_root);
+inline constexpr const char* kUnknownBus = "an unknown bus";
+
+/// The first subsystem above `device` (a folder of sysfs) that is not known to be fast; kUnknownBus
+/// when there is none at all; nothing when all are fast.
+std::string slow_bus(const std::string& device, const std::string& sys_root);
 
 }  // namespace tact::hal

@@ -51,11 +51,8 @@ class LineGroup {
  public:
   LineGroup() { gpiod_line_bulk_init(&bulk_); }
 
-  /// Adds a line and tells its place; -1 for a line that is not wired.
-  int add(gpiod_chip* chip, int offset) {
-    if (offset < 0) return -1;
-    gpiod_line* line = gpiod_chip_get_line(chip, static_cast<unsigned>(offset));
-    if (line == nullptr) return -1;
+  /// Adds a line and tells its place.
+  int add(gpiod_line* line) {
     gpiod_line_bulk_add(&bulk_, line);
     return static_cast<int>(bulk_.num_lines) - 1;
   }
@@ -198,15 +195,27 @@ bool request(Groups& lines) {
          gpiod_line_request_bulk_output(&lines.scope.bulk(), kConsumer, low.data()) == 0;
 }
 
-Groups group(gpiod_chip* chip, const LinesSettings& s) {
+/// All lines that the scene wires. One that the chip does not give is an error: an e-stop or a
+/// dead-man without its line would be none.
+Result<Groups> group(gpiod_chip* handle, const GpioChip& chip, const LinesSettings& settings) {
   Groups lines;
-  lines.estop_a = lines.inputs.add(chip, s.estop_a);
-  lines.estop_b = lines.inputs.add(chip, s.estop_b);
-  lines.dead_man = lines.inputs.add(chip, s.dead_man);
-  lines.enable = lines.outputs.add(chip, s.enable);
-  lines.heartbeat = lines.outputs.add(chip, s.heartbeat);
-  lines.led = lines.outputs.add(chip, s.led);
-  lines.scope.add(chip, s.scope);
+  int scope = -1;
+  LineGroup *const in = &lines.inputs, *const out = &lines.outputs;
+  const std::array<LineGroup*, 7> groups{in, in, in, out, out, out, &lines.scope};
+  const std::array<int*, 7> places{&lines.estop_a,   &lines.estop_b, &lines.dead_man, &lines.enable,
+                                   &lines.heartbeat, &lines.led,     &scope};
+  const auto wanted = offsets_of(settings);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const auto& [key, offset] = wanted[i];
+    if (offset < 0) continue;
+    gpiod_line* line = gpiod_chip_get_line(handle, static_cast<unsigned>(offset));
+    if (line == nullptr)
+      return Error{fmt::format(
+          "device.lines.{} is line {} of {} \"{}\", which the chip does not give: {}; correct the "
+          "number (gpioinfo {} shows the lines), or check its driver (dmesg)",
+          key, offset, chip.name, chip.label, std::strerror(errno), chip.name)};
+    *places[i] = groups[i]->add(line);
+  }
   return lines;
 }
 
@@ -234,7 +243,7 @@ Result<GpioChip> choose_chip(const std::vector<GpioChip>& chips, const std::stri
         chips.empty() ? "this PC shows no GPIO chip" : "here are only " + name_chips(chips))};
   if (!found->bus.empty())
     return Error{fmt::format(
-        "{} \"{}\" hangs on {}, where every access waits for milliseconds: it cannot carry safety "
+        "{} \"{}\" hangs on {}, where an access may wait for milliseconds: it cannot carry safety "
         "lines; use a chip on PCI, LPC or the processor itself",
         found->name, found->label, found->bus)};
   if (found->error == EACCES || found->error == EPERM) return not_permitted(*found);
@@ -272,13 +281,19 @@ Result<std::unique_ptr<SafetyLines>> open_safety_lines(const LinesSettings& sett
   const auto chip = choose_chip(find_gpio_chips(roots), settings.chip);
   if (!chip) return chip.error();
   if (const auto good = check_offsets(settings, *chip); !good) return good.error();
-  ChipHandle handle(gpiod_chip_open(chip->path.c_str()));
+  return open_lines_of(*chip, settings);
+}
+
+Result<std::unique_ptr<SafetyLines>> open_lines_of(const GpioChip& chip,
+                                                   const LinesSettings& settings) {
+  ChipHandle handle(gpiod_chip_open(chip.path.c_str()));
   if (handle == nullptr)
-    return Error{fmt::format("{} cannot be opened: {}; check its driver (dmesg)", chip->path,
+    return Error{fmt::format("{} cannot be opened: {}; check its driver (dmesg)", chip.path,
                              std::strerror(errno))};
-  Groups lines = group(handle.get(), settings);
-  if (!request(lines)) return why_not_requested(handle.get(), *chip, settings, errno);
-  return std::unique_ptr<SafetyLines>(new GpioLines(std::move(handle), lines));
+  auto lines = group(handle.get(), chip, settings);
+  if (!lines) return lines.error();
+  if (!request(*lines)) return why_not_requested(handle.get(), chip, settings, errno);
+  return std::unique_ptr<SafetyLines>(new GpioLines(std::move(handle), *lines));
 }
 
 }  // namespace tact::hal

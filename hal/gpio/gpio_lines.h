@@ -21,6 +21,11 @@ namespace tact::hal {
 model::Result<std::unique_ptr<SafetyLines>> open_safety_lines(const model::LinesSettings& settings,
                                                               const SystemRoots& roots = {});
 
+/// The lines of a chip that is chosen and checked. Every line that the scene wires is there, or
+/// this is an error that names it.
+model::Result<std::unique_ptr<SafetyLines>> open_lines_of(const GpioChip& chip,
+                                                          const model::LinesSettings& settings);
+
 /// The chip that is meant: by path, label or name, and on no bus where every access sleeps.
 model::Result<GpioChip> choose_chip(const std::vector<GpioChip>& chips, const std::string& wanted);
 

@@ -48,6 +48,13 @@ class OdriveDelta final : public Device {
   Fault write(const Wrench& wrench) RT_SAFE override;
   std::span<const int> loop_calls() const override { return CanSocket::kLoopCalls; }
   std::string trouble() const override;
+  std::vector<DeviceCount> tally() const override {
+    return with_bus({{"strays", counts_.strays},
+                     {"old", counts_.old},
+                     {"stale", counts_.stale},
+                     {"jumped", counts_.jumped}},
+                    bus_->counts());
+  }
   void stop() override;
 
   /// Set-up: why the positions at the start cannot be right, if so.

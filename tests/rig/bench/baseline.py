@@ -10,6 +10,10 @@ interrupts come at the same point of every run, and another snapshot moves them 
 (measured: 13 700 to 14 600 of the same program). The longest wake-up is the kernel's path more than ours: it may grow by a
 quarter (and is held against cyclictest besides); its median like all others. With another kernel
 than the baseline's, so may all phases that call it.
+
+The longest of a bus is its first tick, which empties the queue of the set-up and is some ten times as
+long as any other, so between it and the median a third number stands: what 99.9 % of the ticks of a
+phase do not exceed.
 """
 import json
 import statistics
@@ -17,13 +21,14 @@ import statistics
 ALLOWED_GROWTH = 1.05
 INTERRUPT_NS = 1600     # the timer's, measured in read and in write
 KERNEL_GROWTH = 1.25
+MOST = "p99.9_ns"
 CALLING = ("wake", "read", "write", "total")
 PHASES = ("wake", "read", "touch", "feel", "judge", "write", "tell", "total")
-MEASURES = {"median_ns": "p50_ns", "longest_ns": "max_ns"}
+MEASURES = {"median_ns": "p50_ns", MOST: MOST, "longest_ns": "max_ns"}
 
 
 def measure(runs, of_seeds=min):
-    """{back end: {phase: {median_ns, longest_ns}}} of the timed runs that have a report."""
+    """{back end: {phase: {median_ns, p99.9_ns, longest_ns}}} of the timed runs that have a report."""
     reports = {}
     for run in runs:
         if run.case.timed and run.report:
@@ -49,8 +54,8 @@ def read_gate(path):
 
 
 def most_allowed(phase, name, old, same_kernel):
-    of_kernel = (phase, name) == ("wake", "longest_ns") or (phase in CALLING and not same_kernel)
-    one_more = INTERRUPT_NS if (phase, name) == ("total", "longest_ns") else 0
+    of_kernel = (phase == "wake" and name != "median_ns") or (phase in CALLING and not same_kernel)
+    one_more = INTERRUPT_NS if phase == "total" and name != "median_ns" else 0
     return old * (KERNEL_GROWTH if of_kernel else ALLOWED_GROWTH) + one_more
 
 
@@ -62,10 +67,12 @@ def compare(measured, path, kernel):
         if back_end not in known:
             wrong.append(f"{back_end} has no baseline; tests/rig/run --write-baseline writes it")
             continue
+        if any(numbers.keys() - known[back_end].get(phase, {}).keys() for phase, numbers in phases.items()):
+            wrong.append(f"{back_end}: the baseline lacks a number; tests/rig/run --write-baseline writes it")
         for phase, numbers in phases.items():
             for name, value in numbers.items():
-                old = known[back_end].get(phase, {}).get(name, 0)
-                if value > most_allowed(phase, name, old, kernel == known_kernel):
+                old = known[back_end].get(phase, {}).get(name)
+                if old is not None and value > most_allowed(phase, name, old, kernel == known_kernel):
                     wrong.append(
                         f"{back_end}: {phase} {name.removesuffix('_ns')} took {old} instructions, now "
                         f"{value}: make it shorter, or change the baseline with a reason in the "
@@ -73,10 +80,16 @@ def compare(measured, path, kernel):
     return wrong
 
 
-def write(runs, gate, path, kernel):
-    """Replaces the back ends and the gate's paths that were measured, keeps the others."""
+def read_cycles(path):
+    """{back end: {median_us, p99_us, own_us}}, see bus_cycle.py."""
+    return read_all(path).get("bus_cycles", {})
+
+
+def write(runs, gate, cycles, path, kernel):
+    """Replaces the back ends, the gate's paths and the cycles of buses that were measured, keeps the others."""
     known, old_kernel = read(path)
     fresh = measure(runs, statistics.median_high)
     told = {"kernel": kernel if fresh else old_kernel, "gate": gate or read_gate(path),
+            "bus_cycles": dict(sorted((read_cycles(path) | cycles).items())),
             "back_ends": dict(sorted((known | fresh).items()))}
     path.write_text(json.dumps(told, indent=2) + "\n")

@@ -13,6 +13,12 @@ def rows(runs):
     return [(name, *(value / 1000 for value in values)) for name, values in found.items()]
 
 
+def measure(runs):
+    """{back end: {median_us, p99_us, own_us}} for the baseline; of several seeds the last."""
+    return {name: {"median_us": round(median), "p99_us": round(p99), "own_us": round(own)}
+            for name, median, p99, _, own, _ in rows(runs)}
+
+
 def table(runs):
     lines = ["| back end | cycle, median | 99 % | longest | of it the emulator's, median | longest |",
              "|---|---|---|---|---|---|"]

@@ -15,6 +15,7 @@ class Latches:
     faded_ms: float = None      # instead: from the injection to the first tick with zero force
     exit_status: str = "1"
     motors_ms: float = None     # from the injection to no force in the emulated motors
+    motors_later_ms: float = None   # instead: from the tick that knows to no torque in them
     or_first: str = ""          # another fault of the same harm, which may be seen first
 
     def judge(self, run):
@@ -42,19 +43,21 @@ class Latches:
             wrong.append(f"exit status {run.text('tactd.status').strip()}, not {self.exit_status}")
         if self.motors_ms is not None:
             wrong += motors_let_go(run, self.motors_ms)
+        if self.motors_later_ms is not None:
+            wrong += motors_let_go(run, self.motors_later_ms, since_ns=(detected or {}).get("time_ns"))
         return wrong
 
     def row(self, run):
         detected, zero = run.ticks.get("detected") or {}, run.ticks.get("zero") or {}
         return {"detected_as": detected.get("fault", "nothing"), "detected_ms": detected.get("after_ms"),
-                "zero_ms": zero.get("after_ms"),
+                "zero_ms": zero.get("after_ms"), "motors_ms": motors_ms(run),
                 "bound": f"{self.detect_ms:g}, " + (f"zero {self.zero_ms:g} later" if self.faded_ms is None
                                                     else f"faded by {self.faded_ms:g}") + " ms",
                 "moved_after_N": run.ticks.get("moved_after_N")}
 
 
 OF_THE_DEVICE = {"bus down", "bus off", "drive fault", "drive silent", "device unplugged",
-                 "device garbled", "homing lost", "device failed"}
+                 "device garbled", "homing lost", "device failed", "lines lost"}
 
 
 def attempt(required):
@@ -67,19 +70,28 @@ def attempt(required):
 
 
 def motors_let_go(run, within_ms, since_ns=None):
-    """What the motors on the other side of the bus did: no torque in time, and none after it."""
+    """What the motors on the other side of the bus did: no torque in time, and none after it. Of a fault
+    that the emulator committed itself it knows the first zero; of all others the zero that lasted."""
     told = (run.emulator.get("faults") or [{}])[0]
     since_ns = since_ns or told.get("injected_ns") or run.ticks.get("injected_ns") or 0
-    zero_ns = told.get("torque_zero_ns")
+    zero_ns = told.get("torque_zero_ns") if told else run.emulator.get("torque_zero_since_ns")
     if not since_ns or not zero_ns:
         return [f"the motors kept their force: {told}"]
-    took_ms, again_N = (zero_ns - since_ns) / 1e6, told["largest_after_zero_N"]
+    took_ms, again_N = (zero_ns - since_ns) / 1e6, told.get("largest_after_zero_N", 0.0)
     wrong = []
     if took_ms > within_ms:
         wrong.append(f"the motors let go after {took_ms:.2f} ms, bound {within_ms} ms")
     if again_N >= 0.05:
         wrong.append(f"the motors pushed again: {again_N:.3f} N")
     return wrong
+
+
+def motors_ms(run):
+    """From the injection to motors without torque, ms; None without emulated motors."""
+    told = (run.emulator.get("faults") or [{}])[0]
+    zero_ns = told.get("torque_zero_ns") or run.emulator.get("torque_zero_since_ns")
+    since_ns = told.get("injected_ns") or run.ticks.get("injected_ns")
+    return (zero_ns - since_ns) / 1e6 if zero_ns and since_ns else None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -107,7 +119,7 @@ class RidesThrough:
 
     def row(self, run):
         lost = run.ticks.get("most_skipped_at_once")
-        return {"detected_as": "rides through", "detected_ms": None, "zero_ms": None,
+        return {"detected_as": "rides through", "detected_ms": None, "zero_ms": None, "motors_ms": None,
                 "bound": f"{self.most_skipped} periods lost, {lost} were", "moved_after_N": None}
 
 
@@ -132,7 +144,7 @@ class StoppedByDrives:
 
     def row(self, run):
         return {"detected_as": "by the drives", "detected_ms": None,
-                "zero_ms": run.emulator.get("oldest_command_ns", 0) / 1e6,
+                "zero_ms": run.emulator.get("oldest_command_ns", 0) / 1e6, "motors_ms": motors_ms(run),
                 "bound": f"{self.within_ms:g} ms", "moved_after_N": None}
 
 
@@ -147,13 +159,14 @@ def write_table(runs, folder):
     (folder / "faults.json").write_text(json.dumps(rows, indent=2) + "\n")
     lines = ["# Faults on the virtual bench", "",
              "Times are guest time: ms from the injection to the tick that knows, and to the first with "
-             "zero force. A loss fades to zero before it latches.", "",
-             "| fault | back end | detected as | injected to detected | injected to zero | bound | "
-             "moved afterwards | verdict |", "|---|---|---|---|---|---|---|---|"]
+             "zero force; of the motors, to no torque in the emulated drives. A loss fades to zero before it "
+             "latches.", "",
+             "| fault | back end | detected as | injected to detected | injected to zero | to idle motors | "
+             "bound | moved afterwards | verdict |", "|---|---|---|---|---|---|---|---|---|"]
     for row in rows:
         lines.append("| " + " | ".join(
             [row["fault"], row["back_end"], row["detected_as"], ms(row["detected_ms"]),
-             ms(row["zero_ms"]), row["bound"],
+             ms(row["zero_ms"]), ms(row["motors_ms"]), row["bound"],
              "-" if row["moved_after_N"] is None else f"{row['moved_after_N']:g} N",
              row["verdict"]]) + " |")
     (folder / "faults.md").write_text("\n".join(lines) + "\n")

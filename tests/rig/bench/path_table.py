@@ -28,14 +28,15 @@ def split(readme):
     return head + begin, old, end + tail
 
 
-def write(baseline, path):
+def write(text, path):
+    """`text`: what tables() gives, or another table of the baseline."""
     head, _, tail = split(path.read_text())
-    path.write_text(head + tables(baseline) + tail)
+    path.write_text(head + text + tail)
 
 
-def compare(baseline, path):
-    """A complaint when the tables are not those that the baseline gives."""
+def compare(text, path):
+    """A complaint when the file does not hold `text`."""
     _, old, _ = split(path.read_text())
-    return [] if old == tables(baseline) else [
-        f"{path.name} in {path.parent.name}/ has other tables of longest paths than {baseline.name} gives: "
+    return [] if old == text else [
+        f"{path.name} in {path.parent.name}/ has other tables than the baseline of the bench gives: "
         "tests/rig/run --write-baseline"]

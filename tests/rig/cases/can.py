@@ -19,11 +19,26 @@ def swept(back_end):
                 seconds=1.5, variables={"EMULATOR": "--hand-tempo 2.5 --phase-us $((SEED * 137 % 1000))"})
 
 
+def not_looped_back(run):
+    """Another program on the controller's own interface hears the drives, and nothing that tactd says: a copy
+    of each frame would be made in the loop's own call."""
+    heard = {line.split()[2].partition("#")[0] for line in run.text("own_side.txt").splitlines()}
+    said = {f"{identifier:03X}" for _, identifier, _ in checks.frames_of(run)} - heard
+    wrong = [] if heard else ["nothing was heard on the controller's side: it proves nothing"]
+    torques = {f"{base + node * step:03X}" for node in (1, 2, 3) for base, step in TORQUES[run.case.back_end]}
+    return wrong + [f"the loop's own {one} is looped back" for one in sorted(torques - said)]
+
+
+# Identifiers of torques: base + node * step.
+TORQUES = {ODRIVE06: ((0x00E, 0x20),), CIA402: ((0x200, 1),)}
+
+
 def recorded(back_end, bus_check):
-    return Case(f"{back_end.name}-recorded", "the bus as candump sees it, frame by frame", back_end,
+    return Case(f"{back_end.name}-recorded", "the bus as candump sees it, frame by frame, from both sides", back_end,
                 "candump -L can1 >$RESULTS/candump.txt & background+=($!)\n"
+                "candump -L can0 >$RESULTS/own_side.txt & background+=($!)\n"
                 "control $SECONDS_OF_RUN\nfinish",
-                (checks.hard_real_time, checks.no_fault, bus_check), seconds=0.9,
+                (checks.hard_real_time, checks.no_fault, bus_check, not_looped_back), seconds=0.9,
                 variables={"EMULATOR": "--hand-tempo 2.5"})
 
 

@@ -2,7 +2,7 @@
 from bench import checks
 from bench.back_ends import SIM_DELTA
 from bench.case import Case
-from bench.faults import Latches, RidesThrough
+from bench.faults import Latches, RidesThrough, attempt
 
 DEEP = "control $SECONDS_OF_RUN\nsleep 3.4\n"  # the hand holds 10 mm of depth from 3.0 to 4.0 s
 UNMOVED = (checks.hard_real_time, checks.no_late_tick, checks.whole_run, checks.touched,
@@ -17,12 +17,12 @@ def hog(milliseconds):
 
 def fault(name, sentence, harm, required, also=()):
     """A case of 6 s: run deep into the tissue, do the harm, wait for the end."""
-    return Case(name, sentence, SIM_DELTA, f"{DEEP}{harm}\nfinish", also, fault=required, seconds=6)
+    return Case(name, sentence, SIM_DELTA, f"{DEEP}{harm}\n{attempt(required)}\nfinish", also, fault=required, seconds=6)
 
 
 CASES = [
     fault("stopped-50-ms", "a process that was stopped does not push again on its own",
-          "kill -STOP $tactd; sleep .05; inject kill -CONT $tactd",
+          "kill -STOP $tactd; sleep .05; inject kill -CONT $tactd; sleep .1",
           Latches("loop late", detect_ms=2), (checks.hard_real_time,)),
     fault("hog-fifo-95-3-ms", "a short loss of the CPU costs ticks, not the run",
           hog(3),
