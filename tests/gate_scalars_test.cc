@@ -83,14 +83,17 @@ TEST(GateScalars, AnApproachStaysWithinItsStepAndItsRadiusFromAnyPlaceToAnyPlace
       for_each_vector({0.0, -Doubles::denorm_min(), 3.0, -kLimit, 1e154, -Doubles::max(), kInfinity,
                        Doubles::quiet_NaN()},
                       [radius, &before](const Vec3& wanted) {
-                        Vec3 v = wanted;
-                        const bool held = approach(v, before, kStep, radius);
-                        ASSERT_TRUE(is_finite(v));
-                        ASSERT_LE(norm(v), kLimit);
-                        ASSERT_LE(norm(v - before), kStep + kRounding);
-                        ASSERT_LE(norm(v), std::fmax(radius, norm(before) - kStep) + kRounding);
-                        if (!held) {
-                          ASSERT_EQ(v, wanted);
+                        for (const double shrink : {kStep, 3.0 * kStep}) {
+                          Vec3 v = wanted;
+                          const bool held = approach(v, before, kStep, shrink, radius);
+                          ASSERT_TRUE(is_finite(v));
+                          ASSERT_LE(norm(v), kLimit);
+                          ASSERT_LE(norm(v - before), shrink + kRounding);
+                          ASSERT_LE(norm(v), norm(before) + kStep + kRounding);
+                          ASSERT_LE(norm(v), std::fmax(radius, norm(before) - shrink) + kRounding);
+                          if (!held) {
+                            ASSERT_EQ(v, wanted);
+                          }
                         }
                       });
     });
@@ -100,7 +103,7 @@ TEST(GateScalars, ATurnWithAShrinkingRadiusKeepsBoth) {
   // From 8 N along x towards 2 N along y: on a straight line |F| would fall by 0.92 a tick.
   Vec3 v{0, 2, 0};
   const Vec3 before{8, 0, 0};
-  EXPECT_TRUE(approach(v, before, 1.0, 2.0));
+  EXPECT_TRUE(approach(v, before, 1.0, 1.0, 2.0));
   EXPECT_NEAR(norm(v), 7.0, 1e-12);
   EXPECT_NEAR(norm(v - before), 1.0, 1e-12);
 }

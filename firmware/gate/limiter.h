@@ -2,12 +2,13 @@
 // along a motion.
 //
 //     magnitude   |F| <= limit                             direction kept
-//     approach    |F - F_before| <= step, |F| <= radius    or `step` nearer to radius than before
+//     approach    |F - F_before| <= step, |F| <= radius    or `shrink` nearer to radius than before
 //     surplus     F . d + T . a <= most                    least change of each, along its motion
 //
 // Approach shortens what is too long first and turns with what is left of the step: a straight line
-// to the goal would leave a shrinking radius more slowly than the step allows. Guards are written
-// so that NaN falls to zero.
+// to the goal would leave a shrinking radius more slowly than the step allows. After ticks that were
+// skipped `shrink` is the step of all the time that passed: a force catches up when it gets smaller,
+// never when it grows or turns. Guards are written so that NaN falls to zero.
 #pragma once
 
 #include "model/types.h"
@@ -34,11 +35,12 @@ inline bool limit_magnitude(Vec3& v, double limit) RT_SAFE {
   return true;
 }
 
-/// One tick from `before` towards v. True if v was out of reach.
-inline bool approach(Vec3& v, const Vec3& before, double step, double radius) RT_SAFE {
+/// One tick from `before` towards v. True if v was out of reach. `shrink` >= `step`.
+inline bool approach(Vec3& v, const Vec3& before, double step, double shrink,
+                     double radius) RT_SAFE {
   if (is_within(v, radius) && is_within(v - before, step)) return false;
   const double length = norm(before);
-  const double reach = std::fmax(radius, length - step);
+  const double reach = std::fmax(radius, length - shrink);
   Vec3 from = before;
   const double shrunk = limit_magnitude(from, reach) ? length - norm(from) : 0.0;
   bool held = limit_magnitude(v, reach);

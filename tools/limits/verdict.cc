@@ -197,15 +197,16 @@ Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limi
     larger(worst.torque_Nm, norm(row.written_Nm));
     if (is_finite(row.commanded_N)) larger(worst.commanded_N, norm(row.commanded_N));
     const bool stopped = !row.armed || latches(row.fault);  // then it goes to zero at once
+    const double periods = 1.0 + row.skipped_periods;       // since the write before
     if (!stopped) {
-      larger(worst.step_N, norm(row.written_N - before_N));
-      larger(worst.step_Nm, norm(row.written_Nm - before_Nm));
+      larger(worst.step_N, norm(row.written_N - before_N) / periods);
+      larger(worst.step_Nm, norm(row.written_Nm - before_Nm) / periods);
     }
     if (is_finite(row.tool))
       larger(worst.power_W, dot(row.written_N, row.tool.velocity_mps) +
                                 dot(row.written_Nm, row.tool.angular_velocity_radps));
     // the force of the tick before was held until now
-    heat += std::min(share * (1.0 + row.skipped_periods), 1.0) * (dot(before_N, before_N) - heat);
+    heat += std::min(share * periods, 1.0) * (dot(before_N, before_N) - heat);
     larger(worst.rms_N, std::sqrt(heat));
     energy.add(row, period_s);
     before_N = row.written_N;

@@ -25,10 +25,10 @@ struct Check {
 
 /// The worst of a record, for the report and for the checks.
 struct Extremes {
-  double force_N = 0.0, commanded_N = 0.0, torque_Nm = 0.0, step_N = 0.0, power_W = 0.0;
-  double step_Nm = 0.0;
-  double given_J = 0.0;      // largest since arming
-  double overdrawn_J = 0.0;  // above budget and recovery; 0: never
+  double force_N = 0.0, commanded_N = 0.0, torque_Nm = 0.0, power_W = 0.0;
+  double step_N = 0.0, step_Nm = 0.0;  // for each period that passed since the write before
+  double given_J = 0.0;                // largest since arming
+  double overdrawn_J = 0.0;            // above budget and recovery; 0: never
   double rms_N = 0.0;
   std::optional<double> zero_s{};  // from the cause to zero force; none: no cause, or never zero
 };
