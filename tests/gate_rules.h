@@ -33,7 +33,8 @@ inline constexpr model::Limits kRulesLimits{.force_N = 8.0,
                                             .thermal_time_s = 0.5,
                                             .power_W = 6.0};
 
-inline constexpr double kLost = 20.0;  // missed samples in a row
+inline constexpr double kFade_s = 0.010;  // of the force, from the second missed sample on
+inline constexpr double kLost = 20.0;     // missed samples in a row
 
 struct RuleTick {
   GateInput gate;
@@ -128,7 +129,12 @@ class GateRules {
 
   // Samples are counted in periods: what was skipped before this tick is missing too.
   const char* broken_loss_rule(const GateInput& input, bool stopped) {
+    constexpr double kRounding = 1e-9;
     missed_ = input.fresh || !input.armed ? 0.0 : missed_ + 1.0 + input.skipped_periods;
+    const bool zero = norm(verdict_.wrench.force_N) < kRounding * limits_.force_N &&
+                      norm(verdict_.wrench.torque_Nm) < kRounding * limits_.torque_Nm;
+    if ((missed_ - 1.0) * kRulesPeriod_s >= kFade_s && !zero)
+      return "zero within 10 ms of the second missed sample";
     if (missed_ >= kLost && !stopped) return "20 missed samples in a row latch";
     if (missed_ < kLost && verdict_.fault == model::Fault::kDeviceLost)
       return "fewer than 20 missed samples lose nothing";

@@ -114,6 +114,22 @@ TEST(Gate, ALoopThatIsLateFadesInTenMillisecondsOfTimeNotOfTicks) {
     EXPECT_EQ(v.limit, Fault::kSampleStale);
     EXPECT_EQ(v.fault, Fault::kNone);
   }
+  Gate five = open_gate({8, 0, 0});  // more than one period's slew in a tick, as more time passed
+  for (const double left : {0.6, 0.1, 0.0})
+    EXPECT_LE(five.judge(late_and_missing({8, 0, 0}, 4)).wrench.force_N.x, 8.0 * left + 1e-12);
+}
+
+TEST(Gate, AForceFarAboveItsLimitFadesInTenMillisecondsToo) {
+  GateInput much = wanting({1000, 0, 0});
+  much.wanted.torque_Nm = {0, 0, 50};
+  Gate gate = open_gate();
+  for (int i = 0; i < 100; ++i) gate.judge(much);
+  much.fresh = false;
+  for (int missed = 1; missed <= 11; ++missed) {
+    const Wrench w = gate.judge(much).wrench;
+    EXPECT_LE(w.force_N.x, 8.0 * (1.0 - 0.1 * (missed - 1)) + 1e-12) << missed;
+    EXPECT_LE(w.torque_Nm.z, 0.2 * (1.0 - 0.1 * (missed - 1)) + 1e-12) << missed;
+  }
 }
 
 TEST(Gate, TwentyPeriodsWithoutASampleLoseTheDeviceInHoweverFewTicks) {

@@ -153,8 +153,12 @@ void Gate::limit(const model::Tool& tool, double periods, GateVerdict& verdict) 
   if (limit_magnitude(w.torque_Nm, warm_Nm))
     note(Stage::kMagnitude,
          warm_Nm < torque_limit_Nm_ ? Fault::kContinuousLimited : Fault::kTorqueLimited, verdict);
-  const Radius radius{.force_N = std::fmin(warm_N, passive_N),
-                      .torque_Nm = std::fmin(warm_Nm, passive_Nm)};
+  Radius radius{.force_N = std::fmin(warm_N, passive_N),
+                .torque_Nm = std::fmin(warm_Nm, passive_Nm)};
+  if (const double fresh = fresh_.level(); fresh < 1.0) {  // however much is wanted
+    radius.force_N = std::fmin(radius.force_N, fresh * force_limit_N_);
+    radius.torque_Nm = std::fmin(radius.torque_Nm, fresh * torque_limit_Nm_);
+  }
   if (step_towards(w, periods, radius)) note(Stage::kSlew, Fault::kSlewLimited, verdict);
   if (limit_surplus(w, tool.velocity_mps, tool.angular_velocity_radps,
                     kPowerAim * limits_.power_W)) {

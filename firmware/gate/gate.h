@@ -1,7 +1,8 @@
 // gate.h - the one way from the model to the device. Every force passes every stage, in this order:
 //
 //   finite     NaN or infinity in force or sample: zero, latches
-//   fresh      one missed sample holds, from the second the force fades to zero in 10 ms, 20 latch
+//   fresh      one missed sample holds, from the second the force fades to zero in 10 ms, and so
+//              does the largest that is allowed; 20 latch
 //   armed      zero unless the supervisor says armed
 //   workspace  outside the permitted cylinder, or faster than permitted, it fades to zero in 50 ms
 //   passivity  gives no more energy than it took and has a budget for (energy_tank.h)
