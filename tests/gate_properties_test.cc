@@ -189,6 +189,17 @@ TEST(GateProperties, WhoPushesForEverComesToTheContinuousForceFromBelow) {
   EXPECT_EQ(rules.verdict().limit, model::Fault::kContinuousLimited);
 }
 
+TEST(GateProperties, WhoTwistsForEverComesToTheContinuousTorqueFromBelow) {
+  GateRules rules;
+  RuleTick twist;
+  twist.gate.wanted.torque_Nm = {0, 1, 0};
+  twist.gate.fresh = twist.gate.armed = true;
+  for (int i = 0; i < 10000; ++i) ASSERT_EQ(rules.judge(twist), nullptr);
+  EXPECT_GT(rules.most_torque_heat_ratio(), 0.999);
+  EXPECT_NEAR(rules.verdict().wrench.torque_Nm.y, 0.1, 0.001) << "half of its peak, as the force";
+  EXPECT_EQ(rules.verdict().limit, model::Fault::kContinuousLimited);
+}
+
 // A hand of 150 g leans with 1 N on a wall, on a device of 1 Ns/m at 1 kHz: stable to 2000 N/m.
 struct Wall {
   double given_J = 0.0, swing_m = 0.0;  // at most; in the last second

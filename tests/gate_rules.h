@@ -66,13 +66,21 @@ class GateRules {
   double given_J() const { return given_J_; }
   double most_given_J() const { return most_given_J_; }
   double most_heat_ratio() const { return most_heat_ratio_; }
+  double most_torque_heat_ratio() const { return most_torque_heat_ratio_; }
 
  private:
+  double heat_ratio() const { return std::sqrt(heat_) / limits_.continuous_force_N; }
+  double torque_heat_ratio() const {
+    return std::sqrt(torque_heat_) * limits_.force_N /
+           (limits_.continuous_force_N * limits_.torque_Nm);
+  }
+
   // The energy and the heat of what was written before this tick.
   void account(const RuleTick& tick, bool fresh) {
     const double periods = 1.0 + tick.gate.skipped_periods;
     const double share = std::min(periods * kRulesPeriod_s / limits_.thermal_time_s, 1.0);
     heat_ += share * (dot(before_.force_N, before_.force_N) - heat_);
+    torque_heat_ += share * (dot(before_.torque_Nm, before_.torque_Nm) - torque_heat_);
     is_paused_ = is_paused_ || tick.gate.skipped_periods > 0;
     is_overheated_ = is_overheated_ || is_paused_;
     time_s_ += periods * kRulesPeriod_s;
@@ -121,9 +129,11 @@ class GateRules {
     const double power_W = dot(w.force_N, input.tool.velocity_mps) +
                            dot(w.torque_Nm, input.tool.angular_velocity_radps);
     if (!stopped && !(power_W <= limits_.power_W)) return "F . v + T . w <= power_W";
-    const double heat_ratio = std::sqrt(heat_) / limits_.continuous_force_N;
-    most_heat_ratio_ = std::max(most_heat_ratio_, heat_ratio);
-    if (!is_overheated_ && heat_ratio > 1.0 + kRounding) return "RMS <= continuous_force_N";
+    most_heat_ratio_ = std::max(most_heat_ratio_, heat_ratio());
+    most_torque_heat_ratio_ = std::max(most_torque_heat_ratio_, torque_heat_ratio());
+    if (!is_overheated_ && heat_ratio() > 1.0 + kRounding) return "RMS <= continuous_force_N";
+    if (!is_overheated_ && torque_heat_ratio() > 1.0 + kRounding)
+      return "RMS of T <= continuous_force_N torque_Nm / force_N";
     return broken_energy_rule(stopped);
   }
 
@@ -157,8 +167,7 @@ class GateRules {
     impulse_Ns_ = {};
     is_placed_ = false;
     is_permitted_ = true;
-    is_overheated_ =
-        is_overheated_ && heat_ > limits_.continuous_force_N * limits_.continuous_force_N;
+    is_overheated_ = is_overheated_ && (heat_ratio() > 1.0 || torque_heat_ratio() > 1.0);
   }
 
   model::Limits limits_;
@@ -167,6 +176,7 @@ class GateRules {
   model::Wrench before_;
   double missed_ = 0.0;  // samples in a row, one a period
   double heat_ = 0.0, most_heat_ratio_ = 0.0;
+  double torque_heat_ = 0.0, most_torque_heat_ratio_ = 0.0;
   double given_J_ = 0.0, most_given_J_ = 0.0;  // since it was armed; where no step was too long
   double time_s_ = 0.0, held_s_ = 0.0;         // since it was armed, since the last sample
   Vec3 impulse_Ns_;
