@@ -11,6 +11,8 @@
 // never when it grows or turns. Guards are written so that NaN falls to zero.
 #pragma once
 
+#include <limits>
+
 #include "model/types.h"
 
 namespace tact::firmware {
@@ -53,6 +55,15 @@ inline bool approach(Vec3& v, const Vec3& before, double step, double shrink,
   return held;
 }
 
+/// Takes so much of v . d from v, along d. A motion whose square is a denormal is none: what is
+/// divided by it is a guess, or no number.
+inline bool take_along(Vec3& v, double surplus, const Vec3& d) RT_SAFE {
+  const double squared = dot(d, d);
+  if (!(surplus > 0.0 && squared >= std::numeric_limits<double>::min())) return false;
+  v -= (surplus / squared) * d;
+  return true;
+}
+
 /// True if the wrench did more than `most` (>= 0) along the motion d, a: J for a displacement, W
 /// for a velocity. Only what pushes along the motion is made less; neither vector grows.
 inline bool limit_surplus(Wrench& w, const Vec3& d, const Vec3& a, double most) RT_SAFE {
@@ -61,9 +72,8 @@ inline bool limit_surplus(Wrench& w, const Vec3& d, const Vec3& a, double most) 
   if (!(pushed + turned > most)) return false;
   const double too_much = 1.0 - most / (pushed + turned);
   // F' = F - (1 - most / P) (F . d) d / |d|^2
-  if (pushed > 0.0) w.force_N -= (too_much * pushed / dot(d, d)) * d;
-  if (turned > 0.0) w.torque_Nm -= (too_much * turned / dot(a, a)) * a;
-  return true;
+  const bool taken = take_along(w.force_N, too_much * pushed, d);
+  return take_along(w.torque_Nm, too_much * turned, a) || taken;
 }
 
 }  // namespace tact::firmware
