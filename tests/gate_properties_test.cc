@@ -48,7 +48,7 @@ enum class Temper {
   kPush,    // the largest force, held: heat
   kThrow,   // the tool's velocity jumps: power
   kJump,    // steps longer than permitted, positions again and reversed: overdraws
-  kLose,    // samples are missing, periods are skipped
+  kLose,    // samples are missing, one by one or in a row, periods are skipped
 };
 constexpr int kTempers = 7;
 
@@ -72,6 +72,7 @@ class Sequence {
       out.gate.fresh = !chance(0.3);
       if (chance(0.02)) out.gate.skipped_periods = static_cast<std::uint32_t>(random_() % 40);
     }
+    if (temper_ == Temper::kLose && is_lossy_) fall_silent(out.gate);
     if (temper_ == Temper::kAny && chance(0.05)) spoil(out);
     return out;
   }
@@ -110,6 +111,15 @@ class Sequence {
     }
   }
 
+  // No sample for up to 15 ticks, and every tick takes up to four periods.
+  void fall_silent(GateInput& out) {
+    if (silent_ticks_ == 0 && chance(0.01)) silent_ticks_ = 1 + static_cast<int>(random_() % 15);
+    if (silent_ticks_ == 0) return;
+    --silent_ticks_;
+    out.fresh = false;
+    out.skipped_periods = static_cast<std::uint32_t>(random_() % 4);
+  }
+
   void spoil(RuleTick& out) {
     const std::array fields{&out.gate.wanted.force_N, &out.gate.wanted.torque_Nm,
                             &out.gate.tool.position_m, &out.gate.tool.velocity_mps,
@@ -123,7 +133,7 @@ class Sequence {
   std::uniform_real_distribution<double> unit_{0.0, 1.0};
   Temper temper_;
   bool is_lossy_;
-  int tick_ = 0;
+  int tick_ = 0, silent_ticks_ = 0;
   bool armed_ = true;
   model::Wrench wanted_;
   Vec3 position_m_, past_m_, velocity_mps_, turning_radps_;
@@ -176,6 +186,17 @@ TEST(GateProperties, WhoPushesForEverComesToTheContinuousForceFromBelow) {
   for (int i = 0; i < 10000; ++i) ASSERT_EQ(rules.judge(push), nullptr);
   EXPECT_GT(rules.most_heat_ratio(), 0.999);
   EXPECT_NEAR(rules.verdict().wrench.force_N.x, kRulesLimits.continuous_force_N, 0.01);
+  EXPECT_EQ(rules.verdict().limit, model::Fault::kContinuousLimited);
+}
+
+TEST(GateProperties, WhoTwistsForEverComesToTheContinuousTorqueFromBelow) {
+  GateRules rules;
+  RuleTick twist;
+  twist.gate.wanted.torque_Nm = {0, 1, 0};
+  twist.gate.fresh = twist.gate.armed = true;
+  for (int i = 0; i < 10000; ++i) ASSERT_EQ(rules.judge(twist), nullptr);
+  EXPECT_GT(rules.most_torque_heat_ratio(), 0.999);
+  EXPECT_NEAR(rules.verdict().wrench.torque_Nm.y, 0.1, 0.001) << "half of its peak, as the force";
   EXPECT_EQ(rules.verdict().limit, model::Fault::kContinuousLimited);
 }
 

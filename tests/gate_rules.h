@@ -33,6 +33,9 @@ inline constexpr model::Limits kRulesLimits{.force_N = 8.0,
                                             .thermal_time_s = 0.5,
                                             .power_W = 6.0};
 
+inline constexpr double kFade_s = 0.010;  // of the force, from the second missed sample on
+inline constexpr double kLost = 20.0;     // missed samples in a row
+
 struct RuleTick {
   GateInput gate;
   double angle_rad = 0.0;  // of the tool about x
@@ -63,13 +66,21 @@ class GateRules {
   double given_J() const { return given_J_; }
   double most_given_J() const { return most_given_J_; }
   double most_heat_ratio() const { return most_heat_ratio_; }
+  double most_torque_heat_ratio() const { return most_torque_heat_ratio_; }
 
  private:
+  double heat_ratio() const { return std::sqrt(heat_) / limits_.continuous_force_N; }
+  double torque_heat_ratio() const {
+    return std::sqrt(torque_heat_) * limits_.force_N /
+           (limits_.continuous_force_N * limits_.torque_Nm);
+  }
+
   // The energy and the heat of what was written before this tick.
   void account(const RuleTick& tick, bool fresh) {
     const double periods = 1.0 + tick.gate.skipped_periods;
     const double share = std::min(periods * kRulesPeriod_s / limits_.thermal_time_s, 1.0);
     heat_ += share * (dot(before_.force_N, before_.force_N) - heat_);
+    torque_heat_ += share * (dot(before_.torque_Nm, before_.torque_Nm) - torque_heat_);
     is_paused_ = is_paused_ || tick.gate.skipped_periods > 0;
     is_overheated_ = is_overheated_ || is_paused_;
     time_s_ += periods * kRulesPeriod_s;
@@ -103,19 +114,41 @@ class GateRules {
     if (stopped && !(w == model::Wrench{})) return "zero unless armed and without a fault";
     if (norm(w.force_N) > limits_.force_N) return "|F| <= force_N";
     if (norm(w.torque_Nm) > limits_.torque_Nm) return "|T| <= torque_Nm";
+    if (const char* broken = broken_loss_rule(input, stopped)) return broken;
     const double step_N = limits_.slew_N_per_s * kRulesPeriod_s;
+    const double periods = 1.0 + input.skipped_periods;  // since the write before
     const double step_Nm = step_N * limits_.torque_Nm / limits_.force_N;
-    if (!stopped && norm(w.force_N - before_.force_N) > step_N + kRounding)
+    const double grown_N = norm(w.force_N) - norm(before_.force_N);
+    const double grown_Nm = norm(w.torque_Nm) - norm(before_.torque_Nm);
+    if (!stopped && norm(w.force_N - before_.force_N) > periods * step_N + kRounding)
       return "|dF| <= slew_N_per_s dt";
-    if (!stopped && norm(w.torque_Nm - before_.torque_Nm) > step_Nm + kRounding)
+    if (!stopped && norm(w.torque_Nm - before_.torque_Nm) > periods * step_Nm + kRounding)
       return "|dT| <= slew dt torque_Nm / force_N";
+    if (grown_N > step_N + kRounding || grown_Nm > step_Nm + kRounding)
+      return "a late force grows by one period's slew";
     const double power_W = dot(w.force_N, input.tool.velocity_mps) +
                            dot(w.torque_Nm, input.tool.angular_velocity_radps);
     if (!stopped && !(power_W <= limits_.power_W)) return "F . v + T . w <= power_W";
-    const double heat_ratio = std::sqrt(heat_) / limits_.continuous_force_N;
-    most_heat_ratio_ = std::max(most_heat_ratio_, heat_ratio);
-    if (!is_overheated_ && heat_ratio > 1.0 + kRounding) return "RMS <= continuous_force_N";
+    most_heat_ratio_ = std::max(most_heat_ratio_, heat_ratio());
+    most_torque_heat_ratio_ = std::max(most_torque_heat_ratio_, torque_heat_ratio());
+    if (!is_overheated_ && heat_ratio() > 1.0 + kRounding) return "RMS <= continuous_force_N";
+    if (!is_overheated_ && torque_heat_ratio() > 1.0 + kRounding)
+      return "RMS of T <= continuous_force_N torque_Nm / force_N";
     return broken_energy_rule(stopped);
+  }
+
+  // Samples are counted in periods: what was skipped before this tick is missing too.
+  const char* broken_loss_rule(const GateInput& input, bool stopped) {
+    constexpr double kRounding = 1e-9;
+    missed_ = input.fresh || !input.armed ? 0.0 : missed_ + 1.0 + input.skipped_periods;
+    const bool zero = norm(verdict_.wrench.force_N) < kRounding * limits_.force_N &&
+                      norm(verdict_.wrench.torque_Nm) < kRounding * limits_.torque_Nm;
+    if ((missed_ - 1.0) * kRulesPeriod_s >= kFade_s && !zero)
+      return "zero within 10 ms of the second missed sample";
+    if (missed_ >= kLost && !stopped) return "20 missed samples in a row latch";
+    if (missed_ < kLost && verdict_.fault == model::Fault::kDeviceLost)
+      return "fewer than 20 missed samples lose nothing";
+    return nullptr;
   }
 
   const char* broken_energy_rule(bool stopped) {
@@ -134,15 +167,16 @@ class GateRules {
     impulse_Ns_ = {};
     is_placed_ = false;
     is_permitted_ = true;
-    is_overheated_ =
-        is_overheated_ && heat_ > limits_.continuous_force_N * limits_.continuous_force_N;
+    is_overheated_ = is_overheated_ && (heat_ratio() > 1.0 || torque_heat_ratio() > 1.0);
   }
 
   model::Limits limits_;
   firmware::Gate gate_;
   GateVerdict verdict_;
   model::Wrench before_;
+  double missed_ = 0.0;  // samples in a row, one a period
   double heat_ = 0.0, most_heat_ratio_ = 0.0;
+  double torque_heat_ = 0.0, most_torque_heat_ratio_ = 0.0;
   double given_J_ = 0.0, most_given_J_ = 0.0;  // since it was armed; where no step was too long
   double time_s_ = 0.0, held_s_ = 0.0;         // since it was armed, since the last sample
   Vec3 impulse_Ns_;

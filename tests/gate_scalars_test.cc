@@ -2,6 +2,7 @@
 // its neighbours, the largest, infinity, NaN, with both signs, in every combination.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -83,14 +84,17 @@ TEST(GateScalars, AnApproachStaysWithinItsStepAndItsRadiusFromAnyPlaceToAnyPlace
       for_each_vector({0.0, -Doubles::denorm_min(), 3.0, -kLimit, 1e154, -Doubles::max(), kInfinity,
                        Doubles::quiet_NaN()},
                       [radius, &before](const Vec3& wanted) {
-                        Vec3 v = wanted;
-                        const bool held = approach(v, before, kStep, radius);
-                        ASSERT_TRUE(is_finite(v));
-                        ASSERT_LE(norm(v), kLimit);
-                        ASSERT_LE(norm(v - before), kStep + kRounding);
-                        ASSERT_LE(norm(v), std::fmax(radius, norm(before) - kStep) + kRounding);
-                        if (!held) {
-                          ASSERT_EQ(v, wanted);
+                        for (const double shrink : {kStep, 3.0 * kStep}) {
+                          Vec3 v = wanted;
+                          const bool held = approach(v, before, kStep, shrink, radius);
+                          ASSERT_TRUE(is_finite(v));
+                          ASSERT_LE(norm(v), kLimit);
+                          ASSERT_LE(norm(v - before), shrink + kRounding);
+                          ASSERT_LE(norm(v), norm(before) + kStep + kRounding);
+                          ASSERT_LE(norm(v), std::fmax(radius, norm(before) - shrink) + kRounding);
+                          if (!held) {
+                            ASSERT_EQ(v, wanted);
+                          }
                         }
                       });
     });
@@ -100,7 +104,7 @@ TEST(GateScalars, ATurnWithAShrinkingRadiusKeepsBoth) {
   // From 8 N along x towards 2 N along y: on a straight line |F| would fall by 0.92 a tick.
   Vec3 v{0, 2, 0};
   const Vec3 before{8, 0, 0};
-  EXPECT_TRUE(approach(v, before, 1.0, 2.0));
+  EXPECT_TRUE(approach(v, before, 1.0, 1.0, 2.0));
   EXPECT_NEAR(norm(v), 7.0, 1e-12);
   EXPECT_NEAR(norm(v - before), 1.0, 1e-12);
 }
@@ -115,19 +119,44 @@ TEST(GateScalars, WhatIsTakenAlongAMotionIsTheSurplusAndNoMore) {
   EXPECT_FALSE(limit_surplus(against, {0.004, 0, 0}, {}, 0.0)) << "it takes energy";
 }
 
-TEST(GateScalars, TakingAlongAMotionNeverLengthensAForce) {
-  for_each_vector(finite_classes(), [](const Vec3& force_N) {
-    if (norm(force_N) > 100.0) return;  // the others come to the magnitude stage as they may
-    for (const Vec3& d : {Vec3{1e-3, 0, 0}, Vec3{0, -1e-9, 1e-3}, Vec3{1e-160, 0, 0}, Vec3{}})
-      for (const double most : {0.0, 1e-12, 1e-3}) {
-        Wrench w{force_N, {}};
-        limit_surplus(w, d, {}, most);
-        Vec3 out = w.force_N;
-        limit_magnitude(out, 100.0);
-        ASSERT_LE(norm(out), norm(force_N) + 1e-12);
-        ASSERT_LE(dot(out, d), most + 1e-15);
-      }
+constexpr std::array kMotions{Vec3{1e-3, 0, 0},
+                              Vec3{0, -1e-9, 1e-3},
+                              Vec3{1e-160, 0, 0},
+                              Vec3{0, 1.6e-162, -2.7e-162},  // its square is one denormal, or two
+                              Vec3{0, 0, -1e-170},
+                              Vec3{1e-3, Doubles::denorm_min(), 0},
+                              Vec3{-Doubles::denorm_min(), 0, 0},
+                              Vec3{}};
+
+TEST(GateScalars, TakingAlongAMotionNeverLengthensAForceOrATorque) {
+  for_each_vector(finite_classes(), [](const Vec3& v) {
+    if (norm(v) > 100.0) return;  // the others come to the magnitude stage as they may
+    for (const Vec3& d : kMotions)
+      for (const Vec3& a : kMotions)
+        for (const double most : {0.0, 1e-12, 1e-3}) {
+          Wrench w{v, -0.1 * v};
+          const bool taken = limit_surplus(w, d, a, most);
+          ASSERT_TRUE(is_finite(w)) << d.x << ' ' << a.x;
+          ASSERT_LE(norm(w.force_N), norm(v) + 1e-12);
+          ASSERT_LE(norm(w.torque_Nm), 0.1 * norm(v) + 1e-12);
+          const double left =
+              std::fmax(dot(w.force_N, d), 0.0) + std::fmax(dot(w.torque_Nm, a), 0.0);
+          ASSERT_LE(left, most + 1e-15);
+          ASSERT_EQ(taken, !(w == Wrench{v, -0.1 * v})) << "a stage that says so took something";
+        }
   });
+}
+
+TEST(GateScalars, AMotionTooSmallToBeSquaredTakesNothingFromAForce) {
+  for (const double tiny : {1.6e-162, 1e-170, Doubles::denorm_min()}) {
+    Wrench w{{3, 7, 0}, {0.1, 0.2, 0}};
+    EXPECT_FALSE(limit_surplus(w, {tiny, 0, 0}, {0, tiny, 0}, 0.0));
+    EXPECT_EQ(w, (Wrench{{3, 7, 0}, {0.1, 0.2, 0}}));
+  }
+  Wrench w{{3, 7, 0}, {0.1, 0.2, 0}};  // beside an ordinary one it does not count either
+  EXPECT_TRUE(limit_surplus(w, {1e-170, 0, 0}, {0, 0.01, 0}, 0.001));
+  EXPECT_EQ(w.force_N, (Vec3{3, 7, 0}));
+  EXPECT_NEAR(w.torque_Nm.y, 0.1, 1e-15) << "1 mJ of 2 may stay";
 }
 
 TEST(GateScalars, AFaderStaysBetweenShutAndOpen) {

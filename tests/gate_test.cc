@@ -98,6 +98,74 @@ TEST(Gate, TwentyMissedSamplesInARowLoseTheDevice) {
   EXPECT_EQ(other.judge(stale).fault, Fault::kNone);
 }
 
+// A loop of so many periods a tick, without samples.
+GateInput late_and_missing(const Vec3& force_N, std::uint32_t skipped_periods) {
+  GateInput input = wanting(force_N);
+  input.fresh = false;
+  input.skipped_periods = skipped_periods;
+  return input;
+}
+
+TEST(Gate, ALoopThatIsLateFadesInTenMillisecondsOfTimeNotOfTicks) {
+  Gate two = open_gate({4, 0, 0});  // two periods a tick: 2, 4, .. samples are missing
+  for (const double left : {0.9, 0.7, 0.5, 0.3, 0.1, 0.0}) {
+    const GateVerdict v = two.judge(late_and_missing({4, 0, 0}, 1));
+    EXPECT_NEAR(v.wrench.force_N.x, 4.0 * left, 1e-12);
+    EXPECT_EQ(v.limit, Fault::kSampleStale);
+    EXPECT_EQ(v.fault, Fault::kNone);
+  }
+  Gate five = open_gate({8, 0, 0});  // more than one period's slew in a tick, as more time passed
+  for (const double left : {0.6, 0.1, 0.0})
+    EXPECT_LE(five.judge(late_and_missing({8, 0, 0}, 4)).wrench.force_N.x, 8.0 * left + 1e-12);
+}
+
+TEST(Gate, AForceFarAboveItsLimitFadesInTenMillisecondsToo) {
+  GateInput much = wanting({1000, 0, 0});
+  much.wanted.torque_Nm = {0, 0, 50};
+  Gate gate = open_gate();
+  for (int i = 0; i < 100; ++i) gate.judge(much);
+  much.fresh = false;
+  for (int missed = 1; missed <= 11; ++missed) {
+    const Wrench w = gate.judge(much).wrench;
+    EXPECT_LE(w.force_N.x, 8.0 * (1.0 - 0.1 * (missed - 1)) + 1e-12) << missed;
+    EXPECT_LE(w.torque_Nm.z, 0.2 * (1.0 - 0.1 * (missed - 1)) + 1e-12) << missed;
+  }
+}
+
+TEST(Gate, TwentyPeriodsWithoutASampleLoseTheDeviceInHoweverFewTicks) {
+  Gate two = open_gate();
+  for (int tick = 1; tick < 10; ++tick)
+    EXPECT_EQ(two.judge(late_and_missing({}, 1)).fault, Fault::kNone) << tick;
+  EXPECT_EQ(two.judge(late_and_missing({}, 1)).fault, Fault::kDeviceLost);
+  Gate once = open_gate({1, 0, 0});
+  EXPECT_EQ(once.judge(late_and_missing({1, 0, 0}, 19)).fault, Fault::kDeviceLost);
+  Gate late = open_gate({1, 0, 0});
+  GateInput fresh = wanting({1, 0, 0});
+  fresh.skipped_periods = 19;
+  EXPECT_EQ(late.judge(fresh).limit, Fault::kNone) << "a sample after all: nothing is missing";
+}
+
+TEST(Gate, AfterALateTickAForceGrowsByOnePeriodsSlew) {
+  Gate gate = open_gate();
+  GateInput late = wanting({8, 0, 0});
+  late.skipped_periods = 4;
+  EXPECT_LE(gate.judge(late).wrench.force_N.x, 1.0);
+  GateInput back = wanting({8, 0, 0});
+  Gate faded = open_gate({8, 0, 0});
+  for (int i = 0; i < 11; ++i) faded.judge(late_and_missing({8, 0, 0}, 0));
+  back.skipped_periods = 4;
+  EXPECT_LE(faded.judge(back).wrench.force_N.x, 1.0);
+}
+
+TEST(Gate, ALoopThatIsLateFadesOutsideTheWorkspaceInFiftyMilliseconds) {
+  Gate gate = open_gate({1, 0, 0});
+  GateInput outside = wanting({1, 0, 0});
+  outside.tool.position_m = {0, 0.19, 0};
+  outside.skipped_periods = 4;
+  for (int tick = 1; tick <= 10; ++tick)
+    EXPECT_NEAR(gate.judge(outside).wrench.force_N.x, 1.0 - 0.1 * tick, 1e-12);
+}
+
 TEST(Gate, OutsideTheWorkspaceTheForceFadesAndComesBackInside) {
   Gate gate = open_gate({1, 0, 0});
   GateInput outside = wanting({1, 0, 0});

@@ -100,6 +100,7 @@ TEST(RunPlan, AGateWithOneLimitTooLargeFails) {
         Mutant{"step", enlarged<&Limits::slew_N_per_s>, "largest change"},
         Mutant{"sign-flip", enlarged<&Limits::slew_N_per_s>, "largest change"},
         Mutant{"continuous", enlarged<&Limits::continuous_force_N>, "largest RMS"},
+        Mutant{"warm-torque", enlarged<&Limits::continuous_force_N>, "RMS of the torque"},
         Mutant{"power", without<&Limits::power_W>, "largest power"},
         Mutant{"active-law", without<&Limits::energy_J>, "energy given"},
         Mutant{"speed", without<&Limits::speed_mps>, "workspace did not act"},

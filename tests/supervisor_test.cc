@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "firmware/gate/gate.h"
+
 namespace tact::firmware {
 namespace {
 
@@ -220,6 +222,38 @@ TEST(Supervisor, DoesWhatItsRulesSayInEveryStateForEveryInput) {
       ++cases;
     }
   EXPECT_EQ(cases, 4 * 128 + 128);
+}
+
+int model_constant(const std::string& name) {
+  std::ifstream file(TACT_SOURCE_DIR "/tests/model/supervisor.pml");
+  const std::regex row("#define " + name + R"( (\d+).*)");
+  for (std::string line; std::getline(file, line);) {
+    std::smatch found;
+    if (std::regex_match(line, found, row)) return std::stoi(found[1]);
+  }
+  return 0;
+}
+
+// What tests/model/supervisor.pml says of the gate, at 1 kHz.
+TEST(Supervisor, TheModelFadesAndLosesAfterAsManyMissedSamplesAsTheGate) {
+  const model::Limits limits{.force_N = 8.0,
+                             .torque_Nm = 0.2,
+                             .slew_N_per_s = 1000.0,
+                             .ramp_s = 0.1,
+                             .workspace_radius_m = 0.18,
+                             .workspace_half_length_m = 0.15};
+  Gate gate(limits, 0.001, 1.0);
+  GateInput input{.wanted = {{1, 0, 0}, {}}, .tool = {}, .fresh = true, .armed = true};
+  for (int i = 0; i < 200; ++i) gate.judge(input);
+  input.fresh = false;
+  int missed_to_zero = 0, missed_to_lost = 0;
+  for (int missed = 1; missed < 100 && missed_to_lost == 0; ++missed) {
+    const GateVerdict v = gate.judge(input);
+    if (missed_to_zero == 0 && norm(v.wrench.force_N) < 1e-12) missed_to_zero = missed;
+    if (latches(v.fault)) missed_to_lost = missed;
+  }
+  EXPECT_EQ(missed_to_zero, 1 + model_constant("FADE"));
+  EXPECT_EQ(missed_to_lost, model_constant("LOST"));
 }
 
 TEST(Supervisor, AFaultOfTheGateStopsFromEveryStateAndTheFirstIsKept) {

@@ -1,4 +1,5 @@
-// fader.h - a level between 0 and 1 that opens and closes at fixed rates, never in one step.
+// fader.h - a level between 0 and 1 that opens and closes at fixed rates. It closes by all periods
+// that passed since the last step and opens by one, however late the loop is.
 #pragma once
 
 #include "model/rt.h"
@@ -9,8 +10,8 @@ class Fader {
  public:
   Fader(double close_s, double open_s) : close_s_(close_s), open_s_(open_s) {}
 
-  double step(bool open, double dt_s) RT_SAFE {
-    const double moved = level_ + (open ? dt_s / open_s_ : -dt_s / close_s_);
+  double step(bool open, double dt_s, double periods = 1.0) RT_SAFE {
+    const double moved = level_ + (open ? dt_s / open_s_ : -periods * dt_s / close_s_);
     level_ = moved > 0.0 ? (moved < 1.0 ? moved : 1.0) : 0.0;
     return level_;
   }

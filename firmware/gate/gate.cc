@@ -1,5 +1,6 @@
 #include "firmware/gate/gate.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "firmware/gate/workspace.h"
@@ -9,7 +10,7 @@ namespace {
 
 constexpr double kStaleFade_s = 0.010;
 constexpr double kWorkspaceFade_s = 0.050;
-constexpr std::uint32_t kLostAfter = 20;  // missed samples in a row
+constexpr std::int64_t kLostAfter = 20;  // missed samples in a row
 // Room for the tool to speed up while the force falls at its slew.
 constexpr double kPowerAim = 0.75;
 
@@ -79,17 +80,18 @@ Gate::Gate(const model::Limits& limits, double period_s, double force_share)
 }
 
 GateVerdict Gate::judge(const GateInput& input) RT_SAFE {
+  const double periods = 1.0 + input.skipped_periods;  // since the last write
   GateVerdict verdict{.wrench = input.wanted};
   check_finite(input, verdict);
   check_fresh(input, verdict);
-  check_energy(input, verdict);
+  check_energy(input, periods, verdict);
   if (!input.armed) tank_.refill();
   if (!input.armed || latches(verdict.fault)) {
     note(Stage::kArmed, Fault::kNotArmed, verdict);
     return let_go(verdict);
   }
-  fade_outside(input.tool, verdict);
-  limit(input.tool, verdict);
+  fade_outside(input.tool, periods, verdict);
+  limit(input.tool, periods, verdict);
   ramp_up(input.tool, verdict);
   if (latches(verdict.fault)) return let_go(verdict);
   written_ = verdict.wrench;
@@ -108,9 +110,12 @@ void Gate::check_finite(const GateInput& input, GateVerdict& verdict) RT_SAFE {
   verdict.wrench = {};
 }
 
+// A period that was skipped has missed its sample, unless a fresh one tells in the end.
 void Gate::check_fresh(const GateInput& input, GateVerdict& verdict) RT_SAFE {
-  missed_ = input.fresh || !input.armed ? 0 : missed_ + 1;  // a device may take its time to wake
-  const double level = fresh_.step(missed_ < 2, period_s_);
+  const std::int64_t held = std::max<std::int64_t>(missed_, 1);  // the first one is held
+  const bool missing = !input.fresh && input.armed;  // a device may take its time to wake
+  missed_ = missing ? missed_ + 1 + input.skipped_periods : 0;
+  const double level = fresh_.step(missed_ < 2, period_s_, static_cast<double>(missed_ - held));
   if (missed_ > 0 || level < 1.0)
     note(Stage::kFresh, missed_ == 1 ? Fault::kSampleHeld : Fault::kSampleStale, verdict);
   if (missed_ >= kLostAfter) verdict.fault = Fault::kDeviceLost;
@@ -118,8 +123,7 @@ void Gate::check_fresh(const GateInput& input, GateVerdict& verdict) RT_SAFE {
 }
 
 // What was written before this tick has done its work by now: its energy and its heat.
-void Gate::check_energy(const GateInput& input, GateVerdict& verdict) RT_SAFE {
-  const double periods = 1.0 + input.skipped_periods;
+void Gate::check_energy(const GateInput& input, double periods, GateVerdict& verdict) RT_SAFE {
   tank_.observe(input.tool, input.fresh && is_finite(input.tool), periods, written_);
   warm_force_.heat(written_.force_N, periods);
   warm_torque_.heat(written_.torque_Nm, periods);
@@ -127,15 +131,15 @@ void Gate::check_energy(const GateInput& input, GateVerdict& verdict) RT_SAFE {
     note(Stage::kPassivity, Fault::kEnergyOverdrawn, verdict);
 }
 
-void Gate::fade_outside(const model::Tool& tool, GateVerdict& verdict) RT_SAFE {
-  const double inside = workspace_.step(is_inside(limits_, tool.position_m), period_s_);
-  const double slow = speed_.step(is_slow(limits_, tool), period_s_);
+void Gate::fade_outside(const model::Tool& tool, double periods, GateVerdict& verdict) RT_SAFE {
+  const double inside = workspace_.step(is_inside(limits_, tool.position_m), period_s_, periods);
+  const double slow = speed_.step(is_slow(limits_, tool), period_s_, periods);
   if (slow < 1.0) note(Stage::kWorkspace, Fault::kTooFast, verdict);
   if (inside < 1.0) note(Stage::kWorkspace, Fault::kOutsideWorkspace, verdict);
   verdict.wrench = inside * slow * verdict.wrench;
 }
 
-void Gate::limit(const model::Tool& tool, GateVerdict& verdict) RT_SAFE {
+void Gate::limit(const model::Tool& tool, double periods, GateVerdict& verdict) RT_SAFE {
   Wrench& w = verdict.wrench;
   const double passive_N = tank_.allowed_N(), passive_Nm = lever_m_ * passive_N;
   const double warm_N = warm_force_.allowed(), warm_Nm = warm_torque_.allowed();
@@ -149,20 +153,27 @@ void Gate::limit(const model::Tool& tool, GateVerdict& verdict) RT_SAFE {
   if (limit_magnitude(w.torque_Nm, warm_Nm))
     note(Stage::kMagnitude,
          warm_Nm < torque_limit_Nm_ ? Fault::kContinuousLimited : Fault::kTorqueLimited, verdict);
-  const Radius radius{.force_N = std::fmin(warm_N, passive_N),
-                      .torque_Nm = std::fmin(warm_Nm, passive_Nm)};
-  if (step_towards(w, radius)) note(Stage::kSlew, Fault::kSlewLimited, verdict);
+  Radius radius{.force_N = std::fmin(warm_N, passive_N),
+                .torque_Nm = std::fmin(warm_Nm, passive_Nm)};
+  if (const double fresh = fresh_.level(); fresh < 1.0) {  // however much is wanted
+    radius.force_N = std::fmin(radius.force_N, fresh * force_limit_N_);
+    radius.torque_Nm = std::fmin(radius.torque_Nm, fresh * torque_limit_Nm_);
+  }
+  if (step_towards(w, periods, radius)) note(Stage::kSlew, Fault::kSlewLimited, verdict);
   if (limit_surplus(w, tool.velocity_mps, tool.angular_velocity_radps,
                     kPowerAim * limits_.power_W)) {
     note(Stage::kPower, Fault::kPowerLimited, verdict);
-    step_towards(w, radius);
+    step_towards(w, periods, radius);
   }
   before_ = w;
 }
 
-bool Gate::step_towards(Wrench& w, const Radius& radius) const RT_SAFE {
-  const bool slow = approach(w.force_N, before_.force_N, force_step_N_, radius.force_N);
-  return approach(w.torque_Nm, before_.torque_Nm, torque_step_Nm_, radius.torque_Nm) || slow;
+bool Gate::step_towards(Wrench& w, double periods, const Radius& radius) const RT_SAFE {
+  const bool slow =
+      approach(w.force_N, before_.force_N, force_step_N_, periods * force_step_N_, radius.force_N);
+  return approach(w.torque_Nm, before_.torque_Nm, torque_step_Nm_, periods * torque_step_Nm_,
+                  radius.torque_Nm) ||
+         slow;
 }
 
 void Gate::ramp_up(const model::Tool& tool, GateVerdict& verdict) RT_SAFE {

@@ -1,12 +1,13 @@
 // gate.h - the one way from the model to the device. Every force passes every stage, in this order:
 //
 //   finite     NaN or infinity in force or sample: zero, latches
-//   fresh      one missed sample holds, from the second the force fades to zero in 10 ms, 20 latch
+//   fresh      one missed sample holds, from the second the force fades to zero in 10 ms, and so
+//              does the largest that is allowed; 20 latch
 //   armed      zero unless the supervisor says armed
 //   workspace  outside the permitted cylinder, or faster than permitted, it fades to zero in 50 ms
 //   passivity  gives no more energy than it took and has a budget for (energy_tank.h)
 //   magnitude  |F| and |T| as vectors: peak, and RMS over a time (thermal_limit.h)
-//   slew       |dF| and |dT| per tick
+//   slew       |dF| and |dT| in the time since the last write
 //   power      F . v + T . w
 //   ramp       fades in after arming
 //
@@ -21,6 +22,10 @@
 // above the limit, when the tool speeds up faster than the force can fall (the stage aims at three
 // quarters of it), and overdrawn energy, when a step of the tool was longer than its permitted
 // speed makes it (by less than that one tick's worth).
+//
+// dt is the time since the force before was written, skipped periods included: a loop that was late
+// fades and shortens by all the time that passed, so that 10 ms are 10 ms and 20 samples are 20
+// periods. A force grows and turns by one period's slew at most, and no fade opens faster.
 //
 // Each stage has a reason code (model/fault.h) and a counter. Saturates and fades, never cuts to
 // zero in one step unless stopped.
@@ -97,11 +102,11 @@ class Gate {
   void note(Stage stage, Fault reason, GateVerdict& verdict) RT_SAFE;
   void check_finite(const GateInput& input, GateVerdict& verdict) RT_SAFE;
   void check_fresh(const GateInput& input, GateVerdict& verdict) RT_SAFE;
-  void check_energy(const GateInput& input, GateVerdict& verdict) RT_SAFE;
-  void fade_outside(const model::Tool& tool, GateVerdict& verdict) RT_SAFE;
-  void limit(const model::Tool& tool, GateVerdict& verdict) RT_SAFE;
+  void check_energy(const GateInput& input, double periods, GateVerdict& verdict) RT_SAFE;
+  void fade_outside(const model::Tool& tool, double periods, GateVerdict& verdict) RT_SAFE;
+  void limit(const model::Tool& tool, double periods, GateVerdict& verdict) RT_SAFE;
   void ramp_up(const model::Tool& tool, GateVerdict& verdict) RT_SAFE;
-  bool step_towards(Wrench& wanted, const Radius& radius) const RT_SAFE;
+  bool step_towards(Wrench& wanted, double periods, const Radius& radius) const RT_SAFE;
   GateVerdict let_go(GateVerdict verdict) RT_SAFE;
 
   model::Limits limits_;
@@ -112,8 +117,8 @@ class Gate {
   Fader fresh_, workspace_, speed_, ramp_;
   EnergyTank tank_;
   ThermalLimit warm_force_, warm_torque_;
-  std::uint32_t missed_ = 0;  // samples in a row
-  Wrench before_;             // after power, before ramp
+  std::int64_t missed_ = 0;  // samples in a row, one a period
+  Wrench before_;            // after power, before ramp
   Wrench written_;
   std::array<std::uint64_t, kStageCount> counter_{};
 };

@@ -2,13 +2,16 @@
 // along a motion.
 //
 //     magnitude   |F| <= limit                             direction kept
-//     approach    |F - F_before| <= step, |F| <= radius    or `step` nearer to radius than before
+//     approach    |F - F_before| <= step, |F| <= radius    or `shrink` nearer to radius than before
 //     surplus     F . d + T . a <= most                    least change of each, along its motion
 //
 // Approach shortens what is too long first and turns with what is left of the step: a straight line
-// to the goal would leave a shrinking radius more slowly than the step allows. Guards are written
-// so that NaN falls to zero.
+// to the goal would leave a shrinking radius more slowly than the step allows. After ticks that were
+// skipped `shrink` is the step of all the time that passed: a force catches up when it gets smaller,
+// never when it grows or turns. Guards are written so that NaN falls to zero.
 #pragma once
+
+#include <limits>
 
 #include "model/types.h"
 
@@ -34,11 +37,12 @@ inline bool limit_magnitude(Vec3& v, double limit) RT_SAFE {
   return true;
 }
 
-/// One tick from `before` towards v. True if v was out of reach.
-inline bool approach(Vec3& v, const Vec3& before, double step, double radius) RT_SAFE {
+/// One tick from `before` towards v. True if v was out of reach. `shrink` >= `step`.
+inline bool approach(Vec3& v, const Vec3& before, double step, double shrink,
+                     double radius) RT_SAFE {
   if (is_within(v, radius) && is_within(v - before, step)) return false;
   const double length = norm(before);
-  const double reach = std::fmax(radius, length - step);
+  const double reach = std::fmax(radius, length - shrink);
   Vec3 from = before;
   const double shrunk = limit_magnitude(from, reach) ? length - norm(from) : 0.0;
   bool held = limit_magnitude(v, reach);
@@ -51,6 +55,15 @@ inline bool approach(Vec3& v, const Vec3& before, double step, double radius) RT
   return held;
 }
 
+/// Takes so much of v . d from v, along d. A motion whose square is a denormal is none: what is
+/// divided by it is a guess, or no number.
+inline bool take_along(Vec3& v, double surplus, const Vec3& d) RT_SAFE {
+  const double squared = dot(d, d);
+  if (!(surplus > 0.0 && squared >= std::numeric_limits<double>::min())) return false;
+  v -= (surplus / squared) * d;
+  return true;
+}
+
 /// True if the wrench did more than `most` (>= 0) along the motion d, a: J for a displacement, W
 /// for a velocity. Only what pushes along the motion is made less; neither vector grows.
 inline bool limit_surplus(Wrench& w, const Vec3& d, const Vec3& a, double most) RT_SAFE {
@@ -59,9 +72,8 @@ inline bool limit_surplus(Wrench& w, const Vec3& d, const Vec3& a, double most) 
   if (!(pushed + turned > most)) return false;
   const double too_much = 1.0 - most / (pushed + turned);
   // F' = F - (1 - most / P) (F . d) d / |d|^2
-  if (pushed > 0.0) w.force_N -= (too_much * pushed / dot(d, d)) * d;
-  if (turned > 0.0) w.torque_Nm -= (too_much * turned / dot(a, a)) * a;
-  return true;
+  const bool taken = take_along(w.force_N, too_much * pushed, d);
+  return take_along(w.torque_Nm, too_much * turned, a) || taken;
 }
 
 }  // namespace tact::firmware

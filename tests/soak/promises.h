@@ -24,6 +24,7 @@ class Promises {
  private:
   void expect(bool kept, const char* promise, std::uint64_t tick);
   void check_force(const firmware::TickRecord& record);
+  void check_heat(const firmware::TickRecord& record);
   void check_state(const firmware::TickRecord& record);
 
   model::Limits limits_;
@@ -31,6 +32,7 @@ class Promises {
   std::int64_t first_due_ns_ = 0;
   firmware::TickRecord before_{};
   bool begun_ = false;
+  bool overheated_ = false;
   std::uint64_t broken_ = 0;
   std::string first_;
 };

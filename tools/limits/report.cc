@@ -40,6 +40,7 @@ Table case_table(const LimitsReport& report) {
                {"largest_power_W"},
                {"given_energy_J"},
                {"largest_rms_N"},
+               {"largest_rms_Nm"},
                {"time_to_zero_s"},
                {"allowed_zero_s"},
                {"stages", CellKind::kWord},
@@ -50,7 +51,7 @@ Table case_table(const LimitsReport& report) {
     table.add({std::string(v.subject.name), v.passed() ? 1.0 : 0.0, v.limits.force_N,
                v.worst.commanded_N, v.worst.force_N, v.overshoot_N, v.worst.torque_Nm,
                v.worst.step_N, v.worst.step_Nm, v.worst.power_W, v.worst.given_J, v.worst.rms_N,
-               v.worst.zero_s.value_or(std::nan("")),
+               v.worst.rms_Nm, v.worst.zero_s.value_or(std::nan("")),
                v.subject.expected.zero_within_s.value_or(std::nan("")), word_of(v.acted_words()),
                static_cast<double>(v.fault)});
   }
@@ -138,6 +139,7 @@ json case_json(const CaseVerdict& v) {
           {"largest_power_W", v.worst.power_W},
           {"given_energy_J", v.worst.given_J},
           {"largest_rms_N", v.worst.rms_N},
+          {"largest_rms_Nm", v.worst.rms_Nm},
           {"time_to_zero_s", or_null(v.worst.zero_s)},
           {"allowed_zero_s", or_null(v.subject.expected.zero_within_s)},
           {"stages", v.acted_words()},
@@ -178,12 +180,13 @@ std::vector<LimitRow> limit_rows(const LimitsReport& report) {
       {"Power given to the hand", "limits.power_W", "W", l.power_W},
       {"Energy given to the hand since arming", "limits.energy_J", "J", l.energy_J},
       {"RMS of the force", "limits.continuous_force_N", "N",
-       std::min(l.continuous_force_N, l.force_N)}};
+       std::min(l.continuous_force_N, l.force_N)},
+      {"RMS of the torque", "limits.continuous_force_N", "N m", continuous_torque_Nm(l)}};
   for (const CaseResult& result : report.cases) {
     const CaseVerdict& v = result.verdict;
     const Extremes& w = v.worst;
     const double largest[] = {w.force_N, w.torque_Nm, w.step_N, w.step_Nm,
-                              w.power_W, w.given_J,   w.rms_N};  // as check_bounds
+                              w.power_W, w.given_J,   w.rms_N,  w.rms_Nm};  // as check_bounds
     const std::vector<Check> bounds = check_bounds(w, v.limits, report.period_s);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       rows[i].holds = rows[i].holds && bounds[i].holds;

@@ -145,6 +145,12 @@ double torque_step_Nm(const model::Limits& limits, double period_s) {
                               : 0.0;
 }
 
+double continuous_torque_Nm(const model::Limits& limits) {
+  return limits.force_N > 0.0
+             ? limits.torque_Nm * std::min(limits.continuous_force_N / limits.force_N, 1.0)
+             : limits.torque_Nm;
+}
+
 std::vector<Check> check_bounds(const Extremes& worst, const model::Limits& limits,
                                 double period_s) {
   Checks checks;
@@ -169,6 +175,10 @@ std::vector<Check> check_bounds(const Extremes& worst, const model::Limits& limi
   checks.add(worst.rms_N <= limits.continuous_force_N * kRounding,
              fmt::format("largest RMS {:.4g} N, limit {:.4g} N", worst.rms_N,
                          std::min(limits.continuous_force_N, limits.force_N)));
+  const double continuous_Nm = continuous_torque_Nm(limits);
+  checks.add(worst.rms_Nm <= continuous_Nm * kRounding,
+             fmt::format("largest RMS of the torque {:.4g} N m, limit {:.4g} N m", worst.rms_Nm,
+                         continuous_Nm));
   return checks.list();
 }
 
@@ -189,7 +199,7 @@ Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limi
   Extremes worst;
   EnergyAccount energy(limits);
   const double share = period_s / limits.thermal_time_s;
-  double heat = 0.0;
+  double heat = 0.0, torque_heat = 0.0;
   Vec3 before_N, before_Nm;
   for (const TickRow& row : rows) {
     const auto larger = [](double& most, double value) { most = std::max(most, value); };
@@ -197,16 +207,20 @@ Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limi
     larger(worst.torque_Nm, norm(row.written_Nm));
     if (is_finite(row.commanded_N)) larger(worst.commanded_N, norm(row.commanded_N));
     const bool stopped = !row.armed || latches(row.fault);  // then it goes to zero at once
+    const double periods = 1.0 + row.skipped_periods;       // since the write before
     if (!stopped) {
-      larger(worst.step_N, norm(row.written_N - before_N));
-      larger(worst.step_Nm, norm(row.written_Nm - before_Nm));
+      larger(worst.step_N, norm(row.written_N - before_N) / periods);
+      larger(worst.step_Nm, norm(row.written_Nm - before_Nm) / periods);
     }
     if (is_finite(row.tool))
       larger(worst.power_W, dot(row.written_N, row.tool.velocity_mps) +
                                 dot(row.written_Nm, row.tool.angular_velocity_radps));
     // the force of the tick before was held until now
-    heat += std::min(share * (1.0 + row.skipped_periods), 1.0) * (dot(before_N, before_N) - heat);
+    const double cooled = std::min(share * periods, 1.0);
+    heat += cooled * (dot(before_N, before_N) - heat);
+    torque_heat += cooled * (dot(before_Nm, before_Nm) - torque_heat);
     larger(worst.rms_N, std::sqrt(heat));
+    larger(worst.rms_Nm, std::sqrt(torque_heat));
     energy.add(row, period_s);
     before_N = row.written_N;
     before_Nm = row.written_Nm;

@@ -3,6 +3,7 @@
 //
 //     |F| <= force_N     |T| <= torque_Nm     |dF| <= slew_N_per_s T     F . v + T . w <= power_W
 //     sum of F_(k-1) . (x_k - x_(k-1)) <= energy_J + recovery_W t        RMS <= continuous_force_N
+//     RMS of T <= torque_Nm continuous_force_N / force_N
 //     F = 0 exactly while not armed, and from a latched fault on
 //
 // F is what the device was handed last. Of missed samples the mean force counts along the way that
@@ -25,11 +26,11 @@ struct Check {
 
 /// The worst of a record, for the report and for the checks.
 struct Extremes {
-  double force_N = 0.0, commanded_N = 0.0, torque_Nm = 0.0, step_N = 0.0, power_W = 0.0;
-  double step_Nm = 0.0;
-  double given_J = 0.0;      // largest since arming
-  double overdrawn_J = 0.0;  // above budget and recovery; 0: never
-  double rms_N = 0.0;
+  double force_N = 0.0, commanded_N = 0.0, torque_Nm = 0.0, power_W = 0.0;
+  double step_N = 0.0, step_Nm = 0.0;  // for each period that passed since the write before
+  double given_J = 0.0;                // largest since arming
+  double overdrawn_J = 0.0;            // above budget and recovery; 0: never
+  double rms_N = 0.0, rms_Nm = 0.0;
   std::optional<double> zero_s{};  // from the cause to zero force; none: no cause, or never zero
 };
 
@@ -51,6 +52,8 @@ Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limi
                      double period_s);
 /// Largest change in a tick: the slew of the force, in proportion.
 double torque_step_Nm(const model::Limits& limits, double period_s);
+/// Largest RMS of the torque: continuous to peak as the force, and never more than its peak.
+double continuous_torque_Nm(const model::Limits& limits);
 /// The bounds above, each with its largest value.
 std::vector<Check> check_bounds(const Extremes& worst, const model::Limits& limits,
                                 double period_s);
