@@ -77,8 +77,7 @@ bool allow_with(void* filter, int call, unsigned argument, scmp_datum_t mask, sc
 }
 
 Error no_filter(const char* why) {
-  return Error{fmt::format(
-      "the loop's system calls are not filtered: {}; --no-seccomp says that this is meant", why)};
+  return Error{fmt::format("the loop's system calls are not filtered: {}", why)};
 }
 
 class Filter final : public CallFilter {
