@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "firmware/alloc_counter.h"
 #include "firmware/watch/call_filter.h"
 #include "tests/watched_loop.h"
 #include "tools/limits/verdict.h"

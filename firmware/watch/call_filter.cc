@@ -109,7 +109,7 @@ Result<std::unique_ptr<CallFilter>> CallFilter::make(std::span<const int> of_dev
                                                      std::span<const int> of_lines,
                                                      Requests& requests) {
   if (!kAnswers) return no_filter("it is not made for this processor");
-  if (!can_count_heap_calls()) return no_filter("a sanitizer makes calls of its own");
+  if (is_sanitized()) return no_filter("a sanitizer makes calls of its own");
   Context context(seccomp_init(SCMP_ACT_TRAP));
   constexpr scmp_datum_t kWhole = ~scmp_datum_t{0},
                          kCommand = static_cast<unsigned>(FUTEX_CMD_MASK);

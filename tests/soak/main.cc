@@ -119,7 +119,7 @@ std::string complaint(const Outcome& outcome) {
   if (outcome.broken != 0) return fmt::format("{} broken, first {}", outcome.broken, outcome.first);
   if (firmware::can_count_heap_calls() && outcome.heap_calls != 0)
     return fmt::format("{} heap calls in the loop", outcome.heap_calls);
-  if (firmware::can_count_heap_calls() && outcome.grown_kB > kPageNoise_kB)
+  if (!firmware::is_sanitized() && outcome.grown_kB > kPageNoise_kB)
     return fmt::format("resident memory grew by {} kB", outcome.grown_kB);
   if (outcome.pushing_ticks < outcome.ticks / 10 || outcome.stops == 0 || outcome.skipped == 0)
     return fmt::format("{} of {} ticks pushed, {} stops, {} skipped: it proves nothing",
