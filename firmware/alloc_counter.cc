@@ -4,11 +4,20 @@
 #include <cstddef>
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define TACT_HEAP_IS_TAKEN
+#define TACT_HEAP_HAS_HOOKS
 #elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || \
-    __has_feature(realtime_sanitizer)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define TACT_HEAP_HAS_HOOKS
+#elif __has_feature(realtime_sanitizer)
 #define TACT_HEAP_IS_TAKEN
+#endif
+#endif
+
+#ifdef TACT_HEAP_HAS_HOOKS
+#define TACT_HEAP_IS_TAKEN
+#if __has_include(<sanitizer/allocator_interface.h>)  // clang's; gcc has none
+#include <sanitizer/allocator_interface.h>
+#define TACT_HEAP_IS_HOOKED
 #endif
 #endif
 
@@ -22,12 +31,24 @@ thread_local std::uint64_t counted = 0;
   if (watching) ++counted;
 }
 
+#ifdef TACT_HEAP_IS_HOOKED
+void on_malloc(const volatile void*, std::size_t) { note_heap_call(); }
+void on_free(const volatile void*) { note_heap_call(); }
+const bool counts = __sanitizer_install_malloc_and_free_hooks(on_malloc, on_free) != 0;
+#elif defined(TACT_HEAP_IS_TAKEN)
+constexpr bool counts = false;
+#else
+constexpr bool counts = true;
+#endif
+
 }  // namespace
 
+bool can_count_heap_calls() { return counts; }
+
 #ifdef TACT_HEAP_IS_TAKEN
-bool can_count_heap_calls() { return false; }
+bool is_sanitized() { return true; }
 #else
-bool can_count_heap_calls() { return true; }
+bool is_sanitized() { return false; }
 #endif
 
 HeapWatch::HeapWatch() {

@@ -52,6 +52,7 @@ Result<LoopParts> open_loop_parts(const model::Scene& scene, const PartsSetup& s
 void add_to(ThreadCosts& sum, const ThreadCosts& more) {
   sum.heap_calls += more.heap_calls;
   sum.heap_calls_known = more.heap_calls_known;
+  sum.call_filter = more.call_filter;
   sum.minor_faults += more.minor_faults;
   sum.major_faults += more.major_faults;
   sum.voluntary_switches += more.voluntary_switches;

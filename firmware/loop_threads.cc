@@ -19,23 +19,28 @@ constexpr unsigned kLastWords_s = 6;
 }  // namespace
 
 LoopThreads::LoopThreads(const GuardedLoop& guarded)
-    : guarded_(guarded),
-      runaway_(guarded.requests),
-      watch_(StallWatch(guarded.period_ns, guarded.hard_real_time), guarded.loop.progress(),
-             guarded.requests, guarded.lines) {
-  watch_.start(guarded_.rt);
+    : guarded_(guarded), runaway_(guarded.requests) {
   keeper_ = std::thread(&LoopThreads::keep, this);
 }
 
 // Outside the loop's thread, whose filter would let a device's stop do nothing.
 void LoopThreads::keep() {
-  std::thread([this] {
-    costs_ = run_as_loop_thread(
-        guarded_.rt, [this] { guarded_.loop.run(); }, guarded_.filter);
-  }).join();
-  watch_.stop();
+  for (const LoopTurn& turn : guarded_.turns) {
+    take(turn);
+    if (guarded_.requests.stop.load()) break;
+  }
   guarded_.device.stop();  // at once: drives watch for their host
   ended_.store(true);
+}
+
+void LoopThreads::take(const LoopTurn& turn) {
+  LoopWatch watch(StallWatch(guarded_.period_ns, guarded_.hard_real_time), turn.progress,
+                  guarded_.requests, guarded_.lines);
+  watch.start(guarded_.rt);
+  std::thread([&] {
+    add_to(costs_, run_as_loop_thread(guarded_.rt, turn.run, guarded_.filter));
+  }).join();
+  watch.stop();
 }
 
 bool LoopThreads::hangs() {

@@ -3,13 +3,14 @@
 //     tact-loop    the loop behind its call filter (watch/call_filter.h)
 //     tact-watch   above it (watch/loop_watch.h)
 //     keeper       starts the loop; stops the device as soon as it has ended
-//     main         signals, status line (Session::watch)
+//     main         signals, status line, hangs (Session::watch)
 //
+// Loops may follow each other on one device, each in a thread of its own behind the same filter.
 // A loop that does not end when it is asked to is left behind: the process ends without it.
 #pragma once
 
 #include <functional>
-#include <optional>
+#include <vector>
 
 #include "firmware/report.h"
 #include "firmware/watch/call_filter.h"
@@ -18,8 +19,14 @@
 
 namespace tact::firmware {
 
+/// One loop from its first tick to its letting go.
+struct LoopTurn {
+  const Progress& progress;
+  std::function<void()> run;
+};
+
 struct GuardedLoop {
-  RtLoop& loop;
+  std::vector<LoopTurn> turns;  // one after the other, until a stop request
   hal::Device& device;
   hal::SafetyLines& lines;
   Requests& requests;
@@ -46,15 +53,15 @@ class LoopThreads {
   /// within 6 s. The kernel closes what is open; drives with a watchdog let go when they hear
   /// nothing.
   [[noreturn]] void leave_behind(int status, const std::function<void()>& last_words);
-  /// After join().
+  /// Of all turns together, after join().
   const ThreadCosts& costs() const { return costs_; }
 
  private:
   void keep();
+  void take(const LoopTurn& turn);
 
   GuardedLoop guarded_;
   RunawayGuard runaway_;
-  LoopWatch watch_;
   std::atomic<bool> ended_{false};
   std::int64_t asked_ns_ = 0;  // when the stop request was first seen; 0: not yet
   ThreadCosts costs_;

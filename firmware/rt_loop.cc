@@ -10,7 +10,6 @@ namespace tact::firmware {
 void RtLoop::run() RT_SAFE {
   while (may_run()) step();
   let_go();
-  progress_.end();
 }
 
 void RtLoop::step() RT_SAFE {
@@ -43,6 +42,7 @@ void RtLoop::let_go() RT_SAFE {
   device_.permit(false);
   device_.write(Wrench{});
   progress_.enter(Place::kOwn);
+  progress_.end();
 }
 
 // The lines' word counts before the device's. The watch's comes last to be asked, as it may be

@@ -167,7 +167,7 @@ std::optional<Error> Session::open_call_filter() {
     return std::nullopt;
   }
   if (options_.seccomp) return Error{"refused by --seccomp: " + filter.error().sentence};
-  say(stderr, "tactd: {}\n", filter.error().sentence);
+  say(stderr, "tactd: {}; --no-seccomp says that this is meant\n", filter.error().sentence);
   return std::nullopt;
 }
 
@@ -186,7 +186,7 @@ void Session::run_free() {
 
 void Session::run_real_time() {
   telemetry_->start();
-  LoopThreads threads({.loop = *loop_,
+  LoopThreads threads({.turns = {{loop_->progress(), [this] { loop_->run(); }}},
                        .device = *parts_.device,
                        .lines = *parts_.lines,
                        .requests = requests_,

@@ -17,7 +17,7 @@ class FilteredLoop : public WatchedLoop {
  protected:
   void make(std::span<const int> of_device) {
     auto made = CallFilter::make(of_device, {}, requests);
-    if (!can_count_heap_calls() || prctl(PR_GET_SECCOMP) < 0)
+    if (is_sanitized() || prctl(PR_GET_SECCOMP) < 0)
       GTEST_SKIP() << "a sanitizer, or a kernel without seccomp";
     ASSERT_TRUE(made) << made.error().sentence;
     filter = std::move(*made);

@@ -2,23 +2,18 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "tests/no_alloc.h"
 #include "tests/program.h"
 #include "tests/puppet_loop.h"
-#include "tools/common/run_program.h"
 #include "tools/jitter/bare_loop.h"
 #include "tools/jitter/load.h"
-#include "tools/jitter/marker.h"
 
 namespace tact::tools {
 namespace {
 
-namespace fs = std::filesystem;
 using firmware::Phase;
 using firmware::TickRecord;
 using tests::run_program;
@@ -198,62 +193,6 @@ TEST(BareLoop, KeepsTheGridOfTheRealLoopAndTheHeapAlone) {
   EXPECT_EQ(sink.ticks() + sink.skipped(), 20u);
   EXPECT_EQ(sink.skipped(), 3u);
   EXPECT_EQ(sink.phase(Phase::kWake).histogram.max_ns(), 3'400'000u);
-}
-
-class FilesOfAPc : public testing::Test {
- protected:
-  FilesOfAPc() : scratch(std::move(*ScratchFolder::make("tact-costs"))) {}
-  void put(const std::string& path, const std::string& text) const {
-    fs::create_directories(fs::path(scratch.path() + path).parent_path());
-    std::ofstream(scratch.path() + path) << text;
-  }
-  void put_counters(int irq, int local, int steal, const std::string& task) const {
-    put("/proc/interrupts", "           CPU0       CPU2\n 24:  7  " + std::to_string(irq) +
-                                "  PCI-MSIX 0-edge      eth0\nLOC:  9  " + std::to_string(local) +
-                                "   Local timer interrupts\nERR:  3\n");
-    put("/proc/stat", "cpu 0\ncpu2 1 2 3 4 5 6 7 " + std::to_string(steal) + " 0 0\n");
-    put("/proc/self/task/5/stat", "5 (tact (l) oop) S 1 2 3 4 5 6 " + task + " 0 0\n");
-    put("/proc/self/task/5/schedstat", "100 " + task.substr(0, 1) + "000 3\n");
-    put("/proc/self/task/5/sched", "se.nr_migrations           :      " + task.substr(0, 1) + "\n");
-    put("/proc/self/task/5/status",
-        "voluntary_ctxt_switches:\t10\nnonvoluntary_ctxt_switches:\t" + task.substr(0, 1) + "\n");
-  }
-  ScratchFolder scratch;
-};
-
-TEST_F(FilesOfAPc, CostsAreThoseOfTheLoopsCoreAndThread) {
-  const firmware::PcFiles files(scratch.path());
-  put_counters(100, 50, 4, "1 0 2 0");
-  const Costs before = read_costs(files, 5, 2);
-  put_counters(103, 50, 6, "5 0 9 0");
-  const Costs delta = read_costs(files, 5, 2) - before;
-  EXPECT_EQ(delta.interrupts, (std::map<std::string, std::uint64_t>{{"24 eth0", 3}}));
-  EXPECT_EQ(delta.minor_faults, 4u);
-  EXPECT_EQ(delta.major_faults, 7u);
-  EXPECT_EQ(delta.voluntary_switches, 0u);
-  EXPECT_EQ(delta.involuntary_switches, 4u);
-  EXPECT_EQ(delta.migrations, 4u);
-  EXPECT_EQ(delta.waited_ns, 4000u);
-  EXPECT_EQ(delta.steal_ms, 2000u / static_cast<std::uint64_t>(sysconf(_SC_CLK_TCK)));
-  EXPECT_FALSE(delta.smi) << "there is no such file";
-  EXPECT_EQ(to_json(delta)["smi"], nullptr);
-  const std::string words = describe(delta);
-  EXPECT_NE(words.find("interrupts 24 eth0 3"), std::string::npos) << words;
-  EXPECT_NE(words.find("4 us"), std::string::npos) << words;
-}
-
-TEST_F(FilesOfAPc, AMarkerIsWrittenOnceTracefsIsThereAndMayEndTheRecording) {
-  EXPECT_FALSE(TraceMarker(firmware::PcFiles(scratch.path()), true).is_open());
-  put("/sys/kernel/tracing/trace_marker", "");
-  put("/sys/kernel/tracing/tracing_on", "1");
-  TraceMarker marker(firmware::PcFiles(scratch.path()), true);
-  ASSERT_TRUE(marker.is_open());
-  marker.write("tick 7");
-  std::string on, line;
-  std::getline(std::ifstream(scratch.path() + "/sys/kernel/tracing/tracing_on"), on);
-  std::getline(std::ifstream(scratch.path() + "/sys/kernel/tracing/trace_marker"), line);
-  EXPECT_EQ(on, "0");
-  EXPECT_EQ(line, "tick 7");
 }
 
 TEST(Load, EveryKindLoadsSomethingElse) {

@@ -9,6 +9,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "firmware/rt_setup.h"
+#include "tests/program.h"
+
 namespace tact::firmware {
 namespace {
 
@@ -217,6 +220,20 @@ TEST_F(PcCheck, JsonHasEveryRow) {
   EXPECT_EQ(json[0]["name"], "kernel");
   EXPECT_EQ(json[0]["verdict"], "green");
   EXPECT_EQ(json[0]["cure"], "");
+}
+
+TEST(ShortForm, IsToldByTactdWhenItStartsInRealTime) {
+  const auto red = name_red_rows(check_pc({.files = PcFiles{}, .core = choose_core(RtSettings{})}));
+  const auto tells = [](const std::string& how) {
+    const std::string said =
+        tests::run_program("tactd", std::string(TACT_SOURCE_DIR) +
+                                        "/model/scenes/liver.toml --no-telemetry --ticks 10" + how)
+            .output;
+    return said.find(" checks of this PC are red (") != std::string::npos &&
+           said.find("); tact-doctor tells why and the cure\n") != std::string::npos;
+  };
+  EXPECT_EQ(tells(""), !red.empty()) << red;
+  EXPECT_FALSE(tells(" --free-run")) << "simulated time is never late";
 }
 
 TEST(CpuList, IsReadAndWrittenAsTheKernelDoes) {

@@ -1,11 +1,14 @@
-// cyclictest beside the loop: its samples, its turns, and the ratio that is told of both.
+// cyclictest beside the loop: its samples, its turns, and the ratio that is told and judged.
 #include "tools/jitter/peer.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
-#include "tools/jitter/jitter_run.h"
+#include "tests/program.h"
+#include "tools/jitter/jitter_page.h"
+#include "tools/jitter/jitter_report.h"
 
 namespace tact::tools {
 namespace {
@@ -57,6 +60,56 @@ TEST(Peer, TurnsAddUpToOneSeries) {
   EXPECT_EQ(first.histogram.max_tick(), 9u);
   EXPECT_EQ(first.max_at_ns, 90);
   EXPECT_NEAR(static_cast<double>(first.histogram.percentile_ns(0.5)), 3'000.0, 3'000.0 / 64);
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+JitterResult with_peer() {
+  JitterResult result;
+  result.sink = std::make_unique<TickSink>(SinkSettings{});
+  result.peer.emplace();
+  return result;
+}
+
+TEST(PeerGate, ThePeerGateJudgesTheMiddleOfTheTurns) {
+  JitterResult result = with_peer();
+  result.turn_ratios = {1.19, 40.0, 1.0};
+  EXPECT_EQ(exit_status(result), 0) << "without a gate nothing is judged";
+  EXPECT_EQ(to_json(result, "c")["peer_gate"], nullptr);
+  EXPECT_FALSE(has(make_page(result, "c", ""), "peer gate"));
+  result.peer_gate = 1.2;
+  EXPECT_EQ(exit_status(result), 0) << "one turn of 40 is a stall of the machine";
+  EXPECT_EQ(to_json(result, "c")["peer_gate"]["passed"], true);
+  EXPECT_TRUE(has(make_page(result, "c", ""), "<span class='stamp green'>peer gate</span> PASS: "));
+  result.turn_ratios = {1.21, 0.1, 0.2, 1.3, 1.4};
+  EXPECT_EQ(exit_status(result), 1);
+  EXPECT_EQ(to_json(result, "c")["peer_gate"]["passed"], false);
+  EXPECT_EQ(to_json(result, "c")["peer_gate"]["most"], 1.2);
+  const char* sentence =
+      "FAIL: wake-up p99.9 is 1.21 of cyclictest's in the median of 5 turns, allowed are 1.2";
+  EXPECT_TRUE(has(make_summary(result), sentence)) << make_summary(result);
+  EXPECT_TRUE(has(make_page(result, "c", ""), "<span class='stamp red'>peer gate</span> FAIL: "));
+}
+
+TEST(PeerGate, APeerGateWithoutThreeTurnsIsNeitherPassedNorFailed) {
+  JitterResult result = with_peer();
+  result.peer_gate = 1.2;
+  result.turn_ratios = {1.0, 1.0};
+  EXPECT_EQ(exit_status(result), 2);
+  EXPECT_EQ(to_json(result, "c")["peer_gate"]["passed"], nullptr);
+  EXPECT_TRUE(has(make_summary(result), "could not be judged: fewer than three turns"));
+  result.fault = "103 no samples";
+  EXPECT_EQ(exit_status(result), 1);
+}
+
+TEST(PeerGate, AGateOnThePeerNeedsAPeerAndEnoughTurns) {
+  EXPECT_EQ(tests::run_program("tact-jitter", "--bare --duration 0.1 --peer-gate 1.2").status, 2);
+  const auto run = tests::run_program(
+      "tact-jitter", "--bare --duration 0.2 --peer cyclictest --peer-gate 1.2 --json -");
+  EXPECT_EQ(run.status, 2) << run.output;
+  EXPECT_TRUE(has(run.output, "tact-jitter: --peer-gate 1.2 could not be judged")) << run.output;
 }
 
 }  // namespace

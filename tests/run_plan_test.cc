@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "firmware/alloc_counter.h"
 #include "tests/program.h"
 #include "tests/stub_dhd/stub_client.h"
 #include "tests/test_scene.h"
@@ -247,6 +248,7 @@ TEST(Limits, ARealDeviceIsTestedAfterTheWordsAndSaysWhatWasNotRun) {
   ASSERT_NE(begin, std::string::npos) << out.output;
   const auto report = nlohmann::json::parse(out.output.substr(begin));
   EXPECT_FALSE(report.at("simulated").get<bool>());
+  EXPECT_EQ(report.at("call_filter").get<bool>(), !firmware::is_sanitized()) << out.output;
   EXPECT_EQ(report.at("cases").size(), 2u);
   EXPECT_EQ(report.at("not_run").at(0), "speed");
   for (const auto& c : report.at("cases")) EXPECT_EQ(c.at("overshoot_N"), 0.0) << out.output;

@@ -77,8 +77,7 @@ bool allow_with(void* filter, int call, unsigned argument, scmp_datum_t mask, sc
 }
 
 Error no_filter(const char* why) {
-  return Error{fmt::format(
-      "the loop's system calls are not filtered: {}; --no-seccomp says that this is meant", why)};
+  return Error{fmt::format("the loop's system calls are not filtered: {}", why)};
 }
 
 class Filter final : public CallFilter {
@@ -110,7 +109,7 @@ Result<std::unique_ptr<CallFilter>> CallFilter::make(std::span<const int> of_dev
                                                      std::span<const int> of_lines,
                                                      Requests& requests) {
   if (!kAnswers) return no_filter("it is not made for this processor");
-  if (!can_count_heap_calls()) return no_filter("a sanitizer makes calls of its own");
+  if (is_sanitized()) return no_filter("a sanitizer makes calls of its own");
   Context context(seccomp_init(SCMP_ACT_TRAP));
   constexpr scmp_datum_t kWhole = ~scmp_datum_t{0},
                          kCommand = static_cast<unsigned>(FUTEX_CMD_MASK);

@@ -141,7 +141,7 @@ std::string complaint(const Outcome& outcome, bool every_stage) {
   if (outcome.broken != 0) return fmt::format("{} broken, first {}", outcome.broken, outcome.first);
   if (firmware::can_count_heap_calls() && outcome.heap_calls != 0)
     return fmt::format("{} heap calls in the loop", outcome.heap_calls);
-  if (firmware::can_count_heap_calls() && outcome.grown_kB > kPageNoise_kB)
+  if (!firmware::is_sanitized() && outcome.grown_kB > kPageNoise_kB)
     return fmt::format("resident memory grew by {} kB", outcome.grown_kB);
   for (std::size_t i = 0; i < firmware::kStageCount; ++i)
     if (every_stage && outcome.acted[i] == 0)

@@ -129,10 +129,17 @@ std::string environment_table(const JitterResult& result) {
 
 std::string peer_sentence(const JitterResult& result) {
   if (!result.peer) return {};
-  return fmt::format(
+  std::string out = fmt::format(
       "<p>cyclictest ran in turns with the loop, at the same priority and rate, on the same core, "
       "under the same load: <b>{}</b>.</p>\n",
       compare_with_peer(result));
+  if (const auto verdict = judge_peer(result))
+    out += fmt::format("<p><span class='stamp {}'>peer gate</span> {}</p>\n",
+                       !verdict->turns     ? "unknown"
+                       : verdict->passed() ? "green"
+                                           : "red",
+                       escape_html(verdict->sentence()));
+  return out;
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware/report.h"
-#include "tools/jitter/peer.h"
 
 namespace tact::tools {
 namespace {
@@ -54,6 +53,13 @@ json to_json(const std::optional<TurnRatios>& middle) {
           {"upper_quartile", middle->upper_quartile}};
 }
 
+json to_json(const std::optional<PeerVerdict>& verdict) {
+  if (!verdict) return nullptr;
+  return {{"most", verdict->most_ratio},
+          {"passed", verdict->turns ? json(verdict->passed()) : json(nullptr)},
+          {"sentence", verdict->sentence()}};
+}
+
 }  // namespace
 
 std::vector<NamedSeries> series_of(const JitterResult& result) {
@@ -95,6 +101,18 @@ std::string compare_with_peer(const JitterResult& result) {
              : "");
 }
 
+std::optional<PeerVerdict> judge_peer(const JitterResult& result) {
+  if (!result.peer_gate) return std::nullopt;
+  return PeerVerdict{*result.peer_gate, middle_of(result.turn_ratios)};
+}
+
+int exit_status(const JitterResult& result) {
+  const auto verdict = judge_peer(result);
+  if (!result.fault.empty()) return 1;
+  if (!verdict || verdict->passed()) return 0;
+  return verdict->turns ? 1 : 2;
+}
+
 double seconds_into(const JitterResult& result, std::int64_t at_ns) {
   return at_ns == 0 ? 0.0 : 1e-9 * static_cast<double>(at_ns - result.sink->first_due_ns());
 }
@@ -133,6 +151,7 @@ std::string make_summary(const JitterResult& result) {
   }
   out += fmt::format("the largest is that of {} ticks: it bounds nothing\n", result.sink->ticks());
   if (result.peer) out += compare_with_peer(result) + "\n";
+  if (const auto verdict = judge_peer(result)) out += verdict->sentence() + "\n";
   const auto& thread = result.thread;
   out += fmt::format("loop's thread: {} heap calls, {} page faults, {} involuntary switches\n",
                      thread.heap_calls_known ? std::to_string(thread.heap_calls) : "unknown",
@@ -177,6 +196,7 @@ json to_json(const JitterResult& result, const std::string& command) {
           {"pin_edges_unpaired", result.pin ? json(result.pin->unpaired()) : json(nullptr)},
           {"wake_p99.9_over_peer", ratio ? json(*ratio) : json(nullptr)},
           {"wake_p99.9_over_peer_by_turn", to_json(middle_of(result.turn_ratios))},
+          {"peer_gate", to_json(judge_peer(result))},
           {"thread", firmware::to_json(result.thread)},
           {"kernel", to_json(result.costs)},
           {"late_ticks", late},

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tools/jitter/jitter_run.h"
+#include "tools/jitter/peer.h"
 
 namespace tact::tools {
 
@@ -38,6 +39,11 @@ std::vector<NamedSeries> series_of(const JitterResult& result);
 std::optional<double> ratio_to_peer(const JitterResult& result);
 /// The same as a clause, with the middle of the turns.
 std::string compare_with_peer(const JitterResult& result);
+
+/// Nothing without a gate.
+std::optional<PeerVerdict> judge_peer(const JitterResult& result);
+/// Of the program: 0 good, 1 a fault or a gate that fails, 2 a gate that could not be judged.
+int exit_status(const JitterResult& result);
 
 /// One sentence about the run: what, how long, where, how many late.
 std::string make_headline(const JitterResult& result);

@@ -175,6 +175,7 @@ std::optional<Error> Run::measure() {
     if (!load->is_running()) return Error{"stress-ng ended at once; try its --load alone by hand"};
   }
   if (options_.peer) result_.peer.emplace();
+  result_.peer_gate = options_.peer_gate;
   if (options_.live) live_.emplace(options_.duration_s);
   const auto slices = slices_of(options_.duration_s, options_.peer && !in_one_piece());
   for (std::size_t i = 0; i < slices.size(); ++i) {

@@ -27,7 +27,8 @@ struct JitterOptions {
   double rate_Hz = 0.0;       // 0: the scene's, or 1000 of a bare loop
   double threshold_us = 0.0;  // 0: a tenth of the period
   std::vector<std::string> load;
-  bool peer = false;  // cyclictest
+  bool peer = false;                // cyclictest
+  std::optional<double> peer_gate;  // most of the turns' median ratio
   bool stop_trace = false;
   int scope_pin = -1, loop_back = -1;  // lines of device.lines.chip, wired together; -1: none
   bool live = false;                   // a line on the terminal while it runs
@@ -50,9 +51,10 @@ struct JitterResult {
   bool has_marker = false;  // late ticks are marked in the kernel's trace
   std::optional<Series> peer;
   std::vector<double>
-      turn_ratios;                // wake-up p99.9 over the peer's, of each turn with enough samples
-  std::optional<PulseMeter> pin;  // input to force, at the scope pin
-  std::string fault;              // name and cause; empty: none
+      turn_ratios;  // wake-up p99.9 over the peer's, of each turn with enough samples
+  std::optional<double> peer_gate;  // most of their median
+  std::optional<PulseMeter> pin;    // input to force, at the scope pin
+  std::string fault;                // name and cause; empty: none
   std::vector<firmware::PcRow> pc;
   firmware::Environment environment;
 };

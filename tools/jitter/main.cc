@@ -48,8 +48,14 @@ void add_run_options(CLI::App& app, Options& o) {
                  "beside the loop, by stress-ng: cpu,memory,disk,net or fewer")
       ->delimiter(',')
       ->check(CLI::IsMember(load_kinds()));
-  app.add_option("--peer", o.peer, "cyclictest: takes turns with the loop, on its core")
-      ->check(CLI::IsMember({"cyclictest"}));
+  auto* peer =
+      app.add_option("--peer", o.peer, "cyclictest: takes turns with the loop, on its core")
+          ->check(CLI::IsMember({"cyclictest"}));
+  app.add_option("--peer-gate", o.run.peer_gate,
+                 "fail if wake-up p99.9 over the peer's is more in the median of the turns, as a "
+                 "ratio; takes three turns, 15 s")
+      ->check(CLI::Range(0.01, 100.0))
+      ->needs(peer);
   app.add_option("--threshold", o.run.threshold_us,
                  "from deadline to force, us: ticks above are listed with what the kernel counted, "
                  "and marked in ftrace where it may be written (default: a tenth of the period)")
@@ -149,7 +155,9 @@ int measure(const Program& program, Options& o) {
       return program.fail(*error, "its files are not complete");
   if (result->interrupted)
     return program.fail(interruption(), "what was measured until then is told, without a picture");
-  return result->fault.empty() ? 0 : 1;
+  const auto verdict = judge_peer(*result);
+  if (verdict && !verdict->passed()) fmt::print(stderr, "tact-jitter: {}\n", verdict->sentence());
+  return exit_status(*result);
 }
 
 }  // namespace

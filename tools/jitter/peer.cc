@@ -89,6 +89,17 @@ std::optional<TurnRatios> middle_of(std::vector<double> ratios) {
   return TurnRatios{ratios.size(), at(0.25), at(0.5), at(0.75)};
 }
 
+std::string PeerVerdict::sentence() const {
+  if (!turns)
+    return fmt::format(
+        "--peer-gate {:g} could not be judged: fewer than three turns with a p99.9; measure for "
+        "longer (hardware and safety lines take no turns)",
+        most_ratio);
+  return fmt::format(
+      "{}: wake-up p99.9 is {:.2f} of cyclictest's in the median of {} turns, allowed are {:g}",
+      passed() ? "PASS" : "FAIL", turns->median, turns->turns, most_ratio);
+}
+
 std::optional<Error> run_cyclictest(const PeerCall& call, const ScratchFolder& folder,
                                     Series& series) {
   const std::string json_path = folder.file("cyclictest.json");

@@ -43,6 +43,16 @@ struct TurnRatios {
 /// Nothing of fewer than three turns.
 std::optional<TurnRatios> middle_of(std::vector<double> ratios);
 
+/// What a gate says of the middle of the turns.
+struct PeerVerdict {
+  double most_ratio = 0.0;
+  std::optional<TurnRatios> turns;  // nothing: too few to judge
+
+  bool passed() const { return turns && turns->median <= most_ratio; }
+  /// "PASS: ...", "FAIL: ..." or why it could not be judged.
+  std::string sentence() const;
+};
+
 /// Runs it once and adds its samples.
 std::optional<model::Error> run_cyclictest(const PeerCall& call, const ScratchFolder& folder,
                                            Series& series);

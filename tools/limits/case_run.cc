@@ -114,6 +114,7 @@ CaseRun::CaseRun(const Case& c, const LimitsBench& bench)
       moment_({.period_s = bench.period_s()}),
       scene_(plate_scene(c, bench, limits_)),
       tissue_(make_plate(scene_)),
+      requests_(bench.requests != nullptr ? *bench.requests : own_requests_),
       lead_ticks_(static_cast<int>(std::lround((limits_.ramp_s + kLead_s) / bench.period_s()))),
       most_wait_ticks_(static_cast<int>((bench.device != nullptr ? kRealWait_s : kSimulatedWait_s) /
                                         bench.period_s())) {
@@ -143,25 +144,14 @@ CaseRun::CaseRun(const Case& c, const LimitsBench& bench)
       firmware::Gate(bench.gate_limits != nullptr ? bench.gate_limits(claimed) : claimed,
                      moment_.period_s, bench.force_share),
       bench.hard_real_time);
-  loop_ = std::make_unique<firmware::RtLoop>(firmware::LoopSettings{.period_ns = loop_period_ns()},
+  loop_ = std::make_unique<firmware::RtLoop>(firmware::LoopSettings{.period_ns = bench.period_ns()},
                                              *device_, *lines_, *controller_, *clock_, requests_,
                                              *ring_);
-  if (bench.device != nullptr)
-    watch_ = std::make_unique<firmware::LoopWatch>(
-        firmware::StallWatch(loop_period_ns(), bench.hard_real_time), loop_->progress(), requests_,
-        *lines_);
   rows_.reserve(static_cast<std::size_t>(lead_ticks_) +
                 static_cast<std::size_t>(c.duration_s / moment_.period_s) + 2);
 }
 
 bool CaseRun::play() {
-  if (watch_) watch_->start({});
-  const bool going = play_ticks();
-  if (watch_) watch_->stop();
-  return going;
-}
-
-bool CaseRun::play_ticks() {
   const int ticks = static_cast<int>(std::lround(case_.duration_s / moment_.period_s));
   requests_.arm.store(true);
   firmware::TickRecord record;
@@ -179,7 +169,7 @@ bool CaseRun::play_ticks() {
       refused_ = record.output.fault;
       break;
     }
-    going = !is_interrupted();
+    going = !is_interrupted() && !requests_.stop.load();
   }
   loop_->let_go();
   return going;

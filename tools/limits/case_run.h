@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "firmware/rt_loop.h"
-#include "firmware/watch/loop_watch.h"
 #include "hal/open_device.h"
 #include "model/tissue.h"
 #include "tools/limits/player.h"
@@ -39,13 +38,15 @@ struct LimitsBench {
   model::Limits limits;      // of scene and device; what is claimed, and judged
   double force_share = 1.0;  // of them that the PC allows (session.h)
   bool hard_real_time = true;
-  hal::Device* device = nullptr;      // real; null: a simulated one for each case
-  hal::SafetyLines* lines = nullptr;  // of it
+  hal::Device* device = nullptr;           // real; null: a simulated one for each case
+  hal::SafetyLines* lines = nullptr;       // of it
+  firmware::Requests* requests = nullptr;  // of all cases on it; a fault of the watch stays
   /// Makes the gate's limits from the claimed ones. Null: the same. Others are for tests that must
   /// fail, and for the wall without the passivity stage.
   model::Limits (*gate_limits)(const model::Limits&) = nullptr;
 
   double period_s() const { return 1.0 / scene.rate_Hz; }
+  std::int64_t period_ns() const { return std::llround(1e9 / scene.rate_Hz); }
 };
 
 /// The limits that one case is judged by: of scene, device, PC, and what the case tightens.
@@ -57,9 +58,13 @@ class CaseRun {
   CaseRun(const CaseRun&) = delete;
   CaseRun& operator=(const CaseRun&) = delete;
 
-  /// The whole case; ends with zero force. Its ticks do not allocate. A real device is watched as
-  /// tactd's is: a call that hangs costs it the enable line. False after Ctrl-C.
+  /// The whole case; ends with zero force. Its ticks do not allocate. False after Ctrl-C or a stop
+  /// request.
   bool play();
+  /// For the watch above it (guarded_play.h).
+  const firmware::Progress& progress() const { return loop_->progress(); }
+  /// Instead of play(): a fault before it that lets nothing be armed any more.
+  void refuse(Fault fault) { refused_ = fault; }
 
   const Case& subject() const { return case_; }
   const std::vector<TickRow>& rows() const { return rows_; }
@@ -69,8 +74,6 @@ class CaseRun {
   Fault refused() const { return refused_; }
 
  private:
-  std::int64_t loop_period_ns() const { return std::llround(1e9 * moment_.period_s); }
-  bool play_ticks();
   void keep(const firmware::TickRecord& record, bool cause);
 
   Case case_;
@@ -86,12 +89,12 @@ class CaseRun {
   std::unique_ptr<PlayedLines> lines_;
   std::unique_ptr<CommandLaw> law_;
   std::unique_ptr<firmware::Controller> controller_;
-  firmware::Requests requests_;
+  firmware::Requests own_requests_;
+  firmware::Requests& requests_;
   std::unique_ptr<firmware::TickRing> ring_ = std::make_unique<firmware::TickRing>();
   std::unique_ptr<firmware::RtLoop> loop_;
-  std::unique_ptr<firmware::LoopWatch> watch_;  // of a real device
-  int lead_ticks_;                              // after arming, until the gate is open
-  int most_wait_ticks_;                         // for arming
+  int lead_ticks_;       // after arming, until the gate is open
+  int most_wait_ticks_;  // for arming
   std::array<std::uint64_t, firmware::kStageCount> counted_{};
   Fault refused_ = Fault::kNone;
   std::int64_t begin_ns_ = 0;  // of t = 0

@@ -63,6 +63,10 @@ std::string facts(const LimitsReport& report) {
   if (!report.simulated && !report.hard_real_time)
     add("Real time", fmt::format("this PC gives no hard real time; force capped to {:g} %",
                                  100.0 * report.force_share));
+  if (!report.simulated)
+    add("Guards", fmt::format("the watch above the loop, the runaway guard{}",
+                              report.call_filter ? ", the filter on the loop's system calls"
+                                                 : "; no filter on the loop's system calls"));
   add("Date", report.started);
   add("Software", fmt::format("tact {}, {}", e.git_revision, e.compiler));
   add("PC", fmt::format("{}, Linux {}", e.cpu, e.kernel_release));

@@ -215,6 +215,7 @@ json to_json(const LimitsReport& report) {
            {"device", report.device_name},
            {"simulated", report.simulated},
            {"force_share", report.force_share},
+           {"call_filter", report.call_filter},
            {"rate_Hz", 1.0 / report.period_s},
            {"limits", limits},
            {"cases", cases},

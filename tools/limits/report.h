@@ -26,6 +26,7 @@ struct LimitsReport {
   double period_s = 0.001;
   double force_share = 1.0;
   bool hard_real_time = true;  // asked of the PC; simulated time needs none
+  bool call_filter = false;    // over the loop's system calls, on a real device
   firmware::Environment environment{};
   std::vector<CaseResult> cases;
   std::optional<WallVerdict> wall;

@@ -3,53 +3,27 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <atomic>
-#include <chrono>
 #include <memory>
-#include <thread>
 
 #include "firmware/loop_parts.h"
+#include "firmware/operator_view.h"
+#include "firmware/watch/call_filter.h"
+#include "firmware/watch/runaway.h"
 #include "hal/gpio/gpio_lines.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/run_program.h"
+#include "tools/limits/guarded_play.h"
 
 namespace tact::tools {
 namespace {
 
 using model::Error;
 using model::Result;
-using Runs = std::vector<std::unique_ptr<CaseRun>>;
-
-constexpr auto kProgressPeriod = std::chrono::milliseconds(100);
-
 Runs prepare(const std::vector<Case>& cases, const LimitsBench& bench) {
   Runs runs;
   for (const Case& c : cases)
     runs.push_back(std::make_unique<CaseRun>(at_rate(c, bench.period_s()), bench));
   return runs;
-}
-
-/// Case after case without a pause: drives watch for their host.
-void play(const Runs& runs, std::atomic<std::size_t>& done) {
-  for (const auto& run : runs) {
-    if (!run->play()) return;
-    done.fetch_add(1);
-  }
-}
-
-void play_in_real_time(const Runs& runs, hal::Device& device, const PlanOptions& options) {
-  std::atomic<std::size_t> done{0};
-  std::atomic<bool> ended{false};
-  std::thread loop([&] {
-    firmware::run_as_loop_thread({}, [&] { play(runs, done); });
-    device.stop();  // at once: drives watch for their host
-    ended.store(true);
-  });
-  while (!ended.load()) {
-    if (options.progress) options.progress(done.load(), runs.size());
-    std::this_thread::sleep_for(kProgressPeriod);
-  }
-  loop.join();
 }
 
 LimitsReport begin_report(const model::Scene& scene, const hal::DeviceInfo& device) {
@@ -62,6 +36,14 @@ LimitsReport begin_report(const model::Scene& scene, const hal::DeviceInfo& devi
   report.period_s = 1.0 / scene.rate_Hz;
   report.environment = firmware::read_environment(scene.hash);
   return report;
+}
+
+/// What the guards found: no case of its own stands for it.
+void tell_fault(Fault found, const hal::Device& device, const hal::SafetyLines& lines) {
+  const model::FaultEntry& fault = model::describe(found);
+  const std::string trouble = firmware::trouble_behind(found, device, lines);
+  fmt::print(stderr, "tact-limits: the plan ended with {}: {}{}{}; {}\n", fault.name, fault.cause,
+             trouble.empty() ? "" : ": ", trouble, fault.cure);
 }
 
 Result<LimitsReport> finished(LimitsReport report, const Runs& runs, const LimitsBench& bench,
@@ -86,8 +68,8 @@ Result<LimitsReport> run_simulated(const model::Scene& scene, const hal::DeviceI
                           .gate_limits = options.gate_limits};
   firmware::flush_denormals();
   const Runs runs = prepare(options.cases, bench);
-  std::atomic<std::size_t> done{0};
-  play(runs, done);
+  for (const auto& run : runs)
+    if (!run->play()) break;
   return finished(begin_report(scene, info), runs, bench, info, options.wall);
 }
 
@@ -98,14 +80,17 @@ Result<LimitsReport> run_real(const model::Scene& scene, hal::Device& device,
   std::vector<firmware::Shortfall> shortfalls;
   firmware::use_small_thread_stacks();
   const firmware::ProcessSetup setup(shortfalls);
+  if (auto limited = firmware::lift_rttime_limit()) shortfalls.push_back(std::move(*limited));
   const bool hard = shortfalls.empty() && firmware::probe_rt_threads({}).empty();
   const hal::DeviceInfo info = device.info();
+  firmware::Requests requests;
   const LimitsBench bench{.scene = scene,
                           .limits = firmware::limits_for(scene.limits, info),
                           .force_share = hard ? 1.0 : firmware::kNonRtForceShare,
                           .hard_real_time = hard,
                           .device = &device,
                           .lines = lines->get(),
+                          .requests = &requests,
                           .gate_limits = options.gate_limits};
   LimitsReport report = begin_report(scene, info);
   std::vector<Case> cases;
@@ -117,7 +102,13 @@ Result<LimitsReport> run_real(const model::Scene& scene, hal::Device& device,
   }
   if (options.wall) report.not_run.emplace_back(kWallName);
   const Runs runs = prepare(cases, bench);
-  play_in_real_time(runs, device, options);
+  const auto filter =
+      firmware::CallFilter::make(device.loop_calls(), (*lines)->loop_calls(), requests);
+  if (!filter) fmt::print(stderr, "tact-limits: {}\n", filter.error().sentence);
+  report.call_filter =
+      play_guarded(runs, bench, filter ? filter->get() : nullptr, options.progress).call_filter;
+  if (const Fault found = requests.fault.load(); found != Fault::kNone)
+    tell_fault(found, device, **lines);
   (*lines)->stop();
   return finished(std::move(report), runs, bench, info, false);
 }

@@ -1,10 +1,10 @@
 // run_plan.h - the cases of a plan on the device of a scene, one after the other.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "model/result.h"
+#include "tools/limits/guarded_play.h"
 #include "tools/limits/report.h"
 
 namespace tact::tools {
@@ -14,13 +14,13 @@ struct PlanOptions {
   bool wall = false;
   /// See LimitsBench.
   model::Limits (*gate_limits)(const model::Limits&) = nullptr;
-  /// Called beside the cases with how many are done, from the caller's thread.
-  std::function<void(std::size_t done, std::size_t all)> progress{};
+  /// Called beside the cases, from the caller's thread.
+  PlanProgress progress{};
 };
 
-/// Opens the device, plays and judges. A real device is played in real time, by a thread of its own
-/// that asks for what tactd asks for; the consent comes before (consent.h). An error: the device
-/// did not open, or Ctrl-C.
+/// Opens the device, plays and judges. A real device is played in real time, guarded as tactd's is
+/// (guarded_play.h); the consent comes before (consent.h). An error: the device did not open, or
+/// Ctrl-C.
 model::Result<LimitsReport> run_plan(const model::Scene& scene, const PlanOptions& options);
 
 }  // namespace tact::tools

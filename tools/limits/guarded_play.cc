@@ -1,0 +1,67 @@
+#include "tools/limits/guarded_play.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
+#include "firmware/loop_threads.h"
+#include "tools/common/interrupt.h"
+
+namespace tact::tools {
+namespace {
+
+constexpr auto kLook = std::chrono::milliseconds(100);
+
+std::vector<firmware::LoopTurn> turns_of(const Runs& runs, firmware::Requests& requests,
+                                         std::atomic<std::size_t>& done) {
+  std::vector<firmware::LoopTurn> turns;
+  for (const auto& run : runs)
+    turns.push_back({run->progress(), [&run, &requests, &done] {
+                       if (run->play())
+                         done.fetch_add(1);
+                       else
+                         requests.stop.store(true);
+                     }});
+  return turns;
+}
+
+}  // namespace
+
+firmware::ThreadCosts play_guarded(const Runs& runs, const LimitsBench& bench,
+                                   firmware::CallFilter* filter, const PlanProgress& progress) {
+  firmware::Requests& requests = *bench.requests;
+  std::atomic<std::size_t> done{0};
+  firmware::LoopThreads threads({.turns = turns_of(runs, requests, done),
+                                 .device = *bench.device,
+                                 .lines = *bench.lines,
+                                 .requests = requests,
+                                 .filter = filter,
+                                 .rt = {},
+                                 .period_ns = bench.period_ns(),
+                                 .hard_real_time = bench.hard_real_time});
+  while (!threads.ended()) {
+    if (progress) progress(done.load(), runs.size());
+    std::this_thread::sleep_for(kLook);
+    // from here on it has to end: hangs() counts from the stop request
+    if (is_interrupted() || requests.fault.load() != Fault::kNone || done.load() == runs.size())
+      requests.stop.store(true);
+    if (!threads.hangs()) continue;
+    threads.leave_behind(1, [] {
+      fmt::print(stderr,
+                 "tact-limits: a call of the device does not come back, so it ends without a "
+                 "report: switch the device's power off\n");
+      std::fflush(stderr);
+    });
+  }
+  threads.join();
+  if (progress) progress(done.load(), runs.size());
+  const Fault found = requests.fault.load();
+  for (const auto& run : runs)
+    if (found != Fault::kNone && run->rows().empty()) run->refuse(found);
+  return threads.costs();
+}
+
+}  // namespace tact::tools
