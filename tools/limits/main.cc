@@ -23,7 +23,8 @@ struct Options {
 };
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("SCENE,--scene", o.scene, "scene file (TOML): its device and its limits are tested");
+  app.add_option("SCENE,--scene", o.scene,
+                 "scene file (TOML): its device and its limits are tested");
   app.add_option("--set", o.overrides, "one key of the scene, as KEY=VALUE; repeatable");
   app.add_option("--plan", o.plan, "all, or names of cases with commas")->capture_default_str();
   app.add_option("--out", o.out, "folder of the report; made if need be");
