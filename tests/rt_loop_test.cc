@@ -161,6 +161,23 @@ TEST_F(RtLoopTest, AStallOfTwentyPeriodsEndsTheForce) {
   EXPECT_EQ(device.last, Wrench{});
 }
 
+TEST_F(RtLoopTest, AClockThatStepsBackBringsNoForceBeyondItsLimitsAndNoCatchingUp) {
+  press();
+  run_ticks(1);
+  TickRecord before = newest();
+  for (int i = 0; i < 50; ++i) {
+    device.slow_ns = -5'300'000;
+    run_ticks(1);
+    const TickRecord now = newest();
+    EXPECT_TRUE(is_finite(device.last.force_N));
+    EXPECT_LE(norm(device.last.force_N), controller.gate().force_limit_N());
+    EXPECT_EQ(now.due_ns, before.due_ns + 1'000'000) << "one period on, as ever";
+    EXPECT_EQ(now.skipped_ticks, before.skipped_ticks);
+    EXPECT_EQ(now.output.state, State::kArmed);
+    before = now;
+  }
+}
+
 TEST_F(RtLoopTest, ALoopThatIsLateInEveryTickIsStopped) {
   press();
   for (int i = 0; i < 21; ++i) {

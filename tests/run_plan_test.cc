@@ -114,6 +114,13 @@ TEST(RunPlan, AGateWithOneLimitTooLargeFails) {
   }
 }
 
+TEST(RunPlan, LateTicksAreBorneForTwentyWithHardRealTimeAndForLongerWithout) {
+  const auto cases = choose_cases("late-ticks");
+  ASSERT_TRUE(cases);
+  EXPECT_NEAR(*at_rate(cases->at(0), 0.001, true).expected.zero_within_s, 0.042, 1e-12);
+  EXPECT_NEAR(*at_rate(cases->at(0), 0.001, false).expected.zero_within_s, 0.250, 1e-12);
+}
+
 TEST(RunPlan, OvershootIsWhatIsAboveTheLimit) {
   const LimitsReport wrong = plan("ramp", enlarged<&Limits::force_N>);
   EXPECT_NEAR(wrong.cases.at(0).verdict.overshoot_N, 0.05 * 8.0, 1e-9);

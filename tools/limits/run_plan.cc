@@ -22,7 +22,8 @@ using model::Result;
 Runs prepare(const std::vector<Case>& cases, const LimitsBench& bench) {
   Runs runs;
   for (const Case& c : cases)
-    runs.push_back(std::make_unique<CaseRun>(at_rate(c, bench.period_s()), bench));
+    runs.push_back(
+        std::make_unique<CaseRun>(at_rate(c, bench.period_s(), bench.hard_real_time), bench));
   return runs;
 }
 
