@@ -38,6 +38,23 @@ TEST(ToolArm, LeansWhereTheArmIsTooShort) {
   EXPECT_GT((arm.points_m()[kShoulderBone] - shoulder_m).norm(), 0.05);
 }
 
+TEST(ToolArm, BringsTheTrunkInWhereALimitOfTheArmIsInTheWay) {
+  // Behind the shoulder: near enough, but the upper arm's cone does not let the arm go there.
+  const Vector3d shoulder_m = upright_m(kPlan, FigureJoint::kRightShoulder);
+  for (const Vector3d& behind_m :
+       {Vector3d(0.30, 0.0, 0.0), Vector3d(0.30, 0.0, 0.10), Vector3d(0.40, 0.0, 0.0)}) {
+    ToolArm arm(kPlan);
+    const Vector3d at_m = shoulder_m + behind_m;
+    ASSERT_EQ(choose_root(arm.chain(), arm.joints(), kShoulderBone, at_m), kShoulderBone);
+    const ArmWork work = arm.hold(goal(at_m.x(), at_m.y(), at_m.z()));
+    EXPECT_TRUE(work.reached);
+    EXPECT_TRUE(work.full_chain);
+    EXPECT_FALSE(work.out_of_reach);
+    EXPECT_GT(work.sweeps, kSweeps) << "what the arm alone tried in vain counts, too";
+    EXPECT_GT((arm.points_m()[kShoulderBone] - shoulder_m).norm(), 0.02);
+  }
+}
+
 TEST(ToolArm, StandsUprightAgainWhenTheToolComesBack) {
   ToolArm arm(kPlan);
   arm.hold(goal(-0.85, 0.0, 0.25));
@@ -62,7 +79,7 @@ TEST(ToolArm, KeepsLengthsLimitsAndItsWordWhateverTheGoalIs) {
     const double error_m = (arm.points_m().back() - any.grip_m).norm();
     ASSERT_NEAR(work.error_m, error_m, 1e-12);
     ASSERT_EQ(work.reached, error_m <= kGripTolerance_m);
-    ASSERT_LE(work.sweeps, 2 * kSweeps);
+    ASSERT_LE(work.sweeps, kMostSweeps);
     reached += work.reached;
     for (std::size_t k = 0; k < ToolArm::kBones; ++k) {
       const Bone& bone = arm.chain().bones[k];
@@ -73,7 +90,7 @@ TEST(ToolArm, KeepsLengthsLimitsAndItsWordWhateverTheGoalIs) {
       ASSERT_LE(swing, (hinge ? bone.hi_rad : bone.cone_rad) + 1e-9);
     }
   }
-  EXPECT_GT(reached, 1000) << "most of them are in reach";
+  EXPECT_GT(reached, 1800) << "most of them are in reach";
   EXPECT_LT(reached, 2000) << "and some are not";
 }
 

@@ -7,8 +7,10 @@
 //     3  the wrist takes the wanted turn, as far as its cone lets it; the fingers curl
 //     4  CCD brings the finger tips to the grip, if a limit kept the hand from its turn
 //
-// Steps 2 and 4 are CCD from the sub-root, the shoulder, and from the pelvis only when the grip is
-// farther than 0.98 of what the arm spans (choose_root). Warm start, at most kSweeps sweeps each.
+// Steps 2 and 4 are CCD from the sub-root, the shoulder, and from the pelvis only when the target is
+// farther than 0.98 of what the arm spans (choose_root), or when step 4 came to no good end because
+// a limit of the arm is in the way: then it goes on from the pelvis. For the turn of the hand alone
+// the trunk does not bend. Warm start, at most kSweeps sweeps each.
 //
 // From the shoulder step 2 begins with the two-bone formula, law of cosines as in CC-10: the elbow
 // bends to the distance, then the shoulder points. Two updates, exact but for the limits. CCD alone
@@ -39,12 +41,13 @@ enum class RootRule : std::uint8_t { kSubRootFirst, kAlwaysFullChain };
 struct ArmWork {
   bool reached = false;      // the finger tips are within kGripTolerance_m of the grip
   bool out_of_reach = true;  // the whole chain is too short
-  bool full_chain = false;   // the sub-chain could not
+  bool full_chain = false;   // the sub-chain could not: too short, or a limit in the way
   double error_m = 0.0;
   int sweeps = 0, updates = 0;
 };
 
 inline constexpr int kSweeps = 20;
+inline constexpr int kMostSweeps = 3 * kSweeps;  // of a frame: wrist, grip, grip from the pelvis
 inline constexpr double kGripTolerance_m = 0.5e-3;
 
 class ToolArm {
@@ -69,8 +72,11 @@ class ToolArm {
   const std::array<JointState, kBones>& joints() const { return joints_; }
 
  private:
+  std::size_t root_for(const Chain& chain, const Eigen::Vector3d& target_m) const;
+  /// CCD from the joints as they are; counts what it costs.
   ReachResult run(const Chain& chain, const Eigen::Vector3d& target_m, double tolerance_m,
-                  ArmWork& work);
+                  std::size_t root, ArmWork& work) const;
+  ReachResult grip(const Eigen::Vector3d& grip_m, ArmWork& work);
   void take(const ReachResult& result);
   /// Elbow to the distance, shoulder to the direction; how many joints it turned.
   int point_two_bones(const Eigen::Vector3d& wrist_m);
