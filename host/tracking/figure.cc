@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/tracking/figure_words.h"
 #include "host/tracking/leg_ik.h"
 
 namespace tact::host {
@@ -66,9 +67,9 @@ const FigurePose& Figure::update(double time_s, const Pose& tool, const TrackedO
   pose_arm(tool_, bodies);
   pose_head();
   pose_left_arm();
-  pose_leg(false, bodies);
-  pose_leg(true, bodies);
-  tell(bodies);
+  place_leg(false, bodies);
+  place_leg(true, bodies);
+  tell(bodies, pose_);
   return pose_;
 }
 
@@ -175,13 +176,13 @@ void Figure::pose_left_arm() {
   next(kLeftKnuckles, kLeftFingers, plan_.fingers_m, {-0.75, 0.30, -0.55});
 }
 
-void Figure::pose_leg(bool right, const TrackedOperator& bodies) {
+void Figure::place_leg(bool right, const TrackedOperator& bodies) {
   using enum FigureJoint;
   const auto pick = [right](FigureJoint r, FigureJoint l) { return right ? r : l; };
   const Vector3d hip_m = to_world(pelvis_, upright_m(plan_, pick(kRightHip, kLeftHip)));
   const Vector3d standing_m = standing_ankle_m(plan_, right) + place_m_;
-  const Pose foot = follow(right ? BodyRole::kRightAnkle : BodyRole::kLeftAnkle, bodies,
-                           {.position_m = standing_m});
+  const BodyRole ankle = right ? BodyRole::kRightAnkle : BodyRole::kLeftAnkle;
+  const Pose foot = follow(ankle, bodies, {.position_m = standing_m});
   // The knee is hinted at: forward of the leg, or where the tracked leg has it.
   const Vector3d forward = pelvis_.rotation * -Vector3d::UnitX();
   const Vector3d knee_hint_m = 0.5 * (hip_m + foot.position_m) + 0.1 * forward;
@@ -192,8 +193,10 @@ void Figure::pose_leg(bool right, const TrackedOperator& bodies) {
   const double distance_m = leg_m.norm();
   const Vector3d x = distance_m > 1e-6 ? Vector3d(leg_m / distance_m) : -Vector3d::UnitZ();
   const Vector3d y = across(shin.position_m - hip_m, x, forward);
-  const LegPose leg = tact::host::pose_leg({.thigh_m = plan_.thigh_m, .calf_m = plan_.calf_m},
-                                           {0.0, 0.0}, {distance_m, 0.0});
+  const LegPose leg =
+      pose_leg({.thigh_m = plan_.thigh_m, .calf_m = plan_.calf_m}, {0.0, 0.0}, {distance_m, 0.0});
+  const double missed_m = std::abs(distance_m - leg.ankle_m.x());
+  pose_.leg_reached[right ? 1 : 0] = share(ankle) == 0.0 || missed_m <= kLegTolerance_m;
   const auto in_plane = [&](const Eigen::Vector2d& p_m) -> Vector3d {
     return hip_m + p_m.x() * x + p_m.y() * y;
   };

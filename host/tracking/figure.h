@@ -46,6 +46,7 @@ struct FigurePose {
   Eigen::Quaterniond head = Eigen::Quaterniond::Identity();  // its -x is where the face looks
   Eigen::Vector3d grip_m = Eigen::Vector3d::Zero();          // where the finger tips shall be
   ArmWork arm;
+  std::array<bool, 2> leg_reached{true, true};  // left, right: within kLegTolerance_m, or untracked
   FigureTrouble trouble = FigureTrouble::kNone;  // the worst
   std::string words;                             // "head lost (silent)"; empty if there is none
 
@@ -58,6 +59,7 @@ struct FigurePose {
 };
 
 inline constexpr double kFarthestPlace_m = 0.5;
+inline constexpr double kLegTolerance_m = 0.01;  // a straight leg and a little noise are no trouble
 inline constexpr double kNeckCone_rad = 0.8, kHeadTurn_rad = 1.4;
 inline constexpr double kRelax_s = 1.5;  // in which the arm goes two thirds of its way to rest
 
@@ -79,8 +81,7 @@ class Figure {
   void pose_arm(const Pose& tool, const TrackedOperator& bodies);
   void pose_head();
   void pose_left_arm();
-  void pose_leg(bool right, const TrackedOperator& bodies);
-  void tell(const TrackedOperator& bodies);
+  void place_leg(bool right, const TrackedOperator& bodies);
 
   FigureSettings settings_;
   BodyPlan plan_;
