@@ -51,8 +51,14 @@ Figure::Figure(const FigureSettings& settings)
       arm_(plan_, settings.root_rule),
       pelvis_(standing_pelvis(plan_)) {
   if (settings.shoulder_m) place_m_ = start_m_ = to_shoulder(plan_, *settings.shoulder_m);
+  pose_.height_m = plan_.height_m;
   tool_.position_m = Vector3d(0.0, 0.0, 0.05);
   update(0.0, tool_, {});
+  begun_ = false;
+}
+
+void Figure::go_on_with(const Vector3d& tool_grip_m) {
+  settings_.grip_m = tool_grip_m;
   begun_ = false;
 }
 

@@ -12,7 +12,7 @@
 // kFarthestPlace_m of the default. A bone without a tracker stays neutral; the head looks down at
 // the device, the feet stand. A body that is held, lost or back: bound_bone.h.
 //
-// Time is an argument, s, of any clock; a step back begins anew. No number that is not finite comes
+// Time is an argument, s, of any clock; a step back begins anew, binding and all. No number that is not finite comes
 // out. Frame W, m. For display, not for the force loop. Source: PHYSICS 5.
 #pragma once
 
@@ -42,6 +42,7 @@ struct FigureSettings {
 enum class FigureTrouble : std::uint8_t { kNone, kHeld, kLost, kOutOfReach };
 
 struct FigurePose {
+  double height_m = 0.0;  // of the body that it draws; 0: none yet
   std::array<Eigen::Vector3d, kFigureJoints> joint_m{};
   Eigen::Quaterniond head = Eigen::Quaterniond::Identity();  // its -x is where the face looks
   Eigen::Vector3d grip_m = Eigen::Vector3d::Zero();          // where the finger tips shall be
@@ -69,6 +70,8 @@ class Figure {
 
   /// One frame. `tool` is the tool's pose in W; one that is not finite leaves the last one.
   const FigurePose& update(double time_s, const Pose& tool, const TrackedOperator& bodies);
+  /// Another run of the device, maybe another tool: the clock begins anew, what is bound stays so.
+  void go_on_with(const Eigen::Vector3d& tool_grip_m);
   const FigurePose& pose() const { return pose_; }
   const BodyPlan& plan() const { return plan_; }
   const ToolArm& arm() const { return arm_; }
