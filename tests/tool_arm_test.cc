@@ -55,6 +55,45 @@ TEST(ToolArm, BringsTheTrunkInWhereALimitOfTheArmIsInTheWay) {
   }
 }
 
+TEST(ToolArm, BeginsWhereTheLastFrameEnded) {
+  for (const RootRule rule : {RootRule::kSubRootFirst, RootRule::kAlwaysFullChain}) {
+    for (const ArmGoal& same : {goal(-0.40, 0.09, 0.22), goal(-0.85, 0.0, 0.25)}) {
+      ToolArm arm(kPlan, rule);
+      EXPECT_GT(arm.hold(same).updates, 0);
+      const auto before = arm.points_m();
+      const ArmWork again = arm.hold(same);
+      EXPECT_TRUE(again.reached);
+      EXPECT_EQ(again.sweeps, 0);
+      EXPECT_EQ(again.updates, 0);
+      for (std::size_t i = 0; i < before.size(); ++i) {
+        EXPECT_LT((arm.points_m()[i] - before[i]).norm(), 1e-12) << i;
+      }
+    }
+  }
+}
+
+TEST(ToolArm, NeitherElbowNorShoulderJumpsBetweenNeighbouringFrames) {
+  const Vector3d pelvis_m = standing_pelvis(kPlan).position_m;
+  for (const RootRule rule : {RootRule::kSubRootFirst, RootRule::kAlwaysFullChain}) {
+    ToolArm arm(kPlan, rule);
+    std::optional<std::array<Vector3d, ToolArm::kBones + 1>> before;
+    double most_m = 0.0;
+    for (double t_s = 0.0; t_s < test::kMotion_s; t_s += test::kMotionFrame_s) {
+      const Pose tool = test::tool_at(t_s);
+      arm.relax(0.01);
+      arm.hold({.grip_m = to_world(tool, {0.0, 0.0, 0.075}) - pelvis_m,
+                .hand = (tool.rotation * holding_hand()).normalized()});
+      for (const std::size_t i : {kShoulderBone, kElbowBone}) {
+        if (before) most_m = std::max(most_m, (arm.points_m()[i] - (*before)[i]).norm());
+      }
+      before = arm.points_m();
+    }
+    std::printf("most in a frame: %.2f mm\n", 1e3 * most_m);
+    EXPECT_LT(most_m, 0.01);
+    EXPECT_GT(most_m, 0.001);
+  }
+}
+
 TEST(ToolArm, StandsUprightAgainWhenTheToolComesBack) {
   ToolArm arm(kPlan);
   arm.hold(goal(-0.85, 0.0, 0.25));
