@@ -129,8 +129,9 @@ void Figure::pose_trunk(const TrackedOperator& bodies) {
   const Pose head = follow(BodyRole::kHead, bodies, upright(FigureJoint::kHead, looking_down()));
   const double by_shoulder = share(BodyRole::kShoulder);
   const double by_head = (1.0 - by_shoulder) * share(BodyRole::kHead);
-  arm_.lean(2, in_pelvis(head.position_m) - plan_.neck_m * Vector3d::UnitZ(), by_head);
-  arm_.lean(3, in_pelvis(shoulder.position_m), by_shoulder);
+  arm_.lean(TrunkEnd::kChest, in_pelvis(head.position_m) - plan_.neck_m * Vector3d::UnitZ(),
+            by_head);
+  arm_.lean(TrunkEnd::kShoulder, in_pelvis(shoulder.position_m), by_shoulder);
 }
 
 void Figure::pose_arm(const Pose& tool, const TrackedOperator& bodies) {
@@ -155,7 +156,8 @@ void Figure::pose_arm(const Pose& tool, const TrackedOperator& bodies) {
 void Figure::pose_head() {
   const Pose& head = bones_[static_cast<std::size_t>(BodyRole::kHead)].now();
   const double by_tracker = share(BodyRole::kHead);
-  const Quaterniond thorax = pelvis_.rotation * arm_.axes(1), free = thorax * looking_down();
+  const Quaterniond thorax = pelvis_.rotation * arm_.axes(kThoraxBone),
+                    free = thorax * looking_down();
   const Vector3d up = thorax * Vector3d::UnitZ(), chest_m = pose_[FigureJoint::kChest];
   // The neck points to the tracked head; it has its own length.
   const Quaterniond neck = Quaterniond::FromTwoVectors(up, head.position_m - chest_m);
@@ -171,7 +173,7 @@ void Figure::pose_head() {
 /// It rests on the bench's edge and moves with the trunk.
 void Figure::pose_left_arm() {
   using enum FigureJoint;
-  const Quaterniond thorax = pelvis_.rotation * arm_.axes(1);
+  const Quaterniond thorax = pelvis_.rotation * arm_.axes(kThoraxBone);
   const auto next = [&](FigureJoint from, FigureJoint to, double length_m, const Vector3d& along) {
     pose_[to] = pose_[from] + thorax * (length_m * along.normalized());
   };

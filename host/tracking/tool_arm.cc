@@ -39,7 +39,7 @@ ToolArm::ToolArm(const BodyPlan& plan, RootRule rule)
     : rule_(rule),
       chain_(arm_chain(plan)),
       to_wrist_(first_bones(chain_, kHandBone)),
-      to_trunk_{first_bones(chain_, 2), first_bones(chain_, 3)},
+      to_trunk_{first_bones(chain_, kThoraxBone + 1), first_bones(chain_, kShoulderBone)},
       rest_(arm_at_rest()),
       joints_(rest_) {
   std::copy_n(rest_.begin(), kShoulderBone, trunk_.begin());
@@ -60,9 +60,9 @@ void ToolArm::relax(double share) {
   for (std::size_t i = kShoulderBone; i < kHandBone; ++i) go(joints_[i], rest_[i]);
 }
 
-void ToolArm::lean(std::size_t bones, const Vector3d& target_m, double share) {
+void ToolArm::lean(TrunkEnd end, const Vector3d& target_m, double share) {
   if (!(share > 0.0)) return;
-  const Chain& chain = to_trunk_[bones == 2 ? 0 : 1];
+  const Chain& chain = to_trunk_[static_cast<std::size_t>(end)];
   const auto start = std::span(trunk_).first(chain.bones.size());
   const ReachResult result =
       reach(chain, start, {.target_m = target_m, .tolerance_m = 1e-3, .sweeps = kSweeps});

@@ -37,6 +37,9 @@ struct ArmGoal {
 /// kAlwaysFullChain is classical CCD, to compare with.
 enum class RootRule : std::uint8_t { kSubRootFirst, kAlwaysFullChain };
 
+/// The chest ends lumbar and thorax, the shoulder the collar bone, too.
+enum class TrunkEnd : std::uint8_t { kChest, kShoulder };
+
 /// What a frame cost and gave.
 struct ArmWork {
   bool reached = false;      // the finger tips are within kGripTolerance_m of the grip
@@ -52,15 +55,15 @@ inline constexpr double kGripTolerance_m = 0.5e-3;
 
 class ToolArm {
  public:
-  static constexpr std::size_t kBones = 7;
+  static constexpr std::size_t kBones = kArmBones;
 
   explicit ToolArm(const BodyPlan& plan, RootRule rule = RootRule::kSubRootFirst);
 
   /// Step 1: `share` of the way to rest, 0 .. 1.
   void relax(double share);
-  /// Turns the first `bones` joints so that their end comes as near to `target_m` as it can, by
-  /// `share` of the way: 2 move the chest, 3 the shoulder.
-  void lean(std::size_t bones, const Eigen::Vector3d& target_m, double share);
+  /// Bends the trunk so that this end of it comes as near to `target_m` as it can, by `share` of
+  /// the way.
+  void lean(TrunkEnd end, const Eigen::Vector3d& target_m, double share);
   /// Steps 2 to 4. A goal that is not finite changes nothing.
   ArmWork hold(const ArmGoal& goal);
 
@@ -86,9 +89,9 @@ class ToolArm {
   Eigen::Vector3d wrist_for(const ArmGoal& goal) const;
 
   RootRule rule_;
-  Chain chain_;                    // 7 bones
-  Chain to_wrist_;                 // its first 5
-  std::array<Chain, 2> to_trunk_;  // its first 2 and 3
+  Chain chain_;
+  Chain to_wrist_;                 // its first bones, up to the forearm
+  std::array<Chain, 2> to_trunk_;  // by TrunkEnd
   std::array<JointState, kBones> rest_, joints_;
   std::array<JointState, kShoulderBone> trunk_, bent_{};  // without the arm; by the arm beyond it
   std::array<Eigen::Vector3d, kBones + 1> points_m_{};
