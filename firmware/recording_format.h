@@ -4,7 +4,7 @@
 // Recording: FileHeader, Hello, meshes, then one FrameRecord per frame; little-endian, fixed sizes,
 // so a damaged frame costs that frame only. Every part has a CRC-32 (polynomial 0x04C11DB7, as
 // zlib). In version 4 the operator's tracker ran: behind each frame stands one operator record of
-// the viewer (host/operator_record.h). tactd writes version 3.
+// the viewer, bodies and figure (host/operator_record.h). tactd writes version 3.
 // Tick log: LogStart and what else belongs to its header (tick_log.h), then `ticks` records of
 // tick_bytes, in the machine's own layout, and a whole recording of the same seconds. Without a
 // number of ticks they go on to the end of the file, and no recording follows.

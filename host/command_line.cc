@@ -57,7 +57,8 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
       ->needs(registration);
   app.add_flag("--figure", options.figure,
                "show the operator without a tracker, too: the arm that holds the tool");
-  app.add_option("--height", options.height_m, "the operator's body height, m")
+  app.add_option("--height", options.height_m,
+                 "the operator's body height, m; a recording with an operator has its own")
       ->capture_default_str()
       ->check(CLI::Range(1.2, 2.2));
   app.add_flag("--json", options.json, "say what is ready or done as one line of JSON");

@@ -65,7 +65,7 @@ void Download::write_next() {
       append_csv_row(part, frames[next_], recording_->hello, tracked, bodies_);
     } else {
       part += recording_frame(frames[next_]);
-      if (tracked != nullptr) part += operator_record(*tracked);
+      if (tracked != nullptr) part += operator_record(*tracked, recording_->figure_at(next_));
     }
   }
   write_chunk(std::move(part));

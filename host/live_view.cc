@@ -35,10 +35,13 @@ void LiveView::begin(const Hello& hello, MeshBytes mesh, Link link, const std::s
   tell(link, detail);
 }
 
-void LiveView::add(const Frame& frame, const TrackedOperator* tracked) {
-  recent_.add(frame, tracked);
+void LiveView::add(const Frame& frame, const TrackedOperator* tracked, const FigurePose* shown) {
   Text beside;
-  if (companion_) beside = std::make_shared<const std::string>(companion_->with(frame, tracked));
+  if (companion_) {
+    beside = std::make_shared<const std::string>(companion_->with(frame, tracked, shown));
+    shown = &companion_->figure();
+  }
+  recent_.add(frame, tracked, shown);
   if (listeners_.empty()) return;
   const Text text = std::make_shared<const std::string>(frame_json(frame, hello_));
   for (LiveListener* listener : listeners_) listener->on_frame(text, beside);
@@ -77,7 +80,9 @@ std::shared_ptr<const Recording> LiveView::recent(std::uint64_t first_tick,
     const Frame& frame = recent_.frames()[i];
     if (frame.tick < first_tick || frame.tick > last_tick) continue;
     copy->frames.push_back(frame);
-    if (is_tracked) copy->operators.push_back(recent_.operators()[i]);
+    if (!is_tracked) continue;
+    copy->operators.push_back(recent_.operators()[i]);
+    copy->figures.push_back(recent_.figures()[i]);
   }
   return copy;
 }

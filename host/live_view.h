@@ -32,8 +32,11 @@ class Companion {
   virtual ~Companion() = default;
   /// For every scene; what it gives is the status's "figure".
   virtual nlohmann::json begin(const Hello& hello, const MeshBytes& mesh) = 0;
-  /// One JSON text for each frame.
-  virtual std::string with(const Frame& frame, const TrackedOperator* tracked) = 0;
+  /// One JSON text for each frame. `shown` is the figure of a recording: it is told as it was.
+  virtual std::string with(const Frame& frame, const TrackedOperator* tracked,
+                           const FigurePose* shown = nullptr) = 0;
+  /// The one that was told last.
+  virtual const FigurePose& figure() const = 0;
 };
 
 class LiveView {
@@ -45,8 +48,9 @@ class LiveView {
 
   // From telemetry or a replay:
   void begin(const Hello& hello, MeshBytes mesh, Link link, const std::string& detail = {});
-  /// `tracked` is the operator at this frame, if there is a tracker.
-  void add(const Frame& frame, const TrackedOperator* tracked = nullptr);
+  /// `tracked` is the operator at this frame, if there is a tracker; `shown` as in Companion.
+  void add(const Frame& frame, const TrackedOperator* tracked = nullptr,
+           const FigurePose* shown = nullptr);
   void rewind();  // a replay starts again: forget the frames
   void lose(const std::string& reason);
 

@@ -52,8 +52,8 @@ class Recorder {
     note(writer_.open(runs_ == 1 ? path_ : fmt::format("{}.{}", path_, runs_), hello, mesh,
                       is_tracked_));
   }
-  void add(const Frame& frame, const TrackedOperator* tracked) {
-    note(writer_.write(frame, tracked));
+  void add(const Frame& frame, const TrackedOperator* tracked, const FigurePose& figure) {
+    note(writer_.write(frame, tracked, &figure));
   }
   void close() { note(writer_.close()); }
   bool failed() const { return failed_; }
@@ -153,8 +153,8 @@ int show_live(const Options& options) {
                           .frame =
                               [&](const Frame& frame) {
                                 const TrackedOperator* now = tracking ? &tracking->now() : nullptr;
-                                recorder.add(frame, now);
                                 view.add(frame, now);
+                                recorder.add(frame, now, figure.figure());
                               },
                           .lost =
                               [&](const std::string& reason) {
@@ -173,8 +173,9 @@ int show_live(const Options& options) {
 }
 
 int show_recording(const Options& options, ReadResult read) {
-  OperatorFigure figure(options.height_m);  // outlives the view
-  LiveView view;                            // outlives the sessions, which live in io
+  // Outlives the view; a recording that has the operator has the height of the body, too.
+  OperatorFigure figure(read.recording.body_height_m().value_or(options.height_m));
+  LiveView view;  // outlives the sessions, which live in io
   boost::asio::io_context io(1);
   if (options.figure || !read.recording.operators.empty()) view.accompany(&figure);
   ViewerServer server(io, view, nullptr);

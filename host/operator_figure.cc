@@ -40,19 +40,21 @@ OperatorFigure::OperatorFigure(double height_m)
 
 void OperatorFigure::put_shoulder_at(const Eigen::Vector3d& shoulder_m) {
   settings_.shoulder_m = shoulder_m;
+  figure_ = Figure(settings_);
 }
 
 nlohmann::json OperatorFigure::begin(const Hello& hello, const MeshBytes& mesh) {
   settings_.grip_m = grip_of(hello, mesh);
-  figure_ = Figure(settings_);
+  figure_.go_on_with(settings_.grip_m);
   return skeleton_json(figure_.plan());
 }
 
-std::string OperatorFigure::with(const Frame& frame, const TrackedOperator* tracked) {
+std::string OperatorFigure::with(const Frame& frame, const TrackedOperator* tracked,
+                                 const FigurePose* shown) {
   static const TrackedOperator kNobody{};
   const double time_s = static_cast<double>(frame.time_ns) * 1e-9;
-  return figure_json(figure_.update(time_s, pose_of(frame), tracked ? *tracked : kNobody),
-                     frame.tick);
+  told_ = shown ? *shown : figure_.update(time_s, pose_of(frame), tracked ? *tracked : kNobody);
+  return figure_json(told_, frame.tick);
 }
 
 }  // namespace tact::host

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <iterator>
 
+#include "host/tracking/figure_words.h"
+
 namespace tact::host {
 namespace {
 
@@ -51,9 +53,27 @@ std::optional<TrackedBody> take(const BodyRecord& record) {
       .age_s = static_cast<double>(record.age_s)};
 }
 
+FigureRecord record_of(const FigurePose& pose) {
+  FigureRecord out{.height_m = pose.height_m,
+                   .error_m = static_cast<float>(pose.arm.error_m),
+                   .sweeps = static_cast<std::uint16_t>(pose.arm.sweeps),
+                   .updates = static_cast<std::uint16_t>(pose.arm.updates),
+                   .reached = pose.arm.reached,
+                   .out_of_reach = pose.arm.out_of_reach,
+                   .full_chain = pose.arm.full_chain};
+  for (std::size_t i = 0; i < kFigureJoints; ++i) {
+    Eigen::Vector3f::Map(out.joint_m[i]) = pose.joint_m[i].cast<float>();
+  }
+  put({.rotation = pose.head, .position_m = pose.grip_m}, out.grip_m, out.head_wxyz);
+  for (std::size_t i = 0; i < pose.leg_reached.size(); ++i) {
+    if (pose.leg_reached[i]) out.legs_reached |= static_cast<std::uint8_t>(1u << i);
+  }
+  return out;
+}
+
 }  // namespace
 
-std::string operator_record(const TrackedOperator& tracked) {
+std::string operator_record(const TrackedOperator& tracked, const FigurePose* figure) {
   OperatorRecord record{.time_s = tracked.time_s};
   for (std::size_t i = 0; i < kBodyRoles; ++i) {
     const TrackedBody& body = tracked.bodies[i];
@@ -65,6 +85,7 @@ std::string operator_record(const TrackedOperator& tracked) {
     out.state = static_cast<std::uint8_t>(body.state);
     out.trouble = static_cast<std::uint8_t>(body.trouble);
   }
+  if (figure != nullptr) record.figure = record_of(*figure);
   record.crc = crc_of(record);
   return {reinterpret_cast<const char*>(&record), sizeof record};
 }
@@ -77,6 +98,32 @@ std::optional<TrackedOperator> operator_of(const OperatorRecord& record) {
     if (!body) return std::nullopt;
     out.bodies[i] = *body;
   }
+  return out;
+}
+
+std::optional<FigurePose> figure_of(const OperatorRecord& record, const TrackedOperator& bodies) {
+  const FigureRecord& figure = record.figure;
+  const auto grip = take(figure.grip_m, figure.head_wxyz);
+  const bool is_there = figure.height_m > 0.0 && std::isfinite(figure.height_m);
+  if (!is_there || !grip || !std::isfinite(figure.error_m)) return std::nullopt;
+  FigurePose out;
+  out.height_m = figure.height_m;
+  for (std::size_t i = 0; i < kFigureJoints; ++i) {
+    out.joint_m[i] = Eigen::Vector3f::Map(figure.joint_m[i]).cast<double>();
+    if (!out.joint_m[i].allFinite()) return std::nullopt;
+  }
+  out.head = grip->rotation.normalized();
+  out.grip_m = grip->position_m;
+  out.arm = {.reached = figure.reached != 0,
+             .out_of_reach = figure.out_of_reach != 0,
+             .full_chain = figure.full_chain != 0,
+             .error_m = static_cast<double>(figure.error_m),
+             .sweeps = figure.sweeps,
+             .updates = figure.updates};
+  for (std::size_t i = 0; i < out.leg_reached.size(); ++i) {
+    out.leg_reached[i] = (figure.legs_reached & (1u << i)) != 0;
+  }
+  tell(bodies, out);
   return out;
 }
 

@@ -35,7 +35,8 @@ void Playback::play_next() {
       view_.rewind();
     }
     const Frame& frame = recording_.frames[next_];
-    view_.add(frame, recording_.operator_at(next_++));
+    view_.add(frame, recording_.operator_at(next_), recording_.figure_at(next_));
+    ++next_;
     std::chrono::nanoseconds wait = kPause;
     if (next_ < recording_.frames.size()) {
       const std::int64_t gap_ns = recording_.frames[next_].time_ns - frame.time_ns;

@@ -101,8 +101,14 @@ std::string read_frames(std::istream& in, std::uint64_t start, std::uint64_t fil
     recording.frames.push_back(record.frame);
     if (!is_tracked) continue;
     const std::optional<TrackedOperator> seen = operator_of(tracked);
-    if (!seen) ++damaged_operators;
     recording.operators.push_back(seen.value_or(TrackedOperator{}));
+    std::optional<FigurePose> figure;
+    if (seen) {
+      figure = figure_of(tracked, *seen);
+    } else if (++damaged_operators; !recording.figures.empty()) {
+      figure = recording.figures.back();  // it holds
+    }
+    recording.figures.push_back(std::move(figure));
   }
   std::string damage;
   if (damaged > 0) {
@@ -124,6 +130,11 @@ std::string read_frames(std::istream& in, std::uint64_t start, std::uint64_t fil
 double Recording::length_s() const {
   if (frames.empty()) return 0.0;
   return static_cast<double>(frames.back().time_ns - frames.front().time_ns) * 1e-9;
+}
+
+std::optional<double> Recording::body_height_m() const {
+  const auto first = std::ranges::find_if(figures, [](const auto& f) { return f.has_value(); });
+  return first != figures.end() ? std::optional((*first)->height_m) : std::nullopt;
 }
 
 ReadResult read_recording(const std::string& path) {
@@ -180,10 +191,13 @@ std::string RecordingWriter::put(const std::string& bytes) {
   return wrong;
 }
 
-std::string RecordingWriter::write(const Frame& frame, const TrackedOperator* tracked) {
+std::string RecordingWriter::write(const Frame& frame, const TrackedOperator* tracked,
+                                   const FigurePose* figure) {
   if (!file_) return {};
   std::string bytes = recording_frame(frame);
-  if (is_tracked_) bytes += operator_record(tracked != nullptr ? *tracked : TrackedOperator{});
+  if (is_tracked_) {
+    bytes += operator_record(tracked != nullptr ? *tracked : TrackedOperator{}, figure);
+  }
   std::string wrong = put(bytes);
   if (wrong.empty() && frame.time_ns - flushed_ns_ >= kFlush_ns) {
     flushed_ns_ = frame.time_ns;
@@ -201,16 +215,19 @@ std::string RecordingWriter::close() {
 void RecentFrames::restart(double frame_rate_Hz) {
   frames_.clear();
   operators_.clear();
+  figures_.clear();
   capacity_ = static_cast<std::size_t>(std::clamp(frame_rate_Hz, 1.0, 1000.0) * kKeep_s);
 }
 
-void RecentFrames::add(const Frame& frame, const TrackedOperator* tracked) {
+void RecentFrames::add(const Frame& frame, const TrackedOperator* tracked,
+                       const FigurePose* figure) {
   if (frames_.size() >= capacity_ && !frames_.empty()) frames_.pop_front();
   frames_.push_back(frame);
   if (tracked == nullptr && operators_.empty()) return;
   operators_.push_back(tracked != nullptr ? *tracked : TrackedOperator{});
-  while (operators_.size() < frames_.size()) operators_.emplace_front();
-  while (operators_.size() > frames_.size()) operators_.pop_front();
+  figures_.push_back(figure != nullptr ? std::optional(*figure) : std::nullopt);
+  for (; operators_.size() < frames_.size(); figures_.emplace_front()) operators_.emplace_front();
+  for (; operators_.size() > frames_.size(); figures_.pop_front()) operators_.pop_front();
 }
 
 }  // namespace tact::host

@@ -2,18 +2,19 @@
 //
 // The file is laid out in firmware/recording_format.h; a black box of tactd holds one, too. A
 // damaged or cut-off file gives what is good of it and one sentence about the rest. With a tracker
-// it also keeps the operator, frame by frame (operator_record.h).
+// it also keeps the operator and the figure that was shown, frame by frame (operator_record.h).
 #pragma once
 
 #include <cstdio>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "firmware/recording_format.h"
 #include "host/telemetry_check.h"
-#include "host/tracking/tracked_operator.h"
+#include "host/tracking/figure.h"
 
 namespace tact::host {
 
@@ -29,12 +30,19 @@ struct Recording {
   Hello hello;
   MeshBytes mesh;
   std::vector<Frame> frames;
-  std::vector<TrackedOperator> operators;  // of each frame; none without a tracker
+  std::vector<TrackedOperator> operators;          // of each frame; none without a tracker
+  std::vector<std::optional<FigurePose>> figures;  // as they were shown; as many as operators
 
   /// None without a tracker.
   const TrackedOperator* operator_at(std::size_t frame) const {
     return operators.empty() ? nullptr : &operators[frame];
   }
+  /// None where none was shown.
+  const FigurePose* figure_at(std::size_t frame) const {
+    return frame < figures.size() && figures[frame] ? &*figures[frame] : nullptr;
+  }
+  /// Of the first figure.
+  std::optional<double> body_height_m() const;
   double length_s() const;
 };
 
@@ -51,8 +59,9 @@ class RecordingWriter {
   /// Each returns an empty string, or what went wrong. After an error nothing more is written.
   std::string open(const std::string& path, const Hello& hello, const MeshBytes& mesh,
                    bool is_tracked = false);
-  /// `tracked` only if is_tracked.
-  std::string write(const Frame& frame, const TrackedOperator* tracked = nullptr);
+  /// `tracked` and the figure that is shown with it only if is_tracked.
+  std::string write(const Frame& frame, const TrackedOperator* tracked = nullptr,
+                    const FigurePose* figure = nullptr);
   std::string close();
 
  private:
@@ -71,15 +80,18 @@ class RecordingWriter {
 class RecentFrames {
  public:
   void restart(double frame_rate_Hz);
-  void add(const Frame& frame, const TrackedOperator* tracked = nullptr);
+  void add(const Frame& frame, const TrackedOperator* tracked = nullptr,
+           const FigurePose* figure = nullptr);
   const std::deque<Frame>& frames() const { return frames_; }
   const std::deque<TrackedOperator>& operators() const { return operators_; }
+  const std::deque<std::optional<FigurePose>>& figures() const { return figures_; }
 
   static constexpr double kKeep_s = 300.0;
 
  private:
   std::deque<Frame> frames_;
-  std::deque<TrackedOperator> operators_;  // as many as frames, or none
+  std::deque<TrackedOperator> operators_;          // as many as frames, or none
+  std::deque<std::optional<FigurePose>> figures_;  // as many as operators
   std::size_t capacity_ = 0;
 };
 

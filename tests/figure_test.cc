@@ -98,7 +98,7 @@ TEST(Figure, BendsAndTurnsTheNeckNoFartherThanANeckGoes) {
   const Vector3d spine = pose[FigureJoint::kChest] - pose[FigureJoint::kBack];
   EXPECT_NEAR(angle_rad(spine, pose[FigureJoint::kHead] - pose[FigureJoint::kChest]), kNeckCone_rad,
               1e-6);
-  const Eigen::Quaterniond thorax = figure.arm().axes(1);
+  const Eigen::Quaterniond thorax = figure.arm().axes(kThoraxBone);
   EXPECT_NEAR(thorax.angularDistance(pose.head), kHeadTurn_rad, 1e-6);
 }
 

@@ -62,6 +62,18 @@ TEST(OperatorFigure, AToolThatIsNotFiniteStaysWhereItWas) {
   EXPECT_EQ(told(figure, none)["grip_m"], before["grip_m"]);
 }
 
+TEST(OperatorFigure, StandsWhereTheSceneHasItsShoulder) {
+  OperatorFigure figure(1.75);
+  const Eigen::Vector3d shoulder_m(0.55, 0.20, 0.45);
+  figure.put_shoulder_at(shoulder_m);
+  for (int scene = 0; scene < 2; ++scene) {
+    figure.begin(test::make_hello(3, 1, 3, 1), mesh_with_tool());
+    told(figure, frame_at(0.0f, 0));
+    const Eigen::Vector3d got_m = figure.figure()[FigureJoint::kRightShoulder];
+    EXPECT_LT((got_m - shoulder_m).norm(), 1e-9) << "scene " << scene;
+  }
+}
+
 TEST(OperatorFigure, TellsWhatTheTrackerLost) {
   OperatorFigure figure(1.75);
   TrackedOperator tracked;

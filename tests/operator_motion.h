@@ -5,22 +5,13 @@
 #include <cmath>
 
 #include "host/tracking/tracked_operator.h"
+#include "tools/common/tool_motion.h"
 
 namespace tact::test {
 
-inline constexpr double kMotion_s = 30.0, kMotionFrame_s = 1.0 / 60.0;
-
-/// Presses, slides and wanders, now and then farther than the arm alone spans.
-inline host::Pose tool_at(double t_s) {
-  const double far = std::pow(std::max(0.0, std::sin(2.0 * M_PI * t_s / 10.0)), 3);
-  host::Pose tool;
-  tool.position_m = {0.04 * std::sin(1.1 * t_s) - 0.20 * far,
-                     0.08 * std::sin(0.7 * t_s + 1.0) - 0.10 * far,
-                     0.03 + 0.03 * std::sin(1.9 * t_s)};
-  tool.rotation = Eigen::AngleAxisd(0.25 * std::sin(0.9 * t_s), Eigen::Vector3d::UnitX()) *
-                  Eigen::AngleAxisd(0.20 * std::sin(1.3 * t_s), Eigen::Vector3d::UnitZ());
-  return tool;
-}
+using tools::kMotion_s;
+using tools::kMotionFrame_s;
+using tools::tool_at;
 
 /// A body that sways about `home` by `sway_m` and turns a little.
 inline host::TrackedBody sways(const Eigen::Vector3d& home_m, double sway_m, double t_s) {

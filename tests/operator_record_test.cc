@@ -34,6 +34,25 @@ TrackedOperator operator_at(std::size_t i) {
   return out;
 }
 
+/// Not a figure that could be: every number is its own.
+FigurePose figure_at(std::size_t i) {
+  FigurePose out;
+  out.height_m = 1.9;
+  for (std::size_t k = 0; k < kFigureJoints; ++k) {
+    out.joint_m[k] = {0.25 * static_cast<double>(k), -1.0, static_cast<double>(i)};
+  }
+  out.head = test::turn(0.4, {1, 0, 2});
+  out.grip_m = {0.5, 0.0, 2.0 * static_cast<double>(i)};
+  out.arm = {.reached = false,
+             .out_of_reach = true,
+             .full_chain = true,
+             .error_m = 0.125,
+             .sweeps = 33,
+             .updates = 44};
+  out.leg_reached = {true, false};
+  return out;
+}
+
 class TrackedFile : public ::testing::Test {
  protected:
   TrackedFile()
@@ -44,7 +63,8 @@ class TrackedFile : public ::testing::Test {
     EXPECT_EQ(writer.open(path_, hello_, mesh_, true), "");
     for (std::size_t i = 0; i < kFrames; ++i) {
       const TrackedOperator tracked = operator_at(i);
-      EXPECT_EQ(writer.write(frame(i), i == 3 ? nullptr : &tracked), "");
+      const FigurePose shown = figure_at(i);
+      EXPECT_EQ(writer.write(frame(i), i == 3 ? nullptr : &tracked, i == 3 ? nullptr : &shown), "");
     }
     EXPECT_EQ(writer.close(), "");
   }
@@ -86,6 +106,25 @@ TEST_F(TrackedFile, GivesTheOperatorBack) {
   EXPECT_EQ(read.recording.operators[3][BodyRole::kHand].state, BodyState::kAbsent);
 }
 
+TEST_F(TrackedFile, GivesTheFigureBackAsItWasShown) {
+  const Recording recording = read_recording(path_).recording;
+  ASSERT_EQ(recording.figures.size(), kFrames);
+  EXPECT_EQ(recording.body_height_m(), 1.9);
+  const FigurePose truth = figure_at(7), got = recording.figures[7].value_or(FigurePose{});
+  for (std::size_t k = 0; k < kFigureJoints; ++k) EXPECT_EQ(got.joint_m[k], truth.joint_m[k]);
+  EXPECT_LT(got.head.angularDistance(truth.head), 1e-6);
+  EXPECT_EQ(got.grip_m, truth.grip_m);
+  EXPECT_EQ(got.arm.reached, truth.arm.reached);
+  EXPECT_EQ(got.arm.out_of_reach, truth.arm.out_of_reach);
+  EXPECT_EQ(got.arm.full_chain, truth.arm.full_chain);
+  EXPECT_EQ(got.arm.error_m, truth.arm.error_m);
+  EXPECT_EQ(got.arm.sweeps, truth.arm.sweeps);
+  EXPECT_EQ(got.arm.updates, truth.arm.updates);
+  EXPECT_EQ(got.leg_reached, truth.leg_reached);
+  EXPECT_EQ(got.words, "the arm cannot reach the tool");
+  EXPECT_EQ(recording.figure_at(3), nullptr) << "none was shown there";
+}
+
 TEST_F(TrackedFile, DamageOfOneOperatorCostsNoFrame) {
   tests::flip_byte(path_,
                    first_ + 5 * kStride + sizeof(FrameRecord) + offsetof(OperatorRecord, body) + 3);
@@ -93,6 +132,8 @@ TEST_F(TrackedFile, DamageOfOneOperatorCostsNoFrame) {
   ASSERT_EQ(read.recording.frames.size(), kFrames);
   EXPECT_EQ(read.recording.operators[5][BodyRole::kHand].state, BodyState::kAbsent);
   EXPECT_EQ(read.recording.operators[6][BodyRole::kHand].state, BodyState::kTracked);
+  ASSERT_NE(read.recording.figure_at(5), nullptr);
+  EXPECT_EQ(read.recording.figure_at(5)->grip_m, figure_at(4).grip_m) << "the figure holds";
   EXPECT_NE(read.damage.find("1 of 20 frames have lost their operator"), std::string::npos)
       << read.damage;
 }
@@ -151,6 +192,25 @@ TEST(OperatorRecord, WithoutSenseIsRefusedThoughItsSumIsRight) {
   EXPECT_FALSE(accepts([](TrackedBody& b) { b.trouble = static_cast<TrackingTrouble>(9); }));
 }
 
+TEST(OperatorRecord, AFigureWithoutSenseIsNoneThoughItsSumIsRight) {
+  const auto accepts = [](auto change) {
+    FigurePose shown = figure_at(1);
+    change(shown);
+    const TrackedOperator tracked = operator_at(1);
+    const std::string bytes = operator_record(tracked, &shown);
+    OperatorRecord record;
+    std::memcpy(&record, bytes.data(), sizeof record);
+    EXPECT_TRUE(operator_of(record).has_value());
+    return figure_of(record, tracked).has_value();
+  };
+  EXPECT_TRUE(accepts([](FigurePose&) {}));
+  EXPECT_FALSE(accepts([](FigurePose& f) { f.joint_m[22].z() = std::nan(""); }));
+  EXPECT_FALSE(accepts([](FigurePose& f) { f.head.w() = 5.0; }));
+  EXPECT_FALSE(accepts([](FigurePose& f) { f.grip_m.x() = HUGE_VAL; }));
+  EXPECT_FALSE(accepts([](FigurePose& f) { f.arm.error_m = std::nan(""); }));
+  EXPECT_FALSE(accepts([](FigurePose& f) { f.height_m = 0.0; }));
+}
+
 TEST_F(TrackedFile, TheTableHasTheRawPoseOfTheBodiesThatAreThere) {
   const ReadResult read = read_recording(path_);
   const std::vector<BodyRole> bodies = bodies_in(read.recording);
@@ -174,11 +234,15 @@ TEST(RecentFrames, KeepTheOperatorInStep) {
   Frame frame;
   for (frame.tick = 0; frame.tick < 500; ++frame.tick) {
     const TrackedOperator tracked{.time_s = static_cast<double>(frame.tick)};
-    recent.add(frame, frame.tick < 10 ? nullptr : &tracked);
+    const FigurePose shown = figure_at(frame.tick);
+    recent.add(frame, frame.tick < 10 ? nullptr : &tracked, &shown);
     EXPECT_EQ(recent.operators().size(), frame.tick < 10 ? 0 : recent.frames().size());
+    EXPECT_EQ(recent.figures().size(), recent.operators().size());
   }
   for (std::size_t i = 0; i < 300; ++i) {
     EXPECT_EQ(recent.operators()[i].time_s, static_cast<double>(recent.frames()[i].tick));
+    ASSERT_TRUE(recent.figures()[i].has_value());
+    EXPECT_EQ(recent.figures()[i]->grip_m, figure_at(recent.frames()[i].tick).grip_m);
   }
 }
 

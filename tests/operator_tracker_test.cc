@@ -96,6 +96,31 @@ TEST(OperatorTracker, ASweepTrackerSendsTangents) {
   EXPECT_LT(distance(tracker.at(0.0)[BodyRole::kHand].raw, before(kEye)), 1e-6);
 }
 
+TEST(OperatorTracker, WhatOnlyRepeatsItselfIsHeldThenLost) {
+  const TrackingCamera eye = test::camera("front", kEye);
+  for (const double older_s : {0.0, 0.4}) {
+    OperatorTracker tracker(test::setup_of({eye}, {{"h", BodyRole::kHand}}));
+    const auto at = [&](double now_s) { return tracker.at(now_s)[BodyRole::kHand]; };
+    ASSERT_EQ(tracker.take(test::look(eye, kEye, "h", before(kEye), 5.0, 300), 0.0), "");
+    ASSERT_EQ(at(0.0).state, BodyState::kTracked);
+    bool was_held = false;
+    double now_s = 0.0;
+    for (std::uint64_t i = 1; i <= 60; ++i) {  // a second of one picture, or of older ones
+      now_s = static_cast<double>(i) / 60.0;
+      const double seen_s = older_s > 0.0 ? 5.0 - older_s + 1e-3 * static_cast<double>(i) : 5.0;
+      const std::uint64_t sequence = older_s > 0.0 ? 200 + i : 300;
+      tracker.take(test::look(eye, kEye, "h", before(kEye), seen_s, sequence), now_s);
+      EXPECT_EQ(at(now_s).trouble, TrackingTrouble::kOutOfOrder) << i;
+      was_held = was_held || at(now_s).state == BodyState::kHeld;
+    }
+    EXPECT_TRUE(was_held);
+    EXPECT_EQ(at(now_s).state, BodyState::kLost);
+    EXPECT_NEAR(at(now_s).age_s, 1.0, 1e-9);
+    tracker.take(test::look(eye, kEye, "h", before(kEye, 0.01), 5.5, 400), 1.01);
+    EXPECT_EQ(at(1.01).state, BodyState::kTracked) << "what goes on is believed again";
+  }
+}
+
 TEST(OperatorTracker, SaysWhichNameItDoesNotKnow) {
   const TrackingCamera eye = test::camera("front", kEye);
   OperatorTracker tracker(test::setup_of({eye}, {{"h", BodyRole::kHand}}));

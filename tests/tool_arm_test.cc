@@ -38,6 +38,62 @@ TEST(ToolArm, LeansWhereTheArmIsTooShort) {
   EXPECT_GT((arm.points_m()[kShoulderBone] - shoulder_m).norm(), 0.05);
 }
 
+TEST(ToolArm, BringsTheTrunkInWhereALimitOfTheArmIsInTheWay) {
+  // Behind the shoulder: near enough, but the upper arm's cone does not let the arm go there.
+  const Vector3d shoulder_m = upright_m(kPlan, FigureJoint::kRightShoulder);
+  for (const Vector3d& behind_m :
+       {Vector3d(0.30, 0.0, 0.0), Vector3d(0.30, 0.0, 0.10), Vector3d(0.40, 0.0, 0.0)}) {
+    ToolArm arm(kPlan);
+    const Vector3d at_m = shoulder_m + behind_m;
+    ASSERT_EQ(choose_root(arm.chain(), arm.joints(), kShoulderBone, at_m), kShoulderBone);
+    const ArmWork work = arm.hold(goal(at_m.x(), at_m.y(), at_m.z()));
+    EXPECT_TRUE(work.reached);
+    EXPECT_TRUE(work.full_chain);
+    EXPECT_FALSE(work.out_of_reach);
+    EXPECT_GT(work.sweeps, kSweeps) << "what the arm alone tried in vain counts, too";
+    EXPECT_GT((arm.points_m()[kShoulderBone] - shoulder_m).norm(), 0.02);
+  }
+}
+
+TEST(ToolArm, BeginsWhereTheLastFrameEnded) {
+  for (const RootRule rule : {RootRule::kSubRootFirst, RootRule::kAlwaysFullChain}) {
+    for (const ArmGoal& same : {goal(-0.40, 0.09, 0.22), goal(-0.85, 0.0, 0.25)}) {
+      ToolArm arm(kPlan, rule);
+      EXPECT_GT(arm.hold(same).updates, 0);
+      const auto before = arm.points_m();
+      const ArmWork again = arm.hold(same);
+      EXPECT_TRUE(again.reached);
+      EXPECT_EQ(again.sweeps, 0);
+      EXPECT_EQ(again.updates, 0);
+      for (std::size_t i = 0; i < before.size(); ++i) {
+        EXPECT_LT((arm.points_m()[i] - before[i]).norm(), 1e-12) << i;
+      }
+    }
+  }
+}
+
+TEST(ToolArm, NeitherElbowNorShoulderJumpsBetweenNeighbouringFrames) {
+  const Vector3d pelvis_m = standing_pelvis(kPlan).position_m;
+  for (const RootRule rule : {RootRule::kSubRootFirst, RootRule::kAlwaysFullChain}) {
+    ToolArm arm(kPlan, rule);
+    std::optional<std::array<Vector3d, ToolArm::kBones + 1>> before;
+    double most_m = 0.0;
+    for (double t_s = 0.0; t_s < test::kMotion_s; t_s += test::kMotionFrame_s) {
+      const Pose tool = test::tool_at(t_s);
+      arm.relax(0.01);
+      arm.hold({.grip_m = to_world(tool, {0.0, 0.0, 0.075}) - pelvis_m,
+                .hand = (tool.rotation * holding_hand()).normalized()});
+      for (const std::size_t i : {kShoulderBone, kElbowBone}) {
+        if (before) most_m = std::max(most_m, (arm.points_m()[i] - (*before)[i]).norm());
+      }
+      before = arm.points_m();
+    }
+    std::printf("most in a frame: %.2f mm\n", 1e3 * most_m);
+    EXPECT_LT(most_m, 0.01);
+    EXPECT_GT(most_m, 0.001);
+  }
+}
+
 TEST(ToolArm, StandsUprightAgainWhenTheToolComesBack) {
   ToolArm arm(kPlan);
   arm.hold(goal(-0.85, 0.0, 0.25));
@@ -62,7 +118,7 @@ TEST(ToolArm, KeepsLengthsLimitsAndItsWordWhateverTheGoalIs) {
     const double error_m = (arm.points_m().back() - any.grip_m).norm();
     ASSERT_NEAR(work.error_m, error_m, 1e-12);
     ASSERT_EQ(work.reached, error_m <= kGripTolerance_m);
-    ASSERT_LE(work.sweeps, 2 * kSweeps);
+    ASSERT_LE(work.sweeps, kMostSweeps);
     reached += work.reached;
     for (std::size_t k = 0; k < ToolArm::kBones; ++k) {
       const Bone& bone = arm.chain().bones[k];
@@ -73,7 +129,7 @@ TEST(ToolArm, KeepsLengthsLimitsAndItsWordWhateverTheGoalIs) {
       ASSERT_LE(swing, (hinge ? bone.hi_rad : bone.cone_rad) + 1e-9);
     }
   }
-  EXPECT_GT(reached, 1000) << "most of them are in reach";
+  EXPECT_GT(reached, 1800) << "most of them are in reach";
   EXPECT_LT(reached, 2000) << "and some are not";
 }
 

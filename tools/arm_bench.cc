@@ -11,27 +11,26 @@
 
 #include "host/tracking/figure.h"
 #include "tools/common/median_reporter.h"
+#include "tools/common/tool_motion.h"
 
 namespace {
 
-using Eigen::AngleAxisd;
 using Eigen::Vector3d;
 using tact::host::ArmGoal;
+using tact::host::ArmWork;
 using tact::host::Pose;
 using tact::host::RootRule;
 using tact::host::ToolArm;
 
-constexpr double kFrame_s = 1.0 / 60.0, kMotion_s = 30.0, kGoal_us = 50.0;
+using tact::tools::kMotionFrame_s;
+
+constexpr double kGoal_us = 50.0;
+constexpr long kMayMiss = 0;  // the whole motion is in reach
 
 std::vector<Pose> motion() {
   std::vector<Pose> out;
-  for (double t_s = 0.0; t_s < kMotion_s; t_s += kFrame_s) {
-    const double far = std::pow(std::max(0.0, std::sin(2.0 * M_PI * t_s / 10.0)), 3);
-    out.push_back({.rotation = AngleAxisd(0.25 * std::sin(0.9 * t_s), Vector3d::UnitX()) *
-                               AngleAxisd(0.20 * std::sin(1.3 * t_s), Vector3d::UnitZ()),
-                   .position_m = {0.04 * std::sin(1.1 * t_s) - 0.20 * far,
-                                  0.08 * std::sin(0.7 * t_s + 1.0) - 0.10 * far,
-                                  0.03 + 0.03 * std::sin(1.9 * t_s)}});
+  for (double t_s = 0.0; t_s < tact::tools::kMotion_s; t_s += kMotionFrame_s) {
+    out.push_back(tact::tools::tool_at(t_s));
   }
   return out;
 }
@@ -48,17 +47,21 @@ std::vector<ArmGoal> goals(const tact::host::BodyPlan& plan) {
   return out;
 }
 
-void bench_arm(const std::string& name, RootRule rule) {
-  tact::tools::repeat(benchmark::RegisterBenchmark(name.c_str(), [rule](benchmark::State& state) {
-    const auto plan = tact::host::make_body_plan(1.75);
-    const std::vector<ArmGoal> all = goals(plan);
-    ToolArm arm(plan, rule);
-    std::size_t i = 0;
-    for (auto _ : state) {
-      arm.relax(kFrame_s / tact::host::kRelax_s);
-      benchmark::DoNotOptimize(arm.hold(all[i++ % all.size()]));
-    }
-  }));
+/// Counts in `missed` the frames in which the finger tips did not come to the grip.
+void bench_arm(const std::string& name, RootRule rule, long& missed) {
+  tact::tools::repeat(
+      benchmark::RegisterBenchmark(name.c_str(), [rule, &missed](benchmark::State& state) {
+        const auto plan = tact::host::make_body_plan(1.75);
+        const std::vector<ArmGoal> all = goals(plan);
+        ToolArm arm(plan, rule);
+        std::size_t i = 0;
+        for (auto _ : state) {
+          arm.relax(kMotionFrame_s / tact::host::kRelax_s);
+          const ArmWork work = arm.hold(all[i++ % all.size()]);
+          missed += work.reached ? 0 : 1;
+          benchmark::DoNotOptimize(work);
+        }
+      }));
 }
 
 void bench_figure(const std::string& name) {
@@ -68,7 +71,7 @@ void bench_figure(const std::string& name) {
     double t_s = 0.0;
     std::size_t i = 0;
     for (auto _ : state) {
-      benchmark::DoNotOptimize(figure.update(t_s += kFrame_s, all[i++ % all.size()], {}));
+      benchmark::DoNotOptimize(figure.update(t_s += kMotionFrame_s, all[i++ % all.size()], {}));
     }
   }));
 }
@@ -79,23 +82,30 @@ int main(int argc, char** argv) {
   bool json = false;
   CLI::App app{
       "tact-arm-bench: time of the pose of the operator's arm, 7 joints, warm start, us.\n"
-      "Exit status: 0 the goal is met (median of the arm <= 50 us), 1 it is not, 2 bad usage."};
+      "Exit status: 0 the goal is met (median of the arm <= 50 us, every grip held), 1 it is not,\n"
+      "2 bad usage."};
   app.add_flag("--json", json, "the numbers as one line of JSON");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  bench_arm("arm", RootRule::kSubRootFirst);
-  bench_arm("arm_full_chain", RootRule::kAlwaysFullChain);
+  long missed = 0, missed_full = 0;
+  bench_arm("arm", RootRule::kSubRootFirst, missed);
+  bench_arm("arm_full_chain", RootRule::kAlwaysFullChain, missed_full);
   bench_figure("figure");
   const auto us = tact::tools::median_times_us();
   if (json) {
-    fmt::print("{}\n", nlohmann::json(us).dump());
+    nlohmann::json out(us);
+    out["missed"] = missed;
+    out["missed_full_chain"] = missed_full;
+    fmt::print("{}\n", out.dump());
   } else {
     fmt::print("arm, median             {:6.2f} us     goal <= {:.0f}\n", us.at("arm"), kGoal_us);
     fmt::print("with the full chain     {:6.2f} us\n", us.at("arm_full_chain"));
     fmt::print("whole figure            {:6.2f} us\n", us.at("figure"));
+    fmt::print("grips missed            {:6} ,  with the full chain {}\n", missed, missed_full);
   }
-  return us.at("arm") <= kGoal_us ? 0 : 1;
+  const bool held = missed <= kMayMiss && missed_full <= kMayMiss;
+  return held && us.at("arm") <= kGoal_us ? 0 : 1;
 }

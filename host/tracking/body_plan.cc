@@ -101,9 +101,9 @@ Chain arm_chain(const BodyPlan& plan) {
                     bend(plan.fingers_m, along, hinge, 0.10, 1.70)}};
 }
 
-std::array<JointState, 7> arm_at_rest() {
-  std::array<JointState, 7> joints{};
-  joints[4].angle_rad = 1.2;
+std::array<JointState, kArmBones> arm_at_rest() {
+  std::array<JointState, kArmBones> joints{};
+  joints[kElbowBone].angle_rad = 1.2;
   joints[kFingerBone].angle_rad = 0.8;
   return joints;
 }

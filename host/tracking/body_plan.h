@@ -83,9 +83,10 @@ Eigen::Quaterniond looking_down();
 ///     5 palm      ball    cone 1.10
 ///     6 fingers   hinge   0.10 .. 1.70        towards the palm
 Chain arm_chain(const BodyPlan& plan);
-inline constexpr std::size_t kShoulderBone = 3, kElbowBone = 4, kHandBone = 5, kFingerBone = 6;
+inline constexpr std::size_t kThoraxBone = 1, kShoulderBone = 3, kElbowBone = 4, kHandBone = 5,
+                             kFingerBone = 6, kArmBones = 7;
 /// The posture to which the arm goes back as far as the tool lets it.
-std::array<JointState, 7> arm_at_rest();
+std::array<JointState, kArmBones> arm_at_rest();
 /// In a bone's rest axes of the arm: along the bone, and to where elbow and fingers bend.
 Eigen::Vector3d arm_along();
 Eigen::Vector3d arm_bends_to();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/tracking/figure_words.h"
 #include "host/tracking/leg_ik.h"
 
 namespace tact::host {
@@ -50,8 +51,14 @@ Figure::Figure(const FigureSettings& settings)
       arm_(plan_, settings.root_rule),
       pelvis_(standing_pelvis(plan_)) {
   if (settings.shoulder_m) place_m_ = start_m_ = to_shoulder(plan_, *settings.shoulder_m);
+  pose_.height_m = plan_.height_m;
   tool_.position_m = Vector3d(0.0, 0.0, 0.05);
   update(0.0, tool_, {});
+  begun_ = false;
+}
+
+void Figure::go_on_with(const Vector3d& tool_grip_m) {
+  settings_.grip_m = tool_grip_m;
   begun_ = false;
 }
 
@@ -66,9 +73,9 @@ const FigurePose& Figure::update(double time_s, const Pose& tool, const TrackedO
   pose_arm(tool_, bodies);
   pose_head();
   pose_left_arm();
-  pose_leg(false, bodies);
-  pose_leg(true, bodies);
-  tell(bodies);
+  place_leg(false, bodies);
+  place_leg(true, bodies);
+  tell(bodies, pose_);
   return pose_;
 }
 
@@ -122,8 +129,9 @@ void Figure::pose_trunk(const TrackedOperator& bodies) {
   const Pose head = follow(BodyRole::kHead, bodies, upright(FigureJoint::kHead, looking_down()));
   const double by_shoulder = share(BodyRole::kShoulder);
   const double by_head = (1.0 - by_shoulder) * share(BodyRole::kHead);
-  arm_.lean(2, in_pelvis(head.position_m) - plan_.neck_m * Vector3d::UnitZ(), by_head);
-  arm_.lean(3, in_pelvis(shoulder.position_m), by_shoulder);
+  arm_.lean(TrunkEnd::kChest, in_pelvis(head.position_m) - plan_.neck_m * Vector3d::UnitZ(),
+            by_head);
+  arm_.lean(TrunkEnd::kShoulder, in_pelvis(shoulder.position_m), by_shoulder);
 }
 
 void Figure::pose_arm(const Pose& tool, const TrackedOperator& bodies) {
@@ -148,7 +156,8 @@ void Figure::pose_arm(const Pose& tool, const TrackedOperator& bodies) {
 void Figure::pose_head() {
   const Pose& head = bones_[static_cast<std::size_t>(BodyRole::kHead)].now();
   const double by_tracker = share(BodyRole::kHead);
-  const Quaterniond thorax = pelvis_.rotation * arm_.axes(1), free = thorax * looking_down();
+  const Quaterniond thorax = pelvis_.rotation * arm_.axes(kThoraxBone),
+                    free = thorax * looking_down();
   const Vector3d up = thorax * Vector3d::UnitZ(), chest_m = pose_[FigureJoint::kChest];
   // The neck points to the tracked head; it has its own length.
   const Quaterniond neck = Quaterniond::FromTwoVectors(up, head.position_m - chest_m);
@@ -164,7 +173,7 @@ void Figure::pose_head() {
 /// It rests on the bench's edge and moves with the trunk.
 void Figure::pose_left_arm() {
   using enum FigureJoint;
-  const Quaterniond thorax = pelvis_.rotation * arm_.axes(1);
+  const Quaterniond thorax = pelvis_.rotation * arm_.axes(kThoraxBone);
   const auto next = [&](FigureJoint from, FigureJoint to, double length_m, const Vector3d& along) {
     pose_[to] = pose_[from] + thorax * (length_m * along.normalized());
   };
@@ -175,13 +184,13 @@ void Figure::pose_left_arm() {
   next(kLeftKnuckles, kLeftFingers, plan_.fingers_m, {-0.75, 0.30, -0.55});
 }
 
-void Figure::pose_leg(bool right, const TrackedOperator& bodies) {
+void Figure::place_leg(bool right, const TrackedOperator& bodies) {
   using enum FigureJoint;
   const auto pick = [right](FigureJoint r, FigureJoint l) { return right ? r : l; };
   const Vector3d hip_m = to_world(pelvis_, upright_m(plan_, pick(kRightHip, kLeftHip)));
   const Vector3d standing_m = standing_ankle_m(plan_, right) + place_m_;
-  const Pose foot = follow(right ? BodyRole::kRightAnkle : BodyRole::kLeftAnkle, bodies,
-                           {.position_m = standing_m});
+  const BodyRole ankle = right ? BodyRole::kRightAnkle : BodyRole::kLeftAnkle;
+  const Pose foot = follow(ankle, bodies, {.position_m = standing_m});
   // The knee is hinted at: forward of the leg, or where the tracked leg has it.
   const Vector3d forward = pelvis_.rotation * -Vector3d::UnitX();
   const Vector3d knee_hint_m = 0.5 * (hip_m + foot.position_m) + 0.1 * forward;
@@ -192,8 +201,10 @@ void Figure::pose_leg(bool right, const TrackedOperator& bodies) {
   const double distance_m = leg_m.norm();
   const Vector3d x = distance_m > 1e-6 ? Vector3d(leg_m / distance_m) : -Vector3d::UnitZ();
   const Vector3d y = across(shin.position_m - hip_m, x, forward);
-  const LegPose leg = tact::host::pose_leg({.thigh_m = plan_.thigh_m, .calf_m = plan_.calf_m},
-                                           {0.0, 0.0}, {distance_m, 0.0});
+  const LegPose leg =
+      pose_leg({.thigh_m = plan_.thigh_m, .calf_m = plan_.calf_m}, {0.0, 0.0}, {distance_m, 0.0});
+  const double missed_m = std::abs(distance_m - leg.ankle_m.x());
+  pose_.leg_reached[right ? 1 : 0] = share(ankle) == 0.0 || missed_m <= kLegTolerance_m;
   const auto in_plane = [&](const Eigen::Vector2d& p_m) -> Vector3d {
     return hip_m + p_m.x() * x + p_m.y() * y;
   };

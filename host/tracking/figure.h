@@ -12,7 +12,7 @@
 // kFarthestPlace_m of the default. A bone without a tracker stays neutral; the head looks down at
 // the device, the feet stand. A body that is held, lost or back: bound_bone.h.
 //
-// Time is an argument, s, of any clock; a step back begins anew. No number that is not finite comes
+// Time is an argument, s, of any clock; a step back begins anew, binding and all. No number that is not finite comes
 // out. Frame W, m. For display, not for the force loop. Source: PHYSICS 5.
 #pragma once
 
@@ -42,10 +42,12 @@ struct FigureSettings {
 enum class FigureTrouble : std::uint8_t { kNone, kHeld, kLost, kOutOfReach };
 
 struct FigurePose {
+  double height_m = 0.0;  // of the body that it draws; 0: none yet
   std::array<Eigen::Vector3d, kFigureJoints> joint_m{};
   Eigen::Quaterniond head = Eigen::Quaterniond::Identity();  // its -x is where the face looks
   Eigen::Vector3d grip_m = Eigen::Vector3d::Zero();          // where the finger tips shall be
   ArmWork arm;
+  std::array<bool, 2> leg_reached{true, true};  // left, right: within kLegTolerance_m, or untracked
   FigureTrouble trouble = FigureTrouble::kNone;  // the worst
   std::string words;                             // "head lost (silent)"; empty if there is none
 
@@ -58,6 +60,7 @@ struct FigurePose {
 };
 
 inline constexpr double kFarthestPlace_m = 0.5;
+inline constexpr double kLegTolerance_m = 0.01;  // a straight leg and a little noise are no trouble
 inline constexpr double kNeckCone_rad = 0.8, kHeadTurn_rad = 1.4;
 inline constexpr double kRelax_s = 1.5;  // in which the arm goes two thirds of its way to rest
 
@@ -67,6 +70,8 @@ class Figure {
 
   /// One frame. `tool` is the tool's pose in W; one that is not finite leaves the last one.
   const FigurePose& update(double time_s, const Pose& tool, const TrackedOperator& bodies);
+  /// Another run of the device, maybe another tool: the clock begins anew, what is bound stays so.
+  void go_on_with(const Eigen::Vector3d& tool_grip_m);
   const FigurePose& pose() const { return pose_; }
   const BodyPlan& plan() const { return plan_; }
   const ToolArm& arm() const { return arm_; }
@@ -79,8 +84,7 @@ class Figure {
   void pose_arm(const Pose& tool, const TrackedOperator& bodies);
   void pose_head();
   void pose_left_arm();
-  void pose_leg(bool right, const TrackedOperator& bodies);
-  void tell(const TrackedOperator& bodies);
+  void place_leg(bool right, const TrackedOperator& bodies);
 
   FigureSettings settings_;
   BodyPlan plan_;

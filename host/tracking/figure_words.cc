@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "host/tracking/figure.h"
 #include "host/tracking/tracking_setup.h"
 
 namespace tact::host {
@@ -37,12 +36,12 @@ const char* words_for(TrackingTrouble trouble) {
   return "no pose";
 }
 
-void Figure::tell(const TrackedOperator& bodies) {
-  pose_.trouble = FigureTrouble::kNone;
-  pose_.words.clear();
-  const auto say = [this](FigureTrouble trouble, const std::string& words) {
-    if (trouble > pose_.trouble) pose_.words = words;
-    pose_.trouble = std::max(pose_.trouble, trouble);
+void tell(const TrackedOperator& bodies, FigurePose& pose) {
+  pose.trouble = FigureTrouble::kNone;
+  pose.words.clear();
+  const auto say = [&pose](FigureTrouble trouble, const std::string& words) {
+    if (trouble > pose.trouble) pose.words = words;
+    pose.trouble = std::max(pose.trouble, trouble);
   };
   for (std::size_t i = 0; i < kBodyRoles; ++i) {
     const TrackedBody& body = bodies.bodies[i];
@@ -55,8 +54,11 @@ void Figure::tell(const TrackedOperator& bodies) {
     if (body.state == BodyState::kLost) say(FigureTrouble::kLost, words("lost"));
     if (body.state == BodyState::kHeld || bad) say(FigureTrouble::kHeld, words("held"));
   }
-  if (!pose_.arm.reached) {
-    say(FigureTrouble::kOutOfReach, "the arm cannot reach the tool");
+  if (!pose.arm.reached) say(FigureTrouble::kOutOfReach, "the arm cannot reach the tool");
+  for (const bool right : {false, true}) {
+    if (pose.leg_reached[right ? 1 : 0]) continue;
+    say(FigureTrouble::kOutOfReach,
+        std::string("the leg cannot reach the ") + (right ? "right" : "left") + " ankle");
   }
 }
 

@@ -1,9 +1,9 @@
-// figure_words.h - what is said of the operator's trackers.
+// figure_words.h - what is said of the operator's trackers, and of a figure that cannot follow.
 #pragma once
 
 #include <string>
 
-#include "host/tracking/tracked_operator.h"
+#include "host/tracking/figure.h"
 
 namespace tact::host {
 
@@ -11,5 +11,7 @@ namespace tact::host {
 std::string words_for(BodyRole role);
 /// "silent", "too few points seen": why there is no pose.
 const char* words_for(TrackingTrouble trouble);
+/// Sets trouble and words of a pose: the worst of its bodies, its arm and its legs.
+void tell(const TrackedOperator& bodies, FigurePose& pose);
 
 }  // namespace tact::host

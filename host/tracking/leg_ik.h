@@ -22,8 +22,8 @@ enum class LegStatus : std::uint8_t { kOk, kUnreachable, kInvalid };
 enum class Bend : std::int8_t { kCounterClockwise = 1, kClockwise = -1 };
 
 struct Leg {
-  double thigh_m = 0.0;  // L1 > 0, measured once as |knee - hip| in the binding pose
-  double calf_m = 0.0;   // L2 > 0, as |ankle - knee|
+  double thigh_m = 0.0;  // L1 > 0, as the body plan has it
+  double calf_m = 0.0;   // L2 > 0
   Bend bend = Bend::kCounterClockwise;
 };
 

@@ -14,11 +14,6 @@ namespace {
 Pose inverse(const Pose& pose) { return bind(pose, Pose{}); }
 
 /// The markers that both the body has and the camera sees.
-struct Markers {
-  std::vector<Eigen::Vector3d> points_m;
-  std::vector<Eigen::Vector2d> pixels_px;
-};
-
 Markers markers_of(const MarkerBody& body, const Observation& seen) {
   Markers out;
   for (const SeenMarker& point : seen.points) {

@@ -3,7 +3,7 @@
 //
 //     UDP on 127.0.0.1, or a file played in real time -> observation.h -> operator_tracker.h -> now()
 //
-// One thread, the viewer's: a pose takes about 0.2 ms, so that a thread and a slot of its own would
+// One thread, the viewer's: a pose takes about 50 us, so that a thread and a slot of its own would
 // buy nothing. What cannot be used is counted, and the first of it told. No force depends on it.
 #pragma once
 

@@ -16,7 +16,7 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 constexpr double kStill = 1e-12;  // a step below this ends it: rad, and shift over distance
 constexpr double kFine = 1e-8;    // a step below this that does not shrink is rounding
 // At the bottom rms is flat: a pose moves by 1e-8 while rms moves by rounding.
-constexpr double kFlat = 1.0 + 1e-12;
+constexpr double kRounding = 1.0 + 1e-12;
 constexpr int kHalvings = 16;
 
 Vector2d pixel_of(const Camera& camera, const Vector3d& x) {
@@ -107,12 +107,12 @@ Pose polish_pose(std::span<const MarkerView> views, const Pose& start) {
     if (!step.allFinite()) return pose;
     Pose next = moved(pose, step);
     double next_px = reprojection_rms_px(views, next);
-    for (int h = 0; h < kHalvings && !(next_px <= kFlat * best_px); ++h) {
+    for (int h = 0; h < kHalvings && !(next_px <= kRounding * best_px); ++h) {
       step *= 0.5;
       next = moved(pose, step);
       next_px = reprojection_rms_px(views, next);
     }
-    if (!(next_px <= kFlat * best_px)) return pose;  // no way down
+    if (!(next_px <= kRounding * best_px)) return pose;  // no way down
     pose = next;
     best_px = std::min(best_px, next_px);
     const double distance_m = (pose.position_m - views.front().eye.position_m).norm();

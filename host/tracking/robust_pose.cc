@@ -13,11 +13,6 @@ using Eigen::Vector3d;
 constexpr std::size_t kLeastInliers = 5;
 constexpr double kConfidence = 0.999;  // that a draw without outliers was among the rounds
 
-struct Markers {
-  std::vector<Vector3d> points_m;
-  std::vector<Vector2d> pixels_px;
-};
-
 bool all_within(const Camera& camera, std::span<const Vector3d> points_m,
                 std::span<const Vector2d> pixels_px, const Pose& pose, double outlier_px) {
   for (std::size_t i = 0; i < points_m.size(); ++i) {

@@ -7,9 +7,17 @@
 // above `outlier_px` is none: with few markers a wrong one shows, but cannot be found.
 #pragma once
 
+#include <vector>
+
 #include "host/tracking/epnp.h"
 
 namespace tact::host {
+
+/// Markers of one body and where a camera sees them, in the same order.
+struct Markers {
+  std::vector<Eigen::Vector3d> points_m;
+  std::vector<Eigen::Vector2d> pixels_px;
+};
 
 inline constexpr std::size_t kLeastForOutliers = 6;
 inline constexpr int kRansacRounds = 100;

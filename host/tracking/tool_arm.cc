@@ -39,7 +39,7 @@ ToolArm::ToolArm(const BodyPlan& plan, RootRule rule)
     : rule_(rule),
       chain_(arm_chain(plan)),
       to_wrist_(first_bones(chain_, kHandBone)),
-      to_trunk_{first_bones(chain_, 2), first_bones(chain_, 3)},
+      to_trunk_{first_bones(chain_, kThoraxBone + 1), first_bones(chain_, kShoulderBone)},
       rest_(arm_at_rest()),
       joints_(rest_) {
   std::copy_n(rest_.begin(), kShoulderBone, trunk_.begin());
@@ -60,9 +60,9 @@ void ToolArm::relax(double share) {
   for (std::size_t i = kShoulderBone; i < kHandBone; ++i) go(joints_[i], rest_[i]);
 }
 
-void ToolArm::lean(std::size_t bones, const Vector3d& target_m, double share) {
+void ToolArm::lean(TrunkEnd end, const Vector3d& target_m, double share) {
   if (!(share > 0.0)) return;
-  const Chain& chain = to_trunk_[bones == 2 ? 0 : 1];
+  const Chain& chain = to_trunk_[static_cast<std::size_t>(end)];
   const auto start = std::span(trunk_).first(chain.bones.size());
   const ReachResult result =
       reach(chain, start, {.target_m = target_m, .tolerance_m = 1e-3, .sweeps = kSweeps});
@@ -97,30 +97,44 @@ ArmWork ToolArm::hold(const ArmGoal& goal) {
   joints_[kFingerBone] = rest_[kFingerBone];
   const Vector3d wrist_m = wrist_for(goal);
   if (rule_ == RootRule::kSubRootFirst) work.updates += point_two_bones(wrist_m);
-  take(run(to_wrist_, wrist_m, kWristTolerance_m, work));
+  take(run(to_wrist_, wrist_m, kWristTolerance_m, root_for(to_wrist_, wrist_m), work));
   turn_hand(goal.hand);
-  const ReachResult result = run(chain_, goal.grip_m, kGripTolerance_m, work);
+  const ReachResult result = grip(goal.grip_m, work);
   take(result);
   note_bend();
   work.reached = result.status == ReachStatus::kConverged;
-  work.out_of_reach = result.status == ReachStatus::kUnreachable;
   work.error_m = result.error_m;
   std::copy(result.points_m.begin(), result.points_m.end(), points_m_.begin());
   return work;
 }
 
+std::size_t ToolArm::root_for(const Chain& chain, const Vector3d& target_m) const {
+  if (rule_ == RootRule::kAlwaysFullChain) return 0;
+  return choose_root(chain, std::span(joints_).first(chain.bones.size()), kShoulderBone, target_m);
+}
+
 ReachResult ToolArm::run(const Chain& chain, const Vector3d& target_m, double tolerance_m,
-                         ArmWork& work) {
-  const auto start = std::span(joints_).first(chain.bones.size());
-  const std::size_t root =
-      rule_ == RootRule::kSubRootFirst ? choose_root(chain, start, kShoulderBone, target_m) : 0;
+                         std::size_t root, ArmWork& work) const {
   ReachResult result =
-      reach(chain, start,
+      reach(chain, std::span(joints_).first(chain.bones.size()),
             {.target_m = target_m, .tolerance_m = tolerance_m, .sweeps = kSweeps, .root = root});
   work.sweeps += result.sweeps;
   work.updates += result.updates;
   work.full_chain |= root == 0 && result.updates > 0;
   return result;
+}
+
+/// Step 4. It goes on from where the arm alone came to an end, so the trunk bends no more than the
+/// rest of the way asks for.
+ReachResult ToolArm::grip(const Vector3d& grip_m, ArmWork& work) {
+  const std::size_t root = root_for(chain_, grip_m);
+  ReachResult result = run(chain_, grip_m, kGripTolerance_m, root, work);
+  work.out_of_reach = root == 0 && result.status == ReachStatus::kUnreachable;
+  if (root == 0 || result.status == ReachStatus::kConverged) return result;
+  take(result);
+  ReachResult whole = run(chain_, grip_m, kGripTolerance_m, 0, work);
+  work.out_of_reach = whole.status == ReachStatus::kUnreachable;
+  return whole.error_m < result.error_m ? whole : result;
 }
 
 int ToolArm::point_two_bones(const Vector3d& wrist_m) {
