@@ -54,7 +54,8 @@ std::string OperatorFigure::with(const Frame& frame, const TrackedOperator* trac
   static const TrackedOperator kNobody{};
   const double time_s = static_cast<double>(frame.time_ns) * 1e-9;
   told_ = shown ? *shown : figure_.update(time_s, pose_of(frame), tracked ? *tracked : kNobody);
-  return figure_json(told_, frame.tick);
+  const bool head_tracked = tracked && (*tracked)[BodyRole::kHead].state == BodyState::kTracked;
+  return figure_json(told_, frame.tick, head_tracked);
 }
 
 }  // namespace tact::host

@@ -15,7 +15,7 @@ TEST(FigureJson, StaysInItsLengthWhateverTheFigureDoes) {
   pose.arm = {.error_m = 1e9, .sweeps = 40, .updates = 280};
   pose.trouble = FigureTrouble::kLost;
   pose.words = "right ankle lost (a number that is none)";
-  const std::string text = figure_json(pose, UINT64_MAX);
+  const std::string text = figure_json(pose, UINT64_MAX, false);
   EXPECT_LE(text.size(), kMaxFigureJsonBytes);
   EXPECT_GT(text.size(), kMaxFigureJsonBytes - 250) << "the bound is no larger than it must be";
   EXPECT_TRUE(nlohmann::json::accept(text));
@@ -26,7 +26,7 @@ TEST(FigureJson, SaysTheJointsToATenthOfAMillimetre) {
   Pose tool;
   tool.position_m = {0.01234, -0.02, 0.03};
   const FigurePose& pose = figure.update(0.0, tool, {});
-  const auto json = nlohmann::json::parse(figure_json(pose, 7));
+  const auto json = nlohmann::json::parse(figure_json(pose, 7, true));
   EXPECT_EQ(json.at("kind"), "figure");
   EXPECT_EQ(json.at("tick"), 7);
   ASSERT_EQ(json.at("joint_m").size(), 3 * kFigureJoints);

@@ -74,6 +74,17 @@ TEST(OperatorFigure, StandsWhereTheSceneHasItsShoulder) {
   }
 }
 
+TEST(OperatorFigure, SaysWhetherAViewMayGoWithTheHead) {
+  OperatorFigure figure(1.75);
+  TrackedOperator tracked;
+  EXPECT_EQ(told(figure, frame_at(0.0f, 0))["head_tracked"], false);
+  EXPECT_EQ(told(figure, frame_at(0.0f, 0), &tracked)["head_tracked"], false);
+  tracked[BodyRole::kHead] = {.state = BodyState::kTracked};
+  EXPECT_EQ(told(figure, frame_at(0.0f, 0), &tracked)["head_tracked"], true);
+  tracked[BodyRole::kHead].state = BodyState::kHeld;
+  EXPECT_EQ(told(figure, frame_at(0.0f, 0), &tracked)["head_tracked"], false);
+}
+
 TEST(OperatorFigure, TellsWhatTheTrackerLost) {
   OperatorFigure figure(1.75);
   TrackedOperator tracked;

@@ -34,7 +34,7 @@ nlohmann::json skeleton_json(const BodyPlan& plan) {
           {"head", static_cast<int>(FigureJoint::kHead)}};
 }
 
-std::string figure_json(const FigurePose& pose, std::uint64_t tick) {
+std::string figure_json(const FigurePose& pose, std::uint64_t tick, bool head_tracked) {
   std::string out;
   out.reserve(kMaxFigureJsonBytes);
   fmt::format_to(std::back_inserter(out), "{{\"kind\":\"figure\",\"tick\":{},\"joint_m\":[", tick);
@@ -47,10 +47,11 @@ std::string figure_json(const FigurePose& pose, std::uint64_t tick) {
   const Eigen::Quaterniond& head = pose.head;
   fmt::format_to(std::back_inserter(out),
                  "],\"head\":[{:.5f},{:.5f},{:.5f},{:.5f}],\"reached\":{},\"error_mm\":{:.3f},"
-                 "\"sweeps\":{},\"updates\":{},\"full_chain\":{},\"trouble\":{},\"words\":\"{}\"}}",
+                 "\"sweeps\":{},\"updates\":{},\"full_chain\":{},\"trouble\":{},\"words\":\"{}\","
+                 "\"head_tracked\":{}}}",
                  head.w(), head.x(), head.y(), head.z(), pose.arm.reached,
                  std::min(pose.arm.error_m, 99.0) * 1e3, pose.arm.sweeps, pose.arm.updates,
-                 pose.arm.full_chain, static_cast<int>(pose.trouble), pose.words);
+                 pose.arm.full_chain, static_cast<int>(pose.trouble), pose.words, head_tracked);
   return out;
 }
 
