@@ -25,7 +25,7 @@ Outcome on_terminal(const std::string& arguments, const std::string& answer) {
 TEST(CalibrateProgram, TellsItsOptions) {
   const Outcome outcome = calibrate("--help");
   EXPECT_EQ(outcome.status, 0);
-  for (const char* word : {"DEVICE", "--masses_kg", "--poses", "at most 6 N", "--set"})
+  for (const char* word : {"DEVICE", "--masses-kg", "--poses", "at most 6 N", "--set"})
     EXPECT_NE(outcome.output.find(word), std::string::npos) << word;
 }
 
@@ -35,9 +35,9 @@ TEST(CalibrateProgram, RefusesWhatItCannotDo) {
   expect_refusal(calibrate("omega " + kLiver), "DEVICE");
   expect_refusal(calibrate(falcon + " --poses 1"), "--poses");
   expect_refusal(calibrate(falcon + " --poses 11"), "--poses");
-  expect_refusal(calibrate(falcon + " --masses_kg 0.1"), "--masses_kg");
-  expect_refusal(calibrate(falcon + " --masses_kg 0.1 0.6"), "--masses_kg");
-  expect_refusal(calibrate(falcon + " --masses_kg 0.1 -0.1"), "--masses_kg");
+  expect_refusal(calibrate(falcon + " --masses-kg 0.1"), "--masses-kg");
+  expect_refusal(calibrate(falcon + " --masses-kg 0.1 0.6"), "--masses-kg");
+  expect_refusal(calibrate(falcon + " --masses-kg 0.1 -0.1"), "--masses-kg");
 }
 
 TEST(CalibrateProgram, MovesNothingWithoutAPersonAtATerminal) {
