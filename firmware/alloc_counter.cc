@@ -36,9 +36,9 @@ void on_malloc(const volatile void*, std::size_t) { note_heap_call(); }
 void on_free(const volatile void*) { note_heap_call(); }
 const bool counts = __sanitizer_install_malloc_and_free_hooks(on_malloc, on_free) != 0;
 #elif defined(TACT_HEAP_IS_TAKEN)
-constexpr bool counts = false;
+const bool counts = false;
 #else
-constexpr bool counts = true;
+const bool counts = true;
 #endif
 
 }  // namespace
