@@ -4,10 +4,11 @@ One instruction is one nanosecond here, so a path is exact, and two things besid
 interrupt that falls into a phase, and the phase of this run against the kernel's clocks, which differs
 from seed to seed and from snapshot to snapshot. What is ours is there with every seed. So a number has
 grown when the shortest of the timed runs has, and `run` adds seeds before it says so; the baseline
-is the middle of six seeds. Which phase an interrupt falls into is chance, so that each phase is
-held by itself; the longest tick as a whole, which almost always holds one, may hold one more: some
-interrupts come at the same point of every run, and another snapshot moves them all to a longer tick
-(measured: 13 700 to 14 600 of the same program). The longest wake-up is the kernel's path more than ours: it may grow by a
+is the middle of six seeds. Some interrupts come at the same point of every run, and another snapshot
+moves them all, into a longer tick (measured: 13 700 to 14 600 of the same program) or into a phase
+that held none (judge 1 816, with another snapshot 3 214 with each of six seeds). So the longest of
+each phase and of the tick may hold one interrupt more; what 99.9 % do not exceed may not, but of the
+tick as a whole. The longest wake-up is the kernel's path more than ours: it may grow by a
 quarter (and is held against cyclictest besides); its median like all others. With another kernel
 than the baseline's, so may all phases that call it.
 
@@ -55,7 +56,7 @@ def read_gate(path):
 
 def most_allowed(phase, name, old, same_kernel):
     of_kernel = (phase == "wake" and name != "median_ns") or (phase in CALLING and not same_kernel)
-    one_more = INTERRUPT_NS if phase == "total" and name != "median_ns" else 0
+    one_more = INTERRUPT_NS if name == "longest_ns" or (phase == "total" and name == MOST) else 0
     return old * (KERNEL_GROWTH if of_kernel else ALLOWED_GROWTH) + one_more
 
 
