@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "firmware/grid.h"
+
 namespace tact::firmware {
 
 void RtLoop::run() RT_SAFE {
@@ -14,10 +16,7 @@ void RtLoop::run() RT_SAFE {
 
 void RtLoop::step() RT_SAFE {
   const std::int64_t period_ns = settings_.period_ns;
-  if (statistics_.ticks == 0) {
-    due_ns_ = clock_.now_ns() + period_ns;
-    progress_.begin(due_ns_);
-  }
+  if (statistics_.ticks == 0) due_ns_ = next_deadline_ns(clock_.now_ns() + period_ns, period_ns);
   clock_.sleep_until_ns(due_ns_);
   cycle(due_ns_);
   due_ns_ += period_ns;  // absolute deadlines: one late tick does not delay the next

@@ -1,6 +1,6 @@
 // rt_loop.h - the haptic loop: sense, touch, feel, judge, push, tell, on a fixed grid of deadlines.
 //
-// Deadlines are absolute: start + k period. A tick that ends after its own period is late; the
+// Deadlines are absolute (grid.h). A tick that ends after its own period is late; the
 // periods it has eaten are skipped and counted, the grid never shifts. What ends the loop, zero
 // force is written last.
 #pragma once

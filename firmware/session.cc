@@ -154,7 +154,8 @@ std::optional<Error> Session::open_telemetry() {
   telemetry_.emplace(
       *parts_.ring,
       FrameBuilder(parts_.tissue->law().site_law(), parts_.controller->shapes(), non_rt_),
-      scene_.frame_rate_Hz, std::move(outlets->sinks), &requests_.fault);
+      FramePace{.frame_rate_Hz = scene_.frame_rate_Hz, .loop_period_ns = period_ns(scene_)},
+      std::move(outlets->sinks), &requests_.fault);
   return std::nullopt;
 }
 

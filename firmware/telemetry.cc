@@ -1,16 +1,18 @@
 #include "firmware/telemetry.h"
 
-#include <chrono>
+#include <cmath>
 
+#include "firmware/clock.h"
+#include "firmware/grid.h"
 #include "firmware/replay.h"
 
 namespace tact::firmware {
 
-Telemetry::Telemetry(TickRing& ring, FrameBuilder builder, double frame_rate_Hz, Sinks sinks,
+Telemetry::Telemetry(TickRing& ring, FrameBuilder builder, const FramePace& pace, Sinks sinks,
                      const std::atomic<Fault>* watch_fault)
     : ring_(ring),
       builder_(std::move(builder)),
-      frame_period_s_(1.0 / frame_rate_Hz),
+      pace_(pace),
       sinks_(std::move(sinks)),
       watch_fault_(watch_fault),
       force_hash_(kHashStart) {}
@@ -32,15 +34,14 @@ std::string Telemetry::stop() {
 }
 
 void Telemetry::run() {
-  using std::chrono::steady_clock;
-  const auto period = std::chrono::duration_cast<steady_clock::duration>(
-      std::chrono::duration<double>(frame_period_s_));
-  auto due = steady_clock::now();
+  MonotonicClock clock;
+  const std::int64_t frame_ns = std::llround(1e9 / pace_.frame_rate_Hz);
+  std::int64_t due_ns = clock.now_ns();
   while (!ending_.load(std::memory_order_relaxed)) {
     drain();
     publish();
-    due += period;
-    std::this_thread::sleep_until(due);
+    due_ns += frame_ns;
+    clock.sleep_until_ns(next_half_way_ns(due_ns, pace_.loop_period_ns));
   }
 }
 

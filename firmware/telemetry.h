@@ -23,11 +23,17 @@ struct Sinks {
   std::unique_ptr<BlackBox> black_box{};
 };
 
+/// How often frames leave, and the loop between whose ticks they do (grid.h).
+struct FramePace {
+  double frame_rate_Hz = 60.0;
+  std::int64_t loop_period_ns = 1'000'000;
+};
+
 class Telemetry {
  public:
   /// Without any sink it only drains the ring for the status line. `watch_fault` is what the watch
   /// has found: a loop that gives no ticks any more cannot tell it.
-  Telemetry(TickRing& ring, FrameBuilder builder, double frame_rate_Hz, Sinks sinks,
+  Telemetry(TickRing& ring, FrameBuilder builder, const FramePace& pace, Sinks sinks,
             const std::atomic<Fault>* watch_fault = nullptr);
   ~Telemetry();
   Telemetry(const Telemetry&) = delete;
@@ -58,7 +64,7 @@ class Telemetry {
 
   TickRing& ring_;
   FrameBuilder builder_;
-  double frame_period_s_;
+  FramePace pace_;
   Sinks sinks_;
   const std::atomic<Fault>* watch_fault_;
   std::atomic<bool> ending_{false};

@@ -38,12 +38,19 @@ class ForceDimensionTrouble : public testing::Test {
   Fault lasting_fault() {
     for (int i = 0; i < 1000 && fault == Fault::kNone; ++i) tick();
     const Fault found = fault;
+    EXPECT_TRUE(forces_go_off()) << "the last thing that the thread asks for";
     stub.reset();
     for (int i = 0; i < 100; ++i) tick();
     EXPECT_EQ(fault, found) << "a fault stays until the device is opened again";
     EXPECT_FALSE(sample.fresh);
     EXPECT_EQ(stub.calls("dhdGetPositionAndOrientationFrame"), 0) << "not one call more";
     return found;
+  }
+  /// Within 2 s: the thread that drives the device may be in the middle of a cycle.
+  bool forces_go_off() const {
+    double force[6];
+    for (int i = 0; i < 2000 && stub.last_force(force) != 0; ++i) sleep_ms(1);
+    return stub.last_force(force) == 0;
   }
   bool told(const std::string& part) const {
     return device->trouble().find(part) != std::string::npos;

@@ -25,7 +25,6 @@ class SleeplessClock final : public Clock {
 TEST(StallWatch, FindsAStallWithinTwentyFivePeriodsAndNoneBeforeTwenty) {
   StallWatch watch(kMs, kHardRealTime);
   Progress progress;
-  progress.begin(1);
   progress.tick();
   ASSERT_EQ(watch.step(progress), Fault::kNone) << "this tick is news";
   int checks = 1;  // the tick may be as old as one check
@@ -153,8 +152,8 @@ TEST(WatchTold, WhatTheWatchFoundIsShownAlthoughTheLoopGivesNoTicks) {
   const auto ring = std::make_unique<TickRing>();
   const auto shapes = std::make_unique<ShapeSlot>();
   std::atomic<Fault> found{Fault::kNone};
-  Telemetry telemetry(*ring, FrameBuilder(tissue->law().site_law(), *shapes, false), 60.0, Sinks{},
-                      &found);
+  Telemetry telemetry(*ring, FrameBuilder(tissue->law().site_law(), *shapes, false), FramePace{},
+                      Sinks{}, &found);
   TickRecord record;
   record.tick = 7;
   record.output.state = State::kArmed;

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "firmware/grid.h"
 #include "tests/no_alloc.h"
 #include "tests/puppet_loop.h"
 
@@ -57,6 +58,15 @@ TEST_F(RtLoopTest, LetsGoWhateverEndsTheLoop) {
   loop.run();
   EXPECT_EQ(device.last, Wrench{});
   EXPECT_FALSE(loop.progress().running()) << "the watch has nothing left to watch";
+}
+
+TEST_F(RtLoopTest, TicksLieOnTheGridOfTheClockWheneverItStarts) {
+  for (int i = 0; i < 3; ++i) {
+    run_ticks(1);
+    const std::int64_t due_ns = newest().due_ns;
+    EXPECT_GT(due_ns, 0);
+    EXPECT_EQ(due_ns, next_deadline_ns(due_ns, 1'000'000));
+  }
 }
 
 TEST_F(RtLoopTest, ALateTickSkipsWholePeriodsAndNeverShiftsTheGrid) {

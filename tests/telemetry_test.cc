@@ -79,7 +79,7 @@ class WholeController {
         controller_(tissue_->contact_scene(), Gate(scene_.limits, 0.001, 1.0), kHardRealTime),
         loop_({.period_ns = 1'000'000}, *device_, lines_, controller_, clock_, requests_, *ring_),
         telemetry_(*ring_, FrameBuilder(tissue_->law().site_law(), controller_.shapes(), true),
-                   60.0, {.socket = open(path)}) {
+                   FramePace{}, {.socket = open(path)}) {
     requests_.arm.store(true);
   }
 
@@ -200,8 +200,8 @@ TEST(Telemetry, ThreadAndLoopShareOnlyTheRing) {  // for the thread sanitizer
   const auto tissue = std::move(*model::make_tissue(scene));
   const auto ring = std::make_unique<TickRing>();  // large: not on the stack
   const auto shapes = std::make_unique<ShapeSlot>();
-  Telemetry telemetry(*ring, FrameBuilder(tissue->law().site_law(), *shapes, false), 200.0,
-                      Sinks{});
+  Telemetry telemetry(*ring, FrameBuilder(tissue->law().site_law(), *shapes, false),
+                      {.frame_rate_Hz = 200.0}, Sinks{});
   telemetry.start();
   TickRecord record;
   for (int i = 0; i < 20000; ++i) {
@@ -230,7 +230,7 @@ TEST(Telemetry, TheShapeOfAPatchReachesThePageWhole) {
   RtLoop loop({.period_ns = 1'000'000, .ticks_per_shape = 4}, *device, lines, controller, clock,
               requests, *ring);
   Telemetry telemetry(*ring, FrameBuilder(tissue->law().site_law(), controller.shapes(), false),
-                      1000.0, Sinks{});
+                      {.frame_rate_Hz = 1000.0}, Sinks{});
   const Hello hello = make_hello(*scene, *tissue, {.device = device->info(), .hand_socket = ""});
   telemetry.start();
   std::uint32_t displaced = 0;

@@ -2,6 +2,8 @@
 
 #include <pthread.h>
 
+#include "firmware/grid.h"
+
 namespace tact::firmware {
 
 void LoopWatch::start(const RtSettings& loop) {
@@ -32,12 +34,11 @@ void LoopWatch::check() RT_SAFE {
   if (requests_.fault.load(std::memory_order_relaxed) != Fault::kNone) lines_.drop();
 }
 
-// On one core the watch would else delay the loop's wake-up, each time by its own.
+// On one core the watch would else delay the loop's wake-up, each time by its own. What it is late
+// itself, less than half a period, does not add up.
 std::int64_t LoopWatch::next_ns(std::int64_t now_ns) const RT_SAFE {
-  const std::int64_t check_ns = stall_.check_ns();
-  const std::int64_t grid_ns = progress_.grid_ns() + stall_.period_ns() / 2;
-  if (progress_.grid_ns() == 0 || now_ns < grid_ns) return now_ns + check_ns;
-  return grid_ns + ((now_ns - grid_ns) / check_ns + 1) * check_ns;
+  const std::int64_t period_ns = stall_.period_ns();
+  return next_half_way_ns(now_ns + stall_.check_ns() - period_ns / 2, period_ns);
 }
 
 }  // namespace tact::firmware

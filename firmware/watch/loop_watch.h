@@ -1,6 +1,6 @@
 // loop_watch.h - the thread above the loop: when the loop cannot stop the force, it does.
 //
-// It wakes every 5 periods, half a period away from the loop's own grid, above the loop's priority
+// It wakes every 5 periods, halfway between two deadlines of the loop (grid.h), above the loop's priority
 // and on another core where there is one. When the loop stalls, hangs in a call or runs away
 // (runaway.h), or a call of it was refused (call_filter.h):
 //

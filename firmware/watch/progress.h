@@ -15,8 +15,7 @@ enum class Place : std::uint8_t { kOwn, kLines, kDevice };
 
 class Progress {
  public:
-  /// Loop side: the first deadline, before anything ticks.
-  void begin(std::int64_t grid_ns) RT_SAFE { grid_ns_.store(grid_ns, std::memory_order_relaxed); }
+  /// Loop side.
   void tick() RT_SAFE {
     ticks_.store(ticks_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   }
@@ -25,13 +24,11 @@ class Progress {
   void end() RT_SAFE { ended_.store(true, std::memory_order_relaxed); }
 
   /// Watch side.
-  std::int64_t grid_ns() const RT_SAFE { return grid_ns_.load(std::memory_order_relaxed); }
   std::uint64_t ticks() const RT_SAFE { return ticks_.load(std::memory_order_relaxed); }
   Place place() const RT_SAFE { return place_.load(std::memory_order_relaxed); }
   bool running() const RT_SAFE { return ticks() > 0 && !ended_.load(std::memory_order_relaxed); }
 
  private:
-  std::atomic<std::int64_t> grid_ns_{0};  // 0: not begun
   std::atomic<std::uint64_t> ticks_{0};
   std::atomic<Place> place_{Place::kOwn};
   std::atomic<bool> ended_{false};

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "firmware/grid.h"
+
 namespace tact::tools {
 namespace {
 
@@ -16,7 +18,7 @@ std::int32_t clipped(std::int64_t duration_ns) RT_SAFE {
 }  // namespace
 
 void BareLoop::run() RT_SAFE {
-  due_ns_ = clock_.now_ns() + period_ns_;
+  due_ns_ = firmware::next_deadline_ns(clock_.now_ns() + period_ns_, period_ns_);
   while (!stop_.load(std::memory_order_relaxed) && (max_periods_ == 0 || periods_ < max_periods_))
     step();
 }

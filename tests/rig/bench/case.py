@@ -41,7 +41,7 @@ class Case:
         device = " ".join(f"--set '{setting}'" for setting in self.back_end.settings)
         variables = "".join(f'{name}="{value}"\n' for name, value in self.variables.items())
         return (f". /tact/guest/bench.sh\nSEED={seed} SECONDS_OF_RUN={self.seconds}\n"
-                f"SCENE=/tact/{self.back_end.scene}\nDEVICE=({device})\n{variables}"
+                f"SCENE=/tact/{self.back_end.scene}\nDEVICE=({device})\n{variables}shift_phase\n"
                 f"{self.back_end.setup}\n{self.script}\n")
 
 

@@ -18,7 +18,7 @@ from bench.image import RigError, digest
 QEMU = "qemu-system-x86_64"
 READY, LOADED, DONE = b"TACT-READY", b"TACT-LOADED", b"TACT-DONE"
 KERNEL_ARGUMENTS = ("console=ttyS0 quiet panic=-1 nokaslr norandmaps tsc=reliable mitigations=off "
-                    "no_timer_check noirqdebug")
+                    "no_timer_check noirqdebug nowatchdog")
 MEMORY_MB = 768
 MACHINE = ["-accel", "tcg,thread=single,tb-size=256", "-icount", "shift=0,sleep=off",
            "-rtc", "base=2024-01-01,clock=vm", "-cpu", "max", "-smp", "1", "-m", str(MEMORY_MB),

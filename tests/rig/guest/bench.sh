@@ -14,8 +14,11 @@
 SOCKET=/tmp/telemetry.sock
 background=() injected=0
 
+# First of all: another seed, another phase of emulators and other work against the kernel's clocks and
+# the loop, whose deadlines are a fixed grid of them.
+shift_phase() { sleep "$(printf '.000%03d' $((SEED * 137 % 1000)))"; }
+
 control() {
-  sleep "$(printf '.000%03d' $((SEED * 137 % 1000)))"  # another seed, another phase against the kernel's own clocks
   clock_offset_ns=$(tact-rig-ticks --clock-offset)
   tactd "$SCENE" "${DEVICE[@]}" --seconds "$1" --strict --arm --json $RESULTS/report.json \
     --record /tmp/ticks --socket $SOCKET "${@:2}" >$RESULTS/tactd.log 2>&1 &
