@@ -5,6 +5,7 @@
 namespace tact::firmware {
 namespace {
 
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr timespec kSeveralTicks{.tv_sec = 0, .tv_nsec = 20'000'000};  // at 100 Hz two
 
 // The loop reads levels once per tick, so each must stand for some.
@@ -26,7 +27,8 @@ OperatorSignals::OperatorSignals() {
   pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
 }
 
-void OperatorSignals::obey(Requests& requests, const timespec& longest) const {
+void OperatorSignals::obey(Requests& requests, std::int64_t longest_ns) const {
+  const timespec longest{.tv_sec = longest_ns / kSecond_ns, .tv_nsec = longest_ns % kSecond_ns};
   const int signal = sigtimedwait(&signals_, nullptr, &longest);
   if (signal == SIGUSR1)
     reset(requests);

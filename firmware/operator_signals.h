@@ -8,7 +8,7 @@
 #pragma once
 
 #include <csignal>
-#include <ctime>
+#include <cstdint>
 
 #include "firmware/rt_loop.h"
 
@@ -20,7 +20,7 @@ class OperatorSignals {
   OperatorSignals();
 
   /// Waits at most so long for one signal, and does what it asks.
-  void obey(Requests& requests, const timespec& longest) const;
+  void obey(Requests& requests, std::int64_t longest_ns) const;
 
  private:
   sigset_t signals_{};

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "firmware/grid.h"
 #include "firmware/loop_parts.h"
 #include "firmware/loop_threads.h"
 #include "firmware/operator_signals.h"
@@ -26,7 +27,7 @@ namespace {
 using model::Error;
 using model::Result;
 
-constexpr timespec kStatusPeriod{.tv_sec = 0, .tv_nsec = 200'000'000};
+constexpr std::int64_t kStatusPeriod_ns = 200'000'000;
 
 int fail(const std::string& sentence, int status) {
   say(stderr, "tactd: {}\n", sentence);
@@ -180,7 +181,7 @@ void Session::run_free() {
     telemetry_->drain();
     if (loop_->statistics().ticks % (ticks_per_frame + 1) != 0) continue;
     telemetry_->publish();
-    operator_->obey(requests_, {});
+    operator_->obey(requests_, 0);
   }
   loop_->let_go();
 }
@@ -210,7 +211,9 @@ void Session::watch(LoopThreads& threads) {
     for (const std::string& sentence : black_box->news()) view.tell(sentence);
   };
   while (!threads.ended()) {
-    operator_->obey(requests_, kStatusPeriod);
+    const std::int64_t now_ns = monotonic_clock_.now_ns();
+    const std::int64_t until_ns = next_half_way_ns(now_ns + kStatusPeriod_ns, period_ns(scene_));
+    operator_->obey(requests_, until_ns - now_ns);
     show();
     if (!threads.hangs()) continue;
     threads.leave_behind(1, [&] {

@@ -7,13 +7,13 @@
 namespace tact::firmware {
 namespace {
 
-constexpr timespec kSecond{.tv_sec = 1, .tv_nsec = 0};
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 class Operator : public testing::Test {
  protected:
   void ask(int signal) {
     raise(signal);
-    signals.obey(requests, kSecond);
+    signals.obey(requests, kSecond_ns);
   }
   OperatorSignals signals;
   Requests requests;
@@ -56,7 +56,7 @@ TEST_F(Operator, ArmIsARequestOfItsOwn) {
 }
 
 TEST_F(Operator, WithoutASignalNothingChanges) {
-  signals.obey(requests, {});
+  signals.obey(requests, 0);
   EXPECT_FALSE(requests.arm.load() || requests.stop.load() || requests.reset.load());
 }
 

@@ -61,7 +61,7 @@ build_programs() {
   local launcher=()
   command -v ccache >/dev/null 2>&1 && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   for target in "$@"; do  # the measuring tools need more packages than the controller
-    case $target in tactd | tact-view | tact-track-send | tact-mesh | tact-make-meshes | tact-rig-*) ;; *) tools=ON ;; esac
+    case $target in tactd | tact-view | tact-track-send | tact-mesh | tact-rig-*) ;; *) tools=ON ;; esac
   done
   if [ ! -f "$build/build.ninja" ] ||
     { [ $tools = ON ] && grep -q '^TACT_TOOLS:BOOL=OFF' "$build/CMakeCache.txt"; }; then

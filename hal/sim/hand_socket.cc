@@ -1,7 +1,6 @@
 #include "hal/sim/hand_socket.h"
 
 #include <fmt/core.h>
-#include <poll.h>
 #include <signal.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -19,7 +18,6 @@ namespace {
 using model::Error;
 using model::Result;
 
-constexpr int kPollTimeout_ms = 50;
 constexpr double kFarthest_m = 1.0;  // no hand is farther from the middle of this device
 
 Error system_error(const std::string& path, const char* what) {
@@ -73,7 +71,7 @@ Result<std::unique_ptr<HandSocket>> HandSocket::start(const std::string& path,
                              path, sizeof(sockaddr_un::sun_path) - 1)};
   }
   if (const auto clear = clear_the_way(path); !clear) return clear.error();
-  const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (descriptor < 0) return system_error(path, "cannot make a socket");
   // The mode of the file is that of the descriptor when it is bound: at no time is it open to
   // others.
@@ -96,6 +94,7 @@ HandSocket::~HandSocket() { stop(); }
 void HandSocket::stop() {
   if (!thread_.joinable()) return;
   stopping_ = true;
+  shutdown(descriptor_, SHUT_RD);  // ends the wait
   thread_.join();
   close(descriptor_);
   unlink(path_.c_str());
@@ -106,8 +105,6 @@ void HandSocket::listen() {
   sigfillset(&all);
   pthread_sigmask(SIG_BLOCK, &all, nullptr);  // signals are for the thread that waits for them
   while (!stopping_) {
-    pollfd ready{.fd = descriptor_, .events = POLLIN, .revents = 0};
-    if (poll(&ready, 1, kPollTimeout_ms) <= 0) continue;
     HandTarget target;
     // MSG_TRUNC gives the true size, so that a longer datagram is not mistaken for a target.
     const ssize_t size = recv(descriptor_, &target, sizeof target, MSG_TRUNC);

@@ -1,6 +1,7 @@
 // hand_socket.h - lets a person move the simulated hand: a local datagram socket and its thread.
 //
-// The thread is an ordinary one, started before the loop. It passes the newest sound HandTarget to
+// The thread is an ordinary one, started before the loop, and runs only when a datagram comes: no
+// timer of it falls into a tick. It passes the newest sound HandTarget to
 // the loop through a LatestSlot and ignores everything else. The socket file belongs to its owner
 // only (mode 0600). A file left behind by a dead process is replaced, a living one is not.
 #pragma once
