@@ -73,8 +73,9 @@ inline Observation look(const host::TrackingCamera& camera, const Pose& eye,
 /// A camera `distance_m` from a place, which it looks at along `ahead` (unit), rolled at will.
 inline Pose eye_towards(const Eigen::Vector3d& place_m, const Eigen::Vector3d& ahead,
                         double distance_m, double roll_rad = 0.0) {
-  const auto towards = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), ahead);
-  return {.rotation = towards * turn(roll_rad, Eigen::Vector3d::UnitZ()),
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ(), axis = z.cross(ahead);
+  const Eigen::Quaterniond towards = turn(std::atan2(axis.norm(), z.dot(ahead)), axis);
+  return {.rotation = towards * turn(roll_rad, z),
           .position_m = place_m - distance_m * ahead};
 }
 
