@@ -1,9 +1,11 @@
-// grid.h - when things happen: the loop's deadlines are a fixed grid of CLOCK_MONOTONIC, and the
-// other threads of tact that wake by themselves do so halfway between two of them.
+// grid.h - when things happen: the loop's deadlines are a fixed grid of CLOCK_MONOTONIC; the watch,
+// frames and status lines wake halfway between two of them (tact-fd keeps away, too).
 //
 // The kernel's own tick comes at whole multiples of 1/HZ of that clock (/proc/timer_list of Debian's
 // 6.1). Deadlines that begin anywhere can have it, or a timer of another thread, in the middle of
-// the same ticks for a whole run. Here the kernel's tick lies 0.3 of a period before a deadline.
+// the same ticks for a whole run. Here the kernel's tick lies 0.3 of a period before a deadline, of
+// periods over a millisecond 0.3 ms. With a period that neither divides a millisecond nor is some of
+// them, as that of 3 kHz, the two pass each other slowly, and no start avoids it.
 #pragma once
 
 #include <algorithm>

@@ -75,8 +75,7 @@ inline Pose eye_towards(const Eigen::Vector3d& place_m, const Eigen::Vector3d& a
                         double distance_m, double roll_rad = 0.0) {
   const Eigen::Vector3d z = Eigen::Vector3d::UnitZ(), axis = z.cross(ahead);
   const Eigen::Quaterniond towards = turn(std::atan2(axis.norm(), z.dot(ahead)), axis);
-  return {.rotation = towards * turn(roll_rad, z),
-          .position_m = place_m - distance_m * ahead};
+  return {.rotation = towards * turn(roll_rad, z), .position_m = place_m - distance_m * ahead};
 }
 
 /// The observation as its line.

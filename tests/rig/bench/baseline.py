@@ -76,6 +76,14 @@ def compare(measured, path, kernel):
     return wrong
 
 
+def other_kernel(path, kernel):
+    """A sentence for who runs another kernel than the baseline's; empty when it is the same."""
+    known = read(path)[1]
+    return "" if kernel == known else (
+        f"the kernel is {kernel}, the baseline's was {known}: phases that call it may be 25 % longer; "
+        "tests/rig/run --write-baseline makes the 5 % count again")
+
+
 def read_cycles(path):
     """{back end: {median_us, p99_us, own_us}}, see bus_cycle.py."""
     return read_all(path).get("bus_cycles", {})

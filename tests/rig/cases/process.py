@@ -1,6 +1,6 @@
 """What other programs and people do to tactd while it pushes on the hand, 3.5 s into the liver."""
 from bench import checks
-from bench.back_ends import SIM_DELTA
+from bench.back_ends import FALCON_USBFS, ODRIVE06, SIM_DELTA
 from bench.case import Case
 from bench.faults import Latches, RidesThrough, attempt
 
@@ -13,6 +13,25 @@ def hog(milliseconds):
     """A program that keeps the CPU for so long at FIFO 95, above everything that tactd has."""
     return (f"inject chrt -f 95 bash -c 'end=$((${{EPOCHREALTIME/./}} + {milliseconds}000)); "
             "while ((${EPOCHREALTIME/./} < end)); do :; done'")
+
+
+HOG = ("inject true; stress-ng -q --seed 1 --cpu 1 --switch 1 --timeout 1s\n"
+       "prove 'the load ran' [ $? = 0 ]")
+# In the middle of it less than an eighth of the memory is left.
+PRESSURE = ("inject true; stress-ng -q --seed 1 --vm 1 --vm-bytes 90% --vm-keep --timeout 1s & load=$!\n"
+            "sleep .7; prove 'memory was short' awk '/MemTotal/ {all = $2} /MemAvailable/ {left = $2} "
+            "END {exit 8 * left > all}' /proc/meminfo\n"
+            "wait $load; prove 'the load ran' [ $? = 0 ]")
+SHORT = (checks.proved("memory was short", "the load ran"),)
+
+
+def on_hardware(back_end, name, sentence, harm, proofs):
+    """The same while a device on a real bus is pressed."""
+    quick = "--homing-ms 100 --hand-tempo 2.5" if back_end is FALCON_USBFS else "--hand-tempo 2.5"
+    return Case(f"{back_end.name}-{name}", sentence, back_end,
+                f"control $SECONDS_OF_RUN\nsleep .9\n{harm}\nfinish",
+                (checks.hard_real_time, checks.no_late_tick, *proofs),
+                fault=RidesThrough(), seconds=2.5, long_only=True, variables={"EMULATOR": quick})
 
 
 def fault(name, sentence, harm, required, also=()):
@@ -36,19 +55,24 @@ CASES = [
           "inject timeout 1 chrt -f 84 strace -qq -o /dev/null -p ${held##*/} "
           "-e inject=clock_nanosleep:delay_exit=60000:when=1",
           Latches("loop stalled", detect_ms=150), (checks.hard_real_time,)),
-    fault("hog-cpu", "ordinary load takes nothing from the loop",
-          "inject true; stress-ng -q --seed 1 --cpu 1 --switch 1 --timeout 1s",
-          RidesThrough(), UNMOVED),
-    fault("memory-pressure", "memory that is short elsewhere is never short in the loop",
-          "inject true; stress-ng -q --seed 1 --vm 1 --vm-bytes 90% --vm-keep --timeout 1s",
-          RidesThrough(), UNMOVED),
+    fault("hog-cpu", "ordinary load takes nothing from the loop", HOG,
+          RidesThrough(), (*UNMOVED, checks.proved("the load ran"))),
+    fault("memory-pressure", "memory that is short elsewhere is never short in the loop", PRESSURE,
+          RidesThrough(), (*UNMOVED, *SHORT)),
     fault("viewer-stalled", "a viewer that never reads costs neither a tick nor a force",
           "tact-view --record /tmp/seen --socket $SOCKET >$RESULTS/view.log 2>&1 & viewer=$!\n"
-          "sleep .3; inject kill -STOP $viewer; sleep 2; kill -KILL $viewer",
-          RidesThrough(), UNMOVED),
+          "sleep .3; prove 'the viewer was connected' [ $(grep -c $SOCKET /proc/net/unix) -ge 2 ]; inject kill -STOP $viewer; sleep 2\n"
+          "prove 'the viewer stood' grep -q '^State:.T' /proc/$viewer/status; kill -KILL $viewer",
+          RidesThrough(), (*UNMOVED, checks.proved("the viewer was connected", "the viewer stood"))),
     fault("clock-step", "the time of day may jump, the loop does not know it",
-          "inject date -s '2031-05-05 05:05:05'; sleep .5; date -s '2001-01-01'",
-          RidesThrough(), UNMOVED),
+          "inject date -s '2031-05-05 05:05:05'; prove 'it was 2031' [ $(date +%Y) = 2031 ]; sleep .5\n"
+          "date -s '2001-01-01'; prove 'it was 2001' [ $(date +%Y) = 2001 ]",
+          RidesThrough(), (*UNMOVED, checks.proved("it was 2031", "it was 2001"))),
+    *(on_hardware(back_end, name, sentence, harm, proofs)
+      for back_end in (ODRIVE06, FALCON_USBFS)
+      for name, sentence, harm, proofs in (
+          ("hog-cpu", "ordinary load takes nothing from the loop", HOG, (checks.proved("the load ran"),)),
+          ("memory-pressure", "memory that is short elsewhere is never short in the loop", PRESSURE, SHORT))),
     Case("exit-beside-fifo", "tactd's end is not felt by another real-time loop, FIFO 50",
          SIM_DELTA, "control $SECONDS_OF_RUN\nmeasure_peer 3 50 &\nfinish",
          (checks.hard_real_time, checks.no_fault, checks.peer_undisturbed(200_000)), seconds=2),

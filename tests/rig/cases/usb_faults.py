@@ -7,7 +7,8 @@ from bench.faults import Latches, RidesThrough, attempt
 AT = "0.9"
 QUICK = "--homing-ms 100 --hand-tempo 2.5"
 REAL_TIME = (checks.hard_real_time, checks.no_late_tick)
-WATCH_IT_GO = "sleep 1.6\n[ -e /sys/bus/usb/devices/1-1 ] && ls /sys/bus/usb/devices || echo gone"
+WATCH_IT_GO = ("for i in {1..200}; do [ -e /sys/bus/usb/devices/1-1 ] || break; sleep .01; done; "
+               "[ -e /sys/bus/usb/devices/1-1 ] || echo $((${EPOCHREALTIME/./} * 1000 + clock_offset_ns))")
 
 
 def fault(back_end, kind, sentence, required, also=(), meanwhile="", long_only=False):
@@ -43,6 +44,15 @@ def held_loop(back_end):
                 fault=required, seconds=2.6, variables={"EMULATOR": QUICK})
 
 
+def stopped(back_end):
+    """The whole process stands, the bus's thread, too: the old force stays until it goes on."""
+    required = Latches("loop late", detect_ms=2, or_first="loop stalled")
+    return Case(f"{back_end.name}-stopped", "a process that was stopped does not push again on its own", back_end,
+                "control $SECONDS_OF_RUN\nsleep 1.2\n"
+                f"kill -STOP $tactd; sleep .05; inject kill -CONT $tactd; sleep .1\n{attempt(required)}\nfinish",
+                (checks.hard_real_time,), fault=required, seconds=2.1, variables={"EMULATOR": QUICK})
+
+
 def in_both(kind, sentence, required):
     """By usbfs in every run, by libusb with --long: what a packet says is judged by the same code."""
     return (fault(FALCON_USBFS, kind, sentence, required),
@@ -52,6 +62,7 @@ def in_both(kind, sentence, required):
 CASES = [
     held_loop(FALCON_USBFS),
     held_loop(FALCON_LIBUSB),
+    stopped(FALCON_USBFS),
     unplug(FALCON_USBFS),
     unplug(FALCON_LIBUSB),
     fault(FALCON_USBFS, f"stall@{AT}", "a stalled endpoint stops the force for good",

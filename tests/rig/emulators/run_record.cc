@@ -67,7 +67,8 @@ void RunRecord::commanded(int axis, const Platform& platform, const Joints& tau_
   if (answered_ != kAllAxes) return;
   watch(platform, tau_Nm, faults, now_ns);
   if (was_complete || cycle_start_ns_ == 0) return;
-  keep(cycle_ns_, now_ns - cycle_start_ns_);
+  if (loop_runs_) keep(cycle_ns_, now_ns - cycle_start_ns_);
+  loop_runs_ = true;  // the first has waited for the loop to begin
 }
 
 void RunRecord::tick(const Platform& platform, const Joints& tau_Nm, bool enabled,

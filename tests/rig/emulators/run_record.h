@@ -53,6 +53,7 @@ class RunRecord {
   bool had_torque_ = false;
   std::array<std::int64_t, 3> commanded_ns_{};
   bool obeyed_ = false;    // the motors, at the last tick
+  bool loop_runs_ = false;
   unsigned answered_ = 0;  // one bit per axis of this cycle
   std::int64_t cycles_ = 0, commands_ = 0, oldest_command_ns_ = 0;
   double largest_force_N_ = 0.0, largest_torque_Nm_ = 0.0;

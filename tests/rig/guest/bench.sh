@@ -2,6 +2,7 @@
 #
 #   control SECONDS [tactd option...]   starts tactd on $SCENE, back when its loop ticks; pid $tactd
 #   inject COMMAND...                   notes the time, then does the harm (builtins cost no fork)
+#   prove WORDS COMMAND...              that the harm was done, for checks.proved
 #   pull LINE up|down                   a switch on a line of the simulated chip, without a fork
 #   refused                             runs a tactd that must not start
 #   finish                              waits for tactd; its report, what the tick log says of the fault
@@ -33,6 +34,9 @@ inject() {
   injected=$((${EPOCHREALTIME/./} * 1000 + clock_offset_ns))
   "$@"
 }
+
+# prove WORDS COMMAND...: the words, if the command succeeds; checks.proved asks for them.
+prove() { "${@:2}" && echo "$1" >>$RESULTS/proofs.txt; }
 
 # tactd must not even start: its sentence and its exit status are the result.
 refused() {
