@@ -43,11 +43,6 @@ double disc_shape_factor(double diameter_ratio) RT_SAFE {
   return (c - 1.0) / c * ((c - 1.0) / c) / difference / std::numbers::pi;
 }
 
-double modulus_for_stiffness_Pa(const DiscDimensions& dimensions,
-                                double stiffness_N_per_m) RT_SAFE {
-  return stiffness_N_per_m / stiffness_per_modulus_m(dimensions);
-}
-
 bool is_monotone(const Disc& disc, DiscForm form) RT_SAFE {
   return form == DiscForm::kLinear || disc.cone_ratio <= std::numbers::sqrt2;
 }
