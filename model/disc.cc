@@ -4,10 +4,10 @@
 #include <numbers>
 #include <string>
 
+#include "model/ranges.h"
+
 namespace tact::model {
 namespace {
-
-bool is_positive(double v) RT_SAFE { return std::isfinite(v) && v > 0.0; }
 
 const char* first_fault(const DiscDimensions& p) {
   if (!is_positive(p.inner_diameter_m)) return "inner_diameter_m must be finite and above 0";
