@@ -1,4 +1,5 @@
-// open_device.h - from the scene's device.kind to a device: the one place that knows the names.
+// open_device.h - from the scene's device.kind to a device: the one place in hal that knows
+// the names.
 #pragma once
 
 #include <memory>

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <string>
 
+#include "model/ranges.h"
+
 namespace tact::model {
 namespace {
 
 constexpr int kMaxIterations = 100;
 constexpr double kTaperStart = 0.7;  // of the outermost radius
-
-bool is_positive(double v) { return std::isfinite(v) && v > 0.0; }
 
 const char* first_fault(const ComplianceCurveParameters& p) {
   if (!is_positive(p.tip.youngs_modulus_Pa)) return "youngs_modulus_Pa must be finite and above 0";

@@ -4,10 +4,10 @@
 #include <numbers>
 #include <string>
 
+#include "model/ranges.h"
+
 namespace tact::model {
 namespace {
-
-bool is_positive(double v) RT_SAFE { return std::isfinite(v) && v > 0.0; }
 
 const char* first_fault(const DiscDimensions& p) {
   if (!is_positive(p.inner_diameter_m)) return "inner_diameter_m must be finite and above 0";
@@ -41,11 +41,6 @@ double disc_shape_factor(double diameter_ratio) RT_SAFE {
   }
   // DS-2
   return (c - 1.0) / c * ((c - 1.0) / c) / difference / std::numbers::pi;
-}
-
-double modulus_for_stiffness_Pa(const DiscDimensions& dimensions,
-                                double stiffness_N_per_m) RT_SAFE {
-  return stiffness_N_per_m / stiffness_per_modulus_m(dimensions);
 }
 
 bool is_monotone(const Disc& disc, DiscForm form) RT_SAFE {

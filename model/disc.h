@@ -52,9 +52,6 @@ struct DiscResponse {
 /// alpha of DS-2 for C = D/d above 1; accurate down to the thinnest ring.
 double disc_shape_factor(double diameter_ratio) RT_SAFE;
 
-/// The modulus that gives these dimensions the stiffness k (PHYSICS 2.3.5).
-double modulus_for_stiffness_Pa(const DiscDimensions& dimensions, double stiffness_N_per_m) RT_SAFE;
-
 /// The force grows all the way to flat: eta <= sqrt(2).
 bool is_monotone(const Disc& disc, DiscForm form) RT_SAFE;
 

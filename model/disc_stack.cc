@@ -3,10 +3,10 @@
 #include <cmath>
 #include <string>
 
+#include "model/ranges.h"
+
 namespace tact::model {
 namespace {
-
-bool is_positive(double v) { return std::isfinite(v) && v > 0.0; }
 
 const char* first_fault(const LayerDelays& p) {
   if (!is_positive(p.first_delay_s)) return "first_delay_s must be finite and above 0";

@@ -13,7 +13,8 @@ constexpr std::array kTable{
                "two or more samples in a row are missing; the force fades to zero",
                "check cable, hub and bus load"},
     FaultEntry{Fault::kNotArmed, "not armed", "the controller is not armed, the force is zero",
-               "it arms by itself once the device gives good samples and no fault stands"},
+               "a simulated device arms by itself once its samples are good; hold a real one, then "
+               "pkill -USR2 tactd"},
     FaultEntry{Fault::kOutsideWorkspace, "outside workspace",
                "the tool left the permitted workspace, the force fades to zero",
                "bring the tool back, or widen limits.workspace_* in the scene"},

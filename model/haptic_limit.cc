@@ -3,10 +3,10 @@
 #include <cmath>
 #include <limits>
 
+#include "model/ranges.h"
+
 namespace tact::model {
 namespace {
-
-bool is_not_negative(double v) RT_SAFE { return std::isfinite(v) && v >= 0.0; }
 
 bool is_valid(const DeviceAtTool& d) RT_SAFE {
   return is_not_negative(d.damping_Ns_per_m) && is_not_negative(d.friction_N) &&

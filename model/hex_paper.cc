@@ -3,13 +3,13 @@
 #include <cmath>
 #include <string>
 
+#include "model/ranges.h"
+
 namespace tact::model {
 namespace {
 
 constexpr int kMaxIterations = 60;
 constexpr std::size_t kKnots = 129;
-
-bool is_positive(double v) RT_SAFE { return std::isfinite(v) && v > 0.0; }
 
 const char* first_fault(const HexPaperParameters& p) {
   if (!is_positive(p.ring_pitch_m)) return "ring_pitch_m must be finite and above 0";

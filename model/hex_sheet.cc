@@ -3,15 +3,14 @@
 #include <cmath>
 #include <string>
 
+#include "model/ranges.h"
+
 namespace tact::model {
 namespace {
 
 constexpr int kMaxIterations = 60;
 constexpr int kMaxHalvings = 30;
 constexpr std::size_t kEndlessRings = 255;
-
-bool is_positive(double v) { return std::isfinite(v) && v > 0.0; }
-bool is_not_negative(double v) { return std::isfinite(v) && v >= 0.0; }
 
 const char* first_fault(const HexSheetParameters& p) {
   if (!is_positive(p.ring_pitch_m)) return "ring_pitch_m must be finite and above 0";

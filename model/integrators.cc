@@ -34,12 +34,6 @@ std::string_view name_of(Integrator integrator) {
   return "";
 }
 
-std::optional<Integrator> integrator_named(std::string_view name) {
-  for (const IntegratorName& entry : kIntegratorNames)
-    if (entry.name == name) return entry.integrator;
-  return std::nullopt;
-}
-
 OscillatorState step(const Oscillator& o, const OscillatorState& from, const Method& method,
                      double step_s) RT_SAFE {
   if (!is_usable(o, from, method, step_s)) return {.status = LawStatus::kInvalid};

@@ -20,7 +20,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <string_view>
 
 #include "model/law.h"
@@ -54,7 +53,6 @@ inline constexpr std::array kIntegratorNames{
 
 /// Its name in a scene.
 std::string_view name_of(Integrator integrator);
-std::optional<Integrator> integrator_named(std::string_view name);
 
 /// An integrator with its one parameter.
 struct Method {

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/ranges.h"
+
 namespace tact::model {
 namespace {
 
 constexpr int kMaxIterations = 100;
-
-bool is_positive(double v) { return std::isfinite(v) && v > 0.0; }
 
 const char* first_fault(const RhombusChainParameters& p) {
   if (!is_positive(p.rod_length_m)) return "rod_length_m must be finite and above 0";

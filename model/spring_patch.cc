@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "model/ranges.h"
 #include "model/spring_step_check.h"
 
 namespace tact::model {
@@ -14,9 +15,6 @@ namespace {
 constexpr double kShownMove_m = 1e-6;
 constexpr double kLostDents = 10.0;  // a dent of so many working depths is no tissue any more
 constexpr std::size_t kShownLips = kMaxShapeNodes / 2;
-
-bool is_positive(double v) { return std::isfinite(v) && v > 0.0; }
-bool is_not_negative(double v) { return std::isfinite(v) && v >= 0.0; }
 
 const char* first_fault(const SpringPatchParameters& p) {
   const PatchTissue& t = p.tissue;

@@ -68,19 +68,6 @@ TEST(Disc, FlatteningAndForceInvertEachOther) {
   }
 }
 
-TEST(Disc, ModulusIsChosenForTheStiffnessOfATissue) {
-  // PHYSICS 2.3.5: all lengths times 100, so h0 = 0.9 mm, and E for 500 N/m
-  DiscDimensions p = kPrinted;
-  for (double* length_m :
-       {&p.outer_diameter_m, &p.inner_diameter_m, &p.thickness_m, &p.free_height_m})
-    *length_m *= 100.0;
-  p.youngs_modulus_Pa = modulus_for_stiffness_Pa(p, 500.0);
-  const auto disc = make_disc(p);
-  ASSERT_TRUE(disc);
-  EXPECT_NEAR(disc->stiffness_N_per_m, 500.0, 1e-9);
-  EXPECT_NEAR(disc->travel_m, 0.9_mm, 1e-15);
-}
-
 TEST(Disc, RefusesDimensionsWithoutMeaning) {
   const auto refused = [](auto change) {
     DiscDimensions p = kPrinted;

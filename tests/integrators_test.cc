@@ -86,12 +86,6 @@ TEST(Integrators, RefuseWhatHasNoMeaning) {
   }
 }
 
-TEST(Integrators, HaveNamesThatLeadBackToThem) {
-  for (const auto& entry : kIntegratorNames)
-    EXPECT_EQ(integrator_named(name_of(entry.integrator)), entry.integrator);
-  EXPECT_EQ(integrator_named("heun"), std::nullopt);
-}
-
 TEST(Integrators, LeaveTheHeapAlone) {
   const tests::NoAlloc guard;
   OscillatorState at{0.3, 1.0};

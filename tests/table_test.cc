@@ -143,5 +143,21 @@ TEST_F(TableFiles, AFileIsWholeOrNotThere) {
   EXPECT_FALSE(write_whole_file(folder_ + "/none/a.txt", "one"));
 }
 
+TEST_F(TableFiles, AFileIsReadWholeAndAMissingOneIsNotAnEmptyOne) {
+  std::string bytes(10'000, '\0');
+  bytes += "\r\n\xff";
+  for (const std::string& content : {std::string(), std::string("one"), bytes}) {
+    ASSERT_TRUE(write_whole_file(folder_ + "/a.txt", content));
+    const auto read = read_whole_file(folder_ + "/a.txt");
+    ASSERT_TRUE(read);
+    EXPECT_EQ(*read, content);
+  }
+  for (const std::string& path : {folder_ + "/none.txt", folder_}) {
+    const auto read = read_whole_file(path);
+    ASSERT_FALSE(read) << path;
+    EXPECT_EQ(read.error().sentence, path + ": cannot be read");
+  }
+}
+
 }  // namespace
 }  // namespace tact::tools

@@ -250,7 +250,7 @@ void verify_falcon_constants(const json& want, Report& report) {
               want.at("encoder_slots"), kRel);
 }
 
-void verify_falcon(const json& file, Report& report) {
+void verify_falcon_kinematics(const json& file, Report& report) {
   const hal::FalconKinematics falcon;
   const json& tolerance = file.at("tolerance");
   report.begin_case("constants");
@@ -280,7 +280,7 @@ constexpr std::array kVerifiers{
     Verifier{"kinematics_delta/1", verify_delta},
     Verifier{"kinematics_workspace/1", verify_workspace},
     Verifier{"kinematics_trajectory/1", verify_trajectory},
-    Verifier{"kinematics_falcon/1", verify_falcon},
+    Verifier{"kinematics_falcon/1", verify_falcon_kinematics},
 };
 
 }  // namespace

@@ -26,9 +26,6 @@ constexpr std::uint64_t get_unsigned(std::span<const std::uint8_t> bytes, std::s
   return value;
 }
 
-constexpr std::uint8_t get_u8(std::span<const std::uint8_t> bytes, std::size_t offset) RT_SAFE {
-  return bytes[offset];
-}
 constexpr std::uint16_t get_u16(std::span<const std::uint8_t> bytes, std::size_t offset) RT_SAFE {
   return static_cast<std::uint16_t>(get_unsigned(bytes, offset, 2));
 }

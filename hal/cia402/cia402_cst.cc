@@ -29,10 +29,6 @@ std::optional<std::int16_t> cst_torque_permille(double torque_Nm, double rated_t
   return static_cast<std::int16_t>(permille);
 }
 
-double cst_torque_Nm(std::int16_t torque_permille, double rated_torque_Nm) RT_SAFE {
-  return is_rated(rated_torque_Nm) ? torque_permille * rated_torque_Nm / 1000.0 : 0.0;
-}
-
 std::optional<CanFrame> cst_command(int node, std::uint16_t controlword,
                                     std::int16_t torque_permille) RT_SAFE {
   if (!is_canopen_node(node)) return std::nullopt;

@@ -19,8 +19,6 @@ namespace tact::hal {
 /// Nothing unless the torque is finite and the rated torque finite and above zero. Rounded to the
 /// nearest, halves to even; beyond 16 bits the largest that fits.
 std::optional<std::int16_t> cst_torque_permille(double torque_Nm, double rated_torque_Nm) RT_SAFE;
-/// Zero if the rated torque is not finite and above zero.
-double cst_torque_Nm(std::int16_t torque_permille, double rated_torque_Nm) RT_SAFE;
 
 std::optional<CanFrame> cst_command(int node, std::uint16_t controlword,
                                     std::int16_t torque_permille) RT_SAFE;

@@ -37,7 +37,7 @@ class SimLines final : public SafetyLines {
   }
   bool enabled() const RT_SAFE override { return !lost_ && !dropped_ && logic_.enabled(); }
   void drop() RT_SAFE override { dropped_ = true; }
-  void scope(bool up) RT_SAFE override { scope_ = up; }
+  void scope(bool) RT_SAFE override {}
   std::string trouble() const override {
     return words(lost_ ? LinesCause::kChipLost : logic_.cause());
   }
@@ -45,14 +45,12 @@ class SimLines final : public SafetyLines {
 
   Inputs& inputs() { return inputs_; }
   SafetyOutputs outputs() const { return dropped_ ? SafetyOutputs{} : outputs_; }
-  bool scope_is_up() const { return scope_; }
 
  private:
   Inputs inputs_;
   SafetyLogic logic_;
   SafetyOutputs outputs_;
   std::atomic<bool> lost_{false}, dropped_{false};
-  bool scope_ = false;
 };
 
 }  // namespace tact::hal

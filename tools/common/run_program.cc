@@ -12,14 +12,13 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <optional>
-#include <sstream>
 #include <string_view>
 #include <thread>
 
 #include "tools/common/child_groups.h"
 #include "tools/common/interrupt.h"
+#include "tools/common/table.h"
 
 namespace tact::tools {
 namespace {
@@ -115,13 +114,6 @@ Result<pid_t> start_child(const ProgramCall& call) {
                            has_folder ? std::strerror(failed) : "no such folder")};
 }
 
-std::string read_all(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
 std::string tail(const std::string& text) {
   std::size_t at = text.size();
   for (int line = 0; line <= kLastLines && at != std::string::npos && at > 0; ++line)
@@ -155,12 +147,12 @@ Result<std::string> run_program(const ProgramCall& call) {
     return Error{fmt::format(
         "how {} ended cannot be known, since SIGCHLD is ignored; start from a plain shell",
         call.program)};
-  std::string text = read_all(call.log_path);
+  auto text = read_whole_file(call.log_path);
   if (WIFEXITED(*status) && (call.any_status || WEXITSTATUS(*status) == 0)) return text;
   const std::string how = WIFEXITED(*status) ? fmt::format("status {}", WEXITSTATUS(*status))
                                              : fmt::format("signal {}", WTERMSIG(*status));
   return Error{fmt::format("{} ended with {}; all it printed is in {}, at the end:{}", call.program,
-                           how, call.log_path, tail(text))};
+                           how, call.log_path, tail(text ? *text : ""))};
 }
 
 Result<RunningProgram> RunningProgram::start(const ProgramCall& call) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstdio>
@@ -237,6 +238,16 @@ Result<std::string> write_whole_file(const std::string& path, const std::string&
   fs::rename(part, path, error);
   if (error) return Error{fmt::format("{}: {}", path, error.message())};
   return path;
+}
+
+Result<std::string> read_whole_file(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string content;
+  std::array<char, 4096> block;
+  while (stream.read(block.data(), block.size()), stream.gcount() > 0)
+    content.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+  if (!stream.eof()) return Error{fmt::format("{}: cannot be read", path)};
+  return content;
 }
 
 }  // namespace tact::tools

@@ -68,4 +68,7 @@ model::Result<std::string> table_of_file(const std::string& path);
 /// All or nothing: a reader never sees half a file.
 model::Result<std::string> write_whole_file(const std::string& path, const std::string& content);
 
+/// What is missing is an error, what is empty is not.
+model::Result<std::string> read_whole_file(const std::string& path);
+
 }  // namespace tact::tools

@@ -4,9 +4,8 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <utility>
 
 #include "tools/common/run_program.h"
 #include "tools/common/table.h"
@@ -98,19 +97,15 @@ std::optional<Error> write_json(const json& result, const std::string& path) {
   return std::nullopt;
 }
 
-std::string read_file(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
-
 std::optional<Error> write_folder(const JitterResult& result, const Options& o,
                                   const std::string& command) {
   if (auto error = write_json(to_json(result, command), o.out + "/jitter.json")) return error;
   std::string svg;
   if (!o.no_pictures && !result.interrupted) {  // after Ctrl-C no program is started any more
     if (auto drawn = draw_histogram(result, o.out); !drawn) return drawn.error();
-    svg = read_file(o.out + "/histogram.svg");
+    auto picture = read_whole_file(o.out + "/histogram.svg");
+    if (!picture) return picture.error();
+    svg = std::move(*picture);
   }
   const std::pair<const char*, std::string> files[] = {
       {"report.html", make_page(result, command, svg)},

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
+
+#include "tools/common/table.h"
 
 namespace tact::tools {
 namespace {
@@ -111,9 +111,9 @@ std::optional<Error> run_cyclictest(const PeerCall& call, const ScratchFolder& f
                                  .time_limit_s = 60.0 + 5.0 * call.duration_s,
                                  .environment = {}});
   if (!said) return said.error();
-  std::ostringstream text;
-  text << std::ifstream(json_path).rdbuf();
-  return add_cyclictest(text.str(), cycles_of(call), series);
+  const auto text = read_whole_file(json_path);
+  if (!text) return text.error();
+  return add_cyclictest(*text, cycles_of(call), series);
 }
 
 }  // namespace tact::tools

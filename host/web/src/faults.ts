@@ -22,7 +22,8 @@ export const kFaults: Readonly<Record<number, Fault>> = {
   3: {
     name: "not armed",
     cause: "the controller is not armed, the force is zero",
-    cure: "it arms by itself once the device gives good samples and no fault stands",
+    cure:
+      "a simulated device arms by itself once its samples are good; hold a real one, then pkill -USR2 tactd",
   },
   4: {
     name: "outside workspace",
