@@ -237,6 +237,14 @@ const numbers = {
     const at = shown_figure.joint_m;
     return Object.fromEntries(names.map((name, i) => [name, at.slice(3 * i, 3 * i + 3)]));
   },
+  /** The same from what is drawn; null while the figure is not visible. */
+  get drawn_figure_m() {
+    const names = status?.figure?.joints, drawn_m = figure?.drawn_m;
+    if (!names || !drawn_m) return null;
+    return Object.fromEntries([...drawn_m].map(([index, at_m]) => [names[index], at_m]));
+  },
+  /** Where a place in the tool's own axes is drawn. */
+  drawn_tool_m(place_m: Vec) { return tool?.drawn_m(place_m) ?? null; },
   get grip_error_m() { return shown_figure && status?.figure ? grip_error_m(shown_figure, status.figure) : null; },
   get tracking_words() { return shown_figure?.words ?? ""; },
   get largest_figure_bytes() { return connection.largest_figure_bytes; },
