@@ -65,6 +65,7 @@ FigureRecord record_of(const FigurePose& pose) {
     Eigen::Vector3f::Map(out.joint_m[i]) = pose.joint_m[i].cast<float>();
   }
   put({.rotation = pose.head, .position_m = pose.grip_m}, out.grip_m, out.head_wxyz);
+  if (pose.shoulder_too_far) out.legs_reached |= 4u;
   for (std::size_t i = 0; i < pose.leg_reached.size(); ++i) {
     if (pose.leg_reached[i]) out.legs_reached |= static_cast<std::uint8_t>(1u << i);
   }
@@ -123,6 +124,7 @@ std::optional<FigurePose> figure_of(const OperatorRecord& record, const TrackedO
   for (std::size_t i = 0; i < out.leg_reached.size(); ++i) {
     out.leg_reached[i] = (figure.legs_reached & (1u << i)) != 0;
   }
+  out.shoulder_too_far = (figure.legs_reached & 4u) != 0;
   tell(bodies, out);
   return out;
 }

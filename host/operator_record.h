@@ -36,7 +36,7 @@ struct FigureRecord {
   float error_m = 0.0f;
   std::uint16_t sweeps = 0, updates = 0;
   std::uint8_t reached = 0, out_of_reach = 0, full_chain = 0;
-  std::uint8_t legs_reached = 0;  // bit 0 left, bit 1 right
+  std::uint8_t legs_reached = 0;  // bit 0 left, bit 1 right; bit 2: shoulder_too_far
   std::uint8_t pad[4] = {};
 };
 

@@ -100,12 +100,17 @@ TEST_F(Body, AJumpIsHeldAndBelievedWithTheThirdPoseThatAgrees) {
 
 TEST_F(Body, PosesThatJumpAboutAreNeverBelieved) {
   for (int i = 0; i < 10; ++i, step()) see(0.0);
-  for (int i = 0; i < 20; ++i, step()) {
+  for (int i = 0; i < 60; ++i, step()) {
     see(i % 2 == 0 ? 1.0 : -1.0);
     EXPECT_EQ(at_once().trouble, TrackingTrouble::kJump);
+    const double since_s = (i + 1) * kPeriod_s;  // the last good pose
+    if (since_s > kHold_s + 1e-6 && since_s < kLose_s - 1e-6) {
+      EXPECT_EQ(at_once().state, BodyState::kHeld) << i;
+    }
   }
   EXPECT_EQ(at_once().raw.position_m.x(), 0.0);
-  EXPECT_EQ(at_once().state, BodyState::kHeld);
+  EXPECT_EQ(at_once().state, BodyState::kLost);
+  EXPECT_EQ(at_once().trouble, TrackingTrouble::kJump) << "and still says why";
 }
 
 TEST_F(Body, OneWildPoseDoesNotDisturbTheFilter) {

@@ -33,5 +33,21 @@ TEST(FigurePlace, ATrackedShoulderGoesBeforeTheScenes) {
   EXPECT_LT((shoulder_after_s(by_both, 8.0, +bodies) - tracked_m).norm(), 0.02);
 }
 
+TEST(FigurePlace, AShoulderTooFarAwayIsSaidAndNotBelieved) {
+  Figure untracked, near, far;
+  const Vector3d home_m = shoulder_after_s(untracked, 0.1);
+  const auto stands = [&](Figure& figure, double off_m) -> Vector3d {
+    TrackedOperator bodies;
+    bodies[BodyRole::kShoulder].state = BodyState::kTracked;
+    bodies[BodyRole::kShoulder].pose.position_m = home_m + off_m * Vector3d::UnitX();
+    for (int i = 0; i < 600; ++i) figure.update(i * test::kMotionFrame_s, tool_at(0.0), bodies);
+    return figure.pose()[FigureJoint::kPelvis] - untracked.pose()[FigureJoint::kPelvis];
+  };
+  EXPECT_GT(stands(near, kFarthestPlace_m - 0.05).norm(), 0.4);
+  EXPECT_EQ(near.pose().words.find("too far"), std::string::npos) << near.pose().words;
+  EXPECT_LT(stands(far, kFarthestPlace_m + 0.05).norm(), 0.02);
+  EXPECT_EQ(far.pose().words, "the tracked shoulder is too far off to be believed");
+}
+
 }  // namespace
 }  // namespace tact::host

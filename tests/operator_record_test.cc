@@ -50,6 +50,7 @@ FigurePose figure_at(std::size_t i) {
              .sweeps = 33,
              .updates = 44};
   out.leg_reached = {true, false};
+  out.shoulder_too_far = true;
   return out;
 }
 
@@ -121,6 +122,7 @@ TEST_F(TrackedFile, GivesTheFigureBackAsItWasShown) {
   EXPECT_EQ(got.arm.sweeps, truth.arm.sweeps);
   EXPECT_EQ(got.arm.updates, truth.arm.updates);
   EXPECT_EQ(got.leg_reached, truth.leg_reached);
+  EXPECT_EQ(got.shoulder_too_far, truth.shoulder_too_far);
   EXPECT_EQ(got.words, "the arm cannot reach the tool");
   EXPECT_EQ(recording.figure_at(3), nullptr) << "none was shown there";
 }

@@ -72,6 +72,23 @@ TEST(Registration, APoseThatIsWrongHasTheLargestResidual) {
   EXPECT_GT(got.largest_m, kDoubtful_m);
 }
 
+TEST(Registration, TwoMillimetresAreDoubtful) {
+  // One pose of twelve is off: most of it stays with that pose, a little goes into the fit.
+  const auto largest_m = [](double off_m) {
+    std::vector<PosePair> all = poses(12, 0.0);
+    all[7].tracked_m += Vector3d(off_m, 0.0, 0.0);
+    Registration got;
+    EXPECT_EQ(fit_registration(all, got), "");
+    return got.largest_m;
+  };
+  const double share = largest_m(0.001) / 0.001;
+  const double fine_m = largest_m(0.0018 / share), doubtful_m = largest_m(0.0022 / share);
+  EXPECT_NEAR(fine_m, 0.0018, 2e-5);
+  EXPECT_NEAR(doubtful_m, 0.0022, 2e-5);
+  EXPECT_LE(fine_m, kDoubtful_m);
+  EXPECT_GT(doubtful_m, kDoubtful_m);
+}
+
 TEST(Registration, NeverMirrors) {
   std::vector<PosePair> all = poses(8, 0.0);
   for (PosePair& pose : all) pose.tracked_m.x() *= -1.0;  // a left-handed tracker

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -27,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 const std::string kScenes = TACT_SOURCE_DIR "/model/scenes/";
 const std::string kLiver = kScenes + "liver.toml", kMaintenance = kScenes + "maintenance.toml";
-const std::string kDesk = "desk.tracking.toml";
+const std::string kDesk = "desk.tracking.toml", kTroubled = "troubled.tracking.toml";
 
 class Forces : public ::testing::Test {
  protected:
@@ -97,19 +98,61 @@ class Forces : public ::testing::Test {
     return out;
   }
 
-  struct Seen {
+  /// A tracker that in 3.3 s falls silent, stands, jumps about, steps back and sees too little.
+  void write_troubled() const {
+    std::string lines;
+    std::mt19937 noise(4);
+    std::uint64_t sequence = 0;
+    double time_s = 0.0;
+    const auto show = [&](double until_s, double by_m = 0.0, std::size_t points = 8) {
+      for (; time_s < until_s; time_s += 1.0 / 60.0) {
+        const double x_m = 0.1 * std::sin(3.0 * time_s) + (++sequence % 2 == 0 ? by_m : -by_m);
+        const host::Pose hand{.position_m = {x_m, 0.0, 1.5}};
+        host::Observation seen = test::look(test::camera("front", host::Pose{}), {}, "h", hand,
+                                            time_s, sequence, &noise);
+        seen.points.resize(points);
+        lines += test::line_of(seen) + "\n";
+      }
+    };
+    show(0.3);
+    time_s = 1.0;  // silent
+    show(1.2);
+    const std::string last = lines.substr(lines.rfind('\n', lines.size() - 2) + 1);
+    for (; time_s < 2.0; time_s += 1.0 / 60.0) {  // frozen: only time and number go on
+      lines += fmt::format(R"({{"time_s":{:.6f},"sequence":{})", time_s, ++sequence) +
+               last.substr(last.find(",\"camera\""));
+    }
+    show(2.3);
+    show(2.6, 0.4);  // jumps about
+    show(2.8);
+    show(3.0, 0.0, 3);
+    show(3.2);
+    time_s = 3.0, sequence -= 60;
+    show(3.2);  // came before
+    time_s = 3.3, sequence += 120;
+    show(3.5);
+    test::write_file(in("troubled.jsonl"), lines);
+    test::write_file(in(kTroubled),
+                     test::description("recording = \"troubled.jsonl\"", {{"h", "hand"}},
+                                       "[registration]\nposition_m = [0, 0, 0]\n"
+                                       "rotation_wxyz = [1, 0, 0, 0]\n"));
+  }
+
+  /// While it was recorded, the tracked hand went through all that can befall it.
+  void expect_all_trouble(const std::string& recording) const {
+    using enum host::TrackingTrouble;
     std::set<host::BodyState> states;
     std::set<host::TrackingTrouble> troubles;
-  };
-  /// What the trackers of the operator went through.
-  Seen seen_in(const std::string& recording) const {
-    Seen out;
-    for (const host::TrackedOperator& at : host::read_recording(in(recording)).recording.operators)
-      for (const host::TrackedBody& body : at.bodies) {
-        out.states.insert(body.state);
-        out.troubles.insert(body.trouble);
-      }
-    return out;
+    for (const host::TrackedOperator& at :
+         host::read_recording(in(recording)).recording.operators) {
+      states.insert(at[host::BodyRole::kHand].state);
+      troubles.insert(at[host::BodyRole::kHand].trouble);
+    }
+    for (const auto state :
+         {host::BodyState::kTracked, host::BodyState::kHeld, host::BodyState::kLost})
+      EXPECT_TRUE(states.contains(state)) << "state " << static_cast<int>(state);
+    for (const auto trouble : {kNone, kSilent, kTooFewPoints, kJump, kFrozen, kOutOfOrder})
+      EXPECT_TRUE(troubles.contains(trouble)) << "trouble " << static_cast<int>(trouble);
   }
 
   /// Of every tick, what the law wanted and what the device got.
@@ -167,29 +210,46 @@ TEST_F(Forces, OfALiveRunAreThoseOfItsReplay) {
   tactd(kLiver + " --replay " + in("live.log"));
 }
 
-TEST_F(Forces, AreTheSameBitsWhileTrackersAreLostFrozenJumpOrComeOutOfOrder) {
-  // The recording of the scene has all of it in its 30 s, which are those of the wall's clock.
-  start_viewer("view.tact", kScenes + "maintenance.tracking.toml");
-  tactd(kMaintenance + " --seconds 31.5 --record " + in("live.log"));
-  tactd(kMaintenance + " --free-run --seconds 40 --record " + in("seen.log"));
+TEST_F(Forces, OfALiveRunAreThoseOfItsReplayWhileTheTrackerIsInTrouble) {
+  write_troubled();
+  start_viewer("view.tact", in(kTroubled));
+  tactd(kMaintenance + " --seconds 4.5 --record " + in("live.log"));
   end_viewer();
-  using enum host::TrackingTrouble;
-  const Seen seen = seen_in("view.tact");
-  EXPECT_TRUE(seen.states.contains(host::BodyState::kTracked));
-  EXPECT_TRUE(seen.states.contains(host::BodyState::kHeld));
-  EXPECT_TRUE(seen.states.contains(host::BodyState::kLost));
-  for (const host::TrackingTrouble trouble : {kSilent, kTooFewPoints, kJump, kFrozen, kOutOfOrder})
-    EXPECT_TRUE(seen.troubles.contains(trouble)) << "trouble " << static_cast<int>(trouble);
-
-  // Nobody looks now: the run that was tracked through all this gives the same forces again, ...
+  expect_all_trouble("view.tact");
+  // Nobody looks now: the run that was tracked through all this gives the same forces again.
   tactd(kMaintenance + " --replay " + in("live.log"));
   const std::vector<std::uint64_t> live = forces("live.log");
   EXPECT_GT(std::set(live.begin(), live.end()).size(), 1000u);
-  // ... and so does one of simulated time.
-  tactd(kMaintenance + " --free-run --seconds 40 --no-telemetry --record " + in("alone.log"));
-  const std::vector<std::uint64_t> alone = forces("alone.log");
-  ASSERT_EQ(alone.size(), 40'000u);
-  EXPECT_EQ(alone, forces("seen.log"));
+}
+
+TEST_F(Forces, OfAFreeRunAreTheSameBitsWhileTheTrackerIsInTrouble) {
+  // The trouble comes in time of the wall's clock: a quarter of an hour is seconds of it.
+  const std::string run = kMaintenance + " --set telemetry.frame_rate_Hz=1 --free-run --seconds ";
+  write_troubled();
+  const auto begin = std::chrono::steady_clock::now();
+  tactd(run + "100 --no-telemetry");
+  const std::chrono::duration<double> of_100_s = std::chrono::steady_clock::now() - begin;
+  const int seconds = static_cast<int>(std::clamp(100.0 * 7.0 / of_100_s.count(), 300.0, 4000.0));
+  const std::string whole = run + std::to_string(seconds);
+  start_viewer("view.tact", in(kTroubled));
+  tactd(whole + " --json " + in("seen.json"));
+  end_viewer();
+  expect_all_trouble("view.tact");
+  // The viewer met this very run, and most of it.
+  const auto seen = nlohmann::json::parse(bytes("seen.json"), nullptr, false);
+  const auto ticks = seen["ticks"].get<std::uint64_t>();
+  EXPECT_EQ(ticks, 1000u * static_cast<unsigned>(seconds));
+  const host::Recording met = host::read_recording(in("view.tact")).recording;
+  ASSERT_FALSE(met.frames.empty());
+  EXPECT_LT(met.frames.front().tick, ticks / 4);
+  EXPECT_GT(met.frames.back().tick, ticks - ticks / 4);
+  EXPECT_LE(met.frames.back().tick, ticks);
+
+  tactd(whole + " --no-telemetry --json " + in("alone.json"));
+  const auto alone = nlohmann::json::parse(bytes("alone.json"), nullptr, false);
+  EXPECT_EQ(alone["force_hash"], seen["force_hash"]);
+  EXPECT_EQ(alone["ticks"], seen["ticks"]);
+  EXPECT_FALSE(alone["force_hash"].get<std::string>().empty());
 }
 
 }  // namespace

@@ -10,10 +10,26 @@ ROOT, BUILD, WORK = (pathlib.Path(p) for p in sys.argv[1:4])
 SECONDS, OUT = float(sys.argv[4]), sys.argv[5]
 LIVER = ROOT / "model/scenes/liver.toml"
 rows = []
+wrong = []
+
+
+def is_missed(value, goal):
+    """Of goals that are numbers; a value that was not found misses them all."""
+    limit = re.fullmatch(r"(<=|>=|) ?([\d.]+)", goal)
+    if not limit:
+        return False
+    if not isinstance(value, (int, float)) and not re.fullmatch(r"[\d.]+", str(value)):
+        return True
+    value, most = float(value), float(limit[2])
+    return value < most if limit[1] == ">=" else value > most
 
 
 def row(what, value, unit, goal, command):
-    rows.append({"what": what, "value": value, "unit": unit, "goal": goal, "command": command})
+    missed = is_missed(value, goal)
+    rows.append({"what": what, "value": value, "unit": unit, "goal": goal, "command": command,
+                 "missed": missed})
+    if missed:
+        wrong.append(f"{what.strip()}: {value} {unit}, goal {goal}")
     print(f"{what:46} {value:>10} {unit:8} {goal:18} {command}", flush=True)
 
 
@@ -90,16 +106,24 @@ def system_calls():
     trace = WORK / "trace"
     subprocess.run(["timeout", "-s", "INT", "2", "strace", "-qq", "-o", trace, "-p", loop],
                    capture_output=True)
-    run.wait()
+    if run.wait() != 0:
+        wrong.append(f"tactd under strace: exit status {run.returncode}")
     names = {re.match(r"\w+", line).group() for line in trace.read_text().splitlines()
              if re.match(r"\w+\(", line)}
     row("system calls in the loop", ", ".join(sorted(names)), "", "sleep only", "strace -p LOOP")
 
 
+def told_by(program, *arguments):
+    """Its JSON; a check of its own that fails is said, and its numbers count all the same."""
+    run = subprocess.run([BUILD / program, *arguments, "--json"], capture_output=True, text=True)
+    if run.returncode != 0:
+        wrong.append(f"{program}: exit status {run.returncode}")
+    return json.loads(run.stdout)
+
+
 def pose():
     """The operator's, from eight markers."""
-    told = json.loads(subprocess.run([BUILD / "tact-pose-bench", "--json"], capture_output=True,
-                                     text=True).stdout)
+    told = told_by("tact-pose-bench")
     shown = told["errors"]["shown_at_rest"]
     row("pose of eight markers, median", round(told["time_median_us"], 1), "us", "<= 200",
         "tact-pose-bench")
@@ -113,8 +137,7 @@ def pose():
 
 def arm():
     """The operator's, seven joints."""
-    told = json.loads(subprocess.run([BUILD / "tact-arm-bench", "--json"], capture_output=True,
-                                     text=True).stdout)
+    told = told_by("tact-arm-bench")
     row("pose of the arm, median", round(told["arm"], 1), "us", "<= 50", "tact-arm-bench")
     row("  of the whole figure", round(told["figure"], 1), "us", "", "tact-arm-bench")
 
@@ -122,16 +145,18 @@ def arm():
 def sub_root():
     """What the two-bone start from the shoulder saves on the scene's recorded motion."""
     scene = ROOT / "model/scenes/maintenance.toml"
-    told = json.loads(subprocess.run([BUILD / "tact-figure", scene, "--json"], capture_output=True,
-                                     text=True).stdout)
+    told = told_by("tact-figure", scene)
     row("joint updates, whole chain over shoulder first", round(told["updates_ratio"], 2), "", ">= 2",
         "tact-figure maintenance.toml")
 
 
 def browser(test):
-    """What a browser test prints; what it asserts is tools/check's matter."""
-    return subprocess.run(["node", ROOT / f"tests/browser/{test}_test.mjs", BUILD],
-                          capture_output=True, text=True).stdout
+    """What a browser test prints; that it fails is said, why is tools/check's matter."""
+    run = subprocess.run(["node", ROOT / f"tests/browser/{test}_test.mjs", BUILD],
+                         capture_output=True, text=True)
+    if run.returncode != 0:
+        wrong.append(f"{test}_test.mjs: exit status {run.returncode}")
+    return run.stdout
 
 
 def page():
@@ -162,9 +187,17 @@ def page_with_operator():
 def main():
     for measure in (ticks, mesh_size, loading, system_calls, pose, arm, sub_root, page,
                     page_with_figure, page_with_operator):
-        measure()
+        try:
+            measure()
+        except (subprocess.CalledProcessError, OSError, ValueError, KeyError, StopIteration,
+                AssertionError) as error:
+            wrong.append(f"{measure.__name__}: {error}")
     if OUT:
         pathlib.Path(OUT).write_text(json.dumps(rows, indent=2) + "\n")
+    for sentence in wrong:
+        print(f"tools/bench: {sentence}", file=sys.stderr)
+    return 1 if wrong else 0
 
 
-main()
+if __name__ == "__main__":
+    sys.exit(main())

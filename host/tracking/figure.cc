@@ -91,7 +91,8 @@ void Figure::settle(const TrackedOperator& bodies) {
     waited_s_ += dt_s_;
     if (is_seen(shoulder)) {
       const Vector3d by_m = to_shoulder(plan_, shoulder.pose.position_m);
-      place_goal_m_ = (by_m - start_m_).norm() <= kFarthestPlace_m ? by_m : start_m_;
+      pose_.shoulder_too_far = !((by_m - start_m_).norm() <= kFarthestPlace_m);
+      place_goal_m_ = pose_.shoulder_too_far ? start_m_ : by_m;
     } else if (shoulder.state == BodyState::kAbsent || waited_s_ > kWaitForShoulder_s) {
       place_goal_m_ = start_m_;
     } else {

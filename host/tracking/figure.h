@@ -48,6 +48,7 @@ struct FigurePose {
   Eigen::Vector3d grip_m = Eigen::Vector3d::Zero();          // where the finger tips shall be
   ArmWork arm;
   std::array<bool, 2> leg_reached{true, true};  // left, right: within kLegTolerance_m, or untracked
+  bool shoulder_too_far = false;  // the tracked one does not say where the figure stands
   FigureTrouble trouble = FigureTrouble::kNone;  // the worst
   std::string words;                             // "head lost (silent)"; empty if there is none
 

@@ -54,6 +54,8 @@ void tell(const TrackedOperator& bodies, FigurePose& pose) {
     if (body.state == BodyState::kLost) say(FigureTrouble::kLost, words("lost"));
     if (body.state == BodyState::kHeld || bad) say(FigureTrouble::kHeld, words("held"));
   }
+  if (pose.shoulder_too_far)
+    say(FigureTrouble::kHeld, "the tracked shoulder is too far off to be believed");
   if (!pose.arm.reached) say(FigureTrouble::kOutOfReach, "the arm cannot reach the tool");
   for (const bool right : {false, true}) {
     if (pose.leg_reached[right ? 1 : 0]) continue;

@@ -18,6 +18,7 @@ const observations = join(scenes, "maintenance.observations.jsonl");
 const kGrip_m = 0.12; // from the tip of press.obj to where it is held
 const kHold_m = 0.002;
 const kMotion_s = 30;
+const kLeaning_s = [6.5, 9]; // of the recording
 const kEyes_m = 0.2; // from the head's joint to the eyes, and what a smooth camera lags behind
 const kMostBytes = 4096;
 
@@ -40,24 +41,29 @@ async function stop_all({ viewer, tactd, page, complaints }) {
   check("tact-view ends cleanly", (await stop(viewer)) === 0);
 }
 
-/** What is drawn, picture by picture, for so long. */
-function watch(page, seconds) {
-  return page.evaluate(async (duration_ms) => {
+/** What is drawn, picture by picture, for so long; `blank` counts the pictures without a figure. */
+async function watch(page, seconds) {
+  const { samples, blank } = await page.evaluate(async ([duration_ms, grip_m]) => {
     const samples = [];
+    let blank = 0;
     const begin = performance.now();
     for (;;) {
       await new Promise((done) => requestAnimationFrame(done));
       const time_s = (performance.now() - begin) / 1000;
-      if (1000 * time_s > duration_ms) return samples;
-      const at = window.tact.figure_m;
-      if (!at) continue;
+      if (1000 * time_s > duration_ms) return { samples, blank };
+      const at = window.tact.drawn_figure_m;
+      if (!at) {
+        ++blank;
+        continue;
+      }
       samples.push({
         time_s,
         head_m: at["head"],
         shoulder_m: at["right shoulder"],
         hand_m: at["right fingers"],
-        tool_m: window.tact.tool_m,
-        grip_error_m: window.tact.grip_error_m,
+        tool_m: window.tact.drawn_tool_m([0, 0, 0]),
+        grip_m: window.tact.drawn_tool_m([0, 0, grip_m]),
+        told_error_m: window.tact.grip_error_m,
         camera_m: window.tact.camera_m,
         words: window.tact.tracking_words,
         shown: document.getElementById("tracking").hidden ? "" : document.getElementById("tracking").textContent,
@@ -66,7 +72,8 @@ function watch(page, seconds) {
         tick: window.tact.tick,
       });
     }
-  }, seconds * 1000);
+  }, [seconds * 1000, kGrip_m]);
+  return Object.assign(samples, { blank });
 }
 
 const path_m = (samples, part) => samples.reduce((sum, sample, i) =>
@@ -74,16 +81,14 @@ const path_m = (samples, part) => samples.reduce((sum, sample, i) =>
 const most = (samples, value) => samples.reduce((worst, sample) => Math.max(worst, value(sample)), 0);
 const mm = (length_m) => `${(1e3 * length_m).toFixed(2)} mm`;
 
-/** In every sample the finger tips are where the tool is held. */
+/** In every picture there is a figure, and its drawn finger tips are where the drawn tool is held. */
 function check_grip(when, samples) {
-  const worst_m = most(samples, (sample) => sample.grip_error_m);
-  check(`holds the tool ${when}: the finger tips are within 2 mm of its grip in every picture`,
-    samples.length > 0 && worst_m < kHold_m, `worst ${mm(worst_m)} of ${samples.length} pictures`);
-  // The same from the tool as it is drawn, in pictures in which it stands still.
-  const still = samples.filter((sample, i) => i > 0 && distance(sample.tool_m, samples[i - 1].tool_m) < 1e-4);
-  const off_m = most(still, (sample) => Math.abs(distance(sample.hand_m, sample.tool_m) - kGrip_m));
-  check(`... and so far from the tip of the drawn tool`, still.length > 20 && off_m < kHold_m,
-    `worst ${mm(off_m)} of ${still.length} pictures`);
+  check(`is drawn ${when}, in every picture`, samples.blank === 0 && samples.length > 0,
+    `${samples.blank} of ${samples.length + samples.blank} pictures without it`);
+  const told_m = most(samples, (sample) => sample.told_error_m);
+  check("... told within 2 mm of the tool's grip", told_m < kHold_m, `worst ${mm(told_m)}`);
+  const drawn_m = most(samples, (sample) => distance(sample.hand_m, sample.grip_m));
+  check("... drawn within 2 mm of it, moving or not", drawn_m < kHold_m, `worst ${mm(drawn_m)}`);
 }
 
 /** Since the head was tracked; then V chooses the first view, E the eyes again. */
@@ -109,11 +114,13 @@ async function follow_the_recording(browser) {
   const { page, url } = all;
   await page.goto(url);
   check("shows the operator of the recording", await waits(page, () =>
-    window.tact.link === "live" && window.tact.scene_name === "maintenance" && window.tact.figure_m !== null));
+    window.tact.link === "live" && window.tact.scene_name === "maintenance" && window.tact.drawn_figure_m !== null));
   const samples = await watch(page, kMotion_s);
   const fps = samples.length / kMotion_s;
   // How fast is a question for tools/bench; that it draws at all is one for a test.
   check("draws picture after picture", fps > 1, `${fps.toFixed(1)} frames/s`);
+  const seconds = new Set(samples.map((sample) => Math.floor(sample.time_s)));
+  check("... in every second of the motion", seconds.size === kMotion_s, `${seconds.size} of ${kMotion_s}`);
   check_grip("through the whole motion", samples);
   check("the hand moves with the tool", path_m(samples, "hand_m") > 0.2,
     `${path_m(samples, "hand_m").toFixed(2)} m`);
@@ -152,6 +159,54 @@ async function free_udp_port() {
   return port;
 }
 
+/**
+ * Leaning looks of the recording, then every body at two places 2.4 m apart in turn for more than a
+ * second, then looks that are older than the last one.
+ */
+function write_wild_looks(path) {
+  const lines = readFileSync(observations, "utf8").trim().split("\n");
+  const leaning = lines.filter((line) => JSON.parse(line).time_s >= kLeaning_s[0] && JSON.parse(line).time_s < kLeaning_s[1]);
+  const bodies = [...readFileSync(description, "utf8").matchAll(/^\[\[body\]\]\nname = "(\w+)"[^]*?^markers_m = (\[[^=]*\n\])/gm)]
+    .map(([, body, markers]) => ({ body, markers: JSON.parse(markers.replace(/,\s*\]/g, "]")) }));
+  let sequence = JSON.parse(leaning.at(-1)).sequence + 10;
+  const wild = (time_s) => bodies.map(({ body, markers }) => {
+    const x_m = ++sequence % 2 ? 1.2 : -1.2;
+    // f = 2000 px, as the description says; at 2.5 m before the camera
+    const points = markers.map(([id, x, y, z]) => [id, 2000 * (x_m + x) / (2.5 + z) + 960, 2000 * y / (2.5 + z) + 540]);
+    return JSON.stringify({ time_s, sequence, camera: "front", body, points });
+  });
+  const jumping = [], stale = [];
+  for (let i = 0; i < 36; ++i) {
+    jumping.push(...wild(kLeaning_s[1] + i / 30));
+    if (bodies.length % 2 === 0) ++sequence; // so that each body has another place than before
+  }
+  const end_s = kLeaning_s[1] + 1.2;
+  for (let i = 0; i < 36; ++i) stale.push(...wild(end_s - 0.9 + (i % 18) / 22));
+  writeFileSync(path, [...leaning, ...jumping, ...stale].join("\n") + "\n");
+}
+
+/** He leans, and the looks go wrong in ways of which none may be believed. */
+async function mislead_the_tracker(page, port, neutral) {
+  const path = join(folder, "wild.jsonl");
+  write_wild_looks(path);
+  const sender = start("tact-track-send", [path, "--port", String(port)]);
+  sender.stdout.resume();
+  const samples = await watch(page, kLeaning_s[1] - kLeaning_s[0] + 5);
+  check("plays the wild looks", (await sender.ended) === 0);
+  const says = (words) => samples.filter((sample) => sample.shown.includes(words));
+  const [jumps, old, well] = [says("lost (it jumps)"), says("lost (out of order)"), samples.filter((sample) => sample.words === "")];
+  const far = (sample) => distance(sample.head_m, neutral.head_m);
+  check("leans again before", well.length > 0 && far(well.at(-1)) > 0.04, well.length > 0 ? mm(far(well.at(-1))) : "");
+  check("says in words that it is lost because it jumps", jumps.length > 0,
+    [...new Set(samples.map((sample) => sample.shown))].join("; "));
+  check("then that it is lost because it is out of order", old.length > 0 && jumps.length > 0 && old[0].time_s > jumps[0].time_s);
+  const wild = samples.filter((sample) => sample.time_s > (well.at(-1)?.time_s ?? 0));
+  check("believes none of it", most(wild, far) < far(well.at(-1) ?? samples[0]) + 0.03,
+    `the head is never more than ${mm(most(wild, far))} from the neutral pose`);
+  check("has the neutral pose while it is out of order", old.length > 0 && far(old.at(-1)) < 0.03, old.length > 0 ? mm(far(old.at(-1))) : "");
+  check_grip("with a wild tracker", samples);
+}
+
 async function lose_the_tracker(browser) {
   const port = await free_udp_port();
   const tracking = join(folder, "maintenance.tracking.toml");
@@ -160,7 +215,7 @@ async function lose_the_tracker(browser) {
   const { page, url } = all;
   await page.goto(url);
   check("stands without a tracker", await waits(page, () =>
-    window.tact.link === "live" && window.tact.figure_m !== null));
+    window.tact.link === "live" && window.tact.drawn_figure_m !== null));
   const sender = start("tact-track-send", [observations, "--port", String(port)]);
   sender.stdout.resume();
   check("hears the tracker by UDP", await waits(page, () => window.tact.tracking_words === ""));
@@ -187,6 +242,7 @@ async function lose_the_tracker(browser) {
   check("tactd stays armed", after.every((sample) => sample.state === "armed"));
   check("the forces go on", end.tick > before.tick && most(after, (sample) => sample.force_N) > 0.2,
     `${most(after, (sample) => sample.force_N).toFixed(2)} N`);
+  await mislead_the_tracker(page, port, end);
   await stop_all(all);
 }
 

@@ -30,6 +30,13 @@ class Part {
     this.mesh.matrix.makeBasis(x, along, z).setPosition(a);
   }
 
+  /** Its two ends as they are drawn. */
+  get ends_m(): [Vec, Vec] {
+    const end = (along_m: number): Vec =>
+      new THREE.Vector3(0, along_m, 0).applyMatrix4(this.mesh.matrixWorld).toArray();
+    return [end(0), end(this.length_m)];
+  }
+
   private shape(length_m: number): void {
     this.length_m = length_m;
     const { radius_a_m, radius_b_m } = this.capsule;
@@ -72,6 +79,19 @@ export class FigureView {
       const { a, b, radius_a_m, radius_b_m } = part.capsule;
       part.mesh.visible = !hides(eye, joint(frame, a), joint(frame, b), Math.max(radius_a_m, radius_b_m));
     }
+  }
+
+  /** Where joints are drawn, by index; null while nothing is. */
+  get drawn_m(): Map<number, Vec> | null {
+    if (!this.object.visible || !this.object.parent) return null;
+    const out = new Map<number, Vec>();
+    for (const part of this.parts) {
+      const { a, b } = part.capsule;
+      const [a_m, b_m] = part.ends_m;
+      out.set(a, a_m);
+      if (!out.has(b)) out.set(b, b_m);
+    }
+    return out;
   }
 
   dispose(): void {

@@ -22,6 +22,7 @@ let scene: Scene | null = null;
 let organ: OrganView | null = null;
 let tool: ToolView | null = null;
 let newest: Frame | null = null; // not drawn yet
+let waiting: Frame | null = null; // its figure is not here yet: a hand and its tool are drawn together
 let shown: Frame | null = null;
 let status: Status | null = null;
 let paused = false;
@@ -50,9 +51,7 @@ const connection = new Connection({
   },
   scene: take_scene,
   frame: take_frame,
-  figure: (next) => {
-    if (!paused) newest_figure = next;
-  },
+  figure: take_figure,
   server_gone: () => {
     status = null;
     hud.link(null);
@@ -71,6 +70,7 @@ function take_scene(next: Scene, organ_mesh: Mesh, tool_mesh: Mesh): void {
     organ.dispose();
     tool.dispose();
   }
+  waiting = null;
   scene = next;
   organ = new OrganView(organ_mesh, next);
   organ.wireframe = wireframe;
@@ -134,8 +134,17 @@ function draw_figure(): void {
 function take_frame(frame: Frame): void {
   recorder.frame(frame);
   if (paused) return;
-  newest = frame;
+  newest = figure ? waiting ?? newest : frame;
+  waiting = figure ? frame : null;
   plots.add(frame);
+}
+
+function take_figure(next: FigureFrame): void {
+  if (paused) return;
+  newest_figure = next;
+  if (waiting?.tick !== next.tick) return;
+  newest = waiting;
+  waiting = null;
 }
 
 function draw(now_ms: number): void {
@@ -237,6 +246,14 @@ const numbers = {
     const at = shown_figure.joint_m;
     return Object.fromEntries(names.map((name, i) => [name, at.slice(3 * i, 3 * i + 3)]));
   },
+  /** The same from what is drawn; null while the figure is not visible. */
+  get drawn_figure_m() {
+    const names = status?.figure?.joints, drawn_m = figure?.drawn_m;
+    if (!names || !drawn_m) return null;
+    return Object.fromEntries([...drawn_m].map(([index, at_m]) => [names[index], at_m]));
+  },
+  /** Where a place in the tool's own axes is drawn. */
+  drawn_tool_m(place_m: Vec) { return tool?.drawn_m(place_m) ?? null; },
   get grip_error_m() { return shown_figure && status?.figure ? grip_error_m(shown_figure, status.figure) : null; },
   get tracking_words() { return shown_figure?.words ?? ""; },
   get largest_figure_bytes() { return connection.largest_figure_bytes; },

@@ -94,6 +94,11 @@ export class ToolView {
     this.arrow.set(this.contact_middle(frame), frame.force_N, share, into_tissue);
   }
 
+  /** A place in the tool's own axes, where it is drawn. */
+  drawn_m(place_m: Vec): Vec {
+    return new THREE.Vector3(...place_m).applyMatrix4(this.tool.matrixWorld).toArray();
+  }
+
   /** null hides the mark. */
   show_hand_target(position_m: Vec | null): void {
     this.mark.visible = position_m !== null;
