@@ -17,12 +17,14 @@ const canvas = by_id<HTMLCanvasElement>("view");
 const hud = new Hud();
 const plots = new Plots(by_id);
 const recorder = new Recorder();
+const kLongestWait_ms = 100; // of a frame for its figure
 
 let scene: Scene | null = null;
 let organ: OrganView | null = null;
 let tool: ToolView | null = null;
 let newest: Frame | null = null; // not drawn yet
 let waiting: Frame | null = null; // its figure is not here yet: a hand and its tool are drawn together
+let waiting_since_ms = 0;
 let shown: Frame | null = null;
 let status: Status | null = null;
 let paused = false;
@@ -136,6 +138,7 @@ function take_frame(frame: Frame): void {
   if (paused) return;
   newest = figure ? waiting ?? newest : frame;
   waiting = figure ? frame : null;
+  waiting_since_ms = performance.now();
   plots.add(frame);
 }
 
@@ -148,6 +151,10 @@ function take_figure(next: FigureFrame): void {
 }
 
 function draw(now_ms: number): void {
+  if (waiting && now_ms - waiting_since_ms > kLongestWait_ms) {
+    newest = waiting; // without its figure, then: no tick is kept from a person's eyes
+    waiting = null;
+  }
   if (organ && tool && newest) {
     shown = newest;
     newest = null;
