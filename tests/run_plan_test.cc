@@ -14,6 +14,7 @@
 #include "tests/stub_dhd/stub_client.h"
 #include "tests/test_scene.h"
 #include "tools/limits/consent.h"
+#include "tools/limits/limit_rows.h"
 
 namespace tact::tools {
 namespace {
@@ -196,10 +197,10 @@ TEST(Limits, APassedReportHasAllFilesAndLoadsNothing) {
   for (const char* file : {"cases.csv", "trace_step.csv", "trace_e-stop.csv", "curves.svg"})
     EXPECT_TRUE(std::filesystem::exists(folder() + "/" + file)) << file;
   const std::string page = read("limits.html");
-  EXPECT_NE(page.find("PASS: in all 2 cases"), std::string::npos);
+  EXPECT_NE(page.find("PASS of 2 of 25 cases: "), std::string::npos);
   EXPECT_NE(page.find("<svg"), std::string::npos);
-  EXPECT_LT(page.find("class=\"verdict"), page.find("Limits that were tested"));
-  EXPECT_LT(page.find("Limits that were tested"), page.find("<h2>Cases"));
+  EXPECT_LT(page.find("class=\"verdict"), page.find("<h2>Limits"));
+  EXPECT_LT(page.find("<h2>Limits"), page.find("<h2>Cases"));
   for (const char* loaded : {"src=", "<link", "@import", "<script"})
     EXPECT_EQ(page.find(loaded), std::string::npos) << loaded;
   std::filesystem::remove_all(folder());
@@ -257,7 +258,9 @@ TEST(Limits, ARealDeviceIsTestedAfterTheWordsAndSaysWhatWasNotRun) {
   EXPECT_FALSE(report.at("simulated").get<bool>());
   EXPECT_EQ(report.at("call_filter").get<bool>(), !firmware::is_sanitized()) << out.output;
   EXPECT_EQ(report.at("cases").size(), 2u);
-  EXPECT_EQ(report.at("not_run").at(0), "speed");
+  EXPECT_EQ(report.at("not_run").at(0).at("case"), "speed");
+  EXPECT_EQ(report.at("not_run").at(0).at("why"), "needs the simulated hand");
+  EXPECT_EQ(report.at("not_run").size(), 23u) << "and all that were not asked for";
   for (const auto& c : report.at("cases")) EXPECT_EQ(c.at("overshoot_N"), 0.0) << out.output;
   std::filesystem::remove_all(folder());
 }

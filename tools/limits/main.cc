@@ -81,7 +81,7 @@ int test_limits(const Program& program, const Options& o) {
   else
     fmt::print("{}", to_text(*report));
   if (!files) return program.fail(files.error(), "the tables are written, the page is not");
-  if (!o.json) fmt::print("{}: {}/limits.html\n", report->passed() ? "PASS" : "FAIL", o.out);
+  if (!o.json) fmt::print("{}: {}/limits.html\n", report->result_words(), o.out);
   return report->passed() ? 0 : 1;
 }
 

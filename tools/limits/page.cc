@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "tools/common/html.h"
-#include "tools/limits/report.h"
+#include "tools/limits/limit_rows.h"
 
 namespace tact::tools {
 namespace {
@@ -14,7 +14,7 @@ constexpr const char* kStyle = R"css(
 body{font:15px/1.45 "DejaVu Sans",Arial,sans-serif;color:#222;max-width:1260px;margin:24px auto;padding:0 16px}
 h1{font-size:24px;margin:0 0 12px}h2{font-size:18px;margin:28px 0 8px}
 .verdict{padding:14px 18px;border-radius:6px;font-size:19px;font-weight:bold;color:#fff}
-.pass{background:#00703c}.fail{background:#b00020}
+.pass{background:#00703c}.fail{background:#b00020}.part{background:#8a5a00}
 .facts{display:grid;grid-template-columns:max-content 1fr;gap:2px 16px;margin:14px 0}
 .facts dt{color:#666}.facts dd{margin:0;overflow-wrap:anywhere}
 table{border-collapse:collapse;width:100%}
@@ -23,7 +23,7 @@ td{border-bottom:1px solid #ddd;padding:5px 8px;vertical-align:top}
 tr{break-inside:avoid}
 .n{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums}
 .ok{color:#00703c;font-weight:bold}.bad{color:#b00020;font-weight:bold}
-.quiet{color:#666}ul{margin:4px 0;padding-left:18px}
+.part-text{color:#8a5a00;font-weight:bold}.quiet{color:#666}ul{margin:4px 0;padding-left:18px}
 svg{max-width:100%;height:auto}
 .key{display:inline-block;width:28px;height:0;border-top:3px solid;vertical-align:middle;margin:0 6px 0 18px}
 )css";
@@ -32,23 +32,38 @@ const char* mark(bool holds) {
   return holds ? "<span class=ok>pass</span>" : "<span class=bad>FAIL</span>";
 }
 
+/// Right below the verdict, so that nobody takes them for tested.
+std::string left_out(const LimitsReport& report) {
+  if (report.not_run.empty()) return {};
+  std::string out = "<p><b>Not tested:</b></p><ul>";
+  for (const auto& [why, names] : report.left_out_by_why())
+    out += fmt::format("<li>{}: {}</li>", escape_html(why), escape_html(names));
+  return out + "</ul>\n";
+}
+
 std::string verdict(const LimitsReport& report) {
+  if (report.played() == 0)
+    return "<p class=\"verdict fail\">FAIL: no case was played.</p>\n" + left_out(report);
   std::size_t failed = 0;
   for (const CaseResult& r : report.cases) failed += r.verdict.passed() ? 0 : 1;
   failed += report.wall && !report.wall->passed() ? 1 : 0;
-  const std::size_t all = report.cases.size() + (report.wall ? 1 : 0);
-  if (report.passed())
-    return fmt::format(
+  std::string out;
+  if (failed > 0)
+    out = fmt::format(
+        "<p class=\"verdict fail\">FAIL: {} of {} cases did not end as they must. Nobody should "
+        "hold a device with these limits.</p>\n",
+        failed, report.played());
+  else if (report.not_run.empty())
+    out = fmt::format(
         "<p class=\"verdict pass\">PASS: in all {} cases the force kept every limit. Overshoot: 0 "
-        "N.{}</p>\n",
-        all,
-        report.not_run.empty() ? ""
-                               : fmt::format(" {} cases were not run.", report.not_run.size()));
-  return fmt::format(
-      "<p class=\"verdict fail\">FAIL: {} of {} cases did not end as they must. Nobody should hold "
-      "a "
-      "device with these limits.</p>\n",
-      failed, all);
+        "N.</p>\n",
+        report.played());
+  else
+    out = fmt::format(
+        "<p class=\"verdict part\">{}: in these the force kept its limits. Overshoot: 0 N. {} "
+        "cases were not played: of them this page shows nothing.</p>\n",
+        report.result_words(), report.not_run.size());
+  return out + left_out(report);
 }
 
 std::string facts(const LimitsReport& report) {
@@ -74,22 +89,42 @@ std::string facts(const LimitsReport& report) {
   return out + "</dl>\n";
 }
 
+std::string limit_row(const LimitRow& row) {
+  const bool is_seen = row.largest > 0.0 || row.kept != Kept::kNotReached;
+  const char* style = row.kept == Kept::kFail         ? "bad"
+                      : row.kept == Kept::kNotReached ? "part-text"
+                                                      : "ok";
+  std::string names;
+  for (const std::string& name : row.reached_by) names += (names.empty() ? "" : ", ") + name;
+  std::string out = fmt::format(
+      "<tr><td>{}</td><td>{}</td><td class=n>{:.4g} {}</td><td class=n>{}</td><td>{}</td>"
+      "<td><span class={}>{}</span></td></tr>\n",
+      row.name, row.key, row.limit, row.unit,
+      is_seen ? fmt::format("{:.4g} {}", row.largest, row.unit) : "-", names.empty() ? "-" : names,
+      style, kept_words(row.kept));
+  for (const TighterLimit& t : row.tighter)
+    out += fmt::format(
+        "<tr><td class=quiet>made tighter in {}</td><td></td><td class=n>{:.4g} {}</td>"
+        "<td class=n>{:.4g} {}</td><td></td><td>{}</td></tr>\n",
+        t.case_name, t.limit, row.unit, t.largest, row.unit, mark(t.holds));
+  return out;
+}
+
 std::string limits_table(const LimitsReport& report) {
   std::string out =
-      "<h2>Limits that were tested</h2>\n<table><tr><th>Limit</th><th>Key in the scene</th>"
-      "<th class=n>Limit</th><th class=n>Largest seen</th><th>Kept</th></tr>\n";
-  for (const LimitRow& row : limit_rows(report))
-    out += fmt::format(
-        "<tr><td>{}</td><td>{}</td><td class=n>{:.4g} {}</td><td class=n>{:.4g} {}</td>"
-        "<td>{}</td></tr>\n",
-        row.name, row.key, row.limit, row.unit, row.largest, row.unit, mark(row.holds));
+      "<h2>Limits and what was tested of them</h2>\n<table><tr><th>Limit</th><th>Key in the scene"
+      "</th><th class=n>Limit</th><th class=n>Largest seen</th><th>Reached by</th><th>Kept</th>"
+      "</tr>\n";
+  for (const LimitRow& row : limit_rows(report)) out += limit_row(row);
   const model::Limits& l = report.limits;
   return out +
          fmt::format(
-             "</table>\n<p class=quiet>Tool no faster than {:g} m/s, within a cylinder of {:g} m "
-             "radius and {:g} m half length; beyond, the force fades to zero in 50 ms. The energy "
-             "budget fills again with {:g} W. Cases that make a limit tighter are judged by the "
-             "tighter one and are not in the column Largest seen.</p>\n",
+             "</table>\n<p class=quiet>Not reached: no case that is there to drive to this limit "
+             "was "
+             "played, so nothing is said of it. A case that makes a limit tighter is judged by the "
+             "tighter one, in a row of its own. Tool no faster than {:g} m/s, within a cylinder of "
+             "{:g} m radius and {:g} m half length; beyond, the force fades to zero in 50 ms. The "
+             "energy budget fills again with {:g} W.</p>\n",
              l.speed_mps, l.workspace_radius_m, l.workspace_half_length_m, l.recovery_W);
 }
 
@@ -128,6 +163,7 @@ std::string case_row(const CaseVerdict& v, const model::Limits& all) {
 }
 
 std::string case_table(const LimitsReport& report) {
+  if (report.cases.empty()) return {};
   std::string out =
       "<h2>Cases</h2>\n<table><tr><th>Case</th><th>What happens</th><th class=n>Commanded</th>"
       "<th class=n>Written</th><th class=n>Over&shy;shoot</th><th class=n>Zero after</th>"
@@ -135,11 +171,6 @@ std::string case_table(const LimitsReport& report) {
       "latched</th><th></th></tr>\n";
   for (const CaseResult& r : report.cases) out += case_row(r.verdict, report.limits);
   out += "</table>\n";
-  std::string names;
-  for (const std::string& name : report.not_run) names += (names.empty() ? "" : ", ") + name;
-  if (!names.empty())
-    out +=
-        fmt::format("<p>Not run, as they need the simulated hand: {}.</p>\n", escape_html(names));
   return out +
          "<p class=quiet>Commanded and written: largest of the case. Zero after: from the cause to "
          "zero force. Allowed: 0 where the force must be gone in the tick of the cause; else the "
@@ -180,7 +211,7 @@ std::string page_html(const LimitsReport& report, const std::vector<std::string>
       "<!doctype html>\n<html lang=en><head><meta charset=utf-8>"
       "<meta name=viewport content=\"width=device-width\"><title>tact-limits: {}</title>"
       "<style>{}</style></head><body>\n<h1>Safety-limited force output: test report</h1>\n",
-      report.passed() ? "pass" : "FAIL", kStyle);
+      report.result_words(), kStyle);
   out += verdict(report) + facts(report) + limits_table(report) + case_table(report);
   if (!svg.empty() && !report.cases.empty())
     out +=

@@ -32,16 +32,19 @@ constexpr std::array kCases{
          .shape = Shape::kRamp,
          .size = 1.5,
          .duration_s = 1.0,
+         .reaches = Bound::kForce,
          .expected = {.stage = Stage::kMagnitude, .least_peak_ratio = 0.999}},
     Case{.name = "diagonal",
          .what = "Each axis stays below the limit, the vector does not.",
          .shape = Shape::kDiagonal,
          .size = 0.9,
+         .reaches = Bound::kForce,
          .expected = {.stage = Stage::kMagnitude, .least_peak_ratio = 0.999}},
     Case{.name = "step",
          .what = "The commanded force jumps from zero to the limit in one tick.",
          .shape = Shape::kHold,
          .size = 1.0,
+         .reaches = Bound::kStep,
          .expected = {.stage = Stage::kSlew, .least_peak_ratio = 0.99}},
     Case{.name = "impulse",
          .what = "A million newtons are commanded for one tick.",
@@ -52,11 +55,13 @@ constexpr std::array kCases{
          .shape = Shape::kFlip,
          .size = 1.0,
          .duration_s = 0.6,
+         .reaches = Bound::kStep,
          .expected = {.stage = Stage::kSlew, .least_peak_ratio = 0.9}},
     Case{.name = "chatter",
          .what = "The commanded force changes its sign 400 times a second (200 Hz), at the limit.",
          .shape = Shape::kChatter,
          .size = 1.0,
+         .reaches = Bound::kStep,
          .expected = {.stage = Stage::kSlew, .least_peak_ratio = 0.05}},
     Case{.name = "torque",
          .what = "The force acts on a lever, so that the torque passes its limit before the force.",
@@ -64,12 +69,14 @@ constexpr std::array kCases{
          .size = 1.0,
          .grip = Grip::kLever,
          .duration_s = 1.0,
+         .reaches = Bound::kTorque,
          .expected = {.stage = Stage::kMagnitude, .least_peak_ratio = 0.9}},
     Case{.name = "torque-step",
          .what = "The force on that lever jumps to its limit in one tick.",
          .shape = Shape::kHold,
          .size = 1.0,
          .grip = Grip::kLever,
+         .reaches = Bound::kTorqueStep,
          .expected = {.stage = Stage::kSlew, .least_peak_ratio = 0.5}},
     Case{.name = "nan-force",
          .what = "The model computes NaN (not a number) in mid-force.",
@@ -187,6 +194,7 @@ constexpr std::array kCases{
          .hand = HandMove::kUp,
          .duration_s = 0.6,
          .power_share = 0.1,
+         .reaches = Bound::kPower,
          .expected = {.stage = Stage::kPower, .least_peak_ratio = 0.3}},
     Case{.name = "continuous",
          .what = "The limit is commanded for long; the continuous limit is made half of it.",
@@ -194,6 +202,7 @@ constexpr std::array kCases{
          .size = 1.0,
          .duration_s = 2.0,
          .continuous_share = 0.5,
+         .reaches = Bound::kRms,
          .expected = {.stage = Stage::kMagnitude, .least_peak_ratio = 0.99}},
     Case{.name = "warm-torque",
          .what = "The same on a lever, so that the torque is held at its limit for long.",
@@ -202,6 +211,7 @@ constexpr std::array kCases{
          .grip = Grip::kLever,
          .duration_s = 2.0,
          .continuous_share = 0.5,
+         .reaches = Bound::kTorqueRms,
          .expected = {.stage = Stage::kMagnitude, .least_peak_ratio = 0.5}},
     Case{.name = "active-law",
          .what = "A wrong law pushes along every motion, so that it gives energy without end.",
@@ -210,6 +220,7 @@ constexpr std::array kCases{
          .hand = HandMove::kPress,
          .duration_s = 3.0,
          .budget_share = 1.1,
+         .reaches = Bound::kEnergy,
          .expected = {.stage = Stage::kPassivity, .least_peak_ratio = 0.2}},
 };
 
@@ -239,7 +250,8 @@ Result<std::vector<Case>> choose_cases(const std::string& names) {
         std::find_if(kCases.begin(), kCases.end(), [&](const Case& c) { return name == c.name; });
     if (found == kCases.end())
       return Error{fmt::format("--plan {}: no such case; --list shows them all", name)};
-    chosen.push_back(*found);
+    const auto same = [&](const Case& c) { return name == c.name; };
+    if (std::none_of(chosen.begin(), chosen.end(), same)) chosen.push_back(*found);
   }
   if (names.empty()) return Error{"--plan: names no case; --list shows them all"};
   return chosen;

@@ -3,7 +3,9 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
+#include <string_view>
 
 #include "firmware/loop_parts.h"
 #include "firmware/operator_view.h"
@@ -19,6 +21,9 @@ namespace {
 
 using model::Error;
 using model::Result;
+
+constexpr const char* kNeedsHand = "needs the simulated hand";
+
 Runs prepare(const std::vector<Case>& cases, const LimitsBench& bench) {
   Runs runs;
   for (const Case& c : cases)
@@ -47,6 +52,17 @@ void tell_fault(Fault found, const hal::Device& device, const hal::SafetyLines& 
              trouble.empty() ? "" : ": ", trouble, fault.cure);
 }
 
+/// Names the cases of the whole plan that are not to be played, as nobody asked for them.
+void name_the_rest(LimitsReport& report, const PlanOptions& options) {
+  for (const Case& c : all_cases()) {
+    const auto same = [&](const Case& asked) { return std::string_view(asked.name) == c.name; };
+    if (std::none_of(options.cases.begin(), options.cases.end(), same))
+      report.not_run.push_back({.name = c.name, .why = "not asked for"});
+  }
+  if (!options.wall)
+    report.not_run.push_back({.name = std::string(kWallName), .why = "not asked for"});
+}
+
 Result<LimitsReport> finished(LimitsReport report, const Runs& runs, const LimitsBench& bench,
                               const hal::DeviceInfo& device, bool wall) {
   if (is_interrupted()) return interruption();
@@ -71,7 +87,9 @@ Result<LimitsReport> run_simulated(const model::Scene& scene, const hal::DeviceI
   const Runs runs = prepare(options.cases, bench);
   for (const auto& run : runs)
     if (!run->play()) break;
-  return finished(begin_report(scene, info), runs, bench, info, options.wall);
+  LimitsReport report = begin_report(scene, info);
+  name_the_rest(report, options);
+  return finished(std::move(report), runs, bench, info, options.wall);
 }
 
 Result<LimitsReport> run_real(const model::Scene& scene, hal::Device& device,
@@ -97,11 +115,12 @@ Result<LimitsReport> run_real(const model::Scene& scene, hal::Device& device,
   std::vector<Case> cases;
   for (const Case& c : options.cases) {
     if (needs_simulation(c))
-      report.not_run.emplace_back(c.name);
+      report.not_run.push_back({.name = c.name, .why = kNeedsHand});
     else
       cases.push_back(c);
   }
-  if (options.wall) report.not_run.emplace_back(kWallName);
+  if (options.wall) report.not_run.push_back({.name = std::string(kWallName), .why = kNeedsHand});
+  name_the_rest(report, options);
   const Runs runs = prepare(cases, bench);
   const auto filter =
       firmware::CallFilter::make(device.loop_calls(), (*lines)->loop_calls(), requests);
