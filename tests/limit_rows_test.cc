@@ -99,5 +99,44 @@ TEST(LimitRows, ALimitIsPassedWhereACaseReachedItAndATighterOneIsShownAsSuch) {
   EXPECT_EQ(limit_rows(plan("continuous", larger_continuous_force))[6].kept, Kept::kFail);
 }
 
+TEST(LimitRows, ALineIsTestedWhereItIsWiredAndNowhereElse) {
+  model::LinesSettings wired;
+  wired.chip = "lines";
+  for (const Case& c : all_cases()) {
+    EXPECT_EQ(why_left_out(c, {}) != nullptr, opens_line(c) || c.hand != HandMove::kStill)
+        << c.name;
+    if (opens_line(c)) {
+      EXPECT_NE(why_left_out(c, wired), nullptr) << "a chip alone is no line";
+    }
+  }
+  wired.estop_b = 3;
+  const std::vector<Case> cases = *choose_cases("e-stop,dead-man");
+  EXPECT_EQ(why_left_out(cases[0], wired), nullptr);
+  EXPECT_NE(why_left_out(cases[1], wired), nullptr);
+  wired.dead_man = 4;
+  EXPECT_EQ(why_left_out(cases[1], wired), nullptr);
+}
+
+TEST(LimitRows, ARealDeviceSaysThatNoContactWasOpened) {
+  LimitsReport report = plan("e-stop,dead-man,step");
+  const auto times = [](const std::string& text) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(kToldInSoftware); at != std::string::npos;
+         at = text.find(kToldInSoftware, at + 1))
+      ++count;
+    return count;
+  };
+  EXPECT_EQ(times(page_html(report, {})), 0u) << "simulated lines do open";
+  EXPECT_EQ(page_html(report, {}).find("told in software"), std::string::npos);
+  report.simulated = false;
+  EXPECT_EQ(times(page_html(report, {})), 2u) << "in the row of each";
+  EXPECT_NE(page_html(report, {}).find("Nor that a contact of the emergency stop"),
+            std::string::npos);
+  const nlohmann::json cases = to_json(report).at("cases");
+  EXPECT_EQ(cases.at(0).at("cause"), kToldInSoftware);
+  EXPECT_EQ(cases.at(1).at("cause"), kToldInSoftware);
+  EXPECT_EQ(cases.at(2).at("cause"), "played");
+}
+
 }  // namespace
 }  // namespace tact::tools

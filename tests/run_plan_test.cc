@@ -221,7 +221,8 @@ TEST(Limits, AFailedCaseIsStatusOneAndSaysWhy) {
 
 std::string real_device() {
   return liver() + " --out " + folder() +
-         " --plan ramp,nan-force,speed --no-pictures --set 'device.kind=\"force-dimension\"' --set "
+         " --plan ramp,nan-force,speed,e-stop,e-stop-released,dead-man --no-pictures --set "
+         "'device.kind=\"force-dimension\"' --set "
          "'device.force_dimension.library=\"" +
          tests::kStubLibrary + "\"'";
 }
@@ -260,6 +261,11 @@ TEST(Limits, ARealDeviceIsTestedAfterTheWordsAndSaysWhatWasNotRun) {
   EXPECT_EQ(report.at("cases").size(), 2u);
   EXPECT_EQ(report.at("not_run").at(0).at("case"), "speed");
   EXPECT_EQ(report.at("not_run").at(0).at("why"), "needs the simulated hand");
+  // the scene wires no line: a fault told in its place would be a test that did not happen
+  for (std::size_t i = 1; i < 4; ++i)
+    EXPECT_EQ(report.at("not_run").at(i).at("why"),
+              i < 3 ? "no emergency stop is wired" : "no dead-man switch is wired");
+  for (const auto& c : report.at("cases")) EXPECT_NE(c.at("case"), "e-stop");
   EXPECT_EQ(report.at("not_run").size(), 23u) << "and all that were not asked for";
   for (const auto& c : report.at("cases")) EXPECT_EQ(c.at("overshoot_N"), 0.0) << out.output;
   std::filesystem::remove_all(folder());

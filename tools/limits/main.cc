@@ -97,8 +97,8 @@ int main(int argc, char** argv) {
       "Writes limits.html (the report to hand on), limits.json, cases.csv, a trace of every tick\n"
       "for each case, wall.csv, and curves by gnuplot. Forces N, torques N m, energy J, power W,\n"
       "times s. The simulated device runs on simulated time. A real device runs in real time,\n"
-      "after a warning and words that a person types; cases that need the simulated hand are\n"
-      "left out there, and the report says so.");
+      "after a warning and words that a person types; cases that need the simulated hand, or a\n"
+      "safety line that is not wired, are left out there, and the report says so.");
   Options o;
   add_options(program.options(), o);
   if (const auto status = program.parse(argc, argv)) return *status;

@@ -2,6 +2,7 @@
 // each case, then the curves. One file, nothing loaded from elsewhere, fit for printing.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tools/common/html.h"
@@ -128,6 +129,10 @@ std::string limits_table(const LimitsReport& report) {
              l.speed_mps, l.workspace_radius_m, l.workspace_half_length_m, l.recovery_W);
 }
 
+bool is_told(const LimitsReport& report, const CaseVerdict& v) {
+  return !report.simulated && opens_line(v.subject);
+}
+
 std::string tightened(const model::Limits& here, const model::Limits& all) {
   std::string out;
   if (here.power_W < all.power_W) out += fmt::format(" Here at most {:.3g} W.", here.power_W);
@@ -143,11 +148,13 @@ std::string plain(double value) {
   return value < 1e4 ? fmt::format("{:.4g}", value) : fmt::format("{:.0f}", value);
 }
 
-std::string case_row(const CaseVerdict& v, const model::Limits& all) {
+std::string case_row(const CaseVerdict& v, const LimitsReport& report) {
   std::string broken;
   for (const Check& c : v.checks)
     if (!c.holds) broken += fmt::format("<li class=bad>{}</li>", escape_html(c.sentence));
   if (!broken.empty()) broken = "<ul>" + broken + "</ul>";
+  const std::string told =
+      is_told(report, v) ? fmt::format(" <b>{}.</b>", escape_html(kToldInSoftware)) : std::string();
   const auto zero = [](const std::optional<double>& s) {
     return s ? fmt::format("{:.0f} ms", 1e3 * *s) : std::string("-");
   };
@@ -156,8 +163,8 @@ std::string case_row(const CaseVerdict& v, const model::Limits& all) {
       "<tr><td><b>{}</b></td><td>{}{}{}</td><td class=n>{} N</td><td class=n>{:.4g} N</td>"
       "<td class=n>{:.3g} N</td><td class=n>{}</td><td class=n>{}</td><td>{}</td><td>{}</td>"
       "<td>{}</td></tr>\n",
-      v.subject.name, escape_html(v.subject.what), tightened(v.limits, all), broken,
-      plain(v.worst.commanded_N), v.worst.force_N, v.overshoot_N, zero(v.worst.zero_s),
+      v.subject.name, escape_html(v.subject.what), tightened(v.limits, report.limits) + told,
+      broken, plain(v.worst.commanded_N), v.worst.force_N, v.overshoot_N, zero(v.worst.zero_s),
       allowed ? fmt::format("{:.0f} ms", std::floor(1e3 * *allowed)) : "-", v.acted_words(),
       v.fault == Fault::kNone ? "-" : model::describe(v.fault).name, mark(v.passed()));
 }
@@ -169,7 +176,7 @@ std::string case_table(const LimitsReport& report) {
       "<th class=n>Written</th><th class=n>Over&shy;shoot</th><th class=n>Zero after</th>"
       "<th class=n>Allowed</th><th>Stages that acted</th><th>Fault that "
       "latched</th><th></th></tr>\n";
-  for (const CaseResult& r : report.cases) out += case_row(r.verdict, report.limits);
+  for (const CaseResult& r : report.cases) out += case_row(r.verdict, report);
   out += "</table>\n";
   return out +
          "<p class=quiet>Commanded and written: largest of the case. Zero after: from the cause to "
@@ -204,6 +211,26 @@ std::string inlined(const std::string& svg, std::size_t number) {
   return out;
 }
 
+std::string how_it_was_tested(const LimitsReport& report) {
+  const bool told = std::any_of(report.cases.begin(), report.cases.end(),
+                                [&](const CaseResult& r) { return is_told(report, r.verdict); });
+  return fmt::format(
+      "<h2>How it was tested</h2>\n<p>Each case arms the controller that drives the device, waits "
+      "until its force is fully let in, and commands a force as a tissue would. The force takes "
+      "the way of every force: contact, gate, device. The limits are judged from what the device "
+      "was handed, by sums of the test's own; the gate is not asked.{}</p>\n"
+      "<p>What it does not show: that the device makes the force it is handed, that its emergency "
+      "stop cuts its power, and what a person feels.{} A PC is not a safety device: it provides "
+      "diagnostics and a controlled stop. A device that can hurt needs an emergency stop that "
+      "removes power without asking a PC.</p>\n</body></html>\n",
+      report.simulated ? ""
+                       : " Missing samples, late ticks and faults are made in software, between "
+                         "controller and device.",
+      told ? " Nor that a contact of the emergency stop or the dead-man switch is seen: its fault "
+             "was told in software, the contact was not opened. Press it by hand."
+           : "");
+}
+
 }  // namespace
 
 std::string page_html(const LimitsReport& report, const std::vector<std::string>& svg) {
@@ -223,17 +250,7 @@ std::string page_html(const LimitsReport& report, const std::vector<std::string>
         inlined(svg.front(), 0);
   out += wall_section(report);
   if (report.wall && svg.size() == (report.cases.empty() ? 1u : 2u)) out += inlined(svg.back(), 1);
-  out +=
-      "<h2>How it was tested</h2>\n<p>Each case arms the controller that drives the device, waits "
-      "until its force is fully let in, and commands a force as a tissue would. The force takes "
-      "the "
-      "way of every force: contact, gate, device. The limits are judged from what the device was "
-      "handed, by sums of the test's own; the gate is not asked.</p>\n"
-      "<p>What it does not show: that the device makes the force it is handed, that its emergency "
-      "stop cuts its power, and what a person feels. A PC is not a safety device: it provides "
-      "diagnostics and a controlled stop. A device that can hurt needs an emergency stop that "
-      "removes power without asking a PC.</p>\n</body></html>\n";
-  return out;
+  return out + how_it_was_tested(report);
 }
 
 }  // namespace tact::tools

@@ -265,6 +265,15 @@ bool names_wall(const std::string& names) {
   return false;
 }
 
+const char* why_left_out(const Case& c, const model::LinesSettings& lines) {
+  if (c.hand != HandMove::kStill) return kNeedsHand;
+  const bool has_estop = lines.wired() && (lines.estop_a >= 0 || lines.estop_b >= 0);
+  if (c.trouble == Trouble::kEmergencyStop && !has_estop) return "no emergency stop is wired";
+  if (c.trouble == Trouble::kDeadMan && !(lines.wired() && lines.dead_man >= 0))
+    return "no dead-man switch is wired";
+  return nullptr;
+}
+
 model::Limits limits_of(const Case& c, const model::Limits& limits) {
   model::Limits tight = limits;
   if (c.budget_share > 0.0) {  // less than twice what the brake needs is refused in a scene

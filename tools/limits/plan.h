@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "firmware/gate/gate.h"
+#include "model/device_settings.h"
 #include "model/result.h"
 
 namespace tact::tools {
@@ -99,10 +100,18 @@ std::span<const Case> all_cases();
 model::Result<std::vector<Case>> choose_cases(const std::string& names);
 /// The name of the Z-width test in --plan, and is it asked for?
 inline constexpr std::string_view kWallName = "stiff-wall";
+inline constexpr const char* kNeedsHand = "needs the simulated hand";
 bool names_wall(const std::string& names);
 
-/// True for cases that only a simulated hand can run.
-inline bool needs_simulation(const Case& c) { return c.hand != HandMove::kStill; }
+/// True for cases in which a safety line opens.
+inline bool opens_line(const Case& c) {
+  return c.trouble == Trouble::kEmergencyStop || c.trouble == Trouble::kDeadMan;
+}
+/// Why a real device cannot play this case; null: it can. A line that is not wired cannot open, so
+/// a fault told in its place would prove nothing.
+const char* why_left_out(const Case& c, const model::LinesSettings& lines);
+/// Said of such a case on a real device with the line.
+inline constexpr const char* kToldInSoftware = "told in software: the contact was not opened";
 /// The limits of this case: those of the scene, or one tighter.
 model::Limits limits_of(const Case& c, const model::Limits& limits);
 

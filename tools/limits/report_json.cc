@@ -16,9 +16,10 @@ json checks_json(const std::vector<Check>& checks) {
 
 json or_null(const std::optional<double>& value) { return value ? json(*value) : json(); }
 
-json case_json(const CaseVerdict& v) {
+json case_json(const CaseVerdict& v, bool simulated) {
   return {{"case", v.subject.name},
           {"what", v.subject.what},
+          {"cause", simulated || !opens_line(v.subject) ? "played" : kToldInSoftware},
           {"passed", v.passed()},
           {"force_limit_N", v.limits.force_N},
           {"largest_commanded_N", v.worst.commanded_N},
@@ -60,7 +61,8 @@ json to_json(const LimitsReport& report) {
   for (const LimitRow& row : limit_rows(report)) limits.push_back(limit_json(row));
   for (const LeftOut& out : report.not_run)
     not_run.push_back({{"case", out.name}, {"why", out.why}});
-  for (const CaseResult& result : report.cases) cases.push_back(case_json(result.verdict));
+  for (const CaseResult& result : report.cases)
+    cases.push_back(case_json(result.verdict, report.simulated));
   const firmware::Environment& e = report.environment;
   json out{{"passed", report.passed()},
            {"result", report.result_words()},

@@ -22,8 +22,6 @@ namespace {
 using model::Error;
 using model::Result;
 
-constexpr const char* kNeedsHand = "needs the simulated hand";
-
 Runs prepare(const std::vector<Case>& cases, const LimitsBench& bench) {
   Runs runs;
   for (const Case& c : cases)
@@ -114,8 +112,8 @@ Result<LimitsReport> run_real(const model::Scene& scene, hal::Device& device,
   LimitsReport report = begin_report(scene, info);
   std::vector<Case> cases;
   for (const Case& c : options.cases) {
-    if (needs_simulation(c))
-      report.not_run.push_back({.name = c.name, .why = kNeedsHand});
+    if (const char* why = why_left_out(c, scene.device.lines))
+      report.not_run.push_back({.name = c.name, .why = why});
     else
       cases.push_back(c);
   }
