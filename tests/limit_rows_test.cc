@@ -59,11 +59,20 @@ TEST(LimitRows, APartOfThePlanPassesNoLimitThatItDidNotReach) {
   const auto report = nlohmann::json::parse(out.output);
   EXPECT_EQ(report.at("result"), "PASS of 1 of 25 cases");
   EXPECT_EQ(report.at("limits").size(), 8u);
+  const auto& wall = report.at("wall");  // README.md and tools/README.md tell these
+  EXPECT_NEAR(wall.at("bounded_ratio"), 11.6, 0.1);
+  EXPECT_NEAR(wall.at("rest_without_N_per_m"), 2644.0, 1.0);
+  EXPECT_EQ(wall.at("rest_ratio"), 1.0);
+  EXPECT_NEAR(wall.at("largest_swing_without_m"), 0.020, 0.001);
+  EXPECT_NEAR(wall.at("largest_swing_with_m"), 0.0033, 0.0001);
   for (const auto& row : report.at("limits")) EXPECT_EQ(row.at("kept"), "not reached") << row;
   const std::string page = read("limits.html");
   EXPECT_NE(page.find("PASS of 1 of 25 cases: "), std::string::npos);
   EXPECT_EQ(page.find("verdict pass"), std::string::npos) << "it is not green";
   EXPECT_EQ(page.find("in all"), std::string::npos);
+  for (const char* words : {"bounded up to 75146 N/m", "2644 N/m with it: 1 times as stiff",
+                            "20 mm without the stage, 3.3 mm with it"})
+    EXPECT_NE(page.find(words), std::string::npos) << words;
   EXPECT_EQ(report.at("not_run").size(), all_cases().size());
   for (const Case& c : all_cases())
     EXPECT_NE(page.find(c.name), std::string::npos) << c.name << " is not named on the page";

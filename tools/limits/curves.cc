@@ -67,10 +67,10 @@ set yrange [0:*]
 )gp";
   script += fmt::format("set xrange [{}:{}]\n", 0.9 * wall.points.front().stiffness_N_per_m,
                         1.1 * wall.points.back().stiffness_N_per_m);
-  if (wall.without_N_per_m > 0.0)
+  if (wall.bounded_without_N_per_m > 0.0)
     script += fmt::format(
         "set arrow 1 from {0},graph 0 to {0},graph 1 nohead lc rgb '#D55E00' dt 2 lw 1.5\n",
-        wall.without_N_per_m);
+        wall.bounded_without_N_per_m);
   return {.name = "wall", .width_px = kWidth_px, .height_px = 380, .script = script + R"gp(
 plot 'wall.csv' using 2:($4*1e3) with linespoints pt 7 lc 2 lw 2 title "without the passivity stage", \
      'wall.csv' using 2:($8*1e3) with linespoints pt 5 lc 1 lw 2 title "with it"

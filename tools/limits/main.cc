@@ -37,8 +37,9 @@ void add_options(CLI::App& app, Options& o) {
 
 int list_cases() {
   for (const Case& c : all_cases()) fmt::print("{:16} {}\n", c.name, c.what);
-  fmt::print("{:16} {}\n", kWallName,
-             "A wall is made stiffer until it is unstable, without and with the passivity stage.");
+  fmt::print(
+      "{:16} {}\n", kWallName,
+      "A wall is made stiffer until a motion on it grows, without and with the passivity stage.");
   return 0;
 }
 

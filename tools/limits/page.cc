@@ -191,12 +191,15 @@ std::string wall_section(const LimitsReport& report) {
   std::string out = "<h2>A wall that is too stiff</h2>\n<ul>";
   for (const Check& c : report.wall->checks)
     out += fmt::format("<li>{} {}</li>", mark(c.holds), escape_html(c.sentence));
-  return out +
-         fmt::format(
-             "</ul>\n<p class=quiet>A light hand (200 N/m) presses a wall through the whole "
-             "loop, stiffer each time by a quarter. The device alone, without its friction "
-             "and the hand, bears {:.4g} N/m. Unstable: the tool swings wider and wider.</p>\n",
-             report.wall->theory_N_per_m);
+  return out + fmt::format(
+                   "</ul>\n<p class=quiet>A light hand (200 N/m) presses a wall through the whole "
+                   "loop, stiffer each time by a quarter. The device alone, without its friction "
+                   "and the hand, bears {:.4g} N/m. With and without: the passivity stage of the "
+                   "gate. Bounded: the "
+                   "tool does not swing wider and wider, but it may swing for ever. At rest: it "
+                   "swings by "
+                   "0.1 mm or less in the last half second of 4 s.</p>\n",
+                   report.wall->theory_N_per_m);
 }
 
 /// A drawing without its XML head, to stand within the page; its names made its own.

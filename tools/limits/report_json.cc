@@ -88,11 +88,15 @@ json to_json(const LimitsReport& report) {
   if (report.wall)
     out["wall"] = {{"passed", report.wall->passed()},
                    {"theory_N_per_m", report.wall->theory_N_per_m},
-                   {"without_passivity_N_per_m", report.wall->without_N_per_m},
-                   {"with_passivity_N_per_m", report.wall->with_N_per_m},
-                   {"rest_with_passivity_N_per_m", report.wall->rest_N_per_m},
-                   {"with_is_a_least_value", report.wall->with_is_least},
-                   {"z_width_ratio", report.wall->ratio()},
+                   {"bounded_without_N_per_m", report.wall->bounded_without_N_per_m},
+                   {"bounded_with_N_per_m", report.wall->bounded_with_N_per_m},
+                   {"bounded_with_is_a_least_value", report.wall->with_is_least},
+                   {"bounded_ratio", report.wall->bounded_ratio()},
+                   {"rest_without_N_per_m", report.wall->rest_without_N_per_m},
+                   {"rest_with_N_per_m", report.wall->rest_with_N_per_m},
+                   {"rest_ratio", report.wall->rest_ratio()},
+                   {"largest_swing_without_m", report.wall->swing_without_m},
+                   {"largest_swing_with_m", report.wall->swing_with_m},
                    {"checks", checks_json(report.wall->checks)}};
   return out;
 }
