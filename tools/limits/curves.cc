@@ -22,7 +22,9 @@ bool has_cause(const Case& c) {
 
 std::string panel(const CaseResult& result) {
   const CaseVerdict& v = result.verdict;
-  const bool torque = v.subject.grip == Grip::kLever && v.limits.torque_Nm > 0.0;
+  // of torque and force the one that the case drives to its limit
+  const bool torque =
+      v.subject.grip == Grip::kLever && v.subject.reaches && v.limits.torque_Nm > 0.0;
   const double limit = torque ? v.limits.torque_Nm : v.limits.force_N;
   std::string out = fmt::format(
       "set title \"{}{}\" noenhanced textcolor rgb '{}'\n"
@@ -40,7 +42,7 @@ std::string panel(const CaseResult& result) {
       "  'trace_{0}.csv' using 2:{1} with lines lc rgb '#999999' lw 1 notitle, \\\n"
       "  'trace_{0}.csv' using 2:{2} with lines lc rgb '#56B4E9' lw 4 notitle, \\\n"
       "  'trace_{0}.csv' using 2:{3} with lines lc rgb '#000000' lw 1 notitle\n",
-      v.subject.name, column, torque ? "7" : "4", torque ? "7" : "5");
+      v.subject.name, column, torque ? "7" : "4", torque ? "8" : "5");
   return out;
 }
 

@@ -1,4 +1,4 @@
-// limit_rows.h - the limits of a report, each with what came nearest to it, and was it reached at all?
+// limit_rows.h - the limits of a report: what came nearest to each, and was it reached at all?
 #pragma once
 
 #include <string>

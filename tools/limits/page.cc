@@ -180,7 +180,8 @@ std::string case_table(const LimitsReport& report) {
   out += "</table>\n";
   return out +
          "<p class=quiet>Commanded and written: largest of the case. Zero after: from the cause to "
-         "zero force. Allowed: 0 where the force must be gone in the tick of the cause; else the "
+         "zero force and torque that last as long as the cause. Allowed: 0 where the force must be "
+         "gone in the tick of the cause; else the "
          "time of the fade, of the way out of the workspace or of the late ticks, and some ticks. "
          "A fault that has latched lets no force through until a person resets and arms "
          "again.</p>\n";

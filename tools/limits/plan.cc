@@ -104,18 +104,20 @@ constexpr std::array kCases{
                       .fault = Fault::kSampleNotFinite,
                       .zero_within_s = kAtOnce_s}},
     Case{.name = "stale-samples",
-         .what = "The device gives no new sample for 15 ticks, then goes on.",
+         .what = "The device gives no new sample for 15 ticks, then goes on. With torque.",
          .shape = Shape::kRamp,
          .size = 1.0,
          .trouble = Trouble::kNoSample,
          .trouble_ticks = 15,
+         .grip = Grip::kLever,
          .expected = {.stage = Stage::kFresh, .zero_within_s = kStale_s, .and_ticks = kFadeTicks}},
     Case{.name = "lost-device",
-         .what = "The device gives no new sample any more.",
+         .what = "The device gives no new sample any more. With torque.",
          .shape = Shape::kRamp,
          .size = 1.0,
          .trouble = Trouble::kNoSample,
          .trouble_ticks = 1'000'000,
+         .grip = Grip::kLever,
          .expected = {.stage = Stage::kFresh,
                       .fault = Fault::kDeviceLost,
                       .zero_within_s = kStale_s,
@@ -132,11 +134,12 @@ constexpr std::array kCases{
                       .zero_within_s = 0.0,
                       .and_ticks = kLateTicks}},
     Case{.name = "e-stop",
-         .what = "The emergency stop opens in mid-force.",
+         .what = "The emergency stop opens in mid-force, and in mid-torque.",
          .shape = Shape::kRamp,
          .size = 1.0,
          .trouble = Trouble::kEmergencyStop,
          .trouble_ticks = 1'000'000,
+         .grip = Grip::kLever,
          .expected = {.stage = Stage::kArmed,
                       .fault = Fault::kEmergencyStop,
                       .zero_within_s = kAtOnce_s}},
@@ -178,10 +181,11 @@ constexpr std::array kCases{
                       .zero_within_s = kWorkspace_s,
                       .and_ticks = kFadeTicks}},
     Case{.name = "workspace",
-         .what = "The hand carries the tool out of the permitted workspace and stays there.",
+         .what = "The hand carries the tool out of the permitted workspace and stays. With torque.",
          .shape = Shape::kHold,
          .size = 0.5,
          .hand = HandMove::kOutside,
+         .grip = Grip::kLever,
          .duration_s = 0.8,
          .expected = {.stage = Stage::kWorkspace,
                       .least_peak_ratio = 0.45,
@@ -263,15 +267,6 @@ bool names_wall(const std::string& names) {
   for (std::string name; std::getline(in, name, ',');)
     if (name == kWallName) return true;
   return false;
-}
-
-const char* why_left_out(const Case& c, const model::LinesSettings& lines) {
-  if (c.hand != HandMove::kStill) return kNeedsHand;
-  const bool has_estop = lines.wired() && (lines.estop_a >= 0 || lines.estop_b >= 0);
-  if (c.trouble == Trouble::kEmergencyStop && !has_estop) return "no emergency stop is wired";
-  if (c.trouble == Trouble::kDeadMan && !(lines.wired() && lines.dead_man >= 0))
-    return "no dead-man switch is wired";
-  return nullptr;
 }
 
 model::Limits limits_of(const Case& c, const model::Limits& limits) {

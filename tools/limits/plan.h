@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "firmware/gate/gate.h"
-#include "model/device_settings.h"
 #include "model/result.h"
 
 namespace tact::tools {
@@ -107,9 +106,6 @@ bool names_wall(const std::string& names);
 inline bool opens_line(const Case& c) {
   return c.trouble == Trouble::kEmergencyStop || c.trouble == Trouble::kDeadMan;
 }
-/// Why a real device cannot play this case; null: it can. A line that is not wired cannot open, so
-/// a fault told in its place would prove nothing.
-const char* why_left_out(const Case& c, const model::LinesSettings& lines);
 /// Said of such a case on a real device with the line.
 inline constexpr const char* kToldInSoftware = "told in software: the contact was not opened";
 /// The limits of this case: those of the scene, or one tighter.

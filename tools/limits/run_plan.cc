@@ -133,6 +133,15 @@ Result<LimitsReport> run_real(const model::Scene& scene, hal::Device& device,
 
 }  // namespace
 
+const char* why_left_out(const Case& c, const model::LinesSettings& lines) {
+  if (c.hand != HandMove::kStill) return kNeedsHand;
+  const bool has_estop = lines.wired() && (lines.estop_a >= 0 || lines.estop_b >= 0);
+  if (c.trouble == Trouble::kEmergencyStop && !has_estop) return "no emergency stop is wired";
+  if (c.trouble == Trouble::kDeadMan && !(lines.wired() && lines.dead_man >= 0))
+    return "no dead-man switch is wired";
+  return nullptr;
+}
+
 Result<LimitsReport> run_plan(const model::Scene& scene, const PlanOptions& options) {
   auto device = hal::open_device(scene);
   if (!device) return device.error();

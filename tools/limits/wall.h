@@ -31,8 +31,8 @@ struct WallPoint {
 struct WallVerdict {
   std::vector<WallPoint> points;  // ascending
   double theory_N_per_m = 0.0;    // of the device, without friction and hand
-  // Bounded: largest up to which nothing grows. Rest: largest up to which every last swing is 0.1 mm
-  // or less; a bounded motion may swing for ever. 0: none.
+  // Bounded: largest up to which nothing grows. Rest: largest up to which every last swing is
+  // 0.1 mm or less; a bounded motion may swing for ever. 0: none.
   double bounded_without_N_per_m = 0.0, bounded_with_N_per_m = 0.0;
   double rest_without_N_per_m = 0.0, rest_with_N_per_m = 0.0;
   double swing_without_m = 0.0, swing_with_m = 0.0;  // largest last swing, at any stiffness
