@@ -70,7 +70,7 @@ TEST(LimitRows, APartOfThePlanPassesNoLimitThatItDidNotReach) {
   EXPECT_NE(page.find("PASS of 1 of 25 cases: "), std::string::npos);
   EXPECT_EQ(page.find("verdict pass"), std::string::npos) << "it is not green";
   EXPECT_EQ(page.find("in all"), std::string::npos);
-  for (const char* words : {"bounded up to 75146 N/m", "2644 N/m with it: 1 times as stiff",
+  for (const char* words : {"bounded up to 75146 N/m", "2644 N/m with it: 1.0 times as stiff",
                             "20 mm without the stage, 3.3 mm with it"})
     EXPECT_NE(page.find(words), std::string::npos) << words;
   EXPECT_EQ(report.at("not_run").size(), all_cases().size());

@@ -107,12 +107,12 @@ void judge(WallVerdict& v) {
                            v.bounded_without_N_per_m)
              : std::string("no motion grew: the test had nothing to show"),
        grows && v.bounded_without_N_per_m > 0.0},
-      {fmt::format("with it the motion is bounded up to {:.0f} N/m{}: {}{:.3g} times as stiff",
+      {fmt::format("with it the motion is bounded up to {:.0f} N/m{}: {}{:.1f} times as stiff",
                    v.bounded_with_N_per_m, v.with_is_least ? ", the stiffest tried" : "",
                    v.with_is_least ? "at least " : "", v.bounded_ratio()),
        v.bounded_ratio() > 1.0},
       {fmt::format("the tool comes to rest up to {:.0f} N/m without the stage and up to {:.0f} N/m "
-                   "with it: {:.3g} times as stiff",
+                   "with it: {:.1f} times as stiff",
                    v.rest_without_N_per_m, v.rest_with_N_per_m, v.rest_ratio()),
        v.rest_with_N_per_m >= v.rest_without_N_per_m},
       {fmt::format("largest swing of all: {:.2g} mm without the stage, {:.2g} mm with it",
