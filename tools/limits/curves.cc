@@ -22,7 +22,9 @@ bool has_cause(const Case& c) {
 
 std::string panel(const CaseResult& result) {
   const CaseVerdict& v = result.verdict;
-  const bool torque = v.subject.grip == Grip::kLever && v.limits.torque_Nm > 0.0;
+  // of torque and force the one that the case drives to its limit
+  const bool torque =
+      v.subject.grip == Grip::kLever && v.subject.reaches && v.limits.torque_Nm > 0.0;
   const double limit = torque ? v.limits.torque_Nm : v.limits.force_N;
   std::string out = fmt::format(
       "set title \"{}{}\" noenhanced textcolor rgb '{}'\n"
@@ -40,7 +42,7 @@ std::string panel(const CaseResult& result) {
       "  'trace_{0}.csv' using 2:{1} with lines lc rgb '#999999' lw 1 notitle, \\\n"
       "  'trace_{0}.csv' using 2:{2} with lines lc rgb '#56B4E9' lw 4 notitle, \\\n"
       "  'trace_{0}.csv' using 2:{3} with lines lc rgb '#000000' lw 1 notitle\n",
-      v.subject.name, column, torque ? "7" : "4", torque ? "7" : "5");
+      v.subject.name, column, torque ? "7" : "4", torque ? "8" : "5");
   return out;
 }
 
@@ -67,10 +69,10 @@ set yrange [0:*]
 )gp";
   script += fmt::format("set xrange [{}:{}]\n", 0.9 * wall.points.front().stiffness_N_per_m,
                         1.1 * wall.points.back().stiffness_N_per_m);
-  if (wall.without_N_per_m > 0.0)
+  if (wall.bounded_without_N_per_m > 0.0)
     script += fmt::format(
         "set arrow 1 from {0},graph 0 to {0},graph 1 nohead lc rgb '#D55E00' dt 2 lw 1.5\n",
-        wall.without_N_per_m);
+        wall.bounded_without_N_per_m);
   return {.name = "wall", .width_px = kWidth_px, .height_px = 380, .script = script + R"gp(
 plot 'wall.csv' using 2:($4*1e3) with linespoints pt 7 lc 2 lw 2 title "without the passivity stage", \
      'wall.csv' using 2:($8*1e3) with linespoints pt 5 lc 1 lw 2 title "with it"

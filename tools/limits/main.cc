@@ -37,8 +37,9 @@ void add_options(CLI::App& app, Options& o) {
 
 int list_cases() {
   for (const Case& c : all_cases()) fmt::print("{:16} {}\n", c.name, c.what);
-  fmt::print("{:16} {}\n", kWallName,
-             "A wall is made stiffer until it is unstable, without and with the passivity stage.");
+  fmt::print(
+      "{:16} {}\n", kWallName,
+      "A wall is made stiffer until a motion on it grows, without and with the passivity stage.");
   return 0;
 }
 
@@ -81,7 +82,7 @@ int test_limits(const Program& program, const Options& o) {
   else
     fmt::print("{}", to_text(*report));
   if (!files) return program.fail(files.error(), "the tables are written, the page is not");
-  if (!o.json) fmt::print("{}: {}/limits.html\n", report->passed() ? "PASS" : "FAIL", o.out);
+  if (!o.json) fmt::print("{}: {}/limits.html\n", report->result_words(), o.out);
   return report->passed() ? 0 : 1;
 }
 
@@ -97,8 +98,8 @@ int main(int argc, char** argv) {
       "Writes limits.html (the report to hand on), limits.json, cases.csv, a trace of every tick\n"
       "for each case, wall.csv, and curves by gnuplot. Forces N, torques N m, energy J, power W,\n"
       "times s. The simulated device runs on simulated time. A real device runs in real time,\n"
-      "after a warning and words that a person types; cases that need the simulated hand are\n"
-      "left out there, and the report says so.");
+      "after a warning and words that a person types; cases that need the simulated hand, or a\n"
+      "safety line that is not wired, are left out there, and the report says so.");
   Options o;
   add_options(program.options(), o);
   if (const auto status = program.parse(argc, argv)) return *status;

@@ -57,6 +57,19 @@ struct Expected {
   double and_ticks = 0.0;                 // besides, at the rate of the run (at_rate)
 };
 
+/// The limits that every case is judged by, in the order of the report.
+enum class Bound : std::uint8_t {
+  kForce,
+  kTorque,
+  kStep,
+  kTorqueStep,
+  kPower,
+  kEnergy,
+  kRms,
+  kTorqueRms,
+};
+inline constexpr std::size_t kBoundCount = 8;
+
 struct Case {
   const char* name;
   const char* what;  // for a reader who knows no code
@@ -67,9 +80,10 @@ struct Case {
   HandMove hand = HandMove::kStill;
   Grip grip = Grip::kCentre;
   double duration_s = 0.4;
-  double power_share = 1.0;       // of F v at the limits of force and speed; below 1: tightened
-  double continuous_share = 1.0;  // of force_N; below 1: tightened, with thermal_time_s = 0.5
-  double budget_share = 0.0;      // of the least energy_J that a scene may have; 0: as it is
+  double power_share = 1.0;        // of F v at the limits of force and speed; below 1: tightened
+  double continuous_share = 1.0;   // of force_N; below 1: tightened, with thermal_time_s = 0.5
+  double budget_share = 0.0;       // of the least energy_J that a scene may have; 0: as it is
+  std::optional<Bound> reaches{};  // the limit that it is there to drive to
   Expected expected{};
 };
 
@@ -85,10 +99,15 @@ std::span<const Case> all_cases();
 model::Result<std::vector<Case>> choose_cases(const std::string& names);
 /// The name of the Z-width test in --plan, and is it asked for?
 inline constexpr std::string_view kWallName = "stiff-wall";
+inline constexpr const char* kNeedsHand = "needs the simulated hand";
 bool names_wall(const std::string& names);
 
-/// True for cases that only a simulated hand can run.
-inline bool needs_simulation(const Case& c) { return c.hand != HandMove::kStill; }
+/// True for cases in which a safety line opens.
+inline bool opens_line(const Case& c) {
+  return c.trouble == Trouble::kEmergencyStop || c.trouble == Trouble::kDeadMan;
+}
+/// Said of such a case on a real device with the line.
+inline constexpr const char* kToldInSoftware = "told in software: the contact was not opened";
 /// The limits of this case: those of the scene, or one tighter.
 model::Limits limits_of(const Case& c, const model::Limits& limits);
 

@@ -16,7 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using model::Result;
-using nlohmann::json;
 
 /// Length of a vector, with the sign of its z: what the curves show.
 double along_z(const Vec3& v) { return v.z < 0.0 ? -norm(v) : norm(v); }
@@ -60,12 +59,29 @@ Table case_table(const LimitsReport& report) {
 
 Table trace_table(const CaseResult& result) {
   Table table(std::string("trace_") + result.verdict.subject.name,
-              {{"t_s"},          {"commanded_N"},  {"gated_N"},         {"written_N"},
-               {"commanded_Nm"}, {"written_Nm"},   {"written_x_N"},     {"written_y_N"},
-               {"written_z_N"},  {"position_x_m"}, {"position_y_m"},    {"position_z_m"},
-               {"speed_mps"},    {"power_W"},      {"given_energy_J"},  {"rms_N"},
-               {"fresh"},        {"armed"},        {"skipped_periods"}, {"stages", CellKind::kWord},
-               {"limit"},        {"fault"}},
+              {{"t_s"},
+               {"commanded_N"},
+               {"gated_N"},
+               {"written_N"},
+               {"commanded_Nm"},
+               {"gated_Nm"},
+               {"written_Nm"},
+               {"written_x_N"},
+               {"written_y_N"},
+               {"written_z_N"},
+               {"position_x_m"},
+               {"position_y_m"},
+               {"position_z_m"},
+               {"speed_mps"},
+               {"power_W"},
+               {"given_energy_J"},
+               {"rms_N"},
+               {"fresh"},
+               {"armed"},
+               {"skipped_periods"},
+               {"stages", CellKind::kWord},
+               {"limit"},
+               {"fault"}},
               result.rows.size());
   for (const TickRow& r : result.rows) {
     CaseVerdict stages;
@@ -75,6 +91,7 @@ Table trace_table(const CaseResult& result) {
                along_z(r.gated_N),
                along_z(r.written_N),
                norm(r.commanded_Nm),
+               norm(r.gated_Nm),
                norm(r.written_Nm),
                r.written_N.x,
                r.written_N.y,
@@ -83,7 +100,7 @@ Table trace_table(const CaseResult& result) {
                r.tool.position_m.y,
                r.tool.position_m.z,
                norm(r.tool.velocity_mps),
-               dot(r.written_N, r.tool.velocity_mps),
+               power_W(r),
                r.given_J,
                r.rms_N,
                r.fresh ? 1.0 : 0.0,
@@ -117,42 +134,6 @@ Table wall_table(const WallVerdict& wall) {
   return table;
 }
 
-json checks_json(const std::vector<Check>& checks) {
-  json out = json::array();
-  for (const Check& c : checks) out.push_back({{"holds", c.holds}, {"sentence", c.sentence}});
-  return out;
-}
-
-json or_null(const std::optional<double>& value) { return value ? json(*value) : json(); }
-
-json case_json(const CaseVerdict& v) {
-  return {{"case", v.subject.name},
-          {"what", v.subject.what},
-          {"passed", v.passed()},
-          {"force_limit_N", v.limits.force_N},
-          {"largest_commanded_N", v.worst.commanded_N},
-          {"largest_written_N", v.worst.force_N},
-          {"overshoot_N", v.overshoot_N},
-          {"largest_torque_Nm", v.worst.torque_Nm},
-          {"largest_step_N", v.worst.step_N},
-          {"largest_step_Nm", v.worst.step_Nm},
-          {"largest_power_W", v.worst.power_W},
-          {"given_energy_J", v.worst.given_J},
-          {"largest_rms_N", v.worst.rms_N},
-          {"largest_rms_Nm", v.worst.rms_Nm},
-          {"time_to_zero_s", or_null(v.worst.zero_s)},
-          {"allowed_zero_s", or_null(v.subject.expected.zero_within_s)},
-          {"stages", v.acted_words()},
-          {"fault", static_cast<int>(v.fault)},
-          {"checks", checks_json(v.checks)}};
-}
-
-/// Nothing of it was made tighter.
-bool keeps_limits(const model::Limits& here, const model::Limits& all) {
-  return !(here.power_W < all.power_W || here.energy_J < all.energy_J ||
-           here.continuous_force_N < all.continuous_force_N);
-}
-
 Result<std::string> read_whole(const std::string& path) {
   std::ifstream file(path);
   std::ostringstream text;
@@ -168,73 +149,23 @@ bool LimitsReport::passed() const {
                      [](const CaseResult& r) { return r.verdict.passed(); });
 }
 
-std::vector<LimitRow> limit_rows(const LimitsReport& report) {
-  const model::Limits& l = report.limits;
-  std::vector<LimitRow> rows{
-      {"Force", "limits.force_N", "N", l.force_N},
-      {"Torque", "limits.torque_Nm", "N m", l.torque_Nm},
-      {"Change of the force in one tick", "limits.slew_N_per_s", "N",
-       l.slew_N_per_s * report.period_s},
-      {"Change of the torque in one tick", "limits.slew_N_per_s", "N m",
-       torque_step_Nm(l, report.period_s)},
-      {"Power given to the hand", "limits.power_W", "W", l.power_W},
-      {"Energy given to the hand since arming", "limits.energy_J", "J", l.energy_J},
-      {"RMS of the force", "limits.continuous_force_N", "N",
-       std::min(l.continuous_force_N, l.force_N)},
-      {"RMS of the torque", "limits.continuous_force_N", "N m", continuous_torque_Nm(l)}};
-  for (const CaseResult& result : report.cases) {
-    const CaseVerdict& v = result.verdict;
-    const Extremes& w = v.worst;
-    const double largest[] = {w.force_N, w.torque_Nm, w.step_N, w.step_Nm,
-                              w.power_W, w.given_J,   w.rms_N,  w.rms_Nm};  // as check_bounds
-    const std::vector<Check> bounds = check_bounds(w, v.limits, report.period_s);
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      rows[i].holds = rows[i].holds && bounds[i].holds;
-      if (keeps_limits(v.limits, l)) rows[i].largest = std::max(rows[i].largest, largest[i]);
-    }
-  }
-  return rows;
+std::string LimitsReport::result_words() const {
+  if (!passed()) return "FAIL";
+  if (not_run.empty()) return "PASS";
+  return fmt::format("PASS of {} of {} cases", played(), played() + not_run.size());
 }
 
-json to_json(const LimitsReport& report) {
-  json limits = json::array(), cases = json::array();
-  for (const LimitRow& row : limit_rows(report))
-    limits.push_back({{"limit", row.name},
-                      {"key", row.key},
-                      {"unit", row.unit},
-                      {"value", row.limit},
-                      {"largest", row.largest},
-                      {"holds", row.holds}});
-  for (const CaseResult& result : report.cases) cases.push_back(case_json(result.verdict));
-  const firmware::Environment& e = report.environment;
-  json out{{"passed", report.passed()},
-           {"command", report.command},
-           {"started", report.started},
-           {"scene", report.scene_name},
-           {"scene_hash", e.scene_hash},
-           {"device", report.device_name},
-           {"simulated", report.simulated},
-           {"force_share", report.force_share},
-           {"call_filter", report.call_filter},
-           {"rate_Hz", 1.0 / report.period_s},
-           {"limits", limits},
-           {"cases", cases},
-           {"not_run", report.not_run},
-           {"environment",
-            {{"kernel", e.kernel_release},
-             {"cpu", e.cpu},
-             {"revision", e.git_revision},
-             {"compiler", e.compiler}}}};
-  if (report.wall)
-    out["wall"] = {{"passed", report.wall->passed()},
-                   {"theory_N_per_m", report.wall->theory_N_per_m},
-                   {"without_passivity_N_per_m", report.wall->without_N_per_m},
-                   {"with_passivity_N_per_m", report.wall->with_N_per_m},
-                   {"rest_with_passivity_N_per_m", report.wall->rest_N_per_m},
-                   {"with_is_a_least_value", report.wall->with_is_least},
-                   {"z_width_ratio", report.wall->ratio()},
-                   {"checks", checks_json(report.wall->checks)}};
-  return out;
+std::vector<std::pair<std::string, std::string>> LimitsReport::left_out_by_why() const {
+  std::vector<std::pair<std::string, std::string>> groups;
+  for (const LeftOut& out : not_run) {
+    const auto same = std::find_if(groups.begin(), groups.end(),
+                                   [&](const auto& g) { return g.first == out.why; });
+    if (same == groups.end())
+      groups.emplace_back(out.why, out.name);
+    else
+      same->second += ", " + out.name;
+  }
+  return groups;
 }
 
 std::string to_text(const LimitsReport& report) {
@@ -254,8 +185,8 @@ std::string to_text(const LimitsReport& report) {
     for (const Check& c : report.wall->checks)
       out += fmt::format("      {}{}\n", c.holds ? "" : "FAIL: ", c.sentence);
   }
-  for (const std::string& name : report.not_run)
-    out += fmt::format("-     {:16} not run: needs the simulated hand\n", name);
+  for (const auto& [why, names] : report.left_out_by_why())
+    out += fmt::format("-     not tested, {}: {}\n", why, names);
   return out;
 }
 

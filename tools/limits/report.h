@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "firmware/environment.h"
@@ -16,6 +17,11 @@ namespace tact::tools {
 struct CaseResult {
   CaseVerdict verdict;
   std::vector<TickRow> rows;
+};
+
+/// A case of the whole plan that was not played.
+struct LeftOut {
+  std::string name, why;
 };
 
 struct LimitsReport {
@@ -30,20 +36,15 @@ struct LimitsReport {
   firmware::Environment environment{};
   std::vector<CaseResult> cases;
   std::optional<WallVerdict> wall;
-  std::vector<std::string> not_run;  // names of cases that need a simulated hand
+  std::vector<LeftOut> not_run;  // the rest of the plan, so that nobody takes it for tested
 
   bool passed() const;
+  std::size_t played() const { return cases.size() + (wall ? 1 : 0); }
+  /// "PASS", "PASS of 2 of 25 cases", "FAIL"
+  std::string result_words() const;
+  /// Names of the cases that were left out, by why.
+  std::vector<std::pair<std::string, std::string>> left_out_by_why() const;
 };
-
-/// One limit, and what came nearest to it in all cases that left it as it is.
-struct LimitRow {
-  const char* name;  // for a reader
-  const char* key;   // of the scene
-  const char* unit;
-  double limit = 0.0, largest = 0.0;
-  bool holds = true;  // in every case, tightened ones too
-};
-std::vector<LimitRow> limit_rows(const LimitsReport& report);
 
 nlohmann::json to_json(const LimitsReport& report);
 /// A line for each case, on a terminal.

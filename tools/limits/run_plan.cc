@@ -3,7 +3,9 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
+#include <string_view>
 
 #include "firmware/loop_parts.h"
 #include "firmware/operator_view.h"
@@ -19,6 +21,7 @@ namespace {
 
 using model::Error;
 using model::Result;
+
 Runs prepare(const std::vector<Case>& cases, const LimitsBench& bench) {
   Runs runs;
   for (const Case& c : cases)
@@ -47,6 +50,17 @@ void tell_fault(Fault found, const hal::Device& device, const hal::SafetyLines& 
              trouble.empty() ? "" : ": ", trouble, fault.cure);
 }
 
+/// Names the cases of the whole plan that are not to be played, as nobody asked for them.
+void name_the_rest(LimitsReport& report, const PlanOptions& options) {
+  for (const Case& c : all_cases()) {
+    const auto same = [&](const Case& asked) { return std::string_view(asked.name) == c.name; };
+    if (std::none_of(options.cases.begin(), options.cases.end(), same))
+      report.not_run.push_back({.name = c.name, .why = "not asked for"});
+  }
+  if (!options.wall)
+    report.not_run.push_back({.name = std::string(kWallName), .why = "not asked for"});
+}
+
 Result<LimitsReport> finished(LimitsReport report, const Runs& runs, const LimitsBench& bench,
                               const hal::DeviceInfo& device, bool wall) {
   if (is_interrupted()) return interruption();
@@ -71,7 +85,9 @@ Result<LimitsReport> run_simulated(const model::Scene& scene, const hal::DeviceI
   const Runs runs = prepare(options.cases, bench);
   for (const auto& run : runs)
     if (!run->play()) break;
-  return finished(begin_report(scene, info), runs, bench, info, options.wall);
+  LimitsReport report = begin_report(scene, info);
+  name_the_rest(report, options);
+  return finished(std::move(report), runs, bench, info, options.wall);
 }
 
 Result<LimitsReport> run_real(const model::Scene& scene, hal::Device& device,
@@ -96,12 +112,13 @@ Result<LimitsReport> run_real(const model::Scene& scene, hal::Device& device,
   LimitsReport report = begin_report(scene, info);
   std::vector<Case> cases;
   for (const Case& c : options.cases) {
-    if (needs_simulation(c))
-      report.not_run.emplace_back(c.name);
+    if (const char* why = why_left_out(c, scene.device.lines))
+      report.not_run.push_back({.name = c.name, .why = why});
     else
       cases.push_back(c);
   }
-  if (options.wall) report.not_run.emplace_back(kWallName);
+  if (options.wall) report.not_run.push_back({.name = std::string(kWallName), .why = kNeedsHand});
+  name_the_rest(report, options);
   const Runs runs = prepare(cases, bench);
   const auto filter =
       firmware::CallFilter::make(device.loop_calls(), (*lines)->loop_calls(), requests);
@@ -115,6 +132,15 @@ Result<LimitsReport> run_real(const model::Scene& scene, hal::Device& device,
 }
 
 }  // namespace
+
+const char* why_left_out(const Case& c, const model::LinesSettings& lines) {
+  if (c.hand != HandMove::kStill) return kNeedsHand;
+  const bool has_estop = lines.wired() && (lines.estop_a >= 0 || lines.estop_b >= 0);
+  if (c.trouble == Trouble::kEmergencyStop && !has_estop) return "no emergency stop is wired";
+  if (c.trouble == Trouble::kDeadMan && !(lines.wired() && lines.dead_man >= 0))
+    return "no dead-man switch is wired";
+  return nullptr;
+}
 
 Result<LimitsReport> run_plan(const model::Scene& scene, const PlanOptions& options) {
   auto device = hal::open_device(scene);

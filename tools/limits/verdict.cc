@@ -11,6 +11,7 @@ namespace {
 using firmware::kStageCount;
 using firmware::kStageName;
 
+constexpr double kLeastTurn = 0.45;       // of the torque limit, where a torque must go
 constexpr double kRounding = 1.0 + 1e-9;  // for sums and products; |F| has none
 
 /// Force that was held since the last sample, and the way that the next one shows.
@@ -69,14 +70,25 @@ bool is_cause(const TickRow& row, const model::Limits& limits) {
   return row.t_s >= 0.0 && (row.cause || !is_finite(row.commanded_N) || is_outside(row, limits));
 }
 
+bool is_zero(const TickRow& row) { return row.written_N == Vec3{} && row.written_Nm == Vec3{}; }
+
+/// From the cause to the first zero behind which no force or torque comes while the cause stands.
 std::optional<double> time_to_zero_s(const std::vector<TickRow>& rows,
                                      const model::Limits& limits) {
-  std::optional<double> since_s;
+  std::optional<double> since_s, zero_s;
+  bool stands = false;
   for (const TickRow& row : rows) {
-    if (!since_s && is_cause(row, limits)) since_s = row.t_s;
-    if (since_s && norm(row.written_N) == 0.0) return row.t_s - *since_s;
+    const bool cause = is_cause(row, limits);
+    if (!since_s) {
+      if (!cause) continue;
+      since_s = row.t_s;
+      stands = true;
+    }
+    stands = stands && cause;
+    if (is_zero(row) && !zero_s) zero_s = row.t_s - *since_s;
+    if (!is_zero(row) && stands) zero_s.reset();
   }
-  return std::nullopt;
+  return zero_s;
 }
 
 class Checks {
@@ -94,9 +106,6 @@ class Checks {
 
 void check_silence(Checks& checks, const std::vector<TickRow>& rows) {
   const auto all = [&](auto holds) { return std::all_of(rows.begin(), rows.end(), holds); };
-  const auto is_zero = [](const TickRow& r) {
-    return r.written_N == Vec3{} && r.written_Nm == Vec3{};
-  };
   checks.add(
       all([](const TickRow& r) { return is_finite(r.written_N) && is_finite(r.written_Nm); }),
       "every force written is a number");
@@ -132,13 +141,23 @@ void check_expected(Checks& checks, const CaseVerdict& v) {
                fmt::format("the test had force: {:.4g} N, at least {:.4g} N asked", v.worst.force_N,
                            e.least_peak_ratio * v.limits.force_N));
   if (!e.zero_within_s) return;
+  const double least_Nm = kLeastTurn * v.limits.torque_Nm;
+  if (v.subject.grip == Grip::kLever)
+    checks.add(v.worst.torque_Nm >= least_Nm,
+               fmt::format("the test had torque: {:.4g} N m, at least {:.4g} N m asked",
+                           v.worst.torque_Nm, least_Nm));
   checks.add(v.worst.zero_s && *v.worst.zero_s <= *e.zero_within_s,
              v.worst.zero_s ? fmt::format("zero {:.4g} ms after the cause, allowed {:.4g} ms",
                                           1e3 * *v.worst.zero_s, 1e3 * *e.zero_within_s)
-                            : std::string("the force never came to zero"));
+                            : std::string("force or torque never came to zero for good"));
 }
 
 }  // namespace
+
+double power_W(const TickRow& row) {
+  return dot(row.written_N, row.tool.velocity_mps) +
+         dot(row.written_Nm, row.tool.angular_velocity_radps);
+}
 
 double torque_step_Nm(const model::Limits& limits, double period_s) {
   return limits.force_N > 0.0 ? limits.slew_N_per_s * period_s * limits.torque_Nm / limits.force_N
@@ -212,9 +231,7 @@ Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limi
       larger(worst.step_N, norm(row.written_N - before_N) / periods);
       larger(worst.step_Nm, norm(row.written_Nm - before_Nm) / periods);
     }
-    if (is_finite(row.tool))
-      larger(worst.power_W, dot(row.written_N, row.tool.velocity_mps) +
-                                dot(row.written_Nm, row.tool.angular_velocity_radps));
+    if (is_finite(row.tool)) larger(worst.power_W, power_W(row));
     // the force of the tick before was held until now
     const double cooled = std::min(share * periods, 1.0);
     heat += cooled * (dot(before_N, before_N) - heat);

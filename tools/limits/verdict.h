@@ -31,7 +31,9 @@ struct Extremes {
   double given_J = 0.0;                // largest since arming
   double overdrawn_J = 0.0;            // above budget and recovery; 0: never
   double rms_N = 0.0, rms_Nm = 0.0;
-  std::optional<double> zero_s{};  // from the cause to zero force; none: no cause, or never zero
+  // From the cause to zero force and torque, which stay zero while it stands; none: no cause, or
+  // never zero.
+  std::optional<double> zero_s{};
 };
 
 struct CaseVerdict {
@@ -48,6 +50,8 @@ struct CaseVerdict {
   std::string acted_words() const;
 };
 
+/// That the tick gives to the hand, by force and by torque.
+double power_W(const TickRow& row);
 Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limits,
                      double period_s);
 /// Largest change in a tick: the slew of the force, in proportion.

@@ -3,8 +3,9 @@
 // A wall F = K x, x below z = 0, is pressed by a light simulated hand (200 N/m) through the whole
 // loop. K is raised by a quarter at a time from the device's own limit b / (T/2 + t_d)
 // (model/haptic_limit.h). A motion grows when it swings wider in the last eighth of 4 s than in the
-// third, by more than 2 % and beyond 0.1 mm. Everything else of the gate works in both runs, so
-// without the passivity stage an unstable wall bounces within force and slew limits.
+// third, by more than 2 % and beyond 0.1 mm; else it is bounded, which is less than at rest.
+// Everything else of the gate works in both runs, so without the passivity stage a wall on which a
+// motion grows bounces within force and slew limits.
 #pragma once
 
 #include <optional>
@@ -30,13 +31,17 @@ struct WallPoint {
 struct WallVerdict {
   std::vector<WallPoint> points;  // ascending
   double theory_N_per_m = 0.0;    // of the device, without friction and hand
-  double without_N_per_m = 0.0;   // largest below which nothing grows; 0: none
-  double with_N_per_m = 0.0;
-  double rest_N_per_m = 0.0;   // largest below which everything comes to rest, with the stage
-  bool with_is_least = false;  // the search ended before it grew
+  // Bounded: largest up to which nothing grows. Rest: largest up to which every last swing is
+  // 0.1 mm or less; a bounded motion may swing for ever. 0: none.
+  double bounded_without_N_per_m = 0.0, bounded_with_N_per_m = 0.0;
+  double rest_without_N_per_m = 0.0, rest_with_N_per_m = 0.0;
+  double swing_without_m = 0.0, swing_with_m = 0.0;  // largest last swing, at any stiffness
+  bool with_is_least = false;                        // the search ended before it grew
   std::vector<Check> checks;
 
-  double ratio() const { return without_N_per_m > 0.0 ? with_N_per_m / without_N_per_m : 0.0; }
+  double bounded_ratio() const { return ratio(bounded_with_N_per_m, bounded_without_N_per_m); }
+  double rest_ratio() const { return ratio(rest_with_N_per_m, rest_without_N_per_m); }
+  static double ratio(double with, double without) { return without > 0.0 ? with / without : 0.0; }
   bool passed() const;
 };
 

@@ -1,0 +1,104 @@
+// The report for machines: limits.json.
+#include <nlohmann/json.hpp>
+
+#include "tools/limits/limit_rows.h"
+
+namespace tact::tools {
+namespace {
+
+using nlohmann::json;
+
+json checks_json(const std::vector<Check>& checks) {
+  json out = json::array();
+  for (const Check& c : checks) out.push_back({{"holds", c.holds}, {"sentence", c.sentence}});
+  return out;
+}
+
+json or_null(const std::optional<double>& value) { return value ? json(*value) : json(); }
+
+json case_json(const CaseVerdict& v, bool simulated) {
+  return {{"case", v.subject.name},
+          {"what", v.subject.what},
+          {"cause", simulated || !opens_line(v.subject) ? "played" : kToldInSoftware},
+          {"passed", v.passed()},
+          {"force_limit_N", v.limits.force_N},
+          {"largest_commanded_N", v.worst.commanded_N},
+          {"largest_written_N", v.worst.force_N},
+          {"overshoot_N", v.overshoot_N},
+          {"largest_torque_Nm", v.worst.torque_Nm},
+          {"largest_step_N", v.worst.step_N},
+          {"largest_step_Nm", v.worst.step_Nm},
+          {"largest_power_W", v.worst.power_W},
+          {"given_energy_J", v.worst.given_J},
+          {"largest_rms_N", v.worst.rms_N},
+          {"largest_rms_Nm", v.worst.rms_Nm},
+          {"time_to_zero_s", or_null(v.worst.zero_s)},
+          {"allowed_zero_s", or_null(v.subject.expected.zero_within_s)},
+          {"stages", v.acted_words()},
+          {"fault", static_cast<int>(v.fault)},
+          {"checks", checks_json(v.checks)}};
+}
+
+json limit_json(const LimitRow& row) {
+  json tighter = json::array();
+  for (const TighterLimit& t : row.tighter)
+    tighter.push_back(
+        {{"case", t.case_name}, {"value", t.limit}, {"largest", t.largest}, {"holds", t.holds}});
+  return {{"limit", row.name},
+          {"key", row.key},
+          {"unit", row.unit},
+          {"value", row.limit},
+          {"largest", row.largest},
+          {"kept", kept_words(row.kept)},
+          {"reached_by", row.reached_by},
+          {"tighter", tighter}};
+}
+
+}  // namespace
+
+json to_json(const LimitsReport& report) {
+  json limits = json::array(), cases = json::array(), not_run = json::array();
+  for (const LimitRow& row : limit_rows(report)) limits.push_back(limit_json(row));
+  for (const LeftOut& out : report.not_run)
+    not_run.push_back({{"case", out.name}, {"why", out.why}});
+  for (const CaseResult& result : report.cases)
+    cases.push_back(case_json(result.verdict, report.simulated));
+  const firmware::Environment& e = report.environment;
+  json out{{"passed", report.passed()},
+           {"result", report.result_words()},
+           {"cases_played", report.played()},
+           {"cases_of_plan", report.played() + report.not_run.size()},
+           {"command", report.command},
+           {"started", report.started},
+           {"scene", report.scene_name},
+           {"scene_hash", e.scene_hash},
+           {"device", report.device_name},
+           {"simulated", report.simulated},
+           {"force_share", report.force_share},
+           {"call_filter", report.call_filter},
+           {"rate_Hz", 1.0 / report.period_s},
+           {"limits", limits},
+           {"cases", cases},
+           {"not_run", not_run},
+           {"environment",
+            {{"kernel", e.kernel_release},
+             {"cpu", e.cpu},
+             {"revision", e.git_revision},
+             {"compiler", e.compiler}}}};
+  if (report.wall)
+    out["wall"] = {{"passed", report.wall->passed()},
+                   {"theory_N_per_m", report.wall->theory_N_per_m},
+                   {"bounded_without_N_per_m", report.wall->bounded_without_N_per_m},
+                   {"bounded_with_N_per_m", report.wall->bounded_with_N_per_m},
+                   {"bounded_with_is_a_least_value", report.wall->with_is_least},
+                   {"bounded_ratio", report.wall->bounded_ratio()},
+                   {"rest_without_N_per_m", report.wall->rest_without_N_per_m},
+                   {"rest_with_N_per_m", report.wall->rest_with_N_per_m},
+                   {"rest_ratio", report.wall->rest_ratio()},
+                   {"largest_swing_without_m", report.wall->swing_without_m},
+                   {"largest_swing_with_m", report.wall->swing_with_m},
+                   {"checks", checks_json(report.wall->checks)}};
+  return out;
+}
+
+}  // namespace tact::tools
