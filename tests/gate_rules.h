@@ -73,6 +73,7 @@ class GateRules {
     torque_heat_ += share * (dot(before_.torque_Nm, before_.torque_Nm) - torque_heat_);
     is_paused_ = is_paused_ || tick.gate.skipped_periods > 0;
     is_overheated_ = is_overheated_ || is_paused_;
+    longest_s_ = is_overheated_ ? std::max(longest_s_, periods * period_s_) : 0.0;
     time_s_ += periods * period_s_;
     held_s_ += periods * period_s_;
     impulse_Ns_ += periods * period_s_ * before_.force_N;
@@ -124,6 +125,12 @@ class GateRules {
     if (!is_overheated_ && heat_ratio() > 1.0 + kRounding) return "RMS <= continuous_force_N";
     if (!is_overheated_ && torque_heat_ratio() > 1.0 + kRounding)
       return "RMS of T <= continuous_force_N torque_Nm / force_N";
+    // gate.h's third exception; until the force has come down at the slew another 10 ms pass
+    const double more = (2.0 * longest_s_ + 0.010) / limits_.thermal_time_s;
+    const double bound = continuous_N_ * continuous_N_ + more * force_N_ * force_N_;
+    if (heat_ > bound * (1.0 + kRounding) ||
+        torque_heat_ > lever_m_ * lever_m_ * bound * (1.0 + kRounding))
+      return "RMS^2 <= continuous^2 + force^2 (2 times the longest wait + 10 ms) / thermal_time_s";
     return broken_energy_rule(stopped);
   }
 
@@ -179,6 +186,7 @@ class GateRules {
   bool is_permitted_ = true;    // no step since it was armed was too long for its time
   bool is_paused_ = false;      // periods were skipped since the last sample
   bool is_overheated_ = false;  // by a force that was held for longer than the gate could know
+  double longest_s_ = 0.0;      // that one was held meanwhile
 };
 
 }  // namespace tact::tests

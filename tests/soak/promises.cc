@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tact::soak {
 
@@ -83,9 +84,17 @@ void Promises::check_heat(const firmware::TickRecord& record) {
   const bool torque_warm = torque_heat_.rms() > continuous_Nm * kSum;
   const bool armed = record.output.state == State::kArmed;
   overheated_ = record.input.skipped_periods > 0 || (overheated_ && (armed || warm || torque_warm));
+  longest_s_ = overheated_ ? std::max(longest_s_, passed_s(record)) : 0.0;
   expect(overheated_ || !warm, "RMS <= continuous_force_N", record.tick);
   expect(overheated_ || !torque_warm, "RMS of T <= continuous_force_N torque_Nm / force_N",
          record.tick);
+  // gate.h's third exception; until the force has come down at the slew another 10 ms pass
+  const double more = (2.0 * longest_s_ + 0.010) / limits_.thermal_time_s;
+  const double late_N =
+      std::sqrt(continuous_N * continuous_N + more * limits_.force_N * limits_.force_N);
+  const double late_Nm = late_N * limits_.torque_Nm / limits_.force_N;
+  expect(heat_.rms() <= late_N * kSum && torque_heat_.rms() <= late_Nm * kSum,
+         "RMS after a late tick", record.tick);
 }
 
 void Promises::check_state(const firmware::TickRecord& record) {

@@ -39,6 +39,7 @@ class Promises {
   HeatAccount heat_, torque_heat_;
   bool begun_ = false;
   bool overheated_ = false;
+  double longest_s_ = 0.0;  // that a force was held meanwhile
   std::uint64_t broken_ = 0;
   std::string first_;
 };
