@@ -1,189 +1,62 @@
-// What gate.h promises, over random sequences: every sequence has a temper, and each is there to
-// break one promise. Seeds are fixed; TACT_LONG=1 runs a hundred times as many long ones.
+// What gate.h promises, over random sequences (gate_tempers.h), for every setting of gate_settings.h.
+// Seeds are fixed; TACT_LONG=1 runs 25 times as many long ones.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cstdlib>
-#include <limits>
-#include <random>
+#include <string>
+#include <vector>
 
-#include "tests/gate_rules.h"
+#include "tests/gate_tempers.h"
 #include "tests/no_alloc.h"
 
 namespace tact::tests {
 namespace {
 
-constexpr double kStep_m = kRulesLimits.speed_mps * kRulesPeriod_s;
-constexpr double kTurn_rad = kRulesLimits.turn_radps * kRulesPeriod_s;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kMost = std::numeric_limits<double>::max();
-constexpr double kLeast = std::numeric_limits<double>::min();
-constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
-constexpr std::array kOdd{0.0,
-                          -0.0,
-                          kDenormal,
-                          -kDenormal,
-                          kLeast,
-                          -kLeast,
-                          1e-3,
-                          -1e-3,
-                          7.9999,
-                          8.0,
-                          -8.0,
-                          1e6,
-                          1e300,
-                          -1e300,
-                          kMost,
-                          -kMost,
-                          kInfinity,
-                          -kInfinity,
-                          std::numeric_limits<double>::quiet_NaN()};
-
-/// What a sequence of inputs is after.
-enum class Temper {
-  kAny,     // anything, odd values included
-  kFollow,  // the tool flees with the force, as fast as permitted, samples missing: energy
-  kRattle,  // to and fro as fast as permitted, pushed at every return: energy, against the guess
-  kPush,    // the largest force, held: heat
-  kThrow,   // the tool's velocity jumps: power
-  kJump,    // steps longer than permitted, positions again and reversed: overdraws
-  kLose,    // samples are missing, one by one or in a row, periods are skipped
-};
-constexpr int kTempers = 7;
-
-class Sequence {
- public:
-  Sequence(std::uint64_t seed, Temper temper)
-      : random_(seed), temper_(temper), is_lossy_(seed % 2 == 1) {}
-
-  RuleTick next(const model::Wrench& written) {
-    ++tick_;
-    if (chance(0.002)) armed_ = !armed_;
-    if (chance(0.01)) wanted_ = {ball(chance(0.5) ? 100.0 : 6.0), ball(chance(0.5) ? 1.0 : 0.1)};
-    move(written);
-    RuleTick out{.gate = {.wanted = wanted_, .tool = {}, .fresh = true, .armed = armed_},
-                 .angle_rad = angle_rad_};
-    out.gate.tool.position_m = position_m_;
-    out.gate.tool.velocity_mps = velocity_mps_;
-    out.gate.tool.angular_velocity_radps = turning_radps_;
-    if (temper_ == Temper::kFollow && is_lossy_) out.gate.fresh = !chance(0.5);
-    if (temper_ == Temper::kLose || temper_ == Temper::kAny) {
-      out.gate.fresh = !chance(0.3);
-      if (chance(0.02)) out.gate.skipped_periods = static_cast<std::uint32_t>(random_() % 40);
-    }
-    if (temper_ == Temper::kLose && is_lossy_) fall_silent(out.gate);
-    if (temper_ == Temper::kAny && chance(0.05)) spoil(out);
-    return out;
-  }
-
- private:
-  bool chance(double p) { return unit_(random_) < p; }
-  double within(double most) { return most * (2.0 * unit_(random_) - 1.0); }
-  Vec3 ball(double most) { return {within(most), within(most), within(most)}; }
-
-  void move(const model::Wrench& written) {
-    Vec3 step_m = ball(0.5 * kStep_m);
-    double turn_rad = within(kTurn_rad);
-    if (temper_ == Temper::kFollow) {
-      step_m = kStep_m * 0.999999 * normalized(written.force_N);
-      turn_rad = written.torque_Nm.x > 0.0 ? 0.999999 * kTurn_rad : -0.999999 * kTurn_rad;
-    } else if (temper_ == Temper::kRattle) {
-      const double sign = tick_ / 2 % 2 == 0 ? 1.0 : -1.0;
-      step_m = {sign * kStep_m * 0.999999, 0, 0};
-      wanted_.force_N = {tick_ % 2 == 0 ? 50.0 * sign : -50.0 * sign, within(1.0), 0};
-    } else if (temper_ == Temper::kPush) {
-      step_m = {};
-      wanted_ = {{50, 0, 0}, {0, 1, 0}};
-    } else if (temper_ == Temper::kJump && chance(0.05)) {
-      step_m = chance(0.5) ? ball(0.1) : -1.0 * (position_m_ + past_m_);
-    }
-    past_m_ = position_m_;
-    position_m_ += step_m;
-    if (!(norm(position_m_) < 0.1) && temper_ != Temper::kFollow) position_m_ = {};
-    angle_rad_ += turn_rad;
-    velocity_mps_ = (position_m_ - past_m_) / kRulesPeriod_s;
-    turning_radps_ = {turn_rad / kRulesPeriod_s, 0, 0};
-    if (temper_ == Temper::kThrow && chance(0.1)) velocity_mps_ = ball(chance(0.5) ? 1.0 : 3.0);
-    if (temper_ == Temper::kFollow || temper_ == Temper::kRattle) {  // not what this is about
-      velocity_mps_ = turning_radps_ = {};
-      if (!(norm(position_m_) < 0.14)) armed_ = false, position_m_ = past_m_ = {};
-    }
-  }
-
-  // No sample for up to 15 ticks, and every tick takes up to four periods.
-  void fall_silent(GateInput& out) {
-    if (silent_ticks_ == 0 && chance(0.01)) silent_ticks_ = 1 + static_cast<int>(random_() % 15);
-    if (silent_ticks_ == 0) return;
-    --silent_ticks_;
-    out.fresh = false;
-    out.skipped_periods = static_cast<std::uint32_t>(random_() % 4);
-  }
-
-  void spoil(RuleTick& out) {
-    const std::array fields{&out.gate.wanted.force_N, &out.gate.wanted.torque_Nm,
-                            &out.gate.tool.position_m, &out.gate.tool.velocity_mps,
-                            &out.gate.tool.angular_velocity_radps};
-    Vec3& field = *fields[random_() % fields.size()];
-    const std::array numbers{&field.x, &field.y, &field.z, &out.angle_rad};
-    *numbers[random_() % numbers.size()] = kOdd[random_() % kOdd.size()];
-  }
-
-  std::mt19937_64 random_;
-  std::uniform_real_distribution<double> unit_{0.0, 1.0};
-  Temper temper_;
-  bool is_lossy_;
-  int tick_ = 0, silent_ticks_ = 0;
-  bool armed_ = true;
-  model::Wrench wanted_;
-  Vec3 position_m_, past_m_, velocity_mps_, turning_radps_;
-  double angle_rad_ = 0.0;
-};
-
-std::uint64_t times() { return std::getenv("TACT_LONG") != nullptr ? 100 : 1; }
+std::uint64_t times() { return std::getenv("TACT_LONG") != nullptr ? 25 : 1; }
 
 /// Many short sequences of one temper on one gate; the rule that broke, with its seed and tick.
-std::string run(Temper temper, GateRules& rules, std::uint64_t sequences, int ticks) {
+std::string run(Temper temper, const GateSetting& setting, GateRules& rules,
+                std::uint64_t sequences, int ticks) {
   for (std::uint64_t seed = 0; seed < sequences; ++seed) {
-    Sequence sequence(seed, temper);
+    Sequence sequence(seed, temper, setting);
     for (int tick = 0; tick < ticks; ++tick)
       if (const char* broken = rules.judge(sequence.next(rules.verdict().wrench)))
-        return std::string(broken) + ": seed " + std::to_string(seed) + ", tick " +
-               std::to_string(tick);
+        return std::string(broken) + ": " + setting.name + ", temper " +
+               std::to_string(static_cast<int>(temper)) + ", seed " + std::to_string(seed) +
+               ", tick " + std::to_string(tick);
   }
   return {};
+}
+
+/// The same for every temper on a gate of its own, in every setting.
+void run_all(std::uint64_t sequences, int ticks) {
+  for (const GateSetting& setting : kGateSettings)
+    for (int temper = 0; temper < kTempers; ++temper) {
+      GateRules rules(setting);
+      EXPECT_EQ(run(static_cast<Temper>(temper), setting, rules, sequences, ticks), "");
+    }
 }
 
 std::uint64_t count(const GateRules& rules, firmware::Stage stage) {
   return rules.gate().counters()[static_cast<std::size_t>(stage)];
 }
 
-TEST(GateProperties, EveryRuleHoldsForEverySequence) {
-  for (int temper = 0; temper < kTempers; ++temper) {
-    GateRules rules;
-    EXPECT_EQ(run(static_cast<Temper>(temper), rules, 400 * times(), 1000), "")
-        << "temper " << temper;
-  }
-}
+TEST(GateProperties, EveryRuleHoldsForEverySequence) { run_all(150 * times(), 1000); }
 
 // What the one before left behind is where the next one starts: each begins with a jump.
-TEST(GateProperties, EveryRuleHoldsForMoreThanAMillionShortSequences) {
-  for (int temper = 0; temper < kTempers; ++temper) {
-    GateRules rules;
-    EXPECT_EQ(run(static_cast<Temper>(temper), rules, 150'000, 8), "") << "temper " << temper;
-  }
-}
+TEST(GateProperties, EveryRuleHoldsForMoreThanAMillionShortSequences) { run_all(12'000, 8); }
 
 TEST(GateProperties, WhoFleesWithTheForceGetsNoMoreThanTheBudgetAndMostOfIt) {
   GateRules rules;
-  EXPECT_EQ(run(Temper::kFollow, rules, 50 * times(), 2000), "");
+  EXPECT_EQ(run(Temper::kFollow, {}, rules, 50 * times(), 2000), "");
   EXPECT_GT(rules.most_given_J(), 0.5 * kRulesLimits.energy_J);
   EXPECT_GT(count(rules, firmware::Stage::kPassivity), 1000u);
 }
 
 TEST(GateProperties, WhoDefeatsTheGuessStillMeetsTheBrake) {
   GateRules rules;
-  EXPECT_EQ(run(Temper::kRattle, rules, 50 * times(), 2000), "");
+  EXPECT_EQ(run(Temper::kRattle, {}, rules, 50 * times(), 2000), "");
   EXPECT_GT(rules.most_given_J(), 0.5 * kRulesLimits.energy_J);
 }
 
@@ -222,7 +95,7 @@ Wall lean_on_wall(double stiffness_N_per_m, double budget_J) {
   limits.power_W = 100.0;
   limits.speed_mps = 10.0 * kRulesLimits.speed_mps;  // only the energy is in question
   limits.slew_N_per_s = 1e4;
-  firmware::Gate gate(limits, kRulesPeriod_s, 1.0);
+  firmware::Gate gate(limits, 0.001, 1.0);
   constexpr double kMass_kg = 0.15, kDamping_Ns_per_m = 1.0, kPush_N = 1.0, kStep_s = 0.25e-3;
   double x_m = 0.001, v_mps = 0.0, low_m = 1.0, high_m = -1.0;
   Wall out;
@@ -267,12 +140,70 @@ TEST(GateProperties, AWallTooStiffForItsDeviceShakesWithoutTheEnergyStageAndNotW
   EXPECT_LT(soft.given_J, 0.02);
 }
 
-TEST(GateProperties, EveryStageHadItsSay) {
-  GateRules rules;
-  for (int temper = 0; temper < kTempers; ++temper)
-    EXPECT_EQ(run(static_cast<Temper>(temper), rules, 20, 1000), "");
-  for (std::size_t i = 0; i < firmware::kStageCount; ++i)
-    EXPECT_GT(rules.gate().counters()[i], 100u) << firmware::kStageName[i];
+TEST(GateProperties, EveryStageHasItsSayInEverySetting) {
+  for (const GateSetting& setting : kGateSettings) {
+    const model::Limits& limits = setting.limits;
+    if (!(limits.force_N > 0.0)) continue;
+    GateRules rules(setting);
+    for (int temper = 0; temper < kTempers; ++temper)
+      EXPECT_EQ(run(static_cast<Temper>(temper), setting, rules, 20, 1000), "");
+    const bool any_step = limits.slew_N_per_s * setting.period_s() > 2.0 * limits.force_N;
+    for (std::size_t i = 0; i < firmware::kStageCount; ++i) {
+      if (any_step && static_cast<firmware::Stage>(i) == firmware::Stage::kSlew) continue;
+      EXPECT_GT(rules.gate().counters()[i], 20u) << firmware::kStageName[i] << ", " << setting.name;
+    }
+  }
+}
+
+TEST(GateProperties, TheWholeBudgetAndTheContinuousForceAreThereInEverySetting) {
+  for (const GateSetting& setting : kGateSettings) {
+    if (!(setting.limits.force_N > 0.0)) continue;
+    GateRules flee(setting), push(setting);
+    EXPECT_EQ(run(Temper::kFollow, setting, flee, 50, 2000), "");
+    EXPECT_EQ(run(Temper::kPush, setting, push, 50, 2000), "");
+    EXPECT_GT(flee.most_given_J(), 0.99 * setting.limits.energy_J) << setting.name;
+    EXPECT_GT(push.most_heat_ratio(), 0.99) << setting.name;
+    EXPECT_GT(push.most_torque_heat_ratio(), setting.limits.torque_Nm > 0.0 ? 0.99 : -1.0)
+        << setting.name;
+  }
+}
+
+/// What a scene says for a setting, with the limit at its edge made so much smaller.
+std::vector<std::string> scene_words(const GateSetting& setting, double edge_ratio) {
+  const model::Limits& l = setting.limits;
+  std::vector<std::string> words{fmt::format("rate_Hz={}", setting.rate_Hz)};
+  const auto say = [&](const std::string& key, double value) {
+    const bool is_edge = setting.edge != nullptr && key == setting.edge;
+    words.push_back(fmt::format("limits.{}={}", key, is_edge ? edge_ratio * value : value));
+  };
+  say("force_N", l.force_N);
+  say("torque_Nm", l.torque_Nm);
+  say("slew_N_per_s", l.slew_N_per_s);
+  say("ramp_s", l.ramp_s);
+  say("workspace_radius_m", l.workspace_radius_m);
+  say("workspace_half_length_m", l.workspace_half_length_m);
+  say("speed_mps", l.speed_mps);
+  say("turn_radps", l.turn_radps);
+  say("energy_J", l.energy_J);
+  say("recovery_W", l.recovery_W);
+  say("continuous_force_N", l.continuous_force_N);
+  say("thermal_time_s", l.thermal_time_s);
+  say("power_W", l.power_W);
+  return words;
+}
+
+TEST(GateProperties, ASceneMaySayEachSettingAndNothingBeyondItsEdge) {
+  const std::string liver = TACT_SOURCE_DIR "/model/scenes/liver.toml";
+  for (const GateSetting& setting : kGateSettings) {
+    const auto scene = model::load_scene(liver, scene_words(setting, 1.0));
+    ASSERT_TRUE(scene) << setting.name << ": " << scene.error().sentence;
+    EXPECT_EQ(scene->limits.thermal_time_s, setting.limits.thermal_time_s) << setting.name;
+    if (setting.edge == nullptr) continue;
+    const auto beyond = model::load_scene(liver, scene_words(setting, 0.9999));
+    ASSERT_FALSE(beyond) << setting.name;
+    EXPECT_NE(beyond.error().sentence.find(setting.edge), std::string::npos)
+        << beyond.error().sentence;
+  }
 }
 
 TEST(GateProperties, JudgingLeavesTheHeapAlone) {

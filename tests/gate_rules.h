@@ -9,29 +9,13 @@
 #include <numbers>
 
 #include "firmware/gate/gate.h"
+#include "tests/gate_settings.h"
 
 namespace tact::tests {
 
 using firmware::GateInput;
 using firmware::GateVerdict;
 using model::Vec3;
-
-inline constexpr double kRulesPeriod_s = 0.001;
-
-/// Every stage can be met within a few seconds.
-inline constexpr model::Limits kRulesLimits{.force_N = 8.0,
-                                            .torque_Nm = 0.2,
-                                            .slew_N_per_s = 1000.0,
-                                            .ramp_s = 0.1,
-                                            .workspace_radius_m = 0.18,
-                                            .workspace_half_length_m = 0.15,
-                                            .speed_mps = 1.0,
-                                            .turn_radps = 10.0,
-                                            .energy_J = 0.08,
-                                            .recovery_W = 1e-4,
-                                            .continuous_force_N = 4.0,
-                                            .thermal_time_s = 0.5,
-                                            .power_W = 6.0};
 
 inline constexpr double kFade_s = 0.010;  // of the force, from the second missed sample on
 inline constexpr double kLost = 20.0;     // missed samples in a row
@@ -43,8 +27,14 @@ struct RuleTick {
 
 class GateRules {
  public:
-  explicit GateRules(const model::Limits& limits = kRulesLimits)
-      : limits_(limits), gate_(limits, kRulesPeriod_s, 1.0) {}
+  explicit GateRules(const GateSetting& setting = {})
+      : limits_(setting.limits),
+        period_s_(setting.period_s()),
+        force_N_(setting.force_share * limits_.force_N),
+        torque_Nm_(setting.force_share * limits_.torque_Nm),
+        lever_m_(limits_.force_N > 0.0 ? limits_.torque_Nm / limits_.force_N : 0.0),
+        continuous_N_(setting.force_share * std::min(limits_.continuous_force_N, limits_.force_N)),
+        gate_(limits_, period_s_, setting.force_share) {}
 
   /// One tick. The rule that it broke, or null.
   const char* judge(RuleTick tick) {
@@ -69,24 +59,25 @@ class GateRules {
   double most_torque_heat_ratio() const { return most_torque_heat_ratio_; }
 
  private:
-  double heat_ratio() const { return std::sqrt(heat_) / limits_.continuous_force_N; }
+  // Of the RMS to what is allowed for ever; 0 where nothing is allowed and nothing was written.
+  double heat_ratio() const { return heat_ > 0.0 ? std::sqrt(heat_) / continuous_N_ : 0.0; }
   double torque_heat_ratio() const {
-    return std::sqrt(torque_heat_) * limits_.force_N /
-           (limits_.continuous_force_N * limits_.torque_Nm);
+    return torque_heat_ > 0.0 ? std::sqrt(torque_heat_) / (continuous_N_ * lever_m_) : 0.0;
   }
 
   // The energy and the heat of what was written before this tick.
   void account(const RuleTick& tick, bool fresh) {
     const double periods = 1.0 + tick.gate.skipped_periods;
-    const double share = std::min(periods * kRulesPeriod_s / limits_.thermal_time_s, 1.0);
+    const double share = std::min(periods * period_s_ / limits_.thermal_time_s, 1.0);
     heat_ += share * (dot(before_.force_N, before_.force_N) - heat_);
     torque_heat_ += share * (dot(before_.torque_Nm, before_.torque_Nm) - torque_heat_);
     is_paused_ = is_paused_ || tick.gate.skipped_periods > 0;
     is_overheated_ = is_overheated_ || is_paused_;
-    time_s_ += periods * kRulesPeriod_s;
-    held_s_ += periods * kRulesPeriod_s;
-    impulse_Ns_ += periods * kRulesPeriod_s * before_.force_N;
-    twist_Nms_ += periods * kRulesPeriod_s * before_.torque_Nm.x;
+    longest_s_ = is_overheated_ ? std::max(longest_s_, periods * period_s_) : 0.0;
+    time_s_ += periods * period_s_;
+    held_s_ += periods * period_s_;
+    impulse_Ns_ += periods * period_s_ * before_.force_N;
+    twist_Nms_ += periods * period_s_ * before_.torque_Nm.x;
     if (!fresh) return;
     if (is_placed_) {
       const Vec3 step_m = tick.gate.tool.position_m - position_m_;
@@ -112,12 +103,12 @@ class GateRules {
       return "NaN and infinity latch";
     if (!sound && verdict_.fault == model::Fault::kNone) return "a sample of NaN latches";
     if (stopped && !(w == model::Wrench{})) return "zero unless armed and without a fault";
-    if (norm(w.force_N) > limits_.force_N) return "|F| <= force_N";
-    if (norm(w.torque_Nm) > limits_.torque_Nm) return "|T| <= torque_Nm";
+    if (norm(w.force_N) > force_N_) return "|F| <= force_N";
+    if (norm(w.torque_Nm) > torque_Nm_) return "|T| <= torque_Nm";
     if (const char* broken = broken_loss_rule(input, stopped)) return broken;
-    const double step_N = limits_.slew_N_per_s * kRulesPeriod_s;
+    const double step_N = limits_.slew_N_per_s * period_s_;
     const double periods = 1.0 + input.skipped_periods;  // since the write before
-    const double step_Nm = step_N * limits_.torque_Nm / limits_.force_N;
+    const double step_Nm = step_N * lever_m_;
     const double grown_N = norm(w.force_N) - norm(before_.force_N);
     const double grown_Nm = norm(w.torque_Nm) - norm(before_.torque_Nm);
     if (!stopped && norm(w.force_N - before_.force_N) > periods * step_N + kRounding)
@@ -134,6 +125,12 @@ class GateRules {
     if (!is_overheated_ && heat_ratio() > 1.0 + kRounding) return "RMS <= continuous_force_N";
     if (!is_overheated_ && torque_heat_ratio() > 1.0 + kRounding)
       return "RMS of T <= continuous_force_N torque_Nm / force_N";
+    // gate.h's third exception; until the force has come down at the slew another 10 ms pass
+    const double more = (2.0 * longest_s_ + 0.010) / limits_.thermal_time_s;
+    const double bound = continuous_N_ * continuous_N_ + more * force_N_ * force_N_;
+    if (heat_ > bound * (1.0 + kRounding) ||
+        torque_heat_ > lever_m_ * lever_m_ * bound * (1.0 + kRounding))
+      return "RMS^2 <= continuous^2 + force^2 (2 times the longest wait + 10 ms) / thermal_time_s";
     return broken_energy_rule(stopped);
   }
 
@@ -141,9 +138,9 @@ class GateRules {
   const char* broken_loss_rule(const GateInput& input, bool stopped) {
     constexpr double kRounding = 1e-9;
     missed_ = input.fresh || !input.armed ? 0.0 : missed_ + 1.0 + input.skipped_periods;
-    const bool zero = norm(verdict_.wrench.force_N) < kRounding * limits_.force_N &&
-                      norm(verdict_.wrench.torque_Nm) < kRounding * limits_.torque_Nm;
-    if ((missed_ - 1.0) * kRulesPeriod_s >= kFade_s && !zero)
+    const bool zero = norm(verdict_.wrench.force_N) <= kRounding * force_N_ &&
+                      norm(verdict_.wrench.torque_Nm) <= kRounding * torque_Nm_;
+    if ((missed_ - 1.0) * period_s_ >= kFade_s && !zero)
       return "zero within 10 ms of the second missed sample";
     if (missed_ >= kLost && !stopped) return "20 missed samples in a row latch";
     if (missed_ < kLost && verdict_.fault == model::Fault::kDeviceLost)
@@ -171,6 +168,8 @@ class GateRules {
   }
 
   model::Limits limits_;
+  double period_s_;
+  double force_N_, torque_Nm_, lever_m_, continuous_N_;  // of the share of the force
   firmware::Gate gate_;
   GateVerdict verdict_;
   model::Wrench before_;
@@ -187,6 +186,7 @@ class GateRules {
   bool is_permitted_ = true;    // no step since it was armed was too long for its time
   bool is_paused_ = false;      // periods were skipped since the last sample
   bool is_overheated_ = false;  // by a force that was held for longer than the gate could know
+  double longest_s_ = 0.0;      // that one was held meanwhile
 };
 
 }  // namespace tact::tests

@@ -1,5 +1,6 @@
-// The scalar core of the gate over every class of float: zero, denormals, normals, the limit and
-// its neighbours, the largest, infinity, NaN, with both signs, in every combination.
+// The scalar core of the gate over classes of float: zero, denormals, normals, the limit and its
+// neighbours, the largest, infinity, NaN. Where one vector comes in: all of them with both signs, in
+// every combination; where two do: one of most classes.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -77,12 +78,14 @@ TEST(GateScalars, AnUnsoundLimitLetsNothingThrough) {
 
 TEST(GateScalars, AnApproachStaysWithinItsStepAndItsRadiusFromAnyPlaceToAnyPlace) {
   constexpr double kRounding = 1e-14;
-  const std::vector<double> from{0.0, Doubles::denorm_min(), -1.0, beside(4.0, 1), -4.6};
+  // One of each class of a written force, and of each class of what may be wanted.
+  const std::vector<double> from{0.0,  Doubles::denorm_min(), -Doubles::min(),
+                                 -1.0, beside(4.0, 1),        -4.6};
   for (const double radius : {0.0, Doubles::min(), 1.0, 7.5, beside(kLimit, -1), kLimit})
     for_each_vector(from, [radius](const Vec3& before) {
       if (norm(before) > kLimit) return;
-      for_each_vector({0.0, -Doubles::denorm_min(), 3.0, -kLimit, 1e154, -Doubles::max(), kInfinity,
-                       Doubles::quiet_NaN()},
+      for_each_vector({0.0, -Doubles::denorm_min(), Doubles::min(), 3.0, -kLimit, 1e154,
+                       -Doubles::max(), kInfinity, -kInfinity, Doubles::quiet_NaN()},
                       [radius, &before](const Vec3& wanted) {
                         for (const double shrink : {kStep, 3.0 * kStep}) {
                           Vec3 v = wanted;
@@ -130,7 +133,7 @@ constexpr std::array kMotions{Vec3{1e-3, 0, 0},
 
 TEST(GateScalars, TakingAlongAMotionNeverLengthensAForceOrATorque) {
   for_each_vector(finite_classes(), [](const Vec3& v) {
-    if (norm(v) > 100.0) return;  // the others come to the magnitude stage as they may
+    if (norm(v) > 100.0) return;  // the others: below
     for (const Vec3& d : kMotions)
       for (const Vec3& a : kMotions)
         for (const double most : {0.0, 1e-12, 1e-3}) {
@@ -144,6 +147,20 @@ TEST(GateScalars, TakingAlongAMotionNeverLengthensAForceOrATorque) {
           ASSERT_LE(left, most + 1e-15);
           ASSERT_EQ(taken, !(w == Wrench{v, -0.1 * v})) << "a stage that says so took something";
         }
+  });
+}
+
+TEST(GateScalars, WhateverIsTakenFromAForceOfAnyClassTheMagnitudeStageLimitsIt) {
+  for_each_vector(all_classes(), [](const Vec3& v) {
+    for (const Vec3& d : kMotions) {
+      Wrench w{v, -0.1 * v};
+      limit_surplus(w, d, d, 1e-3);
+      for (Vec3* out : {&w.force_N, &w.torque_Nm}) {
+        limit_magnitude(*out, kLimit);
+        ASSERT_TRUE(is_finite(*out));
+        ASSERT_LE(norm(*out), kLimit);
+      }
+    }
   });
 }
 

@@ -30,6 +30,7 @@ FOREIGN_TO_MODEL = re.compile(
 # The emulators stand on the other side of the kernel: what they shared with a driver they could not
 # find wrong. Of ours they know the words of vectors alone.
 EMULATORS = "tests/rig/emulators/"
+CANARIES = "tests/canaries/"  # break the rules so that tests/canaries/run sees them told
 ALLOWED_TO_EMULATORS = [EMULATORS, "model/types.h"]
 # Where a call that the compiler or the real-time sanitizer cannot judge is vouched for.
 VOUCHES = {
@@ -151,7 +152,7 @@ def main():
             files += 1
             if text.count("\n") > MAX_LINES:
                 breaches.append(f"{name}:1: longer than {MAX_LINES} lines: split it by idea")
-            if path.suffix in (".h", ".cc"):
+            if path.suffix in (".h", ".cc") and not str(name).startswith(CANARIES):
                 bodies += len(re.findall(r"\bRT_SAFE\b", text))
                 breaches += include_breaches(name, room, text)
                 breaches += real_time_breaches(name, text)

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "firmware/grid.h"
@@ -186,6 +187,29 @@ TEST_F(RtLoopTest, AClockThatStepsBackBringsNoForceBeyondItsLimitsAndNoCatchingU
     EXPECT_EQ(now.output.state, State::kArmed);
     before = now;
   }
+}
+
+TEST_F(RtLoopTest, AClockThatStepsBackLetsNoForceChangeFasterThanItsSlew) {
+  model::Limits slow = scene.limits;
+  slow.force_N = 0.5;
+  slow.slew_N_per_s = 20.0;
+  Controller careful(tissue->contact_scene(), Gate(slow, 0.001, 1.0), kHardRealTime);
+  RtLoop back({.period_ns = 1'000'000}, device, lines, careful, clock, requests, *ring);
+  device.height_m = 0.006;
+  requests.arm.store(true);
+  for (int i = 0; i < 600; ++i) back.step();
+  for (; device.height_m > 0.001; device.height_m -= 0.00005) back.step();
+  double most_N = 0.0;
+  for (int i = 0; i < 15; ++i) {
+    const model::Vec3 held_N = device.last.force_N;
+    device.height_m = i % 2 == 0 ? 0.0 : 0.001;  // 1 mm deeper, 1 mm back: further than the slew
+    device.slow_ns = -5'300'000;
+    back.step();
+    most_N = std::max(most_N, norm(device.last.force_N - held_N));
+    EXPECT_EQ(newest().output.state, State::kArmed);
+  }
+  EXPECT_LE(most_N, slow.slew_N_per_s * 0.001 + 1e-12);
+  EXPECT_GT(most_N, 0.5 * slow.slew_N_per_s * 0.001) << "the slew was in question";
 }
 
 TEST_F(RtLoopTest, ALoopThatIsLateInEveryTickIsStopped) {

@@ -21,7 +21,10 @@
 // shrinks faster than the slew. Two things cannot be had at once with a slew, so they latch: power
 // above the limit, when the tool speeds up faster than the force can fall (the stage aims at three
 // quarters of it), and overdrawn energy, when a step of the tool was longer than its permitted
-// speed makes it (by less than that one tick's worth).
+// speed makes it (by less than that one tick's worth). A third cannot be known in time: a force that
+// is held over skipped periods warms on. Then, with w the longest that one was held, until it cools,
+//
+//   RMS^2 <= continuous_force_N^2 + force_N^2 (2 w + 10 ms) / thermal_time_s
 //
 // dt is the time since the force before was written, skipped periods included: a loop that was late
 // fades and shortens by all the time that passed, so that 10 ms are 10 ms and 20 samples are 20

@@ -1,4 +1,5 @@
-// Whatever is wanted, sampled and commanded, tick after tick, the gate keeps every rule of gate.h.
+// Whatever is wanted, sampled and commanded, tick after tick, the gate keeps every rule of gate.h in
+// every setting of gate_settings.h.
 //
 // A tick takes a byte that says what changes: 1 the armed level turns, 2 no fresh sample, 4 periods
 // are skipped, 8 the tool flees with the force as fast as it may; the upper four bits choose a
@@ -18,6 +19,10 @@ constexpr int kMostTicks = 4096;
 
 class Story {
  public:
+  explicit Story(const tests::GateSetting& setting)
+      : step_m_(0.999 * setting.limits.speed_mps * setting.period_s()),
+        turn_rad_(0.999 * setting.limits.turn_radps * setting.period_s()) {}
+
   tests::RuleTick next(fuzz::Bytes& input, const model::Wrench& written) {
     const std::uint8_t what = fuzz::take(input, 1)[0];
     firmware::GateInput& gate = tick_.gate;
@@ -31,10 +36,8 @@ class Story {
 
  private:
   void flee(const model::Wrench& written) {
-    constexpr double kStep_m = 0.999 * tests::kRulesLimits.speed_mps * tests::kRulesPeriod_s;
-    constexpr double kTurn_rad = 0.999 * tests::kRulesLimits.turn_radps * tests::kRulesPeriod_s;
-    tick_.gate.tool.position_m += kStep_m * normalized(written.force_N);
-    tick_.angle_rad += written.torque_Nm.x > 0.0 ? kTurn_rad : -kTurn_rad;
+    tick_.gate.tool.position_m += step_m_ * normalized(written.force_N);
+    tick_.angle_rad += written.torque_Nm.x > 0.0 ? turn_rad_ : -turn_rad_;
   }
 
   void replace(int which, fuzz::Bytes bytes) {
@@ -61,16 +64,19 @@ class Story {
     *number[static_cast<std::size_t>(which)] = value;
   }
 
+  double step_m_, turn_rad_;  // of a flight
   tests::RuleTick tick_;
 };
 
 }  // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  fuzz::Bytes input(data, size);
-  tests::GateRules rules;
-  Story story;
-  for (int tick = 0; tick < kMostTicks && !input.empty(); ++tick)
-    require(rules.judge(story.next(input, rules.verdict().wrench)) == nullptr);
+  for (const tests::GateSetting& setting : tests::kGateSettings) {
+    fuzz::Bytes input(data, size);
+    tests::GateRules rules(setting);
+    Story story(setting);
+    for (int tick = 0; tick < kMostTicks && !input.empty(); ++tick)
+      require(rules.judge(story.next(input, rules.verdict().wrench)) == nullptr);
+  }
   return 0;
 }

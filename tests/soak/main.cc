@@ -2,10 +2,9 @@
 //
 // The whole controller with the simulated delta and its safety lines: random strokes, faults,
 // stops, late ticks and operators by a seed; after each tick its promises are checked: force,
-// torque, their slew, power, energy and RMS as the record tells them, states, latching, the grid
-// (accounts of energy and heat of their own: tests/gate_rules.h). A quarter as many ticks follow
-// with narrower limits, so that every stage of the gate has its say. The same seed gives the same
-// hashes with every compiler.
+// torque, their slew, power, energy and RMS by accounts of its own (accounts.h), states, latching,
+// the grid. A quarter as many ticks follow with narrower limits, so that every stage of the gate has
+// its say. The same seed gives the same hashes with every compiler.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -42,7 +41,7 @@ struct Outcome {
 const std::vector<std::string> kTightLimits{"limits.force_N=0.3", "limits.slew_N_per_s=31"};
 // So that it also meets those of speed, energy, heat and power.
 const std::vector<std::string> kNarrowLimits{"limits.force_N=1",
-                                             "limits.torque_Nm=0.02",
+                                             "limits.torque_Nm=0.004",
                                              "limits.slew_N_per_s=125",
                                              "limits.speed_mps=0.3",
                                              "limits.turn_radps=0.5",

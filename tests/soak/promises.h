@@ -6,6 +6,7 @@
 
 #include "firmware/tick_record.h"
 #include "model/scene.h"
+#include "tests/soak/accounts.h"
 
 namespace tact::soak {
 
@@ -24,6 +25,9 @@ class Promises {
  private:
   void expect(bool kept, const char* promise, std::uint64_t tick);
   void check_force(const firmware::TickRecord& record);
+  double passed_s(const firmware::TickRecord& record) const;  // since the write before
+  void account(const firmware::TickRecord& record);
+  void check_energy(const firmware::TickRecord& record);
   void check_heat(const firmware::TickRecord& record);
   void check_state(const firmware::TickRecord& record);
 
@@ -31,8 +35,11 @@ class Promises {
   std::int64_t period_ns_;
   std::int64_t first_due_ns_ = 0;
   firmware::TickRecord before_{};
+  EnergyAccount energy_;  // since it was armed
+  HeatAccount heat_, torque_heat_;
   bool begun_ = false;
   bool overheated_ = false;
+  double longest_s_ = 0.0;  // that a force was held meanwhile
   std::uint64_t broken_ = 0;
   std::string first_;
 };

@@ -1,0 +1,10 @@
+// Two threads, one plain int: the thread sanitizer must tell.
+#include <thread>
+
+int shared = 0;
+
+int main() {
+  std::thread other([] { ++shared; });
+  ++shared;
+  other.join();
+}
