@@ -1,5 +1,5 @@
 """The simulated delta: tactd itself on a PREEMPT_RT kernel, without a bus."""
-from bench import checks, gate_paths
+from bench import checks, gate_paths, wake_up
 from bench.back_ends import GATE, LAWS, SIM_DELTA
 from bench.case import Case
 
@@ -11,7 +11,7 @@ CASES = [
          (*SOUND, checks.same_forces), seeds=(1, 1), timed=True),
     Case("liver-load", "with bursts of other work on its core, too, tactd wakes like cyclictest",
          SIM_DELTA, "noise $SEED\ncontrol $SECONDS_OF_RUN\nfinish\nnoise $SEED\nmeasure_peer 6",
-         (*SOUND, checks.same_forces, checks.wakes_like_peer_too), seeds=(1, 2), seconds=6),
+         (*SOUND, checks.same_forces, wake_up.like_peer_too), seeds=(1, 2), seconds=6),
     Case("liver-sweep", "no interleaving with other work changes a force or makes a tick late",
          SIM_DELTA, "noise $SEED\ncontrol $SECONDS_OF_RUN\nfinish",
          (*SOUND, checks.same_forces), sweep=True, seconds=6),

@@ -52,7 +52,7 @@ class RunRecord {
   std::int64_t torque_zero_since_ns_ = 0;  // 0: there is torque, or never was
   bool had_torque_ = false;
   std::array<std::int64_t, 3> commanded_ns_{};
-  bool obeyed_ = false;    // the motors, at the last tick
+  bool obeyed_ = false;  // the motors, at the last tick
   bool loop_runs_ = false;
   unsigned answered_ = 0;  // one bit per axis of this cycle
   std::int64_t cycles_ = 0, commands_ = 0, oldest_command_ns_ = 0;
