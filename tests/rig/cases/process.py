@@ -18,11 +18,16 @@ def hog(milliseconds):
 HOG = ("inject true; stress-ng -q --seed 1 --cpu 1 --switch 1 --timeout 1s\n"
        "prove 'the load ran' [ $? = 0 ]")
 # In the middle of it less than an eighth of the memory is left.
-PRESSURE = ("inject true; stress-ng -q --seed 1 --vm 1 --vm-bytes 90% --vm-keep --timeout 1s & load=$!\n"
-            "sleep .7; prove 'memory was short' awk '/MemTotal/ {all = $2} /MemAvailable/ {left = $2} "
+PRESSURE = ("inject true; stress-ng -q --seed 1 --vm 1 --vm-bytes 90% --vm-keep --timeout 2s & load=$!\n"
+            "sleep 1.7; prove 'memory was short' awk '/MemTotal/ {all = $2} /MemAvailable/ {left = $2} "
             "END {exit 8 * left > all}' /proc/meminfo\n"
             "wait $load; prove 'the load ran' [ $? = 0 ]")
 SHORT = (checks.proved("memory was short", "the load ran"),)
+
+
+def frames_dropped(run):
+    """The viewer's queue was full: else nothing would have stalled."""
+    return [] if run.report.get("dropped_frames", 0) > 0 else ["no frame was dropped: the viewer was not stalled"]
 
 
 def on_hardware(back_end, name, sentence, harm, proofs):
@@ -31,7 +36,7 @@ def on_hardware(back_end, name, sentence, harm, proofs):
     return Case(f"{back_end.name}-{name}", sentence, back_end,
                 f"control $SECONDS_OF_RUN\nsleep .9\n{harm}\nfinish",
                 (checks.hard_real_time, checks.no_late_tick, *proofs),
-                fault=RidesThrough(), seconds=2.5, long_only=True, variables={"EMULATOR": quick})
+                fault=RidesThrough(), seconds=3.5, long_only=True, variables={"EMULATOR": quick})
 
 
 def fault(name, sentence, harm, required, also=()):
@@ -60,10 +65,10 @@ CASES = [
     fault("memory-pressure", "memory that is short elsewhere is never short in the loop", PRESSURE,
           RidesThrough(), (*UNMOVED, *SHORT)),
     fault("viewer-stalled", "a viewer that never reads costs neither a tick nor a force",
-          "tact-view --record /tmp/seen --socket $SOCKET >$RESULTS/view.log 2>&1 & viewer=$!\n"
-          "sleep .3; prove 'the viewer was connected' [ $(grep -c $SOCKET /proc/net/unix) -ge 2 ]; inject kill -STOP $viewer; sleep 2\n"
-          "prove 'the viewer stood' grep -q '^State:.T' /proc/$viewer/status; kill -KILL $viewer",
-          RidesThrough(), (*UNMOVED, checks.proved("the viewer was connected", "the viewer stood"))),
+          "tact-rig-viewer $SOCKET >/tmp/seen 2>&1 & viewer=$!\n"
+          "sleep .3; prove 'the viewer had a frame' grep -q 'had a frame' /tmp/seen; inject kill -STOP $viewer\n"
+          "sleep 2; prove 'the viewer stood' grep -q '^State:.T' /proc/$viewer/status; kill -KILL $viewer",
+          RidesThrough(), (*UNMOVED, checks.proved("the viewer had a frame", "the viewer stood"), frames_dropped)),
     fault("clock-step", "the time of day may jump, the loop does not know it",
           "inject date -s '2031-05-05 05:05:05'; prove 'it was 2031' [ $(date +%Y) = 2031 ]; sleep .5\n"
           "date -s '2001-01-01'; prove 'it was 2001' [ $(date +%Y) = 2001 ]",
