@@ -60,6 +60,15 @@ constexpr GateSetting setting(const char* name, const F& change) {
   return out;
 }
 
+/// Slew, energy and thermal time as small as a scene may have them at this rate.
+constexpr void put_at_edges(GateSetting& s, double rate_Hz) {
+  s.rate_Hz = rate_Hz;
+  s.limits.slew_N_per_s = least_slew_N_per_s(s.limits);
+  s.limits.energy_J = least_energy_J(s);
+  s.limits.continuous_force_N = 1.0;
+  s.limits.thermal_time_s = least_thermal_time_s(s);
+}
+
 inline constexpr std::array kGateSettings{
     GateSetting{},
     setting("4 kHz", [](GateSetting& s) { s.rate_Hz = 4000.0; }),
@@ -95,21 +104,13 @@ inline constexpr std::array kGateSettings{
             }),
     setting("all edges at 100 Hz",
             [](GateSetting& s) {
-              s.rate_Hz = 100.0;
-              s.limits.slew_N_per_s = least_slew_N_per_s(s.limits);
-              s.limits.energy_J = least_energy_J(s);
-              s.limits.continuous_force_N = 1.0;
-              s.limits.thermal_time_s = least_thermal_time_s(s);
+              put_at_edges(s, 100.0);
               s.edge = "energy_J";
             }),
     setting("all edges at 4 kHz on a stock PC",
             [](GateSetting& s) {
-              s.rate_Hz = 4000.0;
+              put_at_edges(s, 4000.0);
               s.force_share = 0.25;
-              s.limits.slew_N_per_s = least_slew_N_per_s(s.limits);
-              s.limits.energy_J = least_energy_J(s);
-              s.limits.continuous_force_N = 1.0;
-              s.limits.thermal_time_s = least_thermal_time_s(s);
               s.edge = "thermal_time_s";
             }),
 };

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "tools/common/table.h"
 
@@ -134,13 +132,6 @@ Table wall_table(const WallVerdict& wall) {
   return table;
 }
 
-Result<std::string> read_whole(const std::string& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  if (!(text << file.rdbuf())) return model::Error{path + ": cannot be read"};
-  return text.str();
-}
-
 }  // namespace
 
 bool LimitsReport::passed() const {
@@ -213,7 +204,7 @@ Result<std::vector<std::string>> write_report(const LimitsReport& report,
     for (const std::string& path : *drawn) {
       files.push_back(path);
       if (fs::path(path).extension() != ".svg") continue;
-      auto svg = read_whole(path);
+      auto svg = read_whole_file(path);
       if (!svg) return svg.error();
       drawings.push_back(std::move(*svg));
     }
