@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // device.h - one interface for every haptic device, simulated or real.
 //
 // Only frame W leaves a device (types.h). read, ready, permit and write are called once per tick,
@@ -13,8 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "model/device_at_tool.h"
 #include "model/fault.h"
-#include "model/haptic_limit.h"
 #include "model/types.h"
 
 namespace tact::hal {
@@ -88,7 +89,8 @@ class Device {
   /// is no more to say than the fault's own words. Any thread, at any time.
   virtual std::string trouble() const { return {}; }
 
-  /// What it counted since it was opened, as frames that are nobody's; read when the loop has ended.
+  /// What it counted since it was opened, as frames that are nobody's; read when the loop has
+  /// ended.
   virtual std::vector<DeviceCount> tally() const { return {}; }
 
   /// Zero force and power off; may block. Safe to call twice, and at any time after opening.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // latest_slot.h - the newest value from one thread to one other, without waiting on either side.
 //
 // Three buffers: the writer owns one, the reader owns one, the third lies between them. write and

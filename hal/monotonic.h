@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // monotonic.h - the time that stamps what devices say: CLOCK_MONOTONIC, ns since boot.
 //
-// The loop's own clock is firmware/clock.h; this is the same clock for code below it. Source: man 2
-// clock_gettime.
+// The loop's own clock is firmware/loop/clock.h; this is the same clock for code below it. Source:
+// man 2 clock_gettime.
 #pragma once
 
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // safety_lines.h - the wires beside the device: e-stop and dead-man in, enable and heartbeat out.
 //
 // The PC is never the safety device: the lines watch an e-stop chain that works without them, add

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // saturation.h - a vector no longer than the hardware can make, along the one that was asked for:
 //
 //     v min(1, most / |v|)

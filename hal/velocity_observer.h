@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // velocity_observer.h - velocity from counted positions: a two-pole tracking observer, per axis.
 //
 //     x- = x + T v,   r = z - x-,   x <- x- + (1 - q^2) r,   v <- v + (1 - q)^2 / T r

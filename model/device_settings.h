@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // device_settings.h - what a scene says about the device and the lines beside it.
 //
 // Plain numbers and names; what they mean to a device is said in hal/. Defaults are those of the
@@ -102,7 +103,7 @@ struct LinesSettings {
 };
 
 struct DeviceSettings {
-  std::string kind;  // "sim-delta", "can-odrive", "can-cia402", "falcon", "force-dimension"
+  std::string kind;  // "sim-delta", or another that hal/registry knows
   SimDeviceSettings sim{};
   DeltaSettings delta{};
   CanSettings can{};

@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // fault.h - everything that can limit or stop the force, by number.
 //
 // 0 is none; 1 to 99 is a limit that is acting while the loop goes on; 100 and above latch: force
-// goes to zero and only a stop leaves the state. Numbers are never reused.
+// goes to zero until an operator resets (supervisor.h). Numbers are never reused.
 #pragma once
 
 #include <cstdint>

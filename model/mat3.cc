@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "model/mat3.h"
 
 #include <algorithm>
@@ -6,9 +7,8 @@ namespace tact::model {
 
 std::array<double, 3> singular_values(const Mat3& a) RT_SAFE {
   std::array<std::array<double, 3>, 3> g{};  // A A^T
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) g[i][j] = dot(a.row[i], a.row[j]);
-  }
   constexpr int kSweeps = 8;  // converges quadratically: five are enough for a double
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (std::size_t k = 0; k < 3; ++k) {

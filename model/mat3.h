@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // mat3.h - the 3 by 3 matrix that the loop needs: fixed size, no heap, no exceptions.
 //
 //     A^-1 = [ r1 x r2 | r2 x r0 | r0 x r1 ] / det A,     det A = r0 . (r1 x r2)

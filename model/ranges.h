@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ranges.h - what a parameter must be, asked before anything is built from it.
 #pragma once
 

@@ -1,5 +1,7 @@
-// result.h - a value, or an error with the sentence that a person needs. The interface is that of
-// std::expected, so that an alias can replace it under C++23. Set-up code only.
+// SPDX-License-Identifier: Apache-2.0
+// result.h - a value, or an error with the sentence that a person needs. As std::expected of C++23,
+// but an Error converts by itself, and value() of an error is a mistake of the caller. Set-up code
+// only.
 #pragma once
 
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // rt.h - the one mark of real-time code.
 //
 // RT_SAFE stands after every function that the loop may reach: it does not allocate, lock, wait,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // types.h - the few shapes every layer shares. SI units; frame W outside hal: right-handed, origin
 // in the middle of the workspace, +x towards the operator, +y to the right, +z up.
 #pragma once
@@ -38,6 +39,10 @@ inline bool is_finite(const Vec3& a) RT_SAFE {
 inline Vec3 normalized(const Vec3& a) RT_SAFE {
   const double n = norm(a);
   return n > 0.0 ? a / n : Vec3{};
+}
+/// What of v lies across the unit vector `normal`.
+constexpr Vec3 tangential(const Vec3& v, const Vec3& normal) RT_SAFE {
+  return v - dot(v, normal) * normal;
 }
 
 /// Unit quaternion, Hamilton product: rotates from the tool frame to W.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // units.h - human sizes for SI doubles: 2_mm is 0.002 m, 300_us is 0.0003 s, 20_deg is 0.349 rad.
 #pragma once
 

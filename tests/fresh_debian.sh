@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Both commands of the README on a machine that has only Debian 12's base system: a chroot from
 # debootstrap, this tree copied in as git knows it, tools/run and tools/check twice each.
 #

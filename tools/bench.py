@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The measurements behind tools/bench. Started by it: bench.py ROOT BUILD WORK SECONDS JSON_FILE."""
 import json
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # packages.sh - sourced by run and check: installs Debian packages that are missing, after saying so.
 #
 #   need_packages "what for" package [package=command] ...
@@ -48,6 +49,8 @@ BUILD_PACKAGES=(g++ cmake ninja-build ca-certificates libfmt-dev libcli11-dev
 # What the measuring tools call or link besides.
 TOOL_PACKAGES=(gmsh calculix-ccx gnuplot-nox libmetis-dev libbullet-dev libbenchmark-dev
   rt-tests=cyclictest stress-ng=stress-ng)
+# What the tests link or call besides.
+TEST_PACKAGES=(libgtest-dev protobuf-compiler=protoc strace)
 # What the virtual bench needs on this side (tests/rig).
 RIG_PACKAGES=(qemu-system-x86=qemu-system-x86_64 cpio kmod zstd xz-utils mmdebstrap make g++
   linux-headers-rt-amd64 linux-source-6.1)
@@ -65,7 +68,7 @@ build_programs() {
   done
   if [ ! -f "$build/build.ninja" ] ||
     { [ $tools = ON ] && grep -q '^TACT_TOOLS:BOOL=OFF' "$build/CMakeCache.txt"; }; then
-    cmake -S "$root" -B "$build" -G Ninja "${launcher[@]}" -DBUILD_TESTING=OFF \
+    CXX=g++ cmake -S "$root" -B "$build" -G Ninja "${launcher[@]}" -DBUILD_TESTING=OFF \
       -DTACT_TOOLS=$tools >"$log" 2>&1 || { cat "$log" >&2; return 2; }
   fi
   if ninja -C "$build" -n "$@" 2>/dev/null | grep -q 'no work to do'; then
@@ -78,9 +81,11 @@ build_programs() {
   rm -f "$log"
 }
 
-# build_page PAGE_DIR : npm packages by lock file, then the bundled page; both only when changed.
+# build_page BUILD_DIR : the bundled page in BUILD_DIR/page with the fault words of BUILD_DIR/tactd,
+# which must be built, and npm packages by lock file; both only when changed.
 build_page() {
-  local page=$1 web="$root/host/web" log stamp
+  local page="$1/page" web="$root/host/web" log stamp
+  "$1/tactd" --faults --json "$web/src/faults.json" >/dev/null || return 2
   stamp=$(cat "$web"/package-lock.json "$web"/*.json "$web"/*.ts "$web"/index.html \
     "$web"/src/* "$web"/public/* 2>/dev/null | sha256sum)
   [ -f "$page/index.html" ] && [ "$(cat "$page/.stamp" 2>/dev/null)" = "$stamp" ] && return 0

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/black_box/black_box.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
 
-namespace tact::firmware {
+namespace tact::firmware::black_box {
 
 BlackBox::BlackBox(BlackBoxRun run, double rate_Hz, double frame_rate_Hz)
     : run_(std::move(run)),
@@ -16,32 +17,32 @@ BlackBox::~BlackBox() {
   if (run_.mesh_fd >= 0) close(run_.mesh_fd);
 }
 
-void BlackBox::add(const TickRecord& record) {
-  ticks_.add(LoggedTick::of(record, run_.header.non_rt != 0));
+void BlackBox::add(const loop::TickRecord& record) {
+  ticks_.add(telemetry::LoggedTick::of(record, run_.header.non_rt != 0));
   if (to_wait_ > 0) --to_wait_;
-  const Fault fault = record.output.fault;
-  if (fault != before_ && fault != Fault::kNone && waiting_ == Fault::kNone) {
+  const model::Fault fault = record.output.fault;
+  if (fault != before_ && fault != model::Fault::kNone && waiting_ == model::Fault::kNone) {
     waiting_ = fault;
     to_wait_ = ticks_after_;
   }
   before_ = fault;
 }
 
-void BlackBox::stands(Fault fault) {
-  if (fault == Fault::kNone || before_ != Fault::kNone) return;
+void BlackBox::stands(model::Fault fault) {
+  if (fault == model::Fault::kNone || before_ != model::Fault::kNone) return;
   before_ = waiting_ = fault;
   to_wait_ = 0;
 }
 
 void BlackBox::work() {
-  if (waiting_ == Fault::kNone || to_wait_ > 0 || writing_.load()) return;
+  if (waiting_ == model::Fault::kNone || to_wait_ > 0 || writing_.load()) return;
   if (writer_.joinable()) writer_.join();
   writing_.store(true);
   writer_ = std::thread([this, kept = Kept{waiting_, ticks_.all(), frames_.all()}] {
     write(kept);
     writing_.store(false);
   });
-  waiting_ = Fault::kNone;
+  waiting_ = model::Fault::kNone;
 }
 
 void BlackBox::finish() {
@@ -73,4 +74,4 @@ std::vector<std::string> BlackBox::files() const {
   return files_;
 }
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::black_box

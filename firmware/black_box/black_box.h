@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // black_box.h - the last 10 s of every tick, written to a file whenever a fault latches.
 //
 // The telemetry thread adds ticks and frames, far from the loop; a thread of its own writes, so a
@@ -12,28 +13,27 @@
 
 #include "firmware/black_box/black_box_file.h"
 #include "firmware/black_box/newest_ones.h"
+#include "firmware/telemetry/telemetry.h"
 
-namespace tact::firmware {
+namespace tact::firmware::black_box {
 
-class BlackBox {
+class BlackBox final : public telemetry::Recorder {
  public:
   static constexpr double kKeep_s = 10.0, kAfter_s = 0.25;
 
   /// Takes over run.mesh_fd.
   BlackBox(BlackBoxRun run, double rate_Hz, double frame_rate_Hz);
-  ~BlackBox();
+  ~BlackBox() override;
   BlackBox(const BlackBox&) = delete;
   BlackBox& operator=(const BlackBox&) = delete;
 
-  /// Telemetry thread.
-  void add(const TickRecord& record);
-  void add(const Frame& frame) { frames_.add(frame); }
-  /// A fault of a loop that gives no ticks which could tell it; kNone is none.
-  void stands(Fault fault);
-  /// Now and then: hands over to the writer what has waited long enough.
-  void work();
-  /// At the end: writes what still waits; returns when all is on the disk.
-  void finish();
+  void add(const loop::TickRecord& record) override;
+  void add(const telemetry::Frame& frame) override { frames_.add(frame); }
+  void stands(model::Fault fault) override;
+  /// Hands over to the writer what has waited long enough.
+  void work() override;
+  /// Writes what still waits.
+  void finish() override;
 
   /// What happened since the last call, one sentence each. Any thread.
   std::vector<std::string> news();
@@ -44,10 +44,10 @@ class BlackBox {
   void write(const Kept& kept);
 
   BlackBoxRun run_;
-  NewestOnes<LoggedTick> ticks_;
-  NewestOnes<Frame> frames_;
+  NewestOnes<telemetry::LoggedTick> ticks_;
+  NewestOnes<telemetry::Frame> frames_;
   std::uint64_t ticks_after_;  // of a fault, before it is written
-  Fault before_ = Fault::kNone, waiting_ = Fault::kNone;
+  model::Fault before_ = model::Fault::kNone, waiting_ = model::Fault::kNone;
   std::uint64_t to_wait_ = 0;  // ticks
   std::atomic<bool> writing_{false};
   std::thread writer_;
@@ -55,4 +55,4 @@ class BlackBox {
   std::vector<std::string> news_, files_;
 };
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::black_box

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/black_box/black_box_file.h"
 
 #include <fmt/chrono.h>
@@ -11,9 +12,9 @@
 #include <ctime>
 #include <filesystem>
 
-#include "firmware/telemetry_frame.h"
+#include "firmware/telemetry/telemetry_frame.h"
 
-namespace tact::firmware {
+namespace tact::firmware::black_box {
 namespace {
 
 namespace fs = std::filesystem;
@@ -42,7 +43,7 @@ std::string plain(std::string text) {
   return text;
 }
 
-std::string free_path(const BlackBoxRun& run, Fault fault) {
+std::string free_path(const BlackBoxRun& run, model::Fault fault) {
   const std::time_t now = std::time(nullptr);
   const std::string stem =
       fmt::format("{}/{}-{:%Y%m%dT%H%M%SZ}-{}-{}", run.folder, plain(run.scene_name),
@@ -83,16 +84,17 @@ Result<std::string> black_box_folder(const std::string& asked) {
   return folder.string();
 }
 
-std::vector<Frame> with_last_ticks(const Kept& kept) {
-  std::vector<Frame> out;
+std::vector<telemetry::Frame> with_last_ticks(const Kept& kept) {
+  std::vector<telemetry::Frame> out;
   if (kept.frames.empty() || kept.ticks.empty()) return kept.frames;
   const auto tick = [&kept](std::uint64_t number) {
-    return std::lower_bound(kept.ticks.begin(), kept.ticks.end(), number,
-                            [](const LoggedTick& t, std::uint64_t n) { return t.tick < n; });
+    return std::lower_bound(
+        kept.ticks.begin(), kept.ticks.end(), number,
+        [](const telemetry::LoggedTick& t, std::uint64_t n) { return t.tick < n; });
   };
   const std::int64_t from_ns = kept.ticks.back().due_ns - kEveryTick_ns;
   for (std::size_t i = 0; i < kept.frames.size(); ++i) {
-    const Frame& picture = kept.frames[i];
+    const telemetry::Frame& picture = kept.frames[i];
     out.push_back(picture);
     const bool last = i + 1 == kept.frames.size();
     const auto shown = tick(picture.tick);
@@ -106,19 +108,19 @@ std::vector<Frame> with_last_ticks(const Kept& kept) {
 }
 
 Result<std::string> write_black_box(const BlackBoxRun& run, const Kept& kept) {
-  LogHeader header = run.header;
+  telemetry::LogHeader header = run.header;
   header.ticks = kept.ticks.size();
   std::error_code failed;  // the file then cannot be made either, and says so
   fs::create_directories(run.folder, failed);
   const std::string path = free_path(run, kept.fault);
-  auto log = TickLogWriter::create(path, header);
+  auto log = telemetry::TickLogWriter::create(path, header);
   if (!log) return log.error();
-  for (const LoggedTick& tick : kept.ticks) log->add(tick);
+  for (const telemetry::LoggedTick& tick : kept.ticks) log->add(tick);
   log->append(recording_start(run.hello, read_all(run.mesh_fd)));
-  for (const Frame& frame : with_last_ticks(kept)) log->append(recording_frame(frame));
+  for (const telemetry::Frame& frame : with_last_ticks(kept)) log->append(recording_frame(frame));
   const std::string trouble = log->close();
   if (!trouble.empty()) return Error{trouble};
   return path;
 }
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::black_box

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // black_box_file.h - one file for one fault: a tick log of every tick, then pictures of them.
 //
 //     SCENE-DATE-NUMBER-FAULT.tactlog      liver-20260131T120000Z-105-loop-late.tactlog
@@ -9,23 +10,23 @@
 #include <string>
 #include <vector>
 
-#include "firmware/tick_log.h"
+#include "firmware/telemetry/tick_log.h"
 
-namespace tact::firmware {
+namespace tact::firmware::black_box {
 
 /// What was kept, oldest first.
 struct Kept {
-  Fault fault = Fault::kNone;
-  std::vector<LoggedTick> ticks;
-  std::vector<Frame> frames;
+  model::Fault fault = model::Fault::kNone;
+  std::vector<telemetry::LoggedTick> ticks;
+  std::vector<telemetry::Frame> frames;
 };
 
 /// What is the same in every file of a run.
 struct BlackBoxRun {
   std::string folder;
   std::string scene_name;
-  LogHeader header;
-  Hello hello;
+  telemetry::LogHeader header;
+  telemetry::Hello hello;
   int mesh_fd = -1;  // the memory file of telemetry_frame.h
 };
 
@@ -38,6 +39,6 @@ model::Result<std::string> write_black_box(const BlackBoxRun& run, const Kept& k
 
 /// The frames with one more for each tick of the last half second: the picture is that of the frame
 /// before it, tool, force and state are the tick's own.
-std::vector<Frame> with_last_ticks(const Kept& kept);
+std::vector<telemetry::Frame> with_last_ticks(const Kept& kept);
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::black_box

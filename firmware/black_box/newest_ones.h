@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // newest_ones.h - the last so many of what was added, oldest first; all room is taken at the start.
 #pragma once
 
@@ -5,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace tact::firmware {
+namespace tact::firmware::black_box {
 
 template <typename T>
 class NewestOnes {
@@ -32,4 +33,4 @@ class NewestOnes {
   std::size_t next_ = 0, size_ = 0;
 };
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::black_box

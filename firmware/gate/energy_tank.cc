@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/gate/energy_tank.h"
 
 #include <cmath>
 
-namespace tact::firmware {
+namespace tact::firmware::gate {
 namespace {
 
 constexpr double kRounding_J = 1e-9;
@@ -69,4 +70,4 @@ double EnergyTank::allowed_N() const RT_SAFE {
 
 bool EnergyTank::is_overdrawn() const RT_SAFE { return !(level_J_ >= -kRounding_J); }
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::gate

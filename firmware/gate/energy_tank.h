@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // energy_tank.h - how much energy the device may still give to the hand: passivity in the time
 // domain (Hannaford, Ryu, IEEE T-RA 18 (2002) 1), kept as a tank (Franken et al., IEEE T-RO 27
 // (2011) 741).
@@ -29,7 +30,7 @@
 
 #include "firmware/gate/limiter.h"
 
-namespace tact::firmware {
+namespace tact::firmware::gate {
 
 struct EnergyTankSettings {
   double budget_J = 0.0;    // B
@@ -84,4 +85,4 @@ class EnergyTank {
   Vec3 moved_m_, turned_rad_;  // in the last period that is known
 };
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::gate

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // fader.h - a level between 0 and 1 that opens and closes at fixed rates. It closes by all periods
 // that passed since the last step and opens by one, however late the loop is.
 #pragma once
 
 #include "model/rt.h"
 
-namespace tact::firmware {
+namespace tact::firmware::gate {
 
 class Fader {
  public:
@@ -23,4 +24,4 @@ class Fader {
   double level_ = 1.0;
 };
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::gate

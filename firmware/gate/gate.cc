@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/gate/gate.h"
 
 #include <algorithm>
@@ -5,7 +6,7 @@
 
 #include "firmware/gate/workspace.h"
 
-namespace tact::firmware {
+namespace tact::firmware::gate {
 namespace {
 
 constexpr double kStaleFade_s = 0.010;
@@ -193,4 +194,4 @@ GateVerdict Gate::let_go(GateVerdict verdict) RT_SAFE {
   return verdict;
 }
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::gate

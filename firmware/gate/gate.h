@@ -1,4 +1,6 @@
-// gate.h - the one way from the model to the device. Every force passes every stage, in this order:
+// SPDX-License-Identifier: Apache-2.0
+// gate.h - the one way from the model to the device. Every force passes the stages, in this order,
+// until one makes it zero:
 //
 //   finite     NaN or infinity in force or sample: zero, latches
 //   fresh      one missed sample holds, from the second the force fades to zero in 10 ms, and so
@@ -16,22 +18,13 @@
 //   |F| <= force_N, RMS <= continuous_force_N, |dF| <= slew_N_per_s dt, F . v <= power_W,
 //   energy given since arming <= energy_J + recovery_W t        (torque likewise)
 //
-// Who comes later keeps what came before: magnitude and ramp only shorten; slew and power move
-// within the slew's step and inside the radius that magnitude and passivity allow, which never
-// shrinks faster than the slew. Two things cannot be had at once with a slew, so they latch: power
-// above the limit, when the tool speeds up faster than the force can fall (the stage aims at three
-// quarters of it), and overdrawn energy, when a step of the tool was longer than its permitted
-// speed makes it (by less than that one tick's worth). A third cannot be known in time: a force that
-// is held over skipped periods warms on. Then, with w the longest that one was held, until it cools,
-//
-//   RMS^2 <= continuous_force_N^2 + force_N^2 (2 w + 10 ms) / thermal_time_s
-//
 // dt is the time since the force before was written, skipped periods included: a loop that was late
 // fades and shortens by all the time that passed, so that 10 ms are 10 ms and 20 samples are 20
 // periods. A force grows and turns by one period's slew at most, and no fade opens faster.
 //
 // Each stage has a reason code (model/fault.h) and a counter. Saturates and fades, never cuts to
-// zero in one step unless stopped.
+// zero in one step unless stopped. Why the limits hold together, and the three that must latch or
+// wait: README.md.
 #pragma once
 
 #include <array>
@@ -43,10 +36,10 @@
 #include "firmware/gate/thermal_limit.h"
 #include "hal/device.h"
 #include "model/fault.h"
-#include "model/scene.h"
+#include "model/limits.h"
 #include "model/types.h"
 
-namespace tact::firmware {
+namespace tact::firmware::gate {
 
 using model::Fault;
 
@@ -109,7 +102,7 @@ class Gate {
   void fade_outside(const model::Tool& tool, double periods, GateVerdict& verdict) RT_SAFE;
   void limit(const model::Tool& tool, double periods, GateVerdict& verdict) RT_SAFE;
   void ramp_up(const model::Tool& tool, GateVerdict& verdict) RT_SAFE;
-  bool step_towards(Wrench& wanted, double periods, const Radius& radius) const RT_SAFE;
+  bool step_towards(Wrench& w, double periods, const Radius& radius) const RT_SAFE;
   GateVerdict let_go(GateVerdict verdict) RT_SAFE;
 
   model::Limits limits_;
@@ -126,4 +119,4 @@ class Gate {
   std::array<std::uint64_t, kStageCount> counter_{};
 };
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::gate

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // limiter.h - what every stage of the gate does to a vector: shorten it, hold it back, take from it
 // along a motion.
 //
@@ -6,16 +7,16 @@
 //     surplus     F . d + T . a <= most                    least change of each, along its motion
 //
 // Approach shortens what is too long first and turns with what is left of the step: a straight line
-// to the goal would leave a shrinking radius more slowly than the step allows. After ticks that were
-// skipped `shrink` is the step of all the time that passed: a force catches up when it gets smaller,
-// never when it grows or turns. Guards are written so that NaN falls to zero.
+// to the goal would leave a shrinking radius more slowly than the step allows. After ticks that
+// were skipped `shrink` is the step of all the time that passed: a force catches up when it gets
+// smaller, never when it grows or turns. Guards are written so that NaN falls to zero.
 #pragma once
 
 #include <limits>
 
 #include "model/types.h"
 
-namespace tact::firmware {
+namespace tact::firmware::gate {
 
 using model::Vec3;
 using model::Wrench;
@@ -76,4 +77,4 @@ inline bool limit_surplus(Wrench& w, const Vec3& d, const Vec3& a, double most) 
   return take_along(w.torque_Nm, too_much * turned, a) || taken;
 }
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::gate

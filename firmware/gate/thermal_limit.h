@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // thermal_limit.h - motors bear their peak for a while and their continuous force for ever.
 //
 //     dh/dt = (F^2 - h) / tau              h: square of the RMS of the force, first order
@@ -14,7 +15,7 @@
 
 #include "model/types.h"
 
-namespace tact::firmware {
+namespace tact::firmware::gate {
 
 class ThermalLimit {
  public:
@@ -42,4 +43,4 @@ class ThermalLimit {
   double heat_ = 0.0;  // h
 };
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::gate

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // workspace.h - where the tool may be, and how fast, for a force to be let through.
 //
 // A cylinder about the W x axis, centred on its origin; NaN is outside and too fast.
@@ -6,10 +7,10 @@
 #include <cmath>
 
 #include "firmware/gate/limiter.h"
-#include "model/scene.h"
+#include "model/limits.h"
 #include "model/types.h"
 
-namespace tact::firmware {
+namespace tact::firmware::gate {
 
 inline bool is_inside(const model::Limits& limits, const model::Vec3& p_m) RT_SAFE {
   return is_within({0.0, p_m.y, p_m.z}, limits.workspace_radius_m) &&
@@ -21,4 +22,4 @@ inline bool is_slow(const model::Limits& limits, const model::Tool& tool) RT_SAF
          is_within(tool.angular_velocity_radps, limits.turn_radps);
 }
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::gate

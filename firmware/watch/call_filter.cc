@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/watch/call_filter.h"
 
 #include <fmt/format.h>
@@ -14,9 +15,9 @@
 #include <cstring>
 #include <thread>
 
-#include "firmware/alloc_counter.h"
+#include "firmware/loop/alloc_counter.h"
 
-namespace tact::firmware {
+namespace tact::firmware::watch {
 namespace {
 
 using model::Error;
@@ -27,7 +28,7 @@ constexpr std::array kEveryLoop{
     SYS_clock_nanosleep, SYS_clock_gettime, SYS_restart_syscall, SYS_rt_sigreturn,
     SYS_rt_sigprocmask,  SYS_getrusage,     SYS_madvise,         SYS_exit};
 
-std::atomic<Requests*> guarded{nullptr};
+std::atomic<loop::Requests*> guarded{nullptr};
 std::atomic<int> refused{-1};  // number of the first refused call
 thread_local bool in_loop = false;
 
@@ -50,11 +51,11 @@ void answer([[maybe_unused]] ucontext_t& context, [[maybe_unused]] long long res
 // glibc takes any other error for broken memory.
 void on_refused(int, siginfo_t* info, void* context) {
   answer(*static_cast<ucontext_t*>(context), info->si_syscall == SYS_futex ? -EAGAIN : -EPERM);
-  Requests* requests = guarded.load();
+  loop::Requests* requests = guarded.load();
   if (requests == nullptr || !in_loop) return;
   int none = -1;
   refused.compare_exchange_strong(none, info->si_syscall);
-  requests->trip(Fault::kForbiddenCall);
+  requests->trip(model::Fault::kForbiddenCall);
 }
 
 struct Release {
@@ -82,10 +83,10 @@ Error no_filter(const char* why) {
 
 class Filter final : public CallFilter {
  public:
-  Filter(Context context, Requests& requests) : context_(std::move(context)) {
+  Filter(Context context, loop::Requests& requests) : context_(std::move(context)) {
     refused.store(-1);
     guarded.store(&requests);
-    struct sigaction action {};
+    struct sigaction action{};
     action.sa_sigaction = on_refused;
     action.sa_flags = SA_SIGINFO;
     sigaction(SIGSYS, &action, nullptr);
@@ -107,9 +108,9 @@ class Filter final : public CallFilter {
 
 Result<std::unique_ptr<CallFilter>> CallFilter::make(std::span<const int> of_device,
                                                      std::span<const int> of_lines,
-                                                     Requests& requests) {
+                                                     loop::Requests& requests) {
   if (!kAnswers) return no_filter("it is not made for this processor");
-  if (is_sanitized()) return no_filter("a sanitizer makes calls of its own");
+  if (loop::is_sanitized()) return no_filter("a sanitizer makes calls of its own");
   Context context(seccomp_init(SCMP_ACT_TRAP));
   constexpr scmp_datum_t kWhole = ~scmp_datum_t{0},
                          kCommand = static_cast<unsigned>(FUTEX_CMD_MASK);
@@ -140,4 +141,4 @@ std::string refused_call() {
   return text;
 }
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::watch

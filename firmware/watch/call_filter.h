@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // call_filter.h - which system calls the loop's thread may make; any other ends in a stop
 // (seccomp).
 //
@@ -16,17 +17,17 @@
 #include <span>
 #include <string>
 
-#include "firmware/rt_loop.h"
+#include "firmware/loop/rt_loop.h"
 #include "model/result.h"
 
-namespace tact::firmware {
+namespace tact::firmware::watch {
 
 class CallFilter {
  public:
   /// Set-up. An error where there can be none: a sanitizer in the way, a kernel that refuses.
   static model::Result<std::unique_ptr<CallFilter>> make(std::span<const int> of_device,
                                                          std::span<const int> of_lines,
-                                                         Requests& requests);
+                                                         loop::Requests& requests);
   virtual ~CallFilter() = default;
   CallFilter(const CallFilter&) = delete;
   CallFilter& operator=(const CallFilter&) = delete;
@@ -43,4 +44,4 @@ class CallFilter {
 /// The first call that the newest filter refused, for a person; empty without one. Any thread.
 std::string refused_call();
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::watch

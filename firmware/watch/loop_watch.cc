@@ -1,18 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/watch/loop_watch.h"
 
 #include <pthread.h>
 
-#include "firmware/grid.h"
+#include "firmware/loop/grid.h"
 
-namespace tact::firmware {
+namespace tact::firmware::watch {
 
-void LoopWatch::start(const RtSettings& loop) {
+void LoopWatch::start(const pc::RtSettings& loop) {
   thread_ = std::thread([this, loop] {
     pthread_setname_np(pthread_self(), "tact-watch");
-    std::vector<Shortfall> known;
+    std::vector<pc::Shortfall> known;
     enter_watch_thread(loop, known);
     run();
-    leave_rt_thread();
+    pc::leave_rt_thread();
   });
 }
 
@@ -29,16 +30,16 @@ void LoopWatch::run() RT_SAFE {
 }
 
 void LoopWatch::check() RT_SAFE {
-  const Fault found = stall_.step(progress_);
-  if (found != Fault::kNone) requests_.trip(found);
-  if (requests_.fault.load(std::memory_order_relaxed) != Fault::kNone) lines_.drop();
+  const model::Fault found = stall_.step(progress_);
+  if (found != model::Fault::kNone) requests_.trip(found);
+  if (requests_.fault.load(std::memory_order_relaxed) != model::Fault::kNone) lines_.drop();
 }
 
 // On one core the watch would else delay the loop's wake-up, each time by its own. What it is late
 // itself, less than half a period, does not add up.
 std::int64_t LoopWatch::next_ns(std::int64_t now_ns) const RT_SAFE {
   const std::int64_t period_ns = stall_.period_ns();
-  return next_half_way_ns(now_ns + stall_.check_ns() - period_ns / 2, period_ns);
+  return loop::next_half_way_ns(now_ns + stall_.check_ns() - period_ns / 2, period_ns);
 }
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::watch

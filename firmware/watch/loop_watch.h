@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // loop_watch.h - the thread above the loop: when the loop cannot stop the force, it does.
 //
-// It wakes every 5 periods, halfway between two deadlines of the loop (grid.h), above the loop's priority
-// and on another core where there is one. When the loop stalls, hangs in a call or runs away
-// (runaway.h), or a call of it was refused (call_filter.h):
+// It wakes every 5 periods, halfway between two deadlines of the loop (grid.h), above the loop's
+// priority and on another core where there is one. When the loop stalls, hangs in a call or runs
+// away (runaway.h), or a call of it was refused (call_filter.h):
 //
-//     the fault is set for the loop   zero force in the first tick that comes, latched until the end
+//     the fault is set for the loop   zero force in the first tick to come, latched until the end
 //     enable and heartbeat drop       by this thread itself, at this check and every one after
 //
 // It cannot write to the device: a call of the loop may be under way there. Without an enable line
@@ -13,23 +14,23 @@
 
 #include <thread>
 
-#include "firmware/clock.h"
-#include "firmware/rt_loop.h"
-#include "firmware/rt_setup.h"
+#include "firmware/loop/clock.h"
+#include "firmware/loop/rt_loop.h"
+#include "firmware/pc/rt_setup.h"
 #include "firmware/watch/stall_watch.h"
 
-namespace tact::firmware {
+namespace tact::firmware::watch {
 
 class LoopWatch {
  public:
-  LoopWatch(const StallWatch& stall, const Progress& progress, Requests& requests,
+  LoopWatch(const StallWatch& stall, const loop::Progress& progress, loop::Requests& requests,
             hal::SafetyLines& lines)
       : stall_(stall), progress_(progress), requests_(requests), lines_(lines) {}
   ~LoopWatch() { stop(); }
   LoopWatch(const LoopWatch&) = delete;
   LoopWatch& operator=(const LoopWatch&) = delete;
 
-  void start(const RtSettings& loop);
+  void start(const pc::RtSettings& loop);
   void stop();
   /// One check, at any time.
   void check() RT_SAFE;
@@ -39,12 +40,12 @@ class LoopWatch {
   std::int64_t next_ns(std::int64_t now_ns) const RT_SAFE;
 
   StallWatch stall_;
-  const Progress& progress_;
-  Requests& requests_;
+  const loop::Progress& progress_;
+  loop::Requests& requests_;
   hal::SafetyLines& lines_;
-  MonotonicClock clock_;
+  loop::MonotonicClock clock_;
   std::atomic<bool> ending_{false};
   std::thread thread_;
 };
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::watch

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/watch/runaway.h"
 
 #include <fmt/format.h>
@@ -6,24 +7,24 @@
 #include <atomic>
 #include <csignal>
 
-namespace tact::firmware {
+namespace tact::firmware::watch {
 namespace {
 
-std::atomic<Requests*> guarded{nullptr};
-static_assert(std::atomic<Requests*>::is_always_lock_free);
+std::atomic<loop::Requests*> guarded{nullptr};
+static_assert(std::atomic<loop::Requests*>::is_always_lock_free);
 
 // In whatever thread; lock-free stores only. A loop that does not sleep must end: nothing else
 // would give its core back.
 void on_runaway(int) {
-  Requests* requests = guarded.load();
+  loop::Requests* requests = guarded.load();
   if (requests == nullptr) return;
-  requests->trip(Fault::kLoopRanAway);
+  requests->trip(model::Fault::kLoopRanAway);
   requests->stop.store(true);
 }
 
 }  // namespace
 
-std::optional<Shortfall> lift_rttime_limit() {
+std::optional<pc::Shortfall> lift_rttime_limit() {
   rlimit limit{};
   getrlimit(RLIMIT_RTTIME, &limit);
   if (limit.rlim_cur == RLIM_INFINITY && limit.rlim_max == RLIM_INFINITY) return std::nullopt;
@@ -32,16 +33,16 @@ std::optional<Shortfall> lift_rttime_limit() {
   const rlimit most{.rlim_cur = limit.rlim_max, .rlim_max = limit.rlim_max};
   setrlimit(RLIMIT_RTTIME, &most);
   if (limit.rlim_max == RLIM_INFINITY) return std::nullopt;
-  return Shortfall{fmt::format(
+  return pc::Shortfall{fmt::format(
       "the kernel kills a real-time thread of this session after {} us without a sleep "
       "(RLIMIT_RTTIME), without a word; start tactd after ulimit -R unlimited, or mend rttime in "
       "/etc/security/limits.d/",
       limit.rlim_max)};
 }
 
-RunawayGuard::RunawayGuard(Requests& requests, rlim_t longest_us) {
+RunawayGuard::RunawayGuard(loop::Requests& requests, rlim_t longest_us) {
   guarded.store(&requests);
-  struct sigaction action {};
+  struct sigaction action{};
   action.sa_handler = on_runaway;
   action.sa_flags = SA_RESTART;
   sigaction(SIGXCPU, &action, nullptr);
@@ -57,4 +58,4 @@ RunawayGuard::~RunawayGuard() {
   guarded.store(nullptr);
 }
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::watch

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // runaway.h - a real-time thread that never sleeps: it would hold its core until the power is cut.
 //
 // RLIMIT_RTTIME counts the CPU time that a SCHED_FIFO thread takes without a sleep; beyond the soft
@@ -12,21 +13,21 @@
 
 #include <optional>
 
-#include "firmware/rt_loop.h"
-#include "firmware/rt_setup.h"
+#include "firmware/loop/rt_loop.h"
+#include "firmware/pc/rt_setup.h"
 
-namespace tact::firmware {
+namespace tact::firmware::watch {
 
 /// A limit that a session hands down ends a real-time process without a word, so it is lifted, or
 /// told when that is not allowed. Before any real-time thread starts.
-std::optional<Shortfall> lift_rttime_limit();
+std::optional<pc::Shortfall> lift_rttime_limit();
 
 /// While it lives, 50 ms without a sleep end in a stop. One at a time.
 class RunawayGuard {
  public:
   static constexpr rlim_t kLongest_us = 50'000;
 
-  explicit RunawayGuard(Requests& requests, rlim_t longest_us = kLongest_us);
+  explicit RunawayGuard(loop::Requests& requests, rlim_t longest_us = kLongest_us);
   ~RunawayGuard();
   RunawayGuard(const RunawayGuard&) = delete;
   RunawayGuard& operator=(const RunawayGuard&) = delete;
@@ -35,4 +36,4 @@ class RunawayGuard {
   rlimit before_{};
 };
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::watch

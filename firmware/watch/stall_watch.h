@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // stall_watch.h - has the loop stopped ticking? Pure: one look at its progress per check.
 //
 // A check is a wake-up of the watch itself, every 5 periods. What counts is how often the watch ran
@@ -8,10 +9,10 @@
 //     elsewhere        250 ms, as a stock kernel stalls
 #pragma once
 
-#include "firmware/watch/progress.h"
+#include "firmware/loop/progress.h"
 #include "model/fault.h"
 
-namespace tact::firmware {
+namespace tact::firmware::watch {
 
 class StallWatch {
  public:
@@ -27,7 +28,7 @@ class StallWatch {
   std::int64_t longest_ns() const { return (most_checks_ + 1) * check_ns_; }
 
   /// One check. The fault stands as long as the stall.
-  model::Fault step(const Progress& progress) RT_SAFE {
+  model::Fault step(const loop::Progress& progress) RT_SAFE {
     const std::uint64_t ticks = progress.ticks();
     if (ticks != before_ || !progress.running()) {
       before_ = ticks;
@@ -37,11 +38,11 @@ class StallWatch {
     if (still_ < most_checks_) ++still_;
     if (still_ < most_checks_) return model::Fault::kNone;
     switch (progress.place()) {
-      case Place::kDevice:
+      case loop::Place::kDevice:
         return model::Fault::kDeviceStalled;
-      case Place::kLines:
+      case loop::Place::kLines:
         return model::Fault::kLinesLost;
-      case Place::kOwn:
+      case loop::Place::kOwn:
         break;
     }
     return model::Fault::kLoopStalled;
@@ -56,4 +57,4 @@ class StallWatch {
   std::int64_t still_ = 0;  // checks in a row without a tick
 };
 
-}  // namespace tact::firmware
+}  // namespace tact::firmware::watch

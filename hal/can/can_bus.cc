@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/can/can_bus.h"
 
 #include <fmt/core.h>
@@ -5,7 +6,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace tact::hal {
+namespace tact::hal::can {
 namespace {
 
 constexpr std::uint8_t kind_of(CanCause cause) { return static_cast<std::uint8_t>(cause); }
@@ -18,9 +19,8 @@ bool is_no_room(int error) RT_SAFE {
 /// The sentence of the worst thing that these bits say.
 const char* sentence_of(std::uint32_t bits, std::span<const CanErrorWords> words,
                         std::uint32_t only) {
-  for (const CanErrorWords& one : words) {
+  for (const CanErrorWords& one : words)
     if ((bits & only & one.bit) != 0) return one.sentence;
-  }
   return nullptr;
 }
 
@@ -50,13 +50,12 @@ std::span<const CanReceived> CanBus::receive() RT_SAFE {
   std::size_t frames = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
     const CanArrival& arrival = arrivals_[i];
-    if (const auto frame = unpack_can_frame(arrival.bytes)) {
+    if (const auto frame = unpack_can_frame(arrival.bytes))
       received_[frames++] = {.frame = *frame, .age_ns = arrival.age_ns};
-    } else if (const auto error = decode_can_error(arrival.bytes)) {
+    else if (const auto error = decode_can_error(arrival.bytes))
       judge(*error);
-    } else {
+    else
       ++counts_.unreadable;
-    }
   }
   return std::span(received_).first(frames);
 }
@@ -107,14 +106,6 @@ void CanBus::miss() RT_SAFE {
   ++counts_.missed_cycles;
   if (++missed_in_a_row_ < kMostMissedInARow) return;
   latch_.set({.fault = Fault::kBusDown, .kind = kind_of(CanCause::kNoRoom)});
-}
-
-std::vector<DeviceCount> with_bus(std::vector<DeviceCount> own, const CanBusCounts& bus) {
-  own.insert(own.end(), {{"missed_cycles", bus.missed_cycles},
-                         {"error_frames", bus.error_frames},
-                         {"unreadable", bus.unreadable},
-                         {"cut_reads", bus.cut_reads}});
-  return own;
 }
 
 std::string can_bus_trouble(const FaultCause& cause, const std::string& interface) {
@@ -169,4 +160,4 @@ std::string silent_bus_trouble(const CanBus& bus, const std::string& interface) 
       interface);
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::can

@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 // can_bus.h - one CAN bus in a tick: everything that came in, one batch out, and how the bus is.
 //
 //     receive()  once per tick: one system call, at most 64 frames; error frames are judged here
 //     push()     frames of this tick, in order of importance;   send()  one system call for all
 //
 // A batch that the kernel does not take whole (ENOBUFS, EAGAIN) is a missed cycle: counted, never
-// repeated, for the force in it is old by then; twenty in a row are a bus that takes no frames.
-// Error passive, bus-off and a controller that came back by itself latch kBusOff, an interface that
-// goes away kBusDown, until the bus is opened again.
+// repeated, for the force in it is old by then (CB-4); twenty in a row are a bus that takes no
+// frames. Error passive, bus-off and a controller that came back by itself latch kBusOff, an
+// interface that goes away kBusDown, until the bus is opened again.
 #pragma once
 
 #include <array>
@@ -16,7 +17,6 @@
 #include <span>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "hal/can/can_error.h"
 #include "hal/can/can_frame.h"
@@ -24,7 +24,7 @@
 #include "hal/can/fault_latch.h"
 #include "hal/device.h"
 
-namespace tact::hal {
+namespace tact::hal::can {
 
 using model::Fault;
 
@@ -40,7 +40,7 @@ struct CanBusCounts {
   std::uint64_t cut_reads = 0;   // the kernel may have had more than one call takes
 };
 
-/// Kinds of FaultCause that a bus has; a device's own begin at kFirstOwn.
+/// Kinds of FaultCause that a bus has; a drive's own begin at kFirstOwn.
 enum class CanCause : std::uint8_t {
   kCall = 1,        // code: errno
   kNoRoom = 2,      // twenty batches in a row
@@ -89,13 +89,10 @@ class CanBus {
   FaultLatch latch_;
 };
 
-/// A device's own counts and those of its bus, by name.
-std::vector<DeviceCount> with_bus(std::vector<DeviceCount> own, const CanBusCounts& bus);
-
 /// What a cause of the bus means, with the cure; empty for causes that are not the bus's.
 std::string can_bus_trouble(const FaultCause& cause, const std::string& interface);
 
 /// Set-up: why nobody was heard at all, as far as the bus itself says.
 std::string silent_bus_trouble(const CanBus& bus, const std::string& interface);
 
-}  // namespace tact::hal
+}  // namespace tact::hal::can

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/can/can_delta.h"
 
 #include <fmt/core.h>
@@ -8,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "hal/delta_at_tool.h"
+#include "hal/delta/delta_at_tool.h"
 #include "hal/saturation.h"
 #include "model/units.h"
 
-namespace tact::hal {
+namespace tact::hal::can {
 namespace {
 
 using model::operator""_deg;
@@ -23,7 +24,7 @@ constexpr double kJump_m = 5e-3;          // between two samples: a new start of
 constexpr std::int64_t kLongGap_ns = 20'000'000;
 constexpr Vec3 kGravity_W_mps2{0.0, 0.0, -9.81};
 
-Joints joints_of(const Vec3& v) { return {v.x, v.y, v.z}; }
+delta::Joints joints_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 /// The middle and the edges of the workspace cylinder.
 std::vector<Vec3> corners_D(const CanDelta& delta, const model::DeltaSettings& settings) {
@@ -44,7 +45,7 @@ double in_deg(double angle_rad) { return angle_rad * 360.0 / kTurn_rad; }
 
 }  // namespace
 
-DeltaGeometry delta_geometry(const model::DeltaSettings& delta) {
+delta::DeltaGeometry delta_geometry(const model::DeltaSettings& delta) {
   return {.base_radius_m = delta.base_radius_m,
           .platform_radius_m = delta.platform_radius_m,
           .upper_arm_m = delta.upper_arm_m,
@@ -54,7 +55,7 @@ DeltaGeometry delta_geometry(const model::DeltaSettings& delta) {
           .theta_max_rad = delta.theta_max_rad};
 }
 
-DeltaMasses delta_masses(const model::DeltaSettings& delta) {
+delta::DeltaMasses delta_masses(const model::DeltaSettings& delta) {
   return {.arm_kg = delta.arm_kg,
           .arm_com_m = delta.arm_com_m,
           .arm_inertia_kgm2 = delta.arm_inertia_kgm2,
@@ -73,7 +74,7 @@ CanDelta::CanDelta(const model::DeltaSettings& delta, const model::CanSettings& 
       home_rad_(joints_of(can.home_rad)),
       velocity_(delta.observer_bandwidth_Hz, kJump_m) {}
 
-void CanDelta::home_on_jig(const Joints& motor_turns) {
+void CanDelta::home_on_jig(const delta::Joints& motor_turns) {
   for (std::size_t i = 0; i < 3; ++i) {
     // zero = turns - direction gear theta_home / 2 pi
     zero_turns_[i] =
@@ -81,8 +82,8 @@ void CanDelta::home_on_jig(const Joints& motor_turns) {
   }
 }
 
-Joints CanDelta::theta_rad(const Joints& motor_turns) const RT_SAFE {
-  Joints theta_rad{};
+delta::Joints CanDelta::theta_rad(const delta::Joints& motor_turns) const RT_SAFE {
+  delta::Joints theta_rad{};
   for (std::size_t i = 0; i < 3; ++i) {
     theta_rad[i] =
         kTurn_rad * direction_[i] * (motor_turns[i] - zero_turns_[i]) / settings_.gear_ratio;
@@ -90,8 +91,8 @@ Joints CanDelta::theta_rad(const Joints& motor_turns) const RT_SAFE {
   return theta_rad;
 }
 
-std::optional<FaultCause> CanDelta::doubt(const Joints& theta_rad,
-                                          const DeltaForward& pose) const RT_SAFE {
+std::optional<FaultCause> CanDelta::doubt(const delta::Joints& theta_rad,
+                                          const delta::DeltaForward& pose) const RT_SAFE {
   for (std::size_t i = 0; i < 3; ++i) {
     const bool inside = theta_rad[i] >= settings_.theta_min_rad - kStopSlack_rad &&
                         theta_rad[i] <= settings_.theta_max_rad + kStopSlack_rad;
@@ -107,17 +108,17 @@ std::optional<FaultCause> CanDelta::doubt(const Joints& theta_rad,
                     .kind = static_cast<std::uint8_t>(HomingCause::kRodsApart)};
 }
 
-std::optional<model::Error> CanDelta::check_home(const Joints& motor_turns) const {
-  const Joints theta = theta_rad(motor_turns);
+std::optional<model::Error> CanDelta::check_home(const delta::Joints& motor_turns) const {
+  const delta::Joints theta = theta_rad(motor_turns);
   const auto cause = doubt(theta, delta_.forward(theta));
   if (!cause) return std::nullopt;
   return model::Error{"the delta is not homed: " + homing_trouble(*cause, settings_)};
 }
 
-std::optional<FaultCause> CanDelta::measure(const Joints& motor_turns, std::int64_t stamp_ns,
+std::optional<FaultCause> CanDelta::measure(const delta::Joints& motor_turns, std::int64_t stamp_ns,
                                             Tool& tool) RT_SAFE {
-  const Joints theta = theta_rad(motor_turns);
-  const DeltaForward forward = delta_.forward(theta);
+  const delta::Joints theta = theta_rad(motor_turns);
+  const delta::DeltaForward forward = delta_.forward(theta);
   if (const auto cause = doubt(theta, forward)) return cause;
   pose_ = delta_.pose(forward.far_m, theta);
   if (!has_pose_ || stamp_ns - stamp_ns_ > kLongGap_ns) velocity_.reset();
@@ -130,14 +131,15 @@ std::optional<FaultCause> CanDelta::measure(const Joints& motor_turns, std::int6
   return std::nullopt;
 }
 
-Joints CanDelta::motor_torques_Nm(const Vec3& force_N, double ratio) const RT_SAFE {
-  Joints torque_Nm{};
+delta::Joints CanDelta::motor_torques_Nm(const Vec3& force_N, double ratio) const RT_SAFE {
+  delta::Joints torque_Nm{};
   if (!has_pose_) return torque_Nm;
   const Vec3 force = is_finite(force_N) ? saturated(force_N, settings_.max_force_N) : Vec3{};
   // tau = tau_g + s J^T F, one s for all joints
   torque_Nm = gravity_torques_Nm(delta_.geometry(), masses_, pose_, direction_D(kGravity_W_mps2));
-  const Joints wanted_Nm = joint_torques_Nm(pose_, direction_D(force));
-  const double within = saturation_ratio(torque_Nm, wanted_Nm, settings_.max_joint_torque_Nm);
+  const delta::Joints wanted_Nm = joint_torques_Nm(pose_, direction_D(force));
+  const double within =
+      delta::saturation_ratio(torque_Nm, wanted_Nm, settings_.max_joint_torque_Nm);
   for (std::size_t i = 0; i < 3; ++i) {
     const double most_Nm = settings_.max_joint_torque_Nm;  // gravity alone may be above it
     const double joint_Nm = std::clamp(torque_Nm[i] + within * wanted_Nm[i], -most_Nm, most_Nm);
@@ -181,4 +183,4 @@ std::string homing_trouble(const FaultCause& cause, const model::DeltaSettings& 
   return {};
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::can

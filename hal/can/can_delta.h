@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // can_delta.h - a delta of one's own between turns of three motors and the tool in W.
 //
 //     theta_i = 2 pi direction_i (turns_i - zero_i) / gear        rad, from the motor's turns
@@ -15,17 +16,17 @@
 #include <string>
 
 #include "hal/can/fault_latch.h"
-#include "hal/delta_dynamics.h"
-#include "hal/delta_kinematics.h"
+#include "hal/delta/delta_dynamics.h"
+#include "hal/delta/delta_kinematics.h"
 #include "hal/device.h"
 #include "hal/velocity_observer.h"
 #include "model/device_settings.h"
 #include "model/result.h"
 
-namespace tact::hal {
+namespace tact::hal::can {
 
-DeltaGeometry delta_geometry(const model::DeltaSettings& delta);
-DeltaMasses delta_masses(const model::DeltaSettings& delta);
+delta::DeltaGeometry delta_geometry(const model::DeltaSettings& delta);
+delta::DeltaMasses delta_masses(const model::DeltaSettings& delta);
 
 /// Kinds of FaultCause of a lost homing.
 enum class HomingCause : std::uint8_t {
@@ -38,18 +39,18 @@ class CanDelta {
   CanDelta(const model::DeltaSettings& delta, const model::CanSettings& can);
 
   /// Set-up: the arms rest at home_rad now, so zero is where that says.
-  void home_on_jig(const Joints& motor_turns);
+  void home_on_jig(const delta::Joints& motor_turns);
   /// Set-up: why these turns cannot be right, if so.
-  std::optional<model::Error> check_home(const Joints& motor_turns) const;
+  std::optional<model::Error> check_home(const delta::Joints& motor_turns) const;
 
-  Joints theta_rad(const Joints& motor_turns) const RT_SAFE;
+  delta::Joints theta_rad(const delta::Joints& motor_turns) const RT_SAFE;
   /// Tool pose and velocity of a sample taken at stamp_ns. A cause: the homing is lost, and the
   /// tool is untouched.
-  std::optional<FaultCause> measure(const Joints& motor_turns, std::int64_t stamp_ns,
+  std::optional<FaultCause> measure(const delta::Joints& motor_turns, std::int64_t stamp_ns,
                                     Tool& tool) RT_SAFE;
   /// At the motors, for a force at the tool in W, gravity of the last pose included, all times
   /// `ratio`. Zero before the first pose; gravity alone for a force that is not finite.
-  Joints motor_torques_Nm(const Vec3& force_N, double ratio = 1.0) const RT_SAFE;
+  delta::Joints motor_torques_Nm(const Vec3& force_N, double ratio = 1.0) const RT_SAFE;
 
   /// `delay_s`: from position to force, beyond one hold; `counts_per_turn` of an arm.
   DeviceInfo info(std::string name, double counts_per_turn, double delay_s) const;
@@ -64,14 +65,15 @@ class CanDelta {
   }
 
  private:
-  std::optional<FaultCause> doubt(const Joints& theta_rad, const DeltaForward& pose) const RT_SAFE;
+  std::optional<FaultCause> doubt(const delta::Joints& theta_rad,
+                                  const delta::DeltaForward& pose) const RT_SAFE;
 
   model::DeltaSettings settings_;
-  DeltaMasses masses_;
-  DeltaKinematics delta_;
-  Joints direction_{}, zero_turns_{}, home_rad_{};
+  delta::DeltaMasses masses_;
+  delta::DeltaKinematics delta_;
+  delta::Joints direction_{}, zero_turns_{}, home_rad_{};
   VelocityObserver velocity_;
-  DeltaPose pose_;
+  delta::DeltaPose pose_;
   bool has_pose_ = false;
   std::int64_t stamp_ns_ = 0;
 };
@@ -82,4 +84,4 @@ std::string can_arm_name(std::size_t axis, const model::CanSettings& can);
 /// What a cause of a lost homing means, with the cure; empty for other causes.
 std::string homing_trouble(const FaultCause& cause, const model::DeltaSettings& delta);
 
-}  // namespace tact::hal
+}  // namespace tact::hal::can

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/can/can_error.h"
 
 #include <algorithm>
@@ -5,7 +6,7 @@
 #include "hal/can/can_frame.h"
 #include "hal/can/little_endian.h"
 
-namespace tact::hal {
+namespace tact::hal::can {
 namespace {
 
 constexpr std::uint32_t kFlags = 7u << 29;
@@ -65,15 +66,13 @@ constexpr std::uint32_t all_bits(const CanErrorWords (&words)[n]) {
 CanErrorAction action_of(const CanError& error) RT_SAFE {
   using enum CanErrorClass;
   using enum CanControllerState;
-  if (error.has(kBusOff) || error.has(kRxPassive) || error.has(kTxPassive)) {
+  if (error.has(kBusOff) || error.has(kRxPassive) || error.has(kTxPassive))
     return CanErrorAction::kDisableDrives;
-  }
   // A bit that no table names comes from a newer kernel: somebody should look at it.
   const bool unknown = (error.classes & ~all_bits(kClassWords)) != 0 ||
                        (error.controller & ~all_bits(kControllerWords)) != 0;
-  if (error.has(kRxWarning) || error.has(kTxWarning) || error.has(kTransceiver) || unknown) {
+  if (error.has(kRxWarning) || error.has(kTxWarning) || error.has(kTransceiver) || unknown)
     return CanErrorAction::kWarn;
-  }
   if (error.has(kTxTimeout) || error.has(kNoAck)) return CanErrorAction::kCount;
   return CanErrorAction::kLog;
 }
@@ -117,4 +116,4 @@ const char* can_error_action_name(CanErrorAction action) RT_SAFE {
   return "disable_drives";
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::can

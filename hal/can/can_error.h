@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // can_error.h - what an error frame says about the bus, in classes, in words, and what to do.
 //
 // The CAN driver reports trouble as frames with bit 29 of the identifier set (linux/can/error.h):
@@ -6,7 +7,7 @@
 //     data[0] bit where arbitration was lost   data[1] controller state   data[2-3] protocol
 //     data[4] transceiver                      data[6-7] error counters, if class 0x200 is set
 //
-// Counters of ISO 11898-1: below 96 active, from 96 warning, from 128 passive, at 256 the
+// Counters of ISO 11898-1 (CB-3): below 96 active, from 96 warning, from 128 passive, at 256 the
 // controller leaves the bus. A passive or absent controller may deliver torques late or never, so
 // the drives are to be disabled; a bus that comes back by itself would resume on old state.
 #pragma once
@@ -17,7 +18,7 @@
 
 #include "model/rt.h"
 
-namespace tact::hal {
+namespace tact::hal::can {
 
 enum class CanErrorClass : std::uint32_t {
   kTxTimeout = 0x001,
@@ -84,4 +85,4 @@ std::span<const CanErrorWords> can_error_class_words() RT_SAFE;
 std::span<const CanErrorWords> can_controller_words() RT_SAFE;
 const char* can_error_action_name(CanErrorAction action) RT_SAFE;
 
-}  // namespace tact::hal
+}  // namespace tact::hal::can

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/can/can_frame.h"
 
 #include <algorithm>
 
 #include "hal/can/little_endian.h"
 
-namespace tact::hal {
+namespace tact::hal::can {
 namespace {
 
 constexpr std::uint32_t kRemoteFlag = 1u << 30;
@@ -89,4 +90,4 @@ CanBits can_bits_on_bus(const CanFrame& frame) RT_SAFE {
           .most = stuffed_bits + (stuffed_bits - 1) / 4 + kTailBits};
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::can

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // can_frame.h - one frame of a classic CAN bus with an 11-bit identifier, and its cost in bits.
 //
 // Bytes are those of SocketCAN's `struct can_frame` (linux/can.h), 16 of them, little endian:
@@ -5,10 +6,10 @@
 //     0-3  identifier, with flags: bit 31 extended, bit 30 remote request, bit 29 error frame
 //     4    length, 0 to 8          5-7  not used here          8-15  data
 //
-// Bits are those of ISO 11898-1 for 8 n data bits: 34 + 8 n from the start of frame to the end of
-// the checksum, where a bit of the other sign follows five equal ones ("stuffing"), then 13 fixed
-// ones: three delimiters and acknowledge, 7 end of frame, 3 intermission. At 1 Mbit/s a bit is 1
-// us.
+// Bits are those of ISO 11898-1 (CB-1, CB-2) for 8 n data bits: 34 + 8 n from the start of frame to
+// the end of the checksum, where a bit of the other sign follows five equal ones ("stuffing"), then
+// 13 fixed ones: three delimiters and acknowledge, 7 end of frame, 3 intermission. At 1 Mbit/s a
+// bit is 1 us.
 #pragma once
 
 #include <array>
@@ -19,7 +20,7 @@
 
 #include "model/rt.h"
 
-namespace tact::hal {
+namespace tact::hal::can {
 
 inline constexpr std::uint32_t kCanLargestId = 0x7FF;
 inline constexpr std::size_t kCanFrameBytes = 16;
@@ -63,4 +64,4 @@ struct CanBits {
 /// Bits on the bus, intermission included; zero for a frame that cannot be packed.
 CanBits can_bits_on_bus(const CanFrame& frame) RT_SAFE;
 
-}  // namespace tact::hal
+}  // namespace tact::hal::can

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/can/can_link.h"
 
 #include <fmt/core.h>
@@ -19,7 +20,7 @@
 
 #include "hal/can/little_endian.h"
 
-namespace tact::hal {
+namespace tact::hal::can {
 namespace {
 
 using model::Error;
@@ -69,9 +70,8 @@ void take_link_info(std::span<const std::uint8_t> info, CanLink& link) {
   }
   link.only_local = kind == "vcan";
   if (kind != "can") return;  // others have other data
-  for (const Attribute& one : parts) {
+  for (const Attribute& one : parts)
     if (one.type == kInfoData) take_can_data(one.value, link);
-  }
 }
 
 Error refused(const std::string& name, const char* what, int error) {
@@ -108,9 +108,8 @@ std::optional<CanLink> decode_can_link(std::span<const std::uint8_t> message) {
                .bitrate = {},
                .state = {},
                .restart_ms = {}};
-  for (const Attribute& one : attributes(body.subspan(kLinkHeader))) {
+  for (const Attribute& one : attributes(body.subspan(kLinkHeader)))
     if (one.type == kLinkInfo) take_link_info(one.value, link);
-  }
   return link;
 }
 
@@ -182,9 +181,8 @@ Result<CanLink> read_can_link(const std::string& name) {
   put_unsigned(request, 4, 2, RTM_GETLINK);
   put_unsigned(request, 6, 2, NLM_F_REQUEST);
   put_unsigned(request, kHeader + 4, 4, if_nametoindex(name.c_str()));
-  if (send(file.get(), request.data(), request.size(), 0) < 0) {
+  if (send(file.get(), request.data(), request.size(), 0) < 0)
     return refused(name, "cannot ask for its state", errno);
-  }
   std::vector<std::uint8_t> reply(32768);
   const ssize_t n = recv(file.get(), reply.data(), reply.size(), 0);
   if (n < 0) return refused(name, "cannot read its state", errno);
@@ -204,9 +202,8 @@ Result<std::unique_ptr<CanSocket>> open_can_socket(const std::string& name, int 
   }
   if (file.get() < 0) return refused(name, "this kernel has no CAN (sudo modprobe can_raw)", errno);
   std::vector<can_filter> filters;
-  for (const std::uint32_t id : ids) {  // exact: data frames of 11 bits, no requests
+  for (const std::uint32_t id : ids)  // exact: data frames of 11 bits, no requests
     filters.push_back({.can_id = id, .can_mask = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG});
-  }
   const can_err_mask_t errors = CAN_ERR_MASK & ~CAN_ERR_LOSTARB;
   const int off = 0;
   const auto filter_bytes = static_cast<socklen_t>(filters.size() * sizeof(can_filter));
@@ -220,9 +217,8 @@ Result<std::unique_ptr<CanSocket>> open_can_socket(const std::string& name, int 
   address.can_family = AF_CAN;
   address.can_ifindex = index;
   // NOLINTNEXTLINE: bind takes every family through this one type
-  if (bind(file.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+  if (bind(file.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
     return refused(name, "cannot bind to it", errno);
-  }
   return std::make_unique<CanSocket>(file.release());
 }
 
@@ -235,4 +231,4 @@ Result<std::unique_ptr<CanSocket>> open_checked_can(const std::string& name, int
   return open_can_socket(name, link->index, ids);
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::can

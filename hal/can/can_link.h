@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // can_link.h - is this CAN interface fit for a force? Asked once, before the loop.
 //
 // The kernel's answer to RTM_GETLINK (rtnetlink(7), linux/if_link.h, linux/can/netlink.h):
@@ -19,7 +20,7 @@
 #include "hal/can/can_socket.h"
 #include "model/result.h"
 
-namespace tact::hal {
+namespace tact::hal::can {
 
 /// Of the controller, in the kernel's order.
 enum class CanLinkState : std::uint32_t {
@@ -60,4 +61,4 @@ model::Result<std::unique_ptr<CanSocket>> open_checked_can(const std::string& na
                                                            double rate_Hz,
                                                            std::span<const std::uint32_t> ids);
 
-}  // namespace tact::hal
+}  // namespace tact::hal::can

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/can/can_socket.h"
 
 #include <poll.h>
@@ -19,7 +20,7 @@
 #define TACT_THIS_CALL_NEVER_WAITS static_cast<void>(0)
 #endif
 
-namespace tact::hal {
+namespace tact::hal::can {
 namespace {
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
@@ -75,9 +76,8 @@ CanSocket::~CanSocket() { close(fd_); }
 
 int CanSocket::receive(std::span<CanArrival> out) RT_SAFE {
   const std::size_t most = std::min(out.size(), kMostReceived);
-  for (std::size_t i = 0; i < most; ++i) {
+  for (std::size_t i = 0; i < most; ++i)
     in_[i].msg_hdr.msg_controllen = sizeof(Control);  // the kernel wrote what it used
-  }
   const int told = receive_batch(fd_, std::span(in_).first(most));
   const int n = told == -EAGAIN || told == -EINTR ? 0 : told;
   if (n < 0) return n;
@@ -114,4 +114,4 @@ void CanSocket::wait(int timeout_ms) {
 
 std::int64_t CanSocket::now_ns() { return monotonic_ns(); }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::can

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // can_socket.h - the kernel's side of a CAN bus: many frames in one call each way, none ever waits.
 //
 // Any socket whose datagrams are the 16 bytes of `struct can_frame` (can_frame.h): SocketCAN's raw
@@ -19,7 +20,7 @@
 #include "hal/can/can_frame.h"
 #include "hal/can/stamp_age.h"
 
-namespace tact::hal {
+namespace tact::hal::can {
 
 struct CanArrival {
   CanFrameBytes bytes{};
@@ -68,4 +69,4 @@ class CanSocket {
   std::array<CanFrameBytes, kMostSent> out_bytes_{};
 };
 
-}  // namespace tact::hal
+}  // namespace tact::hal::can

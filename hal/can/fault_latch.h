@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fault_latch.h - the first fault of a device stays, with its cause, for the loop and for words.
 //
 // The loop's thread sets it; any thread may read it. One 64-bit word holds it all, so a reader
@@ -9,7 +10,7 @@
 
 #include "model/fault.h"
 
-namespace tact::hal {
+namespace tact::hal::can {
 
 struct FaultCause {
   model::Fault fault = model::Fault::kNone;
@@ -29,9 +30,8 @@ class FaultLatch {
   /// The same fault, better known: a code often comes a frame later than the state.
   void explain(const FaultCause& cause) RT_SAFE {
     const FaultCause old = this->cause();
-    if (old.fault == cause.fault && old.axis == cause.axis) {
+    if (old.fault == cause.fault && old.axis == cause.axis)
       word_.store(packed(cause), std::memory_order_relaxed);
-    }
   }
   FaultCause cause() const RT_SAFE {
     const std::uint64_t word = word_.load(std::memory_order_relaxed);
@@ -51,4 +51,4 @@ class FaultLatch {
   std::atomic<std::uint64_t> word_{0};
 };
 
-}  // namespace tact::hal
+}  // namespace tact::hal::can

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // little_endian.h - numbers in the bytes of a payload, least significant byte first.
 //
 // The order of SocketCAN on our machines, of ODrive's CANSimple and of CANopen. Written by shifts,
@@ -13,16 +14,15 @@
 
 #include "model/rt.h"
 
-namespace tact::hal {
+namespace tact::hal::can {
 
 /// `count` bytes, at most 8, from `offset`.
 constexpr std::uint64_t get_unsigned(std::span<const std::uint8_t> bytes, std::size_t offset,
                                      std::size_t count) RT_SAFE {
   assert(count <= 8 && offset + count <= bytes.size());
   std::uint64_t value = 0;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count; ++i)
     value |= static_cast<std::uint64_t>(bytes[offset + i]) << (8 * i);
-  }
   return value;
 }
 
@@ -47,12 +47,11 @@ constexpr float get_f32(std::span<const std::uint8_t> bytes, std::size_t offset)
 constexpr void put_unsigned(std::span<std::uint8_t> bytes, std::size_t offset, std::size_t count,
                             std::uint64_t value) RT_SAFE {
   assert(count <= 8 && offset + count <= bytes.size());
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count; ++i)
     bytes[offset + i] = static_cast<std::uint8_t>(value >> (8 * i));
-  }
 }
 constexpr void put_f32(std::span<std::uint8_t> bytes, std::size_t offset, float value) RT_SAFE {
   put_unsigned(bytes, offset, 4, std::bit_cast<std::uint32_t>(value));
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::can

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // sample_gap.h - what torques are still worth while the positions they hold do not come.
 //
 //     missing samples in a row    0, 1      2 .. n + 1                  n = 10 ms of ticks
@@ -13,7 +14,7 @@
 
 #include "model/rt.h"
 
-namespace tact::hal {
+namespace tact::hal::can {
 
 class SampleGap {
  public:
@@ -39,4 +40,4 @@ class SampleGap {
   int missing_ = 0;
 };
 
-}  // namespace tact::hal
+}  // namespace tact::hal::can

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // stamp_age.h - how old a frame is whose stamp is of a clock that may be set.
 //
 // The kernel stamps frames by the time of day. When that has stepped since the last look, a stamp
@@ -5,9 +6,9 @@
 //
 //     stamped after the step    now - stamp           before it    now - stamp - step
 //
-// An age is never negative and, when the last look emptied the queue, never more than the time since
-// then by the clock that does not step. Where both ages are possible, or neither, the older one
-// counts: what is old is never taken for fresh, and at most the frames of one look are lost.
+// An age is never negative and, when the last look emptied the queue, never more than the time
+// since then by the clock that does not step. Where both ages are possible, or neither, the older
+// one counts: what is old is never taken for fresh, and at most the frames of one look are lost.
 #pragma once
 
 #include <algorithm>
@@ -17,12 +18,12 @@
 
 #include "model/rt.h"
 
-namespace tact::hal {
+namespace tact::hal::can {
 
 class StampAge {
  public:
-  /// Once per look into the queue, with both clocks right after it. `empties`: nothing stays behind,
-  /// so what the next look finds is newer than this one.
+  /// Once per look into the queue, with both clocks right after it. `empties`: nothing stays
+  /// behind, so what the next look finds is newer than this one.
   void look(std::int64_t wall_ns, std::int64_t monotonic_ns, bool empties) RT_SAFE {
     if (empties_) {
       offset_ns_ = wall_ns_ - monotonic_ns_;
@@ -61,4 +62,4 @@ class StampAge {
   bool empties_ = false;  // the last look
 };
 
-}  // namespace tact::hal
+}  // namespace tact::hal::can

@@ -1,4 +1,5 @@
-// canopen_frames.h - the few CANopen frames that a drive needs, to bytes and back.
+// SPDX-License-Identifier: Apache-2.0
+// canopen_frames.h - the few CANopen frames that a drive needs, to bytes and back (CN-1).
 //
 // CiA 301, little endian, node n from 1 to 127. Identifiers: NMT 0x000, SYNC 0x080, EMCY 0x080 + n,
 // SDO reply 0x580 + n, SDO request 0x600 + n, heartbeat 0x700 + n. An SDO carries up to four bytes
@@ -13,7 +14,7 @@
 
 #include "hal/can/can_frame.h"
 
-namespace tact::hal {
+namespace tact::hal::cia402 {
 
 inline constexpr int kCanopenLargestNode = 127;
 inline constexpr int kCanopenAllNodes = 0;  // for NMT alone
@@ -25,10 +26,10 @@ enum class NmtCommand : std::uint8_t {
   kResetNode = 0x81,
   kResetCommunication = 0x82,
 };
-std::optional<CanFrame> canopen_nmt(NmtCommand command, int node_or_all) RT_SAFE;
+std::optional<can::CanFrame> canopen_nmt(NmtCommand command, int node_or_all) RT_SAFE;
 
 /// All drives sample now, and send what they have.
-CanFrame canopen_sync() RT_SAFE;
+can::CanFrame canopen_sync() RT_SAFE;
 
 enum class NmtState : std::uint8_t {
   kBoot = 0x00,
@@ -37,16 +38,16 @@ enum class NmtState : std::uint8_t {
   kPreOperational = 0x7F,
 };
 /// The host sends its own too: a drive that misses it stops.
-std::optional<CanFrame> canopen_heartbeat(int node, NmtState state) RT_SAFE;
+std::optional<can::CanFrame> canopen_heartbeat(int node, NmtState state) RT_SAFE;
 /// Nothing for a state that CiA 301 does not know.
-std::optional<NmtState> decode_canopen_heartbeat(const CanFrame& frame, int node) RT_SAFE;
+std::optional<NmtState> decode_canopen_heartbeat(const can::CanFrame& frame, int node) RT_SAFE;
 
 struct Emergency {
   std::uint16_t code;           // words in canopen_words.h; 0: the errors are gone
   std::uint8_t error_register;  // of object 1001
   std::array<std::uint8_t, 5> manufacturer;
 };
-std::optional<Emergency> decode_canopen_emergency(const CanFrame& frame, int node) RT_SAFE;
+std::optional<Emergency> decode_canopen_emergency(const can::CanFrame& frame, int node) RT_SAFE;
 
 /// A value for an entry of a drive's object dictionary.
 struct SdoWrite {
@@ -57,8 +58,9 @@ struct SdoWrite {
   bool operator==(const SdoWrite&) const = default;
 };
 /// Also nothing for a value that is larger than its size.
-std::optional<CanFrame> canopen_sdo_download(int node, const SdoWrite& write) RT_SAFE;
-std::optional<CanFrame> canopen_sdo_upload(int node, std::uint16_t index, std::uint8_t sub) RT_SAFE;
+std::optional<can::CanFrame> canopen_sdo_download(int node, const SdoWrite& write) RT_SAFE;
+std::optional<can::CanFrame> canopen_sdo_upload(int node, std::uint16_t index,
+                                                std::uint8_t sub) RT_SAFE;
 
 enum class SdoReplyKind : std::uint8_t { kDownloadDone, kUpload, kAbort };
 struct SdoReply {
@@ -68,11 +70,11 @@ struct SdoReply {
   std::uint8_t size = 0;    // of an upload, bytes, 1 to 4
   std::uint32_t value = 0;  // of an upload; of an abort its code, words in canopen_words.h
 };
-std::optional<SdoReply> decode_canopen_sdo(const CanFrame& frame, int node) RT_SAFE;
+std::optional<SdoReply> decode_canopen_sdo(const can::CanFrame& frame, int node) RT_SAFE;
 
 /// Whether `node` can be one of a device.
 constexpr bool is_canopen_node(int node) RT_SAFE {
   return node >= 1 && node <= kCanopenLargestNode;
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::cia402

@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/cia402/canopen_words.h"
 
-namespace tact::hal {
+namespace tact::hal::cia402 {
 namespace {
 
 constexpr std::uint32_t kExact = 0xFFFFFFFF, kFamily = 0xFF00, kGroup = 0xF000;
@@ -82,9 +83,8 @@ constexpr CanopenWords kAbort[] = {
 };
 
 const char* sentence_of(std::uint32_t code, std::span<const CanopenWords> words) RT_SAFE {
-  for (const CanopenWords& one : words) {
+  for (const CanopenWords& one : words)
     if ((code & one.mask) == one.code) return one.sentence;
-  }
   return words.back().sentence;
 }
 
@@ -96,4 +96,4 @@ std::span<const CanopenWords> sdo_abort_words() RT_SAFE { return kAbort; }
 const char* emergency_sentence(std::uint16_t code) RT_SAFE { return sentence_of(code, kEmergency); }
 const char* sdo_abort_sentence(std::uint32_t code) RT_SAFE { return sentence_of(code, kAbort); }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::cia402

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // canopen_words.h - what a CANopen drive's codes mean, in words and with the cure.
 //
 // Emergency codes of CiA 301 and CiA 402, and the abort codes of SDO transfers of CiA 301. A drive
@@ -9,7 +10,7 @@
 
 #include "model/rt.h"
 
-namespace tact::hal {
+namespace tact::hal::cia402 {
 
 struct CanopenWords {
   std::uint32_t code;
@@ -24,4 +25,4 @@ std::span<const CanopenWords> sdo_abort_words() RT_SAFE;
 const char* emergency_sentence(std::uint16_t code) RT_SAFE;
 const char* sdo_abort_sentence(std::uint32_t code) RT_SAFE;
 
-}  // namespace tact::hal
+}  // namespace tact::hal::cia402

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/cia402/cia402_bring_up.h"
 
 #include <fmt/core.h>
@@ -10,7 +11,7 @@
 #include "hal/cia402/cia402_state.h"
 #include "hal/cia402/sdo_client.h"
 
-namespace tact::hal {
+namespace tact::hal::cia402 {
 namespace {
 
 using model::Error;
@@ -22,19 +23,18 @@ constexpr std::uint32_t kProfile402 = 402, kTorqueMode = 1u << 9;
 
 class BringUp {
  public:
-  BringUp(CanBus& bus, const model::CanSettings& can, double rate_Hz)
+  BringUp(can::CanBus& bus, const model::CanSettings& can, double rate_Hz)
       : bus_(bus),
         can_(can),
         rate_Hz_(rate_Hz),
-        sdo_(bus, [this](const CanFrame& frame) { take(frame); }) {}
+        sdo_(bus, [this](const can::CanFrame& frame) { take(frame); }) {}
 
   Result<Cia402Start> run() {
     Cia402Start start;
     if (auto error = find_all()) return *error;
     for (std::size_t i = 0; i < 3; ++i) {
-      for (const auto step : {&BringUp::identify, &BringUp::configure, &BringUp::make_calm}) {
+      for (const auto step : {&BringUp::identify, &BringUp::configure, &BringUp::make_calm})
         if (auto error = (this->*step)(i)) return *error;
-      }
       if (auto error = learn(i, start)) return *error;
     }
     if (auto error = rest(start)) return *error;
@@ -45,7 +45,7 @@ class BringUp {
  private:
   Error wrong(std::size_t i, const std::string& words) const {
     if (bus_.fault() != Fault::kNone) return Error{can_bus_trouble(bus_.cause(), can_.interface)};
-    return Error{fmt::format("{} {}", can_arm_name(i, can_), words)};
+    return Error{fmt::format("{} {}", can::can_arm_name(i, can_), words)};
   }
 
   std::optional<Error> get(std::size_t i, std::uint16_t index, std::uint8_t sub,
@@ -70,12 +70,10 @@ class BringUp {
       SdoFailure failure;
       answers[i] = sdo_.read(can_.node[i], 0x1000, 0, failure).has_value() || !failure.silent;
     }
-    if (std::none_of(answers.begin(), answers.end(), [](bool yes) { return yes; })) {
+    if (std::none_of(answers.begin(), answers.end(), [](bool yes) { return yes; }))
       return Error{silent_bus_trouble(bus_, can_.interface)};
-    }
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i)
       if (!answers[i]) return wrong(i, "does not answer: is it on, and does it have this node?");
-    }
     return std::nullopt;
   }
 
@@ -101,9 +99,8 @@ class BringUp {
   std::optional<Error> configure(std::size_t i) {
     const auto writes = cst_configuration(can_.node[i], cst_settings(can_, rate_Hz_));
     if (!writes) return wrong(i, "cannot have this node: device.can.node takes 1 to 126");
-    for (const SdoWrite& one : *writes) {
+    for (const SdoWrite& one : *writes)
       if (auto error = set(i, one)) return error;
-    }
     sdo_.write(can_.node[i], {.index = 0x605A, .sub = 0, .value = 0, .size = 2});  // optional
     return std::nullopt;
   }
@@ -120,9 +117,8 @@ class BringUp {
     while (true) {
       if (auto error = get(i, 0x6041, 0, status)) return error;
       const Cia402State state = cia402_state(static_cast<std::uint16_t>(status));
-      if (state == Cia402State::kSwitchOnDisabled || state == Cia402State::kReady) {
+      if (state == Cia402State::kSwitchOnDisabled || state == Cia402State::kReady)
         return std::nullopt;
-      }
       if (state == Cia402State::kFault && !reset) {
         reset = true;
         if (auto error = command(kControlFaultReset)) return error;
@@ -147,9 +143,8 @@ class BringUp {
   std::optional<Error> learn(std::size_t i, Cia402Start& start) {
     std::uint32_t rated = 0;  // 0.001 N m
     if (auto error = get(i, 0x6076, 0, rated)) return error;
-    if (rated == 0) {
+    if (rated == 0)
       return wrong(i, "has a rated torque of zero: set object 6076 with its maker's program");
-    }
     start.rated_torque_Nm[i] = 1e-3 * rated;
     return position(i, start.motor_turns[i]);
   }
@@ -167,9 +162,8 @@ class BringUp {
     for (std::size_t i = 0; i < 3; ++i) {
       const double before_turns = start.motor_turns[i];
       if (auto error = position(i, start.motor_turns[i])) return error;
-      if (std::abs(start.motor_turns[i] - before_turns) > kRest_turns) {
+      if (std::abs(start.motor_turns[i] - before_turns) > kRest_turns)
         return wrong(i, "moves: let the arms rest on the jig until tactd is ready");
-      }
     }
     return std::nullopt;
   }
@@ -182,22 +176,20 @@ class BringUp {
       sdo_.wait(10);
       if (operational_[0] && operational_[1] && operational_[2]) return std::nullopt;
     }
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (!operational_[i]) {
+    for (std::size_t i = 0; i < 3; ++i)
+      if (!operational_[i])
         return wrong(i, "does not say that it is operational: does it send its heartbeat (1017)?");
-      }
-    }
     return std::nullopt;
   }
 
-  void take(const CanFrame& frame) {
+  void take(const can::CanFrame& frame) {
     for (std::size_t i = 0; i < 3; ++i) {
       const auto state = decode_canopen_heartbeat(frame, can_.node[i]);
       if (state) operational_[i] = *state == NmtState::kOperational;
     }
   }
 
-  CanBus& bus_;
+  can::CanBus& bus_;
   const model::CanSettings& can_;
   double rate_Hz_;
   std::array<bool, 3> operational_{};
@@ -208,17 +200,15 @@ class BringUp {
 
 std::vector<std::uint32_t> cia402_ids(const model::CanSettings& can) {
   std::vector<std::uint32_t> ids;
-  for (const int node : can.node) {
-    for (const std::uint32_t base : {0x080u, 0x180u, 0x580u, 0x700u}) {  // EMCY TPDO SDO heartbeat
+  for (const int node : can.node)
+    for (const std::uint32_t base : {0x080u, 0x180u, 0x580u, 0x700u})  // EMCY TPDO SDO heartbeat
       ids.push_back(base + static_cast<std::uint32_t>(node));
-    }
-  }
   return ids;
 }
 
 int cia402_cycle_bits() {
   const auto most = [](std::uint8_t length) {
-    return can_bits_on_bus(make_can_frame(0, length)).most;
+    return can_bits_on_bus(can::make_can_frame(0, length)).most;
   };
   return most(0) + 3 * (most(4) + most(8));
 }
@@ -230,7 +220,8 @@ CstConfiguration cst_settings(const model::CanSettings& can, double rate_Hz) {
   return out;
 }
 
-Result<Cia402Start> bring_up_cia402(CanBus& bus, const model::CanSettings& can, double rate_Hz) {
+Result<Cia402Start> bring_up_cia402(can::CanBus& bus, const model::CanSettings& can,
+                                    double rate_Hz) {
   const double period_ms = 1000.0 / rate_Hz;
   if (!(period_ms >= 1.0 && period_ms <= 10.0) || period_ms != std::floor(period_ms)) {
     return Error{fmt::format(
@@ -250,4 +241,4 @@ Result<Cia402Start> bring_up_cia402(CanBus& bus, const model::CanSettings& can, 
   return BringUp(bus, can, rate_Hz).run();
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::cia402

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // cia402_bring_up.h - three CiA 402 drives from power-on to operational, without torque.
 //
 //     NMT pre-operational -> device type 402 (1000), torque mode (6502) -> the settings of
@@ -6,7 +7,7 @@
 //
 // A quick stop that ramps would drive the arm against the hand, so the drive lets go instead. The
 // host's own heartbeat is not sent here: a drive watches it from the first one on, and that is the
-// loop's. CiA 301, CiA 402-2. Set-up code: blocks, at most some seconds.
+// loop's. CN-5, CiA 301, CiA 402-2. Set-up code: blocks, at most some seconds.
 #pragma once
 
 #include <array>
@@ -14,15 +15,15 @@
 
 #include "hal/can/can_bus.h"
 #include "hal/cia402/cia402_cst.h"
-#include "hal/delta_kinematics.h"
+#include "hal/delta/delta_kinematics.h"
 #include "model/device_settings.h"
 #include "model/result.h"
 
-namespace tact::hal {
+namespace tact::hal::cia402 {
 
 struct Cia402Start {
   std::array<double, 3> rated_torque_Nm{};
-  Joints motor_turns{};  // of arms at rest
+  delta::Joints motor_turns{};  // of arms at rest
 };
 
 /// What the device needs to hear.
@@ -32,7 +33,7 @@ int cia402_cycle_bits();
 /// For one drive at this rate.
 CstConfiguration cst_settings(const model::CanSettings& can, double rate_Hz);
 
-model::Result<Cia402Start> bring_up_cia402(CanBus& bus, const model::CanSettings& can,
+model::Result<Cia402Start> bring_up_cia402(can::CanBus& bus, const model::CanSettings& can,
                                            double rate_Hz);
 
-}  // namespace tact::hal
+}  // namespace tact::hal::cia402

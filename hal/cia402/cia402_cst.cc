@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/cia402/cia402_cst.h"
 
 #include <cmath>
 
 #include "hal/can/little_endian.h"
 
-namespace tact::hal {
+namespace tact::hal::cia402 {
 namespace {
 
 constexpr std::uint32_t kCommandId = 0x200, kSampleId = 0x180;
@@ -29,21 +30,21 @@ std::optional<std::int16_t> cst_torque_permille(double torque_Nm, double rated_t
   return static_cast<std::int16_t>(permille);
 }
 
-std::optional<CanFrame> cst_command(int node, std::uint16_t controlword,
-                                    std::int16_t torque_permille) RT_SAFE {
+std::optional<can::CanFrame> cst_command(int node, std::uint16_t controlword,
+                                         std::int16_t torque_permille) RT_SAFE {
   if (!is_canopen_node(node)) return std::nullopt;
-  CanFrame frame = make_can_frame(kCommandId + static_cast<std::uint32_t>(node), 4);
-  put_unsigned(frame.data, 0, 2, controlword);
-  put_unsigned(frame.data, 2, 2, static_cast<std::uint16_t>(torque_permille));
+  can::CanFrame frame = can::make_can_frame(kCommandId + static_cast<std::uint32_t>(node), 4);
+  can::put_unsigned(frame.data, 0, 2, controlword);
+  can::put_unsigned(frame.data, 2, 2, static_cast<std::uint16_t>(torque_permille));
   return frame;
 }
 
-std::optional<CstSample> decode_cst_sample(const CanFrame& frame, int node) RT_SAFE {
+std::optional<CstSample> decode_cst_sample(const can::CanFrame& frame, int node) RT_SAFE {
   if (!is_canopen_node(node)) return std::nullopt;
   if (!is_data(frame, kSampleId + static_cast<std::uint32_t>(node), 8)) return std::nullopt;
-  return CstSample{.statusword = get_u16(frame.data, 0),
-                   .position_increments = get_i32(frame.data, 2),
-                   .torque_permille = get_i16(frame.data, 6)};
+  return CstSample{.statusword = can::get_u16(frame.data, 0),
+                   .position_increments = can::get_i32(frame.data, 2),
+                   .torque_permille = can::get_i16(frame.data, 6)};
 }
 
 std::optional<CstWrites> cst_configuration(int node, const CstConfiguration& wanted) RT_SAFE {
@@ -78,4 +79,4 @@ std::optional<CstWrites> cst_configuration(int node, const CstConfiguration& wan
   }};
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::cia402

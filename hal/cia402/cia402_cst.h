@@ -1,10 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 // cia402_cst.h - cyclic synchronous torque: what goes to a CiA 402 drive and comes back each cycle.
 //
 //     RPDO1, 0x200 + node: controlword u16, target torque i16                     to the drive
 //     TPDO1, 0x180 + node: statusword u16, position i32, torque i16               after each SYNC
 //
 // Torque is in thousandths of the rated torque (objects 6071, 6077; the rated one is 6076, in
-// 0.001 N m); position in the drive's own increments (6064). CiA 402-2 and CiA 301, little endian.
+// 0.001 N m); position in the drive's own increments (6064). CN-3, CiA 402-2 and 301, little
+// endian.
 #pragma once
 
 #include <array>
@@ -14,21 +16,21 @@
 #include "hal/can/can_frame.h"
 #include "hal/cia402/canopen_frames.h"
 
-namespace tact::hal {
+namespace tact::hal::cia402 {
 
 /// Nothing unless the torque is finite and the rated torque finite and above zero. Rounded to the
 /// nearest, halves to even; beyond 16 bits the largest that fits.
 std::optional<std::int16_t> cst_torque_permille(double torque_Nm, double rated_torque_Nm) RT_SAFE;
 
-std::optional<CanFrame> cst_command(int node, std::uint16_t controlword,
-                                    std::int16_t torque_permille) RT_SAFE;
+std::optional<can::CanFrame> cst_command(int node, std::uint16_t controlword,
+                                         std::int16_t torque_permille) RT_SAFE;
 
 struct CstSample {
   std::uint16_t statusword;  // see cia402_state.h
   std::int32_t position_increments;
   std::int16_t torque_permille;
 };
-std::optional<CstSample> decode_cst_sample(const CanFrame& frame, int node) RT_SAFE;
+std::optional<CstSample> decode_cst_sample(const can::CanFrame& frame, int node) RT_SAFE;
 
 struct CstConfiguration {
   int host_node = 127;
@@ -47,4 +49,4 @@ using CstWrites = std::array<SdoWrite, kCstWrites>;
 /// zero.
 std::optional<CstWrites> cst_configuration(int node, const CstConfiguration& wanted) RT_SAFE;
 
-}  // namespace tact::hal
+}  // namespace tact::hal::cia402

@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/cia402/cia402_state.h"
 
-namespace tact::hal {
+namespace tact::hal::cia402 {
 
 Cia402State cia402_state(std::uint16_t statusword) RT_SAFE {
   switch (statusword & 0x4Fu) {
@@ -80,4 +81,4 @@ std::optional<std::uint16_t> next_controlword(Cia402State state, std::uint16_t l
   return std::nullopt;
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::cia402

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // cia402_state.h - where a CiA 402 drive stands, from its statusword, and the way to torque.
 //
 //     statusword & 0x4F:  0x00 not ready  0x40 switch-on disabled  0x0F fault reaction  0x08 fault
@@ -5,8 +6,8 @@
 //
 //     switch-on disabled -0x06-> ready -0x07-> switched on -0x0F-> operation enabled
 //
-// One step per statusword received (CiA 402-2, object 6041 and 6040). Whatever fits no pattern is
-// "unknown", which gets no command.
+// One step per statusword received (CN-2, CiA 402-2, object 6041 and 6040). Whatever fits no
+// pattern is "unknown", which gets no command.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,7 @@
 
 #include "model/rt.h"
 
-namespace tact::hal {
+namespace tact::hal::cia402 {
 
 enum class Cia402State : std::uint8_t {
   kUnknown,
@@ -50,4 +51,4 @@ inline constexpr std::uint16_t kControlFaultReset = 0x80;
 /// faults, so only a start may ask it; a loop that runs latches a fault and stays off.
 std::optional<std::uint16_t> next_controlword(Cia402State state, std::uint16_t last) RT_SAFE;
 
-}  // namespace tact::hal
+}  // namespace tact::hal::cia402

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // heartbeat_guard.h - a drive's watch over the host's heartbeat (object 1016): on before it gets
-// power, off when it lets go, so that the end of the loop is no fault in its log.
+// power, off when it lets go, so that the end of the loop is no fault in its log (CN-4).
 //
 //     1016:01 = host node << 16 | timeout, ms       0 instead of the timeout: nobody is missed
 //
@@ -14,7 +15,7 @@
 #include "hal/cia402/canopen_frames.h"
 #include "hal/cia402/cia402_cst.h"
 
-namespace tact::hal {
+namespace tact::hal::cia402 {
 
 class HeartbeatGuard {
  public:
@@ -24,7 +25,7 @@ class HeartbeatGuard {
   bool on() const RT_SAFE { return known_ && on_; }
 
   /// What to send in this tick, if anything, so that the watch becomes `wanted`.
-  std::optional<CanFrame> step(bool wanted, int node, const CstConfiguration& can) RT_SAFE {
+  std::optional<can::CanFrame> step(bool wanted, int node, const CstConfiguration& can) RT_SAFE {
     if (waiting_ticks_ > 0) --waiting_ticks_;
     if (waiting_ticks_ > 0) return std::nullopt;
     const bool settled = known_ && on_ == wanted;
@@ -54,4 +55,4 @@ class HeartbeatGuard {
   int waiting_ticks_ = 0;
 };
 
-}  // namespace tact::hal
+}  // namespace tact::hal::cia402

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/cia402/sdo_client.h"
 
 #include <fmt/core.h>
 
 #include "hal/cia402/canopen_words.h"
 
-namespace tact::hal {
+namespace tact::hal::cia402 {
 namespace {
 
 constexpr int kReply_ms = 300;
@@ -12,22 +13,21 @@ constexpr std::int64_t kMs_ns = 1'000'000;
 
 }  // namespace
 
-std::optional<SdoReply> SdoClient::ask(int node, const std::optional<CanFrame>& request,
+std::optional<SdoReply> SdoClient::ask(int node, const std::optional<can::CanFrame>& request,
                                        std::uint16_t index, std::uint8_t sub) {
-  CanSocket& socket = bus_.socket();
+  can::CanSocket& socket = bus_.socket();
   bus_.push(request);
   bus_.send();
   std::optional<SdoReply> ours;
   for (const std::int64_t end_ns = socket.now_ns() + kReply_ms * kMs_ns;
        !ours && bus_.fault() == Fault::kNone && socket.now_ns() < end_ns;) {
     socket.wait(kReply_ms);
-    for (const CanReceived& one : bus_.receive()) {
+    for (const can::CanReceived& one : bus_.receive()) {
       const auto reply = decode_canopen_sdo(one.frame, node);
-      if (reply && reply->index == index && reply->sub == sub) {
+      if (reply && reply->index == index && reply->sub == sub)
         ours = reply;
-      } else {
+      else
         others_(one.frame);
-      }
     }
   }
   return ours;
@@ -51,11 +51,11 @@ std::optional<std::uint32_t> SdoClient::read(int node, std::uint16_t index, std:
 }
 
 void SdoClient::wait(int time_ms) {
-  CanSocket& socket = bus_.socket();
+  can::CanSocket& socket = bus_.socket();
   const std::int64_t end_ns = socket.now_ns() + time_ms * kMs_ns;
   while (bus_.fault() == Fault::kNone && socket.now_ns() < end_ns) {
     socket.wait(1);
-    for (const CanReceived& one : bus_.receive()) others_(one.frame);
+    for (const can::CanReceived& one : bus_.receive()) others_(one.frame);
   }
 }
 
@@ -69,4 +69,4 @@ std::string sdo_failure_words(const SdoFailure& failure, std::uint16_t index, st
                      sdo_abort_sentence(failure.abort_code), failure.abort_code);
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::cia402

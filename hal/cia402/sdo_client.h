@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // sdo_client.h - reading and writing the settings of CANopen drives, one at a time, before the
 // loop.
 //
@@ -12,7 +13,7 @@
 #include "hal/cia402/canopen_frames.h"
 #include "model/result.h"
 
-namespace tact::hal {
+namespace tact::hal::cia402 {
 
 /// Why a request failed: an abort code, or nothing came.
 struct SdoFailure {
@@ -23,7 +24,7 @@ struct SdoFailure {
 class SdoClient {
  public:
   /// Everything that is no reply goes to `others`.
-  SdoClient(CanBus& bus, std::function<void(const CanFrame&)> others)
+  SdoClient(can::CanBus& bus, std::function<void(const can::CanFrame&)> others)
       : bus_(bus), others_(std::move(others)) {}
 
   /// Nothing when it is written.
@@ -35,14 +36,14 @@ class SdoClient {
   void wait(int time_ms);
 
  private:
-  std::optional<SdoReply> ask(int node, const std::optional<CanFrame>& request, std::uint16_t index,
-                              std::uint8_t sub);
+  std::optional<SdoReply> ask(int node, const std::optional<can::CanFrame>& request,
+                              std::uint16_t index, std::uint8_t sub);
 
-  CanBus& bus_;
-  std::function<void(const CanFrame&)> others_;
+  can::CanBus& bus_;
+  std::function<void(const can::CanFrame&)> others_;
 };
 
 /// "refuses setting 0x6060:00: The drive ... (0x06090030)", or that it does not answer.
 std::string sdo_failure_words(const SdoFailure& failure, std::uint16_t index, std::uint8_t sub);
 
-}  // namespace tact::hal
+}  // namespace tact::hal::cia402

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/falcon/falcon_at_tool.h"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 #include "hal/falcon/falcon_frame.h"
 #include "hal/falcon/falcon_packets.h"
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 namespace {
 
 /// K^-1 at the middle, the rims and between of the workspace cylinder.
@@ -33,8 +34,9 @@ void visit_workspace(const FalconKinematics& falcon, Visit visit) {
 model::DeviceAtTool falcon_at_tool(const FalconKinematics& falcon,
                                    const model::FalconSettings& settings) {
   double s = 0.0;
-  visit_workspace(
-      falcon, [&](const Mat3& jacobian) { s = std::max(s, model::singular_values(jacobian)[0]); });
+  visit_workspace(falcon, [&](const model::Mat3& jacobian) {
+    s = std::max(s, model::singular_values(jacobian)[0]);
+  });
   const double rad_per_count = falcon_thigh_rad(1.0) - falcon_thigh_rad(0.0);
   return {.damping_Ns_per_m = s > 0.0 ? settings.joint_damping_Nms_per_rad / (s * s) : 0.0,
           .friction_N = s > 0.0 ? settings.joint_friction_Nm / s : 0.0,
@@ -45,15 +47,16 @@ model::DeviceAtTool falcon_at_tool(const FalconKinematics& falcon,
 double falcon_max_force_N(const FalconKinematics& falcon, const model::FalconSettings& settings) {
   const Vec3& gain = settings.gain_words_per_Nm;
   const Vec3& dead = settings.dead_band_words;
-  const Joints torque_Nm{(kFalconMotorMax - dead.x) / gain.x, (kFalconMotorMax - dead.y) / gain.y,
-                         (kFalconMotorMax - dead.z) / gain.z};
+  const delta::Joints torque_Nm{(kFalconMotorMax - dead.x) / gain.x,
+                                (kFalconMotorMax - dead.y) / gain.y,
+                                (kFalconMotorMax - dead.z) / gain.z};
   double force_N = kFalconMaxForce_N;
-  visit_workspace(falcon, [&](const Mat3& jacobian) {
-    const Mat3 torque_of_force = model::transpose(jacobian);  // tau = J^T F
+  visit_workspace(falcon, [&](const model::Mat3& jacobian) {
+    const model::Mat3 torque_of_force = model::transpose(jacobian);  // tau = J^T F
     for (std::size_t i = 0; i < 3; ++i)
       force_N = std::min(force_N, torque_Nm[i] / norm(torque_of_force.row[i]));
   });
   return force_N;
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // falcon_at_tool.h - what a Falcon's joints and motor words are worth at the grip, at the worst
 // pose.
 //
@@ -9,10 +10,10 @@
 #pragma once
 
 #include "hal/falcon/falcon_kinematics.h"
+#include "model/device_at_tool.h"
 #include "model/device_settings.h"
-#include "model/haptic_limit.h"
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 
 /// From a position to the force that answers it, beyond one hold: the command leaves with the next
 /// USB frame, the report with the one after; without the event character the USB chip keeps it for
@@ -23,4 +24,4 @@ model::DeviceAtTool falcon_at_tool(const FalconKinematics& falcon,
                                    const model::FalconSettings& settings);
 double falcon_max_force_N(const FalconKinematics& falcon, const model::FalconSettings& settings);
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/falcon/falcon_balance.h"
 
 #include <algorithm>
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 
 double FalconBalanceRamp::step(double height_m, double speed_mps, const std::array<int, 3>& words,
                                double elapsed_s) RT_SAFE {
@@ -52,4 +53,4 @@ const char* FalconBalanceRamp::advice() const RT_SAFE {
   }
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

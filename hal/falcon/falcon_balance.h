@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // falcon_balance.h - the force that just balances a weight: up until it lifts, down until it sinks.
 //
 //     force +r dt while it rests, -r dt once it has lifted by 2 mm, until it has sunk by 2 mm
@@ -12,7 +13,7 @@
 #include "model/rt.h"
 #include "model/types.h"
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 
 struct FalconBalanceSettings {
   double rate_N_per_s = 0.5;
@@ -48,4 +49,4 @@ class FalconBalanceRamp {
   std::array<int, 3> lifted_{}, sunk_{};
 };
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/falcon/falcon_boot.h"
 
 #include <algorithm>
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 
 using What = FalconBootAction::What;
 
@@ -88,15 +89,13 @@ FalconBootAction FalconBoot::read(std::int64_t now_ms) noexcept {
 /// one behind.
 bool FalconBoot::matches(std::span<const std::uint8_t> bytes,
                          std::span<const std::uint8_t> reply) noexcept {
-  for (const std::uint8_t byte : bytes) {
-    if (byte == 0 && matched_ == 0 && !null_seen_) {
+  for (const std::uint8_t byte : bytes)
+    if (byte == 0 && matched_ == 0 && !null_seen_)
       null_seen_ = true;
-    } else if (matched_ < reply.size() && byte == reply[matched_]) {
+    else if (matched_ < reply.size() && byte == reply[matched_])
       ++matched_;
-    } else {
+    else
       spoiled_ = true;
-    }
-  }
   return matched_ == reply.size() && !spoiled_;
 }
 
@@ -127,14 +126,12 @@ FalconBootAction FalconBoot::heard(const FalconBootInput& input) noexcept {
 FalconBootAction FalconBoot::heard_echo(const FalconBootInput& input) noexcept {
   const std::size_t chunk = std::min(kFalconChunk, image_.size() - echoed_);
   for (const std::uint8_t byte : input.bytes) {
-    if (chunk_echoed_ == chunk || byte != image_[echoed_ + chunk_echoed_]) {
+    if (chunk_echoed_ == chunk || byte != image_[echoed_ + chunk_echoed_])
       return restart(FalconBootFault::kEchoDiffers);
-    }
     ++chunk_echoed_;
   }
-  if (chunk_echoed_ < chunk) {
+  if (chunk_echoed_ < chunk)
     return input.now_ms < deadline_ms_ ? read(input.now_ms) : timed_out(input.now_ms);
-  }
   echoed_ += chunk;
   chunk_echoed_ = 0;
   if (echoed_ < image_.size()) return exchange(input.now_ms);
@@ -150,9 +147,8 @@ FalconBootAction FalconBoot::timed_out(std::int64_t now_ms) noexcept {
       if (!image_.empty()) return enter(Stage::kGreet, now_ms);
       return give_up(FalconBootFault::kNoImage);  // trying again would change nothing
     case Stage::kGreet:  // what came late or damaged must not meet the next answer
-      if (tries_ < settings_.greeting_tries) {
+      if (tries_ < settings_.greeting_tries)
         return {.what = What::kControl, .request = kFtdiPurgeRx};
-      }
       return restart(FalconBootFault::kNoGreeting);
     case Stage::kSpeed:  // not every adapter brings CTS: go on and see
       return enter(Stage::kLock, now_ms);
@@ -209,4 +205,4 @@ const char* falcon_boot_advice(FalconBootFault fault) noexcept {
   return "";
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // falcon_boot.h - how a Falcon is woken: what to do next, from what came back.
 //
 //     open -> ask for a report -> (it answers) -> ready
@@ -6,8 +7,8 @@
 //
 // Pure: no descriptor, no clock. The caller does what `next` says, with the time at hand, and tells
 // what came of it, until the answer is kReady or kGiveUp. What goes wrong starts again from
-// opening, a few times: that the first upload fails is normal for this device. Source: the protocol
-// as found by K. Machulis, github.com/libnifalcon/libnifalcon. Times in ms.
+// opening, a few times: that the first upload fails is normal for this device. Source: FP-2, the
+// protocol as found by K. Machulis, github.com/libnifalcon/libnifalcon. Times in ms.
 #pragma once
 
 #include <array>
@@ -18,7 +19,7 @@
 #include "hal/falcon/falcon_stream.h"
 #include "hal/falcon/ftdi_requests.h"
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 
 inline constexpr std::uint16_t kFalconUsbVendor = 0x0403, kFalconUsbProduct = 0xCB48;
 inline constexpr std::uint8_t kFalconEndpointOut = 0x02, kFalconEndpointIn = 0x81;
@@ -134,4 +135,4 @@ class FalconBoot {
   bool uploaded_ = false;
 };
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

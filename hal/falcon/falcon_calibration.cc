@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/falcon/falcon_calibration.h"
 
 #include <fmt/core.h>
@@ -6,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 namespace {
 
 using model::Error;
@@ -24,14 +25,14 @@ struct Axis {
 };
 
 /// Torques that hold 1 kg at the grip, by sample.
-std::vector<Joints> unit_torques_Nm(std::span<const FalconBalance> samples) {
+std::vector<delta::Joints> unit_torques_Nm(std::span<const FalconBalance> samples) {
   const FalconKinematics falcon;
-  std::vector<Joints> out;
+  std::vector<delta::Joints> out;
   for (const FalconBalance& s : samples) {
     const FalconInverse legs = falcon.inverse(s.position_m);
     out.push_back(legs.reachable
                       ? falcon_torques_Nm(falcon.joint_rate_matrix(legs), {0.0, kGravity_mps2, 0.0})
-                      : Joints{});
+                      : delta::Joints{});
   }
   return out;
 }
@@ -39,7 +40,7 @@ std::vector<Joints> unit_torques_Nm(std::span<const FalconBalance> samples) {
 enum class DeadBand { kAny, kNotNegative };
 
 /// min over (g, d) of sum (y - g t - d s)^2 with y = -w, s = sign t.
-Axis fit_axis(std::span<const FalconBalance> samples, std::span<const Joints> unit_Nm,
+Axis fit_axis(std::span<const FalconBalance> samples, std::span<const delta::Joints> unit_Nm,
               std::size_t i, double moving_kg, DeadBand sign) {
   double tt = 0.0, ts = 0.0, ss = 0.0, ty = 0.0, sy = 0.0, yy = 0.0;
   for (std::size_t n = 0; n < samples.size(); ++n) {
@@ -66,7 +67,7 @@ struct Fit {
   bool known = true;
 };
 
-Fit fit_all(std::span<const FalconBalance> samples, std::span<const Joints> unit_Nm,
+Fit fit_all(std::span<const FalconBalance> samples, std::span<const delta::Joints> unit_Nm,
             double moving_kg, DeadBand sign = DeadBand::kNotNegative) {
   Fit fit;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -91,7 +92,7 @@ Result<FalconCalibration> fit_falcon(std::span<const FalconBalance> samples) {
     if (!is_finite(s.position_m) ||
         !std::isfinite(s.mass_kg + s.words[0] + s.words[1] + s.words[2]))
       return Error{"a balance holds no numbers: measure it again"};
-  const std::vector<Joints> unit_Nm = unit_torques_Nm(samples);
+  const std::vector<delta::Joints> unit_Nm = unit_torques_Nm(samples);
   const auto squares = [&](double kg) { return fit_all(samples, unit_Nm, kg).squares; };
   double best_kg = 0.0, least = 1e300, most = 0.0;  // of any dead band: is there a least at all?
   for (double kg = 0.0; kg <= kMostMovingMass_kg; kg += kStep_kg) {
@@ -137,7 +138,7 @@ Result<FalconCalibration> fit_falcon(std::span<const FalconBalance> samples) {
 }
 
 std::string scene_lines(const FalconCalibration& c) {
-  const Vec3 &gain = c.gain_words_per_Nm, &dead = c.dead_band_words;
+  const model::Vec3 &gain = c.gain_words_per_Nm, &dead = c.dead_band_words;
   return fmt::format(
       "[device.falcon]\n"
       "gain_words_per_Nm = [{:.0f}.0, {:.0f}.0, {:.0f}.0]\n"
@@ -146,4 +147,4 @@ std::string scene_lines(const FalconCalibration& c) {
       gain.x, gain.y, gain.z, dead.x, dead.y, dead.z, c.moving_mass_kg);
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

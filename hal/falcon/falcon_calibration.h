@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // falcon_calibration.h - what a Falcon's motor words are worth, from weights that they hold up.
 //
 //     -w_i = g_i t_i + d_i sign t_i,     K^T t = (m + m_0) g up
@@ -8,7 +9,7 @@
 //
 // For one m_0 this is linear in (g_i, d_i): least squares, axis by axis; m_0 is the one that leaves
 // the least squares of all axes together. It takes several masses and several poses: at one pose a
-// dead band and a moving mass look the same. K: falcon_kinematics.h.
+// dead band and a moving mass look the same (FK-5). K: falcon_kinematics.h.
 #pragma once
 
 #include <array>
@@ -18,17 +19,17 @@
 #include "hal/falcon/falcon_kinematics.h"
 #include "model/result.h"
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 
 struct FalconBalance {
-  Vec3 position_m;  // frame of the device
+  model::Vec3 position_m;  // frame of the device
   double mass_kg = 0.0;
   std::array<double, 3> words{};
 };
 
 struct FalconCalibration {
-  Vec3 gain_words_per_Nm;
-  Vec3 dead_band_words;
+  model::Vec3 gain_words_per_Nm;
+  model::Vec3 dead_band_words;
   double moving_mass_kg = 0.0;
   double residual_words = 0.0;  // root of the mean square
 };
@@ -41,4 +42,4 @@ model::Result<FalconCalibration> fit_falcon(std::span<const FalconBalance> sampl
 /// The lines of [device.falcon] that a scene takes.
 std::string scene_lines(const FalconCalibration& calibration);
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

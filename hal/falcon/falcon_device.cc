@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/falcon/falcon_device.h"
 
 #include <algorithm>
@@ -6,7 +7,7 @@
 #include "hal/falcon/falcon_at_tool.h"
 #include "hal/falcon/falcon_frame.h"
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 namespace {
 
 using What = FalconTrouble::What;
@@ -100,7 +101,7 @@ bool FalconDevice::follow_homing(const FalconReport& report) RT_SAFE {
 /// Where the grip is; false for counts that no hand can make, or no pose has.
 bool FalconDevice::locate(const FalconReply& reply) RT_SAFE {
   const double elapsed_s = 1e-9 * static_cast<double>(reply.stamp_ns - stamp_ns_);
-  Joints thigh_rad{};
+  delta::Joints thigh_rad{};
   for (std::size_t i = 0; i < 3; ++i) {
     const int counts = reply.report.counts[i];
     thigh_rad[i] = falcon_thigh_rad(counts);
@@ -178,16 +179,16 @@ Fault FalconDevice::write(const Wrench& wrench) RT_SAFE {
 /// tau = tau_gravity + s K^-T F, one s for all axes; then words.
 FalconWords FalconDevice::words_for(const Vec3& force_W_N) const RT_SAFE {
   const Vec3 weight_N{0.0, 0.0, kGravity_mps2 * settings_.moving_mass_kg};
-  const Joints held_Nm = falcon_torques_Nm(rates_, falcon_direction_D(weight_N));
-  const Joints wanted_Nm = falcon_torques_Nm(rates_, falcon_direction_D(force_W_N));
-  Joints held{}, wanted{};  // 1 is all that an axis can do
+  const delta::Joints held_Nm = falcon_torques_Nm(rates_, falcon_direction_D(weight_N));
+  const delta::Joints wanted_Nm = falcon_torques_Nm(rates_, falcon_direction_D(force_W_N));
+  delta::Joints held{}, wanted{};  // 1 is all that an axis can do
   for (std::size_t i = 0; i < 3; ++i) {
     const double most_words = kFalconMotorMax - component(settings_.dead_band_words, i);
     const double per_Nm = component(settings_.gain_words_per_Nm, i) / most_words;
     held[i] = per_Nm * held_Nm[i];
     wanted[i] = per_Nm * wanted_Nm[i];
   }
-  const double ratio = saturation_ratio(held, wanted, 1.0);
+  const double ratio = delta::saturation_ratio(held, wanted, 1.0);
   std::array<double, 3> words{};
   for (std::size_t i = 0; i < 3; ++i) {
     const double torque_Nm = held_Nm[i] + ratio * wanted_Nm[i];
@@ -215,4 +216,4 @@ void FalconDevice::stop() {
   pipe_->stop(encode(FalconCommand{.lights = kFalconRed}));
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

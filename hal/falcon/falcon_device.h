@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // falcon_device.h - a Novint Falcon as a Device: homing, positions, forces, faults.
 //
 //     force -> K^T tau = F -> words = -(gain tau + dead band)   (a positive word lowers a thigh)
 //
-// Zero words with the homing request until all three axes are homed; then samples are fresh. One
-// command leaves with each write. Without an answer for three ticks of 1 ms the words are zero
+// Zero words with the homing request until all three axes are homed (FP-4); then samples are fresh.
+// One command leaves with each write. Without an answer for three ticks of 1 ms the words are zero
 // until one comes. Unplugged, stalled, broken, garbled, unhomed or silent devices latch a fault;
 // each write after it sends zero words, and stop() too, since a Falcon may hold its last ones for
 // ever. Lights: red no force may come, blue ready, green with power.
@@ -20,9 +21,8 @@
 #include "hal/velocity_observer.h"
 #include "model/device_settings.h"
 #include "model/result.h"
-#include "model/scene.h"
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 
 class FalconDevice final : public Device {
  public:
@@ -61,7 +61,7 @@ class FalconDevice final : public Device {
 
   Vec3 position_m_ = kFalconHome;  // frame D
   Vec3 velocity_mps_;              // frame W
-  Mat3 rates_{};                   // K there; zero makes no force
+  model::Mat3 rates_{};            // K there; zero makes no force
   FalconWords counts_{};           // of the last good sample
   std::int64_t stamp_ns_ = 0;      // of it; 0: none since homing
   std::uint64_t sequence_ = 0;     // of the last report seen
@@ -76,10 +76,4 @@ class FalconDevice final : public Device {
   std::atomic<std::uint64_t> trouble_{0};
 };
 
-/// Finds, wakes and takes the Falcon that the scene means; up to 20 s.
-model::Result<std::unique_ptr<Device>> open_falcon(const model::Scene& scene);
-/// The same, for a program that calibrates it.
-model::Result<std::unique_ptr<FalconDevice>> open_falcon_device(
-    const model::FalconSettings& settings);
-
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

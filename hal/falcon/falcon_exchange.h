@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // falcon_exchange.h - which reports answer a command: each command is answered once, in order.
 //
 // A report that no command waits for is a repetition. A command older than kLost_ns is not waited
@@ -9,7 +10,7 @@
 
 #include "model/rt.h"
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 
 class FalconExchange {
  public:
@@ -41,4 +42,4 @@ class FalconExchange {
   std::size_t first_ = 0, count_ = 0;
 };
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/falcon/falcon_kinematics.h"
 
 #include <cmath>
 #include <numbers>
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 namespace {
 
 constexpr double kThighAtZero_rad = 35_deg;
@@ -12,7 +13,7 @@ constexpr int kNewtonSteps = 12;      // from home; 3 are enough after a move of
 constexpr double kClose_rad = 1e-12;  // 1e-13 m: a further step gains rounding errors only
 constexpr int kHalvings = 6;  // the first step from home may overshoot the reach at the far end
 
-Vec3 difference_rad(const Joints& wanted_rad, const FalconInverse& legs) RT_SAFE {
+model::Vec3 difference_rad(const delta::Joints& wanted_rad, const FalconInverse& legs) RT_SAFE {
   return {wanted_rad[0] - legs.thigh_rad[0], wanted_rad[1] - legs.thigh_rad[1],
           wanted_rad[2] - legs.thigh_rad[2]};
 }
@@ -26,7 +27,7 @@ FalconKinematics::FalconKinematics(const FalconGeometry& geometry) : geometry_(g
   }
 }
 
-FalconInverse FalconKinematics::inverse(const Vec3& position_m) const RT_SAFE {
+FalconInverse FalconKinematics::inverse(const model::Vec3& position_m) const RT_SAFE {
   const FalconGeometry& g = geometry_;
   FalconInverse out;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -55,8 +56,8 @@ FalconInverse FalconKinematics::inverse(const Vec3& position_m) const RT_SAFE {
   return out;
 }
 
-Mat3 FalconKinematics::joint_rate_matrix(const FalconInverse& legs) const RT_SAFE {
-  Mat3 k;
+model::Mat3 FalconKinematics::joint_rate_matrix(const FalconInverse& legs) const RT_SAFE {
+  model::Mat3 k;
   for (std::size_t i = 0; i < 3; ++i) {
     // K_i = [cos t2, cot t3, sin t2] / (a sin(t2 - t1)), turned back by phi
     const double t2 = legs.knee_rad[i], t3 = legs.side_rad[i];
@@ -69,16 +70,16 @@ Mat3 FalconKinematics::joint_rate_matrix(const FalconInverse& legs) const RT_SAF
   return k;
 }
 
-FalconForward FalconKinematics::forward(const Joints& thigh_rad,
-                                        const Vec3& start_m) const RT_SAFE {
-  Vec3 p_m = start_m;
+FalconForward FalconKinematics::forward(const delta::Joints& thigh_rad,
+                                        const model::Vec3& start_m) const RT_SAFE {
+  model::Vec3 p_m = start_m;
   FalconInverse legs = inverse(p_m);
   double error_rad = legs.reachable ? norm(difference_rad(thigh_rad, legs)) : 0.0;
   bool moved = legs.reachable;
   for (int step = 0; step < kNewtonSteps && moved && error_rad > kClose_rad; ++step) {
     moved = false;
     // p <- p + K^-1 (theta - theta(p)), half of it as often as that leaves the reach or gets worse
-    Vec3 move_m = model::inverse(joint_rate_matrix(legs)) * difference_rad(thigh_rad, legs);
+    model::Vec3 move_m = model::inverse(joint_rate_matrix(legs)) * difference_rad(thigh_rad, legs);
     for (int half = 0; half <= kHalvings && !moved; ++half, move_m *= 0.5) {
       const FalconInverse next = inverse(p_m + move_m);
       const double next_rad = norm(difference_rad(thigh_rad, next));
@@ -93,8 +94,9 @@ FalconForward FalconKinematics::forward(const Joints& thigh_rad,
   return {.solved = solved, .position_m = solved ? p_m : start_m};
 }
 
-Joints falcon_torques_Nm(const Mat3& joint_rate_matrix, const Vec3& force_N) RT_SAFE {
-  const Vec3 torque_Nm = transpose(model::inverse(joint_rate_matrix)) * force_N;
+delta::Joints falcon_torques_Nm(const model::Mat3& joint_rate_matrix,
+                                const model::Vec3& force_N) RT_SAFE {
+  const model::Vec3 torque_Nm = transpose(model::inverse(joint_rate_matrix)) * force_N;
   return {torque_Nm.x, torque_Nm.y, torque_Nm.z};
 }
 
@@ -103,4 +105,4 @@ double falcon_counts(double thigh_rad) RT_SAFE {
   return (thigh_rad - kThighAtZero_rad) / kRadPerCount;
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // falcon_kinematics.h - where the grip of a Novint Falcon is, from its three thigh angles.
 //
 //     pu = a cos t1 - c + L cos t2,   pw = a sin t1 + L sin t2,   pv = b cos t3 - f
@@ -6,16 +7,16 @@
 //     (pu, pv, pw)  grip in the frame of a leg: turned by its azimuth, shifted by (r, s), m
 //     t1 t2 t3      thigh, knee and side angle of that leg, rad; t1 is driven and measured
 //
-// Rates are exact: dt1 = [cos t2, cot t3, sin t2] . (du, dv, dw) / (a sin(t2 - t1)). The often
-// copied row with sin^2 t2 in place of sin t2 sin t3 makes forces that are wrong by 12 % in the
-// median. Frame of the device: z towards the user. Lengths and azimuths are those of the device as
-// sold.
+// FK-1 to FK-3. Rates are exact: dt1 = [cos t2, cot t3, sin t2] . (du, dv, dw) / (a sin(t2 - t1)).
+// The often copied row with sin^2 t2 in place of sin t2 sin t3 makes forces that are wrong by 12 %
+// in the median. Frame of the device: z towards the user. Lengths and azimuths are those of the
+// device as sold.
 #pragma once
 
-#include "hal/delta_kinematics.h"
+#include "hal/delta/delta_kinematics.h"
 #include "model/units.h"
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 
 using model::operator""_deg;
 
@@ -28,19 +29,19 @@ struct FalconGeometry {
   double side_shift_m = -0.025;    // f
   double base_radius_m = 0.0400;   // r
   double base_shift_m = -0.02309;  // s
-  Joints azimuth_rad{105_deg, -15_deg, -135_deg};
+  delta::Joints azimuth_rad{105_deg, -15_deg, -135_deg};
 };
 
 struct FalconInverse {
   bool reachable = false;
-  Joints thigh_rad{};  // t1
-  Joints knee_rad{};   // t2
-  Joints side_rad{};   // t3
+  delta::Joints thigh_rad{};  // t1
+  delta::Joints knee_rad{};   // t2
+  delta::Joints side_rad{};   // t3
 };
 
 struct FalconForward {
   bool solved = false;  // the residual is below 1e-9 rad
-  Vec3 position_m;
+  model::Vec3 position_m;
 };
 
 class FalconKinematics {
@@ -49,25 +50,26 @@ class FalconKinematics {
   explicit FalconKinematics(const FalconGeometry& geometry);
 
   /// Thigh on the outer side, as built.
-  FalconInverse inverse(const Vec3& position_m) const RT_SAFE;
+  FalconInverse inverse(const model::Vec3& position_m) const RT_SAFE;
   /// K of d thigh/dt = K v.
-  Mat3 joint_rate_matrix(const FalconInverse& legs) const RT_SAFE;
+  model::Mat3 joint_rate_matrix(const FalconInverse& legs) const RT_SAFE;
   /// Newton on the inverse with a fixed number of steps; start near the last position, or at home.
-  FalconForward forward(const Joints& thigh_rad, const Vec3& start_m) const RT_SAFE;
+  FalconForward forward(const delta::Joints& thigh_rad, const model::Vec3& start_m) const RT_SAFE;
 
  private:
   FalconGeometry geometry_;
-  Joints cos_azimuth_{}, sin_azimuth_{};
+  delta::Joints cos_azimuth_{}, sin_azimuth_{};
 };
 
 /// Torque of K^T tau = F, F on the hand; zero where K cannot be inverted.
-Joints falcon_torques_Nm(const Mat3& joint_rate_matrix, const Vec3& force_N) RT_SAFE;
+delta::Joints falcon_torques_Nm(const model::Mat3& joint_rate_matrix,
+                                const model::Vec3& force_N) RT_SAFE;
 
-inline constexpr Vec3 kFalconHome{0.0, 0.0,
-                                  0.110};  // all poses within 60 mm of the axis converge from here
+inline constexpr model::Vec3 kFalconHome{
+    0.0, 0.0, 0.110};  // all poses within 60 mm of the axis converge from here
 
-/// Thigh angle of an encoder count: 1280 counts per motor turn, 110 mm drum on a 14.25 mm shaft.
+/// Thigh angle of an encoder count (FK-4): 1280 a motor turn, 110 mm drum on a 14.25 mm shaft.
 double falcon_thigh_rad(double counts) RT_SAFE;
 double falcon_counts(double thigh_rad) RT_SAFE;
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

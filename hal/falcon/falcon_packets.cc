@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/falcon/falcon_packets.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 namespace {
 
 constexpr std::size_t kInfoPlace = 13, kExtraPlace = 14, kEndPlace = 15;
@@ -15,9 +16,8 @@ FalconPacket packet(const FalconWords& words, unsigned info) RT_SAFE {
   std::size_t place = 1;
   for (const int word : words) {
     unsigned rest = static_cast<unsigned>(word);
-    for (int i = 0; i < kNibblesPerWord; ++i, rest >>= 4) {
+    for (int i = 0; i < kNibblesPerWord; ++i, rest >>= 4)
       out[place++] = static_cast<std::uint8_t>(kFalconZero + (rest & 0xFu));
-    }
   }
   out[kInfoPlace] = static_cast<std::uint8_t>(kFalconZero + info);
   out[kExtraPlace] = kFalconZero;
@@ -27,9 +27,8 @@ FalconPacket packet(const FalconWords& words, unsigned info) RT_SAFE {
 
 bool is_packet(std::span<const std::uint8_t> bytes) RT_SAFE {
   if (bytes.size() != kFalconPacketSize) return false;
-  for (std::size_t i = 0; i < kFalconPacketSize; ++i) {
+  for (std::size_t i = 0; i < kFalconPacketSize; ++i)
     if (!falcon_report_may_have(bytes[i], i)) return false;
-  }
   return true;
 }
 
@@ -38,9 +37,8 @@ FalconWords words_of(std::span<const std::uint8_t> bytes) RT_SAFE {
   std::size_t place = 1;
   for (int& word : out) {
     unsigned bits = 0;
-    for (int i = 0; i < kNibblesPerWord; ++i) {
+    for (int i = 0; i < kNibblesPerWord; ++i)
       bits |= static_cast<unsigned>(bytes[place++] - kFalconZero) << (4 * i);
-    }
     word = static_cast<std::int16_t>(bits);
   }
   return out;
@@ -71,9 +69,8 @@ FalconWords falcon_motor_words(const std::array<double, 3>& wanted) RT_SAFE {
 
 FalconPacket encode(const FalconCommand& command) RT_SAFE {
   FalconWords words{};
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i)
     words[i] = std::clamp(command.motor[i], -kFalconMotorMax, kFalconMotorMax);
-  }
   const unsigned homing = command.homing ? kFalconHomingRequest : 0u;
   return packet(words, (command.lights & unsigned{kFalconLights}) | homing);
 }
@@ -88,9 +85,8 @@ std::optional<FalconCommand> decode_falcon_command(std::span<const std::uint8_t>
   const unsigned info = bytes[kInfoPlace] - unsigned{kFalconZero};
   if (info > 0xFu) return std::nullopt;
   const FalconWords words = words_of(bytes);
-  for (const int word : words) {
+  for (const int word : words)
     if (std::abs(word) > kFalconMotorMax) return std::nullopt;
-  }
   return FalconCommand{.motor = words,
                        .lights = static_cast<std::uint8_t>(info & kFalconLights),
                        .homing = (info & kFalconHomingRequest) != 0};
@@ -104,4 +100,4 @@ std::optional<FalconReport> decode_falcon_report(std::span<const std::uint8_t> b
                       .homed = static_cast<std::uint8_t>(info >> 4)};
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

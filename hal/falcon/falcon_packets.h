@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // falcon_packets.h - the 16 bytes that a Novint Falcon and its host exchange once its firmware
 // runs.
 //
@@ -12,8 +13,8 @@
 //
 // Axes seen from the front: 1 top, 2 right, 3 left. A positive motor word drives the thigh angle
 // and the counts down. Motor words have no unit until they are calibrated on the device. Neither 3C
-// nor 3E can occur inside. Source: the protocol as found by K. Machulis,
-// github.com/libnifalcon/libnifalcon.
+// nor 3E can occur inside. Source: FP-3, the protocol as found by K.
+// Machulis, github.com/libnifalcon/libnifalcon.
 #pragma once
 
 #include <array>
@@ -23,7 +24,7 @@
 
 #include "model/rt.h"
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 
 inline constexpr std::uint8_t kFalconStart = 0x3C, kFalconEnd = 0x3E;
 inline constexpr std::uint8_t kFalconZero = 0x41;  // the byte of nibble 0
@@ -71,4 +72,4 @@ std::optional<FalconReport> decode_falcon_report(std::span<const std::uint8_t> b
 /// May a report have this byte at this place, 0..15?
 bool falcon_report_may_have(std::uint8_t byte, std::size_t place) RT_SAFE;
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

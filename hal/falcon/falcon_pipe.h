@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // falcon_pipe.h - packets to and from a Falcon whose firmware runs, whoever carries them.
 //
 // One I/O thread waits for the bus and hands the newest report over; the loop never waits. A pipe
@@ -12,7 +13,7 @@
 
 #include "hal/falcon/falcon_packets.h"
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 
 struct FalconReply {
   FalconReport report;
@@ -56,4 +57,4 @@ class FalconPipe {
   virtual void stop(const FalconPacket& last) = 0;
 };
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

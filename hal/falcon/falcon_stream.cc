@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/falcon/falcon_stream.h"
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 
 void FalconStream::drop() RT_SAFE {
   if (size_ == 0) return;
@@ -22,4 +23,4 @@ std::optional<FalconReport> FalconStream::push(std::uint8_t byte) RT_SAFE {
   return decode_falcon_report(packet_);
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

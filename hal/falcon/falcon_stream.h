@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // falcon_stream.h - whole reports out of the bytes as they come: cut, damaged, with strays between.
 //
 // A start byte cannot occur inside a packet, so each one begins a new packet, whatever came before;
@@ -10,7 +11,7 @@
 
 #include "hal/falcon/falcon_packets.h"
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 
 class FalconStream {
  public:
@@ -33,4 +34,4 @@ class FalconStream {
   std::uint64_t reports_ = 0, broken_packets_ = 0, dropped_bytes_ = 0;
 };
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/falcon/falcon_trouble.h"
 
 #include <fmt/core.h>
@@ -7,7 +8,7 @@
 
 #include "hal/falcon/ftdi_requests.h"
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 namespace {
 
 constexpr std::array kAxis{"1 (top)", "2 (right)", "3 (left)"};
@@ -67,4 +68,4 @@ std::string in_words(const FalconTrouble& t) {
   return {};
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // falcon_trouble.h - what keeps a Falcon from making force, packed small, and in words.
 #pragma once
 
@@ -6,7 +7,7 @@
 
 #include "hal/falcon/falcon_pipe.h"
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 
 struct FalconTrouble {
   enum class What : std::uint8_t {
@@ -40,4 +41,4 @@ struct FalconTrouble {
 /// One sentence: which part, why, the cure; empty for kNone.
 std::string in_words(const FalconTrouble& trouble);
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

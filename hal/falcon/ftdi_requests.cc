@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/falcon/ftdi_requests.h"
 
 #include <algorithm>
 #include <array>
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 
 std::optional<double> ftdi_baud_Hz(std::uint16_t code) RT_SAFE {
   constexpr double kClock_Hz = 3e6;
@@ -53,4 +54,4 @@ const char* ftdi_line_error(std::uint8_t bit) RT_SAFE {
   }
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

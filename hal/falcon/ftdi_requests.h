@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ftdi_requests.h - how an FT232 USB-to-serial chip is set up, and what it adds to what it reads.
 //
 // Set-up: vendor control requests, type 0x40, without data. Reading: each USB packet, not each
@@ -9,7 +10,7 @@
 //     baud = 3 MHz / divisor;  divisor code: bits 13..0 whole part, bits 15..14 fraction
 //     (0: .0, 1: .5, 2: .25, 3: .125);  codes 0 and 1 stand for 3 and 2 MBd
 //
-// Source: FTDI application note AN232B-05 (baud rates), and Linux drivers/usb/serial/ftdi_sio.h.
+// Source: FP-1; FTDI note AN232B-05 (baud rates), and Linux drivers/usb/serial/ftdi_sio.h.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,7 @@
 
 #include "model/rt.h"
 
-namespace tact::hal {
+namespace tact::hal::falcon {
 
 struct FtdiRequest {
   std::uint8_t type = 0x40;  // bmRequestType: to the device, vendor
@@ -45,7 +46,7 @@ constexpr FtdiRequest ftdi_divisor(std::uint16_t code) RT_SAFE { return ftdi_req
 constexpr FtdiRequest ftdi_latency_ms(std::uint8_t latency_ms) RT_SAFE {
   return ftdi_request(9, latency_ms == 0 ? 1 : latency_ms);
 }
-/// The chip hands over what it has as soon as this byte arrives, whatever its latency timer says.
+/// The chip hands over what it has as soon as this byte arrives, whatever its latency timer (FP-5).
 constexpr FtdiRequest ftdi_event_character(std::uint8_t character) RT_SAFE {
   return ftdi_request(6, static_cast<std::uint16_t>(0x0100 | character));
 }
@@ -77,4 +78,4 @@ std::optional<FtdiRead> ftdi_strip(std::span<const std::uint8_t> transfer,
 /// What one error bit of the line status means, and the cure; "" for any other bit.
 const char* ftdi_line_error(std::uint8_t bit) RT_SAFE;
 
-}  // namespace tact::hal
+}  // namespace tact::hal::falcon

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/force_dimension/device_types.h"
 
 #include <fmt/format.h>
 
 #include <array>
 
-namespace tact::hal {
+namespace tact::hal::force_dimension {
 namespace {
 
 using model::Error;
@@ -72,4 +73,4 @@ model::Result<ForceDimensionType> force_dimension_type(int code) {
       code)};
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::force_dimension

@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 // device_types.h - which of Force Dimension's devices tact knows, and how strong each may be.
 //
-// Forces and radii are the defaults of CHAI3D (chai3d.org, devices/CDeltaDevices.cpp), where they
-// are below the data sheet; lengths and resolutions are those of the maker's data sheets.
+// Forces and radii are the defaults of CHAI3D (FD-1, chai3d.org, devices/CDeltaDevices.cpp), where
+// they are below the data sheet; lengths and resolutions are those of the maker's data sheets.
 #pragma once
 
 #include "model/result.h"
 
-namespace tact::hal {
+namespace tact::hal::force_dimension {
 
 struct ForceDimensionType {
   int code = 0;  // dhdGetSystemType
@@ -21,4 +22,4 @@ struct ForceDimensionType {
 /// The type of this code, or why it cannot be used and what can.
 model::Result<ForceDimensionType> force_dimension_type(int code);
 
-}  // namespace tact::hal
+}  // namespace tact::hal::force_dimension

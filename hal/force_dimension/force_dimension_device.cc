@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/force_dimension/force_dimension_device.h"
 
 #include <fmt/format.h>
@@ -7,7 +8,7 @@
 
 #include "hal/saturation.h"
 
-namespace tact::hal {
+namespace tact::hal::force_dimension {
 namespace {
 
 constexpr std::int64_t kOldest_ns = 5'000'000;
@@ -46,9 +47,11 @@ std::int64_t command_life_ns(double rate_Hz) {
 
 }  // namespace
 
-ForceDimensionDevice::ForceDimensionDevice(const SdkSession& session, const model::Scene& scene)
-    : info_(info_of(session, scene.device.force_dimension)),
-      worker_(SdkWorker::start(session, command_life_ns(scene.rate_Hz))),
+ForceDimensionDevice::ForceDimensionDevice(const SdkSession& session,
+                                           const model::ForceDimensionSettings& settings,
+                                           double rate_Hz)
+    : info_(info_of(session, settings)),
+      worker_(SdkWorker::start(session, rate_Hz, command_life_ns(rate_Hz))),
       linear_(kObserver_Hz, kJump_m),
       angular_(kObserver_Hz, kJump_rad) {}
 
@@ -96,10 +99,12 @@ void ForceDimensionDevice::stop() {
   stopped_ = true;
 }
 
-model::Result<std::unique_ptr<Device>> open_force_dimension(const model::Scene& scene) {
-  const auto session = open_sdk_session(scene.device.force_dimension);
+model::Result<std::unique_ptr<Device>> open_force_dimension(const model::DeviceSettings& settings,
+                                                            double rate_Hz) {
+  const auto session = open_sdk_session(settings.force_dimension);
   if (!session) return session.error();
-  return std::unique_ptr<Device>(new ForceDimensionDevice(*session, scene));
+  return std::unique_ptr<Device>(
+      new ForceDimensionDevice(*session, settings.force_dimension, rate_Hz));
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::force_dimension

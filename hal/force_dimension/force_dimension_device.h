@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // force_dimension_device.h - a delta.3, omega, sigma or lambda, driven through its maker's library.
 //
 // The loop only exchanges slots with the thread that calls the library (sdk_worker.h): no system
@@ -12,14 +13,15 @@
 #include "hal/device.h"
 #include "hal/force_dimension/sdk_worker.h"
 #include "hal/velocity_observer.h"
+#include "model/device_settings.h"
 #include "model/result.h"
-#include "model/scene.h"
 
-namespace tact::hal {
+namespace tact::hal::force_dimension {
 
 class ForceDimensionDevice final : public Device {
  public:
-  ForceDimensionDevice(const SdkSession& session, const model::Scene& scene);
+  ForceDimensionDevice(const SdkSession& session, const model::ForceDimensionSettings& settings,
+                       double rate_Hz);
   ~ForceDimensionDevice() override;
   ForceDimensionDevice(const ForceDimensionDevice&) = delete;
   ForceDimensionDevice& operator=(const ForceDimensionDevice&) = delete;
@@ -46,6 +48,7 @@ class ForceDimensionDevice final : public Device {
 
 /// Loads the library, opens and checks the device, starts its threads; about half a second. No
 /// force before the loop permits power.
-model::Result<std::unique_ptr<Device>> open_force_dimension(const model::Scene& scene);
+model::Result<std::unique_ptr<Device>> open_force_dimension(const model::DeviceSettings& settings,
+                                                            double rate_Hz);
 
-}  // namespace tact::hal
+}  // namespace tact::hal::force_dimension

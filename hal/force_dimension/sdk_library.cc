@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/force_dimension/sdk_library.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-namespace tact::hal {
+namespace tact::hal::force_dimension {
 namespace {
 
 using model::Error;
@@ -59,4 +60,4 @@ model::Result<SdkFunctions> load_sdk(const std::string& name) {
   return sdk;
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::force_dimension

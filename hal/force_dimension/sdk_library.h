@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // sdk_library.h - Force Dimension's library, loaded by name when a scene asks for it.
 //
 // The library is proprietary and never part of tact: these are prototypes of our own, with the
 // names and meanings of the maker's documentation (Force Dimension SDK 3.17, dhdc.h). Every call
-// takes the device's id last. 0 is success, 1 "no new data yet" (time guard), 2 "force scaled down,
-// direction kept"; negative is an error, whose code dhdErrorGetLast tells the same thread.
+// takes the device's id last (FD-2). 0 is success, 1 "no new data yet" (time guard), 2 "force
+// scaled down, direction kept"; negative is an error, whose code dhdErrorGetLast tells the same
+// thread.
 //
 // Once loaded it stays: a library with threads of its own cannot be unloaded safely.
 #pragma once
@@ -12,7 +14,7 @@
 
 #include "model/result.h"
 
-namespace tact::hal {
+namespace tact::hal::force_dimension {
 
 inline constexpr int kSdkStatusWords = 17;
 
@@ -41,4 +43,4 @@ struct SdkFunctions {
 /// Loads the file that device.force_dimension.library names and finds the functions in it.
 model::Result<SdkFunctions> load_sdk(const std::string& library);
 
-}  // namespace tact::hal
+}  // namespace tact::hal::force_dimension

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/force_dimension/sdk_session.h"
 
 #include <fmt/format.h>
@@ -9,7 +10,7 @@
 #include "hal/force_dimension/sdk_words.h"
 #include "hal/udev_rules.h"
 
-namespace tact::hal {
+namespace tact::hal::force_dimension {
 namespace {
 
 using model::Error;
@@ -131,4 +132,4 @@ void close_sdk_session(const SdkSession& s) {
   s.sdk.close(s.id);
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::force_dimension

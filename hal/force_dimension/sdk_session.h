@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // sdk_session.h - a Force Dimension device from "the library is loaded" to "ready for the loop".
 //
 // Opened, of a known type, calibrated, configured once in expert mode (time guard off, so that no
-// call waits; watchdog on, so that a dead PC lets go), and called some hundred times with its
+// call waits; watchdog on, so that a dead PC lets go, FD-3), and called some hundred times with its
 // forces off, so that the library has touched all its memory. Set-up code only; tact locks its
 // memory before, and the library's heap with it.
 #pragma once
@@ -10,7 +11,7 @@
 #include "hal/force_dimension/sdk_library.h"
 #include "model/device_settings.h"
 
-namespace tact::hal {
+namespace tact::hal::force_dimension {
 
 struct SdkSession {
   SdkFunctions sdk;
@@ -25,4 +26,4 @@ model::Result<SdkSession> open_sdk_session(const model::ForceDimensionSettings& 
 /// Zero force, forces off, closed. May block.
 void close_sdk_session(const SdkSession& session);
 
-}  // namespace tact::hal
+}  // namespace tact::hal::force_dimension

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/force_dimension/sdk_words.h"
 
 #include <cstddef>
 
-namespace tact::hal {
+namespace tact::hal::force_dimension {
 namespace {
 
 constexpr std::array kErrors{
@@ -60,4 +61,4 @@ model::Fault fault_of_sdk_error(int code) RT_SAFE {
 
 const char* words_of_force_off(int cause) { return pick(kForceOff, cause); }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::force_dimension

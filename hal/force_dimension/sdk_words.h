@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // sdk_words.h - what the numbers of Force Dimension's library mean, for a person.
 //
 // Source: the maker's documentation (SDK 3.17, dhdc.h): error codes, words of dhdGetStatus, causes
@@ -9,7 +10,7 @@
 #include "hal/force_dimension/sdk_library.h"
 #include "model/fault.h"
 
-namespace tact::hal {
+namespace tact::hal::force_dimension {
 
 /// Places in dhdGetStatus.
 enum SdkStatus : int {
@@ -31,4 +32,4 @@ model::Fault fault_of_sdk_error(int code) RT_SAFE;
 /// Why the device switched its forces off, and the cure; never blank.
 const char* words_of_force_off(int cause);
 
-}  // namespace tact::hal
+}  // namespace tact::hal::force_dimension

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/force_dimension/sdk_worker.h"
 
 #include <fmt/format.h>
@@ -14,7 +15,7 @@
 #include "hal/force_dimension/sdk_words.h"
 #include "hal/monotonic.h"
 
-namespace tact::hal {
+namespace tact::hal::force_dimension {
 namespace {
 
 using model::Fault;
@@ -22,16 +23,13 @@ using model::Quat;
 using model::Vec3;
 using model::Wrench;
 
-constexpr std::int64_t kCycle_ns = 250'000;
-// On CLOCK_MONOTONIC: the loop's deadlines at 1, 2 and 4 kHz lie 50, 150 and 75 us into a cycle
-// (firmware/grid.h), 75 us and more from this timer, while the library is fast enough for it.
-constexpr std::int64_t kCyclePhase_ns = 225'000;
+constexpr std::int64_t kLongestCycle_ns = 250'000;
 constexpr std::int64_t kLeastPause_ns = 50'000;  // a slow library must not starve the PC
 constexpr std::int64_t kLoopGone_ns = 100'000'000;
 constexpr int kPriority = 78;
-constexpr int kZeroFirst = 8;                   // cycles of zero force after the forces went on
-constexpr std::uint32_t kPoweredForSure = 400;  // cycles before "forces off" is news
-constexpr int kTimeGuard = 1;                   // pose: nothing new
+constexpr std::int64_t kZeroFirst_ns = 2'000'000;         // of zero force after the forces went on
+constexpr std::int64_t kPoweredForSure_ns = 100'000'000;  // before "forces off" is news
+constexpr int kTimeGuard = 1;                             // pose: nothing new
 constexpr auto kStatusPeriod = std::chrono::milliseconds(50);
 
 void sleep_until_ns(std::int64_t deadline_ns) {
@@ -92,9 +90,13 @@ std::string words_of_sdk_trouble(const SdkTrouble& t) {
                "again";
 }
 
-std::shared_ptr<SdkWorker> SdkWorker::start(const SdkSession& session,
+std::int64_t sdk_cycle_ns(double rate_Hz) {
+  return std::min(kLongestCycle_ns, static_cast<std::int64_t>(std::llround(1e9 / rate_Hz)));
+}
+
+std::shared_ptr<SdkWorker> SdkWorker::start(const SdkSession& session, double rate_Hz,
                                             std::int64_t command_life_ns) {
-  std::shared_ptr<SdkWorker> worker(new SdkWorker(session, command_life_ns));
+  std::shared_ptr<SdkWorker> worker(new SdkWorker(session, sdk_cycle_ns(rate_Hz), command_life_ns));
   worker->running_ = 2;
   // Each thread keeps the worker alive: one that hangs in the library outlives its device.
   std::thread([worker] {
@@ -112,10 +114,13 @@ std::shared_ptr<SdkWorker> SdkWorker::start(const SdkSession& session,
   return worker;
 }
 
+// On CLOCK_MONOTONIC, 0.9 of a cycle after its multiples: deadlines at 1, 2 and 4 kHz lie 50, 150
+// and 75 us into a cycle (firmware/loop/grid.h), 75 us and more from this timer, those of a faster
+// loop 0.3 of a cycle, while the library is fast enough for it.
 void SdkWorker::run() {
-  std::int64_t due_ns = monotonic_ns() / kCycle_ns * kCycle_ns + kCyclePhase_ns;
+  std::int64_t due_ns = monotonic_ns() / cycle_ns_ * cycle_ns_ + cycle_ns_ * 9 / 10;
   while (!quit_.load(std::memory_order_relaxed) && cycle()) {
-    due_ns = std::max(due_ns + kCycle_ns, monotonic_ns() + kLeastPause_ns);
+    due_ns = std::max(due_ns + cycle_ns_, monotonic_ns() + kLeastPause_ns);
     sleep_until_ns(due_ns);
   }
   send({});
@@ -150,8 +155,9 @@ bool SdkWorker::read_pose(std::int64_t now_ns) {
 
 bool SdkWorker::follow_power(bool wanted) {
   if (wanted == (power_ != Power::kOff)) {
-    if (power_ == Power::kZeroFirst && ++zero_cycles_ >= kZeroFirst) power_ = Power::kOn;
-    if (power_ == Power::kOn && powered_cycles_.load(std::memory_order_relaxed) < kPoweredForSure)
+    if (power_ == Power::kZeroFirst && ++zero_cycles_ * cycle_ns_ >= kZeroFirst_ns)
+      power_ = Power::kOn;
+    if (power_ == Power::kOn && !powered_for_sure())
       powered_cycles_.fetch_add(1, std::memory_order_relaxed);
     return true;
   }
@@ -160,6 +166,10 @@ bool SdkWorker::follow_power(bool wanted) {
   power_ = wanted ? Power::kZeroFirst : Power::kOff;
   return session_.sdk.enable_force(wanted ? 1 : 0, session_.id) >= 0 ||
          fail(SdkTroubleSource::kEnable);
+}
+
+bool SdkWorker::powered_for_sure() const {
+  return powered_cycles_.load(std::memory_order_relaxed) * cycle_ns_ >= kPoweredForSure_ns;
 }
 
 bool SdkWorker::send(const Wrench& w) {
@@ -175,13 +185,13 @@ void SdkWorker::watch() {
 }
 
 void SdkWorker::check_status() {
-  const bool on_before = powered_cycles_.load(std::memory_order_relaxed) >= kPoweredForSure;
+  const bool on_before = powered_for_sure();
   SdkStatusWords status{};
   if (session_.sdk.status(status.data(), session_.id) < 0) {
     fail(SdkTroubleSource::kWatch);
     return;
   }
-  const bool on_after = powered_cycles_.load(std::memory_order_relaxed) >= kPoweredForSure;
+  const bool on_after = powered_for_sure();
   const auto found = [&](Fault fault, SdkTroubleSource source, int code) {
     keep({fault, source, static_cast<std::uint8_t>(std::clamp(code, 0, 255))});
   };
@@ -226,4 +236,4 @@ bool SdkWorker::stop() {
   return true;
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::force_dimension

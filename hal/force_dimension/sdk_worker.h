@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 // sdk_worker.h - the two threads that call Force Dimension's library while the loop runs.
 //
 // The library may wait for USB, for locks, for threads of its own; the loop never calls it.
 //
-//   "tact-fd", SCHED_FIFO 78 (below the loop): every 250 us one pose and one force, which also feeds
-//   the watchdog and balances the device's weight. A command that the loop has not renewed is worth
-//   zero; without the loop for 100 ms the forces are switched off.
-//   "tact-fd-status", an ordinary thread: 20 times a second the status words. Forces that the device
-//   has switched off by itself, lost supply or calibration become a trouble that stays.
+//   "tact-fd", SCHED_FIFO 78 (below the loop): one pose and one force every 250 us, every period of
+//   a faster loop; that also feeds the watchdog and balances the device's weight. A command that
+//   the loop has not renewed is worth zero; without it for 100 ms the forces are switched off.
+//   "tact-fd-status", an ordinary thread: 20 times a second the status words. Forces that the
+//   device has switched off by itself, lost supply or calibration become a trouble that stays.
 //
 // After a trouble: zero force and forces off once, then not one call more; the device's own
 // watchdog does the rest.
@@ -22,7 +23,7 @@
 #include "model/fault.h"
 #include "model/types.h"
 
-namespace tact::hal {
+namespace tact::hal::force_dimension {
 
 /// Which call or watch found the trouble.
 enum class SdkTroubleSource : std::uint8_t {
@@ -57,10 +58,14 @@ struct SdkCommand {
   bool powered = false;
 };
 
+/// From one pose and force to the next.
+std::int64_t sdk_cycle_ns(double rate_Hz);
+
 class SdkWorker {
  public:
-  /// Starts both threads. A command is worth command_life_ns.
-  static std::shared_ptr<SdkWorker> start(const SdkSession& session, std::int64_t command_life_ns);
+  /// Starts both threads, for a loop of that rate. A command is worth command_life_ns.
+  static std::shared_ptr<SdkWorker> start(const SdkSession& session, double rate_Hz,
+                                          std::int64_t command_life_ns);
 
   LatestSlot<SdkPose>& poses() RT_SAFE { return poses_; }
   LatestSlot<SdkCommand>& commands() RT_SAFE { return commands_; }
@@ -76,12 +81,13 @@ class SdkWorker {
  private:
   enum class Power : std::uint8_t { kOff, kZeroFirst, kOn };
 
-  SdkWorker(const SdkSession& session, std::int64_t command_life_ns)
-      : session_(session), command_life_ns_(command_life_ns) {}
+  SdkWorker(const SdkSession& session, std::int64_t cycle_ns, std::int64_t command_life_ns)
+      : session_(session), cycle_ns_(cycle_ns), command_life_ns_(command_life_ns) {}
   void run();
   bool cycle();
   bool read_pose(std::int64_t now_ns);
   bool follow_power(bool wanted);
+  bool powered_for_sure() const;
   bool send(const model::Wrench& wrench);
   void watch();
   void check_status();
@@ -89,17 +95,17 @@ class SdkWorker {
   void keep(const SdkTrouble& trouble);
 
   SdkSession session_;
-  std::int64_t command_life_ns_;
+  std::int64_t cycle_ns_, command_life_ns_;
   LatestSlot<SdkPose> poses_;
   LatestSlot<SdkCommand> commands_;
   SdkCommand command_;  // worker thread, as the next three
   std::uint64_t sequence_ = 0;
-  int zero_cycles_ = 0;
+  std::int64_t zero_cycles_ = 0;
   Power power_ = Power::kOff;
-  std::atomic<std::uint32_t> powered_cycles_{0};  // since the forces were switched on
+  std::atomic<std::int64_t> powered_cycles_{0};  // since the forces were switched on
   std::atomic<std::uint32_t> trouble_{0};
   std::atomic<bool> quit_{false};
   std::atomic<int> running_{0};
 };
 
-}  // namespace tact::hal
+}  // namespace tact::hal::force_dimension

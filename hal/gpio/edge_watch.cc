@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/gpio/edge_watch.h"
 
 #include <fmt/format.h>
@@ -9,7 +10,7 @@
 
 #include "hal/gpio/gpio_lines.h"
 
-namespace tact::hal {
+namespace tact::hal::gpio {
 namespace {
 
 using model::Error;
@@ -65,4 +66,4 @@ Result<std::unique_ptr<EdgeWatch>> open_edge_watch(const std::string& wanted, in
   return std::unique_ptr<EdgeWatch>(new GpioEdges(std::move(handle), found));
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::gpio

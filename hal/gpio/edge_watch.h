@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // edge_watch.h - when a GPIO line rose and fell, by the kernel's clock in its interrupt: a scope
 // pin wired back to a second line of the same chip is measured without a scope. Set-up and ordinary
 // threads only; the loop never touches it.
@@ -17,7 +18,7 @@
 #include "hal/gpio/gpio_chips.h"
 #include "model/result.h"
 
-namespace tact::hal {
+namespace tact::hal::gpio {
 
 struct Edge {
   bool rising = false;
@@ -40,4 +41,4 @@ class EdgeWatch {
 model::Result<std::unique_ptr<EdgeWatch>> open_edge_watch(const std::string& chip, int line,
                                                           const SystemRoots& roots = {});
 
-}  // namespace tact::hal
+}  // namespace tact::hal::gpio

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/gpio/gpio_chips.h"
 
 #include <fcntl.h>
@@ -13,7 +14,7 @@
 #include <filesystem>
 #include <string_view>
 
-namespace tact::hal {
+namespace tact::hal::gpio {
 namespace {
 
 namespace fs = std::filesystem;
@@ -97,4 +98,4 @@ std::string name_chips(const std::vector<GpioChip>& chips) {
   return names;
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::gpio

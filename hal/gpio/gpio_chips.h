@@ -1,17 +1,19 @@
-// gpio_chips.h - the GPIO chips of this PC, and which of them a loop may not wait for.
+// SPDX-License-Identifier: Apache-2.0
+// gpio_chips.h - the GPIO chips of this PC, and which of them a loop may not wait for (GP-3).
 //
-// A chip behind USB, I2C, SPI or a virtual machine's queue answers after milliseconds and its driver
-// sleeps meanwhile; the kernel knows (can_sleep) but does not tell user space, so the buses above
-// the chip are read from sysfs: /sys/bus/gpio/devices/gpiochipN and the `subsystem` links of its
-// parents. All of them must be known to be fast: PCI, platform, ACPI, PnP, ISA, AMBA. A platform
-// driver that passes accesses on to another chip (gpio-aggregator) is not seen through. Label and
-// number of lines come from the chip itself (linux/gpio.h, GPIO_GET_CHIPINFO_IOCTL). Set-up only.
+// A chip behind USB, I2C, SPI or a virtual machine's queue answers after milliseconds and its
+// driver sleeps meanwhile; the kernel knows (can_sleep) but does not tell user space, so the buses
+// above the chip are read from sysfs: /sys/bus/gpio/devices/gpiochipN and the `subsystem` links of
+// its parents. All of them must be known to be fast: PCI, platform, ACPI, PnP, ISA, AMBA. A
+// platform driver that passes accesses on to another chip (gpio-aggregator) is not seen through.
+// Label and number of lines come from the chip itself (linux/gpio.h, GPIO_GET_CHIPINFO_IOCTL).
+// Set-up only.
 #pragma once
 
 #include <string>
 #include <vector>
 
-namespace tact::hal {
+namespace tact::hal::gpio {
 
 /// Where the kernel shows itself; other folders in tests.
 struct SystemRoots {
@@ -40,4 +42,4 @@ inline constexpr const char* kUnknownBus = "an unknown bus";
 /// when there is none at all; nothing when all are fast.
 std::string slow_bus(const std::string& device, const std::string& sys_root);
 
-}  // namespace tact::hal
+}  // namespace tact::hal::gpio

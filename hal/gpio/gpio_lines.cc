@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/gpio/gpio_lines.h"
 
 #include <fmt/format.h>
@@ -14,7 +15,7 @@
 #include "hal/gpio/safety_logic.h"
 #include "hal/udev_rules.h"
 
-namespace tact::hal {
+namespace tact::hal::gpio {
 namespace {
 
 using model::Error;
@@ -296,4 +297,4 @@ Result<std::unique_ptr<SafetyLines>> open_lines_of(const GpioChip& chip,
   return std::unique_ptr<SafetyLines>(new GpioLines(std::move(handle), *lines));
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::gpio

@@ -1,4 +1,5 @@
-// gpio_lines.h - safety lines on a GPIO chip, by libgpiod 1.6.
+// SPDX-License-Identifier: Apache-2.0
+// gpio_lines.h - safety lines on a GPIO chip, by libgpiod 1.6 (GP-2).
 //
 // Inputs are one request and outputs are one request, so a tick costs one ioctl for all levels and
 // one for all outputs; the scope line has its own request and costs two more. Outputs start low and
@@ -15,7 +16,7 @@
 #include "model/device_settings.h"
 #include "model/result.h"
 
-namespace tact::hal {
+namespace tact::hal::gpio {
 
 /// Lines of scene.device.lines, outputs low; NoSafetyLines when none is wired. Set-up only.
 model::Result<std::unique_ptr<SafetyLines>> open_safety_lines(const model::LinesSettings& settings,
@@ -32,4 +33,4 @@ model::Result<GpioChip> choose_chip(const std::vector<GpioChip>& chips, const st
 /// The first thing wrong with the line numbers: outside the chip, used twice, none at all.
 model::Result<bool> check_offsets(const model::LinesSettings& settings, const GpioChip& chip);
 
-}  // namespace tact::hal
+}  // namespace tact::hal::gpio

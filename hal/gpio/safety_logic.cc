@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/gpio/safety_logic.h"
 
-namespace tact::hal {
+namespace tact::hal::gpio {
 
 using model::Fault;
 
@@ -92,4 +93,4 @@ SafetyOutputs SafetyLogic::drive(const LinesTick& tick) RT_SAFE {
   return outputs_;
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::gpio

@@ -1,16 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
 // safety_logic.h - what the levels of the safety lines mean, and what the outputs answer. Pure.
 //
-//   e-stop, two normally closed channels:  high = closed = good, low = open, broken wire or no power
+//   e-stop, two normally closed channels:  high = closed = good; low = open, broken wire, no power
 //   one channel open                       -> kEmergencyStop, at once
-//   channels differ for more than 50 ms    -> kLinesDiffer, until both have been open together: only
-//                                             then is a contact that sticks known to be mended
+//   channels differ for more than 50 ms    -> kLinesDiffer, until both have been open together:
+//                                             only then a contact that sticks is mended
 //   dead-man low                           -> kDeadManReleased, at once
-//   heartbeat   toggles after every healthy tick; the relay beside it drops after some 10 ms without
+//   heartbeat   toggles after every healthy tick; the relay beside it drops some 10 ms without
 //   enable      100 ms after the heartbeat has begun; gone in the tick of a fault, or when the
 //               heartbeat has paused for more than 10 ms: lines need well over 100 ticks a second
 //
 // The supervisor keeps a fault until the operator resets; here it stands while its cause does. Two
-// channels that watch each other: ISO 13850, ISO 13849-1 category 3.
+// channels that watch each other: ISO 13850, ISO 13849-1 category 3 (GP-1).
 #pragma once
 
 #include <atomic>
@@ -18,7 +19,7 @@
 
 #include "hal/safety_lines.h"
 
-namespace tact::hal {
+namespace tact::hal::gpio {
 
 inline constexpr std::int64_t kDiscrepancy_ns = 50'000'000;
 inline constexpr std::int64_t kHeartbeatBeforeEnable_ns = 100'000'000;
@@ -84,4 +85,4 @@ class SafetyLogic {
   bool beating_ = false;
 };
 
-}  // namespace tact::hal
+}  // namespace tact::hal::gpio

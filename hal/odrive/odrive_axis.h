@@ -1,4 +1,5 @@
-// odrive_axis.h - what the loop knows of one ODrive: its state, its newest position, its silence.
+// SPDX-License-Identifier: Apache-2.0
+// odrive_axis.h - one ODrive in the loop: its state, and whether a position is taken.
 //
 // CANSimple numbers no message. What can be told of a position: that a newer one has come already
 // (by the kernel's stamp); that it is the last one again, bit for bit, while its velocity says that
@@ -9,11 +10,14 @@
 // The same value twice at rest is legal. What an adapter swaps within one tick cannot be told.
 #pragma once
 
+#include <bit>
+#include <cmath>
 #include <cstdint>
 
+#include "hal/can/can_device.h"
 #include "hal/odrive/odrive_protocol.h"
 
-namespace tact::hal {
+namespace tact::hal::odrive {
 
 enum class OdriveNews : std::uint8_t {
   kNew,
@@ -26,21 +30,48 @@ class OdriveAxis {
  public:
   static constexpr int kMostJumps = 3;  // in a row, then the encoder is not to be trusted
 
-  OdriveNews take(const OdriveEstimates& now, std::int64_t arrival_ns) RT_SAFE;
+  std::uint8_t state = 0;  // OdriveAxisState of the last heartbeat
+  bool is_in(OdriveAxisState one) const RT_SAFE { return state == static_cast<std::uint8_t>(one); }
 
-  bool has_position() const RT_SAFE { return has_position_; }
-  double position_turns() const RT_SAFE { return newest_.position_turns; }
-  std::int64_t arrival_ns() const RT_SAFE { return arrival_ns_; }
-  bool untrusted() const RT_SAFE { return jumps_ >= kMostJumps; }
-
-  std::int64_t heartbeat_ns = 0;  // when the last one came
-  std::uint8_t state = 0;         // OdriveAxisState of that one
+  /// What is new goes to `axis`, which has the one before.
+  OdriveNews take(const OdriveEstimates& now, std::int64_t arrival_ns, can::CanAxis& axis) RT_SAFE {
+    if (axis.located) {
+      if (arrival_ns < axis.arrival_ns) return OdriveNews::kOld;
+      const double dt_s = 1e-9 * static_cast<double>(arrival_ns - axis.arrival_ns);
+      const double speed_turns_per_s = std::abs(now.velocity_turns_per_s);
+      if (same_bits(now.position_turns, axis.motor_turns) &&
+          same_bits(now.velocity_turns_per_s, velocity_turns_per_s_) &&
+          speed_turns_per_s * dt_s > kMoved_turns) {
+        return OdriveNews::kStale;
+      }
+      const double moved_turns = 0.5 * (now.velocity_turns_per_s + velocity_turns_per_s_) * dt_s;
+      const double residual_turns = std::abs(now.position_turns - axis.motor_turns - moved_turns);
+      const double most_turns =
+          kSlack_turns + speed_turns_per_s * kStampError_s + kHalfMost_turns_per_s2 * dt_s * dt_s;
+      if (!(residual_turns <= most_turns)) {
+        axis.jumps = ++jumps_ >= kMostJumps;
+        return OdriveNews::kJumped;
+      }
+    }
+    jumps_ = 0;
+    velocity_turns_per_s_ = now.velocity_turns_per_s;
+    axis.sample(now.position_turns, arrival_ns);
+    return OdriveNews::kNew;
+  }
 
  private:
-  OdriveEstimates newest_{};
-  std::int64_t arrival_ns_ = 0;
-  bool has_position_ = false;
+  static constexpr double kSlack_turns = 0.02;   // backlash of stamps at low speed, encoder ripple
+  static constexpr double kStampError_s = 2e-3;  // the kernel may stamp a frame late
+  static constexpr double kHalfMost_turns_per_s2 =
+      1000.0;                                   // half of what a motor of this size can do
+  static constexpr double kMoved_turns = 1e-5;  // an estimate that moved so far has other bits
+
+  static bool same_bits(double a, double b) RT_SAFE {
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+  }
+
+  double velocity_turns_per_s_ = 0.0;  // of the last one taken
   int jumps_ = 0;
 };
 
-}  // namespace tact::hal
+}  // namespace tact::hal::odrive

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/odrive/odrive_bring_up.h"
 
 #include <fmt/core.h>
@@ -9,7 +10,7 @@
 
 #include "hal/can/can_delta.h"
 
-namespace tact::hal {
+namespace tact::hal::odrive {
 namespace {
 
 using model::Error;
@@ -34,7 +35,7 @@ struct Axis {
 
 class BringUp {
  public:
-  BringUp(CanBus& bus, const model::CanSettings& can, double rate_Hz)
+  BringUp(can::CanBus& bus, const model::CanSettings& can, double rate_Hz)
       : bus_(bus), can_(can), rate_Hz_(rate_Hz) {
     for (std::size_t i = 0; i < 3; ++i) axes_[i].node = can.node[i];
   }
@@ -45,9 +46,7 @@ class BringUp {
          {&BringUp::hear_all, &BringUp::find_generation, &BringUp::clear_errors,
           &BringUp::set_torque_mode, &BringUp::find_index, &BringUp::count_positions}) {
       if (auto error = (this->*step)()) return *error;
-      if (bus_.fault() != Fault::kNone) {
-        return Error{can_bus_trouble(bus_.cause(), can_.interface)};
-      }
+      if (bus_.fault() != Fault::kNone) return Error{can_bus_trouble(bus_.cause(), can_.interface)};
     }
     OdriveStart start{.generation = generation_, .motor_turns = {}};
     for (std::size_t i = 0; i < 3; ++i) start.motor_turns[i] = axes_[i].turns;
@@ -60,9 +59,8 @@ class BringUp {
   std::optional<Error> hear_all() {
     if (run_until([](const Axis& a) { return a.heartbeats > 0; }, kHeartbeatWait_ms)) return {};
     const auto unheard = [](const Axis& a) { return a.heartbeats == 0; };
-    if (std::all_of(axes_.begin(), axes_.end(), unheard)) {
+    if (std::all_of(axes_.begin(), axes_.end(), unheard))
       return Error{silent_bus_trouble(bus_, can_.interface)};
-    }
     return wrong([&](const Axis& a) { return unheard(a); },
                  "sends no heartbeat: is it on, and does it have this node?");
   }
@@ -96,7 +94,7 @@ class BringUp {
     }
     for (std::size_t i = 0; i < 3; ++i) {
       const auto words = odrive_error_sentence(generation_, axes_[i].error, axes_[i].parts);
-      if (!words.empty()) return Error{fmt::format("{}: {}", can_arm_name(i, can_), words)};
+      if (!words.empty()) return Error{fmt::format("{}: {}", can::can_arm_name(i, can_), words)};
     }
     return wrong(
         [](const Axis& a) { return a.state != static_cast<std::uint8_t>(OdriveAxisState::kIdle); },
@@ -144,7 +142,7 @@ class BringUp {
         return Error{fmt::format(
             "{} sends its position {:.0f} times a second, not {:.0f} times: set {} = 1 in "
             "odrivetool, save, restart the drive",
-            can_arm_name(i, can_), a.positions * 1e3 / kPositions_ms, rate_Hz_,
+            can::can_arm_name(i, can_), a.positions * 1e3 / kPositions_ms, rate_Hz_,
             generation_ == OdriveGeneration::k06 ? "axis.config.can.encoder_msg_rate_ms"
                                                  : "axis.config.can.encoder_rate_ms")};
       }
@@ -156,9 +154,8 @@ class BringUp {
 
   /// The first axis that fits, as a sentence.
   std::optional<Error> wrong(const Condition& fits, const char* words) const {
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (fits(axes_[i])) return Error{fmt::format("{} {}", can_arm_name(i, can_), words)};
-    }
+    for (std::size_t i = 0; i < 3; ++i)
+      if (fits(axes_[i])) return Error{fmt::format("{} {}", can::can_arm_name(i, can_), words)};
     return {};
   }
 
@@ -178,27 +175,25 @@ class BringUp {
 
   /// Feeds and listens until all three fit: true, or the time is over or the bus broke: false.
   bool run_until(const Condition& fits, int time_ms) {
-    CanSocket& socket = bus_.socket();
+    can::CanSocket& socket = bus_.socket();
     const std::int64_t end_ns = socket.now_ns() + time_ms * 1'000'000LL;
     while (bus_.fault() == Fault::kNone) {
-      for (const CanReceived& one : bus_.receive()) take(one.frame);
+      for (const can::CanReceived& one : bus_.receive()) take(one.frame);
       if (std::all_of(axes_.begin(), axes_.end(), fits)) return true;
       const std::int64_t now_ns = socket.now_ns();
       if (now_ns >= end_ns) return false;
       if (now_ns >= feed_ns_) {
         feed_ns_ = now_ns + kFeed_ms * 1'000'000LL;
-        each([this](int node) { return odrive_input_torque(node, 0.0, torque_length()); });
+        each([this](int node) {
+          return odrive_input_torque(node, 0.0, odrive_torque_length(can_));
+        });
       }
       socket.wait(kFeed_ms);
     }
     return false;
   }
 
-  OdriveTorqueLength torque_length() const {
-    return can_.short_torque ? OdriveTorqueLength::kShort : OdriveTorqueLength::kPadded;
-  }
-
-  void take(const CanFrame& frame) {
+  void take(const can::CanFrame& frame) {
     for (Axis& axis : axes_) {
       if (const auto beat = decode_odrive_heartbeat(frame, axis.node)) {
         ++axis.heartbeats;
@@ -221,7 +216,7 @@ class BringUp {
     }
   }
 
-  CanBus& bus_;
+  can::CanBus& bus_;
   const model::CanSettings& can_;
   double rate_Hz_;
   std::array<Axis, 3> axes_;
@@ -242,12 +237,18 @@ std::vector<std::uint32_t> odrive_ids(const model::CanSettings& can) {
   return ids;
 }
 
-int odrive_cycle_bits(const model::CanSettings& can) {
-  const int torque = can_bits_on_bus(make_can_frame(0, can.short_torque ? 4 : 8)).most;
-  return 3 * (torque + can_bits_on_bus(make_can_frame(0, 8)).most);
+OdriveTorqueLength odrive_torque_length(const model::CanSettings& can) {
+  return can.short_torque ? OdriveTorqueLength::kShort : OdriveTorqueLength::kPadded;
 }
 
-Result<OdriveStart> bring_up_odrives(CanBus& bus, const model::CanSettings& can, double rate_Hz) {
+int odrive_cycle_bits(const model::CanSettings& can) {
+  const auto length = static_cast<std::uint8_t>(odrive_torque_length(can));
+  const int torque = can_bits_on_bus(can::make_can_frame(0, length)).most;
+  return 3 * (torque + can_bits_on_bus(can::make_can_frame(0, 8)).most);
+}
+
+Result<OdriveStart> bring_up_odrives(can::CanBus& bus, const model::CanSettings& can,
+                                     double rate_Hz) {
   for (const int node : can.node) {
     if (node <= kOdriveLargestNode) continue;
     return Error{fmt::format("device.can.node has {}, but an ODrive's node is 0 to {}", node,
@@ -261,4 +262,4 @@ Result<OdriveStart> bring_up_odrives(CanBus& bus, const model::CanSettings& can,
   return BringUp(bus, can, rate_Hz).run();
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::odrive

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // odrive_bring_up.h - three ODrives from power-on to ready for the loop, which alone arms them.
 //
 //     hear three heartbeats -> Idle -> Get_Version (0.6 answers, 0.5 does not) -> Clear_Errors ->
@@ -6,31 +7,32 @@
 //
 // Zero torque is sent all the while, so a watchdog that a run before has left behind stays fed. The
 // protocol acknowledges nothing: what can be seen in heartbeats and positions is checked, no more.
-// Order and messages are those of ODrive's CANSimple manual. Set-up code: blocks, at most some
-// seconds; with an index search up to 20 s, while the arms move.
+// Order and messages are those of ODrive's CANSimple manual (OD-2). Set-up code: blocks, at most
+// some seconds; with an index search up to 20 s, while the arms move.
 #pragma once
 
 #include <vector>
 
 #include "hal/can/can_bus.h"
-#include "hal/delta_kinematics.h"
-#include "hal/odrive/odrive_trouble.h"
+#include "hal/delta/delta_kinematics.h"
+#include "hal/odrive/odrive_errors.h"
 #include "model/device_settings.h"
 #include "model/result.h"
 
-namespace tact::hal {
+namespace tact::hal::odrive {
 
 struct OdriveStart {
   OdriveGeneration generation = OdriveGeneration::k06;
-  Joints motor_turns{};  // of arms at rest
+  delta::Joints motor_turns{};  // of arms at rest
 };
 
 /// What the device needs to hear.
 std::vector<std::uint32_t> odrive_ids(const model::CanSettings& can);
+OdriveTorqueLength odrive_torque_length(const model::CanSettings& can);
 /// Of all frames of a tick at worst stuffing.
 int odrive_cycle_bits(const model::CanSettings& can);
 
-model::Result<OdriveStart> bring_up_odrives(CanBus& bus, const model::CanSettings& can,
+model::Result<OdriveStart> bring_up_odrives(can::CanBus& bus, const model::CanSettings& can,
                                             double rate_Hz);
 
-}  // namespace tact::hal
+}  // namespace tact::hal::odrive

@@ -1,6 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/odrive/odrive_errors.h"
 
-namespace tact::hal {
+#include <fmt/core.h>
+
+namespace tact::hal::odrive {
 namespace {
 
 constexpr OdriveErrorWords kUnknown{
@@ -100,9 +103,8 @@ const OdriveErrorWords* first_of(std::uint32_t axis_error,
                                  std::span<const OdriveErrorWords> words) RT_SAFE {
   if (axis_error == 0) return nullptr;
   const std::uint32_t lowest = axis_error & (~axis_error + 1u);
-  for (const OdriveErrorWords& one : words) {
+  for (const OdriveErrorWords& one : words)
     if (one.bit == lowest) return &one;
-  }
   return &kUnknown;
 }
 
@@ -118,4 +120,24 @@ const OdriveErrorWords* first_odrive_error_05(std::uint32_t axis_error) RT_SAFE 
   return first_of(axis_error, kWords05);
 }
 
-}  // namespace tact::hal
+std::uint32_t odrive_parts_05(const OdriveHeartbeat05& heartbeat) RT_SAFE {
+  return (heartbeat.motor_error ? 1u : 0u) | (heartbeat.encoder_error ? 2u : 0u) |
+         (heartbeat.controller_error ? 4u : 0u);
+}
+
+std::string odrive_error_sentence(OdriveGeneration generation, std::uint32_t axis_error,
+                                  std::uint32_t parts) {
+  const OdriveErrorWords* words = generation == OdriveGeneration::k06
+                                      ? first_odrive_error(axis_error)
+                                      : first_odrive_error_05(axis_error);
+  if (words != nullptr)
+    return fmt::format("{} ({}, 0x{:X})", words->sentence, words->name, axis_error);
+  if ((parts & 1u) != 0) return "the motor reports an error: read axis.motor.error in odrivetool";
+  if ((parts & 2u) != 0)
+    return "the encoder reports an error: read axis.encoder.error in odrivetool";
+  if ((parts & 4u) != 0)
+    return "the controller reports an error: read axis.controller.error in odrivetool";
+  return {};
+}
+
+}  // namespace tact::hal::odrive

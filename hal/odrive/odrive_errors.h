@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // odrive_errors.h - what an ODrive's error bits mean, in words and with the cure.
 //
 // Bits of `axis_error` in the heartbeat, and of 0.6's `active_errors` and `disarm_reason`, as the
@@ -7,10 +8,14 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 
-#include "model/rt.h"
+#include "hal/odrive/odrive_protocol.h"
 
-namespace tact::hal {
+namespace tact::hal::odrive {
+
+/// Who answers Get_Version speaks 0.6.
+enum class OdriveGeneration : std::uint8_t { k05, k06 };
 
 struct OdriveErrorWords {
   std::uint32_t bit;
@@ -26,4 +31,11 @@ std::span<const OdriveErrorWords> odrive_error_words_05() RT_SAFE;  // 0.5
 const OdriveErrorWords* first_odrive_error(std::uint32_t axis_error) RT_SAFE;
 const OdriveErrorWords* first_odrive_error_05(std::uint32_t axis_error) RT_SAFE;
 
-}  // namespace tact::hal
+/// Which parts report an error in a heartbeat of 0.5: 1 motor, 2 encoder, 4 controller.
+std::uint32_t odrive_parts_05(const OdriveHeartbeat05& heartbeat) RT_SAFE;
+
+/// Of the first error of a heartbeat's word, else of its parts; empty for none.
+std::string odrive_error_sentence(OdriveGeneration generation, std::uint32_t axis_error,
+                                  std::uint32_t parts);
+
+}  // namespace tact::hal::odrive

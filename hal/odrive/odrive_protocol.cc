@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/odrive/odrive_protocol.h"
 
 #include <cmath>
@@ -5,7 +6,7 @@
 
 #include "hal/can/little_endian.h"
 
-namespace tact::hal {
+namespace tact::hal::odrive {
 namespace {
 
 constexpr double kFeedForwardStep = 0.001;  // turn/s and N m
@@ -20,12 +21,12 @@ std::uint32_t id_of(int node, OdriveCommand command) RT_SAFE {
 class Writer {
  public:
   Writer(int node, OdriveCommand command, std::uint8_t length) RT_SAFE
-      : frame_(make_can_frame(is_node(node) ? id_of(node, command) : 0, length)),
+      : frame_(can::make_can_frame(is_node(node) ? id_of(node, command) : 0, length)),
         good_(is_node(node)) {}
 
   Writer& f32(std::size_t offset, double value) RT_SAFE {
     good_ = good_ && std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max());
-    if (good_) put_f32(frame_.data, offset, static_cast<float>(value));
+    if (good_) can::put_f32(frame_.data, offset, static_cast<float>(value));
     return *this;
   }
   Writer& limit_f32(std::size_t offset, double value) RT_SAFE {
@@ -37,72 +38,67 @@ class Writer {
     good_ = good_ && std::abs(steps) < 32767.5;
     if (!good_) return *this;
     const auto nearest = static_cast<std::int32_t>(steps < 0.0 ? steps - 0.5 : steps + 0.5);
-    put_unsigned(frame_.data, offset, 2, static_cast<std::uint32_t>(nearest));
+    can::put_unsigned(frame_.data, offset, 2, static_cast<std::uint32_t>(nearest));
     return *this;
   }
   Writer& u32(std::size_t offset, std::uint32_t value) RT_SAFE {
-    put_unsigned(frame_.data, offset, 4, value);
+    can::put_unsigned(frame_.data, offset, 4, value);
     return *this;
   }
   Writer& u8(std::size_t offset, std::uint8_t value) RT_SAFE {
     frame_.data[offset] = value;
     return *this;
   }
-  std::optional<CanFrame> frame() const RT_SAFE {
+  std::optional<can::CanFrame> frame() const RT_SAFE {
     return good_ ? std::optional(frame_) : std::nullopt;
   }
 
  private:
-  CanFrame frame_;
+  can::CanFrame frame_;
   bool good_;
 };
 
 /// Every reply has 8 bytes.
-bool is_reply(const CanFrame& frame, int node, OdriveCommand command) RT_SAFE {
+bool is_reply(const can::CanFrame& frame, int node, OdriveCommand command) RT_SAFE {
   return is_node(node) && is_data(frame, id_of(node, command), 8);
 }
 
 /// A reply that is a pair of finite numbers.
 template <class Pair>
-std::optional<Pair> decode_pair(const CanFrame& frame, int node, OdriveCommand command) RT_SAFE {
+std::optional<Pair> decode_pair(const can::CanFrame& frame, int node,
+                                OdriveCommand command) RT_SAFE {
   if (!is_reply(frame, node, command)) return std::nullopt;
-  const auto first = static_cast<double>(get_f32(frame.data, 0));
-  const auto second = static_cast<double>(get_f32(frame.data, 4));
+  const auto first = static_cast<double>(can::get_f32(frame.data, 0));
+  const auto second = static_cast<double>(can::get_f32(frame.data, 4));
   if (!std::isfinite(first) || !std::isfinite(second)) return std::nullopt;
   return Pair{first, second};
 }
 
-std::optional<std::uint32_t> decode_error_05(const CanFrame& frame, int node,
-                                             OdriveCommand command) RT_SAFE {
-  if (!is_reply(frame, node, command)) return std::nullopt;
-  return get_u32(frame.data, 0);
-}
-
 }  // namespace
 
-OdriveAddress odrive_address(const CanFrame& frame) RT_SAFE {
+OdriveAddress odrive_address(const can::CanFrame& frame) RT_SAFE {
   return {.node = static_cast<int>(frame.id >> 5),
           .command = static_cast<OdriveCommand>(frame.id & 0x1Fu)};
 }
 
-std::optional<CanFrame> odrive_input_torque(int node, double torque_Nm,
-                                            OdriveTorqueLength length) RT_SAFE {
+std::optional<can::CanFrame> odrive_input_torque(int node, double torque_Nm,
+                                                 OdriveTorqueLength length) RT_SAFE {
   return Writer(node, OdriveCommand::kSetInputTorque, static_cast<std::uint8_t>(length))
       .f32(0, torque_Nm)
       .frame();
 }
 
-std::optional<CanFrame> odrive_input_velocity(int node, double velocity_turns_per_s,
-                                              double torque_Nm) RT_SAFE {
+std::optional<can::CanFrame> odrive_input_velocity(int node, double velocity_turns_per_s,
+                                                   double torque_Nm) RT_SAFE {
   return Writer(node, OdriveCommand::kSetInputVelocity, 8)
       .f32(0, velocity_turns_per_s)
       .f32(4, torque_Nm)
       .frame();
 }
 
-std::optional<CanFrame> odrive_input_position(int node, double position_turns,
-                                              double velocity_turns_per_s,
-                                              double torque_Nm) RT_SAFE {
+std::optional<can::CanFrame> odrive_input_position(int node, double position_turns,
+                                                   double velocity_turns_per_s,
+                                                   double torque_Nm) RT_SAFE {
   return Writer(node, OdriveCommand::kSetInputPosition, 8)
       .f32(0, position_turns)
       .feed_forward(4, velocity_turns_per_s)
@@ -110,43 +106,43 @@ std::optional<CanFrame> odrive_input_position(int node, double position_turns,
       .frame();
 }
 
-std::optional<CanFrame> odrive_limits(int node, double velocity_turns_per_s,
-                                      double current_A) RT_SAFE {
+std::optional<can::CanFrame> odrive_limits(int node, double velocity_turns_per_s,
+                                           double current_A) RT_SAFE {
   return Writer(node, OdriveCommand::kSetLimits, 8)
       .limit_f32(0, velocity_turns_per_s)
       .limit_f32(4, current_A)
       .frame();
 }
 
-std::optional<CanFrame> odrive_axis_state(int node, OdriveAxisState state) RT_SAFE {
+std::optional<can::CanFrame> odrive_axis_state(int node, OdriveAxisState state) RT_SAFE {
   return Writer(node, OdriveCommand::kSetAxisState, 8)
       .u32(0, static_cast<std::uint32_t>(state))
       .frame();
 }
 
-std::optional<CanFrame> odrive_controller_mode(int node, OdriveControlMode control,
-                                               OdriveInputMode input) RT_SAFE {
+std::optional<can::CanFrame> odrive_controller_mode(int node, OdriveControlMode control,
+                                                    OdriveInputMode input) RT_SAFE {
   return Writer(node, OdriveCommand::kSetControllerMode, 8)
       .u32(0, static_cast<std::uint32_t>(control))
       .u32(4, static_cast<std::uint32_t>(input))
       .frame();
 }
 
-std::optional<CanFrame> odrive_estop(int node) RT_SAFE {
+std::optional<can::CanFrame> odrive_estop(int node) RT_SAFE {
   return Writer(node, OdriveCommand::kEstop, 0).frame();
 }
 
-std::optional<CanFrame> odrive_clear_errors(int node, bool identify) RT_SAFE {
+std::optional<can::CanFrame> odrive_clear_errors(int node, bool identify) RT_SAFE {
   return Writer(node, OdriveCommand::kClearErrors, 1).u8(0, identify ? 1 : 0).frame();
 }
 
-std::optional<CanFrame> odrive_request(int node, OdriveCommand command) RT_SAFE {
+std::optional<can::CanFrame> odrive_request(int node, OdriveCommand command) RT_SAFE {
   auto frame = Writer(node, command, 8).frame();
   if (frame) frame->rtr = true;
   return frame;
 }
 
-std::optional<OdriveVersion> decode_odrive_version(const CanFrame& frame, int node) RT_SAFE {
+std::optional<OdriveVersion> decode_odrive_version(const can::CanFrame& frame, int node) RT_SAFE {
   if (!is_reply(frame, node, OdriveCommand::kGetVersion)) return std::nullopt;
   const auto& d = frame.data;
   return OdriveVersion{.protocol = d[0],
@@ -159,19 +155,20 @@ std::optional<OdriveVersion> decode_odrive_version(const CanFrame& frame, int no
                        .unreleased = d[7] != 0};
 }
 
-std::optional<OdriveHeartbeat> decode_odrive_heartbeat(const CanFrame& frame, int node) RT_SAFE {
+std::optional<OdriveHeartbeat> decode_odrive_heartbeat(const can::CanFrame& frame,
+                                                       int node) RT_SAFE {
   if (!is_reply(frame, node, OdriveCommand::kHeartbeat)) return std::nullopt;
-  return OdriveHeartbeat{.axis_error = get_u32(frame.data, 0),
+  return OdriveHeartbeat{.axis_error = can::get_u32(frame.data, 0),
                          .axis_state = frame.data[4],
                          .procedure_result = frame.data[5],
                          .trajectory_done = (frame.data[6] & 1u) != 0};
 }
 
-std::optional<OdriveHeartbeat05> decode_odrive_heartbeat_05(const CanFrame& frame,
+std::optional<OdriveHeartbeat05> decode_odrive_heartbeat_05(const can::CanFrame& frame,
                                                             int node) RT_SAFE {
   if (!is_reply(frame, node, OdriveCommand::kHeartbeat)) return std::nullopt;
   // Any bit of a part's byte is an error: later firmware may give them meanings of their own.
-  return OdriveHeartbeat05{.axis_error = get_u32(frame.data, 0),
+  return OdriveHeartbeat05{.axis_error = can::get_u32(frame.data, 0),
                            .axis_state = frame.data[4],
                            .motor_error = frame.data[5] != 0,
                            .encoder_error = frame.data[6] != 0,
@@ -179,55 +176,36 @@ std::optional<OdriveHeartbeat05> decode_odrive_heartbeat_05(const CanFrame& fram
                            .trajectory_done = (frame.data[7] & 0x80u) != 0};
 }
 
-std::optional<OdriveErrors> decode_odrive_errors(const CanFrame& frame, int node) RT_SAFE {
+std::optional<OdriveErrors> decode_odrive_errors(const can::CanFrame& frame, int node) RT_SAFE {
   if (!is_reply(frame, node, OdriveCommand::kGetError)) return std::nullopt;
-  return OdriveErrors{.active = get_u32(frame.data, 0), .disarm_reason = get_u32(frame.data, 4)};
+  return OdriveErrors{.active = can::get_u32(frame.data, 0),
+                      .disarm_reason = can::get_u32(frame.data, 4)};
 }
 
-std::optional<std::uint64_t> decode_odrive_motor_error_05(const CanFrame& frame, int node) RT_SAFE {
-  if (!is_reply(frame, node, OdriveCommand::kGetError)) return std::nullopt;
-  return get_unsigned(frame.data, 0, 8);
-}
-std::optional<std::uint32_t> decode_odrive_encoder_error_05(const CanFrame& frame,
-                                                            int node) RT_SAFE {
-  return decode_error_05(frame, node, OdriveCommand::kGetEncoderError05);
-}
-std::optional<std::uint32_t> decode_odrive_controller_error_05(const CanFrame& frame,
-                                                               int node) RT_SAFE {
-  return decode_error_05(frame, node, OdriveCommand::kGetControllerError05);
-}
-
-std::optional<OdriveEstimates> decode_odrive_estimates(const CanFrame& frame, int node) RT_SAFE {
+std::optional<OdriveEstimates> decode_odrive_estimates(const can::CanFrame& frame,
+                                                       int node) RT_SAFE {
   return decode_pair<OdriveEstimates>(frame, node, OdriveCommand::kGetEncoderEstimates);
 }
 
-std::optional<OdriveCounts05> decode_odrive_counts_05(const CanFrame& frame, int node) RT_SAFE {
-  if (!is_reply(frame, node, OdriveCommand::kGetEncoderCount05)) return std::nullopt;
-  return OdriveCounts05{.shadow = get_i32(frame.data, 0), .in_turn = get_i32(frame.data, 4)};
-}
-
-std::optional<OdriveIq> decode_odrive_iq(const CanFrame& frame, int node) RT_SAFE {
+std::optional<OdriveIq> decode_odrive_iq(const can::CanFrame& frame, int node) RT_SAFE {
   return decode_pair<OdriveIq>(frame, node, OdriveCommand::kGetIq);
 }
 
-std::optional<OdriveTemperature> decode_odrive_temperature(const CanFrame& frame,
+std::optional<OdriveTemperature> decode_odrive_temperature(const can::CanFrame& frame,
                                                            int node) RT_SAFE {
   if (!is_reply(frame, node, OdriveCommand::kGetTemperature)) return std::nullopt;
-  OdriveTemperature out{.inverter_C = static_cast<double>(get_f32(frame.data, 0)), .motor_C = {}};
-  const auto motor_C = static_cast<double>(get_f32(frame.data, 4));
+  OdriveTemperature out{.inverter_C = static_cast<double>(can::get_f32(frame.data, 0)),
+                        .motor_C = {}};
+  const auto motor_C = static_cast<double>(can::get_f32(frame.data, 4));
   if (!std::isfinite(out.inverter_C) || std::isinf(motor_C)) return std::nullopt;
   if (!std::isnan(motor_C)) out.motor_C = motor_C;
   return out;
 }
 
-std::optional<OdriveBus> decode_odrive_bus(const CanFrame& frame, int node) RT_SAFE {
+std::optional<OdriveBus> decode_odrive_bus(const can::CanFrame& frame, int node) RT_SAFE {
   return decode_pair<OdriveBus>(frame, node, OdriveCommand::kGetBusVoltageCurrent);
 }
-std::optional<OdriveTorques> decode_odrive_torques(const CanFrame& frame, int node) RT_SAFE {
+std::optional<OdriveTorques> decode_odrive_torques(const can::CanFrame& frame, int node) RT_SAFE {
   return decode_pair<OdriveTorques>(frame, node, OdriveCommand::kGetTorques);
 }
-std::optional<OdrivePowers> decode_odrive_powers(const CanFrame& frame, int node) RT_SAFE {
-  return decode_pair<OdrivePowers>(frame, node, OdriveCommand::kGetPowers);
-}
-
-}  // namespace tact::hal
+}  // namespace tact::hal::odrive

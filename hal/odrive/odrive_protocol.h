@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 // odrive_protocol.h - ODrive's CANSimple: numbers to frames and back, firmware 0.5 and 0.6.
 //
 //     identifier = node << 5 | command, 11 bits; node 0 to 63, command 0 to 31
 //
 // Payloads are little endian, numbers IEEE 754 binary32 in turn, turn/s, N m, A, V and degC, as the
-// CAN protocol page of the ODrive documentation and the open firmware 0.5 have them. A number that
-// is NaN, infinite or too large for its field is refused in both directions: encoders and decoders
-// then return nothing. The two generations share identifiers and lengths with other meanings; only
-// 0.6 answers a request for its version.
+// CAN protocol page of the ODrive documentation and the open firmware 0.5 have them (OD-1). A
+// number that is NaN, infinite or too large for its field is refused in both directions: encoders
+// and decoders then return nothing. The two generations share identifiers and lengths with other
+// meanings; only 0.6 answers a request for its version.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,7 @@
 
 #include "hal/can/can_frame.h"
 
-namespace tact::hal {
+namespace tact::hal::odrive {
 
 enum class OdriveCommand : std::uint8_t {
   kGetVersion = 0x00,  // 0.6
@@ -57,32 +58,32 @@ struct OdriveAddress {
   int node;
   OdriveCommand command;
 };
-OdriveAddress odrive_address(const CanFrame& frame) RT_SAFE;
+OdriveAddress odrive_address(const can::CanFrame& frame) RT_SAFE;
 
 // --- To the drive. Nothing if the node or a number is outside its range. ---
 
 /// Eight bytes as the maker's own tools send it, or the first four of them, which save 32 us.
 enum class OdriveTorqueLength : std::uint8_t { kShort = 4, kPadded = 8 };
-std::optional<CanFrame> odrive_input_torque(int node, double torque_Nm,
-                                            OdriveTorqueLength length) RT_SAFE;
-std::optional<CanFrame> odrive_input_velocity(int node, double velocity_turns_per_s,
-                                              double torque_Nm) RT_SAFE;
+std::optional<can::CanFrame> odrive_input_torque(int node, double torque_Nm,
+                                                 OdriveTorqueLength length) RT_SAFE;
+std::optional<can::CanFrame> odrive_input_velocity(int node, double velocity_turns_per_s,
+                                                   double torque_Nm) RT_SAFE;
 /// Velocity and torque are fed forward in steps of 0.001, the drive's default, within +-32.767.
-std::optional<CanFrame> odrive_input_position(int node, double position_turns,
-                                              double velocity_turns_per_s,
-                                              double torque_Nm) RT_SAFE;
-std::optional<CanFrame> odrive_limits(int node, double velocity_turns_per_s,
-                                      double current_A) RT_SAFE;
-std::optional<CanFrame> odrive_axis_state(int node, OdriveAxisState state) RT_SAFE;
-std::optional<CanFrame> odrive_controller_mode(int node, OdriveControlMode control,
-                                               OdriveInputMode input) RT_SAFE;
+std::optional<can::CanFrame> odrive_input_position(int node, double position_turns,
+                                                   double velocity_turns_per_s,
+                                                   double torque_Nm) RT_SAFE;
+std::optional<can::CanFrame> odrive_limits(int node, double velocity_turns_per_s,
+                                           double current_A) RT_SAFE;
+std::optional<can::CanFrame> odrive_axis_state(int node, OdriveAxisState state) RT_SAFE;
+std::optional<can::CanFrame> odrive_controller_mode(int node, OdriveControlMode control,
+                                                    OdriveInputMode input) RT_SAFE;
 /// The axis stays disarmed until its errors are cleared.
-std::optional<CanFrame> odrive_estop(int node) RT_SAFE;
+std::optional<can::CanFrame> odrive_estop(int node) RT_SAFE;
 /// `identify`: 0.6 blinks the drive's light.
-std::optional<CanFrame> odrive_clear_errors(int node, bool identify) RT_SAFE;
+std::optional<can::CanFrame> odrive_clear_errors(int node, bool identify) RT_SAFE;
 /// A remote request for a reply, which has 8 bytes. It feeds the watchdog of a 0.5 drive like every
 /// frame: never ask from a thread that outlives the loop.
-std::optional<CanFrame> odrive_request(int node, OdriveCommand command) RT_SAFE;
+std::optional<can::CanFrame> odrive_request(int node, OdriveCommand command) RT_SAFE;
 
 // --- From the drive. Nothing unless it is a data frame of this node and message, whole and finite.
 
@@ -92,7 +93,7 @@ struct OdriveVersion {  // 0.6
   int firmware_major, firmware_minor, firmware_revision;
   bool unreleased;
 };
-std::optional<OdriveVersion> decode_odrive_version(const CanFrame& frame, int node) RT_SAFE;
+std::optional<OdriveVersion> decode_odrive_version(const can::CanFrame& frame, int node) RT_SAFE;
 
 struct OdriveHeartbeat {     // 0.6
   std::uint32_t axis_error;  // bits in odrive_errors.h
@@ -100,7 +101,8 @@ struct OdriveHeartbeat {     // 0.6
   std::uint8_t procedure_result;
   bool trajectory_done;
 };
-std::optional<OdriveHeartbeat> decode_odrive_heartbeat(const CanFrame& frame, int node) RT_SAFE;
+std::optional<OdriveHeartbeat> decode_odrive_heartbeat(const can::CanFrame& frame,
+                                                       int node) RT_SAFE;
 
 struct OdriveHeartbeat05 {
   std::uint32_t axis_error;  // bits in odrive_errors.h, other ones than those of 0.6
@@ -110,61 +112,45 @@ struct OdriveHeartbeat05 {
   bool controller_error;
   bool trajectory_done;
 };
-std::optional<OdriveHeartbeat05> decode_odrive_heartbeat_05(const CanFrame& frame,
+std::optional<OdriveHeartbeat05> decode_odrive_heartbeat_05(const can::CanFrame& frame,
                                                             int node) RT_SAFE;
 
 struct OdriveErrors {  // 0.6
   std::uint32_t active;
   std::uint32_t disarm_reason;
 };
-std::optional<OdriveErrors> decode_odrive_errors(const CanFrame& frame, int node) RT_SAFE;
-/// 0.5: the error word of one part. The motor has 64 bits, the others 32.
-std::optional<std::uint64_t> decode_odrive_motor_error_05(const CanFrame& frame, int node) RT_SAFE;
-std::optional<std::uint32_t> decode_odrive_encoder_error_05(const CanFrame& frame,
-                                                            int node) RT_SAFE;
-std::optional<std::uint32_t> decode_odrive_controller_error_05(const CanFrame& frame,
-                                                               int node) RT_SAFE;
+std::optional<OdriveErrors> decode_odrive_errors(const can::CanFrame& frame, int node) RT_SAFE;
 
 struct OdriveEstimates {
   double position_turns;
   double velocity_turns_per_s;
 };
-std::optional<OdriveEstimates> decode_odrive_estimates(const CanFrame& frame, int node) RT_SAFE;
-
-struct OdriveCounts05 {
-  std::int32_t shadow;  // since power-on
-  std::int32_t in_turn;
-};
-std::optional<OdriveCounts05> decode_odrive_counts_05(const CanFrame& frame, int node) RT_SAFE;
+std::optional<OdriveEstimates> decode_odrive_estimates(const can::CanFrame& frame,
+                                                       int node) RT_SAFE;
 
 struct OdriveIq {
   double setpoint_A;
   double measured_A;
 };
-std::optional<OdriveIq> decode_odrive_iq(const CanFrame& frame, int node) RT_SAFE;
+std::optional<OdriveIq> decode_odrive_iq(const can::CanFrame& frame, int node) RT_SAFE;
 
 struct OdriveTemperature {  // 0.6
   double inverter_C;
   std::optional<double> motor_C;  // nothing: the drive sends NaN, as without a thermistor
 };
-std::optional<OdriveTemperature> decode_odrive_temperature(const CanFrame& frame, int node) RT_SAFE;
+std::optional<OdriveTemperature> decode_odrive_temperature(const can::CanFrame& frame,
+                                                           int node) RT_SAFE;
 
 struct OdriveBus {
   double voltage_V;
   double current_A;
 };
-std::optional<OdriveBus> decode_odrive_bus(const CanFrame& frame, int node) RT_SAFE;
+std::optional<OdriveBus> decode_odrive_bus(const can::CanFrame& frame, int node) RT_SAFE;
 
 struct OdriveTorques {  // 0.6
   double target_Nm;
   double estimate_Nm;
 };
-std::optional<OdriveTorques> decode_odrive_torques(const CanFrame& frame, int node) RT_SAFE;
+std::optional<OdriveTorques> decode_odrive_torques(const can::CanFrame& frame, int node) RT_SAFE;
 
-struct OdrivePowers {  // 0.6
-  double electrical_W;
-  double mechanical_W;
-};
-std::optional<OdrivePowers> decode_odrive_powers(const CanFrame& frame, int node) RT_SAFE;
-
-}  // namespace tact::hal
+}  // namespace tact::hal::odrive

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/sim/delta_plant.h"
 
 #include <algorithm>
@@ -5,60 +6,60 @@
 
 #include "hal/sim/sim_delta_model.h"
 
-namespace tact::hal {
+namespace tact::hal::sim {
 namespace {
-
-using sim_delta::direction_D;
-using sim_delta::kGeometry;
-using sim_delta::kMasses;
 
 constexpr double kStopStiffness_Nm_per_rad = 2000.0;
 constexpr double kStopDamping_Nms_per_rad = 5.0;
 constexpr double kRimStiffness_N_per_m = 20e3;
 constexpr double kRimDamping_Ns_per_m = 100.0;
-constexpr double kRimRadius_m = sim_delta::kWorkspaceRadius_m + 0.020;
-constexpr double kRimHalfLength_m = sim_delta::kWorkspaceHalfLength_m + 0.015;
+constexpr double kRimRadius_m = kWorkspaceRadius_m + 0.020;
+constexpr double kRimHalfLength_m = kWorkspaceHalfLength_m + 0.015;
 constexpr int kFrictionSweeps =
     8;  // three joints, well conditioned: leaves 1e-4 of one step's push
 
-Mat3 outer(const Vec3& a, const Vec3& b) RT_SAFE { return {{a.x * b, a.y * b, a.z * b}}; }
+model::Mat3 outer(const model::Vec3& a, const model::Vec3& b) RT_SAFE {
+  return {{a.x * b, a.y * b, a.z * b}};
+}
 
 }  // namespace
 
 struct DeltaPlant::Implicit {
-  Mat3 a;            // A
-  Vec3 momentum_Ns;  // right-hand side without friction
+  model::Mat3 a;            // A
+  model::Vec3 momentum_Ns;  // right-hand side without friction
 
   /// A spring-damper along n that is `excess` beyond its rest half a step from now, before v+ has
   /// done its half: implicit in v+.
-  void resist(double dt_s, const Vec3& n, double excess, double stiffness, double damping) RT_SAFE {
+  void resist(double dt_s, const model::Vec3& n, double excess, double stiffness,
+              double damping) RT_SAFE {
     a = a + (dt_s * damping + 0.5 * dt_s * dt_s * stiffness) * outer(n, n);
     momentum_Ns -= (dt_s * stiffness * excess) * n;
   }
 };
 
-DeltaPlant::DeltaPlant(const JointFriction& friction, const Vec3& start_m)
+DeltaPlant::DeltaPlant(const JointFriction& friction, const model::Vec3& start_m)
     : delta_(kGeometry), friction_(friction), position_m_(start_m) {
-  if (!delta_.inverse(start_m).reachable) position_m_ = {0.0, 0.0, sim_delta::kMiddle_D_m};
+  if (!delta_.inverse(start_m).reachable) position_m_ = {0.0, 0.0, kMiddle_D_m};
   theta_rad_ = delta_.inverse(position_m_).theta_rad;
 }
 
-void DeltaPlant::step(double dt_s, const Joints& motor_Nm, const HandPull& hand) RT_SAFE {
-  const DeltaPose pose = delta_.pose(position_m_, theta_rad_);
-  const Mat3 k = joint_rate_matrix(pose), k_transposed = transpose(k);
+void DeltaPlant::step(double dt_s, const delta::Joints& motor_Nm, const HandPull& hand) RT_SAFE {
+  const delta::DeltaPose pose = delta_.pose(position_m_, theta_rad_);
+  const model::Mat3 k = joint_rate_matrix(pose), k_transposed = transpose(k);
   const double joint_inertia = joint_inertia_kgm2(kGeometry, kMasses);
-  const Mat3 mass_kg = task_inertia_kg(kGeometry, kMasses, pose) + model::diagonal(hand.mass_kg);
-  const Joints gravity_Nm =
-      gravity_torques_Nm(kGeometry, kMasses, pose, direction_D(sim_delta::kGravity_W_mps2));
-  const Joints drift = joint_drift_radps2(pose, velocity_mps_);
+  const model::Mat3 mass_kg =
+      task_inertia_kg(kGeometry, kMasses, pose) + model::diagonal(hand.mass_kg);
+  const delta::Joints gravity_Nm =
+      gravity_torques_Nm(kGeometry, kMasses, pose, direction_D(kGravity_W_mps2));
+  const delta::Joints drift = joint_drift_radps2(pose, velocity_mps_);
   // K^T (tau - tau_g - I dK/dt v)
   const auto torque_Nm = [&](std::size_t i) RT_SAFE {
     return motor_Nm[i] - gravity_Nm[i] - joint_inertia * drift[i];
   };
-  const Vec3 ahead_m = position_m_ + 0.5 * dt_s * velocity_mps_;  // x+ without v+
-  const Vec3 force_N = k_transposed * Vec3{torque_Nm(0), torque_Nm(1), torque_Nm(2)} +
-                       hand.stiffness_N_per_m * (hand.aim_m - ahead_m) +
-                       hand.damping_Ns_per_m * hand.aim_velocity_mps;
+  const model::Vec3 ahead_m = position_m_ + 0.5 * dt_s * velocity_mps_;  // x+ without v+
+  const model::Vec3 force_N = k_transposed * model::Vec3{torque_Nm(0), torque_Nm(1), torque_Nm(2)} +
+                              hand.stiffness_N_per_m * (hand.aim_m - ahead_m) +
+                              hand.damping_Ns_per_m * hand.aim_velocity_mps;
   const double hand_kg = dt_s * hand.damping_Ns_per_m + 0.5 * dt_s * dt_s * hand.stiffness_N_per_m;
   Implicit step{
       .a = mass_kg + (dt_s * friction_.viscous_Nms_per_rad) * (k_transposed * k) +
@@ -67,12 +68,12 @@ void DeltaPlant::step(double dt_s, const Joints& motor_Nm, const HandPull& hand)
   };
   add_stops(dt_s, k, step);
   add_rim(dt_s, step);
-  const Mat3 a_inverse = model::inverse(step.a);
-  const Vec3 free_mps = a_inverse * step.momentum_Ns;
+  const model::Mat3 a_inverse = model::inverse(step.a);
+  const model::Vec3 free_mps = a_inverse * step.momentum_Ns;
   move(dt_s, with_friction(free_mps, k, a_inverse, dt_s * friction_.coulomb_Nm));
 }
 
-void DeltaPlant::add_stops(double dt_s, const Mat3& k, Implicit& step) const RT_SAFE {
+void DeltaPlant::add_stops(double dt_s, const model::Mat3& k, Implicit& step) const RT_SAFE {
   for (std::size_t i = 0; i < 3; ++i) {
     const double above_rad = theta_rad_[i] - kGeometry.theta_max_rad;
     const double below_rad = theta_rad_[i] - kGeometry.theta_min_rad;
@@ -88,11 +89,11 @@ void DeltaPlant::add_rim(double dt_s, Implicit& step) const RT_SAFE {
   const double ahead_s = 0.5 * dt_s;
   const double radius_m = std::hypot(position_m_.x, position_m_.y);
   if (radius_m > kRimRadius_m) {
-    const Vec3 outward{position_m_.x / radius_m, position_m_.y / radius_m, 0.0};
+    const model::Vec3 outward{position_m_.x / radius_m, position_m_.y / radius_m, 0.0};
     step.resist(dt_s, outward, radius_m - kRimRadius_m + ahead_s * dot(outward, velocity_mps_),
                 kRimStiffness_N_per_m, kRimDamping_Ns_per_m);
   }
-  const double along_m = position_m_.z - sim_delta::kMiddle_D_m;
+  const double along_m = position_m_.z - kMiddle_D_m;
   if (std::abs(along_m) > kRimHalfLength_m) {
     const double excess_m = along_m - std::copysign(kRimHalfLength_m, along_m);
     step.resist(dt_s, {0.0, 0.0, 1.0}, excess_m + ahead_s * velocity_mps_.z, kRimStiffness_N_per_m,
@@ -102,13 +103,14 @@ void DeltaPlant::add_rim(double dt_s, Implicit& step) const RT_SAFE {
 
 /// Projected Gauss-Seidel from zero: each change of an impulse lowers the energy of motion, so
 /// friction takes energy at any number of sweeps.
-Vec3 DeltaPlant::with_friction(const Vec3& free_mps, const Mat3& k, const Mat3& a_inverse,
-                               double most_Nms) const RT_SAFE {
+model::Vec3 DeltaPlant::with_friction(const model::Vec3& free_mps, const model::Mat3& k,
+                                      const model::Mat3& a_inverse, double most_Nms) const RT_SAFE {
   if (!(most_Nms > 0.0)) return free_mps;
-  const Mat3 give = a_inverse * transpose(k);  // column i: velocity for a unit impulse on joint i
-  const Mat3 give_columns = transpose(give);
-  Vec3 velocity_mps = free_mps;
-  Joints impulse_Nms{};
+  const model::Mat3 give =
+      a_inverse * transpose(k);  // column i: velocity for a unit impulse on joint i
+  const model::Mat3 give_columns = transpose(give);
+  model::Vec3 velocity_mps = free_mps;
+  delta::Joints impulse_Nms{};
   for (int sweep = 0; sweep < kFrictionSweeps; ++sweep) {
     for (std::size_t i = 0; i < 3; ++i) {
       const double compliance = dot(k.row[i], give_columns.row[i]);
@@ -123,9 +125,9 @@ Vec3 DeltaPlant::with_friction(const Vec3& free_mps, const Mat3& k, const Mat3& 
   return velocity_mps;
 }
 
-void DeltaPlant::move(double dt_s, const Vec3& velocity_mps) RT_SAFE {
-  const Vec3 next_m = position_m_ + 0.5 * dt_s * (velocity_mps_ + velocity_mps);
-  const DeltaInverse inverse = delta_.inverse(next_m);
+void DeltaPlant::move(double dt_s, const model::Vec3& velocity_mps) RT_SAFE {
+  const model::Vec3 next_m = position_m_ + 0.5 * dt_s * (velocity_mps_ + velocity_mps);
+  const delta::DeltaInverse inverse = delta_.inverse(next_m);
   if (!inverse.reachable || !is_finite(velocity_mps)) {  // rods pulled tight, or NaN: dead stop
     velocity_mps_ = {};
     return;
@@ -136,10 +138,10 @@ void DeltaPlant::move(double dt_s, const Vec3& velocity_mps) RT_SAFE {
 }
 
 double DeltaPlant::energy_J() const RT_SAFE {
-  const DeltaPose pose = delta_.pose(position_m_, theta_rad_);
-  const Vec3 momentum_Ns = task_inertia_kg(kGeometry, kMasses, pose) * velocity_mps_;
+  const delta::DeltaPose pose = delta_.pose(position_m_, theta_rad_);
+  const model::Vec3 momentum_Ns = task_inertia_kg(kGeometry, kMasses, pose) * velocity_mps_;
   return 0.5 * dot(velocity_mps_, momentum_Ns) +
-         gravity_energy_J(kGeometry, kMasses, pose, direction_D(sim_delta::kGravity_W_mps2));
+         gravity_energy_J(kGeometry, kMasses, pose, direction_D(kGravity_W_mps2));
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::sim

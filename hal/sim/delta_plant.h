@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // delta_plant.h - the mechanics of the simulated delta, with the hand that holds it.
 //
 //     A v+ = M v + h (K^T (tau - tau_g) - I K^T (dK/dt v) + k (x_h - x - h v / 2) + b v_h)
@@ -17,10 +18,10 @@
 // beyond its ends, keep arms and rods well away from every singular pose. Frame D.
 #pragma once
 
-#include "hal/delta_dynamics.h"
-#include "hal/delta_kinematics.h"
+#include "hal/delta/delta_dynamics.h"
+#include "hal/delta/delta_kinematics.h"
 
-namespace tact::hal {
+namespace tact::hal::sim {
 
 struct JointFriction {
   double coulomb_Nm = 0.0;
@@ -32,37 +33,37 @@ struct HandPull {
   double mass_kg = 0.0;
   double stiffness_N_per_m = 0.0;
   double damping_Ns_per_m = 0.0;
-  Vec3 aim_m;
-  Vec3 aim_velocity_mps;
+  model::Vec3 aim_m;
+  model::Vec3 aim_velocity_mps;
 };
 
 class DeltaPlant {
  public:
   /// At rest at start_m, or in the middle of the workspace if that is out of reach.
-  DeltaPlant(const JointFriction& friction, const Vec3& start_m);
+  DeltaPlant(const JointFriction& friction, const model::Vec3& start_m);
 
-  void step(double dt_s, const Joints& motor_Nm, const HandPull& hand) RT_SAFE;
+  void step(double dt_s, const delta::Joints& motor_Nm, const HandPull& hand) RT_SAFE;
 
-  const Vec3& position_m() const RT_SAFE { return position_m_; }
-  const Vec3& velocity_mps() const RT_SAFE { return velocity_mps_; }
-  const Joints& theta_rad() const RT_SAFE { return theta_rad_; }
+  const model::Vec3& position_m() const RT_SAFE { return position_m_; }
+  const model::Vec3& velocity_mps() const RT_SAFE { return velocity_mps_; }
+  const delta::Joints& theta_rad() const RT_SAFE { return theta_rad_; }
   /// Motion and gravity, without the hand; stops hold a little more while they are pressed.
   double energy_J() const RT_SAFE;
 
  private:
   struct Implicit;  // what one step adds to A and to the right-hand side
 
-  void add_stops(double dt_s, const Mat3& k, Implicit& step) const RT_SAFE;
+  void add_stops(double dt_s, const model::Mat3& k, Implicit& step) const RT_SAFE;
   void add_rim(double dt_s, Implicit& step) const RT_SAFE;
-  Vec3 with_friction(const Vec3& free_mps, const Mat3& k, const Mat3& a_inverse,
-                     double most_Nms) const RT_SAFE;
-  void move(double dt_s, const Vec3& velocity_mps) RT_SAFE;
+  model::Vec3 with_friction(const model::Vec3& free_mps, const model::Mat3& k,
+                            const model::Mat3& a_inverse, double most_Nms) const RT_SAFE;
+  void move(double dt_s, const model::Vec3& velocity_mps) RT_SAFE;
 
-  DeltaKinematics delta_;
+  delta::DeltaKinematics delta_;
   JointFriction friction_;
-  Vec3 position_m_;
-  Vec3 velocity_mps_;
-  Joints theta_rad_{};
+  model::Vec3 position_m_;
+  model::Vec3 velocity_mps_;
+  delta::Joints theta_rad_{};
 };
 
-}  // namespace tact::hal
+}  // namespace tact::hal::sim

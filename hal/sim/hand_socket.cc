@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/sim/hand_socket.h"
 
 #include <fmt/core.h>
@@ -12,7 +13,7 @@
 #include <cstring>
 #include <utility>
 
-namespace tact::hal {
+namespace tact::hal::sim {
 namespace {
 
 using model::Error;
@@ -35,14 +36,13 @@ int call_with_address(int (*call)(int, const sockaddr*, socklen_t), int descript
 
 /// Removes the socket file of a process that is gone; refuses anything else that is in the way.
 Result<bool> clear_the_way(const std::string& path) {
-  struct stat status {};
+  struct stat status{};
   if (lstat(path.c_str(), &status) != 0) {
     if (errno == ENOENT) return true;
     return system_error(path, "cannot look at it");
   }
-  if (!S_ISSOCK(status.st_mode)) {
+  if (!S_ISSOCK(status.st_mode))
     return Error{fmt::format("{}: is a file, not a socket; choose another name", path)};
-  }
   const int probe = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   const bool alive = probe >= 0 && call_with_address(connect, probe, path) == 0;
   if (probe >= 0) close(probe);
@@ -58,9 +58,8 @@ Result<bool> clear_the_way(const std::string& path) {
 
 bool is_sound(const HandTarget& target) RT_SAFE {
   if (target.magic != kHandTargetMagic || target.version != kHandTargetVersion) return false;
-  for (const double x : target.position_m) {
+  for (const double x : target.position_m)
     if (!(std::abs(x) <= kFarthest_m)) return false;
-  }
   return std::isfinite(target.grip_ratio);
 }
 
@@ -112,4 +111,4 @@ void HandSocket::listen() {
   }
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::sim

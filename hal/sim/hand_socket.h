@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // hand_socket.h - lets a person move the simulated hand: a local datagram socket and its thread.
 //
 // The thread is an ordinary one, started before the loop, and runs only when a datagram comes: no
@@ -15,7 +16,7 @@
 #include "hal/sim/hand_target.h"
 #include "model/result.h"
 
-namespace tact::hal {
+namespace tact::hal::sim {
 
 /// Magic, version, finite position within a metre, finite grip.
 bool is_sound(const HandTarget& target) RT_SAFE;
@@ -44,4 +45,4 @@ class HandSocket {
   std::thread thread_;  // last: it uses the others
 };
 
-}  // namespace tact::hal
+}  // namespace tact::hal::sim

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // hand_target.h - one datagram that moves the simulated hand, never the tool and never a force.
 //
 // 40 bytes, little-endian, to the socket that the simulated device listens on (hand_socket.h).
@@ -6,7 +7,7 @@
 #include <cstdint>
 #include <type_traits>
 
-namespace tact::hal {
+namespace tact::hal::sim {
 
 inline constexpr std::uint32_t kHandTargetMagic = 0x74636174;  // "tact"
 inline constexpr std::uint16_t kHandTargetVersion = 1;
@@ -21,4 +22,4 @@ struct HandTarget {
 
 static_assert(std::is_trivially_copyable_v<HandTarget> && sizeof(HandTarget) == 40);
 
-}  // namespace tact::hal
+}  // namespace tact::hal::sim

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/sim/sim_delta.h"
 
 #include <fmt/core.h>
@@ -8,19 +9,12 @@
 #include <numbers>
 #include <vector>
 
-#include "hal/delta_at_tool.h"
+#include "hal/delta/delta_at_tool.h"
 #include "hal/saturation.h"
 #include "hal/sim/sim_delta_model.h"
 
-namespace tact::hal {
+namespace tact::hal::sim {
 namespace {
-
-using sim_delta::direction_D;
-using sim_delta::kGeometry;
-using sim_delta::kGravity_W_mps2;
-using sim_delta::kMasses;
-using sim_delta::point_D;
-using sim_delta::point_W;
 
 constexpr double kLongestStep_s = 0.25e-3;
 constexpr double kMostPhysics_s = 0.1;  // of one call
@@ -37,12 +31,12 @@ double counted_rad(double angle_rad, double counts_per_turn) RT_SAFE {
 /// The middle and the edges of the workspace cylinder.
 std::vector<Vec3> corners_D() {
   std::vector<Vec3> corners{point_D({})};
-  for (const double x_m : {-sim_delta::kWorkspaceHalfLength_m, sim_delta::kWorkspaceHalfLength_m}) {
+  for (const double x_m : {-kWorkspaceHalfLength_m, kWorkspaceHalfLength_m}) {
     corners.push_back(point_D({x_m, 0.0, 0.0}));
     for (int i = 0; i < 12; ++i) {
       const double angle_rad = i * std::numbers::pi / 6.0;
-      corners.push_back(point_D({x_m, sim_delta::kWorkspaceRadius_m * std::cos(angle_rad),
-                                 sim_delta::kWorkspaceRadius_m * std::sin(angle_rad)}));
+      corners.push_back(point_D({x_m, kWorkspaceRadius_m * std::cos(angle_rad),
+                                 kWorkspaceRadius_m * std::sin(angle_rad)}));
     }
   }
   return corners;
@@ -51,15 +45,14 @@ std::vector<Vec3> corners_D() {
 /// The nearest point of the workspace cylinder.
 Vec3 inside_workspace_m(const Vec3& p_W) RT_SAFE {
   const double radius_m = std::hypot(p_W.y, p_W.z);
-  const double shrink =
-      radius_m > sim_delta::kWorkspaceRadius_m ? sim_delta::kWorkspaceRadius_m / radius_m : 1.0;
-  return {std::clamp(p_W.x, -sim_delta::kWorkspaceHalfLength_m, sim_delta::kWorkspaceHalfLength_m),
-          shrink * p_W.y, shrink * p_W.z};
+  const double shrink = radius_m > kWorkspaceRadius_m ? kWorkspaceRadius_m / radius_m : 1.0;
+  return {std::clamp(p_W.x, -kWorkspaceHalfLength_m, kWorkspaceHalfLength_m), shrink * p_W.y,
+          shrink * p_W.z};
 }
 
 }  // namespace
 
-SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::HandSettings& hand)
+SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::contact::HandSettings& hand)
     : settings_(device),
       delta_(kGeometry),
       hand_(hand),
@@ -78,10 +71,10 @@ SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::HandSett
 
 DeviceInfo SimDelta::info() const {
   return {.name = "simulated delta 360 x 300 mm",
-          .max_force_N = sim_delta::kMaxForce_N,
-          .max_torque_Nm = sim_delta::kMaxTorque_Nm,
-          .workspace_radius_m = sim_delta::kWorkspaceRadius_m,
-          .workspace_half_length_m = sim_delta::kWorkspaceHalfLength_m,
+          .max_force_N = kMaxForce_N,
+          .max_torque_Nm = kMaxTorque_Nm,
+          .workspace_radius_m = kWorkspaceRadius_m,
+          .workspace_half_length_m = kWorkspaceHalfLength_m,
           .at_tool = delta_at_tool(delta_,
                                    {.viscous_Nms_per_rad = settings_.joint_damping_Nms_per_rad,
                                     .coulomb_Nm = settings_.joint_friction_Nm,
@@ -116,11 +109,10 @@ Fault SimDelta::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
 
 /// Encoders, forward kinematics, observer: the way a real device would know its tool.
 bool SimDelta::measure(const State& state, Tool& tool) RT_SAFE {
-  Joints theta_rad{};
-  for (std::size_t i = 0; i < 3; ++i) {
+  delta::Joints theta_rad{};
+  for (std::size_t i = 0; i < 3; ++i)
     theta_rad[i] = counted_rad(state.theta_rad[i], settings_.counts_per_turn);
-  }
-  const DeltaForward forward = delta_.forward(theta_rad);
+  const delta::DeltaForward forward = delta_.forward(theta_rad);
   if (!forward.solved) return false;
   measured_ = delta_.pose(forward.far_m, theta_rad);
   const Vec3 wrist_rad{counted_rad(state.wrist_rad.x, kWristCountsPerTurn),
@@ -146,13 +138,13 @@ Fault SimDelta::write(const Wrench& wrench) RT_SAFE {
     return Fault::kNone;
   }
   const bool sound = is_finite(wrench.force_N) && is_finite(wrench.torque_Nm);
-  const Wrench limited = sound ? Wrench{saturated(wrench.force_N, sim_delta::kMaxForce_N),
-                                        saturated(wrench.torque_Nm, sim_delta::kMaxTorque_Nm)}
+  const Wrench limited = sound ? Wrench{saturated(wrench.force_N, kMaxForce_N),
+                                        saturated(wrench.torque_Nm, kMaxTorque_Nm)}
                                : Wrench{};
   // tau = tau_g + s J^T F, one s for all joints
   motor_Nm_ = gravity_torques_Nm(kGeometry, kMasses, measured_, direction_D(kGravity_W_mps2));
-  const Joints wanted_Nm = joint_torques_Nm(measured_, direction_D(limited.force_N));
-  const double ratio = saturation_ratio(motor_Nm_, wanted_Nm, sim_delta::kMaxJointTorque_Nm);
+  const delta::Joints wanted_Nm = joint_torques_Nm(measured_, direction_D(limited.force_N));
+  const double ratio = delta::saturation_ratio(motor_Nm_, wanted_Nm, kMaxJointTorque_Nm);
   for (std::size_t i = 0; i < 3; ++i) motor_Nm_[i] += ratio * wanted_Nm[i];
   wrist_Nm_ = limited.torque_Nm;
   return sound ? Fault::kNone : Fault::kForceNotFinite;
@@ -176,7 +168,7 @@ void SimDelta::steer_hand() RT_SAFE {
 
 void SimDelta::step_physics(double dt_s) RT_SAFE {
   hand_.step(dt_s);
-  const model::HandSettings& hand = hand_.settings();
+  const model::contact::HandSettings& hand = hand_.settings();
   plant_.step(dt_s, motor_Nm_,
               {.mass_kg = hand.mass_kg,
                .stiffness_N_per_m = hand.stiffness_N_per_m,
@@ -215,9 +207,8 @@ SimDelta::State SimDelta::state_at(double time_s) const RT_SAFE {
     const double s = span_s > 0.0 ? std::min((time_s - early.time_s) / span_s, 1.0) : 1.0;
     State out = early;
     out.time_s = time_s;
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i)
       out.theta_rad[i] += s * (late.theta_rad[i] - early.theta_rad[i]);
-    }
     out.wrist_rad += s * (late.wrist_rad - early.wrist_rad);
     out.grip_ratio += s * (late.grip_ratio - early.grip_ratio);
     return out;
@@ -232,34 +223,28 @@ void SimDelta::stop() {
 }
 
 model::Result<std::unique_ptr<SimDelta>> make_sim_delta(const model::SimDeviceSettings& device,
-                                                        const model::HandSettings& hand) {
+                                                        const model::contact::HandSettings& hand) {
   const auto refuse = [](const char* key, double value, const char* allowed) {
     return model::Error{fmt::format("{} is {}; it must be {}", key, value, allowed)};
   };
-  if (!(device.counts_per_turn >= 100.0 && device.counts_per_turn <= 1e9)) {
+  if (!(device.counts_per_turn >= 100.0 && device.counts_per_turn <= 1e9))
     return refuse("counts_per_turn", device.counts_per_turn, "100 to 1e9");
-  }
-  if (!(device.sample_delay_s >= 0.0 && device.sample_delay_s <= kMostDelay_s)) {
+  if (!(device.sample_delay_s >= 0.0 && device.sample_delay_s <= kMostDelay_s))
     return refuse("sample_delay_s", device.sample_delay_s, "0 to 0.1 s");
-  }
-  if (!(device.joint_friction_Nm >= 0.0 && device.joint_friction_Nm <= 10.0)) {
+  if (!(device.joint_friction_Nm >= 0.0 && device.joint_friction_Nm <= 10.0))
     return refuse("joint_friction_Nm", device.joint_friction_Nm, "0 to 10 N m");
-  }
   if (!(device.joint_damping_Nms_per_rad >= 0.0 && device.joint_damping_Nms_per_rad <= 100.0)) {
     return refuse("joint_damping_Nms_per_rad", device.joint_damping_Nms_per_rad,
                   "0 to 100 N m s/rad");
   }
-  if (!(device.observer_bandwidth_Hz > 0.0 && device.observer_bandwidth_Hz <= 1e4)) {
+  if (!(device.observer_bandwidth_Hz > 0.0 && device.observer_bandwidth_Hz <= 1e4))
     return refuse("observer_bandwidth_Hz", device.observer_bandwidth_Hz, "above 0, at most 1e4 Hz");
-  }
   const double hand_values[] = {hand.mass_kg, hand.stiffness_N_per_m, hand.damping_Ns_per_m};
-  for (const double value : hand_values) {
-    if (!(value >= 0.0 && value <= 1e6)) {
+  for (const double value : hand_values)
+    if (!(value >= 0.0 && value <= 1e6))
       return refuse("a mass, stiffness or damping of the hand", value, "0 to 1e6");
-    }
-  }
   if (hand.path.empty()) return model::Error{"the hand has no waypoint; give it at least one"};
   return std::make_unique<SimDelta>(device, hand);
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::sim

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // sim_delta.h - a haptic device that needs no hardware: delta, wrist, hand, encoders and delay.
 //
 // What a loop would meet on the real thing: positions counted by joint encoders and shown some time
@@ -11,7 +12,7 @@
 #include <atomic>
 #include <memory>
 
-#include "hal/delta_kinematics.h"
+#include "hal/delta/delta_kinematics.h"
 #include "hal/device.h"
 #include "hal/latest_slot.h"
 #include "hal/sim/delta_plant.h"
@@ -19,10 +20,10 @@
 #include "hal/sim/sim_hand.h"
 #include "hal/sim/sim_wrist.h"
 #include "hal/velocity_observer.h"
+#include "model/device_settings.h"
 #include "model/result.h"
-#include "model/scene.h"
 
-namespace tact::hal {
+namespace tact::hal::sim {
 
 /// Misfortunes for tests; may be set from any thread.
 struct SimFaults {
@@ -34,7 +35,7 @@ struct SimFaults {
 class SimDelta final : public Device {
  public:
   /// Settings as checked by make_sim_delta().
-  SimDelta(const model::SimDeviceSettings& device, const model::HandSettings& hand);
+  SimDelta(const model::SimDeviceSettings& device, const model::contact::HandSettings& hand);
 
   DeviceInfo info() const override;
   Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
@@ -55,11 +56,11 @@ class SimDelta final : public Device {
  private:
   struct State {  // what the encoders could see at one time
     double time_s = 0.0;
-    Joints theta_rad{};
+    delta::Joints theta_rad{};
     Vec3 wrist_rad;
     double grip_ratio = 0.0;
   };
-  static constexpr std::size_t kHistory = 1024;  // power of two; 0.25 s of steps of 0.25 ms
+  static constexpr std::size_t kHistory = 1024;  // 0.1 s of steps of 0.1 ms
 
   State state_now() const RT_SAFE;
   State state_at(double time_s) const RT_SAFE;
@@ -69,7 +70,7 @@ class SimDelta final : public Device {
   bool measure(const State& state, Tool& tool) RT_SAFE;
 
   model::SimDeviceSettings settings_;
-  DeltaKinematics delta_;
+  delta::DeltaKinematics delta_;
   SimHand hand_;
   DeltaPlant plant_;
   SimWrist wrist_;
@@ -78,9 +79,9 @@ class SimDelta final : public Device {
   std::array<State, kHistory> history_;  // ring
   std::size_t newest_ = 0;
   double time_s_ = 0.0;
-  double shown_s_;      // time of the state that the last sample showed
-  DeltaPose measured_;  // of the last sample
-  Joints motor_Nm_{};   // held until the next write
+  double shown_s_;             // time of the state that the last sample showed
+  delta::DeltaPose measured_;  // of the last sample
+  delta::Joints motor_Nm_{};   // held until the next write
   Vec3 wrist_Nm_;
   bool powered_ = true;    // until stop()
   bool permitted_ = true;  // by the safety lines, in this tick
@@ -91,6 +92,6 @@ class SimDelta final : public Device {
 
 /// Refuses settings that no device can have.
 model::Result<std::unique_ptr<SimDelta>> make_sim_delta(const model::SimDeviceSettings& device,
-                                                        const model::HandSettings& hand);
+                                                        const model::contact::HandSettings& hand);
 
-}  // namespace tact::hal
+}  // namespace tact::hal::sim

@@ -1,4 +1,5 @@
-// sim_delta_model.h - the numbers of the simulated device: cylinder 360 x 300 mm, 20 N.
+// SPDX-License-Identifier: Apache-2.0
+// sim_delta_model.h - the numbers of the simulated device: cylinder 360 x 300 mm, 20 N (DK-8).
 //
 // Lengths come from a search for the least torque and the most even force under limits on joint
 // range, rod side angle and transmission; masses are those of carbon tubes, 10:1 capstans and
@@ -11,16 +12,16 @@
 
 #include <numbers>
 
-#include "hal/delta_dynamics.h"
-#include "hal/delta_kinematics.h"
+#include "hal/delta/delta_dynamics.h"
+#include "hal/delta/delta_kinematics.h"
 #include "model/units.h"
 
-namespace tact::hal::sim_delta {
+namespace tact::hal::sim {
 
 using model::operator""_deg;
 using model::operator""_mm;
 
-inline constexpr DeltaGeometry kGeometry{
+inline constexpr delta::DeltaGeometry kGeometry{
     .base_radius_m = 180_mm,
     .platform_radius_m = 50_mm,
     .upper_arm_m = 260_mm,
@@ -29,7 +30,7 @@ inline constexpr DeltaGeometry kGeometry{
     .theta_min_rad = -50_deg,
     .theta_max_rad = 95_deg,
 };
-inline constexpr DeltaMasses kMasses{
+inline constexpr delta::DeltaMasses kMasses{
     .arm_kg = 0.25,
     .arm_com_m = 90_mm,
     .arm_inertia_kgm2 = 0.0056,
@@ -46,17 +47,17 @@ inline constexpr double kMaxTorque_Nm = 0.2;
 /// 5.82 N m make 20 N anywhere, 1.23 N m hold the arms: 7.05, and a little for the worst corner.
 inline constexpr double kMaxJointTorque_Nm = 7.4;
 inline constexpr double kMiddle_D_m = 345_mm;
-inline constexpr Vec3 kGravity_W_mps2{0.0, 0.0, -9.81};
+inline constexpr model::Vec3 kGravity_W_mps2{0.0, 0.0, -9.81};
 
 /// Directions: forces, velocities. The matrix is its own inverse, but the names say which way.
-constexpr Vec3 direction_W(const Vec3& v_D) RT_SAFE { return {v_D.z, -v_D.y, v_D.x}; }
-constexpr Vec3 direction_D(const Vec3& v_W) RT_SAFE { return {v_W.z, -v_W.y, v_W.x}; }
+constexpr model::Vec3 direction_W(const model::Vec3& v_D) RT_SAFE { return {v_D.z, -v_D.y, v_D.x}; }
+constexpr model::Vec3 direction_D(const model::Vec3& v_W) RT_SAFE { return {v_W.z, -v_W.y, v_W.x}; }
 /// Points.
-constexpr Vec3 point_W(const Vec3& p_D) RT_SAFE {
-  return direction_W(p_D - Vec3{0.0, 0.0, kMiddle_D_m});
+constexpr model::Vec3 point_W(const model::Vec3& p_D) RT_SAFE {
+  return direction_W(p_D - model::Vec3{0.0, 0.0, kMiddle_D_m});
 }
-constexpr Vec3 point_D(const Vec3& p_W) RT_SAFE {
-  return direction_D(p_W) + Vec3{0.0, 0.0, kMiddle_D_m};
+constexpr model::Vec3 point_D(const model::Vec3& p_W) RT_SAFE {
+  return direction_D(p_W) + model::Vec3{0.0, 0.0, kMiddle_D_m};
 }
 
-}  // namespace tact::hal::sim_delta
+}  // namespace tact::hal::sim

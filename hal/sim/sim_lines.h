@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // sim_lines.h - safety lines without wires: the levels are what a test or a person sets.
 //
 // The same logic as behind the GPIO chip (hal/gpio/safety_logic.h), the same answers when the chip
@@ -8,7 +9,7 @@
 
 #include "hal/gpio/safety_logic.h"
 
-namespace tact::hal {
+namespace tact::hal::sim {
 
 class SimLines final : public SafetyLines {
  public:
@@ -17,7 +18,7 @@ class SimLines final : public SafetyLines {
     std::atomic<bool> chip_lost{false};  // every call fails from now on
   };
 
-  explicit SimLines(const SafetyWiring& wiring = {.estop = true, .dead_man = true})
+  explicit SimLines(const gpio::SafetyWiring& wiring = {.estop = true, .dead_man = true})
       : logic_(wiring) {}
 
   model::Fault read(std::int64_t now_ns) RT_SAFE override {
@@ -39,18 +40,18 @@ class SimLines final : public SafetyLines {
   void drop() RT_SAFE override { dropped_ = true; }
   void scope(bool) RT_SAFE override {}
   std::string trouble() const override {
-    return words(lost_ ? LinesCause::kChipLost : logic_.cause());
+    return words(lost_ ? gpio::LinesCause::kChipLost : logic_.cause());
   }
   void stop() override { outputs_ = {}, lost_ = true; }
 
   Inputs& inputs() { return inputs_; }
-  SafetyOutputs outputs() const { return dropped_ ? SafetyOutputs{} : outputs_; }
+  gpio::SafetyOutputs outputs() const { return dropped_ ? gpio::SafetyOutputs{} : outputs_; }
 
  private:
   Inputs inputs_;
-  SafetyLogic logic_;
-  SafetyOutputs outputs_;
+  gpio::SafetyLogic logic_;
+  gpio::SafetyOutputs outputs_;
   std::atomic<bool> lost_{false}, dropped_{false};
 };
 
-}  // namespace tact::hal
+}  // namespace tact::hal::sim

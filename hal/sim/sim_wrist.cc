@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/sim/sim_wrist.h"
 
 #include <algorithm>
@@ -5,7 +6,7 @@
 
 #include "model/units.h"
 
-namespace tact::hal {
+namespace tact::hal::sim {
 namespace {
 
 using model::operator""_deg;
@@ -35,13 +36,13 @@ Axis step_axis(Axis axis, double dt_s, double torque_Nm, double aim_rad,
 
 }  // namespace
 
-SimWrist::SimWrist(const Vec3& start_rad) : angles_rad_(start_rad) {}
+SimWrist::SimWrist(const model::Vec3& start_rad) : angles_rad_(start_rad) {}
 
-void SimWrist::step(double dt_s, const Vec3& torque_Nm, const WristPull& hand) RT_SAFE {
+void SimWrist::step(double dt_s, const model::Vec3& torque_Nm, const WristPull& hand) RT_SAFE {
   // torque_i = e_i . T: the same axes that turn rates into angular velocity
   const double ca = std::cos(angles_rad_.x), sa = std::sin(angles_rad_.x);
   const double cb = std::cos(angles_rad_.y), sb = std::sin(angles_rad_.y);
-  const Vec3 e1{0.0, ca, sa}, e2{sb, -sa * cb, ca * cb};
+  const model::Vec3 e1{0.0, ca, sa}, e2{sb, -sa * cb, ca * cb};
   const Axis x =
       step_axis({angles_rad_.x, rates_radps_.x}, dt_s, torque_Nm.x, hand.aim_rad.x, hand);
   const Axis y =
@@ -52,31 +53,32 @@ void SimWrist::step(double dt_s, const Vec3& torque_Nm, const WristPull& hand) R
   rates_radps_ = {x.rate_radps, y.rate_radps, z.rate_radps};
 }
 
-Quat wrist_orientation(const Vec3& angles_rad) RT_SAFE {
+Quat wrist_orientation(const model::Vec3& angles_rad) RT_SAFE {
   return model::quat_from_rotation_vector({angles_rad.x, 0.0, 0.0}) *
          model::quat_from_rotation_vector({0.0, angles_rad.y, 0.0}) *
          model::quat_from_rotation_vector({0.0, 0.0, angles_rad.z});
 }
 
-Vec3 wrist_angular_velocity_radps(const Vec3& angles_rad, const Vec3& rates_radps) RT_SAFE {
+model::Vec3 wrist_angular_velocity_radps(const model::Vec3& angles_rad,
+                                         const model::Vec3& rates_radps) RT_SAFE {
   const double ca = std::cos(angles_rad.x), sa = std::sin(angles_rad.x);
   const double cb = std::cos(angles_rad.y), sb = std::sin(angles_rad.y);
   // omega = x adot_0 + q_x y adot_1 + q_x q_y z adot_2
-  return Vec3{rates_radps.x, 0.0, 0.0} + rates_radps.y * Vec3{0.0, ca, sa} +
-         rates_radps.z * Vec3{sb, -sa * cb, ca * cb};
+  return model::Vec3{rates_radps.x, 0.0, 0.0} + rates_radps.y * model::Vec3{0.0, ca, sa} +
+         rates_radps.z * model::Vec3{sb, -sa * cb, ca * cb};
 }
 
-Vec3 wrist_angles_rad(const Vec3& rotation_rad) RT_SAFE {
+model::Vec3 wrist_angles_rad(const model::Vec3& rotation_rad) RT_SAFE {
   const Quat q = model::quat_from_rotation_vector(rotation_rad);
-  const Vec3 x = rotate(q, {1.0, 0.0, 0.0}), y = rotate(q, {0.0, 1.0, 0.0});
-  const Vec3 z = rotate(q, {0.0, 0.0, 1.0});
+  const model::Vec3 x = rotate(q, {1.0, 0.0, 0.0}), y = rotate(q, {0.0, 1.0, 0.0});
+  const model::Vec3 z = rotate(q, {0.0, 0.0, 1.0});
   // R = R_x R_y R_z:  R_02 = sin a_1,  R_12/R_22 = -tan a_0,  R_01/R_00 = -tan a_2
-  const Vec3 angles{std::atan2(-z.y, z.z), std::asin(std::clamp(z.x, -1.0, 1.0)),
-                    std::atan2(-y.x, x.x)};
+  const model::Vec3 angles{std::atan2(-z.y, z.z), std::asin(std::clamp(z.x, -1.0, 1.0)),
+                           std::atan2(-y.x, x.x)};
   const auto limited = [](double a) RT_SAFE {
     return std::isfinite(a) ? std::clamp(a, -kMostAngle_rad, kMostAngle_rad) : 0.0;
   };
   return {limited(angles.x), limited(angles.y), limited(angles.z)};
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::sim

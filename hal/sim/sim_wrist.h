@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // sim_wrist.h - the simulated wrist: three small crossed axes at the platform point.
 //
 //     q = q_x(a_0) q_y(a_1) q_z(a_2),   omega = sum e_i adot_i,   torque_i = e_i . T
@@ -10,10 +11,10 @@
 // The axes have equal inertia, are balanced and do not notice the motion of the platform.
 #pragma once
 
-#include "hal/delta_kinematics.h"
+#include "hal/delta/delta_kinematics.h"
 #include "model/types.h"
 
-namespace tact::hal {
+namespace tact::hal::sim {
 
 using model::Quat;
 
@@ -21,26 +22,27 @@ using model::Quat;
 struct WristPull {
   double stiffness_Nm_per_rad = 0.0;
   double damping_Nms_per_rad = 0.0;
-  Vec3 aim_rad;  // axis angles
+  model::Vec3 aim_rad;  // axis angles
 };
 
 class SimWrist {
  public:
-  explicit SimWrist(const Vec3& start_rad);
+  explicit SimWrist(const model::Vec3& start_rad);
 
-  void step(double dt_s, const Vec3& torque_Nm, const WristPull& hand) RT_SAFE;
-  const Vec3& angles_rad() const RT_SAFE { return angles_rad_; }
+  void step(double dt_s, const model::Vec3& torque_Nm, const WristPull& hand) RT_SAFE;
+  const model::Vec3& angles_rad() const RT_SAFE { return angles_rad_; }
 
  private:
-  Vec3 angles_rad_;
-  Vec3 rates_radps_;
+  model::Vec3 angles_rad_;
+  model::Vec3 rates_radps_;
 };
 
 /// Tool frame to W.
-Quat wrist_orientation(const Vec3& angles_rad) RT_SAFE;
+Quat wrist_orientation(const model::Vec3& angles_rad) RT_SAFE;
 /// W.
-Vec3 wrist_angular_velocity_radps(const Vec3& angles_rad, const Vec3& rates_radps) RT_SAFE;
+model::Vec3 wrist_angular_velocity_radps(const model::Vec3& angles_rad,
+                                         const model::Vec3& rates_radps) RT_SAFE;
 /// Axis angles of a rotation vector, each brought into the range of the wrist.
-Vec3 wrist_angles_rad(const Vec3& rotation_rad) RT_SAFE;
+model::Vec3 wrist_angles_rad(const model::Vec3& rotation_rad) RT_SAFE;
 
-}  // namespace tact::hal
+}  // namespace tact::hal::sim

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/body_plan.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace tact::host {
+namespace tact::host::tracking {
 namespace {
 
 using Eigen::AngleAxisd;
@@ -141,4 +142,4 @@ std::array<Capsule, kCapsules> capsules(const BodyPlan& plan) {
           part(kPelvis, kChest, 0.070, 0.060, 0.75)};
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

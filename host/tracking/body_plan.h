@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // body_plan.h - how long an operator's bones are, how the body stands at the device, and which
 // capsules draw it. Everything is a share of one number, the body height H.
 //
@@ -19,7 +20,7 @@
 #include "host/tracking/ccd.h"
 #include "host/tracking/coordinate_chain.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 enum class FigureJoint : std::uint8_t {
   kPelvis,
@@ -101,4 +102,4 @@ struct Capsule {
 inline constexpr std::size_t kCapsules = 22;
 std::array<Capsule, kCapsules> capsules(const BodyPlan& plan);
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

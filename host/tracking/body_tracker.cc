@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/body_tracker.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace tact::host {
+namespace tact::host::tracking {
 namespace {
 
 // What noise and the calibration of two cameras may add to a motion.
@@ -123,4 +124,4 @@ TrackedBody BodyTracker::at(double now_s) const {
   return out;
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // body_tracker.h - what one body's observations say together: is it tracked, held or lost, and why.
 //
 //     out of order  time or sequence of a camera does not go on; a step of more than kRestart_s
@@ -22,7 +23,7 @@
 #include "host/tracking/one_euro.h"
 #include "host/tracking/tracked_operator.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 inline constexpr double kTogether_s = 0.020;  // looks of two cameras that count as one moment
 inline constexpr double kRestart_s = 1.0;
@@ -81,4 +82,4 @@ class BodyTracker {
   double good_now_s_ = 0.0, seen_now_s_ = 0.0;
 };
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

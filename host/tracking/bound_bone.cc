@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/bound_bone.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace tact::host {
+namespace tact::host::tracking {
 namespace {
 
 constexpr double kSlack_m = 0.02, kSlack_rad = 0.1;  // of one step, for noise
@@ -28,9 +29,8 @@ const Pose& BoundBone::follow(const TrackedBody& body, const Pose& neutral, doub
     }
     const Pose next = drive(body.pose, *offset_);
     if (mode_ == Mode::kNeutral) shown_ = neutral;
-    if (mode_ != Mode::kFollows || is_step_too_fast(target_, next, dt_s)) {
+    if (mode_ != Mode::kFollows || is_step_too_fast(target_, next, dt_s))
       begin_fade(next, kReturn_s);
-    }
     mode_ = Mode::kFollows;
     target_ = next;
     shown_ = faded(next, 1.0, dt_s);
@@ -64,4 +64,4 @@ Pose BoundBone::faded(const Pose& to, double to_share, double dt_s) {
   return t < 1.0 ? between(from_, to, part) : to;
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

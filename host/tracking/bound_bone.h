@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // bound_bone.h - one bone that follows its tracker: bound once, then driven; it holds, fades and
 // returns with the tracker's state, and never jumps.
 //
@@ -15,7 +16,7 @@
 
 #include "host/tracking/tracked_operator.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 inline constexpr double kFade_s = 1.0, kReturn_s = 0.3;
 inline constexpr double kGlide_mps = 1.5;
@@ -47,4 +48,4 @@ class BoundBone {
   double share_ = 0.0, faded_from_ = 0.0;  // faded_from_: the share where the fade began
 };
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

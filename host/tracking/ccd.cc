@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/ccd.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace tact::host {
+namespace tact::host::tracking {
 namespace {
 
 using Eigen::AngleAxisd;
@@ -43,9 +44,8 @@ bool is_valid(const Bone& bone, const JointState& joint) {
 bool is_valid(const Chain& chain, std::span<const JointState> joints) {
   if (chain.bones.empty() || chain.bones.size() != joints.size()) return false;
   if (!chain.base_m.allFinite()) return false;
-  for (std::size_t i = 0; i < joints.size(); ++i) {
+  for (std::size_t i = 0; i < joints.size(); ++i)
     if (!is_valid(chain.bones[i], joints[i])) return false;
-  }
   return true;
 }
 
@@ -194,15 +194,13 @@ ReachResult reach(const Chain& chain, std::span<const JointState> start, const R
   out.points_m = mover.points_m();
   out.error_m = error_m();
   const double distance_m = (goal.target_m - out.points_m[goal.root]).stableNorm();
-  if (there) {
+  if (there)
     out.status = ReachStatus::kConverged;
-  } else if (out_of_reach(std::span(chain.bones).subspan(goal.root), distance_m,
-                          goal.tolerance_m)) {
+  else if (out_of_reach(std::span(chain.bones).subspan(goal.root), distance_m, goal.tolerance_m))
     out.status = ReachStatus::kUnreachable;
-  } else {
+  else
     out.status = ReachStatus::kMaxIterations;
-  }
   return out;
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ccd.h - bends a chain of bones until its end reaches a target: cyclic coordinate descent, started
 // at the shoulder or hip (sub-root) instead of the chest, because most actions move no more.
 //
@@ -17,7 +18,7 @@
 // Every state this returns has the bone lengths and keeps the limits, whether it reached or not.
 // A straight chain that points at its target does not move (every angle is zero): give elbow and
 // knee limits that leave out 0, 0.05 rad are enough. For display rate, not for the force loop.
-// Source: PHYSICS 5.3. Rotations are applied at once, as in the classical method.
+// Source: CC-1 to CC-9. Rotations are applied at once, as in the classical method.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -26,7 +27,7 @@
 #include <span>
 #include <vector>
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 enum class JointKind : std::uint8_t { kHinge, kBall };
 
@@ -91,4 +92,4 @@ std::size_t choose_root(const Chain& chain, std::span<const JointState> joints,
 /// not looked at. kInvalid: no length, a start outside its limits, a number that is not finite.
 ReachResult reach(const Chain& chain, std::span<const JointState> start, const Reach& goal);
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

@@ -1,11 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/coordinate_chain.h"
 
 #include <cmath>
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 using Eigen::AngleAxisd;
-using Eigen::Matrix4d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
@@ -36,13 +36,6 @@ Vector3d to_world(const Pose& local, const Vector3d& p_local_m) {
   return local.rotation * p_local_m + local.position_m;
 }
 
-Matrix4d row_vector_matrix(const Pose& local) {
-  Matrix4d w = Matrix4d::Identity();
-  w.topLeftCorner<3, 3>() = local.rotation.toRotationMatrix().transpose();
-  w.bottomLeftCorner<1, 3>() = local.position_m.transpose();
-  return w;
-}
-
 Pose bind(const Pose& tracker, const Pose& bone) {
   // q_off = q_trk^-1 q_bone ,  p_off = q_trk^-1 (p_bone - p_trk) q_trk    (TR-5)
   const Quaterniond back = tracker.rotation.conjugate();
@@ -62,4 +55,4 @@ Pose between(const Pose& from, const Pose& to, double share) {
           .position_m = from.position_m + share * (to.position_m - from.position_m)};
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // coordinate_chain.h - from a tracker's own axes to the world, and a bone that follows its tracker.
 //
 //     R = Rz(gamma) Ry(beta) Rx(alpha)                               TR-1  alpha about x first
@@ -12,15 +13,15 @@
 //     p  point, m     o  origin of the local axes in the world, m
 //     alpha, beta, gamma  angles, rad
 //
-// The source gives neither the order of the angles nor the direction of o; TR-1 and TR-4 are the
-// choice of PHYSICS 5.1. For display and registration, not for the force loop.
+// The source gives neither the order of the angles nor the direction of o; TR-1 and TR-4 are our
+// choice. For display and registration, not for the force loop.
 #pragma once
 
 #include <Eigen/Geometry>
 #include <array>
 #include <optional>
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 struct EulerAngles {
   double alpha_rad = 0.0;  // about x
@@ -43,8 +44,6 @@ Eigen::Quaterniond rotation_from(const EulerAngles& angles);
 
 /// TR-3 and TR-4.
 Eigen::Vector3d to_world(const Pose& local, const Eigen::Vector3d& p_local_m);
-/// TR-4 as the source writes it: [p_world 1] = [p_local 1] W, for row vectors.
-Eigen::Matrix4d row_vector_matrix(const Pose& local);
 
 /// TR-5: the bone as the tracker sees it, measured once in the binding pose.
 Pose bind(const Pose& tracker, const Pose& bone);
@@ -54,4 +53,4 @@ Pose drive(const Pose& tracker, const Pose& offset);
 /// The shorter way from one pose to another; share 0 is `from`, 1 is `to`.
 Pose between(const Pose& from, const Pose& to, double share);
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/epnp.h"
 
 #include <Eigen/Eigenvalues>
@@ -8,7 +9,7 @@
 #include <opencv2/calib3d.hpp>
 #include <vector>
 
-namespace tact::host {
+namespace tact::host::tracking {
 namespace {
 
 using Eigen::Quaterniond;
@@ -40,9 +41,8 @@ Cloud cloud_of(std::span<const Vector3d> points_m) {
     farthest_m = std::max(farthest_m, p.stableNorm());
   }
   double radius_m = 0.0;  // the largest, so that squares neither overflow nor vanish
-  for (const Vector3d& p : points_m) {
+  for (const Vector3d& p : points_m)
     radius_m = std::max(radius_m, (p - out.centroid_m).stableNorm());
-  }
   if (!(radius_m > kSpot * farthest_m)) return out;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const Vector3d& p : points_m) {
@@ -64,16 +64,14 @@ std::array<std::size_t, 4> widest_four(std::span<const Vector3d> points) {
   std::array<std::size_t, 4> taken{};
   const auto gap = [&](std::size_t i, std::size_t count) {
     double least = count == 0 ? points[i].norm() : std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t k = 0; k < count; ++k)
       least = std::min(least, (points[i] - points[taken[k]]).norm());
-    }
     return least;
   };
   for (std::size_t count = 0; count < 4; ++count) {
     std::size_t best = 0;
-    for (std::size_t i = 1; i < points.size(); ++i) {
+    for (std::size_t i = 1; i < points.size(); ++i)
       if (gap(i, count) > gap(best, count)) best = i;
-    }
     taken[count] = best;
   }
   return taken;
@@ -130,9 +128,8 @@ class Starts {
     const std::array<std::size_t, 4> four = widest_four(points_);
     for (const std::size_t left_out : four) {
       Views triangle;
-      for (const std::size_t i : four) {
+      for (const std::size_t i : four)
         if (i != left_out) triangle.add(points_[i], pixels_px_[i]);
-      }
       if (triangle.points.size() != 3) continue;  // two of the four are one point
       collect(poses, [&](auto& turns, auto& shifts) {
         cv::solveP3P(triangle.points, triangle.pixels, lens_, cv::noArray(), turns, shifts,
@@ -210,4 +207,4 @@ PoseEstimate estimate_pose(const Camera& camera, std::span<const Vector3d> point
   return out;
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

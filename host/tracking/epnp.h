@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // epnp.h - where is an object whose points a camera sees? Pose from n >= 4 points (EPnP).
 //
 //     status  kTooFewPoints n < 4     kInvalid  a number is not finite, fx or fy <= 0
@@ -26,7 +27,7 @@
 
 #include "host/tracking/pose_polish.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 enum class PoseStatus : std::uint8_t { kOk, kTooFewPoints, kDegenerate, kInvalid, kNoPose };
 
@@ -40,4 +41,4 @@ struct PoseEstimate {
 PoseEstimate estimate_pose(const Camera& camera, std::span<const Eigen::Vector3d> points_m,
                            std::span<const Eigen::Vector2d> pixels_px);
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/figure.h"
 
 #include <algorithm>
@@ -6,7 +7,7 @@
 #include "host/tracking/figure_words.h"
 #include "host/tracking/leg_ik.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 namespace {
 
 using Eigen::AngleAxisd;
@@ -149,9 +150,8 @@ void Figure::pose_arm(const Pose& tool, const TrackedOperator& bodies) {
   using enum FigureJoint;
   constexpr std::array kPoints{kPelvis,     kBack,       kChest,         kRightShoulder,
                                kRightElbow, kRightWrist, kRightKnuckles, kRightFingers};
-  for (std::size_t i = 0; i < kPoints.size(); ++i) {
+  for (std::size_t i = 0; i < kPoints.size(); ++i)
     pose_[kPoints[i]] = to_world(pelvis_, arm_.points_m()[i]);
-  }
 }
 
 void Figure::pose_head() {
@@ -217,4 +217,4 @@ void Figure::place_leg(bool right, const TrackedOperator& bodies) {
       foot.rotation * (plan_.foot_m * Vector3d(-0.95, 0.0, -0.31).normalized());
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

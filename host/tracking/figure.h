@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // figure.h - the operator at the device: trackers move the body, the tool moves the right arm.
 //
 //     waist            the pelvis                         TR-6
@@ -12,8 +13,9 @@
 // kFarthestPlace_m of the default. A bone without a tracker stays neutral; the head looks down at
 // the device, the feet stand. A body that is held, lost or back: bound_bone.h.
 //
-// Time is an argument, s, of any clock; a step back begins anew, binding and all. No number that is not finite comes
-// out. Frame W, m. For display, not for the force loop. Source: PHYSICS 5.
+// Time is an argument, s, of any clock; a step back begins anew, binding and all. No number that is
+// not finite comes out. Frame W, m. For display, not for the force loop. Source: TR-1 to TR-6,
+// CC-10.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +25,7 @@
 #include "host/tracking/tool_arm.h"
 #include "host/tracking/tracked_operator.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 /// A hand takes a tool at this share of the tool's height above its tip, within these bounds.
 inline constexpr double kGripHeight = 0.8, kLeastGrip_m = 0.02, kMostGrip_m = 0.3;
@@ -102,4 +104,4 @@ class Figure {
   bool begun_ = false;
 };
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

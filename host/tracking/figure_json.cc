@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/figure_json.h"
 
 #include <fmt/format.h>
@@ -5,7 +6,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-namespace tact::host {
+namespace tact::host::tracking {
 namespace {
 
 /// To a tenth of a millimetre; a figure beyond 100 m is no longer in the picture.
@@ -55,4 +56,4 @@ std::string figure_json(const FigurePose& pose, std::uint64_t tick, bool head_tr
   return out;
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

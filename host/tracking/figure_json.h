@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // figure_json.h - the operator's figure as JSON text for the page.
 //
 //     once       {"joints":["pelvis",..],"capsules":[{"a":0,"b":1,"radius_a_m":..,"radius_b_m":..,
@@ -16,7 +17,7 @@
 
 #include "host/tracking/figure.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 inline constexpr std::size_t kMaxFigureJsonBytes = 1024;
 
@@ -24,4 +25,4 @@ nlohmann::json skeleton_json(const BodyPlan& plan);
 /// `head_tracked`: the head's pose is the tracker's, so a view may go with it.
 std::string figure_json(const FigurePose& pose, std::uint64_t tick, bool head_tracked);
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

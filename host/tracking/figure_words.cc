@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/figure_words.h"
 
 #include <algorithm>
 
 #include "host/tracking/tracking_setup.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 std::string words_for(BodyRole role) {
   std::string out = name_of(role);
@@ -64,4 +65,4 @@ void tell(const TrackedOperator& bodies, FigurePose& pose) {
   }
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // figure_words.h - what is said of the operator's trackers, and of a figure that cannot follow.
 #pragma once
 
@@ -5,7 +6,7 @@
 
 #include "host/tracking/figure.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 /// "head", "left ankle": the name in the description (tracking_setup.h), as words.
 std::string words_for(BodyRole role);
@@ -14,4 +15,4 @@ const char* words_for(TrackingTrouble trouble);
 /// Sets trouble and words of a pose: the worst of its bodies, its arm and its legs.
 void tell(const TrackedOperator& bodies, FigurePose& pose);
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

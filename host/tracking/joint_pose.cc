@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/joint_pose.h"
 
 #include <algorithm>
 
-namespace tact::host {
+namespace tact::host::tracking {
 namespace {
 
 using Eigen::Vector2d;
@@ -69,9 +70,8 @@ PoseEstimate joint_pose(std::span<const BodyView> views) {
   for (const Pose& start : starts_of(views, markers)) {
     const Pose pose = polish_pose(markers, start);
     bool agree = true;
-    for (std::size_t i = 0; i < views.size(); ++i) {
+    for (std::size_t i = 0; i < views.size(); ++i)
       agree = agree && reprojection_rms_px({&markers[i], 1}, pose) <= views[i].limit_tan;
-    }
     if (!agree) continue;
     return {.status = PoseStatus::kOk,
             .pose = {.rotation = canonical(pose.rotation), .position_m = pose.position_m},
@@ -80,4 +80,4 @@ PoseEstimate joint_pose(std::span<const BodyView> views) {
   return {.status = PoseStatus::kNoPose};
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // joint_pose.h - one pose from what several cameras see of a body at the same time.
 //
 //     rms^2 = (1/n) sum |tangent(E_i^-1 (R P + t)) - seen|^2   over the n markers of all views
 //     tangent  u' = (u - cx) / fx ,  v' = (v - cy) / fy        so that pixels and sweeps compare
 //
-//     R, t  tracker <- body, t in m     E_i  tracker <- camera i     P  marker in the body's axes, m
+//     R, t  tracker <- body, t in m    E_i  tracker <- camera i    P  marker in the body's axes, m
 //
 // One camera sees depth worst: its error goes with distance squared over the body's size. A second
 // one, 30 to 120 degrees beside it, sees that depth across. Gauss-Newton of EP-10 (pose_polish.h)
@@ -21,7 +22,7 @@
 
 #include "host/tracking/epnp.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 /// What one camera sees of a body. Pixels are kept as tangents.
 struct BodyView {
@@ -43,4 +44,4 @@ BodyView body_view(const Camera& camera, std::span<const Eigen::Vector3d> points
 /// the best start.
 PoseEstimate joint_pose(std::span<const BodyView> views);
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/leg_ik.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace tact::host {
+namespace tact::host::tracking {
 namespace {
 
 using Eigen::Vector2d;
@@ -51,4 +52,4 @@ LegPose pose_leg(const Leg& leg, const Vector2d& hip_m, const Vector2d& ankle_m)
   return out;
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // leg_ik.h - hip and ankle are tracked; where is the knee? Two bones in the plane of the leg.
 //
 //     D = |P2 - P1|, kept within |L1 - L2| .. L1 + L2 ,   phi = direction of P2 - P1 (0 at D = 0)
@@ -10,13 +11,13 @@
 //
 // The sines come from the triangle's area, because an acos near 1 has half its digits left.
 // At D = 0 with L1 = L2 the leg is folded and both other interior angles are pi/2 by convention.
-// Source: PHYSICS 5.3; the law of cosines is reconstructed, the source lost its formulas.
+// Source: CC-10; the law of cosines is reconstructed, the source lost its formulas.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 enum class LegStatus : std::uint8_t { kOk, kUnreachable, kInvalid };
 enum class Bend : std::int8_t { kCounterClockwise = 1, kClockwise = -1 };
@@ -43,4 +44,4 @@ struct LegPose {
 /// finite or a bone without length: kInvalid.
 LegPose pose_leg(const Leg& leg, const Eigen::Vector2d& hip_m, const Eigen::Vector2d& ankle_m);
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

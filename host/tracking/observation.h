@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // observation.h - one look of one camera at one body, as it comes from a tracker: one JSON object
 // per UDP datagram or line of a file.
 //
@@ -17,7 +18,9 @@
 #include <string_view>
 #include <vector>
 
-namespace tact::host {
+#include "model/result.h"
+
+namespace tact::host::tracking {
 
 inline constexpr std::size_t kMaxMarkers = 64;
 inline constexpr std::size_t kMaxObservationBytes = 8192;
@@ -38,10 +41,10 @@ struct Observation {
   friend bool operator==(const Observation&, const Observation&) = default;
 };
 
-/// Empty and `out` filled; or what is wrong with the bytes, and what they should be.
-std::string parse_observation(std::string_view bytes, Observation& out);
+/// Error: what is wrong with the bytes, and what they should be.
+model::Result<Observation> parse_observation(std::string_view bytes);
 
 /// A name of a camera or a body: 1 to 32 letters, digits, _ or -.
 bool is_tracking_name(std::string_view name);
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

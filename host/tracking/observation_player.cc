@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/observation_player.h"
 
 #include <fmt/format.h>
@@ -14,44 +15,46 @@
 
 #include "host/tracking/body_tracker.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 namespace {
+
+using model::Error;
+using model::Result;
 
 constexpr double kLongestGap_s = 60.0;  // a longer one is not waited out
 constexpr double kTurn_s = 1.0 / 60.0;  // from the last line to the first
 
 }  // namespace
 
-std::string read_observation_file(const std::string& path, ObservationFile& out, KeepText keep) {
+Result<ObservationFile> read_observation_file(const std::string& path, KeepText keep) {
   std::error_code failed;
-  if (!std::filesystem::is_regular_file(path, failed)) {
-    return fmt::format("{}: no such file; give a file of observations, one per line", path);
-  }
+  if (!std::filesystem::is_regular_file(path, failed))
+    return Error{fmt::format("{}: no such file; give a file of observations, one per line", path)};
   if (std::filesystem::file_size(path, failed) > kLargestRecording_bytes) {
-    return fmt::format("{}: larger than {} MB; cut it into parts", path,
-                       kLargestRecording_bytes / 1'000'000);
+    return Error{fmt::format("{}: larger than {} MB; cut it into parts", path,
+                             kLargestRecording_bytes / 1'000'000)};
   }
   std::ifstream file(path, std::ios::binary);
-  if (!file) return fmt::format("{}: {}; check who may read it", path, std::strerror(errno));
+  if (!file) return Error{fmt::format("{}: {}; check who may read it", path, std::strerror(errno))};
+  ObservationFile out;
   std::size_t number = 0;
   for (std::string line; std::getline(file, line);) {
     ++number;
     if (line.empty() || line == "\r") continue;
-    Observation seen;
-    const std::string wrong = parse_observation(line, seen);
-    if (wrong.empty()) {
+    Result<Observation> seen = parse_observation(line);
+    if (seen) {
       out.lines.push_back(
-          {.text = keep == KeepText::kYes ? line : std::string(), .seen = std::move(seen)});
+          {.text = keep == KeepText::kYes ? line : std::string(), .seen = std::move(*seen)});
     } else if (out.bad++ == 0) {
-      out.first_bad = fmt::format("{}:{}: {}", path, number, wrong);
+      out.first_bad = fmt::format("{}:{}: {}", path, number, seen.error().sentence);
     }
   }
-  if (!out.lines.empty()) return {};
-  return out.bad > 0 ? out.first_bad
-                     : fmt::format("{}: it is empty; give a file of observations", path);
+  if (!out.lines.empty()) return out;
+  if (out.bad > 0) return Error{out.first_bad};
+  return Error{fmt::format("{}: it is empty; give a file of observations", path)};
 }
 
-std::string why_no_loop(const std::string& path, const ObservationFile& file) {
+std::optional<Error> check_loop(const std::string& path, const ObservationFile& file) {
   struct Span {
     double first_s = 0.0, last_s = 0.0;
   };
@@ -64,12 +67,12 @@ std::string why_no_loop(const std::string& path, const ObservationFile& file) {
   }
   for (const auto& [who, span] : spans) {
     if (span.last_s - span.first_s > kRestart_s) continue;
-    return fmt::format(
+    return Error{fmt::format(
         "{}: camera {} looks at body {} for {:.2f} s, and a file that begins again at its end "
         "needs more than {:g} s; record longer or leave these lines out",
-        path, who.first, who.second, span.last_s - span.first_s, kRestart_s);
+        path, who.first, who.second, span.last_s - span.first_s, kRestart_s)};
   }
-  return {};
+  return std::nullopt;
 }
 
 ObservationPlayer::ObservationPlayer(boost::asio::io_context& io, std::vector<PlayedLine> lines,
@@ -117,4 +120,4 @@ void ObservationPlayer::play() {
   });
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // observation_player.h - plays a file of observations, one per line, with the time that they carry.
 //
 // The order of the file is kept: a line whose time goes back comes at once. Lines that are no
@@ -8,12 +9,14 @@
 #include <boost/asio/steady_timer.hpp>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "host/tracking/observation.h"
+#include "model/result.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 struct PlayedLine {
   std::string text;  // as written, for who sends it on; empty with KeepText::kNo
@@ -30,14 +33,13 @@ enum class KeepText : std::uint8_t { kNo, kYes };
 
 inline constexpr std::uintmax_t kLargestRecording_bytes = 64'000'000;  // hours of a few cameras
 
-/// Empty, or why the file gives no observation at all. Larger than kLargestRecording_bytes:
-/// refused.
-std::string read_observation_file(const std::string& path, ObservationFile& out,
-                                  KeepText keep = KeepText::kNo);
+/// Error: why the file gives no observation at all. Larger than kLargestRecording_bytes: refused.
+model::Result<ObservationFile> read_observation_file(const std::string& path,
+                                                     KeepText keep = KeepText::kNo);
 
-/// Empty, or why the file cannot be played again and again: a camera looks at a body for so short a
+/// Error: why the file cannot be played again and again. A camera looks at a body for so short a
 /// time that its second round is no new beginning (body_tracker.h) but out of order.
-std::string why_no_loop(const std::string& path, const ObservationFile& file);
+std::optional<model::Error> check_loop(const std::string& path, const ObservationFile& file);
 
 class ObservationPlayer {
  public:
@@ -69,4 +71,4 @@ class ObservationPlayer {
   std::size_t next_ = 0;
 };
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

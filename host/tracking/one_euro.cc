@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/one_euro.h"
 
 #include <numbers>
 
-namespace tact::host {
+namespace tact::host::tracking {
 namespace {
 
 using Eigen::Quaterniond;
@@ -49,4 +50,4 @@ Pose PoseFilter::next(const Pose& raw, double time_s) {
   return last_;
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

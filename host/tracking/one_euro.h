@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // one_euro.h - a calm pose for display that does not lag behind a fast hand: the one-euro filter
 // [1].
 //
@@ -17,7 +18,7 @@
 
 #include "host/tracking/coordinate_chain.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 struct OneEuroSettings {
   double least_cutoff_Hz = 1.0;      // f_min: a body at rest
@@ -48,4 +49,4 @@ class PoseFilter {
   bool has_last_ = false;
 };
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

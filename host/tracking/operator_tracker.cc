@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/operator_tracker.h"
 
 #include <fmt/format.h>
@@ -8,8 +9,10 @@
 
 #include "host/tracking/robust_pose.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 namespace {
+
+using model::Error;
 
 Pose inverse(const Pose& pose) { return bind(pose, Pose{}); }
 
@@ -73,21 +76,19 @@ void OperatorTracker::take(std::size_t body, std::size_t camera, Look look, Pose
   if (good && enters) looks_[body][camera] = std::move(look);
 }
 
-std::string OperatorTracker::take(const Observation& seen, double now_s) {
+std::optional<Error> OperatorTracker::take(const Observation& seen, double now_s) {
   const auto camera = std::ranges::find(setup_.cameras, seen.camera, &TrackingCamera::name);
-  if (camera == setup_.cameras.end()) {
-    return fmt::format("camera {} is not in {}; add it there", seen.camera, setup_.path);
-  }
+  if (camera == setup_.cameras.end())
+    return Error{fmt::format("camera {} is not in {}; add it there", seen.camera, setup_.path)};
   const auto body = std::ranges::find(setup_.bodies, seen.body, &MarkerBody::name);
-  if (body == setup_.bodies.end()) {
-    return fmt::format("body {} is not in {}; add it there", seen.body, setup_.path);
-  }
+  if (body == setup_.bodies.end())
+    return Error{fmt::format("body {} is not in {}; add it there", seen.body, setup_.path)};
   const auto camera_at = static_cast<std::size_t>(camera - setup_.cameras.begin());
   const bool is_base = !body->role;
-  if (is_base && camera->pose) return {};  // its place is known
+  if (is_base && camera->pose) return std::nullopt;  // its place is known
   const auto body_at = static_cast<std::size_t>(body - setup_.bodies.begin());
   BodyTracker& tracker = is_base ? places_[camera_at] : trackers_[body_at];
-  if (!tracker.admit(is_base ? 0 : camera_at, seen, now_s)) return {};
+  if (!tracker.admit(is_base ? 0 : camera_at, seen, now_s)) return std::nullopt;
   const Markers markers = markers_of(*body, seen);
   PoseEstimate estimate =
       robust_pose(camera->lens, markers.points_m, markers.pixels_px, camera->outlier_px);
@@ -100,20 +101,19 @@ std::string OperatorTracker::take(const Observation& seen, double now_s) {
                                 camera->outlier_px, estimate.pose)};
     look.view.eye = *place;
     take(body_at, camera_at, std::move(look), estimate, now_s);
-    return {};
+    return std::nullopt;
   } else if (estimate.status == PoseStatus::kOk) {
     estimate.status = PoseStatus::kNoPose;  // the base was not seen yet
   }
   tracker.take(estimate, seen.time_s, now_s);
-  return {};
+  return std::nullopt;
 }
 
 TrackedOperator OperatorTracker::at(double now_s) const {
   TrackedOperator out{.time_s = now_s};
-  for (std::size_t i = 0; i < setup_.bodies.size(); ++i) {
+  for (std::size_t i = 0; i < setup_.bodies.size(); ++i)
     if (const auto role = setup_.bodies[i].role) out[*role] = trackers_[i].at(now_s);
-  }
   return out;
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // operator_tracker.h - observations in, the operator's bodies in the device's frame out.
 //
 //     pose = registration * camera * (camera <- body)       each a Pose: rotation, then position
@@ -14,21 +15,22 @@
 // filtered; the last one stands while the base is hidden. Pure: time is an argument.
 #pragma once
 
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "host/tracking/body_tracker.h"
 #include "host/tracking/joint_pose.h"
 #include "host/tracking/tracking_setup.h"
+#include "model/result.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 class OperatorTracker {
  public:
   explicit OperatorTracker(TrackingSetup setup);
 
-  /// Empty, or why the observation belongs to nothing here. `now_s` of the viewer's clock.
-  std::string take(const Observation& seen, double now_s);
+  /// Error: why the observation belongs to nothing here. `now_s` of the viewer's clock.
+  std::optional<model::Error> take(const Observation& seen, double now_s);
   /// Every body as it is at `now_s`.
   TrackedOperator at(double now_s) const;
 
@@ -54,4 +56,4 @@ class OperatorTracker {
   std::vector<BodyTracker> places_;                      // of the cameras, from the base
 };
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

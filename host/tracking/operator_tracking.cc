@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/operator_tracking.h"
 
 #include <fmt/format.h>
@@ -5,7 +6,7 @@
 #include <boost/asio/buffer.hpp>
 #include <boost/system/error_code.hpp>
 
-namespace tact::host {
+namespace tact::host::tracking {
 namespace {
 
 constexpr int kMostFailures = 100;  // of the socket, in a row
@@ -14,6 +15,8 @@ constexpr int kMostFailures = 100;  // of the socket, in a row
 
 using boost::asio::ip::udp;
 using boost::system::error_code;
+using model::Error;
+using model::Result;
 
 OperatorTracking::OperatorTracking(boost::asio::io_context& io, Say say)
     : io_(io), socket_(io), say_(std::move(say)), began_(std::chrono::steady_clock::now()) {}
@@ -26,48 +29,51 @@ void OperatorTracking::say(const std::string& sentence) const {
   if (say_) say_(sentence);
 }
 
-std::string OperatorTracking::open(const std::string& path, Registered registered) {
-  TrackingSetup setup;
-  if (std::string wrong = load_tracking_setup(path, setup); !wrong.empty()) return wrong;
+std::optional<Error> OperatorTracking::open(const std::string& path, Registered registered) {
+  Result<TrackingSetup> setup = load_tracking_setup(path);
+  if (!setup) return setup.error();
   if (registered == Registered::kNo) {
-    setup.registration = {};
-  } else if (setup.registered_by.empty()) {
+    setup->registration = {};
+  } else if (setup->registered_by.empty()) {
     say(
         fmt::format("{}: there is no registration; the tracker's frame is taken for the device's, "
                     "tact-view --register finds the right one",
                     path));
   }
-  std::string wrong = setup.udp_port != 0 ? listen(setup.udp_port) : load(setup.recording);
-  if (wrong.empty()) tracker_.emplace(std::move(setup));
-  return wrong;
+  if (std::optional<Error> error =
+          setup->udp_port != 0 ? listen(setup->udp_port) : load(setup->recording)) {
+    return error;
+  }
+  tracker_.emplace(std::move(*setup));
+  return std::nullopt;
 }
 
-std::string OperatorTracking::listen(std::uint16_t port) {
+std::optional<Error> OperatorTracking::listen(std::uint16_t port) {
   error_code wrong;
   socket_.open(udp::v4(), wrong);
   if (!wrong) socket_.bind({boost::asio::ip::address_v4::loopback(), port}, wrong);
   if (wrong) {
-    return fmt::format(
-        "UDP port {} on 127.0.0.1: {}; stop the other program or write another "
-        "udp_port",
-        port, wrong.message());
+    return Error{
+        fmt::format("UDP port {} on 127.0.0.1: {}; stop the other program or write another "
+                    "udp_port",
+                    port, wrong.message())};
   }
   port_ = port;
-  return {};
+  return std::nullopt;
 }
 
-std::string OperatorTracking::load(const std::string& recording) {
-  ObservationFile file;
-  if (std::string wrong = read_observation_file(recording, file); !wrong.empty()) return wrong;
-  if (std::string wrong = why_no_loop(recording, file); !wrong.empty()) return wrong;
-  if (file.bad > 0) {
-    refused_ = file.bad;
-    say(fmt::format("{}; {} such lines are left out", file.first_bad, file.bad));
+std::optional<Error> OperatorTracking::load(const std::string& recording) {
+  Result<ObservationFile> file = read_observation_file(recording);
+  if (!file) return file.error();
+  if (std::optional<Error> error = check_loop(recording, *file)) return error;
+  if (file->bad > 0) {
+    refused_ = file->bad;
+    say(fmt::format("{}; {} such lines are left out", file->first_bad, file->bad));
   }
   player_ =
-      std::make_unique<ObservationPlayer>(io_, std::move(file.lines), ObservationPlayer::Options{},
+      std::make_unique<ObservationPlayer>(io_, std::move(file->lines), ObservationPlayer::Options{},
                                           [this](const PlayedLine& line) { take(line.seen); });
-  return {};
+  return std::nullopt;
 }
 
 void OperatorTracking::start() {
@@ -91,26 +97,25 @@ void OperatorTracking::receive_next() {
           return;
         }
         if (!wrong) {
-          Observation seen;
-          const std::string bad = parse_observation({datagram_.data(), size}, seen);
-          bad.empty() ? take(seen) : refuse(bad);
+          const Result<Observation> seen = parse_observation({datagram_.data(), size});
+          seen ? take(*seen) : refuse(seen.error());
         }
         receive_next();
       });
 }
 
 void OperatorTracking::take(const Observation& seen) {
-  if (const std::string wrong = tracker_->take(seen, now_s()); !wrong.empty()) refuse(wrong);
+  if (const std::optional<Error> error = tracker_->take(seen, now_s())) refuse(*error);
 }
 
-void OperatorTracking::refuse(const std::string& wrong) {
+void OperatorTracking::refuse(const Error& error) {
   if (refused_by_content_++ == 0) {
     say(fmt::format("tracking: an observation is left out: {}; others like it are only counted",
-                    wrong));
+                    error.sentence));
   }
   ++refused_;
 }
 
 const TrackedOperator& OperatorTracking::now() { return now_ = tracker_->at(now_s()); }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

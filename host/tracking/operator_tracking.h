@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // operator_tracking.h - the tracker's input in the viewer: datagrams or a recorded file in, the
 // operator's bodies out.
 //
-//     UDP on 127.0.0.1, or a file played in real time -> observation.h -> operator_tracker.h -> now()
+//     UDP on 127.0.0.1, or a file in real time -> observation.h -> operator_tracker.h -> now()
 //
 // One thread, the viewer's: a pose takes about 50 us, so that a thread and a slot of its own would
 // buy nothing. What cannot be used is counted, and the first of it told. No force depends on it.
@@ -19,8 +20,9 @@
 
 #include "host/tracking/observation_player.h"
 #include "host/tracking/operator_tracker.h"
+#include "model/result.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 class OperatorTracking {
  public:
@@ -32,9 +34,10 @@ class OperatorTracking {
   /// kNo: poses stay in the tracker's frame, for who wants to find the registration.
   enum class Registered : std::uint8_t { kNo, kYes };
 
-  /// Reads a tracking description (SCENE.tracking.toml, README.md) and opens its input. Empty, or
-  /// what is wrong and what to do.
-  std::string open(const std::string& path, Registered registered = Registered::kYes);
+  /// Reads a tracking description (SCENE.tracking.toml, README.md) and opens its input. Error: what
+  /// is wrong and what to do.
+  std::optional<model::Error> open(const std::string& path,
+                                   Registered registered = Registered::kYes);
   /// From here on observations are taken, by the io_context's thread.
   void start();
   void stop();
@@ -47,11 +50,11 @@ class OperatorTracking {
   std::uint16_t port() const { return port_; }        // 0: a file is played
 
  private:
-  std::string listen(std::uint16_t port);
-  std::string load(const std::string& recording);
+  std::optional<model::Error> listen(std::uint16_t port);
+  std::optional<model::Error> load(const std::string& recording);
   void receive_next();
   void take(const Observation& seen);
-  void refuse(const std::string& wrong);
+  void refuse(const model::Error& error);
   void say(const std::string& sentence) const;
   double now_s() const;
 
@@ -69,4 +72,4 @@ class OperatorTracking {
   std::uint16_t port_ = 0;
 };
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/pose_polish.h"
 
 #include <Eigen/QR>
@@ -5,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tact::host {
+namespace tact::host::tracking {
 namespace {
 
 using Eigen::Index;
@@ -28,9 +29,8 @@ Pose moved(const Pose& pose, const Vector6d& step) {
   const Vector3d turn = step.head<3>();
   const double angle_rad = turn.norm();
   Pose out = pose;
-  if (angle_rad > 0.0) {
+  if (angle_rad > 0.0)
     out.rotation = (Eigen::AngleAxisd(angle_rad, turn / angle_rad) * pose.rotation).normalized();
-  }
   out.position_m += step.tail<3>();
   return out;
 }
@@ -66,9 +66,8 @@ Vector6d gauss_newton_step(std::span<const MarkerView> views, const Pose& pose) 
       by_x << camera.fx_px / x.z(), 0.0, -camera.fx_px * x.x() / (x.z() * x.z()),  //
           0.0, camera.fy_px / x.z(), -camera.fy_px * x.y() / (x.z() * x.z());
       const Eigen::Matrix<double, 2, 3> by_shift = by_x * sight.turn;
-      for (Index axis = 0; axis < 3; ++axis) {
+      for (Index axis = 0; axis < 3; ++axis)
         jacobian.block<2, 1>(row, axis) = by_shift * Vector3d::Unit(axis).cross(turned);
-      }
       jacobian.block<2, 3>(row, 3) = by_shift;
       residual.segment<2>(row) = view.pixels_px[i] - pixel_of(camera, x);
     }
@@ -129,4 +128,4 @@ Pose polish_pose(const Camera& camera, std::span<const Vector3d> points_m,
   return polish_pose({&view, 1}, start);
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

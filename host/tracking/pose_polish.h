@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // pose_polish.h - how well a pose explains the pixels of known points, and the best pose nearby.
 //
 //     X = R P + t , Z > 0 ;  u = fx X/Z + cx ,  v = fy Y/Z + cy                      EP-1
@@ -12,7 +13,7 @@
 // points of all; their pixels must be of one unit, so different cameras take tangents.
 //
 // A step that raises rms is halved; points must stay before their camera. At most
-// kPolishSteps steps. Source: PHYSICS 5.2.
+// kPolishSteps steps. Source: EP-1, EP-10.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,7 +21,7 @@
 
 #include "host/tracking/coordinate_chain.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 struct Camera {
   double fx_px = 0.0, fy_px = 0.0;  // > 0; 1 for normalised coordinates (tangents of angles)
@@ -52,4 +53,4 @@ double reprojection_rms_px(const Camera& camera, std::span<const Eigen::Vector3d
 Pose polish_pose(const Camera& camera, std::span<const Eigen::Vector3d> points_m,
                  std::span<const Eigen::Vector2d> pixels_px, const Pose& start);
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

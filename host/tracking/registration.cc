@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/registration.h"
 
 #include <fmt/format.h>
@@ -10,13 +11,15 @@
 #include <filesystem>
 #include <fstream>
 
-namespace tact::host {
+namespace tact::host::tracking {
 namespace {
 
 namespace fs = std::filesystem;
 using Eigen::Index;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using model::Error;
+using model::Result;
 using Points = Eigen::Matrix<double, 3, Eigen::Dynamic>;  // 3 x n
 
 /// Spread across the line that fits best, m.
@@ -30,24 +33,23 @@ double spread_m(const Points& points) {
 
 }  // namespace
 
-std::string fit_registration(std::span<const PosePair> poses, Registration& out) {
+Result<Registration> fit_registration(std::span<const PosePair> poses) {
   if (poses.size() < kLeastPoses) {
-    return fmt::format("{} poses are too few for a registration; take {} or more", poses.size(),
-                       kLeastPoses);
+    return Error{fmt::format("{} poses are too few for a registration; take {} or more",
+                             poses.size(), kLeastPoses)};
   }
   Points tracked(3, static_cast<Index>(poses.size())), device(3, static_cast<Index>(poses.size()));
   for (std::size_t i = 0; i < poses.size(); ++i) {
     tracked.col(static_cast<Index>(i)) = poses[i].tracked_m;
     device.col(static_cast<Index>(i)) = poses[i].device_m;
   }
-  if (!tracked.allFinite() || !device.allFinite()) {
-    return "a pose is not finite; look at the tracker and take the poses again";
-  }
-  if (!(spread_m(tracked) >= kLeastSpread_m && spread_m(device) >= kLeastSpread_m)) {
-    return "the poses lie on a line or in one place; move the tool in two directions or more";
-  }
+  if (!tracked.allFinite() || !device.allFinite())
+    return Error{"a pose is not finite; look at the tracker and take the poses again"};
+  if (!(spread_m(tracked) >= kLeastSpread_m && spread_m(device) >= kLeastSpread_m))
+    return Error{
+        "the poses lie on a line or in one place; move the tool in two directions or more"};
   const Eigen::Matrix4d fit = Eigen::umeyama(tracked, device, /*with_scaling=*/false);
-  out = {};
+  Registration out;
   out.transform.rotation =
       canonical(Eigen::Quaterniond(Matrix3d(fit.topLeftCorner<3, 3>())).normalized());
   out.transform.position_m = fit.topRightCorner<3, 1>();
@@ -59,7 +61,7 @@ std::string fit_registration(std::span<const PosePair> poses, Registration& out)
   }
   out.rms_m = std::sqrt(sum_m2 / static_cast<double>(poses.size()));
   out.largest_m = std::ranges::max(out.residual_m);
-  return {};
+  return out;
 }
 
 void PoseCollector::begin(double now_s, const Vector3d& device_m) {
@@ -94,7 +96,7 @@ bool PoseCollector::add(double now_s, const Vector3d& device_m, double speed_mps
   return is_new;
 }
 
-std::string write_registration(const std::string& path, const Registration& registration) {
+std::optional<Error> write_registration(const std::string& path, const Registration& registration) {
   const Eigen::Quaterniond& q = registration.transform.rotation;
   const Vector3d& p = registration.transform.position_m;
   const std::string fresh = path + ".new";
@@ -111,7 +113,7 @@ std::string write_registration(const std::string& path, const Registration& regi
   file.close();
   std::error_code wrong;
   const auto failed = [&](const std::string& why) {
-    return fmt::format("{}: {}; check that the folder may be written", path, why);
+    return Error{fmt::format("{}: {}; check that the folder may be written", path, why)};
   };
   if (!file) return failed(std::strerror(errno));
   if (fs::exists(path, wrong)) {
@@ -119,7 +121,8 @@ std::string write_registration(const std::string& path, const Registration& regi
     if (wrong) return failed(wrong.message());
   }
   fs::rename(fresh, path, wrong);
-  return wrong ? failed(wrong.message()) : std::string();
+  if (wrong) return failed(wrong.message());
+  return std::nullopt;
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // registration.h - where does the tracker stand? The rigid motion from the tracker's frame to the
 // device's that brings poses of the tracked tool onto the device's own.
 //
@@ -20,8 +21,9 @@
 #include <vector>
 
 #include "host/tracking/coordinate_chain.h"
+#include "model/result.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 inline constexpr std::size_t kLeastPoses = 6;
 inline constexpr double kLeastSpread_m = 0.005;
@@ -38,8 +40,8 @@ struct Registration {
   double rms_m = 0.0, largest_m = 0.0;
 };
 
-/// Fills `out`; or why not, and what to do.
-std::string fit_registration(std::span<const PosePair> poses, Registration& out);
+/// Error: why not, and what to do.
+model::Result<Registration> fit_registration(std::span<const PosePair> poses);
 
 /// Takes a pose whenever the tool stands still somewhere new.
 class PoseCollector {
@@ -71,7 +73,8 @@ class PoseCollector {
 };
 
 /// Writes `path` as SCENE.registration.toml, whole or not at all; a file that was there becomes
-/// path.bak. Empty, or what went wrong.
-std::string write_registration(const std::string& path, const Registration& registration);
+/// path.bak. Error: what went wrong.
+std::optional<model::Error> write_registration(const std::string& path,
+                                               const Registration& registration);
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

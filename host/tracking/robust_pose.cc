@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/robust_pose.h"
 
 #include <algorithm>
 #include <opencv2/calib3d.hpp>
 #include <vector>
 
-namespace tact::host {
+namespace tact::host::tracking {
 namespace {
 
 using Eigen::Vector2d;
@@ -67,10 +68,9 @@ PoseEstimate robust_pose(const Camera& camera, std::span<const Vector3d> points_
     if (good.points_m.empty()) return {.status = PoseStatus::kNoPose};
     out = estimate_pose(camera, good.points_m, good.pixels_px);
   }
-  if (out.status == PoseStatus::kOk && !(out.rms_px <= outlier_px)) {
+  if (out.status == PoseStatus::kOk && !(out.rms_px <= outlier_px))
     return {.status = PoseStatus::kNoPose};
-  }
   return out;
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

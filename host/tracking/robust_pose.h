@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // robust_pose.h - a pose that one wrong marker does not bend.
 //
 // estimate_pose on all markers. If one of them lies farther from its computed pixel than
@@ -11,7 +12,7 @@
 
 #include "host/tracking/epnp.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 /// Markers of one body and where a camera sees them, in the same order.
 struct Markers {
@@ -26,4 +27,4 @@ inline constexpr int kRansacRounds = 100;
 PoseEstimate robust_pose(const Camera& camera, std::span<const Eigen::Vector3d> points_m,
                          std::span<const Eigen::Vector2d> pixels_px, double outlier_px);
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

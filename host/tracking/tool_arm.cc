@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/tool_arm.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace tact::host {
+namespace tact::host::tracking {
 namespace {
 
 using Eigen::Quaterniond;
@@ -186,4 +187,4 @@ Quaterniond ToolArm::axes(std::size_t i) const {
   return q.normalized();
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tool_arm.h - the arm that holds the tool: seven joints from the pelvis to the finger tips.
 //
 //     1  all joints go a little towards rest, so that elbow and trunk do not drift
@@ -7,10 +8,10 @@
 //     3  the wrist takes the wanted turn, as far as its cone lets it; the fingers curl
 //     4  CCD brings the finger tips to the grip, if a limit kept the hand from its turn
 //
-// Steps 2 and 4 are CCD from the sub-root, the shoulder, and from the pelvis only when the target is
-// farther than 0.98 of what the arm spans (choose_root), or when step 4 came to no good end because
-// a limit of the arm is in the way: then it goes on from the pelvis. For the turn of the hand alone
-// the trunk does not bend. Warm start, at most kSweeps sweeps each.
+// Steps 2 and 4 are CCD from the sub-root, the shoulder, and from the pelvis only when the target
+// is farther than 0.98 of what the arm spans (choose_root), or when step 4 came to no good end
+// because a limit of the arm is in the way: then it goes on from the pelvis. For the turn of the
+// hand alone the trunk does not bend. Warm start, at most kSweeps sweeps each.
 //
 // From the shoulder step 2 begins with the two-bone formula, law of cosines as in CC-10: the elbow
 // bends to the distance, then the shoulder points. Two updates, exact but for the limits. CCD alone
@@ -26,7 +27,7 @@
 
 #include "host/tracking/body_plan.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 /// What the hand holds: the finger tips go to `grip_m`; `hand` turns the palm's rest axes.
 struct ArmGoal {
@@ -100,4 +101,4 @@ class ToolArm {
 /// The hand that holds a tool by its handle: palm from the operator's side, finger tips down.
 Eigen::Quaterniond holding_hand();
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

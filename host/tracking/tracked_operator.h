@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tracked_operator.h - what the tracker knows of the operator now: one pose per body, in the
 // device's frame W (+x towards the operator, +y to the right, +z up).
 //
@@ -13,7 +14,7 @@
 
 #include "host/tracking/coordinate_chain.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 /// What a marker body is fixed to.
 enum class BodyRole : std::uint8_t {
@@ -67,4 +68,4 @@ struct TrackedOperator {
   TrackedBody& operator[](BodyRole role) { return bodies[static_cast<std::size_t>(role)]; }
 };
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/tracking_keys.h"
 
 #include <fmt/format.h>
@@ -8,47 +9,60 @@
 #include <fstream>
 #include <iterator>
 
-namespace tact::host {
+namespace tact::host::tracking {
 namespace {
+
+using model::Error;
+using model::Result;
 
 constexpr std::uintmax_t kLargestFile_bytes = 1'000'000;
 constexpr double kFarthest_m = 100.0;
 
 std::string on_one_line(std::string_view text) {
   std::string out(text);
-  std::ranges::replace_if(
-      out, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  std::ranges::replace_if(out, [](char c) { return c == '\n' || c == '\r'; }, ' ');
   return out;
+}
+
+/// None: `node` is no list of `count` numbers, each at most `most`.
+std::optional<std::vector<double>> read_numbers(const toml::node* node, std::size_t count,
+                                                double most) {
+  const toml::array* list = node != nullptr ? node->as_array() : nullptr;
+  if (list == nullptr || list->size() != count) return std::nullopt;
+  std::vector<double> numbers;
+  for (const toml::node& item : *list) {
+    const auto value = item.value<double>();
+    if (!value || !(std::abs(*value) <= most)) return std::nullopt;
+    numbers.push_back(*value);
+  }
+  return numbers;
 }
 
 }  // namespace
 
-std::string parse_toml_file(const std::string& path, toml::table& out) {
+Result<toml::table> parse_toml_file(const std::string& path) {
   std::error_code failed;
-  if (!std::filesystem::is_regular_file(path, failed)) {
-    return fmt::format("{}: no such file; give the path of a tracking description", path);
-  }
-  if (std::filesystem::file_size(path, failed) > kLargestFile_bytes) {
-    return fmt::format("{}: too large; a tracking description has at most 1 MB", path);
-  }
+  if (!std::filesystem::is_regular_file(path, failed))
+    return Error{fmt::format("{}: no such file; give the path of a tracking description", path)};
+  if (std::filesystem::file_size(path, failed) > kLargestFile_bytes)
+    return Error{fmt::format("{}: too large; a tracking description has at most 1 MB", path)};
   std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file) return fmt::format("{}: cannot be read; check who may read it", path);
+  if (!file) return Error{fmt::format("{}: cannot be read; check who may read it", path)};
   try {
-    out = toml::parse(text, path);
+    return toml::parse(text, path);
   } catch (const toml::parse_error& wrong) {
-    return fmt::format("{}:{}: not TOML: {}; correct this line", path, wrong.source().begin.line,
-                       on_one_line(wrong.description()));
+    return Error{fmt::format("{}:{}: not TOML: {}; correct this line", path,
+                             wrong.source().begin.line, on_one_line(wrong.description()))};
   }
-  return {};
 }
 
 void TrackingKeys::refuse(std::string_view key, const std::string& sentence) {
-  if (!wrong_.empty()) return;
+  if (error_) return;
   const toml::node* node = table_.get(key);
   const std::uint32_t line =
       node != nullptr ? node->source().begin.line : table_.source().begin.line;
-  wrong_ = fmt::format("{}:{}: {}", path_, std::max(line, 1u), sentence);
+  error_ = Error{fmt::format("{}:{}: {}", path_, std::max(line, 1u), sentence)};
 }
 
 void TrackingKeys::only(std::initializer_list<std::string_view> keys) {
@@ -88,26 +102,12 @@ bool TrackingKeys::flag(std::string_view key) {
   return value.value_or(false);
 }
 
-bool TrackingKeys::read_numbers(const toml::node* node, std::size_t count, double most,
-                                std::vector<double>& out) const {
-  const toml::array* list = node != nullptr ? node->as_array() : nullptr;
-  if (list == nullptr || list->size() != count) return false;
-  for (const toml::node& item : *list) {
-    const auto value = item.value<double>();
-    if (!value || !(std::abs(*value) <= most)) return false;
-    out.push_back(*value);
-  }
-  return true;
-}
-
 std::vector<double> TrackingKeys::numbers(std::string_view key, std::size_t count, double most) {
-  std::vector<double> out;
-  if (!read_numbers(table_.get(key), count, most, out)) {
-    refuse(key, fmt::format("{} must be {} numbers of at most {:g}; write {} = [..]", key, count,
-                            most, key));
-    out.assign(count, 0.0);
-  }
-  return out;
+  const std::optional<std::vector<double>> given = read_numbers(table_.get(key), count, most);
+  if (given) return *given;
+  refuse(key, fmt::format("{} must be {} numbers of at most {:g}; write {} = [..]", key, count,
+                          most, key));
+  return std::vector<double>(count, 0.0);
 }
 
 std::vector<std::vector<double>> TrackingKeys::rows(std::string_view key, std::size_t count,
@@ -117,14 +117,14 @@ std::vector<std::vector<double>> TrackingKeys::rows(std::string_view key, std::s
   const toml::array* list = node != nullptr ? node->as_array() : nullptr;
   bool good = list != nullptr;
   for (std::size_t i = 0; good && i < list->size(); ++i) {
-    good = read_numbers(list->get(i), count, most, out.emplace_back());
+    const std::optional<std::vector<double>> row = read_numbers(list->get(i), count, most);
+    good = row.has_value();
+    if (good) out.push_back(*row);
   }
-  if (!good) {
-    refuse(key, fmt::format("{} must be a list of lists of {} numbers of at most {:g}", key, count,
-                            most));
-    out.clear();
-  }
-  return out;
+  if (good) return out;
+  refuse(key,
+         fmt::format("{} must be a list of lists of {} numbers of at most {:g}", key, count, most));
+  return {};
 }
 
 Pose TrackingKeys::pose() {
@@ -140,20 +140,19 @@ void TrackingKeys::section(std::string_view key, const std::function<void(Tracki
   const toml::node* node = table_.get(key);
   const toml::table* table = node != nullptr ? node->as_table() : nullptr;
   if (table == nullptr) return refuse(key, fmt::format("[{}] is missing; add this section", key));
-  TrackingKeys keys(*table, path_, wrong_);
+  TrackingKeys keys(*table, path_, error_);
   visit(keys);
 }
 
 void TrackingKeys::sections(std::string_view key, const std::function<void(TrackingKeys&)>& visit) {
   const toml::node* node = table_.get(key);
   const toml::array* list = node != nullptr ? node->as_array() : nullptr;
-  if (list == nullptr || list->empty() || !list->is_homogeneous(toml::node_type::table)) {
+  if (list == nullptr || list->empty() || !list->is_homogeneous(toml::node_type::table))
     return refuse(key, fmt::format("[[{}]] is missing; add one or more", key));
-  }
   for (const toml::node& item : *list) {
-    TrackingKeys keys(*item.as_table(), path_, wrong_);
+    TrackingKeys keys(*item.as_table(), path_, error_);
     visit(keys);
   }
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

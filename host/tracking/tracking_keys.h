@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tracking_keys.h - reads the keys of a tracking description and says file:line of what is wrong.
 //
 // toml++ parses. The first thing that is wrong is kept; what follows is read for nothing. Set-up
@@ -8,21 +9,23 @@
 
 #include <functional>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "host/tracking/coordinate_chain.h"
+#include "model/result.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
-/// Parses the file, at most 1 MB. Empty, or what is wrong, where and the cure.
-std::string parse_toml_file(const std::string& path, toml::table& out);
+/// Parses the file, at most 1 MB. Error: what is wrong, where and the cure.
+model::Result<toml::table> parse_toml_file(const std::string& path);
 
 class TrackingKeys {
  public:
-  TrackingKeys(const toml::table& table, std::string path, std::string& wrong)
-      : table_(table), path_(std::move(path)), wrong_(wrong) {}
+  TrackingKeys(const toml::table& table, std::string path, std::optional<model::Error>& error)
+      : table_(table), path_(std::move(path)), error_(error) {}
 
   bool has(std::string_view key) const { return table_.contains(key); }
   /// Refuses a key that is not named here: most are slips of the pen.
@@ -44,15 +47,11 @@ class TrackingKeys {
 
   /// Says that this key (or the table, if it is not there) is wrong.
   void refuse(std::string_view key, const std::string& sentence);
-  bool is_good() const { return wrong_.empty(); }
 
  private:
-  bool read_numbers(const toml::node* node, std::size_t count, double most,
-                    std::vector<double>& out) const;
-
   const toml::table& table_;
   std::string path_;
-  std::string& wrong_;
+  std::optional<model::Error>& error_;
 };
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

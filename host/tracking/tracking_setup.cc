@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "host/tracking/tracking_setup.h"
 
 #include <fmt/format.h>
@@ -11,10 +12,12 @@
 #include "host/tracking/observation.h"
 #include "host/tracking/tracking_keys.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 namespace {
 
 namespace fs = std::filesystem;
+using model::Error;
+using model::Result;
 
 constexpr double kLargest_px = 1e6;
 constexpr double kFarthestShoulder_m = 3.0;
@@ -36,9 +39,8 @@ void read_name(TrackingKeys& k, std::string& out) {
 
 void read_input(TrackingKeys& k, TrackingSetup& out) {
   k.only({"udp_port", "recording"});
-  if (k.has("udp_port") == k.has("recording")) {
+  if (k.has("udp_port") == k.has("recording"))
     return k.refuse("udp_port", "[input] takes udp_port or recording, one of them; write one");
-  }
   if (k.has("udp_port")) {
     const double port = k.number("udp_port", 1, 65535);
     if (port != std::floor(port))
@@ -113,9 +115,8 @@ void read_markers(TrackingKeys& k, MarkerBody& body) {
       return;
     }
     const auto number = static_cast<std::uint32_t>(id);
-    if (std::ranges::any_of(body.markers, [&](const BodyMarker& m) { return m.id == number; })) {
+    if (std::ranges::any_of(body.markers, [&](const BodyMarker& m) { return m.id == number; }))
       k.refuse("markers_m", fmt::format("marker {} is there twice; number them apart", number));
-    }
     body.markers.push_back({.id = number, .position_m = p});
   }
   if (body.markers.size() < kLeastMarkers || body.markers.size() > kMaxMarkers) {
@@ -133,9 +134,8 @@ void read_body(TrackingKeys& k, TrackingSetup& out) {
   read_role(k, out, body);
   read_markers(k, body);
   if (k.has("tip_m")) {
-    if (body.role != BodyRole::kTool) {
+    if (body.role != BodyRole::kTool)
       k.refuse("tip_m", "only role = \"tool\" has tip_m; leave it out");
-    }
     const std::vector<double> tip_m = k.numbers("tip_m", 3, kFarthestMarker_m);
     body.tip_m = Eigen::Vector3d(tip_m[0], tip_m[1], tip_m[2]);
   }
@@ -168,6 +168,20 @@ void read_registration(TrackingKeys& k, const std::string& path, TrackingSetup& 
   });
 }
 
+/// From the file beside the description, if there is one.
+std::optional<Error> read_registration_beside(TrackingSetup& out) {
+  const std::string path = registration_path(out.path);
+  std::error_code unreadable;
+  if (!fs::exists(path, unreadable)) return std::nullopt;
+  const Result<toml::table> file = parse_toml_file(path);
+  if (!file) return file.error();
+  std::optional<Error> error;
+  TrackingKeys keys(*file, path, error);
+  keys.only({"registration"});
+  read_registration(keys, path, out);
+  return error;
+}
+
 }  // namespace
 
 const char* name_of(BodyRole role) { return kRoleNames[static_cast<std::size_t>(role)]; }
@@ -180,21 +194,20 @@ const MarkerBody* TrackingSetup::body_of(BodyRole role) const {
 std::string registration_path(const std::string& tracking_path) {
   const std::string_view suffix(kSuffix);
   std::string stem = tracking_path;
-  if (stem.ends_with(suffix)) {
+  if (stem.ends_with(suffix))
     stem.resize(stem.size() - suffix.size());
-  } else if (const fs::path p(tracking_path); p.has_extension()) {
+  else if (const fs::path p(tracking_path); p.has_extension())
     stem.resize(stem.size() - p.extension().string().size());
-  }
   return stem + ".registration.toml";
 }
 
-std::string load_tracking_setup(const std::string& path, TrackingSetup& out) {
-  out = {};
+Result<TrackingSetup> load_tracking_setup(const std::string& path) {
+  const Result<toml::table> root = parse_toml_file(path);
+  if (!root) return root.error();
+  TrackingSetup out;
   out.path = path;
-  toml::table root;
-  std::string wrong = parse_toml_file(path, root);
-  if (!wrong.empty()) return wrong;
-  TrackingKeys k(root, path, wrong);
+  std::optional<Error> error;
+  TrackingKeys k(*root, path, error);
   k.only({"input", "camera", "body", "operator", "registration"});
   k.section("input", [&](TrackingKeys& keys) { read_input(keys, out); });
   k.sections("camera", [&](TrackingKeys& keys) { read_camera(keys, out); });
@@ -202,19 +215,12 @@ std::string load_tracking_setup(const std::string& path, TrackingSetup& out) {
   check_base(k, out);
   if (k.has("operator"))
     k.section("operator", [&](TrackingKeys& keys) { read_operator(keys, out); });
-  if (k.has("registration")) {
+  if (k.has("registration"))
     read_registration(k, path, out);
-    return wrong;
-  }
-  std::error_code unreadable;
-  const std::string beside = registration_path(path);
-  if (!wrong.empty() || !fs::exists(beside, unreadable)) return wrong;
-  toml::table file;
-  if (wrong = parse_toml_file(beside, file); !wrong.empty()) return wrong;
-  TrackingKeys keys(file, beside, wrong);
-  keys.only({"registration"});
-  read_registration(keys, beside, out);
-  return wrong;
+  else if (!error)
+    error = read_registration_beside(out);
+  if (error) return *error;
+  return out;
 }
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

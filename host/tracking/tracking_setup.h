@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tracking_setup.h - which cameras look, which marker bodies they see and where the tracker stands:
 // SCENE.tracking.toml, described in README.md.
 //
@@ -12,8 +13,9 @@
 
 #include "host/tracking/pose_polish.h"
 #include "host/tracking/tracked_operator.h"
+#include "model/result.h"
 
-namespace tact::host {
+namespace tact::host::tracking {
 
 struct TrackingCamera {
   std::string name;
@@ -47,8 +49,8 @@ struct TrackingSetup {
   const MarkerBody* body_of(BodyRole role) const;
 };
 
-/// Fills `out`; or one line with what is wrong, where (file:line) and the cure.
-std::string load_tracking_setup(const std::string& path, TrackingSetup& out);
+/// Error: one line with what is wrong, where (file:line) and the cure.
+model::Result<TrackingSetup> load_tracking_setup(const std::string& path);
 
 /// SCENE.registration.toml beside SCENE.tracking.toml.
 std::string registration_path(const std::string& tracking_path);
@@ -56,4 +58,4 @@ std::string registration_path(const std::string& tracking_path);
 /// The role as the description writes it, such as "left_leg".
 const char* name_of(BodyRole role);
 
-}  // namespace tact::host
+}  // namespace tact::host::tracking

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { defineConfig } from "vite";
 
 // `npm run build` writes the page to build/page, where tact-view finds it beside itself; another

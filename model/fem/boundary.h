@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // boundary.h - the skin of a body of quadratic tetrahedra: its six-node triangles.
 //
 // Corners 0-2 counter-clockwise seen from outside, then the middles of edges 01, 12, 20. A face

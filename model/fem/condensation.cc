@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "model/fem/condensation.h"
 
 #include <algorithm>
@@ -6,10 +7,10 @@
 #include <optional>
 #include <string>
 
-#include "model/compliance_file.h"
-#include "model/compliance_law.h"
 #include "model/fem/hertz_load.h"
 #include "model/fem/linear_solver.h"
+#include "model/law/compliance_law.h"
+#include "model/scene/compliance_file.h"
 
 namespace tact::model::fem {
 namespace {
@@ -29,11 +30,11 @@ Frame frame_of(const Vec3& n) {
   return {{n, t1, cross(n, t1)}};
 }
 
-const char* first_fault(const TetMesh& body, const SurfaceView& surface,
+const char* first_fault(const TetMesh& body, const contact::SurfaceView& surface,
                         const CondensationSettings& s) {
   if (!(s.patch_radius_m > 0.0)) return "patch_radius_m must be above 0";
   if (!(s.ring_pitch_m > 0.0)) return "ring_pitch_m must be above 0";
-  if (s.rings < 1 || s.rings > kMaxComplianceRings) return "rings must lie between 1 and 31";
+  if (s.rings < 1 || s.rings > law::kMaxComplianceRings) return "rings must lie between 1 and 31";
   if (body.node_m.size() < surface.vertex_m.size())
     return "the body has fewer nodes than the surface has vertices";
   for (std::size_t v = 0; v < surface.vertex_m.size(); ++v)
@@ -44,8 +45,8 @@ const char* first_fault(const TetMesh& body, const SurfaceView& surface,
 
 class Condenser {
  public:
-  Condenser(const TetMesh& body, const SurfaceView& surface, const CondensationSettings& settings,
-            Boundary boundary, LinearSolver solver)
+  Condenser(const TetMesh& body, const contact::SurfaceView& surface,
+            const CondensationSettings& settings, Boundary boundary, LinearSolver solver)
       : body_(body),
         surface_(surface),
         settings_(settings),
@@ -61,18 +62,18 @@ class Condenser {
     }
   }
 
-  std::optional<Error> run(ComplianceMap& map);
+  std::optional<Error> run(tissue::ComplianceMap& map);
 
  private:
   void load(std::size_t slot, std::uint32_t vertex);
-  void read(std::size_t slot, std::uint32_t vertex, ComplianceMap& map) const;
+  void read(std::size_t slot, std::uint32_t vertex, tissue::ComplianceMap& map) const;
   void read_rings(std::size_t slot, std::uint32_t vertex, std::span<float> ring) const;
   const Vec3& moved(std::size_t slot, std::size_t axis, std::uint32_t node) const {
     return moved_m_[slot * kAxes + axis][place_in_skin_[node]];
   }
 
   const TetMesh& body_;
-  const SurfaceView& surface_;
+  const contact::SurfaceView& surface_;
   const CondensationSettings& settings_;
   Boundary boundary_;
   LinearSolver solver_;
@@ -96,7 +97,7 @@ void Condenser::load(std::size_t slot, std::uint32_t vertex) {
   }
 }
 
-void Condenser::read(std::size_t slot, std::uint32_t vertex, ComplianceMap& map) const {
+void Condenser::read(std::size_t slot, std::uint32_t vertex, tissue::ComplianceMap& map) const {
   std::array<std::array<double, kAxes>, kAxes> c{};
   for (std::size_t p = 0; p < kAxes; ++p)
     for (std::size_t q = 0; q < kAxes; ++q)
@@ -119,7 +120,7 @@ void Condenser::read(std::size_t slot, std::uint32_t vertex, ComplianceMap& map)
 }
 
 void Condenser::read_rings(std::size_t slot, std::uint32_t vertex, std::span<float> ring) const {
-  std::array<double, kMaxComplianceRings + 2> sum{}, weights{};
+  std::array<double, law::kMaxComplianceRings + 2> sum{}, weights{};
   const Vec3& n = frame_[slot].axis[0];
   for (std::uint32_t i = 0; i < skin_.size(); ++i) {
     const double rho_m = norm(body_.node_m[skin_[i]] - body_.node_m[vertex]);
@@ -142,7 +143,7 @@ void Condenser::read_rings(std::size_t slot, std::uint32_t vertex, std::span<flo
   }
 }
 
-std::optional<Error> Condenser::run(ComplianceMap& map) {
+std::optional<Error> Condenser::run(tissue::ComplianceMap& map) {
   const auto stopped = [] { return Error{"condensation: stopped"}; };
   const auto count = static_cast<std::uint32_t>(surface_.vertex_m.size());
   for (std::uint32_t first = 0; first < count; first += kVerticesAtOnce) {
@@ -164,8 +165,8 @@ std::optional<Error> Condenser::run(ComplianceMap& map) {
 
 }  // namespace
 
-Result<ComplianceMap> condense(const TetMesh& body, const SurfaceView& surface,
-                               const CondensationSettings& settings) {
+Result<tissue::ComplianceMap> condense(const TetMesh& body, const contact::SurfaceView& surface,
+                                       const CondensationSettings& settings) {
   if (const char* fault = first_fault(body, surface, settings))
     return Error{std::string("condensation: ") + fault};
   if (settings.progress && !settings.progress(0, surface.vertex_m.size()))
@@ -179,13 +180,13 @@ Result<ComplianceMap> condense(const TetMesh& body, const SurfaceView& surface,
   auto solver = make_linear_solver(body, {1.0, settings.poisson_ratio}, fixed);
   if (!solver) return solver.error();
   const std::size_t n = surface.vertex_m.size();
-  ComplianceMap map{.poisson_ratio = settings.poisson_ratio,
-                    .patch_radius_m = settings.patch_radius_m,
-                    .ring_pitch_m = settings.ring_pitch_m,
-                    .rings = settings.rings,
-                    .fixed_min_m = settings.fixed_min_m,
-                    .fixed_max_m = settings.fixed_max_m,
-                    .mesh_hash = surface_hash(surface)};
+  tissue::ComplianceMap map{.poisson_ratio = settings.poisson_ratio,
+                            .patch_radius_m = settings.patch_radius_m,
+                            .ring_pitch_m = settings.ring_pitch_m,
+                            .rings = settings.rings,
+                            .fixed_min_m = settings.fixed_min_m,
+                            .fixed_max_m = settings.fixed_max_m,
+                            .mesh_hash = scene::surface_hash(surface)};
   map.regular_times_E_per_m.resize(n);
   map.sideways_times_E_per_m.resize(n);
   map.ring_times_E_per_m.resize(n * settings.rings);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // condensation.h - the linear elastic organ reduced to what its surface tells a tool:
 // ComplianceMap.
 //
@@ -17,10 +18,10 @@
 
 #include <functional>
 
-#include "model/compliance_map.h"
 #include "model/fem/tet_mesh.h"
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 #include "model/result.h"
+#include "model/tissue/compliance_map.h"
 
 namespace tact::model::fem {
 
@@ -35,7 +36,7 @@ struct CondensationSettings {
 };
 
 /// `body` fills `surface`: its first nodes are the surface's vertices, in order.
-Result<ComplianceMap> condense(const TetMesh& body, const SurfaceView& surface,
-                               const CondensationSettings& settings);
+Result<tissue::ComplianceMap> condense(const TetMesh& body, const contact::SurfaceView& surface,
+                                       const CondensationSettings& settings);
 
 }  // namespace tact::model::fem

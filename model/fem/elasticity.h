@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // elasticity.h - stiffness of an isotropic linear elastic body of quadratic tetrahedra.
 //
 //     K_ai,bj = integral of  lambda N_a,i N_b,j + mu (N_a,j N_b,i + delta_ij N_a,k N_b,k)  dV

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // hertz_load.h - a smooth patch of pressure on the skin of a body, and what a half-space gives it.
 //
 //     p(rho) = (3 F / (2 pi a0^2)) sqrt(1 - rho^2 / a0^2)        Hertz, rho <= a0

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "model/fem/linear_solver.h"
 
 // MetisSupport uses std::cerr without including it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // linear_solver.h - a linear elastic body, factored once, then solved for any loads: K u = f.
 //
 // Sparse Cholesky K = P' L L' P over the free nodes with a nested-dissection order (METIS). Several

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tet_mesh.h - a body of quadratic tetrahedra: what the reference and the condensation solve on.
 //
 // Ten nodes an element: corners 0-3, then the middles of edges 01, 12, 20, 03, 13, 23 (the order of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The operator's figure in Chromium, moved by the tool alone: is it drawn, does it hold the tool, do
 // its keys work?
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tracked operator in Chromium: does the figure hold the tool through the recorded motion, and
 // what does a person see when the tracker is gone?
 //

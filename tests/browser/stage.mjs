@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // stage.mjs - what the browser tests share: real programs, a real Chromium, sentences that hold or not.
 import { spawn } from "node:child_process";
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
@@ -78,8 +79,9 @@ export async function start_browser() {
 /** What the page tells of itself. */
 export const numbers = (page) => page.evaluate(() => ({ ...window.tact }));
 /** True when the condition holds in time. */
-export const waits = (page, condition, timeout = 20000) =>
-  page.waitForFunction(condition, null, { timeout, polling: 50 }).then(() => true, () => false);
+/** `condition(value)` in the page. */
+export const waits = (page, condition, value = null, timeout = 20000) =>
+  page.waitForFunction(condition, value, { timeout, polling: 50 }).then(() => true, () => false);
 export const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 
 export async function measure_fps(page, seconds) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Real-time code that takes memory: the compiler must refuse it.
 #include "model/rt.h"
 

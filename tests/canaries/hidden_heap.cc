@@ -1,5 +1,6 @@
-// Real-time code that takes memory where the compiler was told to look away: the real-time sanitizer
-// must end it.
+// SPDX-License-Identifier: Apache-2.0
+// Real-time code that takes memory where the compiler was told to look away: the real-time
+// sanitizer must end it.
 #include "model/rt.h"
 
 #pragma clang diagnostic ignored "-Wfunction-effects"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two threads, one plain int: the thread sanitizer must tell.
 #include <thread>
 

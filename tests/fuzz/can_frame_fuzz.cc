@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A frame from the kernel is taken whole or not at all, and comes out as it went in.
 #include "hal/can/can_error.h"
 #include "hal/can/can_frame.h"
@@ -7,21 +8,21 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tact;
   using fuzz::require;
   const fuzz::Bytes input(data, size);
-  const auto frame = hal::unpack_can_frame(input);
-  const auto error = hal::decode_can_error(input);
+  const auto frame = hal::can::unpack_can_frame(input);
+  const auto error = hal::can::decode_can_error(input);
   require(!(frame && error));
   if (frame) {
-    require(frame->id <= hal::kCanLargestId && frame->length <= 8);
+    require(frame->id <= hal::can::kCanLargestId && frame->length <= 8);
     require(frame->payload().size() <= frame->length);
-    const auto packed = hal::pack_can_frame(*frame);
+    const auto packed = hal::can::pack_can_frame(*frame);
     require(packed.has_value());
-    require(hal::unpack_can_frame(*packed) == frame);
-    const hal::CanBits bits = hal::can_bits_on_bus(*frame);
+    require(hal::can::unpack_can_frame(*packed) == frame);
+    const hal::can::CanBits bits = hal::can::can_bits_on_bus(*frame);
     require(bits.least <= bits.exact && bits.exact <= bits.most);
   }
   if (error) {
     require(error->classes != 0);
-    require(hal::can_error_action_name(error->action)[0] != '\0');
+    require(hal::can::can_error_action_name(error->action)[0] != '\0');
     require(error->has_counters || (error->tx_errors == 0 && error->rx_errors == 0));
   }
   return 0;

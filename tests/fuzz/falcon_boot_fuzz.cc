@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whatever a device answers while it is woken, the start ends: ready or given up, in bounded steps,
 // and nothing but the image, the greeting, the speed lock and commands without force is ever sent.
 #include <array>
@@ -9,10 +10,11 @@ namespace {
 
 using namespace tact;
 using fuzz::require;
-using What = hal::FalconBootAction::What;
+using What = hal::falcon::FalconBootAction::What;
 
 constexpr std::array<std::uint8_t, 130> kImage{0xAA, 0x08, 0x01, 0x02};
-constexpr hal::FalconBootSettings kShort{.attempts = 2, .report_tries = 2, .greeting_tries = 3};
+constexpr hal::falcon::FalconBootSettings kShort{
+    .attempts = 2, .report_tries = 2, .greeting_tries = 3};
 constexpr int kMostSteps = 2000;
 
 bool inside_image(fuzz::Bytes bytes) {
@@ -21,12 +23,12 @@ bool inside_image(fuzz::Bytes bytes) {
 }
 
 void check_written(fuzz::Bytes bytes) {
-  require(!bytes.empty() && bytes.size() <= hal::kFalconChunk);
-  if (inside_image(bytes) || std::ranges::equal(bytes, hal::kFalconGreeting) ||
-      std::ranges::equal(bytes, hal::kFalconSpeedLock))
+  require(!bytes.empty() && bytes.size() <= hal::falcon::kFalconChunk);
+  if (inside_image(bytes) || std::ranges::equal(bytes, hal::falcon::kFalconGreeting) ||
+      std::ranges::equal(bytes, hal::falcon::kFalconSpeedLock))
     return;
-  const auto command = hal::decode_falcon_command(bytes);
-  require(command && command->motor == hal::FalconWords{});
+  const auto command = hal::falcon::decode_falcon_command(bytes);
+  require(command && command->motor == hal::falcon::FalconWords{});
 }
 
 }  // namespace
@@ -34,10 +36,10 @@ void check_written(fuzz::Bytes bytes) {
 // Each step takes one byte that says what comes of an action, and for a read its bytes.
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::Bytes input(data, size);
-  hal::FalconBoot boot(kImage, kShort);
-  hal::FalconBootInput heard;
+  hal::falcon::FalconBoot boot(kImage, kShort);
+  hal::falcon::FalconBootInput heard;
   for (int step = 0; step < kMostSteps; ++step) {
-    const hal::FalconBootAction action = boot.next(heard);
+    const hal::falcon::FalconBootAction action = boot.next(heard);
     if (action.what == What::kReady || action.what == What::kGiveUp) return 0;
     if (action.what == What::kWrite) check_written(action.bytes);
     const fuzz::Bytes told = fuzz::take(input, 1);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fuzz.h - what every fuzzer shares: bytes from anywhere, and rules that must hold.
 //
 // A fuzzer is tests/fuzz/NAME_fuzz.cc with libFuzzer's entry point; its corpus, the inputs that

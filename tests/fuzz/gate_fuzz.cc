@@ -1,5 +1,6 @@
-// Whatever is wanted, sampled and commanded, tick after tick, the gate keeps every rule of gate.h in
-// every setting of gate_settings.h.
+// SPDX-License-Identifier: Apache-2.0
+// Whatever is wanted, sampled and commanded, tick after tick, the gate keeps every rule of gate.h
+// in every setting of gate_settings.h.
 //
 // A tick takes a byte that says what changes: 1 the armed level turns, 2 no fresh sample, 4 periods
 // are skipped, 8 the tool flees with the force as fast as it may; the upper four bits choose a
@@ -8,7 +9,7 @@
 #include <cstring>
 
 #include "tests/fuzz/fuzz.h"
-#include "tests/gate_rules.h"
+#include "tests/support/gate_rules.h"
 
 namespace {
 
@@ -25,7 +26,7 @@ class Story {
 
   tests::RuleTick next(fuzz::Bytes& input, const model::Wrench& written) {
     const std::uint8_t what = fuzz::take(input, 1)[0];
-    firmware::GateInput& gate = tick_.gate;
+    firmware::gate::GateInput& gate = tick_.gate;
     if ((what & 1) != 0) gate.armed = !gate.armed;
     gate.fresh = (what & 2) == 0;
     gate.skipped_periods = (what & 4) != 0 ? what >> 4 : 0;

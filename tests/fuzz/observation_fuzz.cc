@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes of a tracker are an observation that keeps its promises, or one sentence.
 #include <cmath>
 #include <string_view>
@@ -8,16 +9,18 @@
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tact;
   using fuzz::require;
-  host::Observation seen;
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  const std::string wrong = host::parse_observation(bytes, seen);
-  if (!wrong.empty()) {
-    require(wrong.find('\n') == wrong.npos && seen == host::Observation{});
+  const model::Result<host::tracking::Observation> read = host::tracking::parse_observation(bytes);
+  if (!read) {
+    const std::string& sentence = read.error().sentence;
+    require(!sentence.empty() && sentence.find('\n') == sentence.npos);
     return 0;
   }
-  require(size <= host::kMaxObservationBytes && std::isfinite(seen.time_s));
-  require(host::is_tracking_name(seen.camera) && host::is_tracking_name(seen.body));
-  require(seen.points.size() <= host::kMaxMarkers);
+  const host::tracking::Observation& seen = *read;
+  require(size <= host::tracking::kMaxObservationBytes && std::isfinite(seen.time_s));
+  require(host::tracking::is_tracking_name(seen.camera) &&
+          host::tracking::is_tracking_name(seen.body));
+  require(seen.points.size() <= host::tracking::kMaxMarkers);
   for (std::size_t i = 0; i < seen.points.size(); ++i) {
     require(seen.points[i].pixel_px.allFinite());
     for (std::size_t k = 0; k < i; ++k) require(seen.points[i].id != seen.points[k].id);

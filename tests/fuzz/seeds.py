@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes the first inputs of every fuzzer from the published vectors: seeds.py VECTORS CORPUS."""
 import hashlib
 import json

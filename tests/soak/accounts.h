@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // accounts.h - what the written wrench has given and how far it has warmed, from the records alone:
 // nothing that the gate says of itself is asked.
 #pragma once

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // tact-soak: a day at the device in simulated time, as fast as the CPU allows.
 //
 // The whole controller with the simulated delta and its safety lines: random strokes, faults,
 // stops, late ticks and operators by a seed; after each tick its promises are checked: force,
 // torque, their slew, power, energy and RMS by accounts of its own (accounts.h), states, latching,
-// the grid. A quarter as many ticks follow with narrower limits, so that every stage of the gate has
-// its say. The same seed gives the same hashes with every compiler.
+// the grid. A quarter as many ticks follow with narrower limits, so that every stage of the gate
+// has its say. The same seed gives the same hashes with every compiler.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -14,12 +15,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "firmware/alloc_counter.h"
-#include "firmware/loop_parts.h"
-#include "firmware/replay.h"
-#include "firmware/rt_loop.h"
-#include "firmware/rt_setup.h"
-#include "model/tissue.h"
+#include "firmware/loop/alloc_counter.h"
+#include "firmware/loop/rt_loop.h"
+#include "firmware/pc/rt_setup.h"
+#include "firmware/run/loop_parts.h"
+#include "firmware/run/replay.h"
+#include "firmware/telemetry/force_hash.h"
+#include "model/scene/tissue.h"
 #include "tests/soak/mischief.h"
 #include "tests/soak/promises.h"
 
@@ -32,9 +34,9 @@ struct Outcome {
   std::uint64_t ticks = 0, skipped = 0, armed_ticks = 0, pushing_ticks = 0, stops = 0;
   std::uint64_t broken = 0, heap_calls = 0;
   std::int64_t grown_kB = 0;  // resident memory, from a tenth of the way to the end
-  std::uint64_t force_hash = firmware::kHashStart;
+  std::uint64_t force_hash = model::kFnvStart;
   std::string first;
-  std::array<std::uint64_t, firmware::kStageCount> acted{};  // of the gate's stages
+  std::array<std::uint64_t, firmware::gate::kStageCount> acted{};  // of the gate's stages
 };
 
 // So that the hand reaches them all the time: the tissue alone asks for less than the scene allows.
@@ -56,41 +58,44 @@ std::int64_t resident_kB() {
   return resident * (sysconf(_SC_PAGESIZE) / 1024);
 }
 
-void count(const firmware::TickRecord& record, firmware::State before, Outcome& outcome) {
-  const firmware::TickOutput& output = record.output;
-  outcome.force_hash = firmware::hash_wrench(outcome.force_hash, output.written);
-  if (output.state == firmware::State::kArmed) ++outcome.armed_ticks;
+void count(const firmware::loop::TickRecord& record, firmware::loop::State before,
+           Outcome& outcome) {
+  const firmware::loop::TickOutput& output = record.output;
+  outcome.force_hash = firmware::telemetry::hash_wrench(outcome.force_hash, output.written);
+  if (output.state == firmware::loop::State::kArmed) ++outcome.armed_ticks;
   if (norm(output.written.force_N) > 0.0) ++outcome.pushing_ticks;
-  if (output.state == firmware::State::kStopped && before != output.state) ++outcome.stops;
+  if (output.state == firmware::loop::State::kStopped && before != output.state) ++outcome.stops;
 }
 
-model::Result<Outcome> soak(const model::Scene& scene, std::uint64_t ticks, std::uint64_t seed) {
-  const auto tissue = model::make_tissue(scene);
+model::Result<Outcome> soak(const model::scene::Scene& scene, std::uint64_t ticks,
+                            std::uint64_t seed) {
+  const auto tissue = model::scene::make_tissue(scene);
   if (!tissue) return tissue.error();
-  auto device = hal::make_sim_delta(scene.device.sim, scene.hand);
+  auto device = hal::sim::make_sim_delta(scene.device.sim, scene.hand);
   if (!device) return device.error();
-  hal::SimLines lines;
-  firmware::SimulatedClock clock;
-  firmware::Requests requests;
-  const auto ring = std::make_unique<firmware::TickRing>();
-  const std::int64_t period_ns = firmware::period_ns(scene);
-  const model::Limits limits = firmware::limits_for(scene.limits, (*device)->info());
-  const auto controller = std::make_unique<firmware::Controller>(
+  hal::sim::SimLines lines;
+  firmware::loop::SimulatedClock clock;
+  firmware::loop::Requests requests;
+  const auto ring = std::make_unique<firmware::loop::TickRing>();
+  const std::int64_t period_ns = firmware::run::period_ns(scene);
+  const model::Limits limits = firmware::gate::limits_for(scene.limits, (*device)->info());
+  const auto controller = std::make_unique<firmware::loop::Controller>(
       (*tissue)->contact_scene(),
-      firmware::Gate(limits, static_cast<double>(period_ns) * 1e-9, 1.0), firmware::kHardRealTime);
-  firmware::RtLoop loop({.period_ns = period_ns}, **device, lines, *controller, clock, requests,
-                        *ring);
+      firmware::gate::Gate(limits, static_cast<double>(period_ns) * 1e-9, 1.0),
+      firmware::loop::kHardRealTime);
+  firmware::loop::RtLoop loop({.period_ns = period_ns}, **device, lines, *controller, clock,
+                              requests, *ring);
   Mischief mischief(seed, scene.hand, period_ns);
   Promises promises(limits, period_ns);
   Outcome outcome;
-  firmware::State state = firmware::State::kOff;
-  firmware::TickRecord record;
+  firmware::loop::State state = firmware::loop::State::kOff;
+  firmware::loop::TickRecord record;
   std::int64_t early_kB = 0;
-  firmware::flush_denormals();
+  firmware::pc::flush_denormals();
   for (; outcome.ticks < ticks && !interrupted.load(); ++outcome.ticks) {
-    mischief.step(**device, lines, clock, requests, state == firmware::State::kStopped);
+    mischief.step(**device, lines, clock, requests, state == firmware::loop::State::kStopped);
     {
-      const firmware::HeapWatch heap;
+      const firmware::loop::HeapWatch heap;
       loop.step();
       outcome.heap_calls += heap.calls();
     }
@@ -114,8 +119,8 @@ model::Result<Outcome> soak(const model::Scene& scene, std::uint64_t ticks, std:
 
 nlohmann::ordered_json stages_json(const Outcome& outcome) {
   nlohmann::ordered_json stages;
-  for (std::size_t i = 0; i < firmware::kStageCount; ++i)
-    stages[firmware::kStageName[i]] = outcome.acted[i];
+  for (std::size_t i = 0; i < firmware::gate::kStageCount; ++i)
+    stages[firmware::gate::kStageName[i]] = outcome.acted[i];
   return stages;
 }
 
@@ -138,13 +143,14 @@ nlohmann::ordered_json to_json(const Outcome& outcome, std::uint64_t seed) {
 std::string complaint(const Outcome& outcome, bool every_stage) {
   constexpr std::int64_t kPageNoise_kB = 256;
   if (outcome.broken != 0) return fmt::format("{} broken, first {}", outcome.broken, outcome.first);
-  if (firmware::can_count_heap_calls() && outcome.heap_calls != 0)
+  if (firmware::loop::can_count_heap_calls() && outcome.heap_calls != 0)
     return fmt::format("{} heap calls in the loop", outcome.heap_calls);
-  if (!firmware::is_sanitized() && outcome.grown_kB > kPageNoise_kB)
+  if (!firmware::loop::is_sanitized() && outcome.grown_kB > kPageNoise_kB)
     return fmt::format("resident memory grew by {} kB", outcome.grown_kB);
-  for (std::size_t i = 0; i < firmware::kStageCount; ++i)
+  for (std::size_t i = 0; i < firmware::gate::kStageCount; ++i)
     if (every_stage && outcome.acted[i] == 0)
-      return fmt::format("the stage {} never acted: it proves nothing", firmware::kStageName[i]);
+      return fmt::format("the stage {} never acted: it proves nothing",
+                         firmware::gate::kStageName[i]);
   if (outcome.pushing_ticks < outcome.ticks / 10 || outcome.stops == 0 || outcome.skipped == 0)
     return fmt::format("{} of {} ticks pushed, {} stops, {} skipped: it proves nothing",
                        outcome.pushing_ticks, outcome.ticks, outcome.stops, outcome.skipped);
@@ -153,7 +159,7 @@ std::string complaint(const Outcome& outcome, bool every_stage) {
 
 model::Result<Outcome> soak_with(const std::vector<std::string>& limits, const std::string& path,
                                  std::uint64_t ticks, std::uint64_t seed) {
-  const auto scene = model::load_scene(path, limits);
+  const auto scene = model::scene::load_scene(path, limits);
   if (!scene) return scene.error();
   return soak(*scene, ticks, seed);
 }

@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/soak/mischief.h"
 
 namespace tact::soak {
 
-void Mischief::step(hal::SimDelta& device, hal::SimLines& lines, firmware::SimulatedClock& clock,
-                    firmware::Requests& requests, bool stopped) {
+void Mischief::step(hal::sim::SimDelta& device, hal::sim::SimLines& lines,
+                    firmware::loop::SimulatedClock& clock, firmware::loop::Requests& requests,
+                    bool stopped) {
   move_hand(device);
   spoil_device(device);
   pull_wires(lines);
@@ -12,11 +14,11 @@ void Mischief::step(hal::SimDelta& device, hal::SimLines& lines, firmware::Simul
 }
 
 // Mostly into the tissue and along it, sometimes to where the device itself gives way.
-void Mischief::move_hand(hal::SimDelta& device) {
+void Mischief::move_hand(hal::sim::SimDelta& device) {
   if (--hand_ticks_ > 0) return;
   hand_ticks_ = ticks_between(20, 1500);
   const double reach_m = happens(0.05) ? 0.20 : 0.03;
-  hal::HandTarget target;
+  hal::sim::HandTarget target;
   target.position_m[0] = home_m_.x + between(-reach_m, reach_m);
   target.position_m[1] = home_m_.y + between(-reach_m, reach_m);
   target.position_m[2] = between(-0.03, 0.02);
@@ -24,8 +26,8 @@ void Mischief::move_hand(hal::SimDelta& device) {
   device.hand_targets().write(target);
 }
 
-void Mischief::spoil_device(hal::SimDelta& device) {
-  hal::SimFaults& faults = device.faults();
+void Mischief::spoil_device(hal::sim::SimDelta& device) {
+  hal::sim::SimFaults& faults = device.faults();
   if (spoilt_ticks_ > 0 && --spoilt_ticks_ == 0) {
     faults.nan_sample.store(false);
     faults.device.store(model::Fault::kNone);
@@ -39,8 +41,8 @@ void Mischief::spoil_device(hal::SimDelta& device) {
     faults.device.store(model::Fault::kDeviceFailed);
 }
 
-void Mischief::pull_wires(hal::SimLines& lines) {
-  hal::SimLines::Inputs& inputs = lines.inputs();
+void Mischief::pull_wires(hal::sim::SimLines& lines) {
+  hal::sim::SimLines::Inputs& inputs = lines.inputs();
   if (wire_ticks_ > 0 && --wire_ticks_ == 0) {
     inputs.estop_a.store(true);
     inputs.estop_b.store(true);
@@ -57,7 +59,7 @@ void Mischief::pull_wires(hal::SimLines& lines) {
 }
 
 // Resets and arms when it has stopped, and sometimes presses what it should not.
-void Mischief::operate(firmware::Requests& requests, bool stopped) {
+void Mischief::operate(firmware::loop::Requests& requests, bool stopped) {
   if (happens(1e-4)) requests.arm.store(happens(0.5));
   if (happens(1e-4)) requests.reset.store(happens(0.5));
   if (!stopped && requests.arm.load() && !requests.reset.load()) return;

@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 // mischief.h - what hands, devices, wires, clocks and operators do in a day, by chance with a seed.
 #pragma once
 
 #include <cstdint>
 
-#include "firmware/rt_loop.h"
+#include "firmware/loop/rt_loop.h"
 #include "hal/sim/sim_delta.h"
 #include "hal/sim/sim_lines.h"
-#include "model/scene.h"
+#include "model/scene/scene.h"
 #include "tools/stability/random.h"
 
 namespace tact::soak {
@@ -14,22 +15,23 @@ namespace tact::soak {
 /// Steps once before each tick. Rates are per tick; the same seed does the same.
 class Mischief {
  public:
-  Mischief(std::uint64_t seed, const model::HandSettings& hand, std::int64_t period_ns)
+  Mischief(std::uint64_t seed, const model::contact::HandSettings& hand, std::int64_t period_ns)
       : chance_(seed), home_m_(hand.path.front().position_m), period_ns_(period_ns) {}
 
-  void step(hal::SimDelta& device, hal::SimLines& lines, firmware::SimulatedClock& clock,
-            firmware::Requests& requests, bool stopped);
+  void step(hal::sim::SimDelta& device, hal::sim::SimLines& lines,
+            firmware::loop::SimulatedClock& clock, firmware::loop::Requests& requests,
+            bool stopped);
 
  private:
   bool happens(double rate) { return chance_.uniform() < rate; }
   double between(double low, double high) { return low + (high - low) * chance_.uniform(); }
   int ticks_between(int low, int high) { return static_cast<int>(between(low, high)); }
-  void move_hand(hal::SimDelta& device);
-  void spoil_device(hal::SimDelta& device);
-  void pull_wires(hal::SimLines& lines);
-  void operate(firmware::Requests& requests, bool stopped);
+  void move_hand(hal::sim::SimDelta& device);
+  void spoil_device(hal::sim::SimDelta& device);
+  void pull_wires(hal::sim::SimLines& lines);
+  void operate(firmware::loop::Requests& requests, bool stopped);
 
-  tools::Random chance_;
+  tools::stability::Random chance_;
   model::Vec3 home_m_;
   std::int64_t period_ns_;
   int hand_ticks_ = 0, spoilt_ticks_ = 0, wire_ticks_ = 0, operator_ticks_ = 0;

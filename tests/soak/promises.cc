@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/soak/promises.h"
 
 #include <fmt/format.h>
@@ -7,7 +8,7 @@
 
 namespace tact::soak {
 
-using firmware::State;
+using firmware::loop::State;
 using model::Fault;
 
 namespace {
@@ -17,7 +18,7 @@ constexpr double kSum = 1.0 + 1e-9;    // of many
 
 }  // namespace
 
-void Promises::check(const firmware::TickRecord& record) {
+void Promises::check(const firmware::loop::TickRecord& record) {
   if (!begun_) first_due_ns_ = record.due_ns;
   const auto periods = static_cast<std::int64_t>(record.tick + record.skipped_ticks);
   expect(record.due_ns == first_due_ns_ + periods * period_ns_, "the grid never shifts",
@@ -31,7 +32,7 @@ void Promises::check(const firmware::TickRecord& record) {
   begun_ = true;
 }
 
-void Promises::check_force(const firmware::TickRecord& record) {
+void Promises::check_force(const firmware::loop::TickRecord& record) {
   const model::Wrench& written = record.output.written;
   expect(is_finite(written.force_N) && is_finite(written.torque_Nm), "forces are numbers",
          record.tick);
@@ -52,12 +53,12 @@ void Promises::check_force(const firmware::TickRecord& record) {
   expect(power_W <= limits_.power_W * kHair, "F . v + T . w <= power_W", record.tick);
 }
 
-double Promises::passed_s(const firmware::TickRecord& record) const {
+double Promises::passed_s(const firmware::loop::TickRecord& record) const {
   return (1.0 + record.input.skipped_periods) * static_cast<double>(period_ns_) * 1e-9;
 }
 
 // What was written in the tick before was held until now.
-void Promises::account(const firmware::TickRecord& record) {
+void Promises::account(const firmware::loop::TickRecord& record) {
   const model::Wrench& held = before_.output.written;
   const double share = std::min(passed_s(record) / limits_.thermal_time_s, 1.0);
   energy_.add(held, passed_s(record), record.input.sample, limits_.recovery_W);
@@ -65,7 +66,7 @@ void Promises::account(const firmware::TickRecord& record) {
   torque_heat_.add(held.torque_Nm, share);
 }
 
-void Promises::check_energy(const firmware::TickRecord& record) {
+void Promises::check_energy(const firmware::loop::TickRecord& record) {
   constexpr double kRounding_J = 1e-8;
   if (record.output.state != State::kArmed) return energy_.start_anew();
   expect(
@@ -77,7 +78,7 @@ void Promises::check_energy(const firmware::TickRecord& record) {
 
 // A force that was held for longer than the gate could know warms more than it allowed, until it is
 // disarmed and cold again.
-void Promises::check_heat(const firmware::TickRecord& record) {
+void Promises::check_heat(const firmware::loop::TickRecord& record) {
   const double continuous_N = std::min(limits_.continuous_force_N, limits_.force_N);
   const double continuous_Nm = continuous_N * limits_.torque_Nm / limits_.force_N;
   const bool warm = heat_.rms() > continuous_N * kSum;
@@ -97,7 +98,7 @@ void Promises::check_heat(const firmware::TickRecord& record) {
          "RMS after a late tick", record.tick);
 }
 
-void Promises::check_state(const firmware::TickRecord& record) {
+void Promises::check_state(const firmware::loop::TickRecord& record) {
   const State was = before_.output.state, is = record.output.state;
   expect(was != State::kStopped || is == State::kStopped || is == State::kReady,
          "a stop is left to ready alone", record.tick);

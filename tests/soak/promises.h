@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 // promises.h - what must be true after each tick, whatever came in.
 #pragma once
 
 #include <cstdint>
 #include <string>
 
-#include "firmware/tick_record.h"
-#include "model/scene.h"
+#include "firmware/loop/tick_record.h"
+#include "model/scene/scene.h"
 #include "tests/soak/accounts.h"
 
 namespace tact::soak {
@@ -16,7 +17,7 @@ class Promises {
   Promises(const model::Limits& limits, std::int64_t period_ns)
       : limits_(limits), period_ns_(period_ns) {}
 
-  void check(const firmware::TickRecord& record);
+  void check(const firmware::loop::TickRecord& record);
 
   std::uint64_t broken() const { return broken_; }
   /// The first one that broke, with its tick; empty when all were kept.
@@ -24,17 +25,17 @@ class Promises {
 
  private:
   void expect(bool kept, const char* promise, std::uint64_t tick);
-  void check_force(const firmware::TickRecord& record);
-  double passed_s(const firmware::TickRecord& record) const;  // since the write before
-  void account(const firmware::TickRecord& record);
-  void check_energy(const firmware::TickRecord& record);
-  void check_heat(const firmware::TickRecord& record);
-  void check_state(const firmware::TickRecord& record);
+  void check_force(const firmware::loop::TickRecord& record);
+  double passed_s(const firmware::loop::TickRecord& record) const;  // since the write before
+  void account(const firmware::loop::TickRecord& record);
+  void check_energy(const firmware::loop::TickRecord& record);
+  void check_heat(const firmware::loop::TickRecord& record);
+  void check_state(const firmware::loop::TickRecord& record);
 
   model::Limits limits_;
   std::int64_t period_ns_;
   std::int64_t first_due_ns_ = 0;
-  firmware::TickRecord before_{};
+  firmware::loop::TickRecord before_{};
   EnergyAccount energy_;  // since it was armed
   HeatAccount heat_, torque_heat_;
   bool begun_ = false;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tact-calibrate: what a device's motor commands are worth, from weights hung on it.
 #include <fmt/format.h>
 #include <poll.h>
@@ -7,20 +8,20 @@
 #include <iostream>
 #include <vector>
 
-#include "firmware/clock.h"
+#include "firmware/loop/clock.h"
 #include "hal/falcon/falcon_balance.h"
 #include "hal/falcon/falcon_calibration.h"
-#include "hal/falcon/falcon_device.h"
-#include "tools/common/program.h"
+#include "hal/falcon_usb/falcon_open.h"
+#include "tools/program/program.h"
 
 namespace {
 
 using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
-using tact::firmware::MonotonicClock;
-using tact::hal::FalconBalance;
-using tact::hal::FalconBalanceRamp;
-using tact::hal::FalconDevice;
+using tact::firmware::loop::MonotonicClock;
 using tact::hal::Sample;
+using tact::hal::falcon::FalconBalance;
+using tact::hal::falcon::FalconBalanceRamp;
+using tact::hal::falcon::FalconDevice;
 using tact::model::Error;
 using tact::model::Fault;
 using tact::model::Result;
@@ -30,7 +31,7 @@ constexpr int kMostMissed = 20;  // samples in a row
 
 struct Options {
   std::string device;
-  SceneArguments scene;
+  program::SceneArguments scene;
   std::vector<double> masses_kg{0.05, 0.1, 0.2, 0.3};
   int poses = 3;
 };
@@ -59,7 +60,7 @@ Fault run(FalconDevice& device, Sample& sample, Tick tick) {
     due_ns += kPeriod_ns;
     fault = device.read(sample, clock.now_ns());
     double up_N = 0.0;
-    more = tick(up_N) && !is_interrupted();
+    more = tick(up_N) && !program::is_interrupted();
     const Fault written = device.write({.force_N = {0.0, 0.0, more ? up_N : 0.0}, .torque_Nm = {}});
     if (fault == Fault::kNone) fault = written;
   }
@@ -75,7 +76,7 @@ void ask(const std::string& question) {
 /// True for "yes", false for anything else, and for Ctrl-C.
 bool read_yes() {
   std::string answer;
-  return std::getline(std::cin, answer) && !is_interrupted() && answer == "yes";
+  return std::getline(std::cin, answer) && !program::is_interrupted() && answer == "yes";
 }
 
 /// Meanwhile the device is asked on, without force: one that is left alone stops answering.
@@ -133,7 +134,7 @@ Result<std::vector<FalconBalance>> measure(FalconDevice& device, const Options& 
                           pose, o.poses, 1000.0 * mass_kg)))
         return Error{device.trouble().empty() ? "not agreed to" : device.trouble()};
       const auto sample = balance(device, mass_kg);
-      if (is_interrupted()) return Error{"interrupted"};
+      if (program::is_interrupted()) return Error{"interrupted"};
       if (!sample) {
         fmt::print("left out: {}\n", sample.error().sentence);
         if (device.trouble().empty()) continue;
@@ -147,24 +148,24 @@ Result<std::vector<FalconBalance>> measure(FalconDevice& device, const Options& 
   return samples;
 }
 
-Result<tact::hal::FalconCalibration> calibrate(const Options& o,
-                                               tact::model::FalconSettings settings) {
+Result<tact::hal::falcon::FalconCalibration> calibrate(const Options& o,
+                                                       tact::model::FalconSettings settings) {
   settings.moving_mass_kg = 0.0;  // the words shall be those of the load alone
   settings.dead_band_words = {};
-  auto device = tact::hal::open_falcon_device(settings);
+  auto device = tact::hal::falcon_usb::open_falcon_device(settings);
   if (!device) return device.error();
   if (auto error = home(**device)) return std::move(*error);
   const auto samples = measure(**device, o);
   (*device)->stop();
   if (!samples) return samples.error();
-  return tact::hal::fit_falcon(*samples);
+  return tact::hal::falcon::fit_falcon(*samples);
 }
 
 }  // namespace
 
 // The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
-  Program program(
+  program::Program program(
       "tact-calibrate",
       "Find what a Falcon's motor words are worth: hang known masses on its grip at several\n"
       "poses; prints the lines of [device.falcon] to paste into the scene.",
@@ -182,6 +183,6 @@ int main(int argc, char** argv) {
   const auto found = calibrate(o, scene->device.falcon);
   if (!found) return program.fail(found.error(), "no force is left");
   fmt::print("\n# {} masses at {} poses; the fit leaves {:.0f} words\n{}", o.masses_kg.size(),
-             o.poses, found->residual_words, tact::hal::scene_lines(*found));
+             o.poses, found->residual_words, tact::hal::falcon::scene_lines(*found));
   return 0;
 }

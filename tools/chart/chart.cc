@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/chart/chart.h"
 
 #include <fmt/format.h>
@@ -6,14 +7,14 @@
 #include <limits>
 
 #include "tools/chart/chart_peers.h"
-#include "tools/common/run_program.h"
+#include "tools/program/run_program.h"
 
-namespace tact::tools {
+namespace tact::tools::chart {
 namespace {
 
 using model::Error;
 using model::Result;
-using model::Scene;
+using model::scene::Scene;
 
 struct Made {
   ChartRow row;
@@ -32,7 +33,8 @@ Result<std::unique_ptr<Subject>> make_subject(const Scene& scene, const Variant&
   return make_law_subject(scene, variant.sizes);
 }
 
-/// Judged without relaxation, as the reference is elastic; timed as the scene has it.
+/// Judged without relaxation and at small strain, as the reference is linear elastic; timed with
+/// the scene's relaxation.
 Made make_and_judge(const Scene& scene, const Scene& elastic, const Variant& variant,
                     const std::vector<ProbeCase>& cases, double pitch_m) {
   Made made{.row = {.variant = variant}, .subject = nullptr};
@@ -57,7 +59,8 @@ Made make_and_judge(const Scene& scene, const Scene& elastic, const Variant& var
   return made;
 }
 
-std::vector<SpeedAndError> points_of(const Table& table, const std::vector<std::size_t>& rows) {
+std::vector<SpeedAndError> points_of(const report::Table& table,
+                                     const std::vector<std::size_t>& rows) {
   std::vector<SpeedAndError> out;
   out.reserve(rows.size());
   for (const std::size_t i : rows)
@@ -66,7 +69,7 @@ std::vector<SpeedAndError> points_of(const Table& table, const std::vector<std::
   return out;
 }
 
-std::vector<std::size_t> rows_of(const Table& table, const std::string& kind) {
+std::vector<std::size_t> rows_of(const report::Table& table, const std::string& kind) {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < table.rows().size(); ++i)
     if (table.word(table.rows()[i], "kind") == kind) out.push_back(i);
@@ -75,7 +78,8 @@ std::vector<std::size_t> rows_of(const Table& table, const std::string& kind) {
 
 }  // namespace
 
-Result<std::vector<ChartRow>> measure_chart(const Scene& scene, const ReferenceData& reference,
+Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
+                                            const ground_truth::ReferenceData& reference,
                                             const ChartOptions& options) {
   const auto cases = cases_of(scene, reference);
   if (!cases) return cases.error();
@@ -87,30 +91,34 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene, const ReferenceD
                     scene.path)};
   Scene elastic = scene;
   elastic.relaxation.clear();
+  elastic.compliance.large_strain = false;
   std::vector<Made> made(variants.size());
-  const SweepOptions sweep_options{.label = options.label + ", accuracy", .shard = options.shard};
+  const program::SweepOptions sweep_options{.label = options.label + ", accuracy",
+                                            .shard = options.shard};
   const bool judged = run_jobs(variants.size(), sweep_options, [&](std::size_t job) {
     made[job] = make_and_judge(scene, elastic, variants[job], *cases, reference.ring_pitch_m);
   });
-  if (!judged) return interruption();
+  if (!judged) return program::interruption();
   const auto path = moving_probe(scene, cases->front());
-  const SweepOptions one_by_one{
+  const program::SweepOptions one_by_one{
       .label = options.label + ", time", .shard = options.shard, .threads = 1};
   const bool timed = run_jobs(variants.size(), one_by_one, [&](std::size_t job) {
     if (!made[job].subject) return;
     made[job].row.timing = measure_time(*made[job].subject, path, options.timing);
     made[job].subject.reset();
   });
-  if (!timed) return interruption();
+  if (!timed) return program::interruption();
   std::vector<ChartRow> rows;
   for (std::size_t job = options.shard.index; job < made.size(); job += options.shard.count)
     rows.push_back(std::move(made[job].row));
   return rows;
 }
 
-Table empty_chart(std::size_t variants, const Shard& shard) {
-  const auto word = [](const char* name) { return Column{name, CellKind::kWord}; };
-  const auto number = [](const char* name) { return Column{name, CellKind::kNumber}; };
+report::Table empty_chart(std::size_t variants, const program::Shard& shard) {
+  const auto word = [](const char* name) { return report::Column{name, report::CellKind::kWord}; };
+  const auto number = [](const char* name) {
+    return report::Column{name, report::CellKind::kNumber};
+  };
   return {"chart",
           {word("kind"),
            word("family"),
@@ -148,45 +156,46 @@ Table empty_chart(std::size_t variants, const Shard& shard) {
           shard};
 }
 
-Row table_row(const ChartRow& row, const Provenance& provenance) {
-  const model::LawSizes& sizes = row.variant.sizes;
+report::Row table_row(const ChartRow& row, const Provenance& provenance) {
+  const model::scene::LawSizes& sizes = row.variant.sizes;
   const bool measured = row.failure.empty();
   const auto number = [&](auto value) {
-    return Cell(measured ? static_cast<double>(value) : std::numeric_limits<double>::quiet_NaN());
+    return report::Cell(measured ? static_cast<double>(value)
+                                 : std::numeric_limits<double>::quiet_NaN());
   };
-  const auto count = [](std::size_t value) { return Cell(static_cast<double>(value)); };
+  const auto count = [](std::size_t value) { return report::Cell(static_cast<double>(value)); };
   const ErrorSummary& e = row.errors;
-  const char* form = !sizes.disc_form                               ? "-"
-                     : *sizes.disc_form == model::DiscForm::kLinear ? "linear"
-                                                                    : "almen-laszlo";
+  const char* form = !sizes.disc_form                                    ? "-"
+                     : *sizes.disc_form == model::law::DiscForm::kLinear ? "linear"
+                                                                         : "almen-laszlo";
   const auto or_dash = [](const std::string& text) {
-    return Cell(text.empty() ? "-" : without_commas(text));
+    return report::Cell(text.empty() ? "-" : without_commas(text));
   };
-  return {Cell(row.variant.is_peer() ? "peer" : "tact"),
-          Cell(row.variant.family()),
-          Cell(row.variant.size()),
-          Cell(form),
+  return {report::Cell(row.variant.is_peer() ? "peer" : "tact"),
+          report::Cell(row.variant.family()),
+          report::Cell(row.variant.size()),
+          report::Cell(form),
           count(sizes.table_knots),
           count(sizes.layers),
           count(sizes.rings),
           count(sizes.nodes),
           count(sizes.curves),
-          number(e.force_rms),
-          number(e.force_worst),
-          number(e.press_rms),
-          number(e.pull_rms),
-          number(e.held_out_rms),
-          number(e.worst_site_rms),
-          number(e.within_jnd),
-          number(e.shape_rms),
-          number(e.shape_worst),
+          number(e.force_rms_ratio),
+          number(e.force_worst_ratio),
+          number(e.press_rms_ratio),
+          number(e.pull_rms_ratio),
+          number(e.held_out_rms_ratio),
+          number(e.worst_site_rms_ratio),
+          number(e.within_jnd_ratio),
+          number(e.shape_rms_ratio),
+          number(e.shape_worst_ratio),
           number(e.cases),
           number(row.settle_ticks),
           number(row.memory_bytes),
           or_dash(row.given),
           or_dash(row.failure),
-          Cell(provenance.scene_hash),
-          Cell(provenance.reference_hash),
+          report::Cell(provenance.scene_hash),
+          report::Cell(provenance.reference_hash),
           or_dash(provenance.revision),
           or_dash(provenance.machine),
           number(row.timing.median_us),
@@ -196,7 +205,7 @@ Row table_row(const ChartRow& row, const Provenance& provenance) {
           number(row.timing.paused)};
 }
 
-std::vector<std::size_t> front_rows(const Table& table) {
+std::vector<std::size_t> front_rows(const report::Table& table) {
   const auto rows = rows_of(table, "tact");
   const auto points = points_of(table, rows);
   const auto front = front_of(points);
@@ -210,7 +219,7 @@ std::vector<std::size_t> front_rows(const Table& table) {
   return out;
 }
 
-std::vector<std::size_t> peers_ahead(const Table& table) {
+std::vector<std::size_t> peers_ahead(const report::Table& table) {
   const auto laws = points_of(table, rows_of(table, "tact"));
   const auto front = front_of(laws);
   const auto peers = rows_of(table, "peer");
@@ -225,4 +234,4 @@ std::vector<std::size_t> peers_ahead(const Table& table) {
   return out;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

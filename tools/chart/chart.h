@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // chart.h - speed against accuracy: one row for every law and size of a scene, and for the peers.
 //
 // First all rows are made and judged on all cores, then timed one after the other, so that they do
@@ -11,10 +12,10 @@
 
 #include "tools/chart/measure.h"
 #include "tools/chart/variants.h"
-#include "tools/common/sweep.h"
-#include "tools/common/table.h"
+#include "tools/program/sweep.h"
+#include "tools/report/table.h"
 
-namespace tact::tools {
+namespace tact::tools::chart {
 
 struct ChartRow {
   Variant variant{};
@@ -34,23 +35,23 @@ struct Provenance {
 struct ChartOptions {
   std::string label = "tact-chart";  // before the progress
   VariantWish wish;
-  Shard shard;
+  program::Shard shard;
   TimingSettings timing;
 };
 
 /// Rows of the shard, in order. An error names what does not fit together, or says that Ctrl-C
 /// ended it.
-model::Result<std::vector<ChartRow>> measure_chart(const model::Scene& scene,
-                                                   const ReferenceData& reference,
+model::Result<std::vector<ChartRow>> measure_chart(const model::scene::Scene& scene,
+                                                   const ground_truth::ReferenceData& reference,
                                                    const ChartOptions& options);
 
 /// A table without rows, for the shard and for merging.
-Table empty_chart(std::size_t variants, const Shard& shard);
-Row table_row(const ChartRow& row, const Provenance& provenance);
+report::Table empty_chart(std::size_t variants, const program::Shard& shard);
+report::Row table_row(const ChartRow& row, const Provenance& provenance);
 /// Of a whole table: the rows on the front of tact's laws, fastest first. Times within 10 % are the
 /// same time: of two such laws the nearer one stays.
-std::vector<std::size_t> front_rows(const Table& table);
+std::vector<std::size_t> front_rows(const report::Table& table);
 /// Peers that beat a law of the front in both, by however little; empty is what tact promises.
-std::vector<std::size_t> peers_ahead(const Table& table);
+std::vector<std::size_t> peers_ahead(const report::Table& table);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/chart/chart_peers.h"
 
 #include <algorithm>
@@ -5,7 +6,7 @@
 
 #include "tools/reference/organ_body.h"
 
-namespace tact::tools {
+namespace tact::tools::chart {
 namespace {
 
 constexpr double kFitDepth_m = 0.005;
@@ -29,11 +30,11 @@ model::Result<std::unique_ptr<Subject>> make_peer(const PeerInput& input, const 
   return model::Error{"no peer"};
 }
 
-std::vector<std::uint32_t> held_vertices(const model::Scene& scene) {
+std::vector<std::uint32_t> held_vertices(const model::scene::Scene& scene) {
   std::vector<std::uint32_t> held;
   if (!scene.elastic) return held;
   const auto& mesh = scene.organ_mesh;
-  const HeldBox box{scene.elastic->fixed_min_m, scene.elastic->fixed_max_m};
+  const reference::HeldBox box{scene.elastic->fixed_min_m, scene.elastic->fixed_max_m};
   const auto is_inside = [&](std::uint32_t v) {
     return box.holds(mesh.vertex_m[v] - scene.organ.position_m);
   };
@@ -62,7 +63,7 @@ std::vector<ProbeCase> fit_cases(const std::vector<ProbeCase>& cases) {
 double mean_force_N(Subject& subject, const std::vector<ProbeCase>& cases) {
   double sum_N = 0.0;
   for (const ProbeCase& c : cases) {
-    sum_N += settle(subject, c.in).force_N;
+    sum_N += settle(subject.is_stepped(), [&] { return subject.tick(c.in); }).force_N;
     subject.release();
   }
   return sum_N / static_cast<double>(std::max<std::size_t>(1, cases.size()));
@@ -74,4 +75,4 @@ double mean_reference_N(const std::vector<ProbeCase>& cases) {
   return sum_N / static_cast<double>(std::max<std::size_t>(1, cases.size()));
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

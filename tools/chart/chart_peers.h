@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // chart_peers.h - other ways to make an organ feel soft, given the same mesh, sites, tip and truth.
 //
 //     fem             the whole organ as quadratic tetrahedra, one solve a tick with a factor made
@@ -16,11 +17,14 @@
 #include "tools/chart/subject.h"
 #include "tools/chart/variants.h"
 
-namespace tact::tools {
+namespace tact::tools::chart {
+
+constexpr double kDensity_kg_per_m3 = 1060.0;
+constexpr double kCoupling_N_per_m = 300.0;  // q, of masses on springs without a patch in the scene
 
 /// What a peer is made of; `scene` and `cases` outlive it.
 struct PeerInput {
-  const model::Scene& scene;
+  const model::scene::Scene& scene;
   const std::vector<ProbeCase>& cases;
 };
 
@@ -33,7 +37,7 @@ model::Result<std::unique_ptr<Subject>> make_bullet_peer(const PeerInput& input,
 model::Result<std::unique_ptr<Subject>> make_peer(const PeerInput& input, const Variant& variant);
 
 /// Vertices of the surface in the box that the scene holds.
-std::vector<std::uint32_t> held_vertices(const model::Scene& scene);
+std::vector<std::uint32_t> held_vertices(const model::scene::Scene& scene);
 
 /// The press nearest to 5 mm of every site, those held out aside: what peers are fitted to.
 std::vector<ProbeCase> fit_cases(const std::vector<ProbeCase>& cases);
@@ -41,4 +45,4 @@ std::vector<ProbeCase> fit_cases(const std::vector<ProbeCase>& cases);
 double mean_force_N(Subject& subject, const std::vector<ProbeCase>& cases);
 double mean_reference_N(const std::vector<ProbeCase>& cases);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

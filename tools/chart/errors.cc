@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/chart/errors.h"
 
 #include <algorithm>
@@ -6,7 +7,9 @@
 #include <map>
 #include <tuple>
 
-namespace tact::tools {
+#include "tools/report/just_noticeable.h"
+
+namespace tact::tools::chart {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -54,29 +57,24 @@ ErrorSummary summarize(std::span<const Sample> samples) {
     (s.depth_m > 0.0 ? press : pull).add(e);
     if (s.held_out) held_out.add(e);
     of_site[s.site].add(e_N / site_peak_N[s.site]);
-    out.force_worst = std::max(out.force_worst, std::abs(e));
-    if (std::abs(e_N) <= kJustNoticeable * std::abs(s.reference_N)) ++felt_right;
+    out.force_worst_ratio = std::max(out.force_worst_ratio, std::abs(e));
+    if (std::abs(e_N) <= report::kJustNoticeable_ratio * std::abs(s.reference_N)) ++felt_right;
     const double u = shape_error(s);
     if (!std::isfinite(u)) continue;
     shape.add(u);
-    out.shape_worst = std::max(out.shape_worst, u);
+    out.shape_worst_ratio = std::max(out.shape_worst_ratio, u);
   }
   for (const auto& [site, rms] : of_site)
-    out.worst_site_rms = std::max(out.worst_site_rms, rms.value());
-  out.force_rms = all.value();
-  out.press_rms = press.value();
-  out.pull_rms = pull.value();
-  out.held_out_rms = held_out.value();
-  out.shape_rms = shape.value();
-  out.within_jnd = samples.empty()
-                       ? kNan
-                       : static_cast<double>(felt_right) / static_cast<double>(samples.size());
+    out.worst_site_rms_ratio = std::max(out.worst_site_rms_ratio, rms.value());
+  out.force_rms_ratio = all.value();
+  out.press_rms_ratio = press.value();
+  out.pull_rms_ratio = pull.value();
+  out.held_out_rms_ratio = held_out.value();
+  out.shape_rms_ratio = shape.value();
+  out.within_jnd_ratio =
+      samples.empty() ? kNan
+                      : static_cast<double>(felt_right) / static_cast<double>(samples.size());
   return out;
-}
-
-bool dominates(const SpeedAndError& a, const SpeedAndError& b) {
-  const bool no_worse = a.tick_us <= b.tick_us && a.error_ratio <= b.error_ratio;
-  return no_worse && (a.tick_us < b.tick_us || a.error_ratio < b.error_ratio);
 }
 
 std::vector<std::size_t> front_of(std::span<const SpeedAndError> points) {
@@ -95,4 +93,4 @@ std::vector<std::size_t> front_of(std::span<const SpeedAndError> points) {
   return front;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

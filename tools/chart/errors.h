@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // errors.h - how far a law is from the reference, in numbers: pure functions over samples.
 //
 //     force   e = F - F_ref;        RMS and worst over sites and depths, of the peak |F_ref|
@@ -5,16 +6,14 @@
 //             worst over the cases
 //
 // Press and pull count alike. A case is felt as right where |e| is at most 7 % of |F_ref|: the
-// least difference of force that a hand can tell (kJustNoticeable).
+// least difference of force that a hand can tell (just_noticeable.h).
 #pragma once
 
 #include <cstddef>
 #include <span>
 #include <vector>
 
-namespace tact::tools {
-
-inline constexpr double kJustNoticeable = 0.07;  // of a force
+namespace tact::tools::chart {
 
 /// One depth at one site.
 struct Sample {
@@ -28,12 +27,12 @@ struct Sample {
 
 struct ErrorSummary {
   std::size_t cases = 0;
-  double force_rms = 0.0, force_worst = 0.0;  // of the peak
-  double press_rms = 0.0, pull_rms = 0.0;     // of the peak; NaN without such a case
-  double held_out_rms = 0.0;                  // of the peak; NaN without such a site
-  double worst_site_rms = 0.0;                // of that site's own peak
-  double within_jnd = 0.0;                    // share of the cases
-  double shape_rms = 0.0, shape_worst = 0.0;  // of the depth
+  double force_rms_ratio = 0.0, force_worst_ratio = 0.0;  // of the peak
+  double press_rms_ratio = 0.0, pull_rms_ratio = 0.0;     // of the peak; NaN without such a case
+  double held_out_rms_ratio = 0.0;                        // of the peak; NaN without such a site
+  double worst_site_rms_ratio = 0.0;                      // of that site's own peak
+  double within_jnd_ratio = 0.0;                          // share of the cases
+  double shape_rms_ratio = 0.0, shape_worst_ratio = 0.0;  // of the depth
 };
 
 ErrorSummary summarize(std::span<const Sample> samples);
@@ -47,8 +46,7 @@ struct SpeedAndError {
   double error_ratio = 0.0;
 };
 
-bool dominates(const SpeedAndError& a, const SpeedAndError& b);
-/// The points that no other dominates, fastest first; of equal points the first.
+/// The points that no other beats in both (Pareto front), fastest first; of equal points the first.
 std::vector<std::size_t> front_of(std::span<const SpeedAndError> points);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

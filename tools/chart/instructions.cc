@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/chart/instructions.h"
 
 #include <linux/perf_event.h>
@@ -14,9 +15,9 @@
 #include <limits>
 #include <new>
 
-#include "tools/common/interrupt.h"
+#include "tools/program/interrupt.h"
 
-namespace tact::tools {
+namespace tact::tools::chart {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -62,7 +63,7 @@ double step(pid_t child, const Progress& progress, std::size_t most_steps) {
   std::uint64_t seen = 0, first = 0, last = 0;
   for (std::uint64_t steps = 1; steps <= most_steps; ++steps) {
     int status = 0;
-    if (steps % 1000 == 0 && is_interrupted()) break;
+    if (steps % 1000 == 0 && program::is_interrupted()) break;
     if (ptrace(PTRACE_SINGLESTEP, child, nullptr, nullptr) != 0 ||
         waitpid(child, &status, 0) != child || !WIFSTOPPED(status))
       break;
@@ -127,4 +128,4 @@ double instructions_per_call(const Call& call, std::size_t calls) {
   return counted >= 0.0 ? counted : instructions_by_steps(call, calls);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // instructions.h - what a call costs in instructions: the same number on an idle and a busy
 // machine.
 //
@@ -10,7 +11,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace tact::tools {
+namespace tact::tools::chart {
 
 inline constexpr std::size_t kMostSteps = 300'000;  // of all calls together
 
@@ -22,4 +23,4 @@ double instructions_per_call(const std::function<void()>& call, std::size_t call
 double instructions_by_steps(const std::function<void()>& call, std::size_t calls,
                              std::size_t most_steps = kMostSteps);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

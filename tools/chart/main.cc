@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tact-chart: speed against accuracy of every law of a scene, and of other ways to do the same.
 #include <fmt/format.h>
 
@@ -7,24 +8,27 @@
 #include <fstream>
 #include <iterator>
 
-#include "firmware/environment.h"
-#include "model/scene_words.h"
+#include "firmware/pc/environment.h"
+#include "model/scene/scene_words.h"
 #include "tools/chart/chart.h"
 #include "tools/chart/pictures.h"
 #include "tools/chart/report.h"
-#include "tools/common/program.h"
+#include "tools/chart/tool_report.h"
+#include "tools/program/program.h"
+#include "tools/program/whole_file.h"
 
 namespace {
 
 using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
+using namespace tact::tools::chart;  // NOLINT(google-build-using-namespace)
 using tact::model::Error;
 using tact::model::Result;
-using tact::model::Scene;
+using tact::model::scene::Scene;
 
 struct Options {
-  SceneArguments scene;
-  SweepArguments sweep;
-  std::string out, reference;
+  program::SceneArguments scene;
+  program::SweepArguments sweep;
+  std::string out, reference, tool_reference;
   ChartOptions chart;
   bool no_peers = false, json = false;
 };
@@ -33,8 +37,11 @@ void add_options(CLI::App& app, Options& o) {
   o.scene.add_to(app);
   app.add_option("--out", o.out, "folder for tables and pictures; made if need be")->required();
   app.add_option("--reference", o.reference,
-                 "what is true: JSON of tact-reference SCENE --out FILE")
-      ->required();
+                 "what is true under one sphere: JSON of tact-reference SCENE --out FILE");
+  app.add_option("--tool-reference", o.tool_reference,
+                 "instead: what is true under the whole tool, all spheres; JSON of tact-reference "
+                 "SCENE --tool --out FILE")
+      ->excludes("--reference");
   app.add_option("--laws", o.chart.wish.laws, "only these laws and peers")
       ->delimiter(',')
       ->check(CLI::IsMember(all_families()));
@@ -45,13 +52,52 @@ void add_options(CLI::App& app, Options& o) {
 
 std::string hash_of_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  tact::model::TextHash hash;
+  tact::model::scene::TextHash hash;
   hash.add(std::string{std::istreambuf_iterator<char>(file), {}});
   return hash.hex();
 }
 
-Result<Table> table_of(const Options& o, const Scene& scene, const ReferenceData& reference,
-                       const Provenance& provenance) {
+Provenance provenance_of(const Scene& scene, const std::string& reference_path) {
+  return {.scene_hash = scene.hash,
+          .reference_hash = hash_of_file(reference_path),
+          .revision = tact::firmware::pc::read_environment({}).git_revision,
+          .machine = tact::model::scene::machine_name()};
+}
+
+/// Judges the whole tool, law by law, and writes tool.csv and tool.json.
+int judge_whole_tool(const program::Program& program, const Options& o) {
+  if (!o.chart.shard.is_whole() || !o.sweep.merge.empty())
+    return program.fail(Error{"--tool-reference takes no --shard and no --merge; leave them out"});
+  const auto scene = o.scene.load();
+  if (!scene) return program.fail(scene.error());
+  const auto reference = ground_truth::read_tool_reference(o.tool_reference);
+  if (!reference) return program.fail(reference.error());
+  std::vector<ToolRow> rows;
+  for (const auto& name : tact::model::scene::kLawNames) {
+    const auto& laws = o.chart.wish.laws;
+    if (!scene->describes(name.kind)) continue;
+    if (!laws.empty() && std::find(laws.begin(), laws.end(), name.name) == laws.end()) continue;
+    auto row = judge_tool(*scene, name.kind, *reference, o.chart.timing);
+    if (!row) return program.fail(row.error());
+    rows.push_back(std::move(*row));
+  }
+  if (rows.empty())
+    return program.fail(Error{"none of the wanted laws is described; leave out --laws"});
+  const Provenance provenance = provenance_of(*scene, o.tool_reference);
+  const std::string json = tool_json(rows, *reference, program.command(), provenance);
+  const auto csv =
+      program::write_whole_file(o.out + "/tool.csv", csv_head(program.command(), provenance) +
+                                                         tool_table(rows, *reference).to_csv());
+  if (!csv) return program.fail(csv.error());
+  const auto written = program::write_whole_file(o.out + "/tool.json", json);
+  if (!written) return program.fail(written.error());
+  fmt::print("{}", o.json ? json : tool_text(rows, *reference));
+  return 0;
+}
+
+Result<report::Table> table_of(const Options& o, const Scene& scene,
+                               const ground_truth::ReferenceData& reference,
+                               const Provenance& provenance) {
   const std::size_t all = variants_of(scene, o.chart.wish).size();
   if (!o.sweep.merge.empty()) {
     auto merged = merge_table(empty_chart(all, {}), o.sweep.merge);
@@ -61,7 +107,7 @@ Result<Table> table_of(const Options& o, const Scene& scene, const ReferenceData
   }
   const auto rows = measure_chart(scene, reference, o.chart);
   if (!rows) return rows.error();
-  Table table = empty_chart(all, o.chart.shard);
+  report::Table table = empty_chart(all, o.chart.shard);
   const auto failed = [](const ChartRow& row) { return !row.failure.empty(); };
   if (std::all_of(rows->begin(), rows->end(), failed) && o.chart.shard.is_whole())
     return Error{rows->front().failure};
@@ -70,7 +116,7 @@ Result<Table> table_of(const Options& o, const Scene& scene, const ReferenceData
 }
 
 /// What was found, on a terminal; the exit status. A part of the rows proves nothing.
-int tell(const Options& o, const Table& table, const std::vector<std::string>& files) {
+int tell(const Options& o, const report::Table& table, const std::vector<std::string>& files) {
   const bool is_whole = o.chart.shard.is_whole();
   if (o.json) {
     fmt::print("{}", table.to_json());
@@ -80,7 +126,7 @@ int tell(const Options& o, const Table& table, const std::vector<std::string>& f
   }
   int status = 0;
   for (const std::size_t i : is_whole ? peers_ahead(table) : std::vector<std::size_t>{}) {
-    const Row& row = table.rows()[i];
+    const report::Row& row = table.rows()[i];
     fmt::print(stderr, "tact-chart: the peer {} {} is both faster and nearer than tact's front\n",
                table.word(row, "family"), table.word(row, "size"));
     status = 1;
@@ -89,15 +135,12 @@ int tell(const Options& o, const Table& table, const std::vector<std::string>& f
 }
 
 /// Measures, or merges what was measured, and writes it down; the pictures come last.
-int make_chart(const Program& program, const Options& o) {
+int make_chart(const program::Program& program, const Options& o) {
   const auto scene = o.scene.load();
   if (!scene) return program.fail(scene.error());
-  const auto reference = read_reference(o.reference);
+  const auto reference = ground_truth::read_reference(o.reference);
   if (!reference) return program.fail(reference.error());
-  Provenance provenance{.scene_hash = scene->hash,
-                        .reference_hash = hash_of_file(o.reference),
-                        .revision = tact::firmware::read_environment({}).git_revision,
-                        .machine = tact::model::machine_name()};
+  Provenance provenance = provenance_of(*scene, o.reference);
   const auto table = table_of(o, *scene, *reference, provenance);
   if (!table) return program.fail(table.error());
   if (!o.sweep.merge.empty()) {  // the rows know better where they come from
@@ -122,15 +165,15 @@ int make_chart(const Program& program, const Options& o) {
 
 // The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
-  Program program(
+  program::Program program(
       "tact-chart",
       "Measure every law of the scene in several sizes: force and shape error against\n"
       "the reference, time and memory of a tick; and, on the same mesh, finite elements\n"
       "solved every tick, a whole mesh of springs, and Bullet's soft body.",
       "Errors are ratios of the peak force and of the depth, times us, memory bytes. A\n"
       "reference is linear elastic, so relaxation is off for the errors and on for the\n"
-      "times. The peer fem needs gmsh, the pictures gnuplot. It fails a check when a\n"
-      "peer is ahead of tact's front.");
+      "times, and compliance.large_strain is off. The peer fem needs gmsh, the pictures\n"
+      "gnuplot. It fails a check when a peer is ahead of tact's front.");
   Options o;
   add_options(program.options(), o);
   if (const auto status = program.parse(argc, argv)) return *status;
@@ -139,5 +182,8 @@ int main(int argc, char** argv) {
   o.chart.wish.quick = o.sweep.quick;
   o.chart.wish.peers = !o.no_peers && !o.sweep.quick;
   if (o.sweep.quick) o.chart.timing = {.ticks = 5000, .rounds = 2, .limit_s = 1.0};
+  if (!o.tool_reference.empty()) return judge_whole_tool(program, o);
+  if (o.reference.empty())
+    return program.fail(Error{"no reference given; --reference or --tool-reference is needed"});
   return make_chart(program, o);
 }

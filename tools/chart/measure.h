@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // measure.h - runs a subject over the reference's sites and depths, and times its tick.
 //
 // Errors are quasi-static: a stepped subject ticks at one depth until its force stays within
@@ -9,13 +10,14 @@
 // the least median and the least p99.9 count. The loop itself runs where nothing else does.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "tools/chart/errors.h"
 #include "tools/chart/subject.h"
-#include "tools/common/reference_data.h"
+#include "tools/ground_truth/reference_data.h"
 
-namespace tact::tools {
+namespace tact::tools::chart {
 
 inline constexpr int kMostSettleTicks = 4000;
 
@@ -23,21 +25,21 @@ inline constexpr int kMostSettleTicks = 4000;
 struct ProbeCase {
   std::size_t site = 0;
   bool held_out = false;
-  model::Indentation in;
+  model::contact::Indentation in;
   double reference_N = 0.0;
   std::vector<double> reference_ring_m;
 };
 
 /// The linear cases of the reference on the scene's mesh. An error if they are of another mesh or
 /// another tip.
-model::Result<std::vector<ProbeCase>> cases_of(const model::Scene& scene,
-                                               const ReferenceData& reference);
+model::Result<std::vector<ProbeCase>> cases_of(const model::scene::Scene& scene,
+                                               const ground_truth::ReferenceData& reference);
 
 struct SettledForce {
   double force_N = 0.0;
   int ticks = 0;
 };
-SettledForce settle(Subject& subject, const model::Indentation& in);
+SettledForce settle(bool is_stepped, const std::function<double()>& tick_force_N);
 
 struct Accuracy {
   std::vector<Sample> samples;
@@ -47,7 +49,8 @@ struct Accuracy {
 Accuracy measure_accuracy(Subject& subject, const std::vector<ProbeCase>& cases, double pitch_m);
 
 /// A probe that goes round on the surface while it sinks in and comes back.
-std::vector<model::Indentation> moving_probe(const model::Scene& scene, const ProbeCase& at);
+std::vector<model::contact::Indentation> moving_probe(const model::scene::Scene& scene,
+                                                      const ProbeCase& at);
 
 struct TimingSettings {
   std::size_t ticks = 20000;  // a round
@@ -62,7 +65,9 @@ struct Timing {
   std::size_t ticks = 0;                  // a round
   std::size_t paused = 0;                 // of these, left out of the p99.9
 };
-Timing measure_time(Subject& subject, const std::vector<model::Indentation>& path,
+Timing measure_time(Subject& subject, const std::vector<model::contact::Indentation>& path,
                     const TimingSettings& settings);
+/// Of anything else that ticks.
+Timing measure_time(const std::function<void()>& tick, const TimingSettings& settings);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

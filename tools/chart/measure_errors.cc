@@ -1,41 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "tools/chart/measure.h"
-#include "tools/common/interrupt.h"
-#include "tools/common/reference_fits.h"
+#include "tools/ground_truth/reference_fits.h"
+#include "tools/program/interrupt.h"
 
-namespace tact::tools {
+namespace tact::tools::chart {
 namespace {
 
-using model::Indentation;
 using model::Result;
 using model::Vec3;
+using model::contact::Indentation;
 
 /// The vertex as a place: one of its triangles, all the weight on its corner.
-model::Place place_of(const model::SurfaceMesh& mesh, std::uint32_t vertex) {
-  model::Place place{.triangle = mesh.fan[mesh.fan_start[vertex]], .weight = {}};
+model::contact::Place place_of(const model::mesh::SurfaceMesh& mesh, std::uint32_t vertex) {
+  model::contact::Place place{.triangle = mesh.fan[mesh.fan_start[vertex]], .weight = {}};
   for (std::size_t c = 0; c < 3; ++c)
     if (mesh.triangle[place.triangle][c] == vertex) place.weight[c] = 1.0;
   return place;
 }
 
-bool is_held_out(const model::Scene& scene, std::uint32_t vertex) {
+bool is_held_out(const model::scene::Scene& scene, std::uint32_t vertex) {
   return std::any_of(scene.reference_sites.begin(), scene.reference_sites.end(),
                      [&](const auto& s) { return s.vertex == vertex && s.held_out; });
 }
 
 }  // namespace
 
-Result<std::vector<ProbeCase>> cases_of(const model::Scene& scene, const ReferenceData& reference) {
-  if (auto differs = check_reference_fits(reference, scene, ModulusOf::kSame))
+Result<std::vector<ProbeCase>> cases_of(const model::scene::Scene& scene,
+                                        const ground_truth::ReferenceData& reference) {
+  if (auto differs = check_reference_fits(reference, scene, ground_truth::ModulusOf::kSame))
     return std::move(*differs);
   std::vector<ProbeCase> cases;
   for (std::size_t i = 0; i < reference.sites.size(); ++i) {
-    const SolvedSite& site = reference.sites[i];
-    for (const ReferenceCase& c : site.cases) {
+    const ground_truth::SolvedSite& site = reference.sites[i];
+    for (const ground_truth::ReferenceCase& c : site.cases) {
       if (c.large_strain) continue;
       const Indentation in{.sphere = 0,
                            .place = place_of(scene.organ_mesh, site.vertex),
@@ -52,18 +54,18 @@ Result<std::vector<ProbeCase>> cases_of(const model::Scene& scene, const Referen
   return cases;
 }
 
-SettledForce settle(Subject& subject, const Indentation& in) {
+SettledForce settle(bool is_stepped, const std::function<double()>& tick_force_N) {
   constexpr int kWindow = 50;
   constexpr double kSteady_ratio = 1e-3;
-  if (!subject.is_stepped()) return {.force_N = subject.tick(in), .ticks = 1};
+  if (!is_stepped) return {.force_N = tick_force_N(), .ticks = 1};
   double low_N = 0.0, high_N = 0.0;
   for (int i = 0; i < kMostSettleTicks; ++i) {
-    const double force_N = subject.tick(in);
+    const double force_N = tick_force_N();
     if (i % kWindow == 0) low_N = high_N = force_N;
     low_N = std::min(low_N, force_N);
     high_N = std::max(high_N, force_N);
     const double size_N = std::max(std::abs(low_N), std::abs(high_N));
-    if (i % kWindow == 0 && is_interrupted()) break;  // the run will say so
+    if (i % kWindow == 0 && program::is_interrupted()) break;  // the run will say so
     if (i % kWindow == kWindow - 1 && high_N - low_N <= kSteady_ratio * size_N)
       return {.force_N = force_N, .ticks = i + 1};
   }
@@ -77,7 +79,7 @@ Accuracy measure_accuracy(Subject& subject, const std::vector<ProbeCase>& cases,
     const bool elsewhere =
         i > 0 && (cases[i - 1].site != c.site || cases[i - 1].in.held != c.in.held);
     if (elsewhere) subject.release();
-    const SettledForce settled = settle(subject, c.in);
+    const SettledForce settled = settle(subject.is_stepped(), [&] { return subject.tick(c.in); });
     Sample sample{.site = c.site,
                   .held_out = c.held_out,
                   .depth_m = c.in.depth_m,
@@ -94,4 +96,4 @@ Accuracy measure_accuracy(Subject& subject, const std::vector<ProbeCase>& cases,
   return out;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <sys/resource.h>
 #include <time.h>
 
@@ -6,16 +7,16 @@
 #include <cmath>
 #include <limits>
 
-#include "model/site.h"
+#include "model/contact/site.h"
 #include "tools/chart/instructions.h"
 #include "tools/chart/measure.h"
 
-namespace tact::tools {
+namespace tact::tools::chart {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using model::Indentation;
 using model::Vec3;
+using model::contact::Indentation;
 
 constexpr std::size_t kPathTicks = 1000;  // one turn
 constexpr double kPathRadius_m = 0.004;
@@ -61,9 +62,68 @@ double clock_cost_ns() {
   return at_share(cost_ns, 0.5);
 }
 
+/// A template, so that what takes some nanoseconds is not called through a pointer.
+template <typename Tick>
+Timing time_of(const Tick& tick, const TimingSettings& settings) {
+  const auto warm_begin = Clock::now();
+  std::size_t warm_ticks = 0;
+  while (warm_ticks < kMostWarmTicks &&
+         ns_between(warm_begin, Clock::now()) < 0.05e9 * settings.limit_s) {
+    tick();
+    ++warm_ticks;
+  }
+  const double tick_s = 1e-9 * ns_between(warm_begin, Clock::now()) /
+                        static_cast<double>(std::max<std::size_t>(1, warm_ticks));
+  const double room = settings.limit_s / (tick_s * settings.rounds);
+  const std::size_t ticks = std::clamp(static_cast<std::size_t>(std::min(room, 1e9)), kFewestTicks,
+                                       std::max(kFewestTicks, settings.ticks));
+  const double cost_ns = clock_cost_ns();
+  // ticks shorter than the clock's step: the median is that of the mean of a few
+  const auto batch = static_cast<std::size_t>(std::clamp(kBatch_s / tick_s, 1.0, 64.0));
+  constexpr double kNever_us = std::numeric_limits<double>::infinity();
+  Timing best{.median_us = kNever_us,
+              .p999_us = kNever_us,
+              .instructions = std::numeric_limits<double>::quiet_NaN(),
+              .ticks = ticks};
+  std::vector<double> tick_ns, batch_ns;
+  for (int round = 0; round < settings.rounds; ++round) {
+    tick_ns.clear();
+    batch_ns.clear();
+    for (std::size_t i = 0; i < ticks; ++i) {
+      if (tick_s > kLongTick_s) {
+        const double begin_ns = own_time_ns();
+        tick();
+        tick_ns.push_back(own_time_ns() - begin_ns);
+        continue;
+      }
+      const long pauses = pauses_so_far();
+      const auto begin = Clock::now();
+      tick();
+      const auto end = Clock::now();
+      if (pauses_so_far() == pauses)
+        tick_ns.push_back(std::max(0.0, ns_between(begin, end) - cost_ns));
+    }
+    for (std::size_t i = 0; batch > 1 && i < ticks / batch; ++i) {
+      const auto begin = Clock::now();
+      for (std::size_t k = 0; k < batch; ++k) tick();
+      const double whole_ns = ns_between(begin, Clock::now()) - cost_ns;
+      batch_ns.push_back(whole_ns / static_cast<double>(batch));
+    }
+    if (tick_ns.empty()) continue;
+    const double p999_us = 1e-3 * at_share(tick_ns, 0.999);
+    best.median_us = std::min(best.median_us, 1e-3 * at_share(batch > 1 ? batch_ns : tick_ns, 0.5));
+    if (p999_us >= best.p999_us) continue;
+    best.p999_us = p999_us;
+    best.paused = ticks - tick_ns.size();
+  }
+  if (settings.instructions && tick_s < kLongTick_s)
+    best.instructions = instructions_per_call(tick, std::min(ticks, kCountedTicks));
+  return best;
+}
+
 }  // namespace
 
-std::vector<Indentation> moving_probe(const model::Scene& scene, const ProbeCase& at) {
+std::vector<Indentation> moving_probe(const model::scene::Scene& scene, const ProbeCase& at) {
   constexpr double kShallow_m = 0.001, kDeep_m = 0.009;
   const auto view = scene.organ_mesh.view();
   const Vec3 centre = point_of(view, at.in.place);
@@ -85,68 +145,18 @@ std::vector<Indentation> moving_probe(const model::Scene& scene, const ProbeCase
 Timing measure_time(Subject& subject, const std::vector<Indentation>& path,
                     const TimingSettings& settings) {
   std::size_t at = 0;
-  const auto next = [&]() -> const Indentation& {
-    const Indentation& in = path[at];
-    at = at + 1 == path.size() ? 0 : at + 1;
-    return in;
-  };
-  const auto warm_begin = Clock::now();
-  std::size_t warm_ticks = 0;
-  while (warm_ticks < kMostWarmTicks &&
-         ns_between(warm_begin, Clock::now()) < 0.05e9 * settings.limit_s) {
-    subject.tick(next());
-    ++warm_ticks;
-  }
-  const double tick_s = 1e-9 * ns_between(warm_begin, Clock::now()) /
-                        static_cast<double>(std::max<std::size_t>(1, warm_ticks));
-  const double room = settings.limit_s / (tick_s * settings.rounds);
-  const std::size_t ticks = std::clamp(static_cast<std::size_t>(std::min(room, 1e9)), kFewestTicks,
-                                       std::max(kFewestTicks, settings.ticks));
-  const double cost_ns = clock_cost_ns();
-  // ticks shorter than the clock's step: the median is that of the mean of a few
-  const auto batch = static_cast<std::size_t>(std::clamp(kBatch_s / tick_s, 1.0, 64.0));
-  constexpr double kNever_us = std::numeric_limits<double>::infinity();
-  Timing best{.median_us = kNever_us,
-              .p999_us = kNever_us,
-              .instructions = std::numeric_limits<double>::quiet_NaN(),
-              .ticks = ticks};
-  std::vector<double> tick_ns, batch_ns;
-  for (int round = 0; round < settings.rounds; ++round) {
-    tick_ns.clear();
-    batch_ns.clear();
-    for (std::size_t i = 0; i < ticks; ++i) {
-      const Indentation& in = next();
-      if (tick_s > kLongTick_s) {
-        const double begin_ns = own_time_ns();
-        subject.tick(in);
-        tick_ns.push_back(own_time_ns() - begin_ns);
-        continue;
-      }
-      const long pauses = pauses_so_far();
-      const auto begin = Clock::now();
-      subject.tick(in);
-      const auto end = Clock::now();
-      if (pauses_so_far() == pauses)
-        tick_ns.push_back(std::max(0.0, ns_between(begin, end) - cost_ns));
-    }
-    for (std::size_t i = 0; batch > 1 && i < ticks / batch; ++i) {
-      const auto begin = Clock::now();
-      for (std::size_t k = 0; k < batch; ++k) subject.tick(next());
-      const double whole_ns = ns_between(begin, Clock::now()) - cost_ns;
-      batch_ns.push_back(whole_ns / static_cast<double>(batch));
-    }
-    if (tick_ns.empty()) continue;
-    const double p999_us = 1e-3 * at_share(tick_ns, 0.999);
-    best.median_us = std::min(best.median_us, 1e-3 * at_share(batch > 1 ? batch_ns : tick_ns, 0.5));
-    if (p999_us >= best.p999_us) continue;
-    best.p999_us = p999_us;
-    best.paused = ticks - tick_ns.size();
-  }
-  if (settings.instructions && tick_s < kLongTick_s)
-    best.instructions =
-        instructions_per_call([&] { subject.tick(next()); }, std::min(ticks, kCountedTicks));
+  const Timing timing = time_of(
+      [&] {
+        subject.tick(path[at]);
+        at = at + 1 == path.size() ? 0 : at + 1;
+      },
+      settings);
   subject.release();
-  return best;
+  return timing;
 }
 
-}  // namespace tact::tools
+Timing measure_time(const std::function<void()>& tick, const TimingSettings& settings) {
+  return time_of(tick, settings);
+}
+
+}  // namespace tact::tools::chart

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bullet's soft body under the same tip: position-based dynamics, one step a tick.
 //
 //     surface   links along the edges and across two of them, and matching to the shape at rest,
@@ -20,21 +21,19 @@
 
 #include "model/fem/boundary.h"
 #include "tools/chart/chart_peers.h"
-#include "tools/common/gmsh.h"
-#include "tools/common/interrupt.h"
 #include "tools/condense/condense_organ.h"
+#include "tools/ground_truth/gmsh.h"
+#include "tools/program/interrupt.h"
 
-namespace tact::tools {
+namespace tact::tools::chart {
 namespace {
 
-using model::Indentation;
 using model::Result;
-using model::Scene;
 using model::Vec3;
+using model::contact::Indentation;
+using model::scene::Scene;
 
-constexpr double kDensity_kg_per_m3 = 1060.0;
-constexpr double kCoupling_N_per_m = 300.0;  // q: as spring_mesh
-constexpr double kDamping_ratio = 0.02;      // of the velocity, a tick
+constexpr double kDamping_ratio = 0.02;  // of the velocity, a tick
 constexpr int kTrials = 8;
 constexpr double kFitted_ratio = 0.02;
 
@@ -65,8 +64,8 @@ Result<BodyPlan> surface_or_volume(const Scene& scene, bool volume) {
   BodyPlan plan{.point_m = mesh.vertex_m, .link = {}, .volume = volume};
   for (const auto& t : mesh.triangle) add_links(plan, t);
   if (!volume) return plan;
-  const double edge_m = median_edge_m(mesh.view());
-  const auto body = fill_with_gmsh(
+  const double edge_m = condense::median_edge_m(mesh.view());
+  const auto body = ground_truth::fill_with_gmsh(
       mesh.vertex_m, mesh.triangle,
       {.at_m = {}, .radius_m = 0.0, .fine_m = 2.0 * edge_m, .growth = 0.0, .largest_m = 0.0});
   if (!body) return body.error();
@@ -220,7 +219,7 @@ Result<std::unique_ptr<Subject>> make_bullet_peer(const PeerInput& input, bool v
           low.stiffness * std::pow(high.stiffness / low.stiffness, std::clamp(share, 0.1, 0.9));
       const Trial now{stiffness, force_N(stiffness)};
       if (miss(now) < miss(best)) best = now;
-      if (miss(now) < kFitted_ratio * wanted_N || is_interrupted()) break;
+      if (miss(now) < kFitted_ratio * wanted_N || program::is_interrupted()) break;
       (now.force_N < wanted_N ? low : high) = now;
     }
   }
@@ -229,4 +228,4 @@ Result<std::unique_ptr<Subject>> make_bullet_peer(const PeerInput& input, bool v
   return std::unique_ptr<Subject>(std::move(peer));
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The full linear organ, solved once a tick with a factor made beforehand.
 //
 //     press  d = d_tip(a) + r F(a)            CL-1, CT-1, CT-2
@@ -14,31 +15,31 @@
 #include <array>
 #include <cmath>
 
-#include "model/compliance_law.h"
-#include "model/compliance_tip.h"
 #include "model/fem/hertz_load.h"
 #include "model/fem/linear_solver.h"
+#include "model/law/compliance_law.h"
+#include "model/law/compliance_tip.h"
 #include "tools/chart/chart_peers.h"
-#include "tools/common/gmsh.h"
 #include "tools/condense/condense_organ.h"
+#include "tools/ground_truth/gmsh.h"
 
-namespace tact::tools {
+namespace tact::tools::chart {
 namespace {
 
-using model::ElasticTip;
-using model::Indentation;
 using model::Result;
 using model::Vec3;
+using model::contact::Indentation;
+using model::law::ElasticTip;
 namespace fem = model::fem;
 
 constexpr double kPatchEdges = 2.0;
 
 /// CL-1 at one depth.
-model::TipState pressed(const ElasticTip& tip, double regular_m_per_N, double depth_m) {
+model::law::TipState pressed(const ElasticTip& tip, double regular_m_per_N, double depth_m) {
   double low = 0.0, high = 20.0;  // s of CT-1
   for (int i = 0; i < 60; ++i) {
     const double s = 0.5 * (low + high);
-    const model::TipState state = tip_state(tip, s);
+    const model::law::TipState state = tip_state(tip, s);
     (state.depth_m + regular_m_per_N * state.force_N < depth_m ? low : high) = s;
   }
   return tip_state(tip, low);
@@ -46,14 +47,15 @@ model::TipState pressed(const ElasticTip& tip, double regular_m_per_N, double de
 
 class FemPeer final : public Subject {
  public:
-  FemPeer(const model::Scene& scene, fem::TetMesh body, fem::LinearSolver solver, double edge_m)
+  FemPeer(const model::scene::Scene& scene, fem::TetMesh body, fem::LinearSolver solver,
+          double edge_m)
       : scene_(scene),
         body_(std::move(body)),
         boundary_(fem::find_boundary(body_)),
         solver_(std::move(solver)),
         material_{scene.elastic->youngs_modulus_Pa, scene.elastic->poisson_ratio},
         tip_{material_.youngs_modulus_Pa, material_.poisson_ratio, scene.tool.spheres[0].radius_m},
-        patch_m_(kPatchEdges * median_edge_m(scene.organ_mesh.view())),
+        patch_m_(kPatchEdges * condense::median_edge_m(scene.organ_mesh.view())),
         edge_m_(edge_m) {
     moved_m_.resize(solver_.nodes());
     dent_m_.resize(scene.organ_mesh.vertex_m.size());
@@ -86,7 +88,7 @@ class FemPeer final : public Subject {
   }
 
  private:
-  std::uint32_t nearest_vertex(const model::Place& place) const {
+  std::uint32_t nearest_vertex(const model::contact::Place& place) const {
     const auto c =
         std::max_element(place.weight.begin(), place.weight.end()) - place.weight.begin();
     return scene_.organ_mesh.triangle[place.triangle][static_cast<std::size_t>(c)];
@@ -142,7 +144,7 @@ class FemPeer final : public Subject {
     return f[0];
   }
 
-  const model::Scene& scene_;
+  const model::scene::Scene& scene_;
   fem::TetMesh body_;
   fem::Boundary boundary_;
   fem::LinearSolver solver_;
@@ -160,11 +162,11 @@ class FemPeer final : public Subject {
 }  // namespace
 
 Result<std::unique_ptr<Subject>> make_fem_peer(const PeerInput& input, double edge_m) {
-  const model::Scene& scene = input.scene;
+  const model::scene::Scene& scene = input.scene;
   if (!scene.elastic)
     return model::Error{scene.path + ": has no [elastic], which the peer fem needs; add it"};
   const auto& mesh = scene.organ_mesh;
-  auto body = fill_with_gmsh(
+  auto body = ground_truth::fill_with_gmsh(
       mesh.vertex_m, mesh.triangle,
       {.at_m = {}, .radius_m = 0.0, .fine_m = edge_m, .growth = 0.0, .largest_m = 0.0});
   if (!body) return body.error();
@@ -179,4 +181,4 @@ Result<std::unique_ptr<Subject>> make_fem_peer(const PeerInput& input, double ed
       std::make_unique<FemPeer>(scene, std::move(*body), std::move(*solver), edge_m));
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

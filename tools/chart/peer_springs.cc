@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Masses and springs of the whole surface, all stepped every tick by implicit Euler.
 //
 // The springs are those of the scene's spring patch if it has one: along every edge, and from every
@@ -8,28 +9,26 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/mesh.h"
-#include "model/patch_surface.h"
-#include "model/spring_network.h"
+#include "model/mesh/mesh.h"
+#include "model/springs/patch_surface.h"
+#include "model/springs/spring_network.h"
 #include "tools/chart/chart_peers.h"
 
-namespace tact::tools {
+namespace tact::tools::chart {
 namespace {
 
-using model::Indentation;
-using model::LawKind;
-using model::ProbeSpring;
 using model::Result;
-using model::Scene;
 using model::Vec3;
+using model::contact::Indentation;
+using model::scene::LawKind;
+using model::scene::Scene;
+using model::springs::ProbeSpring;
 
-constexpr double kDensity_kg_per_m3 = 1060.0;
 // Where the scene has no patch. N/m, N/m, s, s, -: an edge four times as stiff as a body spring.
-constexpr model::PatchTissue kTissue{40.0, 10.0, 0.005, 0.005, 0.0};
-constexpr double kCoupling_N_per_m = 300.0;
+constexpr model::springs::PatchTissue kTissue{40.0, 10.0, 0.005, 0.005, 0.0};
 
 struct Springs {
-  model::PatchTissue tissue;
+  model::springs::PatchTissue tissue;
   double coupling_N_per_m = 0.0;
 };
 
@@ -52,7 +51,7 @@ class SpringPeer final : public Subject {
         scale_(scale),
         surface_(make_patch_surface(scene.organ_mesh.view(), springs_.tissue)),
         stepper_(scene.organ_mesh.vertex_m.size(), surface_.edge.size()),
-        rule_{.method = {.integrator = model::Integrator::kImplicitEuler},
+        rule_{.method = {.integrator = model::springs::Integrator::kImplicitEuler},
               .step_s = 1.0 / scene.rate_Hz,
               .iterations = iterations} {
     const std::size_t n = scene.organ_mesh.vertex_m.size();
@@ -65,7 +64,7 @@ class SpringPeer final : public Subject {
     drag_.resize(n);
     for (std::size_t v = 0; v < n; ++v)
       drag_[v] = springs_.tissue.body_damping_time_s * surface_.anchor_N_per_m[v];
-    for (const model::PatchEdge& e : surface_.edge) {
+    for (const model::springs::PatchEdge& e : surface_.edge) {
       const double k = springs_.tissue.surface_stiffness_N_per_m;
       spring_.push_back({.i = e.a,
                          .j = e.b,
@@ -103,7 +102,7 @@ class SpringPeer final : public Subject {
   std::size_t memory_bytes() const override {
     return stepper_.memory_bytes() + surface_.memory_bytes() +
            position_.size() * (2 * sizeof(Vec3) + 3 * sizeof(double)) +
-           spring_.size() * sizeof(model::Spring);
+           spring_.size() * sizeof(model::springs::Spring);
   }
   std::string given() const override {
     return fmt::format(
@@ -113,7 +112,7 @@ class SpringPeer final : public Subject {
   }
 
  private:
-  model::SpringNetwork network() {
+  model::springs::SpringNetwork network() {
     return {.node = {.position_m = position_,
                      .velocity_mps = velocity_,
                      .rest_m = scene_.organ_mesh.vertex_m,
@@ -128,13 +127,13 @@ class SpringPeer final : public Subject {
   const Scene& scene_;
   Springs springs_;
   double scale_;
-  model::PatchSurface surface_;
-  model::SpringStepper stepper_;
-  model::StepRule rule_;
+  model::springs::PatchSurface surface_;
+  model::springs::SpringStepper stepper_;
+  model::springs::StepRule rule_;
   ProbeSpring probe_{};
   std::vector<Vec3> position_, velocity_;
   std::vector<double> inverse_mass_, drag_, dent_m_;
-  std::vector<model::Spring> spring_;
+  std::vector<model::springs::Spring> spring_;
 };
 
 }  // namespace
@@ -154,4 +153,4 @@ Result<std::unique_ptr<Subject>> make_spring_peer(const PeerInput& input, int it
   return std::unique_ptr<Subject>(std::make_unique<SpringPeer>(input.scene, iterations, scale));
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

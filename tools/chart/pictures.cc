@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/chart/pictures.h"
 
 #include <fmt/format.h>
@@ -7,9 +8,9 @@
 #include <map>
 
 #include "tools/chart/chart.h"
-#include "tools/common/picture.h"
+#include "tools/report/picture.h"
 
-namespace tact::tools {
+namespace tact::tools::chart {
 namespace {
 
 using model::Result;
@@ -44,9 +45,9 @@ struct Families {
   double least_us = 1e9, most_us = 0.0, most_force = 0.0;  // of all points
 };
 
-Families families_of(const Table& table) {
+Families families_of(const report::Table& table) {
   Families out;
-  for (const Row& row : table.rows()) {
+  for (const report::Row& row : table.rows()) {
     const double tick_us = table.number(row, "tick_median_us");
     if (!(tick_us > 0.0)) continue;
     std::string family = table.word(row, "family");
@@ -67,7 +68,7 @@ Families families_of(const Table& table) {
 }
 
 /// Sizes whose points lie on each other share one label: "17..129".
-void share_labels(std::vector<Point>& points, double Point::*error) {
+void share_labels(std::vector<Point>& points, double Point::* error) {
   constexpr double kSame = 0.1;  // of a decade
   for (std::size_t first = 0; first < points.size();) {
     std::size_t end = first + 1;
@@ -86,10 +87,10 @@ void share_labels(std::vector<Point>& points, double Point::*error) {
 }
 
 /// The line that no law of tact passes: from the top, step by step, to the right edge.
-std::vector<Point> front_points(const Table& table, const Families& families) {
+std::vector<Point> front_points(const report::Table& table, const Families& families) {
   std::vector<Point> out;
   for (const std::size_t i : front_rows(table)) {
-    const Row& row = table.rows()[i];
+    const report::Row& row = table.rows()[i];
     out.push_back(
         {table.number(row, "tick_median_us"), percent(table.number(row, "force_rms_ratio")), 0.0,
          fmt::format("{} {}", shown(table.word(row, "family")), table.word(row, "size"))});
@@ -147,7 +148,7 @@ std::string data_blocks(const Families& families) {
 
 }  // namespace
 
-Result<std::vector<std::string>> draw_chart(const Table& table, const std::string& title,
+Result<std::vector<std::string>> draw_chart(const report::Table& table, const std::string& title,
                                             const std::string& directory) {
   const Families families = families_of(table);
   std::string script = data_blocks(families);
@@ -180,7 +181,8 @@ Result<std::vector<std::string>> draw_chart(const Table& table, const std::strin
       "set ylabel 'shape error, RMS, %'\n";
   script += panel(families, 3, false);
   script += "unset multiplot\n";
-  return draw({.name = "chart", .width_px = 1200, .height_px = 1000, .script = script}, directory);
+  return report::draw({.name = "chart", .width_px = 1200, .height_px = 1000, .script = script},
+                      directory);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

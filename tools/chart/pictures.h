@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // pictures.h - the chart as a picture: force error over time per tick, shape error below.
 #pragma once
 
@@ -5,12 +6,13 @@
 #include <vector>
 
 #include "model/result.h"
-#include "tools/common/table.h"
+#include "tools/report/table.h"
 
-namespace tact::tools {
+namespace tact::tools::chart {
 
 /// Draws chart.svg and chart.png of a whole table; returns their paths and those of the data.
-model::Result<std::vector<std::string>> draw_chart(const Table& table, const std::string& title,
+model::Result<std::vector<std::string>> draw_chart(const report::Table& table,
+                                                   const std::string& title,
                                                    const std::string& directory);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/chart/report.h"
 
 #include <fmt/format.h>
@@ -10,7 +11,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-namespace tact::tools {
+#include "tools/program/whole_file.h"
+
+namespace tact::tools::chart {
 namespace {
 
 using model::Error;
@@ -20,8 +23,8 @@ using nlohmann::ordered_json;
 constexpr const char* kSchema = "tact-chart/1";
 
 /// Numbers as Table::to_json writes them: those that are not finite are words.
-Cell cell_of(const nlohmann::json& value, CellKind kind) {
-  if (kind == CellKind::kWord) return value.get<std::string>();
+report::Cell cell_of(const nlohmann::json& value, report::CellKind kind) {
+  if (kind == report::CellKind::kWord) return value.get<std::string>();
   return value.is_number() ? value.get<double>() : std::nan("");
 }
 
@@ -37,7 +40,7 @@ std::string csv_head(const std::string& command, const Provenance& provenance) {
                      provenance.machine);
 }
 
-Result<std::vector<std::string>> write_chart(const Table& table, bool is_whole,
+Result<std::vector<std::string>> write_chart(const report::Table& table, bool is_whole,
                                              const std::string& command,
                                              const Provenance& provenance,
                                              const std::string& directory) {
@@ -51,14 +54,15 @@ Result<std::vector<std::string>> write_chart(const Table& table, bool is_whole,
                         {"revision", provenance.revision},
                         {"machine", provenance.machine},
                         {"rows", json["rows"]}};
-  const auto csv = write_whole_file(stem + ".csv", csv_head(command, provenance) + table.to_csv());
+  const auto csv =
+      program::write_whole_file(stem + ".csv", csv_head(command, provenance) + table.to_csv());
   if (!csv) return csv.error();
-  const auto written = write_whole_file(stem + ".json", document.dump(1) + "\n");
+  const auto written = program::write_whole_file(stem + ".json", document.dump(1) + "\n");
   if (!written) return written.error();
   return std::vector<std::string>{stem + ".csv", stem + ".json"};
 }
 
-Result<Table> read_chart(const std::string& path) {
+Result<report::Table> read_chart(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file)
     return Error{fmt::format(
@@ -71,10 +75,10 @@ Result<Table> read_chart(const std::string& path) {
                       "--reference FILE --out DIR",
                       path)};
     const auto& rows = document.at("rows");
-    Table table = empty_chart(rows.size(), {});
+    report::Table table = empty_chart(rows.size(), {});
     for (const auto& row : rows) {
-      Row cells;
-      for (const Column& column : table.columns())
+      report::Row cells;
+      for (const report::Column& column : table.columns())
         cells.push_back(cell_of(row.at(column.name), column.kind));
       table.add(std::move(cells));
     }
@@ -85,10 +89,10 @@ Result<Table> read_chart(const std::string& path) {
   }
 }
 
-std::optional<Error> check_same_source(const Table& table, const Provenance& provenance) {
+std::optional<Error> check_same_source(const report::Table& table, const Provenance& provenance) {
   const auto differs = [&](const char* column, const std::string& wanted) {
     return std::any_of(table.rows().begin(), table.rows().end(),
-                       [&](const Row& row) { return table.word(row, column) != wanted; });
+                       [&](const report::Row& row) { return table.word(row, column) != wanted; });
   };
   if (differs("scene_hash", provenance.scene_hash))
     return Error{"a shard was measured with another scene; run its shards again with this one"};
@@ -99,19 +103,19 @@ std::optional<Error> check_same_source(const Table& table, const Provenance& pro
   return std::nullopt;
 }
 
-std::string machines_of(const Table& table) {
+std::string machines_of(const report::Table& table) {
   std::set<std::string> names;
-  for (const Row& row : table.rows()) names.insert(table.word(row, "machine"));
+  for (const report::Row& row : table.rows()) names.insert(table.word(row, "machine"));
   return fmt::format("{}", fmt::join(names, " + "));
 }
 
-std::string chart_text(const Table& table, bool is_whole) {
+std::string chart_text(const report::Table& table, bool is_whole) {
   std::string out = fmt::format("{:<40} {:>8} {:>8} {:>8} {:>7} {:>8} {:>9} {:>9} {:>8} {:>9}\n",
                                 "law and size", "force %", "worst %", "held o %", "in JND",
                                 "shape %", "median us", "p99.9 us", "instr.", "memory kB");
   const auto front = is_whole ? front_rows(table) : std::vector<std::size_t>{};
   for (std::size_t i = 0; i < table.rows().size(); ++i) {
-    const Row& row = table.rows()[i];
+    const report::Row& row = table.rows()[i];
     const auto number = [&](const char* column) { return table.number(row, column); };
     const bool on_front = std::find(front.begin(), front.end(), i) != front.end();
     const bool is_peer = table.word(row, "kind") == "peer";
@@ -138,7 +142,8 @@ std::string chart_text(const Table& table, bool is_whole) {
   }
   return out +
          "* on the front of tact: no other law is both faster and nearer to the reference.\n"
+         "The reference is linear: compliance is judged with large_strain off.\n"
          "instr. n/a: too many to step through, and this processor lets nobody count them.\n";
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

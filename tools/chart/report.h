@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // report.h - the chart as files and as text: CSV and JSON that say where they come from.
 #pragma once
 
@@ -7,26 +8,27 @@
 #include "model/result.h"
 #include "tools/chart/chart.h"
 
-namespace tact::tools {
+namespace tact::tools::chart {
 
 /// "# command: ..." and so on: how to make these numbers again. Ends in a line end.
 std::string csv_head(const std::string& command, const Provenance& provenance);
 
 /// chart.csv and chart.json of a whole table; of a shard the CSV that merging reads.
-model::Result<std::vector<std::string>> write_chart(const Table& table, bool is_whole,
+model::Result<std::vector<std::string>> write_chart(const report::Table& table, bool is_whole,
                                                     const std::string& command,
                                                     const Provenance& provenance,
                                                     const std::string& directory);
 
 /// The rows of a chart.json.
-model::Result<Table> read_chart(const std::string& path);
+model::Result<report::Table> read_chart(const std::string& path);
 
 /// Merged rows must all be of this scene and reference, and of one revision.
-std::optional<model::Error> check_same_source(const Table& table, const Provenance& provenance);
+std::optional<model::Error> check_same_source(const report::Table& table,
+                                              const Provenance& provenance);
 /// Where the rows were measured: "a + b".
-std::string machines_of(const Table& table);
+std::string machines_of(const report::Table& table);
 
 /// For a terminal; the front is marked in a whole table alone.
-std::string chart_text(const Table& table, bool is_whole);
+std::string chart_text(const report::Table& table, bool is_whole);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,19 +7,19 @@
 #include <limits>
 #include <vector>
 
-#include "model/site.h"
-#include "model/tissue_law.h"
+#include "model/contact/site.h"
+#include "model/scene/tissue_law.h"
 #include "tools/chart/subject.h"
-#include "tools/common/ring_means.h"
+#include "tools/ground_truth/ring_means.h"
 
-namespace tact::tools {
+namespace tact::tools::chart {
 namespace {
 
-using model::Indentation;
-using model::Place;
 using model::Result;
-using model::SurfaceView;
 using model::Vec3;
+using model::contact::Indentation;
+using model::contact::Place;
+using model::contact::SurfaceView;
 
 constexpr std::size_t kMaxRings = 128;
 constexpr int kRestTicks = 3000;       // at most, for a body with inertia to come to rest
@@ -26,7 +27,8 @@ constexpr double kRestSpeed_m = 1e-9;  // a tick
 
 class LawSubject final : public Subject {
  public:
-  LawSubject(std::unique_ptr<model::Scene> scene, std::unique_ptr<model::TissueLaw> law)
+  LawSubject(std::unique_ptr<model::scene::Scene> scene,
+             std::unique_ptr<model::scene::TissueLaw> law)
       : scene_(std::move(scene)), law_(std::move(law)) {
     dent_m_.resize(scene_->organ_mesh.vertex_m.size());
   }
@@ -91,17 +93,17 @@ class LawSubject final : public Subject {
     }
   }
 
-  std::unique_ptr<model::Scene> scene_;
-  std::unique_ptr<model::TissueLaw> law_;
-  model::PatchShape shape_{};
+  std::unique_ptr<model::scene::Scene> scene_;
+  std::unique_ptr<model::scene::TissueLaw> law_;
+  model::contact::PatchShape shape_{};
   std::vector<double> dent_m_;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<Subject>> make_law_subject(const model::Scene& scene,
-                                                  const model::LawSizes& sizes) {
-  auto own = std::make_unique<model::Scene>(scene);
+Result<std::unique_ptr<Subject>> make_law_subject(const model::scene::Scene& scene,
+                                                  const model::scene::LawSizes& sizes) {
+  auto own = std::make_unique<model::scene::Scene>(scene);
   use_sizes(sizes, *own);
   auto law = make_tissue_law(*own, sizes.law);
   if (!law) return law.error();
@@ -121,8 +123,8 @@ void ring_means(const SurfaceView& surface, const Indentation& in, double pitch_
   double middle_m = 0.0;
   for (std::size_t c = 0; c < 3; ++c)
     middle_m += in.place.weight[c] * dent_m[surface.triangle[in.place.triangle][c]];
-  RingMeans means(static_cast<int>(ring_m.size()), pitch_m, middle_m);
-  for (const model::TriangleCorners& corner : surface.triangle) {
+  ground_truth::RingMeans means(static_cast<int>(ring_m.size()), pitch_m, middle_m);
+  for (const model::contact::TriangleCorners& corner : surface.triangle) {
     std::array<Vec3, 3> p{};
     std::array<double, 3> rho{}, value{};
     for (std::size_t c = 0; c < 3; ++c) {
@@ -131,9 +133,9 @@ void ring_means(const SurfaceView& surface, const Indentation& in, double pitch_
       value[c] = dent_m[corner[c]];
     }
     const Vec3 outward = normalized(cross(p[1] - p[0], p[2] - p[0]));
-    if (dot(outward, in.normal) >= kFacing) means.add_triangle(p, rho, value);
+    if (dot(outward, in.normal) >= ground_truth::kFacing) means.add_triangle(p, rho, value);
   }
   std::ranges::copy(means.means(), ring_m.begin());
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/chart/variants.h"
 
 #include <fmt/format.h>
@@ -6,11 +7,11 @@
 #include <array>
 #include <initializer_list>
 
-namespace tact::tools {
+namespace tact::tools::chart {
 namespace {
 
-using model::LawKind;
-using model::LawSizes;
+using model::scene::LawKind;
+using model::scene::LawSizes;
 
 struct PeerName {
   PeerKind kind;
@@ -24,7 +25,7 @@ constexpr std::array kPeers{PeerName{PeerKind::kFem, "fem"},
 /// Sizes of one law: `whole` of them, `quick` fewer.
 class List {
  public:
-  List(const model::Scene& scene, const VariantWish& wish) : scene_(scene), wish_(wish) {}
+  List(const model::scene::Scene& scene, const VariantWish& wish) : scene_(scene), wish_(wish) {}
 
   void laws();
   void peers();
@@ -42,7 +43,7 @@ class List {
     out_.push_back({.sizes = sizes, .peer = PeerKind::kNone, .peer_size = 0});
   }
   void each(std::initializer_list<std::size_t> whole, std::initializer_list<std::size_t> quick,
-            LawKind kind, std::size_t LawSizes::*size) {
+            LawKind kind, std::size_t LawSizes::* size) {
     for (const std::size_t n : wish_.quick ? quick : whole) {
       LawSizes sizes{.law = kind};
       sizes.*size = n;
@@ -51,14 +52,14 @@ class List {
   }
   void discs();
 
-  const model::Scene& scene_;
+  const model::scene::Scene& scene_;
   const VariantWish& wish_;
   std::vector<Variant> out_;
 };
 
 void List::discs() {
   const std::size_t layers = scene_.disc_stack.delays.layers;
-  for (const auto form : {model::DiscForm::kLinear, model::DiscForm::kAlmenLaszlo}) {
+  for (const auto form : {model::law::DiscForm::kLinear, model::law::DiscForm::kAlmenLaszlo}) {
     if (!wish_.quick && layers > 1)
       add({.law = LawKind::kDiscStack, .layers = layers / 2, .disc_form = form});
     add({.law = LawKind::kDiscStack, .layers = layers, .disc_form = form});
@@ -69,8 +70,8 @@ void List::laws() {
   if (wants(LawKind::kRhombus))
     each({17, 33, 65, 129}, {17, 65}, LawKind::kRhombus, &LawSizes::table_knots);
   if (wants(LawKind::kDiscStack)) discs();
-  for (const auto kind : {LawKind::kHexSheet, LawKind::kHexSheetPaper})
-    if (wants(kind)) each({3, 5, 10, 15, 25}, {5, 15}, kind, &LawSizes::rings);
+  if (wants(LawKind::kHexSheet))
+    each({3, 5, 10, 15, 25}, {5, 15}, LawKind::kHexSheet, &LawSizes::rings);
   if (wants(LawKind::kSpringPatch))
     each({50, 100, 200, 500, 1000}, {100}, LawKind::kSpringPatch, &LawSizes::nodes);
   if (!wants(LawKind::kCompliance)) return;
@@ -107,7 +108,7 @@ std::string Variant::size() const {
   return whole.size() > name ? whole.substr(name + 1) : "as the scene says";
 }
 
-std::vector<Variant> variants_of(const model::Scene& scene, const VariantWish& wish) {
+std::vector<Variant> variants_of(const model::scene::Scene& scene, const VariantWish& wish) {
   List list(scene, wish);
   list.laws();
   if (wish.peers) list.peers();
@@ -116,11 +117,10 @@ std::vector<Variant> variants_of(const model::Scene& scene, const VariantWish& w
 
 std::vector<std::string> all_families() {
   std::vector<std::string> out;
-  for (const model::LawName& law : model::kLawNames)
-    if (law.kind != LawKind::kAuto && law.kind != LawKind::kRhombusPaperLiteral)
-      out.emplace_back(law.name);
+  for (const model::scene::LawName& law : model::scene::kLawNames)
+    if (law.kind != LawKind::kAuto) out.emplace_back(law.name);
   for (const PeerName& peer : kPeers) out.emplace_back(peer.family);
   return out;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

@@ -1,18 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
 // variants.h - what a chart compares: every law of the scene in several sizes, and the peers.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "model/plan_file.h"
-#include "model/scene.h"
+#include "model/scene/plan_file.h"
+#include "model/scene/scene.h"
 
-namespace tact::tools {
+namespace tact::tools::chart {
 
 enum class PeerKind { kNone, kFem, kSpringMesh, kBulletSurface, kBulletVolume };
 
 struct Variant {
-  model::LawSizes sizes{};  // of a law of tact
+  model::scene::LawSizes sizes{};  // of a law of tact
   PeerKind peer = PeerKind::kNone;
   std::size_t peer_size = 0;  // iterations a tick; of kFem the edge inside the organ, um
 
@@ -29,8 +30,8 @@ struct VariantWish {
 };
 
 /// In the order of the table. Laws that the scene does not describe are left out.
-std::vector<Variant> variants_of(const model::Scene& scene, const VariantWish& wish);
+std::vector<Variant> variants_of(const model::scene::Scene& scene, const VariantWish& wish);
 /// Every family there is, for --laws.
 std::vector<std::string> all_families();
 
-}  // namespace tact::tools
+}  // namespace tact::tools::chart

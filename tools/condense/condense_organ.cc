@@ -1,13 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/condense/condense_organ.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "tools/common/gmsh.h"
-#include "tools/common/run_program.h"
+#include "tools/ground_truth/gmsh.h"
+#include "tools/program/run_program.h"
 
-namespace tact::tools {
+namespace tact::tools::condense {
 namespace {
 
 using model::Error;
@@ -20,7 +21,7 @@ constexpr double kElementsInPatch = 1.6;  // patch radius over element edge: r w
 
 }  // namespace
 
-double median_edge_m(const model::SurfaceView& surface) {
+double median_edge_m(const model::contact::SurfaceView& surface) {
   std::vector<double> edge_m;
   for (const auto& t : surface.triangle)
     for (std::size_t i = 0; i < 3; ++i)
@@ -31,7 +32,7 @@ double median_edge_m(const model::SurfaceView& surface) {
   return *middle;
 }
 
-Result<CondenseInput> condense_input(const model::Scene& scene) {
+Result<CondenseInput> condense_input(const model::scene::Scene& scene) {
   if (!scene.elastic)
     return Error{fmt::format(
         "{}: has no [elastic]; add it with youngs_modulus_Pa, poisson_ratio, fixed_min_m and "
@@ -48,8 +49,9 @@ Result<CondenseInput> condense_input(const model::Scene& scene) {
   return input;
 }
 
-Result<model::ComplianceMap> condense_organ(const CondenseInput& input, CondenseFacts& facts) {
-  const model::SurfaceView surface = input.surface.view();
+Result<model::tissue::ComplianceMap> condense_organ(const CondenseInput& input,
+                                                    CondenseFacts& facts) {
+  const model::contact::SurfaceView surface = input.surface.view();
   const std::size_t open = summarize(input.surface).boundary_edges;
   if (open > 0)
     return Error{
@@ -66,9 +68,9 @@ Result<model::ComplianceMap> condense_organ(const CondenseInput& input, Condense
       stopped |= !goes_on(done, vertices);
       return !stopped;
     };
-    if (!settings.organ.progress(0, surface.vertex_m.size())) return interruption();
+    if (!settings.organ.progress(0, surface.vertex_m.size())) return program::interruption();
   }
-  EdgeLengths lengths;
+  ground_truth::EdgeLengths lengths;
   lengths.fine_m = settings.mesh_size_m;
   const auto body = fill_with_gmsh(surface.vertex_m, surface.triangle, lengths);
   if (!body) return body.error();
@@ -76,8 +78,8 @@ Result<model::ComplianceMap> condense_organ(const CondenseInput& input, Condense
            .elements = body->element.size(),
            .mesh_size_m = settings.mesh_size_m};
   auto map = model::fem::condense(*body, surface, settings.organ);
-  if (stopped) return interruption();
+  if (stopped) return program::interruption();
   return map;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::condense

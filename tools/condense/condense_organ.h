@@ -1,15 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
 // condense_organ.h - from a closed surface to its ComplianceMap: fill with gmsh, condense.
 #pragma once
 
 #include <string>
 
-#include "model/compliance_map.h"
 #include "model/fem/condensation.h"
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 #include "model/result.h"
-#include "model/scene.h"
+#include "model/scene/scene.h"
+#include "model/tissue/compliance_map.h"
 
-namespace tact::tools {
+namespace tact::tools::condense {
 
 struct CondenseSettings {
   /// Edge of an element inside the body; 0: 1.5 median edges of the surface.
@@ -22,7 +23,7 @@ struct CondenseSettings {
 
 /// An organ to condense, in its own frame.
 struct CondenseInput {
-  model::SurfaceMesh surface;
+  model::mesh::SurfaceMesh surface;
   CondenseSettings settings{};
 };
 
@@ -33,14 +34,14 @@ struct CondenseFacts {
 };
 
 /// The scene's organ and [elastic]. An error if the scene lacks the section.
-model::Result<CondenseInput> condense_input(const model::Scene& scene);
+model::Result<CondenseInput> condense_input(const model::scene::Scene& scene);
 
 /// Median length of the edges, m.
-double median_edge_m(const model::SurfaceView& surface);
+double median_edge_m(const model::contact::SurfaceView& surface);
 
 /// Minutes for a few thousand vertices. An error if the surface is open, gmsh fails, or it was
 /// interrupted.
-model::Result<model::ComplianceMap> condense_organ(const CondenseInput& input,
-                                                   CondenseFacts& facts);
+model::Result<model::tissue::ComplianceMap> condense_organ(const CondenseInput& input,
+                                                           CondenseFacts& facts);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::condense

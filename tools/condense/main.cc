@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tact-condense: how much the scene's organ gives at every place of its surface, once and for all.
 #include <fmt/format.h>
 #include <unistd.h>
@@ -9,20 +10,20 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "model/compliance_file.h"
-#include "tools/common/interrupt.h"
-#include "tools/common/program.h"
+#include "model/scene/compliance_file.h"
 #include "tools/condense/condense_organ.h"
+#include "tools/program/interrupt.h"
+#include "tools/program/program.h"
 
 namespace {
 
-using tact::model::ComplianceMap;
 using tact::model::Vec3;
-using tact::tools::CondenseFacts;
-using tact::tools::CondenseInput;
+using tact::model::tissue::ComplianceMap;
+using tact::tools::condense::CondenseFacts;
+using tact::tools::condense::CondenseInput;
 
 struct Options {
-  tact::tools::SceneArguments scene;
+  tact::tools::program::SceneArguments scene;
   std::string out;
   double mesh_size_m = 0.0, patch_radius_m = 0.0;
   double ring_pitch_m = 0.0;
@@ -65,7 +66,7 @@ bool show_progress(std::size_t done, std::size_t vertices) {
                  done == vertices ? "\n" : "");
     std::fflush(stderr);
   }
-  return !tact::tools::is_interrupted();
+  return !tact::tools::program::is_interrupted();
 }
 
 struct Range {
@@ -111,7 +112,7 @@ void report(const Options& o, const ComplianceMap& map, const CondenseFacts& fac
 
 // The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
-  tact::tools::Program program(
+  tact::tools::program::Program program(
       "tact-condense",
       "Condense the scene's organ: solve it by finite elements under a small load at every vertex\n"
       "of its surface, and keep how much more it gives there than an endless block would. The\n"
@@ -121,11 +122,11 @@ int main(int argc, char** argv) {
   Options o;
   add_options(program.options(), o);
   if (const auto status = program.parse(argc, argv)) return *status;
-  if (const auto error = tact::tools::check_output(o.out, {o.scene.path}))
+  if (const auto error = tact::tools::program::check_output(o.out, {o.scene.path}))
     return program.fail(*error);
   const auto scene = o.scene.load();
   if (!scene) return program.fail(scene.error());
-  auto input = tact::tools::condense_input(*scene);
+  auto input = tact::tools::condense::condense_input(*scene);
   if (!input) return program.fail(input.error());
   input->settings.mesh_size_m = o.mesh_size_m;
   input->settings.patch_radius_m = o.patch_radius_m;
@@ -134,9 +135,9 @@ int main(int argc, char** argv) {
   input->settings.organ.progress = show_progress;
   const auto start = std::chrono::steady_clock::now();
   CondenseFacts facts;
-  const auto map = tact::tools::condense_organ(*input, facts);
+  const auto map = tact::tools::condense::condense_organ(*input, facts);
   if (!map) return program.fail(map.error());
-  const auto bytes = write_compliance_map(*map, o.out);
+  const auto bytes = tact::model::scene::write_compliance_map(*map, o.out);
   if (!bytes) return program.fail(bytes.error());
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   report(o, *map, facts, *bytes, took.count());

@@ -1,14 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/doctor/doctor_table.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-namespace tact::tools {
+namespace tact::tools::doctor {
 namespace {
 
-using firmware::PcRow;
-using firmware::Verdict;
+using firmware::pc::PcRow;
+using firmware::pc::Verdict;
 
 const char* ink_of(Verdict verdict) {
   switch (verdict) {
@@ -44,4 +45,4 @@ std::string make_doctor_table(const std::vector<PcRow>& rows, bool colour) {
                            count(Verdict::kRed), count(Verdict::kUnknown));
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::doctor

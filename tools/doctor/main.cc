@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tact-doctor: is this PC fit for hard real time, and if not, what is the cure?
 #include <fmt/format.h>
 #include <sched.h>
@@ -8,13 +9,13 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "firmware/rt_setup.h"
-#include "tools/common/program.h"
+#include "firmware/pc/rt_setup.h"
 #include "tools/doctor/doctor_table.h"
+#include "tools/program/program.h"
 
 namespace {
 
-using namespace tact::firmware;  // NOLINT(google-build-using-namespace): the rows it shows
+using namespace tact::firmware::pc;  // NOLINT(google-build-using-namespace): the rows it shows
 using tact::model::Error;
 
 struct Options {
@@ -36,7 +37,7 @@ void add_options(CLI::App& app, Options& o) {
 
 // The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
-  tact::tools::Program program(
+  tact::tools::program::Program program(
       "tact-doctor",
       "Is this PC fit for hard real time? One row a check: green, red or unknown, why it matters, "
       "and the\ncure as a command. Reads /proc, /sys and /dev; changes nothing, opens no device.",
@@ -54,7 +55,7 @@ int main(int argc, char** argv) {
                nlohmann::json{{"core", core_in_question(question)}, {"checks", to_json(rows)}}.dump(
                    2, ' ', false, nlohmann::json::error_handler_t::replace));
   else
-    fmt::print("{}", tact::tools::make_doctor_table(rows, isatty(STDOUT_FILENO) != 0));
+    fmt::print("{}", tact::tools::doctor::make_doctor_table(rows, isatty(STDOUT_FILENO) != 0));
   const bool any_red = std::any_of(rows.begin(), rows.end(),
                                    [](const PcRow& row) { return row.verdict == Verdict::kRed; });
   return any_red ? 1 : 0;

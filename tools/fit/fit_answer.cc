@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/fit/fit_answer.h"
 
 #include <algorithm>
@@ -6,15 +7,15 @@
 #include <map>
 #include <optional>
 
-#include "model/tissue_law.h"
+#include "model/scene/tissue_law.h"
 
-namespace tact::tools {
+namespace tact::tools::fit {
 namespace {
 
-using model::Indentation;
 using model::Result;
-using model::SiteLaw;
 using model::Vec3;
+using model::contact::Indentation;
+using model::contact::SiteLaw;
 
 constexpr std::size_t kMostRings = 128;
 constexpr int kMostTicks = 4000;     // for a body with inertia to come to rest
@@ -52,9 +53,9 @@ void read_profile(std::span<const double> own, double pitch_m, std::span<const d
 }
 
 /// Vertices within a ring pitch of a radius, the nearer the heavier.
-void read_shape(SiteLaw& law, const model::SurfaceMesh& surface, const Indentation& in,
+void read_shape(SiteLaw& law, const model::mesh::SurfaceMesh& surface, const Indentation& in,
                 std::span<const double> radius_m, std::vector<double>& ring_m) {
-  model::PatchShape shape{};
+  model::contact::PatchShape shape{};
   law.shape(shape);
   Vec3 centre{};
   for (std::size_t i = 0; i < 3; ++i)
@@ -77,10 +78,11 @@ void read_shape(SiteLaw& law, const model::SurfaceMesh& surface, const Indentati
 }
 
 /// Chain or sheet, solved once for every depth.
-Result<std::vector<FitAnswer>> solved_answers(const model::Law& press, const model::Scene& scene,
+Result<std::vector<FitAnswer>> solved_answers(const model::law::Law& press,
+                                              const model::scene::Scene& scene,
                                               const FitData& data) {
-  const model::Law* law = &press;
-  std::optional<model::LinearPull> pulled;
+  const model::law::Law* law = &press;
+  std::optional<model::law::LinearPull> pulled;
   if (scene.pull) {
     auto made = make_linear_pull(press, *scene.pull);
     if (!made) return made.error();
@@ -104,9 +106,9 @@ Result<std::vector<FitAnswer>> solved_answers(const model::Law& press, const mod
   return out;
 }
 
-Result<std::vector<FitAnswer>> solve(const model::Scene& scene, model::LawKind kind,
+Result<std::vector<FitAnswer>> solve(const model::scene::Scene& scene, model::scene::LawKind kind,
                                      const FitData& data) {
-  if (kind == model::LawKind::kRhombus) {
+  if (kind == model::scene::LawKind::kRhombus) {
     const auto chain = make_rhombus_chain(scene.rhombus);
     return chain ? solved_answers(*chain, scene, data) : chain.error();
   }
@@ -114,17 +116,18 @@ Result<std::vector<FitAnswer>> solve(const model::Scene& scene, model::LawKind k
   return sheet ? solved_answers(*sheet, scene, data) : sheet.error();
 }
 
-/// Not where the curve is scaled from place to place: that is done to tables.
-bool is_solved(const model::Scene& scene, model::LawKind kind) {
+/// Not a patch of chains nor what is in series with an organ: their tables take less time.
+bool is_solved(const model::scene::Scene& scene, model::scene::LawKind kind) {
   if (scene.varies_by_place) return false;
-  return kind == model::LawKind::kRhombus ||
-         (kind == model::LawKind::kHexSheet && scene.hex_sheet.rings > 0);
+  return (kind == model::scene::LawKind::kRhombus && scene.rhombus_area_m2 == 0.0) ||
+         (kind == model::scene::LawKind::kHexSheet && scene.hex_sheet.rings > 0);
 }
 
 }  // namespace
 
-Result<std::vector<FitAnswer>> answers_of(const model::Scene& scene, model::LawKind kind,
-                                          const FitData& data, AnswerBy by) {
+Result<std::vector<FitAnswer>> answers_of(const model::scene::Scene& scene,
+                                          model::scene::LawKind kind, const FitData& data,
+                                          AnswerBy by) {
   if (by == AnswerBy::kSolving && is_solved(scene, kind)) return solve(scene, kind, data);
   auto made = make_tissue_law(scene, kind);
   if (!made) return made.error();
@@ -151,4 +154,4 @@ Result<std::vector<FitAnswer>> answers_of(const model::Scene& scene, model::LawK
   return out;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::fit

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fit_answer.h - what a scene's law answers where the data was measured.
 //
 // Quasi-static: every sample is asked from rest, without relaxation; a stepped law (spring_patch)
@@ -8,10 +9,10 @@
 #include <vector>
 
 #include "model/result.h"
-#include "model/scene.h"
+#include "model/scene/scene.h"
 #include "tools/fit/fit_data.h"
 
-namespace tact::tools {
+namespace tact::tools::fit {
 
 struct FitAnswer {
   double force_N = 0.0;
@@ -23,8 +24,8 @@ struct FitAnswer {
 enum class AnswerBy { kLoop, kSolving };
 
 /// One answer a sample, in the order of sites and samples. An error says why there is no such law.
-model::Result<std::vector<FitAnswer>> answers_of(const model::Scene& scene, model::LawKind kind,
-                                                 const FitData& data,
+model::Result<std::vector<FitAnswer>> answers_of(const model::scene::Scene& scene,
+                                                 model::scene::LawKind kind, const FitData& data,
                                                  AnswerBy by = AnswerBy::kLoop);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::fit

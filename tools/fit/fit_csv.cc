@@ -1,101 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/fit/fit_csv.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
-#include <fstream>
-#include <optional>
+#include <cmath>
 
-namespace tact::tools {
+#include "tools/report/csv.h"
+
+namespace tact::tools::fit {
 namespace {
 
 using model::Error;
 using model::Result;
+using report::Csv;
+using report::CsvLine;
 
 constexpr std::size_t kFewestRows = 3;
 constexpr const char* kRadius = "radius_m";
-
-struct CsvLine {
-  int number = 0;  // from 1
-  std::vector<std::string> cells;
-};
-
-/// A header and its rows, all of one width; knows its file for the errors.
-class Csv {
- public:
-  static Result<Csv> read(const std::string& path);
-
-  std::optional<std::size_t> find(const std::string& name) const {
-    const auto at = std::find(header_.cells.begin(), header_.cells.end(), name);
-    if (at == header_.cells.end()) return std::nullopt;
-    return static_cast<std::size_t>(at - header_.cells.begin());
-  }
-  Result<std::size_t> need(const std::string& name, const std::string& option) const;
-  Result<double> number(const CsvLine& line, std::size_t column) const;
-  Error blame(int line, const std::string& what) const {
-    return {fmt::format("{}:{}: {}", path_, line, what)};
-  }
-  const std::vector<CsvLine>& rows() const { return rows_; }
-  int header_line() const { return header_.number; }
-
- private:
-  std::string path_;
-  CsvLine header_;
-  std::vector<CsvLine> rows_;
-};
-
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells(1);
-  for (const char c : line) {
-    if (c == ',') {
-      cells.emplace_back();
-    } else if (c != ' ' && c != '\t' && c != '\r' && c != '"') {
-      cells.back() += c;
-    }
-  }
-  return cells;
-}
-
-Result<Csv> Csv::read(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  Csv csv;
-  csv.path_ = path;
-  std::string text;
-  for (int number = 1; std::getline(file, text); ++number) {
-    if (number == 1 && text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // byte order mark
-    if (text.empty() || text[0] == '#' || text == "\r") continue;
-    CsvLine line{.number = number, .cells = split(text)};
-    if (csv.header_.cells.empty()) {
-      csv.header_ = std::move(line);
-      continue;
-    }
-    if (line.cells.size() != csv.header_.cells.size())
-      return csv.blame(
-          number, fmt::format("{} values, but line {} names {} columns; write one "
-                              "value for each",
-                              line.cells.size(), csv.header_.number, csv.header_.cells.size()));
-    csv.rows_.push_back(std::move(line));
-  }
-  if (csv.header_.cells.empty())
-    return Error{fmt::format("{}: cannot be read or is empty; check the name", path)};
-  return csv;
-}
-
-Result<std::size_t> Csv::need(const std::string& name, const std::string& option) const {
-  if (const auto column = find(name)) return *column;
-  return blame(header_.number, fmt::format("no column {} among {}; name it with {}", name,
-                                           fmt::join(header_.cells, ", "), option));
-}
-
-Result<double> Csv::number(const CsvLine& line, std::size_t column) const {
-  const std::string& cell = line.cells[column];
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error == std::errc{} && end == cell.data() + cell.size() && std::isfinite(value))
-    return value;
-  return blame(line.number, fmt::format("{}: \"{}\" is no number", header_.cells[column], cell));
-}
 
 struct RingColumns {
   std::vector<std::size_t> column;
@@ -198,4 +119,4 @@ Result<std::vector<HeldForce>> read_relaxation_csv(const std::string& path,
   return held;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::fit

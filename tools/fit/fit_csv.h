@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fit_csv.h - force over depth, or over time at held depth, as a bench writes it: CSV.
 //
 //     # a comment                                 depth_m  press positive, pull negative
@@ -17,7 +18,7 @@
 #include "tools/fit/fit_data.h"
 #include "tools/fit/fit_prony.h"
 
-namespace tact::tools {
+namespace tact::tools::fit {
 
 struct BenchColumns {
   std::string depth = "depth_m", force = "force_N", time = "time_s";
@@ -34,4 +35,4 @@ model::Result<FitData> read_bench_csv(const std::string& path, const BenchColumn
 model::Result<std::vector<HeldForce>> read_relaxation_csv(const std::string& path,
                                                           const BenchColumns& columns);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::fit

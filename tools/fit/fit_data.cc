@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/fit/fit_data.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "tools/common/reference_fits.h"
+#include "tools/ground_truth/reference_fits.h"
 
-namespace tact::tools {
+namespace tact::tools::fit {
 
 using model::Error;
 using model::Result;
@@ -44,12 +45,13 @@ bool FitData::has_places() const {
                      [](const FitSite& site) { return site.at.has_value(); });
 }
 
-std::optional<FitPlace> place_at_vertex(const model::SurfaceMesh& surface, std::size_t vertex) {
+std::optional<FitPlace> place_at_vertex(const model::mesh::SurfaceMesh& surface,
+                                        std::size_t vertex) {
   if (vertex >= surface.vertex_m.size()) return std::nullopt;
   if (surface.fan_start[vertex] == surface.fan_start[vertex + 1]) return std::nullopt;
   FitPlace out{.normal = surface.vertex_normal[vertex]};
   out.place.triangle = surface.fan[surface.fan_start[vertex]];
-  const model::TriangleCorners& corner = surface.triangle[out.place.triangle];
+  const model::contact::TriangleCorners& corner = surface.triangle[out.place.triangle];
   for (std::size_t i = 0; i < 3; ++i) out.place.weight[i] = corner[i] == vertex ? 1.0 : 0.0;
   return out;
 }
@@ -69,21 +71,23 @@ std::optional<Error> hold_out(FitData& data, const std::vector<std::string>& nam
   return std::nullopt;
 }
 
-Result<FitData> fit_data_of(const ReferenceData& reference, const model::Scene& scene,
+Result<FitData> fit_data_of(const ground_truth::ReferenceData& reference,
+                            const model::scene::Scene& scene,
                             const std::vector<std::string>& held_out, bool large_strain) {
-  if (auto differs = check_reference_fits(reference, scene, ModulusOf::kAny))
+  if (auto differs = check_reference_fits(reference, scene, ground_truth::ModulusOf::kAny))
     return std::move(*differs);
   FitData data{.source = fmt::format("{}, E = {:g} Pa, nu = {:g}, tool radius {:g} m",
                                      reference.mesh, reference.youngs_modulus_Pa,
-                                     reference.poisson_ratio, reference.tool_radius_m)};
+                                     reference.poisson_ratio, reference.tool_radius_m),
+               .large_strain = large_strain};
   std::size_t rings = 0;
-  for (const SolvedSite& solved : reference.sites) {
+  for (const ground_truth::SolvedSite& solved : reference.sites) {
     FitSite site{.name = std::to_string(solved.vertex),
                  .at = place_at_vertex(scene.organ_mesh, solved.vertex)};
     site.at->normal = -solved.direction;
-    for (const model::ReferenceSite& known : scene.reference_sites)
+    for (const model::scene::ReferenceSite& known : scene.reference_sites)
       if (known.vertex == solved.vertex) site.held_out = known.held_out;
-    for (const ReferenceCase& c : solved.cases) {
+    for (const ground_truth::ReferenceCase& c : solved.cases) {
       if (c.large_strain != large_strain) continue;
       site.samples.push_back({.depth_m = c.depth_m, .force_N = c.force_N, .ring_m = c.profile_m});
       rings = std::max(rings, c.profile_m.size());
@@ -104,4 +108,4 @@ Result<FitData> fit_data_of(const ReferenceData& reference, const model::Scene& 
   return data;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::fit

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fit_data.h - what a law is fitted to: forces, and the shape where known, over depth at some
 // sites.
 //
@@ -11,12 +12,12 @@
 #include <string>
 #include <vector>
 
+#include "model/contact/site.h"
 #include "model/result.h"
-#include "model/scene.h"
-#include "model/site.h"
-#include "tools/common/reference_data.h"
+#include "model/scene/scene.h"
+#include "tools/ground_truth/reference_data.h"
 
-namespace tact::tools {
+namespace tact::tools::fit {
 
 struct FitSample {
   double depth_m = 0.0;
@@ -26,7 +27,7 @@ struct FitSample {
 
 /// Where laws that differ from place to place are asked.
 struct FitPlace {
-  model::Place place{};
+  model::contact::Place place{};
   model::Vec3 normal{};  // outward, unit
 };
 
@@ -41,6 +42,7 @@ struct FitData {
   std::string source{};  // for people
   std::vector<double> ring_radius_m{};
   std::vector<FitSite> sites{};
+  std::optional<bool> large_strain{};  // of a reference; a bench does not say
 
   double peak_N() const;           // largest |force|
   double deepest_m() const;        // largest depth, 0 without press
@@ -51,14 +53,16 @@ struct FitData {
 };
 
 /// The vertex as a place, if the surface has it.
-std::optional<FitPlace> place_at_vertex(const model::SurfaceMesh& surface, std::size_t vertex);
+std::optional<FitPlace> place_at_vertex(const model::mesh::SurfaceMesh& surface,
+                                        std::size_t vertex);
 
 /// Marks sites by name. An error names one that is not there, or says that none is left to fit.
 std::optional<model::Error> hold_out(FitData& data, const std::vector<std::string>& names);
 
 /// The scene says which sites are held out, `held_out` names more. `large_strain`: those cases
 /// instead of the linear ones.
-model::Result<FitData> fit_data_of(const ReferenceData& reference, const model::Scene& scene,
+model::Result<FitData> fit_data_of(const ground_truth::ReferenceData& reference,
+                                   const model::scene::Scene& scene,
                                    const std::vector<std::string>& held_out, bool large_strain);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::fit

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/fit/fit_judge.h"
 
 #include <fmt/format.h>
@@ -5,8 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tact::tools {
+#include "tools/report/just_noticeable.h"
+
+namespace tact::tools::fit {
 namespace {
+
+using report::kJustNoticeable_ratio;
 
 /// Sums up to a Residual.
 class Errors {
@@ -88,9 +93,11 @@ std::string slope_reason(const FitData& data, std::span<const FitAnswer> answers
   }
   if (sites == 0) return {};
   of_data /= sites, of_law /= sites;
-  if (std::abs(of_data - of_law) < kNoticeable) return {};
+  if (std::abs(of_data - of_law) < kJustNoticeable_ratio) return {};
   const auto way = [](double growth) {
-    return growth > kNoticeable ? "hardens" : growth < -kNoticeable ? "softens" : "is linear";
+    return growth > kJustNoticeable_ratio    ? "hardens"
+           : growth < -kJustNoticeable_ratio ? "softens"
+                                             : "is linear";
   };
   const std::string law_way = way(of_law), data_way = way(of_data);
   const std::string what =
@@ -113,7 +120,7 @@ std::vector<std::string> reasons_of(const FitData& data, std::span<const FitAnsw
       j.sites.begin(), j.sites.end(),
       [](const SiteResidual& a, const SiteResidual& b) { return a.best_scale < b.best_scale; });
   const double spread = (high->best_scale - low->best_scale) / (high->best_scale + low->best_scale);
-  if (!scale_by_site && spread > kNoticeable)
+  if (!scale_by_site && spread > kJustNoticeable_ratio)
     reasons.push_back(
         fmt::format("one stiffness for all sites: sites differ by ±{:.0f} %, from "
                     "{} to {}",
@@ -168,7 +175,7 @@ Judgement judge(const FitData& data, std::span<const FitAnswer> answers, bool sc
       (site.held_out ? held_out_shape : shape).add(u);
     }
     row.force = of_site.of_peak(peak_N);
-    row.shape_rms = site_shape.root();
+    row.shape_rms_ratio = site_shape.root();
     out.sites.push_back(row);
   }
   const double peak_N = data.peak_N();
@@ -176,15 +183,16 @@ Judgement judge(const FitData& data, std::span<const FitAnswer> answers, bool sc
   out.held_out = held_out.of_peak(peak_N);
   out.press = press.of_peak(peak_N);
   out.pull = pull.of_peak(peak_N);
-  out.shape_rms = shape.root();
-  out.held_out_shape_rms = held_out_shape.root();
-  out.follows = out.fitted.rms_ratio() <= kNoticeable && out.held_out.rms_ratio() <= kNoticeable;
+  out.shape_rms_ratio = shape.root();
+  out.held_out_shape_rms_ratio = held_out_shape.root();
+  out.follows = out.fitted.rms_ratio() <= kJustNoticeable_ratio &&
+                out.held_out.rms_ratio() <= kJustNoticeable_ratio;
   const bool suits_all = std::all_of(out.sites.begin(), out.sites.end(), [](const auto& site) {
-    return site.force.rms_ratio() <= kNoticeable;
+    return site.force.rms_ratio() <= kJustNoticeable_ratio;
   });
   if (!out.follows || !suits_all)
     out.reasons = reasons_of(data, answers, out, scale_by_site, press_limit_m);
   return out;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::fit

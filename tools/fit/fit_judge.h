@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fit_judge.h - how far a law stays from the data, and whether it can follow it at all.
 //
 //     force   e = F - F_data            RMS and worst in N, and of the peak |F_data| of all sites
@@ -16,9 +17,7 @@
 #include "tools/fit/fit_answer.h"
 #include "tools/fit/fit_data.h"
 
-namespace tact::tools {
-
-inline constexpr double kNoticeable = 0.07;  // of a force
+namespace tact::tools::fit {
 
 struct Residual {
   std::size_t samples = 0;
@@ -33,15 +32,15 @@ struct SiteResidual {
   std::string name;
   bool held_out = false;
   Residual force{};
-  double scale = 1.0;       // that the law's force was multiplied with here
-  double best_scale = 1.0;  // that would suit this site best
-  double shape_rms = 0.0;   // of the depth; NaN without shapes
+  double scale = 1.0;            // that the law's force was multiplied with here
+  double best_scale = 1.0;       // that would suit this site best
+  double shape_rms_ratio = 0.0;  // of the depth; NaN without shapes
 };
 
 struct Judgement {
-  Residual fitted, held_out;                         // held_out: of the peak of all sites too
-  Residual press, pull;                              // of all sites
-  double shape_rms = 0.0, held_out_shape_rms = 0.0;  // NaN without shapes
+  Residual fitted, held_out;  // held_out: of the peak of all sites too
+  Residual press, pull;       // of all sites
+  double shape_rms_ratio = 0.0, held_out_shape_rms_ratio = 0.0;  // NaN without shapes
   std::vector<SiteResidual> sites;
   std::vector<std::string> reasons;  // why it cannot follow, at some site at least
   bool follows = false;
@@ -56,4 +55,4 @@ double shape_error(const FitSample& sample, const FitAnswer& answer);
 Judgement judge(const FitData& data, std::span<const FitAnswer> answers, bool scale_by_site,
                 double press_limit_m);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::fit

@@ -1,14 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/fit/fit_law.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace tact::tools {
+namespace tact::tools::fit {
 namespace {
 
-using model::DiscForm;
-using model::LawKind;
-using model::Scene;
+using model::law::DiscForm;
+using model::scene::LawKind;
+using model::scene::Scene;
 
 constexpr double kLeast_N_per_m = 1e-3;  // stands for no spring
 constexpr double kMost_N_per_m = 1e5;
@@ -26,7 +27,7 @@ FitParameter spring(const char* section, const char* key, std::function<double&(
 }
 
 FitLaw rhombus() {
-  const auto p = [](Scene& s) -> model::RhombusChainParameters& { return s.rhombus; };
+  const auto p = [](Scene& s) -> model::law::RhombusChainParameters& { return s.rhombus; };
   FitLaw law{.name = "rhombus", .kind = LawKind::kRhombus};
   law.parameters = {
       {"rhombus", "rod_length_m", 1e-4, 0.1,
@@ -74,17 +75,14 @@ FitLaw coned_disc_stack(const Scene& scene) {
   return law;
 }
 
-FitLaw hex_sheet(LawKind kind) {
-  const auto p = [](Scene& s) -> model::HexSheetParameters& { return s.hex_sheet; };
-  const bool is_paper = kind == LawKind::kHexSheetPaper;
-  FitLaw law{.name = std::string(name_of(kind)), .kind = kind};
+FitLaw hex_sheet() {
+  const auto p = [](Scene& s) -> model::law::HexSheetParameters& { return s.hex_sheet; };
+  FitLaw law{.name = "hex_sheet", .kind = LawKind::kHexSheet};
   law.parameters = {{"hex_sheet", "ring_pitch_m", 1e-4, 0.05,
                      [p](Scene& s) -> double& { return p(s).ring_pitch_m; }},
                     spring("hex_sheet", "body_stiffness_N_per_m",
                            [p](Scene& s) -> double& { return p(s).body_stiffness_N_per_m; })};
   law.parameters[1].low = 0.01;
-  law.starts = {{1, 1}, {2, 1}, {0.5, 1}};
-  if (is_paper) return law;
   law.parameters.push_back(
       spring("hex_sheet", "contact_stiffness_N_per_m",
              [p](Scene& s) -> double& { return p(s).contact_stiffness_N_per_m; }));
@@ -107,7 +105,7 @@ FitLaw compliance() {
 
 // Settled by stepping, so a slope needs a longer step than a closed form does.
 FitLaw spring_patch(const Scene& scene) {
-  const auto p = [](Scene& s) -> model::SpringPatchParameters& { return s.spring_patch; };
+  const auto p = [](Scene& s) -> model::springs::SpringPatchParameters& { return s.spring_patch; };
   FitLaw law{.name = "spring_patch",
              .kind = LawKind::kSpringPatch,
              .by_place = true,
@@ -126,7 +124,7 @@ FitLaw spring_patch(const Scene& scene) {
   law.followers = {{"spring_patch", "node_mass_kg", 1e-7, 1.0,
                     [p](Scene& s) -> double& { return p(s).node_mass_kg; }}};
   const auto stiffest = [](const Scene& s) {
-    const model::SpringPatchParameters& q = s.spring_patch;
+    const model::springs::SpringPatchParameters& q = s.spring_patch;
     return q.tissue.surface_stiffness_N_per_m + q.tissue.body_stiffness_N_per_m +
            q.coupling_stiffness_N_per_m;
   };
@@ -146,10 +144,7 @@ std::vector<FitLaw> fit_laws_of(const Scene& scene, const FitData& data) {
     laws.push_back(disc_stack(DiscForm::kLinear));
     laws.push_back(coned_disc_stack(scene));
   }
-  if (scene.describes(LawKind::kHexSheet)) {
-    laws.push_back(hex_sheet(LawKind::kHexSheet));
-    laws.push_back(hex_sheet(LawKind::kHexSheetPaper));
-  }
+  if (scene.describes(LawKind::kHexSheet)) laws.push_back(hex_sheet());
   if (data.farthest_pull_m() > 0.0) {
     for (FitLaw& law : laws) {
       law.parameters.push_back({"pull", "stiffness_N_per_m", 0.01, 1e5,
@@ -200,4 +195,4 @@ void reach(Scene& scene, const FitData& data) {
                 .limit_m = std::max(1e-4, data.farthest_pull_m())};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::fit

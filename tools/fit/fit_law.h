@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fit_law.h - which numbers of a scene make a law, so that a fit can turn them.
 //
 // A fit changes the numbers in a Scene and lets make_tissue_law build the law from it, as tactd
@@ -10,29 +11,29 @@
 //     spring_patch surface_, body_ and coupling_stiffness; the mass keeps its ratio to the springs
 //     pull         stiffness, beside every law of the first three kinds, when the data pulls
 //
-// Bounds are the scene's ranges (model/scene_laws.cc), from the least stiffness above 0.
+// Bounds are the scene's ranges (model/scene/scene_laws.cc), from the least stiffness above 0.
 #pragma once
 
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "model/scene.h"
+#include "model/scene/scene.h"
 #include "tools/fit/fit_data.h"
 
-namespace tact::tools {
+namespace tact::tools::fit {
 
 struct FitParameter {
   std::string section, key;  // in the scene
   double low = 0.0, high = 0.0;
-  std::function<double&(model::Scene&)> in;
+  std::function<double&(model::scene::Scene&)> in;
   /// Multiplied all together they multiply the force in press, and leave the shape.
   bool is_stiffness = false;
 };
 
 struct FitLaw {
   std::string name;  // as --law takes it
-  model::LawKind kind = model::LawKind::kRhombus;
+  model::scene::LawKind kind = model::scene::LawKind::kRhombus;
   bool by_place = false;        // differs from place to place
   std::string choice{};         // key = "word" of its section that makes this law, or empty
   double difference = 1e-4;     // of a slope, in the logarithm
@@ -42,19 +43,19 @@ struct FitLaw {
   /// Ratios to the scene's own numbers where the search starts, one vector each.
   std::vector<std::vector<double>> starts{};
   /// Numbers that follow from the fitted ones, and a choice of form.
-  std::function<void(model::Scene&)> follow{};
+  std::function<void(model::scene::Scene&)> follow{};
   /// Parameters that follow() turns and that belong into the scene too.
   std::vector<FitParameter> followers{};
 };
 
 /// The laws that the scene describes, for data like this; names are unique.
-std::vector<FitLaw> fit_laws_of(const model::Scene& scene, const FitData& data);
+std::vector<FitLaw> fit_laws_of(const model::scene::Scene& scene, const FitData& data);
 
 /// Takes parameters out of the search: those named here, by "key" or "section.key", stay as the
 /// scene has them. Returns how many were taken out.
 std::size_t keep_parameters(FitLaw& law, const std::vector<std::string>& names);
 
 /// Raises working depths and the limit of the pull to what the data needs.
-void reach(model::Scene& scene, const FitData& data);
+void reach(model::scene::Scene& scene, const FitData& data);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::fit

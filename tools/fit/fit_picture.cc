@@ -1,14 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
-#include "tools/common/picture.h"
-#include "tools/common/table.h"
 #include "tools/fit/fit_report.h"
+#include "tools/program/whole_file.h"
+#include "tools/report/picture.h"
 
-namespace tact::tools {
+namespace tact::tools::fit {
 namespace {
 
 /// One row a sample: what was measured, then what each law says (with its site's factor).
@@ -38,7 +39,7 @@ std::string rows_of(const FitReport& report) {
 }
 
 std::string script_of(const FitReport& report, const std::string& csv) {
-  constexpr std::size_t kColours = std::size(kInk);
+  constexpr std::size_t kColours = std::size(report::kInk);
   std::string plots = fmt::format(
       "'{0}' using 3:($2==0?$4:NaN) with points pt 7 ps 0.8 lc rgb '#000000' title 'data', "
       "'{0}' using 3:($2==1?$4:NaN) with points pt 6 ps 0.9 lc rgb '#000000' title "
@@ -46,7 +47,7 @@ std::string script_of(const FitReport& report, const std::string& csv) {
       csv);
   for (std::size_t k = 0; k < report.laws.size(); ++k)
     plots += fmt::format(", '{}' using 3:{} with lines lw 1.5 lc rgb '{}' title '{} ({:.1f} %)'",
-                         csv, k + 5, kInk[k % kColours], report.laws[k].title,
+                         csv, k + 5, report::kInk[k % kColours], report.laws[k].title,
                          100.0 * report.laws[k].judged.fitted.rms_ratio());
   return "set xlabel 'depth, mm (pull below 0)'\n"
          "set ylabel 'force, N'\nset key top left\nset grid lc rgb '#dddddd'\n"
@@ -64,9 +65,9 @@ model::Result<std::vector<std::string>> draw_fit(const FitReport& report, const 
   const fs::path path(file);
   const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
   const std::string csv = path.stem().string() + ".points.csv";
-  auto rows = write_whole_file((fs::path(folder) / csv).string(), rows_of(report));
+  auto rows = program::write_whole_file((fs::path(folder) / csv).string(), rows_of(report));
   if (!rows) return rows.error();
-  return draw({.name = path.stem().string(), .script = script_of(report, csv)}, folder);
+  return report::draw({.name = path.stem().string(), .script = script_of(report, csv)}, folder);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::fit

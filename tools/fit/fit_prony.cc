@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/fit/fit_prony.h"
 
 #include <fmt/format.h>
@@ -8,7 +9,7 @@
 
 #include "tools/fit/fit_search.h"
 
-namespace tact::tools {
+namespace tact::tools::fit {
 namespace {
 
 using Eigen::Index;
@@ -53,11 +54,7 @@ class HeldProblem {
   MatrixXd basis(std::span<const double> log_time) const {
     MatrixXd out = MatrixXd::Ones(time_s_.size(), static_cast<Index>(log_time.size()) + 1);
     for (std::size_t c = 0; c < log_time.size(); ++c)
-      for (Index i = 0; i < time_s_.size(); ++i) {
-        const double e = std::exp(-time_s_[i] / std::exp(log_time[c]));
-        out(i, static_cast<Index>(c) + 1) =
-            options_.stretch_to_force ? options_.stretch_to_force(e) : e;
-      }
+      out.col(static_cast<Index>(c) + 1) = (-time_s_ / std::exp(log_time[c])).array().exp();
     return out;
   }
   PronyFit finish(const std::vector<double>& log_time) const;
@@ -122,9 +119,9 @@ Result<PronyFit> fit_prony(const std::vector<HeldForce>& held, const PronyOption
         (i > 0 && !(held[i].time_s > held[i - 1].time_s)))
       return Error{fmt::format("relaxation: row {}: forces must be above 0 and times rise", i + 1)};
   const HeldProblem problem(held, options);
-  if (options.terms > 0) return problem.fit(std::min(options.terms, model::kMaxPronyTerms));
+  if (options.terms > 0) return problem.fit(std::min(options.terms, model::law::kMaxPronyTerms));
   PronyFit best;
-  for (std::size_t terms = 1; terms <= model::kMaxPronyTerms; ++terms) {
+  for (std::size_t terms = 1; terms <= model::law::kMaxPronyTerms; ++terms) {
     if (held.size() < 2 * (terms + 1)) break;
     best = problem.fit(terms);
     if (best.is_good) break;
@@ -132,4 +129,4 @@ Result<PronyFit> fit_prony(const std::vector<HeldForce>& held, const PronyOption
   return best;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::fit

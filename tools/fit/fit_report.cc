@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/fit/fit_report.h"
 
 #include <fmt/format.h>
@@ -6,7 +7,7 @@
 #include <cmath>
 #include <tuple>
 
-namespace tact::tools {
+namespace tact::tools::fit {
 namespace {
 
 using nlohmann::ordered_json;
@@ -59,7 +60,7 @@ std::string toml_of_keys(const FittedLaw& law, std::vector<std::string>& written
 
 std::string toml_of_relaxation(const PronyFit& fit) {
   std::string out;
-  for (const model::PronyTerm& term : fit.terms)
+  for (const model::law::PronyTerm& term : fit.terms)
     out += fmt::format("[[relaxation]]\nshare_ratio = {:.4g}\ntime_s = {:.4g}\n", term.share,
                        term.time_s);
   return out;
@@ -72,9 +73,9 @@ std::string text_of_law(const FittedLaw& law) {
   for (const std::string& reason : j.reasons) out += "  " + reason + "\n";
   out += line_of("fitted", j.fitted) + line_of("held out", j.held_out);
   out += line_of("press", j.press) + line_of("pull", j.pull);
-  if (std::isfinite(j.shape_rms) || std::isfinite(j.held_out_shape_rms))
-    out += fmt::format("  shape      {} of the depth, held out {}\n", percent(j.shape_rms),
-                       percent(j.held_out_shape_rms));
+  if (std::isfinite(j.shape_rms_ratio) || std::isfinite(j.held_out_shape_rms_ratio))
+    out += fmt::format("  shape      {} of the depth, held out {}\n", percent(j.shape_rms_ratio),
+                       percent(j.held_out_shape_rms_ratio));
   if (j.sites.size() > 1) {
     const bool by_site = std::any_of(j.sites.begin(), j.sites.end(),
                                      [](const SiteResidual& s) { return s.scale != 1.0; });
@@ -82,7 +83,7 @@ std::string text_of_law(const FittedLaw& law) {
     for (const SiteResidual& s : j.sites)
       out += fmt::format("  {:9} {:7.3g} {:>11} {:>8} {:>9} {:9.3f}{}\n", s.name, s.force.peak_N,
                          percent(s.force.rms_ratio()), percent(s.force.worst_ratio()),
-                         percent(s.shape_rms), s.best_scale, s.held_out ? "  held out" : "");
+                         percent(s.shape_rms_ratio), s.best_scale, s.held_out ? "  held out" : "");
     out += fmt::format("  factor: {}\n", by_site ? "of each site's force, used above"
                                                  : "what would suit the site best; not used");
   }
@@ -108,7 +109,7 @@ ordered_json json_of(const FittedLaw& law) {
                      {"force", json_of(s.force)},
                      {"scale", s.scale},
                      {"best_scale", s.best_scale},
-                     {"shape_rms_ratio", json_of(s.shape_rms)}});
+                     {"shape_rms_ratio", json_of(s.shape_rms_ratio)}});
   for (const FittedKey& k : law.keys)
     keys.push_back(
         {{"section", k.section}, {"key", k.key}, {"value", k.value}, {"at_bound", k.at_bound}});
@@ -121,8 +122,8 @@ ordered_json json_of(const FittedLaw& law) {
           {"held_out", json_of(j.held_out)},
           {"press", json_of(j.press)},
           {"pull", json_of(j.pull)},
-          {"shape_rms_ratio", json_of(j.shape_rms)},
-          {"held_out_shape_rms_ratio", json_of(j.held_out_shape_rms)},
+          {"shape_rms_ratio", json_of(j.shape_rms_ratio)},
+          {"held_out_shape_rms_ratio", json_of(j.held_out_shape_rms_ratio)},
           {"sites", sites},
           {"evaluations", law.evaluations}};
 }
@@ -187,7 +188,7 @@ ordered_json json_of(const FitReport& report) {
   out["notes"] = report.notes;
   if (const auto& r = report.relaxation) {
     ordered_json terms = ordered_json::array();
-    for (const model::PronyTerm& t : r->terms)
+    for (const model::law::PronyTerm& t : r->terms)
       terms.push_back({{"share_ratio", t.share}, {"time_s", t.time_s}});
     out["relaxation"] = {{"terms", terms},
                          {"at_once_N", r->at_once_N},
@@ -198,4 +199,4 @@ ordered_json json_of(const FitReport& report) {
   return out;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::fit

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fit_report.h - a fit for people, for a scene and for machines: text, TOML, JSON, a picture.
 #pragma once
 
@@ -10,7 +11,7 @@
 #include "tools/fit/fit_prony.h"
 #include "tools/fit/fit_run.h"
 
-namespace tact::tools {
+namespace tact::tools::fit {
 
 /// Everything that one call fitted.
 struct FitReport {
@@ -33,4 +34,4 @@ nlohmann::ordered_json json_of(const FitReport& report);
 /// FILE.svg, FILE.png and what they were drawn from; returns the paths.
 model::Result<std::vector<std::string>> draw_fit(const FitReport& report, const std::string& file);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::fit

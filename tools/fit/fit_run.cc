@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/fit/fit_run.h"
 
 #include <fmt/format.h>
@@ -5,15 +6,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/tissue_law.h"
+#include "model/scene/tissue_law.h"
 #include "tools/fit/fit_search.h"
 
-namespace tact::tools {
+namespace tact::tools::fit {
 namespace {
 
 using model::Error;
 using model::Result;
-using model::Scene;
+using model::scene::Scene;
 
 /// The deepest press and pull of a site, and the ones nearest to half of them.
 void thin(FitSite& site) {
@@ -49,6 +50,7 @@ class Fit {
   Fit(const FitLaw& law, const Scene& scene, const FitData& data, const FitOptions& options)
       : law_(law), data_(fitted_part(data, law)), options_(options), scene_(scene) {
     scene_.relaxation.clear();  // forces at once
+    if (data.large_strain) scene_.compliance.large_strain = *data.large_strain;
     reach(scene_, data);
     for (const FitSite& site : data_.sites) samples_ += site.samples.size();
     with_shapes_ = options.shape_weight > 0.0 && data_.has_shapes();
@@ -176,8 +178,8 @@ void add_raised(const FitLaw& law, const Scene& before, const Scene& after,
   const auto add = [&keys](const char* section, const char* key, double was, double is) {
     if (is != was) keys.push_back({section, key, is, false});
   };
-  using enum model::LawKind;
-  if (law.kind == kHexSheet || law.kind == kHexSheetPaper)
+  using enum model::scene::LawKind;
+  if (law.kind == kHexSheet)
     add("hex_sheet", "working_depth_m", before.hex_sheet.working_depth_m,
         after.hex_sheet.working_depth_m);
   if (law.kind == kCompliance)
@@ -219,4 +221,4 @@ Result<FittedLaw> fit_law(const FitLaw& law, const Scene& scene, const FitData& 
   return out;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::fit

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fit_run.h - fits one law to data: turns its parameters until the residual is least.
 //
 //     minimise  sum over fitted samples of (e / peak)^2  +  (w e_shape)^2
@@ -19,7 +20,7 @@
 #include "tools/fit/fit_judge.h"
 #include "tools/fit/fit_law.h"
 
-namespace tact::tools {
+namespace tact::tools::fit {
 
 struct FitOptions {
   double shape_weight = 0.1;
@@ -44,7 +45,7 @@ struct FittedLaw {
 };
 
 /// An error says why there is no such law, or why the data does not suit it.
-model::Result<FittedLaw> fit_law(const FitLaw& law, const model::Scene& scene, const FitData& data,
-                                 const FitOptions& options);
+model::Result<FittedLaw> fit_law(const FitLaw& law, const model::scene::Scene& scene,
+                                 const FitData& data, const FitOptions& options);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::fit

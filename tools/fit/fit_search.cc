@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/fit/fit_search.h"
 
 #include <Eigen/Core>
@@ -5,9 +6,9 @@
 #include <cmath>
 #include <unsupported/Eigen/NonLinearOptimization>
 
-#include "tools/common/interrupt.h"
+#include "tools/program/interrupt.h"
 
-namespace tact::tools {
+namespace tact::tools::fit {
 namespace {
 
 using Eigen::Index;
@@ -68,7 +69,7 @@ class Functor {
     for (Index i = 0; i < inputs(); ++i)
       r[values() - inputs() + i] = kOutOfBounds * (x[i] - inside_[at(i)]);
     const bool is_law =
-        !is_interrupted() && problem_.residual(inside_, {r.data(), problem_.residuals});
+        !program::is_interrupted() && problem_.residual(inside_, {r.data(), problem_.residuals});
     if (!is_law || !r.allFinite()) r.head(values() - inputs()).setConstant(kNoLaw);
     return is_law && r.allFinite();
   }
@@ -98,4 +99,4 @@ SearchResult search(const SearchProblem& problem, const std::vector<double>& sta
           .evaluations = functor.evaluations()};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::fit

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fit_search.h - the least sum of squares within bounds, by Levenberg and Marquardt's method.
 //
 // Unknowns are logarithms of parameters, so a step means a ratio; slopes are central differences.
@@ -9,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace tact::tools {
+namespace tact::tools::fit {
 
 struct SearchProblem {
   std::size_t residuals = 0;
@@ -28,4 +29,4 @@ struct SearchResult {
 
 SearchResult search(const SearchProblem& problem, const std::vector<double>& start);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::fit

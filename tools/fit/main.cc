@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tact-fit: which numbers let a law of the scene follow measured forces, and how far it stays off.
 #include <fmt/format.h>
 
@@ -5,29 +6,28 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/tissue_law.h"
-#include "tools/common/program.h"
-#include "tools/common/run_program.h"
-#include "tools/common/sweep.h"
-#include "tools/common/table.h"
 #include "tools/fit/fit_csv.h"
 #include "tools/fit/fit_report.h"
+#include "tools/program/program.h"
+#include "tools/program/run_program.h"
+#include "tools/program/sweep.h"
+#include "tools/program/whole_file.h"
 
 namespace {
 
 using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
+using namespace tact::tools::fit;  // NOLINT(google-build-using-namespace)
 using tact::model::Error;
 using tact::model::Result;
-using tact::model::Scene;
+using tact::model::scene::Scene;
 
 struct Options {
-  SceneArguments scene;
+  program::SceneArguments scene;
   std::string data, relaxation, reference, out, picture;
   std::vector<std::string> held_out, keep, laws{"all"};
   BenchColumns columns;
   FitOptions fit;
   std::size_t terms = 0;
-  double held_depth_m = 0.0;
   bool large_strain = false, json = false;
 };
 
@@ -35,7 +35,7 @@ void add_options(CLI::App& app, Options& o) {
   o.scene.add_to(app, "the laws to fit");
   app.add_option("--law", o.laws,
                  "which laws, by name: rhombus, disc_stack (both forms), disc_stack_linear, "
-                 "disc_stack_almen_laszlo, hex_sheet, hex_sheet_paper, compliance, spring_patch")
+                 "disc_stack_almen_laszlo, hex_sheet, compliance, spring_patch")
       ->delimiter(',')
       ->capture_default_str();
   app.add_option("--reference", o.reference, "JSON of tact-reference; its held-out sites judge");
@@ -63,9 +63,6 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--large-strain", o.large_strain, "the reference's cases with large strain");
   app.add_option("--terms", o.terms, "of --relaxation (default: the fewest with RMS below 2 %)")
       ->check(CLI::Range(1, 3));
-  app.add_option("--held-depth-m", o.held_depth_m,
-                 "of --relaxation: fits how the scene's law fades at that depth, not the force")
-      ->check(CLI::PositiveNumber);
   app.add_option("--out", o.out, "TOML to write: sections to paste into the scene");
   app.add_option("--picture", o.picture, "SVG to draw (and PNG), with gnuplot");
   app.add_flag("--json", o.json, "print one JSON object, SI units");
@@ -73,16 +70,17 @@ void add_options(CLI::App& app, Options& o) {
 
 Result<FitData> read_data(const Options& o, const Scene& scene) {
   if (!o.reference.empty()) {
-    const auto reference = read_reference(o.reference);
+    const auto reference = ground_truth::read_reference(o.reference);
     if (!reference) return reference.error();
     return fit_data_of(*reference, scene, o.held_out, o.large_strain);
   }
   auto data = read_bench_csv(o.data, o.columns, o.held_out);
   if (!data) return data;
   for (FitSite& site : data->sites) {  // a site named by a vertex has a place
-    const bool is_number = !site.name.empty() && site.name.size() < 10 &&
-                           std::all_of(site.name.begin(), site.name.end(),
-                                       [](char c) { return c >= '0' && c <= '9'; });
+    const bool is_number =
+        !site.name.empty() && site.name.size() < 10 &&
+        std::all_of(
+            site.name.begin(), site.name.end(), [](char c) { return c >= '0' && c <= '9'; });
     if (is_number) site.at = place_at_vertex(scene.organ_mesh, std::stoul(site.name));
   }
   return data;
@@ -127,44 +125,23 @@ std::optional<Error> fit_laws(const Options& o, const Scene& scene, FitReport& r
   const auto laws = chosen_laws(o, scene, *report.data);
   if (!laws) return laws.error();
   std::vector<std::optional<Result<FittedLaw>>> fitted(laws->size());
-  const bool whole = run_jobs(laws->size(), {.label = "tact-fit"}, [&](std::size_t i) {
+  const bool whole = program::run_jobs(laws->size(), {.label = "tact-fit"}, [&](std::size_t i) {
     fitted[i] = fit_law((*laws)[i], scene, *report.data, o.fit);
   });
-  if (!whole) return interruption();
-  for (std::size_t i = 0; i < laws->size(); ++i) {
-    if (*fitted[i]) {
+  if (!whole) return program::interruption();
+  for (std::size_t i = 0; i < laws->size(); ++i)
+    if (*fitted[i])
       report.laws.push_back(std::move(**fitted[i]));
-    } else {
+    else
       report.notes.push_back((*laws)[i].name + " was not fitted: " + fitted[i]->error().sentence);
-    }
-  }
   if (report.laws.empty()) return Error{report.notes.front()};
   return std::nullopt;
 }
 
-/// How the scene's law feels a stretch that has faded to the share e of the held depth.
-std::optional<Error> fit_relaxation(const Options& o, Scene scene, FitReport& report) {
+std::optional<Error> fit_relaxation(const Options& o, FitReport& report) {
   const auto held = read_relaxation_csv(o.relaxation, o.columns);
   if (!held) return held.error();
-  PronyOptions options{.terms = o.terms};
-  scene.relaxation.clear();
-  std::unique_ptr<tact::model::TissueLaw> law;
-  if (o.held_depth_m > 0.0) {
-    auto made = make_tissue_law(scene, scene.law);
-    if (!made) return made.error();
-    law = std::move(*made);
-    const tact::model::Law* curve = law->curve();
-    if (curve == nullptr)
-      return Error{"--held-depth-m needs a closed-form law; a spring patch has its own damping"};
-    if (!(o.held_depth_m <= curve->range().press_m))
-      return Error{fmt::format("--held-depth-m {} is beyond the law's {:.4g} m", o.held_depth_m,
-                               curve->range().press_m)};
-    const double full_N = curve->respond(o.held_depth_m).force_N;
-    options.stretch_to_force = [curve, full_N, depth_m = o.held_depth_m](double e) {
-      return curve->respond(e * depth_m).force_N / full_N;
-    };
-  }
-  auto fit = fit_prony(*held, options);
+  auto fit = fit_prony(*held, {.terms = o.terms});
   if (!fit) return Error{o.relaxation + ": " + fit.error().sentence};
   report.relaxation = std::move(*fit);
   return std::nullopt;
@@ -177,7 +154,8 @@ std::optional<Error> check_options(const Options& o) {
   if (!o.data.empty() && !o.reference.empty())
     return Error{"--data and --reference exclude each other; fit one after the other"};
   for (const std::string& output : {o.out, o.picture})
-    if (auto error = check_output(output, {o.scene.path, o.data, o.relaxation, o.reference}))
+    if (auto error =
+            program::check_output(output, {o.scene.path, o.data, o.relaxation, o.reference}))
       return error;
   return std::nullopt;
 }
@@ -186,7 +164,7 @@ std::optional<Error> check_options(const Options& o) {
 
 // The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
-  Program program(
+  program::Program program(
       "tact-fit",
       "Fit the laws of a scene to measured forces (and shapes), say how far each stays off, and "
       "say when\na law cannot follow. Prints the keys to paste into the scene.",
@@ -203,17 +181,16 @@ int main(int argc, char** argv) {
   if (!o.data.empty() || !o.reference.empty())
     if (const auto error = fit_laws(o, *scene, report)) return program.fail(*error);
   if (!o.relaxation.empty())
-    if (const auto error = fit_relaxation(o, *scene, report)) return program.fail(*error);
+    if (const auto error = fit_relaxation(o, report)) return program.fail(*error);
   report.sort();
   if (!o.out.empty())
-    if (const auto written = write_whole_file(o.out, toml_of(report)); !written)
+    if (const auto written = program::write_whole_file(o.out, toml_of(report)); !written)
       return program.fail(written.error());
   if (!o.picture.empty())
     if (const auto drawn = draw_fit(report, o.picture); !drawn) return program.fail(drawn.error());
-  if (o.json) {
+  if (o.json)
     fmt::print("{}\n", json_of(report).dump(2));
-  } else {
+  else
     fmt::print("{}", text_of(report));
-  }
   return report.follows() ? 0 : 1;
 }

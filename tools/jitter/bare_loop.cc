@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 // Nothing in here may wait but for the clock; nothing locks, allocates, prints or throws.
 #include "tools/jitter/bare_loop.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "firmware/grid.h"
+#include "firmware/loop/grid.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 namespace {
 
 constexpr std::int64_t kMost_ns = std::numeric_limits<std::int32_t>::max();
@@ -18,13 +19,13 @@ std::int32_t clipped(std::int64_t duration_ns) RT_SAFE {
 }  // namespace
 
 void BareLoop::run() RT_SAFE {
-  due_ns_ = firmware::next_deadline_ns(clock_.now_ns() + period_ns_, period_ns_);
+  due_ns_ = firmware::loop::next_deadline_ns(clock_.now_ns() + period_ns_, period_ns_);
   while (!stop_.load(std::memory_order_relaxed) && (max_periods_ == 0 || periods_ < max_periods_))
     step();
 }
 
 void BareLoop::step() RT_SAFE {
-  using enum firmware::Phase;
+  using enum firmware::loop::Phase;
   clock_.sleep_until_ns(due_ns_);
   const std::int64_t wake_ns = clock_.now_ns();
   record_.due_ns = due_ns_;
@@ -42,4 +43,4 @@ void BareLoop::step() RT_SAFE {
   periods_ += 1 + static_cast<std::uint64_t>(skipped);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

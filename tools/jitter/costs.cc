@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/jitter/costs.h"
 
 #include <fcntl.h>
@@ -9,10 +10,10 @@
 #include <sstream>
 #include <vector>
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 namespace {
 
-using firmware::PcFiles;
+using firmware::pc::PcFiles;
 using Count = std::optional<std::uint64_t>;
 
 constexpr off_t kSmiCount = 0x34;        // Intel SDM volume 4
@@ -78,7 +79,7 @@ Count read_smi_count(const PcFiles& files, int core) {
 // Every counter, in one place: its name, where it is kept.
 struct Counter {
   const char* name;
-  Count Costs::*value;
+  Count Costs::* value;
 };
 constexpr Counter kCounters[] = {{"minor_page_faults", &Costs::minor_faults},
                                  {"major_page_faults", &Costs::major_faults},
@@ -159,4 +160,4 @@ nlohmann::json to_json(const Costs& costs) {
   return out;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // costs.h - what the kernel counts against the loop: interrupts of its core, faults, switches,
 // migrations, time that it was ready and did not run, time that a hypervisor took, SMIs.
 //
 // Read from files by an ordinary thread, never by the loop:
-//   /proc/interrupts                     one column a CPU; devices by number, the kernel's own by name
+//   /proc/interrupts                     one column a CPU; devices by number, the kernel's by name
 //   /proc/PID/task/TID/stat              minflt and majflt, fields 10 and 12 (proc(5))
 //   /proc/PID/task/TID/status            voluntary_ctxt_switches, nonvoluntary_ctxt_switches
 //   /proc/PID/task/TID/sched             se.nr_migrations (kernels with CONFIG_SCHED_DEBUG)
@@ -17,9 +18,9 @@
 #include <optional>
 #include <string>
 
-#include "firmware/pc_files.h"
+#include "firmware/pc/pc_files.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 
 struct Costs {
   std::map<std::string, std::uint64_t> interrupts;  // on the core, by source
@@ -32,7 +33,7 @@ struct Costs {
 };
 
 /// What is known now; what cannot be read stays empty.
-Costs read_costs(const firmware::PcFiles& files, int thread, int core);
+Costs read_costs(const firmware::pc::PcFiles& files, int thread, int core);
 /// From `before` to `after`; sources that counted nothing are left out.
 Costs operator-(const Costs& after, const Costs& before);
 /// Both together.
@@ -42,4 +43,4 @@ void add_to(Costs& sum, const Costs& more);
 std::string describe(const Costs& delta);
 nlohmann::json to_json(const Costs& costs);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

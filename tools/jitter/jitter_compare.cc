@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/jitter/jitter_compare.h"
 
 #include <fmt/format.h>
@@ -7,7 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 namespace {
 
 using model::Error;
@@ -116,4 +117,4 @@ json to_json(const Comparison& comparison) {
   return {{"values", values}, {"unlike", comparison.unlike}, {"worse", comparison.is_worse()}};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // jitter_compare.h - two measurements side by side, and a gate: is the second one worse?
 //
 // Judged are p50, p99 and p99.9 of wake-up, tick and deadline to force. Worse is what grew by more
@@ -12,7 +13,7 @@
 
 #include "model/result.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 
 struct ComparedValue {
   std::string series, share;  // "wake", "p99.9"
@@ -42,4 +43,4 @@ model::Result<nlohmann::json> load_result(const std::string& path);
 std::string make_comparison_text(const Comparison& comparison);
 nlohmann::json to_json(const Comparison& comparison);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

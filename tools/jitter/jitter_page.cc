@@ -1,15 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/jitter/jitter_page.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "tools/common/html.h"
+#include "tools/report/html.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 namespace {
 
-using firmware::PcRow;
+using firmware::pc::PcRow;
 
 constexpr const char* kStyle =
     "body{font:15px/1.45 'DejaVu Sans',Arial,sans-serif;color:#222;max-width:1060px;margin:2em "
@@ -35,7 +36,7 @@ std::string series_table(const JitterResult& result) {
   std::string out = "<table>" + row(head, "th", 1);
   for (const NamedSeries& named : series_of(result)) {
     const auto& h = named.series->histogram;
-    std::vector<std::string> cells{escape_html(named.title), std::to_string(h.count())};
+    std::vector<std::string> cells{report::escape_html(named.title), std::to_string(h.count())};
     for (const Share& share : kShares) cells.push_back(in_us(percentile_ns(h, share.value)));
     const bool of_peer = named.key == "peer_wake";
     cells.insert(
@@ -60,12 +61,12 @@ std::string late_table(const JitterResult& result) {
   out += "<table>" + row({"kernel counted", "at, s", "tick", "us", "wake-up", "skipped"}, "th", 1);
   for (std::size_t i = 0; i < std::min<std::size_t>(late.size(), 20); ++i) {
     const TickTimes& t = late[i].times;
-    out += row(
-        {escape_html(late[i].attribution), fmt::format("{:.3f}", seconds_into(result, t.due_ns)),
-         std::to_string(t.tick), in_us(static_cast<std::uint64_t>(late[i].worst_ns)),
-         in_us(static_cast<std::uint64_t>(t.phase(firmware::Phase::kWake))),
-         std::to_string(t.skipped_before)},
-        "td", 1);
+    out += row({report::escape_html(late[i].attribution),
+                fmt::format("{:.3f}", seconds_into(result, t.due_ns)), std::to_string(t.tick),
+                in_us(static_cast<std::uint64_t>(late[i].worst_ns)),
+                in_us(static_cast<std::uint64_t>(t.phase(firmware::loop::Phase::kWake))),
+                std::to_string(t.skipped_before)},
+               "td", 1);
   }
   return out + "</table>\n";
 }
@@ -76,7 +77,7 @@ std::string count(const std::optional<std::uint64_t>& value) {
 
 std::string cost_table(const JitterResult& result) {
   const Costs& c = result.costs;
-  const firmware::ThreadCosts& t = result.thread;
+  const firmware::run::ThreadCosts& t = result.thread;
   std::string out = "<table>";
   const auto add = [&](const std::string& what, const std::string& value) {
     out += row({what, value}, "td", 1);
@@ -94,7 +95,7 @@ std::string cost_table(const JitterResult& result) {
   for (const auto& [source, n] : c.interrupts) sources.emplace_back(n, source);
   std::sort(sources.rbegin(), sources.rend());
   for (const auto& [n, source] : sources)
-    add("interrupts of its core: " + escape_html(source), std::to_string(n));
+    add("interrupts of its core: " + report::escape_html(source), std::to_string(n));
   return out + "</table>\n";
 }
 
@@ -102,18 +103,18 @@ std::string pc_table(const std::vector<PcRow>& rows) {
   std::string out =
       "<table>" + row({"check", "", "found", "why it matters, and the cure"}, "th", 4);
   for (const PcRow& r : rows)
-    out += row(
-        {escape_html(r.name), fmt::format("<span class='stamp {0}'>{0}</span>", name_of(r.verdict)),
-         escape_html(r.found),
-         r.cure.empty()
-             ? std::string()
-             : fmt::format("{}<br><code>{}</code>", escape_html(r.why), escape_html(r.cure))},
-        "td", 4);
+    out += row({report::escape_html(r.name),
+                fmt::format("<span class='stamp {0}'>{0}</span>", name_of(r.verdict)),
+                report::escape_html(r.found),
+                r.cure.empty() ? std::string()
+                               : fmt::format("{}<br><code>{}</code>", report::escape_html(r.why),
+                                             report::escape_html(r.cure))},
+               "td", 4);
   return out + "</table>\n";
 }
 
 std::string environment_table(const JitterResult& result) {
-  const firmware::Environment& e = result.environment;
+  const firmware::pc::Environment& e = result.environment;
   std::string out = "<table>";
   const std::pair<const char*, std::string> facts[] = {
       {"kernel", e.kernel_release + " " + e.kernel_version},
@@ -123,7 +124,7 @@ std::string environment_table(const JitterResult& result) {
       {"tact", e.git_revision},
       {"compiler", e.compiler},
       {"scene", e.scene_hash.empty() ? "none" : e.scene_hash}};
-  for (const auto& [what, value] : facts) out += row({what, escape_html(value)}, "td", 2);
+  for (const auto& [what, value] : facts) out += row({what, report::escape_html(value)}, "td", 2);
   return out + "</table>\n";
 }
 
@@ -138,7 +139,7 @@ std::string peer_sentence(const JitterResult& result) {
                        !verdict->turns     ? "unknown"
                        : verdict->passed() ? "green"
                                            : "red",
-                       escape_html(verdict->sentence()));
+                       report::escape_html(verdict->sentence()));
   return out;
 }
 
@@ -150,14 +151,14 @@ std::string make_page(const JitterResult& result, const std::string& command,
   std::string out = fmt::format(
       "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><title>Latency and jitter: "
       "{0}</title>\n<style>{1}</style></head><body>\n<h1>Latency and jitter</h1>\n<p>{2}</p>\n",
-      escape_html(result.subject), kStyle, escape_html(make_headline(result)));
+      report::escape_html(result.subject), kStyle, report::escape_html(make_headline(result)));
   out += result.non_rt
              ? "<p><span class='stamp red'>non-rt</span> This PC gives no hard real time; "
                "the numbers are those of this machine in this hour.</p>\n"
              : "<p><span class='stamp green'>hard real time</span></p>\n";
   if (!result.fault.empty())
-    out +=
-        fmt::format("<p><span class='stamp red'>fault</span> {}</p>\n", escape_html(result.fault));
+    out += fmt::format("<p><span class='stamp red'>fault</span> {}</p>\n",
+                       report::escape_html(result.fault));
   if (svg != std::string::npos) out += histogram_svg.substr(svg);
   out += "\n<h2>Durations</h2>\n" + series_table(result);
   out += fmt::format(
@@ -172,8 +173,9 @@ std::string make_page(const JitterResult& result, const std::string& command,
   out += "<h2>What the kernel counted</h2>\n" + cost_table(result);
   out += "<h2>The PC</h2>\n" + pc_table(result.pc);
   out += "<h2>Where this was measured</h2>\n" + environment_table(result);
-  out += fmt::format("<p class=note><code>{}</code></p>\n</body></html>\n", escape_html(command));
+  out += fmt::format("<p class=note><code>{}</code></p>\n</body></html>\n",
+                     report::escape_html(command));
   return out;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

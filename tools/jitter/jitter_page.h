@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // jitter_page.h - a measurement as one HTML file that needs nothing else: no network, no script.
 #pragma once
 
@@ -5,10 +6,10 @@
 
 #include "tools/jitter/jitter_report.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 
 /// `histogram_svg`: the picture itself; empty where none was drawn.
 std::string make_page(const JitterResult& result, const std::string& command,
                       const std::string& histogram_svg);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

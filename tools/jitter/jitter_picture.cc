@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/jitter/jitter_picture.h"
 
 #include <fmt/format.h>
@@ -5,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/common/picture.h"
-#include "tools/common/table.h"
+#include "tools/program/whole_file.h"
+#include "tools/report/picture.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 namespace {
 
 constexpr double kFirst_us = 0.1;
@@ -56,7 +57,8 @@ std::string make_histogram_csv(const JitterResult& result) {
 model::Result<std::vector<std::string>> draw_histogram(const JitterResult& result,
                                                        const std::string& directory) {
   const auto drawn = drawn_series(result);
-  if (auto written = write_whole_file(directory + "/histogram.csv", make_histogram_csv(result));
+  if (auto written =
+          program::write_whole_file(directory + "/histogram.csv", make_histogram_csv(result));
       !written)
     return written.error();
   std::string script = fmt::format(
@@ -74,8 +76,9 @@ model::Result<std::vector<std::string>> draw_histogram(const JitterResult& resul
         i == 0 ? "" : ", ", i + 2, of_peer ? "1/0" : "0.5",
         of_peer ? "points pt 7 ps 0.5" : "steps", i + 1, drawn[i].title);
   }
-  return draw({.name = "histogram", .width_px = 1000, .height_px = 520, .script = script + "\n"},
-              directory);
+  return report::draw(
+      {.name = "histogram", .width_px = 1000, .height_px = 520, .script = script + "\n"},
+      directory);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // jitter_picture.h - the histograms of a run as a picture: both axes logarithmic, so that the one
 // tick in a million is as visible as the median.
 #pragma once
@@ -8,7 +9,7 @@
 #include "model/result.h"
 #include "tools/jitter/jitter_report.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 
 /// Buckets of the picture, 20 in a decade from 0.1 us on: from_us, then the samples of each series.
 std::string make_histogram_csv(const JitterResult& result);
@@ -17,4 +18,4 @@ std::string make_histogram_csv(const JitterResult& result);
 model::Result<std::vector<std::string>> draw_histogram(const JitterResult& result,
                                                        const std::string& directory);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

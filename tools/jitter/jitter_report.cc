@@ -1,16 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/jitter/jitter_report.h"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "firmware/report.h"
+#include "firmware/run/report.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 namespace {
 
-using firmware::LatencyHistogram;
-using firmware::Phase;
+using firmware::loop::LatencyHistogram;
+using firmware::loop::Phase;
 using nlohmann::json;
 
 json series_json(const JitterResult& result, const NamedSeries& named) {
@@ -34,8 +35,8 @@ json series_json(const JitterResult& result, const NamedSeries& named) {
 
 json late_json(const JitterResult& result, const LateTick& late) {
   json phases;
-  for (std::size_t i = 0; i < firmware::kPhaseCount; ++i)
-    phases[firmware::kPhaseName[i]] = late.times.phase_ns[i];
+  for (std::size_t i = 0; i < firmware::loop::kPhaseCount; ++i)
+    phases[firmware::loop::kPhaseName[i]] = late.times.phase_ns[i];
   return {{"tick", late.times.tick},
           {"at_s", seconds_into(result, late.times.due_ns)},
           {"due_ns", late.times.due_ns},
@@ -73,7 +74,7 @@ std::vector<NamedSeries> series_of(const JitterResult& result) {
   add("every_wake", "every wake-up", sink.every_wake());
   for (const Phase p :
        {Phase::kRead, Phase::kTouch, Phase::kFeel, Phase::kJudge, Phase::kWrite, Phase::kTell}) {
-    const char* name = firmware::kPhaseName[static_cast<std::size_t>(p)];
+    const char* name = firmware::loop::kPhaseName[static_cast<std::size_t>(p)];
     add(name, name, sink.phase(p));
   }
   add("total", "tick", sink.phase(Phase::kTotal));
@@ -172,7 +173,7 @@ json to_json(const JitterResult& result, const std::string& command) {
   json series, late = json::array(), shortfalls = json::array();
   for (const NamedSeries& named : series_of(result)) series[named.key] = series_json(result, named);
   for (const LateTick& tick : result.sink->late_ticks()) late.push_back(late_json(result, tick));
-  for (const firmware::Shortfall& s : result.shortfalls) shortfalls.push_back(s.sentence);
+  for (const firmware::pc::Shortfall& s : result.shortfalls) shortfalls.push_back(s.sentence);
   const auto ratio = ratio_to_peer(result);
   return {{"format", "tact-jitter 1"},
           {"command", command},
@@ -197,13 +198,13 @@ json to_json(const JitterResult& result, const std::string& command) {
           {"wake_p99.9_over_peer", ratio ? json(*ratio) : json(nullptr)},
           {"wake_p99.9_over_peer_by_turn", to_json(middle_of(result.turn_ratios))},
           {"peer_gate", to_json(judge_peer(result))},
-          {"thread", firmware::to_json(result.thread)},
+          {"thread", firmware::run::to_json(result.thread)},
           {"kernel", to_json(result.costs)},
           {"late_ticks", late},
           {"marked_in_ftrace", result.has_marker},
           {"fault", result.fault},
-          {"pc", firmware::to_json(result.pc)},
-          {"environment", firmware::to_json(result.environment)}};
+          {"pc", firmware::pc::to_json(result.pc)},
+          {"environment", firmware::run::to_json(result.environment)}};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // jitter_report.h - a measurement as text for people and as JSON for machines and for `compare`.
 //
 // A percentile is told where at least one sample lies beyond it, else it is "-" or null: of 10 000
@@ -14,7 +15,7 @@
 #include "tools/jitter/jitter_run.h"
 #include "tools/jitter/peer.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 
 struct Share {
   const char* name;
@@ -55,4 +56,4 @@ std::string in_us(std::optional<std::uint64_t> duration_ns);
 std::string make_summary(const JitterResult& result);
 nlohmann::json to_json(const JitterResult& result, const std::string& command);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

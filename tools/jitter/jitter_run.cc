@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/jitter/jitter_run.h"
 
 #include <fmt/format.h>
@@ -10,14 +11,14 @@
 #include <cmath>
 #include <thread>
 
-#include "firmware/rt_loop.h"
+#include "firmware/loop/rt_loop.h"
 #include "tools/jitter/bare_loop.h"
 #include "tools/jitter/live_line.h"
 #include "tools/jitter/load.h"
 #include "tools/jitter/marker.h"
 #include "tools/jitter/peer.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 namespace {
 
 using namespace firmware;  // NOLINT(google-build-using-namespace): the loop it measures
@@ -29,7 +30,7 @@ using SteadyClock = std::chrono::steady_clock;
 constexpr double kBareRate_Hz = 1000.0;
 constexpr double kLongestSlice_s = 5.0;
 constexpr double kThresholdShare = 0.1;  // of the period: what integrators allow a wake-up
-constexpr auto kDrainPeriod = 5ms;       // 20 ticks at 4 kHz, of 4096 that the ring holds
+constexpr auto kDrainPeriod = 5ms;       // 50 ticks at 10 kHz, of 4096 that the ring holds
 constexpr int kFollowPriority = 5;       // above all ordinary work, below anything of a loop
 constexpr auto kCostPeriod = 100ms;
 constexpr double kLoadLeft_s = 60.0;  // beyond the run: it ends by itself should we be killed
@@ -49,7 +50,7 @@ class Follower {
     pthread_setschedparam(pthread_self(), SCHED_FIFO, &above_the_load);
   }
   ~Follower() {
-    leave_rt_thread();  // what is started from here on is ordinary
+    firmware::pc::leave_rt_thread();  // what is started from here on is ordinary
     pthread_setaffinity_np(pthread_self(), sizeof before_, &before_);
   }
   Follower(const Follower&) = delete;
@@ -72,35 +73,38 @@ class Run {
   void follow(const std::atomic<bool>& ended);
   void drain();
   void explain();
-  bool is_hardware() const { return !options_.bare && !hal::is_simulated(scene_->device); }
+  bool is_hardware() const {
+    return !options_.bare && !hal::registry::is_simulated(scene_->device);
+  }
   // Drives and safety lines hold a pause for a fault.
   bool in_one_piece() const { return is_hardware() || (scene_ && scene_->device.lines.wired()); }
   std::int64_t loop_period_ns() const { return std::llround(1e9 / result_.rate_Hz); }
-  TickRing& ring() { return options_.bare ? *bare_ring_ : *parts_.ring; }
+  firmware::loop::TickRing& ring() { return options_.bare ? *bare_ring_ : *parts_.ring; }
 
   const JitterOptions& options_;
   JitterResult result_;
-  RtSettings rt_;
-  std::optional<ProcessSetup> process_;
-  std::optional<model::Scene> scene_;
-  LoopParts parts_;
-  std::unique_ptr<TickRing> bare_ring_;
-  MonotonicClock clock_;
-  Requests requests_;
+  firmware::pc::RtSettings rt_;
+  std::optional<firmware::pc::ProcessSetup> process_;
+  std::optional<model::scene::Scene> scene_;
+  firmware::run::LoopParts parts_;
+  std::unique_ptr<firmware::loop::TickRing> bare_ring_;
+  firmware::loop::MonotonicClock clock_;
+  firmware::loop::Requests requests_;
   std::optional<TraceMarker> marker_;
   std::optional<LiveLine> live_;
   std::optional<LoopBack> loop_back_;
-  PcFiles files_;
+  firmware::pc::PcFiles files_;
   std::atomic<int> loop_thread_{0};
   Costs before_;
   SteadyClock::time_point looked_;  // at the kernel's counters
 };
 
 Result<JitterResult> Run::run() {
-  use_small_thread_stacks();
+  firmware::pc::use_small_thread_stacks();
   rt_.core = options_.core;
   process_.emplace(result_.shortfalls);
-  for (Shortfall& s : probe_rt_threads(rt_)) result_.shortfalls.push_back(std::move(s));
+  for (firmware::pc::Shortfall& s : probe_rt_threads(rt_))
+    result_.shortfalls.push_back(std::move(s));
   result_.non_rt = !result_.shortfalls.empty();
   result_.core = choose_core(rt_);
   result_.priority = rt_.priority;
@@ -115,8 +119,8 @@ Result<JitterResult> Run::run() {
     return Error{
         "/sys/kernel/tracing/trace_marker cannot be written; be root and mount tracefs: "
         "sudo mount -t tracefs tracefs /sys/kernel/tracing"};
-  result_.pc = check_pc({.files = files_, .core = result_.core});
-  result_.environment = read_environment(result_.scene_hash);
+  result_.pc = firmware::pc::check_pc({.files = files_, .core = result_.core});
+  result_.environment = firmware::pc::read_environment(result_.scene_hash);
   if (auto error = measure()) return *error;
   if (loop_back_) result_.pin.emplace(loop_back_->stop());
   if (!options_.bare) {
@@ -133,10 +137,10 @@ std::optional<Error> Run::open() {
   result_.rate_Hz = options_.rate_Hz > 0.0 ? options_.rate_Hz : kBareRate_Hz;
   result_.subject = "bare loop";
   if (options_.bare) {
-    bare_ring_ = std::make_unique<TickRing>();
+    bare_ring_ = std::make_unique<firmware::loop::TickRing>();
     return std::nullopt;
   }
-  SceneArguments arguments = options_.scene;
+  program::SceneArguments arguments = options_.scene;
   if (options_.rate_Hz > 0.0)
     arguments.overrides.push_back(fmt::format("rate_Hz={}", options_.rate_Hz));
   if (options_.scope_pin >= 0)
@@ -144,8 +148,7 @@ std::optional<Error> Run::open() {
   auto scene = arguments.load();
   if (!scene) return scene.error();
   scene_ = std::move(*scene);
-  if (auto refusal = model::check_drivable(*scene_)) return refusal;
-  auto parts = open_loop_parts(*scene_, {.non_rt = result_.non_rt, .rt = rt_});
+  auto parts = firmware::run::open_loop_parts(*scene_, {.non_rt = result_.non_rt, .rt = rt_});
   if (!parts) return parts.error();
   parts_ = std::move(*parts);
   result_.rate_Hz = scene_->rate_Hz;
@@ -153,7 +156,7 @@ std::optional<Error> Run::open() {
   result_.subject = fmt::format("{} on {}, law {}", scene_->name, parts_.device->info().name,
                                 parts_.tissue->law().title());
   if (options_.loop_back >= 0) {
-    auto edges = hal::open_edge_watch(scene_->device.lines.chip, options_.loop_back);
+    auto edges = hal::gpio::open_edge_watch(scene_->device.lines.chip, options_.loop_back);
     if (!edges) return edges.error();
     loop_back_.emplace(std::move(*edges), loop_period_ns());
   }
@@ -163,9 +166,9 @@ std::optional<Error> Run::open() {
 }
 
 std::optional<Error> Run::measure() {
-  auto folder = ScratchFolder::make("tact-jitter");
+  auto folder = program::ScratchFolder::make("tact-jitter");
   if (!folder) return folder.error();
-  std::optional<RunningProgram> load;
+  std::optional<program::RunningProgram> load;
   if (!options_.load.empty()) {
     auto started = start_load(options_.load, *folder, kLoadLeft_s + 3.0 * options_.duration_s);
     if (!started) return started.error();
@@ -181,7 +184,7 @@ std::optional<Error> Run::measure() {
   for (std::size_t i = 0; i < slices.size(); ++i) {
     const double slice_s = slices[i];
     run_slice(slice_s, i + 1 == slices.size());
-    if (is_interrupted()) break;
+    if (program::is_interrupted()) break;
     if (!options_.peer) continue;
     Series turn;
     if (auto error = run_cyclictest({.core = result_.core,
@@ -189,7 +192,7 @@ std::optional<Error> Run::measure() {
                                      .period_ns = loop_period_ns(),
                                      .duration_s = slice_s},
                                     *folder, turn)) {
-      if (!was_interrupted(*error)) return error;
+      if (!program::was_interrupted(*error)) return error;
       break;
     }
     result_.peer->add(turn);
@@ -197,7 +200,7 @@ std::optional<Error> Run::measure() {
       result_.turn_ratios.push_back(*ratio);
   }
   const TickSink& sink = *result_.sink;
-  result_.interrupted = is_interrupted();
+  result_.interrupted = program::is_interrupted();
   result_.measured_s =
       static_cast<double>(sink.ticks() + sink.skipped() + sink.unseen()) / result_.rate_Hz;
   if (load && !load->is_running()) return Error{"stress-ng ended before the loop; nothing counts"};
@@ -208,19 +211,20 @@ std::optional<Error> Run::measure() {
 // slices, which only a simulated device has, the loop pauses with its last force.
 void Run::run_slice(double duration_s, bool last) {
   const auto periods = static_cast<std::uint64_t>(std::ceil(duration_s * result_.rate_Hz));
-  std::optional<RtLoop> loop;
+  std::optional<firmware::loop::RtLoop> loop;
   std::optional<BareLoop> bare;
   if (options_.bare)
     bare.emplace(loop_period_ns(), periods, clock_, requests_.stop, ring());
   else
-    loop.emplace(LoopSettings{.period_ns = loop_period_ns(), .max_periods = periods},
-                 *parts_.device, *parts_.lines, *parts_.controller, clock_, requests_, ring());
+    loop.emplace(
+        firmware::loop::LoopSettings{.period_ns = loop_period_ns(), .max_periods = periods},
+        *parts_.device, *parts_.lines, *parts_.controller, clock_, requests_, ring());
   result_.sink->begin_slice();
   std::atomic<bool> ended{false};
-  ThreadCosts costs;
+  firmware::run::ThreadCosts costs;
   loop_thread_.store(0);
   std::thread thread([&] {
-    costs = run_as_loop_thread(rt_, [&] {
+    costs = firmware::run::run_as_loop_thread(rt_, [&] {
       loop_thread_.store(gettid());
       if (bare) bare->run();
       while (loop && !last && loop->may_run()) loop->step();
@@ -243,7 +247,7 @@ void Run::follow(const std::atomic<bool>& ended) {
   before_ = read_costs(files_, loop_thread_.load(), result_.core);
   looked_ = SteadyClock::now();
   while (!ended.load()) {
-    if (is_interrupted()) requests_.stop.store(true);
+    if (program::is_interrupted()) requests_.stop.store(true);
     drain();
     if (SteadyClock::now() - looked_ >= kCostPeriod) explain();
     if (live_) live_->show(*result_.sink);
@@ -255,7 +259,7 @@ void Run::follow(const std::atomic<bool>& ended) {
 }
 
 void Run::drain() {
-  TickRecord record;
+  firmware::loop::TickRecord record;
   while (ring().pop(record)) result_.sink->add(record);
 }
 
@@ -285,4 +289,4 @@ std::vector<double> slices_of(double duration_s, bool takes_turns) {
   return std::vector<double>(static_cast<std::size_t>(slices), duration_s / slices);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // jitter_run.h - one measurement: the loop of a scene on its device, or a bare one, with load and
 // peer if they are asked for.
 #pragma once
@@ -7,19 +8,19 @@
 #include <string>
 #include <vector>
 
-#include "firmware/environment.h"
-#include "firmware/loop_parts.h"
-#include "firmware/pc_check.h"
+#include "firmware/pc/environment.h"
+#include "firmware/pc/pc_check.h"
+#include "firmware/run/loop_parts.h"
 #include "model/result.h"
-#include "tools/common/program.h"
 #include "tools/jitter/costs.h"
 #include "tools/jitter/loop_back.h"
 #include "tools/jitter/tick_sink.h"
+#include "tools/program/program.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 
 struct JitterOptions {
-  SceneArguments scene;
+  program::SceneArguments scene;
   bool bare = false;  // no scene, no device: the kernel alone
   bool arm = false;   // hardware: with force; a simulated device always has it
   int core = -1;
@@ -43,10 +44,10 @@ struct JitterResult {
   bool armed = false;
   bool interrupted = false;  // by Ctrl-C
   bool non_rt = false;
-  std::vector<firmware::Shortfall> shortfalls;
+  std::vector<firmware::pc::Shortfall> shortfalls;
   std::string load;  // "cpu,memory"; empty: none
   std::unique_ptr<TickSink> sink;
-  firmware::ThreadCosts thread;
+  firmware::run::ThreadCosts thread;
   Costs costs;
   bool has_marker = false;  // late ticks are marked in the kernel's trace
   std::optional<Series> peer;
@@ -55,8 +56,8 @@ struct JitterResult {
   std::optional<double> peer_gate;  // most of their median
   std::optional<PulseMeter> pin;    // input to force, at the scope pin
   std::string fault;                // name and cause; empty: none
-  std::vector<firmware::PcRow> pc;
-  firmware::Environment environment;
+  std::vector<firmware::pc::PcRow> pc;
+  firmware::pc::Environment environment;
 };
 
 /// Runs it. Ctrl-C ends the loop early, with zero force; what was measured until then is kept.
@@ -66,4 +67,4 @@ model::Result<JitterResult> run_jitter(const JitterOptions& options);
 /// is hardware runs in one piece, as its own watchdog would meet the pauses.
 std::vector<double> slices_of(double duration_s, bool takes_turns);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

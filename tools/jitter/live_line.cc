@@ -1,16 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/jitter/live_line.h"
 
 #include <fmt/format.h>
 
 #include <cstdio>
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 
 using namespace std::chrono_literals;
 
 std::string make_live_line(const TickSink& sink, double elapsed_s, double duration_s) {
   const auto us = [](std::uint64_t ns) { return 1e-3 * static_cast<double>(ns); };
-  const auto& wake = sink.phase(firmware::Phase::kWake).histogram;
+  const auto& wake = sink.phase(firmware::loop::Phase::kWake).histogram;
   const auto& force = sink.deadline_to_force().histogram;
   return fmt::format(
       "{:.1f} of {:g} s  {} ticks  late {}  skipped {}  wake-up p50 {:.1f} p99.9 {:.1f} max {:.1f} "
@@ -35,4 +36,4 @@ void LiveLine::clear() {
   std::fflush(stderr);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

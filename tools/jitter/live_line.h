@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // live_line.h - a run in one line of the terminal, while it runs.
 #pragma once
 
@@ -5,7 +6,7 @@
 
 #include "tools/jitter/tick_sink.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 
 class LiveLine {
  public:
@@ -23,4 +24,4 @@ class LiveLine {
 /// "12.3 s  12300 ticks  late 0  wake p50 5.2 p99.9 31 max 80 us".
 std::string make_live_line(const TickSink& sink, double elapsed_s, double duration_s);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

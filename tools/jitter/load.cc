@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/jitter/load.h"
 
 #include <algorithm>
 #include <cmath>
 #include <thread>
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 
 const std::vector<std::string>& load_kinds() {
   static const std::vector<std::string> kinds{"cpu", "memory", "disk", "net"};
@@ -28,10 +29,11 @@ std::vector<std::string> stress_arguments(const std::vector<std::string>& kinds,
   return out;
 }
 
-model::Result<RunningProgram> start_load(const std::vector<std::string>& kinds,
-                                         const ScratchFolder& folder, double longest_s) {
+model::Result<program::RunningProgram> start_load(const std::vector<std::string>& kinds,
+                                                  const program::ScratchFolder& folder,
+                                                  double longest_s) {
   const unsigned cpus = std::max(1U, std::thread::hardware_concurrency());
-  return RunningProgram::start(
+  return program::RunningProgram::start(
       {.program = "stress-ng",
        .arguments = stress_arguments(kinds, cpus, folder.path(), longest_s),
        .directory = folder.path(),
@@ -40,4 +42,4 @@ model::Result<RunningProgram> start_load(const std::vector<std::string>& kinds,
        .environment = {}});
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // load.h - a load beside the loop, by stress-ng: what a PC does while somebody works on it.
 #pragma once
 
@@ -6,9 +7,9 @@
 #include <vector>
 
 #include "model/result.h"
-#include "tools/common/run_program.h"
+#include "tools/program/run_program.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 
 /// Kinds of load: cpu, memory, disk, net.
 const std::vector<std::string>& load_kinds();
@@ -19,7 +20,8 @@ std::vector<std::string> stress_arguments(const std::vector<std::string>& kinds,
                                           const std::string& folder, double longest_s);
 
 /// Starts it in a process group of its own. It ends with its object, and with us.
-model::Result<RunningProgram> start_load(const std::vector<std::string>& kinds,
-                                         const ScratchFolder& folder, double longest_s);
+model::Result<program::RunningProgram> start_load(const std::vector<std::string>& kinds,
+                                                  const program::ScratchFolder& folder,
+                                                  double longest_s);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/jitter/loop_back.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 
-void PulseMeter::add(const hal::Edge& edge) {
+void PulseMeter::add(const hal::gpio::Edge& edge) {
   if (edge.rising) {
     if (rose_ns_) ++unpaired_;
     rose_ns_ = edge.time_ns;
@@ -15,10 +16,10 @@ void PulseMeter::add(const hal::Edge& edge) {
   rose_ns_.reset();
 }
 
-LoopBack::LoopBack(std::unique_ptr<hal::EdgeWatch> edges, std::int64_t period_ns)
+LoopBack::LoopBack(std::unique_ptr<hal::gpio::EdgeWatch> edges, std::int64_t period_ns)
     : edges_(std::move(edges)), meter_(period_ns), thread_([this] {
         while (!ending_.load())
-          for (const hal::Edge& edge : edges_->read(std::chrono::milliseconds(20)))
+          for (const hal::gpio::Edge& edge : edges_->read(std::chrono::milliseconds(20)))
             meter_.add(edge);
       }) {}
 
@@ -30,4 +31,4 @@ PulseMeter LoopBack::stop() {
   return meter_;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // loop_back.h - input to force as a wire shows it: the scope line, which is up from before the
 // device is read until the force is written, comes back on a second line, whose edges the kernel
 // stamps in its interrupt.
@@ -11,7 +12,7 @@
 #include "hal/gpio/edge_watch.h"
 #include "tools/jitter/tick_times.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 
 /// From edges to pulses. A rise without its fall, and a pulse longer than a period, come of edges
 /// that were lost: counted, and in no histogram.
@@ -19,7 +20,7 @@ class PulseMeter {
  public:
   explicit PulseMeter(std::int64_t period_ns) : period_ns_(period_ns) {}
 
-  void add(const hal::Edge& edge);
+  void add(const hal::gpio::Edge& edge);
   const Series& pulses() const { return pulses_; }
   std::uint64_t unpaired() const { return unpaired_; }
 
@@ -33,7 +34,7 @@ class PulseMeter {
 /// A thread of its own that reads edges until it is stopped.
 class LoopBack {
  public:
-  LoopBack(std::unique_ptr<hal::EdgeWatch> edges, std::int64_t period_ns);
+  LoopBack(std::unique_ptr<hal::gpio::EdgeWatch> edges, std::int64_t period_ns);
   ~LoopBack();
   LoopBack(const LoopBack&) = delete;
   LoopBack& operator=(const LoopBack&) = delete;
@@ -42,10 +43,10 @@ class LoopBack {
   PulseMeter stop();
 
  private:
-  std::unique_ptr<hal::EdgeWatch> edges_;
+  std::unique_ptr<hal::gpio::EdgeWatch> edges_;
   PulseMeter meter_;
   std::atomic<bool> ending_{false};
   std::thread thread_;
 };
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tact-jitter: latency and jitter of the loop that a person runs, and of each of its phases.
 #include <fmt/format.h>
 #include <sched.h>
@@ -7,17 +8,18 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "tools/common/run_program.h"
-#include "tools/common/table.h"
 #include "tools/jitter/jitter_compare.h"
 #include "tools/jitter/jitter_page.h"
 #include "tools/jitter/jitter_picture.h"
 #include "tools/jitter/load.h"
 #include "tools/jitter/tick_trace.h"
+#include "tools/program/run_program.h"
+#include "tools/program/whole_file.h"
 
 namespace {
 
 using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
+using namespace tact::tools::jitter;  // NOLINT(google-build-using-namespace)
 using nlohmann::json;
 using tact::model::Error;
 
@@ -39,7 +41,7 @@ void add_run_options(CLI::App& app, Options& o) {
       ->check(CLI::Range(0.1, 1e7))
       ->capture_default_str();
   app.add_option("--rate", o.run.rate_Hz, "ticks per second, Hz (default: the scene's, or 1000)")
-      ->check(CLI::Range(100.0, 4000.0));
+      ->check(CLI::Range(100.0, 10000.0));
   app.add_option("--core", o.run.core,
                  "CPU core of the loop (default: an isolated one, or the last)")
       ->check(CLI::Range(0, CPU_SETSIZE - 1));
@@ -93,7 +95,7 @@ std::optional<Error> write_json(const json& result, const std::string& path) {
   const std::string text = result.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
   if (path == "-") fmt::print("{}", text);
   if (path.empty() || path == "-") return std::nullopt;
-  if (auto written = write_whole_file(path, text); !written) return written.error();
+  if (auto written = program::write_whole_file(path, text); !written) return written.error();
   return std::nullopt;
 }
 
@@ -103,7 +105,7 @@ std::optional<Error> write_folder(const JitterResult& result, const Options& o,
   std::string svg;
   if (!o.no_pictures && !result.interrupted) {  // after Ctrl-C no program is started any more
     if (auto drawn = draw_histogram(result, o.out); !drawn) return drawn.error();
-    auto picture = read_whole_file(o.out + "/histogram.svg");
+    auto picture = program::read_whole_file(o.out + "/histogram.svg");
     if (!picture) return picture.error();
     svg = std::move(*picture);
   }
@@ -111,12 +113,12 @@ std::optional<Error> write_folder(const JitterResult& result, const Options& o,
       {"report.html", make_page(result, command, svg)},
       {"ticks.perfetto-trace", make_tick_trace(result.sink->kept_ticks(), boottime_offset_ns())}};
   for (const auto& [name, content] : files)
-    if (auto written = write_whole_file(o.out + "/" + name, content); !written)
+    if (auto written = program::write_whole_file(o.out + "/" + name, content); !written)
       return written.error();
   return std::nullopt;
 }
 
-int compare(const Program& program, const Options& o) {
+int compare(const program::Program& program, const Options& o) {
   const auto before = load_result(o.before), after = load_result(o.after);
   if (!before) return program.fail(before.error());
   if (!after) return program.fail(after.error());
@@ -130,13 +132,14 @@ int compare(const Program& program, const Options& o) {
   return comparison->is_worse() ? 1 : 0;
 }
 
-int measure(const Program& program, Options& o) {
+int measure(const program::Program& program, Options& o) {
   if (o.run.bare != o.run.scene.path.empty())
     return program.fail(Error{"name one SCENE, or --bare for an empty loop; see --help"});
   if (!o.out.empty())
-    if (auto error = prepare_folder(o.out)) return program.fail(*error);
+    if (auto error = program::prepare_folder(o.out)) return program.fail(*error);
   if (o.json_path != "-")
-    if (auto error = check_output(o.json_path, {o.run.scene.path})) return program.fail(*error);
+    if (auto error = program::check_output(o.json_path, {o.run.scene.path}))
+      return program.fail(*error);
   o.run.peer = !o.peer.empty();
   o.run.live = isatty(STDERR_FILENO) != 0;
   const auto result = run_jitter(o.run);
@@ -149,7 +152,8 @@ int measure(const Program& program, Options& o) {
     if (auto error = write_folder(*result, o, program.command()))
       return program.fail(*error, "its files are not complete");
   if (result->interrupted)
-    return program.fail(interruption(), "what was measured until then is told, without a picture");
+    return program.fail(program::interruption(),
+                        "what was measured until then is told, without a picture");
   const auto verdict = judge_peer(*result);
   if (verdict && !verdict->passed()) fmt::print(stderr, "tact-jitter: {}\n", verdict->sentence());
   return exit_status(*result);
@@ -159,7 +163,7 @@ int measure(const Program& program, Options& o) {
 
 // The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
-  Program program(
+  program::Program program(
       "tact-jitter",
       "Latency and jitter of the loop that a person runs: the scene's law on its device, at its "
       "rate, phase by\nphase. `tact-jitter compare A B` puts two results side by side.",

@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/jitter/marker.h"
 
 #include <fcntl.h>
 #include <unistd.h>
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 
-TraceMarker::TraceMarker(const firmware::PcFiles& files, bool stop) {
+TraceMarker::TraceMarker(const firmware::pc::PcFiles& files, bool stop) {
   for (const char* folder : {"/sys/kernel/tracing/", "/sys/kernel/debug/tracing/"}) {
     if (fd_ >= 0) break;
     const std::string path = files.root() + folder;
@@ -29,4 +30,4 @@ void TraceMarker::write(const std::string& line) {
   stop_fd_ = -1;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/jitter/peer.h"
 
 #include <fmt/format.h>
@@ -6,9 +7,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tools/common/table.h"
+#include "tools/program/whole_file.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 namespace {
 
 using model::Error;
@@ -100,20 +101,20 @@ std::string PeerVerdict::sentence() const {
       passed() ? "PASS" : "FAIL", turns->median, turns->turns, most_ratio);
 }
 
-std::optional<Error> run_cyclictest(const PeerCall& call, const ScratchFolder& folder,
+std::optional<Error> run_cyclictest(const PeerCall& call, const program::ScratchFolder& folder,
                                     Series& series) {
   const std::string json_path = folder.file("cyclictest.json");
-  const auto said = run_program({.program = "cyclictest",
-                                 .arguments = cyclictest_arguments(call, json_path),
-                                 .directory = folder.path(),
-                                 .log_path = folder.file("cyclictest.txt"),
-                                 .package = "rt-tests",
-                                 .time_limit_s = 60.0 + 5.0 * call.duration_s,
-                                 .environment = {}});
+  const auto said = program::run_program({.program = "cyclictest",
+                                          .arguments = cyclictest_arguments(call, json_path),
+                                          .directory = folder.path(),
+                                          .log_path = folder.file("cyclictest.txt"),
+                                          .package = "rt-tests",
+                                          .time_limit_s = 60.0 + 5.0 * call.duration_s,
+                                          .environment = {}});
   if (!said) return said.error();
-  const auto text = read_whole_file(json_path);
+  const auto text = program::read_whole_file(json_path);
   if (!text) return text.error();
   return add_cyclictest(*text, cycles_of(call), series);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

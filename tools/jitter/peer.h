@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // peer.h - cyclictest of rt-tests beside the loop: the same priority, core, period and load, in
 // slices that take turns with the loop's, so that both meet the same weather.
 #pragma once
@@ -7,10 +8,10 @@
 #include <vector>
 
 #include "model/result.h"
-#include "tools/common/run_program.h"
 #include "tools/jitter/tick_times.h"
+#include "tools/program/run_program.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 
 struct PeerCall {
   int core = 0;
@@ -54,7 +55,7 @@ struct PeerVerdict {
 };
 
 /// Runs it once and adds its samples.
-std::optional<model::Error> run_cyclictest(const PeerCall& call, const ScratchFolder& folder,
-                                           Series& series);
+std::optional<model::Error> run_cyclictest(const PeerCall& call,
+                                           const program::ScratchFolder& folder, Series& series);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/jitter/perfetto_trace.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 namespace {
 
 // Field numbers, by message.
@@ -120,4 +121,4 @@ void PerfettoTrace::add_packet(const std::string& packet) {
   put_bytes(bytes_, kTracePacket, packet);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // perfetto_trace.h - a trace that ui.perfetto.dev opens: native TrackEvent packets.
 //
 // Only the few messages that slices and counters need, in protobuf's wire format: a message is a
@@ -10,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 
 class PerfettoTrace {
  public:
@@ -43,4 +44,4 @@ class PerfettoTrace {
   std::uint64_t tracks_ = 0;
 };
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

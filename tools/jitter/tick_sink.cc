@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/jitter/tick_sink.h"
 
 #include <algorithm>
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 
-using firmware::Phase;
+using firmware::loop::Phase;
 
 namespace {
 
@@ -21,7 +22,7 @@ void TickSink::begin_slice() {
   slice_wake_ = {};
 }
 
-void TickSink::add(const firmware::TickRecord& record) {
+void TickSink::add(const firmware::loop::TickRecord& record) {
   TickTimes times{.tick = base_ + record.tick,
                   .due_ns = record.due_ns,
                   .skipped_before = record.input.skipped_periods,
@@ -68,7 +69,8 @@ void TickSink::finish(TickTimes times) {
     if (const auto at = kept->find(times.tick); at != kept->end()) at->second = times;
 }
 
-void TickSink::measure_round_trip(const TickTimes& times, const firmware::TickRecord& record) {
+void TickSink::measure_round_trip(const TickTimes& times,
+                                  const firmware::loop::TickRecord& record) {
   const hal::Sample& sample = record.input.sample;
   if (handed_ns_ && sample.fresh && sample.stamp_ns >= *handed_ns_) {
     round_trip_.record(times.read_end_ns() - *handed_ns_, times.tick, *handed_ns_);
@@ -131,4 +133,4 @@ std::vector<TickTimes> TickSink::kept_ticks() const {
   return ticks;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tick_sink.h - from the ring of a running loop to histograms: one series per phase, and three that
 // the phases alone do not tell.
 //
@@ -18,7 +19,7 @@
 
 #include "tools/jitter/tick_times.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 
 /// A tick that took longer than the threshold.
 struct LateTick {
@@ -41,7 +42,7 @@ class TickSink {
 
   /// A loop starts anew: its ticks count from 0 again, on another grid.
   void begin_slice();
-  void add(const firmware::TickRecord& record);
+  void add(const firmware::loop::TickRecord& record);
 
   std::uint64_t ticks() const { return ticks_; }
   std::uint64_t skipped() const { return skipped_; }
@@ -54,7 +55,9 @@ class TickSink {
   std::int64_t newest_due_ns() const { return unfinished_ ? unfinished_->due_ns : first_due_ns_; }
   std::int64_t threshold_ns() const { return settings_.threshold_ns; }
 
-  const Series& phase(firmware::Phase p) const { return phases_[static_cast<std::size_t>(p)]; }
+  const Series& phase(firmware::loop::Phase p) const {
+    return phases_[static_cast<std::size_t>(p)];
+  }
   /// Wake-up of the ticks since begin_slice().
   const Series& slice_wake() const { return slice_wake_; }
   const Series& every_wake() const { return every_wake_; }
@@ -70,12 +73,12 @@ class TickSink {
 
  private:
   void finish(TickTimes times);
-  void measure_round_trip(const TickTimes& times, const firmware::TickRecord& record);
+  void measure_round_trip(const TickTimes& times, const firmware::loop::TickRecord& record);
   void keep(const TickTimes& times);
   void note_late(const TickTimes& times, std::int64_t worst_ns);
 
   SinkSettings settings_;
-  std::array<Series, firmware::kPhaseCount> phases_;
+  std::array<Series, firmware::loop::kPhaseCount> phases_;
   Series slice_wake_, every_wake_, deadline_to_force_, round_trip_;
   std::uint64_t ticks_ = 0, skipped_ = 0, late_ = 0, unseen_ = 0, over_threshold_ = 0;
   std::uint64_t base_ = 0;  // number of the slice's first tick
@@ -88,4 +91,4 @@ class TickSink {
   std::vector<std::uint64_t> unexplained_;
 };
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

@@ -1,4 +1,6 @@
-// tick_times.h - what one tick of a loop took, and the series of durations that ticks add up to.
+// SPDX-License-Identifier: Apache-2.0
+// tick_times.h - what one tick of a loop took, phase by phase (RT-17), and the series of durations
+// that ticks add up to.
 #pragma once
 
 #include <algorithm>
@@ -7,24 +9,26 @@
 #include <optional>
 #include <string>
 
-#include "firmware/latency_histogram.h"
-#include "firmware/tick_record.h"
+#include "firmware/loop/latency_histogram.h"
+#include "firmware/loop/tick_record.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 
 /// CLOCK_MONOTONIC and ns throughout.
 struct TickTimes {
   std::uint64_t tick = 0;  // over all slices of a run
   std::int64_t due_ns = 0;
   std::uint32_t skipped_before = 0;  // grid points that had no tick, just before this one
-  std::array<std::int32_t, firmware::kPhaseCount> phase_ns{};
+  std::array<std::int32_t, firmware::loop::kPhaseCount> phase_ns{};
 
-  std::int32_t phase(firmware::Phase p) const { return phase_ns[static_cast<std::size_t>(p)]; }
-  std::int64_t wake_ns() const { return due_ns + phase(firmware::Phase::kWake); }
-  std::int64_t read_end_ns() const { return wake_ns() + phase(firmware::Phase::kRead); }
+  std::int32_t phase(firmware::loop::Phase p) const {
+    return phase_ns[static_cast<std::size_t>(p)];
+  }
+  std::int64_t wake_ns() const { return due_ns + phase(firmware::loop::Phase::kWake); }
+  std::int64_t read_end_ns() const { return wake_ns() + phase(firmware::loop::Phase::kRead); }
   /// From its deadline to the force written.
   std::int64_t deadline_to_force_ns() const {
-    using enum firmware::Phase;
+    using enum firmware::loop::Phase;
     std::int64_t sum = 0;
     for (const auto p : {kWake, kRead, kTouch, kFeel, kJudge, kWrite}) sum += phase(p);
     return sum;
@@ -34,7 +38,7 @@ struct TickTimes {
 
 /// Durations of one kind: a histogram, and when the largest was met.
 struct Series {
-  firmware::LatencyHistogram histogram;
+  firmware::loop::LatencyHistogram histogram;
   std::int64_t max_at_ns = 0;  // CLOCK_MONOTONIC
 
   void record(std::int64_t duration_ns, std::uint64_t tick, std::int64_t at_ns) {
@@ -52,10 +56,10 @@ struct Series {
 };
 
 /// Nothing without a sample beyond it.
-inline std::optional<std::uint64_t> percentile_ns(const firmware::LatencyHistogram& histogram,
+inline std::optional<std::uint64_t> percentile_ns(const firmware::loop::LatencyHistogram& histogram,
                                                   double share) {
   if (static_cast<double>(histogram.count()) * (1.0 - share) < 1.0 - 1e-9) return std::nullopt;
   return histogram.percentile_ns(share);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/jitter/tick_trace.h"
 
 #include <fmt/format.h>
@@ -7,10 +8,10 @@
 
 #include "tools/jitter/perfetto_trace.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 namespace {
 
-using firmware::Phase;
+using firmware::loop::Phase;
 
 constexpr std::array kInside{Phase::kRead,  Phase::kTouch, Phase::kFeel,
                              Phase::kJudge, Phase::kWrite, Phase::kTell};
@@ -43,7 +44,7 @@ std::string make_tick_trace(const std::vector<TickTimes>& ticks, std::int64_t of
     std::int64_t at_ns = wake_ns;
     for (const Phase p : kInside) {
       if (t.phase(p) == 0) continue;  // of a bare loop
-      trace.begin_slice(loop, at_ns, firmware::kPhaseName[static_cast<std::size_t>(p)]);
+      trace.begin_slice(loop, at_ns, firmware::loop::kPhaseName[static_cast<std::size_t>(p)]);
       at_ns += t.phase(p);
       trace.end_slice(loop, at_ns);
     }
@@ -52,4 +53,4 @@ std::string make_tick_trace(const std::vector<TickTimes>& ticks, std::int64_t of
   return trace.bytes();
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tick_trace.h - the kept ticks of a run as a timeline for ui.perfetto.dev.
 #pragma once
 
@@ -6,7 +7,7 @@
 
 #include "tools/jitter/tick_times.h"
 
-namespace tact::tools {
+namespace tact::tools::jitter {
 
 /// One slice a tick with its phases inside, the wake-up before it, a mark where points of the grid
 /// had no tick, and the wake-up latency as a curve. `offset_ns`: CLOCK_BOOTTIME - CLOCK_MONOTONIC.
@@ -15,4 +16,4 @@ std::string make_tick_trace(const std::vector<TickTimes>& ticks, std::int64_t of
 /// Of this PC, now.
 std::int64_t boottime_offset_ns();
 
-}  // namespace tact::tools
+}  // namespace tact::tools::jitter

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/limits/case_run.h"
 
 #include <fmt/format.h>
@@ -8,9 +9,9 @@
 #include <cstdlib>
 
 #include "hal/sim/sim_delta.h"
-#include "tools/common/interrupt.h"
+#include "tools/program/interrupt.h"
 
-namespace tact::tools {
+namespace tact::tools::limits {
 namespace {
 
 constexpr double kLead_s = 0.1;  // beyond the ramp
@@ -20,12 +21,13 @@ constexpr double kHalfPlate_m = 4.0, kPlate_m = -1.0, kReach_m = 2.0;
 
 /// A plate far below and a sphere so large that it always touches: contact adds nothing to the
 /// command but its own way.
-model::Scene plate_scene(const Case& c, const LimitsBench& bench, const model::Limits& limits) {
-  model::Scene scene;
+model::scene::Scene plate_scene(const Case& c, const LimitsBench& bench,
+                                const model::Limits& limits) {
+  model::scene::Scene scene;
   scene.path = "limits";
   scene.rate_Hz = bench.scene.rate_Hz;
-  scene.law = model::LawKind::kRhombus;
-  scene.described = {model::LawKind::kRhombus};
+  scene.law = model::scene::LawKind::kRhombus;
+  scene.described = {model::scene::LawKind::kRhombus};
   scene.rhombus = {.rod_length_m = 0.1,
                    .initial_angle_rad = 0.5,
                    .normal_stiffness_N_per_m = 1.0,
@@ -37,29 +39,29 @@ model::Scene plate_scene(const Case& c, const LimitsBench& bench, const model::L
   const bool turns = limits.force_N > 0.0 && limits.torque_Nm > 0.0;
   const double lever_m = turns ? 2.0 * limits.torque_Nm / limits.force_N : kLeverWithoutTorque_m;
   scene.tool.spheres = {{{0, c.grip == Grip::kLever ? lever_m : 0.0, 0}, kReach_m}};
-  scene.organ_mesh = *model::make_surface_mesh({{-kHalfPlate_m, -kHalfPlate_m, kPlate_m},
-                                                {kHalfPlate_m, -kHalfPlate_m, kPlate_m},
-                                                {kHalfPlate_m, kHalfPlate_m, kPlate_m},
-                                                {-kHalfPlate_m, kHalfPlate_m, kPlate_m}},
-                                               {{0, 1, 2}, {0, 2, 3}});
+  scene.organ_mesh = *model::mesh::make_surface_mesh({{-kHalfPlate_m, -kHalfPlate_m, kPlate_m},
+                                                      {kHalfPlate_m, -kHalfPlate_m, kPlate_m},
+                                                      {kHalfPlate_m, kHalfPlate_m, kPlate_m},
+                                                      {-kHalfPlate_m, kHalfPlate_m, kPlate_m}},
+                                                     {{0, 1, 2}, {0, 2, 3}});
   return scene;
 }
 
 /// The scene is ours, so an error is a mistake of ours: without a plate nothing would be proved.
-std::unique_ptr<model::Tissue> make_plate(const model::Scene& scene) {
-  auto tissue = model::make_tissue(scene);
+std::unique_ptr<model::scene::Tissue> make_plate(const model::scene::Scene& scene) {
+  auto tissue = model::scene::make_tissue(scene);
   if (tissue) return std::move(*tissue);
   fmt::print(stderr, "tact-limits: {}\n", tissue.error().sentence);
   std::abort();
 }
 
 /// The hand of a case. Arming takes a second or less with the longest ramp of a scene added.
-model::HandSettings hand_of(const Case& c, const model::Limits& limits) {
-  model::HandSettings hand{.mass_kg = 0.2,
-                           .stiffness_N_per_m = 3000.0,
-                           .damping_Ns_per_m = 30.0,
-                           .repeat = false,
-                           .path = {}};
+model::contact::HandSettings hand_of(const Case& c, const model::Limits& limits) {
+  model::contact::HandSettings hand{.mass_kg = 0.2,
+                                    .stiffness_N_per_m = 3000.0,
+                                    .damping_Ns_per_m = 30.0,
+                                    .repeat = false,
+                                    .path = {}};
   const double begin_s = 0.1 + limits.ramp_s + kLead_s + kCause_s;  // lines, ramp, lead, cause
   const double away_m = limits.workspace_radius_m;
   const auto path = [&](const Vec3& from_m, const Vec3& to_m, double in_s) {
@@ -89,8 +91,8 @@ model::HandSettings hand_of(const Case& c, const model::Limits& limits) {
   return hand;
 }
 
-std::uint32_t acted_since(std::array<std::uint64_t, firmware::kStageCount>& before,
-                          const std::array<std::uint64_t, firmware::kStageCount>& now) {
+std::uint32_t acted_since(std::array<std::uint64_t, firmware::gate::kStageCount>& before,
+                          const std::array<std::uint64_t, firmware::gate::kStageCount>& now) {
   std::uint32_t acted = 0;
   for (std::size_t i = 0; i < now.size(); ++i)
     if (now[i] != before[i]) acted |= 1u << i;
@@ -121,32 +123,32 @@ CaseRun::CaseRun(const Case& c, const LimitsBench& bench)
   hal::Device* device = bench.device;
   hal::SafetyLines* lines = bench.lines;
   if (device == nullptr) {
-    simulated_device_.reset(new hal::SimDelta(bench.scene.device.sim, hand_of(c, limits_)));
+    simulated_device_.reset(new hal::sim::SimDelta(bench.scene.device.sim, hand_of(c, limits_)));
     device = simulated_device_.get();
     // without lines the watch of the loop is alone: with them a paused heartbeat stops it before
     if (c.trouble == Trouble::kLateTick)
       lines = &no_lines_;
     else
       lines = &simulated_lines_;
-    clock_ = std::make_unique<firmware::SimulatedClock>();
+    clock_ = std::make_unique<firmware::loop::SimulatedClock>();
   } else {
-    clock_ = std::make_unique<firmware::MonotonicClock>();
+    clock_ = std::make_unique<firmware::loop::MonotonicClock>();
   }
   device_ = std::make_unique<PlayedDevice>(case_, moment_, *device, *clock_);
   lines_ = std::make_unique<PlayedLines>(case_, moment_, *lines,
                                          lines == &simulated_lines_ ? &simulated_lines_ : nullptr);
   law_ = std::make_unique<CommandLaw>(case_, limits_.force_N, moment_, device_->tool());
-  model::ContactScene contact = tissue_->contact_scene();
+  model::contact::ContactScene contact = tissue_->contact_scene();
   contact.law = law_.get();
   const model::Limits claimed = limits_of(c, bench.limits);
-  controller_ = std::make_unique<firmware::Controller>(
+  controller_ = std::make_unique<firmware::loop::Controller>(
       contact,
-      firmware::Gate(bench.gate_limits != nullptr ? bench.gate_limits(claimed) : claimed,
-                     moment_.period_s, bench.force_share),
+      firmware::gate::Gate(bench.gate_limits != nullptr ? bench.gate_limits(claimed) : claimed,
+                           moment_.period_s, bench.force_share),
       bench.hard_real_time);
-  loop_ = std::make_unique<firmware::RtLoop>(firmware::LoopSettings{.period_ns = bench.period_ns()},
-                                             *device_, *lines_, *controller_, *clock_, requests_,
-                                             *ring_);
+  loop_ = std::make_unique<firmware::loop::RtLoop>(
+      firmware::loop::LoopSettings{.period_ns = bench.period_ns()}, *device_, *lines_, *controller_,
+      *clock_, requests_, *ring_);
   rows_.reserve(static_cast<std::size_t>(lead_ticks_) +
                 static_cast<std::size_t>(c.duration_s / moment_.period_s) + 2);
 }
@@ -154,7 +156,7 @@ CaseRun::CaseRun(const Case& c, const LimitsBench& bench)
 bool CaseRun::play() {
   const int ticks = static_cast<int>(std::lround(case_.duration_s / moment_.period_s));
   requests_.arm.store(true);
-  firmware::TickRecord record;
+  firmware::loop::TickRecord record;
   int waited = 0, open = 0;
   bool going = true;
   while (going && waited < most_wait_ticks_ && open < lead_ticks_ + ticks) {
@@ -169,21 +171,21 @@ bool CaseRun::play() {
       refused_ = record.output.fault;
       break;
     }
-    going = !is_interrupted() && !requests_.stop.load();
+    going = !program::is_interrupted() && !requests_.stop.load();
   }
   loop_->let_go();
   return going;
 }
 
-void CaseRun::keep(const firmware::TickRecord& record, bool cause) {
+void CaseRun::keep(const firmware::loop::TickRecord& record, bool cause) {
   const std::uint32_t acted = acted_since(counted_, controller_->gate().counters());
-  const bool armed = record.output.state == firmware::State::kArmed;
+  const bool armed = record.output.state == firmware::loop::State::kArmed;
   if (rows_.empty() && !armed) return;
   if (rows_.size() == rows_.capacity()) return;
   if (!moment_.playing || moment_.ticks == 0) begin_ns_ = record.due_ns;
   const double lead_s = moment_.playing ? 0.0 : moment_.t_s();
-  const firmware::TickInput& in = record.input;
-  const firmware::TickOutput& out = record.output;
+  const firmware::loop::TickInput& in = record.input;
+  const firmware::loop::TickOutput& out = record.output;
   rows_.push_back({.t_s = lead_s + 1e-9 * static_cast<double>(record.due_ns - begin_ns_),
                    .commanded_N = out.wanted.force_N,
                    .gated_N = out.written.force_N,
@@ -203,4 +205,4 @@ void CaseRun::keep(const firmware::TickRecord& record, bool cause) {
                    .rms_N = out.rms_force_N});
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

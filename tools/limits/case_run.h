@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // case_run.h - one case in the real loop, tick by tick, with a record of everything that the
 // verdict needs. Set up first, then play: a real device is never left alone between two cases.
 #pragma once
@@ -6,12 +7,12 @@
 #include <memory>
 #include <vector>
 
-#include "firmware/rt_loop.h"
-#include "hal/open_device.h"
-#include "model/tissue.h"
+#include "firmware/loop/rt_loop.h"
+#include "hal/registry/open_device.h"
+#include "model/scene/tissue.h"
 #include "tools/limits/player.h"
 
-namespace tact::tools {
+namespace tact::tools::limits {
 
 /// One tick of a case.
 struct TickRow {
@@ -26,21 +27,17 @@ struct TickRow {
   std::uint32_t acted = 0;            // one bit a stage
   Fault limit = Fault::kNone, fault = Fault::kNone;
   double given_J = 0.0, rms_N = 0.0;  // as the gate reckons
-
-  bool acted_in(firmware::Stage stage) const {
-    return (acted >> static_cast<unsigned>(stage) & 1u) != 0;
-  }
 };
 
 /// What all cases share.
 struct LimitsBench {
-  const model::Scene& scene;
+  const model::scene::Scene& scene;
   model::Limits limits;      // of scene and device; what is claimed, and judged
   double force_share = 1.0;  // of them that the PC allows (session.h)
   bool hard_real_time = true;
-  hal::Device* device = nullptr;           // real; null: a simulated one for each case
-  hal::SafetyLines* lines = nullptr;       // of it
-  firmware::Requests* requests = nullptr;  // of all cases on it; a fault of the watch stays
+  hal::Device* device = nullptr;                 // real; null: a simulated one for each case
+  hal::SafetyLines* lines = nullptr;             // of it
+  firmware::loop::Requests* requests = nullptr;  // of all cases on it; a fault of the watch stays
   /// Makes the gate's limits from the claimed ones. Null: the same. Others are for tests that must
   /// fail, and for the wall without the passivity stage.
   model::Limits (*gate_limits)(const model::Limits&) = nullptr;
@@ -62,7 +59,7 @@ class CaseRun {
   /// request.
   bool play();
   /// For the watch above it (guarded_play.h).
-  const firmware::Progress& progress() const { return loop_->progress(); }
+  const firmware::loop::Progress& progress() const { return loop_->progress(); }
   /// Instead of play(): a fault before it that lets nothing be armed any more.
   void refuse(Fault fault) { refused_ = fault; }
 
@@ -74,31 +71,31 @@ class CaseRun {
   Fault refused() const { return refused_; }
 
  private:
-  void keep(const firmware::TickRecord& record, bool cause);
+  void keep(const firmware::loop::TickRecord& record, bool cause);
 
   Case case_;
   model::Limits limits_;
   Moment moment_;
-  model::Scene scene_;  // a plate that always touches
-  std::unique_ptr<model::Tissue> tissue_;
-  hal::OpenDevice simulated_device_;
-  hal::SimLines simulated_lines_;
+  model::scene::Scene scene_;  // a plate that always touches
+  std::unique_ptr<model::scene::Tissue> tissue_;
+  hal::registry::OpenDevice simulated_device_;
+  hal::sim::SimLines simulated_lines_;
   hal::NoSafetyLines no_lines_;
-  std::unique_ptr<firmware::Clock> clock_;
+  std::unique_ptr<firmware::loop::Clock> clock_;
   std::unique_ptr<PlayedDevice> device_;
   std::unique_ptr<PlayedLines> lines_;
   std::unique_ptr<CommandLaw> law_;
-  std::unique_ptr<firmware::Controller> controller_;
-  firmware::Requests own_requests_;
-  firmware::Requests& requests_;
-  std::unique_ptr<firmware::TickRing> ring_ = std::make_unique<firmware::TickRing>();
-  std::unique_ptr<firmware::RtLoop> loop_;
+  std::unique_ptr<firmware::loop::Controller> controller_;
+  firmware::loop::Requests own_requests_;
+  firmware::loop::Requests& requests_;
+  std::unique_ptr<firmware::loop::TickRing> ring_ = std::make_unique<firmware::loop::TickRing>();
+  std::unique_ptr<firmware::loop::RtLoop> loop_;
   int lead_ticks_;       // after arming, until the gate is open
   int most_wait_ticks_;  // for arming
-  std::array<std::uint64_t, firmware::kStageCount> counted_{};
+  std::array<std::uint64_t, firmware::gate::kStageCount> counted_{};
   Fault refused_ = Fault::kNone;
   std::int64_t begin_ns_ = 0;  // of t = 0
   std::vector<TickRow> rows_;
 };
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/limits/consent.h"
 
 #include <fmt/format.h>
 
-namespace tact::tools {
+namespace tact::tools::limits {
 
 std::string warning_text(const std::string& device_name, double force_limit_N, bool has_lines) {
   return fmt::format(
@@ -26,4 +27,4 @@ std::optional<model::Error> read_consent(std::istream& in, double force_limit_N)
   return model::Error{"not agreed to: nothing moved; type the words exactly as they are shown"};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

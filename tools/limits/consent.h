@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // consent.h - before a real device is driven to its limits, a person must say so.
 #pragma once
 
@@ -7,7 +8,7 @@
 
 #include "model/result.h"
 
-namespace tact::tools {
+namespace tact::tools::limits {
 
 /// What will happen, with what force, and how to stop it.
 std::string warning_text(const std::string& device_name, double force_limit_N, bool has_lines);
@@ -16,4 +17,4 @@ std::string consent_words(double force_limit_N);
 /// Reads one line: nothing if it is the words exactly.
 std::optional<model::Error> read_consent(std::istream& in, double force_limit_N);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

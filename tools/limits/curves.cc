@@ -1,13 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
 // One panel a case: what was commanded, what the gate let through, what the device was handed, and
 // the limit as two lines. Gnuplot reads the traces beside the picture.
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "tools/common/picture.h"
 #include "tools/limits/report.h"
+#include "tools/report/picture.h"
 
-namespace tact::tools {
+namespace tact::tools::limits {
 namespace {
 
 using model::Result;
@@ -46,7 +47,7 @@ std::string panel(const CaseResult& result) {
   return out;
 }
 
-Picture curves(const LimitsReport& report) {
+report::Picture curves(const LimitsReport& report) {
   const int rows = (static_cast<int>(report.cases.size()) + kColumns - 1) / kColumns;
   std::string script = fmt::format(
       "set multiplot layout {},{}\nset xlabel 's' offset 0,0.7\n"
@@ -59,7 +60,7 @@ Picture curves(const LimitsReport& report) {
           .script = script + "unset multiplot\n"};
 }
 
-Picture wall_picture(const WallVerdict& wall) {
+report::Picture wall_picture(const WallVerdict& wall) {
   std::string script = R"gp(
 set logscale x
 set xlabel "stiffness of the wall, N/m"
@@ -83,11 +84,11 @@ plot 'wall.csv' using 2:($4*1e3) with linespoints pt 7 lc 2 lw 2 title "without 
 
 Result<std::vector<std::string>> draw_curves(const LimitsReport& report,
                                              const std::string& directory) {
-  std::vector<Picture> pictures;
+  std::vector<report::Picture> pictures;
   if (!report.cases.empty()) pictures.push_back(curves(report));
   if (report.wall) pictures.push_back(wall_picture(*report.wall));
   std::vector<std::string> files;
-  for (const Picture& picture : pictures) {
+  for (const report::Picture& picture : pictures) {
     const auto drawn = draw(picture, directory);
     if (!drawn) return drawn.error();
     files.insert(files.end(), drawn->begin(), drawn->end());
@@ -95,4 +96,4 @@ Result<std::vector<std::string>> draw_curves(const LimitsReport& report,
   return files;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

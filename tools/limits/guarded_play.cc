@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/limits/guarded_play.h"
 
 #include <fmt/format.h>
@@ -7,17 +8,17 @@
 #include <cstdio>
 #include <thread>
 
-#include "firmware/loop_threads.h"
-#include "tools/common/interrupt.h"
+#include "firmware/run/loop_threads.h"
+#include "tools/program/interrupt.h"
 
-namespace tact::tools {
+namespace tact::tools::limits {
 namespace {
 
 constexpr auto kLook = std::chrono::milliseconds(100);
 
-std::vector<firmware::LoopTurn> turns_of(const Runs& runs, firmware::Requests& requests,
-                                         std::atomic<std::size_t>& done) {
-  std::vector<firmware::LoopTurn> turns;
+std::vector<firmware::run::LoopTurn> turns_of(const Runs& runs, firmware::loop::Requests& requests,
+                                              std::atomic<std::size_t>& done) {
+  std::vector<firmware::run::LoopTurn> turns;
   for (const auto& run : runs)
     turns.push_back({run->progress(), [&run, &requests, &done] {
                        if (run->play())
@@ -30,23 +31,25 @@ std::vector<firmware::LoopTurn> turns_of(const Runs& runs, firmware::Requests& r
 
 }  // namespace
 
-firmware::ThreadCosts play_guarded(const Runs& runs, const LimitsBench& bench,
-                                   firmware::CallFilter* filter, const PlanProgress& progress) {
-  firmware::Requests& requests = *bench.requests;
+firmware::run::ThreadCosts play_guarded(const Runs& runs, const LimitsBench& bench,
+                                        firmware::watch::CallFilter* filter,
+                                        const PlanProgress& progress) {
+  firmware::loop::Requests& requests = *bench.requests;
   std::atomic<std::size_t> done{0};
-  firmware::LoopThreads threads({.turns = turns_of(runs, requests, done),
-                                 .device = *bench.device,
-                                 .lines = *bench.lines,
-                                 .requests = requests,
-                                 .filter = filter,
-                                 .rt = {},
-                                 .period_ns = bench.period_ns(),
-                                 .hard_real_time = bench.hard_real_time});
+  firmware::run::LoopThreads threads({.turns = turns_of(runs, requests, done),
+                                      .device = *bench.device,
+                                      .lines = *bench.lines,
+                                      .requests = requests,
+                                      .filter = filter,
+                                      .rt = {},
+                                      .period_ns = bench.period_ns(),
+                                      .hard_real_time = bench.hard_real_time});
   while (!threads.ended()) {
     if (progress) progress(done.load(), runs.size());
     std::this_thread::sleep_for(kLook);
     // from here on it has to end: hangs() counts from the stop request
-    if (is_interrupted() || requests.fault.load() != Fault::kNone || done.load() == runs.size())
+    if (program::is_interrupted() || requests.fault.load() != Fault::kNone ||
+        done.load() == runs.size())
       requests.stop.store(true);
     if (!threads.hangs()) continue;
     threads.leave_behind(1, [] {
@@ -64,4 +67,4 @@ firmware::ThreadCosts play_guarded(const Runs& runs, const LimitsBench& bench,
   return threads.costs();
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

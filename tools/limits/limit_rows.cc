@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/limits/limit_rows.h"
 
 #include <algorithm>
 #include <array>
 
-namespace tact::tools {
+namespace tact::tools::limits {
 namespace {
 
 using Values = std::array<double, kBoundCount>;
@@ -83,4 +84,4 @@ std::vector<LimitRow> limit_rows(const LimitsReport& report) {
   return rows;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

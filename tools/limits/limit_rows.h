@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // limit_rows.h - the limits of a report: what came nearest to each, and was it reached at all?
 #pragma once
 
@@ -6,7 +7,7 @@
 
 #include "tools/limits/report.h"
 
-namespace tact::tools {
+namespace tact::tools::limits {
 
 enum class Kept : std::uint8_t {
   kNotReached,   // no case that is there to reach it ran, or its stage had nothing to do
@@ -36,4 +37,4 @@ struct LimitRow {
 };
 std::vector<LimitRow> limit_rows(const LimitsReport& report);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tact-limits: does the force keep its limits, whatever is commanded and whatever goes wrong?
 #include <fmt/format.h>
 #include <unistd.h>
@@ -6,15 +7,16 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "tools/common/program.h"
 #include "tools/limits/consent.h"
 #include "tools/limits/run_plan.h"
+#include "tools/program/program.h"
 
 namespace {
 
 using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
+using namespace tact::tools::limits;  // NOLINT(google-build-using-namespace)
 using tact::model::Error;
-using tact::model::Scene;
+using tact::model::scene::Scene;
 
 struct Options {
   std::string plan = "all", out, scene;
@@ -63,13 +65,13 @@ void show_progress(std::size_t done, std::size_t all) {
   std::fflush(stderr);
 }
 
-int test_limits(const Program& program, const Options& o) {
+int test_limits(const program::Program& program, const Options& o) {
   const auto cases = choose_cases(o.plan);
   if (!cases) return program.fail(cases.error());
-  const auto scene = tact::model::load_scene(o.scene, o.overrides);
+  const auto scene = tact::model::scene::load_scene(o.scene, o.overrides);
   if (!scene) return program.fail(scene.error());
-  if (const auto error = prepare_folder(o.out)) return program.fail(*error);
-  if (!tact::hal::is_simulated(scene->device))
+  if (const auto error = program::prepare_folder(o.out)) return program.fail(*error);
+  if (!tact::hal::registry::is_simulated(scene->device))
     if (const auto refused = ask_for_consent(o, *scene)) return program.fail(*refused);
   PlanOptions options{.cases = *cases, .wall = names_wall(o.plan)};
   if (isatty(STDERR_FILENO) != 0) options.progress = show_progress;
@@ -90,7 +92,7 @@ int test_limits(const Program& program, const Options& o) {
 
 // The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
-  Program program(
+  program::Program program(
       "tact-limits",
       "Test of safety-limited force output: plays cases to the loop that drives the device, from "
       "a\n"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The page for a safety officer: first the verdict and the limits that were tested, then a row for
 // each case, then the curves. One file, nothing loaded from elsewhere, fit for printing.
 #include <fmt/format.h>
@@ -5,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/common/html.h"
 #include "tools/limits/limit_rows.h"
+#include "tools/report/html.h"
 
-namespace tact::tools {
+namespace tact::tools::limits {
 namespace {
 
 constexpr const char* kStyle = R"css(
@@ -38,7 +39,7 @@ std::string left_out(const LimitsReport& report) {
   if (report.not_run.empty()) return {};
   std::string out = "<p><b>Not tested:</b></p><ul>";
   for (const auto& [why, names] : report.left_out_by_why())
-    out += fmt::format("<li>{}: {}</li>", escape_html(why), escape_html(names));
+    out += fmt::format("<li>{}: {}</li>", report::escape_html(why), report::escape_html(names));
   return out + "</ul>\n";
 }
 
@@ -68,10 +69,10 @@ std::string verdict(const LimitsReport& report) {
 }
 
 std::string facts(const LimitsReport& report) {
-  const firmware::Environment& e = report.environment;
+  const firmware::pc::Environment& e = report.environment;
   std::string out = "<dl class=facts>\n";
   const auto add = [&](const char* name, const std::string& value) {
-    out += fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, escape_html(value));
+    out += fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, report::escape_html(value));
   };
   add("Device", report.device_name + (report.simulated ? " (simulated, on simulated time)" : ""));
   add("Scene", fmt::format("{} ({}), hash {}", report.scene_name, report.scene_path, e.scene_hash));
@@ -151,10 +152,11 @@ std::string plain(double value) {
 std::string case_row(const CaseVerdict& v, const LimitsReport& report) {
   std::string broken;
   for (const Check& c : v.checks)
-    if (!c.holds) broken += fmt::format("<li class=bad>{}</li>", escape_html(c.sentence));
+    if (!c.holds) broken += fmt::format("<li class=bad>{}</li>", report::escape_html(c.sentence));
   if (!broken.empty()) broken = "<ul>" + broken + "</ul>";
-  const std::string told =
-      is_told(report, v) ? fmt::format(" <b>{}.</b>", escape_html(kToldInSoftware)) : std::string();
+  const std::string told = is_told(report, v)
+                               ? fmt::format(" <b>{}.</b>", report::escape_html(kToldInSoftware))
+                               : std::string();
   const auto zero = [](const std::optional<double>& s) {
     return s ? fmt::format("{:.0f} ms", 1e3 * *s) : std::string("-");
   };
@@ -163,13 +165,14 @@ std::string case_row(const CaseVerdict& v, const LimitsReport& report) {
       "<tr><td><b>{}</b></td><td>{}{}{}</td><td class=n>{} N</td><td class=n>{:.4g} N</td>"
       "<td class=n>{:.3g} N</td><td class=n>{}</td><td class=n>{}</td><td>{}</td><td>{}</td>"
       "<td>{}</td></tr>\n",
-      v.subject.name, escape_html(v.subject.what), tightened(v.limits, report.limits) + told,
-      broken, plain(v.worst.commanded_N), v.worst.force_N, v.overshoot_N, zero(v.worst.zero_s),
+      v.subject.name, report::escape_html(v.subject.what),
+      tightened(v.limits, report.limits) + told, broken, plain(v.worst.commanded_N),
+      v.worst.force_N, v.overshoot_N, zero(v.worst.zero_s),
       allowed ? fmt::format("{:.0f} ms", std::floor(1e3 * *allowed)) : "-", v.acted_words(),
       v.fault == Fault::kNone ? "-" : model::describe(v.fault).name, mark(v.passed()));
 }
 
-std::string case_table(const LimitsReport& report) {
+std::string case_rows(const LimitsReport& report) {
   if (report.cases.empty()) return {};
   std::string out =
       "<h2>Cases</h2>\n<table><tr><th>Case</th><th>What happens</th><th class=n>Commanded</th>"
@@ -191,7 +194,7 @@ std::string wall_section(const LimitsReport& report) {
   if (!report.wall) return {};
   std::string out = "<h2>A wall that is too stiff</h2>\n<ul>";
   for (const Check& c : report.wall->checks)
-    out += fmt::format("<li>{} {}</li>", mark(c.holds), escape_html(c.sentence));
+    out += fmt::format("<li>{} {}</li>", mark(c.holds), report::escape_html(c.sentence));
   return out + fmt::format(
                    "</ul>\n<p class=quiet>A light hand (200 N/m) presses a wall through the whole "
                    "loop, stiffer each time by a quarter. The device alone, without its friction "
@@ -243,7 +246,7 @@ std::string page_html(const LimitsReport& report, const std::vector<std::string>
       "<meta name=viewport content=\"width=device-width\"><title>tact-limits: {}</title>"
       "<style>{}</style></head><body>\n<h1>Safety-limited force output: test report</h1>\n",
       report.result_words(), kStyle);
-  out += verdict(report) + facts(report) + limits_table(report) + case_table(report);
+  out += verdict(report) + facts(report) + limits_table(report) + case_rows(report);
   if (!svg.empty() && !report.cases.empty())
     out +=
         "<h2>Curves</h2>\n<p><span class=key style=\"border-color:#999;margin-left:0\"></span>"
@@ -257,4 +260,4 @@ std::string page_html(const LimitsReport& report, const std::vector<std::string>
   return out + how_it_was_tested(report);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

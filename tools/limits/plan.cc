@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/limits/plan.h"
 
 #include <fmt/format.h>
@@ -7,10 +8,10 @@
 #include <cmath>
 #include <sstream>
 
-namespace tact::tools {
+namespace tact::tools::limits {
 namespace {
 
-using firmware::Stage;
+using firmware::gate::Stage;
 using model::Error;
 using model::Fault;
 using model::Result;
@@ -289,4 +290,4 @@ model::Limits limits_of(const Case& c, const model::Limits& limits) {
   return tight;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

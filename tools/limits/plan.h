@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // plan.h - the cases of the test of safety-limited force output: what each asks of the gate, what
 // goes wrong in it, and what must come of it.
 //
@@ -16,7 +17,7 @@
 #include "firmware/gate/gate.h"
 #include "model/result.h"
 
-namespace tact::tools {
+namespace tact::tools::limits {
 
 /// How the commanded force goes with time; along z if nothing else is said.
 enum class Shape : std::uint8_t {
@@ -50,8 +51,8 @@ enum class HandMove : std::uint8_t { kStill, kSideways, kOutside, kUp, kPress };
 enum class Grip : std::uint8_t { kCentre, kLever };
 
 struct Expected {
-  firmware::Stage stage = firmware::Stage::kMagnitude;  // must act in the case
-  model::Fault fault = model::Fault::kNone;             // that latches
+  firmware::gate::Stage stage = firmware::gate::Stage::kMagnitude;  // must act in the case
+  model::Fault fault = model::Fault::kNone;                         // that latches
   double least_peak_ratio = 0.0;          // of the force limit: the case was no void one
   std::optional<double> zero_within_s{};  // of the cause
   double and_ticks = 0.0;                 // besides, at the rate of the run (at_rate)
@@ -74,7 +75,7 @@ struct Case {
   const char* name;
   const char* what;  // for a reader who knows no code
   Shape shape = Shape::kHold;
-  double size = 0.0;
+  double size = 0.0;  // of the shape: share of force_N, or with kPump N s/m, with kWall N/m
   Trouble trouble = Trouble::kNone;
   int trouble_ticks = 0;
   HandMove hand = HandMove::kStill;
@@ -111,4 +112,4 @@ inline constexpr const char* kToldInSoftware = "told in software: the contact wa
 /// The limits of this case: those of the scene, or one tighter.
 model::Limits limits_of(const Case& c, const model::Limits& limits);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

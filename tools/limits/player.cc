@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/limits/player.h"
 
 #include <cmath>
 #include <limits>
 
-namespace tact::tools {
+namespace tact::tools::limits {
 namespace {
 
 constexpr double kRampTime_s = 0.8;
@@ -54,9 +55,9 @@ bool in_trouble(const Case& c, const Moment& now) RT_SAFE {
   return now.after_cause() && now.ticks - now.cause_tick() < c.trouble_ticks;
 }
 
-model::SiteResponse CommandLaw::respond(const model::Indentation& in) RT_SAFE {
+model::contact::SiteResponse CommandLaw::respond(const model::contact::Indentation& in) RT_SAFE {
   const Vec3 force_N = command_at(case_, now_, tool_, limit_N_);
-  model::SiteResponse response;
+  model::contact::SiteResponse response;
   if (in.sphere != 0) return response;
   response.law.force_N = force_N.z;
   response.slope_N = {-force_N.x, -force_N.y, 0.0};  // contact takes the slope from the force
@@ -100,4 +101,4 @@ Fault PlayedLines::read(std::int64_t now_ns) RT_SAFE {
   return let_go ? Fault::kDeadManReleased : Fault::kNone;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

@@ -1,20 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
 // player.h - plays a case to the loop: its command as a law, its troubles between loop and device.
 //
-// The loop is the real one (firmware/rt_loop.h). What is played stands where the real things stand,
-// so the commanded force takes the way of every force: law, contact, gate, device. The device and
-// the lines of the bench are behind PlayedDevice and PlayedLines, which see what is written last.
+// The loop is the real one (firmware/loop/rt_loop.h). What is played stands where the real things
+// stand, so the commanded force takes the way of every force: law, contact, gate, device. The
+// device and the lines of the bench are behind PlayedDevice and PlayedLines, which see what is
+// written last.
 #pragma once
 
 #include <cmath>
 
-#include "firmware/clock.h"
+#include "firmware/loop/clock.h"
 #include "hal/device.h"
 #include "hal/safety_lines.h"
 #include "hal/sim/sim_lines.h"
-#include "model/site_law.h"
+#include "model/contact/site_law.h"
 #include "tools/limits/plan.h"
 
-namespace tact::tools {
+namespace tact::tools::limits {
 
 using model::Fault;
 using model::Vec3;
@@ -38,15 +40,16 @@ Vec3 command_at(const Case& c, const Moment& now, const model::Tool& tool, doubl
 bool in_trouble(const Case& c, const Moment& now) RT_SAFE;
 
 /// One spring that always touches and pushes as commanded.
-class CommandLaw final : public model::SiteLaw {
+class CommandLaw final : public model::contact::SiteLaw {
  public:
   CommandLaw(const Case& c, double limit_N, const Moment& now, const model::Tool& tool)
       : case_(c), limit_N_(limit_N), now_(now), tool_(tool) {}
 
-  model::SiteResponse respond(const model::Indentation& in) RT_SAFE override;
+  model::contact::SiteResponse respond(const model::contact::Indentation& in) RT_SAFE override;
   void leave(std::size_t) RT_SAFE override {}
   void advance() RT_SAFE override {}
-  std::size_t profile(const model::Indentation&, std::span<double>) const RT_SAFE override {
+  std::size_t profile(const model::contact::Indentation&,
+                      std::span<double>) const RT_SAFE override {
     return 0;
   }
   double ring_pitch_m() const RT_SAFE override { return 0.001; }
@@ -61,7 +64,7 @@ class CommandLaw final : public model::SiteLaw {
 /// The device of the bench, with the case's troubles and a witness of what is written.
 class PlayedDevice final : public hal::Device {
  public:
-  PlayedDevice(const Case& c, const Moment& now, hal::Device& device, firmware::Clock& clock)
+  PlayedDevice(const Case& c, const Moment& now, hal::Device& device, firmware::loop::Clock& clock)
       : case_(c), now_(now), device_(device), clock_(clock) {}
 
   hal::DeviceInfo info() const override { return device_.info(); }
@@ -83,7 +86,7 @@ class PlayedDevice final : public hal::Device {
   const Case& case_;
   const Moment& now_;
   hal::Device& device_;
-  firmware::Clock& clock_;
+  firmware::loop::Clock& clock_;
   model::Tool tool_;
   Wrench written_;
 };
@@ -92,7 +95,8 @@ class PlayedDevice final : public hal::Device {
 /// in their place, as nobody can press an e-stop within a given tick.
 class PlayedLines final : public hal::SafetyLines {
  public:
-  PlayedLines(const Case& c, const Moment& now, hal::SafetyLines& lines, hal::SimLines* simulated)
+  PlayedLines(const Case& c, const Moment& now, hal::SafetyLines& lines,
+              hal::sim::SimLines* simulated)
       : case_(c), now_(now), lines_(lines), simulated_(simulated) {}
 
   Fault read(std::int64_t now_ns) RT_SAFE override;
@@ -107,7 +111,7 @@ class PlayedLines final : public hal::SafetyLines {
   const Case& case_;
   const Moment& now_;
   hal::SafetyLines& lines_;
-  hal::SimLines* simulated_;
+  hal::sim::SimLines* simulated_;
 };
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

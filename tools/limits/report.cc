@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/limits/report.h"
 
 #include <fmt/format.h>
@@ -7,9 +8,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tools/common/table.h"
+#include "tools/program/whole_file.h"
+#include "tools/report/table.h"
 
-namespace tact::tools {
+namespace tact::tools::limits {
 namespace {
 
 namespace fs = std::filesystem;
@@ -23,26 +25,26 @@ std::string word_of(std::string text) {  // a word of a table has no comma
   return text;
 }
 
-Table case_table(const LimitsReport& report) {
-  Table table("cases",
-              {{"case", CellKind::kWord},
-               {"passed"},
-               {"force_limit_N"},
-               {"largest_commanded_N"},
-               {"largest_written_N"},
-               {"overshoot_N"},
-               {"largest_torque_Nm"},
-               {"largest_step_N"},
-               {"largest_step_Nm"},
-               {"largest_power_W"},
-               {"given_energy_J"},
-               {"largest_rms_N"},
-               {"largest_rms_Nm"},
-               {"time_to_zero_s"},
-               {"allowed_zero_s"},
-               {"stages", CellKind::kWord},
-               {"fault"}},
-              report.cases.size());
+report::Table case_table(const LimitsReport& report) {
+  report::Table table("cases",
+                      {{"case", report::CellKind::kWord},
+                       {"passed"},
+                       {"force_limit_N"},
+                       {"largest_commanded_N"},
+                       {"largest_written_N"},
+                       {"overshoot_N"},
+                       {"largest_torque_Nm"},
+                       {"largest_step_N"},
+                       {"largest_step_Nm"},
+                       {"largest_power_W"},
+                       {"given_energy_J"},
+                       {"largest_rms_N"},
+                       {"largest_rms_Nm"},
+                       {"time_to_zero_s"},
+                       {"allowed_zero_s"},
+                       {"stages", report::CellKind::kWord},
+                       {"fault"}},
+                      report.cases.size());
   for (const CaseResult& result : report.cases) {
     const CaseVerdict& v = result.verdict;
     table.add({std::string(v.subject.name), v.passed() ? 1.0 : 0.0, v.limits.force_N,
@@ -55,32 +57,32 @@ Table case_table(const LimitsReport& report) {
   return table;
 }
 
-Table trace_table(const CaseResult& result) {
-  Table table(std::string("trace_") + result.verdict.subject.name,
-              {{"t_s"},
-               {"commanded_N"},
-               {"gated_N"},
-               {"written_N"},
-               {"commanded_Nm"},
-               {"gated_Nm"},
-               {"written_Nm"},
-               {"written_x_N"},
-               {"written_y_N"},
-               {"written_z_N"},
-               {"position_x_m"},
-               {"position_y_m"},
-               {"position_z_m"},
-               {"speed_mps"},
-               {"power_W"},
-               {"given_energy_J"},
-               {"rms_N"},
-               {"fresh"},
-               {"armed"},
-               {"skipped_periods"},
-               {"stages", CellKind::kWord},
-               {"limit"},
-               {"fault"}},
-              result.rows.size());
+report::Table trace_table(const CaseResult& result) {
+  report::Table table(std::string("trace_") + result.verdict.subject.name,
+                      {{"t_s"},
+                       {"commanded_N"},
+                       {"gated_N"},
+                       {"written_N"},
+                       {"commanded_Nm"},
+                       {"gated_Nm"},
+                       {"written_Nm"},
+                       {"written_x_N"},
+                       {"written_y_N"},
+                       {"written_z_N"},
+                       {"position_x_m"},
+                       {"position_y_m"},
+                       {"position_z_m"},
+                       {"speed_mps"},
+                       {"power_W"},
+                       {"given_energy_J"},
+                       {"rms_N"},
+                       {"fresh"},
+                       {"armed"},
+                       {"skipped_periods"},
+                       {"stages", report::CellKind::kWord},
+                       {"limit"},
+                       {"fault"}},
+                      result.rows.size());
   for (const TickRow& r : result.rows) {
     CaseVerdict stages;
     stages.acted = r.acted;
@@ -111,19 +113,19 @@ Table trace_table(const CaseResult& result) {
   return table;
 }
 
-Table wall_table(const WallVerdict& wall) {
-  Table table("wall",
-              {{"stiffness_N_per_m"},
-               {"without_early_swing_m"},
-               {"without_last_swing_m"},
-               {"without_grows"},
-               {"without_given_J"},
-               {"with_early_swing_m"},
-               {"with_last_swing_m"},
-               {"with_grows"},
-               {"with_given_J"},
-               {"in_bounds"}},
-              wall.points.size());
+report::Table wall_table(const WallVerdict& wall) {
+  report::Table table("wall",
+                      {{"stiffness_N_per_m"},
+                       {"without_early_swing_m"},
+                       {"without_last_swing_m"},
+                       {"without_grows"},
+                       {"without_given_J"},
+                       {"with_early_swing_m"},
+                       {"with_last_swing_m"},
+                       {"with_grows"},
+                       {"with_given_J"},
+                       {"in_bounds"}},
+                      wall.points.size());
   for (const WallPoint& p : wall.points)
     table.add({p.stiffness_N_per_m, p.without.early_swing_m, p.without.last_swing_m,
                p.without.grows ? 1.0 : 0.0, p.without.given_J, p.with.early_swing_m,
@@ -186,15 +188,15 @@ Result<std::vector<std::string>> write_report(const LimitsReport& report,
   std::vector<std::string> files;
   const auto write = [&](const std::string& name, const std::string& content) {
     const std::string path = (fs::path(directory) / name).string();
-    auto written = write_whole_file(path, content);
+    auto written = program::write_whole_file(path, content);
     if (written) files.push_back(path);
     return written;
   };
-  std::vector<Table> tables;
+  std::vector<report::Table> tables;
   if (!report.cases.empty()) tables.push_back(case_table(report));
   for (const CaseResult& result : report.cases) tables.push_back(trace_table(result));
   if (report.wall) tables.push_back(wall_table(*report.wall));
-  for (const Table& table : tables)
+  for (const report::Table& table : tables)
     if (auto done = write(table.name() + ".csv", table.to_csv()); !done) return done.error();
   if (auto done = write("limits.json", to_json(report).dump(2) + "\n"); !done) return done.error();
   std::vector<std::string> drawings;
@@ -204,7 +206,7 @@ Result<std::vector<std::string>> write_report(const LimitsReport& report,
     for (const std::string& path : *drawn) {
       files.push_back(path);
       if (fs::path(path).extension() != ".svg") continue;
-      auto svg = read_whole_file(path);
+      auto svg = program::read_whole_file(path);
       if (!svg) return svg.error();
       drawings.push_back(std::move(*svg));
     }
@@ -213,4 +215,4 @@ Result<std::vector<std::string>> write_report(const LimitsReport& report,
   return files;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

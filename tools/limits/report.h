@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // report.h - what a test of the limits leaves behind: JSON for machines, CSV of every tick, curves
 // by gnuplot, and one page that a safety officer can read.
 #pragma once
@@ -8,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/environment.h"
+#include "firmware/pc/environment.h"
 #include "model/result.h"
 #include "tools/limits/wall.h"
 
-namespace tact::tools {
+namespace tact::tools::limits {
 
 struct CaseResult {
   CaseVerdict verdict;
@@ -33,7 +34,7 @@ struct LimitsReport {
   double force_share = 1.0;
   bool hard_real_time = true;  // asked of the PC; simulated time needs none
   bool call_filter = false;    // over the loop's system calls, on a real device
-  firmware::Environment environment{};
+  firmware::pc::Environment environment{};
   std::vector<CaseResult> cases;
   std::optional<WallVerdict> wall;
   std::vector<LeftOut> not_run;  // the rest of the plan, so that nobody takes it for tested
@@ -61,4 +62,4 @@ model::Result<std::vector<std::string>> draw_curves(const LimitsReport& report,
 /// `svg`: the drawings, in their order; empty: without.
 std::string page_html(const LimitsReport& report, const std::vector<std::string>& svg);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

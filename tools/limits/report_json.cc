@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // The report for machines: limits.json.
 #include <nlohmann/json.hpp>
 
 #include "tools/limits/limit_rows.h"
 
-namespace tact::tools {
+namespace tact::tools::limits {
 namespace {
 
 using nlohmann::json;
@@ -63,7 +64,7 @@ json to_json(const LimitsReport& report) {
     not_run.push_back({{"case", out.name}, {"why", out.why}});
   for (const CaseResult& result : report.cases)
     cases.push_back(case_json(result.verdict, report.simulated));
-  const firmware::Environment& e = report.environment;
+  const firmware::pc::Environment& e = report.environment;
   json out{{"passed", report.passed()},
            {"result", report.result_words()},
            {"cases_played", report.played()},
@@ -101,4 +102,4 @@ json to_json(const LimitsReport& report) {
   return out;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

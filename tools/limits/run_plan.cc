@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/limits/run_plan.h"
 
 #include <fmt/chrono.h>
@@ -7,16 +8,16 @@
 #include <memory>
 #include <string_view>
 
-#include "firmware/loop_parts.h"
-#include "firmware/operator_view.h"
+#include "firmware/run/loop_parts.h"
+#include "firmware/run/operator_view.h"
 #include "firmware/watch/call_filter.h"
 #include "firmware/watch/runaway.h"
 #include "hal/gpio/gpio_lines.h"
-#include "tools/common/interrupt.h"
-#include "tools/common/run_program.h"
 #include "tools/limits/guarded_play.h"
+#include "tools/program/interrupt.h"
+#include "tools/program/run_program.h"
 
-namespace tact::tools {
+namespace tact::tools::limits {
 namespace {
 
 using model::Error;
@@ -30,22 +31,22 @@ Runs prepare(const std::vector<Case>& cases, const LimitsBench& bench) {
   return runs;
 }
 
-LimitsReport begin_report(const model::Scene& scene, const hal::DeviceInfo& device) {
+LimitsReport begin_report(const model::scene::Scene& scene, const hal::DeviceInfo& device) {
   LimitsReport report;
   report.started = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)));
   report.scene_name = scene.name;
   report.scene_path = scene.path;
   report.device_name = device.name;
-  report.simulated = hal::is_simulated(scene.device);
+  report.simulated = hal::registry::is_simulated(scene.device);
   report.period_s = 1.0 / scene.rate_Hz;
-  report.environment = firmware::read_environment(scene.hash);
+  report.environment = firmware::pc::read_environment(scene.hash);
   return report;
 }
 
 /// What the guards found: no case of its own stands for it.
 void tell_fault(Fault found, const hal::Device& device, const hal::SafetyLines& lines) {
   const model::FaultEntry& fault = model::describe(found);
-  const std::string trouble = firmware::trouble_behind(found, device, lines);
+  const std::string trouble = firmware::run::trouble_behind(found, device, lines);
   fmt::print(stderr, "tact-limits: the plan ended with {}: {}{}{}; {}\n", fault.name, fault.cause,
              trouble.empty() ? "" : ": ", trouble, fault.cure);
 }
@@ -63,7 +64,7 @@ void name_the_rest(LimitsReport& report, const PlanOptions& options) {
 
 Result<LimitsReport> finished(LimitsReport report, const Runs& runs, const LimitsBench& bench,
                               const hal::DeviceInfo& device, bool wall) {
-  if (is_interrupted()) return interruption();
+  if (program::is_interrupted()) return program::interruption();
   report.limits = judged_limits(Case{}, bench);
   report.force_share = bench.force_share;
   report.hard_real_time = bench.hard_real_time;
@@ -71,17 +72,17 @@ Result<LimitsReport> finished(LimitsReport report, const Runs& runs, const Limit
     report.cases.push_back({.verdict = judge_case(*run), .rows = run->rows()});
   if (wall) {
     report.wall = measure_wall(bench, device);
-    if (!report.wall) return interruption();
+    if (!report.wall) return program::interruption();
   }
   return report;
 }
 
-Result<LimitsReport> run_simulated(const model::Scene& scene, const hal::DeviceInfo& info,
+Result<LimitsReport> run_simulated(const model::scene::Scene& scene, const hal::DeviceInfo& info,
                                    const PlanOptions& options) {
   const LimitsBench bench{.scene = scene,
-                          .limits = firmware::limits_for(scene.limits, info),
+                          .limits = firmware::gate::limits_for(scene.limits, info),
                           .gate_limits = options.gate_limits};
-  firmware::flush_denormals();
+  firmware::pc::flush_denormals();
   const Runs runs = prepare(options.cases, bench);
   for (const auto& run : runs)
     if (!run->play()) break;
@@ -90,20 +91,21 @@ Result<LimitsReport> run_simulated(const model::Scene& scene, const hal::DeviceI
   return finished(std::move(report), runs, bench, info, options.wall);
 }
 
-Result<LimitsReport> run_real(const model::Scene& scene, hal::Device& device,
+Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& device,
                               const PlanOptions& options) {
-  auto lines = hal::open_safety_lines(scene.device.lines);
+  auto lines = hal::gpio::open_safety_lines(scene.device.lines);
   if (!lines) return Error{fmt::format("{}: {}", scene.path, lines.error().sentence)};
-  std::vector<firmware::Shortfall> shortfalls;
-  firmware::use_small_thread_stacks();
-  const firmware::ProcessSetup setup(shortfalls);
-  if (auto limited = firmware::lift_rttime_limit()) shortfalls.push_back(std::move(*limited));
-  const bool hard = shortfalls.empty() && firmware::probe_rt_threads({}).empty();
+  std::vector<firmware::pc::Shortfall> shortfalls;
+  firmware::pc::use_small_thread_stacks();
+  const firmware::pc::ProcessSetup setup(shortfalls);
+  if (auto limited = firmware::watch::lift_rttime_limit())
+    shortfalls.push_back(std::move(*limited));
+  const bool hard = shortfalls.empty() && firmware::pc::probe_rt_threads({}).empty();
   const hal::DeviceInfo info = device.info();
-  firmware::Requests requests;
+  firmware::loop::Requests requests;
   const LimitsBench bench{.scene = scene,
-                          .limits = firmware::limits_for(scene.limits, info),
-                          .force_share = hard ? 1.0 : firmware::kNonRtForceShare,
+                          .limits = firmware::gate::limits_for(scene.limits, info),
+                          .force_share = hard ? 1.0 : firmware::run::kNonRtForceShare,
                           .hard_real_time = hard,
                           .device = &device,
                           .lines = lines->get(),
@@ -111,17 +113,16 @@ Result<LimitsReport> run_real(const model::Scene& scene, hal::Device& device,
                           .gate_limits = options.gate_limits};
   LimitsReport report = begin_report(scene, info);
   std::vector<Case> cases;
-  for (const Case& c : options.cases) {
+  for (const Case& c : options.cases)
     if (const char* why = why_left_out(c, scene.device.lines))
       report.not_run.push_back({.name = c.name, .why = why});
     else
       cases.push_back(c);
-  }
   if (options.wall) report.not_run.push_back({.name = std::string(kWallName), .why = kNeedsHand});
   name_the_rest(report, options);
   const Runs runs = prepare(cases, bench);
   const auto filter =
-      firmware::CallFilter::make(device.loop_calls(), (*lines)->loop_calls(), requests);
+      firmware::watch::CallFilter::make(device.loop_calls(), (*lines)->loop_calls(), requests);
   if (!filter) fmt::print(stderr, "tact-limits: {}\n", filter.error().sentence);
   report.call_filter =
       play_guarded(runs, bench, filter ? filter->get() : nullptr, options.progress).call_filter;
@@ -142,11 +143,12 @@ const char* why_left_out(const Case& c, const model::LinesSettings& lines) {
   return nullptr;
 }
 
-Result<LimitsReport> run_plan(const model::Scene& scene, const PlanOptions& options) {
-  auto device = hal::open_device(scene);
+Result<LimitsReport> run_plan(const model::scene::Scene& scene, const PlanOptions& options) {
+  auto device = hal::registry::open_device(scene);
   if (!device) return device.error();
-  if (hal::is_simulated(scene.device)) return run_simulated(scene, (*device)->info(), options);
+  if (hal::registry::is_simulated(scene.device))
+    return run_simulated(scene, (*device)->info(), options);
   return run_real(scene, **device, options);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // run_plan.h - the cases of a plan on the device of a scene, one after the other.
 #pragma once
 
@@ -7,7 +8,7 @@
 #include "tools/limits/guarded_play.h"
 #include "tools/limits/report.h"
 
-namespace tact::tools {
+namespace tact::tools::limits {
 
 struct PlanOptions {
   std::vector<Case> cases;
@@ -25,6 +26,6 @@ const char* why_left_out(const Case& c, const model::LinesSettings& lines);
 /// Opens the device, plays and judges. A real device is played in real time, guarded as tactd's is
 /// (guarded_play.h); the consent comes before (consent.h). An error: the device did not open, or
 /// Ctrl-C.
-model::Result<LimitsReport> run_plan(const model::Scene& scene, const PlanOptions& options);
+model::Result<LimitsReport> run_plan(const model::scene::Scene& scene, const PlanOptions& options);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

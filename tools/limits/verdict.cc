@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/limits/verdict.h"
 
 #include <fmt/format.h>
@@ -5,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tact::tools {
+namespace tact::tools::limits {
 namespace {
 
-using firmware::kStageCount;
-using firmware::kStageName;
+using firmware::gate::kStageCount;
+using firmware::gate::kStageName;
 
 constexpr double kLeastTurn = 0.45;       // of the torque limit, where a torque must go
 constexpr double kRounding = 1.0 + 1e-9;  // for sums and products; |F| has none
@@ -276,4 +277,4 @@ CaseVerdict judge_case(const CaseRun& run) {
   return v;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

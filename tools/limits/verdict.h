@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // verdict.h - did the force keep its limits? Judged from the record of a case alone, with accounts
 // of its own: nothing here asks the gate what it thinks of itself.
 //
@@ -16,7 +17,7 @@
 
 #include "tools/limits/case_run.h"
 
-namespace tact::tools {
+namespace tact::tools::limits {
 
 /// One thing that had to hold.
 struct Check {
@@ -65,4 +66,4 @@ CaseVerdict judge_rows(const Case& c, const std::vector<TickRow>& rows, const mo
                        double period_s);
 CaseVerdict judge_case(const CaseRun& run);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/limits/wall.h"
 
 #include <fmt/format.h>
@@ -5,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/haptic_limit.h"
+#include "model/law/haptic_limit.h"
 
-namespace tact::tools {
+namespace tact::tools::limits {
 namespace {
 
 constexpr double kDuration_s = 4.0;
@@ -60,7 +61,7 @@ std::optional<WallRun> run_wall(double stiffness_N_per_m, const LimitsBench& ben
 }
 
 /// The last stiffness before the first that grows.
-double largest(const std::vector<WallPoint>& points, WallRun WallPoint::*which) {
+double largest(const std::vector<WallPoint>& points, WallRun WallPoint::* which) {
   double most = 0.0;
   for (const WallPoint& point : points) {
     if ((point.*which).grows) break;
@@ -70,7 +71,7 @@ double largest(const std::vector<WallPoint>& points, WallRun WallPoint::*which) 
 }
 
 /// The last stiffness before the first that does not come to rest.
-double largest_at_rest(const std::vector<WallPoint>& points, WallRun WallPoint::*which) {
+double largest_at_rest(const std::vector<WallPoint>& points, WallRun WallPoint::* which) {
   double most = 0.0;
   for (const WallPoint& point : points) {
     if ((point.*which).last_swing_m > kStill_m) break;
@@ -79,12 +80,12 @@ double largest_at_rest(const std::vector<WallPoint>& points, WallRun WallPoint::
   return most;
 }
 
-bool any_grows(const std::vector<WallPoint>& points, WallRun WallPoint::*which) {
+bool any_grows(const std::vector<WallPoint>& points, WallRun WallPoint::* which) {
   return std::any_of(points.begin(), points.end(),
                      [&](const WallPoint& p) { return (p.*which).grows; });
 }
 
-double worst_swing_m(const std::vector<WallPoint>& points, WallRun WallPoint::*which) {
+double worst_swing_m(const std::vector<WallPoint>& points, WallRun WallPoint::* which) {
   double most = 0.0;
   for (const WallPoint& point : points) most = std::max(most, (point.*which).last_swing_m);
   return most;
@@ -135,7 +136,7 @@ bool WallVerdict::passed() const {
 std::optional<WallVerdict> measure_wall(const LimitsBench& bench, const hal::DeviceInfo& device) {
   WallVerdict v;
   if (device.at_tool)
-    v.theory_N_per_m = model::haptic_limit(*device.at_tool, bench.scene.rate_Hz).grow_N_per_m;
+    v.theory_N_per_m = model::law::haptic_limit(*device.at_tool, bench.scene.rate_Hz).grow_N_per_m;
   const double first = std::max(v.theory_N_per_m, kLeast_N_per_m);
   int beyond = 0;
   for (double k = first; k < kMost * first && beyond < kBeyond + 1; k *= kRaise) {
@@ -151,4 +152,4 @@ std::optional<WallVerdict> measure_wall(const LimitsBench& bench, const hal::Dev
   return v;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // wall.h - how stiff a wall may be, without and with the passivity stage of the gate: Z-width.
 //
 // A wall F = K x, x below z = 0, is pressed by a light simulated hand (200 N/m) through the whole
 // loop. K is raised by a quarter at a time from the device's own limit b / (T/2 + t_d)
-// (model/haptic_limit.h). A motion grows when it swings wider in the last eighth of 4 s than in the
-// third, by more than 2 % and beyond 0.1 mm; else it is bounded, which is less than at rest.
+// (model/law/haptic_limit.h). A motion grows when it swings wider in the last eighth of 4 s than in
+// the third, by more than 2 % and beyond 0.1 mm; else it is bounded, which is less than at rest.
 // Everything else of the gate works in both runs, so without the passivity stage a wall on which a
 // motion grows bounces within force and slew limits.
 #pragma once
@@ -13,7 +14,7 @@
 
 #include "tools/limits/verdict.h"
 
-namespace tact::tools {
+namespace tact::tools::limits {
 
 /// One stiffness, once with and once without the passivity stage.
 struct WallRun {
@@ -48,4 +49,4 @@ struct WallVerdict {
 /// Without a value after Ctrl-C.
 std::optional<WallVerdict> measure_wall(const LimitsBench& bench, const hal::DeviceInfo& device);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::limits

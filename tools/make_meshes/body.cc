@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any number of vertices on a smooth closed body: rings of latitude, zipped, then relaxed.
 #include <algorithm>
 #include <cmath>
@@ -5,17 +6,17 @@
 
 #include "tools/make_meshes/meshes.h"
 
-namespace tact::tools {
+namespace tact::tools::make_meshes {
 namespace {
 
 using model::cross;
 using model::dot;
-using model::kNoTriangle;
 using model::norm;
 using model::Result;
-using model::SurfaceMesh;
-using model::TriangleCorners;
 using model::Vec3;
+using model::contact::kNoTriangle;
+using model::contact::TriangleCorners;
+using model::mesh::SurfaceMesh;
 
 constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kSlices = 1024;  // samples of the body from pole to pole
@@ -163,15 +164,13 @@ std::size_t edge_to(const TriangleCorners& across, std::uint32_t triangle) {
 class Flipper {
  public:
   explicit Flipper(SurfaceMesh& mesh) : mesh_(mesh), valence_(mesh.vertex_m.size(), 0) {
-    for (const TriangleCorners& t : mesh.triangle) {
+    for (const TriangleCorners& t : mesh.triangle)
       for (const std::uint32_t v : t) ++valence_[v];
-    }
   }
 
   void pass(const std::vector<Vec3>& p) {
-    for (std::uint32_t t = 0; t < mesh_.triangle.size(); ++t) {
+    for (std::uint32_t t = 0; t < mesh_.triangle.size(); ++t)
       for (std::size_t e = 0; e < 3; ++e) flip_if_better(p, t, e);
-    }
   }
 
  private:
@@ -239,7 +238,7 @@ Result<Shape> make_body(std::size_t vertices, const SphereMap& map) {
     std::transform(on_unit.begin(), on_unit.end(), shape.vertex_mm.begin(), map);
   };
   place();
-  Result<SurfaceMesh> mesh = model::make_surface_mesh(
+  Result<SurfaceMesh> mesh = model::mesh::make_surface_mesh(
       shape.vertex_mm, zip_rings(ring, static_cast<std::uint32_t>(vertices - 1)));
   if (!mesh) return mesh.error();
   Flipper flipper(*mesh);
@@ -265,4 +264,4 @@ double least_angle_deg(const Shape& shape) {
   return least_rad * 180.0 / kPi;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_meshes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A cover plate with bolts and ribs, 104 x 124 x 8 mm, and on it a soft gasket: two closed bodies,
 // the plate first. The plate's top is z = 0, the gasket's crest z = 6.1 mm.
 //
@@ -8,7 +9,7 @@
 
 #include "tools/make_meshes/field.h"
 
-namespace tact::tools {
+namespace tact::tools::make_meshes {
 namespace {
 
 using model::Vec3;
@@ -91,4 +92,4 @@ model::Result<Shape> make_cover_shape() {
   return both;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_meshes

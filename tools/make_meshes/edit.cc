@@ -1,16 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/make_meshes/edit.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
-namespace tact::tools {
+namespace tact::tools::make_meshes {
 namespace {
 
 using model::cross;
 using model::dot;
-using model::TriangleCorners;
 using model::Vec3;
+using model::contact::TriangleCorners;
 
 constexpr double kLeastTurn = 0.3;  // cosine between normals before and after an edit
 
@@ -30,14 +31,12 @@ Editor::Editor(Shape shape)
       fan_(p_.size()),
       on_rim_(p_.size(), true),  // not known yet
       vertices_(p_.size()) {
-  for (std::uint32_t t = 0; t < triangle_.size(); ++t) {
+  for (std::uint32_t t = 0; t < triangle_.size(); ++t)
     for (const std::uint32_t v : triangle_[t]) fan_[v].push_back(t);
-  }
   const std::vector<Edge> all = edges();
   on_rim_.assign(p_.size(), false);
-  for (const Edge& e : all) {
+  for (const Edge& e : all)
     if (e.rim) on_rim_[e.a] = on_rim_[e.b] = true;
-  }
 }
 
 Editor::Pair Editor::between(std::uint32_t a, std::uint32_t b) const {
@@ -52,9 +51,8 @@ Editor::Pair Editor::between(std::uint32_t a, std::uint32_t b) const {
 std::vector<std::uint32_t> Editor::around(std::uint32_t v) const {
   std::vector<std::uint32_t> found;
   for (const std::uint32_t t : fan_[v]) {
-    for (const std::uint32_t w : triangle_[t]) {
+    for (const std::uint32_t w : triangle_[t])
       if (w != v) found.push_back(w);
-    }
   }
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
@@ -62,9 +60,8 @@ std::vector<std::uint32_t> Editor::around(std::uint32_t v) const {
 }
 
 std::uint32_t Editor::across(std::uint32_t t, std::uint32_t a, std::uint32_t b) const {
-  for (const std::uint32_t v : triangle_[t]) {
+  for (const std::uint32_t v : triangle_[t])
     if (v != a && v != b) return v;
-  }
   return a;
 }
 
@@ -133,9 +130,8 @@ bool Editor::collapse(std::uint32_t gone, std::uint32_t kept) {
   std::set_intersection(here.begin(), here.end(), there.begin(), there.end(),
                         std::back_inserter(common));
   if (common.size() != lost.count) return false;
-  for (const std::uint32_t tip : common) {
+  for (const std::uint32_t tip : common)
     if (fan_[tip].size() <= (on_rim_[tip] ? 2u : 4u)) return false;
-  }
   if (on_rim_[gone] && here.size() + there.size() < 7) return false;
   if (!keeps_facing(gone, kept)) return false;
   for (std::size_t i = 0; i < lost.count; ++i) {
@@ -162,9 +158,8 @@ bool Editor::flip_if_better(std::uint32_t a, std::uint32_t b) {
   };
   if (!follows(triangle_[near])) std::swap(near, far);
   const std::uint32_t c = across(near, a, b), d = across(far, a, b);
-  for (const std::uint32_t v : {a, b}) {
+  for (const std::uint32_t v : {a, b})
     if (fan_[v].size() <= (on_rim_[v] ? 2u : 4u)) return false;
-  }
   if (is_edge(c, d)) return false;
   // Delaunay: the angles that face the edge add up to at most 180 degrees, cot c + cot d >= 0.
   if (!(cotangent(p_[c], p_[a], p_[b]) + cotangent(p_[d], p_[a], p_[b]) < -1e-9)) return false;
@@ -189,10 +184,9 @@ Shape Editor::shape() const {
     place[v] = static_cast<std::uint32_t>(packed.vertex_mm.size());
     packed.vertex_mm.push_back(p_[v]);
   }
-  for (const TriangleCorners& t : triangle_) {
+  for (const TriangleCorners& t : triangle_)
     if (t[0] != t[1]) packed.triangle.push_back({place[t[0]], place[t[1]], place[t[2]]});
-  }
   return packed;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_meshes

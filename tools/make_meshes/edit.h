@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // edit.h - a triangle surface under change: edges are split, collapsed and flipped.
 //
 // Every edit keeps the surface sound (at most two triangles on an edge, one fan round a vertex) and
@@ -8,7 +9,7 @@
 
 #include "tools/make_meshes/meshes.h"
 
-namespace tact::tools {
+namespace tact::tools::make_meshes {
 
 struct Edge {
   std::uint32_t a = 0, b = 0;
@@ -20,7 +21,7 @@ class Editor {
   explicit Editor(Shape shape);
 
   std::vector<model::Vec3>& vertex_mm() { return p_; }
-  const std::vector<model::TriangleCorners>& triangle() const { return triangle_; }
+  const std::vector<model::contact::TriangleCorners>& triangle() const { return triangle_; }
   const std::vector<std::uint32_t>& fan(std::uint32_t v) const { return fan_[v]; }
   bool is_alive(std::uint32_t v) const { return !fan_[v].empty(); }
   bool is_on_rim(std::uint32_t v) const { return on_rim_[v]; }
@@ -57,11 +58,11 @@ class Editor {
   void leave(std::uint32_t v, std::uint32_t t);
   bool keeps_facing(std::uint32_t gone, std::uint32_t kept) const;
 
-  std::vector<model::Vec3> p_;                    // mm
-  std::vector<model::TriangleCorners> triangle_;  // a removed one has three equal corners
-  std::vector<std::vector<std::uint32_t>> fan_;   // triangles round each vertex
+  std::vector<model::Vec3> p_;                             // mm
+  std::vector<model::contact::TriangleCorners> triangle_;  // a removed one has three equal corners
+  std::vector<std::vector<std::uint32_t>> fan_;            // triangles round each vertex
   std::vector<bool> on_rim_;
   std::size_t vertices_ = 0;
 };
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_meshes

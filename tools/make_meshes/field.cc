@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The zero surface of a field: marching tetrahedra on a cubic grid, then planes that cut it open.
 //
 // Each cube is six tetrahedra round its diagonal (0,0,0)-(1,1,1), the same in every cube, so faces
@@ -10,13 +11,13 @@
 #include <map>
 #include <unordered_map>
 
-namespace tact::tools {
+namespace tact::tools::make_meshes {
 namespace {
 
 using model::cross;
 using model::dot;
-using model::TriangleCorners;
 using model::Vec3;
+using model::contact::TriangleCorners;
 
 // Corner c of a cube lies at (c & 1, c >> 1 & 1, c >> 2).
 constexpr std::array<std::array<std::size_t, 4>, 6> kTetrahedra{
@@ -36,9 +37,8 @@ class Grid {
 
   Shape surface() {
     for (std::size_t k = 0; k + 1 < nz_; ++k) {
-      for (std::size_t j = 0; j + 1 < ny_; ++j) {
+      for (std::size_t j = 0; j + 1 < ny_; ++j)
         for (std::size_t i = 0; i + 1 < nx_; ++i) visit_cube(i, j, k);
-      }
     }
     return std::move(shape_);
   }
@@ -53,9 +53,8 @@ class Grid {
 
   void visit_cube(std::size_t i, std::size_t j, std::size_t k) {
     std::array<std::size_t, 8> corner{};
-    for (std::size_t c = 0; c < 8; ++c) {
+    for (std::size_t c = 0; c < 8; ++c)
       corner[c] = ((k + (c >> 2)) * ny_ + j + (c >> 1 & 1)) * nx_ + i + (c & 1);
-    }
     const auto is_inside = [&](std::size_t c) { return inside(c); };
     const auto all = std::count_if(corner.begin(), corner.end(), is_inside);
     if (all == 0 || all == 8) return;  // most cubes
@@ -77,12 +76,10 @@ class Grid {
     const auto& p = shape_.vertex_mm;
     const Vec3 n = cross(p[loop[1]] - p[loop[0]], p[loop[2]] - p[loop[0]]);
     const Vec3 middle = 0.5 * (p[loop[0]] + p[loop[2]]);
-    if (dot(n, place(out) - middle) < dot(n, place(in) - middle)) {
+    if (dot(n, place(out) - middle) < dot(n, place(in) - middle))
       std::reverse(loop.begin(), loop.end());
-    }
-    for (std::size_t c = 1; c + 1 < loop.size(); ++c) {
+    for (std::size_t c = 1; c + 1 < loop.size(); ++c)
       shape_.triangle.push_back({loop[0], loop[c], loop[c + 1]});
-    }
   }
 
   // The vertex on the edge between two nodes; kept off its ends, where triangles would vanish.
@@ -133,9 +130,8 @@ void open_at(const Cut& cut, Shape& shape) {
       if (a_stays) loop.push_back(a);
       if (a_stays != b_stays) loop.push_back(on_plane(a, b));
     }
-    for (std::size_t c = 1; c + 1 < loop.size(); ++c) {
+    for (std::size_t c = 1; c + 1 < loop.size(); ++c)
       kept.push_back({loop[0], loop[c], loop[c + 1]});
-    }
   }
   shape.triangle = std::move(kept);
 }
@@ -185,4 +181,4 @@ const Cut& nearest_cut(const Body& body, const Vec3& p_mm) {
   });
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_meshes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // field.h - bodies as smooth blends of round parts, and the surface of such a body.
 //
 // A field gives the distance of a point to the surface, mm, negative inside; only its zero and its
@@ -10,7 +11,7 @@
 
 #include "tools/make_meshes/meshes.h"
 
-namespace tact::tools {
+namespace tact::tools::make_meshes {
 
 using Field = std::function<double(const model::Vec3&)>;
 
@@ -77,4 +78,4 @@ inline double joined_mm(double a_mm, double b_mm, double blend_mm) {
   return std::min(a_mm, b_mm) - 0.25 * overlap * overlap * blend_mm;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_meshes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Spring-handled forceps: one hexagonal tube from tip to tip, bent round at the spring, with a
 // bridge between its two arms at the pivot.
 //
@@ -9,12 +10,12 @@
 
 #include "tools/make_meshes/meshes.h"
 
-namespace tact::tools {
+namespace tact::tools::make_meshes {
 namespace {
 
 using model::normalized;
-using model::TriangleCorners;
 using model::Vec3;
+using model::contact::TriangleCorners;
 
 // A section of the right arm (y > 0), square to its centre line.
 struct Section {
@@ -100,4 +101,4 @@ model::Result<Shape> make_forceps_shape() {
   return shape;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_meshes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a field to triangles of the wanted size and number: split what is long, collapse what is
 // short, flip to Delaunay, centre each vertex in its fan, pull it back to the surface; repeat.
 // Then edges are split or collapsed, the worst first, until the counts are met exactly.
@@ -9,14 +10,14 @@
 #include "tools/make_meshes/edit.h"
 #include "tools/make_meshes/field.h"
 
-namespace tact::tools {
+namespace tact::tools::make_meshes {
 namespace {
 
 using model::cross;
 using model::dot;
 using model::norm;
-using model::TriangleCorners;
 using model::Vec3;
+using model::contact::TriangleCorners;
 
 constexpr int kRounds = 8;            // of splitting and collapsing to size
 constexpr int kRepairs = 4;           // of edges that came out short on the way to the counts
@@ -39,9 +40,8 @@ class Grower {
   model::Result<Shape> grow(std::size_t rim_edges) {
     for (int round = 0; round < kRounds; ++round) {
       set_scale();
-      for (const Measured& m : measured(true)) {
+      for (const Measured& m : measured(true))
         if (m.ratio > kLong) split(m.edge);
-      }
       collapse_short(true);
       settle(2);
     }
@@ -97,9 +97,8 @@ class Grower {
   }
 
   void collapse_short(bool rims_too) {
-    for (const Measured& m : measured(false)) {
+    for (const Measured& m : measured(false))
       if (m.ratio < kShort && (rims_too || !m.edge.rim)) collapse(m.edge);
-    }
   }
 
   // False for edges that an earlier collapse has already changed.
@@ -156,9 +155,8 @@ class Grower {
   }
 
   void flip(int passes) {
-    for (int i = 0; i < passes; ++i) {
+    for (int i = 0; i < passes; ++i)
       for (const Edge& e : editor_.edges()) editor_.flip_if_better(e.a, e.b);
-    }
   }
 
   // To the centre of the fan. Weights of area / h^4 keep the
@@ -218,9 +216,8 @@ model::Result<Shape> make_grown(const Body& body, std::size_t vertices, std::siz
 void append(Shape& shape, const Shape& second) {
   const auto first = static_cast<std::uint32_t>(shape.vertex_mm.size());
   shape.vertex_mm.insert(shape.vertex_mm.end(), second.vertex_mm.begin(), second.vertex_mm.end());
-  for (const auto& t : second.triangle) {
+  for (const auto& t : second.triangle)
     shape.triangle.push_back({first + t[0], first + t[1], first + t[2]});
-  }
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_meshes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The gum of a lower jaw without its teeth: a U-shaped ridge, 50 x 60 x 15 mm, crest towards +z.
 //
 // The middle line is a half circle of 22.5 mm about (kArch_mm, 0), open towards -x, and two
@@ -7,7 +8,7 @@
 
 #include "tools/make_meshes/field.h"
 
-namespace tact::tools {
+namespace tact::tools::make_meshes {
 namespace {
 
 using model::Vec3;
@@ -64,4 +65,4 @@ model::Result<Shape> make_gum_shape() {
   return make_grown(gum, kVertices, 0);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_meshes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A right hand that points: forefinger straight down, the other fingers closed, and a cuff.
 //
 // The fingertip is at the origin, the arm goes towards +z, the palm faces +x, the thumb is at -y.
@@ -8,7 +9,7 @@
 
 #include "tools/make_meshes/field.h"
 
-namespace tact::tools {
+namespace tact::tools::make_meshes {
 namespace {
 
 using model::Vec3;
@@ -55,9 +56,8 @@ constexpr Vec3 kCuff_mm{0, 25, 173};
 template <std::size_t kBars>
 double bars_mm(const std::array<Bar, kBars>& bars, const Vec3& p, double blend_mm) {
   double d = 1e3;
-  for (const Bar& b : bars) {
+  for (const Bar& b : bars)
     d = joined_mm(d, bar_mm(p, b.from_mm, b.from_radius_mm, b.to_mm, b.to_radius_mm), blend_mm);
-  }
   return d;
 }
 
@@ -92,4 +92,4 @@ model::Result<Shape> make_hand_shape() {
   return both;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_meshes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The heart, lying on its back: two ventricles that end in one apex, two atria, and the stumps of
 // aorta, lung artery and vena cava, cut open.
 //
@@ -10,7 +11,7 @@
 
 #include "tools/make_meshes/field.h"
 
-namespace tact::tools {
+namespace tact::tools::make_meshes {
 namespace {
 
 using model::Vec3;
@@ -39,9 +40,8 @@ double heart_mm(const Vec3& p) {
   double d = joined_mm(left, right, 8.0);
   d = joined_mm(d, ellipsoid_mm(p, {-36, -22, -4}, {20, 22, 24}), 6.0);  // right atrium
   d = joined_mm(d, ellipsoid_mm(p, {-38, 14, -12}, {20, 26, 22}), 6.0);  // left atrium
-  for (const Vessel& v : kVessels) {
+  for (const Vessel& v : kVessels)
     d = joined_mm(d, bar_mm(p, v.root_mm, v.root_radius_mm, v.end_mm, v.end_radius_mm), 5.0);
-  }
   return d;
 }
 
@@ -61,10 +61,9 @@ double edge_ratio(const Vec3& p) {
 
 model::Result<Shape> make_heart_shape() {
   Body body{heart_mm, edge_ratio, {-100, -60, -60}, {70, 60, 60}, 2.7, {}};
-  for (const Vessel& v : kVessels) {
+  for (const Vessel& v : kVessels)
     body.cuts.push_back({cut_centre_mm(v), normalized(v.end_mm - v.root_mm), kReach_mm});
-  }
   return make_grown(body, kVertices, kRimEdges);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_meshes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An injector with a blunt round tip: turned on the z axis, tip at the origin, thumb rest above.
 //
 //     tip and tube   half ball of 2.5 mm, tube to z = 24
@@ -9,7 +10,7 @@
 
 #include "tools/make_meshes/loft.h"
 
-namespace tact::tools {
+namespace tact::tools::make_meshes {
 namespace {
 
 constexpr int kPoints = 12;
@@ -45,4 +46,4 @@ model::Result<Shape> make_injector_shape() {
                       .top_mm = kTop_mm});
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_meshes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The liver: an ellipsoid made thick on one side and thin on the other, with a notched lower edge.
 //
 //     y = 75 u_y
@@ -11,7 +12,7 @@
 
 #include "tools/make_meshes/meshes.h"
 
-namespace tact::tools {
+namespace tact::tools::make_meshes {
 namespace {
 
 using model::Vec3;
@@ -46,4 +47,4 @@ model::Result<Shape> make_liver_shape(std::size_t vertices) {
   return make_body(vertices, liver_mm);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_meshes

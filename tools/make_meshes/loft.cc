@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/make_meshes/loft.h"
 
 #include <cmath>
 #include <numbers>
 
-namespace tact::tools {
+namespace tact::tools::make_meshes {
 
 using model::Vec3;
 
@@ -11,9 +12,8 @@ Shape make_loft(const Vec3& bottom_mm, const std::vector<std::vector<Vec3>>& rin
                 const Vec3& top_mm) {
   Shape shape;
   shape.vertex_mm.push_back(bottom_mm);
-  for (const auto& ring : ring_mm) {
+  for (const auto& ring : ring_mm)
     shape.vertex_mm.insert(shape.vertex_mm.end(), ring.begin(), ring.end());
-  }
   shape.vertex_mm.push_back(top_mm);
   const auto points = static_cast<std::uint32_t>(ring_mm.front().size());
   const auto rings = static_cast<std::uint32_t>(ring_mm.size());
@@ -28,11 +28,10 @@ Shape make_loft(const Vec3& bottom_mm, const std::vector<std::vector<Vec3>>& rin
   for (std::uint32_t r = 0; r + 1 < rings; ++r) {
     for (std::uint32_t i = 0; i < points; ++i) {
       const std::uint32_t a = at(r, i), b = at(r, i + 1), c = at(r + 1, i + 1), d = at(r + 1, i);
-      if (distance(a, c) <= distance(b, d) + 1e-6) {  // the shorter diagonal
+      if (distance(a, c) <= distance(b, d) + 1e-6)  // the shorter diagonal
         shape.triangle.insert(shape.triangle.end(), {{a, b, c}, {a, c, d}});
-      } else {
+      else
         shape.triangle.insert(shape.triangle.end(), {{a, b, d}, {b, c, d}});
-      }
     }
   }
   return shape;
@@ -64,4 +63,4 @@ Shape make_turned(const Turned& tool) {
   return make_loft({0, 0, 0}, ring, {0, 0, tool.top_mm});
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_meshes

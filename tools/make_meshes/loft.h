@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // loft.h - a closed tool as a stack of rings with a point at each end.
 #pragma once
 
@@ -5,7 +6,7 @@
 
 #include "tools/make_meshes/meshes.h"
 
-namespace tact::tools {
+namespace tact::tools::make_meshes {
 
 /// Rings of equally many points, counter-clockwise seen from `top`, from `bottom` to `top`:
 /// n rings of m points give n m + 2 vertices and 2 n m triangles.
@@ -27,4 +28,4 @@ struct Turned {
 };
 Shape make_turned(const Turned& tool);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_meshes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tact-make-meshes: writes the meshes that the scenes use, the same bytes on every run.
 #include <fmt/format.h>
 
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 using tact::model::Error;
 using tact::model::Result;
 using tact::model::Vec3;
-using tact::tools::Shape;
+using tact::tools::make_meshes::Shape;
 
 constexpr std::size_t kLiverVertices = 3116;  // as in the published tests of the rhombus chain
 constexpr std::size_t kMostVertices = 9'000'000;
@@ -31,15 +32,16 @@ struct Mesh {
 };
 
 // The liver comes in any size and has its own row in main().
-constexpr std::array<Mesh, 9> kMeshes{{{"forceps", true, tact::tools::make_forceps_shape},
-                                       {"heart", true, tact::tools::make_heart_shape},
-                                       {"hand", true, tact::tools::make_hand_shape},
-                                       {"skin", false, tact::tools::make_skin_shape},
-                                       {"injector", false, tact::tools::make_injector_shape},
-                                       {"gum", false, tact::tools::make_gum_shape},
-                                       {"blade", false, tact::tools::make_blade_shape},
-                                       {"cover", false, tact::tools::make_cover_shape},
-                                       {"press", false, tact::tools::make_press_shape}}};
+constexpr std::array<Mesh, 9> kMeshes{
+    {{"forceps", true, tact::tools::make_meshes::make_forceps_shape},
+     {"heart", true, tact::tools::make_meshes::make_heart_shape},
+     {"hand", true, tact::tools::make_meshes::make_hand_shape},
+     {"skin", false, tact::tools::make_meshes::make_skin_shape},
+     {"injector", false, tact::tools::make_meshes::make_injector_shape},
+     {"gum", false, tact::tools::make_meshes::make_gum_shape},
+     {"blade", false, tact::tools::make_meshes::make_blade_shape},
+     {"cover", false, tact::tools::make_meshes::make_cover_shape},
+     {"press", false, tact::tools::make_meshes::make_press_shape}}};
 
 struct Wanted {
   std::string name;
@@ -59,16 +61,15 @@ std::string obj_text(const std::string& name, const Shape& shape) {
     fmt::format_to(out, "v {:.4f} {:.4f} {:.4f}\n", rounded_mm(p.x), rounded_mm(p.y),
                    rounded_mm(p.z));
   }
-  for (const auto& t : shape.triangle) {
+  for (const auto& t : shape.triangle)
     fmt::format_to(out, "f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
-  }
   return fmt::to_string(text);
 }
 
 std::optional<Error> write_shape(const std::string& directory, const Wanted& wanted) {
   const std::string& name = wanted.name;
   const Shape& shape = wanted.shape.value();
-  const auto mesh = tact::model::make_surface_mesh(shape.vertex_mm, shape.triangle);
+  const auto mesh = tact::model::mesh::make_surface_mesh(shape.vertex_mm, shape.triangle);
   if (!mesh) return Error{name + ": " + mesh.error().sentence};
   const std::string count = wanted.counted ? fmt::format("_{}", shape.vertex_mm.size()) : "";
   const fs::path path = fs::path(directory) / fmt::format("{}{}.obj", name, count);
@@ -80,11 +81,11 @@ std::optional<Error> write_shape(const std::string& directory, const Wanted& wan
                  ": cannot be written; check that the directory exists and has "
                  "room"};
   }
-  const auto sum = tact::model::summarize(*mesh);  // of millimetres, so its "m" are mm here
+  const auto sum = tact::model::mesh::summarize(*mesh);  // of millimetres, so its "m" are mm here
   const Vec3 size_mm = sum.high_m - sum.low_m;
   fmt::print("{}: {} vertices, {} triangles, {:.1f} x {:.1f} x {:.1f} mm, least angle {:.1f} deg\n",
              path.string(), sum.vertices, sum.triangles, size_mm.x, size_mm.y, size_mm.z,
-             tact::tools::least_angle_deg(shape));
+             tact::tools::make_meshes::least_angle_deg(shape));
   return std::nullopt;
 }
 
@@ -106,7 +107,7 @@ int main(int argc, char** argv) {
   app.add_option("--liver-vertices", liver_vertices,
                  "vertices of the liver, 50 to 9000000; the shape stays")
       ->capture_default_str()
-      ->check(CLI::Range(tact::tools::kFewestVertices, kMostVertices));
+      ->check(CLI::Range(tact::tools::make_meshes::kFewestVertices, kMostVertices));
   app.footer("Exit status: 0 written, 2 bad usage or the directory cannot be written.");
   app.failure_message([](const CLI::App*, const CLI::Error& e) {
     return fmt::format("tact-make-meshes: {}; see tact-make-meshes --help\n", e.what());
@@ -124,10 +125,9 @@ int main(int argc, char** argv) {
   const bool all = !liver && std::find(asked.begin(), asked.end(), true) == asked.end();
   std::vector<Wanted> wanted;
   if (liver || all)
-    wanted.push_back({"liver", true, tact::tools::make_liver_shape(liver_vertices)});
-  for (std::size_t i = 0; i < kMeshes.size(); ++i) {
+    wanted.push_back({"liver", true, tact::tools::make_meshes::make_liver_shape(liver_vertices)});
+  for (std::size_t i = 0; i < kMeshes.size(); ++i)
     if (asked[i] || all) wanted.push_back({kMeshes[i].name, kMeshes[i].counted, kMeshes[i].make()});
-  }
   for (const Wanted& w : wanted) {
     std::optional<Error> error;
     if (!w.shape) error = Error{w.name + ": " + w.shape.error().sentence};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // meshes.h - the shapes that tact ships, grown from formulas: same bytes on every run.
 //
 // Three ways to a surface: a smooth map of the unit sphere (liver), the zero of a field
@@ -12,13 +13,13 @@
 #include <functional>
 #include <vector>
 
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
-namespace tact::tools {
+namespace tact::tools::make_meshes {
 
 struct Shape {
   std::vector<model::Vec3> vertex_mm;
-  std::vector<model::TriangleCorners> triangle;
+  std::vector<model::contact::TriangleCorners> triangle;
 };
 
 /// From the unit sphere to the surface of a body, mm. Smooth, and outside stays outside.
@@ -67,4 +68,4 @@ model::Result<Shape> make_press_shape();
 /// Least angle of all triangles, degrees.
 double least_angle_deg(const Shape& shape);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_meshes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A pressing tool: a ball of 4 mm on a shaft, and a handle. Turned on the z axis, tip at the
 // origin.
 //
@@ -9,7 +10,7 @@
 
 #include "tools/make_meshes/loft.h"
 
-namespace tact::tools {
+namespace tact::tools::make_meshes {
 namespace {
 
 constexpr int kPoints = 16;
@@ -48,4 +49,4 @@ model::Result<Shape> make_press_shape() {
                       .top_mm = kTop_mm});
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_meshes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scalpel: the cutting edge starts at the origin and runs straight up along +z, facing +x.
 //
 //     blade   edge on the z axis to z = 24, back slanting to x = -8, 0.8 mm thick
@@ -9,7 +10,7 @@
 
 #include "tools/make_meshes/loft.h"
 
-namespace tact::tools {
+namespace tact::tools::make_meshes {
 namespace {
 
 using model::Vec3;
@@ -59,4 +60,4 @@ model::Result<Shape> make_blade_shape() {
   return make_loft({0, 0, 0}, ring, {-4, 0, 140});
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_meshes

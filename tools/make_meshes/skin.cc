@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A pad of skin with what lies under it, cut from a forearm: 80 x 120 x 30 mm, top towards +z.
 //
 //     z' = z + s (5 (x/40)^2 + 2 (y/60)^2),  s = (z + 15) / 30
@@ -5,7 +6,7 @@
 // bends the top of a rounded block into a gentle dome and leaves its bottom flat.
 #include "tools/make_meshes/field.h"
 
-namespace tact::tools {
+namespace tact::tools::make_meshes {
 namespace {
 
 using model::Vec3;
@@ -33,4 +34,4 @@ model::Result<Shape> make_skin_shape() {
   return make_grown(skin, kVertices, 0);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_meshes

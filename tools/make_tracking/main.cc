@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tact-make-tracking: writes the tracked operator of the scene maintenance, the same bytes on every
 // run: what two cameras see in 30 s, and the tracking description that belongs to it.
 #include <fmt/format.h>
@@ -14,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-using tact::host::Pose;
+using tact::host::tracking::Pose;
 
 constexpr const char* kName = "maintenance";
 
@@ -33,7 +34,7 @@ std::string text_of(const Quaterniond& q) {
 
 std::string observations() {
   std::string out;
-  for (const tact::tools::Sight& s : tact::tools::look()) {
+  for (const tact::tools::make_tracking::Sight& s : tact::tools::make_tracking::look()) {
     std::string points;
     for (const auto& [id, p_px] : s.points) {
       points += fmt::format("{}[{},{:.1f},{:.1f}]", points.empty() ? "" : ",", id,
@@ -48,7 +49,7 @@ std::string observations() {
 }
 
 std::string description() {
-  const Pose to_W = tact::tools::registration();
+  const Pose to_W = tact::tools::make_tracking::registration();
   std::string out = fmt::format(
       "# The tracked operator of {0}.toml, for tact-view alone: made by tact-make-tracking. He "
       "leans,\n"
@@ -56,10 +57,10 @@ std::string description() {
       "that\n"
       "# loses him here and there. host/tracking/README.md says what each key is.\n\n"
       "[input]\nrecording = \"{0}.observations.jsonl\"\n",
-      kName, tact::tools::kLength_s, tact::tools::kNoise_px);
-  for (const auto& eye : tact::tools::tracking_cameras()) {
+      kName, tact::tools::make_tracking::kLength_s, tact::tools::make_tracking::kNoise_px);
+  for (const auto& eye : tact::tools::make_tracking::tracking_cameras()) {
     const Quaterniond rotation =
-        tact::host::canonical(to_W.rotation.conjugate() * eye.pose.rotation);
+        tact::host::tracking::canonical(to_W.rotation.conjugate() * eye.pose.rotation);
     const Vector3d position_m = to_W.rotation.conjugate() * (eye.pose.position_m - to_W.position_m);
     out += fmt::format(
         "\n[[camera]]\nname = \"{}\"\nfx_px = {:.1f}\nfy_px = {:.1f}\ncx_px = {:.1f}\n"
@@ -67,7 +68,7 @@ std::string description() {
         eye.name, eye.lens.fx_px, eye.lens.fy_px, eye.lens.cx_px, eye.lens.cy_px,
         text_of(position_m), text_of(rotation));
   }
-  for (const auto& body : tact::tools::tracked_bodies()) {
+  for (const auto& body : tact::tools::make_tracking::tracked_bodies()) {
     out += fmt::format("\n[[body]]\nname = \"{0}\"\nrole = \"{0}\"\nmarkers_m = [\n", body.name);
     for (std::size_t id = 0; id < body.marker_m.size(); ++id) {
       const Vector3d& p_m = body.marker_m[id];
@@ -84,12 +85,12 @@ std::string description() {
 // One line for each look: where the body really was, in W.
 std::string truth() {
   std::string out;
-  for (const tact::tools::Sight& s : tact::tools::look()) {
-    const Pose pose = tact::tools::body_pose(*s.body, s.time_s);
+  for (const tact::tools::make_tracking::Sight& s : tact::tools::make_tracking::look()) {
+    const Pose pose = tact::tools::make_tracking::body_pose(*s.body, s.time_s);
     out += fmt::format(R"({{"time_s":{:.4f},"body":"{}","position_m":{},"rotation_wxyz":{}}})"
                        "\n",
                        s.time_s, s.body->name, text_of(pose.position_m),
-                       text_of(tact::host::canonical(pose.rotation)));
+                       text_of(tact::host::tracking::canonical(pose.rotation)));
   }
   return out;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The operator's motion: he leans over the cover, presses, looks to his right for the manual, bends
 // to the left to see the gasket from the side, looks up, and comes back to where he began.
 #include <array>
@@ -7,13 +8,13 @@
 
 #include "tools/make_tracking/seen_operator.h"
 
-namespace tact::tools {
+namespace tact::tools::make_tracking {
 namespace {
 
 using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-using host::Pose;
+using host::tracking::Pose;
 
 struct Key {
   double time_s = 0.0, value = 0.0;
@@ -103,7 +104,8 @@ Pose head_pose(double t) {
   const Quaterniond rotation = turned(-along(kLook, t) - along(kTwist, t), Vector3d::UnitZ()) *
                                turned(0.4 * along(kTilt, t), Vector3d::UnitX()) *
                                turned(-along(kNod, t) + 1.0 * sway(t, 11, 0.7), Vector3d::UnitY());
-  return {.rotation = rotation, .position_m = host::to_world(trunk, neck_m) + rotation * head_m};
+  return {.rotation = rotation,
+          .position_m = host::tracking::to_world(trunk, neck_m) + rotation * head_m};
 }
 
 Pose hand_pose(double t) {
@@ -118,8 +120,9 @@ Pose shoulder_pose(double t) {
   // It comes forward a little while the hand is down.
   const double down_m = kTipZ.front().value - along(kTipZ, std::fmod(t, kRound_s));
   const Pose trunk = trunk_pose(t);
-  return {.rotation = trunk.rotation,
-          .position_m = host::to_world(trunk, shoulder_m - 0.5 * down_m * Vector3d::UnitX())};
+  return {
+      .rotation = trunk.rotation,
+      .position_m = host::tracking::to_world(trunk, shoulder_m - 0.5 * down_m * Vector3d::UnitX())};
 }
 
 }  // namespace
@@ -133,4 +136,4 @@ Pose body_pose(const TrackedBody& body, double time_s) {
   return hand_pose(t);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_tracking

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // seen_operator.h - an operator at work as two cameras see him: markers, noise, hidden points.
 //
 //     motion    motion.cc: where head, shoulder, waist and hand are at a time
@@ -16,7 +17,7 @@
 #include "host/tracking/coordinate_chain.h"
 #include "host/tracking/pose_polish.h"
 
-namespace tact::tools {
+namespace tact::tools::make_tracking {
 
 inline constexpr double kLength_s = 30.0;
 inline constexpr double kFrames_Hz = 30.0;  // the two cameras take turns ...
@@ -32,18 +33,18 @@ struct TrackedBody {
 
 struct TrackingCamera {
   const char* name;
-  host::Camera lens;
-  host::Pose pose;  // of the camera in W: looks along its +Z, +X right, +Y down
+  host::tracking::Camera lens;
+  host::tracking::Pose pose;  // of the camera in W: looks along its +Z, +X right, +Y down
 };
 
 /// Tracker's frame to W.
-host::Pose registration();
+host::tracking::Pose registration();
 
 std::span<const TrackedBody> tracked_bodies();
 std::span<const TrackingCamera> tracking_cameras();
 
 /// Of the body in W; periodic in kLength_s.
-host::Pose body_pose(const TrackedBody& body, double time_s);
+host::tracking::Pose body_pose(const TrackedBody& body, double time_s);
 
 struct SeenPoint {
   int id = 0;
@@ -61,4 +62,4 @@ struct Sight {
 /// All of the recording, in the order of its lines.
 std::vector<Sight> look();
 
-}  // namespace tact::tools
+}  // namespace tact::tools::make_tracking

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/plan/choose.h"
 
 #include <fmt/format.h>
@@ -6,10 +7,10 @@
 #include <cmath>
 #include <vector>
 
-namespace tact::tools {
+namespace tact::tools::plan {
 namespace {
 
-using model::ToleranceSettings;
+using model::scene::ToleranceSettings;
 
 bool is_measured(const Candidate& c) {
   return std::isfinite(c.force_error_ratio) && std::isfinite(c.shape_error_ratio) &&
@@ -18,7 +19,7 @@ bool is_measured(const Candidate& c) {
 
 std::string text_of(const Candidate& c) {
   return fmt::format("{}: force {:.2g} %, shape {:.2g} %, {:.3g} us (p99.9 {:.3g} us), {:.3g} kB",
-                     model::text_of(c.sizes), 100.0 * c.force_error_ratio,
+                     model::scene::text_of(c.sizes), 100.0 * c.force_error_ratio,
                      100.0 * c.shape_error_ratio, c.tick_median_us, c.tick_p999_us,
                      1e-3 * c.memory_bytes);
 }
@@ -52,7 +53,7 @@ std::size_t least_of(std::span<const Candidate> candidates, const std::vector<st
   std::size_t best = among.size();
   for (std::size_t k = 0; k < among.size(); ++k) {
     const Candidate& c = candidates[among[k]];
-    if (c.tick_median_us > (1.0 + kSameTime_ratio) * fastest_us) continue;
+    if (c.tick_median_us > (1.0 + chart::kSameTime_ratio) * fastest_us) continue;
     const auto key = [](const Candidate& x) {
       return std::pair{x.memory_bytes, x.force_error_ratio};
     };
@@ -107,11 +108,11 @@ Choice choose(std::span<const Candidate> candidates, const ToleranceSettings& to
   out.reason = fmt::format(
       "{} of {} measured laws and sizes meet [tolerance]; of these it is the fastest, "
       "within {:g} % the smallest. {}",
-      enough.size(), candidates.size(), 100.0 * kSameTime_ratio, text_of(least));
+      enough.size(), candidates.size(), 100.0 * chart::kSameTime_ratio, text_of(least));
   if (others.empty()) return out;
   out.runner_up = least_of(candidates, others);
   out.reason += fmt::format(". Runner-up: {}", text_of(candidates[*out.runner_up]));
   return out;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::plan

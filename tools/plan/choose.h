@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // choose.h - the least law that is good enough: a pure function over measured candidates.
 //
 //     enough   force_error <= wanted, shape_error <= wanted, tick p99.9 <= budget
@@ -12,14 +13,14 @@
 #include <span>
 #include <string>
 
-#include "model/plan_file.h"
+#include "model/scene/plan_file.h"
 #include "tools/chart/errors.h"
 
-namespace tact::tools {
+namespace tact::tools::plan {
 
 /// One measured law and size.
 struct Candidate {
-  model::LawSizes sizes;
+  model::scene::LawSizes sizes;
   double force_error_ratio = 0.0;  // RMS, of the peak
   double shape_error_ratio = 0.0;  // RMS, of the depth
   double tick_median_us = 0.0;
@@ -34,11 +35,12 @@ struct Choice {
   std::string reason;
 };
 
-bool is_enough(const Candidate& c, const model::ToleranceSettings& tolerance);
+bool is_enough(const Candidate& c, const model::scene::ToleranceSettings& tolerance);
 /// The largest of its errors and its time over their limits; at most 1: it is enough.
-double excess_ratio(const Candidate& c, const model::ToleranceSettings& tolerance);
+double excess_ratio(const Candidate& c, const model::scene::ToleranceSettings& tolerance);
 
 /// Candidates with a number that is not finite are never chosen; none at all: no choice.
-Choice choose(std::span<const Candidate> candidates, const model::ToleranceSettings& tolerance);
+Choice choose(std::span<const Candidate> candidates,
+              const model::scene::ToleranceSettings& tolerance);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::plan

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tact-plan: the least law and size that is good enough for a scene, on this machine.
 #include <fmt/format.h>
 
@@ -6,19 +7,20 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/chart/report.h"
-#include "tools/common/program.h"
 #include "tools/plan/plan.h"
+#include "tools/program/program.h"
 
 namespace {
 
 using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
+using namespace tact::tools::plan;  // NOLINT(google-build-using-namespace)
 using tact::model::Error;
-using tact::model::Plan;
 using tact::model::Result;
-using tact::model::Scene;
+using tact::model::scene::Plan;
+using tact::model::scene::Scene;
 
 struct Options {
-  SceneArguments scene;
+  program::SceneArguments scene;
   std::string reference, chart;
   bool json = false, dry_run = false;
 };
@@ -34,16 +36,16 @@ void add_options(CLI::App& app, Options& o) {
 }
 
 Result<std::vector<Candidate>> measure(const Options& o, const Scene& scene) {
-  const auto reference = read_reference(o.reference);
+  const auto reference = ground_truth::read_reference(o.reference);
   if (!reference) return reference.error();
-  ChartOptions options;
+  chart::ChartOptions options;
   options.label = "tact-plan";
   options.wish.peers = false;
   options.timing = {.ticks = 20000, .rounds = 2, .limit_s = 2.0, .instructions = false};
   const auto rows = measure_chart(scene, *reference, options);
   if (!rows) return rows.error();
-  Table table = empty_chart(rows->size(), {});
-  for (const ChartRow& row : *rows) table.add(table_row(row, {}));
+  report::Table table = chart::empty_chart(rows->size(), {});
+  for (const chart::ChartRow& row : *rows) table.add(table_row(row, {}));
   return candidates_of(table);
 }
 
@@ -53,7 +55,7 @@ Result<std::vector<Candidate>> all_candidates(const Options& o, const Scene& sce
     return Error{
         "nothing to choose by; give --reference FILE (tact-reference SCENE --out FILE) or "
         "--chart DIR/chart.json (tact-chart SCENE --reference FILE --out DIR)"};
-  const auto table = read_chart(o.chart);
+  const auto table = chart::read_chart(o.chart);
   if (!table) return table.error();
   if (auto wrong = check_chart_fits(*table, scene, o.chart)) return std::move(*wrong);
   return candidates_of(*table);
@@ -97,7 +99,7 @@ void print(const Options& o, const std::vector<Candidate>& candidates, const Cho
 /// Writes the plan that tactd reads, or takes away the one that is no longer good enough.
 Result<std::string> keep(const Choice& choice, const std::vector<Candidate>& candidates,
                          const Scene& scene) {
-  const auto path = tact::model::plan_path(scene.hash);
+  const auto path = tact::model::scene::plan_path(scene.hash);
   if (!path) return path.error();
   if (!choice.meets) {
     std::error_code ignored;
@@ -105,23 +107,24 @@ Result<std::string> keep(const Choice& choice, const std::vector<Candidate>& can
     return std::string{};
   }
   const Candidate& c = candidates[*choice.chosen];
-  return tact::model::write_plan({.sizes = c.sizes,
-                                  .tick_p999_us = c.tick_p999_us,
-                                  .force_error_ratio = c.force_error_ratio,
-                                  .shape_error_ratio = c.shape_error_ratio,
-                                  .machine = tact::model::machine_name(),
-                                  .scene_hash = scene.hash},
-                                 *path);
+  return tact::model::scene::write_plan({.sizes = c.sizes,
+                                         .tick_p999_us = c.tick_p999_us,
+                                         .force_error_ratio = c.force_error_ratio,
+                                         .shape_error_ratio = c.shape_error_ratio,
+                                         .machine = tact::model::scene::machine_name(),
+                                         .scene_hash = scene.hash},
+                                        *path);
 }
 
 }  // namespace
 
 // The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
-  Program program(
+  program::Program program(
       "tact-plan",
       "Choose the least law and size that meets the scene's [tolerance] on this machine:"
       "\nno more model than the scene needs.",
+      "A reference is linear elastic: compliance is judged with large_strain off.\n"
       "The plan is kept in $XDG_CACHE_HOME/tact/plan (or ~/.cache); tactd reads it when\n"
       "the scene says law = \"auto\". When no law is good enough there is no plan.");
   Options o;

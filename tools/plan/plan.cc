@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/plan/plan.h"
 
 #include <fmt/format.h>
@@ -5,37 +6,37 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tact::tools {
+namespace tact::tools::plan {
 namespace {
 
 using model::Error;
 
 /// Names in a table hold no comma or quote.
 std::string as_word(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == ',' || c == '"'; }, ';');
+  std::replace_if(text.begin(), text.end(), [](char c) { return c == ',' || c == '"'; }, ';');
   return text;
 }
 
 }  // namespace
 
-std::vector<Candidate> candidates_of(const Table& table) {
+std::vector<Candidate> candidates_of(const report::Table& table) {
   std::vector<Candidate> out;
-  for (const Row& row : table.rows()) {
+  for (const report::Row& row : table.rows()) {
     if (table.word(row, "kind") != "tact" || table.word(row, "failure") != "-") continue;
     const auto count = [&](const char* column) {
       return static_cast<std::size_t>(table.number(row, column));
     };
-    model::LawSizes sizes{.table_knots = count("table_knots"),
-                          .layers = count("layers"),
-                          .rings = count("rings"),
-                          .nodes = count("nodes"),
-                          .curves = count("curves")};
-    for (const model::LawName& name : model::kLawNames)
+    model::scene::LawSizes sizes{.table_knots = count("table_knots"),
+                                 .layers = count("layers"),
+                                 .rings = count("rings"),
+                                 .nodes = count("nodes"),
+                                 .curves = count("curves")};
+    for (const model::scene::LawName& name : model::scene::kLawNames)
       if (name.name == table.word(row, "family")) sizes.law = name.kind;
     const std::string& form = table.word(row, "form");
     if (form != "-")
-      sizes.disc_form = form == "linear" ? model::DiscForm::kLinear : model::DiscForm::kAlmenLaszlo;
+      sizes.disc_form =
+          form == "linear" ? model::law::DiscForm::kLinear : model::law::DiscForm::kAlmenLaszlo;
     out.push_back({.sizes = sizes,
                    .force_error_ratio = table.number(row, "force_rms_ratio"),
                    .shape_error_ratio = table.number(row, "shape_rms_ratio"),
@@ -47,14 +48,15 @@ std::vector<Candidate> candidates_of(const Table& table) {
 }
 
 void keep_what_cuts(std::vector<Candidate>& candidates) {
-  std::erase_if(candidates,
-                [](const Candidate& c) { return c.sizes.law != model::LawKind::kSpringPatch; });
+  std::erase_if(candidates, [](const Candidate& c) {
+    return c.sizes.law != model::scene::LawKind::kSpringPatch;
+  });
 }
 
-std::optional<Error> check_chart_fits(const Table& table, const model::Scene& scene,
+std::optional<Error> check_chart_fits(const report::Table& table, const model::scene::Scene& scene,
                                       const std::string& path) {
-  const std::string machine = as_word(model::machine_name());
-  for (const Row& row : table.rows()) {
+  const std::string machine = as_word(model::scene::machine_name());
+  for (const report::Row& row : table.rows()) {
     if (table.word(row, "scene_hash") != scene.hash)
       return Error{fmt::format(
           "{}: the chart of another scene, or of this one before a change; chart it again: "
@@ -69,4 +71,4 @@ std::optional<Error> check_chart_fits(const Table& table, const model::Scene& sc
   return std::nullopt;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::plan

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/reference/ball_press.h"
 
 #include <algorithm>
@@ -5,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tact::tools {
+namespace tact::tools::reference {
 namespace {
 
 using model::Vec3;
@@ -45,4 +46,4 @@ double touched_radius_m(const OrganBody& body, const BallContact& contact, const
   return std::sqrt(area_m2 / std::numbers::pi);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

@@ -1,14 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/reference/block.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace tact::tools {
+namespace tact::tools::reference {
 namespace {
 
-using model::TriangleCorners;
 using model::Vec3;
+using model::contact::TriangleCorners;
 
 constexpr std::uint32_t kDiscRings = 8;
 constexpr std::uint32_t kSides = 6;
@@ -59,7 +60,7 @@ model::Result<Organ> make_block(double radius_m, double height_m, const Elastici
     triangle.push_back({top + i, bottom + i, bottom + next});
     triangle.push_back({top + i, bottom + next, top + next});
   }
-  auto surface = model::make_surface_mesh(std::move(vertex), std::move(triangle));
+  auto surface = model::mesh::make_surface_mesh(std::move(vertex), std::move(triangle));
   if (!surface) return surface.error();
   const double far_m = 2.0 * (radius_m + height_m);
   return Organ{.surface = std::move(*surface),
@@ -69,4 +70,4 @@ model::Result<Organ> make_block(double radius_m, double height_m, const Elastici
                .size_ratio = std::max(1.0, radius_m / 0.05)};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

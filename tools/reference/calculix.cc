@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/reference/calculix.h"
 
 #include <fmt/format.h>
@@ -6,10 +7,10 @@
 #include <sstream>
 #include <unordered_map>
 
-#include "tools/common/run_program.h"
+#include "tools/program/run_program.h"
 #include "tools/reference/calculix_deck.h"
 
-namespace tact::tools {
+namespace tact::tools::reference {
 namespace {
 
 using model::Error;
@@ -79,32 +80,32 @@ bool read_answer(const std::string& path, const ElasticProblem& p, ElasticAnswer
   return true;
 }
 
-Result<std::string> run_ccx(const ScratchFolder& folder, std::vector<std::string> arguments,
-                            bool any_status) {
-  return run_program({.program = "ccx",
-                      .arguments = std::move(arguments),
-                      .directory = folder.path(),
-                      .log_path = folder.file("ccx.log"),
-                      .package = "calculix-ccx",
-                      .time_limit_s = kTimeLimit_s,
-                      .any_status = any_status,
-                      .environment = {{"OMP_NUM_THREADS", "1"}, {"CCX_NPROC_STIFFNESS", "1"}}});
+Result<std::string> run_ccx(const program::ScratchFolder& folder,
+                            std::vector<std::string> arguments, bool any_status) {
+  return program::run_program(
+      {.program = "ccx",
+       .arguments = std::move(arguments),
+       .directory = folder.path(),
+       .log_path = folder.file("ccx.log"),
+       .package = "calculix-ccx",
+       .time_limit_s = kTimeLimit_s,
+       .any_status = any_status,
+       .environment = {{"OMP_NUM_THREADS", "1"}, {"CCX_NPROC_STIFFNESS", "1"}}});
 }
 
 }  // namespace
 
 Result<ElasticAnswer> solve_with_calculix(const ElasticProblem& problem) {
-  auto folder = ScratchFolder::make("tact-ccx");
+  auto folder = program::ScratchFolder::make("tact-ccx");
   if (!folder) return folder.error();
   std::ofstream deck(folder->file("case.inp"));
   deck << deck_of(problem);
   deck.close();
-  if (!deck) {
+  if (!deck)
     return Error{fmt::format("{} cannot be written; the disk may be full", folder->path())};
-  }
   const auto said = run_ccx(*folder, {"-i", "case"}, false);
   if (!said) {
-    if (!was_interrupted(said.error())) folder->keep();
+    if (!program::was_interrupted(said.error())) folder->keep();
     if (said.error().sentence.rfind("ccx ended", 0) != 0) return said.error();
     return Error{fmt::format("{}: {}", kNoSolution, said.error().sentence)};
   }
@@ -119,7 +120,7 @@ Result<ElasticAnswer> solve_with_calculix(const ElasticProblem& problem) {
 bool found_no_solution(const Error& error) { return error.sentence.rfind(kNoSolution, 0) == 0; }
 
 Result<std::string> calculix_version() {
-  auto folder = ScratchFolder::make("tact-ccx");
+  auto folder = program::ScratchFolder::make("tact-ccx");
   if (!folder) return folder.error();
   auto said = run_ccx(*folder, {"-v"}, true);  // ends with 201
   if (!said) return said;
@@ -130,4 +131,4 @@ Result<std::string> calculix_version() {
   return version;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

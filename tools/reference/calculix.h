@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // calculix.h - one elastic body under a load, solved by the program CalculiX (ccx).
 //
 // The body's elements are C3D10, isotropic linear elastic. Moved nodes have their own axes: x along
@@ -19,10 +20,10 @@
 
 #include "model/fem/elasticity.h"
 #include "model/fem/tet_mesh.h"
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 #include "model/result.h"
 
-namespace tact::tools {
+namespace tact::tools::reference {
 
 using model::fem::Elasticity;
 
@@ -37,7 +38,7 @@ struct BallContact {
   double radius_m = 0.0;
   model::Vec3 centre_m{};  // before it moves
   double along_m = 0.0;
-  std::vector<model::TriangleCorners> face;  // that it may touch, by their corners
+  std::vector<model::contact::TriangleCorners> face;  // that it may touch, by their corners
 };
 
 struct ElasticLoad {
@@ -71,4 +72,4 @@ bool found_no_solution(const model::Error& error);
 /// "2.20", of the ccx in PATH.
 model::Result<std::string> calculix_version();
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

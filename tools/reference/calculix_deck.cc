@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/reference/calculix_deck.h"
 
 #include <fmt/format.h>
@@ -11,7 +12,7 @@
 
 #include "tools/reference/rigid_ball.h"
 
-namespace tact::tools {
+namespace tact::tools::reference {
 namespace {
 
 using model::Vec3;
@@ -70,15 +71,15 @@ void write_material(Text out, const Elasticity& m, bool large_strain) {
 
 /// "element,Sface" for each of the faces, given by their corners.
 void write_touched(Text out, const model::fem::TetMesh& body,
-                   const std::vector<model::TriangleCorners>& faces) {
+                   const std::vector<model::contact::TriangleCorners>& faces) {
   // CalculiX manual 6.2: corners of the faces 1 to 4
   constexpr std::array<std::array<std::size_t, 3>, 4> kFace{
       {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}};
-  const auto in_order = [](model::TriangleCorners corners) {
+  const auto in_order = [](model::contact::TriangleCorners corners) {
     std::sort(corners.begin(), corners.end());
     return corners;
   };
-  std::set<model::TriangleCorners> touched;
+  std::set<model::contact::TriangleCorners> touched;
   for (const auto& corners : faces) touched.insert(in_order(corners));
   fmt::format_to(out, "*SURFACE,NAME=TOUCHED,TYPE=ELEMENT\n");
   for (std::size_t e = 0; e < body.element.size(); ++e)
@@ -171,4 +172,4 @@ std::string deck_of(const ElasticProblem& p) {
   return fmt::to_string(text);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

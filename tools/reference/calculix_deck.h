@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // calculix_deck.h - an elastic problem as the text that CalculiX reads.
 //
 // Units are mm, kPa and mN: CalculiX's tolerances suit numbers near one.
@@ -13,7 +14,7 @@
 
 #include "tools/reference/calculix.h"
 
-namespace tact::tools {
+namespace tact::tools::reference {
 
 inline constexpr double kMmPerM = 1e3;
 inline constexpr double kNPerMN = 1e-3;
@@ -32,4 +33,4 @@ DeckAxes deck_axes(const model::Vec3& direction);
 /// end of the way.
 std::string deck_of(const ElasticProblem& problem);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

@@ -1,13 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/reference/contact_radius.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "tools/common/ring_means.h"
+#include "tools/ground_truth/ring_means.h"
 #include "tools/reference/refine_surface.h"
 
-namespace tact::tools {
+namespace tact::tools::reference {
 namespace {
 
 using model::Vec3;
@@ -75,7 +76,7 @@ double TipContact::radius_m(double wanted_m, double give_m_per_N) const {
               [&](double a) { return depth_m(a) + give_m_per_N * force_N(a) - wanted_m; });
 }
 
-model::Result<std::vector<double>> surface_fall_m(const model::SurfaceMesh& surface,
+model::Result<std::vector<double>> surface_fall_m(const model::mesh::SurfaceMesh& surface,
                                                   std::uint32_t vertex, int rings, double pitch_m) {
   const Vec3 at_m = surface.vertex_m[vertex];
   const Circle axis{at_m, -surface.vertex_normal[vertex], 0.0};
@@ -87,7 +88,7 @@ model::Result<std::vector<double>> surface_fall_m(const model::SurfaceMesh& surf
                                                                           .growth = 1.0,
                                                                           .largest_m = 0.0});
   if (!fine) return fine.error();
-  RingMeans means(rings, pitch_m, 0.0);
+  ground_truth::RingMeans means(rings, pitch_m, 0.0);
   for (const auto& t : fine->triangle) {
     std::array<Vec3, 3> p{};
     std::array<double, 3> rho{}, fall{};
@@ -98,10 +99,10 @@ model::Result<std::vector<double>> surface_fall_m(const model::SurfaceMesh& surf
     }
     const Vec3 normal = cross(p[1] - p[0], p[2] - p[0]);
     const bool is_near = norm(p[0] - at_m) < 2.0 * reach_m;
-    if (is_near && dot(normal, axis.axis) < -kFacing * norm(normal))
+    if (is_near && dot(normal, axis.axis) < -ground_truth::kFacing * norm(normal))
       means.add_triangle(p, rho, fall);
   }
   return means.means();
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

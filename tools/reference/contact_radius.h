@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // contact_radius.h - how wide a rigid sphere touches an organ at a given depth.
 //
 // Near the tip the organ is taken as a half-space whose surface falls away by s(rho), the mean
@@ -12,11 +13,11 @@
 
 #include <vector>
 
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 #include "model/result.h"
 #include "tools/reference/calculix.h"
 
-namespace tact::tools {
+namespace tact::tools::reference {
 
 class TipContact {
  public:
@@ -41,7 +42,7 @@ class TipContact {
 };
 
 /// s around a vertex, at distances k * pitch from its normal, k = 0 .. rings - 1.
-model::Result<std::vector<double>> surface_fall_m(const model::SurfaceMesh& surface,
+model::Result<std::vector<double>> surface_fall_m(const model::mesh::SurfaceMesh& surface,
                                                   std::uint32_t vertex, int rings, double pitch_m);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/reference/half_space.h"
 
 #include <cmath>
 
-namespace tact::tools {
+namespace tact::tools::reference {
 namespace {
 
 /// Where a rising function is zero between 0 and 1: halve the interval to the last bit.
@@ -36,4 +37,4 @@ double sphere_force_N(const Elasticity& material, double sphere_radius_m, double
          ((R * R + a * a) / 2.0 * std::log((R + a) / (R - a)) - a * R);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // half_space.h - exact indentation of a flat, deep, linear elastic body without friction.
 //
 //     E* = E / (1 - nu^2), Elasticity::contact_modulus_Pa
@@ -11,7 +12,7 @@
 
 #include "tools/reference/calculix.h"
 
-namespace tact::tools {
+namespace tact::tools::reference {
 
 double flat_punch_force_N(const Elasticity& material, double radius_m, double depth_m);
 
@@ -20,4 +21,4 @@ double sphere_contact_radius_m(double sphere_radius_m, double depth_m);
 
 double sphere_force_N(const Elasticity& material, double sphere_radius_m, double depth_m);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

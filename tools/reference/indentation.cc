@@ -1,14 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/reference/indentation.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "tools/common/ring_means.h"
+#include "tools/ground_truth/ring_means.h"
 #include "tools/reference/ball_press.h"
 #include "tools/reference/half_space.h"
 
-namespace tact::tools {
+namespace tact::tools::reference {
 namespace {
 
 using model::Result;
@@ -77,7 +78,7 @@ double contact_radius_of(const Indentation& what) {
 
 }  // namespace
 
-EdgeLengths edge_lengths(const Organ& organ, const Indentation& what) {
+ground_truth::EdgeLengths edge_lengths(const Organ& organ, const Indentation& what) {
   const Levels& level =
       kLevels[static_cast<std::size_t>(std::clamp(what.level, kRoughLevel, kFinestLevel))];
   const bool bonded = what.depth_m < 0.0;  // stress is singular at the rim of a bond
@@ -100,9 +101,9 @@ std::vector<double> ring_means(const OrganBody& body, const Vec3& at_m, const Ve
   // A six-node face as four flat ones.
   constexpr std::array<std::array<std::size_t, 3>, 4> kParts{
       {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
-  RingMeans means(kRings, kRingPitch_m, middle_u);
+  ground_truth::RingMeans means(kRings, kRingPitch_m, middle_u);
   for (std::size_t f = 0; f < body.face.size(); ++f) {
-    if (dot(body.normal[f], outward) < kFacing) continue;
+    if (dot(body.normal[f], outward) < ground_truth::kFacing) continue;
     for (const auto& part : kParts) {
       std::array<double, 3> rho{}, value{};
       std::array<Vec3, 3> p{};
@@ -118,7 +119,7 @@ std::vector<double> ring_means(const OrganBody& body, const Vec3& at_m, const Ve
   return means.means();
 }
 
-Result<ReferenceCase> solve(const Organ& organ, const Indentation& what) {
+Result<ground_truth::ReferenceCase> solve(const Organ& organ, const Indentation& what) {
   // The mesh follows the rim of the contact: there the stress ends, or is singular.
   const Circle rim{organ.surface.vertex_m[what.vertex], -organ.surface.vertex_normal[what.vertex],
                    contact_radius_of(what)};
@@ -138,7 +139,7 @@ Result<ReferenceCase> solve(const Organ& organ, const Indentation& what) {
     inward_m[problem.reported[i]] = dot(answer->displacement_m[i], rim.axis);
   }
   const auto& ball = problem.load.ball;
-  return ReferenceCase{
+  return ground_truth::ReferenceCase{
       .depth_m = what.depth_m,
       .large_strain = what.large_strain,
       .force_N = dot(answer->force_N, rim.axis),
@@ -147,4 +148,4 @@ Result<ReferenceCase> solve(const Organ& organ, const Indentation& what) {
       .profile_m = ring_means(*body, rim.at_m, -rim.axis, inward_m, inward_m[what.vertex])};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // indentation.h - a tool on one site of an organ: what is moved, what force that takes, what shape.
 //
 // press: a rigid frictionless sphere of radius R goes in by d along the inward vertex normal. Nodes
@@ -15,17 +16,17 @@
 // move outward as one piece, bonded.
 #pragma once
 
-#include "model/mesh.h"
-#include "tools/common/reference_data.h"
+#include "model/mesh/mesh.h"
+#include "tools/ground_truth/reference_data.h"
 #include "tools/reference/calculix.h"
 #include "tools/reference/organ_body.h"
 
-namespace tact::tools {
+namespace tact::tools::reference {
 
 /// Everything about the organ that does not depend on the site.
 struct Organ {
-  model::SurfaceMesh surface;  // mesh's own frame
-  std::string hash;            // of the surface
+  model::mesh::SurfaceMesh surface;  // mesh's own frame
+  std::string hash;                  // of the surface
   HeldBox held{};
   Elasticity material{};
   double size_ratio = 1.0;  // of the edges far inside: 1 suits a body as large as a hand
@@ -47,10 +48,10 @@ inline constexpr double kRingPitch_m = 1e-3;
 inline constexpr int kRings = 31;  // 0 .. 30 mm
 
 /// The mesh for a level; `at_m` is the site.
-EdgeLengths edge_lengths(const Organ& organ, const Indentation& what);
+ground_truth::EdgeLengths edge_lengths(const Organ& organ, const Indentation& what);
 
 /// Meshes and solves. The error ratio is left at 0: it takes two levels.
-model::Result<ReferenceCase> solve(const Organ& organ, const Indentation& what);
+model::Result<ground_truth::ReferenceCase> solve(const Organ& organ, const Indentation& what);
 
 /// Mean of u (by node) over the rings at k * kRingPitch_m from `at_m`, straight distance, along the
 /// faces that look along `outward`; `middle_u` is ring 0.
@@ -58,4 +59,4 @@ std::vector<double> ring_means(const OrganBody& body, const model::Vec3& at_m,
                                const model::Vec3& outward, const std::vector<double>& u,
                                double middle_u);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

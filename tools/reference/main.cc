@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // tact-reference: what an elastic organ really does under the scene's tool, by finite elements.
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -7,16 +8,18 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
-#include "tools/common/program.h"
-#include "tools/common/run_program.h"
-#include "tools/common/sweep.h"
-#include "tools/common/table.h"
+#include "tools/program/program.h"
+#include "tools/program/run_program.h"
+#include "tools/program/sweep.h"
+#include "tools/program/whole_file.h"
 #include "tools/reference/reference_plan.h"
 #include "tools/reference/self_check.h"
+#include "tools/reference/tool_plan.h"
 
 namespace {
 
 using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
+using namespace tact::tools::reference;  // NOLINT(google-build-using-namespace)
 using tact::model::Error;
 using tact::model::Result;
 
@@ -27,21 +30,26 @@ struct Options {
   std::vector<double> depths_m;
   int level = 2;
   unsigned jobs = 1;
-  bool json = false;
+  bool tool = false, json = false;
 };
 
 void add_options(CLI::App& app, Options& o) {
   app.add_option("scene", o.scene, "scene file (TOML) with [elastic] and [[reference_site]]");
   app.add_option("--out", o.out, "file to write; without it, a table of forces only");
   app.add_option("--set", o.overrides, "one key of the scene, as KEY=VALUE; repeatable");
-  app.add_option("--sites", o.sites, "vertices of the organ's mesh, instead of the scene's")
+  app.add_flag("--tool", o.tool,
+               "press all spheres of the tool together, at the hand's own site and at six places "
+               "that no law is fitted on (README.md says how they are chosen)");
+  app.add_option("--sites", o.sites,
+                 "vertices of the organ's mesh, instead of the scene's or of the six")
       ->delimiter(',');
   app.add_option("--depths", o.depths_m, "m, above 0, rising, at most 5 tool radii; press and pull")
       ->delimiter(',');
   app.add_option("--large-strain", o.large_strain_sites,
                  "sites also pressed, and pulled up to 1.3 tool radii, with large strain; "
                  "about 25 min each, always on the coarse mesh")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->excludes("--tool");
   app.add_option("--level", o.level, "mesh, 1 coarse to 4 fine; each about twice the time")
       ->check(CLI::Range(kCoarsestLevel, kFinestLevel))
       ->capture_default_str();
@@ -55,9 +63,11 @@ void add_options(CLI::App& app, Options& o) {
                  "(tests/data/reference)");
 }
 
+const Error kNoScene{"no scene given; see tact-reference --help"};
+
 Result<ReferencePlan> make_plan(const Options& o) {
-  if (o.scene.empty()) return Error{"no scene given; see tact-reference --help"};
-  const auto scene = tact::model::load_scene(o.scene, o.overrides);
+  if (o.scene.empty()) return kNoScene;
+  const auto scene = tact::model::scene::load_scene(o.scene, o.overrides);
   if (!scene) return scene.error();
   auto plan = plan_of(*scene);
   if (!plan) return plan;
@@ -76,7 +86,41 @@ Result<ReferencePlan> make_plan(const Options& o) {
   return plan;
 }
 
-using Solved = std::vector<std::optional<ReferenceCase>>;
+/// All places, in the order of presses_of; stops at the first error.
+Result<ground_truth::ToolReference> solve_tool(const Options& o) {
+  if (o.scene.empty()) return kNoScene;
+  const auto scene = tact::model::scene::load_scene(o.scene, o.overrides);
+  if (!scene) return scene.error();
+  const auto plan = tool_plan_of(*scene, o.sites, o.depths_m, o.level);
+  if (!plan) return plan.error();
+  const auto gmsh = ground_truth::gmsh_version();
+  if (!gmsh) return gmsh.error();
+  const std::string solver = fmt::format("tact, gmsh {}", *gmsh);
+  const std::vector<ToolPress> presses = presses_of(*plan);
+  const SolveCache cache(o.cache);
+  std::vector<std::vector<ground_truth::ToolCase>> solved(presses.size());
+  std::mutex mutex;
+  std::optional<Error> first_error;
+  const bool whole =
+      program::run_jobs(presses.size(), {.label = "tact-reference", .shard = {}, .threads = o.jobs},
+                        [&](std::size_t job) {
+                          {
+                            const std::lock_guard lock(mutex);
+                            if (first_error) return;
+                          }
+                          auto result = solve_once(plan->organ, presses[job], solver, cache);
+                          const std::lock_guard lock(mutex);
+                          if (result)
+                            solved[job] = std::move(*result);
+                          else if (!first_error)
+                            first_error = result.error();
+                        });
+  if (first_error) return *first_error;
+  if (!whole) return program::interruption();
+  return assemble(*plan, solved, solver);
+}
+
+using Solved = std::vector<std::optional<ground_truth::ReferenceCase>>;
 
 /// "vertex 12, press of 10 mm with large strain"
 std::string name_of(const Indentation& what) {
@@ -104,23 +148,22 @@ Result<Solved> solve_all(const Organ& organ, const std::vector<Indentation>& cas
       return;
     }
     const std::lock_guard lock(mutex);
-    if (cases[job].large_strain && found_no_solution(result.error())) {
+    if (cases[job].large_strain && found_no_solution(result.error()))
       why_not[job] = result.error().sentence;
-    } else if (!first_error) {
+    else if (!first_error)
       first_error = result.error();
-    }
   };
-  const bool whole =
-      run_jobs(cases.size(), {.label = "tact-reference", .shard = {}, .threads = o.jobs}, work);
+  const bool whole = program::run_jobs(
+      cases.size(), {.label = "tact-reference", .shard = {}, .threads = o.jobs}, work);
   for (std::size_t i = 0; i < cases.size(); ++i)
     if (!why_not[i].empty())
       fmt::print(stderr, "tact-reference: left out: {}: {}\n", name_of(cases[i]), why_not[i]);
   if (first_error) return *first_error;
-  if (!whole) return interruption();
+  if (!whole) return program::interruption();
   return solved;
 }
 
-Result<ReferenceData> solve_plan(const ReferencePlan& plan, const Options& o) {
+Result<ground_truth::ReferenceData> solve_plan(const ReferencePlan& plan, const Options& o) {
   const auto solver = solver_versions();
   if (!solver) return solver.error();
   // First what all presses of a site need, so that no two of them solve it at the same time.
@@ -134,11 +177,11 @@ Result<ReferenceData> solve_plan(const ReferencePlan& plan, const Options& o) {
   return assemble(plan, *solved, *solver);
 }
 
-void print_table(const ReferenceData& data) {
+void print_table(const ground_truth::ReferenceData& data) {
   fmt::print("{:>6} {:>9} {:>11} {:>10} {:>11}  {}\n", "vertex", "depth mm", "contact mm",
              "force N", "mesh err %", "material");
-  for (const SolvedSite& site : data.sites)
-    for (const ReferenceCase& c : site.cases)
+  for (const ground_truth::SolvedSite& site : data.sites)
+    for (const ground_truth::ReferenceCase& c : site.cases)
       fmt::print("{:>6} {:>9.3g} {:>11.3f} {:>10.5f} {:>11}  {}\n", site.vertex, c.depth_m * 1e3,
                  c.contact_radius_m * 1e3, c.force_N,
                  std::isfinite(c.force_error_ratio)
@@ -147,37 +190,53 @@ void print_table(const ReferenceData& data) {
                  c.large_strain ? "neo-Hookean" : "linear");
 }
 
+void print_table(const ground_truth::ToolReference& data) {
+  fmt::print("{:>9} {:>9} {:>10} {:>11}  {}\n", "place", "depth mm", "force N", "mesh err %",
+             "of each sphere N");
+  for (const ground_truth::ToolPlace& place : data.places)
+    for (const ground_truth::ToolCase& c : place.cases)
+      fmt::print("{:>9} {:>9.3g} {:>10.5f} {:>11.2f}  {:.5f}\n",
+                 place.vertex ? fmt::format("{}", *place.vertex) : "hand's", c.depth_m * 1e3,
+                 c.force_N, c.force_error_ratio * 100.0, fmt::join(c.sphere_N, " "));
+}
+
+/// Writes and prints what was solved; the exit status.
+template <typename Data>
+int tell(const program::Program& program, const Options& o, const Result<Data>& data,
+         std::string (*text_of)(const Data&)) {
+  if (!data)
+    return program.fail(data.error(),
+                        "what was solved is kept, the same command goes on from there");
+  const std::string text = text_of(*data);
+  if (!o.out.empty()) {
+    if (const auto written = program::write_whole_file(o.out, text); !written)
+      return program.fail(written.error());
+  }
+  if (o.json)
+    fmt::print("{}", text);
+  else
+    print_table(*data);
+  return 0;
+}
+
 }  // namespace
 
 // The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
-  Program program(
+  program::Program program(
       "tact-reference", "Solve press and pull of the scene's organ with gmsh and CalculiX.",
       "Needs gmsh and CalculiX: apt install gmsh calculix-ccx. Solved cases are kept and reused.");
   Options options;
   add_options(program.options(), options);
   if (const auto status = program.parse(argc, argv)) return *status;
-  const auto fail = [&program](const Error& error) {
-    return program.fail(error, "what was solved is kept, the same command goes on from there");
-  };
   if (!options.self_check.empty()) {
     const auto good = self_check(options.self_check);
-    return good ? (*good ? 0 : 1) : fail(good.error());
+    return good ? (*good ? 0 : 1) : program.fail(good.error());
   }
-  if (auto error = check_output(options.out, {options.scene})) return fail(*error);
+  if (auto error = program::check_output(options.out, {options.scene})) return program.fail(*error);
+  if (options.tool)
+    return tell(program, options, solve_tool(options), ground_truth::tool_reference_text);
   const auto plan = make_plan(options);
-  if (!plan) return fail(plan.error());
-  const auto data = solve_plan(*plan, options);
-  if (!data) return fail(data.error());
-  const std::string text = reference_text(*data);
-  if (!options.out.empty()) {
-    if (const auto written = write_whole_file(options.out, text); !written)
-      return fail(written.error());
-  }
-  if (options.json) {
-    fmt::print("{}", text);
-  } else {
-    print_table(*data);
-  }
-  return 0;
+  if (!plan) return program.fail(plan.error());
+  return tell(program, options, solve_plan(*plan, options), ground_truth::reference_text);
 }

@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/reference/organ_body.h"
 
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
-#include "tools/common/ring_means.h"
+#include "tools/ground_truth/ring_means.h"
 
-namespace tact::tools {
+namespace tact::tools::reference {
 namespace {
 
 using model::Vec3;
@@ -29,10 +30,10 @@ bool HeldBox::holds(const Vec3& p) const {
          p.z <= max_m.z;
 }
 
-model::Result<OrganBody> make_organ_body(const model::SurfaceMesh& surface,
-                                         const EdgeLengths& lengths, const HeldBox& held,
-                                         const std::optional<Circle>& circle) {
-  EdgeLengths on_surface = lengths;
+model::Result<OrganBody> make_organ_body(const model::mesh::SurfaceMesh& surface,
+                                         const ground_truth::EdgeLengths& lengths,
+                                         const HeldBox& held, const std::optional<Circle>& circle) {
+  ground_truth::EdgeLengths on_surface = lengths;
   on_surface.largest_m = 0.0;
   auto refined = refine_surface({surface.vertex_m, surface.triangle}, on_surface);
   if (!refined) return refined.error();
@@ -46,9 +47,8 @@ model::Result<OrganBody> make_organ_body(const model::SurfaceMesh& surface,
     FaceNodes nodes{t[0], t[1], t[2], 0, 0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
       const auto found = middle.find(edge_key(t[k], t[(k + 1) % 3]));
-      if (found == middle.end()) {
+      if (found == middle.end())
         return model::Error{"gmsh changed the surface; ask tact-mesh whether it crosses itself"};
-      }
       nodes[3 + k] = found->second;
     }
     body.face.push_back(nodes);
@@ -83,7 +83,7 @@ std::function<bool(std::size_t)> faces_within(const OrganBody& body, const Circl
     const Vec3 c = centre_m(body, f);
     return circle.away_m(c) <= circle.radius_m &&
            std::abs(dot(c - circle.at_m, circle.axis)) < 2.0 * circle.radius_m &&
-           dot(body.normal[f], circle.axis) < -kFacing;
+           dot(body.normal[f], circle.axis) < -ground_truth::kFacing;
   };
 }
 
@@ -103,4 +103,4 @@ Vec3 centre_m(const OrganBody& body, std::size_t face) {
   return (body.mesh.node_m[n[0]] + body.mesh.node_m[n[1]] + body.mesh.node_m[n[2]]) / 3.0;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

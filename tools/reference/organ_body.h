@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // organ_body.h - an organ around one site: refined surface, quadratic tetrahedra, what is held.
 //
 // Surface nodes are those of the six-node faces: three corners, then the middles of edges 01, 12
@@ -11,12 +12,12 @@
 #include <vector>
 
 #include "model/fem/tet_mesh.h"
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 #include "model/result.h"
-#include "tools/common/gmsh.h"
+#include "tools/ground_truth/gmsh.h"
 #include "tools/reference/refine_surface.h"
 
-namespace tact::tools {
+namespace tact::tools::reference {
 
 using FaceNodes = std::array<std::uint32_t, 6>;
 
@@ -36,8 +37,9 @@ struct OrganBody {
 
 /// Refines the surface around `lengths.at_m`, draws the circle on it, fills it and finds the held
 /// nodes. `largest_m` of the lengths counts inside only. An error if nothing is held.
-model::Result<OrganBody> make_organ_body(const model::SurfaceMesh& surface,
-                                         const EdgeLengths& lengths, const HeldBox& held,
+model::Result<OrganBody> make_organ_body(const model::mesh::SurfaceMesh& surface,
+                                         const ground_truth::EdgeLengths& lengths,
+                                         const HeldBox& held,
                                          const std::optional<Circle>& circle = {});
 
 /// Nodes, each once, of the faces that `wanted` chooses by number.
@@ -54,4 +56,4 @@ double area_m2(const OrganBody& body, const std::function<bool(std::size_t)>& wa
 /// Centre of a face's corners.
 model::Vec3 centre_m(const OrganBody& body, std::size_t face);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

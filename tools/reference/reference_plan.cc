@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/reference/reference_plan.h"
 
 #include <fmt/format.h>
@@ -7,7 +8,7 @@
 #include <filesystem>
 #include <limits>
 
-namespace tact::tools {
+namespace tact::tools::reference {
 namespace {
 
 using model::Error;
@@ -26,8 +27,8 @@ bool among(const std::vector<std::uint32_t>& list, std::uint32_t vertex) {
 
 /// One way to load a site, least depth first.
 struct Series {
-  std::vector<const ReferenceCase*> fine;
-  std::vector<const ReferenceCase*> coarse;  // one level coarser, at the ends
+  std::vector<const ground_truth::ReferenceCase*> fine;
+  std::vector<const ground_truth::ReferenceCase*> coarse;  // one level coarser, at the ends
 };
 
 struct SiteCases {
@@ -37,7 +38,8 @@ struct SiteCases {
 /// What is left of the error at the finer level. Edges shrink by k = 0.7 from level to level and
 /// the error with them (the rim of a contact is singular), so the rest of the series is k / (1 - k)
 /// of the last change. At the rim of a bond at large strain the error shrinks slower, k = 0.8.
-double remaining_error(const ReferenceCase& fine, const ReferenceCase& coarse) {
+double remaining_error(const ground_truth::ReferenceCase& fine,
+                       const ground_truth::ReferenceCase& coarse) {
   const double shrink = fine.large_strain && !fine.is_press() ? kShrinkOfLargePull : kShrink;
   return shrink / (1.0 - shrink) * std::abs(fine.force_N - coarse.force_N) / std::abs(fine.force_N);
 }
@@ -49,8 +51,8 @@ std::vector<double> large_strain_depths_m(const ReferencePlan& plan, bool pull) 
           std::upper_bound(plan.depths_m.begin(), plan.depths_m.end(), most_m)};
 }
 
-ReferenceCase scaled(const ReferenceCase& unit, double depth_m) {
-  ReferenceCase out = unit;
+ground_truth::ReferenceCase scaled(const ground_truth::ReferenceCase& unit, double depth_m) {
+  ground_truth::ReferenceCase out = unit;
   const double ratio = depth_m / unit.depth_m;
   out.depth_m = depth_m;
   out.force_N *= ratio;
@@ -59,16 +61,16 @@ ReferenceCase scaled(const ReferenceCase& unit, double depth_m) {
 }
 
 /// Each with the error of the nearest depth that is solved at both levels.
-void add_with_errors(const Series& series, std::vector<ReferenceCase>& out) {
-  for (const ReferenceCase* c : series.fine) {
+void add_with_errors(const Series& series, std::vector<ground_truth::ReferenceCase>& out) {
+  for (const ground_truth::ReferenceCase* c : series.fine) {
     out.push_back(*c);
     out.back().force_error_ratio = std::numeric_limits<double>::quiet_NaN();
     double nearest_m = std::numeric_limits<double>::infinity();
-    for (const ReferenceCase* coarse : series.coarse) {
+    for (const ground_truth::ReferenceCase* coarse : series.coarse) {
       const double away_m = std::abs(c->depth_m - coarse->depth_m);
-      const auto fine =
-          std::find_if(series.fine.begin(), series.fine.end(),
-                       [&](const ReferenceCase* f) { return f->depth_m == coarse->depth_m; });
+      const auto fine = std::find_if(
+          series.fine.begin(), series.fine.end(),
+          [&](const ground_truth::ReferenceCase* f) { return f->depth_m == coarse->depth_m; });
       if (away_m >= nearest_m || fine == series.fine.end()) continue;
       nearest_m = away_m;
       out.back().force_error_ratio = remaining_error(**fine, *coarse);
@@ -76,10 +78,11 @@ void add_with_errors(const Series& series, std::vector<ReferenceCase>& out) {
   }
 }
 
-std::vector<ReferenceCase> cases_of_site(const SiteCases& s, const ReferencePlan& plan) {
-  std::vector<ReferenceCase> out;
+std::vector<ground_truth::ReferenceCase> cases_of_site(const SiteCases& s,
+                                                       const ReferencePlan& plan) {
+  std::vector<ground_truth::ReferenceCase> out;
   add_with_errors(s.press, out);
-  std::vector<ReferenceCase> unit;
+  std::vector<ground_truth::ReferenceCase> unit;
   add_with_errors(s.pull, unit);
   for (const double d_m : plan.depths_m) out.push_back(scaled(unit.front(), -d_m));
   add_with_errors(s.large_press, out);
@@ -89,7 +92,7 @@ std::vector<ReferenceCase> cases_of_site(const SiteCases& s, const ReferencePlan
 
 }  // namespace
 
-model::Result<ReferencePlan> plan_of(const model::Scene& scene) {
+model::Result<ReferencePlan> plan_of(const model::scene::Scene& scene) {
   if (!scene.elastic) {
     return Error{fmt::format(
         "{}: has no [elastic]; add it with youngs_modulus_Pa, poisson_ratio, fixed_min_m and "
@@ -111,7 +114,7 @@ model::Result<ReferencePlan> plan_of(const model::Scene& scene) {
 }
 
 model::Result<std::string> solver_versions() {
-  auto gmsh = gmsh_version();
+  auto gmsh = ground_truth::gmsh_version();
   if (!gmsh) return gmsh;
   auto ccx = calculix_version();
   if (!ccx) return ccx;
@@ -119,10 +122,9 @@ model::Result<std::string> solver_versions() {
 }
 
 std::optional<Error> check(const ReferencePlan& plan) {
-  if (plan.sites.empty()) {
+  if (plan.sites.empty())
     return Error{"no site to solve; add [[reference_site]] to the scene, or give --sites"};
-  }
-  const auto summary = model::summarize(plan.organ.surface);
+  const auto summary = model::mesh::summarize(plan.organ.surface);
   if (summary.boundary_edges > 0) {
     return Error{fmt::format("{} has {} open edges, so it has no inside; close the surface",
                              plan.mesh_name, summary.boundary_edges)};
@@ -182,19 +184,20 @@ std::vector<Indentation> cases_of(const ReferencePlan& plan) {
   return out;
 }
 
-ReferenceData assemble(const ReferencePlan& plan,
-                       const std::vector<std::optional<ReferenceCase>>& solved,
-                       const std::string& solver) {
-  ReferenceData data{.mesh = plan.mesh_name,
-                     .mesh_hash = plan.organ.hash,
-                     .solver = solver,
-                     .youngs_modulus_Pa = plan.organ.material.youngs_modulus_Pa,
-                     .poisson_ratio = plan.organ.material.poisson_ratio,
-                     .fixed_min_m = plan.organ.held.min_m,
-                     .fixed_max_m = plan.organ.held.max_m,
-                     .tool_radius_m = plan.tool_radius_m,
-                     .ring_pitch_m = kRingPitch_m,
-                     .sites = {}};
+ground_truth::ReferenceData assemble(
+    const ReferencePlan& plan,
+    const std::vector<std::optional<ground_truth::ReferenceCase>>& solved,
+    const std::string& solver) {
+  ground_truth::ReferenceData data{.mesh = plan.mesh_name,
+                                   .mesh_hash = plan.organ.hash,
+                                   .solver = solver,
+                                   .youngs_modulus_Pa = plan.organ.material.youngs_modulus_Pa,
+                                   .poisson_ratio = plan.organ.material.poisson_ratio,
+                                   .fixed_min_m = plan.organ.held.min_m,
+                                   .fixed_max_m = plan.organ.held.max_m,
+                                   .tool_radius_m = plan.tool_radius_m,
+                                   .ring_pitch_m = kRingPitch_m,
+                                   .sites = {}};
   const std::vector<Indentation> cases = cases_of(plan);
   for (const std::uint32_t vertex : plan.sites) {
     SiteCases s;
@@ -213,4 +216,4 @@ ReferenceData assemble(const ReferencePlan& plan,
   return data;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // reference_plan.h - which cases make the reference of an organ, and how they become one file.
 //
 // Per site: press at every depth; pull once, since it is linear, scaled to every depth. For some
@@ -14,10 +15,10 @@
 #include <string>
 #include <vector>
 
-#include "model/scene.h"
+#include "model/scene/scene.h"
 #include "tools/reference/solve_cache.h"
 
-namespace tact::tools {
+namespace tact::tools::reference {
 
 /// The deepest pull with large strain, of the tool's radius: elements at the rim of the bond that
 /// stand more are too coarse to be true.
@@ -34,7 +35,7 @@ struct ReferencePlan {
 };
 
 /// Organ, tool and sites of a scene; depths, level and large strain stay as they are by default.
-model::Result<ReferencePlan> plan_of(const model::Scene& scene);
+model::Result<ReferencePlan> plan_of(const model::scene::Scene& scene);
 
 /// "CalculiX 2.20, gmsh 4.8.4"; an error says what to install.
 model::Result<std::string> solver_versions();
@@ -47,8 +48,9 @@ std::vector<Indentation> cases_of(const ReferencePlan& plan);
 
 /// Puts solved cases together; `solved` in the order of cases_of. A case with large strain may be
 /// missing.
-ReferenceData assemble(const ReferencePlan& plan,
-                       const std::vector<std::optional<ReferenceCase>>& solved,
-                       const std::string& solver);
+ground_truth::ReferenceData assemble(
+    const ReferencePlan& plan,
+    const std::vector<std::optional<ground_truth::ReferenceCase>>& solved,
+    const std::string& solver);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/reference/refine_surface.h"
 
 #include <fmt/format.h>
@@ -6,14 +7,14 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "tools/common/interrupt.h"
-#include "tools/common/run_program.h"
+#include "tools/program/interrupt.h"
+#include "tools/program/run_program.h"
 
-namespace tact::tools {
+namespace tact::tools::reference {
 namespace {
 
-using model::TriangleCorners;
 using model::Vec3;
+using model::contact::TriangleCorners;
 using model::fem::edge_key;
 
 constexpr std::uint32_t kUnset = 0xFFFFFFFFU;
@@ -37,7 +38,7 @@ std::size_t longest_edge(const Triangles& s, const TriangleCorners& t) {
   return best;
 }
 
-Middles edges_to_split(const Triangles& s, const EdgeLengths& lengths) {
+Middles edges_to_split(const Triangles& s, const ground_truth::EdgeLengths& lengths) {
   Middles out;
   for (const TriangleCorners& t : s.triangle) {
     const std::size_t k = longest_edge(s, t);
@@ -166,11 +167,12 @@ Triangles cut_along(Triangles surface, const Circle& circle, double reach_m) {
   return surface;
 }
 
-model::Result<Triangles> refine_surface(Triangles surface, const EdgeLengths& lengths) {
+model::Result<Triangles> refine_surface(Triangles surface,
+                                        const ground_truth::EdgeLengths& lengths) {
   const bool has_goal = lengths.fine_m > 0.0;  // a NaN is none
   for (int round = 0; has_goal && round < kMostRounds && surface.triangle.size() < kMostTriangles;
        ++round) {
-    if (is_interrupted()) return interruption();
+    if (program::is_interrupted()) return program::interruption();
     Middles middles = edges_to_split(surface, lengths);
     if (middles.empty()) return surface;
     split(surface, middles);
@@ -181,4 +183,4 @@ model::Result<Triangles> refine_surface(Triangles surface, const EdgeLengths& le
                   lengths.at_m.x, lengths.at_m.y, lengths.at_m.z, lengths.fine_m)};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

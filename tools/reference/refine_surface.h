@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // refine_surface.h - finer triangles near a point, on exactly the same polyhedron.
 //
 // Edges longer than h(middle) are split at their middle; a triangle that has a split edge also
@@ -8,19 +9,20 @@
 
 #include <vector>
 
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 #include "model/result.h"
-#include "tools/common/gmsh.h"
+#include "tools/ground_truth/gmsh.h"
 
-namespace tact::tools {
+namespace tact::tools::reference {
 
 struct Triangles {
   std::vector<model::Vec3> vertex_m;
-  std::vector<model::TriangleCorners> triangle;
+  std::vector<model::contact::TriangleCorners> triangle;
 };
 
 /// An error if the edges asked for are too short to be reached, or Ctrl-C was pressed.
-model::Result<Triangles> refine_surface(Triangles surface, const EdgeLengths& lengths);
+model::Result<Triangles> refine_surface(Triangles surface,
+                                        const ground_truth::EdgeLengths& lengths);
 
 /// A circle about an axis, drawn on the surface by a cylinder.
 struct Circle {
@@ -36,4 +38,4 @@ struct Circle {
 /// triangle is inside or outside. A vertex nearer than a fifth of the edge counts as on the circle.
 Triangles cut_along(Triangles surface, const Circle& circle, double reach_m);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

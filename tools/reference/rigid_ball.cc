@@ -1,14 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/reference/rigid_ball.h"
 
 #include <algorithm>
 #include <map>
 #include <utility>
 
-namespace tact::tools {
+namespace tact::tools::reference {
 namespace {
 
-using model::TriangleCorners;
 using model::Vec3;
+using model::contact::TriangleCorners;
 
 constexpr int kHalvings = 3;     // of an octahedron's edges: 0.2 R
 constexpr double kBack = -0.5;   // cosine to the pole, beyond which nothing can touch
@@ -83,4 +84,4 @@ RigidBall make_rigid_ball(double radius_m) {
   return ball;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

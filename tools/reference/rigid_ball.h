@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // rigid_ball.h - a ball as a shell of quadratic wedges: the tool's side of a contact.
 //
 // Its outer faces have six nodes on the sphere, so that it is round to 1e-4 of its radius and its
@@ -8,9 +9,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
-namespace tact::tools {
+namespace tact::tools::reference {
 
 /// Of a C3D15 (CalculiX manual 6.2): inner corners, outer corners, middles of the inner edges, of
 /// the outer edges, of the spokes. Its face 2 is the outer one.
@@ -24,4 +25,4 @@ struct RigidBall {
 /// Centre at the origin, its pole along +x.
 RigidBall make_rigid_ball(double radius_m);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/reference/self_check.h"
 
 #include <fmt/format.h>
@@ -7,11 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "model/obj.h"
+#include "model/mesh/obj.h"
 #include "tools/reference/block.h"
 #include "tools/reference/half_space.h"
 
-namespace tact::tools {
+namespace tact::tools::reference {
 namespace {
 
 using model::Error;
@@ -59,7 +60,7 @@ Result<bool> check_block(double size_m, const std::vector<Known>& cases,
 }
 
 /// Numbers of the triangles that touch `rings` rings of vertices around one.
-std::set<std::uint32_t> triangles_around(const model::SurfaceMesh& s, std::uint32_t vertex,
+std::set<std::uint32_t> triangles_around(const model::mesh::SurfaceMesh& s, std::uint32_t vertex,
                                          int rings) {
   std::set<std::uint32_t> vertices{vertex}, triangles;
   for (int i = 0; i < rings; ++i) {
@@ -71,7 +72,7 @@ std::set<std::uint32_t> triangles_around(const model::SurfaceMesh& s, std::uint3
   return triangles;
 }
 
-bool is_in(const model::SurfaceMesh& s, std::uint32_t triangle, const Vec3& p) {
+bool is_in(const model::mesh::SurfaceMesh& s, std::uint32_t triangle, const Vec3& p) {
   const auto& t = s.triangle[triangle];
   const Vec3& n = s.face_normal[triangle];
   if (std::abs(dot(p - s.vertex_m[t[0]], n)) > 1e-9) return false;
@@ -83,15 +84,16 @@ bool is_in(const model::SurfaceMesh& s, std::uint32_t triangle, const Vec3& p) {
 }
 
 /// One patch of the mesh's own triangles, moved as one piece.
-Result<bool> check_patch(const model::SurfaceMesh& surface, const HeldBox& held, const json& c) {
+Result<bool> check_patch(const model::mesh::SurfaceMesh& surface, const HeldBox& held,
+                         const json& c) {
   const auto vertex = c.at("vertex").get<std::uint32_t>();
   const int rings = c.at("rings").get<int>();
-  const EdgeLengths edges{.at_m = surface.vertex_m.at(vertex),
-                          .axis = {},
-                          .radius_m = 4.5e-3 * rings,
-                          .fine_m = 0.6e-3 * rings,
-                          .growth = 0.4,
-                          .largest_m = 9e-3};
+  const ground_truth::EdgeLengths edges{.at_m = surface.vertex_m.at(vertex),
+                                        .axis = {},
+                                        .radius_m = 4.5e-3 * rings,
+                                        .fine_m = 0.6e-3 * rings,
+                                        .growth = 0.4,
+                                        .largest_m = 9e-3};
   const auto body = make_organ_body(surface, edges, held);
   if (!body) return body.error();
   const auto triangles = triangles_around(surface, vertex, rings);
@@ -126,8 +128,8 @@ Result<bool> check_organ(const std::string& folder) {
   if (!file) return Error{path + ": cannot be read; give the folder tests/data/reference"};
   try {  // the library reports by exceptions; they end here
     const json j = json::parse(file);
-    const auto organ = model::load_obj(folder + "/" + j.at("mesh").get<std::string>(),
-                                       j.at("mesh_unit_m").get<double>());
+    const auto organ = model::mesh::load_obj(folder + "/" + j.at("mesh").get<std::string>(),
+                                             j.at("mesh_unit_m").get<double>());
     if (!organ) return organ.error();
     const HeldBox held{{-1.0, -1.0, -1.0}, {1.0, j.at("fixed_max_y_m").get<double>(), 1.0}};
     bool good = true;
@@ -175,4 +177,4 @@ Result<bool> self_check(const std::string& folder) {
   return *organ && *block && *large && *space;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::reference

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // axes.h - a grid of settings as one row of jobs: job number to one index per axis.
 #pragma once
 
 #include <array>
 #include <cstddef>
 
-namespace tact::tools {
+namespace tact::tools::stability {
 
 template <std::size_t N>
 struct Axes {
@@ -26,4 +27,4 @@ struct Axes {
   }
 };
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

@@ -1,44 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
 // felt_tissue.h - a law as the loop meets it, tick by tick, with whatever it remembers.
 #pragma once
 
 #include <functional>
 #include <memory>
 
-#include "model/law.h"
-#include "model/site_law.h"
+#include "model/contact/site_law.h"
+#include "model/law/law.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 
 /// Makes a law with memory, at rest, on the plate of memory_laws.h.
-using SiteLawMaker = std::function<std::unique_ptr<model::SiteLaw>()>;
+using SiteLawMaker = std::function<std::unique_ptr<model::contact::SiteLaw>()>;
 
 class FeltTissue {
  public:
   /// A closed-form law, or one with memory if `make` is there.
-  FeltTissue(std::shared_ptr<const model::Law> law, const SiteLawMaker& make)
+  FeltTissue(std::shared_ptr<const model::law::Law> law, const SiteLawMaker& make)
       : law_(std::move(law)), site_(make ? make() : nullptr) {}
 
   /// One tick of 1 ms at this depth, in the middle of the plate; a pull holds the tissue.
-  model::LawResponse tick(double depth_m) {
+  model::law::LawResponse tick(double depth_m) {
     if (!site_) return law_->respond(depth_m);
-    const model::SiteResponse now = site_->respond(
+    const model::contact::SiteResponse now = site_->respond(
         {.place = kMiddle, .normal = {0.0, 0.0, 1.0}, .depth_m = depth_m, .held = depth_m < 0.0});
     site_->advance();
     return now.law;
   }
 
   /// Held until nothing moves or fades any more.
-  model::LawResponse settle(double depth_m) {
+  model::law::LawResponse settle(double depth_m) {
     constexpr int kTicks = 2000;
     for (int i = 0; site_ && i < kTicks; ++i) tick(depth_m);
     return tick(depth_m);
   }
 
  private:
-  static constexpr model::Place kMiddle{420, {0.3, 0.3, 0.4}};
+  static constexpr model::contact::Place kMiddle{420, {0.3, 0.3, 0.4}};
 
-  std::shared_ptr<const model::Law> law_;
-  std::unique_ptr<model::SiteLaw> site_;
+  std::shared_ptr<const model::law::Law> law_;
+  std::unique_ptr<model::contact::SiteLaw> site_;
 };
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

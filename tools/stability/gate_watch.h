@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // gate_watch.h - the gate of the controller between a tissue and a device, with a witness.
 //
 // Whatever a law or an unstable loop asks for, the written force must keep |F| <= limit and, from
@@ -12,7 +13,7 @@
 #include "firmware/gate/gate.h"
 #include "tools/stability/map.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 
 /// The limits of the liver scene, but for the energy: where the loop loses stability is measured
 /// without the stage that would keep it stable.
@@ -70,14 +71,14 @@ class GateWatch {
 
  private:
   double write(double wanted_N, bool fresh) {
-    firmware::GateInput input{.wanted = {}, .tool = {}, .fresh = fresh, .armed = armed_};
+    firmware::gate::GateInput input{.wanted = {}, .tool = {}, .fresh = fresh, .armed = armed_};
     input.wanted.force_N.x = wanted_N;
-    const firmware::GateVerdict verdict = gate_.judge(input);
+    const firmware::gate::GateVerdict verdict = gate_.judge(input);
     if (verdict.fault != model::Fault::kNone) armed_ = false;  // as the supervisor does
     return verdict.wrench.force_N.x;
   }
 
-  firmware::Gate gate_;
+  firmware::gate::Gate gate_;
   double step_limit_N_;
   int ramp_ticks_;
   bool armed_ = true;
@@ -87,9 +88,9 @@ class GateWatch {
 
 /// Of a table with the column beyond_the_line: the gate held, and how many cells put it to the
 /// test.
-inline Finding judge_gate(const Table& table) {
+inline Finding judge_gate(const report::Table& table) {
   std::size_t held = 0, fought = 0;
-  for (const Row& row : table.rows()) {
+  for (const report::Row& row : table.rows()) {
     const std::string& word = table.word(row, "beyond_the_line");
     held += word == kOutOfBounds ? 0 : 1;
     fought += word == kFought ? 1 : 0;
@@ -101,4 +102,4 @@ inline Finding judge_gate(const Table& table) {
                       held, all, fought)};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

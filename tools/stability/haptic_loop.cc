@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/stability/haptic_loop.h"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 #include "tools/stability/loop_plant.h"
 #include "tools/stability/random.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 namespace {
 
 constexpr double kPlain = 20.0;  // times the kick: it grows, whatever comes
@@ -176,4 +177,4 @@ double largest_wall_N_per_m(const LoopCase& loop, Verdict worse) {
   return largest_factor(at, wall, worse, 1.0, 1e7);
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

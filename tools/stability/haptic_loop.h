@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // haptic_loop.h - one degree of freedom of a haptic loop: counted, sampled, late, held.
 //
 //     f_k  = F(x_k), x_k = D round(x(t_k) / D)                 the tissue, at counted depths
@@ -16,9 +17,9 @@
 #include <cstdint>
 #include <functional>
 
-#include "model/haptic_limit.h"
+#include "model/device_at_tool.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 
 /// What holds the tool.
 struct HandAtTool {
@@ -76,4 +77,4 @@ double largest_factor(const LoopCase& loop, const TissueMaker& fresh, Verdict wo
 /// The same for a wall F = K x: the largest K, N/m.
 double largest_wall_N_per_m(const LoopCase& loop, Verdict worse);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

@@ -1,19 +1,20 @@
-// laws.h - the force laws that the maps probe, with the numbers that PHYSICS calls their defaults.
+// SPDX-License-Identifier: Apache-2.0
+// laws.h - the force laws that the maps probe, with the numbers of RC-13, DS-13 and HX-26.
 #pragma once
 
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "model/law.h"
+#include "model/law/law.h"
 #include "tools/stability/felt_tissue.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 
 struct NamedLaw {
   std::string name;
-  std::shared_ptr<const model::Law> law;   // none if the law has memory
-  std::shared_ptr<const model::Law> felt;  // as the loop reads it: a table, if it has one
+  std::shared_ptr<const model::law::Law> law;   // none if the law has memory
+  std::shared_ptr<const model::law::Law> felt;  // as the loop reads it: a table, if it has one
   std::string beyond;         // what a press beyond its range does, in words without commas
   double range_m = 0.0;       // of the press
   double felt_range_m = 0.0;  // of the table
@@ -30,4 +31,4 @@ const std::vector<NamedLaw>& probed_laws();
 /// Largest dF/dd that its law gives between rest and its range, N/m.
 double steepest_N_per_m(const NamedLaw& named);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/stability/loop_plant.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace tact::tools {
+namespace tact::tools::stability {
 namespace {
 
 constexpr int kBisections = 50;
@@ -77,4 +78,4 @@ void LoopPlant::move(double force_N, double duration_s) {
   }
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

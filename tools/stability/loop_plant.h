@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // loop_plant.h - device and hand as one mass: exact motion under a force that is held.
 //
 //     M y'' + B y' + k y + c sgn(y') = f        f constant during one move
@@ -13,7 +14,7 @@
 #include <array>
 #include <cstddef>
 
-namespace tact::tools {
+namespace tact::tools::stability {
 
 struct PlantParameters {
   double mass_kg = 0.0;           // M, > 0
@@ -49,4 +50,4 @@ class LoopPlant {
   std::array<double, kTerms> y_{};  // y(t) = sum y_n t^n
 };
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tact-stability: where do the methods and the closed haptic loop stop being stable?
 #include <fmt/format.h>
 
@@ -5,19 +6,19 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "tools/common/program.h"
+#include "tools/program/program.h"
 #include "tools/stability/run_maps.h"
 
 namespace {
 
 using nlohmann::json;
-using tact::tools::Finding;
-using tact::tools::MapReport;
-using tact::tools::StabilityOptions;
+using tact::tools::stability::Finding;
+using tact::tools::stability::MapReport;
+using tact::tools::stability::StabilityOptions;
 
 std::string help_of_maps() {
   std::string text = "Maps:\n";
-  for (const auto& map : tact::tools::all_maps())
+  for (const auto& map : tact::tools::stability::all_maps())
     text += fmt::format("  {}  {:16} {}\n", map.letter, map.name, map.purpose);
   return text +
          "\nEach map becomes a table (CSV and JSON, SI units in the column names) and pictures "
@@ -60,13 +61,13 @@ bool all_hold(const std::vector<MapReport>& reports) {
 
 // The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
-  tact::tools::Program program(
+  tact::tools::program::Program program(
       "tact-stability",
       "Where do the methods and the closed haptic loop stop being stable? Measured cell by cell, "
       "against\ntheory, and what the safety gate lets through beyond the line.",
       help_of_maps());
   StabilityOptions options;
-  tact::tools::SweepArguments sweep;
+  tact::tools::program::SweepArguments sweep;
   std::vector<std::string> letters{"a", "b", "c", "d"};
   bool as_json = false;
   CLI::App& app = program.options();
@@ -83,14 +84,14 @@ int main(int argc, char** argv) {
   options.shard = sweep.shard;
   options.merge = sweep.merge;
   for (const std::string& letter : letters) options.letters += letter;
-  options.grid = sweep.quick ? tact::tools::Grid::kQuick : tact::tools::Grid::kFull;
+  options.grid =
+      sweep.quick ? tact::tools::stability::Grid::kQuick : tact::tools::stability::Grid::kFull;
   options.draw_pictures = !sweep.no_pictures;
-  const auto run = tact::tools::run_maps(options);
-  if (as_json) {
+  const auto run = tact::tools::stability::run_maps(options);
+  if (as_json)
     fmt::print("{}\n", to_json(run.reports).dump(2));
-  } else {
+  else
     print_text(run.reports);
-  }
   if (run.error)
     return program.fail(*run.error, fmt::format("{} maps are written", run.reports.size()));
   return all_hold(run.reports) ? 0 : 1;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // map.h - one map of tact-stability: a table of independent cells, what it must show, its pictures.
 #pragma once
 
@@ -5,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "tools/common/picture.h"
-#include "tools/common/table.h"
+#include "tools/report/picture.h"
+#include "tools/report/table.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 
 /// A sentence about a whole table that must be true.
 struct Finding {
@@ -22,11 +23,11 @@ struct Map {
   char letter = '?';  // of --map
   const char* name = "";
   const char* purpose = "";  // for --help
-  std::vector<Column> (*columns)() = nullptr;
+  std::vector<report::Column> (*columns)() = nullptr;
   std::size_t (*jobs)(Grid grid) = nullptr;
-  Row (*run)(std::size_t job, Grid grid) = nullptr;
-  std::vector<Finding> (*judge)(const Table& table) = nullptr;
-  std::vector<Picture> (*pictures)(Grid grid) = nullptr;
+  report::Row (*run)(std::size_t job, Grid grid) = nullptr;
+  std::vector<Finding> (*judge)(const report::Table& table) = nullptr;
+  std::vector<report::Picture> (*pictures)(Grid grid) = nullptr;
 };
 
 /// All maps, in the order of their letters.
@@ -42,4 +43,4 @@ Map delta_loop_map();
 Map tick_map();
 Map loss_map();
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

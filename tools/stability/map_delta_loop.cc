@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Spot checks with the whole controller: loop, contact, gate and the simulated Delta with its hand.
 //
 // A wall is pressed with 2 N in the middle of the workspace; the largest stiffness without lasting
@@ -13,17 +14,18 @@
 #include <cstdlib>
 #include <memory>
 
-#include "firmware/rt_loop.h"
-#include "hal/open_device.h"
+#include "firmware/loop/rt_loop.h"
+#include "hal/registry/open_device.h"
 #include "hal/sim/sim_delta.h"
 #include "hal/sim/sim_delta_model.h"
-#include "model/tissue.h"
+#include "model/law/haptic_limit.h"
+#include "model/scene/tissue.h"
 #include "tools/stability/axes.h"
 #include "tools/stability/gate_watch.h"
 #include "tools/stability/haptic_loop.h"
 #include "tools/stability/map.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 namespace {
 
 using model::Vec3;
@@ -54,7 +56,7 @@ Axes<3> axes(const Settings& s) {
   return {{s.rate_Hz.size(), s.delay_s.size(), s.damping_Nms_per_rad.size()}};
 }
 
-std::vector<Column> columns() {
+std::vector<report::Column> columns() {
   return {{"rate_Hz"},
           {"delay_s"},
           {"joint_damping_Nms_per_rad"},
@@ -66,27 +68,27 @@ std::vector<Column> columns() {
           {"controller_over_theory"},
           {"max_force_N"},
           {"max_step_N"},
-          {"beyond_the_line", CellKind::kWord}};
+          {"beyond_the_line", report::CellKind::kWord}};
 }
 
 /// A square plate in z = 0 that faces up.
-model::SurfaceMesh make_plate() {
+model::mesh::SurfaceMesh make_plate() {
   constexpr double kHalf_m = 0.1;
   const std::vector<Vec3> corner{{-kHalf_m, -kHalf_m, 0},
                                  {kHalf_m, -kHalf_m, 0},
                                  {kHalf_m, kHalf_m, 0},
                                  {-kHalf_m, kHalf_m, 0}};
-  return *model::make_surface_mesh(corner, {{0, 1, 2}, {0, 2, 3}});
+  return *model::mesh::make_surface_mesh(corner, {{0, 1, 2}, {0, 2, 3}});
 }
 
 /// One rhombus without tangential spring is a linear spring: a wall of kN.
-model::Scene wall_scene(double stiffness_N_per_m, double rate_Hz,
-                        const model::SimDeviceSettings& device) {
-  model::Scene scene;
+model::scene::Scene wall_scene(double stiffness_N_per_m, double rate_Hz,
+                               const model::SimDeviceSettings& device) {
+  model::scene::Scene scene;
   scene.path = "wall";
   scene.rate_Hz = rate_Hz;
-  scene.law = model::LawKind::kRhombus;
-  scene.described = {model::LawKind::kRhombus};
+  scene.law = model::scene::LawKind::kRhombus;
+  scene.described = {model::scene::LawKind::kRhombus};
   scene.rhombus = {.rod_length_m = 0.1,
                    .initial_angle_rad = 0.5,
                    .normal_stiffness_N_per_m = stiffness_N_per_m,
@@ -125,26 +127,26 @@ struct ControllerRun {
 
 ControllerRun run_controller(double stiffness_N_per_m, double rate_Hz,
                              const model::SimDeviceSettings& device_settings) {
-  const model::Scene scene = wall_scene(stiffness_N_per_m, rate_Hz, device_settings);
-  const auto tissue = model::make_tissue(scene);
-  const auto device = hal::make_sim_delta(scene.device.sim, scene.hand);
+  const model::scene::Scene scene = wall_scene(stiffness_N_per_m, rate_Hz, device_settings);
+  const auto tissue = model::scene::make_tissue(scene);
+  const auto device = hal::sim::make_sim_delta(scene.device.sim, scene.hand);
   if (!tissue || !device) {  // the scene is ours, above: a map of nothing would prove nothing
     fmt::print(stderr, "tact-stability: {}\n",
                tissue ? device.error().sentence : tissue.error().sentence);
     std::abort();
   }
-  firmware::Controller controller((*tissue)->contact_scene(),
-                                  firmware::Gate(scene.limits, 1.0 / rate_Hz, 1.0),
-                                  firmware::kHardRealTime);
-  firmware::SimulatedClock clock;
-  firmware::Requests requests;
+  firmware::loop::Controller controller((*tissue)->contact_scene(),
+                                        firmware::gate::Gate(scene.limits, 1.0 / rate_Hz, 1.0),
+                                        firmware::loop::kHardRealTime);
+  firmware::loop::SimulatedClock clock;
+  firmware::loop::Requests requests;
   hal::NoSafetyLines lines;
   requests.arm.store(true);
-  const auto ring = std::make_unique<firmware::TickRing>();
-  firmware::RtLoop loop({.period_ns = std::llround(1e9 / rate_Hz)}, **device, lines, controller,
-                        clock, requests, *ring);
+  const auto ring = std::make_unique<firmware::loop::TickRing>();
+  firmware::loop::RtLoop loop({.period_ns = std::llround(1e9 / rate_Hz)}, **device, lines,
+                              controller, clock, requests, *ring);
   ControllerRun out;
-  firmware::TickRecord record, before;
+  firmware::loop::TickRecord record, before;
   Swing first, last;
   const int ticks = static_cast<int>(kRun_s * rate_Hz);
   for (int i = 0; i < ticks; ++i) {
@@ -180,21 +182,21 @@ struct AtTool {
   double damping_Ns_per_m = 0.0, mass_kg = 0.0;
 };
 AtTool at_tool(double joint_damping_Nms_per_rad) {
-  const hal::DeltaKinematics delta(hal::sim_delta::kGeometry);
-  const Vec3 p_D = hal::sim_delta::point_D({0.0, 0.0, kRadius_m});
-  const hal::DeltaPose pose = delta.pose(p_D, delta.inverse(p_D).theta_rad);
-  const Vec3 up_D = hal::sim_delta::direction_D({0.0, 0.0, 1.0});
+  const hal::delta::DeltaKinematics delta(hal::sim::kGeometry);
+  const Vec3 p_D = hal::sim::point_D({0.0, 0.0, kRadius_m});
+  const hal::delta::DeltaPose pose = delta.pose(p_D, delta.inverse(p_D).theta_rad);
+  const Vec3 up_D = hal::sim::direction_D({0.0, 0.0, 1.0});
   AtTool out;
   // b = c |K e|^2,  m = e . M e
-  for (const double rate : hal::joint_rates_radps(pose, up_D))
+  for (const double rate : hal::delta::joint_rates_radps(pose, up_D))
     out.damping_Ns_per_m += joint_damping_Nms_per_rad * rate * rate;
   const model::Mat3 mass =
-      hal::task_inertia_kg(hal::sim_delta::kGeometry, hal::sim_delta::kMasses, pose);
+      hal::delta::task_inertia_kg(hal::sim::kGeometry, hal::sim::kMasses, pose);
   out.mass_kg = dot(up_D, mass * up_D);
   return out;
 }
 
-Row run(std::size_t job, Grid grid) {
+report::Row run(std::size_t job, Grid grid) {
   const Settings s = settings(grid);
   const auto [rate, delay, damping] = axes(s).at(job);
   const model::SimDeviceSettings device{.counts_per_turn = 1e7,
@@ -208,7 +210,7 @@ Row run(std::size_t job, Grid grid) {
   loop.rate_Hz = s.rate_Hz[rate];
   loop.mass_kg = tool.mass_kg;
   loop.hand = {.mass_kg = kHandMass_kg, .stiffness_N_per_m = kHand_N_per_m};
-  const double theory = model::haptic_limit(loop.device, loop.rate_Hz).grow_N_per_m;
+  const double theory = model::law::haptic_limit(loop.device, loop.rate_Hz).grow_N_per_m;
   const double measured =
       largest_by_controller(loop.rate_Hz, device, 0.3 * theory, 10.0 * theory, s.precision);
   const ControllerRun beyond = run_controller(3.0 * measured, loop.rate_Hz, device);
@@ -231,10 +233,10 @@ Row run(std::size_t job, Grid grid) {
                                      : "comes to rest")};
 }
 
-std::vector<Finding> judge(const Table& t) {
+std::vector<Finding> judge(const report::Table& t) {
   double low = 1e9, high = 0.0, alike_low = 1e9, alike_high = 0.0;
   std::size_t in_bounds = 0, bounced = 0;
-  for (const Row& row : t.rows()) {
+  for (const report::Row& row : t.rows()) {
     in_bounds += t.word(row, "beyond_the_line") != kOutOfBounds;
     bounced += t.word(row, "beyond_the_line") == kBounces;
     const double ratio = t.number(row, "controller_over_theory");
@@ -271,4 +273,4 @@ Map delta_loop_map() {
           .pictures = nullptr};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

@@ -1,20 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
 // Integrators of a mass on springs: does the oscillator grow where its amplification matrix says?
 //
-// Per cell of z = h omega and damping ratio zeta: M of PHYSICS MA-10 to MA-15 gives the spectral
-// radius; the step itself (model/integrators.h) is run from two starts, (x, h v) = (1, 0) and (0,
-// 1), and the growth a step of what comes out is measured over the second half of the run.
+// Per cell of z = h omega and damping ratio zeta: M of MA-10 to MA-15 gives the spectral
+// radius; the step itself (model/springs/integrators.h) is run from two starts, (x, h v) = (1, 0)
+// and (0, 1), and the growth a step of what comes out is measured over the second half of the run.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "model/integrator_stability.h"
+#include "model/springs/integrator_stability.h"
 #include "tools/stability/axes.h"
 #include "tools/stability/map.h"
 #include "tools/stability/pictures.h"
 #include "tools/stability/probed_methods.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 namespace {
 
 constexpr int kSteps = 20'000;
@@ -34,33 +35,33 @@ double zeta_of(std::size_t i, Grid grid) {
   return 2.0 * static_cast<double>(i) / static_cast<double>(cells(grid).zeta - 1);
 }
 
-std::vector<Column> columns() {
-  return {{"method", CellKind::kWord},
+std::vector<report::Column> columns() {
+  return {{"method", report::CellKind::kWord},
           {"zeta"},
           {"z"},
           {"theory_growth_per_step"},
           {"measured_growth_per_step"},
-          {"theory", CellKind::kWord},
-          {"measured", CellKind::kWord}};
+          {"theory", report::CellKind::kWord},
+          {"measured", report::CellKind::kWord}};
 }
 
 /// ln of the growth a step, over the second half of the run.
-double measured_log_growth(const model::Method& method, double z, double zeta) {
+double measured_log_growth(const model::springs::Method& method, double z, double zeta) {
   // m = 1 kg, omega = 1 rad/s: h = z, c = 2 zeta
-  const model::Oscillator oscillator{
+  const model::springs::Oscillator oscillator{
       .mass_kg = 1.0, .damping_Ns_per_m = 2.0 * zeta, .stiffness_N_per_m = 1.0};
-  model::OscillatorState a{.position_m = 1.0}, b{.velocity_mps = 1.0 / z};
+  model::springs::OscillatorState a{.position_m = 1.0}, b{.velocity_mps = 1.0 / z};
   double log_norm = 0.0, half = 0.0;
   for (int i = 0; i < kSteps; i += kChunk) {
     for (int k = 0; k < kChunk; ++k) {
-      a = model::step(oscillator, a, method, z);
-      b = model::step(oscillator, b, method, z);
+      a = model::springs::step(oscillator, a, method, z);
+      b = model::springs::step(oscillator, b, method, z);
     }
     const double norm = std::hypot(std::hypot(a.position_m, z * a.velocity_mps),
                                    std::hypot(b.position_m, z * b.velocity_mps));
     if (!(norm > 0.0)) return -1.0;  // died out: nothing left to measure
     log_norm += std::log(norm);
-    for (model::OscillatorState* s : {&a, &b}) {
+    for (model::springs::OscillatorState* s : {&a, &b}) {
       s->position_m /= norm;
       s->velocity_mps /= norm;
     }
@@ -69,12 +70,13 @@ double measured_log_growth(const model::Method& method, double z, double zeta) {
   return (log_norm - half) / (0.5 * kSteps);
 }
 
-Row run(std::size_t job, Grid grid) {
+report::Row run(std::size_t job, Grid grid) {
   const auto [which, i, j] =
       Axes<3>{{std::size(kProbedMethods), cells(grid).zeta, cells(grid).z}}.at(job);
   const ProbedMethod& probed = kProbedMethods[which];
   const double zeta = zeta_of(i, grid), z = z_of(j, grid);
-  const double radius = model::spectral_radius(model::amplification(probed.method, z, zeta));
+  const double radius =
+      model::springs::spectral_radius(model::springs::amplification(probed.method, z, zeta));
   const double growth = measured_log_growth(probed.method, z, zeta);
   return {std::string(probed.name),
           zeta,
@@ -85,11 +87,11 @@ Row run(std::size_t job, Grid grid) {
           std::string(growth > kGrows ? "grows" : "bounded")};
 }
 
-std::vector<Finding> judge(const Table& t) {
+std::vector<Finding> judge(const report::Table& t) {
   std::size_t agree = 0;
   double worst = 0.0;
   std::string rest;
-  for (const Row& row : t.rows()) {
+  for (const report::Row& row : t.rows()) {
     const double theory = t.number(row, "theory_growth_per_step");
     if (theory > 0.5)
       worst = std::max(worst, std::abs(t.number(row, "measured_growth_per_step") / theory - 1.0));
@@ -125,4 +127,4 @@ Map integrator_map() {
       .pictures = integrator_pictures};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every law up to its limit and beyond, pressed and pulled through the gate.
 //
 // Per cell one law and one depth, in shares of its range: the force, tangent and status of the law
@@ -14,7 +15,7 @@
 #include "tools/stability/map.h"
 #include "tools/stability/pictures.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 namespace {
 
 constexpr double kRate_Hz = 1000.0;
@@ -27,38 +28,38 @@ double depth_share(std::size_t i, Grid grid) {
   return -1.5 + 4.0 * static_cast<double>(i) / static_cast<double>(depths(grid) - 1);
 }
 
-std::vector<Column> columns() {
-  return {{"law", CellKind::kWord},
+std::vector<report::Column> columns() {
+  return {{"law", report::CellKind::kWord},
           {"depth_ratio"},
           {"depth_m"},
           {"force_N"},
           {"force_ratio"},
           {"tangent_over_mean_ratio"},
-          {"status", CellKind::kWord},
+          {"status", report::CellKind::kWord},
           {"gate_force_N"},
           {"gate_max_force_N"},
           {"gate_max_step_N"},
-          {"gate", CellKind::kWord},
-          {"beyond_the_line", CellKind::kWord}};
+          {"gate", report::CellKind::kWord},
+          {"beyond_the_line", report::CellKind::kWord}};
 }
 
-const char* word(model::LawStatus status) {
+const char* word(model::law::LawStatus status) {
   switch (status) {
-    case model::LawStatus::kOk:
+    case model::law::LawStatus::kOk:
       return "ok";
-    case model::LawStatus::kNoContact:
+    case model::law::LawStatus::kNoContact:
       return "no contact";
-    case model::LawStatus::kSaturated:
+    case model::law::LawStatus::kSaturated:
       return "saturated";
-    case model::LawStatus::kSingular:
+    case model::law::LawStatus::kSingular:
       return "singular";
-    case model::LawStatus::kInvalid:
+    case model::law::LawStatus::kInvalid:
       return "invalid";
   }
   return "?";
 }
 
-Row run(std::size_t job, Grid grid) {
+report::Row run(std::size_t job, Grid grid) {
   const auto [which, depth] = Axes<2>{{probed_laws().size(), depths(grid)}}.at(job);
   const NamedLaw& named = probed_laws()[which];
   const double range_m = named.range_m;
@@ -68,7 +69,7 @@ Row run(std::size_t job, Grid grid) {
   const int ticks = static_cast<int>(std::ceil(std::abs(depth_m) / kSpeed_mps * kRate_Hz));
   FeltTissue tissue = named.fresh();
   for (int i = 1; i <= ticks; ++i) gate.step(tissue.tick(depth_m * i / ticks).force_N, true);
-  const model::LawResponse at =
+  const model::law::LawResponse at =
       named.remembers() ? tissue.settle(depth_m) : named.law->respond(depth_m);
   const double edge_N = named.remembers() ? named.fresh().settle(range_m).force_N
                                           : named.law->respond(range_m).force_N;
@@ -86,9 +87,9 @@ Row run(std::size_t job, Grid grid) {
           named.beyond};
 }
 
-std::vector<Finding> judge(const Table& t) {
+std::vector<Finding> judge(const report::Table& t) {
   std::size_t in_bounds = 0, told = 0, beyond = 0, finite = 0;
-  for (const Row& row : t.rows()) {
+  for (const report::Row& row : t.rows()) {
     in_bounds += t.word(row, "gate") == "in bounds";
     finite += std::isfinite(t.number(row, "force_N"));
     if (t.number(row, "depth_ratio") <= 1.0) continue;
@@ -116,4 +117,4 @@ Map law_limit_map() {
           .pictures = law_limit_pictures};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

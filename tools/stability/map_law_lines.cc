@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lines in the parameters of the laws that no depth shows: where a law stops being one.
 //
 //     disc_cone     least slope of a disc over its stiffness, by eta: 1 - eta^2/2 or less, 0 at
@@ -11,14 +12,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/disc_stack.h"
-#include "model/hex_paper.h"
-#include "model/hex_sheet.h"
-#include "model/rhombus_unit.h"
+#include "model/law/disc_stack.h"
+#include "model/law/hex_sheet.h"
+#include "model/law/rhombus_unit.h"
+#include "tools/printed/hex_paper.h"
 #include "tools/stability/map.h"
 #include "tools/stability/pictures.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 namespace {
 
 constexpr const char* kStudies[] = {"disc_cone", "disc_rate", "rhombus_snap",
@@ -26,12 +27,12 @@ constexpr const char* kStudies[] = {"disc_cone", "disc_rate", "rhombus_snap",
 
 std::size_t points(Grid grid) { return grid == Grid::kQuick ? 9 : 41; }
 
-std::vector<Column> columns() {
-  return {{"study", CellKind::kWord},
+std::vector<report::Column> columns() {
+  return {{"study", report::CellKind::kWord},
           {"parameter"},
           {"measured"},
           {"theory"},
-          {"what_happens", CellKind::kWord}};
+          {"what_happens", report::CellKind::kWord}};
 }
 
 struct Point {
@@ -43,23 +44,23 @@ constexpr int kSamples = 2000;
 
 Point disc_cone(double t) {
   const double eta = 2.0 * t;
-  const model::Disc disc{
+  const model::law::Disc disc{
       .outer_diameter_m = 8e-3, .stiffness_N_per_m = 500.0, .travel_m = 0.9e-3, .cone_ratio = eta};
   double least = 1e9;
   for (int i = 0; i <= kSamples; ++i)
-    least = std::min(
-        least, model::respond(disc, model::DiscForm::kAlmenLaszlo, disc.travel_m * i / kSamples)
-                   .stiffness_N_per_m);
-  const bool accepted = model::is_monotone(disc, model::DiscForm::kAlmenLaszlo);
+    least = std::min(least, model::law::respond(disc, model::law::DiscForm::kAlmenLaszlo,
+                                                disc.travel_m * i / kSamples)
+                                .stiffness_N_per_m);
+  const bool accepted = model::law::is_monotone(disc, model::law::DiscForm::kAlmenLaszlo);
   return {eta, least / disc.stiffness_N_per_m, 1.0 - 0.5 * eta * eta,
           accepted ? "grows to flat" : "snaps through: refused when the scene is read"};
 }
 
 Point disc_rate(double t) {
   const double rate_Hz = 250.0 * std::pow(2.0, 5.0 * t);
-  const model::LayerDelays delays{
+  const model::law::LayerDelays delays{
       .first_delay_s = 2e-5, .delay_ratio = 1.1, .refresh_rate_Hz = rate_Hz, .layers = 64};
-  const auto layers = static_cast<double>(model::layer_budget(delays));
+  const auto layers = static_cast<double>(model::law::layer_budget(delays));
   // T_i = t1 (q^i - 1)/(q - 1) < T
   const double theory = std::log(1.0 + 0.1 / (rate_Hz * 2e-5)) / std::log(1.1);
   return {rate_Hz, layers, std::ceil(theory) - 1.0,
@@ -68,51 +69,52 @@ Point disc_rate(double t) {
 
 Point rhombus_snap(double t) {
   const double ratio = 4.0 * t, angle_rad = std::numbers::pi / 3.0;
-  const model::RhombusUnit unit{.rod_length_m = 0.010,
-                                .initial_angle_rad = angle_rad,
-                                .normal_stiffness_N_per_m = 1000.0,
-                                .tangential_stiffness_N_per_m = 1000.0 * ratio};
+  const model::law::RhombusUnit unit{.rod_length_m = 0.010,
+                                     .initial_angle_rad = angle_rad,
+                                     .normal_stiffness_N_per_m = 1000.0,
+                                     .tangential_stiffness_N_per_m = 1000.0 * ratio};
   const double flat_m = 2.0 * unit.rod_length_m * std::sin(angle_rad);
   double least = 1e9;
   for (int i = 0; i < kSamples; ++i)
-    least = std::min(least, model::respond(unit, flat_m * i / kSamples).stiffness_N_per_m);
+    least = std::min(least, model::law::respond(unit, flat_m * i / kSamples).stiffness_N_per_m);
   // RC-5 at flat: kN - kT (1 - cos theta0)
   return {ratio, least / 1000.0, 1.0 - ratio * (1.0 - std::cos(angle_rad)),
-          model::press_limit(unit).kind == model::UnitLimit::kSnap
+          model::law::press_limit(unit).kind == model::law::UnitLimit::kSnap
               ? "snaps before it is flat: saturates there"
               : "ends flat"};
 }
 
 Point hex(double t, int kind) {
   constexpr double kDepth_m = 5e-3, kPitch_m = 2e-3, kBody_N_per_m = 50.0;
-  const auto most = static_cast<double>(kind == 2 ? model::kMaxHexRings : model::kMaxPaperRings);
+  const auto most =
+      static_cast<double>(kind == 2 ? model::law::kMaxHexRings : printed::kMaxPaperRings);
   const auto rings = static_cast<std::size_t>(std::lround(3.0 + (most - 3.0) * t));
   Point point{.parameter = static_cast<double>(rings)};
   if (kind == 2) {
-    const auto sheet = model::make_hex_sheet({.ring_pitch_m = kPitch_m,
-                                              .contact_stiffness_N_per_m = kBody_N_per_m,
-                                              .body_stiffness_N_per_m = kBody_N_per_m,
-                                              .surface_stiffness_N_per_m = 200.0,
-                                              .tension_N = 0.15,
-                                              .rings = rings,
-                                              .weight = model::HexWeight::kNode,
-                                              .working_depth_m = 8e-3});
+    const auto sheet = model::law::make_hex_sheet({.ring_pitch_m = kPitch_m,
+                                                   .contact_stiffness_N_per_m = kBody_N_per_m,
+                                                   .body_stiffness_N_per_m = kBody_N_per_m,
+                                                   .surface_stiffness_N_per_m = 200.0,
+                                                   .tension_N = 0.15,
+                                                   .rings = rings,
+                                                   .weight = model::law::HexWeight::kNode,
+                                                   .working_depth_m = 8e-3});
     point.measured = sheet ? sheet->respond(kDepth_m).force_N : std::nan("");
-    point.theory = 2.5806;  // PHYSICS 3.4
+    point.theory = 2.5806;  // HX-28
     point.what = "has a limit";
     return point;
   }
-  const auto weight = kind == 0 ? model::HexWeight::kRing : model::HexWeight::kNode;
-  point.measured = model::paper_force_N(model::paper_shape_at_depth(kPitch_m, rings, kDepth_m),
-                                        kBody_N_per_m, weight);
-  // grows like m or like m^2 from PHYSICS 3.2 at m = 25
+  const auto weight = kind == 0 ? model::law::HexWeight::kRing : model::law::HexWeight::kNode;
+  point.measured = printed::paper_force_N(printed::paper_shape_at_depth(kPitch_m, rings, kDepth_m),
+                                          kBody_N_per_m, weight);
+  // grows like m or like m^2 from HX-12 at m = 25
   const double share = static_cast<double>(rings) / 25.0;
   point.theory = kind == 0 ? 2.323 * share : 98.75 * share * share;
   point.what = "grows with every ring: no limit";
   return point;
 }
 
-Row run(std::size_t job, Grid grid) {
+report::Row run(std::size_t job, Grid grid) {
   const std::size_t study = job / points(grid);
   const double t = static_cast<double>(job % points(grid)) / static_cast<double>(points(grid) - 1);
   const Point p = study == 0   ? disc_cone(t)
@@ -123,29 +125,29 @@ Row run(std::size_t job, Grid grid) {
 }
 
 /// Rows of one study, in order.
-std::vector<const Row*> rows_of(const Table& t, const char* study) {
-  std::vector<const Row*> out;
-  for (const Row& row : t.rows())
+std::vector<const report::Row*> rows_of(const report::Table& t, const char* study) {
+  std::vector<const report::Row*> out;
+  for (const report::Row& row : t.rows())
     if (t.word(row, "study") == study) out.push_back(&row);
   return out;
 }
 
-double worst_error(const Table& t, const char* study, double reach) {
+double worst_error(const report::Table& t, const char* study, double reach) {
   double worst = 0.0;
-  for (const Row* row : rows_of(t, study))
+  for (const report::Row* row : rows_of(t, study))
     if (t.number(*row, "parameter") <= reach)
       worst = std::max(worst, std::abs(t.number(*row, "measured") - t.number(*row, "theory")));
   return worst;
 }
 
-double last_over_middle(const Table& t, const char* study) {
+double last_over_middle(const report::Table& t, const char* study) {
   const auto rows = rows_of(t, study);
   return t.number(*rows.back(), "measured") / t.number(*rows[rows.size() / 2], "measured");
 }
 
-std::vector<Finding> judge(const Table& t) {
+std::vector<Finding> judge(const report::Table& t) {
   bool refused_beyond = true;
-  for (const Row* row : rows_of(t, "disc_cone"))
+  for (const report::Row* row : rows_of(t, "disc_cone"))
     refused_beyond &=
         (t.word(*row, "what_happens") == "grows to flat") == (t.number(*row, "measured") >= -1e-9);
   const double ring = last_over_middle(t, "hex_ring"), node = last_over_middle(t, "hex_node"),
@@ -177,4 +179,4 @@ Map law_line_map() {
           .pictures = law_line_pictures};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

@@ -1,15 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
 // The closed haptic loop on every law: is its tangent stiffness what the wall's K is?
 //
 // Per cell one law, held at one depth of its range and shaken by a hair; its force is scaled by the
 // largest factor without growth. If the theory of the wall carries over, factor times tangent is
-// K_grow of model/haptic_limit.h, whatever the law. Of a law with memory the tangent is what one
-// tick can meet: its nodes and terms give way later, which may only make it more stable.
+// K_grow of model/law/haptic_limit.h, whatever the law. Of a law with memory the tangent is what
+// one tick can meet: its nodes and terms give way later, which may only make it more stable.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
+#include "model/law/haptic_limit.h"
 #include "tools/stability/axes.h"
 #include "tools/stability/gate_watch.h"
 #include "tools/stability/haptic_loop.h"
@@ -17,7 +19,7 @@
 #include "tools/stability/map.h"
 #include "tools/stability/pictures.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 namespace {
 
 struct Settings {
@@ -38,13 +40,19 @@ Axes<4> axes(Grid grid) {
       {probed_laws().size(), s.delay_s.size(), s.damping_Ns_per_m.size(), s.depth_ratio.size()}};
 }
 
-std::vector<Column> columns() {
-  return {{"law", CellKind::kWord},    {"delay_s"},
-          {"damping_Ns_per_m"},        {"depth_m"},
-          {"tangent_N_per_m"},         {"theory_grow_N_per_m"},
-          {"largest_tangent_N_per_m"}, {"measured_over_theory"},
-          {"damping_needed_Ns_per_m"}, {"gate_max_force_N"},
-          {"gate_max_step_N"},         {"beyond_the_line", CellKind::kWord}};
+std::vector<report::Column> columns() {
+  return {{"law", report::CellKind::kWord},
+          {"delay_s"},
+          {"damping_Ns_per_m"},
+          {"depth_m"},
+          {"tangent_N_per_m"},
+          {"theory_grow_N_per_m"},
+          {"largest_tangent_N_per_m"},
+          {"measured_over_theory"},
+          {"damping_needed_Ns_per_m"},
+          {"gate_max_force_N"},
+          {"gate_max_step_N"},
+          {"beyond_the_line", report::CellKind::kWord}};
 }
 
 /// New, and settled at the depth of balance.
@@ -62,7 +70,7 @@ void run_gated(const LoopCase& loop, const TissueForce& tissue, GateWatch& gate)
   run_loop(shaken, tissue, [&](double wanted_N, bool fresh) { return gate.step(wanted_N, fresh); });
 }
 
-Row run(std::size_t job, Grid grid) {
+report::Row run(std::size_t job, Grid grid) {
   const Settings s = settings(grid);
   const auto [which, delay, damping, depth] = axes(grid).at(job);
   const NamedLaw& named = probed_laws()[which];
@@ -73,7 +81,7 @@ Row run(std::size_t job, Grid grid) {
   loop.balance_m = s.depth_ratio[depth] * range_m;
   loop.kick_m = 1e-4 * range_m;
   const TissueMaker fresh = [&] { return settled(named, loop.balance_m); };
-  const double theory = model::haptic_limit(loop.device, loop.rate_Hz).grow_N_per_m;
+  const double theory = model::law::haptic_limit(loop.device, loop.rate_Hz).grow_N_per_m;
   const double tangent = named.fresh().settle(loop.balance_m).stiffness_N_per_m;
   const double guess = theory / tangent;
   // far below the tangent of one tick a loop with memory is too slow for a run, far above still
@@ -82,8 +90,7 @@ Row run(std::size_t job, Grid grid) {
   const double factor = largest_factor(loop, fresh, Verdict::kGrow, low * guess, high * guess);
   const TissueForce tissue = fresh();
   GateWatch gate(loop.rate_Hz);
-  run_gated(
-      loop, [&](double depth_m) { return 3.0 * factor * tissue(depth_m); }, gate);
+  run_gated(loop, [&](double depth_m) { return 3.0 * factor * tissue(depth_m); }, gate);
   // what the law as it is asks of the device at its steepest point
   const double needed = steepest_N_per_m(named) * (0.5 / loop.rate_Hz + loop.device.delay_s);
   return {named.name,
@@ -105,11 +112,11 @@ bool remembers(const std::string& law) {
                      [&](const NamedLaw& n) { return n.name == law && n.remembers(); });
 }
 
-std::vector<Finding> judge(const Table& t) {
+std::vector<Finding> judge(const report::Table& t) {
   struct Spread {
     double low = 1e9, high = 0.0;
   } closed, memory;
-  for (const Row& row : t.rows()) {
+  for (const report::Row& row : t.rows()) {
     const double ratio = t.number(row, "measured_over_theory");
     Spread& spread = remembers(t.word(row, "law")) ? memory : closed;
     spread.low = std::min(spread.low, ratio);
@@ -140,4 +147,4 @@ Map law_loop_map() {
           .pictures = law_loop_pictures};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

@@ -1,19 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
 // The closed haptic loop on a wall F = K x: how stiff may it be?
 //
 // Per cell: the largest K without growth and the largest K that comes to rest, beside K_grow and
-// K_safe of model/haptic_limit.h; then the same loop at three times the measured limit, through the
-// gate. "bare" is the hand that gives no help: it pushes with a constant force.
+// K_safe of model/law/haptic_limit.h; then the same loop at three times the measured limit, through
+// the gate. "bare" is the hand that gives no help: it pushes with a constant force.
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "model/law/haptic_limit.h"
 #include "tools/stability/axes.h"
 #include "tools/stability/gate_watch.h"
 #include "tools/stability/haptic_loop.h"
 #include "tools/stability/map.h"
 #include "tools/stability/pictures.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 namespace {
 
 struct Hand {
@@ -51,11 +53,11 @@ Axes<6> axes(const Settings& s) {
            s.damping_Ns_per_m.size()}};
 }
 
-std::vector<Column> columns() {
+std::vector<report::Column> columns() {
   return {{"rate_Hz"},
           {"delay_s"},
           {"friction_N"},
-          {"hand", CellKind::kWord},
+          {"hand", report::CellKind::kWord},
           {"position_step_m"},
           {"damping_Ns_per_m"},
           {"theory_grow_N_per_m"},
@@ -65,7 +67,7 @@ std::vector<Column> columns() {
           {"gate_max_force_N"},
           {"gate_max_step_N"},
           {"gate_swing_m"},
-          {"beyond_the_line", CellKind::kWord}};
+          {"beyond_the_line", report::CellKind::kWord}};
 }
 
 /// Three times too stiff, pressed with 2 N, every force through the gate.
@@ -78,7 +80,7 @@ LoopRun run_gated(LoopCase loop, double stiffness_N_per_m, GateWatch& gate) {
       [&](double wanted_N, bool fresh) { return gate.step(wanted_N, fresh); });
 }
 
-Row run(std::size_t job, Grid grid) {
+report::Row run(std::size_t job, Grid grid) {
   const Settings s = settings(grid);
   const auto [rate, delay, friction, hand, step, damping] = axes(s).at(job);
   LoopCase loop;
@@ -88,7 +90,7 @@ Row run(std::size_t job, Grid grid) {
                  .delay_s = s.delay_s[delay]};
   loop.rate_Hz = s.rate_Hz[rate];
   loop.hand = s.hands[hand].at_tool;
-  const model::HapticLimit theory = model::haptic_limit(loop.device, loop.rate_Hz);
+  const model::law::HapticLimit theory = model::law::haptic_limit(loop.device, loop.rate_Hz);
   const double grow_N_per_m = largest_wall_N_per_m(loop, Verdict::kGrow);
   LoopCase patient = loop;  // close to the line it rings for long
   patient.duration_s *= 3.0;
@@ -111,10 +113,10 @@ Row run(std::size_t job, Grid grid) {
           std::string(gate.beyond_the_line())};
 }
 
-std::vector<Finding> judge(const Table& t) {
+std::vector<Finding> judge(const report::Table& t) {
   double least_grow = 1e9, least_rest = 1e9, low = 1e9, high = 0.0;
   std::size_t bare = 0;
-  for (const Row& row : t.rows()) {
+  for (const report::Row& row : t.rows()) {
     const double theory = t.number(row, "theory_grow_N_per_m");
     const double safe = t.number(row, "theory_safe_N_per_m");
     const double ratio = t.number(row, "largest_without_growth_N_per_m") / theory;
@@ -155,4 +157,4 @@ Map loop_map() {
           .pictures = loop_pictures};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

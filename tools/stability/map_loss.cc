@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A burst of lost samples: what each policy does to the hand.
 //
 // The tool is 2 N deep in a wall of 1 kN/m when the samples stop, and the hand goes on moving: in,
@@ -16,7 +17,7 @@
 #include "tools/stability/map.h"
 #include "tools/stability/pictures.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 namespace {
 
 constexpr double kRates_Hz[] = {1000.0, 4000.0};
@@ -27,13 +28,13 @@ constexpr std::size_t kLongest = 41;  // 0 .. 40 ticks
 
 Axes<2> axes(Grid grid) { return {{grid == Grid::kQuick ? 1 : std::size(kRates_Hz), kLongest}}; }
 
-std::vector<Column> columns() {
+std::vector<report::Column> columns() {
   return {{"rate_Hz"},         {"lost_in_a_row"},    {"hold_force_N"},
           {"gate_force_N"},    {"hold_gift_J"},      {"gate_gift_J"},
-          {"gate_max_step_N"}, {"gate_max_force_N"}, {"state", CellKind::kWord}};
+          {"gate_max_step_N"}, {"gate_max_force_N"}, {"state", report::CellKind::kWord}};
 }
 
-Row run(std::size_t job, Grid grid) {
+report::Row run(std::size_t job, Grid grid) {
   const auto [rate, lost] = axes(grid).at(job);
   const double period_s = 1.0 / kRates_Hz[rate];
   GateWatch gate(kRates_Hz[rate]);
@@ -64,10 +65,10 @@ Row run(std::size_t job, Grid grid) {
           std::string(state)};
 }
 
-std::vector<Finding> judge(const Table& t) {
+std::vector<Finding> judge(const report::Table& t) {
   double worst_hold_J = 0.0, worst_gate_J = 0.0, worst_step = 0.0;
   bool ends_at_zero = true, latches = true;
-  for (const Row& row : t.rows()) {
+  for (const report::Row& row : t.rows()) {
     worst_hold_J = std::max(worst_hold_J, t.number(row, "hold_gift_J"));
     worst_gate_J = std::max(worst_gate_J, t.number(row, "gate_gift_J"));
     const double rate_Hz = t.number(row, "rate_Hz"), lost = t.number(row, "lost_in_a_row");
@@ -100,4 +101,4 @@ Map loss_map() {
           .pictures = loss_pictures};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rhombus chain as its source prints it: where does it stop making sense?
 //
 // Equations (3), (4), (6), (11) as printed let the tangential springs help the load. Per cell of
 // angle theta0 and kT/kN: the first unit of ten that gets longer while it is pressed, measured on
 // the printed force at a small press, beside
 //
-//     kN = kT1 exp((i - 1)/beta) tan^2(theta0)        singular at unit i, PHYSICS 1.2.3
+//     kN = kT1 exp((i - 1)/beta) tan^2(theta0)        singular at unit i, X2
 //
 // and what the printed force (12) is of the force that the springs really store, 1/2 for small
 // presses. The energy form resists in every cell.
@@ -14,12 +15,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/rhombus_paper.h"
+#include "tools/printed/rhombus_paper.h"
 #include "tools/stability/axes.h"
 #include "tools/stability/map.h"
 #include "tools/stability/pictures.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 namespace {
 
 constexpr double kDegree_rad = std::numbers::pi / 180.0;
@@ -42,7 +43,7 @@ double spring_ratio(std::size_t i, Grid grid) {
       10.0, -1.0 + 2.0 * (static_cast<double>(i) + 0.5) / static_cast<double>(cells(grid).ratios));
 }
 
-std::vector<Column> columns() {
+std::vector<report::Column> columns() {
   return {{"angle_deg"},
           {"kT_over_kN"},
           {"first_failing_unit"},
@@ -50,10 +51,10 @@ std::vector<Column> columns() {
           {"printed_stiffness_ratio"},
           {"energy_stiffness_ratio"},
           {"printed_force_12_ratio"},
-          {"what_happens", CellKind::kWord}};
+          {"what_happens", report::CellKind::kWord}};
 }
 
-model::RhombusUnit unit_of(double angle_rad, double ratio, int i) {
+model::law::RhombusUnit unit_of(double angle_rad, double ratio, int i) {
   return {.rod_length_m = 0.010,
           .initial_angle_rad = angle_rad,
           .normal_stiffness_N_per_m = 1500.0,
@@ -63,7 +64,7 @@ model::RhombusUnit unit_of(double angle_rad, double ratio, int i) {
 /// Counted from 1; kUnits + 1: none.
 int first_failing(double angle_rad, double ratio) {
   for (int i = 0; i < kUnits; ++i) {
-    const model::PaperUnit at = model::paper_forward(unit_of(angle_rad, ratio, i), kSmall_rad);
+    const printed::PaperUnit at = printed::paper_forward(unit_of(angle_rad, ratio, i), kSmall_rad);
     if (!(at.force_N / at.shortening_m > 0.0)) return i + 1;
   }
   return kUnits + 1;
@@ -76,14 +77,14 @@ int theory_first_failing(double angle_rad, double ratio) {
   return last_good < 1.0 ? 1 : std::min(kUnits + 1, static_cast<int>(std::floor(last_good)) + 1);
 }
 
-Row run(std::size_t job, Grid grid) {
+report::Row run(std::size_t job, Grid grid) {
   const auto [angle, ratio] = Axes<2>{{cells(grid).angles, cells(grid).ratios}}.at(job);
   const double angle_rad = angle_deg(angle, grid) * kDegree_rad;
   const double kT_over_kN = spring_ratio(ratio, grid);
-  const model::RhombusUnit unit = unit_of(angle_rad, kT_over_kN, 0);
-  const model::PaperUnit small = model::paper_forward(unit, kSmall_rad);
-  const model::PaperUnit pressed = model::paper_forward(unit, kPress_rad * angle_rad);
-  const model::UnitResponse energy = model::respond(unit, -pressed.shortening_m);
+  const model::law::RhombusUnit unit = unit_of(angle_rad, kT_over_kN, 0);
+  const printed::PaperUnit small = printed::paper_forward(unit, kSmall_rad);
+  const printed::PaperUnit pressed = printed::paper_forward(unit, kPress_rad * angle_rad);
+  const model::law::UnitResponse energy = model::law::respond(unit, -pressed.shortening_m);
   const int first = first_failing(angle_rad, kT_over_kN);
   const char* what = first > kUnits ? "softer than the springs"
                      : first == 1   ? "the surface pulls the tool in"
@@ -93,15 +94,15 @@ Row run(std::size_t job, Grid grid) {
           static_cast<double>(first),
           static_cast<double>(theory_first_failing(angle_rad, kT_over_kN)),
           small.force_N / small.shortening_m / unit.normal_stiffness_N_per_m,
-          model::respond(unit, 0.0).stiffness_N_per_m / unit.normal_stiffness_N_per_m,
+          model::law::respond(unit, 0.0).stiffness_N_per_m / unit.normal_stiffness_N_per_m,
           pressed.energy_J / -pressed.shortening_m / energy.force_N,
           std::string(what)};
 }
 
-std::vector<Finding> judge(const Table& t) {
+std::vector<Finding> judge(const report::Table& t) {
   std::size_t agree = 0, energy_resists = 0;
   double low = 1e9, high = 0.0;
-  for (const Row& row : t.rows()) {
+  for (const report::Row& row : t.rows()) {
     agree += t.number(row, "first_failing_unit") == t.number(row, "theory_first_failing_unit");
     energy_resists += t.number(row, "energy_stiffness_ratio") >= 1.0;
     low = std::min(low, t.number(row, "printed_force_12_ratio"));
@@ -130,4 +131,4 @@ Map printed_rhombus_map() {
           .pictures = printed_rhombus_pictures};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lost and late ticks: how much stiffness does a force that is held too long cost?
 //
 // lost: a tick brings no fresh sample with chance p and the force is held.
@@ -10,13 +11,14 @@
 
 #include <algorithm>
 
+#include "model/law/haptic_limit.h"
 #include "tools/stability/axes.h"
 #include "tools/stability/gate_watch.h"
 #include "tools/stability/haptic_loop.h"
 #include "tools/stability/map.h"
 #include "tools/stability/pictures.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 namespace {
 
 /// Additional periods that an event eats; 0: lost samples.
@@ -35,23 +37,28 @@ Axes<3> axes(Grid grid) {
   return {{std::size(kEaten), dampings_Ns_per_m(grid).size(), shares(grid).size()}};
 }
 
-std::vector<Column> columns() {
-  return {{"event", CellKind::kWord}, {"periods_held"},
-          {"damping_Ns_per_m"},       {"share"},
-          {"theory_N_per_m"},         {"largest_without_growth_N_per_m"},
-          {"measured_over_theory"},   {"gate_max_force_N"},
-          {"gate_max_step_N"},        {"beyond_the_line", CellKind::kWord}};
+std::vector<report::Column> columns() {
+  return {{"event", report::CellKind::kWord},
+          {"periods_held"},
+          {"damping_Ns_per_m"},
+          {"share"},
+          {"theory_N_per_m"},
+          {"largest_without_growth_N_per_m"},
+          {"measured_over_theory"},
+          {"gate_max_force_N"},
+          {"gate_max_step_N"},
+          {"beyond_the_line", report::CellKind::kWord}};
 }
 
 double theory_N_per_m(const LoopCase& loop) {
   if (loop.late_periods == 0)
-    return model::haptic_limit(loop.device, loop.rate_Hz, 0.0, loop.lost_share).grow_N_per_m;
+    return model::law::haptic_limit(loop.device, loop.rate_Hz, 0.0, loop.lost_share).grow_N_per_m;
   const double p = loop.late_share, n = 1.0 + loop.late_periods;
   const double share = (1.0 - p + p * n) / (1.0 - p + p * n * n);
-  return share * model::haptic_limit(loop.device, loop.rate_Hz).grow_N_per_m;
+  return share * model::law::haptic_limit(loop.device, loop.rate_Hz).grow_N_per_m;
 }
 
-Row run(std::size_t job, Grid grid) {
+report::Row run(std::size_t job, Grid grid) {
   const auto [event, damping, share] = axes(grid).at(job);
   LoopCase loop;
   loop.device.damping_Ns_per_m = dampings_Ns_per_m(grid)[damping];
@@ -81,9 +88,9 @@ Row run(std::size_t job, Grid grid) {
           std::string(gate.beyond_the_line())};
 }
 
-std::vector<Finding> judge(const Table& t) {
+std::vector<Finding> judge(const report::Table& t) {
   double low = 1e9, high = 0.0;
-  for (const Row& row : t.rows()) {
+  for (const report::Row& row : t.rows()) {
     const double ratio = t.number(row, "measured_over_theory");
     low = std::min(low, ratio);
     high = std::max(high, ratio);
@@ -109,4 +116,4 @@ Map tick_map() {
           .pictures = tick_pictures};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

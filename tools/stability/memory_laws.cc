@@ -1,26 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/stability/memory_laws.h"
 
 #include <array>
 #include <vector>
 
-#include "model/elastic_field.h"
-#include "model/mesh.h"
-#include "model/relaxation.h"
-#include "model/spring_patch.h"
+#include "model/law/relaxation.h"
+#include "model/mesh/mesh.h"
+#include "model/springs/spring_patch.h"
+#include "model/tissue/elastic_field.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 namespace {
 
 constexpr double kTick_s = 0.001;
-constexpr std::array<model::PronyTerm, 2> kTerms{
+constexpr std::array<model::law::PronyTerm, 2> kTerms{
     {{.share = 0.3, .time_s = 0.03}, {.share = 0.2, .time_s = 0.1}}};
 
-const model::SurfaceMesh& plate() {
-  static const model::SurfaceMesh mesh = [] {
+const model::mesh::SurfaceMesh& plate() {
+  static const model::mesh::SurfaceMesh mesh = [] {
     constexpr std::uint32_t kCells = 20;
     constexpr double kWidth_m = 0.1;
     std::vector<model::Vec3> vertex_m;
-    std::vector<model::TriangleCorners> triangle;
+    std::vector<model::contact::TriangleCorners> triangle;
     for (std::uint32_t y = 0; y <= kCells; ++y)
       for (std::uint32_t x = 0; x <= kCells; ++x)
         vertex_m.push_back(
@@ -31,15 +32,15 @@ const model::SurfaceMesh& plate() {
         triangle.push_back({at(x, y), at(x + 1, y), at(x + 1, y + 1)});
         triangle.push_back({at(x, y), at(x + 1, y + 1), at(x, y + 1)});
       }
-    return *model::make_surface_mesh(vertex_m, triangle);
+    return *model::mesh::make_surface_mesh(vertex_m, triangle);
   }();
   return mesh;
 }
 
 /// An elastic field of one law that it owns.
-class RelaxingLaw final : public model::SiteLaw {
+class RelaxingLaw final : public model::contact::SiteLaw {
  public:
-  RelaxingLaw(std::shared_ptr<const model::Law> law, const model::Relaxation& relaxation)
+  RelaxingLaw(std::shared_ptr<const model::law::Law> law, const model::law::Relaxation& relaxation)
       : law_(std::move(law)),
         curve_{law_.get()},
         field_({.curves = curve_,
@@ -50,45 +51,45 @@ class RelaxingLaw final : public model::SiteLaw {
   RelaxingLaw(const RelaxingLaw&) = delete;
   RelaxingLaw& operator=(const RelaxingLaw&) = delete;
 
-  model::SiteResponse respond(const model::Indentation& in) RT_SAFE override {
+  model::contact::SiteResponse respond(const model::contact::Indentation& in) RT_SAFE override {
     return field_.respond(in);
   }
   void leave(std::size_t sphere) RT_SAFE override { field_.leave(sphere); }
   void advance() RT_SAFE override { field_.advance(); }
-  std::size_t profile(const model::Indentation& in,
+  std::size_t profile(const model::contact::Indentation& in,
                       std::span<double> ring_m) const RT_SAFE override {
     return field_.profile(in, ring_m);
   }
   double ring_pitch_m() const RT_SAFE override { return field_.ring_pitch_m(); }
 
  private:
-  std::shared_ptr<const model::Law> law_;
-  std::array<const model::Law*, 1> curve_;
-  model::ElasticField field_;
+  std::shared_ptr<const model::law::Law> law_;
+  std::array<const model::law::Law*, 1> curve_;
+  model::tissue::ElasticField field_;
 };
 
 }  // namespace
 
 SiteLawMaker patch_maker(bool relaxes) {
-  model::SpringPatchParameters p{.tissue = {.surface_stiffness_N_per_m = 50.0,
-                                            .body_stiffness_N_per_m = 5.0,
-                                            .damping_time_s = 0.0008,
-                                            .body_damping_time_s = 0.03,
-                                            .pretension_ratio = 0.05},
-                                 .coupling_stiffness_N_per_m = 300.0,
-                                 .node_mass_kg = 0.002,
-                                 .working_depth_m = kPatchRange_m,
-                                 .tick_s = kTick_s,
-                                 .nodes = 120};
-  if (relaxes) p.relaxation = *model::make_relaxation(kTerms, kTick_s);
-  return [p]() -> std::unique_ptr<model::SiteLaw> {
-    return std::move(*model::make_spring_patch(plate().view(), p));
+  model::springs::SpringPatchParameters p{.tissue = {.surface_stiffness_N_per_m = 50.0,
+                                                     .body_stiffness_N_per_m = 5.0,
+                                                     .damping_time_s = 0.0008,
+                                                     .body_damping_time_s = 0.03,
+                                                     .pretension_ratio = 0.05},
+                                          .coupling_stiffness_N_per_m = 300.0,
+                                          .node_mass_kg = 0.002,
+                                          .working_depth_m = kPatchRange_m,
+                                          .tick_s = kTick_s,
+                                          .nodes = 120};
+  if (relaxes) p.relaxation = *model::law::make_relaxation(kTerms, kTick_s);
+  return [p]() -> std::unique_ptr<model::contact::SiteLaw> {
+    return std::move(*model::springs::make_spring_patch(plate().view(), p));
   };
 }
 
-SiteLawMaker relaxing_maker(const std::shared_ptr<const model::Law>& law) {
-  const model::Relaxation relaxation = *model::make_relaxation(kTerms, kTick_s);
+SiteLawMaker relaxing_maker(const std::shared_ptr<const model::law::Law>& law) {
+  const model::law::Relaxation relaxation = *model::law::make_relaxation(kTerms, kTick_s);
   return [law, relaxation] { return std::make_unique<RelaxingLaw>(law, relaxation); };
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // memory_laws.h - the laws with memory that the maps probe: springs and masses, and relaxation.
 //
 // All at 1 kHz, on a square plate of 100 mm with triangles of 5 mm. Two terms fade so fast (30 and
@@ -6,15 +7,15 @@
 
 #include <memory>
 
-#include "model/law.h"
+#include "model/law/law.h"
 #include "tools/stability/felt_tissue.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 
 inline constexpr double kPatchRange_m = 0.01;
 
 /// Makers of a mass-spring patch, and of a closed-form law that relaxes.
 SiteLawMaker patch_maker(bool relaxes);
-SiteLawMaker relaxing_maker(const std::shared_ptr<const model::Law>& law);
+SiteLawMaker relaxing_maker(const std::shared_ptr<const model::law::Law>& law);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // pictures.h - the gnuplot scripts of tact-stability; each reads the CSV of its own map.
 #pragma once
 
@@ -5,15 +6,15 @@
 
 #include "tools/stability/map.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 
-std::vector<Picture> integrator_pictures(Grid grid);
-std::vector<Picture> printed_rhombus_pictures(Grid grid);
-std::vector<Picture> law_limit_pictures(Grid grid);
-std::vector<Picture> law_line_pictures(Grid grid);
-std::vector<Picture> loop_pictures(Grid grid);
-std::vector<Picture> law_loop_pictures(Grid grid);
-std::vector<Picture> tick_pictures(Grid grid);
-std::vector<Picture> loss_pictures(Grid grid);
+std::vector<report::Picture> integrator_pictures(Grid grid);
+std::vector<report::Picture> printed_rhombus_pictures(Grid grid);
+std::vector<report::Picture> law_limit_pictures(Grid grid);
+std::vector<report::Picture> law_line_pictures(Grid grid);
+std::vector<report::Picture> loop_pictures(Grid grid);
+std::vector<report::Picture> law_loop_pictures(Grid grid);
+std::vector<report::Picture> tick_pictures(Grid grid);
+std::vector<report::Picture> loss_pictures(Grid grid);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

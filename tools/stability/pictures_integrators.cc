@@ -1,32 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "model/integrator_stability.h"
+#include "model/springs/integrator_stability.h"
 #include "tools/stability/pictures.h"
 #include "tools/stability/probed_methods.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 namespace {
 
 constexpr double kMost = 4.0;      // z shown
 constexpr double kOverlap = 1.06;  // of cells, so that no seam shows
 
 /// z_max over zeta, as a data block that a script can plot.
-std::string theory_block(int number, const model::Method& method) {
+std::string theory_block(int number, const model::springs::Method& method) {
   constexpr int kPoints = 200;
   std::string out = fmt::format("$theory{} << EOD\nz_max,zeta\n", number);
   for (int i = 0; i <= kPoints; ++i) {
     const double zeta = 2.0 * i / kPoints;
-    out += fmt::format("{:.5g},{:.5g}\n",
-                       std::fmin(model::largest_stable_z(method, zeta), kMost + 1.0), zeta);
+    out +=
+        fmt::format("{:.5g},{:.5g}\n",
+                    std::fmin(model::springs::largest_stable_z(method, zeta), kMost + 1.0), zeta);
   }
   return out + "EOD\n";
 }
 
 }  // namespace
 
-std::vector<Picture> integrator_pictures(Grid grid) {
+std::vector<report::Picture> integrator_pictures(Grid grid) {
   const double dz = grid == Grid::kQuick ? 4.0 / 15.0 : 4.0 / 60.0;
   const double dzeta = grid == Grid::kQuick ? 2.0 / 8.0 : 2.0 / 40.0;
   std::string script = fmt::format("f = 'integrators.csv'\ndz = {:.6g}\ndzeta = {:.6g}\n",
@@ -48,7 +50,7 @@ set label 2 "grows without limit" at 1.8,1.6 front
   for (const ProbedMethod& probed : kProbedMethods) {
     ++number;
     script += theory_block(number, probed.method);
-    if (probed.method.integrator == model::Integrator::kImplicitEuler)
+    if (probed.method.integrator == model::springs::Integrator::kImplicitEuler)
       script += "set label 1 \"bounded everywhere\"\nunset label 2\n";
     script += fmt::format(
         "set title '{0}'\n"
@@ -65,4 +67,4 @@ set label 2 "grows without limit" at 1.8,1.6 front
   return {{.name = "integrators", .width_px = 1600, .height_px = 850, .script = script}};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include "tools/stability/laws.h"
 #include "tools/stability/pictures.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 
 namespace {
 
@@ -11,7 +12,7 @@ constexpr double kOverlap = 1.06;  // of cells, so that no seam shows
 
 }  // namespace
 
-std::vector<Picture> printed_rhombus_pictures(Grid grid) {
+std::vector<report::Picture> printed_rhombus_pictures(Grid grid) {
   const bool quick = grid == Grid::kQuick;
   return {{.name = "printed_rhombus",
            .width_px = 1200,
@@ -46,7 +47,7 @@ plot f using 2:3:($2-dx):($2+dx):($3*10**-dy):($3*10**dy):4 with boxxyerror lc p
 )gp"}};
 }
 
-std::vector<Picture> law_limit_pictures(Grid) {
+std::vector<report::Picture> law_limit_pictures(Grid) {
   std::string script = R"gp(
 f = 'law_limits.csv'
 set multiplot layout 1,2 title "Every law up to its range and beyond it: what it gives" font ',14'
@@ -84,7 +85,7 @@ plot 0 lc rgb '#444444' notitle)gp";
   return {{.name = "law_limits", .width_px = 1600, .height_px = 800, .script = script}};
 }
 
-std::vector<Picture> law_line_pictures(Grid) {
+std::vector<report::Picture> law_line_pictures(Grid) {
   return {{.name = "law_lines", .width_px = 1400, .height_px = 1000, .script = R"gp(
 f = 'law_lines.csv'
 of(s, i) = strcol(2) eq s ? column(i) : NaN
@@ -143,7 +144,7 @@ unset multiplot
 )gp"}};
 }
 
-std::vector<Picture> law_loop_pictures(Grid) {
+std::vector<report::Picture> law_loop_pictures(Grid) {
   std::string script = R"gp(
 f = 'loop_laws.csv'
 set title "A closed-form law loses stability where its tangent stiffness passes b / (T/2 + t_d),\n\
@@ -170,4 +171,4 @@ plot x lc 'black' dt 2 title "theory")gp";
   return {{.name = "loop_laws", .width_px = 1200, .height_px = 800, .script = script + "\n"}};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

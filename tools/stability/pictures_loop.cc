@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/stability/pictures.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 
-std::vector<Picture> loop_pictures(Grid) {
+std::vector<report::Picture> loop_pictures(Grid) {
   return {{.name = "loop", .width_px = 1400, .height_px = 1050, .script = R"gp(
 f = 'loop.csv'
 near(a, b) = abs(a - b) <= 1e-6 * (abs(a) + abs(b)) + 1e-12
@@ -79,4 +80,4 @@ unset multiplot
 )gp"}};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/stability/pictures.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 
-std::vector<Picture> tick_pictures(Grid) {
+std::vector<report::Picture> tick_pictures(Grid) {
   return {{.name = "ticks", .width_px = 1200, .height_px = 700, .script = R"gp(
 f = 'ticks.csv'
 set title "Lost and late ticks: largest stable stiffness, 1 kHz, b = 2 N s/m, bare device\n\
@@ -27,7 +28,7 @@ plot f using (strcol(2) eq 'lost' && $4 == 2 ? $5 : NaN):7 with points pt 7 ps 1
 )gp"}};
 }
 
-std::vector<Picture> loss_pictures(Grid) {
+std::vector<report::Picture> loss_pictures(Grid) {
   return {{.name = "loss", .width_px = 1200, .height_px = 800, .script = R"gp(
 f = 'loss.csv'
 set multiplot layout 2,1 title "A burst of lost samples: 2 N deep in a wall of 1 kN/m, 1 kHz, \
@@ -59,4 +60,4 @@ unset multiplot
 )gp"}};
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // random.h - chance that is the same on every machine: SplitMix64 of Steele, Lea, Flood (2014).
 #pragma once
 
 #include <cstdint>
 
-namespace tact::tools {
+namespace tact::tools::stability {
 
 class Random {
  public:
@@ -22,4 +23,4 @@ class Random {
   std::uint64_t state_;
 };
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/stability/run_maps.h"
 
 #include <fmt/format.h>
@@ -5,30 +6,32 @@
 #include <map>
 #include <optional>
 
-#include "tools/common/run_program.h"
+#include "tools/program/run_program.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 namespace {
 
 using model::Error;
 using model::Result;
 
-Table empty_table(const Map& map, const StabilityOptions& options, const Shard& shard) {
+report::Table empty_table(const Map& map, const StabilityOptions& options,
+                          const program::Shard& shard) {
   return {map.name, map.columns(), map.jobs(options.grid), shard};
 }
 
-Result<Table> computed(const Map& map, const StabilityOptions& options) {
-  Table table = empty_table(map, options, options.shard);
-  const auto rows = sweep<Row>(table.jobs(), {.label = map.name, .shard = options.shard},
-                               [&](std::size_t job) { return map.run(job, options.grid); });
-  if (!rows) return interruption();
-  for (const Row& row : *rows) table.add(row);
+Result<report::Table> computed(const Map& map, const StabilityOptions& options) {
+  report::Table table = empty_table(map, options, options.shard);
+  const auto rows =
+      program::sweep<report::Row>(table.jobs(), {.label = map.name, .shard = options.shard},
+                                  [&](std::size_t job) { return map.run(job, options.grid); });
+  if (!rows) return program::interruption();
+  for (const report::Row& row : *rows) table.add(row);
   return table;
 }
 
 /// Table, verdict and pictures of a whole map; of a shard the table alone.
-Result<MapReport> finished(const Map& map, const Table& table, const StabilityOptions& options,
-                           bool is_whole) {
+Result<MapReport> finished(const Map& map, const report::Table& table,
+                           const StabilityOptions& options, bool is_whole) {
   MapReport report{.name = map.name, .rows = table.rows().size(), .findings = {}, .files = {}};
   auto files = table.write(options.out);
   if (!files) return files.error();
@@ -36,7 +39,7 @@ Result<MapReport> finished(const Map& map, const Table& table, const StabilityOp
   if (!is_whole) return report;
   report.findings = map.judge(table);
   if (!options.draw_pictures || map.pictures == nullptr) return report;
-  for (const Picture& picture : map.pictures(options.grid)) {
+  for (const report::Picture& picture : map.pictures(options.grid)) {
     const auto drawn = draw(picture, options.out);
     if (!drawn) return drawn.error();
     report.files.insert(report.files.end(), drawn->begin(), drawn->end());
@@ -49,7 +52,7 @@ Result<std::map<std::string, std::vector<std::string>>> sorted(
     const std::vector<std::string>& files) {
   std::map<std::string, std::vector<std::string>> of_table;
   for (const std::string& path : files) {
-    const auto name = table_of_file(path);
+    const auto name = report::table_of_file(path);
     if (!name) return name.error();
     of_table[*name].push_back(path);
   }
@@ -96,4 +99,4 @@ MapsRun run_maps(const StabilityOptions& options) {
   return run;
 }
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // run_maps.h - from options to tables, findings and pictures on disk.
 #pragma once
 
@@ -7,13 +8,13 @@
 
 #include "tools/stability/map.h"
 
-namespace tact::tools {
+namespace tact::tools::stability {
 
 struct StabilityOptions {
   std::string out{};                 // folder, made if need be
   std::string letters{};             // maps to make, "abcd"
   std::string only{};                // one map by its name; empty: all of the letters
-  Shard shard{};                     // our part of every map
+  program::Shard shard{};            // our part of every map
   std::vector<std::string> merge{};  // CSVs of shards instead of a run
   Grid grid = Grid::kFull;
   bool draw_pictures = true;
@@ -34,4 +35,4 @@ struct MapsRun {
 
 MapsRun run_maps(const StabilityOptions& options);
 
-}  // namespace tact::tools
+}  // namespace tact::tools::stability

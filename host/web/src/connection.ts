@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // connection.ts - the WebSocket to tact-view: comes back by itself, answers every frame with a count
 // so that the server never sends more than this page can draw.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // deform.ts - moves the vertices of the organ as the touched sites say. Only sites and profiles
 // travel from tactd; the mesh stays here.
 //
@@ -9,8 +10,8 @@
 //            the far side of the organ stays where it is
 //
 // A mass-spring tissue names its displaced vertices itself (patch.ts).
-// Where two sites reach the same vertex the larger displacement wins: their sum would count the
-// tissue between two jaws twice.
+// Dents of several sites add up, as tactd sends each sphere's own: beside the others it is smaller
+// than its depth. Of their sideways shifts, which are not each its own, the larger is shown.
 
 import type { Moved } from "./patch";
 import { Profile, smoothstep } from "./profile";
@@ -26,6 +27,7 @@ export class Deformer {
   private was_moved = false;
   /** Length of each vertex's displacement, m. */
   readonly travel_m: Float32Array;
+  private readonly sideways_m: Float32Array; // largest shift so far of each vertex
 
   constructor(
     private readonly rest_m: Float32Array,
@@ -35,6 +37,7 @@ export class Deformer {
   ) {
     this.profile = new Profile(ring_count, ring_pitch_m);
     this.travel_m = new Float32Array(rest_m.length / 3);
+    this.sideways_m = new Float32Array(rest_m.length);
   }
 
   /** Writes moved vertices to out_m. False when it left everything as it was. */
@@ -46,7 +49,7 @@ export class Deformer {
     out_m.set(this.rest_m);
     this.travel_m.fill(0);
     if (moved) this.place(moved, out_m);
-    else for (const site of sites) this.press(site, out_m);
+    else this.press(sites, out_m);
     for (const travel_m of this.travel_m) {
       if (travel_m > 1e-6) ++result.moved;
       if (travel_m > result.most_m) result.most_m = travel_m;
@@ -67,7 +70,20 @@ export class Deformer {
     }
   }
 
-  private press(site: Site, out_m: Float32Array): void {
+  private press(sites: readonly Site[], out_m: Float32Array): void {
+    this.sideways_m.fill(0);
+    for (const site of sites) this.dent(site, out_m);
+    for (let i = 0; i < out_m.length; i += 3) {
+      for (let k = i; k < i + 3; ++k) out_m[k] += this.sideways_m[k];
+      const dx = out_m[i] - this.rest_m[i];
+      const dy = out_m[i + 1] - this.rest_m[i + 1];
+      const dz = out_m[i + 2] - this.rest_m[i + 2];
+      this.travel_m[i / 3] = Math.sqrt(dx * dx + dy * dy + dz * dz);
+    }
+  }
+
+  /** d = -n u, added; s w, where it is the largest. */
+  private dent(site: Site, out_m: Float32Array): void {
     this.profile.set(site.u_m);
     const reach_m = this.profile.reach_m;
     const [px, py, pz] = site.point_m;
@@ -88,17 +104,19 @@ export class Deformer {
         (1 - smoothstep(0.4 * reach_m, reach_m, Math.abs(height_m))) * smoothstep(-0.4, 0.2, facing);
       const u_m = this.profile.at(rho_m) * fade;
       const w = u_m * per_u0;
-      // d = -n u + s w
-      const dx = site.shift_m[0] * w - nx * u_m;
-      const dy = site.shift_m[1] * w - ny * u_m;
-      const dz = site.shift_m[2] * w - nz * u_m;
-      const travel_m = Math.sqrt(dx * dx + dy * dy + dz * dz);
-      const vertex = i / 3;
-      if (!(travel_m > this.travel_m[vertex])) continue; // NaN never wins
-      this.travel_m[vertex] = travel_m;
-      out_m[i] = this.rest_m[i] + dx;
-      out_m[i + 1] = this.rest_m[i + 1] + dy;
-      out_m[i + 2] = this.rest_m[i + 2] + dz;
+      if (!Number.isFinite(u_m)) continue;
+      out_m[i] -= nx * u_m;
+      out_m[i + 1] -= ny * u_m;
+      out_m[i + 2] -= nz * u_m;
+      const sx = site.shift_m[0] * w;
+      const sy = site.shift_m[1] * w;
+      const sz = site.shift_m[2] * w;
+      const side = this.sideways_m;
+      const before = side[i] * side[i] + side[i + 1] * side[i + 1] + side[i + 2] * side[i + 2];
+      if (!(sx * sx + sy * sy + sz * sz > before)) continue;
+      side[i] = sx;
+      side[i + 1] = sy;
+      side[i + 2] = sz;
     }
   }
 }

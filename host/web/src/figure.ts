@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // figure.ts - pure functions of the operator's figure: the outline of a capsule, when one hides the
 // view, where the eyes are. Vectors are [x, y, z] in frame W, m.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // figure_view.ts - the operator: light, plain capsules; the arm that holds the tool in the accent.
 
 import * as THREE from "three";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ground.ts - a grid of 20 mm that fades into the dark, and a soft shadow below the organ. Lines and
 // one small picture: a large transparent plane would cost more than everything else.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // hand_control.ts - the mouse as the hand of a simulated device: drag moves it in the picture's
 // plane, the wheel into the picture, G closes the grip. Only a wish is sent; forces stay in tactd.
 // The wish is repeated until a few seconds after the last move, or as long as the mode is on.

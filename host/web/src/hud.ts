@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // hud.ts - the panels: everything that is said in words and numbers.
 
 import { describe, kStates } from "./faults";

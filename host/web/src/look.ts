@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // look.ts - a material as one picture. The colour of a surface that looks in direction n (in view) is
 // painted once for every n; afterwards a pixel reads the colour that belongs to its own n. So moist
 // tissue costs one texture read per pixel and stays smooth on a PC without a graphics card.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // main.ts - puts the parts together: connection -> stage, panels, plots; mouse and keys -> hand.
 
 import "./style.css";

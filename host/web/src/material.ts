@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // material.ts - what the touched body of a scene is made of: tissue, unless the scene is named here.
 
 import { kCover, kTissue, type Look } from "./look";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // organ_view.ts - what is touched. Tissue is warm, moist and paler where it is stretched; another
 // material keeps the colours of its pieces (material.ts).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // pace.ts - what comes faster than it can be read: the newest, once per period, and always the last.
 
 export class Pace<T> {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // patch.ts - what a mass-spring tissue shows: displaced vertices one by one, and triangles that a
 // blade has cut. Cuts come in windows over one growing list, so a lost frame costs nothing: the
 // window moves on and comes round again.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // plots.ts - depth, force and time left before the deadline over the last ten seconds.
 
 import uPlot from "uplot";

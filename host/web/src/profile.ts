@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // profile.ts - a smooth curve through the displacements of the rings.
 //
 // Monotone cubic Hermite interpolation [F. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // protocol.ts - what tact-view sends, with its units in the names. Vectors are [x, y, z] in frame W:
 // +x towards the operator, +y to the right, +z up.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // recorder.ts - the record button. tact-view keeps the last minutes anyway; recording marks a part
 // of them by its ticks and saves it as a file that tact-view can open.
 

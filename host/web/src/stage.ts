@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // stage.ts - light, ground, camera and the drawing loop. W as everywhere: +x towards the operator,
 // +y to the right, +z up; the camera starts on the operator's side, a little above.
 

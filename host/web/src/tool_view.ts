@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tool_view.ts - the instrument, its probe spheres, the force on the hand, and the mark of the hand.
 
 import * as THREE from "three";

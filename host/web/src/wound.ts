@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // wound.ts - what one sees where the skin was cut away: the same triangles, a little deeper and raw.
 
 import * as THREE from "three";

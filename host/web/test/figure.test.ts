@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { distance_to_line, eyes_of, follow_share, grip_error_m, hides, joint, outline, turned } from "../src/figure";

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The devices of the bench. One entry names what the scene says, what the guest starts before
 tactd, which programs it needs, and the system calls of every FIFO thread, at most, per tick."""
 import dataclasses

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How long a cycle of the bus takes: from its sign (estimates due, SYNC, report sent) to the torque
 that follows from it, and the part of the emulated device in it. Guest time, 1 kHz. The cycle that waits
 for the loop's first tick is none."""

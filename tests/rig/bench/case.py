@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a case is, and one run of it. The cases themselves are the tables in cases/*.py."""
 import dataclasses
 import functools

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What must be true after a run: each check takes a Run and returns complaints, one sentence each."""
 import functools
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The table in hal/README.md of what a device costs a tick, made from the baseline of the bench."""
 from bench.baseline import read, read_cycles
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A Debian root as tar becomes the guest's initramfs: newc archive, sorted, no times, pruned.
 
 Format: kernel documentation, driver-api/early-userspace/buffer-format: a 110-byte ASCII header

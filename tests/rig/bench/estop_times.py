@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From the edge of an e-stop contact to the zero that is written: per device, over the phases of a tick.
 
 The edge is timed before the contact is pulled, zero after it was written: what is measured is never

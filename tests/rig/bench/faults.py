@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Faults: what is required of each, and the table that a run writes."""
 import dataclasses
 import json

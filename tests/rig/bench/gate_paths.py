@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How many instructions the gate takes while each of its stages acts, from tact-rig-gate, held against
 tests/data/bench_baseline.json. The same inputs give the same instructions, so one run is enough."""
 import functools

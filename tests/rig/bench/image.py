@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The guest: Debian's PREEMPT_RT kernel, gpio-sim built from Debian's source, a small Debian root.
 
 Debian packages only. Each step is kept under a name that holds a hash of what it is made from, so

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """QEMU as a machine that counts time in instructions: boot once, load the programs, run cases from there.
 
 -icount shift=0,sleep=off: one instruction is one nanosecond and idle time is skipped; one CPU, one

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The tables of longest paths in firmware/README.md, made from the baseline of the bench."""
 from bench import gate_paths
 from bench.baseline import PHASES, read, read_gate

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // patient_poll: loaded into QEMU (LD_PRELOAD), keeps its main loop asleep while the guest computes.
 //
 // While idle guest time is skipped (-icount sleep=off), QEMU 7.2's main loop moves the clock on

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What every FIFO thread of tactd asks of the kernel and suffers from it, per tick, as a table."""
 
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Wake-up times beside those of cyclictest, which ran in the same guest."""
 import statistics
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Drives on CAN: tactd's own bus code, the kernel's, and three emulated drives that swing an arm."""
 from bench import checks
 from bench.back_ends import CIA402, ODRIVE05, ODRIVE06

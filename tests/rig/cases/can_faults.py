@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What goes wrong on a CAN bus and in drives, while tactd presses 10 mm deep, 0.9 s after enabling."""
 from bench import checks
 from bench.back_ends import CIA402, ODRIVE05, ODRIVE06

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Safety lines on the kernel's simulated GPIO chip, beside the simulated delta."""
 from bench import checks, estop_times
 from bench.back_ends import CIA402, FALCON_USBFS, ODRIVE06, SIM_DELTA_LINES, with_lines

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """tact-jitter on the bench: what it measures at a pin, against what the loop's own clock says."""
 from bench.back_ends import BACK, LOOP_BACK
 from bench.case import Case

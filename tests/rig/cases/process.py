@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What other programs and people do to tactd while it pushes on the hand, 3.5 s into the liver."""
 from bench import checks
 from bench.back_ends import FALCON_USBFS, ODRIVE06, SIM_DELTA

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The simulated delta: tactd itself on a PREEMPT_RT kernel, without a bus."""
 from bench import checks, gate_paths, wake_up
 from bench.back_ends import GATE, LAWS, SIM_DELTA

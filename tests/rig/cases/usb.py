@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A Falcon on USB, by both transports, and the maker's library of the others as a stub."""
 from bench import checks
 from bench.back_ends import FALCON_COLD, FALCON_LIBUSB, FALCON_USBFS, FORCE_DIMENSION

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What goes wrong on USB, while tactd presses 10 mm deep, 0.9 s after homing; by both transports."""
 from bench import checks
 from bench.back_ends import FALCON_LIBUSB, FALCON_USBFS

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/rig/emulators/can_bus.h"
 
 #include <fcntl.h>
@@ -78,21 +79,19 @@ void CanBus::send(int axis, CanRole role, std::uint32_t id, std::span<const std:
   frame.can_id = id;
   frame.can_dlc = static_cast<std::uint8_t>(std::min<std::size_t>(payload.size(), CAN_MAX_DLEN));
   std::copy_n(payload.begin(), frame.can_dlc, std::begin(frame.data));
-  if (role == CanRole::kSample) {
+  if (role == CanRole::kSample)
     send_sample(static_cast<std::size_t>(axis), frame, now_ns);
-  } else {
+  else
     write(frame);
-  }
 }
 
 void CanBus::send_sample(std::size_t axis, can_frame frame, std::int64_t now_ns) {
   const int number = static_cast<int>(axis);
   const auto acts = [&](FaultKind kind) { return faults_.active(kind, number, now_ns); };
-  if (!acts(FaultKind::kStale)) {
+  if (!acts(FaultKind::kStale))
     stale_[axis] = frame;
-  } else if (stale_[axis]) {
+  else if (stale_[axis])
     frame = *stale_[axis];
-  }
   if (acts(FaultKind::kLost)) return;
   if (acts(FaultKind::kGarbage)) {
     for (std::uint8_t& byte : frame.data) {

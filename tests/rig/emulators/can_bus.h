@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // can_bus.h - the emulated drives' end of the CAN cable, which can spoil what they say.
 //
 // A raw SocketCAN socket (Linux, Documentation/networking/can.rst). Faults of a FaultPlan act here

@@ -1,7 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // cia402_drive.h - an emulated CANopen servo drive in cyclic synchronous torque mode (CiA 301,
 // 402).
 //
-//     boot-up -> pre-operational -> (SDO) -> NMT start -> operational: SYNC -> TPDO1, RPDO1 -> torque
+//     boot-up -> pre-operational -> (SDO) -> NMT start -> operational: SYNC -> TPDO1,
+//     RPDO1 -> torque
 //     switch on disabled -6-> ready -7-> switched on -F-> operation enabled
 //
 // Torque acts only in operation enabled, mode 10, node operational. It stops by itself when the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // delta_mechanism.h - the emulated delta of 360 mm diameter: joint angles, K and weight of a pose.
 //
 // Frame D has its origin between the motor axes and +z from the base to the workspace; the device

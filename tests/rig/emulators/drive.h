@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // drive.h - one emulated motor drive on the bus, whatever it speaks.
 #pragma once
 

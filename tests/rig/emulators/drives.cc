@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tact-rig-drives - three emulated motor drives of a delta on a CAN bus, with its arms and a hand.
 //
 // The other side of the cable: it speaks ODrive CANSimple 0.5, 0.6 or CiA 402 over CANopen, turns

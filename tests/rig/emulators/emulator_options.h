@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // emulator_options.h - the options that both emulators have, and the frame of their run.
 #pragma once
 

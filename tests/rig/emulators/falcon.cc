@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tact-rig-falcon - an emulated Falcon on a port of the kernel's virtual USB host controller.
 //
 // USB adapter, boot ROM, upload, homing and one report per command, with the exact manipulator and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // falcon_firmware.h - the emulated processor of the grip: boot ROM, upload, then one report per
 // command.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // falcon_mechanism.h - the emulated Falcon's manipulator: thigh angles and K of a grip position.
 //
 // Frame F is the device's: x right, y up, z towards the user. Leg frame of azimuth phi, shifted by

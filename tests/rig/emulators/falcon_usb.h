@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // falcon_usb.h - the USB side of the emulated Falcon: descriptors, transfers in frames, faults.
 //
 // 0403:CB48 "FALCON HAPTIC", full speed, one interface, bulk 0x02 OUT and 0x81 IN of 64 bytes. A

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // falcon_wire.h - the Falcon's 16 bytes both ways, and the status bytes its USB adapter puts in
 // front.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fault_plan.h - which fault an emulator commits when, and what the other side then did.
 //
 //     --fault KIND[:NUMBER]@SECONDS[+DURATION_MS]

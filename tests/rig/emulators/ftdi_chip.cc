@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/rig/emulators/ftdi_chip.h"
 
 #include <algorithm>

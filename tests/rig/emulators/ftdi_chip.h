@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ftdi_chip.h - the emulated USB adapter between bulk packets and the serial line (FT232 class).
 //
 // Bytes take 10 bits of the line's baud each, both ways. An IN packet is ready when 62 bytes wait,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tact-rig-lines - what is wired to the safety lines of the kernel's simulated chip (gpio-sim).
 //
 //     tact-rig-lines press PULL --grid-ns T --phase-us N    opens a contact, N after a deadline

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // mechanism.h - what the emulated platform knows of the three-armed mechanism that carries it.
 //
 //     theta' = K v        tau = J^T F,  so  F = K^T tau        weight = -dV/dp

@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 // object_dictionary.h - what a CiA 402 drive keeps under index and sub-index, and its SDO server.
 //
-//     request  2F/2B/27/23 index sub data    -> 60 index sub         expedited download of 1..4 bytes
+//     request  2F/2B/27/23 index sub data    -> 60 index sub         expedited download, 1..4 bytes
 //              40 index sub                  -> 4F/4B/47/43 ... data expedited upload
 //     refused                                -> 80 index sub code    abort, u32
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // odrive_drive.h - an emulated ODrive axis, firmware 0.5 or 0.6, as the bus sees it.
 //
 //     idle --index search--> idle        idle --closed loop, no error--> closed loop

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/rig/emulators/odrive_table.h"
 
 #include <algorithm>
@@ -101,11 +102,10 @@ const OdriveMessage* odrive_message(std::string_view name, OdriveFrom from) {
 }
 
 const OdriveMessage* odrive_reply(std::uint8_t command, OdriveGeneration generation) {
-  for (const OdriveMessage& message : kMessages) {
+  for (const OdriveMessage& message : kMessages)
     if (message.command == command && message.from == kDrive &&
         (static_cast<unsigned>(message.generation) & static_cast<unsigned>(generation)) != 0)
       return &message;
-  }
   return nullptr;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // odrive_table.h - CANSimple as a table: what each command carries, in firmware 0.5 and 0.6.
 //
 //     identifier = node << 5 | command        11 bits, payload little endian

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // platform.h - the platform as a point mass between the motors, gravity, friction and a hand.
 //
 //     m v' = K^T (tau - b theta' - c sign(theta')) + weight + k (x_h - x) + d (v_h - v)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // real_time.h - clock, priority and end of an emulator process. Linux, CLOCK_MONOTONIC, ns.
 //
 // The emulator stands for hardware: it runs as FIFO below the controller's loop. It leaves FIFO

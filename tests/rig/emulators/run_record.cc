@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/rig/emulators/run_record.h"
 
 #include <algorithm>
@@ -74,10 +75,9 @@ void RunRecord::commanded(int axis, const Platform& platform, const Joints& tau_
 void RunRecord::tick(const Platform& platform, const Joints& tau_Nm, bool enabled,
                      FaultPlan& faults, std::int64_t now_ns) {
   obeyed_ = enabled;
-  for (const std::int64_t last_ns : commanded_ns_) {
+  for (const std::int64_t last_ns : commanded_ns_)
     if (enabled && last_ns != 0 && tau_Nm != Joints{})
       oldest_command_ns_ = std::max(oldest_command_ns_, now_ns - last_ns);
-  }
   if (now_ns - *std::max_element(commanded_ns_.begin(), commanded_ns_.end()) > kBurst_ns ||
       !enabled)
     watch(platform, tau_Nm, faults, now_ns);

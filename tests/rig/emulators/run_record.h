@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // run_record.h - what the emulator saw of the controller: forces, ages, bus cycles; as JSON and
 // CSV.
 //

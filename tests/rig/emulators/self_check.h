@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // self_check.h - the published vectors, replayed through the emulators' own codec and kinematics.
 //
 // Numbers are compared within the tolerance the vectors give, bytes exactly. One line per kind of

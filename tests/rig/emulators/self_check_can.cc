@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // self_check_can.cc - the vectors of CANSimple and CiA 402, from the side of the drive: what a host
 // sends is decoded, what a drive sends is encoded.
 #include "tests/rig/emulators/cia402_drive.h"
@@ -95,11 +96,10 @@ void check_odrive(SelfCheck& check) {
                item["data"]);
 }
 
-void check_cia402(SelfCheck& check) {
-  const Json vectors = check.load("can_cia402.json");
+namespace {
 
+void check_configuration(SelfCheck& check, const Json& vectors, ObjectDictionary& dictionary) {
   check.begin("CiA 402, configuration");
-  ObjectDictionary dictionary(5, 0.32);
   for (const Json& item : vectors["config_sequence_node5"]) {
     const Bytes request = bytes_of_hex(item["frame"]);
     const auto answer = dictionary.serve(request, false);
@@ -111,6 +111,9 @@ void check_cia402(SelfCheck& check) {
     check.equal("value", static_cast<double>(stored & ((std::int64_t{1} << bits) - 1)),
                 item["value"], 0.0);
   }
+}
+
+void check_received(SelfCheck& check, const Json& vectors, ObjectDictionary& dictionary) {
   check.begin("CiA 402, received");
   for (const Json& item : vectors["encode"]) {
     const std::string name = item["message"];
@@ -128,6 +131,9 @@ void check_cia402(SelfCheck& check) {
       check.equal(name + " sub", answer[3], args["sub"], 0.0);
     }
   }
+}
+
+void check_sent(SelfCheck& check, const Json& vectors, ObjectDictionary& dictionary) {
   check.begin("CiA 402, sent");
   for (const Json& item : vectors["decode"]) {
     const std::string name = item["message"];
@@ -157,6 +163,9 @@ void check_cia402(SelfCheck& check) {
     }
     check.same(name, hex_of(std::span(own).first(size)), item["data"]);
   }
+}
+
+void check_states(SelfCheck& check, const Json& vectors) {
   check.begin("CiA 402, states");
   using enum Cia402State;
   const std::pair<Cia402State, std::string> names[] = {{kSwitchOnDisabled, "switch_on_disabled"},
@@ -185,6 +194,17 @@ void check_cia402(SelfCheck& check) {
     for (const auto& [own, name] : names)
       if (item["statusword"] == (cia402_statusword(own) & 0x6F))
         check.same("statusword of " + name, name, item["state"]);
+}
+
+}  // namespace
+
+void check_cia402(SelfCheck& check) {
+  const Json vectors = check.load("can_cia402.json");
+  ObjectDictionary dictionary(5, 0.32);
+  check_configuration(check, vectors, dictionary);
+  check_received(check, vectors, dictionary);
+  check_sent(check, vectors, dictionary);
+  check_states(check, vectors);
 }
 
 }  // namespace tact::rig

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // self_check_falcon.cc - the vectors of the Falcon's packets and of its adapter, from the device's
 // side.
 #include "tests/rig/emulators/falcon_wire.h"

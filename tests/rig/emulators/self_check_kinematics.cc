@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // self_check_kinematics.cc - the vectors of both mechanisms: inverse, forward, K, statics, gravity.
 #include <algorithm>
 #include <cmath>

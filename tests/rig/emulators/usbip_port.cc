@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/rig/emulators/usbip_port.h"
 
 #include <endian.h>
@@ -62,11 +63,10 @@ bool UsbipPort::attach(int port, std::string& error) {
             ": modprobe vhci_hcd, be root, and take another --port if this one is in use";
   if (file >= 0) close(file);
   close(ends[1]);
-  if (good) {
+  if (good)
     fd_ = ends[0];
-  } else {
+  else
     close(ends[0]);
-  }
   return good;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // usbip_port.h - an emulated USB device on a port of vhci_hcd: URBs in, completions out.
 //
 // The kernel's virtual host controller speaks USB/IP (Documentation/usb/usbip_protocol.rst):

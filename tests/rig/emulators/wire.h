@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // wire.h - messages as tables: where a field is, of which type, in which step. Little endian.
 //
 //     value = raw x scale        raw: unsigned, two's complement or IEEE 754 binary32

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tact-rig-gate: how many instructions Gate::judge takes while each of its stages acts.
 //
 //     alone     what comes in makes this stage act, and others only as it does: the longest tick
@@ -19,15 +20,15 @@
 #include <random>
 #include <vector>
 
-#include "tests/gate_rules.h"
+#include "tests/support/gate_rules.h"
 
 namespace tact::rig {
 namespace {
 
-using firmware::Gate;
-using firmware::GateInput;
-using firmware::kStageCount;
-using firmware::Stage;
+using firmware::gate::Gate;
+using firmware::gate::GateInput;
+using firmware::gate::kStageCount;
+using firmware::gate::Stage;
 using model::Vec3;
 using nlohmann::json;
 
@@ -161,7 +162,7 @@ std::vector<JudgedTick> judge(const std::vector<GateInput>& inputs) {
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       const auto before = gate.counters();
       const std::int64_t start_ns = now_ns();
-      const firmware::GateVerdict verdict = gate.judge(inputs[i]);
+      const firmware::gate::GateVerdict verdict = gate.judge(inputs[i]);
       const std::int64_t end_ns = now_ns();
       asm volatile("" : : "g"(&verdict) : "memory");
       ticks[i].took_ns = std::min(ticks[i].took_ns, end_ns - start_ns - clock);
@@ -189,7 +190,7 @@ json measure() {
   for (std::size_t row = 0; row <= kNone; ++row) {
     std::vector<GateInput> own(kTicks);
     for (int i = 0; i < kTicks; ++i) own[static_cast<std::size_t>(i)] = input_for(row, i);
-    const char* name = row == kNone ? "none" : firmware::kStageName[row];
+    const char* name = row == kNone ? "none" : firmware::gate::kStageName[row];
     out[name] = {{"alone", longest(judge(own), row)}, {"longest", longest(by_chance, row)}};
   }
   return out;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # bench.sh - what the script of a case may call; sourced by it in the guest.
 #
 #   control SECONDS [tactd option...]   starts tactd on $SCENE, back when its loop ticks; pid $tactd

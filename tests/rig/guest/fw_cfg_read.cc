@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fw_cfg_read NAME: prints one fw_cfg file of QEMU, in one pass over the data port, without
 // interrupts. The kernel's own sysfs file seeks byte by byte for every page it reads: 3 MB take
 // minutes.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tact-rig-ticks: what a tick log says about a fault: when it was seen, when the force was zero,
 // what moved afterwards.
 //
@@ -13,13 +14,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "firmware/supervisor.h"
-#include "firmware/tick_log.h"
+#include "firmware/loop/supervisor.h"
+#include "firmware/telemetry/tick_log.h"
 
 namespace tact::rig {
 namespace {
 
-using firmware::LoggedTick;
+using firmware::telemetry::LoggedTick;
 using nlohmann::json;
 
 std::int64_t now_ns(clockid_t clock) {
@@ -64,7 +65,7 @@ class FaultStory {
     }
     if (first_zero_) moved_after_N_ = std::max(moved_after_N_, force_N(tick));
     if (!first_zero_ && detected_ && !pushes(tick)) first_zero_ = tick;
-    if (detected_ && tick.output.state == firmware::State::kArmed) ++armed_after_;
+    if (detected_ && tick.output.state == firmware::loop::State::kArmed) ++armed_after_;
   }
 
   json to_json() const {
@@ -80,7 +81,7 @@ class FaultStory {
     tell(out, "limited", limited_);
     tell(out, "detected", detected_);
     tell(out, "zero", zero_);
-    if (last_) out["end_state"] = firmware::name_of(last_->output.state);
+    if (last_) out["end_state"] = firmware::loop::name_of(last_->output.state);
     if (last_) out["end_fault"] = model::describe(last_->output.fault).name;
     return out;
   }
@@ -115,7 +116,7 @@ class FaultStory {
 };
 
 int tell_story(const std::string& path, std::int64_t injected_ns) {
-  auto log = firmware::TickLogReader::open(path);
+  auto log = firmware::telemetry::TickLogReader::open(path);
   if (!log) {
     fmt::print(stderr, "tact-rig-ticks: {}\n", log.error().sentence);
     return 2;
@@ -128,7 +129,7 @@ int tell_story(const std::string& path, std::int64_t injected_ns) {
 
 /// A deadline of a loop that still runs: all others lie whole periods from it.
 int tell_grid(const std::string& path) {
-  auto log = firmware::TickLogReader::open(path);
+  auto log = firmware::telemetry::TickLogReader::open(path);
   if (LoggedTick tick; log && log->next(tick)) return fmt::print("{}\n", tick.due_ns), 0;
   fmt::print(stderr, "tact-rig-ticks: {}\n",
              log ? path + " has no tick yet" : log.error().sentence);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tact-rig-viewer: connects to the telemetry socket as a viewer does, takes the greeting and a
 // frame, says so, and never reads again.
 //

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// clock.h - the only door to time in this room: what a tick calls gets time as an argument. Threads
+// of hal below it read the same clock by hal/monotonic.h.
+#pragma once
+
+#include <cstdint>
+
+#include "model/rt.h"
+
+namespace tact::firmware::loop {
+
+class Clock {
+ public:
+  virtual ~Clock() = default;
+  virtual std::int64_t now_ns() RT_SAFE = 0;
+  /// A counter of even pace, and of no rate that is known: cheaper than the time.
+  virtual std::int64_t mark() RT_SAFE { return now_ns(); }
+  /// Returns at or after the deadline; at once when it has passed.
+  virtual void sleep_until_ns(std::int64_t deadline_ns) RT_SAFE = 0;
+};
+
+/// CLOCK_MONOTONIC with absolute deadlines.
+class MonotonicClock final : public Clock {
+ public:
+  std::int64_t now_ns() RT_SAFE override;
+  std::int64_t mark() RT_SAFE override {
+#if defined(__x86_64__)
+    return static_cast<std::int64_t>(__builtin_ia32_rdtsc());
+#else
+    return now_ns();
+#endif
+  }
+  void sleep_until_ns(std::int64_t deadline_ns) RT_SAFE override;
+};
+
+/// Time by marks, between two readings of the clock. Their rate is that of the last two, a tick
+/// apart: a counter that changes its pace errs for one tick, in what is measured and nowhere else.
+class MarkedTime {
+ public:
+  /// The time and the mark of now.
+  void set(std::int64_t now_ns, std::int64_t mark) RT_SAFE {
+    const auto marks = static_cast<double>(mark - mark_);
+    if (mark_ != 0 && mark > mark_ && now_ns > now_ns_)
+      ns_per_mark_ = static_cast<double>(now_ns - now_ns_) / marks;
+    now_ns_ = now_ns;
+    mark_ = mark;
+  }
+  std::int64_t at_ns(std::int64_t mark) const RT_SAFE {
+    return now_ns_ + static_cast<std::int64_t>(static_cast<double>(mark - mark_) * ns_per_mark_);
+  }
+
+ private:
+  std::int64_t now_ns_ = 0, mark_ = 0;
+  double ns_per_mark_ = 1.0;
+};
+
+/// Time that only passes while the loop sleeps: runs as fast as the CPU allows, always the same.
+class SimulatedClock final : public Clock {
+ public:
+  std::int64_t now_ns() RT_SAFE override { return now_ns_; }
+  void sleep_until_ns(std::int64_t deadline_ns) RT_SAFE override {
+    if (deadline_ns > now_ns_) now_ns_ = deadline_ns;
+  }
+  /// A tick that takes long: for tests of late ticks.
+  void pass_ns(std::int64_t duration_ns) RT_SAFE { now_ns_ += duration_ns; }
+
+ private:
+  std::int64_t now_ns_ = 0;
+};
+
+}  // namespace tact::firmware::loop

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/loop/controller.h"
+
+namespace tact::firmware::loop {
+// A tool that moved unseen starts anew: whatever depth it has by then comes without force.
+void Controller::touch(const TickInput& input) RT_SAFE {
+  unseen_ += input.skipped_periods;
+  if (input.sample.fresh && unseen_ >= 2) contact_.reset();
+  unseen_ = input.sample.fresh ? 0 : unseen_ + 1;
+  contact_.touch(input.sample.tool);
+}
+
+void Controller::feel(const TickInput& input) RT_SAFE {
+  wanted_ = contact_.feel(input.sample.tool, supervisor_.armed());
+}
+
+void Controller::tell_shape() RT_SAFE {
+  if (contact_.shape(shape_)) shapes_.write(shape_);
+}
+
+// The device's own word counts first, then what the samples, the law and the clock tell.
+Fault Controller::find_fault(const TickInput& input) RT_SAFE {
+  const bool too_late = late_watch_.step(input.skipped_periods);
+  if (latches(input.device_fault)) return input.device_fault;
+  if (!is_finite(input.sample.tool)) return Fault::kSampleNotFinite;
+  if (law_.broke()) return Fault::kLawBroke;
+  if (too_late && supervisor_.armed()) return Fault::kLoopLate;
+  return Fault::kNone;
+}
+
+TickOutput Controller::judge(const TickInput& input) RT_SAFE {
+  const bool finite = is_finite(input.sample.tool);
+  const Fault fault = find_fault(input);
+  const bool armed_before = supervisor_.armed();
+  supervisor_.step(
+      input.commands,
+      {.sample_good = input.sample.fresh && finite, .ready = input.ready, .fault = fault});
+  if (supervisor_.armed() && !armed_before) {  // arming inside the organ pushes nothing
+    contact_.reset();
+    wanted_ = {};
+  }
+
+  const gate::GateVerdict verdict = gate_.judge({.wanted = wanted_,
+                                                 .tool = input.sample.tool,
+                                                 .fresh = input.sample.fresh,
+                                                 .armed = supervisor_.armed(),
+                                                 .skipped_periods = input.skipped_periods});
+  supervisor_.trip(verdict.fault);
+  Fault limit = verdict.limit;
+  for (const model::contact::SphereTouch& touch : contact_.touches())
+    if (limit == Fault::kNone && touch.law_status == model::law::LawStatus::kSaturated)
+      limit = Fault::kLawSaturated;
+  newest_ = {.wanted = wanted_,
+             .written = verdict.wrench,
+             .state = supervisor_.state(),
+             .limit = limit,
+             .fault = supervisor_.fault(),
+             .given_energy_J = gate_.given_energy_J(),
+             .rms_force_N = gate_.rms_force_N()};
+  return newest_;
+}
+
+}  // namespace tact::firmware::loop

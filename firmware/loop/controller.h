@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// controller.h - a tick without its device and its clock: touch, feel, judge.
+//
+// Everything that decides the force is in TickInput, so a recorded run gives the same bits again
+// (replay.h). The loop (rt_loop.h) calls the three phases and measures them.
+#pragma once
+
+#include "firmware/gate/gate.h"
+#include "firmware/loop/late_watch.h"
+#include "firmware/loop/supervisor.h"
+#include "hal/device.h"
+#include "hal/latest_slot.h"
+#include "model/contact/contact.h"
+
+namespace tact::firmware::loop {
+
+/// All that enters a tick from outside.
+struct TickInput {
+  hal::Sample sample;
+  Fault device_fault = Fault::kNone;
+  Commands commands;
+  bool ready = true;                  // lines and device would let a force through
+  std::uint32_t skipped_periods = 0;  // between the tick before and this one
+};
+
+/// All that leaves it.
+struct TickOutput {
+  model::Wrench wanted;   // by the law
+  model::Wrench written;  // after the gate
+  State state = State::kOff;
+  Fault limit = Fault::kNone;
+  Fault fault = Fault::kNone;   // latched
+  double given_energy_J = 0.0;  // by the device since arming, more than it took
+  double rms_force_N = 0.0;     // written, over limits.thermal_time_s
+};
+
+using ShapeSlot = hal::LatestSlot<model::contact::PatchShape>;
+
+inline constexpr bool kHardRealTime = true;
+
+class Controller {
+ public:
+  /// Without hard real time the late watch bears single stalls.
+  Controller(const model::contact::ContactScene& scene, const gate::Gate& gate, bool hard_real_time)
+      : law_(*scene.law), contact_(scene), gate_(gate), late_watch_(hard_real_time) {}
+
+  void touch(const TickInput& input) RT_SAFE;
+  void feel(const TickInput& input) RT_SAFE;
+  TickOutput judge(const TickInput& input) RT_SAFE;
+
+  /// The three phases in a row.
+  TickOutput tick(const TickInput& input) RT_SAFE {
+    touch(input);
+    feel(input);
+    return judge(input);
+  }
+
+  /// What a stepped law looks like now goes to the slot; nothing for laws with a profile.
+  void tell_shape() RT_SAFE;
+  ShapeSlot& shapes() { return shapes_; }
+
+  std::span<const model::contact::SphereTouch> touches() const RT_SAFE {
+    return contact_.touches();
+  }
+  const gate::Gate& gate() const RT_SAFE { return gate_; }
+  /// Of the last tick; for after the loop.
+  const TickOutput& newest() const { return newest_; }
+
+ private:
+  Fault find_fault(const TickInput& input) RT_SAFE;
+
+  const model::contact::SiteLaw& law_;
+  model::contact::Contact contact_;
+  gate::Gate gate_;
+  LateWatch late_watch_;
+  Supervisor supervisor_;
+  model::Wrench wanted_;
+  TickOutput newest_;
+  model::contact::PatchShape shape_;
+  ShapeSlot shapes_;
+  std::uint64_t unseen_ = 0;  // periods in a row without a sample
+};
+
+}  // namespace tact::firmware::loop

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// grid.h - when things happen: the loop's deadlines are a fixed grid of CLOCK_MONOTONIC; the watch,
+// frames and status lines wake halfway between two of them (tact-fd keeps away, too).
+//
+// The kernel's own tick comes at whole multiples of 1/HZ of that clock (/proc/timer_list of
+// Debian's 6.1). Deadlines that begin anywhere can have it, or a timer of another thread, in the
+// middle of the same ticks for a whole run. Here the kernel's tick lies 0.3 of a period before a
+// deadline, of periods over a millisecond 0.3 ms. With a period that neither divides a millisecond
+// nor is some of them, as that of 3 kHz, the two pass each other slowly, and no start avoids it.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "model/rt.h"
+
+namespace tact::firmware::loop {
+
+/// The first multiple of period_ns, shifted by phase_ns, at or after from_ns >= 0.
+constexpr std::int64_t next_in_phase_ns(std::int64_t from_ns, std::int64_t period_ns,
+                                        std::int64_t phase_ns) RT_SAFE {
+  const std::int64_t since_ns = (from_ns - phase_ns) % period_ns;
+  return since_ns <= 0 ? from_ns - since_ns : from_ns - since_ns + period_ns;
+}
+
+/// From the kernel's tick, which comes at most once a millisecond, to a deadline.
+constexpr std::int64_t after_kernel_tick_ns(std::int64_t period_ns) RT_SAFE {
+  constexpr std::int64_t kFastestTick_ns = 1'000'000;
+  return std::min(period_ns, kFastestTick_ns) * 3 / 10;
+}
+
+/// The loop's first deadline at or after from_ns.
+constexpr std::int64_t next_deadline_ns(std::int64_t from_ns, std::int64_t period_ns) RT_SAFE {
+  return next_in_phase_ns(from_ns, period_ns, after_kernel_tick_ns(period_ns));
+}
+
+/// The first instant at or after from_ns that lies halfway between two deadlines.
+constexpr std::int64_t next_half_way_ns(std::int64_t from_ns, std::int64_t period_ns) RT_SAFE {
+  return next_in_phase_ns(from_ns, period_ns, after_kernel_tick_ns(period_ns) + period_ns / 2);
+}
+
+}  // namespace tact::firmware::loop

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// progress.h - where the loop is, told by the loop, read by the watch above it (loop_watch.h).
+//
+// Plain stores on the loop's side: a tick costs a handful of them, and never waits.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "model/rt.h"
+
+namespace tact::firmware::loop {
+
+/// Whose code runs: a call that does not come back names its owner.
+enum class Place : std::uint8_t { kOwn, kLines, kDevice };
+
+class Progress {
+ public:
+  /// Loop side.
+  void tick() RT_SAFE {
+    ticks_.store(ticks_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  }
+  void enter(Place place) RT_SAFE { place_.store(place, std::memory_order_relaxed); }
+  /// The force is zero and nothing follows.
+  void end() RT_SAFE { ended_.store(true, std::memory_order_relaxed); }
+
+  /// Watch side.
+  std::uint64_t ticks() const RT_SAFE { return ticks_.load(std::memory_order_relaxed); }
+  Place place() const RT_SAFE { return place_.load(std::memory_order_relaxed); }
+  bool running() const RT_SAFE { return ticks() > 0 && !ended_.load(std::memory_order_relaxed); }
+
+ private:
+  std::atomic<std::uint64_t> ticks_{0};
+  std::atomic<Place> place_{Place::kOwn};
+  std::atomic<bool> ended_{false};
+};
+
+}  // namespace tact::firmware::loop

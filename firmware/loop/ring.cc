@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/loop/ring.h"
+
+namespace tact::firmware::loop {
+
+// Boost does not carry the mark; its fixed-capacity push copies into storage it already has.
+#if defined(__clang__) && __clang_major__ >= 20
+#pragma clang diagnostic push
+#pragma clang diagnostic ignored "-Wfunction-effects"
+#endif
+void TickRing::push(const TickRecord& record) RT_SAFE {
+  if (!queue_.push(record)) dropped_.fetch_add(1, std::memory_order_relaxed);
+}
+#if defined(__clang__) && __clang_major__ >= 20
+#pragma clang diagnostic pop
+#endif
+
+}  // namespace tact::firmware::loop

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// Nothing in here may wait but for the clock and the device; nothing locks, allocates, prints or
+// throws. The gate sees every force before the hand does.
+#include "firmware/loop/rt_loop.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "firmware/loop/grid.h"
+
+namespace tact::firmware::loop {
+
+void RtLoop::run() RT_SAFE {
+  while (may_run()) step();
+  let_go();
+}
+
+void RtLoop::step() RT_SAFE {
+  const std::int64_t period_ns = settings_.period_ns;
+  if (statistics_.ticks == 0) due_ns_ = next_deadline_ns(now_ns() + period_ns, period_ns);
+  clock_.sleep_until_ns(due_ns_);
+  cycle(due_ns_);
+  due_ns_ += period_ns;  // absolute deadlines: one late tick does not delay the next
+  const std::int64_t behind_ns = clock_.now_ns() - due_ns_;
+  record_.margin_ns = -behind_ns;
+  std::int64_t skipped = 0;
+  if (behind_ns >= 0) {
+    skipped = behind_ns / period_ns + 1;
+    due_ns_ += skipped * period_ns;
+    ++statistics_.late_ticks;
+    statistics_.skipped_ticks += static_cast<std::uint64_t>(skipped);
+  }
+  constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max();
+  record_.input.skipped_periods = static_cast<std::uint32_t>(std::min(skipped, kMost));
+  device_.between_ticks(static_cast<double>((1 + skipped) * period_ns) * 1e-9);
+}
+
+void RtLoop::let_go() RT_SAFE {
+  progress_.enter(Place::kLines);
+  lines_.write({.healthy = false, .armed = false, .faulted = true});
+  progress_.enter(Place::kDevice);
+  device_.permit(false);
+  device_.write(model::Wrench{});
+  progress_.enter(Place::kOwn);
+  progress_.end();
+}
+
+// The lines' word counts before the device's. The watch's comes last to be asked, as it may be
+// about the calls of this very tick, and first to be told.
+Fault RtLoop::read(std::int64_t now_ns) RT_SAFE {
+  progress_.enter(Place::kLines);
+  const Fault lines_fault = lines_.read(now_ns);
+  record_.input.sample.fresh = false;
+  progress_.enter(Place::kDevice);
+  const Fault read_fault = device_.read(record_.input.sample, now_ns);
+  progress_.enter(Place::kOwn);
+  const Fault watch_fault = requests_.fault.load(std::memory_order_relaxed);
+  for (const Fault fault : {watch_fault, lines_fault, read_fault, write_fault_})
+    if (fault != Fault::kNone) return fault;
+  return Fault::kNone;
+}
+
+// A fault takes the drives' permission before it takes their force. The heartbeat of this tick
+// vouches for the one before it: that one is over, and was in time.
+void RtLoop::write() RT_SAFE {
+  const TickOutput& output = record_.output;
+  const bool stopped = output.state == State::kStopped;
+  progress_.enter(Place::kLines);
+  const Fault lines_fault = lines_.write({.healthy = !stopped && record_.margin_ns > 0,
+                                          .armed = output.state == State::kArmed,
+                                          .faulted = stopped});
+  progress_.enter(Place::kDevice);
+  device_.permit(lines_.enabled());
+  const Fault device_fault = device_.write(output.written);
+  progress_.enter(Place::kOwn);
+  write_fault_ = lines_fault != Fault::kNone ? lines_fault : device_fault;
+}
+
+// The record is dropped when nobody has read the last ones.
+void RtLoop::tell() RT_SAFE {
+  statistics_.max_force_N = std::max(statistics_.max_force_N, norm(record_.output.written.force_N));
+  statistics_.max_rms_force_N = std::max(statistics_.max_rms_force_N, record_.output.rms_force_N);
+  statistics_.max_given_energy_J =
+      std::max(statistics_.max_given_energy_J, record_.output.given_energy_J);
+  record_.late_ticks = statistics_.late_ticks;
+  record_.skipped_ticks = statistics_.skipped_ticks;
+  record_.touches.assign(controller_.touches());
+  ring_.push(record_);
+  if (settings_.ticks_per_shape != 0 && record_.tick % settings_.ticks_per_shape == 0)
+    controller_.tell_shape();
+}
+
+bool RtLoop::may_run() const RT_SAFE {
+  if (requests_.stop.load(std::memory_order_relaxed)) return false;
+  const std::uint64_t periods = statistics_.ticks + statistics_.skipped_ticks;
+  return (settings_.max_ticks == 0 || statistics_.ticks < settings_.max_ticks) &&
+         (settings_.max_periods == 0 || periods < settings_.max_periods);
+}
+
+void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
+  const std::int64_t wake_ns = now_ns();
+  progress_.tick();
+  lines_.scope(true);
+  record_.tick = statistics_.ticks++;
+  record_.due_ns = due_ns;
+  keep(Phase::kWake, wake_ns - due_ns);
+
+  TickInput& input = record_.input;
+  input.commands = {.arm = requests_.arm.load(std::memory_order_relaxed),
+                    .stop = requests_.stop.load(std::memory_order_relaxed),
+                    .reset = requests_.reset.load(std::memory_order_relaxed)};
+  input.device_fault = read(wake_ns);
+  input.ready = lines_.enabled() && device_.ready();
+  const std::int64_t read_ns = later_ns();
+  keep(Phase::kRead, read_ns - wake_ns);
+
+  controller_.touch(input);
+  const std::int64_t touched_ns = later_ns();
+  keep(Phase::kTouch, touched_ns - read_ns);
+
+  controller_.feel(input);
+  const std::int64_t felt_ns = later_ns();
+  keep(Phase::kFeel, felt_ns - touched_ns);
+
+  record_.output = controller_.judge(input);
+  const std::int64_t judged_ns = later_ns();
+  keep(Phase::kJudge, judged_ns - felt_ns);
+
+  write();
+  lines_.scope(false);
+  const std::int64_t written_ns = later_ns();
+  keep(Phase::kWrite, written_ns - judged_ns);
+  const bool stopped = record_.output.state == State::kStopped;  // a stop is timed by the clock
+  stop_watch_.step(input, record_.output, wake_ns, stopped ? clock_.now_ns() : written_ns);
+  statistics_.stop = stop_watch_.times();
+
+  tell();
+  const std::int64_t end_ns = later_ns();
+  keep(Phase::kTell, end_ns - written_ns);
+  keep(Phase::kTotal, end_ns - wake_ns);
+}
+
+std::int64_t RtLoop::now_ns() RT_SAFE {
+  const std::int64_t now_ns = clock_.now_ns();
+  marked_.set(now_ns, clock_.mark());
+  return now_ns;
+}
+
+void RtLoop::keep(Phase phase, std::int64_t duration_ns) RT_SAFE {
+  const auto i = static_cast<std::size_t>(phase);
+  statistics_.phase[i].record(duration_ns, record_.tick);
+  constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+  record_.phase_ns[i] = static_cast<std::int32_t>(std::clamp<std::int64_t>(duration_ns, 0, kMost));
+}
+
+}  // namespace tact::firmware::loop

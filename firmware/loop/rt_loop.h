@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// rt_loop.h - the haptic loop: read, touch, feel, judge, write, tell, on a fixed grid of deadlines.
+//
+// Deadlines are absolute (grid.h). A tick that ends after its own period is late; the
+// periods it has eaten are skipped and counted, the grid never shifts (RT-14). What ends the loop,
+// zero force is written last.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "firmware/loop/clock.h"
+#include "firmware/loop/latency_histogram.h"
+#include "firmware/loop/progress.h"
+#include "firmware/loop/ring.h"
+#include "firmware/loop/stop_times.h"
+#include "hal/safety_lines.h"
+
+namespace tact::firmware::loop {
+
+/// What people and the watch ask of a running loop; written by other threads and signal handlers.
+struct Requests {
+  std::atomic<bool> arm{false};
+  std::atomic<bool> stop{false};  // force to zero, then leave
+  std::atomic<bool> reset{false};
+  std::atomic<Fault> fault{Fault::kNone};  // of the watch; the first stays to the end of the run
+
+  void trip(Fault found) RT_SAFE {
+    Fault none = Fault::kNone;
+    fault.compare_exchange_strong(none, found, std::memory_order_relaxed);
+  }
+};
+
+/// What a run leaves behind. Read it after run() has returned.
+struct LoopStatistics {
+  std::uint64_t ticks = 0;
+  std::uint64_t late_ticks = 0;     // ended after their own period
+  std::uint64_t skipped_ticks = 0;  // grid points that had no tick
+  double max_force_N = 0.0;         // written
+  double max_rms_force_N = 0.0;     // written, over limits.thermal_time_s
+  double max_given_energy_J = 0.0;  // since arming, more than was taken
+  StopTimes stop;
+  std::array<LatencyHistogram, kPhaseCount> phase;
+};
+
+struct LoopSettings {
+  std::int64_t period_ns = 1'000'000;
+  std::uint64_t max_ticks = 0;        // 0: until a stop request
+  std::uint64_t max_periods = 0;      // ticks and skipped periods together; 0: no limit
+  std::uint64_t ticks_per_shape = 0;  // 0: never
+};
+
+class RtLoop {
+ public:
+  RtLoop(const LoopSettings& settings, hal::Device& device, hal::SafetyLines& lines,
+         Controller& controller, Clock& clock, Requests& requests, TickRing& ring)
+      : settings_(settings),
+        device_(device),
+        lines_(lines),
+        controller_(controller),
+        clock_(clock),
+        requests_(requests),
+        ring_(ring) {
+    record_.margin_ns = settings.period_ns;  // before the first tick nothing is used up
+  }
+
+  /// Steps until a stop request, max_ticks or max_periods, then lets go.
+  void run() RT_SAFE;
+  /// Sleeps to the next deadline and does one tick.
+  void step() RT_SAFE;
+  bool may_run() const RT_SAFE;
+  /// Power permission away and zero force to the device: the last thing that any loop does.
+  void let_go() RT_SAFE;
+  const LoopStatistics& statistics() const { return statistics_; }
+  /// For the watch, at any time.
+  const Progress& progress() const { return progress_; }
+
+ private:
+  void cycle(std::int64_t due_ns) RT_SAFE;
+  Fault read(std::int64_t now_ns) RT_SAFE;
+  void write() RT_SAFE;
+  void tell() RT_SAFE;
+  /// Reads the clock; later_ns() the time since then by marks, for phases alone.
+  std::int64_t now_ns() RT_SAFE;
+  std::int64_t later_ns() RT_SAFE { return marked_.at_ns(clock_.mark()); }
+  void keep(Phase phase, std::int64_t duration_ns) RT_SAFE;
+
+  LoopSettings settings_;
+  hal::Device& device_;
+  hal::SafetyLines& lines_;
+  Controller& controller_;
+  Clock& clock_;
+  Requests& requests_;
+  TickRing& ring_;
+  LoopStatistics statistics_;
+  TickRecord record_;
+  MarkedTime marked_;
+  std::int64_t due_ns_ = 0;
+  Fault write_fault_ = Fault::kNone;  // judged in the next tick
+  StopWatch stop_watch_;
+  Progress progress_;
+};
+
+}  // namespace tact::firmware::loop

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/loop/supervisor.h"
+
+#include <array>
+
+namespace tact::firmware::loop {
+
+const char* name_of(State state) {
+  constexpr std::array kNames{"off", "ready", "armed", "stopped"};
+  return kNames[static_cast<std::size_t>(state)];
+}
+
+State Supervisor::step(const Commands& commands, const Findings& found) RT_SAFE {
+  const bool reset_edge = commands.reset && !reset_before_;
+  reset_before_ = commands.reset;
+  trip(found.fault);
+  if (commands.stop) return state_ = State::kStopped;
+  switch (state_) {
+    case State::kOff:
+      if (found.sample_good) state_ = State::kReady;
+      break;
+    case State::kReady:
+      if (commands.arm && found.sample_good && found.ready) state_ = State::kArmed;
+      break;
+    case State::kArmed:  // power that comes back must not bring a force with it
+      if (!found.ready) trip(Fault::kPowerLost);
+      break;
+    case State::kStopped:
+      if (reset_edge && found.sample_good && !latches(found.fault) && !commands.arm) {
+        state_ = State::kReady;
+        fault_ = Fault::kNone;
+      }
+      break;
+  }
+  return state_;
+}
+
+void Supervisor::trip(Fault fault) RT_SAFE {
+  if (!latches(fault)) return;
+  if (fault_ == Fault::kNone) fault_ = fault;  // the first one is the cause
+  state_ = State::kStopped;
+}
+
+}  // namespace tact::firmware::loop

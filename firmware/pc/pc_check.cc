@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/pc/pc_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace tact::firmware::pc {
+
+const char* name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kGreen:
+      return "green";
+    case Verdict::kRed:
+      return "red";
+    case Verdict::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+int core_in_question(const PcQuestion& question) {
+  if (question.core >= 0) return question.core;
+  for (const char* list : {"/sys/devices/system/cpu/isolated", "/sys/devices/system/cpu/online"}) {
+    const std::vector<int> cpus = parse_cpu_list(question.files.line(list).value_or(""));
+    if (!cpus.empty()) return cpus.back();
+  }
+  return 0;
+}
+
+std::vector<PcRow> check_pc(const PcQuestion& question) {
+  const PcQuestion settled{.files = question.files, .core = core_in_question(question)};
+  std::vector<PcRow> rows;
+  check_kernel(settled, rows);
+  check_permissions(settled, rows);
+  check_core(settled, rows);
+  check_neighbours(settled, rows);
+  for (PcRow& row : rows)
+    if (row.verdict == Verdict::kGreen) row.cure.clear();
+  return rows;
+}
+
+std::string name_red_rows(const std::vector<PcRow>& rows) {
+  std::string names;
+  std::size_t red = 0;
+  for (const PcRow& row : rows) {
+    if (row.verdict != Verdict::kRed) continue;
+    names += fmt::format("{}{}", red++ == 0 ? "" : ", ", row.name);
+  }
+  if (red == 0) return {};
+  return fmt::format("{} of {} checks of this PC are red ({}); tact-doctor tells why and the cure",
+                     red, rows.size(), names);
+}
+
+nlohmann::json to_json(const std::vector<PcRow>& rows) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const PcRow& row : rows)
+    list.push_back({{"name", row.name},
+                    {"verdict", name_of(row.verdict)},
+                    {"found", row.found},
+                    {"why", row.why},
+                    {"cure", row.cure}});
+  return list;
+}
+
+}  // namespace tact::firmware::pc

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// pc_check.h - is this PC fit for hard real time? One row a question: what was found, why it
+// matters, and the cure as a command.
+//
+// Read from files alone (pc_files.h); nothing is changed, no device is opened. `tact-doctor` shows
+// all rows, `tactd` names the red ones when it starts. Evidence: RT-1 to RT-13.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "firmware/pc/pc_files.h"
+#include "firmware/pc/rt_needs.h"
+
+namespace tact::firmware::pc {
+
+enum class Verdict { kGreen, kRed, kUnknown };
+/// "green", "red", "unknown".
+const char* name_of(Verdict verdict);
+
+struct PcRow {
+  std::string name;
+  Verdict verdict = Verdict::kUnknown;
+  std::string found;  // what the files say
+  std::string why;    // what it does to the loop
+  std::string cure;   // empty for a green row
+};
+
+struct PcQuestion {
+  PcFiles files{};
+  int core = -1;  // of the loop; -1: an isolated one if there is one, else the last
+};
+
+/// All rows, the most important first.
+std::vector<PcRow> check_pc(const PcQuestion& question);
+/// The core that the rows speak of.
+int core_in_question(const PcQuestion& question);
+
+/// The red ones in a line, for a program that starts; empty when none is red.
+std::string name_red_rows(const std::vector<PcRow>& rows);
+/// [{"name","verdict","found","why","cure"}]
+nlohmann::json to_json(const std::vector<PcRow>& rows);
+
+// The groups that check_pc() puts together, each in a file of its own.
+void check_kernel(const PcQuestion& question, std::vector<PcRow>& rows);
+void check_permissions(const PcQuestion& question, std::vector<PcRow>& rows);
+void check_core(const PcQuestion& question, std::vector<PcRow>& rows);
+void check_neighbours(const PcQuestion& question, std::vector<PcRow>& rows);
+
+}  // namespace tact::firmware::pc

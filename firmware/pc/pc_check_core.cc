@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// The core of the loop: who else may use it, and how fast it wakes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "firmware/pc/pc_check.h"
+
+namespace tact::firmware::pc {
+namespace {
+
+constexpr const char* kCpus = "/sys/devices/system/cpu";
+constexpr long kQuickExit_us = 20;  // of a sleep state that does not count
+
+bool contains(const std::vector<int>& cpus, int cpu) {
+  return std::find(cpus.begin(), cpus.end(), cpu) != cpus.end();
+}
+
+std::vector<int> cpu_list(const PcFiles& files, const std::string& name) {
+  return parse_cpu_list(files.line(fmt::format("{}/{}", kCpus, name)).value_or(""));
+}
+
+/// All online CPUs but the loop's, for commands.
+std::string other_cpus(const PcQuestion& q) {
+  std::vector<int> cpus = cpu_list(q.files, "online");
+  cpus.erase(std::remove(cpus.begin(), cpus.end(), q.core), cpus.end());
+  return make_cpu_list(cpus);
+}
+
+std::string boot_parameters(const PcQuestion& q) {
+  const std::string others = other_cpus(q);
+  if (others.empty()) return "a PC with two cores or more: one for the loop, one for all else";
+  return fmt::format(
+      "add isolcpus=domain,managed_irq,{0} nohz_full={0} rcu_nocbs={0} irqaffinity={1} to "
+      "GRUB_CMDLINE_LINUX in /etc/default/grub, sudo update-grub, boot",
+      q.core, others);
+}
+
+PcRow isolation_row(const PcQuestion& q) {
+  const bool known = q.files.is_there(fmt::format("{}/isolated", kCpus));
+  const bool isolated = contains(cpu_list(q.files, "isolated"), q.core);
+  return {.name = "isolated core",
+          .verdict = !known     ? Verdict::kUnknown
+                     : isolated ? Verdict::kGreen
+                                : Verdict::kRed,
+          .found = !known ? "not told"
+                          : fmt::format("core {} is {}isolated", q.core, isolated ? "" : "not "),
+          .why = "other programs run on the core of the loop; each costs it a switch and its cache",
+          .cure = boot_parameters(q)};
+}
+
+PcRow tick_row(const PcQuestion& q) {
+  const bool known = q.files.is_there(fmt::format("{}/nohz_full", kCpus));
+  const bool quiet = contains(cpu_list(q.files, "nohz_full"), q.core);
+  return {.name = "timer tick",
+          .verdict = quiet   ? Verdict::kGreen
+                     : known ? Verdict::kRed
+                             : Verdict::kUnknown,
+          .found = quiet   ? fmt::format("core {} has none while the loop runs", q.core)
+                   : known ? fmt::format("core {} is not in nohz_full", q.core)
+                           : "this kernel has no nohz_full",
+          .why =
+              "the kernel's own tick takes a few microseconds from the loop, up to 1000 times a "
+              "second",
+          .cure = boot_parameters(q)};
+}
+
+/// "36 virtio1-req.0": the number and what its device is called, a folder beside its settings.
+std::string name_interrupt(const PcFiles& files, const std::string& number) {
+  for (const std::string& name : files.names("/proc/irq/" + number))
+    if (files.names(fmt::format("/proc/irq/{}/{}", number, name)).empty() &&
+        !files.line(fmt::format("/proc/irq/{}/{}", number, name)))
+      return name;
+  return {};
+}
+
+PcRow interrupt_row(const PcQuestion& q) {
+  PcRow row{.name = "interrupts",
+            .verdict = Verdict::kUnknown,
+            .found = "not told",
+            .why =
+                "a device's interrupt goes before the loop, and its handler takes as long as its "
+                "driver likes",
+            .cure = {}};
+  std::string numbers, named;
+  int there = 0, here = 0;
+  for (const std::string& number : q.files.names("/proc/irq")) {
+    const std::string folder = "/proc/irq/" + number;
+    auto list = q.files.line(folder + "/effective_affinity_list");
+    if (!list || list->empty()) list = q.files.line(folder + "/smp_affinity_list");
+    const std::string name = list ? name_interrupt(q.files, number) : "";
+    if (name.empty()) continue;  // nobody waits for it
+    ++there;
+    if (!contains(parse_cpu_list(*list), q.core)) continue;
+    if (here++ < 4) named += fmt::format("{}{} {}", named.empty() ? "" : ", ", number, name);
+    numbers += fmt::format("{}{}", numbers.empty() ? "" : " ", number);
+  }
+  if (there == 0) return row;
+  row.verdict = here == 0 ? Verdict::kGreen : Verdict::kRed;
+  row.found = here == 0 ? fmt::format("none of {} comes to core {}", there, q.core)
+                        : fmt::format("{} of {} come to core {}: {}{}", here, there, q.core, named,
+                                      here > 4 ? ", ..." : "");
+  const std::string others = other_cpus(q);
+  row.cure = others.empty()
+                 ? boot_parameters(q)
+                 : fmt::format(
+                       "for i in {}; do echo {} | sudo tee /proc/irq/$i/smp_affinity_list; "
+                       "done",
+                       numbers, others);
+  return row;
+}
+
+PcRow governor_row(const PcQuestion& q) {
+  const std::string path = fmt::format("{}/cpu{}/cpufreq/scaling_governor", kCpus, q.core);
+  const auto governor = q.files.line(path);
+  const bool steady = governor == "performance";
+  return {.name = "CPU governor",
+          .verdict = !governor ? Verdict::kUnknown
+                     : steady  ? Verdict::kGreen
+                               : Verdict::kRed,
+          .found = governor.value_or("the kernel does not set the CPU's speed"),
+          .why = "a CPU that slows down between ticks begins each at its lowest speed",
+          .cure = governor ? fmt::format("echo performance | sudo tee {}/cpu*/cpufreq/"
+                                         "scaling_governor",
+                                         kCpus)
+                           : "set the highest speed in the firmware (BIOS) or on the host"};
+}
+
+PcRow sleep_row(const PcQuestion& q) {
+  const std::string folder = fmt::format("{}/cpu{}/cpuidle", kCpus, q.core);
+  long slowest_us = 0;
+  for (const std::string& state : q.files.names(folder)) {
+    if (q.files.line(fmt::format("{}/{}/disable", folder, state)) == "1") continue;
+    const auto exit_us = q.files.line(fmt::format("{}/{}/latency", folder, state));
+    slowest_us = std::max(slowest_us, std::strtol(exit_us.value_or("0").c_str(), nullptr, 10));
+  }
+  const bool held = q.files.is_writable("/dev/cpu_dma_latency");
+  const bool shallow = q.files.is_there(folder) && slowest_us <= kQuickExit_us;
+  return {.name = "sleep states",
+          .verdict = held || shallow ? Verdict::kGreen : Verdict::kRed,
+          .found = held      ? "tactd may forbid them (/dev/cpu_dma_latency)"
+                   : shallow ? fmt::format("the deepest wakes in {} us", slowest_us)
+                             : fmt::format("/dev/cpu_dma_latency may not be written, the deepest "
+                                           "state wakes in {} us",
+                                           slowest_us),
+          .why = kPowerReason.why,
+          .cure = kPowerReason.cure};
+}
+
+PcRow sibling_row(const PcQuestion& q) {
+  const auto list =
+      q.files.line(fmt::format("{}/cpu{}/topology/thread_siblings_list", kCpus, q.core));
+  std::vector<int> siblings = parse_cpu_list(list.value_or(""));
+  siblings.erase(std::remove(siblings.begin(), siblings.end(), q.core), siblings.end());
+  PcRow row{
+      .name = "SMT sibling",
+      .verdict = !list              ? Verdict::kUnknown
+                 : siblings.empty() ? Verdict::kGreen
+                                    : Verdict::kRed,
+      .found = !list ? "not told" : "the core is not shared",
+      .why = "two hardware threads share one core's units: what runs beside the loop slows it",
+      .cure = "switch SMT off in the firmware (BIOS)"};
+  if (siblings.empty()) return row;
+  row.found = fmt::format("CPU {} shares the core of CPU {}", make_cpu_list(siblings), q.core);
+  row.cure = fmt::format("echo 0 | sudo tee {}/cpu{}/online", kCpus, siblings.front());
+  return row;
+}
+
+}  // namespace
+
+void check_core(const PcQuestion& q, std::vector<PcRow>& rows) {
+  rows.push_back(isolation_row(q));
+  rows.push_back(tick_row(q));
+  rows.push_back(interrupt_row(q));
+  rows.push_back(governor_row(q));
+  rows.push_back(sleep_row(q));
+  rows.push_back(sibling_row(q));
+}
+
+}  // namespace tact::firmware::pc

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// rt_needs.h - what hard real time needs of a PC, why, and the cure: said by the doctor's rows
+// (pc_check.h) and by a start that does not get it (rt_setup.h).
+#pragma once
+
+namespace tact::firmware::pc {
+
+inline constexpr int kLoopPriority = 80;   // SCHED_FIFO
+inline constexpr int kWatchAboveLoop = 5;  // the watch's priority over the loop's
+
+/// Why something matters, and the cure.
+struct Reason {
+  const char* why;
+  const char* cure;
+};
+inline constexpr Reason kKernelReason{"any driver can delay a tick by milliseconds",
+                                      "sudo apt install linux-image-rt-amd64, then boot it"};
+inline constexpr Reason kMemoryReason{"a page fault can stop the loop for milliseconds",
+                                      "sudo tools/deploy/install, then log in again"};
+inline constexpr Reason kPriorityReason{"other programs can hold up the loop",
+                                        "sudo tools/deploy/install, then log in again"};
+inline constexpr Reason kPowerReason{"the CPU may sleep deeply between ticks and wake late",
+                                     "sudo tools/deploy/install, then log in again"};
+
+}  // namespace tact::firmware::pc

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/run/device_list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+namespace tact::firmware::run {
+
+using hal::list::FoundPart;
+using hal::list::PartKind;
+
+std::string devices_as_text(const std::vector<FoundPart>& parts) {
+  std::string text;
+  auto out = std::back_inserter(text);
+  for (const FoundPart& part : parts) {
+    fmt::format_to(out, "{}: {}\n", part.name, part.what);
+    if (part.lacking.empty())
+      fmt::format_to(out, "  ready: {}\n", part.scene);
+    else
+      fmt::format_to(out, "  not ready: {}\n  cure: {}\n", part.lacking, part.cure);
+  }
+  for (const PartKind kind :
+       {PartKind::kCan, PartKind::kFalcon, PartKind::kForceDimension, PartKind::kGpio}) {
+    const bool there = std::any_of(parts.begin(), parts.end(),
+                                   [&](const FoundPart& part) { return part.kind == kind; });
+    if (!there) fmt::format_to(out, "{}\n", hal::list::words_of_absence(kind));
+  }
+  text += "sim-delta: the simulated device\n  ready: device.kind = \"sim-delta\"\n";
+  return text;
+}
+
+std::string devices_as_json(const std::vector<FoundPart>& parts) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const FoundPart& part : parts)
+    list.push_back({{"kind", hal::list::name_of(part.kind)},
+                    {"name", part.name},
+                    {"what", part.what},
+                    {"scene", part.scene},
+                    {"ready", part.lacking.empty()},
+                    {"lacking", part.lacking},
+                    {"cure", part.cure}});
+  return nlohmann::json{{"devices", list}}.dump(2, ' ', false,
+                                                nlohmann::json::error_handler_t::replace) +
+         "\n";
+}
+
+}  // namespace tact::firmware::run

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/run/loop_parts.h"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <sys/resource.h>
+
+#include <cmath>
+
+#include "firmware/loop/alloc_counter.h"
+#include "firmware/watch/call_filter.h"
+#include "hal/gpio/gpio_lines.h"
+
+namespace tact::firmware::run {
+
+using model::Error;
+using model::Result;
+
+std::int64_t period_ns(const model::scene::Scene& scene) {
+  return std::llround(1e9 / scene.rate_Hz);
+}
+
+Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsSetup& setup) {
+  LoopParts parts;
+  auto tissue = model::scene::make_tissue(scene);
+  if (!tissue) return tissue.error();
+  parts.tissue = std::move(*tissue);
+  if (setup.simulated_time && !hal::registry::is_simulated(scene.device))
+    return Error{fmt::format(
+        "{}: --free-run is simulated time, and device.kind \"{}\" is hardware; leave it out",
+        scene.path, scene.device.kind)};
+  auto lines = hal::gpio::open_safety_lines(scene.device.lines);
+  if (!lines) return Error{fmt::format("{}: {}", scene.path, lines.error().sentence)};
+  parts.lines = std::move(*lines);
+  auto device = hal::registry::open_device(scene);
+  if (!device) return device.error();
+  parts.device = std::move(*device);
+  const auto stiffness = check_renderable(scene, *parts.tissue, parts.device->info());
+  if (!stiffness) return stiffness.error();
+  parts.stiffness = *stiffness;
+  if (!setup.simulated_time) {
+    const auto time = check_budget(scene, setup.non_rt ? std::nullopt : std::optional(setup.rt));
+    if (!time) return time.error();
+    parts.time = *time;
+  }
+  parts.limits = gate::limits_for(scene.limits, parts.device->info());
+  parts.controller = std::make_unique<loop::Controller>(
+      parts.tissue->contact_scene(),
+      gate::Gate(parts.limits, static_cast<double>(period_ns(scene)) * 1e-9, setup.force_share()),
+      !setup.non_rt);
+  parts.ring = std::make_unique<loop::TickRing>(scene.rate_Hz);
+  return parts;
+}
+
+void add_to(ThreadCosts& sum, const ThreadCosts& more) {
+  sum.heap_calls += more.heap_calls;
+  sum.heap_calls_known = more.heap_calls_known;
+  sum.call_filter = more.call_filter;
+  sum.minor_faults += more.minor_faults;
+  sum.major_faults += more.major_faults;
+  sum.voluntary_switches += more.voluntary_switches;
+  sum.involuntary_switches += more.involuntary_switches;
+}
+
+ThreadCosts run_as_loop_thread(const pc::RtSettings& settings, const std::function<void()>& loop,
+                               watch::CallFilter* filter) {
+  pthread_setname_np(pthread_self(), "tact-loop");
+  std::vector<pc::Shortfall> known;
+  enter_rt_thread(settings, known);
+  ThreadCosts costs;
+  costs.call_filter = filter != nullptr && filter->enter_thread() == 0;  // tried when it was made
+  rusage before{}, after{};
+  {
+    const loop::HeapWatch heap;
+    getrusage(RUSAGE_THREAD, &before);
+    loop();
+    getrusage(RUSAGE_THREAD, &after);
+    costs.heap_calls = heap.calls();
+  }
+  if (filter != nullptr) filter->leave_loop();
+  pc::leave_rt_thread();
+  costs.heap_calls_known = loop::can_count_heap_calls();
+  costs.minor_faults = after.ru_minflt - before.ru_minflt;
+  costs.major_faults = after.ru_majflt - before.ru_majflt;
+  costs.voluntary_switches = after.ru_nvcsw - before.ru_nvcsw;
+  costs.involuntary_switches = after.ru_nivcsw - before.ru_nivcsw;
+  return costs;
+}
+
+}  // namespace tact::firmware::run

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// loop_parts.h - everything that a tick touches, opened and checked in the order in which it comes
+// to life, and the thread it runs in. Set-up code: `tactd`, `tact-jitter` and `tact-limits` run the
+// same loop.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "firmware/loop/controller.h"
+#include "firmware/loop/ring.h"
+#include "firmware/pc/rt_setup.h"
+#include "firmware/run/law_check.h"
+#include "firmware/watch/call_filter.h"
+#include "hal/registry/open_device.h"
+#include "hal/safety_lines.h"
+#include "model/scene/scene.h"
+#include "model/scene/tissue.h"
+
+namespace tact::firmware::run {
+
+/// Of the force, where the PC gives no hard real time.
+inline constexpr double kNonRtForceShare = 0.25;
+
+struct PartsSetup {
+  bool simulated_time = false;  // waits for any law, so no law is too slow
+  bool non_rt = false;          // caps the force; simulated time is never late
+  pc::RtSettings rt;
+
+  double force_share() const { return non_rt ? kNonRtForceShare : 1.0; }
+};
+
+struct LoopParts {
+  std::unique_ptr<model::scene::Tissue> tissue;
+  std::unique_ptr<hal::SafetyLines> lines;
+  hal::registry::OpenDevice device;  // off when the parts go, whatever ended them
+  StiffnessMargin stiffness;
+  std::optional<TimeMargin> time;
+  model::Limits limits;  // of scene and device together
+  std::unique_ptr<loop::Controller> controller;
+  std::unique_ptr<loop::TickRing> ring;
+};
+
+/// Opens the device of the scene and checks that the law may be felt on it.
+model::Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsSetup& setup);
+
+/// Of one tick, from the scene's rate.
+std::int64_t period_ns(const model::scene::Scene& scene);
+
+/// Kernel's and allocator's view of the loop's thread between its first and its last tick.
+struct ThreadCosts {
+  std::uint64_t heap_calls = 0;
+  bool heap_calls_known = false;
+  bool call_filter = false;  // was on
+  long minor_faults = 0, major_faults = 0;
+  long voluntary_switches = 0, involuntary_switches = 0;
+};
+
+/// Of several runs together.
+void add_to(ThreadCosts& sum, const ThreadCosts& more);
+
+/// Runs `loop` as the loop's thread, which this one becomes and then leaves again; behind the
+/// filter, if there is one, which stays with the thread to its end.
+ThreadCosts run_as_loop_thread(const pc::RtSettings& settings, const std::function<void()>& loop,
+                               watch::CallFilter* filter = nullptr);
+
+}  // namespace tact::firmware::run

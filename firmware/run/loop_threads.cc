@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/run/loop_threads.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+
+#include "firmware/run/loop_parts.h"
+
+namespace tact::firmware::run {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kPatience_ns = 3'000'000'000;  // more than any device's stop may take
+constexpr auto kDeviceStop = 2000ms, kLook = 10ms;
+constexpr unsigned kLastWords_s = 6;
+
+}  // namespace
+
+LoopThreads::LoopThreads(const GuardedLoop& guarded)
+    : guarded_(guarded), runaway_(guarded.requests) {
+  keeper_ = std::thread(&LoopThreads::keep, this);
+}
+
+// Outside the loop's thread, whose filter would let a device's stop do nothing.
+void LoopThreads::keep() {
+  for (const LoopTurn& turn : guarded_.turns) {
+    take(turn);
+    if (guarded_.requests.stop.load()) break;
+  }
+  guarded_.device.stop();  // at once: drives watch for their host
+  ended_.store(true);
+}
+
+void LoopThreads::take(const LoopTurn& turn) {
+  watch::LoopWatch watch(watch::StallWatch(guarded_.period_ns, guarded_.hard_real_time),
+                         turn.progress, guarded_.requests, guarded_.lines);
+  watch.start(guarded_.rt);
+  std::thread([&] {
+    add_to(costs_, run_as_loop_thread(guarded_.rt, turn.run, guarded_.filter));
+  }).join();
+  watch.stop();
+}
+
+bool LoopThreads::hangs() {
+  if (!guarded_.requests.stop.load() || ended_.load()) return false;
+  const std::int64_t now_ns = loop::MonotonicClock().now_ns();
+  if (asked_ns_ == 0) asked_ns_ = now_ns;
+  return now_ns - asked_ns_ > kPatience_ns;
+}
+
+void LoopThreads::join() {
+  if (keeper_.joinable()) keeper_.join();
+}
+
+// The device may be in the middle of a call that hangs, so its stop may hang, too, and so may the
+// disk: SIGALRM ends both.
+void LoopThreads::leave_behind(int status, const std::function<void()>& last_words) {
+  guarded_.lines.drop();
+  std::signal(SIGALRM, [](int) { _exit(1); });
+  alarm(kLastWords_s);
+  std::atomic<bool> stopped{false};
+  std::thread([&] {
+    guarded_.device.stop();
+    stopped.store(true);
+  }).detach();
+  for (auto waited = 0ms; !stopped.load() && waited < kDeviceStop; waited += kLook)
+    std::this_thread::sleep_for(kLook);
+  last_words();
+  _exit(status);
+}
+
+}  // namespace tact::firmware::run

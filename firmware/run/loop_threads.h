@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// loop_threads.h - the loop with the threads around it, from its first tick to the device's rest.
+//
+//     tact-loop    the loop behind its call filter (watch/call_filter.h)
+//     tact-watch   above it (watch/loop_watch.h)
+//     keeper       starts the loop; stops the device as soon as it has ended
+//     main         signals, status line, hangs (Session::watch)
+//
+// Loops may follow each other on one device, each in a thread of its own behind the same filter.
+// A loop that does not end when it is asked to is left behind: the process ends without it.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "firmware/run/loop_parts.h"
+#include "firmware/watch/call_filter.h"
+#include "firmware/watch/loop_watch.h"
+#include "firmware/watch/runaway.h"
+
+namespace tact::firmware::run {
+
+/// One loop from its first tick to its letting go.
+struct LoopTurn {
+  const loop::Progress& progress;
+  std::function<void()> run;
+};
+
+struct GuardedLoop {
+  std::vector<LoopTurn> turns;  // one after the other, until a stop request
+  hal::Device& device;
+  hal::SafetyLines& lines;
+  loop::Requests& requests;
+  watch::CallFilter* filter = nullptr;  // none: any call is allowed
+  pc::RtSettings rt;
+  std::int64_t period_ns = 0;
+  bool hard_real_time = false;
+};
+
+class LoopThreads {
+ public:
+  explicit LoopThreads(const GuardedLoop& guarded);
+  ~LoopThreads() { join(); }
+  LoopThreads(const LoopThreads&) = delete;
+  LoopThreads& operator=(const LoopThreads&) = delete;
+
+  bool ended() const { return ended_.load(); }
+  /// Asked to stop, and 3 s later loop or device are still not at their end. Call a few times a
+  /// second.
+  bool hangs();
+  /// After ended().
+  void join();
+  /// After hangs(): lines low, zero force if the device still answers, the last words, and out
+  /// within 6 s. The kernel closes what is open; drives with a watchdog let go when they hear
+  /// nothing.
+  [[noreturn]] void leave_behind(int status, const std::function<void()>& last_words);
+  /// Of all turns together, after join().
+  const ThreadCosts& costs() const { return costs_; }
+
+ private:
+  void keep();
+  void take(const LoopTurn& turn);
+
+  GuardedLoop guarded_;
+  watch::RunawayGuard runaway_;
+  std::atomic<bool> ended_{false};
+  std::int64_t asked_ns_ = 0;  // when the stop request was first seen; 0: not yet
+  ThreadCosts costs_;
+  std::thread keeper_;
+};
+
+}  // namespace tact::firmware::run

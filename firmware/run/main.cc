@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactd: the haptic controller.
+#include <fmt/format.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "firmware/run/device_list.h"
+#include "firmware/run/replay.h"
+#include "firmware/run/say.h"
+#include "firmware/run/session.h"
+#include "model/scene/plan_file.h"
+#include "model/scene/scene.h"
+
+namespace {
+
+using namespace tact;
+using firmware::run::say;
+
+int complain(const std::string& sentence, int status) {
+  say(stderr, "tactd: {}\n", sentence);
+  return status;
+}
+
+void print_fault_lines() {
+  say(stdout, "{:>4}  {:18}  {}\n", "no", "name", "cause; cure");
+  for (const model::FaultEntry& f : model::fault_table())
+    say(stdout, "{:>4}  {:18}  {}; {}\n", static_cast<int>(f.fault), f.name, f.cause, f.cure);
+}
+
+std::string faults_as_json() {
+  nlohmann::json list = nlohmann::json::array();
+  for (const model::FaultEntry& f : model::fault_table())
+    list.push_back({{"number", static_cast<int>(f.fault)},
+                    {"name", f.name},
+                    {"cause", f.cause},
+                    {"cure", f.cure},
+                    {"latches", model::latches(f.fault)}});
+  return list.dump(2) + "\n";
+}
+
+/// A list for --json PATH; nothing without one.
+int write_json(const std::string& path, const std::string& json) {
+  if (path.empty()) return 0;
+  if (path == "-")
+    say(stdout, "{}", json);
+  else if (!(std::ofstream(path) << json))
+    return complain(path + ": cannot be written; name a file in a folder of yours", 2);
+  return 0;
+}
+
+int print_faults(const std::string& json_path) {
+  if (json_path != "-") print_fault_lines();
+  return write_json(json_path, faults_as_json());
+}
+
+int print_devices(const std::string& json_path) {
+  const auto parts = hal::list::list_devices();
+  if (json_path != "-") say(stdout, "{}", firmware::run::devices_as_text(parts));
+  return write_json(json_path, firmware::run::devices_as_json(parts));
+}
+
+int run_replay(const model::scene::Scene& scene, const std::string& path) {
+  const auto tissue = model::scene::make_tissue(scene);
+  if (!tissue) return complain(tissue.error().sentence, 2);
+  const auto outcome = firmware::run::replay(path, scene, **tissue);
+  if (!outcome) return complain(outcome.error().sentence, 2);
+  say(stdout, "{}: {} ticks computed again, {} differ, force hash {:016x}\n", path, outcome->ticks,
+      outcome->different, outcome->force_hash);
+  if (outcome->truncated) say(stdout, "{}: the last tick is torn and was left out\n", path);
+  if (outcome->gap_before != 0)
+    return complain(fmt::format("{}: ticks {} to {} are missing, so the replay ends there; record "
+                                "to a faster disk",
+                                path, outcome->ticks, outcome->gap_before - 1),
+                    1);
+  if (outcome->different == 0) return 0;
+  return complain(fmt::format("{}: the first other force is at tick {}; replay with the build that "
+                              "recorded it",
+                              path, outcome->first_different),
+                  1);
+}
+
+/// The --set values of a recorded run: they replay it, unless some are given anew.
+model::Result<std::vector<std::string>> recorded_overrides(const std::string& path) {
+  const auto log = firmware::telemetry::TickLogReader::open(path);
+  if (!log) return log.error();
+  return log->header().overrides_of_run();
+}
+
+/// The scene to be felt. law = "auto" becomes what tact-plan chose on this machine, as --set values
+/// that a tick log keeps, so a recording is replayed without the plan.
+model::Result<model::scene::Scene> load(firmware::run::Options& options) {
+  if (!options.replay_path.empty() && options.overrides.empty()) {
+    auto recorded = recorded_overrides(options.replay_path);
+    if (!recorded) return recorded.error();
+    options.overrides = std::move(*recorded);
+  }
+  auto scene = model::scene::load_scene(options.scene_path, options.overrides);
+  if (!scene || scene->law != model::scene::LawKind::kAuto) return scene;
+  const auto plan = model::scene::find_plan(*scene, options.overrides);
+  if (!plan) return plan.error();
+  const auto choice = model::scene::overrides_of(plan->sizes);
+  say(stderr, "tactd: law \"auto\" is{}: p99.9 {:.3g} us, force error {:.1f} %\n",
+      model::scene::command_text(choice), plan->tick_p999_us, 100.0 * plan->force_error_ratio);
+  options.overrides.insert(options.overrides.end(), choice.begin(), choice.end());
+  return model::scene::load_scene(options.scene_path, options.overrides);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  firmware::run::Parsed parsed = firmware::run::parse_options(argc, argv);
+  if (parsed.leave) return parsed.status;
+  firmware::run::Options& options = parsed.options;
+  if (options.faults) return print_faults(options.json_path);
+  if (options.list_devices) return print_devices(options.json_path);
+  if (options.help_scene) {
+    say(stdout, "{}", model::scene::scene_reference());
+    return 0;
+  }
+  const auto scene = load(options);
+  if (!scene) return complain(scene.error().sentence, 2);
+  if (!scene->note.empty()) say(stderr, "tactd: {}\n", scene->note);
+  if (!options.replay_path.empty()) return run_replay(*scene, options.replay_path);
+  return firmware::run::run_session(*scene, options);
+}

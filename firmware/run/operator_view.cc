@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/run/operator_view.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "firmware/run/say.h"
+#include "firmware/run/status_line.h"
+#include "firmware/watch/call_filter.h"
+
+namespace tact::firmware::run {
+
+using model::Fault;
+
+std::string trouble_behind(Fault fault, const hal::Device& device, const hal::SafetyLines& lines) {
+  if (fault == Fault::kNone) return {};
+  if (fault == Fault::kForbiddenCall) return watch::refused_call();
+  const bool of_lines = fault >= Fault::kEmergencyStop && fault <= Fault::kDeadManReleased;
+  return of_lines ? lines.trouble() : device.trouble();
+}
+
+OperatorView::OperatorView(const hal::Device& device, const hal::SafetyLines& lines,
+                           bool arms_itself)
+    : device_(device),
+      lines_(lines),
+      terminal_(isatty(STDOUT_FILENO) != 0),
+      arms_itself_(arms_itself) {}
+
+void OperatorView::show(const telemetry::Frame& newest) {
+  if (newest.fault != before_.fault && newest.fault != 0) {
+    const auto number = static_cast<Fault>(newest.fault);
+    const model::FaultEntry& fault = model::describe(number);
+    const std::string trouble = trouble_behind(number, device_, lines_);
+    tell(fmt::format("fault {}, {}: {}{}{}; {}", newest.fault, fault.name, fault.cause,
+                     trouble.empty() ? "" : ": ", trouble, fault.cure));
+  } else if (newest.fault == 0 && newest.state == loop::State::kOff) {
+    const std::string now = device_.trouble();
+    if (!now.empty() && now != waits_for_) tell(now);
+    waits_for_ = now;
+  } else if (newest.state == loop::State::kReady && before_.state != loop::State::kReady &&
+             !arms_itself_) {
+    tell("ready, force is off: hold the device, then arm it (pkill -USR2 tactd)");
+  }
+  if (terminal_) say(stdout, "\r\033[K{}", status_line(newest, before_));
+  std::fflush(stdout);
+  before_ = newest;
+}
+
+void OperatorView::tell(const std::string& sentence) const {
+  say(stderr, "{}tactd: {}\n", terminal_ ? "\n" : "", sentence);
+}
+
+void OperatorView::end() const {
+  if (terminal_) say(stdout, "\n");
+}
+
+}  // namespace tact::firmware::run

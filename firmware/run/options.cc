@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/run/options.h"
+
+#include <sched.h>
+
+#include <CLI/CLI.hpp>
+
+namespace tact::firmware::run {
+
+Parsed parse_options(int argc, char** argv) {
+  Parsed parsed;
+  Options& o = parsed.options;
+  CLI::App app{
+      "tactd: the haptic controller. Runs one scene on one device at the scene's fixed rate.\n"
+      "Ctrl-C: force to zero, clean exit. Exit status: 0 good, 1 a fault or a difference, 2 bad "
+      "usage or input."};
+  app.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return std::string("tactd: ") + error.what() + "; see tactd --help\n";
+  });
+  app.add_option("SCENE", o.scene_path, "scene file (TOML), e.g. model/scenes/liver.toml");
+  app.add_option("--set", o.overrides, "KEY=VALUE override of a scene key, may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  auto* seconds = app.add_option("--seconds", o.duration_s, "stop after this time, s");
+  seconds->check(CLI::Range(1e-3, 1e7));
+  app.add_option("--ticks", o.ticks, "stop after this many ticks")->excludes(seconds);
+  app.add_option("--json", o.json_path,
+                 "write the report to this file when done, - for stdout; with --list-devices or "
+                 "--faults that list");
+  app.add_flag("--check", o.check, "check scene, meshes, law and device, then leave");
+  app.add_flag("--arm", o.arm,
+               "hardware: force as soon as the device is ready, without SIGUSR2 of the operator");
+  app.add_flag("--strict", o.strict, "refuse to run where the PC gives no hard real time");
+  app.add_option("--core", o.core, "CPU core of the loop (default: an isolated one, or the last)")
+      ->check(CLI::Range(0, CPU_SETSIZE - 1));
+  auto* record = app.add_option("--record", o.record_path, "log every tick to this new file");
+  app.add_option("--replay", o.replay_path,
+                 "compute a recorded run again, with its --set values, and compare the forces bit "
+                 "for bit")
+      ->excludes(record);
+  app.add_option("--socket", o.socket_path,
+                 "telemetry socket (default: tact/telemetry.sock in XDG_RUNTIME_DIR, or in "
+                 "/tmp/tact-UID)");
+  app.add_flag("--no-telemetry", o.no_telemetry, "open no socket");
+  app.add_flag("--free-run", o.free_run,
+               "simulated time, as fast as the CPU allows; needs --ticks or --seconds");
+  auto* black_box = app.add_option(
+      "--black-box", o.black_box_folder,
+      "folder for the last 10 s before each fault, one file each (default: tact/black-box in "
+      "XDG_STATE_HOME, or in ~/.local/state)");
+  app.add_flag("--no-black-box", o.no_black_box, "keep no such files")->excludes(black_box);
+  auto* seccomp = app.add_flag("--seccomp", o.seccomp,
+                               "refuse to run where the loop's system calls cannot be filtered "
+                               "(default: filter if it can be)");
+  app.add_flag("--no-seccomp", o.no_seccomp, "let the loop make any system call")
+      ->excludes(seccomp);
+  app.add_flag("--faults", o.faults, "print every fault with its cause and cure, then leave");
+  app.add_flag("--list-devices", o.list_devices,
+               "print what is plugged in, what it lacks and the cure, then leave");
+  app.add_flag("--help-scene", o.help_scene, "print every scene key with its range, then leave");
+  try {
+    app.parse(argc, argv);
+    if (o.scene_path.empty() && !o.faults && !o.help_scene && !o.list_devices)
+      throw CLI::RequiredError("SCENE");
+    if (o.free_run && o.duration_s == 0.0 && o.ticks == 0)
+      throw CLI::ValidationError("--free-run", "needs --ticks or --seconds");
+  } catch (const CLI::ParseError& error) {
+    parsed.leave = true;
+    parsed.status = app.exit(error) == 0 ? 0 : 2;
+  }
+  return parsed;
+}
+
+}  // namespace tact::firmware::run

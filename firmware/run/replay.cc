@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/run/replay.h"
+
+#include <fmt/format.h>
+
+#include "firmware/pc/rt_setup.h"
+#include "firmware/telemetry/force_hash.h"
+#include "model/scene/plan_file.h"
+
+namespace tact::firmware::run {
+model::Result<ReplayOutcome> replay(const std::string& path, const model::scene::Scene& scene,
+                                    const model::scene::Tissue& tissue) {
+  auto log = telemetry::TickLogReader::open(path);
+  if (!log) return log.error();
+  const telemetry::LogHeader& header = log->header();
+  if (scene.hash != header.scene_hash)
+    return model::Error{fmt::format(
+        "{}: was recorded with another scene (hash {}, this one has {}); replay it with the scene "
+        "of that run, unchanged, and {}",
+        path, header.scene_hash, scene.hash,
+        header.overrides[0] == '\0'
+            ? "no --set"
+            : "with" + model::scene::command_text(header.overrides_of_run()) +
+                  " or no --set at all")};
+  if (header.ticks != 0)
+    return model::Error{path +
+                        ": is a black box, which begins in the middle of a run; tact-view --open "
+                        "shows it, tactd --record keeps a run from its start"};
+  pc::flush_denormals();  // as in the loop's thread
+  const double period_s = static_cast<double>(header.period_ns) * 1e-9;
+  loop::Controller controller(tissue.contact_scene(),
+                              gate::Gate(header.limits, period_s, header.force_share),
+                              header.non_rt == 0);
+  ReplayOutcome outcome;
+  outcome.force_hash = model::kFnvStart;
+  telemetry::LoggedTick tick;
+  for (; log->next(tick); ++outcome.ticks) {
+    if (tick.tick != outcome.ticks) {
+      outcome.gap_before = tick.tick;
+      break;
+    }
+    const loop::TickOutput output = controller.tick(tick.input);
+    outcome.force_hash = telemetry::hash_wrench(outcome.force_hash, output.written);
+    if (telemetry::bits_of(output.written) == telemetry::bits_of(tick.output.written)) continue;
+    if (outcome.different++ == 0) outcome.first_different = tick.tick;
+  }
+  outcome.truncated = log->truncated();
+  return outcome;
+}
+
+}  // namespace tact::firmware::run

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/run/report.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace tact::firmware::run {
+namespace {
+
+using nlohmann::json;
+
+json percentiles(const loop::LatencyHistogram& h) {
+  return {{"count", h.count()},
+          {"p50_ns", h.percentile_ns(0.50)},
+          {"p99_ns", h.percentile_ns(0.99)},
+          {"p99.9_ns", h.percentile_ns(0.999)},
+          {"p99.99_ns", h.percentile_ns(0.9999)},
+          {"max_ns", h.max_ns()},
+          {"max_tick", h.max_tick()}};
+}
+
+std::string duration_line(const char* what, const loop::LatencyHistogram& h) {
+  const auto us = [](std::uint64_t ns) { return static_cast<double>(ns) * 1e-3; };
+  return fmt::format("  {:13} p50 {:.1f} us, p99.9 {:.1f} us, max {:.1f} us at tick {}\n", what,
+                     us(h.percentile_ns(0.5)), us(h.percentile_ns(0.999)), us(h.max_ns()),
+                     h.max_tick());
+}
+
+}  // namespace
+
+json to_json(const pc::Environment& e) {
+  return {{"kernel_release", e.kernel_release},
+          {"kernel_version", e.kernel_version},
+          {"realtime_kernel", e.realtime_kernel},
+          {"cpu", e.cpu},
+          {"cores", e.cores},
+          {"clock_source", e.clock_source},
+          {"microcode", e.microcode},
+          {"boot_parameters", e.boot_parameters},
+          {"git_revision", e.git_revision},
+          {"compiler", e.compiler},
+          {"scene_hash", e.scene_hash}};
+}
+
+json to_json(const ThreadCosts& c) {
+  return {{"allocations", c.heap_calls_known ? json(c.heap_calls) : json(nullptr)},
+          {"minor_page_faults", c.minor_faults},
+          {"major_page_faults", c.major_faults},
+          {"voluntary_context_switches", c.voluntary_switches},
+          {"involuntary_context_switches", c.involuntary_switches}};
+}
+
+json make_report(const RunFacts& facts, const loop::LoopStatistics& loop, const gate::Gate& gate,
+                 const pc::Environment& environment) {
+  json phases, stages, shortfalls = json::array(), counts = json::object();
+  for (std::size_t i = 0; i < loop::kPhaseCount; ++i)
+    phases[loop::kPhaseName[i]] = percentiles(loop.phase[i]);
+  for (std::size_t i = 0; i < gate::kStageCount; ++i)
+    stages[gate::kStageName[i]] = gate.counters()[i];
+  for (const pc::Shortfall& s : facts.shortfalls) shortfalls.push_back(s.sentence);
+  for (const hal::DeviceCount& one : facts.device_counts) counts[one.name] = one.count;
+  const model::FaultEntry& fault = model::describe(facts.fault);
+  return {{"scene", facts.scene_name},
+          {"law", facts.law_title},
+          {"device", facts.device_name},
+          {"device_counts", counts},
+          {"rate_Hz", facts.rate_Hz},
+          {"duration_s", facts.duration_s},
+          {"non_rt", facts.non_rt},
+          {"simulated_time", facts.simulated_time},
+          {"shortfalls", shortfalls},
+          {"ticks", loop.ticks},
+          {"late", loop.late_ticks},
+          {"skipped", loop.skipped_ticks},
+          {"thread", to_json(facts.costs)},
+          {"phases", phases},
+          {"force_max_N", loop.max_force_N},
+          {"force_limit_N", facts.force_limit_N},
+          {"force_rms_max_N", loop.max_rms_force_N},
+          {"force_continuous_N", gate.continuous_force_N()},
+          {"energy_given_max_J", loop.max_given_energy_J},
+          {"energy_budget_J", gate.energy_budget_J()},
+          {"gate", stages},
+          {"state", name_of(facts.state)},
+          {"fault",
+           {{"number", static_cast<int>(facts.fault)},
+            {"name", fault.name},
+            {"cause", fault.cause},
+            {"trouble", facts.trouble},
+            {"cure", fault.cure}}},
+          {"stop",  // CLOCK_MONOTONIC; 0: never
+           {{"missed_ns", loop.stop.missed_ns},
+            {"fault_ns", loop.stop.fault_ns},
+            {"zero_ns", loop.stop.zero_ns}}},
+          {"call_filter", facts.call_filter},
+          {"black_boxes", facts.black_boxes},
+          {"dropped_records", facts.dropped_records},
+          {"dropped_frames", facts.dropped_frames},
+          {"force_hash", fmt::format("{:016x}", facts.force_hash)},
+          {"resident_peak_kB", facts.resident_peak_kB},
+          {"law_table_bytes", facts.law_table_bytes},
+          {"environment", to_json(environment)}};
+}
+
+std::string make_summary(const RunFacts& facts, const loop::LoopStatistics& loop) {
+  std::string out =
+      fmt::format("{}, law {}, on {}: {} ticks at {:g} Hz, {} late, {} skipped{}\n",
+                  facts.scene_name, facts.law_title, facts.device_name, loop.ticks, facts.rate_Hz,
+                  loop.late_ticks, loop.skipped_ticks, facts.non_rt ? ", non-rt" : "");
+  if (facts.simulated_time) {
+    out += "  simulated time: durations are not measured\n";
+  } else {
+    out += duration_line("wake latency", loop.phase[static_cast<std::size_t>(loop::Phase::kWake)]);
+    out += duration_line("tick", loop.phase[static_cast<std::size_t>(loop::Phase::kTotal)]);
+  }
+  out += fmt::format("  force         max {:.3f} N of {:.2f} N allowed, state {}", loop.max_force_N,
+                     facts.force_limit_N, name_of(facts.state));
+  if (facts.costs.heap_calls_known)
+    out += fmt::format(", {} allocations, {} page faults", facts.costs.heap_calls,
+                       facts.costs.minor_faults + facts.costs.major_faults);
+  if (loop.max_force_N == 0.0 && facts.duration_s > 5.0 && facts.fault == model::Fault::kNone)
+    out +=
+        "\n  nothing was touched: see organ.position_m, organ.mesh_unit_m and hand.site_m in the "
+        "scene";
+  if (facts.fault != model::Fault::kNone) {
+    const model::FaultEntry& fault = model::describe(facts.fault);
+    out += fmt::format("\n  fault {}: {}: {}{}{}; {}", static_cast<int>(facts.fault), fault.name,
+                       fault.cause, facts.trouble.empty() ? "" : ": ", facts.trouble, fault.cure);
+  }
+  return out;
+}
+
+std::string make_check_line(const model::scene::Scene& scene, const std::string& device_name,
+                            const model::scene::TissueLaw& law, const StiffnessMargin& stiffness,
+                            const std::optional<TimeMargin>& time) {
+  std::string out = fmt::format(
+      "{}: sound. {} on {}, {} vertices; law {}, range {:.1f} to {:.1f} mm, stiffness {:.4g} of "
+      "{:.4g} N/m",
+      scene.path, scene.name, device_name, scene.organ_mesh.vertex_m.size(), law.title(),
+      1e3 * law.range().pull_m, 1e3 * law.range().press_m, stiffness.needed_N_per_m,
+      stiffness.limit_N_per_m);
+  if (time)
+    out += fmt::format(", {:.3g} of {:g} us a tick ({})", time->judged_us, time->budget_us,
+                       time->tail_counts ? "p99.9" : "median");
+  return out;
+}
+
+}  // namespace tact::firmware::run

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// report.h - what a run tells when it ends: a JSON file for machines, a few lines for people.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "firmware/loop/rt_loop.h"
+#include "firmware/pc/environment.h"
+#include "firmware/pc/rt_setup.h"
+#include "firmware/run/law_check.h"
+#include "firmware/run/loop_parts.h"
+#include "hal/device.h"
+
+namespace tact::firmware::run {
+
+struct RunFacts {
+  std::string scene_name, law_title, device_name;
+  double rate_Hz = 0.0;
+  double duration_s = 0.0;
+  double force_limit_N = 0.0;
+  bool non_rt = false;
+  bool simulated_time = false;  // durations mean nothing
+  std::vector<pc::Shortfall> shortfalls;
+  ThreadCosts costs;
+  std::vector<hal::DeviceCount> device_counts;
+  std::uint64_t dropped_records = 0, dropped_frames = 0;
+  loop::State state = loop::State::kOff;
+  model::Fault fault = model::Fault::kNone;
+  std::string trouble;           // what the device says of it
+  std::uint64_t force_hash = 0;  // equal for equal runs; 0 when not computed
+  long resident_peak_kB = 0;
+  std::size_t law_table_bytes = 0;
+  bool call_filter = false;              // on the loop's thread
+  std::vector<std::string> black_boxes;  // files that this run left
+};
+
+nlohmann::json to_json(const pc::Environment& environment);
+nlohmann::json to_json(const ThreadCosts& costs);
+nlohmann::json make_report(const RunFacts& facts, const loop::LoopStatistics& loop,
+                           const gate::Gate& gate, const pc::Environment& environment);
+std::string make_summary(const RunFacts& facts, const loop::LoopStatistics& loop);
+/// What --check found; without a time where none was measured.
+std::string make_check_line(const model::scene::Scene& scene, const std::string& device_name,
+                            const model::scene::TissueLaw& law, const StiffnessMargin& stiffness,
+                            const std::optional<TimeMargin>& time);
+
+}  // namespace tact::firmware::run

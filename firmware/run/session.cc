@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/run/session.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "firmware/loop/grid.h"
+#include "firmware/pc/pc_check.h"
+#include "firmware/run/loop_parts.h"
+#include "firmware/run/loop_threads.h"
+#include "firmware/run/operator_signals.h"
+#include "firmware/run/operator_view.h"
+#include "firmware/run/report.h"
+#include "firmware/run/say.h"
+#include "firmware/run/telemetry_setup.h"
+
+namespace tact::firmware::run {
+namespace {
+
+using model::Error;
+using model::Result;
+
+constexpr std::int64_t kStatusPeriod_ns = 200'000'000;
+
+int fail(const std::string& sentence, int status) {
+  say(stderr, "tactd: {}\n", sentence);
+  return status;
+}
+
+// The short form of tact-doctor: what of this PC will make the loop late, in one line.
+void tell_red_rows(const pc::RtSettings& settings) {
+  const std::string red =
+      name_red_rows(pc::check_pc({.files = pc::PcFiles{}, .core = choose_core(settings)}));
+  if (!red.empty()) say(stderr, "tactd: {}\n", red);
+}
+
+// Everything of one run, in the order in which it comes to life.
+class Session {
+ public:
+  Session(const model::scene::Scene& scene, const Options& options)
+      : scene_(scene), options_(options) {
+    rt_.core = options.core;
+  }
+
+  int run();
+
+ private:
+  std::optional<Error> open();
+  std::optional<Error> open_telemetry();
+  std::optional<Error> open_call_filter();
+  void run_real_time();
+  void run_free();
+  void watch(LoopThreads& threads);
+  // Also of a loop that ended before it could tell what the watch had found.
+  model::Fault last_fault() const {
+    const model::Fault latched = parts_.controller->newest().fault;
+    return latched != model::Fault::kNone ? latched : requests_.fault.load();
+  }
+  int report();
+  RunFacts collect_facts(model::Fault fault, const std::string& trouble) const;
+  PartsSetup parts_setup() const {
+    return {.simulated_time = options_.free_run, .non_rt = non_rt_, .rt = rt_};
+  }
+  // As often as a viewer looks.
+  std::uint64_t ticks_per_shape() const {
+    return std::max(1ul, static_cast<std::uint64_t>(scene_.rate_Hz / scene_.frame_rate_Hz));
+  }
+
+  const model::scene::Scene& scene_;
+  const Options& options_;
+  pc::RtSettings rt_;
+  std::optional<OperatorSignals> operator_;
+  std::optional<pc::ProcessSetup> process_;
+  std::vector<pc::Shortfall> shortfalls_;
+  bool non_rt_ = false;
+  LoopParts parts_;
+  std::unique_ptr<hal::sim::HandSocket> hand_socket_;
+  std::unique_ptr<black_box::BlackBox> black_box_;
+  std::optional<telemetry::Telemetry> telemetry_;
+  loop::MonotonicClock monotonic_clock_;
+  loop::SimulatedClock simulated_clock_;
+  std::optional<loop::RtLoop> loop_;
+  loop::Requests requests_;
+  std::unique_ptr<watch::CallFilter> filter_;
+  ThreadCosts costs_;
+};
+
+int Session::run() {
+  pc::use_small_thread_stacks();
+  operator_.emplace();
+  if (!options_.free_run) {
+    process_.emplace(shortfalls_);
+    if (auto limited = watch::lift_rttime_limit()) shortfalls_.push_back(std::move(*limited));
+    for (pc::Shortfall& s : probe_rt_threads(rt_)) shortfalls_.push_back(std::move(s));
+    non_rt_ = !shortfalls_.empty();
+  }
+  for (const pc::Shortfall& s : shortfalls_) say(stderr, "tactd: {}\n", s.sentence);
+  if (!options_.free_run) tell_red_rows(rt_);
+  if (non_rt_ && options_.strict) return fail("refused by --strict: no hard real time here", 1);
+  if (non_rt_)
+    say(stderr, "tactd: no hard real time: force capped to {:g} %, records stamped non-rt\n",
+        100.0 * kNonRtForceShare);
+  if (const auto error = open()) return fail(error->sentence, 2);
+  if (options_.check) {
+    say(stdout, "{}\n",
+        make_check_line(scene_, parts_.device->info().name, parts_.tissue->law(), parts_.stiffness,
+                        parts_.time));
+    return 0;
+  }
+  if (!options_.json_path.empty() && options_.json_path != "-" &&
+      !std::ofstream(options_.json_path, std::ios::app))
+    return fail(options_.json_path + ": cannot be written; name a file in a folder of yours", 2);
+  if (const auto error = open_telemetry()) return fail(error->sentence, 2);
+  if (const auto error = open_call_filter()) return fail(error->sentence, 1);
+  requests_.arm.store(options_.arm || hal::registry::is_simulated(scene_.device));
+  if (options_.free_run)
+    run_free();
+  else
+    run_real_time();
+  return report();
+}
+
+std::optional<Error> Session::open() {
+  auto parts = open_loop_parts(scene_, parts_setup());
+  if (!parts) return parts.error();
+  parts_ = std::move(*parts);
+  const auto asked_periods =
+      static_cast<std::uint64_t>(std::ceil(options_.duration_s * scene_.rate_Hz));
+  loop::Clock& clock =
+      options_.free_run ? static_cast<loop::Clock&>(simulated_clock_) : monotonic_clock_;
+  loop_.emplace(loop::LoopSettings{.period_ns = period_ns(scene_),
+                                   .max_ticks = options_.ticks,
+                                   .max_periods = asked_periods,
+                                   .ticks_per_shape = ticks_per_shape()},
+                *parts_.device, *parts_.lines, *parts_.controller, clock, requests_, *parts_.ring);
+  return std::nullopt;
+}
+
+std::optional<Error> Session::open_telemetry() {
+  auto outlets = open_outlets({.scene = scene_,
+                               .options = options_,
+                               .tissue = *parts_.tissue,
+                               .device = *parts_.device,
+                               .limits = parts_.limits,
+                               .period_ns = period_ns(scene_),
+                               .force_share = parts_setup().force_share(),
+                               .gate = parts_.controller->gate(),
+                               .non_rt = non_rt_});
+  if (!outlets) return outlets.error();
+  hand_socket_ = std::move(outlets->hand);
+  black_box_ = std::move(outlets->black_box);
+  if (!outlets->no_black_box.empty()) say(stderr, "tactd: {}\n", outlets->no_black_box);
+  telemetry_.emplace(*parts_.ring,
+                     telemetry::FrameBuilder(parts_.tissue->law().site_law(),
+                                             parts_.controller->shapes(), non_rt_),
+                     telemetry::FramePace{.frame_rate_Hz = scene_.frame_rate_Hz,
+                                          .loop_period_ns = period_ns(scene_)},
+                     std::move(outlets->sinks), &requests_.fault);
+  return std::nullopt;
+}
+
+std::optional<Error> Session::open_call_filter() {
+  if (options_.free_run || options_.no_seccomp) return std::nullopt;
+  auto filter =
+      watch::CallFilter::make(parts_.device->loop_calls(), parts_.lines->loop_calls(), requests_);
+  if (filter) {
+    filter_ = std::move(*filter);
+    return std::nullopt;
+  }
+  if (options_.seccomp) return Error{"refused by --seccomp: " + filter.error().sentence};
+  say(stderr, "tactd: {}; --no-seccomp says that this is meant\n", filter.error().sentence);
+  return std::nullopt;
+}
+
+void Session::run_free() {
+  pc::flush_denormals();
+  while (loop_->may_run()) {
+    loop_->step();
+    telemetry_->drain();
+    if (loop_->statistics().ticks % ticks_per_shape() != 0) continue;
+    telemetry_->publish();
+    operator_->obey(requests_, 0);
+  }
+  loop_->let_go();
+}
+
+void Session::run_real_time() {
+  telemetry_->start();
+  LoopThreads threads({.turns = {{loop_->progress(), [this] { loop_->run(); }}},
+                       .device = *parts_.device,
+                       .lines = *parts_.lines,
+                       .requests = requests_,
+                       .filter = filter_.get(),
+                       .rt = rt_,
+                       .period_ns = period_ns(scene_),
+                       .hard_real_time = !non_rt_});
+  watch(threads);
+  threads.join();
+  costs_ = threads.costs();
+}
+
+// The main thread while the loop runs: waits for signals, tells what happens.
+void Session::watch(LoopThreads& threads) {
+  OperatorView view(*parts_.device, *parts_.lines, requests_.arm.load());
+  const auto show = [&] {
+    view.show(telemetry_->newest_frame());
+    if (black_box_ == nullptr) return;
+    for (const std::string& sentence : black_box_->news()) view.tell(sentence);
+  };
+  while (!threads.ended()) {
+    const std::int64_t now_ns = monotonic_clock_.now_ns();
+    const std::int64_t until_ns =
+        loop::next_half_way_ns(now_ns + kStatusPeriod_ns, period_ns(scene_));
+    operator_->obey(requests_, until_ns - now_ns);
+    show();
+    if (!threads.hangs()) continue;
+    threads.leave_behind(1, [&] {
+      view.tell(
+          "the loop does not come back, so tactd ends without it: switch the device's power off");
+      telemetry_->stop();
+      show();
+    });
+  }
+  view.end();
+}
+
+// What the device, the lines and the threads say once they have ended.
+int Session::report() {
+  const model::Fault fault = last_fault();
+  const std::string trouble = trouble_behind(fault, *parts_.device, *parts_.lines);
+  parts_.lines->stop();
+  parts_.device->stop();
+  if (hand_socket_) hand_socket_->stop();
+  const std::string log_trouble = telemetry_->stop();
+  for (const std::string& sentence : black_box_ ? black_box_->news() : std::vector<std::string>{})
+    say(stderr, "tactd: {}\n", sentence);
+  const RunFacts facts = collect_facts(fault, trouble);
+  const std::string report = make_report(facts, loop_->statistics(), parts_.controller->gate(),
+                                         pc::read_environment(scene_.hash))
+                                 .dump(2);
+  if (options_.json_path == "-")
+    say(stdout, "{}\n", report);
+  else
+    say(stdout, "{}\n", make_summary(facts, loop_->statistics()));
+  if (!options_.json_path.empty() && options_.json_path != "-") {
+    std::ofstream file(options_.json_path);
+    if (!(file << report << '\n')) return fail(options_.json_path + ": cannot be written", 2);
+  }
+  if (!log_trouble.empty()) return fail(log_trouble, 1);
+  return fault == model::Fault::kNone ? 0 : 1;
+}
+
+RunFacts Session::collect_facts(model::Fault fault, const std::string& trouble) const {
+  rusage process{};
+  getrusage(RUSAGE_SELF, &process);
+  const loop::LoopStatistics& statistics = loop_->statistics();
+  return {.scene_name = scene_.name,
+          .law_title = parts_.tissue->law().title(),
+          .device_name = parts_.device->info().name,
+          .rate_Hz = scene_.rate_Hz,
+          .duration_s =
+              static_cast<double>(statistics.ticks + statistics.skipped_ticks) / scene_.rate_Hz,
+          .force_limit_N = parts_.controller->gate().force_limit_N(),
+          .non_rt = non_rt_,
+          .simulated_time = options_.free_run,
+          .shortfalls = shortfalls_,
+          .costs = costs_,
+          .device_counts = parts_.device->tally(),
+          .dropped_records = parts_.ring->dropped(),
+          .dropped_frames = telemetry_->dropped_frames(),
+          .state = parts_.controller->newest().state,
+          .fault = fault,
+          .trouble = trouble,
+          .force_hash = telemetry_->force_hash(),
+          .resident_peak_kB = process.ru_maxrss,
+          .law_table_bytes = parts_.tissue->law().memory_bytes(),
+          .call_filter = costs_.call_filter,
+          .black_boxes = black_box_ ? black_box_->files() : std::vector<std::string>{}};
+}
+
+}  // namespace
+
+int run_session(const model::scene::Scene& scene, const Options& options) {
+  std::signal(SIGPIPE, SIG_IGN);  // who reads our sentences may go; the loop stays
+  return Session(scene, options).run();
+}
+
+}  // namespace tact::firmware::run

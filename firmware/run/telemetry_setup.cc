@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/run/telemetry_setup.h"
+
+#include <fmt/format.h>
+
+namespace tact::firmware::run {
+namespace {
+
+using model::Error;
+using model::Result;
+
+Result<std::string> socket_path(const RunSetup& run) {
+  if (!run.options.socket_path.empty()) return run.options.socket_path;
+  auto directory = telemetry::runtime_directory();
+  if (!directory) return directory.error();
+  return *directory + "/telemetry.sock";
+}
+
+telemetry::Hello hello_of(const RunSetup& run, const std::string& hand_path) {
+  const telemetry::HelloFacts facts{.device = run.device.info(),
+                                    .force_limit_N = run.gate.force_limit_N(),
+                                    .continuous_force_N = run.gate.continuous_force_N(),
+                                    .energy_budget_J = run.gate.energy_budget_J(),
+                                    .non_rt = run.non_rt,
+                                    .hand_socket = hand_path};
+  return make_hello(run.scene, run.tissue, facts);
+}
+
+/// Takes over `meshes`.
+std::optional<Error> open_sockets(const RunSetup& run, int meshes, Outlets& out) {
+  const auto path = socket_path(run);
+  if (!path) return path.error();
+  const std::string hand_path = hal::registry::is_simulated(run.device) ? *path + ".hand" : "";
+  auto opened = telemetry::TelemetrySocket::open(*path, hello_of(run, hand_path), meshes);
+  if (!opened) return opened.error();
+  out.sinks.socket.emplace(std::move(*opened));
+  if (hand_path.empty()) return std::nullopt;
+  auto hand = hal::registry::start_hand_socket(run.device, hand_path);
+  if (!hand) return hand.error();
+  out.hand = std::move(*hand);
+  return std::nullopt;
+}
+
+/// False if the --set values are too long for it.
+bool fill_header(const RunSetup& run, telemetry::LogHeader& header) {
+  header.period_ns = run.period_ns;
+  header.limits = run.limits;
+  header.force_share = run.force_share;
+  header.non_rt = run.non_rt ? 1 : 0;
+  run.scene.hash.copy(header.scene_hash, sizeof header.scene_hash - 1);
+  return header.keep_overrides(run.options.overrides);
+}
+
+Result<telemetry::TickLogWriter> open_log(const RunSetup& run) {
+  telemetry::LogHeader header;
+  if (!fill_header(run, header))
+    return Error{
+        fmt::format("{}: has no room for --set values of more than {} letters; write them "
+                    "into the scene",
+                    run.options.record_path, sizeof header.overrides - 1)};
+  return telemetry::TickLogWriter::create(run.options.record_path, header);
+}
+
+/// Takes over `meshes`.
+std::unique_ptr<black_box::BlackBox> make_black_box(const RunSetup& run, const std::string& folder,
+                                                    int meshes) {
+  black_box::BlackBoxRun facts{.folder = folder,
+                               .scene_name = run.scene.name,
+                               .header = {},
+                               .hello = hello_of(run, ""),
+                               .mesh_fd = meshes};
+  fill_header(run, facts.header);  // too long ones are left out: nothing here is replayed
+  return std::make_unique<black_box::BlackBox>(std::move(facts), run.scene.rate_Hz,
+                                               run.scene.frame_rate_Hz);
+}
+
+}  // namespace
+
+Result<Outlets> open_outlets(const RunSetup& run) {
+  Outlets out;
+  if (!run.options.no_telemetry) {
+    const auto meshes = telemetry::make_mesh_file(run.scene);
+    if (!meshes) return meshes.error();
+    if (auto failed = open_sockets(run, *meshes, out)) return std::move(*failed);
+  }
+  if (!run.options.record_path.empty()) {
+    auto log = open_log(run);
+    if (!log) return log.error();
+    out.sinks.log.emplace(std::move(*log));
+  }
+  if (run.options.no_black_box) return out;
+  const auto folder = black_box::black_box_folder(run.options.black_box_folder);
+  if (!folder && !run.options.black_box_folder.empty()) return folder.error();
+  if (!folder) {
+    out.no_black_box = folder.error().sentence;
+    return out;
+  }
+  const auto meshes = telemetry::make_mesh_file(run.scene);
+  if (!meshes) return meshes.error();
+  out.black_box = make_black_box(run, *folder, *meshes);
+  out.sinks.recorder = out.black_box.get();
+  return out;
+}
+
+}  // namespace tact::firmware::run

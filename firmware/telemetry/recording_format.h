@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// recording_format.h - the files that both tactd and tact-view know: a viewer's recording, and how
+// a tick log begins.
+//
+// Recording: FileHeader, Hello, meshes, then one FrameRecord per frame; little-endian, fixed sizes,
+// so a damaged frame costs that frame only. Every part has a CRC-32 (polynomial 0x04C11DB7, as
+// zlib). In version 4 the operator's tracker ran: behind each frame stands one operator record of
+// the viewer, bodies and figure (host/record/operator_record.h). tactd writes version 3.
+// Tick log: LogStart and what else belongs to its header (tick_log.h), then `ticks` records of
+// tick_bytes, in the machine's own layout, and a whole recording of the same seconds. Without a
+// number of ticks they go on to the end of the file, and no recording follows.
+#pragma once
+
+#include <boost/crc.hpp>
+#include <cstddef>
+#include <cstring>
+#include <span>
+#include <string>
+
+#include "firmware/telemetry/telemetry_record.h"
+
+namespace tact::firmware::telemetry {
+
+inline constexpr char kRecordingMagic[8] = {'t', 'a', 'c', 't', 'r', 'e', 'c', '\n'};
+inline constexpr std::uint32_t kRecordingVersion = 3;         // 3: energy and RMS of the force
+inline constexpr std::uint32_t kTrackedRecordingVersion = 4;  // 3 with the tracked operator
+
+struct FileHeader {
+  char magic[8] = {};
+  std::uint32_t version = 0;
+  std::uint32_t hello_bytes = 0, frame_bytes = 0;
+  std::uint32_t setup_crc = 0;  // of Hello and meshes
+  std::uint64_t mesh_bytes = 0;
+};
+
+struct FrameRecord {
+  Frame frame;
+  std::uint32_t crc = 0;  // of frame
+  std::uint32_t pad = 0;
+};
+
+/// The last letter is the format's version.
+inline constexpr char kLogMagic[8] = {'t', 'a', 'c', 't', 'l', 'o', 'g', '6'};
+
+struct LogStart {
+  char magic[8] = {};
+  std::uint32_t header_bytes = 0;  // all that comes before the first tick
+  std::uint32_t tick_bytes = 0;    // a different build is refused
+  std::uint64_t ticks = 0;         // 0: to the end of the file
+};
+
+inline std::uint32_t crc_of(const Frame& frame) {
+  boost::crc_32_type crc;
+  crc.process_bytes(&frame, sizeof frame);
+  return crc.checksum();
+}
+
+inline std::uint32_t crc_of(const Hello& hello, std::span<const std::byte> mesh) {
+  boost::crc_32_type crc;
+  crc.process_bytes(&hello, sizeof hello);
+  crc.process_bytes(mesh.data(), mesh.size());
+  return crc.checksum();
+}
+
+/// The bytes that begin a recording, and those of one frame.
+inline std::string recording_start(const Hello& hello, std::span<const std::byte> mesh,
+                                   std::uint32_t version = kRecordingVersion) {
+  FileHeader header{.version = version,
+                    .hello_bytes = sizeof(Hello),
+                    .frame_bytes = sizeof(Frame),
+                    .setup_crc = crc_of(hello, mesh),
+                    .mesh_bytes = mesh.size()};
+  std::memcpy(header.magic, kRecordingMagic, sizeof header.magic);
+  std::string out;
+  out.append(reinterpret_cast<const char*>(&header), sizeof header);
+  out.append(reinterpret_cast<const char*>(&hello), sizeof hello);
+  return out.append(reinterpret_cast<const char*>(mesh.data()), mesh.size());
+}
+
+inline std::string recording_frame(const Frame& frame) {
+  const FrameRecord record{.frame = frame, .crc = crc_of(frame)};
+  return {reinterpret_cast<const char*>(&record), sizeof record};
+}
+
+}  // namespace tact::firmware::telemetry

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/telemetry/telemetry.h"
+
+#include <cmath>
+
+#include "firmware/loop/clock.h"
+#include "firmware/loop/grid.h"
+#include "firmware/telemetry/force_hash.h"
+
+namespace tact::firmware::telemetry {
+
+Telemetry::Telemetry(loop::TickRing& ring, FrameBuilder builder, const FramePace& pace, Sinks sinks,
+                     const std::atomic<model::Fault>* watch_fault)
+    : ring_(ring),
+      builder_(std::move(builder)),
+      pace_(pace),
+      sinks_(std::move(sinks)),
+      watch_fault_(watch_fault),
+      force_hash_(model::kFnvStart) {}
+
+Telemetry::~Telemetry() { stop(); }
+
+void Telemetry::start() { thread_ = std::thread(&Telemetry::run, this); }
+
+std::string Telemetry::stop() {
+  ending_.store(true, std::memory_order_relaxed);
+  if (thread_.joinable()) thread_.join();
+  drain();
+  publish();
+  if (sinks_.recorder) {
+    sinks_.recorder->stands(watch_fault());  // of a loop that ended before it could tell
+    sinks_.recorder->finish();
+  }
+  return sinks_.log ? sinks_.log->close() : std::string();
+}
+
+void Telemetry::run() {
+  loop::MonotonicClock clock;
+  const std::int64_t frame_ns = std::llround(1e9 / pace_.frame_rate_Hz);
+  std::int64_t due_ns = clock.now_ns();
+  while (!ending_.load(std::memory_order_relaxed)) {
+    drain();
+    publish();
+    due_ns += frame_ns;
+    clock.sleep_until_ns(loop::next_half_way_ns(due_ns, pace_.loop_period_ns));
+  }
+}
+
+void Telemetry::drain() {
+  while (ring_.pop(record_)) {
+    builder_.add(record_);
+    force_hash_ = hash_wrench(force_hash_, record_.output.written);
+    if (sinks_.log) sinks_.log->add(record_);
+    if (sinks_.recorder) sinks_.recorder->add(record_);
+  }
+}
+
+// What the watch found goes into the next frame, and into the last one again when the loop stands
+// still and sends nothing.
+std::optional<Frame> Telemetry::next_frame() {
+  const model::Fault found = watch_fault();
+  std::optional<Frame> frame;
+  if (builder_.has_news()) {
+    frame = builder_.take(ring_.dropped());
+  } else {
+    if (sinks_.recorder) sinks_.recorder->stands(found);
+    if (found != model::Fault::kNone && newest_.fault == 0) frame = newest_;
+  }
+  if (frame && frame->fault == 0 && found != model::Fault::kNone) {
+    frame->fault = static_cast<std::uint16_t>(found);
+    frame->state = loop::State::kStopped;
+  }
+  return frame;
+}
+
+void Telemetry::publish() {
+  if (const std::optional<Frame> frame = next_frame()) {
+    if (sinks_.recorder) sinks_.recorder->add(*frame);
+    if (sinks_.socket) {
+      sinks_.socket->send(*frame);
+      dropped_frames_.store(sinks_.socket->dropped_frames(), std::memory_order_relaxed);
+    }
+    const std::lock_guard lock(newest_mutex_);
+    newest_ = *frame;
+  }
+  if (sinks_.recorder) sinks_.recorder->work();
+}
+
+Frame Telemetry::newest_frame() const {
+  const std::lock_guard lock(newest_mutex_);
+  return newest_;
+}
+
+}  // namespace tact::firmware::telemetry

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/telemetry/telemetry_frame.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace tact::firmware::telemetry {
+namespace {
+
+template <std::size_t kSize>
+void put(char (&field)[kSize], const std::string& text) {
+  const std::size_t length = std::min(text.size(), kSize - 1);
+  std::memcpy(field, text.data(), length);
+  field[length] = '\0';
+}
+
+void put(float (&field)[3], const model::Vec3& v) {
+  field[0] = static_cast<float>(v.x);
+  field[1] = static_cast<float>(v.y);
+  field[2] = static_cast<float>(v.z);
+}
+
+// Tool, force and state of one tick.
+void put(Frame& frame, const loop::TickInput& input, const loop::TickOutput& output) {
+  const hal::Tool& tool = input.sample.tool;
+  put(frame.tool_position_m, tool.position_m);
+  const model::Quat& q = tool.orientation;
+  const double wxyz[4] = {q.w, q.x, q.y, q.z};
+  std::transform(wxyz, wxyz + 4, frame.tool_orientation,
+                 [](double v) { return static_cast<float>(v); });
+  put(frame.tool_velocity_mps, tool.velocity_mps);
+  frame.grip_ratio = static_cast<float>(tool.grip_ratio);
+  put(frame.force_N, output.written.force_N);
+  put(frame.torque_Nm, output.written.torque_Nm);
+  put(frame.wanted_force_N, output.wanted.force_N);
+  frame.fault = static_cast<std::uint16_t>(output.fault);
+  frame.state = output.state;
+}
+
+float to_us(std::int64_t ns) { return static_cast<float>(static_cast<double>(ns) * 1e-3); }
+
+void append(std::vector<char>& bytes, const model::mesh::SurfaceMesh& mesh) {
+  const auto add = [&bytes](const void* data, std::size_t size) {
+    const char* from = static_cast<const char*>(data);
+    bytes.insert(bytes.end(), from, from + size);
+  };
+  for (const model::Vec3& v : mesh.vertex_m) {
+    float xyz[3];
+    put(xyz, v);
+    add(xyz, sizeof xyz);
+  }
+  for (const model::contact::TriangleCorners& t : mesh.triangle) add(t.data(), sizeof t);
+}
+
+}  // namespace
+
+Hello make_hello(const model::scene::Scene& scene, const model::scene::Tissue& tissue,
+                 const HelloFacts& facts) {
+  Hello hello;
+  hello.organ_vertices = static_cast<std::uint32_t>(scene.organ_mesh.vertex_m.size());
+  hello.organ_triangles = static_cast<std::uint32_t>(scene.organ_mesh.triangle.size());
+  hello.tool_vertices = static_cast<std::uint32_t>(scene.tool_mesh.vertex_m.size());
+  hello.tool_triangles = static_cast<std::uint32_t>(scene.tool_mesh.triangle.size());
+  hello.site_count = static_cast<std::uint32_t>(scene.tool.spheres.size());
+  std::array<double, kMaxRings> ring_m{};
+  hello.ring_count = static_cast<std::uint32_t>(
+      tissue.law().site_law().profile({.place = {.triangle = 0, .weight = {1, 0, 0}}}, ring_m));
+  hello.ring_pitch_m = static_cast<float>(tissue.law().site_law().ring_pitch_m());
+  hello.rate_Hz = static_cast<float>(scene.rate_Hz);
+  hello.frame_rate_Hz = static_cast<float>(scene.frame_rate_Hz);
+  hello.force_limit_N = static_cast<float>(facts.force_limit_N);
+  hello.continuous_force_N = static_cast<float>(facts.continuous_force_N);
+  hello.energy_budget_J = static_cast<float>(facts.energy_budget_J);
+  for (std::size_t i = 0; i < scene.tool.spheres.size(); ++i) {
+    hello.sphere_radius_m[i] = static_cast<float>(scene.tool.spheres[i].radius_m);
+    put(hello.sphere_offset_m[i], scene.tool.spheres[i].offset_m);
+  }
+  hello.non_rt = facts.non_rt ? 1 : 0;
+  hello.simulated = facts.hand_socket.empty() ? 0 : 1;
+  put(hello.scene_name, scene.name);
+  put(hello.device_name, facts.device.name);
+  put(hello.law_name, tissue.law().title());
+  put(hello.hand_socket, facts.hand_socket);
+  return hello;
+}
+
+model::Result<int> make_mesh_file(const model::scene::Scene& scene) {
+  std::vector<char> bytes;
+  append(bytes, scene.organ_mesh);
+  append(bytes, scene.tool_mesh);
+  const int fd = memfd_create("tact-meshes", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+  std::size_t written = 0;
+  while (fd >= 0 && written < bytes.size()) {
+    const ssize_t n = write(fd, bytes.data() + written, bytes.size() - written);
+    if (n <= 0) break;
+    written += static_cast<std::size_t>(n);
+  }
+  if (fd < 0 || written < bytes.size())
+    return model::Error{std::string("telemetry mesh file: ") + std::strerror(errno) +
+                        "; free some memory and start again"};
+  fcntl(fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL);
+  return fd;
+}
+
+void FrameBuilder::add(const loop::TickRecord& record) {
+  if (first_due_ns_ < 0) first_due_ns_ = record.due_ns;
+  const float margin_us = to_us(record.margin_ns);
+  const auto given_J = static_cast<float>(record.output.given_energy_J);
+  given_energy_J_ = tick_us_.empty() ? given_J : std::max(given_energy_J_, given_J);
+  worst_margin_us_ = tick_us_.empty() ? margin_us : std::min(worst_margin_us_, margin_us);
+  tick_us_.push_back(to_us(record.phase_ns[static_cast<std::size_t>(loop::Phase::kTotal)]));
+  peak_force_N_ = std::max(peak_force_N_, static_cast<float>(norm(record.output.written.force_N)));
+  if (record.output.limit != model::Fault::kNone) limit_ = record.output.limit;
+  newest_ = record;
+}
+
+Frame frame_of_tick(const Frame& picture, const LoggedTick& tick, std::int64_t time_ns) {
+  Frame frame = picture;
+  frame.tick = tick.tick;
+  frame.time_ns = time_ns;
+  put(frame, tick.input, tick.output);
+  frame.peak_force_N = static_cast<float>(norm(tick.output.written.force_N));
+  frame.rms_force_N = static_cast<float>(tick.output.rms_force_N);
+  frame.given_energy_J = static_cast<float>(tick.output.given_energy_J);
+  frame.limit = static_cast<std::uint16_t>(tick.output.limit);
+  return frame;
+}
+
+Frame FrameBuilder::take(std::uint64_t dropped_records) {
+  const loop::TickRecord& r = newest_;
+  Frame frame;
+  frame.tick = r.tick;
+  frame.time_ns = r.due_ns - first_due_ns_;
+  frame.late_ticks = r.late_ticks;
+  frame.skipped_ticks = r.skipped_ticks;
+  frame.dropped_records = dropped_records;
+  put(frame, r.input, r.output);
+  frame.worst_margin_us = worst_margin_us_;
+  const auto middle = tick_us_.begin() + static_cast<std::ptrdiff_t>(tick_us_.size() / 2);
+  std::nth_element(tick_us_.begin(), middle, tick_us_.end());
+  frame.median_tick_us = tick_us_.empty() ? 0.0f : *middle;
+  frame.peak_force_N = peak_force_N_;
+  frame.rms_force_N = static_cast<float>(r.output.rms_force_N);
+  frame.given_energy_J = given_energy_J_;
+  frame.limit = static_cast<std::uint16_t>(limit_);
+  frame.non_rt = non_rt_ ? 1 : 0;
+  static_assert(kMaxSites == model::contact::kMaxSpheres);
+  const auto touches = r.touches.all();
+  for (std::size_t i = 0; i < touches.size(); ++i) add_site(touches[i], frame.site[i]);
+  add_patch(frame.patch);
+  tick_us_.clear();
+  peak_force_N_ = 0.0f;
+  limit_ = model::Fault::kNone;
+  return frame;
+}
+
+void FrameBuilder::add_patch(FramePatch& patch) {
+  static_assert(kMaxPatchVertices == model::contact::kMaxShapeNodes &&
+                kMaxCutsTold == model::contact::kCutWindow);
+  constexpr double kMost_um = std::numeric_limits<std::int16_t>::max();
+  shapes_.read(shape_);  // or the one before
+  patch.vertex_count = shape_.node_count;
+  patch.cut_total = shape_.cut_total;
+  patch.cut_first = shape_.cut_first;
+  patch.cut_count = shape_.cut_count;
+  std::copy(shape_.vertex.begin(), shape_.vertex.end(), patch.vertex);
+  std::copy(shape_.cut_triangle.begin(), shape_.cut_triangle.end(), patch.cut_triangle);
+  for (std::size_t i = 0; i < shape_.node_count; ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double um = 1e6 * static_cast<double>(shape_.displacement_m[i][k]);
+      patch.displacement_um[i][k] =
+          static_cast<std::int16_t>(std::clamp(std::round(um), -kMost_um, kMost_um));
+    }
+}
+
+void FrameBuilder::add_site(const model::contact::SphereTouch& touch, FrameSite& site) const {
+  put(site.surface_point_m, touch.surface_point_m);
+  put(site.normal, touch.normal);
+  put(site.shift_m, touch.shift_m);
+  site.depth_m = static_cast<float>(touch.depth_m);
+  site.state = static_cast<SiteState>(touch.state);
+  // Its own dent, as the page adds the dents up; what lies in another's dent has none.
+  const bool is_held = touch.state == model::contact::TouchState::kHeld;
+  if (touch.state == model::contact::TouchState::kFree || !(is_held || touch.dent_m > 0.0)) return;
+  std::array<double, kMaxRings> ring_m{};
+  const std::size_t count =
+      law_.profile({.place = touch.place, .normal = touch.normal, .depth_m = touch.dent_m}, ring_m);
+  for (std::size_t j = 0; j < count; ++j) site.profile_m[j] = static_cast<float>(ring_m[j]);
+}
+
+}  // namespace tact::firmware::telemetry

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// telemetry_record.h - what tactd tells: of firmware/, host/ includes this and recording_format.h.
+//
+// A local SOCK_SEQPACKET socket, owner only, send-only, little-endian plain structs. Each message
+// begins with a MessageHeader. The first is one Hello that carries a file descriptor (SCM_RIGHTS)
+// of a sealed memory file with the meshes; then Frames follow at frame_rate_Hz. A client that does
+// not read loses frames, never delays anything.
+//
+// Memory file: organ vertices (3 float each, W, m), organ triangles (3 uint32 each), then the same
+// for the tool mesh (tool frame, m). Units are in the names; vectors are x, y, z in frame W.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "firmware/loop/state.h"
+
+namespace tact::firmware::telemetry {
+
+inline constexpr std::uint32_t kTelemetryMagic = 0x74636174;  // "tact"
+inline constexpr std::uint16_t kTelemetryVersion = 3;
+inline constexpr std::size_t kMaxSites = 4;            // probe spheres on the tool
+inline constexpr std::size_t kMaxRings = 32;           // profile points of one site
+inline constexpr std::size_t kMaxPatchVertices = 180;  // told one by one
+inline constexpr std::size_t kMaxCutsTold = 32;        // in one frame
+
+enum class MessageKind : std::uint16_t { kHello = 1, kFrame = 2 };
+enum class SiteState : std::uint8_t { kFree = 0, kTouching = 1, kHeld = 2 };
+
+struct MessageHeader {
+  std::uint32_t magic = kTelemetryMagic;
+  std::uint16_t version = kTelemetryVersion;
+  MessageKind kind = MessageKind::kFrame;
+};
+
+struct Hello {
+  MessageHeader header{.kind = MessageKind::kHello};
+  std::uint32_t organ_vertices = 0, organ_triangles = 0;
+  std::uint32_t tool_vertices = 0, tool_triangles = 0;
+  std::uint32_t site_count = 0;  // probe spheres in use
+  std::uint32_t ring_count = 0;  // profile points in use, u_0 .. u_N
+  float ring_pitch_m = 0.0f;     // profile point j is at radius j * pitch around the site
+  float rate_Hz = 0.0f;
+  float frame_rate_Hz = 0.0f;
+  float force_limit_N = 0.0f;
+  float continuous_force_N = 0.0f;
+  float energy_budget_J = 0.0f;
+  float sphere_radius_m[kMaxSites] = {};
+  float sphere_offset_m[kMaxSites][3] = {};  // tool frame
+  std::uint8_t non_rt = 0;                   // 1: this PC gives no hard real time, force is capped
+  std::uint8_t simulated = 0;                // 1: the device is simulated, the hand may be moved
+  char scene_name[62] = {};
+  char device_name[64] = {};
+  char law_name[64] = {};
+  char hand_socket[108] = {};  // where a simulated device takes hand targets; empty for hardware
+};
+
+struct FrameSite {
+  float surface_point_m[3] = {};    // touched or held point of the undeformed surface
+  float normal[3] = {};             // outward unit normal there
+  float shift_m[3] = {};            // tangential displacement of the tissue at the site
+  float depth_m = 0.0f;             // press positive, pull negative
+  float profile_m[kMaxRings] = {};  // normal displacement of ring j, into the tissue positive
+  SiteState state = SiteState::kFree;
+  std::uint8_t pad[3] = {};
+};
+
+/// What a mass-spring law shows instead of profiles: vertices that are not at rest, and the cut
+/// triangles, told in a window over their list that moves on from frame to frame.
+struct FramePatch {
+  std::uint32_t vertex_count = 0;                 // in use
+  std::uint32_t cut_total = 0, cut_first = 0;     // of the list, so far; first one told here
+  std::uint32_t cut_count = 0;                    // told here
+  std::uint32_t vertex[kMaxPatchVertices] = {};   // of the organ mesh
+  std::uint32_t cut_triangle[kMaxCutsTold] = {};  // of the organ mesh
+  std::int16_t displacement_um[kMaxPatchVertices][3] = {};  // from rest, W
+};
+
+struct Frame {
+  MessageHeader header{.kind = MessageKind::kFrame};
+  std::uint64_t tick = 0;
+  std::int64_t time_ns = 0;  // since the loop started
+  std::uint64_t late_ticks = 0, skipped_ticks = 0, dropped_records = 0;
+  float tool_position_m[3] = {};
+  float tool_orientation[4] = {1, 0, 0, 0};  // w, x, y, z; tool frame to W
+  float tool_velocity_mps[3] = {};
+  float grip_ratio = 0.0f;
+  float force_N[3] = {};  // written to the device
+  float torque_Nm[3] = {};
+  float wanted_force_N[3] = {};  // asked by the law, before the gate
+  float worst_margin_us = 0.0f;  // least time left before the deadline since the last frame
+  float median_tick_us = 0.0f;   // of the ticks since the last frame
+  float peak_force_N = 0.0f;     // largest |force| since the last frame
+  float rms_force_N = 0.0f;      // written, over limits.thermal_time_s
+  float given_energy_J = 0.0f;   // since arming, more than was taken: largest since the last frame
+  std::uint16_t fault = 0;       // number in the fault table
+  std::uint16_t limit = 0;       // last limit that acted since the last frame, 0 none
+  loop::State state = loop::State::kOff;
+  std::uint8_t non_rt = 0;  // stamped on every record of a PC without hard real time
+  std::uint8_t pad[6] = {};
+  FrameSite site[kMaxSites] = {};
+  FramePatch patch;
+};
+
+static_assert(std::is_trivially_copyable_v<Hello> && std::is_trivially_copyable_v<Frame>);
+// No hidden padding: recordings are checked by a sum over all bytes, and padding has no value.
+static_assert(sizeof(FrameSite) == (10 + kMaxRings) * sizeof(float) + 4);
+static_assert(sizeof(FramePatch) == 16 + kMaxPatchVertices * 10 + kMaxCutsTold * 4);
+static_assert(sizeof(Frame) ==
+              48 + 25 * sizeof(float) + 12 + kMaxSites * sizeof(FrameSite) + sizeof(FramePatch));
+static_assert(sizeof(Frame) <= 4096);
+static_assert(sizeof(Hello) == 122 + 62 + 64 + 64 + 108);
+
+}  // namespace tact::firmware::telemetry

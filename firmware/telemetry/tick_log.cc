@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/telemetry/tick_log.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <sstream>
+#include <type_traits>
+
+namespace tact::firmware::telemetry {
+
+using model::Error;
+using model::Result;
+
+static_assert(std::is_trivially_copyable_v<LoggedTick>);
+
+bool LogHeader::keep_overrides(const std::vector<std::string>& of_run) {
+  std::string text;
+  for (const std::string& one : of_run) text += one + '\n';
+  if (text.size() >= sizeof overrides) return false;
+  text.copy(overrides, text.size());
+  return true;
+}
+
+std::vector<std::string> LogHeader::overrides_of_run() const {
+  std::vector<std::string> out;
+  std::istringstream lines(overrides);
+  for (std::string one; std::getline(lines, one);) out.push_back(one);
+  return out;
+}
+
+Result<TickLogWriter> TickLogWriter::create(const std::string& path, const LogHeader& header) {
+  std::FILE* file = std::fopen(path.c_str(), "wbx");
+  if (file == nullptr)
+    return Error{fmt::format("{}: {}; name a new file in a folder that you may write to", path,
+                             std::strerror(errno))};
+  LogHeader full = header;
+  std::memcpy(full.magic, kLogMagic, sizeof full.magic);
+  full.header_bytes = sizeof(LogHeader);
+  full.tick_bytes = sizeof(LoggedTick);
+  TickLogWriter writer(path, file, header.non_rt != 0);
+  if (std::fwrite(&full, sizeof full, 1, file) != 1)
+    return Error{fmt::format("{}: {}; free some space", path, std::strerror(errno))};
+  return writer;
+}
+
+LoggedTick LoggedTick::of(const loop::TickRecord& record, bool non_rt) {
+  return {.tick = record.tick,
+          .non_rt = static_cast<std::uint8_t>(non_rt ? 1 : 0),
+          .due_ns = record.due_ns,
+          .wake_late_ns = record.phase_ns[static_cast<std::size_t>(loop::Phase::kWake)],
+          .input = record.input,
+          .output = record.output};
+}
+
+void TickLogWriter::add(const LoggedTick& tick) {
+  if (trouble_.empty()) put(&tick, sizeof tick, fmt::format(" at tick {}", tick.tick));
+}
+
+void TickLogWriter::append(const std::string& bytes) {
+  if (trouble_.empty()) put(bytes.data(), bytes.size(), " in its pictures");
+}
+
+void TickLogWriter::put(const void* bytes, std::size_t size, const std::string& where) {
+  if (std::fwrite(bytes, size, 1, file_.get()) != 1)
+    trouble_ =
+        fmt::format("{}: {}{}; what came before is kept", path_, std::strerror(errno), where);
+}
+
+std::string TickLogWriter::close() {
+  if (file_ == nullptr) return trouble_;
+  std::FILE* file = file_.release();
+  if (std::fclose(file) != 0 && trouble_.empty())
+    trouble_ = fmt::format("{}: {}; the end may be missing", path_, std::strerror(errno));
+  return trouble_;
+}
+
+Result<TickLogReader> TickLogReader::open(const std::string& path) {
+  std::FILE* file = std::fopen(path.c_str(), "rb");
+  if (file == nullptr)
+    return Error{
+        fmt::format("{}: {}; name a file that tactd --record wrote", path, std::strerror(errno))};
+  LogHeader header;
+  const bool whole = std::fread(&header, sizeof header, 1, file) == 1;
+  TickLogReader reader(file, header);
+  constexpr std::size_t kVersionAt = sizeof header.magic - 1;
+  if (!whole || std::memcmp(header.magic, kLogMagic, kVersionAt) != 0)
+    return Error{path + ": is no tick log; name a file that tactd --record wrote"};
+  if (header.magic[kVersionAt] != kLogMagic[kVersionAt])
+    return Error{fmt::format(
+        "{}: is a tick log of version {}, this tactd reads version {}; replay it with the build "
+        "that recorded it",
+        path, header.magic[kVersionAt], kLogMagic[kVersionAt])};
+  if (header.tick_bytes != sizeof(LoggedTick) || header.header_bytes != sizeof(LogHeader))
+    return Error{path + ": was written by another version of tactd; replay it with that one"};
+  reader.header_.scene_hash[sizeof header.scene_hash - 1] = '\0';
+  reader.header_.overrides[sizeof header.overrides - 1] = '\0';
+  return reader;
+}
+
+bool TickLogReader::next(LoggedTick& tick) {
+  if (header_.ticks != 0 && read_ == header_.ticks) return false;
+  ++read_;
+  const std::size_t bytes = std::fread(&tick, 1, sizeof tick, file_.get());
+  truncated_ = bytes > 0 && bytes < sizeof tick;
+  return bytes == sizeof tick;
+}
+
+}  // namespace tact::firmware::telemetry

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/can/can_device.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include "hal/can/sample_gap.h"
+
+namespace tact::hal::can {
+namespace {
+
+constexpr std::int64_t kMs_ns = 1'000'000;
+constexpr int kFaultBatches = 3;
+
+/// Kinds of FaultCause that all drives have, between those of a lost homing and their own.
+enum class DriveCause : std::uint8_t {
+  kSilent = 12,  // code: for how long, ms
+  kNoPosition,   // code: for how long, ms
+  kJumped,       // position without motion
+};
+
+class CanDevice final : public Device {
+ public:
+  CanDevice(std::unique_ptr<CanBus> bus, const model::DeviceSettings& settings, double rate_Hz,
+            CanStart start)
+      : bus_(std::move(bus)),
+        settings_(settings),
+        delta_(settings.delta, settings.can),
+        start_(std::move(start)),
+        drives_(*start_.drives),
+        period_ns_(std::llround(1e9 / rate_Hz)),
+        gap_(1.0 / rate_Hz),
+        loop_{.bus = *bus_} {
+    for (std::size_t i = 0; i < 3; ++i) loop_.axes[i].node = settings.can.node[i];
+    if (settings.can.homing == model::Homing::kJig) delta_.home_on_jig(start_.motor_turns);
+  }
+  ~CanDevice() override { stop(); }
+
+  std::optional<model::Error> check_home() const { return delta_.check_home(start_.motor_turns); }
+
+  DeviceInfo info() const override {
+    return delta_.info(start_.name, start_.counts_per_turn, start_.delay_s);
+  }
+  std::span<const int> loop_calls() const override { return CanSocket::kLoopCalls; }
+  void permit(bool powered) RT_SAFE override { permitted_ = powered; }
+  bool ready() const RT_SAFE override {
+    return loop_.power == CanPower::kReady && permitted_ && fault() == Fault::kNone;
+  }
+
+  Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override {
+    sample.fresh = false;
+    begin(now_ns);
+    for (const CanReceived& one : bus_->receive()) take(one.frame, now_ns - one.age_ns);
+    if (bus_->fault() != Fault::kNone) loop_.latch.set(bus_->cause());
+    if (loop_.power == CanPower::kStopped) return fault();
+    watch();
+    drives_.follow(loop_);
+    Tool tool;
+    std::int64_t stamp_ns = 0;
+    const bool measured = fault() == Fault::kNone && measure(tool, stamp_ns);
+    judge_gap(measured);
+    if (fault() != Fault::kNone || !measured) return fault();
+    sample = {.tool = tool, .stamp_ns = stamp_ns, .sequence = ++sequence_, .fresh = true};
+    return Fault::kNone;
+  }
+
+  Fault write(const Wrench& wrench) RT_SAFE override {
+    if (loop_.power == CanPower::kStopped) return fault();
+    if (fault() != Fault::kNone) {
+      if (fault_batches_ == kFaultBatches) return fault();
+      ++fault_batches_;
+      drives_.push_fault(loop_);
+      bus_->send();
+      return fault();
+    }
+    follow_permission();
+    const bool ready = loop_.power == CanPower::kReady;
+    drives_.push(loop_, ready ? delta_.motor_torques_Nm(wrench.force_N, gap_.torque_ratio())
+                              : delta::Joints{});
+    bus_->send();
+    if (bus_->fault() != Fault::kNone) loop_.latch.set(bus_->cause());
+    if (fault() != Fault::kNone) return fault();
+    return is_finite(wrench.force_N) ? Fault::kNone : Fault::kForceNotFinite;
+  }
+
+  void stop() override {
+    if (loop_.power == CanPower::kStopped) return;
+    loop_.power = CanPower::kStopped;
+    for (int step = 0; drives_.push_stop(loop_, step); ++step) {
+      bus_->send();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    bus_->send();
+  }
+
+  std::string trouble() const override {
+    const FaultCause cause = loop_.latch.cause();
+    if (cause.fault == Fault::kNone || cause.axis > 2) return {};
+    if (auto words = can_bus_trouble(cause, settings_.can.interface); !words.empty()) return words;
+    if (auto words = homing_trouble(cause, settings_.delta); !words.empty()) return words;
+    return fmt::format("{}: {}", can_arm_name(cause.axis, settings_.can), words(cause));
+  }
+
+  std::vector<DeviceCount> tally() const override {
+    const CanBusCounts& bus = bus_->counts();
+    std::vector<DeviceCount> all{{"strays", strays_}};
+    for (const DeviceCount& one : drives_.tally()) all.push_back(one);
+    all.insert(all.end(), {{"missed_cycles", bus.missed_cycles},
+                           {"error_frames", bus.error_frames},
+                           {"unreadable", bus.unreadable},
+                           {"cut_reads", bus.cut_reads}});
+    return all;
+  }
+
+ private:
+  Fault fault() const RT_SAFE { return loop_.latch.fault(); }
+
+  void begin(std::int64_t now_ns) RT_SAFE {
+    if (loop_.now_ns == 0) {
+      loop_.now_ns = loop_.first_ns = now_ns;
+      for (CanAxis& axis : loop_.axes) axis.heartbeat_ns = now_ns;
+    }
+    loop_.before_ns = loop_.now_ns;
+    loop_.now_ns = now_ns;
+    for (CanAxis& axis : loop_.axes) axis.sampled = false;
+  }
+
+  void take(const CanFrame& frame, std::int64_t arrival_ns) RT_SAFE {
+    const int node = drives_.node_of(frame);
+    std::size_t i = 0;
+    while (i < 3 && loop_.axes[i].node != node) ++i;
+    if (i == 3 || !drives_.take(loop_, i, frame, arrival_ns)) ++strays_;
+  }
+
+  void watch() RT_SAFE {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::int64_t silent_ns = loop_.now_ns - loop_.axes[i].heartbeat_ns;
+      if (silent_ns > start_.most_silent_ns && !bus_->cut()) {
+        loop_.fail(i, DriveCause::kSilent, static_cast<std::uint32_t>(silent_ns / kMs_ns),
+                   Fault::kDriveSilent);
+      }
+      if (loop_.axes[i].jumps) loop_.fail(i, DriveCause::kJumped, 0, Fault::kHomingLost);
+    }
+  }
+
+  bool measure(Tool& tool, std::int64_t& stamp_ns) RT_SAFE {
+    delta::Joints turns{};
+    bool any = false, all = true;
+    stamp_ns = loop_.now_ns;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const CanAxis& axis = loop_.axes[i];
+      if (!axis.located) return false;
+      any = any || axis.sampled;
+      all = all && axis.sampled;
+      turns[i] = axis.motor_turns;
+      stamp_ns = std::min(stamp_ns, axis.arrival_ns);
+    }
+    const bool fresh =
+        start_.one_sync ? all : any && 2 * (loop_.now_ns - stamp_ns) <= 3 * period_ns_;
+    if (!fresh) return false;
+    const auto lost = delta_.measure(turns, stamp_ns, tool);
+    if (lost) loop_.latch.set(*lost);
+    return !lost;
+  }
+
+  void judge_gap(bool fresh) RT_SAFE {
+    gap_.step(fresh);
+    if (!gap_.lost()) return;
+    std::size_t oldest = 0;
+    for (std::size_t i = 1; i < 3; ++i)
+      if (loop_.axes[i].arrival_ns < loop_.axes[oldest].arrival_ns) oldest = i;
+    loop_.fail(oldest, DriveCause::kNoPosition,
+               static_cast<std::uint32_t>(SampleGap::kMostMissing * period_ns_ / kMs_ns),
+               Fault::kDeviceLost);
+  }
+
+  void follow_permission() RT_SAFE {
+    if (!permitted_) loop_.power = CanPower::kOff;
+    if (!permitted_ || loop_.power != CanPower::kOff) return;
+    loop_.power = CanPower::kStarting;
+    loop_.asked_ns = 0;
+  }
+
+  std::string words(const FaultCause& cause) const {
+    switch (static_cast<DriveCause>(cause.kind)) {
+      case DriveCause::kSilent:
+        return fmt::format(
+            "no heartbeat for {} ms: check its supply and the CAN cable, then start tactd again",
+            cause.code);
+      case DriveCause::kNoPosition:
+        return fmt::format(
+            "no {} for {} ms: check its supply and the CAN cable, then start tactd again",
+            start_.position, cause.code);
+      case DriveCause::kJumped:
+        return "its position jumped without motion: the encoder slips or two drives share a node; "
+               "check both and home again";
+    }
+    return drives_.words(cause);
+  }
+
+  std::unique_ptr<CanBus> bus_;
+  model::DeviceSettings settings_;
+  CanDelta delta_;
+  CanStart start_;
+  CanDrives& drives_;
+  std::int64_t period_ns_;
+  SampleGap gap_;
+  CanLoop loop_;
+  bool permitted_ = false;
+  int fault_batches_ = 0;  // sent since the fault
+  std::uint64_t sequence_ = 0;
+  std::uint64_t strays_ = 0;  // frames of nodes or kinds that are not ours
+};
+
+}  // namespace
+
+model::Result<std::unique_ptr<Device>> start_can_device(std::unique_ptr<CanBus> bus,
+                                                        const model::DeviceSettings& settings,
+                                                        double rate_Hz, CanStart start) {
+  auto device = std::make_unique<CanDevice>(std::move(bus), settings, rate_Hz, std::move(start));
+  if (auto error = device->check_home()) return *error;
+  return std::unique_ptr<Device>(std::move(device));
+}
+
+}  // namespace tact::hal::can

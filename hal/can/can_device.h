@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// can_device.h - a delta with three drives on one CAN bus, as a haptic device, whatever the drives.
+//
+//     read     every frame to the drives' rules, then silence, sample and pose     one recvmmsg
+//     write    torques of force and gravity, as these drives are told them         one sendmmsg
+//
+//     off --permit--> starting --all three give torque--> ready --not permitted--> off
+//
+// Torque is zero unless ready. A sample is fresh, with power or without, when drives that sample at
+// one SYNC have all told a new position since the last read; of drives on clocks of their own when
+// one is new and none older than one and a half periods: now and then a tick gets no frame of one
+// axis and the next gets two. Its stamp is the arrival of the oldest. Without samples the torques
+// fade (sample_gap.h). A fault stops all three and latches; only opening the device anew clears it.
+//
+// A new kind of drive is its frames, its bring-up and a CanDrives; nothing of a device is in them.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hal/can/can_bus.h"
+#include "hal/can/can_delta.h"
+#include "hal/device.h"
+#include "model/device_settings.h"
+#include "model/result.h"
+
+namespace tact::hal::can {
+
+enum class CanPower : std::uint8_t { kOff, kStarting, kReady, kStopped };
+
+/// What the loop knows of one drive, whatever the drive.
+struct CanAxis {
+  int node = 0;
+  bool located = false;           // has ever told a position
+  bool sampled = false;           // since the last read
+  bool jumps = false;             // its positions are not to be trusted
+  double motor_turns = 0.0;       // the newest
+  std::int64_t arrival_ns = 0;    // of that
+  std::int64_t heartbeat_ns = 0;  // arrival of the newest one
+
+  void sample(double turns, std::int64_t at_ns) RT_SAFE {
+    located = sampled = true;
+    jumps = false;
+    motor_turns = turns;
+    arrival_ns = at_ns;
+  }
+  /// A heartbeat; false: older than the newest, or than the first tick.
+  bool beat(std::int64_t at_ns) RT_SAFE {
+    if (at_ns < heartbeat_ns) return false;
+    heartbeat_ns = at_ns;
+    return true;
+  }
+};
+
+/// The bus and its three drives in the loop, as device and rules share them.
+struct CanLoop {
+  CanBus& bus;
+  std::array<CanAxis, 3> axes{};
+  CanPower power = CanPower::kOff;
+  std::int64_t now_ns = 0;     // of the last read; 0: none yet
+  std::int64_t before_ns = 0;  // of the read before
+  std::int64_t first_ns = 0;   // of the first one
+  std::int64_t asked_ns = 0;   // for torque, since starting; 0: not yet
+  FaultLatch latch{};
+
+  /// Latches; `kind` is of the drives' own list or a DriveCause.
+  template <class Kind>
+  void fail(std::size_t axis, Kind kind, std::uint32_t code,
+            Fault fault = Fault::kDriveFault) RT_SAFE {
+    latch.set({.fault = fault,
+               .axis = static_cast<std::uint8_t>(axis),
+               .kind = static_cast<std::uint8_t>(kind),
+               .code = code});
+  }
+  /// Not there in time: asked for torque longer than 3 s ago.
+  bool start_is_late() const RT_SAFE {
+    return power == CanPower::kStarting && asked_ns != 0 && now_ns - asked_ns > 3'000'000'000;
+  }
+};
+
+/// The rules of one kind of drives. All but words() and tally() belong to the loop.
+class CanDrives {
+ public:
+  CanDrives() = default;
+  CanDrives(const CanDrives&) = delete;
+  CanDrives& operator=(const CanDrives&) = delete;
+  virtual ~CanDrives() = default;
+
+  virtual int node_of(const CanFrame& frame) const RT_SAFE = 0;
+  /// A frame of this axis: its position, its heartbeat, its faults. False: nobody asked for it.
+  virtual bool take(CanLoop& loop, std::size_t axis, const CanFrame& frame,
+                    std::int64_t arrival_ns) RT_SAFE = 0;
+  /// Once all frames are taken: starting becomes ready; a drive that does not start, or lets go, is
+  /// a fault.
+  virtual void follow(CanLoop& loop) RT_SAFE = 0;
+  /// All frames of a tick, for these torques at the motors; power is off, starting or ready.
+  virtual void push(CanLoop& loop, const delta::Joints& torque_Nm) RT_SAFE = 0;
+  /// The frames that stop all three after a fault.
+  virtual void push_fault(CanLoop& loop) RT_SAFE = 0;
+  /// For good: the frames of step 0, 1, ..; false: the last ones.
+  virtual bool push_stop(CanLoop& loop, int step) = 0;
+  /// What a cause of their own means, with the cure. Any thread.
+  virtual std::string words(const FaultCause& cause) const = 0;
+  /// What they counted.
+  virtual std::vector<DeviceCount> tally() const = 0;
+};
+
+/// Drives that are up, and what opening them told.
+struct CanStart {
+  std::unique_ptr<CanDrives> drives;
+  std::string name;                 // of the device
+  const char* position;             // what is missed when no sample comes
+  bool one_sync = false;            // all three sample at one time
+  std::int64_t most_silent_ns = 0;  // without a heartbeat
+  double counts_per_turn = 0.0;     // of an arm
+  double delay_s = 0.0;             // from position to force, beyond one hold
+  delta::Joints motor_turns{};      // of arms at rest
+};
+
+/// The device; an error when the arms cannot be where the drives say.
+model::Result<std::unique_ptr<Device>> start_can_device(std::unique_ptr<CanBus> bus,
+                                                        const model::DeviceSettings& settings,
+                                                        double rate_Hz, CanStart start);
+
+}  // namespace tact::hal::can

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/delta/delta_kinematics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tact::hal::delta {
+namespace {
+
+constexpr Vec3 kAxis{0.0, 0.0, 1.0};
+constexpr double kLeastTransmission = 0.35;
+constexpr double kLeastRodSigma = 0.25;
+
+double wrapped_rad(double angle_rad) RT_SAFE {  // of (-2 pi, 2 pi)
+  if (angle_rad > std::numbers::pi) return angle_rad - 2.0 * std::numbers::pi;
+  if (angle_rad <= -std::numbers::pi) return angle_rad + 2.0 * std::numbers::pi;
+  return angle_rad;
+}
+
+}  // namespace
+
+DeltaKinematics::DeltaKinematics(const DeltaGeometry& geometry) : geometry_(geometry) {
+  for (std::size_t i = 0; i < 3; ++i)
+    outward_[i] = {std::cos(geometry.azimuth_rad[i]), std::sin(geometry.azimuth_rad[i]), 0.0};
+}
+
+DeltaInverse DeltaKinematics::inverse(const Vec3& position_m) const RT_SAFE {
+  const double la = geometry_.upper_arm_m, lb = geometry_.forearm_m;
+  DeltaInverse out;
+  out.reachable = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3& u = outward_[i];
+    const double x = dot(u, position_m) - (geometry_.base_radius_m - geometry_.platform_radius_m);
+    const double y = u.x * position_m.y - u.y * position_m.x;
+    const double z = position_m.z;
+    // A cos theta + B sin theta = C
+    const double a = 2.0 * la * x, b = 2.0 * la * z;
+    const double c = x * x + y * y + z * z + la * la - lb * lb;
+    const double reach = std::hypot(a, b);
+    out.margin_ratio[i] = reach > 0.0 ? 1.0 - std::abs(c) / reach : -1.0;
+    if (!(std::abs(c) <= reach && reach > 0.0)) {
+      out.reachable = false;
+      continue;
+    }
+    // theta = atan2(B, A) -+ acos(C / hypot(A, B))
+    const double middle_rad = std::atan2(b, a), half_rad = std::acos(c / reach);
+    out.theta_rad[i] = wrapped_rad(middle_rad - half_rad);
+    out.theta_inner_rad[i] = wrapped_rad(middle_rad + half_rad);
+  }
+  return out;
+}
+
+DeltaForward DeltaKinematics::forward(const Joints& theta_rad) const RT_SAFE {
+  const double r = geometry_.base_radius_m - geometry_.platform_radius_m;
+  const double la = geometry_.upper_arm_m, lb = geometry_.forearm_m;
+  std::array<Vec3, 3> centre;  // of the sphere on which rod i lets the platform move
+  for (std::size_t i = 0; i < 3; ++i) {
+    centre[i] =
+        outward_[i] * (r + la * std::cos(theta_rad[i])) + kAxis * (la * std::sin(theta_rad[i]));
+  }
+  const Vec3 a = centre[1] - centre[0], b = centre[2] - centre[0], n = cross(a, b);
+  const double aa = dot(a, a), bb = dot(b, b), nn = dot(n, n);
+  if (!(nn > 1e-18 * aa * bb)) return {};
+  // circumcentre - c_1 = (|a|^2 b - |b|^2 a) x n / (2 |n|^2)
+  const Vec3 to_circumcentre = cross(aa * b - bb * a, n) / (2.0 * nn);
+  const double height_squared = lb * lb - dot(to_circumcentre, to_circumcentre);
+  if (!(height_squared >= 0.0)) return {};
+  const Vec3 circumcentre = centre[0] + to_circumcentre;
+  const Vec3 up = n * (std::sqrt(height_squared / nn) * (n.z < 0.0 ? -1.0 : 1.0));
+  return {.solved = true, .far_m = circumcentre + up, .near_m = circumcentre - up};
+}
+
+DeltaPose DeltaKinematics::pose(const Vec3& position_m, const Joints& theta_rad) const RT_SAFE {
+  const double r = geometry_.base_radius_m - geometry_.platform_radius_m;
+  const double la = geometry_.upper_arm_m;
+  DeltaPose pose;
+  pose.position_m = position_m;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double c = std::cos(theta_rad[i]), s = std::sin(theta_rad[i]);
+    pose.radial[i] = outward_[i] * c + kAxis * s;
+    // b_i = la (-u sin theta + z cos theta)
+    pose.tangent_m[i] = la * (kAxis * c - outward_[i] * s);
+    // s_i = p - (u R + la radial)
+    pose.rod_m[i] = position_m - (outward_[i] * r + la * pose.radial[i]);
+    pose.lever_m2[i] = dot(pose.rod_m[i], pose.tangent_m[i]);
+  }
+  return pose;
+}
+
+Mat3 joint_rate_matrix(const DeltaPose& pose) RT_SAFE {
+  Mat3 k;
+  for (std::size_t i = 0; i < 3; ++i) {
+    // K_i = s_i / d_i
+    const double d = pose.lever_m2[i];
+    if (std::abs(d) > 0.0) k.row[i] = pose.rod_m[i] / d;
+  }
+  return k;
+}
+
+Mat3 jacobian(const DeltaPose& pose) RT_SAFE {
+  // J = S^-1 diag(d); the rows of S are the rods
+  Mat3 j = inverse(Mat3{pose.rod_m});
+  const Joints& d = pose.lever_m2;
+  for (Vec3& row : j.row) row = {row.x * d[0], row.y * d[1], row.z * d[2]};
+  return j;
+}
+
+Joints joint_torques_Nm(const DeltaPose& pose, const Vec3& force_N) RT_SAFE {
+  // sum lambda_i s_i = F,  tau_i = lambda_i d_i
+  const Vec3 lambda = transpose(inverse(Mat3{pose.rod_m})) * force_N;
+  return {lambda.x * pose.lever_m2[0], lambda.y * pose.lever_m2[1], lambda.z * pose.lever_m2[2]};
+}
+
+Joints joint_rates_radps(const DeltaPose& pose, const Vec3& velocity_mps) RT_SAFE {
+  const Vec3 rate = joint_rate_matrix(pose) * velocity_mps;
+  return {rate.x, rate.y, rate.z};
+}
+
+Joints joint_drift_radps2(const DeltaPose& pose, const Vec3& velocity_mps) RT_SAFE {
+  const Joints rate = joint_rates_radps(pose, velocity_mps);
+  Joints drift{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    // d/dt (s . v = d thetadot) with dv/dt = 0:
+    // d thetaddot = |v - b thetadot|^2 + (s . la radial) thetadot^2
+    const Vec3 relative = velocity_mps - rate[i] * pose.tangent_m[i];
+    const double la = norm(pose.tangent_m[i]);
+    const double d = pose.lever_m2[i];
+    if (!(std::abs(d) > 0.0)) continue;
+    drift[i] =
+        (dot(relative, relative) + la * dot(pose.rod_m[i], pose.radial[i]) * rate[i] * rate[i]) / d;
+  }
+  return drift;
+}
+
+double saturation_ratio(const Joints& held_Nm, const Joints& wanted_Nm, double limit_Nm) RT_SAFE {
+  double ratio = 1.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double size = std::abs(wanted_Nm[i]);
+    const double room = wanted_Nm[i] > 0.0 ? limit_Nm - held_Nm[i] : limit_Nm + held_Nm[i];
+    if (room >= size) continue;
+    const double here = room / size;
+    ratio = here > 0.0 ? std::min(ratio, here) : 0.0;  // NaN ends here too
+    if (!(ratio > 0.0)) return 0.0;
+  }
+  return ratio;
+}
+
+DeltaIndices workspace_indices(const DeltaKinematics& delta, const Vec3& position_m,
+                               const Joints& theta_rad) RT_SAFE {
+  const DeltaGeometry& g = delta.geometry();
+  const DeltaPose pose = delta.pose(position_m, theta_rad);
+  DeltaIndices out;
+  out.sigma_m_per_rad = model::singular_values(jacobian(pose));
+  out.least_rod_sigma = model::singular_values(Mat3{pose.rod_m})[2] / g.forearm_m;
+  out.least_transmission = 1.0;
+  out.within_limits = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    out.least_transmission = std::min(out.least_transmission,
+                                      std::abs(pose.lever_m2[i]) / (g.upper_arm_m * g.forearm_m));
+    // y_i: platform point across the plane of arm i; normal of that plane: radial x tangent / la
+    const Vec3 across = cross(pose.radial[i], pose.tangent_m[i]) / g.upper_arm_m;
+    const double side = std::abs(dot(across, position_m)) / g.forearm_m;
+    out.largest_side_rad = std::max(out.largest_side_rad, std::asin(std::min(side, 1.0)));
+    const bool inside = theta_rad[i] >= g.theta_min_rad && theta_rad[i] <= g.theta_max_rad;
+    out.within_limits = out.within_limits && inside;
+  }
+  out.within_limits = out.within_limits && out.least_transmission >= kLeastTransmission &&
+                      out.least_rod_sigma >= kLeastRodSigma;
+  return out;
+}
+
+}  // namespace tact::hal::delta

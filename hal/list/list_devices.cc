@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/list/list_devices.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <tuple>
+
+#include "hal/udev_rules.h"
+
+namespace tact::hal::list {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kArpHrdCan = 280;
+constexpr unsigned long kInterfaceUp = 0x1;
+
+/// The first line of a file; empty when it cannot be read.
+std::string line_of(const fs::path& file) {
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  return line;
+}
+
+unsigned long number_of(const fs::path& file, int base) {
+  return std::strtoul(line_of(file).c_str(), nullptr, base);
+}
+
+std::vector<fs::path> entries(const std::string& folder) {
+  std::vector<fs::path> paths;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) paths.push_back(entry.path());
+  return paths;
+}
+
+int system_access_error(const std::string& path) {
+  return access(path.c_str(), R_OK | W_OK) == 0 ? 0 : errno;
+}
+
+void lack_permission(FoundPart& part, const std::string& node, const char* rule, int error) {
+  if (error == 0) return;
+  if (error == EACCES || error == EPERM) {
+    part.lacking = fmt::format("{} may not be opened; its udev rule is missing: {}", node, rule);
+    part.cure = kRuleCure;
+  } else {
+    part.lacking = fmt::format("{} cannot be opened: {}", node, std::strerror(error));
+    part.cure = "unplug it, plug it in again, and look at dmesg";
+  }
+}
+
+std::optional<can::CanLink> system_can_link(const std::string& interface) {
+  const auto link = can::read_can_link(interface);
+  return link ? std::optional(*link) : std::nullopt;
+}
+
+FoundPart can_part(const PartProbes& probes, const fs::path& folder) {
+  const std::string name = folder.filename().string();
+  can::CanLink link;
+  link.is_can = true;
+  link.up = (number_of(folder / "flags", 16) & kInterfaceUp) != 0;
+  if (const auto known = probes.can_link == nullptr ? std::nullopt : probes.can_link(name))
+    link = *known;
+  FoundPart part{.kind = PartKind::kCan,
+                 .name = name,
+                 .what = fmt::format("CAN interface, {}", link.up ? "up" : "down"),
+                 .scene = fmt::format("device.kind = \"can-odrive\" or \"can-cia402\", "
+                                      "device.can.interface = \"{}\"",
+                                      name),
+                 .lacking = {},
+                 .cure = {}};
+  if (link.bitrate.value_or(0) != 0) part.what += fmt::format(", {} bit/s", *link.bitrate);
+  if (const auto refusal = check_can_link(link, name, 0, 0.0)) {
+    const std::string& sentence = refusal->sentence;  // "what: cure"
+    const std::size_t colon = std::min(sentence.find(": "), sentence.size());
+    part.lacking = sentence.substr(0, colon);
+    part.cure = sentence.substr(std::min(colon + 2, sentence.size()));
+  }
+  return part;
+}
+
+/// The driver of any interface of a USB device; empty when none has one.
+std::string bound_driver(const fs::path& device) {
+  const std::string prefix = device.filename().string() + ":";
+  for (const fs::path& path : entries(device.string())) {
+    if (!path.filename().string().starts_with(prefix)) continue;
+    std::error_code error;
+    const fs::path driver = fs::read_symlink(path / "driver", error);
+    if (!error) return driver.filename().string();
+  }
+  return {};
+}
+
+void lack_driver(FoundPart& part, const std::string& driver) {
+  if (driver.empty()) return;
+  part.what += fmt::format(", bound to {}", driver);
+  if (!part.lacking.empty()) return;
+  if (driver == "usbfs") {
+    part.lacking = "another program uses it";
+    part.cure = "end that program";
+  } else if (part.kind == PartKind::kFalcon) {
+    part.lacking = fmt::format("the kernel driver {} holds it", driver);
+    part.cure =
+        fmt::format("echo {}:1.0 | sudo tee /sys/bus/usb/drivers/{}/unbind", part.name, driver);
+  }
+}
+
+std::optional<FoundPart> usb_part(const PartProbes& probes, const fs::path& folder) {
+  const std::string vendor = line_of(folder / "idVendor"), product = line_of(folder / "idProduct");
+  const bool falcon = vendor == "0403" && product == "cb48";
+  if (!falcon && vendor != "1451") return std::nullopt;
+  FoundPart part{.kind = falcon ? PartKind::kFalcon : PartKind::kForceDimension,
+                 .name = folder.filename().string(),
+                 .what = falcon ? "Novint Falcon" : "Force Dimension device",
+                 .scene = {},
+                 .lacking = {},
+                 .cure = {}};
+  if (const std::string words = line_of(folder / "product"); !falcon && !words.empty())
+    part.what += fmt::format(" \"{}\"", words);
+  part.what += fmt::format(", USB {}:{}", vendor, product);
+  part.scene =
+      falcon ? fmt::format("device.kind = \"falcon\", device.falcon.bus_path = \"{}\"", part.name)
+             : std::string("device.kind = \"force-dimension\"");
+  const std::string node =
+      fmt::format("{}/bus/usb/{:03}/{:03}", probes.roots.dev, number_of(folder / "busnum", 10),
+                  number_of(folder / "devnum", 10));
+  lack_permission(part, node, falcon ? kFalconRule : kForceDimensionRule,
+                  probes.access_error(node));
+  lack_driver(part, bound_driver(folder));
+  return part;
+}
+
+FoundPart gpio_part(const PartProbes& probes, const gpio::GpioChip& chip) {
+  FoundPart part{.kind = PartKind::kGpio,
+                 .name = chip.name,
+                 .what = "GPIO chip",
+                 .scene = fmt::format("device.lines.chip = \"{}\"",
+                                      chip.label.empty() ? chip.path : chip.label),
+                 .lacking = {},
+                 .cure = {}};
+  if (!chip.label.empty()) part.what += fmt::format(" \"{}\"", chip.label);
+  if (chip.lines >= 0) part.what += fmt::format(", {} lines", chip.lines);
+  part.what += chip.bus.empty() ? ", does not sleep" : fmt::format(", may sleep (on {})", chip.bus);
+  if (!chip.bus.empty()) {
+    part.lacking = "an access may wait for milliseconds, so it cannot carry safety lines";
+    part.cure = "use a chip on PCI, LPC or the processor itself";
+  } else {
+    const int error = probes.access_error(chip.path);
+    lack_permission(part, chip.path, kGpioRule, error != 0 ? error : chip.error);
+  }
+  return part;
+}
+
+}  // namespace
+
+const char* name_of(PartKind kind) {
+  switch (kind) {
+    case PartKind::kCan:
+      return "can";
+    case PartKind::kFalcon:
+      return "falcon";
+    case PartKind::kForceDimension:
+      return "force-dimension";
+    case PartKind::kGpio:
+      break;
+  }
+  return "gpio";
+}
+
+PartProbes system_probes() {
+  return {.roots = {}, .access_error = system_access_error, .can_link = system_can_link};
+}
+
+std::vector<FoundPart> list_devices(const PartProbes& probes) {
+  std::vector<FoundPart> found;
+  for (const fs::path& folder : entries(probes.roots.sys + "/class/net"))
+    if (number_of(folder / "type", 10) == kArpHrdCan) found.push_back(can_part(probes, folder));
+  for (const fs::path& folder : entries(probes.roots.sys + "/bus/usb/devices"))
+    if (auto part = usb_part(probes, folder)) found.push_back(std::move(*part));
+  std::sort(found.begin(), found.end(), [](const FoundPart& a, const FoundPart& b) {
+    return std::tie(a.kind, a.name) < std::tie(b.kind, b.name);
+  });
+  for (const gpio::GpioChip& chip : find_gpio_chips(probes.roots))  // by number already
+    found.push_back(gpio_part(probes, chip));
+  return found;
+}
+
+const char* words_of_absence(PartKind kind) {
+  switch (kind) {
+    case PartKind::kCan:
+      return "no CAN interface; plug in an adapter whose driver the kernel has (ip link shows it)";
+    case PartKind::kFalcon:
+      return "no Novint Falcon (USB 0403:cb48); switch its supply on and plug in its cable (lsusb "
+             "shows it)";
+    case PartKind::kForceDimension:
+      return "no Force Dimension device (USB 1451:*); switch its supply on and plug in its cable "
+             "(lsusb shows it)";
+    case PartKind::kGpio:
+      break;
+  }
+  return "no GPIO chip; load the driver of the board that has one (gpiodetect shows it)";
+}
+
+}  // namespace tact::hal::list

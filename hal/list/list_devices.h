@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// list_devices.h - what is plugged into this PC, what each part lacks, and the cure.
+//
+// Read from sysfs without opening a device, so a running tactd is not disturbed:
+//   class/net/*/type 280 (ARPHRD_CAN), flags bit 0 (IFF_UP)          CAN interfaces; bit rate by
+//                                                                    netlink (can/can_link.h)
+//   bus/usb/devices/*/idVendor idProduct busnum devnum, *:N/driver   0403:cb48 Novint Falcon,
+//                                                                    1451:* Force Dimension
+//   bus/gpio/devices/gpiochip*                                       GPIO chips (gpio/gpio_chips.h)
+// Set-up code only.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hal/can/can_link.h"
+#include "hal/gpio/gpio_chips.h"
+
+namespace tact::hal::list {
+
+enum class PartKind { kCan, kFalcon, kForceDimension, kGpio };
+/// "can", "falcon", "force-dimension", "gpio".
+const char* name_of(PartKind kind);
+
+struct FoundPart {
+  PartKind kind = PartKind::kCan;
+  std::string name;     // can0, 1-2.3, gpiochip0
+  std::string what;     // "CAN interface, up, 1000000 bit/s"
+  std::string scene;    // the lines that name it: device.can.interface = "can0"
+  std::string lacking;  // empty: ready
+  std::string cure;     // of what is lacking
+};
+
+/// How to look; others in tests.
+struct PartProbes {
+  gpio::SystemRoots roots{};
+  /// errno of opening this node for reading and writing, 0 if it may be.
+  int (*access_error)(const std::string& path) = nullptr;
+  /// What the kernel knows of a CAN interface beyond sysfs: bit rate, state of the controller.
+  std::optional<can::CanLink> (*can_link)(const std::string& interface) = nullptr;
+};
+PartProbes system_probes();
+
+/// Everything that tact could use, by kind, then by name.
+std::vector<FoundPart> list_devices(const PartProbes& probes = system_probes());
+
+/// What is looked for and how to get it to show up, for a kind of which nothing is there.
+const char* words_of_absence(PartKind kind);
+
+}  // namespace tact::hal::list

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/registry/open_device.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "hal/cia402/cia402_delta.h"
+#include "hal/falcon_usb/falcon_open.h"
+#include "hal/force_dimension/force_dimension_device.h"
+#include "hal/odrive/odrive_delta.h"
+#include "hal/sim/sim_delta.h"
+
+namespace tact::hal::registry {
+namespace {
+
+using model::Error;
+using model::Result;
+
+using Opened = Result<OpenDevice>;
+
+Opened open_sim_delta(const model::scene::Scene& scene) {
+  auto device = sim::make_sim_delta(scene.device.sim, scene.hand);
+  if (!device) return Error{fmt::format("{}: {}", scene.path, device.error().sentence)};
+  return OpenDevice(device->release());
+}
+
+/// A device's own function; its sentences get the scene in front.
+template <Result<std::unique_ptr<Device>> (*open)(const model::DeviceSettings&, double)>
+Opened opened(const model::scene::Scene& scene) {
+  auto device = open(scene.device, scene.rate_Hz);
+  if (!device) return Error{fmt::format("{}: {}", scene.path, device.error().sentence)};
+  return OpenDevice(device->release());
+}
+
+struct Kind {
+  const char* name;
+  Opened (*open)(const model::scene::Scene&);
+  bool simulated = false;
+};
+constexpr Kind kKinds[] = {{"sim-delta", open_sim_delta, true},
+                           {"can-odrive", opened<odrive::open_can_odrive>},
+                           {"can-cia402", opened<cia402::open_can_cia402>},
+                           {"falcon", opened<falcon_usb::open_falcon>},
+                           {"force-dimension", opened<force_dimension::open_force_dimension>}};
+
+}  // namespace
+
+void StopAndDelete::operator()(Device* device) const {
+  device->stop();
+  delete device;
+}
+
+Opened open_device(const model::scene::Scene& scene) {
+  std::string known;
+  for (const Kind& kind : kKinds) {
+    if (scene.device.kind == kind.name) return kind.open(scene);
+    known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", kind.name);
+  }
+  return Error{fmt::format("{}: device.kind is \"{}\", which this build does not know; use {}",
+                           scene.path, scene.device.kind, known)};
+}
+
+bool is_simulated(const model::DeviceSettings& settings) {
+  return std::ranges::any_of(
+      kKinds, [&](const Kind& kind) { return kind.simulated && settings.kind == kind.name; });
+}
+
+bool is_simulated(const Device& device) {
+  return dynamic_cast<const sim::SimDelta*>(&device) != nullptr;
+}
+
+Result<std::unique_ptr<sim::HandSocket>> start_hand_socket(Device& device,
+                                                           const std::string& path) {
+  auto* simulated = dynamic_cast<sim::SimDelta*>(&device);
+  if (simulated == nullptr) {
+    return Error{
+        fmt::format("{} has a real hand on it; start without a hand socket", device.info().name)};
+  }
+  return sim::HandSocket::start(path, simulated->hand_targets());
+}
+
+}  // namespace tact::hal::registry

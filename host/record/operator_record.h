@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// operator_record.h - the tracked operator in a recording: one record of fixed size behind each
+// frame of a recording of version 4 (firmware/telemetry/recording_format.h).
+//
+// Of each body the raw pose, as solved, and the one that was shown, both in the device's frame W.
+// Behind them the figure as it was shown: where it stood and how it was bound began before the
+// recording did, so a figure posed again from the bodies alone would be another one.
+// Little-endian, CRC-32 as the frames have; a damaged record costs this frame's operator only.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <type_traits>
+
+#include "host/tracking/figure.h"
+
+namespace tact::host::record {
+
+struct BodyRecord {
+  double raw_position_m[3] = {};
+  double raw_rotation_wxyz[4] = {1.0, 0.0, 0.0, 0.0};
+  float shown_position_m[3] = {};
+  float shown_rotation_wxyz[4] = {1.0f, 0.0f, 0.0f, 0.0f};
+  float rms_px = 0.0f;
+  float age_s = 0.0f;
+  std::uint8_t state = 0, trouble = 0;  // BodyState, TrackingTrouble
+  std::uint8_t pad[2] = {};
+};
+
+/// FigurePose; its trouble and its words follow from it and the bodies.
+struct FigureRecord {
+  double height_m = 0.0;  // 0: no figure was shown
+  float joint_m[tracking::kFigureJoints][3] = {};
+  float head_wxyz[4] = {1.0f, 0.0f, 0.0f, 0.0f};
+  float grip_m[3] = {};
+  float error_m = 0.0f;
+  std::uint16_t sweeps = 0, updates = 0;
+  std::uint8_t reached = 0, out_of_reach = 0, full_chain = 0;
+  std::uint8_t legs_reached = 0;  // bit 0 left, bit 1 right; bit 2: shoulder_too_far
+  std::uint8_t pad[4] = {};
+};
+
+struct OperatorRecord {
+  double time_s = 0.0;
+  BodyRecord body[tracking::kBodyRoles] = {};  // by BodyRole
+  FigureRecord figure = {};
+  std::uint32_t crc = 0;  // of all before it
+  std::uint32_t pad = 0;
+};
+
+static_assert(std::is_trivially_copyable_v<OperatorRecord>);
+static_assert(sizeof(BodyRecord) == 7 * 8 + 9 * 4 + 4 && sizeof(BodyRecord) % 8 == 0);
+static_assert(sizeof(FigureRecord) == 8 + (3 * tracking::kFigureJoints + 8) * 4 + 12);
+static_assert(sizeof(FigureRecord) % 8 == 0);
+static_assert(sizeof(OperatorRecord) ==
+              16 + tracking::kBodyRoles * sizeof(BodyRecord) + sizeof(FigureRecord));
+
+/// The bytes behind one frame; `figure` may be null.
+std::string operator_record(const tracking::TrackedOperator& tracked,
+                            const tracking::FigurePose* figure = nullptr);
+/// Nothing if the checksum differs or a number makes no sense.
+std::optional<tracking::TrackedOperator> operator_of(const OperatorRecord& record);
+/// The figure that was shown with these bodies, to a millionth; nothing if none was, or a number is
+/// not finite.
+std::optional<tracking::FigurePose> figure_of(const OperatorRecord& record,
+                                              const tracking::TrackedOperator& bodies);
+
+}  // namespace tact::host::record

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/record/recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "host/record/operator_record.h"
+
+namespace tact::host::record {
+namespace {
+
+constexpr std::int64_t kFlush_ns = 1'000'000'000;
+
+using firmware::telemetry::crc_of;
+using model::Error;
+using model::Result;
+
+/// What stands before the first frame.
+struct Setup {
+  Hello hello;
+  MeshBytes mesh;
+  bool is_tracked = false;
+};
+
+template <typename T>
+bool read(std::istream& in, T& value) {
+  return static_cast<bool>(in.read(reinterpret_cast<char*>(&value), sizeof value));
+}
+
+/// A black box holds a recording behind its ticks: goes there. The byte at which it starts; Error:
+/// why there is none.
+Result<std::uint64_t> skip_ticks(std::istream& in, std::uint64_t file_bytes) {
+  firmware::telemetry::LogStart log;
+  constexpr std::size_t kVersionAt = sizeof log.magic - 1;
+  const bool is_log =
+      read(in, log) && std::memcmp(log.magic, firmware::telemetry::kLogMagic, kVersionAt) == 0;
+  in.clear();
+  in.seekg(0);
+  if (!is_log) return std::uint64_t{0};
+  if (log.magic[kVersionAt] != firmware::telemetry::kLogMagic[kVersionAt])
+    return Error{fmt::format(
+        "a tick log of version {} cannot be read by this tact-view (version {}); open it with the "
+        "build that made it",
+        log.magic[kVersionAt], firmware::telemetry::kLogMagic[kVersionAt])};
+  if (log.ticks == 0)
+    return Error{
+        "this tick log holds no pictures, only what a replay needs; tactd --replay computes it "
+        "again, a black box or a recording of tact-view can be shown"};
+  if (log.tick_bytes == 0 || log.ticks > file_bytes / log.tick_bytes ||
+      log.header_bytes + log.ticks * log.tick_bytes >= file_bytes)
+    return Error{
+        "this black box is cut off before its pictures; its ticks are read by tactd's build"};
+  const std::uint64_t start = log.header_bytes + log.ticks * log.tick_bytes;
+  in.seekg(static_cast<std::streamoff>(start));
+  return start;
+}
+
+/// Error: why it cannot be used.
+Result<Setup> read_setup(std::istream& in, std::uint64_t file_bytes) {
+  Setup setup;
+  FileHeader header;
+  if (!read(in, header) || std::memcmp(header.magic, kRecordingMagic, sizeof header.magic) != 0) {
+    return Error{
+        "this is not a tact recording; give a file made with --record or the page's record "
+        "button"};
+  }
+  setup.is_tracked = header.version == kTrackedRecordingVersion;
+  if (header.version != kRecordingVersion && !setup.is_tracked) {
+    return Error{
+        fmt::format("recording version {} cannot be read by this tact-view (version {} or {}); "
+                    "open it with the tact-view that made it",
+                    header.version, kRecordingVersion, kTrackedRecordingVersion)};
+  }
+  if (header.hello_bytes != sizeof(Hello) || header.frame_bytes != sizeof(Frame)) {
+    return Error{fmt::format(
+        "its frames have {} bytes, those of this tact-view {}, though both say version {}; open it "
+        "with the build that made it",
+        header.frame_bytes, sizeof(Frame), header.version)};
+  }
+  constexpr const char* kCutOff =
+      "the file ends before its first frame; nothing of it can be shown, record again";
+  if (!read(in, setup.hello) || header.mesh_bytes > file_bytes) return Error{kCutOff};
+  setup.mesh.resize(header.mesh_bytes);
+  in.read(reinterpret_cast<char*>(setup.mesh.data()),
+          static_cast<std::streamsize>(setup.mesh.size()));
+  if (!in) return Error{kCutOff};
+  if (crc_of(setup.hello, setup.mesh) != header.setup_crc)
+    return Error{
+        "its scene part is damaged (checksum differs); nothing of it can be shown, record again"};
+  if (const std::optional<Error> error = check_hello(setup.hello)) return *error;
+  if (const std::optional<Error> error = check_mesh(setup.hello, setup.mesh)) return *error;
+  return setup;
+}
+
+/// All that is good from byte `start` on. Empty, or what is damaged, "; " at its end.
+std::string read_frames(std::istream& in, std::uint64_t start, std::uint64_t file_bytes,
+                        bool is_tracked, Recording& recording) {
+  const std::uint64_t stride = sizeof(FrameRecord) + (is_tracked ? sizeof(OperatorRecord) : 0);
+  const std::uint64_t records = (file_bytes - start) / stride;
+  const std::uint64_t left_bytes = (file_bytes - start) % stride;
+  recording.frames.reserve(records);
+  std::uint64_t damaged = 0, first_damaged = 0, damaged_operators = 0;
+  FrameRecord record;
+  OperatorRecord tracked;
+  for (std::uint64_t i = 0; i < records && read(in, record); ++i) {
+    if (is_tracked && !read(in, tracked)) break;
+    if (crc_of(record.frame) != record.crc || check_frame(record.frame, recording.hello)) {
+      if (damaged++ == 0) first_damaged = start + i * stride;
+      continue;
+    }
+    recording.frames.push_back(record.frame);
+    if (!is_tracked) continue;
+    const std::optional<tracking::TrackedOperator> seen = operator_of(tracked);
+    recording.operators.push_back(seen.value_or(tracking::TrackedOperator{}));
+    std::optional<tracking::FigurePose> figure;
+    if (seen)
+      figure = figure_of(tracked, *seen);
+    else if (++damaged_operators; !recording.figures.empty())
+      figure = recording.figures.back();  // it holds
+    recording.figures.push_back(std::move(figure));
+  }
+  std::string damage;
+  if (damaged > 0) {
+    damage = fmt::format("{} of {} frames are damaged, the first at byte {}; ", damaged, records,
+                         first_damaged);
+  }
+  if (damaged_operators > 0)
+    damage += fmt::format("{} of {} frames have lost their operator; ", damaged_operators, records);
+  if (left_bytes > 0) {
+    damage +=
+        fmt::format("the file is cut off inside a frame at byte {}; ", file_bytes - left_bytes);
+  }
+  return damage;
+}
+
+ReadResult unusable(const Error& error) {
+  return {.recording = {}, .usable = false, .damage = error.sentence};
+}
+
+}  // namespace
+
+double Recording::length_s() const {
+  if (frames.empty()) return 0.0;
+  return static_cast<double>(frames.back().time_ns - frames.front().time_ns) * 1e-9;
+}
+
+std::optional<double> Recording::body_height_m() const {
+  const auto first = std::ranges::find_if(figures, [](const auto& f) { return f.has_value(); });
+  return first != figures.end() ? std::optional((*first)->height_m) : std::nullopt;
+}
+
+ReadResult read_recording(const std::string& path) {
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  if (!in)
+    return unusable({fmt::format("cannot be opened: {}; check the name", std::strerror(errno))});
+  const auto file_bytes = static_cast<std::uint64_t>(std::max<std::streamoff>(in.tellg(), 0));
+  in.seekg(0);
+  const Result<std::uint64_t> skipped = skip_ticks(in, file_bytes);
+  if (!skipped) return unusable(skipped.error());
+  Result<Setup> setup = read_setup(in, file_bytes);
+  if (!setup) return unusable(setup.error());
+  ReadResult result;
+  Recording& recording = result.recording;
+  recording.hello = setup->hello;
+  recording.mesh = std::move(setup->mesh);
+  const std::uint64_t start = *skipped + sizeof(FileHeader) + sizeof(Hello) + recording.mesh.size();
+  result.damage = read_frames(in, start, file_bytes, setup->is_tracked, recording);
+  result.usable = !recording.frames.empty();
+  if (!result.damage.empty() || !result.usable) {
+    result.damage += fmt::format("{} good frames ({:.1f} s) are kept", recording.frames.size(),
+                                 recording.length_s());
+  }
+  return result;
+}
+
+std::optional<Error> RecordingWriter::open(const std::string& path, const Hello& hello,
+                                           const MeshBytes& mesh, bool is_tracked) {
+  path_ = path;
+  is_tracked_ = is_tracked;
+  file_.reset(std::fopen(path.c_str(), "wbx"));  // x: fails when the file exists
+  if (!file_) {
+    const bool exists = errno == EEXIST;
+    return Error{fmt::format("{}: {}; {}", path, std::strerror(errno),
+                             exists ? "choose another name, a recording is never overwritten"
+                                    : "check that the folder exists and may be written")};
+  }
+  flushed_ns_ = 0;
+  if (std::optional<Error> error = put(recording_start(
+          hello, mesh, is_tracked ? kTrackedRecordingVersion : kRecordingVersion))) {
+    return error;
+  }
+  return std::fflush(file_.get()) == 0 ? std::nullopt : put({});
+}
+
+std::optional<Error> RecordingWriter::put(const std::string& bytes) {
+  if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size() &&
+      std::ferror(file_.get()) == 0) {
+    return std::nullopt;
+  }
+  Error error{fmt::format("{}: {}; recording stopped, what was written before is kept", path_,
+                          std::strerror(errno))};
+  file_.reset();
+  return error;
+}
+
+std::optional<Error> RecordingWriter::write(const Frame& frame,
+                                            const tracking::TrackedOperator* tracked,
+                                            const tracking::FigurePose* figure) {
+  if (!file_) return std::nullopt;
+  std::string bytes = recording_frame(frame);
+  if (is_tracked_)
+    bytes += operator_record(tracked != nullptr ? *tracked : tracking::TrackedOperator{}, figure);
+  if (std::optional<Error> error = put(bytes)) return error;
+  if (frame.time_ns - flushed_ns_ < kFlush_ns) return std::nullopt;
+  flushed_ns_ = frame.time_ns;
+  return std::fflush(file_.get()) == 0 ? std::nullopt : put({});
+}
+
+std::optional<Error> RecordingWriter::close() {
+  if (!file_ || std::fclose(file_.release()) == 0) return std::nullopt;
+  return Error{fmt::format("{}: {}; the last second may be missing", path_, std::strerror(errno))};
+}
+
+void RecentFrames::restart(double frame_rate_Hz) {
+  frames_.clear();
+  operators_.clear();
+  figures_.clear();
+  capacity_ = static_cast<std::size_t>(std::clamp(frame_rate_Hz, 1.0, 1000.0) * kKeep_s);
+}
+
+void RecentFrames::add(const Frame& frame, const tracking::TrackedOperator* tracked,
+                       const tracking::FigurePose* figure) {
+  if (frames_.size() >= capacity_ && !frames_.empty()) frames_.pop_front();
+  frames_.push_back(frame);
+  if (tracked == nullptr && operators_.empty()) return;
+  operators_.push_back(tracked != nullptr ? *tracked : tracking::TrackedOperator{});
+  figures_.push_back(figure != nullptr ? std::optional(*figure) : std::nullopt);
+  for (; operators_.size() < frames_.size(); figures_.emplace_front()) operators_.emplace_front();
+  for (; operators_.size() > frames_.size(); figures_.pop_front()) operators_.pop_front();
+}
+
+}  // namespace tact::host::record

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// recording.h - a run of tactd in one file, and the last minutes of it in memory.
+//
+// The file is laid out in firmware/telemetry/recording_format.h; a black box of tactd holds one,
+// too. A damaged or cut-off file gives what is good of it and one sentence about the rest. With a
+// tracker it also keeps the operator and the figure that was shown, frame by frame
+// (operator_record.h).
+#pragma once
+
+#include <cstdio>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/telemetry/recording_format.h"
+#include "host/record/telemetry_check.h"
+#include "host/tracking/figure.h"
+#include "model/result.h"
+
+namespace tact::host::record {
+
+using firmware::telemetry::FileHeader;
+using firmware::telemetry::FrameRecord;
+using firmware::telemetry::kRecordingMagic;
+using firmware::telemetry::kRecordingVersion;
+using firmware::telemetry::kTrackedRecordingVersion;
+using firmware::telemetry::recording_frame;
+using firmware::telemetry::recording_start;
+
+struct Recording {
+  Hello hello;
+  MeshBytes mesh;
+  std::vector<Frame> frames;
+  std::vector<tracking::TrackedOperator> operators;  // of each frame; none without a tracker
+  std::vector<std::optional<tracking::FigurePose>>
+      figures;  // as they were shown; as many as operators
+
+  /// None without a tracker.
+  const tracking::TrackedOperator* operator_at(std::size_t frame) const {
+    return operators.empty() ? nullptr : &operators[frame];
+  }
+  /// None where none was shown.
+  const tracking::FigurePose* figure_at(std::size_t frame) const {
+    return frame < figures.size() && figures[frame] ? &*figures[frame] : nullptr;
+  }
+  /// Of the first figure.
+  std::optional<double> body_height_m() const;
+  double length_s() const;
+};
+
+/// No Result: a damaged file gives what is good of it and says what is not, both at once.
+struct ReadResult {
+  Recording recording;
+  bool usable = false;  // scene and at least one frame are good
+  std::string damage;   // empty when the whole file is good
+};
+ReadResult read_recording(const std::string& path);
+
+/// Writes one file, at most a second behind the frames. Never overwrites a file.
+class RecordingWriter {
+ public:
+  /// Error: what went wrong, and what to do. After one nothing more is written.
+  std::optional<model::Error> open(const std::string& path, const Hello& hello,
+                                   const MeshBytes& mesh, bool is_tracked = false);
+  /// `tracked` and the figure that is shown with it only if is_tracked.
+  std::optional<model::Error> write(const Frame& frame,
+                                    const tracking::TrackedOperator* tracked = nullptr,
+                                    const tracking::FigurePose* figure = nullptr);
+  std::optional<model::Error> close();
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::optional<model::Error> put(const std::string& bytes);
+
+  std::unique_ptr<std::FILE, Closer> file_;
+  std::string path_;
+  std::int64_t flushed_ns_ = 0;
+  bool is_tracked_ = false;
+};
+
+/// The newest frames, oldest first, bounded in time, with the operator where one is tracked.
+class RecentFrames {
+ public:
+  void restart(double frame_rate_Hz);
+  void add(const Frame& frame, const tracking::TrackedOperator* tracked = nullptr,
+           const tracking::FigurePose* figure = nullptr);
+  const std::deque<Frame>& frames() const { return frames_; }
+  const std::deque<tracking::TrackedOperator>& operators() const { return operators_; }
+  const std::deque<std::optional<tracking::FigurePose>>& figures() const { return figures_; }
+
+  static constexpr double kKeep_s = 300.0;
+
+ private:
+  std::deque<Frame> frames_;
+  std::deque<tracking::TrackedOperator> operators_;          // as many as frames, or none
+  std::deque<std::optional<tracking::FigurePose>> figures_;  // as many as operators
+  std::size_t capacity_ = 0;
+};
+
+}  // namespace tact::host::record

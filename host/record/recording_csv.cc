@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/record/recording_csv.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <span>
+
+#include "host/tracking/tracking_setup.h"
+
+namespace tact::host::record {
+namespace {
+
+const char* name_of(firmware::loop::State state) {
+  switch (state) {
+    case firmware::loop::State::kOff:
+      return "off";
+    case firmware::loop::State::kReady:
+      return "ready";
+    case firmware::loop::State::kArmed:
+      return "armed";
+    case firmware::loop::State::kStopped:
+      return "stopped";
+  }
+  return "unknown";
+}
+
+const char* name_of(firmware::telemetry::SiteState state) {
+  switch (state) {
+    case firmware::telemetry::SiteState::kFree:
+      return "free";
+    case firmware::telemetry::SiteState::kTouching:
+      return "touching";
+    case firmware::telemetry::SiteState::kHeld:
+      return "held";
+  }
+  return "unknown";
+}
+
+const char* name_of(tracking::BodyState state) {
+  switch (state) {
+    case tracking::BodyState::kAbsent:
+      return "absent";
+    case tracking::BodyState::kTracked:
+      return "tracked";
+    case tracking::BodyState::kHeld:
+      return "held";
+    case tracking::BodyState::kLost:
+      return "lost";
+  }
+  return "unknown";
+}
+
+std::size_t sites_of(const Hello& hello) {
+  return std::min<std::size_t>(hello.site_count, firmware::telemetry::kMaxSites);
+}
+std::size_t rings_of(const Hello& hello) {
+  return std::min<std::size_t>(hello.ring_count, firmware::telemetry::kMaxRings);
+}
+
+void put(std::string& out, std::span<const float> values) {
+  for (const float value : values) fmt::format_to(std::back_inserter(out), ",{}", value);
+}
+void put(std::string& out, float value) { put(out, std::span(&value, 1)); }
+
+/// Cuts so far, vertices told one by one, and the largest displacement of those.
+void put_patch(std::string& out, const firmware::telemetry::FramePatch& patch) {
+  const auto n = std::min<std::size_t>(patch.vertex_count, firmware::telemetry::kMaxPatchVertices);
+  double most_um = 0.0;
+  for (const auto& [x, y, z] : std::span(patch.displacement_um).first(n))
+    most_um = std::max(most_um, std::hypot(x, y, z));
+  fmt::format_to(std::back_inserter(out), ",{},{},{:.6f}", patch.cut_total, n, 1e-6 * most_um);
+}
+
+void put_body(std::string& out, const tracking::TrackedBody& body) {
+  const Eigen::Quaterniond& q = body.raw.rotation;
+  const Eigen::Vector3d& p = body.raw.position_m;
+  fmt::format_to(std::back_inserter(out), ",{},{},{},{},{},{},{},{},{},{}", name_of(body.state),
+                 p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z(), body.rms_px, body.age_s);
+}
+
+}  // namespace
+
+std::string csv_header(const Hello& hello, const std::vector<tracking::BodyRole>& bodies) {
+  std::string out =
+      "tick,time_s,non_rt,state,fault,limit,late_ticks,skipped_ticks,dropped_records,"
+      "tool_x_m,tool_y_m,tool_z_m,tool_qw,tool_qx,tool_qy,tool_qz,"
+      "tool_vx_mps,tool_vy_mps,tool_vz_mps,grip_ratio,force_x_N,force_y_N,force_z_N,"
+      "torque_x_Nm,torque_y_Nm,torque_z_Nm,wanted_x_N,wanted_y_N,wanted_z_N,"
+      "worst_margin_us,median_tick_us,peak_force_N,rms_force_N,given_energy_J,cut_triangles,patch_"
+      "vertices,patch_most_m";
+  for (std::size_t i = 1; i <= sites_of(hello); ++i) {
+    fmt::format_to(std::back_inserter(out),
+                   ",site{0}_state,site{0}_x_m,site{0}_y_m,site{0}_z_m,site{0}_normal_x,"
+                   "site{0}_normal_y,site{0}_normal_z,site{0}_shift_x_m,site{0}_shift_y_m,"
+                   "site{0}_shift_z_m,site{0}_depth_m",
+                   i);
+    for (std::size_t j = 0; j < rings_of(hello); ++j)
+      fmt::format_to(std::back_inserter(out), ",site{}_u{}_m", i, j);
+  }
+  for (const tracking::BodyRole role : bodies) {
+    fmt::format_to(std::back_inserter(out),
+                   ",{0}_state,{0}_x_m,{0}_y_m,{0}_z_m,{0}_qw,{0}_qx,{0}_qy,{0}_qz,{0}_rms_px,"
+                   "{0}_age_s",
+                   name_of(role));
+  }
+  out += '\n';
+  return out;
+}
+
+std::vector<tracking::BodyRole> bodies_in(const Recording& recording) {
+  std::vector<tracking::BodyRole> out;
+  for (std::size_t i = 0; i < tracking::kBodyRoles; ++i) {
+    const bool is_present =
+        std::ranges::any_of(recording.operators, [i](const tracking::TrackedOperator& o) {
+          return o.bodies[i].state != tracking::BodyState::kAbsent;
+        });
+    if (is_present) out.push_back(static_cast<tracking::BodyRole>(i));
+  }
+  return out;
+}
+
+void append_csv_row(std::string& out, const Frame& frame, const Hello& hello,
+                    const tracking::TrackedOperator* tracked,
+                    const std::vector<tracking::BodyRole>& bodies) {
+  fmt::format_to(std::back_inserter(out), "{},{:.9f},{},{},{},{},{},{},{}", frame.tick,
+                 static_cast<double>(frame.time_ns) * 1e-9, frame.non_rt, name_of(frame.state),
+                 frame.fault, frame.limit, frame.late_ticks, frame.skipped_ticks,
+                 frame.dropped_records);
+  put(out, frame.tool_position_m);
+  put(out, frame.tool_orientation);
+  put(out, frame.tool_velocity_mps);
+  put(out, frame.grip_ratio);
+  put(out, frame.force_N);
+  put(out, frame.torque_Nm);
+  put(out, frame.wanted_force_N);
+  put(out, frame.worst_margin_us);
+  put(out, frame.median_tick_us);
+  put(out, frame.peak_force_N);
+  put(out, frame.rms_force_N);
+  put(out, frame.given_energy_J);
+  put_patch(out, frame.patch);
+  for (std::size_t i = 0; i < sites_of(hello); ++i) {
+    const firmware::telemetry::FrameSite& site = frame.site[i];
+    out += ',';
+    out += name_of(site.state);
+    put(out, site.surface_point_m);
+    put(out, site.normal);
+    put(out, site.shift_m);
+    put(out, site.depth_m);
+    put(out, std::span(site.profile_m).first(rings_of(hello)));
+  }
+  const tracking::TrackedOperator none;
+  for (const tracking::BodyRole role : bodies)
+    put_body(out, (tracked != nullptr ? *tracked : none)[role]);
+  out += '\n';
+}
+
+}  // namespace tact::host::record

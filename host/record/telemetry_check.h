@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// telemetry_check.h - are these bytes what tactd promises? Nothing from a socket or a file is used
+// before it passed here. Each check returns nothing, or an error that says what is wrong.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "firmware/telemetry/telemetry_record.h"
+#include "model/result.h"
+
+namespace tact::host::record {
+
+using firmware::telemetry::Frame;
+using firmware::telemetry::Hello;
+
+/// Content of the memory file that comes with a Hello.
+using MeshBytes = std::vector<std::byte>;
+
+/// Size in bytes of the meshes that this Hello announces.
+std::uint64_t mesh_size(const Hello& hello);
+
+/// Header, counts, and finite lengths of a Hello.
+std::optional<model::Error> check_hello(const Hello& hello);
+
+/// Size, finite vertices, and triangles that name existing vertices.
+std::optional<model::Error> check_mesh(const Hello& hello, std::span<const std::byte> mesh);
+
+/// Header of a Frame, its states, and a patch that names existing vertices and triangles. Lengths
+/// and forces may be NaN: that is something to show, not to hide.
+std::optional<model::Error> check_frame(const Frame& frame, const Hello& hello);
+
+/// A text of a wire struct: ends at the first NUL or with the array.
+template <std::size_t n>
+std::string_view text_of(const char (&field)[n]) {
+  const std::string_view all(field, n);
+  return all.substr(0, all.find('\0'));
+}
+
+}  // namespace tact::host::record

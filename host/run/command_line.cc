@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/run/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "host/run/telemetry_client.h"
+
+namespace tact::host::run {
+namespace {
+
+std::string page_beside_program() {
+  std::error_code wrong;
+  return (std::filesystem::read_symlink("/proc/self/exe", wrong).parent_path() / "page").string();
+}
+
+}  // namespace
+
+std::optional<int> parse_options(int argc, char** argv, Options& options) {
+  options.socket = default_telemetry_path();
+  CLI::App app{
+      "tact-view: shows what tactd does in a browser: the deforming tissue, the tool, the force "
+      "and\n"
+      "the time left before each deadline. It cannot command a force. Ctrl-C ends it.\n"
+      "Exit status: 0 good, 1 a recording is damaged or incomplete, or a registration failed\n"
+      "or has a residual above 2 mm (written all the same), 2 "
+      "bad usage\n"
+      "or input."};
+  app.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return std::string("tact-view: ") + error.what() + "; see tact-view --help\n";
+  });
+  app.add_option("--socket", options.socket, "tactd's telemetry socket")->capture_default_str();
+  app.add_option("--port", options.viewer.port, "port of the page; 0 takes any free one")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 65535));
+  app.add_option("--bind", options.viewer.bind_address,
+                 "IP address to serve on; any but loopback asks browsers for a token")
+      ->capture_default_str();
+  app.add_option("--page", options.viewer.page_folder,
+                 "folder of the built page (default: page/ beside this program)");
+  CLI::Option* record =
+      app.add_option("--record", options.record, "write all frames to this new file");
+  CLI::Option* open = app.add_option(
+      "--open", options.open, "replay this recording, or a black box of tactd, instead of tactd");
+  app.add_option("--export", options.export_csv,
+                 "with --open: write this CSV file (m, s, N, us, as its columns say) and leave")
+      ->needs(open);
+  CLI::Option* tracking = app.add_option(
+      "--tracking", options.tracking,
+      "description of the operator's tracker, SCENE.tracking.toml (host/tracking/README.md)");
+  CLI::Option* registration =
+      app.add_flag("--register", options.registration,
+                   "with --tracking and a running tactd: find where the tracker stands from poses "
+                   "of the tracked tool, write SCENE.registration.toml and leave");
+  app.add_option("--poses", options.poses, "for --register")
+      ->capture_default_str()
+      ->check(CLI::Range(std::size_t{6}, std::size_t{200}))
+      ->needs(registration);
+  app.add_flag("--figure", options.figure,
+               "show the operator without a tracker, too: the arm that holds the tool");
+  app.add_option("--height", options.height_m,
+                 "the operator's body height, m; a recording with an operator has its own")
+      ->capture_default_str()
+      ->check(CLI::Range(1.2, 2.2));
+  app.add_flag("--json", options.json, "say what is ready or done as one line of JSON");
+  record->excludes(open);
+  tracking->excludes(open);
+  registration->needs(tracking)->excludes(record);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  if (options.viewer.page_folder.empty()) options.viewer.page_folder = page_beside_program();
+  return std::nullopt;
+}
+
+}  // namespace tact::host::run

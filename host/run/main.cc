@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+// tact-view: shows what tactd does in a browser, records it, replays it, writes it as CSV.
+#include <fmt/format.h>
+
+#include <boost/asio/signal_set.hpp>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "host/record/recording_csv.h"
+#include "host/run/command_line.h"
+#include "host/run/register_tracker.h"
+#include "host/run/telemetry_client.h"
+#include "host/server/operator_figure.h"
+#include "host/server/playback.h"
+#include "host/server/viewer_server.h"
+#include "host/tracking/operator_tracking.h"
+#include "model/result.h"
+
+namespace tact::host::run {
+namespace {
+
+constexpr int kGood = 0, kCheckFailed = 1, kBadInput = 2;
+
+void warn(const std::string& sentence) { fmt::print(stderr, "tact-view: {}\n", sentence); }
+
+int fail(const std::string& sentence) {
+  warn(sentence);
+  return kBadInput;
+}
+
+bool exists(const std::string& path) {
+  std::error_code unreadable;
+  return std::filesystem::exists(path, unreadable);
+}
+
+/// A file name with broken UTF-8 is mended instead of throwing.
+std::string to_text(const nlohmann::json& json) {
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// Writes every frame of every run to its own file: FILE, then FILE.2, FILE.3.
+class Recorder {
+ public:
+  Recorder(std::string path, bool is_tracked) : path_(std::move(path)), is_tracked_(is_tracked) {}
+
+  void begin(const record::Hello& hello, const record::MeshBytes& mesh) {
+    if (path_.empty()) return;
+    note(writer_.close());
+    ++runs_;
+    note(writer_.open(runs_ == 1 ? path_ : fmt::format("{}.{}", path_, runs_), hello, mesh,
+                      is_tracked_));
+  }
+  void add(const record::Frame& frame, const tracking::TrackedOperator* tracked,
+           const tracking::FigurePose& figure) {
+    note(writer_.write(frame, tracked, &figure));
+  }
+  void close() { note(writer_.close()); }
+  bool failed() const { return failed_; }
+
+ private:
+  void note(const std::optional<model::Error>& error) {
+    if (!error) return;
+    failed_ = true;
+    warn(error->sentence);
+  }
+
+  record::RecordingWriter writer_;
+  std::string path_;
+  bool is_tracked_;
+  int runs_ = 0;
+  bool failed_ = false;
+};
+
+int export_csv(const Options& options, const record::ReadResult& read) {
+  if (exists(options.export_csv))
+    return fail(options.export_csv + ": exists already; choose another name");
+  std::ofstream out(options.export_csv, std::ios::binary);
+  const record::Recording& recording = read.recording;
+  const std::vector<tracking::BodyRole> bodies = bodies_in(recording);
+  std::string text = record::csv_header(recording.hello, bodies);
+  for (std::size_t i = 0; i < recording.frames.size(); ++i) {
+    record::append_csv_row(text, recording.frames[i], recording.hello, recording.operator_at(i),
+                           bodies);
+    out << text;
+    text.clear();
+  }
+  out.flush();
+  if (!out) return fail(options.export_csv + ": cannot be written; check folder and free space");
+  if (options.json) {
+    const nlohmann::json summary{{"file", options.export_csv},
+                                 {"frames", recording.frames.size()},
+                                 {"length_s", recording.length_s()},
+                                 {"damage", read.damage}};
+    fmt::print("{}\n", to_text(summary));
+  } else {
+    fmt::print("{}: {} frames, {:.1f} s\n", options.export_csv, recording.frames.size(),
+               recording.length_s());
+  }
+  return read.damage.empty() ? kGood : kCheckFailed;
+}
+
+void say_ready(const Options& options, const server::ViewerServer& server) {
+  if (options.json) {
+    const nlohmann::json ready{
+        {"url", server.url()}, {"port", server.port()}, {"token", server.token()}};
+    fmt::print("{}\n", to_text(ready));
+  } else {
+    fmt::print("tact-view: {}\n", server.url());
+  }
+  std::fflush(stdout);
+}
+
+/// Runs until a signal. `source` starts what feeds the view.
+template <typename Start>
+int serve(const Options& options, boost::asio::io_context& io, server::ViewerServer& server,
+          const Start& start) {
+  if (const std::optional<model::Error> error = server.open(options.viewer))
+    return fail(error->sentence);
+  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
+  signals.async_wait([&io](boost::system::error_code, int) { io.stop(); });
+  server.start();
+  start();
+  say_ready(options, server);
+  io.run();
+  return kGood;
+}
+
+int show_live(const Options& options) {
+  if (!options.record.empty() && exists(options.record)) {
+    return fail(options.record +
+                ": exists already; a recording is never overwritten, choose "
+                "another name");
+  }
+  server::OperatorFigure figure(options.height_m);  // outlives the view
+  server::LiveView view;                            // outlives the sessions, which live in io
+  boost::asio::io_context io(1);
+  std::optional<tracking::OperatorTracking> tracking;
+  if (!options.tracking.empty()) {
+    tracking.emplace(io, warn);
+    if (const std::optional<model::Error> error = tracking->open(options.tracking))
+      return fail(error->sentence);
+    if (const auto& shoulder_m = tracking->setup().shoulder_m) figure.put_shoulder_at(*shoulder_m);
+  }
+  if (options.figure || tracking) view.accompany(&figure);
+  Recorder recorder(options.record, tracking.has_value());
+  TelemetryClient client(io, options.socket,
+                         {.hello =
+                              [&](const record::Hello& hello, record::MeshBytes mesh) {
+                                recorder.begin(hello, mesh);
+                                view.begin(hello, std::move(mesh), server::Link::kLive);
+                              },
+                          .frame =
+                              [&](const record::Frame& frame) {
+                                const tracking::TrackedOperator* now =
+                                    tracking ? &tracking->now() : nullptr;
+                                view.add(frame, now);
+                                recorder.add(frame, now, figure.figure());
+                              },
+                          .lost =
+                              [&](const std::string& reason) {
+                                if (!reason.empty()) warn(reason);
+                                view.lose(reason);
+                              }});
+  server::ViewerServer server(io, view,
+                              [&client](const double (&position_m)[3], double grip_ratio) {
+                                client.move_hand(position_m, grip_ratio);
+                              });
+  const int status = serve(options, io, server, [&client, &tracking] {
+    client.start();
+    if (tracking) tracking->start();
+  });
+  recorder.close();
+  return status == kGood && recorder.failed() ? kCheckFailed : status;
+}
+
+int show_recording(const Options& options, record::ReadResult read) {
+  // Outlives the view; a recording that has the operator has the height of the body, too.
+  server::OperatorFigure figure(read.recording.body_height_m().value_or(options.height_m));
+  server::LiveView view;  // outlives the sessions, which live in io
+  boost::asio::io_context io(1);
+  if (options.figure || !read.recording.operators.empty()) view.accompany(&figure);
+  server::ViewerServer server(io, view, nullptr);
+  server::Playback playback(io, view, std::move(read.recording),
+                            std::filesystem::path(options.open).filename().string());
+  const int status = serve(options, io, server, [&playback] { playback.start(); });
+  return status == kGood && !read.damage.empty() ? kCheckFailed : status;
+}
+
+int serve_or_export(const Options& options) {
+  if (options.registration) return register_tracker(options);
+  if (options.open.empty()) return show_live(options);
+  record::ReadResult read = record::read_recording(options.open);
+  if (!read.damage.empty()) fmt::print(stderr, "tact-view: {}: {}\n", options.open, read.damage);
+  if (!read.usable) return kBadInput;
+  if (!options.export_csv.empty()) return export_csv(options, read);
+  return show_recording(options, std::move(read));
+}
+
+}  // namespace
+}  // namespace tact::host::run
+
+int main(int argc, char** argv) {
+  try {
+    tact::host::run::Options options;
+    if (const auto status = tact::host::run::parse_options(argc, argv, options)) return *status;
+    return tact::host::run::serve_or_export(options);
+  } catch (const std::exception& error) {  // a library's, when memory or descriptors run out
+    std::fprintf(stderr, "tact-view: %s\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/run/telemetry_client.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/system/error_code.hpp>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include "hal/sim/hand_target.h"
+
+namespace tact::host::run {
+namespace {
+
+using boost::system::error_code;
+using model::Error;
+
+constexpr std::chrono::milliseconds kRetry{250};
+constexpr int kMessagesPerTurn = 64;  // then other work gets a turn
+
+/// None: the path is too long for a socket, or empty.
+std::optional<sockaddr_un> address_of(std::string_view path) {
+  sockaddr_un address{};
+  if (path.empty() || path.size() >= sizeof address.sun_path) return std::nullopt;
+  address.sun_family = AF_UNIX;
+  std::copy(path.begin(), path.end(), address.sun_path);
+  return address;
+}
+
+/// A stranger's program behind our path must not be believed.
+bool is_ours(int socket) {
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  if (getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) return false;
+  return peer.uid == geteuid() || peer.uid == 0 || geteuid() == 0;
+}
+
+/// The descriptor in a control message, or -1. Any further ones are closed.
+int take_descriptor(msghdr& message) {
+  int found = -1;
+  for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c)) {
+    if (c->cmsg_level != SOL_SOCKET || c->cmsg_type != SCM_RIGHTS) continue;
+    const std::size_t count = (c->cmsg_len - CMSG_LEN(0)) / sizeof(int);
+    for (std::size_t i = 0; i < count; ++i) {
+      int fd = -1;
+      std::memcpy(&fd, CMSG_DATA(c) + i * sizeof(int), sizeof fd);
+      if (found < 0)
+        found = fd;
+      else
+        ::close(fd);
+    }
+  }
+  return found;
+}
+
+/// Copies instead of mapping: a file that shrinks later cannot hurt.
+record::MeshBytes read_memory_file(int fd, std::uint64_t expected) {
+  record::MeshBytes mesh;
+  struct stat status{};
+  if (fstat(fd, &status) != 0 || static_cast<std::uint64_t>(status.st_size) != expected)
+    return mesh;
+  mesh.resize(expected);
+  std::size_t done = 0;
+  while (done < mesh.size()) {
+    const ssize_t got = pread(fd, &mesh[done], mesh.size() - done, static_cast<off_t>(done));
+    if (got <= 0) {
+      mesh.clear();
+      break;
+    }
+    done += static_cast<std::size_t>(got);
+  }
+  return mesh;
+}
+
+}  // namespace
+
+std::string default_telemetry_path() {
+  const char* runtime = std::getenv("XDG_RUNTIME_DIR");
+  if (runtime != nullptr && *runtime != '\0') return fmt::format("{}/tact/telemetry.sock", runtime);
+  return fmt::format("/tmp/tact-{}/telemetry.sock", getuid());
+}
+
+TelemetryClient::TelemetryClient(boost::asio::io_context& io, std::string path,
+                                 TelemetryEvents events)
+    : socket_(io), retry_(io), path_(std::move(path)), events_(std::move(events)) {
+  hand_socket_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+}
+
+TelemetryClient::~TelemetryClient() {
+  if (hand_socket_ >= 0) ::close(hand_socket_);
+}
+
+void TelemetryClient::start() { connect(); }
+
+void TelemetryClient::stop() {
+  error_code ignored;
+  retry_.cancel(ignored);
+  socket_.close(ignored);
+}
+
+void TelemetryClient::connect() {
+  const std::optional<sockaddr_un> address = address_of(path_);
+  if (!address) {
+    return lose(
+        fmt::format("{}: a socket path has 1 to 107 characters; give a shorter --socket", path_));
+  }
+  const int fd = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (fd < 0) return lose(fmt::format("no socket: {}", std::strerror(errno)));
+  if (::connect(fd, reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0) {
+    const int why = errno;
+    ::close(fd);
+    // Nobody there is the normal case before tactd starts: no reason to give.
+    const bool absent = why == ENOENT || why == ECONNREFUSED || why == EAGAIN;
+    return lose(absent ? std::string() : fmt::format("{}: {}", path_, std::strerror(why)));
+  }
+  if (!is_ours(fd)) {
+    ::close(fd);
+    return lose(
+        fmt::format("{} belongs to another user's program; start tactd and tact-view as "
+                    "one user, or give --socket",
+                    path_));
+  }
+  error_code wrong;
+  socket_.assign(fd, wrong);
+  if (wrong) {
+    ::close(fd);
+    return lose(wrong.message());
+  }
+  wait_for_data();
+}
+
+void TelemetryClient::lose(const std::string& reason) {
+  error_code ignored;
+  socket_.close(ignored);
+  const bool had_hello = has_hello_;
+  has_hello_ = false;
+  if (had_hello || reason != last_reason_) events_.lost(reason);
+  last_reason_ = reason;
+  retry_later();
+}
+
+void TelemetryClient::retry_later() {
+  retry_.expires_after(kRetry);
+  retry_.async_wait([this](error_code wrong) {
+    if (!wrong) connect();
+  });
+}
+
+void TelemetryClient::wait_for_data() {
+  socket_.async_wait(boost::asio::posix::descriptor_base::wait_read, [this](error_code wrong) {
+    if (wrong) return;  // closed by stop()
+    for (int i = 0; i < kMessagesPerTurn && read_message(); ++i) {
+    }
+    if (socket_.is_open()) wait_for_data();
+  });
+}
+
+/// One message. False when there is none left or the connection ended.
+bool TelemetryClient::read_message() {
+  alignas(record::Frame)
+      std::byte bytes[std::max(sizeof(record::Hello), sizeof(record::Frame)) + 1];
+  alignas(cmsghdr) char control[CMSG_SPACE(4 * sizeof(int))];
+  iovec part{.iov_base = bytes, .iov_len = sizeof bytes};
+  msghdr message{};
+  message.msg_iov = &part;
+  message.msg_iovlen = 1;
+  message.msg_control = control;
+  message.msg_controllen = sizeof control;
+  const ssize_t got = ::recvmsg(socket_.native_handle(), &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
+  if (got < 0 && (errno == EAGAIN || errno == EINTR)) return false;
+  if (got <= 0) return lose({}), false;
+
+  const int memory_file = take_descriptor(message);
+  const std::optional<Error> error =
+      has_hello_ ? take_frame({bytes, static_cast<std::size_t>(got)})
+                 : take_hello({bytes, static_cast<std::size_t>(got)}, memory_file);
+  if (memory_file >= 0) ::close(memory_file);
+  if (error) lose(error->sentence);
+  return !error && socket_.is_open();
+}
+
+std::optional<Error> TelemetryClient::take_hello(std::span<const std::byte> message,
+                                                 int memory_file) {
+  if (message.size() != sizeof hello_) {
+    return Error{
+        "tactd's first message has an unexpected size; use tactd and "
+        "tact-view of one build"};
+  }
+  std::memcpy(&hello_, message.data(), sizeof hello_);
+  if (std::optional<Error> error = record::check_hello(hello_)) return error;
+  if (memory_file < 0) return Error{"tactd sent no meshes with its first message"};
+  record::MeshBytes mesh = read_memory_file(memory_file, record::mesh_size(hello_));
+  if (std::optional<Error> error = record::check_mesh(hello_, mesh)) return error;
+  has_hello_ = true;
+  events_.hello(hello_, std::move(mesh));
+  return std::nullopt;
+}
+
+std::optional<Error> TelemetryClient::take_frame(std::span<const std::byte> message) {
+  record::Frame frame;
+  if (message.size() != sizeof frame)
+    return Error{"a telemetry frame has an unexpected size; use tactd and tact-view of one build"};
+  std::memcpy(&frame, message.data(), sizeof frame);
+  if (std::optional<Error> error = record::check_frame(frame, hello_)) return error;
+  events_.frame(frame);
+  return std::nullopt;
+}
+
+void TelemetryClient::move_hand(const double (&position_m)[3], double grip_ratio) {
+  if (!has_hello_ || hello_.simulated == 0) return;
+  const auto address = address_of(record::text_of(hello_.hand_socket));
+  if (!address) return;
+  hal::sim::HandTarget target;
+  std::copy(std::begin(position_m), std::end(position_m), target.position_m);
+  target.grip_ratio = grip_ratio;
+  // A full or missing socket drops the target: the next one is 16 ms away.
+  (void)::sendto(hand_socket_, &target, sizeof target, MSG_DONTWAIT | MSG_NOSIGNAL,
+                 reinterpret_cast<const sockaddr*>(&*address), sizeof *address);
+}
+
+}  // namespace tact::host::run

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// telemetry_client.h - the wire to tactd: one Hello with the meshes, then frames, for ever again.
+//
+// Connects to tactd's socket and tries again four times a second while nobody is there or after the
+// connection ended. Every message is checked before it is passed on. The only thing that travels
+// the other way is a hand target for a simulated device; a force cannot be commanded from here.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "host/record/telemetry_check.h"
+#include "model/result.h"
+
+namespace tact::host::run {
+
+/// $XDG_RUNTIME_DIR/tact/telemetry.sock, or /tmp/tact-<uid>/telemetry.sock.
+std::string default_telemetry_path();
+
+struct TelemetryEvents {
+  std::function<void(const record::Hello&, record::MeshBytes)> hello;
+  std::function<void(const record::Frame&)> frame;
+  std::function<void(const std::string& reason)> lost;  // once per loss; reason may be empty
+};
+
+class TelemetryClient {
+ public:
+  TelemetryClient(boost::asio::io_context& io, std::string path, TelemetryEvents events);
+  ~TelemetryClient();
+  TelemetryClient(const TelemetryClient&) = delete;
+  TelemetryClient& operator=(const TelemetryClient&) = delete;
+
+  void start();
+  void stop();
+
+  /// Where a simulated hand shall go, W. Dropped when the device is hardware or nobody listens.
+  void move_hand(const double (&position_m)[3], double grip_ratio);
+
+ private:
+  void connect();
+  void retry_later();
+  void lose(const std::string& reason);
+  void wait_for_data();
+  bool read_message();
+  std::optional<model::Error> take_hello(std::span<const std::byte> message, int memory_file);
+  std::optional<model::Error> take_frame(std::span<const std::byte> message);
+
+  boost::asio::posix::stream_descriptor socket_;
+  boost::asio::steady_timer retry_;
+  std::string path_;
+  TelemetryEvents events_;
+  int hand_socket_ = -1;
+  record::Hello hello_;
+  bool has_hello_ = false;
+  std::string last_reason_ = "never";  // a reason is told once, not four times a second
+};
+
+}  // namespace tact::host::run

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/server/access.h"
+
+#include <fmt/format.h>
+#include <openssl/crypto.h>
+#include <sys/random.h>
+
+#include <array>
+
+namespace tact::host::server {
+namespace {
+
+/// "name:port" without the port; an IPv6 address keeps its brackets.
+std::string_view name_of(std::string_view host) {
+  const std::size_t colon = host.rfind(':');
+  const std::size_t bracket = host.rfind(']');
+  const bool has_port =
+      colon != std::string_view::npos && (bracket == std::string_view::npos || colon > bracket);
+  return has_port ? host.substr(0, colon) : host;
+}
+
+/// Takes the same time wherever the first difference is.
+bool same_secret(std::string_view a, std::string_view b) {
+  return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
+}
+
+/// Value of a name in a list such as "a=1; b=2".
+std::string_view value_in(std::string_view list, std::string_view name, char separator) {
+  while (!list.empty()) {
+    const std::size_t end = list.find(separator);
+    std::string_view item = list.substr(0, end);
+    while (!item.empty() && item.front() == ' ') item.remove_prefix(1);
+    if (item.size() > name.size() && item.substr(0, name.size()) == name &&
+        item[name.size()] == '=') {
+      return item.substr(name.size() + 1);
+    }
+    if (end == std::string_view::npos) break;
+    list.remove_prefix(end + 1);
+  }
+  return {};
+}
+
+}  // namespace
+
+bool Access::host_allowed(std::string_view host) const {
+  if (!loopback) return !host.empty();  // the token decides
+  const std::string_view name = name_of(host);
+  return name == "localhost" || name == "127.0.0.1" || name == "[::1]" || name == bind_address;
+}
+
+bool Access::token_allowed(std::string_view query, std::string_view cookies) const {
+  if (loopback) return true;
+  if (token.empty()) return false;
+  return same_secret(query_value(query, "token"), token) ||
+         same_secret(value_in(cookies, cookie_name, ';'), token);
+}
+
+bool origin_matches(std::string_view origin, std::string_view host) {
+  for (const std::string_view scheme : {"http://", "https://"})
+    if (origin.substr(0, scheme.size()) == scheme)
+      return !host.empty() && origin.substr(scheme.size()) == host;
+  return false;
+}
+
+std::string_view query_value(std::string_view query, std::string_view key) {
+  return value_in(query, key, '&');
+}
+
+model::Result<std::string> make_token() {
+  std::array<unsigned char, 16> bytes{};
+  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+    return model::Error{"the kernel gives no random numbers for the token"};
+  std::string out;
+  for (const unsigned byte : bytes) out += fmt::format("{:02x}", byte);
+  return out;
+}
+
+}  // namespace tact::host::server

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// download.h - sends the kept frames as a file, a few hundred at a time, so that making a long file
+// never holds up the live frames of other browsers.
+#pragma once
+
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/serializer.hpp>
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "host/record/recording.h"
+
+namespace tact::host::server {
+
+constexpr std::chrono::seconds kPatience{30};  // for a browser that does not read
+
+enum class DownloadKind { kCsv, kRecording };
+
+class Download : public std::enable_shared_from_this<Download> {
+ public:
+  using Header = boost::beast::http::response<boost::beast::http::empty_body>;
+
+  Download(boost::beast::tcp_stream stream, std::shared_ptr<const record::Recording> recording,
+           DownloadKind kind);
+
+  /// Header must be chunked. The connection closes at the end.
+  void start(Header header);
+
+ private:
+  std::string first_part() const;
+  void write_chunk(std::string part);
+  void write_next();
+  void finish();
+
+  boost::beast::tcp_stream stream_;
+  std::shared_ptr<const record::Recording> recording_;
+  DownloadKind kind_;
+  std::vector<tracking::BodyRole> bodies_;
+  Header header_;
+  boost::beast::http::response_serializer<boost::beast::http::empty_body> serializer_{header_};
+  std::string part_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace tact::host::server

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// frame_json.h - telemetry as JSON text for the page.
+//
+// One frame that check_frame lets pass is at most kMaxFrameJsonBytes long: lengths and forces carry
+// four significant digits, the tool's position six, and only sites in contact are listed. A number
+// that is not finite becomes null, because JSON has no NaN. A law without profiles shows displaced
+// vertices instead, in base64: n vertex numbers (uint32), then n displacements (3 int16, um).
+#pragma once
+
+#include <string>
+
+#include "host/record/telemetry_check.h"
+
+namespace tact::host::server {
+
+inline constexpr std::size_t kMaxFrameJsonBytes = 4096;
+
+/// {"kind":"frame","tick":..,"time_s":..,"tool_m":[x,y,z],...,"sites":[{"site":0,...,"u_m":[..]}]}
+std::string frame_json(const record::Frame& frame, const record::Hello& hello);
+
+/// What does not change while tactd runs: names, counts, limits, probe spheres.
+std::string scene_json(const record::Hello& hello);
+
+}  // namespace tact::host::server

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/server/http_session.h"
+
+#include <fmt/format.h>
+
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/write.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <charconv>
+#include <chrono>
+
+#include "host/server/download.h"
+#include "host/server/frame_json.h"
+
+namespace tact::host::server {
+namespace {
+
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+using beast::error_code;
+
+constexpr std::uint32_t kMaxHeaderBytes = 8192;
+constexpr std::uint64_t kMaxBodyBytes = 1024;
+
+std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
+
+template <typename Message>
+void set_common(Message& message) {
+  message.set(http::field::server, "tact-view");
+  message.set(http::field::cache_control, "no-store");
+  message.set("X-Content-Type-Options", "nosniff");
+  message.set("Referrer-Policy", "no-referrer");  // the URL may hold the token
+  message.set("Cross-Origin-Resource-Policy", "same-origin");
+  message.set("Content-Security-Policy",
+              "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
+              "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+}
+
+HttpSession::Response make(http::status status, const char* mime, std::string body) {
+  HttpSession::Response response{status, 11};
+  response.set(http::field::content_type, mime);
+  response.body() = std::move(body);
+  return response;
+}
+
+HttpSession::Response sorry(http::status status, const char* sentence) {
+  return make(status, "text/plain; charset=utf-8", std::string(sentence) + "\n");
+}
+
+std::uint64_t tick_value(std::string_view query, std::string_view key, std::uint64_t otherwise) {
+  const std::string_view text = query_value(query, key);
+  std::uint64_t tick = 0;
+  const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), tick);
+  return wrong == std::errc() && end == text.data() + text.size() ? tick : otherwise;
+}
+
+std::string bytes_of(const record::MeshBytes& mesh) {
+  return {reinterpret_cast<const char*>(mesh.data()), mesh.size()};
+}
+
+}  // namespace
+
+HttpSession::HttpSession(beast::tcp_stream stream, Site& site)
+    : stream_(std::move(stream)), site_(site) {}
+
+void HttpSession::read_next() {
+  parser_.emplace();
+  parser_->header_limit(kMaxHeaderBytes);
+  parser_->body_limit(kMaxBodyBytes);
+  stream_.expires_after(kPatience);
+  http::async_read(stream_, in_, *parser_,
+                   [self = shared_from_this()](error_code wrong, std::size_t) {
+                     if (!wrong) self->handle(self->parser_->get());
+                   });
+}
+
+void HttpSession::handle(const Request& request) {
+  const std::string_view target = view_of(request.target());
+  const std::size_t mark = target.find('?');
+  const std::string_view path = target.substr(0, mark);
+  const std::string_view query =
+      mark == std::string_view::npos ? std::string_view() : target.substr(mark + 1);
+  const bool for_us = site_.access.host_allowed(view_of(request[http::field::host]));
+  const bool may_look =
+      for_us && site_.access.token_allowed(query, view_of(request[http::field::cookie]));
+  if (may_look && beast::websocket::is_upgrade(request) && path == "/live") return upgrade(request);
+  if (may_look && request.method() == http::verb::get && site_.view.has_scene() &&
+      (path == "/recording.csv" || path == "/recording.tact")) {
+    return download(request, path, query);
+  }
+  if (!for_us) {
+    write(sorry(http::status::forbidden, "403: open this page by its address, not by another name"),
+          request);
+  } else if (!may_look) {
+    write(sorry(http::status::forbidden,
+                "403: the token is missing or wrong; use the whole address that tact-view printed"),
+          request);
+  } else {
+    write(answer(request, path, query), request);
+  }
+}
+
+void HttpSession::upgrade(const Request& request) {
+  if (!origin_matches(view_of(request[http::field::origin]), view_of(request[http::field::host]))) {
+    return write(sorry(http::status::forbidden, "403: this WebSocket is for tact's own page only"),
+                 request);
+  }
+  std::make_shared<LiveSession>(std::move(stream_), site_.view, site_.move_hand)->start(request);
+}
+
+void HttpSession::download(const Request& request, std::string_view path, std::string_view query) {
+  const DownloadKind kind =
+      path == "/recording.csv" ? DownloadKind::kCsv : DownloadKind::kRecording;
+  Download::Header header{http::status::ok, request.version()};
+  set_common(header);
+  header.set(http::field::content_type,
+             kind == DownloadKind::kCsv ? "text/csv; charset=utf-8" : "application/octet-stream");
+  header.set(http::field::content_disposition,
+             fmt::format("attachment; filename=\"{}\"", path.substr(1)));
+  header.keep_alive(false);
+  header.chunked(true);
+  auto frames = site_.view.recent(tick_value(query, "from_tick", 0),
+                                  tick_value(query, "to_tick", UINT64_MAX));
+  std::make_shared<Download>(std::move(stream_), std::move(frames), kind)->start(std::move(header));
+}
+
+HttpSession::Response HttpSession::answer(const Request& request, std::string_view path,
+                                          std::string_view query) const {
+  if (request.method() != http::verb::get && request.method() != http::verb::head)
+    return sorry(http::status::method_not_allowed, "405: this server can only be read");
+  const bool from_tactd = path == "/scene.json" || path == "/mesh.bin" ||
+                          path == "/recording.csv" || path == "/recording.tact";
+  if (from_tactd && !site_.view.has_scene())
+    return sorry(http::status::service_unavailable, "503: waiting for tactd");
+  if (path == "/scene.json")
+    return make(http::status::ok, "application/json", scene_json(site_.view.hello()));
+  if (path == "/mesh.bin")
+    return make(http::status::ok, "application/octet-stream", bytes_of(*site_.view.mesh()));
+  const PageFile* file = site_.page.find(path);
+  if (file == nullptr) return sorry(http::status::not_found, "404: there is no such page");
+  Response response = make(http::status::ok, file->mime.c_str(), file->content);
+  // The token came with the URL: the page's own files get it by cookie.
+  if (!site_.access.loopback && !query_value(query, "token").empty()) {
+    response.set(http::field::set_cookie,
+                 fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/", site_.access.cookie_name,
+                             site_.access.token));
+  }
+  return response;
+}
+
+void HttpSession::write(Response response, const Request& request) {
+  response_ = std::move(response);
+  set_common(response_);
+  response_.version(request.version());
+  response_.keep_alive(request.keep_alive());
+  if (request.method() == http::verb::head) {
+    const std::size_t length = response_.body().size();
+    response_.body().clear();
+    response_.content_length(length);
+  } else {
+    response_.prepare_payload();
+  }
+  stream_.expires_after(kPatience);
+  http::async_write(stream_, response_, [self = shared_from_this()](error_code wrong, std::size_t) {
+    if (wrong) return;
+    if (self->response_.keep_alive()) return self->read_next();
+    error_code ignored;
+    self->stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+  });
+}
+
+}  // namespace tact::host::server

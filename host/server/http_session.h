@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// http_session.h - one HTTP connection: page files, scene, meshes, downloads, and the upgrade to
+// the WebSocket. Read-only: GET and HEAD, small requests, thirty seconds of patience.
+#pragma once
+
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "host/server/access.h"
+#include "host/server/live_session.h"
+#include "host/server/live_view.h"
+#include "host/server/page_files.h"
+
+namespace tact::host::server {
+
+/// What all connections share.
+struct Site {
+  LiveView& view;
+  PageFiles page;
+  Access access;
+  MoveHand move_hand;
+};
+
+class HttpSession : public std::enable_shared_from_this<HttpSession> {
+ public:
+  using Request = LiveSession::Request;
+  using Response = boost::beast::http::response<boost::beast::http::string_body>;
+
+  HttpSession(boost::beast::tcp_stream stream, Site& site);
+  void start() { read_next(); }
+
+ private:
+  void read_next();
+  void handle(const Request& request);
+  void upgrade(const Request& request);
+  void download(const Request& request, std::string_view path, std::string_view query);
+  Response answer(const Request& request, std::string_view path, std::string_view query) const;
+  void write(Response response, const Request& request);
+
+  boost::beast::tcp_stream stream_;
+  boost::beast::flat_buffer in_;
+  std::optional<boost::beast::http::request_parser<boost::beast::http::string_body>> parser_;
+  Response response_;
+  Site& site_;
+};
+
+}  // namespace tact::host::server

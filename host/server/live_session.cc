@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/server/live_session.h"
+
+#include <algorithm>
+#include <boost/asio/buffer.hpp>
+#include <boost/beast/core/buffers_to_string.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace tact::host::server {
+namespace {
+
+namespace beast = boost::beast;
+namespace websocket = boost::beast::websocket;
+using beast::error_code;
+
+constexpr std::size_t kMaxMessageBytes = 1024;
+constexpr double kFarthestHand_m = 1.0;  // beyond any device
+
+nlohmann::json parse(const std::string& text) {
+  return nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+}
+
+}  // namespace
+
+std::optional<HandWish> parse_hand(const std::string& text) {
+  const nlohmann::json message = parse(text);
+  if (!message.is_object() || !message.contains("hand")) return std::nullopt;
+  const nlohmann::json& hand = message["hand"];
+  if (!hand.is_object()) return std::nullopt;
+  double value[4];
+  constexpr const char* kKeys[4] = {"x_m", "y_m", "z_m", "grip_ratio"};
+  for (int i = 0; i < 4; ++i) {
+    const auto found = hand.find(kKeys[i]);
+    if (found == hand.end() || !found->is_number()) return std::nullopt;
+    value[i] = found->get<double>();
+    if (!std::isfinite(value[i]) || std::abs(value[i]) > kFarthestHand_m) return std::nullopt;
+  }
+  return HandWish{.position_m = {value[0], value[1], value[2]},
+                  .grip_ratio = std::clamp(value[3], 0.0, 1.0)};
+}
+
+LiveSession::LiveSession(beast::tcp_stream stream, LiveView& view, const MoveHand& move_hand)
+    : socket_(std::move(stream)), view_(view), move_hand_(move_hand) {}
+
+LiveSession::~LiveSession() { view_.unsubscribe(*this); }
+
+void LiveSession::start(const Request& upgrade) {
+  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own timer
+  socket_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
+  socket_.read_message_max(kMaxMessageBytes);
+  error_code ignored;
+  beast::get_lowest_layer(socket_).socket().set_option(boost::asio::ip::tcp::no_delay(true),
+                                                       ignored);
+  socket_.async_accept(upgrade, [self = shared_from_this()](error_code wrong) {
+    if (wrong) return;
+    self->view_.subscribe(*self);
+    self->read_next();
+  });
+}
+
+void LiveSession::on_status(const Text& status) {
+  next_status_ = status;
+  write_next();
+}
+
+void LiveSession::on_frame(const Text& frame, const Text& beside) {
+  next_frame_ = frame;  // one that still waits is dropped: newer is better than complete
+  next_beside_ = beside;
+  write_next();
+}
+
+void LiveSession::write_next() {
+  if (writing_) return;
+  if (due_beside_) {
+    writing_ = std::move(due_beside_);
+  } else if (next_status_) {
+    writing_ = std::move(next_status_);
+  } else if (next_frame_ && sent_frames_ - seen_frames_ < kMaxUnseen) {
+    writing_ = std::move(next_frame_);
+    due_beside_ = std::move(next_beside_);
+    ++sent_frames_;
+  } else {
+    return;
+  }
+  socket_.text(true);
+  socket_.async_write(boost::asio::buffer(*writing_),
+                      [self = shared_from_this()](error_code wrong, std::size_t) {
+                        self->writing_.reset();
+                        if (!wrong) self->write_next();
+                      });
+}
+
+void LiveSession::read_next() {
+  socket_.async_read(in_, [self = shared_from_this()](error_code wrong, std::size_t) {
+    if (wrong) return self->view_.unsubscribe(*self);
+    self->take(beast::buffers_to_string(self->in_.data()));
+    self->in_.consume(self->in_.size());
+    self->read_next();
+  });
+}
+
+void LiveSession::take(const std::string& text) {
+  const nlohmann::json message = parse(text);
+  if (message.is_object() && message.contains("seen") && message["seen"].is_number_unsigned()) {
+    const std::uint64_t seen = message["seen"].get<std::uint64_t>();
+    seen_frames_ = std::clamp(seen, seen_frames_, sent_frames_);
+    write_next();
+  }
+  if (!move_hand_) return;
+  if (const std::optional<HandWish> hand = parse_hand(text))
+    move_hand_(hand->position_m, hand->grip_ratio);
+}
+
+}  // namespace tact::host::server

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// live_session.h - one browser's WebSocket: status and frames out, hand targets in.
+//
+// Each frame is one JSON text (frame_json.h), and what belongs to it (figure_json.h) is the text
+// that follows. The page answers {"seen": n} with the number of frames it took so far; at most
+// kMaxUnseen may be on the way, and of those that wait only the newest is kept. So a slow browser
+// sees fewer frames, never older ones, and holds up nobody. A page may send
+// {"hand":{"x_m":..,"y_m":..,"z_m":..,"grip_ratio":..}} for a simulated device.
+#pragma once
+
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <boost/beast/websocket.hpp>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "host/server/live_view.h"
+
+namespace tact::host::server {
+
+using MoveHand = std::function<void(const double (&position_m)[3], double grip_ratio)>;
+
+/// Where a page wants the simulated hand, W.
+struct HandWish {
+  double position_m[3] = {};
+  double grip_ratio = 0.0;  // 0 open, 1 closed
+};
+
+/// The hand target in a page's message; none if it has none, or a number is not sensible.
+std::optional<HandWish> parse_hand(const std::string& text);
+
+class LiveSession final : public LiveListener, public std::enable_shared_from_this<LiveSession> {
+ public:
+  using Request = boost::beast::http::request<boost::beast::http::string_body>;
+  static constexpr std::uint64_t kMaxUnseen = 4;
+
+  LiveSession(boost::beast::tcp_stream stream, LiveView& view, const MoveHand& move_hand);
+  ~LiveSession();
+
+  void start(const Request& upgrade);
+
+  void on_status(const Text& status) override;
+  void on_frame(const Text& frame, const Text& beside) override;
+
+ private:
+  void read_next();
+  void take(const std::string& message);
+  void write_next();
+
+  boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
+  boost::beast::flat_buffer in_;
+  LiveView& view_;
+  const MoveHand& move_hand_;
+  Text next_status_, next_frame_, next_beside_, writing_;
+  Text due_beside_;  // of the frame that was written last
+  std::uint64_t sent_frames_ = 0, seen_frames_ = 0;
+};
+
+}  // namespace tact::host::server

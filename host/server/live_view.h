@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// live_view.h - what every browser sees now: link, scene, newest frame, and the last minutes.
+//
+// One thread. Telemetry or a replay writes; sessions listen. Texts are made once and shared.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <set>
+#include <string>
+
+#include "host/record/recording.h"
+
+namespace tact::host::server {
+
+using Text = std::shared_ptr<const std::string>;
+
+enum class Link { kWaiting, kLive, kLost, kReplay };
+
+class LiveListener {
+ public:
+  virtual void on_status(const Text& status) = 0;
+  /// `beside` belongs to the frame and may be null.
+  virtual void on_frame(const Text& frame, const Text& beside) = 0;
+
+ protected:
+  ~LiveListener() = default;
+};
+
+/// What is told beside every frame, made by who knows more than telemetry: the operator's figure.
+class Companion {
+ public:
+  virtual ~Companion() = default;
+  /// For every scene; what it gives is the status's "figure".
+  virtual nlohmann::json begin(const record::Hello& hello, const record::MeshBytes& mesh) = 0;
+  /// One JSON text for each frame. `shown` is the figure of a recording: it is told as it was.
+  virtual std::string with(const record::Frame& frame, const tracking::TrackedOperator* tracked,
+                           const tracking::FigurePose* shown = nullptr) = 0;
+  /// The one that was told last.
+  virtual const tracking::FigurePose& figure() const = 0;
+};
+
+class LiveView {
+ public:
+  LiveView();
+
+  /// Before the first scene. It outlives the view; null: none.
+  void accompany(Companion* companion) { companion_ = companion; }
+
+  // From telemetry or a replay:
+  void begin(const record::Hello& hello, record::MeshBytes mesh, Link link,
+             const std::string& detail = {});
+  /// `tracked` is the operator at this frame, if there is a tracker; `shown` as in Companion.
+  void add(const record::Frame& frame, const tracking::TrackedOperator* tracked = nullptr,
+           const tracking::FigurePose* shown = nullptr);
+  void rewind();  // a replay starts again: forget the frames
+  void lose(const std::string& reason);
+
+  // For sessions:
+  void subscribe(LiveListener& listener);
+  void unsubscribe(LiveListener& listener) { listeners_.erase(&listener); }
+  const Text& status() const { return status_; }
+  bool has_scene() const { return scene_number_ > 0; }
+  const record::Hello& hello() const { return hello_; }
+  const std::shared_ptr<const record::MeshBytes>& mesh() const { return mesh_; }
+  std::size_t listeners() const { return listeners_.size(); }
+
+  /// A copy of the kept frames with first_tick <= tick <= last_tick.
+  std::shared_ptr<const record::Recording> recent(std::uint64_t first_tick,
+                                                  std::uint64_t last_tick) const;
+
+ private:
+  void tell(Link link, const std::string& detail);
+
+  record::Hello hello_;
+  std::shared_ptr<const record::MeshBytes> mesh_;
+  std::uint64_t scene_number_ = 0;  // grows with every Hello: the page loads the scene again
+  Text status_;
+  Companion* companion_ = nullptr;
+  Text figure_;  // of the companion, for this scene
+  record::RecentFrames recent_;
+  std::set<LiveListener*> listeners_;
+};
+
+}  // namespace tact::host::server

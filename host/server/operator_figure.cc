@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/server/operator_figure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "host/tracking/figure_json.h"
+
+namespace tact::host::server {
+namespace {
+
+tracking::Pose pose_of(const record::Frame& frame) {
+  const float (&p)[3] = frame.tool_position_m;
+  const float (&q)[4] = frame.tool_orientation;
+  // One that is no rotation stays none, and the figure leaves the tool where it was.
+  const auto turn = tracking::rotation_from({static_cast<double>(q[0]), static_cast<double>(q[1]),
+                                             static_cast<double>(q[2]), static_cast<double>(q[3])});
+  return {.rotation = turn ? *turn : Eigen::Quaterniond(0.0, 0.0, 0.0, 0.0),
+          .position_m = Eigen::Vector3f(p[0], p[1], p[2]).cast<double>()};
+}
+
+}  // namespace
+
+Eigen::Vector3d grip_of(const record::Hello& hello, const record::MeshBytes& mesh) {
+  const std::size_t at = 12 * (std::size_t{hello.organ_vertices} + hello.organ_triangles);
+  const std::size_t bytes = 12 * std::size_t{hello.tool_vertices};
+  if (bytes == 0 || mesh.size() < at + bytes) return tracking::FigureSettings{}.grip_m;
+  double top_m = 0.0;
+  for (std::size_t i = 0; i < bytes; i += 12) {
+    float z_m = 0.0f;
+    std::memcpy(&z_m, mesh.data() + at + i + 8, sizeof z_m);
+    top_m = std::max(top_m, static_cast<double>(z_m));
+  }
+  return tracking::grip_m(top_m);
+}
+
+OperatorFigure::OperatorFigure(double height_m)
+    : settings_({.height_m = height_m}), figure_(settings_) {}
+
+void OperatorFigure::put_shoulder_at(const Eigen::Vector3d& shoulder_m) {
+  settings_.shoulder_m = shoulder_m;
+  figure_ = tracking::Figure(settings_);
+}
+
+nlohmann::json OperatorFigure::begin(const record::Hello& hello, const record::MeshBytes& mesh) {
+  settings_.grip_m = grip_of(hello, mesh);
+  figure_.go_on_with(settings_.grip_m);
+  return skeleton_json(figure_.plan());
+}
+
+std::string OperatorFigure::with(const record::Frame& frame,
+                                 const tracking::TrackedOperator* tracked,
+                                 const tracking::FigurePose* shown) {
+  static const tracking::TrackedOperator kNobody{};
+  const double time_s = static_cast<double>(frame.time_ns) * 1e-9;
+  told_ = shown ? *shown : figure_.update(time_s, pose_of(frame), tracked ? *tracked : kNobody);
+  const bool head_tracked =
+      tracked && (*tracked)[tracking::BodyRole::kHead].state == tracking::BodyState::kTracked;
+  return figure_json(told_, frame.tick, head_tracked);
+}
+
+}  // namespace tact::host::server

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/server/page_files.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+namespace tact::host::server {
+namespace {
+
+using model::Error;
+
+constexpr std::uintmax_t kMaxPageBytes = 64 << 20;
+
+std::string mime_of(const std::filesystem::path& path) {
+  static constexpr std::pair<const char*, const char*> kTypes[] = {
+      {".html", "text/html; charset=utf-8"},
+      {".js", "text/javascript; charset=utf-8"},
+      {".css", "text/css; charset=utf-8"},
+      {".json", "application/json"},
+      {".svg", "image/svg+xml"},
+      {".png", "image/png"},
+      {".woff2", "font/woff2"},
+  };
+  for (const auto& [ending, mime] : kTypes)
+    if (path.extension() == ending) return mime;
+  return "application/octet-stream";
+}
+
+}  // namespace
+
+std::optional<Error> PageFiles::load(const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code wrong;
+  std::uintmax_t total_bytes = 0;
+  files_.clear();
+  // Links are not followed: what is served is what is in the folder.
+  for (fs::recursive_directory_iterator it(folder, wrong), end; !wrong && it != end;
+       it.increment(wrong)) {
+    if (it->is_symlink(wrong) || !it->is_regular_file(wrong)) continue;
+    total_bytes += it->file_size(wrong);
+    if (total_bytes > kMaxPageBytes)
+      return Error{
+          fmt::format("{}: more than 64 MB of files; give the folder of the built page", folder)};
+    std::ifstream in(it->path(), std::ios::binary);
+    std::string content{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    if (in.bad()) return Error{fmt::format("{}: cannot be read", it->path().string())};
+    const std::string url = "/" + it->path().lexically_relative(folder).generic_string();
+    files_[url] = {mime_of(it->path()), std::move(content)};
+  }
+  if (find("/") == nullptr)
+    return Error{fmt::format("{}: no page there; tools/run builds it; or give --page", folder)};
+  return std::nullopt;
+}
+
+const PageFile* PageFiles::find(std::string_view path) const {
+  const auto it = files_.find(path == "/" ? std::string_view("/index.html") : path);
+  return it == files_.end() ? nullptr : &it->second;
+}
+
+}  // namespace tact::host::server

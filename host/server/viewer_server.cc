@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/server/viewer_server.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <utility>
+
+namespace tact::host::server {
+namespace {
+
+using boost::asio::ip::tcp;
+using boost::system::error_code;
+using model::Error;
+using model::Result;
+
+constexpr std::chrono::milliseconds kPauseAfterError{200};
+
+/// An address as a URL writes it. "All addresses" is not one: the machine's name is.
+std::string url_name(const boost::asio::ip::address& address) {
+  if (address.is_unspecified()) {
+    char name[256] = {};
+    if (gethostname(name, sizeof name - 1) == 0) return name;
+  }
+  return address.is_v6() ? "[" + address.to_string() + "]" : address.to_string();
+}
+
+}  // namespace
+
+ViewerServer::ViewerServer(boost::asio::io_context& io, LiveView& view, MoveHand move_hand)
+    : io_(io),
+      acceptor_(io),
+      pause_(io),
+      site_{.view = view, .page = {}, .access = {}, .move_hand = std::move(move_hand)} {}
+
+std::optional<Error> ViewerServer::open(const ViewerOptions& options) {
+  error_code wrong;
+  const auto address = boost::asio::ip::make_address(options.bind_address, wrong);
+  if (wrong) {
+    return Error{
+        fmt::format("--bind {}: not an IP address; use 127.0.0.1 for this PC only or 0.0.0.0 "
+                    "for the network",
+                    options.bind_address)};
+  }
+  if (std::optional<Error> error = site_.page.load(options.page_folder)) return error;
+  if (std::optional<Error> error = listen({address, options.port})) return error;
+  site_.access.loopback = address.is_loopback();
+  site_.access.bind_address = url_name(address);
+  site_.access.cookie_name = fmt::format("tact_token_{}", port_);
+  if (!site_.access.loopback) {
+    Result<std::string> made = make_token();
+    if (!made) return made.error();
+    site_.access.token = std::move(*made);
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> ViewerServer::listen(const tcp::endpoint& endpoint) {
+  error_code wrong;
+  acceptor_.open(endpoint.protocol(), wrong);
+  if (!wrong) acceptor_.set_option(tcp::acceptor::reuse_address(true), wrong);
+  if (!wrong) acceptor_.bind(endpoint, wrong);
+  if (!wrong) acceptor_.listen(boost::asio::socket_base::max_listen_connections, wrong);
+  if (wrong == boost::asio::error::address_in_use) {
+    return Error{
+        fmt::format("port {} is in use; stop the other program or give --port another number",
+                    endpoint.port())};
+  }
+  if (wrong) {
+    return Error{fmt::format("cannot listen on {} port {}: {}; choose another --bind or --port",
+                             endpoint.address().to_string(), endpoint.port(), wrong.message())};
+  }
+  port_ = acceptor_.local_endpoint(wrong).port();
+  return std::nullopt;
+}
+
+void ViewerServer::accept_next() {
+  acceptor_.async_accept(io_, [this](error_code wrong, tcp::socket socket) {
+    if (wrong == boost::asio::error::operation_aborted) return;
+    if (!wrong) {
+      std::make_shared<HttpSession>(boost::beast::tcp_stream(std::move(socket)), site_)->start();
+      return accept_next();
+    }
+    // Out of descriptors, for example: wait for some to come back instead of spinning.
+    pause_.expires_after(kPauseAfterError);
+    pause_.async_wait([this](error_code cancelled) {
+      if (!cancelled) accept_next();
+    });
+  });
+}
+
+void ViewerServer::stop() {
+  error_code ignored;
+  acceptor_.close(ignored);
+  pause_.cancel(ignored);
+}
+
+std::string ViewerServer::url() const {
+  const std::string query = token().empty() ? "" : "?token=" + token();
+  return fmt::format("http://{}:{}/{}", site_.access.bind_address, port_, query);
+}
+
+}  // namespace tact::host::server

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/contact/contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tact::model::contact {
+namespace {
+
+// The part of a tangential vector along which the nearest point can move: all of it on a face, the
+// edge's share on an edge, nothing in a vertex.
+Vec3 movable(const SurfaceView& s, const Place& place, const Vec3& v) RT_SAFE {
+  const TriangleCorners& corner = s.triangle[place.triangle];
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (place.weight[i] != 0.0) continue;
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    if (place.weight[j] == 0.0 || place.weight[k] == 0.0) return {};
+    const Vec3 along = normalized(s.vertex_m[corner[k]] - s.vertex_m[corner[j]]);
+    return dot(v, along) * along;
+  }
+  return v;
+}
+
+}  // namespace
+
+void Contact::reset() RT_SAFE {
+  for (std::size_t i = 0; i < kMaxSpheres; ++i) scene_.law->leave(i);
+  probe_ = {};
+  touch_ = {};
+  pressing_ = {};
+  presses_ = {};
+  asked_ = coupling_ = {};
+  energy_J_ = 0.0;
+  shear_ = {};
+  shear_N_ = {};
+  closed_ = closing_ = false;
+  before_.reset();
+}
+
+// A free probe watches the two sheets that its cell names; one in contact follows its own site.
+Site Contact::search(Probe& probe) RT_SAFE {
+  const SurfaceView& surface = scene_.surface;
+  const std::uint32_t cell = scene_.seeds.cell_of(probe.centre_m);
+  if (cell != probe.cell) {
+    probe.cell = cell;
+    probe.candidate = scene_.seeds.cell[cell];
+  }
+  Site best = follow(surface, probe.candidate[0], probe.centre_m);
+  probe.candidate[0] = best.place.triangle;
+  if (probe.candidate[1] == kNoTriangle) return best;
+  const Site other = follow(surface, probe.candidate[1], probe.centre_m);
+  probe.candidate[1] = other.place.triangle;
+  return std::abs(other.distance_m) < std::abs(best.distance_m) ? other : best;
+}
+
+void Contact::touch(const Tool& tool) RT_SAFE {
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
+    Probe& probe = probe_[i];
+    const Vec3 centre_m = tool.position_m + rotate(tool.orientation, scene_.spheres[i].offset_m);
+    if (!is_finite(centre_m)) {
+      probe = {};
+      touch_[i] = {};
+      scene_.law->leave(i);
+      continue;
+    }
+    probe.moved_m = probe.seen ? centre_m - probe.centre_m : Vec3{};
+    probe.centre_m = centre_m;
+    const double radius_m = scene_.spheres[i].radius_m;
+    if (touch_[i].state == TouchState::kFree)
+      probe.proxy.restart(search(probe), radius_m);
+    else
+      probe.proxy.follow(scene_.surface, centre_m, probe.moved_m, radius_m,
+                         touch_[i].law_status == law::LawStatus::kSaturated);
+    const double depth_m = radius_m - probe.proxy.site().distance_m;
+    // A distance cannot change by more than the movement: the rest is a nearest point that jumped.
+    const double before_m = probe.seen ? probe.depth_m : 0.0;
+    probe.deepened_m = std::max(0.0, depth_m - before_m - norm(probe.moved_m));
+    probe.depth_m = depth_m;
+    probe.seen = true;
+  }
+}
+
+Wrench Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
+  watch_grip(tool.grip_ratio);
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
+    if (probe_[i].seen) find_depth(i);
+  couple();
+  press();
+  for (std::size_t i = 0; i < scene_.spheres.size() && let_go(); ++i) {
+  }
+  if (closing_ && hold()) press();
+  keep_definite();
+  resist_sliding();
+  Wrench sum;
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
+    if (!probe_[i].seen) continue;
+    sum_up(i);
+    sum.force_N += touch_[i].force_N;
+    sum.torque_Nm += cross(probe_[i].centre_m - tool.position_m, touch_[i].force_N);
+  }
+  use_blade(tool, blade_may_cut);
+  scene_.law->advance();
+  return sum;
+}
+
+void Contact::use_blade(const Tool& tool, bool may_cut) RT_SAFE {
+  if (!scene_.blade) return;
+  if (may_cut && before_) scene_.law->cut(sweep(*scene_.blade, *before_, tool));
+  before_ = tool;
+}
+
+void Contact::leave(std::size_t i) RT_SAFE {
+  touch_[i] = {.place = probe_[i].proxy.site().place,
+               .surface_point_m = probe_[i].proxy.site().point_m,
+               .normal = probe_[i].proxy.site().normal};
+  scene_.law->leave(i);
+}
+
+// d and t of this tick; e follows d as a first guess.
+void Contact::find_depth(std::size_t i) RT_SAFE {
+  const Probe& probe = probe_[i];
+  SphereTouch& touch = touch_[i];
+  const double before_m = touch.depth_m;
+  if (touch.state == TouchState::kHeld) {
+    const Vec3 moved_m = probe.centre_m - probe.held_centre_m;
+    touch.normal = probe.held_normal;
+    touch.depth_m = probe.held_depth_m - dot(moved_m, touch.normal);
+    touch.shift_m = probe.held_shift_m + tangential(moved_m, touch.normal);
+  } else if (probe.depth_m > 0.0) {
+    touch.state = TouchState::kTouching;
+    touch.place = probe.proxy.site().place;
+    touch.surface_point_m = probe.proxy.site().point_m;
+    touch.normal = probe.proxy.site().normal;
+    // d = r - phi - slack
+    touch.slack_m = std::min(touch.slack_m + probe.deepened_m, probe.depth_m);
+    touch.depth_m = probe.depth_m - touch.slack_m;
+    touch.shift_m = tangential(touch.shift_m + probe.moved_m, touch.normal);
+  } else {
+    leave(i);
+    return;
+  }
+  touch.dent_m += touch.depth_m - before_m;
+}
+
+Indentation Contact::indentation(std::size_t i) const RT_SAFE {
+  const SphereTouch& touch = touch_[i];
+  return {.sphere = i,
+          .place = touch.place,
+          .normal = touch.normal,
+          .depth_m = touch.dent_m,
+          .held = touch.state == TouchState::kHeld};
+}
+
+// A sphere that has just come couples with those that are there, for as long as it stays. It meets
+// tissue that they have dragged along: its own spring is at rest there.
+void Contact::couple() RT_SAFE {
+  const std::array<bool, kMaxSpheres> before = presses_;
+  for (std::size_t i = 0; i < kMaxSpheres; ++i) presses_[i] = touch_[i].state != TouchState::kFree;
+  if (presses_ == before) return;
+  for (std::size_t i = 0; i < kMaxSpheres; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (!presses_[i] || !presses_[j])
+        set_coupling(i, j, 0.0);
+      else if (!before[i] || !before[j])
+        couple(i, j);
+  shear_ = Shear(scene_.parameters.sliding_stiffness_N_per_m, asked_, presses_);
+  for (std::size_t i = 0; i < kMaxSpheres; ++i)
+    if (presses_[i] && !before[i]) {
+      touch_[i].shift_m += tangential(shear_.unloaded_m(shear_N_, i), touch_[i].normal);
+      const double own_N_per_m = shear_.own_N_per_m(i);
+      if (own_N_per_m > 0.0) touch_[i].shift_m -= spring_N(shear_, i) / own_N_per_m;
+    }
+}
+
+void Contact::set_coupling(std::size_t i, std::size_t j, double m_per_N) RT_SAFE {
+  asked_[i][j] = asked_[j][i] = m_per_N;
+  coupling_[i][j] = coupling_[j][i] = dot(touch_[i].normal, touch_[j].normal) * m_per_N;
+}
+
+// On the other's bulge the one that has just come would meet energy that nobody gave: that much is
+// slack. Of the two, only one presses yet.
+void Contact::couple(std::size_t i, std::size_t j) RT_SAFE {
+  set_coupling(i, j,
+               scene_.law->coupling_m_per_N(indentation(i), indentation(j),
+                                            norm(probe_[i].centre_m - probe_[j].centre_m)));
+  const double c = coupling_[i][j];
+  take_away(i, std::max(0.0, -c * pressing_[j].response.law.force_N));
+  take_away(j, std::max(0.0, -c * pressing_[i].response.law.force_N));
+}
+
+// d becomes smaller, and so it stays.
+void Contact::take_away(std::size_t i, double depth_m) RT_SAFE {
+  SphereTouch& touch = touch_[i];
+  if (touch.state == TouchState::kHeld) {
+    probe_[i].held_depth_m -= depth_m;
+    touch.depth_m -= depth_m;
+  } else if (touch.state == TouchState::kTouching) {
+    touch.slack_m = std::clamp(touch.slack_m + depth_m, 0.0, probe_[i].depth_m);
+    touch.depth_m = probe_[i].depth_m - touch.slack_m;
+  }
+}
+
+double Contact::press() RT_SAFE {
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
+    pressing_[i] = {.presses = touch_[i].state != TouchState::kFree,
+                    .depth_m = touch_[i].depth_m,
+                    .in = indentation(i),
+                    .response = {}};
+  energy_J_ = press_together(*scene_.law, coupling_, pressing());
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
+    touch_[i].dent_m = pressing_[i].in.depth_m;
+  return energy_J_;
+}
+
+// Where tissue has become so stiff that its coupling would leave the forces undecided: less of it,
+// and less depth, so that no energy comes from it. A pull beside a press is left as it is.
+void Contact::keep_definite() RT_SAFE {
+  const double share = definite_share(coupling_, pressing());
+  if (share >= 1.0) return;
+  std::array<double, kMaxSpheres> spared_m{};
+  double spared_J = 0.0;
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
+    spared_m[i] = (1.0 - share) * sunk_m(coupling_, pressing(), i);
+    spared_J += pressing_[i].response.law.force_N * spared_m[i];
+  }
+  if (!(spared_J > 0.0)) return;
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i) take_away(i, spared_m[i]);
+  for (auto& row : coupling_)
+    for (double& m_per_N : row) m_per_N *= share;
+}
+
+Vec3 Contact::spring_N(const Shear& shear, std::size_t i) const RT_SAFE {
+  std::array<Vec3, kMaxSpheres> shift_m;
+  for (std::size_t j = 0; j < kMaxSpheres; ++j) shift_m[j] = touch_[j].shift_m;
+  return tangential(shear.force_N(shift_m, i), touch_[i].normal);
+}
+
+// t up to |f| = mu F. One sphere's slip changes what the next one carries: kSweeps over all, and
+// what they leave above the cap is cut from the force alone.
+void Contact::resist_sliding() RT_SAFE {
+  constexpr int kSweeps = 4;
+  bool slipped = true;
+  for (int sweep = 0; sweep < kSweeps && slipped; ++sweep) {
+    slipped = false;
+    for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
+      const Vec3 excess_N = beyond_friction_N(i, spring_N(shear_, i));
+      if (excess_N == Vec3{}) continue;
+      touch_[i].shift_m -= excess_N / shear_.own_N_per_m(i);
+      slipped = true;
+    }
+  }
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
+    shear_N_[i] = touch_[i].state == TouchState::kFree ? Vec3{} : spring_N(shear_, i);
+    shear_N_[i] -= beyond_friction_N(i, shear_N_[i]);
+  }
+}
+
+// What of f is above mu F; held tissue has no cap.
+Vec3 Contact::beyond_friction_N(std::size_t i, const Vec3& f_N) const RT_SAFE {
+  if (touch_[i].state != TouchState::kTouching) return {};
+  const double cap_N = scene_.parameters.friction_ratio * pressing_[i].response.law.force_N;
+  const double spring_N = norm(f_N);
+  return spring_N > cap_N ? (1.0 - cap_N / spring_N) * f_N : Vec3{};
+}
+
+// F = F(e) n - f - dU/ds
+void Contact::sum_up(std::size_t i) RT_SAFE {
+  SphereTouch& touch = touch_[i];
+  if (touch.state == TouchState::kFree) return;
+  const SiteResponse& site = pressing_[i].response;
+  touch.law_status = site.law.status;
+  touch.force_N = site.law.force_N * touch.normal - shear_N_[i];
+  if (touch.state == TouchState::kTouching && !probe_[i].proxy.stays())
+    touch.force_N -= movable(scene_.surface, touch.place, site.slope_N);
+  touch.energy_J = site.law.energy_J + 0.5 * site.law.force_N * sunk_m(coupling_, pressing(), i) +
+                   0.5 * dot(shear_N_[i], touch.shift_m);
+}
+
+}  // namespace tact::model::contact

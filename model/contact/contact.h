@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// contact.h - probe spheres on a tool against the surface of an organ.
+//
+// Each sphere feels one site, in one of three states with one potential each (c: sphere centre,
+// r: its radius, phi: signed distance of c to the undeformed surface, n = grad phi):
+//
+//   free      W = 0
+//   touching  W = U(e, s) + k_t |t|^2 / 2,   d = r - phi - slack,   k_t |t| <= mu F  (Coulomb cap)
+//   held      W = U(e, s) + k_t |t|^2 / 2,   d, s and t measured in the frame of the moment of
+//             gripping, no cap, d may be negative (pull); ends when the grip opens or when the
+//             pulling force passes the tear force
+//
+//   force on the tool  F = -grad W,   torque = sum (c - origin) x F
+//
+// U is the site law's (site_law.h), s the place on the surface; as s follows the tool, the slope of
+// U along the surface is felt too. t: tangential displacement of the tissue, m. The law is asked
+// with the sphere's own dent e = d - what the other spheres have sunk the site (coupling.h); how
+// they couple is kept from a sphere's first touch until it leaves. A change of state never adds
+// energy: slack takes up whatever depth would come for free (arming inside the organ, letting go
+// over a bump or stiffer tissue, a nearest point that jumps) and shrinks only as the tool
+// withdraws.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "model/contact/blade.h"
+#include "model/contact/coupling.h"
+#include "model/contact/proxy.h"
+#include "model/contact/seed_grid.h"
+#include "model/contact/shear.h"
+#include "model/contact/site_law.h"
+#include "model/types.h"
+
+namespace tact::model::contact {
+
+struct ProbeSphere {
+  Vec3 offset_m;          // from the tool's origin, tool frame
+  double radius_m = 0.0;  // > 0
+};
+
+struct ContactParameters {
+  double friction_ratio = 0.0;             // mu, >= 0
+  double sliding_stiffness_N_per_m = 0.0;  // k_t, >= 0
+  double tear_force_N = 0.0;               // of one sphere, > 0
+  double grip_close_ratio = 0.7;           // closing above this holds
+  double grip_open_ratio = 0.5;            // opening below this lets go
+};
+
+enum class TouchState : std::uint8_t { kFree, kTouching, kHeld };
+
+/// One sphere's share of a tick.
+struct SphereTouch {
+  TouchState state = TouchState::kFree;
+  law::LawStatus law_status = law::LawStatus::kNoContact;
+  Place place;             // of surface_point_m
+  Vec3 surface_point_m{};  // nearest (touching) or held point of the undeformed surface
+  Vec3 normal{};           // outward, unit
+  Vec3 shift_m{};          // t
+  double depth_m = 0.0;    // d
+  double dent_m = 0.0;     // e
+  double slack_m = 0.0;
+  double energy_J = 0.0;  // its share of W
+  Vec3 force_N{};         // on the tool
+};
+
+/// What contact is made of; everything outlives it.
+struct ContactScene {
+  SiteLaw* law = nullptr;  // may remember: one contact each
+  ContactParameters parameters;
+  std::span<const ProbeSphere> spheres;  // 1 to kMaxSpheres
+  SurfaceView surface;
+  SeedGridView seeds;
+  std::optional<Blade> blade;  // cuts what it passes through
+};
+
+class Contact {
+ public:
+  explicit Contact(const ContactScene& scene) : scene_(scene) { reset(); }
+
+  /// Where the spheres meet the surface: follows each site.
+  void touch(const Tool& tool) RT_SAFE;
+  /// What the tool feels there: states, laws, forces. Call after touch. A blade cuts only if it
+  /// may.
+  Wrench feel(const Tool& tool, bool blade_may_cut) RT_SAFE;
+  /// Forget every site, as at the start.
+  void reset() RT_SAFE;
+
+  /// See SiteLaw::shape.
+  bool shape(PatchShape& out) RT_SAFE { return scene_.law->shape(out); }
+
+  std::span<const SphereTouch> touches() const RT_SAFE {
+    return {touch_.data(), scene_.spheres.size()};
+  }
+
+ private:
+  struct Probe {
+    Vec3 centre_m;            // c
+    Vec3 moved_m;             // since the last tick
+    double depth_m = 0.0;     // r - phi
+    double deepened_m = 0.0;  // beyond what the movement explains: free depth
+    Proxy proxy;
+    Seeds candidate{kNoTriangle, kNoTriangle};  // sheets watched while free
+    std::uint32_t cell = kNoTriangle;
+    bool seen = false;  // there was a tick before
+    Vec3 held_centre_m, held_normal, held_shift_m;
+    double held_depth_m = 0.0;
+  };
+
+  Site search(Probe& probe) RT_SAFE;
+  void use_blade(const Tool& tool, bool may_cut) RT_SAFE;
+  void watch_grip(double grip_ratio) RT_SAFE;
+  void leave(std::size_t i) RT_SAFE;
+  void find_depth(std::size_t i) RT_SAFE;
+  Indentation indentation(std::size_t i) const RT_SAFE;
+  void couple() RT_SAFE;
+  void couple(std::size_t i, std::size_t j) RT_SAFE;
+  void set_coupling(std::size_t i, std::size_t j, double m_per_N) RT_SAFE;
+  void take_away(std::size_t i, double depth_m) RT_SAFE;
+  double press() RT_SAFE;
+  void keep_definite() RT_SAFE;
+  bool hold() RT_SAFE;
+  bool is_torn(std::size_t i) const RT_SAFE;
+  bool let_go() RT_SAFE;
+  void let_go(std::size_t i) RT_SAFE;
+  Vec3 spring_N(const Shear& shear, std::size_t i) const RT_SAFE;
+  Vec3 beyond_friction_N(std::size_t i, const Vec3& f_N) const RT_SAFE;
+  void resist_sliding() RT_SAFE;
+  void sum_up(std::size_t i) RT_SAFE;
+  std::span<PressingSphere> pressing() RT_SAFE { return {pressing_.data(), scene_.spheres.size()}; }
+
+  ContactScene scene_;
+  std::array<Probe, kMaxSpheres> probe_{};
+  std::array<SphereTouch, kMaxSpheres> touch_{};
+  std::array<PressingSphere, kMaxSpheres> pressing_{};
+  std::array<bool, kMaxSpheres> presses_{};  // touching or held
+  Coupling asked_{}, coupling_{};            // c as the law gave it, C as it is felt
+  Shear shear_;
+  std::array<Vec3, kMaxSpheres> shear_N_{};  // f
+  double energy_J_ = 0.0;                    // of all presses
+  bool closed_ = false;                      // the grip, with hysteresis
+  bool closing_ = false;                     // it closed in this tick
+  std::optional<Tool> before_;               // of the last tick: where the blade was
+};
+
+}  // namespace tact::model::contact

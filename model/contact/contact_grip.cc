@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// When a closed grip holds tissue and when it loses it: see contact.h.
+#include <algorithm>
+#include <cmath>
+
+#include "model/contact/contact.h"
+
+namespace tact::model::contact {
+void Contact::watch_grip(double grip_ratio) RT_SAFE {
+  const bool was_closed = closed_;
+  if (grip_ratio >= scene_.parameters.grip_close_ratio) closed_ = true;
+  if (!(grip_ratio >= scene_.parameters.grip_open_ratio)) closed_ = false;  // NaN opens
+  closing_ = closed_ && !was_closed;
+}
+
+// Held tissue follows the tool in the frame of this moment. A sphere that hangs in the dent of
+// another has nothing to hold.
+bool Contact::hold() RT_SAFE {
+  bool held = false;
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
+    SphereTouch& touch = touch_[i];
+    if (touch.state != TouchState::kTouching || !(touch.dent_m > 0.0)) continue;
+    Probe& probe = probe_[i];
+    probe.held_centre_m = probe.centre_m;
+    probe.held_normal = touch.normal;
+    probe.held_shift_m = touch.shift_m;
+    probe.held_depth_m = touch.depth_m;
+    touch.state = TouchState::kHeld;
+    held = true;
+  }
+  return held;
+}
+
+bool Contact::is_torn(std::size_t i) const RT_SAFE {
+  const double pull_N =
+      std::hypot(std::max(0.0, -pressing_[i].response.law.force_N), norm(spring_N(shear_, i)));
+  return !(pull_N <= scene_.parameters.tear_force_N);
+}
+
+// The first that must: its going changes what the others feel.
+bool Contact::let_go() RT_SAFE {
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
+    if (touch_[i].state == TouchState::kHeld && (!closed_ || is_torn(i))) {
+      let_go(i);
+      return true;
+    }
+  return false;
+}
+
+// Back to the surface with no stored shift, and no deeper than it was held. The tool may have been
+// dragged to where tissue is stiffer: the largest depth that leaves the whole tool no more energy.
+// kHalvings bound the work. Pressed tissue remembers on: forgotten relaxation would come back as a
+// stiffer push.
+void Contact::let_go(std::size_t i) RT_SAFE {
+  constexpr int kHalvings = 12;
+  const Probe& probe = probe_[i];
+  SphereTouch& touch = touch_[i];
+  const double held_J = energy_J_, held_m = touch.depth_m;
+  if (!(probe.depth_m > 0.0)) {
+    leave(i);
+    couple();
+    press();
+    return;
+  }
+  touch.state = TouchState::kTouching;
+  touch.place = probe.proxy.site().place;
+  touch.surface_point_m = probe.proxy.site().point_m;
+  touch.normal = probe.proxy.site().normal;
+  const auto affords = [&](double depth_m) RT_SAFE {
+    touch.dent_m += depth_m - touch.depth_m;
+    touch.depth_m = depth_m;
+    return press() <= held_J;
+  };
+  double low_m = 0.0, high_m = std::max(0.0, std::min(probe.depth_m, held_m));
+  if (affords(high_m)) low_m = high_m;
+  for (int k = 0; k < kHalvings && low_m < high_m; ++k) {
+    const double middle_m = 0.5 * (low_m + high_m);
+    (affords(middle_m) ? low_m : high_m) = middle_m;
+  }
+  touch.slack_m = probe.depth_m - low_m;
+  if (!(low_m > 0.0)) scene_.law->leave(i);
+  affords(low_m);
+  // Without it the others share the shift; it goes where they have dragged it.
+  std::array<bool, kMaxSpheres> others = presses_;
+  others[i] = false;
+  const Shear without(scene_.parameters.sliding_stiffness_N_per_m, asked_, others);
+  std::array<Vec3, kMaxSpheres> f_N{};
+  for (std::size_t j = 0; j < kMaxSpheres; ++j) f_N[j] = spring_N(without, j);
+  touch.shift_m = tangential(shear_.unloaded_m(f_N, i), touch.normal);
+}
+
+}  // namespace tact::model::contact

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/contact/coupling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace tact::model::contact {
+namespace {
+
+constexpr int kMaxSteps = 16;
+constexpr double kTolerance_m = 1e-10;
+constexpr double kLeastPivot = 1e-6;
+constexpr double kMargin = 0.95;  // of the largest coupling that is positive definite
+
+using Vector = std::array<double, kMaxSpheres>;
+
+bool is_coupled(const Coupling& c, std::size_t i) RT_SAFE {
+  return std::ranges::any_of(c[i], [](double m_per_N) RT_SAFE { return m_per_N != 0.0; });
+}
+
+// A sphere that is not held feels nothing of a dent that lies below it.
+void ask(SiteLaw& law, PressingSphere& sphere) RT_SAFE {
+  const double dent_m = sphere.in.depth_m;
+  const bool is_off = !sphere.in.held && !(dent_m > 0.0);
+  if (is_off) sphere.in.depth_m = 0.0;
+  sphere.response = law.respond(sphere.in);
+  sphere.in.depth_m = dent_m;
+  if (is_off) sphere.response.law.stiffness_N_per_m = 0.0;
+}
+
+double stiffness_N_per_m(const PressingSphere& sphere) RT_SAFE {
+  return sphere.presses ? std::max(sphere.response.law.stiffness_N_per_m, 0.0) : 0.0;
+}
+
+// (I + C K) step = miss, by elimination; every pivot is positive where diag(1 / K) + C is, else a
+// plain step is taken.
+Vector newton_step(const Coupling& c, std::span<const PressingSphere> spheres,
+                   Vector miss) RT_SAFE {
+  const std::size_t n = spheres.size();
+  const Vector plain = miss;
+  Coupling a{};
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      a[i][j] = (i == j ? 1.0 : 0.0) + c[i][j] * stiffness_N_per_m(spheres[j]);
+  for (std::size_t k = 0; k < n; ++k) {
+    if (!(a[k][k] > kLeastPivot)) return plain;
+    for (std::size_t i = k + 1; i < n; ++i) {
+      const double f = a[i][k] / a[k][k];
+      for (std::size_t j = k; j < n; ++j) a[i][j] -= f * a[k][j];
+      miss[i] -= f * miss[k];
+    }
+  }
+  for (std::size_t k = n; k-- > 0;) {
+    for (std::size_t j = k + 1; j < n; ++j) miss[k] -= a[k][j] * miss[j];
+    miss[k] /= a[k][k];
+  }
+  return miss;
+}
+
+// What MC-1 lacks; 0 for what does not press.
+Vector miss_of(const Coupling& c, std::span<const PressingSphere> spheres) RT_SAFE {
+  Vector miss{};
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    if (spheres[i].presses)
+      miss[i] = spheres[i].depth_m - sunk_m(c, spheres, i) - spheres[i].in.depth_m;
+  return miss;
+}
+
+// Newton from the dents as they are; false: what is left is above the tolerance, or no number.
+bool is_solved(SiteLaw& law, const Coupling& c, std::span<PressingSphere> spheres) RT_SAFE {
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    PressingSphere& sphere = spheres[i];
+    if (!sphere.presses) {
+      sphere.response = {};
+      continue;
+    }
+    if (!is_coupled(c, i)) sphere.in.depth_m = sphere.depth_m;
+    ask(law, sphere);
+  }
+  for (int step = 0; step <= kMaxSteps; ++step) {
+    const Vector miss_m = miss_of(c, spheres);
+    if (std::ranges::all_of(miss_m, [](double m) RT_SAFE { return std::abs(m) <= kTolerance_m; }))
+      return true;
+    if (step == kMaxSteps) break;
+    const Vector change_m = newton_step(c, spheres, miss_m);
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      if (!spheres[i].presses || change_m[i] == 0.0) continue;
+      spheres[i].in.depth_m += change_m[i];
+      ask(law, spheres[i]);
+    }
+  }
+  return false;
+}
+
+bool is_positive_definite(Coupling a, std::size_t n) RT_SAFE {
+  for (std::size_t k = 0; k < n; ++k) {
+    if (!(a[k][k] > 0.0)) return false;
+    for (std::size_t i = k + 1; i < n; ++i) {
+      const double f = a[i][k] / a[k][k];
+      for (std::size_t j = k; j < n; ++j) a[i][j] -= f * a[k][j];
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+double sunk_m(const Coupling& c, std::span<const PressingSphere> spheres, std::size_t i) RT_SAFE {
+  double sum_m = 0.0;
+  for (std::size_t j = 0; j < spheres.size(); ++j)
+    if (spheres[j].presses) sum_m += c[i][j] * spheres[j].response.law.force_N;
+  return sum_m;
+}
+
+double press_together(SiteLaw& law, Coupling& c, std::span<PressingSphere> spheres) RT_SAFE {
+  constexpr int kTries = 4;
+  for (int i = 0; i < kTries && !is_solved(law, c, spheres); ++i) {
+    for (auto& row : c)
+      for (double& m_per_N : row) m_per_N *= i + 2 < kTries ? 0.5 : 0.0;
+    for (PressingSphere& sphere : spheres) sphere.in.depth_m = sphere.depth_m;
+  }
+  // MC-3
+  double energy_J = 0.0;
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    if (spheres[i].presses)
+      energy_J += spheres[i].response.law.energy_J +
+                  0.5 * spheres[i].response.law.force_N * sunk_m(c, spheres, i);
+  return energy_J;
+}
+
+double definite_share(const Coupling& c, std::span<const PressingSphere> spheres) RT_SAFE {
+  const std::size_t n = spheres.size();
+  // Scaled by the stiffnesses, which may be 0: margin I + factor sqrt(K) C sqrt(K)
+  const auto is_definite = [&](double factor) RT_SAFE {
+    Coupling a{};
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j)
+        a[i][j] =
+            i == j ? kMargin
+                   : factor * c[i][j] *
+                         std::sqrt(stiffness_N_per_m(spheres[i]) * stiffness_N_per_m(spheres[j]));
+    return is_positive_definite(a, n);
+  };
+  if (is_definite(1.0)) return 1.0;
+  constexpr int kHalvings = 10;
+  double low = 0.0, high = 1.0;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (is_definite(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+}  // namespace tact::model::contact

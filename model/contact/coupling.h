@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// coupling.h - spheres that press one tissue: each stands in the dent that the others make.
+//
+//     MC-1   e_i = d_i - sum over j != i of C_ij F_j        F_i = dU_i/de at e_i
+//            F_i >= 0 unless held: a sphere in a dent deeper than its own depth is not touched
+//     MC-3   W(d) = sum U_i(e_i) + F' C F / 2               so that dW/dd_i = F_i
+//
+//     d_i   depth of a sphere below the undeformed surface, m
+//     e_i   its own dent, m: what the site's law answers
+//     C_ij  n_i . n_j c_ij: sinking of site i under a unit force at site j, m/N; symmetric,
+//           C_ii = 0
+//
+// With C constant W is a potential: no stroke gives back more than it took. The forces are unique
+// where diag(1 / F'(e_i)) + C is positive definite; definite_share() tells how much of C may stay.
+// Newton on e, at most kMaxSteps from the guess that it is given, to kTolerance_m. Where it finds
+// nothing, as the matrix is not definite, half of C is tried, and in the end none.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "model/contact/site_law.h"
+
+namespace tact::model::contact {
+
+/// C, m/N, of all pairs.
+using Coupling = std::array<std::array<double, kMaxSpheres>, kMaxSpheres>;
+
+/// One sphere of a tool. in.depth_m is e: a guess before press_together, the answer after it.
+struct PressingSphere {
+  bool presses = false;  // touches or is held; else the rest does not count
+  double depth_m = 0.0;  // d
+  Indentation in;
+  SiteResponse response;  // at e
+};
+
+/// Solves MC-1; returns W, J. C becomes smaller where it has no solution.
+double press_together(SiteLaw& law, Coupling& c, std::span<PressingSphere> spheres) RT_SAFE;
+
+/// sum over j of C_ij F_j, m: how far the others have sunk the site of sphere i.
+double sunk_m(const Coupling& c, std::span<const PressingSphere> spheres, std::size_t i) RT_SAFE;
+
+/// Largest factor of C, 0 .. 1, with which the matrix above is positive definite by a margin.
+double definite_share(const Coupling& c, std::span<const PressingSphere> spheres) RT_SAFE;
+
+}  // namespace tact::model::contact

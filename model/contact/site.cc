@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/contact/site.h"
+
+#include <cmath>
+
+namespace tact::model::contact {
+namespace {
+
+enum class Feature : std::uint8_t { kFace, kEdge, kCorner };
+
+using Weights = std::array<double, 3>;  // of the corners, sum 1
+
+struct Nearest {
+  Vec3 point_m;
+  double squared_m2 = 0.0;
+  Place place;
+  Feature feature = Feature::kFace;
+  std::uint32_t index = 0;  // of the edge or corner
+};
+
+struct Spot {
+  Vec3 point_m;
+  Weights weight{};
+};
+
+Nearest at(const Spot& q, const Vec3& p, std::uint32_t t, Feature f, std::uint32_t i) RT_SAFE {
+  return {q.point_m, dot(p - q.point_m, p - q.point_m), {t, q.weight}, f, i};
+}
+
+// Voronoi regions of a triangle [C. Ericson, Real-Time Collision Detection (2005) 5.1.5].
+Nearest nearest_on(const SurfaceView& s, std::uint32_t t, const Vec3& p) RT_SAFE {
+  const TriangleCorners& corner = s.triangle[t];
+  const Vec3 &a = s.vertex_m[corner[0]], &b = s.vertex_m[corner[1]], &c = s.vertex_m[corner[2]];
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+  if (d1 <= 0.0 && d2 <= 0.0) return at({a, {1, 0, 0}}, p, t, Feature::kCorner, 0);
+  const Vec3 bp = p - b;
+  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+  if (d3 >= 0.0 && d4 <= d3) return at({b, {0, 1, 0}}, p, t, Feature::kCorner, 1);
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
+    const double w = d1 / (d1 - d3);
+    return at({a + w * ab, {1.0 - w, w, 0}}, p, t, Feature::kEdge, 0);
+  }
+  const Vec3 cp = p - c;
+  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+  if (d6 >= 0.0 && d5 <= d6) return at({c, {0, 0, 1}}, p, t, Feature::kCorner, 2);
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
+    const double w = d2 / (d2 - d6);
+    return at({a + w * ac, {1.0 - w, 0, w}}, p, t, Feature::kEdge, 2);
+  }
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
+    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return at({b + w * (c - b), {0, 1.0 - w, w}}, p, t, Feature::kEdge, 1);
+  }
+  const double sum = va + vb + vc, v = vb / sum, w = vc / sum;
+  return at({a + v * ab + w * ac, {1.0 - v - w, v, w}}, p, t, Feature::kFace, 0);
+}
+
+void try_triangle(const SurfaceView& s, std::uint32_t t, const Vec3& p, Nearest& best) RT_SAFE {
+  if (t == kNoTriangle) return;
+  const Nearest other = nearest_on(s, t, p);
+  if (other.squared_m2 < best.squared_m2) best = other;
+}
+
+// The best of the triangle's neighbours across the feature that holds the nearest point. From
+// inside the body the nearest point of a face may not be the nearest of its ring: all edges are
+// tried.
+Nearest step_from(const SurfaceView& s, const Nearest& here, const Vec3& p) RT_SAFE {
+  Nearest best = here;
+  const TriangleCorners& neighbour = s.neighbour[here.place.triangle];
+  switch (here.feature) {
+    case Feature::kFace:
+      if (dot(p - here.point_m, s.face_normal[here.place.triangle]) < 0.0)
+        for (const std::uint32_t t : neighbour) try_triangle(s, t, p, best);
+      break;
+    case Feature::kEdge:
+      try_triangle(s, neighbour[here.index], p, best);
+      break;
+    case Feature::kCorner: {
+      const std::uint32_t v = s.triangle[here.place.triangle][here.index];
+      const std::uint32_t begin = s.fan_start[v], end = s.fan_start[v + 1];
+      for (std::uint32_t i = begin; i < end && i < begin + kMaxFan; ++i)
+        try_triangle(s, s.fan[i], p, best);
+      break;
+    }
+  }
+  return best;
+}
+
+bool is_rim_corner(const SurfaceView& s, std::uint32_t v) RT_SAFE {
+  for (std::uint32_t i = s.fan_start[v]; i < s.fan_start[v + 1] && i < s.fan_start[v] + kMaxFan;
+       ++i)
+    for (std::uint32_t e = 0; e < 3; ++e) {
+      const TriangleCorners& t = s.triangle[s.fan[i]];
+      const bool touches = t[e] == v || t[(e + 1) % 3] == v;
+      if (touches && s.neighbour[s.fan[i]][e] == kNoTriangle) return true;
+    }
+  return false;
+}
+
+// Beyond the rim of an open surface there is no inside to be pushed out of.
+bool is_on_rim(const SurfaceView& s, const Nearest& at) RT_SAFE {
+  if (at.feature == Feature::kEdge) return s.neighbour[at.place.triangle][at.index] == kNoTriangle;
+  return at.feature == Feature::kCorner &&
+         is_rim_corner(s, s.triangle[at.place.triangle][at.index]);
+}
+
+Vec3 pseudo_normal(const SurfaceView& s, const Nearest& at) RT_SAFE {
+  switch (at.feature) {
+    case Feature::kCorner:
+      return s.vertex_normal[s.triangle[at.place.triangle][at.index]];
+    case Feature::kEdge: {
+      const std::uint32_t other = s.neighbour[at.place.triangle][at.index];
+      if (other != kNoTriangle)
+        return normalized(s.face_normal[at.place.triangle] + s.face_normal[other]);
+      break;
+    }
+    case Feature::kFace:
+      break;
+  }
+  return s.face_normal[at.place.triangle];
+}
+
+// phi and n of a point of the surface for p.
+Site facing(Site site, const Vec3& p_m, bool is_outside) RT_SAFE {
+  const Vec3 away = p_m - site.point_m;
+  const double length_m = norm(away);
+  const double sign = is_outside || dot(away, site.outward) >= 0.0 ? 1.0 : -1.0;
+  constexpr double kOnSurface_m = 1e-9;  // below this the direction of p - q is rounding noise
+  site.normal = length_m > kOnSurface_m ? (sign / length_m) * away : site.outward;
+  site.distance_m = sign * length_m;
+  return site;
+}
+
+}  // namespace
+
+bool is_a_place(const Place& place, const SurfaceView& surface) RT_SAFE {
+  return place.triangle < surface.triangle.size() && std::isfinite(place.weight[0]) &&
+         std::isfinite(place.weight[1]) && std::isfinite(place.weight[2]);
+}
+
+Site follow(const SurfaceView& surface, std::uint32_t start, const Vec3& p_m) RT_SAFE {
+  Nearest here = nearest_on(surface, start, p_m);
+  for (int i = 0; i < kMaxWalkSteps; ++i) {
+    const Nearest next = step_from(surface, here, p_m);
+    if (next.place.triangle == here.place.triangle) break;
+    here = next;
+  }
+  return facing({.place = here.place,
+                 .point_m = here.point_m,
+                 .normal = {},
+                 .outward = pseudo_normal(surface, here),
+                 .distance_m = 0.0},
+                p_m, is_on_rim(surface, here));
+}
+
+Site seen_from(const Site& site, const Vec3& p_m) RT_SAFE { return facing(site, p_m, false); }
+
+}  // namespace tact::model::contact

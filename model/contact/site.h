@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// site.h - the point of a surface nearest to a probe centre p, followed from tick to tick.
+//
+//     phi   signed distance of p to the undeformed surface, m, positive outside
+//     q     nearest surface point      n = grad phi = sign (p - q) / |p - q|
+//
+// The walk goes from triangle to neighbouring triangle while the distance falls, at most
+// kMaxWalkSteps a call: its cost does not depend on the size of the mesh. It finds the local
+// minimum near its start, which is what contact wants: a probe pressed into a thin lobe must not
+// jump to the far side.
+#pragma once
+
+#include <array>
+
+#include "model/contact/surface.h"
+#include "model/types.h"
+
+namespace tact::model::contact {
+
+inline constexpr int kMaxWalkSteps = 64;
+inline constexpr std::uint32_t kMaxFan = 128;  // triangles looked at around one vertex
+
+/// A point of the undeformed surface: a triangle and its corners' weights, which sum to 1. A corner
+/// that does not count has exactly 0: one such on an edge, two in a vertex.
+struct Place {
+  std::uint32_t triangle = kNoTriangle;
+  std::array<double, 3> weight{};
+};
+
+/// Is it a triangle of the surface, with finite weights?
+bool is_a_place(const Place& place, const SurfaceView& surface) RT_SAFE;
+
+struct Site {
+  Place place;              // of q
+  Vec3 point_m;             // q
+  Vec3 normal;              // n, unit
+  Vec3 outward;             // pseudo-normal of the surface in q, unit
+  double distance_m = 0.0;  // phi
+};
+
+/// The same q, which need not be the nearest point, seen from another p: phi is +-|p - q|.
+Site seen_from(const Site& site, const Vec3& p_m) RT_SAFE;
+/// Nearest point near `start`; `start` must be a triangle of the surface.
+Site follow(const SurfaceView& surface, std::uint32_t start, const Vec3& p_m) RT_SAFE;
+
+}  // namespace tact::model::contact

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// site_law.h - what contact asks of the tissue under each probe sphere, every tick.
+//
+//     W(d, s)   potential, J, of the depth d at the place s of the undeformed surface
+//     F = dW/dd           along the outward normal, as a Law gives it
+//     G = dW/ds           tangential, N: a tissue that differs from place to place, or is dented
+//                         beside the tool, also pushes sideways; without it, sliding makes energy
+//
+// A site law may remember (relaxation, a mass-spring patch): respond() may be called more than once
+// a tick for one sphere, the last call counts, and advance() ends the tick. Implementations:
+// elastic_field.h (closed-form laws, relaxation), spring_patch.h (stepped).
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "model/contact/blade.h"
+#include "model/contact/patch_shape.h"
+#include "model/contact/site.h"
+#include "model/law/law.h"
+#include "model/types.h"
+
+namespace tact::model::contact {
+
+inline constexpr std::size_t kMaxSpheres = 4;
+
+/// What one sphere does to the tissue.
+struct Indentation {
+  std::size_t sphere = 0;  // below kMaxSpheres
+  Place place{};
+  Vec3 normal{};         // outward, unit, at the place
+  double depth_m = 0.0;  // d; below 0 only while held
+  bool held = false;
+};
+
+struct SiteResponse {
+  law::LawResponse law;
+  Vec3 slope_N{};  // G, tangential to the touched triangle
+};
+
+class SiteLaw {
+ public:
+  virtual ~SiteLaw() = default;
+  /// NaN gives zero force and kInvalid.
+  virtual SiteResponse respond(const Indentation& in) RT_SAFE = 0;
+  /// MC-2: how far site a moves with a unit force at site b, distance_m away, in the direction of
+  /// that force, m/N. 0: the law's own memory couples them, or nothing is known.
+  virtual double coupling_m_per_N(const Indentation& a, const Indentation& b,
+                                  double distance_m) const RT_SAFE {
+    (void)a, (void)b, (void)distance_m;
+    return 0.0;
+  }
+  /// The sphere is free: forget what it did.
+  virtual void leave(std::size_t sphere) RT_SAFE = 0;
+  /// A blade went through the tissue since the last tick; most laws cannot be cut.
+  virtual void cut(const BladeSweep&) RT_SAFE {}
+  /// The end of a tick; its length is fixed when the law is made.
+  virtual void advance() RT_SAFE = 0;
+  /// The law left the finite numbers and gives zero force; true until every sphere has left.
+  virtual bool broke() const RT_SAFE { return false; }
+  /// Radial displacement profile as in Law::profile: for telemetry, from any thread; it must not
+  /// read what advance() writes. A law that tells its shape otherwise returns 0.
+  virtual std::size_t profile(const Indentation& in, std::span<double> ring_m) const RT_SAFE = 0;
+  virtual double ring_pitch_m() const RT_SAFE = 0;
+  /// Loop thread: what such a law shows instead of a profile; false: the profile says all.
+  virtual bool shape(PatchShape& out) RT_SAFE {
+    (void)out;
+    return false;
+  }
+};
+
+}  // namespace tact::model::contact

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// haptic_limit.h - how stiff a sampled spring may be before the loop makes energy of its own.
+//
+//     HL-1   K_grow  = (b - |B|) / (T/2 + t_d)   beyond it an oscillation grows
+//     HL-2   K_quiet = 2 c / D                   beyond it the tool may buzz by a few counts
+//     HL-3   K_safe  = min(K_grow, K_quiet)      any hand, any pose: no growing, no lasting motion
+//
+//     K  stiffness of the spring shown, N/m        T    period of the loop, s
+//     b  viscous damping of the device, N s/m      t_d  age of the force beyond one hold, s
+//     B  virtual damping, N s/m                    D    step of the counted position, m
+//     c  Coulomb friction of the device, N
+//
+// b, c and D are those of the device at the tool, where they are worst. With t_d = 0 the first line
+// is K < 2 (b - |B|) / T (Colgate, Schenkel, J. Robotic Systems 14 (1997) 37); for a delay it is
+// the same condition at low frequency. The second: friction must carry half the step K D that the
+// force makes where the count changes (Abbott, Okamura, IEEE T-RO 21 (2005) 952; Diolaiti et al.,
+// IEEE T-RO 22 (2006) 256). Both take no help from the hand, so they hold for every hand. If a
+// share p of the ticks brings no fresh sample and the force is held, the mean square of the holds
+// grows and T becomes T (1 + p) / (1 - p) (HL-4). tools/stability measures all of this.
+#pragma once
+
+#include "model/device_at_tool.h"
+#include "model/rt.h"
+
+namespace tact::model::law {
+
+struct HapticLimit {
+  double grow_N_per_m = 0.0;   // K_grow: what no spring of a scene may exceed
+  double quiet_N_per_m = 0.0;  // K_quiet; infinite without counting
+  double safe_N_per_m() const RT_SAFE {
+    return grow_N_per_m < quiet_N_per_m ? grow_N_per_m : quiet_N_per_m;
+  }
+};
+
+/// Bad numbers (NaN, below zero, rate of zero, lost share outside [0, 1)) give a limit of zero.
+HapticLimit haptic_limit(const DeviceAtTool& device, double rate_Hz,
+                         double virtual_damping_Ns_per_m = 0.0, double lost_share = 0.0) RT_SAFE;
+
+}  // namespace tact::model::law

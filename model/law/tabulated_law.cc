@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/law/tabulated_law.h"
+
+#include <cmath>
+#include <string>
+
+namespace tact::model::law {
+namespace {
+
+constexpr double kBesideRest = 1e-9;
+constexpr double kPressShare = 0.95;  // the slope of a snapping chain is infinite at its very limit
+
+HermiteTable table_to(const Law& law, double end_m, std::size_t knots) {
+  return {end_m / static_cast<double>(knots - 1), knots, [&law, end_m](double depth_m) {
+            // At rest each side has its own slope: a law may pull softer than it presses.
+            const double side_m = depth_m == 0.0 ? kBesideRest * end_m : depth_m;
+            return CurvePoint{.value = law.respond(depth_m).force_N,
+                              .slope = law.respond(side_m).stiffness_N_per_m};
+          }};
+}
+
+}  // namespace
+
+LawResponse TabulatedLaw::respond(double depth_m) const RT_SAFE {
+  if (!std::isfinite(depth_m)) return {.status = LawStatus::kInvalid};
+  if (depth_m < 0.0 && !can_pull_) return {.status = LawStatus::kNoContact};
+  const HermiteTable& table = depth_m < 0.0 ? pull_ : press_;
+  const double end_m = table.end();
+  const bool beyond = std::abs(depth_m) > std::abs(end_m);
+  const CurvePoint p = table.at(beyond ? end_m : depth_m);
+  if (!beyond) return {p.value, p.slope, p.integral, LawStatus::kOk};
+  return {p.value, 0.0, p.integral + p.value * (depth_m - end_m), LawStatus::kSaturated};
+}
+
+Result<TabulatedLaw> tabulate(const Law& law, std::size_t knots) {
+  if (knots < 2 || knots > kMaxKnots)
+    return Error{"law table: knots must lie between 2 and " + std::to_string(kMaxKnots)};
+  const LawRange range = law.range();
+  TabulatedLaw out(law);
+  out.press_ = table_to(law, kPressShare * range.press_m, knots);
+  out.can_pull_ = range.pull_m < 0.0;
+  if (out.can_pull_) out.pull_ = table_to(law, range.pull_m, knots);
+  const std::size_t checks = 8 * knots;
+  double before_N = law.respond(range.pull_m).force_N;
+  for (std::size_t i = 1; i <= checks; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(checks);
+    const double depth_m = range.pull_m + share * (kPressShare * range.press_m - range.pull_m);
+    const double force_N = out.respond(depth_m).force_N;
+    if (!(force_N >= before_N))
+      return Error{"law table: the force falls at a depth of " + std::to_string(depth_m) +
+                   " m; choose parameters whose force grows with depth"};
+    before_N = force_N;
+  }
+  return out;
+}
+
+}  // namespace tact::model::law

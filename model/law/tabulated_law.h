@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// tabulated_law.h - any closed-form law as the loop sees it: two Hermite tables, press and pull.
+//
+// 65 knots a side over [pull limit, 0] and [0, 0.95 press limit]. Under press they reproduce the
+// rhombus chain RC-13 within 1e-8 of its force limit (LW-1). Beyond the tables the force stays at
+// the last knot's value, the energy goes on with it, and the status is kSaturated.
+#pragma once
+
+#include "model/law/hermite_table.h"
+#include "model/law/law.h"
+#include "model/result.h"
+
+namespace tact::model::law {
+
+class TabulatedLaw final : public Law {
+ public:
+  LawResponse respond(double depth_m) const RT_SAFE override;
+  LawRange range() const RT_SAFE override { return {can_pull_ ? pull_.end() : 0.0, press_.end()}; }
+  /// Solved directly, not from a table: for telemetry and tools, outside the loop.
+  std::size_t profile(double depth_m, std::span<double> ring_m) const RT_SAFE override {
+    return source_->profile(depth_m, ring_m);
+  }
+  double ring_pitch_m() const RT_SAFE override { return source_->ring_pitch_m(); }
+
+ private:
+  friend Result<TabulatedLaw> tabulate(const Law&, std::size_t);
+  explicit TabulatedLaw(const Law& source) : source_(&source) {}
+
+  const Law* source_;
+  HermiteTable press_, pull_;
+  bool can_pull_ = false;
+};
+
+/// Tables of a law that outlives them. An error if the force does not grow with depth.
+Result<TabulatedLaw> tabulate(const Law& law, std::size_t knots);
+
+}  // namespace tact::model::law

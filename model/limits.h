@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// limits.h - what a scene allows at the most: the settings of the gate (firmware/gate/).
+#pragma once
+
+namespace tact::model {
+
+struct Limits {
+  double force_N = 0.0;                  // vector magnitude
+  double torque_Nm = 0.0;                // vector magnitude
+  double slew_N_per_s = 0.0;             // largest change of the force vector
+  double ramp_s = 0.0;                   // fade-in after arming
+  double workspace_radius_m = 0.0;       // cylinder about the W x axis
+  double workspace_half_length_m = 0.0;  // along the W x axis
+  double speed_mps = 1.5;                // of the tool
+  double turn_radps = 10.0;              // of the tool
+  double energy_J = 0.1;                 // given to the hand beyond what was taken from it
+  double recovery_W = 1e-4;              // of that budget
+  double continuous_force_N = 20.0;      // largest RMS of the force; torque in proportion
+  double thermal_time_s = 10.0;          // of that RMS
+  double power_W = 20.0;                 // given to the hand
+};
+
+}  // namespace tact::model

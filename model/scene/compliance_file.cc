@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/scene/compliance_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+#include "model/fnv1a.h"
+#include "model/law/compliance_law.h"
+#include "model/scene/scene_words.h"
+
+namespace tact::model::scene {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the file's bytes are the machine's");
+static_assert(sizeof(tissue::SidewaysGive) == 4 * sizeof(float));
+
+constexpr std::string_view kMagic = "TACTCOMP";
+constexpr std::uint32_t kVersion = 1;
+constexpr std::size_t kHashDigits = 16;
+constexpr std::uint32_t kMaxVertices = 10'000'000;
+
+struct Header {
+  std::uint32_t version = kVersion, vertices = 0, rings = 0, spare = 0;
+  double poisson_ratio = 0.0, patch_radius_m = 0.0, ring_pitch_m = 0.0;
+  Vec3 fixed_min_m{}, fixed_max_m{};
+};
+static_assert(sizeof(Header) == 4 * 4 + 9 * 8);
+constexpr std::size_t kHeadBytes = kMagic.size() + sizeof(Header) + kHashDigits;
+
+std::size_t floats_in(const Header& h) {
+  return std::size_t{h.vertices} * (1 + 4 + std::size_t{h.rings});
+}
+
+template <typename T>
+void append(std::string& bytes, const T* first, std::size_t count) {
+  bytes.append(reinterpret_cast<const char*>(first), count * sizeof(T));
+}
+
+template <typename T>
+void take(std::string_view& bytes, T* first, std::size_t count) {
+  std::memcpy(first, bytes.data(), count * sizeof(T));
+  bytes.remove_prefix(count * sizeof(T));
+}
+
+std::optional<std::string> first_fault(const Header& h) {
+  if (h.vertices == 0 || h.vertices > kMaxVertices)
+    return fmt::format("it says {} vertices", h.vertices);
+  if (h.rings == 0 || h.rings > law::kMaxComplianceRings)
+    return fmt::format("it says {} rings, allowed 1 to {}", h.rings, law::kMaxComplianceRings);
+  const bool sound = h.poisson_ratio >= 0.0 && h.poisson_ratio < 0.5 && h.patch_radius_m > 0.0 &&
+                     h.ring_pitch_m > 0.0 && is_finite(h.fixed_min_m) && is_finite(h.fixed_max_m);
+  if (!sound) return "its numbers have no meaning";
+  return std::nullopt;
+}
+
+bool all_finite(const tissue::ComplianceMap& map) {
+  const auto finite = [](float v) { return std::isfinite(v); };
+  return std::ranges::all_of(map.regular_times_E_per_m, finite) &&
+         std::ranges::all_of(map.ring_times_E_per_m, finite) &&
+         std::ranges::all_of(map.sideways_times_E_per_m, [&](const tissue::SidewaysGive& s) {
+           return finite(s.n1) && finite(s.n2) && finite(s.s1) && finite(s.s2);
+         });
+}
+
+}  // namespace
+
+Result<tissue::ComplianceMap> read_compliance_map(const std::string& path) {
+  const auto broken = [&path](const std::string& why) {
+    return Error{fmt::format("{}: {}; make it again with tact-condense", path, why)};
+  };
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return broken("cannot be opened as a compliance map");
+  const std::string content{std::istreambuf_iterator<char>(file), {}};
+  if (file.bad()) return broken("cannot be read to its end");
+  std::string_view bytes = content;
+  if (bytes.substr(0, kMagic.size()) != kMagic) return broken("is no compliance map");
+  if (bytes.size() < kHeadBytes) return broken("ends within its header");
+  bytes.remove_prefix(kMagic.size());
+  Header head;
+  take(bytes, &head, 1);
+  if (head.version != kVersion)
+    return broken(fmt::format("is of version {}, this program reads {}", head.version, kVersion));
+  if (const auto fault = first_fault(head)) return broken("is damaged: " + *fault);
+  tissue::ComplianceMap map{.poisson_ratio = head.poisson_ratio,
+                            .patch_radius_m = head.patch_radius_m,
+                            .ring_pitch_m = head.ring_pitch_m,
+                            .rings = head.rings,
+                            .fixed_min_m = head.fixed_min_m,
+                            .fixed_max_m = head.fixed_max_m,
+                            .mesh_hash = std::string(bytes.substr(0, kHashDigits))};
+  bytes.remove_prefix(kHashDigits);
+  const std::size_t expected = floats_in(head) * sizeof(float) + sizeof(std::uint64_t);
+  if (bytes.size() != expected)
+    return broken(
+        fmt::format("is damaged: {} bytes where {} belong", content.size(), kHeadBytes + expected));
+  map.regular_times_E_per_m.resize(head.vertices);
+  map.sideways_times_E_per_m.resize(head.vertices);
+  map.ring_times_E_per_m.resize(std::size_t{head.vertices} * head.rings);
+  take(bytes, map.regular_times_E_per_m.data(), map.regular_times_E_per_m.size());
+  take(bytes, map.sideways_times_E_per_m.data(), map.sideways_times_E_per_m.size());
+  take(bytes, map.ring_times_E_per_m.data(), map.ring_times_E_per_m.size());
+  std::uint64_t sum = 0;
+  take(bytes, &sum, 1);
+  if (sum != fnv1a(std::string_view{content.data(), content.size() - sizeof sum}))
+    return broken("is damaged: its checksum is wrong");
+  if (!all_finite(map)) return broken("holds a value that is no finite number");
+  return map;
+}
+
+Result<std::size_t> write_compliance_map(const tissue::ComplianceMap& map,
+                                         const std::string& path) {
+  const Header head{.version = kVersion,
+                    .vertices = static_cast<std::uint32_t>(map.vertices()),
+                    .rings = static_cast<std::uint32_t>(map.rings),
+                    .spare = 0,
+                    .poisson_ratio = map.poisson_ratio,
+                    .patch_radius_m = map.patch_radius_m,
+                    .ring_pitch_m = map.ring_pitch_m,
+                    .fixed_min_m = map.fixed_min_m,
+                    .fixed_max_m = map.fixed_max_m};
+  const bool complete = map.sideways_times_E_per_m.size() == map.vertices() &&
+                        map.ring_times_E_per_m.size() == map.vertices() * map.rings &&
+                        map.mesh_hash.size() == kHashDigits;
+  if (const auto fault = first_fault(head); fault || !complete)
+    return Error{fmt::format("{}: not written, the map is not complete{}", path,
+                             fault ? ": " + *fault : std::string())};
+  if (!all_finite(map))
+    return Error{path +
+                 ": not written, the map holds a value that is no finite number; solve it again "
+                 "with another mesh size or patch radius"};
+  std::string bytes(kMagic);
+  append(bytes, &head, 1);
+  bytes += map.mesh_hash;
+  append(bytes, map.regular_times_E_per_m.data(), map.vertices());
+  append(bytes, map.sideways_times_E_per_m.data(), map.vertices());
+  append(bytes, map.ring_times_E_per_m.data(), map.ring_times_E_per_m.size());
+  const std::uint64_t sum = fnv1a(bytes);
+  append(bytes, &sum, 1);
+  const std::string part = path + ".part";
+  std::ofstream file(part, std::ios::binary);
+  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  std::error_code error;
+  if (file) std::filesystem::rename(part, path, error);
+  if (!file || error) {
+    std::filesystem::remove(part, error);
+    return Error{path + ": cannot be written; is there such a folder, and room on the disk?"};
+  }
+  return bytes.size();
+}
+
+std::string compliance_checksum(const std::string& path) {
+  std::string sum(sizeof(std::uint64_t), '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(-static_cast<std::streamoff>(sum.size()), std::ios::end);
+  file.read(sum.data(), static_cast<std::streamsize>(sum.size()));
+  return file ? sum : std::string();
+}
+
+std::string surface_hash(const contact::SurfaceView& surface) {
+  constexpr double kStep_m = 1e-7;
+  TextHash hash;
+  for (const Vec3& p : surface.vertex_m) {
+    const Vec3 d = p - surface.vertex_m[0];
+    for (const double x : {d.x, d.y, d.z}) hash.add(std::to_string(std::llround(x / kStep_m)));
+  }
+  for (const contact::TriangleCorners& t : surface.triangle)
+    for (const std::uint32_t corner : t) hash.add(std::to_string(corner));
+  return hash.hex();
+}
+
+}  // namespace tact::model::scene

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// compliance_file.h - a ComplianceMap as a file: what tact-condense writes and a scene names.
+//
+//     "TACTCOMP"  version u32  vertices u32  rings u32  spare u32
+//     poisson_ratio  patch_radius_m  ring_pitch_m  fixed_min_m  fixed_max_m     9 f64
+//     mesh_hash   16 characters
+//     r E         vertices f32
+//     n1 n2 s1 s2 4 vertices f32
+//     g_j E       vertices * rings f32
+//     checksum    u64, FNV-1a of every byte before it
+//
+// Little endian. Set-up code only.
+#pragma once
+
+#include <string>
+
+#include "model/contact/surface.h"
+#include "model/result.h"
+#include "model/tissue/compliance_map.h"
+
+namespace tact::model::scene {
+
+/// Any damage is an error that says what is wrong with which file.
+Result<tissue::ComplianceMap> read_compliance_map(const std::string& path);
+/// All or nothing: a reader never sees half a file. Returns the bytes written.
+Result<std::size_t> write_compliance_map(const tissue::ComplianceMap& map, const std::string& path);
+
+/// The checksum that the file ends with, 8 bytes as they stand there; empty where there is none.
+std::string compliance_checksum(const std::string& path);
+
+/// Same shape, same hash, wherever the surface stands: triangles, and vertices relative to the
+/// first one in steps of 0.1 um. 16 hex digits.
+std::string surface_hash(const contact::SurfaceView& surface);
+
+}  // namespace tact::model::scene

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// law_settings.h - which law a scene chooses, and the numbers of every law that it describes.
+//
+// A scene may describe several laws: the chosen one is felt, the others are there to be compared
+// (tact-chart) or to be chosen by tact-plan (law = "auto").
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/law/disc_stack.h"
+#include "model/law/hex_sheet.h"
+#include "model/law/linear_pull.h"
+#include "model/law/relaxation.h"
+#include "model/law/rhombus_chain.h"
+#include "model/springs/spring_patch.h"
+#include "model/types.h"
+
+namespace tact::model::scene {
+
+enum class LawKind {
+  kRhombus,
+  kDiscStack,
+  kHexSheet,
+  kSpringPatch,
+  kCompliance,
+  kAuto,
+};
+
+struct LawName {
+  LawKind kind;
+  std::string_view name, meaning;
+};
+
+inline constexpr std::array kLawNames{
+    LawName{LawKind::kRhombus, "rhombus", "energy-consistent spring chain"},
+    LawName{LawKind::kDiscStack, "disc_stack", "discs that go flat one after the other"},
+    LawName{LawKind::kHexSheet, "hex_sheet", "hexagonal skin on body springs, energy form"},
+    LawName{LawKind::kSpringPatch, "spring_patch", "masses and springs near the contact"},
+    LawName{LawKind::kCompliance, "compliance", "linear elastic organ, condensed offline"},
+    LawName{LawKind::kAuto, "auto", "the least law that meets [tolerance], by tact-plan"},
+};
+
+/// Its name in a scene.
+std::string_view name_of(LawKind kind);
+
+/// The organ as a linear elastic body; the box is in the mesh's own frame, before organ.position_m.
+struct ElasticSettings {
+  double youngs_modulus_Pa = 0.0;
+  double poisson_ratio = 0.0;
+  Vec3 fixed_min_m{}, fixed_max_m{};  // triangles with all corners in this box are held
+};
+
+struct ComplianceSettings {
+  std::string map_path;          // absolute; written by tact-condense
+  double working_depth_m = 0.0;  // press and pull
+  std::size_t curves = 17;       // of the family, soft to stiff
+  bool large_strain = true;      // under the tip; false: small strain, as a linear reference
+};
+
+/// What the scene accepts, for tact-plan and for tactd's start.
+struct ToleranceSettings {
+  double force_error_ratio = 0.0;  // RMS, of the peak
+  double shape_error_ratio = 0.0;  // RMS, of the depth
+  double tick_budget_us = 0.0;     // p99.9 of a tick
+};
+
+/// A vertex of the organ where the reference is solved.
+struct ReferenceSite {
+  std::size_t vertex = 0;
+  bool held_out = false;  // not used by tact-fit
+};
+
+}  // namespace tact::model::scene

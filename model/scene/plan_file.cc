@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/scene/plan_file.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace tact::model::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The counts of LawSizes by their names in the file and in the scene.
+struct Count {
+  const char* key;
+  std::size_t LawSizes::* value;
+  const char* word;  // for people
+  const char* scene_key;
+};
+constexpr std::array kCounts{
+    Count{"table_knots", &LawSizes::table_knots, "knots", "table_knots"},
+    Count{"layers", &LawSizes::layers, "layers", "disc_stack.layers"},
+    Count{"rings", &LawSizes::rings, "rings", "hex_sheet.rings"},
+    Count{"nodes", &LawSizes::nodes, "nodes", "spring_patch.nodes"},
+    Count{"curves", &LawSizes::curves, "curves", "compliance.curves"},
+};
+
+const char* name_of(law::DiscForm form) {
+  return form == law::DiscForm::kLinear ? "linear" : "almen-laszlo";
+}
+
+/// Error: what is missing or has no meaning.
+Result<Plan> plan_of(const toml::table& root) {
+  Plan plan;
+  const std::string law = root["law"].value_or<std::string>("");
+  const auto known = std::find_if(kLawNames.begin(), kLawNames.end(),
+                                  [&](const LawName& name) { return name.name == law; });
+  if (known == kLawNames.end() || known->kind == LawKind::kAuto)
+    return Error{fmt::format("law = \"{}\" is no law", law)};
+  plan.sizes.law = known->kind;
+  for (const Count& count : kCounts) {
+    const auto number = root[count.key].value_or<std::int64_t>(0);
+    if (number < 0 || number > 100000) return Error{fmt::format("{} is out of range", count.key)};
+    plan.sizes.*count.value = static_cast<std::size_t>(number);
+  }
+  if (const auto form = root["disc_form"].value<std::string>()) {
+    if (*form != name_of(law::DiscForm::kLinear) && *form != name_of(law::DiscForm::kAlmenLaszlo))
+      return Error{fmt::format("disc_form = \"{}\" is no form", *form)};
+    plan.sizes.disc_form = *form == name_of(law::DiscForm::kLinear) ? law::DiscForm::kLinear
+                                                                    : law::DiscForm::kAlmenLaszlo;
+  }
+  const auto measured = [&](const char* key, double& value) {
+    value = root[key].value_or<double>(-1.0);
+    return std::isfinite(value) && value >= 0.0;
+  };
+  if (!measured("tick_p999_us", plan.tick_p999_us)) return Error{"tick_p999_us is missing"};
+  if (!measured("force_error_ratio", plan.force_error_ratio))
+    return Error{"force_error_ratio is missing"};
+  if (!measured("shape_error_ratio", plan.shape_error_ratio))
+    return Error{"shape_error_ratio is missing"};
+  plan.machine = root["machine"].value_or<std::string>("");
+  plan.scene_hash = root["scene_hash"].value_or<std::string>("");
+  return plan;
+}
+
+Result<Plan> parse_plan(const std::string& path) {
+  try {  // the library reports by exceptions; they end here
+    return plan_of(toml::parse_file(path));
+  } catch (const toml::parse_error& e) {
+    return Error{fmt::format("damaged, {}", e.description())};
+  }
+}
+
+}  // namespace
+
+std::string text_of(const LawSizes& sizes) {
+  std::string out(name_of(sizes.law));
+  if (sizes.disc_form) out += fmt::format(" {}", name_of(*sizes.disc_form));
+  for (const Count& count : kCounts)
+    if (sizes.*count.value != 0) out += fmt::format(" {} {}", sizes.*count.value, count.word);
+  return out;
+}
+
+void use_sizes(const LawSizes& sizes, Scene& scene) {
+  const auto use = [](std::size_t from, std::size_t& to) {
+    if (from != 0) to = from;
+  };
+  scene.law = sizes.law;
+  use(sizes.table_knots, scene.table_knots);
+  use(sizes.layers, scene.disc_stack.delays.layers);
+  use(sizes.rings, scene.hex_sheet.rings);
+  use(sizes.nodes, scene.spring_patch.nodes);
+  use(sizes.curves, scene.compliance.curves);
+  if (sizes.disc_form) scene.disc_stack.form = *sizes.disc_form;
+}
+
+std::vector<std::string> overrides_of(const LawSizes& sizes) {
+  std::vector<std::string> out{fmt::format("law={}", name_of(sizes.law))};
+  if (sizes.disc_form) out.push_back(fmt::format("disc_stack.form={}", name_of(*sizes.disc_form)));
+  for (const Count& count : kCounts)
+    if (sizes.*count.value != 0)
+      out.push_back(fmt::format("{}={}", count.scene_key, sizes.*count.value));
+  return out;
+}
+
+std::string command_text(const std::vector<std::string>& overrides) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.=/+,:";
+  std::string out;
+  for (const std::string& one : overrides) {
+    out += " --set ";
+    if (one.find_first_not_of(kPlain) == std::string::npos) {
+      out += one;
+      continue;
+    }
+    out += '\'';
+    for (const char c : one) c == '\'' ? out += "'\\''" : out += c;
+    out += '\'';
+  }
+  return out;
+}
+
+std::string machine_name() {
+  std::ifstream file("/proc/cpuinfo");
+  std::string cpu = "unknown processor";
+  int cores = 0;
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("processor")) ++cores;
+    if (line.starts_with("model name") && colon != std::string::npos) cpu = line.substr(colon + 2);
+  }
+  std::replace_if(
+      cpu.begin(), cpu.end(), [](char c) { return c == ',' || c == '"' || c == '\\'; }, ' ');
+  return fmt::format("{} x {}", cores, cpu);
+}
+
+Result<std::string> plan_path(const std::string& scene_hash) {
+  const auto folder = [](const char* variable) {
+    const char* value = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): before threads
+    return fs::path(value == nullptr ? "" : value);
+  };
+  fs::path cache = folder("XDG_CACHE_HOME");
+  if (cache.empty() && !folder("HOME").empty()) cache = folder("HOME") / ".cache";
+  if (cache.empty())
+    return Error{"no folder for plans: neither XDG_CACHE_HOME nor HOME is set; set one"};
+  return (cache / "tact" / "plan" / (scene_hash + ".toml")).string();
+}
+
+std::string plan_text(const Plan& plan) {
+  std::string out = "# What tact-plan chose; tactd reads it for a scene with law = \"auto\".\n";
+  out += fmt::format("law = \"{}\"\n", name_of(plan.sizes.law));
+  if (plan.sizes.disc_form)
+    out += fmt::format("disc_form = \"{}\"\n", name_of(*plan.sizes.disc_form));
+  for (const Count& count : kCounts)
+    if (plan.sizes.*count.value != 0)
+      out += fmt::format("{} = {}\n", count.key, plan.sizes.*count.value);
+  out += fmt::format(
+      "tick_p999_us = {:.6g}\nforce_error_ratio = {:.6g}\nshape_error_ratio = {:.6g}\n"
+      "machine = \"{}\"\nscene_hash = \"{}\"\n",
+      plan.tick_p999_us, plan.force_error_ratio, plan.shape_error_ratio, plan.machine,
+      plan.scene_hash);
+  return out;
+}
+
+Result<std::string> write_plan(const Plan& plan, const std::string& path) {
+  std::error_code failed;
+  fs::create_directories(fs::path(path).parent_path(), failed);
+  const std::string part = path + ".part";
+  {
+    std::ofstream file(part, std::ios::binary);
+    file << plan_text(plan);
+    if (!file.flush())
+      return Error{fmt::format("{}: cannot be written; check the folder and the space", path)};
+  }
+  fs::rename(part, path, failed);
+  if (failed) return Error{fmt::format("{}: {}; check the folder", path, failed.message())};
+  return path;
+}
+
+Result<Plan> read_plan(const std::string& path, const Scene& scene,
+                       const std::vector<std::string>& overrides) {
+  const auto broken = [&](const std::string& what) {
+    return Error{
+        fmt::format("{}: {}; run tact-plan {}{} --reference FILE, FILE from tact-reference {} "
+                    "--out FILE",
+                    path, what, scene.path, command_text(overrides), scene.path)};
+  };
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return broken("no plan for this scene");
+  Result<Plan> plan = parse_plan(path);
+  if (!plan) return broken(plan.error().sentence);
+  if (plan->scene_hash != scene.hash) return broken("the plan of another scene");
+  if (plan->machine != machine_name())
+    return broken(fmt::format("measured on another machine, {}", plan->machine));
+  if (!scene.describes(plan->sizes.law))
+    return broken(fmt::format("the scene has no law {}", name_of(plan->sizes.law)));
+  return plan;
+}
+
+Result<Plan> find_plan(const Scene& scene, const std::vector<std::string>& overrides) {
+  const auto path = plan_path(scene.hash);
+  if (!path) return path.error();
+  std::vector<std::string> others = overrides;
+  std::erase_if(others, [](const std::string& one) { return one.starts_with("law="); });
+  std::error_code ignored;
+  if (others.size() == overrides.size() || fs::exists(*path, ignored))
+    return read_plan(*path, scene, overrides);
+  const auto planned = load_scene(scene.path, others);
+  if (!planned) return planned.error();
+  const auto its_path = plan_path(planned->hash);
+  if (!its_path) return its_path.error();
+  return read_plan(*its_path, *planned, others);
+}
+
+}  // namespace tact::model::scene

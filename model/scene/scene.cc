@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/scene/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "model/mesh/obj.h"
+#include "model/scene/compliance_file.h"
+#include "model/scene/scene_keys.h"
+#include "model/scene/scene_words.h"
+
+namespace tact::model::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A mesh file is named from the folder of the scene, wherever the program was started.
+std::string absolute_path(const std::string& scene_path, const std::string& file) {
+  std::error_code failed;
+  const fs::path folder = fs::absolute(scene_path, failed).parent_path();
+  return (folder / file).lexically_normal().string();
+}
+
+/// The mesh's own error names its file and line; one that is not there is the scene's error.
+Result<mesh::SurfaceMesh> load_mesh(const MeshText& text, const std::string& path) {
+  std::error_code failed;
+  if (!fs::is_regular_file(path, failed)) {
+    return Error{
+        fmt::format("{}: {} is no file; name an OBJ file, absolute or from the folder of the scene",
+                    text.place.where, path)};
+  }
+  Result<mesh::ObjMesh> loaded = mesh::load_obj(path, text.unit_m);
+  if (!loaded) return loaded.error();
+  return std::move(loaded->mesh);
+}
+
+std::optional<Error> load_meshes(const SceneText& text, Scene& scene) {
+  scene.organ.mesh_path = absolute_path(scene.path, text.organ_mesh.file);
+  scene.tool.mesh_path = absolute_path(scene.path, text.tool_mesh.file);
+  Result<mesh::SurfaceMesh> organ = load_mesh(text.organ_mesh, scene.organ.mesh_path);
+  if (!organ) return organ.error();
+  Result<mesh::SurfaceMesh> tool = load_mesh(text.tool_mesh, scene.tool.mesh_path);
+  if (!tool) return tool.error();
+  for (Vec3& vertex_m : organ->vertex_m) vertex_m += scene.organ.position_m;
+  scene.organ_mesh = std::move(*organ);
+  scene.tool_mesh = std::move(*tool);
+  return std::nullopt;
+}
+
+bool needs_compliance(const Scene& scene) {
+  const bool varies = scene.varies_by_place && scene.law != LawKind::kSpringPatch;
+  return varies || scene.law == LawKind::kCompliance || scene.law == LawKind::kAuto;
+}
+
+/// A map is of one organ: on another mesh the law is felt as it is at every place. A map that
+/// cannot be read stays an error of the law.
+void vary_on_the_own_organ_only(Scene& scene) {
+  if (!scene.varies_by_place) return;
+  const auto map = read_compliance_map(scene.compliance.map_path);
+  if (!map || map->mesh_hash == surface_hash(scene.organ_mesh.view())) return;
+  scene.varies_by_place = false;
+  scene.note = fmt::format(
+      "{}: {} is of another organ than {}, so varies_by_place is off: every place feels as a "
+      "half-space of this tissue; make a map: tact-condense {} --out FILE",
+      scene.path, scene.compliance.map_path, scene.organ.mesh_path, scene.path);
+}
+
+/// Text, overrides, meshes and the compliance map if felt: the same hash, the same forces.
+std::string whole_hash(const std::string& text_hash, const Scene& scene) {
+  TextHash hash;
+  hash.add(text_hash);
+  for (const mesh::SurfaceMesh* mesh : {&scene.organ_mesh, &scene.tool_mesh}) {
+    const auto bytes = [&hash](const auto& list) {
+      hash.add({reinterpret_cast<const char*>(list.data()), list.size() * sizeof list[0]});
+    };
+    bytes(mesh->vertex_m);
+    bytes(mesh->triangle);
+  }
+  if (needs_compliance(scene)) hash.add(compliance_checksum(scene.compliance.map_path));
+  return hash.hex();
+}
+
+/// The reference, indented as a scene is; `margin` is that of the row before.
+std::string reference_line(const ReferenceRow& row, std::string& margin) {
+  const std::string times = row.fallback.empty() ? "" : "; " + row.fallback;
+  if (row.key.empty()) {
+    margin = "  ";
+    return fmt::format("\n{:<34} {}{}\n", row.allowed, row.meaning, times);
+  }
+  if (row.fallback.empty()) {  // the value that decides about the keys below it
+    margin = "    ";
+    return fmt::format("  {:<32} {}\n", fmt::format("{} = {}", row.key, row.allowed), row.meaning);
+  }
+  return fmt::format("{:<34} {:<29}  {:<8}  {}\n", margin + row.key, row.allowed, row.fallback,
+                     row.meaning);
+}
+
+}  // namespace
+
+Result<Scene> load_scene(const std::string& path, const std::vector<std::string>& overrides) {
+  const Result<SceneDocument> document = load_scene_document(path, overrides);
+  if (!document) return document.error();
+  SceneText text;
+  SceneVisit visit(&*document);
+  Keys::visit_root(visit, [&](Keys& root) { visit_scene(root, text); });
+  if (auto problem = visit.problem()) return *problem;
+
+  Scene& scene = text.scene;
+  scene.path = path;
+  if (!text.compliance_map.file.empty())
+    scene.compliance.map_path = absolute_path(path, text.compliance_map.file);
+  std::string& firmware = scene.device.falcon.firmware_path;
+  if (!firmware.empty()) firmware = absolute_path(path, firmware);
+  scene.hand_site_m = text.script.site_m;
+  scene.hand_inward = normalized(text.script.inward);
+  const double tool_reach_m = reach_m(scene.tool.spheres, scene.hand_inward);
+  scene.hand.path = way_points(text.script, tool_reach_m, scene.limits, visit);
+  if (auto problem = visit.problem()) return *problem;
+  if (auto failed = load_meshes(text, scene)) return *failed;
+  vary_on_the_own_organ_only(scene);
+  scene.hash = whole_hash(document->hash, scene);
+  return std::move(scene);
+}
+
+bool Scene::describes(LawKind kind) const {
+  return std::find(described.begin(), described.end(), kind) != described.end();
+}
+
+std::string scene_reference() {
+  SceneText text;
+  SceneVisit visit(nullptr);
+  Keys::visit_root(visit, [&](Keys& root) { visit_scene(root, text); });
+  std::string reference =
+      "A scene is a TOML file. Numbers are SI; a key ends in its unit. The columns are key, "
+      "allowed,\n"
+      "default or required, meaning. W: +x to the operator, +y right, +z up, origin in the "
+      "middle.\n\n";
+  std::string margin;
+  for (const ReferenceRow& row : visit.rows()) reference += reference_line(row, margin);
+  return reference;
+}
+
+}  // namespace tact::model::scene

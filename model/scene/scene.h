@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// scene.h - one TOML file says everything: organ, law, contact, tool, device, hand, limits.
+//
+// Every key carries its unit in its name. An unknown or missing key, a wrong unit or a value out of
+// range is an error with file and line that says what is allowed. Set-up code only.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/contact/contact.h"
+#include "model/contact/hand_path.h"
+#include "model/device_settings.h"
+#include "model/limits.h"
+#include "model/mesh/mesh.h"
+#include "model/result.h"
+#include "model/scene/law_settings.h"
+
+namespace tact::model::scene {
+
+struct OrganSettings {
+  std::string mesh_path;  // absolute
+  Vec3 position_m;        // of the mesh origin
+};
+
+struct ToolSettings {
+  std::string mesh_path;                      // absolute
+  std::vector<contact::ProbeSphere> spheres;  // 1 to kMaxSpheres
+  std::optional<contact::Blade> blade;
+};
+
+struct Scene {
+  std::string path;  // of the TOML file
+  std::string name;
+  double rate_Hz = 0.0;
+  LawKind law = LawKind::kRhombus;
+  std::vector<LawKind> described;  // laws that have a section
+  law::RhombusChainParameters rhombus;
+  double rhombus_area_m2 = 0.0;  // of the surface under one chain; 0: one chain under the whole tip
+  law::DiscStackParameters disc_stack;
+  law::HexSheetParameters hex_sheet;  // rings 0: as few as the tolerance allows
+  springs::SpringPatchParameters spring_patch;
+  ComplianceSettings compliance;
+  std::size_t table_knots = 65;
+  bool varies_by_place = false;  // closed-form laws are in series with [compliance]
+  std::optional<law::LinearPullParameters> pull;
+  std::vector<law::PronyTerm> relaxation;
+  std::optional<ElasticSettings> elastic;
+  std::vector<ReferenceSite> reference_sites;
+  std::optional<ToleranceSettings> tolerance;
+  contact::ContactParameters contact;
+  OrganSettings organ;
+  ToolSettings tool;
+  DeviceSettings device;
+  contact::HandSettings hand;
+  Vec3 hand_site_m;  // the point that the simulated hand touches, W
+  Vec3 hand_inward;  // its way in, unit, W
+  Limits limits;
+  double frame_rate_Hz = 0.0;
+  std::string hash;              // of text, overrides, meshes and a map that is felt, 16 hex digits
+  mesh::SurfaceMesh organ_mesh;  // in W, m
+  mesh::SurfaceMesh tool_mesh;   // tool frame, m
+  std::string note;              // for people: what of the scene is not felt, and why; or empty
+
+  /// Does the scene hold the numbers of this law?
+  bool describes(LawKind kind) const;
+};
+
+/// Read a scene and its meshes. `overrides` are "key.path=value" as TOML writes values.
+Result<Scene> load_scene(const std::string& path, const std::vector<std::string>& overrides);
+
+/// Every key with unit, range, default or "required", and meaning: a page for people.
+std::string scene_reference();
+
+}  // namespace tact::model::scene

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/scene/scene_device.h"
+
+#include <array>
+#include <cmath>
+
+namespace tact::model::scene {
+namespace {
+
+constexpr Need kOptional = Need::kOptional;
+
+/// A whole number that may be negative.
+void visit_whole(Keys& k, std::string_view key, Range range, const char* meaning, int& out) {
+  double value = out;
+  k.number(key, range, meaning, value, kOptional);
+  if (value != std::floor(value)) k.refuse({key}, std::string(key) + " takes a whole number");
+  out = static_cast<int>(value);
+}
+
+void visit_sim(Keys& k, SimDeviceSettings& sim) {
+  k.number("counts_per_turn", {100.0, 1e8}, "encoder counts of one turn of a joint",
+           sim.counts_per_turn);
+  k.number("sample_delay_s", {0.0, 0.005}, "age of a sample when the loop gets it",
+           sim.sample_delay_s);
+  k.number("joint_friction_Nm", {0.0, 1.0}, "Coulomb friction of each joint",
+           sim.joint_friction_Nm);
+  k.number("joint_damping_Nms_per_rad", {0.0, 1.0}, "viscous friction of each joint",
+           sim.joint_damping_Nms_per_rad);
+  k.number("observer_bandwidth_Hz", {1.0, 500.0}, "of the velocity observer",
+           sim.observer_bandwidth_Hz);
+}
+
+void visit_delta(Keys& k, DeltaSettings& d) {
+  k.number("base_radius_m", {0.01, 1.0}, "motor axes from the middle", d.base_radius_m, kOptional);
+  k.number("platform_radius_m", {0.0, 1.0}, "rod ends from the middle of the platform",
+           d.platform_radius_m, kOptional);
+  k.number("upper_arm_m", {0.01, 1.0}, "motor axis to elbow", d.upper_arm_m, kOptional);
+  k.number("forearm_m", {0.01, 2.0}, "elbow to platform", d.forearm_m, kOptional);
+  k.vector("azimuth_rad", {-6.3, 6.3}, "of arms 1, 2, 3 about the device's axis", d.azimuth_rad,
+           kOptional);
+  k.number("theta_min_rad", {-3.2, 3.2}, "lower stop of an arm", d.theta_min_rad, kOptional);
+  k.number("theta_max_rad", {-3.2, 3.2}, "upper stop of an arm", d.theta_max_rad, kOptional);
+  k.number("arm_kg", {0.0, 10.0}, "one upper arm", d.arm_kg, kOptional);
+  k.number("arm_com_m", {0.0, 1.0}, "its centre of mass from the motor axis", d.arm_com_m,
+           kOptional);
+  k.number("arm_inertia_kgm2", {0.0, 1.0}, "its inertia about the motor axis", d.arm_inertia_kgm2,
+           kOptional);
+  k.number("rotor_inertia_kgm2", {0.0, 0.1}, "of one motor", d.rotor_inertia_kgm2, kOptional);
+  k.number("gear_ratio", {1.0, 200.0}, "motor turns per turn of an arm", d.gear_ratio, kOptional);
+  k.number("forearm_kg", {0.0, 10.0}, "both rods of one arm", d.forearm_kg, kOptional);
+  k.number("platform_kg", {0.0, 10.0}, "platform and handle", d.platform_kg, kOptional);
+  k.number("middle_m", {0.01, 2.0}, "plane of the motors to the origin of W", d.middle_m,
+           kOptional);
+  k.number("workspace_radius_m", {0.01, 1.0}, "of the cylinder it may reach", d.workspace_radius_m,
+           kOptional);
+  k.number("workspace_half_length_m", {0.01, 1.0}, "of that cylinder", d.workspace_half_length_m,
+           kOptional);
+  k.number("max_force_N", {0.1, 100.0}, "what it can show without pause", d.max_force_N, kOptional);
+  k.number("max_joint_torque_Nm", {0.01, 100.0}, "of one arm", d.max_joint_torque_Nm, kOptional);
+  k.number("joint_friction_Nm", {0.0, 1.0}, "Coulomb friction of an arm", d.joint_friction_Nm,
+           kOptional);
+  k.number("joint_damping_Nms_per_rad", {0.0, 1.0}, "viscous friction of an arm",
+           d.joint_damping_Nms_per_rad, kOptional);
+  k.number("counts_per_turn", {100.0, 1e8}, "encoder counts of one turn of an arm",
+           d.counts_per_turn, kOptional);
+  k.number("observer_bandwidth_Hz", {1.0, 500.0}, "of the velocity observer",
+           d.observer_bandwidth_Hz, kOptional);
+}
+
+void visit_nodes(Keys& k, CanSettings& can) {
+  Vec3 node{static_cast<double>(can.node[0]), static_cast<double>(can.node[1]),
+            static_cast<double>(can.node[2])};
+  k.vector("node", {0.0, 127.0}, "of the drives of arms 1, 2, 3", node, kOptional);
+  can.node = {static_cast<int>(node.x), static_cast<int>(node.y), static_cast<int>(node.z)};
+  const bool whole =
+      node.x == std::floor(node.x) && node.y == std::floor(node.y) && node.z == std::floor(node.z);
+  if (!whole || node.x == node.y || node.y == node.z || node.z == node.x)
+    k.refuse({"node"}, "device.can.node needs three different whole numbers, as [1, 2, 3]");
+}
+
+void visit_can(Keys& k, CanSettings& can) {
+  constexpr std::array kHoming{Choice{"absolute", "absolute encoders, zero_turns holds for good"},
+                               Choice{"index", "the drives look for the index pulse at start"},
+                               Choice{"jig", "the arms rest at home_rad when tactd starts"}};
+  k.text("interface", "of the bus, as ip link shows it", can.interface, kOptional);
+  visit_nodes(k, can);
+  auto homing = static_cast<std::size_t>(can.homing);
+  k.choice("homing", kHoming, "how the arms' angles are known", homing, kOptional);
+  can.homing = static_cast<Homing>(homing);
+  k.vector("zero_turns", {-1e6, 1e6}, "of the motors, where the arms are at 0 rad", can.zero_turns,
+           kOptional);
+  k.vector("direction", {-1.0, 1.0}, "1 or -1: sign of a motor's turn for a rising arm",
+           can.direction, kOptional);
+  for (const double sign : {can.direction.x, can.direction.y, can.direction.z})
+    if (std::abs(sign) != 1.0)
+      k.refuse({"direction"}, "device.can.direction takes 1 or -1 for each arm");
+  k.vector("home_rad", {-3.2, 3.2}, "of the arms on the jig", can.home_rad, kOptional);
+  k.number("max_velocity_turns_per_s", {0.0, 1000.0}, "of an ODrive's motor; 0: the drive's own",
+           can.max_velocity_turns_per_s, kOptional);
+  k.number("max_current_A", {0.0, 200.0}, "of an ODrive's motor; 0: the drive's own",
+           can.max_current_A, kOptional);
+  if ((can.max_velocity_turns_per_s == 0.0) != (can.max_current_A == 0.0))
+    k.refuse({"max_velocity_turns_per_s", "max_current_A"},
+             "device.can needs both max_velocity_turns_per_s and max_current_A, or none: an ODrive "
+             "takes them in one message");
+  k.flag("short_torque", "ODrive: torque in 4 bytes, 32 us less on the bus", can.short_torque,
+         kOptional);
+  k.number("counts_per_motor_turn", {100.0, 1e8}, "increments of a CiA 402 drive",
+           can.counts_per_motor_turn, kOptional);
+  k.flag("command_at_sync", "CiA 402: torque waits for SYNC, if the drive insists",
+         can.command_at_sync, kOptional);
+}
+
+void visit_falcon(Keys& k, FalconSettings& f) {
+  constexpr std::array kTransports{Choice{"usbfs", "the kernel's own requests, none allocated"},
+                                   Choice{"libusb", "the library's transfers, in its thread"}};
+  auto transport = static_cast<std::size_t>(f.transport);
+  k.choice("transport", kTransports, "who carries the packets", transport, kOptional);
+  f.transport = static_cast<UsbTransport>(transport);
+  k.text("bus_path", "which one, as 1-2.3; empty: the only one", f.bus_path, kOptional);
+  k.text("firmware", "file of the firmware that you own; empty: it runs already", f.firmware_path,
+         kOptional);
+  k.text("firmware_sha256", "its digest; empty: only images that are known", f.firmware_sha256,
+         kOptional);
+  k.flag("event_character", "answers without the USB chip's 1 ms timer", f.event_character,
+         kOptional);
+  k.flag("keep_homing", "the homing request stays set while it runs", f.keep_homing, kOptional);
+  k.vector("gain_words_per_Nm", {100.0, 1e6}, "of axis 1, 2, 3, by tact-calibrate",
+           f.gain_words_per_Nm, kOptional);
+  k.vector("dead_band_words", {0.0, 1000.0}, "before an axis moves, by tact-calibrate",
+           f.dead_band_words, kOptional);
+  k.number("moving_mass_kg", {0.0, 1.0}, "at the grip, held up by the motors, by tact-calibrate",
+           f.moving_mass_kg, kOptional);
+  k.number("observer_bandwidth_Hz", {1.0, 500.0}, "of the velocity observer",
+           f.observer_bandwidth_Hz, kOptional);
+  k.number("joint_friction_Nm", {0.0, 1.0}, "Coulomb friction of a thigh", f.joint_friction_Nm,
+           kOptional);
+  k.number("joint_damping_Nms_per_rad", {0.0, 1.0}, "viscous friction of a thigh",
+           f.joint_damping_Nms_per_rad, kOptional);
+}
+
+void visit_force_dimension(Keys& k, ForceDimensionSettings& f) {
+  k.text("library", "the maker's, by name or path", f.library, kOptional);
+  visit_whole(k, "id", {-1.0, 15.0}, "of the device, -1: the only one", f.id);
+  k.number("watchdog_s", {0.001, 0.0318}, "without a force for so long the device lets go",
+           f.watchdog_s, kOptional);
+  k.number("effector_mass_kg", {0.0, 5.0}, "0: the maker's value", f.effector_mass_kg, kOptional);
+  k.number("damping_Ns_per_m", {0.0, 50.0}, "that the device has at the handle", f.damping_Ns_per_m,
+           kOptional);
+}
+
+void visit_line(Keys& k, std::string_view key, const char* meaning, int& offset) {
+  visit_whole(k, key, {-1.0, 511.0}, meaning, offset);
+}
+
+void visit_lines(Keys& k, LinesSettings& lines) {
+  k.text("chip", "label of the GPIO chip, as gpiodetect shows it, or its path", lines.chip,
+         kOptional);
+  visit_line(k, "estop_a", "in, high = good, channel A of the e-stop; -1: none", lines.estop_a);
+  visit_line(k, "estop_b", "in, high = good, channel B", lines.estop_b);
+  visit_line(k, "dead_man", "in, high = held", lines.dead_man);
+  visit_line(k, "enable", "out, high = the drives may have power", lines.enable);
+  visit_line(k, "heartbeat", "out, toggles after every healthy tick", lines.heartbeat);
+  visit_line(k, "led", "out, high = armed", lines.led);
+  visit_line(k, "scope", "out, high from wake to write", lines.scope);
+  if ((lines.estop_a < 0) != (lines.estop_b < 0))
+    k.refuse({"estop_a", "estop_b"},
+             "device.lines needs both channels of the e-stop, estop_a and estop_b, or none");
+}
+
+}  // namespace
+
+void visit_device(Keys& k, DeviceSettings& out) {
+  k.text("kind", "sim-delta is the simulated device; tactd --list-devices", out.kind);
+  const bool simulated = out.kind.empty() || out.kind == "sim-delta";
+  k.section(
+      "sim", "imperfections of the simulated device", [&](Keys& sim) { visit_sim(sim, out.sim); },
+      simulated ? Need::kRequired : kOptional);
+  k.section(
+      "delta", "a delta on CAN", [&](Keys& delta) { visit_delta(delta, out.delta); }, kOptional);
+  k.section(
+      "can", "its drives, can-odrive or can-cia402", [&](Keys& can) { visit_can(can, out.can); },
+      kOptional);
+  k.section(
+      "falcon", "a Novint Falcon", [&](Keys& falcon) { visit_falcon(falcon, out.falcon); },
+      kOptional);
+  k.section(
+      "force_dimension", "a device with the maker's library",
+      [&](Keys& keys) { visit_force_dimension(keys, out.force_dimension); }, kOptional);
+  k.section(
+      "lines", "safety lines", [&](Keys& lines) { visit_lines(lines, out.lines); }, kOptional);
+}
+
+}  // namespace tact::model::scene

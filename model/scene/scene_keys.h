@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// scene_keys.h - the format of a scene: scene_keys.cc states every key once.
+//
+// To add a key, add one line there: its name ending in its unit, the allowed range, what it means
+// and the variable it fills. The reader, its errors and the reference page follow from that line;
+// a test asks for the key in liver.toml. Ranges keep out slips of the pen; what a law itself can
+// bear is checked where the law is made. Set-up code only.
+#pragma once
+
+#include <string>
+
+#include "model/scene/scene.h"
+#include "model/scene/scene_reader.h"
+#include "model/scene/scene_strokes.h"
+
+namespace tact::model::scene {
+
+/// A mesh as the scene names it.
+struct MeshText {
+  std::string file;  // relative to the scene file
+  double unit_m = 0.001;
+  TextPlace place;
+};
+
+/// Another file as the scene names it.
+struct FileText {
+  std::string file;  // relative to the scene file
+  TextPlace place;
+};
+
+/// A scene before its meshes are read and its strokes become way points.
+struct SceneText {
+  Scene scene;
+  MeshText organ_mesh;
+  MeshText tool_mesh;
+  FileText compliance_map;
+  HandScript script;
+};
+
+/// Reads every key into `out`, or describes them all.
+void visit_scene(Keys& root, SceneText& out);
+
+}  // namespace tact::model::scene

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/scene/scene_laws.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "model/law/hermite_table.h"
+
+namespace tact::model::scene {
+namespace {
+
+constexpr std::size_t kFewestKnots = 17;
+constexpr std::size_t kMostUnits = 31;  // one ring each, as many as the viewer shows
+constexpr std::size_t kMostSites = 64;
+constexpr std::size_t kMostVertices = 100'000'000;
+constexpr Range kDepth_m{1e-4, 0.1};
+
+constexpr std::array<Choice, kLawNames.size()> law_choices() {
+  std::array<Choice, kLawNames.size()> out{};
+  std::transform(kLawNames.begin(), kLawNames.end(), out.begin(),
+                 [](const LawName& law) { return Choice{law.name, law.meaning}; });
+  return out;
+}
+constexpr auto kLaws = law_choices();
+
+void visit_rhombus(Keys& k, Scene& scene) {
+  law::RhombusChainParameters& p = scene.rhombus;
+  k.number("rod_length_m", {1e-4, 0.1}, "length a of each rod", p.rod_length_m);
+  k.number("initial_angle_rad", {0.05, 1.5}, "angle of the rods to the surface at rest",
+           p.initial_angle_rad);
+  k.number("normal_stiffness_N_per_m", {0.01, 1e5}, "kN, along the normal",
+           p.normal_stiffness_N_per_m);
+  k.number("tangential_stiffness_N_per_m", {0.0, 1e5}, "kT of the first unit, along the surface",
+           p.tangential_stiffness_N_per_m);
+  k.number("growth", {0.1, 100.0}, "beta: unit i has kT exp((i - 1) / beta)", p.growth);
+  k.count("units", {1, kMostUnits}, "rhombus units in series", p.units);
+  k.number("area_m2", {0.0, 0.01},
+           "of the surface under one chain; 0: one chain under the whole tip",
+           scene.rhombus_area_m2, Need::kOptional);
+}
+
+constexpr std::array kDiscForms{
+    Choice{"almen-laszlo", "the disc as it is: stiffness jumps at every layer"},
+    Choice{"linear", "its secant: one linear spring"},
+};
+constexpr std::array kFormOf{law::DiscForm::kAlmenLaszlo, law::DiscForm::kLinear};
+static_assert(kDiscForms.size() == kFormOf.size());
+
+void visit_disc_stack(Keys& k, Scene& scene) {
+  law::DiscStackParameters& p = scene.disc_stack;
+  std::size_t form = 0;
+  k.choice("form", kDiscForms, "almen-laszlo: stiffness jumps at each layer; linear: one spring",
+           form);
+  p.form = kFormOf[form];
+  k.number("outer_diameter_m", {1e-6, 0.1}, "D of a disc", p.disc.outer_diameter_m);
+  k.number("inner_diameter_m", {1e-6, 0.1}, "d of a disc", p.disc.inner_diameter_m);
+  k.number("thickness_m", {1e-7, 0.1}, "l of a disc", p.disc.thickness_m);
+  k.number("free_height_m", {1e-7, 0.1}, "H0 of a disc, above its thickness", p.disc.free_height_m);
+  k.number("youngs_modulus_Pa", {1.0, 1e13}, "E of a disc", p.disc.youngs_modulus_Pa);
+  k.number("poisson_ratio", {0.0, 0.495}, "mu of a disc", p.disc.poisson_ratio);
+  k.number("first_delay_s", {1e-9, 1.0}, "t1: layer i is late by t1 q^(i-1)",
+           p.delays.first_delay_s);
+  k.number("delay_growth_ratio", {0.1, 100.0}, "q", p.delays.delay_ratio);
+  k.number("refresh_rate_Hz", {1.0, 1e5}, "no layer moves later than its period",
+           p.delays.refresh_rate_Hz);
+  k.count("layers", {1, kMostUnits}, "discs at most", p.delays.layers);
+}
+
+constexpr std::array kHexWeights{
+    Choice{"node", "a body spring per node: an elastic foundation"},
+    Choice{"ring", "a body spring per ring"},
+};
+constexpr std::array kWeightOf{law::HexWeight::kNode, law::HexWeight::kRing};
+static_assert(kHexWeights.size() == kWeightOf.size());
+
+void visit_hex_sheet(Keys& k, Scene& scene) {
+  law::HexSheetParameters& p = scene.hex_sheet;
+  std::size_t weight = 0;
+  k.choice("weight", kHexWeights, "body springs: one per node, or one per ring", weight);
+  p.weight = kWeightOf[weight];
+  k.number("ring_pitch_m", {1e-4, 0.05}, "r, length of a surface spring", p.ring_pitch_m);
+  k.number("contact_stiffness_N_per_m", {0.0, 1e5}, "K_N0, body spring at the contact",
+           p.contact_stiffness_N_per_m);
+  k.number("body_stiffness_N_per_m", {0.01, 1e5}, "K_N, the other body springs",
+           p.body_stiffness_N_per_m);
+  k.number("surface_stiffness_N_per_m", {0.0, 1e6}, "K_T, springs along the surface",
+           p.surface_stiffness_N_per_m);
+  k.number("tension_N", {0.0, 100.0}, "T0, of the surface springs at rest", p.tension_N);
+  k.number("working_depth_m", kDepth_m, "press and pull up to here", p.working_depth_m);
+  k.count("rings", {0, law::kMaxHexRings}, "m; 0: the fewest that meet [tolerance]", p.rings,
+          Need::kOptional);
+}
+
+constexpr std::array kIntegrators{
+    Choice{"explicit-euler", "grows without damping; for comparison"},
+    Choice{"improved-euler", "semi-implicit: one evaluation, stable to 2 / omega undamped"},
+    Choice{"midpoint-averaging", "two evaluations, second order at alpha 1/2"},
+    Choice{"rk2", "two evaluations, grows without damping"},
+    Choice{"rk4", "four evaluations, fourth order"},
+    Choice{"implicit-euler", "stable at every step, damps; a fixed number of iterations"},
+};
+static_assert(std::ranges::equal(kIntegrators, springs::kIntegratorNames, {}, &Choice::name,
+                                 &springs::IntegratorName::name));
+
+void visit_spring_patch(Keys& k, Scene& scene) {
+  springs::SpringPatchParameters& p = scene.spring_patch;
+  k.number("surface_stiffness_N_per_m", {0.01, 1e5}, "of a spring along an edge of the mesh",
+           p.tissue.surface_stiffness_N_per_m);
+  k.number("body_stiffness_N_per_m", {0.001, 1e5}, "from a vertex to its place at rest",
+           p.tissue.body_stiffness_N_per_m);
+  k.number("damping_time_s", {0.0, 1.0}, "tau: a surface spring k has the damping tau k",
+           p.tissue.damping_time_s);
+  k.number("body_damping_time_s", {0.0, 1.0}, "the same for the body springs",
+           p.tissue.body_damping_time_s);
+  k.number("pretension_ratio", {0.0, 0.5}, "stretch of the edges at rest: opens a cut",
+           p.tissue.pretension_ratio);
+  k.number("coupling_stiffness_N_per_m", {0.01, 1e5}, "of the spring between tool and vertices",
+           p.coupling_stiffness_N_per_m);
+  k.number("node_mass_kg", {1e-7, 1.0}, "of a vertex", p.node_mass_kg);
+  k.number("working_depth_m", kDepth_m, "press and pull up to here", p.working_depth_m);
+  k.count("nodes", {16, springs::kMaxPatchNodes}, "vertices that move, nearest the contact",
+          p.nodes);
+  std::size_t integrator = static_cast<std::size_t>(p.method.integrator);
+  k.choice("integrator", kIntegrators, "how a tick is stepped", integrator);
+  p.method.integrator = springs::kIntegratorNames[integrator].integrator;
+  k.number("alpha_ratio", {0.1, 1.0}, "of midpoint-averaging; 0.375 makes energy", p.method.alpha,
+           Need::kOptional);
+  std::size_t iterations = static_cast<std::size_t>(p.iterations);
+  k.count("iterations", {1, 100}, "of implicit-euler", iterations, Need::kOptional);
+  p.iterations = static_cast<int>(iterations);
+  std::size_t substeps = static_cast<std::size_t>(p.substeps);
+  k.count("substeps", {1, 16}, "of a tick", substeps, Need::kOptional);
+  p.substeps = static_cast<int>(substeps);
+}
+
+void visit_compliance(Keys& k, SceneText& out) {
+  ComplianceSettings& c = out.scene.compliance;
+  out.compliance_map.place = k.place_of("map");
+  k.text("map", "file of tact-condense, absolute or from the folder of the scene",
+         out.compliance_map.file);
+  k.number("working_depth_m", kDepth_m, "press and pull up to here", c.working_depth_m);
+  k.count("curves", {2, 65}, "of the family, soft to stiff", c.curves, Need::kOptional);
+  k.flag("large_strain", "under the tip; false: small strain, as a linear reference",
+         c.large_strain, Need::kOptional);
+}
+
+}  // namespace
+
+void visit_laws(Keys& k, SceneText& out) {
+  Scene& scene = out.scene;
+  std::size_t law = 0;
+  k.count("table_knots", {kFewestKnots, law::kMaxKnots}, "of the loop's look-up table, each side",
+          scene.table_knots, Need::kOptional);
+  k.flag("varies_by_place", "rhombus, disc_stack, hex_sheet are in series with [compliance]",
+         scene.varies_by_place, Need::kOptional);
+  k.choice("law", kLaws, "of the tissue", law);
+  scene.law = kLawNames[law].kind;
+  const auto section = [&](LawKind kind, std::string_view meaning, const Keys::Inside& inside) {
+    if (k.section(name_of(kind), meaning, inside, Need::kOptional)) scene.described.push_back(kind);
+  };
+  section(LawKind::kRhombus, "chain of rhombus units under the touched point",
+          [&](Keys& rhombus) { visit_rhombus(rhombus, scene); });
+  section(LawKind::kDiscStack, "coned discs under the touched point, flat one after the other",
+          [&](Keys& discs) { visit_disc_stack(discs, scene); });
+  section(LawKind::kHexSheet, "a skin of hexagonal rings on body springs",
+          [&](Keys& sheet) { visit_hex_sheet(sheet, scene); });
+  section(LawKind::kSpringPatch, "masses and springs on the organ's mesh near the contact",
+          [&](Keys& patch) { visit_spring_patch(patch, scene); });
+  section(LawKind::kCompliance, "the elastic organ of [elastic], condensed to its surface",
+          [&](Keys& compliance) { visit_compliance(compliance, out); });
+
+  if (scene.varies_by_place && !scene.describes(LawKind::kCompliance))
+    k.refuse({"varies_by_place"},
+             "varies_by_place = true needs a section [compliance]; write it or leave the key out");
+  if (scene.law == LawKind::kAuto || scene.describes(scene.law)) return;
+  k.refuse({"law"}, fmt::format("law = \"{}\" has no section [{}]; write it or choose another law",
+                                name_of(scene.law), name_of(scene.law)));
+}
+
+void visit_law_options(Keys& k, Scene& scene) {
+  law::LinearPullParameters pull;
+  const auto visit_pull = [&](Keys& keys) {
+    keys.number("stiffness_N_per_m", {0.01, 1e5}, "of a held site pulled outward",
+                pull.stiffness_N_per_m);
+    keys.number("limit_m", kDepth_m, "beyond it the force stays", pull.limit_m);
+  };
+  if (k.section("pull",
+                "held sites pull on this spring; compliance and spring_patch keep their own pull",
+                visit_pull, Need::kOptional)) {
+    scene.pull = pull;
+  }
+  k.entries("relaxation", {0, law::kMaxPronyTerms}, "a Prony term: force that fades at held depth",
+            [&](Keys& keys) {
+              law::PronyTerm& term = scene.relaxation.emplace_back();
+              keys.number("share_ratio", {1e-6, 1.0}, "of the force at once", term.share);
+              keys.number("time_s", {1e-4, 1e5}, "in which it fades to 1/e", term.time_s);
+            });
+}
+
+void visit_truth(Keys& k, Scene& scene) {
+  ElasticSettings elastic;
+  const auto visit_elastic = [&](Keys& keys) {
+    keys.number("youngs_modulus_Pa", {1.0, 1e9}, "E", elastic.youngs_modulus_Pa);
+    keys.number("poisson_ratio", {0.0, 0.495}, "nu", elastic.poisson_ratio);
+    keys.vector("fixed_min_m", {-1.0, 1.0}, "low corner of the box whose triangles are held",
+                elastic.fixed_min_m);
+    keys.vector("fixed_max_m", {-1.0, 1.0}, "high corner; both in the mesh's own frame",
+                elastic.fixed_max_m);
+  };
+  if (k.section("elastic", "the organ as a linear elastic body, for tact-reference and compliance",
+                visit_elastic, Need::kOptional)) {
+    scene.elastic = elastic;
+  }
+  k.entries("reference_site", {0, kMostSites}, "a vertex where tact-reference solves",
+            [&](Keys& keys) {
+              ReferenceSite& site = scene.reference_sites.emplace_back();
+              keys.count("vertex", {0, kMostVertices}, "of the organ's mesh, from 0", site.vertex);
+              keys.flag("held_out", "not used by tact-fit, only to judge", site.held_out);
+            });
+  ToleranceSettings tolerance;
+  const auto visit_tolerance = [&](Keys& keys) {
+    keys.number("force_error_ratio", {0.001, 10.0}, "RMS error of the force over its peak",
+                tolerance.force_error_ratio);
+    keys.number("shape_error_ratio", {0.001, 10.0}, "RMS error of the shape over the depth",
+                tolerance.shape_error_ratio);
+    keys.number("tick_budget_us", {0.1, 1e4}, "of the law, p99.9; non-rt: median",
+                tolerance.tick_budget_us);
+  };
+  if (k.section("tolerance", "what is good enough: tact-plan chooses by it", visit_tolerance,
+                Need::kOptional)) {
+    scene.tolerance = tolerance;
+  }
+}
+
+}  // namespace tact::model::scene

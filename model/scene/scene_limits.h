@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// scene_limits.h - the keys of [limits]: what the gate lets through, and which limits fit together.
+// Set-up code.
+#pragma once
+
+#include "model/scene/scene.h"
+#include "model/scene/scene_reader.h"
+
+namespace tact::model::scene {
+
+void visit_limits(Keys& k, double rate_Hz, Limits& limits);
+
+}  // namespace tact::model::scene

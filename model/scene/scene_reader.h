@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// scene_reader.h - one statement per key: name with its unit, range, meaning, and where it goes.
+//
+// A scene is described by functions that visit its keys through Keys. The same visit serves twice:
+// reading, it takes values from a document and notes every problem; describing, it has no document
+// and notes one row of the reference per key. What a visit of a section did not name is unknown.
+// Of all problems one is told: wrong values before missing keys before keys that contradict each
+// other, in the order of the file, overrides first. Set-up code only.
+#pragma once
+
+#include <functional>
+#include <initializer_list>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/result.h"
+#include "model/scene/scene_document.h"
+#include "model/scene/scene_values.h"
+#include "model/types.h"
+
+namespace tact::model::scene {
+
+/// One of the texts that a key may have.
+struct Choice {
+  std::string_view name, meaning;
+};
+
+/// An optional key that is absent leaves its variable as it was: that is the default.
+enum class Need { kRequired, kOptional };
+
+/// One line of the reference; a heading has no key.
+struct ReferenceRow {
+  std::string section, key, allowed, fallback, meaning;
+};
+
+enum class ProblemKind { kWrong, kMissing, kConflict };
+
+/// What one visit found.
+class SceneVisit {
+ public:
+  /// Without a document the visit describes.
+  explicit SceneVisit(const SceneDocument* document) : document_(document) {}
+
+  const SceneDocument* document() const { return document_; }
+  const std::vector<ReferenceRow>& rows() const { return rows_; }
+  void add(ReferenceRow row) { rows_.push_back(std::move(row)); }
+  void note(ProblemKind kind, const TextPlace& place, const std::string& sentence);
+  /// The problem to tell, if there is one.
+  std::optional<Error> problem() const;
+
+ private:
+  struct Problem {
+    ProblemKind kind;
+    std::uint32_t line;
+    std::string sentence;
+  };
+  const SceneDocument* document_;
+  std::vector<ReferenceRow> rows_;
+  std::vector<Problem> problems_;
+};
+
+/// The keys of one section, while it is being visited.
+class Keys {
+ public:
+  using Inside = std::function<void(Keys&)>;
+
+  /// Visits the whole document, or describes it.
+  static void visit_root(SceneVisit& visit, const Inside& inside);
+
+  void text(std::string_view key, std::string_view meaning, std::string& out,
+            Need need = Need::kRequired);
+  void flag(std::string_view key, std::string_view meaning, bool& out, Need need = Need::kRequired);
+  void number(std::string_view key, Range range, std::string_view meaning, double& out,
+              Need need = Need::kRequired);
+  void count(std::string_view key, CountRange range, std::string_view meaning, std::size_t& out,
+             Need need = Need::kRequired);
+  void vector(std::string_view key, Range each, std::string_view meaning, Vec3& out,
+              Need need = Need::kRequired);
+  /// `out` becomes the index of the choice. Many choices get a row each in the reference.
+  void choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning,
+              std::size_t& out, Need need = Need::kRequired);
+
+  /// [key]; true when it is there.
+  bool section(std::string_view key, std::string_view meaning, const Inside& inside,
+               Need need = Need::kRequired);
+  /// [[key]], visited once for each entry.
+  void entries(std::string_view key, CountRange range, std::string_view meaning,
+               const Inside& inside);
+  /// The value of `key` decides which further keys the section has; describing visits them all.
+  void one_of(std::string_view key, std::span<const Choice> choices,
+              const std::function<void(std::size_t)>& further);
+
+  /// Where a key stands, or else its section.
+  TextPlace place_of(std::string_view key) const;
+  /// These keys contradict each other; told at the overridden one, or else at the first.
+  void refuse(std::initializer_list<std::string_view> keys, const std::string& sentence);
+
+ private:
+  struct Known {
+    std::string_view key;
+    std::string allowed;
+  };
+
+  Keys(SceneVisit& visit, const toml::table* table, std::string path)
+      : visit_(visit), table_(table), path_(std::move(path)) {}
+
+  const toml::node* take(std::string_view key, std::string allowed, std::string_view meaning,
+                         std::string fallback = {});
+  std::optional<std::size_t> match(std::string_view key, std::span<const Choice> choices,
+                                   const toml::node& node);
+  void describe(std::string_view key, std::span<const Choice> choices);
+  template <typename T>
+  void store(const toml::node& node, std::string_view key, Result<T> value, T& out);
+  void judge(const toml::node& node, std::string_view key, std::string_view problem);
+  void finish();
+  std::string unknown_sentence(std::string_view key) const;
+  std::string path_to(std::string_view key) const;
+
+  SceneVisit& visit_;
+  const toml::table* table_;  // null: describing
+  std::string path_;          // "hand.stroke.2", "" of the root
+  std::vector<Known> known_;
+  bool all_named_ = true;  // false: which keys are allowed could not be decided
+};
+
+}  // namespace tact::model::scene

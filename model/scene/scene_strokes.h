@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// scene_strokes.h - what the simulated hand does, stroke by stroke, and the way points it becomes.
+//
+//     p(d) = site + slid - inward (reach - d),   reach = max_i (offset_i . inward + radius_i)
+//
+//     p       where the hand wants the tool's origin, W
+//     d       how deep the lowest probe sphere would be, m; at d = 0 it just touches the site
+//     inward  unit direction into the tissue, W;  slid: sum of the slides since the last release
+//
+// The hand holds the tool by a spring: what it reaches is less than what it wants. Set-up code
+// only.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/contact/contact.h"
+#include "model/contact/hand_path.h"
+#include "model/limits.h"
+#include "model/scene/scene_reader.h"
+
+namespace tact::model::scene {
+
+enum class Action { kPress, kHold, kSlide, kRelease, kGrip, kPull, kTear };
+
+struct Stroke {
+  Action action = Action::kHold;
+  double duration_s = 0.0;
+  double depth_m = 0.0;   // press
+  double height_m = 0.0;  // pull, tear
+  Vec3 offset_m{};        // slide
+  TextPlace place{};      // in the scene file
+};
+
+struct HandScript {
+  Vec3 home_m;
+  Vec3 site_m;
+  Vec3 inward;  // any length but zero
+  bool repeat = false;
+  std::vector<Stroke> strokes;
+  TextPlace home_place;  // in the scene file
+};
+
+/// The keys of one [[hand.stroke]].
+void visit_stroke(Keys& keys, Stroke& stroke);
+
+/// How far the tool stands out from its origin along a unit direction, m.
+double reach_m(std::span<const contact::ProbeSphere> spheres, const Vec3& inward);
+
+/// From home through every stroke. Home and the end of each stroke lie inside the workspace, a pull
+/// follows a grip, and a script that repeats ends at home; otherwise a conflict is noted.
+std::vector<contact::HandWaypoint> way_points(const HandScript& script, double reach_m,
+                                              const Limits& limits, SceneVisit& visit);
+
+}  // namespace tact::model::scene

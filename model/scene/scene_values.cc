@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/scene/scene_values.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "model/scene/scene_words.h"
+
+namespace tact::model::scene {
+
+std::string_view type_name(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::table:
+      return "a section";
+    case toml::node_type::array:
+      return "an array";
+    case toml::node_type::string:
+      return "text";
+    case toml::node_type::integer:
+    case toml::node_type::floating_point:
+      return "a number";
+    case toml::node_type::boolean:
+      return "true or false";
+    default:
+      return "a date or time";
+  }
+}
+
+std::string range_text(Range range, std::string_view key) {
+  const std::string_view unit = unit_of_key(key);
+  return fmt::format("{} .. {}{}{}", range.low, range.high, unit.empty() ? "" : " ", unit);
+}
+
+std::string range_text(CountRange range) {
+  return fmt::format("{} .. {}, whole", range.low, range.high);
+}
+
+Result<double> as_number(const toml::node& node, Range range) {
+  if (!node.is_number()) return Error{fmt::format("is {}, not a number", type_name(node))};
+  const double given = node.is_integer() ? static_cast<double>(node.as_integer()->get())
+                                         : node.as_floating_point()->get();
+  if (!std::isfinite(given)) return Error{fmt::format("= {} is not finite", given)};
+  if (given < range.low || given > range.high)
+    return Error{fmt::format("= {} is out of range", given)};
+  return given;
+}
+
+Result<std::size_t> as_count(const toml::node& node, CountRange range) {
+  const Range bounds{static_cast<double>(range.low), static_cast<double>(range.high)};
+  const Result<double> given = as_number(node, bounds);
+  if (!given) return given.error();
+  if (!node.is_integer()) return Error{fmt::format("= {} is written with a fraction", *given)};
+  return static_cast<std::size_t>(*given);
+}
+
+Result<Vec3> as_vector(const toml::node& node, Range each) {
+  const toml::array* array = node.as_array();
+  if (!array) return Error{fmt::format("is {}, not three numbers", type_name(node))};
+  if (array->size() != 3) return Error{fmt::format("has {} elements, not three", array->size())};
+  Vec3 value;
+  std::size_t index = 0;
+  for (double* component : {&value.x, &value.y, &value.z}) {
+    const Result<double> given = as_number(*array->get(index), each);
+    if (!given) return Error{fmt::format("{} {}", "xyz"[index], given.error().sentence)};
+    *component = *given;
+    ++index;
+  }
+  return value;
+}
+
+Result<std::string> as_text(const toml::node& node) {
+  const toml::value<std::string>* text = node.as_string();
+  if (!text) return Error{fmt::format("is {}, not text", type_name(node))};
+  if (text->get().empty()) return Error{"is empty"};
+  for (const char c : text->get())
+    if (is_control(c)) return Error{"has a control character"};
+  return text->get();
+}
+
+Result<bool> as_flag(const toml::node& node) {
+  if (!node.is_boolean()) return Error{fmt::format("is {}, not true or false", type_name(node))};
+  return node.as_boolean()->get();
+}
+
+}  // namespace tact::model::scene

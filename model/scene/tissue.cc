@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/scene/tissue.h"
+
+#include <algorithm>
+
+namespace tact::model::scene {
+
+Result<std::unique_ptr<Tissue>> make_tissue(const Scene& scene) {
+  auto law = make_tissue_law(scene, scene.law);
+  if (!law) return law.error();
+  const double pull_limit_N = (*law)->pull_limit_N();
+  if (pull_limit_N > 0.0 && !(scene.contact.tear_force_N < pull_limit_N))
+    return Error{scene.path +
+                 ": contact.tear_force_N = " + std::to_string(scene.contact.tear_force_N) +
+                 " is never reached: the law pulls with " + std::to_string(pull_limit_N) +
+                 " N at most; allowed: less than that"};
+
+  const std::vector<std::uint32_t>& fans = scene.organ_mesh.fan_start;
+  for (std::size_t v = 0; v + 1 < fans.size(); ++v)
+    if (fans[v + 1] - fans[v] > contact::kMaxFan)
+      return Error{scene.organ.mesh_path + ": " + std::to_string(fans[v + 1] - fans[v]) +
+                   " triangles meet in one vertex; allowed: " + std::to_string(contact::kMaxFan) +
+                   ", remesh it there"};
+
+  std::unique_ptr<Tissue> tissue(new Tissue(std::move(*law)));
+  double reach_m = 0.0;
+  for (const contact::ProbeSphere& sphere : scene.tool.spheres)
+    reach_m = std::max(reach_m, 2.0 * sphere.radius_m);
+  tissue->seeds_ = make_seed_grid(scene.organ_mesh.view(), reach_m);
+  tissue->contact_ = {.law = &tissue->law_->site_law(),
+                      .parameters = scene.contact,
+                      .spheres = scene.tool.spheres,
+                      .surface = scene.organ_mesh.view(),
+                      .seeds = tissue->seeds_.view(),
+                      .blade = scene.tool.blade};
+  return tissue;
+}
+
+}  // namespace tact::model::scene

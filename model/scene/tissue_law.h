@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// tissue_law.h - a scene's law made ready to touch: the one owner of curves, tables and memory.
+//
+// Set-up code; what it hands out (SiteLaw) is what the loop calls.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/contact/site_law.h"
+#include "model/result.h"
+#include "model/scene/scene.h"
+
+namespace tact::model::scene {
+
+class TissueLaw {
+ public:
+  contact::SiteLaw& site_law() const { return *site_law_; }
+  /// The closed-form law felt where nothing varies, or in the middle of a family; null if stepped.
+  const law::Law* curve() const { return curves_.empty() ? nullptr : curves_[curves_.size() / 2]; }
+  /// Working range of curve(), less near the held side; of a stepped law, what its parameters say.
+  law::LawRange range() const { return range_; }
+  /// Largest pull it can give, at its stiffest place, N; 0: it cannot pull, or its parameters do
+  /// not tell.
+  double pull_limit_N() const { return pull_limit_N_; }
+  /// Largest dF/dd inside the range and short of the tear force, N/m: what device and rate must be
+  /// able to render.
+  double stiffness_N_per_m() const {  // NaN stays NaN
+    return pull_is_stiffer() ? pull_stiffness_N_per_m_ : press_stiffness_N_per_m_;
+  }
+  /// The stiffest slope is one of pull, where [pull] or the law itself makes it.
+  bool pull_is_stiffer() const {
+    return pull_stiffness_N_per_m_ > press_stiffness_N_per_m_ ||
+           std::isnan(pull_stiffness_N_per_m_);
+  }
+  /// Bytes that the loop may touch.
+  std::size_t memory_bytes() const { return memory_bytes_; }
+  /// For people.
+  const std::string& title() const { return title_; }
+
+ private:
+  friend class TissueLawBuilder;
+
+  std::vector<std::unique_ptr<law::Law>> owned_;  // direct laws first, then what stands on them
+  std::vector<const law::Law*> curves_;           // what the field reads
+  std::vector<float> press_coordinate_;           // of each vertex in the family; empty: one curve
+  std::vector<float> pull_coordinate_;
+  std::vector<float> rings_times_E_per_m_;  // what its sites are to each other
+  std::unique_ptr<contact::SiteLaw> site_law_;
+  law::LawRange range_;
+  double pull_limit_N_ = 0.0;
+  double press_stiffness_N_per_m_ = 0.0, pull_stiffness_N_per_m_ = 0.0;
+  std::size_t memory_bytes_ = 0;
+  std::string title_;
+};
+
+/// `kind` with the scene's numbers, whatever law the scene itself chooses; the scene outlives it.
+/// The error names the scene's file and what its parameters lack.
+Result<std::unique_ptr<TissueLaw>> make_tissue_law(const Scene& scene, LawKind kind);
+
+}  // namespace tact::model::scene

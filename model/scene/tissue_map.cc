@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/scene/tissue_map.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "model/scene/compliance_file.h"
+
+namespace tact::model::scene {
+
+Result<tissue::ComplianceMap> read_scene_map(const Scene& scene) {
+  const std::string& path = scene.compliance.map_path;
+  const std::string command = fmt::format("tact-condense {} --out {}", scene.path, path);
+  if (!scene.elastic)
+    return Error{scene.path +
+                 ": compliance needs a section [elastic]: modulus, Poisson's ratio "
+                 "and where the organ is held"};
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(path, failed))
+    return Error{
+        fmt::format("{}: compliance.map names {}, no such file; correct it, or make it: {}",
+                    scene.path, path, command)};
+  auto map = read_compliance_map(path);
+  if (!map) return Error{fmt::format("{}: {}", map.error().sentence, command)};
+  const ElasticSettings& e = *scene.elastic;
+  if (map->mesh_hash != surface_hash(scene.organ_mesh.view()))
+    return Error{fmt::format("{} belongs to another organ mesh; make one: {}", path, command)};
+  if (map->poisson_ratio != e.poisson_ratio || !(map->fixed_min_m == e.fixed_min_m) ||
+      !(map->fixed_max_m == e.fixed_max_m))
+    return Error{
+        fmt::format("{} was made for Poisson's ratio {} or another held box than [elastic] "
+                    "says; make one: {}",
+                    path, map->poisson_ratio, command)};
+  return map;
+}
+
+Result<double> scene_tip_radius_m(const Scene& scene) {
+  const std::vector<contact::ProbeSphere>& spheres = scene.tool.spheres;
+  for (const contact::ProbeSphere& sphere : spheres)
+    if (sphere.radius_m != spheres[0].radius_m)
+      return Error{fmt::format(
+          "{}: tool.sphere has radii of {} and {} m, but compliance, varies_by_place and "
+          "rhombus.area_m2 know one tip; give every sphere one radius_m, or choose another law and "
+          "leave these keys out",
+          scene.path, spheres[0].radius_m, sphere.radius_m)};
+  return spheres[0].radius_m;
+}
+
+Result<tissue::ComplianceFamily> read_scene_family(const Scene& scene, bool large_strain) {
+  const auto tip_radius_m = scene_tip_radius_m(scene);
+  if (!tip_radius_m) return tip_radius_m.error();
+  auto map = read_scene_map(scene);
+  if (!map) return map.error();
+  auto family = make_compliance_family(*map, {.youngs_modulus_Pa = scene.elastic->youngs_modulus_Pa,
+                                              .tip_radius_m = *tip_radius_m,
+                                              .large_strain = large_strain,
+                                              .working_depth_m = scene.compliance.working_depth_m,
+                                              .curves = scene.compliance.curves,
+                                              .table_knots = scene.table_knots});
+  if (!family) return Error{scene.path + ": " + family.error().sentence};
+  return family;
+}
+
+}  // namespace tact::model::scene

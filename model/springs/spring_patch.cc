@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/springs/spring_patch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "model/ranges.h"
+#include "model/springs/spring_step_check.h"
+
+namespace tact::model::springs {
+namespace {
+
+constexpr double kShownMove_m = 1e-6;
+constexpr double kLostDents = 10.0;  // a dent of so many working depths is no tissue any more
+constexpr std::size_t kShownLips = contact::kMaxShapeNodes / 2;
+
+const char* first_fault(const SpringPatchParameters& p) {
+  const PatchTissue& t = p.tissue;
+  if (!is_positive(t.surface_stiffness_N_per_m))
+    return "surface_stiffness_N_per_m must be finite and above 0";
+  if (!is_positive(t.body_stiffness_N_per_m))
+    return "body_stiffness_N_per_m must be finite and above 0";
+  if (!is_not_negative(t.damping_time_s)) return "damping_time_s must be finite and not below 0";
+  if (!is_not_negative(t.body_damping_time_s))
+    return "body_damping_time_s must be finite and not below 0";
+  if (!(t.pretension_ratio >= 0.0 && t.pretension_ratio <= 0.5))
+    return "pretension_ratio must lie between 0 and 0.5";
+  if (!is_positive(p.coupling_stiffness_N_per_m))
+    return "coupling_stiffness_N_per_m must be finite and above 0";
+  if (!is_positive(p.node_mass_kg)) return "node_mass_kg must be finite and above 0";
+  if (!is_positive(p.working_depth_m)) return "working_depth_m must be finite and above 0";
+  if (!is_positive(p.tick_s)) return "tick_s must be finite and above 0";
+  if (p.spheres < 1 || p.spheres > contact::kMaxSpheres) return "spheres must lie between 1 and 4";
+  if (p.nodes < 16 || p.nodes > kMaxPatchNodes) return "nodes must lie between 16 and 1024";
+  if (!(p.method.alpha > 0.0 && p.method.alpha <= 1.0))
+    return "alpha must lie above 0 and not above 1";
+  if (p.iterations < 1 || p.iterations > 100) return "iterations must lie between 1 and 100";
+  if (p.substeps < 1 || p.substeps > 16) return "substeps must lie between 1 and 16";
+  return nullptr;
+}
+
+StepRule rule_of(const SpringPatchParameters& p) RT_SAFE {
+  return {.method = p.method, .step_s = p.tick_s / p.substeps, .iterations = p.iterations};
+}
+
+/// The whole mesh as one network, to ask whether any part of it could blow up.
+std::optional<Error> check_everywhere(const PatchSurface& surface, const SpringPatchParameters& p) {
+  const std::size_t n = surface.mesh.vertex_m.size();
+  std::vector<Vec3> rest(surface.mesh.vertex_m.begin(), surface.mesh.vertex_m.end());
+  std::vector<Vec3> velocity(n);
+  std::vector<double> inverse(n, 1.0 / p.node_mass_kg), drag;
+  drag.reserve(n);
+  for (const double a : surface.anchor_N_per_m) drag.push_back(p.tissue.body_damping_time_s * a);
+  std::vector<Spring> springs;
+  springs.reserve(surface.edge.size());
+  const double k = p.tissue.surface_stiffness_N_per_m;
+  for (const PatchEdge& e : surface.edge)
+    springs.push_back({e.a, e.b, k, p.tissue.damping_time_s * k, surface.rest_length_m(e)});
+  const SpringNetwork network{
+      .node = {rest, velocity, rest, surface.load_N, inverse, surface.anchor_N_per_m, drag},
+      .spring = springs,
+      .probe = {}};
+  return check_step(
+      network, rule_of(p),
+      {.stiffness_N_per_m = static_cast<double>(p.spheres) * p.coupling_stiffness_N_per_m,
+       .damping_time_s = p.tissue.damping_time_s});
+}
+
+}  // namespace
+
+SpringPatch::SpringPatch(PatchSurface surface, const SpringPatchParameters& parameters)
+    : parameters_(parameters),
+      region_(std::move(surface), parameters.node_mass_kg, parameters.nodes, parameters.relaxation),
+      stepper_(region_.capacity(), region_.spring_capacity()) {
+  gathered_.fill(contact::kNoTriangle);
+  double sum_m = 0.0;
+  for (const PatchEdge& e : region_.surface().edge) sum_m += e.length_m;
+  ring_pitch_m_ = sum_m / static_cast<double>(region_.surface().edge.size());
+}
+
+Result<std::unique_ptr<SpringPatch>> make_spring_patch(const contact::SurfaceView& surface,
+                                                       const SpringPatchParameters& p) {
+  if (const char* fault = first_fault(p)) return Error{std::string("spring patch: ") + fault};
+  if (surface.triangle.empty()) return Error{"spring patch: the surface has no triangles"};
+  if (const auto vertex = crowded_vertex(surface))
+    return Error{"spring patch: vertex " + std::to_string(*vertex) + " has " +
+                 std::to_string(kMaxPatchDegree) + " triangles or more; remesh the surface there"};
+  PatchSurface springs = make_patch_surface(surface, p.tissue);
+  if (auto failed = check_everywhere(springs, p)) return *failed;
+  SpringPatchParameters fitted = p;
+  fitted.nodes = std::min(p.nodes, surface.vertex_m.size());
+  return std::unique_ptr<SpringPatch>(new SpringPatch(std::move(springs), fitted));
+}
+
+std::size_t SpringPatch::memory_bytes() const {
+  return sizeof *this + region_.memory_bytes() + stepper_.memory_bytes();
+}
+
+// Broken tissue stays so until nothing touches it: a fresh patch under a pressed tool would kick.
+void SpringPatch::leave(std::size_t sphere) RT_SAFE {
+  if (sphere >= contact::kMaxSpheres) return;
+  touch_[sphere] = {};
+  if (std::none_of(touch_.begin(), touch_.end(), [](const Touch& t) { return t.active; }))
+    broke_ = false;
+}
+
+contact::SiteResponse SpringPatch::respond(const contact::Indentation& in) RT_SAFE {
+  if (in.sphere >= contact::kMaxSpheres) return {.law = {.status = law::LawStatus::kInvalid}};
+  Touch& touch = touch_[in.sphere];
+  touch = {};
+  const contact::SurfaceView& mesh = region_.surface().mesh;
+  if (!std::isfinite(in.depth_m) || !is_a_place(in.place, mesh))
+    return {.law = {.status = law::LawStatus::kInvalid}};
+  if (in.depth_m <= 0.0 && !in.held) return {.law = {.status = law::LawStatus::kNoContact}};
+  const double limit_m = parameters_.working_depth_m;
+  const double depth_m = std::clamp(in.depth_m, -limit_m, limit_m);
+  touch = {.active = true, .held = in.held, .depth_m = depth_m, .place = in.place};
+  if (broke_) return {.law = {.status = law::LawStatus::kSingular}};
+
+  const contact::TriangleCorners& corner = mesh.triangle[in.place.triangle];
+  std::array<double, 3> dent{};
+  double w_m = 0.0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    dent[c] = -dot(mesh.vertex_normal[corner[c]], region_.moved_m(corner[c]));
+    w_m += in.place.weight[c] * dent[c];
+  }
+  const double q = parameters_.coupling_stiffness_N_per_m;
+  if (!(std::abs(w_m) <= kLostDents * limit_m)) {
+    give_up();
+    return {.law = {.status = law::LawStatus::kSingular}};
+  }
+  const double stretch_m = in.held ? depth_m - w_m : std::max(depth_m - w_m, 0.0);
+  contact::SiteResponse out{.law = {.force_N = q * stretch_m,
+                                    .stiffness_N_per_m = stretch_m != 0.0 ? q : 0.0,
+                                    .energy_J = 0.5 * q * stretch_m * stretch_m + network_energy_J_,
+                                    .status = law::LawStatus::kOk}};
+  if (depth_m != in.depth_m) {
+    out.law.energy_J += out.law.force_N * (in.depth_m - depth_m);
+    out.law.stiffness_N_per_m = 0.0;
+    out.law.status = law::LawStatus::kSaturated;
+  }
+  // G = -F grad w;  grad w = n x (sum of w_i (edge opposite i)) / (2 area)
+  const Vec3 &a = mesh.vertex_m[corner[0]], &b = mesh.vertex_m[corner[1]],
+             &c = mesh.vertex_m[corner[2]];
+  const Vec3 twice_area = cross(b - a, c - a);
+  const Vec3 turn = dent[0] * (c - b) + dent[1] * (a - c) + dent[2] * (b - a);
+  out.slope_N = (-out.law.force_N / dot(twice_area, twice_area)) * cross(twice_area, turn);
+  return out;
+}
+
+// A triangle near the rim, or out of the region, gathers anew, once for each triangle.
+void SpringPatch::follow_touches() RT_SAFE {
+  std::array<std::uint32_t, contact::kMaxSpheres> triangle{};
+  std::size_t count = 0;
+  bool must_gather = false;
+  for (std::size_t i = 0; i < contact::kMaxSpheres; ++i) {
+    if (!touch_[i].active) continue;
+    const std::uint32_t t = touch_[i].place.triangle;
+    triangle[count++] = t;
+    if (t != gathered_[i] && !region_.holds(t)) must_gather = true;
+  }
+  if (!must_gather) return;
+  for (std::size_t i = 0; i < contact::kMaxSpheres; ++i)
+    gathered_[i] = touch_[i].active ? touch_[i].place.triangle : contact::kNoTriangle;
+  region_.gather({triangle.data(), count});
+}
+
+std::span<const ProbeSpring> SpringPatch::probes() RT_SAFE {
+  const contact::SurfaceView& mesh = region_.surface().mesh;
+  const double q = parameters_.coupling_stiffness_N_per_m;
+  std::size_t count = 0;
+  for (const Touch& touch : touch_) {
+    if (!touch.active) continue;
+    ProbeSpring& probe = probe_[count];
+    probe = {.weight = touch.place.weight,
+             .depth_m = touch.depth_m,
+             .stiffness_N_per_m = q,
+             .damping_Ns_per_m = parameters_.tissue.damping_time_s * q,
+             .held = touch.held};
+    bool inside = true;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t v = mesh.triangle[touch.place.triangle][c];
+      probe.node[c] = region_.slot_of(v);
+      probe.push[c] = -mesh.vertex_normal[v];
+      if (probe.node[c] == kNoSlot)
+        inside = false;
+      else if (region_.relaxes())  // the network is stepped at z, the tool meets u
+        probe.depth_m -= probe.weight[c] * dot(probe.push[c], region_.flowed_m(probe.node[c]));
+    }
+    if (inside) ++count;
+  }
+  return {probe_.data(), count};
+}
+
+void SpringPatch::advance() RT_SAFE {
+  if (broke_) return;
+  follow_touches();
+  const SpringNetwork network = region_.network(probes());
+  if (network.node.position_m.empty()) return;
+  const StepRule rule = rule_of(parameters_);
+  double energy_J = 0.0;
+  for (int i = 0; i < parameters_.substeps; ++i) energy_J = stepper_.step(network, rule);
+  if (region_.relaxes()) {
+    region_.flow();
+    energy_J = region_.stored_energy_J();
+  }
+  network_energy_J_ = energy_J - region_.rest_energy_J();
+  if (!std::isfinite(energy_J)) give_up();
+}
+
+void SpringPatch::give_up() RT_SAFE {
+  broke_ = true;
+  region_.rest();
+  gathered_.fill(contact::kNoTriangle);
+  network_energy_J_ = 0.0;
+}
+
+double SpringPatch::stored_energy_J() RT_SAFE {
+  const SpringNetwork network = region_.network(probes());
+  double energy_J = region_.stored_energy_J() - region_.rest_energy_J();
+  for (const ProbeSpring& probe : network.probe) {
+    const double f =
+        probe_force_N(probe, dent_m(probe, network.node.position_m, network.node.rest_m));
+    energy_J += 0.5 * f * f / probe.stiffness_N_per_m;
+  }
+  return energy_J;
+}
+
+double SpringPatch::kinetic_energy_J() RT_SAFE {
+  return model::springs::kinetic_energy_J(region_.network({}));
+}
+
+bool SpringPatch::shape(contact::PatchShape& out) RT_SAFE {
+  out.node_count = 0;
+  const auto show = [&out, this](std::uint32_t v) RT_SAFE {
+    const Vec3 moved_m = region_.moved_m(v);
+    if (dot(moved_m, moved_m) < kShownMove_m * kShownMove_m) return;
+    out.vertex[out.node_count] = v;
+    out.displacement_m[out.node_count++] = {static_cast<float>(moved_m.x),
+                                            static_cast<float>(moved_m.y),
+                                            static_cast<float>(moved_m.z)};
+  };
+  const std::span<const std::uint32_t> lips = region_.lips();
+  const std::size_t newest = lips.size() - std::min(lips.size(), kShownLips);
+  for (const std::uint32_t v : lips.subspan(newest)) show(v);
+  for (const std::uint32_t v : region_.vertices())
+    if (out.node_count < contact::kMaxShapeNodes && (newest > 0 || !region_.is_lip(v))) show(v);
+  const std::span<const std::uint32_t> cut = region_.cut_triangles();
+  if (next_cut_ >= cut.size()) next_cut_ = 0;
+  out.cut_total = static_cast<std::uint32_t>(cut.size());
+  out.cut_first = next_cut_;
+  out.cut_count = static_cast<std::uint32_t>(std::min(cut.size() - next_cut_, contact::kCutWindow));
+  for (std::uint32_t i = 0; i < out.cut_count; ++i) out.cut_triangle[i] = cut[next_cut_ + i];
+  next_cut_ += out.cut_count;
+  return true;
+}
+
+}  // namespace tact::model::springs

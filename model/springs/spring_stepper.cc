@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// The integrators of integrators.h on a whole network (spring_network.h).
+#include <algorithm>
+#include <cmath>
+
+#include "model/springs/spring_network.h"
+
+namespace tact::model::springs {
+
+SpringStepper::SpringStepper(std::size_t max_nodes, std::size_t max_springs)
+    : force_(max_nodes),
+      position_(max_nodes),
+      velocity_(max_nodes),
+      sum_(max_nodes),
+      direction_(max_nodes),
+      product_(max_nodes),
+      preconditioner_(max_nodes),
+      tangent_(max_springs) {}
+
+std::size_t SpringStepper::memory_bytes() const {
+  return force_.size() * (6 * sizeof(Vec3) + sizeof(double)) + tangent_.size() * sizeof(Tangent);
+}
+
+double SpringStepper::step(const SpringNetwork& network, const StepRule& rule) RT_SAFE {
+  const SpringNodes& node = network.node;
+  const std::size_t n = node.position_m.size();
+  const double h = rule.step_s;
+  const std::span<Vec3> x = node.position_m, v = node.velocity_mps;
+  const std::span<Vec3> f(force_.data(), n), x_star(position_.data(), n),
+      v_star(velocity_.data(), n);
+  const std::span<const double> w = node.inverse_mass_per_kg;
+  const double energy_J = forces(network, x, v, f);
+  switch (rule.method.integrator) {
+    case Integrator::kExplicitEuler:
+      for (std::size_t i = 0; i < n; ++i) x[i] += h * v[i], v[i] += h * w[i] * f[i];  // MA-2
+      break;
+    case Integrator::kImprovedEuler:
+      for (std::size_t i = 0; i < n; ++i) v[i] += h * w[i] * f[i], x[i] += h * v[i];  // MA-3
+      break;
+    case Integrator::kMidpointAveraging:
+    case Integrator::kRk2: {
+      const bool averages = rule.method.integrator == Integrator::kMidpointAveraging;
+      const double part = (averages ? rule.method.alpha : 0.5) * h;
+      for (std::size_t i = 0; i < n; ++i)
+        x_star[i] = x[i] + part * v[i], v_star[i] = v[i] + part * w[i] * f[i];  // MA-4
+      forces(network, x_star, v_star, f);
+      for (std::size_t i = 0; i < n; ++i) {
+        const Vec3 next = v[i] + h * w[i] * f[i];                    // MA-5
+        x[i] += averages ? 0.5 * h * (v[i] + next) : h * v_star[i];  // MA-6 or MA-8b
+        v[i] = next;
+      }
+      break;
+    }
+    case Integrator::kRk4:
+      step_rk4(network, h);
+      break;
+    case Integrator::kImplicitEuler:
+      step_implicit(network, h, rule.iterations);
+      break;
+  }
+  return energy_J;
+}
+
+// MA-8; force_ holds the forces of the start. sum_ and direction_ gather dx and dv.
+void SpringStepper::step_rk4(const SpringNetwork& network, double h) RT_SAFE {
+  const SpringNodes& node = network.node;
+  const std::size_t n = node.position_m.size();
+  constexpr std::array kWeight{1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
+  constexpr std::array kReach{0.5, 0.5, 1.0};
+  for (std::size_t i = 0; i < n; ++i)
+    velocity_[i] = node.velocity_mps[i], sum_[i] = direction_[i] = {};
+  for (std::size_t stage = 0; stage < 4; ++stage) {
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec3 slope = velocity_[i], bend = node.inverse_mass_per_kg[i] * force_[i];
+      sum_[i] += h * kWeight[stage] * slope;
+      direction_[i] += h * kWeight[stage] * bend;
+      if (stage == 3) continue;
+      position_[i] = node.position_m[i] + h * kReach[stage] * slope;
+      velocity_[i] = node.velocity_mps[i] + h * kReach[stage] * bend;
+    }
+    if (stage < 3)
+      forces(network, {position_.data(), n}, {velocity_.data(), n}, {force_.data(), n});
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    node.position_m[i] += sum_[i], node.velocity_mps[i] += direction_[i];
+}
+
+// (M + h C + h^2 K) v+ = M v + h f(x, 0), solved by conjugate gradients from v+ = 0; x+ = x + h v+.
+void SpringStepper::step_implicit(const SpringNetwork& network, double h, int iterations) RT_SAFE {
+  const SpringNodes& node = network.node;
+  const std::size_t n = node.position_m.size();
+  const std::span<const double> w = node.inverse_mass_per_kg;
+  linearise(network, h);
+  // residual_ lives in force_, v+ in sum_; velocity_ is a zero velocity for f(x, 0)
+  for (std::size_t i = 0; i < n; ++i) velocity_[i] = sum_[i] = {};
+  forces(network, node.position_m, {velocity_.data(), n}, {force_.data(), n});
+  double old = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    force_[i] = w[i] > 0.0 ? node.velocity_mps[i] / w[i] + h * force_[i] : Vec3{};
+    direction_[i] = preconditioner_[i] * force_[i];
+    old += dot(force_[i], direction_[i]);
+  }
+  for (int k = 0; k < iterations && old > 0.0; ++k) {
+    apply(network, h, {direction_.data(), n}, {product_.data(), n});
+    double curvature = 0.0;
+    for (std::size_t i = 0; i < n; ++i) curvature += dot(direction_[i], product_[i]);
+    if (!(curvature > 0.0)) break;
+    const double reach = old / curvature;
+    double fresh = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      sum_[i] += reach * direction_[i];
+      force_[i] -= reach * product_[i];
+      fresh += preconditioner_[i] * dot(force_[i], force_[i]);
+    }
+    const double turn = fresh / old;
+    for (std::size_t i = 0; i < n; ++i)
+      direction_[i] = preconditioner_[i] * force_[i] + turn * direction_[i];
+    old = fresh;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    node.velocity_mps[i] = sum_[i];
+    node.position_m[i] += h * sum_[i];
+  }
+}
+
+void SpringStepper::linearise(const SpringNetwork& network, double h) RT_SAFE {
+  const SpringNodes& node = network.node;
+  const std::size_t n = node.position_m.size();
+  for (std::size_t i = 0; i < n; ++i)
+    preconditioner_[i] = h * node.drag_Ns_per_m[i] + h * h * node.anchor_N_per_m[i];
+  for (std::size_t k = 0; k < network.spring.size(); ++k) {
+    const Spring& s = network.spring[k];
+    Tangent& t = tangent_[k];
+    const Vec3 along_m = node.position_m[s.j] - node.position_m[s.i];
+    const double length_m = norm(along_m);
+    t = {};
+    if (!(length_m > 0.0)) continue;
+    const double squeeze = 1.0 - s.rest_length_m / length_m;
+    t.direction = (1.0 / length_m) * along_m;
+    t.along = h * s.damping_Ns_per_m + h * h * s.stiffness_N_per_m;
+    t.across = squeeze > 0.0 ? h * h * s.stiffness_N_per_m * squeeze : 0.0;
+    const double mean = (t.along + 2.0 * t.across) / 3.0;
+    preconditioner_[s.i] += mean;
+    preconditioner_[s.j] += mean;
+  }
+  for (std::size_t p = 0; p < network.probe.size() && p < probe_pushes_.size(); ++p) {
+    const ProbeSpring& probe = network.probe[p];
+    probe_pushes_[p] = probe.stiffness_N_per_m > 0.0 &&
+                       probe_force_N(probe, dent_m(probe, node.position_m, node.rest_m)) != 0.0;
+    if (!probe_pushes_[p]) continue;
+    const double q = h * probe.damping_Ns_per_m + h * h * probe.stiffness_N_per_m;
+    for (std::size_t c = 0; c < 3; ++c)
+      preconditioner_[probe.node[c]] += q * probe.weight[c] * probe.weight[c] / 3.0;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const double w = node.inverse_mass_per_kg[i];
+    preconditioner_[i] = w > 0.0 ? 1.0 / (1.0 / w + preconditioner_[i]) : 0.0;
+  }
+}
+
+// out = (M + h C + h^2 K) in; a node that never moves takes no part.
+void SpringStepper::apply(const SpringNetwork& network, double h, std::span<const Vec3> in,
+                          std::span<Vec3> out) const RT_SAFE {
+  const SpringNodes& node = network.node;
+  const std::span<const double> w = node.inverse_mass_per_kg;
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    const double own = h * node.drag_Ns_per_m[i] + h * h * node.anchor_N_per_m[i];
+    out[i] = w[i] > 0.0 ? (1.0 / w[i] + own) * in[i] : Vec3{};
+  }
+  for (std::size_t k = 0; k < network.spring.size(); ++k) {
+    const Spring& s = network.spring[k];
+    const Tangent& t = tangent_[k];
+    const Vec3 apart = in[s.j] - in[s.i];
+    const Vec3 pull =
+        (t.along - t.across) * dot(t.direction, apart) * t.direction + t.across * apart;
+    out[s.i] -= pull;
+    out[s.j] += pull;
+  }
+  for (std::size_t p = 0; p < network.probe.size() && p < probe_pushes_.size(); ++p) {
+    if (!probe_pushes_[p]) continue;
+    const ProbeSpring& probe = network.probe[p];
+    double dent = 0.0;
+    for (std::size_t c = 0; c < 3; ++c)
+      dent += probe.weight[c] * dot(probe.push[c], in[probe.node[c]]);
+    const double q = (h * probe.damping_Ns_per_m + h * h * probe.stiffness_N_per_m) * dent;
+    for (std::size_t c = 0; c < 3; ++c) out[probe.node[c]] += q * probe.weight[c] * probe.push[c];
+  }
+  for (std::size_t i = 0; i < in.size(); ++i)
+    if (!(w[i] > 0.0)) out[i] = {};
+}
+
+}  // namespace tact::model::springs

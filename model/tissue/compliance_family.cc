@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/tissue/compliance_family.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace tact::model::tissue {
+namespace {
+
+constexpr std::size_t kMaxCurves = 65;
+
+/// r and r_pull of every vertex, m/N.
+struct Give {
+  std::vector<double> press_m_per_N, pull_m_per_N;
+  std::size_t limited = 0;
+};
+
+Give give_of(const ComplianceMap& map, const law::ElasticTip& tip) {
+  const double disc = 1.0 / tip.pulled_stiffness_N_per_m();
+  const double side = 1.0 / tip.sideways_stiffness_N_per_m();
+  const double sphere = 1.0 / tip.stiffest_press_N_per_m();
+  const double least = (1.0 / kStiffest - 1.0) * std::min(disc, sphere);
+  Give out;
+  for (std::size_t v = 0; v < map.vertices(); ++v) {
+    const auto scaled = [&tip](float times_E_per_m) {
+      return static_cast<double>(times_E_per_m) / tip.youngs_modulus_Pa;
+    };
+    const double r = scaled(map.regular_times_E_per_m[v]);
+    const SidewaysGive& s = map.sideways_times_E_per_m[v];
+    const auto kept = [&](float n, float own) {
+      return scaled(n) * scaled(n) / std::max(side + scaled(own), side / kStiffest);
+    };
+    // CF-3
+    const double pull = r - kept(s.n1, s.s1) - kept(s.n2, s.s2);
+    out.limited += r < least || pull < least ? 1 : 0;
+    out.press_m_per_N.push_back(std::max(r, least));
+    out.pull_m_per_N.push_back(std::max(pull, least));
+  }
+  return out;
+}
+
+/// Mean rings of the vertices near curve k, m/N; far vertices count so little that any nearer one
+/// outweighs them.
+std::vector<double> rings_near(const ComplianceMap& map, std::span<const float> kappa, double k,
+                               double youngs_modulus_Pa) {
+  std::vector<double> sum(map.rings, 0.0);
+  double weights = 0.0;
+  for (std::size_t v = 0; v < map.vertices(); ++v) {
+    const double away = static_cast<double>(kappa[v]) - k;
+    const double weight = std::exp(-std::min(2.0 * away * away, 600.0));
+    weights += weight;
+    for (std::size_t j = 0; j < map.rings; ++j)
+      sum[j] += weight * static_cast<double>(map.ring_times_E_per_m[v * map.rings + j]);
+  }
+  for (double& g : sum) g /= weights * youngs_modulus_Pa;
+  return sum;
+}
+
+}  // namespace
+
+Result<ComplianceFamily> make_compliance_family(const ComplianceMap& map,
+                                                const ComplianceFamilyParameters& p) {
+  if (p.curves < 2 || p.curves > kMaxCurves)
+    return Error{"compliance: curves must lie between 2 and 65"};
+  if (map.vertices() == 0) return Error{"compliance: the map has no vertices"};
+  const law::ElasticTip tip{.youngs_modulus_Pa = p.youngs_modulus_Pa,
+                            .poisson_ratio = map.poisson_ratio,
+                            .radius_m = p.tip_radius_m,
+                            .large_strain = p.large_strain};
+  const Give give = give_of(map, tip);
+  const double disc = 1.0 / tip.pulled_stiffness_N_per_m();
+  const auto stiffness = [disc](double r) { return 1.0 / (disc + r); };  // CF-1
+  const double soft =
+      stiffness(*std::max_element(give.press_m_per_N.begin(), give.press_m_per_N.end()));
+  const double stiff =
+      stiffness(*std::min_element(give.pull_m_per_N.begin(), give.pull_m_per_N.end()));
+  const double last = static_cast<double>(p.curves - 1);
+  const double span = std::max(std::log(stiff / soft), 1e-9);
+  ComplianceFamily out;
+  out.limited = give.limited;
+  // CF-2
+  const auto coordinate = [&](double r) {
+    return static_cast<float>(std::clamp(last * std::log(stiffness(r) / soft) / span, 0.0, last));
+  };
+  for (const double r : give.press_m_per_N) out.press_coordinate.push_back(coordinate(r));
+  for (const double r : give.pull_m_per_N) out.pull_coordinate.push_back(coordinate(r));
+  for (std::size_t k = 0; k < p.curves; ++k) {
+    const double at = static_cast<double>(k);
+    const std::vector<double> rings =
+        rings_near(map, out.press_coordinate, at, p.youngs_modulus_Pa);
+    auto curve = law::make_compliance_curve(
+        {.tip = tip,
+         .regular_m_per_N = 1.0 / (soft * std::exp(span * at / last)) - disc,
+         .working_depth_m = p.working_depth_m,
+         .ring_pitch_m = map.ring_pitch_m,
+         .ring_m_per_N = rings,
+         .table_knots = p.table_knots});
+    if (!curve) return curve.error();
+    out.curve.push_back(std::move(*curve));
+  }
+  return out;
+}
+
+}  // namespace tact::model::tissue

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// compliance_family.h - the laws of a whole organ: a few curves from soft to stiff, and where each
+// vertex stands among them.
+//
+//     CF-1   q = 1 / (c_disc + r)                                  pull stiffness of a place, N/m
+//     CF-2   kappa = (K - 1) ln(q / q_0) / ln(q_(K-1) / q_0)       0 .. K - 1
+//     CF-3   r_pull = r - n1^2 / (c_side + s1) - n2^2 / (c_side + s2)
+//
+// A tip pressed without friction feels r. A gripped patch is led straight outward and cannot follow
+// the organ sideways: it feels r_pull, at most r. So a vertex has two coordinates; which one counts
+// is a matter of the sign of the depth, and both give U = 0 at rest. Between curves the field
+// blends energies linearly (elastic_field.h); 17 curves keep that within 0.5 % of the force of a
+// curve made for the place, 1.5 % where the stiffer of two is at its end already
+// (compliance_family_test.cc).
+//
+// Close to the held side the organ is stiffer than its own surface can show: r is limited so that a
+// place is at most kStiffest times as stiff as a half-space. Set-up code only.
+#pragma once
+
+#include <vector>
+
+#include "model/law/compliance_law.h"
+#include "model/result.h"
+#include "model/tissue/compliance_map.h"
+
+namespace tact::model::tissue {
+
+inline constexpr double kStiffest = 3.0;
+
+struct ComplianceFamily {
+  std::vector<law::ComplianceCurve> curve;  // K, soft to stiff
+  std::vector<float> press_coordinate;      // kappa of r, n vertices
+  std::vector<float> pull_coordinate;       // kappa of r_pull, n vertices
+  std::size_t limited = 0;                  // vertices held to kStiffest
+
+  /// What the loop may touch.
+  std::size_t memory_bytes() const {
+    return curve.size() * sizeof(law::ComplianceCurve) +
+           (press_coordinate.size() + pull_coordinate.size()) * sizeof(float);
+  }
+};
+
+struct ComplianceFamilyParameters {
+  double youngs_modulus_Pa = 0.0;
+  double tip_radius_m = 0.0;
+  bool large_strain = false;  // under the tip, CT-8
+  double working_depth_m = 0.0;
+  std::size_t curves = 17;       // K, 2 .. 65
+  std::size_t table_knots = 65;  // of each curve in press
+};
+
+Result<ComplianceFamily> make_compliance_family(const ComplianceMap& map,
+                                                const ComplianceFamilyParameters& parameters);
+
+}  // namespace tact::model::tissue

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/tissue/elastic_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tact::model::tissue {
+namespace {
+
+constexpr std::size_t kMaxProfile = 64;
+
+// Of two parts of one force: a limit reached by either is told.
+law::LawStatus worse(law::LawStatus a, law::LawStatus b) RT_SAFE {
+  return b >= law::LawStatus::kSaturated && b > a ? b : a;
+}
+
+}  // namespace
+
+std::span<const float> ElasticField::coordinate(double depth_m) const RT_SAFE {
+  return depth_m < 0.0 && !parts_.pull_coordinate.empty() ? parts_.pull_coordinate
+                                                          : parts_.coordinate;
+}
+
+ElasticField::Blend ElasticField::blend_at(const contact::Place& place,
+                                           double depth_m) const RT_SAFE {
+  if (parts_.curves.size() < 2) return {};
+  const std::span<const float> of_vertex = coordinate(depth_m);
+  const contact::TriangleCorners& corner = parts_.surface.triangle[place.triangle];
+  double kappa = 0.0;
+  for (std::size_t i = 0; i < 3; ++i)
+    kappa += place.weight[i] * static_cast<double>(of_vertex[corner[i]]);
+  const std::size_t last = parts_.curves.size() - 2;
+  const std::size_t low = kappa > 0.0 ? std::min(static_cast<std::size_t>(kappa), last) : 0;
+  return {.low = low, .fraction = kappa - static_cast<double>(low)};
+}
+
+// grad kappa of a linear function on a triangle: sum of kappa_i (n x opposite edge i) / (2 area).
+Vec3 ElasticField::coordinate_slope(std::uint32_t triangle, double depth_m) const RT_SAFE {
+  const contact::SurfaceView& s = parts_.surface;
+  const contact::TriangleCorners& corner = s.triangle[triangle];
+  const Vec3 &a = s.vertex_m[corner[0]], &b = s.vertex_m[corner[1]], &c = s.vertex_m[corner[2]];
+  const Vec3 twice_area = cross(b - a, c - a);
+  const std::span<const float> of_vertex = coordinate(depth_m);
+  Vec3 sum = static_cast<double>(of_vertex[corner[0]]) * (c - b);
+  sum += static_cast<double>(of_vertex[corner[1]]) * (a - c);
+  sum += static_cast<double>(of_vertex[corner[2]]) * (b - a);
+  return cross(twice_area, sum) / dot(twice_area, twice_area);
+}
+
+ElasticField::Part ElasticField::part_at(const contact::Place& place,
+                                         double depth_m) const RT_SAFE {
+  const Blend blend = blend_at(place, depth_m);
+  const law::LawResponse soft = parts_.curves[blend.low]->respond(depth_m);
+  if (parts_.curves.size() < 2) return {.law = soft};
+  const law::LawResponse stiff = parts_.curves[blend.low + 1]->respond(depth_m);
+  const double f = blend.fraction, step_J = stiff.energy_J - soft.energy_J;
+  return {.law = {.force_N = soft.force_N + f * (stiff.force_N - soft.force_N),
+                  .stiffness_N_per_m = soft.stiffness_N_per_m +
+                                       f * (stiff.stiffness_N_per_m - soft.stiffness_N_per_m),
+                  .energy_J = soft.energy_J + f * step_J,
+                  .status = worse(soft.status, stiff.status)},
+          .slope_N = step_J * coordinate_slope(place.triangle, depth_m)};
+}
+
+// Where nothing varies, the place does not matter.
+bool ElasticField::is_known(const contact::Indentation& in) const RT_SAFE {
+  return in.sphere < contact::kMaxSpheres && std::isfinite(in.depth_m) &&
+         (parts_.curves.size() < 2 || is_a_place(in.place, parts_.surface));
+}
+
+contact::SiteResponse ElasticField::respond(const contact::Indentation& in) RT_SAFE {
+  if (!is_known(in)) return {.law = {.status = law::LawStatus::kInvalid}};
+  const law::Relaxation& relaxation = parts_.relaxation;
+  law::RelaxationState& next = next_[in.sphere];
+  if (relaxation.terms() > 0) next = relaxation.after(now_[in.sphere], in.depth_m, in.held);
+  contact::SiteResponse sum{};
+  for (std::size_t i = 0; i <= relaxation.terms(); ++i) {
+    const double depth_m = i == 0 ? in.depth_m : next.stretch_m[i - 1];
+    const Part part = part_at(in.place, depth_m);
+    if (i > 0) next.flow_ratio[i - 1] = law::flow_ratio(depth_m, part.law);
+    const double g = relaxation.share(i);
+    sum.law.force_N += g * part.law.force_N;
+    sum.law.stiffness_N_per_m += g * part.law.stiffness_N_per_m;
+    sum.law.energy_J += g * part.law.energy_J;
+    sum.law.status = i == 0 ? part.law.status : worse(sum.law.status, part.law.status);
+    sum.slope_N += g * part.slope_N;
+  }
+  return sum;
+}
+
+// g between two rings is linear, within the first and beyond the last it stays.
+double ElasticField::regular_m_per_N(const contact::Place& place, double distance_m) const RT_SAFE {
+  const ElasticNeighbours& near = parts_.neighbours;
+  if (near.rings == 0 || !is_a_place(place, parts_.surface)) return 0.0;
+  const double last = static_cast<double>(near.rings - 1);
+  const double at = std::clamp(distance_m / near.ring_pitch_m - 1.0, 0.0, last);
+  const auto low = static_cast<std::size_t>(at), high = std::min(low + 1, near.rings - 1);
+  const double f = at - static_cast<double>(low);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t row = parts_.surface.triangle[place.triangle][i] * near.rings;
+    const double g_low = static_cast<double>(near.ring_times_E_per_m[row + low]);
+    const double g_high = static_cast<double>(near.ring_times_E_per_m[row + high]);
+    sum += place.weight[i] * (g_low + f * (g_high - g_low));
+  }
+  return sum / near.youngs_modulus_Pa;
+}
+
+double ElasticField::coupling_m_per_N(const contact::Indentation& a, const contact::Indentation& b,
+                                      double distance_m) const RT_SAFE {
+  const double modulus_Pa = parts_.neighbours.contact_modulus_Pa;
+  if (!(modulus_Pa > 0.0) || !(distance_m > 0.0)) return 0.0;
+  const double half_space = 1.0 / (std::numbers::pi * modulus_Pa * distance_m);
+  const double regular =
+      0.5 * (regular_m_per_N(a.place, distance_m) + regular_m_per_N(b.place, distance_m));
+  return std::max(half_space + regular, 0.0);  // 0 beside the held side, but for the map's errors
+}
+
+std::size_t ElasticField::profile(const contact::Indentation& in,
+                                  std::span<double> ring_m) const RT_SAFE {
+  if (!is_known(in)) return 0;
+  const Blend blend = blend_at(in.place, in.depth_m);
+  const std::size_t count = parts_.curves[blend.low]->profile(in.depth_m, ring_m);
+  if (parts_.curves.size() < 2) return count;
+  std::array<double, kMaxProfile> stiff_m{};
+  parts_.curves[blend.low + 1]->profile(in.depth_m, stiff_m);
+  for (std::size_t j = 0; j < std::min({count, ring_m.size(), kMaxProfile}); ++j)
+    ring_m[j] += blend.fraction * (stiff_m[j] - ring_m[j]);
+  return count;
+}
+
+}  // namespace tact::model::tissue

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// elastic_field.h - closed-form laws over a whole surface, with relaxation: the SiteLaw of them.
+//
+// One law for every place, or a family of laws from soft to stiff and a coordinate kappa per vertex
+// that says which: linear over each triangle, blended between neighbours k <= kappa <= k + 1,
+//
+//     U(d, s)  = (1 - f) U_k(d) + f U_(k+1)(d),    f = kappa(s) - k
+//     dU/ds    = (U_(k+1)(d) - U_k(d)) grad kappa
+//
+// so the field has one potential and no stroke along the surface makes energy. Press and pull may
+// have a coordinate each: U = 0 between them. A tick costs at most 2 (1 + terms) look-ups a sphere,
+// whatever the mesh. Two sites, s apart, couple as those of one elastic body:
+//
+//     MC-2   c_ij = 1 / (pi E* s) + (g_i(s) + g_j(s)) / 2 >= 0
+//
+// half-space and the organ's regular part, g: that of the rings of the compliance map.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "model/contact/site_law.h"
+#include "model/law/relaxation.h"
+
+namespace tact::model::tissue {
+
+/// What two sites of one elastic body are to each other. Without a map the body is a half-space.
+struct ElasticNeighbours {
+  double youngs_modulus_Pa = 0.0;               // E
+  double contact_modulus_Pa = 0.0;              // E*; 0: nothing is known, sites do not couple
+  std::span<const float> ring_times_E_per_m{};  // g_j E of vertex v at [v rings + j - 1]; or empty
+  std::size_t rings = 0;
+  double ring_pitch_m = 0.0;
+};
+
+/// What an ElasticField borrows; all of it outlives the field.
+struct ElasticFieldParts {
+  std::span<const law::Law* const> curves;  // one or more, at least as stiff as the one before
+  std::span<const float> coordinate;  // kappa, n vertices, 0 .. curves - 1; empty with one curve
+  std::span<const float> pull_coordinate;  // the same for d < 0; empty: as coordinate
+  contact::SurfaceView surface;
+  law::Relaxation relaxation;
+  ElasticNeighbours neighbours = {};
+};
+
+class ElasticField final : public contact::SiteLaw {
+ public:
+  explicit ElasticField(const ElasticFieldParts& parts) : parts_(parts) {}
+
+  contact::SiteResponse respond(const contact::Indentation& in) RT_SAFE override;
+  double coupling_m_per_N(const contact::Indentation& a, const contact::Indentation& b,
+                          double distance_m) const RT_SAFE override;
+  void leave(std::size_t sphere) RT_SAFE override { now_[sphere] = next_[sphere] = {}; }
+  void advance() RT_SAFE override {
+    if (parts_.relaxation.terms() > 0) now_ = next_;
+  }
+  std::size_t profile(const contact::Indentation& in,
+                      std::span<double> ring_m) const RT_SAFE override;
+  double ring_pitch_m() const RT_SAFE override { return parts_.curves[0]->ring_pitch_m(); }
+
+ private:
+  struct Blend {
+    std::size_t low = 0;    // k
+    double fraction = 0.0;  // f
+  };
+  /// One part of the potential: the law at one stretch, and what it adds along the surface.
+  struct Part {
+    law::LawResponse law;
+    Vec3 slope_N{};
+  };
+  bool is_known(const contact::Indentation& in) const RT_SAFE;
+  std::span<const float> coordinate(double depth_m) const RT_SAFE;
+  Blend blend_at(const contact::Place& place, double depth_m) const RT_SAFE;
+  Part part_at(const contact::Place& place, double depth_m) const RT_SAFE;
+  double regular_m_per_N(const contact::Place& place, double distance_m) const RT_SAFE;
+  Vec3 coordinate_slope(std::uint32_t triangle, double depth_m) const RT_SAFE;
+
+  ElasticFieldParts parts_;
+  std::array<law::RelaxationState, contact::kMaxSpheres> now_{}, next_{};
+};
+
+}  // namespace tact::model::tissue

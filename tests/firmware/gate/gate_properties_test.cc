@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+// What gate.h promises, over random sequences (gate_tempers.h), for every setting of
+// gate_settings.h. Seeds are fixed; TACT_LONG=1 runs a hundred times as many long ones.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "tests/firmware/gate/gate_tempers.h"
+#include "tests/support/no_alloc.h"
+
+namespace tact::tests::gate_properties_test {
+
+std::uint64_t times() { return std::getenv("TACT_LONG") != nullptr ? 100 : 1; }
+
+/// Many short sequences of one temper on one gate; the rule that broke, with its seed and tick.
+std::string run(Temper temper, const GateSetting& setting, GateRules& rules,
+                std::uint64_t sequences, int ticks) {
+  for (std::uint64_t seed = 0; seed < sequences; ++seed) {
+    Sequence sequence(seed, temper, setting);
+    for (int tick = 0; tick < ticks; ++tick)
+      if (const char* broken = rules.judge(sequence.next(rules.verdict().wrench)))
+        return std::string(broken) + ": " + setting.name + ", temper " +
+               std::to_string(static_cast<int>(temper)) + ", seed " + std::to_string(seed) +
+               ", tick " + std::to_string(tick);
+  }
+  return {};
+}
+
+/// The same for every temper on a gate of its own, in every setting.
+void run_all(std::uint64_t ordinary, std::uint64_t others, int ticks) {
+  for (const GateSetting& setting : kGateSettings) {
+    const std::uint64_t sequences = &setting == &kGateSettings.front() ? ordinary : others;
+    for (int temper = 0; temper < kTempers; ++temper) {
+      GateRules rules(setting);
+      EXPECT_EQ(run(static_cast<Temper>(temper), setting, rules, sequences, ticks), "");
+    }
+  }
+}
+
+std::uint64_t count(const GateRules& rules, firmware::gate::Stage stage) {
+  return rules.gate().counters()[static_cast<std::size_t>(stage)];
+}
+
+TEST(GateProperties, EveryRuleHoldsForEverySequence) {
+  run_all(400 * times(), 150 * times(), 1000);
+}
+
+// What the one before left behind is where the next one starts: each begins with a jump.
+TEST(GateProperties, EveryRuleHoldsForMoreThanAMillionShortSequences) {
+  run_all(150'000, 12'000, 8);
+}
+
+TEST(GateProperties, WhoFleesWithTheForceGetsNoMoreThanTheBudgetAndMostOfIt) {
+  GateRules rules;
+  EXPECT_EQ(run(Temper::kFollow, {}, rules, 50 * times(), 2000), "");
+  EXPECT_GT(rules.most_given_J(), 0.5 * kRulesLimits.energy_J);
+  EXPECT_GT(count(rules, firmware::gate::Stage::kPassivity), 1000u);
+}
+
+TEST(GateProperties, WhoDefeatsTheGuessStillMeetsTheBrake) {
+  GateRules rules;
+  EXPECT_EQ(run(Temper::kRattle, {}, rules, 50 * times(), 2000), "");
+  EXPECT_GT(rules.most_given_J(), 0.5 * kRulesLimits.energy_J);
+}
+
+TEST(GateProperties, WhoPushesForEverComesToTheContinuousForceFromBelow) {
+  GateRules rules;
+  RuleTick push;
+  push.gate.wanted.force_N = {50, 0, 0};
+  push.gate.fresh = push.gate.armed = true;
+  for (int i = 0; i < 10000; ++i) ASSERT_EQ(rules.judge(push), nullptr);
+  EXPECT_GT(rules.most_heat_ratio(), 0.999);
+  EXPECT_NEAR(rules.verdict().wrench.force_N.x, kRulesLimits.continuous_force_N, 0.01);
+  EXPECT_EQ(rules.verdict().limit, model::Fault::kContinuousLimited);
+}
+
+TEST(GateProperties, WhoTwistsForEverComesToTheContinuousTorqueFromBelow) {
+  GateRules rules;
+  RuleTick twist;
+  twist.gate.wanted.torque_Nm = {0, 1, 0};
+  twist.gate.fresh = twist.gate.armed = true;
+  for (int i = 0; i < 10000; ++i) ASSERT_EQ(rules.judge(twist), nullptr);
+  EXPECT_GT(rules.most_torque_heat_ratio(), 0.999);
+  EXPECT_NEAR(rules.verdict().wrench.torque_Nm.y, 0.1, 0.001) << "half of its peak, as the force";
+  EXPECT_EQ(rules.verdict().limit, model::Fault::kContinuousLimited);
+}
+
+// A hand of 150 g leans with 1 N on a wall, on a device of 1 Ns/m at 1 kHz: stable to 2000 N/m.
+struct Wall {
+  double given_J = 0.0, swing_m = 0.0;  // at most; in the last second
+  bool is_latched = false;
+};
+
+Wall lean_on_wall(double stiffness_N_per_m, double budget_J) {
+  model::Limits limits = kRulesLimits;
+  limits.energy_J = budget_J;
+  limits.continuous_force_N = limits.force_N;
+  limits.power_W = 100.0;
+  limits.speed_mps = 10.0 * kRulesLimits.speed_mps;  // only the energy is in question
+  limits.slew_N_per_s = 1e4;
+  firmware::gate::Gate gate(limits, 0.001, 1.0);
+  constexpr double kMass_kg = 0.15, kDamping_Ns_per_m = 1.0, kPush_N = 1.0, kStep_s = 0.25e-3;
+  double x_m = 0.001, v_mps = 0.0, low_m = 1.0, high_m = -1.0;
+  Wall out;
+  for (int tick = 0; tick < 40000; ++tick) {
+    firmware::gate::GateInput input;
+    input.wanted.force_N.x = x_m < 0.0 ? -stiffness_N_per_m * x_m : 0.0;
+    input.tool.position_m.x = x_m;
+    input.tool.velocity_mps.x = v_mps;
+    input.fresh = input.armed = true;
+    const firmware::gate::GateVerdict verdict = gate.judge(input);
+    out.is_latched = out.is_latched || latches(verdict.fault);
+    for (int i = 0; i < 4; ++i) {
+      v_mps +=
+          kStep_s / kMass_kg * (verdict.wrench.force_N.x - kPush_N - kDamping_Ns_per_m * v_mps);
+      x_m += kStep_s * v_mps;
+    }
+    out.given_J = std::max(out.given_J, gate.given_energy_J());
+    if (tick < 39000) continue;
+    low_m = std::min(low_m, x_m);
+    high_m = std::max(high_m, x_m);
+  }
+  out.swing_m = high_m - low_m;
+  return out;
+}
+
+TEST(GateProperties, AWallTooStiffForItsDeviceShakesWithoutTheEnergyStageAndNotWithIt) {
+  for (const double stiffness_N_per_m : {3000.0, 6000.0, 20000.0}) {
+    const Wall without = lean_on_wall(stiffness_N_per_m, 1e9);
+    const Wall with = lean_on_wall(stiffness_N_per_m, 0.08);
+    EXPECT_GT(without.swing_m, 5e-4) << stiffness_N_per_m;
+    EXPECT_LT(with.swing_m, 0.25 * without.swing_m) << stiffness_N_per_m;
+    EXPECT_LT(with.swing_m, stiffness_N_per_m > 5000.0 ? 1e-4 : 2e-4) << stiffness_N_per_m;
+    if (stiffness_N_per_m == 20000.0)
+      EXPECT_NEAR(without.swing_m, 4e-3, 0.5e-3) << "as firmware/README.md says";
+    EXPECT_GT(without.given_J, 0.08) << stiffness_N_per_m;
+    EXPECT_LT(with.given_J, 0.042) << "the damping begins at half of the budget";
+    EXPECT_FALSE(with.is_latched);
+  }
+  const Wall soft = lean_on_wall(1000.0, 0.08);
+  EXPECT_LT(soft.swing_m, 1e-5) << "within the device's stiffness there is nothing to damp";
+  EXPECT_LT(soft.given_J, 0.02);
+}
+
+TEST(GateProperties, EveryStageHasItsSayInEverySetting) {
+  for (const GateSetting& setting : kGateSettings) {
+    const model::Limits& limits = setting.limits;
+    if (!(limits.force_N > 0.0)) continue;
+    GateRules rules(setting);
+    for (int temper = 0; temper < kTempers; ++temper)
+      EXPECT_EQ(run(static_cast<Temper>(temper), setting, rules, 20, 1000), "");
+    const bool any_step = limits.slew_N_per_s * setting.period_s() > 2.0 * limits.force_N;
+    for (std::size_t i = 0; i < firmware::gate::kStageCount; ++i) {
+      if (any_step && static_cast<firmware::gate::Stage>(i) == firmware::gate::Stage::kSlew)
+        continue;
+      const std::uint64_t least = &setting == &kGateSettings.front() ? 100 : 20;
+      EXPECT_GT(rules.gate().counters()[i], least)
+          << firmware::gate::kStageName[i] << ", " << setting.name;
+    }
+  }
+}
+
+TEST(GateProperties, TheWholeBudgetAndTheContinuousForceAreThereInEverySetting) {
+  for (const GateSetting& setting : kGateSettings) {
+    if (!(setting.limits.force_N > 0.0)) continue;
+    GateRules flee(setting), push(setting);
+    const int ticks = setting.rate_Hz > 1000.0 ? 5000 : 2000;  // 25 s and more of heat
+    EXPECT_EQ(run(Temper::kFollow, setting, flee, 50, ticks), "");
+    EXPECT_EQ(run(Temper::kPush, setting, push, 50, ticks), "");
+    EXPECT_GT(flee.most_given_J(), 0.99 * setting.limits.energy_J) << setting.name;
+    EXPECT_GT(push.most_heat_ratio(), 0.99) << setting.name;
+    EXPECT_GT(push.most_torque_heat_ratio(), setting.limits.torque_Nm > 0.0 ? 0.99 : -1.0)
+        << setting.name;
+  }
+}
+
+/// What a scene says for a setting, with the limit at its edge made so much smaller.
+std::vector<std::string> scene_words(const GateSetting& setting, double edge_ratio) {
+  const model::Limits& l = setting.limits;
+  std::vector<std::string> words{fmt::format("rate_Hz={}", setting.rate_Hz)};
+  const auto say = [&](const std::string& key, double value) {
+    const bool is_edge = setting.edge != nullptr && key == setting.edge;
+    words.push_back(fmt::format("limits.{}={}", key, is_edge ? edge_ratio * value : value));
+  };
+  say("force_N", l.force_N);
+  say("torque_Nm", l.torque_Nm);
+  say("slew_N_per_s", l.slew_N_per_s);
+  say("ramp_s", l.ramp_s);
+  say("workspace_radius_m", l.workspace_radius_m);
+  say("workspace_half_length_m", l.workspace_half_length_m);
+  say("speed_mps", l.speed_mps);
+  say("turn_radps", l.turn_radps);
+  say("energy_J", l.energy_J);
+  say("recovery_W", l.recovery_W);
+  say("continuous_force_N", l.continuous_force_N);
+  say("thermal_time_s", l.thermal_time_s);
+  say("power_W", l.power_W);
+  return words;
+}
+
+TEST(GateProperties, ASceneMaySayEachSettingAndNothingBeyondItsEdge) {
+  const std::string liver = TACT_SOURCE_DIR "/model/scenes/liver.toml";
+  for (const GateSetting& setting : kGateSettings) {
+    const auto scene = model::scene::load_scene(liver, scene_words(setting, 1.0));
+    ASSERT_TRUE(scene) << setting.name << ": " << scene.error().sentence;
+    EXPECT_EQ(scene->limits.thermal_time_s, setting.limits.thermal_time_s) << setting.name;
+    if (setting.edge == nullptr) continue;
+    const auto beyond = model::scene::load_scene(liver, scene_words(setting, 0.9999));
+    ASSERT_FALSE(beyond) << setting.name;
+    EXPECT_NE(beyond.error().sentence.find(setting.edge), std::string::npos)
+        << beyond.error().sentence;
+  }
+}
+
+TEST(GateProperties, JudgingLeavesTheHeapAlone) {
+  GateRules rules;
+  Sequence sequence(1, Temper::kAny);
+  const NoAlloc guard;
+  for (int i = 0; i < 10000; ++i) rules.judge(sequence.next({}));
+  EXPECT_EQ(guard.calls(), 0u);
+}
+
+}  // namespace tact::tests::gate_properties_test

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/loop/controller.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "model/scene/tissue.h"
+#include "tests/support/no_alloc.h"
+#include "tests/support/test_scene.h"
+
+namespace tact::firmware::loop::controller_test {
+
+constexpr double kPeriod_s = 1e-3;
+constexpr double kBall_m = 0.004;
+
+// A spring that can be told to break, and counts the blades that went through it.
+class PuppetLaw final : public model::contact::SiteLaw {
+ public:
+  model::contact::SiteResponse respond(const model::contact::Indentation& in) RT_SAFE override {
+    return {.law = {.force_N = 200.0 * in.depth_m}};
+  }
+  void leave(std::size_t) RT_SAFE override {}
+  void cut(const model::contact::BladeSweep&) RT_SAFE override { ++cuts; }
+  void advance() RT_SAFE override {}
+  bool broke() const RT_SAFE override { return is_broken; }
+  std::size_t profile(const model::contact::Indentation&,
+                      std::span<double>) const RT_SAFE override {
+    return 0;
+  }
+  double ring_pitch_m() const RT_SAFE override { return 1e-3; }
+
+  bool is_broken = false;
+  int cuts = 0;
+};
+
+// A controller on a plate, ticked by hand: the test is device and clock.
+class ControllerTest : public testing::Test {
+ protected:
+  ControllerTest() { use(true); }
+
+  void use(bool hard_real_time) {
+    model::contact::ContactScene contact = tissue_->contact_scene();
+    contact.law = &law;
+    contact.blade = model::contact::Blade{.a_m = {0, 0, 0}, .b_m = {0, 0.01, 0}};
+    controller = std::make_unique<Controller>(contact, gate::Gate(scene_.limits, kPeriod_s, 1.0),
+                                              hard_real_time);
+  }
+  TickOutput tick(std::uint32_t skipped = 0) {
+    input.sample.fresh = true;
+    input.sample.tool.position_m.z = kBall_m - depth_m;
+    input.skipped_periods = skipped;
+    return controller->tick(input);
+  }
+  // Down from above, as a hand does, until the ramp is over.
+  void press() {
+    input.commands.arm = true;
+    depth_m = -0.002;
+    for (int i = 0; i < 600; ++i) tick();
+    for (; depth_m < 0.003; depth_m += 5e-5) tick();
+    for (int i = 0; i < 20; ++i) tick();
+    ASSERT_GT(tick().written.force_N.z, 0.5);
+  }
+
+  PuppetLaw law;
+  TickInput input;
+  double depth_m = 0.0;
+  std::unique_ptr<Controller> controller;
+
+ private:
+  model::scene::Scene scene_ = tests::make_plate_scene();
+  std::unique_ptr<model::scene::Tissue> tissue_ = std::move(*model::scene::make_tissue(scene_));
+};
+
+TEST_F(ControllerTest, ALawThatBreaksStopsTheForceInTheSameTick) {
+  press();
+  const tests::NoAlloc guard;
+  law.is_broken = true;
+  const TickOutput broken = tick();
+  EXPECT_EQ(broken.written, model::Wrench{});
+  EXPECT_EQ(broken.fault, Fault::kLawBroke);
+  EXPECT_EQ(broken.state, State::kStopped);
+  law.is_broken = false;
+  EXPECT_EQ(tick().fault, Fault::kLawBroke) << "latched";
+  EXPECT_EQ(tick().written, model::Wrench{});
+  EXPECT_EQ(guard.calls(), 0u);
+}
+
+TEST_F(ControllerTest, ABrokenLawIsNeverArmed) {
+  law.is_broken = true;
+  input.commands.arm = true;
+  depth_m = 0.003;
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(tick().written, model::Wrench{});
+  EXPECT_EQ(tick().state, State::kStopped);
+}
+
+TEST_F(ControllerTest, OneSkippedPeriodChangesNothing) {
+  press();
+  const model::Wrench before = tick().written;
+  EXPECT_NEAR(tick(1).written.force_N.z, before.force_N.z, 1e-9);
+}
+
+TEST_F(ControllerTest, WhatIsPressedAfterAGapComesWithoutForce) {
+  press();
+  tick(2);
+  for (int i = 0; i < 20; ++i) tick();
+  EXPECT_EQ(tick().written, model::Wrench{}) << "two periods unseen: the contact starts anew";
+  EXPECT_EQ(tick().state, State::kArmed);
+}
+
+TEST_F(ControllerTest, AMissingSampleAndASkippedPeriodMakeAGapTogether) {
+  press();
+  input.sample.fresh = false;
+  controller->tick(input);
+  tick(1);
+  for (int i = 0; i < 20; ++i) tick();
+  EXPECT_EQ(tick().written, model::Wrench{});
+}
+
+TEST_F(ControllerTest, TwentyPeriodsSkippedAtOnceLatchInTheSameTick) {
+  press();
+  EXPECT_EQ(tick(19).fault, Fault::kNone);
+  const TickOutput late = tick(20);
+  EXPECT_EQ(late.written, model::Wrench{});
+  EXPECT_EQ(late.fault, Fault::kLoopLate);
+  EXPECT_EQ(tick().fault, Fault::kLoopLate) << "latched";
+  EXPECT_EQ(tick().state, State::kStopped);
+}
+
+TEST_F(ControllerTest, TwentyLateTicksInARowLatch) {
+  press();
+  for (int i = 0; i < 19; ++i) EXPECT_EQ(tick(1).fault, Fault::kNone);
+  tick();  // one in time
+  for (int i = 0; i < 19; ++i) EXPECT_EQ(tick(1).fault, Fault::kNone);
+  EXPECT_EQ(tick(1).fault, Fault::kLoopLate);
+}
+
+TEST_F(ControllerTest, WithoutHardRealTimeAStallIsBorneAndOnlyTheRowLatches) {
+  use(false);
+  press();
+  EXPECT_EQ(tick(5000).fault, Fault::kNone);
+  EXPECT_EQ(tick().state, State::kArmed);
+  for (int i = 0; i < 20; ++i) tick();
+  EXPECT_EQ(tick().written, model::Wrench{}) << "the contact starts anew";
+  for (int i = 0; i < 99; ++i) EXPECT_EQ(tick(80).fault, Fault::kNone);
+  const TickOutput late = tick(80);
+  EXPECT_EQ(late.fault, Fault::kLoopLate);
+  EXPECT_EQ(late.written, model::Wrench{});
+}
+
+TEST_F(ControllerTest, ALateLoopThatPushesNothingIsNoFault) {
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(tick(30).fault, Fault::kNone);
+  EXPECT_EQ(tick().state, State::kReady);
+}
+
+TEST_F(ControllerTest, ABladeCutsOnlyWhileArmed) {
+  for (int i = 0; i < 10; ++i) tick();
+  EXPECT_EQ(law.cuts, 0);
+  press();
+  const int armed_cuts = law.cuts;
+  EXPECT_GT(armed_cuts, 100);
+  input.device_fault = Fault::kDeviceFailed;
+  tick();
+  const int at_fault = law.cuts;
+  for (int i = 0; i < 10; ++i) tick();
+  EXPECT_EQ(law.cuts, at_fault) << "a stopped controller leaves the tissue alone";
+}
+
+}  // namespace tact::firmware::loop::controller_test

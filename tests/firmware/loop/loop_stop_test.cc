@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// What stops a loop, and what must happen before anything moves again.
+#include <gtest/gtest.h>
+
+#include "tests/support/puppet_loop.h"
+
+namespace tact::firmware::loop::loop_stop_test {
+
+using LoopStop = PuppetLoop;
+
+TEST_F(LoopStop, AnOpenEmergencyStopTakesTheForceInTheSameTick) {
+  press();
+  lines.fault = Fault::kEmergencyStop;
+  run_ticks(1);
+  EXPECT_EQ(device.last, model::Wrench{});
+  EXPECT_EQ(newest().output.fault, Fault::kEmergencyStop);
+  EXPECT_FALSE(lines.last.healthy) << "no heartbeat while a fault stands";
+  EXPECT_FALSE(lines.last.armed);
+}
+
+TEST_F(LoopStop, AReleasedEmergencyStopMovesNothingWithoutAResetAndAnArmEdge) {
+  press();
+  lines.fault = Fault::kEmergencyStop;
+  run_ticks(1);
+  lines.fault = Fault::kNone;
+  run_ticks(100);
+  EXPECT_EQ(device.last, model::Wrench{});
+  requests.reset.store(true);  // while arm still stands
+  run_ticks(5);
+  EXPECT_EQ(newest().output.state, State::kStopped);
+  requests.reset.store(false);
+  requests.arm.store(false);
+  run_ticks(1);
+  requests.reset.store(true);
+  run_ticks(5);
+  EXPECT_EQ(newest().output.state, State::kReady);
+  EXPECT_EQ(device.last, model::Wrench{});
+  EXPECT_TRUE(lines.last.healthy);
+}
+
+TEST_F(LoopStop, ThePermissionGoesBeforeTheForce) {
+  press();
+  lines.device_writes = &device.writes;
+  const int before = device.writes;
+  lines.fault = Fault::kLinesDiffer;
+  run_ticks(1);
+  EXPECT_EQ(lines.writes_of_device_before, before);
+  EXPECT_EQ(device.writes, before + 1);
+}
+
+TEST_F(LoopStop, AnEnableLineThatFallsAndRisesBringsNoForceBack) {
+  press();
+  lines.enable = false;  // as after a pause of the heartbeat
+  run_ticks(1);
+  EXPECT_EQ(device.last, model::Wrench{});
+  EXPECT_EQ(newest().output.fault, Fault::kPowerLost);
+  lines.enable = true;
+  run_ticks(200);
+  EXPECT_EQ(device.last, model::Wrench{});
+}
+
+TEST_F(LoopStop, ADeviceWithoutPowerTellsWhereItIsAndIsNotArmed) {
+  device.can_push = false;
+  device.height_m = 0.006;
+  requests.arm.store(true);
+  run_ticks(20);
+  EXPECT_EQ(newest().output.state, State::kReady);
+  device.can_push = true;
+  run_ticks(1);
+  EXPECT_EQ(newest().output.state, State::kArmed);
+}
+
+TEST_F(LoopStop, TheDeviceIsPoweredAsTheLinesSay) {
+  lines.enable = false;
+  run_ticks(2);
+  EXPECT_FALSE(device.permitted);
+  lines.enable = true;
+  run_ticks(1);
+  EXPECT_TRUE(device.permitted);
+  requests.stop.store(true);
+  loop.run();
+  EXPECT_FALSE(device.permitted) << "whatever ends the loop";
+}
+
+TEST_F(LoopStop, LinesThatCannotBeSetStopInTheNextTick) {
+  press();
+  lines.write_fault = Fault::kLinesLost;
+  run_ticks(2);
+  EXPECT_EQ(newest().output.fault, Fault::kLinesLost);
+  EXPECT_EQ(device.last, model::Wrench{});
+}
+
+TEST_F(LoopStop, ALateTickGetsNoHeartbeat) {
+  run_ticks(10);
+  EXPECT_TRUE(lines.last.healthy);
+  device.slow_ns = 3'400'000;
+  run_ticks(2);  // the tick after the late one would vouch for it
+  EXPECT_FALSE(lines.last.healthy);
+  run_ticks(1);
+  EXPECT_TRUE(lines.last.healthy);
+}
+
+TEST_F(LoopStop, TheScopeLineIsUpOncePerTick) {
+  run_ticks(7);
+  EXPECT_EQ(lines.ups, 7);
+  EXPECT_EQ(lines.downs, 7);
+}
+
+TEST_F(LoopStop, TellsWhenForceStopped) {
+  press();
+  const std::int64_t before_ns = clock.now_ns();
+  device.silent = true;
+  run_ticks(25);
+  const StopTimes stop = loop.statistics().stop;
+  EXPECT_GT(stop.missed_ns, before_ns);
+  EXPECT_LE(stop.missed_ns, before_ns + 1'000'000);
+  EXPECT_NEAR(static_cast<double>(stop.fault_ns - stop.missed_ns), 19e6, 1.0) << "20 in a row";
+  EXPECT_LE(stop.zero_ns - stop.missed_ns, 11'000'000) << "10 ms from the second";
+  EXPECT_GE(stop.zero_ns - stop.missed_ns, 9'000'000) << "a fade, not a cut";
+}
+
+}  // namespace tact::firmware::loop::loop_stop_test

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every fault of a CiA 402 delta: seen, named, latched, and no torque after it.
+#include <gtest/gtest.h>
+
+#include "hal/cia402/cia402_delta.h"
+#include "tests/hal/cia402/cia402_bench.h"
+
+namespace tact::hal::cia402::cia402_faults_test {
+
+using Bench = tests::Cia402Bench;
+
+TEST(Cia402Faults, TorquesFadeWithinTwelveTicksWithoutPositionsAndTheDeviceIsLostAfterTwenty) {
+  Bench bench;
+  bench.run();
+  bench.tick();
+  const int full = bench.drives.axis[0].permille;
+  ASSERT_NE(full, 0) << "gravity";
+  bench.drives.axis[1].says_sample = false;
+  bench.tick();  // what SYNC asked for before is still heard
+  ASSERT_TRUE(bench.sample.fresh);
+  for (int missing = 1; missing < 20; ++missing) {
+    ASSERT_EQ(bench.tick(), Fault::kNone);
+    const int permille = bench.drives.axis[0].permille;
+    if (missing == 1)
+      EXPECT_EQ(permille, full);
+    else if (missing < 11)
+      EXPECT_NEAR(permille, full * (11 - missing) / 10.0, 0.51);
+    else
+      for (const auto& axis : bench.drives.axis) EXPECT_EQ(axis.permille, 0);
+  }
+  EXPECT_EQ(bench.tick(), Fault::kDeviceLost);
+  EXPECT_FALSE(bench.device->ready());
+  EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): no position for 20 ms"))
+      << bench.device->trouble();
+  bench.expect_stopped();
+  bench.expect_latched(Fault::kDeviceLost);
+}
+
+TEST(Cia402Faults, AFaultStateStopsAllThreeInTheSameTickAndGetsItsReason) {
+  Bench bench;
+  bench.run();
+  bench.drives.axis[1].status = 0x08;
+  bench.drives.axis[1].stuck_fault = true;
+  bench.tick({0.0, 0.0, 5.0});  // its sample is on the way
+  EXPECT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kDriveFault);
+  EXPECT_EQ(bench.drives.axis[0].controlword, 0x02);
+  EXPECT_EQ(bench.drives.axis[0].permille, 0);
+  EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): the drive is in its fault state"));
+  bench.drives.say_emergency(bench.drives.axis[1], 0x3220);
+  bench.tick();
+  EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): DC bus voltage too low"))
+      << bench.device->trouble();
+  bench.expect_latched(Fault::kDriveFault);
+}
+
+TEST(Cia402Faults, AnEmergencyIsAFaultAndItsEndIsNone) {
+  Bench bench;
+  bench.run();
+  bench.drives.say_emergency(bench.drives.axis[0], 0x0000);
+  EXPECT_EQ(bench.tick(), Fault::kNone);
+  bench.drives.say_emergency(bench.drives.axis[2], 0x8130);
+  EXPECT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kDriveFault);
+  EXPECT_TRUE(bench.says("arm 3 (node 3 on can0): The drive missed the controller's heartbeat"))
+      << bench.device->trouble();
+  bench.expect_stopped();
+  bench.drives.say_emergency(bench.drives.axis[2], 0x0000);
+  bench.expect_latched(Fault::kDriveFault);
+}
+
+TEST(Cia402Faults, LeavingOperationEnabledIsAFault) {
+  Bench bench;
+  bench.run();
+  bench.drives.axis[0].status = 0x23;
+  bench.drives.axis[0].obeys = false;
+  EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 3), 0);
+  EXPECT_TRUE(
+      bench.says("arm 1 (node 1 on can0): the drive left operation by itself and is "
+                 "switched_on"))
+      << bench.device->trouble();
+  bench.expect_latched(Fault::kDriveFault);
+}
+
+TEST(Cia402Faults, ADriveThatDoesNotFollowTheTorqueIsNamed) {
+  Bench bench;
+  bench.run();
+  bench.drives.axis[1].follows = false;
+  const int ticks = bench.ticks_until(Fault::kDriveFault, 100);
+  EXPECT_GE(ticks, 20);
+  EXPECT_LE(ticks, 22);
+  EXPECT_TRUE(bench.says("does not follow the torque")) << bench.device->trouble();
+}
+
+TEST(Cia402Faults, ASilentDriveIsFoundWithin36Milliseconds) {
+  Bench bench;
+  bench.run();
+  bench.drives.axis[2].says_heartbeat = false;
+  const int ticks = bench.ticks_until(Fault::kDriveSilent, 100);
+  EXPECT_GT(ticks, 25);
+  EXPECT_LE(ticks, 36);
+  EXPECT_TRUE(bench.says("arm 3 (node 3 on can0): no heartbeat")) << bench.device->trouble();
+  bench.expect_stopped();
+  bench.expect_latched(Fault::kDriveSilent);
+}
+
+TEST(Cia402Faults, ADriveThatRestartsIsNamed) {
+  Bench bench;
+  bench.run();
+  bench.drives.axis[0].nmt = NmtState::kBoot;
+  bench.drives.say_heartbeat(bench.drives.axis[0]);
+  EXPECT_EQ(bench.tick(), Fault::kDriveFault);
+  EXPECT_TRUE(bench.says("arm 1 (node 1 on can0): the drive restarted")) << bench.device->trouble();
+}
+
+TEST(Cia402Faults, ADriveThatNeverEnablesIsNamed) {
+  Bench bench;
+  ASSERT_EQ(bench.open(), "");
+  bench.drives.axis[1].obeys = false;
+  const int ticks = bench.ticks_until(Fault::kDriveFault, 4000);
+  EXPECT_GT(ticks, 2900);
+  EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): the drive does not enable operation"))
+      << bench.device->trouble();
+}
+
+TEST(Cia402Faults, TheBusIsJudgedAsWithEveryDrive) {
+  Bench off, down, full;
+  off.run();
+  off.drives.bus.say_error(0x040, 0);
+  EXPECT_EQ(off.tick({0.0, 0.0, 5.0}), Fault::kBusOff);
+  off.expect_stopped();
+  off.expect_latched(Fault::kBusOff);
+  down.run();
+  down.drives.bus.socket().send_error = ENETDOWN;
+  EXPECT_EQ(down.tick(), Fault::kBusDown);
+  down.expect_latched(Fault::kBusDown);
+  full.run();
+  full.drives.bus.socket().send_error = ENOBUFS;
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(full.tick(), Fault::kNone);
+  full.drives.bus.socket().send_error = 0;
+  full.tick();
+  EXPECT_FALSE(full.sample.fresh) << "no SYNC, no sample";
+  full.tick();
+  EXPECT_TRUE(full.sample.fresh);
+}
+
+}  // namespace tact::hal::cia402::cia402_faults_test

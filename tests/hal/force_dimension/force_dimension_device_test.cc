@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/force_dimension/force_dimension_device.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <ctime>
+#include <functional>
+#include <limits>
+#include <numbers>
+
+#include "hal/force_dimension/sdk_worker.h"
+#include "hal/registry/open_device.h"
+#include "tests/support/no_alloc.h"
+#include "tests/support/stub_dhd/stub_client.h"
+
+namespace tact::hal::force_dimension::force_dimension_device_test {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+std::int64_t now_ns() {
+  timespec t{};
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return t.tv_sec * 1'000'000'000 + t.tv_nsec;
+}
+void sleep_ms(int ms) {
+  const timespec t{.tv_sec = ms / 1000, .tv_nsec = ms % 1000 * kMs};
+  nanosleep(&t, nullptr);
+}
+
+/// The device in a loop of about 1 ms, as tactd drives it.
+class ForceDimension : public testing::Test {
+ protected:
+  void open(int type = 63) {
+    stub.set_type(type);
+    auto opened = registry::open_device(tests::stub_scene());
+    ASSERT_TRUE(opened) << opened.error().sentence;
+    device = std::move(*opened);
+    ticked_ns = now_ns();
+  }
+  /// Ticks until `done` or for 2 s; false after that.
+  bool tick_until(const std::function<bool()>& done, const Wrench& wrench = {}) {
+    for (const std::int64_t end_ns = now_ns() + 2000 * kMs; now_ns() < end_ns;) {
+      tick(wrench);
+      if (done()) return true;
+    }
+    return false;
+  }
+  void tick(const Wrench& wrench = {}) {
+    sleep_ms(1);
+    fault = device->read(sample, now_ns());
+    device->permit(permitted);
+    const Fault written = device->write(wrench);
+    if (fault == Fault::kNone) fault = written;
+    if (now_ns() - ticked_ns > 80 * kMs) ++silences;  // forces go off at 100
+    ticked_ns = now_ns();
+  }
+  bool ready() {
+    return tick_until([&] { return sample.fresh; });
+  }
+  /// What arrives at the device's motors: 0 while its forces are off.
+  Vec3 felt_N() {
+    double force[6];
+    return stub.last_force(force) == 0 ? Vec3{} : Vec3{force[0], force[1], force[2]};
+  }
+
+  tests::StubDhd stub;
+  registry::OpenDevice device;
+  Sample sample;
+  Fault fault = Fault::kNone;
+  bool permitted = true;
+  std::int64_t ticked_ns = 0;
+  int silences = 0;  // of the loop, by other work
+};
+
+TEST_F(ForceDimension, MakesNoForceBeforeTheLoopPermitsIt) {
+  open();
+  permitted = false;
+  for (int i = 0; i < 50; ++i) tick({.force_N = {0, 0, 5}, .torque_Nm = {}});
+  EXPECT_EQ(stub.strongest_N(), 0.0);
+  double force[6];
+  EXPECT_EQ(stub.last_force(force), 0) << "forces are off";
+  EXPECT_TRUE(sample.fresh || ready()) << "the pose is told without power";
+}
+
+TEST_F(ForceDimension, IsFreshOnlyAfterTheForcesAreOnWithZeroShown) {
+  open();
+  for (int i = 0; i < 500; ++i) {
+    tick();
+    double force[6];
+    const bool on = stub.last_force(force) != 0;
+    if (!sample.fresh) continue;
+    EXPECT_TRUE(on);
+    return;
+  }
+  FAIL() << "never fresh";
+}
+
+TEST_F(ForceDimension, TheMakersAxesAreThoseOfW) {
+  open();
+  stub.hold(0.011, -0.022, 0.033);
+  ASSERT_TRUE(ready());
+  tick_until([&] { return sample.fresh && sample.tool.position_m == Vec3{0.011, -0.022, 0.033}; });
+  EXPECT_EQ(sample.tool.position_m, (Vec3{0.011, -0.022, 0.033}));
+  EXPECT_TRUE(tick_until([&] { return felt_N() == Vec3{1, 2, 3}; },
+                         {.force_N = {1, 2, 3}, .torque_Nm = {}}));
+}
+
+TEST_F(ForceDimension, TooMuchForceIsScaledWithItsDirection) {
+  open();
+  ASSERT_TRUE(ready());
+  EXPECT_TRUE(
+      tick_until([&] { return norm(felt_N()) > 19.0; }, {.force_N = {30, 0, 40}, .torque_Nm = {}}));
+  EXPECT_NEAR(felt_N().x, 12.0, 1e-12);
+  EXPECT_NEAR(felt_N().z, 16.0, 1e-12);
+}
+
+TEST_F(ForceDimension, NoForceIsMadeOfNaNAndNoTorqueWithoutMotors) {
+  open();
+  ASSERT_TRUE(ready());
+  const double nan = std::nan("");
+  for (int i = 0; i < 20; ++i) {
+    tick({.force_N = {nan, 1, 1}, .torque_Nm = {1, 1, 1}});
+    double force[6];
+    stub.last_force(force);
+    for (const double f : force) ASSERT_EQ(f, 0.0);
+  }
+}
+
+TEST_F(ForceDimension, OneReadAndOneForcePerCycleAndNoneFromTheLoop) {
+  open();
+  ASSERT_TRUE(ready());
+  const long reads = stub.calls("dhdGetPositionAndOrientationFrame");
+  const long forces = stub.calls("dhdSetForceAndTorqueAndGripperForce");
+  for (int i = 0; i < 200; ++i) tick();
+  const long more = stub.calls("dhdGetPositionAndOrientationFrame") - reads;
+  EXPECT_LE(std::abs(stub.calls("dhdSetForceAndTorqueAndGripperForce") - forces - more), 1);
+  EXPECT_GT(more, 200);
+  device->read(sample, now_ns());  // without a sleep in between: nothing is asked here
+  EXPECT_LE(stub.calls("dhdEnableForce"), 2 + 2 * silences)
+      << "once off while opening, once on; the same for each silence that a busy PC made";
+}
+
+TEST_F(ForceDimension, SamplesNeverRepeat) {
+  open();
+  ASSERT_TRUE(ready());
+  std::uint64_t before = sample.sequence;
+  for (int i = 0; i < 200; ++i) {
+    tick();
+    if (!sample.fresh) continue;
+    ASSERT_GT(sample.sequence, before);
+    before = sample.sequence;
+  }
+}
+
+TEST_F(ForceDimension, APoseThatTheLibraryCallsOldIsNoSampleAndNoFault) {
+  open();
+  ASSERT_TRUE(ready());
+  stub.set_pose_answer(1);  // the time guard: "nothing new"
+  sleep_ms(20);
+  tick();  // takes what came before
+  for (int i = 0; i < 30; ++i) {
+    tick();
+    ASSERT_FALSE(sample.fresh);
+    ASSERT_EQ(fault, Fault::kNone);
+  }
+}
+
+TEST_F(ForceDimension, ASampleOlderThan5msIsNotFresh) {
+  open();
+  ASSERT_TRUE(ready());
+  sleep_ms(2);
+  EXPECT_EQ(device->read(sample, now_ns() + 6 * kMs), Fault::kNone);
+  EXPECT_FALSE(sample.fresh);
+}
+
+TEST_F(ForceDimension, ALibraryThatHangsStopsNothingButItself) {
+  open();
+  ASSERT_TRUE(ready());
+  stub.set_delay_us(30'000);
+  sleep_ms(5);
+  int fresh = 0;
+  std::int64_t in_calls_ns = 0;
+  for (int i = 0; i < 20; ++i) {
+    const std::int64_t begin_ns = now_ns();
+    device->read(sample, begin_ns);
+    device->write({});
+    in_calls_ns += now_ns() - begin_ns;
+    fresh += sample.fresh ? 1 : 0;
+    sleep_ms(1);
+  }
+  EXPECT_LT(in_calls_ns, 300 * kMs) << "20 calls of 30 ms take 600";
+  EXPECT_LE(fresh, 2) << "what took 30 ms is old";
+  stub.set_delay_us(0);
+}
+
+TEST_F(ForceDimension, ALoopThatDiesTakesItsForceAlong) {
+  open();
+  ASSERT_TRUE(ready());
+  ASSERT_TRUE(
+      tick_until([&] { return felt_N().z == 5.0; }, {.force_N = {0, 0, 5}, .torque_Nm = {}}));
+  double force[6];
+  const auto wait_until = [&](const std::function<bool()>& done) {
+    for (int i = 0; i < 2000 && !done(); ++i) sleep_ms(1);
+    return done();
+  };
+  EXPECT_TRUE(wait_until([&] { return stub.last_force(force) >= 0 && force[2] == 0.0; }));
+  EXPECT_EQ(stub.last_force(force), 1) << "zero, but its weight is still balanced";
+  EXPECT_TRUE(wait_until([&] { return stub.last_force(force) == 0; })) << "then the forces go off";
+}
+
+TEST_F(ForceDimension, WithdrawnPowerSwitchesTheForcesOffAndComesBackThroughZero) {
+  open();
+  ASSERT_TRUE(ready());
+  permitted = false;
+  double force[6];
+  EXPECT_TRUE(tick_until([&] { return stub.last_force(force) == 0; },
+                         {.force_N = {0, 0, 5}, .torque_Nm = {}}));
+  for (int i = 0; i < 200; ++i) tick();
+  EXPECT_EQ(fault, Fault::kNone) << "forces that we switched off are no news";
+  permitted = true;
+  EXPECT_TRUE(tick_until([&] { return stub.last_force(force) == 1 && sample.fresh; }));
+}
+
+TEST_F(ForceDimension, VelocityFollowsTheHandle) {
+  open();
+  ASSERT_TRUE(ready());
+  double fastest_mps = 0.0;
+  tick_until([&] {
+    fastest_mps = std::min(fastest_mps, sample.tool.velocity_mps.z);
+    return sample.tool.position_m.z < -0.005;
+  });
+  // 30 mm by a cosine of 4 s: at most pi/2 * 30 mm / 2 s = 23.6 mm/s
+  EXPECT_LT(fastest_mps, -0.012);
+  EXPECT_GT(fastest_mps, -0.060);
+}
+
+TEST_F(ForceDimension, AWristThatTurnsHasARate) {
+  stub.spin(2.0);
+  open(104);
+  ASSERT_TRUE(ready());
+  EXPECT_TRUE(tick_until([&] {
+    return std::abs(sample.tool.angular_velocity_radps.z - 2.0) < 0.1;
+  })) << sample.tool.angular_velocity_radps.z;
+  EXPECT_NEAR(sample.tool.angular_velocity_radps.x, 0.0, 1e-9);
+  const auto& q = sample.tool.orientation;
+  EXPECT_NEAR(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z, 1.0, 1e-12);
+}
+
+TEST_F(ForceDimension, InfoIsThatOfItsType) {
+  open(104);
+  const DeviceInfo info = device->info();
+  EXPECT_EQ(info.name, "Force Dimension sigma.7 right no. 1234");
+  EXPECT_EQ(info.max_force_N, 12.0);
+  EXPECT_EQ(info.max_torque_Nm, 0.2);
+  ASSERT_TRUE(info.at_tool);
+  EXPECT_EQ(info.at_tool->damping_Ns_per_m, 1.0);
+  EXPECT_EQ(info.damping_key, "device.force_dimension.damping_Ns_per_m");
+}
+
+TEST_F(ForceDimension, StopSwitchesOffAndClosesTwiceWithoutHarm) {
+  open();
+  ASSERT_TRUE(ready());
+  tick({.force_N = {0, 0, 5}, .torque_Nm = {}});
+  device->stop();
+  double force[6];
+  EXPECT_EQ(stub.last_force(force), 0);
+  EXPECT_EQ(force[2], 0.0);
+  EXPECT_FALSE(stub.is_open());
+  device->stop();
+  EXPECT_EQ(stub.calls("dhdClose"), 1);
+}
+
+TEST_F(ForceDimension, TheLoopLeavesTheHeapAlone) {
+  open();
+  ASSERT_TRUE(ready());
+  const tests::NoAlloc guard;
+  for (int i = 0; i < 50; ++i) tick({.force_N = {0, 0, 1}, .torque_Nm = {}});
+  EXPECT_EQ(guard.calls(), 0u);
+}
+
+TEST(SdkWorker, HasAPoseAndAForceForEveryTickOfAFastLoop) {
+  for (const double rate_Hz : {100.0, 1000.0, 4000.0}) EXPECT_EQ(sdk_cycle_ns(rate_Hz), 250'000);
+  EXPECT_EQ(sdk_cycle_ns(8000.0), 125'000);
+  EXPECT_EQ(sdk_cycle_ns(10'000.0), 100'000);
+}
+
+}  // namespace tact::hal::force_dimension::force_dimension_device_test

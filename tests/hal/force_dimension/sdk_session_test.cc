@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/force_dimension/sdk_session.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "hal/force_dimension/sdk_words.h"
+#include "hal/udev_rules.h"
+#include "tests/support/stub_dhd/stub_client.h"
+
+namespace tact::hal::force_dimension::sdk_session_test {
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+class Session : public testing::Test {
+ protected:
+  /// Why it does not open; everything is closed again by then.
+  std::string refusal() {
+    const auto session = open_sdk_session(settings);
+    if (session) {
+      close_sdk_session(*session);
+      return "";
+    }
+    EXPECT_FALSE(stub.is_open());
+    return session.error().sentence;
+  }
+
+  tests::StubDhd stub;
+  model::ForceDimensionSettings settings = tests::stub_scene().device.force_dimension;
+};
+
+TEST_F(Session, OpensADelta3) {
+  const auto session = open_sdk_session(settings);
+  ASSERT_TRUE(session) << session.error().sentence;
+  EXPECT_STREQ(session->type.name, "delta.3");
+  EXPECT_EQ(session->type.max_force_N, 20.0);
+  EXPECT_EQ(session->serial_number, 1234);
+  close_sdk_session(*session);
+  EXPECT_FALSE(stub.is_open());
+}
+
+TEST_F(Session, IsConfiguredOnceAndWarmWithoutForce) {
+  settings.watchdog_s = 0.004;
+  const auto session = open_sdk_session(settings);
+  ASSERT_TRUE(session);
+  int watchdog = 0, time_guard = 7, gravity = 0;
+  stub.settings(&watchdog, &time_guard, &gravity);
+  EXPECT_EQ(watchdog, 32) << "4 ms in units of 125 us";
+  EXPECT_EQ(time_guard, 0);
+  EXPECT_EQ(gravity, 1);
+  EXPECT_EQ(stub.calls("dhdEnableExpertMode"), 1);
+  EXPECT_GE(stub.calls("dhdGetPositionAndOrientationFrame"), 300);
+  EXPECT_GE(stub.calls("dhdSetForceAndTorqueAndGripperForce"), 300);
+  double force[6];
+  EXPECT_EQ(stub.last_force(force), 0) << "forces are off";
+  close_sdk_session(*session);
+}
+
+TEST_F(Session, TheLongestWatchdogFitsItsByte) {
+  settings.watchdog_s = 0.0318;
+  const auto session = open_sdk_session(settings);
+  ASSERT_TRUE(session);
+  int watchdog = 0, time_guard = 0, gravity = 0;
+  stub.settings(&watchdog, &time_guard, &gravity);
+  EXPECT_EQ(watchdog, 254);
+  close_sdk_session(*session);
+}
+
+TEST_F(Session, AMissingLibrarySaysWhereItIsHad) {
+  settings.library = "libdhd-that-is-not-here.so.3";
+  const std::string why = refusal();
+  EXPECT_TRUE(has(why, "libdhd-that-is-not-here.so.3")) << why;
+  EXPECT_TRUE(has(why, "forcedimension.com")) << why;
+  EXPECT_TRUE(has(why, "device.force_dimension.library")) << why;
+}
+
+TEST_F(Session, AnotherLibraryIsRefusedByTheFirstFunctionItLacks) {
+  settings.library = "libm.so.6";
+  EXPECT_TRUE(has(refusal(), "libm.so.6 has no function dhdGetDeviceCount")) << refusal();
+}
+
+TEST_F(Session, NoDevicePrintsTheRule) {
+  stub.set_count(0);
+  EXPECT_TRUE(has(refusal(), kForceDimensionRule)) << refusal();
+}
+
+TEST_F(Session, OneOfSeveralDevicesMustBeNamed) {
+  stub.set_count(2);
+  EXPECT_TRUE(has(refusal(), "say which one by device.force_dimension.id, 0 to 1")) << refusal();
+  settings.id = 1;
+  EXPECT_EQ(refusal(), "");
+  settings.id = 2;
+  EXPECT_TRUE(has(refusal(), "device.force_dimension.id is 2")) << refusal();
+}
+
+TEST_F(Session, ADelta6IsNamedWithTheReason) {
+  stub.set_type(64);
+  EXPECT_TRUE(has(refusal(), "delta.6 (type 64): current SDKs list it among")) << refusal();
+  EXPECT_TRUE(has(refusal(), "use a delta.3, omega, sigma or lambda")) << refusal();
+}
+
+TEST_F(Session, WhatHasNoKnownLimitsIsRefused) {
+  for (const int type : {31, 32, 61, 62, 60, 81, 82, 91, 7777}) {
+    stub.set_type(type);
+    EXPECT_TRUE(has(refusal(), std::to_string(type))) << type;
+  }
+  stub.set_type(60);
+  EXPECT_TRUE(has(refusal(), "device.kind = \"falcon\"")) << refusal();
+}
+
+TEST_F(Session, EveryTypeOfTheMakerOpensWithForceAndRoom) {
+  for (const int type : {63, 33, 34, 35, 36, 37, 206, 104, 105, 203, 108, 109}) {
+    const auto known = force_dimension_type(type);
+    ASSERT_TRUE(known) << type;
+    EXPECT_GE(known->max_force_N, 12.0);
+    EXPECT_GT(known->radius_m, 0.05);
+    EXPECT_GT(known->half_length_m, 0.05);
+    EXPECT_TRUE(known->wrist || known->max_torque_Nm == 0.0) << "no torque without a wrist";
+  }
+}
+
+TEST_F(Session, WithoutCalibrationItSaysHow) {
+  stub.set_status(kSdkReset, 1);
+  EXPECT_TRUE(has(refusal(), "sweep each axis by hand")) << refusal();
+  stub.set_type(104);
+  EXPECT_TRUE(has(refusal(), "moves by itself")) << refusal();
+}
+
+TEST_F(Session, AWristThatDoesNotKnowItsAnglesIsNotCalibrated) {
+  stub.set_type(35);
+  stub.set_status(kSdkWristInit, 0);
+  EXPECT_TRUE(has(refusal(), "omega.7 right is not calibrated")) << refusal();
+  stub.set_type(33);
+  EXPECT_EQ(refusal(), "") << "an omega.3 has no wrist";
+}
+
+TEST_F(Session, NoPowerAndOwnErrorsAreTold) {
+  stub.set_status(kSdkPower, 0);
+  EXPECT_TRUE(has(refusal(), "has no power")) << refusal();
+  stub.reset();
+  stub.set_status(kSdkError, 1);
+  EXPECT_TRUE(has(refusal(), "error of its own")) << refusal();
+}
+
+TEST_F(Session, EveryCallThatFailsIsToldInWords) {
+  constexpr int kInUse = 20;
+  for (const char* function :
+       {"dhdOpenID", "dhdGetStatus", "dhdEnableForce", "dhdEnableExpertMode", "dhdSetTimeGuard",
+        "dhdSetWatchdog", "dhdSetGravityCompensation", "dhdGetPositionAndOrientationFrame",
+        "dhdSetForceAndTorqueAndGripperForce"}) {
+    stub.reset();
+    stub.fail(function, kInUse);
+    EXPECT_TRUE(has(refusal(), "another program uses the device")) << function << refusal();
+  }
+}
+
+TEST_F(Session, TheTimeGuardAndASaturatedMotorAreNoErrors) {
+  for (const int answer : {1, 2}) {
+    stub.set_pose_answer(answer);
+    EXPECT_EQ(refusal(), "") << answer;
+  }
+}
+
+TEST(SdkWords, NoCodeIsBlankOrWithoutACure) {
+  for (int code = -2; code < 30; ++code) {
+    EXPECT_NE(std::strchr(words_of_sdk_error(code), ';'), nullptr) << words_of_sdk_error(code);
+    EXPECT_NE(std::strchr(words_of_force_off(code), ';'), nullptr) << code;
+  }
+}
+
+}  // namespace tact::hal::force_dimension::sdk_session_test

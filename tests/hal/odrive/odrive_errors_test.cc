@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/odrive/odrive_errors.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstring>
+#include <set>
+#include <string>
+
+namespace tact::hal::odrive::odrive_errors_test {
+
+TEST(OdriveErrors, EveryBitOfTheMakerHasItsOwnSentence) {
+  const auto check = [](std::span<const OdriveErrorWords> table, std::uint32_t all) {
+    std::uint32_t bits = 0;
+    std::set<std::string> names, sentences;
+    for (const OdriveErrorWords& one : table) {
+      EXPECT_TRUE(std::has_single_bit(one.bit)) << one.name;
+      EXPECT_EQ(bits & one.bit, 0u) << one.name;
+      bits |= one.bit;
+      names.insert(one.name);
+      sentences.insert(one.sentence);
+      const std::string sentence = one.sentence;
+      EXPECT_GT(sentence.size(), 30u) << one.name;
+      EXPECT_TRUE(sentence.back() == '.' || sentence.back() == '?') << sentence;
+    }
+    EXPECT_EQ(bits, all);
+    EXPECT_EQ(names.size(), table.size());
+    EXPECT_EQ(sentences.size(), table.size());
+  };
+  check(odrive_error_words(), 0x5F01FF7F);
+  check(odrive_error_words_05(), 0x000E7FFF);
+}
+
+TEST(OdriveErrors, TheSameBitMeansAnotherThingInTheOtherGeneration) {
+  EXPECT_STREQ(first_odrive_error(0x200)->name, "DC_BUS_UNDER_VOLTAGE");
+  EXPECT_STREQ(first_odrive_error_05(0x200)->name, "CONTROLLER_FAILED");
+  EXPECT_STREQ(first_odrive_error(0x1000000)->name, "WATCHDOG_TIMER_EXPIRED");
+  EXPECT_STREQ(first_odrive_error_05(0x800)->name, "WATCHDOG_TIMER_EXPIRED");
+}
+
+TEST(OdriveErrors, NoErrorHasNoWordsAndAnUnknownOneHasSome) {
+  EXPECT_EQ(first_odrive_error(0), nullptr);
+  EXPECT_EQ(first_odrive_error_05(0), nullptr);
+  for (int bit = 0; bit < 32; ++bit) {
+    for (const OdriveErrorWords* words :
+         {first_odrive_error(1u << bit), first_odrive_error_05(1u << bit)}) {
+      ASSERT_NE(words, nullptr) << bit;
+      EXPECT_GT(std::strlen(words->sentence), 30u) << bit;
+      EXPECT_TRUE(words->bit == 1u << bit || std::string(words->name) == "UNKNOWN") << bit;
+    }
+  }
+  EXPECT_STREQ(first_odrive_error(0x80)->name, "UNKNOWN");
+  EXPECT_STREQ(first_odrive_error(0x300)->name, "DC_BUS_OVER_VOLTAGE");
+}
+
+}  // namespace tact::hal::odrive::odrive_errors_test

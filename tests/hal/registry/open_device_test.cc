@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/registry/open_device.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace tact::hal::registry::open_device_test {
+
+model::scene::Scene scene(const char* kind) {
+  model::scene::Scene scene;
+  scene.path = "liver.toml";
+  scene.device = {.kind = kind,
+                  .sim = {.counts_per_turn = 100'000.0,
+                          .sample_delay_s = 0.3e-3,
+                          .joint_friction_Nm = 0.01,
+                          .joint_damping_Nms_per_rad = 0.002,
+                          .observer_bandwidth_Hz = 40.0}};
+  scene.hand.path = {{}};
+  return scene;
+}
+
+class RealDevice final : public Device {
+ public:
+  DeviceInfo info() const override { return {.name = "a real one"}; }
+  Fault read(Sample&, std::int64_t) RT_SAFE override { return Fault::kNone; }
+  Fault write(const Wrench&) RT_SAFE override { return Fault::kNone; }
+  void stop() override {
+    if (stops != nullptr) ++*stops;
+  }
+  int* stops = nullptr;
+};
+
+TEST(OpenDevice, OpensTheSimulatedDelta) {
+  const auto device = open_device(scene("sim-delta"));
+  ASSERT_TRUE(device) << device.error().sentence;
+  EXPECT_EQ((*device)->info().name, "simulated delta 360 x 300 mm");
+  EXPECT_TRUE(is_simulated(**device));
+}
+
+TEST(OpenDevice, IsStoppedWhateverEndsItsHolder) {
+  int stops = 0;
+  {
+    auto* real = new RealDevice;
+    real->stops = &stops;
+    const tact::hal::registry::OpenDevice device(real);
+  }
+  EXPECT_EQ(stops, 1);
+}
+
+TEST(OpenDevice, AnUnknownKindListsTheKnownOnes) {
+  const auto device = open_device(scene("sim-dleta"));
+  ASSERT_FALSE(device);
+  const std::string& said = device.error().sentence;
+  EXPECT_TRUE(said.starts_with(
+      "liver.toml: device.kind is \"sim-dleta\", which this build does not know; use "
+      "\"sim-delta\", "))
+      << said;
+  EXPECT_NE(said.find(", \"can-odrive\""), std::string::npos) << said;
+}
+
+TEST(OpenDevice, PassesOnWhatTheDeviceRefuses) {
+  model::scene::Scene bad = scene("sim-delta");
+  bad.device.sim.counts_per_turn = -1.0;
+  const auto device = open_device(bad);
+  ASSERT_FALSE(device);
+  EXPECT_NE(device.error().sentence.find("liver.toml"), std::string::npos);
+  EXPECT_NE(device.error().sentence.find("counts_per_turn"), std::string::npos);
+}
+
+TEST(OpenDevice, OnlyASimulatedHandCanBeMoved) {
+  const std::string path = testing::TempDir() + "tact-open-" + std::to_string(getpid()) + ".sock";
+  const auto device = open_device(scene("sim-delta"));
+  ASSERT_TRUE(device);
+  EXPECT_TRUE(start_hand_socket(**device, path));
+  RealDevice real;
+  EXPECT_FALSE(is_simulated(real));
+  EXPECT_FALSE(start_hand_socket(real, path));
+}
+
+}  // namespace tact::hal::registry::open_device_test

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/record/recording.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include "host/record/operator_record.h"
+#include "host/record/recording_csv.h"
+#include "tests/host/record/spoilt_file.h"
+#include "tests/support/sentence.h"
+#include "tests/support/telemetry_source.h"
+
+namespace tact::host::record::recording_test {
+
+using tests::sentence_of;
+
+constexpr std::size_t kFrames = 50;
+
+class RecordingFile : public ::testing::Test {
+ protected:
+  RecordingFile()
+      : path_(std::filesystem::temp_directory_path() /
+              ("tact-recording-" + std::to_string(getpid()) + ".tact")) {
+    std::filesystem::remove(path_);
+    RecordingWriter writer;
+    EXPECT_EQ(sentence_of(writer.open(path_, hello_, mesh_)), "");
+    for (std::size_t i = 0; i < kFrames; ++i) EXPECT_EQ(sentence_of(writer.write(frame(i))), "");
+    EXPECT_EQ(sentence_of(writer.close()), "");
+  }
+  ~RecordingFile() override { std::filesystem::remove(path_); }
+
+  static Frame frame(std::size_t i) {
+    Frame frame =
+        test::make_frame(static_cast<float>(i), firmware::telemetry::SiteState::kTouching);
+    frame.tick = i;
+    frame.time_ns = static_cast<std::int64_t>(i) * 10'000'000;
+    return frame;
+  }
+  std::uint64_t first_frame_byte() const {
+    return sizeof(FileHeader) + sizeof(Hello) + mesh_.size();
+  }
+
+  std::string path_;
+  Hello hello_ = test::make_hello(3, 1, 3, 1);
+  MeshBytes mesh_ = test::TinyMeshes{}.bytes();
+};
+
+TEST_F(RecordingFile, ComesBackAsItWasWritten) {
+  const ReadResult read = read_recording(path_);
+  EXPECT_EQ(read.damage, "");
+  ASSERT_TRUE(read.usable);
+  ASSERT_EQ(read.recording.frames.size(), kFrames);
+  EXPECT_EQ(read.recording.mesh, mesh_);
+  EXPECT_NEAR(read.recording.length_s(), 0.49, 1e-12);
+  for (std::size_t i = 0; i < kFrames; ++i)
+    EXPECT_EQ(recording_frame(read.recording.frames[i]), recording_frame(frame(i)));
+}
+
+TEST_F(RecordingFile, KeepsEveryWholeFrameOfATruncatedFile) {
+  const std::uint64_t whole = 20;
+  std::filesystem::resize_file(path_, first_frame_byte() + whole * sizeof(FrameRecord) + 100);
+  const ReadResult read = read_recording(path_);
+  ASSERT_TRUE(read.usable);
+  EXPECT_EQ(read.recording.frames.size(), whole);
+  EXPECT_NE(read.damage.find("cut off"), std::string::npos) << read.damage;
+  EXPECT_NE(read.damage.find("20 good frames"), std::string::npos) << read.damage;
+}
+
+TEST_F(RecordingFile, LosesOnlyTheFrameThatIsDamaged) {
+  tests::flip_byte(path_, first_frame_byte() + 7 * sizeof(FrameRecord) + 300);
+  const ReadResult read = read_recording(path_);
+  ASSERT_TRUE(read.usable);
+  ASSERT_EQ(read.recording.frames.size(), kFrames - 1);
+  EXPECT_EQ(read.recording.frames[6].tick, 6u);
+  EXPECT_EQ(read.recording.frames[7].tick, 8u);
+  EXPECT_NE(read.damage.find("1 of 50 frames"), std::string::npos) << read.damage;
+}
+
+TEST_F(RecordingFile, IsRefusedWhenItsSceneIsDamaged) {
+  tests::flip_byte(path_, sizeof(FileHeader) + sizeof(Hello) + 3);
+  const ReadResult read = read_recording(path_);
+  EXPECT_FALSE(read.usable);
+  EXPECT_NE(read.damage.find("checksum"), std::string::npos) << read.damage;
+}
+
+TEST_F(RecordingFile, IsRefusedWhenAnotherVersionMadeIt) {
+  tests::flip_byte(path_, sizeof kRecordingMagic);
+  const ReadResult read = read_recording(path_);
+  EXPECT_FALSE(read.usable);
+  EXPECT_NE(read.damage.find("version"), std::string::npos) << read.damage;
+}
+
+TEST_F(RecordingFile, OfOtherSizesButTheSameVersionSaysSo) {
+  tests::flip_byte(path_, offsetof(FileHeader, frame_bytes));
+  const ReadResult read = read_recording(path_);
+  EXPECT_FALSE(read.usable);
+  EXPECT_NE(read.damage.find("though both say version 3"), std::string::npos) << read.damage;
+}
+
+TEST_F(RecordingFile, SurvivesEveryLength) {
+  for (std::uint64_t size = first_frame_byte() + 900; size > 0; size = size * 9 / 10) {
+    std::filesystem::resize_file(path_, size);
+    const ReadResult read = read_recording(path_);
+    EXPECT_FALSE(read.damage.empty()) << size;
+    EXPECT_LE(read.recording.frames.size(), 1u);
+  }
+}
+
+TEST_F(RecordingFile, IsNeverOverwritten) {
+  RecordingWriter writer;
+  EXPECT_NE(sentence_of(writer.open(path_, hello_, mesh_)).find("never overwritten"),
+            std::string::npos);
+  EXPECT_EQ(sentence_of(writer.write(frame(0))), "");  // and does nothing
+  EXPECT_EQ(read_recording(path_).recording.frames.size(), kFrames);
+}
+
+TEST(Recording, SaysWhatIsWrongWithAFileThatIsNone) {
+  EXPECT_NE(read_recording("/nonexistent/x.tact").damage.find("cannot be opened"),
+            std::string::npos);
+  EXPECT_NE(read_recording(std::string(TACT_SOURCE_DIR) + "/CMakeLists.txt")
+                .damage.find("not a tact recording"),
+            std::string::npos);
+}
+
+TEST_F(RecordingFile, KeepsWhatItHasWhenTheDiskIsFull) {
+  std::filesystem::remove(path_);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{.rlim_cur = first_frame_byte() + 10 * sizeof(FrameRecord),
+                     .rlim_max = before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  RecordingWriter writer;
+  std::optional<model::Error> error = writer.open(path_, hello_, mesh_);
+  for (std::size_t i = 0; i < 1000 && !error; ++i) error = writer.write(frame(i));
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_NE(sentence_of(error).find("what was written before is kept"), std::string::npos)
+      << sentence_of(error);
+  EXPECT_EQ(read_recording(path_).recording.frames.size(), 10u);
+}
+
+TEST(RecentFrames, KeepsFiveMinutesAndNoMore) {
+  RecentFrames recent;
+  recent.restart(2.0);  // 600 frames in 300 s
+  Frame frame;
+  for (frame.tick = 0; frame.tick < 1000; ++frame.tick) recent.add(frame);
+  ASSERT_EQ(recent.frames().size(), 600u);
+  EXPECT_EQ(recent.frames().front().tick, 400u);
+  EXPECT_EQ(recent.frames().back().tick, 999u);
+  recent.restart(2.0);
+  EXPECT_TRUE(recent.frames().empty());
+}
+
+std::ptrdiff_t columns(const std::string& line) {
+  return std::count(line.begin(), line.end(), ',') + 1;
+}
+
+TEST(RecordingCsv, HasOneNameForEveryColumn) {
+  const Hello hello = test::make_hello(3, 1, 3, 1);
+  std::string row;
+  append_csv_row(row, test::make_frame(1.0f, firmware::telemetry::SiteState::kHeld), hello);
+  EXPECT_EQ(columns(row), columns(csv_header(hello)));
+  EXPECT_EQ(columns(row), 37 + 2 * (11 + 11));
+  EXPECT_EQ(std::count(row.begin(), row.end(), '\n'), 1);
+}
+
+TEST(RecordingCsv, TellsCutsAndTheLargestDisplacementOfAPatch) {
+  Frame frame;
+  frame.patch.cut_total = 40;
+  frame.patch.vertex_count = 2;
+  frame.patch.displacement_um[0][2] = -1500;
+  frame.patch.displacement_um[1][0] = 3000;
+  frame.patch.displacement_um[1][1] = -4000;
+  frame.patch.displacement_um[2][0] = 32767;  // not in use
+  std::string row;
+  append_csv_row(row, frame, Hello{});
+  EXPECT_NE(row.find(",40,2,0.005000\n"), std::string::npos) << row;
+  EXPECT_NE(csv_header({}).find(",cut_triangles,patch_vertices,patch_most_m\n"), std::string::npos);
+}
+
+TEST(RecordingCsv, ReadsBackToTheSameFloat) {
+  Frame frame;
+  frame.force_N[0] = 0.1f + 0.2f;
+  std::string row;
+  append_csv_row(row, frame, Hello{});
+  std::string cell = row;
+  for (int i = 0; i < 20; ++i) cell.erase(0, cell.find(',') + 1);  // force_x_N is column 21
+  EXPECT_EQ(std::stof(cell), frame.force_N[0]);
+}
+
+TEST(RecordingCsv, GivesEveryColumnAUnitOrNoneOnPurpose) {
+  const std::string header = csv_header(test::make_hello(3, 1, 3, 1));
+  EXPECT_NE(header.find("force_x_N,"), std::string::npos);
+  EXPECT_NE(header.find("worst_margin_us,"), std::string::npos);
+  EXPECT_NE(header.find("site2_u10_m\n"), std::string::npos);
+}
+
+}  // namespace tact::host::record::recording_test

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/server/access.h"
+
+#include <gtest/gtest.h>
+
+#include <cctype>
+
+namespace tact::host::server::access_test {
+
+const Access kLoopback{
+    .loopback = true, .bind_address = "127.0.0.1", .token = "", .cookie_name = ""};
+const Access kNetwork{.loopback = false,
+                      .bind_address = "192.168.1.7",
+                      .token = "0123456789abcdef0123456789abcdef",
+                      .cookie_name = "tact_token_8321"};
+
+TEST(Access, LetsOnlyLoopbackNamesReachALoopbackServer) {
+  for (const char* host : {"127.0.0.1:8321", "localhost:9000", "localhost", "[::1]:8321"})
+    EXPECT_TRUE(kLoopback.host_allowed(host)) << host;
+  // A foreign page may point its own name at 127.0.0.1 (DNS rebinding).
+  for (const char* host : {"", "evil.example:8321", "localhost.evil.example",
+                           "127.0.0.1.evil.example", "127.0.0.2", "[::1", "]:8321"}) {
+    EXPECT_FALSE(kLoopback.host_allowed(host)) << host;
+  }
+}
+
+TEST(Access, NeedsNoTokenOnLoopback) { EXPECT_TRUE(kLoopback.token_allowed("", "")); }
+
+TEST(Access, NeedsTheWholeTokenOnTheNetwork) {
+  EXPECT_TRUE(kNetwork.token_allowed("token=" + kNetwork.token, ""));
+  EXPECT_TRUE(kNetwork.token_allowed("from_tick=1&token=" + kNetwork.token + "&x=2", ""));
+  EXPECT_TRUE(kNetwork.token_allowed("", "other=1; tact_token_8321=" + kNetwork.token));
+  EXPECT_FALSE(kNetwork.token_allowed("", ""));
+  EXPECT_FALSE(kNetwork.token_allowed("token=", ""));
+  EXPECT_FALSE(kNetwork.token_allowed("token=" + kNetwork.token.substr(1), ""));
+  EXPECT_FALSE(kNetwork.token_allowed("token=" + kNetwork.token + "0", ""));
+  EXPECT_FALSE(kNetwork.token_allowed("nottoken=" + kNetwork.token, ""));
+  EXPECT_FALSE(kNetwork.token_allowed("", "tact_token_9999=" + kNetwork.token));
+}
+
+// Of the right length, so that only its characters tell it from the right one.
+TEST(Access, RefusesATokenWithOneBitWrongAnywhere) {
+  for (std::size_t at = 0; at < kNetwork.token.size(); ++at) {
+    for (unsigned bit = 0; bit < 8; ++bit) {
+      std::string wrong = kNetwork.token;
+      wrong[at] = static_cast<char>(static_cast<unsigned char>(wrong[at]) ^ (1u << bit));
+      EXPECT_FALSE(kNetwork.token_allowed("token=" + wrong, "")) << wrong;
+      EXPECT_FALSE(kNetwork.token_allowed("", "tact_token_8321=" + wrong)) << wrong;
+    }
+  }
+}
+
+TEST(Access, RefusesEverybodyWhenThereIsNoTokenToCompare) {
+  Access broken = kNetwork;
+  broken.token.clear();
+  EXPECT_FALSE(broken.token_allowed("token=", ""));
+  EXPECT_FALSE(broken.token_allowed("", ""));
+}
+
+TEST(Access, TakesAWebSocketOnlyFromItsOwnPage) {
+  EXPECT_TRUE(origin_matches("http://127.0.0.1:8321", "127.0.0.1:8321"));
+  EXPECT_TRUE(origin_matches("https://tact.lab", "tact.lab"));
+  EXPECT_FALSE(origin_matches("http://evil.example", "127.0.0.1:8321"));
+  EXPECT_FALSE(origin_matches("http://127.0.0.1:8321.evil.example", "127.0.0.1:8321"));
+  EXPECT_FALSE(origin_matches("http://127.0.0.1:8322", "127.0.0.1:8321"));
+  EXPECT_FALSE(origin_matches("null", "127.0.0.1:8321"));
+  EXPECT_FALSE(origin_matches("", "127.0.0.1:8321"));
+  EXPECT_FALSE(origin_matches("http://", ""));
+}
+
+TEST(Access, MakesLongTokensThatDiffer) {
+  const auto one = make_token(), two = make_token();
+  ASSERT_TRUE(one && two);
+  EXPECT_EQ(one->size(), 32u);
+  EXPECT_NE(*one, *two);
+  for (const char c : *one) EXPECT_TRUE(std::isxdigit(static_cast<unsigned char>(c)));
+}
+
+}  // namespace tact::host::server::access_test

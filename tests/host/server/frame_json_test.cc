@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/server/frame_json.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/sentence.h"
+#include "tests/support/telemetry_source.h"
+
+namespace tact::host::server::frame_json_test {
+
+using tests::sentence_of;
+
+record::Hello busiest_hello() {
+  record::Hello hello = test::make_hello(3, 1, 3, 1);
+  hello.site_count = firmware::telemetry::kMaxSites;
+  hello.ring_count = firmware::telemetry::kMaxRings;
+  return hello;
+}
+
+// Every site held, every number as long as it can be.
+record::Frame longest_frame() {
+  const float longest = -std::numeric_limits<float>::min();  // -1.175e-38
+  record::Frame frame = test::make_frame(longest, firmware::telemetry::SiteState::kHeld);
+  frame.tick = frame.late_ticks = frame.skipped_ticks = frame.dropped_records = UINT64_MAX;
+  frame.time_ns = INT64_MIN;
+  frame.fault = frame.limit = UINT16_MAX;
+  return frame;
+}
+
+TEST(FrameJson, StaysInItsLengthWhateverItsNumbersAre) {
+  const std::string text = frame_json(longest_frame(), busiest_hello());
+  EXPECT_LE(text.size(), kMaxFrameJsonBytes);
+  EXPECT_GT(text.size(), 1500u);  // the profiles are really in it
+  EXPECT_TRUE(nlohmann::json::accept(text));
+}
+
+TEST(FrameJson, SaysNullForNumbersThatAreNotFinite) {
+  const record::Frame frame = test::make_frame(std::numeric_limits<float>::quiet_NaN(),
+                                               firmware::telemetry::SiteState::kTouching);
+  const auto json = nlohmann::json::parse(frame_json(frame, busiest_hello()), nullptr, false);
+  ASSERT_FALSE(json.is_discarded());
+  EXPECT_TRUE(json["force_N"][2].is_null());
+  EXPECT_TRUE(json["sites"][3]["u_m"][31].is_null());
+  EXPECT_TRUE(json["margin_us"].is_null());
+}
+
+TEST(FrameJson, ListsOnlySitesInContactWithTheRingsInUse) {
+  record::Frame frame = test::make_frame(0.002f, firmware::telemetry::SiteState::kFree);
+  frame.site[1].state = firmware::telemetry::SiteState::kHeld;
+  const record::Hello hello = test::make_hello(3, 1, 3, 1);  // 2 sites, 11 rings
+  const auto json = nlohmann::json::parse(frame_json(frame, hello), nullptr, false);
+  ASSERT_EQ(json["sites"].size(), 1u);
+  EXPECT_EQ(json["sites"][0]["site"], 1);
+  EXPECT_EQ(json["sites"][0]["state"], 2);
+  EXPECT_EQ(json["sites"][0]["u_m"].size(), 11u);
+}
+
+TEST(FrameJson, KeepsForceToFourDigitsAndPositionToAMicrometre) {
+  record::Frame frame;
+  frame.force_N[2] = 1.23456f;
+  frame.tool_position_m[0] = 0.123456f;
+  frame.time_ns = 1'500'000'000;
+  const auto json = nlohmann::json::parse(frame_json(frame, busiest_hello()), nullptr, false);
+  EXPECT_NEAR(json["force_N"][2].get<double>(), 1.23456, 5e-4);
+  EXPECT_NEAR(json["tool_m"][0].get<double>(), 0.123456, 5e-7);
+  EXPECT_EQ(json["time_s"], 1.5);
+  EXPECT_TRUE(json["sites"].empty());
+}
+
+TEST(FrameJson, DoesNotTrustCountsBeyondTheArrays) {
+  record::Hello hello = busiest_hello();
+  hello.site_count = hello.ring_count = UINT32_MAX;
+  const record::Frame frame = test::make_frame(1.0f, firmware::telemetry::SiteState::kHeld);
+  const auto json = nlohmann::json::parse(frame_json(frame, hello), nullptr, false);
+  EXPECT_EQ(json["sites"].size(), firmware::telemetry::kMaxSites);
+}
+
+TEST(SceneJson, SaysWhatTheHelloSays) {
+  const auto json = nlohmann::json::parse(scene_json(test::make_hello(5, 6, 7, 8)), nullptr, false);
+  EXPECT_EQ(json["scene"], "liver (synthetic)");
+  EXPECT_EQ(json["organ"]["triangles"], 6);
+  EXPECT_EQ(json["tool"]["vertices"], 7);
+  EXPECT_EQ(json["spheres"].size(), 2u);
+  EXPECT_EQ(json["simulated"], true);
+  EXPECT_EQ(json["non_rt"], false);
+}
+
+TEST(SceneJson, SurvivesANameWithoutEndAndWithBrokenUtf8) {
+  record::Hello hello = test::make_hello(3, 1, 3, 1);
+  std::memset(hello.scene_name, 0xFF, sizeof hello.scene_name);
+  EXPECT_TRUE(nlohmann::json::accept(scene_json(hello)));
+}
+
+TEST(FrameJson, TellsDisplacedVerticesAndCutsOfALawWithoutProfiles) {
+  record::Frame frame{};
+  frame.patch.vertex_count = 2;
+  frame.patch.vertex[0] = 7;
+  frame.patch.vertex[1] = 70'000;
+  const std::int16_t moved_um[2][3] = {{1, -2, 3}, {32767, 0, -1}};
+  std::memcpy(frame.patch.displacement_um, moved_um, sizeof moved_um);
+  frame.patch.cut_total = 40;
+  frame.patch.cut_count = 2;
+  frame.patch.cut_triangle[0] = 11;
+  frame.patch.cut_triangle[1] = 12;
+  record::Hello hello = test::make_hello(3, 1, 3, 1);
+  hello.ring_count = 0;
+  const auto patch = nlohmann::json::parse(frame_json(frame, hello)).at("patch");
+  EXPECT_EQ(patch.at("count"), 2);
+  EXPECT_EQ(patch.at("moved"), "BwAAAHARAQABAP7/AwD/fwAA//8=")
+      << "the same bytes as in the page's own test";
+  EXPECT_EQ(patch.at("cut_total"), 40);
+  EXPECT_EQ(patch.at("cut"), (std::vector<int>{11, 12}));
+  hello.ring_count = 3;
+  EXPECT_FALSE(nlohmann::json::parse(frame_json(frame, hello)).contains("patch"));
+}
+
+TEST(FrameJson, StaysInItsLengthWithAFullPatchAndEverySiteHeld) {
+  record::Frame frame = longest_frame();
+  frame.patch.vertex_count = firmware::telemetry::kMaxPatchVertices;
+  frame.patch.cut_total = 4'000'000;  // of the largest mesh that check_hello lets pass
+  frame.patch.cut_count = firmware::telemetry::kMaxCutsTold;
+  for (auto& triangle : frame.patch.cut_triangle) triangle = 3'999'999;
+  record::Hello hello = busiest_hello();
+  hello.ring_count = 0;
+  hello.organ_vertices = hello.organ_triangles = 4'000'000;
+  ASSERT_EQ(sentence_of(record::check_hello(hello)), "");
+  ASSERT_EQ(sentence_of(record::check_frame(frame, hello)), "");
+  const std::string text = frame_json(frame, hello);
+  EXPECT_LE(text.size(), kMaxFrameJsonBytes);
+  EXPECT_GT(text.size(), kMaxFrameJsonBytes - 200) << "the bound is no larger than it must be";
+  EXPECT_TRUE(nlohmann::json::accept(text));
+}
+
+TEST(CheckFrame, RefusesPatchesThatNameWhatIsNotThere) {
+  const record::Hello hello = test::make_hello(3, 2, 3, 1);
+  record::Frame good{};
+  good.patch.vertex_count = 2;
+  good.patch.vertex[1] = 2;
+  good.patch.cut_total = good.patch.cut_count = 2;
+  good.patch.cut_triangle[1] = 1;
+  EXPECT_EQ(sentence_of(record::check_frame(good, hello)), "");
+  const auto refuses = [&](auto spoil) {
+    record::Frame frame = good;
+    spoil(frame);
+    return record::check_frame(frame, hello).has_value();
+  };
+  EXPECT_TRUE(refuses([](record::Frame& f) { f.patch.vertex[1] = 3; }));
+  EXPECT_TRUE(refuses([](record::Frame& f) { f.patch.cut_triangle[1] = 2; }));
+  EXPECT_TRUE(refuses(
+      [](record::Frame& f) { f.patch.vertex_count = firmware::telemetry::kMaxPatchVertices + 1; }));
+  EXPECT_TRUE(
+      refuses([](record::Frame& f) { f.patch.cut_count = firmware::telemetry::kMaxCutsTold + 1; }));
+  EXPECT_TRUE(refuses([](record::Frame& f) { f.patch.cut_total = 1; }));
+  EXPECT_TRUE(refuses([](record::Frame& f) { f.patch.cut_total = 3; }));
+  EXPECT_TRUE(refuses([](record::Frame& f) { f.state = firmware::loop::State{4}; }));
+  EXPECT_TRUE(
+      refuses([](record::Frame& f) { f.site[3].state = firmware::telemetry::SiteState{3}; }));
+}
+
+}  // namespace tact::host::server::frame_json_test

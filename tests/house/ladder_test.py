@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The patches of .github/ladder/, which CONTRIBUTING.md walks through, apply to this tree.
+
+Prints every breach as file: sentence. Exit status 0 or 1. With --compile, g++ also reads each source
+that a patch touches, in a copy of the tree.
+"""
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+NAMES = ("hello_law.patch", "hello_device.patch")
+
+
+def refusal(patch):
+    """What git says to a patch that does not apply; nothing when it does."""
+    told = subprocess.run(["git", "-c", "safe.directory=*", "apply", "--check", "--whitespace=error", str(patch)],
+                          cwd=ROOT, capture_output=True, text=True)
+    return told.stderr.strip() if told.returncode else ""
+
+
+def breaches():
+    guide = (ROOT / ".github/CONTRIBUTING.md").read_text()
+    for name in NAMES:
+        patch = ROOT / ".github/ladder" / name
+        if f"(ladder/{name})" not in guide:
+            yield f".github/CONTRIBUTING.md: no link to ladder/{name}"
+        if not patch.is_file():
+            yield f".github/ladder/{name}: no such file"
+        elif refused := refusal(patch):
+            yield f".github/ladder/{name}: {refused}: apply what is left of it by hand, and make it again with git diff"
+
+
+def not_compiled():
+    """In a copy of the tree, each patch after the other: the sources that g++ refuses."""
+    with tempfile.TemporaryDirectory() as folder:
+        copy = pathlib.Path(folder)
+        for top in ("firmware", "hal", "host", "model", "tests", "tools"):
+            shutil.copytree(ROOT / top, copy / top, ignore=shutil.ignore_patterns("node_modules", "dist", "*.obj"))
+        for name in NAMES:
+            patch = ROOT / ".github/ladder" / name
+            subprocess.run(["git", "apply", "--include=*/*", str(patch)], cwd=copy, check=True, capture_output=True)
+            for source in re.findall(r"^\+\+\+ b/(\S+\.cc)$", patch.read_text(), re.M):
+                told = subprocess.run(["g++", "-std=c++20", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I.", source],
+                                      cwd=copy, capture_output=True, text=True)
+                if told.returncode:
+                    yield f".github/ladder/{name}: {told.stderr.strip()}"
+
+
+def is_blind():
+    """A patch of a line that the tree does not have must be refused."""
+    with tempfile.NamedTemporaryFile("w", suffix=".patch") as patch:
+        patch.write("--- a/README.md\n+++ b/README.md\n@@ -1 +1 @@\n-# no such line\n+# x\n")
+        patch.flush()
+        return not refusal(patch.name)
+
+
+def main():
+    found = list(breaches())
+    if sys.argv[1:] == ["--compile"] and not found:
+        found += not_compiled()
+    if is_blind():
+        found.append("a patch that does not apply is not seen")
+    print(*(f"{breach}\n" for breach in found), sep="", end="")
+    print(f"ladder: {len(NAMES)} patches, {len(found)} breaches")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

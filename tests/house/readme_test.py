@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""README.md stays short, prose of every *.md narrow, and every relative link leads to a file and its heading.
+
+Reads the tree as text and prints every breach as file:line: sentence. Exit status 0 or 1.
+"""
+import os
+import pathlib
+import posixpath
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+MAX_LINES, MAX_COLUMNS = 110, 130  # lines of README.md, columns of prose: not of tables, code or a lone link
+# [text](target) and ![text](target "title"); the text may hold an image of its own
+LINK = re.compile(r"\]\(\s*<?([^)\s>]+)>?(?:\s+\"[^\"]*\")?\s*\)")
+FENCE, CODE = re.compile(r"\s*(```|~~~)"), re.compile(r"`[^`]*`")
+LONE_LINK = re.compile(r"\s*(?:(?:[*-]|\d+\.)\s+)?!?\[[^\]]*\](?:\([^)]*\)|:\s+\S+)[.,;:]?$")
+HEADING = re.compile(r"#{1,6}\s+(.*?)\s*#*$")
+ELSEWHERE = re.compile(r"[a-z][a-z0-9+.-]*:|//")  # a scheme, as https: and mailto:
+
+
+def prose(text):
+    """Lines outside blocks of code, with their numbers."""
+    fenced = False
+    for number, line in enumerate(text.splitlines(), 1):
+        if FENCE.match(line):
+            fenced = not fenced
+        elif not fenced:
+            yield number, line
+
+
+def slugs(text):
+    """GitHub's anchors: lower case, spaces are hyphens, no other punctuation, twins are numbered."""
+    seen = {}
+    for _, line in prose(text):
+        found = HEADING.match(line)
+        if found:
+            words = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", found[1])
+            slug = re.sub(r"[^\w\- ]", "", words.lower()).replace(" ", "-")
+            seen[slug] = seen.get(slug, -1) + 1
+            yield f"{slug}-{seen[slug]}" if seen[slug] else slug
+
+
+def link_breaches(path, text, files):
+    """`files`: texts by path, of what is no markdown nothing."""
+    for number, line in prose(text):
+        for target in LINK.findall(CODE.sub("", line)):
+            if ELSEWHERE.match(target):
+                continue
+            name, _, fragment = target.partition("#")
+            other = posixpath.normpath(posixpath.join(posixpath.dirname(path), name)) if name else path
+            if other not in files:
+                yield f"{path}:{number}: {target}: no such file"
+            elif fragment and fragment not in slugs(files[other] or ""):
+                yield f"{path}:{number}: {target}: no such heading in {other}"
+
+
+def length_breaches(path, text):
+    lines = text.splitlines()
+    if len(lines) > MAX_LINES:
+        yield f"{path}:{MAX_LINES + 1}: longer than {MAX_LINES} lines: move what a room can say to its README.md"
+
+
+def width_breaches(path, text):
+    for number, line in prose(text):
+        if len(line) > MAX_COLUMNS and not line.lstrip().startswith("|") and not LONE_LINK.match(line):
+            yield f"{path}:{number}: longer than {MAX_COLUMNS} characters"
+
+
+def breaches(files):
+    yield from length_breaches("README.md", files["README.md"])
+    for path, text in files.items():
+        if text is not None:
+            yield from width_breaches(path, text)
+            yield from link_breaches(path, text, files)
+
+
+def tree():
+    """Every file and folder of the tree, and the text of what is markdown."""
+    files = {}
+    for folder, folders, names in os.walk(ROOT):
+        top = pathlib.Path(folder) == ROOT
+        folders[:] = [name for name in folders if name not in ("node_modules", "__pycache__", ".git")
+                      and not (top and name.startswith("build"))]
+        for path in (pathlib.Path(folder) / name for name in ["", *names]):
+            files[path.relative_to(ROOT).as_posix()] = path.read_text() if path.suffix == ".md" else None
+    return dict(sorted(files.items()))
+
+
+def blind_rules():
+    """Each rule against a breach of it, and against its cure: the names of those that err."""
+    room = "# A room\n## Two  words, `a_b`: [c-d](b.png)\n## Twin\n## Twin\n```\n# Code\n```\n"
+    wide = "x" * MAX_COLUMNS
+    good = ("[a](a/README.md) ![b](a/b.png \"t\") [c](#top) [d](a/README.md#twin-1) `[e](none)` [f](https://g/h)\n"
+            "[i](a/README.md#two--words-a_b-c-d) [![j](a/b.png)](a/README.md)\n# Top\n```\n[k](none)\n```\n"
+            f"| {wide} |\n```\n{wide}x\n```\n* [{wide}](a/b.png)\n[{wide}]: https://g/h\n{wide}\n")
+    bad = {"missing file": "[a](a/none.md)", "missing file behind a title": '[a](none.json "x .1f")',
+           "missing heading": "[a](a/README.md#none)", "third twin": "[a](a/README.md#twin-2)",
+           "heading in code": "[a](a/README.md#code)", "own heading": "[a](#none)",
+           "folder above": "[a](../a/README.md)", "no markdown": "[a](a/b.png#top)",
+           "picture in a link": "[![a](none.png)](a/README.md)", "second link": "[a](a/README.md) [b](none)",
+           "long line": wide + "x", "long line with a link": f"{wide} [a](a/b.png)",
+           "long line in a list": f"* {wide}", "many lines": "\n" * MAX_LINES}
+    files = {"a/README.md": room, "a/b.png": None}
+    blind = [name for name, line in bad.items() if not list(breaches({**files, "README.md": good + line + "\n"}))]
+    if not list(breaches({**files, "README.md": good, "a/c.md": f"{wide}x\n"})):
+        blind.append("long line elsewhere")
+    if list(breaches({**files, "README.md": good, "a/c.md": "\n" * MAX_LINES + "x\n"})):
+        blind.append("takes for a breach: many lines elsewhere")
+    blind += [f"takes for a breach: {found}" for found in breaches({**files, "README.md": good})]
+    return blind
+
+
+def main():
+    files = tree()
+    found = list(breaches(files))
+    print(*(f"{breach}\n" for breach in found), sep="", end="")
+    texts = [text for text in files.values() if text is not None]
+    links = sum(len(LINK.findall(text)) for text in texts)
+    print(f"readme: {len(texts)} texts, {links} links, {len(found)} breaches")
+    for rule in blind_rules():
+        found.append(rule)
+        print(f"readme: a breach of this rule is not seen: {rule}")
+    if len(texts) < 20 or links < 50:
+        print("readme: too few texts or links: the check does not see the tree")
+        return 1
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rooms of the house: a folder is a namespace, a CMake target and an include path, and includes
+downwards only. `breaches(tree)` says where the tree does not hold to that; `blind_rules()` tries
+each rule on a breach of it.
+"""
+import re
+
+CONTACT = ["model", "model/law", "model/contact"]
+SURFACE_LAWS = [*CONTACT, "model/tissue", "model/springs"]
+SCENE = [*SURFACE_LAWS, "model/mesh", "model/scene"]
+DELTA = ["model", "hal", "hal/delta"]
+DEVICES = ["hal/sim", "hal/odrive", "hal/cia402", "hal/falcon_usb", "hal/force_dimension"]
+LOOP = [*CONTACT, "hal", "firmware/gate"]
+# What a folder may include beside itself; CMake links no more than that.
+ROOMS = {
+    "model": [],
+    "model/law": ["model"],
+    "model/contact": ["model", "model/law"],
+    "model/tissue": CONTACT,
+    "model/springs": CONTACT,
+    "model/mesh": ["model", "model/contact"],
+    "model/scene": [*SURFACE_LAWS, "model/mesh"],
+    "model/fem": SCENE,
+    "hal": ["model"],
+    "hal/delta": ["model", "hal"],
+    "hal/gpio": ["model", "hal"],
+    "hal/can": DELTA,
+    "hal/odrive": [*DELTA, "hal/can"],
+    "hal/cia402": [*DELTA, "hal/can"],
+    "hal/falcon": DELTA,
+    "hal/falcon_usb": [*DELTA, "hal/falcon"],
+    "hal/force_dimension": ["model", "hal"],
+    "hal/sim": [*DELTA, "model/contact", "hal/gpio"],
+    "hal/list": ["hal", "hal/can", "hal/gpio"],
+    "hal/registry": ["model", "hal", *DEVICES, "model/scene"],
+    "firmware/pc": ["hal/list"],
+    "firmware/gate": ["model", "hal"],
+    "firmware/loop": LOOP,
+    "firmware/watch": ["model", "hal", "firmware/loop", "firmware/pc"],
+    "firmware/telemetry": [*LOOP, "firmware/loop", "model/scene"],
+    "firmware/black_box": ["model", "firmware/loop", "firmware/telemetry"],
+    "firmware/run": [*LOOP, *SCENE, "hal/gpio", "hal/list", "hal/registry", "firmware/loop",
+                     "firmware/watch", "firmware/telemetry", "firmware/black_box", "firmware/pc"],
+    "host/tracking": ["model"],
+    "host/record": ["model", "host/tracking", "firmware/telemetry"],
+    "host/server": ["model", "host/tracking", "host/record"],
+    "host/run": ["model", "host/tracking", "host/record", "host/server", "hal/sim"],
+}
+# A tool measures every room above; of the other tools it may include these.
+TOOLS = {
+    **dict.fromkeys(["make_meshes", "make_tracking", "mesh", "printed", "program", "track_send"], []),
+    **dict.fromkeys(["calibrate", "doctor", "ground_truth", "report", "tracking_bench"], ["program"]),
+    **dict.fromkeys(["jitter", "limits"], ["program", "report"]),
+    **dict.fromkeys(["condense", "reference"], ["program", "ground_truth"]),
+    "fit": ["program", "report", "ground_truth"],
+    "chart": ["program", "report", "condense", "ground_truth", "reference"],
+    "plan": ["program", "report", "chart"],
+    "stability": ["program", "report", "printed"],
+    "verify": ["printed"],
+}
+# Where another room is known by these headers alone.
+SINGLE_HEADERS = {
+    **{(f"host/{room}", "model"): {"result.h"} for room in ("tracking", "record", "server", "run")},
+    ("host/record", "firmware/telemetry"): {"telemetry_record.h", "recording_format.h"},
+    ("host/run", "hal/sim"): {"hand_target.h"},
+}
+# Read and write files, allocate, take their time; no room of the loop reaches them by any way.
+OFFLINE = ("model/mesh/", "model/fem/", "model/scene/")
+LOOP_ROOMS = ("firmware/gate", "firmware/loop", "firmware/watch")
+OURS = re.compile(r'^\s*#include "([^"]+)"', re.M)
+NAMESPACE = re.compile(r"^namespace (tact(?:::\w+)+) \{", re.M)
+
+
+def room_of(path):
+    return path.rsplit("/", 1)[0]
+
+
+def may_include(room, header):
+    """Tools measure every room, and tests prove them; no other room knows a tool or a test."""
+    other, name = header.rsplit("/", 1)
+    if other == room:
+        return True
+    if room.startswith("tools/"):
+        return other in ROOMS or other.removeprefix("tools/") in TOOLS[room.removeprefix("tools/")]
+    only = SINGLE_HEADERS.get((room, other))
+    return other in ROOMS[room] and (only is None or name in only)
+
+
+def include_breaches(path, text):
+    room = room_of(path)
+    if room not in ROOMS and room.removeprefix("tools/") not in TOOLS:
+        yield f"{path}:1: {room}/ is no room: give it a row in tests/house/rooms.py"
+        return
+    for number, line in enumerate(text.splitlines(), 1):
+        found = OURS.match(line)
+        if found and not may_include(room, found[1]):
+            yield f"{path}:{number}: {room}/ may not include {found[1]}"
+
+
+def namespace_breaches(path, text):
+    wanted = "tact::" + room_of(path).replace("/", "::")
+    for found in NAMESPACE.finditer(text):
+        if found[1] != wanted:
+            line = text.count("\n", 0, found.start()) + 1
+            yield f"{path}:{line}: opens {found[1]}; the namespace of this folder is {wanted}"
+
+
+def reach_breaches(path, text_of, seen):
+    """Every header that a room of the loop reads, itself or by way of another."""
+    for header in OURS.findall(text_of(path)):
+        if header.startswith(OFFLINE):
+            yield f"{path}:1: the loop may not reach {header}"
+        elif header not in seen:
+            seen.add(header)
+            yield from reach_breaches(header, text_of, seen)
+
+
+def cmake_breaches(path, text):
+    """`path` is the CMakeLists.txt of a room: sources by name, and links that the room may include."""
+    room = room_of(path)
+    if re.search(r"\bGLOB", text):
+        yield f"{path}:1: a glob; name the sources"
+    body = re.search(r"tact_room\((.*?)\)", text, re.S)
+    for target in re.findall(r"\btact_(\w+)", body[1] if body else ""):
+        linked = [r for r in [room, *ROOMS[room]] if r.replace("/", "_") == target]
+        if not linked:
+            yield f"{path}:1: links tact_{target}, which {room}/ may not include"
+
+
+def breaches(texts):
+    """`texts`: every source and CMakeLists.txt of production code, by its path."""
+    for path, text in texts.items():
+        if path.endswith("CMakeLists.txt"):
+            if room_of(path) in ROOMS:
+                yield from cmake_breaches(path, text)
+            continue
+        yield from include_breaches(path, text)
+        yield from namespace_breaches(path, text)
+        if room_of(path) in LOOP_ROOMS:
+            yield from reach_breaches(path, lambda p: texts.get(p, ""), set())
+
+
+def blind_rules():
+    """Each pair of rooms that may not meet, and each rule, on a breach: the ones not seen."""
+    rooms = [*ROOMS, "tools/chart", "tests/support"]
+    for room in ROOMS:
+        for other in rooms:
+            if other == room or (other in ROOMS[room] and (room, other) not in SINGLE_HEADERS):
+                continue
+            if not list(include_breaches(f"{room}/x.cc", f'#include "{other}/y.h"\n')):
+                yield f"{room}/ may not include {other}/"
+    chain = {"firmware/loop/x.h": '#include "firmware/loop/y.h"\n',
+             "firmware/loop/y.h": '#include "model/scene/scene.h"\n'}
+    for name, found in {
+            "a folder without a row": include_breaches("hal/new/x.h", ""),
+            "a tool without a row": include_breaches("tools/new/x.h", ""),
+            "a tool knows few others": include_breaches("tools/verify/x.cc", '#include "tools/chart/y.h"\n'),
+            "tools know no test": include_breaches("tools/chart/x.cc", '#include "tests/support/y.h"\n'),
+            "namespace": namespace_breaches("hal/can/x.h", "namespace tact::hal {\n"),
+            "reach of the loop": reach_breaches("firmware/loop/x.h", chain.get, set()),
+            "glob": cmake_breaches("hal/can/CMakeLists.txt", "file(GLOB sources *.cc)"),
+            "link": cmake_breaches("hal/can/CMakeLists.txt", "tact_room(LINKS tact_hal_sim)")}.items():
+        if not list(found):
+            yield name

@@ -1,0 +1,174 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Every equation and fact that a text names by an id, as RC-3, stands once in a SOURCES.md.
+
+Reads the tree as text and prints every breach as file:line: sentence. Exit status 0 or 1.
+"""
+import os
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+TOPS = ("model", "hal", "firmware", "host", "tools", "tests")
+SELF = "tests/house/sources_test.py"  # names what it forbids
+# Numbers that machines wrote; of the data the published cases alone name equations.
+DATA = ("tests/data/", "tests/fuzz/corpus/")
+CASES = "tests/data/vectors/"
+ID = r"(?:[A-Z]{2}-\d+[a-z]?|X\d{1,2})"
+# "RC-3", "MA-10..15", "RC-1 .. RC-7", "X1 to X7"
+NAME = re.compile(rf"\b({ID})\b(?:\s*\.\.\s*(\d+\b|{ID}\b)|\s+to\s+({ID})\b)?")
+ROW = re.compile(rf"\|\s*({ID})\s*\|")
+FORMULA = re.compile(rf"({ID})\s\s")
+# Documents that a reader of the tree does not have.
+FOREIGN = re.compile(r"\b(PHYSICS|REALTIME|REFERENCE|ERRATA)\b|\bDEVICES\s+\d|\.\./shared\b")
+MAX_LINES, MAX_COLUMNS = 300, 160
+
+
+def defined_in(text):
+    """What a SOURCES.md defines: first cell of a table's row, first word of a line in a code block."""
+    in_block = False
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.startswith("```"):
+            in_block = not in_block
+        found = (FORMULA if in_block else ROW).match(line)
+        if found:
+            yield found[1], number
+
+
+def members(first, last):
+    """MA-10 and 15, or RC-1 and RC-7: all that lies between, ends included."""
+    prefix = first.rstrip("0123456789abcdefghijklmnopqrstuvwxyz")
+    ends = [int(re.search(r"\d+", end)[0]) for end in (first, last)]
+    return [first, *(f"{prefix}{i}" for i in range(ends[0] + 1, ends[1] + 1))]
+
+
+def named_in(text):
+    for number, line in enumerate(text.splitlines(), 1):
+        for found in NAME.finditer(line):
+            last = found[2] or found[3]
+            for name in members(found[1], last) if last else [found[1]]:
+                yield name, number
+
+
+def id_breaches(texts):
+    """Ids without a definition, with two, or with nothing that names them."""
+    places, used = {}, set()
+    for path, text in texts.items():
+        if is_source(path):
+            for name, number in defined_in(text):
+                if name in places:
+                    yield f"{path}:{number}: {name} stands in {places[name]} too: keep one"
+                places.setdefault(name, f"{path}:{number}")
+    for path, text in texts.items():
+        for name, number in named_in(text):
+            if name not in places:
+                yield f"{path}:{number}: {name} stands in no SOURCES.md: add it, or name another"
+            if not is_source(path):
+                used.add(name)
+    for name, place in places.items():
+        if name not in used:
+            yield f"{place}: nothing names {name}: take it out, or name it where it is used"
+
+
+def foreign_breaches(path, text):
+    for number, line in enumerate(text.splitlines(), 1):
+        found = FOREIGN.search(line)
+        if found:
+            yield f"{path}:{number}: {found[0]}: no reader has this; put the fact into a SOURCES.md"
+
+
+def shape_breaches(path, text):
+    lines = text.splitlines()
+    if len(lines) >= MAX_LINES:
+        yield f"{path}:1: {MAX_LINES} lines or more: split it by room"
+    for number, line in enumerate(lines, 1):
+        if len(line) > MAX_COLUMNS and not line.startswith("|"):
+            yield f"{path}:{number}: longer than {MAX_COLUMNS} columns outside a table"
+
+
+def is_source(path):
+    return path.endswith("SOURCES.md")
+
+
+def is_read(path):
+    return path != SELF and (path.startswith(CASES) or not path.startswith(DATA))
+
+
+def tree():
+    """Every text of the tree by its path."""
+    names = ["README.md", "CMakeLists.txt"]
+    for top in TOPS:
+        for folder, folders, files in os.walk(ROOT / top):
+            folders[:] = [name for name in folders if name not in ("node_modules", "__pycache__")]
+            names += [str((pathlib.Path(folder) / name).relative_to(ROOT)) for name in files]
+    texts = {name: text_of(ROOT / name) for name in sorted(names) if is_read(name)}
+    return {name: text for name, text in texts.items() if text is not None}
+
+
+def text_of(path):
+    """Nothing for bytes that are no text."""
+    data = path.read_bytes()
+    try:
+        return None if b"\0" in data else data.decode()
+    except UnicodeDecodeError:
+        return None
+
+
+def breaches(texts):
+    yield from id_breaches(texts)
+    for path, text in texts.items():
+        yield from foreign_breaches(path, text)
+        if is_source(path):
+            yield from shape_breaches(path, text)
+
+
+def blind_rules():
+    """Each rule against a breach of it, and against its cure: the names of those that err."""
+    source = "a/SOURCES.md"
+    good = "| id | what |\n|---|---|\n| RC-1 | F |\n| RC-2 | G |\n```\nRC-3   H\nX1  I\n```\n"
+    names = "// RC-1 .. RC-3, X1"
+    cases = {
+        "undefined": (good, names + ", RC-4"),
+        "undefined claim": (good, names + ", X2"),
+        "undefined letter": (good, names + ", RC-3b"),
+        "undefined in a range": (good, "// RC-1 to RC-4, X1"),
+        "undefined in a range of numbers": (good, "// RC-1..4, X1"),
+        "undefined in a SOURCES.md": (good + "see RC-9\n", names),
+        "a definition is no prose": (good + "RC-4   J\n", names + ", RC-4"),
+        "a definition is a first cell": (good + "| what | RC-4 |\n", names + ", RC-4"),
+        "twice": (good + "| RC-1 | again |\n", names),
+        "twice, table and formula": (good + "```\nRC-2   again\n```\n", names),
+        "unnamed": (good, "// RC-1, RC-2, X1"),
+        "named by a SOURCES.md alone": (good + "as RC-3\n", "// RC-1, RC-2, X1"),
+        "long line": (good + "x" * (MAX_COLUMNS + 1) + "\n", names),
+        "long file": (good + "\n" * MAX_LINES, names),
+        **{word: (good, f"{names} ({word})") for word in
+           ("PHYSICS 4.2", "REALTIME 4", "DEVICES 3.4", "REFERENCE", "ERRATA", "../shared/seeds")},
+    }
+    blind = [name for name, (text, comment) in cases.items()
+             if not list(breaches({source: text, "b.h": comment}))]
+    for comment in (names, "// RC-1 to RC-3, X1", "// RC-1..3, X1; DEVICES = []", "// X1, RC-3, RC-2, RC-1"):
+        if list(breaches({source: good, "b.h": comment})):
+            blind.append(f"takes for a breach: {comment}")
+    return blind
+
+
+def main():
+    texts = tree()
+    found = list(breaches(texts))
+    print(*found, sep="\n", end="\n" if found else "")
+    sources = [path for path in texts if is_source(path)]
+    ids = sum(1 for path in sources for _ in defined_in(texts[path]))
+    print(f"sources: {len(texts)} texts, {len(sources)} SOURCES.md, {ids} ids, {len(found)} breaches")
+    for rule in blind_rules():
+        found.append(rule)
+        print(f"sources: a breach of this rule is not seen: {rule}")
+    if len(texts) < 500 or len(sources) < 5 or ids < 100:
+        print("sources: too few texts, sources or ids: the check does not see the tree")
+        return 1
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

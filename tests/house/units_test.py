@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Every number that a header keeps names its unit, as force_N does, or is known to have none.
+
+Reads the members and constants of the headers as text and prints every breach as file:line:
+sentence. Exit status 0 or 1.
+"""
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+TOPS = ("model", "firmware", "hal", "host", "tools")
+MEMBER = re.compile(r"\s*(?:(?:inline|static|mutable|constexpr|const) )*(?:double|float) ([^()]*?)[;{]\s*(?://.*)?$")
+NAME = re.compile(r"([A-Za-z_]\w*)(?:\[\w+\])?(?: = (?:\{[^}]*\}|[^,]*))?(?:, |$)")
+UNIT = re.compile(r"_(?:s|ms|us|m|mm|um|N|Nm|J|W|kg|Hz|rad|radps|mps|m2|m3|Pa|V|A|C|N2|N2s|turns|words|px|ratio|percent|share"
+                  r"|\w*_?per_\w+|kgm2|Ns|kB|MB|bytes|ticks|m_N|wxyz)_?$")
+# Shares, coordinates of a formula, and what has the unit of something else: the word says so.
+PLAIN = {
+    "x", "y", "z", "w", "level", "share", "weight", "factor", "fraction", "value", "slope", "integral", "step",
+    "low", "high", "alpha", "lambda", "growth", "along", "across", "steepness", "faded_from", "cell",
+    "peak", "continuous", "continuous_squared", "heat", "periods",  # of a force or a torque; of a period
+    "least_transmission", "least_rod_sigma", "limit_tan", "critical_zeta", "f0", "m0", "c2", "c3", "u0",
+    "normal", "tool_orientation",  # a direction; w, x, y, z
+    "n1", "n2", "s1", "s2",  # barycentric and normal parts of a map
+    "limit", "largest", "size", "median", "lower_quartile", "upper_quartile", "rel", "tolerance", "exact",
+    "scale", "best_scale", "difference", "good_residual", "shape_weight", "sum_of_squares", "middle_value",
+    "first_strain", "rim_slope", "instructions", "kFacing", "kLargePull", "kMmPerM", "kNPerMN",
+    "kGripHeight", "kMaxObjCoordinate", "kStiffest", "kNonRtForceShare", "kRoundingRoom", "kNothing",
+}
+
+
+def members(text):
+    """(line, name) of every number that lives longer than a call: members and constants."""
+    depth_of_function = None
+    depth = 0
+    for number, line in enumerate(text.splitlines(), 1):
+        found = MEMBER.match(line) if depth_of_function is None else None
+        if found:
+            yield from ((number, name[1]) for name in NAME.finditer(found[1]))
+        opens = line.split("//")[0].count("{") - line.split("//")[0].count("}")
+        if depth_of_function is None and opens > 0 and re.search(r"\)[^;=]*\{", line):
+            depth_of_function = depth
+        depth += opens
+        if depth_of_function is not None and depth <= depth_of_function:
+            depth_of_function = None
+
+
+def breaches(path, text):
+    for number, name in members(text):
+        if not UNIT.search(name) and name.rstrip("_") not in PLAIN:
+            yield f"{path}:{number}: {name} names no unit; if it has none, it is a word of PLAIN in {__file__.rsplit('/', 1)[1]}"
+
+
+def blind_rules():
+    bad = ("  double force = 0.0;\n", "  double low = 0.0, speed = 0.0;\n", "inline constexpr double kLimit = 3.0;\n",
+           "  float mass_;\n")
+    good = ("  double force_N = 0.0, low = 0.0;\n", "  void f(double d) {\n    double sum = d;\n  }\n", "  double f(double v);\n")
+    return [t for t in bad if not list(breaches("x.h", t))] + [t for t in good if list(breaches("x.h", t))]
+
+
+def main():
+    found, count = [], 0
+    for top in TOPS:
+        for path in sorted((ROOT / top).rglob("*.h")):
+            if "node_modules" not in path.parts:
+                count += 1
+                found += breaches(str(path.relative_to(ROOT)), path.read_text())
+    found += [f"units_test.py: a rule does not see: {text.strip()}" for text in blind_rules()]
+    print(*found, sep="\n", end="\n" if found else "")
+    print(f"units: {count} headers, {len(found)} breaches")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

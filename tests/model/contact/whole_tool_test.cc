@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// Several spheres on one tool, as a hand moves them: no stroke gives back more than it took.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "model/contact/contact.h"
+#include "model/law/compliance_law.h"
+#include "model/tissue/elastic_field.h"
+#include "model/units.h"
+#include "tests/support/no_alloc.h"
+#include "tests/support/shapes.h"
+
+namespace tact::model::contact::whole_tool_test {
+
+constexpr double kRadius_m = 4_mm;
+
+/// A soft half-space below tools of two to four spheres.
+struct Bench {
+  explicit Bench(std::vector<ProbeSphere> s, mesh::SurfaceMesh m = tests::make_plate(160_mm, 32))
+      : mesh(std::move(m)), spheres(std::move(s)) {}
+  Contact contact() {
+    return Contact({.law = &field,
+                    .parameters = parameters,
+                    .spheres = spheres,
+                    .surface = mesh.view(),
+                    .seeds = seeds.view(),
+                    .blade = {}});
+  }
+  law::ElasticTip tip{.youngs_modulus_Pa = 5000.0, .poisson_ratio = 0.45, .radius_m = kRadius_m};
+  std::vector<double> flat{0.0};
+  law::ComplianceCurve curve = *law::make_compliance_curve({.tip = tip,
+                                                            .working_depth_m = 12_mm,
+                                                            .ring_pitch_m = 2_mm,
+                                                            .ring_m_per_N = flat,
+                                                            .table_knots = 257});
+  const law::Law* law = &curve;
+  tissue::ElasticField field{{.curves = {&law, 1},
+                              .coordinate = {},
+                              .pull_coordinate = {},
+                              .surface = {},
+                              .relaxation = {},
+                              .neighbours = {.contact_modulus_Pa = tip.contact_modulus_Pa()}}};
+  mesh::SurfaceMesh mesh;
+  SeedGrid seeds = make_seed_grid(mesh.view(), 20_mm);
+  std::vector<ProbeSphere> spheres;
+  ContactParameters parameters{
+      .friction_ratio = 0.4, .sliding_stiffness_N_per_m = 20.0, .tear_force_N = 0.3};
+};
+
+std::vector<ProbeSphere> jaws(std::size_t count) {
+  std::vector<ProbeSphere> all{{{0, -4_mm, 0}, kRadius_m},
+                               {{0, 4_mm, 0}, kRadius_m},
+                               {{8_mm, 0, 1_mm}, kRadius_m},
+                               {{-8_mm, 0, -1_mm}, kRadius_m}};
+  all.resize(count);
+  return all;
+}
+
+Wrench feel_at(Contact& contact, const Tool& tool) {
+  contact.touch(tool);
+  return contact.feel(tool, false);
+}
+
+double energy_J(const Contact& contact) {
+  double sum = 0.0;
+  for (const SphereTouch& touch : contact.touches()) sum += touch.energy_J;
+  return sum;
+}
+
+/// A smooth closed stroke: the tool sinks, moves about, turns, and comes back.
+struct Stroke {
+  double deep_m = 0.0, across_m = 0.0, along_m = 0.0, turn_rad = 0.0, grip_from = 2.0,
+         grip_to = 2.0;
+
+  Tool at(double share) const {
+    const double p = 2.0 * std::numbers::pi * share, turn = turn_rad * std::sin(p);
+    return {.position_m = {across_m * std::sin(2 * p), along_m * std::sin(p),
+                           kRadius_m + 2_mm - deep_m * (1 - std::cos(p)) / 2},
+            .orientation = {std::cos(turn / 2), std::sin(turn / 2), 0, 0},
+            .grip_ratio = share > grip_from && share < grip_to ? 1.0 : 0.0};
+  }
+};
+
+Stroke random_stroke(std::mt19937& random, double grips) {
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  Stroke stroke{.deep_m = 2_mm + 10_mm * share(random),
+                .across_m = 6_mm * share(random),
+                .along_m = 6_mm * share(random),
+                .turn_rad = 0.4 * share(random)};
+  if (share(random) < grips) {
+    stroke.grip_from = 0.1 + 0.5 * share(random);
+    stroke.grip_to = stroke.grip_from + 0.35 * share(random);
+  }
+  return stroke;
+}
+
+/// Work that the tool does on the hand, J, beside what is stored at the end; < 0: the hand gave it.
+double given_J(Contact& contact, const Stroke& stroke, int ticks) {
+  Tool before = stroke.at(0.0);
+  Wrench felt_before = feel_at(contact, before);
+  double work_J = 0.0;
+  for (int i = 1; i <= ticks; ++i) {
+    const Tool tool = stroke.at(static_cast<double>(i) / ticks);
+    const Wrench felt = feel_at(contact, tool);
+    const double turned_rad =
+        2.0 * (std::asin(tool.orientation.x) - std::asin(before.orientation.x));
+    work_J += 0.5 * dot(felt.force_N + felt_before.force_N, tool.position_m - before.position_m) +
+              0.5 * (felt.torque_Nm.x + felt_before.torque_Nm.x) * turned_rad;
+    before = tool;
+    felt_before = felt;
+  }
+  return work_J + energy_J(contact);
+}
+
+TEST(WholeTool, NoStrokeGivesBackMoreThanItTook) {
+  std::mt19937 random(11);
+  double most_lost_J = 0.0;
+  for (int k = 0; k < 60; ++k) {
+    Bench bench(jaws(2 + static_cast<std::size_t>(k) % 3));
+    Contact contact = bench.contact();
+    const double given = given_J(contact, random_stroke(random, 0.7), 4000);
+    EXPECT_LE(given, 2e-8) << "stroke " << k;
+    most_lost_J = std::min(most_lost_J, given);
+  }
+  EXPECT_LT(most_lost_J, -1e-5) << "rubbing and tearing cost energy";
+}
+
+TEST(WholeTool, WithoutFrictionAStrokeReturnsAll) {
+  std::mt19937 random(12);
+  for (int k = 0; k < 30; ++k) {
+    Bench bench(jaws(2 + static_cast<std::size_t>(k) % 3));
+    bench.parameters.friction_ratio = 0.0;
+    Contact contact = bench.contact();
+    EXPECT_NEAR(given_J(contact, random_stroke(random, 0.0), 4000), 0.0, 2e-8) << "stroke " << k;
+  }
+}
+
+TEST(WholeTool, LettingGoNeverAddsEnergy) {
+  std::mt19937 random(13);
+  for (int k = 0; k < 100; ++k) {
+    Bench bench(jaws(2 + static_cast<std::size_t>(k) % 3), tests::make_ball(50_mm, 5));
+    bench.parameters.tear_force_N = 100.0;
+    Contact contact = bench.contact();
+    Stroke stroke = random_stroke(random, 0.0);
+    stroke.grip_from = 0.3, stroke.grip_to = 0.45 + 0.004 * k;
+    double before_J = 0.0;
+    for (int i = 0; i <= 1000; ++i) {
+      Tool tool = stroke.at(i / 1000.0);
+      tool.position_m.z += 50_mm;
+      const bool was_held = contact.touches()[0].state == TouchState::kHeld;
+      // Opened where it stands: only the state changes.
+      if (was_held && tool.grip_ratio == 0.0) {
+        Tool still = stroke.at((i - 1) / 1000.0);
+        still.position_m.z += 50_mm;
+        still.grip_ratio = 0.0;
+        feel_at(contact, still);
+        EXPECT_LE(energy_J(contact), before_J + 1e-12) << "stroke " << k;
+        break;
+      }
+      feel_at(contact, tool);
+      before_J = energy_J(contact);
+    }
+  }
+}
+
+TEST(WholeTool, SidewaysThePairIsSofterThanTheSumOfEach) {
+  const auto stiffness_N_per_m = [](std::size_t count) {
+    Bench bench(jaws(count));
+    bench.parameters.friction_ratio = 10.0;
+    Contact contact = bench.contact();
+    Tool tool{.position_m = {0, 0, kRadius_m + 1_mm}};
+    for (int i = 0; i <= 100; ++i) {
+      tool.position_m.z = kRadius_m + 1_mm - 5_mm * i / 100;
+      feel_at(contact, tool);
+    }
+    tool.position_m.x += 0.5_mm;
+    return -feel_at(contact, tool).force_N.x / 0.5_mm;
+  };
+  // MC-4 by hand: each jaw carries t / (1 / k_t + C)
+  const double c = 1.0 / (std::numbers::pi * Bench(jaws(2)).tip.contact_modulus_Pa() * 8_mm);
+  EXPECT_NEAR(stiffness_N_per_m(1), 20.0, 1e-9);
+  EXPECT_NEAR(stiffness_N_per_m(2), 2.0 / (1.0 / 20.0 + c), 1e-6);
+}
+
+TEST(WholeTool, FrictionOfEachJawStaysInItsCone) {
+  std::mt19937 random(14);
+  for (int k = 0; k < 20; ++k) {
+    Bench bench(jaws(4));
+    Contact contact = bench.contact();
+    const Stroke stroke = random_stroke(random, 0.0);
+    for (int i = 0; i <= 2000; ++i) {
+      feel_at(contact, stroke.at(i / 2000.0));
+      for (const SphereTouch& touch : contact.touches()) {
+        const double normal_N = dot(touch.force_N, touch.normal);
+        ASSERT_LE(norm(tangential(touch.force_N, touch.normal)), 0.4 * normal_N * 1.02 + 1e-6);
+      }
+    }
+  }
+}
+
+TEST(WholeTool, APinchedLobeIsDraggedTheSameWayOnBothSides) {
+  Bench bench(jaws(2));
+  const Indentation top{.sphere = 0, .normal = {0, 0, 1}}, below{.sphere = 1, .normal = {0, 0, -1}};
+  Coupling c{};
+  c[0][1] = c[1][0] = bench.field.coupling_m_per_N(top, below, 24_mm);
+  const Shear shear(20.0, c, {true, true, false, false});
+  const double together_N = shear.force_N({Vec3{1_mm, 0, 0}, Vec3{1_mm, 0, 0}}, 0).x;
+  EXPECT_GT(c[0][1], 0.0);
+  EXPECT_NEAR(together_N, 1_mm / (1.0 / 20.0 + c[0][1]), 1e-12);
+}
+
+TEST(WholeTool, RepeatsAStrokeToTheBitAndLeavesTheHeapAlone) {
+  std::mt19937 random(15);
+  Bench bench(jaws(4));
+  const Stroke stroke = random_stroke(random, 1.0);
+  Contact contact = bench.contact();
+  const tests::NoAlloc guard;
+  const double first_J = given_J(contact, stroke, 1000);
+  feel_at(contact, stroke.at(0.5));
+  contact.reset();
+  EXPECT_EQ(given_J(contact, stroke, 1000), first_J);
+  EXPECT_EQ(guard.calls(), 0u);
+}
+
+}  // namespace tact::model::contact::whole_tool_test

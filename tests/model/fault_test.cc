@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/fault.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <string>
+
+namespace tact::model::fault_test {
+
+TEST(Fault, EveryEntryHasNameCauseAndCure) {
+  for (const FaultEntry& entry : fault_table()) {
+    EXPECT_GT(std::strlen(entry.name), 0u);
+    EXPECT_GT(std::strlen(entry.cause), 0u);
+    EXPECT_GT(std::strlen(entry.cure), 0u);
+  }
+}
+
+TEST(Fault, NumbersAscendAndAreNeverShared) {
+  int before = -1;
+  for (const FaultEntry& entry : fault_table()) {
+    EXPECT_GT(static_cast<int>(entry.fault), before);
+    before = static_cast<int>(entry.fault);
+  }
+}
+
+TEST(Fault, LatchesFromOneHundred) {
+  EXPECT_FALSE(latches(Fault::kNone));
+  EXPECT_FALSE(latches(Fault::kLawSaturated));
+  EXPECT_TRUE(latches(Fault::kInternal));
+  EXPECT_TRUE(latches(Fault::kDeviceLost));
+}
+
+TEST(Fault, UnknownNumbersAreDescribedAsInternal) {
+  EXPECT_EQ(describe(static_cast<Fault>(9999)).fault, Fault::kInternal);
+  EXPECT_EQ(describe(Fault::kForceLimited).fault, Fault::kForceLimited);
+}
+
+}  // namespace tact::model::fault_test

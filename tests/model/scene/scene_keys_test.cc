@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+// The format of a scene, its reference, and the scene that ships: they say the same.
+#include "model/scene/scene_keys.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <set>
+
+#include "model/scene/scene_words.h"
+#include "model/scene/tissue_law.h"
+
+namespace tact::model::scene::scene_keys_test {
+
+const std::string kScenes = TACT_SOURCE_DIR "/model/scenes/";
+const std::string kLiver = kScenes + "liver.toml";
+const std::string kDevices = TACT_SOURCE_DIR "/tools/deploy/devices.toml";
+
+std::vector<ReferenceRow> reference_rows() {
+  SceneText text;
+  SceneVisit visit(nullptr);
+  Keys::visit_root(visit, [&](Keys& root) { visit_scene(root, text); });
+  EXPECT_FALSE(visit.problem());
+  return visit.rows();
+}
+
+/// Every key below a table as "section.key"; entries of an array of sections have no number.
+void collect(const toml::table& table, const std::string& path, std::set<std::string>& keys) {
+  for (auto&& [key, node] : table) {
+    const std::string name = path + std::string(key.str());
+    if (const toml::table* section = node.as_table())
+      collect(*section, name + ".", keys);
+    else if (node.is_array_of_tables())
+      for (const toml::node& entry : *node.as_array()) collect(*entry.as_table(), name + ".", keys);
+    else
+      keys.insert(name);
+  }
+}
+
+std::set<std::string> keys_of_shipped_scenes() {
+  std::set<std::string> keys;
+  for (const std::string& path : {kLiver, kScenes + "heart.toml", kScenes + "skin.toml",
+                                  kScenes + "gum.toml", kScenes + "maintenance.toml", kDevices}) {
+    const Result<SceneDocument> document = load_scene_document(path, {});
+    EXPECT_TRUE(document) << document.error().sentence;
+    if (document) collect(document->root, "", keys);
+  }
+  return keys;
+}
+
+std::string joined(const std::set<std::string>& keys) {
+  std::string text;
+  for (const std::string& key : keys) text += key + "\n";
+  return text;
+}
+
+TEST(SceneReference, HasEveryKeyOfTheShippedScenesAndTheyHaveEveryKey) {
+  std::set<std::string> reference;
+  for (const ReferenceRow& row : reference_rows()) {
+    if (row.key.empty()) continue;
+    reference.insert(row.section.empty() ? row.key : row.section + "." + row.key);
+  }
+  EXPECT_EQ(joined(reference), joined(keys_of_shipped_scenes()));
+  EXPECT_GT(reference.size(), 45u);
+}
+
+TEST(SceneReference, TheSectionsOfRealDevicesHoldTheDefaultsAndFitAScene) {
+  std::ifstream liver(kLiver), devices(kDevices);
+  std::string text{std::istreambuf_iterator<char>(liver), {}};
+  const std::string sections{std::istreambuf_iterator<char>(devices), {}};
+  const std::string path = testing::TempDir() + "on_real_devices.toml";
+  constexpr const char* kMeshes = "\"meshes/";  // named from another folder
+  for (auto at = text.find(kMeshes); at != text.npos; at = text.find(kMeshes, at + kScenes.size()))
+    text.insert(at + 1, kScenes);
+  const auto section = text.find("[device]"), next = text.find("# Soft tissue needs");
+  ASSERT_NE(section, text.npos);
+  ASSERT_NE(next, text.npos);
+  std::ofstream(path) << text.substr(0, section) << sections << text.substr(next);
+  const Result<Scene> scene = load_scene(path, {});
+  ASSERT_TRUE(scene) << scene.error().sentence;
+  const DeviceSettings fresh;
+  EXPECT_EQ(scene->device.kind, "can-odrive");
+  EXPECT_EQ(scene->device.delta.forearm_m, fresh.delta.forearm_m);
+  EXPECT_NEAR(scene->device.delta.azimuth_rad.z, fresh.delta.azimuth_rad.z, 1e-6);
+  EXPECT_EQ(scene->device.can.node, fresh.can.node);
+  EXPECT_EQ(scene->device.can.homing, fresh.can.homing);
+  EXPECT_EQ(scene->device.falcon.gain_words_per_Nm, fresh.falcon.gain_words_per_Nm);
+  EXPECT_EQ(scene->device.force_dimension.watchdog_s, fresh.force_dimension.watchdog_s);
+  EXPECT_FALSE(scene->device.lines.wired());
+}
+
+TEST(SceneReference, SaysOfEveryKeyWhatIsAllowedAndWhatItMeans) {
+  for (const ReferenceRow& row : reference_rows()) {
+    EXPECT_FALSE(row.allowed.empty()) << row.section << "." << row.key;
+    EXPECT_FALSE(row.meaning.empty()) << row.section << "." << row.key;
+    if (row.allowed.find(" .. ") == std::string::npos || row.key.empty()) continue;
+    // A number without a unit is a ratio, a count, or one of these.
+    const bool named =
+        row.key.ends_with("_ratio") || row.allowed.ends_with("whole") || row.key == "growth" ||
+        row.key == "inward" || row.key.starts_with("counts_per_") || row.key == "sphere" ||
+        row.key == "node" || row.key == "direction" || row.key == "id" ||
+        row.section == "device.lines" || row.key == "reference_site" || row.key == "relaxation";
+    EXPECT_EQ(unit_of_key(row.key).empty(), named) << row.section << "." << row.key;
+  }
+}
+
+TEST(SceneReference, IsAPageWithEveryRow) {
+  const std::string page = scene_reference();
+  for (const ReferenceRow& row : reference_rows()) {
+    const auto at = page.find(row.key.empty() ? "\n" + row.allowed : row.key + " ");
+    EXPECT_NE(at, page.npos) << row.section << "." << row.key;
+    EXPECT_NE(page.find(row.meaning), page.npos) << row.meaning;
+  }
+  EXPECT_NE(page.find("[contact]"), page.npos);
+  EXPECT_NE(page.find("[[hand.stroke]]"), page.npos);
+  std::size_t start = 0;
+  for (std::size_t end = page.find('\n'); end != page.npos; end = page.find('\n', start)) {
+    EXPECT_LE(end - start, 140u) << page.substr(start, end - start);
+    start = end + 1;
+  }
+}
+
+TEST(Scene, CutAtAnyByteNeverCrashesAndSaysOneLine) {
+  std::ifstream file(kLiver, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string path = std::string(TACT_BINARY_DIR) + "/scene_cut.toml";
+  for (std::size_t length = 0; length < text.size(); length += 3) {
+    std::ofstream(path, std::ios::binary) << text.substr(0, length);
+    const Result<Scene> scene = load_scene(path, {});
+    ASSERT_FALSE(scene) << "its meshes are not here, cut at " << length;
+    ASSERT_TRUE(scene.error().sentence.starts_with(path + ":")) << scene.error().sentence;
+    ASSERT_EQ(scene.error().sentence.find('\n'), std::string::npos) << scene.error().sentence;
+  }
+}
+
+TEST(Scene, WithAnyByteSpoiltNeverCrashesAndSaysOneLine) {
+  std::ifstream file(kLiver, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string path = std::string(TACT_BINARY_DIR) + "/scene_spoilt.toml";
+  const std::string spoilers = std::string("\0\xff\"'[]{}=.,-9e\n#_", 17);
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    std::string spoilt = text;
+    spoilt[i] = spoilers[(7 * i) % spoilers.size()];
+    std::ofstream(path, std::ios::binary) << spoilt;
+    const Result<Scene> scene = load_scene(path, {});
+    ASSERT_FALSE(scene) << "its meshes are not here, spoilt at " << i;
+    ASSERT_EQ(scene.error().sentence.find('\n'), std::string::npos) << scene.error().sentence;
+  }
+}
+
+/// Height of the surface above (x, y), by the highest triangle there.
+double surface_z_m(const mesh::SurfaceMesh& mesh, double x_m, double y_m) {
+  double highest_m = -std::numeric_limits<double>::infinity();
+  for (const contact::TriangleCorners& t : mesh.triangle) {
+    const Vec3 a = mesh.vertex_m[t[0]], u = mesh.vertex_m[t[1]] - a, v = mesh.vertex_m[t[2]] - a;
+    const double area = u.x * v.y - u.y * v.x;
+    if (!(std::fabs(area) > 0.0)) continue;
+    const double s = ((x_m - a.x) * v.y - (y_m - a.y) * v.x) / area;
+    const double r = (u.x * (y_m - a.y) - u.y * (x_m - a.x)) / area;
+    if (s < 0.0 || r < 0.0 || s + r > 1.0) continue;
+    highest_m = std::max(highest_m, a.z + s * u.z + r * v.z);
+  }
+  return highest_m;
+}
+
+/// Force of one jaw when the hand wants it at a depth: two jaws and the hand's spring in balance.
+double balance_N(const std::function<double(double)>& force_N, double wanted_m,
+                 double hand_N_per_m) {
+  double low_m = -0.05, high_m = 0.05;
+  for (int i = 0; i < 60; ++i) {
+    const double d_m = 0.5 * (low_m + high_m);
+    const bool too_deep = 2.0 * force_N(d_m) > hand_N_per_m * (wanted_m - d_m);
+    (too_deep ? high_m : low_m) = d_m;
+  }
+  return force_N(low_m);
+}
+
+class Liver : public testing::Test {
+ protected:
+  void SetUp() override { ASSERT_TRUE(scene_) << scene_.error().sentence; }
+  const Result<Scene> scene_ = load_scene(kLiver, {});
+};
+
+TEST_F(Liver, LoadsWithItsMeshes) {
+  EXPECT_EQ(scene_->organ_mesh.vertex_m.size(), 3116u);
+  EXPECT_EQ(scene_->organ_mesh.triangle.size(), 6228u);
+  EXPECT_EQ(scene_->tool_mesh.vertex_m.size(), 174u);
+  EXPECT_EQ(scene_->tool_mesh.triangle.size(), 348u);
+}
+
+TEST_F(Liver, LiesInTheWorkspaceWithItsTopAtTheTouchedPoint) {
+  const mesh::MeshSummary organ = summarize(scene_->organ_mesh);
+  EXPECT_LT(std::max(organ.high_m.x, -organ.low_m.x), scene_->limits.workspace_half_length_m);
+  EXPECT_LT(std::hypot(organ.high_m.y, organ.low_m.z), scene_->limits.workspace_radius_m);
+  EXPECT_NEAR(surface_z_m(scene_->organ_mesh, 0.0, 0.0), 0.0, 0.0005);
+}
+
+TEST_F(Liver, HasJawsWhereItsProbeSpheresAre) {
+  // The tip of each jaw is inside its sphere.
+  for (const contact::ProbeSphere& sphere : scene_->tool.spheres) {
+    double nearest_m = 1.0;
+    for (const Vec3& v : scene_->tool_mesh.vertex_m)
+      nearest_m = std::min(nearest_m, norm(v - sphere.offset_m));
+    EXPECT_LE(nearest_m, sphere.radius_m);
+  }
+  EXPECT_GT(summarize(scene_->tool_mesh).high_m.z, 0.05) << "handle towards +z";
+}
+
+TEST_F(Liver, TearsWhenItSaysTearAndHoldsWhenItSaysPull) {
+  const auto felt = make_tissue_law(*scene_, scene_->law);
+  ASSERT_TRUE(felt) << felt.error().sentence;
+  const contact::SurfaceView surface = scene_->organ_mesh.view();
+  std::uint32_t touched = 0;  // the triangle whose first corner is nearest the origin
+  for (std::uint32_t t = 0; t < surface.triangle.size(); ++t)
+    if (norm(surface.vertex_m[surface.triangle[t][0]]) <
+        norm(surface.vertex_m[surface.triangle[touched][0]]))
+      touched = t;
+  const auto force_N = [&](double depth_m) {
+    return (*felt)
+        ->site_law()
+        .respond({.place = {touched, {1, 0, 0}}, .depth_m = depth_m, .held = depth_m < 0.0})
+        .law.force_N;
+  };
+  const double hand_N_per_m = scene_->hand.stiffness_N_per_m;
+  const double pull_N = -balance_N(force_N, -0.008, hand_N_per_m);
+  const double tear_N = -balance_N(force_N, -0.025, hand_N_per_m);
+  EXPECT_NEAR(pull_N, 0.27, 0.005) << "the number in liver.toml";
+  EXPECT_LT(pull_N, 0.8 * scene_->contact.tear_force_N);
+  EXPECT_GT(tear_N, 1.2 * scene_->contact.tear_force_N);
+  EXPECT_NEAR(force_N(0.001), 0.0138, 0.0003) << "the number in liver.toml";
+  EXPECT_NEAR(force_N(0.010), 0.285, 0.003) << "the number in liver.toml";
+  // Both jaws at the deepest press stay below the quarter of the limit that a slow PC may use.
+  EXPECT_LT(2.0 * balance_N(force_N, 0.010, hand_N_per_m), 0.5 * 0.25 * scene_->limits.force_N);
+}
+
+TEST_F(Liver, RepeatsAScriptOfTwentySecondsFromHomeToHome) {
+  const std::vector<contact::HandWaypoint>& path = scene_->hand.path;
+  EXPECT_TRUE(scene_->hand.repeat);
+  EXPECT_NEAR(path.back().time_s, 20.0, 2.0);
+  EXPECT_EQ(path.front().position_m, path.back().position_m);
+  EXPECT_NEAR(path.front().position_m.z - surface_z_m(scene_->organ_mesh, 0.0, 0.0), 0.06, 0.001);
+  EXPECT_EQ(path.back().grip_ratio, 0.0);
+}
+
+}  // namespace tact::model::scene::scene_keys_test

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene's law made ready to touch: what it says of itself must hold for all that can be felt.
+#include "model/scene/tissue_law.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/scene/tissue_map.h"
+#include "tests/support/test_scene.h"
+
+namespace tact::model::scene::tissue_law_test {
+
+using Overrides = std::vector<std::string>;
+
+Scene shipped(const std::string& name, const Overrides& overrides = {}) {
+  auto scene = load_scene(TACT_SOURCE_DIR "/model/scenes/" + name + ".toml", overrides);
+  EXPECT_TRUE(scene) << scene.error().sentence;
+  return scene ? std::move(*scene) : Scene{};
+}
+
+std::unique_ptr<TissueLaw> made(const Scene& scene, LawKind kind) {
+  auto law = make_tissue_law(scene, kind);
+  EXPECT_TRUE(law) << law.error().sentence;
+  return law ? std::move(*law) : nullptr;
+}
+
+std::unique_ptr<TissueLaw> made(const Scene& scene) { return made(scene, scene.law); }
+
+std::string refusal(const Scene& scene, LawKind kind) {
+  const auto law = make_tissue_law(scene, kind);
+  return law ? "" : law.error().sentence;
+}
+
+TEST(TissueLaw, SeesAStiffPullThatTearsWithinOneSample) {
+  // 10 000 N/m reach the tear force of 0.6 N at 0.06 mm of 12 mm
+  const Scene heart = shipped("heart", {"pull.stiffness_N_per_m=10000"});
+  EXPECT_GE(made(heart)->stiffness_N_per_m(), 10000.0);
+  EXPECT_LT(made(shipped("heart"))->stiffness_N_per_m(), 1000.0);
+}
+
+TEST(TissueLaw, StiffnessIsTheLargestSlopeShortOfTheTear) {
+  Scene scene = tests::make_plate_scene();  // rhombi that stiffen as they are pulled
+  for (const double tear_N : {0.05, 0.2, 0.6}) {
+    scene.contact.tear_force_N = tear_N;
+    const auto law = made(scene, LawKind::kRhombus);
+    double most_N_per_m = law->curve()->respond(1e-9).stiffness_N_per_m;
+    for (double d_m = -1e-9; d_m > law->range().pull_m; d_m -= 1e-6) {
+      const law::LawResponse r = law->curve()->respond(d_m);
+      if (r.force_N < -tear_N) break;
+      most_N_per_m = std::max(most_N_per_m, r.stiffness_N_per_m);
+    }
+    EXPECT_NEAR(law->stiffness_N_per_m() / most_N_per_m, 1.0, 1e-3) << tear_N;
+  }
+}
+
+TEST(TissueLaw, TitlesNameTheirSizes) {
+  const Scene liver = shipped("liver", {"varies_by_place=false"});
+  const std::string patch = "rhombus chain, energy form, 10 units, in parallel under the tip";
+  EXPECT_EQ(made(liver, LawKind::kRhombus)->title(), patch);
+  EXPECT_EQ(made(liver, LawKind::kDiscStack)->title(), "disc stack, linear, 20 layers");
+  EXPECT_EQ(made(liver, LawKind::kHexSheet)->title(), "hexagonal sheet, energy form, 15 rings");
+  EXPECT_EQ(made(liver, LawKind::kCompliance)->title(),
+            "elastic compliance, large strain under the tip, 17 curves");
+  EXPECT_EQ(made(liver, LawKind::kSpringPatch)->title(),
+            "mass-spring patch, 500 nodes, midpoint-averaging");
+  EXPECT_EQ(made(shipped("liver"))->title(), patch + ", in series with the organ");
+}
+
+TEST(TissueLaw, ZeroRingsAreAsFewAsTheToleranceAllows) {
+  const std::string few = made(shipped("skin", {"hex_sheet.rings=0"}))->title();
+  EXPECT_EQ(few, made(shipped("skin"))->title());
+  EXPECT_EQ(few.find(", 0 rings"), few.npos) << few;
+}
+
+TEST(TissueLaw, WhatVariesIsInSeriesWithTheGiveOfEachVertex) {
+  const Scene varied = shipped("liver"), same = shipped("liver", {"varies_by_place=false"});
+  const auto family = read_scene_family(varied, false);
+  ASSERT_TRUE(family) << family.error().sentence;
+  const auto give_m_per_N = [&](float kappa) {
+    return family->curve[static_cast<std::size_t>(kappa)].regular_m_per_N();
+  };
+  const auto law = made(varied), tip = made(same);
+  const contact::SurfaceView mesh = varied.organ_mesh.view();
+  double least_N = 1e9, most_N = 0.0;
+  std::size_t seen = 0;
+  for (std::uint32_t t = 0; t < mesh.triangle.size(); ++t) {
+    const std::uint32_t v = mesh.triangle[t][0];
+    for (const double depth_m : {-0.004, 0.001, 0.006}) {
+      const float kappa = (depth_m < 0.0 ? family->pull_coordinate : family->press_coordinate)[v];
+      // between two curves energies are blended: CF-2 says how near that is to the place's own
+      if (std::abs(kappa - std::floor(kappa)) > 0.002F || kappa < 1.0F || kappa > 13.0F) continue;
+      const contact::Indentation in{.place = {t, {1, 0, 0}}, .depth_m = depth_m, .held = true};
+      const double force_N = law->site_law().respond(in).law.force_N;
+      const double dent_m = depth_m - give_m_per_N(kappa) * force_N;
+      const double tip_N = tip->curve()->respond(dent_m).force_N;
+      ASSERT_NEAR(force_N, tip_N, 2e-3 * std::abs(tip_N)) << t << " at " << depth_m;
+      if (depth_m == 0.006)
+        least_N = std::min(least_N, force_N), most_N = std::max(most_N, force_N);
+      ++seen;
+    }
+  }
+  EXPECT_GT(seen, 10U);
+  EXPECT_GT(most_N, 2.0 * least_N) << "the liver differs from place to place";
+  EXPECT_GE(law->stiffness_N_per_m(), tip->stiffness_N_per_m()) << "the stiffest place counts";
+}
+
+TEST(TissueLaw, IsAtMostHalfAsStiffAgainNearTheHeldSide) {
+  const Overrides stiff{"rhombus.normal_stiffness_N_per_m=16", "pull.stiffness_N_per_m=300"};
+  Overrides alone = stiff;
+  alone.emplace_back("varies_by_place=false");
+  const double ratio = made(shipped("liver", stiff))->stiffness_N_per_m() /
+                       made(shipped("liver", alone))->stiffness_N_per_m();
+  EXPECT_GT(ratio, 1.2);
+  EXPECT_LT(ratio, 1.505);
+}
+
+TEST(TissueLaw, OneChainUnderTheWholeTipOrMoreTheDeeperItSinks) {
+  const Overrides tip{"varies_by_place=false", "pull.limit_m=0.01"};
+  const auto patch = made(shipped("liver", tip));
+  Overrides one = tip;
+  one.emplace_back("rhombus.area_m2=0");
+  const auto chain = made(shipped("liver", one));
+  const auto slope = [](const TissueLaw& law, double depth_m) {
+    return law.curve()->respond(depth_m).stiffness_N_per_m;
+  };
+  EXPECT_LT(slope(*patch, 1e-5), 0.1 * slope(*patch, 0.002)) << "light touch is soft";
+  EXPECT_GT(slope(*chain, 1e-5), 2.0 * slope(*chain, 0.002)) << "a chain softens";
+}
+
+TEST(TissueLaw, LargeStrainSoftensTheComplianceLawAndScalesNoOther) {
+  EXPECT_TRUE(ComplianceSettings{}.large_strain) << "where the scene does not say";
+  const std::string small = "compliance.large_strain=false", varies = "varies_by_place=true";
+  const contact::Indentation in{.place = {97, {1, 0, 0}}, .depth_m = 0.003};
+  const auto force_N = [&](const Overrides& overrides, LawKind kind) {
+    const Scene liver = shipped("liver", overrides);
+    return made(liver, kind)->site_law().respond(in).law.force_N;
+  };
+  const double large_N = force_N({}, LawKind::kCompliance);
+  EXPECT_LT(large_N, 0.98 * force_N({small}, LawKind::kCompliance));
+  EXPECT_GT(large_N, 0.80 * force_N({small}, LawKind::kCompliance));
+  EXPECT_EQ(force_N({varies}, LawKind::kRhombus), force_N({varies, small}, LawKind::kRhombus));
+}
+
+TEST(TissueLaw, SlopeAlongTheSurfaceIsThatOfTheEnergy) {
+  const Scene varied = shipped("liver");
+  const contact::SurfaceView mesh = varied.organ_mesh.view();
+  for (const LawKind kind : {LawKind::kRhombus, LawKind::kDiscStack, LawKind::kHexSheet}) {
+    const auto law = made(varied, kind);
+    double largest_N = 0.0;
+    int compared = 0;
+    for (std::uint32_t t = 5; t < mesh.triangle.size(); t += 311) {
+      const auto at = [&](double a, double b) {
+        return law->site_law().respond({.place = {t, {1.0 - a - b, a, b}}, .depth_m = 0.005});
+      };
+      const contact::TriangleCorners& corner = mesh.triangle[t];
+      const double e = 1e-3;
+      const Vec3 ab_m = mesh.vertex_m[corner[1]] - mesh.vertex_m[corner[0]];
+      const Vec3 ac_m = mesh.vertex_m[corner[2]] - mesh.vertex_m[corner[0]];
+      const Vec3 slope_N = at(0.3, 0.3).slope_N;
+      const double along_ab_J = at(0.3 + e, 0.3).law.energy_J - at(0.3 - e, 0.3).law.energy_J;
+      const double along_ac_J = at(0.3, 0.3 + e).law.energy_J - at(0.3, 0.3 - e).law.energy_J;
+      const double middle_J = at(0.3, 0.3).law.energy_J;
+      const double ahead_J = at(0.3 + e, 0.3 + e).law.energy_J - middle_J;
+      const double behind_J = middle_J - at(0.3 - e, 0.3 - e).law.energy_J;
+      if (std::abs(ahead_J - behind_J) > 1e-13) continue;  // a curve of the family lies here
+      EXPECT_NEAR(along_ab_J / (2 * e), dot(slope_N, ab_m), 1e-10);
+      EXPECT_NEAR(along_ac_J / (2 * e), dot(slope_N, ac_m), 1e-10);
+      largest_N = std::max(largest_N, norm(slope_N));
+      ++compared;
+    }
+    EXPECT_GT(largest_N, 1e-3) << name_of(kind);
+    EXPECT_GT(compared, 15) << name_of(kind);
+  }
+}
+
+TEST(TissueLaw, RefusesTipsOfTwoSizesWhereTheMapKnowsOne) {
+  Scene liver = shipped("liver", {"varies_by_place=false"});
+  liver.tool.spheres[1].radius_m = 0.005;
+  const std::string words = "radii of 0.004 and 0.005 m";
+  EXPECT_NE(refusal(liver, LawKind::kCompliance).find(words), std::string::npos);
+  EXPECT_NE(refusal(liver, LawKind::kRhombus).find(words), std::string::npos);
+  liver.rhombus_area_m2 = 0.0;
+  EXPECT_EQ(refusal(liver, LawKind::kRhombus), "") << "one chain knows no tip";
+  liver.varies_by_place = true;
+  EXPECT_NE(refusal(liver, LawKind::kRhombus).find(words), std::string::npos);
+}
+
+}  // namespace tact::model::scene::tissue_law_test

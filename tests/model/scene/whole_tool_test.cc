@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The shipped forceps in the shipped liver: both jaws press one tissue.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "model/contact/contact.h"
+#include "model/scene/scene.h"
+#include "model/scene/tissue.h"
+#include "tests/support/sentence.h"
+
+namespace tact::model::scene::whole_tool_test {
+
+nlohmann::json two_jaws() {
+  std::ifstream file(TACT_SOURCE_DIR "/tests/data/reference/two_jaws_liver.json");
+  return nlohmann::json::parse(file);
+}
+
+class WholeTool : public ::testing::Test {
+ protected:
+  WholeTool() {
+    auto loaded = load_scene(
+        TACT_SOURCE_DIR "/model/scenes/liver.toml",
+        {"law=\"compliance\"", "compliance.large_strain=false", "contact.friction_ratio=0"});
+    EXPECT_EQ(tests::sentence_of(loaded), "");
+    scene_ = std::move(*loaded);
+    auto tissue = make_tissue(scene_);
+    EXPECT_EQ(tests::sentence_of(tissue), "");
+    tissue_ = std::move(*tissue);
+  }
+
+  /// The tool comes down until its lowest points are `to_m` below z = 0 of W, its grip as said.
+  static Wrench feel(contact::Contact& contact, double from_m, double to_m, double grip_ratio) {
+    Wrench w;
+    for (int i = 0; i <= 200; ++i) {
+      const Tool tool{.position_m = {0, 0, -(from_m + (to_m - from_m) * i / 200.0)},
+                      .grip_ratio = grip_ratio};
+      contact.touch(tool);
+      w = contact.feel(tool, false);
+    }
+    return w;
+  }
+  double pressed_N(double depth_m) {
+    contact::Contact contact(tissue_->contact_scene());
+    return feel(contact, -0.010, depth_m, 0.0).force_N.z;
+  }
+  /// Pull stiffness of the jaws that are there.
+  double pulled_N_per_m(std::span<const contact::ProbeSphere> jaws) {
+    contact::ContactScene scene = tissue_->contact_scene();
+    scene.spheres = jaws;
+    contact::Contact contact(scene);
+    feel(contact, -0.010, 0.001, 0.0);
+    const double near_N = feel(contact, 0.001, -0.002, 1.0).force_N.z;
+    const double far_N = feel(contact, -0.002, -0.004, 1.0).force_N.z;
+    return (near_N - far_N) / 0.002;
+  }
+
+  Scene scene_;
+  std::unique_ptr<Tissue> tissue_;
+};
+
+TEST_F(WholeTool, PressesTheLiverAsFiniteElementsDo) {
+  const nlohmann::json reference = two_jaws();
+  for (const char* solver : {"fe", "boundary_elements"}) {
+    const nlohmann::json& truth = reference[solver];
+    for (std::size_t i = 0; i < truth["depth_m"].size(); ++i) {
+      const double want_N = truth["pair_N"][i];
+      EXPECT_NEAR(pressed_N(truth["depth_m"][i]), want_N, 0.03 * want_N)
+          << solver << ", " << truth["depth_m"][i] << " m";
+    }
+  }
+}
+
+TEST_F(WholeTool, HeldJawsPullLessThanTheSumOfEach) {
+  const nlohmann::json truth = two_jaws()["gripped_pull"];
+  const std::span<const contact::ProbeSphere> jaws = scene_.tool.spheres;
+  const double pair = pulled_N_per_m(jaws);
+  const double sum = pulled_N_per_m(jaws.first(1)) + pulled_N_per_m(jaws.last(1));
+  EXPECT_NEAR(pair / sum, truth["ratio"], 0.03);
+  EXPECT_NEAR(pair, truth["pair_N_per_m"], 0.06 * double(truth["pair_N_per_m"]));
+}
+
+}  // namespace tact::model::scene::whole_tool_test

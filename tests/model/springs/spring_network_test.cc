@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/springs/spring_network.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/model/springs/spring_mesh.h"
+#include "tests/support/no_alloc.h"
+
+namespace tact::model::springs::spring_network_test {
+
+using tests::make_net;
+using tests::SpringNet;
+
+StepRule rule(Integrator integrator, double step_s, double alpha = 0.5) {
+  return {.method = {integrator, alpha}, .step_s = step_s};
+}
+
+void run(SpringNet& net, const StepRule& how, int steps) {
+  SpringStepper stepper(net.rest_m.size(), net.spring.size());
+  for (int i = 0; i < steps; ++i) stepper.step(net.view(), how);
+}
+
+TEST(SpringNetwork, MatchesPenAndPaper) {
+  // Two nodes 30 mm apart, L0 = 20 mm, k = 200 N/m: 2 N. Apart at 0.1 m/s, c = 3 Ns/m: 0.3 N more.
+  SpringNet net = make_net(1, {});
+  net.spring = {{0, 1, 200.0, 3.0, 0.02}};
+  net.position_m = net.rest_m = {{0, 0, 0}, {0.03, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  net.velocity_mps[1] = {0.1, 0.5, 0.0};
+  std::vector<Vec3> f(4);
+  const double energy_J = forces(net.view(), net.position_m, net.velocity_mps, f);
+  EXPECT_NEAR(f[0].x, 2.3, 1e-12);
+  EXPECT_NEAR(f[1].x, -2.3, 1e-12);
+  EXPECT_EQ(f[1].y, 0.0) << "moving across a spring takes no force";
+  EXPECT_NEAR(energy_J, 0.01, 1e-15);  // 200 * 0.01^2 / 2
+  // A probe 4 mm deep on a dent of 1 mm with 300 N/m pushes with 0.9 N.
+  ProbeSpring probe{
+      .node = {0, 1, 2}, .weight = {0.5, 0.25, 0.25}, .depth_m = 0.004, .stiffness_N_per_m = 300.0};
+  probe.push.fill({0, 0, -1});
+  net.position_m[0].z = -0.002;
+  EXPECT_NEAR(dent_m(probe, net.position_m, net.rest_m), 0.001, 1e-15);
+  EXPECT_NEAR(probe_force_N(probe, 0.001), 0.9, 1e-12);
+  EXPECT_EQ(probe_force_N(probe, 0.005), 0.0) << "it never pulls";
+  probe.held = true;
+  EXPECT_NEAR(probe_force_N(probe, 0.005), -0.3, 1e-12) << "unless held";
+}
+
+TEST(SpringNetwork, ForceIsTheSlopeOfItsEnergy) {
+  SpringNet net = make_net(3, {.shake_m = 0.003});
+  for (Vec3& load : net.load_N) load = {0.1, -0.2, 0.05};
+  std::vector<Vec3> f(net.rest_m.size());
+  forces(net.view(), net.position_m, net.velocity_mps, f);
+  const double e = 1e-7;
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    for (double Vec3::* axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+      const double here = net.position_m[i].*axis;
+      net.position_m[i].*axis = here + e;
+      const double ahead_J = stored_energy_J(net.view());
+      net.position_m[i].*axis = here - e;
+      const double behind_J = stored_energy_J(net.view());
+      net.position_m[i].*axis = here;
+      EXPECT_NEAR(-(ahead_J - behind_J) / (2.0 * e), f[i].*axis, 1e-6);
+    }
+  }
+}
+
+TEST(SpringNetwork, SpringsAloneKeepTheMomentum) {
+  SpringNet net = make_net(4, {.damping_Ns_per_m = 0.02, .anchor_N_per_m = 0.0, .shake_m = 0.003});
+  net.inverse_mass_per_kg.assign(net.rest_m.size(), 500.0);
+  for (const auto& entry : kIntegratorNames) {
+    run(net, rule(entry.integrator, 0.0005), 20);
+    Vec3 sum;
+    for (const Vec3& v : net.velocity_mps) sum += v;
+    EXPECT_NEAR(norm(sum), 0.0, 1e-12) << entry.name;
+  }
+}
+
+TEST(SpringNetwork, FixedNodesAndRestStayWhereTheyAre) {
+  for (const auto& entry : kIntegratorNames) {
+    SpringNet shaken = make_net(3, {.shake_m = 0.002}), still = make_net(3, {});
+    run(shaken, rule(entry.integrator, 0.001), 50);
+    EXPECT_EQ(shaken.position_m[0], shaken.rest_m[0]) << entry.name;
+    EXPECT_EQ(shaken.velocity_mps[0], Vec3{}) << entry.name;
+    run(still, rule(entry.integrator, 0.001), 50);
+    for (std::size_t i = 0; i < still.rest_m.size(); ++i)
+      EXPECT_EQ(still.position_m[i], still.rest_m[i]) << entry.name;
+  }
+}
+
+TEST(SpringNetwork, ThreeEighthsMakesEnergyWhereOneHalfKeepsIt) {
+  const auto growth = [](double alpha) {
+    SpringNet net = make_net(6, {.shake_m = 0.0001});
+    const double before_J = net.energy_J();
+    run(net, rule(Integrator::kMidpointAveraging, 0.001, alpha), 2000);
+    return net.energy_J() / before_J;
+  };
+  EXPECT_GT(growth(0.375), 10.0);
+  EXPECT_NEAR(growth(0.5), 1.0, 0.2);
+  EXPECT_LT(growth(0.625), 0.5);
+}
+
+// The theorem in the header: any number of iterations, any step.
+TEST(SpringNetwork, ImplicitEulerNeverMakesEnergyHoweverFewItsIterations) {
+  for (const int iterations : {1, 2, 5, 30}) {
+    for (const double step_s : {0.001, 0.01, 1.0}) {
+      SpringNet net = make_net(8, {.shake_m = 1e-6});  // small: springs are linear
+      net.anchor_N_per_m[20] = 5000.0;
+      SpringStepper stepper(net.rest_m.size(), net.spring.size());
+      double before_J = net.energy_J();
+      for (int i = 0; i < 100; ++i) {
+        stepper.step(
+            net.view(),
+            {.method = {Integrator::kImplicitEuler}, .step_s = step_s, .iterations = iterations});
+        const double after_J = net.energy_J();
+        ASSERT_LE(after_J, before_J * (1.0 + 1e-3) + 1e-18) << iterations << ", " << step_s;
+        before_J = after_J;
+      }
+    }
+  }
+}
+
+// A crumpled net: many springs are pressed together and would have negative stiffness across.
+TEST(SpringNetwork, ImplicitEulerSettlesWhateverItsStartAndStep) {
+  for (const double step_s : {0.001, 0.01, 0.1}) {
+    SpringNet net = make_net(6, {.shake_m = 0.02});
+    const double before_J = net.energy_J();
+    run(net, {.method = {Integrator::kImplicitEuler}, .step_s = step_s, .iterations = 20}, 300);
+    EXPECT_LT(net.energy_J(), 0.2 * before_J) << step_s;
+    const double then_J = net.energy_J();
+    run(net, {.method = {Integrator::kImplicitEuler}, .step_s = step_s, .iterations = 20}, 300);
+    EXPECT_LE(net.energy_J(), then_J * (1.0 + 1e-9)) << step_s;
+  }
+}
+
+TEST(SpringNetwork, ImplicitEulerConvergesToItsScalarForm) {
+  // One free node on an anchor: MA-9 on each axis.
+  SpringNet net = make_net(1, {.stiffness_N_per_m = 0.0, .drag_Ns_per_m = 0.01});
+  net.inverse_mass_per_kg[1] = 500.0;
+  net.position_m[1] += {0.002, 0.0, 0.001};
+  OscillatorState at{0.002, 0.0};
+  for (int i = 0; i < 10; ++i)
+    at = step({0.002, 0.01, 5.0, 0.0}, at, {Integrator::kImplicitEuler}, 0.001);
+  run(net, rule(Integrator::kImplicitEuler, 0.001), 10);
+  EXPECT_NEAR(net.position_m[1].x - net.rest_m[1].x, at.position_m, 1e-15);
+  EXPECT_NEAR(net.position_m[1].z, 0.5 * at.position_m, 1e-15);
+}
+
+TEST(SpringNetwork, EveryIntegratorFindsTheSameRest) {
+  std::vector<double> depth_m;
+  for (const auto& entry : kIntegratorNames) {
+    SpringNet net = make_net(6, {.damping_Ns_per_m = 0.1, .drag_Ns_per_m = 0.1});
+    net.load_N[24] = {0.0, 0.0, -0.02};
+    run(net, rule(entry.integrator, 0.0005), 3000);
+    depth_m.push_back(net.position_m[24].z);
+  }
+  for (const double d : depth_m) EXPECT_NEAR(d / depth_m[0], 1.0, 1e-6);
+}
+
+TEST(SpringNetwork, SkipsASpringOfNoLength) {
+  for (const auto& entry : kIntegratorNames) {
+    SpringNet net = make_net(2, {});
+    net.position_m[4] = net.position_m[3];
+    run(net, rule(entry.integrator, 0.001), 10);
+    for (const Vec3& x : net.position_m) EXPECT_TRUE(is_finite(x)) << entry.name;
+  }
+}
+
+TEST(SpringNetwork, ASpringOfNoLengthKeepsItsEnergyInBothCounts) {
+  SpringNet net = make_net(2, {.shake_m = 1e-3});
+  net.position_m[4] = net.position_m[3];
+  std::vector<Vec3> f(net.rest_m.size());
+  const double energy_J = forces(net.view(), net.position_m, net.velocity_mps, f);
+  EXPECT_NEAR(energy_J, stored_energy_J(net.view()), 1e-12 * energy_J);
+}
+
+// Nodes that flee from an unheld tool faster than it pushes are let go, not drawn back.
+TEST(SpringNetwork, DampingUnderAToolPullsOnlyIfHeld) {
+  SpringNet net = make_net(1, {.anchor_N_per_m = 0.0});
+  net.spring.clear();
+  ProbeSpring probe{.node = {0, 1, 2},
+                    .weight = {0.5, 0.25, 0.25},
+                    .depth_m = 0.001,
+                    .stiffness_N_per_m = 300.0,
+                    .damping_Ns_per_m = 2.0};
+  probe.push.fill({0, 0, -1});
+  for (Vec3& v : net.velocity_mps) v = {0, 0, -1.0};  // 0.3 N of push, 2 N of damping
+  std::vector<Vec3> f(net.rest_m.size());
+  for (const bool held : {false, true}) {
+    probe.held = held;
+    SpringNetwork network = net.view();
+    network.probe = {&probe, 1};
+    forces(network, net.position_m, net.velocity_mps, f);
+    EXPECT_NEAR(f[0].z, held ? 0.5 * 1.7 : 0.0, 1e-12);
+  }
+}
+
+TEST(SpringNetwork, HasConsistentDimensions) {
+  const double m = 1e3, kg = 7.0, s = 0.3;
+  const double force = kg * m / (s * s), stiff = kg / (s * s), damp = kg / s;
+  for (const auto& entry : kIntegratorNames) {
+    SpringNet plain =
+        make_net(3, {.damping_Ns_per_m = 0.02, .drag_Ns_per_m = 0.01, .shake_m = 1e-3});
+    SpringNet scaled = make_net(3, {.pitch_m = 0.01 * m,
+                                    .mass_kg = 0.002 * kg,
+                                    .stiffness_N_per_m = 50.0 * stiff,
+                                    .damping_Ns_per_m = 0.02 * damp,
+                                    .anchor_N_per_m = 5.0 * stiff,
+                                    .drag_Ns_per_m = 0.01 * damp,
+                                    .shake_m = 1e-3 * m});
+    plain.load_N[5] = {0.0, 0.0, 0.1};
+    scaled.load_N[5] = {0.0, 0.0, 0.1 * force};
+    run(plain, rule(entry.integrator, 0.001), 20);
+    run(scaled, rule(entry.integrator, 0.001 * s), 20);
+    for (std::size_t i = 0; i < plain.rest_m.size(); ++i)
+      EXPECT_NEAR(norm(scaled.position_m[i] - m * plain.position_m[i]), 0.0, 1e-9 * m)
+          << entry.name;
+  }
+}
+
+TEST(SpringNetwork, LeavesTheHeapAlone) {
+  SpringNet net = make_net(5, {.shake_m = 1e-3});
+  SpringStepper stepper(net.rest_m.size(), net.spring.size());
+  const SpringNetwork view = net.view();
+  const tests::NoAlloc guard;
+  for (const auto& entry : kIntegratorNames) stepper.step(view, rule(entry.integrator, 0.001));
+  EXPECT_EQ(guard.calls(), 0u);
+}
+
+}  // namespace tact::model::springs::spring_network_test

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// can_drives.h - a CAN bus of one socketpair for tests: the host's socket, and who plays the
+// drives.
+//
+// Time is made, not measured: every wait of the host lets one millisecond pass for the drives, and
+// every frame has the age that the test says. So bring-up with its seconds takes no time, and the
+// same test gives the same run.
+#pragma once
+
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "hal/can/can_bus.h"
+
+namespace tact::tests {
+
+/// The host's end, with misfortunes.
+class ScriptedSocket final : public hal::can::CanSocket {
+ public:
+  ScriptedSocket(int fd, std::function<void()> millisecond)
+      : CanSocket(fd), millisecond_(std::move(millisecond)) {}
+
+  int receive(std::span<hal::can::CanArrival> out) RT_SAFE override {
+    ++calls;
+    if (receive_error != 0) return -receive_error;
+    const int n = CanSocket::receive(out);
+    for (int i = 0; i < n; ++i) out[static_cast<std::size_t>(i)].age_ns = age_ns;
+    return n;
+  }
+  int send(std::span<const hal::can::CanFrameBytes> frames) RT_SAFE override {
+    ++calls;
+    if (send_error != 0) return -send_error;
+    return CanSocket::send(frames);
+  }
+  void wait(int timeout_ms) override {
+    (void)timeout_ms;
+    now += 1'000'000;
+    millisecond_();
+  }
+  std::int64_t now_ns() override { return now; }
+
+  std::int64_t now = 1'000'000'000;
+  std::int64_t age_ns = 100'000;
+  int calls = 0;
+  int send_error = 0, receive_error = 0;
+
+ private:
+  std::function<void()> millisecond_;
+};
+
+/// Both ends; what the host sends is read by listen(), what drives say goes through say().
+class ScriptedBus {
+ public:
+  explicit ScriptedBus(std::function<void()> millisecond) {
+    int fds[2] = {-1, -1};
+    if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, fds) != 0) std::abort();
+    drives_fd_ = fds[1];
+    auto socket = std::make_unique<ScriptedSocket>(fds[0], std::move(millisecond));
+    socket_ = socket.get();
+    bus_ = std::make_unique<hal::can::CanBus>(std::move(socket));
+  }
+  ScriptedBus(const ScriptedBus&) = delete;
+  ScriptedBus& operator=(const ScriptedBus&) = delete;
+  ~ScriptedBus() { unplug(); }
+
+  /// To give to the device; the socket lives with it.
+  std::unique_ptr<hal::can::CanBus> bus() { return std::move(bus_); }
+  ScriptedSocket& socket() { return *socket_; }
+
+  void say(const hal::can::CanFrame& frame) {
+    if (const auto bytes = hal::can::pack_can_frame(frame)) say_bytes(*bytes);
+  }
+  void say_bytes(const hal::can::CanFrameBytes& bytes) {
+    [[maybe_unused]] const auto n = ::send(drives_fd_, bytes.data(), bytes.size(), MSG_DONTWAIT);
+  }
+  void say_error(std::uint32_t classes, std::uint8_t controller) {
+    hal::can::CanFrameBytes bytes{};
+    const std::uint32_t id = classes | 1u << 29;
+    for (std::size_t i = 0; i < 4; ++i) bytes[i] = static_cast<std::uint8_t>(id >> (8 * i));
+    bytes[4] = 8;
+    bytes[9] = controller;
+    say_bytes(bytes);
+  }
+  std::optional<hal::can::CanFrame> hear() {
+    hal::can::CanFrameBytes bytes{};
+    const auto n = ::recv(drives_fd_, bytes.data(), bytes.size(), MSG_DONTWAIT);
+    return n == 16 ? hal::can::unpack_can_frame(bytes) : std::nullopt;
+  }
+  /// All that the host sent since the last call.
+  std::vector<hal::can::CanFrame> hear_all() {
+    std::vector<hal::can::CanFrame> frames;
+    while (auto frame = hear()) frames.push_back(*frame);
+    return frames;
+  }
+  void unplug() {
+    if (drives_fd_ >= 0) close(drives_fd_);
+    drives_fd_ = -1;
+  }
+
+ private:
+  int drives_fd_ = -1;
+  std::unique_ptr<hal::can::CanBus> bus_;
+  ScriptedSocket* socket_ = nullptr;
+};
+
+}  // namespace tact::tests

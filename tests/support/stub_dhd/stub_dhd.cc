@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+// stub_dhd.cc - a library with the symbols of Force Dimension's, for PCs without it: a stand-in for
+// tests and for the bench (device.force_dimension.library = ".../libtact-stub-dhd.so").
+//
+// Behind it a handle of 0.3 kg on a delta that balances its weight, led by a hand of 400 N/m and
+// 12 N s/m down to z = -10 mm and back to 20 mm every 4 s. The physics runs in the calls, in steps
+// of 0.25 ms of CLOCK_MONOTONIC. Forces are cut by the watchdog as the device cuts them.
+#include "tests/support/stub_dhd/stub_dhd.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <ctime>
+#include <map>
+#include <mutex>
+#include <numbers>
+#include <string>
+
+namespace {
+
+constexpr double kMass_kg = 0.3, kHand_N_per_m = 400.0, kHand_Ns_per_m = 12.0;
+constexpr double kStep_s = 0.25e-3, kMostPhysics_s = 0.1;
+constexpr double kWatchdogUnit_s = 125e-6;
+constexpr int kErrorCode = 1, kNotEnabled = 9, kBadId = 15;
+constexpr int kPower = 0, kConnected = 1, kStarted = 2, kForce = 5, kWristDetected = 8;
+constexpr int kGravity = 10, kWristInit = 12, kForceOffCause = 14;
+constexpr int kCausedByWatchdog = 3, kCausedBySoftware = 4;
+
+double seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+struct State {
+  int count = 1, type = 63;
+  bool open = false, expert = false, held = false;
+  int pose_answer = 0, delay_us = 0;
+  int watchdog = 0, time_guard = -1, gravity = 0;
+  double force[6] = {};
+  double position_m[3] = {0.0, 0.0, 0.02}, velocity_mps[3] = {};
+  double begin_s = seconds(), time_s = seconds(), fed_s = seconds();
+  double spin_radps = 0.0, strongest_N = 0.0;
+  std::array<int, 17> status{};
+  std::map<int, int> fixed_status;
+  std::map<std::string, int> failing;
+  std::map<std::string, long> calls;
+
+  State() {
+    if (const char* wanted = std::getenv("TACT_STUB_DHD_TYPE")) type = std::atoi(wanted);
+    status[kPower] = status[kConnected] = status[kStarted] = 1;
+    status[kWristDetected] = status[kWristInit] = 1;
+  }
+};
+
+std::mutex mutex;
+State state;
+bool watchdog_sleeps = false;  // stays through a reset
+thread_local int last_error = 0;
+
+/// Counts the call; the error that it must give, or 0.
+int enter(const char* function) {
+  ++state.calls[function];
+  const auto found = state.failing.find(function);
+  last_error = found == state.failing.end() ? 0 : found->second;
+  return last_error == 0 ? 0 : -1;
+}
+
+double hand_z_m(double since_s) {
+  const double swing = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * since_s / 4.0);
+  return 0.02 - 0.03 * swing;
+}
+
+void step(double dt_s) {
+  state.time_s += dt_s;
+  const double hand_m[3] = {0.0, 0.0, hand_z_m(state.time_s - state.begin_s)};
+  if (!watchdog_sleeps && state.watchdog > 0 && state.status[kForce] != 0 &&
+      state.time_s - state.fed_s > kWatchdogUnit_s * state.watchdog) {
+    state.status[kForce] = 0;
+    state.status[kForceOffCause] = kCausedByWatchdog;
+  }
+  for (int i = 0; i < 3; ++i) {
+    const double device_N = state.status[kForce] != 0 ? state.force[i] : 0.0;
+    const double total_N = device_N + kHand_N_per_m * (hand_m[i] - state.position_m[i]) -
+                           kHand_Ns_per_m * state.velocity_mps[i];
+    state.velocity_mps[i] += dt_s * total_N / kMass_kg;
+    state.position_m[i] += dt_s * state.velocity_mps[i];
+  }
+}
+
+void catch_up() {
+  const double now_s = seconds();
+  state.time_s = std::max(state.time_s, now_s - kMostPhysics_s);
+  while (!state.held && state.time_s + kStep_s <= now_s) step(kStep_s);
+}
+
+struct Locked {
+  std::lock_guard<std::mutex> lock{mutex};
+};
+
+}  // namespace
+
+extern "C" {
+
+// NOLINTBEGIN(readability-identifier-naming): the maker's names
+int dhdGetDeviceCount() {
+  const Locked locked;
+  return enter("dhdGetDeviceCount") < 0 ? -1 : state.count;
+}
+
+int dhdOpenID(char index) {
+  const Locked locked;
+  if (enter("dhdOpenID") < 0) return -1;
+  if (index < 0 || index >= state.count) return last_error = kBadId, -1;
+  state.open = true;
+  return index;
+}
+
+int dhdClose(char) {
+  const Locked locked;
+  state.open = false;
+  state.status[kForce] = 0;
+  return enter("dhdClose");
+}
+
+int dhdStop(char) {
+  const Locked locked;
+  state.status[kForce] = 0;
+  return enter("dhdStop");
+}
+
+int dhdGetSystemType(char) {
+  const Locked locked;
+  return enter("dhdGetSystemType") < 0 ? -1 : state.type;
+}
+
+int dhdGetSerialNumber(unsigned short* number, char) {
+  const Locked locked;
+  *number = 1234;
+  return enter("dhdGetSerialNumber");
+}
+
+int dhdGetStatus(int words[17], char) {
+  const Locked locked;
+  if (enter("dhdGetStatus") < 0) return -1;
+  catch_up();
+  state.status[kGravity] = state.gravity;
+  std::copy(state.status.begin(), state.status.end(), words);
+  for (const auto& [word, value] : state.fixed_status) words[word] = value;
+  return 0;
+}
+
+int dhdGetPositionAndOrientationFrame(double* x_m, double* y_m, double* z_m, double r[3][3], char) {
+  int delay_us = 0;
+  {
+    const Locked locked;
+    delay_us = state.delay_us;
+  }
+  if (delay_us > 0) usleep(static_cast<useconds_t>(delay_us));
+  const Locked locked;
+  if (enter("dhdGetPositionAndOrientationFrame") < 0) return -1;
+  catch_up();
+  *x_m = state.position_m[0], *y_m = state.position_m[1], *z_m = state.position_m[2];
+  const double angle_rad = state.spin_radps * (seconds() - state.begin_s);
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+  const double frame[3][3] = {{c, -s, 0.0}, {s, c, 0.0}, {0.0, 0.0, 1.0}};
+  std::copy(&frame[0][0], &frame[0][0] + 9, &r[0][0]);
+  return state.pose_answer;
+}
+
+int dhdSetForceAndTorqueAndGripperForce(double fx, double fy, double fz, double tx, double ty,
+                                        double tz, double, char) {
+  const Locked locked;
+  if (enter("dhdSetForceAndTorqueAndGripperForce") < 0) return -1;
+  catch_up();
+  const double force[6] = {fx, fy, fz, tx, ty, tz};
+  std::copy(force, force + 6, state.force);
+  state.fed_s = seconds();
+  if (state.status[kForce] != 0)
+    state.strongest_N = std::max(state.strongest_N, std::hypot(fx, fy, fz));
+  return 0;
+}
+
+int dhdEnableForce(unsigned char on, char) {
+  const Locked locked;
+  if (enter("dhdEnableForce") < 0) return -1;
+  catch_up();
+  state.status[kForce] = on != 0 ? 1 : 0;
+  state.status[kForceOffCause] = on != 0 ? 0 : kCausedBySoftware;
+  state.fed_s = seconds();
+  return 0;
+}
+
+int dhdSetGravityCompensation(int on, char) {
+  const Locked locked;
+  state.gravity = on;
+  return enter("dhdSetGravityCompensation");
+}
+
+int dhdEnableExpertMode() {
+  const Locked locked;
+  state.expert = true;
+  return enter("dhdEnableExpertMode");
+}
+
+int dhdSetTimeGuard(int us, char) {
+  const Locked locked;
+  if (!state.expert) return last_error = kNotEnabled, -1;
+  state.time_guard = us;
+  return enter("dhdSetTimeGuard");
+}
+
+int dhdSetWatchdog(unsigned char duration_125us, char) {
+  const Locked locked;
+  if (!state.expert) return last_error = kNotEnabled, -1;
+  state.watchdog = duration_125us;
+  return enter("dhdSetWatchdog");
+}
+
+int dhdSetEffectorMass(double kg, char) {
+  const Locked locked;
+  if (!(kg > 0.0)) return last_error = kErrorCode, -1;
+  return enter("dhdSetEffectorMass");
+}
+
+int dhdErrorGetLast() { return last_error; }
+// NOLINTEND(readability-identifier-naming)
+
+void stub_dhd_reset() {
+  const Locked locked;
+  state = State();
+}
+void stub_dhd_set_type(int type) {
+  const Locked locked;
+  state.type = type;
+}
+void stub_dhd_set_count(int devices) {
+  const Locked locked;
+  state.count = devices;
+}
+void stub_dhd_set_status(int word, int value) {
+  const Locked locked;
+  state.fixed_status[word] = value;
+}
+void stub_dhd_fail(const char* function, int error) {
+  const Locked locked;
+  state.failing[function] = error;
+}
+void stub_dhd_set_pose_answer(int answer) {
+  const Locked locked;
+  state.pose_answer = answer;
+}
+void stub_dhd_hold(double x_m, double y_m, double z_m) {
+  const Locked locked;
+  state.held = true;
+  state.position_m[0] = x_m, state.position_m[1] = y_m, state.position_m[2] = z_m;
+}
+void stub_dhd_spin(double radps) {
+  const Locked locked;
+  state.spin_radps = radps;
+}
+void stub_dhd_set_delay_us(int us) {
+  const Locked locked;
+  state.delay_us = us;
+}
+void stub_dhd_ignore_watchdog(int ignore) {
+  const Locked locked;
+  watchdog_sleeps = ignore != 0;
+}
+long stub_dhd_calls(const char* function) {
+  const Locked locked;
+  return state.calls[function];
+}
+int stub_dhd_last_force(double force[6]) {
+  const Locked locked;
+  std::copy(state.force, state.force + 6, force);
+  return state.status[kForce];
+}
+void stub_dhd_settings(int* watchdog, int* time_guard, int* gravity) {
+  const Locked locked;
+  *watchdog = state.watchdog, *time_guard = state.time_guard, *gravity = state.gravity;
+}
+double stub_dhd_strongest_N() {
+  const Locked locked;
+  return state.strongest_N;
+}
+int stub_dhd_is_open() {
+  const Locked locked;
+  return state.open ? 1 : 0;
+}
+}

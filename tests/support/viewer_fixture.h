@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// viewer_fixture.h - the viewer in a thread of its own, made-up telemetry at its socket, and a
+// small HTTP and WebSocket client.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <boost/asio/post.hpp>
+#include <boost/beast/core/buffers_to_string.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "host/run/telemetry_client.h"
+#include "host/server/viewer_server.h"
+#include "tests/support/sentence.h"
+#include "tests/support/telemetry_source.h"
+
+namespace tact::test {
+
+namespace fs = std::filesystem;
+namespace http = boost::beast::http;
+namespace websocket = boost::beast::websocket;
+using boost::asio::ip::tcp;
+using boost::system::error_code;
+using Socket = websocket::stream<tcp::socket>;
+
+class Viewer : public ::testing::Test {
+ protected:
+  Viewer()
+      : folder_(fs::temp_directory_path() / ("tact-viewer-" + std::to_string(getpid()))),
+        client_(io_, (folder_ / "t.sock").string(),
+                {.hello =
+                     [this](const Hello& hello, host::record::MeshBytes mesh) {
+                       view_.begin(hello, std::move(mesh), host::server::Link::kLive);
+                     },
+                 .frame = [this](const Frame& frame) { view_.add(frame), ++frames_; },
+                 .lost = [this](const std::string& reason) { view_.lose(reason); }}),
+        server_(io_, view_, [this](const double (&position_m)[3], double grip_ratio) {
+          client_.move_hand(position_m, grip_ratio);
+        }) {
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / "index.html") << "<html>page";
+  }
+  ~Viewer() override {
+    boost::asio::post(io_, [this] { io_.stop(); });
+    if (thread_.joinable()) thread_.join();
+    fs::remove_all(folder_);
+  }
+
+  void start(const std::string& bind_address = "127.0.0.1") {
+    ASSERT_EQ(tests::sentence_of(
+                  server_.open({.bind_address = bind_address, .port = 0, .page_folder = folder_})),
+              "");
+    server_.start();
+    client_.start();
+    thread_ = std::thread([this] { io_.run(); });
+  }
+
+  /// Runs the source until a condition of the viewer's thread holds, at most five seconds.
+  template <typename Condition>
+  bool wait_until(const Condition& condition) {
+    for (int i = 0; i < 500; ++i) {
+      if (source_) source_->accept(hello_, meshes_);
+      bool holds = false;
+      std::atomic<bool> asked = false;
+      boost::asio::post(io_, [&] { holds = condition(), asked = true; });
+      while (!asked) std::this_thread::yield();
+      if (holds) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  }
+  void start_source() {
+    source_ = std::make_unique<TelemetrySource>((folder_ / "t.sock").string());
+    ASSERT_TRUE(source_->ok());
+    ASSERT_TRUE(wait_until([this] { return view_.has_scene(); }));
+  }
+
+  http::response<http::string_body> get(const std::string& target,
+                                        const std::string& host = "localhost",
+                                        const std::string& cookie = {}) {
+    tcp::socket socket(client_io_);
+    socket.connect({boost::asio::ip::make_address("127.0.0.1"), server_.port()});
+    http::request<http::empty_body> request{http::verb::get, target, 11};
+    request.set(http::field::host, host);
+    if (!cookie.empty()) request.set(http::field::cookie, cookie);
+    http::write(socket, request);
+    boost::beast::flat_buffer buffer;
+    http::response_parser<http::string_body> parser;
+    parser.body_limit(1 << 28);
+    error_code wrong;
+    http::read(socket, buffer, parser, wrong);
+    EXPECT_FALSE(wrong) << wrong.message();
+    return parser.release();
+  }
+
+  error_code open_live(Socket& socket, const std::string& origin, const std::string& query = {}) {
+    socket.next_layer().connect({boost::asio::ip::make_address("127.0.0.1"), server_.port()});
+    socket.set_option(websocket::stream_base::decorator(
+        [origin](websocket::request_type& request) { request.set(http::field::origin, origin); }));
+    error_code wrong;
+    socket.handshake("localhost:1", "/live" + query, wrong);
+    return wrong;
+  }
+  static nlohmann::json read(Socket& socket) {
+    boost::beast::flat_buffer buffer;
+    error_code wrong;
+    socket.read(buffer, wrong);
+    EXPECT_FALSE(wrong) << wrong.message();
+    return nlohmann::json::parse(boost::beast::buffers_to_string(buffer.data()), nullptr, false);
+  }
+
+  fs::path folder_;
+  host::server::LiveView view_;
+  boost::asio::io_context io_{1}, client_io_{1};
+  host::run::TelemetryClient client_;
+  host::server::ViewerServer server_;
+  std::unique_ptr<TelemetrySource> source_;
+  Hello hello_ = make_hello(3, 1, 3, 1);
+  std::vector<std::byte> meshes_ = TinyMeshes{}.bytes();
+  std::atomic<std::uint64_t> frames_ = 0;
+  std::thread thread_;
+};
+
+}  // namespace tact::test

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+// The chart: errors as worked by hand, a front without a dominated point, shards that merge to the
+// same table. Times are never asserted.
+#include "tools/chart/chart.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include "model/law/disc_stack.h"
+#include "tests/support/test_scene.h"
+#include "tools/chart/report.h"
+
+namespace tact::tools::chart::chart_test {
+
+using model::scene::LawKind;
+
+constexpr TimingSettings kShort{.ticks = 100, .rounds = 1, .limit_s = 0.05};
+constexpr std::uint32_t kMiddle = 220;  // vertex of the plate, 20 x 20 cells
+
+std::string scratch_folder(const std::string& name) {
+  const auto path = std::filesystem::path(testing::TempDir()) / name;
+  std::filesystem::remove_all(path);
+  std::filesystem::create_directories(path);
+  return path.string();
+}
+
+/// A plate with every law that needs no file.
+model::scene::Scene make_scene() {
+  model::scene::Scene scene = tests::make_plate_scene();
+  scene.described = {LawKind::kRhombus, LawKind::kDiscStack, LawKind::kHexSheet,
+                     LawKind::kSpringPatch};
+  scene.disc_stack = {
+      .disc = {.outer_diameter_m = 0.008,
+               .inner_diameter_m = 0.004,
+               .thickness_m = 0.002,
+               .free_height_m = 0.0025,
+               .youngs_modulus_Pa = 5000.0,
+               .poisson_ratio = 0.3},
+      .form = model::law::DiscForm::kLinear,
+      .delays = {
+          .first_delay_s = 1e-6, .delay_ratio = 1.0, .refresh_rate_Hz = 1000.0, .layers = 20}};
+  scene.hex_sheet = {.ring_pitch_m = 0.004,
+                     .contact_stiffness_N_per_m = 5.0,
+                     .body_stiffness_N_per_m = 1.0,
+                     .surface_stiffness_N_per_m = 20.0,
+                     .tension_N = 0.02,
+                     .rings = 5,
+                     .working_depth_m = 0.01};
+  scene.spring_patch.tissue = {.surface_stiffness_N_per_m = 20.0,
+                               .body_stiffness_N_per_m = 5.0,
+                               .damping_time_s = 0.005,
+                               .body_damping_time_s = 0.01};
+  scene.spring_patch.coupling_stiffness_N_per_m = 100.0;
+  scene.spring_patch.node_mass_kg = 0.001;
+  scene.spring_patch.working_depth_m = 0.01;
+  scene.spring_patch.method.integrator = model::springs::Integrator::kImplicitEuler;
+  scene.reference_sites = {{.vertex = kMiddle, .held_out = false}};
+  return scene;
+}
+
+/// Truth: a spring of this stiffness in the middle of the plate, and a dent that ends at 4 mm.
+ground_truth::ReferenceData linear_truth(double stiffness_N_per_m) {
+  ground_truth::ReferenceData data;
+  data.mesh = "plate";
+  data.tool_radius_m = 0.004;
+  data.ring_pitch_m = 0.004;
+  ground_truth::SolvedSite site{
+      .vertex = kMiddle, .point_m = {0, 0, 0}, .direction = {0, 0, -1}, .cases = {}};
+  for (const double depth_m : {0.001, 0.002})
+    site.cases.push_back(
+        {.depth_m = depth_m, .force_N = stiffness_N_per_m * depth_m, .profile_m = {depth_m, 0.0}});
+  data.sites.push_back(site);
+  return data;
+}
+
+report::Table chart_of(const model::scene::Scene& scene,
+                       const ground_truth::ReferenceData& reference, const ChartOptions& options) {
+  const auto rows = measure_chart(scene, reference, options);
+  EXPECT_TRUE(rows) << (rows ? "" : rows.error().sentence);
+  report::Table table = empty_chart(variants_of(scene, options.wish).size(), options.shard);
+  for (const ChartRow& row : *rows) table.add(table_row(row, {"scene", "truth", "r1", "here"}));
+  return table;
+}
+
+ChartOptions quick() {
+  return {.wish = {.laws = {}, .quick = true, .peers = false}, .shard = {}, .timing = kShort};
+}
+
+TEST(Errors, MatchPenAndPaper) {
+  // Peak 2 N. Errors 0.1, -0.2 and (pull) 0.4 N: 5, 10 and 20 % of it.
+  const std::vector<Sample> samples{{.site = 0,
+                                     .depth_m = 0.001,
+                                     .force_N = 1.1,
+                                     .reference_N = 1.0,
+                                     .ring_m = {},
+                                     .reference_ring_m = {}},
+                                    {.site = 0,
+                                     .depth_m = 0.002,
+                                     .force_N = 1.8,
+                                     .reference_N = 2.0,
+                                     .ring_m = {0.002, 0.001},
+                                     .reference_ring_m = {0.002, 0.0}},
+                                    {.site = 1,
+                                     .held_out = true,
+                                     .depth_m = -0.002,
+                                     .force_N = -0.6,
+                                     .reference_N = -1.0,
+                                     .ring_m = {},
+                                     .reference_ring_m = {}}};
+  const ErrorSummary e = summarize(samples);
+  EXPECT_NEAR(e.force_rms_ratio, std::sqrt((0.0025 + 0.01 + 0.04) / 3.0), 1e-12);
+  EXPECT_NEAR(e.press_rms_ratio, std::sqrt((0.0025 + 0.01) / 2.0), 1e-12);
+  EXPECT_NEAR(e.pull_rms_ratio, 0.2, 1e-12);
+  EXPECT_NEAR(e.held_out_rms_ratio, 0.2, 1e-12);
+  EXPECT_NEAR(e.worst_site_rms_ratio, 0.4, 1e-12);  // 0.4 N of that site's own 1 N
+  EXPECT_NEAR(e.force_worst_ratio, 0.2, 1e-12);
+  EXPECT_NEAR(e.shape_rms_ratio, std::sqrt(0.5) * 0.5,
+              1e-12);                  // one of two rings off by half the depth
+  EXPECT_EQ(e.within_jnd_ratio, 0.0);  // 10, 10 and 40 %: all can be felt
+}
+
+TEST(Errors, CountWhatAHandCannotTell) {
+  const std::vector<Sample> samples{{.depth_m = 0.001,
+                                     .force_N = 1.069,
+                                     .reference_N = 1.0,
+                                     .ring_m = {},
+                                     .reference_ring_m = {}},
+                                    {.depth_m = 0.002,
+                                     .force_N = 1.071,
+                                     .reference_N = 1.0,
+                                     .ring_m = {},
+                                     .reference_ring_m = {}}};
+  EXPECT_EQ(summarize(samples).within_jnd_ratio, 0.5);
+}
+
+TEST(Front, HasNoDominatedPointAndMissesNone) {
+  std::mt19937 random(1);
+  std::uniform_int_distribution<int> number(1, 12);  // few values: many ties
+  for (int round = 0; round < 200; ++round) {
+    std::vector<SpeedAndError> points(20);
+    for (auto& p : points) p = {double(number(random)), double(number(random))};
+    points[3].error_ratio = std::nan("");
+    const auto front = front_of(points);
+    const auto is_beaten = [&](const SpeedAndError& p) {
+      return std::any_of(points.begin(), points.end(), [&](const auto& other) {
+        return other.tick_us <= p.tick_us && other.error_ratio <= p.error_ratio &&
+               (other.tick_us < p.tick_us || other.error_ratio < p.error_ratio);
+      });
+    };
+    for (const std::size_t i : front) EXPECT_FALSE(is_beaten(points[i]));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (std::find(front.begin(), front.end(), i) != front.end() || i == 3) continue;
+      const bool has_twin = std::any_of(front.begin(), front.end(), [&](std::size_t f) {
+        return points[f].tick_us == points[i].tick_us &&
+               points[f].error_ratio == points[i].error_ratio;
+      });
+      EXPECT_TRUE(is_beaten(points[i]) || has_twin);
+    }
+  }
+}
+
+TEST(Chart, GivesEveryLawARowWithTheErrorWorkedByHand) {
+  const model::scene::Scene scene = make_scene();
+  // The linear disc stack is F = k d. Against 1.25 k: errors 0.25 k d, peak 2.5 k mm, so
+  // 0.1 sqrt((1 + 4) / 2) = 0.158114.
+  const auto stack = model::law::make_disc_stack(scene.disc_stack);
+  ASSERT_TRUE(stack);
+  const double k = stack->respond(0.001).force_N / 0.001;
+  const report::Table table = chart_of(scene, linear_truth(1.25 * k), quick());
+  std::vector<std::string> families;
+  for (const report::Row& row : table.rows()) {
+    EXPECT_EQ(table.word(row, "failure"), "-") << table.word(row, "family");
+    EXPECT_GT(table.number(row, "memory_bytes"), 0.0);
+    EXPECT_GT(table.number(row, "ticks"), 0.0);
+    families.push_back(table.word(row, "family"));
+    if (table.word(row, "form") == "linear") {
+      EXPECT_NEAR(table.number(row, "force_rms_ratio"), 0.1 * std::sqrt(2.5), 1e-9);
+      EXPECT_NEAR(table.number(row, "force_worst_ratio"), 0.2, 1e-9);
+      EXPECT_TRUE(std::isnan(table.number(row, "pull_rms_ratio")));
+    }
+  }
+  for (const char* law : {"rhombus", "disc_stack", "hex_sheet", "spring_patch"})
+    EXPECT_NE(std::find(families.begin(), families.end(), law), families.end()) << law;
+}
+
+TEST(Chart, ALinearReferenceJudgesTheComplianceLawAtSmallStrain) {
+  const auto liver = model::scene::load_scene(TACT_SOURCE_DIR "/model/scenes/liver.toml", {});
+  const auto truth =
+      ground_truth::read_reference(TACT_SOURCE_DIR "/tests/data/reference/liver.json");
+  ASSERT_TRUE(liver && truth);
+  EXPECT_TRUE(liver->compliance.large_strain) << "as it is felt";
+  ChartOptions options = quick();
+  options.wish.laws = {"compliance"};
+  const report::Table table = chart_of(*liver, *truth, options);
+  double best = 1.0;
+  for (const report::Row& row : table.rows())
+    best = std::min(best, table.number(row, "force_rms_ratio"));
+  EXPECT_LT(best, 0.005);
+}
+
+/// The CSV without the columns that are measured: those from the median time on.
+std::string computed_part(const report::Table& table) {
+  std::istringstream lines(table.to_csv());
+  std::string line, out;
+  while (std::getline(lines, line)) {
+    std::size_t end = 0;  // the number of the job comes first
+    for (std::size_t c = 0; c <= table.column("tick_median_us"); ++c) end = line.find(',', end) + 1;
+    out += line.substr(0, end) + "\n";
+  }
+  return out;
+}
+
+TEST(Chart, ShardsMergeToTheSameBytes) {
+  const model::scene::Scene scene = make_scene();
+  const ground_truth::ReferenceData truth = linear_truth(30.0);
+  const std::string folder = scratch_folder("chart_shards");
+  ChartOptions options = quick();
+  options.wish.laws = {"rhombus", "disc_stack", "hex_sheet"};
+  const report::Table whole = chart_of(scene, truth, options);
+  std::vector<std::string> files;
+  for (std::size_t i = 0; i < 2; ++i) {
+    options.shard = {.index = i, .count = 2};
+    const auto written = chart_of(scene, truth, options).write(folder);
+    ASSERT_TRUE(written);
+    files.push_back(written->front());
+  }
+  const auto merged = merge_table(empty_chart(whole.jobs(), {}), files);
+  ASSERT_TRUE(merged) << merged.error().sentence;
+  EXPECT_FALSE(check_same_source(*merged, {"scene", "truth", "r2", "there"}));
+  EXPECT_TRUE(check_same_source(*merged, {"scene after a change", "truth", "r1", "here"}));
+  EXPECT_EQ(machines_of(*merged), "here");
+  EXPECT_EQ(computed_part(*merged), computed_part(whole)) << "byte for byte; times are measured";
+  EXPECT_FALSE(merge_table(empty_chart(whole.jobs(), {}), {files[0]}));  // the other is missing
+}
+
+TEST(Chart, SaysWhenAPeerIsAhead) {
+  const auto row = [](bool peer, double tick_us, double error) {
+    ChartRow r;
+    if (peer) r.variant.peer = PeerKind::kFem;
+    r.variant.sizes.law = LawKind::kRhombus;
+    r.timing.median_us = tick_us;
+    r.errors.force_rms_ratio = error;
+    return table_row(r, {"s", "t", "r", "m"});
+  };
+  report::Table table = empty_chart(4, {});
+  table.add(row(false, 1.0, 0.1));
+  table.add(row(false, 2.0, 0.05));
+  table.add(row(true, 3.0, 0.01));  // slower, more accurate: not ahead
+  EXPECT_TRUE(peers_ahead(table).empty());
+  table.add(row(true, 1.5, 0.04));  // beats the second law in both
+  EXPECT_EQ(peers_ahead(table), std::vector<std::size_t>{3});
+  EXPECT_EQ(front_rows(table), (std::vector<std::size_t>{0, 1}));
+  // Within 10 % is the same time, but not by a chain of such steps.
+  report::Table slope = empty_chart(4, {});
+  for (const auto& [tick_us, error] : {std::pair{1.0, 0.4}, {1.09, 0.3}, {1.18, 0.2}, {1.28, 0.1}})
+    slope.add(row(false, tick_us, error));
+  EXPECT_EQ(front_rows(slope), (std::vector<std::size_t>{1, 3}));
+}
+
+TEST(Chart, IsReadBackAsItWasWritten) {
+  const std::string folder = scratch_folder("chart_json");
+  const Provenance provenance{"scene", "truth", "r1", "here, now"};
+  report::Table table = empty_chart(1, {});
+  ChartRow row;
+  row.variant.sizes = {
+      .law = LawKind::kDiscStack, .layers = 7, .disc_form = model::law::DiscForm::kLinear};
+  row.errors.force_rms_ratio = 0.125;
+  table.add(table_row(row, provenance));
+  ASSERT_TRUE(write_chart(table, true, "tact-chart x", provenance, folder));
+  const auto read = read_chart(folder + "/chart.json");
+  ASSERT_TRUE(read) << read.error().sentence;
+  EXPECT_EQ(read->to_csv(), table.to_csv());
+  std::ifstream csv(folder + "/chart.csv");
+  std::string head;
+  std::getline(csv, head);
+  EXPECT_EQ(head, "# command: tact-chart x");
+  std::ofstream(folder + "/bad.json") << "{\"schema\": \"tact-chart/1\", \"rows\": [{}]}";
+  EXPECT_FALSE(read_chart(folder + "/bad.json"));
+  EXPECT_FALSE(read_chart(folder + "/none.json"));
+}
+
+TEST(Chart, RefusesAReferenceOfAnotherMeshOrTip) {
+  const model::scene::Scene scene = make_scene();
+  ground_truth::ReferenceData moved = linear_truth(30.0);
+  moved.sites[0].point_m.x = 0.001;
+  ground_truth::ReferenceData blunt = linear_truth(30.0);
+  blunt.tool_radius_m = 0.005;
+  for (const auto& wrong : {moved, blunt}) {
+    const auto rows = measure_chart(scene, wrong, quick());
+    ASSERT_FALSE(rows);
+    EXPECT_NE(rows.error().sentence.find("solve it again: tact-reference"), std::string::npos);
+  }
+}
+
+}  // namespace tact::tools::chart::chart_test

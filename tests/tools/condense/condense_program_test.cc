@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// tact-condense as a person meets it: what it refuses before the work.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/support/program.h"
+
+namespace tact::tests::condense_program_test {
+
+const std::string kLiver = TACT_SOURCE_DIR "/model/scenes/liver.toml";
+
+void expect_refusal(const std::string& arguments, const std::string& sentence) {
+  const Outcome outcome = run_program("tact-condense", arguments);
+  EXPECT_EQ(outcome.status, 2) << outcome.output;
+  EXPECT_EQ(outcome.output, "tact-condense: " + sentence + "\n");
+}
+
+TEST(CondenseProgram, RefusesLengthsThatAreNone) {
+  for (const char* option : {"--mesh-size-m", "--patch-radius-m", "--ring-pitch-m"})
+    for (const char* length : {"-1", "0", "nan", "inf", "3mm"})
+      expect_refusal(kLiver + " --out x.map " + option + " " + length,
+                     std::string(option) + ": " + length +
+                         " is no length of an organ; give metres, above 0 and below 1; see "
+                         "tact-condense --help");
+}
+
+TEST(CondenseProgram, TriesItsFileBeforeTheWork) {
+  expect_refusal(kLiver + " --out /nowhere/liver.map",
+                 "/nowhere/liver.map: its folder cannot be written to; make it or name another");
+  expect_refusal(kLiver + " --out " + kLiver, kLiver +
+                                                  ": would be overwritten, and is read; name "
+                                                  "another");
+}
+
+}  // namespace tact::tests::condense_program_test

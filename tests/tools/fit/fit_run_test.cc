@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/fit/fit_run.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/tools/fit/fit_fixture.h"
+
+namespace tact::tools::fit::fit_run_test {
+
+/// Errors of 1 % of the peak that look like noise and are always the same.
+void spoil(FitData& data) {
+  const double peak_N = data.peak_N();
+  unsigned state = 1;
+  for (FitSite& site : data.sites)
+    for (FitSample& s : site.samples) {
+      state = state * 1664525U + 1013904223U;
+      s.force_N += 0.01 * peak_N * 1.73 * (static_cast<double>(state >> 8) / 8388608.0 - 1.0);
+    }
+}
+
+TEST(FitRun, FindsTheRhombusChainThatMadeTheData) {
+  Scene truth = make_scene();
+  truth.rhombus.units = 4;  // 10 mm go nearly to the end: deep enough to tell the springs apart
+  truth.pull = {.stiffness_N_per_m = 45.0, .limit_m = 8_mm};
+  FitData data{.sites = {make_site(truth, 100, 8_mm)}};
+  answer(truth, LawKind::kRhombus, data, true);
+  Scene start = truth;
+  start.pull.reset();
+  start.rhombus.rod_length_m *= 1.2;
+  start.rhombus.initial_angle_rad = 0.6;
+  start.rhombus.normal_stiffness_N_per_m = 300.0;
+  start.rhombus.tangential_stiffness_N_per_m = 90.0;
+  start.rhombus.growth = 4.0;
+  const FittedLaw fitted = fit("rhombus", start, data);
+  EXPECT_TRUE(fitted.judged.follows);
+  EXPECT_LT(fitted.judged.fitted.rms_ratio(), 1e-4);
+  EXPECT_NEAR(value_of(fitted, "rod_length_m"), 5_mm, 0.02 * 5_mm);
+  EXPECT_NEAR(value_of(fitted, "initial_angle_rad"), 0.5236, 0.02);
+  EXPECT_NEAR(value_of(fitted, "normal_stiffness_N_per_m"), 150.0, 3.0);
+  EXPECT_NEAR(value_of(fitted, "tangential_stiffness_N_per_m"), 180.0, 9.0);
+  EXPECT_NEAR(value_of(fitted, "growth"), 2.0, 0.1);
+  EXPECT_NEAR(fitted.keys[5].value, 45.0, 0.01);  // pull.stiffness_N_per_m
+  // With noise of 1 % the curve stays, within less than the noise.
+  spoil(data);
+  FitLaw quick = law_named(start, data, "rhombus");
+  quick.most_evaluations = 200;
+  const auto noisy = fit_law(quick, start, data, {});
+  ASSERT_TRUE(noisy);
+  EXPECT_LT(noisy->judged.fitted.rms_ratio(), 0.012);
+  EXPECT_NEAR(noisy->keys[5].value, 45.0, 1.0);
+}
+
+TEST(FitRun, FindsTheDiscStackThatMadeTheData) {
+  const Scene truth = make_scene();
+  FitData data{.sites = {make_site(truth, 100, 0.0)}};
+  answer(truth, LawKind::kDiscStack, data, true);
+  Scene start = make_scene();
+  start.disc_stack.disc.youngs_modulus_Pa = 1e5;
+  EXPECT_NEAR(value_of(fit("disc_stack_linear", start, data), "youngs_modulus_Pa"), 5200.0, 1.0);
+  spoil(data);
+  EXPECT_NEAR(value_of(fit("disc_stack_linear", start, data), "youngs_modulus_Pa"), 5200.0, 52.0);
+}
+
+TEST(FitRun, DoesNotDependOnTheOrderOfTheRows) {
+  const Scene scene = make_scene();
+  FitData data{.sites = {make_site(scene, 100, 0.0)}};
+  answer(scene, LawKind::kDiscStack, data, false);
+  for (FitSample& s : data.sites[0].samples) s.force_N *= 1.0 + 100.0 * s.depth_m;  // no law's
+  const auto modulus_Pa = [&] {
+    return value_of(fit("disc_stack_linear", scene, data), "youngs_modulus_Pa");
+  };
+  const double rising_Pa = modulus_Pa();
+  std::reverse(data.sites[0].samples.begin(), data.sites[0].samples.end());
+  EXPECT_NEAR(modulus_Pa(), rising_Pa, 1e-3 * rising_Pa);
+}
+
+TEST(FitRun, FindsTheConedDiscsThatMadeTheData) {
+  Scene truth = make_scene();
+  truth.disc_stack.form = model::law::DiscForm::kAlmenLaszlo;
+  FitData data{.sites = {make_site(truth, 100, 0.0)}};
+  answer(truth, LawKind::kDiscStack, data, false);
+  Scene start = make_scene();
+  start.disc_stack.disc.youngs_modulus_Pa = 2000.0;
+  start.disc_stack.disc.free_height_m = 2.6_mm;
+  const FittedLaw fitted = fit("disc_stack_almen_laszlo", start, data);
+  EXPECT_NEAR(value_of(fitted, "youngs_modulus_Pa"), 5200.0, 10.0);
+  EXPECT_NEAR(value_of(fitted, "free_height_m"), 2.7_mm, 0.01_mm);
+  EXPECT_EQ(fitted.choice, "form = \"almen-laszlo\"");
+  spoil(data);
+  EXPECT_NEAR(value_of(fit("disc_stack_almen_laszlo", start, data), "youngs_modulus_Pa"), 5200.0,
+              104.0);
+}
+
+TEST(FitRun, FindsTheHexagonalSheetThatMadeTheData) {
+  const Scene truth = make_scene();
+  FitData data{.sites = {make_site(truth, 100, 0.0)}};
+  answer(truth, LawKind::kHexSheet, data, true);
+  Scene start = make_scene();
+  start.hex_sheet.ring_pitch_m = 3_mm;
+  start.hex_sheet.contact_stiffness_N_per_m = 1.0;
+  start.hex_sheet.body_stiffness_N_per_m = 1.0;
+  start.hex_sheet.surface_stiffness_N_per_m = 10.0;
+  start.hex_sheet.tension_N = 0.1;
+  const FittedLaw fitted = fit("hex_sheet", start, data);
+  EXPECT_LT(fitted.judged.fitted.rms_ratio(), 1e-3);
+  EXPECT_NEAR(value_of(fitted, "ring_pitch_m"), 2_mm, 0.1_mm);
+  EXPECT_NEAR(value_of(fitted, "body_stiffness_N_per_m"), 4.0, 0.4);
+  spoil(data);
+  EXPECT_LT(fit("hex_sheet", start, data).judged.fitted.rms_ratio(), 0.012);
+}
+
+TEST(FitRun, FactorsOfTheSitesHaveTheMeanOne) {
+  const Scene truth = make_scene();
+  FitData data{.sites = {make_site(truth, 100, 0.0), make_site(truth, 60, 0.0)}};
+  answer(truth, LawKind::kDiscStack, data, false);
+  for (FitSample& s : data.sites[1].samples) s.force_N *= 4.0;
+  const FittedLaw fitted =
+      fit("disc_stack_linear", truth, data, {.shape_weight = 0.0, .scale_by_site = true});
+  EXPECT_TRUE(fitted.judged.follows);
+  EXPECT_NEAR(fitted.judged.sites[0].scale, 0.5, 1e-3);
+  EXPECT_NEAR(fitted.judged.sites[1].scale, 2.0, 4e-3);
+  EXPECT_NEAR(value_of(fitted, "youngs_modulus_Pa"), 2.0 * 5200.0, 20.0);
+}
+
+TEST(FitRun, KeepsThePatchAsSoftAsTheDataAndItsMassInProportion) {
+  Scene truth = make_scene();
+  truth.organ_mesh = tests::make_plate(0.06, 8);
+  truth.spring_patch = {.tissue = {.surface_stiffness_N_per_m = 40.0,
+                                   .body_stiffness_N_per_m = 10.0,
+                                   .damping_time_s = 0.004,
+                                   .body_damping_time_s = 0.004},
+                        .coupling_stiffness_N_per_m = 120.0,
+                        .node_mass_kg = 0.008,
+                        .working_depth_m = 12_mm,
+                        .nodes = 40};
+  FitData data{.sites = {make_site(truth, 40, 0.0)}};
+  data.sites[0].samples = {{.depth_m = 10_mm}};
+  answer(truth, LawKind::kSpringPatch, data, true);
+  Scene start = truth;
+  start.spring_patch.tissue.surface_stiffness_N_per_m = 80.0;
+  start.spring_patch.tissue.body_stiffness_N_per_m = 10.0;
+  FitLaw patient = law_named(start, data, "spring_patch");
+  patient.most_evaluations = 150;
+  const auto result = fit_law(patient, start, data, {});
+  ASSERT_TRUE(result) << result.error().sentence;
+  const FittedLaw& fitted = *result;
+  EXPECT_LT(fitted.judged.fitted.rms_ratio(), 0.01);
+  EXPECT_NEAR(
+      value_of(fitted, "surface_stiffness_N_per_m") / value_of(fitted, "body_stiffness_N_per_m"),
+      4.0, 0.4);
+  const double springs = value_of(fitted, "surface_stiffness_N_per_m") +
+                         value_of(fitted, "body_stiffness_N_per_m") +
+                         value_of(fitted, "coupling_stiffness_N_per_m");
+  EXPECT_NEAR(value_of(fitted, "node_mass_kg") / springs, 0.008 / 210.0, 1e-9);
+}
+
+}  // namespace tact::tools::fit::fit_run_test

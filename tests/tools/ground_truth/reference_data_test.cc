@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ground_truth/reference_data.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+namespace tact::tools::ground_truth::reference_data_test {
+
+namespace fs = std::filesystem;
+
+ReferenceData example() {
+  return {.mesh = "an \"organ\".obj",
+          .mesh_hash = "0123456789abcdef",
+          .solver = "by hand",
+          .youngs_modulus_Pa = 5000.0,
+          .poisson_ratio = 0.45,
+          .fixed_min_m = {-1.0, -1.0, -1.0},
+          .fixed_max_m = {1.0, -0.032, 1.0},
+          .tool_radius_m = 0.004,
+          .ring_pitch_m = 0.001,
+          .sites = {{.vertex = 7,
+                     .point_m = {0.01, -0.02, 0.03},
+                     .direction = {0.6, 0.0, -0.8},
+                     .cases = {{.depth_m = 0.002,
+                                .large_strain = false,
+                                .force_N = 0.0481234,
+                                .contact_radius_m = 0.00266,
+                                .force_error_ratio = 0.004,
+                                .profile_m = {0.002, 0.0015, 0.0004}},
+                               {.depth_m = -0.002,
+                                .large_strain = true,
+                                .force_N = -0.07,
+                                .contact_radius_m = 0.004,
+                                .force_error_ratio = 0.01,
+                                .profile_m = {-0.002, -0.002, -0.0005}}}}}};
+}
+
+model::Result<ReferenceData> read_text(const std::string& text) {
+  const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+  const std::string path = fs::path(testing::TempDir()) / ("reference_data_" + name + ".json");
+  std::ofstream(path) << text;
+  auto data = read_reference(path);
+  fs::remove(path);
+  return data;
+}
+
+void expect_error(std::string text, const std::string& from, const std::string& to,
+                  const std::string& what) {
+  const auto at = text.find(from);
+  ASSERT_NE(at, std::string::npos) << from;
+  const auto data = read_text(text.replace(at, from.size(), to));
+  ASSERT_FALSE(data) << "with " << to;
+  EXPECT_NE(data.error().sentence.find(what), std::string::npos) << data.error().sentence;
+  EXPECT_NE(data.error().sentence.find("tact-reference"), std::string::npos) << "the cure";
+}
+
+TEST(ReferenceData, ComesBackAsItWasWritten) {
+  const auto back = read_text(reference_text(example()));
+  ASSERT_TRUE(back) << back.error().sentence;
+  EXPECT_EQ(reference_text(*back), reference_text(example()));
+  EXPECT_EQ(back->mesh, example().mesh);
+  ASSERT_EQ(back->sites.size(), 1U);
+  ASSERT_EQ(back->sites[0].cases.size(), 2U);
+  EXPECT_EQ(back->sites[0].vertex, 7U);
+  EXPECT_EQ(back->sites[0].direction, (model::Vec3{0.6, 0.0, -0.8}));
+  EXPECT_TRUE(back->sites[0].cases[0].is_press());
+  EXPECT_DOUBLE_EQ(back->sites[0].cases[0].force_N, 0.0481234);
+  EXPECT_FALSE(back->sites[0].cases[1].is_press());
+  EXPECT_TRUE(back->sites[0].cases[1].large_strain);
+  EXPECT_EQ(back->sites[0].cases[1].profile_m, (std::vector<double>{-0.002, -0.002, -0.0005}));
+}
+
+TEST(ReferenceData, AnErrorThatIsNotKnownIsNull) {
+  ReferenceData data = example();
+  data.sites[0].cases[0].force_error_ratio = std::nan("");
+  const std::string text = reference_text(data);
+  EXPECT_NE(text.find("\"force_error_ratio\": null,"), std::string::npos) << text;
+  const auto back = read_text(text);
+  ASSERT_TRUE(back) << back.error().sentence;
+  EXPECT_TRUE(std::isnan(back->sites[0].cases[0].force_error_ratio));
+  EXPECT_EQ(back->sites[0].cases[1].force_error_ratio, 0.01);
+}
+
+TEST(ReferenceData, NamesTheFileAndTheKeyOfADamage) {
+  const std::string text = reference_text(example());
+  expect_error(text, "tact-reference/1", "tact-reference/0", "schema");
+  expect_error(text, "\"force_N\"", "\"force_mN\"", "force_N");
+  expect_error(text, "\"vertex\": 7", "\"vertex\": \"seven\"", "string");
+  expect_error(text, "\"force_N\": 0.04", "\"force_N\": -0.04", "the other sign");
+  expect_error(text, "[0.6, 0, -0.8]", "[0.6, 0, -0.9]", "unit vector");
+  expect_error(text, "[0.002, 0.0015, 0.0004]", "[]", "profile_m");
+  expect_error(text, "\"tool_radius_m\": 0.004", "\"tool_radius_m\": 0", "tool_radius_m");
+  expect_error(text, "]}\n", "", "parse error");
+  const auto none = read_reference("/nowhere/at/all.json");
+  ASSERT_FALSE(none);
+  EXPECT_EQ(
+      none.error().sentence,
+      "/nowhere/at/all.json: cannot be read; check the name, or make it: tact-reference SCENE "
+      "--out FILE");
+}
+
+TEST(ReferenceData, ShipsTheLiver) {
+  const auto data = read_reference(TACT_SOURCE_DIR "/tests/data/reference/liver.json");
+  ASSERT_TRUE(data) << data.error().sentence;
+  EXPECT_GE(data->sites.size(), 8U);
+  for (const SolvedSite& site : data->sites) {
+    double last_N = 0.0;
+    for (const ReferenceCase& c : site.cases) {
+      if (c.large_strain) continue;
+      EXPECT_EQ(c.profile_m.size(), 31U);
+      EXPECT_NEAR(c.profile_m[0], c.depth_m, 1e-6) << "the tool's tip is where it was put";
+      EXPECT_LT(std::abs(c.profile_m[30]), std::abs(c.profile_m[5]));
+      EXPECT_GT(c.force_error_ratio, 0.0);
+      EXPECT_LT(c.force_error_ratio, 0.03);
+      if (!c.is_press()) continue;
+      EXPECT_GT(c.force_N, last_N) << "deeper is harder";
+      last_N = c.force_N;
+    }
+  }
+}
+
+}  // namespace tact::tools::ground_truth::reference_data_test

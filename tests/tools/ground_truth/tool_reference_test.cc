@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ground_truth/tool_reference.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "tests/support/test_scene.h"
+#include "tools/ground_truth/reference_fits.h"
+
+namespace tact::tools::ground_truth::tool_reference_test {
+
+namespace fs = std::filesystem;
+using model::Vec3;
+
+ToolReference example() {
+  const std::vector<ToolCase> cases{
+      {.depth_m = 0.001, .force_N = 0.03, .sphere_N = {0.01, 0.02}, .force_error_ratio = 0.01},
+      {.depth_m = 0.002,
+       .force_N = 0.05,
+       .sphere_N = {0.02, 0.03},
+       .force_error_ratio = std::nan("")}};
+  return {.mesh = "an \"organ\".obj",
+          .mesh_hash = "0123456789abcdef",
+          .solver = "by hand",
+          .youngs_modulus_Pa = 5000.0,
+          .poisson_ratio = 0.45,
+          .fixed_min_m = {-1.0, -1.0, -1.0},
+          .fixed_max_m = {1.0, -0.032, 1.0},
+          .sphere = {{{0, -0.004, 0.004}, 0.004}, {{0, 0.004, 0.004}, 0.004}},
+          .places = {{.vertex = {},
+                      .point_m = {0, 0, 0},
+                      .direction = {0, 0, -1},
+                      .orientation = {},
+                      .cases = cases},
+                     {.vertex = 7,
+                      .point_m = {0.01, -0.02, 0.03},
+                      .direction = {0.6, 0.0, -0.8},
+                      .orientation = turn_between({0, 0, -1}, {0.6, 0.0, -0.8}),
+                      .cases = cases}}};
+}
+
+model::Result<ToolReference> read_text(const std::string& text) {
+  const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+  const std::string path = fs::path(testing::TempDir()) / ("tool_reference_" + name + ".json");
+  std::ofstream(path) << text;
+  auto data = read_tool_reference(path);
+  fs::remove(path);
+  return data;
+}
+
+void expect_error(std::string text, const std::string& from, const std::string& to,
+                  const std::string& what) {
+  const auto at = text.find(from);
+  ASSERT_NE(at, std::string::npos) << from;
+  const auto data = read_text(text.replace(at, from.size(), to));
+  ASSERT_FALSE(data) << "with " << to;
+  EXPECT_NE(data.error().sentence.find(what), std::string::npos) << data.error().sentence;
+  EXPECT_NE(data.error().sentence.find("tact-reference SCENE --tool"), std::string::npos);
+}
+
+TEST(ToolReference, ComesBackAsItWasWritten) {
+  const auto back = read_text(tool_reference_text(example()));
+  ASSERT_TRUE(back) << back.error().sentence;
+  EXPECT_EQ(tool_reference_text(*back), tool_reference_text(example()));
+  EXPECT_FALSE(back->places[0].vertex);
+  EXPECT_EQ(back->places[1].vertex, 7U);
+  EXPECT_EQ(back->places[1].cases[0].sphere_N, (std::vector<double>{0.01, 0.02}));
+  EXPECT_TRUE(std::isnan(back->places[0].cases[1].force_error_ratio));
+  EXPECT_EQ(back->sphere[1].offset_m.y, 0.004);
+}
+
+TEST(ToolReference, NamesTheFileAndTheKeyOfADamage) {
+  const std::string text = tool_reference_text(example());
+  expect_error(text, "tact-tool-reference/1", "tact-reference/1", "schema");
+  expect_error(text, "\"force_N\"", "\"force_mN\"", "force_N");
+  expect_error(text, "\"force_N\": 0.03", "\"force_N\": -0.03", "above 0");
+  expect_error(text, "\"depth_m\": 0.002", "\"depth_m\": 0.001", "depths");
+  expect_error(text, "[0.6, 0, -0.8]", "[0.6, 0, -0.9]", "unit vector");
+  expect_error(text, "[0.01, 0.02]", "[0.03]", "sphere_N");
+}
+
+TEST(ToolReference, TurnsByTheShortestWay) {
+  const Vec3 from{0, 0, -1};
+  for (const Vec3& to : {Vec3{0, 0, -1}, Vec3{0.6, 0, -0.8}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
+    const model::Quat q = turn_between(from, to);
+    EXPECT_NEAR(norm(rotate(q, from) - to), 0.0, 1e-12);
+    EXPECT_NEAR(2.0 * std::acos(std::min(1.0, q.w)), std::acos(dot(from, to)), 1e-7);
+  }
+}
+
+class ToolReferenceFits : public testing::Test {
+ protected:
+  ToolReferenceFits() {
+    scene_.organ.position_m = {0.0, 0.0, 0.01};
+    scene_.elastic = model::scene::ElasticSettings{.youngs_modulus_Pa = 5000.0,
+                                                   .poisson_ratio = 0.45,
+                                                   .fixed_min_m = {-1, -1, -1},
+                                                   .fixed_max_m = {1, -0.032, 1}};
+    scene_.tool.spheres = reference_.sphere;
+    scene_.hand_site_m = reference_.places[0].point_m + scene_.organ.position_m;
+    reference_.places[1].point_m = scene_.organ_mesh.vertex_m[7] - scene_.organ.position_m +
+                                   0.001 * reference_.places[1].direction;
+  }
+  void expect(const std::string& words) const {
+    const auto error = check_tool_reference_fits(reference_, scene_);
+    ASSERT_EQ(error.has_value(), !words.empty()) << (error ? error->sentence : "");
+    if (!error) return;
+    EXPECT_NE(error->sentence.find(words), std::string::npos) << error->sentence;
+    EXPECT_NE(error->sentence.find("--tool --out FILE"), std::string::npos) << "the cure";
+  }
+
+  model::scene::Scene scene_ = tests::make_plate_scene();
+  ToolReference reference_ = example();
+};
+
+TEST_F(ToolReferenceFits, TheSceneItWasSolvedForAndNoOther) {
+  expect("");  // a place may be moved along its way
+  scene_.tool.spheres[1].radius_m *= 1.01;
+  expect("spheres");
+  scene_.tool.spheres = reference_.sphere;
+  scene_.tool.spheres.pop_back();
+  expect("spheres");
+  scene_.tool.spheres = reference_.sphere;
+  scene_.hand_site_m.x += 1e-4;
+  expect("hand.site_m");
+  scene_.hand_site_m.x -= 1e-4;
+  reference_.places[1].point_m.y += 1e-4;
+  expect("vertex 7");
+  reference_.places[1].point_m.y -= 1e-4;
+  scene_.elastic->youngs_modulus_Pa = 4000.0;
+  expect("youngs_modulus_Pa");
+  scene_.elastic.reset();
+  expect("[elastic]");
+}
+
+TEST(ToolReference, ShipsTheLiver) {
+  const auto data = read_tool_reference(TACT_SOURCE_DIR "/tests/data/reference/liver_tool.json");
+  ASSERT_TRUE(data) << data.error().sentence;
+  ASSERT_EQ(data->places.size(), 7U);
+  // Two jaws at the hand's site, finite elements and boundary elements by others: 1, 2, 5, 10 mm.
+  const double known_N[] = {0.01862, 0.04888, 0.15939, 0.36985};
+  for (const ToolPlace& place : data->places) {
+    ASSERT_EQ(place.cases.size(), 4U);
+    double last_N = 0.0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const ToolCase& c = place.cases[k];
+      EXPECT_GT(c.force_N, last_N) << "deeper is harder";
+      EXPECT_NEAR(c.sphere_N[0] + c.sphere_N[1], c.force_N, 1e-6);
+      EXPECT_LT(c.force_error_ratio, 0.08);
+      if (!place.vertex) EXPECT_NEAR(c.force_N, known_N[k], 0.03 * known_N[k]);
+      last_N = c.force_N;
+    }
+  }
+}
+
+}  // namespace tact::tools::ground_truth::tool_reference_test

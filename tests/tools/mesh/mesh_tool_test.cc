@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// tact-mesh as a user runs it: exit status, output, and one-line errors.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/mesh_files.h"
+
+namespace tact::tests::mesh_tool_test {
+
+class MeshTool : public testing::Test {
+ protected:
+  Ran run(const std::string& arguments) const { return run_apart(temp_, "tact-mesh", arguments); }
+  static void expect_one_line_error(const Ran& ran, const std::string& start) {
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_EQ(ran.out, "");
+    EXPECT_EQ(ran.err.substr(0, start.size()), start);
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+    EXPECT_EQ(ran.err.back(), '\n');
+  }
+
+  TempDirectory temp_;
+  const std::string cube_ = temp_.write("cube.obj", kCubeVertices + kCubeFaces);
+};
+
+TEST_F(MeshTool, PrintsWhatACubeIs) {
+  const Ran ran = run(cube_);
+  EXPECT_EQ(ran.status, 0);
+  EXPECT_EQ(ran.err, "");
+  EXPECT_EQ(ran.out,
+            "vertices   8\n"
+            "           8 in the file, 0 welded, 0 unused\n"
+            "triangles  12\n"
+            "surface    closed\n"
+            "area       6 cm2\n"
+            "volume     1 cm3\n"
+            "x          0 to 10 mm (10 mm)\n"
+            "y          0 to 10 mm (10 mm)\n"
+            "z          0 to 10 mm (10 mm)\n");
+}
+
+TEST_F(MeshTool, PrintsJsonInSiUnits) {
+  const Ran ran = run("--json --unit-m 0.01 " + cube_);
+  ASSERT_EQ(ran.status, 0);
+  const auto json = nlohmann::json::parse(ran.out);
+  EXPECT_EQ(json["vertices"], 8);
+  EXPECT_EQ(json["triangles"], 12);
+  EXPECT_EQ(json["closed"], true);
+  EXPECT_EQ(json["boundary_edges"], 0);
+  EXPECT_EQ(json["welded_vertices"], 0);
+  EXPECT_EQ(json["flipped"], false);
+  EXPECT_NEAR(json["area_m2"].get<double>(), 0.06, 1e-12);
+  EXPECT_NEAR(json["volume_m3"].get<double>(), 1e-3, 1e-12);
+  EXPECT_NEAR(json["high_m"][2].get<double>(), 0.1, 1e-12);
+}
+
+TEST_F(MeshTool, SaysWhatAnOpenSurfaceLacks) {
+  const std::string path = temp_.write("open.obj", kCubeVertices + kCubeFaces.substr(16));
+  const Ran ran = run(path);
+  EXPECT_EQ(ran.status, 0);
+  EXPECT_NE(ran.out.find("surface    open, 4 boundary edges\n"), std::string::npos);
+  EXPECT_NE(ran.out.find("volume     none, the surface is open\n"), std::string::npos);
+  const auto json = nlohmann::json::parse(run("--json " + path).out);
+  EXPECT_TRUE(json["volume_m3"].is_null());
+}
+
+TEST_F(MeshTool, EveryLineOfTheManifestOfBadFilesHolds) {
+  for (const BadFile& file : bad_files(temp_)) {
+    SCOPED_TRACE(file.name);
+    const Ran ran = run(file.path);
+    if (file.expect == "ok") {
+      EXPECT_EQ(ran.status, 0);
+      EXPECT_NE(ran.out.find(std::to_string(file.vertices) + " in the file"), std::string::npos);
+      EXPECT_NE(ran.out.find("triangles  " + std::to_string(file.triangles)), std::string::npos);
+    } else {
+      expect_one_line_error(ran, "tact-mesh: " + file.path + ":");
+    }
+  }
+}
+
+TEST_F(MeshTool, RefusesBadUsageInOneLine) {
+  expect_one_line_error(run(""), "tact-mesh: FILE is required");
+  expect_one_line_error(run(cube_ + " more.obj"), "tact-mesh: ");
+  expect_one_line_error(run("--unit-m inch " + cube_), "tact-mesh: ");
+  expect_one_line_error(run("--unit-m 0 " + cube_), "tact-mesh: " + cube_ + ": a file unit of 0 m");
+  expect_one_line_error(run("--unit-m nan " + cube_), "tact-mesh: ");
+  expect_one_line_error(run("--frobnicate " + cube_), "tact-mesh: ");
+  expect_one_line_error(run(temp_.path() + "/none.obj"), "tact-mesh: ");
+  expect_one_line_error(run(temp_.path()), "tact-mesh: ");
+}
+
+TEST_F(MeshTool, HelpNamesEveryOptionWithItsUnit) {
+  const Ran ran = run("--help");
+  EXPECT_EQ(ran.status, 0);
+  EXPECT_EQ(ran.err, "");
+  for (const std::string word :
+       {"FILE", "--unit-m", "one file unit, m", "--json", "SI units", "Exit status"}) {
+    EXPECT_NE(ran.out.find(word), std::string::npos) << word;
+  }
+}
+
+}  // namespace tact::tests::mesh_tool_test

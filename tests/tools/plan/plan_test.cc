@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+// The planner: the least law that is enough, why, and the file that tells tactd.
+#include "tools/plan/plan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "tests/support/program.h"
+#include "tests/support/test_scene.h"
+
+namespace tact::tools::plan::plan_test {
+
+using model::scene::LawKind;
+
+constexpr model::scene::ToleranceSettings kTolerance{
+    .force_error_ratio = 0.07, .shape_error_ratio = 0.25, .tick_budget_us = 10.0};
+
+Candidate candidate(LawKind law, double force, double shape, double tick_us, double memory_bytes) {
+  return {.sizes = {.law = law},
+          .force_error_ratio = force,
+          .shape_error_ratio = shape,
+          .tick_median_us = tick_us,
+          .tick_p999_us = 2.0 * tick_us,
+          .memory_bytes = memory_bytes};
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(Choose, TakesTheFastestThatIsEnoughAndNamesTheRunnerUp) {
+  const std::vector<Candidate> laws{
+      candidate(LawKind::kRhombus, 0.20, 0.10, 0.05, 1e4),     // too far off
+      candidate(LawKind::kSpringPatch, 0.02, 0.10, 8.0, 1e4),  // p99.9 16 us: too slow
+      candidate(LawKind::kCompliance, 0.01, 0.05, 0.4, 1e6),
+      candidate(LawKind::kHexSheet, 0.06, 0.20, 0.1, 1e4)};
+  const Choice choice = choose(laws, kTolerance);
+  EXPECT_TRUE(choice.meets);
+  EXPECT_EQ(choice.chosen, 3U);
+  EXPECT_EQ(choice.runner_up, 2U);
+  EXPECT_TRUE(has(choice.reason, "2 of 4")) << choice.reason;
+  EXPECT_TRUE(has(choice.reason, "hex_sheet")) << choice.reason;
+  EXPECT_TRUE(has(choice.reason, "Runner-up: compliance")) << choice.reason;
+}
+
+TEST(Choose, LetsMemoryDecideWhereTimesCannotBeToldApart) {
+  const std::vector<Candidate> laws{candidate(LawKind::kCompliance, 0.01, 0.05, 0.100, 4e5),
+                                    candidate(LawKind::kCompliance, 0.02, 0.06, 0.108, 1e5),
+                                    candidate(LawKind::kCompliance, 0.03, 0.06, 0.120, 1e3)};
+  const Choice choice = choose(laws, kTolerance);
+  EXPECT_EQ(choice.chosen, 1U);  // 8 % slower counts as equal, 20 % does not
+  ASSERT_TRUE(choice.runner_up);
+  EXPECT_EQ(*choice.runner_up, 0U);
+}
+
+TEST(Choose, TellsTheNearestAndWhatToChangeWhenNoneIsEnough) {
+  const std::vector<Candidate> laws{candidate(LawKind::kRhombus, 0.21, 0.10, 0.05, 1e4),
+                                    candidate(LawKind::kHexSheet, 0.08, 0.20, 0.05, 1e4),
+                                    candidate(LawKind::kSpringPatch, 0.01, 0.20, 50.0, 1e4)};
+  const Choice choice = choose(laws, kTolerance);
+  EXPECT_FALSE(choice.meets);
+  EXPECT_EQ(choice.chosen, 1U);
+  EXPECT_FALSE(choice.runner_up);
+  EXPECT_TRUE(has(choice.reason, "nearest is hex_sheet")) << choice.reason;
+  EXPECT_TRUE(has(choice.reason, "force_error_ratio = 0.07")) << choice.reason;
+  EXPECT_TRUE(has(choice.reason, "allow 0.08")) << choice.reason;
+  EXPECT_FALSE(has(choice.reason, "tick_budget")) << choice.reason;
+}
+
+TEST(Choose, NeverTakesWhatWasNotMeasured) {
+  const double nan = std::nan("");
+  const std::vector<Candidate> laws{candidate(LawKind::kRhombus, nan, 0.1, 0.05, 1e4),
+                                    candidate(LawKind::kHexSheet, 0.01, nan, 0.05, 1e4),
+                                    candidate(LawKind::kDiscStack, 0.01, 0.1, nan, 1e4),
+                                    candidate(LawKind::kSpringPatch, 0.5, 0.1, 0.05, 1e4)};
+  const Choice choice = choose(laws, kTolerance);
+  EXPECT_FALSE(choice.meets);
+  EXPECT_EQ(choice.chosen, 3U);  // the nearest that was
+  EXPECT_FALSE(choose({}, kTolerance).chosen);
+}
+
+TEST(Plan, OfABladeTakesWhatCanBeCutAlone) {
+  std::vector<Candidate> candidates(3);
+  candidates[0].sizes.law = LawKind::kCompliance;
+  candidates[1].sizes.law = LawKind::kSpringPatch;
+  candidates[2].sizes.law = LawKind::kRhombus;
+  keep_what_cuts(candidates);
+  ASSERT_EQ(candidates.size(), 1U);
+  EXPECT_EQ(candidates[0].sizes.law, LawKind::kSpringPatch);
+}
+
+TEST(Plan, ReadsTactsRowsOfAChart) {
+  report::Table table = chart::empty_chart(3, {});
+  const chart::Provenance here{"0123456789abcdef", "truth", "r1", model::scene::machine_name()};
+  chart::ChartRow law, peer, failed;
+  law.variant.sizes = {
+      .law = LawKind::kDiscStack, .layers = 7, .disc_form = model::law::DiscForm::kLinear};
+  law.errors.force_rms_ratio = 0.125;
+  peer.variant.peer = chart::PeerKind::kFem;
+  failed.variant.sizes.law = LawKind::kRhombus;
+  failed.failure = "no meaning";
+  for (const chart::ChartRow& row : {law, peer, failed}) table.add(table_row(row, here));
+  const auto candidates = candidates_of(table);
+  ASSERT_EQ(candidates.size(), 1U);
+  EXPECT_EQ(candidates[0].sizes.law, LawKind::kDiscStack);
+  EXPECT_EQ(candidates[0].sizes.layers, 7U);
+  EXPECT_EQ(candidates[0].sizes.disc_form, model::law::DiscForm::kLinear);
+  EXPECT_EQ(candidates[0].force_error_ratio, 0.125);
+
+  model::scene::Scene scene = tests::make_plate_scene();
+  EXPECT_FALSE(check_chart_fits(table, scene, "chart.json"));
+  scene.hash = "another";
+  const auto wrong = check_chart_fits(table, scene, "chart.json");
+  ASSERT_TRUE(wrong);
+  EXPECT_TRUE(has(wrong->sentence, "tact-chart plate.toml")) << wrong->sentence;
+}
+
+class PlanFile : public testing::Test {
+ protected:
+  PlanFile() {
+    scene_.described = {LawKind::kCompliance};
+    plan_ = {.sizes = {.law = LawKind::kCompliance, .table_knots = 33, .curves = 9},
+             .tick_p999_us = 0.25,
+             .force_error_ratio = 0.0123,
+             .shape_error_ratio = 0.05,
+             .machine = model::scene::machine_name(),
+             .scene_hash = scene_.hash};
+    std::filesystem::create_directories(folder_);
+  }
+  ~PlanFile() override { std::filesystem::remove_all(folder_); }
+
+  std::string write(const std::string& text) const {
+    const std::string path = folder_ + "/plan.toml";
+    std::ofstream(path) << text;
+    return path;
+  }
+  void expect_cure(const model::Result<model::scene::Plan>& read, const std::string& what) const {
+    ASSERT_FALSE(read) << what;
+    EXPECT_TRUE(has(read.error().sentence, what)) << read.error().sentence;
+    EXPECT_TRUE(
+        has(read.error().sentence,
+            "run tact-plan plate.toml --set law=auto --set 'name=\"a b\"' --reference FILE, "
+            "FILE from tact-reference plate.toml --out FILE"))
+        << read.error().sentence;
+  }
+
+  const std::vector<std::string> kSet{"law=auto", "name=\"a b\""};
+  const std::string folder_ = testing::TempDir() + "tact_plan_" +
+                              testing::UnitTest::GetInstance()->current_test_info()->name();
+  model::scene::Scene scene_ = tests::make_plate_scene();
+  model::scene::Plan plan_;
+};
+
+TEST_F(PlanFile, IsFoundAgainByTheSceneAndSetsItsLawAndSizes) {
+  ASSERT_EQ(setenv("XDG_CACHE_HOME", folder_.c_str(), 1), 0);
+  const auto path = model::scene::plan_path(scene_.hash);
+  ASSERT_TRUE(path);
+  ASSERT_TRUE(model::scene::write_plan(plan_, *path));
+  const auto read = model::scene::find_plan(scene_, {});
+  unsetenv("XDG_CACHE_HOME");
+  ASSERT_TRUE(read) << read.error().sentence;
+  EXPECT_EQ(model::scene::plan_text(*read), model::scene::plan_text(plan_));
+  model::scene::use_sizes(read->sizes, scene_);
+  EXPECT_EQ(scene_.law, LawKind::kCompliance);
+  EXPECT_EQ(scene_.table_knots, 33U);
+  EXPECT_EQ(scene_.compliance.curves, 9U);
+}
+
+TEST_F(PlanFile, OfAShippedSceneIsFoundWhenAutoIsSetForOneRun) {
+  const std::string liver = std::string(TACT_SOURCE_DIR) + "/model/scenes/liver.toml";
+  const auto planned = model::scene::load_scene(liver, {"rate_Hz=2000"});
+  const auto run = model::scene::load_scene(liver, {"law=auto", "rate_Hz=2000"});
+  const auto slower = model::scene::load_scene(liver, {"law=auto"});
+  ASSERT_TRUE(planned && run && slower);
+  plan_.scene_hash = planned->hash;
+  ASSERT_EQ(setenv("XDG_CACHE_HOME", folder_.c_str(), 1), 0);
+  ASSERT_TRUE(model::scene::write_plan(plan_, *model::scene::plan_path(planned->hash)));
+  const auto found = model::scene::find_plan(*run, {"law=auto", "rate_Hz=2000"});
+  const auto missing = model::scene::find_plan(*slower, {"law=auto"});
+  unsetenv("XDG_CACHE_HOME");
+  ASSERT_TRUE(found) << found.error().sentence;
+  EXPECT_EQ(found->sizes.law, LawKind::kCompliance);
+  ASSERT_FALSE(missing) << "the plan of another rate";
+  EXPECT_TRUE(has(missing.error().sentence, "run tact-plan " + liver + " --reference"))
+      << missing.error().sentence;
+}
+
+TEST_F(PlanFile, RefusesWhatIsMissingDamagedOrStale) {
+  expect_cure(model::scene::read_plan(folder_ + "/none.toml", scene_, kSet),
+              "no plan for this scene");
+  expect_cure(model::scene::read_plan(write("law = \"comp"), scene_, kSet), "damaged");
+  expect_cure(model::scene::read_plan(write("law = \"glue\"\n"), scene_, kSet), "no law");
+  expect_cure(model::scene::read_plan(write("law = \"auto\"\n"), scene_, kSet), "no law");
+  expect_cure(model::scene::read_plan(write("law = \"rhombus\"\ncurves = -3\n"), scene_, kSet),
+              "out of range");
+  expect_cure(model::scene::read_plan(write("law = \"rhombus\"\n"), scene_, kSet),
+              "tick_p999_us is missing");
+  model::scene::Plan other = plan_;
+  other.machine = "1 x another processor";
+  expect_cure(model::scene::read_plan(write(plan_text(other)), scene_, kSet), "another machine");
+  other = plan_;
+  other.scene_hash = "fedcba9876543210";
+  expect_cure(model::scene::read_plan(write(plan_text(other)), scene_, kSet), "another scene");
+  other = plan_;
+  other.sizes.law = LawKind::kHexSheet;
+  expect_cure(model::scene::read_plan(write(plan_text(other)), scene_, kSet), "no law hex_sheet");
+}
+
+TEST(Program, SaysWhatIsMissing) {
+  const std::string scene = std::string(TACT_SOURCE_DIR) + "/model/scenes/liver.toml";
+  const auto plan = tests::run_program("tact-plan", scene);
+  EXPECT_EQ(plan.status, 2);
+  EXPECT_TRUE(has(plan.output, "give --reference FILE")) << plan.output;
+  const auto chart = tests::run_program(
+      "tact-chart", scene + " --out " + testing::TempDir() + " --reference none.json");
+  EXPECT_EQ(chart.status, 2);
+  EXPECT_TRUE(has(chart.output, "tact-reference")) << chart.output;
+  EXPECT_EQ(tests::run_program("tact-chart", "--help").status, 0);
+}
+
+}  // namespace tact::tools::plan::plan_test

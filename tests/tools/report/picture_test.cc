@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Needs gnuplot: without it every picture is an error that says what to install.
+#include "tools/report/picture.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "tools/report/table.h"
+
+namespace tact::tools::report::picture_test {
+
+namespace fs = std::filesystem;
+
+std::string content(const std::string& path) {
+  std::ostringstream out;
+  out << std::ifstream(path, std::ios::binary).rdbuf();
+  return out.str();
+}
+
+class PictureFiles : public testing::Test {
+ protected:
+  PictureFiles() : folder_(testing::TempDir() + "tact's pictures " + std::to_string(getpid())) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    Table table("curve", {{"x_m"}, {"force_N"}}, 5);
+    for (int i = 0; i < 5; ++i) table.add({0.1 * i, 0.3 * i * i});
+    EXPECT_TRUE(table.write(folder_));
+  }
+  ~PictureFiles() override { fs::remove_all(folder_); }
+  std::string folder_;  // with a quote and a space, as people have them
+};
+
+TEST_F(PictureFiles, DrawsSvgAndPngFromATable) {
+  const auto files = draw(
+      {.name = "curve",
+       .script = "set xlabel 'depth, m'\nplot 'curve.csv' using 2:3 with points title 'force'\n"},
+      folder_);
+  ASSERT_TRUE(files) << files.error().sentence;
+  ASSERT_EQ(files->size(), 2u);
+  EXPECT_NE(content((*files)[0]).find("<svg"), std::string::npos);
+  EXPECT_NE(content((*files)[0]).find("depth, m"), std::string::npos);
+  EXPECT_EQ(content((*files)[1]).substr(1, 3), "PNG");
+  EXPECT_TRUE(fs::exists(folder_ + "/curve.gp")) << "anyone can draw it again";
+  EXPECT_FALSE(fs::exists(folder_ + "/curve.gnuplot.txt"));
+}
+
+TEST_F(PictureFiles, TheSameScriptGivesTheSameBytes) {
+  const Picture picture{.name = "curve", .script = "plot 'curve.csv' using 2:3 with lines\n"};
+  const auto files = draw(picture, folder_);
+  ASSERT_TRUE(files);
+  const std::string svg = content((*files)[0]), png = content((*files)[1]);
+  ASSERT_TRUE(draw(picture, folder_));
+  EXPECT_EQ(content((*files)[0]), svg);
+  EXPECT_EQ(content((*files)[1]), png);
+}
+
+TEST_F(PictureFiles, ABrokenScriptIsAnErrorThatQuotesGnuplot) {
+  const auto files = draw({.name = "broken", .script = "plot 'none.csv' using\n"}, folder_);
+  ASSERT_FALSE(files);
+  EXPECT_NE(files.error().sentence.find("gnuplot"), std::string::npos);
+}
+
+TEST_F(PictureFiles, WithoutGnuplotItSaysWhatToInstall) {
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", folder_.c_str(), 1);
+  const auto files = draw({.name = "curve", .script = "plot x\n"}, folder_);
+  setenv("PATH", path.c_str(), 1);
+  ASSERT_FALSE(files);
+  EXPECT_NE(files.error().sentence.find("apt install gnuplot-nox"), std::string::npos)
+      << files.error().sentence;
+}
+
+}  // namespace tact::tools::report::picture_test

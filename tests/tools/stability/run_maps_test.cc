@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every map on its coarse grid: each finding is a theorem of the method it measures.
+#include "tools/stability/run_maps.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace tact::tools::stability::run_maps_test {
+
+namespace fs = std::filesystem;
+
+std::string content(const fs::path& path) {
+  std::ostringstream out;
+  out << std::ifstream(path, std::ios::binary).rdbuf();
+  return out.str();
+}
+
+class RunMaps : public testing::Test {
+ protected:
+  RunMaps() : folder_(testing::TempDir() + "tact-maps-" + std::to_string(getpid())) {
+    fs::remove_all(folder_);
+  }
+  ~RunMaps() override { fs::remove_all(folder_); }
+  StabilityOptions options(const std::string& only, const std::string& below = "whole") const {
+    fs::create_directories(folder_ + "/" + below);
+    return {
+        .out = folder_ + "/" + below, .only = only, .grid = Grid::kQuick, .draw_pictures = false};
+  }
+  void check_findings(const std::string& only) {
+    const auto run = run_maps(options(only));
+    ASSERT_FALSE(run.error) << run.error->sentence;
+    ASSERT_EQ(run.reports.size(), 1u);
+    EXPECT_GE(run.reports.front().findings.size(), 2u);
+    for (const Finding& f : run.reports.front().findings) EXPECT_TRUE(f.holds) << f.sentence;
+  }
+  std::string folder_;
+};
+
+TEST_F(RunMaps, IntegratorsGrowWhereTheirMatricesSay) { check_findings("integrators"); }
+TEST_F(RunMaps, ThePrintedRhombusFailsWhereTheFormulaSays) { check_findings("printed_rhombus"); }
+TEST_F(RunMaps, LawsStayFiniteAndTheGateBoundedBeyondTheirRange) { check_findings("law_limits"); }
+TEST_F(RunMaps, LawsEndWhereTheirParametersSay) { check_findings("law_lines"); }
+TEST_F(RunMaps, WallsAreStableUpToTheClosedFormula) { check_findings("loop"); }
+TEST_F(RunMaps, LawsAreStableUpToTheirTangent) { check_findings("loop_laws"); }
+TEST_F(RunMaps, TheWholeControllerAgreesInKind) { check_findings("loop_delta"); }
+TEST_F(RunMaps, LostAndLateTicksCostWhatTheMeanSquareSays) { check_findings("ticks"); }
+TEST_F(RunMaps, ABurstOfLossesFadesAndLatches) { check_findings("loss"); }
+
+TEST_F(RunMaps, ASecondRunGivesTheSameBytes) {
+  for (const char* map : {"ticks", "law_limits"}) {
+    ASSERT_FALSE(run_maps(options(map, "first")).error);
+    ASSERT_FALSE(run_maps(options(map, "second")).error);
+    for (const char* end : {".csv", ".json"})
+      EXPECT_EQ(content(folder_ + "/first/" + map + end),
+                content(folder_ + "/second/" + map + end));
+  }
+}
+
+TEST_F(RunMaps, ShardsMergeToTheTableOfOneRun) {
+  ASSERT_FALSE(run_maps(options("law_limits")).error);
+  StabilityOptions part = options("law_limits", "parts");
+  StabilityOptions together = options("", "merged");
+  for (std::size_t i = 0; i < 3; ++i) {
+    part.shard = {.index = i, .count = 3};
+    const auto run = run_maps(part);
+    ASSERT_FALSE(run.error);
+    EXPECT_TRUE(run.reports.front().findings.empty()) << "a part proves nothing";
+    together.merge.push_back(run.reports.front().files.front());
+  }
+  const auto merged = run_maps(together);
+  ASSERT_FALSE(merged.error) << merged.error->sentence;
+  EXPECT_FALSE(merged.reports.front().findings.empty());
+  for (const char* end : {".csv", ".json"})
+    EXPECT_EQ(content(folder_ + "/merged/law_limits" + end),
+              content(folder_ + "/whole/law_limits" + end));
+  together.grid = Grid::kFull;
+  EXPECT_TRUE(run_maps(together).error) << "shards of another grid";
+}
+
+}  // namespace tact::tools::stability::run_maps_test

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/chart/tool_judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "firmware/loop/controller.h"
+#include "model/scene/scene_strokes.h"
+#include "model/scene/tissue.h"
+#include "tools/ground_truth/reference_fits.h"
+#include "tools/program/interrupt.h"
+#include "tools/program/run_program.h"
+
+namespace tact::tools::chart {
+namespace {
+
+using ground_truth::ToolPlace;
+using ground_truth::ToolReference;
+using model::Result;
+using model::Tool;
+using model::Vec3;
+using model::scene::Scene;
+
+constexpr double kSpeed_mps = 0.02;
+constexpr double kAbove_m = 0.003;  // where the way begins
+
+/// As the reference is: elastic, linear, without friction.
+Scene reference_scene(Scene scene) {
+  scene.relaxation.clear();
+  scene.contact.friction_ratio = 0.0;
+  scene.compliance.large_strain = false;
+  return scene;
+}
+
+/// The tool at a place, its lowest point `depth_m` beyond it.
+Tool tool_at(const Scene& scene, const ToolPlace& place, double depth_m) {
+  // p(d) = point - direction (reach - d), as a press stroke has it (scene_strokes.h)
+  const double reach_m = model::scene::reach_m(scene.tool.spheres, scene.hand_inward);
+  return {
+      .position_m = place.point_m + scene.organ.position_m - (reach_m - depth_m) * place.direction,
+      .orientation = place.orientation};
+}
+
+/// The force against the way, from above down to each depth.
+class Press {
+ public:
+  Press(const Scene& scene, const model::scene::Tissue& tissue, const ToolPlace& place)
+      : scene_(scene),
+        place_(place),
+        contact_(tissue.contact_scene()),
+        is_stepped_(tissue.law().curve() == nullptr) {}
+
+  double force_at(double depth_m) {
+    const double step_m = kSpeed_mps / scene_.rate_Hz;
+    while (at_m_ + step_m < depth_m) tick(at_m_ += step_m);
+    at_m_ = depth_m;
+    return settle(is_stepped_, [&] { return tick(depth_m); }).force_N;
+  }
+
+ private:
+  double tick(double depth_m) {
+    const Tool tool = tool_at(scene_, place_, depth_m);
+    contact_.touch(tool);
+    return -dot(contact_.feel(tool, false).force_N, place_.direction);
+  }
+
+  const Scene& scene_;
+  const ToolPlace& place_;
+  model::contact::Contact contact_;
+  bool is_stepped_;
+  double at_m_ = -kAbove_m;
+};
+
+/// A tool that goes round over the hand's site while it sinks in and comes back.
+std::vector<Tool> moving_tool(const Scene& scene, const ToolPlace& place) {
+  constexpr std::size_t kTurnTicks = 1000;
+  constexpr double kTurnRadius_m = 0.004, kShallow_m = 0.001, kDeep_m = 0.009;
+  const Vec3 side = std::abs(place.direction.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 e1 = normalized(cross(place.direction, side)), e2 = cross(place.direction, e1);
+  std::vector<Tool> path;
+  for (std::size_t i = 0; i < kTurnTicks; ++i) {
+    const double turn_rad = 2.0 * M_PI * static_cast<double>(i) / kTurnTicks;
+    const double depth_m =
+        kShallow_m + (kDeep_m - kShallow_m) * 0.5 * (1.0 - std::cos(2.0 * turn_rad));
+    path.push_back(tool_at(scene, place, depth_m));
+    path.back().position_m += kTurnRadius_m * (std::cos(turn_rad) * e1 + std::sin(turn_rad) * e2);
+  }
+  return path;
+}
+
+Timing time_tool(const Scene& scene, const model::scene::Tissue& tissue, const ToolPlace& place,
+                 const TimingSettings& settings) {
+  firmware::loop::Controller controller(
+      tissue.contact_scene(), firmware::gate::Gate(scene.limits, 1.0 / scene.rate_Hz, 1.0),
+      /*hard_real_time=*/false);
+  const std::vector<Tool> path = moving_tool(scene, place);
+  firmware::loop::TickInput input;
+  input.sample.fresh = true;
+  input.commands.arm = true;
+  std::size_t at = 0;
+  return measure_time(
+      [&] {
+        input.sample.tool = path[at];
+        at = at + 1 == path.size() ? 0 : at + 1;
+        controller.tick(input);
+      },
+      settings);
+}
+
+}  // namespace
+
+ToolErrors summarize_tool(const std::vector<ToolSample>& samples, const std::vector<bool>& unseen) {
+  ToolErrors out;
+  out.place_rms_ratio.resize(unseen.size());
+  double peak_N = 0.0;
+  std::vector<double> place_peak_N(unseen.size(), 0.0);
+  for (const ToolSample& s : samples) {
+    peak_N = std::max(peak_N, std::abs(s.reference_N));
+    place_peak_N[s.place] = std::max(place_peak_N[s.place], std::abs(s.reference_N));
+  }
+  double all = 0.0, others = 0.0;
+  std::size_t other_count = 0;
+  std::vector<std::size_t> place_count(unseen.size(), 0);
+  for (const ToolSample& s : samples) {
+    const double e_N = s.force_N - s.reference_N, e = e_N / peak_N;
+    all += e * e;
+    if (unseen[s.place]) others += e * e, ++other_count;
+    out.place_rms_ratio[s.place] += (e_N / place_peak_N[s.place]) * (e_N / place_peak_N[s.place]);
+    ++place_count[s.place];
+    out.worst_ratio = std::max(out.worst_ratio, std::abs(e));
+    if (out.own_worst.size() <= s.depth) out.own_worst.resize(s.depth + 1, 0.0);
+    double& own = out.own_worst[s.depth];
+    if (std::abs(s.own_ratio()) > std::abs(own)) own = s.own_ratio();
+  }
+  out.rms_ratio = std::sqrt(all / static_cast<double>(samples.size()));
+  out.unseen_rms_ratio = std::sqrt(others / static_cast<double>(other_count));  // 0 / 0: NaN
+  for (std::size_t i = 0; i < unseen.size(); ++i)
+    out.place_rms_ratio[i] =
+        std::sqrt(out.place_rms_ratio[i] / static_cast<double>(place_count[i]));
+  return out;
+}
+
+Result<ToolRow> judge_tool(const Scene& scene, model::scene::LawKind law,
+                           const ToolReference& reference, const TimingSettings& timing) {
+  if (auto differs = check_tool_reference_fits(reference, scene)) return std::move(*differs);
+  ToolRow row;
+  row.law = law;
+  Scene own = scene;
+  own.law = law;
+  const Scene elastic = reference_scene(own);
+  const auto tissue = make_tissue(elastic);
+  if (!tissue) {
+    row.failure = tissue.error().sentence;
+    return row;
+  }
+  std::vector<bool> unseen;
+  for (std::size_t i = 0; i < reference.places.size(); ++i) {
+    const ToolPlace& place = reference.places[i];
+    unseen.push_back(place.vertex.has_value());
+    Press press(elastic, **tissue, place);
+    for (std::size_t k = 0; k < place.cases.size(); ++k) {
+      if (program::is_interrupted()) return program::interruption();
+      row.samples.push_back({.place = i,
+                             .depth = k,
+                             .force_N = press.force_at(place.cases[k].depth_m),
+                             .reference_N = place.cases[k].force_N});
+    }
+  }
+  row.errors = summarize_tool(row.samples, unseen);
+  const auto shipped = make_tissue(own);
+  if (!shipped) {
+    row.failure = shipped.error().sentence;
+    return row;
+  }
+  row.timing = time_tool(own, **shipped, reference.places.front(), timing);
+  return row;
+}
+
+}  // namespace tact::tools::chart

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// tool_judge.h - a scene's laws with its whole tool, as the loop feels them, against the reference.
+//
+// At each place the tool comes from above, as a press stroke brings it, 20 mm/s, through
+// model::contact::Contact (touch, then feel), all spheres; at each depth it waits until the force
+// stands (measure.h). What is compared is the force against the way. The reference is linear
+// elastic and frictionless, so relaxation, friction and large strain are off for the errors; times
+// are those of the scene as it is: touch, feel and judge of the loop's controller, one tick after
+// the other, the gate armed.
+//
+//     peak   e = F - F_ref, over the largest |F_ref| of all places;  RMS and worst
+//     own    e over |F_ref| of the same place and depth
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/scene/scene.h"
+#include "tools/chart/measure.h"
+#include "tools/ground_truth/tool_reference.h"
+
+namespace tact::tools::chart {
+
+struct ToolSample {
+  std::size_t place = 0, depth = 0;  // of the reference
+  double force_N = 0.0;
+  double reference_N = 0.0;
+
+  double own_ratio() const { return force_N / reference_N - 1.0; }
+};
+
+struct ToolErrors {
+  double rms_ratio = 0.0, worst_ratio = 0.0;  // of the peak
+  double unseen_rms_ratio = 0.0;        // of the peak, without the hand's site; NaN: no other place
+  std::vector<double> own_worst;        // of each depth: the largest in size, with its sign
+  std::vector<double> place_rms_ratio;  // of each place's own peak
+};
+/// `unseen`: of each place, that it is not the hand's own site.
+ToolErrors summarize_tool(const std::vector<ToolSample>& samples, const std::vector<bool>& unseen);
+
+struct ToolRow {
+  model::scene::LawKind law{};
+  std::string failure{};            // empty: it was measured
+  std::vector<ToolSample> samples;  // by place, then by depth
+  ToolErrors errors{};
+  Timing timing{};
+};
+
+/// One law of the scene. An error is Ctrl-C's or says that scene and reference do not fit.
+model::Result<ToolRow> judge_tool(const model::scene::Scene& scene, model::scene::LawKind law,
+                                  const ground_truth::ToolReference& reference,
+                                  const TimingSettings& timing);
+
+}  // namespace tact::tools::chart

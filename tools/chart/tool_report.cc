@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/chart/tool_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace tact::tools::chart {
+namespace {
+
+using ground_truth::ToolPlace;
+using ground_truth::ToolReference;
+using nlohmann::ordered_json;
+
+constexpr const char* kToolSchema = "tact-tool-chart/1";
+
+std::string name_of_place(const ToolPlace& place) {
+  return place.vertex ? fmt::format("{}", *place.vertex) : "hand's";
+}
+
+std::string mm_text(double depth_m) { return fmt::format("{:g}", depth_m * 1e3); }
+
+ordered_json number_or_null(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json();
+}
+
+ordered_json summary_of(const ToolRow& row, const ToolReference& reference) {
+  ordered_json out{{"law", std::string(name_of(row.law))}};
+  if (!row.failure.empty()) {
+    out["failure"] = row.failure;
+    return out;
+  }
+  out["force_rms_ratio"] = row.errors.rms_ratio;
+  out["force_worst_ratio"] = row.errors.worst_ratio;
+  out["unseen_rms_ratio"] = number_or_null(row.errors.unseen_rms_ratio);
+  for (std::size_t k = 0; k < row.errors.own_worst.size(); ++k)
+    out["own_worst_ratio_at_mm"][mm_text(reference.places.front().cases[k].depth_m)] =
+        row.errors.own_worst[k];
+  for (std::size_t i = 0; i < reference.places.size(); ++i)
+    out["place_rms_ratio"][name_of_place(reference.places[i])] = row.errors.place_rms_ratio[i];
+  out["tick_median_us"] = number_or_null(row.timing.median_us);
+  out["tick_p999_us"] = number_or_null(row.timing.p999_us);
+  out["instructions"] = number_or_null(row.timing.instructions);
+  return out;
+}
+
+}  // namespace
+
+report::Table tool_table(const std::vector<ToolRow>& rows, const ToolReference& reference) {
+  std::size_t samples = 0;
+  for (const ToolRow& row : rows) samples += row.samples.size();
+  report::Table table("tool",
+                      {{"law", report::CellKind::kWord},
+                       {"place", report::CellKind::kWord},
+                       {"depth_m"},
+                       {"force_N"},
+                       {"reference_N"},
+                       {"own_error_ratio"},
+                       {"reference_error_ratio"}},
+                      samples);
+  for (const ToolRow& row : rows)
+    for (const ToolSample& s : row.samples) {
+      const auto& place = reference.places[s.place];
+      table.add({std::string(name_of(row.law)), name_of_place(place), place.cases[s.depth].depth_m,
+                 s.force_N, s.reference_N, s.own_ratio(), place.cases[s.depth].force_error_ratio});
+    }
+  return table;
+}
+
+std::string tool_json(const std::vector<ToolRow>& rows, const ToolReference& reference,
+                      const std::string& command, const Provenance& provenance) {
+  ordered_json document{{"schema", kToolSchema},           {"command", command},
+                        {"scene", provenance.scene_hash},  {"reference", provenance.reference_hash},
+                        {"revision", provenance.revision}, {"machine", provenance.machine}};
+  for (const ToolRow& row : rows) document["laws"].push_back(summary_of(row, reference));
+  document["rows"] = ordered_json::parse(tool_table(rows, reference).to_json())["rows"];
+  return document.dump(1) + "\n";
+}
+
+std::string tool_text(const std::vector<ToolRow>& rows, const ToolReference& reference) {
+  const auto& depths = reference.places.front().cases;
+  std::string out = fmt::format("{:<14} {:>8} {:>8} {:>9}", "law", "RMS %", "worst %", "unseen %");
+  for (const auto& c : depths) out += fmt::format(" {:>8}", mm_text(c.depth_m) + " mm");
+  out += fmt::format(" {:>10} {:>9} {:>8}\n", "median us", "p99.9 us", "instr.");
+  const auto percent = [](double ratio) { return fmt::format(" {:>+8.1f}", 100.0 * ratio); };
+  for (const ToolRow& row : rows) {
+    out += fmt::format("{:<14}", name_of(row.law));
+    if (!row.failure.empty()) {
+      out += fmt::format(" not measured: {}\n", row.failure);
+      continue;
+    }
+    const ToolErrors& e = row.errors;
+    out += fmt::format(" {:>8.2f} {:>8.2f} {:>9.2f}", 100.0 * e.rms_ratio, 100.0 * e.worst_ratio,
+                       100.0 * e.unseen_rms_ratio);
+    for (const double own : e.own_worst) out += percent(own);
+    const double instructions = row.timing.instructions;
+    out += fmt::format(" {:>10.3f} {:>9.3f} {:>8}\n", row.timing.median_us, row.timing.p999_us,
+                       std::isfinite(instructions) ? fmt::format("{:.0f}", instructions) : "n/a");
+    std::size_t place = reference.places.size();
+    for (const ToolSample& s : row.samples) {
+      if (s.place != place) {
+        place = s.place;
+        out += fmt::format("{}  {:<12} {:>8.2f} {:>8} {:>9}", s.depth + s.place > 0 ? "\n" : "",
+                           name_of_place(reference.places[place]), 100.0 * e.place_rms_ratio[place],
+                           "", "");
+      }
+      out += percent(s.own_ratio());
+    }
+    out += "\n";
+  }
+  return out +
+         "RMS and worst: % of the largest force of the reference, at a place % of its own "
+         "largest.\n1 mm and so on: % of the own force there, for a law the worst place's. Time: "
+         "touch, feel, judge.\n";
+}
+
+}  // namespace tact::tools::chart

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// tool_report.h - what the whole tool's laws are worth, as files and as text.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/chart/chart.h"
+#include "tools/chart/tool_judge.h"
+
+namespace tact::tools::chart {
+
+/// One row for each law, place and depth.
+report::Table tool_table(const std::vector<ToolRow>& rows,
+                         const ground_truth::ToolReference& reference);
+
+/// The JSON of tool.json: where it comes from, a summary of each law, and the table.
+std::string tool_json(const std::vector<ToolRow>& rows,
+                      const ground_truth::ToolReference& reference, const std::string& command,
+                      const Provenance& provenance);
+
+/// For a terminal: each law, then its own error at each place and depth.
+std::string tool_text(const std::vector<ToolRow>& rows,
+                      const ground_truth::ToolReference& reference);
+
+}  // namespace tact::tools::chart

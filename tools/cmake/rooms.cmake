@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: Apache-2.0
+# The three things a folder can declare: tact_room, tact_program, tact_test.
+
+# tact_room(SOURCES a.cc... LINKS target...)
+# This folder as a library: model/law is the target tact_model_law. LINKS names the rooms that it
+# may include (tests/house/layering_test.py holds it to them) and the libraries that it uses.
+function(tact_room)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
+  tact_room_name(room)
+  if(ARG_SOURCES)
+    add_library(tact_${room} STATIC ${ARG_SOURCES})
+    target_link_libraries(tact_${room} PUBLIC tact_flags ${ARG_LINKS})
+  else()
+    add_library(tact_${room} INTERFACE)
+    target_link_libraries(tact_${room} INTERFACE tact_flags ${ARG_LINKS})
+  endif()
+endfunction()
+
+function(tact_room_name variable)  # firmware/black_box is firmware_black_box
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  string(REPLACE "/" "_" name ${folder})
+  set(${variable} ${name} PARENT_SCOPE)
+endfunction()
+
+# tact_program(NAME SOURCES main.cc... LINKS room... [OPTIMISED])
+# Reading the command line is what takes longest to compile, so all programs share it parsed, and
+# their own files are not optimised. OPTIMISED programs compute in files of their own, or run what is
+# measured, which then shares no inline function with a file that is not.
+file(CONFIGURE OUTPUT program_prelude.cc CONTENT "")
+add_library(tact_program_base OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/program_prelude.cc)
+target_link_libraries(tact_program_base PRIVATE tact_flags CLI11::CLI11 nlohmann_json::nlohmann_json)
+target_precompile_headers(tact_program_base PRIVATE <CLI/CLI.hpp> <nlohmann/json.hpp>)
+target_compile_options(tact_program_base PRIVATE -O0)
+function(tact_program name)
+  cmake_parse_arguments(ARG "OPTIMISED" "" "SOURCES;LINKS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_LINKS} CLI11::CLI11 nlohmann_json::nlohmann_json)
+  if(NOT ARG_OPTIMISED)
+    target_precompile_headers(${name} REUSE_FROM tact_program_base)
+    target_compile_options(${name} PRIVATE -O0)
+  endif()
+endfunction()
+
+# tact_test(SOURCES a_test.cc... LINKS room... [PROGRAMS tactd...] [LABELS threads loop]
+#           [ALONE Suite...])
+# All tests of a room as one program, tests/model/law as model_law_test. PROGRAMS are run by it, so
+# they are built with it; tests/support/program.h runs no other. LABELS: what tools/check runs again
+# under the thread sanitizer (threads) or the real-time sanitizer (loop): ctest -L '[+]loop' finds
+# those, -L model_law the room. ALONE: suites that wait for a real clock and bear no neighbour.
+function(tact_test)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS;PROGRAMS;LABELS;ALONE" ${ARGN})
+  tact_room_name(room)
+  string(REGEX REPLACE "^tests_" "" room ${room})
+  set(test ${room}_test)
+  add_executable(${test} ${ARG_SOURCES} $<TARGET_OBJECTS:tact_test_base>)
+  target_link_libraries(${test} PRIVATE tact_flags ${ARG_LINKS} nlohmann_json::nlohmann_json GTest::gtest_main)
+  target_precompile_headers(${test} REUSE_FROM tact_test_base)
+  # The code under test is optimised; gtest's checks hold an if of their own.
+  target_compile_options(${test} PRIVATE -O0 -Wno-dangling-else)
+  list(JOIN ARG_PROGRAMS " " programs)
+  target_compile_definitions(${test} PRIVATE TACT_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+                             TACT_BINARY_DIR="${PROJECT_BINARY_DIR}"
+                             TACT_PROGRAMS="${programs}")
+  set_target_properties(${test} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests
+                        UNITY_BUILD ${TACT_UNITY})
+  if(ARG_PROGRAMS)
+    add_dependencies(${test} ${ARG_PROGRAMS})
+  endif()
+  foreach(label ${ARG_LABELS})
+    if(NOT TARGET tests_${label})
+      add_custom_target(tests_${label})
+    endif()
+    add_dependencies(tests_${label} ${test})
+  endforeach()
+  list(TRANSFORM ARG_ALONE APPEND ".*")
+  list(JOIN ARG_ALONE ":" alone)
+  list(TRANSFORM ARG_LABELS PREPEND "+")  # one word, as gtest_discover_tests takes no list
+  list(JOIN ARG_LABELS "" labels)
+  gtest_discover_tests(${test} DISCOVERY_TIMEOUT 60 TEST_FILTER "*-${alone}"
+    PROPERTIES LABELS "${room}${labels}")
+  if(alone)
+    gtest_discover_tests(${test} DISCOVERY_TIMEOUT 60 TEST_FILTER "${alone}"
+      PROPERTIES LABELS "${room}${labels}" RUN_SERIAL ON)
+  endif()
+endfunction()

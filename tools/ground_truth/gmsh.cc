@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ground_truth/gmsh.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <unordered_map>
+
+#include "tools/program/run_program.h"
+
+namespace tact::tools::ground_truth {
+namespace {
+
+using model::Error;
+using model::Result;
+using model::Vec3;
+using model::contact::TriangleCorners;
+using model::fem::edge_key;
+using model::fem::kTetEdge;
+using model::fem::TetMesh;
+
+constexpr double kTimeLimit_s = 1800.0;
+constexpr double kMm = 1e3;  // gmsh works in mm: its tolerances suit numbers near one
+constexpr int kTetrahedron = 4;
+
+bool write_surface(const std::string& path, std::span<const Vec3> vertex_m,
+                   std::span<const TriangleCorners> triangle) {
+  fmt::memory_buffer text;
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", vertex_m.size());
+  std::size_t number = 0;
+  for (const Vec3& p : vertex_m)
+    fmt::format_to(out, "{} {} {} {}\n", ++number, p.x * kMm, p.y * kMm, p.z * kMm);
+  fmt::format_to(out, "$EndNodes\n$Elements\n{}\n", triangle.size());
+  number = 0;
+  for (const TriangleCorners& t : triangle)
+    fmt::format_to(out, "{} 2 2 1 1 {} {} {}\n", ++number, t[0] + 1, t[1] + 1, t[2] + 1);
+  fmt::format_to(out, "$EndElements\n");
+  std::ofstream file(path, std::ios::binary);
+  file.write(text.data(), static_cast<std::streamsize>(text.size()));
+  file.close();
+  return bool(file);
+}
+
+/// Square of the distance from a point, mm^2.
+std::string square_text(const Vec3& at_mm) {
+  return fmt::format("((x - ({}))^2 + (y - ({}))^2 + (z - ({}))^2)", at_mm.x, at_mm.y, at_mm.z);
+}
+
+/// Distance from balls or circle, mm, as gmsh's MathEval reads it.
+std::string distance_text(const EdgeLengths& h) {
+  const Vec3 o = h.at_m * kMm;
+  const double radius_mm = h.radius_m * kMm;
+  std::string from_centre_2 = square_text(o);
+  if (h.axis == Vec3{}) {
+    for (const Vec3& more_m : h.more_at_m)
+      from_centre_2 = fmt::format("Min({}, {})", from_centre_2, square_text(more_m * kMm));
+    return fmt::format("Max(0, Sqrt({}) - {})", from_centre_2, radius_mm);
+  }
+  const std::string height =
+      fmt::format("(({}) * (x - ({})) + ({}) * (y - ({})) + ({}) * (z - ({})))", h.axis.x, o.x,
+                  h.axis.y, o.y, h.axis.z, o.z);
+  return fmt::format("Sqrt((Sqrt(Max(0, {} - {}^2)) - {})^2 + {}^2)", from_centre_2, height,
+                     radius_mm, height);
+}
+
+bool write_script(const std::string& path, const EdgeLengths& h) {
+  std::ofstream file(path);
+  const double largest_mm = h.largest_m > 0.0 ? h.largest_m * kMm : 1e9;
+  file << fmt::format(
+      "Merge \"surface.msh\";\n"
+      "Surface Loop(1) = {{1}};\nVolume(1) = {{1}};\n"
+      "Field[1] = MathEval;\n"
+      "Field[1].F = \"Min({}, {} + {} * {})\";\n"
+      "Background Field = 1;\n"
+      "Mesh.CharacteristicLengthExtendFromBoundary = 0;\n"
+      "Mesh.CharacteristicLengthFromPoints = 0;\n"
+      "Mesh.Algorithm3D = 1;\nMesh.Optimize = 1;\n"
+      "Mesh.MshFileVersion = 2.2;\nMesh.Binary = 0;\nMesh.SaveAll = 1;\n",
+      largest_mm, h.fine_m * kMm, h.growth, distance_text(h));
+  file.close();
+  return bool(file);
+}
+
+/// Whitespace-separated numbers of a file that another program wrote.
+class Numbers {
+ public:
+  explicit Numbers(const std::string& text) : at_(text.data()), end_(text.data() + text.size()) {}
+  bool find(std::string_view word) {
+    const std::string_view rest{at_, static_cast<std::size_t>(end_ - at_)};
+    const auto found = rest.find(word);
+    if (found == std::string_view::npos) return false;
+    at_ += found + word.size();
+    return true;
+  }
+  template <typename T>
+  bool next(T& number) {
+    while (at_ != end_ && (*at_ == ' ' || *at_ == '\n' || *at_ == '\r')) ++at_;
+    const auto [rest, error] = std::from_chars(at_, end_, number);
+    at_ = rest;
+    return error == std::errc{};
+  }
+
+ private:
+  const char* at_;
+  const char* end_;
+};
+
+/// Corners only; false where the file is not what was asked for.
+bool read_body(const std::string& text, std::span<const Vec3> vertex_m, TetMesh& body) {
+  Numbers numbers(text);
+  std::size_t nodes = 0, elements = 0;
+  if (!numbers.find("$Nodes") || !numbers.next(nodes) || nodes < vertex_m.size()) return false;
+  std::unordered_map<std::size_t, std::uint32_t> index;  // gmsh's numbers may have gaps
+  for (std::size_t i = 0; i < nodes; ++i) {
+    std::size_t number = 0;
+    Vec3 p;
+    if (!numbers.next(number) || !numbers.next(p.x) || !numbers.next(p.y) || !numbers.next(p.z))
+      return false;
+    index[number] = static_cast<std::uint32_t>(i);
+    body.node_m.push_back(p / kMm);
+    if (i >= vertex_m.size()) continue;
+    if (number != i + 1 || norm(body.node_m[i] - vertex_m[i]) > 1e-9) return false;
+    body.node_m[i] = vertex_m[i];
+  }
+  if (!numbers.find("$Elements") || !numbers.next(elements)) return false;
+  for (std::size_t i = 0; i < elements; ++i) {
+    std::size_t number = 0, tags = 0, skipped = 0;
+    int type = 0;
+    if (!numbers.next(number) || !numbers.next(type) || !numbers.next(tags)) return false;
+    for (std::size_t k = 0; k < tags; ++k)
+      if (!numbers.next(skipped)) return false;
+    constexpr std::size_t kCorners[] = {0, 2, 3, 4, 4};
+    const std::size_t corners = type <= kTetrahedron ? kCorners[type] : 1;  // 15: a point
+    model::fem::TetNodes nodes_of{};
+    for (std::size_t k = 0; k < corners; ++k) {
+      if (!numbers.next(skipped) || index.count(skipped) == 0) return false;
+      nodes_of[k] = index[skipped];
+    }
+    if (type == kTetrahedron) body.element.push_back(nodes_of);
+  }
+  return !body.element.empty();
+}
+
+/// Middles of all edges, each once, in the order of TetNodes.
+void add_middles(TetMesh& body) {
+  std::unordered_map<std::uint64_t, std::uint32_t> middle;
+  for (auto& e : body.element) {
+    const Vec3 o = body.node_m[e[0]];
+    const Vec3 a = body.node_m[e[1]] - o, b = body.node_m[e[2]] - o, c = body.node_m[e[3]] - o;
+    if (dot(a, cross(b, c)) < 0.0) std::swap(e[1], e[2]);
+    for (std::size_t k = 0; k < kTetEdge.size(); ++k) {
+      const std::uint32_t p = e[kTetEdge[k][0]], q = e[kTetEdge[k][1]];
+      const auto [at, is_new] = middle.try_emplace(edge_key(p, q), body.node_m.size());
+      if (is_new) body.node_m.push_back(0.5 * (body.node_m[p] + body.node_m[q]));
+      e[4 + k] = at->second;
+    }
+  }
+}
+
+}  // namespace
+
+double EdgeLengths::at(const Vec3& p_m) const {
+  const Vec3 r = p_m - at_m;
+  double centre_m = norm(r);
+  for (const Vec3& more_m : more_at_m) centre_m = std::min(centre_m, norm(p_m - more_m));
+  double away_m = std::max(0.0, centre_m - radius_m);  // from the nearest ball
+  if (axis != Vec3{}) {                                // from the circle
+    const double height_m = dot(r, axis);
+    away_m = std::hypot(norm(r - height_m * axis) - radius_m, height_m);
+  }
+  // h = min(largest, fine + growth distance)
+  const double h_m = fine_m + growth * away_m;
+  return largest_m > 0.0 ? std::min(largest_m, h_m) : h_m;
+}
+
+Result<TetMesh> fill_with_gmsh(std::span<const Vec3> vertex_m,
+                               std::span<const TriangleCorners> triangle,
+                               const EdgeLengths& lengths) {
+  auto folder = program::ScratchFolder::make("tact-gmsh");
+  if (!folder) return folder.error();
+  if (!write_surface(folder->file("surface.msh"), vertex_m, triangle) ||
+      !write_script(folder->file("fill.geo"), lengths)) {
+    return Error{fmt::format("{} cannot be written; the disk may be full", folder->path())};
+  }
+  const auto said = program::run_program(
+      {.program = "gmsh",
+       .arguments = {"fill.geo", "-3", "-nt", "1", "-format", "msh2", "-o", "body.msh"},
+       .directory = folder->path(),
+       .log_path = folder->file("gmsh.log"),
+       .package = "gmsh",
+       .time_limit_s = kTimeLimit_s,
+       .any_status = false,
+       .environment = {}});
+  if (!said) {
+    if (!program::was_interrupted(said.error())) folder->keep();
+    return said.error();
+  }
+  std::ifstream file(folder->file("body.msh"), std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  TetMesh body;
+  if (!read_body(text, vertex_m, body)) {
+    Error error{fmt::format(
+        "gmsh could not fill the surface; see {}/gmsh.log, and ask tact-mesh whether the surface "
+        "is closed and does not cross itself",
+        folder->path())};
+    folder->keep();
+    return error;
+  }
+  add_middles(body);
+  return body;
+}
+
+Result<std::string> gmsh_version() {
+  auto folder = program::ScratchFolder::make("tact-gmsh");
+  if (!folder) return folder.error();
+  auto said = program::run_program({.program = "gmsh",
+                                    .arguments = {"--version"},
+                                    .directory = folder->path(),
+                                    .log_path = folder->file("gmsh.log"),
+                                    .package = "gmsh",
+                                    .time_limit_s = 60.0,
+                                    .any_status = false,
+                                    .environment = {}});
+  if (said)
+    while (!said->empty() && said->back() <= ' ') said->pop_back();
+  return said;
+}
+
+}  // namespace tact::tools::ground_truth

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ground_truth/reference_data.h"
+
+#include "tools/ground_truth/reference_json.h"
+
+namespace tact::tools::ground_truth {
+namespace {
+
+using model::Error;
+using model::Result;
+using nlohmann::json;
+
+constexpr const char* kSchema = "tact-reference/1";
+
+ReferenceCase case_of(const json& j) {
+  return {.depth_m = j.at("depth_m").get<double>(),
+          .large_strain = j.at("large_strain").get<bool>(),
+          .force_N = j.at("force_N").get<double>(),
+          .contact_radius_m = j.at("contact_radius_m").get<double>(),
+          .force_error_ratio = error_of(j.at("force_error_ratio")),
+          .profile_m = j.at("profile_m").get<std::vector<double>>()};
+}
+
+SolvedSite site_of(const json& j) {
+  SolvedSite site{.vertex = j.at("vertex").get<std::uint32_t>(),
+                  .point_m = vector_of(j.at("point_m")),
+                  .direction = vector_of(j.at("direction")),
+                  .cases = {}};
+  for (const json& c : j.at("cases")) site.cases.push_back(case_of(c));
+  return site;
+}
+
+ReferenceData data_of(const json& j) {
+  ReferenceData data{.mesh = j.at("mesh").get<std::string>(),
+                     .mesh_hash = j.at("mesh_hash").get<std::string>(),
+                     .solver = j.at("solver").get<std::string>(),
+                     .youngs_modulus_Pa = j.at("youngs_modulus_Pa").get<double>(),
+                     .poisson_ratio = j.at("poisson_ratio").get<double>(),
+                     .fixed_min_m = vector_of(j.at("fixed_min_m")),
+                     .fixed_max_m = vector_of(j.at("fixed_max_m")),
+                     .tool_radius_m = j.at("tool_radius_m").get<double>(),
+                     .ring_pitch_m = j.at("ring_pitch_m").get<double>(),
+                     .sites = {}};
+  for (const json& s : j.at("sites")) data.sites.push_back(site_of(s));
+  return data;
+}
+
+/// What a reader may rely on. Error: what is not so.
+std::optional<Error> check(const ReferenceData& data) {
+  if (data.sites.empty()) return Error{"no site"};
+  if (!(data.tool_radius_m > 0.0) || !(data.ring_pitch_m > 0.0) || !(data.youngs_modulus_Pa > 0.0))
+    return Error{"tool_radius_m, ring_pitch_m and youngs_modulus_Pa must be above 0"};
+  for (const SolvedSite& site : data.sites) {
+    if (std::abs(norm(site.direction) - 1.0) > 1e-4)
+      return Error{fmt::format("site {}: direction is no unit vector", site.vertex)};
+    for (const ReferenceCase& c : site.cases) {
+      if (c.depth_m == 0.0 || c.force_N * c.depth_m < 0.0)
+        return Error{
+            fmt::format("site {}: depth_m is 0 or force_N has the other sign", site.vertex)};
+      if (c.profile_m.empty()) return Error{fmt::format("site {}: empty profile_m", site.vertex)};
+    }
+  }
+  return std::nullopt;
+}
+
+std::string text_of(const ReferenceCase& c) {
+  std::string profile;
+  for (const double u_m : c.profile_m)
+    profile += fmt::format("{}{:.4g}", profile.empty() ? "" : ", ", u_m);
+  return fmt::format(
+      "{{\"depth_m\": {:.6g}, \"large_strain\": {}, \"force_N\": {:.6g}, "
+      "\"contact_radius_m\": {:.6g}, \"force_error_ratio\": {},\n   \"profile_m\": [{}]}}",
+      c.depth_m, c.large_strain, c.force_N, c.contact_radius_m, error_text(c.force_error_ratio),
+      profile);
+}
+
+std::string text_of(const SolvedSite& site) {
+  std::string cases;
+  for (const ReferenceCase& c : site.cases)
+    cases += (cases.empty() ? "\n  " : ",\n  ") + text_of(c);
+  return fmt::format("{{\"vertex\": {}, \"point_m\": {}, \"direction\": {}, \"cases\": [{}]}}",
+                     site.vertex, vector_text(site.point_m), vector_text(site.direction), cases);
+}
+
+}  // namespace
+
+Result<ReferenceData> read_reference(const std::string& path) {
+  return read_json(path, kSchema, "tact-reference SCENE --out FILE", data_of, check);
+}
+
+std::string reference_text(const ReferenceData& data) {
+  std::string sites;
+  for (const SolvedSite& s : data.sites) sites += (sites.empty() ? "\n " : ",\n ") + text_of(s);
+  return fmt::format(
+      "{{\"schema\": \"{}\",\n\"mesh\": {}, \"mesh_hash\": {}, \"solver\": {},\n"
+      "\"youngs_modulus_Pa\": {:.7g}, \"poisson_ratio\": {:.7g},\n"
+      "\"fixed_min_m\": {}, \"fixed_max_m\": {},\n"
+      "\"tool_radius_m\": {:.7g}, \"ring_pitch_m\": {:.7g},\n\"sites\": [{}]}}\n",
+      kSchema, json(data.mesh).dump(), json(data.mesh_hash).dump(), json(data.solver).dump(),
+      data.youngs_modulus_Pa, data.poisson_ratio, vector_text(data.fixed_min_m),
+      vector_text(data.fixed_max_m), data.tool_radius_m, data.ring_pitch_m, sites);
+}
+
+}  // namespace tact::tools::ground_truth

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ground_truth/tool_reference.h"
+
+#include <fmt/ranges.h>
+
+#include "tools/ground_truth/reference_json.h"
+
+namespace tact::tools::ground_truth {
+namespace {
+
+using model::Error;
+using model::Quat;
+using model::Result;
+using model::Vec3;
+using nlohmann::json;
+
+constexpr const char* kToolSchema = "tact-tool-reference/1";
+
+ToolCase tool_case_of(const json& j) {
+  return {.depth_m = j.at("depth_m").get<double>(),
+          .force_N = j.at("force_N").get<double>(),
+          .sphere_N = j.at("sphere_N").get<std::vector<double>>(),
+          .force_error_ratio = error_of(j.at("force_error_ratio"))};
+}
+
+ToolPlace place_of(const json& j) {
+  const json &v = j.at("vertex"), &q = j.at("orientation_wxyz");
+  ToolPlace place{.vertex = {},
+                  .point_m = vector_of(j.at("point_m")),
+                  .direction = vector_of(j.at("direction")),
+                  .orientation = {q.at(0).get<double>(), q.at(1).get<double>(),
+                                  q.at(2).get<double>(), q.at(3).get<double>()},
+                  .cases = {}};
+  if (!v.is_null()) place.vertex = v.get<std::uint32_t>();
+  for (const json& c : j.at("cases")) place.cases.push_back(tool_case_of(c));
+  return place;
+}
+
+ToolReference tool_data_of(const json& j) {
+  ToolReference data{.mesh = j.at("mesh").get<std::string>(),
+                     .mesh_hash = j.at("mesh_hash").get<std::string>(),
+                     .solver = j.at("solver").get<std::string>(),
+                     .youngs_modulus_Pa = j.at("youngs_modulus_Pa").get<double>(),
+                     .poisson_ratio = j.at("poisson_ratio").get<double>(),
+                     .fixed_min_m = vector_of(j.at("fixed_min_m")),
+                     .fixed_max_m = vector_of(j.at("fixed_max_m")),
+                     .sphere = {},
+                     .places = {}};
+  for (const json& s : j.at("spheres"))
+    data.sphere.push_back(
+        {.offset_m = vector_of(s.at("offset_m")), .radius_m = s.at("radius_m").get<double>()});
+  for (const json& p : j.at("places")) data.places.push_back(place_of(p));
+  return data;
+}
+
+/// What a reader may rely on. Error: what is not so.
+std::optional<Error> check_tool(const ToolReference& data) {
+  if (data.places.empty() || data.sphere.empty()) return Error{"no place, or no sphere"};
+  if (data.sphere.size() > model::contact::kMaxSpheres)
+    return Error{fmt::format("more than {} spheres", model::contact::kMaxSpheres)};
+  const auto& depths = data.places.front().cases;
+  if (depths.empty()) return Error{"no case"};
+  for (const ToolPlace& place : data.places) {
+    const Quat& q = place.orientation;
+    const double turn = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+    if (std::abs(norm(place.direction) - 1.0) > 1e-4 || std::abs(turn - 1.0) > 1e-4)
+      return Error{"a direction or an orientation is no unit vector"};
+    if (place.cases.size() != depths.size()) return Error{"places differ in their depths"};
+    for (std::size_t i = 0; i < depths.size(); ++i) {
+      const ToolCase& c = place.cases[i];
+      if (c.depth_m != depths[i].depth_m) return Error{"places differ in their depths"};
+      if (!(c.depth_m > 0.0) || !(c.force_N > 0.0) || (i > 0 && c.depth_m <= depths[i - 1].depth_m))
+        return Error{"depth_m and force_N must be above 0, depths rising"};
+      if (c.sphere_N.size() != data.sphere.size()) return Error{"sphere_N: one for each sphere"};
+    }
+  }
+  return std::nullopt;
+}
+
+std::string text_of(const ToolCase& c) {
+  return fmt::format(
+      "{{\"depth_m\": {:.6g}, \"force_N\": {:.6g}, \"sphere_N\": [{:.6g}], "
+      "\"force_error_ratio\": {}}}",
+      c.depth_m, c.force_N, fmt::join(c.sphere_N, ", "), error_text(c.force_error_ratio));
+}
+
+std::string text_of(const ToolPlace& place) {
+  const Quat& q = place.orientation;
+  std::string cases;
+  for (const ToolCase& c : place.cases) cases += (cases.empty() ? "\n  " : ",\n  ") + text_of(c);
+  return fmt::format(
+      "{{\"vertex\": {}, \"point_m\": {}, \"direction\": {},\n"
+      "  \"orientation_wxyz\": [{:.9g}, {:.9g}, {:.9g}, {:.9g}], \"cases\": [{}]}}",
+      place.vertex ? std::to_string(*place.vertex) : "null", vector_text(place.point_m),
+      vector_text(place.direction), q.w, q.x, q.y, q.z, cases);
+}
+
+}  // namespace
+
+Quat turn_between(const Vec3& from, const Vec3& to) {
+  const double along = dot(from, to);
+  if (along < -1.0 + 1e-9) {  // half a turn, about any axis across
+    const Vec3 aside = std::abs(from.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    const Vec3 axis = normalized(cross(from, aside));
+    return {0.0, axis.x, axis.y, axis.z};
+  }
+  // q = (1 + a . b, a x b), normalised: half of the angle between
+  const Vec3 axis = cross(from, to);
+  const double size = std::sqrt(2.0 * (1.0 + along));
+  return {0.5 * size, axis.x / size, axis.y / size, axis.z / size};
+}
+
+Result<ToolReference> read_tool_reference(const std::string& path) {
+  return read_json(path, kToolSchema, "tact-reference SCENE --tool --out FILE", tool_data_of,
+                   check_tool);
+}
+
+std::string tool_reference_text(const ToolReference& data) {
+  std::string spheres, places;
+  for (const auto& s : data.sphere)
+    spheres += fmt::format("{}{{\"offset_m\": {}, \"radius_m\": {:.7g}}}",
+                           spheres.empty() ? "" : ", ", vector_text(s.offset_m), s.radius_m);
+  for (const ToolPlace& p : data.places) places += (places.empty() ? "\n " : ",\n ") + text_of(p);
+  return fmt::format(
+      "{{\"schema\": \"{}\",\n\"mesh\": {}, \"mesh_hash\": {}, \"solver\": {},\n"
+      "\"youngs_modulus_Pa\": {:.7g}, \"poisson_ratio\": {:.7g},\n"
+      "\"fixed_min_m\": {}, \"fixed_max_m\": {},\n\"spheres\": [{}],\n\"places\": [{}]}}\n",
+      kToolSchema, json(data.mesh).dump(), json(data.mesh_hash).dump(), json(data.solver).dump(),
+      data.youngs_modulus_Pa, data.poisson_ratio, vector_text(data.fixed_min_m),
+      vector_text(data.fixed_max_m), spheres, places);
+}
+
+}  // namespace tact::tools::ground_truth

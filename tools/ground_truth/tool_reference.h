@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// tool_reference.h - what an elastic organ does under the whole tool, solved by tact-reference
+// --tool.
+//
+// All spheres of the tool are one rigid body without friction; the organ is linear elastic. Where:
+// the point that the simulated hand touches, and some that no fit has used. The tool comes to each
+// as the hand brings it to its own: turned from its rest by `orientation`, the shortest turn from
+// the hand's way in to `direction`. At depth d its lowest point, seen along `direction`, lies d
+// beyond `point_m`: depths are those of a press stroke.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/contact/contact.h"
+#include "model/result.h"
+#include "model/types.h"
+
+namespace tact::tools::ground_truth {
+
+struct ToolCase {
+  double depth_m = 0.0;
+  double force_N = 0.0;            // on the tool against the direction
+  std::vector<double> sphere_N;    // of each sphere
+  double force_error_ratio = 0.0;  // of the mesh: what refinement would change; NaN: not known
+};
+
+struct ToolPlace {
+  std::optional<std::uint32_t> vertex;  // of the organ's mesh; none: the hand's own site
+  model::Vec3 point_m{};                // of the tool's lowest point at depth 0, mesh's own frame
+  model::Vec3 direction{};              // into the tissue, unit
+  model::Quat orientation{};
+  std::vector<ToolCase> cases;  // by depth, the same at every place
+};
+
+struct ToolReference {
+  std::string mesh;       // file name
+  std::string mesh_hash;  // of vertices and triangles, 16 hex digits
+  std::string solver;
+  double youngs_modulus_Pa = 0.0;
+  double poisson_ratio = 0.0;
+  model::Vec3 fixed_min_m{}, fixed_max_m{};  // triangles with all corners in this box are held
+  std::vector<model::contact::ProbeSphere> sphere;  // tool frame
+  std::vector<ToolPlace> places;
+};
+
+/// The shortest turn that brings one unit vector to another.
+model::Quat turn_between(const model::Vec3& from, const model::Vec3& to);
+
+/// An error names the file and the key.
+model::Result<ToolReference> read_tool_reference(const std::string& path);
+/// JSON, one case a line, numbers to six digits.
+std::string tool_reference_text(const ToolReference& data);
+
+}  // namespace tact::tools::ground_truth

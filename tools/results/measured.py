@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What tools/numbers --measure NAME runs: one function a file of results, from a build in build/.
+
+Each gives the command, as a person would type it, and the values that READMEs quote.
+"""
+import json
+import pathlib
+import subprocess
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+LIVER = "model/scenes/liver.toml"
+LIVER_REFERENCE = "tests/data/reference/liver.json"
+LIVER_TOOL = "tests/data/reference/liver_tool.json"
+
+
+def told_by(*command, status=(0,)):
+    """What a command prints, run from the root of the tree."""
+    done = subprocess.run([str(word) for word in command], cwd=ROOT, capture_output=True, text=True)
+    if done.returncode not in status:
+        raise SystemExit(f"{command[0]}: exit status {done.returncode}\n{done.stderr[-2000:]}")
+    return done.stdout
+
+
+def json_in_file(*command, option, name="", status=(0,)):
+    """What a command writes into a file (or the file `name` of a folder) that `option` names."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / name if name else pathlib.Path(folder) / "out.json"
+        told_by(*command, option, folder if name else path, status=status)
+        return json.loads(path.read_text())
+
+
+def bench():
+    """A goal that this machine misses is a result too (status 1)."""
+    rows = json_in_file("tools/bench", option="--json", status=(0, 1))
+    values = {row["what"].strip(): row["value"] for row in rows}
+    return "tools/bench", {
+        "tick": {"median_us": values["tick, median"], "p999_us": values["tick, p99.9"],
+                 "heap_calls": values["heap calls in the loop"],
+                 "page_faults": values["page faults in the loop"],
+                 "table_kB": values["law table"], "resident_MB": values["resident memory, peak"],
+                 "fine_mesh_ratio": values["tick at 300 000 vertices over 3 116"]},
+        "pose_us": values["pose of eight markers, median"],
+        "pose_off_mm": values["off at 2 m with 0.5 px, shown, median"],
+        "two_cameras_us": values["of two cameras, median"],
+        "two_cameras_p95_mm": values["raw, p95"],
+        "arm_us": values["pose of the arm, median"],
+        "page_frames_per_s": float(values["page, headless Chromium, software"]),
+    }
+
+
+def limits():
+    command = ["build/tact-limits", LIVER, "--no-pictures", "--json"]
+    told = json.loads(told_by(*command, "--out", tempfile.mkdtemp(), status=(0, 1)))
+    wall = told["wall"]
+    return " ".join(command), {
+        "passed": sum(case["passed"] for case in [*told["cases"], wall]),
+        "cases": told["cases_of_plan"],
+        "wall": {"without_kN_per_m": wall["bounded_without_N_per_m"] / 1e3,
+                 "with_kN_per_m": wall["bounded_with_N_per_m"] / 1e3, "ratio": wall["bounded_ratio"],
+                 "rest_kN_per_m": wall["rest_with_N_per_m"] / 1e3, "rest_ratio": wall["rest_ratio"],
+                 "swing_without_mm": wall["largest_swing_without_m"] * 1e3,
+                 "swing_with_mm": wall["largest_swing_with_m"] * 1e3}}
+
+
+def verify():
+    command = ["build/tact-verify", "tests/data/vectors", "--json"]
+    told = json.loads(told_by(*command, status=(0, 1)))
+    return " ".join(command), {"passed": told["passed"], "cases": told["passed"] + told["failed"]}
+
+
+def size():
+    return "tools/tick_size", json_in_file("tools/tick_size", option="--json")
+
+
+# As liver.toml has them.
+LAW_SIZES = {"compliance": "17 curves", "hex_sheet": "15 rings", "disc_stack": "linear 20 layers",
+             "rhombus": "65 knots", "spring_patch": "500 nodes"}
+
+
+def chart():
+    """RMS error of one sphere over all places of the reference."""
+    command = ["build/tact-chart", LIVER, "--reference", LIVER_REFERENCE, "--no-peers"]
+    values = {}
+    for row in json_in_file(*command, option="--out", name="chart.json")["rows"]:
+        if row["size"] == LAW_SIZES.get(row["family"]):
+            values[row["family"]] = {
+                "error_percent": 100 * row["force_rms_ratio"],
+                "held_out_percent": 100 * row["held_out_rms_ratio"],
+                "median_us": row["tick_median_us"]}
+    return " ".join(command) + " --out DIR", values
+
+
+def tool():
+    """The whole tool, as the scene says."""
+    command = ["build/tact-chart", LIVER, "--tool-reference", LIVER_TOOL]
+    values = {}
+    for row in json_in_file(*command, option="--out", name="tool.json")["laws"]:
+        if row["law"] in LAW_SIZES and "failure" not in row:
+            values[row["law"]] = {
+                "rms_percent": 100 * row["force_rms_ratio"],
+                "unseen_percent": 100 * row["unseen_rms_ratio"],
+                "own_percent_at_mm": {mm: 100 * own for mm, own in row["own_worst_ratio_at_mm"].items()},
+                "place_rms_percent": {at: 100 * own for at, own in row["place_rms_ratio"].items()},
+                "median_us": row["tick_median_us"]}
+    return " ".join(command) + " --out DIR", values
+
+
+def stability():
+    told = json.loads(told_by("build/tact-stability", "--out", tempfile.mkdtemp(), "--json", status=(0, 1)))
+    return "build/tact-stability --out DIR --json", told
+
+
+MEASURED = {f.__name__: f for f in (bench, limits, verify, size, chart, tool, stability)}

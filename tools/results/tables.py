@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tables of READMEs that are written from results: between the comments `numbers: NAME` and `end`.
+
+Each function takes load(name), the values of tools/results/NAME.json, and gives the lines. A goal
+that was not met says so.
+"""
+
+
+def judged(value, goal, text):
+    return text if value <= goal else f"{text}: **missed**"
+
+
+def measured(load):
+    """The five numbers of the front page."""
+    bench, limits, verify, size = (load(name) for name in ("bench", "limits", "verify", "size"))
+    tick = bench["tick"]
+    rows = [
+        ("tick of the liver on a stock kernel, median",
+         judged(tick["median_us"], 3, f"{tick['median_us']:.1f} us"), "3 us", "tools/bench"),
+        ("the same, p99.9", judged(tick["p999_us"], 20, f"{tick['p999_us']:.0f} us"), "20 us", "tools/bench"),
+        ("heap calls and page faults in the loop",
+         judged(tick["heap_calls"] + tick["page_faults"], 0, f"{tick['heap_calls']} and {tick['page_faults']}"),
+         "0", "tools/bench"),
+        ("cases of misuse and fault in which the force kept every limit",
+         judged(limits["cases"], limits["passed"], f"{limits['passed']} of {limits['cases']}"), "all",
+         "build/tact-limits"),
+        ("published cases of laws, kinematics, protocols, tracking",
+         judged(verify["cases"], verify["passed"], f"{verify['passed']} of {verify['cases']}"), "all",
+         "build/tact-verify"),
+        ("lines of code that a tick can reach: simulated delta; ODrives; Falcon",
+         judged(max(size[device]["lines"] for device in size), 2500,
+                "; ".join(str(size[device]["lines"]) for device in ("sim", "odrive", "falcon"))),
+         "2500 each", "tools/tick_size"),
+    ]
+    yield from ("| what | measured | goal | command |", "|---|---|---|---|")
+    for what, value, goal, command in rows:
+        yield f"| {what} | {value} | {goal} | `{command}` |"
+
+
+SCENES = {"compliance": "`liver.toml` with `--set 'law=\"compliance\"'`", "hex_sheet": "`skin.toml`, `maintenance.toml`",
+          "disc_stack": "`heart.toml`", "rhombus": "`liver.toml`", "spring_patch": "`gum.toml`"}
+RMS_GOAL_PERCENT, OWN_GOAL_PERCENT = {"compliance": 3.0}, {"compliance": 7.0}  # of others 5 and 10
+
+
+def goals_of(law):
+    return RMS_GOAL_PERCENT.get(law, 5.0), OWN_GOAL_PERCENT.get(law, 10.0)
+
+
+def laws(load):
+    """Each law in the liver: the whole tool, one sphere, and what a tick costs."""
+    yield from ("| law | scenes | whole tool, RMS of the peak | own force at the worst place, 1 to 10 mm | one sphere, RMS "
+                "| tick: touch, feel, judge |", "|---|---|---|---|---|---|")
+    chart, tools = load("chart"), load("tool")
+    for law, scenes in SCENES.items():
+        rms, own = goals_of(law)
+        value = tools[law]
+        worst = max(value["own_percent_at_mm"].values(), key=abs)
+        yield (f"| `{law}` | {scenes} | {judged(value['rms_percent'], rms, '%.3g %%' % value['rms_percent'])} | "
+               f"{judged(abs(worst), own, f'{worst:+.3g} %')} | {chart[law]['error_percent']:.3g} % | "
+               f"{value['median_us']:.2g} us |")
+
+
+def tool(load):
+    """Each law with the whole tool: the error of the peak, and of the own force at the worst place."""
+    values = load("tool")
+    depths = next(iter(values.values()))["own_percent_at_mm"]
+    head = ["law", "RMS, of the peak", *(f"own force, {mm} mm" for mm in depths), "worst place", "touch, feel, judge"]
+    yield f"| {' | '.join(head)} |"
+    yield "|" + "---|" * len(head)
+    for law, value in values.items():
+        rms, own = goals_of(law)
+        place, worst = max(value["place_rms_percent"].items(), key=lambda at: at[1])
+        cells = [f"`{law}`", judged(value["rms_percent"], rms, f"{value['rms_percent']:.3g} %"),
+                 *(judged(abs(off), own, f"{off:+.3g} %") for off in value["own_percent_at_mm"].values()),
+                 f"{place}: {worst:.3g} %", f"{value['median_us']:.2g} us"]
+        yield f"| {' | '.join(cells)} |"
+
+
+TABLES = {f.__name__: f for f in (measured, laws, tool)}

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// tact-figure: what the figure of the operator costs on a scene's own motion, and what starting
+// CCD at the shoulder saves.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tools/program/program.h"
+#include "tools/tracking_bench/figure_work.h"
+
+namespace {
+
+using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
+using namespace tact::tools::tracking_bench;  // NOLINT(google-build-using-namespace)
+using nlohmann::json;
+using tact::host::tracking::RootRule;
+
+constexpr double kGoalRatio = 2.0;
+
+json to_json(const FigureWork& work) {
+  return {{"frames", work.frames},
+          {"joint_updates", work.updates},
+          {"sweeps", work.sweeps},
+          {"full_chain_frames", work.full_chain},
+          {"unreached_frames", work.unreached},
+          {"rms_error_m", work.rms_error_m},
+          {"worst_error_m", work.worst_error_m},
+          {"median_us", work.median_us},
+          {"p99_us", work.p99_us}};
+}
+
+void print_row(const char* name, const FigureWork& work) {
+  fmt::print("{:<16} {:>7} {:>7} {:>11} {:>10} {:>8.3f} {:>9.3f} {:>7.1f} {:>7.1f}\n", name,
+             work.updates, work.sweeps, work.full_chain, work.unreached, 1e3 * work.rms_error_m,
+             1e3 * work.worst_error_m, work.median_us, work.p99_us);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  program::Program program(
+      "tact-figure",
+      "Play a scene's hand and its recorded tracker to the figure of the operator, and "
+      "count the joints that CCD turns: shoulder first, and always the whole chain.",
+      "Errors of the finger tips in mm, times of a frame of the figure in us. The check fails "
+      "where the fingers do not hold the tool, or the shoulder first does not save half.");
+  program::SceneArguments arguments;
+  std::string tracking;
+  double seconds = 30.0, frames_Hz = 60.0;
+  bool as_json = false;
+  CLI::App& app = program.options();
+  arguments.add_to(app, "[hand] and a simulated device");
+  app.add_option("--tracking", tracking,
+                 "tracking description with a recording; default: SCENE.tracking.toml");
+  app.add_option("--seconds", seconds, "length of the motion, s")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+  app.add_option("--frames", frames_Hz, "frames a second")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  app.add_flag("--json", as_json, "print one JSON object");
+  if (const auto status = program.parse(argc, argv)) return *status;
+  const auto scene = arguments.load();
+  if (!scene) return program.fail(scene.error());
+  if (tracking.empty())
+    tracking = arguments.path.substr(0, arguments.path.rfind(".toml")) + ".tracking.toml";
+  const auto input = load_figure_input(tracking);
+  if (!input) return program.fail(input.error());
+  const auto motion = figure_motion(*scene, *input, seconds, frames_Hz);
+  if (!motion) return program.fail(motion.error());
+  const Eigen::Vector3d grip_m =
+      tact::host::tracking::grip_m(tact::model::mesh::summarize(scene->tool_mesh).high_m.z);
+  const FigureWork first = measure_figure(*motion, grip_m, RootRule::kSubRootFirst);
+  const FigureWork whole = measure_figure(*motion, grip_m, RootRule::kAlwaysFullChain);
+  const double ratio =
+      static_cast<double>(whole.updates) / static_cast<double>(std::max(first.updates, 1L));
+  const bool good = ratio >= kGoalRatio && first.unreached == 0 && whole.unreached == 0;
+  if (as_json) {
+    fmt::print("{}\n", json{{"scene", scene->name},
+                            {"seconds", seconds},
+                            {"shoulder_first", to_json(first)},
+                            {"full_chain", to_json(whole)},
+                            {"updates_ratio", ratio},
+                            {"updates_ratio_goal", kGoalRatio},
+                            {"good", good}}
+                           .dump());
+  } else {
+    fmt::print("{} of {:g} s, {} frames\n", scene->name, seconds, first.frames);
+    fmt::print("{:<16} {:>7} {:>7} {:>11} {:>10} {:>8} {:>9} {:>7} {:>7}\n", "CCD", "updates",
+               "sweeps", "whole chain", "unreached", "rms mm", "worst mm", "us", "99 %");
+    print_row("shoulder first", first);
+    print_row("whole chain", whole);
+    fmt::print("joint updates, whole chain over shoulder first: {:.2f} (goal {:g})\n", ratio,
+               kGoalRatio);
+  }
+  return good ? 0 : 1;
+}

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+// The published CAN frames: SocketCAN's error frames and bits on the bus, ODrive's messages; the
+// frames of CiA 402 are in can_cia402.cc.
+#include "tools/verify/can.h"
+
+#include <fmt/core.h>
+
+#include <stdexcept>
+
+#include "hal/can/can_error.h"
+#include "hal/odrive/odrive_protocol.h"
+
+namespace tact::tools::verify {
+
+using hal::can::CanFrame;
+using nlohmann::json;
+
+std::string to_hex(std::span<const std::uint8_t> bytes) {
+  std::string digits;
+  for (const std::uint8_t byte : bytes) digits += fmt::format("{:02x}", byte);
+  return digits;
+}
+
+std::vector<std::uint8_t> from_hex(const std::string& digits) {
+  if (digits.size() % 2 != 0 || digits.find_first_not_of("0123456789abcdef") != std::string::npos)
+    throw std::invalid_argument(fmt::format("\"{}\" is no row of bytes", digits));
+  std::vector<std::uint8_t> bytes;
+  for (std::size_t i = 0; i < digits.size(); i += 2)
+    bytes.push_back(static_cast<std::uint8_t>(std::stoi(digits.substr(i, 2), nullptr, 16)));
+  return bytes;
+}
+
+CanFrame frame_of(std::uint32_t id, const std::string& digits) {
+  const std::vector<std::uint8_t> bytes = from_hex(digits);
+  if (id > hal::can::kCanLargestId || bytes.size() > 8)
+    throw std::invalid_argument(fmt::format("{} with \"{}\" is no CAN frame", id, digits));
+  CanFrame frame = hal::can::make_can_frame(id, static_cast<std::uint8_t>(bytes.size()));
+  std::copy(bytes.begin(), bytes.end(), frame.data.begin());
+  return frame;
+}
+
+void compare_equal(Report& report, const json& got, const json& want) {
+  json all = got;
+  all.update(want);
+  for (const auto& [field, ignored] : all.items())
+    report.compare(field, got.value(field, json()), want.value(field, json()), false, 0.0, 0.0);
+}
+
+void compare_encoded(Report& report, const std::optional<CanFrame>& frame, const json& want) {
+  const auto bytes = frame ? hal::can::pack_can_frame(*frame) : std::nullopt;
+  report.compare("encodes", bytes.has_value(), true, false, 0.0, 0.0);
+  if (!bytes) return;
+  report.compare("id", frame->id, want.at("id"), false, 0.0, 0.0);
+  report.compare("rtr", frame->rtr, want.value("rtr", false), false, 0.0, 0.0);
+  report.compare("data", to_hex(frame->payload()), want.at("data"), false, 0.0, 0.0);
+  if (want.contains("dlc")) report.compare("dlc", frame->length, want["dlc"], false, 0.0, 0.0);
+  report.compare("can_frame", to_hex(*bytes), want.at("can_frame"), false, 0.0, 0.0);
+  const auto back = hal::can::unpack_can_frame(from_hex(want.at("can_frame")));
+  report.compare("reads back", back == frame, true, false, 0.0, 0.0);
+}
+
+namespace {
+
+json names_of(std::uint32_t bits, std::span<const hal::can::CanErrorWords> words) {
+  json names = json::array();
+  for (const auto& one : words)
+    if ((bits & one.bit) != 0) names.push_back(one.name);
+  return names;
+}
+
+json error_results(const std::vector<std::uint8_t>& bytes) {
+  const auto error = hal::can::decode_can_error(bytes);
+  if (!error) return {{"classes", "nothing"}};
+  json got{{"classes", names_of(error->classes, hal::can::can_error_class_words())},
+           {"action", hal::can::can_error_action_name(error->action)}};
+  if (error->has(hal::can::CanErrorClass::kController))
+    got["controller"] = names_of(error->controller, hal::can::can_controller_words());
+  if (error->has_counters) {
+    got["tx_errors"] = error->tx_errors;
+    got["rx_errors"] = error->rx_errors;
+  }
+  return got;
+}
+
+bool refuses_damaged_error(const std::vector<std::uint8_t>& bytes) {
+  auto data_frame = bytes, classless = bytes, short_data = bytes, cut = bytes;
+  data_frame[3] = 0;
+  classless[0] = classless[1] = 0;
+  short_data[4] = 7;
+  cut.pop_back();
+  return !hal::can::decode_can_error(data_frame) && !hal::can::decode_can_error(classless) &&
+         !hal::can::decode_can_error(short_data) && !hal::can::decode_can_error(cut) &&
+         !hal::can::unpack_can_frame(bytes);
+}
+
+void verify_socketcan(const json& file, Report& report) {
+  int number = 0;
+  for (const json& one : file.at("error_frames")) {
+    report.begin_case("error_frames/" + std::to_string(number++));
+    const auto bytes = from_hex(one.at("can_frame"));
+    compare_equal(report, error_results(bytes), one.at("expect"));
+    if (bytes.size() != hal::can::kCanFrameBytes) continue;
+    report.compare("refuses damage", refuses_damaged_error(bytes), true, false, 0.0, 0.0);
+  }
+  number = 0;
+  for (const json& one : file.at("bus_bits")) {
+    report.begin_case("bus_bits/" + std::to_string(number++));
+    CanFrame frame = frame_of(one.at("id"), one.at("data"));
+    frame.rtr = one.value("rtr", false);
+    if (frame.rtr) frame.length = one.at("dlc");
+    const hal::can::CanBits bits = hal::can::can_bits_on_bus(frame);
+    json got{{"id", frame.id}, {"data", to_hex(frame.payload())}, {"bits", bits.exact}};
+    if (frame.rtr)
+      got.update({{"rtr", true}, {"dlc", frame.length}});
+    else
+      got.update({{"bits_min", bits.least}, {"bits_max", bits.most}});
+    compare_equal(report, got, one);
+  }
+}
+
+std::optional<CanFrame> odrive_encoded(const std::string& message, const json& args) {
+  const int node = args.at("node");
+  const auto value = [&args](const char* name) { return number(args.at(name)); };
+  using hal::odrive::OdriveTorqueLength;
+  if (message == "set_input_torque")
+    return hal::odrive::odrive_input_torque(node, value("torque"), OdriveTorqueLength::kPadded);
+  if (message == "set_input_torque_dlc4")
+    return hal::odrive::odrive_input_torque(node, value("torque"), OdriveTorqueLength::kShort);
+  if (message == "set_axis_state")
+    return hal::odrive::odrive_axis_state(node, hal::odrive::OdriveAxisState{args.at("state")});
+  if (message == "set_controller_mode") {
+    return hal::odrive::odrive_controller_mode(
+        node, hal::odrive::OdriveControlMode{args.at("control_mode")},
+        hal::odrive::OdriveInputMode{args.at("input_mode")});
+  }
+  if (message == "set_input_vel")
+    return hal::odrive::odrive_input_velocity(node, value("vel"), value("torque_ff"));
+  if (message == "set_input_pos") {
+    return hal::odrive::odrive_input_position(node, value("pos"), value("vel_ff"),
+                                              value("torque_ff"));
+  }
+  if (message == "set_limits")
+    return hal::odrive::odrive_limits(node, value("velocity"), value("current"));
+  if (message == "estop") return hal::odrive::odrive_estop(node);
+  if (message == "clear_errors")
+    return hal::odrive::odrive_clear_errors(node, args.at("identify") != 0);
+  if (message == "rtr_get_encoder_estimates")
+    return hal::odrive::odrive_request(node, hal::odrive::OdriveCommand::kGetEncoderEstimates);
+  throw std::invalid_argument(fmt::format("no message \"{}\"", message));
+}
+
+json to_json(const hal::odrive::OdriveHeartbeat& h) {
+  return {{"axis_error", h.axis_error},
+          {"axis_state", h.axis_state},
+          {"procedure_result", h.procedure_result},
+          {"trajectory_done", h.trajectory_done}};
+}
+json to_json(const hal::odrive::OdriveHeartbeat05& h) {
+  return {{"axis_error", h.axis_error},
+          {"axis_state", h.axis_state},
+          {"motor_error_flag", h.motor_error},
+          {"encoder_error_flag", h.encoder_error},
+          {"controller_error_flag", h.controller_error},
+          {"trajectory_done", h.trajectory_done}};
+}
+json to_json(const hal::odrive::OdriveErrors& e) {
+  return {{"active_errors", e.active}, {"disarm_reason", e.disarm_reason}};
+}
+json to_json(const hal::odrive::OdriveEstimates& e) {
+  return {{"pos_turns", e.position_turns}, {"vel_turns_s", e.velocity_turns_per_s}};
+}
+json to_json(const hal::odrive::OdriveIq& iq) {
+  return {{"iq_setpoint", iq.setpoint_A}, {"iq_measured", iq.measured_A}};
+}
+json to_json(const hal::odrive::OdriveTemperature& t) {
+  return {{"fet", t.inverter_C}, {"motor", t.motor_C ? json(*t.motor_C) : json()}};
+}
+json to_json(const hal::odrive::OdriveBus& b) {
+  return {{"volt", b.voltage_V}, {"amp", b.current_A}};
+}
+json to_json(const hal::odrive::OdriveTorques& t) {
+  return {{"target", t.target_Nm}, {"estimate", t.estimate_Nm}};
+}
+
+/// One reply, as its decoder reads it for a node; and the damaged ones.
+template <class Decode>
+json decoded(const CanFrame& frame, int node, Decode decode, Report& report) {
+  const auto read = [&](const CanFrame& f) { return decode(f, node); };
+  report.compare("refuses damage", refuses_damage(frame, read), true, false, 0.0, 0.0);
+  const auto value = read(frame);
+  return value ? to_json(*value) : json::object();
+}
+
+json odrive_decoded(const CanFrame& frame, const std::string& name, Report& report) {
+  const hal::odrive::OdriveAddress address = hal::odrive::odrive_address(frame);
+  const auto read = [&](auto decode) { return decoded(frame, address.node, decode, report); };
+  json got;
+  if (name == "heartbeat") got = read(hal::odrive::decode_odrive_heartbeat);
+  if (name == "get_error") got = read(hal::odrive::decode_odrive_errors);
+  if (name == "get_encoder_estimates") got = read(hal::odrive::decode_odrive_estimates);
+  if (name == "get_iq") got = read(hal::odrive::decode_odrive_iq);
+  if (name == "get_temperature") got = read(hal::odrive::decode_odrive_temperature);
+  if (name == "get_bus_voltage_current") got = read(hal::odrive::decode_odrive_bus);
+  if (name == "get_torques") got = read(hal::odrive::decode_odrive_torques);
+  if (got.is_null()) throw std::invalid_argument(fmt::format("no reply \"{}\"", name));
+  got.update({{"node", address.node}, {"cmd", address.command}, {"name", name}});
+  return got;
+}
+
+/// Every published command and no other, by number.
+json odrive_commands() {
+  using Command = hal::odrive::OdriveCommand;
+  json numbers{{"get_version", Command::kGetVersion},
+               {"heartbeat", Command::kHeartbeat},
+               {"estop", Command::kEstop},
+               {"get_error", Command::kGetError},
+               {"set_axis_state", Command::kSetAxisState},
+               {"get_encoder_estimates", Command::kGetEncoderEstimates},
+               {"get_encoder_count_v05", Command::kGetEncoderCount05},
+               {"set_controller_mode", Command::kSetControllerMode},
+               {"set_input_pos", Command::kSetInputPosition},
+               {"set_input_vel", Command::kSetInputVelocity},
+               {"set_input_torque", Command::kSetInputTorque},
+               {"set_limits", Command::kSetLimits},
+               {"get_iq", Command::kGetIq},
+               {"get_temperature", Command::kGetTemperature},
+               {"get_bus_voltage_current", Command::kGetBusVoltageCurrent},
+               {"clear_errors", Command::kClearErrors},
+               {"get_torques", Command::kGetTorques},
+               {"get_powers", Command::kGetPowers}};
+  const json never_used{{"address", 0x06}, {"reboot", 0x16}, {"set_absolute_position", 0x19}};
+  numbers.update(never_used);
+  return numbers;
+}
+
+void verify_odrive(const json& file, Report& report) {
+  report.begin_case("commands");
+  compare_equal(report, odrive_commands(), file.at("commands"));
+  int number = 0;
+  for (const json& one : file.at("encode")) {
+    report.begin_case("encode/" + std::to_string(number++));
+    compare_encoded(report, odrive_encoded(one.at("message"), one.at("args")), one);
+  }
+  number = 0;
+  for (const json& one : file.at("decode")) {
+    report.begin_case("decode/" + std::to_string(number++));
+    const json& expect = one.at("expect");
+    const CanFrame frame = frame_of(one.at("id"), one.at("data"));
+    compare_equal(report, odrive_decoded(frame, expect.at("name"), report), expect);
+  }
+  number = 0;
+  for (const json& one : file.at("heartbeat_v0_5")) {
+    report.begin_case("heartbeat_v0_5/" + std::to_string(number++));
+    constexpr int kNode = 5;  // the file leaves it open
+    const CanFrame frame = frame_of(kNode << 5 | 1, one.at("data"));
+    compare_equal(report, decoded(frame, kNode, hal::odrive::decode_odrive_heartbeat_05, report),
+                  one.at("expect"));
+  }
+}
+
+constexpr Verifier kVerifiers[] = {
+    {"can_socketcan/1", verify_socketcan},
+    {"can_odrive/1", verify_odrive},
+    {"can_cia402/1", verify_cia402},
+};
+
+}  // namespace
+
+std::span<const Verifier> can_verifiers() { return kVerifiers; }
+
+}  // namespace tact::tools::verify

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+// The published bytes of the Falcon: commands and reports both ways, damaged streams, what the USB
+// adapter adds, and every request and word of waking it, in order.
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hal/falcon/falcon_boot.h"
+#include "hal/falcon/falcon_packets.h"
+#include "hal/falcon/falcon_stream.h"
+#include "hal/falcon/ftdi_requests.h"
+#include "tools/verify/report.h"
+
+namespace tact::tools::verify {
+namespace {
+
+using hal::falcon::FalconBootAction;
+using hal::falcon::FtdiRequest;
+using nlohmann::json;
+using Bytes = std::vector<std::uint8_t>;
+
+Bytes bytes_of(const std::string& hex) {
+  if (hex.size() % 2 != 0) throw std::invalid_argument("half a byte in \"" + hex + "\"");
+  Bytes out;
+  for (std::size_t i = 0; i < hex.size(); i += 2) {
+    std::size_t read = 0;
+    out.push_back(static_cast<std::uint8_t>(std::stoul(hex.substr(i, 2), &read, 16)));
+    if (read != 2) throw std::invalid_argument("no hexadecimal byte in \"" + hex + "\"");
+  }
+  return out;
+}
+std::string hex_of(std::span<const std::uint8_t> bytes) {
+  std::string out;
+  for (const std::uint8_t byte : bytes) {
+    out += "0123456789abcdef"[byte >> 4];
+    out += "0123456789abcdef"[byte & 0xF];
+  }
+  return out;
+}
+void equal(Report& report, const std::string& field, const json& got, const json& want) {
+  report.compare(field, got, want, false, 0.0, 0.0);
+}
+
+void verify_commands(const json& commands, Report& report) {
+  int number = 0;
+  for (const json& one : commands) {
+    report.begin_case("commands/" + std::to_string(number++));
+    const hal::falcon::FalconCommand wanted{
+        .motor = one.at("motors_requested").get<hal::falcon::FalconWords>(),
+        .lights = one.at("leds").get<std::uint8_t>(),
+        .homing = one.at("homing").get<bool>()};
+    equal(report, "hex", hex_of(encode(wanted)), one.at("hex"));
+    const auto sent = hal::falcon::decode_falcon_command(bytes_of(one.at("hex")));
+    equal(report, "decoded", sent.has_value(), true);
+    if (!sent) continue;
+    equal(report, "motors_sent", sent->motor, one.at("motors_sent"));
+    equal(report, "leds", sent->lights, one.at("leds"));
+    equal(report, "homing", sent->homing, one.at("homing"));
+  }
+}
+
+json to_json(const hal::falcon::FalconReport& r) {
+  return {{"encoders", r.counts}, {"buttons", r.buttons}, {"homed", r.homed}};
+}
+
+void verify_reports(const json& reports, Report& report) {
+  int number = 0;
+  for (const json& one : reports) {
+    report.begin_case("reports/" + std::to_string(number++));
+    const hal::falcon::FalconReport wanted{
+        .counts = one.at("encoders").get<hal::falcon::FalconWords>(),
+        .buttons = one.at("buttons").get<std::uint8_t>(),
+        .homed = one.at("homed").get<std::uint8_t>()};
+    equal(report, "hex", hex_of(encode(wanted)), one.at("hex"));
+    const auto got = hal::falcon::decode_falcon_report(bytes_of(one.at("hex")));
+    equal(report, "decoded", got.has_value(), true);
+    if (got) equal(report, "report", to_json(*got), to_json(wanted));
+  }
+}
+
+void verify_streams(const json& streams, Report& report) {
+  int number = 0;
+  for (const json& one : streams) {
+    report.begin_case("streams/" + std::to_string(number++));
+    hal::falcon::FalconStream stream;
+    json got = json::array();
+    for (const json& chunk : one.at("chunks")) {
+      for (const std::uint8_t byte : bytes_of(chunk))
+        if (const auto whole = stream.push(byte)) got.push_back(to_json(*whole));
+    }
+    equal(report, "reports", got, one.at("reports"));
+    equal(report, "dropped_bytes", stream.dropped_bytes(), one.at("dropped_bytes"));
+    equal(report, "left_in_buffer", stream.waiting_bytes(), one.at("left_in_buffer"));
+  }
+}
+
+void verify_strip(const json& transfers, Report& report) {
+  int number = 0;
+  for (const json& one : transfers) {
+    report.begin_case("strip/" + std::to_string(number++));
+    const Bytes transfer = bytes_of(one.at("transfer"));
+    Bytes data(transfer.size());
+    const auto got = hal::falcon::ftdi_strip(transfer, data);
+    equal(report, "whole", got.has_value(), true);
+    equal(report, "packet_size", hal::falcon::kFtdiPacketSize, one.at("packet_size"));
+    if (!got) continue;
+    equal(report, "data", hex_of(std::span(data).first(got->size)), one.at("data"));
+    equal(report, "modem_status", got->modem, one.at("modem_status"));
+    equal(report, "line_status", got->line, one.at("line_status"));
+    equal(report, "cts", got->clear_to_send(), one.at("cts"));
+  }
+}
+
+void verify_baud(const json& codes, Report& report) {
+  int number = 0;
+  for (const json& one : codes) {
+    report.begin_case("ftdi/baud/" + std::to_string(number++));
+    const auto got = hal::falcon::ftdi_baud_Hz(one.at("wValue").get<std::uint16_t>());
+    report.compare("baud", got.value_or(0.0), one.at("baud"), true, 0.0, 1e-15);
+  }
+}
+
+FtdiRequest named(const std::string& name) {
+  if (name == "purge_rx") return hal::falcon::kFtdiPurgeRx;
+  if (name == "purge_tx") return hal::falcon::kFtdiPurgeTx;
+  if (name == "latency_1ms") return hal::falcon::ftdi_latency_ms(1);
+  if (name == "latency_16ms") return hal::falcon::ftdi_latency_ms(16);
+  if (name == "baud_9600") return hal::falcon::ftdi_divisor(hal::falcon::kFtdi9600);
+  if (name == "baud_142857") return hal::falcon::ftdi_divisor(hal::falcon::kFtdi142857);
+  if (name == "baud_1500000") return hal::falcon::ftdi_divisor(hal::falcon::kFtdi1500000);
+  if (name == "data_8n1") return hal::falcon::kFtdi8n1;
+  if (name == "flow_none") return hal::falcon::kFtdiFlowNone;
+  if (name == "rts_low") return hal::falcon::kFtdiRtsLow;
+  if (name == "dtr_low") return hal::falcon::kFtdiDtrLow;
+  if (name == "dtr_high") return hal::falcon::kFtdiDtrHigh;
+  throw std::invalid_argument("no request is called " + name);
+}
+json to_json(const FtdiRequest& r) {
+  return {{"bmRequestType", r.type},
+          {"bRequest", r.request},
+          {"wValue", r.value},
+          {"wIndex", r.index},
+          {"wLength", r.length}};
+}
+
+/// What is sent, in order, to a device that replies so; a reply to each write, none: silence.
+using Reply = std::function<Bytes(const std::string& written)>;
+json sent_while_booting(const Bytes& image, const Reply& reply) {
+  hal::falcon::FalconBoot boot(image, {.attempts = 1});
+  json sent = json::array();
+  Bytes pending;
+  std::int64_t now_ms = 0;
+  FalconBootAction action = boot.next({.now_ms = now_ms});
+  for (int step = 0; step < 10'000; ++step) {
+    hal::falcon::FalconBootInput input;
+    Bytes heard;
+    switch (action.what) {
+      case FalconBootAction::What::kControl:
+        sent.push_back(to_json(action.request));
+        break;
+      case FalconBootAction::What::kWrite:
+        sent.push_back(hex_of(action.bytes));
+        pending = reply(hex_of(action.bytes));
+        break;
+      case FalconBootAction::What::kRead:
+        heard.swap(pending);
+        if (heard.empty()) now_ms += action.wait_ms;
+        input.bytes = heard;
+        input.clear_to_send = true;
+        break;
+      default:
+        return sent;
+    }
+    input.now_ms = now_ms;
+    action = boot.next(input);
+  }
+  return sent;
+}
+
+int count(const json& sent, const json& word) {
+  return static_cast<int>(std::count(sent.begin(), sent.end(), word));
+}
+
+/// One run from open to ready must send what the file says, entry by entry; a run against silence
+/// as often as it says.
+void verify_boot(const json& ftdi, Report& report) {
+  const json& steps = ftdi.at("bootloader");
+  std::map<std::string, Bytes> replies;
+  for (const json& step : steps)
+    if (step.contains("bulk_out")) replies[step.at("bulk_out")] = bytes_of(step.at("expect_in"));
+  Bytes image;
+  for (int i = 0; i < 150; ++i) image.push_back(static_cast<std::uint8_t>(i * 7 + 1));
+  const std::string ask =
+      hex_of(encode(hal::falcon::FalconCommand{.lights = hal::falcon::kFalconRed, .homing = true}));
+  const std::string report_hex = hex_of(encode(hal::falcon::FalconReport{}));
+
+  const auto device = [&](bool null_first, const std::string& silent) {
+    return [&, null_first, silent, last = std::string()](const std::string& written) mutable {
+      const std::string before = std::exchange(last, written);
+      if (written == silent) return Bytes{};
+      if (written == ask)
+        return bytes_of(before == hex_of(std::span(image).last(26)) ? report_hex : "");
+      const auto known = replies.find(written);
+      if (known == replies.end()) return bytes_of(written);  // the echo of the image
+      Bytes out = known->second;
+      if (null_first) out.insert(out.begin(), 0);
+      return out;
+    };
+  };
+  const json sent = sent_while_booting(image, device(false, ""));
+  std::size_t at = 0;
+  const auto next = [&] { return at < sent.size() ? sent.at(at++) : json("nothing"); };
+  const auto requests = [&](const std::string& block) {
+    for (std::size_t i = 0; i < ftdi.at(block).size(); ++i) {
+      json want = ftdi.at(block).at(i);
+      report.begin_case("ftdi/" + block + "/" + std::to_string(i));
+      equal(report, "name", to_json(named(want.at("name"))), next());
+      want.erase("name");
+      equal(report, "request", sent.at(at - 1), want);
+    }
+  };
+  requests("open");
+  const std::size_t first_normal = at;
+  at += ftdi.at("normal").size();
+  const int asked = hal::falcon::FalconBootSettings{}.report_tries;
+  for (int i = 0; i < asked; ++i) equal(report, "ask", next(), ask);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    json want = steps.at(i);
+    report.begin_case("ftdi/bootloader/" + std::to_string(i));
+    if (want.contains("name")) {
+      const json got = next();
+      equal(report, "name", to_json(named(want.at("name"))), got);
+      want.erase("name");
+      equal(report, "request", got, want);
+    } else if (want.contains("bulk_out")) {
+      const std::string word = want.at("bulk_out");
+      equal(report, "bulk_out", next(), word);
+      equal(report, "retry", count(sent_while_booting(image, device(false, word)), word),
+            want.at("retry"));
+      equal(report, "null first", sent_while_booting(image, device(true, "")), sent);
+    } else {
+      equal(report, "upload", want.at("upload"), true);
+      equal(report, "echo", want.at("echo"), true);
+      const auto chunk = want.at("chunk").get<std::size_t>();
+      for (std::size_t done = 0; done < image.size(); done += chunk) {
+        const auto rest = std::span(image).subspan(done);
+        equal(report, "chunk", next(), hex_of(rest.first(std::min(chunk, rest.size()))));
+      }
+    }
+  }
+  const std::size_t second_normal = at;
+  requests("normal");
+  equal(report, "ask", next(), ask);
+  equal(report, "end", at, sent.size());
+  for (std::size_t i = 0; i < second_normal && second_normal + i < at - 1; ++i)
+    equal(report, "before the image", sent.at(first_normal + i), sent.at(second_normal + i));
+}
+
+void verify_falcon(const json& file, Report& report) {
+  report.begin_case("usb");
+  equal(report, "usb",
+        {{"vid", hal::falcon::kFalconUsbVendor},
+         {"pid", hal::falcon::kFalconUsbProduct},
+         {"ep_out", hal::falcon::kFalconEndpointOut},
+         {"ep_in", hal::falcon::kFalconEndpointIn},
+         {"interface", hal::falcon::kFalconUsbInterface},
+         {"bytes_per_packet", hal::falcon::kFalconPacketSize}},
+        file.at("usb"));
+  verify_commands(file.at("commands"), report);
+  verify_reports(file.at("reports"), report);
+  verify_streams(file.at("streams"), report);
+  verify_strip(file.at("strip"), report);
+  verify_baud(file.at("ftdi").at("baud"), report);
+  verify_boot(file.at("ftdi"), report);
+}
+
+constexpr Verifier kVerifiers[] = {{"falcon_packets/1", verify_falcon}};
+
+}  // namespace
+
+std::span<const Verifier> falcon_verifiers() { return kVerifiers; }
+
+}  // namespace tact::tools::verify

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// tact-verify: do laws, kinematics and frames give the published numbers on this machine?
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <variant>
+#include <vector>
+
+#include "model/result.h"
+#include "tools/verify/report.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using tact::model::Error;
+using tact::model::Result;
+using tact::tools::verify::Failure;
+using tact::tools::verify::Report;
+using tact::tools::verify::Verifier;
+
+constexpr const char* kVectors = "tests/data/vectors";
+
+struct FileReport {
+  std::string name;
+  std::string law;
+  Report report;
+};
+
+std::vector<Verifier> known_verifiers() {
+  std::vector<Verifier> known;
+  for (const auto& table :
+       {tact::tools::verify::kinematics_verifiers(), tact::tools::verify::rhombus_verifiers(),
+        tact::tools::verify::tracking_verifiers(), tact::tools::verify::disc_verifiers(),
+        tact::tools::verify::hex_verifiers(), tact::tools::verify::sphere_verifiers(),
+        tact::tools::verify::spring_verifiers(), tact::tools::verify::falcon_verifiers(),
+        tact::tools::verify::can_verifiers()}) {
+    known.insert(known.end(), table.begin(), table.end());
+  }
+  return known;
+}
+
+/// The vectors beside the sources: upwards from here, then upwards from the program.
+Result<std::string> default_directory() {
+  std::error_code ignored;
+  for (const fs::path& start :
+       {fs::current_path(ignored), fs::read_symlink("/proc/self/exe", ignored)}) {
+    for (fs::path at = start; !at.empty(); at = at.parent_path()) {
+      if (fs::is_directory(at / kVectors, ignored)) return (at / kVectors).string();
+      if (at == at.root_path()) break;
+    }
+  }
+  return Error{fmt::format("no {} here or above; name the vector files", kVectors)};
+}
+
+Result<std::vector<std::string>> files_of(const std::vector<std::string>& paths) {
+  std::vector<std::string> files;
+  for (const std::string& path : paths) {
+    std::error_code error;
+    if (!fs::is_directory(path, error)) {
+      files.push_back(path);
+      continue;
+    }
+    std::vector<std::string> found;
+    for (const auto& entry : fs::directory_iterator(path, error))
+      if (entry.path().extension() == ".json") found.push_back(entry.path().string());
+    if (error) return Error{fmt::format("{}: {}", path, error.message())};
+    if (found.empty()) return Error{fmt::format("{}: no .json file in it; name another", path)};
+    std::sort(found.begin(), found.end());
+    files.insert(files.end(), found.begin(), found.end());
+  }
+  return files;
+}
+
+Result<FileReport> verify_file(const std::string& path) {
+  std::ifstream stream(path);
+  if (!stream) return Error{fmt::format("{}: cannot be read; check the name", path)};
+  try {  // the libraries report damage by exceptions
+    const json file = json::parse(stream);
+    const std::string key = file.contains("law") ? "law" : "schema";
+    FileReport out{fs::path(path).filename().string(), file.value(key, ""), {}};
+    for (const Verifier& verifier : known_verifiers()) {
+      if (verifier.law != out.law) continue;
+      verifier.verify(file, out.report);
+      if (out.report.passed() + out.report.failed() > 0) return out;
+      return Error{fmt::format("{}: holds no case, so it proves nothing; take a fresh copy", path)};
+    }
+    return Error{
+        fmt::format("{}: this build does not know the {} \"{}\"; leave the file out or "
+                    "take a build that knows it",
+                    path, key, out.law)};
+  } catch (const std::exception& damage) {
+    return Error{
+        fmt::format("{}: damaged vector file: {}; take a fresh copy", path, damage.what())};
+  }
+}
+
+void print_text(const FileReport& file) {
+  fmt::print("{}: {} passed, {} failed\n", file.name, file.report.passed(), file.report.failed());
+  for (const Failure& f : file.report.failures()) {
+    fmt::print("  {} {}: got {}, want {}, tolerance {:g}\n", f.id, f.field, f.got.dump(),
+               f.want.dump(), f.tolerance);
+  }
+}
+
+json to_json(const FileReport& file) {
+  json failures = json::array();
+  for (const Failure& f : file.report.failures()) {
+    failures.push_back({{"id", f.id},
+                        {"field", f.field},
+                        {"got", f.got},
+                        {"want", f.want},
+                        {"tolerance", f.tolerance}});
+  }
+  return {{"file", file.name},
+          {"law", file.law},
+          {"passed", file.report.passed()},
+          {"failed", file.report.failed()},
+          {"failures", failures}};
+}
+
+int complain(const Error& error) {
+  fmt::print(stderr, "tact-verify: {}\n", error.sentence);
+  return 2;
+}
+
+int run(std::vector<std::string> paths, bool as_json) {
+  if (paths.empty()) {
+    const auto directory = default_directory();
+    if (!directory) return complain(directory.error());
+    paths.push_back(*directory);
+  }
+  const auto files = files_of(paths);
+  if (!files) return complain(files.error());
+  int passed = 0, failed = 0, status = 0;
+  json out = json::array();
+  for (const std::string& path : *files) {
+    const auto report = verify_file(path);
+    if (!report) {
+      status = complain(report.error());
+      continue;
+    }
+    passed += report->report.passed();
+    failed += report->report.failed();
+    if (as_json)
+      out.push_back(to_json(*report));
+    else
+      print_text(*report);
+  }
+  if (as_json)
+    fmt::print("{}\n", json{{"passed", passed}, {"failed", failed}, {"files", out}}.dump(2));
+  if (status != 0) return status;
+  return failed > 0 ? 1 : 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "Recompute published cases and compare, each at the tolerance of its file (SI units: m, rad, "
+      "N, N m, kg).\nExit status: 0 all passed, 1 a case failed, 2 a file is unreadable or "
+      "unknown."};
+  std::vector<std::string> paths;
+  bool as_json = false;
+  app.add_option("files", paths,
+                 "vector files or directories of them (default: tests/data/vectors)");
+  app.add_flag("--json", as_json, "print one JSON document");
+  app.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return fmt::format("tact-verify: {}; see tact-verify --help\n", error.what());
+  });
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  return run(paths, as_json);
+}

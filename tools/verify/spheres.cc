@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// The published cases of several spheres that press one half-space.
+#include <algorithm>
+
+#include "model/contact/coupling.h"
+#include "model/law/compliance_law.h"
+#include "model/tissue/elastic_field.h"
+#include "tools/verify/report.h"
+
+namespace tact::tools::verify {
+namespace {
+
+using model::Vec3;
+using model::contact::PressingSphere;
+using nlohmann::json;
+
+json group_results(const json& one_case) {
+  const json &p = one_case.at("params"), &inputs = one_case.at("inputs");
+  const model::law::ElasticTip tip{.youngs_modulus_Pa = number(p.at("youngs_modulus_Pa")),
+                                   .poisson_ratio = number(p.at("poisson_ratio")),
+                                   .radius_m = number(p.at("radius_m"))};
+  double deepest_m = 0.0;
+  for (const json& d : inputs.at("depth_m")) deepest_m = std::max(deepest_m, number(d));
+  constexpr std::array<double, 1> kFlat{};
+  const auto curve = model::law::make_compliance_curve({.tip = tip,
+                                                        .working_depth_m = deepest_m,
+                                                        .ring_pitch_m = tip.radius_m,
+                                                        .ring_m_per_N = kFlat,
+                                                        .table_knots = 257});
+  const model::law::Law* law = &*curve;
+  model::tissue::ElasticField tissue(
+      {.curves = {&law, 1},
+       .coordinate = {},
+       .pull_coordinate = {},
+       .surface = {},
+       .relaxation = {},
+       .neighbours = {.contact_modulus_Pa = tip.contact_modulus_Pa()}});
+  const std::size_t n = inputs.at("depth_m").size();
+  std::array<PressingSphere, model::contact::kMaxSpheres> sphere{};
+  std::array<Vec3, model::contact::kMaxSpheres> at_m{};
+  for (std::size_t i = 0; i < n; ++i) {
+    const double depth_m = number(inputs.at("depth_m")[i]);
+    at_m[i] = {number(inputs.at("x_m")[i]), number(inputs.at("y_m")[i]), 0.0};
+    sphere[i] = {.presses = true,
+                 .depth_m = depth_m,
+                 .in = {.sphere = i, .normal = {0, 0, 1}, .depth_m = depth_m},
+                 .response = {}};
+  }
+  model::contact::Coupling c{};
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      if (i != j)
+        c[i][j] = tissue.coupling_m_per_N(sphere[i].in, sphere[j].in, norm(at_m[i] - at_m[j]));
+  press_together(tissue, c, {sphere.data(), n});
+  json force_N = json::array();
+  for (std::size_t i = 0; i < n; ++i) force_N.push_back(sphere[i].response.law.force_N);
+  return {{"force_N", force_N}};
+}
+
+constexpr Verifier kVerifiers[] = {{"half_space_spheres", verify_cases<group_results>}};
+
+}  // namespace
+
+std::span<const Verifier> sphere_verifiers() { return kVerifiers; }
+
+}  // namespace tact::tools::verify

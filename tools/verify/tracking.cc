@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+// The published cases of tracking: coordinate chain, pose from points, leg, chain of bones.
+#include <cmath>
+#include <limits>
+
+#include "host/tracking/ccd.h"
+#include "host/tracking/coordinate_chain.h"
+#include "host/tracking/epnp.h"
+#include "host/tracking/leg_ik.h"
+#include "tools/verify/report.h"
+
+namespace tact::tools::verify {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using host::tracking::JointKind;
+using host::tracking::Pose;
+using nlohmann::json;
+
+Vector2d vector_2(const json& v) { return {number(v.at(0)), number(v.at(1))}; }
+Vector3d vector_3(const json& v) { return {number(v.at(0)), number(v.at(1)), number(v.at(2))}; }
+Vector3d in_plane(const json& v) { return {number(v.at(0)), number(v.at(1)), 0.0}; }
+
+/// The first `count` coordinates.
+template <typename Vector>
+json list(const Vector& v, Eigen::Index count = Vector::RowsAtCompileTime) {
+  json out = json::array();
+  for (Eigen::Index i = 0; i < count; ++i) out.push_back(v[i]);
+  return out;
+}
+json list(const Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; }
+
+Pose pose_of(const json& inputs, const char* rotation, const char* position) {
+  const auto q = host::tracking::rotation_from(inputs.at(rotation).get<std::array<double, 4>>());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  return {.rotation = q.value_or(Quaterniond(nan, nan, nan, nan)),
+          .position_m = vector_3(inputs.at(position))};
+}
+
+json transform_results(const json& one_case) {
+  const json& inputs = one_case.at("inputs");
+  if (inputs.at("mode") == "BIND_DRIVE") {
+    const Pose offset = host::tracking::bind(pose_of(inputs, "q_tracker0", "p_tracker0"),
+                                             pose_of(inputs, "q_bone0", "p_bone0"));
+    const Pose bone = host::tracking::drive(pose_of(inputs, "q_tracker", "p_tracker"), offset);
+    return {{"q_offset", list(offset.rotation)},
+            {"p_offset", list(offset.position_m)},
+            {"q_bone", list(bone.rotation)},
+            {"p_bone", list(bone.position_m)}};
+  }
+  const Vector3d angles = vector_3(inputs.at("euler")), p = vector_3(inputs.at("p"));
+  const host::tracking::EulerAngles euler{
+      .alpha_rad = angles[0], .beta_rad = angles[1], .gamma_rad = angles[2]};
+  const Quaterniond q = host::tracking::rotation_from(euler);
+  const Pose local{.rotation = q, .position_m = vector_3(inputs.at("origin"))};
+  return {{"q", list(q)},
+          {"p_inertial", list(Vector3d(q * p))},
+          {"p_world", list(host::tracking::to_world(local, p))}};
+}
+
+json leg_results(const json& one_case) {
+  const json &p = one_case.at("params"), &inputs = one_case.at("inputs");
+  const host::tracking::Leg leg{.thigh_m = number(p.at("L_lap")),
+                                .calf_m = number(p.at("L_calf")),
+                                .bend = p.at("bend") == 1 ? host::tracking::Bend::kCounterClockwise
+                                                          : host::tracking::Bend::kClockwise};
+  const host::tracking::LegPose at =
+      host::tracking::pose_leg(leg, vector_2(inputs.at("P1")), vector_2(inputs.at("P2")));
+  if (at.status == host::tracking::LegStatus::kInvalid) return {{"status", "INVALID_ARGUMENT"}};
+  return {{"status", at.status == host::tracking::LegStatus::kOk ? "OK" : "UNREACHABLE"},
+          {"knee", list(at.knee_m)},
+          {"ankle", list(at.ankle_m)},
+          {"interior_hip", at.interior_hip_rad},
+          {"interior_knee", at.interior_knee_rad},
+          {"interior_ankle", at.interior_ankle_rad},
+          {"flexion_knee", at.flexion_knee_rad},
+          {"thigh_angle", at.thigh_angle_rad},
+          {"shank_angle", at.shank_angle_rad}};
+}
+
+const char* word(host::tracking::ReachStatus status) {
+  switch (status) {
+    case host::tracking::ReachStatus::kConverged:
+      return "CONVERGED";
+    case host::tracking::ReachStatus::kMaxIterations:
+      return "MAX_ITERATIONS";
+    case host::tracking::ReachStatus::kUnreachable:
+      return "UNREACHABLE";
+    case host::tracking::ReachStatus::kInvalid:
+      break;
+  }
+  return "INVALID_ARGUMENT";
+}
+
+void add_spatial_joint(const json& j, host::tracking::Chain& chain,
+                       std::vector<host::tracking::JointState>& start) {
+  host::tracking::Bone bone{.length_m = number(j.at("length")), .rest = vector_3(j.at("rest"))};
+  host::tracking::JointState state;
+  if (j.at("type") == "BALL") {
+    bone.kind = JointKind::kBall;
+    bone.cone_rad = number(j.at("cone"));
+    const json& q = j.at("q");
+    state.rotation =
+        Quaterniond(number(q.at(0)), number(q.at(1)), number(q.at(2)), number(q.at(3)));
+  } else {
+    bone.hinge = vector_3(j.at("axis"));
+    bone.lo_rad = number(j.at("lo"));
+    bone.hi_rad = number(j.at("hi"));
+    state.angle_rad = number(j.at("angle"));
+  }
+  chain.bones.push_back(bone);
+  start.push_back(state);
+}
+
+json ccd_results(const json& one_case) {
+  const json &p = one_case.at("params"), &inputs = one_case.at("inputs");
+  const bool planar = p.at("kind") == "PLANAR";
+  const auto point = [&](const json& v) { return planar ? in_plane(v) : vector_3(v); };
+  host::tracking::Chain chain{.base_m = point(inputs.at("base")), .bones = {}};
+  std::vector<host::tracking::JointState> start;
+  if (planar) {
+    for (std::size_t i = 0; i < p.at("lengths").size(); ++i) {
+      const json& limits = p.at("limits").at(i);
+      chain.bones.push_back(host::tracking::planar_bone(
+          number(p.at("lengths").at(i)), number(limits.at(0)), number(limits.at(1))));
+      start.push_back({.angle_rad = number(inputs.at("angles").at(i))});
+    }
+  } else {
+    for (const json& joint : p.at("joints")) add_spatial_joint(joint, chain, start);
+  }
+  const host::tracking::ReachResult at =
+      host::tracking::reach(chain, start,
+                            {.target_m = point(inputs.at("target")),
+                             .tolerance_m = number(p.at("eps")),
+                             .sweeps = p.at("max_sweeps").get<int>()});
+  if (at.status == host::tracking::ReachStatus::kInvalid) return {{"status", word(at.status)}};
+  json points = json::array(), swing = json::array();
+  for (const Vector3d& m : at.points_m) points.push_back(list(m, planar ? 2 : 3));
+  for (std::size_t i = 0; i < at.joints.size(); ++i)
+    swing.push_back(host::tracking::swing_rad(chain.bones[i], at.joints[i]));
+  return {{"status", word(at.status)}, {"points", points},
+          {"error", at.error_m},       {"sweeps", at.sweeps},
+          {"updates", at.updates},     {planar ? "angles" : "swing", swing}};
+}
+
+const char* word(host::tracking::PoseStatus status) {
+  switch (status) {
+    case host::tracking::PoseStatus::kOk:
+      return "OK";
+    case host::tracking::PoseStatus::kTooFewPoints:
+      return "TOO_FEW_POINTS";
+    case host::tracking::PoseStatus::kDegenerate:
+      return "DEGENERATE";
+    case host::tracking::PoseStatus::kNoPose:
+      return "NO_POSE";
+    case host::tracking::PoseStatus::kInvalid:
+      break;
+  }
+  return "INVALID_ARGUMENT";
+}
+
+/// The angle between a rotation and a row-major matrix.
+double angle_to(const Quaterniond& got, const json& rows) {
+  Eigen::Matrix3d want;
+  for (Eigen::Index i = 0; i < 9; ++i)
+    want(i / 3, i % 3) = number(rows.at(static_cast<std::size_t>(i)));
+  return got.angularDistance(Quaterniond(want));
+}
+
+/// The file gives tolerances by quantity, those of the polished pose and of the raw one; a true
+/// pose beside a noisy one is a check of the fit, to what the raw pose is allowed.
+void verify_pose(const host::tracking::PoseEstimate& got, const json& one_case, Report& report) {
+  const json& expect = one_case.at("expect");
+  report.compare("status", word(got.status), expect.at("status"), false, 0.0, 0.0);
+  if (expect.at("status") != "OK") return;
+  const auto tolerance = [&](const char* stage, const char* quantity) {
+    return number(one_case.at("tolerance").at(stage).at(quantity));
+  };
+  const double rot_rad = tolerance("refined", "rot_rad"), t_m = tolerance("refined", "trans_m");
+  report.compare("R", angle_to(got.pose.rotation, expect.at("R")), 0.0, true, rot_rad, 0.0);
+  report.compare("q", list(got.pose.rotation), expect.at("q"), true, rot_rad, 0.0);
+  report.compare("t", list(got.pose.position_m), expect.at("t"), true, t_m, 0.0);
+  report.compare("rms_px", got.rms_px, expect.at("rms_px"), true, tolerance("refined", "rms_px"),
+                 0.0);
+  if (!expect.contains("R_true")) return;
+  report.compare("R_true", angle_to(got.pose.rotation, expect.at("R_true")), 0.0, true,
+                 tolerance("unrefined", "rot_rad"), 0.0);
+  report.compare("t_true", list(got.pose.position_m), expect.at("t_true"), true,
+                 tolerance("unrefined", "trans_m"), 0.0);
+}
+
+void verify_poses(const json& file, Report& report) {
+  for (const json& one_case : file.at("cases")) {
+    report.begin_case(one_case.at("id"));
+    const json &p = one_case.at("params"), &inputs = one_case.at("inputs");
+    std::vector<Vector3d> points_m;
+    std::vector<Vector2d> pixels_px;
+    for (const json& v : inputs.at("points")) points_m.push_back(vector_3(v));
+    for (const json& v : inputs.at("pixels")) pixels_px.push_back(vector_2(v));
+    const host::tracking::Camera camera{.fx_px = number(p.at("fx")),
+                                        .fy_px = number(p.at("fy")),
+                                        .cx_px = number(p.at("cx")),
+                                        .cy_px = number(p.at("cy"))};
+    verify_pose(host::tracking::estimate_pose(camera, points_m, pixels_px), one_case, report);
+  }
+}
+
+constexpr Verifier kVerifiers[] = {
+    {"coordinate_chain", verify_cases<transform_results>},
+    {"epnp_pose", verify_poses},
+    {"leg_two_bone_ik", verify_cases<leg_results>},
+    {"ccd_sub_root", verify_cases<ccd_results>},
+};
+
+}  // namespace
+
+std::span<const Verifier> tracking_verifiers() { return kVerifiers; }
+
+}  // namespace tact::tools::verify
