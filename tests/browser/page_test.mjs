@@ -169,15 +169,24 @@ async function check_replay(browser, recording) {
   check("tact-view ends cleanly", (await stop(viewer)) === 0);
 }
 
+/** What the kernel calls a thread; nothing when it has ended meanwhile, as tactd's checks of the PC do. */
+function name_of(task) {
+  try {
+    return readFileSync(join(task, "comm"), "utf8").trim();
+  } catch {
+    return "";
+  }
+}
+
 /** The thread of tactd that has the loop, once it runs. */
 async function loop_of(tactd) {
-  for (;;) {
-    const tasks = `/proc/${tactd.pid}/task`;
-    const loop = readdirSync(tasks).find((id) =>
-      readFileSync(join(tasks, id, "comm"), "utf8").trim() === "tact-loop");
+  const tasks = `/proc/${tactd.pid}/task`;
+  for (let i = 0; i < 400 && existsSync(tasks); ++i) {
+    const loop = readdirSync(tasks).find((id) => name_of(join(tasks, id)) === "tact-loop");
     if (loop) return loop;
     await pause(50);
   }
+  throw new Error("tactd has no thread called tact-loop");
 }
 
 /** A loop that strace holds in its sleep, as a driver would that hangs; its last seconds stay. */
