@@ -7,6 +7,8 @@
 namespace tact::model::contact {
 namespace {
 
+constexpr double kRounding_ratio = 1e-12;  // of a force at its cap
+
 // The part of a tangential vector along which the nearest point can move: all of it on a face, the
 // edge's share on an edge, nothing in a vertex.
 Vec3 movable(const SurfaceView& s, const Place& place, const Vec3& v) RT_SAFE {
@@ -239,19 +241,19 @@ Vec3 Contact::spring_N(const Shear& shear, std::size_t i) const RT_SAFE {
 // what they leave above the cap is cut from the force alone.
 void Contact::resist_sliding() RT_SAFE {
   constexpr int kSweeps = 4;
-  bool slipped = true;
-  for (int sweep = 0; sweep < kSweeps && slipped; ++sweep) {
-    slipped = false;
+  for (int sweep = 0; sweep <= kSweeps; ++sweep) {
+    bool slipped = false;
     for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
-      const Vec3 excess_N = beyond_friction_N(i, spring_N(shear_, i));
+      shear_N_[i] = touch_[i].state == TouchState::kFree ? Vec3{} : spring_N(shear_, i);
+      const Vec3 excess_N = beyond_friction_N(i, shear_N_[i]);
       if (excess_N == Vec3{}) continue;
-      touch_[i].shift_m -= excess_N / shear_.own_N_per_m(i);
       slipped = true;
+      if (sweep == kSweeps)
+        shear_N_[i] -= excess_N;
+      else
+        touch_[i].shift_m -= excess_N / shear_.own_N_per_m(i);
     }
-  }
-  for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
-    shear_N_[i] = touch_[i].state == TouchState::kFree ? Vec3{} : spring_N(shear_, i);
-    shear_N_[i] -= beyond_friction_N(i, shear_N_[i]);
+    if (!slipped) return;
   }
 }
 
@@ -260,7 +262,7 @@ Vec3 Contact::beyond_friction_N(std::size_t i, const Vec3& f_N) const RT_SAFE {
   if (touch_[i].state != TouchState::kTouching) return {};
   const double cap_N = scene_.parameters.friction_ratio * pressing_[i].response.law.force_N;
   const double spring_N = norm(f_N);
-  return spring_N > cap_N ? (1.0 - cap_N / spring_N) * f_N : Vec3{};
+  return spring_N > cap_N * (1.0 + kRounding_ratio) ? (1.0 - cap_N / spring_N) * f_N : Vec3{};
 }
 
 // F = F(e) n - f - dU/ds
