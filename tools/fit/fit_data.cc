@@ -77,8 +77,8 @@ Result<FitData> fit_data_of(const ground_truth::ReferenceData& reference,
   if (auto differs = check_reference_fits(reference, scene, ground_truth::ModulusOf::kAny))
     return std::move(*differs);
   FitData data{.source = fmt::format("{}, E = {:g} Pa, nu = {:g}, tool radius {:g} m",
-                                     reference.mesh, reference.youngs_modulus_Pa,
-                                     reference.poisson_ratio, reference.tool_radius_m),
+                                     reference.body.mesh, reference.body.youngs_modulus_Pa,
+                                     reference.body.poisson_ratio, reference.tool_radius_m),
                .large_strain = large_strain};
   std::size_t rings = 0;
   for (const ground_truth::SolvedSite& solved : reference.sites) {

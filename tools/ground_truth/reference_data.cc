@@ -31,13 +31,7 @@ SolvedSite site_of(const json& j) {
 }
 
 ReferenceData data_of(const json& j) {
-  ReferenceData data{.mesh = j.at("mesh").get<std::string>(),
-                     .mesh_hash = j.at("mesh_hash").get<std::string>(),
-                     .solver = j.at("solver").get<std::string>(),
-                     .youngs_modulus_Pa = j.at("youngs_modulus_Pa").get<double>(),
-                     .poisson_ratio = j.at("poisson_ratio").get<double>(),
-                     .fixed_min_m = vector_of(j.at("fixed_min_m")),
-                     .fixed_max_m = vector_of(j.at("fixed_max_m")),
+  ReferenceData data{.body = body_of(j),
                      .tool_radius_m = j.at("tool_radius_m").get<double>(),
                      .ring_pitch_m = j.at("ring_pitch_m").get<double>(),
                      .sites = {}};
@@ -48,7 +42,8 @@ ReferenceData data_of(const json& j) {
 /// What a reader may rely on. Error: what is not so.
 std::optional<Error> check(const ReferenceData& data) {
   if (data.sites.empty()) return Error{"no site"};
-  if (!(data.tool_radius_m > 0.0) || !(data.ring_pitch_m > 0.0) || !(data.youngs_modulus_Pa > 0.0))
+  if (!(data.tool_radius_m > 0.0) || !(data.ring_pitch_m > 0.0) ||
+      !(data.body.youngs_modulus_Pa > 0.0))
     return Error{"tool_radius_m, ring_pitch_m and youngs_modulus_Pa must be above 0"};
   for (const SolvedSite& site : data.sites) {
     if (std::abs(norm(site.direction) - 1.0) > 1e-4)
@@ -92,13 +87,9 @@ std::string reference_text(const ReferenceData& data) {
   std::string sites;
   for (const SolvedSite& s : data.sites) sites += (sites.empty() ? "\n " : ",\n ") + text_of(s);
   return fmt::format(
-      "{{\"schema\": \"{}\",\n\"mesh\": {}, \"mesh_hash\": {}, \"solver\": {},\n"
-      "\"youngs_modulus_Pa\": {:.7g}, \"poisson_ratio\": {:.7g},\n"
-      "\"fixed_min_m\": {}, \"fixed_max_m\": {},\n"
+      "{{\"schema\": \"{}\",\n{},\n"
       "\"tool_radius_m\": {:.7g}, \"ring_pitch_m\": {:.7g},\n\"sites\": [{}]}}\n",
-      kSchema, json(data.mesh).dump(), json(data.mesh_hash).dump(), json(data.solver).dump(),
-      data.youngs_modulus_Pa, data.poisson_ratio, vector_text(data.fixed_min_m),
-      vector_text(data.fixed_max_m), data.tool_radius_m, data.ring_pitch_m, sites);
+      kSchema, body_text(data.body), data.tool_radius_m, data.ring_pitch_m, sites);
 }
 
 }  // namespace tact::tools::ground_truth

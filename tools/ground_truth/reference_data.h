@@ -14,6 +14,7 @@
 
 #include "model/result.h"
 #include "model/types.h"
+#include "tools/ground_truth/solved_body.h"
 
 namespace tact::tools::ground_truth {
 
@@ -36,12 +37,7 @@ struct SolvedSite {
 };
 
 struct ReferenceData {
-  std::string mesh;       // file name
-  std::string mesh_hash;  // of vertices and triangles, 16 hex digits
-  std::string solver;
-  double youngs_modulus_Pa = 0.0;
-  double poisson_ratio = 0.0;
-  model::Vec3 fixed_min_m{}, fixed_max_m{};  // triangles with all corners in this box are held
+  SolvedBody body;
   double tool_radius_m = 0.0;
   double ring_pitch_m = 0.0;
   std::vector<SolvedSite> sites;

@@ -28,23 +28,21 @@ Error differs(const Scene& scene, const std::string& what, const char* how = "")
                       what, how)};
 }
 
-template <typename Reference>
-std::optional<Error> elastic_differs(const Reference& reference, const Scene& scene,
-                                     ModulusOf modulus, const char* how) {
+std::optional<Error> elastic_differs(const SolvedBody& body, const Scene& scene, ModulusOf modulus,
+                                     const char* how) {
   const auto& elastic = *scene.elastic;
-  if (!is_same(reference.poisson_ratio, elastic.poisson_ratio))
+  if (!is_same(body.poisson_ratio, elastic.poisson_ratio))
     return differs(scene,
                    fmt::format("elastic.poisson_ratio is {:g}, the reference's {:g}",
-                               elastic.poisson_ratio, reference.poisson_ratio),
+                               elastic.poisson_ratio, body.poisson_ratio),
                    how);
-  if (modulus == ModulusOf::kSame &&
-      !is_same(reference.youngs_modulus_Pa, elastic.youngs_modulus_Pa))
+  if (modulus == ModulusOf::kSame && !is_same(body.youngs_modulus_Pa, elastic.youngs_modulus_Pa))
     return differs(scene,
                    fmt::format("elastic.youngs_modulus_Pa is {:g}, the reference's {:g}",
-                               elastic.youngs_modulus_Pa, reference.youngs_modulus_Pa),
+                               elastic.youngs_modulus_Pa, body.youngs_modulus_Pa),
                    how);
-  if (!is_same(reference.fixed_min_m, elastic.fixed_min_m) ||
-      !is_same(reference.fixed_max_m, elastic.fixed_max_m))
+  if (!is_same(body.fixed_min_m, elastic.fixed_min_m) ||
+      !is_same(body.fixed_max_m, elastic.fixed_max_m))
     return differs(scene, "the reference was solved with another held box [elastic]", how);
   return std::nullopt;
 }
@@ -64,9 +62,9 @@ std::optional<Error> check_reference_fits(const ReferenceData& reference, const 
                           is_same(vertices[site.vertex] - scene.organ.position_m, site.point_m);
     if (!is_there)
       return differs(scene, fmt::format("vertex {} is not where the reference of {} has it",
-                                        site.vertex, reference.mesh));
+                                        site.vertex, reference.body.mesh));
   }
-  return scene.elastic ? elastic_differs(reference, scene, modulus, "") : std::nullopt;
+  return scene.elastic ? elastic_differs(reference.body, scene, modulus, "") : std::nullopt;
 }
 
 std::optional<Error> check_tool_reference_fits(const ToolReference& reference, const Scene& scene) {
@@ -86,11 +84,11 @@ std::optional<Error> check_tool_reference_fits(const ToolReference& reference, c
         norm(off - dot(off, place.direction) * place.direction) > kSamePoint_m)
       return differs(scene,
                      place.vertex ? fmt::format("vertex {} is not where the reference of {} has it",
-                                                *place.vertex, reference.mesh)
+                                                *place.vertex, reference.body.mesh)
                                   : "hand.site_m is not where the reference has it",
                      kTool);
   }
-  if (scene.elastic) return elastic_differs(reference, scene, ModulusOf::kSame, kTool);
+  if (scene.elastic) return elastic_differs(reference.body, scene, ModulusOf::kSame, kTool);
   return differs(scene, "has no [elastic], which the reference was solved with", kTool);
 }
 

@@ -14,6 +14,7 @@
 
 #include "model/result.h"
 #include "model/types.h"
+#include "tools/ground_truth/solved_body.h"
 
 namespace tact::tools::ground_truth {
 
@@ -32,6 +33,28 @@ inline double error_of(const nlohmann::json& j) {
 
 inline std::string error_text(double ratio) {
   return std::isfinite(ratio) ? fmt::format("{:.3g}", ratio) : "null";
+}
+
+inline SolvedBody body_of(const nlohmann::json& j) {
+  return {.mesh = j.at("mesh").get<std::string>(),
+          .mesh_hash = j.at("mesh_hash").get<std::string>(),
+          .solver = j.at("solver").get<std::string>(),
+          .youngs_modulus_Pa = j.at("youngs_modulus_Pa").get<double>(),
+          .poisson_ratio = j.at("poisson_ratio").get<double>(),
+          .fixed_min_m = vector_of(j.at("fixed_min_m")),
+          .fixed_max_m = vector_of(j.at("fixed_max_m"))};
+}
+
+/// The keys of body_of, for the head of a file.
+inline std::string body_text(const SolvedBody& body) {
+  using nlohmann::json;
+  return fmt::format(
+      "\"mesh\": {}, \"mesh_hash\": {}, \"solver\": {},\n"
+      "\"youngs_modulus_Pa\": {:.7g}, \"poisson_ratio\": {:.7g},\n"
+      "\"fixed_min_m\": {}, \"fixed_max_m\": {}",
+      json(body.mesh).dump(), json(body.mesh_hash).dump(), json(body.solver).dump(),
+      body.youngs_modulus_Pa, body.poisson_ratio, vector_text(body.fixed_min_m),
+      vector_text(body.fixed_max_m));
 }
 
 /// `make` is the command that makes such a file; `data_of` reads the JSON, `check` says what a

@@ -37,15 +37,7 @@ ToolPlace place_of(const json& j) {
 }
 
 ToolReference tool_data_of(const json& j) {
-  ToolReference data{.mesh = j.at("mesh").get<std::string>(),
-                     .mesh_hash = j.at("mesh_hash").get<std::string>(),
-                     .solver = j.at("solver").get<std::string>(),
-                     .youngs_modulus_Pa = j.at("youngs_modulus_Pa").get<double>(),
-                     .poisson_ratio = j.at("poisson_ratio").get<double>(),
-                     .fixed_min_m = vector_of(j.at("fixed_min_m")),
-                     .fixed_max_m = vector_of(j.at("fixed_max_m")),
-                     .sphere = {},
-                     .places = {}};
+  ToolReference data{.body = body_of(j), .sphere = {}, .places = {}};
   for (const json& s : j.at("spheres"))
     data.sphere.push_back(
         {.offset_m = vector_of(s.at("offset_m")), .radius_m = s.at("radius_m").get<double>()});
@@ -121,13 +113,8 @@ std::string tool_reference_text(const ToolReference& data) {
     spheres += fmt::format("{}{{\"offset_m\": {}, \"radius_m\": {:.7g}}}",
                            spheres.empty() ? "" : ", ", vector_text(s.offset_m), s.radius_m);
   for (const ToolPlace& p : data.places) places += (places.empty() ? "\n " : ",\n ") + text_of(p);
-  return fmt::format(
-      "{{\"schema\": \"{}\",\n\"mesh\": {}, \"mesh_hash\": {}, \"solver\": {},\n"
-      "\"youngs_modulus_Pa\": {:.7g}, \"poisson_ratio\": {:.7g},\n"
-      "\"fixed_min_m\": {}, \"fixed_max_m\": {},\n\"spheres\": [{}],\n\"places\": [{}]}}\n",
-      kToolSchema, json(data.mesh).dump(), json(data.mesh_hash).dump(), json(data.solver).dump(),
-      data.youngs_modulus_Pa, data.poisson_ratio, vector_text(data.fixed_min_m),
-      vector_text(data.fixed_max_m), spheres, places);
+  return fmt::format("{{\"schema\": \"{}\",\n{},\n\"spheres\": [{}],\n\"places\": [{}]}}\n",
+                     kToolSchema, body_text(data.body), spheres, places);
 }
 
 }  // namespace tact::tools::ground_truth

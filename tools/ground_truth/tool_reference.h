@@ -17,6 +17,7 @@
 #include "model/contact/contact.h"
 #include "model/result.h"
 #include "model/types.h"
+#include "tools/ground_truth/solved_body.h"
 
 namespace tact::tools::ground_truth {
 
@@ -36,12 +37,7 @@ struct ToolPlace {
 };
 
 struct ToolReference {
-  std::string mesh;       // file name
-  std::string mesh_hash;  // of vertices and triangles, 16 hex digits
-  std::string solver;
-  double youngs_modulus_Pa = 0.0;
-  double poisson_ratio = 0.0;
-  model::Vec3 fixed_min_m{}, fixed_max_m{};  // triangles with all corners in this box are held
+  SolvedBody body;
   std::vector<model::contact::ProbeSphere> sphere;  // tool frame
   std::vector<ToolPlace> places;
 };

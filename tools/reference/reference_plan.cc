@@ -184,17 +184,22 @@ std::vector<Indentation> cases_of(const ReferencePlan& plan) {
   return out;
 }
 
+ground_truth::SolvedBody solved_body(const Organ& organ, const std::string& mesh_name,
+                                     const std::string& solver) {
+  return {.mesh = mesh_name,
+          .mesh_hash = organ.hash,
+          .solver = solver,
+          .youngs_modulus_Pa = organ.material.youngs_modulus_Pa,
+          .poisson_ratio = organ.material.poisson_ratio,
+          .fixed_min_m = organ.held.min_m,
+          .fixed_max_m = organ.held.max_m};
+}
+
 ground_truth::ReferenceData assemble(
     const ReferencePlan& plan,
     const std::vector<std::optional<ground_truth::ReferenceCase>>& solved,
     const std::string& solver) {
-  ground_truth::ReferenceData data{.mesh = plan.mesh_name,
-                                   .mesh_hash = plan.organ.hash,
-                                   .solver = solver,
-                                   .youngs_modulus_Pa = plan.organ.material.youngs_modulus_Pa,
-                                   .poisson_ratio = plan.organ.material.poisson_ratio,
-                                   .fixed_min_m = plan.organ.held.min_m,
-                                   .fixed_max_m = plan.organ.held.max_m,
+  ground_truth::ReferenceData data{.body = solved_body(plan.organ, plan.mesh_name, solver),
                                    .tool_radius_m = plan.tool_radius_m,
                                    .ring_pitch_m = kRingPitch_m,
                                    .sites = {}};

@@ -34,6 +34,10 @@ struct ReferencePlan {
   int level = 2;
 };
 
+/// What a file of results says of its body.
+ground_truth::SolvedBody solved_body(const Organ& organ, const std::string& mesh_name,
+                                     const std::string& solver);
+
 /// Organ, tool and sites of a scene; depths, level and large strain stay as they are by default.
 model::Result<ReferencePlan> plan_of(const model::scene::Scene& scene);
 

@@ -209,13 +209,7 @@ std::vector<ToolPress> presses_of(const ToolPlan& plan) {
 ground_truth::ToolReference assemble(const ToolPlan& plan,
                                      const std::vector<std::vector<ToolCase>>& solved,
                                      const std::string& solver) {
-  ground_truth::ToolReference out{.mesh = plan.mesh_name,
-                                  .mesh_hash = plan.organ.hash,
-                                  .solver = solver,
-                                  .youngs_modulus_Pa = plan.organ.material.youngs_modulus_Pa,
-                                  .poisson_ratio = plan.organ.material.poisson_ratio,
-                                  .fixed_min_m = plan.organ.held.min_m,
-                                  .fixed_max_m = plan.organ.held.max_m,
+  ground_truth::ToolReference out{.body = solved_body(plan.organ, plan.mesh_name, solver),
                                   .sphere = plan.sphere,
                                   .places = plan.places};
   const std::size_t n = plan.places.size();

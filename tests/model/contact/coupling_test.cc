@@ -10,33 +10,15 @@
 #include <random>
 #include <vector>
 
-#include "model/law/compliance_law.h"
-#include "model/tissue/elastic_field.h"
 #include "model/units.h"
 #include "tests/support/no_alloc.h"
+#include "tests/support/soft_half_space.h"
 
 namespace tact::model::contact::coupling_test {
 
 constexpr double kRadius_m = 4_mm, kYoungs_Pa = 5000.0, kPoisson = 0.45;
 
-/// A half-space under spheres, through the field that scenes use.
-struct HalfSpace {
-  law::ElasticTip tip{
-      .youngs_modulus_Pa = kYoungs_Pa, .poisson_ratio = kPoisson, .radius_m = kRadius_m};
-  std::vector<double> flat{0.0};
-  law::ComplianceCurve curve = *law::make_compliance_curve({.tip = tip,
-                                                            .working_depth_m = 12_mm,
-                                                            .ring_pitch_m = 2_mm,
-                                                            .ring_m_per_N = flat,
-                                                            .table_knots = 257});
-  const law::Law* law = &curve;
-  tissue::ElasticField field{{.curves = {&law, 1},
-                              .coordinate = {},
-                              .pull_coordinate = {},
-                              .surface = {},
-                              .relaxation = {},
-                              .neighbours = {.contact_modulus_Pa = tip.contact_modulus_Pa()}}};
-};
+using HalfSpace = tests::SoftHalfSpace;
 
 struct Group {
   std::vector<PressingSphere> sphere;

@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "model/contact/contact.h"
-#include "model/law/compliance_law.h"
-#include "model/tissue/elastic_field.h"
 #include "model/units.h"
 #include "tests/support/no_alloc.h"
 #include "tests/support/shapes.h"
+#include "tests/support/soft_half_space.h"
 
 namespace tact::model::contact::whole_tool_test {
 
@@ -23,27 +22,14 @@ struct Bench {
   explicit Bench(std::vector<ProbeSphere> s, mesh::SurfaceMesh m = tests::make_plate(160_mm, 32))
       : mesh(std::move(m)), spheres(std::move(s)) {}
   Contact contact() {
-    return Contact({.law = &field,
+    return Contact({.law = &tissue.field,
                     .parameters = parameters,
                     .spheres = spheres,
                     .surface = mesh.view(),
                     .seeds = seeds.view(),
                     .blade = {}});
   }
-  law::ElasticTip tip{.youngs_modulus_Pa = 5000.0, .poisson_ratio = 0.45, .radius_m = kRadius_m};
-  std::vector<double> flat{0.0};
-  law::ComplianceCurve curve = *law::make_compliance_curve({.tip = tip,
-                                                            .working_depth_m = 12_mm,
-                                                            .ring_pitch_m = 2_mm,
-                                                            .ring_m_per_N = flat,
-                                                            .table_knots = 257});
-  const law::Law* law = &curve;
-  tissue::ElasticField field{{.curves = {&law, 1},
-                              .coordinate = {},
-                              .pull_coordinate = {},
-                              .surface = {},
-                              .relaxation = {},
-                              .neighbours = {.contact_modulus_Pa = tip.contact_modulus_Pa()}}};
+  tests::SoftHalfSpace tissue;
   mesh::SurfaceMesh mesh;
   SeedGrid seeds = make_seed_grid(mesh.view(), 20_mm);
   std::vector<ProbeSphere> spheres;
@@ -181,7 +167,7 @@ TEST(WholeTool, SidewaysThePairIsSofterThanTheSumOfEach) {
     return -feel_at(contact, tool).force_N.x / 0.5_mm;
   };
   // MC-4 by hand: each jaw carries t / (1 / k_t + C)
-  const double c = 1.0 / (std::numbers::pi * Bench(jaws(2)).tip.contact_modulus_Pa() * 8_mm);
+  const double c = 1.0 / (std::numbers::pi * Bench(jaws(2)).tissue.tip.contact_modulus_Pa() * 8_mm);
   EXPECT_NEAR(stiffness_N_per_m(1), 20.0, 1e-9);
   EXPECT_NEAR(stiffness_N_per_m(2), 2.0 / (1.0 / 20.0 + c), 1e-6);
 }
@@ -206,7 +192,7 @@ TEST(WholeTool, APinchedLobeIsDraggedTheSameWayOnBothSides) {
   Bench bench(jaws(2));
   const Indentation top{.sphere = 0, .normal = {0, 0, 1}}, below{.sphere = 1, .normal = {0, 0, -1}};
   Coupling c{};
-  c[0][1] = c[1][0] = bench.field.coupling_m_per_N(top, below, 24_mm);
+  c[0][1] = c[1][0] = bench.tissue.field.coupling_m_per_N(top, below, 24_mm);
   const Shear shear(20.0, c, {true, true, false, false});
   const double together_N = shear.force_N({Vec3{1_mm, 0, 0}, Vec3{1_mm, 0, 0}}, 0).x;
   EXPECT_GT(c[0][1], 0.0);

@@ -67,10 +67,10 @@ class Peers : public testing::Test {
     site.cases.push_back(
         {.depth_m = -0.005, .force_N = -kTip.pulled_stiffness_N_per_m() * 0.005, .profile_m = {}});
     reference_.tool_radius_m = kRadius_m;
-    reference_.youngs_modulus_Pa = kE_Pa;
-    reference_.poisson_ratio = kNu;
-    reference_.fixed_min_m = scene_.elastic->fixed_min_m;
-    reference_.fixed_max_m = scene_.elastic->fixed_max_m;
+    reference_.body.youngs_modulus_Pa = kE_Pa;
+    reference_.body.poisson_ratio = kNu;
+    reference_.body.fixed_min_m = scene_.elastic->fixed_min_m;
+    reference_.body.fixed_max_m = scene_.elastic->fixed_max_m;
     reference_.ring_pitch_m = 0.006;
     reference_.sites = {site};
     const auto cases = cases_of(scene_, reference_);

@@ -34,16 +34,7 @@ model::scene::Scene make_scene() {
   model::scene::Scene scene = tests::make_plate_scene();
   scene.described = {LawKind::kRhombus, LawKind::kDiscStack, LawKind::kHexSheet,
                      LawKind::kSpringPatch};
-  scene.disc_stack = {
-      .disc = {.outer_diameter_m = 0.008,
-               .inner_diameter_m = 0.004,
-               .thickness_m = 0.002,
-               .free_height_m = 0.0025,
-               .youngs_modulus_Pa = 5000.0,
-               .poisson_ratio = 0.3},
-      .form = model::law::DiscForm::kLinear,
-      .delays = {
-          .first_delay_s = 1e-6, .delay_ratio = 1.0, .refresh_rate_Hz = 1000.0, .layers = 20}};
+  scene.disc_stack = tests::make_linear_discs();
   scene.hex_sheet = {.ring_pitch_m = 0.004,
                      .contact_stiffness_N_per_m = 5.0,
                      .body_stiffness_N_per_m = 1.0,
@@ -66,7 +57,7 @@ model::scene::Scene make_scene() {
 /// Truth: a spring of this stiffness in the middle of the plate, and a dent that ends at 4 mm.
 ground_truth::ReferenceData linear_truth(double stiffness_N_per_m) {
   ground_truth::ReferenceData data;
-  data.mesh = "plate";
+  data.body.mesh = "plate";
   data.tool_radius_m = 0.004;
   data.ring_pitch_m = 0.004;
   ground_truth::SolvedSite site{

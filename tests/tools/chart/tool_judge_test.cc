@@ -22,16 +22,7 @@ constexpr TimingSettings kShort{.ticks = 100, .rounds = 1, .limit_s = 0.05, .ins
 model::scene::Scene make_scene() {
   model::scene::Scene scene = tests::make_plate_scene();
   scene.described = {LawKind::kDiscStack};
-  scene.disc_stack = {
-      .disc = {.outer_diameter_m = 0.008,
-               .inner_diameter_m = 0.004,
-               .thickness_m = 0.002,
-               .free_height_m = 0.0025,
-               .youngs_modulus_Pa = 5000.0,
-               .poisson_ratio = 0.3},
-      .form = model::law::DiscForm::kLinear,
-      .delays = {
-          .first_delay_s = 1e-6, .delay_ratio = 1.0, .refresh_rate_Hz = 1000.0, .layers = 20}};
+  scene.disc_stack = tests::make_linear_discs();
   scene.hand_inward = {0, 0, -1};
   scene.elastic = model::scene::ElasticSettings{.youngs_modulus_Pa = 5000.0, .poisson_ratio = 0.45};
   return scene;
@@ -40,8 +31,8 @@ model::scene::Scene make_scene() {
 /// Truth: a spring of this stiffness, straight down.
 ToolReference linear_truth(const model::scene::Scene& scene, double stiffness_N_per_m) {
   ToolReference data;
-  data.youngs_modulus_Pa = 5000.0;
-  data.poisson_ratio = 0.45;
+  data.body.youngs_modulus_Pa = 5000.0;
+  data.body.poisson_ratio = 0.45;
   data.sphere = scene.tool.spheres;
   ground_truth::ToolPlace place;
   place.direction = {0, 0, -1};

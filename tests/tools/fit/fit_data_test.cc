@@ -11,11 +11,11 @@ namespace tact::tools::fit::fit_data_test {
 using model::operator""_mm;
 
 ground_truth::ReferenceData make_reference(const model::scene::Scene& scene) {
-  ground_truth::ReferenceData data{.mesh = "plate.obj",
-                                   .mesh_hash = "",
-                                   .solver = "",
-                                   .youngs_modulus_Pa = 5000.0,
-                                   .poisson_ratio = 0.45,
+  ground_truth::ReferenceData data{.body = {.mesh = "plate.obj",
+                                            .mesh_hash = "",
+                                            .solver = "",
+                                            .youngs_modulus_Pa = 5000.0,
+                                            .poisson_ratio = 0.45},
                                    .tool_radius_m = 4_mm,
                                    .ring_pitch_m = 2_mm,
                                    .sites = {}};

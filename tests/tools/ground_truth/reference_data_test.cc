@@ -4,21 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
+
+#include "tests/tools/ground_truth/damaged_file.h"
 
 namespace tact::tools::ground_truth::reference_data_test {
 
-namespace fs = std::filesystem;
-
 ReferenceData example() {
-  return {.mesh = "an \"organ\".obj",
-          .mesh_hash = "0123456789abcdef",
-          .solver = "by hand",
-          .youngs_modulus_Pa = 5000.0,
-          .poisson_ratio = 0.45,
-          .fixed_min_m = {-1.0, -1.0, -1.0},
-          .fixed_max_m = {1.0, -0.032, 1.0},
+  return {.body = {.mesh = "an \"organ\".obj",
+                   .mesh_hash = "0123456789abcdef",
+                   .solver = "by hand",
+                   .youngs_modulus_Pa = 5000.0,
+                   .poisson_ratio = 0.45,
+                   .fixed_min_m = {-1.0, -1.0, -1.0},
+                   .fixed_max_m = {1.0, -0.032, 1.0}},
           .tool_radius_m = 0.004,
           .ring_pitch_m = 0.001,
           .sites = {{.vertex = 7,
@@ -38,30 +36,16 @@ ReferenceData example() {
                                 .profile_m = {-0.002, -0.002, -0.0005}}}}}};
 }
 
-model::Result<ReferenceData> read_text(const std::string& text) {
-  const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
-  const std::string path = fs::path(testing::TempDir()) / ("reference_data_" + name + ".json");
-  std::ofstream(path) << text;
-  auto data = read_reference(path);
-  fs::remove(path);
-  return data;
-}
-
-void expect_error(std::string text, const std::string& from, const std::string& to,
+void expect_error(const std::string& text, const std::string& from, const std::string& to,
                   const std::string& what) {
-  const auto at = text.find(from);
-  ASSERT_NE(at, std::string::npos) << from;
-  const auto data = read_text(text.replace(at, from.size(), to));
-  ASSERT_FALSE(data) << "with " << to;
-  EXPECT_NE(data.error().sentence.find(what), std::string::npos) << data.error().sentence;
-  EXPECT_NE(data.error().sentence.find("tact-reference"), std::string::npos) << "the cure";
+  tests::expect_error(read_reference, text, from, to, what, "tact-reference SCENE --out");
 }
 
 TEST(ReferenceData, ComesBackAsItWasWritten) {
-  const auto back = read_text(reference_text(example()));
+  const auto back = tests::read_text(read_reference, reference_text(example()));
   ASSERT_TRUE(back) << back.error().sentence;
   EXPECT_EQ(reference_text(*back), reference_text(example()));
-  EXPECT_EQ(back->mesh, example().mesh);
+  EXPECT_EQ(back->body.mesh, example().body.mesh);
   ASSERT_EQ(back->sites.size(), 1U);
   ASSERT_EQ(back->sites[0].cases.size(), 2U);
   EXPECT_EQ(back->sites[0].vertex, 7U);
@@ -78,7 +62,7 @@ TEST(ReferenceData, AnErrorThatIsNotKnownIsNull) {
   data.sites[0].cases[0].force_error_ratio = std::nan("");
   const std::string text = reference_text(data);
   EXPECT_NE(text.find("\"force_error_ratio\": null,"), std::string::npos) << text;
-  const auto back = read_text(text);
+  const auto back = tests::read_text(read_reference, text);
   ASSERT_TRUE(back) << back.error().sentence;
   EXPECT_TRUE(std::isnan(back->sites[0].cases[0].force_error_ratio));
   EXPECT_EQ(back->sites[0].cases[1].force_error_ratio, 0.01);

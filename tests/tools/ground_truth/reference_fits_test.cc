@@ -15,10 +15,10 @@ class ReferenceFits : public testing::Test {
                                                    .poisson_ratio = 0.45,
                                                    .fixed_min_m = {-1, -1, -1},
                                                    .fixed_max_m = {1, 1, -0.03}};
-    reference_.youngs_modulus_Pa = 5000.0;
-    reference_.poisson_ratio = 0.45;
-    reference_.fixed_min_m = scene_.elastic->fixed_min_m;
-    reference_.fixed_max_m = scene_.elastic->fixed_max_m;
+    reference_.body.youngs_modulus_Pa = 5000.0;
+    reference_.body.poisson_ratio = 0.45;
+    reference_.body.fixed_min_m = scene_.elastic->fixed_min_m;
+    reference_.body.fixed_max_m = scene_.elastic->fixed_max_m;
     reference_.tool_radius_m = scene_.tool.spheres[0].radius_m;
     reference_.sites = {{.vertex = 3,
                          .point_m = scene_.organ_mesh.vertex_m[3] - scene_.organ.position_m,

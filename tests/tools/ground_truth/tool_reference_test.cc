@@ -4,15 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
 #include "tests/support/test_scene.h"
+#include "tests/tools/ground_truth/damaged_file.h"
 #include "tools/ground_truth/reference_fits.h"
 
 namespace tact::tools::ground_truth::tool_reference_test {
 
-namespace fs = std::filesystem;
 using model::Vec3;
 
 ToolReference example() {
@@ -22,13 +20,13 @@ ToolReference example() {
        .force_N = 0.05,
        .sphere_N = {0.02, 0.03},
        .force_error_ratio = std::nan("")}};
-  return {.mesh = "an \"organ\".obj",
-          .mesh_hash = "0123456789abcdef",
-          .solver = "by hand",
-          .youngs_modulus_Pa = 5000.0,
-          .poisson_ratio = 0.45,
-          .fixed_min_m = {-1.0, -1.0, -1.0},
-          .fixed_max_m = {1.0, -0.032, 1.0},
+  return {.body = {.mesh = "an \"organ\".obj",
+                   .mesh_hash = "0123456789abcdef",
+                   .solver = "by hand",
+                   .youngs_modulus_Pa = 5000.0,
+                   .poisson_ratio = 0.45,
+                   .fixed_min_m = {-1.0, -1.0, -1.0},
+                   .fixed_max_m = {1.0, -0.032, 1.0}},
           .sphere = {{{0, -0.004, 0.004}, 0.004}, {{0, 0.004, 0.004}, 0.004}},
           .places = {{.vertex = {},
                       .point_m = {0, 0, 0},
@@ -42,27 +40,13 @@ ToolReference example() {
                       .cases = cases}}};
 }
 
-model::Result<ToolReference> read_text(const std::string& text) {
-  const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
-  const std::string path = fs::path(testing::TempDir()) / ("tool_reference_" + name + ".json");
-  std::ofstream(path) << text;
-  auto data = read_tool_reference(path);
-  fs::remove(path);
-  return data;
-}
-
-void expect_error(std::string text, const std::string& from, const std::string& to,
+void expect_error(const std::string& text, const std::string& from, const std::string& to,
                   const std::string& what) {
-  const auto at = text.find(from);
-  ASSERT_NE(at, std::string::npos) << from;
-  const auto data = read_text(text.replace(at, from.size(), to));
-  ASSERT_FALSE(data) << "with " << to;
-  EXPECT_NE(data.error().sentence.find(what), std::string::npos) << data.error().sentence;
-  EXPECT_NE(data.error().sentence.find("tact-reference SCENE --tool"), std::string::npos);
+  tests::expect_error(read_tool_reference, text, from, to, what, "tact-reference SCENE --tool");
 }
 
 TEST(ToolReference, ComesBackAsItWasWritten) {
-  const auto back = read_text(tool_reference_text(example()));
+  const auto back = tests::read_text(read_tool_reference, tool_reference_text(example()));
   ASSERT_TRUE(back) << back.error().sentence;
   EXPECT_EQ(tool_reference_text(*back), tool_reference_text(example()));
   EXPECT_FALSE(back->places[0].vertex);
