@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// soft_half_space.h - a flat half-space of E = 5 kPa, nu = 0.45 below balls of 4 mm, through the field
-// that scenes use.
+// soft_half_space.h - a flat half-space of E = 5 kPa, nu = 0.45 below balls of 4 mm, through the
+// field that scenes use.
 #pragma once
 
 #include <vector>
