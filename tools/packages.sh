@@ -47,7 +47,7 @@ BUILD_PACKAGES=(g++ cmake ninja-build ca-certificates libfmt-dev libcli11-dev
   nlohmann-json3-dev libtomlplusplus-dev libboost-dev libssl-dev libusb-1.0-0-dev libgpiod-dev libseccomp-dev
   libeigen3-dev libopencv-core-dev libopencv-calib3d-dev)
 # What the measuring tools call or link besides.
-TOOL_PACKAGES=(gmsh calculix-ccx gnuplot-nox libmetis-dev libbullet-dev libbenchmark-dev
+TOOL_PACKAGES=(gmsh calculix-ccx gnuplot-nox libmetis-dev libbullet-dev libbenchmark-dev libkainjow-mustache-dev
   rt-tests=cyclictest stress-ng=stress-ng)
 # What the tests link or call besides.
 TEST_PACKAGES=(libgtest-dev protobuf-compiler=protoc strace)

@@ -25,6 +25,7 @@ if(TACT_VIEW)
 endif()
 if(TACT_TOOLS)
   find_package(benchmark REQUIRED)
+  find_path(MUSTACHE_INCLUDE_DIR kainjow/mustache.hpp REQUIRED)  # a header alone
   find_package(Bullet MODULE REQUIRED)  # a peer of tact-chart; no CONFIG: Debian's has no targets
 endif()
 if(BUILD_TESTING)

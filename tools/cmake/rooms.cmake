@@ -16,6 +16,19 @@ function(tact_room)
   endif()
 endfunction()
 
+# tact_room_text(limits.html): the file as kText of "folder/limits.html.h", in the room's namespace
+function(tact_room_text file)
+  tact_room_name(room)
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  string(REPLACE "/" "::" namespace ${folder})
+  file(READ ${file} text)
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/text/${folder}/${file}.h @ONLY CONTENT
+    "// made from @folder@/@file@\n#pragma once\nnamespace tact::@namespace@ {\n\
+inline constexpr const char* kText = R\"~~(@text@)~~\";\n}\n")
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+  target_include_directories(tact_${room} PRIVATE ${PROJECT_BINARY_DIR}/text)
+endfunction()
+
 function(tact_room_name variable)  # firmware/black_box is firmware_black_box
   file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   string(REPLACE "/" "_" name ${folder})

@@ -124,7 +124,7 @@ TEST(Report, ThePageNeedsNothingButItself) {
     EXPECT_FALSE(has(page, outside)) << outside;
   EXPECT_TRUE(has(page, "<svg>picture</svg>"));
   EXPECT_FALSE(has(page, "<?xml"));
-  EXPECT_TRUE(has(page, "bare &lt;loop&gt; &amp; &#39;friends&#39;"));
+  EXPECT_TRUE(has(page, "bare &lt;loop&gt; &amp; &apos;friends&apos;"));
   EXPECT_TRUE(has(page, "tact-jitter &lt;x&gt;"));
   EXPECT_TRUE(has(page, "non-rt"));
   EXPECT_TRUE(has(page, "boot another")) << "the PC's own rows are part of the evidence";
