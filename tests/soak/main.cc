@@ -90,6 +90,8 @@ model::Result<Outcome> soak(const model::scene::Scene& scene, std::uint64_t tick
   Outcome outcome;
   firmware::loop::State state = firmware::loop::State::kOff;
   firmware::loop::TickRecord record;
+  while (ring->dropped() == 0) ring->push(record);  // all of its memory is there from the start
+  while (ring->pop(record)) continue;
   std::int64_t early_kB = 0;
   firmware::pc::flush_denormals();
   for (; outcome.ticks < ticks && !interrupted.load(); ++outcome.ticks) {
