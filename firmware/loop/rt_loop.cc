@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "firmware/loop/grid.h"
 
@@ -43,6 +44,12 @@ void RtLoop::let_go() RT_SAFE {
   device_.write(model::Wrench{});
   progress_.enter(Place::kOwn);
   progress_.end();
+}
+
+// Every second tick, as only an edge arms.
+bool RtLoop::asks_itself() const RT_SAFE {
+  return requests_.arm_at_start.load(std::memory_order_relaxed) &&
+         record_.output.state == State::kReady && !record_.input.commands.arm;
 }
 
 // The lines' word counts before the device's. The watch's comes last to be asked, as it may be
@@ -106,7 +113,8 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   keep(Phase::kWake, wake_ns - due_ns);
 
   TickInput& input = record_.input;
-  input.commands = {.arm = requests_.arm.load(std::memory_order_relaxed),
+  const bool asked_before = std::exchange(asked_, requests_.arm.load(std::memory_order_relaxed));
+  input.commands = {.arm = asked_ || asks_itself(),
                     .stop = requests_.stop.load(std::memory_order_relaxed),
                     .reset = requests_.reset.load(std::memory_order_relaxed)};
   input.device_fault = read(wake_ns);
@@ -123,6 +131,10 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   keep(Phase::kFeel, felt_ns - touched_ns);
 
   record_.output = controller_.judge(input);
+  if (asked_ && !asked_before && record_.output.state != State::kArmed)
+    requests_.refused.fetch_add(1, std::memory_order_relaxed);
+  if (record_.output.state == State::kArmed || record_.output.state == State::kStopped)
+    requests_.arm_at_start.store(false, std::memory_order_relaxed);
   const std::int64_t judged_ns = later_ns();
   keep(Phase::kJudge, judged_ns - felt_ns);
 

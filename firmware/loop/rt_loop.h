@@ -21,10 +21,12 @@ namespace tact::firmware::loop {
 
 /// What people and the watch ask of a running loop; written by other threads and signal handlers.
 struct Requests {
-  std::atomic<bool> arm{false};
-  std::atomic<bool> stop{false};  // force to zero, then leave
+  std::atomic<bool> arm{false};           // by its rising edge, when ready
+  std::atomic<bool> arm_at_start{false};  // once, as soon as it is ready: the loop's own request
+  std::atomic<bool> stop{false};          // force to zero, then leave
   std::atomic<bool> reset{false};
   std::atomic<Fault> fault{Fault::kNone};  // of the watch; the first stays to the end of the run
+  std::atomic<std::uint32_t> refused{0};   // edges of arm that armed nothing
 
   void trip(Fault found) RT_SAFE {
     Fault none = Fault::kNone;
@@ -78,6 +80,7 @@ class RtLoop {
 
  private:
   void cycle(std::int64_t due_ns) RT_SAFE;
+  bool asks_itself() const RT_SAFE;
   Fault read(std::int64_t now_ns) RT_SAFE;
   void write() RT_SAFE;
   void tell() RT_SAFE;
@@ -97,6 +100,7 @@ class RtLoop {
   TickRecord record_;
   MarkedTime marked_;
   std::int64_t due_ns_ = 0;
+  bool asked_ = false;                // requests_.arm, in the tick before
   Fault write_fault_ = Fault::kNone;  // judged in the next tick
   StopWatch stop_watch_;
   Progress progress_;

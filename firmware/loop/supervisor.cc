@@ -11,7 +11,9 @@ const char* name_of(State state) {
 }
 
 State Supervisor::step(const Commands& commands, const Findings& found) RT_SAFE {
+  const bool arm_edge = commands.arm && !arm_before_;
   const bool reset_edge = commands.reset && !reset_before_;
+  arm_before_ = commands.arm;
   reset_before_ = commands.reset;
   trip(found.fault);
   if (commands.stop) return state_ = State::kStopped;
@@ -20,7 +22,7 @@ State Supervisor::step(const Commands& commands, const Findings& found) RT_SAFE 
       if (found.sample_good) state_ = State::kReady;
       break;
     case State::kReady:
-      if (commands.arm && found.sample_good && found.ready) state_ = State::kArmed;
+      if (arm_edge && found.sample_good && found.ready) state_ = State::kArmed;
       break;
     case State::kArmed:  // power that comes back must not bring a force with it
       if (!found.ready) trip(Fault::kPowerLost);

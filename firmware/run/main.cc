@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware/run/device_list.h"
+#include "firmware/run/operator_signals.h"
 #include "firmware/run/replay.h"
 #include "firmware/run/say.h"
 #include "firmware/run/session.h"
@@ -109,6 +110,7 @@ model::Result<model::scene::Scene> load(firmware::run::Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  firmware::run::outlive_stray_signals();
   firmware::run::Parsed parsed = firmware::run::parse_options(argc, argv);
   if (parsed.leave) return parsed.status;
   firmware::run::Options& options = parsed.options;

@@ -2,7 +2,7 @@
 // operator_signals.h - what a person at the PC asks of a running loop, by signals.
 //
 //     INT TERM HUP QUIT   force to zero, then leave; a closed terminal is one of them
-//     USR1                reset: leaves a stop whose cause is gone; disarms first, never arms
+//     USR1                reset: leaves a stop whose cause is gone; never arms
 //     USR2                arm
 //
 // After a stop both are needed, in this order: nothing moves again by itself.
@@ -16,21 +16,29 @@
 
 namespace tact::firmware::run {
 
+enum class Act : std::uint8_t { kNone, kLeave, kReset, kArm };
+
+/// First of all in main: USR1 and USR2 wait from now on, and no signal that somebody sends by
+/// mistake ends a process whose loop pushes. A file that may not grow is an error of its writer.
+void outlive_stray_signals();
+
 /// The loop reads levels once per tick, so each must stand for some: at 100 Hz two.
 void wait_several_ticks();
 
 class OperatorSignals {
  public:
-  /// Blocks them in this thread and in all that it starts: obey() takes them. `let_loop_read`
+  /// Blocks them in this thread and in all that it starts: wait() takes them. `let_loop_read`
   /// returns once the loop has read the levels.
   explicit OperatorSignals(std::function<void()> let_loop_read = wait_several_ticks);
 
-  /// Waits at most so long for one signal, and does what it asks.
-  void obey(loop::Requests& requests, std::int64_t longest_ns) const;
+  /// What the next signal asks for; waits at most so long for one.
+  Act wait(std::int64_t longest_ns) const;
+  /// Those of USR1 and USR2 that came until now are gone. Returns how many kinds there were.
+  int forget() const;
+  /// A rising edge for the loop, and the fall after it.
+  void raise_edge(std::atomic<bool>& request) const;
 
  private:
-  void reset(loop::Requests& requests) const;
-
   sigset_t signals_{};
   std::function<void()> let_loop_read_;
 };

@@ -6,6 +6,7 @@
 
 #include <cstdio>
 
+#include "firmware/loop/supervisor.h"
 #include "firmware/run/say.h"
 #include "firmware/run/status_line.h"
 #include "firmware/watch/call_filter.h"
@@ -28,7 +29,11 @@ OperatorView::OperatorView(const hal::Device& device, const hal::SafetyLines& li
       terminal_(isatty(STDOUT_FILENO) != 0),
       arms_itself_(arms_itself) {}
 
-void OperatorView::show(const telemetry::Frame& newest) {
+bool OperatorView::show(const telemetry::Frame& newest) {
+  const bool was_told = told_ready_;
+  if (newest.state == loop::State::kArmed || newest.state == loop::State::kStopped)
+    arms_itself_ = false;  // at the start alone
+  if (newest.state != loop::State::kReady) told_ready_ = false;
   if (newest.fault != before_.fault && newest.fault != 0) {
     const auto number = static_cast<Fault>(newest.fault);
     const model::FaultEntry& fault = model::describe(number);
@@ -39,13 +44,33 @@ void OperatorView::show(const telemetry::Frame& newest) {
     const std::string now = device_.trouble();
     if (!now.empty() && now != waits_for_) tell(now);
     waits_for_ = now;
-  } else if (newest.state == loop::State::kReady && before_.state != loop::State::kReady &&
-             !arms_itself_) {
+  } else if (newest.state == loop::State::kReady && !told_ready_ && !arms_itself_) {
+    told_ready_ = true;
     tell("ready, force is off: hold the device, then arm it (pkill -USR2 tactd)");
   }
   if (terminal_) say(stdout, "\r\033[K{}", status_line(newest, before_));
   std::fflush(stdout);
   before_ = newest;
+  return told_ready_ && !was_told;
+}
+
+std::string OperatorView::why_not_arm() const {
+  switch (before_.state) {
+    case loop::State::kOff:
+      return waits_for_.empty() ? "the device is not ready yet" : waits_for_;
+    case loop::State::kReady:
+      return told_ready_ ? "" : "it arms itself as soon as it has power";
+    case loop::State::kArmed:
+      return "it is armed already";
+    case loop::State::kStopped:
+      return "it has stopped; reset it first (pkill -USR1 tactd)";
+  }
+  return "its state is not known";
+}
+
+std::string OperatorView::why_not_reset() const {
+  if (before_.state == loop::State::kStopped) return {};
+  return fmt::format("it is {}, not stopped", name_of(before_.state));
 }
 
 void OperatorView::tell(const std::string& sentence) const {

@@ -16,8 +16,12 @@ class OperatorView {
   /// `arms_itself`: nobody is asked to arm at the start.
   OperatorView(const hal::Device& device, const hal::SafetyLines& lines, bool arms_itself);
 
-  /// A few times a second, with the newest frame. Faults go to standard error.
-  void show(const telemetry::Frame& newest);
+  /// A few times a second, with the newest frame. Faults go to standard error. True: it has just
+  /// told that the device is ready, and may be armed from now on.
+  bool show(const telemetry::Frame& newest);
+  /// Empty where the person may ask for it, by what was told last.
+  std::string why_not_arm() const;
+  std::string why_not_reset() const;
   /// One sentence to standard error, beside the live line.
   void tell(const std::string& sentence) const;
   /// Ends the live line.
@@ -26,7 +30,7 @@ class OperatorView {
  private:
   const hal::Device& device_;
   const hal::SafetyLines& lines_;
-  bool terminal_, arms_itself_;
+  bool terminal_, arms_itself_, told_ready_ = false;
   telemetry::Frame before_;
   std::string waits_for_;
 };

@@ -96,6 +96,7 @@ json make_report(const RunFacts& facts, const loop::LoopStatistics& loop, const 
           {"call_filter", facts.call_filter},
           {"black_boxes", facts.black_boxes},
           {"dropped_records", facts.dropped_records},
+          {"refused_requests", facts.refused_requests},
           {"dropped_frames", facts.dropped_frames},
           {"force_hash", fmt::format("{:016x}", facts.force_hash)},
           {"resident_peak_kB", facts.resident_peak_kB},

@@ -29,8 +29,9 @@ struct RunFacts {
   std::uint64_t dropped_records = 0, dropped_frames = 0;
   loop::State state = loop::State::kOff;
   model::Fault fault = model::Fault::kNone;
-  std::string trouble;           // what the device says of it
-  std::uint64_t force_hash = 0;  // equal for equal runs; 0 when not computed
+  std::string trouble;                 // what the device says of it
+  std::uint32_t refused_requests = 0;  // of a person, to arm or reset
+  std::uint64_t force_hash = 0;        // equal for equal runs; 0 when not computed
   long resident_peak_kB = 0;
   std::size_t law_table_bytes = 0;
   bool call_filter = false;              // on the loop's thread

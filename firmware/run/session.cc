@@ -16,8 +16,7 @@
 #include "firmware/pc/pc_check.h"
 #include "firmware/run/loop_parts.h"
 #include "firmware/run/loop_threads.h"
-#include "firmware/run/operator_signals.h"
-#include "firmware/run/operator_view.h"
+#include "firmware/run/operator_desk.h"
 #include "firmware/run/report.h"
 #include "firmware/run/say.h"
 #include "firmware/run/telemetry_setup.h"
@@ -120,7 +119,7 @@ int Session::run() {
     return fail(options_.json_path + ": cannot be written; name a file in a folder of yours", 2);
   if (const auto error = open_telemetry()) return fail(error->sentence, 2);
   if (const auto error = open_call_filter()) return fail(error->sentence, 1);
-  requests_.arm.store(options_.arm || hal::registry::is_simulated(scene_.device));
+  requests_.arm_at_start.store(options_.arm || hal::registry::is_simulated(scene_.device));
   if (options_.free_run)
     run_free();
   else
@@ -187,7 +186,7 @@ void Session::run_free() {
     telemetry_->drain();
     if (loop_->statistics().ticks % ticks_per_shape() != 0) continue;
     telemetry_->publish();
-    operator_->obey(requests_, 0);
+    if (operator_->wait(0) == Act::kLeave) requests_.stop.store(true);
   }
   loop_->let_go();
 }
@@ -209,9 +208,10 @@ void Session::run_real_time() {
 
 // The main thread while the loop runs: waits for signals, tells what happens.
 void Session::watch(LoopThreads& threads) {
-  OperatorView view(*parts_.device, *parts_.lines, requests_.arm.load());
+  OperatorView view(*parts_.device, *parts_.lines, requests_.arm_at_start.load());
+  OperatorDesk desk(*operator_, requests_, view);
   const auto show = [&] {
-    view.show(telemetry_->newest_frame());
+    desk.show(telemetry_->newest_frame());
     if (black_box_ == nullptr) return;
     for (const std::string& sentence : black_box_->news()) view.tell(sentence);
   };
@@ -219,7 +219,7 @@ void Session::watch(LoopThreads& threads) {
     const std::int64_t now_ns = monotonic_clock_.now_ns();
     const std::int64_t until_ns =
         loop::next_half_way_ns(now_ns + kStatusPeriod_ns, period_ns(scene_));
-    operator_->obey(requests_, until_ns - now_ns);
+    desk.obey(until_ns - now_ns);
     show();
     if (!threads.hangs()) continue;
     threads.leave_behind(1, [&] {
@@ -279,6 +279,7 @@ RunFacts Session::collect_facts(model::Fault fault, const std::string& trouble) 
           .state = parts_.controller->newest().state,
           .fault = fault,
           .trouble = trouble,
+          .refused_requests = requests_.refused.load(),
           .force_hash = telemetry_->force_hash(),
           .resident_peak_kB = process.ru_maxrss,
           .law_table_bytes = parts_.tissue->law().memory_bytes(),
@@ -289,7 +290,6 @@ RunFacts Session::collect_facts(model::Fault fault, const std::string& trouble) 
 }  // namespace
 
 int run_session(const model::scene::Scene& scene, const Options& options) {
-  std::signal(SIGPIPE, SIG_IGN);  // who reads our sentences may go; the loop stays
   return Session(scene, options).run();
 }
 

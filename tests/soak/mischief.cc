@@ -62,12 +62,11 @@ void Mischief::pull_wires(hal::sim::SimLines& lines) {
 void Mischief::operate(firmware::loop::Requests& requests, bool stopped) {
   if (happens(1e-4)) requests.arm.store(happens(0.5));
   if (happens(1e-4)) requests.reset.store(happens(0.5));
-  if (!stopped && requests.arm.load() && !requests.reset.load()) return;
   if (--operator_ticks_ > 0) return;
   operator_ticks_ = ticks_between(5, 200);
   if (!stopped) {
     requests.reset.store(false);
-    requests.arm.store(true);
+    requests.arm.store(!requests.arm.load());
   } else {
     requests.arm.store(false);
     requests.reset.store(!requests.reset.load());

@@ -105,7 +105,8 @@ void Promises::check_state(const firmware::loop::TickRecord& record) {
   expect(was != State::kStopped || is != State::kReady ||
              (record.input.commands.reset && !before_.input.commands.reset),
          "a stop is left by an edge of reset", record.tick);
-  expect(is != State::kArmed || was == State::kArmed || record.input.commands.arm,
+  expect(is != State::kArmed || was == State::kArmed ||
+             (record.input.commands.arm && !before_.input.commands.arm && was == State::kReady),
          "nothing arms by itself", record.tick);
   expect(is == State::kStopped || !latches(record.output.fault), "a fault stops", record.tick);
   expect(was != State::kStopped || is != State::kStopped || before_.output.fault == Fault::kNone ||

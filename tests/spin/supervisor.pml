@@ -20,7 +20,7 @@ mtype state = OFF;
 mtype before;            /* the state of the tick before */
 bool latched;            /* a fault is kept */
 bool arm, stop, reset, sample_good, ready, fault_found, gate_fault;
-bool reset_before, reset_edge;
+bool arm_before, arm_edge, reset_before, reset_edge;
 byte missed, level = FADE;
 bool force;
 bool released = true;    /* arm was let go since the last stop, or nothing was stopped yet */
@@ -44,6 +44,8 @@ inline draw(input) {
 
 inline supervise() {
   d_step {
+    arm_edge = arm && !arm_before;
+    arm_before = arm;
     reset_edge = reset && !reset_before;
     reset_before = reset;
     done = false;
@@ -118,7 +120,9 @@ inline check() {
           (reset_edge && sample_good && !arm && !stop && !fault_found));
   /* 6: reset never arms: neither at once nor through a request that stands */
   MUST(6, !(before == STOPPED && state == ARMED));
-  MUST(6, !(before != ARMED && state == ARMED) || (arm && released && sample_good && ready))
+  MUST(6, !(before != ARMED && state == ARMED) || (arm && released && sample_good && ready));
+  /* 7: a request arms in its own tick, of a state that was ready, or never */
+  MUST(7, !(before != ARMED && state == ARMED) || (arm_edge && before == READY))
 }
 
 inline remember() {

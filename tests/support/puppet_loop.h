@@ -81,7 +81,7 @@ class PuppetLoop : public testing::Test {
   // Comes down from above, as a hand does, so that the contact has no slack.
   void press() {
     device.height_m = 0.006;
-    requests.arm.store(true);
+    requests.arm_at_start.store(true);
     run_ticks(600);
     for (; device.height_m > 0.001; device.height_m -= 0.00005) loop.step();
     run_ticks(10);

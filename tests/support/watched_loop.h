@@ -74,7 +74,7 @@ class WatchedLoop : public testing::Test {
   }
   void start(
       const std::function<void()>& before = [] {}, const std::function<void()>& after = [] {}) {
-    requests.arm.store(true);
+    requests.arm_at_start.store(true);
     thread = std::thread([this, before, after] {
       before();
       loop->run();

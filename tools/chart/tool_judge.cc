@@ -97,6 +97,8 @@ Timing time_tool(const Scene& scene, const model::scene::Tissue& tissue, const T
   const std::vector<Tool> path = moving_tool(scene, place);
   firmware::loop::TickInput input;
   input.sample.fresh = true;
+  input.sample.tool = path.front();
+  controller.tick(input);  // ready, and armed by the next
   input.commands.arm = true;
   std::size_t at = 0;
   return measure_time(

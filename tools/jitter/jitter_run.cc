@@ -161,7 +161,7 @@ std::optional<Error> Run::open() {
     loop_back_.emplace(std::move(*edges), loop_period_ns());
   }
   result_.armed = options_.arm || !is_hardware();
-  requests_.arm.store(result_.armed);
+  requests_.arm_at_start.store(result_.armed);
   return std::nullopt;
 }
 

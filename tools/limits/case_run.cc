@@ -155,7 +155,7 @@ CaseRun::CaseRun(const Case& c, const LimitsBench& bench)
 
 bool CaseRun::play() {
   const int ticks = static_cast<int>(std::lround(case_.duration_s / moment_.period_s));
-  requests_.arm.store(true);
+  requests_.arm_at_start.store(true);
   firmware::loop::TickRecord record;
   int waited = 0, open = 0;
   bool going = true;

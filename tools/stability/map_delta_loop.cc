@@ -141,7 +141,7 @@ ControllerRun run_controller(double stiffness_N_per_m, double rate_Hz,
   firmware::loop::SimulatedClock clock;
   firmware::loop::Requests requests;
   hal::NoSafetyLines lines;
-  requests.arm.store(true);
+  requests.arm_at_start.store(true);
   const auto ring = std::make_unique<firmware::loop::TickRing>();
   firmware::loop::RtLoop loop({.period_ns = std::llround(1e9 / rate_Hz)}, **device, lines,
                               controller, clock, requests, *ring);

@@ -44,7 +44,7 @@ Result<std::vector<Pose>> tool_motion(const model::scene::Scene& scene, int fram
   firmware::loop::SimulatedClock clock;
   firmware::loop::Requests requests;
   hal::NoSafetyLines lines;
-  requests.arm.store(true);
+  requests.arm_at_start.store(true);
   const auto ring = std::make_unique<firmware::loop::TickRing>();
   firmware::loop::RtLoop loop(
       {.period_ns = std::llround(1e9 / scene.rate_Hz), .ticks_per_shape = 16}, **device, lines,

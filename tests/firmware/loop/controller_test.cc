@@ -54,8 +54,9 @@ class ControllerTest : public testing::Test {
   }
   // Down from above, as a hand does, until the ramp is over.
   void press() {
-    input.commands.arm = true;
     depth_m = -0.002;
+    tick();
+    input.commands.arm = true;
     for (int i = 0; i < 600; ++i) tick();
     for (; depth_m < 0.003; depth_m += 5e-5) tick();
     for (int i = 0; i < 20; ++i) tick();
@@ -88,8 +89,9 @@ TEST_F(ControllerTest, ALawThatBreaksStopsTheForceInTheSameTick) {
 
 TEST_F(ControllerTest, ABrokenLawIsNeverArmed) {
   law.is_broken = true;
-  input.commands.arm = true;
   depth_m = 0.003;
+  tick();
+  input.commands.arm = true;
   for (int i = 0; i < 10; ++i) EXPECT_EQ(tick().written, model::Wrench{});
   EXPECT_EQ(tick().state, State::kStopped);
 }

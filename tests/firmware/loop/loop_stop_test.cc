@@ -25,6 +25,8 @@ TEST_F(LoopStop, AReleasedEmergencyStopMovesNothingWithoutAResetAndAnArmEdge) {
   lines.fault = Fault::kNone;
   run_ticks(100);
   EXPECT_EQ(device.last, model::Wrench{});
+  requests.arm.store(true);
+  run_ticks(1);
   requests.reset.store(true);  // while arm still stands
   run_ticks(5);
   EXPECT_EQ(newest().output.state, State::kStopped);
@@ -62,12 +64,39 @@ TEST_F(LoopStop, AnEnableLineThatFallsAndRisesBringsNoForceBack) {
 TEST_F(LoopStop, ADeviceWithoutPowerTellsWhereItIsAndIsNotArmed) {
   device.can_push = false;
   device.height_m = 0.006;
-  requests.arm.store(true);
+  requests.arm_at_start.store(true);
   run_ticks(20);
   EXPECT_EQ(newest().output.state, State::kReady);
   device.can_push = true;
+  run_ticks(2);
+  EXPECT_EQ(newest().output.state, State::kArmed);
+}
+
+TEST_F(LoopStop, APersonsRequestThatFindsNoPowerIsRefusedAndNotKept) {
+  device.can_push = false;
+  device.height_m = 0.006;
+  requests.arm.store(true);  // and nothing is ready yet
+  run_ticks(20);
+  EXPECT_EQ(requests.refused.load(), 1u);
+  device.can_push = true;
+  run_ticks(20);
+  EXPECT_EQ(newest().output.state, State::kReady);
+  requests.arm.store(false);
+  run_ticks(1);
+  requests.arm.store(true);
   run_ticks(1);
   EXPECT_EQ(newest().output.state, State::kArmed);
+  EXPECT_EQ(requests.refused.load(), 1u);
+}
+
+TEST_F(LoopStop, WhatArmsItselfAtTheStartDoesNotAfterAStop) {
+  requests.arm_at_start.store(true);
+  lines.fault = Fault::kEmergencyStop;
+  run_ticks(3);
+  lines.fault = Fault::kNone;
+  requests.reset.store(true);
+  run_ticks(20);
+  EXPECT_EQ(newest().output.state, State::kReady);
 }
 
 TEST_F(LoopStop, TheDeviceIsPoweredAsTheLinesSay) {

@@ -34,7 +34,7 @@ TEST_F(RtLoopTest, ArmingInsideTheOrganPushesNothing) {
   device.height_m = 0.006;
   run_ticks(5);
   for (; device.height_m > 0.001; device.height_m -= 0.0001) loop.step();
-  requests.arm.store(true);
+  requests.arm_at_start.store(true);
   run_ticks(1000);
   EXPECT_EQ(newest().output.state, State::kArmed);
   EXPECT_EQ(device.last, model::Wrench{}) << "the depth from before arming comes without force";
@@ -48,7 +48,7 @@ TEST_F(RtLoopTest, ADeviceThatWakesSlowlyIsNotLost) {
   run_ticks(100);
   EXPECT_EQ(newest().output.fault, Fault::kNone);
   device.silent = false;
-  requests.arm.store(true);
+  requests.arm_at_start.store(true);
   run_ticks(3);
   EXPECT_EQ(newest().output.state, State::kArmed);
 }
@@ -198,7 +198,7 @@ TEST_F(RtLoopTest, AClockThatStepsBackLetsNoForceChangeFasterThanItsSlew) {
   Controller careful(tissue->contact_scene(), gate::Gate(slow, 0.001, 1.0), kHardRealTime);
   RtLoop back({.period_ns = 1'000'000}, device, lines, careful, clock, requests, *ring);
   device.height_m = 0.006;
-  requests.arm.store(true);
+  requests.arm_at_start.store(true);
   for (int i = 0; i < 600; ++i) back.step();
   for (; device.height_m > 0.001; device.height_m -= 0.00005) back.step();
   double most_N = 0.0;

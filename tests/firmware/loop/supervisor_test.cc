@@ -106,13 +106,18 @@ TEST(Supervisor, ResetNeverArms) {
   EXPECT_EQ(s.state(), State::kReady);
 }
 
-TEST(Supervisor, ArmsNothingThatHasNoPower) {
-  Supervisor s;
-  s.step(kIdle, {.sample_good = true, .ready = false, .fault = Fault::kNone});
-  EXPECT_EQ(s.step(kArm, {.sample_good = true, .ready = false, .fault = Fault::kNone}),
-            State::kReady);
-  EXPECT_EQ(s.step(kArm, {.sample_good = true, .ready = true, .fault = Fault::kNone}),
-            State::kArmed);
+TEST(Supervisor, ARequestThatCouldNotArmIsSpent) {
+  for (const Findings& found : {Findings{.sample_good = false}, Findings{.ready = false}}) {
+    Supervisor s;
+    EXPECT_EQ(s.step(kArm, {.sample_good = true}), State::kReady)
+        << "asked for before it was ready";
+    EXPECT_EQ(s.step(kArm, {.sample_good = true}), State::kReady);
+    s.step(kIdle, {.sample_good = true});
+    EXPECT_EQ(s.step(kArm, found), State::kReady) << "no power, or no sample";
+    EXPECT_EQ(s.step(kArm, {.sample_good = true}), State::kReady) << "the request still stands";
+    s.step(kIdle, {.sample_good = true});
+    EXPECT_EQ(s.step(kArm, {.sample_good = true}), State::kArmed);
+  }
 }
 
 TEST(Supervisor, PowerThatComesBackBringsNoForceWithIt) {
@@ -179,17 +184,16 @@ Outcome by_the_rules(const std::vector<Rule>& rules, Outcome now, const Inputs& 
   return now;
 }
 
-// Every state that it can be in: with a kept fault and without, after a reset request and without.
-Supervisor supervisor_in(State state, bool faulty, bool reset_before) {
+// Every state that it can be in: with a kept fault and without, after each request and without.
+Supervisor supervisor_in(State state, bool faulty, const Commands& before) {
   Supervisor s;
-  const Commands reset{.reset = reset_before};
-  if (state == State::kOff) s.step(reset, {});
-  if (state == State::kReady) s.step(reset, {.sample_good = true});
   if (state == State::kArmed) {
     s.step({}, {.sample_good = true});
-    s.step({.arm = true, .reset = reset_before}, {.sample_good = true});
+    s.step(kArm, {.sample_good = true});
   }
-  if (state == State::kStopped) s.step({.stop = true, .reset = reset_before}, {});
+  Commands last = before;
+  last.stop = state == State::kStopped;
+  s.step(last, {.sample_good = state != State::kOff});
   if (faulty) s.trip(Fault::kLoopLate);
   return s;
 }
@@ -199,11 +203,12 @@ TEST(Supervisor, DoesWhatItsRulesSayInEveryStateForEveryInput) {
   ASSERT_EQ(rules.size(), 6u);
   int cases = 0;
   for (const auto& [name, from] : kStates)
-    for (int bits = 0; bits < 256; ++bits) {
+    for (int bits = 0; bits < 512; ++bits) {
       const auto bit = [bits](int i) { return (bits >> i & 1) != 0; };
-      const bool faulty = bit(7), reset_before = bit(6);
+      const bool faulty = bit(8);
+      const Commands before{.arm = bit(7), .reset = bit(6)};
       if (faulty && from != State::kStopped) continue;  // a kept fault is a stop
-      Supervisor s = supervisor_in(from, faulty, reset_before);
+      Supervisor s = supervisor_in(from, faulty, before);
       ASSERT_EQ(s.state(), from);
       const Commands commands{.arm = bit(0), .stop = bit(1), .reset = bit(2)};
       const Findings found{.sample_good = bit(3),
@@ -211,8 +216,9 @@ TEST(Supervisor, DoesWhatItsRulesSayInEveryStateForEveryInput) {
                            .fault = bit(5) ? Fault::kDeviceFailed : Fault::kForceLimited};
       const Outcome wanted = by_the_rules(rules, {from, s.fault()},
                                           {{"arm", commands.arm},
+                                           {"arm_edge", commands.arm && !before.arm},
                                            {"stop", commands.stop},
-                                           {"reset_edge", commands.reset && !reset_before},
+                                           {"reset_edge", commands.reset && !before.reset},
                                            {"sample_good", found.sample_good},
                                            {"ready", found.ready},
                                            {"fault_found", bit(5)}});
@@ -221,7 +227,7 @@ TEST(Supervisor, DoesWhatItsRulesSayInEveryStateForEveryInput) {
       ASSERT_EQ(s.fault(), wanted.fault) << name << ", bits " << bits;
       ++cases;
     }
-  EXPECT_EQ(cases, 4 * 128 + 128);
+  EXPECT_EQ(cases, 4 * 256 + 256);
 }
 
 int model_constant(const std::string& name) {
@@ -258,7 +264,7 @@ TEST(Supervisor, TheModelFadesAndLosesAfterAsManyMissedSamplesAsTheGate) {
 
 TEST(Supervisor, AFaultOfTheGateStopsFromEveryStateAndTheFirstIsKept) {
   for (const auto& [name, from] : kStates) {
-    Supervisor s = supervisor_in(from, false, false);
+    Supervisor s = supervisor_in(from, false, {});
     s.trip(Fault::kEnergyOverdrawn);
     s.trip(Fault::kPowerExceeded);
     EXPECT_EQ(s.state(), State::kStopped) << name;

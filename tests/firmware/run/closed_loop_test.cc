@@ -81,7 +81,7 @@ Summary run(const model::scene::Scene& scene, double seconds) {
   loop::SimulatedClock clock;
   loop::Requests requests;
   hal::NoSafetyLines lines;
-  requests.arm.store(true);
+  requests.arm_at_start.store(true);
   const auto ring = std::make_unique<loop::TickRing>();
   loop::RtLoop loop({.period_ns = std::llround(1e9 / scene.rate_Hz), .ticks_per_shape = 16},
                     *device, lines, controller, clock, requests, *ring);

@@ -4,42 +4,35 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <utility>
 #include <vector>
 
 namespace tact::firmware::run::operator_signals_test {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-class Operator : public testing::Test {
- protected:
-  void ask(int signal) {
-    raise(signal);
-    signals.obey(requests, kSecond_ns);
-  }
-  loop::Requests requests;
-  std::vector<std::pair<bool, bool>> reads;  // arm and reset, whenever the loop had time to read
-  OperatorSignals signals{
-      [this] { reads.emplace_back(requests.arm.load(), requests.reset.load()); }};
-};
-
-TEST_F(Operator, EveryWayToEndAsksForZeroForceFirst) {
+TEST(OperatorSignals, EveryWayToEndAsksToLeave) {
+  const OperatorSignals signals;
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
-    requests.stop.store(false);
-    ask(signal);
-    EXPECT_TRUE(requests.stop.load()) << signal;
+    raise(signal);
+    EXPECT_EQ(signals.wait(kSecond_ns), Act::kLeave) << signal;
   }
 }
 
-TEST_F(Operator, ResetDisarmsBeforeItsEdgeAndNeverArms) {
-  requests.arm.store(true);
-  ask(SIGUSR1);
-  ASSERT_EQ(reads.size(), 2u);
-  EXPECT_EQ(reads[0], std::pair(false, false)) << "disarmed, and no edge yet";
-  EXPECT_EQ(reads[1], std::pair(false, true)) << "the edge";
-  EXPECT_FALSE(requests.arm.load());
-  EXPECT_FALSE(requests.reset.load()) << "a level that stood would hide the next edge";
-  EXPECT_FALSE(requests.stop.load());
+TEST(OperatorSignals, ResetAndArmAreRequestsOfTheirOwn) {
+  const OperatorSignals signals;
+  raise(SIGUSR1);
+  EXPECT_EQ(signals.wait(kSecond_ns), Act::kReset);
+  raise(SIGUSR2);
+  EXPECT_EQ(signals.wait(kSecond_ns), Act::kArm);
+  EXPECT_EQ(signals.wait(0), Act::kNone);
+}
+
+TEST(OperatorSignals, AnEdgeFallsAgainBeforeAnybodyAsksForTheNext) {
+  std::atomic<bool> request{false};
+  std::vector<bool> reads;
+  const OperatorSignals signals([&] { reads.push_back(request.load()); });
+  signals.raise_edge(request);
+  EXPECT_EQ(reads, (std::vector<bool>{true, false})) << "the loop had time to read each";
 }
 
 TEST(OperatorSignals, TheSlowestLoopHasTwoTicksToReadEachLevel) {
@@ -48,15 +41,17 @@ TEST(OperatorSignals, TheSlowestLoopHasTwoTicksToReadEachLevel) {
   EXPECT_GE(std::chrono::steady_clock::now() - begun, std::chrono::milliseconds(2 * 10));
 }
 
-TEST_F(Operator, ArmIsARequestOfItsOwn) {
-  ask(SIGUSR2);
-  EXPECT_TRUE(requests.arm.load());
-  EXPECT_FALSE(requests.reset.load());
-}
-
-TEST_F(Operator, WithoutASignalNothingChanges) {
-  signals.obey(requests, 0);
-  EXPECT_FALSE(requests.arm.load() || requests.stop.load() || requests.reset.load());
+// In a process of its own, as the dispositions stay.
+TEST(OperatorSignals, NothingThatComesBeforeTheLoopOrByMistakeEndsTheProcess) {
+  const auto outlive = [] {
+    outlive_stray_signals();
+    for (const int signal : {SIGUSR1, SIGUSR2, SIGXFSZ, SIGALRM, SIGIO, SIGPROF, SIGVTALRM, SIGPWR,
+                             SIGPIPE, SIGRTMIN, SIGRTMAX})
+      raise(signal);
+    const OperatorSignals signals;
+    _exit(signals.forget() == 2 && signals.wait(0) == Act::kNone ? 7 : 8);
+  };
+  EXPECT_EXIT(outlive(), testing::ExitedWithCode(7), "");
 }
 
 }  // namespace tact::firmware::run::operator_signals_test

@@ -32,7 +32,7 @@ class ReplayTest : public testing::Test {
     loop::SimulatedClock clock;
     loop::Requests requests;
     hal::NoSafetyLines lines;
-    requests.arm.store(true);
+    requests.arm_at_start.store(true);
     loop::RtLoop loop({.period_ns = 1'000'000}, *device, lines, controller, clock, requests, *ring);
     telemetry::LogHeader header;
     header.period_ns = 1'000'000;

@@ -84,7 +84,7 @@ class WholeController {
         loop_({.period_ns = 1'000'000}, *device_, lines_, controller_, clock_, requests_, *ring_),
         telemetry_(*ring_, FrameBuilder(tissue_->law().site_law(), controller_.shapes(), true),
                    FramePace{}, {.socket = open(path)}) {
-    requests_.arm.store(true);
+    requests_.arm_at_start.store(true);
   }
 
   void ticks(int n) {
@@ -239,7 +239,7 @@ TEST(Telemetry, TheShapeOfAPatchReachesThePageWhole) {
   loop::SimulatedClock clock;
   hal::NoSafetyLines lines;
   loop::Requests requests;
-  requests.arm.store(true);
+  requests.arm_at_start.store(true);
   const auto ring = std::make_unique<loop::TickRing>();
   loop::RtLoop loop({.period_ns = 1'000'000, .ticks_per_shape = 4}, *device, lines, controller,
                     clock, requests, *ring);
