@@ -4,19 +4,26 @@
 #include <fmt/format.h>
 
 namespace tact::firmware::run {
+namespace {
+
+constexpr const char* kTooEarly = "the request came before it was ready";
+
+}  // namespace
 
 void OperatorDesk::obey(std::int64_t longest_ns) {
   const Act act = signals_.wait(longest_ns);
   if (act == Act::kLeave) requests_.stop.store(true);
+  const bool just_told = show();
   if (act == Act::kReset) reset();
-  if (act == Act::kArm) arm();
+  if (act == Act::kArm && just_told) refuse("armed", kTooEarly);
+  if (act == Act::kArm && !just_told) arm();
 }
 
 // A signal that came before the words, and be it in the moment before, is no answer to them.
-void OperatorDesk::show(const telemetry::Frame& newest) {
-  if (!view_.show(newest)) return;
-  for (int early = signals_.forget(); early > 0; --early)
-    refuse("armed or reset", "the request came before it was ready");
+bool OperatorDesk::show() {
+  if (!view_.show(newest_())) return false;
+  for (int early = signals_.forget(); early > 0; --early) refuse("armed or reset", kTooEarly);
+  return true;
 }
 
 void OperatorDesk::arm() {

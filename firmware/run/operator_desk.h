@@ -5,6 +5,8 @@
 // request that comes at another time is refused with the reason, and forgotten.
 #pragma once
 
+#include <functional>
+
 #include "firmware/run/operator_signals.h"
 #include "firmware/run/operator_view.h"
 
@@ -12,15 +14,15 @@ namespace tact::firmware::run {
 
 class OperatorDesk {
  public:
-  OperatorDesk(const OperatorSignals& signals, loop::Requests& requests, OperatorView& view)
-      : signals_(signals), requests_(requests), view_(view) {}
+  OperatorDesk(const OperatorSignals& signals, loop::Requests& requests, OperatorView& view,
+               std::function<telemetry::Frame()> newest)
+      : signals_(signals), requests_(requests), view_(view), newest_(std::move(newest)) {}
 
-  /// Waits at most so long for one request, and does or refuses it.
+  /// Waits at most so long for one request, shows the newest frame, and does or refuses it.
   void obey(std::int64_t longest_ns);
-  /// The newest frame, a few times a second.
-  void show(const telemetry::Frame& newest);
 
  private:
+  bool show();
   void arm();
   void reset();
   void refuse(const char* what, const std::string& why) const;
@@ -28,6 +30,7 @@ class OperatorDesk {
   const OperatorSignals& signals_;
   loop::Requests& requests_;
   OperatorView& view_;
+  std::function<telemetry::Frame()> newest_;
 };
 
 }  // namespace tact::firmware::run

@@ -209,9 +209,8 @@ void Session::run_real_time() {
 // The main thread while the loop runs: waits for signals, tells what happens.
 void Session::watch(LoopThreads& threads) {
   OperatorView view(*parts_.device, *parts_.lines, requests_.arm_at_start.load());
-  OperatorDesk desk(*operator_, requests_, view);
-  const auto show = [&] {
-    desk.show(telemetry_->newest_frame());
+  OperatorDesk desk(*operator_, requests_, view, [this] { return telemetry_->newest_frame(); });
+  const auto tell_news = [&] {
     if (black_box_ == nullptr) return;
     for (const std::string& sentence : black_box_->news()) view.tell(sentence);
   };
@@ -220,13 +219,14 @@ void Session::watch(LoopThreads& threads) {
     const std::int64_t until_ns =
         loop::next_half_way_ns(now_ns + kStatusPeriod_ns, period_ns(scene_));
     desk.obey(until_ns - now_ns);
-    show();
+    tell_news();
     if (!threads.hangs()) continue;
     threads.leave_behind(1, [&] {
       view.tell(
           "the loop does not come back, so tactd ends without it: switch the device's power off");
       telemetry_->stop();
-      show();
+      view.show(telemetry_->newest_frame());
+      tell_news();
     });
   }
   view.end();

@@ -20,9 +20,8 @@ class Desk : public testing::Test {
     return told([&] { desk.obey(1'000'000'000); });
   }
   std::string show(State state) {
-    telemetry::Frame frame;
     frame.state = state;
-    return told([&] { desk.show(frame); });
+    return told([&] { desk.obey(0); });
   }
   template <typename Does>
   static std::string told(Does does) {
@@ -41,7 +40,8 @@ class Desk : public testing::Test {
     if (requests.reset.load()) edges.emplace_back("reset");
   }};
   OperatorView view{device, lines, false};
-  OperatorDesk desk{signals, requests, view};
+  telemetry::Frame frame;
+  OperatorDesk desk{signals, requests, view, [this] { return frame; }};
 };
 
 TEST_F(Desk, ArmsOnlyAfterTheWordsThatItMayBe) {
@@ -58,10 +58,12 @@ TEST_F(Desk, ArmsOnlyAfterTheWordsThatItMayBe) {
 
 TEST_F(Desk, ARequestThatWaitsWhileTheWordsAreToldIsRefused) {
   raise(SIGUSR2);
+  raise(SIGUSR1);
   EXPECT_NE(show(State::kReady).find("came before it was ready"), std::string::npos);
   desk.obey(0);
+  desk.obey(0);
   EXPECT_TRUE(edges.empty()) << "queued";
-  EXPECT_EQ(requests.refused.load(), 1u);
+  EXPECT_EQ(requests.refused.load(), 2u);
 }
 
 TEST_F(Desk, ResetsAStopAloneAndTheWordsComeAgainBeforeTheNextArming) {
@@ -82,7 +84,7 @@ TEST_F(Desk, ResetsAStopAloneAndTheWordsComeAgainBeforeTheNextArming) {
 
 TEST_F(Desk, WhatTheLoopRefusesIsTold) {
   const OperatorSignals refusing([this] { requests.refused.store(1); });
-  OperatorDesk other(refusing, requests, view);
+  OperatorDesk other(refusing, requests, view, [this] { return frame; });
   show(State::kReady);
   raise(SIGUSR2);
   EXPECT_NE(told([&] { other.obey(1'000'000'000); }).find("no power"), std::string::npos);
@@ -90,11 +92,10 @@ TEST_F(Desk, WhatTheLoopRefusesIsTold) {
 
 TEST_F(Desk, ADeviceThatArmsItselfAtTheStartWaitsForAPersonAfterAStop) {
   OperatorView itself(device, lines, true);
-  OperatorDesk other(signals, requests, itself);
-  telemetry::Frame frame;
+  OperatorDesk other(signals, requests, itself, [this] { return frame; });
   for (const State state : {State::kReady, State::kArmed, State::kStopped, State::kReady}) {
     frame.state = state;
-    const std::string words = told([&] { other.show(frame); });
+    const std::string words = told([&] { other.obey(0); });
     EXPECT_EQ(words.find("ready, force is off") != std::string::npos,
               state == State::kReady && !itself.why_not_arm().starts_with("it arms itself"))
         << words;
