@@ -75,6 +75,20 @@ std::string spheres_in_words(std::size_t n) {
   return n == 1 ? "1 sphere" : fmt::format("{} spheres", n);
 }
 
+// Of a held sphere at the stiffest place; 0: the law does not tell.
+double stiffest_sideways_N_per_m(const model::scene::Scene& scene,
+                                 const model::contact::SiteLaw& law) {
+  if (scene.contact.sliding_stiffness_N_per_m > 0.0) return scene.contact.sliding_stiffness_N_per_m;
+  double most_N_per_m = 0.0;
+  for (std::uint32_t t = 0; t < scene.organ_mesh.triangle.size(); ++t)
+    for (const model::contact::ProbeSphere& sphere : scene.tool.spheres) {
+      const double give_m_per_N = law.sideways_m_per_N(
+          {.place = {.triangle = t, .weight = {1.0, 0.0, 0.0}}, .held = true}, sphere.radius_m);
+      if (give_m_per_N > 0.0) most_N_per_m = std::max(most_N_per_m, 1.0 / give_m_per_N);
+    }
+  return most_N_per_m;
+}
+
 }  // namespace
 
 Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene,
@@ -85,7 +99,7 @@ Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene,
         "device {} does not tell its damping at the tool: fill DeviceInfo::at_tool", device.name)};
   const std::size_t spheres = scene.tool.spheres.size();
   const double law_N_per_m = tissue.law().stiffness_N_per_m();
-  const double sliding_N_per_m = scene.contact.sliding_stiffness_N_per_m;
+  const double sliding_N_per_m = stiffest_sideways_N_per_m(scene, tissue.law().site_law());
   const double limit_N_per_m =
       model::law::haptic_limit(*device.at_tool, scene.rate_Hz).grow_N_per_m;
   const auto fits = [&](double one_N_per_m) {  // NaN does not

@@ -7,8 +7,6 @@
 namespace tact::model::contact {
 namespace {
 
-constexpr double kRounding_ratio = 1e-12;  // of a force at its cap
-
 // The part of a tangential vector along which the nearest point can move: all of it on a face, the
 // edge's share on an edge, nothing in a vertex.
 Vec3 movable(const SurfaceView& s, const Place& place, const Vec3& v) RT_SAFE {
@@ -33,6 +31,7 @@ void Contact::reset() RT_SAFE {
   presses_ = {};
   asked_ = coupling_ = {};
   energy_J_ = 0.0;
+  own_ = {};
   shear_ = {};
   shear_N_ = {};
   closed_ = closing_ = false;
@@ -92,6 +91,7 @@ Wrench Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
   }
   if (closing_ && hold()) press();
   keep_definite();
+  stiffen();
   resist_sliding();
   Wrench sum;
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
@@ -165,7 +165,9 @@ void Contact::couple() RT_SAFE {
         set_coupling(i, j, 0.0);
       else if (!before[i] || !before[j])
         couple(i, j);
-  shear_ = Shear(scene_.parameters.sliding_stiffness_N_per_m, asked_, presses_);
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
+    if (presses_[i] && !before[i]) own_[i] = own_give(i);
+  shear_ = Shear(own_, asked_, presses_);
   for (std::size_t i = 0; i < kMaxSpheres; ++i)
     if (presses_[i] && !before[i]) {
       touch_[i].shift_m += tangential(shear_.unloaded_m(shear_N_, i), touch_[i].normal);
@@ -229,40 +231,6 @@ void Contact::keep_definite() RT_SAFE {
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) take_away(i, spared_m[i]);
   for (auto& row : coupling_)
     for (double& m_per_N : row) m_per_N *= share;
-}
-
-Vec3 Contact::spring_N(const Shear& shear, std::size_t i) const RT_SAFE {
-  std::array<Vec3, kMaxSpheres> shift_m;
-  for (std::size_t j = 0; j < kMaxSpheres; ++j) shift_m[j] = touch_[j].shift_m;
-  return tangential(shear.force_N(shift_m, i), touch_[i].normal);
-}
-
-// t up to |f| = mu F. One sphere's slip changes what the next one carries: kSweeps over all, and
-// what they leave above the cap is cut from the force alone.
-void Contact::resist_sliding() RT_SAFE {
-  constexpr int kSweeps = 4;
-  for (int sweep = 0; sweep <= kSweeps; ++sweep) {
-    bool slipped = false;
-    for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
-      shear_N_[i] = touch_[i].state == TouchState::kFree ? Vec3{} : spring_N(shear_, i);
-      const Vec3 excess_N = beyond_friction_N(i, shear_N_[i]);
-      if (excess_N == Vec3{}) continue;
-      slipped = true;
-      if (sweep == kSweeps)
-        shear_N_[i] -= excess_N;
-      else
-        touch_[i].shift_m -= excess_N / shear_.own_N_per_m(i);
-    }
-    if (!slipped) return;
-  }
-}
-
-// What of f is above mu F; held tissue has no cap.
-Vec3 Contact::beyond_friction_N(std::size_t i, const Vec3& f_N) const RT_SAFE {
-  if (touch_[i].state != TouchState::kTouching) return {};
-  const double cap_N = scene_.parameters.friction_ratio * pressing_[i].response.law.force_N;
-  const double spring_N = norm(f_N);
-  return spring_N > cap_N * (1.0 + kRounding_ratio) ? (1.0 - cap_N / spring_N) * f_N : Vec3{};
 }
 
 // F = F(e) n - f - dU/ds

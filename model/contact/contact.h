@@ -5,15 +5,17 @@
 // r: its radius, phi: signed distance of c to the undeformed surface, n = grad phi):
 //
 //   free      W = 0
-//   touching  W = U(e, s) + k_t |t|^2 / 2,   d = r - phi - slack,   k_t |t| <= mu F  (Coulomb cap)
-//   held      W = U(e, s) + k_t |t|^2 / 2,   d, s and t measured in the frame of the moment of
+//   touching  W = U(e, s) + f . t / 2,   d = r - phi - slack,   |f| <= mu F  (Coulomb cap)
+//   held      W = U(e, s) + f . t / 2,   d, s and t measured in the frame of the moment of
 //             gripping, no cap, d may be negative (pull); ends when the grip opens or when the
 //             pulling force passes the tear force
 //
 //   force on the tool  F = -grad W,   torque = sum (c - origin) x F
 //
 // U is the site law's (site_law.h), s the place on the surface; as s follows the tool, the slope of
-// U along the surface is felt too. t: tangential displacement of the tissue, m. The law is asked
+// U along the surface is felt too. t: tangential displacement of the tissue, m, f = K t (shear.h);
+// the springs are the tissue's own: stiffer as the contact grows, and then until the sphere leaves,
+// with the same force and less energy. The law is asked
 // with the sphere's own dent e = d - what the other spheres have sunk the site (coupling.h); how
 // they couple is kept from a sphere's first touch until it leaves. A change of state never adds
 // energy: slack takes up whatever depth would come for free (arming inside the organ, letting go
@@ -44,7 +46,7 @@ struct ProbeSphere {
 
 struct ContactParameters {
   double friction_ratio = 0.0;             // mu, >= 0
-  double sliding_stiffness_N_per_m = 0.0;  // k_t, >= 0
+  double sliding_stiffness_N_per_m = 0.0;  // k_i, >= 0; 0: the tissue's own, by its law
   double tear_force_N = 0.0;               // of one sphere, > 0
   double grip_close_ratio = 0.7;           // closing above this holds
   double grip_open_ratio = 0.5;            // opening below this lets go
@@ -128,6 +130,8 @@ class Contact {
   void let_go(std::size_t i) RT_SAFE;
   Vec3 spring_N(const Shear& shear, std::size_t i) const RT_SAFE;
   Vec3 beyond_friction_N(std::size_t i, const Vec3& f_N) const RT_SAFE;
+  OwnGive own_give(std::size_t i) const RT_SAFE;
+  void stiffen() RT_SAFE;
   void resist_sliding() RT_SAFE;
   void sum_up(std::size_t i) RT_SAFE;
   std::span<PressingSphere> pressing() RT_SAFE { return {pressing_.data(), scene_.spheres.size()}; }
@@ -138,6 +142,7 @@ class Contact {
   std::array<PressingSphere, kMaxSpheres> pressing_{};
   std::array<bool, kMaxSpheres> presses_{};  // touching or held
   Coupling asked_{}, coupling_{};            // c as the law gave it, C as it is felt
+  OwnGives own_{};                           // since they came
   Shear shear_;
   std::array<Vec3, kMaxSpheres> shear_N_{};  // f
   double energy_J_ = 0.0;                    // of all presses

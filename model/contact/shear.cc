@@ -5,19 +5,19 @@
 
 namespace tact::model::contact {
 
-Shear::Shear(double stiffness_N_per_m, const Coupling& c,
+Shear::Shear(const OwnGives& own, const Coupling& c,
              const std::array<bool, kMaxSpheres>& presses) RT_SAFE {
-  if (!(stiffness_N_per_m > 0.0)) return;
   // Rows that sum to less than the diagonal: positive definite, and so is what elimination leaves.
   constexpr double kMost = 0.9 / (kMaxSpheres - 1);
-  const double most_m_per_N = kMost / stiffness_N_per_m;
+  const auto takes = [&](std::size_t i) RT_SAFE { return presses[i] && own[i].m_per_N > 0.0; };
   Coupling a{};
   for (std::size_t i = 0; i < kMaxSpheres; ++i)
     for (std::size_t j = 0; j < kMaxSpheres; ++j) {
-      if (i != j && presses[i] && presses[j])
+      const double most_m_per_N = kMost * std::min(own[i].least_m_per_N, own[j].least_m_per_N);
+      if (i != j && takes(i) && takes(j))
         coupling_[i][j] = std::clamp(c[i][j], -most_m_per_N, most_m_per_N);
-      a[i][j] = i == j ? 1.0 / stiffness_N_per_m : coupling_[i][j];
-      stiffness_N_per_m_[i][j] = i == j && presses[i] ? 1.0 : 0.0;
+      a[i][j] = i != j ? coupling_[i][j] : takes(i) ? own[i].m_per_N : 1.0;
+      stiffness_N_per_m_[i][j] = i == j && takes(i) ? 1.0 : 0.0;
     }
   // Gauss and Jordan: a becomes the unit matrix, the unit matrix the inverse.
   for (std::size_t k = 0; k < kMaxSpheres; ++k) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // shear.h - spheres that drag one tissue sideways: a spring each, coupled as their presses are.
 //
-//     MC-4   t_i = f_i / k_t + sum over j != i of c_ij f_j        W = sum f_i . t_i / 2
+//     MC-4   t_i = f_i / k_i + sum over j != i of c_ij f_j        W = sum f_i . t_i / 2
 //            |f_i| <= mu F_i unless held (Coulomb)
 //
 //     t_i   sideways displacement of site i, m, tangential to n_i      f_i   force that it takes, N
-//     c     MC-2, kept so small that I / k_t + c is positive definite
+//     k_i   MC-5, N/m: stiffer while the contact grows
+//     c     MC-2, kept so small that diag(1 / k) + c is positive definite
 //
 // Half-space: across the line that joins two sites c is right, along it a factor of 1 / (1 - nu) is
 // left out [Johnson, Contact Mechanics (1985), 3.6].
@@ -18,11 +19,17 @@
 
 namespace tact::model::contact {
 
+/// 1 / k_i now, and the least that it may become; 0: it takes no force.
+struct OwnGive {
+  double m_per_N = 0.0, least_m_per_N = 0.0;
+};
+using OwnGives = std::array<OwnGive, kMaxSpheres>;
+
 class Shear {
  public:
   Shear() = default;
-  /// k_t >= 0; the coupling of what presses.
-  Shear(double stiffness_N_per_m, const Coupling& c,
+  /// The coupling of what presses.
+  Shear(const OwnGives& own, const Coupling& c,
         const std::array<bool, kMaxSpheres>& presses) RT_SAFE;
 
   /// df_i / dt_i, N/m; 0: it does not press.
@@ -34,7 +41,7 @@ class Shear {
 
  private:
   Coupling coupling_{};           // C, limited
-  Coupling stiffness_N_per_m_{};  // (I / k_t + C)^-1 of what presses, 0 elsewhere
+  Coupling stiffness_N_per_m_{};  // (diag(1 / k) + C)^-1 of what presses, 0 elsewhere
 };
 
 }  // namespace tact::model::contact

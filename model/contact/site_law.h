@@ -50,6 +50,12 @@ class SiteLaw {
     (void)a, (void)b, (void)distance_m;
     return 0.0;
   }
+  /// MC-5: how far the site gives way sideways under a unit force by a contact of this radius,
+  /// m/N. 0: not known.
+  virtual double sideways_m_per_N(const Indentation& in, double contact_radius_m) const RT_SAFE {
+    (void)in, (void)contact_radius_m;
+    return 0.0;
+  }
   /// The sphere is free: forget what it did.
   virtual void leave(std::size_t sphere) RT_SAFE = 0;
   /// A blade went through the tissue since the last tick; most laws cannot be cut.

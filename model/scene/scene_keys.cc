@@ -46,8 +46,8 @@ void visit_tool(Keys& k, SceneText& out) {
 void visit_contact(Keys& k, contact::ContactParameters& c) {
   k.number("friction_ratio", {0.0, 2.0}, "largest sliding force over normal force",
            c.friction_ratio);
-  k.number("sliding_stiffness_N_per_m", {0.0, 5000.0}, "of the tissue along the surface",
-           c.sliding_stiffness_N_per_m);
+  k.number("sliding_stiffness_N_per_m", {0.0, 5000.0}, "of tissue along the surface; 0: its own",
+           c.sliding_stiffness_N_per_m, Need::kOptional);
   k.number("tear_force_N", {0.01, 20.0}, "a held site lets go above it, for each sphere",
            c.tear_force_N);
   k.number("grip_close_ratio", {0.05, 1.0}, "closing the grip above it holds the tissue",

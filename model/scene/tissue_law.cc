@@ -239,7 +239,6 @@ TissueLawBuilder::Step TissueLawBuilder::finish_field() {
 // The organ of [elastic], with its map where that belongs to this mesh; else the half-space whose
 // force under the tip is the law's own at one radius or at the end of its range.
 tissue::ElasticNeighbours TissueLawBuilder::neighbours() {
-  if (scene_.tool.spheres.size() < 2) return {};
   tissue::ElasticNeighbours out;
   if (!scene_.elastic) {
     const double radius_m = scene_.tool.spheres[0].radius_m;
@@ -259,14 +258,20 @@ tissue::ElasticNeighbours TissueLawBuilder::neighbours() {
   out.youngs_modulus_Pa = elastic.youngs_modulus_Pa;
   out.contact_modulus_Pa =
       elastic.youngs_modulus_Pa / (1.0 - elastic.poisson_ratio * elastic.poisson_ratio);
+  out.poisson_ratio = elastic.poisson_ratio;
   if (law_->press_coordinate_.empty()) return out;  // a law that knows no place
   auto map = read_scene_map(scene_);
   if (!map) return out;
-  law_->rings_times_E_per_m_ = std::move(map->ring_times_E_per_m);
-  law_->memory_bytes_ += law_->rings_times_E_per_m_.size() * sizeof(float);
-  out.ring_times_E_per_m = law_->rings_times_E_per_m_;
-  out.rings = map->rings;
-  out.ring_pitch_m = map->ring_pitch_m;
+  law_->sideways_times_E_per_m_ = tissue::sideways_give(*map, scene_.tool.spheres[0].radius_m);
+  out.sideways_times_E_per_m = law_->sideways_times_E_per_m_;
+  if (scene_.tool.spheres.size() > 1) {
+    law_->rings_times_E_per_m_ = std::move(map->ring_times_E_per_m);
+    out.ring_times_E_per_m = law_->rings_times_E_per_m_;
+    out.rings = map->rings;
+    out.ring_pitch_m = map->ring_pitch_m;
+  }
+  law_->memory_bytes_ +=
+      (law_->rings_times_E_per_m_.size() + law_->sideways_times_E_per_m_.size()) * sizeof(float);
   return out;
 }
 

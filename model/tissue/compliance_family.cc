@@ -59,6 +59,20 @@ std::vector<double> rings_near(const ComplianceMap& map, std::span<const float> 
 
 }  // namespace
 
+std::vector<float> sideways_give(const ComplianceMap& map, double tip_radius_m) {
+  const law::ElasticTip unit{
+      .youngs_modulus_Pa = 1.0, .poisson_ratio = map.poisson_ratio, .radius_m = tip_radius_m};
+  const float disc = static_cast<float>(1.0 / unit.pulled_stiffness_N_per_m());
+  std::vector<float> out;
+  for (std::size_t v = 0; v < map.vertices(); ++v) {
+    const SidewaysGive& g = map.sideways_times_E_per_m[v];
+    const float normal = std::max(disc + map.regular_times_E_per_m[v], disc / float{kStiffest});
+    out.push_back(0.5F * (g.s1 + g.s2));
+    out.push_back(out.back() - 0.5F * (g.n1 * g.n1 + g.n2 * g.n2) / normal);  // CF-4
+  }
+  return out;
+}
+
 Result<ComplianceFamily> make_compliance_family(const ComplianceMap& map,
                                                 const ComplianceFamilyParameters& p) {
   if (p.curves < 2 || p.curves > kMaxCurves)

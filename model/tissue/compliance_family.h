@@ -22,10 +22,9 @@
 #include "model/law/compliance_law.h"
 #include "model/result.h"
 #include "model/tissue/compliance_map.h"
+#include "model/tissue/elastic_field.h"
 
 namespace tact::model::tissue {
-
-inline constexpr double kStiffest = 3.0;
 
 struct ComplianceFamily {
   std::vector<law::ComplianceCurve> curve;  // K, soft to stiff
@@ -48,6 +47,11 @@ struct ComplianceFamilyParameters {
   std::size_t curves = 17;       // K, 2 .. 65
   std::size_t table_knots = 65;  // of each curve in press
 };
+
+/// s E of each vertex, mean of both directions, free to sink (2 v) and held (2 v + 1), 1/m:
+///
+///     CF-4   s_held = s - n^2 / (c_disc + r)
+std::vector<float> sideways_give(const ComplianceMap& map, double tip_radius_m);
 
 Result<ComplianceFamily> make_compliance_family(const ComplianceMap& map,
                                                 const ComplianceFamilyParameters& parameters);

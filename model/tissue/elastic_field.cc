@@ -117,6 +117,25 @@ double ElasticField::coupling_m_per_N(const contact::Indentation& a, const conta
   return std::max(half_space + regular, 0.0);  // 0 beside the held side, but for the map's errors
 }
 
+double ElasticField::sideways_m_per_N(const contact::Indentation& in,
+                                      double contact_radius_m) const RT_SAFE {
+  const ElasticNeighbours& near = parts_.neighbours;
+  if (!(near.contact_modulus_Pa > 0.0) || !(contact_radius_m > 0.0)) return 0.0;
+  const double nu = near.poisson_ratio;
+  // MC-5
+  const double half_space =
+      (2.0 - nu) / (4.0 * (1.0 - nu) * near.contact_modulus_Pa * contact_radius_m);
+  if (near.sideways_times_E_per_m.empty() || !is_a_place(in.place, parts_.surface))
+    return half_space;
+  double s = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t vertex = parts_.surface.triangle[in.place.triangle][i];
+    const float of_vertex = near.sideways_times_E_per_m[2 * vertex + (in.held ? 1 : 0)];
+    s += in.place.weight[i] * static_cast<double>(of_vertex);
+  }
+  return std::max(half_space + s / near.youngs_modulus_Pa, half_space / kStiffest);
+}
+
 std::size_t ElasticField::profile(const contact::Indentation& in,
                                   std::span<double> ring_m) const RT_SAFE {
   if (!is_known(in)) return 0;

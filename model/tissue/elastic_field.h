@@ -13,7 +13,10 @@
 //
 //     MC-2   c_ij = 1 / (pi E* s) + (g_i(s) + g_j(s)) / 2 >= 0
 //
-// half-space and the organ's regular part, g: that of the rings of the compliance map.
+// half-space and the organ's regular part, g: that of the rings of the compliance map. Sideways a
+// site gives way by half-space and regular part, too (G = E* (1 - nu) / 2):
+//
+//     MC-5   1 / k_t = (2 - nu) / (8 G a) + s           a: radius of the contact, m
 #pragma once
 
 #include <array>
@@ -24,13 +27,19 @@
 
 namespace tact::model::tissue {
 
+/// Of a place, over a half-space: close to the held side an organ is stiffer than its own surface
+/// can show.
+inline constexpr double kStiffest = 3.0;
+
 /// What two sites of one elastic body are to each other. Without a map the body is a half-space.
 struct ElasticNeighbours {
   double youngs_modulus_Pa = 0.0;               // E
   double contact_modulus_Pa = 0.0;              // E*; 0: nothing is known, sites do not couple
+  double poisson_ratio = 0.5;                   // nu
   std::span<const float> ring_times_E_per_m{};  // g_j E of vertex v at [v rings + j - 1]; or empty
   std::size_t rings = 0;
   double ring_pitch_m = 0.0;
+  std::span<const float> sideways_times_E_per_m{};  // s E of vertex v at [2 v], held at [2 v + 1]
 };
 
 /// What an ElasticField borrows; all of it outlives the field.
@@ -50,6 +59,8 @@ class ElasticField final : public contact::SiteLaw {
   contact::SiteResponse respond(const contact::Indentation& in) RT_SAFE override;
   double coupling_m_per_N(const contact::Indentation& a, const contact::Indentation& b,
                           double distance_m) const RT_SAFE override;
+  double sideways_m_per_N(const contact::Indentation& in,
+                          double contact_radius_m) const RT_SAFE override;
   void leave(std::size_t sphere) RT_SAFE override { now_[sphere] = next_[sphere] = {}; }
   void advance() RT_SAFE override {
     if (parts_.relaxation.terms() > 0) now_ = next_;

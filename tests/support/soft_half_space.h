@@ -25,7 +25,7 @@ struct SoftHalfSpace {
        .pull_coordinate = {},
        .surface = {},
        .relaxation = {},
-       .neighbours = {.contact_modulus_Pa = tip.contact_modulus_Pa()}}};
+       .neighbours = {.contact_modulus_Pa = tip.contact_modulus_Pa(), .poisson_ratio = 0.45}}};
 };
 
 }  // namespace tact::tests

@@ -59,7 +59,11 @@ std::vector<MovedNode> pull(const OrganBody& body, const Circle& tool, const Ind
 
 ElasticLoad load_of(const OrganBody& body, const Circle& rim, const Indentation& what) {
   ElasticLoad load{.direction = rim.axis, .moved = {}, .large_strain = what.large_strain};
-  if (what.depth_m < 0.0) {
+  if (what.is_sideways()) {
+    load.direction = what.along;
+    load.moved = pull(body, rim, what);
+    load.sideways_held = what.held;
+  } else if (what.depth_m < 0.0) {
     load.moved = pull(body, rim, what);
     load.sideways_held = true;
   } else if (what.large_strain) {
@@ -81,7 +85,7 @@ double contact_radius_of(const Indentation& what) {
 ground_truth::EdgeLengths edge_lengths(const Organ& organ, const Indentation& what) {
   const Levels& level =
       kLevels[static_cast<std::size_t>(std::clamp(what.level, kRoughLevel, kFinestLevel))];
-  const bool bonded = what.depth_m < 0.0;  // stress is singular at the rim of a bond
+  const bool bonded = what.is_bonded();  // stress is singular at the rim of a bond
   const double a_m = contact_radius_of(what);
   double fine_m = (bonded ? level.bond : level.fine) * a_m;
   if (bonded && what.large_strain) {
@@ -142,7 +146,7 @@ Result<ground_truth::ReferenceCase> solve(const Organ& organ, const Indentation&
   return ground_truth::ReferenceCase{
       .depth_m = what.depth_m,
       .large_strain = what.large_strain,
-      .force_N = dot(answer->force_N, rim.axis),
+      .force_N = dot(answer->force_N, problem.load.direction),
       .contact_radius_m =
           ball ? touched_radius_m(*body, *ball, rim.axis, displacement_m) : rim.radius_m,
       .profile_m = ring_means(*body, rim.at_m, -rim.axis, inward_m, inward_m[what.vertex])};

@@ -39,6 +39,12 @@ struct Indentation {
   bool large_strain = false;
   int level = 2;                  // of the mesh, kRoughLevel to kFinestLevel
   double contact_radius_m = 0.0;  // of a press; 0: that of the half-space at this depth
+  // A round patch dragged depth_m along the surface as one piece; it needs a contact radius.
+  model::Vec3 along{};  // unit, tangential; 0: the tool moves along the normal
+  bool held = false;    // it cannot rise or sink
+
+  bool is_sideways() const { return norm(along) > 0.0; }
+  bool is_bonded() const { return depth_m < 0.0 || is_sideways(); }
 };
 
 inline constexpr int kRoughLevel = 0;  // for the error of the coarsest level only

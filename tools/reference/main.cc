@@ -14,6 +14,7 @@
 #include "tools/program/whole_file.h"
 #include "tools/reference/reference_plan.h"
 #include "tools/reference/self_check.h"
+#include "tools/reference/sideways_plan.h"
 #include "tools/reference/tool_plan.h"
 
 namespace {
@@ -30,7 +31,7 @@ struct Options {
   std::vector<double> depths_m;
   int level = 2;
   unsigned jobs = 1;
-  bool tool = false, json = false;
+  bool tool = false, sideways = false, json = false;
 };
 
 void add_options(CLI::App& app, Options& o) {
@@ -40,6 +41,8 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--tool", o.tool,
                "press all spheres of the tool together, at the hand's own site and at six places "
                "that no law is fitted on (README.md says how they are chosen)");
+  app.add_flag("--sideways", o.sideways, "drag a round patch along the surface of each site")
+      ->excludes("--tool");
   app.add_option("--sites", o.sites,
                  "vertices of the organ's mesh, instead of the scene's or of the six")
       ->delimiter(',');
@@ -177,6 +180,24 @@ Result<ground_truth::ReferenceData> solve_plan(const ReferencePlan& plan, const 
   return assemble(plan, *solved, *solver);
 }
 
+Result<SidewaysReference> solve_sideways(const Options& o) {
+  const auto plan = make_plan(o);
+  if (!plan) return plan.error();
+  const auto solver = solver_versions();
+  if (!solver) return solver.error();
+  const auto solved = solve_all(plan->organ, sideways_cases(*plan), *solver, o);
+  if (!solved) return solved.error();
+  return assemble_sideways(*plan, *solved, *solver);
+}
+
+void print_table(const SidewaysReference& data) {
+  fmt::print("{:>6} {:>9} {:>6} {:>8} {:>11}\n", "vertex", "radius mm", "held", "N/m",
+             "mesh err %");
+  for (const SidewaysCase& c : data.cases)
+    fmt::print("{:>6} {:>9.3g} {:>6} {:>8.2f} {:>11.2f}\n", c.vertex, c.contact_radius_m * 1e3,
+               c.held ? "yes" : "no", c.stiffness_N_per_m, 100.0 * c.error_ratio);
+}
+
 void print_table(const ground_truth::ReferenceData& data) {
   fmt::print("{:>6} {:>9} {:>11} {:>10} {:>11}  {}\n", "vertex", "depth mm", "contact mm",
              "force N", "mesh err %", "material");
@@ -236,6 +257,7 @@ int main(int argc, char** argv) {
   if (auto error = program::check_output(options.out, {options.scene})) return program.fail(*error);
   if (options.tool)
     return tell(program, options, solve_tool(options), ground_truth::tool_reference_text);
+  if (options.sideways) return tell(program, options, solve_sideways(options), sideways_text);
   const auto plan = make_plan(options);
   if (!plan) return program.fail(plan.error());
   return tell(program, options, solve_plan(*plan, options), ground_truth::reference_text);

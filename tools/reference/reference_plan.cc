@@ -15,7 +15,6 @@ using model::Error;
 
 constexpr double kDefaultDepths_m[] = {1e-3, 2e-3, 3.5e-3, 5e-3, 7e-3, 10e-3};
 constexpr double kUnitPull_m = -1e-3;
-constexpr double kShrink = 0.7;  // of edges, and of the error, from level to level
 // Measured on the block of --self-check: 5 mm with edges of 0.43, 0.3, 0.2 and 0.12 of the radius
 // is 10.3, 9.2, 7.2 and 4.6 % above the known answer.
 constexpr double kShrinkOfLargePull = 0.8;
@@ -40,7 +39,8 @@ struct SiteCases {
 /// of the last change. At the rim of a bond at large strain the error shrinks slower, k = 0.8.
 double remaining_error(const ground_truth::ReferenceCase& fine,
                        const ground_truth::ReferenceCase& coarse) {
-  const double shrink = fine.large_strain && !fine.is_press() ? kShrinkOfLargePull : kShrink;
+  const double shrink =
+      fine.large_strain && !fine.is_press() ? kShrinkOfLargePull : kErrorShrink_ratio;
   return shrink / (1.0 - shrink) * std::abs(fine.force_N - coarse.force_N) / std::abs(fine.force_N);
 }
 

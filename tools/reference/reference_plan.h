@@ -24,6 +24,9 @@ namespace tact::tools::reference {
 /// stand more are too coarse to be true.
 inline constexpr double kLargePull = 1.3;
 
+/// Of edges, and of the error, from a level to the next finer one.
+inline constexpr double kErrorShrink_ratio = 0.7;
+
 struct ReferencePlan {
   Organ organ;
   std::string mesh_name;

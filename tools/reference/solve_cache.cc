@@ -149,6 +149,8 @@ std::string edges_text(const ground_truth::EdgeLengths& edges) {
 std::string cache_key(const Organ& organ, const Indentation& what, const std::string& solver) {
   std::string contact =
       what.contact_radius_m > 0.0 ? fmt::format("{:.4g} m", what.contact_radius_m) : "half-space";
+  if (what.is_sideways())
+    contact += fmt::format(", along {}{}", text_of(what.along), what.held ? ", held" : "");
   if (what.large_strain && what.depth_m > 0.0) contact += fmt::format(", ball {}", kBallMethod);
   return fmt::format(
       "method {}, {}; vertex {}, radius {:.9g} m, depth {:.9g} m, {}; contact {}; {}", kMethod,

@@ -19,13 +19,12 @@ using model::Vec3;
 using model::contact::ProbeSphere;
 
 constexpr double kDefaultDepths_m[] = {1e-3, 2e-3, 5e-3, 10e-3};
-constexpr double kTowardsHand = 0.5;   // cosine
-constexpr double kSameHeight = 0.5;    // of the radius
-constexpr double kThickness = 2.0;     // of the deepest press
-constexpr double kFromHeld = 3.0;      // of the radius
-constexpr double kErrorShrinks = 0.7;  // of edges, and of the error, from level to level
-constexpr int kSamples = 10;           // of a sphere's radius, to find where it first touches
-constexpr double kFromAbove = 5.0;     // radii along the way, in which a first touch is looked for
+constexpr double kTowardsHand = 0.5;  // cosine
+constexpr double kSameHeight = 0.5;   // of the radius
+constexpr double kThickness = 2.0;    // of the deepest press
+constexpr double kFromHeld = 3.0;     // of the radius
+constexpr int kSamples = 10;          // of a sphere's radius, to find where it first touches
+constexpr double kFromAbove = 5.0;    // radii along the way, in which a first touch is looked for
 
 /// The tool's spheres where it stands at depth 0.
 std::vector<RigidSphere> spheres_at(const std::vector<ProbeSphere>& spheres, const ToolPlace& place,
@@ -219,7 +218,8 @@ ground_truth::ToolReference assemble(const ToolPlan& plan,
       ToolCase& c = out.places[i].cases[k];
       const double change_N = c.force_N - solved[n + i][k].force_N;
       // The rest of the series, as reference_plan.cc has it.
-      c.force_error_ratio = kErrorShrinks / (1.0 - kErrorShrinks) * std::abs(change_N) / c.force_N;
+      c.force_error_ratio =
+          kErrorShrink_ratio / (1.0 - kErrorShrink_ratio) * std::abs(change_N) / c.force_N;
     }
   }
   return out;

@@ -107,6 +107,7 @@ TEST(WholeTool, NoStrokeGivesBackMoreThanItTook) {
   double most_lost_J = 0.0;
   for (int k = 0; k < 60; ++k) {
     Bench bench(jaws(2 + static_cast<std::size_t>(k) % 3));
+    if (k % 2 == 0) bench.parameters.sliding_stiffness_N_per_m = 0.0;  // the tissue's own
     Contact contact = bench.contact();
     const double given = given_J(contact, random_stroke(random, 0.7), 4000);
     EXPECT_LE(given, 2e-8) << "stroke " << k;
@@ -130,6 +131,7 @@ TEST(WholeTool, LettingGoNeverAddsEnergy) {
   for (int k = 0; k < 100; ++k) {
     Bench bench(jaws(2 + static_cast<std::size_t>(k) % 3), tests::make_ball(50_mm, 5));
     bench.parameters.tear_force_N = 100.0;
+    if (k % 2 == 0) bench.parameters.sliding_stiffness_N_per_m = 0.0;
     Contact contact = bench.contact();
     Stroke stroke = random_stroke(random, 0.0);
     stroke.grip_from = 0.3, stroke.grip_to = 0.45 + 0.004 * k;
@@ -193,7 +195,8 @@ TEST(WholeTool, APinchedLobeIsDraggedTheSameWayOnBothSides) {
   const Indentation top{.sphere = 0, .normal = {0, 0, 1}}, below{.sphere = 1, .normal = {0, 0, -1}};
   Coupling c{};
   c[0][1] = c[1][0] = bench.tissue.field.coupling_m_per_N(top, below, 24_mm);
-  const Shear shear(20.0, c, {true, true, false, false});
+  const OwnGive own{.m_per_N = 1.0 / 20.0, .least_m_per_N = 1.0 / 20.0};
+  const Shear shear({own, own}, c, {true, true, false, false});
   const double together_N = shear.force_N({Vec3{1_mm, 0, 0}, Vec3{1_mm, 0, 0}}, 0).x;
   EXPECT_GT(c[0][1], 0.0);
   EXPECT_NEAR(together_N, 1_mm / (1.0 / 20.0 + c[0][1]), 1e-12);

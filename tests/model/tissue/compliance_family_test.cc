@@ -96,6 +96,17 @@ TEST(ComplianceFamily, APullThatMayNotMoveSidewaysIsStiffer) {
   EXPECT_GT(family.pull_coordinate[190], family.press_coordinate[190]);
 }
 
+TEST(ComplianceFamily, AHeldPatchIsStifferSidewaysThanOneThatMaySink) {
+  // Vertex 190 again: s E = (40 + 10) / 2 = 25 1/m; c_disc as in CF-1;
+  // CF-4: s_held E = 25 - 30^2 / (2 (c_disc E + 100))
+  const law::ElasticTip tip{1.0, 0.45, 4_mm};
+  const double disc = 1.0 / tip.pulled_stiffness_N_per_m();
+  const std::vector<float> give = sideways_give(lobe(), 4_mm);
+  ASSERT_EQ(give.size(), 400u);
+  EXPECT_FLOAT_EQ(give[2 * 190], 25.0F);
+  EXPECT_NEAR(give[2 * 190 + 1], 25.0 - 450.0 / (disc + 100.0), 1e-4);
+}
+
 TEST(ComplianceFamily, ForcesScaleWithYoungsModulus) {
   ComplianceFamilyParameters harder = kLiver;
   harder.youngs_modulus_Pa *= 2.4;

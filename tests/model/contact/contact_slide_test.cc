@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tissue that is dragged along by the stiffness of its own: MC-5.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "model/contact/contact.h"
+#include "model/units.h"
+#include "tests/support/shapes.h"
+#include "tests/support/soft_half_space.h"
+
+namespace tact::model::contact::contact_slide_test {
+
+constexpr double kRadius_m = 4_mm, kNu = 0.45, kShear_Pa = 5000.0 / (2.0 * (1.0 + kNu));
+
+class Slide : public testing::Test {
+ protected:
+  Wrench feel_at(const Vec3& moved_m, double grip_ratio = 0.0) {
+    const Tool tool{.position_m = Vec3{0, 0, kRadius_m} + moved_m, .grip_ratio = grip_ratio};
+    contact.touch(tool);
+    return contact.feel(tool, false);
+  }
+  void press(double from_m, double to_m, double x_m = 0.0) {
+    for (int i = 0; i <= 400; ++i) feel_at({x_m, 0, -from_m - (to_m - from_m) * i / 400.0});
+  }
+  /// Of a round contact.
+  static double stiffness_N_per_m(double radius_m) {
+    return 8.0 * kShear_Pa * radius_m / (2.0 - kNu);
+  }
+  double dent_m() const { return contact.touches()[0].dent_m; }
+  double along_J() const {
+    const SphereTouch& touch = contact.touches()[0];
+    return 0.5 * norm(tangential(touch.force_N, touch.normal)) * norm(touch.shift_m);
+  }
+
+  tests::SoftHalfSpace tissue;
+  mesh::SurfaceMesh mesh = tests::make_plate(160_mm, 32);
+  SeedGrid seeds = make_seed_grid(mesh.view(), 20_mm);
+  ProbeSphere sphere{{}, kRadius_m};
+  Contact contact{{.law = &tissue.field,
+                   .parameters = {.friction_ratio = 5.0, .tear_force_N = 0.3},
+                   .spheres = {&sphere, 1},
+                   .surface = mesh.view(),
+                   .seeds = seeds.view(),
+                   .blade = {}}};
+};
+
+TEST_F(Slide, ATouchingSphereIsHeldBackByTheContactThatItMakes) {
+  press(-1_mm, 2_mm);
+  const double own = stiffness_N_per_m(std::sqrt(kRadius_m * dent_m()));
+  const double felt_N = -feel_at({0.5_mm, 0, -2_mm}).force_N.x;
+  EXPECT_NEAR(felt_N, own * 0.5_mm, 0.01 * own * 0.5_mm) << "in steps of 1 %";
+}
+
+TEST_F(Slide, ADeeperContactKeepsItsForceAlongTheSurfaceAndLosesEnergy) {
+  press(-1_mm, 1_mm);
+  const double before_N = feel_at({0.4_mm, 0, -1_mm}).force_N.x, before_J = along_J();
+  press(1_mm, 3_mm, 0.4_mm);
+  const double after_N = feel_at({0.4_mm, 0, -3_mm}).force_N.x;
+  EXPECT_NEAR(after_N, before_N, 1e-9);
+  EXPECT_LT(along_J(), 0.7 * before_J);
+  const double deep_N = feel_at({0.5_mm, 0, -3_mm}).force_N.x;
+  press(3_mm, 2.9_mm, 0.5_mm);
+  EXPECT_NEAR(feel_at({0.5_mm, 0, -2.9_mm}).force_N.x, deep_N, 1e-9) << "a hand trembles";
+}
+
+TEST_F(Slide, HeldTissueTearsWhereItsOwnStiffnessSays) {
+  press(-1_mm, 2_mm);
+  double x_m = 0.0;
+  for (feel_at({0, 0, -2_mm}, 1.0); contact.touches()[0].state == TouchState::kHeld;
+       feel_at({x_m, 0, -2_mm}, 1.0))
+    x_m += 0.01_mm;
+  EXPECT_NEAR(x_m, 0.3 / stiffness_N_per_m(kRadius_m), 0.1_mm);
+}
+
+TEST_F(Slide, AStiffnessOfTheSceneCountsBeforeTheTissuesOwn) {
+  Contact fixed({.law = &tissue.field,
+                 .parameters = {.friction_ratio = 5.0,
+                                .sliding_stiffness_N_per_m = 100.0,
+                                .tear_force_N = 0.3},
+                 .spheres = {&sphere, 1},
+                 .surface = mesh.view(),
+                 .seeds = seeds.view(),
+                 .blade = {}});
+  Wrench felt;
+  for (const Vec3& at : {Vec3{0, 0, kRadius_m}, Vec3{0, 0, 2_mm}, Vec3{0.1_mm, 0, 2_mm}}) {
+    fixed.touch({.position_m = at});
+    felt = fixed.feel({.position_m = at}, false);
+  }
+  EXPECT_NEAR(felt.force_N.x, -100.0 * 0.1_mm, 1e-9);
+}
+
+}  // namespace tact::model::contact::contact_slide_test

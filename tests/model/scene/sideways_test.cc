@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// How stiff the liver is along its surface, by its law and by finite elements.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "model/contact/site_law.h"
+#include "model/scene/scene.h"
+#include "model/scene/tissue.h"
+#include "tests/support/sentence.h"
+
+namespace tact::model::scene::sideways_test {
+
+contact::Place place_of(const mesh::SurfaceMesh& mesh, std::uint32_t vertex) {
+  for (std::uint32_t t = 0; t < mesh.triangle.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i)
+      if (mesh.triangle[t][i] == vertex) {
+        contact::Place place{.triangle = t, .weight = {}};
+        place.weight[i] = 1.0;
+        return place;
+      }
+  ADD_FAILURE() << "no vertex " << vertex;
+  return {};
+}
+
+// The law takes one stiffness for every direction; that of finite elements is the mean of two.
+TEST(Sideways, TheLiverIsAsStiffAsFiniteElementsFindIt) {
+  std::ifstream file(TACT_SOURCE_DIR "/tests/data/reference/liver_sideways.json");
+  const auto reference = nlohmann::json::parse(file);
+  const auto scene = load_scene(TACT_SOURCE_DIR "/model/scenes/liver.toml", {});
+  ASSERT_EQ(tests::sentence_of(scene), "");
+  const auto tissue = make_tissue(*scene);
+  ASSERT_EQ(tests::sentence_of(tissue), "");
+  const contact::SiteLaw& law = (*tissue)->law().site_law();
+  const auto& cases = reference.at("cases");
+  ASSERT_EQ(cases.size() % 2, 0U);
+  ASSERT_GE(cases.size(), 3U * 3U * 2U);
+  for (std::size_t i = 0; i < cases.size(); i += 2) {
+    const auto &one = cases[i], &other = cases[i + 1];
+    ASSERT_EQ(one.at("vertex"), other.at("vertex"));
+    const double want_N_per_m = 0.5 * (one.at("stiffness_N_per_m").get<double>() +
+                                       other.at("stiffness_N_per_m").get<double>());
+    const double give_m_per_N = law.sideways_m_per_N(
+        {.place = place_of(scene->organ_mesh, one.at("vertex")), .held = one.at("held")},
+        one.at("contact_radius_m"));
+    EXPECT_NEAR(1.0 / give_m_per_N, want_N_per_m, 0.25 * want_N_per_m)
+        << one.at("vertex") << ", radius " << one.at("contact_radius_m") << ", held "
+        << one.at("held");
+    RecordProperty("case" + std::to_string(i), std::to_string(1.0 / give_m_per_N / want_N_per_m));
+  }
+}
+
+}  // namespace tact::model::scene::sideways_test
