@@ -56,6 +56,19 @@ class WholeTool : public ::testing::Test {
     return (near_N - far_N) / 0.002;
   }
 
+  /// How far the held jaws are dragged along y until they tear.
+  double torn_after_m() {
+    contact::Contact contact(tissue_->contact_scene());
+    feel(contact, -0.010, 0.003, 0.0);
+    double y_m = 0.0;
+    for (;; y_m += 2e-5) {
+      const Tool tool{.position_m = {0, y_m, -0.003}, .grip_ratio = 1.0};
+      contact.touch(tool);
+      contact.feel(tool, false);
+      if (contact.touches()[0].state != contact::TouchState::kHeld || y_m > 0.1) return y_m;
+    }
+  }
+
   Scene scene_;
   std::unique_ptr<Tissue> tissue_;
 };
@@ -70,6 +83,10 @@ TEST_F(WholeTool, PressesTheLiverAsFiniteElementsDo) {
           << solver << ", " << truth["depth_m"][i] << " m";
     }
   }
+}
+
+TEST_F(WholeTool, HeldJawsTearAfterTwoCentimetresSideways) {
+  EXPECT_NEAR(torn_after_m(), 0.021, 0.004);  // 0.4 N a jaw; with 100 N/m it was 4 mm
 }
 
 TEST_F(WholeTool, HeldJawsPullLessThanTheSumOfEach) {
