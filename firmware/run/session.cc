@@ -20,6 +20,7 @@
 #include "firmware/run/report.h"
 #include "firmware/run/say.h"
 #include "firmware/run/telemetry_setup.h"
+#include "model/scene/accuracy_file.h"
 
 namespace tact::firmware::run {
 namespace {
@@ -112,6 +113,7 @@ int Session::run() {
     say(stdout, "{}\n",
         make_check_line(scene_, parts_.device->info().name, parts_.tissue->law(), parts_.stiffness,
                         parts_.time));
+    say(stdout, "{}\n", model::scene::accuracy_line(scene_, parts_.tissue->law()));
     return 0;
   }
   if (!options_.json_path.empty() && options_.json_path != "-" &&

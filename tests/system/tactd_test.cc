@@ -20,8 +20,8 @@ using nlohmann::json;
 TEST_F(Tactd, ChecksAGoodSceneAndLeaves) {
   const Outcome outcome = tactd(kLiver + " --check");
   EXPECT_EQ(outcome.status, 0) << outcome.output;
-  for (const char* part :
-       {"sound", "law rhombus chain", "stiffness ", " of 354.", " of 50 us a tick"})
+  for (const char* part : {"sound", "force of the whole tool: 1.3 % of the peak off",
+                           "law rhombus chain", "stiffness ", " of 354.", " of 50 us a tick"})
     EXPECT_TRUE(has(outcome, part)) << part << " in: " << outcome.output;
 }
 

@@ -28,7 +28,7 @@ using tact::model::scene::Scene;
 struct Options {
   program::SceneArguments scene;
   program::SweepArguments sweep;
-  std::string out, reference, tool_reference;
+  std::string out, reference, tool_reference, accuracy;
   ChartOptions chart;
   bool no_peers = false, json = false;
 };
@@ -42,6 +42,9 @@ void add_options(CLI::App& app, Options& o) {
                  "instead: what is true under the whole tool, all spheres; JSON of tact-reference "
                  "SCENE --tool --out FILE")
       ->excludes("--reference");
+  app.add_option("--accuracy", o.accuracy,
+                 "with it: also this file, SCENE.accuracy, which tactd --check tells")
+      ->needs("--tool-reference");
   app.add_option("--laws", o.chart.wish.laws, "only these laws and peers")
       ->delimiter(',')
       ->check(CLI::IsMember(all_families()));
@@ -91,6 +94,13 @@ int judge_whole_tool(const program::Program& program, const Options& o) {
   if (!csv) return program.fail(csv.error());
   const auto written = program::write_whole_file(o.out + "/tool.json", json);
   if (!written) return program.fail(written.error());
+  if (!o.accuracy.empty()) {
+    const auto accuracy = accuracy_of(*scene, rows, *reference);
+    if (!accuracy) return program.fail(accuracy.error());
+    const std::string text = tact::model::scene::accuracy_text(*accuracy);
+    if (const auto kept = program::write_whole_file(o.accuracy, text); !kept)
+      return program.fail(kept.error());
+  }
   fmt::print("{}", o.json ? json : tool_text(rows, *reference));
   return 0;
 }

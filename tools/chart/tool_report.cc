@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/chart/tool_report.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <cmath>
+#include <ctime>
 #include <nlohmann/json.hpp>
 
 namespace tact::tools::chart {
@@ -113,6 +115,29 @@ std::string tool_text(const std::vector<ToolRow>& rows, const ToolReference& ref
          "RMS and worst: % of the largest force of the reference, at a place % of its own "
          "largest.\n1 mm and so on: % of the own force there, for a law the worst place's. Time: "
          "touch, feel, judge.\n";
+}
+
+model::Result<std::vector<model::scene::Accuracy>> accuracy_of(
+    const model::scene::Scene& scene, const std::vector<ToolRow>& rows,
+    const ground_truth::ToolReference& reference) {
+  std::vector<model::scene::Accuracy> out;
+  for (const ToolRow& row : rows) {
+    if (!row.failure.empty()) continue;
+    const auto law = model::scene::make_tissue_law(scene, row.law);
+    if (!law) return law.error();
+    model::scene::Accuracy a{
+        .law = std::string(model::scene::name_of(row.law)),
+        .law_hash = hash_of_forces(scene, **law),
+        .reference = fmt::format("linear finite elements at {} places", reference.places.size()),
+        .date = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))),
+        .rms_ratio = row.errors.rms_ratio,
+        .depth_m = {},
+        .own_worst_ratio = row.errors.own_worst};
+    for (const ground_truth::ToolCase& c : reference.places.front().cases)
+      a.depth_m.push_back(c.depth_m);
+    out.push_back(std::move(a));
+  }
+  return out;
 }
 
 }  // namespace tact::tools::chart

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "model/scene/accuracy_file.h"
 #include "tools/chart/chart.h"
 #include "tools/chart/tool_judge.h"
 
@@ -18,6 +19,12 @@ report::Table tool_table(const std::vector<ToolRow>& rows,
 std::string tool_json(const std::vector<ToolRow>& rows,
                       const ground_truth::ToolReference& reference, const std::string& command,
                       const Provenance& provenance);
+
+/// What tactd --check may tell of each law that was measured. An error names a law that cannot be
+/// made.
+model::Result<std::vector<model::scene::Accuracy>> accuracy_of(
+    const model::scene::Scene& scene, const std::vector<ToolRow>& rows,
+    const ground_truth::ToolReference& reference);
 
 /// For a terminal: each law, then its own error at each place and depth.
 std::string tool_text(const std::vector<ToolRow>& rows,

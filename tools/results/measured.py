@@ -93,7 +93,8 @@ def chart():
 
 def tool():
     """The whole tool, as the scene says."""
-    command = ["build/tact-chart", LIVER, "--tool-reference", LIVER_TOOL]
+    command = ["build/tact-chart", LIVER, "--tool-reference", LIVER_TOOL,
+               "--accuracy", "model/scenes/liver.accuracy"]
     values = {}
     for row in json_in_file(*command, option="--out", name="tool.json")["laws"]:
         if row["law"] in LAW_SIZES and "failure" not in row:

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/scene/accuracy_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "model/scene/scene.h"
+#include "model/scene/scene_words.h"
+
+namespace tact::model::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<double> numbers_of(const toml::table& table, const char* key) {
+  std::vector<double> out;
+  if (const toml::array* array = table[key].as_array())
+    for (const toml::node& value : *array) out.push_back(value.value_or<double>(std::nan("")));
+  return out;
+}
+
+std::string cure(const Scene& scene) {
+  return fmt::format(
+      "tact-reference {0} --tool --out TRUTH.json solves the truth, tact-chart {0} "
+      "--tool-reference TRUTH.json --out DIR --accuracy {1} measures against it",
+      scene.path, accuracy_path(scene));
+}
+
+/// Error: what the table lacks.
+Result<Accuracy> accuracy_of(const toml::table& table, const std::string& law) {
+  Accuracy out{.law = law,
+               .law_hash = table["law_hash"].value_or<std::string>(""),
+               .reference = table["reference"].value_or<std::string>(""),
+               .date = table["date"].value_or<std::string>(""),
+               .rms_ratio = table["force_rms_ratio"].value_or<double>(std::nan("")),
+               .depth_m = numbers_of(table, "depth_m"),
+               .own_worst_ratio = numbers_of(table, "own_worst_ratio")};
+  const auto is_number = [](double v) { return std::isfinite(v); };
+  if (!is_number(out.rms_ratio) || out.rms_ratio < 0.0 || out.depth_m.empty() ||
+      out.depth_m.size() != out.own_worst_ratio.size() ||
+      !std::all_of(out.depth_m.begin(), out.depth_m.end(), is_number) ||
+      !std::all_of(out.own_worst_ratio.begin(), out.own_worst_ratio.end(), is_number))
+    return Error{"a number is missing or has no meaning"};
+  return out;
+}
+
+}  // namespace
+
+std::string hash_of_forces(const Scene& scene, const TissueLaw& law) {
+  constexpr std::size_t kPlaces = 9;
+  constexpr double kDepths_m[] = {0.0005, 0.002, 0.005, 0.01};
+  contact::SiteLaw& site = law.site_law();
+  const mesh::SurfaceMesh& organ = scene.organ_mesh;
+  TextHash hash;
+  for (const contact::ProbeSphere& s : scene.tool.spheres)
+    hash.add(fmt::format("{:.6g} {:.6g} {:.6g} {:.6g}", s.offset_m.x, s.offset_m.y, s.offset_m.z,
+                         s.radius_m));
+  contact::Indentation before{};
+  for (std::size_t k = 0; k < kPlaces; ++k) {
+    const std::size_t triangle = k * (organ.triangle.size() - 1) / (kPlaces - 1);
+    contact::Indentation at{
+        .place = {.triangle = static_cast<std::uint32_t>(triangle), .weight = {1.0, 0.0, 0.0}},
+        .normal = organ.vertex_normal[organ.triangle[triangle][0]]};
+    for (const double depth_m : kDepths_m) {
+      at.depth_m = depth_m;
+      hash.add(fmt::format("{:.6g}", site.respond(at).law.force_N));
+      site.leave(0);
+    }
+    if (k > 0)
+      hash.add(
+          fmt::format("{:.6g}", site.coupling_m_per_N(before, at, scene.tool.spheres[0].radius_m)));
+    before = at;
+  }
+  return hash.hex();
+}
+
+std::string accuracy_path(const Scene& scene) {
+  return fs::path(scene.path).replace_extension(".accuracy").string();
+}
+
+std::string accuracy_text(const std::vector<Accuracy>& laws) {
+  std::string out = "# How true the force of the whole tool is: tact-chart --tool-reference\n";
+  for (const Accuracy& a : laws)
+    out += fmt::format(
+        "\n[{}]\nlaw_hash = \"{}\"\nreference = \"{}\"\ndate = \"{}\"\n"
+        "force_rms_ratio = {:.4f}  # of the peak\ndepth_m = [{}]\n"
+        "own_worst_ratio = [{:.4f}]  # of the force at the same place and depth\n",
+        a.law, a.law_hash, a.reference, a.date, a.rms_ratio, fmt::join(a.depth_m, ", "),
+        fmt::join(a.own_worst_ratio, ", "));
+  return out;
+}
+
+Result<Accuracy> read_accuracy(const Scene& scene, const TissueLaw& law) {
+  const std::string path = accuracy_path(scene), name(name_of(scene.law));
+  if (!scene.elastic)
+    return Error{fmt::format("{} has no [elastic], so there is nothing to solve and compare with",
+                             scene.path)};
+  if (!fs::is_regular_file(path))
+    return Error{fmt::format("nobody has measured it; {}", cure(scene))};
+  toml::table root;
+  try {  // the library reports by exceptions; they end here
+    root = toml::parse_file(path);
+  } catch (const toml::parse_error& e) {
+    return Error{
+        fmt::format("{}:{}: {}; {}", path, e.source().begin.line, e.description(), cure(scene))};
+  }
+  const toml::table* table = root[name].as_table();
+  if (table == nullptr) return Error{fmt::format("{} has no [{}]; {}", path, name, cure(scene))};
+  auto out = accuracy_of(*table, name);
+  if (!out)
+    return Error{fmt::format("{}: [{}]: {}; {}", path, name, out.error().sentence, cure(scene))};
+  if (out->law_hash != hash_of_forces(scene, law))
+    return Error{fmt::format("{} is of another law, organ or tool; {}", path, cure(scene))};
+  return out;
+}
+
+std::string accuracy_line(const Scene& scene, const TissueLaw& law) {
+  const auto found = read_accuracy(scene, law);
+  if (!found) return "force of the whole tool: not known: " + found.error().sentence;
+  std::string own;
+  for (std::size_t i = 0; i < found->depth_m.size(); ++i)
+    own += fmt::format("{}{:.1f} % at {:g} mm", i == 0 ? "" : ", ",
+                       100.0 * std::abs(found->own_worst_ratio[i]), 1e3 * found->depth_m[i]);
+  std::string out = fmt::format(
+      "force of the whole tool: {:.1f} % of the peak off (RMS), at the worst place {} of the force "
+      "there; against {}, {}",
+      100.0 * found->rms_ratio, own, found->reference, found->date);
+  if (!scene.tolerance) return out;
+  const double allowed = scene.tolerance->force_error_ratio;
+  return out + fmt::format("; it {} its tolerance of {:g} % of the peak",
+                           found->rms_ratio <= allowed ? "keeps" : "misses", 100.0 * allowed);
+}
+
+}  // namespace tact::model::scene

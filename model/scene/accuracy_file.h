@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// accuracy_file.h - how true the force of a scene's whole tool is, as tact-chart measured it.
+//
+// SCENE.accuracy stands beside SCENE.toml, a table for each law. tactd --check tells it. A
+// figure counts for what was measured alone: the hash is of forces, so another law, parameter,
+// organ or tool has another one, and another hand or device has not. Set-up code only.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/result.h"
+#include "model/scene/tissue_law.h"
+
+namespace tact::model::scene {
+
+/// Of one law against a reference.
+struct Accuracy {
+  std::string law;                      // its name in a scene
+  std::string law_hash;                 // hash_of_forces()
+  std::string reference;                // what it was measured against, for people
+  std::string date;                     // YYYY-MM-DD
+  double rms_ratio = 0.0;               // of the peak
+  std::vector<double> depth_m;          // rising
+  std::vector<double> own_worst_ratio;  // of the same place and depth, at each depth
+};
+
+/// Of what the law answers at places and depths spread over the organ, of how they couple, and of
+/// the tool's spheres: 16 hex digits.
+std::string hash_of_forces(const Scene& scene, const TissueLaw& law);
+
+/// "model/scenes/liver.accuracy"
+std::string accuracy_path(const Scene& scene);
+std::string accuracy_text(const std::vector<Accuracy>& laws);
+/// The figure of this scene's law. An error says that there is none, or that it is of something
+/// else, and the cure.
+Result<Accuracy> read_accuracy(const Scene& scene, const TissueLaw& law);
+
+/// For people: the figure, and whether it is within the tolerance of the scene.
+std::string accuracy_line(const Scene& scene, const TissueLaw& law);
+
+}  // namespace tact::model::scene

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// What tactd --check may say of a scene's force: what was measured, of what was measured alone.
+#include "model/scene/accuracy_file.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/support/sentence.h"
+#include "tests/support/test_scene.h"
+
+namespace tact::model::scene::accuracy_file_test {
+
+class AccuracyFile : public testing::Test {
+ protected:
+  AccuracyFile() {
+    scene.path = testing::TempDir() + "tact-accuracy-" +
+                 testing::UnitTest::GetInstance()->current_test_info()->name() + ".toml";
+    scene.elastic = ElasticSettings{.youngs_modulus_Pa = 5000.0, .poisson_ratio = 0.45};
+    scene.tolerance = ToleranceSettings{.force_error_ratio = 0.05};
+  }
+  ~AccuracyFile() override { std::filesystem::remove(accuracy_path(scene)); }
+
+  Accuracy figure() const {
+    return {.law = "rhombus",
+            .law_hash = hash_of_forces(scene, *law()),
+            .reference = "linear finite elements",
+            .date = "2026-11-24",
+            .rms_ratio = 0.0126,
+            .depth_m = {0.001, 0.01},
+            .own_worst_ratio = {-0.088, 0.139}};
+  }
+  std::unique_ptr<TissueLaw> law() const { return std::move(*make_tissue_law(scene, scene.law)); }
+  void write(const std::string& text) const { std::ofstream(accuracy_path(scene)) << text; }
+  std::string line() const { return accuracy_line(scene, *law()); }
+  void expect_unknown(const std::string& why) const {
+    EXPECT_NE(line().find("not known"), std::string::npos) << line();
+    EXPECT_NE(line().find(why), std::string::npos) << line();
+  }
+
+  Scene scene = tests::make_plate_scene();
+};
+
+TEST_F(AccuracyFile, ComesBackAsItWasWritten) {
+  write(accuracy_text({figure()}));
+  const auto back = read_accuracy(scene, *law());
+  ASSERT_TRUE(back) << back.error().sentence;
+  EXPECT_EQ(back->rms_ratio, 0.0126);
+  EXPECT_EQ(back->own_worst_ratio, (std::vector<double>{-0.088, 0.139}));
+  EXPECT_EQ(back->depth_m, (std::vector<double>{0.001, 0.01}));
+  EXPECT_EQ(
+      line(),
+      "force of the whole tool: 1.3 % of the peak off (RMS), at the worst place 8.8 % at 1 mm, "
+      "13.9 % at 10 mm of the force there; against linear finite elements, 2026-11-24; it "
+      "keeps its tolerance of 5 % of the peak");
+}
+
+TEST_F(AccuracyFile, AMissedToleranceIsCalledMissed) {
+  scene.tolerance->force_error_ratio = 0.0125;
+  write(accuracy_text({figure()}));
+  EXPECT_NE(line().find("it misses its tolerance of 1.25 % of the peak"), std::string::npos)
+      << line();
+}
+
+TEST_F(AccuracyFile, AnotherLawOrganOrToolHasNoFigure) {
+  write(accuracy_text({figure()}));
+  const Scene measured = scene;
+  scene.rhombus.growth = 1.9;
+  expect_unknown("is of another law, organ or tool; tact-reference");
+  scene = measured;
+  scene.tool.spheres.push_back({{0, 0.008, 0}, 0.004});
+  expect_unknown("is of another law, organ or tool");
+  scene = measured;
+  scene.hand.mass_kg = 1.0;
+  scene.limits.force_N = 1.0;
+  EXPECT_EQ(line().find("not known"), std::string::npos) << "a hand is no part of the force";
+}
+
+TEST_F(AccuracyFile, WhatIsMissingOrDamagedIsSaid) {
+  expect_unknown("nobody has measured it; tact-reference");
+  write("[hex_sheet]\n");
+  expect_unknown("has no [rhombus]");
+  write("[rhombus\n");
+  expect_unknown(".accuracy:1: ");
+  std::string text = accuracy_text({figure()});
+  write(text.replace(text.find("0.0126"), 6, "\"none\""));
+  expect_unknown("a number is missing");
+  scene.elastic.reset();
+  expect_unknown("has no [elastic]");
+}
+
+TEST(Shipped, TheFigureOfTheLiverIsOfTheLiverThatIsShipped) {
+  for (const char* law : {"rhombus", "compliance", "hex_sheet", "disc_stack"}) {
+    const auto scene = load_scene(TACT_SOURCE_DIR "/model/scenes/liver.toml",
+                                  {std::string("law=\"") + law + "\""});
+    ASSERT_EQ(tests::sentence_of(scene), "");
+    const auto tissue_law = make_tissue_law(*scene, scene->law);
+    ASSERT_EQ(tests::sentence_of(tissue_law), "");
+    const auto figure = read_accuracy(*scene, **tissue_law);
+    EXPECT_TRUE(figure) << (figure ? "" : figure.error().sentence);
+  }
+}
+
+}  // namespace tact::model::scene::accuracy_file_test
