@@ -2,6 +2,7 @@
 #include "model/law/compliance_law.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -133,6 +134,16 @@ std::size_t ComplianceCurve::profile(double depth_m, std::span<double> ring_m) c
     ring_m[j] = pulled ? -before_m : before_m;
   }
   return std::min(rings_ + 1, ring_m.size());
+}
+
+Result<ComplianceCurve> half_space_under(double radius_m, double working_depth_m) {
+  constexpr double kRingPitch_m = 2e-3;
+  constexpr std::array<double, 15> kNothingRegular{};
+  return make_compliance_curve(
+      {.tip = {.youngs_modulus_Pa = 1.0, .poisson_ratio = 0.0, .radius_m = radius_m},
+       .working_depth_m = working_depth_m,
+       .ring_pitch_m = kRingPitch_m,
+       .ring_m_per_N = kNothingRegular});
 }
 
 }  // namespace tact::model::law

@@ -71,4 +71,7 @@ class ComplianceCurve final : public Law {
 /// The error names the parameter and what is allowed.
 Result<ComplianceCurve> make_compliance_curve(const ComplianceCurveParameters& parameters);
 
+/// A half-space of E* = 1 Pa under a ball: what a law of springs does not know of the dent.
+Result<ComplianceCurve> half_space_under(double radius_m, double working_depth_m);
+
 }  // namespace tact::model::law

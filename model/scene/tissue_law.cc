@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "model/law/rhombus_patch.h"
@@ -58,7 +57,7 @@ class TissueLawBuilder {
   Result<const law::Law*> with_pull(const law::Law& press);
   Step finish_curve(const law::Law& curve);
   Step vary_by_place(const law::Law& curve);
-  Step finish_field();
+  Step finish_field(const law::Law* shape = nullptr);
   tissue::ElasticNeighbours neighbours();
   void measure(const law::Law& curve);
 
@@ -73,6 +72,7 @@ class TissueLawBuilder {
   Error blame(const Error& error) const { return {scene_.path + ": " + error.sentence}; }
 
   const Scene& scene_;
+  bool draws_tissue_ = false;  // the law itself, not as springs in a row
   std::unique_ptr<TissueLaw> law_ = std::make_unique<TissueLaw>();
 };
 
@@ -134,6 +134,7 @@ TissueLawBuilder::Step TissueLawBuilder::add_hex_sheet() {
   law_->title_ = fmt::format("hexagonal sheet, energy form, {} rings", parameters.rings);
   auto sheet = make_hex_sheet(parameters);
   if (!sheet) return blame(sheet.error());
+  draws_tissue_ = true;
   return add_table(keep(std::move(*sheet)));
 }
 
@@ -155,7 +156,10 @@ TissueLawBuilder::Step TissueLawBuilder::add_compliance() {
 TissueLawBuilder::Step TissueLawBuilder::finish_curve(const law::Law& curve) {
   if (scene_.varies_by_place) return vary_by_place(curve);
   law_->curves_.push_back(&curve);
-  return finish_field();
+  if (draws_tissue_) return finish_field();
+  auto shape = law::half_space_under(scene_.tool.spheres[0].radius_m, curve.range().press_m);
+  if (!shape) return blame(shape.error());
+  return finish_field(&keep(std::move(*shape)));
 }
 
 // The law is the tip's own dent, the same everywhere; each curve of the family adds its give, which
@@ -219,7 +223,7 @@ TissueLawBuilder::Step TissueLawBuilder::add_table(const law::Law& direct) {
   return finish_curve(keep(std::move(*table)));
 }
 
-TissueLawBuilder::Step TissueLawBuilder::finish_field() {
+TissueLawBuilder::Step TissueLawBuilder::finish_field(const law::Law* shape) {
   auto relaxation = make_relaxation(scene_.relaxation, 1.0 / scene_.rate_Hz);
   if (!relaxation) return blame(relaxation.error());
   law_->memory_bytes_ +=
@@ -232,7 +236,8 @@ TissueLawBuilder::Step TissueLawBuilder::finish_field() {
                                 .pull_coordinate = law_->pull_coordinate_,
                                 .surface = scene_.organ_mesh.view(),
                                 .relaxation = *relaxation,
-                                .neighbours = neighbours()});
+                                .neighbours = neighbours(),
+                                .shape = shape});
   return std::nullopt;
 }
 
@@ -243,13 +248,7 @@ tissue::ElasticNeighbours TissueLawBuilder::neighbours() {
   if (!scene_.elastic) {
     const double radius_m = scene_.tool.spheres[0].radius_m;
     const double depth_m = std::min(radius_m, law_->range_.press_m);
-    constexpr std::array<double, 1> kNoRing{};
-    const auto unit = law::make_compliance_curve(
-        {.tip = {.youngs_modulus_Pa = 1.0, .poisson_ratio = 0.0, .radius_m = radius_m},
-         .working_depth_m = depth_m,
-         .ring_pitch_m = radius_m,
-         .ring_m_per_N = kNoRing});
-    if (unit)
+    if (const auto unit = law::half_space_under(radius_m, depth_m))
       out.contact_modulus_Pa =
           law_->curve()->respond(depth_m).force_N / unit->respond(depth_m).force_N;
     return out;

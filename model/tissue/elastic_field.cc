@@ -139,6 +139,7 @@ double ElasticField::sideways_m_per_N(const contact::Indentation& in,
 std::size_t ElasticField::profile(const contact::Indentation& in,
                                   std::span<double> ring_m) const RT_SAFE {
   if (!is_known(in)) return 0;
+  if (parts_.shape != nullptr) return parts_.shape->profile(in.depth_m, ring_m);
   const Blend blend = blend_at(in.place, in.depth_m);
   const std::size_t count = parts_.curves[blend.low]->profile(in.depth_m, ring_m);
   if (parts_.curves.size() < 2) return count;

@@ -50,6 +50,7 @@ struct ElasticFieldParts {
   contact::SurfaceView surface;
   law::Relaxation relaxation;
   ElasticNeighbours neighbours = {};
+  const law::Law* shape = nullptr;  // of the dent, where the curves are springs that have none
 };
 
 class ElasticField final : public contact::SiteLaw {
@@ -67,7 +68,10 @@ class ElasticField final : public contact::SiteLaw {
   }
   std::size_t profile(const contact::Indentation& in,
                       std::span<double> ring_m) const RT_SAFE override;
-  double ring_pitch_m() const RT_SAFE override { return parts_.curves[0]->ring_pitch_m(); }
+  double ring_pitch_m() const RT_SAFE override {
+    return parts_.shape != nullptr ? parts_.shape->ring_pitch_m()
+                                   : parts_.curves[0]->ring_pitch_m();
+  }
 
  private:
   struct Blend {

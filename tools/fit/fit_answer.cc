@@ -133,6 +133,10 @@ Result<std::vector<FitAnswer>> answers_of(const model::scene::Scene& scene,
   if (!made) return made.error();
   SiteLaw& law = (*made)->site_law();
   const bool is_stepped = (*made)->curve() == nullptr;
+  // Springs in a row are drawn as a half-space; their parameters show in their own displacements.
+  const model::law::Law* springs =
+      scene.varies_by_place || kind == model::scene::LawKind::kCompliance ? nullptr
+                                                                          : (*made)->curve();
   std::vector<FitAnswer> out;
   for (const FitSite& site : data.sites) {
     for (const FitSample& sample : site.samples) {
@@ -146,8 +150,11 @@ Result<std::vector<FitAnswer>> answers_of(const model::scene::Scene& scene,
         read_shape(law, scene.organ_mesh, in, data.ring_radius_m, answer.ring_m);
       } else {
         std::array<double, kMostRings> own{};
-        const std::size_t rings = std::min(law.profile(in, own), kMostRings);
-        read_profile({own.data(), rings}, law.ring_pitch_m(), data.ring_radius_m, answer.ring_m);
+        const std::size_t rings =
+            springs != nullptr ? springs->profile(in.depth_m, own) : law.profile(in, own);
+        const double pitch_m = springs != nullptr ? springs->ring_pitch_m() : law.ring_pitch_m();
+        read_profile({own.data(), std::min(rings, kMostRings)}, pitch_m, data.ring_radius_m,
+                     answer.ring_m);
       }
     }
   }

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "model/scene/tissue_map.h"
 #include "tests/support/test_scene.h"
@@ -53,6 +55,26 @@ TEST(TissueLaw, StiffnessIsTheLargestSlopeShortOfTheTear) {
     }
     EXPECT_NEAR(law->stiffness_N_per_m() / most_N_per_m, 1.0, 1e-3) << tear_N;
   }
+}
+
+// Hertz: u(r) = d / pi ((2 - s^2) asin(1 / s) + sqrt(s^2 - 1)), s = r / a, a^2 = R d
+TEST(TissueLaw, SpringsInARowAreDrawnAsTheDentOfAHalfSpace) {
+  constexpr double kDepth_m = 0.003, kRadius_m = 0.0065;  // of the fingertip
+  const auto law = made(shipped("heart"));
+  std::array<double, 32> ring_m{};
+  const std::size_t rings = law->site_law().profile({.depth_m = kDepth_m}, ring_m);
+  double sum_m2 = 0.0;
+  std::size_t count = 0;
+  for (std::size_t j = 0; j + 1 < rings; ++j, ++count) {
+    const double s =
+        static_cast<double>(j) * law->site_law().ring_pitch_m() / std::sqrt(kRadius_m * kDepth_m);
+    const double u_m = s > 1.0 ? kDepth_m / std::numbers::pi *
+                                     ((2.0 - s * s) * std::asin(1.0 / s) + std::sqrt(s * s - 1.0))
+                               : kDepth_m * (1.0 - 0.5 * s * s);
+    sum_m2 += (ring_m[j] - u_m) * (ring_m[j] - u_m);
+  }
+  ASSERT_GT(count, 10U);
+  EXPECT_LT(std::sqrt(sum_m2 / static_cast<double>(count)), 0.08 * kDepth_m);
 }
 
 TEST(TissueLaw, TitlesNameTheirSizes) {
