@@ -4,8 +4,8 @@
 // The whole controller with the simulated delta and its safety lines: random strokes, faults,
 // stops, late ticks and operators by a seed; after each tick its promises are checked: force,
 // torque, their slew, power, energy and RMS by accounts of its own (accounts.h), states, latching,
-// the grid. A quarter as many ticks, but 100 000 at least, follow with narrower limits, so that every
-// stage of the gate has its say. The same seed gives the same hashes with every compiler.
+// the grid. A quarter as many ticks, but 100 000 at least, follow with narrower limits, so that
+// every stage of the gate has its say. The same seed gives the same hashes with every compiler.
 #include <fmt/format.h>
 #include <unistd.h>
 
