@@ -99,7 +99,8 @@ inline Finding judge_gate(const report::Table& table) {
   return {held == all && fought > 0,
           fmt::format("three times beyond the line the gate keeps |F| and |dF| in bounds in {} of "
                       "{} cells; {} of them fight its limits",
-                      held, all, fought)};
+                      held, all, fought),
+          {{"held", held}, {"at_the_limits", fought}}};
 }
 
 }  // namespace tact::tools::stability

@@ -41,7 +41,7 @@ json to_json(const std::vector<MapReport>& reports) {
   for (const MapReport& report : reports) {
     json findings = json::array();
     for (const Finding& f : report.findings)
-      findings.push_back({{"holds", f.holds}, {"sentence", f.sentence}});
+      findings.push_back({{"holds", f.holds}, {"sentence", f.sentence}, {"numbers", f.numbers}});
     maps.push_back({{"map", report.name},
                     {"rows", report.rows},
                     {"findings", findings},

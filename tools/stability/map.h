@@ -2,6 +2,7 @@
 // map.h - one map of tact-stability: a table of independent cells, what it must show, its pictures.
 #pragma once
 
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,10 +12,11 @@
 
 namespace tact::tools::stability {
 
-/// A sentence about a whole table that must be true.
+/// A sentence about a whole table that must be true, and its numbers by name for --json.
 struct Finding {
   bool holds = false;
   std::string sentence;
+  std::map<std::string, double> numbers = {};
 };
 
 enum class Grid { kFull, kQuick };

@@ -249,7 +249,8 @@ std::vector<Finding> judge(const report::Table& t) {
   return {{low > 0.85 && high < 1.3,
            fmt::format("the whole controller with the simulated Delta loses stability at {:.2f} to "
                        "{:.2f} of b / (T/2 + t_d)",
-                       low, high)},
+                       low, high),
+           {{"least_ratio", low}, {"largest_ratio", high}}},
           {alike_low > 0.8 && alike_high < 1.25,
            fmt::format("and at {:.2f} to {:.2f} of what the independent loop of one degree of "
                        "freedom gives",

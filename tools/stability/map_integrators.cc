@@ -107,7 +107,8 @@ std::vector<Finding> judge(const report::Table& t) {
            fmt::format("the oscillator grows where its amplification matrix says in {:.3f} % of {} "
                        "cells{}{}",
                        100.0 * share, t.rows().size(),
-                       rest.empty() ? "" : "; the others, right on the line:", rest)},
+                       rest.empty() ? "" : "; the others, right on the line:", rest),
+           {{"agree_percent", 100.0 * share}}},
           {worst < 1e-3,
            fmt::format("growth a step agrees within {:.1e}, where it is above 1/2", worst)}};
 }

@@ -18,6 +18,9 @@
 namespace tact::tools::stability {
 namespace {
 
+// Of a limit: HL-1 is exact for low frequencies alone, and the search ends within 1 %.
+constexpr double kAccepted = 0.95;
+
 struct Hand {
   const char* name;
   HandAtTool at_tool;
@@ -115,12 +118,13 @@ report::Row run(std::size_t job, Grid grid) {
 
 std::vector<Finding> judge(const report::Table& t) {
   double least_grow = 1e9, least_rest = 1e9, low = 1e9, high = 0.0;
-  std::size_t bare = 0;
+  std::size_t below = 0, bare = 0;
   for (const report::Row& row : t.rows()) {
     const double theory = t.number(row, "theory_grow_N_per_m");
     const double safe = t.number(row, "theory_safe_N_per_m");
     const double ratio = t.number(row, "largest_without_growth_N_per_m") / theory;
     least_grow = std::min(least_grow, ratio);
+    below += ratio < 1.0 ? 1 : 0;
     if (safe > 0.0)
       least_rest = std::min(least_rest, t.number(row, "largest_at_rest_N_per_m") / safe);
     if (t.word(row, "hand") == "bare" && !(t.number(row, "friction_N") > 0.0)) {
@@ -130,16 +134,20 @@ std::vector<Finding> judge(const report::Table& t) {
     }
   }
   return {
-      {least_grow > 0.95, fmt::format("no cell grows below K = b / (T/2 + t_d): the least measured "
-                                      "limit is {:.3f} of it",
-                                      least_grow)},
-      {least_rest > 0.95, fmt::format("every cell below min(b / (T/2 + t_d), 2 c / D) comes to "
-                                      "rest: the least measured limit is {:.3f} of it",
-                                      least_rest)},
-      {low > 0.95 && high < 1.25,
-       fmt::format("in the {} cells without hand and friction the "
-                   "measured limit is {:.3f} to {:.3f} of b / (T/2 + t_d)",
-                   bare, low, high)},
+      {least_grow > kAccepted,
+       fmt::format("no cell grows below {} K, K = b / (T/2 + t_d): {} of {} grow below K, the least "
+                   "measured limit is {:.3f} K",
+                   kAccepted, below, t.rows().size(), least_grow),
+       {{"below", below}, {"least_ratio", least_grow}}},
+      {least_rest > kAccepted,
+       fmt::format("every cell below {} min(K, 2 c / D) comes to rest: the least measured limit is "
+                   "{:.3f} of min(K, 2 c / D)",
+                   kAccepted, least_rest)},
+      {low > kAccepted && high < 1.25,
+       fmt::format("in the {} cells without hand and friction the measured limit is {:.3f} to "
+                   "{:.3f} K",
+                   bare, low, high),
+       {{"bare", bare}, {"bare_least_ratio", low}, {"bare_largest_ratio", high}}},
       judge_gate(t),
   };
 }
