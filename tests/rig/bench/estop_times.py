@@ -7,6 +7,10 @@ shorter than what was. The longest way is that of an edge just behind the look o
 import dataclasses
 import statistics
 
+from bench import path_table
+from bench.cost_table import TOLD
+
+BEGIN = "<!-- e-stop, made by tests/rig/run --write-baseline; with --long also the back ends of --long -->\n"
 PERIOD_us = 1000.0
 BOUND_us = PERIOD_us + 100.0
 # After a deadline, us: before the look of its tick, just behind it, and through the rest of the period.
@@ -95,6 +99,22 @@ def table(runs):
         lines.append(f"| {name} | {len(edges)} | {pair(written)} | {max(edges, key=lambda edge: edge[1])[0]:.0f} us | "
                      f"{pair(motors) if motors else '-'} |")
     return "\n".join(lines) + "\n" if len(lines) > 2 else ""
+
+
+def readme_table(runs, old):
+    """As hal/README.md has it: a row for each back end, that of `old` where none was measured."""
+    rows = {line.split(" | ")[0].removeprefix("| "): line for line in old.splitlines()[2:]}
+    for name, edges in measured(runs).items():
+        label = TOLD[name.split()[0]][0]
+        motors = [edge[2] for edge in edges if edge[2] is not None]
+        rows[label] = f"| {label} | {pair([edge[1] for edge in edges])} | {pair(motors) if motors else '-'} |"
+    return "\n".join(["| back end, with safety lines | zero written, median / longest | "
+                      "motors without torque, median / longest |", "|---|---|---|", *rows.values()]) + "\n"
+
+
+def write(runs, path):
+    _, old, _ = path_table.split(path.read_text(), BEGIN)
+    path_table.write(readme_table(runs, old), path, BEGIN)
 
 
 def pair(values_us):

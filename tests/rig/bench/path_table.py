@@ -20,18 +20,18 @@ def table(known):
     return "\n".join(lines) + "\n"
 
 
-def split(readme):
+def split(readme, mark=BEGIN):
     """What stands before the table, the table, and what stands after it."""
-    head, begin, rest = readme.partition(BEGIN)
+    head, begin, rest = readme.partition(mark)
     old, end, tail = rest.partition(END)
     if not begin or not end:
-        raise ValueError(f"no table between {BEGIN.strip()} and {END.strip()}")
+        raise ValueError(f"no table between {mark.strip()} and {END.strip()}")
     return head + begin, old, end + tail
 
 
-def write(text, path):
-    """`text`: what tables() gives, or another table of the baseline."""
-    head, _, tail = split(path.read_text())
+def write(text, path, mark=BEGIN):
+    """`text`: what tables() gives, or another table of the bench."""
+    head, _, tail = split(path.read_text(), mark)
     path.write_text(head + text + tail)
 
 
