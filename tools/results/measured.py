@@ -119,4 +119,17 @@ def stability():
     return "build/tact-stability --out DIR --no-pictures --json, of three maps", values
 
 
-MEASURED = {f.__name__: f for f in (bench, limits, verify, size, chart, tool, stability)}
+def tracking():
+    """Errors of poses and joint updates; the times are bench's."""
+    pose = ["build/tact-pose-bench", "--json"]
+    figure = ["build/tact-figure", "model/scenes/maintenance.toml", "--json"]
+    poses, played = (json.loads(told_by(*command, status=(0, 1))) for command in (pose, figure))
+    values = {"one_camera": poses["errors"], "two_cameras": poses["joint_errors"]}
+    for start in ("shoulder_first", "full_chain"):
+        values[start] = {key: played[start][key] for key in ("joint_updates", "sweeps")}
+        values[start]["worst_error_mm"] = played[start]["worst_error_m"] * 1e3
+    values["updates_ratio"] = played["updates_ratio"]
+    return f"{' '.join(pose)}; {' '.join(figure)}", values
+
+
+MEASURED = {f.__name__: f for f in (bench, limits, verify, size, chart, tool, stability, tracking)}
