@@ -2,6 +2,8 @@
 #include "model/springs/patch_surface.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace tact::model::springs {
 namespace {
@@ -41,13 +43,27 @@ void index_edges(PatchSurface& surface) {
 std::size_t PatchSurface::memory_bytes() const {
   return edge.size() * sizeof(PatchEdge) +
          (edge_start.size() + edge_of.size()) * sizeof(std::uint32_t) +
-         anchor_N_per_m.size() * (sizeof(double) + sizeof(Vec3));
+         anchor_N_per_m.size() * (2 * sizeof(double) + sizeof(Vec3));
 }
 
 std::optional<std::uint32_t> crowded_vertex(const contact::SurfaceView& mesh) {
   for (std::uint32_t v = 0; v < mesh.vertex_m.size(); ++v)
     if (mesh.fan_start[v + 1] - mesh.fan_start[v] >= kMaxPatchDegree) return v;
   return std::nullopt;
+}
+
+// MA-21. Short waves of a net are softer than long ones: what that adds to the give, within 6 % for
+// anchors of k / 40 to 2 k.
+double sideways_give_m_per_N(const PatchTissue& tissue, double anchor_N_per_m) {
+  constexpr double kShortWaves = 1.2;
+  const double k = tissue.surface_stiffness_N_per_m;
+  const double across = k * tissue.pretension_ratio / (1.0 + tissue.pretension_ratio);
+  const auto give = [anchor_N_per_m](double modulus_N_per_m) {
+    const double all_waves = 4.0 * std::numbers::pi * modulus_N_per_m;
+    return kShortWaves * std::log1p(all_waves / anchor_N_per_m) / (2.0 * all_waves);
+  };
+  const double lattice = 0.25 * std::numbers::sqrt3;
+  return give(lattice * (3.0 * k + across)) + give(lattice * (k + 3.0 * across));
 }
 
 PatchSurface make_patch_surface(const contact::SurfaceView& mesh, const PatchTissue& tissue) {
@@ -65,6 +81,9 @@ PatchSurface make_patch_surface(const contact::SurfaceView& mesh, const PatchTis
   // a = a_mean A_i / A_mean
   const double scale = tissue.body_stiffness_N_per_m * static_cast<double>(n) / sum_m2;
   for (double& anchor : out.anchor_N_per_m) anchor *= scale;
+  out.sideways_m_per_N.reserve(n);
+  for (const double anchor : out.anchor_N_per_m)
+    out.sideways_m_per_N.push_back(sideways_give_m_per_N(tissue, anchor));
   out.load_N.assign(n, Vec3{});
   for (const PatchEdge& e : out.edge) {
     const double tension_N = tissue.surface_stiffness_N_per_m * (e.length_m - out.rest_length_m(e));

@@ -5,6 +5,8 @@
 //     vertices      anchor a = a_mean A_i / A_mean, drag = tau_b a   A: area around the vertex
 //                   load = - sum of the edges' pull at rest          so that rest is equilibrium
 //
+//     sideways      MA-21 for the anchor of each vertex             a tool that drags it
+//
 // p is the pretension: a cut edge no longer pulls its ends together, and the loads open the lips.
 // Built once for the whole mesh; the loop changes the cut marks alone.
 #pragma once
@@ -44,6 +46,7 @@ struct PatchSurface {
   std::vector<std::uint32_t> edge_of{};     // the edges of each vertex
   std::vector<double> anchor_N_per_m{};     // vertices
   std::vector<Vec3> load_N{};               // vertices
+  std::vector<double> sideways_m_per_N{};   // vertices
   PatchTissue tissue{};
 
   std::span<const std::uint32_t> edges_at(std::uint32_t vertex) const RT_SAFE {
@@ -54,6 +57,9 @@ struct PatchSurface {
   }
   std::size_t memory_bytes() const;
 };
+
+/// MA-21: how far a unit force along the surface moves its vertex, with all others free.
+double sideways_give_m_per_N(const PatchTissue& tissue, double anchor_N_per_m);
 
 /// The mesh outlives the surface. Of a vertex with too many edges, its number.
 std::optional<std::uint32_t> crowded_vertex(const contact::SurfaceView& mesh);

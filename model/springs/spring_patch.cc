@@ -151,6 +151,17 @@ contact::SiteResponse SpringPatch::respond(const contact::Indentation& in) RT_SA
   return out;
 }
 
+// 1 / q + that of the place: linear over each triangle.
+double SpringPatch::sideways_m_per_N(const contact::Indentation& in, double) const RT_SAFE {
+  const PatchSurface& surface = region_.surface();
+  if (!is_a_place(in.place, surface.mesh)) return 0.0;
+  double give_m_per_N = 1.0 / parameters_.coupling_stiffness_N_per_m;
+  for (std::size_t c = 0; c < 3; ++c)
+    give_m_per_N +=
+        in.place.weight[c] * surface.sideways_m_per_N[surface.mesh.triangle[in.place.triangle][c]];
+  return give_m_per_N;
+}
+
 // A triangle near the rim, or out of the region, gathers anew, once for each triangle.
 void SpringPatch::follow_touches() RT_SAFE {
   std::array<std::uint32_t, contact::kMaxSpheres> triangle{};

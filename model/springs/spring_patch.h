@@ -15,6 +15,9 @@
 // also across an edge, and the tool can only get back what it stored; springs and drag take the
 // rest. Tissue that relaxes shares its energy out (patch_memory.h); the virtual spring does not.
 //
+// Sideways the tool drags its place with that give, and the nodes do not move (MA-21): the virtual
+// spring and the tissue in a row, whatever the radius, since a node is the smallest contact.
+//
 // Valid for |d| <= working_depth_m; beyond, the force is that of the limit and kSaturated. Cost a
 // tick: the region's nodes, whatever the mesh. Should the nodes leave the finite numbers, or a dent
 // ten times the working depth, they are put to rest and the patch gives zero force and kSingular
@@ -49,6 +52,7 @@ struct SpringPatchParameters {
 class SpringPatch final : public contact::SiteLaw {
  public:
   contact::SiteResponse respond(const contact::Indentation& in) RT_SAFE override;
+  double sideways_m_per_N(const contact::Indentation& in, double) const RT_SAFE override;
   void leave(std::size_t sphere) RT_SAFE override;
   void cut(const contact::BladeSweep& sweep) RT_SAFE override { region_.cut(sweep); }
   void advance() RT_SAFE override;

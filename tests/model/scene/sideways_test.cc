@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "model/contact/contact.h"
 #include "model/contact/site_law.h"
 #include "model/scene/scene.h"
 #include "model/scene/tissue.h"
@@ -49,6 +50,32 @@ TEST(Sideways, TheLiverIsAsStiffAsFiniteElementsFindIt) {
         << one.at("held");
     RecordProperty("case" + std::to_string(i), std::to_string(1.0 / give_m_per_N / want_N_per_m));
   }
+}
+
+// Friction and a hold need a spring along the surface, and a scene need not give its stiffness.
+TEST(Sideways, ASpringPatchHasAStiffnessOfItsOwn) {
+  const auto scene =
+      load_scene(TACT_SOURCE_DIR "/model/scenes/liver.toml", {"law=\"spring_patch\""});
+  ASSERT_EQ(tests::sentence_of(scene), "");
+  const auto tissue = make_tissue(*scene);
+  ASSERT_EQ(tests::sentence_of(tissue), "");
+  contact::Contact contact((*tissue)->contact_scene());
+  const auto dragged_N = [&](double grip_ratio) {
+    contact.reset();
+    Wrench w;
+    for (int i = 0; i <= 600; ++i) {  // down by 3 mm, then 6 mm along y
+      const Tool tool{
+          .position_m = {0, 0.02e-3 * std::max(i - 300, 0), 1e-3 - 0.0133e-3 * std::min(i, 300)},
+          .grip_ratio = i < 300 ? 0.0 : grip_ratio};
+      contact.touch(tool);
+      w = contact.feel(tool, false);
+    }
+    return -w.force_N.y;
+  };
+  const double touching_N = dragged_N(0.0), held_N = dragged_N(1.0);
+  EXPECT_GT(touching_N, 0.0);
+  EXPECT_GT(held_N, touching_N);
+  RecordProperty("dragged", std::to_string(touching_N) + " " + std::to_string(held_N));
 }
 
 }  // namespace tact::model::scene::sideways_test
