@@ -11,8 +11,10 @@
 //
 // A mass-spring tissue names its displaced vertices itself (patch.ts).
 // Dents of several sites add up, as tactd sends each sphere's own: beside the others it is smaller
-// than its depth. Of their sideways shifts, which are not each its own, the larger is shown.
+// than its depth. Of their sideways shifts, which are not each its own, the larger is shown. Where
+// the sum would fold the skin over, its steepest parts are spread (fold_guard.ts).
 
+import { FoldGuard } from "./fold_guard";
 import type { Moved } from "./patch";
 import { Profile, smoothstep } from "./profile";
 import type { Site } from "./protocol";
@@ -24,6 +26,7 @@ export interface Deformed {
 
 export class Deformer {
   private readonly profile: Profile;
+  private readonly guard: FoldGuard;
   private was_moved = false;
   /** Length of each vertex's displacement, m. */
   readonly travel_m: Float32Array;
@@ -34,7 +37,9 @@ export class Deformer {
     private readonly rest_normal: Float32Array,
     ring_count: number,
     ring_pitch_m: number,
+    triangle: Uint32Array,
   ) {
+    this.guard = new FoldGuard(rest_m, triangle);
     this.profile = new Profile(ring_count, ring_pitch_m);
     this.travel_m = new Float32Array(rest_m.length / 3);
     this.sideways_m = new Float32Array(rest_m.length);
@@ -73,8 +78,9 @@ export class Deformer {
   private press(sites: readonly Site[], out_m: Float32Array): void {
     this.sideways_m.fill(0);
     for (const site of sites) this.dent(site, out_m);
+    for (let i = 0; i < out_m.length; ++i) out_m[i] += this.sideways_m[i];
+    this.guard.hold(out_m);
     for (let i = 0; i < out_m.length; i += 3) {
-      for (let k = i; k < i + 3; ++k) out_m[k] += this.sideways_m[k];
       const dx = out_m[i] - this.rest_m[i];
       const dy = out_m[i + 1] - this.rest_m[i + 1];
       const dz = out_m[i + 2] - this.rest_m[i + 2];

@@ -61,7 +61,13 @@ export class OrganView {
     this.object.add(this.lines, this.wound.object);
     this.object.frustumCulled = false; // its bounds move; it is nearly always in view
     const rest_normal = (this.geometry.getAttribute("normal").array as Float32Array).slice();
-    this.deformer = new Deformer(mesh.vertex_m, rest_normal, scene.ring_count, scene.ring_pitch_m);
+    this.deformer = new Deformer(
+      mesh.vertex_m,
+      rest_normal,
+      scene.ring_count,
+      scene.ring_pitch_m,
+      mesh.triangle,
+    );
   }
 
   get vertex_count(): number {

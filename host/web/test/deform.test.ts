@@ -37,7 +37,7 @@ function pressed(sites: Site[]): { rest_m: Float32Array; out_m: Float32Array; mo
   const { rest_m, normal } = slab();
   const out_m = rest_m.slice();
   const result = { moved: 0, most_m: 0 };
-  new Deformer(rest_m, normal, 32, kPitch_m).apply(sites, null, out_m, result);
+  new Deformer(rest_m, normal, 32, kPitch_m, new Uint32Array(0)).apply(sites, null, out_m, result);
   return { rest_m, out_m, ...result };
 }
 
@@ -117,7 +117,7 @@ test("The tangential shift fades with the same shape", () => {
 test("Release brings every vertex back", () => {
   const { rest_m, normal } = slab();
   const out_m = rest_m.slice();
-  const deformer = new Deformer(rest_m, normal, 32, kPitch_m);
+  const deformer = new Deformer(rest_m, normal, 32, kPitch_m, new Uint32Array(0));
   const result = { moved: 0, most_m: 0 };
   assert.equal(deformer.apply([site()], null, out_m, result), true);
   assert.ok(result.moved > 100);

@@ -23,7 +23,7 @@ test("vertices that are told move exactly so, others stay, and unknown ones are 
   const rest_m = new Float32Array([0, 0, 0, 1, 0, 0, 2, 0, 0]);
   const out_m = rest_m.slice();
   const result = { moved: 0, most_m: 0 };
-  const deformer = new Deformer(rest_m, new Float32Array(9), 0, 0);
+  const deformer = new Deformer(rest_m, new Float32Array(9), 0, 0, new Uint32Array(0));
   const moved = { vertex: new Uint32Array([1, 99]), displacement_m: new Float32Array([0, 0, -0.5, 1, 1, 1]) };
   assert.equal(deformer.apply([], moved, out_m, result), true);
   assert.deepEqual([...out_m], [0, 0, 0, 1, 0, -0.5, 2, 0, 0]);

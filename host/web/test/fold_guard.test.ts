@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Deep presses: no triangle of the drawn skin turns over.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
+import { Deformer } from "../src/deform";
+import { FoldGuard } from "../src/fold_guard";
+import type { Site, Vec } from "../src/protocol";
+
+const kPitch_m = 0.001;
+const kTip_m = 0.004;
+const kDeep_m = 0.02; // five radii, beyond every shipped law
+
+interface Skin {
+  vertex_m: Float32Array;
+  triangle: Uint32Array;
+  normal: Float32Array;
+}
+
+function with_normals(vertex_m: Float32Array, triangle: Uint32Array): Skin {
+  const normal = new Float32Array(vertex_m.length);
+  for (let t = 0; t < triangle.length; t += 3) {
+    const [a, b, c] = [0, 1, 2].map((k) => 3 * triangle[t + k]);
+    for (let i = 0; i < 3; ++i) {
+      const [j, k] = [(i + 1) % 3, (i + 2) % 3];
+      const n =
+        (vertex_m[b + j] - vertex_m[a + j]) * (vertex_m[c + k] - vertex_m[a + k]) -
+        (vertex_m[b + k] - vertex_m[a + k]) * (vertex_m[c + j] - vertex_m[a + j]);
+      for (const v of [a, b, c]) normal[v + i] += n;
+    }
+  }
+  for (let v = 0; v < normal.length; v += 3) {
+    const length = Math.hypot(normal[v], normal[v + 1], normal[v + 2]);
+    for (let i = v; i < v + 3; ++i) normal[i] /= length;
+  }
+  return { vertex_m, triangle, normal };
+}
+
+function liver(): Skin {
+  const vertex_m: number[] = [];
+  const triangle: number[] = [];
+  for (const line of readFileSync("../../model/scenes/meshes/liver_3116.obj", "utf8").split("\n")) {
+    const [kind, ...words] = line.trim().split(/\s+/);
+    if (kind === "v") vertex_m.push(...words.map((word) => Number(word) * 1e-3));
+    if (kind === "f") triangle.push(...words.map((word) => parseInt(word) - 1));
+  }
+  return with_normals(new Float32Array(vertex_m), new Uint32Array(triangle));
+}
+
+/** A hill of 15 mm radius, a vertex each millimetre. */
+function hill(): Skin {
+  const vertex_m: number[] = [];
+  const triangle: number[] = [];
+  const n = 41;
+  for (let i = 0; i < n; ++i)
+    for (let j = 0; j < n; ++j) {
+      const [x, y] = [(i - 20) * 1e-3, (j - 20) * 1e-3];
+      vertex_m.push(x, y, Math.sqrt(Math.max(1e-5, 0.015 ** 2 - x * x - y * y)) - 0.015);
+      if (i === 0 || j === 0) continue;
+      const at = i * n + j;
+      triangle.push(at, at - n - 1, at - 1, at, at - n, at - n - 1);
+    }
+  return with_normals(new Float32Array(vertex_m), new Uint32Array(triangle));
+}
+
+/** A ball's dent: round where it touches, then as a half-space under a disc. */
+function rings(depth_m: number): number[] {
+  const touch_m = 0.97 * kTip_m;
+  return Array.from({ length: 32 }, (_, j) => {
+    const r_m = j * kPitch_m;
+    if (r_m <= touch_m) return depth_m - kTip_m + Math.sqrt(kTip_m ** 2 - r_m ** 2);
+    return ((2 * depth_m) / Math.PI) * Math.asin(touch_m / r_m) * (1 - (j / 31) ** 4);
+  });
+}
+
+function vector(from: Float32Array, v: number): Vec {
+  return [from[3 * v], from[3 * v + 1], from[3 * v + 2]];
+}
+
+function site(skin: Skin, vertex: number, depth_m: number): Site {
+  return {
+    site: 0,
+    state: 1,
+    point_m: vector(skin.vertex_m, vertex),
+    normal: vector(skin.normal, vertex),
+    shift_m: [0, 0, 0],
+    depth_m,
+    u_m: rings(depth_m),
+  };
+}
+
+/** The vertex on the same side that lies nearest to the other jaw's place, 8 mm off. */
+function other_jaw(skin: Skin, vertex: number): number {
+  const at = vector(skin.vertex_m, vertex);
+  const up = vector(skin.normal, vertex);
+  let best = vertex;
+  let best_m = Infinity;
+  for (let v = 0; v < skin.vertex_m.length / 3; ++v) {
+    const there = vector(skin.vertex_m, v);
+    const off_m = Math.abs(Math.hypot(...there.map((x, i) => x - at[i])) - 2 * kTip_m);
+    const normal = vector(skin.normal, v);
+    if (off_m >= best_m || up[0] * normal[0] + up[1] * normal[1] + up[2] * normal[2] < 0.5) continue;
+    [best, best_m] = [v, off_m];
+  }
+  return best;
+}
+
+/** Folded triangles, and by how far the deepest vertex went. */
+function pressed(skin: Skin, deformer: Deformer, sites: Site[]): { folded: number; most_m: number } {
+  const out_m = skin.vertex_m.slice();
+  const result = { moved: 0, most_m: 0 };
+  deformer.apply(sites, null, out_m, result);
+  const guard = new FoldGuard(skin.vertex_m, skin.triangle);
+  let folded = 0;
+  for (let t = 0; t < skin.triangle.length / 3; ++t) if (guard.is_folded(t, out_m)) ++folded;
+  return { folded, most_m: result.most_m };
+}
+
+for (const [name, skin, step] of [["the liver", liver(), 13], ["a hill of fine skin", hill(), 7]] as const) {
+  test(`Pressed deeply, ${name} has no triangle that turned over`, () => {
+    const deformer = new Deformer(skin.vertex_m, skin.normal, 32, kPitch_m, skin.triangle);
+    for (let v = 0; v < skin.vertex_m.length / 3; v += step) {
+      const one = pressed(skin, deformer, [site(skin, v, kDeep_m)]);
+      assert.equal(one.folded, 0, `vertex ${v}`);
+      assert.ok(one.most_m > 0.85 * kDeep_m, `vertex ${v} keeps its depth: ${one.most_m}`);
+      const jaws = [site(skin, v, 0.6 * kDeep_m), site(skin, other_jaw(skin, v), 0.6 * kDeep_m)];
+      assert.equal(pressed(skin, deformer, jaws).folded, 0, `two jaws at vertex ${v}`);
+    }
+  });
+}
+
+test("A dent that folds nothing stays as the law says, to the last bit", () => {
+  const skin = liver();
+  const out_m = skin.vertex_m.slice();
+  for (let i = 2; i < out_m.length; i += 3) out_m[i] *= 0.98;
+  const before_m = out_m.slice();
+  assert.equal(new FoldGuard(skin.vertex_m, skin.triangle).hold(out_m), 0);
+  assert.deepEqual(out_m, before_m);
+});
