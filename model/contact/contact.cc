@@ -29,7 +29,7 @@ void Contact::reset() RT_SAFE {
   touch_ = {};
   pressing_ = {};
   presses_ = {};
-  asked_ = coupling_ = {};
+  sideways_ = coupling_ = {};
   energy_J_ = 0.0;
   own_ = {};
   shear_ = {};
@@ -162,12 +162,12 @@ void Contact::couple() RT_SAFE {
   for (std::size_t i = 0; i < kMaxSpheres; ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (!presses_[i] || !presses_[j])
-        set_coupling(i, j, 0.0);
+        set_coupling(i, j, {});
       else if (!before[i] || !before[j])
         couple(i, j);
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
     if (presses_[i] && !before[i]) own_[i] = own_give(i);
-  shear_ = Shear(own_, asked_, presses_);
+  shear_ = Shear(own_, sideways_, presses_);
   for (std::size_t i = 0; i < kMaxSpheres; ++i)
     if (presses_[i] && !before[i]) {
       touch_[i].shift_m += tangential(shear_.unloaded_m(shear_N_, i), touch_[i].normal);
@@ -176,17 +176,17 @@ void Contact::couple() RT_SAFE {
     }
 }
 
-void Contact::set_coupling(std::size_t i, std::size_t j, double m_per_N) RT_SAFE {
-  asked_[i][j] = asked_[j][i] = m_per_N;
-  coupling_[i][j] = coupling_[j][i] = dot(touch_[i].normal, touch_[j].normal) * m_per_N;
+void Contact::set_coupling(std::size_t i, std::size_t j, const SiteCoupling& c) RT_SAFE {
+  sideways_[i][j] = sideways_[j][i] = c.skin_m_per_N + c.lobe_m_per_N;
+  coupling_[i][j] = coupling_[j][i] = coupling_m_per_N(c, touch_[i].normal, touch_[j].normal);
 }
 
 // On the other's bulge the one that has just come would meet energy that nobody gave: that much is
 // slack. Of the two, only one presses yet.
 void Contact::couple(std::size_t i, std::size_t j) RT_SAFE {
   set_coupling(i, j,
-               scene_.law->coupling_m_per_N(indentation(i), indentation(j),
-                                            norm(probe_[i].centre_m - probe_[j].centre_m)));
+               scene_.law->coupling(indentation(i), indentation(j),
+                                    norm(probe_[i].centre_m - probe_[j].centre_m)));
   const double c = coupling_[i][j];
   take_away(i, std::max(0.0, -c * pressing_[j].response.law.force_N));
   take_away(j, std::max(0.0, -c * pressing_[i].response.law.force_N));

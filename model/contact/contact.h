@@ -120,7 +120,7 @@ class Contact {
   Indentation indentation(std::size_t i) const RT_SAFE;
   void couple() RT_SAFE;
   void couple(std::size_t i, std::size_t j) RT_SAFE;
-  void set_coupling(std::size_t i, std::size_t j, double m_per_N) RT_SAFE;
+  void set_coupling(std::size_t i, std::size_t j, const SiteCoupling& c) RT_SAFE;
   void take_away(std::size_t i, double depth_m) RT_SAFE;
   double press() RT_SAFE;
   void keep_definite() RT_SAFE;
@@ -141,7 +141,7 @@ class Contact {
   std::array<SphereTouch, kMaxSpheres> touch_{};
   std::array<PressingSphere, kMaxSpheres> pressing_{};
   std::array<bool, kMaxSpheres> presses_{};  // touching or held
-  Coupling asked_{}, coupling_{};            // c as the law gave it, C as it is felt
+  Coupling sideways_{}, coupling_{};         // c, C as it is felt
   OwnGives own_{};                           // since they came
   Shear shear_;
   std::array<Vec3, kMaxSpheres> shear_N_{};  // f

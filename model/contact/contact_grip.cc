@@ -83,12 +83,12 @@ void Contact::let_go(std::size_t i) RT_SAFE {
   // Without it the others share the shift; it goes where they have dragged it.
   std::array<bool, kMaxSpheres> others = presses_;
   others[i] = false;
-  const Shear without(own_, asked_, others);
+  const Shear without(own_, sideways_, others);
   std::array<Vec3, kMaxSpheres> f_N{};
   for (std::size_t j = 0; j < kMaxSpheres; ++j) f_N[j] = spring_N(without, j);
   touch.shift_m = tangential(shear_.unloaded_m(f_N, i), touch.normal);
   own_[i].m_per_N = own_give(i).m_per_N;  // it has no force: the change is free
-  shear_ = Shear(own_, asked_, presses_);
+  shear_ = Shear(own_, sideways_, presses_);
 }
 
 }  // namespace tact::model::contact

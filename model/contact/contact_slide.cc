@@ -48,7 +48,7 @@ void Contact::stiffen() RT_SAFE {
   std::array<Vec3, kMaxSpheres> change_m{};
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
     change_m[i] = (own_[i].m_per_N - before[i].m_per_N) * spring_N(shear_, i);
-  shear_ = Shear(own_, asked_, presses_);
+  shear_ = Shear(own_, sideways_, presses_);
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
     touch_[i].shift_m += change_m[i];
     probe_[i].held_shift_m += change_m[i];

@@ -106,6 +106,11 @@ bool is_positive_definite(Coupling a, std::size_t n) RT_SAFE {
 
 }  // namespace
 
+double coupling_m_per_N(const SiteCoupling& c, const Vec3& n_i, const Vec3& n_j) RT_SAFE {
+  const double x = dot(n_i, n_j);
+  return x * c.skin_m_per_N + 0.5 * x * (3.0 - x * x) * c.lobe_m_per_N;
+}
+
 double sunk_m(const Coupling& c, std::span<const PressingSphere> spheres, std::size_t i) RT_SAFE {
   double sum_m = 0.0;
   for (std::size_t j = 0; j < spheres.size(); ++j)

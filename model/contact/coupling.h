@@ -7,8 +7,13 @@
 //
 //     d_i   depth of a sphere below the undeformed surface, m
 //     e_i   its own dent, m: what the site's law answers
-//     C_ij  n_i . n_j c_ij: sinking of site i under a unit force at site j, m/N; symmetric,
-//           C_ii = 0
+//     C_ij  sinking of site i under a unit force at site j, m/N; symmetric, C_ii = 0
+//
+//     MC-2   C_ij = x h + x (3 - x^2) / 2 b,   x = n_i . n_j
+//
+// h and b: skin and lobe of the law's SiteCoupling. A lobe bends along one axis, which both normals
+// of a rim straddle, and its part was measured along them: it keeps its size, and turns its sign
+// for the other side of the lobe.
 //
 // With C constant W is a potential: no stroke gives back more than it took. The forces are unique
 // where diag(1 / F'(e_i)) + C is positive definite; definite_share() tells how much of C may stay.
@@ -33,6 +38,9 @@ struct PressingSphere {
   Indentation in;
   SiteResponse response;  // at e
 };
+
+/// MC-2, m/N.
+double coupling_m_per_N(const SiteCoupling& c, const Vec3& n_i, const Vec3& n_j) RT_SAFE;
 
 /// Solves MC-1; returns W, J. C becomes smaller where it has no solution.
 double press_together(SiteLaw& law, Coupling& c, std::span<PressingSphere> spheres) RT_SAFE;

@@ -6,10 +6,11 @@
 //
 //     t_i   sideways displacement of site i, m, tangential to n_i      f_i   force that it takes, N
 //     k_i   MC-5, N/m: stiffer while the contact grows
-//     c     MC-2, kept so small that diag(1 / k) + c is positive definite
+//     c     h + b of MC-2, kept so small that diag(1 / k) + c is positive definite
 //
-// Half-space: across the line that joins two sites c is right, along it a factor of 1 / (1 - nu) is
-// left out [Johnson, Contact Mechanics (1985), 3.6].
+// Half-space: across the line that joins two sites h is right, along it a factor of 1 / (1 - nu) is
+// left out [Johnson, Contact Mechanics (1985), 3.6]. b is that of the normal motion: what a lobe's
+// sideways motion at one site is at the other, the map does not know.
 #pragma once
 
 #include <array>

@@ -38,17 +38,23 @@ struct SiteResponse {
   Vec3 slope_N{};  // G, tangential to the touched triangle
 };
 
+/// MC-2: how far one site of a tissue moves with a unit force at another, m/N.
+struct SiteCoupling {
+  double skin_m_per_N = 0.0;  // through the tissue between them: by their directions
+  double lobe_m_per_N = 0.0;  // as their lobe bends: along its one axis
+};
+
 class SiteLaw {
  public:
   virtual ~SiteLaw() = default;
   /// NaN gives zero force and kInvalid.
   virtual SiteResponse respond(const Indentation& in) RT_SAFE = 0;
-  /// MC-2: how far site a moves with a unit force at site b, distance_m away, in the direction of
-  /// that force, m/N. 0: the law's own memory couples them, or nothing is known.
-  virtual double coupling_m_per_N(const Indentation& a, const Indentation& b,
-                                  double distance_m) const RT_SAFE {
+  /// MC-2: two sites, distance_m apart, pushed in one direction. 0: the law's own memory couples
+  /// them, or nothing is known.
+  virtual SiteCoupling coupling(const Indentation& a, const Indentation& b,
+                                double distance_m) const RT_SAFE {
     (void)a, (void)b, (void)distance_m;
-    return 0.0;
+    return {};
   }
   /// MC-5: how far the site gives way sideways under a unit force by a contact of this radius,
   /// m/N. 0: not known.

@@ -71,9 +71,10 @@ std::string hash_of_forces(const Scene& scene, const TissueLaw& law) {
       hash.add(fmt::format("{:.6g}", site.respond(at).law.force_N));
       site.leave(0);
     }
-    if (k > 0)
-      hash.add(
-          fmt::format("{:.6g}", site.coupling_m_per_N(before, at, scene.tool.spheres[0].radius_m)));
+    if (k > 0) {
+      const auto [skin, lobe] = site.coupling(before, at, scene.tool.spheres[0].radius_m);
+      hash.add(fmt::format("{:.6g} {:.6g}", skin, lobe));
+    }
     before = at;
   }
   return hash.hex();

@@ -107,14 +107,16 @@ double ElasticField::regular_m_per_N(const contact::Place& place, double distanc
   return sum / near.youngs_modulus_Pa;
 }
 
-double ElasticField::coupling_m_per_N(const contact::Indentation& a, const contact::Indentation& b,
-                                      double distance_m) const RT_SAFE {
+contact::SiteCoupling ElasticField::coupling(const contact::Indentation& a,
+                                             const contact::Indentation& b,
+                                             double distance_m) const RT_SAFE {
   const double modulus_Pa = parts_.neighbours.contact_modulus_Pa;
-  if (!(modulus_Pa > 0.0) || !(distance_m > 0.0)) return 0.0;
+  if (!(modulus_Pa > 0.0) || !(distance_m > 0.0)) return {};
   const double half_space = 1.0 / (std::numbers::pi * modulus_Pa * distance_m);
   const double regular =
       0.5 * (regular_m_per_N(a.place, distance_m) + regular_m_per_N(b.place, distance_m));
-  return std::max(half_space + regular, 0.0);  // 0 beside the held side, but for the map's errors
+  return {.skin_m_per_N = std::max(half_space + std::min(regular, 0.0), 0.0),  // the map has errors
+          .lobe_m_per_N = std::max(regular, 0.0)};
 }
 
 double ElasticField::sideways_m_per_N(const contact::Indentation& in,

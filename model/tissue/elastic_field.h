@@ -11,10 +11,11 @@
 // have a coordinate each: U = 0 between them. A tick costs at most 2 (1 + terms) look-ups a sphere,
 // whatever the mesh. Two sites, s apart, couple as those of one elastic body:
 //
-//     MC-2   c_ij = 1 / (pi E* s) + (g_i(s) + g_j(s)) / 2 >= 0
+//     MC-2   h = 1 / (pi E* s) + min(g, 0) >= 0,   b = max(g, 0),   g = (g_i(s) + g_j(s)) / 2
 //
-// half-space and the organ's regular part, g: that of the rings of the compliance map. Sideways a
-// site gives way by half-space and regular part, too (G = E* (1 - nu) / 2):
+// half-space and the organ's regular part, g: that of the rings of the compliance map, below 0
+// beside the held side. Sideways a site gives way by half-space and regular part, too
+// (G = E* (1 - nu) / 2):
 //
 //     MC-5   1 / k_t = (2 - nu) / (8 G a) + s           a: radius of the contact, m
 #pragma once
@@ -58,8 +59,8 @@ class ElasticField final : public contact::SiteLaw {
   explicit ElasticField(const ElasticFieldParts& parts) : parts_(parts) {}
 
   contact::SiteResponse respond(const contact::Indentation& in) RT_SAFE override;
-  double coupling_m_per_N(const contact::Indentation& a, const contact::Indentation& b,
-                          double distance_m) const RT_SAFE override;
+  contact::SiteCoupling coupling(const contact::Indentation& a, const contact::Indentation& b,
+                                 double distance_m) const RT_SAFE override;
   double sideways_m_per_N(const contact::Indentation& in,
                           double contact_radius_m) const RT_SAFE override;
   void leave(std::size_t sphere) RT_SAFE override { now_[sphere] = next_[sphere] = {}; }

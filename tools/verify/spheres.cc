@@ -50,7 +50,7 @@ json group_results(const json& one_case) {
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j)
       if (i != j)
-        c[i][j] = tissue.coupling_m_per_N(sphere[i].in, sphere[j].in, norm(at_m[i] - at_m[j]));
+        c[i][j] = tissue.coupling(sphere[i].in, sphere[j].in, norm(at_m[i] - at_m[j])).skin_m_per_N;
   press_together(tissue, c, {sphere.data(), n});
   json force_N = json::array();
   for (std::size_t i = 0; i < n; ++i) force_N.push_back(sphere[i].response.law.force_N);

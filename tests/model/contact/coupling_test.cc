@@ -35,7 +35,7 @@ struct Group {
     for (std::size_t i = 0; i < at_m.size(); ++i)
       for (std::size_t j = 0; j < at_m.size(); ++j)
         if (i != j)
-          c[i][j] = law.coupling_m_per_N(sphere[i].in, sphere[j].in, norm(at_m[i] - at_m[j]));
+          c[i][j] = law.coupling(sphere[i].in, sphere[j].in, norm(at_m[i] - at_m[j])).skin_m_per_N;
   }
   double force_N(std::size_t i) const { return sphere[i].response.law.force_N; }
   double miss_m(std::size_t i) const {
@@ -116,6 +116,17 @@ TEST(Coupling, EachForceIsTheSlopeOfTheOneEnergy) {
           << k << ", sphere " << i;
     }
   }
+}
+
+TEST(Coupling, ALobeBendsAlongOneAxisBetweenNormalsThatStraddleIt) {
+  const SiteCoupling tissue{.skin_m_per_N = 0.006, .lobe_m_per_N = 0.05};
+  const auto at = [&](double apart_rad) {
+    return coupling_m_per_N(tissue, {0, 0, 1}, {std::sin(apart_rad), 0, std::cos(apart_rad)});
+  };
+  EXPECT_NEAR(at(0.0), 0.056, 1e-15);
+  EXPECT_NEAR(at(28_deg), 0.883 * 0.006 + 0.980 * 0.05, 1e-4) << "each 14 degrees from the axis";
+  EXPECT_NEAR(at(90_deg), 0.0, 1e-15);
+  EXPECT_NEAR(at(180_deg), -0.056, 1e-15) << "a pinched lobe";
 }
 
 TEST(Coupling, NoneLeavesEachSphereItsOwnDepthToTheBit) {
