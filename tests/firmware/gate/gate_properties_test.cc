@@ -135,7 +135,7 @@ TEST(GateProperties, AWallTooStiffForItsDeviceShakesWithoutTheEnergyStageAndNotW
     EXPECT_LT(with.swing_m, 0.25 * without.swing_m) << stiffness_N_per_m;
     EXPECT_LT(with.swing_m, stiffness_N_per_m > 5000.0 ? 1e-4 : 2e-4) << stiffness_N_per_m;
     if (stiffness_N_per_m == 20000.0)
-      EXPECT_NEAR(without.swing_m, 4e-3, 0.5e-3) << "as firmware/README.md says";
+      EXPECT_NEAR(without.swing_m, 4e-3, 0.5e-3) << "as the README of the gate says";
     EXPECT_GT(without.given_J, 0.08) << stiffness_N_per_m;
     EXPECT_LT(with.given_J, 0.042) << "the damping begins at half of the budget";
     EXPECT_FALSE(with.is_latched);
