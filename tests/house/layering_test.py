@@ -42,6 +42,10 @@ VOUCHES = {
 TRANSPORT = re.compile(r"\s*#include <((?:sys|linux|libusb[^/>]*)/[^>]+|(?:libusb|gpiod)[^>]*)>")
 MAX_LINES, MAX_COLUMNS = 300, 100
 LICENCE = "SPDX-License-Identifier: Apache-2.0"
+SOURCES = (".h", ".cc", ".ts", ".mjs", ".py", ".sh", ".txt", ".cmake")
+# Sources in other words; scenes that only tests read say their error in their first line.
+CONFIGURATION = (".css", ".html", ".toml", ".proto", ".yml", ".rules", ".link", ".network", ".ifupdown", ".conf")
+UNSIGNED = "tests/data/scenes/"
 OURS = re.compile(r'\s*#include "([^"]+)"')
 COMMENT = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.S)
 
@@ -150,12 +154,15 @@ def blind_rules():
 
 def main():
     breaches, files, marks, texts = [], 0, 0, {}
-    for top in TOPS:
+    for top in (*TOPS, ".github"):
         for path in sorted((ROOT / top).rglob("*")):
-            if "node_modules" in path.parts or path.suffix not in (
-                    ".h", ".cc", ".ts", ".mjs", ".py", ".sh", ".txt", ".cmake"):
+            name = str(path.relative_to(ROOT))
+            if "node_modules" in path.parts or path.suffix not in SOURCES + CONFIGURATION:
                 continue
-            text, name = path.read_text(), str(path.relative_to(ROOT))
+            text = path.read_text()
+            if path.suffix in CONFIGURATION:
+                breaches += [] if name.startswith(UNSIGNED) else unlicensed(name, text)
+                continue
             files += 1
             if text.count("\n") > MAX_LINES:
                 breaches.append(f"{name}:1: longer than {MAX_LINES} lines: split it by idea")
