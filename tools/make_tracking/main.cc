@@ -51,6 +51,7 @@ std::string observations() {
 std::string description() {
   const Pose to_W = tact::tools::make_tracking::registration();
   std::string out = fmt::format(
+      "# SPDX-License-Identifier: Apache-2.0\n"
       "# The tracked operator of {0}.toml, for tact-view alone: made by tact-make-tracking. He "
       "leans,\n"
       "# looks and presses for {1:g} s; {2} px of noise, hidden and wrong markers, and a tracker "
