@@ -17,6 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::string_view kSchema = "tact-accuracy/2";
+
 std::vector<double> numbers_of(const toml::table& table, const char* key) {
   std::vector<double> out;
   if (const toml::array* array = table[key].as_array())
@@ -33,16 +35,19 @@ std::string cure(const Scene& scene) {
 
 /// Error: what the table lacks.
 Result<Accuracy> accuracy_of(const toml::table& table, const std::string& law) {
-  Accuracy out{.law = law,
-               .law_hash = table["law_hash"].value_or<std::string>(""),
-               .reference = table["reference"].value_or<std::string>(""),
-               .date = table["date"].value_or<std::string>(""),
-               .rms_ratio = table["force_rms_ratio"].value_or<double>(std::nan("")),
-               .depth_m = numbers_of(table, "depth_m"),
-               .own_worst_ratio = numbers_of(table, "own_worst_ratio")};
+  Accuracy out{
+      .law = law,
+      .law_hash = table["law_hash"].value_or<std::string>(""),
+      .reference = table["reference"].value_or<std::string>(""),
+      .date = table["date"].value_or<std::string>(""),
+      .large_strain_off = table["large_strain_off"].value_or(false),
+      .rms_ratio = table["force_rms_ratio"].value_or<double>(std::nan("")),
+      .within_noticeable_ratio = table["within_noticeable_ratio"].value_or<double>(std::nan("")),
+      .depth_m = numbers_of(table, "depth_m"),
+      .own_worst_ratio = numbers_of(table, "own_worst_ratio")};
   const auto is_number = [](double v) { return std::isfinite(v); };
-  if (!is_number(out.rms_ratio) || out.rms_ratio < 0.0 || out.depth_m.empty() ||
-      out.depth_m.size() != out.own_worst_ratio.size() ||
+  if (!is_number(out.rms_ratio) || out.rms_ratio < 0.0 || !is_number(out.within_noticeable_ratio) ||
+      out.depth_m.empty() || out.depth_m.size() != out.own_worst_ratio.size() ||
       !std::all_of(out.depth_m.begin(), out.depth_m.end(), is_number) ||
       !std::all_of(out.own_worst_ratio.begin(), out.own_worst_ratio.end(), is_number))
     return Error{"a number is missing or has no meaning"};
@@ -85,14 +90,18 @@ std::string accuracy_path(const Scene& scene) {
 }
 
 std::string accuracy_text(const std::vector<Accuracy>& laws) {
-  std::string out = "# How true the force of the whole tool is: tact-chart --tool-reference\n";
+  std::string out = fmt::format(
+      "# How true the force of the whole tool is: tact-chart --tool-reference\nschema = \"{}\"\n",
+      kSchema);
   for (const Accuracy& a : laws)
     out += fmt::format(
-        "\n[{}]\nlaw_hash = \"{}\"\nreference = \"{}\"\ndate = \"{}\"\n"
-        "force_rms_ratio = {:.4f}  # of the peak\ndepth_m = [{}]\n"
+        "\n[{}]\nlaw_hash = \"{}\"\nreference = \"{}\"\ndate = \"{}\"\n{}"
+        "force_rms_ratio = {:.4f}  # of the peak\n"
+        "within_noticeable_ratio = {:.4f}  # share of places and depths\ndepth_m = [{}]\n"
         "own_worst_ratio = [{:.4f}]  # of the force at the same place and depth\n",
-        a.law, a.law_hash, a.reference, a.date, a.rms_ratio, fmt::join(a.depth_m, ", "),
-        fmt::join(a.own_worst_ratio, ", "));
+        a.law, a.law_hash, a.reference, a.date,
+        a.large_strain_off ? "large_strain_off = true  # the scene has it on\n" : "", a.rms_ratio,
+        a.within_noticeable_ratio, fmt::join(a.depth_m, ", "), fmt::join(a.own_worst_ratio, ", "));
   return out;
 }
 
@@ -110,6 +119,8 @@ Result<Accuracy> read_accuracy(const Scene& scene, const TissueLaw& law) {
     return Error{
         fmt::format("{}:{}: {}; {}", path, e.source().begin.line, e.description(), cure(scene))};
   }
+  if (root["schema"].value_or<std::string>("") != kSchema)
+    return Error{fmt::format("{} is of another version of tact-chart; {}", path, cure(scene))};
   const toml::table* table = root[name].as_table();
   if (table == nullptr) return Error{fmt::format("{} has no [{}]; {}", path, name, cure(scene))};
   auto out = accuracy_of(*table, name);
@@ -120,21 +131,45 @@ Result<Accuracy> read_accuracy(const Scene& scene, const TissueLaw& law) {
   return out;
 }
 
+std::size_t worst_depth(const Accuracy& accuracy) {
+  const auto& own = accuracy.own_worst_ratio;
+  const auto nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  return static_cast<std::size_t>(std::max_element(own.begin(), own.end(), nearer) - own.begin());
+}
+
+bool keeps(const Accuracy& accuracy, const ToleranceSettings& tolerance) {
+  const double own_ratio = std::abs(accuracy.own_worst_ratio[worst_depth(accuracy)]);
+  return std::max(accuracy.rms_ratio, own_ratio) <= tolerance.force_error_ratio;
+}
+
 std::string accuracy_line(const Scene& scene, const TissueLaw& law) {
   const auto found = read_accuracy(scene, law);
   if (!found) return "force of the whole tool: not known: " + found.error().sentence;
+  const auto own_percent = [&](std::size_t i) {
+    return 100.0 * std::abs(found->own_worst_ratio[i]);
+  };
   std::string own;
   for (std::size_t i = 0; i < found->depth_m.size(); ++i)
-    own += fmt::format("{}{:.1f} % at {:g} mm", i == 0 ? "" : ", ",
-                       100.0 * std::abs(found->own_worst_ratio[i]), 1e3 * found->depth_m[i]);
+    own += fmt::format("{}{:.1f} % at {:g} mm", i == 0 ? "" : ", ", own_percent(i),
+                       1e3 * found->depth_m[i]);
   std::string out = fmt::format(
       "force of the whole tool: {:.1f} % of the peak off (RMS), at the worst place {} of the force "
-      "there; against {}, {}",
-      100.0 * found->rms_ratio, own, found->reference, found->date);
+      "there; {:.0f} % of all places and depths within the 7 % that people notice; against {}{}; "
+      "measured {}, hash {}",
+      100.0 * found->rms_ratio, own, 100.0 * found->within_noticeable_ratio, found->reference,
+      found->large_strain_off ? ", with the large-strain factor off, which this scene has on" : "",
+      found->date, found->law_hash);
   if (!scene.tolerance) return out;
-  const double allowed = scene.tolerance->force_error_ratio;
-  return out + fmt::format("; it {} its tolerance of {:g} % of the peak",
-                           found->rms_ratio <= allowed ? "keeps" : "misses", 100.0 * allowed);
+  const double allowed_percent = 100.0 * scene.tolerance->force_error_ratio;
+  if (keeps(*found, *scene.tolerance))
+    return out + fmt::format("; it keeps its tolerance of {:g} %, of the peak and of the own force",
+                             allowed_percent);
+  const std::size_t worst = worst_depth(*found);
+  return out + fmt::format(
+                   "; it misses its tolerance of {:g} %: {:.1f} % of the own force at {:g} "
+                   "mm, {:.1f} % of the peak (RMS)",
+                   allowed_percent, own_percent(worst), 1e3 * found->depth_m[worst],
+                   100.0 * found->rms_ratio);
 }
 
 }  // namespace tact::model::scene

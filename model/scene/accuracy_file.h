@@ -3,7 +3,9 @@
 //
 // SCENE.accuracy stands beside SCENE.toml, a table for each law. tactd --check tells it. A
 // figure counts for what was measured alone: the hash is of forces, so another law, parameter,
-// organ or tool has another one, and another hand or device has not. Set-up code only.
+// organ or tool has another one, and another hand or device has not. A scene keeps its tolerance
+// where the RMS, of the peak, and the error of the own force at every place and depth are within
+// tolerance.force_error_ratio: an RMS alone hides light touch. Set-up code only.
 #pragma once
 
 #include <string>
@@ -16,14 +18,19 @@ namespace tact::model::scene {
 
 /// Of one law against a reference.
 struct Accuracy {
-  std::string law;                      // its name in a scene
-  std::string law_hash;                 // hash_of_forces()
-  std::string reference;                // what it was measured against, for people
-  std::string date;                     // YYYY-MM-DD
-  double rms_ratio = 0.0;               // of the peak
-  std::vector<double> depth_m;          // rising
-  std::vector<double> own_worst_ratio;  // of the same place and depth, at each depth
+  std::string law;                       // its name in a scene
+  std::string law_hash;                  // hash_of_forces()
+  std::string reference;                 // what it was measured against, for people
+  std::string date;                      // YYYY-MM-DD
+  bool large_strain_off = false;         // it was measured without, and the law has it
+  double rms_ratio = 0.0;                // of the peak
+  double within_noticeable_ratio = 0.0;  // share of places and depths within the 7 % people notice
+  std::vector<double> depth_m;           // rising
+  std::vector<double> own_worst_ratio;   // of the same place and depth, at each depth
 };
+/// Of the own force, at the depth where it is farthest off: an index of depth_m.
+std::size_t worst_depth(const Accuracy& accuracy);
+bool keeps(const Accuracy& accuracy, const ToleranceSettings& tolerance);
 
 /// Of what the law answers at places and depths spread over the organ, of how they couple, and of
 /// the tool's spheres: 16 hex digits.

@@ -11,6 +11,7 @@
 #include "tools/ground_truth/reference_fits.h"
 #include "tools/program/interrupt.h"
 #include "tools/program/run_program.h"
+#include "tools/report/just_noticeable.h"
 
 namespace tact::tools::chart {
 namespace {
@@ -122,7 +123,7 @@ ToolErrors summarize_tool(const std::vector<ToolSample>& samples, const std::vec
     place_peak_N[s.place] = std::max(place_peak_N[s.place], std::abs(s.reference_N));
   }
   double all = 0.0, others = 0.0;
-  std::size_t other_count = 0;
+  std::size_t other_count = 0, felt_right = 0;
   std::vector<std::size_t> place_count(unseen.size(), 0);
   for (const ToolSample& s : samples) {
     const double e_N = s.force_N - s.reference_N, e = e_N / peak_N;
@@ -134,8 +135,10 @@ ToolErrors summarize_tool(const std::vector<ToolSample>& samples, const std::vec
     if (out.own_worst.size() <= s.depth) out.own_worst.resize(s.depth + 1, 0.0);
     double& own = out.own_worst[s.depth];
     if (std::abs(s.own_ratio()) > std::abs(own)) own = s.own_ratio();
+    if (std::abs(s.own_ratio()) <= report::kJustNoticeable_ratio) ++felt_right;
   }
   out.rms_ratio = std::sqrt(all / static_cast<double>(samples.size()));
+  out.within_jnd_ratio = static_cast<double>(felt_right) / static_cast<double>(samples.size());
   out.unseen_rms_ratio = std::sqrt(others / static_cast<double>(other_count));  // 0 / 0: NaN
   for (std::size_t i = 0; i < unseen.size(); ++i)
     out.place_rms_ratio[i] =

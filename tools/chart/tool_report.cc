@@ -36,6 +36,7 @@ ordered_json summary_of(const ToolRow& row, const ToolReference& reference) {
   out["force_rms_ratio"] = row.errors.rms_ratio;
   out["force_worst_ratio"] = row.errors.worst_ratio;
   out["unseen_rms_ratio"] = number_or_null(row.errors.unseen_rms_ratio);
+  out["within_jnd_ratio"] = row.errors.within_jnd_ratio;
   for (std::size_t k = 0; k < row.errors.own_worst.size(); ++k)
     out["own_worst_ratio_at_mm"][mm_text(reference.places.front().cases[k].depth_m)] =
         row.errors.own_worst[k];
@@ -130,7 +131,10 @@ model::Result<std::vector<model::scene::Accuracy>> accuracy_of(
         .law_hash = hash_of_forces(scene, **law),
         .reference = fmt::format("linear finite elements at {} places", reference.places.size()),
         .date = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))),
+        .large_strain_off =
+            scene.compliance.large_strain && row.law == model::scene::LawKind::kCompliance,
         .rms_ratio = row.errors.rms_ratio,
+        .within_noticeable_ratio = row.errors.within_jnd_ratio,
         .depth_m = {},
         .own_worst_ratio = row.errors.own_worst};
     for (const ground_truth::ToolCase& c : reference.places.front().cases)

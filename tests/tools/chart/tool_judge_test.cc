@@ -61,7 +61,16 @@ TEST(ToolErrors, MatchPenAndPaper) {
   EXPECT_NEAR(e.own_worst[1], -0.1, 1e-12);
   EXPECT_NEAR(e.place_rms_ratio[0], std::sqrt((0.0025 + 0.01) / 2.0), 1e-12);
   EXPECT_NEAR(e.place_rms_ratio[1], 0.4, 1e-12) << "of its own peak";
+  EXPECT_EQ(e.within_jnd_ratio, 0.0) << "10, 10 and 40 % of the own force: all can be felt";
   EXPECT_TRUE(std::isnan(summarize_tool({samples[0]}, {false}).unseen_rms_ratio));
+}
+
+TEST(ToolErrors, CountWhatAHandCannotTell) {
+  const std::vector<ToolSample> samples{{.force_N = 0.931, .reference_N = 1.0},
+                                        {.force_N = 1.069, .reference_N = 1.0},
+                                        {.force_N = 1.071, .reference_N = 1.0},
+                                        {.force_N = 0.929, .reference_N = 1.0}};
+  EXPECT_EQ(summarize_tool(samples, {true}).within_jnd_ratio, 0.5);
 }
 
 TEST(JudgeTool, FindsTheErrorOfOneSphereAsWorkedByHand) {
