@@ -16,6 +16,7 @@ using report::Csv;
 using report::CsvLine;
 
 constexpr std::size_t kFewestRows = 3;
+constexpr double kAsDeep = 1.0 + 1e-9;  // 9 times 0.001 is more than 0.009
 constexpr const char* kRadius = "radius_m";
 
 struct RingColumns {
@@ -81,6 +82,7 @@ Result<FitData> read_bench_csv(const std::string& path, const BenchColumns& colu
       return csv->blame(line.number, fmt::format("{} = {} is {} m deep; say what its unit is with "
                                                  "--depth-unit-m (0.001 for mm)",
                                                  columns.depth, *depth_value, sample.depth_m));
+    if (sample.depth_m > columns.deepest_m * kAsDeep) continue;
     for (const std::size_t column : rings->column) {
       const auto u_m = csv->number(line, column);
       if (!u_m) return u_m.error();

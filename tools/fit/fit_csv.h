@@ -11,6 +11,7 @@
 // file and the line.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct BenchColumns {
   double depth_unit_m = 1.0;  // what 1 in that column is
   double force_unit_N = 1.0;
   double time_unit_s = 1.0;
+  double deepest_m = std::numeric_limits<double>::infinity();  // deeper rows are left out
 };
 
 /// Sites have no place yet; `held_out` names those that are only judged.

@@ -54,6 +54,8 @@ void add_options(CLI::App& app, Options& o) {
       ->check(CLI::PositiveNumber);
   app.add_option("--time-unit-s", o.columns.time_unit_s, "s in one unit")
       ->check(CLI::PositiveNumber);
+  app.add_option("--deepest-m", o.columns.deepest_m, "deeper rows of --data are left out")
+      ->check(CLI::PositiveNumber);
   app.add_option("--shape-weight", o.fit.shape_weight,
                  "what an error of the shape (of the depth) counts against one of the force (of "
                  "the peak); 0: forces alone")

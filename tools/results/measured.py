@@ -132,4 +132,24 @@ def tracking():
     return f"{' '.join(pose)}; {' '.join(figure)}", values
 
 
-MEASURED = {f.__name__: f for f in (bench, limits, verify, size, chart, tool, stability, tracking)}
+def measured():
+    """Laws against measured silicone: one material is fitted, two judge by one factor each."""
+    command = ["build/tact-fit", LIVER, "--set", "varies_by_place=false", "rhombus.area_m2=0",
+               "--data", "tests/data/measured/silicone_compression.csv",
+               "--depth-column", "compression_mm", "--depth-unit-m", "0.001",
+               "--force-column", "load_mean_N", "--scale-by-site", "--held-out", "EF10_50T,EF30_50T",
+               "--law", "hex_sheet,rhombus,disc_stack_linear"]
+    values = {}
+    for percent, deepest_m in ((30, 0.009), (60, 0.018)):
+        told = json.loads(told_by(*command, "--json", "--deepest-m", deepest_m, status=(0, 1)))
+        values[f"to_{percent}_percent"] = {
+            law["law"]: {site["site"]: {"rms_percent": 100 * site["force"]["rms_ratio"],
+                                        "worst_percent": 100 * site["force"]["worst_ratio"],
+                                        "factor": site["scale"], "peak_N": site["force"]["peak_N"]}
+                         for site in law["sites"]}
+            for law in told["laws"]}
+    return " ".join(command) + " --deepest-m METRES", values
+
+
+MEASURED = {f.__name__: f for f in (bench, limits, verify, size, chart, tool, stability, tracking,
+                                   measured)}

@@ -56,6 +56,14 @@ TEST_F(FitCsv, TakesOtherNamesAndUnits) {
   EXPECT_DOUBLE_EQ(data->peak_N(), 21.5);
 }
 
+TEST_F(FitCsv, LeavesOutWhatIsDeeperThanAsked) {
+  const auto data = read_bench_csv(file("depth_m,force_N\n3,0.1\n6,0.2\n9,0.3\n9.1,0.9\n"),
+                                   {.depth_unit_m = 0.001, .deepest_m = 0.009}, {});
+  ASSERT_TRUE(data) << data.error().sentence;
+  EXPECT_EQ(data->sites[0].samples.size(), 3U);
+  EXPECT_EQ(data->peak_N(), 0.3);
+}
+
 TEST_F(FitCsv, NamesTheLineOfEveryError) {
   EXPECT_EQ(error_of("depth_m,force_N\n0.001,0.05\n0.002,soft\n"),
             ":3: force_N: \"soft\" is no number");
