@@ -135,9 +135,10 @@ std::vector<Finding> judge(const report::Table& t) {
   }
   return {
       {least_grow > kAccepted,
-       fmt::format("no cell grows below {} K, K = b / (T/2 + t_d): {} of {} grow below K, the least "
-                   "measured limit is {:.3f} K",
-                   kAccepted, below, t.rows().size(), least_grow),
+       fmt::format(
+           "no cell grows below {} K, K = b / (T/2 + t_d): {} of {} grow below K, the least "
+           "measured limit is {:.3f} K",
+           kAccepted, below, t.rows().size(), least_grow),
        {{"below", below}, {"least_ratio", least_grow}}},
       {least_rest > kAccepted,
        fmt::format("every cell below {} min(K, 2 c / D) comes to rest: the least measured limit is "
