@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "tools/chart/chart_peers.h"
+#include "tools/ground_truth/reference_fits.h"
 #include "tools/program/run_program.h"
 
 namespace tact::tools::chart {
@@ -15,6 +16,8 @@ namespace {
 using model::Error;
 using model::Result;
 using model::scene::Scene;
+
+constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
 struct Made {
   ChartRow row;
@@ -33,10 +36,17 @@ Result<std::unique_ptr<Subject>> make_subject(const Scene& scene, const Variant&
   return make_law_subject(scene, variant.sizes);
 }
 
+Scene sized(const Scene& scene, const Variant& variant) {
+  Scene own = scene;
+  use_sizes(variant.sizes, own);
+  return own;
+}
+
 /// Judged without relaxation and at small strain, as the reference is linear elastic; timed with
 /// the scene's relaxation.
 Made make_and_judge(const Scene& scene, const Scene& elastic, const Variant& variant,
-                    const std::vector<ProbeCase>& cases, double pitch_m) {
+                    const std::vector<ProbeCase>& cases, double pitch_m,
+                    const ground_truth::ToolReference* tool_reference) {
   Made made{.row = {.variant = variant}, .subject = nullptr};
   auto subject = make_subject(elastic, variant, cases);
   if (!subject) {
@@ -53,6 +63,12 @@ Made make_and_judge(const Scene& scene, const Scene& elastic, const Variant& var
       made.row.failure = subject.error().sentence;
       return made;
     }
+  }
+  if (!variant.is_peer() && tool_reference != nullptr) {
+    const auto judged = judge_errors(sized(scene, variant), *tool_reference);
+    made.row.failure = judged ? judged->failure : judged.error().sentence;
+    if (!made.row.failure.empty()) return made;
+    made.row.tool = judged->errors;
   }
   made.row.memory_bytes = (*subject)->memory_bytes();
   made.subject = std::move(*subject);
@@ -84,6 +100,9 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
   const auto cases = cases_of(scene, reference);
   if (!cases) return cases.error();
   const std::vector<Variant> variants = variants_of(scene, options.wish);
+  if (options.tool_reference != nullptr)
+    if (auto differs = check_tool_reference_fits(*options.tool_reference, scene))
+      return std::move(*differs);
   if (variants.empty())
     return Error{
         fmt::format("{}: none of the wanted laws is described; write its section or "
@@ -96,7 +115,8 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
   const program::SweepOptions sweep_options{.label = options.label + ", accuracy",
                                             .shard = options.shard};
   const bool judged = run_jobs(variants.size(), sweep_options, [&](std::size_t job) {
-    made[job] = make_and_judge(scene, elastic, variants[job], *cases, reference.ring_pitch_m);
+    made[job] = make_and_judge(scene, elastic, variants[job], *cases, reference.ring_pitch_m,
+                               options.tool_reference);
   });
   if (!judged) return program::interruption();
   const auto path = moving_probe(scene, cases->front());
@@ -104,7 +124,12 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
       .label = options.label + ", time", .shard = options.shard, .threads = 1};
   const bool timed = run_jobs(variants.size(), one_by_one, [&](std::size_t job) {
     if (!made[job].subject) return;
-    made[job].row.timing = measure_time(*made[job].subject, path, options.timing);
+    if (variants[job].is_peer())
+      made[job].row.timing = measure_time(*made[job].subject, path, options.timing);
+    else if (const auto timing = time_tool(sized(scene, variants[job]), options.timing))
+      made[job].row.timing = *timing;
+    else
+      made[job].row.failure = timing.error().sentence;
     made[job].subject.reset();
   });
   if (!timed) return program::interruption();
@@ -135,7 +160,14 @@ report::Table empty_chart(std::size_t variants, const program::Shard& shard) {
            number("pull_rms_ratio"),
            number("held_out_rms_ratio"),
            number("worst_site_rms_ratio"),
+           number("own_worst_1mm_ratio"),
+           number("own_worst_2mm_ratio"),
+           number("own_worst_5mm_ratio"),
+           number("own_worst_10mm_ratio"),
+           number("own_worst_ratio"),
            number("within_jnd_ratio"),
+           number("tool_rms_ratio"),
+           number("tool_own_worst_ratio"),
            number("shape_rms_ratio"),
            number("shape_worst_ratio"),
            number("cases"),
@@ -160,8 +192,7 @@ report::Row table_row(const ChartRow& row, const Provenance& provenance) {
   const model::scene::LawSizes& sizes = row.variant.sizes;
   const bool measured = row.failure.empty();
   const auto number = [&](auto value) {
-    return report::Cell(measured ? static_cast<double>(value)
-                                 : std::numeric_limits<double>::quiet_NaN());
+    return report::Cell(measured ? static_cast<double>(value) : kNotMeasured);
   };
   const auto count = [](std::size_t value) { return report::Cell(static_cast<double>(value)); };
   const ErrorSummary& e = row.errors;
@@ -186,7 +217,14 @@ report::Row table_row(const ChartRow& row, const Provenance& provenance) {
           number(e.pull_rms_ratio),
           number(e.held_out_rms_ratio),
           number(e.worst_site_rms_ratio),
+          number(e.own_worst[0]),
+          number(e.own_worst[1]),
+          number(e.own_worst[2]),
+          number(e.own_worst[3]),
+          number(e.own_largest_ratio),
           number(e.within_jnd_ratio),
+          number(row.tool ? row.tool->rms_ratio : kNotMeasured),
+          number(row.tool ? row.tool->own_largest_ratio : kNotMeasured),
           number(e.shape_rms_ratio),
           number(e.shape_worst_ratio),
           number(e.cases),

@@ -3,14 +3,18 @@
 //
 // First all rows are made and judged on all cores, then timed one after the other, so that they do
 // not disturb each other. The errors are the same on every machine; times belong to the row's
-// machine.
+// machine. The time of a law is the tick that a user gets: touch, feel and judge of the scene's
+// whole tool (tool_judge.h). That of a peer is its own answer to one sphere alone, without touch
+// and judge.
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tools/chart/measure.h"
+#include "tools/chart/tool_judge.h"
 #include "tools/chart/variants.h"
 #include "tools/program/sweep.h"
 #include "tools/report/table.h"
@@ -19,8 +23,9 @@ namespace tact::tools::chart {
 
 struct ChartRow {
   Variant variant{};
-  std::string failure{};  // empty: it was measured
-  ErrorSummary errors{};
+  std::string failure{};             // empty: it was measured
+  ErrorSummary errors{};             // of one sphere
+  std::optional<ToolErrors> tool{};  // of the whole tool; none: no reference, or a peer
   int settle_ticks = 0;
   Timing timing{};
   std::size_t memory_bytes = 0;
@@ -37,6 +42,7 @@ struct ChartOptions {
   VariantWish wish;
   program::Shard shard;
   TimingSettings timing;
+  const ground_truth::ToolReference* tool_reference = nullptr;  // laws are judged by it too
 };
 
 /// Rows of the shard, in order. An error names what does not fit together, or says that Ctrl-C

@@ -13,6 +13,7 @@ namespace tact::tools::chart {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSameDepth_m = 1e-6;
 
 /// Root of the mean square of what it is given; NaN of nothing.
 class Rms {
@@ -41,6 +42,7 @@ double shape_error(const Sample& s) {
 
 ErrorSummary summarize(std::span<const Sample> samples) {
   ErrorSummary out{.cases = samples.size()};
+  out.own_worst.fill(kNan);
   double peak_N = 0.0;
   std::map<std::size_t, double> site_peak_N;
   for (const Sample& s : samples) {
@@ -55,6 +57,12 @@ ErrorSummary summarize(std::span<const Sample> samples) {
     const double e = e_N / peak_N;
     all.add(e);
     (s.depth_m > 0.0 ? press : pull).add(e);
+    const double own = e_N / std::abs(s.reference_N);
+    if (s.depth_m > 0.0) out.own_largest_ratio = std::max(out.own_largest_ratio, std::abs(own));
+    for (std::size_t k = 0; k < kOwnDepths_m.size(); ++k) {
+      if (std::abs(s.depth_m - kOwnDepths_m[k]) > kSameDepth_m) continue;
+      if (!(std::abs(out.own_worst[k]) >= std::abs(own))) out.own_worst[k] = own;  // NaN before
+    }
     if (s.held_out) held_out.add(e);
     of_site[s.site].add(e_N / site_peak_N[s.site]);
     out.force_worst_ratio = std::max(out.force_worst_ratio, std::abs(e));

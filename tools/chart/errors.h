@@ -2,6 +2,7 @@
 // errors.h - how far a law is from the reference, in numbers: pure functions over samples.
 //
 //     force   e = F - F_ref;        RMS and worst over sites and depths, of the peak |F_ref|
+//     own     e of a press over |F_ref| of the same site and depth: the worst site at each depth
 //     shape   e_j = u_j - u_ref,j;  RMS over the rings of a case, of its |depth|; then RMS and
 //             worst over the cases
 //
@@ -9,11 +10,15 @@
 // least difference of force that a hand can tell (just_noticeable.h).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
 
 namespace tact::tools::chart {
+
+/// Light touch counts as much as a deep press.
+inline constexpr std::array kOwnDepths_m{0.001, 0.002, 0.005, 0.010};
 
 /// One depth at one site.
 struct Sample {
@@ -31,6 +36,8 @@ struct ErrorSummary {
   double press_rms_ratio = 0.0, pull_rms_ratio = 0.0;     // of the peak; NaN without such a case
   double held_out_rms_ratio = 0.0;                        // of the peak; NaN without such a site
   double worst_site_rms_ratio = 0.0;                      // of that site's own peak
+  std::array<double, kOwnDepths_m.size()> own_worst{};    // with its sign; NaN: no such depth
+  double own_largest_ratio = 0.0;                         // of any press, its size
   double within_jnd_ratio = 0.0;                          // share of the cases
   double shape_rms_ratio = 0.0, shape_worst_ratio = 0.0;  // of the depth
 };

@@ -39,12 +39,13 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--reference", o.reference,
                  "what is true under one sphere: JSON of tact-reference SCENE --out FILE");
   app.add_option("--tool-reference", o.tool_reference,
-                 "instead: what is true under the whole tool, all spheres; JSON of tact-reference "
-                 "SCENE --tool --out FILE")
-      ->excludes("--reference");
+                 "what is true under the whole tool, all spheres; JSON of tact-reference SCENE "
+                 "--tool --out FILE. Alone: the scene's laws as they are; with --reference: every "
+                 "size too");
   app.add_option("--accuracy", o.accuracy,
-                 "with it: also this file, SCENE.accuracy, which tactd --check tells")
-      ->needs("--tool-reference");
+                 "with it alone: also this file, SCENE.accuracy, which tactd --check tells")
+      ->needs("--tool-reference")
+      ->excludes("--reference");
   app.add_option("--laws", o.chart.wish.laws, "only these laws and peers")
       ->delimiter(',')
       ->check(CLI::IsMember(all_families()));
@@ -53,16 +54,20 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--json", o.json, "print the table as JSON");
 }
 
-std::string hash_of_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+/// Of all that was given, in this order.
+std::string hash_of_references(const Options& o) {
   tact::model::scene::TextHash hash;
-  hash.add(std::string{std::istreambuf_iterator<char>(file), {}});
+  for (const std::string& path : {o.reference, o.tool_reference}) {
+    if (path.empty()) continue;
+    std::ifstream file(path, std::ios::binary);
+    hash.add(std::string{std::istreambuf_iterator<char>(file), {}});
+  }
   return hash.hex();
 }
 
-Provenance provenance_of(const Scene& scene, const std::string& reference_path) {
+Provenance provenance_of(const Scene& scene, const Options& o) {
   return {.scene_hash = scene.hash,
-          .reference_hash = hash_of_file(reference_path),
+          .reference_hash = hash_of_references(o),
           .revision = tact::firmware::pc::read_environment({}).git_revision,
           .machine = tact::model::scene::machine_name()};
 }
@@ -70,7 +75,8 @@ Provenance provenance_of(const Scene& scene, const std::string& reference_path) 
 /// Judges the whole tool, law by law, and writes tool.csv and tool.json.
 int judge_whole_tool(const program::Program& program, const Options& o) {
   if (!o.chart.shard.is_whole() || !o.sweep.merge.empty())
-    return program.fail(Error{"--tool-reference takes no --shard and no --merge; leave them out"});
+    return program.fail(
+        Error{"--tool-reference alone takes no --shard and no --merge; leave them out"});
   const auto scene = o.scene.load();
   if (!scene) return program.fail(scene.error());
   const auto reference = ground_truth::read_tool_reference(o.tool_reference);
@@ -86,7 +92,7 @@ int judge_whole_tool(const program::Program& program, const Options& o) {
   }
   if (rows.empty())
     return program.fail(Error{"none of the wanted laws is described; leave out --laws"});
-  const Provenance provenance = provenance_of(*scene, o.tool_reference);
+  const Provenance provenance = provenance_of(*scene, o);
   const std::string json = tool_json(rows, *reference, program.command(), provenance);
   const auto csv =
       program::write_whole_file(o.out + "/tool.csv", csv_head(program.command(), provenance) +
@@ -115,7 +121,15 @@ Result<report::Table> table_of(const Options& o, const Scene& scene,
     if (auto mixed = check_same_source(*merged, provenance)) return std::move(*mixed);
     return merged;
   }
-  const auto rows = measure_chart(scene, reference, o.chart);
+  ChartOptions options = o.chart;
+  std::optional<ground_truth::ToolReference> whole_tool;
+  if (!o.tool_reference.empty()) {
+    auto read = ground_truth::read_tool_reference(o.tool_reference);
+    if (!read) return read.error();
+    whole_tool = std::move(*read);
+    options.tool_reference = &*whole_tool;
+  }
+  const auto rows = measure_chart(scene, reference, options);
   if (!rows) return rows.error();
   report::Table table = empty_chart(all, o.chart.shard);
   const auto failed = [](const ChartRow& row) { return !row.failure.empty(); };
@@ -150,7 +164,7 @@ int make_chart(const program::Program& program, const Options& o) {
   if (!scene) return program.fail(scene.error());
   const auto reference = ground_truth::read_reference(o.reference);
   if (!reference) return program.fail(reference.error());
-  Provenance provenance = provenance_of(*scene, o.reference);
+  Provenance provenance = provenance_of(*scene, o);
   const auto table = table_of(o, *scene, *reference, provenance);
   if (!table) return program.fail(table.error());
   if (!o.sweep.merge.empty()) {  // the rows know better where they come from
@@ -192,8 +206,8 @@ int main(int argc, char** argv) {
   o.chart.wish.quick = o.sweep.quick;
   o.chart.wish.peers = !o.no_peers && !o.sweep.quick;
   if (o.sweep.quick) o.chart.timing = {.ticks = 5000, .rounds = 2, .limit_s = 1.0};
-  if (!o.tool_reference.empty()) return judge_whole_tool(program, o);
-  if (o.reference.empty())
+  if (o.reference.empty() && o.tool_reference.empty())
     return program.fail(Error{"no reference given; --reference or --tool-reference is needed"});
+  if (o.reference.empty()) return judge_whole_tool(program, o);
   return make_chart(program, o);
 }

@@ -18,9 +18,14 @@ using model::Result;
 constexpr double kLeastError_ratio = 1e-4;  // what lies below is drawn there
 
 struct Point {
-  double tick_us = 0.0, force = 0.0, shape = 0.0;  // errors in %
+  double tick_us = 0.0, force = 0.0, own = 0.0, shape = 0.0;  // errors in %
   std::string size;
 };
+struct Panel {
+  double Point::* error;
+  int first_block;  // of the data
+};
+constexpr Panel kForce{&Point::force, 0}, kOwn{&Point::own, 100}, kShape{&Point::shape, 200};
 
 /// gnuplot reads no underscore as such, and a label must be short: "65 knots" is 65.
 std::string label(const std::string& size) {
@@ -58,6 +63,7 @@ Families families_of(const report::Table& table) {
     std::string size = table.word(row, "size");
     if (form != "-" && size.starts_with(form)) size = size.substr(form.size() + 1);
     const Point p{tick_us, percent(table.number(row, "force_rms_ratio")),
+                  percent(table.number(row, "own_worst_ratio")),
                   percent(table.number(row, "shape_rms_ratio")), label(size)};
     out.points[family].push_back(p);
     out.least_us = std::min(out.least_us, p.tick_us);
@@ -93,18 +99,19 @@ std::vector<Point> front_points(const report::Table& table, const Families& fami
     const report::Row& row = table.rows()[i];
     out.push_back(
         {table.number(row, "tick_median_us"), percent(table.number(row, "force_rms_ratio")), 0.0,
-         fmt::format("{} {}", shown(table.word(row, "family")), table.word(row, "size"))});
+         0.0, fmt::format("{} {}", shown(table.word(row, "family")), table.word(row, "size"))});
   }
   if (out.empty()) return out;
-  out.insert(out.begin(), {out.front().tick_us, 2.0 * families.most_force, 0.0, " "});
-  out.push_back({2.0 * families.most_us, out.back().force, 0.0, " "});
+  out.insert(out.begin(), {out.front().tick_us, 2.0 * families.most_force, 0.0, 0.0, " "});
+  out.push_back({2.0 * families.most_us, out.back().force, 0.0, 0.0, " "});
   return out;
 }
 
-/// One panel: column 2 or 3 of the data over column 1.
-std::string panel(const Families& families, int column, bool with_front) {
+/// The first one has the front and the legend.
+std::string plot_of(const Families& families, const Panel& panel) {
+  const bool is_first = panel.first_block == kForce.first_block;
   std::string out = "plot ";
-  if (with_front)
+  if (is_first)
     out +=
         "$front using 1:2 with steps lw 4 lc rgb '#c8c8c8' title 'front of tact', "
         "$front using 1:2:4 with labels left offset 3,-1.2 font ',10' tc rgb '#555555' notitle, ";
@@ -119,13 +126,12 @@ std::string panel(const Families& families, int column, bool with_front) {
     const int symbol = is_peer ? 5 + 2 * (peer % 4) : 4 + law % 5 * 2;
     (is_peer ? peer : law) += 1;
     const std::string title =
-        with_front ? fmt::format("title '{}{}'", is_peer ? "peer: " : "", shown(family))
-                   : "notitle";
+        is_first ? fmt::format("title '{}{}'", is_peer ? "peer: " : "", shown(family)) : "notitle";
     const char* side = i % 2 == 0 ? "left offset 0.8,0.4" : "left offset 0.8,-0.4";
     out += fmt::format(
         "{0}$data{1} using 1:2 with linespoints pt {2} ps 1.3 lw 1 dt 3 lc rgb '{3}' {4}, "
         "$data{1} using 1:2:4 with labels {5} font ',8' tc rgb '{3}' notitle",
-        i == 0 ? "" : ", ", i + (column == 2 ? 0 : 100), symbol, ink, title, side);
+        i == 0 ? "" : ", ", static_cast<int>(i) + panel.first_block, symbol, ink, title, side);
   }
   return out + "\n";
 }
@@ -133,14 +139,13 @@ std::string panel(const Families& families, int column, bool with_front) {
 std::string data_blocks(const Families& families) {
   std::string out;
   for (std::size_t i = 0; i < families.order.size(); ++i)
-    for (const int column : {2, 3}) {
+    for (const Panel& panel : {kForce, kOwn, kShape}) {
       auto points = families.points.at(families.order[i]);
-      const auto error = column == 2 ? &Point::force : &Point::shape;
-      share_labels(points, error);
+      share_labels(points, panel.error);
       out += fmt::format("$data{} << EOD\ntick_us,error_percent,x,size\n",
-                         i + (column == 2 ? 0 : 100));
+                         static_cast<int>(i) + panel.first_block);
       for (const Point& p : points)
-        out += fmt::format("{:.6g},{:.6g},0,{}\n", p.tick_us, p.*error, p.size);
+        out += fmt::format("{:.6g},{:.6g},0,{}\n", p.tick_us, p.*panel.error, p.size);
       out += "EOD\n";
     }
   return out;
@@ -163,7 +168,7 @@ Result<std::vector<std::string>> draw_chart(const report::Table& table, const st
       "set format x '%g'\nset format y '%g'\n"
       "set key outside right top font ',9' Left reverse\n"
       "set lmargin 9\nset rmargin 28\n"
-      "set size 1,0.63\nset origin 0,0.33\n"
+      "set size 1,0.46\nset origin 0,0.5\n"
       "set ylabel 'force error, RMS, % of the peak'\n"
       "set label 1 'a hand can tell a difference of 7 %' at graph 0.5, first 7 center offset 0,0.5 "
       "font "
@@ -171,17 +176,22 @@ Result<std::vector<std::string>> draw_chart(const report::Table& table, const st
       "tc rgb '#555555'\n"
       "set arrow 1 from graph 0, first 7 to graph 1, first 7 nohead dt 2 lc rgb '#555555'\n",
       title, families.least_us / 6.0, 3.0 * families.most_us, 2.0 * families.most_force);
-  script += panel(families, 2, true);
+  script += plot_of(families, kForce);
   script +=
-      "unset label 1\nunset arrow 1\n"
+      "unset label 1\n"
       "set yrange [*:*]\n"
-      "set size 1,0.33\nset origin 0,0\n"
-      "set xlabel 'time of a tick, median, us  (beside a point: knots, layers, rings, nodes, "
-      "curves; of fem mm, else iterations)'\n"
+      "set size 1,0.25\nset origin 0,0.25\n"
+      "set ylabel 'worst, % of the own force'\n";
+  script += plot_of(families, kOwn);
+  script +=
+      "unset arrow 1\n"
+      "set size 1,0.25\nset origin 0,0\n"
+      "set xlabel 'time of a tick, median, us: of a law touch, feel, judge of the whole tool  "
+      "(beside a point: knots, layers, rings, nodes, curves; of fem mm, else iterations)'\n"
       "set ylabel 'shape error, RMS, %'\n";
-  script += panel(families, 3, false);
+  script += plot_of(families, kShape);
   script += "unset multiplot\n";
-  return report::draw({.name = "chart", .width_px = 1200, .height_px = 1000, .script = script},
+  return report::draw({.name = "chart", .width_px = 1200, .height_px = 1200, .script = script},
                       directory);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// pictures.h - the chart as a picture: force error over time per tick, shape error below.
+// pictures.h - the chart as a picture: force error over time per tick, of the peak and of the own
+// force at its worst, and shape error below.
 #pragma once
 
 #include <string>

@@ -90,12 +90,24 @@ std::vector<Tool> moving_tool(const Scene& scene, const ToolPlace& place) {
   return path;
 }
 
-Timing time_tool(const Scene& scene, const model::scene::Tissue& tissue, const ToolPlace& place,
-                 const TimingSettings& settings) {
+/// As the first place of a reference.
+ToolPlace hands_place(const Scene& scene) {
+  return {.vertex = {},
+          .point_m = scene.hand_site_m - scene.organ.position_m,
+          .direction = scene.hand_inward,
+          .orientation = {},
+          .cases = {}};
+}
+
+}  // namespace
+
+Result<Timing> time_tool(const Scene& scene, const TimingSettings& settings) {
+  const auto tissue = make_tissue(scene);
+  if (!tissue) return tissue.error();
   firmware::loop::Controller controller(
-      tissue.contact_scene(), firmware::gate::Gate(scene.limits, 1.0 / scene.rate_Hz, 1.0),
+      (*tissue)->contact_scene(), firmware::gate::Gate(scene.limits, 1.0 / scene.rate_Hz, 1.0),
       /*hard_real_time=*/false);
-  const std::vector<Tool> path = moving_tool(scene, place);
+  const std::vector<Tool> path = moving_tool(scene, hands_place(scene));
   firmware::loop::TickInput input;
   input.sample.fresh = true;
   input.sample.tool = path.front();
@@ -110,8 +122,6 @@ Timing time_tool(const Scene& scene, const model::scene::Tissue& tissue, const T
       },
       settings);
 }
-
-}  // namespace
 
 ToolErrors summarize_tool(const std::vector<ToolSample>& samples, const std::vector<bool>& unseen) {
   ToolErrors out;
@@ -135,6 +145,7 @@ ToolErrors summarize_tool(const std::vector<ToolSample>& samples, const std::vec
     if (out.own_worst.size() <= s.depth) out.own_worst.resize(s.depth + 1, 0.0);
     double& own = out.own_worst[s.depth];
     if (std::abs(s.own_ratio()) > std::abs(own)) own = s.own_ratio();
+    out.own_largest_ratio = std::max(out.own_largest_ratio, std::abs(own));
     if (std::abs(s.own_ratio()) <= report::kJustNoticeable_ratio) ++felt_right;
   }
   out.rms_ratio = std::sqrt(all / static_cast<double>(samples.size()));
@@ -146,14 +157,11 @@ ToolErrors summarize_tool(const std::vector<ToolSample>& samples, const std::vec
   return out;
 }
 
-Result<ToolRow> judge_tool(const Scene& scene, model::scene::LawKind law,
-                           const ToolReference& reference, const TimingSettings& timing) {
+Result<ToolRow> judge_errors(const Scene& scene, const ToolReference& reference) {
   if (auto differs = check_tool_reference_fits(reference, scene)) return std::move(*differs);
   ToolRow row;
-  row.law = law;
-  Scene own = scene;
-  own.law = law;
-  const Scene elastic = reference_scene(own);
+  row.law = scene.law;
+  const Scene elastic = reference_scene(scene);
   const auto tissue = make_tissue(elastic);
   if (!tissue) {
     row.failure = tissue.error().sentence;
@@ -173,12 +181,20 @@ Result<ToolRow> judge_tool(const Scene& scene, model::scene::LawKind law,
     }
   }
   row.errors = summarize_tool(row.samples, unseen);
-  const auto shipped = make_tissue(own);
-  if (!shipped) {
-    row.failure = shipped.error().sentence;
-    return row;
-  }
-  row.timing = time_tool(own, **shipped, reference.places.front(), timing);
+  return row;
+}
+
+Result<ToolRow> judge_tool(const Scene& scene, model::scene::LawKind law,
+                           const ToolReference& reference, const TimingSettings& timing) {
+  Scene own = scene;
+  own.law = law;
+  auto row = judge_errors(own, reference);
+  if (!row || !row->failure.empty()) return row;
+  const auto timed = time_tool(own, timing);
+  if (timed)
+    row->timing = *timed;
+  else
+    row->failure = timed.error().sentence;
   return row;
 }
 

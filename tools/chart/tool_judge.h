@@ -34,6 +34,7 @@ struct ToolErrors {
   double unseen_rms_ratio = 0.0;        // of the peak, without the hand's site; NaN: no other place
   double within_jnd_ratio = 0.0;        // share of the samples, by the own force
   std::vector<double> own_worst;        // of each depth: the largest in size, with its sign
+  double own_largest_ratio = 0.0;       // of all depths, its size
   std::vector<double> place_rms_ratio;  // of each place's own peak
 };
 /// `unseen`: of each place, that it is not the hand's own site.
@@ -47,7 +48,14 @@ struct ToolRow {
   Timing timing{};
 };
 
-/// One law of the scene. An error is Ctrl-C's or says that scene and reference do not fit.
+/// The scene's own law: its errors, without a time. An error is Ctrl-C's or says that scene and
+/// reference do not fit.
+model::Result<ToolRow> judge_errors(const model::scene::Scene& scene,
+                                    const ground_truth::ToolReference& reference);
+/// The scene as it is, over the site of its hand. An error: the law cannot be made.
+model::Result<Timing> time_tool(const model::scene::Scene& scene, const TimingSettings& settings);
+
+/// Both, of one law of the scene.
 model::Result<ToolRow> judge_tool(const model::scene::Scene& scene, model::scene::LawKind law,
                                   const ground_truth::ToolReference& reference,
                                   const TimingSettings& timing);

@@ -13,15 +13,20 @@ namespace {
 using model::scene::ToleranceSettings;
 
 bool is_measured(const Candidate& c) {
-  return std::isfinite(c.force_error_ratio) && std::isfinite(c.shape_error_ratio) &&
-         std::isfinite(c.tick_p999_us) && std::isfinite(c.tick_median_us);
+  return std::isfinite(c.force_error_ratio) && std::isfinite(c.own_error_ratio.value_or(0.0)) &&
+         std::isfinite(c.shape_error_ratio) && std::isfinite(c.tick_p999_us) &&
+         std::isfinite(c.tick_median_us);
 }
 
 std::string text_of(const Candidate& c) {
-  return fmt::format("{}: force {:.2g} %, shape {:.2g} %, {:.3g} us (p99.9 {:.3g} us), {:.3g} kB",
-                     model::scene::text_of(c.sizes), 100.0 * c.force_error_ratio,
-                     100.0 * c.shape_error_ratio, c.tick_median_us, c.tick_p999_us,
-                     1e-3 * c.memory_bytes);
+  const std::string force =
+      c.own_error_ratio
+          ? fmt::format("force of the whole tool {:.2g} %, of the own at worst {:.2g} %",
+                        100.0 * c.force_error_ratio, 100.0 * *c.own_error_ratio)
+          : fmt::format("force of one sphere {:.2g} %", 100.0 * c.force_error_ratio);
+  return fmt::format("{}: {}, shape {:.2g} %, {:.3g} us (p99.9 {:.3g} us), {:.3g} kB",
+                     model::scene::text_of(c.sizes), force, 100.0 * c.shape_error_ratio,
+                     c.tick_median_us, c.tick_p999_us, 1e-3 * c.memory_bytes);
 }
 
 /// What stands between a candidate and being enough, each with its cure.
@@ -33,6 +38,9 @@ std::string lacks(const Candidate& c, const ToleranceSettings& t) {
         fmt::format("force error {:.3g} above tolerance.force_error_ratio = {:.3g}: fit the law "
                     "(tact-fit), describe a nearer one ([compliance]) or allow {:.3g}",
                     c.force_error_ratio, t.force_error_ratio, c.force_error_ratio));
+  if (c.own_error_ratio.value_or(0.0) > t.force_error_ratio)
+    add(fmt::format("{:.3g} of the own force at the worst place, above tolerance.force_error_ratio",
+                    *c.own_error_ratio));
   if (c.shape_error_ratio > t.shape_error_ratio)
     add(
         fmt::format("shape error {:.3g} above tolerance.shape_error_ratio = {:.3g}: describe a law "
@@ -68,17 +76,25 @@ bool is_enough(const Candidate& c, const ToleranceSettings& t) {
   return is_measured(c) && excess_ratio(c, t) <= 1.0;
 }
 
+bool is_enough_by_rms(const Candidate& c, const ToleranceSettings& t) {
+  Candidate by_rms = c;
+  by_rms.own_error_ratio.reset();
+  return is_measured(c) && is_enough(by_rms, t);
+}
+
 double excess_ratio(const Candidate& c, const ToleranceSettings& t) {
   return std::max({c.force_error_ratio / t.force_error_ratio,
+                   c.own_error_ratio.value_or(0.0) / t.force_error_ratio,
                    c.shape_error_ratio / t.shape_error_ratio, c.tick_p999_us / t.tick_budget_us});
 }
 
 Choice choose(std::span<const Candidate> candidates, const ToleranceSettings& tolerance) {
-  std::vector<std::size_t> enough;
+  std::vector<std::size_t> enough, by_rms;
   Choice out;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& c = candidates[i];
     if (is_enough(c, tolerance)) enough.push_back(i);
+    if (is_enough_by_rms(c, tolerance)) by_rms.push_back(i);
     const bool nearer =
         is_measured(c) && (!out.chosen || excess_ratio(c, tolerance) <
                                               excess_ratio(candidates[*out.chosen], tolerance));
@@ -88,13 +104,15 @@ Choice choose(std::span<const Candidate> candidates, const ToleranceSettings& to
     out.reason = "no law of the scene could be measured";
     return out;
   }
-  if (enough.empty()) {
+  out.meets = !enough.empty();
+  out.meets_by_rms = !by_rms.empty();
+  if (!out.meets_by_rms) {
     const Candidate& nearest = candidates[*out.chosen];
     out.reason = fmt::format("no law meets [tolerance]; nearest is {}. {}", text_of(nearest),
                              lacks(nearest, tolerance));
     return out;
   }
-  out.meets = true;
+  if (!out.meets) enough = by_rms;
   out.chosen = least_of(candidates, enough);
   const Candidate& least = candidates[*out.chosen];
   const auto same_law = [&](std::size_t i) { return candidates[i].sizes.law == least.sizes.law; };
@@ -106,9 +124,11 @@ Choice choose(std::span<const Candidate> candidates, const ToleranceSettings& to
       if (i != *out.chosen) others.push_back(i);
   }
   out.reason = fmt::format(
-      "{} of {} measured laws and sizes meet [tolerance]; of these it is the fastest, "
+      "{}{} of {} measured laws and sizes meet [tolerance]{}; of these it is the fastest, "
       "within {:g} % the smallest. {}",
-      enough.size(), candidates.size(), 100.0 * chart::kSameTime_ratio, text_of(least));
+      out.meets ? "" : "every law misses [tolerance] by its own force at some place and depth. ",
+      enough.size(), candidates.size(), out.meets ? "" : " by the RMS",
+      100.0 * chart::kSameTime_ratio, text_of(least));
   if (others.empty()) return out;
   out.runner_up = least_of(candidates, others);
   out.reason += fmt::format(". Runner-up: {}", text_of(candidates[*out.runner_up]));

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // choose.h - the least law that is good enough: a pure function over measured candidates.
 //
-//     enough   force_error <= wanted, shape_error <= wanted, tick p99.9 <= budget
+//     enough   force_error <= wanted, shape_error <= wanted, tick p99.9 <= budget; of the whole
+//              tool the error of the own force at the worst place and depth <= wanted too
 //     least    by time, then by memory, then by the smaller force error
 //
-// Times of two candidates count as equal within 10 %: a clock tells them no better, and the next
-// measurement would turn them round. If none is enough, the nearest is the one whose worst excess
-// over a limit, as a ratio, is smallest.
+// Where no law is enough by its own force, those that are by the RMS are chosen from, and that is
+// said: light touch at a rim may spoil every law. Times of two candidates count as equal within
+// 10 %: a clock tells them no better, and the next measurement would turn them round. If none is
+// enough, the nearest is the one whose worst excess over a limit, as a ratio, is smallest.
 #pragma once
 
 #include <optional>
@@ -21,7 +23,9 @@ namespace tact::tools::plan {
 /// One measured law and size.
 struct Candidate {
   model::scene::LawSizes sizes;
-  double force_error_ratio = 0.0;  // RMS, of the peak
+  double force_error_ratio = 0.0;  // RMS, of the peak; of the whole tool or of one sphere
+  /// Of the whole tool: of the own force, the largest of all places and depths. None: one sphere.
+  std::optional<double> own_error_ratio{};
   double shape_error_ratio = 0.0;  // RMS, of the depth
   double tick_median_us = 0.0;
   double tick_p999_us = 0.0;
@@ -30,12 +34,15 @@ struct Candidate {
 
 struct Choice {
   bool meets = false;                    // chosen is enough
+  bool meets_by_rms = false;             // or all but its own force is
   std::optional<std::size_t> chosen;     // or the nearest
   std::optional<std::size_t> runner_up;  // the next that is enough, of another law if there is one
   std::string reason;
 };
 
 bool is_enough(const Candidate& c, const model::scene::ToleranceSettings& tolerance);
+/// The same, its own force not asked.
+bool is_enough_by_rms(const Candidate& c, const model::scene::ToleranceSettings& tolerance);
 /// The largest of its errors and its time over their limits; at most 1: it is enough.
 double excess_ratio(const Candidate& c, const model::scene::ToleranceSettings& tolerance);
 

@@ -21,7 +21,7 @@ using tact::model::scene::Scene;
 
 struct Options {
   program::SceneArguments scene;
-  std::string reference, chart;
+  std::string reference, tool_reference, chart;
   bool json = false, dry_run = false;
 };
 
@@ -29,8 +29,12 @@ void add_options(CLI::App& app, Options& o) {
   o.scene.add_to(app, "[tolerance]");
   auto* chart = app.add_option("--chart", o.chart, "chart.json of tact-chart, of this machine");
   app.add_option("--reference", o.reference,
-                 "without a chart: measure now against this JSON of tact-reference (a minute)")
+                 "without a chart: measure now against this JSON of tact-reference (minutes)")
       ->excludes(chart);
+  app.add_option("--tool-reference", o.tool_reference,
+                 "with it: the force of the whole tool counts, not that of one sphere; JSON of "
+                 "tact-reference SCENE --tool --out FILE")
+      ->needs("--reference");
   app.add_flag("--dry-run", o.dry_run, "choose, but leave the plan of tactd as it is");
   app.add_flag("--json", o.json, "print one JSON object; times in us, errors as ratios");
 }
@@ -38,7 +42,14 @@ void add_options(CLI::App& app, Options& o) {
 Result<std::vector<Candidate>> measure(const Options& o, const Scene& scene) {
   const auto reference = ground_truth::read_reference(o.reference);
   if (!reference) return reference.error();
+  std::optional<ground_truth::ToolReference> whole_tool;
   chart::ChartOptions options;
+  if (!o.tool_reference.empty()) {
+    auto read = ground_truth::read_tool_reference(o.tool_reference);
+    if (!read) return read.error();
+    whole_tool = std::move(*read);
+    options.tool_reference = &*whole_tool;
+  }
   options.label = "tact-plan";
   options.wish.peers = false;
   options.timing = {.ticks = 20000, .rounds = 2, .limit_s = 2.0, .instructions = false};
@@ -54,7 +65,8 @@ Result<std::vector<Candidate>> all_candidates(const Options& o, const Scene& sce
   if (o.chart.empty())
     return Error{
         "nothing to choose by; give --reference FILE (tact-reference SCENE --out FILE) or "
-        "--chart DIR/chart.json (tact-chart SCENE --reference FILE --out DIR)"};
+        "--chart DIR/chart.json (tact-chart SCENE --reference FILE --out DIR); either with "
+        "--tool-reference FILE for the whole tool (tact-reference SCENE --tool --out FILE)"};
   const auto table = chart::read_chart(o.chart);
   if (!table) return table.error();
   if (auto wrong = check_chart_fits(*table, scene, o.chart)) return std::move(*wrong);
@@ -73,7 +85,9 @@ Result<std::vector<Candidate>> find_candidates(const Options& o, const Scene& sc
 nlohmann::json to_json(const Candidate& c) {
   return {{"law", name_of(c.sizes.law)},
           {"name", text_of(c.sizes)},
+          {"judged", c.own_error_ratio ? "whole tool" : "one sphere"},
           {"force_error_ratio", c.force_error_ratio},
+          {"own_error_ratio", c.own_error_ratio ? nlohmann::json(*c.own_error_ratio) : nullptr},
           {"shape_error_ratio", c.shape_error_ratio},
           {"tick_median_us", c.tick_median_us},
           {"tick_p999_us", c.tick_p999_us},
@@ -83,14 +97,21 @@ nlohmann::json to_json(const Candidate& c) {
 void print(const Options& o, const std::vector<Candidate>& candidates, const Choice& choice,
            const std::string& written) {
   if (!o.json) {
-    fmt::print("{}\n{}\n",
-               choice.meets ? text_of(candidates[*choice.chosen].sizes) : "no law is good enough",
-               choice.reason);
+    fmt::print(
+        "{}\n{}\n",
+        choice.meets_by_rms ? text_of(candidates[*choice.chosen].sizes) : "no law is good enough",
+        choice.reason);
+    if (!candidates.empty() && !candidates.front().own_error_ratio)
+      fmt::print(
+          "Judged by one sphere, as no --tool-reference was given: a tool of several may be "
+          "farther off.\n");
     if (!written.empty()) fmt::print("{}\n", written);
     return;
   }
-  nlohmann::json out{{"meets", choice.meets}, {"reason", choice.reason}};
-  if (choice.chosen) out[choice.meets ? "chosen" : "nearest"] = to_json(candidates[*choice.chosen]);
+  nlohmann::json out{
+      {"meets", choice.meets}, {"meets_by_rms", choice.meets_by_rms}, {"reason", choice.reason}};
+  if (choice.chosen)
+    out[choice.meets_by_rms ? "chosen" : "nearest"] = to_json(candidates[*choice.chosen]);
   if (choice.runner_up) out["runner_up"] = to_json(candidates[*choice.runner_up]);
   if (!written.empty()) out["plan"] = written;
   fmt::print("{}\n", out.dump(2));
@@ -101,7 +122,7 @@ Result<std::string> keep(const Choice& choice, const std::vector<Candidate>& can
                          const Scene& scene) {
   const auto path = tact::model::scene::plan_path(scene.hash);
   if (!path) return path.error();
-  if (!choice.meets) {
+  if (!choice.meets_by_rms) {
     std::error_code ignored;
     std::filesystem::remove(*path, ignored);
     return std::string{};
@@ -124,7 +145,8 @@ int main(int argc, char** argv) {
       "tact-plan",
       "Choose the least law and size that meets the scene's [tolerance] on this machine:"
       "\nno more model than the scene needs.",
-      "A reference is linear elastic: compliance is judged with large_strain off.\n"
+      "A reference is linear elastic: compliance is judged with large_strain off. Time is\n"
+      "touch, feel and judge of the whole tool; shape is that under one sphere.\n"
       "The plan is kept in $XDG_CACHE_HOME/tact/plan (or ~/.cache); tactd reads it when\n"
       "the scene says law = \"auto\". When no law is good enough there is no plan.");
   Options o;
@@ -146,5 +168,5 @@ int main(int argc, char** argv) {
     written = *path;
   }
   print(o, *candidates, choice, written);
-  return choice.meets ? 0 : 1;
+  return choice.meets_by_rms ? 0 : 1;
 }

@@ -37,12 +37,16 @@ std::vector<Candidate> candidates_of(const report::Table& table) {
     if (form != "-")
       sizes.disc_form =
           form == "linear" ? model::law::DiscForm::kLinear : model::law::DiscForm::kAlmenLaszlo;
-    out.push_back({.sizes = sizes,
-                   .force_error_ratio = table.number(row, "force_rms_ratio"),
-                   .shape_error_ratio = table.number(row, "shape_rms_ratio"),
-                   .tick_median_us = table.number(row, "tick_median_us"),
-                   .tick_p999_us = table.number(row, "tick_p999_us"),
-                   .memory_bytes = table.number(row, "memory_bytes")});
+    const bool whole_tool = std::isfinite(table.number(row, "tool_rms_ratio"));
+    out.push_back(
+        {.sizes = sizes,
+         .force_error_ratio = table.number(row, whole_tool ? "tool_rms_ratio" : "force_rms_ratio"),
+         .own_error_ratio =
+             whole_tool ? std::optional(table.number(row, "tool_own_worst_ratio")) : std::nullopt,
+         .shape_error_ratio = table.number(row, "shape_rms_ratio"),
+         .tick_median_us = table.number(row, "tick_median_us"),
+         .tick_p999_us = table.number(row, "tick_p999_us"),
+         .memory_bytes = table.number(row, "memory_bytes")});
   }
   return out;
 }

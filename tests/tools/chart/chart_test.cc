@@ -19,7 +19,7 @@ namespace tact::tools::chart::chart_test {
 
 using model::scene::LawKind;
 
-constexpr TimingSettings kShort{.ticks = 100, .rounds = 1, .limit_s = 0.05};
+constexpr TimingSettings kShort{.ticks = 100, .rounds = 1, .limit_s = 0.05, .instructions = false};
 constexpr std::uint32_t kMiddle = 220;  // vertex of the plate, 20 x 20 cells
 
 std::string scratch_folder(const std::string& name) {
@@ -51,6 +51,8 @@ model::scene::Scene make_scene() {
   scene.spring_patch.working_depth_m = 0.01;
   scene.spring_patch.method.integrator = model::springs::Integrator::kImplicitEuler;
   scene.reference_sites = {{.vertex = kMiddle, .held_out = false}};
+  scene.hand_inward = {0, 0, -1};
+  scene.contact.tear_force_N = 0.3;  // reached by every law, else the scene is refused
   return scene;
 }
 
@@ -113,6 +115,10 @@ TEST(Errors, MatchPenAndPaper) {
   EXPECT_NEAR(e.shape_rms_ratio, std::sqrt(0.5) * 0.5,
               1e-12);                  // one of two rings off by half the depth
   EXPECT_EQ(e.within_jnd_ratio, 0.0);  // 10, 10 and 40 %: all can be felt
+  EXPECT_NEAR(e.own_worst[0], 0.1, 1e-12) << "at 1 mm, with its sign";
+  EXPECT_NEAR(e.own_worst[1], -0.1, 1e-12) << "at 2 mm; the pull does not count";
+  EXPECT_TRUE(std::isnan(e.own_worst[2])) << "no press by 5 mm";
+  EXPECT_NEAR(e.own_largest_ratio, 0.1, 1e-12);
 }
 
 TEST(Errors, CountWhatAHandCannotTell) {
@@ -172,6 +178,8 @@ TEST(Chart, GivesEveryLawARowWithTheErrorWorkedByHand) {
     if (table.word(row, "form") == "linear") {
       EXPECT_NEAR(table.number(row, "force_rms_ratio"), 0.1 * std::sqrt(2.5), 1e-9);
       EXPECT_NEAR(table.number(row, "force_worst_ratio"), 0.2, 1e-9);
+      EXPECT_NEAR(table.number(row, "own_worst_1mm_ratio"), -0.2, 1e-9);
+      EXPECT_NEAR(table.number(row, "own_worst_ratio"), 0.2, 1e-9);
       EXPECT_TRUE(std::isnan(table.number(row, "pull_rms_ratio")));
     }
   }
@@ -270,7 +278,7 @@ TEST(Chart, IsReadBackAsItWasWritten) {
   std::string head;
   std::getline(csv, head);
   EXPECT_EQ(head, "# command: tact-chart x");
-  std::ofstream(folder + "/bad.json") << "{\"schema\": \"tact-chart/1\", \"rows\": [{}]}";
+  std::ofstream(folder + "/bad.json") << "{\"schema\": \"tact-chart/2\", \"rows\": [{}]}";
   EXPECT_FALSE(read_chart(folder + "/bad.json"));
   EXPECT_FALSE(read_chart(folder + "/none.json"));
 }

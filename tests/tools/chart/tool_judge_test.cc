@@ -9,6 +9,7 @@
 #include "model/law/disc_stack.h"
 #include "tests/support/program.h"
 #include "tests/support/test_scene.h"
+#include "tools/chart/chart.h"
 #include "tools/chart/tool_report.h"
 
 namespace tact::tools::chart::tool_judge_test {
@@ -60,6 +61,7 @@ TEST(ToolErrors, MatchPenAndPaper) {
   EXPECT_NEAR(e.own_worst[0], -0.4, 1e-12) << "the largest in size, with its sign";
   EXPECT_NEAR(e.own_worst[1], -0.1, 1e-12);
   EXPECT_NEAR(e.place_rms_ratio[0], std::sqrt((0.0025 + 0.01) / 2.0), 1e-12);
+  EXPECT_NEAR(e.own_largest_ratio, 0.4, 1e-12);
   EXPECT_NEAR(e.place_rms_ratio[1], 0.4, 1e-12) << "of its own peak";
   EXPECT_EQ(e.within_jnd_ratio, 0.0) << "10, 10 and 40 % of the own force: all can be felt";
   EXPECT_TRUE(std::isnan(summarize_tool({samples[0]}, {false}).unseen_rms_ratio));
@@ -120,6 +122,41 @@ TEST(JudgeTool, RefusesAReferenceOfAnotherTool) {
   EXPECT_NE(row.error().sentence.find("spheres"), std::string::npos);
 }
 
+TEST(Chart, JudgesEverySizeByTheWholeToolWhereItIsKnown) {
+  const model::scene::Scene scene = make_scene();
+  const auto stack = model::law::make_disc_stack(scene.disc_stack);
+  ASSERT_TRUE(stack);
+  const double k = stack->respond(0.001).force_N / 0.001;
+  ground_truth::ReferenceData one_sphere;
+  one_sphere.body.youngs_modulus_Pa = 5000.0;
+  one_sphere.body.poisson_ratio = 0.45;
+  one_sphere.tool_radius_m = 0.004;
+  one_sphere.ring_pitch_m = 0.004;
+  one_sphere.sites = {{.vertex = 220, .point_m = {0, 0, 0}, .direction = {0, 0, -1}, .cases = {}}};
+  one_sphere.sites[0].cases = {
+      {.depth_m = 0.001, .force_N = 1.25 * k * 0.001, .profile_m = {0.001, 0.0}}};
+  ToolReference whole_tool = linear_truth(scene, 0.5 * k);
+  ChartOptions options{.wish = {.laws = {}, .quick = true, .peers = false},
+                       .shard = {},
+                       .timing = kShort,
+                       .tool_reference = &whole_tool};
+  const auto rows = measure_chart(scene, one_sphere, options);
+  ASSERT_TRUE(rows) << rows.error().sentence;
+  std::size_t linear = 0;
+  for (const ChartRow& row : *rows) {
+    if (row.variant.sizes.disc_form != model::law::DiscForm::kLinear) continue;
+    ++linear;
+    ASSERT_EQ(row.failure, "");
+    ASSERT_TRUE(row.tool);
+    EXPECT_NEAR(row.tool->own_largest_ratio, 1.0, 1e-6) << "twice the force of the whole tool";
+    EXPECT_NEAR(row.errors.force_worst_ratio, 0.2, 1e-9) << "one sphere is judged by its own";
+    EXPECT_GT(row.timing.median_us, 0.0);
+  }
+  EXPECT_GT(linear, 0U);
+  whole_tool.sphere[0].radius_m = 0.005;
+  EXPECT_FALSE(measure_chart(scene, one_sphere, options)) << "another tool";
+}
+
 TEST(ToolReport, HasARowForEachLawPlaceAndDepthAndASummary) {
   const model::scene::Scene scene = make_scene();
   const ToolReference truth = linear_truth(scene, 20.0);
@@ -144,11 +181,12 @@ TEST(ChartProgram, SaysWhichReferenceItNeeds) {
   const auto none = tests::run_program("tact-chart", liver);
   EXPECT_EQ(none.status, 2);
   EXPECT_NE(none.output.find("--tool-reference"), std::string::npos) << none.output;
-  const auto both = tests::run_program("tact-chart", liver + " --reference a --tool-reference b");
-  EXPECT_EQ(both.status, 2);
+  const auto both =
+      tests::run_program("tact-chart", liver + " --reference a --tool-reference b --accuracy c");
+  EXPECT_EQ(both.status, 2) << "a figure is of the scene's own laws";
   const auto shard =
       tests::run_program("tact-chart", liver + " --tool-reference b --shard 0/2 --no-pictures");
-  EXPECT_NE(shard.output.find("takes no --shard"), std::string::npos) << shard.output;
+  EXPECT_NE(shard.output.find("alone takes no --shard"), std::string::npos) << shard.output;
 }
 
 }  // namespace tact::tools::chart::tool_judge_test

@@ -71,6 +71,25 @@ TEST(Choose, TellsTheNearestAndWhatToChangeWhenNoneIsEnough) {
   EXPECT_FALSE(has(choice.reason, "tick_budget")) << choice.reason;
 }
 
+TEST(Choose, PrefersWhatKeepsTheOwnForceOfTheWholeToolToo) {
+  std::vector<Candidate> laws{candidate(LawKind::kRhombus, 0.01, 0.10, 0.1, 1e4),
+                              candidate(LawKind::kCompliance, 0.01, 0.10, 0.4, 1e6)};
+  laws[0].own_error_ratio = 0.14;  // faster, but light touch is 14 % off
+  laws[1].own_error_ratio = 0.06;
+  const Choice both = choose(laws, kTolerance);
+  EXPECT_TRUE(both.meets);
+  EXPECT_EQ(both.chosen, 1U);
+  EXPECT_FALSE(both.runner_up);
+  EXPECT_TRUE(has(both.reason, "of the own at worst 6 %")) << both.reason;
+  laws[1].own_error_ratio = 0.09;
+  const Choice by_rms = choose(laws, kTolerance);
+  EXPECT_FALSE(by_rms.meets);
+  EXPECT_TRUE(by_rms.meets_by_rms);
+  EXPECT_EQ(by_rms.chosen, 0U) << "the least of those whose RMS is enough";
+  EXPECT_TRUE(has(by_rms.reason, "every law misses [tolerance] by its own force")) << by_rms.reason;
+  EXPECT_FALSE(choose({laws.data(), 0}, kTolerance).meets_by_rms);
+}
+
 TEST(Choose, NeverTakesWhatWasNotMeasured) {
   const double nan = std::nan("");
   const std::vector<Candidate> laws{candidate(LawKind::kRhombus, nan, 0.1, 0.05, 1e4),
@@ -91,6 +110,23 @@ TEST(Plan, OfABladeTakesWhatCanBeCutAlone) {
   keep_what_cuts(candidates);
   ASSERT_EQ(candidates.size(), 1U);
   EXPECT_EQ(candidates[0].sizes.law, LawKind::kSpringPatch);
+}
+
+TEST(Plan, GoesByTheWholeToolWhereTheChartHasIt) {
+  report::Table table = chart::empty_chart(2, {});
+  chart::ChartRow one, whole;
+  one.variant.sizes.law = whole.variant.sizes.law = LawKind::kRhombus;
+  one.errors.force_rms_ratio = whole.errors.force_rms_ratio = 0.003;  // one sphere
+  whole.tool.emplace();
+  whole.tool->rms_ratio = 0.48;
+  whole.tool->own_largest_ratio = 2.16;
+  for (const chart::ChartRow& row : {one, whole}) table.add(table_row(row, {"s", "t", "r", "m"}));
+  const auto candidates = candidates_of(table);
+  ASSERT_EQ(candidates.size(), 2U);
+  EXPECT_EQ(candidates[0].force_error_ratio, 0.003);
+  EXPECT_FALSE(candidates[0].own_error_ratio);
+  EXPECT_EQ(candidates[1].force_error_ratio, 0.48);
+  EXPECT_EQ(candidates[1].own_error_ratio, 2.16);
 }
 
 TEST(Plan, ReadsTactsRowsOfAChart) {
