@@ -13,6 +13,7 @@
 #include "hal/falcon/falcon_packets.h"
 #include "hal/falcon/falcon_stream.h"
 #include "hal/falcon/ftdi_requests.h"
+#include "tools/verify/can.h"
 #include "tools/verify/report.h"
 
 namespace tact::tools::verify {
@@ -23,24 +24,6 @@ using hal::falcon::FtdiRequest;
 using nlohmann::json;
 using Bytes = std::vector<std::uint8_t>;
 
-Bytes bytes_of(const std::string& hex) {
-  if (hex.size() % 2 != 0) throw std::invalid_argument("half a byte in \"" + hex + "\"");
-  Bytes out;
-  for (std::size_t i = 0; i < hex.size(); i += 2) {
-    std::size_t read = 0;
-    out.push_back(static_cast<std::uint8_t>(std::stoul(hex.substr(i, 2), &read, 16)));
-    if (read != 2) throw std::invalid_argument("no hexadecimal byte in \"" + hex + "\"");
-  }
-  return out;
-}
-std::string hex_of(std::span<const std::uint8_t> bytes) {
-  std::string out;
-  for (const std::uint8_t byte : bytes) {
-    out += "0123456789abcdef"[byte >> 4];
-    out += "0123456789abcdef"[byte & 0xF];
-  }
-  return out;
-}
 void equal(Report& report, const std::string& field, const json& got, const json& want) {
   report.compare(field, got, want, false, 0.0, 0.0);
 }
@@ -53,8 +36,8 @@ void verify_commands(const json& commands, Report& report) {
         .motor = one.at("motors_requested").get<hal::falcon::FalconWords>(),
         .lights = one.at("leds").get<std::uint8_t>(),
         .homing = one.at("homing").get<bool>()};
-    equal(report, "hex", hex_of(encode(wanted)), one.at("hex"));
-    const auto sent = hal::falcon::decode_falcon_command(bytes_of(one.at("hex")));
+    equal(report, "hex", to_hex(encode(wanted)), one.at("hex"));
+    const auto sent = hal::falcon::decode_falcon_command(from_hex(one.at("hex")));
     equal(report, "decoded", sent.has_value(), true);
     if (!sent) continue;
     equal(report, "motors_sent", sent->motor, one.at("motors_sent"));
@@ -75,8 +58,8 @@ void verify_reports(const json& reports, Report& report) {
         .counts = one.at("encoders").get<hal::falcon::FalconWords>(),
         .buttons = one.at("buttons").get<std::uint8_t>(),
         .homed = one.at("homed").get<std::uint8_t>()};
-    equal(report, "hex", hex_of(encode(wanted)), one.at("hex"));
-    const auto got = hal::falcon::decode_falcon_report(bytes_of(one.at("hex")));
+    equal(report, "hex", to_hex(encode(wanted)), one.at("hex"));
+    const auto got = hal::falcon::decode_falcon_report(from_hex(one.at("hex")));
     equal(report, "decoded", got.has_value(), true);
     if (got) equal(report, "report", to_json(*got), to_json(wanted));
   }
@@ -89,7 +72,7 @@ void verify_streams(const json& streams, Report& report) {
     hal::falcon::FalconStream stream;
     json got = json::array();
     for (const json& chunk : one.at("chunks")) {
-      for (const std::uint8_t byte : bytes_of(chunk))
+      for (const std::uint8_t byte : from_hex(chunk))
         if (const auto whole = stream.push(byte)) got.push_back(to_json(*whole));
     }
     equal(report, "reports", got, one.at("reports"));
@@ -102,13 +85,13 @@ void verify_strip(const json& transfers, Report& report) {
   int number = 0;
   for (const json& one : transfers) {
     report.begin_case("strip/" + std::to_string(number++));
-    const Bytes transfer = bytes_of(one.at("transfer"));
+    const Bytes transfer = from_hex(one.at("transfer"));
     Bytes data(transfer.size());
     const auto got = hal::falcon::ftdi_strip(transfer, data);
     equal(report, "whole", got.has_value(), true);
     equal(report, "packet_size", hal::falcon::kFtdiPacketSize, one.at("packet_size"));
     if (!got) continue;
-    equal(report, "data", hex_of(std::span(data).first(got->size)), one.at("data"));
+    equal(report, "data", to_hex(std::span(data).first(got->size)), one.at("data"));
     equal(report, "modem_status", got->modem, one.at("modem_status"));
     equal(report, "line_status", got->line, one.at("line_status"));
     equal(report, "cts", got->clear_to_send(), one.at("cts"));
@@ -163,8 +146,8 @@ json sent_while_booting(const Bytes& image, const Reply& reply) {
         sent.push_back(to_json(action.request));
         break;
       case FalconBootAction::What::kWrite:
-        sent.push_back(hex_of(action.bytes));
-        pending = reply(hex_of(action.bytes));
+        sent.push_back(to_hex(action.bytes));
+        pending = reply(to_hex(action.bytes));
         break;
       case FalconBootAction::What::kRead:
         heard.swap(pending);
@@ -191,21 +174,21 @@ void verify_boot(const json& ftdi, Report& report) {
   const json& steps = ftdi.at("bootloader");
   std::map<std::string, Bytes> replies;
   for (const json& step : steps)
-    if (step.contains("bulk_out")) replies[step.at("bulk_out")] = bytes_of(step.at("expect_in"));
+    if (step.contains("bulk_out")) replies[step.at("bulk_out")] = from_hex(step.at("expect_in"));
   Bytes image;
   for (int i = 0; i < 150; ++i) image.push_back(static_cast<std::uint8_t>(i * 7 + 1));
   const std::string ask =
-      hex_of(encode(hal::falcon::FalconCommand{.lights = hal::falcon::kFalconRed, .homing = true}));
-  const std::string report_hex = hex_of(encode(hal::falcon::FalconReport{}));
+      to_hex(encode(hal::falcon::FalconCommand{.lights = hal::falcon::kFalconRed, .homing = true}));
+  const std::string report_hex = to_hex(encode(hal::falcon::FalconReport{}));
 
   const auto device = [&](bool null_first, const std::string& silent) {
     return [&, null_first, silent, last = std::string()](const std::string& written) mutable {
       const std::string before = std::exchange(last, written);
       if (written == silent) return Bytes{};
       if (written == ask)
-        return bytes_of(before == hex_of(std::span(image).last(26)) ? report_hex : "");
+        return from_hex(before == to_hex(std::span(image).last(26)) ? report_hex : "");
       const auto known = replies.find(written);
-      if (known == replies.end()) return bytes_of(written);  // the echo of the image
+      if (known == replies.end()) return from_hex(written);  // the echo of the image
       Bytes out = known->second;
       if (null_first) out.insert(out.begin(), 0);
       return out;
@@ -248,7 +231,7 @@ void verify_boot(const json& ftdi, Report& report) {
       const auto chunk = want.at("chunk").get<std::size_t>();
       for (std::size_t done = 0; done < image.size(); done += chunk) {
         const auto rest = std::span(image).subspan(done);
-        equal(report, "chunk", next(), hex_of(rest.first(std::min(chunk, rest.size()))));
+        equal(report, "chunk", next(), to_hex(rest.first(std::min(chunk, rest.size()))));
       }
     }
   }
