@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // result.h - a value, or an error with the sentence that a person needs. As std::expected of C++23,
 // but an Error converts by itself, and value() of an error is a mistake of the caller. Set-up code
-// only.
+// only. What gives no value returns std::optional<Error>: empty is good.
 #pragma once
 
 #include <string>

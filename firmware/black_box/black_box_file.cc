@@ -118,8 +118,7 @@ Result<std::string> write_black_box(const BlackBoxRun& run, const Kept& kept) {
   for (const telemetry::LoggedTick& tick : kept.ticks) log->add(tick);
   log->append(recording_start(run.hello, read_all(run.mesh_fd)));
   for (const telemetry::Frame& frame : with_last_ticks(kept)) log->append(recording_frame(frame));
-  const std::string trouble = log->close();
-  if (!trouble.empty()) return Error{trouble};
+  if (auto error = log->close()) return std::move(*error);
   return path;
 }
 

@@ -22,7 +22,7 @@ Telemetry::~Telemetry() { stop(); }
 
 void Telemetry::start() { thread_ = std::thread(&Telemetry::run, this); }
 
-std::string Telemetry::stop() {
+std::optional<model::Error> Telemetry::stop() {
   ending_.store(true, std::memory_order_relaxed);
   if (thread_.joinable()) thread_.join();
   drain();
@@ -31,7 +31,7 @@ std::string Telemetry::stop() {
     sinks_.recorder->stands(watch_fault());  // of a loop that ended before it could tell
     sinks_.recorder->finish();
   }
-  return sinks_.log ? sinks_.log->close() : std::string();
+  return sinks_.log ? sinks_.log->close() : std::nullopt;
 }
 
 void Telemetry::run() {

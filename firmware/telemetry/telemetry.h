@@ -54,8 +54,8 @@ class Telemetry {
 
   void start();
   /// Takes what is left in the ring, writes what the black box still keeps, and ends the thread.
-  /// Returns the log's trouble, empty if none.
-  std::string stop();
+  /// Returns the log's error, if any.
+  std::optional<model::Error> stop();
 
   /// By hand, for runs without real time: empties the ring, shows the newest.
   void drain();

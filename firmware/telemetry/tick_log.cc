@@ -55,24 +55,24 @@ LoggedTick LoggedTick::of(const loop::TickRecord& record, bool non_rt) {
 }
 
 void TickLogWriter::add(const LoggedTick& tick) {
-  if (trouble_.empty()) put(&tick, sizeof tick, fmt::format(" at tick {}", tick.tick));
+  if (!trouble_) put(&tick, sizeof tick, fmt::format(" at tick {}", tick.tick));
 }
 
 void TickLogWriter::append(const std::string& bytes) {
-  if (trouble_.empty()) put(bytes.data(), bytes.size(), " in its pictures");
+  if (!trouble_) put(bytes.data(), bytes.size(), " in its pictures");
 }
 
 void TickLogWriter::put(const void* bytes, std::size_t size, const std::string& where) {
   if (std::fwrite(bytes, size, 1, file_.get()) != 1)
-    trouble_ =
-        fmt::format("{}: {}{}; what came before is kept", path_, std::strerror(errno), where);
+    trouble_ = Error{
+        fmt::format("{}: {}{}; what came before is kept", path_, std::strerror(errno), where)};
 }
 
-std::string TickLogWriter::close() {
+std::optional<Error> TickLogWriter::close() {
   if (file_ == nullptr) return trouble_;
   std::FILE* file = file_.release();
-  if (std::fclose(file) != 0 && trouble_.empty())
-    trouble_ = fmt::format("{}: {}; the end may be missing", path_, std::strerror(errno));
+  if (std::fclose(file) != 0 && !trouble_)
+    trouble_ = Error{fmt::format("{}: {}; the end may be missing", path_, std::strerror(errno))};
   return trouble_;
 }
 

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,8 +53,8 @@ class TickLogWriter {
   void add(const LoggedTick& tick);
   /// After the ticks that the header counts: a part of the recording.
   void append(const std::string& bytes);
-  /// Closes the file. An error sentence if not everything reached the disk, else empty.
-  std::string close();
+  /// Closes the file. An error if not everything reached the disk.
+  std::optional<model::Error> close();
 
  private:
   struct Closer {
@@ -67,7 +68,7 @@ class TickLogWriter {
   std::string path_;
   std::unique_ptr<std::FILE, Closer> file_;
   bool non_rt_;
-  std::string trouble_;
+  std::optional<model::Error> trouble_;
 };
 
 class TickLogReader {

@@ -13,6 +13,7 @@
 
 #include "firmware/telemetry/telemetry_frame.h"
 #include "host/record/recording.h"
+#include "tests/support/sentence.h"
 #include "tests/support/test_scene.h"
 
 namespace tact::firmware::black_box::black_box_test {
@@ -154,7 +155,7 @@ TEST_F(BlackBoxTest, AnOrdinaryTickLogIsRefusedByTheViewerWithAReason) {
   const std::string path = folder + "/run.tactlog";
   auto log = std::move(*telemetry::TickLogWriter::create(path, {}));
   log.add(loop::TickRecord{});
-  ASSERT_EQ(log.close(), "");
+  ASSERT_EQ(tests::sentence_of(log.close()), "");
   const host::record::ReadResult read = host::record::read_recording(path);
   EXPECT_FALSE(read.usable);
   EXPECT_NE(read.damage.find("holds no pictures"), std::string::npos) << read.damage;

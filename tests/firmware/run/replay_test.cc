@@ -11,6 +11,7 @@
 #include "firmware/loop/rt_loop.h"
 #include "firmware/pc/rt_setup.h"
 #include "hal/registry/open_device.h"
+#include "tests/support/sentence.h"
 #include "tests/support/test_scene.h"
 
 namespace tact::firmware::run::replay_test {
@@ -48,7 +49,7 @@ class ReplayTest : public testing::Test {
       loop.step();
       while (ring->pop(record)) log.add(record);
     }
-    EXPECT_EQ(log.close(), "");
+    EXPECT_EQ(tests::sentence_of(log.close()), "");
   }
 
   // Change one byte of the log.

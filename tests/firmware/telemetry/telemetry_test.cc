@@ -222,7 +222,7 @@ TEST(Telemetry, ThreadAndLoopShareOnlyTheRing) {  // for the thread sanitizer
     ring->push(record);
     if (i % 1000 == 0) usleep(2000);
   }
-  EXPECT_EQ(telemetry.stop(), "");
+  EXPECT_EQ(tests::sentence_of(telemetry.stop()), "");
   EXPECT_GT(telemetry.newest_frame().tick, 0u);
 }
 
@@ -259,7 +259,7 @@ TEST(Telemetry, TheShapeOfAPatchReachesThePageWhole) {
     displaced = std::max(displaced, frame.patch.vertex_count);
     usleep(500);
   }
-  EXPECT_EQ(telemetry.stop(), "");
+  EXPECT_EQ(tests::sentence_of(telemetry.stop()), "");
   EXPECT_GT(displaced, 10u);
   EXPECT_GT(telemetry.newest_frame().patch.cut_total, 5u);
   EXPECT_EQ(telemetry.newest_frame().fault, 0);
