@@ -100,8 +100,7 @@ class FalconBoot {
 
   int attempt() const noexcept { return attempt_; }  // 1 is the first
   bool uploaded() const noexcept { return uploaded_; }
-  std::size_t echoed_bytes() const noexcept { return echoed_; }  // of the image, in this attempt
-  FalconBootFault fault() const noexcept { return fault_; }      // the last one
+  FalconBootFault fault() const noexcept { return fault_; }  // the last one
 
  private:
   enum class Stage { kOpen, kReport, kGreet, kSpeed, kLock, kUpload, kReady, kGivenUp };

@@ -3,15 +3,11 @@
 
 namespace tact::hal::falcon {
 
-void FalconStream::drop() RT_SAFE {
-  if (size_ == 0) return;
-  ++broken_packets_;
-  dropped_bytes_ += size_;
-  size_ = 0;
-}
-
 std::optional<FalconReport> FalconStream::push(std::uint8_t byte) RT_SAFE {
-  if (!falcon_report_may_have(byte, size_)) drop();  // a start byte may stand at place 0 only
+  if (!falcon_report_may_have(byte, size_)) {  // a start byte may stand at place 0 only
+    dropped_bytes_ += size_;
+    size_ = 0;
+  }
   if (size_ == 0 && byte != kFalconStart) {
     ++dropped_bytes_;
     return std::nullopt;

@@ -22,16 +22,13 @@ class FalconStream {
   void reset() RT_SAFE { size_ = 0; }
 
   std::uint64_t reports() const RT_SAFE { return reports_; }
-  std::uint64_t broken_packets() const RT_SAFE { return broken_packets_; }  // began, never ended
   std::uint64_t dropped_bytes() const RT_SAFE { return dropped_bytes_; }
   std::size_t waiting_bytes() const RT_SAFE { return size_; }  // of a packet not yet whole
 
  private:
-  void drop() RT_SAFE;
-
   FalconPacket packet_{};
   std::size_t size_ = 0;
-  std::uint64_t reports_ = 0, broken_packets_ = 0, dropped_bytes_ = 0;
+  std::uint64_t reports_ = 0, dropped_bytes_ = 0;
 };
 
 }  // namespace tact::hal::falcon

@@ -53,7 +53,6 @@ class UsbfsNode final : public UsbfsPort {
   void discard(usbdevfs_urb& urb) override;
   int clear_halt(unsigned endpoint) override;
   std::span<std::uint8_t> buffer() RT_SAFE override { return {buffer_, kUsbfsBuffer_bytes}; }
-  bool is_mapped() const { return mapped_; }
   /// Set-up: 0 or an errno.
   int control(const falcon::FtdiRequest& request);
 
