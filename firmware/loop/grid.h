@@ -10,11 +10,15 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "model/rt.h"
 
 namespace tact::firmware::loop {
+
+/// Of one tick, of a loop that is set up.
+inline std::int64_t period_ns(double rate_Hz) { return std::llround(1e9 / rate_Hz); }
 
 /// The first multiple of period_ns, shifted by phase_ns, at or after from_ns >= 0.
 constexpr std::int64_t next_in_phase_ns(std::int64_t from_ns, std::int64_t period_ns,

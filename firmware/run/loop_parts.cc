@@ -5,9 +5,8 @@
 #include <pthread.h>
 #include <sys/resource.h>
 
-#include <cmath>
-
 #include "firmware/loop/alloc_counter.h"
+#include "firmware/loop/grid.h"
 #include "firmware/watch/call_filter.h"
 #include "hal/gpio/gpio_lines.h"
 
@@ -15,10 +14,6 @@ namespace tact::firmware::run {
 
 using model::Error;
 using model::Result;
-
-std::int64_t period_ns(const model::scene::Scene& scene) {
-  return std::llround(1e9 / scene.rate_Hz);
-}
 
 Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsSetup& setup) {
   LoopParts parts;
@@ -46,7 +41,8 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
   parts.limits = gate::limits_for(scene.limits, parts.device->info());
   parts.controller = std::make_unique<loop::Controller>(
       parts.tissue->contact_scene(),
-      gate::Gate(parts.limits, static_cast<double>(period_ns(scene)) * 1e-9, setup.force_share()),
+      gate::Gate(parts.limits, static_cast<double>(loop::period_ns(scene.rate_Hz)) * 1e-9,
+                 setup.force_share()),
       !setup.non_rt);
   parts.ring = std::make_unique<loop::TickRing>(scene.rate_Hz);
   return parts;

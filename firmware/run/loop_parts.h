@@ -46,9 +46,6 @@ struct LoopParts {
 /// Opens the device of the scene and checks that the law may be felt on it.
 model::Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsSetup& setup);
 
-/// Of one tick, from the scene's rate.
-std::int64_t period_ns(const model::scene::Scene& scene);
-
 /// Kernel's and allocator's view of the loop's thread between its first and its last tick.
 struct ThreadCosts {
   std::uint64_t heap_calls = 0;

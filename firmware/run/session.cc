@@ -137,7 +137,7 @@ std::optional<Error> Session::open() {
       static_cast<std::uint64_t>(std::ceil(options_.duration_s * scene_.rate_Hz));
   loop::Clock& clock =
       options_.free_run ? static_cast<loop::Clock&>(simulated_clock_) : monotonic_clock_;
-  loop_.emplace(loop::LoopSettings{.period_ns = period_ns(scene_),
+  loop_.emplace(loop::LoopSettings{.period_ns = loop::period_ns(scene_.rate_Hz),
                                    .max_ticks = options_.ticks,
                                    .max_periods = asked_periods,
                                    .ticks_per_shape = ticks_per_shape()},
@@ -151,7 +151,7 @@ std::optional<Error> Session::open_telemetry() {
                                .tissue = *parts_.tissue,
                                .device = *parts_.device,
                                .limits = parts_.limits,
-                               .period_ns = period_ns(scene_),
+                               .period_ns = loop::period_ns(scene_.rate_Hz),
                                .force_share = parts_setup().force_share(),
                                .gate = parts_.controller->gate(),
                                .non_rt = non_rt_});
@@ -163,7 +163,7 @@ std::optional<Error> Session::open_telemetry() {
                      telemetry::FrameBuilder(parts_.tissue->law().site_law(),
                                              parts_.controller->shapes(), non_rt_),
                      telemetry::FramePace{.frame_rate_Hz = scene_.frame_rate_Hz,
-                                          .loop_period_ns = period_ns(scene_)},
+                                          .loop_period_ns = loop::period_ns(scene_.rate_Hz)},
                      std::move(outlets->sinks), &requests_.fault);
   return std::nullopt;
 }
@@ -201,7 +201,7 @@ void Session::run_real_time() {
                        .requests = requests_,
                        .filter = filter_.get(),
                        .rt = rt_,
-                       .period_ns = period_ns(scene_),
+                       .period_ns = loop::period_ns(scene_.rate_Hz),
                        .hard_real_time = !non_rt_});
   watch(threads);
   threads.join();
@@ -219,7 +219,7 @@ void Session::watch(LoopThreads& threads) {
   while (!threads.ended()) {
     const std::int64_t now_ns = monotonic_clock_.now_ns();
     const std::int64_t until_ns =
-        loop::next_half_way_ns(now_ns + kStatusPeriod_ns, period_ns(scene_));
+        loop::next_half_way_ns(now_ns + kStatusPeriod_ns, loop::period_ns(scene_.rate_Hz));
     desk.obey(until_ns - now_ns);
     tell_news();
     if (!threads.hangs()) continue;
@@ -241,7 +241,7 @@ int Session::report() {
   parts_.lines->stop();
   parts_.device->stop();
   if (hand_socket_) hand_socket_->stop();
-  const std::string log_trouble = telemetry_->stop();
+  const auto log_error = telemetry_->stop();
   for (const std::string& sentence : black_box_ ? black_box_->news() : std::vector<std::string>{})
     say(stderr, "tactd: {}\n", sentence);
   const RunFacts facts = collect_facts(fault, trouble);
@@ -256,7 +256,7 @@ int Session::report() {
     std::ofstream file(options_.json_path);
     if (!(file << report << '\n')) return fail(options_.json_path + ": cannot be written", 2);
   }
-  if (!log_trouble.empty()) return fail(log_trouble, 1);
+  if (log_error) return fail(log_error->sentence, 1);
   return fault == model::Fault::kNone ? 0 : 1;
 }
 

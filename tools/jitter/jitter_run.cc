@@ -11,6 +11,7 @@
 #include <cmath>
 #include <thread>
 
+#include "firmware/loop/grid.h"
 #include "firmware/loop/rt_loop.h"
 #include "tools/jitter/bare_loop.h"
 #include "tools/jitter/live_line.h"
@@ -78,7 +79,7 @@ class Run {
   }
   // Drives and safety lines hold a pause for a fault.
   bool in_one_piece() const { return is_hardware() || (scene_ && scene_->device.lines.wired()); }
-  std::int64_t loop_period_ns() const { return std::llround(1e9 / result_.rate_Hz); }
+  std::int64_t loop_period_ns() const { return firmware::loop::period_ns(result_.rate_Hz); }
   firmware::loop::TickRing& ring() { return options_.bare ? *bare_ring_ : *parts_.ring; }
 
   const JitterOptions& options_;

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "firmware/loop/grid.h"
 #include "hal/sim/sim_delta.h"
 #include "tools/program/interrupt.h"
 
@@ -147,8 +148,8 @@ CaseRun::CaseRun(const Case& c, const LimitsBench& bench)
                            moment_.period_s, bench.force_share),
       bench.hard_real_time);
   loop_ = std::make_unique<firmware::loop::RtLoop>(
-      firmware::loop::LoopSettings{.period_ns = bench.period_ns()}, *device_, *lines_, *controller_,
-      *clock_, requests_, *ring_);
+      firmware::loop::LoopSettings{.period_ns = firmware::loop::period_ns(bench.scene.rate_Hz)},
+      *device_, *lines_, *controller_, *clock_, requests_, *ring_);
   rows_.reserve(static_cast<std::size_t>(lead_ticks_) +
                 static_cast<std::size_t>(c.duration_s / moment_.period_s) + 2);
 }

@@ -3,7 +3,6 @@
 // verdict needs. Set up first, then play: a real device is never left alone between two cases.
 #pragma once
 
-#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -43,7 +42,6 @@ struct LimitsBench {
   model::Limits (*gate_limits)(const model::Limits&) = nullptr;
 
   double period_s() const { return 1.0 / scene.rate_Hz; }
-  std::int64_t period_ns() const { return std::llround(1e9 / scene.rate_Hz); }
 };
 
 /// The limits that one case is judged by: of scene, device, PC, and what the case tightens.

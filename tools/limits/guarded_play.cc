@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "firmware/loop/grid.h"
 #include "firmware/run/loop_threads.h"
 #include "tools/program/interrupt.h"
 
@@ -42,7 +43,7 @@ firmware::run::ThreadCosts play_guarded(const Runs& runs, const LimitsBench& ben
                                       .requests = requests,
                                       .filter = filter,
                                       .rt = {},
-                                      .period_ns = bench.period_ns(),
+                                      .period_ns = firmware::loop::period_ns(bench.scene.rate_Hz),
                                       .hard_real_time = bench.hard_real_time});
   while (!threads.ended()) {
     if (progress) progress(done.load(), runs.size());

@@ -12,14 +12,13 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <memory>
 
-#include "firmware/loop/rt_loop.h"
 #include "hal/registry/open_device.h"
 #include "hal/sim/sim_delta.h"
 #include "hal/sim/sim_delta_model.h"
 #include "model/law/haptic_limit.h"
 #include "model/scene/tissue.h"
+#include "tools/program/simulated_loop.h"
 #include "tools/stability/axes.h"
 #include "tools/stability/gate_watch.h"
 #include "tools/stability/haptic_loop.h"
@@ -135,28 +134,16 @@ ControllerRun run_controller(double stiffness_N_per_m, double rate_Hz,
                tissue ? device.error().sentence : tissue.error().sentence);
     std::abort();
   }
-  firmware::loop::Controller controller((*tissue)->contact_scene(),
-                                        firmware::gate::Gate(scene.limits, 1.0 / rate_Hz, 1.0),
-                                        firmware::loop::kHardRealTime);
-  firmware::loop::SimulatedClock clock;
-  firmware::loop::Requests requests;
-  hal::NoSafetyLines lines;
-  requests.arm_at_start.store(true);
-  const auto ring = std::make_unique<firmware::loop::TickRing>();
-  firmware::loop::RtLoop loop({.period_ns = std::llround(1e9 / rate_Hz)}, **device, lines,
-                              controller, clock, requests, *ring);
+  program::SimulatedLoop loop((*tissue)->contact_scene(), scene.limits, rate_Hz, **device);
   ControllerRun out;
-  firmware::loop::TickRecord record, before;
+  Vec3 before_N;
   Swing first, last;
   const int ticks = static_cast<int>(kRun_s * rate_Hz);
   for (int i = 0; i < ticks; ++i) {
-    loop.step();
-    while (ring->pop(record)) {
-      const Vec3& force_N = record.output.written.force_N;
-      out.max_force_N = std::max(out.max_force_N, norm(force_N));
-      out.max_step_N = std::max(out.max_step_N, norm(force_N - before.output.written.force_N));
-      before = record;
-    }
+    const Vec3& force_N = loop.step().output.written.force_N;
+    out.max_force_N = std::max(out.max_force_N, norm(force_N));
+    out.max_step_N = std::max(out.max_step_N, norm(force_N - before_N));
+    before_N = force_N;
     const double now_s = i / rate_Hz, z_m = (*device)->true_position_m().z;
     if (now_s >= kFirst_s && now_s < kFirst_s + kWindow_s) first.add(z_m);
     if (now_s >= kRun_s - kWindow_s) last.add(z_m);

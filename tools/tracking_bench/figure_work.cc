@@ -11,11 +11,11 @@
 #include <optional>
 #include <utility>
 
-#include "firmware/loop/rt_loop.h"
 #include "hal/registry/open_device.h"
 #include "host/tracking/observation_player.h"
 #include "host/tracking/operator_tracker.h"
 #include "model/scene/tissue.h"
+#include "tools/program/simulated_loop.h"
 
 namespace tact::tools::tracking_bench {
 namespace {
@@ -38,22 +38,10 @@ Result<std::vector<Pose>> tool_motion(const model::scene::Scene& scene, int fram
   if (!tissue) return tissue.error();
   const auto device = hal::registry::open_device(scene);
   if (!device) return device.error();
-  firmware::loop::Controller controller(
-      (*tissue)->contact_scene(), firmware::gate::Gate(scene.limits, 1.0 / scene.rate_Hz, 1.0),
-      firmware::loop::kHardRealTime);
-  firmware::loop::SimulatedClock clock;
-  firmware::loop::Requests requests;
-  hal::NoSafetyLines lines;
-  requests.arm_at_start.store(true);
-  const auto ring = std::make_unique<firmware::loop::TickRing>();
-  firmware::loop::RtLoop loop(
-      {.period_ns = std::llround(1e9 / scene.rate_Hz), .ticks_per_shape = 16}, **device, lines,
-      controller, clock, requests, *ring);
+  program::SimulatedLoop loop((*tissue)->contact_scene(), scene.limits, scene.rate_Hz, **device);
   std::vector<Pose> out;
-  firmware::loop::TickRecord record;
   for (std::int64_t tick = 0; static_cast<int>(out.size()) < frames; ++tick) {
-    loop.step();
-    while (ring->pop(record)) continue;
+    const firmware::loop::TickRecord& record = loop.step();
     const double due = static_cast<double>(out.size()) / frames_Hz * scene.rate_Hz;
     if (static_cast<double>(tick) >= due) out.push_back(pose_of(record.input.sample.tool));
   }
