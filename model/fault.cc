@@ -28,8 +28,9 @@ constexpr std::array kTable{
                "harmless at a tear or a release; if it stays, soften the law"},
     FaultEntry{Fault::kRampingUp, "ramping up", "the force is being faded in after arming",
                "wait for limits.ramp_s"},
-    FaultEntry{Fault::kLawSaturated, "law saturated",
-               "the tissue is pressed or pulled beyond the law's working range",
+    FaultEntry{Fault::kLawSaturated, "beyond the law",
+               "the tissue is pressed or pulled beyond the law's working range: the force stays at "
+               "its limit",
                "press less, or give the law more range in the scene"},
     FaultEntry{Fault::kTooFast, "too fast",
                "the tool is faster than limits.speed_mps or turn_radps, the force fades to zero",

@@ -2,6 +2,16 @@
 #include "firmware/loop/controller.h"
 
 namespace tact::firmware::loop {
+namespace {
+
+// A gate that lets go: no force of any law is felt.
+bool lets_go(Fault limit) RT_SAFE {
+  return limit == Fault::kNotArmed || limit == Fault::kSampleStale ||
+         limit == Fault::kOutsideWorkspace || limit == Fault::kTooFast;
+}
+
+}  // namespace
+
 // A tool that moved unseen starts anew: whatever depth it has by then comes without force.
 void Controller::touch(const TickInput& input) RT_SAFE {
   unseen_ += input.skipped_periods;
@@ -47,8 +57,9 @@ TickOutput Controller::judge(const TickInput& input) RT_SAFE {
                                                  .skipped_periods = input.skipped_periods});
   supervisor_.trip(verdict.fault);
   Fault limit = verdict.limit;
+  // A force that is no longer the tissue's is told before what the gate does with it.
   for (const model::contact::SphereTouch& touch : contact_.touches())
-    if (limit == Fault::kNone && touch.law_status == model::law::LawStatus::kSaturated)
+    if (!lets_go(limit) && touch.law_status == model::law::LawStatus::kSaturated)
       limit = Fault::kLawSaturated;
   newest_ = {.wanted = wanted_,
              .written = verdict.wrench,

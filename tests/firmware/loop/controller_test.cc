@@ -18,7 +18,9 @@ constexpr double kBall_m = 0.004;
 class PuppetLaw final : public model::contact::SiteLaw {
  public:
   model::contact::SiteResponse respond(const model::contact::Indentation& in) RT_SAFE override {
-    return {.law = {.force_N = 200.0 * in.depth_m}};
+    return {.law = {.force_N = 200.0 * in.depth_m,
+                    .status = is_beyond ? model::law::LawStatus::kSaturated
+                                        : model::law::LawStatus::kOk}};
   }
   void leave(std::size_t) RT_SAFE override {}
   void cut(const model::contact::BladeSweep&) RT_SAFE override { ++cuts; }
@@ -30,7 +32,7 @@ class PuppetLaw final : public model::contact::SiteLaw {
   }
   double ring_pitch_m() const RT_SAFE override { return 1e-3; }
 
-  bool is_broken = false;
+  bool is_broken = false, is_beyond = false;
   int cuts = 0;
 };
 
@@ -94,6 +96,20 @@ TEST_F(ControllerTest, ABrokenLawIsNeverArmed) {
   input.commands.arm = true;
   for (int i = 0; i < 10; ++i) EXPECT_EQ(tick().written, model::Wrench{});
   EXPECT_EQ(tick().state, State::kStopped);
+}
+
+TEST_F(ControllerTest, BeyondTheLawIsToldBeforeALimitThatLeavesTheForceOn) {
+  press();
+  EXPECT_EQ(tick().limit, Fault::kNone);
+  law.is_beyond = true;
+  EXPECT_EQ(tick().limit, Fault::kLawSaturated);
+  input.sample.fresh = false;
+  EXPECT_EQ(controller->tick(input).limit, Fault::kLawSaturated) << "a sample is held, too";
+  EXPECT_EQ(controller->tick(input).limit, Fault::kSampleStale) << "its force fades";
+  input.sample.fresh = true;
+  input.commands.arm = false;
+  law.is_beyond = false;
+  for (int i = 0; i < 20; ++i) EXPECT_NE(tick().limit, Fault::kLawSaturated);
 }
 
 TEST_F(ControllerTest, OneSkippedPeriodChangesNothing) {

@@ -19,6 +19,12 @@ TEST(StatusLine, ShowsRateLateTicksForceAndState) {
   EXPECT_NE(line.find("armed"), std::string::npos) << line;
 }
 
+TEST(StatusLine, SaysBeyondTheLaw) {
+  telemetry::Frame frame;
+  frame.limit = static_cast<std::uint16_t>(model::Fault::kLawSaturated);
+  EXPECT_NE(status_line(frame, frame).find("beyond the law"), std::string::npos);
+}
+
 TEST(StatusLine, NamesTheFaultBeforeTheLimit) {
   telemetry::Frame frame;
   frame.limit = 7;
