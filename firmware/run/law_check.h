@@ -7,6 +7,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "firmware/pc/rt_setup.h"
 #include "hal/device.h"
@@ -49,5 +50,9 @@ struct TimeMargin {
 /// stock kernel takes the processor away at will, so there only the median tells about the law.
 model::Result<TimeMargin> check_budget(const model::scene::Scene& scene,
                                        const std::optional<pc::RtSettings>& hard_real_time);
+
+/// A sentence for people where the hand's own strokes press so fast that the inertia of tissue,
+/// which the law leaves out, would be felt (IN-2); empty where they do not, or the law has masses.
+std::string inertia_note(const model::scene::Scene& scene, const model::scene::TissueLaw& law);
 
 }  // namespace tact::firmware::run

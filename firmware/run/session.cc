@@ -109,6 +109,8 @@ int Session::run() {
     say(stderr, "tactd: no hard real time: force capped to {:g} %, records stamped non-rt\n",
         100.0 * kNonRtForceShare);
   if (const auto error = open()) return fail(error->sentence, 2);
+  if (const std::string note = inertia_note(scene_, parts_.tissue->law()); !note.empty())
+    say(stderr, "tactd: {}\n", note);
   if (options_.check) {
     say(stdout, "{}\n",
         make_check_line(scene_, parts_.device->info().name, parts_.tissue->law(), parts_.stiffness,
