@@ -153,15 +153,29 @@ Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene,
   const std::size_t spheres = scene.tool.spheres.size();
   const double law_N_per_m = tissue.law().stiffness_N_per_m();
   const double sliding_N_per_m = stiffest_sideways_N_per_m(scene, tissue.law().site_law());
-  const double limit_N_per_m =
-      model::law::haptic_limit(*device.at_tool, scene.rate_Hz).grow_N_per_m;
+  const double damping_Ns_per_m = tissue.law().damping_Ns_per_m();
+  const auto limit_with = [&](double all_Ns_per_m) {
+    return model::law::haptic_limit(*device.at_tool, scene.rate_Hz, all_Ns_per_m).grow_N_per_m;
+  };
+  const double limit_N_per_m = limit_with(static_cast<double>(spheres) * damping_Ns_per_m);
+  const double needed_N_per_m =
+      static_cast<double>(spheres) * std::max(law_N_per_m, sliding_N_per_m);
   const auto fits = [&](double one_N_per_m) {  // NaN does not
     return static_cast<double>(spheres) * one_N_per_m <= limit_N_per_m;
   };
   if (fits(law_N_per_m) && fits(sliding_N_per_m))
-    return StiffnessMargin{
-        .needed_N_per_m = static_cast<double>(spheres) * std::max(law_N_per_m, sliding_N_per_m),
-        .limit_N_per_m = limit_N_per_m};
+    return StiffnessMargin{.needed_N_per_m = needed_N_per_m, .limit_N_per_m = limit_N_per_m};
+  const double undamped_N_per_m = limit_with(0.0);
+  if (damping_Ns_per_m > 0.0 && needed_N_per_m <= undamped_N_per_m)
+    // HL-1: B <= b - K (T/2 + t_d)
+    return Error{fmt::format(
+        "{}: law {} damps too much: {:.4g} N s/m on {}, where this device has {:.4g} N s/m of its "
+        "own and {:.4g} N/m to show at {:g} Hz; lower the damping of [{}] to {:.4g} N s/m or less",
+        scene.path, model::scene::name_of(scene.law), damping_Ns_per_m, spheres_in_words(spheres),
+        device.at_tool->damping_Ns_per_m, needed_N_per_m, scene.rate_Hz,
+        model::scene::name_of(scene.law),
+        rounded_down(device.at_tool->damping_Ns_per_m * (1.0 - needed_N_per_m / undamped_N_per_m) /
+                     static_cast<double>(spheres)))};
   const bool is_law = !(law_N_per_m < sliding_N_per_m);  // the stiffer one; NaN is the law's
   const std::string what = is_law ? fmt::format("law {}", model::scene::name_of(scene.law))
                                   : std::string("contact.sliding_stiffness_N_per_m");

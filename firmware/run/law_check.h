@@ -18,11 +18,11 @@ namespace tact::firmware::run {
 
 struct StiffnessMargin {
   double needed_N_per_m = 0.0;  // by all spheres together
-  double limit_N_per_m = 0.0;   // of device and rate (haptic_limit.h)
+  double limit_N_per_m = 0.0;   // of device, rate and the law's own damping (haptic_limit.h)
 };
 
 /// All spheres on the stiffest place at once, pressed and slid. The error says which key is too
-/// stiff, and to what it must fall.
+/// stiff, or damps too much, and to what it must fall.
 model::Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene,
                                                 const model::scene::Tissue& tissue,
                                                 const hal::DeviceInfo& device);

@@ -65,6 +65,8 @@ void Contact::touch(const Tool& tool) RT_SAFE {
       continue;
     }
     probe.moved_m = probe.seen ? centre_m - probe.centre_m : Vec3{};
+    probe.velocity_mps =
+        tool.velocity_mps + cross(tool.angular_velocity_radps, centre_m - tool.position_m);
     probe.centre_m = centre_m;
     const double radius_m = scene_.spheres[i].radius_m;
     if (touch_[i].state == TouchState::kFree)
@@ -150,7 +152,8 @@ Indentation Contact::indentation(std::size_t i) const RT_SAFE {
           .place = touch.place,
           .normal = touch.normal,
           .depth_m = touch.dent_m,
-          .held = touch.state == TouchState::kHeld};
+          .held = touch.state == TouchState::kHeld,
+          .speed_mps = -dot(probe_[i].velocity_mps, touch.normal)};
 }
 
 // A sphere that has just come couples with those that are there, for as long as it stays. It meets
@@ -233,13 +236,15 @@ void Contact::keep_definite() RT_SAFE {
     for (double& m_per_N : row) m_per_N *= share;
 }
 
-// F = F(e) n - f - dU/ds
+// F = (F(e) + b d') n - f - dU/ds
 void Contact::sum_up(std::size_t i) RT_SAFE {
   SphereTouch& touch = touch_[i];
   if (touch.state == TouchState::kFree) return;
   const SiteResponse& site = pressing_[i].response;
   touch.law_status = site.law.status;
-  touch.force_N = site.law.force_N * touch.normal - shear_N_[i];
+  const double push_N =
+      site.law.force_N + scene_.law->resistance_N(pressing_[i].in, site.law.force_N);
+  touch.force_N = push_N * touch.normal - shear_N_[i];
   if (touch.state == TouchState::kTouching && !probe_[i].proxy.stays())
     touch.force_N -= movable(scene_.surface, touch.place, site.slope_N);
   touch.energy_J = site.law.energy_J + 0.5 * site.law.force_N * sunk_m(coupling_, pressing(), i) +

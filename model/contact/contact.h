@@ -17,7 +17,9 @@
 // the springs are the tissue's own: stiffer as the contact grows, and then until the sphere leaves,
 // with the same force and less energy. The law is asked
 // with the sphere's own dent e = d - what the other spheres have sunk the site (coupling.h); how
-// they couple is kept from a sphere's first touch until it leaves. A change of state never adds
+// they couple is kept from a sphere's first touch until it leaves. What a law adds for speed (LW-3)
+// comes after that: b of the dent, times the speed of the sphere's own depth, so that each sphere
+// takes energy by itself. A change of state never adds
 // energy: slack takes up whatever depth would come for free (arming inside the organ, letting go
 // over a bump or stiffer tissue, a nearest point that jumps) and shrinks only as the tool
 // withdraws.
@@ -102,6 +104,7 @@ class Contact {
   struct Probe {
     Vec3 centre_m;            // c
     Vec3 moved_m;             // since the last tick
+    Vec3 velocity_mps;        // of c, as the device tells it
     double depth_m = 0.0;     // r - phi
     double deepened_m = 0.0;  // beyond what the movement explains: free depth
     Proxy proxy;

@@ -31,6 +31,7 @@ struct Indentation {
   Vec3 normal{};         // outward, unit, at the place
   double depth_m = 0.0;  // d; below 0 only while held
   bool held = false;
+  double speed_mps = 0.0;  // of the sphere's depth, pressing positive
 };
 
 struct SiteResponse {
@@ -49,6 +50,11 @@ class SiteLaw {
   virtual ~SiteLaw() = default;
   /// NaN gives zero force and kInvalid.
   virtual SiteResponse respond(const Indentation& in) RT_SAFE = 0;
+  /// LW-3: what the speed adds to the force of the answer, N, outside of the potential.
+  virtual double resistance_N(const Indentation& in, double force_N) const RT_SAFE {
+    (void)in, (void)force_N;
+    return 0.0;
+  }
   /// MC-2: two sites, distance_m apart, pushed in one direction. 0: the law's own memory couples
   /// them, or nothing is known.
   virtual SiteCoupling coupling(const Indentation& a, const Indentation& b,

@@ -8,10 +8,21 @@
 //     K    dF/dd, N/m      U   stored energy, J, U(0) = 0
 //     u_j  displacement of ring j into the tissue, m, at radius j * ring_pitch_m; u_0 = d
 //
+// A law may resist speed as well, outside of its stored energy:
+//
+//     LW-3   F_total = F(d) + b(d) d',   b >= 0;   not held: d' < 0 takes at most F away
+//
+//     d'   speed of the depth, m/s, pressing positive     b  damping, N s/m; b d'^2 is lost
+//
+// So no stroke gives back more than it took, whatever b and d' are. In a loop b is an explicit
+// damper: all spheres together must stay below the damping of the device (HL-1), whatever mass
+// holds the tool.
+//
 // Valid on [range.pull_m, range.press_m]; beyond, the force stays at its limit and the status says
 // so. NaN in gives zero force and kInvalid. Contract tests: tests/model/law/law_contract.h.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -43,10 +54,24 @@ class Law {
  public:
   virtual ~Law() = default;
   virtual LawResponse respond(double depth_m) const RT_SAFE = 0;
+  /// b, N s/m, of a law that depends on speed (LW-3); no part of U or K. 0 for d <= 0 and NaN.
+  virtual double damping_Ns_per_m(double depth_m) const RT_SAFE {
+    (void)depth_m;
+    return 0.0;
+  }
   virtual LawRange range() const RT_SAFE = 0;
   /// Fills u_0 .. u_N and returns N + 1; entries beyond the span are dropped.
   virtual std::size_t profile(double depth_m, std::span<double> ring_m) const RT_SAFE = 0;
   virtual double ring_pitch_m() const RT_SAFE = 0;
 };
+
+/// LW-3: what speed adds to the force, N.
+inline double resistance_N(double damping_Ns_per_m, double speed_mps, double force_N,
+                           bool held) RT_SAFE {
+  const double resistance_N = damping_Ns_per_m * speed_mps;
+  if (!std::isfinite(resistance_N)) return 0.0;
+  const double least_N = force_N > 0.0 ? -force_N : 0.0;
+  return held || resistance_N > least_N ? resistance_N : least_N;
+}
 
 }  // namespace tact::model::law

@@ -21,6 +21,9 @@ struct LinearPullParameters {
 class LinearPull final : public Law {
  public:
   LawResponse respond(double depth_m) const RT_SAFE override;
+  double damping_Ns_per_m(double depth_m) const RT_SAFE override {
+    return press_->damping_Ns_per_m(depth_m);
+  }
   LawRange range() const RT_SAFE override { return {-pull_.limit_m, press_->range().press_m}; }
   std::size_t profile(double depth_m, std::span<double> ring_m) const RT_SAFE override;
   double ring_pitch_m() const RT_SAFE override { return press_->ring_pitch_m(); }

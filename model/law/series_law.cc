@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "model/law/law_bounds.h"
+
 namespace tact::model::law {
 namespace {
 
@@ -58,16 +60,13 @@ LawResponse SeriesLaw::respond(double depth_m) const RT_SAFE {
   return out;
 }
 
-double stiffest_N_per_m(const Law& law, double from_m, double to_m) {
-  constexpr int kSteps = 200;
-  double most_N_per_m = 0.0;
-  for (int i = 0; i <= kSteps; ++i) {
-    const double ratio = std::clamp(static_cast<double>(i) / kSteps, 1e-6, 1.0 - 1e-6);
-    const double k_N_per_m = law.respond(from_m + ratio * (to_m - from_m)).stiffness_N_per_m;
-    if (!(k_N_per_m <= most_N_per_m)) most_N_per_m = k_N_per_m;
-    if (std::isnan(most_N_per_m)) break;
-  }
-  return most_N_per_m;
+// SL-4
+double SeriesLaw::damping_Ns_per_m(double depth_m) const RT_SAFE {
+  if (!(depth_m > 0.0) || !std::isfinite(depth_m)) return 0.0;
+  const double dent_m = dent_at(std::min(depth_m, range_.press_m));
+  const double give_m_per_N = std::max(give_m_per_N_, 0.0);
+  const double share = 1.0 / (1.0 + give_m_per_N * law_->respond(dent_m).stiffness_N_per_m);
+  return law_->damping_Ns_per_m(dent_m) * share * share;
 }
 
 Result<SeriesLaw> make_series_law(const Law& law, double give_m_per_N, const Law& shape) {

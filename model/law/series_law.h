@@ -4,6 +4,7 @@
 //     SL-1   d = e + r F(e)                     the law F takes the dent e, the organ the rest
 //     SL-2   U = U(e) + r F(e)^2 / 2
 //     SL-3   1/K = 1/K(e) + r
+//     SL-4   b = b(e) / (1 + r K(e))^2          e' = d' / (1 + r K(e)), the same loss; r < 0: b(e)
 //
 //     d   depth, m     F   force, N     U   energy, J     K   stiffness, N/m
 //     r   give of the organ at this place beyond what the law knows, m/N; below 0 near the held
@@ -22,6 +23,7 @@ namespace tact::model::law {
 class SeriesLaw final : public Law {
  public:
   LawResponse respond(double depth_m) const RT_SAFE override;
+  double damping_Ns_per_m(double depth_m) const RT_SAFE override;
   LawRange range() const RT_SAFE override { return range_; }
   std::size_t profile(double depth_m, std::span<double> ring_m) const RT_SAFE override {
     return shape_->profile(depth_m, ring_m);
@@ -39,9 +41,6 @@ class SeriesLaw final : public Law {
   double give_m_per_N_;
   LawRange range_;
 };
-
-/// Largest dF/dd between two depths, seen from inside; NaN if one of them is.
-double stiffest_N_per_m(const Law& law, double from_m, double to_m);
 
 /// Both laws outlive it. An error where the give makes the pair unstable.
 Result<SeriesLaw> make_series_law(const Law& law, double give_m_per_N, const Law& shape);

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/law/tabulated_law.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+
+#include "model/law/law_bounds.h"
 
 namespace tact::model::law {
 namespace {
@@ -32,6 +35,15 @@ LawResponse TabulatedLaw::respond(double depth_m) const RT_SAFE {
   return {p.value, 0.0, p.integral + p.value * (depth_m - end_m), LawStatus::kSaturated};
 }
 
+double TabulatedLaw::damping_Ns_per_m(double depth_m) const RT_SAFE {
+  if (damping_Ns_per_m_.empty() || !(depth_m > 0.0) || !std::isfinite(depth_m)) return 0.0;
+  const std::size_t last = damping_Ns_per_m_.size() - 1;
+  const double at = std::min(depth_m / press_.end(), 1.0) * static_cast<double>(last);
+  const std::size_t low = std::min(static_cast<std::size_t>(at), last - 1);
+  const double low_Ns_per_m = damping_Ns_per_m_[low], high_Ns_per_m = damping_Ns_per_m_[low + 1];
+  return low_Ns_per_m + (at - static_cast<double>(low)) * (high_Ns_per_m - low_Ns_per_m);
+}
+
 Result<TabulatedLaw> tabulate(const Law& law, std::size_t knots) {
   if (knots < 2 || knots > kMaxKnots)
     return Error{"law table: knots must lie between 2 and " + std::to_string(kMaxKnots)};
@@ -40,6 +52,10 @@ Result<TabulatedLaw> tabulate(const Law& law, std::size_t knots) {
   out.press_ = table_to(law, kPressShare * range.press_m, knots);
   out.can_pull_ = range.pull_m < 0.0;
   if (out.can_pull_) out.pull_ = table_to(law, range.pull_m, knots);
+  if (most_damping_Ns_per_m(law) > 0.0)
+    for (std::size_t k = 0; k < knots; ++k)
+      out.damping_Ns_per_m_.push_back(law.damping_Ns_per_m(
+          out.press_.end() * static_cast<double>(k) / static_cast<double>(knots - 1)));
   const std::size_t checks = 8 * knots;
   double before_N = law.respond(range.pull_m).force_N;
   for (std::size_t i = 1; i <= checks; ++i) {

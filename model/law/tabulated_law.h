@@ -3,8 +3,11 @@
 //
 // 65 knots a side over [pull limit, 0] and [0, 0.95 press limit]. Under press they reproduce the
 // rhombus chain RC-13 within 1e-8 of its force limit (LW-1). Beyond the tables the force stays at
-// the last knot's value, the energy goes on with it, and the status is kSaturated.
+// the last knot's value, the energy goes on with it, and the status is kSaturated. Damping is
+// linear between the knots of press.
 #pragma once
+
+#include <vector>
 
 #include "model/law/hermite_table.h"
 #include "model/law/law.h"
@@ -15,6 +18,7 @@ namespace tact::model::law {
 class TabulatedLaw final : public Law {
  public:
   LawResponse respond(double depth_m) const RT_SAFE override;
+  double damping_Ns_per_m(double depth_m) const RT_SAFE override;
   LawRange range() const RT_SAFE override { return {can_pull_ ? pull_.end() : 0.0, press_.end()}; }
   /// Solved directly, not from a table: for telemetry and tools, outside the loop.
   std::size_t profile(double depth_m, std::span<double> ring_m) const RT_SAFE override {
@@ -29,6 +33,7 @@ class TabulatedLaw final : public Law {
   const Law* source_;
   HermiteTable press_, pull_;
   bool can_pull_ = false;
+  std::vector<double> damping_Ns_per_m_;  // b at the knots of press; empty: none
 };
 
 /// Tables of a law that outlives them. An error if the force does not grow with depth.

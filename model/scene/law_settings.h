@@ -13,6 +13,7 @@
 
 #include "model/law/disc_stack.h"
 #include "model/law/hex_sheet.h"
+#include "model/law/hunt_crossley.h"
 #include "model/law/linear_pull.h"
 #include "model/law/relaxation.h"
 #include "model/law/rhombus_chain.h"
@@ -25,6 +26,7 @@ enum class LawKind {
   kRhombus,
   kDiscStack,
   kHexSheet,
+  kHuntCrossley,
   kSpringPatch,
   kCompliance,
   kAuto,
@@ -39,6 +41,7 @@ inline constexpr std::array kLawNames{
     LawName{LawKind::kRhombus, "rhombus", "energy-consistent spring chain"},
     LawName{LawKind::kDiscStack, "disc_stack", "discs that go flat one after the other"},
     LawName{LawKind::kHexSheet, "hex_sheet", "hexagonal skin on body springs, energy form"},
+    LawName{LawKind::kHuntCrossley, "hunt_crossley", "power law that resists speed as well"},
     LawName{LawKind::kSpringPatch, "spring_patch", "masses and springs near the contact"},
     LawName{LawKind::kCompliance, "compliance", "linear elastic organ, condensed offline"},
     LawName{LawKind::kAuto, "auto", "the least law that meets [tolerance], by tact-plan"},

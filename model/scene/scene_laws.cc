@@ -93,6 +93,15 @@ void visit_hex_sheet(Keys& k, Scene& scene) {
           Need::kOptional);
 }
 
+void visit_hunt_crossley(Keys& k, Scene& scene) {
+  law::HuntCrossleyParameters& p = scene.hunt_crossley;
+  k.number("force_N", {1e-4, 100.0}, "of a slow press at working_depth_m", p.force_N);
+  k.number("working_depth_m", kDepth_m, "press up to here", p.working_depth_m);
+  k.number("exponent", {1.0, 4.0}, "n: the force grows as depth^n", p.exponent);
+  k.number("dissipation_s_per_m", {0.0, 100.0}, "lambda: damping over force",
+           p.dissipation_s_per_m);
+}
+
 constexpr std::array kIntegrators{
     Choice{"explicit-euler", "grows without damping; for comparison"},
     Choice{"improved-euler", "semi-implicit: one evaluation, stable to 2 / omega undamped"},
@@ -153,7 +162,7 @@ void visit_laws(Keys& k, SceneText& out) {
   std::size_t law = 0;
   k.count("table_knots", {kFewestKnots, law::kMaxKnots}, "of the loop's look-up table, each side",
           scene.table_knots, Need::kOptional);
-  k.flag("varies_by_place", "rhombus, disc_stack, hex_sheet are in series with [compliance]",
+  k.flag("varies_by_place", "every closed-form law is in series with [compliance]",
          scene.varies_by_place, Need::kOptional);
   k.choice("law", kLaws, "of the tissue", law);
   scene.law = kLawNames[law].kind;
@@ -166,6 +175,8 @@ void visit_laws(Keys& k, SceneText& out) {
           [&](Keys& discs) { visit_disc_stack(discs, scene); });
   section(LawKind::kHexSheet, "a skin of hexagonal rings on body springs",
           [&](Keys& sheet) { visit_hex_sheet(sheet, scene); });
+  section(LawKind::kHuntCrossley, "a power law that resists speed as well",
+          [&](Keys& power) { visit_hunt_crossley(power, scene); });
   section(LawKind::kSpringPatch, "masses and springs on the organ's mesh near the contact",
           [&](Keys& patch) { visit_spring_patch(patch, scene); });
   section(LawKind::kCompliance, "the elastic organ of [elastic], condensed to its surface",

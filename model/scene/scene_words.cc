@@ -23,6 +23,7 @@ constexpr std::array kUnits{
     UnitName{"_turns_per_s", "turn/s"},
     UnitName{"_N_per_m", "N/m"},
     UnitName{"_N_per_s", "N/s"},
+    UnitName{"_s_per_m", "s/m"},
     UnitName{"_turns", "turn"},
     UnitName{"_words", "word"},
     UnitName{"_kgm2", "kg m^2"},

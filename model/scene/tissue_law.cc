@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/law/law_bounds.h"
 #include "model/law/rhombus_patch.h"
 #include "model/law/series_law.h"
 #include "model/law/tabulated_law.h"
@@ -23,18 +24,6 @@ constexpr double kStiffestPlace_ratio = 1.5;
 /// NaN is the stiffest of all, so that what must bound it refuses it.
 double stiffer_N_per_m(double a, double b) { return a >= b || std::isnan(a) ? a : b; }
 
-/// How far out a held site comes before it tears, or the end of the law's range, m, <= 0.
-double tear_depth_m(const law::Law& law, double tear_force_N) {
-  const auto holds = [&](double depth_m) { return law.respond(depth_m).force_N >= -tear_force_N; };
-  double torn_m = law.range().pull_m, held_m = 0.0;
-  if (holds(torn_m)) return torn_m;
-  for (int i = 0; i < 50; ++i) {
-    const double middle_m = 0.5 * (torn_m + held_m);
-    (holds(middle_m) ? held_m : torn_m) = middle_m;
-  }
-  return torn_m;
-}
-
 }  // namespace
 
 // Curves first (add_*), then finish(), which measures what was built.
@@ -51,6 +40,7 @@ class TissueLawBuilder {
   Step add_rhombus();
   Step add_disc_stack();
   Step add_hex_sheet();
+  Step add_hunt_crossley();
   Step add_compliance();
   Step add_spring_patch();
   Step add_table(const law::Law& direct);
@@ -84,6 +74,8 @@ std::optional<Error> TissueLawBuilder::build(LawKind kind) {
       return add_disc_stack();
     case LawKind::kHexSheet:
       return add_hex_sheet();
+    case LawKind::kHuntCrossley:
+      return add_hunt_crossley();
     case LawKind::kCompliance:
       return add_compliance();
     case LawKind::kSpringPatch:
@@ -136,6 +128,15 @@ TissueLawBuilder::Step TissueLawBuilder::add_hex_sheet() {
   if (!sheet) return blame(sheet.error());
   draws_tissue_ = true;
   return add_table(keep(std::move(*sheet)));
+}
+
+TissueLawBuilder::Step TissueLawBuilder::add_hunt_crossley() {
+  law_->title_ =
+      fmt::format("Hunt and Crossley, force ~ depth^{:g} (1 + {:g} s/m speed)",
+                  scene_.hunt_crossley.exponent, scene_.hunt_crossley.dissipation_s_per_m);
+  auto law = make_hunt_crossley(scene_.hunt_crossley);
+  if (!law) return blame(law.error());
+  return add_table(keep(std::move(*law)));
 }
 
 TissueLawBuilder::Step TissueLawBuilder::add_compliance() {
@@ -237,6 +238,7 @@ TissueLawBuilder::Step TissueLawBuilder::finish_field(const law::Law* shape) {
                                 .surface = scene_.organ_mesh.view(),
                                 .relaxation = *relaxation,
                                 .neighbours = neighbours(),
+                                .damps = law_->damping_Ns_per_m_ > 0.0,
                                 .shape = shape});
   return std::nullopt;
 }
@@ -279,6 +281,7 @@ void TissueLawBuilder::measure(const law::Law& curve) {
   const law::LawRange range = curve.range();
   law_->press_stiffness_N_per_m_ =
       stiffer_N_per_m(law_->press_stiffness_N_per_m_, stiffest_N_per_m(curve, 0.0, range.press_m));
+  law_->damping_Ns_per_m_ = std::max(law_->damping_Ns_per_m_, most_damping_Ns_per_m(curve));
   if (range.pull_m < 0.0) {
     law_->pull_limit_N_ = std::max(law_->pull_limit_N_, -curve.respond(range.pull_m).force_N);
     const double torn_m = tear_depth_m(curve, scene_.contact.tear_force_N);

@@ -35,6 +35,8 @@ class TissueLaw {
     return pull_stiffness_N_per_m_ > press_stiffness_N_per_m_ ||
            std::isnan(pull_stiffness_N_per_m_);
   }
+  /// Largest damping of a sphere, N s/m; 0: the law does not depend on speed.
+  double damping_Ns_per_m() const { return damping_Ns_per_m_; }
   /// Bytes that the loop may touch.
   std::size_t memory_bytes() const { return memory_bytes_; }
   /// For people.
@@ -53,6 +55,7 @@ class TissueLaw {
   law::LawRange range_;
   double pull_limit_N_ = 0.0;
   double press_stiffness_N_per_m_ = 0.0, pull_stiffness_N_per_m_ = 0.0;
+  double damping_Ns_per_m_ = 0.0;
   std::size_t memory_bytes_ = 0;
   std::string title_;
 };

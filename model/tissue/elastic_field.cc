@@ -89,6 +89,17 @@ contact::SiteResponse ElasticField::respond(const contact::Indentation& in) RT_S
   return sum;
 }
 
+// b is blended as the energy is.
+double ElasticField::resistance_N(const contact::Indentation& in, double force_N) const RT_SAFE {
+  if (!parts_.damps || !is_known(in)) return 0.0;
+  const Blend blend = blend_at(in.place, in.depth_m);
+  double b_Ns_per_m = parts_.curves[blend.low]->damping_Ns_per_m(in.depth_m);
+  if (parts_.curves.size() > 1)
+    b_Ns_per_m +=
+        blend.fraction * (parts_.curves[blend.low + 1]->damping_Ns_per_m(in.depth_m) - b_Ns_per_m);
+  return law::resistance_N(b_Ns_per_m, in.speed_mps, force_N, in.held);
+}
+
 // g between two rings is linear, within the first and beyond the last it stays.
 double ElasticField::regular_m_per_N(const contact::Place& place, double distance_m) const RT_SAFE {
   const ElasticNeighbours& near = parts_.neighbours;

@@ -51,6 +51,7 @@ struct ElasticFieldParts {
   contact::SurfaceView surface;
   law::Relaxation relaxation;
   ElasticNeighbours neighbours = {};
+  bool damps = false;               // a curve depends on speed
   const law::Law* shape = nullptr;  // of the dent, where the curves are springs that have none
 };
 
@@ -59,6 +60,7 @@ class ElasticField final : public contact::SiteLaw {
   explicit ElasticField(const ElasticFieldParts& parts) : parts_(parts) {}
 
   contact::SiteResponse respond(const contact::Indentation& in) RT_SAFE override;
+  double resistance_N(const contact::Indentation& in, double force_N) const RT_SAFE override;
   contact::SiteCoupling coupling(const contact::Indentation& a, const contact::Indentation& b,
                                  double distance_m) const RT_SAFE override;
   double sideways_m_per_N(const contact::Indentation& in,

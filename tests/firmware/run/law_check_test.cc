@@ -77,6 +77,30 @@ TEST(LawCheck, RefusesADeviceThatDoesNotTellItsDamping) {
             "device mute does not tell its damping at the tool: fill DeviceInfo::at_tool");
 }
 
+TEST(LawCheck, RefusesADampingThatLeavesTheDeviceTooLittle) {
+  model::scene::Scene scene = tests::make_plate_scene();
+  scene.law = model::scene::LawKind::kHuntCrossley;
+  scene.contact.sliding_stiffness_N_per_m = 50.0;
+  scene.tool.spheres.push_back({{}, 0.004});
+  // 2 x 50 N/m need 0.1 of 0.2 N s/m, and the law takes 2 x 0.5 N x lambda
+  scene.hunt_crossley = {.force_N = 0.5, .working_depth_m = 0.02, .exponent = 1.0};
+  for (const double dissipation_s_per_m : {0.0, 0.09}) {
+    scene.hunt_crossley.dissipation_s_per_m = dissipation_s_per_m;
+    const auto tissue = std::move(*model::scene::make_tissue(scene));
+    const auto fits = check_renderable(scene, *tissue, device_with(0.2));
+    ASSERT_TRUE(fits) << fits.error().sentence;
+    EXPECT_NEAR(fits->limit_N_per_m, 200.0 - 950.0 * dissipation_s_per_m, 1e-6) << "0.95 of d_w";
+  }
+  scene.hunt_crossley.dissipation_s_per_m = 0.12;
+  const auto tissue = std::move(*model::scene::make_tissue(scene));
+  const auto refused = check_renderable(scene, *tissue, device_with(0.2));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().sentence,
+            "plate.toml: law hunt_crossley damps too much: 0.057 N s/m on 2 spheres, where this "
+            "device has 0.2 N s/m of its own and 100 N/m to show at 1000 Hz; lower the damping of "
+            "[hunt_crossley] to 0.05 N s/m or less");
+}
+
 TEST(LawCheck, TellsOfAStrokeThatIsTooFastForALawWithoutInertia) {
   model::scene::Scene scene = tests::make_plate_scene();
   scene.elastic = {.youngs_modulus_Pa = 5000.0, .poisson_ratio = 0.45};

@@ -3,9 +3,10 @@
 //
 //     TEST(RhombusChain, KeepsTheLawContract) { check_law_contract(make_law(1.0, 1.0, 1.0)); }
 //
-// Force is the slope of energy; a closed stroke never returns energy; rest stays at rest; the force
-// grows with depth; the profile starts at the depth, decays and ends at zero; NaN gives zero force;
-// nothing touches the heap. Dimensions: check_dimensions rescales metre, kilogram and second.
+// Force is the slope of energy; a closed stroke never returns energy, at any speed; rest stays at
+// rest; the force grows with depth; the profile starts at the depth, decays and ends at zero; NaN
+// gives zero force; nothing touches the heap. Dimensions: check_dimensions rescales metre, kilogram
+// and second.
 //
 // A law that cannot pull (range().pull_m = 0) has to prove these for presses only, and that it
 // feels nothing outside the surface.
@@ -13,6 +14,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -121,6 +123,37 @@ inline void check_bad_depths(const model::law::Law& law) {
   EXPECT_TRUE(std::isfinite(beyond.force_N));
 }
 
+/// LW-3, whatever the speed: in every step of a stroke the damping takes energy, so that the stroke
+/// gives back no more than it took; what is not held never pulls.
+inline void check_damping_takes_energy(const model::law::Law& law) {
+  const model::law::LawRange range = law.range();
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  for (const double d : {std::nan(""), kInf, -kInf, range.pull_m, -1e-9 * range.press_m, 0.0})
+    EXPECT_EQ(law.damping_Ns_per_m(d), 0.0) << d;
+  const int steps = 2000;
+  for (const double duration_s : {1e-3, 0.1, 10.0})
+    for (const bool held : {false, true}) {
+      const double low_m = held ? 0.9 * range.pull_m : 0.0;
+      const double high_m = 1.2 * range.press_m;
+      double before_m = low_m, taken_J = 0.0;
+      for (int i = 1; i <= steps; ++i) {
+        const double turn = static_cast<double>(i) / steps;  // three presses, each faster
+        const double wave = 0.5 - 0.5 * std::cos(6.0 * std::numbers::pi * turn * turn);
+        const double d = low_m + wave * (high_m - low_m);
+        const double speed_mps = (d - before_m) * steps / duration_s;
+        const double force_N = law.respond(d).force_N, b = law.damping_Ns_per_m(d);
+        const double added_N = model::law::resistance_N(b, speed_mps, force_N, held);
+        EXPECT_GE(b, 0.0) << d;
+        EXPECT_GE(added_N * (d - before_m), 0.0) << "at " << d << " m, " << speed_mps << " m/s";
+        if (!held) EXPECT_GE(force_N + added_N, std::min(force_N, 0.0)) << "glue at " << d;
+        if (b == 0.0) EXPECT_EQ(added_N, 0.0);
+        taken_J += added_N * (d - before_m);
+        before_m = d;
+      }
+      if (law.damping_Ns_per_m(0.5 * range.press_m) > 0.0) EXPECT_GT(taken_J, 0.0);
+    }
+}
+
 inline void check_law_contract(const model::law::Law& law) {
   check_force_is_slope_of_energy(law);
   check_closed_stroke_returns_no_energy(law);
@@ -128,8 +161,9 @@ inline void check_law_contract(const model::law::Law& law) {
   check_outside(law);
   check_profile(law);
   check_bad_depths(law);
+  check_damping_takes_energy(law);
   const NoAlloc guard;
-  for (int i = -10; i <= 10; ++i) (void)law.respond(i * 1e-3);
+  for (int i = -10; i <= 10; ++i) (void)law.respond(i * 1e-3), (void)law.damping_Ns_per_m(i * 1e-3);
   EXPECT_EQ(guard.calls(), 0u);
 }
 
@@ -145,6 +179,8 @@ inline void check_dimensions(
     EXPECT_NEAR(b.energy_J, a.energy_J * kg * m * m / (s * s), 1e-9 * std::abs(b.energy_J) + 1e-9);
     EXPECT_NEAR(b.stiffness_N_per_m, a.stiffness_N_per_m * kg / (s * s),
                 1e-9 * std::abs(b.stiffness_N_per_m));
+    const double damping = scaled->damping_Ns_per_m(d * m);
+    EXPECT_NEAR(damping, plain->damping_Ns_per_m(d) * kg / s, 1e-9 * damping);
   }
   EXPECT_NEAR(scaled->ring_pitch_m(), plain->ring_pitch_m() * m, 1e-9);
 }

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "model/law/compliance_law.h"
+#include "model/law/law_bounds.h"
 #include "model/law/rhombus_chain.h"
 #include "model/law/tabulated_law.h"
 #include "model/units.h"

@@ -12,6 +12,7 @@ TEST(SceneWords, ReadTheUnitFromTheEndOfAKey) {
   EXPECT_EQ(unit_of_key("depth_m"), "m");
   EXPECT_EQ(unit_of_key("tear_force_N"), "N");
   EXPECT_EQ(unit_of_key("sliding_stiffness_N_per_m"), "N/m");
+  EXPECT_EQ(unit_of_key("dissipation_s_per_m"), "s/m");
   EXPECT_EQ(unit_of_key("slew_N_per_s"), "N/s");
   EXPECT_EQ(unit_of_key("damping_Ns_per_m"), "N s/m");
   EXPECT_EQ(unit_of_key("joint_damping_Nms_per_rad"), "N m s/rad");

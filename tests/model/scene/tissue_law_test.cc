@@ -165,6 +165,25 @@ TEST(TissueLaw, LargeStrainSoftensTheComplianceLawAndScalesNoOther) {
   EXPECT_EQ(force_N({varies}, LawKind::kRhombus), force_N({varies, small}, LawKind::kRhombus));
 }
 
+TEST(TissueLaw, OnlyHuntAndCrossleyResistSpeedAndLessWhereTheOrganGives) {
+  const Scene liver = shipped("liver");
+  for (const LawKind kind : liver.described)
+    EXPECT_EQ(made(liver, kind)->damping_Ns_per_m() > 0.0, kind == LawKind::kHuntCrossley)
+        << name_of(kind);
+  const auto law = made(liver, LawKind::kHuntCrossley);
+  EXPECT_LE(law->damping_Ns_per_m(), 1.0001 * 0.1 * 0.537);
+  double least_s_per_m = 1.0, most_s_per_m = 0.0;
+  for (std::uint32_t t = 0; t < liver.organ_mesh.triangle.size(); t += 7) {
+    const contact::Indentation in{.place = {t, {1, 0, 0}}, .depth_m = 0.005, .speed_mps = 0.05};
+    const double force_N = law->site_law().respond(in).law.force_N;
+    const double lambda = law->site_law().resistance_N(in, force_N) / (0.05 * force_N);
+    least_s_per_m = std::min(least_s_per_m, lambda), most_s_per_m = std::max(most_s_per_m, lambda);
+  }
+  EXPECT_LT(most_s_per_m, 0.1001) << "of the tip alone";
+  EXPECT_GT(least_s_per_m, 0.0);
+  EXPECT_LT(least_s_per_m, 0.5 * most_s_per_m) << "the liver differs from place to place";
+}
+
 TEST(TissueLaw, SlopeAlongTheSurfaceIsThatOfTheEnergy) {
   const Scene varied = shipped("liver");
   const contact::SurfaceView mesh = varied.organ_mesh.view();
