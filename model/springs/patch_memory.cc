@@ -47,7 +47,7 @@ void PatchMemory::renew(const SpringNetwork& network, std::span<const Vec3> posi
   for (std::size_t i = 0; i < n; ++i) felt_[i] = blend_m(i, position_m[i], rest_m[i]);
   SpringNetwork alone = network;
   alone.probe = {};
-  forces(alone, rest_m, {still_.data(), n}, {opening_N_.data(), n});
+  forces_alone(alone, rest_m, {still_.data(), n}, {opening_N_.data(), n});
 }
 
 void PatchMemory::flow(std::span<Vec3> position_m, std::span<const Vec3> rest_m) RT_SAFE {

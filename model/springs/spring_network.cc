@@ -3,9 +3,98 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace tact::model::springs {
 namespace {
+
+// Two springs in one instruction: SSE2 and NEON have two doubles. Each lane rounds as a double alone
+// does, and forces are added in the order of the springs, so the bits are those of one by one.
+using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
+
+Pair pair_of(double a, double b) RT_SAFE { return Pair{a, b}; }
+Pair firsts(const Pair& a, const Pair& b) RT_SAFE { return Pair{a[0], b[0]}; }
+Pair seconds(const Pair& a, const Pair& b) RT_SAFE { return Pair{a[1], b[1]}; }
+Pair root(const Pair& a) RT_SAFE { return Pair{std::sqrt(a[0]), std::sqrt(a[1])}; }
+
+Pair xy(const Vec3& v) RT_SAFE {
+  Pair out;
+  std::memcpy(&out, &v, sizeof out);
+  return out;
+}
+// One store of 16 bytes, which the next load of 16 bytes can take over.
+void add(Vec3& v, const Pair& xy_part, double z_part) RT_SAFE {
+  const Pair sum = xy(v) + xy_part;
+  std::memcpy(static_cast<void*>(&v), &sum, sizeof sum);
+  v.z += z_part;
+}
+void take(Vec3& v, const Pair& xy_part, double z_part) RT_SAFE {
+  const Pair rest = xy(v) - xy_part;
+  std::memcpy(static_cast<void*>(&v), &rest, sizeof rest);
+  v.z -= z_part;
+}
+
+struct Vec3Pair {
+  Pair x, y, z;  // of two vectors
+};
+/// From i to j, of two springs.
+Vec3Pair apart(const Vec3& i0, const Vec3& j0, const Vec3& i1, const Vec3& j1) RT_SAFE {
+  const Pair xy0 = xy(j0) - xy(i0), xy1 = xy(j1) - xy(i1);
+  return {firsts(xy0, xy1), seconds(xy0, xy1), pair_of(j0.z, j1.z) - pair_of(i0.z, i1.z)};
+}
+Pair dot(const Vec3Pair& a, const Vec3Pair& b) RT_SAFE { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+struct Pull {
+  Vec3Pair N;  // on the first end
+  Pair stored_J;
+};
+template <bool kWithEnergy>
+inline Pull pull(const Spring& s, const Spring& t, const Vec3* x, const Vec3* v) RT_SAFE {
+  const Vec3Pair along_m = apart(x[s.i], x[s.j], x[t.i], x[t.j]);
+  const Vec3Pair rate_mps = apart(v[s.i], v[s.j], v[t.i], v[t.j]);
+  const Pair length_m = root(dot(along_m, along_m));
+  const Pair stretch_m = length_m - pair_of(s.rest_length_m, t.rest_length_m);
+  const Pair tension_N = pair_of(s.stiffness_N_per_m, t.stiffness_N_per_m) * stretch_m;
+  Pull out;
+  if constexpr (kWithEnergy) out.stored_J = 0.5 * tension_N * stretch_m;
+  // MA-1  k (|D| - L0) + c (v_j - v_i).u
+  const Pair per_m = length_m > 0.0 ? 1.0 / length_m : Pair{};
+  const Vec3Pair u{per_m * along_m.x, per_m * along_m.y, per_m * along_m.z};
+  const Pair pull_N =
+      tension_N + pair_of(s.damping_Ns_per_m, t.damping_Ns_per_m) * dot(rate_mps, u);
+  out.N = {pull_N * u.x, pull_N * u.y, pull_N * u.z};
+  return out;
+}
+
+template <bool kWithEnergy>
+double add_springs(std::span<const Spring> springs, const Vec3* x, const Vec3* v, Vec3* f,
+                   double energy_J) RT_SAFE {
+  const Spring* s = springs.data();
+  const Spring* const last = s + springs.size() / 2 * 2;
+  for (; s != last; s += 2) {
+    const Spring& t = s[1];
+    const Pull p = pull<kWithEnergy>(*s, t, x, v);
+    if constexpr (kWithEnergy) energy_J = energy_J + p.stored_J[0] + p.stored_J[1];
+    const Pair of_s = firsts(p.N.x, p.N.y), of_t = seconds(p.N.x, p.N.y);
+    add(f[s->i], of_s, p.N.z[0]);
+    take(f[s->j], of_s, p.N.z[0]);
+    add(f[t.i], of_t, p.N.z[1]);
+    take(f[t.j], of_t, p.N.z[1]);
+  }
+  if (springs.size() % 2 == 1) {
+    const Pull p = pull<kWithEnergy>(*s, *s, x, v);
+    if constexpr (kWithEnergy) energy_J += p.stored_J[0];
+    add(f[s->i], firsts(p.N.x, p.N.y), p.N.z[0]);
+    take(f[s->j], firsts(p.N.x, p.N.y), p.N.z[0]);
+  }
+  return energy_J;
+}
+
+/// What a node takes before its springs.
+Vec3 own_force_N(const SpringNodes& node, std::size_t i, const Vec3& moved_m,
+                 const Vec3& v) RT_SAFE {
+  return node.load_N[i] - node.drag_Ns_per_m[i] * v - node.anchor_N_per_m[i] * moved_m;
+}
 
 // Adds what the tool's springs do to their nodes.
 void add_probes(const SpringNetwork& network, std::span<const Vec3> x, std::span<const Vec3> v,
@@ -47,25 +136,21 @@ double forces(const SpringNetwork& network, std::span<const Vec3> x, std::span<c
   double energy_J = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3 moved_m = x[i] - node.rest_m[i];
-    const double a = node.anchor_N_per_m[i];
-    f[i] = node.load_N[i] - node.drag_Ns_per_m[i] * v[i] - a * moved_m;
-    energy_J += 0.5 * a * dot(moved_m, moved_m) - dot(node.load_N[i], moved_m);
+    f[i] = own_force_N(node, i, moved_m, v[i]);
+    energy_J += 0.5 * node.anchor_N_per_m[i] * model::dot(moved_m, moved_m) -
+                model::dot(node.load_N[i], moved_m);
   }
-  for (const Spring& s : network.spring) {
-    const Vec3 along_m = x[s.j] - x[s.i];
-    const double length_m = norm(along_m);
-    const double stretch_m = length_m - s.rest_length_m;
-    const double tension_N = s.stiffness_N_per_m * stretch_m;
-    energy_J += 0.5 * tension_N * stretch_m;
-    if (!(length_m > 0.0)) continue;
-    // MA-1  k (|D| - L0) + c (v_j - v_i).u
-    const Vec3 u = (1.0 / length_m) * along_m;
-    const Vec3 pull_N = (tension_N + s.damping_Ns_per_m * dot(v[s.j] - v[s.i], u)) * u;
-    f[s.i] += pull_N;
-    f[s.j] -= pull_N;
-  }
+  energy_J = add_springs<true>(network.spring, x.data(), v.data(), f.data(), energy_J);
   add_probes(network, x, v, f);
   return energy_J;
+}
+
+void forces_alone(const SpringNetwork& network, std::span<const Vec3> x, std::span<const Vec3> v,
+                  std::span<Vec3> f) RT_SAFE {
+  for (std::size_t i = 0; i < x.size(); ++i)
+    f[i] = own_force_N(network.node, i, x[i] - network.node.rest_m[i], v[i]);
+  add_springs<false>(network.spring, x.data(), v.data(), f.data(), 0.0);
+  add_probes(network, x, v, f);
 }
 
 double stored_energy_J(const SpringNetwork& network) RT_SAFE {

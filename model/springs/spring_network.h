@@ -75,6 +75,9 @@ double probe_force_N(const ProbeSpring& probe, double dent_m) RT_SAFE;
 /// MA-1 for every node, into force_N; returns the energy stored in springs, anchors and loads.
 double forces(const SpringNetwork& network, std::span<const Vec3> position_m,
               std::span<const Vec3> velocity_mps, std::span<Vec3> force_N) RT_SAFE;
+/// The same forces to the last bit.
+void forces_alone(const SpringNetwork& network, std::span<const Vec3> position_m,
+                  std::span<const Vec3> velocity_mps, std::span<Vec3> force_N) RT_SAFE;
 /// The same energy, J, without forces; probes are not counted.
 double stored_energy_J(const SpringNetwork& network) RT_SAFE;
 double kinetic_energy_J(const SpringNetwork& network) RT_SAFE;

@@ -43,7 +43,7 @@ double SpringStepper::step(const SpringNetwork& network, const StepRule& rule) R
       const double part = (averages ? rule.method.alpha : 0.5) * h;
       for (std::size_t i = 0; i < n; ++i)
         x_star[i] = x[i] + part * v[i], v_star[i] = v[i] + part * w[i] * f[i];  // MA-4
-      forces(network, x_star, v_star, f);
+      forces_alone(network, x_star, v_star, f);
       for (std::size_t i = 0; i < n; ++i) {
         const Vec3 next = v[i] + h * w[i] * f[i];                    // MA-5
         x[i] += averages ? 0.5 * h * (v[i] + next) : h * v_star[i];  // MA-6 or MA-8b
@@ -79,7 +79,7 @@ void SpringStepper::step_rk4(const SpringNetwork& network, double h) RT_SAFE {
       velocity_[i] = node.velocity_mps[i] + h * kReach[stage] * bend;
     }
     if (stage < 3)
-      forces(network, {position_.data(), n}, {velocity_.data(), n}, {force_.data(), n});
+      forces_alone(network, {position_.data(), n}, {velocity_.data(), n}, {force_.data(), n});
   }
   for (std::size_t i = 0; i < n; ++i)
     node.position_m[i] += sum_[i], node.velocity_mps[i] += direction_[i];
@@ -93,7 +93,7 @@ void SpringStepper::step_implicit(const SpringNetwork& network, double h, int it
   linearise(network, h);
   // residual_ lives in force_, v+ in sum_; velocity_ is a zero velocity for f(x, 0)
   for (std::size_t i = 0; i < n; ++i) velocity_[i] = sum_[i] = {};
-  forces(network, node.position_m, {velocity_.data(), n}, {force_.data(), n});
+  forces_alone(network, node.position_m, {velocity_.data(), n}, {force_.data(), n});
   double old = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     force_[i] = w[i] > 0.0 ? node.velocity_mps[i] / w[i] + h * force_[i] : Vec3{};
