@@ -50,8 +50,7 @@ std::optional<Error> load_meshes(const SceneText& text, Scene& scene) {
 }
 
 bool needs_compliance(const Scene& scene) {
-  const bool varies = scene.varies_by_place && scene.law != LawKind::kSpringPatch;
-  return varies || scene.law == LawKind::kCompliance || scene.law == LawKind::kAuto;
+  return scene.varies_by_place || scene.law == LawKind::kCompliance || scene.law == LawKind::kAuto;
 }
 
 /// A map is of one organ: on another mesh the law is felt as it is at every place. A map that

@@ -3,6 +3,8 @@
 // each vertex. Set-up code only.
 #pragma once
 
+#include <vector>
+
 #include "model/result.h"
 #include "model/scene/scene.h"
 #include "model/tissue/compliance_family.h"
@@ -15,6 +17,9 @@ Result<tissue::ComplianceMap> read_scene_map(const Scene& scene);
 
 /// R of the tool's tip; an error where its spheres differ.
 Result<double> scene_tip_radius_m(const Scene& scene);
+
+/// r of each vertex, m/N; none where the law does not vary by place.
+Result<std::vector<float>> read_scene_give(const Scene& scene);
 
 /// The scene's organ under its tool's tip, which must be the same on every sphere; the scene's
 /// compliance.large_strain is not asked.

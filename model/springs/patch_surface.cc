@@ -38,6 +38,32 @@ void index_edges(PatchSurface& surface) {
       surface.edge_of[next[v]++] = i;
 }
 
+// Short waves of a net are softer than long ones: what that adds to the give, within 6 % for
+// anchors of k / 40 to 2 k.
+constexpr double kShortWaves = 1.2;
+
+/// Over all waves of one vertex of a net with this modulus.
+double give_m_per_N(double modulus_N_per_m, double anchor_N_per_m) {
+  const double all_waves = 4.0 * std::numbers::pi * modulus_N_per_m;
+  return kShortWaves * std::log1p(all_waves / anchor_N_per_m) / all_waves;
+}
+
+double across_N_per_m(const PatchTissue& tissue) {
+  return tissue.surface_stiffness_N_per_m * tissue.pretension_ratio /
+         (1.0 + tissue.pretension_ratio);
+}
+
+// MA-22
+double anchor_of_give_N_per_m(const PatchTissue& tissue, double more_m_per_N) {
+  constexpr double kStiffest = 3.0, kLeastModulus_N_per_m = 1e-6;
+  const double modulus =
+      std::max(std::numbers::sqrt3 * across_N_per_m(tissue), kLeastModulus_N_per_m);
+  const double mean_m_per_N = give_m_per_N(modulus, tissue.body_stiffness_N_per_m);
+  const double give = std::max(mean_m_per_N + more_m_per_N, mean_m_per_N / kStiffest);
+  const double all_waves = 4.0 * std::numbers::pi * modulus;
+  return all_waves / std::expm1(all_waves * give / kShortWaves);
+}
+
 }  // namespace
 
 std::size_t PatchSurface::memory_bytes() const {
@@ -52,18 +78,12 @@ std::optional<std::uint32_t> crowded_vertex(const contact::SurfaceView& mesh) {
   return std::nullopt;
 }
 
-// MA-21. Short waves of a net are softer than long ones: what that adds to the give, within 6 % for
-// anchors of k / 40 to 2 k.
+// MA-21
 double sideways_give_m_per_N(const PatchTissue& tissue, double anchor_N_per_m) {
-  constexpr double kShortWaves = 1.2;
-  const double k = tissue.surface_stiffness_N_per_m;
-  const double across = k * tissue.pretension_ratio / (1.0 + tissue.pretension_ratio);
-  const auto give = [anchor_N_per_m](double modulus_N_per_m) {
-    const double all_waves = 4.0 * std::numbers::pi * modulus_N_per_m;
-    return kShortWaves * std::log1p(all_waves / anchor_N_per_m) / (2.0 * all_waves);
-  };
-  const double lattice = 0.25 * std::numbers::sqrt3;
-  return give(lattice * (3.0 * k + across)) + give(lattice * (k + 3.0 * across));
+  constexpr double kLattice = 0.25 * std::numbers::sqrt3;
+  const double k = tissue.surface_stiffness_N_per_m, across = across_N_per_m(tissue);
+  return 0.5 * (give_m_per_N(kLattice * (3.0 * k + across), anchor_N_per_m) +
+                give_m_per_N(kLattice * (k + 3.0 * across), anchor_N_per_m));
 }
 
 PatchSurface make_patch_surface(const contact::SurfaceView& mesh, const PatchTissue& tissue) {
@@ -79,8 +99,13 @@ PatchSurface make_patch_surface(const contact::SurfaceView& mesh, const PatchTis
     sum_m2 += 3.0 * area_m2;
   }
   // a = a_mean A_i / A_mean
-  const double scale = tissue.body_stiffness_N_per_m * static_cast<double>(n) / sum_m2;
-  for (double& anchor : out.anchor_N_per_m) anchor *= scale;
+  const double per_m2 = static_cast<double>(n) / sum_m2;
+  for (std::size_t v = 0; v < n; ++v)
+    out.anchor_N_per_m[v] *=
+        per_m2 * (tissue.give_m_per_N.empty()
+                      ? tissue.body_stiffness_N_per_m
+                      : anchor_of_give_N_per_m(tissue, double{tissue.give_m_per_N[v]}));
+  out.tissue.give_m_per_N = {};  // it need not outlive this
   out.sideways_m_per_N.reserve(n);
   for (const double anchor : out.anchor_N_per_m)
     out.sideways_m_per_N.push_back(sideways_give_m_per_N(tissue, anchor));

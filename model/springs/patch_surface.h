@@ -5,6 +5,7 @@
 //     vertices      anchor a = a_mean A_i / A_mean, drag = tau_b a   A: area around the vertex
 //                   load = - sum of the edges' pull at rest          so that rest is equilibrium
 //
+//     anchor        by MA-22 where the give r of each vertex is known: a body of varying depth
 //     sideways      MA-21 for the anchor of each vertex             a tool that drags it
 //
 // p is the pretension: a cut edge no longer pulls its ends together, and the loads open the lips.
@@ -37,6 +38,7 @@ struct PatchTissue {
   double damping_time_s = 0.0;             // tau
   double body_damping_time_s = 0.0;        // tau_b
   double pretension_ratio = 0.0;           // p
+  std::span<const float> give_m_per_N{};   // r of each vertex; or empty
 };
 
 struct PatchSurface {

@@ -8,8 +8,8 @@
 namespace tact::model::springs {
 namespace {
 
-// Two springs in one instruction: SSE2 and NEON have two doubles. Each lane rounds as a double alone
-// does, and forces are added in the order of the springs, so the bits are those of one by one.
+// Two springs in one instruction: SSE2 and NEON have two doubles. Each lane rounds as a double
+// alone does, and forces are added in the order of the springs: the bits are those of one by one.
 using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
 
 Pair pair_of(double a, double b) RT_SAFE { return Pair{a, b}; }

@@ -92,6 +92,7 @@ Result<std::unique_ptr<SpringPatch>> make_spring_patch(const contact::SurfaceVie
   if (auto failed = check_everywhere(springs, p)) return *failed;
   SpringPatchParameters fitted = p;
   fitted.nodes = std::min(p.nodes, surface.vertex_m.size());
+  fitted.tissue.give_m_per_N = {};
   return std::unique_ptr<SpringPatch>(new SpringPatch(std::move(springs), fitted));
 }
 
