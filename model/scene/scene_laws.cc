@@ -162,7 +162,7 @@ void visit_laws(Keys& k, SceneText& out) {
   std::size_t law = 0;
   k.count("table_knots", {kFewestKnots, law::kMaxKnots}, "of the loop's look-up table, each side",
           scene.table_knots, Need::kOptional);
-  k.flag("varies_by_place", "every closed-form law is in series with [compliance]",
+  k.flag("varies_by_place", "closed-form laws in series with [compliance], spring_patch by it",
          scene.varies_by_place, Need::kOptional);
   k.choice("law", kLaws, "of the tissue", law);
   scene.law = kLawNames[law].kind;
