@@ -137,12 +137,12 @@ std::size_t ComplianceCurve::profile(double depth_m, std::span<double> ring_m) c
 }
 
 Result<ComplianceCurve> half_space_under(double radius_m, double working_depth_m) {
-  constexpr double kRingPitch_m = 2e-3;
-  constexpr std::array<double, 15> kNothingRegular{};
+  constexpr double kRingsARadius = 3.0;  // LW-4: the dent bends most at the rim of the touch
+  constexpr std::array<double, 23> kNothingRegular{};
   return make_compliance_curve(
       {.tip = {.youngs_modulus_Pa = 1.0, .poisson_ratio = 0.0, .radius_m = radius_m},
        .working_depth_m = working_depth_m,
-       .ring_pitch_m = kRingPitch_m,
+       .ring_pitch_m = radius_m / kRingsARadius,
        .ring_m_per_N = kNothingRegular});
 }
 

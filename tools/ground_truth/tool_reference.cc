@@ -20,7 +20,8 @@ ToolCase tool_case_of(const json& j) {
   return {.depth_m = j.at("depth_m").get<double>(),
           .force_N = j.at("force_N").get<double>(),
           .sphere_N = j.at("sphere_N").get<std::vector<double>>(),
-          .force_error_ratio = error_of(j.at("force_error_ratio"))};
+          .force_error_ratio = error_of(j.at("force_error_ratio")),
+          .skin_m = j.value("skin_m", std::vector<double>{})};
 }
 
 ToolPlace place_of(const json& j) {
@@ -30,6 +31,7 @@ ToolPlace place_of(const json& j) {
                   .direction = vector_of(j.at("direction")),
                   .orientation = {q.at(0).get<double>(), q.at(1).get<double>(),
                                   q.at(2).get<double>(), q.at(3).get<double>()},
+                  .skin = j.value("skin", std::vector<std::uint32_t>{}),
                   .cases = {}};
   if (!v.is_null()) place.vertex = v.get<std::uint32_t>();
   for (const json& c : j.at("cases")) place.cases.push_back(tool_case_of(c));
@@ -64,16 +66,24 @@ std::optional<Error> check_tool(const ToolReference& data) {
       if (!(c.depth_m > 0.0) || !(c.force_N > 0.0) || (i > 0 && c.depth_m <= depths[i - 1].depth_m))
         return Error{"depth_m and force_N must be above 0, depths rising"};
       if (c.sphere_N.size() != data.sphere.size()) return Error{"sphere_N: one for each sphere"};
+      if (c.skin_m.size() != place.skin.size()) return Error{"skin_m: one for each of skin"};
     }
   }
   return std::nullopt;
 }
 
+/// Nothing of what is not known.
+template <typename T>
+std::string list_text(const char* key, const std::vector<T>& list) {
+  return list.empty() ? "" : fmt::format(fmt::runtime(key), fmt::join(list, ", "));
+}
+
 std::string text_of(const ToolCase& c) {
   return fmt::format(
       "{{\"depth_m\": {:.6g}, \"force_N\": {:.6g}, \"sphere_N\": [{:.6g}], "
-      "\"force_error_ratio\": {}}}",
-      c.depth_m, c.force_N, fmt::join(c.sphere_N, ", "), error_text(c.force_error_ratio));
+      "\"force_error_ratio\": {}{}}}",
+      c.depth_m, c.force_N, fmt::join(c.sphere_N, ", "), error_text(c.force_error_ratio),
+      list_text(",\n   \"skin_m\": [{:.4g}]", c.skin_m));
 }
 
 std::string text_of(const ToolPlace& place) {
@@ -82,9 +92,10 @@ std::string text_of(const ToolPlace& place) {
   for (const ToolCase& c : place.cases) cases += (cases.empty() ? "\n  " : ",\n  ") + text_of(c);
   return fmt::format(
       "{{\"vertex\": {}, \"point_m\": {}, \"direction\": {},\n"
-      "  \"orientation_wxyz\": [{:.9g}, {:.9g}, {:.9g}, {:.9g}], \"cases\": [{}]}}",
+      "  \"orientation_wxyz\": [{:.9g}, {:.9g}, {:.9g}, {:.9g}]{}, \"cases\": [{}]}}",
       place.vertex ? std::to_string(*place.vertex) : "null", vector_text(place.point_m),
-      vector_text(place.direction), q.w, q.x, q.y, q.z, cases);
+      vector_text(place.direction), q.w, q.x, q.y, q.z,
+      list_text(",\n  \"skin\": [{}]", place.skin), cases);
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ struct ToolCase {
   double force_N = 0.0;            // on the tool against the direction
   std::vector<double> sphere_N;    // of each sphere
   double force_error_ratio = 0.0;  // of the mesh: what refinement would change; NaN: not known
+  std::vector<double> skin_m{};    // how far each vertex of the place's `skin` goes along the way
 };
 
 struct ToolPlace {
@@ -33,7 +34,8 @@ struct ToolPlace {
   model::Vec3 point_m{};                // of the tool's lowest point at depth 0, mesh's own frame
   model::Vec3 direction{};              // into the tissue, unit
   model::Quat orientation{};
-  std::vector<ToolCase> cases;  // by depth, the same at every place
+  std::vector<std::uint32_t> skin{};  // vertices of the organ's mesh, where asked for
+  std::vector<ToolCase> cases;        // by depth, the same at every place
 };
 
 struct ToolReference {

@@ -31,7 +31,7 @@ struct Options {
   std::vector<double> depths_m;
   int level = 2;
   unsigned jobs = 1;
-  bool tool = false, sideways = false, json = false;
+  bool tool = false, skin = false, sideways = false, json = false;
 };
 
 void add_options(CLI::App& app, Options& o) {
@@ -41,6 +41,8 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--tool", o.tool,
                "press all spheres of the tool together, at the hand's own site and at six places "
                "that no law is fitted on (README.md says how they are chosen)");
+  app.add_flag("--skin", o.skin, "with --tool: also how far the skin around it goes")
+      ->needs("--tool");
   app.add_flag("--sideways", o.sideways, "drag a round patch along the surface of each site")
       ->excludes("--tool");
   app.add_option("--sites", o.sites,
@@ -94,8 +96,9 @@ Result<ground_truth::ToolReference> solve_tool(const Options& o) {
   if (o.scene.empty()) return kNoScene;
   const auto scene = tact::model::scene::load_scene(o.scene, o.overrides);
   if (!scene) return scene.error();
-  const auto plan = tool_plan_of(*scene, o.sites, o.depths_m, o.level);
+  auto plan = tool_plan_of(*scene, o.sites, o.depths_m, o.level);
   if (!plan) return plan.error();
+  if (o.skin) ask_for_skin(*plan);
   const auto gmsh = ground_truth::gmsh_version();
   if (!gmsh) return gmsh.error();
   const std::string solver = fmt::format("tact, gmsh {}", *gmsh);

@@ -90,7 +90,8 @@ std::optional<std::vector<ground_truth::ToolCase>> SolveCache::find_tool(
     for (const json& c : j->at("cases"))
       out.push_back({.depth_m = c.at("depth_m").get<double>(),
                      .force_N = c.at("force_N").get<double>(),
-                     .sphere_N = c.at("sphere_N").get<std::vector<double>>()});
+                     .sphere_N = c.at("sphere_N").get<std::vector<double>>(),
+                     .skin_m = c.value("skin_m", std::vector<double>{})});
     return out;
   } catch (const json::exception&) {
     return std::nullopt;
@@ -110,7 +111,10 @@ std::optional<model::Error> SolveCache::keep_tool(
     const std::string& key, const std::vector<ground_truth::ToolCase>& solved) const {
   json cases = json::array();
   for (const ground_truth::ToolCase& c : solved)
-    cases.push_back({{"depth_m", c.depth_m}, {"force_N", c.force_N}, {"sphere_N", c.sphere_N}});
+    cases.push_back({{"depth_m", c.depth_m},
+                     {"force_N", c.force_N},
+                     {"sphere_N", c.sphere_N},
+                     {"skin_m", c.skin_m}});
   return write(key, {{"cases", std::move(cases)}});
 }
 
@@ -160,12 +164,13 @@ std::string cache_key(const Organ& organ, const Indentation& what, const std::st
 }
 
 std::string cache_key(const Organ& organ, const ToolPress& what, const std::string& solver) {
-  std::string spheres, depths;
+  std::string spheres, depths, skin = what.skin.empty() ? "" : "; skin";
   for (const RigidSphere& s : what.sphere)
     spheres += fmt::format("; sphere {:.9g} m at {}", s.radius_m, text_of(s.centre_m));
   for (const double d_m : what.depths_m) depths += fmt::format(" {:.9g}", d_m);
-  return fmt::format("tool {}, {}; along {}{}; depths{} m; {}", kToolMethod,
-                     organ_text(organ, solver), text_of(what.direction), spheres, depths,
+  for (const std::uint32_t v : what.skin) skin += fmt::format(" {}", v);
+  return fmt::format("tool {}, {}; along {}{}; depths{} m{}; {}", kToolMethod,
+                     organ_text(organ, solver), text_of(what.direction), spheres, depths, skin,
                      edges_text(edge_lengths(organ, what)));
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "model/scene/scene_strokes.h"
+#include "tools/ground_truth/ring_means.h"
 #include "tools/reference/reference_plan.h"
 #include "tools/reference/surface_rays.h"
 
@@ -24,6 +25,7 @@ constexpr double kSameHeight = 0.5;   // of the radius
 constexpr double kThickness = 2.0;    // of the deepest press
 constexpr double kFromHeld = 3.0;     // of the radius
 constexpr int kSamples = 10;          // of a sphere's radius, to find where it first touches
+constexpr double kSkin_m = 0.03;      // from the point, whose way is kept
 constexpr double kFromAbove = 5.0;    // radii along the way, in which a first touch is looked for
 
 /// The tool's spheres where it stands at depth 0.
@@ -155,6 +157,15 @@ std::vector<std::uint32_t> farthest_of(const std::vector<std::uint32_t>& candida
 
 }  // namespace
 
+void ask_for_skin(ToolPlan& plan) {
+  const model::mesh::SurfaceMesh& surface = plan.organ.surface;
+  for (ToolPlace& place : plan.places)
+    for (std::uint32_t v = 0; v < surface.vertex_m.size(); ++v)
+      if (norm(surface.vertex_m[v] - place.point_m) < kSkin_m &&
+          dot(surface.vertex_normal[v], place.direction) < -ground_truth::kFacing)
+        place.skin.push_back(v);
+}
+
 Result<ToolPlan> tool_plan_of(const model::scene::Scene& scene,
                               const std::vector<std::uint32_t>& vertices,
                               const std::vector<double>& depths_m, int level) {
@@ -200,6 +211,7 @@ std::vector<ToolPress> presses_of(const ToolPlan& plan) {
       out.push_back({.direction = place.direction,
                      .sphere = spheres_at(plan.sphere, place, rest_inward),
                      .depths_m = plan.depths_m,
+                     .skin = level == plan.level ? place.skin : std::vector<std::uint32_t>{},
                      .level = level});
   }
   return out;

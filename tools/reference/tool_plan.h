@@ -42,6 +42,9 @@ model::Result<ToolPlan> tool_plan_of(const model::scene::Scene& scene,
                                      const std::vector<std::uint32_t>& vertices,
                                      const std::vector<double>& depths_m, int level);
 
+/// Adds to each place the vertices that the picture shows pressed: within 30 mm, facing the tool.
+void ask_for_skin(ToolPlan& plan);
+
 /// Every solve of the plan, each once: all places at the level, then one level coarser.
 std::vector<ToolPress> presses_of(const ToolPlan& plan);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/reference/tool_press.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -156,6 +158,40 @@ Result<Eigen::MatrixXd> compliance_of(const Patch& patch, const Vec3& direction,
   return Eigen::MatrixXd(0.5 * (compliance + compliance.transpose()));
 }
 
+/// The nodes that were these vertices of the surface: a finer skin keeps them.
+Result<std::vector<std::uint32_t>> nodes_of(const std::vector<std::uint32_t>& vertices,
+                                            const Organ& organ, const OrganBody& body) {
+  constexpr double kSamePoint_m = 1e-7;
+  std::vector<std::uint32_t> corners;
+  for (const FaceNodes& f : body.face) corners.insert(corners.end(), f.begin(), f.begin() + 3);
+  std::vector<std::uint32_t> out;
+  for (const std::uint32_t v : vertices) {
+    const auto is_there = [&](std::uint32_t node) {
+      return norm(body.mesh.node_m[node] - organ.surface.vertex_m[v]) < kSamePoint_m;
+    };
+    const auto found = std::find_if(corners.begin(), corners.end(), is_there);
+    if (found == corners.end())
+      return Error{fmt::format("vertex {} of the organ is not among the nodes", v)};
+    out.push_back(*found);
+  }
+  return out;
+}
+
+/// How far the nodes go along the way under the pressure of each corner, m.
+std::vector<double> ways_m(const Patch& patch, const Eigen::VectorXd& pressure_Pa,
+                           const Vec3& direction, const std::vector<std::uint32_t>& nodes,
+                           model::fem::LinearSolver& solver) {
+  std::vector<std::vector<NodeLoad>> load(1);
+  for (std::size_t v = 0; v < patch.sphere.size(); ++v)
+    for (const auto& [node, area_m2] : patch.node_area_m2[v])
+      load[0].push_back({node, pressure_Pa[static_cast<Eigen::Index>(v)] * area_m2 * direction});
+  std::vector<std::vector<Vec3>> moved_m(1);
+  solver.solve(load, nodes, moved_m);
+  std::vector<double> out;
+  for (const Vec3& m : moved_m[0]) out.push_back(dot(m, direction));
+  return out;
+}
+
 }  // namespace
 
 Reach reach_beyond(const ToolPress& what, const Vec3& point_m) {
@@ -194,6 +230,8 @@ ground_truth::EdgeLengths edge_lengths(const Organ& organ, const ToolPress& what
 Result<std::vector<ToolCase>> solve(const Organ& organ, const ToolPress& what) {
   const auto body = make_organ_body(organ.surface, edge_lengths(organ, what), organ.held);
   if (!body) return body.error();
+  const auto skin = nodes_of(what.skin, organ, *body);
+  if (!skin) return skin.error();
   const Patch patch = make_patch(*body, what);
   if (patch.sphere.empty()) return Error{"the tool touches nothing at its deepest"};
   auto solver = model::fem::make_linear_solver(body->mesh, organ.material, body->held_node);
@@ -211,6 +249,7 @@ Result<std::vector<ToolCase>> solve(const Organ& organ, const ToolPress& what) {
     one.sphere_N.resize(what.sphere.size());
     for (Eigen::Index v = 0; v < n; ++v)
       one.sphere_N[patch.sphere[static_cast<std::size_t>(v)]] += (*pressure)[v] * area[v];
+    if (!skin->empty()) one.skin_m = ways_m(patch, *pressure, what.direction, *skin, *solver);
     cases.push_back(std::move(one));
   }
   return cases;

@@ -31,7 +31,8 @@ struct RigidSphere {
 struct ToolPress {
   model::Vec3 direction{};  // of the way, unit, into the tissue
   std::vector<RigidSphere> sphere;
-  std::vector<double> depths_m;  // above 0, rising
+  std::vector<double> depths_m;       // above 0, rising
+  std::vector<std::uint32_t> skin{};  // vertices of the organ's surface whose way is wanted
   int level = 2;
 };
 
