@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/loop/supervisor.h"
 
-#include <array>
-
 namespace tact::firmware::loop {
-
-const char* name_of(State state) {
-  constexpr std::array kNames{"off", "ready", "armed", "stopped"};
-  return kNames[static_cast<std::size_t>(state)];
-}
 
 State Supervisor::step(const Commands& commands, const Findings& found) RT_SAFE {
   const bool arm_edge = commands.arm && !arm_before_;

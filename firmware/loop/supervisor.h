@@ -19,8 +19,6 @@ namespace tact::firmware::loop {
 
 using model::Fault;
 
-const char* name_of(State state);
-
 /// What people ask for; levels, sampled once per tick.
 struct Commands {
   bool arm = false;

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "firmware/loop/state.h"
 #include "firmware/run/device_list.h"
 #include "firmware/run/operator_signals.h"
 #include "firmware/run/replay.h"
@@ -29,15 +30,18 @@ void print_fault_lines() {
     say(stdout, "{:>4}  {:18}  {}; {}\n", static_cast<int>(f.fault), f.name, f.cause, f.cure);
 }
 
+/// What the page must say in words: {"faults": [...], "states": [...]}, states by number.
 std::string faults_as_json() {
-  nlohmann::json list = nlohmann::json::array();
+  nlohmann::json list = nlohmann::json::array(), states = nlohmann::json::array();
   for (const model::FaultEntry& f : model::fault_table())
     list.push_back({{"number", static_cast<int>(f.fault)},
                     {"name", f.name},
                     {"cause", f.cause},
                     {"cure", f.cure},
                     {"latches", model::latches(f.fault)}});
-  return list.dump(2) + "\n";
+  for (const auto& s : firmware::loop::kStateTable)
+    states.push_back({{"name", s.name}, {"words", s.words}});
+  return nlohmann::json{{"faults", list}, {"states", states}}.dump(2) + "\n";
 }
 
 /// A list for --json PATH; nothing without one.

@@ -13,20 +13,6 @@
 namespace tact::host::record {
 namespace {
 
-const char* name_of(firmware::loop::State state) {
-  switch (state) {
-    case firmware::loop::State::kOff:
-      return "off";
-    case firmware::loop::State::kReady:
-      return "ready";
-    case firmware::loop::State::kArmed:
-      return "armed";
-    case firmware::loop::State::kStopped:
-      return "stopped";
-  }
-  return "unknown";
-}
-
 const char* name_of(firmware::telemetry::SiteState state) {
   switch (state) {
     case firmware::telemetry::SiteState::kFree:

@@ -77,6 +77,10 @@ TEST_F(Tactd, PrintsEveryFaultWithItsCure) {
   const Outcome outcome = tactd("--faults");
   EXPECT_EQ(outcome.status, 0);
   for (const auto& entry : tact::model::fault_table()) EXPECT_TRUE(has(outcome, entry.cure));
+  const json words = json::parse(tactd("--faults --json -").output);
+  EXPECT_EQ(words.at("faults").size(), tact::model::fault_table().size());
+  ASSERT_EQ(words.at("states").size(), 4U) << "by number, for the page";
+  EXPECT_EQ(words.at("states")[2].at("name"), "armed");
 }
 
 TEST_F(Tactd, AReportHoldsEveryNumberThatProvesARun) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// faults.ts - the words behind the numbers of a frame: those of faults are tactd's own, which
+// faults.ts - the words behind the numbers of a frame, faults and states: tactd's own, which
 // tools/packages.sh asks it for before the page is built (tactd --faults --json faults.json).
 
 import table from "./faults.json";
@@ -10,7 +10,7 @@ export interface Fault {
   cure: string;
 }
 
-const kFaults = new Map<number, Fault>(table.map((fault) => [fault.number, fault]));
+const kFaults = new Map<number, Fault>(table.faults.map((fault) => [fault.number, fault]));
 
 /** Words for a number; one that this page does not know says so. */
 export function describe(number: number): Fault {
@@ -23,9 +23,11 @@ export function describe(number: number): Fault {
   );
 }
 
-export const kStates: readonly { name: string; words: string }[] = [
-  { name: "off", words: "no force" },
-  { name: "ready", words: "no force until armed" },
-  { name: "armed", words: "force is on" },
-  { name: "stopped", words: "force is off after a fault" },
-];
+export interface State {
+  name: string;
+  words: string;
+}
+
+export function describe_state(number: number): State {
+  return table.states[number] ?? { name: `state ${number}`, words: "unknown" };
+}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // hud.ts - the panels: everything that is said in words and numbers.
 
-import { describe, kStates } from "./faults";
+import { describe, describe_state } from "./faults";
 import { Pace } from "./pace";
 import { length_of, type FigureFrame, type Frame, type Scene, type Status } from "./protocol";
 
@@ -80,7 +80,7 @@ export class Hud {
     if (!frame) return;
     const force_N = length_of(frame.force_N);
     const share = Math.min(1, force_N / (this.force_limit_N || 1));
-    const state = kStates[frame.state] ?? { name: `state ${frame.state}`, words: "unknown" };
+    const state = describe_state(frame.state);
     pill("state", state.name, ["plain", "wait", "good", "bad"][frame.state] ?? "bad");
     write("state_words", state.words);
     write("force", force_N.toFixed(2));
