@@ -29,8 +29,7 @@ Nearest at(const Spot& q, const Vec3& p, std::uint32_t t, Feature f, std::uint32
 
 // Voronoi regions of a triangle [C. Ericson, Real-Time Collision Detection (2005) 5.1.5].
 Nearest nearest_on(const SurfaceView& s, std::uint32_t t, const Vec3& p) RT_SAFE {
-  const TriangleCorners& corner = s.triangle[t];
-  const Vec3 &a = s.vertex_m[corner[0]], &b = s.vertex_m[corner[1]], &c = s.vertex_m[corner[2]];
+  const auto& [a, b, c] = s.record[t].corner_m;
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
   if (d1 <= 0.0 && d2 <= 0.0) return at({a, {1, 0, 0}}, p, t, Feature::kCorner, 0);
@@ -70,58 +69,45 @@ void try_triangle(const SurfaceView& s, std::uint32_t t, const Vec3& p, Nearest&
 // tried.
 Nearest step_from(const SurfaceView& s, const Nearest& here, const Vec3& p) RT_SAFE {
   Nearest best = here;
-  const TriangleCorners& neighbour = s.neighbour[here.place.triangle];
+  const TriangleRecord& record = s.record[here.place.triangle];
   switch (here.feature) {
     case Feature::kFace:
-      if (dot(p - here.point_m, s.face_normal[here.place.triangle]) < 0.0)
-        for (const std::uint32_t t : neighbour) try_triangle(s, t, p, best);
+      if (dot(p - here.point_m, record.normal) < 0.0)
+        for (const std::uint32_t t : record.neighbour) try_triangle(s, t, p, best);
       break;
     case Feature::kEdge:
-      try_triangle(s, neighbour[here.index], p, best);
+      try_triangle(s, record.neighbour[here.index], p, best);
       break;
     case Feature::kCorner: {
-      const std::uint32_t v = s.triangle[here.place.triangle][here.index];
-      const std::uint32_t begin = s.fan_start[v], end = s.fan_start[v + 1];
-      for (std::uint32_t i = begin; i < end && i < begin + kMaxFan; ++i)
-        try_triangle(s, s.fan[i], p, best);
+      const auto fan = s.fan.subspan(record.fan_start[here.index], record.fan_count[here.index]);
+      for (const std::uint32_t t : fan) try_triangle(s, t, p, best);
       break;
     }
   }
   return best;
 }
 
-bool is_rim_corner(const SurfaceView& s, std::uint32_t v) RT_SAFE {
-  for (std::uint32_t i = s.fan_start[v]; i < s.fan_start[v + 1] && i < s.fan_start[v] + kMaxFan;
-       ++i)
-    for (std::uint32_t e = 0; e < 3; ++e) {
-      const TriangleCorners& t = s.triangle[s.fan[i]];
-      const bool touches = t[e] == v || t[(e + 1) % 3] == v;
-      if (touches && s.neighbour[s.fan[i]][e] == kNoTriangle) return true;
-    }
-  return false;
-}
-
 // Beyond the rim of an open surface there is no inside to be pushed out of.
 bool is_on_rim(const SurfaceView& s, const Nearest& at) RT_SAFE {
-  if (at.feature == Feature::kEdge) return s.neighbour[at.place.triangle][at.index] == kNoTriangle;
-  return at.feature == Feature::kCorner &&
-         is_rim_corner(s, s.triangle[at.place.triangle][at.index]);
+  const TriangleRecord& record = s.record[at.place.triangle];
+  if (at.feature == Feature::kEdge) return record.neighbour[at.index] == kNoTriangle;
+  return at.feature == Feature::kCorner && record.on_rim[at.index];
 }
 
 Vec3 pseudo_normal(const SurfaceView& s, const Nearest& at) RT_SAFE {
+  const TriangleRecord& record = s.record[at.place.triangle];
   switch (at.feature) {
     case Feature::kCorner:
       return s.vertex_normal[s.triangle[at.place.triangle][at.index]];
     case Feature::kEdge: {
-      const std::uint32_t other = s.neighbour[at.place.triangle][at.index];
-      if (other != kNoTriangle)
-        return normalized(s.face_normal[at.place.triangle] + s.face_normal[other]);
+      const std::uint32_t other = record.neighbour[at.index];
+      if (other != kNoTriangle) return normalized(record.normal + s.record[other].normal);
       break;
     }
     case Feature::kFace:
       break;
   }
-  return s.face_normal[at.place.triangle];
+  return record.normal;
 }
 
 // phi and n of a point of the surface for p.

@@ -18,7 +18,6 @@
 namespace tact::model::contact {
 
 inline constexpr int kMaxWalkSteps = 64;
-inline constexpr std::uint32_t kMaxFan = 128;  // triangles looked at around one vertex
 
 /// A point of the undeformed surface: a triangle and its corners' weights, which sum to 1. A corner
 /// that does not count has exactly 0: one such on an edge, two in a vertex.

@@ -18,6 +18,20 @@ namespace tact::model::contact {
 using TriangleCorners = std::array<std::uint32_t, 3>;
 inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFu;
 
+inline constexpr std::uint32_t kMaxFan = 128;  // triangles looked at around one vertex
+
+/// All that a walk needs of one triangle, in one place of memory, so that a step costs the same on a
+/// surface that no cache holds.
+struct alignas(128) TriangleRecord {
+  std::array<Vec3, 3> corner_m;
+  Vec3 normal;                              // unit
+  TriangleCorners neighbour{};              // as SurfaceView has it
+  TriangleCorners fan_start{};              // of each corner, into fan
+  std::array<std::uint8_t, 3> fan_count{};  // at most kMaxFan
+  std::array<bool, 3> on_rim{};             // the corner is on a boundary
+};
+static_assert(sizeof(TriangleRecord) == 128);
+
 struct SurfaceView {
   std::span<const Vec3> vertex_m;              // n
   std::span<const TriangleCorners> triangle;   // m
@@ -26,6 +40,7 @@ struct SurfaceView {
   std::span<const Vec3> vertex_normal;         // n, unit
   std::span<const std::uint32_t> fan_start;    // n + 1, into fan
   std::span<const std::uint32_t> fan;          // 3 m, triangles around each vertex
+  std::span<const TriangleRecord> record;      // m, the same once more, for site.h
 };
 
 }  // namespace tact::model::contact

@@ -176,6 +176,33 @@ const char* cure(MeshFlaw flaw) {
   return "export the mesh again";
 }
 
+void fill_records(SurfaceMesh& mesh) {
+  std::vector<bool> on_rim(mesh.vertex_m.size());
+  for (std::size_t i = 0; i < mesh.triangle.size(); ++i)
+    for (std::size_t e = 0; e < 3; ++e)
+      if (mesh.neighbour[i][e] == contact::kNoTriangle)
+        on_rim[mesh.triangle[i][e]] = on_rim[mesh.triangle[i][(e + 1) % 3]] = true;
+  mesh.record.resize(mesh.triangle.size());
+  for (std::size_t i = 0; i < mesh.triangle.size(); ++i) {
+    contact::TriangleRecord& record = mesh.record[i];
+    record.normal = mesh.face_normal[i];
+    record.neighbour = mesh.neighbour[i];
+    for (std::size_t e = 0; e < 3; ++e) {
+      const std::uint32_t v = mesh.triangle[i][e];
+      const std::uint32_t count = mesh.fan_start[v + 1] - mesh.fan_start[v];
+      record.corner_m[e] = mesh.vertex_m[v];
+      record.fan_start[e] = mesh.fan_start[v];
+      record.fan_count[e] = static_cast<std::uint8_t>(std::min(count, contact::kMaxFan));
+      record.on_rim[e] = on_rim[v];
+    }
+  }
+}
+
+void shift(SurfaceMesh& mesh, const Vec3& by_m) {
+  for (Vec3& p : mesh.vertex_m) p += by_m;
+  fill_records(mesh);
+}
+
 SurfaceOrDefect build_surface(std::vector<Vec3> vertex_m,
                               std::vector<contact::TriangleCorners> triangle) {
   for (std::uint32_t t = 0; t < triangle.size(); ++t) {
@@ -188,6 +215,7 @@ SurfaceOrDefect build_surface(std::vector<Vec3> vertex_m,
   fill_fans(mesh);
   if (const std::optional<MeshDefect> defect = fill_neighbours(mesh)) return *defect;
   fill_normals(mesh);
+  fill_records(mesh);
   return mesh;
 }
 

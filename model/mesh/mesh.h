@@ -22,9 +22,10 @@ struct SurfaceMesh {
   std::vector<Vec3> vertex_normal;
   std::vector<std::uint32_t> fan_start;
   std::vector<std::uint32_t> fan;
+  std::vector<contact::TriangleRecord> record;
 
   contact::SurfaceView view() const {
-    return {vertex_m, triangle, neighbour, face_normal, vertex_normal, fan_start, fan};
+    return {vertex_m, triangle, neighbour, face_normal, vertex_normal, fan_start, fan, record};
   }
 };
 
@@ -33,6 +34,11 @@ struct SurfaceMesh {
 /// names the first offending triangle (counted from 0).
 Result<SurfaceMesh> make_surface_mesh(std::vector<Vec3> vertex_m,
                                       std::vector<contact::TriangleCorners> triangle);
+
+/// Moves all of it.
+void shift(SurfaceMesh& mesh, const Vec3& by_m);
+/// From the other arrays, after a change of them.
+void fill_records(SurfaceMesh& mesh);
 
 /// What a person wants to know of a mesh before using it.
 struct MeshSummary {

@@ -151,6 +151,7 @@ void turn_inside_out(SurfaceMesh& mesh) {
   for (contact::TriangleCorners& across : mesh.neighbour) std::swap(across[0], across[2]);
   for (Vec3& n : mesh.face_normal) n = -n;
   for (Vec3& n : mesh.vertex_normal) n = -n;
+  fill_records(mesh);
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ std::optional<Error> load_meshes(const SceneText& text, Scene& scene) {
   if (!organ) return organ.error();
   Result<mesh::SurfaceMesh> tool = load_mesh(text.tool_mesh, scene.tool.mesh_path);
   if (!tool) return tool.error();
-  for (Vec3& vertex_m : organ->vertex_m) vertex_m += scene.organ.position_m;
+  mesh::shift(*organ, scene.organ.position_m);
   scene.organ_mesh = std::move(*organ);
   scene.tool_mesh = std::move(*tool);
   return std::nullopt;

@@ -39,7 +39,7 @@ Result<CondenseInput> condense_input(const model::scene::Scene& scene) {
         "fixed_max_m, or give them with --set",
         scene.path)};
   CondenseInput input{.surface = scene.organ_mesh};
-  for (model::Vec3& p : input.surface.vertex_m) p -= scene.organ.position_m;
+  model::mesh::shift(input.surface, -scene.organ.position_m);
   input.settings.organ = {.poisson_ratio = scene.elastic->poisson_ratio,
                           .fixed_min_m = scene.elastic->fixed_min_m,
                           .fixed_max_m = scene.elastic->fixed_max_m,

@@ -101,7 +101,7 @@ model::Result<ReferencePlan> plan_of(const model::scene::Scene& scene) {
   }
   ReferencePlan plan;
   plan.organ.surface = scene.organ_mesh;
-  for (model::Vec3& p : plan.organ.surface.vertex_m) p -= scene.organ.position_m;
+  model::mesh::shift(plan.organ.surface, -scene.organ.position_m);
   plan.organ.hash = mesh_hash(plan.organ.surface);
   plan.organ.held = {scene.elastic->fixed_min_m, scene.elastic->fixed_max_m};
   plan.organ.material = {scene.elastic->youngs_modulus_Pa, scene.elastic->poisson_ratio};

@@ -25,6 +25,7 @@ double nearest_by_brute_force_m(const SurfaceView& surface, const Vec3& p) {
     one.vertex_normal.assign(3, surface.face_normal[t]);
     one.fan_start = {0, 1, 2, 3};
     one.fan = {0, 0, 0};
+    mesh::fill_records(one);
     best_m = std::min(best_m, std::abs(follow(one.view(), 0, p).distance_m));
   }
   return best_m;

@@ -79,6 +79,33 @@ void expect_complete_fans(const SurfaceMesh& mesh) {
   }
 }
 
+void expect_records_of(const SurfaceMesh& mesh) {
+  ASSERT_EQ(mesh.record.size(), mesh.triangle.size());
+  for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+    const contact::TriangleRecord& record = mesh.record[t];
+    EXPECT_EQ(record.normal, mesh.face_normal[t]);
+    EXPECT_EQ(record.neighbour, mesh.neighbour[t]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t v = mesh.triangle[t][c];
+      EXPECT_EQ(record.corner_m[c], mesh.vertex_m[v]);
+      EXPECT_EQ(record.fan_start[c], mesh.fan_start[v]);
+      EXPECT_EQ(record.fan_count[c], mesh.fan_start[v + 1] - mesh.fan_start[v]);
+    }
+  }
+}
+
+TEST(Mesh, RecordsOfItsTrianglesMoveWithIt) {
+  SurfaceMesh cube = make_cube();
+  expect_records_of(cube);
+  shift(cube, {0.1, -0.2, 0.3});
+  expect_records_of(cube);
+  for (const contact::TriangleRecord& record : cube.record)
+    EXPECT_EQ(record.on_rim, (std::array<bool, 3>{})) << "a closed surface has no rim";
+  const SurfaceMesh triangle = *make_surface_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
+  expect_records_of(triangle);
+  EXPECT_EQ(triangle.record[0].on_rim, (std::array<bool, 3>{true, true, true}));
+}
+
 TEST(Mesh, NeighboursKnowEachOther) {
   expect_sound(make_cube());
   expect_sound(make_ball(1.0, 3));
