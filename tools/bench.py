@@ -68,20 +68,23 @@ def ticks():
 
 
 def mesh_size():
-    """The same liver, finer: runs in turn, the middle of three, so that a drift of the machine cancels."""
+    """The same liver with a million vertices: runs in turn, the middle of three, so that a drift of the
+    machine cancels. Neither varies by place: the map is of the coarse one."""
     fine = WORK / "liver_fine.obj"
-    subprocess.run([BUILD / "tact-make-meshes", "--liver-vertices", "300000", "--out", WORK],
+    subprocess.run([BUILD / "tact-make-meshes", "--liver-vertices", "1000000", "--out", WORK],
                    check=True, capture_output=True)
     made = max(WORK.glob("*.obj"), key=lambda p: p.stat().st_size)
     made.rename(fine)
-    medians = {"coarse": [], "fine": []}
+    told = {(name, at): [] for name in ("coarse", "fine") for at in ("p50_ns", "p99.9_ns")}
     for _ in range(3):
         for name, extra in (("coarse", []), ("fine", ["--set", f'organ.mesh="{fine}"'])):
-            report = tactd("--seconds", str(SECONDS / 2), *extra)
-            medians[name].append(report["phases"]["total"]["p50_ns"])
-    ratio = sorted(medians["fine"])[1] / sorted(medians["coarse"])[1]
-    row("tick at 300 000 vertices over 3 116", round(ratio, 2), "", "<= 1.2",
-        "tactd liver.toml --set organ.mesh=...")
+            report = tactd("--seconds", str(SECONDS), "--set", "varies_by_place=false", *extra)
+            for at in ("p50_ns", "p99.9_ns"):
+                told[name, at].append(report["phases"]["total"][at])
+    for what, at, goal in (("median", "p50_ns", "<= 1.2"), ("p99.9", "p99.9_ns", "<= 1.5")):
+        ratio = sorted(told["fine", at])[1] / sorted(told["coarse", at])[1]
+        row(f"tick at a million vertices over 3 116, {what}", round(ratio, 2), "", goal,
+            "tactd liver.toml --set organ.mesh=...")
     fine.unlink()
 
 
