@@ -20,8 +20,8 @@ inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFu;
 
 inline constexpr std::uint32_t kMaxFan = 128;  // triangles looked at around one vertex
 
-/// All that a walk needs of one triangle, in one place of memory, so that a step costs the same on a
-/// surface that no cache holds.
+/// All that a walk needs of one triangle, in one place of memory: a step costs nearly the same on
+/// a surface that no cache holds.
 struct alignas(128) TriangleRecord {
   std::array<Vec3, 3> corner_m;
   Vec3 normal;                              // unit
