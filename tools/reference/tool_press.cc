@@ -59,10 +59,10 @@ std::array<double, 6> shape(const std::array<double, 3>& l) {
 
 /// Corners that the tool may touch, and what unit pressure on the hat of each does.
 struct Patch {
-  std::vector<std::size_t> sphere;                            // that is over the corner
-  std::vector<double> area_m2;                                // int h_v dA
-  std::vector<double> overlap_m3;                             // int h_v o dA, at depth 0
-  std::vector<std::map<std::uint32_t, double>> node_area_m2;  // int h_v N_a dA
+  std::vector<std::size_t> sphere;                     // that is over the corner
+  std::vector<double> area_m2;                         // int h_v c dA
+  std::vector<double> overlap_m3;                      // int h_v o c dA, at depth 0
+  std::vector<std::map<std::uint32_t, Vec3>> push_m2;  // int h_v N_a m dA
 };
 
 double largest_radius_m(const ToolPress& what) {
@@ -96,13 +96,15 @@ Patch make_patch(const OrganBody& body, const ToolPress& what) {
   const std::size_t n = patch.sphere.size();
   patch.area_m2.resize(n);
   patch.overlap_m3.resize(n);
-  patch.node_area_m2.resize(n);
+  patch.push_m2.resize(n);
   for (std::size_t f = 0; f < body.face.size(); ++f) {
     const FaceNodes& node = body.face[f];
     if (dot(body.normal[f], what.direction) > -ground_truth::kFacing) continue;
     const Vec3 &a = body.mesh.node_m[node[0]], &b = body.mesh.node_m[node[1]],
                &c = body.mesh.node_m[node[2]];
     const double face_m2 = 0.5 * norm(cross(b - a, c - a));
+    const Vec3 in = -body.normal[f];
+    const double cosine = dot(in, what.direction);
     for (const GaussPoint& gauss : kGauss) {
       const auto& l = gauss.corner;
       const auto N = shape(l);  // NOLINT
@@ -117,10 +119,10 @@ Patch make_patch(const OrganBody& body, const ToolPress& what) {
           beyond_m = dot(s.centre_m - at_m, what.direction);
         }
         const double hat_m2 = face_m2 * gauss.weight * l[k];
-        patch.area_m2[v->second] += hat_m2;
-        patch.overlap_m3[v->second] += hat_m2 * beyond_m;
+        patch.area_m2[v->second] += hat_m2 * cosine;
+        patch.overlap_m3[v->second] += hat_m2 * cosine * beyond_m;
         for (std::size_t j = 0; j < N.size(); ++j)
-          patch.node_area_m2[v->second][node[j]] += hat_m2 * N[j];
+          patch.push_m2[v->second][node[j]] += hat_m2 * N[j] * in;
       }
     }
   }
@@ -128,11 +130,10 @@ Patch make_patch(const OrganBody& body, const ToolPress& what) {
 }
 
 /// C, m^3/Pa. An error is that of Ctrl-C.
-Result<Eigen::MatrixXd> compliance_of(const Patch& patch, const Vec3& direction,
-                                      model::fem::LinearSolver& solver) {
+Result<Eigen::MatrixXd> compliance_of(const Patch& patch, model::fem::LinearSolver& solver) {
   std::vector<std::uint32_t> wanted;
-  for (const auto& nodes : patch.node_area_m2)
-    for (const auto& [node, area_m2] : nodes) wanted.push_back(node);
+  for (const auto& nodes : patch.push_m2)
+    for (const auto& [node, push_m2] : nodes) wanted.push_back(node);
   std::sort(wanted.begin(), wanted.end());
   wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
   std::unordered_map<std::uint32_t, std::size_t> place;
@@ -144,14 +145,14 @@ Result<Eigen::MatrixXd> compliance_of(const Patch& patch, const Vec3& direction,
     if (program::is_interrupted()) return program::interruption();
     std::vector<std::vector<NodeLoad>> loads(std::min(n - first, model::fem::kLoadsAtOnce));
     for (std::size_t k = 0; k < loads.size(); ++k)
-      for (const auto& [node, area_m2] : patch.node_area_m2[first + k])
-        loads[k].push_back({node, area_m2 * direction});
+      for (const auto& [node, push_m2] : patch.push_m2[first + k])
+        loads[k].push_back({node, push_m2});
     solver.solve(loads, wanted, moved_m);
     for (std::size_t k = 0; k < loads.size(); ++k)
       for (std::size_t v = 0; v < n; ++v) {
-        double sum = 0.0;  // C_vw = int h_v u^w dA
-        for (const auto& [node, area_m2] : patch.node_area_m2[v])
-          sum += area_m2 * dot(moved_m[k][place[node]], direction);
+        double sum = 0.0;  // C_vw = int h_v u^w . m dA
+        for (const auto& [node, push_m2] : patch.push_m2[v])
+          sum += dot(moved_m[k][place[node]], push_m2);
         compliance(static_cast<Eigen::Index>(v), static_cast<Eigen::Index>(first + k)) = sum;
       }
   }
@@ -236,7 +237,7 @@ Result<std::vector<ToolCase>> solve(const Organ& organ, const ToolPress& what) {
   if (patch.sphere.empty()) return Error{"the tool touches nothing at its deepest"};
   auto solver = model::fem::make_linear_solver(body->mesh, organ.material, body->held_node);
   if (!solver) return solver.error();
-  const auto compliance = compliance_of(patch, what.direction, *solver);
+  const auto compliance = compliance_of(patch, *solver);
   if (!compliance) return compliance.error();
   const auto n = static_cast<Eigen::Index>(patch.sphere.size());
   const Eigen::Map<const Eigen::VectorXd> area(patch.area_m2.data(), n),

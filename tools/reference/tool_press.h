@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // tool_press.h - all spheres of a tool pressed into an organ together: one rigid body, no friction.
 //
-// Linear elastic, as indentation.h: tissue under the tool moves along the tool's way and slides
-// freely sideways. Which of it touches is not known beforehand, and each sphere changes it for the
-// others, so it is found: pressure is linear over each face of the skin,
+// Linear elastic, as indentation.h: pressure acts along the skin's inward normal m, by which the
+// tissue gives way, and across it the tissue slides freely. A load along the way would drag faces
+// that lean against it: 10 % at a rim. Which of it touches is not known beforehand, and each sphere
+// changes it for the others, so it is found: pressure is linear over each face of the skin,
 //
 //     p(x) = sum_v p_v h_v(x)                         h_v hat of the corner v
-//     C_vw = int h_v u^w dA                           u^w along the way, under the pressure h_w
-//     g_v  = int h_v (d + o(x)) dA                    o how far the tool reaches beyond x at d = 0
-//     F    = sum_v p_v int h_v dA
+//     C_vw = int h_v u^w . m dA                       u^w under the pressure h_w
+//     g_v  = int h_v (d + o(x)) c dA                  o how far the tool reaches beyond x at d = 0
+//     F    = sum_v p_v int h_v c dA                   along the way;   c = m . way
 //
 // and p is that of active_set.h. C comes from one factored organ (model/fem/linear_solver.h), and
 // every depth d from the same C. o(x) = max over the spheres of c + sqrt(R^2 - rho^2) - s, c and s
