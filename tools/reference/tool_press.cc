@@ -184,8 +184,8 @@ std::vector<double> ways_m(const Patch& patch, const Eigen::VectorXd& pressure_P
                            model::fem::LinearSolver& solver) {
   std::vector<std::vector<NodeLoad>> load(1);
   for (std::size_t v = 0; v < patch.sphere.size(); ++v)
-    for (const auto& [node, area_m2] : patch.node_area_m2[v])
-      load[0].push_back({node, pressure_Pa[static_cast<Eigen::Index>(v)] * area_m2 * direction});
+    for (const auto& [node, push_m2] : patch.push_m2[v])
+      load[0].push_back({node, pressure_Pa[static_cast<Eigen::Index>(v)] * push_m2});
   std::vector<std::vector<Vec3>> moved_m(1);
   solver.solve(load, nodes, moved_m);
   std::vector<double> out;
