@@ -25,14 +25,15 @@ class Arming : public Tactd {
     const std::string script = in_folder("run.sh");
     std::ofstream(script)
         << program_path("tactd") << " " << kLiver
-        << " --no-black-box --no-seccomp --seconds 1 --set rate_Hz=250 --socket "
-        << in_folder("t.sock") << " --set 'device.kind=\"force-dimension\"'"
+        << " --no-black-box --no-seccomp --seconds 1 --set rate_Hz=250 --set limits.energy_J=0.2"
+        << " --socket " << in_folder("t.sock") << " --set 'device.kind=\"force-dimension\"'"
         << " --set 'device.force_dimension.library=\"" << TACT_BINARY_DIR
         << "/libtact-stub-dhd.so\"' --json " << in_folder("report.json") << " 2>" << told()
         << " & tactd=$!\nready() { for i in {1..100}; do grep -q 'ready, force is off' " << told()
         << " && break; sleep .05; done; }\n"
-        << "blocked() { until (( 0x$(awk '/SigBlk/ {print $2}' /proc/$tactd/status) & 0x800 )); "
-           "do :; done; }\n"  // USR2, by the first line of main
+        << "blocked() { while kill -0 $tactd && "
+           "! (( 0x0$(awk '/SigBlk/ {print $2}' /proc/$tactd/status) & 0x800 )); do :; done; }\n"
+        // USR2, by the first line of main
         << acts << "\nwait $tactd; cat " << told() << "\n";
     return run_command("bash " + script);
   }

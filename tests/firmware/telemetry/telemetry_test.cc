@@ -129,7 +129,7 @@ TEST(Telemetry, GreetsAViewerWithTheMeshesAndFramesFollow) {
   EXPECT_EQ(hello.header.magic, kTelemetryMagic);
   EXPECT_EQ(hello.header.kind, MessageKind::kHello);
   EXPECT_EQ(hello.organ_vertices, run.scene().organ_mesh.vertex_m.size());
-  EXPECT_EQ(hello.ring_count, 16u);
+  EXPECT_EQ(hello.ring_count, 24u);
   EXPECT_STREQ(hello.scene_name, "plate");
   struct stat info{};
   ASSERT_EQ(fstat(mesh_fd, &info), 0);
@@ -159,7 +159,7 @@ TEST(Telemetry, FramesCarryTheProfileOfTheTouchedSite) {
   EXPECT_GT(frame.site[0].depth_m, 0.001f);
   EXPECT_NEAR(frame.site[0].profile_m[0], frame.site[0].depth_m, 1e-7f);
   EXPECT_LT(frame.site[0].profile_m[5], frame.site[0].profile_m[0]);
-  EXPECT_EQ(frame.site[0].profile_m[15], 0.0f);
+  EXPECT_EQ(frame.site[0].profile_m[23], 0.0f);
   EXPECT_GT(frame.peak_force_N, 0.05f);
   EXPECT_EQ(frame.non_rt, 1);
 }
