@@ -45,7 +45,7 @@ Vec3Pair apart(const Vec3& i0, const Vec3& j0, const Vec3& i1, const Vec3& j1) R
 Pair dot(const Vec3Pair& a, const Vec3Pair& b) RT_SAFE { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 struct Pull {
-  Vec3Pair N;  // on the first end
+  Vec3Pair force_N;  // on the first end
   Pair stored_J;
 };
 template <bool kWithEnergy>
@@ -62,7 +62,7 @@ inline Pull pull(const Spring& s, const Spring& t, const Vec3* x, const Vec3* v)
   const Vec3Pair u{per_m * along_m.x, per_m * along_m.y, per_m * along_m.z};
   const Pair pull_N =
       tension_N + pair_of(s.damping_Ns_per_m, t.damping_Ns_per_m) * dot(rate_mps, u);
-  out.N = {pull_N * u.x, pull_N * u.y, pull_N * u.z};
+  out.force_N = {pull_N * u.x, pull_N * u.y, pull_N * u.z};
   return out;
 }
 
@@ -75,17 +75,17 @@ double add_springs(std::span<const Spring> springs, const Vec3* x, const Vec3* v
     const Spring& t = s[1];
     const Pull p = pull<kWithEnergy>(*s, t, x, v);
     if constexpr (kWithEnergy) energy_J = energy_J + p.stored_J[0] + p.stored_J[1];
-    const Pair of_s = firsts(p.N.x, p.N.y), of_t = seconds(p.N.x, p.N.y);
-    add(f[s->i], of_s, p.N.z[0]);
-    take(f[s->j], of_s, p.N.z[0]);
-    add(f[t.i], of_t, p.N.z[1]);
-    take(f[t.j], of_t, p.N.z[1]);
+    const Pair of_s = firsts(p.force_N.x, p.force_N.y), of_t = seconds(p.force_N.x, p.force_N.y);
+    add(f[s->i], of_s, p.force_N.z[0]);
+    take(f[s->j], of_s, p.force_N.z[0]);
+    add(f[t.i], of_t, p.force_N.z[1]);
+    take(f[t.j], of_t, p.force_N.z[1]);
   }
   if (springs.size() % 2 == 1) {
     const Pull p = pull<kWithEnergy>(*s, *s, x, v);
     if constexpr (kWithEnergy) energy_J += p.stored_J[0];
-    add(f[s->i], firsts(p.N.x, p.N.y), p.N.z[0]);
-    take(f[s->j], firsts(p.N.x, p.N.y), p.N.z[0]);
+    add(f[s->i], firsts(p.force_N.x, p.force_N.y), p.force_N.z[0]);
+    take(f[s->j], firsts(p.force_N.x, p.force_N.y), p.force_N.z[0]);
   }
   return energy_J;
 }
