@@ -123,7 +123,8 @@ TEST_F(WholeTool, PressesTheLiverByItsChainsWithinATenth) {
 
 // One vertex lies on a rim that both jaws straddle: there 10 mm are 11 % too stiff.
 TEST_F(WholeTool, PressesEveryPlaceOfTheReferenceAsFiniteElementsDo) {
-  for (const auto& place : reference("liver_tool.json")["places"]) {
+  const nlohmann::json truth = reference("liver_tool.json");
+  for (const nlohmann::json& place : truth["places"]) {
     const std::vector<double> felt_N = felt_down_the_way_N(place);
     for (std::size_t i = 0; i < felt_N.size(); ++i) {
       const auto& one = place["cases"][i];
