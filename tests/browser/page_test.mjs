@@ -138,8 +138,8 @@ async function check_loss(page, tactd) {
 async function take_picture(browser, url) {
   const page = await browser.newPage({ viewport: size });
   await page.goto(`${url}#sharp`);
-  check("shows the tissue being pulled to a second browser", await waits(page, () =>
-    window.tact.most_m > 0.006 && document.getElementById("depth").textContent.startsWith("-"), null, 60000));
+  check("shows the tissue being pressed to a second browser", await waits(page, () =>
+    window.tact.most_m > 0.006 && parseFloat(document.getElementById("depth").textContent) > 8.5, null, 60000));
   await page.screenshot({ path: join(build, "page.png") });
   await page.close();
 }
