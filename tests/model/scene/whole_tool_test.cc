@@ -121,7 +121,7 @@ TEST_F(WholeTool, PressesTheLiverByItsChainsWithinATenth) {
   expect_pressed_within(0.10);
 }
 
-// The goal is 7 % at every depth. Two places at rims miss it: one at 1 mm, one at 10 mm.
+// Two of the 28 miss the goal of 7 %, both at rims: known errors, which shall not grow.
 TEST_F(WholeTool, PressesEveryPlaceOfTheReferenceAsFiniteElementsDo) {
   const nlohmann::json truth = reference("liver_tool.json");
   ASSERT_EQ(truth["places"].size(), 7U);
@@ -131,7 +131,9 @@ TEST_F(WholeTool, PressesEveryPlaceOfTheReferenceAsFiniteElementsDo) {
     for (std::size_t i = 0; i < felt_N.size(); ++i) {
       const auto& one = place["cases"][i];
       const double want_N = one["force_N"], depth_m = one["depth_m"];
-      const double ratio = depth_m > 0.0015 && depth_m < 0.006 ? 0.07 : 0.09;
+      const bool is_known_error = (place["vertex"] == 2482 && depth_m == 0.001) ||
+                                  (place["vertex"] == 1586 && depth_m == 0.010);
+      const double ratio = is_known_error ? 0.09 : 0.07;
       EXPECT_NEAR(felt_N[i], want_N, ratio * want_N) << place["vertex"] << ", " << depth_m << " m";
     }
   }
