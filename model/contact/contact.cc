@@ -88,11 +88,11 @@ Wrench Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
     if (probe_[i].seen) find_depth(i);
   couple();
+  keep_definite();
   press();
   for (std::size_t i = 0; i < scene_.spheres.size() && let_go(); ++i) {
   }
   if (closing_ && hold()) press();
-  keep_definite();
   stiffen();
   resist_sliding();
   Wrench sum;
@@ -219,18 +219,23 @@ double Contact::press() RT_SAFE {
   return energy_J_;
 }
 
-// Where tissue has become so stiff that its coupling would leave the forces undecided: less of it,
-// and less depth, so that no energy comes from it. A pull beside a press is left as it is.
+// Where sites are so stiff that their coupling could leave the forces undecided at some depth: less
+// of it, and less depth for those that have pressed, so that their forces stay and no energy comes
+// from it. A pull beside a press is left as it is.
 void Contact::keep_definite() RT_SAFE {
-  const double share = definite_share(coupling_, pressing());
+  std::array<double, kMaxSpheres> stiffest_N_per_m{};
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
+    if (presses_[i]) stiffest_N_per_m[i] = scene_.law->stiffest_N_per_m(indentation(i));
+  const double share = definite_share(coupling_, stiffest_N_per_m);
   if (share >= 1.0) return;
   std::array<double, kMaxSpheres> spared_m{};
   double spared_J = 0.0;
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
+    if (!pressing_[i].presses) continue;
     spared_m[i] = (1.0 - share) * sunk_m(coupling_, pressing(), i);
     spared_J += pressing_[i].response.law.force_N * spared_m[i];
   }
-  if (!(spared_J > 0.0)) return;
+  if (!(spared_J >= 0.0)) return;
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) take_away(i, spared_m[i]);
   for (auto& row : coupling_)
     for (double& m_per_N : row) m_per_N *= share;

@@ -16,7 +16,9 @@
 // for the other side of the lobe.
 //
 // With C constant W is a potential: no stroke gives back more than it took. The forces are unique
-// where diag(1 / F'(e_i)) + C is positive definite; definite_share() tells how much of C may stay.
+// where diag(1 / F'(e_i)) + C is positive definite, with the largest F' that each site's law can
+// answer: with that of the moment, a law that saturates would let the dents snap from one solution
+// to another, and W with them. definite_share() tells how much of C may stay.
 // Newton on e, at most kMaxSteps from the guess that it is given, to kTolerance_m. Where it finds
 // nothing, as the matrix is not definite, half of C is tried, and in the end none.
 #pragma once
@@ -48,7 +50,9 @@ double press_together(SiteLaw& law, Coupling& c, std::span<PressingSphere> spher
 /// sum over j of C_ij F_j, m: how far the others have sunk the site of sphere i.
 double sunk_m(const Coupling& c, std::span<const PressingSphere> spheres, std::size_t i) RT_SAFE;
 
-/// Largest factor of C, 0 .. 1, with which the matrix above is positive definite by a margin.
-double definite_share(const Coupling& c, std::span<const PressingSphere> spheres) RT_SAFE;
+/// Largest factor of C, 0 .. 1, with which the matrix above is positive definite by a margin, for
+/// the largest stiffness of each sphere's site.
+double definite_share(const Coupling& c,
+                      const std::array<double, kMaxSpheres>& stiffest_N_per_m) RT_SAFE;
 
 }  // namespace tact::model::contact

@@ -62,6 +62,12 @@ class SiteLaw {
     (void)a, (void)b, (void)distance_m;
     return {};
   }
+  /// Largest dF/dd that the site can answer at any depth, N/m: how strongly it may couple. A law
+  /// whose sites couple must tell it.
+  virtual double stiffest_N_per_m(const Indentation& in) const RT_SAFE {
+    (void)in;
+    return 0.0;
+  }
   /// MC-5: how far the site gives way sideways under a unit force by a contact of this radius,
   /// m/N. 0: not known.
   virtual double sideways_m_per_N(const Indentation& in, double contact_radius_m) const RT_SAFE {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/law/law_bounds.h"
+
 namespace tact::model::tissue {
 namespace {
 
@@ -16,6 +18,12 @@ law::LawStatus worse(law::LawStatus a, law::LawStatus b) RT_SAFE {
 }
 
 }  // namespace
+
+ElasticField::ElasticField(const ElasticFieldParts& parts) : parts_(parts) {
+  for (const law::Law* curve : parts_.curves)
+    stiffest_N_per_m_.push_back(
+        law::stiffest_N_per_m(*curve, curve->range().pull_m, curve->range().press_m));
+}
 
 std::span<const float> ElasticField::coordinate(double depth_m) const RT_SAFE {
   return depth_m < 0.0 && !parts_.pull_coordinate.empty() ? parts_.pull_coordinate
@@ -128,6 +136,17 @@ contact::SiteCoupling ElasticField::coupling(const contact::Indentation& a,
       0.5 * (regular_m_per_N(a.place, distance_m) + regular_m_per_N(b.place, distance_m));
   return {.skin_m_per_N = std::max(half_space + std::min(regular, 0.0), 0.0),  // the map has errors
           .lobe_m_per_N = std::max(regular, 0.0)};
+}
+
+double ElasticField::stiffest_N_per_m(const contact::Indentation& in) const RT_SAFE {
+  if (!is_known(in)) return 0.0;
+  const auto at = [&](double depth_m) RT_SAFE {
+    const Blend blend = blend_at(in.place, depth_m);
+    const double soft = stiffest_N_per_m_[blend.low];
+    if (parts_.curves.size() < 2) return soft;
+    return soft + blend.fraction * (stiffest_N_per_m_[blend.low + 1] - soft);
+  };
+  return std::max(at(0.0), in.held ? at(-1.0) : 0.0);
 }
 
 double ElasticField::sideways_m_per_N(const contact::Indentation& in,

@@ -22,6 +22,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "model/contact/site_law.h"
 #include "model/law/relaxation.h"
@@ -57,12 +58,13 @@ struct ElasticFieldParts {
 
 class ElasticField final : public contact::SiteLaw {
  public:
-  explicit ElasticField(const ElasticFieldParts& parts) : parts_(parts) {}
+  explicit ElasticField(const ElasticFieldParts& parts);
 
   contact::SiteResponse respond(const contact::Indentation& in) RT_SAFE override;
   double resistance_N(const contact::Indentation& in, double force_N) const RT_SAFE override;
   contact::SiteCoupling coupling(const contact::Indentation& a, const contact::Indentation& b,
                                  double distance_m) const RT_SAFE override;
+  double stiffest_N_per_m(const contact::Indentation& in) const RT_SAFE override;
   double sideways_m_per_N(const contact::Indentation& in,
                           double contact_radius_m) const RT_SAFE override;
   void leave(std::size_t sphere) RT_SAFE override { now_[sphere] = next_[sphere] = {}; }
@@ -94,6 +96,7 @@ class ElasticField final : public contact::SiteLaw {
   Vec3 coordinate_slope(std::uint32_t triangle, double depth_m) const RT_SAFE;
 
   ElasticFieldParts parts_;
+  std::vector<double> stiffest_N_per_m_;  // of each curve
   std::array<law::RelaxationState, contact::kMaxSpheres> now_{}, next_{};
 };
 
