@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include "firmware/gate/energy_tank.h"
@@ -62,6 +63,24 @@ TEST(GateScalars, AShortenedVectorIsFiniteAndNoLongerThanItsLimit) {
       if (!cut) ASSERT_EQ(out, v);
       ASSERT_EQ(cut, !(norm(v) <= limit));
     });
+}
+
+TEST(GateScalars, RoundingLeavesNoVectorAboveItsLimit) {
+  // One unit in the last place was left with a room of 4e-16.
+  Vec3 found{0x1.0658ed9ae8956p+8, 0x1.3404b145dc9f9p-1, 0x1.d16fbd63475eep+2};
+  limit_magnitude(found, 0x1.0ed12f04a2b8ep+1);
+  EXPECT_LE(norm(found), 0x1.0ed12f04a2b8ep+1);
+  std::mt19937_64 random(15);
+  const auto draw = [&random](double low, double high) {
+    return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+  };
+  for (int i = 0; i < 2'000'000; ++i) {
+    const double limit = std::exp2(draw(-20.0, 20.0));
+    Vec3 v{draw(0.0, 300.0), draw(0.0, 300.0) * std::exp2(draw(-60.0, 0.0)),
+           draw(0.0, 300.0) * std::exp2(draw(-60.0, 0.0))};
+    limit_magnitude(v, limit);
+    ASSERT_LE(norm(v), limit) << std::hexfloat << v.x << ' ' << v.y << ' ' << v.z;
+  }
 }
 
 TEST(GateScalars, AnUnsoundLimitLetsNothingThrough) {
