@@ -223,6 +223,7 @@ double Contact::press() RT_SAFE {
 // of it, and less depth for those that have pressed, so that their forces stay and no energy comes
 // from it. A pull beside a press is left as it is.
 void Contact::keep_definite() RT_SAFE {
+  if (std::count(presses_.begin(), presses_.end(), true) < 2) return;
   std::array<double, kMaxSpheres> stiffest_N_per_m{};
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
     if (presses_[i]) stiffest_N_per_m[i] = scene_.law->stiffest_N_per_m(indentation(i));

@@ -93,8 +93,7 @@ bool is_solved(SiteLaw& law, const Coupling& c, std::span<PressingSphere> sphere
   return false;
 }
 
-bool is_positive_definite(Coupling a) RT_SAFE {
-  constexpr std::size_t n = kMaxSpheres;
+bool is_positive_definite(Coupling a, std::size_t n) RT_SAFE {
   for (std::size_t k = 0; k < n; ++k) {
     if (!(a[k][k] > 0.0)) return false;
     for (std::size_t i = k + 1; i < n; ++i) {
@@ -137,14 +136,18 @@ double press_together(SiteLaw& law, Coupling& c, std::span<PressingSphere> spher
 
 double definite_share(const Coupling& c,
                       const std::array<double, kMaxSpheres>& stiffest_N_per_m) RT_SAFE {
+  std::size_t n = kMaxSpheres;  // rows after the last stiffness are those of I
+  while (n > 0 && stiffest_N_per_m[n - 1] == 0.0) --n;
   // Scaled by the stiffnesses, which may be 0: margin I + factor sqrt(K) C sqrt(K)
   const auto is_definite = [&](double factor) RT_SAFE {
     Coupling a{};
-    for (std::size_t i = 0; i < kMaxSpheres; ++i)
-      for (std::size_t j = 0; j < kMaxSpheres; ++j)
-        a[i][j] = i == j ? kMargin
-                         : factor * c[i][j] * std::sqrt(stiffest_N_per_m[i] * stiffest_N_per_m[j]);
-    return is_positive_definite(a);
+    for (std::size_t i = 0; i < n; ++i) {
+      a[i][i] = kMargin;
+      for (std::size_t j = 0; j < i; ++j)
+        a[i][j] = a[j][i] =
+            factor * c[i][j] * std::sqrt(stiffest_N_per_m[i] * stiffest_N_per_m[j]);
+    }
+    return is_positive_definite(a, n);
   };
   if (is_definite(1.0)) return 1.0;
   constexpr int kHalvings = 10;
