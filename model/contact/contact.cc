@@ -226,7 +226,9 @@ void Contact::keep_definite() RT_SAFE {
   if (std::count(presses_.begin(), presses_.end(), true) < 2) return;
   std::array<double, kMaxSpheres> stiffest_N_per_m{};
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
-    if (presses_[i]) stiffest_N_per_m[i] = scene_.law->stiffest_N_per_m(indentation(i));
+    if (presses_[i])
+      stiffest_N_per_m[i] =
+          scene_.law->stiffest_N_per_m(touch_[i].place, touch_[i].state == TouchState::kHeld);
   const double share = definite_share(coupling_, stiffest_N_per_m);
   if (share >= 1.0) return;
   std::array<double, kMaxSpheres> spared_m{};

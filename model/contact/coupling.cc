@@ -93,7 +93,8 @@ bool is_solved(SiteLaw& law, const Coupling& c, std::span<PressingSphere> sphere
   return false;
 }
 
-bool is_positive_definite(Coupling a, std::size_t n) RT_SAFE {
+/// By elimination, in place.
+bool is_positive_definite(Coupling& a, std::size_t n) RT_SAFE {
   for (std::size_t k = 0; k < n; ++k) {
     if (!(a[k][k] > 0.0)) return false;
     for (std::size_t i = k + 1; i < n; ++i) {
@@ -140,12 +141,13 @@ double definite_share(const Coupling& c,
   while (n > 0 && stiffest_N_per_m[n - 1] == 0.0) --n;
   // Scaled by the stiffnesses, which may be 0: margin I + factor sqrt(K) C sqrt(K)
   const auto is_definite = [&](double factor) RT_SAFE {
-    Coupling a{};
+    Coupling a;  // n rows of it
     for (std::size_t i = 0; i < n; ++i) {
       a[i][i] = kMargin;
-      for (std::size_t j = 0; j < i; ++j)
-        a[i][j] = a[j][i] =
-            factor * c[i][j] * std::sqrt(stiffest_N_per_m[i] * stiffest_N_per_m[j]);
+      for (std::size_t j = 0; j < i; ++j) {
+        const double stiffness_N_per_m = std::sqrt(stiffest_N_per_m[i] * stiffest_N_per_m[j]);
+        a[i][j] = a[j][i] = factor * c[i][j] * stiffness_N_per_m;
+      }
     }
     return is_positive_definite(a, n);
   };

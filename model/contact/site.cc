@@ -123,11 +123,6 @@ Site facing(Site site, const Vec3& p_m, bool is_outside) RT_SAFE {
 
 }  // namespace
 
-bool is_a_place(const Place& place, const SurfaceView& surface) RT_SAFE {
-  return place.triangle < surface.triangle.size() && std::isfinite(place.weight[0]) &&
-         std::isfinite(place.weight[1]) && std::isfinite(place.weight[2]);
-}
-
 Site follow(const SurfaceView& surface, std::uint32_t start, const Vec3& p_m) RT_SAFE {
   Nearest here = nearest_on(surface, start, p_m);
   for (int i = 0; i < kMaxWalkSteps; ++i) {

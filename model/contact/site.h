@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "model/contact/surface.h"
 #include "model/types.h"
@@ -27,7 +28,10 @@ struct Place {
 };
 
 /// Is it a triangle of the surface, with finite weights?
-bool is_a_place(const Place& place, const SurfaceView& surface) RT_SAFE;
+inline bool is_a_place(const Place& place, const SurfaceView& surface) RT_SAFE {
+  return place.triangle < surface.triangle.size() && std::isfinite(place.weight[0]) &&
+         std::isfinite(place.weight[1]) && std::isfinite(place.weight[2]);
+}
 
 struct Site {
   Place place;              // of q

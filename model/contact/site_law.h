@@ -64,8 +64,8 @@ class SiteLaw {
   }
   /// Largest dF/dd that the site can answer at any depth, N/m: how strongly it may couple. A law
   /// whose sites couple must tell it.
-  virtual double stiffest_N_per_m(const Indentation& in) const RT_SAFE {
-    (void)in;
+  virtual double stiffest_N_per_m(const Place& place, bool held) const RT_SAFE {
+    (void)place, (void)held;
     return 0.0;
   }
   /// MC-5: how far the site gives way sideways under a unit force by a contact of this radius,

@@ -138,15 +138,15 @@ contact::SiteCoupling ElasticField::coupling(const contact::Indentation& a,
           .lobe_m_per_N = std::max(regular, 0.0)};
 }
 
-double ElasticField::stiffest_N_per_m(const contact::Indentation& in) const RT_SAFE {
-  if (!is_known(in)) return 0.0;
+double ElasticField::stiffest_N_per_m(const contact::Place& place, bool held) const RT_SAFE {
+  if (parts_.curves.size() < 2) return stiffest_N_per_m_[0];
+  if (!is_a_place(place, parts_.surface)) return 0.0;
   const auto at = [&](double depth_m) RT_SAFE {
-    const Blend blend = blend_at(in.place, depth_m);
+    const Blend blend = blend_at(place, depth_m);
     const double soft = stiffest_N_per_m_[blend.low];
-    if (parts_.curves.size() < 2) return soft;
     return soft + blend.fraction * (stiffest_N_per_m_[blend.low + 1] - soft);
   };
-  return std::max(at(0.0), in.held ? at(-1.0) : 0.0);
+  return held ? std::max(at(0.0), at(-1.0)) : at(0.0);
 }
 
 double ElasticField::sideways_m_per_N(const contact::Indentation& in,

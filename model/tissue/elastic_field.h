@@ -64,7 +64,7 @@ class ElasticField final : public contact::SiteLaw {
   double resistance_N(const contact::Indentation& in, double force_N) const RT_SAFE override;
   contact::SiteCoupling coupling(const contact::Indentation& a, const contact::Indentation& b,
                                  double distance_m) const RT_SAFE override;
-  double stiffest_N_per_m(const contact::Indentation& in) const RT_SAFE override;
+  double stiffest_N_per_m(const contact::Place& place, bool held) const RT_SAFE override;
   double sideways_m_per_N(const contact::Indentation& in,
                           double contact_radius_m) const RT_SAFE override;
   void leave(std::size_t sphere) RT_SAFE override { now_[sphere] = next_[sphere] = {}; }

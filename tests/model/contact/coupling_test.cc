@@ -140,7 +140,7 @@ TEST(Coupling, NoneLeavesEachSphereItsOwnDepthToTheBit) {
 TEST(Coupling, WhatCannotBeDefiniteIsMadeSmaller) {
   HalfSpace half;
   Group pair(half.field, {{0, 0, 0}, {8_mm, 0, 0}}, {8_mm, 8_mm});
-  const double k = half.field.stiffest_N_per_m(pair.sphere[0].in);
+  const double k = half.field.stiffest_N_per_m(pair.sphere[0].in.place, false);
   EXPECT_EQ(definite_share(pair.c, {k, k}), 1.0);
   pair.c[0][1] = pair.c[1][0] = 2.0 / k;  // a stiff site that sinks more with its neighbour's force
   const double share = definite_share(pair.c, {k, k});
