@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <iterator>
 
-#include "host/tracking/figure_words.h"
+#include "host/figure/figure_words.h"
 
 namespace tact::host::record {
 namespace {
@@ -22,7 +22,7 @@ std::uint32_t crc_of(const OperatorRecord& record) {
 }
 
 template <typename T>
-void put(const tracking::Pose& pose, T (&position_m)[3], T (&rotation_wxyz)[4]) {
+void put(const pose::Pose& pose, T (&position_m)[3], T (&rotation_wxyz)[4]) {
   const Eigen::Quaterniond& q = pose.rotation;
   const double wxyz[4] = {q.w(), q.x(), q.y(), q.z()};
   std::ranges::transform(wxyz, rotation_wxyz, [](double part) { return static_cast<T>(part); });
@@ -30,11 +30,11 @@ void put(const tracking::Pose& pose, T (&position_m)[3], T (&rotation_wxyz)[4]) 
 }
 
 template <typename T>
-std::optional<tracking::Pose> take(const T (&position_m)[3], const T (&wxyz)[4]) {
+std::optional<pose::Pose> take(const T (&position_m)[3], const T (&wxyz)[4]) {
   double p[3], q[4];
   std::ranges::transform(position_m, p, [](T m) { return static_cast<double>(m); });
   std::ranges::transform(wxyz, q, [](T part) { return static_cast<double>(part); });
-  tracking::Pose out{.rotation = {q[0], q[1], q[2], q[3]}, .position_m = {p[0], p[1], p[2]}};
+  pose::Pose out{.rotation = {q[0], q[1], q[2], q[3]}, .position_m = {p[0], p[1], p[2]}};
   const bool is_turn = std::abs(out.rotation.norm() - 1.0) < 1e-3;
   if (!is_turn || !out.position_m.allFinite()) return std::nullopt;
   return out;
@@ -54,7 +54,7 @@ std::optional<tracking::TrackedBody> take(const BodyRecord& record) {
       .age_s = static_cast<double>(record.age_s)};
 }
 
-FigureRecord record_of(const tracking::FigurePose& pose) {
+FigureRecord record_of(const figure::FigurePose& pose) {
   FigureRecord out{.height_m = pose.height_m,
                    .error_m = static_cast<float>(pose.arm.error_m),
                    .sweeps = static_cast<std::uint16_t>(pose.arm.sweeps),
@@ -62,7 +62,7 @@ FigureRecord record_of(const tracking::FigurePose& pose) {
                    .reached = pose.arm.reached,
                    .out_of_reach = pose.arm.out_of_reach,
                    .full_chain = pose.arm.full_chain};
-  for (std::size_t i = 0; i < tracking::kFigureJoints; ++i)
+  for (std::size_t i = 0; i < figure::kFigureJoints; ++i)
     Eigen::Vector3f::Map(out.joint_m[i]) = pose.joint_m[i].cast<float>();
   put({.rotation = pose.head, .position_m = pose.grip_m}, out.grip_m, out.head_wxyz);
   if (pose.shoulder_too_far) out.legs_reached |= 4u;
@@ -74,7 +74,7 @@ FigureRecord record_of(const tracking::FigurePose& pose) {
 }  // namespace
 
 std::string operator_record(const tracking::TrackedOperator& tracked,
-                            const tracking::FigurePose* figure) {
+                            const figure::FigurePose* figure) {
   OperatorRecord record{.time_s = tracked.time_s};
   for (std::size_t i = 0; i < tracking::kBodyRoles; ++i) {
     const tracking::TrackedBody& body = tracked.bodies[i];
@@ -102,15 +102,15 @@ std::optional<tracking::TrackedOperator> operator_of(const OperatorRecord& recor
   return out;
 }
 
-std::optional<tracking::FigurePose> figure_of(const OperatorRecord& record,
-                                              const tracking::TrackedOperator& bodies) {
+std::optional<figure::FigurePose> figure_of(const OperatorRecord& record,
+                                            const tracking::TrackedOperator& bodies) {
   const FigureRecord& figure = record.figure;
   const auto grip = take(figure.grip_m, figure.head_wxyz);
   const bool is_there = figure.height_m > 0.0 && std::isfinite(figure.height_m);
   if (!is_there || !grip || !std::isfinite(figure.error_m)) return std::nullopt;
-  tracking::FigurePose out;
+  figure::FigurePose out;
   out.height_m = figure.height_m;
-  for (std::size_t i = 0; i < tracking::kFigureJoints; ++i) {
+  for (std::size_t i = 0; i < figure::kFigureJoints; ++i) {
     out.joint_m[i] = Eigen::Vector3f::Map(figure.joint_m[i]).cast<double>();
     if (!out.joint_m[i].allFinite()) return std::nullopt;
   }

@@ -13,7 +13,7 @@
 #include <string>
 #include <type_traits>
 
-#include "host/tracking/figure.h"
+#include "host/figure/figure.h"
 
 namespace tact::host::record {
 
@@ -31,7 +31,7 @@ struct BodyRecord {
 /// FigurePose; its trouble and its words follow from it and the bodies.
 struct FigureRecord {
   double height_m = 0.0;  // 0: no figure was shown
-  float joint_m[tracking::kFigureJoints][3] = {};
+  float joint_m[figure::kFigureJoints][3] = {};
   float head_wxyz[4] = {1.0f, 0.0f, 0.0f, 0.0f};
   float grip_m[3] = {};
   float error_m = 0.0f;
@@ -51,19 +51,19 @@ struct OperatorRecord {
 
 static_assert(std::is_trivially_copyable_v<OperatorRecord>);
 static_assert(sizeof(BodyRecord) == 7 * 8 + 9 * 4 + 4 && sizeof(BodyRecord) % 8 == 0);
-static_assert(sizeof(FigureRecord) == 8 + (3 * tracking::kFigureJoints + 8) * 4 + 12);
+static_assert(sizeof(FigureRecord) == 8 + (3 * figure::kFigureJoints + 8) * 4 + 12);
 static_assert(sizeof(FigureRecord) % 8 == 0);
 static_assert(sizeof(OperatorRecord) ==
               16 + tracking::kBodyRoles * sizeof(BodyRecord) + sizeof(FigureRecord));
 
 /// The bytes behind one frame; `figure` may be null.
 std::string operator_record(const tracking::TrackedOperator& tracked,
-                            const tracking::FigurePose* figure = nullptr);
+                            const figure::FigurePose* figure = nullptr);
 /// Nothing if the checksum differs or a number makes no sense.
 std::optional<tracking::TrackedOperator> operator_of(const OperatorRecord& record);
 /// The figure that was shown with these bodies, to a millionth; nothing if none was, or a number is
 /// not finite.
-std::optional<tracking::FigurePose> figure_of(const OperatorRecord& record,
-                                              const tracking::TrackedOperator& bodies);
+std::optional<figure::FigurePose> figure_of(const OperatorRecord& record,
+                                            const tracking::TrackedOperator& bodies);
 
 }  // namespace tact::host::record

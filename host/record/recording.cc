@@ -116,7 +116,7 @@ std::string read_frames(std::istream& in, std::uint64_t start, std::uint64_t fil
     if (!is_tracked) continue;
     const std::optional<tracking::TrackedOperator> seen = operator_of(tracked);
     recording.operators.push_back(seen.value_or(tracking::TrackedOperator{}));
-    std::optional<tracking::FigurePose> figure;
+    std::optional<figure::FigurePose> figure;
     if (seen)
       figure = figure_of(tracked, *seen);
     else if (++damaged_operators; !recording.figures.empty())
@@ -209,7 +209,7 @@ std::optional<Error> RecordingWriter::put(const std::string& bytes) {
 
 std::optional<Error> RecordingWriter::write(const Frame& frame,
                                             const tracking::TrackedOperator* tracked,
-                                            const tracking::FigurePose* figure) {
+                                            const figure::FigurePose* figure) {
   if (!file_) return std::nullopt;
   std::string bytes = recording_frame(frame);
   if (is_tracked_)
@@ -233,7 +233,7 @@ void RecentFrames::restart(double frame_rate_Hz) {
 }
 
 void RecentFrames::add(const Frame& frame, const tracking::TrackedOperator* tracked,
-                       const tracking::FigurePose* figure) {
+                       const figure::FigurePose* figure) {
   if (frames_.size() >= capacity_ && !frames_.empty()) frames_.pop_front();
   frames_.push_back(frame);
   if (tracked == nullptr && operators_.empty()) return;

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "firmware/telemetry/recording_format.h"
+#include "host/figure/figure.h"
 #include "host/record/telemetry_check.h"
-#include "host/tracking/figure.h"
 #include "model/result.h"
 
 namespace tact::host::record {
@@ -34,7 +34,7 @@ struct Recording {
   MeshBytes mesh;
   std::vector<Frame> frames;
   std::vector<tracking::TrackedOperator> operators;  // of each frame; none without a tracker
-  std::vector<std::optional<tracking::FigurePose>>
+  std::vector<std::optional<figure::FigurePose>>
       figures;  // as they were shown; as many as operators
 
   /// None without a tracker.
@@ -42,7 +42,7 @@ struct Recording {
     return operators.empty() ? nullptr : &operators[frame];
   }
   /// None where none was shown.
-  const tracking::FigurePose* figure_at(std::size_t frame) const {
+  const figure::FigurePose* figure_at(std::size_t frame) const {
     return frame < figures.size() && figures[frame] ? &*figures[frame] : nullptr;
   }
   /// Of the first figure.
@@ -67,7 +67,7 @@ class RecordingWriter {
   /// `tracked` and the figure that is shown with it only if is_tracked.
   std::optional<model::Error> write(const Frame& frame,
                                     const tracking::TrackedOperator* tracked = nullptr,
-                                    const tracking::FigurePose* figure = nullptr);
+                                    const figure::FigurePose* figure = nullptr);
   std::optional<model::Error> close();
 
  private:
@@ -87,17 +87,17 @@ class RecentFrames {
  public:
   void restart(double frame_rate_Hz);
   void add(const Frame& frame, const tracking::TrackedOperator* tracked = nullptr,
-           const tracking::FigurePose* figure = nullptr);
+           const figure::FigurePose* figure = nullptr);
   const std::deque<Frame>& frames() const { return frames_; }
   const std::deque<tracking::TrackedOperator>& operators() const { return operators_; }
-  const std::deque<std::optional<tracking::FigurePose>>& figures() const { return figures_; }
+  const std::deque<std::optional<figure::FigurePose>>& figures() const { return figures_; }
 
   static constexpr double kKeep_s = 300.0;
 
  private:
   std::deque<Frame> frames_;
-  std::deque<tracking::TrackedOperator> operators_;          // as many as frames, or none
-  std::deque<std::optional<tracking::FigurePose>> figures_;  // as many as operators
+  std::deque<tracking::TrackedOperator> operators_;        // as many as frames, or none
+  std::deque<std::optional<figure::FigurePose>> figures_;  // as many as operators
   std::size_t capacity_ = 0;
 };
 

@@ -56,7 +56,7 @@ class Recorder {
                       is_tracked_));
   }
   void add(const record::Frame& frame, const tracking::TrackedOperator* tracked,
-           const tracking::FigurePose& figure) {
+           const figure::FigurePose& figure) {
     note(writer_.write(frame, tracked, &figure));
   }
   void close() { note(writer_.close()); }

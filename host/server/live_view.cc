@@ -38,7 +38,7 @@ void LiveView::begin(const record::Hello& hello, record::MeshBytes mesh, Link li
 }
 
 void LiveView::add(const record::Frame& frame, const tracking::TrackedOperator* tracked,
-                   const tracking::FigurePose* shown) {
+                   const figure::FigurePose* shown) {
   Text beside;
   if (companion_) {
     beside = std::make_shared<const std::string>(companion_->with(frame, tracked, shown));

@@ -35,9 +35,9 @@ class Companion {
   virtual nlohmann::json begin(const record::Hello& hello, const record::MeshBytes& mesh) = 0;
   /// One JSON text for each frame. `shown` is the figure of a recording: it is told as it was.
   virtual std::string with(const record::Frame& frame, const tracking::TrackedOperator* tracked,
-                           const tracking::FigurePose* shown = nullptr) = 0;
+                           const figure::FigurePose* shown = nullptr) = 0;
   /// The one that was told last.
-  virtual const tracking::FigurePose& figure() const = 0;
+  virtual const figure::FigurePose& figure() const = 0;
 };
 
 class LiveView {
@@ -52,7 +52,7 @@ class LiveView {
              const std::string& detail = {});
   /// `tracked` is the operator at this frame, if there is a tracker; `shown` as in Companion.
   void add(const record::Frame& frame, const tracking::TrackedOperator* tracked = nullptr,
-           const tracking::FigurePose* shown = nullptr);
+           const figure::FigurePose* shown = nullptr);
   void rewind();  // a replay starts again: forget the frames
   void lose(const std::string& reason);
 

@@ -6,17 +6,17 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "host/tracking/figure_json.h"
+#include "host/figure/figure_json.h"
 
 namespace tact::host::server {
 namespace {
 
-tracking::Pose pose_of(const record::Frame& frame) {
+pose::Pose pose_of(const record::Frame& frame) {
   const float (&p)[3] = frame.tool_position_m;
   const float (&q)[4] = frame.tool_orientation;
   // One that is no rotation stays none, and the figure leaves the tool where it was.
-  const auto turn = tracking::rotation_from({static_cast<double>(q[0]), static_cast<double>(q[1]),
-                                             static_cast<double>(q[2]), static_cast<double>(q[3])});
+  const auto turn = pose::rotation_from({static_cast<double>(q[0]), static_cast<double>(q[1]),
+                                         static_cast<double>(q[2]), static_cast<double>(q[3])});
   return {.rotation = turn ? *turn : Eigen::Quaterniond(0.0, 0.0, 0.0, 0.0),
           .position_m = Eigen::Vector3f(p[0], p[1], p[2]).cast<double>()};
 }
@@ -26,14 +26,14 @@ tracking::Pose pose_of(const record::Frame& frame) {
 Eigen::Vector3d grip_of(const record::Hello& hello, const record::MeshBytes& mesh) {
   const std::size_t at = 12 * (std::size_t{hello.organ_vertices} + hello.organ_triangles);
   const std::size_t bytes = 12 * std::size_t{hello.tool_vertices};
-  if (bytes == 0 || mesh.size() < at + bytes) return tracking::FigureSettings{}.grip_m;
+  if (bytes == 0 || mesh.size() < at + bytes) return figure::FigureSettings{}.grip_m;
   double top_m = 0.0;
   for (std::size_t i = 0; i < bytes; i += 12) {
     float z_m = 0.0f;
     std::memcpy(&z_m, mesh.data() + at + i + 8, sizeof z_m);
     top_m = std::max(top_m, static_cast<double>(z_m));
   }
-  return tracking::grip_m(top_m);
+  return figure::grip_m(top_m);
 }
 
 OperatorFigure::OperatorFigure(double height_m)
@@ -41,7 +41,7 @@ OperatorFigure::OperatorFigure(double height_m)
 
 void OperatorFigure::put_shoulder_at(const Eigen::Vector3d& shoulder_m) {
   settings_.shoulder_m = shoulder_m;
-  figure_ = tracking::Figure(settings_);
+  figure_ = figure::Figure(settings_);
 }
 
 nlohmann::json OperatorFigure::begin(const record::Hello& hello, const record::MeshBytes& mesh) {
@@ -52,7 +52,7 @@ nlohmann::json OperatorFigure::begin(const record::Hello& hello, const record::M
 
 std::string OperatorFigure::with(const record::Frame& frame,
                                  const tracking::TrackedOperator* tracked,
-                                 const tracking::FigurePose* shown) {
+                                 const figure::FigurePose* shown) {
   static const tracking::TrackedOperator kNobody{};
   const double time_s = static_cast<double>(frame.time_ns) * 1e-9;
   told_ = shown ? *shown : figure_.update(time_s, pose_of(frame), tracked ? *tracked : kNobody);

@@ -6,8 +6,8 @@
 
 #include <string>
 
+#include "host/figure/figure.h"
 #include "host/server/live_view.h"
-#include "host/tracking/figure.h"
 
 namespace tact::host::server {
 
@@ -24,13 +24,13 @@ class OperatorFigure final : public Companion {
   nlohmann::json begin(const record::Hello& hello, const record::MeshBytes& mesh) override;
   /// Without `tracked` the tool alone moves the figure.
   std::string with(const record::Frame& frame, const tracking::TrackedOperator* tracked,
-                   const tracking::FigurePose* shown = nullptr) override;
-  const tracking::FigurePose& figure() const override { return told_; }
+                   const figure::FigurePose* shown = nullptr) override;
+  const figure::FigurePose& figure() const override { return told_; }
 
  private:
-  tracking::FigureSettings settings_;
-  tracking::Figure figure_;
-  tracking::FigurePose told_;
+  figure::FigureSettings settings_;
+  figure::Figure figure_;
+  figure::FigurePose told_;
 };
 
 }  // namespace tact::host::server

@@ -10,17 +10,17 @@ namespace {
 // What noise and the calibration of two cameras may add to a motion.
 constexpr double kNoise_m = 0.02, kNoise_rad = 0.1;
 
-TrackingTrouble trouble_of(PoseStatus status) {
+TrackingTrouble trouble_of(pose::PoseStatus status) {
   switch (status) {
-    case PoseStatus::kOk:
+    case pose::PoseStatus::kOk:
       return TrackingTrouble::kNone;
-    case PoseStatus::kTooFewPoints:
+    case pose::PoseStatus::kTooFewPoints:
       return TrackingTrouble::kTooFewPoints;
-    case PoseStatus::kDegenerate:
+    case pose::PoseStatus::kDegenerate:
       return TrackingTrouble::kDegenerate;
-    case PoseStatus::kInvalid:
+    case pose::PoseStatus::kInvalid:
       return TrackingTrouble::kInvalid;
-    case PoseStatus::kNoPose:
+    case pose::PoseStatus::kNoPose:
       return TrackingTrouble::kNoPose;
   }
   return TrackingTrouble::kInvalid;
@@ -79,10 +79,10 @@ bool BodyTracker::is_believed(const Timed& next) {
   return jump_poses_ >= kJumpPoses;
 }
 
-bool BodyTracker::take(const PoseEstimate& estimate, double time_s, double now_s) {
+bool BodyTracker::take(const pose::PoseEstimate& estimate, double time_s, double now_s) {
   if (anchored_ && time_s <= good_.time_s) return false;
   body_.trouble = trouble_of(estimate.status);
-  if (estimate.status != PoseStatus::kOk) return false;
+  if (estimate.status != pose::PoseStatus::kOk) return false;
   const Timed next{.pose = estimate.pose, .time_s = time_s};
   if (!is_believed(next)) {
     body_.trouble = TrackingTrouble::kJump;
@@ -99,8 +99,9 @@ bool BodyTracker::take(const PoseEstimate& estimate, double time_s, double now_s
   return true;
 }
 
-bool BodyTracker::refine(const PoseEstimate& estimate, double time_s) {
-  if (!anchored_ || time_s != good_.time_s || estimate.status != PoseStatus::kOk) return false;
+bool BodyTracker::refine(const pose::PoseEstimate& estimate, double time_s) {
+  if (!anchored_ || time_s != good_.time_s || estimate.status != pose::PoseStatus::kOk)
+    return false;
   body_.trouble = TrackingTrouble::kNone;
   good_.pose = estimate.pose;
   filter_ = before_;
@@ -108,7 +109,7 @@ bool BodyTracker::refine(const PoseEstimate& estimate, double time_s) {
   return true;
 }
 
-void BodyTracker::show(const PoseEstimate& estimate) {
+void BodyTracker::show(const pose::PoseEstimate& estimate) {
   body_.raw = estimate.pose;
   body_.rms_px = estimate.rms_px;
   body_.pose = filter_.next(estimate.pose, good_.time_s);

@@ -18,9 +18,9 @@
 #include <optional>
 #include <vector>
 
-#include "host/tracking/epnp.h"
+#include "host/pose/epnp.h"
+#include "host/pose/one_euro.h"
 #include "host/tracking/observation.h"
-#include "host/tracking/one_euro.h"
 #include "host/tracking/tracked_operator.h"
 
 namespace tact::host::tracking {
@@ -45,9 +45,9 @@ class BodyTracker {
   }
   /// The pose of the admitted observation; true if it is the good one now. One that is not newer
   /// than the good one changes nothing.
-  bool take(const PoseEstimate& estimate, double time_s, double now_s);
+  bool take(const pose::PoseEstimate& estimate, double time_s, double now_s);
   /// A better pose of the time of the good one, from more views; of another time: false, nothing.
-  bool refine(const PoseEstimate& estimate, double time_s);
+  bool refine(const pose::PoseEstimate& estimate, double time_s);
 
   TrackedBody at(double now_s) const;
   /// The last good pose, filtered, however old; none if there never was one.
@@ -70,11 +70,11 @@ class BodyTracker {
   bool is_frozen(Stream& stream, const Observation& seen) const;
   /// False while a jump is not believed yet.
   bool is_believed(const Timed& next);
-  void show(const PoseEstimate& estimate);
+  void show(const pose::PoseEstimate& estimate);
 
   std::vector<Stream> streams_;
   TrackedBody body_{.state = BodyState::kLost};
-  PoseFilter filter_, before_;  // before the good pose
+  pose::PoseFilter filter_, before_;  // before the good pose
   Timed good_, jump_;
   bool anchored_ = false;  // good_ is of this beginning
   int jump_poses_ = 0;

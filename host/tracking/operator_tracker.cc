@@ -7,18 +7,18 @@
 #include <cmath>
 #include <utility>
 
-#include "host/tracking/robust_pose.h"
+#include "host/pose/robust_pose.h"
 
 namespace tact::host::tracking {
 namespace {
 
 using model::Error;
 
-Pose inverse(const Pose& pose) { return bind(pose, Pose{}); }
+Pose inverse(const Pose& pose) { return pose::bind(pose, Pose{}); }
 
 /// The markers that both the body has and the camera sees.
-Markers markers_of(const MarkerBody& body, const Observation& seen) {
-  Markers out;
+pose::Markers markers_of(const MarkerBody& body, const Observation& seen) {
+  pose::Markers out;
   for (const SeenMarker& point : seen.points) {
     const auto marker = std::ranges::find(body.markers, point.id, &BodyMarker::id);
     if (marker == body.markers.end()) continue;
@@ -43,15 +43,15 @@ std::optional<Pose> OperatorTracker::camera_pose(std::size_t camera) const {
 
 std::optional<OperatorTracker::Joint> OperatorTracker::join(std::size_t body, std::size_t camera,
                                                             const Look& look) const {
-  std::vector<BodyView> views{look.view};
+  std::vector<pose::BodyView> views{look.view};
   std::optional<Joint> out;
   for (std::size_t other = 0; other < setup_.cameras.size(); ++other) {
     const std::optional<Look>& beside = looks_[body][other];
     if (other == camera || !beside) continue;
     if (!(std::abs(beside->time_s - look.time_s) <= kTogether_s)) continue;
     views.push_back(beside->view);
-    const PoseEstimate joint = joint_pose(views);
-    if (joint.status != PoseStatus::kOk) {
+    const pose::PoseEstimate joint = pose::joint_pose(views);
+    if (joint.status != pose::PoseStatus::kOk) {
       views.pop_back();  // it contradicts the newest
       continue;
     }
@@ -60,14 +60,14 @@ std::optional<OperatorTracker::Joint> OperatorTracker::join(std::size_t body, st
   return out;
 }
 
-void OperatorTracker::take(std::size_t body, std::size_t camera, Look look, PoseEstimate estimate,
-                           double now_s) {
-  const auto registered = [&](PoseEstimate e) {
-    e.pose = drive(setup_.registration, e.pose);
+void OperatorTracker::take(std::size_t body, std::size_t camera, Look look,
+                           pose::PoseEstimate estimate, double now_s) {
+  const auto registered = [&](pose::PoseEstimate e) {
+    e.pose = pose::drive(setup_.registration, e.pose);
     return e;
   };
   BodyTracker& tracker = trackers_[body];
-  estimate.pose = drive(look.view.eye, estimate.pose);
+  estimate.pose = pose::drive(look.view.eye, estimate.pose);
   const bool enters = !tracker.repeats(camera);
   const std::optional<Joint> joint = enters ? join(body, camera, look) : std::nullopt;
   bool good = tracker.take(registered(joint ? joint->estimate : estimate), look.time_s, now_s);
@@ -89,21 +89,21 @@ std::optional<Error> OperatorTracker::take(const Observation& seen, double now_s
   const auto body_at = static_cast<std::size_t>(body - setup_.bodies.begin());
   BodyTracker& tracker = is_base ? places_[camera_at] : trackers_[body_at];
   if (!tracker.admit(is_base ? 0 : camera_at, seen, now_s)) return std::nullopt;
-  const Markers markers = markers_of(*body, seen);
-  PoseEstimate estimate =
-      robust_pose(camera->lens, markers.points_m, markers.pixels_px, camera->outlier_px);
+  const pose::Markers markers = markers_of(*body, seen);
+  pose::PoseEstimate estimate =
+      pose::robust_pose(camera->lens, markers.points_m, markers.pixels_px, camera->outlier_px);
   const std::optional<Pose> place = camera_pose(camera_at);
   if (is_base) {
     estimate.pose = inverse(estimate.pose);
-  } else if (estimate.status == PoseStatus::kOk && place) {
+  } else if (estimate.status == pose::PoseStatus::kOk && place) {
     Look look{.time_s = seen.time_s,
-              .view = body_view(camera->lens, markers.points_m, markers.pixels_px,
-                                camera->outlier_px, estimate.pose)};
+              .view = pose::body_view(camera->lens, markers.points_m, markers.pixels_px,
+                                      camera->outlier_px, estimate.pose)};
     look.view.eye = *place;
     take(body_at, camera_at, std::move(look), estimate, now_s);
     return std::nullopt;
-  } else if (estimate.status == PoseStatus::kOk) {
-    estimate.status = PoseStatus::kNoPose;  // the base was not seen yet
+  } else if (estimate.status == pose::PoseStatus::kOk) {
+    estimate.status = pose::PoseStatus::kNoPose;  // the base was not seen yet
   }
   tracker.take(estimate, seen.time_s, now_s);
   return std::nullopt;

@@ -18,8 +18,8 @@
 #include <optional>
 #include <vector>
 
+#include "host/pose/joint_pose.h"
 #include "host/tracking/body_tracker.h"
-#include "host/tracking/joint_pose.h"
 #include "host/tracking/tracking_setup.h"
 #include "model/result.h"
 
@@ -39,16 +39,17 @@ class OperatorTracker {
  private:
   struct Look {
     double time_s = 0.0;
-    BodyView view;
+    pose::BodyView view;
   };
   struct Joint {
-    PoseEstimate estimate;  // tracker <- body
-    double time_s = 0.0;    // of the newest look in it
+    pose::PoseEstimate estimate;  // tracker <- body
+    double time_s = 0.0;          // of the newest look in it
   };
   std::optional<Pose> camera_pose(std::size_t camera) const;
   /// With the looks of the other cameras; none if there is none to join.
   std::optional<Joint> join(std::size_t body, std::size_t camera, const Look& look) const;
-  void take(std::size_t body, std::size_t camera, Look look, PoseEstimate estimate, double now_s);
+  void take(std::size_t body, std::size_t camera, Look look, pose::PoseEstimate estimate,
+            double now_s);
 
   TrackingSetup setup_;
   std::vector<BodyTracker> trackers_;                    // by body

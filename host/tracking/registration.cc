@@ -51,11 +51,11 @@ Result<Registration> fit_registration(std::span<const PosePair> poses) {
   const Eigen::Matrix4d fit = Eigen::umeyama(tracked, device, /*with_scaling=*/false);
   Registration out;
   out.transform.rotation =
-      canonical(Eigen::Quaterniond(Matrix3d(fit.topLeftCorner<3, 3>())).normalized());
+      pose::canonical(Eigen::Quaterniond(Matrix3d(fit.topLeftCorner<3, 3>())).normalized());
   out.transform.position_m = fit.topRightCorner<3, 1>();
   double sum_m2 = 0.0;
   for (const PosePair& pose : poses) {
-    const double off_m = (to_world(out.transform, pose.tracked_m) - pose.device_m).norm();
+    const double off_m = (pose::to_world(out.transform, pose.tracked_m) - pose.device_m).norm();
     out.residual_m.push_back(off_m);
     sum_m2 += off_m * off_m;
   }

@@ -20,10 +20,12 @@
 #include <string>
 #include <vector>
 
-#include "host/tracking/coordinate_chain.h"
+#include "host/pose/coordinate_chain.h"
 #include "model/result.h"
 
 namespace tact::host::tracking {
+
+using pose::Pose;
 
 inline constexpr std::size_t kLeastPoses = 6;
 inline constexpr double kLeastSpread_m = 0.005;

@@ -12,9 +12,11 @@
 #include <array>
 #include <cstdint>
 
-#include "host/tracking/coordinate_chain.h"
+#include "host/pose/coordinate_chain.h"
 
 namespace tact::host::tracking {
+
+using pose::Pose;
 
 /// What a marker body is fixed to.
 enum class BodyRole : std::uint8_t {

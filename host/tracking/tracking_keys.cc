@@ -130,7 +130,7 @@ std::vector<std::vector<double>> TrackingKeys::rows(std::string_view key, std::s
 Pose TrackingKeys::pose() {
   const std::vector<double> p = numbers("position_m", 3, kFarthest_m);
   const std::vector<double> q = numbers("rotation_wxyz", 4, 1e6);
-  const auto rotation = rotation_from(std::array{q[0], q[1], q[2], q[3]});
+  const auto rotation = pose::rotation_from(std::array{q[0], q[1], q[2], q[3]});
   if (!rotation) refuse("rotation_wxyz", "rotation_wxyz has no direction; no turn is [1, 0, 0, 0]");
   return {.rotation = rotation.value_or(Eigen::Quaterniond::Identity()),
           .position_m = {p[0], p[1], p[2]}};

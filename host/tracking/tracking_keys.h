@@ -14,10 +14,12 @@
 #include <string_view>
 #include <vector>
 
-#include "host/tracking/coordinate_chain.h"
+#include "host/pose/coordinate_chain.h"
 #include "model/result.h"
 
 namespace tact::host::tracking {
+
+using pose::Pose;
 
 /// Parses the file, at most 1 MB. Error: what is wrong, where and the cure.
 model::Result<toml::table> parse_toml_file(const std::string& path);

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "host/tracking/pose_polish.h"
+#include "host/pose/pose_polish.h"
 #include "host/tracking/tracked_operator.h"
 #include "model/result.h"
 
@@ -19,7 +19,7 @@ namespace tact::host::tracking {
 
 struct TrackingCamera {
   std::string name;
-  Camera lens{};
+  pose::Camera lens{};
   double outlier_px = 3.0;   // a marker farther than this from its computed pixel is no good
   std::optional<Pose> pose;  // camera's axes to the tracker's; none: found from the base
 };

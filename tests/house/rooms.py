@@ -11,6 +11,7 @@ SCENE = [*SURFACE_LAWS, "model/mesh", "model/scene"]
 DELTA = ["model", "hal", "hal/delta"]
 DEVICES = ["hal/sim", "hal/odrive", "hal/cia402", "hal/falcon_usb", "hal/force_dimension"]
 LOOP = [*CONTACT, "hal", "firmware/gate"]
+OPERATOR = ["host/pose", "host/tracking", "host/figure"]
 # What a folder may include beside itself; CMake links no more than that.
 ROOMS = {
     "model": [],
@@ -41,10 +42,12 @@ ROOMS = {
     "firmware/black_box": ["model", "firmware/loop", "firmware/telemetry"],
     "firmware/run": [*LOOP, *SCENE, "hal/gpio", "hal/list", "hal/registry", "firmware/loop",
                      "firmware/watch", "firmware/telemetry", "firmware/black_box", "firmware/pc"],
-    "host/tracking": ["model"],
-    "host/record": ["model", "host/tracking", "firmware/telemetry"],
-    "host/server": ["model", "host/tracking", "host/record"],
-    "host/run": ["model", "host/tracking", "host/record", "host/server", "hal/sim"],
+    "host/pose": [],
+    "host/tracking": ["model", "host/pose"],
+    "host/figure": ["host/pose", "host/tracking"],
+    "host/record": ["model", *OPERATOR, "firmware/telemetry"],
+    "host/server": ["model", *OPERATOR, "host/record"],
+    "host/run": ["model", *OPERATOR, "host/record", "host/server", "hal/sim"],
 }
 # A tool measures every room above; of the other tools it may include these.
 TOOLS = {

@@ -13,8 +13,8 @@
 
 namespace tact::test {
 
+using host::pose::Pose;
 using host::tracking::Observation;
-using host::tracking::Pose;
 
 inline Eigen::Quaterniond turn(double angle_rad, const Eigen::Vector3d& axis) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, axis.normalized()));
@@ -59,7 +59,7 @@ inline Observation look(const host::tracking::TrackingCamera& camera, const Pose
   Observation out{
       .time_s = time_s, .sequence = sequence, .camera = camera.name, .body = name, .points = {}};
   std::normal_distribution<double> normal(0.0, noise_px);
-  const Pose seen = host::tracking::bind(eye, body);  // camera <- body
+  const Pose seen = host::pose::bind(eye, body);  // camera <- body
   for (const host::tracking::BodyMarker& marker : eight_markers()) {
     const Eigen::Vector3d x = to_world(seen, marker.position_m);
     Eigen::Vector2d px(camera.lens.fx_px * x.x() / x.z() + camera.lens.cx_px,

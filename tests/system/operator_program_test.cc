@@ -3,7 +3,7 @@
 // recording of it.
 #include <signal.h>
 
-#include "host/tracking/figure.h"
+#include "host/figure/figure.h"
 #include "tests/support/program.h"
 #include "tests/support/tracking_views.h"
 #include "tests/support/viewer_fixture.h"
@@ -18,9 +18,9 @@ class OperatorProgram : public ::testing::Test {
     std::filesystem::create_directory(folder_);
     test::write_file(in("index.html"), "<html>");
     std::string lines;  // a hand that is tracked, and stays
-    const tracking::TrackingCamera eye = test::camera("front", tracking::Pose{});
+    const tracking::TrackingCamera eye = test::camera("front", pose::Pose{});
     for (std::uint64_t i = 0; i < 120; ++i) {
-      const tracking::Pose hand{.position_m = {1e-6 * static_cast<double>(i), 0.0, 1.5}};
+      const pose::Pose hand{.position_m = {1e-6 * static_cast<double>(i), 0.0, 1.5}};
       lines += test::line_of(test::look(eye, {}, "h", hand, static_cast<double>(i) / 60.0, i));
       lines += "\n";
     }
@@ -77,7 +77,7 @@ class OperatorProgram : public ::testing::Test {
       const auto text = boost::beast::buffers_to_string(buffer.data());
       const auto told = nlohmann::json::parse(text, nullptr, false);
       if (told.value("kind", "") != "figure") continue;
-      const std::size_t k = 3 * static_cast<std::size_t>(tracking::FigureJoint::kRightShoulder);
+      const std::size_t k = 3 * static_cast<std::size_t>(figure::FigureJoint::kRightShoulder);
       const auto& at_m = told["joint_m"];
       return Vector3d(at_m[k], at_m[k + 1], at_m[k + 2]);
     }
@@ -108,7 +108,7 @@ TEST_F(OperatorProgram, ShowsTheShoulderOfTheSceneLiveAndFromItsRecording) {
   ASSERT_EQ(read.damage, "");
   ASSERT_NE(read.recording.figure_at(0), nullptr);
   EXPECT_LT(
-      ((*read.recording.figure_at(0))[tracking::FigureJoint::kRightShoulder] - shoulder_m).norm(),
+      ((*read.recording.figure_at(0))[figure::FigureJoint::kRightShoulder] - shoulder_m).norm(),
       1e-6);
   view("--open " + in("a.tact"), [&] {
     again_m = told_shoulder_m();

@@ -38,11 +38,11 @@ class Forces : public ::testing::Test {
     fs::create_directory(folder_);
     test::write_file(in("index.html"), "<html>");
     std::string lines;
-    const host::tracking::TrackingCamera eye = test::camera("front", host::tracking::Pose{});
+    const host::tracking::TrackingCamera eye = test::camera("front", host::pose::Pose{});
     std::mt19937 noise(3);
     for (std::uint64_t i = 0; i < 120; ++i) {
       const double time_s = static_cast<double>(i) / 60.0;
-      const host::tracking::Pose hand{.position_m = {0.1 * std::sin(3.0 * time_s), 0.0, 1.5}};
+      const host::pose::Pose hand{.position_m = {0.1 * std::sin(3.0 * time_s), 0.0, 1.5}};
       lines += test::line_of(test::look(eye, {}, "h", hand, time_s, i, &noise)) + "\n";
     }
     test::write_file(in("a.jsonl"), lines);
@@ -109,9 +109,9 @@ class Forces : public ::testing::Test {
     const auto show = [&](double until_s, double by_m = 0.0, std::size_t points = 8) {
       for (; time_s < until_s; time_s += 1.0 / 60.0) {
         const double x_m = 0.1 * std::sin(3.0 * time_s) + (++sequence % 2 == 0 ? by_m : -by_m);
-        const host::tracking::Pose hand{.position_m = {x_m, 0.0, 1.5}};
-        host::tracking::Observation seen = test::look(test::camera("front", host::tracking::Pose{}),
-                                                      {}, "h", hand, time_s, sequence, &noise);
+        const host::pose::Pose hand{.position_m = {x_m, 0.0, 1.5}};
+        host::tracking::Observation seen = test::look(test::camera("front", host::pose::Pose{}), {},
+                                                      "h", hand, time_s, sequence, &noise);
         seen.points.resize(points);
         lines += test::line_of(seen) + "\n";
       }

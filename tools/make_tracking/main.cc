@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-using tact::host::tracking::Pose;
+using tact::host::pose::Pose;
 
 constexpr const char* kName = "maintenance";
 
@@ -61,7 +61,7 @@ std::string description() {
       kName, tact::tools::make_tracking::kLength_s, tact::tools::make_tracking::kNoise_px);
   for (const auto& eye : tact::tools::make_tracking::tracking_cameras()) {
     const Quaterniond rotation =
-        tact::host::tracking::canonical(to_W.rotation.conjugate() * eye.pose.rotation);
+        tact::host::pose::canonical(to_W.rotation.conjugate() * eye.pose.rotation);
     const Vector3d position_m = to_W.rotation.conjugate() * (eye.pose.position_m - to_W.position_m);
     out += fmt::format(
         "\n[[camera]]\nname = \"{}\"\nfx_px = {:.1f}\nfy_px = {:.1f}\ncx_px = {:.1f}\n"
@@ -91,7 +91,7 @@ std::string truth() {
     out += fmt::format(R"({{"time_s":{:.4f},"body":"{}","position_m":{},"rotation_wxyz":{}}})"
                        "\n",
                        s.time_s, s.body->name, text_of(pose.position_m),
-                       text_of(tact::host::tracking::canonical(pose.rotation)));
+                       text_of(tact::host::pose::canonical(pose.rotation)));
   }
   return out;
 }

@@ -14,7 +14,7 @@ namespace {
 using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-using host::tracking::Pose;
+using host::pose::Pose;
 
 struct Key {
   double time_s = 0.0, value = 0.0;
@@ -105,7 +105,7 @@ Pose head_pose(double t) {
                                turned(0.4 * along(kTilt, t), Vector3d::UnitX()) *
                                turned(-along(kNod, t) + 1.0 * sway(t, 11, 0.7), Vector3d::UnitY());
   return {.rotation = rotation,
-          .position_m = host::tracking::to_world(trunk, neck_m) + rotation * head_m};
+          .position_m = host::pose::to_world(trunk, neck_m) + rotation * head_m};
 }
 
 Pose hand_pose(double t) {
@@ -120,9 +120,8 @@ Pose shoulder_pose(double t) {
   // It comes forward a little while the hand is down.
   const double down_m = kTipZ.front().value - along(kTipZ, std::fmod(t, kRound_s));
   const Pose trunk = trunk_pose(t);
-  return {
-      .rotation = trunk.rotation,
-      .position_m = host::tracking::to_world(trunk, shoulder_m - 0.5 * down_m * Vector3d::UnitX())};
+  return {.rotation = trunk.rotation,
+          .position_m = host::pose::to_world(trunk, shoulder_m - 0.5 * down_m * Vector3d::UnitX())};
 }
 
 }  // namespace

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "host/tracking/coordinate_chain.h"
-#include "host/tracking/pose_polish.h"
+#include "host/pose/coordinate_chain.h"
+#include "host/pose/pose_polish.h"
 
 namespace tact::tools::make_tracking {
 
@@ -33,18 +33,18 @@ struct TrackedBody {
 
 struct TrackingCamera {
   const char* name;
-  host::tracking::Camera lens;
-  host::tracking::Pose pose;  // of the camera in W: looks along its +Z, +X right, +Y down
+  host::pose::Camera lens;
+  host::pose::Pose pose;  // of the camera in W: looks along its +Z, +X right, +Y down
 };
 
 /// Tracker's frame to W.
-host::tracking::Pose registration();
+host::pose::Pose registration();
 
 std::span<const TrackedBody> tracked_bodies();
 std::span<const TrackingCamera> tracking_cameras();
 
 /// Of the body in W; periodic in kLength_s.
-host::tracking::Pose body_pose(const TrackedBody& body, double time_s);
+host::pose::Pose body_pose(const TrackedBody& body, double time_s);
 
 struct SeenPoint {
   int id = 0;

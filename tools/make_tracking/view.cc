@@ -23,8 +23,8 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using host::tracking::Camera;
-using host::tracking::Pose;
+using host::pose::Camera;
+using host::pose::Pose;
 
 constexpr unsigned kSeed = 6;
 constexpr double kHide_ratio = 0.006;    // of the looks in which a marker goes out of sight ...
@@ -44,7 +44,7 @@ TrackingCamera camera(const char* name, const Vector3d& from_m) {
   axes << right, ahead.cross(right), ahead;
   return {.name = name,
           .lens = kLens,
-          .pose = {.rotation = host::tracking::canonical(Quaterniond(axes)), .position_m = from_m}};
+          .pose = {.rotation = host::pose::canonical(Quaterniond(axes)), .position_m = from_m}};
 }
 
 Vector2d pixel(const TrackingCamera& eye, const Vector3d& p_W_m) {
@@ -82,7 +82,7 @@ class Cameraman {
     Pose pose = body_pose(body, sight.time_s);
     if (name == "head" && is_within(sight.time_s, 22.1, 22.13)) pose.position_m.y() -= 1.0;
     for (std::size_t id = 0; id < body.marker_m.size(); ++id) {
-      Vector2d p_px = pixel(eyes[which], host::tracking::to_world(pose, body.marker_m[id]));
+      Vector2d p_px = pixel(eyes[which], host::pose::to_world(pose, body.marker_m[id]));
       const double down = normal_(random_), right = normal_(random_);
       p_px += kNoise_px * Vector2d(right, down);
       if (!is_hidden(name, id)) sight.points.push_back({static_cast<int>(id), p_px});
@@ -140,7 +140,7 @@ Pose registration() {
   // The tracker's y is up and its -z looks past the operator; its origin stands on the floor.
   const Quaterniond rotation(AngleAxisd(25.0 * std::numbers::pi / 180.0, Vector3d::UnitZ()) *
                              AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitX()));
-  return {.rotation = host::tracking::canonical(rotation), .position_m = {-0.8, 0.6, -0.95}};
+  return {.rotation = host::pose::canonical(rotation), .position_m = {-0.8, 0.6, -0.95}};
 }
 
 std::span<const TrackingCamera> tracking_cameras() {

@@ -10,18 +10,18 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "host/tracking/figure.h"
+#include "host/figure/figure.h"
 #include "tools/tracking_bench/median_reporter.h"
 #include "tools/tracking_bench/tool_motion.h"
 
 namespace {
 
 using Eigen::Vector3d;
-using tact::host::tracking::ArmGoal;
-using tact::host::tracking::ArmWork;
-using tact::host::tracking::Pose;
-using tact::host::tracking::RootRule;
-using tact::host::tracking::ToolArm;
+using tact::host::figure::ArmGoal;
+using tact::host::figure::ArmWork;
+using tact::host::figure::RootRule;
+using tact::host::figure::ToolArm;
+using tact::host::pose::Pose;
 
 using tact::tools::tracking_bench::kMotionFrame_s;
 
@@ -36,13 +36,13 @@ std::vector<Pose> motion() {
 }
 
 /// In the pelvis's axes.
-std::vector<ArmGoal> goals(const tact::host::tracking::BodyPlan& plan) {
-  const Pose pelvis = tact::host::tracking::standing_pelvis(plan);
+std::vector<ArmGoal> goals(const tact::host::figure::BodyPlan& plan) {
+  const Pose pelvis = tact::host::figure::standing_pelvis(plan);
   std::vector<ArmGoal> out;
   for (const Pose& tool : motion()) {
-    const Vector3d grip_m = to_world(tool, tact::host::tracking::FigureSettings{}.grip_m);
+    const Vector3d grip_m = to_world(tool, tact::host::figure::FigureSettings{}.grip_m);
     out.push_back({.grip_m = grip_m - pelvis.position_m,
-                   .hand = (tool.rotation * tact::host::tracking::holding_hand()).normalized()});
+                   .hand = (tool.rotation * tact::host::figure::holding_hand()).normalized()});
   }
   return out;
 }
@@ -51,12 +51,12 @@ std::vector<ArmGoal> goals(const tact::host::tracking::BodyPlan& plan) {
 void bench_arm(const std::string& name, RootRule rule, long& missed) {
   tact::tools::tracking_bench::repeat(
       benchmark::RegisterBenchmark(name.c_str(), [rule, &missed](benchmark::State& state) {
-        const auto plan = tact::host::tracking::make_body_plan(1.75);
+        const auto plan = tact::host::figure::make_body_plan(1.75);
         const std::vector<ArmGoal> all = goals(plan);
         ToolArm arm(plan, rule);
         std::size_t i = 0;
         for (auto _ : state) {
-          arm.relax(kMotionFrame_s / tact::host::tracking::kRelax_s);
+          arm.relax(kMotionFrame_s / tact::host::figure::kRelax_s);
           const ArmWork work = arm.hold(all[i++ % all.size()]);
           missed += work.reached ? 0 : 1;
           benchmark::DoNotOptimize(work);
@@ -68,7 +68,7 @@ void bench_figure(const std::string& name) {
   tact::tools::tracking_bench::repeat(
       benchmark::RegisterBenchmark(name.c_str(), [](benchmark::State& state) {
         const std::vector<Pose> all = motion();
-        tact::host::tracking::Figure figure;
+        tact::host::figure::Figure figure;
         double t_s = 0.0;
         std::size_t i = 0;
         for (auto _ : state)

@@ -14,7 +14,7 @@ namespace {
 using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
 using namespace tact::tools::tracking_bench;  // NOLINT(google-build-using-namespace)
 using nlohmann::json;
-using tact::host::tracking::RootRule;
+using tact::host::figure::RootRule;
 
 constexpr double kGoalRatio = 2.0;
 
@@ -70,7 +70,7 @@ int main(int argc, char** argv) {
   const auto motion = figure_motion(*scene, *input, seconds, frames_Hz);
   if (!motion) return program.fail(motion.error());
   const Eigen::Vector3d grip_m =
-      tact::host::tracking::grip_m(tact::model::mesh::summarize(scene->tool_mesh).high_m.z);
+      tact::host::figure::grip_m(tact::model::mesh::summarize(scene->tool_mesh).high_m.z);
   const FigureWork first = measure_figure(*motion, grip_m, RootRule::kSubRootFirst);
   const FigureWork whole = measure_figure(*motion, grip_m, RootRule::kAlwaysFullChain);
   const double ratio =

@@ -20,7 +20,7 @@
 namespace tact::tools::tracking_bench {
 namespace {
 
-using host::tracking::Pose;
+using host::pose::Pose;
 using host::tracking::TrackedOperator;
 using model::Error;
 using model::Result;
@@ -90,14 +90,14 @@ Result<std::vector<MotionFrame>> figure_motion(const model::scene::Scene& scene,
 }
 
 FigureWork measure_figure(const std::vector<MotionFrame>& motion, const Eigen::Vector3d& grip_m,
-                          host::tracking::RootRule rule) {
+                          host::figure::RootRule rule) {
   FigureWork out;
-  host::tracking::Figure figure({.grip_m = grip_m, .root_rule = rule});
+  host::figure::Figure figure({.grip_m = grip_m, .root_rule = rule});
   std::vector<double> took_us;
   double sum_m2 = 0.0;
   for (const MotionFrame& frame : motion) {
     const auto start = std::chrono::steady_clock::now();
-    const host::tracking::FigurePose& pose = figure.update(frame.time_s, frame.tool, frame.bodies);
+    const host::figure::FigurePose& pose = figure.update(frame.time_s, frame.tool, frame.bodies);
     took_us.push_back(
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start)
             .count());
@@ -106,7 +106,7 @@ FigureWork measure_figure(const std::vector<MotionFrame>& motion, const Eigen::V
     out.sweeps += pose.arm.sweeps;
     out.full_chain += pose.arm.full_chain;
     out.unreached += !pose.arm.reached;
-    const double error_m = (pose[host::tracking::FigureJoint::kRightFingers] - pose.grip_m).norm();
+    const double error_m = (pose[host::figure::FigureJoint::kRightFingers] - pose.grip_m).norm();
     sum_m2 += error_m * error_m;
     out.worst_error_m = std::max(out.worst_error_m, error_m);
   }

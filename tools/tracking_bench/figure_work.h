@@ -11,7 +11,7 @@
 
 #include <vector>
 
-#include "host/tracking/figure.h"
+#include "host/figure/figure.h"
 #include "host/tracking/observation.h"
 #include "host/tracking/tracking_setup.h"
 #include "model/result.h"
@@ -21,7 +21,7 @@ namespace tact::tools::tracking_bench {
 
 struct MotionFrame {
   double time_s = 0.0;
-  host::tracking::Pose tool;
+  host::pose::Pose tool;
   host::tracking::TrackedOperator bodies;
 };
 
@@ -49,6 +49,6 @@ struct FigureWork {
 
 /// `grip_m` of the tool's handle, in its own axes.
 FigureWork measure_figure(const std::vector<MotionFrame>& motion, const Eigen::Vector3d& grip_m,
-                          host::tracking::RootRule rule);
+                          host::figure::RootRule rule);
 
 }  // namespace tact::tools::tracking_bench

@@ -17,9 +17,9 @@
 #include <random>
 #include <vector>
 
-#include "host/tracking/joint_pose.h"
-#include "host/tracking/one_euro.h"
-#include "host/tracking/robust_pose.h"
+#include "host/pose/joint_pose.h"
+#include "host/pose/one_euro.h"
+#include "host/pose/robust_pose.h"
 #include "tools/tracking_bench/median_reporter.h"
 
 namespace {
@@ -27,11 +27,11 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using tact::host::tracking::BodyView;
-using tact::host::tracking::Camera;
-using tact::host::tracking::Pose;
-using tact::host::tracking::PoseEstimate;
-using tact::host::tracking::PoseStatus;
+using tact::host::pose::BodyView;
+using tact::host::pose::Camera;
+using tact::host::pose::Pose;
+using tact::host::pose::PoseEstimate;
+using tact::host::pose::PoseStatus;
 
 constexpr Camera kCamera{.fx_px = 1200.0, .fy_px = 1200.0, .cx_px = 960.0, .cy_px = 540.0};
 constexpr double kOutlier_px = 3.0;
@@ -187,8 +187,7 @@ nlohmann::json errors(const Options& options) {
     across_m.push_back((off - off.dot(sight) * sight).norm());
     turn_deg.push_back(kDegrees * got.pose.rotation.angularDistance(view.truth.rotation));
     if (i % 20 != 0) continue;
-    tact::host::tracking::PoseFilter
-        filter;  // the same body at rest for two seconds, as it is shown
+    tact::host::pose::PoseFilter filter;  // the same body at rest for two seconds, as it is shown
     Pose shown;
     for (int k = 0; k < 120; ++k) {
       source.look(view);

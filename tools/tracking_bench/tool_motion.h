@@ -6,16 +6,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/tracking/coordinate_chain.h"
+#include "host/pose/coordinate_chain.h"
 
 namespace tact::tools::tracking_bench {
 
 inline constexpr double kMotion_s = 30.0, kMotionFrame_s = 1.0 / 60.0;
 
 /// Presses, slides and wanders, now and then farther than the arm alone spans.
-inline host::tracking::Pose tool_at(double t_s) {
+inline host::pose::Pose tool_at(double t_s) {
   const double far = std::pow(std::max(0.0, std::sin(2.0 * M_PI * t_s / 10.0)), 3);
-  host::tracking::Pose tool;
+  host::pose::Pose tool;
   tool.position_m = {0.04 * std::sin(1.1 * t_s) - 0.20 * far,
                      0.08 * std::sin(0.7 * t_s + 1.0) - 0.10 * far,
                      0.03 + 0.03 * std::sin(1.9 * t_s)};

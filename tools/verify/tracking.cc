@@ -3,10 +3,10 @@
 #include <cmath>
 #include <limits>
 
-#include "host/tracking/ccd.h"
-#include "host/tracking/coordinate_chain.h"
-#include "host/tracking/epnp.h"
-#include "host/tracking/leg_ik.h"
+#include "host/figure/ccd.h"
+#include "host/figure/leg_ik.h"
+#include "host/pose/coordinate_chain.h"
+#include "host/pose/epnp.h"
 #include "tools/verify/report.h"
 
 namespace tact::tools::verify {
@@ -15,8 +15,8 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using host::tracking::JointKind;
-using host::tracking::Pose;
+using host::figure::JointKind;
+using host::pose::Pose;
 using nlohmann::json;
 
 Vector2d vector_2(const json& v) { return {number(v.at(0)), number(v.at(1))}; }
@@ -33,7 +33,7 @@ json list(const Vector& v, Eigen::Index count = Vector::RowsAtCompileTime) {
 json list(const Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 
 Pose pose_of(const json& inputs, const char* rotation, const char* position) {
-  const auto q = host::tracking::rotation_from(inputs.at(rotation).get<std::array<double, 4>>());
+  const auto q = host::pose::rotation_from(inputs.at(rotation).get<std::array<double, 4>>());
   const double nan = std::numeric_limits<double>::quiet_NaN();
   return {.rotation = q.value_or(Quaterniond(nan, nan, nan, nan)),
           .position_m = vector_3(inputs.at(position))};
@@ -42,34 +42,34 @@ Pose pose_of(const json& inputs, const char* rotation, const char* position) {
 json transform_results(const json& one_case) {
   const json& inputs = one_case.at("inputs");
   if (inputs.at("mode") == "BIND_DRIVE") {
-    const Pose offset = host::tracking::bind(pose_of(inputs, "q_tracker0", "p_tracker0"),
-                                             pose_of(inputs, "q_bone0", "p_bone0"));
-    const Pose bone = host::tracking::drive(pose_of(inputs, "q_tracker", "p_tracker"), offset);
+    const Pose offset = host::pose::bind(pose_of(inputs, "q_tracker0", "p_tracker0"),
+                                         pose_of(inputs, "q_bone0", "p_bone0"));
+    const Pose bone = host::pose::drive(pose_of(inputs, "q_tracker", "p_tracker"), offset);
     return {{"q_offset", list(offset.rotation)},
             {"p_offset", list(offset.position_m)},
             {"q_bone", list(bone.rotation)},
             {"p_bone", list(bone.position_m)}};
   }
   const Vector3d angles = vector_3(inputs.at("euler")), p = vector_3(inputs.at("p"));
-  const host::tracking::EulerAngles euler{
+  const host::pose::EulerAngles euler{
       .alpha_rad = angles[0], .beta_rad = angles[1], .gamma_rad = angles[2]};
-  const Quaterniond q = host::tracking::rotation_from(euler);
+  const Quaterniond q = host::pose::rotation_from(euler);
   const Pose local{.rotation = q, .position_m = vector_3(inputs.at("origin"))};
   return {{"q", list(q)},
           {"p_inertial", list(Vector3d(q * p))},
-          {"p_world", list(host::tracking::to_world(local, p))}};
+          {"p_world", list(host::pose::to_world(local, p))}};
 }
 
 json leg_results(const json& one_case) {
   const json &p = one_case.at("params"), &inputs = one_case.at("inputs");
-  const host::tracking::Leg leg{.thigh_m = number(p.at("L_lap")),
-                                .calf_m = number(p.at("L_calf")),
-                                .bend = p.at("bend") == 1 ? host::tracking::Bend::kCounterClockwise
-                                                          : host::tracking::Bend::kClockwise};
-  const host::tracking::LegPose at =
-      host::tracking::pose_leg(leg, vector_2(inputs.at("P1")), vector_2(inputs.at("P2")));
-  if (at.status == host::tracking::LegStatus::kInvalid) return {{"status", "INVALID_ARGUMENT"}};
-  return {{"status", at.status == host::tracking::LegStatus::kOk ? "OK" : "UNREACHABLE"},
+  const host::figure::Leg leg{.thigh_m = number(p.at("L_lap")),
+                              .calf_m = number(p.at("L_calf")),
+                              .bend = p.at("bend") == 1 ? host::figure::Bend::kCounterClockwise
+                                                        : host::figure::Bend::kClockwise};
+  const host::figure::LegPose at =
+      host::figure::pose_leg(leg, vector_2(inputs.at("P1")), vector_2(inputs.at("P2")));
+  if (at.status == host::figure::LegStatus::kInvalid) return {{"status", "INVALID_ARGUMENT"}};
+  return {{"status", at.status == host::figure::LegStatus::kOk ? "OK" : "UNREACHABLE"},
           {"knee", list(at.knee_m)},
           {"ankle", list(at.ankle_m)},
           {"interior_hip", at.interior_hip_rad},
@@ -80,24 +80,24 @@ json leg_results(const json& one_case) {
           {"shank_angle", at.shank_angle_rad}};
 }
 
-const char* word(host::tracking::ReachStatus status) {
+const char* word(host::figure::ReachStatus status) {
   switch (status) {
-    case host::tracking::ReachStatus::kConverged:
+    case host::figure::ReachStatus::kConverged:
       return "CONVERGED";
-    case host::tracking::ReachStatus::kMaxIterations:
+    case host::figure::ReachStatus::kMaxIterations:
       return "MAX_ITERATIONS";
-    case host::tracking::ReachStatus::kUnreachable:
+    case host::figure::ReachStatus::kUnreachable:
       return "UNREACHABLE";
-    case host::tracking::ReachStatus::kInvalid:
+    case host::figure::ReachStatus::kInvalid:
       break;
   }
   return "INVALID_ARGUMENT";
 }
 
-void add_spatial_joint(const json& j, host::tracking::Chain& chain,
-                       std::vector<host::tracking::JointState>& start) {
-  host::tracking::Bone bone{.length_m = number(j.at("length")), .rest = vector_3(j.at("rest"))};
-  host::tracking::JointState state;
+void add_spatial_joint(const json& j, host::figure::Chain& chain,
+                       std::vector<host::figure::JointState>& start) {
+  host::figure::Bone bone{.length_m = number(j.at("length")), .rest = vector_3(j.at("rest"))};
+  host::figure::JointState state;
   if (j.at("type") == "BALL") {
     bone.kind = JointKind::kBall;
     bone.cone_rad = number(j.at("cone"));
@@ -118,44 +118,44 @@ json ccd_results(const json& one_case) {
   const json &p = one_case.at("params"), &inputs = one_case.at("inputs");
   const bool planar = p.at("kind") == "PLANAR";
   const auto point = [&](const json& v) { return planar ? in_plane(v) : vector_3(v); };
-  host::tracking::Chain chain{.base_m = point(inputs.at("base")), .bones = {}};
-  std::vector<host::tracking::JointState> start;
+  host::figure::Chain chain{.base_m = point(inputs.at("base")), .bones = {}};
+  std::vector<host::figure::JointState> start;
   if (planar) {
     for (std::size_t i = 0; i < p.at("lengths").size(); ++i) {
       const json& limits = p.at("limits").at(i);
-      chain.bones.push_back(host::tracking::planar_bone(
-          number(p.at("lengths").at(i)), number(limits.at(0)), number(limits.at(1))));
+      chain.bones.push_back(host::figure::planar_bone(number(p.at("lengths").at(i)),
+                                                      number(limits.at(0)), number(limits.at(1))));
       start.push_back({.angle_rad = number(inputs.at("angles").at(i))});
     }
   } else {
     for (const json& joint : p.at("joints")) add_spatial_joint(joint, chain, start);
   }
-  const host::tracking::ReachResult at =
-      host::tracking::reach(chain, start,
-                            {.target_m = point(inputs.at("target")),
-                             .tolerance_m = number(p.at("eps")),
-                             .sweeps = p.at("max_sweeps").get<int>()});
-  if (at.status == host::tracking::ReachStatus::kInvalid) return {{"status", word(at.status)}};
+  const host::figure::ReachResult at =
+      host::figure::reach(chain, start,
+                          {.target_m = point(inputs.at("target")),
+                           .tolerance_m = number(p.at("eps")),
+                           .sweeps = p.at("max_sweeps").get<int>()});
+  if (at.status == host::figure::ReachStatus::kInvalid) return {{"status", word(at.status)}};
   json points = json::array(), swing = json::array();
   for (const Vector3d& m : at.points_m) points.push_back(list(m, planar ? 2 : 3));
   for (std::size_t i = 0; i < at.joints.size(); ++i)
-    swing.push_back(host::tracking::swing_rad(chain.bones[i], at.joints[i]));
+    swing.push_back(host::figure::swing_rad(chain.bones[i], at.joints[i]));
   return {{"status", word(at.status)}, {"points", points},
           {"error", at.error_m},       {"sweeps", at.sweeps},
           {"updates", at.updates},     {planar ? "angles" : "swing", swing}};
 }
 
-const char* word(host::tracking::PoseStatus status) {
+const char* word(host::pose::PoseStatus status) {
   switch (status) {
-    case host::tracking::PoseStatus::kOk:
+    case host::pose::PoseStatus::kOk:
       return "OK";
-    case host::tracking::PoseStatus::kTooFewPoints:
+    case host::pose::PoseStatus::kTooFewPoints:
       return "TOO_FEW_POINTS";
-    case host::tracking::PoseStatus::kDegenerate:
+    case host::pose::PoseStatus::kDegenerate:
       return "DEGENERATE";
-    case host::tracking::PoseStatus::kNoPose:
+    case host::pose::PoseStatus::kNoPose:
       return "NO_POSE";
-    case host::tracking::PoseStatus::kInvalid:
+    case host::pose::PoseStatus::kInvalid:
       break;
   }
   return "INVALID_ARGUMENT";
@@ -171,7 +171,7 @@ double angle_to(const Quaterniond& got, const json& rows) {
 
 /// The file gives tolerances by quantity, those of the polished pose and of the raw one; a true
 /// pose beside a noisy one is a check of the fit, to what the raw pose is allowed.
-void verify_pose(const host::tracking::PoseEstimate& got, const json& one_case, Report& report) {
+void verify_pose(const host::pose::PoseEstimate& got, const json& one_case, Report& report) {
   const json& expect = one_case.at("expect");
   report.compare("status", word(got.status), expect.at("status"), false, 0.0, 0.0);
   if (expect.at("status") != "OK") return;
@@ -199,11 +199,11 @@ void verify_poses(const json& file, Report& report) {
     std::vector<Vector2d> pixels_px;
     for (const json& v : inputs.at("points")) points_m.push_back(vector_3(v));
     for (const json& v : inputs.at("pixels")) pixels_px.push_back(vector_2(v));
-    const host::tracking::Camera camera{.fx_px = number(p.at("fx")),
-                                        .fy_px = number(p.at("fy")),
-                                        .cx_px = number(p.at("cx")),
-                                        .cy_px = number(p.at("cy"))};
-    verify_pose(host::tracking::estimate_pose(camera, points_m, pixels_px), one_case, report);
+    const host::pose::Camera camera{.fx_px = number(p.at("fx")),
+                                    .fy_px = number(p.at("fy")),
+                                    .cx_px = number(p.at("cx")),
+                                    .cy_px = number(p.at("cy"))};
+    verify_pose(host::pose::estimate_pose(camera, points_m, pixels_px), one_case, report);
   }
 }
 

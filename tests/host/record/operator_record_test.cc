@@ -38,10 +38,10 @@ tracking::TrackedOperator operator_at(std::size_t i) {
 }
 
 /// Not a figure that could be: every number is its own.
-tracking::FigurePose figure_at(std::size_t i) {
-  tracking::FigurePose out;
+figure::FigurePose figure_at(std::size_t i) {
+  figure::FigurePose out;
   out.height_m = 1.9;
-  for (std::size_t k = 0; k < tracking::kFigureJoints; ++k)
+  for (std::size_t k = 0; k < figure::kFigureJoints; ++k)
     out.joint_m[k] = {0.25 * static_cast<double>(k), -1.0, static_cast<double>(i)};
   out.head = test::turn(0.4, {1, 0, 2});
   out.grip_m = {0.5, 0.0, 2.0 * static_cast<double>(i)};
@@ -66,7 +66,7 @@ class TrackedFile : public ::testing::Test {
     EXPECT_EQ(sentence_of(writer.open(path_, hello_, mesh_, true)), "");
     for (std::size_t i = 0; i < kFrames; ++i) {
       const tracking::TrackedOperator tracked = operator_at(i);
-      const tracking::FigurePose shown = figure_at(i);
+      const figure::FigurePose shown = figure_at(i);
       EXPECT_EQ(sentence_of(
                     writer.write(frame(i), i == 3 ? nullptr : &tracked, i == 3 ? nullptr : &shown)),
                 "");
@@ -116,9 +116,9 @@ TEST_F(TrackedFile, GivesTheFigureBackAsItWasShown) {
   const Recording recording = read_recording(path_).recording;
   ASSERT_EQ(recording.figures.size(), kFrames);
   EXPECT_EQ(recording.body_height_m(), 1.9);
-  const tracking::FigurePose truth = figure_at(7),
-                             got = recording.figures[7].value_or(tracking::FigurePose{});
-  for (std::size_t k = 0; k < tracking::kFigureJoints; ++k)
+  const figure::FigurePose truth = figure_at(7),
+                           got = recording.figures[7].value_or(figure::FigurePose{});
+  for (std::size_t k = 0; k < figure::kFigureJoints; ++k)
     EXPECT_EQ(got.joint_m[k], truth.joint_m[k]);
   EXPECT_LT(got.head.angularDistance(truth.head), 1e-6);
   EXPECT_EQ(got.grip_m, truth.grip_m);
@@ -207,7 +207,7 @@ TEST(OperatorRecord, WithoutSenseIsRefusedThoughItsSumIsRight) {
 
 TEST(OperatorRecord, AFigureWithoutSenseIsNoneThoughItsSumIsRight) {
   const auto accepts = [](auto change) {
-    tracking::FigurePose shown = figure_at(1);
+    figure::FigurePose shown = figure_at(1);
     change(shown);
     const tracking::TrackedOperator tracked = operator_at(1);
     const std::string bytes = operator_record(tracked, &shown);
@@ -216,12 +216,12 @@ TEST(OperatorRecord, AFigureWithoutSenseIsNoneThoughItsSumIsRight) {
     EXPECT_TRUE(operator_of(record).has_value());
     return figure_of(record, tracked).has_value();
   };
-  EXPECT_TRUE(accepts([](tracking::FigurePose&) {}));
-  EXPECT_FALSE(accepts([](tracking::FigurePose& f) { f.joint_m[22].z() = std::nan(""); }));
-  EXPECT_FALSE(accepts([](tracking::FigurePose& f) { f.head.w() = 5.0; }));
-  EXPECT_FALSE(accepts([](tracking::FigurePose& f) { f.grip_m.x() = HUGE_VAL; }));
-  EXPECT_FALSE(accepts([](tracking::FigurePose& f) { f.arm.error_m = std::nan(""); }));
-  EXPECT_FALSE(accepts([](tracking::FigurePose& f) { f.height_m = 0.0; }));
+  EXPECT_TRUE(accepts([](figure::FigurePose&) {}));
+  EXPECT_FALSE(accepts([](figure::FigurePose& f) { f.joint_m[22].z() = std::nan(""); }));
+  EXPECT_FALSE(accepts([](figure::FigurePose& f) { f.head.w() = 5.0; }));
+  EXPECT_FALSE(accepts([](figure::FigurePose& f) { f.grip_m.x() = HUGE_VAL; }));
+  EXPECT_FALSE(accepts([](figure::FigurePose& f) { f.arm.error_m = std::nan(""); }));
+  EXPECT_FALSE(accepts([](figure::FigurePose& f) { f.height_m = 0.0; }));
 }
 
 TEST_F(TrackedFile, TheTableHasTheRawPoseOfTheBodiesThatAreThere) {
@@ -247,7 +247,7 @@ TEST(RecentFrames, KeepTheOperatorInStep) {
   Frame frame;
   for (frame.tick = 0; frame.tick < 500; ++frame.tick) {
     const tracking::TrackedOperator tracked{.time_s = static_cast<double>(frame.tick)};
-    const tracking::FigurePose shown = figure_at(frame.tick);
+    const figure::FigurePose shown = figure_at(frame.tick);
     recent.add(frame, frame.tick < 10 ? nullptr : &tracked, &shown);
     EXPECT_EQ(recent.operators().size(), frame.tick < 10 ? 0 : recent.frames().size());
     EXPECT_EQ(recent.figures().size(), recent.operators().size());

@@ -32,8 +32,8 @@ using boost::asio::ip::udp;
 using Eigen::Vector3d;
 
 // The tracker's frame to the device's.
-const tracking::Pose kDesk{.rotation = test::turn(0.5, {0.2, 1.0, 0.4}),
-                           .position_m = {0.1, -0.2, -1.9}};
+const pose::Pose kDesk{.rotation = test::turn(0.5, {0.2, 1.0, 0.4}),
+                       .position_m = {0.1, -0.2, -1.9}};
 const Vector3d kTip_m(0.1, 0.0, 0.0);
 // Places of the device's tool, 15 mm apart and more.
 constexpr double kPlaces_m[][3] = {{0, 0, 0},      {.03, 0, 0},      {0, .03, 0},       {0, 0, .03},
@@ -77,7 +77,7 @@ class Register : public ::testing::Test {
     boost::asio::io_context io;
     udp::socket sender(io, udp::v4());
     std::mt19937 noise(1);
-    const tracking::TrackingCamera eye = test::camera("front", tracking::Pose{});
+    const tracking::TrackingCamera eye = test::camera("front", pose::Pose{});
     const record::Hello hello = test::make_hello(3, 1, 3, 1);
     for (std::uint64_t i = 0; !done;) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -93,11 +93,11 @@ class Register : public ::testing::Test {
       source.send(frame);
       // kDesk (R (tip) + t) = the device's tip
       const Vector3d bent_m = tip_m + (place == 2 ? wrong_m : 0.0) * Vector3d::UnitZ();
-      tracking::Pose tool{.rotation = test::turn(0.3, {1, 0, 1})};
+      pose::Pose tool{.rotation = test::turn(0.3, {1, 0, 1})};
       tool.position_m =
           kDesk.rotation.conjugate() * (bent_m - kDesk.position_m) - tool.rotation * kTip_m;
-      const std::string line = test::line_of(test::look(
-          eye, tracking::Pose{}, "t", tool, 0.01 * static_cast<double>(i), i, &noise, 0.01));
+      const std::string line = test::line_of(
+          test::look(eye, pose::Pose{}, "t", tool, 0.01 * static_cast<double>(i), i, &noise, 0.01));
       boost::system::error_code lost;
       sender.send_to(boost::asio::buffer(line), {boost::asio::ip::address_v4::loopback(), port_}, 0,
                      lost);
@@ -178,10 +178,9 @@ TEST_F(Register, RefusesADescriptionWhoseOwnRegistrationWouldGoFirst) {
 
 TEST_F(Register, RefusesARecordingAndLeavesTheOldFileAlone) {
   std::string lines;
-  const tracking::TrackingCamera eye = test::camera("front", tracking::Pose{});
+  const tracking::TrackingCamera eye = test::camera("front", pose::Pose{});
   for (std::uint64_t i = 0; i < 3; ++i) {
-    lines += test::line_of(test::look(eye, tracking::Pose{}, "t",
-                                      tracking::Pose{.position_m = {0, 0, 2}},
+    lines += test::line_of(test::look(eye, pose::Pose{}, "t", pose::Pose{.position_m = {0, 0, 2}},
                                       static_cast<double>(i), i)) +
              "\n";
   }

@@ -36,7 +36,7 @@ std::string seen(std::uint64_t frames) { return "{\"seen\":" + std::to_string(fr
 TEST(OperatorFigure, TakesTheToolByTheUpperPartOfItsMesh) {
   const record::Hello hello = test::make_hello(3, 1, 3, 1);
   EXPECT_NEAR(grip_of(hello, mesh_with_tool()).z(), 0.08, 1e-6);
-  EXPECT_NEAR(grip_of(hello, {}).z(), tracking::FigureSettings{}.grip_m.z(), 1e-12);
+  EXPECT_NEAR(grip_of(hello, {}).z(), figure::FigureSettings{}.grip_m.z(), 1e-12);
 }
 
 TEST(OperatorFigure, HoldsTheToolThatTelemetryTells) {
@@ -69,7 +69,7 @@ TEST(OperatorFigure, StandsWhereTheSceneHasItsShoulder) {
   for (int scene = 0; scene < 2; ++scene) {
     figure.begin(test::make_hello(3, 1, 3, 1), mesh_with_tool());
     told(figure, frame_at(0.0f, 0));
-    const Eigen::Vector3d got_m = figure.figure()[tracking::FigureJoint::kRightShoulder];
+    const Eigen::Vector3d got_m = figure.figure()[figure::FigureJoint::kRightShoulder];
     EXPECT_LT((got_m - shoulder_m).norm(), 1e-9) << "scene " << scene;
   }
 }
@@ -102,7 +102,7 @@ TEST_F(Viewer, TellsTheFigureAfterEachFrameAndItsSkeletonWithTheStatus) {
   Socket socket(client_io_);
   ASSERT_FALSE(open_live(socket, "http://localhost:1"));
   const auto status = read(socket);
-  EXPECT_EQ(status.at("figure").at("joints").size(), tracking::kFigureJoints);
+  EXPECT_EQ(status.at("figure").at("joints").size(), figure::kFigureJoints);
   record::Frame frame;
   for (frame.tick = 1; frame.tick <= 3; ++frame.tick) {
     source_->send(frame);

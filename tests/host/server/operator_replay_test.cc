@@ -27,7 +27,7 @@ record::Frame frame_at(std::uint64_t tick) {
   record::Frame frame = test::make_frame(0.0f, firmware::telemetry::SiteState::kFree);
   frame.tick = tick;
   frame.time_ns = std::llround(static_cast<double>(tick) * test::kMotionFrame_s * 1e9);
-  const tracking::Pose tool = test::tool_at(static_cast<double>(tick) * test::kMotionFrame_s);
+  const pose::Pose tool = test::tool_at(static_cast<double>(tick) * test::kMotionFrame_s);
   Eigen::Vector3f::Map(frame.tool_position_m) = tool.position_m.cast<float>();
   const Eigen::Quaternionf q = tool.rotation.cast<float>();
   for (int i = 0; i < 4; ++i) frame.tool_orientation[i] = i == 0 ? q.w() : q.vec()[i - 1];
@@ -109,7 +109,7 @@ TEST_F(OperatorReplay, StaysBoundWhenTheDeviceBeginsAnew) {
     bodies[tracking::BodyRole::kHead].state = tracking::BodyState::kTracked;
     bodies[tracking::BodyRole::kHead].pose.position_m = at_m;
     const auto json = nlohmann::json::parse(live.with(frame_at(tick), &bodies));
-    const std::size_t i = 3 * static_cast<std::size_t>(tracking::FigureJoint::kHead);
+    const std::size_t i = 3 * static_cast<std::size_t>(figure::FigureJoint::kHead);
     return Vector3d(json["joint_m"][i], json["joint_m"][i + 1], json["joint_m"][i + 2]);
   };
   const Vector3d upright(0.4, -0.08, 0.56), leans = upright + Vector3d(-0.10, 0.05, -0.03);

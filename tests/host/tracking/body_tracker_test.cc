@@ -35,7 +35,7 @@ class Body : public ::testing::Test {
   BodyTracker tracker{2};
   double time_s = 100.0, now_s = 5.0;
   std::uint64_t sequence = 7;
-  PoseStatus status = PoseStatus::kOk;
+  pose::PoseStatus status = pose::PoseStatus::kOk;
   bool moving = true;  // the points differ from one observation to the next
   int count = 0;
 };
@@ -65,11 +65,11 @@ TEST_F(Body, IsTrackedThenHeldThenLost) {
 
 TEST_F(Body, APoseThatCannotBeHadSaysWhy) {
   see(0.0);
-  const std::pair<PoseStatus, TrackingTrouble> cases[] = {
-      {PoseStatus::kTooFewPoints, TrackingTrouble::kTooFewPoints},
-      {PoseStatus::kDegenerate, TrackingTrouble::kDegenerate},
-      {PoseStatus::kInvalid, TrackingTrouble::kInvalid},
-      {PoseStatus::kNoPose, TrackingTrouble::kNoPose}};
+  const std::pair<pose::PoseStatus, TrackingTrouble> cases[] = {
+      {pose::PoseStatus::kTooFewPoints, TrackingTrouble::kTooFewPoints},
+      {pose::PoseStatus::kDegenerate, TrackingTrouble::kDegenerate},
+      {pose::PoseStatus::kInvalid, TrackingTrouble::kInvalid},
+      {pose::PoseStatus::kNoPose, TrackingTrouble::kNoPose}};
   for (const auto& [wrong, trouble] : cases) {
     step();
     status = wrong;
@@ -78,7 +78,7 @@ TEST_F(Body, APoseThatCannotBeHadSaysWhy) {
     EXPECT_EQ(at_once().raw.position_m.x(), 0.0);
   }
   step();
-  status = PoseStatus::kOk;
+  status = pose::PoseStatus::kOk;
   see(0.01);
   EXPECT_EQ(at_once().trouble, TrackingTrouble::kNone);
 }
@@ -217,13 +217,14 @@ TEST_F(Body, ALookThatComesLateIsWantedWhileItIsOfTheSameMoment) {
 TEST_F(Body, ARefinedPoseReplacesTheGoodOneOfItsTimeAndNoOther) {
   for (int i = 0; i < 30; ++i, step()) see(0.0);
   BodyTracker twin = tracker;
-  const PoseEstimate better{.status = PoseStatus::kOk, .pose = {.position_m = {0.004, 0, 1}}};
+  const pose::PoseEstimate better{.status = pose::PoseStatus::kOk,
+                                  .pose = {.position_m = {0.004, 0, 1}}};
   twin.take(better, time_s, now_s);
   see(0.010);
   const TrackedBody before = at_once();
   EXPECT_FALSE(tracker.refine(better, time_s - 1e-3));
   EXPECT_FALSE(tracker.refine(better, time_s + 1e-3));
-  EXPECT_FALSE(tracker.refine({.status = PoseStatus::kNoPose, .pose = better.pose}, time_s));
+  EXPECT_FALSE(tracker.refine({.status = pose::PoseStatus::kNoPose, .pose = better.pose}, time_s));
   EXPECT_EQ(at_once().raw.position_m.x(), 0.010);
   EXPECT_TRUE(tracker.refine(better, time_s));
   EXPECT_EQ(at_once().raw.position_m.x(), 0.004);

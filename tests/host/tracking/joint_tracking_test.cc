@@ -47,7 +47,7 @@ class TwoCameras : public ::testing::Test {
     both_m.push_back(raw_off_m());
   }
   TrackedBody hand() const { return tracker.at(time_s + gap_s)[BodyRole::kHand]; }
-  double raw_off_m() const { return off_m(hand().raw, drive(kDesk, body)); }
+  double raw_off_m() const { return off_m(hand().raw, pose::drive(kDesk, body)); }
   double median_mm() const { return 1e3 * quantile(both_m, 0.5); }
 
   TrackingCamera front = test::camera("front", kFront), side = test::camera("side", kSide);
@@ -87,10 +87,10 @@ TEST_F(TwoCameras, WhoseLooksAreOfTheSameMomentGiveOnePoseAndOneStepOfTheFilter)
     late.take(a, time_s);  // and of a camera whose looks arrive after newer ones of the other
     late.take(b, time_s);
     const TrackedBody seen = late.at(time_s)[BodyRole::kHand];
-    first_m.back() = off_m(seen.raw, drive(kDesk, body));
+    first_m.back() = off_m(seen.raw, pose::drive(kDesk, body));
     if (i > 100) {
-      EXPECT_LT(off_m(hand().pose, drive(kDesk, body)), 0.0025) << i;
-      EXPECT_LT(off_m(seen.pose, drive(kDesk, body)), 0.0025) << i;
+      EXPECT_LT(off_m(hand().pose, pose::drive(kDesk, body)), 0.0025) << i;
+      EXPECT_LT(off_m(seen.pose, pose::drive(kDesk, body)), 0.0025) << i;
     }
   }
   EXPECT_LT(quantile(both_m, 0.95), 0.003);

@@ -19,7 +19,7 @@ const Pose kDesk{.rotation = test::turn(1.9, {1.0, 1.0, 0.3}), .position_m = {-0
 
 /// In front of a camera.
 Pose before(const Pose& eye, double x_m = 0.0) {
-  return drive(eye, {.rotation = test::turn(0.8, {1, 2, 3}), .position_m = {x_m, 0.05, 1.8}});
+  return pose::drive(eye, {.rotation = test::turn(0.8, {1, 2, 3}), .position_m = {x_m, 0.05, 1.8}});
 }
 
 double distance(const Pose& a, const Pose& b) {

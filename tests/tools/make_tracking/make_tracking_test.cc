@@ -33,7 +33,7 @@ const std::string kDescription = "maintenance.tracking.toml";
 struct Step {
   tracking::Observation seen;
   std::size_t bytes = 0;
-  tracking::Pose truth{};
+  pose::Pose truth{};
   tracking::TrackedBody body{};  // just after it
 };
 
@@ -68,7 +68,7 @@ class MaintenanceTracking : public testing::Test {
     EXPECT_FALSE(std::getline(truths, truth));
   }
 
-  static tracking::Pose true_pose(const std::string& line, const tracking::Observation& seen) {
+  static pose::Pose true_pose(const std::string& line, const tracking::Observation& seen) {
     const auto truth = nlohmann::json::parse(line);
     EXPECT_EQ(truth["body"], seen.body);
     EXPECT_EQ(truth["time_s"], seen.time_s);
@@ -194,9 +194,8 @@ TEST_F(MaintenanceTracking, AWrongMarkerAmongMoreThanSixIsLeftOutElseThereIsNoPo
     const auto camera =
         std::ranges::find(setup_.cameras, step.seen.camera, &tracking::TrackingCamera::name);
     const auto body = std::ranges::find(setup_.bodies, step.seen.body, &tracking::MarkerBody::name);
-    const tracking::Pose in_tracker =
-        drive(bind(setup_.registration, tracking::Pose{}), step.truth);
-    const tracking::Pose in_camera = drive(bind(*camera->pose, tracking::Pose{}), in_tracker);
+    const pose::Pose in_tracker = drive(bind(setup_.registration, pose::Pose{}), step.truth);
+    const pose::Pose in_camera = drive(bind(*camera->pose, pose::Pose{}), in_tracker);
     bool spoiled = false;
     for (const tracking::SeenMarker& point : step.seen.points) {
       const Vector3d x = to_world(in_camera, body->markers[point.id].position_m);

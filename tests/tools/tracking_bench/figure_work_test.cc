@@ -47,15 +47,15 @@ TEST(FigureWork, TheMotionIsTheScenesHandAndItsTracker) {
 TEST(FigureWork, TheHandTakesTheToolByItsHandle) {
   const auto scene = model::scene::load_scene(kScene, {});
   EXPECT_NEAR(
-      (host::tracking::grip_m(model::mesh::summarize(scene->tool_mesh).high_m.z) - kGrip_m).norm(),
+      (host::figure::grip_m(model::mesh::summarize(scene->tool_mesh).high_m.z) - kGrip_m).norm(),
       0.0, 1e-9);
 }
 
 TEST(FigureWork, BothRulesHoldTheToolInEveryFrameAndTheShoulderFirstTurnsHalfOfTheJoints) {
   const auto frames = motion(30.0);
-  const FigureWork first = measure_figure(frames, kGrip_m, host::tracking::RootRule::kSubRootFirst);
+  const FigureWork first = measure_figure(frames, kGrip_m, host::figure::RootRule::kSubRootFirst);
   const FigureWork whole =
-      measure_figure(frames, kGrip_m, host::tracking::RootRule::kAlwaysFullChain);
+      measure_figure(frames, kGrip_m, host::figure::RootRule::kAlwaysFullChain);
   EXPECT_EQ(first.unreached, 0);
   EXPECT_EQ(whole.unreached, 0);
   EXPECT_LT(first.worst_error_m, 0.5e-3);
@@ -67,10 +67,8 @@ TEST(FigureWork, BothRulesHoldTheToolInEveryFrameAndTheShoulderFirstTurnsHalfOfT
 }
 
 TEST(FigureWork, CountsTheSameInEveryRun) {
-  const FigureWork a =
-      measure_figure(motion(3.0), kGrip_m, host::tracking::RootRule::kSubRootFirst);
-  const FigureWork b =
-      measure_figure(motion(3.0), kGrip_m, host::tracking::RootRule::kSubRootFirst);
+  const FigureWork a = measure_figure(motion(3.0), kGrip_m, host::figure::RootRule::kSubRootFirst);
+  const FigureWork b = measure_figure(motion(3.0), kGrip_m, host::figure::RootRule::kSubRootFirst);
   EXPECT_GT(a.updates, 100);
   EXPECT_EQ(a.updates, b.updates);
   EXPECT_EQ(a.sweeps, b.sweeps);

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/figure/figure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/figure/figure_words.h"
+#include "host/figure/leg_ik.h"
+
+namespace tact::host::figure {
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+constexpr double kLongestStep_s = 0.1;  // what came before is old; a fade goes on from there
+constexpr double kWaitForShoulder_s = 1.0;
+
+/// The part of a rotation that is at most `most_rad`.
+Quaterniond at_most(const Quaterniond& q, double most_rad) {
+  const double angle_rad = q.angularDistance(Quaterniond::Identity());
+  return angle_rad > most_rad ? Quaterniond::Identity().slerp(most_rad / angle_rad, q) : q;
+}
+
+Quaterniond part_of(const Quaterniond& q, double share) {
+  return Quaterniond::Identity().slerp(share, q);
+}
+
+/// The part of `v` across the unit vector `along`, of length 1; `otherwise` if there is none.
+Vector3d across(const Vector3d& v, const Vector3d& along, const Vector3d& otherwise) {
+  const Vector3d part = v - v.dot(along) * along;
+  if (part.norm() > 1e-6) return part.normalized();
+  return (otherwise - otherwise.dot(along) * along).normalized();
+}
+
+Pose placed(const Pose& pose, const Vector3d& by_m) {
+  return {.rotation = pose.rotation, .position_m = pose.position_m + by_m};
+}
+
+/// From the default place to the one where the right shoulder is there.
+Vector3d to_shoulder(const BodyPlan& plan, const Vector3d& shoulder_m) {
+  return shoulder_m - standing_pelvis(plan).position_m -
+         upright_m(plan, FigureJoint::kRightShoulder);
+}
+
+}  // namespace
+
+Figure::Figure(const FigureSettings& settings)
+    : settings_(settings),
+      plan_(make_body_plan(settings.height_m)),
+      arm_(plan_, settings.root_rule),
+      pelvis_(standing_pelvis(plan_)) {
+  if (settings.shoulder_m) place_m_ = start_m_ = to_shoulder(plan_, *settings.shoulder_m);
+  pose_.height_m = plan_.height_m;
+  tool_.position_m = Vector3d(0.0, 0.0, 0.05);
+  update(0.0, tool_, {});
+  begun_ = false;
+}
+
+void Figure::go_on_with(const Vector3d& tool_grip_m) {
+  settings_.grip_m = tool_grip_m;
+  begun_ = false;
+}
+
+const FigurePose& Figure::update(double time_s, const Pose& tool, const TrackedOperator& bodies) {
+  if (begun_ && time_s < time_s_) *this = Figure(settings_);
+  dt_s_ = begun_ ? std::clamp(time_s - time_s_, 0.0, kLongestStep_s) : 0.0;
+  time_s_ = time_s;
+  begun_ = true;
+  if (is_good(tool)) tool_ = tool;
+  if (!may_bind_) settle(bodies);
+  pose_trunk(bodies);
+  pose_arm(tool_, bodies);
+  pose_head();
+  pose_left_arm();
+  place_leg(false, bodies);
+  place_leg(true, bodies);
+  tell(bodies, pose_);
+  return pose_;
+}
+
+/// Before anything is bound the figure glides to where its right shoulder meets the tracked one.
+/// It waits a moment for the shoulder to be seen.
+void Figure::settle(const TrackedOperator& bodies) {
+  const auto is_seen = [](const TrackedBody& body) {
+    return body.state == BodyState::kTracked && is_good(body.pose);
+  };
+  const TrackedBody& shoulder = bodies[BodyRole::kShoulder];
+  if (!place_goal_m_) {
+    if (!std::any_of(bodies.bodies.begin(), bodies.bodies.end(), is_seen)) return;
+    waited_s_ += dt_s_;
+    if (is_seen(shoulder)) {
+      const Vector3d by_m = to_shoulder(plan_, shoulder.pose.position_m);
+      pose_.shoulder_too_far = !((by_m - start_m_).norm() <= kFarthestPlace_m);
+      place_goal_m_ = pose_.shoulder_too_far ? start_m_ : by_m;
+    } else if (shoulder.state == BodyState::kAbsent || waited_s_ > kWaitForShoulder_s) {
+      place_goal_m_ = start_m_;
+    } else {
+      return;
+    }
+    waited_s_ = 0.0;
+  }
+  waited_s_ += dt_s_;
+  const Vector3d way = *place_goal_m_ - start_m_;
+  const double way_m = way.norm();
+  const double way_s = way_m > 0.0 ? std::max(kReturn_s, way_m / kGlide_mps) : 0.0;
+  const double t = way_s > waited_s_ ? waited_s_ / way_s : 1.0;
+  place_m_ = start_m_ + t * t * (3.0 - 2.0 * t) * way;
+  may_bind_ = t >= 1.0;
+}
+
+const Pose& Figure::follow(BodyRole role, const TrackedOperator& bodies, const Pose& neutral) {
+  const TrackedBody absent{};
+  return bones_[static_cast<std::size_t>(role)].follow(may_bind_ ? bodies[role] : absent, neutral,
+                                                       dt_s_);
+}
+
+void Figure::pose_trunk(const TrackedOperator& bodies) {
+  pelvis_ = follow(BodyRole::kWaist, bodies, placed(standing_pelvis(plan_), place_m_));
+  arm_.relax(1.0 - std::exp(-dt_s_ / kRelax_s));
+  const auto in_pelvis = [this](const Vector3d& p_m) -> Vector3d {
+    return pelvis_.rotation.conjugate() * (p_m - pelvis_.position_m);
+  };
+  const auto upright = [this](FigureJoint joint, const Quaterniond& turn) {
+    return Pose{.rotation = pelvis_.rotation * turn,
+                .position_m = pose::to_world(pelvis_, upright_m(plan_, joint))};
+  };
+  const Pose shoulder = follow(BodyRole::kShoulder, bodies,
+                               upright(FigureJoint::kRightShoulder, Quaterniond::Identity()));
+  const Pose head = follow(BodyRole::kHead, bodies, upright(FigureJoint::kHead, looking_down()));
+  const double by_shoulder = share(BodyRole::kShoulder);
+  const double by_head = (1.0 - by_shoulder) * share(BodyRole::kHead);
+  arm_.lean(TrunkEnd::kChest, in_pelvis(head.position_m) - plan_.neck_m * Vector3d::UnitZ(),
+            by_head);
+  arm_.lean(TrunkEnd::kShoulder, in_pelvis(shoulder.position_m), by_shoulder);
+}
+
+void Figure::pose_arm(const Pose& tool, const TrackedOperator& bodies) {
+  const Vector3d grip_m = pose::to_world(tool, settings_.grip_m);
+  // Hand and wrist are bound to the hand as the tool turns it.
+  const Pose held{.rotation = tool.rotation * holding_hand(), .position_m = grip_m};
+  const Pose wrist = follow(BodyRole::kWrist, bodies, held);
+  const Pose hand = follow(BodyRole::kHand, bodies, held);
+  const Quaterniond turn = wrist.rotation.slerp(share(BodyRole::kHand), hand.rotation);
+  const Quaterniond to_pelvis = pelvis_.rotation.conjugate();
+  pose_.arm = arm_.hold({.grip_m = to_pelvis * (grip_m - pelvis_.position_m),
+                         .hand = (to_pelvis * turn).normalized()});
+  pose_.grip_m = grip_m;
+  using enum FigureJoint;
+  constexpr std::array kPoints{kPelvis,     kBack,       kChest,         kRightShoulder,
+                               kRightElbow, kRightWrist, kRightKnuckles, kRightFingers};
+  for (std::size_t i = 0; i < kPoints.size(); ++i)
+    pose_[kPoints[i]] = pose::to_world(pelvis_, arm_.points_m()[i]);
+}
+
+void Figure::pose_head() {
+  const Pose& head = bones_[static_cast<std::size_t>(BodyRole::kHead)].now();
+  const double by_tracker = share(BodyRole::kHead);
+  const Quaterniond thorax = pelvis_.rotation * arm_.axes(kThoraxBone),
+                    free = thorax * looking_down();
+  const Vector3d up = thorax * Vector3d::UnitZ(), chest_m = pose_[FigureJoint::kChest];
+  // The neck points to the tracked head; it has its own length.
+  const Quaterniond neck = Quaterniond::FromTwoVectors(up, head.position_m - chest_m);
+  pose_[FigureJoint::kHead] =
+      chest_m + at_most(part_of(neck, by_tracker), kNeckCone_rad) * (plan_.neck_m * up);
+  // Turned at most so far from the trunk's own axes.
+  const Quaterniond turn = thorax.conjugate() * free.slerp(by_tracker, head.rotation);
+  pose_.head = (thorax * at_most(turn, kHeadTurn_rad)).normalized();
+  pose_[FigureJoint::kCrown] =
+      pose_[FigureJoint::kHead] + pose_.head * (plan_.head_m * Vector3d::UnitZ());
+}
+
+/// It rests on the bench's edge and moves with the trunk.
+void Figure::pose_left_arm() {
+  using enum FigureJoint;
+  const Quaterniond thorax = pelvis_.rotation * arm_.axes(kThoraxBone);
+  const auto next = [&](FigureJoint from, FigureJoint to, double length_m, const Vector3d& along) {
+    pose_[to] = pose_[from] + thorax * (length_m * along.normalized());
+  };
+  next(kChest, kLeftShoulder, plan_.clavicle_m, {0.0, -1.0, 0.0});
+  next(kLeftShoulder, kLeftElbow, plan_.upper_arm_m, {-0.22, -0.18, -0.95});
+  next(kLeftElbow, kLeftWrist, plan_.forearm_m, {-0.93, 0.28, -0.12});
+  next(kLeftWrist, kLeftKnuckles, plan_.palm_m, {-0.88, 0.30, -0.35});
+  next(kLeftKnuckles, kLeftFingers, plan_.fingers_m, {-0.75, 0.30, -0.55});
+}
+
+void Figure::place_leg(bool right, const TrackedOperator& bodies) {
+  using enum FigureJoint;
+  const auto pick = [right](FigureJoint r, FigureJoint l) { return right ? r : l; };
+  const Vector3d hip_m = pose::to_world(pelvis_, upright_m(plan_, pick(kRightHip, kLeftHip)));
+  const Vector3d standing_m = standing_ankle_m(plan_, right) + place_m_;
+  const BodyRole ankle = right ? BodyRole::kRightAnkle : BodyRole::kLeftAnkle;
+  const Pose foot = follow(ankle, bodies, {.position_m = standing_m});
+  // The knee is hinted at: forward of the leg, or where the tracked leg has it.
+  const Vector3d forward = pelvis_.rotation * -Vector3d::UnitX();
+  const Vector3d knee_hint_m = 0.5 * (hip_m + foot.position_m) + 0.1 * forward;
+  const Pose shin =
+      follow(right ? BodyRole::kRightLeg : BodyRole::kLeftLeg, bodies, {.position_m = knee_hint_m});
+  // CC-10 in the plane of hip, ankle and hint: x along hip - ankle, y towards the hint.
+  const Vector3d leg_m = foot.position_m - hip_m;
+  const double distance_m = leg_m.norm();
+  const Vector3d x = distance_m > 1e-6 ? Vector3d(leg_m / distance_m) : -Vector3d::UnitZ();
+  const Vector3d y = across(shin.position_m - hip_m, x, forward);
+  const LegPose leg =
+      pose_leg({.thigh_m = plan_.thigh_m, .calf_m = plan_.calf_m}, {0.0, 0.0}, {distance_m, 0.0});
+  const double missed_m = std::abs(distance_m - leg.ankle_m.x());
+  pose_.leg_reached[right ? 1 : 0] = share(ankle) == 0.0 || missed_m <= kLegTolerance_m;
+  const auto in_plane = [&](const Eigen::Vector2d& p_m) -> Vector3d {
+    return hip_m + p_m.x() * x + p_m.y() * y;
+  };
+  pose_[pick(kRightHip, kLeftHip)] = hip_m;
+  pose_[pick(kRightKnee, kLeftKnee)] = in_plane(leg.knee_m);
+  pose_[pick(kRightAnkle, kLeftAnkle)] = in_plane(leg.ankle_m);
+  pose_[pick(kRightToes, kLeftToes)] =
+      in_plane(leg.ankle_m) +
+      foot.rotation * (plan_.foot_m * Vector3d(-0.95, 0.0, -0.31).normalized());
+}
+
+}  // namespace tact::host::figure
