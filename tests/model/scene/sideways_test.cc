@@ -2,6 +2,7 @@
 // How stiff the liver is along its surface, by its law and by finite elements.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -49,6 +50,36 @@ TEST(Sideways, TheLiverIsAsStiffAsFiniteElementsFindIt) {
         << one.at("vertex") << ", radius " << one.at("contact_radius_m") << ", held "
         << one.at("held");
     RecordProperty("case" + std::to_string(i), std::to_string(1.0 / give_m_per_N / want_N_per_m));
+  }
+}
+
+std::uint32_t vertex_near(const mesh::SurfaceMesh& mesh, const Vec3& p_m) {
+  const auto nearest = std::ranges::min_element(
+      mesh.vertex_m, {}, [&p_m](const Vec3& vertex_m) { return norm(vertex_m - p_m); });
+  return static_cast<std::uint32_t>(nearest - mesh.vertex_m.begin());
+}
+
+// No shipped scene sets it by hand. Without [elastic] the tissue is the half-space whose force
+// under the tip is the law's at a depth of one radius R: 8 G R / (2 - nu) = 4/3 E* R for nu = 1/2,
+// held; gum has the virtual spring and the net of its patch in a row.
+TEST(Sideways, EveryShippedSceneTakesItsStiffnessFromItsTissue) {
+  struct Want {
+    const char* scene;
+    double held_N_per_m;
+  };
+  for (const Want& want :
+       {Want{"heart", 89.0}, {"skin", 67.0}, {"gum", 112.0}, {"maintenance", 267.0}}) {
+    const auto scene =
+        load_scene(TACT_SOURCE_DIR "/model/scenes/" + std::string(want.scene) + ".toml", {});
+    ASSERT_EQ(tests::sentence_of(scene), "");
+    EXPECT_EQ(scene->contact.sliding_stiffness_N_per_m, 0.0) << want.scene;
+    const auto tissue = make_tissue(*scene);
+    ASSERT_EQ(tests::sentence_of(tissue), "");
+    const double give_m_per_N = (*tissue)->law().site_law().sideways_m_per_N(
+        {.place = place_of(scene->organ_mesh, vertex_near(scene->organ_mesh, scene->hand_site_m)),
+         .held = true},
+        scene->tool.spheres[0].radius_m);
+    EXPECT_NEAR(1.0 / give_m_per_N, want.held_N_per_m, 0.5) << want.scene;
   }
 }
 
