@@ -9,6 +9,7 @@
 
 #include "hal/can/can_device.h"
 #include "hal/can/can_link.h"
+#include "hal/can/can_lock.h"
 #include "hal/cia402/canopen_frames.h"
 #include "hal/cia402/canopen_words.h"
 #include "hal/cia402/cia402_bring_up.h"
@@ -275,6 +276,7 @@ Result<std::unique_ptr<Device>> start_cia402_delta(std::unique_ptr<can::CanBus> 
 Result<std::unique_ptr<Device>> open_can_cia402(const model::DeviceSettings& settings,
                                                 double rate_Hz) {
   const model::CanSettings& can = settings.can;
+  if (auto error = can::lock_drives(can, /*gives_sync=*/true)) return *error;
   auto socket = can::open_checked_can(can.interface, cia402_cycle_bits(), rate_Hz, cia402_ids(can));
   if (!socket) return socket.error();
   return start_cia402_delta(std::make_unique<can::CanBus>(std::move(*socket)), settings, rate_Hz);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "hal/device_lock.h"
 #include "hal/udev_rules.h"
 
 namespace tact::hal::falcon_usb {
@@ -119,6 +120,7 @@ Result<std::unique_ptr<FalconUsb>> FalconUsb::open(const std::string& bus_path) 
   if (!device) return device.error();
   usb->bus_path_ = path_of(*device);
   usb->node_ = node_of(*device);
+  if (auto error = lock_device("the Falcon at USB " + usb->bus_path_)) return *error;
   if (const int error = libusb_open(*device, &usb->handle_); error != 0)
     return open_error(error, usb->node_);
   libusb_set_auto_detach_kernel_driver(usb->handle_, 1);

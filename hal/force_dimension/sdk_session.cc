@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "hal/device_lock.h"
 #include "hal/force_dimension/sdk_words.h"
 #include "hal/udev_rules.h"
 
@@ -97,6 +98,12 @@ std::optional<Error> warm_up(const SdkSession& s) {
   return std::nullopt;
 }
 
+std::string name_of_lock(const SdkSession& s) {
+  return s.serial_number != 0
+             ? fmt::format("the Force Dimension device no. {}", s.serial_number)
+             : fmt::format("the Force Dimension device {}", static_cast<int>(s.id));
+}
+
 }  // namespace
 
 Result<SdkSession> open_sdk_session(const ForceDimensionSettings& settings) {
@@ -105,6 +112,13 @@ Result<SdkSession> open_sdk_session(const ForceDimensionSettings& settings) {
   const auto id = open_device(*sdk, settings.id);
   if (!id) return id.error();
   SdkSession session{.sdk = *sdk, .id = *id, .type = {}};
+  unsigned short number = 0;
+  if (sdk->serial_number != nullptr && sdk->serial_number(&number, *id) >= 0)
+    session.serial_number = number;
+  if (auto error = lock_device(name_of_lock(session))) {
+    sdk->close(*id);  // and nothing else: its forces are another program's
+    return *error;
+  }
   const auto type = force_dimension_type(sdk->system_type(*id));
   std::optional<Error> error;
   if (type) {
@@ -119,9 +133,6 @@ Result<SdkSession> open_sdk_session(const ForceDimensionSettings& settings) {
     close_sdk_session(session);
     return *error;
   }
-  unsigned short number = 0;
-  if (sdk->serial_number != nullptr && sdk->serial_number(&number, *id) >= 0)
-    session.serial_number = number;
   return session;
 }
 

@@ -10,6 +10,7 @@
 
 #include "hal/can/can_device.h"
 #include "hal/can/can_link.h"
+#include "hal/can/can_lock.h"
 #include "hal/odrive/odrive_axis.h"
 #include "hal/odrive/odrive_bring_up.h"
 #include "hal/odrive/odrive_errors.h"
@@ -228,6 +229,7 @@ Result<std::unique_ptr<Device>> start_odrive_delta(std::unique_ptr<can::CanBus> 
 Result<std::unique_ptr<Device>> open_can_odrive(const model::DeviceSettings& settings,
                                                 double rate_Hz) {
   const model::CanSettings& can = settings.can;
+  if (auto error = can::lock_drives(can, /*gives_sync=*/false)) return *error;
   auto socket =
       can::open_checked_can(can.interface, odrive_cycle_bits(can), rate_Hz, odrive_ids(can));
   if (!socket) return socket.error();

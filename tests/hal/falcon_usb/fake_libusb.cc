@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "hal/device_lock.h"
+
 tact::tests::FakeUsb* tact::tests::fake_usb = nullptr;
 
 struct libusb_device {
@@ -10,6 +12,12 @@ struct libusb_device {
 };
 
 using tact::tests::fake_usb;
+
+// Tests that run beside each other do not meet on one Falcon.
+std::optional<tact::model::Error> tact::hal::lock_device(const std::string& name) {
+  if (!fake_usb->another_has_it) return std::nullopt;
+  return tact::model::Error{name + " is driven by process 7"};
+}
 
 extern "C" {
 int LIBUSB_CALL libusb_init(libusb_context** context) {

@@ -29,6 +29,7 @@ struct FakeUsb {
   FalconDevice falcon{.runs = true};
   int open_error = 0, claim_error = 0, driver_active = 0, control_error = 0, bulk_error = 0;
   std::vector<hal::falcon::FtdiRequest> controls;
+  bool another_has_it = false;
   int contexts = 0, handles = 0, lists = 0, claims = 0, detach = -1;  // still held
   // Asynchronous
   std::mutex mutex;

@@ -74,6 +74,12 @@ TEST_F(FalconUsbTest, AnotherProgramIsToldFromAKernelDriver) {
   expect_refusal({"kernel driver", "rmmod ftdi_sio"});
 }
 
+TEST_F(FalconUsbTest, IsLockedByItsPathBeforeItIsOpened) {
+  usb.another_has_it = true;
+  usb.open_error = LIBUSB_ERROR_BUSY;
+  expect_refusal({"the Falcon at USB 1-2.3", "process 7"});
+}
+
 TEST_F(FalconUsbTest, AGoneDeviceSaysSo) {
   usb.open_error = LIBUSB_ERROR_NO_DEVICE;
   expect_refusal({"cannot be opened", "plug it in again"});

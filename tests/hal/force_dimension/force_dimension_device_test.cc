@@ -248,6 +248,7 @@ TEST_F(ForceDimension, AWristThatTurnsHasARate) {
 }
 
 TEST_F(ForceDimension, InfoIsThatOfItsType) {
+  setenv("TACT_STUB_DHD_SERIAL", "1234", 1);
   open(104);
   const DeviceInfo info = device->info();
   EXPECT_EQ(info.name, "Force Dimension sigma.7 right no. 1234");

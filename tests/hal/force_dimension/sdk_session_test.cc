@@ -33,6 +33,7 @@ class Session : public testing::Test {
 };
 
 TEST_F(Session, OpensADelta3) {
+  setenv("TACT_STUB_DHD_SERIAL", "1234", 1);
   const auto session = open_sdk_session(settings);
   ASSERT_TRUE(session) << session.error().sentence;
   EXPECT_STREQ(session->type.name, "delta.3");

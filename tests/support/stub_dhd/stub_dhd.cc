@@ -4,7 +4,8 @@
 //
 // Behind it a handle of 0.3 kg on a delta that balances its weight, led by a hand of 400 N/m and
 // 12 N s/m down to z = -10 mm and back to 20 mm every 4 s. The physics runs in the calls, in steps
-// of 0.25 ms of CLOCK_MONOTONIC. Forces are cut by the watchdog as the device cuts them.
+// of 0.25 ms of CLOCK_MONOTONIC. Forces are cut by the watchdog as the device cuts them. Each
+// process has a device of its own, as TACT_STUB_DHD_SERIAL or its pid numbers it.
 #include "tests/support/stub_dhd/stub_dhd.h"
 
 #include <unistd.h>
@@ -139,7 +140,9 @@ int dhdGetSystemType(char) {
 
 int dhdGetSerialNumber(unsigned short* number, char) {
   const Locked locked;
-  *number = 1234;
+  const char* wanted = std::getenv("TACT_STUB_DHD_SERIAL");
+  *number = wanted != nullptr ? static_cast<unsigned short>(std::atoi(wanted))
+                              : static_cast<unsigned short>(1 + getpid() % 60'000);
   return enter("dhdGetSerialNumber");
 }
 

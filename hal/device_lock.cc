@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/device_lock.h"
+
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+#include <fstream>
+#include <mutex>
+#include <set>
+
+namespace tact::hal {
+namespace {
+
+using model::Error;
+
+constexpr std::string_view kPrefix{"\0tact/device/", 13};  // the zero makes a name abstract
+constexpr int kManyRefused = 4096;  // each of them waits in the queue of the one who has it
+constexpr int kLooks = 50, kLook_us = 1000;
+
+class Address {
+ public:
+  explicit Address(const std::string& name) {
+    const std::string whole = std::string(kPrefix) + name;
+    fits_ = whole.size() <= sizeof address_.sun_path;
+    address_.sun_family = AF_UNIX;
+    std::copy_n(whole.data(), std::min(whole.size(), sizeof address_.sun_path), address_.sun_path);
+    bytes_ = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + whole.size());
+  }
+  bool fits() const { return fits_; }
+  const sockaddr* plain() const { return reinterpret_cast<const sockaddr*>(&address_); }
+  socklen_t bytes() const { return bytes_; }
+
+ private:
+  sockaddr_un address_{};
+  socklen_t bytes_ = 0;
+  bool fits_ = false;
+};
+
+int make_socket() { return socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0); }
+
+/// 0: it does not listen yet, or its queue is full, or it is of another PID namespace.
+pid_t ask_who_listens(const Address& address) {
+  ucred peer{};
+  socklen_t bytes = sizeof peer;
+  for (int look = 0; look < kLooks && peer.pid == 0; ++look) {
+    const int probe = make_socket();
+    const bool heard = connect(probe, address.plain(), address.bytes()) == 0;
+    if (heard) getsockopt(probe, SOL_SOCKET, SO_PEERCRED, &peer, &bytes);
+    if (probe >= 0) close(probe);
+    if (!heard) usleep(kLook_us);
+  }
+  return peer.pid;
+}
+
+std::string words_of(pid_t process) {
+  if (process == 0) return "another program";
+  std::string name;
+  std::getline(std::ifstream(fmt::format("/proc/{}/comm", process)), name);
+  return fmt::format("process {}{}", process, name.empty() ? "" : " (" + name + ")");
+}
+
+Error taken(const std::string& name, const Address& address) {
+  return Error{
+      fmt::format("{} is driven by {} already, and two would push against each other: end "
+                  "that one first",
+                  name, words_of(ask_who_listens(address)))};
+}
+
+}  // namespace
+
+std::optional<Error> lock_device(const std::string& name) {
+  static std::mutex mutex;
+  static std::set<std::string> ours;
+  const std::lock_guard<std::mutex> guard(mutex);
+  if (ours.contains(name)) return std::nullopt;
+  const Address address(name);
+  const int lock = address.fits() ? make_socket() : -1;
+  if (lock < 0)
+    return Error{fmt::format("{} cannot be locked for this program alone: {}", name,
+                             address.fits() ? std::strerror(errno) : "its name is too long")};
+  if (bind(lock, address.plain(), address.bytes()) == 0 && listen(lock, kManyRefused) == 0) {
+    ours.insert(name);  // the socket stays open until the process ends
+    return std::nullopt;
+  }
+  const int error = errno;
+  close(lock);
+  if (error == EADDRINUSE) return taken(name, address);
+  return Error{
+      fmt::format("{} cannot be locked for this program alone: {}", name, std::strerror(error))};
+}
+
+}  // namespace tact::hal

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/can/can_lock.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/forked.h"
+#include "tests/support/sentence.h"
+
+namespace tact::hal::can::can_lock_test {
+
+using tests::Forked;
+using tests::sentence_of;
+
+/// Of an interface that every machine has, with nodes that no other run of these tests takes.
+model::CanSettings drives(int first) {
+  static const int mine = 10 * getpid();  // of the parent, in a child, too
+  model::CanSettings settings;
+  settings.interface = "lo";
+  settings.node = {mine + first, mine + first + 1, mine + first + 2};
+  return settings;
+}
+
+TEST(CanLock, ADriveOfAnotherProgramIsRefused) {
+  const model::CanSettings theirs = drives(1);
+  const Forked other([&] { lock_drives(theirs, false); });
+  EXPECT_EQ(sentence_of(lock_drives(drives(4), false)), "") << "drives of their own";
+  const std::string said = sentence_of(lock_drives(drives(3), false));
+  EXPECT_NE(said.find("lo, node " + std::to_string(10 * getpid() + 3)), std::string::npos) << said;
+  EXPECT_NE(said.find("process " + std::to_string(other.process())), std::string::npos) << said;
+}
+
+TEST(CanLock, OnlyOneGivesSyncOnABus) {
+  const model::CanSettings theirs = drives(1);
+  const Forked other([&] { lock_drives(theirs, true); });
+  EXPECT_NE(sentence_of(lock_drives(drives(4), true)).find("the SYNC of lo"), std::string::npos);
+  EXPECT_EQ(sentence_of(lock_drives(drives(4), false)), "");
+}
+
+TEST(CanLock, AnInterfaceThatIsNotThereIsNotItsMatter) {
+  model::CanSettings settings = drives(1);
+  settings.interface = "can-none";
+  EXPECT_EQ(sentence_of(lock_drives(settings, true)), "");
+}
+
+}  // namespace tact::hal::can::can_lock_test
