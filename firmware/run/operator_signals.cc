@@ -2,19 +2,42 @@
 #include "firmware/run/operator_signals.h"
 
 #include <pthread.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 namespace tact::firmware::run {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr int kLastSignal = 64;
+constexpr std::array kLeave{SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGABRT};
+/// What nobody can ignore, and what ends nothing by itself.
+constexpr std::array kLeftAlone{SIGKILL, SIGSTOP, SIGCHLD, SIGCONT, SIGURG, SIGWINCH};
 
 sigset_t requests_of_a_person() {
   sigset_t set{};
   sigemptyset(&set);
   for (const int signal : {SIGUSR1, SIGUSR2}) sigaddset(&set, signal);
   return set;
+}
+
+/// glibc keeps two signals to itself (nptl(7)) and lets nobody ignore them; it puts handlers of its
+/// own in place when it needs them.
+void ignore_one_of_glibc(int signal) {
+  const std::array<std::uintptr_t, 4> kernel_sigaction{reinterpret_cast<std::uintptr_t>(SIG_IGN)};
+  constexpr std::size_t kMaskBytes = kLastSignal / 8;
+  syscall(SYS_rt_sigaction, signal, kernel_sigaction.data(), nullptr, kMaskBytes);
+}
+
+/// Unless somebody has a handler for it: a sanitizer, say.
+void ignore(int signal) {
+  struct sigaction now{};
+  if (sigaction(signal, nullptr, &now) != 0) return ignore_one_of_glibc(signal);
+  if (now.sa_handler == SIG_DFL) std::signal(signal, SIG_IGN);
 }
 
 }  // namespace
@@ -27,15 +50,19 @@ void wait_several_ticks() {
 void outlive_stray_signals() {
   const sigset_t requests = requests_of_a_person();
   pthread_sigmask(SIG_BLOCK, &requests, nullptr);
-  for (const int signal : {SIGPIPE, SIGXFSZ, SIGALRM, SIGIO, SIGPROF, SIGVTALRM, SIGPWR, SIGSTKFLT})
-    std::signal(signal, SIG_IGN);
-  for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) std::signal(signal, SIG_IGN);
+  const auto is_one_of = [](int signal, const auto& some) {
+    return std::ranges::find(some, signal) != some.end();
+  };
+  for (int signal = 1; signal <= kLastSignal; ++signal)
+    if (!is_one_of(signal, kLeave) && !is_one_of(signal, kLeftAlone) &&
+        sigismember(&requests, signal) == 0)
+      ignore(signal);
 }
 
 OperatorSignals::OperatorSignals(std::function<void()> let_loop_read)
     : signals_(requests_of_a_person()), let_loop_read_(std::move(let_loop_read)) {
   std::signal(SIGINT, SIG_DFL);  // a shell starts background programs with SIGINT ignored
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) sigaddset(&signals_, signal);
+  for (const int signal : kLeave) sigaddset(&signals_, signal);
   pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
 }
 

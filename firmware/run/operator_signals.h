@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // operator_signals.h - what a person at the PC asks of a running loop, by signals.
 //
-//     INT TERM HUP QUIT   force to zero, then leave; a closed terminal is one of them
-//     USR1                reset: leaves a stop whose cause is gone; never arms
-//     USR2                arm
+//     INT TERM HUP QUIT TSTP ABRT   force to zero, then leave; a closed terminal is one of them
+//     USR1                          reset: leaves a stop whose cause is gone; never arms
+//     USR2                          arm
 //
-// After a stop both are needed, in this order: nothing moves again by itself.
+// After a stop both are needed, in this order: nothing moves again by itself. What every other
+// signal does is in README.md.
 #pragma once
 
 #include <csignal>
@@ -19,7 +20,8 @@ namespace tact::firmware::run {
 enum class Act : std::uint8_t { kNone, kLeave, kReset, kArm };
 
 /// First of all in main: USR1 and USR2 wait from now on, and no signal that somebody sends by
-/// mistake ends a process whose loop pushes. A file that may not grow is an error of its writer.
+/// mistake ends or halts a process whose loop pushes. A file that may not grow is an error of its
+/// writer. A crash of its own ends it all the same: the kernel heeds nobody's wish to ignore that.
 void outlive_stray_signals();
 
 /// The loop reads levels once per tick, so each must stand for some: at 100 Hz two.

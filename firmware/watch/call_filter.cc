@@ -28,6 +28,9 @@ constexpr std::array kEveryLoop{
     SYS_clock_nanosleep, SYS_clock_gettime, SYS_restart_syscall, SYS_rt_sigreturn,
     SYS_rt_sigprocmask,  SYS_getrusage,     SYS_madvise,         SYS_exit};
 
+// SYS_SECCOMP of the kernel's headers, which stand no glibc header beside them.
+constexpr int kOfTheFilter = 1;
+
 std::atomic<loop::Requests*> guarded{nullptr};
 std::atomic<int> refused{-1};  // number of the first refused call
 thread_local bool in_loop = false;
@@ -50,6 +53,7 @@ void answer([[maybe_unused]] ucontext_t& context, [[maybe_unused]] long long res
 // In the thread that called, lock-free stores only. A wait for a lock is answered with "try again":
 // glibc takes any other error for broken memory.
 void on_refused(int, siginfo_t* info, void* context) {
+  if (info->si_code != kOfTheFilter) return;  // somebody sent it; nothing was called
   answer(*static_cast<ucontext_t*>(context), info->si_syscall == SYS_futex ? -EAGAIN : -EPERM);
   loop::Requests* requests = guarded.load();
   if (requests == nullptr || !in_loop) return;

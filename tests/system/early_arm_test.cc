@@ -2,6 +2,7 @@
 // A person who arms too early, at every moment of the start, and one who waits for the words.
 #include <gtest/gtest.h>
 
+#include "model/fault.h"
 #include "tests/system/tactd_fixture.h"
 
 namespace tact::tests::early_arm_test {
@@ -11,20 +12,20 @@ class Arming : public Tactd {
   /// tactd on the stand-in for Force Dimension's library, which waits for a person; `acts` is bash
   /// with $tactd in it.
   /// A machine that is busy with other work may stop such a loop by itself: then once more.
-  Outcome run(const std::string& acts) const {
-    Outcome out = run_once(acts);
-    for (int i = 0; i < 5 && stopped_itself(); ++i) out = run_once(acts);
+  Outcome run(const std::string& acts, const std::string& before = "") const {
+    Outcome out = run_once(acts, before);
+    for (int i = 0; i < 5 && stopped_itself(); ++i) out = run_once(acts, before);
     return out;
   }
   bool stopped_itself() const {
     const nlohmann::json told = report();
     return told.is_discarded() || told.at("fault").at("number") != 0;
   }
-  Outcome run_once(const std::string& acts) const {
+  Outcome run_once(const std::string& acts, const std::string& before) const {
     std::filesystem::remove(told());
     const std::string script = in_folder("run.sh");
     std::ofstream(script)
-        << program_path("tactd") << " " << kLiver
+        << before << program_path("tactd") << " " << kLiver
         << " --no-black-box --no-seccomp --seconds 1 --set rate_Hz=250 --set limits.energy_J=0.2"
         << " --socket " << in_folder("t.sock") << " --set 'device.kind=\"force-dimension\"'"
         << " --set 'device.force_dimension.library=\"" << TACT_BINARY_DIR
@@ -36,6 +37,24 @@ class Arming : public Tactd {
         // USR2, by the first line of main
         << acts << "\nwait $tactd; cat " << told() << "\n";
     return run_command("bash " + script);
+  }
+  /// tactd on its simulated device, which pushes by itself, until this signal.
+  void run_until(const std::string& signal) const {
+    std::filesystem::remove(in_folder("log"));
+    std::filesystem::remove(in_folder("report.json"));
+    const std::string script = in_folder("ends.sh");
+    std::ofstream(script) << program_path("tactd") << " " << kLiver << " --no-black-box --json "
+                          << in_folder("report.json") << " --set rate_Hz=500 --record "
+                          << in_folder("log") << " --socket " << in_folder("t.sock")
+                          << " & tactd=$!\nfor i in {1..200}; do [ -s " << in_folder("log")
+                          << " ] && break; sleep .05; done; sleep .3; kill -" << signal
+                          << " $tactd\n(sleep 8; kill -KILL $tactd) >/dev/null 2>&1 & late=$!\n"
+                          << "wait $tactd; kill $late\n";
+    run_command("bash " + script);
+  }
+  int fault() const {
+    const nlohmann::json told = report();
+    return told.is_discarded() ? -1 : told.at("fault").at("number").get<int>();
   }
   std::string told() const { return in_folder("told"); }
   nlohmann::json report() const {
@@ -56,6 +75,27 @@ TEST_F(Arming, BeforeTheWordsIsRefusedWhenEverItComesAndLeavesNothingBehind) {
   }
 }
 
+// Blocked by the parent, the signals of the time before main wait, too, and kill nobody.
+TEST_F(Arming, ABurstFromTheFirstInstructionOnGivesNoForceBeforeTheWords) {
+  int rounds = 0;
+  for (const char* burst_s : {"0.03", "0.1", "0.2"}) {
+    const Outcome out =
+        run(std::string("blocked; (while kill -USR1 $tactd && kill -USR2 $tactd; do :; done)"
+                        "& burst=$!; sleep ") +
+                burst_s + "; kill $burst; wait $burst; grep -q 'ready, force is off' " + told() +
+                " && echo too late; ready",
+            "env --block-signal=USR1 --block-signal=USR2 ");
+    if (has(out, "too late")) continue;  // the last ones came after the words, and may arm
+    ++rounds;
+    ASSERT_TRUE(has(out, "ready, force is off")) << burst_s << out.output;
+    ASSERT_FALSE(report().is_discarded()) << out.output;
+    EXPECT_EQ(report().at("state"), "ready") << burst_s << out.output;
+    EXPECT_EQ(report().at("force_max_N"), 0.0) << burst_s;
+    EXPECT_GT(report().at("refused_requests"), 0) << burst_s;
+  }
+  EXPECT_GE(rounds, 1);
+}
+
 TEST_F(Arming, AfterTheWordsArmsAtOnce) {
   const Outcome out = run("ready; sleep .1; kill -USR2 $tactd");
   ASSERT_FALSE(report().is_discarded()) << out.output;
@@ -65,10 +105,21 @@ TEST_F(Arming, AfterTheWordsArmsAtOnce) {
 
 TEST_F(Arming, SignalsByMistakeEndNothing) {
   const Outcome out =
-      run("ready; for s in XFSZ ALRM IO PROF VTALRM PWR RTMIN RTMAX; do kill -$s $tactd; done\n"
+      run("ready; for s in {1..64}; do case $(kill -l $s) in KILL|STOP|HUP|INT|QUIT|ABRT|TERM|TSTP|"
+          "XCPU|USR?) ;; *) kill -$s $tactd;; esac; done\n"
           "sleep .2; kill -USR2 $tactd");
   ASSERT_FALSE(report().is_discarded()) << out.output;
   EXPECT_EQ(report().at("state"), "armed") << out.output;
+}
+
+TEST_F(Arming, EverySignalThatAsksToEndOrHaltEndsWithAReportAndWithoutForce) {
+  for (const std::string signal : {"HUP", "INT", "QUIT", "ABRT", "TERM", "TSTP", "XCPU"}) {
+    const int expected = signal == "XCPU" ? static_cast<int>(model::Fault::kLoopRanAway) : 0;
+    for (int i = 0; i < 5 && (i == 0 || fault() != expected); ++i) run_until(signal);
+    ASSERT_FALSE(report().is_discarded()) << signal;
+    EXPECT_EQ(report().at("fault").at("number"), expected) << signal;
+    EXPECT_EQ(report().at("state"), "stopped") << signal;
+  }
 }
 
 }  // namespace tact::tests::early_arm_test

@@ -2,9 +2,14 @@
 #include "firmware/run/operator_signals.h"
 
 #include <gtest/gtest.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <vector>
+
+#include "firmware/loop/alloc_counter.h"
 
 namespace tact::firmware::run::operator_signals_test {
 
@@ -12,7 +17,10 @@ constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 TEST(OperatorSignals, EveryWayToEndAsksToLeave) {
   const OperatorSignals signals;
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+  sigset_t blocked{};
+  pthread_sigmask(SIG_BLOCK, nullptr, &blocked);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGABRT}) {
+    ASSERT_TRUE(sigismember(&blocked, signal)) << signal << " would end or halt this test";
     raise(signal);
     EXPECT_EQ(signals.wait(kSecond_ns), Act::kLeave) << signal;
   }
@@ -41,17 +49,38 @@ TEST(OperatorSignals, TheSlowestLoopHasTwoTicksToReadEachLevel) {
   EXPECT_GE(std::chrono::steady_clock::now() - begun, std::chrono::milliseconds(2 * 10));
 }
 
+bool asks_to_leave(int signal) {
+  return signal == SIGINT || signal == SIGTERM || signal == SIGHUP || signal == SIGQUIT ||
+         signal == SIGTSTP || signal == SIGABRT;
+}
+
 // In a process of its own, as the dispositions stay.
 TEST(OperatorSignals, NothingThatComesBeforeTheLoopOrByMistakeEndsTheProcess) {
   const auto outlive = [] {
     outlive_stray_signals();
-    for (const int signal : {SIGUSR1, SIGUSR2, SIGXFSZ, SIGALRM, SIGIO, SIGPROF, SIGVTALRM, SIGPWR,
-                             SIGPIPE, SIGRTMIN, SIGRTMAX})
-      raise(signal);
+    for (int signal = 1; signal <= 64; ++signal)
+      if (!asks_to_leave(signal) && signal != SIGKILL && signal != SIGSTOP)
+        syscall(SYS_kill, getpid(), signal);
     const OperatorSignals signals;
     _exit(signals.forget() == 2 && signals.wait(0) == Act::kNone ? 7 : 8);
   };
   EXPECT_EXIT(outlive(), testing::ExitedWithCode(7), "");
+}
+
+TEST(OperatorSignals, ACrashEndsTheProcessAllTheSame) {
+  const auto abort_it = [] {
+    outlive_stray_signals();
+    const OperatorSignals signals;
+    std::abort();
+  };
+  EXPECT_EXIT(abort_it(), testing::KilledBySignal(SIGABRT), "");
+  if (loop::is_sanitized()) return;  // which has handlers of its own for the rest
+  const auto read_nowhere = [] {
+    outlive_stray_signals();
+    volatile const int* nowhere = nullptr;
+    static_cast<void>(*nowhere);
+  };
+  EXPECT_EXIT(read_nowhere(), testing::KilledBySignal(SIGSEGV), "");
 }
 
 }  // namespace tact::firmware::run::operator_signals_test

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <map>
 #include <mutex>
@@ -61,6 +63,15 @@ TEST_F(FilteredLoop, AForbiddenCallFailsAndStopsTheForceInTheSameTick) {
   EXPECT_EQ(fault_of(device.called_at), model::Fault::kForbiddenCall);
   EXPECT_EQ(fault_of(device.called_at - 1), model::Fault::kNone);
   EXPECT_GT(ask_parent(), 0) << "other threads call what they like";
+}
+
+TEST_F(FilteredLoop, ASignalThatSomebodySendsIsNoCall) {
+  make({});
+  if (filter == nullptr) return;
+  start_filtered();
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(syscall(SYS_tgkill, getpid(), gettid(), SIGSYS), 0);
+  finish();
+  EXPECT_EQ(requests.fault.load(), model::Fault::kNone);
 }
 
 TEST_F(FilteredLoop, WhatTheDeviceListsPasses) {
