@@ -29,11 +29,10 @@ void Contact::reset() RT_SAFE {
   touch_ = {};
   pressing_ = {};
   presses_ = {};
-  sideways_ = coupling_ = {};
+  coupling_ = {};
   energy_J_ = 0.0;
-  own_ = {};
   shear_ = {};
-  shear_N_ = {};
+  shift_m_ = shear_N_ = {};
   closed_ = closing_ = false;
   before_.reset();
 }
@@ -61,6 +60,7 @@ void Contact::touch(const Tool& tool) RT_SAFE {
     if (!is_finite(centre_m)) {
       probe = {};
       touch_[i] = {};
+      shift_m_[i] = shear_N_[i] = {};
       scene_.law->leave(i);
       continue;
     }
@@ -117,33 +117,45 @@ void Contact::leave(std::size_t i) RT_SAFE {
   touch_[i] = {.place = probe_[i].proxy.site().place,
                .surface_point_m = probe_[i].proxy.site().point_m,
                .normal = probe_[i].proxy.site().normal};
+  probe_[i].axes = {};
+  shift_m_[i] = shear_N_[i] = {};
   scene_.law->leave(i);
 }
 
 // d and t of this tick; e follows d as a first guess.
 void Contact::find_depth(std::size_t i) RT_SAFE {
-  const Probe& probe = probe_[i];
+  Probe& probe = probe_[i];
   SphereTouch& touch = touch_[i];
   const double before_m = touch.depth_m;
   if (touch.state == TouchState::kHeld) {
     const Vec3 moved_m = probe.centre_m - probe.held_centre_m;
     touch.normal = probe.held_normal;
     touch.depth_m = probe.held_depth_m - dot(moved_m, touch.normal);
-    touch.shift_m = probe.held_shift_m + tangential(moved_m, touch.normal);
+    shift_m_[i] = probe.held_shift_m + probe.axes.of(moved_m);
   } else if (probe.depth_m > 0.0) {
     touch.state = TouchState::kTouching;
-    touch.place = probe.proxy.site().place;
-    touch.surface_point_m = probe.proxy.site().point_m;
-    touch.normal = probe.proxy.site().normal;
+    meet(i);
     // d = r - phi - slack
     touch.slack_m = std::min(touch.slack_m + probe.deepened_m, probe.depth_m);
     touch.depth_m = probe.depth_m - touch.slack_m;
-    touch.shift_m = tangential(touch.shift_m + probe.moved_m, touch.normal);
+    shift_m_[i] = shift_m_[i] + probe.axes.of(probe.moved_m);
   } else {
     leave(i);
     return;
   }
   touch.dent_m += touch.depth_m - before_m;
+}
+
+// Where the proxy is. The axes turn with the normal, t and f with them: that takes no energy.
+void Contact::meet(std::size_t i) RT_SAFE {
+  Probe& probe = probe_[i];
+  SphereTouch& touch = touch_[i];
+  const Site& site = probe.proxy.site();
+  touch.place = site.place;
+  touch.surface_point_m = site.point_m;
+  if (site.normal == touch.normal && probe.axes.a != Vec3{}) return;
+  touch.normal = site.normal;
+  probe.axes = axes_of(touch.normal, probe.axes);
 }
 
 Indentation Contact::indentation(std::size_t i) const RT_SAFE {
@@ -163,34 +175,33 @@ void Contact::couple() RT_SAFE {
   for (std::size_t i = 0; i < kMaxSpheres; ++i) presses_[i] = touch_[i].state != TouchState::kFree;
   if (presses_ == before) return;
   for (std::size_t i = 0; i < kMaxSpheres; ++i)
+    if (!presses_[i])
+      shear_.leave(i);
+    else if (!before[i])
+      begin_along(i);
+  for (std::size_t i = 0; i < kMaxSpheres; ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (!presses_[i] || !presses_[j])
-        set_coupling(i, j, {});
+        coupling_[i][j] = coupling_[j][i] = 0.0;
       else if (!before[i] || !before[j])
         couple(i, j);
-  for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
-    if (presses_[i] && !before[i]) own_[i] = own_give(i);
-  shear_ = Shear(own_, sideways_, presses_);
+  shear_.solve();
   for (std::size_t i = 0; i < kMaxSpheres; ++i)
     if (presses_[i] && !before[i]) {
-      touch_[i].shift_m += tangential(shear_.unloaded_m(shear_N_, i), touch_[i].normal);
-      const double own_N_per_m = shear_.own_N_per_m(i);
-      if (own_N_per_m > 0.0) touch_[i].shift_m -= spring_N(shear_, i) / own_N_per_m;
+      shift_m_[i] = shift_m_[i] + shear_.unloaded_m(shear_N_, i);
+      shift_m_[i] =
+          shift_m_[i] - contact::solve(shear_.own_N_per_m(i), shear_.force_N(shift_m_, i));
     }
-}
-
-void Contact::set_coupling(std::size_t i, std::size_t j, const SiteCoupling& c) RT_SAFE {
-  sideways_[i][j] = sideways_[j][i] = c.skin_m_per_N + c.lobe_m_per_N;
-  coupling_[i][j] = coupling_[j][i] = coupling_m_per_N(c, touch_[i].normal, touch_[j].normal);
 }
 
 // On the other's bulge the one that has just come would meet energy that nobody gave: that much is
 // slack. Of the two, only one presses yet.
 void Contact::couple(std::size_t i, std::size_t j) RT_SAFE {
-  set_coupling(i, j,
-               scene_.law->coupling(indentation(i), indentation(j),
-                                    norm(probe_[i].centre_m - probe_[j].centre_m)));
-  const double c = coupling_[i][j];
+  const SiteCoupling along = scene_.law->coupling(indentation(i), indentation(j),
+                                                  norm(probe_[i].centre_m - probe_[j].centre_m));
+  shear_.couple(i, j, along.skin_m_per_N + along.lobe_m_per_N, probe_[i].axes, probe_[j].axes);
+  const double c = coupling_m_per_N(along, touch_[i].normal, touch_[j].normal);
+  coupling_[i][j] = coupling_[j][i] = c;
   take_away(i, std::max(0.0, -c * pressing_[j].response.law.force_N));
   take_away(j, std::max(0.0, -c * pressing_[i].response.law.force_N));
 }
@@ -252,11 +263,13 @@ void Contact::sum_up(std::size_t i) RT_SAFE {
   touch.law_status = site.law.status;
   const double push_N =
       site.law.force_N + scene_.law->resistance_N(pressing_[i].in, site.law.force_N);
-  touch.force_N = push_N * touch.normal - shear_N_[i];
+  const Axes& axes = probe_[i].axes;
+  touch.shift_m = axes.vector(shift_m_[i]);
+  touch.force_N = push_N * touch.normal - axes.vector(shear_N_[i]);
   if (touch.state == TouchState::kTouching && !probe_[i].proxy.stays())
     touch.force_N -= movable(scene_.surface, touch.place, site.slope_N);
   touch.energy_J = site.law.energy_J + 0.5 * site.law.force_N * sunk_m(coupling_, pressing(), i) +
-                   0.5 * dot(shear_N_[i], touch.shift_m);
+                   0.5 * dot(shear_N_[i], shift_m_[i]);
 }
 
 }  // namespace tact::model::contact

@@ -13,9 +13,10 @@
 //   force on the tool  F = -grad W,   torque = sum (c - origin) x F
 //
 // U is the site law's (site_law.h), s the place on the surface; as s follows the tool, the slope of
-// U along the surface is felt too. t: tangential displacement of the tissue, m, f = K t (shear.h);
-// the springs are the tissue's own: stiffer as the contact grows, and then until the sphere leaves,
-// with the same force and less energy. The law is asked
+// U along the surface is felt too. t: tangential displacement of the tissue, m, f = K t (shear.h),
+// in axes that turn with n; the springs are the tissue's own: stiffer as the contact grows, and
+// then until the sphere leaves, with the same force and less energy. On another triangle they are
+// those of the new place, where that leaves no more energy at the same force. The law is asked
 // with the sphere's own dent e = d - what the other spheres have sunk the site (coupling.h); how
 // they couple is kept from a sphere's first touch until it leaves. What a law adds for speed (LW-3)
 // comes after that: b of the dent, times the speed of the sphere's own depth, so that each sphere
@@ -48,7 +49,7 @@ struct ProbeSphere {
 
 struct ContactParameters {
   double friction_ratio = 0.0;             // mu, >= 0
-  double sliding_stiffness_N_per_m = 0.0;  // k_i, >= 0; 0: the tissue's own, by its law
+  double sliding_stiffness_N_per_m = 0.0;  // 1 / G, >= 0; 0: the tissue's own, by its law
   double tear_force_N = 0.0;               // of one sphere, > 0
   double grip_close_ratio = 0.7;           // closing above this holds
   double grip_open_ratio = 0.5;            // opening below this lets go
@@ -111,8 +112,13 @@ class Contact {
     Seeds candidate{kNoTriangle, kNoTriangle};  // sheets watched while free
     std::uint32_t cell = kNoTriangle;
     bool seen = false;  // there was a tick before
-    Vec3 held_centre_m, held_normal, held_shift_m;
+    Vec3 held_centre_m, held_normal;
+    Vec2 held_shift_m;
     double held_depth_m = 0.0;
+    Axes axes;        // of t and f
+    AlongGive along;  // of the triangle and the state that were asked for
+    std::uint32_t asked = kNoTriangle;
+    bool asked_held = false;
   };
 
   Site search(Probe& probe) RT_SAFE;
@@ -120,10 +126,10 @@ class Contact {
   void watch_grip(double grip_ratio) RT_SAFE;
   void leave(std::size_t i) RT_SAFE;
   void find_depth(std::size_t i) RT_SAFE;
+  void meet(std::size_t i) RT_SAFE;
   Indentation indentation(std::size_t i) const RT_SAFE;
   void couple() RT_SAFE;
   void couple(std::size_t i, std::size_t j) RT_SAFE;
-  void set_coupling(std::size_t i, std::size_t j, const SiteCoupling& c) RT_SAFE;
   void take_away(std::size_t i, double depth_m) RT_SAFE;
   double press() RT_SAFE;
   void keep_definite() RT_SAFE;
@@ -131,9 +137,10 @@ class Contact {
   bool is_torn(std::size_t i) const RT_SAFE;
   bool let_go() RT_SAFE;
   void let_go(std::size_t i) RT_SAFE;
-  Vec3 spring_N(const Shear& shear, std::size_t i) const RT_SAFE;
-  Vec3 beyond_friction_N(std::size_t i, const Vec3& f_N) const RT_SAFE;
-  OwnGive own_give(std::size_t i) const RT_SAFE;
+  Tensor2 give_m_per_N(std::size_t i) const RT_SAFE;
+  AlongGive ask_along(std::size_t i, bool held) const RT_SAFE;
+  bool renew_along(std::size_t i) RT_SAFE;
+  void begin_along(std::size_t i) RT_SAFE;
   void stiffen() RT_SAFE;
   void resist_sliding() RT_SAFE;
   void sum_up(std::size_t i) RT_SAFE;
@@ -144,14 +151,13 @@ class Contact {
   std::array<SphereTouch, kMaxSpheres> touch_{};
   std::array<PressingSphere, kMaxSpheres> pressing_{};
   std::array<bool, kMaxSpheres> presses_{};  // touching or held
-  Coupling sideways_{}, coupling_{};         // c, C as it is felt
-  OwnGives own_{};                           // since they came
+  Coupling coupling_{};                      // C as it is felt
   Shear shear_;
-  std::array<Vec3, kMaxSpheres> shear_N_{};  // f
-  double energy_J_ = 0.0;                    // of all presses
-  bool closed_ = false;                      // the grip, with hysteresis
-  bool closing_ = false;                     // it closed in this tick
-  std::optional<Tool> before_;               // of the last tick: where the blade was
+  Shear::Shifts shift_m_{}, shear_N_{};  // t, f
+  double energy_J_ = 0.0;                // of all presses
+  bool closed_ = false;                  // the grip, with hysteresis
+  bool closing_ = false;                 // it closed in this tick
+  std::optional<Tool> before_;           // of the last tick: where the blade was
 };
 
 }  // namespace tact::model::contact

@@ -23,7 +23,7 @@ bool Contact::hold() RT_SAFE {
     Probe& probe = probe_[i];
     probe.held_centre_m = probe.centre_m;
     probe.held_normal = touch.normal;
-    probe.held_shift_m = touch.shift_m;
+    probe.held_shift_m = shift_m_[i];
     probe.held_depth_m = touch.depth_m;
     touch.state = TouchState::kHeld;
     held = true;
@@ -32,8 +32,8 @@ bool Contact::hold() RT_SAFE {
 }
 
 bool Contact::is_torn(std::size_t i) const RT_SAFE {
-  const double pull_N =
-      std::hypot(std::max(0.0, -pressing_[i].response.law.force_N), norm(spring_N(shear_, i)));
+  const double pull_N = std::hypot(std::max(0.0, -pressing_[i].response.law.force_N),
+                                   norm(shear_.force_N(shift_m_, i)));
   return !(pull_N <= scene_.parameters.tear_force_N);
 }
 
@@ -63,9 +63,7 @@ void Contact::let_go(std::size_t i) RT_SAFE {
     return;
   }
   touch.state = TouchState::kTouching;
-  touch.place = probe.proxy.site().place;
-  touch.surface_point_m = probe.proxy.site().point_m;
-  touch.normal = probe.proxy.site().normal;
+  meet(i);
   const auto affords = [&](double depth_m) RT_SAFE {
     touch.dent_m += depth_m - touch.depth_m;
     touch.depth_m = depth_m;
@@ -81,14 +79,14 @@ void Contact::let_go(std::size_t i) RT_SAFE {
   if (!(low_m > 0.0)) scene_.law->leave(i);
   affords(low_m);
   // Without it the others share the shift; it goes where they have dragged it.
-  std::array<bool, kMaxSpheres> others = presses_;
-  others[i] = false;
-  const Shear without(own_, sideways_, others);
-  std::array<Vec3, kMaxSpheres> f_N{};
-  for (std::size_t j = 0; j < kMaxSpheres; ++j) f_N[j] = spring_N(without, j);
-  touch.shift_m = tangential(shear_.unloaded_m(f_N, i), touch.normal);
-  own_[i].m_per_N = own_give(i).m_per_N;  // it has no force: the change is free
-  shear_ = Shear(own_, sideways_, presses_);
+  Shear without = shear_;
+  without.leave(i);
+  without.solve();
+  Shear::Shifts f_N{};
+  for (std::size_t j = 0; j < kMaxSpheres; ++j) f_N[j] = without.force_N(shift_m_, j);
+  shift_m_[i] = shear_.unloaded_m(f_N, i);
+  begin_along(i);
+  shear_.solve();
 }
 
 }  // namespace tact::model::contact

@@ -8,79 +8,113 @@
 namespace tact::model::contact {
 namespace {
 
-constexpr double kRounding_ratio = 1e-12;  // of a force at its cap
+constexpr double kAboveCap = 1.0 + 1e-12;  // rounding
+
+// What Coulomb leaves of f at the stiffness K: f' = f - K g f', |f'| = cap, g > 0, so that f' lies
+// along the slip g f'. Newton on 1 / |f'|, which is nearly linear in g; kSteps bound the work, and
+// the length is then set.
+Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N) RT_SAFE {
+  constexpr int kSteps = 3;
+  if (!(cap_N > 0.0)) return {};
+  const Tensor2& k = stiffness_N_per_m;
+  Vec2 left_N = f_N;
+  double g_m_per_N = 0.0;
+  for (int step = 0; step < kSteps; ++step) {
+    const Tensor2 m{1.0 + g_m_per_N * k.xx, g_m_per_N * k.xy, 1.0 + g_m_per_N * k.yy};  // I + g K
+    left_N = solve(m, f_N);
+    const double squared_N2 = dot(left_N, left_N);
+    g_m_per_N +=
+        (std::sqrt(squared_N2) / cap_N - 1.0) * squared_N2 / dot(left_N, solve(m, k * left_N));
+  }
+  return (cap_N / norm(left_N)) * left_N;
+}
 
 }  // namespace
 
-Vec3 Contact::spring_N(const Shear& shear, std::size_t i) const RT_SAFE {
-  std::array<Vec3, kMaxSpheres> shift_m;
-  for (std::size_t j = 0; j < kMaxSpheres; ++j) shift_m[j] = touch_[j].shift_m;
-  return tangential(shear.force_N(shift_m, i), touch_[i].normal);
-}
-
 // By a Hertz contact of its own dent; a held patch is as wide as the sphere.
-OwnGive Contact::own_give(std::size_t i) const RT_SAFE {
+Tensor2 Contact::give_m_per_N(std::size_t i) const RT_SAFE {
   constexpr double kLeastRadius_ratio = 0.1;
-  const double fixed_N_per_m = scene_.parameters.sliding_stiffness_N_per_m;
-  if (fixed_N_per_m > 0.0) return {1.0 / fixed_N_per_m, 1.0 / fixed_N_per_m};
   const double radius_m = scene_.spheres[i].radius_m;
-  Indentation in = indentation(i);
-  const double contact_m = std::clamp(std::sqrt(radius_m * std::max(in.depth_m, 0.0)),
+  const double contact_m = std::clamp(std::sqrt(radius_m * std::max(touch_[i].dent_m, 0.0)),
                                       kLeastRadius_ratio * radius_m, radius_m);
-  const double now = scene_.law->sideways_m_per_N(in, in.held ? radius_m : contact_m);
-  in.held = true;
-  return {now, scene_.law->sideways_m_per_N(in, radius_m)};
+  return probe_[i].along.at(probe_[i].asked_held ? radius_m : contact_m);
 }
 
-// In steps of 1 %. Each keeps its force, so it needs less shift.
+AlongGive Contact::ask_along(std::size_t i, bool held) const RT_SAFE {
+  const double fixed_N_per_m = scene_.parameters.sliding_stiffness_N_per_m;
+  if (!(fixed_N_per_m > 0.0)) return scene_.law->give_along(touch_[i].place, held, probe_[i].axes);
+  return {.rest_m_per_N = {.xx = 1.0 / fixed_N_per_m, .yy = 1.0 / fixed_N_per_m}};
+}
+
+// Of this place; true: it was another one, or another state.
+bool Contact::renew_along(std::size_t i) RT_SAFE {
+  Probe& probe = probe_[i];
+  const bool is_held = touch_[i].state == TouchState::kHeld;
+  const std::uint32_t triangle = touch_[i].place.triangle;
+  if (probe.asked == triangle && probe.asked_held == is_held) return false;
+  probe.asked = triangle;
+  probe.asked_held = is_held;
+  probe.along = ask_along(i, is_held);
+  return true;
+}
+
+// A sphere without force: any spring is free.
+void Contact::begin_along(std::size_t i) RT_SAFE {
+  probe_[i].asked = kNoTriangle;
+  renew_along(i);
+  const double least_m_per_N = ask_along(i, true).at(scene_.spheres[i].radius_m).least_eigenvalue();
+  shear_.set_own(i, {at_least(give_m_per_N(i), least_m_per_N), least_m_per_N});
+}
+
+// In steps of 1 %, and from triangle to triangle. Each keeps its force, so it needs less shift;
+// where it would need more, the spring stays as it is.
 void Contact::stiffen() RT_SAFE {
   constexpr double kStep_ratio = 0.99;
-  const OwnGives before = own_;
+  Shear::Shifts change_m{};
   bool is_stiffer = false;
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
     if (!presses_[i]) continue;
-    const double now = std::max(own_give(i).m_per_N, own_[i].least_m_per_N);
-    if (!(now < kStep_ratio * own_[i].m_per_N)) continue;
-    own_[i].m_per_N = now;
+    const bool is_elsewhere = renew_along(i);
+    const OwnGive before = shear_.own(i);
+    const Tensor2 now = give_m_per_N(i);
+    if (!is_elsewhere && !(now.trace() < kStep_ratio * before.m_per_N.trace())) continue;
+    const OwnGive own{at_least(now, before.least_m_per_N), before.least_m_per_N};
+    const Vec2 force_N = shear_.force_N(shift_m_, i);
+    change_m[i] = own.m_per_N * force_N - before.m_per_N * force_N;
+    if (own == before || !(dot(force_N, change_m[i]) <= 0.0)) {
+      change_m[i] = {};
+      continue;
+    }
+    shear_.set_own(i, own);
     is_stiffer = true;
   }
   if (!is_stiffer) return;
-  std::array<Vec3, kMaxSpheres> change_m{};
-  for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
-    change_m[i] = (own_[i].m_per_N - before[i].m_per_N) * spring_N(shear_, i);
-  shear_ = Shear(own_, sideways_, presses_);
+  shear_.solve();
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
-    touch_[i].shift_m += change_m[i];
-    probe_[i].held_shift_m += change_m[i];
+    shift_m_[i] = shift_m_[i] + change_m[i];
+    probe_[i].held_shift_m = probe_[i].held_shift_m + change_m[i];
   }
 }
 
-// t up to |f| = mu F. One sphere's slip changes what the next one carries: kSweeps over all, and
-// what they leave above the cap is cut from the force alone.
+// t up to |f| = mu F; held tissue has no cap. One sphere's slip changes what the next one carries:
+// kSweeps over all, and what they leave above the cap is cut from the force alone.
 void Contact::resist_sliding() RT_SAFE {
   constexpr int kSweeps = 4;
   for (int sweep = 0; sweep <= kSweeps; ++sweep) {
     bool slipped = false;
     for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
-      shear_N_[i] = touch_[i].state == TouchState::kFree ? Vec3{} : spring_N(shear_, i);
-      const Vec3 excess_N = beyond_friction_N(i, shear_N_[i]);
-      if (excess_N == Vec3{}) continue;
+      if (!presses_[i]) continue;
+      const Vec2 spring_N = shear_.force_N(shift_m_, i);
+      shear_N_[i] = spring_N;
+      const double cap_N = scene_.parameters.friction_ratio * pressing_[i].response.law.force_N;
+      if (touch_[i].state == TouchState::kHeld || !(norm(spring_N) > cap_N * kAboveCap)) continue;
       slipped = true;
-      if (sweep == kSweeps)
-        shear_N_[i] -= excess_N;
-      else
-        touch_[i].shift_m -= excess_N / shear_.own_N_per_m(i);
+      const Tensor2 own_N_per_m = shear_.own_N_per_m(i);
+      shear_N_[i] = slipping_N(spring_N, own_N_per_m, cap_N);
+      if (sweep < kSweeps) shift_m_[i] = shift_m_[i] - solve(own_N_per_m, spring_N - shear_N_[i]);
     }
     if (!slipped) return;
   }
-}
-
-// What of f is above mu F; held tissue has no cap.
-Vec3 Contact::beyond_friction_N(std::size_t i, const Vec3& f_N) const RT_SAFE {
-  if (touch_[i].state != TouchState::kTouching) return {};
-  const double cap_N = scene_.parameters.friction_ratio * pressing_[i].response.law.force_N;
-  const double spring_N = norm(f_N);
-  return spring_N > cap_N * (1.0 + kRounding_ratio) ? (1.0 - cap_N / spring_N) * f_N : Vec3{};
 }
 
 }  // namespace tact::model::contact

@@ -5,50 +5,66 @@
 
 namespace tact::model::contact {
 
-Shear::Shear(const OwnGives& own, const Coupling& c,
-             const std::array<bool, kMaxSpheres>& presses) RT_SAFE {
-  // Rows that sum to less than the diagonal: positive definite, and so is what elimination leaves.
+void Shear::leave(std::size_t i) RT_SAFE {
+  own_[i] = {};
+  for (std::size_t j = 0; j < kMaxSpheres; ++j) couple(i, j, 0.0, {}, {});
+}
+
+// Rows that sum to less than the diagonal: positive definite, and so is what elimination leaves.
+void Shear::couple(std::size_t i, std::size_t j, double m_per_N, const Axes& of_i,
+                   const Axes& of_j) RT_SAFE {
   constexpr double kMost = 0.9 / (kMaxSpheres - 1);
-  const auto takes = [&](std::size_t i) RT_SAFE { return presses[i] && own[i].m_per_N > 0.0; };
-  Coupling a{};
+  const double most_m_per_N = kMost * std::min(own_[i].least_m_per_N, own_[j].least_m_per_N);
+  const double c = std::clamp(m_per_N, -most_m_per_N, most_m_per_N);
+  const auto set = [&](std::size_t row, std::size_t column, double cosine) RT_SAFE {
+    coupling_m_per_N_[row][column] = coupling_m_per_N_[column][row] = c * cosine;
+  };
+  set(2 * i, 2 * j, dot(of_i.a, of_j.a));
+  set(2 * i, 2 * j + 1, dot(of_i.a, of_j.b));
+  set(2 * i + 1, 2 * j, dot(of_i.b, of_j.a));
+  set(2 * i + 1, 2 * j + 1, dot(of_i.b, of_j.b));
+}
+
+// Gauss and Jordan, in place, over the rows that take force.
+void Shear::solve() RT_SAFE {
+  std::array<std::size_t, 2 * kMaxSpheres> row{};
+  std::size_t n = 0;
   for (std::size_t i = 0; i < kMaxSpheres; ++i)
-    for (std::size_t j = 0; j < kMaxSpheres; ++j) {
-      const double most_m_per_N = kMost * std::min(own[i].least_m_per_N, own[j].least_m_per_N);
-      if (i != j && takes(i) && takes(j))
-        coupling_[i][j] = std::clamp(c[i][j], -most_m_per_N, most_m_per_N);
-      a[i][j] = i != j ? coupling_[i][j] : takes(i) ? own[i].m_per_N : 1.0;
-      stiffness_N_per_m_[i][j] = i == j && takes(i) ? 1.0 : 0.0;
-    }
-  // Gauss and Jordan: a becomes the unit matrix, the unit matrix the inverse.
-  for (std::size_t k = 0; k < kMaxSpheres; ++k) {
+    if (takes_force(i)) row[n] = 2 * i, row[n + 1] = 2 * i + 1, n += 2;
+  Matrix& a = stiffness_N_per_m_;
+  a = coupling_m_per_N_;
+  for (std::size_t i = 0; i < kMaxSpheres; ++i) {
+    const Tensor2& give = own_[i].m_per_N;
+    a[2 * i][2 * i] = give.xx;
+    a[2 * i + 1][2 * i + 1] = give.yy;
+    a[2 * i][2 * i + 1] = a[2 * i + 1][2 * i] = give.xy;
+  }
+  for (std::size_t s = 0; s < n; ++s) {
+    const std::size_t k = row[s];
     const double pivot = a[k][k];
-    for (std::size_t j = 0; j < kMaxSpheres; ++j) {
-      a[k][j] /= pivot;
-      stiffness_N_per_m_[k][j] /= pivot;
-    }
-    for (std::size_t i = 0; i < kMaxSpheres; ++i) {
-      if (i == k) continue;
-      const double f = a[i][k];
-      if (f == 0.0) continue;
-      for (std::size_t j = 0; j < kMaxSpheres; ++j) {
-        a[i][j] -= f * a[k][j];
-        stiffness_N_per_m_[i][j] -= f * stiffness_N_per_m_[k][j];
-      }
+    a[k][k] = 1.0;
+    for (std::size_t j = 0; j < n; ++j) a[k][row[j]] /= pivot;
+    for (std::size_t r = 0; r < n; ++r) {
+      if (r == s) continue;
+      auto& to = a[row[r]];
+      const double f = to[k];
+      to[k] = 0.0;
+      for (std::size_t j = 0; j < n; ++j) to[row[j]] -= f * a[k][row[j]];
     }
   }
 }
 
-Vec3 Shear::force_N(const std::array<Vec3, kMaxSpheres>& t_m, std::size_t i) const RT_SAFE {
-  Vec3 sum{};
-  for (std::size_t j = 0; j < kMaxSpheres; ++j)
-    if (stiffness_N_per_m_[i][j] != 0.0) sum += stiffness_N_per_m_[i][j] * t_m[j];
-  return sum;
+Tensor2 Shear::own_N_per_m(std::size_t i) const RT_SAFE {
+  const Matrix& k = stiffness_N_per_m_;
+  return {.xx = k[2 * i][2 * i], .xy = k[2 * i][2 * i + 1], .yy = k[2 * i + 1][2 * i + 1]};
 }
 
-Vec3 Shear::unloaded_m(const std::array<Vec3, kMaxSpheres>& f_N, std::size_t i) const RT_SAFE {
-  Vec3 sum{};
-  for (std::size_t j = 0; j < kMaxSpheres; ++j)
-    if (coupling_[i][j] != 0.0) sum += coupling_[i][j] * f_N[j];
+Vec2 Shear::times(const Matrix& m, std::size_t i, const Shifts& v) RT_SAFE {
+  Vec2 sum{};
+  for (std::size_t j = 0; j < kMaxSpheres; ++j) {
+    sum.x += m[2 * i][2 * j] * v[j].x + m[2 * i][2 * j + 1] * v[j].y;
+    sum.y += m[2 * i + 1][2 * j] * v[j].x + m[2 * i + 1][2 * j + 1] * v[j].y;
+  }
   return sum;
 }
 

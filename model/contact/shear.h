@@ -1,48 +1,70 @@
 // SPDX-License-Identifier: Apache-2.0
 // shear.h - spheres that drag one tissue sideways: a spring each, coupled as their presses are.
 //
-//     MC-4   t_i = f_i / k_i + sum over j != i of c_ij f_j        W = sum f_i . t_i / 2
+//     MC-4   t_i = G_i f_i + sum over j != i of c_ij P_ij f_j        W = sum f_i . t_i / 2
 //            |f_i| <= mu F_i unless held (Coulomb)
 //
-//     t_i   sideways displacement of site i, m, tangential to n_i      f_i   force that it takes, N
-//     k_i   MC-5, N/m: stiffer while the contact grows
-//     c     h + b of MC-2, kept so small that diag(1 / k) + c is positive definite
+//     t_i   sideways displacement of site i, m       f_i   force that it takes, N: in two axes each
+//     G_i   MC-5, m/N, a tensor: another give in each direction, less while the contact grows
+//     c     h + b of MC-2, kept so small that diag(G) + c P is positive definite
+//     P_ij  turns the axes of j into those of i, without what lies along the normals
 //
 // Half-space: across the line that joins two sites h is right, along it a factor of 1 / (1 - nu) is
 // left out [Johnson, Contact Mechanics (1985), 3.6]. b is that of the normal motion: what a lobe's
-// sideways motion at one site is at the other, the map does not know.
+// sideways motion at one site is at the other, the map does not know. The axes of a site turn with
+// its normal, G and c P with them.
 #pragma once
 
 #include <array>
 #include <cstddef>
 
-#include "model/contact/coupling.h"
+#include "model/contact/along.h"
+#include "model/contact/site_law.h"
 
 namespace tact::model::contact {
 
-/// 1 / k_i now, and the least that it may become; 0: it takes no force.
+/// G now, and the least that it may become in any direction; 0: it takes no force.
 struct OwnGive {
-  double m_per_N = 0.0, least_m_per_N = 0.0;
+  Tensor2 m_per_N;
+  double least_m_per_N = 0.0;
+
+  friend constexpr bool operator==(const OwnGive&, const OwnGive&) = default;
 };
-using OwnGives = std::array<OwnGive, kMaxSpheres>;
 
 class Shear {
  public:
-  Shear() = default;
-  /// The coupling of what presses.
-  Shear(const OwnGives& own, const Coupling& c,
-        const std::array<bool, kMaxSpheres>& presses) RT_SAFE;
+  using Shifts = std::array<Vec2, kMaxSpheres>;
 
+  /// Each of these counts from the next solve() on.
+  void set_own(std::size_t i, const OwnGive& own) RT_SAFE { own_[i] = own; }
+  void couple(std::size_t i, std::size_t j, double m_per_N, const Axes& of_i,
+              const Axes& of_j) RT_SAFE;
+  /// It does not press: no force, no coupling.
+  void leave(std::size_t i) RT_SAFE;
+  void solve() RT_SAFE;
+
+  const OwnGive& own(std::size_t i) const RT_SAFE { return own_[i]; }
   /// df_i / dt_i, N/m; 0: it does not press.
-  double own_N_per_m(std::size_t i) const RT_SAFE { return stiffness_N_per_m_[i][i]; }
-  /// f_i for displacements t, before it is laid into the tangent plane.
-  Vec3 force_N(const std::array<Vec3, kMaxSpheres>& t_m, std::size_t i) const RT_SAFE;
-  /// t_i with which f_i is 0, where the others' forces are f.
-  Vec3 unloaded_m(const std::array<Vec3, kMaxSpheres>& f_N, std::size_t i) const RT_SAFE;
+  Tensor2 own_N_per_m(std::size_t i) const RT_SAFE;
+  /// f_i for displacements t, m.
+  Vec2 force_N(const Shifts& t_m, std::size_t i) const RT_SAFE {
+    return times(stiffness_N_per_m_, i, t_m);
+  }
+  /// t_i with which f_i is 0, where the others' forces are f, N.
+  Vec2 unloaded_m(const Shifts& f_N, std::size_t i) const RT_SAFE {
+    return times(coupling_m_per_N_, i, f_N);
+  }
 
  private:
-  Coupling coupling_{};           // C, limited
-  Coupling stiffness_N_per_m_{};  // (diag(1 / k) + C)^-1 of what presses, 0 elsewhere
+  using Matrix = std::array<std::array<double, 2 * kMaxSpheres>, 2 * kMaxSpheres>;
+
+  /// Rows of i.
+  static Vec2 times(const Matrix& m, std::size_t i, const Shifts& v) RT_SAFE;
+  bool takes_force(std::size_t i) const RT_SAFE { return own_[i].least_m_per_N > 0.0; }
+
+  std::array<OwnGive, kMaxSpheres> own_{};
+  Matrix coupling_m_per_N_{};   // c P, limited
+  Matrix stiffness_N_per_m_{};  // (diag(G) + c P)^-1 of what takes force, 0 elsewhere
 };
 
 }  // namespace tact::model::contact

@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <span>
 
+#include "model/contact/along.h"
 #include "model/contact/blade.h"
 #include "model/contact/patch_shape.h"
 #include "model/contact/site.h"
@@ -45,6 +46,17 @@ struct SiteCoupling {
   double lobe_m_per_N = 0.0;  // as their lobe bends: along its one axis
 };
 
+/// MC-5: G = c / a I + S, m/N, a the radius of the contact, m.
+struct AlongGive {
+  double contact_m2_per_N = 0.0;  // c
+  Tensor2 rest_m_per_N;           // S
+
+  Tensor2 at(double contact_radius_m) const RT_SAFE {
+    const double round_m_per_N = contact_m2_per_N / contact_radius_m;
+    return {rest_m_per_N.xx + round_m_per_N, rest_m_per_N.xy, rest_m_per_N.yy + round_m_per_N};
+  }
+};
+
 class SiteLaw {
  public:
   virtual ~SiteLaw() = default;
@@ -68,11 +80,11 @@ class SiteLaw {
     (void)place, (void)held;
     return 0.0;
   }
-  /// MC-5: how far the site gives way sideways under a unit force by a contact of this radius,
-  /// m/N. 0: not known.
-  virtual double sideways_m_per_N(const Indentation& in, double contact_radius_m) const RT_SAFE {
-    (void)in, (void)contact_radius_m;
-    return 0.0;
+  /// MC-5: how far the site gives way along the surface under a unit force, in these axes. All 0:
+  /// not known.
+  virtual AlongGive give_along(const Place& place, bool held, const Axes& axes) const RT_SAFE {
+    (void)place, (void)held, (void)axes;
+    return {};
   }
   /// The sphere is free: forget what it did.
   virtual void leave(std::size_t sphere) RT_SAFE = 0;

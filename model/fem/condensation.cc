@@ -110,11 +110,13 @@ void Condenser::read(std::size_t slot, std::uint32_t vertex, tissue::ComplianceM
   const double c11 = c[1][1] - side, c22 = c[2][2] - side, c12 = c[1][2];
   const double angle = 0.5 * std::atan2(2.0 * c12, c11 - c22);
   const double u = std::cos(angle), v = std::sin(angle);
+  const Vec3 axis = u * frame_[slot].axis[1] + v * frame_[slot].axis[2];
   map.sideways_times_E_per_m[vertex] = {
       .n1 = static_cast<float>(u * c[0][1] + v * c[0][2]),
       .n2 = static_cast<float>(u * c[0][2] - v * c[0][1]),
       .s1 = static_cast<float>(u * u * c11 + 2.0 * u * v * c12 + v * v * c22),
-      .s2 = static_cast<float>(v * v * c11 - 2.0 * u * v * c12 + u * u * c22)};
+      .s2 = static_cast<float>(v * v * c11 - 2.0 * u * v * c12 + u * u * c22),
+      .axis = {static_cast<float>(axis.x), static_cast<float>(axis.y), static_cast<float>(axis.z)}};
   read_rings(slot, vertex,
              {map.ring_times_E_per_m.data() + std::size_t{vertex} * map.rings, map.rings});
 }

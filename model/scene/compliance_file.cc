@@ -20,11 +20,13 @@
 namespace tact::model::scene {
 namespace {
 
+constexpr std::size_t kSidewaysFloats = 7;
+
 static_assert(std::endian::native == std::endian::little, "the file's bytes are the machine's");
-static_assert(sizeof(tissue::SidewaysGive) == 4 * sizeof(float));
+static_assert(sizeof(tissue::SidewaysGive) == kSidewaysFloats * sizeof(float));
 
 constexpr std::string_view kMagic = "TACTCOMP";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kHashDigits = 16;
 constexpr std::uint32_t kMaxVertices = 10'000'000;
 
@@ -37,7 +39,7 @@ static_assert(sizeof(Header) == 4 * 4 + 9 * 8);
 constexpr std::size_t kHeadBytes = kMagic.size() + sizeof(Header) + kHashDigits;
 
 std::size_t floats_in(const Header& h) {
-  return std::size_t{h.vertices} * (1 + 4 + std::size_t{h.rings});
+  return std::size_t{h.vertices} * (1 + kSidewaysFloats + std::size_t{h.rings});
 }
 
 template <typename T>
@@ -67,7 +69,8 @@ bool all_finite(const tissue::ComplianceMap& map) {
   return std::ranges::all_of(map.regular_times_E_per_m, finite) &&
          std::ranges::all_of(map.ring_times_E_per_m, finite) &&
          std::ranges::all_of(map.sideways_times_E_per_m, [&](const tissue::SidewaysGive& s) {
-           return finite(s.n1) && finite(s.n2) && finite(s.s1) && finite(s.s2);
+           return finite(s.n1) && finite(s.n2) && finite(s.s1) && finite(s.s2) &&
+                  std::ranges::all_of(s.axis, finite);
          });
 }
 

@@ -5,7 +5,7 @@
 //     poisson_ratio  patch_radius_m  ring_pitch_m  fixed_min_m  fixed_max_m     9 f64
 //     mesh_hash   16 characters
 //     r E         vertices f32
-//     n1 n2 s1 s2 4 vertices f32
+//     n1 n2 s1 s2 axis of 1    7 vertices f32
 //     g_j E       vertices * rings f32
 //     checksum    u64, FNV-1a of every byte before it
 //

@@ -12,6 +12,7 @@
 #include "model/contact/site_law.h"
 #include "model/result.h"
 #include "model/scene/scene.h"
+#include "model/tissue/elastic_field.h"
 
 namespace tact::model::scene {
 
@@ -50,7 +51,7 @@ class TissueLaw {
   std::vector<float> press_coordinate_;           // of each vertex in the family; empty: one curve
   std::vector<float> pull_coordinate_;
   std::vector<float> rings_times_E_per_m_;  // what its sites are to each other
-  std::vector<float> sideways_times_E_per_m_;
+  std::vector<tissue::AlongTensors> along_times_E_per_m_;
   std::unique_ptr<contact::SiteLaw> site_law_;
   law::LawRange range_;
   double pull_limit_N_ = 0.0;

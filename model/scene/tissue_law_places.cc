@@ -94,16 +94,19 @@ tissue::ElasticNeighbours TissueLawBuilder::neighbours() {
   if (law_->press_coordinate_.empty()) return out;  // a law that knows no place
   auto map = read_scene_map(scene_);
   if (!map) return out;
-  law_->sideways_times_E_per_m_ = tissue::sideways_give(*map, scene_.tool.spheres[0].radius_m);
-  out.sideways_times_E_per_m = law_->sideways_times_E_per_m_;
+  const double widest_m =
+      std::ranges::max(scene_.tool.spheres, {}, &contact::ProbeSphere::radius_m).radius_m;
+  law_->along_times_E_per_m_ =
+      tissue::along_give(*map, scene_.organ_mesh.view().vertex_normal, widest_m);
+  out.along_times_E_per_m = law_->along_times_E_per_m_;
   if (scene_.tool.spheres.size() > 1) {
     law_->rings_times_E_per_m_ = std::move(map->ring_times_E_per_m);
     out.ring_times_E_per_m = law_->rings_times_E_per_m_;
     out.rings = map->rings;
     out.ring_pitch_m = map->ring_pitch_m;
   }
-  law_->memory_bytes_ +=
-      (law_->rings_times_E_per_m_.size() + law_->sideways_times_E_per_m_.size()) * sizeof(float);
+  law_->memory_bytes_ += law_->rings_times_E_per_m_.size() * sizeof(float) +
+                         law_->along_times_E_per_m_.size() * sizeof(tissue::AlongTensors);
   return out;
 }
 

@@ -153,14 +153,15 @@ contact::SiteResponse SpringPatch::respond(const contact::Indentation& in) RT_SA
 }
 
 // 1 / q + that of the place: linear over each triangle.
-double SpringPatch::sideways_m_per_N(const contact::Indentation& in, double) const RT_SAFE {
+contact::AlongGive SpringPatch::give_along(const contact::Place& place, bool,
+                                           const contact::Axes&) const RT_SAFE {
   const PatchSurface& surface = region_.surface();
-  if (!is_a_place(in.place, surface.mesh)) return 0.0;
+  if (!is_a_place(place, surface.mesh)) return {};
   double give_m_per_N = 1.0 / parameters_.coupling_stiffness_N_per_m;
   for (std::size_t c = 0; c < 3; ++c)
     give_m_per_N +=
-        in.place.weight[c] * surface.sideways_m_per_N[surface.mesh.triangle[in.place.triangle][c]];
-  return give_m_per_N;
+        place.weight[c] * surface.sideways_m_per_N[surface.mesh.triangle[place.triangle][c]];
+  return {.rest_m_per_N = {.xx = give_m_per_N, .yy = give_m_per_N}};
 }
 
 // A triangle near the rim, or out of the region, gathers anew, once for each triangle.

@@ -57,18 +57,48 @@ std::vector<double> rings_near(const ComplianceMap& map, std::span<const float> 
   return sum;
 }
 
+Vec3 vector_of(const std::array<float, 3>& v) {
+  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+}
+
+/// s v v'
+Tensor3 square(double s, const Vec3& v) {
+  const auto part = [s](double p, double q) { return static_cast<float>(s * p * q); };
+  return {part(v.x, v.x), part(v.y, v.y), part(v.z, v.z),
+          part(v.x, v.y), part(v.x, v.z), part(v.y, v.z)};
+}
+
+Tensor3 operator+(const Tensor3& a, const Tensor3& b) {
+  return {a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.xy + b.xy, a.xz + b.xz, a.yz + b.yz};
+}
+
 }  // namespace
 
-std::vector<float> sideways_give(const ComplianceMap& map, double tip_radius_m) {
+std::vector<AlongTensors> along_give(const ComplianceMap& map, std::span<const Vec3> vertex_normal,
+                                     double tip_radius_m) {
   const law::ElasticTip unit{
       .youngs_modulus_Pa = 1.0, .poisson_ratio = map.poisson_ratio, .radius_m = tip_radius_m};
-  const float disc = static_cast<float>(1.0 / unit.pulled_stiffness_N_per_m());
-  std::vector<float> out;
+  const double disc = 1.0 / unit.pulled_stiffness_N_per_m();
+  const double side = 1.0 / unit.sideways_stiffness_N_per_m();
+  std::vector<AlongTensors> out;
   for (std::size_t v = 0; v < map.vertices(); ++v) {
     const SidewaysGive& g = map.sideways_times_E_per_m[v];
-    const float normal = std::max(disc + map.regular_times_E_per_m[v], disc / float{kStiffest});
-    out.push_back(0.5F * (g.s1 + g.s2));
-    out.push_back(out.back() - 0.5F * (g.n1 * g.n1 + g.n2 * g.n2) / normal);  // CF-4
+    const Vec3 a1 = vector_of(g.axis), a2 = cross(vertex_normal[v], a1);
+    const auto limited = [side](float s) {
+      return std::max(static_cast<double>(s), (1.0 / kStiffest - 1.0) * side);
+    };
+    const double s1 = limited(g.s1), s2 = limited(g.s2);
+    // CF-4, with as much of n as leaves S_held within the limit
+    const double n1 = static_cast<double>(g.n1), n2 = static_cast<double>(g.n2);
+    const double normal =
+        std::max(disc + static_cast<double>(map.regular_times_E_per_m[v]), disc / kStiffest);
+    const auto room = [side](double s) {
+      return std::max(s + (1.0 - 1.0 / kStiffest) * side, 1e-9 * side);
+    };
+    const double most = n1 * n1 / room(s1) + n2 * n2 / room(s2);
+    const double share = 1.0 / std::max(normal, most);
+    const Tensor3 s = square(s1, a1) + square(s2, a2);
+    out.push_back({.touching = s, .held = s + square(-share, n1 * a1 + n2 * a2)});
   }
   return out;
 }

@@ -17,6 +17,7 @@
 // place is at most kStiffest times as stiff as a half-space. Set-up code only.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "model/law/compliance_law.h"
@@ -48,10 +49,14 @@ struct ComplianceFamilyParameters {
   std::size_t table_knots = 65;  // of each curve in press
 };
 
-/// s E of each vertex, mean of both directions, free to sink (2 v) and held (2 v + 1), 1/m:
+/// S E of each vertex, where nothing of the tip is wider than the radius:
 ///
-///     CF-4   s_held = s - n^2 / (c_disc + r)
-std::vector<float> sideways_give(const ComplianceMap& map, double tip_radius_m);
+///     CF-4   S = s1 a1 a1' + s2 a2 a2',   S_held = S - n n' / (c_disc + r),   n = n1 a1 + n2 a2
+///
+/// so limited that no direction is more than kStiffest times as stiff as on a half-space. The
+/// normals are those of the surface that the map was made of.
+std::vector<AlongTensors> along_give(const ComplianceMap& map, std::span<const Vec3> vertex_normal,
+                                     double tip_radius_m);
 
 Result<ComplianceFamily> make_compliance_family(const ComplianceMap& map,
                                                 const ComplianceFamilyParameters& parameters);

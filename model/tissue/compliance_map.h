@@ -15,6 +15,7 @@
 // compliance, in tangential axes that make its lower block diagonal.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,9 @@ namespace tact::model::tissue {
 
 /// Terms of the regular compliance times E, 1/m, beside r: n normal, 1 and 2 tangential axes.
 struct SidewaysGive {
-  float n1 = 0.0F, n2 = 0.0F;  // normal motion of a sideways force
-  float s1 = 0.0F, s2 = 0.0F;  // sideways motion along the same axis
+  float n1 = 0.0F, n2 = 0.0F;                   // normal motion of a sideways force
+  float s1 = 0.0F, s2 = 0.0F;                   // sideways motion along the same axis
+  std::array<float, 3> axis{1.0F, 0.0F, 0.0F};  // 1, unit, in the mesh's own frame; 2 = n x 1
 };
 
 struct ComplianceMap {

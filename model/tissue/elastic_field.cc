@@ -17,6 +17,14 @@ law::LawStatus worse(law::LawStatus a, law::LawStatus b) RT_SAFE {
   return b >= law::LawStatus::kSaturated && b > a ? b : a;
 }
 
+/// u . S v
+double between(const Vec3& u, const Tensor3& s, const Vec3& v) RT_SAFE {
+  const auto row = [&v](float x, float y, float z) RT_SAFE {
+    return dot(Vec3{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)}, v);
+  };
+  return dot(u, {row(s.xx, s.xy, s.xz), row(s.xy, s.yy, s.yz), row(s.xz, s.yz, s.zz)});
+}
+
 }  // namespace
 
 ElasticField::ElasticField(const ElasticFieldParts& parts) : parts_(parts) {
@@ -149,23 +157,25 @@ double ElasticField::stiffest_N_per_m(const contact::Place& place, bool held) co
   return held ? std::max(at(0.0), at(-1.0)) : at(0.0);
 }
 
-double ElasticField::sideways_m_per_N(const contact::Indentation& in,
-                                      double contact_radius_m) const RT_SAFE {
+contact::AlongGive ElasticField::give_along(const contact::Place& place, bool held,
+                                            const contact::Axes& axes) const RT_SAFE {
   const ElasticNeighbours& near = parts_.neighbours;
-  if (!(near.contact_modulus_Pa > 0.0) || !(contact_radius_m > 0.0)) return 0.0;
+  if (!(near.contact_modulus_Pa > 0.0)) return {};
   const double nu = near.poisson_ratio;
   // MC-5
-  const double half_space =
-      (2.0 - nu) / (4.0 * (1.0 - nu) * near.contact_modulus_Pa * contact_radius_m);
-  if (near.sideways_times_E_per_m.empty() || !is_a_place(in.place, parts_.surface))
-    return half_space;
-  double s = 0.0;
+  contact::AlongGive give{
+      .contact_m2_per_N = (2.0 - nu) / (4.0 * (1.0 - nu) * near.contact_modulus_Pa),
+      .rest_m_per_N = {}};
+  if (near.along_times_E_per_m.empty() || !is_a_place(place, parts_.surface)) return give;
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t vertex = parts_.surface.triangle[in.place.triangle][i];
-    const float of_vertex = near.sideways_times_E_per_m[2 * vertex + (in.held ? 1 : 0)];
-    s += in.place.weight[i] * static_cast<double>(of_vertex);
+    const AlongTensors& both = near.along_times_E_per_m[parts_.surface.triangle[place.triangle][i]];
+    const Tensor3& s = held ? both.held : both.touching;
+    const double share = place.weight[i] / near.youngs_modulus_Pa;
+    give.rest_m_per_N.xx += share * between(axes.a, s, axes.a);
+    give.rest_m_per_N.xy += share * between(axes.a, s, axes.b);
+    give.rest_m_per_N.yy += share * between(axes.b, s, axes.b);
   }
-  return std::max(half_space + s / near.youngs_modulus_Pa, half_space / kStiffest);
+  return give;
 }
 
 std::size_t ElasticField::profile(const contact::Indentation& in,

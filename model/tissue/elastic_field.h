@@ -14,10 +14,12 @@
 //     MC-2   h = 1 / (pi E* s) + min(g, 0) >= 0,   b = max(g, 0),   g = (g_i(s) + g_j(s)) / 2
 //
 // half-space and the organ's regular part, g: that of the rings of the compliance map, below 0
-// beside the held side. Sideways a site gives way by half-space and regular part, too
-// (G = E* (1 - nu) / 2):
+// beside the held side. Sideways a site gives way by half-space and regular part, too, by another
+// length in each direction:
 //
-//     MC-5   1 / k_t = (2 - nu) / (8 G a) + s           a: radius of the contact, m
+//     MC-5   G = (2 - nu) / (8 mu a) I + S,   mu = E* (1 - nu) / 2
+//
+//     G   m/N, 2 x 2, along the surface     S  of the map (CF-4)     a   radius of the contact, m
 #pragma once
 
 #include <array>
@@ -33,6 +35,16 @@ namespace tact::model::tissue {
 /// can show.
 inline constexpr double kStiffest = 3.0;
 
+/// Symmetric, 3 x 3, in the scene's axes.
+struct Tensor3 {
+  float xx = 0.0F, yy = 0.0F, zz = 0.0F, xy = 0.0F, xz = 0.0F, yz = 0.0F;
+};
+
+/// S E of a vertex, 1/m, tangential: where it may sink, and where it is held.
+struct AlongTensors {
+  Tensor3 touching, held;
+};
+
 /// What two sites of one elastic body are to each other. Without a map the body is a half-space.
 struct ElasticNeighbours {
   double youngs_modulus_Pa = 0.0;               // E
@@ -41,7 +53,7 @@ struct ElasticNeighbours {
   std::span<const float> ring_times_E_per_m{};  // g_j E of vertex v at [v rings + j - 1]; or empty
   std::size_t rings = 0;
   double ring_pitch_m = 0.0;
-  std::span<const float> sideways_times_E_per_m{};  // s E of vertex v at [2 v], held at [2 v + 1]
+  std::span<const AlongTensors> along_times_E_per_m{};  // S E of each vertex; or empty
 };
 
 /// What an ElasticField borrows; all of it outlives the field.
@@ -65,8 +77,8 @@ class ElasticField final : public contact::SiteLaw {
   contact::SiteCoupling coupling(const contact::Indentation& a, const contact::Indentation& b,
                                  double distance_m) const RT_SAFE override;
   double stiffest_N_per_m(const contact::Place& place, bool held) const RT_SAFE override;
-  double sideways_m_per_N(const contact::Indentation& in,
-                          double contact_radius_m) const RT_SAFE override;
+  contact::AlongGive give_along(const contact::Place& place, bool held,
+                                const contact::Axes& axes) const RT_SAFE override;
   void leave(std::size_t sphere) RT_SAFE override { now_[sphere] = next_[sphere] = {}; }
   void advance() RT_SAFE override {
     if (parts_.relaxation.terms() > 0) now_ = next_;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "model/contact/contact.h"
 #include "model/units.h"
@@ -88,6 +89,89 @@ TEST_F(Slide, AStiffnessOfTheSceneCountsBeforeTheTissuesOwn) {
     felt = fixed.feel({.position_m = at}, false);
   }
   EXPECT_NEAR(felt.force_N.x, -100.0 * 0.1_mm, 1e-9);
+}
+
+/// Tissue with a grain: soft along it, stiff across, the grain turning from triangle to triangle.
+class Grained final : public SiteLaw {
+ public:
+  explicit Grained(double turn_rad) : turn_rad_(turn_rad) {}
+
+  SiteResponse respond(const Indentation& in) RT_SAFE override { return tissue_.field.respond(in); }
+  AlongGive give_along(const Place& place, bool, const Axes& axes) const RT_SAFE override {
+    const double angle_rad = turn_rad_ * place.triangle;
+    const Vec2 grain = axes.of({std::cos(angle_rad), std::sin(angle_rad), 0.0});
+    constexpr double kAlong = 0.08, kAcross = 0.02, kMore = kAlong - kAcross;  // m/N
+    return {.rest_m_per_N = {.xx = kAcross + kMore * grain.x * grain.x,
+                             .xy = kMore * grain.x * grain.y,
+                             .yy = kAcross + kMore * grain.y * grain.y}};
+  }
+  void leave(std::size_t) RT_SAFE override {}
+  void advance() RT_SAFE override {}
+  std::size_t profile(const Indentation&, std::span<double>) const RT_SAFE override { return 0; }
+  double ring_pitch_m() const RT_SAFE override { return 0.0; }
+
+ private:
+  tests::SoftHalfSpace tissue_;
+  double turn_rad_ = 0.0;
+};
+
+class Grain : public Slide {
+ protected:
+  Contact contact_with(SiteLaw& law, double friction_ratio) const {
+    return Contact({.law = &law,
+                    .parameters = {.friction_ratio = friction_ratio, .tear_force_N = 10.0},
+                    .spheres = {&sphere, 1},
+                    .surface = mesh.view(),
+                    .seeds = seeds.view(),
+                    .blade = {}});
+  }
+  static Wrench feel_at(Contact& contact, const Vec3& centre_m) {
+    contact.touch({.position_m = centre_m});
+    return contact.feel({.position_m = centre_m}, false);
+  }
+};
+
+TEST_F(Grain, EachDirectionHasAStiffnessOfItsOwn) {
+  Grained law(0.0);
+  Contact dragged = contact_with(law, 10.0);
+  feel_at(dragged, {0, 0, kRadius_m + 1_mm});
+  feel_at(dragged, {0, 0, kRadius_m - 3_mm});
+  const Wrench felt = feel_at(dragged, {0.4_mm, 0.3_mm, kRadius_m - 3_mm});
+  EXPECT_NEAR(felt.force_N.x, -0.4_mm / 0.08, 1e-12);
+  EXPECT_NEAR(felt.force_N.y, -0.3_mm / 0.02, 1e-12);
+}
+
+TEST_F(Grain, SteadySlidingIsOpposedAlongItsOwnDirection) {
+  Grained law(0.0);
+  Contact rubbed = contact_with(law, 0.3);
+  feel_at(rubbed, {0, 0, kRadius_m + 1_mm});
+  Wrench felt;
+  for (int i = 0; i <= 3000; ++i)
+    felt = feel_at(rubbed, {0.006_mm * i, 0.008_mm * i, kRadius_m - 3_mm});
+  const double cap_N = 0.3 * felt.force_N.z;
+  EXPECT_NEAR(felt.force_N.x, -0.6 * cap_N, 1e-3 * cap_N);
+  EXPECT_NEAR(felt.force_N.y, -0.8 * cap_N, 1e-3 * cap_N);
+}
+
+TEST_F(Grain, FromPlaceToPlaceItGivesBackNoMoreThanItTook) {
+  Grained law(1.3);
+  for (int k = 0; k < 20; ++k) {
+    Contact moved = contact_with(law, 1.0 + 0.3 * k);
+    double work_J = 0.0;
+    Vec3 at_m{0, 0, kRadius_m + 1_mm};
+    Wrench before = feel_at(moved, at_m);
+    for (int i = 1; i <= 8000; ++i) {
+      const double p = 2.0 * std::numbers::pi * i / 8000.0;
+      const Vec3 next_m{(6_mm + 0.3_mm * k) * std::sin(2 * p), 8_mm * std::sin(p),
+                        kRadius_m + 1_mm - 5_mm * (1 - std::cos(p)) / 2};
+      const Wrench felt = feel_at(moved, next_m);
+      work_J += 0.5 * dot(felt.force_N + before.force_N, next_m - at_m);
+      at_m = next_m;
+      before = felt;
+      ASSERT_LE(work_J + moved.touches()[0].energy_J, 2e-8) << k << ", tick " << i;
+    }
+    EXPECT_LT(work_J, -1e-6) << "rubbing costs energy";
+  }
 }
 
 }  // namespace tact::model::contact::contact_slide_test

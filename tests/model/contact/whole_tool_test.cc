@@ -217,13 +217,20 @@ TEST(WholeTool, FrictionOfEachJawStaysInItsCone) {
 TEST(WholeTool, APinchedLobeIsDraggedTheSameWayOnBothSides) {
   Bench bench(jaws(2));
   const Indentation top{.sphere = 0, .normal = {0, 0, 1}}, below{.sphere = 1, .normal = {0, 0, -1}};
-  Coupling c{};
-  c[0][1] = c[1][0] = bench.tissue.field.coupling(top, below, 24_mm).skin_m_per_N;
-  const OwnGive own{.m_per_N = 1.0 / 20.0, .least_m_per_N = 1.0 / 20.0};
-  const Shear shear({own, own}, c, {true, true, false, false});
-  const double together_N = shear.force_N({Vec3{1_mm, 0, 0}, Vec3{1_mm, 0, 0}}, 0).x;
-  EXPECT_GT(c[0][1], 0.0);
-  EXPECT_NEAR(together_N, 1_mm / (1.0 / 20.0 + c[0][1]), 1e-12);
+  const double c = bench.tissue.field.coupling(top, below, 24_mm).skin_m_per_N;
+  const Axes of_top = axes_of(top.normal), of_below = axes_of(below.normal, {{0.6, 0.8, 0}, {}});
+  const OwnGive own{.m_per_N = {1.0 / 20.0, 0.0, 1.0 / 20.0}, .least_m_per_N = 1.0 / 20.0};
+  Shear shear;
+  shear.set_own(0, own);
+  shear.set_own(1, own);
+  shear.couple(0, 1, c, of_top, of_below);
+  shear.solve();
+  const Vec3 moved_m{1_mm, 0, 0};
+  const Vec3 together_N =
+      of_top.vector(shear.force_N({of_top.of(moved_m), of_below.of(moved_m)}, 0));
+  EXPECT_GT(c, 0.0);
+  EXPECT_NEAR(together_N.x, 1_mm / (1.0 / 20.0 + c), 1e-12);
+  EXPECT_NEAR(together_N.y, 0.0, 1e-12);
 }
 
 TEST(WholeTool, RepeatsAStrokeToTheBitAndLeavesTheHeapAlone) {

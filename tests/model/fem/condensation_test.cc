@@ -104,8 +104,17 @@ TEST(Condensation, IsTheSolutionOfItsOwnLoads) {
   const double r = c[0][0] - hertz_normal_m_per_N({1.0, 0.45}, 0.02);
   EXPECT_NEAR(static_cast<double>(map->regular_times_E_per_m[v]), r, 1e-6 * scale);
   const double side = hertz_tangential_m_per_N({1.0, 0.45}, 0.02);
-  // Turning the tangential axes keeps the trace, the determinant and the length of (n1, n2).
+  // Turned back from the axes that the map gives: here x and y are tangential.
   const tissue::SidewaysGive& s = map->sideways_times_E_per_m[v];
+  const double ax = static_cast<double>(s.axis[0]), ay = static_cast<double>(s.axis[1]);
+  const double found_xx = static_cast<double>(s.s1) * ax * ax + static_cast<double>(s.s2) * ay * ay;
+  const double found_xy = static_cast<double>(s.s1 - s.s2) * ax * ay;
+  EXPECT_NEAR(ax * ax + ay * ay, 1.0, 1e-6);
+  EXPECT_NEAR(found_xx, c[1][1] - side, 1e-5 * scale);
+  EXPECT_NEAR(found_xy, c[1][2], 1e-5 * scale);
+  EXPECT_NEAR(static_cast<double>(s.n1) * ax - static_cast<double>(s.n2) * ay, c[0][1],
+              1e-5 * scale);
+  // Turning the tangential axes keeps the trace, the determinant and the length of (n1, n2).
   const double s1 = static_cast<double>(s.s1), s2 = static_cast<double>(s.s2);
   const double n1 = static_cast<double>(s.n1), n2 = static_cast<double>(s.n2);
   EXPECT_NEAR(s1 + s2, c[1][1] + c[2][2] - 2.0 * side, 1e-5 * scale);

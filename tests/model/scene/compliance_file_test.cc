@@ -24,7 +24,8 @@ tissue::ComplianceMap small_map() {
           .fixed_max_m = {1.0, 2.0, 3.0},
           .mesh_hash = "0123456789abcdef",
           .regular_times_E_per_m = {-1.5F, 40.0F},
-          .sideways_times_E_per_m = {{1.0F, 2.0F, 3.0F, 4.0F}, {5.0F, 6.0F, 7.0F, 8.0F}},
+          .sideways_times_E_per_m = {{1.0F, 2.0F, 3.0F, 4.0F, {0.0F, 0.0F, 1.0F}},
+                                     {5.0F, 6.0F, 7.0F, 8.0F, {0.0F, 0.6F, 0.8F}}},
           .ring_times_E_per_m = {1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F}};
 }
 
@@ -70,6 +71,7 @@ TEST_F(ComplianceFile, GivesBackWhatWasWritten) {
   EXPECT_EQ(back->regular_times_E_per_m, map.regular_times_E_per_m);
   EXPECT_EQ(back->ring_times_E_per_m, map.ring_times_E_per_m);
   EXPECT_EQ(back->sideways_times_E_per_m[1].s2, 8.0F);
+  EXPECT_EQ(back->sideways_times_E_per_m[1].axis, (std::array{0.0F, 0.6F, 0.8F}));
   EXPECT_FALSE(fs::exists(path_ + ".part"));
 }
 

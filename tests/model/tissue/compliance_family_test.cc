@@ -97,14 +97,34 @@ TEST(ComplianceFamily, APullThatMayNotMoveSidewaysIsStiffer) {
 }
 
 TEST(ComplianceFamily, AHeldPatchIsStifferSidewaysThanOneThatMaySink) {
-  // Vertex 190 again: s E = (40 + 10) / 2 = 25 1/m; c_disc as in CF-1;
-  // CF-4: s_held E = 25 - 30^2 / (2 (c_disc E + 100))
+  // Vertex 190 again, axis 1 along y, 2 along -x: S E = diag(10, 40), 1/m; c_disc as in CF-1;
+  // CF-4: S_held E = S E - diag(0, 30^2) / (c_disc E + 100)
   const law::ElasticTip tip{1.0, 0.45, 4_mm};
   const double disc = 1.0 / tip.pulled_stiffness_N_per_m();
-  const std::vector<float> give = sideways_give(lobe(), 4_mm);
-  ASSERT_EQ(give.size(), 400u);
-  EXPECT_FLOAT_EQ(give[2 * 190], 25.0F);
-  EXPECT_NEAR(give[2 * 190 + 1], 25.0 - 450.0 / (disc + 100.0), 1e-4);
+  ComplianceMap map = lobe();
+  map.sideways_times_E_per_m[190].axis = {0.0F, 1.0F, 0.0F};
+  const std::vector<Vec3> up(200, Vec3{0.0, 0.0, 1.0});
+  const AlongTensors give = along_give(map, up, 4_mm).at(190);
+  EXPECT_FLOAT_EQ(give.touching.xx, 10.0F);
+  EXPECT_FLOAT_EQ(give.touching.yy, 40.0F);
+  EXPECT_FLOAT_EQ(give.touching.xy, 0.0F);
+  EXPECT_FLOAT_EQ(give.touching.zz, 0.0F);
+  EXPECT_FLOAT_EQ(give.held.xx, 10.0F);
+  EXPECT_NEAR(give.held.yy, 40.0 - 900.0 / (disc + 100.0), 1e-4);
+}
+
+TEST(ComplianceFamily, AlongTheSurfaceNoPlaceIsMoreThanThreeTimesAsStiffAsAHalfSpace) {
+  const law::ElasticTip tip{1.0, 0.45, 4_mm};
+  const double half_space = 1.0 / tip.sideways_stiffness_N_per_m();
+  ComplianceMap map = lobe();
+  map.sideways_times_E_per_m[7] = {.n1 = 500.0F, .n2 = 90.0F, .s1 = -1e4F, .s2 = 5.0F};
+  const std::vector<Vec3> up(200, Vec3{0.0, 0.0, 1.0});
+  const AlongTensors give = along_give(map, up, 4_mm).at(7);
+  for (const Tensor3& s : {give.touching, give.held}) {
+    const contact::Tensor2 whole{half_space + static_cast<double>(s.xx), static_cast<double>(s.xy),
+                                 half_space + static_cast<double>(s.yy)};
+    EXPECT_GE(whole.least_eigenvalue(), half_space / kStiffest - 1e-4);
+  }
 }
 
 TEST(ComplianceFamily, ForcesScaleWithYoungsModulus) {
