@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "firmware/loop/clock.h"
-#include "model/law/compliance_law.h"
+#include "model/indent/compliance_law.h"
+#include "model/indent/inertia.h"
 #include "model/law/haptic_limit.h"
-#include "model/law/inertia.h"
 #include "model/scene/scene_strokes.h"
 
 namespace tact::firmware::run {
@@ -97,22 +97,22 @@ double stiffest_sideways_N_per_m(const model::scene::Scene& scene,
 
 /// The organ as a half-space under the first sphere: that of [elastic], or the incompressible one
 /// whose force at a depth of one radius is the law's.
-std::optional<model::law::ElasticTip> half_space_of(const model::scene::Scene& scene,
-                                                    const model::scene::TissueLaw& law) {
+std::optional<model::indent::ElasticTip> half_space_of(const model::scene::Scene& scene,
+                                                       const model::scene::TissueLaw& law) {
   const double radius_m = scene.tool.spheres[0].radius_m;
   if (scene.elastic)
-    return model::law::ElasticTip{.youngs_modulus_Pa = scene.elastic->youngs_modulus_Pa,
-                                  .poisson_ratio = scene.elastic->poisson_ratio,
-                                  .radius_m = radius_m};
+    return model::indent::ElasticTip{.youngs_modulus_Pa = scene.elastic->youngs_modulus_Pa,
+                                     .poisson_ratio = scene.elastic->poisson_ratio,
+                                     .radius_m = radius_m};
   const double depth_m = std::min(radius_m, law.range().press_m);
-  const auto unit = model::law::half_space_under(radius_m, depth_m);
+  const auto unit = model::indent::half_space_under(radius_m, depth_m);
   if (!unit) return std::nullopt;
   constexpr double kIncompressible = 0.5;
-  return model::law::ElasticTip{.youngs_modulus_Pa = (1.0 - kIncompressible * kIncompressible) *
-                                                     law.curve()->respond(depth_m).force_N /
-                                                     unit->respond(depth_m).force_N,
-                                .poisson_ratio = kIncompressible,
-                                .radius_m = radius_m};
+  return model::indent::ElasticTip{.youngs_modulus_Pa = (1.0 - kIncompressible * kIncompressible) *
+                                                        law.curve()->respond(depth_m).force_N /
+                                                        unit->respond(depth_m).force_N,
+                                   .poisson_ratio = kIncompressible,
+                                   .radius_m = radius_m};
 }
 
 struct Press {
@@ -123,7 +123,7 @@ struct Press {
 
 /// Where the hand's path is fastest against that limit: the slope of a minimum-jerk move is
 /// 30 s^2 (1 - s)^2 of its mean, at most 15/8.
-Press fastest_press(const model::scene::Scene& scene, const model::law::ElasticTip& tip,
+Press fastest_press(const model::scene::Scene& scene, const model::indent::ElasticTip& tip,
                     double share) {
   constexpr int kSamples = 100;
   const double least_m = 0.25 * tip.radius_m;  // lighter touches are hardly felt
@@ -138,7 +138,7 @@ Press fastest_press(const model::scene::Scene& scene, const model::law::ElasticT
       Press at{.depth_m = start_m + way_m * s * s * s * (10.0 + s * (-15.0 + 6.0 * s)),
                .speed_mps = 30.0 * s * s * rest * rest * way_m / (to.time_s - from.time_s)};
       if (at.depth_m < least_m) continue;
-      at.limit_mps = model::law::inertia_speed_mps(tip, at.depth_m, share);
+      at.limit_mps = model::indent::inertia_speed_mps(tip, at.depth_m, share);
       if (at.speed_mps * worst.limit_mps > worst.speed_mps * at.limit_mps) worst = at;
     }
   }

@@ -9,7 +9,7 @@
 
 #include "model/fem/hertz_load.h"
 #include "model/fem/linear_solver.h"
-#include "model/law/compliance_law.h"
+#include "model/indent/compliance_law.h"
 #include "model/scene/compliance_file.h"
 
 namespace tact::model::fem {
@@ -34,7 +34,8 @@ const char* first_fault(const TetMesh& body, const contact::SurfaceView& surface
                         const CondensationSettings& s) {
   if (!(s.patch_radius_m > 0.0)) return "patch_radius_m must be above 0";
   if (!(s.ring_pitch_m > 0.0)) return "ring_pitch_m must be above 0";
-  if (s.rings < 1 || s.rings > law::kMaxComplianceRings) return "rings must lie between 1 and 31";
+  if (s.rings < 1 || s.rings > indent::kMaxComplianceRings)
+    return "rings must lie between 1 and 31";
   if (body.node_m.size() < surface.vertex_m.size())
     return "the body has fewer nodes than the surface has vertices";
   for (std::size_t v = 0; v < surface.vertex_m.size(); ++v)
@@ -122,7 +123,7 @@ void Condenser::read(std::size_t slot, std::uint32_t vertex, tissue::ComplianceM
 }
 
 void Condenser::read_rings(std::size_t slot, std::uint32_t vertex, std::span<float> ring) const {
-  std::array<double, law::kMaxComplianceRings + 2> sum{}, weights{};
+  std::array<double, indent::kMaxComplianceRings + 2> sum{}, weights{};
   const Vec3& n = frame_[slot].axis[0];
   for (std::uint32_t i = 0; i < skin_.size(); ++i) {
     const double rho_m = norm(body_.node_m[skin_[i]] - body_.node_m[vertex]);

@@ -14,7 +14,7 @@
 #include <optional>
 
 #include "model/fnv1a.h"
-#include "model/law/compliance_law.h"
+#include "model/indent/compliance_law.h"
 #include "model/scene/scene_words.h"
 
 namespace tact::model::scene {
@@ -56,8 +56,8 @@ void take(std::string_view& bytes, T* first, std::size_t count) {
 std::optional<std::string> first_fault(const Header& h) {
   if (h.vertices == 0 || h.vertices > kMaxVertices)
     return fmt::format("it says {} vertices", h.vertices);
-  if (h.rings == 0 || h.rings > law::kMaxComplianceRings)
-    return fmt::format("it says {} rings, allowed 1 to {}", h.rings, law::kMaxComplianceRings);
+  if (h.rings == 0 || h.rings > indent::kMaxComplianceRings)
+    return fmt::format("it says {} rings, allowed 1 to {}", h.rings, indent::kMaxComplianceRings);
   const bool sound = h.poisson_ratio >= 0.0 && h.poisson_ratio < 0.5 && h.patch_radius_m > 0.0 &&
                      h.ring_pitch_m > 0.0 && is_finite(h.fixed_min_m) && is_finite(h.fixed_max_m);
   if (!sound) return "its numbers have no meaning";

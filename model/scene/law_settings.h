@@ -11,12 +11,12 @@
 #include <string_view>
 #include <vector>
 
-#include "model/law/disc_stack.h"
-#include "model/law/hex_sheet.h"
-#include "model/law/hunt_crossley.h"
+#include "model/indent/disc_stack.h"
+#include "model/indent/hex_sheet.h"
+#include "model/indent/hunt_crossley.h"
+#include "model/indent/rhombus_chain.h"
 #include "model/law/linear_pull.h"
 #include "model/law/relaxation.h"
-#include "model/law/rhombus_chain.h"
 #include "model/springs/spring_patch.h"
 #include "model/types.h"
 

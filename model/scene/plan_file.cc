@@ -31,8 +31,8 @@ constexpr std::array kCounts{
     Count{"curves", &LawSizes::curves, "curves", "compliance.curves"},
 };
 
-const char* name_of(law::DiscForm form) {
-  return form == law::DiscForm::kLinear ? "linear" : "almen-laszlo";
+const char* name_of(indent::DiscForm form) {
+  return form == indent::DiscForm::kLinear ? "linear" : "almen-laszlo";
 }
 
 /// Error: what is missing or has no meaning.
@@ -50,10 +50,12 @@ Result<Plan> plan_of(const toml::table& root) {
     plan.sizes.*count.value = static_cast<std::size_t>(number);
   }
   if (const auto form = root["disc_form"].value<std::string>()) {
-    if (*form != name_of(law::DiscForm::kLinear) && *form != name_of(law::DiscForm::kAlmenLaszlo))
+    if (*form != name_of(indent::DiscForm::kLinear) &&
+        *form != name_of(indent::DiscForm::kAlmenLaszlo))
       return Error{fmt::format("disc_form = \"{}\" is no form", *form)};
-    plan.sizes.disc_form = *form == name_of(law::DiscForm::kLinear) ? law::DiscForm::kLinear
-                                                                    : law::DiscForm::kAlmenLaszlo;
+    plan.sizes.disc_form = *form == name_of(indent::DiscForm::kLinear)
+                               ? indent::DiscForm::kLinear
+                               : indent::DiscForm::kAlmenLaszlo;
   }
   const auto measured = [&](const char* key, double& value) {
     value = root[key].value_or<double>(-1.0);

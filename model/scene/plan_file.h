@@ -19,12 +19,12 @@ namespace tact::model::scene {
 /// A law with what decides its cost; 0 and nothing leave the scene's own number.
 struct LawSizes {
   LawKind law = LawKind::kAuto;
-  std::size_t table_knots = 0;               // of every law that is read from a table
-  std::size_t layers = 0;                    // disc_stack
-  std::optional<law::DiscForm> disc_form{};  // disc_stack
-  std::size_t rings = 0;                     // hex_sheet
-  std::size_t nodes = 0;                     // spring_patch
-  std::size_t curves = 0;                    // compliance
+  std::size_t table_knots = 0;                  // of every law that is read from a table
+  std::size_t layers = 0;                       // disc_stack
+  std::optional<indent::DiscForm> disc_form{};  // disc_stack
+  std::size_t rings = 0;                        // hex_sheet
+  std::size_t nodes = 0;                        // spring_patch
+  std::size_t curves = 0;                       // compliance
 };
 
 /// "rhombus, 65 knots"; a law alone where the sizes are the scene's.

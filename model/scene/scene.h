@@ -36,11 +36,11 @@ struct Scene {
   double rate_Hz = 0.0;
   LawKind law = LawKind::kRhombus;
   std::vector<LawKind> described;  // laws that have a section
-  law::RhombusChainParameters rhombus;
+  indent::RhombusChainParameters rhombus;
   double rhombus_area_m2 = 0.0;  // of the surface under one chain; 0: one chain under the whole tip
-  law::DiscStackParameters disc_stack;
-  law::HexSheetParameters hex_sheet;  // rings 0: as few as the tolerance allows
-  law::HuntCrossleyParameters hunt_crossley;
+  indent::DiscStackParameters disc_stack;
+  indent::HexSheetParameters hex_sheet;  // rings 0: as few as the tolerance allows
+  indent::HuntCrossleyParameters hunt_crossley;
   springs::SpringPatchParameters spring_patch;
   ComplianceSettings compliance;
   std::size_t table_knots = 65;

@@ -26,7 +26,7 @@ constexpr std::array<Choice, kLawNames.size()> law_choices() {
 constexpr auto kLaws = law_choices();
 
 void visit_rhombus(Keys& k, Scene& scene) {
-  law::RhombusChainParameters& p = scene.rhombus;
+  indent::RhombusChainParameters& p = scene.rhombus;
   k.number("rod_length_m", {1e-4, 0.1}, "length a of each rod", p.rod_length_m);
   k.number("initial_angle_rad", {0.05, 1.5}, "angle of the rods to the surface at rest",
            p.initial_angle_rad);
@@ -45,11 +45,11 @@ constexpr std::array kDiscForms{
     Choice{"almen-laszlo", "the disc as it is: stiffness jumps at every layer"},
     Choice{"linear", "its secant: one linear spring"},
 };
-constexpr std::array kFormOf{law::DiscForm::kAlmenLaszlo, law::DiscForm::kLinear};
+constexpr std::array kFormOf{indent::DiscForm::kAlmenLaszlo, indent::DiscForm::kLinear};
 static_assert(kDiscForms.size() == kFormOf.size());
 
 void visit_disc_stack(Keys& k, Scene& scene) {
-  law::DiscStackParameters& p = scene.disc_stack;
+  indent::DiscStackParameters& p = scene.disc_stack;
   std::size_t form = 0;
   k.choice("form", kDiscForms, "almen-laszlo: stiffness jumps at each layer; linear: one spring",
            form);
@@ -72,11 +72,11 @@ constexpr std::array kHexWeights{
     Choice{"node", "a body spring per node: an elastic foundation"},
     Choice{"ring", "a body spring per ring"},
 };
-constexpr std::array kWeightOf{law::HexWeight::kNode, law::HexWeight::kRing};
+constexpr std::array kWeightOf{indent::HexWeight::kNode, indent::HexWeight::kRing};
 static_assert(kHexWeights.size() == kWeightOf.size());
 
 void visit_hex_sheet(Keys& k, Scene& scene) {
-  law::HexSheetParameters& p = scene.hex_sheet;
+  indent::HexSheetParameters& p = scene.hex_sheet;
   std::size_t weight = 0;
   k.choice("weight", kHexWeights, "body springs: one per node, or one per ring", weight);
   p.weight = kWeightOf[weight];
@@ -89,12 +89,12 @@ void visit_hex_sheet(Keys& k, Scene& scene) {
            p.surface_stiffness_N_per_m);
   k.number("tension_N", {0.0, 100.0}, "T0, of the surface springs at rest", p.tension_N);
   k.number("working_depth_m", kDepth_m, "press and pull up to here", p.working_depth_m);
-  k.count("rings", {0, law::kMaxHexRings}, "m; 0: the fewest that meet [tolerance]", p.rings,
+  k.count("rings", {0, indent::kMaxHexRings}, "m; 0: the fewest that meet [tolerance]", p.rings,
           Need::kOptional);
 }
 
 void visit_hunt_crossley(Keys& k, Scene& scene) {
-  law::HuntCrossleyParameters& p = scene.hunt_crossley;
+  indent::HuntCrossleyParameters& p = scene.hunt_crossley;
   k.number("force_N", {1e-4, 100.0}, "of a slow press at working_depth_m", p.force_N);
   k.number("working_depth_m", kDepth_m, "press up to here", p.working_depth_m);
   k.number("exponent", {1.0, 4.0}, "n: the force grows as depth^n", p.exponent);

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "model/law/rhombus_patch.h"
+#include "model/indent/rhombus_patch.h"
 #include "model/law/tabulated_law.h"
 #include "model/scene/tissue_law_builder.h"
 #include "model/scene/tissue_map.h"
@@ -58,11 +58,11 @@ TissueLawBuilder::Step TissueLawBuilder::add_disc_stack() {
   if (!stack) return blame(stack.error());
   law_->title_ =
       fmt::format("disc stack, {}, {} layers",
-                  scene_.disc_stack.form == law::DiscForm::kLinear ? "linear" : "Almen-Laszlo",
+                  scene_.disc_stack.form == indent::DiscForm::kLinear ? "linear" : "Almen-Laszlo",
                   stack->layer_count());
   auto pulled = with_pull(keep(std::move(*stack)));
   if (!pulled) return pulled.error();
-  law_->memory_bytes_ += sizeof(law::DiscStack);
+  law_->memory_bytes_ += sizeof(indent::DiscStack);
   return finish_curve(**pulled);
 }
 
@@ -97,11 +97,11 @@ TissueLawBuilder::Step TissueLawBuilder::add_compliance() {
                              large_strain ? "large" : "small", scene_.compliance.curves);
   auto family = read_scene_family(scene_, large_strain);
   if (!family) return family.error();
-  for (law::ComplianceCurve& curve : family->curve)
+  for (indent::ComplianceCurve& curve : family->curve)
     law_->curves_.push_back(&keep(std::move(curve)));
   law_->press_coordinate_ = std::move(family->press_coordinate);
   law_->pull_coordinate_ = std::move(family->pull_coordinate);
-  law_->memory_bytes_ += law_->curves_.size() * sizeof(law::ComplianceCurve);
+  law_->memory_bytes_ += law_->curves_.size() * sizeof(indent::ComplianceCurve);
   return finish_field();
 }
 

@@ -26,7 +26,7 @@ TissueLawBuilder::Step TissueLawBuilder::finish_curve(const law::Law& curve) {
   if (scene_.varies_by_place) return vary_by_place(curve);
   law_->curves_.push_back(&curve);
   if (draws_tissue_) return finish_field();
-  auto shape = law::half_space_under(scene_.tool.spheres[0].radius_m, curve.range().press_m);
+  auto shape = indent::half_space_under(scene_.tool.spheres[0].radius_m, curve.range().press_m);
   if (!shape) return blame(shape.error());
   return finish_field(&keep(std::move(*shape)));
 }
@@ -39,8 +39,8 @@ TissueLawBuilder::Step TissueLawBuilder::vary_by_place(const law::Law& curve) {
   const law::LawRange range = curve.range();
   const double least_m_per_N = (1.0 / kStiffestPlace_ratio - 1.0) /
                                law::stiffest_N_per_m(curve, range.pull_m, range.press_m);
-  for (law::ComplianceCurve& of_family : family->curve) {
-    const law::ComplianceCurve& place = keep(std::move(of_family));
+  for (indent::ComplianceCurve& of_family : family->curve) {
+    const indent::ComplianceCurve& place = keep(std::move(of_family));
     const double give_m_per_N = std::max(place.regular_m_per_N(), least_m_per_N);
     auto series = make_series_law(curve, give_m_per_N, place);
     if (!series) return blame(series.error());
@@ -81,7 +81,7 @@ tissue::ElasticNeighbours TissueLawBuilder::neighbours() {
   if (!scene_.elastic) {
     const double radius_m = scene_.tool.spheres[0].radius_m;
     const double depth_m = std::min(radius_m, law_->range_.press_m);
-    if (const auto unit = law::half_space_under(radius_m, depth_m))
+    if (const auto unit = indent::half_space_under(radius_m, depth_m))
       out.contact_modulus_Pa =
           law_->curve()->respond(depth_m).force_N / unit->respond(depth_m).force_N;
     return out;

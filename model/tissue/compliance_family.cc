@@ -16,7 +16,7 @@ struct Give {
   std::size_t limited = 0;
 };
 
-Give give_of(const ComplianceMap& map, const law::ElasticTip& tip) {
+Give give_of(const ComplianceMap& map, const indent::ElasticTip& tip) {
   const double disc = 1.0 / tip.pulled_stiffness_N_per_m();
   const double side = 1.0 / tip.sideways_stiffness_N_per_m();
   const double sphere = 1.0 / tip.stiffest_press_N_per_m();
@@ -76,7 +76,7 @@ Tensor3 operator+(const Tensor3& a, const Tensor3& b) {
 
 std::vector<AlongTensors> along_give(const ComplianceMap& map, std::span<const Vec3> vertex_normal,
                                      double tip_radius_m) {
-  const law::ElasticTip unit{
+  const indent::ElasticTip unit{
       .youngs_modulus_Pa = 1.0, .poisson_ratio = map.poisson_ratio, .radius_m = tip_radius_m};
   const double disc = 1.0 / unit.pulled_stiffness_N_per_m();
   const double side = 1.0 / unit.sideways_stiffness_N_per_m();
@@ -108,10 +108,10 @@ Result<ComplianceFamily> make_compliance_family(const ComplianceMap& map,
   if (p.curves < 2 || p.curves > kMaxCurves)
     return Error{"compliance: curves must lie between 2 and 65"};
   if (map.vertices() == 0) return Error{"compliance: the map has no vertices"};
-  const law::ElasticTip tip{.youngs_modulus_Pa = p.youngs_modulus_Pa,
-                            .poisson_ratio = map.poisson_ratio,
-                            .radius_m = p.tip_radius_m,
-                            .large_strain = p.large_strain};
+  const indent::ElasticTip tip{.youngs_modulus_Pa = p.youngs_modulus_Pa,
+                               .poisson_ratio = map.poisson_ratio,
+                               .radius_m = p.tip_radius_m,
+                               .large_strain = p.large_strain};
   const Give give = give_of(map, tip);
   const double disc = 1.0 / tip.pulled_stiffness_N_per_m();
   const auto stiffness = [disc](double r) { return 1.0 / (disc + r); };  // CF-1
@@ -133,7 +133,7 @@ Result<ComplianceFamily> make_compliance_family(const ComplianceMap& map,
     const double at = static_cast<double>(k);
     const std::vector<double> rings =
         rings_near(map, out.press_coordinate, at, p.youngs_modulus_Pa);
-    auto curve = law::make_compliance_curve(
+    auto curve = indent::make_compliance_curve(
         {.tip = tip,
          .regular_m_per_N = 1.0 / (soft * std::exp(span * at / last)) - disc,
          .working_depth_m = p.working_depth_m,

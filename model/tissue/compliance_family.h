@@ -20,7 +20,7 @@
 #include <span>
 #include <vector>
 
-#include "model/law/compliance_law.h"
+#include "model/indent/compliance_law.h"
 #include "model/result.h"
 #include "model/tissue/compliance_map.h"
 #include "model/tissue/elastic_field.h"
@@ -28,14 +28,14 @@
 namespace tact::model::tissue {
 
 struct ComplianceFamily {
-  std::vector<law::ComplianceCurve> curve;  // K, soft to stiff
-  std::vector<float> press_coordinate;      // kappa of r, n vertices
-  std::vector<float> pull_coordinate;       // kappa of r_pull, n vertices
-  std::size_t limited = 0;                  // vertices held to kStiffest
+  std::vector<indent::ComplianceCurve> curve;  // K, soft to stiff
+  std::vector<float> press_coordinate;         // kappa of r, n vertices
+  std::vector<float> pull_coordinate;          // kappa of r_pull, n vertices
+  std::size_t limited = 0;                     // vertices held to kStiffest
 
   /// What the loop may touch.
   std::size_t memory_bytes() const {
-    return curve.size() * sizeof(law::ComplianceCurve) +
+    return curve.size() * sizeof(indent::ComplianceCurve) +
            (press_coordinate.size() + pull_coordinate.size()) * sizeof(float);
   }
 };

@@ -6,7 +6,7 @@ each rule on a breach of it.
 import re
 
 CONTACT = ["model", "model/law", "model/contact"]
-SURFACE_LAWS = [*CONTACT, "model/tissue", "model/springs"]
+SURFACE_LAWS = [*CONTACT, "model/indent", "model/tissue", "model/springs"]
 SCENE = [*SURFACE_LAWS, "model/mesh", "model/scene"]
 DELTA = ["model", "hal", "hal/delta"]
 DEVICES = ["hal/sim", "hal/odrive", "hal/cia402", "hal/falcon_usb", "hal/force_dimension"]
@@ -16,8 +16,9 @@ OPERATOR = ["host/pose", "host/tracking", "host/figure"]
 ROOMS = {
     "model": [],
     "model/law": ["model"],
+    "model/indent": ["model", "model/law"],
     "model/contact": ["model", "model/law"],
-    "model/tissue": CONTACT,
+    "model/tissue": [*CONTACT, "model/indent"],
     "model/springs": CONTACT,
     "model/mesh": ["model", "model/contact"],
     "model/scene": [*SURFACE_LAWS, "model/mesh"],

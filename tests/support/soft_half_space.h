@@ -5,19 +5,21 @@
 
 #include <vector>
 
-#include "model/law/compliance_law.h"
+#include "model/indent/compliance_law.h"
 #include "model/tissue/elastic_field.h"
 
 namespace tact::tests {
 
 struct SoftHalfSpace {
-  model::law::ElasticTip tip{.youngs_modulus_Pa = 5000.0, .poisson_ratio = 0.45, .radius_m = 0.004};
+  model::indent::ElasticTip tip{
+      .youngs_modulus_Pa = 5000.0, .poisson_ratio = 0.45, .radius_m = 0.004};
   std::vector<double> flat{0.0};
-  model::law::ComplianceCurve curve = *model::law::make_compliance_curve({.tip = tip,
-                                                                          .working_depth_m = 0.012,
-                                                                          .ring_pitch_m = 0.002,
-                                                                          .ring_m_per_N = flat,
-                                                                          .table_knots = 257});
+  model::indent::ComplianceCurve curve =
+      *model::indent::make_compliance_curve({.tip = tip,
+                                             .working_depth_m = 0.012,
+                                             .ring_pitch_m = 0.002,
+                                             .ring_m_per_N = flat,
+                                             .table_knots = 257});
   const model::law::Law* law = &curve;
   model::tissue::ElasticField field{
       {.curves = {&law, 1},

@@ -52,14 +52,14 @@ inline model::scene::Scene make_plate_scene() {
 }
 
 /// A linear stack of 20 soft discs, 8 mm across.
-inline model::law::DiscStackParameters make_linear_discs() {
+inline model::indent::DiscStackParameters make_linear_discs() {
   return {.disc = {.outer_diameter_m = 0.008,
                    .inner_diameter_m = 0.004,
                    .thickness_m = 0.002,
                    .free_height_m = 0.0025,
                    .youngs_modulus_Pa = 5000.0,
                    .poisson_ratio = 0.3},
-          .form = model::law::DiscForm::kLinear,
+          .form = model::indent::DiscForm::kLinear,
           .delays = {
               .first_delay_s = 1e-6, .delay_ratio = 1.0, .refresh_rate_Hz = 1000.0, .layers = 20}};
 }

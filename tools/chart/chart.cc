@@ -196,9 +196,9 @@ report::Row table_row(const ChartRow& row, const Provenance& provenance) {
   };
   const auto count = [](std::size_t value) { return report::Cell(static_cast<double>(value)); };
   const ErrorSummary& e = row.errors;
-  const char* form = !sizes.disc_form                                    ? "-"
-                     : *sizes.disc_form == model::law::DiscForm::kLinear ? "linear"
-                                                                         : "almen-laszlo";
+  const char* form = !sizes.disc_form                                       ? "-"
+                     : *sizes.disc_form == model::indent::DiscForm::kLinear ? "linear"
+                                                                            : "almen-laszlo";
   const auto or_dash = [](const std::string& text) {
     return report::Cell(text.empty() ? "-" : without_commas(text));
   };

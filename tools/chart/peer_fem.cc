@@ -17,8 +17,8 @@
 
 #include "model/fem/hertz_load.h"
 #include "model/fem/linear_solver.h"
-#include "model/law/compliance_law.h"
-#include "model/law/compliance_tip.h"
+#include "model/indent/compliance_law.h"
+#include "model/indent/compliance_tip.h"
 #include "tools/chart/chart_peers.h"
 #include "tools/condense/condense_organ.h"
 #include "tools/ground_truth/gmsh.h"
@@ -29,17 +29,17 @@ namespace {
 using model::Result;
 using model::Vec3;
 using model::contact::Indentation;
-using model::law::ElasticTip;
+using model::indent::ElasticTip;
 namespace fem = model::fem;
 
 constexpr double kPatchEdges = 2.0;
 
 /// CL-1 at one depth.
-model::law::TipState pressed(const ElasticTip& tip, double regular_m_per_N, double depth_m) {
+model::indent::TipState pressed(const ElasticTip& tip, double regular_m_per_N, double depth_m) {
   double low = 0.0, high = 20.0;  // s of CT-1
   for (int i = 0; i < 60; ++i) {
     const double s = 0.5 * (low + high);
-    const model::law::TipState state = tip_state(tip, s);
+    const model::indent::TipState state = tip_state(tip, s);
     (state.depth_m + regular_m_per_N * state.force_N < depth_m ? low : high) = s;
   }
   return tip_state(tip, low);

@@ -59,7 +59,8 @@ class List {
 
 void List::discs() {
   const std::size_t layers = scene_.disc_stack.delays.layers;
-  for (const auto form : {model::law::DiscForm::kLinear, model::law::DiscForm::kAlmenLaszlo}) {
+  for (const auto form :
+       {model::indent::DiscForm::kLinear, model::indent::DiscForm::kAlmenLaszlo}) {
     if (!wish_.quick && layers > 1)
       add({.law = LawKind::kDiscStack, .layers = layers / 2, .disc_form = form});
     add({.law = LawKind::kDiscStack, .layers = layers, .disc_form = form});

@@ -7,7 +7,7 @@
 namespace tact::tools::fit {
 namespace {
 
-using model::law::DiscForm;
+using model::indent::DiscForm;
 using model::scene::LawKind;
 using model::scene::Scene;
 
@@ -27,7 +27,7 @@ FitParameter spring(const char* section, const char* key, std::function<double&(
 }
 
 FitLaw rhombus() {
-  const auto p = [](Scene& s) -> model::law::RhombusChainParameters& { return s.rhombus; };
+  const auto p = [](Scene& s) -> model::indent::RhombusChainParameters& { return s.rhombus; };
   FitLaw law{.name = "rhombus", .kind = LawKind::kRhombus};
   law.parameters = {
       {"rhombus", "rod_length_m", 1e-4, 0.1,
@@ -76,7 +76,7 @@ FitLaw coned_disc_stack(const Scene& scene) {
 }
 
 FitLaw hex_sheet() {
-  const auto p = [](Scene& s) -> model::law::HexSheetParameters& { return s.hex_sheet; };
+  const auto p = [](Scene& s) -> model::indent::HexSheetParameters& { return s.hex_sheet; };
   FitLaw law{.name = "hex_sheet", .kind = LawKind::kHexSheet};
   law.parameters = {{"hex_sheet", "ring_pitch_m", 1e-4, 0.05,
                      [p](Scene& s) -> double& { return p(s).ring_pitch_m; }},

@@ -35,8 +35,8 @@ std::vector<Candidate> candidates_of(const report::Table& table) {
       if (name.name == table.word(row, "family")) sizes.law = name.kind;
     const std::string& form = table.word(row, "form");
     if (form != "-")
-      sizes.disc_form =
-          form == "linear" ? model::law::DiscForm::kLinear : model::law::DiscForm::kAlmenLaszlo;
+      sizes.disc_form = form == "linear" ? model::indent::DiscForm::kLinear
+                                         : model::indent::DiscForm::kAlmenLaszlo;
     const bool whole_tool = std::isfinite(table.number(row, "tool_rms_ratio"));
     out.push_back(
         {.sizes = sizes,

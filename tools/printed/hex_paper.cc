@@ -11,9 +11,9 @@ namespace {
 
 using model::Error;
 using model::is_positive;
+using model::indent::kMaxHexRings;
 using model::law::CurvePoint;
 using model::law::HermiteTable;
-using model::law::kMaxHexRings;
 
 constexpr int kMaxIterations = 60;
 constexpr std::size_t kKnots = 129;

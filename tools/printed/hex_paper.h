@@ -25,13 +25,13 @@
 #include <cstddef>
 #include <span>
 
+#include "model/indent/hex_sheet.h"
 #include "model/law/hermite_table.h"
-#include "model/law/hex_sheet.h"
 
 namespace tact::tools::printed {
 
 using model::Result;
-using model::law::HexWeight;
+using model::indent::HexWeight;
 using model::law::Law;
 using model::law::LawRange;
 using model::law::LawResponse;

@@ -8,12 +8,12 @@
 // model::law::Law, and no scene can choose it.
 #pragma once
 
-#include "model/law/rhombus_unit.h"
+#include "model/indent/rhombus_unit.h"
 
 namespace tact::tools::printed {
 
+using model::indent::RhombusUnit;
 using model::law::LawStatus;
-using model::law::RhombusUnit;
 
 /// Equations (3) to (6) of one unit at a given change of angle.
 struct PaperUnit {

@@ -6,10 +6,10 @@
 #include <numbers>
 #include <type_traits>
 
-#include "model/law/compliance_law.h"
-#include "model/law/disc_stack.h"
-#include "model/law/hex_sheet.h"
-#include "model/law/rhombus_chain.h"
+#include "model/indent/compliance_law.h"
+#include "model/indent/disc_stack.h"
+#include "model/indent/hex_sheet.h"
+#include "model/indent/rhombus_chain.h"
 #include "model/law/tabulated_law.h"
 #include "tools/printed/hex_paper.h"
 #include "tools/stability/memory_laws.h"
@@ -28,8 +28,8 @@ void add(std::vector<NamedLaw>& laws, const char* name, const model::Result<L>& 
   if (!law) return;
   const auto direct = std::make_shared<const L>(*law);
   std::shared_ptr<const model::law::Law> felt = direct;
-  if constexpr (std::is_same_v<L, model::law::RhombusChain> ||
-                std::is_same_v<L, model::law::HexSheet>) {
+  if constexpr (std::is_same_v<L, model::indent::RhombusChain> ||
+                std::is_same_v<L, model::indent::HexSheet>) {
     if (auto table = model::law::tabulate(*direct, kKnots))
       felt = std::make_shared<const model::law::TabulatedLaw>(*table);
   }
@@ -59,7 +59,7 @@ void add_memory(std::vector<NamedLaw>& laws) {
 }
 
 /// The chain of RC-13 at another angle, or with stiffer tangential springs.
-model::law::RhombusChainParameters chain(double angle_deg, double tangential_N_per_m) {
+model::indent::RhombusChainParameters chain(double angle_deg, double tangential_N_per_m) {
   return {.rod_length_m = 0.010,
           .initial_angle_rad = angle_deg * kDegree_rad,
           .normal_stiffness_N_per_m = 1500.0,
@@ -69,41 +69,41 @@ model::law::RhombusChainParameters chain(double angle_deg, double tangential_N_p
 }
 
 /// The chain of the liver scene.
-constexpr model::law::RhombusChainParameters kLiver{.rod_length_m = 0.005,
-                                                    .initial_angle_rad = 30.0 * kDegree_rad,
-                                                    .normal_stiffness_N_per_m = 150.0,
-                                                    .tangential_stiffness_N_per_m = 180.0,
-                                                    .growth = 2.0,
-                                                    .units = 10};
+constexpr model::indent::RhombusChainParameters kLiver{.rod_length_m = 0.005,
+                                                       .initial_angle_rad = 30.0 * kDegree_rad,
+                                                       .normal_stiffness_N_per_m = 150.0,
+                                                       .tangential_stiffness_N_per_m = 180.0,
+                                                       .growth = 2.0,
+                                                       .units = 10};
 
 /// A tissue of 500 N/m in six layers of 3.6 mm (DS-13).
-model::Result<model::law::DiscStack> discs(model::law::DiscForm form, double cone_ratio,
-                                           double first_s) {
-  return model::law::make_disc_stack(
-      model::law::Disc{.outer_diameter_m = 8e-3,
-                       .stiffness_N_per_m = 500.0,
-                       .travel_m = 3.6e-3,
-                       .cone_ratio = cone_ratio},
+model::Result<model::indent::DiscStack> discs(model::indent::DiscForm form, double cone_ratio,
+                                              double first_s) {
+  return model::indent::make_disc_stack(
+      model::indent::Disc{.outer_diameter_m = 8e-3,
+                          .stiffness_N_per_m = 500.0,
+                          .travel_m = 3.6e-3,
+                          .cone_ratio = cone_ratio},
       form, {.first_delay_s = first_s, .delay_ratio = 1.1, .refresh_rate_Hz = 1000.0, .layers = 6});
 }
 
-constexpr model::law::HexSheetParameters kSheet{.ring_pitch_m = 2e-3,
-                                                .contact_stiffness_N_per_m = 20.0,
-                                                .body_stiffness_N_per_m = 20.0,
-                                                .surface_stiffness_N_per_m = 200.0,
-                                                .tension_N = 0.1,
-                                                .rings = 15,
-                                                .weight = model::law::HexWeight::kNode,
-                                                .working_depth_m = 8e-3};
+constexpr model::indent::HexSheetParameters kSheet{.ring_pitch_m = 2e-3,
+                                                   .contact_stiffness_N_per_m = 20.0,
+                                                   .body_stiffness_N_per_m = 20.0,
+                                                   .surface_stiffness_N_per_m = 200.0,
+                                                   .tension_N = 0.1,
+                                                   .rings = 15,
+                                                   .weight = model::indent::HexWeight::kNode,
+                                                   .working_depth_m = 8e-3};
 
 /// Liver under a 4 mm tip, at a place that gives a little more than a half-space.
-model::Result<model::law::ComplianceCurve> compliance() {
+model::Result<model::indent::ComplianceCurve> compliance() {
   constexpr double kGive_m_per_N = 2e-3;
   constexpr std::size_t kRings = 12;
   std::array<double, kRings> ring{};
   for (std::size_t j = 0; j < kRings; ++j)
     ring[j] = kGive_m_per_N * (1.0 - static_cast<double>(j + 1) / kRings);
-  return model::law::make_compliance_curve(
+  return model::indent::make_compliance_curve(
       {.tip = {.youngs_modulus_Pa = 5000.0, .poisson_ratio = 0.45, .radius_m = 4e-3},
        .regular_m_per_N = kGive_m_per_N,
        .working_depth_m = 0.01,
@@ -113,13 +113,13 @@ model::Result<model::law::ComplianceCurve> compliance() {
 }
 
 std::vector<NamedLaw> make_laws() {
-  using model::law::DiscForm;
+  using model::indent::DiscForm;
   std::vector<NamedLaw> laws;
-  add(laws, "rhombus (liver)", model::law::make_rhombus_chain(kLiver),
+  add(laws, "rhombus (liver)", model::indent::make_rhombus_chain(kLiver),
       "rods flat: the force stays at its limit");
-  add(laws, "rhombus (30 deg)", model::law::make_rhombus_chain(chain(30.0, 1800.0)),
+  add(laws, "rhombus (30 deg)", model::indent::make_rhombus_chain(chain(30.0, 1800.0)),
       "rods flat: the force stays at its limit");
-  add(laws, "rhombus (snaps)", model::law::make_rhombus_chain(chain(45.0, 60000.0)),
+  add(laws, "rhombus (snaps)", model::indent::make_rhombus_chain(chain(45.0, 60000.0)),
       "a unit snaps: the stiffness is zero there and the force stays");
   add(laws, "discs linear", discs(DiscForm::kLinear, 0.4, 1e-5),
       "all layers flat: the force stays at its limit");
@@ -129,24 +129,24 @@ std::vector<NamedLaw> make_laws() {
       "next to sqrt 2 every layer ends without stiffness");
   add(laws, "discs slow", discs(DiscForm::kAlmenLaszlo, 0.4, 2e-4),
       "the modelled delay ends the stack after a few layers");
-  add(laws, "hex sheet", model::law::make_hex_sheet(kSheet),
+  add(laws, "hex sheet", model::indent::make_hex_sheet(kSheet),
       "the force stays at the working depth's");
-  model::law::HexSheetParameters bare = kSheet;
+  model::indent::HexSheetParameters bare = kSheet;
   bare.tension_N = 0.0;
-  add(laws, "hex sheet no tension", model::law::make_hex_sheet(bare),
+  add(laws, "hex sheet no tension", model::indent::make_hex_sheet(bare),
       "the dent is a spike and the force stays");
   add(laws, "hex printed ring",
       printed::make_hex_paper({.ring_pitch_m = 2e-3,
                                .body_stiffness_N_per_m = 50.0,
                                .rings = 25,
-                               .weight = model::law::HexWeight::kRing,
+                               .weight = model::indent::HexWeight::kRing,
                                .working_depth_m = 8e-3}),
       "the force stays; it would grow with the number of rings");
   add(laws, "hex printed node",
       printed::make_hex_paper({.ring_pitch_m = 2e-3,
                                .body_stiffness_N_per_m = 50.0,
                                .rings = 25,
-                               .weight = model::law::HexWeight::kNode,
+                               .weight = model::indent::HexWeight::kNode,
                                .working_depth_m = 8e-3}),
       "20 N/mm: the gate limits the force from 0.4 mm on");
   add(laws, "compliance", compliance(), "the force stays at the working depth's");

@@ -12,9 +12,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/law/disc_stack.h"
-#include "model/law/hex_sheet.h"
-#include "model/law/rhombus_unit.h"
+#include "model/indent/disc_stack.h"
+#include "model/indent/hex_sheet.h"
+#include "model/indent/rhombus_unit.h"
 #include "tools/printed/hex_paper.h"
 #include "tools/stability/map.h"
 #include "tools/stability/pictures.h"
@@ -44,23 +44,23 @@ constexpr int kSamples = 2000;
 
 Point disc_cone(double t) {
   const double eta = 2.0 * t;
-  const model::law::Disc disc{
+  const model::indent::Disc disc{
       .outer_diameter_m = 8e-3, .stiffness_N_per_m = 500.0, .travel_m = 0.9e-3, .cone_ratio = eta};
   double least = 1e9;
   for (int i = 0; i <= kSamples; ++i)
-    least = std::min(least, model::law::respond(disc, model::law::DiscForm::kAlmenLaszlo,
-                                                disc.travel_m * i / kSamples)
+    least = std::min(least, model::indent::respond(disc, model::indent::DiscForm::kAlmenLaszlo,
+                                                   disc.travel_m * i / kSamples)
                                 .stiffness_N_per_m);
-  const bool accepted = model::law::is_monotone(disc, model::law::DiscForm::kAlmenLaszlo);
+  const bool accepted = model::indent::is_monotone(disc, model::indent::DiscForm::kAlmenLaszlo);
   return {eta, least / disc.stiffness_N_per_m, 1.0 - 0.5 * eta * eta,
           accepted ? "grows to flat" : "snaps through: refused when the scene is read"};
 }
 
 Point disc_rate(double t) {
   const double rate_Hz = 250.0 * std::pow(2.0, 5.0 * t);
-  const model::law::LayerDelays delays{
+  const model::indent::LayerDelays delays{
       .first_delay_s = 2e-5, .delay_ratio = 1.1, .refresh_rate_Hz = rate_Hz, .layers = 64};
-  const auto layers = static_cast<double>(model::law::layer_budget(delays));
+  const auto layers = static_cast<double>(model::indent::layer_budget(delays));
   // T_i = t1 (q^i - 1)/(q - 1) < T
   const double theory = std::log(1.0 + 0.1 / (rate_Hz * 2e-5)) / std::log(1.1);
   return {rate_Hz, layers, std::ceil(theory) - 1.0,
@@ -69,17 +69,17 @@ Point disc_rate(double t) {
 
 Point rhombus_snap(double t) {
   const double ratio = 4.0 * t, angle_rad = std::numbers::pi / 3.0;
-  const model::law::RhombusUnit unit{.rod_length_m = 0.010,
-                                     .initial_angle_rad = angle_rad,
-                                     .normal_stiffness_N_per_m = 1000.0,
-                                     .tangential_stiffness_N_per_m = 1000.0 * ratio};
+  const model::indent::RhombusUnit unit{.rod_length_m = 0.010,
+                                        .initial_angle_rad = angle_rad,
+                                        .normal_stiffness_N_per_m = 1000.0,
+                                        .tangential_stiffness_N_per_m = 1000.0 * ratio};
   const double flat_m = 2.0 * unit.rod_length_m * std::sin(angle_rad);
   double least = 1e9;
   for (int i = 0; i < kSamples; ++i)
-    least = std::min(least, model::law::respond(unit, flat_m * i / kSamples).stiffness_N_per_m);
+    least = std::min(least, model::indent::respond(unit, flat_m * i / kSamples).stiffness_N_per_m);
   // RC-5 at flat: kN - kT (1 - cos theta0)
   return {ratio, least / 1000.0, 1.0 - ratio * (1.0 - std::cos(angle_rad)),
-          model::law::press_limit(unit).kind == model::law::UnitLimit::kSnap
+          model::indent::press_limit(unit).kind == model::indent::UnitLimit::kSnap
               ? "snaps before it is flat: saturates there"
               : "ends flat"};
 }
@@ -87,24 +87,24 @@ Point rhombus_snap(double t) {
 Point hex(double t, int kind) {
   constexpr double kDepth_m = 5e-3, kPitch_m = 2e-3, kBody_N_per_m = 50.0;
   const auto most =
-      static_cast<double>(kind == 2 ? model::law::kMaxHexRings : printed::kMaxPaperRings);
+      static_cast<double>(kind == 2 ? model::indent::kMaxHexRings : printed::kMaxPaperRings);
   const auto rings = static_cast<std::size_t>(std::lround(3.0 + (most - 3.0) * t));
   Point point{.parameter = static_cast<double>(rings)};
   if (kind == 2) {
-    const auto sheet = model::law::make_hex_sheet({.ring_pitch_m = kPitch_m,
-                                                   .contact_stiffness_N_per_m = kBody_N_per_m,
-                                                   .body_stiffness_N_per_m = kBody_N_per_m,
-                                                   .surface_stiffness_N_per_m = 200.0,
-                                                   .tension_N = 0.15,
-                                                   .rings = rings,
-                                                   .weight = model::law::HexWeight::kNode,
-                                                   .working_depth_m = 8e-3});
+    const auto sheet = model::indent::make_hex_sheet({.ring_pitch_m = kPitch_m,
+                                                      .contact_stiffness_N_per_m = kBody_N_per_m,
+                                                      .body_stiffness_N_per_m = kBody_N_per_m,
+                                                      .surface_stiffness_N_per_m = 200.0,
+                                                      .tension_N = 0.15,
+                                                      .rings = rings,
+                                                      .weight = model::indent::HexWeight::kNode,
+                                                      .working_depth_m = 8e-3});
     point.measured = sheet ? sheet->respond(kDepth_m).force_N : std::nan("");
     point.theory = 2.5806;  // HX-28
     point.what = "has a limit";
     return point;
   }
-  const auto weight = kind == 0 ? model::law::HexWeight::kRing : model::law::HexWeight::kNode;
+  const auto weight = kind == 0 ? model::indent::HexWeight::kRing : model::indent::HexWeight::kNode;
   point.measured = printed::paper_force_N(printed::paper_shape_at_depth(kPitch_m, rings, kDepth_m),
                                           kBody_N_per_m, weight);
   // grows like m or like m^2 from HX-12 at m = 25

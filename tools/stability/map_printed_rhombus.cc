@@ -54,7 +54,7 @@ std::vector<report::Column> columns() {
           {"what_happens", report::CellKind::kWord}};
 }
 
-model::law::RhombusUnit unit_of(double angle_rad, double ratio, int i) {
+model::indent::RhombusUnit unit_of(double angle_rad, double ratio, int i) {
   return {.rod_length_m = 0.010,
           .initial_angle_rad = angle_rad,
           .normal_stiffness_N_per_m = 1500.0,
@@ -81,10 +81,10 @@ report::Row run(std::size_t job, Grid grid) {
   const auto [angle, ratio] = Axes<2>{{cells(grid).angles, cells(grid).ratios}}.at(job);
   const double angle_rad = angle_deg(angle, grid) * kDegree_rad;
   const double kT_over_kN = spring_ratio(ratio, grid);
-  const model::law::RhombusUnit unit = unit_of(angle_rad, kT_over_kN, 0);
+  const model::indent::RhombusUnit unit = unit_of(angle_rad, kT_over_kN, 0);
   const printed::PaperUnit small = printed::paper_forward(unit, kSmall_rad);
   const printed::PaperUnit pressed = printed::paper_forward(unit, kPress_rad * angle_rad);
-  const model::law::UnitResponse energy = model::law::respond(unit, -pressed.shortening_m);
+  const model::indent::UnitResponse energy = model::indent::respond(unit, -pressed.shortening_m);
   const int first = first_failing(angle_rad, kT_over_kN);
   const char* what = first > kUnits ? "softer than the springs"
                      : first == 1   ? "the surface pulls the tool in"
@@ -94,7 +94,7 @@ report::Row run(std::size_t job, Grid grid) {
           static_cast<double>(first),
           static_cast<double>(theory_first_failing(angle_rad, kT_over_kN)),
           small.force_N / small.shortening_m / unit.normal_stiffness_N_per_m,
-          model::law::respond(unit, 0.0).stiffness_N_per_m / unit.normal_stiffness_N_per_m,
+          model::indent::respond(unit, 0.0).stiffness_N_per_m / unit.normal_stiffness_N_per_m,
           pressed.energy_J / -pressed.shortening_m / energy.force_N,
           std::string(what)};
 }

@@ -2,20 +2,20 @@
 // The published cases of the disc stack: constants of a disc, the stack, and the printed example.
 #include <cmath>
 
-#include "model/law/disc_stack.h"
+#include "model/indent/disc_stack.h"
 #include "tools/verify/report.h"
 
 namespace tact::tools::verify {
 namespace {
 
-using model::law::Disc;
-using model::law::DiscForm;
-using model::law::DiscStackState;
+using model::indent::Disc;
+using model::indent::DiscForm;
+using model::indent::DiscStackState;
+using model::indent::LayerDelays;
 using model::law::LawStatus;
-using model::law::LayerDelays;
 using nlohmann::json;
 
-model::law::DiscDimensions dimensions_of(const json& p) {
+model::indent::DiscDimensions dimensions_of(const json& p) {
   return {.outer_diameter_m = number(p.at("D")),
           .inner_diameter_m = number(p.at("d")),
           .thickness_m = number(p.at("l")),
@@ -25,31 +25,31 @@ model::law::DiscDimensions dimensions_of(const json& p) {
 }
 
 json constants_results(const json& one_case) {
-  const model::law::DiscDimensions dimensions = dimensions_of(one_case.at("params"));
-  const auto disc = model::law::make_disc(dimensions);
+  const model::indent::DiscDimensions dimensions = dimensions_of(one_case.at("params"));
+  const auto disc = model::indent::make_disc(dimensions);
   if (!disc) return {{"status", "INVALID_ARGUMENT"}};
   const DiscForm form = DiscForm::kAlmenLaszlo;
   const double ratio = dimensions.outer_diameter_m / dimensions.inner_diameter_m;
-  return {{"status", model::law::is_monotone(*disc, form) ? "OK" : "NON_MONOTONE"},
+  return {{"status", model::indent::is_monotone(*disc, form) ? "OK" : "NON_MONOTONE"},
           {"C", ratio},
-          {"alpha", model::law::disc_shape_factor(ratio)},
+          {"alpha", model::indent::disc_shape_factor(ratio)},
           {"k", disc->stiffness_N_per_m},
           {"h0", disc->travel_m},
           {"F_flat", disc->flat_force_N()},
           {"eta", disc->cone_ratio},
-          {"k_AL_initial", model::law::respond(*disc, form, 0.0).stiffness_N_per_m},
-          {"k_AL_flat", model::law::respond(*disc, form, disc->travel_m).stiffness_N_per_m}};
+          {"k_AL_initial", model::indent::respond(*disc, form, 0.0).stiffness_N_per_m},
+          {"k_AL_flat", model::indent::respond(*disc, form, disc->travel_m).stiffness_N_per_m}};
 }
 
-const char* word(LawStatus status, model::law::TruncatedBy truncated_by) {
+const char* word(LawStatus status, model::indent::TruncatedBy truncated_by) {
   switch (status) {
     case LawStatus::kOk:
       return "OK";
     case LawStatus::kNoContact:
       return "NO_CONTACT";
     case LawStatus::kSaturated:
-      return truncated_by == model::law::TruncatedBy::kTimeBudget ? "TRUNCATED_TIME_BUDGET"
-                                                                  : "SATURATED";
+      return truncated_by == model::indent::TruncatedBy::kTimeBudget ? "TRUNCATED_TIME_BUDGET"
+                                                                     : "SATURATED";
     case LawStatus::kSingular:
     case LawStatus::kInvalid:
       break;
@@ -76,10 +76,10 @@ json stack_results(const json& one_case) {
                            .delay_ratio = number(p.at("q")),
                            .refresh_rate_Hz = number(p.at("rate")),
                            .layers = p.at("Ncap").get<std::size_t>()};
-  const auto stack = model::law::make_disc_stack(disc, form, delays);
+  const auto stack = model::indent::make_disc_stack(disc, form, delays);
   if (!stack) {
-    if (!model::law::is_monotone(disc, form)) return {{"status", "NON_MONOTONE"}};
-    const bool too_slow = delays.refresh_rate_Hz > 0.0 && model::law::layer_budget(delays) == 0;
+    if (!model::indent::is_monotone(disc, form)) return {{"status", "NON_MONOTONE"}};
+    const bool too_slow = delays.refresh_rate_Hz > 0.0 && model::indent::layer_budget(delays) == 0;
     return too_slow ? without_layers(inputs) : json{{"status", "INVALID_ARGUMENT"}, {"h", 0.0}};
   }
   const bool force_in = inputs.at("mode") == "FORCE";
@@ -94,7 +94,7 @@ json stack_results(const json& one_case) {
           {"hM", at.last_flattening_m},
           {"k_tan", at.stiffness_N_per_m},
           {"U", at.energy_J},
-          {"T_M", model::law::delay_through_layer_s(delays, at.moving_layers)},
+          {"T_M", model::indent::delay_through_layer_s(delays, at.moving_layers)},
           {"i_max", stack->layer_count()}};
 }
 
@@ -104,9 +104,9 @@ double rounded(double value, double unit) { return std::round(value / unit) * un
 /// digits, k h0 to 3 decimals in N, h5 to 3 decimals in micrometres. Nothing else rounds like this.
 json printed_results(const json& one_case) {
   const json& p = one_case.at("params");
-  const model::law::DiscDimensions in = dimensions_of(p);
+  const model::indent::DiscDimensions in = dimensions_of(p);
   const double ratio = rounded(in.outer_diameter_m / in.inner_diameter_m, 0.01);
-  const double alpha = rounded(model::law::disc_shape_factor(ratio), 0.001);
+  const double alpha = rounded(model::indent::disc_shape_factor(ratio), 0.001);
   const double l = in.thickness_m, outer = in.outer_diameter_m, mu = in.poisson_ratio;
   const double k_exact =
       4.0 * in.youngs_modulus_Pa / (1.0 - mu * mu) * l * l * l / (alpha * outer * outer);
@@ -118,7 +118,7 @@ json printed_results(const json& one_case) {
   const LayerDelays delays{.first_delay_s = number(p.at("t1")),
                            .delay_ratio = number(p.at("q")),
                            .refresh_rate_Hz = number(p.at("rate")),
-                           .layers = model::law::kMaxLayers};
+                           .layers = model::indent::kMaxLayers};
   json got{{"C", ratio},
            {"alpha", alpha},
            {"k", k},
@@ -128,7 +128,7 @@ json printed_results(const json& one_case) {
            {"h", (layers - 1.0) * h0 + last_m}};
   for (int i = 2; i <= 5; ++i) got["F_sum" + std::to_string(i)] = i * flat_N;
   for (std::size_t i = 1; i <= 4; ++i)
-    got["T" + std::to_string(i)] = model::law::delay_through_layer_s(delays, i);
+    got["T" + std::to_string(i)] = model::indent::delay_through_layer_s(delays, i);
   return got;
 }
 

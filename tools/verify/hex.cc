@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The published cases of the hexagonal surface: in its energy form, and as printed.
 
-#include "model/law/hex_sheet.h"
+#include "model/indent/hex_sheet.h"
 #include "tools/printed/hex_paper.h"
 #include "tools/verify/report.h"
 
 namespace tact::tools::verify {
 namespace {
 
-using model::law::HexWeight;
+using model::indent::HexWeight;
 using model::law::LawStatus;
 using nlohmann::json;
 
@@ -24,7 +24,7 @@ json no_contact() {
 json energy_results(const json& one_case) {
   const json& p = one_case.at("params");
   const double depth_m = number(one_case.at("inputs").at("depth"));
-  const auto sheet = model::law::make_hex_sheet({
+  const auto sheet = model::indent::make_hex_sheet({
       .ring_pitch_m = number(p.at("r")),
       .contact_stiffness_N_per_m = number(p.at("KN0")),
       .body_stiffness_N_per_m = number(p.at("KN")),
@@ -35,7 +35,7 @@ json energy_results(const json& one_case) {
       .working_depth_m = depth_m > 0.0 ? depth_m : 1.0,
   });
   if (!sheet) return refused();
-  const model::law::HexSheetState at = sheet->at_depth(depth_m);
+  const model::indent::HexSheetState at = sheet->at_depth(depth_m);
   if (at.status == LawStatus::kInvalid) return refused();
   if (depth_m <= 0.0) return no_contact();
   std::vector<double> ring_m(sheet->parameters().rings + 1);

@@ -2,15 +2,15 @@
 // The published cases of the rhombus law: one unit, the chain, and the law as printed.
 #include <cmath>
 
-#include "model/law/rhombus_chain.h"
+#include "model/indent/rhombus_chain.h"
 #include "tools/printed/rhombus_paper.h"
 #include "tools/verify/report.h"
 
 namespace tact::tools::verify {
 namespace {
 
+using model::indent::RhombusUnit;
 using model::law::LawStatus;
-using model::law::RhombusUnit;
 using nlohmann::json;
 
 const char* word(LawStatus status) {
@@ -29,8 +29,8 @@ const char* word(LawStatus status) {
   return "INVALID_ARGUMENT";
 }
 
-const char* word(model::law::UnitLimit kind) {
-  return kind == model::law::UnitLimit::kFlat ? "FLAT" : "SNAP";
+const char* word(model::indent::UnitLimit kind) {
+  return kind == model::indent::UnitLimit::kFlat ? "FLAT" : "SNAP";
 }
 
 RhombusUnit unit_of(const json& p, const char* tangential) {
@@ -42,11 +42,11 @@ RhombusUnit unit_of(const json& p, const char* tangential) {
 
 json unit_results(const json& one_case) {
   const RhombusUnit unit = unit_of(one_case.at("params"), "kT");
-  const model::law::UnitResponse r =
-      model::law::respond(unit, number(one_case.at("inputs").at("x")));
+  const model::indent::UnitResponse r =
+      model::indent::respond(unit, number(one_case.at("inputs").at("x")));
   json got{{"status", word(r.status)}, {"f", r.force_N}};
   if (r.status == LawStatus::kInvalid) return got;
-  const model::law::UnitPressLimit limit = model::law::press_limit(unit);
+  const model::indent::UnitPressLimit limit = model::indent::press_limit(unit);
   got.update({{"theta", r.angle_rad},
               {"dtheta", r.angle_change_rad},
               {"lam", r.lambda},
@@ -59,7 +59,7 @@ json unit_results(const json& one_case) {
   return got;
 }
 
-model::law::RhombusChainParameters chain_parameters(const json& p) {
+model::indent::RhombusChainParameters chain_parameters(const json& p) {
   const RhombusUnit first = unit_of(p, "kT1");
   const auto units = p.at("N").get<long>();
   return {.rod_length_m = first.rod_length_m,
@@ -71,14 +71,14 @@ model::law::RhombusChainParameters chain_parameters(const json& p) {
 }
 
 /// The display rule of the source: how far the chain "moves" by its own cut at lambda = 0.05.
-void add_lambda_rule(const model::law::RhombusChain& chain, const model::law::ChainState& at,
+void add_lambda_rule(const model::indent::RhombusChain& chain, const model::indent::ChainState& at,
                      json& got) {
   json lambdas = json::array(), shortenings = json::array();
   int leading = 0;
   double depth_m = 0.0;
   for (std::size_t i = 0; i < chain.unit_count(); ++i) {
     const double x = at.shortening_m[i];
-    const double lambda = model::law::respond(chain.unit(i), x).lambda;
+    const double lambda = model::indent::respond(chain.unit(i), x).lambda;
     shortenings.push_back(x);
     lambdas.push_back(lambda);
     if (leading == static_cast<int>(i) && lambda >= 0.05) ++leading, depth_m += x;
@@ -89,11 +89,11 @@ void add_lambda_rule(const model::law::RhombusChain& chain, const model::law::Ch
 
 json chain_results(const json& one_case) {
   const json& inputs = one_case.at("inputs");
-  const auto chain = model::law::make_rhombus_chain(chain_parameters(one_case.at("params")));
+  const auto chain = model::indent::make_rhombus_chain(chain_parameters(one_case.at("params")));
   if (!chain) return {{"status", word(LawStatus::kInvalid)}, {"F", 0.0}};
   const bool force_in = inputs.at("mode") == "FORCE";
-  const model::law::ChainState at = force_in ? chain->at_force(number(inputs.at("F")))
-                                             : chain->at_depth(number(inputs.at("depth")));
+  const model::indent::ChainState at = force_in ? chain->at_force(number(inputs.at("F")))
+                                                : chain->at_depth(number(inputs.at("depth")));
   json got{{"status", word(at.status)}, {"F", at.force_N}};
   if (at.status == LawStatus::kInvalid) return got;
   std::vector<double> ring_m(chain->unit_count() + 1);
@@ -126,7 +126,7 @@ json paper_forward_results(const json& one_case) {
     dv.push_back(at.widening_m);
     d.push_back(at.stiffness_N_per_m);
     f3.push_back(at.force_N);
-    f_energy.push_back(-model::law::respond(unit, -at.shortening_m).force_N);
+    f_energy.push_back(-model::indent::respond(unit, -at.shortening_m).force_N);
     depth_m += at.shortening_m;
     energy_J += at.energy_J;
     ++i;

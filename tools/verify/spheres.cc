@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "model/contact/coupling.h"
-#include "model/law/compliance_law.h"
+#include "model/indent/compliance_law.h"
 #include "model/tissue/elastic_field.h"
 #include "tools/verify/report.h"
 
@@ -16,17 +16,17 @@ using nlohmann::json;
 
 json group_results(const json& one_case) {
   const json &p = one_case.at("params"), &inputs = one_case.at("inputs");
-  const model::law::ElasticTip tip{.youngs_modulus_Pa = number(p.at("youngs_modulus_Pa")),
-                                   .poisson_ratio = number(p.at("poisson_ratio")),
-                                   .radius_m = number(p.at("radius_m"))};
+  const model::indent::ElasticTip tip{.youngs_modulus_Pa = number(p.at("youngs_modulus_Pa")),
+                                      .poisson_ratio = number(p.at("poisson_ratio")),
+                                      .radius_m = number(p.at("radius_m"))};
   double deepest_m = 0.0;
   for (const json& d : inputs.at("depth_m")) deepest_m = std::max(deepest_m, number(d));
   constexpr std::array<double, 1> kFlat{};
-  const auto curve = model::law::make_compliance_curve({.tip = tip,
-                                                        .working_depth_m = deepest_m,
-                                                        .ring_pitch_m = tip.radius_m,
-                                                        .ring_m_per_N = kFlat,
-                                                        .table_knots = 257});
+  const auto curve = model::indent::make_compliance_curve({.tip = tip,
+                                                           .working_depth_m = deepest_m,
+                                                           .ring_pitch_m = tip.radius_m,
+                                                           .ring_m_per_N = kFlat,
+                                                           .table_knots = 257});
   const model::law::Law* law = &*curve;
   model::tissue::ElasticField tissue(
       {.curves = {&law, 1},

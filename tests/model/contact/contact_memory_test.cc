@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "model/contact/contact.h"
-#include "model/law/rhombus_chain.h"
+#include "model/indent/rhombus_chain.h"
 #include "model/tissue/elastic_field.h"
 #include "model/units.h"
 #include "tests/support/shapes.h"
@@ -26,12 +26,12 @@ struct RelaxingBench {
                     .seeds = seeds.view(),
                     .blade = {}});
   }
-  law::RhombusChain chain = *law::make_rhombus_chain({.rod_length_m = 5_mm,
-                                                      .initial_angle_rad = 30_deg,
-                                                      .normal_stiffness_N_per_m = 150.0,
-                                                      .tangential_stiffness_N_per_m = 180.0,
-                                                      .growth = 2.0,
-                                                      .units = 10});
+  indent::RhombusChain chain = *indent::make_rhombus_chain({.rod_length_m = 5_mm,
+                                                            .initial_angle_rad = 30_deg,
+                                                            .normal_stiffness_N_per_m = 150.0,
+                                                            .tangential_stiffness_N_per_m = 180.0,
+                                                            .growth = 2.0,
+                                                            .units = 10});
   const law::Law* curve = &chain;
   mesh::SurfaceMesh mesh = tests::make_plate(100_mm, 20);
   SeedGrid seeds = make_seed_grid(mesh.view(), 20_mm);

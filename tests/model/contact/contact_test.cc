@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "model/law/rhombus_chain.h"
+#include "model/indent/rhombus_chain.h"
 #include "model/law/tabulated_law.h"
 #include "model/tissue/elastic_field.h"
 #include "model/units.h"
@@ -31,12 +31,12 @@ struct Bench {
                     .blade = {}});
   }
 
-  law::RhombusChain chain = *law::make_rhombus_chain({.rod_length_m = 5_mm,
-                                                      .initial_angle_rad = 30_deg,
-                                                      .normal_stiffness_N_per_m = 150.0,
-                                                      .tangential_stiffness_N_per_m = 180.0,
-                                                      .growth = 2.0,
-                                                      .units = 10});
+  indent::RhombusChain chain = *indent::make_rhombus_chain({.rod_length_m = 5_mm,
+                                                            .initial_angle_rad = 30_deg,
+                                                            .normal_stiffness_N_per_m = 150.0,
+                                                            .tangential_stiffness_N_per_m = 180.0,
+                                                            .growth = 2.0,
+                                                            .units = 10});
   law::TabulatedLaw law = *tabulate(chain, 65);
   const law::Law* curve = &law;
   tissue::ElasticField field{{.curves = {&curve, 1},

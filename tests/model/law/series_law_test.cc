@@ -6,9 +6,9 @@
 #include <array>
 #include <memory>
 
-#include "model/law/compliance_law.h"
+#include "model/indent/compliance_law.h"
+#include "model/indent/rhombus_chain.h"
 #include "model/law/law_bounds.h"
-#include "model/law/rhombus_chain.h"
 #include "model/law/tabulated_law.h"
 #include "model/units.h"
 #include "tests/model/law/law_contract.h"
@@ -17,17 +17,19 @@ namespace tact::model::law::series_law_test {
 
 constexpr std::array kRings{0.01, 0.005};
 
-ComplianceCurve place(double give_m_per_N, double m = 1.0, double kg = 1.0, double s = 1.0) {
+indent::ComplianceCurve place(double give_m_per_N, double m = 1.0, double kg = 1.0,
+                              double s = 1.0) {
   const double give = s * s / kg;
   const std::array rings{kRings[0] * give, kRings[1] * give};
-  auto curve = make_compliance_curve({.tip = {.youngs_modulus_Pa = 5000.0 * kg / (m * s * s),
-                                              .poisson_ratio = 0.45,
-                                              .radius_m = 4_mm * m},
-                                      .regular_m_per_N = give_m_per_N * give,
-                                      .working_depth_m = 12_mm * m,
-                                      .ring_pitch_m = 2_mm * m,
-                                      .ring_m_per_N = rings,
-                                      .table_knots = 257});
+  auto curve =
+      indent::make_compliance_curve({.tip = {.youngs_modulus_Pa = 5000.0 * kg / (m * s * s),
+                                             .poisson_ratio = 0.45,
+                                             .radius_m = 4_mm * m},
+                                     .regular_m_per_N = give_m_per_N * give,
+                                     .working_depth_m = 12_mm * m,
+                                     .ring_pitch_m = 2_mm * m,
+                                     .ring_m_per_N = rings,
+                                     .table_knots = 257});
   EXPECT_TRUE(curve) << curve.error().sentence;
   return *curve;
 }
@@ -36,7 +38,7 @@ ComplianceCurve place(double give_m_per_N, double m = 1.0, double kg = 1.0, doub
 struct Pair {
   Pair(double give_m_per_N, double m = 1.0, double kg = 1.0, double s = 1.0)
       : tip(place(0.0, m, kg, s)), series(*make_series_law(tip, give_m_per_N * s * s / kg, tip)) {}
-  ComplianceCurve tip;
+  indent::ComplianceCurve tip;
   SeriesLaw series;
 };
 
@@ -55,12 +57,13 @@ class PairLaw final : public Law {
 };
 
 TEST(SeriesLaw, KeepsTheLawContractWhereTheOrganGivesAndWhereItIsHeld) {
-  const RhombusChain chain = *make_rhombus_chain({.rod_length_m = 5_mm,
-                                                  .initial_angle_rad = 0.5236,
-                                                  .normal_stiffness_N_per_m = 126.0,
-                                                  .tangential_stiffness_N_per_m = 76.0,
-                                                  .growth = 2.0,
-                                                  .units = 10});
+  const indent::RhombusChain chain =
+      *indent::make_rhombus_chain({.rod_length_m = 5_mm,
+                                   .initial_angle_rad = 0.5236,
+                                   .normal_stiffness_N_per_m = 126.0,
+                                   .tangential_stiffness_N_per_m = 76.0,
+                                   .growth = 2.0,
+                                   .units = 10});
   const TabulatedLaw table = *tabulate(chain, kMaxKnots);
   for (const double give_m_per_N : {0.03, 0.0, -0.003})
     tests::check_law_contract(*make_series_law(table, give_m_per_N, table));
@@ -74,7 +77,7 @@ TEST(SeriesLaw, HasConsistentDimensions) {
 TEST(SeriesLaw, IsTheComplianceLawWhereTheTipIsItsTip) {
   for (const double give_m_per_N : {0.03, -0.005}) {
     const Pair pair(give_m_per_N);
-    const ComplianceCurve whole = place(give_m_per_N);
+    const indent::ComplianceCurve whole = place(give_m_per_N);
     for (const double depth_m : {-8_mm, -1_mm, 0.5_mm, 2_mm, 6_mm}) {
       const LawResponse a = pair.series.respond(depth_m), b = whole.respond(depth_m);
       EXPECT_NEAR(a.force_N / b.force_N, 1.0, 1e-4) << depth_m;
@@ -96,7 +99,7 @@ TEST(SeriesLaw, SharesTheDepthAndStaysWhereTheTipEnds) {
 }
 
 TEST(SeriesLaw, RefusesAPlaceThatIsStifferThanItsLaw) {
-  const ComplianceCurve tip = place(0.0);
+  const indent::ComplianceCurve tip = place(0.0);
   const double most_N_per_m = stiffest_N_per_m(tip, -12_mm, 12_mm);
   EXPECT_TRUE(make_series_law(tip, -0.99 / most_N_per_m, tip));
   for (const double give_m_per_N : {-1.01 / most_N_per_m, std::nan(""), HUGE_VAL}) {

@@ -5,22 +5,22 @@
 
 #include <cmath>
 
-#include "model/law/rhombus_chain.h"
+#include "model/indent/rhombus_chain.h"
 #include "model/units.h"
 #include "tests/model/law/law_contract.h"
 
 namespace tact::model::law::tabulated_law_test {
 
-RhombusChain liver() {
-  return *make_rhombus_chain({.rod_length_m = 10_mm,
-                              .initial_angle_rad = 30_deg,
-                              .normal_stiffness_N_per_m = 1500.0,
-                              .tangential_stiffness_N_per_m = 1800.0,
-                              .growth = 2.0,
-                              .units = 10});
+indent::RhombusChain liver() {
+  return *indent::make_rhombus_chain({.rod_length_m = 10_mm,
+                                      .initial_angle_rad = 30_deg,
+                                      .normal_stiffness_N_per_m = 1500.0,
+                                      .tangential_stiffness_N_per_m = 1800.0,
+                                      .growth = 2.0,
+                                      .units = 10});
 }
 
-double worst_share_of_limit(const RhombusChain& chain, std::size_t knots) {
+double worst_share_of_limit(const indent::RhombusChain& chain, std::size_t knots) {
   const auto table = tabulate(chain, knots);
   double worst_N = 0.0;
   for (int i = 0; i <= 2000; ++i) {
@@ -31,13 +31,13 @@ double worst_share_of_limit(const RhombusChain& chain, std::size_t knots) {
 }
 
 TEST(TabulatedLaw, KeepsTheLawContract) {
-  const RhombusChain chain = liver();
+  const indent::RhombusChain chain = liver();
   tests::check_law_contract(*tabulate(chain, 65));
 }
 
 TEST(TabulatedLaw, FollowsTheDirectPathAsCloselyAsPublished) {
   // LW-1: 7e-7, 5e-8 and 4e-9 of the largest force for 17, 33 and 65 knots.
-  const RhombusChain chain = liver();
+  const indent::RhombusChain chain = liver();
   EXPECT_LT(worst_share_of_limit(chain, 17), 2e-6);
   EXPECT_LT(worst_share_of_limit(chain, 33), 2e-7);
   EXPECT_LT(worst_share_of_limit(chain, 65), 1e-8);
@@ -45,7 +45,7 @@ TEST(TabulatedLaw, FollowsTheDirectPathAsCloselyAsPublished) {
 }
 
 TEST(TabulatedLaw, FollowsTheDirectPathWhenPulled) {
-  const RhombusChain chain = liver();
+  const indent::RhombusChain chain = liver();
   const auto table = tabulate(chain, 65);
   for (int i = 0; i <= 200; ++i) {
     const double d = chain.range().pull_m * i / 200.0;
@@ -54,7 +54,7 @@ TEST(TabulatedLaw, FollowsTheDirectPathWhenPulled) {
 }
 
 TEST(TabulatedLaw, HoldsItsForceBeyondTheLastKnot) {
-  const RhombusChain chain = liver();
+  const indent::RhombusChain chain = liver();
   const auto table = tabulate(chain, 65);
   const double end_m = table->range().press_m;
   EXPECT_EQ(table->respond(end_m + 5_mm).force_N, table->respond(end_m).force_N);
@@ -68,12 +68,12 @@ TEST(TabulatedLaw, FitsInto64KilobytesWithEveryKnot) {
 }
 
 TEST(TabulatedLaw, TakesAChainWithoutTangentialSprings) {
-  const auto chain = make_rhombus_chain({.rod_length_m = 5_mm,
-                                         .initial_angle_rad = 30_deg,
-                                         .normal_stiffness_N_per_m = 150.0,
-                                         .tangential_stiffness_N_per_m = 0.0,
-                                         .growth = 2.0,
-                                         .units = 10});
+  const auto chain = indent::make_rhombus_chain({.rod_length_m = 5_mm,
+                                                 .initial_angle_rad = 30_deg,
+                                                 .normal_stiffness_N_per_m = 150.0,
+                                                 .tangential_stiffness_N_per_m = 0.0,
+                                                 .growth = 2.0,
+                                                 .units = 10});
   const auto table = tabulate(*chain, 65);
   ASSERT_TRUE(table) << table.error().sentence;
   EXPECT_NEAR(table->respond(-5_mm).force_N, -15.0 * 5_mm, 1e-12);  // springs in series

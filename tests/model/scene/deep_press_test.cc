@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "model/contact/contact.h"
-#include "model/law/compliance_law.h"
+#include "model/indent/compliance_law.h"
 #include "model/law/relaxation.h"
 #include "model/scene/scene.h"
 #include "model/scene/tissue.h"
@@ -59,7 +59,7 @@ struct Organ {
   contact::ContactParameters parameters{.tear_force_N = 1.0};
   std::vector<contact::ProbeSphere> spheres{{{}, kRadius_m}};
   std::vector<double> flat{0.0};
-  law::ComplianceCurve curve = *law::make_compliance_curve(
+  indent::ComplianceCurve curve = *indent::make_compliance_curve(
       {.tip = {.youngs_modulus_Pa = 5000.0, .poisson_ratio = 0.45, .radius_m = kRadius_m},
        .working_depth_m = kRange_m,
        .ring_pitch_m = 2_mm,

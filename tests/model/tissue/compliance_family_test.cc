@@ -67,11 +67,11 @@ TEST(ComplianceFamily, TheBlendIsTheLawOfThePlaceWithinHalfAPercent) {
     const ComplianceFamily family = make(map, p);
     for (std::size_t v = 40; v < 200; v += 7) {
       const double r = static_cast<double>(map.regular_times_E_per_m[v]) / 5000.0;
-      const auto own = law::make_compliance_curve({.tip = {5000.0, 0.45, 4_mm, large_strain},
-                                                   .regular_m_per_N = r,
-                                                   .working_depth_m = 10_mm,
-                                                   .ring_pitch_m = 2_mm,
-                                                   .ring_m_per_N = flat});
+      const auto own = indent::make_compliance_curve({.tip = {5000.0, 0.45, 4_mm, large_strain},
+                                                      .regular_m_per_N = r,
+                                                      .working_depth_m = 10_mm,
+                                                      .ring_pitch_m = 2_mm,
+                                                      .ring_m_per_N = flat});
       ASSERT_TRUE(own);
       for (const double d : {-9_mm, 0.5_mm, 2_mm, 5_mm, 9.9_mm}) {
         const double kappa = static_cast<double>(family.press_coordinate[v]);
@@ -89,7 +89,7 @@ TEST(ComplianceFamily, APullThatMayNotMoveSidewaysIsStiffer) {
   // 1/m; CF-3: r_pull E = 100 - 30^2 / (140.469 + 40) = 95.0130 1/m
   const ComplianceMap map = lobe();
   const ComplianceFamily family = make(map);
-  const law::ElasticTip tip{5000.0, 0.45, 4_mm};
+  const indent::ElasticTip tip{5000.0, 0.45, 4_mm};
   const double expected = 1.0 / (1.0 / tip.pulled_stiffness_N_per_m() + 95.0130 / 5000.0);
   const double kappa = static_cast<double>(family.pull_coordinate[190]);
   EXPECT_NEAR(blended_N(family, kappa, -1_mm) / (-1_mm * expected), 1.0, 0.003);
@@ -99,7 +99,7 @@ TEST(ComplianceFamily, APullThatMayNotMoveSidewaysIsStiffer) {
 TEST(ComplianceFamily, AHeldPatchIsStifferSidewaysThanOneThatMaySink) {
   // Vertex 190 again, axis 1 along y, 2 along -x: S E = diag(10, 40), 1/m; c_disc as in CF-1;
   // CF-4: S_held E = S E - diag(0, 30^2) / (c_disc E + 100)
-  const law::ElasticTip tip{1.0, 0.45, 4_mm};
+  const indent::ElasticTip tip{1.0, 0.45, 4_mm};
   const double disc = 1.0 / tip.pulled_stiffness_N_per_m();
   ComplianceMap map = lobe();
   map.sideways_times_E_per_m[190].axis = {0.0F, 1.0F, 0.0F};
@@ -114,7 +114,7 @@ TEST(ComplianceFamily, AHeldPatchIsStifferSidewaysThanOneThatMaySink) {
 }
 
 TEST(ComplianceFamily, AlongTheSurfaceNoPlaceIsMoreThanThreeTimesAsStiffAsAHalfSpace) {
-  const law::ElasticTip tip{1.0, 0.45, 4_mm};
+  const indent::ElasticTip tip{1.0, 0.45, 4_mm};
   const double half_space = 1.0 / tip.sideways_stiffness_N_per_m();
   ComplianceMap map = lobe();
   map.sideways_times_E_per_m[7] = {.n1 = 500.0F, .n2 = 90.0F, .s1 = -1e4F, .s2 = 5.0F};
@@ -144,11 +144,11 @@ TEST(ComplianceFamily, TheHeldSideIsLimitedAndCounted) {
   EXPECT_LT(limited, 60u);
   const ComplianceFamily family = make(map);
   const std::vector<double> flat(20, 0.0);
-  const auto half_space = law::make_compliance_curve({.tip = {5000.0, 0.45, 4_mm},
-                                                      .regular_m_per_N = 0.0,
-                                                      .working_depth_m = 10_mm,
-                                                      .ring_pitch_m = 2_mm,
-                                                      .ring_m_per_N = flat});
+  const auto half_space = indent::make_compliance_curve({.tip = {5000.0, 0.45, 4_mm},
+                                                         .regular_m_per_N = 0.0,
+                                                         .working_depth_m = 10_mm,
+                                                         .ring_pitch_m = 2_mm,
+                                                         .ring_m_per_N = flat});
   ASSERT_TRUE(half_space);
   EXPECT_LE(family.curve.back().respond(9_mm).force_N / half_space->respond(9_mm).force_N,
             kStiffest);

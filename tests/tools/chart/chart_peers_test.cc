@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "model/law/compliance_tip.h"
+#include "model/indent/compliance_tip.h"
 #include "tests/support/test_scene.h"
 
 namespace tact::tools::chart::chart_peers_test {
@@ -88,7 +88,7 @@ class Peers : public testing::Test {
   }
   PeerInput input() const { return {scene_, cases_}; }
 
-  static constexpr model::law::ElasticTip kTip{kE_Pa, kNu, kRadius_m};
+  static constexpr model::indent::ElasticTip kTip{kE_Pa, kNu, kRadius_m};
   model::scene::Scene scene_ = tests::make_plate_scene();
   ground_truth::ReferenceData reference_;
   std::vector<ProbeCase> cases_;

@@ -11,7 +11,7 @@
 #include <random>
 #include <sstream>
 
-#include "model/law/disc_stack.h"
+#include "model/indent/disc_stack.h"
 #include "tests/support/test_scene.h"
 #include "tools/chart/report.h"
 
@@ -165,7 +165,7 @@ TEST(Chart, GivesEveryLawARowWithTheErrorWorkedByHand) {
   const model::scene::Scene scene = make_scene();
   // The linear disc stack is F = k d. Against 1.25 k: errors 0.25 k d, peak 2.5 k mm, so
   // 0.1 sqrt((1 + 4) / 2) = 0.158114.
-  const auto stack = model::law::make_disc_stack(scene.disc_stack);
+  const auto stack = model::indent::make_disc_stack(scene.disc_stack);
   ASSERT_TRUE(stack);
   const double k = stack->respond(0.001).force_N / 0.001;
   const report::Table table = chart_of(scene, linear_truth(1.25 * k), quick());
@@ -267,7 +267,7 @@ TEST(Chart, IsReadBackAsItWasWritten) {
   report::Table table = empty_chart(1, {});
   ChartRow row;
   row.variant.sizes = {
-      .law = LawKind::kDiscStack, .layers = 7, .disc_form = model::law::DiscForm::kLinear};
+      .law = LawKind::kDiscStack, .layers = 7, .disc_form = model::indent::DiscForm::kLinear};
   row.errors.force_rms_ratio = 0.125;
   table.add(table_row(row, provenance));
   ASSERT_TRUE(write_chart(table, true, "tact-chart x", provenance, folder));

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "model/law/disc_stack.h"
+#include "model/indent/disc_stack.h"
 #include "tests/support/program.h"
 #include "tests/support/test_scene.h"
 #include "tools/chart/chart.h"
@@ -77,7 +77,7 @@ TEST(ToolErrors, CountWhatAHandCannotTell) {
 
 TEST(JudgeTool, FindsTheErrorOfOneSphereAsWorkedByHand) {
   const model::scene::Scene scene = make_scene();
-  const auto stack = model::law::make_disc_stack(scene.disc_stack);
+  const auto stack = model::indent::make_disc_stack(scene.disc_stack);
   ASSERT_TRUE(stack);
   const double k = stack->respond(0.001).force_N / 0.001;
   const auto row = judge_tool(scene, LawKind::kDiscStack, linear_truth(scene, 1.25 * k), kShort);
@@ -90,7 +90,7 @@ TEST(JudgeTool, FindsTheErrorOfOneSphereAsWorkedByHand) {
 
 TEST(JudgeTool, FeelsEverySphereOfTheTool) {
   model::scene::Scene scene = make_scene();
-  const auto stack = model::law::make_disc_stack(scene.disc_stack);
+  const auto stack = model::indent::make_disc_stack(scene.disc_stack);
   ASSERT_TRUE(stack);
   const double k = stack->respond(0.001).force_N / 0.001;
   scene.tool.spheres = {{{0, -0.03, 0}, 0.004}, {{0, 0.03, 0}, 0.004}};  // far from each other
@@ -124,7 +124,7 @@ TEST(JudgeTool, RefusesAReferenceOfAnotherTool) {
 
 TEST(Chart, JudgesEverySizeByTheWholeToolWhereItIsKnown) {
   const model::scene::Scene scene = make_scene();
-  const auto stack = model::law::make_disc_stack(scene.disc_stack);
+  const auto stack = model::indent::make_disc_stack(scene.disc_stack);
   ASSERT_TRUE(stack);
   const double k = stack->respond(0.001).force_N / 0.001;
   ground_truth::ReferenceData one_sphere;
@@ -144,7 +144,7 @@ TEST(Chart, JudgesEverySizeByTheWholeToolWhereItIsKnown) {
   ASSERT_TRUE(rows) << rows.error().sentence;
   std::size_t linear = 0;
   for (const ChartRow& row : *rows) {
-    if (row.variant.sizes.disc_form != model::law::DiscForm::kLinear) continue;
+    if (row.variant.sizes.disc_form != model::indent::DiscForm::kLinear) continue;
     ++linear;
     ASSERT_EQ(row.failure, "");
     ASSERT_TRUE(row.tool);

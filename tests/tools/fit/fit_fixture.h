@@ -31,7 +31,7 @@ inline Scene make_scene() {
                .free_height_m = 2.7_mm,
                .youngs_modulus_Pa = 5200.0,
                .poisson_ratio = 0.3},
-      .form = model::law::DiscForm::kLinear,
+      .form = model::indent::DiscForm::kLinear,
       .delays = {
           .first_delay_s = 1e-5, .delay_ratio = 1.1, .refresh_rate_Hz = 1000.0, .layers = 20}};
   scene.hex_sheet = {.ring_pitch_m = 2_mm,
@@ -40,7 +40,7 @@ inline Scene make_scene() {
                      .surface_stiffness_N_per_m = 60.0,
                      .tension_N = 0.02,
                      .rings = 10,
-                     .weight = model::law::HexWeight::kNode,
+                     .weight = model::indent::HexWeight::kNode,
                      .working_depth_m = 12_mm};
   return scene;
 }

@@ -78,7 +78,7 @@ TEST(FitRun, DoesNotDependOnTheOrderOfTheRows) {
 
 TEST(FitRun, FindsTheConedDiscsThatMadeTheData) {
   Scene truth = make_scene();
-  truth.disc_stack.form = model::law::DiscForm::kAlmenLaszlo;
+  truth.disc_stack.form = model::indent::DiscForm::kAlmenLaszlo;
   FitData data{.sites = {make_site(truth, 100, 0.0)}};
   answer(truth, LawKind::kDiscStack, data, false);
   Scene start = make_scene();

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "model/law/compliance_tip.h"
+#include "model/indent/compliance_tip.h"
 #include "model/law/relaxation.h"
 #include "model/scene/scene.h"
 #include "tests/tools/fit/fit_fixture.h"
@@ -110,13 +110,13 @@ TEST(Measured, TheIllustrativeRelaxationCreepsFasterThanAPorcineLiver) {
 
 // Truth Cube: 80 mm of silicone, sphere of 25.4 mm diameter, 798 N/m "in indentation".
 TEST(Measured, NoSphereOfTheTruthCubeReachesItsStiffnessOnAHalfSpace) {
-  const model::law::ElasticTip tip{
+  const model::indent::ElasticTip tip{
       .youngs_modulus_Pa = 15.3e3, .poisson_ratio = 0.499, .radius_m = 0.0127};
   EXPECT_NEAR(tip.stiffest_press_N_per_m(), 517.0, 1.0);  // CT-3 with a = R: 2 E* R
   EXPECT_NEAR(tip.stiffest_press_N_per_m() / 798.0, 0.65, 0.005);
   EXPECT_NEAR(798.0 / (2.0 * tip.contact_modulus_Pa()), 0.0196, 5e-5);  // a flat punch that would
-  EXPECT_LT(0.22 * 0.080 / tip.radius_m, model::law::kDeepestDent_ratio);
-  EXPECT_GT(0.36 * 0.080 / tip.radius_m, model::law::kDeepestDent_ratio);
+  EXPECT_LT(0.22 * 0.080 / tip.radius_m, model::indent::kDeepestDent_ratio);
+  EXPECT_GT(0.36 * 0.080 / tip.radius_m, model::indent::kDeepestDent_ratio);
 }
 
 }  // namespace tact::tools::fit::measured_test

@@ -134,7 +134,7 @@ TEST(Plan, ReadsTactsRowsOfAChart) {
   const chart::Provenance here{"0123456789abcdef", "truth", "r1", model::scene::machine_name()};
   chart::ChartRow law, peer, failed;
   law.variant.sizes = {
-      .law = LawKind::kDiscStack, .layers = 7, .disc_form = model::law::DiscForm::kLinear};
+      .law = LawKind::kDiscStack, .layers = 7, .disc_form = model::indent::DiscForm::kLinear};
   law.errors.force_rms_ratio = 0.125;
   peer.variant.peer = chart::PeerKind::kFem;
   failed.variant.sizes.law = LawKind::kRhombus;
@@ -144,7 +144,7 @@ TEST(Plan, ReadsTactsRowsOfAChart) {
   ASSERT_EQ(candidates.size(), 1U);
   EXPECT_EQ(candidates[0].sizes.law, LawKind::kDiscStack);
   EXPECT_EQ(candidates[0].sizes.layers, 7U);
-  EXPECT_EQ(candidates[0].sizes.disc_form, model::law::DiscForm::kLinear);
+  EXPECT_EQ(candidates[0].sizes.disc_form, model::indent::DiscForm::kLinear);
   EXPECT_EQ(candidates[0].force_error_ratio, 0.125);
 
   model::scene::Scene scene = tests::make_plate_scene();

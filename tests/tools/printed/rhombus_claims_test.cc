@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "model/law/rhombus_chain.h"
+#include "model/indent/rhombus_chain.h"
 #include "model/units.h"
 #include "tools/printed/rhombus_paper.h"
 

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/indent/hunt_crossley.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "model/ranges.h"
+
+namespace tact::model::indent {
+
+law::LawResponse HuntCrossley::respond(double depth_m) const RT_SAFE {
+  if (!std::isfinite(depth_m)) return {.status = law::LawStatus::kInvalid};
+  if (depth_m < 0.0) return {.status = law::LawStatus::kNoContact};
+  const double n = p_.exponent, inside_m = std::min(depth_m, p_.working_depth_m);
+  const double x = inside_m / p_.working_depth_m, power = std::pow(x, n - 1.0);
+  // HC-1, HC-2
+  law::LawResponse out{.force_N = p_.force_N * power * x,
+                       .stiffness_N_per_m = n * p_.force_N * power / p_.working_depth_m,
+                       .energy_J = p_.force_N * power * x * inside_m / (n + 1.0)};
+  if (inside_m == depth_m) return out;
+  out.energy_J += out.force_N * (depth_m - inside_m);  // a constant force goes on storing
+  out.stiffness_N_per_m = 0.0;
+  out.status = law::LawStatus::kSaturated;
+  return out;
+}
+
+double HuntCrossley::damping_Ns_per_m(double depth_m) const RT_SAFE {
+  return p_.dissipation_s_per_m * respond(depth_m).force_N;
+}
+
+std::size_t HuntCrossley::profile(double depth_m, std::span<double> ring_m) const RT_SAFE {
+  const std::array<double, 2> u_m{std::fmax(depth_m, 0.0), 0.0};
+  std::copy_n(u_m.begin(), std::min(u_m.size(), ring_m.size()), ring_m.begin());
+  return u_m.size();
+}
+
+Result<HuntCrossley> make_hunt_crossley(const HuntCrossleyParameters& p) {
+  const char* fault = nullptr;
+  if (!is_positive(p.force_N)) fault = "force_N must be finite and above 0";
+  if (!is_positive(p.working_depth_m)) fault = "working_depth_m must be finite and above 0";
+  if (!(p.exponent >= 1.0 && p.exponent <= 4.0)) fault = "exponent must lie between 1 and 4";
+  if (!is_not_negative(p.dissipation_s_per_m))
+    fault = "dissipation_s_per_m must be finite and 0 or more";
+  if (fault != nullptr) return Error{std::string("hunt_crossley: ") + fault};
+  return HuntCrossley(p);
+}
+
+}  // namespace tact::model::indent

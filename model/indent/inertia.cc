@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/indent/inertia.h"
+
+#include <cmath>
+
+namespace tact::model::indent {
+
+double inertia_speed_mps(const ElasticTip& tip, double depth_m, double share) {
+  const ElasticTip small{.youngs_modulus_Pa = tip.youngs_modulus_Pa,
+                         .poisson_ratio = tip.poisson_ratio,
+                         .radius_m = tip.radius_m};
+  // CT-1: the depth grows with s, and is above R (s - 1)
+  double low = 0.0, high = 1.0 + depth_m / tip.radius_m;
+  constexpr int kHalvings = 60;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double s = 0.5 * (low + high);
+    (tip_state(small, s).depth_m < depth_m ? low : high) = s;
+  }
+  const TipState at = tip_state(small, high);
+  const double shear_Pa = tip.youngs_modulus_Pa / (2.0 * (1.0 + tip.poisson_ratio));
+  // IN-1
+  const double wave_Ns_per_m = 3.4 * at.contact_radius_m * at.contact_radius_m *
+                               std::sqrt(kTissueDensity_kg_per_m3 * shear_Pa) /
+                               (1.0 - tip.poisson_ratio);
+  // IN-2
+  return share * at.force_N / wave_Ns_per_m;
+}
+
+}  // namespace tact::model::indent

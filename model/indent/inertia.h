@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// inertia.h - how fast a tip may press before the inertia of tissue counts, which no law here has.
+//
+// A half-space that is pressed carries waves away: beside its spring stands a dashpot.
+//
+//     IN-1   F_wave = c v,   c = 3.4 a^2 sqrt(rho G) / (1 - nu)
+//     IN-2   v_q = q F(d) / c        small dents: v_q = 0.78 q sqrt(G / rho) sqrt(d / R)
+//
+//     F_wave  what the law lacks, N        v    speed of the press, m/s
+//     F(d)    force of the half-space, N   v_q  where F_wave is the share q of F(d), m/s
+//     a       radius of contact, m         rho  density, kg/m^3
+//
+// IN-1 is that of a rigid disc on a half-space, for motions slower than a wave needs across the
+// contact [J. Lysmer, F. Richart, J. Soil Mech. Found. Div. ASCE 92 SM1 (1966) 65]; F(d), a, G and
+// nu as in compliance_tip.h. Set-up code only.
+#pragma once
+
+#include "model/indent/compliance_tip.h"
+
+namespace tact::model::indent {
+
+inline constexpr double kTissueDensity_kg_per_m3 = 1060.0;  // of liver and muscle, within 3 %
+
+/// IN-2 at small strain; depth_m > 0.
+double inertia_speed_mps(const ElasticTip& tip, double depth_m, double share);
+
+}  // namespace tact::model::indent

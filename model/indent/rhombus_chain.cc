@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/indent/rhombus_chain.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "model/ranges.h"
+
+namespace tact::model::indent {
+namespace {
+
+constexpr int kMaxIterations = 100;
+
+const char* first_fault(const RhombusChainParameters& p) {
+  if (!is_positive(p.rod_length_m)) return "rod_length_m must be finite and above 0";
+  if (!(p.initial_angle_rad > 0.0 && p.initial_angle_rad < std::numbers::pi / 2.0))
+    return "initial_angle_rad must lie between 0 and pi/2, both excluded";
+  if (!is_positive(p.normal_stiffness_N_per_m))
+    return "normal_stiffness_N_per_m must be finite and above 0";
+  if (p.tangential_stiffness_N_per_m != 0.0 && !is_positive(p.tangential_stiffness_N_per_m))
+    return "tangential_stiffness_N_per_m must be finite and not below 0";
+  if (!is_positive(p.growth)) return "growth must be finite and above 0";
+  if (p.units < 1 || p.units > kMaxUnits) return "units must lie between 1 and 64";
+  const double largest =
+      p.tangential_stiffness_N_per_m * std::exp(static_cast<double>(p.units - 1) / p.growth);
+  if (!std::isfinite(largest)) return "growth is too small for so many units: exp overflows";
+  return nullptr;
+}
+
+}  // namespace
+
+Result<RhombusChain> make_rhombus_chain(const RhombusChainParameters& p) {
+  if (const char* fault = first_fault(p)) return Error{std::string("rhombus chain: ") + fault};
+  RhombusChain chain;
+  chain.count_ = p.units;
+  for (std::size_t i = 0; i < p.units; ++i) {
+    // RC-8  kT_i = kT1 exp((i - 1) / beta), here i counts from 0
+    chain.unit_[i] = {.rod_length_m = p.rod_length_m,
+                      .initial_angle_rad = p.initial_angle_rad,
+                      .normal_stiffness_N_per_m = p.normal_stiffness_N_per_m,
+                      .tangential_stiffness_N_per_m = p.tangential_stiffness_N_per_m *
+                                                      std::exp(static_cast<double>(i) / p.growth)};
+    chain.unit_limit_[i] = press_limit(chain.unit_[i]);
+    if (chain.unit_limit_[i].force_N < chain.unit_limit_[chain.weakest_].force_N)
+      chain.weakest_ = i;
+    chain.straight_m_ += straight_m(chain.unit_[i]);
+  }
+  chain.ring_pitch_m_ = 2.0 * p.rod_length_m * std::cos(p.initial_angle_rad);
+  chain.range_ = {.pull_m = chain.solve_force(-chain.force_limit_N()).depth_m,
+                  .press_m = chain.solve_force(chain.force_limit_N()).depth_m};
+  // Without tangential springs nothing hardens: stop short of straight rods.
+  if (p.tangential_stiffness_N_per_m == 0.0)
+    chain.range_.pull_m = std::fmax(chain.range_.pull_m, 0.95 * chain.straight_m_);
+  return chain;
+}
+
+ChainState RhombusChain::solve_force(double force_N) const RT_SAFE {
+  ChainState out{.force_N = force_N};
+  double compliance_m_per_N = 0.0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const double x = shortening_at(unit_[i], unit_limit_[i], force_N);
+    const UnitResponse r = model::indent::respond(unit_[i], x);
+    out.shortening_m[i] = x;
+    // RC-9  depth = sum x_i,  U = sum U_i,  1/K = sum 1/k_i
+    out.depth_m += x;
+    out.energy_J += r.energy_J;
+    compliance_m_per_N += 1.0 / r.stiffness_N_per_m;
+  }
+  out.stiffness_N_per_m = 1.0 / compliance_m_per_N;
+  return out;
+}
+
+ChainState RhombusChain::at_force(double force_N) const RT_SAFE {
+  if (!std::isfinite(force_N)) return {.status = law::LawStatus::kInvalid};
+  if (force_N > force_limit_N()) {
+    ChainState out = solve_force(force_limit_N());
+    out.status = law::LawStatus::kSaturated;
+    return out;
+  }
+  // Without tangential springs nothing stops a pull before the rods are straight.
+  if (force_N < 0.0 && unit_[0].tangential_stiffness_N_per_m == 0.0 &&
+      force_N / unit_[0].normal_stiffness_N_per_m <= straight_m(unit_[0]))
+    return {.status = law::LawStatus::kSingular};
+  return solve_force(force_N);
+}
+
+ChainState RhombusChain::at_depth(double depth_m) const RT_SAFE {
+  if (!std::isfinite(depth_m)) return {.status = law::LawStatus::kInvalid};
+  if (depth_m <= straight_m_) return {.status = law::LawStatus::kSingular};
+  if (depth_m >= range_.press_m) {
+    ChainState out = solve_force(force_limit_N());
+    if (depth_m > range_.press_m) out.status = law::LawStatus::kSaturated;
+    return out;
+  }
+  if (depth_m == 0.0) return solve_force(0.0);
+  // Newton in F with slope 1/K inside a bracket; a pull has no lower bound, so it grows one.
+  double low = 0.0, high = force_limit_N();
+  if (depth_m < 0.0) {
+    high = 0.0, low = -force_limit_N();
+    for (int i = 0; i < kMaxIterations && solve_force(low).depth_m > depth_m; ++i) low *= 2.0;
+  }
+  double force_N = solve_force(0.0).stiffness_N_per_m * depth_m;
+  if (!(force_N > low && force_N < high)) force_N = 0.5 * (low + high);
+  for (int i = 0; i < kMaxIterations; ++i) {
+    const ChainState at = solve_force(force_N);
+    (at.depth_m < depth_m ? low : high) = force_N;
+    double next = force_N - (at.depth_m - depth_m) * at.stiffness_N_per_m;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    const bool done = std::abs(next - force_N) <= 4e-16 * std::abs(next);
+    force_N = next;
+    if (done) break;
+  }
+  ChainState out = solve_force(force_N);
+  out.depth_m = depth_m;
+  return out;
+}
+
+law::LawResponse RhombusChain::respond(double depth_m) const RT_SAFE {
+  const ChainState at = at_depth(depth_m);
+  law::LawResponse out{at.force_N, at.stiffness_N_per_m, at.energy_J, at.status};
+  if (at.status == law::LawStatus::kSaturated) {
+    out.energy_J += at.force_N * (depth_m - range_.press_m);  // a constant force goes on storing
+    out.stiffness_N_per_m = 0.0;
+  }
+  return out;
+}
+
+std::size_t RhombusChain::profile(double depth_m, std::span<double> ring_m) const RT_SAFE {
+  const ChainState at = at_depth(depth_m);
+  // RC-11  u_j = sum of x_i, i > j, from the far end inwards; u_N = 0
+  double u = 0.0;
+  for (std::size_t j = count_ + 1; j-- > 0;) {
+    if (j < count_) u += at.shortening_m[j];
+    if (j < ring_m.size()) ring_m[j] = u;
+  }
+  return count_ + 1 < ring_m.size() ? count_ + 1 : ring_m.size();
+}
+
+}  // namespace tact::model::indent

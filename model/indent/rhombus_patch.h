@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// rhombus_patch.h - rhombus chains side by side under a round tip, which touches more of them the
+// deeper it sinks in.
+//
+// One chain stands for the area A of the surface, f and u are its force and energy, and the tip is
+// r^2 / (2 R) above the surface at the radius r:
+//
+//     RC-15  F(d) = (1/A) integral of f(d - r^2 / (2 R)) 2 pi r dr = (2 pi R / A) u(d)
+//     RC-16  K(d) = (2 pi R / A) f(d),    U(d) = (2 pi R / A) integral of u from 0 to d
+//     RC-17  w(r) = d - r^2 / (2 R) within sqrt(2 R d), 0 beyond
+//
+//     d  depth, m     F  force, N     K  stiffness, N/m     U  energy, J     R  tip radius, m
+//
+// The paraboloid is the sphere's at light touch. Deeper it is wider than the sphere: it stands for
+// tissue beside the tip that is drawn down too. Chains that soften make F grow between d and d^2;
+// SOURCES.md says how near that comes to a sphere on an elastic half-space, and why the sphere's
+// own gap comes less near. A chain at its limit keeps its force, while those at the rim go on:
+// valid to twice the range of the chain; beyond, the force stays. No pull: [pull] has it.
+// respond() solves the chain but for U, which is from a table: good for set-up and tools; the loop
+// reads a table of all.
+#pragma once
+
+#include "model/indent/rhombus_chain.h"
+#include "model/law/hermite_table.h"
+
+namespace tact::model::indent {
+
+struct RhombusPatchParameters {
+  double tip_radius_m = 0.0;  // R, > 0
+  double area_m2 = 0.0;       // A, > 0
+};
+
+class RhombusPatch final : public law::Law {
+ public:
+  law::LawResponse respond(double depth_m) const RT_SAFE override;
+  law::LawRange range() const RT_SAFE override { return {0.0, press_.end()}; }
+  std::size_t profile(double depth_m, std::span<double> ring_m) const RT_SAFE override;
+  double ring_pitch_m() const RT_SAFE override { return ring_pitch_m_; }
+
+ private:
+  friend Result<RhombusPatch> make_rhombus_patch(const RhombusChain&,
+                                                 const RhombusPatchParameters&);
+  RhombusPatch(const RhombusChain& chain, const RhombusPatchParameters& p);
+  law::CurvePoint under_tip(double depth_m) const RT_SAFE;  // F, K
+
+  RhombusChain chain_;
+  double tip_radius_m_;
+  double chains_per_m_;  // 2 pi R / A
+  double ring_pitch_m_ = 0.0;
+  law::HermiteTable press_;  // of F; its integral is U
+};
+
+/// The error names the parameter and what is allowed.
+Result<RhombusPatch> make_rhombus_patch(const RhombusChain& chain,
+                                        const RhombusPatchParameters& parameters);
+
+}  // namespace tact::model::indent
