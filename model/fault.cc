@@ -15,7 +15,7 @@ constexpr std::array kTable{
                "check cable, hub and bus load"},
     FaultEntry{Fault::kNotArmed, "not armed", "the controller is not armed, the force is zero",
                "a simulated device arms by itself once its samples are good; hold a real one, then "
-               "pkill -USR2 tactd"},
+               "tactctl SCENE arm"},
     FaultEntry{Fault::kOutsideWorkspace, "outside workspace",
                "the tool left the permitted workspace, the force fades to zero",
                "bring the tool back, or widen limits.workspace_* in the scene"},

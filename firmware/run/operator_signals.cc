@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/run/operator_signals.h"
 
+#include <poll.h>
 #include <pthread.h>
+#include <sys/signalfd.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -64,11 +66,20 @@ OperatorSignals::OperatorSignals(std::function<void()> let_loop_read)
   std::signal(SIGINT, SIG_DFL);  // a shell starts background programs with SIGINT ignored
   for (const int signal : kLeave) sigaddset(&signals_, signal);
   pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+  signal_fd_ = signalfd(-1, &signals_, SFD_NONBLOCK | SFD_CLOEXEC);
 }
 
-Act OperatorSignals::wait(std::int64_t longest_ns) const {
+OperatorSignals::~OperatorSignals() {
+  if (signal_fd_ >= 0) close(signal_fd_);
+}
+
+Act OperatorSignals::wait(std::int64_t longest_ns, int other_fd) const {
+  constexpr timespec kNow{};
   const timespec longest{.tv_sec = longest_ns / kSecond_ns, .tv_nsec = longest_ns % kSecond_ns};
-  const int signal = sigtimedwait(&signals_, nullptr, &longest);
+  std::array<pollfd, 2> either{{{.fd = signal_fd_, .events = POLLIN, .revents = 0},
+                                {.fd = other_fd, .events = POLLIN, .revents = 0}}};
+  ppoll(either.data(), either.size(), &longest, nullptr);
+  const int signal = sigtimedwait(&signals_, nullptr, &kNow);
   if (signal == SIGUSR1) return Act::kReset;
   if (signal == SIGUSR2) return Act::kArm;
   return signal > 0 ? Act::kLeave : Act::kNone;

@@ -33,8 +33,12 @@ class OperatorSignals {
   /// returns once the loop has read the levels.
   explicit OperatorSignals(std::function<void()> let_loop_read = wait_several_ticks);
 
-  /// What the next signal asks for; waits at most so long for one.
-  Act wait(std::int64_t longest_ns) const;
+  ~OperatorSignals();
+  OperatorSignals(const OperatorSignals&) = delete;
+  OperatorSignals& operator=(const OperatorSignals&) = delete;
+
+  /// What the next signal asks for; waits at most so long for one, or until `other_fd` is readable.
+  Act wait(std::int64_t longest_ns, int other_fd = -1) const;
   /// Those of USR1 and USR2 that came until now are gone. Returns how many kinds there were.
   int forget() const;
   /// A rising edge for the loop, and the fall after it.
@@ -42,6 +46,7 @@ class OperatorSignals {
 
  private:
   sigset_t signals_{};
+  int signal_fd_ = -1;  // readable while one waits; without it they are seen when the time is up
   std::function<void()> let_loop_read_;
 };
 

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "firmware/loop/supervisor.h"
 #include "firmware/run/say.h"
@@ -23,9 +25,11 @@ std::string trouble_behind(Fault fault, const hal::Device& device, const hal::Sa
 }
 
 OperatorView::OperatorView(const hal::Device& device, const hal::SafetyLines& lines,
-                           bool arms_itself)
+                           bool arms_itself, std::string scene_path)
     : device_(device),
       lines_(lines),
+      name_(device.info().name),
+      scene_path_(std::move(scene_path)),
       terminal_(isatty(STDOUT_FILENO) != 0),
       arms_itself_(arms_itself) {}
 
@@ -46,7 +50,9 @@ bool OperatorView::show(const telemetry::Frame& newest) {
     waits_for_ = now;
   } else if (newest.state == loop::State::kReady && !told_ready_ && !arms_itself_) {
     told_ready_ = true;
-    tell("ready, force is off: hold the device, then arm it (pkill -USR2 tactd)");
+    tell(fmt::format(
+        "ready, force is off: hold the device, then arm it (tactctl {} arm, or kill -USR2 {})",
+        scene_path_, getpid()));
   }
   if (terminal_) say(stdout, "\r\033[K{}", status_line(newest, before_));
   std::fflush(stdout);
@@ -63,7 +69,8 @@ std::string OperatorView::why_not_arm() const {
     case loop::State::kArmed:
       return "it is armed already";
     case loop::State::kStopped:
-      return "it has stopped; reset it first (pkill -USR1 tactd)";
+      return fmt::format("it has stopped; reset it first (tactctl {} reset, or kill -USR1 {})",
+                         scene_path_, getpid());
   }
   return "its state is not known";
 }
@@ -71,6 +78,17 @@ std::string OperatorView::why_not_arm() const {
 std::string OperatorView::why_not_reset() const {
   if (before_.state == loop::State::kStopped) return {};
   return fmt::format("it is {}, not stopped", name_of(before_.state));
+}
+
+std::string OperatorView::status() const {
+  const auto& f = before_.force_N;
+  std::string out =
+      fmt::format("{}: {}, {:.3f} N", name_, name_of(before_.state), std::hypot(f[0], f[1], f[2]));
+  if (before_.fault != 0)
+    out += fmt::format(", fault {}, {}", before_.fault,
+                       model::describe(static_cast<Fault>(before_.fault)).name);
+  if (before_.state == loop::State::kOff && !waits_for_.empty()) out += ": " + waits_for_;
+  return out;
 }
 
 void OperatorView::tell(const std::string& sentence) const {

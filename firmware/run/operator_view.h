@@ -13,8 +13,9 @@ namespace tact::firmware::run {
 
 class OperatorView {
  public:
-  /// `arms_itself`: nobody is asked to arm at the start.
-  OperatorView(const hal::Device& device, const hal::SafetyLines& lines, bool arms_itself);
+  /// `arms_itself`: nobody is asked to arm at the start. `scene_path`: what tactctl is given.
+  OperatorView(const hal::Device& device, const hal::SafetyLines& lines, bool arms_itself,
+               std::string scene_path = "SCENE");
 
   /// A few times a second, with the newest frame. Faults go to standard error. True: it has just
   /// told that the device is ready, and may be armed from now on.
@@ -22,6 +23,9 @@ class OperatorView {
   /// Empty where the person may ask for it, by what was told last.
   std::string why_not_arm() const;
   std::string why_not_reset() const;
+  /// One sentence: device, state, force, and the fault if there is one.
+  std::string status() const;
+  const std::string& device() const { return name_; }
   /// One sentence to standard error, beside the live line.
   void tell(const std::string& sentence) const;
   /// Ends the live line.
@@ -30,6 +34,7 @@ class OperatorView {
  private:
   const hal::Device& device_;
   const hal::SafetyLines& lines_;
+  std::string name_, scene_path_;
   bool terminal_, arms_itself_, told_ready_ = false;
   telemetry::Frame before_;
   std::string waits_for_;

@@ -29,7 +29,7 @@ Parsed parse_options(int argc, char** argv) {
                  "--faults that list");
   app.add_flag("--check", o.check, "check scene, meshes, law and device, then leave");
   app.add_flag("--arm", o.arm,
-               "hardware: force as soon as the device is ready, without SIGUSR2 of the operator");
+               "hardware: force as soon as the device is ready, without an operator who arms it");
   app.add_flag("--strict", o.strict, "refuse to run where the PC gives no hard real time");
   app.add_option("--core", o.core, "CPU core of the loop (default: an isolated one, or the last)")
       ->check(CLI::Range(0, CPU_SETSIZE - 1));

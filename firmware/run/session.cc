@@ -13,10 +13,10 @@
 #include <optional>
 
 #include "firmware/loop/grid.h"
-#include "firmware/pc/pc_check.h"
 #include "firmware/run/loop_parts.h"
 #include "firmware/run/loop_threads.h"
 #include "firmware/run/operator_desk.h"
+#include "firmware/run/real_time.h"
 #include "firmware/run/report.h"
 #include "firmware/run/say.h"
 #include "firmware/run/telemetry_setup.h"
@@ -33,13 +33,6 @@ constexpr std::int64_t kStatusPeriod_ns = 200'000'000;
 int fail(const std::string& sentence, int status) {
   say(stderr, "tactd: {}\n", sentence);
   return status;
-}
-
-// The short form of tact-doctor: what of this PC will make the loop late, in one line.
-void tell_red_rows(const pc::RtSettings& settings) {
-  const std::string red =
-      name_red_rows(pc::check_pc({.files = pc::PcFiles{}, .core = choose_core(settings)}));
-  if (!red.empty()) say(stderr, "tactd: {}\n", red);
 }
 
 // Everything of one run, in the order in which it comes to life.
@@ -78,8 +71,7 @@ class Session {
   const Options& options_;
   pc::RtSettings rt_;
   std::optional<OperatorSignals> operator_;
-  std::optional<pc::ProcessSetup> process_;
-  std::vector<pc::Shortfall> shortfalls_;
+  RealTime real_time_;
   bool non_rt_ = false;
   LoopParts parts_;
   std::unique_ptr<hal::sim::HandSocket> hand_socket_;
@@ -97,13 +89,10 @@ int Session::run() {
   pc::use_small_thread_stacks();
   operator_.emplace();
   if (!options_.free_run) {
-    process_.emplace(shortfalls_);
-    if (auto limited = watch::lift_rttime_limit()) shortfalls_.push_back(std::move(*limited));
-    for (pc::Shortfall& s : probe_rt_threads(rt_)) shortfalls_.push_back(std::move(s));
-    non_rt_ = !shortfalls_.empty();
+    real_time_.enter(rt_);
+    real_time_.tell(rt_);
+    non_rt_ = !real_time_.shortfalls().empty();
   }
-  for (const pc::Shortfall& s : shortfalls_) say(stderr, "tactd: {}\n", s.sentence);
-  if (!options_.free_run) tell_red_rows(rt_);
   if (non_rt_ && options_.strict) return fail("refused by --strict: no hard real time here", 1);
   if (non_rt_)
     say(stderr, "tactd: no hard real time: force capped to {:g} %, records stamped non-rt\n",
@@ -212,8 +201,10 @@ void Session::run_real_time() {
 
 // The main thread while the loop runs: waits for signals, tells what happens.
 void Session::watch(LoopThreads& threads) {
-  OperatorView view(*parts_.device, *parts_.lines, requests_.arm_at_start.load());
-  OperatorDesk desk(*operator_, requests_, view, [this] { return telemetry_->newest_frame(); });
+  OperatorView view(*parts_.device, *parts_.lines, requests_.arm_at_start.load(), scene_.path);
+  const auto control = open_control(scene_.path, view);
+  OperatorDesk desk(
+      *operator_, requests_, view, [this] { return telemetry_->newest_frame(); }, control.get());
   const auto tell_news = [&] {
     if (black_box_ == nullptr) return;
     for (const std::string& sentence : black_box_->news()) view.tell(sentence);
@@ -275,7 +266,7 @@ RunFacts Session::collect_facts(model::Fault fault, const std::string& trouble) 
           .force_limit_N = parts_.controller->gate().force_limit_N(),
           .non_rt = non_rt_,
           .simulated_time = options_.free_run,
-          .shortfalls = shortfalls_,
+          .shortfalls = real_time_.shortfalls(),
           .costs = costs_,
           .device_counts = parts_.device->tally(),
           .dropped_records = parts_.ring->dropped(),

@@ -59,7 +59,7 @@ TEST_F(View, FaultsOfTheLinesAreWordedByTheLines) {
 }
 
 TEST_F(View, WhoMustArmIsToldWhenTheDeviceIsReady) {
-  EXPECT_NE(told(frame(loop::State::kReady, model::Fault::kNone)).find("pkill -USR2 tactd"),
+  EXPECT_NE(told(frame(loop::State::kReady, model::Fault::kNone)).find("tactctl SCENE arm"),
             std::string::npos);
   EXPECT_EQ(told(frame(loop::State::kReady, model::Fault::kNone)), "");
 }

@@ -5,7 +5,8 @@
 // Behind it a handle of 0.3 kg on a delta that balances its weight, led by a hand of 400 N/m and
 // 12 N s/m down to z = -10 mm and back to 20 mm every 4 s. The physics runs in the calls, in steps
 // of 0.25 ms of CLOCK_MONOTONIC. Forces are cut by the watchdog as the device cuts them. Each
-// process has a device of its own, as TACT_STUB_DHD_SERIAL or its pid numbers it.
+// process has a device of its own, as TACT_STUB_DHD_SERIAL or its pid numbers it. With
+// TACT_STUB_DHD_NO_WATCHDOG it bears a PC that stalls.
 #include "tests/support/stub_dhd/stub_dhd.h"
 
 #include <unistd.h>
@@ -59,7 +60,7 @@ struct State {
 
 std::mutex mutex;
 State state;
-bool watchdog_sleeps = false;  // stays through a reset
+bool watchdog_sleeps = std::getenv("TACT_STUB_DHD_NO_WATCHDOG") != nullptr;  // through a reset
 thread_local int last_error = 0;
 
 /// Counts the call; the error that it must give, or 0.

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactctl and the tactds of one computer.
+#include <gtest/gtest.h>
+
+#include "tests/system/tactd_fixture.h"
+
+namespace tact::tests::control_test {
+
+class Control : public Tactd {
+ protected:
+  void SetUp() override {
+    Tactd::SetUp();
+    std::filesystem::create_directory(in_folder("run"));
+  }
+  /// Bash, in which `start NAME SCENE` runs tactd on a stand-in for hardware of its own, `ready
+  /// NAME` waits for its words, and `ctl` is tactctl.
+  Outcome in_bash(const std::string& acts) const {
+    const std::string script = in_folder("run.sh");
+    std::ofstream(script)
+        << "export TACT_STUB_DHD_NO_WATCHDOG=1 XDG_RUNTIME_DIR=" << in_folder("run") << "\ncd "
+        << in_folder("") << "\nln -sf " << TACT_SOURCE_DIR "/model/scenes/* .\n"
+        << "stub='device.force_dimension.library=\"" << TACT_BINARY_DIR
+        << "/libtact-stub-dhd.so\"'\n"
+        << "start() { " << program_path("tactd")
+        << " $2 --no-telemetry --no-black-box --no-seccomp --set rate_Hz=250 --set "
+           "limits.energy_J=0.2 --set 'device.kind=\"force-dimension\"' --set \"$stub\" --json "
+           "$1.json 2>$1.told & }\n"
+        << "ready() { for i in {1..200}; do grep -q 'ready, force is off' $1.told && break; sleep "
+           ".05; done; }\n"
+        << "ctl() { " << program_path("tactctl") << " \"$@\"; echo \"status $?\"; }\n"
+        << acts << "\n";
+    return run_command("timeout -s KILL 60 bash " + script);
+  }
+  nlohmann::json report(const std::string& name) const {
+    std::ifstream file(in_folder(name + ".json"));
+    return nlohmann::json::parse(file, nullptr, false);
+  }
+};
+
+TEST_F(Control, ArmsTheTactdOfItsSceneAloneAndStopsIt) {
+  const Outcome out = in_bash(
+      "start a ./liver.toml; a=$!; start b skin.toml; b=$!; ready a; ready b\n"
+      "ctl liver.toml arm; sleep .2; ctl ./skin.toml status; ctl liver.toml status\n"
+      "ctl liver.toml stop; wait $a; ctl liver.toml status; ctl skin.toml stop; wait $b\n"
+      "ls run/tact; cat a.told");
+  EXPECT_TRUE(has(out, "armed, force is on\nstatus 0")) << out.output;
+  EXPECT_TRUE(has(out, ": ready, 0.000 N\nstatus 0")) << out.output;
+  EXPECT_TRUE(has(out, "force to zero, then tactd ends\nstatus 0")) << out.output;
+  EXPECT_TRUE(has(out, "tactctl: no tactd runs liver.toml")) << out.output;
+  EXPECT_TRUE(has(out, "status 2")) << out.output;
+  EXPECT_TRUE(has(out, "tactctl ./liver.toml arm, or kill -USR2 ")) << out.output;
+  EXPECT_FALSE(has(out, "control-")) << "nothing is left: " << out.output;
+  ASSERT_FALSE(report("b").is_discarded()) << out.output;
+  EXPECT_EQ(report("b").at("force_max_N"), 0.0);
+}
+
+TEST_F(Control, RefusesWithTheReason) {
+  const Outcome out = in_bash(
+      "start a liver.toml; a=$!; ready a; ctl liver.toml reset\n"
+      "ctl liver.toml stop; wait $a");
+  EXPECT_TRUE(has(out, "not reset: it is ready, not stopped\nstatus 1")) << out.output;
+  ASSERT_FALSE(report("a").is_discarded()) << out.output;
+  EXPECT_EQ(report("a").at("refused_requests"), 1);
+}
+
+TEST_F(Control, OfTwoOnOneSceneWantsToKnowWhichAndAKilledOneIsNone) {
+  const Outcome out = in_bash(
+      "start a liver.toml; a=$!; start b liver.toml; b=$!; ready a; ready b; ctl liver.toml arm\n"
+      "ctl liver.toml status --pid $b; kill -KILL $a; wait $a; ctl liver.toml status\n"
+      "start c skin.toml; c=$!; ready c; ls run/tact | wc -l\n"
+      "ctl liver.toml stop; ctl skin.toml stop; wait $b $c");
+  EXPECT_TRUE(has(out, "say which one by --pid\nstatus 2")) << out.output;
+  EXPECT_TRUE(has(out, ": ready, 0.000 N\nstatus 0")) << out.output;
+  EXPECT_TRUE(has(out, "\n2\n")) << "what the killed one left is gone: " << out.output;
+}
+
+TEST_F(Control, TellsOfBadUsageAndOfATactdThatHangs) {
+  const Outcome out = in_bash(
+      "ctl --help | tail -1; ctl; ctl liver.toml; ctl liver.toml fire\n"
+      "start a liver.toml; a=$!; ready a; kill -STOP $a; ctl liver.toml stop; kill -CONT $a; wait "
+      "$a");
+  EXPECT_TRUE(has(out, "status 0\ntactctl: ")) << out.output;
+  EXPECT_FALSE(has(out, "status 1")) << out.output;
+  EXPECT_TRUE(has(out, "fire")) << out.output;
+  EXPECT_TRUE(has(out, "does not answer")) << out.output;
+}
+
+TEST_F(Control, IsDoneWithoutWhereNoSocketCanBe) {
+  const Outcome out = in_bash(
+      "chmod 755 run; mkdir -m 777 run/tact; start a liver.toml; a=$!; ready a\n"
+      "kill -USR2 $a; sleep .3; kill -INT $a; wait $a; cat a.told");
+  EXPECT_TRUE(has(out, "tactctl does not reach this tactd, only signals do")) << out.output;
+  ASSERT_FALSE(report("a").is_discarded()) << out.output;
+  EXPECT_EQ(report("a").at("refused_requests"), 0) << "armed by the signal";
+}
+
+}  // namespace tact::tests::control_test
