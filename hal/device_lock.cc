@@ -10,9 +10,10 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
-#include <fstream>
 #include <mutex>
 #include <set>
+
+#include "model/io/input_file.h"
 
 namespace tact::hal {
 namespace {
@@ -60,8 +61,8 @@ pid_t ask_who_listens(const Address& address) {
 
 std::string words_of(pid_t process) {
   if (process == 0) return "another program";
-  std::string name;
-  std::getline(std::ifstream(fmt::format("/proc/{}/comm", process)), name);
+  const auto comm = model::io::read_file(fmt::format("/proc/{}/comm", process));
+  const std::string name = comm ? comm->substr(0, comm->find('\n')) : "";
   return fmt::format("process {}{}", process, name.empty() ? "" : " (" + name + ")");
 }
 

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+
+#include "model/io/input_file.h"
 
 namespace tact::firmware::pc {
 namespace {
@@ -26,17 +26,15 @@ bool parse_number(const char*& at, const char* end, int& number) {
 }  // namespace
 
 std::optional<std::string> PcFiles::text(const std::string& path) const {
-  std::ifstream file(root_ + path);
-  std::ostringstream all;
-  if (!file || !(all << file.rdbuf())) return std::nullopt;  // an empty file counts as unreadable
-  return all.str();
+  auto all = model::io::read_file(root_ + path);
+  if (!all || all->empty()) return std::nullopt;  // an empty file counts as unreadable
+  return std::move(*all);
 }
 
 std::optional<std::string> PcFiles::line(const std::string& path) const {
-  std::ifstream file(root_ + path);
-  std::string line;
-  if (!std::getline(file, line)) return std::nullopt;
-  return line;
+  const auto all = text(path);
+  if (!all) return std::nullopt;
+  return all->substr(0, all->find('\n'));
 }
 
 std::vector<std::string> PcFiles::names(const std::string& folder) const {

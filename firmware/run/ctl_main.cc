@@ -7,6 +7,7 @@
 #include "firmware/run/control_client.h"
 #include "firmware/run/say.h"
 #include "firmware/telemetry/telemetry_socket.h"
+#include "model/io/within.h"
 
 int main(int argc, char** argv) {
   using namespace tact::firmware;
@@ -25,7 +26,7 @@ int main(int argc, char** argv) {
       ->required()
       ->check(CLI::IsMember({"arm", "reset", "stop", "status"}));
   app.add_option("--pid", question.process, "of several tactds that run it, the one of this pid")
-      ->check(CLI::PositiveNumber);
+      ->check(tact::model::io::within(1, 4'194'304));
   app.add_option("--folder", question.folder,
                  "runtime folder of tactd's user (default: tact in XDG_RUNTIME_DIR, or "
                  "/tmp/tact-UID)");

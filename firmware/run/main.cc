@@ -2,7 +2,6 @@
 // tactd: the haptic controller.
 #include <fmt/format.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "firmware/loop/state.h"
@@ -11,6 +10,8 @@
 #include "firmware/run/replay.h"
 #include "firmware/run/say.h"
 #include "firmware/run/session.h"
+#include "model/io/file_writer.h"
+#include "model/io/program_end.h"
 #include "model/scene/plan_file.h"
 #include "model/scene/scene.h"
 
@@ -49,8 +50,8 @@ int write_json(const std::string& path, const std::string& json) {
   if (path.empty()) return 0;
   if (path == "-")
     say(stdout, "{}", json);
-  else if (!(std::ofstream(path) << json))
-    return complain(path + ": cannot be written; name a file in a folder of yours", 2);
+  else if (const auto error = model::io::write_file(path, json))
+    return complain(error->sentence, 2);
   return 0;
 }
 
@@ -114,6 +115,7 @@ model::Result<model::scene::Scene> load(firmware::run::Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  model::io::watch_standard_output("tactd");
   firmware::run::outlive_stray_signals();
   firmware::run::Parsed parsed = firmware::run::parse_options(argc, argv);
   if (parsed.leave) return parsed.status;

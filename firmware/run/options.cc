@@ -5,6 +5,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "model/io/within.h"
+
 namespace tact::firmware::run {
 
 Parsed parse_options(int argc, char** argv) {
@@ -22,7 +24,7 @@ Parsed parse_options(int argc, char** argv) {
       ->take_all()
       ->allow_extra_args(false);
   auto* seconds = app.add_option("--seconds", o.duration_s, "stop after this time, s");
-  seconds->check(CLI::Range(1e-3, 1e7));
+  seconds->check(model::io::within(1e-3, 1e7));
   app.add_option("--ticks", o.ticks, "stop after this many ticks")->excludes(seconds);
   app.add_option("--json", o.json_path,
                  "write the report to this file when done, - for stdout; with --list-devices or "
@@ -32,7 +34,7 @@ Parsed parse_options(int argc, char** argv) {
                "hardware: force as soon as the device is ready, without an operator who arms it");
   app.add_flag("--strict", o.strict, "refuse to run where the PC gives no hard real time");
   app.add_option("--core", o.core, "CPU core of the loop (default: an isolated one, or the last)")
-      ->check(CLI::Range(0, CPU_SETSIZE - 1));
+      ->check(model::io::within(0, CPU_SETSIZE - 1));
   auto* record = app.add_option("--record", o.record_path, "log every tick to this new file");
   app.add_option("--replay", o.replay_path,
                  "compute a recorded run again, with its --set values, and compare the forces bit "

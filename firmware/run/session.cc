@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -20,6 +19,7 @@
 #include "firmware/run/report.h"
 #include "firmware/run/say.h"
 #include "firmware/run/telemetry_setup.h"
+#include "model/io/file_writer.h"
 #include "model/scene/accuracy_file.h"
 
 namespace tact::firmware::run {
@@ -107,9 +107,10 @@ int Session::run() {
     say(stdout, "{}\n", model::scene::accuracy_line(scene_, parts_.tissue->law()));
     return 0;
   }
-  if (!options_.json_path.empty() && options_.json_path != "-" &&
-      !std::ofstream(options_.json_path, std::ios::app))
-    return fail(options_.json_path + ": cannot be written; name a file in a folder of yours", 2);
+  const bool json_file = !options_.json_path.empty() && options_.json_path != "-";
+  if (const auto error =
+          json_file ? model::io::check_target(options_.json_path, "{") : std::nullopt)
+    return fail(error->sentence, 2);
   if (const auto error = open_telemetry()) return fail(error->sentence, 2);
   if (const auto error = open_call_filter()) return fail(error->sentence, 1);
   requests_.arm_at_start.store(options_.arm || hal::registry::is_simulated(scene_.device));
@@ -245,10 +246,9 @@ int Session::report() {
     say(stdout, "{}\n", report);
   else
     say(stdout, "{}\n", make_summary(facts, loop_->statistics()));
-  if (!options_.json_path.empty() && options_.json_path != "-") {
-    std::ofstream file(options_.json_path);
-    if (!(file << report << '\n')) return fail(options_.json_path + ": cannot be written", 2);
-  }
+  if (!options_.json_path.empty() && options_.json_path != "-")
+    if (const auto error = model::io::write_file(options_.json_path, report + "\n"))
+      return fail(error->sentence, 2);
   if (log_error) return fail(log_error->sentence, 1);
   return fault == model::Fault::kNone ? 0 : 1;
 }

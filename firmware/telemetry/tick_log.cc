@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cstring>
 #include <sstream>
 #include <type_traits>
@@ -31,18 +30,14 @@ std::vector<std::string> LogHeader::overrides_of_run() const {
 }
 
 Result<TickLogWriter> TickLogWriter::create(const std::string& path, const LogHeader& header) {
-  std::FILE* file = std::fopen(path.c_str(), "wbx");
-  if (file == nullptr)
-    return Error{fmt::format("{}: {}; name a new file in a folder that you may write to", path,
-                             std::strerror(errno))};
+  auto file = model::io::FileWriter::create(path);
+  if (!file) return file.error();
   LogHeader full = header;
   std::memcpy(full.magic, kLogMagic, sizeof full.magic);
   full.header_bytes = sizeof(LogHeader);
   full.tick_bytes = sizeof(LoggedTick);
-  TickLogWriter writer(path, file, header.non_rt != 0);
-  if (std::fwrite(&full, sizeof full, 1, file) != 1)
-    return Error{fmt::format("{}: {}; free some space", path, std::strerror(errno))};
-  return writer;
+  if (auto error = file->put({reinterpret_cast<const char*>(&full), sizeof full})) return *error;
+  return TickLogWriter(std::move(*file), header.non_rt != 0);
 }
 
 LoggedTick LoggedTick::of(const loop::TickRecord& record, bool non_rt) {
@@ -63,27 +58,24 @@ void TickLogWriter::append(const std::string& bytes) {
 }
 
 void TickLogWriter::put(const void* bytes, std::size_t size, const std::string& where) {
-  if (std::fwrite(bytes, size, 1, file_.get()) != 1)
-    trouble_ = Error{
-        fmt::format("{}: {}{}; what came before is kept", path_, std::strerror(errno), where)};
+  if (const auto error = file_->put({static_cast<const char*>(bytes), size}))
+    trouble_ = Error{fmt::format("{}{}; what came before is kept", error->sentence, where)};
 }
 
 std::optional<Error> TickLogWriter::close() {
-  if (file_ == nullptr) return trouble_;
-  std::FILE* file = file_.release();
-  if (std::fclose(file) != 0 && !trouble_)
-    trouble_ = Error{fmt::format("{}: {}; the end may be missing", path_, std::strerror(errno))};
+  if (file_ && !trouble_) trouble_ = file_->finish();
+  file_.reset();
   return trouble_;
 }
 
 Result<TickLogReader> TickLogReader::open(const std::string& path) {
-  std::FILE* file = std::fopen(path.c_str(), "rb");
-  if (file == nullptr)
-    return Error{
-        fmt::format("{}: {}; name a file that tactd --record wrote", path, std::strerror(errno))};
+  auto file = model::io::InputFile::open(path, "name a file that tactd --record wrote");
+  if (!file) return file.error();
   LogHeader header;
-  const bool whole = std::fread(&header, sizeof header, 1, file) == 1;
-  TickLogReader reader(file, header);
+  const auto read = file->read(&header, sizeof header);
+  if (!read) return read.error();
+  const bool whole = *read == sizeof header;
+  TickLogReader reader(std::move(*file), header);
   constexpr std::size_t kVersionAt = sizeof header.magic - 1;
   if (!whole || std::memcmp(header.magic, kLogMagic, kVersionAt) != 0)
     return Error{path + ": is no tick log; name a file that tactd --record wrote"};
@@ -102,7 +94,8 @@ Result<TickLogReader> TickLogReader::open(const std::string& path) {
 bool TickLogReader::next(LoggedTick& tick) {
   if (header_.ticks != 0 && read_ == header_.ticks) return false;
   ++read_;
-  const std::size_t bytes = std::fread(&tick, 1, sizeof tick, file_.get());
+  const auto read = file_.read(&tick, sizeof tick);
+  const std::size_t bytes = read ? *read : 0;
   truncated_ = bytes > 0 && bytes < sizeof tick;
   return bytes == sizeof tick;
 }

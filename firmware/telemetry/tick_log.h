@@ -8,14 +8,14 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "firmware/loop/tick_record.h"
 #include "firmware/telemetry/recording_format.h"
+#include "model/io/file_writer.h"
+#include "model/io/input_file.h"
 #include "model/limits.h"
 #include "model/result.h"
 
@@ -57,16 +57,12 @@ class TickLogWriter {
   std::optional<model::Error> close();
 
  private:
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  TickLogWriter(std::string path, std::FILE* file, bool non_rt)
-      : path_(std::move(path)), file_(file), non_rt_(non_rt) {}
+  TickLogWriter(model::io::FileWriter file, bool non_rt)
+      : file_(std::move(file)), non_rt_(non_rt) {}
 
   void put(const void* bytes, std::size_t size, const std::string& where);
 
-  std::string path_;
-  std::unique_ptr<std::FILE, Closer> file_;
+  std::optional<model::io::FileWriter> file_;
   bool non_rt_;
   std::optional<model::Error> trouble_;
 };
@@ -80,12 +76,10 @@ class TickLogReader {
   bool truncated() const { return truncated_; }
 
  private:
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  TickLogReader(std::FILE* file, const LogHeader& header) : file_(file), header_(header) {}
+  TickLogReader(model::io::InputFile file, const LogHeader& header)
+      : file_(std::move(file)), header_(header) {}
 
-  std::unique_ptr<std::FILE, Closer> file_;
+  model::io::InputFile file_;
   LogHeader header_;
   std::uint64_t read_ = 0;
   bool truncated_ = false;

@@ -4,12 +4,12 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 
 #include "hal/falcon_usb/falcon_image.h"
 #include "hal/falcon_usb/falcon_usb.h"
 #include "hal/monotonic.h"
+#include "model/io/input_file.h"
 
 namespace tact::hal::falcon_usb {
 namespace {
@@ -57,15 +57,13 @@ Result<std::vector<std::uint8_t>> load_falcon_image(const std::string& path,
                                                     std::string_view wanted_sha256) {
   std::vector<std::uint8_t> image;
   if (path.empty()) return image;
-  std::ifstream file(path, std::ios::binary);
-  if (!file)
-    return Error{fmt::format(
-        "{}: the Falcon's firmware cannot be read ({}): device.falcon.firmware names the file of "
-        "your copy",
-        path, std::strerror(errno))};
+  auto file = model::io::InputFile::open(
+      path, "device.falcon.firmware names the file of your copy of the Falcon's firmware");
+  if (!file) return file.error();
   image.resize(kFalconImageMax_bytes + 1);
-  file.read(reinterpret_cast<char*>(image.data()), static_cast<std::streamsize>(image.size()));
-  image.resize(static_cast<std::size_t>(file.gcount()));
+  const auto read = file->read(image.data(), image.size());
+  if (!read) return read.error();
+  image.resize(*read);
   const FalconImageVerdict verdict = check_falcon_image(image, wanted_sha256);
   if (!may_be_sent(verdict))
     return Error{fmt::format("{}: {}", path, falcon_image_advice(verdict))};

@@ -8,10 +8,10 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <tuple>
 
 #include "hal/udev_rules.h"
+#include "model/io/input_file.h"
 
 namespace tact::hal::list {
 namespace {
@@ -23,10 +23,8 @@ constexpr unsigned long kInterfaceUp = 0x1;
 
 /// The first line of a file; empty when it cannot be read.
 std::string line_of(const fs::path& file) {
-  std::ifstream stream(file);
-  std::string line;
-  std::getline(stream, line);
-  return line;
+  const auto text = model::io::read_file(file.string());
+  return text ? text->substr(0, text->find('\n')) : std::string();
 }
 
 unsigned long number_of(const fs::path& file, int base) {

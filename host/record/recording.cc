@@ -4,15 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
-#include <fstream>
+#include <sstream>
 
 #include "host/record/operator_record.h"
+#include "model/io/input_file.h"
 
 namespace tact::host::record {
 namespace {
 
+constexpr std::uintmax_t kMostBytes = 16'000'000'000;  // 20 h of frames
 constexpr std::int64_t kFlush_ns = 1'000'000'000;
 
 using firmware::telemetry::crc_of;
@@ -154,11 +155,10 @@ std::optional<double> Recording::body_height_m() const {
 }
 
 ReadResult read_recording(const std::string& path) {
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  if (!in)
-    return unusable({fmt::format("cannot be opened: {}; check the name", std::strerror(errno))});
-  const auto file_bytes = static_cast<std::uint64_t>(std::max<std::streamoff>(in.tellg(), 0));
-  in.seekg(0);
+  auto bytes = model::io::read_file(path, "check the name", kMostBytes);
+  if (!bytes) return unusable(bytes.error());
+  const std::uint64_t file_bytes = bytes->size();
+  std::istringstream in(std::move(*bytes));
   const Result<std::uint64_t> skipped = skip_ticks(in, file_bytes);
   if (!skipped) return unusable(skipped.error());
   Result<Setup> setup = read_setup(in, file_bytes);
@@ -179,32 +179,32 @@ ReadResult read_recording(const std::string& path) {
 
 std::optional<Error> RecordingWriter::open(const std::string& path, const Hello& hello,
                                            const MeshBytes& mesh, bool is_tracked) {
-  path_ = path;
   is_tracked_ = is_tracked;
-  file_.reset(std::fopen(path.c_str(), "wbx"));  // x: fails when the file exists
-  if (!file_) {
-    const bool exists = errno == EEXIST;
-    return Error{fmt::format("{}: {}; {}", path, std::strerror(errno),
-                             exists ? "choose another name, a recording is never overwritten"
-                                    : "check that the folder exists and may be written")};
-  }
+  file_.reset();
+  auto file = model::io::FileWriter::create(path);
+  if (!file) return file.error();
+  file_.emplace(std::move(*file));
   flushed_ns_ = 0;
   if (std::optional<Error> error = put(recording_start(
           hello, mesh, is_tracked ? kTrackedRecordingVersion : kRecordingVersion))) {
     return error;
   }
-  return std::fflush(file_.get()) == 0 ? std::nullopt : put({});
+  return flush();
+}
+
+std::optional<Error> RecordingWriter::stop(const Error& error) {
+  file_.reset();
+  return Error{error.sentence + "; recording stopped, what was written before is kept"};
 }
 
 std::optional<Error> RecordingWriter::put(const std::string& bytes) {
-  if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size() &&
-      std::ferror(file_.get()) == 0) {
-    return std::nullopt;
-  }
-  Error error{fmt::format("{}: {}; recording stopped, what was written before is kept", path_,
-                          std::strerror(errno))};
-  file_.reset();
-  return error;
+  const auto error = file_->put(bytes);
+  return error ? stop(*error) : std::nullopt;
+}
+
+std::optional<Error> RecordingWriter::flush() {
+  const auto error = file_->flush();
+  return error ? stop(*error) : std::nullopt;
 }
 
 std::optional<Error> RecordingWriter::write(const Frame& frame,
@@ -217,12 +217,14 @@ std::optional<Error> RecordingWriter::write(const Frame& frame,
   if (std::optional<Error> error = put(bytes)) return error;
   if (frame.time_ns - flushed_ns_ < kFlush_ns) return std::nullopt;
   flushed_ns_ = frame.time_ns;
-  return std::fflush(file_.get()) == 0 ? std::nullopt : put({});
+  return flush();
 }
 
 std::optional<Error> RecordingWriter::close() {
-  if (!file_ || std::fclose(file_.release()) == 0) return std::nullopt;
-  return Error{fmt::format("{}: {}; the last second may be missing", path_, std::strerror(errno))};
+  if (!file_) return std::nullopt;
+  auto error = file_->finish();
+  file_.reset();
+  return error;
 }
 
 void RecentFrames::restart(double frame_rate_Hz) {

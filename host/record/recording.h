@@ -7,9 +7,7 @@
 // (operator_record.h).
 #pragma once
 
-#include <cstdio>
 #include <deque>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +15,7 @@
 #include "firmware/telemetry/recording_format.h"
 #include "host/figure/figure.h"
 #include "host/record/telemetry_check.h"
+#include "model/io/file_writer.h"
 #include "model/result.h"
 
 namespace tact::host::record {
@@ -71,13 +70,11 @@ class RecordingWriter {
   std::optional<model::Error> close();
 
  private:
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   std::optional<model::Error> put(const std::string& bytes);
+  std::optional<model::Error> flush();
+  std::optional<model::Error> stop(const model::Error& error);
 
-  std::unique_ptr<std::FILE, Closer> file_;
-  std::string path_;
+  std::optional<model::io::FileWriter> file_;
   std::int64_t flushed_ns_ = 0;
   bool is_tracked_ = false;
 };

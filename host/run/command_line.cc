@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "host/run/telemetry_client.h"
+#include "model/io/within.h"
 
 namespace tact::host::run {
 namespace {
@@ -32,7 +33,7 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
   app.add_option("--socket", options.socket, "tactd's telemetry socket")->capture_default_str();
   app.add_option("--port", options.viewer.port, "port of the page; 0 takes any free one")
       ->capture_default_str()
-      ->check(CLI::Range(0, 65535));
+      ->check(model::io::within(0, 65535));
   app.add_option("--bind", options.viewer.bind_address,
                  "IP address to serve on; any but loopback asks browsers for a token")
       ->capture_default_str();
@@ -54,14 +55,14 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
                    "of the tracked tool, write SCENE.registration.toml and leave");
   app.add_option("--poses", options.poses, "for --register")
       ->capture_default_str()
-      ->check(CLI::Range(std::size_t{6}, std::size_t{200}))
+      ->check(model::io::within(6, 200))
       ->needs(registration);
   app.add_flag("--figure", options.figure,
                "show the operator without a tracker, too: the arm that holds the tool");
   app.add_option("--height", options.height_m,
                  "the operator's body height, m; a recording with an operator has its own")
       ->capture_default_str()
-      ->check(CLI::Range(1.2, 2.2));
+      ->check(model::io::within(1.2, 2.2));
   app.add_flag("--json", options.json, "say what is ready or done as one line of JSON");
   record->excludes(open);
   tracking->excludes(open);

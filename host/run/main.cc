@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -19,6 +18,8 @@
 #include "host/server/playback.h"
 #include "host/server/viewer_server.h"
 #include "host/tracking/operator_tracking.h"
+#include "model/io/file_writer.h"
+#include "model/io/program_end.h"
 #include "model/result.h"
 
 namespace tact::host::run {
@@ -77,20 +78,18 @@ class Recorder {
 };
 
 int export_csv(const Options& options, const record::ReadResult& read) {
-  if (exists(options.export_csv))
-    return fail(options.export_csv + ": exists already; choose another name");
-  std::ofstream out(options.export_csv, std::ios::binary);
   const record::Recording& recording = read.recording;
   const std::vector<tracking::BodyRole> bodies = bodies_in(recording);
   std::string text = record::csv_header(recording.hello, bodies);
+  auto out = model::io::FileWriter::replace(options.export_csv, text);
+  if (!out) return fail(out.error().sentence);
   for (std::size_t i = 0; i < recording.frames.size(); ++i) {
     record::append_csv_row(text, recording.frames[i], recording.hello, recording.operator_at(i),
                            bodies);
-    out << text;
+    if (const auto error = out->put(text)) return fail(error->sentence);
     text.clear();
   }
-  out.flush();
-  if (!out) return fail(options.export_csv + ": cannot be written; check folder and free space");
+  if (const auto error = out->finish()) return fail(error->sentence);
   if (options.json) {
     const nlohmann::json summary{{"file", options.export_csv},
                                  {"frames", recording.frames.size()},
@@ -205,6 +204,8 @@ int serve_or_export(const Options& options) {
 }  // namespace tact::host::run
 
 int main(int argc, char** argv) {
+  tact::model::io::watch_standard_output("tact-view");
+  tact::model::io::tell_uncaught("tact-view");
   try {
     tact::host::run::Options options;
     if (const auto status = tact::host::run::parse_options(argc, argv, options)) return *status;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "model/io/json.h"
+
 namespace tact::host::server {
 namespace {
 
@@ -18,7 +20,8 @@ constexpr std::size_t kMaxMessageBytes = 1024;
 constexpr double kFarthestHand_m = 1.0;  // beyond any device
 
 nlohmann::json parse(const std::string& text) {
-  return nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  auto json = model::io::parse_json(text, "request");
+  return json ? std::move(*json) : nlohmann::json();
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/server/frame_json.h"
+#include "model/io/json.h"
 
 namespace tact::host::server {
 namespace {
@@ -67,7 +68,7 @@ void LiveView::tell(Link link, const std::string& detail) {
                         {"detail", detail},
                         {"scene_number", scene_number_},
                         {"kept_s", record::RecentFrames::kKeep_s}};
-  if (figure_) status["figure"] = nlohmann::json::parse(*figure_);
+  if (figure_) status["figure"] = *model::io::parse_json(*figure_, "figure");
   status_ = std::make_shared<const std::string>(
       status.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   for (LiveListener* listener : listeners_) listener->on_status(status_);

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <utility>
+
+#include "model/io/input_file.h"
 
 namespace tact::host::server {
 namespace {
@@ -45,11 +45,10 @@ std::optional<Error> PageFiles::load(const std::string& folder) {
     if (total_bytes > kMaxPageBytes)
       return Error{
           fmt::format("{}: more than 64 MB of files; give the folder of the built page", folder)};
-    std::ifstream in(it->path(), std::ios::binary);
-    std::string content{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-    if (in.bad()) return Error{fmt::format("{}: cannot be read", it->path().string())};
+    auto content = model::io::read_file(it->path().string());
+    if (!content) return content.error();
     const std::string url = "/" + it->path().lexically_relative(folder).generic_string();
-    files_[url] = {mime_of(it->path()), std::move(content)};
+    files_[url] = {mime_of(it->path()), std::move(*content)};
   }
   if (find("/") == nullptr)
     return Error{fmt::format("{}: no page there; tools/run builds it; or give --page", folder)};

@@ -10,6 +10,8 @@
 #include <optional>
 #include <utility>
 
+#include "model/io/json.h"
+
 namespace tact::host::tracking {
 namespace {
 
@@ -91,9 +93,10 @@ Result<Observation> parse_observation(std::string_view bytes) {
     return Error{fmt::format("it has {} bytes; an observation has at most {}", bytes.size(),
                              kMaxObservationBytes)};
   }
-  const json object = json::parse(bytes, nullptr, /*allow_exceptions=*/false);
-  if (!object.is_object())
+  const auto parsed = model::io::parse_json(bytes, "observation");
+  if (!parsed || !parsed->is_object())
     return Error{"it is no JSON object; send {\"time_s\": .., \"points\": ..}"};
+  const json& object = *parsed;
   Observation seen;
   const std::optional<double> time_s = read(object, "time_s", kLatest_s);
   if (!time_s) return Error{"time_s is no time; write seconds of the tracker's clock, at most 1e9"};

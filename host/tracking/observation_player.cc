@@ -5,15 +5,13 @@
 
 #include <algorithm>
 #include <boost/system/error_code.hpp>
-#include <cerrno>
 #include <chrono>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <map>
+#include <sstream>
 #include <utility>
 
 #include "host/tracking/body_tracker.h"
+#include "model/io/input_file.h"
 
 namespace tact::host::tracking {
 namespace {
@@ -27,15 +25,11 @@ constexpr double kTurn_s = 1.0 / 60.0;  // from the last line to the first
 }  // namespace
 
 Result<ObservationFile> read_observation_file(const std::string& path, KeepText keep) {
-  std::error_code failed;
-  if (!std::filesystem::is_regular_file(path, failed))
-    return Error{fmt::format("{}: no such file; give a file of observations, one per line", path)};
-  if (std::filesystem::file_size(path, failed) > kLargestRecording_bytes) {
-    return Error{fmt::format("{}: larger than {} MB; cut it into parts", path,
-                             kLargestRecording_bytes / 1'000'000)};
-  }
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return Error{fmt::format("{}: {}; check who may read it", path, std::strerror(errno))};
+  auto text = model::io::read_file(
+      path, "give a file of observations, one per line; cut a larger one into parts",
+      kLargestRecording_bytes);
+  if (!text) return text.error();
+  std::istringstream file(std::move(*text));
   ObservationFile out;
   std::size_t number = 0;
   for (std::string line; std::getline(file, line);) {

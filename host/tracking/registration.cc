@@ -9,7 +9,9 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
+
+#include "model/io/file_writer.h"
+#include "model/io/input_file.h"
 
 namespace tact::host::tracking {
 namespace {
@@ -99,9 +101,7 @@ bool PoseCollector::add(double now_s, const Vector3d& device_m, double speed_mps
 std::optional<Error> write_registration(const std::string& path, const Registration& registration) {
   const Eigen::Quaterniond& q = registration.transform.rotation;
   const Vector3d& p = registration.transform.position_m;
-  const std::string fresh = path + ".new";
-  std::ofstream file(fresh, std::ios::trunc);
-  file << fmt::format(
+  const std::string text = fmt::format(
       "# tracker's frame -> device's frame, by tact-view --register from {} poses:\n"
       "# residuals {:.2f} mm rms, {:.2f} mm at most\n[registration]\n"
       "position_m = [{}, {}, {}]\nrotation_wxyz = [{}, {}, {}, {}]\n",
@@ -110,19 +110,13 @@ std::optional<Error> write_registration(const std::string& path, const Registrat
       fmt::format("{:.9f}", p.x()), fmt::format("{:.9f}", p.y()), fmt::format("{:.9f}", p.z()),
       fmt::format("{:.12f}", q.w()), fmt::format("{:.12f}", q.x()), fmt::format("{:.12f}", q.y()),
       fmt::format("{:.12f}", q.z()));
-  file.close();
-  std::error_code wrong;
-  const auto failed = [&](const std::string& why) {
-    return Error{fmt::format("{}: {}; check that the folder may be written", path, why)};
-  };
-  if (!file) return failed(std::strerror(errno));
-  if (fs::exists(path, wrong)) {
-    fs::copy_file(path, path + ".bak", fs::copy_options::overwrite_existing, wrong);
-    if (wrong) return failed(wrong.message());
+  std::error_code failed;
+  if (fs::exists(path, failed)) {
+    const auto before = model::io::read_file(path, "check who may read it");
+    if (!before) return before.error();
+    if (auto error = model::io::write_file(path + ".bak", *before)) return error;
   }
-  fs::rename(fresh, path, wrong);
-  if (wrong) return failed(wrong.message());
-  return std::nullopt;
+  return model::io::write_file(path, text);
 }
 
 }  // namespace tact::host::tracking

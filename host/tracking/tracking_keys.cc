@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
+
+#include "model/io/input_file.h"
+#include "model/io/one_line.h"
+#include "model/io/toml.h"
 
 namespace tact::host::tracking {
 namespace {
@@ -17,12 +18,6 @@ using model::Result;
 
 constexpr std::uintmax_t kLargestFile_bytes = 1'000'000;
 constexpr double kFarthest_m = 100.0;
-
-std::string on_one_line(std::string_view text) {
-  std::string out(text);
-  std::ranges::replace_if(out, [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  return out;
-}
 
 /// None: `node` is no list of `count` numbers, each at most `most`.
 std::optional<std::vector<double>> read_numbers(const toml::node* node, std::size_t count,
@@ -41,20 +36,10 @@ std::optional<std::vector<double>> read_numbers(const toml::node* node, std::siz
 }  // namespace
 
 Result<toml::table> parse_toml_file(const std::string& path) {
-  std::error_code failed;
-  if (!std::filesystem::is_regular_file(path, failed))
-    return Error{fmt::format("{}: no such file; give the path of a tracking description", path)};
-  if (std::filesystem::file_size(path, failed) > kLargestFile_bytes)
-    return Error{fmt::format("{}: too large; a tracking description has at most 1 MB", path)};
-  std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file) return Error{fmt::format("{}: cannot be read; check who may read it", path)};
-  try {
-    return toml::parse(text, path);
-  } catch (const toml::parse_error& wrong) {
-    return Error{fmt::format("{}:{}: not TOML: {}; correct this line", path,
-                             wrong.source().begin.line, on_one_line(wrong.description()))};
-  }
+  const auto text = model::io::read_file(
+      path, "give the path of a tracking description of at most 1 MB", kLargestFile_bytes);
+  if (!text) return text.error();
+  return model::io::parse_toml(*text, path);
 }
 
 void TrackingKeys::refuse(std::string_view key, const std::string& sentence) {
@@ -68,8 +53,8 @@ void TrackingKeys::refuse(std::string_view key, const std::string& sentence) {
 void TrackingKeys::only(std::initializer_list<std::string_view> keys) {
   for (const auto& [key, node] : table_) {
     if (std::ranges::find(keys, key.str()) != keys.end()) continue;
-    refuse(key.str(), fmt::format("{} is not known here; write one of: {}", on_one_line(key.str()),
-                                  fmt::join(keys, ", ")));
+    refuse(key.str(), fmt::format("{} is not known here; write one of: {}",
+                                  model::io::on_one_line(key.str()), fmt::join(keys, ", ")));
   }
 }
 

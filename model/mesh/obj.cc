@@ -4,12 +4,8 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <filesystem>
-#include <memory>
 
+#include "model/io/input_file.h"
 #include "model/mesh/mesh_defect.h"
 #include "model/mesh/obj_parser.h"
 #include "model/mesh/polygon.h"
@@ -17,35 +13,12 @@
 namespace tact::model::mesh {
 namespace {
 
-Result<std::string> read_file(const std::string& path) {
-  const auto error = [&](const std::string& sentence) { return Error{path + ": " + sentence}; };
-  std::error_code code;
-  const std::filesystem::file_status status = std::filesystem::status(path, code);
-  if (status.type() == std::filesystem::file_type::not_found)
-    return error("no such file; check the path");
-  if (std::filesystem::is_directory(status)) return error("is a directory; name an OBJ file in it");
-  if (code) return error("cannot be read (" + code.message() + "); check the path and its rights");
-  if (!std::filesystem::is_regular_file(status))
-    return error("is not a regular file; copy the mesh to a file first");
-  const std::uintmax_t bytes = std::filesystem::file_size(path, code);
-  if (code || bytes > kMaxObjBytes)
-    return error(fmt::format("larger than {} bytes; simplify the mesh", kMaxObjBytes));
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             &std::fclose);
-  if (!file)
-    return error(fmt::format("cannot be opened ({}); check its rights", std::strerror(errno)));
-  std::string text(bytes, ' ');
-  text.resize(std::fread(text.data(), 1, text.size(), file.get()));
-  if (std::ferror(file.get()) != 0)
-    return error(fmt::format("cannot be read ({}); copy it again", std::strerror(errno)));
-  if (text.empty()) return Error{path + ":1: the file is empty; export the mesh again"};
-  return text;
-}
-
 // The whole text is in memory only while it is parsed.
 Result<ObjText> read_obj(const std::string& path) {
-  const Result<std::string> file = read_file(path);
+  const Result<std::string> file =
+      io::read_file(path, "name an OBJ file of at most 2 GB", kMaxObjBytes);
   if (!file) return file.error();
+  if (file->empty()) return Error{path + ":1: the file is empty; export the mesh again"};
   Result<ObjText> text = parse_obj(file.value(), path);
   if (text && text->face_end.empty()) {
     return Error{

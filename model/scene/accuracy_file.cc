@@ -3,12 +3,13 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
+#include "model/io/input_file.h"
+#include "model/io/toml.h"
 #include "model/scene/scene.h"
 #include "model/scene/scene_words.h"
 
@@ -110,15 +111,14 @@ Result<Accuracy> read_accuracy(const Scene& scene, const TissueLaw& law) {
   if (!scene.elastic)
     return Error{fmt::format("{} has no [elastic], so there is nothing to solve and compare with",
                              scene.path)};
-  if (!fs::is_regular_file(path))
+  std::error_code failed;
+  if (!fs::exists(path, failed))
     return Error{fmt::format("nobody has measured it; {}", cure(scene))};
-  toml::table root;
-  try {  // the library reports by exceptions; they end here
-    root = toml::parse_file(path);
-  } catch (const toml::parse_error& e) {
-    return Error{
-        fmt::format("{}:{}: {}; {}", path, e.source().begin.line, e.description(), cure(scene))};
-  }
+  const auto text = io::read_file(path, cure(scene));
+  if (!text) return text.error();
+  const auto parsed = io::parse_toml(*text, path);
+  if (!parsed) return Error{fmt::format("{}; {}", parsed.error().sentence, cure(scene))};
+  const toml::table& root = *parsed;
   if (root["schema"].value_or<std::string>("") != kSchema)
     return Error{fmt::format("{} is of another version of tact-chart; {}", path, cure(scene))};
   const toml::table* table = root[name].as_table();

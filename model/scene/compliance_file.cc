@@ -8,13 +8,12 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 
 #include "model/fnv1a.h"
 #include "model/indent/compliance_law.h"
+#include "model/io/file_writer.h"
+#include "model/io/input_file.h"
 #include "model/scene/scene_words.h"
 
 namespace tact::model::scene {
@@ -80,10 +79,9 @@ Result<tissue::ComplianceMap> read_compliance_map(const std::string& path) {
   const auto broken = [&path](const std::string& why) {
     return Error{fmt::format("{}: {}; make it again with tact-condense", path, why)};
   };
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return broken("cannot be opened as a compliance map");
-  const std::string content{std::istreambuf_iterator<char>(file), {}};
-  if (file.bad()) return broken("cannot be read to its end");
+  const auto read = io::read_file(path, "make it again with tact-condense");
+  if (!read) return read.error();
+  const std::string& content = *read;
   std::string_view bytes = content;
   if (bytes.substr(0, kMagic.size()) != kMagic) return broken("is no compliance map");
   if (bytes.size() < kHeadBytes) return broken("ends within its header");
@@ -148,25 +146,15 @@ Result<std::size_t> write_compliance_map(const tissue::ComplianceMap& map,
   append(bytes, map.ring_times_E_per_m.data(), map.ring_times_E_per_m.size());
   const std::uint64_t sum = fnv1a(bytes);
   append(bytes, &sum, 1);
-  const std::string part = path + ".part";
-  std::ofstream file(part, std::ios::binary);
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(part, path, error);
-  if (!file || error) {
-    std::filesystem::remove(part, error);
-    return Error{path + ": cannot be written; is there such a folder, and room on the disk?"};
-  }
+  if (auto error = io::write_file(path, bytes)) return *error;
   return bytes.size();
 }
 
 std::string compliance_checksum(const std::string& path) {
-  std::string sum(sizeof(std::uint64_t), '\0');
-  std::ifstream file(path, std::ios::binary);
-  file.seekg(-static_cast<std::streamoff>(sum.size()), std::ios::end);
-  file.read(sum.data(), static_cast<std::streamsize>(sum.size()));
-  return file ? sum : std::string();
+  constexpr std::size_t kSum_bytes = sizeof(std::uint64_t);
+  const auto bytes = io::read_file(path);
+  if (!bytes || bytes->size() < kSum_bytes) return {};
+  return bytes->substr(bytes->size() - kSum_bytes);
 }
 
 std::string surface_hash(const contact::SurfaceView& surface) {

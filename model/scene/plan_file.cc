@@ -2,14 +2,17 @@
 #include "model/scene/plan_file.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
+#include <sstream>
+
+#include "model/io/file_writer.h"
+#include "model/io/input_file.h"
+#include "model/io/toml.h"
 
 namespace tact::model::scene {
 namespace {
@@ -72,11 +75,11 @@ Result<Plan> plan_of(const toml::table& root) {
 }
 
 Result<Plan> parse_plan(const std::string& path) {
-  try {  // the library reports by exceptions; they end here
-    return plan_of(toml::parse_file(path));
-  } catch (const toml::parse_error& e) {
-    return Error{fmt::format("damaged, {}", e.description())};
-  }
+  const auto text = io::read_file(path, "it cannot be used");
+  if (!text) return Error{text.error().sentence};
+  const auto root = io::parse_toml(*text, "the plan");
+  if (!root) return Error{fmt::format("damaged, {}", root.error().sentence)};
+  return plan_of(*root);
 }
 
 }  // namespace
@@ -129,7 +132,8 @@ std::string command_text(const std::vector<std::string>& overrides) {
 }
 
 std::string machine_name() {
-  std::ifstream file("/proc/cpuinfo");
+  const auto facts = io::read_file("/proc/cpuinfo");
+  std::istringstream file(facts ? *facts : std::string());
   std::string cpu = "unknown processor";
   int cores = 0;
   for (std::string line; std::getline(file, line);) {
@@ -173,15 +177,7 @@ std::string plan_text(const Plan& plan) {
 Result<std::string> write_plan(const Plan& plan, const std::string& path) {
   std::error_code failed;
   fs::create_directories(fs::path(path).parent_path(), failed);
-  const std::string part = path + ".part";
-  {
-    std::ofstream file(part, std::ios::binary);
-    file << plan_text(plan);
-    if (!file.flush())
-      return Error{fmt::format("{}: cannot be written; check the folder and the space", path)};
-  }
-  fs::rename(part, path, failed);
-  if (failed) return Error{fmt::format("{}: {}; check the folder", path, failed.message())};
+  if (auto error = io::write_file(path, plan_text(plan))) return *error;
   return path;
 }
 

@@ -4,49 +4,19 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <sstream>
 #include <string_view>
 
+#include "model/io/input_file.h"
+#include "model/io/toml.h"
 #include "model/scene/scene_words.h"
 
 namespace tact::model::scene {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::uintmax_t kLargestFile_bytes = 1'000'000;
-
-Result<std::string> read_text(const std::string& path) {
-  std::error_code failed;
-  const fs::file_status status = fs::status(path, failed);
-  const auto error = [&](std::string_view what, std::string_view cure) {
-    return Error{fmt::format("{}: {}; {}", path, what, cure)};
-  };
-  constexpr std::string_view kCure = "give the path of a scene, such as model/scenes/liver.toml";
-  if (!fs::exists(status)) return error("no such file", kCure);
-  if (fs::is_directory(status)) return error("this is a directory", kCure);
-  if (!fs::is_regular_file(status)) return error("this is not a regular file", kCure);
-  if (fs::file_size(path, failed) > kLargestFile_bytes)
-    return error("too large for a scene", "a scene has at most 1 MB");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return error("cannot be opened", "check who may read it");
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (file.bad()) return error("cannot be read to its end", "check the disk");
-  return text;
-}
-
-Result<toml::table> parse_toml(std::string_view text, std::string_view source) {
-  try {
-    return toml::table{toml::parse(text, source)};
-  } catch (const toml::parse_error& wrong) {
-    return Error{fmt::format("{}:{}: not TOML: {}; correct this line, or quote text that has signs",
-                             source, wrong.source().begin.line, on_one_line(wrong.description()))};
-  }
-}
+constexpr const char* kCure = "give the path of a scene, such as model/scenes/liver.toml";
 
 bool is_bare_word(std::string_view value) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
@@ -123,9 +93,9 @@ class Override {
 
   std::optional<Error> put(toml::table& parent, std::string_view value) {
     // Parsed under its own name, so that the new node knows where it came from.
-    Result<toml::table> parsed = parse_toml(fmt::format("{} = {}", rest_, value), where_);
+    Result<toml::table> parsed = io::parse_toml(fmt::format("{} = {}", rest_, value), where_);
     if (!parsed && is_bare_word(value))
-      parsed = parse_toml(fmt::format("{} = '{}'", rest_, value), where_);
+      parsed = io::parse_toml(fmt::format("{} = '{}'", rest_, value), where_);
     if (!parsed)
       return error("the value is not TOML", "write a number, true, false, \"text\" or [1, 2, 3]");
     std::ostringstream meaning;
@@ -153,9 +123,9 @@ TextPlace SceneDocument::place_of(const toml::node& node) const {
 
 Result<SceneDocument> load_scene_document(const std::string& path,
                                           const std::vector<std::string>& overrides) {
-  Result<std::string> text = read_text(path);
+  const Result<std::string> text = io::read_file(path, kCure, kLargestFile_bytes);
   if (!text) return text.error();
-  Result<toml::table> root = parse_toml(*text, path);
+  Result<toml::table> root = io::parse_toml(*text, path);
   if (!root) return root.error();
   TextHash hash;
   hash.add(*text);

@@ -88,18 +88,6 @@ std::size_t nearest_key(std::string_view key, std::span<const std::string_view> 
   return nearest;
 }
 
-std::string on_one_line(std::string_view text) {
-  std::size_t end = std::min<std::size_t>(text.size(), 80);
-  const auto inside_a_character = [&](char c) {
-    return (static_cast<unsigned>(c) & 0xC0u) == 0x80u;
-  };
-  while (end > 0 && end < text.size() && inside_a_character(text[end])) --end;  // UTF-8 stays whole
-  std::string line{text.substr(0, end)};
-  for (char& c : line)
-    if (is_control(c)) c = ' ';
-  return end < text.size() ? line + "..." : line;
-}
-
 void TextHash::add(std::string_view text) {
   hash_ = fnv1a(text, hash_);
   hash_ = fnv1a(std::string_view("\xff"), hash_);  // no UTF-8 text has this byte: ends one text

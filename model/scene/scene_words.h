@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "model/fnv1a.h"
+#include "model/io/one_line.h"
 
 namespace tact::model::scene {
 
@@ -25,11 +26,8 @@ bool differs_only_in_unit(std::string_view key, std::string_view known);
 /// The known key that `key` was probably meant to be; npos where nothing is near.
 std::size_t nearest_key(std::string_view key, std::span<const std::string_view> known);
 
-/// Nothing that belongs in a line of text: a break, a bell, an escape.
-constexpr bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
-
-/// One line of printable text, at most 80 characters, whatever comes in: for values in messages.
-std::string on_one_line(std::string_view text);
+using io::is_control;
+using io::on_one_line;
 
 /// 16 hex digits of the FNV-1a hash of the texts in order.
 class TextHash {

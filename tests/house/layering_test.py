@@ -38,6 +38,10 @@ VOUCHES = {
         re.compile(r"ScopedDisabler|__rtsan_disable|rtsan_interface|no_sanitize\w*\W+realtime"),
         {"hal/can/can_socket.cc"}),
 }
+# Files, numbers of a command line and nested text come in by model/io/ alone.
+BY_IO = re.compile(r"\b[io]?fstream\b|\bfopen\(|\bCLI::(Range|Bound|Number|PositiveNumber|NonNegativeNumber|ExistingFile)\b"
+                   r"|\bjson::parse\(|\btoml::parse(_file)?\(")
+IO = "model/io/"
 # What carries bytes is no business of what reads them.
 TRANSPORT = re.compile(r"\s*#include <((?:sys|linux|libusb[^/>]*)/[^>]+|(?:libusb|gpiod)[^>]*)>")
 MAX_LINES, MAX_COLUMNS = 300, 100
@@ -59,10 +63,18 @@ def foreign_breaches(path, text):
     """What no sentence of rooms.py says: threads in physics, our code in an emulator."""
     for number, line in enumerate(text.splitlines(), 1):
         found = OURS.match(line)
-        if path.startswith("model/") and FOREIGN_TO_MODEL.match(line):
+        if path.startswith("model/") and not path.startswith(IO) and FOREIGN_TO_MODEL.match(line):
             yield f"{path}:{number}: model/ knows no thread, clock or descriptor: {line.strip()}"
         if found and path.startswith(EMULATORS) and not found[1].startswith(tuple(ALLOWED_TO_EMULATORS)):
             yield f"{path}:{number}: an emulator shares no code with tact: {found[1]}"
+
+
+def io_breaches(path, text):
+    if path.startswith((IO, "tests/")):
+        return
+    code = COMMENT.sub(blank, text)
+    for found in BY_IO.finditer(code):
+        yield f"{path}:{code.count(chr(10), 0, found.start()) + 1}: {found.group()}: use {IO}"
 
 
 def body_end(text, start):
@@ -137,6 +149,9 @@ def blind_rules():
         "emulator and firmware": foreign_breaches(emulator, '#include "firmware/loop/clock.h"\n'),
         "emulator and model": foreign_breaches(emulator, '#include "model/contact/contact.h"\n'),
         "emulator and tests": foreign_breaches(emulator, '#include "tests/support/can_bench.h"\n'),
+        "stream": io_breaches("tools/x.cc", "std::ifstream file(path);\n"),
+        "number": io_breaches("tools/x.cc", "option->check(CLI::Range(0, 1));\n"),
+        "parser": io_breaches("host/x.cc", "const auto j = nlohmann::json::parse(text);\n"),
         "real time": real_time_breaches("x.cc", "void f() RT_SAFE { new int; }\n"),
         "compiler": vouch_breaches("x.cc", '#pragma clang diagnostic ignored "-Wfunction-effects"\n'),
         "sanitizer": vouch_breaches("x.cc", "const __rtsan::ScopedDisabler off;\n"),
@@ -176,6 +191,7 @@ def main():
                 marks += len(re.findall(r"\bRT_SAFE\b", text))
                 breaches += foreign_breaches(name, text)
                 breaches += real_time_breaches(name, text)
+                breaches += io_breaches(name, text)
                 breaches += vouch_breaches(name, text)
     breaches += rooms.breaches(texts)
     breaches += vouch_breaches("CMakeLists.txt", (ROOT / "CMakeLists.txt").read_text())

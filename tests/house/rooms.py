@@ -7,7 +7,7 @@ import re
 
 CONTACT = ["model", "model/law", "model/contact"]
 SURFACE_LAWS = [*CONTACT, "model/indent", "model/tissue", "model/springs"]
-SCENE = [*SURFACE_LAWS, "model/mesh", "model/scene"]
+SCENE = [*SURFACE_LAWS, "model/io", "model/mesh", "model/scene"]
 DELTA = ["model", "hal", "hal/delta"]
 DEVICES = ["hal/sim", "hal/odrive", "hal/cia402", "hal/falcon_usb", "hal/force_dimension"]
 LOOP = [*CONTACT, "hal", "firmware/gate"]
@@ -15,40 +15,41 @@ OPERATOR = ["host/pose", "host/tracking", "host/figure"]
 # What a folder may include beside itself; CMake links no more than that.
 ROOMS = {
     "model": [],
+    "model/io": ["model"],
     "model/law": ["model"],
     "model/indent": ["model", "model/law"],
     "model/contact": ["model", "model/law"],
     "model/tissue": [*CONTACT, "model/indent"],
     "model/springs": CONTACT,
-    "model/mesh": ["model", "model/contact"],
-    "model/scene": [*SURFACE_LAWS, "model/mesh"],
+    "model/mesh": ["model", "model/contact", "model/io"],
+    "model/scene": [*SURFACE_LAWS, "model/io", "model/mesh"],
     "model/fem": SCENE,
-    "hal": ["model"],
+    "hal": ["model", "model/io"],
     "hal/delta": ["model", "hal"],
     "hal/gpio": ["model", "hal"],
     "hal/can": DELTA,
     "hal/odrive": [*DELTA, "hal/can"],
     "hal/cia402": [*DELTA, "hal/can"],
     "hal/falcon": DELTA,
-    "hal/falcon_usb": [*DELTA, "hal/falcon"],
+    "hal/falcon_usb": [*DELTA, "model/io", "hal/falcon"],
     "hal/force_dimension": ["model", "hal"],
     "hal/sim": [*DELTA, "model/contact", "hal/gpio"],
-    "hal/list": ["hal", "hal/can", "hal/gpio"],
+    "hal/list": ["model/io", "hal", "hal/can", "hal/gpio"],
     "hal/registry": ["model", "hal", *DEVICES, "model/scene"],
-    "firmware/pc": ["hal/list"],
+    "firmware/pc": ["model/io", "hal/list"],
     "firmware/gate": ["model", "hal"],
     "firmware/loop": LOOP,
     "firmware/watch": ["model", "hal", "firmware/loop", "firmware/pc"],
-    "firmware/telemetry": [*LOOP, "firmware/loop", "model/scene"],
+    "firmware/telemetry": [*LOOP, "firmware/loop", "model/io", "model/scene"],
     "firmware/black_box": ["model", "firmware/loop", "firmware/telemetry"],
     "firmware/run": [*LOOP, *SCENE, "hal/gpio", "hal/list", "hal/registry", "firmware/loop",
                      "firmware/watch", "firmware/telemetry", "firmware/black_box", "firmware/pc"],
     "host/pose": [],
-    "host/tracking": ["model", "host/pose"],
+    "host/tracking": ["model", "model/io", "host/pose"],
     "host/figure": ["host/pose", "host/tracking"],
-    "host/record": ["model", *OPERATOR, "firmware/telemetry"],
-    "host/server": ["model", *OPERATOR, "host/record"],
-    "host/run": ["model", *OPERATOR, "host/record", "host/server", "hal/sim"],
+    "host/record": ["model", "model/io", *OPERATOR, "firmware/telemetry"],
+    "host/server": ["model", "model/io", *OPERATOR, "host/record"],
+    "host/run": ["model", "model/io", *OPERATOR, "host/record", "host/server", "hal/sim"],
 }
 # A tool measures every room above; of the other tools it may include these.
 TOOLS = {
@@ -69,7 +70,7 @@ SINGLE_HEADERS = {
     ("host/run", "hal/sim"): {"hand_target.h"},
 }
 # Read and write files, allocate, take their time; no room of the loop reaches them by any way.
-OFFLINE = ("model/mesh/", "model/fem/", "model/scene/")
+OFFLINE = ("model/io/", "model/mesh/", "model/fem/", "model/scene/")
 LOOP_ROOMS = ("firmware/gate", "firmware/loop", "firmware/watch")
 OURS = re.compile(r'^\s*#include "([^"]+)"', re.M)
 NAMESPACE = re.compile(r"^namespace (tact(?:::\w+)+) \{", re.M)

@@ -12,6 +12,7 @@
 #include "hal/falcon/falcon_balance.h"
 #include "hal/falcon/falcon_calibration.h"
 #include "hal/falcon_usb/falcon_open.h"
+#include "model/io/within.h"
 #include "tools/program/program.h"
 
 namespace {
@@ -41,10 +42,10 @@ void add_options(CLI::App& app, Options& o) {
   o.scene.add_to(app, "[device.falcon]");
   app.add_option("--masses-kg", o.masses_kg, "what you hang on the grip, one after the other")
       ->expected(2, 20)
-      ->check(CLI::Range(0.0, 0.5))
+      ->check(tact::model::io::within(0.0, 0.5))
       ->capture_default_str();
   app.add_option("--poses", o.poses, "supports of different height and place")
-      ->check(CLI::Range(2, 10))
+      ->check(tact::model::io::within(2, 10))
       ->capture_default_str();
 }
 

@@ -5,17 +5,16 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 
 #include "firmware/pc/environment.h"
+#include "model/io/file_writer.h"
+#include "model/io/input_file.h"
 #include "model/scene/scene_words.h"
 #include "tools/chart/chart.h"
 #include "tools/chart/pictures.h"
 #include "tools/chart/report.h"
 #include "tools/chart/tool_report.h"
 #include "tools/program/program.h"
-#include "tools/program/whole_file.h"
 
 namespace {
 
@@ -59,8 +58,8 @@ std::string hash_of_references(const Options& o) {
   tact::model::scene::TextHash hash;
   for (const std::string& path : {o.reference, o.tool_reference}) {
     if (path.empty()) continue;
-    std::ifstream file(path, std::ios::binary);
-    hash.add(std::string{std::istreambuf_iterator<char>(file), {}});
+    const auto text = tact::model::io::read_file(path);
+    hash.add(text ? *text : std::string());
   }
   return hash.hex();
 }
@@ -94,18 +93,18 @@ int judge_whole_tool(const program::Program& program, const Options& o) {
     return program.fail(Error{"none of the wanted laws is described; leave out --laws"});
   const Provenance provenance = provenance_of(*scene, o);
   const std::string json = tool_json(rows, *reference, program.command(), provenance);
-  const auto csv =
-      program::write_whole_file(o.out + "/tool.csv", csv_head(program.command(), provenance) +
-                                                         tool_table(rows, *reference).to_csv());
-  if (!csv) return program.fail(csv.error());
-  const auto written = program::write_whole_file(o.out + "/tool.json", json);
-  if (!written) return program.fail(written.error());
+  if (const auto error = tact::model::io::write_file(
+          o.out + "/tool.csv",
+          csv_head(program.command(), provenance) + tool_table(rows, *reference).to_csv()))
+    return program.fail(*error);
+  if (const auto error = tact::model::io::write_file(o.out + "/tool.json", json))
+    return program.fail(*error);
   if (!o.accuracy.empty()) {
     const auto accuracy = accuracy_of(*scene, rows, *reference);
     if (!accuracy) return program.fail(accuracy.error());
     const std::string text = tact::model::scene::accuracy_text(*accuracy);
-    if (const auto kept = program::write_whole_file(o.accuracy, text); !kept)
-      return program.fail(kept.error());
+    if (const auto error = tact::model::io::write_file(o.accuracy, text))
+      return program.fail(*error);
   }
   fmt::print("{}", o.json ? json : tool_text(rows, *reference));
   return 0;

@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "tools/program/whole_file.h"
+#include "model/io/file_writer.h"
+#include "model/io/json.h"
 
 namespace tact::tools::chart {
 namespace {
@@ -46,7 +46,7 @@ Result<std::vector<std::string>> write_chart(const report::Table& table, bool is
                                              const std::string& directory) {
   if (!is_whole) return table.write(directory);
   const std::string stem = (std::filesystem::path(directory) / table.name()).string();
-  ordered_json json = ordered_json::parse(table.to_json());
+  const ordered_json json = *model::io::parse_json<ordered_json>(table.to_json(), "chart");
   ordered_json document{{"schema", kSchema},
                         {"command", command},
                         {"scene", provenance.scene_hash},
@@ -54,21 +54,19 @@ Result<std::vector<std::string>> write_chart(const report::Table& table, bool is
                         {"revision", provenance.revision},
                         {"machine", provenance.machine},
                         {"rows", json["rows"]}};
-  const auto csv =
-      program::write_whole_file(stem + ".csv", csv_head(command, provenance) + table.to_csv());
-  if (!csv) return csv.error();
-  const auto written = program::write_whole_file(stem + ".json", document.dump(1) + "\n");
-  if (!written) return written.error();
+  if (auto error =
+          model::io::write_file(stem + ".csv", csv_head(command, provenance) + table.to_csv()))
+    return *error;
+  if (auto error = model::io::write_file(stem + ".json", document.dump(1) + "\n")) return *error;
   return std::vector<std::string>{stem + ".csv", stem + ".json"};
 }
 
 Result<report::Table> read_chart(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file)
-    return Error{fmt::format(
-        "{}: cannot be read; make it: tact-chart SCENE --reference FILE --out DIR", path)};
+  const auto parsed =
+      model::io::read_json(path, "make it: tact-chart SCENE --reference FILE --out DIR");
+  if (!parsed) return parsed.error();
   try {  // the library reports by exceptions; they end here
-    const auto document = nlohmann::json::parse(file);
+    const nlohmann::json& document = *parsed;
     if (document.value("schema", "") != kSchema)
       return Error{
           fmt::format("{}: is no chart of this version; make it again: tact-chart SCENE "

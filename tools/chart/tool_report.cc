@@ -8,6 +8,8 @@
 #include <ctime>
 #include <nlohmann/json.hpp>
 
+#include "model/io/json.h"
+
 namespace tact::tools::chart {
 namespace {
 
@@ -77,7 +79,9 @@ std::string tool_json(const std::vector<ToolRow>& rows, const ToolReference& ref
                         {"scene", provenance.scene_hash},  {"reference", provenance.reference_hash},
                         {"revision", provenance.revision}, {"machine", provenance.machine}};
   for (const ToolRow& row : rows) document["laws"].push_back(summary_of(row, reference));
-  document["rows"] = ordered_json::parse(tool_table(rows, reference).to_json())["rows"];
+  const auto table =
+      model::io::parse_json<ordered_json>(tool_table(rows, reference).to_json(), "tool");
+  document["rows"] = table->at("rows");
   return document.dump(1) + "\n";
 }
 

@@ -5,11 +5,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "model/io/within.h"
 #include "model/scene/compliance_file.h"
 #include "tools/condense/condense_organ.h"
 #include "tools/program/interrupt.h"
@@ -31,14 +31,8 @@ struct Options {
   bool json = false;
 };
 
-/// A length in metres above 0.
-std::string check_length(const std::string& text) {
-  double length_m = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, length_m);
-  if (error == std::errc{} && rest == end && length_m > 0.0 && length_m < 1.0) return {};
-  return fmt::format("{} is no length of an organ; give metres, above 0 and below 1", text);
-}
+/// A length in an organ, m.
+CLI::Validator a_length() { return tact::model::io::within(1e-6, 1.0); }
 
 void add_options(CLI::App& app, Options& o) {
   o.scene.add_to(app, "[elastic]");
@@ -46,14 +40,14 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--mesh-size-m", o.mesh_size_m,
                  "edge of an element inside the organ, m (default: 1.5 median edges of its "
                  "surface); half as long is about 20 times the work")
-      ->check(check_length);
+      ->check(a_length());
   app.add_option("--patch-radius-m", o.patch_radius_m,
                  "a0 of the loaded patch, m (default: 1.6 elements); of little effect")
-      ->check(check_length);
+      ->check(a_length());
   app.add_option("--ring-pitch-m", o.ring_pitch_m, "of the shape around a place, m (default 0.002)")
-      ->check(check_length);
+      ->check(a_length());
   app.add_option("--rings", o.rings, "of the shape, 1 to 31 (default 20)")
-      ->check(CLI::Range(1, 31));
+      ->check(tact::model::io::within(1, 31));
   app.add_flag("--json", o.json, "print one JSON object, SI units");
 }
 

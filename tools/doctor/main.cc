@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware/pc/rt_setup.h"
+#include "model/io/within.h"
 #include "tools/doctor/doctor_table.h"
 #include "tools/program/program.h"
 
@@ -27,7 +28,7 @@ struct Options {
 void add_options(CLI::App& app, Options& o) {
   app.add_option("--core", o.core,
                  "CPU core that the loop will use (default: an isolated one, or the last)")
-      ->check(CLI::Range(0, CPU_SETSIZE - 1));
+      ->check(tact::model::io::within(0, CPU_SETSIZE - 1));
   app.add_option("--root", o.root,
                  "look below this folder instead, at a copy of another PC's proc/, sys/ and dev/");
   app.add_flag("--json", o.as_json, "print one JSON document");

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "model/io/file_writer.h"
 #include "tools/fit/fit_report.h"
-#include "tools/program/whole_file.h"
 #include "tools/report/picture.h"
 
 namespace tact::tools::fit {
@@ -65,8 +65,8 @@ model::Result<std::vector<std::string>> draw_fit(const FitReport& report, const 
   const fs::path path(file);
   const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
   const std::string csv = path.stem().string() + ".points.csv";
-  auto rows = program::write_whole_file((fs::path(folder) / csv).string(), rows_of(report));
-  if (!rows) return rows.error();
+  if (auto error = model::io::write_file((fs::path(folder) / csv).string(), rows_of(report)))
+    return *error;
   return report::draw({.name = path.stem().string(), .script = script_of(report, csv)}, folder);
 }
 

@@ -6,12 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/io/file_writer.h"
+#include "model/io/within.h"
 #include "tools/fit/fit_csv.h"
 #include "tools/fit/fit_report.h"
 #include "tools/program/program.h"
 #include "tools/program/run_program.h"
 #include "tools/program/sweep.h"
-#include "tools/program/whole_file.h"
 
 namespace {
 
@@ -49,22 +50,22 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--force-column", o.columns.force, "name in both CSVs")->capture_default_str();
   app.add_option("--time-column", o.columns.time, "name in --relaxation")->capture_default_str();
   app.add_option("--depth-unit-m", o.columns.depth_unit_m, "m in one unit; 0.001 for mm")
-      ->check(CLI::PositiveNumber);
+      ->check(tact::model::io::above_zero());
   app.add_option("--force-unit-N", o.columns.force_unit_N, "N in one unit; 0.001 for mN")
-      ->check(CLI::PositiveNumber);
+      ->check(tact::model::io::above_zero());
   app.add_option("--time-unit-s", o.columns.time_unit_s, "s in one unit")
-      ->check(CLI::PositiveNumber);
+      ->check(tact::model::io::above_zero());
   app.add_option("--deepest-m", o.columns.deepest_m, "deeper rows of --data are left out")
-      ->check(CLI::PositiveNumber);
+      ->check(tact::model::io::above_zero());
   app.add_option("--shape-weight", o.fit.shape_weight,
                  "what an error of the shape (of the depth) counts against one of the force (of "
                  "the peak); 0: forces alone")
-      ->check(CLI::NonNegativeNumber)
+      ->check(tact::model::io::within(0.0, 1e12))
       ->capture_default_str();
   app.add_flag("--scale-by-site", o.fit.scale_by_site, "each site has its own factor of the force");
   app.add_flag("--large-strain", o.large_strain, "the reference's cases with large strain");
   app.add_option("--terms", o.terms, "of --relaxation (default: the fewest with RMS below 2 %)")
-      ->check(CLI::Range(1, 3));
+      ->check(tact::model::io::within(1, 3));
   app.add_option("--out", o.out, "TOML to write: sections to paste into the scene");
   app.add_option("--picture", o.picture, "SVG to draw (and PNG), with gnuplot");
   app.add_flag("--json", o.json, "print one JSON object, SI units");
@@ -186,8 +187,8 @@ int main(int argc, char** argv) {
     if (const auto error = fit_relaxation(o, report)) return program.fail(*error);
   report.sort();
   if (!o.out.empty())
-    if (const auto written = program::write_whole_file(o.out, toml_of(report)); !written)
-      return program.fail(written.error());
+    if (const auto error = tact::model::io::write_file(o.out, toml_of(report)))
+      return program.fail(*error);
   if (!o.picture.empty())
     if (const auto drawn = draw_fit(report, o.picture); !drawn) return program.fail(drawn.error());
   if (o.json)

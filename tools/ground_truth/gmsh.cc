@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <unordered_map>
 
+#include "model/io/file_writer.h"
+#include "model/io/input_file.h"
 #include "tools/program/run_program.h"
 
 namespace tact::tools::ground_truth {
@@ -40,10 +41,7 @@ bool write_surface(const std::string& path, std::span<const Vec3> vertex_m,
   for (const TriangleCorners& t : triangle)
     fmt::format_to(out, "{} 2 2 1 1 {} {} {}\n", ++number, t[0] + 1, t[1] + 1, t[2] + 1);
   fmt::format_to(out, "$EndElements\n");
-  std::ofstream file(path, std::ios::binary);
-  file.write(text.data(), static_cast<std::streamsize>(text.size()));
-  file.close();
-  return bool(file);
+  return !model::io::write_file(path, {text.data(), text.size()});
 }
 
 /// Square of the distance from a point, mm^2.
@@ -69,9 +67,8 @@ std::string distance_text(const EdgeLengths& h) {
 }
 
 bool write_script(const std::string& path, const EdgeLengths& h) {
-  std::ofstream file(path);
   const double largest_mm = h.largest_m > 0.0 ? h.largest_m * kMm : 1e9;
-  file << fmt::format(
+  const std::string text = fmt::format(
       "Merge \"surface.msh\";\n"
       "Surface Loop(1) = {{1}};\nVolume(1) = {{1}};\n"
       "Field[1] = MathEval;\n"
@@ -82,8 +79,7 @@ bool write_script(const std::string& path, const EdgeLengths& h) {
       "Mesh.Algorithm3D = 1;\nMesh.Optimize = 1;\n"
       "Mesh.MshFileVersion = 2.2;\nMesh.Binary = 0;\nMesh.SaveAll = 1;\n",
       largest_mm, h.fine_m * kMm, h.growth, distance_text(h));
-  file.close();
-  return bool(file);
+  return !model::io::write_file(path, text);
 }
 
 /// Whitespace-separated numbers of a file that another program wrote.
@@ -200,10 +196,9 @@ Result<TetMesh> fill_with_gmsh(std::span<const Vec3> vertex_m,
     if (!program::was_interrupted(said.error())) folder->keep();
     return said.error();
   }
-  std::ifstream file(folder->file("body.msh"), std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const auto text = model::io::read_file(folder->file("body.msh"));
   TetMesh body;
-  if (!read_body(text, vertex_m, body)) {
+  if (!text || !read_body(*text, vertex_m, body)) {
     Error error{fmt::format(
         "gmsh could not fill the surface; see {}/gmsh.log, and ask tact-mesh whether the surface "
         "is closed and does not cross itself",

@@ -5,13 +5,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
+#include "model/io/json.h"
 #include "model/result.h"
 #include "model/types.h"
 #include "tools/ground_truth/solved_body.h"
@@ -63,12 +62,11 @@ template <typename DataOf, typename Check>
 auto read_json(const std::string& path, const char* schema, const char* make, DataOf data_of,
                Check check) -> model::Result<decltype(data_of(nlohmann::json{}))> {
   using model::Error;
-  std::ifstream file(path, std::ios::binary);
-  if (!file)
-    return Error{fmt::format("{}: cannot be read; check the name, or make it: {}", path, make)};
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const auto parsed =
+      model::io::read_json(path, fmt::format("check the name, or make it: {}", make));
+  if (!parsed) return parsed.error();
   try {  // the library reports by exceptions; they end here
-    const auto j = nlohmann::json::parse(text);
+    const nlohmann::json& j = *parsed;
     if (j.value("schema", "") != schema)
       return Error{
           fmt::format("{}: \"schema\" is not \"{}\"; make it again: {}", path, schema, make)};

@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <nlohmann/json.hpp>
+
+#include "model/io/json.h"
 
 namespace tact::tools::jitter {
 namespace {
@@ -83,11 +84,10 @@ Result<Comparison> compare_results(const json& before, const json& after,
 }
 
 Result<json> load_result(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) return Error{path + ": cannot be read; name a jitter.json of tact-jitter --out"};
-  json result = json::parse(file, nullptr, false);
-  if (!is_result(result))
-    return Error{path + ": is no result of tact-jitter; name a jitter.json of its --out folder"};
+  constexpr const char* kCure = "name a jitter.json of tact-jitter --out";
+  auto result = model::io::read_json(path, kCure);
+  if (result && !is_result(*result))
+    return Error{fmt::format("{}: is no result of tact-jitter; {}", path, kCure)};
   return result;
 }
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/program/whole_file.h"
+#include "model/io/file_writer.h"
 #include "tools/report/picture.h"
 
 namespace tact::tools::jitter {
@@ -57,10 +57,8 @@ std::string make_histogram_csv(const JitterResult& result) {
 model::Result<std::vector<std::string>> draw_histogram(const JitterResult& result,
                                                        const std::string& directory) {
   const auto drawn = drawn_series(result);
-  if (auto written =
-          program::write_whole_file(directory + "/histogram.csv", make_histogram_csv(result));
-      !written)
-    return written.error();
+  if (auto error = model::io::write_file(directory + "/histogram.csv", make_histogram_csv(result)))
+    return *error;
   std::string script = fmt::format(
       "set logscale xy\nset xlabel 'us, from this value on'\nset ylabel 'samples in a bucket of a "
       "twentieth decade'\nset yrange [0.5:*]\nset format y '10^{{%L}}'\nset key top right\n"

@@ -8,13 +8,15 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "model/io/file_writer.h"
+#include "model/io/input_file.h"
+#include "model/io/within.h"
 #include "tools/jitter/jitter_compare.h"
 #include "tools/jitter/jitter_page.h"
 #include "tools/jitter/jitter_picture.h"
 #include "tools/jitter/load.h"
 #include "tools/jitter/tick_trace.h"
 #include "tools/program/run_program.h"
-#include "tools/program/whole_file.h"
 
 namespace {
 
@@ -38,13 +40,13 @@ void add_run_options(CLI::App& app, Options& o) {
       ->allow_extra_args(false);
   app.add_flag("--bare", o.run.bare, "no scene: an empty loop, what the kernel alone gives");
   app.add_option("--duration", o.run.duration_s, "of the loop, s")
-      ->check(CLI::Range(0.1, 1e7))
+      ->check(tact::model::io::within(0.1, 1e7))
       ->capture_default_str();
   app.add_option("--rate", o.run.rate_Hz, "ticks per second, Hz (default: the scene's, or 1000)")
-      ->check(CLI::Range(100.0, 10000.0));
+      ->check(tact::model::io::within(100.0, 10000.0));
   app.add_option("--core", o.run.core,
                  "CPU core of the loop (default: an isolated one, or the last)")
-      ->check(CLI::Range(0, CPU_SETSIZE - 1));
+      ->check(tact::model::io::within(0, CPU_SETSIZE - 1));
   app.add_option("--load", o.run.load,
                  "beside the loop, by stress-ng: cpu,memory,disk,net or fewer")
       ->delimiter(',')
@@ -55,20 +57,20 @@ void add_run_options(CLI::App& app, Options& o) {
   app.add_option("--peer-gate", o.run.peer_gate,
                  "fail if wake-up p99.9 over the peer's is more in the median of the turns, as a "
                  "ratio; takes three turns, 15 s")
-      ->check(CLI::Range(0.01, 100.0))
+      ->check(tact::model::io::within(0.01, 100.0))
       ->needs(peer);
   app.add_option("--threshold", o.run.threshold_us,
                  "from deadline to force, us: ticks above are listed with what the kernel counted, "
                  "and marked in ftrace where it may be written (default: a tenth of the period)")
-      ->check(CLI::Range(1.0, 1e6));
+      ->check(tact::model::io::within(1.0, 1e6));
   app.add_flag("--stop-trace", o.run.stop_trace, "the first of them ends the recording of ftrace");
   auto* back = app.add_option("--loop-back", o.run.loop_back,
                               "input line of device.lines.chip that the scope pin is wired to: "
                               "input to force is measured at the pin");
   app.add_option("--scope-pin", o.run.scope_pin,
                  "output line of that chip (default: device.lines.scope of the scene)")
-      ->check(CLI::Range(0, 1023))
-      ->needs(back->check(CLI::Range(0, 1023)));
+      ->check(tact::model::io::within(0, 1023))
+      ->needs(back->check(tact::model::io::within(0, 1023)));
   app.add_flag("--arm", o.run.arm, "hardware: with force; without it the force is always zero");
   app.add_option("--out", o.out,
                  "folder for jitter.json, report.html, histogram.svg and .csv, and "
@@ -85,7 +87,7 @@ CLI::App* add_compare(CLI::App& app, Options& o) {
       ->add_option("--gate", o.gate_percent,
                    "%: fail if p50, p99 or p99.9 of wake-up, tick or deadline to force grew by "
                    "more, and by more than 1 us")
-      ->check(CLI::Range(0.1, 1e4));
+      ->check(tact::model::io::within(0.1, 1e4));
   compare->add_option("--json", o.json_path, "write the result to this file, - for stdout alone");
   return compare;
 }
@@ -95,8 +97,7 @@ std::optional<Error> write_json(const json& result, const std::string& path) {
   const std::string text = result.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
   if (path == "-") fmt::print("{}", text);
   if (path.empty() || path == "-") return std::nullopt;
-  if (auto written = program::write_whole_file(path, text); !written) return written.error();
-  return std::nullopt;
+  return tact::model::io::write_file(path, text);
 }
 
 std::optional<Error> write_folder(const JitterResult& result, const Options& o,
@@ -105,7 +106,7 @@ std::optional<Error> write_folder(const JitterResult& result, const Options& o,
   std::string svg;
   if (!o.no_pictures && !result.interrupted) {  // after Ctrl-C no program is started any more
     if (auto drawn = draw_histogram(result, o.out); !drawn) return drawn.error();
-    auto picture = program::read_whole_file(o.out + "/histogram.svg");
+    auto picture = tact::model::io::read_file(o.out + "/histogram.svg");
     if (!picture) return picture.error();
     svg = std::move(*picture);
   }
@@ -113,8 +114,7 @@ std::optional<Error> write_folder(const JitterResult& result, const Options& o,
       {"report.html", make_page(result, command, svg)},
       {"ticks.perfetto-trace", make_tick_trace(result.sink->kept_ticks(), boottime_offset_ns())}};
   for (const auto& [name, content] : files)
-    if (auto written = program::write_whole_file(o.out + "/" + name, content); !written)
-      return written.error();
+    if (auto error = tact::model::io::write_file(o.out + "/" + name, content)) return error;
   return std::nullopt;
 }
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tools/program/whole_file.h"
+#include "model/io/json.h"
 
 namespace tact::tools::jitter {
 namespace {
@@ -40,7 +40,8 @@ std::vector<std::string> cyclictest_arguments(const PeerCall& call, const std::s
 
 std::optional<Error> add_cyclictest(const std::string& text, std::uint64_t asked_cycles,
                                     Series& series) {
-  const auto json = nlohmann::json::parse(text, nullptr, false);
+  const auto parsed = model::io::parse_json(text, "cyclictest");
+  const nlohmann::json json = parsed ? *parsed : nlohmann::json();
   const auto thread = json.is_object() && json.contains("thread") && json["thread"].is_object()
                           ? json["thread"].value("0", nlohmann::json())
                           : nlohmann::json();
@@ -112,7 +113,7 @@ std::optional<Error> run_cyclictest(const PeerCall& call, const program::Scratch
                                           .time_limit_s = 60.0 + 5.0 * call.duration_s,
                                           .environment = {}});
   if (!said) return said.error();
-  const auto text = program::read_whole_file(json_path);
+  const auto text = model::io::read_file(json_path);
   if (!text) return text.error();
   return add_cyclictest(*text, cycles_of(call), series);
 }

@@ -8,7 +8,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tools/program/whole_file.h"
+#include "model/io/file_writer.h"
+#include "model/io/input_file.h"
 #include "tools/report/table.h"
 
 namespace tact::tools::limits {
@@ -187,18 +188,16 @@ Result<std::vector<std::string>> write_report(const LimitsReport& report,
                                               const std::string& directory, bool draw_pictures) {
   std::vector<std::string> files;
   const auto write = [&](const std::string& name, const std::string& content) {
-    const std::string path = (fs::path(directory) / name).string();
-    auto written = program::write_whole_file(path, content);
-    if (written) files.push_back(path);
-    return written;
+    files.push_back((fs::path(directory) / name).string());
+    return model::io::write_file(files.back(), content);
   };
   std::vector<report::Table> tables;
   if (!report.cases.empty()) tables.push_back(case_table(report));
   for (const CaseResult& result : report.cases) tables.push_back(trace_table(result));
   if (report.wall) tables.push_back(wall_table(*report.wall));
   for (const report::Table& table : tables)
-    if (auto done = write(table.name() + ".csv", table.to_csv()); !done) return done.error();
-  if (auto done = write("limits.json", to_json(report).dump(2) + "\n"); !done) return done.error();
+    if (auto error = write(table.name() + ".csv", table.to_csv())) return *error;
+  if (auto error = write("limits.json", to_json(report).dump(2) + "\n")) return *error;
   std::vector<std::string> drawings;
   if (draw_pictures) {
     const auto drawn = draw_curves(report, directory);
@@ -206,12 +205,12 @@ Result<std::vector<std::string>> write_report(const LimitsReport& report,
     for (const std::string& path : *drawn) {
       files.push_back(path);
       if (fs::path(path).extension() != ".svg") continue;
-      auto svg = program::read_whole_file(path);
+      auto svg = model::io::read_file(path);
       if (!svg) return svg.error();
       drawings.push_back(std::move(*svg));
     }
   }
-  if (auto done = write("limits.html", page_html(report, drawings)); !done) return done.error();
+  if (auto error = write("limits.html", page_html(report, drawings))) return *error;
   return files;
 }
 

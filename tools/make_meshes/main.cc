@@ -8,10 +8,12 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <system_error>
 
+#include "model/io/file_writer.h"
+#include "model/io/program_end.h"
+#include "model/io/within.h"
 #include "tools/make_meshes/meshes.h"
 
 namespace {
@@ -73,14 +75,7 @@ std::optional<Error> write_shape(const std::string& directory, const Wanted& wan
   if (!mesh) return Error{name + ": " + mesh.error().sentence};
   const std::string count = wanted.counted ? fmt::format("_{}", shape.vertex_mm.size()) : "";
   const fs::path path = fs::path(directory) / fmt::format("{}{}.obj", name, count);
-  std::ofstream file(path, std::ios::binary);
-  file << obj_text(name, shape);
-  file.close();
-  if (!file) {
-    return Error{path.string() +
-                 ": cannot be written; check that the directory exists and has "
-                 "room"};
-  }
+  if (auto error = tact::model::io::write_file(path.string(), obj_text(name, shape))) return error;
   const auto sum = tact::model::mesh::summarize(*mesh);  // of millimetres, so its "m" are mm here
   const Vec3 size_mm = sum.high_m - sum.low_m;
   fmt::print("{}: {} vertices, {} triangles, {:.1f} x {:.1f} x {:.1f} mm, least angle {:.1f} deg\n",
@@ -91,8 +86,9 @@ std::optional<Error> write_shape(const std::string& directory, const Wanted& wan
 
 }  // namespace
 
-// The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
+  tact::model::io::watch_standard_output("tact-make-meshes");
+  tact::model::io::tell_uncaught("tact-make-meshes");
   CLI::App app{"Write the meshes that tact ships: OBJ, unit mm, the same bytes on every run."};
   std::string directory = ".";
   bool liver = false;
@@ -107,7 +103,7 @@ int main(int argc, char** argv) {
   app.add_option("--liver-vertices", liver_vertices,
                  "vertices of the liver, 50 to 9000000; the shape stays")
       ->capture_default_str()
-      ->check(CLI::Range(tact::tools::make_meshes::kFewestVertices, kMostVertices));
+      ->check(tact::model::io::within(tact::tools::make_meshes::kFewestVertices, kMostVertices));
   app.footer("Exit status: 0 written, 2 bad usage or the directory cannot be written.");
   app.failure_message([](const CLI::App*, const CLI::Error& e) {
     return fmt::format("tact-make-meshes: {}; see tact-make-meshes --help\n", e.what());

@@ -6,8 +6,9 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 
+#include "model/io/file_writer.h"
+#include "model/io/program_end.h"
 #include "tools/make_tracking/seen_operator.h"
 
 namespace {
@@ -97,24 +98,19 @@ std::string truth() {
 }
 
 bool write(const fs::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (file) {
-    fmt::print("{}: {} bytes\n", path.string(), text.size());
-    return true;
+  if (const auto error = tact::model::io::write_file(path.string(), text)) {
+    fmt::print(stderr, "tact-make-tracking: {}\n", error->sentence);
+    return false;
   }
-  fmt::print(stderr,
-             "tact-make-tracking: {}: cannot be written; check that the directory exists and has "
-             "room\n",
-             path.string());
-  return false;
+  fmt::print("{}: {} bytes\n", path.string(), text.size());
+  return true;
 }
 
 }  // namespace
 
-// The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
+  tact::model::io::watch_standard_output("tact-make-tracking");
+  tact::model::io::tell_uncaught("tact-make-tracking");
   CLI::App app{
       "Write the tracked operator of the scene maintenance: NAME.tracking.toml and "
       "NAME.observations.jsonl (pixels of two cameras, 30 s), the same bytes on every run."};

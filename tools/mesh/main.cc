@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "model/io/program_end.h"
+#include "model/io/within.h"
 #include "model/mesh/obj.h"
 
 namespace {
@@ -61,8 +63,9 @@ std::string to_text(const ObjMesh& obj, const MeshSummary& sum) {
 
 }  // namespace
 
-// The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
+  tact::model::io::watch_standard_output("tact-mesh");
+  tact::model::io::tell_uncaught("tact-mesh");
   CLI::App app{
       "What is in this mesh file, and is it sound? Reads a Wavefront OBJ surface as tact does:\n"
       "cuts faces into triangles, welds equal vertices, and refuses what is no surface (an edge\n"
@@ -73,6 +76,7 @@ int main(int argc, char** argv) {
   bool as_json = false;
   app.add_option("FILE", path, "OBJ file")->required();
   app.add_option("--unit-m", unit_m, "length of one file unit, m: 0.001 for mm, 0.01 for cm")
+      ->check(tact::model::io::within(1e-9, 1e6))
       ->capture_default_str();
   app.add_flag("--json", as_json, "print one JSON object, SI units (m, m2, m3)");
   app.footer("Exit status: 0 the mesh is sound, 2 bad usage or a bad file.");

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "model/io/program_end.h"
 #include "tools/program/run_program.h"
 
 namespace tact::tools::program {
@@ -27,6 +28,8 @@ Program::Program(std::string name, const std::string& purpose, const std::string
 Program::~Program() = default;
 
 std::optional<int> Program::parse(int argc, char** argv) {
+  model::io::watch_standard_output(name_.c_str());
+  model::io::tell_uncaught(name_.c_str());
   for (int i = 0; i < argc; ++i) command_ += fmt::format("{}{}", i > 0 ? " " : "", argv[i]);
   try {
     options_->parse(argc, argv);

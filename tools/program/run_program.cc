@@ -17,9 +17,9 @@
 #include <string_view>
 #include <thread>
 
+#include "model/io/input_file.h"
 #include "tools/program/child_groups.h"
 #include "tools/program/interrupt.h"
-#include "tools/program/whole_file.h"
 
 namespace tact::tools::program {
 namespace {
@@ -147,7 +147,7 @@ Result<std::string> run_program(const ProgramCall& call) {
     return Error{fmt::format(
         "how {} ended cannot be known, since SIGCHLD is ignored; start from a plain shell",
         call.program)};
-  auto text = read_whole_file(call.log_path);
+  auto text = model::io::read_file(call.log_path);
   if (WIFEXITED(*status) && (call.any_status || WEXITSTATUS(*status) == 0)) return text;
   const std::string how = WIFEXITED(*status) ? fmt::format("status {}", WEXITSTATUS(*status))
                                              : fmt::format("signal {}", WTERMSIG(*status));

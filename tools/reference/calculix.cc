@@ -3,10 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <sstream>
 #include <unordered_map>
 
+#include "model/io/file_writer.h"
+#include "model/io/input_file.h"
 #include "tools/program/run_program.h"
 #include "tools/reference/calculix_deck.h"
 
@@ -53,7 +54,9 @@ bool read_forces(std::istream& file, const char* set, const Nodes& nodes, Number
 }
 
 bool read_answer(const std::string& path, const ElasticProblem& p, ElasticAnswer& answer) {
-  std::ifstream file(path);
+  const auto text = model::io::read_file(path);
+  if (!text) return false;
+  std::istringstream file(*text);
   const DeckAxes axes = deck_axes(p.load.direction);
   std::vector<Vec3> force_mN;
   if (p.load.ball) {
@@ -98,11 +101,7 @@ Result<std::string> run_ccx(const program::ScratchFolder& folder,
 Result<ElasticAnswer> solve_with_calculix(const ElasticProblem& problem) {
   auto folder = program::ScratchFolder::make("tact-ccx");
   if (!folder) return folder.error();
-  std::ofstream deck(folder->file("case.inp"));
-  deck << deck_of(problem);
-  deck.close();
-  if (!deck)
-    return Error{fmt::format("{} cannot be written; the disk may be full", folder->path())};
+  if (auto error = model::io::write_file(folder->file("case.inp"), deck_of(problem))) return *error;
   const auto said = run_ccx(*folder, {"-i", "case"}, false);
   if (!said) {
     if (!program::was_interrupted(said.error())) folder->keep();

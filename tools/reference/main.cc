@@ -8,10 +8,11 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "model/io/file_writer.h"
+#include "model/io/within.h"
 #include "tools/program/program.h"
 #include "tools/program/run_program.h"
 #include "tools/program/sweep.h"
-#include "tools/program/whole_file.h"
 #include "tools/reference/reference_plan.h"
 #include "tools/reference/self_check.h"
 #include "tools/reference/sideways_plan.h"
@@ -56,11 +57,11 @@ void add_options(CLI::App& app, Options& o) {
       ->delimiter(',')
       ->excludes("--tool");
   app.add_option("--level", o.level, "mesh, 1 coarse to 4 fine; each about twice the time")
-      ->check(CLI::Range(kCoarsestLevel, kFinestLevel))
+      ->check(tact::model::io::within(kCoarsestLevel, kFinestLevel))
       ->capture_default_str();
   app.add_option("--cache", o.cache, "folder of solved cases")->capture_default_str();
   app.add_option("--jobs", o.jobs, "solves at a time; each takes a core and about 1 GB")
-      ->check(CLI::Range(1, 256))
+      ->check(tact::model::io::within(1, 256))
       ->capture_default_str();
   app.add_flag("--json", o.json, "print the result as JSON");
   app.add_option("--self-check", o.self_check,
@@ -233,8 +234,7 @@ int tell(const program::Program& program, const Options& o, const Result<Data>& 
                         "what was solved is kept, the same command goes on from there");
   const std::string text = text_of(*data);
   if (!o.out.empty()) {
-    if (const auto written = program::write_whole_file(o.out, text); !written)
-      return program.fail(written.error());
+    if (const auto error = tact::model::io::write_file(o.out, text)) return program.fail(*error);
   }
   if (o.json)
     fmt::print("{}", text);

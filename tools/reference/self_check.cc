@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "model/io/json.h"
 #include "model/mesh/obj.h"
 #include "tools/reference/block.h"
 #include "tools/reference/half_space.h"
@@ -124,10 +124,10 @@ Result<bool> check_patch(const model::mesh::SurfaceMesh& surface, const HeldBox&
 
 Result<bool> check_organ(const std::string& folder) {
   const std::string path = folder + "/organ_patch.json";
-  std::ifstream file(path);
-  if (!file) return Error{path + ": cannot be read; give the folder tests/data/reference"};
+  const auto parsed = model::io::read_json(path, "give the folder tests/data/reference");
+  if (!parsed) return parsed.error();
   try {  // the library reports by exceptions; they end here
-    const json j = json::parse(file);
+    const json& j = *parsed;
     const auto organ = model::mesh::load_obj(folder + "/" + j.at("mesh").get<std::string>(),
                                              j.at("mesh_unit_m").get<double>());
     if (!organ) return organ.error();

@@ -2,17 +2,15 @@
 #include "tools/reference/solve_cache.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "model/io/file_writer.h"
+#include "model/io/json.h"
 #include "model/scene/scene_words.h"
-#include "tools/program/whole_file.h"
 #include "tools/reference/contact_radius.h"
 
 namespace tact::tools::reference {
@@ -45,26 +43,18 @@ std::string SolveCache::path_of(const std::string& key) const {
 }
 
 std::optional<json> SolveCache::read(const std::string& key) const {
-  std::ifstream file(path_of(key), std::ios::binary);
-  if (!file) return std::nullopt;
-  json j = json::parse(file, nullptr, false);
-  if (!j.is_object() || j.value("key", json{}) != key) return std::nullopt;
-  return j;
+  auto j = model::io::read_json(path_of(key));
+  if (!j || !j->is_object() || j->value("key", json{}) != key) return std::nullopt;
+  return std::move(*j);
 }
 
 std::optional<model::Error> SolveCache::write(const std::string& key, json solved) const {
-  std::error_code ignored;  // write_whole_file says it better
+  std::error_code ignored;  // write_file says it better
   fs::create_directories(directory_, ignored);
   solved["key"] = key;
-  // Under a name that nobody else has, then in one step under its own.
-  static std::atomic<unsigned> files{0};
-  const std::string path = path_of(key), mine = fmt::format("{}.{}-{}", path, getpid(), files++);
-  const auto written = program::write_whole_file(mine, solved.dump(1) + "\n");
-  std::error_code failed;
-  if (written) fs::rename(mine, path, failed);
-  if ((written && !failed) || read(key)) return std::nullopt;
-  return model::Error{fmt::format(
-      "{}: cannot be written; check the folder and the space, or name another --cache", path)};
+  const auto error = model::io::write_file(path_of(key), solved.dump(1) + "\n");
+  if (!error || read(key)) return std::nullopt;
+  return model::Error{error->sentence + ", or name another --cache"};
 }
 
 std::optional<ground_truth::ReferenceCase> SolveCache::find(const std::string& key) const {

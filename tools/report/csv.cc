@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
+#include <sstream>
+
+#include "model/io/input_file.h"
 
 namespace tact::tools::report {
 
@@ -46,7 +48,9 @@ Error Csv::blame(int line, const std::string& what) const {
 }
 
 Result<Csv> Csv::read(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+  const auto content = model::io::read_file(path);
+  if (!content) return content.error();
+  std::istringstream file(*content);
   Csv csv;
   csv.path_ = path;
   std::string text;
@@ -65,8 +69,7 @@ Result<Csv> Csv::read(const std::string& path) {
                               line.cells.size(), csv.header_.number, csv.header_.cells.size()));
     csv.rows_.push_back(std::move(line));
   }
-  if (csv.header_.cells.empty())
-    return Error{fmt::format("{}: cannot be read or is empty; check the name", path)};
+  if (csv.header_.cells.empty()) return Error{fmt::format("{}: is empty; check the name", path)};
   return csv;
 }
 

@@ -5,8 +5,8 @@
 
 #include <filesystem>
 
+#include "model/io/file_writer.h"
 #include "tools/program/run_program.h"
-#include "tools/program/whole_file.h"
 
 namespace tact::tools::report {
 namespace {
@@ -44,8 +44,7 @@ Result<std::vector<std::string>> draw(const Picture& picture, const std::string&
   std::error_code error;
   const fs::path folder = fs::absolute(directory, error);
   const std::string script = (folder / (picture.name + ".gp")).string();
-  if (auto written = program::write_whole_file(script, head(picture) + picture.script); !written)
-    return written.error();
+  if (auto failed = model::io::write_file(script, head(picture) + picture.script)) return *failed;
   std::vector<std::string> files;
   for (const std::string kind : {"svg", "png"}) {
     const std::string log = (folder / (picture.name + ".gnuplot.txt")).string();

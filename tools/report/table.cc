@@ -8,12 +8,12 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 
-#include "tools/program/whole_file.h"
+#include "model/io/file_writer.h"
+#include "model/io/input_file.h"
 #include "tools/report/csv.h"
 
 namespace tact::tools::report {
@@ -45,8 +45,9 @@ std::string text_of(const ShardLine& line) {
 }
 
 Result<ShardLine> read_shard_line(const std::string& path) {
-  std::ifstream stream(path);
-  if (!stream) return Error{fmt::format("{}: cannot be read; check the name", path)};
+  const auto text = model::io::read_file(path);
+  if (!text) return text.error();
+  std::istringstream stream(*text);
   std::string line, hash, shard_word, shard, of;
   std::getline(stream, line);
   std::istringstream words(line);
@@ -115,16 +116,15 @@ Result<std::vector<std::string>> Table::write(const std::string& directory) cons
   const std::string stem = (fs::path(directory) / name_).string();
   std::vector<std::string> files;
   const auto keep = [&](const std::string& path, const std::string& content) {
-    auto written = program::write_whole_file(path, content);
-    if (written) files.push_back(path);
-    return written;
+    files.push_back(path);
+    return model::io::write_file(path, content);
   };
   const std::string csv_path =
       shard_.is_whole() ? stem + ".csv"
                         : fmt::format("{}.shard-{}-of-{}.csv", stem, shard_.index, shard_.count);
-  if (auto csv = keep(csv_path, to_csv()); !csv) return csv.error();
+  if (auto error = keep(csv_path, to_csv())) return *error;
   if (!shard_.is_whole()) return files;
-  if (auto as_json = keep(stem + ".json", to_json()); !as_json) return as_json.error();
+  if (auto error = keep(stem + ".json", to_json())) return *error;
   return files;
 }
 
@@ -175,7 +175,9 @@ Result<Table> merge_table(const Table& empty, const std::vector<std::string>& fi
       return Error{fmt::format("{}: one of {} shards among files of {}; leave it out", path,
                                line->shard.count, count)};
     count = line->shard.count;
-    std::ifstream stream(path);
+    const auto content = model::io::read_file(path);
+    if (!content) return content.error();
+    std::istringstream stream(*content);
     std::string text;
     std::getline(stream, text);
     std::getline(stream, text);

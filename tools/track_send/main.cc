@@ -13,6 +13,8 @@
 #include <optional>
 
 #include "host/tracking/observation_player.h"
+#include "model/io/program_end.h"
+#include "model/io/within.h"
 #include "model/result.h"
 
 namespace {
@@ -76,6 +78,8 @@ int send_all(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  tact::model::io::watch_standard_output("tact-track-send");
+  tact::model::io::tell_uncaught("tact-track-send");
   Options options;
   CLI::App app{
       "tact-track-send: plays a file of tracker observations (one JSON object per line, see\n"
@@ -86,10 +90,10 @@ int main(int argc, char** argv) {
   app.add_option("file", options.file, "observations, one per line")->required();
   app.add_option("--port", options.port, "UDP port of tact-view on 127.0.0.1")
       ->capture_default_str()
-      ->check(CLI::Range(1, 65535));
+      ->check(tact::model::io::within(1, 65535));
   app.add_option("--speed", options.play.speed_ratio, "times as fast as recorded")
       ->capture_default_str()
-      ->check(CLI::Range(0.01, 100.0));
+      ->check(tact::model::io::within(0.01, 100.0));
   app.add_flag("--loop", options.play.loop, "from the start again at the end");
   app.add_flag("--json", options.json, "say what was sent as one line of JSON");
   try {

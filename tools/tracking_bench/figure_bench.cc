@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "model/io/within.h"
 #include "tools/program/program.h"
 #include "tools/tracking_bench/figure_work.h"
 
@@ -54,10 +55,10 @@ int main(int argc, char** argv) {
   app.add_option("--tracking", tracking,
                  "tracking description with a recording; default: SCENE.tracking.toml");
   app.add_option("--seconds", seconds, "length of the motion, s")
-      ->check(CLI::Range(0.1, 3600.0))
+      ->check(tact::model::io::within(0.1, 3600.0))
       ->capture_default_str();
   app.add_option("--frames", frames_Hz, "frames a second")
-      ->check(CLI::Range(1.0, 1000.0))
+      ->check(tact::model::io::within(1.0, 1000.0))
       ->capture_default_str();
   app.add_flag("--json", as_json, "print one JSON object");
   if (const auto status = program.parse(argc, argv)) return *status;

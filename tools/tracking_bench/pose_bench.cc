@@ -20,6 +20,7 @@
 #include "host/pose/joint_pose.h"
 #include "host/pose/one_euro.h"
 #include "host/pose/robust_pose.h"
+#include "model/io/within.h"
 #include "tools/tracking_bench/median_reporter.h"
 
 namespace {
@@ -244,19 +245,19 @@ int main(int argc, char** argv) {
       "pose of one camera and of the raw pose of two), 1 one is not, 2 bad usage."};
   app.add_option("--markers", options.markers, "on the body")
       ->capture_default_str()
-      ->check(CLI::Range(4, 64));
+      ->check(tact::model::io::within(4, 64));
   app.add_option("--size", options.size_m, "of the body, m: diameter of the sphere of markers")
       ->capture_default_str()
-      ->check(CLI::Range(0.01, 2.0));
+      ->check(tact::model::io::within(0.01, 2.0));
   app.add_option("--distance", options.distance_m, "from the camera, m")
       ->capture_default_str()
-      ->check(CLI::Range(0.5, 20.0));
+      ->check(tact::model::io::within(0.5, 20.0));
   app.add_option("--noise", options.noise_px, "standard deviation of u and of v, px")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 10.0));
+      ->check(tact::model::io::within(0.0, 10.0));
   app.add_option("--views", options.views, "for the errors")
       ->capture_default_str()
-      ->check(CLI::Range(20, 1000000));
+      ->check(tact::model::io::within(20, 1000000));
   app.add_flag("--json", options.json, "the numbers as one line of JSON");
   try {
     app.parse(argc, argv);

@@ -6,12 +6,13 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <system_error>
 #include <variant>
 #include <vector>
 
+#include "model/io/json.h"
+#include "model/io/program_end.h"
 #include "model/result.h"
 #include "tools/verify/report.h"
 
@@ -79,10 +80,10 @@ Result<std::vector<std::string>> files_of(const std::vector<std::string>& paths)
 }
 
 Result<FileReport> verify_file(const std::string& path) {
-  std::ifstream stream(path);
-  if (!stream) return Error{fmt::format("{}: cannot be read; check the name", path)};
+  const auto read = tact::model::io::read_json(path, "check the name, or take a fresh copy");
+  if (!read) return read.error();
   try {  // the libraries report damage by exceptions
-    const json file = json::parse(stream);
+    const json& file = *read;
     const std::string key = file.contains("law") ? "law" : "schema";
     FileReport out{fs::path(path).filename().string(), file.value(key, ""), {}};
     for (const Verifier& verifier : known_verifiers()) {
@@ -162,6 +163,8 @@ int run(std::vector<std::string> paths, bool as_json) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  tact::model::io::watch_standard_output("tact-verify");
+  tact::model::io::tell_uncaught("tact-verify");
   CLI::App app{
       "Recompute published cases and compare, each at the tolerance of its file (SI units: m, rad, "
       "N, N m, kg).\nExit status: 0 all passed, 1 a case failed, 2 a file is unreadable or "

@@ -42,7 +42,9 @@ TEST_F(RecordingFile, KeepsItsTextOnlyForWhoSendsItOn) {
 TEST_F(RecordingFile, LargerThan64MegabytesIsRefusedInOneLine) {
   fs::resize_file(path_, kLargestRecording_bytes + 1);  // takes no room on the disk
   EXPECT_EQ(sentence_of(read_observation_file(path_)),
-            path_.string() + ": larger than 64 MB; cut it into parts");
+            path_.string() +
+                ": larger than 64000000 bytes; give a file of observations, one per line; cut a "
+                "larger one into parts");
 }
 
 }  // namespace tact::host::tracking::observation_player_test

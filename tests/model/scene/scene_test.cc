@@ -171,15 +171,18 @@ TEST(Scene, RefusesAFileThatIsNone) {
       complaint(TACT_SOURCE_DIR "/tests/data")
           .ends_with(
               "this is a directory; give the path of a scene, such as model/scenes/liver.toml"));
-  EXPECT_TRUE(complaint("/dev/null")
-                  .ends_with("this is not a regular file; give the path of a scene, such as "
-                             "model/scenes/liver.toml"));
+  EXPECT_TRUE(
+      complaint("/dev/null")
+          .ends_with("this is a device, not a regular file; give the path of a scene, such as "
+                     "model/scenes/liver.toml"));
   EXPECT_EQ(complaint(""),
             ": no such file; give the path of a scene, such as "
             "model/scenes/liver.toml");
   const std::string large = std::string(TACT_BINARY_DIR) + "/scene_large.toml";
   std::ofstream(large) << std::string(1'000'001, '#');
-  EXPECT_EQ(complaint(large), "scene_large.toml: too large for a scene; a scene has at most 1 MB");
+  EXPECT_EQ(complaint(large),
+            "scene_large.toml: larger than 1000000 bytes; give the path of a scene, such as "
+            "model/scenes/liver.toml");
 }
 
 TEST(Scene, RefusesAMeshThatIsNoneAtTheLineThatNamesIt) {

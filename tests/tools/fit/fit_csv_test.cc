@@ -81,7 +81,7 @@ TEST_F(FitCsv, NamesTheLineOfEveryError) {
 }
 
 TEST_F(FitCsv, RefusesTooLittle) {
-  EXPECT_EQ(error_of(""), ": cannot be read or is empty; check the name");
+  EXPECT_EQ(error_of(""), ": is empty; check the name");
   EXPECT_EQ(error_of("depth_m,force_N\n0.001,1\n"), ": 1 rows; a fit needs 3 at least");
   EXPECT_EQ(error_of("depth_m,force_N\n0.001,0\n0.002,0\n0.003,0\n"),
             ": every force is 0; nothing can be fitted to that");

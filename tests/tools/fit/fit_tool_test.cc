@@ -97,7 +97,7 @@ TEST_F(FitTool, RefusesBadInputWithOneSentence) {
   refused(kScene + " --law rhombus --keep jelly --data " + press(1.0), "--keep jelly");
   refused(kScene + " --law disc_stack_linear --keep youngs_modulus_Pa --data " + press(1.0),
           "leaves nothing of disc_stack_linear");
-  refused(kScene + " --reference " + file("none.json"), "none.json: cannot be read");
+  refused(kScene + " --reference " + file("none.json"), "none.json: no such file");
   refused("none.toml --data " + file("bad.csv"), "none.toml");
 }
 

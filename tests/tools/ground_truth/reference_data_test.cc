@@ -80,10 +80,9 @@ TEST(ReferenceData, NamesTheFileAndTheKeyOfADamage) {
   expect_error(text, "]}\n", "", "parse error");
   const auto none = read_reference("/nowhere/at/all.json");
   ASSERT_FALSE(none);
-  EXPECT_EQ(
-      none.error().sentence,
-      "/nowhere/at/all.json: cannot be read; check the name, or make it: tact-reference SCENE "
-      "--out FILE");
+  EXPECT_EQ(none.error().sentence,
+            "/nowhere/at/all.json: no such file; check the name, or make it: tact-reference SCENE "
+            "--out FILE");
 }
 
 TEST(ReferenceData, ShipsTheLiver) {

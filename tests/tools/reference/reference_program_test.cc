@@ -42,7 +42,7 @@ TEST(ReferenceProgram, RefusesWhatCannotBeSolved) {
                    "metres: 0.001,0.002");
   expect_refusal(kLiver + " --sites 125", "site 125 lies in the box that is held; choose another");
   expect_refusal("--self-check /nowhere",
-                 "/nowhere/organ_patch.json: cannot be read; give the "
+                 "/nowhere/organ_patch.json: no such file; give the "
                  "folder tests/data/reference");
 }
 

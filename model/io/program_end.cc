@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/io/program_end.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+
+namespace tact::model::io {
+namespace {
+
+constexpr int kBadOutput = 2;
+const char* program_name = "";
+
+void check_standard_output() {
+  const bool failed_before = std::ferror(stdout) != 0;
+  if (std::fflush(stdout) == 0 && !failed_before) return;
+  std::fprintf(stderr, "%s: standard output cannot be written: %s; check where it goes\n",
+               program_name, failed_before && errno == 0 ? "error" : std::strerror(errno));
+  std::fflush(nullptr);
+  _exit(kBadOutput);
+}
+
+[[noreturn]] void tell_and_end() {
+  const char* what = "an unknown exception";
+  try {
+    if (const auto thrown = std::current_exception()) std::rethrow_exception(thrown);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", program_name, error.what());
+    _exit(kBadOutput);
+  } catch (...) {
+  }
+  std::fprintf(stderr, "%s: %s\n", program_name, what);
+  _exit(kBadOutput);
+}
+
+}  // namespace
+
+void watch_standard_output(const char* program) {
+  program_name = program;
+  std::atexit(check_standard_output);
+}
+
+void tell_uncaught(const char* program) {
+  program_name = program;
+  std::set_terminate(tell_and_end);
+}
+
+}  // namespace tact::model::io
