@@ -10,8 +10,8 @@
 
 #include "model/io/input_file.h"
 #include "model/io/toml.h"
+#include "model/reader/scene_words.h"
 #include "model/scene/scene.h"
-#include "model/scene/scene_words.h"
 
 namespace tact::model::scene {
 namespace {
@@ -62,7 +62,7 @@ std::string hash_of_forces(const Scene& scene, const TissueLaw& law) {
   constexpr double kDepths_m[] = {0.0005, 0.002, 0.005, 0.01};
   contact::SiteLaw& site = law.site_law();
   const mesh::SurfaceMesh& organ = scene.organ_mesh;
-  TextHash hash;
+  reader::TextHash hash;
   for (const contact::ProbeSphere& s : scene.tool.spheres)
     hash.add(fmt::format("{:.6g} {:.6g} {:.6g} {:.6g}", s.offset_m.x, s.offset_m.y, s.offset_m.z,
                          s.radius_m));

@@ -14,7 +14,7 @@
 #include "model/indent/compliance_law.h"
 #include "model/io/file_writer.h"
 #include "model/io/input_file.h"
-#include "model/scene/scene_words.h"
+#include "model/reader/scene_words.h"
 
 namespace tact::model::scene {
 namespace {
@@ -159,7 +159,7 @@ std::string compliance_checksum(const std::string& path) {
 
 std::string surface_hash(const contact::SurfaceView& surface) {
   constexpr double kStep_m = 1e-7;
-  TextHash hash;
+  reader::TextHash hash;
   for (const Vec3& p : surface.vertex_m) {
     const Vec3 d = p - surface.vertex_m[0];
     for (const double x : {d.x, d.y, d.z}) hash.add(std::to_string(std::llround(x / kStep_m)));

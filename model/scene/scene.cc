@@ -7,9 +7,9 @@
 #include <filesystem>
 
 #include "model/mesh/obj.h"
+#include "model/reader/scene_words.h"
 #include "model/scene/compliance_file.h"
 #include "model/scene/scene_keys.h"
-#include "model/scene/scene_words.h"
 
 namespace tact::model::scene {
 namespace {
@@ -68,7 +68,7 @@ void vary_on_the_own_organ_only(Scene& scene) {
 
 /// Text, overrides, meshes and the compliance map if felt: the same hash, the same forces.
 std::string whole_hash(const std::string& text_hash, const Scene& scene) {
-  TextHash hash;
+  reader::TextHash hash;
   hash.add(text_hash);
   for (const mesh::SurfaceMesh* mesh : {&scene.organ_mesh, &scene.tool_mesh}) {
     const auto bytes = [&hash](const auto& list) {
@@ -82,7 +82,7 @@ std::string whole_hash(const std::string& text_hash, const Scene& scene) {
 }
 
 /// The reference, indented as a scene is; `margin` is that of the row before.
-std::string reference_line(const ReferenceRow& row, std::string& margin) {
+std::string reference_line(const reader::ReferenceRow& row, std::string& margin) {
   const std::string times = row.fallback.empty() ? "" : "; " + row.fallback;
   if (row.key.empty()) {
     margin = "  ";
@@ -99,11 +99,11 @@ std::string reference_line(const ReferenceRow& row, std::string& margin) {
 }  // namespace
 
 Result<Scene> load_scene(const std::string& path, const std::vector<std::string>& overrides) {
-  const Result<SceneDocument> document = load_scene_document(path, overrides);
+  const Result<reader::SceneDocument> document = reader::load_scene_document(path, overrides);
   if (!document) return document.error();
   SceneText text;
-  SceneVisit visit(&*document);
-  Keys::visit_root(visit, [&](Keys& root) { visit_scene(root, text); });
+  reader::SceneVisit visit(&*document);
+  reader::Keys::visit_root(visit, [&](reader::Keys& root) { visit_scene(root, text); });
   if (auto problem = visit.problem()) return *problem;
 
   Scene& scene = text.scene;
@@ -129,15 +129,15 @@ bool Scene::describes(LawKind kind) const {
 
 std::string scene_reference() {
   SceneText text;
-  SceneVisit visit(nullptr);
-  Keys::visit_root(visit, [&](Keys& root) { visit_scene(root, text); });
+  reader::SceneVisit visit(nullptr);
+  reader::Keys::visit_root(visit, [&](reader::Keys& root) { visit_scene(root, text); });
   std::string reference =
       "A scene is a TOML file. Numbers are SI; a key ends in its unit. The columns are key, "
       "allowed,\n"
       "default or required, meaning. W: +x to the operator, +y right, +z up, origin in the "
       "middle.\n\n";
   std::string margin;
-  for (const ReferenceRow& row : visit.rows()) reference += reference_line(row, margin);
+  for (const reader::ReferenceRow& row : visit.rows()) reference += reference_line(row, margin);
   return reference;
 }
 

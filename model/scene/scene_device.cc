@@ -7,17 +7,18 @@
 namespace tact::model::scene {
 namespace {
 
-constexpr Need kOptional = Need::kOptional;
+constexpr reader::Need kOptional = reader::Need::kOptional;
 
 /// A whole number that may be negative.
-void visit_whole(Keys& k, std::string_view key, Range range, const char* meaning, int& out) {
+void visit_whole(reader::Keys& k, std::string_view key, reader::Range range, const char* meaning,
+                 int& out) {
   double value = out;
   k.number(key, range, meaning, value, kOptional);
   if (value != std::floor(value)) k.refuse({key}, std::string(key) + " takes a whole number");
   out = static_cast<int>(value);
 }
 
-void visit_sim(Keys& k, SimDeviceSettings& sim) {
+void visit_sim(reader::Keys& k, SimDeviceSettings& sim) {
   k.number("counts_per_turn", {100.0, 1e8}, "encoder counts of one turn of a joint",
            sim.counts_per_turn);
   k.number("sample_delay_s", {0.0, 0.005}, "age of a sample when the loop gets it",
@@ -30,7 +31,7 @@ void visit_sim(Keys& k, SimDeviceSettings& sim) {
            sim.observer_bandwidth_Hz);
 }
 
-void visit_delta(Keys& k, DeltaSettings& d) {
+void visit_delta(reader::Keys& k, DeltaSettings& d) {
   k.number("base_radius_m", {0.01, 1.0}, "motor axes from the middle", d.base_radius_m, kOptional);
   k.number("platform_radius_m", {0.0, 1.0}, "rod ends from the middle of the platform",
            d.platform_radius_m, kOptional);
@@ -67,7 +68,7 @@ void visit_delta(Keys& k, DeltaSettings& d) {
            d.observer_bandwidth_Hz, kOptional);
 }
 
-void visit_nodes(Keys& k, CanSettings& can) {
+void visit_nodes(reader::Keys& k, CanSettings& can) {
   Vec3 node{static_cast<double>(can.node[0]), static_cast<double>(can.node[1]),
             static_cast<double>(can.node[2])};
   k.vector("node", {0.0, 127.0}, "of the drives of arms 1, 2, 3", node, kOptional);
@@ -78,10 +79,11 @@ void visit_nodes(Keys& k, CanSettings& can) {
     k.refuse({"node"}, "device.can.node needs three different whole numbers, as [1, 2, 3]");
 }
 
-void visit_can(Keys& k, CanSettings& can) {
-  constexpr std::array kHoming{Choice{"absolute", "absolute encoders, zero_turns holds for good"},
-                               Choice{"index", "the drives look for the index pulse at start"},
-                               Choice{"jig", "the arms rest at home_rad when tactd starts"}};
+void visit_can(reader::Keys& k, CanSettings& can) {
+  constexpr std::array kHoming{
+      reader::Choice{"absolute", "absolute encoders, zero_turns holds for good"},
+      reader::Choice{"index", "the drives look for the index pulse at start"},
+      reader::Choice{"jig", "the arms rest at home_rad when tactd starts"}};
   k.text("interface", "of the bus, as ip link shows it", can.interface, kOptional);
   visit_nodes(k, can);
   auto homing = static_cast<std::size_t>(can.homing);
@@ -111,9 +113,10 @@ void visit_can(Keys& k, CanSettings& can) {
          can.command_at_sync, kOptional);
 }
 
-void visit_falcon(Keys& k, FalconSettings& f) {
-  constexpr std::array kTransports{Choice{"usbfs", "the kernel's own requests, none allocated"},
-                                   Choice{"libusb", "the library's transfers, in its thread"}};
+void visit_falcon(reader::Keys& k, FalconSettings& f) {
+  constexpr std::array kTransports{
+      reader::Choice{"usbfs", "the kernel's own requests, none allocated"},
+      reader::Choice{"libusb", "the library's transfers, in its thread"}};
   auto transport = static_cast<std::size_t>(f.transport);
   k.choice("transport", kTransports, "who carries the packets", transport, kOptional);
   f.transport = static_cast<UsbTransport>(transport);
@@ -139,7 +142,7 @@ void visit_falcon(Keys& k, FalconSettings& f) {
            f.joint_damping_Nms_per_rad, kOptional);
 }
 
-void visit_force_dimension(Keys& k, ForceDimensionSettings& f) {
+void visit_force_dimension(reader::Keys& k, ForceDimensionSettings& f) {
   k.text("library", "the maker's, by name or path", f.library, kOptional);
   visit_whole(k, "id", {-1.0, 15.0}, "of the device, -1: the only one", f.id);
   k.number("watchdog_s", {0.001, 0.0318}, "without a force for so long the device lets go",
@@ -149,11 +152,11 @@ void visit_force_dimension(Keys& k, ForceDimensionSettings& f) {
            kOptional);
 }
 
-void visit_line(Keys& k, std::string_view key, const char* meaning, int& offset) {
+void visit_line(reader::Keys& k, std::string_view key, const char* meaning, int& offset) {
   visit_whole(k, key, {-1.0, 511.0}, meaning, offset);
 }
 
-void visit_lines(Keys& k, LinesSettings& lines) {
+void visit_lines(reader::Keys& k, LinesSettings& lines) {
   k.text("chip", "label of the GPIO chip, as gpiodetect shows it, or its path", lines.chip,
          kOptional);
   visit_line(k, "estop_a", "in, high = good, channel A of the e-stop; -1: none", lines.estop_a);
@@ -170,25 +173,28 @@ void visit_lines(Keys& k, LinesSettings& lines) {
 
 }  // namespace
 
-void visit_device(Keys& k, DeviceSettings& out) {
+void visit_device(reader::Keys& k, DeviceSettings& out) {
   k.text("kind", "sim-delta is the simulated device; tactd --list-devices", out.kind);
   const bool simulated = out.kind.empty() || out.kind == "sim-delta";
   k.section(
-      "sim", "imperfections of the simulated device", [&](Keys& sim) { visit_sim(sim, out.sim); },
-      simulated ? Need::kRequired : kOptional);
+      "sim", "imperfections of the simulated device",
+      [&](reader::Keys& sim) { visit_sim(sim, out.sim); },
+      simulated ? reader::Need::kRequired : kOptional);
   k.section(
-      "delta", "a delta on CAN", [&](Keys& delta) { visit_delta(delta, out.delta); }, kOptional);
-  k.section(
-      "can", "its drives, can-odrive or can-cia402", [&](Keys& can) { visit_can(can, out.can); },
+      "delta", "a delta on CAN", [&](reader::Keys& delta) { visit_delta(delta, out.delta); },
       kOptional);
   k.section(
-      "falcon", "a Novint Falcon", [&](Keys& falcon) { visit_falcon(falcon, out.falcon); },
+      "can", "its drives, can-odrive or can-cia402",
+      [&](reader::Keys& can) { visit_can(can, out.can); }, kOptional);
+  k.section(
+      "falcon", "a Novint Falcon", [&](reader::Keys& falcon) { visit_falcon(falcon, out.falcon); },
       kOptional);
   k.section(
       "force_dimension", "a device with the maker's library",
-      [&](Keys& keys) { visit_force_dimension(keys, out.force_dimension); }, kOptional);
+      [&](reader::Keys& keys) { visit_force_dimension(keys, out.force_dimension); }, kOptional);
   k.section(
-      "lines", "safety lines", [&](Keys& lines) { visit_lines(lines, out.lines); }, kOptional);
+      "lines", "safety lines", [&](reader::Keys& lines) { visit_lines(lines, out.lines); },
+      kOptional);
 }
 
 }  // namespace tact::model::scene

@@ -5,10 +5,10 @@
 #include <string>
 
 #include "model/device_settings.h"
-#include "model/scene/scene_reader.h"
+#include "model/reader/scene_reader.h"
 
 namespace tact::model::scene {
 
-void visit_device(Keys& keys, DeviceSettings& out);
+void visit_device(reader::Keys& keys, DeviceSettings& out);
 
 }  // namespace tact::model::scene

@@ -12,28 +12,29 @@ namespace {
 
 constexpr std::size_t kMostStrokes = 64;
 
-void visit_mesh(Keys& k, MeshText& mesh) {
+void visit_mesh(reader::Keys& k, MeshText& mesh) {
   mesh.place = k.place_of("mesh");
   k.text("mesh", "OBJ file, absolute or from the folder of the scene", mesh.file);
   k.number("mesh_unit_m", {1e-6, 1.0}, "length of one unit of the file", mesh.unit_m,
-           Need::kOptional);
+           reader::Need::kOptional);
 }
 
-void visit_tool(Keys& k, SceneText& out) {
+void visit_tool(reader::Keys& k, SceneText& out) {
   visit_mesh(k, out.tool_mesh);
-  k.entries("sphere", {1, contact::kMaxSpheres}, "what touches the organ", [&](Keys& sphere) {
-    contact::ProbeSphere& probe = out.scene.tool.spheres.emplace_back();
-    sphere.vector("offset_m", {-0.2, 0.2}, "of the centre from the tool's origin, tool frame",
-                  probe.offset_m);
-    sphere.number("radius_m", {5e-4, 0.05}, "of the sphere", probe.radius_m);
-  });
+  k.entries("sphere", {1, contact::kMaxSpheres}, "what touches the organ",
+            [&](reader::Keys& sphere) {
+              contact::ProbeSphere& probe = out.scene.tool.spheres.emplace_back();
+              sphere.vector("offset_m", {-0.2, 0.2},
+                            "of the centre from the tool's origin, tool frame", probe.offset_m);
+              sphere.number("radius_m", {5e-4, 0.05}, "of the sphere", probe.radius_m);
+            });
   contact::Blade blade;
-  const auto visit_blade = [&](Keys& keys) {
+  const auto visit_blade = [&](reader::Keys& keys) {
     keys.vector("from_m", {-0.2, 0.2}, "one end of the edge, tool frame", blade.a_m);
     keys.vector("to_m", {-0.2, 0.2}, "the other end", blade.b_m);
   };
   if (k.section("blade", "a cutting edge, for law = \"spring_patch\"", visit_blade,
-                Need::kOptional)) {
+                reader::Need::kOptional)) {
     out.scene.tool.blade = blade;
     const LawKind law = out.scene.law;
     if (law != LawKind::kSpringPatch && law != LawKind::kAuto)
@@ -43,17 +44,17 @@ void visit_tool(Keys& k, SceneText& out) {
   }
 }
 
-void visit_contact(Keys& k, contact::ContactParameters& c) {
+void visit_contact(reader::Keys& k, contact::ContactParameters& c) {
   k.number("friction_ratio", {0.0, 2.0}, "largest sliding force over normal force",
            c.friction_ratio);
   k.number("sliding_stiffness_N_per_m", {0.0, 5000.0}, "of tissue along the surface; 0: its own",
-           c.sliding_stiffness_N_per_m, Need::kOptional);
+           c.sliding_stiffness_N_per_m, reader::Need::kOptional);
   k.number("tear_force_N", {0.01, 20.0}, "a held site lets go above it, for each sphere",
            c.tear_force_N);
   k.number("grip_close_ratio", {0.05, 1.0}, "closing the grip above it holds the tissue",
-           c.grip_close_ratio, Need::kOptional);
+           c.grip_close_ratio, reader::Need::kOptional);
   k.number("grip_open_ratio", {0.0, 0.95}, "opening the grip below it lets go; < grip_close_ratio",
-           c.grip_open_ratio, Need::kOptional);
+           c.grip_open_ratio, reader::Need::kOptional);
   if (!(c.grip_open_ratio < c.grip_close_ratio)) {
     k.refuse(
         {"grip_open_ratio", "grip_close_ratio"},
@@ -64,7 +65,7 @@ void visit_contact(Keys& k, contact::ContactParameters& c) {
   }
 }
 
-void visit_hand(Keys& k, SceneText& out) {
+void visit_hand(reader::Keys& k, SceneText& out) {
   contact::HandSettings& hand = out.scene.hand;
   HandScript& script = out.script;
   k.number("mass_kg", {0.01, 2.0}, "of the hand that moves with the handle", hand.mass_kg);
@@ -79,33 +80,33 @@ void visit_hand(Keys& k, SceneText& out) {
   if (!(norm(script.inward) > 0.0))
     k.refuse({"inward"}, "hand.inward has no direction; allowed: any length but 0");
   k.entries("stroke", {0, kMostStrokes}, "what the hand does, in this order",
-            [&](Keys& stroke) { visit_stroke(stroke, script.strokes.emplace_back()); });
+            [&](reader::Keys& stroke) { visit_stroke(stroke, script.strokes.emplace_back()); });
   script.repeat = hand.repeat;
   script.home_place = k.place_of("home_m");
 }
 
 }  // namespace
 
-void visit_scene(Keys& k, SceneText& out) {
+void visit_scene(reader::Keys& k, SceneText& out) {
   Scene& scene = out.scene;
   k.text("name", "of the scene, shown by the viewer", scene.name);
   k.number("rate_Hz", {100.0, 10000.0}, "ticks of the control loop", scene.rate_Hz);
   visit_laws(k, out);
   visit_law_options(k, scene);
   visit_truth(k, scene);
-  k.section("organ", "what is touched", [&](Keys& organ) {
+  k.section("organ", "what is touched", [&](reader::Keys& organ) {
     visit_mesh(organ, out.organ_mesh);
     organ.vector("position_m", {-1.0, 1.0}, "of the mesh's origin, in W", scene.organ.position_m);
   });
-  k.section("tool", "what touches it", [&](Keys& tool) { visit_tool(tool, out); });
+  k.section("tool", "what touches it", [&](reader::Keys& tool) { visit_tool(tool, out); });
   k.section("contact", "between tool and organ",
-            [&](Keys& contact) { visit_contact(contact, scene.contact); });
+            [&](reader::Keys& contact) { visit_contact(contact, scene.contact); });
   k.section("device", "what the hand holds",
-            [&](Keys& device) { visit_device(device, scene.device); });
-  k.section("hand", "the simulated hand", [&](Keys& hand) { visit_hand(hand, out); });
+            [&](reader::Keys& device) { visit_device(device, scene.device); });
+  k.section("hand", "the simulated hand", [&](reader::Keys& hand) { visit_hand(hand, out); });
   k.section("limits", "what the gate lets through",
-            [&](Keys& limits) { visit_limits(limits, scene.rate_Hz, scene.limits); });
-  k.section("telemetry", "what the viewer gets", [&](Keys& telemetry) {
+            [&](reader::Keys& limits) { visit_limits(limits, scene.rate_Hz, scene.limits); });
+  k.section("telemetry", "what the viewer gets", [&](reader::Keys& telemetry) {
     telemetry.number("frame_rate_Hz", {1.0, 240.0}, "frames for the viewer", scene.frame_rate_Hz);
   });
 }

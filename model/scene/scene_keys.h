@@ -9,8 +9,8 @@
 
 #include <string>
 
+#include "model/reader/scene_reader.h"
 #include "model/scene/scene.h"
-#include "model/scene/scene_reader.h"
 #include "model/scene/scene_strokes.h"
 
 namespace tact::model::scene {
@@ -19,13 +19,13 @@ namespace tact::model::scene {
 struct MeshText {
   std::string file;  // relative to the scene file
   double unit_m = 0.001;
-  TextPlace place;
+  reader::TextPlace place;
 };
 
 /// Another file as the scene names it.
 struct FileText {
   std::string file;  // relative to the scene file
-  TextPlace place;
+  reader::TextPlace place;
 };
 
 /// A scene before its meshes are read and its strokes become way points.
@@ -38,6 +38,6 @@ struct SceneText {
 };
 
 /// Reads every key into `out`, or describes them all.
-void visit_scene(Keys& root, SceneText& out);
+void visit_scene(reader::Keys& root, SceneText& out);
 
 }  // namespace tact::model::scene

@@ -8,10 +8,10 @@
 namespace tact::model::scene {
 
 /// `law` and the sections of all laws; the chosen one must be there.
-void visit_laws(Keys& root, SceneText& out);
+void visit_laws(reader::Keys& root, SceneText& out);
 /// [pull] and [relaxation], of any law.
-void visit_law_options(Keys& root, Scene& scene);
+void visit_law_options(reader::Keys& root, Scene& scene);
 /// [elastic], [[reference_site]] and [tolerance]: what tact-reference, tact-fit and tact-plan ask.
-void visit_truth(Keys& root, Scene& scene);
+void visit_truth(reader::Keys& root, Scene& scene);
 
 }  // namespace tact::model::scene

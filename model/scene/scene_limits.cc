@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kStaleFade_s = 0.010;  // a lost device must fade to zero in this time
 
-void visit_keys(Keys& k, Limits& limits) {
+void visit_keys(reader::Keys& k, Limits& limits) {
   k.number("force_N", {0.0, 20.0}, "largest force on the hand", limits.force_N);
   k.number("torque_Nm", {0.0, 2.0}, "largest torque on the hand", limits.torque_Nm);
   k.number("slew_N_per_s", {1.0, 1e4}, "largest change of the force", limits.slew_N_per_s);
@@ -21,26 +21,26 @@ void visit_keys(Keys& k, Limits& limits) {
   k.number("workspace_half_length_m", {0.01, 0.5}, "of the cylinder, from the origin of W",
            limits.workspace_half_length_m);
   k.number("speed_mps", {0.05, 10.0}, "faster, the force fades to zero", limits.speed_mps,
-           Need::kOptional);
+           reader::Need::kOptional);
   k.number("turn_radps", {0.5, 100.0}, "turning faster, the force fades to zero", limits.turn_radps,
-           Need::kOptional);
+           reader::Need::kOptional);
   k.number("energy_J", {1e-3, 10.0}, "given to the hand since arming beyond what was taken",
-           limits.energy_J, Need::kOptional);
+           limits.energy_J, reader::Need::kOptional);
   k.number("recovery_W", {0.0, 1.0}, "of that budget; shaking that takes no more is not damped",
-           limits.recovery_W, Need::kOptional);
+           limits.recovery_W, reader::Need::kOptional);
   k.number("continuous_force_N", {0.1, 20.0},
            "largest RMS of the force, at most force_N; torque in proportion",
-           limits.continuous_force_N, Need::kOptional);
+           limits.continuous_force_N, reader::Need::kOptional);
   k.number("thermal_time_s", {0.1, 1000.0}, "time constant of that RMS", limits.thermal_time_s,
-           Need::kOptional);
+           reader::Need::kOptional);
   k.number("power_W", {0.1, 100.0}, "largest power on the hand; held to three quarters of it",
-           limits.power_W, Need::kOptional);
+           limits.power_W, reader::Need::kOptional);
 }
 
 /// Rounded up to what a person would write.
 double rounded_up(double value) { return std::ceil(1e3 * value) * 1e-3; }
 
-void refuse_slow_slew(Keys& k, const Limits& limits) {
+void refuse_slow_slew(reader::Keys& k, const Limits& limits) {
   // The gate keeps force_N / ramp_s of the slew for its ramp.
   const double least_N_per_s = limits.force_N / kStaleFade_s + limits.force_N / limits.ramp_s;
   if (limits.slew_N_per_s >= least_N_per_s) return;
@@ -57,7 +57,7 @@ double slew_N_per_s(const Limits& limits) {
 
 // The energy that the largest force gives at the largest speed while it falls at the slew must be
 // there before the force is (firmware/gate/energy_tank.h); else the scene's force is never reached.
-void refuse_small_budget(Keys& k, double rate_Hz, const Limits& limits) {
+void refuse_small_budget(reader::Keys& k, double rate_Hz, const Limits& limits) {
   const double force_N = limits.force_N;
   if (!(force_N > 0.0 && rate_Hz > 0.0)) return;
   const double speed_mps = limits.speed_mps + limits.torque_Nm / force_N * limits.turn_radps;
@@ -73,7 +73,7 @@ void refuse_small_budget(Keys& k, double rate_Hz, const Limits& limits) {
 
 // The allowed force must fall no faster than the slew, and not below what is continuous
 // (firmware/gate/thermal_limit.h).
-void refuse_fast_heat(Keys& k, double rate_Hz, const Limits& limits) {
+void refuse_fast_heat(reader::Keys& k, double rate_Hz, const Limits& limits) {
   const double peak_N = limits.force_N;
   const double continuous_N = std::min(limits.continuous_force_N, peak_N);
   if (!(continuous_N > 0.0 && rate_Hz > 0.0)) return;
@@ -90,7 +90,7 @@ void refuse_fast_heat(Keys& k, double rate_Hz, const Limits& limits) {
 
 }  // namespace
 
-void visit_limits(Keys& k, double rate_Hz, Limits& limits) {
+void visit_limits(reader::Keys& k, double rate_Hz, Limits& limits) {
   visit_keys(k, limits);
   refuse_slow_slew(k, limits);
   refuse_small_budget(k, rate_Hz, limits);

@@ -3,11 +3,11 @@
 // Set-up code.
 #pragma once
 
+#include "model/reader/scene_reader.h"
 #include "model/scene/scene.h"
-#include "model/scene/scene_reader.h"
 
 namespace tact::model::scene {
 
-void visit_limits(Keys& k, double rate_Hz, Limits& limits);
+void visit_limits(reader::Keys& k, double rate_Hz, Limits& limits);
 
 }  // namespace tact::model::scene

@@ -16,13 +16,14 @@ namespace tact::model::scene {
 namespace {
 
 constexpr std::array kActions{
-    Choice{"press", "move straight to depth_m below the touched point"},
-    Choice{"hold", "stay"},
-    Choice{"slide", "move along by offset_m"},
-    Choice{"release", "open the grip in the first quarter of the time, then return to home_m"},
-    Choice{"grip", "close the grip"},
-    Choice{"pull", "move outward to height_m above the surface, with the grip closed"},
-    Choice{"tear", "pull so far that the tear force is passed and the tissue lets go"},
+    reader::Choice{"press", "move straight to depth_m below the touched point"},
+    reader::Choice{"hold", "stay"},
+    reader::Choice{"slide", "move along by offset_m"},
+    reader::Choice{"release",
+                   "open the grip in the first quarter of the time, then return to home_m"},
+    reader::Choice{"grip", "close the grip"},
+    reader::Choice{"pull", "move outward to height_m above the surface, with the grip closed"},
+    reader::Choice{"tear", "pull so far that the tear force is passed and the tissue lets go"},
 };
 constexpr std::array kActionOf{Action::kPress, Action::kHold, Action::kSlide, Action::kRelease,
                                Action::kGrip,  Action::kPull, Action::kTear};
@@ -31,8 +32,8 @@ static_assert(kActions.size() == kActionOf.size());
 // A grip that opened on the way home would pull at the tissue before it lets go.
 constexpr double kOpeningRatio = 0.25;
 
-constexpr Range kDurations_s{0.05, 60.0};
-constexpr Range kHeights_m{0.0, 0.1};
+constexpr reader::Range kDurations_s{0.05, 60.0};
+constexpr reader::Range kHeights_m{0.0, 0.1};
 
 /// Error: the hand cannot be there.
 std::optional<Error> check_place(const Vec3& p, const Limits& limits) {
@@ -108,7 +109,7 @@ class Writer {
 
 }  // namespace
 
-void visit_stroke(Keys& keys, Stroke& stroke) {
+void visit_stroke(reader::Keys& keys, Stroke& stroke) {
   stroke.place = keys.place_of("action");
   keys.one_of("action", kActions, [&](std::size_t index) {
     stroke.action = kActionOf[index];
@@ -142,9 +143,9 @@ double reach_m(std::span<const contact::ProbeSphere> spheres, const Vec3& inward
 }
 
 std::vector<contact::HandWaypoint> way_points(const HandScript& script, double reach_m,
-                                              const Limits& limits, SceneVisit& visit) {
-  const auto refuse = [&](const TextPlace& place, const std::string& why) {
-    visit.note(ProblemKind::kConflict, place, why);
+                                              const Limits& limits, reader::SceneVisit& visit) {
+  const auto refuse = [&](const reader::TextPlace& place, const std::string& why) {
+    visit.note(reader::ProblemKind::kConflict, place, why);
   };
   if (const std::optional<Error> error = check_place(script.home_m, limits))
     refuse(script.home_place, "hand.home_m is " + error->sentence);

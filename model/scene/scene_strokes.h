@@ -18,7 +18,7 @@
 #include "model/contact/contact.h"
 #include "model/contact/hand_path.h"
 #include "model/limits.h"
-#include "model/scene/scene_reader.h"
+#include "model/reader/scene_reader.h"
 
 namespace tact::model::scene {
 
@@ -27,10 +27,10 @@ enum class Action { kPress, kHold, kSlide, kRelease, kGrip, kPull, kTear };
 struct Stroke {
   Action action = Action::kHold;
   double duration_s = 0.0;
-  double depth_m = 0.0;   // press
-  double height_m = 0.0;  // pull, tear
-  Vec3 offset_m{};        // slide
-  TextPlace place{};      // in the scene file
+  double depth_m = 0.0;       // press
+  double height_m = 0.0;      // pull, tear
+  Vec3 offset_m{};            // slide
+  reader::TextPlace place{};  // in the scene file
 };
 
 struct HandScript {
@@ -39,11 +39,11 @@ struct HandScript {
   Vec3 inward;  // any length but zero
   bool repeat = false;
   std::vector<Stroke> strokes;
-  TextPlace home_place;  // in the scene file
+  reader::TextPlace home_place;  // in the scene file
 };
 
 /// The keys of one [[hand.stroke]].
-void visit_stroke(Keys& keys, Stroke& stroke);
+void visit_stroke(reader::Keys& keys, Stroke& stroke);
 
 /// How far the tool stands out from its origin along a unit direction, m.
 double reach_m(std::span<const contact::ProbeSphere> spheres, const Vec3& inward);
@@ -51,6 +51,6 @@ double reach_m(std::span<const contact::ProbeSphere> spheres, const Vec3& inward
 /// From home through every stroke. Home and the end of each stroke lie inside the workspace, a pull
 /// follows a grip, and a script that repeats ends at home; otherwise a conflict is noted.
 std::vector<contact::HandWaypoint> way_points(const HandScript& script, double reach_m,
-                                              const Limits& limits, SceneVisit& visit);
+                                              const Limits& limits, reader::SceneVisit& visit);
 
 }  // namespace tact::model::scene

@@ -7,7 +7,7 @@ import re
 
 CONTACT = ["model", "model/law", "model/contact"]
 SURFACE_LAWS = [*CONTACT, "model/indent", "model/tissue", "model/springs"]
-SCENE = [*SURFACE_LAWS, "model/io", "model/mesh", "model/scene"]
+SCENE = [*SURFACE_LAWS, "model/io", "model/mesh", "model/reader", "model/scene"]
 DELTA = ["model", "hal", "hal/delta"]
 DEVICES = ["hal/sim", "hal/odrive", "hal/cia402", "hal/falcon_usb", "hal/force_dimension"]
 LOOP = [*CONTACT, "hal", "firmware/gate"]
@@ -22,7 +22,8 @@ ROOMS = {
     "model/tissue": [*CONTACT, "model/indent"],
     "model/springs": CONTACT,
     "model/mesh": ["model", "model/contact", "model/io"],
-    "model/scene": [*SURFACE_LAWS, "model/io", "model/mesh"],
+    "model/reader": ["model", "model/io"],
+    "model/scene": [*SURFACE_LAWS, "model/io", "model/mesh", "model/reader"],
     "model/fem": SCENE,
     "hal": ["model", "model/io"],
     "hal/delta": ["model", "hal"],
@@ -70,7 +71,7 @@ SINGLE_HEADERS = {
     ("host/run", "hal/sim"): {"hand_target.h"},
 }
 # Read and write files, allocate, take their time; no room of the loop reaches them by any way.
-OFFLINE = ("model/io/", "model/mesh/", "model/fem/", "model/scene/")
+OFFLINE = ("model/io/", "model/mesh/", "model/fem/", "model/reader/", "model/scene/")
 LOOP_ROOMS = ("firmware/gate", "firmware/loop", "firmware/watch")
 OURS = re.compile(r'^\s*#include "([^"]+)"', re.M)
 NAMESPACE = re.compile(r"^namespace (tact(?:::\w+)+) \{", re.M)

@@ -9,7 +9,7 @@
 #include "firmware/pc/environment.h"
 #include "model/io/file_writer.h"
 #include "model/io/input_file.h"
-#include "model/scene/scene_words.h"
+#include "model/reader/scene_words.h"
 #include "tools/chart/chart.h"
 #include "tools/chart/pictures.h"
 #include "tools/chart/report.h"
@@ -55,7 +55,7 @@ void add_options(CLI::App& app, Options& o) {
 
 /// Of all that was given, in this order.
 std::string hash_of_references(const Options& o) {
-  tact::model::scene::TextHash hash;
+  tact::model::reader::TextHash hash;
   for (const std::string& path : {o.reference, o.tool_reference}) {
     if (path.empty()) continue;
     const auto text = tact::model::io::read_file(path);

@@ -10,7 +10,7 @@
 
 #include "model/io/file_writer.h"
 #include "model/io/json.h"
-#include "model/scene/scene_words.h"
+#include "model/reader/scene_words.h"
 #include "tools/reference/contact_radius.h"
 
 namespace tact::tools::reference {
@@ -31,7 +31,7 @@ constexpr int kFallRings = 17;
 std::string text_of(const Vec3& v) { return fmt::format("{:.9g} {:.9g} {:.9g}", v.x, v.y, v.z); }
 
 std::string hash_of(const std::string& text) {
-  model::scene::TextHash hash;
+  model::reader::TextHash hash;
   hash.add(text);
   return hash.hex();
 }
@@ -116,7 +116,7 @@ std::string default_cache_directory() {
 }
 
 std::string mesh_hash(const model::mesh::SurfaceMesh& mesh) {
-  model::scene::TextHash hash;
+  model::reader::TextHash hash;
   for (const Vec3& p : mesh.vertex_m) {
     hash.add(fmt::format("{} {} {}", std::llround(p.x * 1e9), std::llround(p.y * 1e9),
                          std::llround(p.z * 1e9)));

@@ -12,7 +12,7 @@
 #include <limits>
 #include <set>
 
-#include "model/scene/scene_words.h"
+#include "model/reader/scene_words.h"
 #include "model/scene/tissue_law.h"
 
 namespace tact::model::scene::scene_keys_test {
@@ -21,10 +21,10 @@ const std::string kScenes = TACT_SOURCE_DIR "/model/scenes/";
 const std::string kLiver = kScenes + "liver.toml";
 const std::string kDevices = TACT_SOURCE_DIR "/tools/deploy/devices.toml";
 
-std::vector<ReferenceRow> reference_rows() {
+std::vector<reader::ReferenceRow> reference_rows() {
   SceneText text;
-  SceneVisit visit(nullptr);
-  Keys::visit_root(visit, [&](Keys& root) { visit_scene(root, text); });
+  reader::SceneVisit visit(nullptr);
+  reader::Keys::visit_root(visit, [&](reader::Keys& root) { visit_scene(root, text); });
   EXPECT_FALSE(visit.problem());
   return visit.rows();
 }
@@ -46,7 +46,7 @@ std::set<std::string> keys_of_shipped_scenes() {
   std::set<std::string> keys;
   for (const std::string& path : {kLiver, kScenes + "heart.toml", kScenes + "skin.toml",
                                   kScenes + "gum.toml", kScenes + "maintenance.toml", kDevices}) {
-    const Result<SceneDocument> document = load_scene_document(path, {});
+    const Result<reader::SceneDocument> document = reader::load_scene_document(path, {});
     EXPECT_TRUE(document) << document.error().sentence;
     if (document) collect(document->root, "", keys);
   }
@@ -61,7 +61,7 @@ std::string joined(const std::set<std::string>& keys) {
 
 TEST(SceneReference, HasEveryKeyOfTheShippedScenesAndTheyHaveEveryKey) {
   std::set<std::string> reference;
-  for (const ReferenceRow& row : reference_rows()) {
+  for (const reader::ReferenceRow& row : reference_rows()) {
     if (row.key.empty()) continue;
     reference.insert(row.section.empty() ? row.key : row.section + "." + row.key);
   }
@@ -95,7 +95,7 @@ TEST(SceneReference, TheSectionsOfRealDevicesHoldTheDefaultsAndFitAScene) {
 }
 
 TEST(SceneReference, SaysOfEveryKeyWhatIsAllowedAndWhatItMeans) {
-  for (const ReferenceRow& row : reference_rows()) {
+  for (const reader::ReferenceRow& row : reference_rows()) {
     EXPECT_FALSE(row.allowed.empty()) << row.section << "." << row.key;
     EXPECT_FALSE(row.meaning.empty()) << row.section << "." << row.key;
     if (row.allowed.find(" .. ") == std::string::npos || row.key.empty()) continue;
@@ -105,13 +105,13 @@ TEST(SceneReference, SaysOfEveryKeyWhatIsAllowedAndWhatItMeans) {
         row.key == "inward" || row.key.starts_with("counts_per_") || row.key == "sphere" ||
         row.key == "node" || row.key == "exponent" || row.key == "direction" || row.key == "id" ||
         row.section == "device.lines" || row.key == "reference_site" || row.key == "relaxation";
-    EXPECT_EQ(unit_of_key(row.key).empty(), named) << row.section << "." << row.key;
+    EXPECT_EQ(reader::unit_of_key(row.key).empty(), named) << row.section << "." << row.key;
   }
 }
 
 TEST(SceneReference, IsAPageWithEveryRow) {
   const std::string page = scene_reference();
-  for (const ReferenceRow& row : reference_rows()) {
+  for (const reader::ReferenceRow& row : reference_rows()) {
     const auto at = page.find(row.key.empty() ? "\n" + row.allowed : row.key + " ");
     EXPECT_NE(at, page.npos) << row.section << "." << row.key;
     EXPECT_NE(page.find(row.meaning), page.npos) << row.meaning;

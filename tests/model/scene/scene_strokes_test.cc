@@ -21,8 +21,8 @@ struct Written {
 };
 
 Written write(std::vector<Stroke> strokes, bool repeat = false) {
-  const SceneDocument document;
-  SceneVisit visit(&document);
+  const reader::SceneDocument document;
+  reader::SceneVisit visit(&document);
   for (std::size_t i = 0; i < strokes.size(); ++i) {
     const auto line = static_cast<std::uint32_t>(i + 1);
     strokes[i].place = {"s:" + std::to_string(line), line};

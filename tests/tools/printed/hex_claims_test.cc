@@ -13,7 +13,7 @@
 namespace tact::tools::printed::hex_claims_test {
 
 using namespace model;       // NOLINT(google-build-using-namespace): units
-using namespace model::law;  // NOLINT(google-build-using-namespace): the law beside its print
+using namespace model::indent;  // NOLINT(google-build-using-namespace): the law beside its print
 
 constexpr double kPitch_m = 2_mm;
 constexpr double kBody_N_per_m = 50.0;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/scene/scene_values.h"
+#include "model/reader/scene_values.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "model/scene/scene_words.h"
+#include "model/reader/scene_words.h"
 
-namespace tact::model::scene {
+namespace tact::model::reader {
 
 std::string_view type_name(const toml::node& node) {
   switch (node.type()) {
@@ -83,4 +83,4 @@ Result<bool> as_flag(const toml::node& node) {
   return node.as_boolean()->get();
 }
 
-}  // namespace tact::model::scene
+}  // namespace tact::model::reader

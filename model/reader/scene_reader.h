@@ -16,12 +16,12 @@
 #include <string_view>
 #include <vector>
 
+#include "model/reader/scene_document.h"
+#include "model/reader/scene_values.h"
 #include "model/result.h"
-#include "model/scene/scene_document.h"
-#include "model/scene/scene_values.h"
 #include "model/types.h"
 
-namespace tact::model::scene {
+namespace tact::model::reader {
 
 /// One of the texts that a key may have.
 struct Choice {
@@ -126,4 +126,4 @@ class Keys {
   bool all_named_ = true;  // false: which keys are allowed could not be decided
 };
 
-}  // namespace tact::model::scene
+}  // namespace tact::model::reader

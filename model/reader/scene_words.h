@@ -15,7 +15,7 @@
 #include "model/fnv1a.h"
 #include "model/io/one_line.h"
 
-namespace tact::model::scene {
+namespace tact::model::reader {
 
 /// Unit of a key for people: "N/m" of tear_N_per_m, "" of a key without one.
 std::string_view unit_of_key(std::string_view key);
@@ -39,4 +39,4 @@ class TextHash {
   std::uint64_t hash_ = kFnvStart;
 };
 
-}  // namespace tact::model::scene
+}  // namespace tact::model::reader

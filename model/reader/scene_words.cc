@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/scene/scene_words.h"
+#include "model/reader/scene_words.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-namespace tact::model::scene {
+namespace tact::model::reader {
 namespace {
 
 struct UnitName {
@@ -95,4 +95,4 @@ void TextHash::add(std::string_view text) {
 
 std::string TextHash::hex() const { return fmt::format("{:016x}", hash_); }
 
-}  // namespace tact::model::scene
+}  // namespace tact::model::reader

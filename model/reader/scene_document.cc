@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/scene/scene_document.h"
+#include "model/reader/scene_document.h"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,9 @@
 
 #include "model/io/input_file.h"
 #include "model/io/toml.h"
-#include "model/scene/scene_words.h"
+#include "model/reader/scene_words.h"
 
-namespace tact::model::scene {
+namespace tact::model::reader {
 namespace {
 
 constexpr std::uintmax_t kLargestFile_bytes = 1'000'000;
@@ -137,4 +137,4 @@ Result<SceneDocument> load_scene_document(const std::string& path,
   return SceneDocument{.path = path, .root = std::move(*root), .hash = hash.hex()};
 }
 
-}  // namespace tact::model::scene
+}  // namespace tact::model::reader

@@ -15,7 +15,7 @@
 
 #include "model/result.h"
 
-namespace tact::model::scene {
+namespace tact::model::reader {
 
 struct TextPlace {
   std::string where;       // "liver.toml:12" or "--set key=value"
@@ -34,4 +34,4 @@ struct SceneDocument {
 Result<SceneDocument> load_scene_document(const std::string& path,
                                           const std::vector<std::string>& overrides);
 
-}  // namespace tact::model::scene
+}  // namespace tact::model::reader

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a scene says when a key is wrong depends on reading names as people do.
-#include "model/scene/scene_words.h"
+#include "model/reader/scene_words.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
-namespace tact::model::scene::scene_words_test {
+namespace tact::model::reader::scene_words_test {
 
 TEST(SceneWords, ReadTheUnitFromTheEndOfAKey) {
   EXPECT_EQ(unit_of_key("depth_m"), "m");
@@ -64,4 +64,4 @@ TEST(SceneWords, HashIsFnv1aOfTheTextAndItsEnd) {
   EXPECT_NE(ab.hex(), a_b.hex()) << "where a text ends matters";
 }
 
-}  // namespace tact::model::scene::scene_words_test
+}  // namespace tact::model::reader::scene_words_test

@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 // Overrides are part of the scene: read as strictly, and told by what was typed.
-#include "model/scene/scene_document.h"
+#include "model/reader/scene_document.h"
 
 #include <gtest/gtest.h>
 
 #include "model/scene/scene.h"
 
-namespace tact::model::scene::scene_document_test {
+namespace tact::model::reader::scene_document_test {
 
 const std::string kPlain = TACT_SOURCE_DIR "/tests/data/scenes/plain.toml";
 
 std::string complaint(const std::vector<std::string>& overrides) {
-  const Result<Scene> scene = load_scene(kPlain, overrides);
+  const Result<scene::Scene> scene = scene::load_scene(kPlain, overrides);
   if (scene) return "";
   EXPECT_EQ(scene.error().sentence.find('\n'), std::string::npos) << scene.error().sentence;
   return scene.error().sentence;
 }
 
 TEST(Override, SetsNumbersTextFlagsAndArrays) {
-  const Result<Scene> scene =
-      load_scene(kPlain, {"rate_Hz=2000", "name=a word", "name=\"two words\"", "hand.repeat=true",
-                          "organ.position_m=[0.01, 0, -2e-2]", "table_knots=129",
-                          "device.kind=none/of-this.world"});
+  const Result<scene::Scene> scene =
+      scene::load_scene(kPlain, {"rate_Hz=2000", "name=a word", "name=\"two words\"",
+                                 "hand.repeat=true", "organ.position_m=[0.01, 0, -2e-2]",
+                                 "table_knots=129", "device.kind=none/of-this.world"});
   ASSERT_TRUE(scene) << scene.error().sentence;
   EXPECT_EQ(scene->rate_Hz, 2000.0);
   EXPECT_EQ(scene->name, "two words") << "the last one counts";
@@ -43,16 +43,16 @@ TEST(Override, CountsByItsMeaningNotByItsSpelling) {
 }
 
 TEST(Override, ReachesOneEntryOfAnArrayOfSections) {
-  const Result<Scene> plain = load_scene(kPlain, {});
-  const Result<Scene> scene =
-      load_scene(kPlain, {"hand.stroke.1.duration_s=7", "tool.sphere.0.radius_m=0.003"});
+  const Result<scene::Scene> plain = scene::load_scene(kPlain, {});
+  const Result<scene::Scene> scene =
+      scene::load_scene(kPlain, {"hand.stroke.1.duration_s=7", "tool.sphere.0.radius_m=0.003"});
   ASSERT_TRUE(plain && scene) << scene.error().sentence;
   EXPECT_EQ(scene->tool.spheres[0].radius_m, 0.003);
   EXPECT_NEAR(scene->hand.path.back().time_s - plain->hand.path.back().time_s, 5.0, 1e-12);
 }
 
 TEST(Override, ReplacesAWholeSectionOrArray) {
-  const Result<Scene> scene = load_scene(
+  const Result<scene::Scene> scene = scene::load_scene(
       kPlain,
       {"telemetry={frame_rate_Hz=30}", "hand.stroke=[]",
        "tool.sphere=[{offset_m=[0,0,0], radius_m=0.001}, {offset_m=[0,0,0], radius_m=0.002}]"});
@@ -140,7 +140,7 @@ TEST(Override, CannotSmuggleInASecondKey) {
 
 TEST(Override, OfTheWrongKindIsToldBeforeWhatIsWrongInTheFile) {
   const std::string bad = TACT_SOURCE_DIR "/tests/data/scenes/bad/too_small.toml";
-  const Result<Scene> scene = load_scene(bad, {"limits.force_N=99"});
+  const Result<scene::Scene> scene = scene::load_scene(bad, {"limits.force_N=99"});
   ASSERT_FALSE(scene);
   EXPECT_EQ(scene.error().sentence,
             "--set limits.force_N=99: limits.force_N = 99 is out of range; allowed: 0 .. 20 N");
@@ -157,4 +157,4 @@ TEST(SceneDocument, KnowsTheLineOfEveryNode) {
   EXPECT_EQ(document->place_of(*root["rhombus"]["units"].node()).where, "--set rhombus.units=8");
 }
 
-}  // namespace tact::model::scene::scene_document_test
+}  // namespace tact::model::reader::scene_document_test

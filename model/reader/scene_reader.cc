@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/scene/scene_reader.h"
+#include "model/reader/scene_reader.h"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,10 @@
 #include <tuple>
 #include <utility>
 
-#include "model/scene/scene_values.h"
-#include "model/scene/scene_words.h"
+#include "model/reader/scene_values.h"
+#include "model/reader/scene_words.h"
 
-namespace tact::model::scene {
+namespace tact::model::reader {
 namespace {
 
 std::string names_of(std::span<const Choice> choices) {
@@ -254,4 +254,4 @@ std::string Keys::path_to(std::string_view key) const {
   return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }
 
-}  // namespace tact::model::scene
+}  // namespace tact::model::reader

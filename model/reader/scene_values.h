@@ -15,7 +15,7 @@
 #include "model/result.h"
 #include "model/types.h"
 
-namespace tact::model::scene {
+namespace tact::model::reader {
 
 /// Allowed values, both ends included.
 struct Range {
@@ -38,4 +38,4 @@ Result<Vec3> as_vector(const toml::node& node, Range each);
 Result<std::string> as_text(const toml::node& node);
 Result<bool> as_flag(const toml::node& node);
 
-}  // namespace tact::model::scene
+}  // namespace tact::model::reader
