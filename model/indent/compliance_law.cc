@@ -111,11 +111,7 @@ law::LawResponse ComplianceCurve::respond(double depth_m) const RT_SAFE {
     out = {k * inside_m, inside_m < 0.0 ? k : 0.5 * k, 0.5 * k * inside_m * inside_m,
            law::LawStatus::kOk};
   }
-  if (inside_m == depth_m) return out;
-  out.energy_J += out.force_N * (depth_m - inside_m);  // a constant force goes on storing
-  out.stiffness_N_per_m = 0.0;
-  out.status = law::LawStatus::kSaturated;
-  return out;
+  return law::beyond_limit(out, inside_m, depth_m);
 }
 
 std::size_t ComplianceCurve::profile(double depth_m, std::span<double> ring_m) const RT_SAFE {

@@ -16,14 +16,10 @@ law::LawResponse HuntCrossley::respond(double depth_m) const RT_SAFE {
   const double n = p_.exponent, inside_m = std::min(depth_m, p_.working_depth_m);
   const double x = inside_m / p_.working_depth_m, power = std::pow(x, n - 1.0);
   // HC-1, HC-2
-  law::LawResponse out{.force_N = p_.force_N * power * x,
-                       .stiffness_N_per_m = n * p_.force_N * power / p_.working_depth_m,
-                       .energy_J = p_.force_N * power * x * inside_m / (n + 1.0)};
-  if (inside_m == depth_m) return out;
-  out.energy_J += out.force_N * (depth_m - inside_m);  // a constant force goes on storing
-  out.stiffness_N_per_m = 0.0;
-  out.status = law::LawStatus::kSaturated;
-  return out;
+  const law::LawResponse out{.force_N = p_.force_N * power * x,
+                             .stiffness_N_per_m = n * p_.force_N * power / p_.working_depth_m,
+                             .energy_J = p_.force_N * power * x * inside_m / (n + 1.0)};
+  return law::beyond_limit(out, inside_m, depth_m);
 }
 
 double HuntCrossley::damping_Ns_per_m(double depth_m) const RT_SAFE {

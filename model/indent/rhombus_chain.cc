@@ -117,12 +117,9 @@ ChainState RhombusChain::at_depth(double depth_m) const RT_SAFE {
 
 law::LawResponse RhombusChain::respond(double depth_m) const RT_SAFE {
   const ChainState at = at_depth(depth_m);
-  law::LawResponse out{at.force_N, at.stiffness_N_per_m, at.energy_J, at.status};
-  if (at.status == law::LawStatus::kSaturated) {
-    out.energy_J += at.force_N * (depth_m - range_.press_m);  // a constant force goes on storing
-    out.stiffness_N_per_m = 0.0;
-  }
-  return out;
+  const law::LawResponse out{at.force_N, at.stiffness_N_per_m, at.energy_J, at.status};
+  const bool beyond = at.status == law::LawStatus::kSaturated;
+  return law::beyond_limit(out, beyond ? range_.press_m : depth_m, depth_m);
 }
 
 std::size_t RhombusChain::profile(double depth_m, std::span<double> ring_m) const RT_SAFE {

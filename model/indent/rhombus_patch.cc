@@ -35,13 +35,9 @@ law::LawResponse RhombusPatch::respond(double depth_m) const RT_SAFE {
   if (depth_m < 0.0) return {.status = law::LawStatus::kNoContact};
   const double inside_m = std::min(depth_m, press_.end());
   const law::CurvePoint at = under_tip(inside_m);
-  law::LawResponse out{
+  const law::LawResponse out{
       .force_N = at.value, .stiffness_N_per_m = at.slope, .energy_J = press_.at(inside_m).integral};
-  if (inside_m == depth_m) return out;
-  out.energy_J += out.force_N * (depth_m - inside_m);  // a constant force goes on storing
-  out.stiffness_N_per_m = 0.0;
-  out.status = law::LawStatus::kSaturated;
-  return out;
+  return law::beyond_limit(out, inside_m, depth_m);
 }
 
 std::size_t RhombusPatch::profile(double depth_m, std::span<double> ring_m) const RT_SAFE {

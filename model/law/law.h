@@ -65,6 +65,17 @@ class Law {
   virtual double ring_pitch_m() const RT_SAFE = 0;
 };
 
+/// Beyond a limit the force stays, K is 0, and the constant force goes on storing:
+/// U = U_limit + F (d - d_limit). Within it, where inside_m is depth_m: the answer as it is.
+inline LawResponse beyond_limit(const LawResponse& at, double inside_m, double depth_m) RT_SAFE {
+  const bool is_beyond = depth_m < inside_m || depth_m > inside_m;  // NaN is not
+  if (!is_beyond) return at;
+  return {.force_N = at.force_N,
+          .stiffness_N_per_m = 0.0,
+          .energy_J = at.energy_J + at.force_N * (depth_m - inside_m),
+          .status = LawStatus::kSaturated};
+}
+
 /// LW-3: what speed adds to the force, N.
 inline double resistance_N(double damping_Ns_per_m, double speed_mps, double force_N,
                            bool held) RT_SAFE {

@@ -53,11 +53,7 @@ LawResponse SeriesLaw::respond(double depth_m) const RT_SAFE {
   // SL-2, SL-3
   out.energy_J += 0.5 * give_m_per_N_ * out.force_N * out.force_N;
   out.stiffness_N_per_m /= 1.0 + give_m_per_N_ * out.stiffness_N_per_m;
-  if (inside_m == depth_m) return out;
-  out.energy_J += out.force_N * (depth_m - inside_m);  // a constant force goes on storing
-  out.stiffness_N_per_m = 0.0;
-  out.status = LawStatus::kSaturated;
-  return out;
+  return beyond_limit(out, inside_m, depth_m);
 }
 
 // SL-4

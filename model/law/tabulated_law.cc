@@ -29,10 +29,9 @@ LawResponse TabulatedLaw::respond(double depth_m) const RT_SAFE {
   if (depth_m < 0.0 && !can_pull_) return {.status = LawStatus::kNoContact};
   const HermiteTable& table = depth_m < 0.0 ? pull_ : press_;
   const double end_m = table.end();
-  const bool beyond = std::abs(depth_m) > std::abs(end_m);
-  const CurvePoint p = table.at(beyond ? end_m : depth_m);
-  if (!beyond) return {p.value, p.slope, p.integral, LawStatus::kOk};
-  return {p.value, 0.0, p.integral + p.value * (depth_m - end_m), LawStatus::kSaturated};
+  const double inside_m = std::abs(depth_m) > std::abs(end_m) ? end_m : depth_m;
+  const CurvePoint p = table.at(inside_m);
+  return beyond_limit({p.value, p.slope, p.integral, LawStatus::kOk}, inside_m, depth_m);
 }
 
 double TabulatedLaw::damping_Ns_per_m(double depth_m) const RT_SAFE {
