@@ -12,7 +12,7 @@
 
 namespace tact::tools::printed::hex_claims_test {
 
-using namespace model;       // NOLINT(google-build-using-namespace): units
+using namespace model;          // NOLINT(google-build-using-namespace): units
 using namespace model::indent;  // NOLINT(google-build-using-namespace): the law beside its print
 
 constexpr double kPitch_m = 2_mm;
