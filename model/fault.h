@@ -27,7 +27,7 @@ enum class Fault : std::uint16_t {
   kEnergyLimited = 11,
   kContinuousLimited = 12,
   kPowerLimited = 13,
-  kInternal = 100,
+  kInternal = 100,  // never raised: what is said of a number that the table does not have
   kForceNotFinite = 101,
   kSampleNotFinite = 102,
   kDeviceLost = 103,

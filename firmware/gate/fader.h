@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// fader.h - a level between 0 and 1 that opens and closes at fixed rates. It closes by all periods
-// that passed since the last step and opens by one, however late the loop is.
+// fader.h - a level between 0 and 1 that opens and closes at a fixed rate, wholly in fade_s. It
+// closes by all periods that passed since the last step and opens by one, however late the loop is.
 #pragma once
 
 #include "model/rt.h"
@@ -9,10 +9,10 @@ namespace tact::firmware::gate {
 
 class Fader {
  public:
-  Fader(double close_s, double open_s) : close_s_(close_s), open_s_(open_s) {}
+  explicit Fader(double fade_s) : fade_s_(fade_s) {}
 
   double step(bool open, double dt_s, double periods = 1.0) RT_SAFE {
-    const double moved = level_ + (open ? dt_s / open_s_ : -periods * dt_s / close_s_);
+    const double moved = level_ + (open ? dt_s / fade_s_ : -periods * dt_s / fade_s_);
     level_ = moved > 0.0 ? (moved < 1.0 ? moved : 1.0) : 0.0;
     return level_;
   }
@@ -20,7 +20,7 @@ class Fader {
   void set(double level) RT_SAFE { level_ = level; }
 
  private:
-  double close_s_, open_s_;
+  double fade_s_;
   double level_ = 1.0;
 };
 

@@ -70,10 +70,10 @@ Gate::Gate(const model::Limits& limits, double period_s, double force_share)
       lever_m_(force_limit_N_ > 0.0 ? torque_limit_Nm_ / force_limit_N_ : 0.0),
       force_step_N_(slew_step_N(limits, force_limit_N_, period_s)),
       torque_step_Nm_(lever_m_ * force_step_N_),
-      fresh_(kStaleFade_s, kStaleFade_s),
-      workspace_(kWorkspaceFade_s, kWorkspaceFade_s),
-      speed_(kWorkspaceFade_s, kWorkspaceFade_s),
-      ramp_(limits.ramp_s, limits.ramp_s),
+      fresh_(kStaleFade_s),
+      workspace_(kWorkspaceFade_s),
+      speed_(kWorkspaceFade_s),
+      ramp_(limits.ramp_s),
       tank_(tank_settings(limits, force_limit_N_, lever_m_, period_s)),
       warm_force_(thermal_limit(limits, force_limit_N_, period_s)),
       warm_torque_(thermal_limit(limits, torque_limit_Nm_, period_s)) {
@@ -101,7 +101,10 @@ GateVerdict Gate::judge(const GateInput& input) RT_SAFE {
 
 void Gate::note(Stage stage, Fault reason, GateVerdict& verdict) RT_SAFE {
   ++counter_[static_cast<std::size_t>(stage)];
-  (latches(reason) ? verdict.fault : verdict.limit) = reason;
+  if (!latches(reason))
+    verdict.limit = reason;
+  else if (!latches(verdict.fault))  // the first is the cause of what follows in the same tick
+    verdict.fault = reason;
 }
 
 void Gate::check_finite(const GateInput& input, GateVerdict& verdict) RT_SAFE {
@@ -119,7 +122,7 @@ void Gate::check_fresh(const GateInput& input, GateVerdict& verdict) RT_SAFE {
   const double level = fresh_.step(missed_ < 2, period_s_, static_cast<double>(missed_ - held));
   if (missed_ > 0 || level < 1.0)
     note(Stage::kFresh, missed_ == 1 ? Fault::kSampleHeld : Fault::kSampleStale, verdict);
-  if (missed_ >= kLostAfter) verdict.fault = Fault::kDeviceLost;
+  if (missed_ >= kLostAfter && !latches(verdict.fault)) verdict.fault = Fault::kDeviceLost;
   verdict.wrench = level * verdict.wrench;
 }
 
@@ -154,26 +157,26 @@ void Gate::limit(const model::Tool& tool, double periods, GateVerdict& verdict) 
   if (limit_magnitude(w.torque_Nm, warm_Nm))
     note(Stage::kMagnitude,
          warm_Nm < torque_limit_Nm_ ? Fault::kContinuousLimited : Fault::kTorqueLimited, verdict);
-  Radius radius{.force_N = std::fmin(warm_N, passive_N),
-                .torque_Nm = std::fmin(warm_Nm, passive_Nm)};
+  Magnitude most{.force_N = std::fmin(warm_N, passive_N),
+                 .torque_Nm = std::fmin(warm_Nm, passive_Nm)};
   if (const double fresh = fresh_.level(); fresh < 1.0) {  // however much is wanted
-    radius.force_N = std::fmin(radius.force_N, fresh * force_limit_N_);
-    radius.torque_Nm = std::fmin(radius.torque_Nm, fresh * torque_limit_Nm_);
+    most.force_N = std::fmin(most.force_N, fresh * force_limit_N_);
+    most.torque_Nm = std::fmin(most.torque_Nm, fresh * torque_limit_Nm_);
   }
-  if (step_towards(w, periods, radius)) note(Stage::kSlew, Fault::kSlewLimited, verdict);
+  if (step_towards(w, periods, most)) note(Stage::kSlew, Fault::kSlewLimited, verdict);
   if (limit_surplus(w, tool.velocity_mps, tool.angular_velocity_radps,
                     kPowerAim * limits_.power_W)) {
     note(Stage::kPower, Fault::kPowerLimited, verdict);
-    step_towards(w, periods, radius);
+    step_towards(w, periods, most);
   }
   before_ = w;
 }
 
-bool Gate::step_towards(Wrench& w, double periods, const Radius& radius) const RT_SAFE {
+bool Gate::step_towards(Wrench& w, double periods, const Magnitude& most) const RT_SAFE {
   const bool slow =
-      approach(w.force_N, before_.force_N, force_step_N_, periods * force_step_N_, radius.force_N);
+      approach(w.force_N, before_.force_N, force_step_N_, periods * force_step_N_, most.force_N);
   return approach(w.torque_Nm, before_.torque_Nm, torque_step_Nm_, periods * torque_step_Nm_,
-                  radius.torque_Nm) ||
+                  most.torque_Nm) ||
          slow;
 }
 

@@ -91,7 +91,7 @@ class Gate {
   double rms_force_N() const RT_SAFE { return warm_force_.rms(); }
 
  private:
-  struct Radius {
+  struct Magnitude {
     double force_N, torque_Nm;
   };
 
@@ -102,7 +102,7 @@ class Gate {
   void fade_outside(const model::Tool& tool, double periods, GateVerdict& verdict) RT_SAFE;
   void limit(const model::Tool& tool, double periods, GateVerdict& verdict) RT_SAFE;
   void ramp_up(const model::Tool& tool, GateVerdict& verdict) RT_SAFE;
-  bool step_towards(Wrench& w, double periods, const Radius& radius) const RT_SAFE;
+  bool step_towards(Wrench& w, double periods, const Magnitude& most) const RT_SAFE;
   GateVerdict let_go(GateVerdict verdict) RT_SAFE;
 
   model::Limits limits_;

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <iterator>
 #include <limits>
 #include <thread>
 
@@ -37,14 +38,28 @@ void sleep_until_ns(std::int64_t deadline_ns) {
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr);
 }
 
-/// R to a unit quaternion, by the largest of the four components (Shepperd, J. Guidance 1 (1978)).
+/// R R^T = I within kNoRotation, det R = +1.
+bool is_rotation(const double r[3][3]) {
+  constexpr double kNoRotation = 1e-3;  // the maker's angles have rounding of their own
+  const Vec3 x{r[0][0], r[0][1], r[0][2]}, y{r[1][0], r[1][1], r[1][2]},
+      z{r[2][0], r[2][1], r[2][2]};
+  const double off[] = {dot(x, x) - 1.0, dot(y, y) - 1.0, dot(z, z) - 1.0,
+                        dot(x, y),       dot(y, z),       dot(z, x)};
+  return dot(cross(x, y), z) > 0.0 && std::all_of(std::begin(off), std::end(off), [](double one) {
+           return std::abs(one) <= kNoRotation;
+         });
+}
+
+}  // namespace
+
+// By the largest of the four components (S. Shepperd, J. Guidance 1 (1978) 223).
 Quat quat_from_rotation(const double r[3][3]) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (!is_rotation(r)) return {kNone, kNone, kNone, kNone};
   const double trace = r[0][0] + r[1][1] + r[2][2];
   const double square[4] = {1.0 + trace, 1.0 + 2.0 * r[0][0] - trace, 1.0 + 2.0 * r[1][1] - trace,
                             1.0 + 2.0 * r[2][2] - trace};  // 4 w^2, 4 x^2, 4 y^2, 4 z^2
   const auto largest = std::max_element(square, square + 4) - square;
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (!(square[largest] >= 1.0 - 1e-6)) return {kNone, kNone, kNone, kNone};  // no rotation
   const double twice = std::sqrt(square[largest]), half = 0.5 / twice;
   const double wx = half * (r[2][1] - r[1][2]), wy = half * (r[0][2] - r[2][0]);
   const double wz = half * (r[1][0] - r[0][1]), xy = half * (r[1][0] + r[0][1]);
@@ -60,8 +75,6 @@ Quat quat_from_rotation(const double r[3][3]) {
       return {wz, xz, yz, 0.5 * twice};
   }
 }
-
-}  // namespace
 
 std::string words_of_sdk_trouble(const SdkTrouble& t) {
   switch (t.source) {

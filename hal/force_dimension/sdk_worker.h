@@ -44,6 +44,9 @@ struct SdkTrouble {
 };
 std::string words_of_sdk_trouble(const SdkTrouble& trouble);
 
+/// R, row by row, as a unit quaternion; NaN where R is no rotation.
+model::Quat quat_from_rotation(const double r[3][3]);
+
 struct SdkPose {
   model::Vec3 position_m;
   model::Quat orientation;

@@ -10,48 +10,22 @@
 #include <random>
 #include <vector>
 
-#include "firmware/gate/energy_tank.h"
 #include "firmware/gate/fader.h"
 #include "firmware/gate/limiter.h"
 #include "firmware/gate/thermal_limit.h"
+#include "tests/firmware/gate/number_classes.h"
 
 namespace tact::firmware::gate::gate_scalars_test {
 
-constexpr double kLimit = 8.0, kStep = 1.0;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-using Doubles = std::numeric_limits<double>;
-
-/// Ulps away from a number.
-double beside(double x, int ulps) {
-  for (int i = 0; i < std::abs(ulps); ++i) x = std::nextafter(x, ulps > 0 ? kInfinity : -kInfinity);
-  return x;
-}
-
-std::vector<double> with_signs(std::vector<double> values) {
-  const std::size_t n = values.size();
-  for (std::size_t i = 0; i < n; ++i) values.push_back(-values[i]);
-  return values;
-}
-
-std::vector<double> finite_classes() {
-  return with_signs({0.0, Doubles::denorm_min(), beside(Doubles::min(), -1), Doubles::min(), 1e-160,
-                     1.0, beside(kLimit, -1), kLimit, beside(kLimit, 1), 1e154, Doubles::max()});
-}
-
-std::vector<double> all_classes() {
-  std::vector<double> values = finite_classes();
-  for (const double odd : {kInfinity, -kInfinity, Doubles::quiet_NaN(), -Doubles::quiet_NaN()})
-    values.push_back(odd);
-  return values;
-}
-
-/// Calls f with every vector that has its components among these.
-template <typename F>
-void for_each_vector(const std::vector<double>& values, const F& f) {
-  for (const double x : values)
-    for (const double y : values)
-      for (const double z : values) f(Vec3{x, y, z});
-}
+using tests::numbers::all_classes;
+using tests::numbers::beside;
+using tests::numbers::Doubles;
+using tests::numbers::finite_classes;
+using tests::numbers::for_each_vector;
+using tests::numbers::kInfinity;
+using tests::numbers::kLimit;
+using tests::numbers::with_signs;
+constexpr double kStep = 1.0;
 
 TEST(GateScalars, AShortenedVectorIsFiniteAndNoLongerThanItsLimit) {
   for (const double limit : {0.0, Doubles::denorm_min(), Doubles::min(), 1e-160, kLimit, 1e154})
@@ -195,7 +169,7 @@ TEST(GateScalars, AFaderStaysBetweenShutAndOpen) {
   for (const double dt_s : all_classes())
     for (const bool open : {false, true})
       for (const double level : {0.0, Doubles::denorm_min(), beside(1.0, -1), 1.0}) {
-        Fader fader(0.01, 0.1);
+        Fader fader(0.01);
         fader.set(level);
         const double after = fader.step(open, dt_s);
         ASSERT_GE(after, 0.0);
@@ -227,71 +201,6 @@ TEST(GateScalars, AHotMotorIsAllowedItsContinuousForceAColdOneItsPeak) {
   for (int i = 0; i < 10000; ++i) limit.heat({4, 0, 0}, 1.0);
   EXPECT_NEAR(limit.allowed(), 4.0, 1e-6);
   EXPECT_NEAR(limit.rms(), 4.0, 1e-9);
-}
-
-EnergyTank placed_tank() {
-  EnergyTank tank({.budget_J = 0.1,
-                   .recovery_W = 0.01,
-                   .speed_mps = 1.0,
-                   .turn_radps = 10.0,
-                   .force_limit_N = 8.0,
-                   .lever_m = 0.0,
-                   .slew_N_per_s = 1000.0,
-                   .period_s = 0.001});
-  tank.observe({}, true, 1.0, {});
-  return tank;
-}
-
-TEST(GateScalars, ATankCountsForceTimesWay) {
-  EnergyTank tank = placed_tank();
-  model::Tool tool;
-  tool.position_m.x = 0.002;
-  tank.observe(tool, true, 1.0, {{5, 0, 0}, {}});
-  EXPECT_NEAR(tank.given_J(), 0.01 - 1e-5, 1e-12) << "5 N * 2 mm, less 10 mW for 1 ms";
-  tool.position_m.x = 0.0;
-  tank.observe(tool, true, 1.0, {{5, 0, 0}, {}});
-  EXPECT_NEAR(tank.given_J(), -1e-5, 1e-12) << "taken back; what came back stays";
-}
-
-TEST(GateScalars, AMissedSampleIsCountedWithTheMeanForce) {
-  EnergyTank tank = placed_tank();
-  model::Tool tool;
-  tank.observe(tool, false, 1.0, {{4, 0, 0}, {}});
-  EXPECT_LT(tank.allowed_N(), 8.0 + 1e-9);
-  tool.position_m.x = 0.002;
-  tank.observe(tool, true, 1.0, {{2, 0, 0}, {}});
-  EXPECT_NEAR(tank.given_J(), 0.006 - 2e-5, 1e-12) << "3 N * 2 mm";
-}
-
-TEST(GateScalars, TheBrakeKnowsWhatAForceGivesWhileItFalls) {
-  EnergyTank tank = placed_tank();
-  model::Tool tool;
-  tool.position_m.x = 0.016;
-  tank.observe(tool, true, 1.0, {{5, 0, 0}, {}});  // 20 mJ are left, and 10 uJ came back
-  // 1 m/s (m^2 / (2 * 1000 N/s) + m * 1 ms) = 20.01 mJ at m = 5.40 N
-  EXPECT_NEAR(tank.allowed_N(), 5.40, 0.01);
-}
-
-TEST(GateScalars, ATankForgetsWhatItTookBeyondTwoBudgets) {
-  EnergyTank tank = placed_tank();
-  model::Tool tool;
-  tool.position_m.x = -1.0;
-  tank.observe(tool, true, 1.0, {{8, 0, 0}, {}});
-  EXPECT_EQ(tank.given_J(), -0.1);
-}
-
-TEST(GateScalars, AStepOfAnyClassLeavesATankThatIsSoundOrOverdrawn) {
-  for_each_vector(all_classes(), [](const Vec3& to_m) {
-    EnergyTank tank = placed_tank();
-    model::Tool tool;
-    tool.position_m = to_m;
-    tank.observe(tool, true, 1.0, {{5, -1, 2}, {}});
-    const double allowed_N = tank.allowed_N();
-    ASSERT_GE(allowed_N, 0.0);
-    ASSERT_LE(allowed_N, 8.0);
-    if (!tank.is_overdrawn()) ASSERT_LE(tank.given_J(), 0.1 + 1e-9);
-    if (!(std::abs(to_m.x) < kInfinity)) ASSERT_TRUE(tank.is_overdrawn() || to_m.x < 0.0);
-  });
 }
 
 }  // namespace tact::firmware::gate::gate_scalars_test

@@ -61,6 +61,15 @@ TEST(Gate, NotANumberGivesZeroAtOnceAndLatches) {
   }
 }
 
+TEST(Gate, TheFirstFaultOfATickIsTold) {
+  Gate gate = open_gate({1, 0, 0});
+  GateInput input = wanting({std::nan(""), 0, 0});
+  input.tool.position_m.x = std::nan("");
+  const GateVerdict v = gate.judge(input);
+  EXPECT_EQ(v.fault, Fault::kSampleNotFinite) << "a law that gets no number gives none";
+  EXPECT_EQ(v.wrench, Wrench{});
+}
+
 TEST(Gate, OneMissedSampleHoldsTheForce) {
   Gate gate = open_gate({1, 0, 0});
   GateInput stale = wanting({1, 0, 0});

@@ -9,7 +9,6 @@
 #include <limits>
 #include <numbers>
 
-#include "hal/force_dimension/sdk_worker.h"
 #include "hal/registry/open_device.h"
 #include "tests/support/no_alloc.h"
 #include "tests/support/stub_dhd/stub_client.h"
@@ -278,12 +277,6 @@ TEST_F(ForceDimension, TheLoopLeavesTheHeapAlone) {
   const tests::NoAlloc guard;
   for (int i = 0; i < 50; ++i) tick({.force_N = {0, 0, 1}, .torque_Nm = {}});
   EXPECT_EQ(guard.calls(), 0u);
-}
-
-TEST(SdkWorker, HasAPoseAndAForceForEveryTickOfAFastLoop) {
-  for (const double rate_Hz : {100.0, 1000.0, 4000.0}) EXPECT_EQ(sdk_cycle_ns(rate_Hz), 250'000);
-  EXPECT_EQ(sdk_cycle_ns(8000.0), 125'000);
-  EXPECT_EQ(sdk_cycle_ns(10'000.0), 100'000);
 }
 
 }  // namespace tact::hal::force_dimension::force_dimension_device_test
