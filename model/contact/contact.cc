@@ -230,6 +230,7 @@ double Contact::press() RT_SAFE {
   return energy_J_;
 }
 
+// MC-6   C <- q C,   slack_i <- slack_i + (1 - q) sum over j of C_ij F_j
 // Where sites are so stiff that their coupling could leave the forces undecided at some depth: less
 // of it, and less depth for those that have pressed, so that their forces stay and no energy comes
 // from it. A pull beside a press is left as it is.

@@ -24,6 +24,9 @@
 // energy: slack takes up whatever depth would come for free (arming inside the organ, letting go
 // over a bump or stiffer tissue, a nearest point that jumps) and shrinks only as the tool
 // withdraws.
+//
+// Bodies: contact.cc (which site, how deep, how hard), contact_grip.cc (hold, tear, let go),
+// contact_slide.cc (forces along the surface).
 #pragma once
 
 #include <array>

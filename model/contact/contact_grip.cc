@@ -47,6 +47,7 @@ bool Contact::let_go() RT_SAFE {
   return false;
 }
 
+// MC-8   d' = max d in 0 .. min(d_now, d_held) with W(d) <= W_held
 // Back to the surface with no stored shift, and no deeper than it was held. The tool may have been
 // dragged to where tissue is stiffer: the largest depth that leaves the whole tool no more energy.
 // kHalvings bound the work. Pressed tissue remembers on: forgotten relaxation would come back as a

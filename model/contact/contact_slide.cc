@@ -66,6 +66,7 @@ void Contact::begin_along(std::size_t i) RT_SAFE {
   shear_.set_own(i, {at_least(give_m_per_N(i), least_m_per_N), least_m_per_N});
 }
 
+// MC-7   t_i <- t_i + (G_i' - G_i) f_i,   G_i' < G_i
 // In steps of 1 %, and from triangle to triangle. Each keeps its force, so it needs less shift;
 // where it would need more, the spring stays as it is.
 void Contact::stiffen() RT_SAFE {

@@ -139,6 +139,7 @@ contact::SiteCoupling ElasticField::coupling(const contact::Indentation& a,
                                              double distance_m) const RT_SAFE {
   const double modulus_Pa = parts_.neighbours.contact_modulus_Pa;
   if (!(modulus_Pa > 0.0) || !(distance_m > 0.0)) return {};
+  // MC-2   h = 1 / (pi E* s) + min(g, 0),   b = max(g, 0)
   const double half_space = 1.0 / (std::numbers::pi * modulus_Pa * distance_m);
   const double regular =
       0.5 * (regular_m_per_N(a.place, distance_m) + regular_m_per_N(b.place, distance_m));
