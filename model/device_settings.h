@@ -87,6 +87,7 @@ struct FalconSettings {
 
 struct ForceDimensionSettings {
   std::string library = "libdhd.so.3";  // name or path; the maker's, never part of tact
+  bool trust_library = false;           // whoever's file it is; a person says so, no scene can
   int id = -1;                          // -1: the only device
   double watchdog_s = 0.004;            // the device lets go by itself; at most 0.0318
   double effector_mass_kg = 0.0;        // 0: the maker's value

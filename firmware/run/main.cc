@@ -126,8 +126,9 @@ int main(int argc, char** argv) {
     say(stdout, "{}", model::scene::scene_reference());
     return 0;
   }
-  const auto scene = load(options);
+  auto scene = load(options);
   if (!scene) return complain(scene.error().sentence, 2);
+  scene->device.force_dimension.trust_library = options.trust_library;
   if (!scene->note.empty()) say(stderr, "tactd: {}\n", scene->note);
   if (!options.replay_path.empty()) return run_replay(*scene, options.replay_path);
   return firmware::run::run_session(*scene, options);

@@ -56,6 +56,8 @@ Parsed parse_options(int argc, char** argv) {
                                "(default: filter if it can be)");
   app.add_flag("--no-seccomp", o.no_seccomp, "let the loop make any system call")
       ->excludes(seccomp);
+  app.add_flag("--trust-library", o.trust_library,
+               "load device.force_dimension.library whoever's file it is");
   app.add_flag("--faults", o.faults, "print every fault with its cause and cure, then leave");
   app.add_flag("--list-devices", o.list_devices,
                "print what is plugged in, what it lacks and the cure, then leave");

@@ -28,6 +28,7 @@ struct Options {
   bool no_black_box = false;
   bool seccomp = false;     // refuse to run without the call filter
   bool no_seccomp = false;  // run without it
+  bool trust_library = false;
   int core = -1;
 };
 

@@ -4,6 +4,8 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include "hal/force_dimension/library_trust.h"
+
 namespace tact::hal::force_dimension {
 namespace {
 
@@ -17,17 +19,25 @@ bool find(void* library, const char* symbol, Function& function) {
   return found != nullptr;
 }
 
+Error not_loaded(const std::string& why) {
+  return Error{fmt::format(
+      "Force Dimension's library cannot be loaded: {}; it belongs to its maker and is no part of "
+      "tact: get the SDK at forcedimension.com, and let device.force_dimension.library name its "
+      "libdhd.so.3 by path",
+      why)};
+}
+
 }  // namespace
 
-model::Result<SdkFunctions> load_sdk(const std::string& name) {
-  void* library = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL);
+model::Result<SdkFunctions> load_sdk(const std::string& name, bool trusted) {
+  const auto file = trusted ? model::Result<std::string>(name) : find_library(name);
+  if (!file) return not_loaded(file.error().sentence);
+  if (!trusted)
+    if (const auto refused = distrust_library(*file)) return *refused;
+  void* library = dlopen(file->c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
     const char* why = dlerror();
-    return Error{fmt::format(
-        "Force Dimension's library cannot be loaded: {}; it belongs to its maker and is no part of "
-        "tact: get the SDK at forcedimension.com, and let device.force_dimension.library name its "
-        "libdhd.so.3 by path",
-        why == nullptr ? name : why)};
+    return not_loaded(why == nullptr ? name : why);
   }
   SdkFunctions sdk;
   const char* missing = nullptr;

@@ -40,7 +40,8 @@ struct SdkFunctions {
   int (*serial_number)(unsigned short* number, char id) = nullptr;
 };
 
-/// Loads the file that device.force_dimension.library names and finds the functions in it.
-model::Result<SdkFunctions> load_sdk(const std::string& library);
+/// Loads the file that device.force_dimension.library names and finds the functions in it. Unless
+/// the person trusts it, it must be one of root's (library_trust.h).
+model::Result<SdkFunctions> load_sdk(const std::string& library, bool trusted);
 
 }  // namespace tact::hal::force_dimension

@@ -107,7 +107,7 @@ std::string name_of_lock(const SdkSession& s) {
 }  // namespace
 
 Result<SdkSession> open_sdk_session(const ForceDimensionSettings& settings) {
-  const auto sdk = load_sdk(settings.library);
+  const auto sdk = load_sdk(settings.library, settings.trust_library);
   if (!sdk) return sdk.error();
   const auto id = open_device(*sdk, settings.id);
   if (!id) return id.error();

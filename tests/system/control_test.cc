@@ -22,7 +22,7 @@ class Control : public Tactd {
         << "stub='device.force_dimension.library=\"" << TACT_BINARY_DIR
         << "/libtact-stub-dhd.so\"'\n"
         << "start() { " << program_path("tactd")
-        << " $2 --no-telemetry --no-black-box --no-seccomp --set rate_Hz=250 --set "
+        << " $2 --no-telemetry --no-black-box --no-seccomp --trust-library --set rate_Hz=250 --set "
            "limits.energy_J=0.2 --set 'device.kind=\"force-dimension\"' --set \"$stub\" --json "
            "$1.json 2>$1.told & }\n"
         << "ready() { for i in {1..200}; do grep -q 'ready, force is off' $1.told && break; sleep "

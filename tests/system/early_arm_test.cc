@@ -26,7 +26,8 @@ class Arming : public Tactd {
     const std::string script = in_folder("run.sh");
     std::ofstream(script)
         << before << program_path("tactd") << " " << kLiver
-        << " --no-black-box --no-seccomp --seconds 1 --set rate_Hz=250 --set limits.energy_J=0.2"
+        << " --no-black-box --no-seccomp --trust-library --seconds 1 --set rate_Hz=250 --set "
+           "limits.energy_J=0.2"
         << " --socket " << in_folder("t.sock") << " --set 'device.kind=\"force-dimension\"'"
         << " --set 'device.force_dimension.library=\"" << TACT_BINARY_DIR
         << "/libtact-stub-dhd.so\"' --json " << in_folder("report.json") << " 2>" << told()

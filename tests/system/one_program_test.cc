@@ -11,17 +11,18 @@ class OneProgram : public Tactd {
   /// `second` is a command of bash with $tactd, which is tactd with a device that is taken.
   Outcome beside_another(const std::string& second) const {
     const std::string script = in_folder("run.sh");
-    std::ofstream(script) << "export TACT_STUB_DHD_SERIAL=" << 1 + getpid() % 60'000 << "\n"
-                          << "tactd=\"" << program_path("tactd") << " " << kLiver
-                          << " --no-telemetry --no-black-box --no-seccomp --set rate_Hz=250"
-                          << " --set limits.energy_J=0.2 --set device.kind=\\\"force-dimension\\\""
-                          << " --set device.force_dimension.library=\\\"" << TACT_BINARY_DIR
-                          << "/libtact-stub-dhd.so\\\"\"\n"
-                          << "$tactd 2>" << in_folder("told") << " & first=$!\n"
-                          << "for i in {1..100}; do grep -q 'ready, force is off' "
-                          << in_folder("told") << " && break; sleep .05; done\n"
-                          << second << "\nstatus=$?; echo first=$first\n"
-                          << "kill -0 $first && echo lives; kill -KILL $first\nexit $status\n";
+    std::ofstream(script)
+        << "export TACT_STUB_DHD_SERIAL=" << 1 + getpid() % 60'000 << "\n"
+        << "tactd=\"" << program_path("tactd") << " " << kLiver
+        << " --no-telemetry --no-black-box --no-seccomp --trust-library --set rate_Hz=250"
+        << " --set limits.energy_J=0.2 --set device.kind=\\\"force-dimension\\\""
+        << " --set device.force_dimension.library=\\\"" << TACT_BINARY_DIR
+        << "/libtact-stub-dhd.so\\\"\"\n"
+        << "$tactd 2>" << in_folder("told") << " & first=$!\n"
+        << "for i in {1..100}; do grep -q 'ready, force is off' " << in_folder("told")
+        << " && break; sleep .05; done\n"
+        << second << "\nstatus=$?; echo first=$first\n"
+        << "kill -0 $first && echo lives; kill -KILL $first\nexit $status\n";
     return run_command("bash " + script);
   }
 };

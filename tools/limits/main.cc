@@ -22,6 +22,7 @@ struct Options {
   std::string plan = "all", out, scene;
   std::vector<std::string> overrides;
   bool list = false, json = false, no_pictures = false, consent_from_stdin = false;
+  bool trust_library = false;
 };
 
 void add_options(CLI::App& app, Options& o) {
@@ -34,6 +35,8 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--no-pictures", o.no_pictures, "tables and page without curves; needs no gnuplot");
   app.add_flag("--consent-from-stdin", o.consent_from_stdin,
                "read the words of consent from a pipe: for a test bench that nobody holds");
+  app.add_flag("--trust-library", o.trust_library,
+               "load device.force_dimension.library whoever's file it is");
   app.add_flag("--json", o.json, "print one JSON document");
 }
 
@@ -68,8 +71,9 @@ void show_progress(std::size_t done, std::size_t all) {
 int test_limits(const program::Program& program, const Options& o) {
   const auto cases = choose_cases(o.plan);
   if (!cases) return program.fail(cases.error());
-  const auto scene = tact::model::scene::load_scene(o.scene, o.overrides);
+  auto scene = tact::model::scene::load_scene(o.scene, o.overrides);
   if (!scene) return program.fail(scene.error());
+  scene->device.force_dimension.trust_library = o.trust_library;
   if (const auto error = program::prepare_folder(o.out)) return program.fail(*error);
   if (!tact::hal::registry::is_simulated(scene->device))
     if (const auto refused = ask_for_consent(o, *scene)) return program.fail(*refused);

@@ -54,7 +54,9 @@ void SceneArguments::add_to(CLI::App& options, const std::string& needs) {
 }
 
 Result<model::scene::Scene> SceneArguments::load() const {
-  return model::scene::load_scene(path, overrides);
+  auto scene = model::scene::load_scene(path, overrides);
+  if (scene) scene->device.force_dimension.trust_library = trust_library;
+  return scene;
 }
 
 void SweepArguments::add_to(CLI::App& options, const std::string& row,

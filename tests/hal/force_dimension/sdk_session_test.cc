@@ -78,6 +78,14 @@ TEST_F(Session, AMissingLibrarySaysWhereItIsHad) {
   EXPECT_TRUE(has(why, "device.force_dimension.library")) << why;
 }
 
+TEST_F(Session, ALibraryOfNobodyKnownIsNotLoadedUnlessAPersonSaysSo) {
+  settings.trust_library = false;
+  EXPECT_TRUE(has(refusal(), tests::kStubLibrary + " is not loaded")) << refusal();
+  EXPECT_EQ(stub.calls("dhdGetDeviceCount"), 0);
+  settings.library = "libdhd-that-is-not-here.so.3";
+  EXPECT_TRUE(has(refusal(), "forcedimension.com")) << refusal();
+}
+
 TEST_F(Session, AnotherLibraryIsRefusedByTheFirstFunctionItLacks) {
   settings.library = "libm.so.6";
   EXPECT_TRUE(has(refusal(), "libm.so.6 has no function dhdGetDeviceCount")) << refusal();

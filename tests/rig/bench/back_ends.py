@@ -98,5 +98,6 @@ FORCE_DIMENSION = BackEnd(
     "force-dimension",
     settings=('device.kind="force-dimension"', SLIDE,
               'device.force_dimension.library="/tact/bin/libtact-stub-dhd.so"'),
+    options=("--trust-library",),
     programs=("libtact-stub-dhd.so",),
     system_calls=SLEEP | {("tact-fd", "sys_clock_nanosleep"): 4})  # the library's own rate, 4 kHz

@@ -14,6 +14,7 @@ class BackEnd:
     """A device that tactd can drive in the guest, and what stands on its other side."""
     name: str
     settings: tuple = ()        # KEY=VALUE of the scene
+    options: tuple = ()         # of every program that opens it
     setup: str = ""             # bash, before tactd
     programs: tuple = ()        # of the build, besides tactd
     system_calls: dict = dataclasses.field(default_factory=dict)  # call: at most so many a tick
@@ -39,7 +40,8 @@ class Case:
 
     def guest_script(self, seed):
         """The whole text that bash runs in the guest."""
-        device = " ".join(f"--set '{setting}'" for setting in self.back_end.settings)
+        device = " ".join([*self.back_end.options,
+                           *(f"--set '{setting}'" for setting in self.back_end.settings)])
         variables = "".join(f'{name}="{value}"\n' for name, value in self.variables.items())
         return (f". /tact/guest/bench.sh\nSEED={seed} SECONDS_OF_RUN={self.seconds}\n"
                 f"SCENE=/tact/{self.back_end.scene}\nDEVICE=({device})\n{variables}shift_phase\n"

@@ -229,7 +229,7 @@ TEST(Limits, AFailedCaseIsStatusOneAndSaysWhy) {
 std::string real_device() {
   return liver() + " --out " + folder() +
          " --plan ramp,nan-force,speed,e-stop,e-stop-released,dead-man --no-pictures --set "
-         "'device.kind=\"force-dimension\"' --set "
+         "'device.kind=\"force-dimension\"' --trust-library --set "
          "'device.force_dimension.library=\"" +
          tests::kStubLibrary + "\"'";
 }

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/force_dimension/library_trust.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+
+namespace tact::hal::force_dimension {
+namespace {
+
+using model::Error;
+using model::Result;
+using std::filesystem::path;
+
+constexpr const char* kCure =
+    "let root install it (sudo install -D -o root -m 644 libdhd.so.3 /opt/fd/libdhd.so.3) and "
+    "device.force_dimension.library name that, or say --trust-library if you know the file";
+
+bool lies_below(const path& file, const path& folder) {
+  const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
+  return end == folder.end() && rest != file.end();
+}
+
+Error refused(const std::string& file, const std::string& why) {
+  return Error{fmt::format("{} is not loaded, {}: {}", file, why, kCure)};
+}
+
+/// Whose it is and who else may write it.
+std::optional<std::string> fault_of(const path& part, bool is_file, const LibraryFolders& folders) {
+  struct stat info{};
+  if (stat(part.c_str(), &info) != 0)
+    return fmt::format("{}: {}", part.string(), std::strerror(errno));
+  if (is_file && !S_ISREG(info.st_mode)) return "it is no file";
+  const unsigned mode = info.st_mode & 07777u;
+  if (info.st_uid != folders.owner)
+    return fmt::format("{} belongs to user {} (mode {:04o}), not to root", part.string(),
+                       info.st_uid, mode);
+  if ((mode & 022u) != 0)
+    return fmt::format("others than its owner may write {} (owner {}, mode {:04o})", part.string(),
+                       info.st_uid, mode);
+  return std::nullopt;
+}
+
+}  // namespace
+
+LibraryFolders system_folders() {
+  LibraryFolders folders{.searched = {}, .allowed = {"/usr", "/lib", "/lib64", "/opt"}};
+  for (const char* folder : {"/usr/local/lib", "/lib", "/usr/lib", "/lib64", "/usr/lib64"}) {
+    folders.searched.emplace_back(folder);
+#if defined(__x86_64__)
+    folders.searched.push_back(std::string(folder) + "/x86_64-linux-gnu");
+#elif defined(__aarch64__)
+    folders.searched.push_back(std::string(folder) + "/aarch64-linux-gnu");
+#endif
+  }
+  return folders;
+}
+
+Result<std::string> find_library(const std::string& name, const LibraryFolders& folders) {
+  std::error_code failed;
+  if (name.find('/') != std::string::npos) {
+    const path file = std::filesystem::canonical(name, failed);
+    if (failed) return Error{fmt::format("{}: {}", name, failed.message())};
+    return file.string();
+  }
+  for (const std::string& folder : folders.searched)
+    if (const path file = std::filesystem::canonical(folder + "/" + name, failed); !failed)
+      return file.string();
+  return Error{fmt::format("{}: in no system folder", name)};
+}
+
+std::optional<Error> distrust_library(const std::string& file, const LibraryFolders& folders) {
+  const bool allowed = std::ranges::any_of(
+      folders.allowed, [&](const std::string& folder) { return lies_below(file, folder); });
+  if (!allowed) return refused(file, "as it lies below no system folder, nor /opt");
+  for (path part = file; part == folders.top || lies_below(part, folders.top);
+       part = part.parent_path()) {
+    if (const auto why = fault_of(part, part == file, folders)) return refused(file, *why);
+    if (part == part.root_path()) break;
+  }
+  return std::nullopt;
+}
+
+}  // namespace tact::hal::force_dimension
