@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/run/control_socket.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/epoll.h>
 #include <sys/socket.h>
@@ -25,6 +26,7 @@ using model::Result;
 
 constexpr std::size_t kMostSilent = 8;
 constexpr int kQueue = 8;
+constexpr unsigned kPause_us = 20'000;  // else it would ask again and again
 
 bool watch_it(int watch, int fd) {
   epoll_event event{.events = EPOLLIN, .data = {.fd = fd}};
@@ -91,24 +93,39 @@ bool ControlSocket::owns_its_file() const {
 ControlSocket::~ControlSocket() {
   if (owns_its_file()) unlink(path_.c_str());
   for (const int client : silent_) close(client);
-  for (const int fd : {listener_, watch_})
+  for (const int fd : {listener_, watch_, spare_})
     if (fd >= 0) close(fd);
 }
 
 std::optional<ControlRequest> ControlSocket::next() {
   epoll_event event{};
-  while (epoll_wait(watch_, &event, 1, 0) == 1)
-    if (event.data.fd == listener_)
-      accept_one();
-    else if (auto request = read(event.data.fd))
-      return request;
+  if (spare_ < 0) spare_ = fcntl(listener_, F_DUPFD_CLOEXEC, 0);
+  while (epoll_wait(watch_, &event, 1, 0) == 1) {
+    if (event.data.fd != listener_) {
+      if (auto request = read(event.data.fd)) return request;
+    } else if (!accept_one()) {
+      return std::nullopt;
+    }
+  }
   return std::nullopt;
 }
 
-// Whoever connects and says nothing makes room for the next.
-void ControlSocket::accept_one() {
-  const int client = accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
-  if (client < 0) return;
+// Without a free descriptor the spare one is given up for the first who asks. False: not even that
+// one is free.
+bool ControlSocket::accept_one() {
+  const auto accept_it = [this] {
+    return accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+  };
+  int client = accept_it();
+  if (client < 0 && (errno == EMFILE || errno == ENFILE) && spare_ >= 0) {
+    close(std::exchange(spare_, -1));
+    client = accept_it();
+  }
+  if (client < 0) {
+    const bool is_gone = errno == EAGAIN || errno == ECONNABORTED;
+    if (!is_gone) usleep(kPause_us);
+    return is_gone;
+  }
   ucred peer{};
   socklen_t bytes = sizeof peer;
   const bool known = getsockopt(client, SOL_SOCKET, SO_PEERCRED, &peer, &bytes) == 0;
@@ -116,13 +133,15 @@ void ControlSocket::accept_one() {
     const ControlRequest stranger(client, "");
     stranger.answer(
         {.done = false, .sentence = "only the user of this tactd, and root, are heard"});
-    return;
+    return true;
   }
+  // Whoever connects and says nothing makes room for the next.
   if (silent_.size() == kMostSilent) {
     close(silent_.front());
     silent_.erase(silent_.begin());
   }
   silent_.push_back(client);
+  return true;
 }
 
 std::optional<ControlRequest> ControlSocket::read(int client) {

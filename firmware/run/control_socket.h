@@ -55,18 +55,19 @@ class ControlSocket {
 
   /// Readable when next() has something to do.
   int fd() const { return watch_; }
-  /// The oldest request that is there; never waits.
+  /// The oldest request that is there. Waits 20 ms at most, where descriptors have run out.
   std::optional<ControlRequest> next();
 
  private:
   ControlSocket(std::string path, int listener, int watch)
       : path_(std::move(path)), listener_(listener), watch_(watch) {}
-  void accept_one();
+  bool accept_one();
   std::optional<ControlRequest> read(int client);
   bool owns_its_file() const;
 
   std::string path_;
   int listener_, watch_;
+  int spare_ = -1;  // a descriptor to be heard with when no other is free
   dev_t device_ = 0;
   ino_t inode_ = 0;
   std::vector<int> silent_;  // clients that have not asked yet

@@ -207,6 +207,8 @@ void Session::watch(LoopThreads& threads) {
   OperatorDesk desk(
       *operator_, requests_, view, [this] { return telemetry_->newest_frame(); }, control.get());
   const auto tell_news = [&] {
+    if (const auto lost = telemetry_->lost_record())
+      view.tell(lost->sentence + "; the loop goes on without its record");
     if (black_box_ == nullptr) return;
     for (const std::string& sentence : black_box_->news()) view.tell(sentence);
   };

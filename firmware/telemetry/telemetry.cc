@@ -2,6 +2,7 @@
 #include "firmware/telemetry/telemetry.h"
 
 #include <cmath>
+#include <utility>
 
 #include "firmware/loop/clock.h"
 #include "firmware/loop/grid.h"
@@ -53,6 +54,15 @@ void Telemetry::drain() {
     if (sinks_.log) sinks_.log->add(record_);
     if (sinks_.recorder) sinks_.recorder->add(record_);
   }
+  if (told_lost_ || !sinks_.log || !sinks_.log->trouble()) return;
+  told_lost_ = true;
+  const std::lock_guard lock(newest_mutex_);
+  lost_ = sinks_.log->trouble();
+}
+
+std::optional<model::Error> Telemetry::lost_record() {
+  const std::lock_guard lock(newest_mutex_);
+  return std::exchange(lost_, std::nullopt);
 }
 
 // What the watch found goes into the next frame, and into the last one again when the loop stands

@@ -62,6 +62,8 @@ class Telemetry {
   void publish();
 
   Frame newest_frame() const;
+  /// Once, as soon as the tick log has lost something: what. Any thread.
+  std::optional<model::Error> lost_record();
   std::uint64_t dropped_frames() const { return dropped_frames_.load(std::memory_order_relaxed); }
   /// Over all forces of the run, after stop(); 0 if the ring dropped any.
   std::uint64_t force_hash() const { return ring_.dropped() == 0 ? force_hash_ : 0; }
@@ -82,6 +84,8 @@ class Telemetry {
   std::atomic<std::uint64_t> dropped_frames_{0};
   mutable std::mutex newest_mutex_;  // never met by the loop
   Frame newest_;
+  std::optional<model::Error> lost_;  // with the newest frame's lock
+  bool told_lost_ = false;
   loop::TickRecord record_;
   std::uint64_t force_hash_;
   std::thread thread_;

@@ -53,6 +53,8 @@ class TickLogWriter {
   void add(const LoggedTick& tick);
   /// After the ticks that the header counts: a part of the recording.
   void append(const std::string& bytes);
+  /// Since when it writes no more, and why.
+  const std::optional<model::Error>& trouble() const { return trouble_; }
   /// Closes the file. An error if not everything reached the disk.
   std::optional<model::Error> close();
 

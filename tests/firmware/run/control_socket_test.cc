@@ -2,6 +2,7 @@
 #include "firmware/run/control_socket.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -85,6 +86,24 @@ TEST_F(Control, AnEmptyOrLongWordIsNoneThatIsKnown) {
   const auto request = ask(std::string(5000, 'x').c_str());
   ASSERT_TRUE(request);
   EXPECT_LE(request->word().size(), 64u);
+}
+
+// In a process of its own, whose limit stays low.
+TEST_F(Control, HearsSomebodyWithoutAFreeDescriptor) {
+  const auto hear_two = [this] {
+    socket->next();  // which takes its spare one
+    const int first = connect_here(), second = connect_here();
+    send(first, "stop", 4, 0);
+    send(second, "status", 6, 0);
+    const rlimit none{.rlim_cur = static_cast<rlim_t>(second) + 1,
+                      .rlim_max = static_cast<rlim_t>(second) + 1};
+    setrlimit(RLIMIT_NOFILE, &none);
+    std::string heard;
+    for (int i = 0; i < 4; ++i)
+      if (const auto request = socket->next()) heard += request->word() + " ";
+    _exit(heard == "stop status " ? 7 : 8);
+  };
+  EXPECT_EXIT(hear_two(), testing::ExitedWithCode(7), "");
 }
 
 TEST_F(Control, IsOpenToItsOwnerAlone) {

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// A computer that has run out of something: the loop goes on, and what is lost is told.
+#include <gtest/gtest.h>
+
+#include "tests/system/tactd_fixture.h"
+
+namespace tact::tests::scarce_test {
+
+class Scarce : public Tactd {
+ protected:
+  /// Bash, in which `start` runs tactd on its simulated device and `begun` waits until it pushes.
+  Outcome in_bash(const std::string& before, const std::string& options,
+                  const std::string& acts) const {
+    const std::string script = in_folder("run.sh");
+    std::ofstream(script)
+        << "cd " << folder << "\nexport XDG_RUNTIME_DIR=" << folder << "\n"
+        << "start() { " << program_path("tactd") << " " << kLiver
+        << " --set rate_Hz=500 --no-black-box --json report.json " << options
+        << " >out 2>told & tactd=$!; }\n"
+        << "begun() { for i in {1..200}; do " << program_path("tactctl") << " " << kLiver
+        << " status 2>&1 | grep -q armed && break; sleep .05; done; }\n"
+        << "told() { for i in {1..100}; do grep -q \"$1\" told && break; sleep .05; done; }\n"
+        << before << "\nstart\n"
+        << acts << "\n";
+    return run_command("timeout -s KILL 60 bash " + script);
+  }
+  nlohmann::json report() const {
+    std::ifstream file(in_folder("report.json"));
+    return nlohmann::json::parse(file, nullptr, false);
+  }
+  static std::size_t times(const std::string& words, const std::string& text) {
+    std::size_t n = 0;
+    for (auto at = text.find(words); at != std::string::npos; at = text.find(words, at + 1)) ++n;
+    return n;
+  }
+};
+
+TEST_F(Scarce, AFileSizeLimitEndsTheRecordAndNotTheLoop) {
+  const Outcome out = in_bash("ulimit -f 64", "--no-telemetry --record log --seconds 3",
+                              "begun; told 'goes on without its record'; kill -0 $tactd && echo "
+                              "lives\nwait $tactd; echo status $?; cat told");
+  EXPECT_TRUE(has(out, "lives\n")) << out.output;
+  EXPECT_TRUE(has(out, "status 1\n")) << out.output;
+  EXPECT_TRUE(has(out, "tactd: log: File too large at tick ")) << out.output;
+  EXPECT_EQ(times("log: File too large", out.output), 2u)
+      << "at once and at the end: " << out.output;
+  ASSERT_FALSE(report().is_discarded()) << out.output;
+  EXPECT_GT(report().at("ticks"), 100) << out.output;
+}
+
+TEST_F(Scarce, AFullDiskEndsTheRecordAndNotTheLoop) {
+  const Outcome can = run_command("unshare -rm sh -c 'mount -t tmpfs -o size=64k none /mnt'");
+  if (can.status != 0) GTEST_SKIP() << "no file system of one's own here: " << can.output;
+  const Outcome out = run_command(
+      "cd " + folder + " && mkdir disk && XDG_RUNTIME_DIR=" + folder +
+      " timeout -s KILL 60 unshare -rm sh -c 'mount -t tmpfs -o size=64k none disk && " +
+      program_path("tactd") + " " + kLiver +
+      " --set rate_Hz=500 --no-black-box --no-telemetry --record disk/log --seconds 2 --json "
+      "report.json'");
+  EXPECT_EQ(times("disk/log: No space left on device at tick", out.output), 2u) << out.output;
+  EXPECT_TRUE(has(out, "goes on without its record")) << out.output;
+  ASSERT_FALSE(report().is_discarded()) << out.output;
+  EXPECT_GT(report().at("ticks"), 100) << out.output;
+}
+
+TEST_F(Scarce, WithoutAFreeDescriptorTheLoopGoesOnAndItsPersonIsHeard) {
+  const Outcome out =
+      in_bash("", "--socket t.sock",
+              "begun; last=$(ls /proc/$tactd/fd | sort -n | tail -1); prlimit --pid $tactd "
+              "--nofile=$((last "
+              "+ 1)):$((last + 1))\n"
+              "sleep .3\n" +
+                  program_path("tactctl") + " " + kLiver + " status; " + program_path("tactctl") +
+                  " " + kLiver + " stop; wait $tactd; echo status $?; cat told out");
+  EXPECT_TRUE(has(out, "simulated delta")) << out.output;
+  EXPECT_TRUE(has(out, "force to zero, then tactd ends")) << out.output;
+  EXPECT_TRUE(has(out, "status 0")) << "no fault: " << out.output;
+}
+
+}  // namespace tact::tests::scarce_test
