@@ -6,64 +6,17 @@
 #include <cmath>
 #include <random>
 
-#include "model/indent/rhombus_chain.h"
-#include "model/law/tabulated_law.h"
-#include "model/tissue/elastic_field.h"
 #include "model/units.h"
+#include "tests/model/contact/contact_bench.h"
 #include "tests/support/no_alloc.h"
-#include "tests/support/shapes.h"
 
 namespace tact::model::contact::contact_test {
 
-constexpr double kRadius_m = 4_mm;
-
-// A soft surface with everything that a Contact borrows.
-struct Bench {
-  explicit Bench(mesh::SurfaceMesh m, std::vector<ProbeSphere> s = {{{}, kRadius_m}})
-      : mesh(std::move(m)), seeds(make_seed_grid(mesh.view(), 20_mm)), spheres(std::move(s)) {}
-
-  Contact contact() {
-    return Contact({.law = &field,
-                    .parameters = parameters,
-                    .spheres = spheres,
-                    .surface = mesh.view(),
-                    .seeds = seeds.view(),
-                    .blade = {}});
-  }
-
-  indent::RhombusChain chain = *indent::make_rhombus_chain({.rod_length_m = 5_mm,
-                                                            .initial_angle_rad = 30_deg,
-                                                            .normal_stiffness_N_per_m = 150.0,
-                                                            .tangential_stiffness_N_per_m = 180.0,
-                                                            .growth = 2.0,
-                                                            .units = 10});
-  law::TabulatedLaw law = *tabulate(chain, 65);
-  const law::Law* curve = &law;
-  tissue::ElasticField field{{.curves = {&curve, 1},
-                              .coordinate = {},
-                              .pull_coordinate = {},
-                              .surface = {},
-                              .relaxation = {}}};
-  mesh::SurfaceMesh mesh;
-  SeedGrid seeds;
-  std::vector<ProbeSphere> spheres;
-  ContactParameters parameters{
-      .friction_ratio = 0.4, .sliding_stiffness_N_per_m = 100.0, .tear_force_N = 0.6};
-};
-
-Bench plate_bench() { return Bench(tests::make_plate(100_mm, 20)); }
-
-// Moves the tool and returns what it feels there.
-Wrench feel_at(Contact& contact, const Vec3& position_m, double grip_ratio = 0.0) {
-  const Tool tool{.position_m = position_m, .grip_ratio = grip_ratio};
-  contact.touch(tool);
-  return contact.feel(tool, true);
-}
-
-void glide(Contact& contact, const Vec3& from_m, const Vec3& to_m, double grip_ratio = 0.0) {
-  for (int i = 0; i <= 200; ++i)
-    feel_at(contact, from_m + (i / 200.0) * (to_m - from_m), grip_ratio);
-}
+using contact_bench::Bench;
+using contact_bench::feel_at;
+using contact_bench::glide;
+using contact_bench::kRadius_m;
+using contact_bench::plate_bench;
 
 TEST(Contact, IsSilentAboveTheSurface) {
   Bench bench = plate_bench();
@@ -168,62 +121,6 @@ TEST(Contact, SlidingFrictionStaysInsideItsCone) {
   EXPECT_GT(w.force_N.z, 0.1);
 }
 
-TEST(Contact, HoldingPullsAndHasNoFrictionCap) {
-  Bench bench = plate_bench();
-  bench.parameters.tear_force_N = 10.0;
-  Contact contact = bench.contact();
-  const Vec3 grip_m{0, 0, kRadius_m - 1_mm};
-  glide(contact, {0, 0, 6_mm}, grip_m);
-  feel_at(contact, grip_m, 1.0);
-  glide(contact, grip_m, {0, 0, kRadius_m + 4_mm}, 1.0);
-  EXPECT_EQ(contact.touches()[0].state, TouchState::kHeld);
-  const Wrench up = feel_at(contact, {0, 0, kRadius_m + 4_mm}, 1.0);
-  EXPECT_NEAR(up.force_N.z, bench.law.respond(-4_mm).force_N, 1e-12);
-  EXPECT_LT(up.force_N.z, -0.1);
-  const Wrench aside = feel_at(contact, {6_mm, 0, kRadius_m + 4_mm}, 1.0);
-  EXPECT_NEAR(aside.force_N.x, -100.0 * 6_mm, 1e-12) << "no cap while held";
-}
-
-TEST(Contact, LetsGoWhenTheGripOpens) {
-  Bench bench = plate_bench();
-  Contact contact = bench.contact();
-  glide(contact, {0, 0, 6_mm}, {0, 0, 3_mm});
-  feel_at(contact, {0, 0, 3_mm}, 1.0);
-  glide(contact, {0, 0, 3_mm}, {0, 0, 6_mm}, 1.0);
-  EXPECT_LT(feel_at(contact, {0, 0, 6_mm}, 1.0).force_N.z, 0.0);
-  EXPECT_EQ(feel_at(contact, {0, 0, 6_mm}, 0.0), Wrench{});
-  EXPECT_EQ(contact.touches()[0].state, TouchState::kFree);
-}
-
-TEST(Contact, TearsAboveTheTearForceAndHoldsAgainOnlyAfterOpening) {
-  Bench bench = plate_bench();
-  Contact contact = bench.contact();
-  glide(contact, {0, 0, 6_mm}, {0, 0, 3_mm});
-  feel_at(contact, {0, 0, 3_mm}, 1.0);
-  double largest_pull_N = 0.0;
-  for (double z = 3_mm; z < 30_mm; z += 0.02_mm)
-    largest_pull_N = std::max(largest_pull_N, -feel_at(contact, {0, 0, z}, 1.0).force_N.z);
-  EXPECT_LE(largest_pull_N, 0.6);
-  EXPECT_GT(largest_pull_N, 0.59);
-  EXPECT_EQ(contact.touches()[0].state, TouchState::kFree);
-  glide(contact, {0, 0, 30_mm}, {0, 0, 3_mm}, 1.0);
-  EXPECT_EQ(contact.touches()[0].state, TouchState::kTouching) << "still closed since the tear";
-  feel_at(contact, {0, 0, 3_mm}, 0.0);
-  feel_at(contact, {0, 0, 3_mm}, 1.0);
-  EXPECT_EQ(contact.touches()[0].state, TouchState::kHeld);
-}
-
-TEST(Contact, ATearWhilePressingLeavesThePressWithoutAClick) {
-  Bench bench = plate_bench();
-  Contact contact = bench.contact();
-  glide(contact, {0, 0, 6_mm}, {0, 0, 2_mm});
-  feel_at(contact, {0, 0, 2_mm}, 1.0);
-  const double pressing_N = bench.law.respond(2_mm).force_N;
-  for (double x = 0.0; x < 10_mm; x += 0.05_mm)  // torn sideways at 100 N/m * 6 mm = 0.6 N
-    EXPECT_NEAR(feel_at(contact, {x, 0, 2_mm}, 1.0).force_N.z, pressing_N, 1e-9);
-  EXPECT_EQ(contact.touches()[0].state, TouchState::kTouching);
-}
-
 TEST(Contact, BeyondTheRimOfAnOpenSurfaceNothingPullsTheToolBack) {
   Bench bench = plate_bench();
   Contact contact = bench.contact();
@@ -231,28 +128,6 @@ TEST(Contact, BeyondTheRimOfAnOpenSurfaceNothingPullsTheToolBack) {
   glide(contact, {45_mm, 0, 1_mm}, {53_mm, 0, -3_mm});
   glide(contact, {53_mm, 0, -3_mm}, {60_mm, 0, -10_mm});
   EXPECT_EQ(feel_at(contact, {60_mm, 0, -10_mm}), Wrench{});
-}
-
-TEST(Contact, LettingGoNeverAddsEnergy) {
-  // Held at the bottom of a bowl and dragged level, the true depth grows while the held one stays.
-  Bench bench(tests::make_bowl(50_mm, 5));
-  bench.parameters.tear_force_N = 100.0;
-  const Vec3 grip_m{0, 0, -48_mm};
-  for (const Vec3& drag : {Vec3{8_mm, 0, 0}, Vec3{6_mm, 6_mm, 0}, Vec3{0, 0, 5_mm}}) {
-    Contact contact = bench.contact();
-    glide(contact, {0, 0, -40_mm}, grip_m);
-    feel_at(contact, grip_m, 1.0);
-    glide(contact, grip_m, grip_m + drag, 1.0);
-    const double held_J = contact.touches()[0].energy_J;
-    const double normal_J = bench.law.respond(contact.touches()[0].depth_m).energy_J;
-    feel_at(contact, grip_m + drag, 0.0);
-    EXPECT_LE(contact.touches()[0].energy_J, held_J + 1e-15);
-    EXPECT_LE(contact.touches()[0].energy_J, normal_J + 1e-12);
-  }
-  // The first drag really ends deeper than it was held: without slack it would push harder.
-  Contact fresh = bench.contact();
-  glide(fresh, {8_mm, 0, -40_mm}, {8_mm, 0, -48_mm});
-  EXPECT_GT(fresh.touches()[0].depth_m, 2.5_mm);
 }
 
 TEST(Contact, StartingInsideTheOrganPushesNothing) {
