@@ -89,12 +89,12 @@ GateVerdict Gate::judge(const GateInput& input) RT_SAFE {
   if (!input.armed) tank_.refill();
   if (!input.armed || latches(verdict.fault)) {
     note(Stage::kArmed, Fault::kNotArmed, verdict);
-    return let_go(verdict);
+    return without_force(verdict);
   }
   fade_outside(input.tool, periods, verdict);
   limit(input.tool, periods, verdict);
   ramp_up(input.tool, verdict);
-  if (latches(verdict.fault)) return let_go(verdict);
+  if (latches(verdict.fault)) return without_force(verdict);
   written_ = verdict.wrench;
   return verdict;
 }
@@ -189,7 +189,7 @@ void Gate::ramp_up(const model::Tool& tool, GateVerdict& verdict) RT_SAFE {
 }
 
 // Zero now: what comes after starts from zero and ramps up again.
-GateVerdict Gate::let_go(GateVerdict verdict) RT_SAFE {
+GateVerdict Gate::without_force(GateVerdict verdict) RT_SAFE {
   before_ = {};
   ramp_.set(0.0);
   written_ = {};

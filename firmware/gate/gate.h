@@ -103,7 +103,7 @@ class Gate {
   void limit(const model::Tool& tool, double periods, GateVerdict& verdict) RT_SAFE;
   void ramp_up(const model::Tool& tool, GateVerdict& verdict) RT_SAFE;
   bool step_towards(Wrench& w, double periods, const Magnitude& most) const RT_SAFE;
-  GateVerdict let_go(GateVerdict verdict) RT_SAFE;
+  GateVerdict without_force(GateVerdict verdict) RT_SAFE;
 
   model::Limits limits_;
   double period_s_;

@@ -69,7 +69,7 @@ constexpr std::array<Key, 8> kTipZ{{{0, 0.022},
                                     {7.5, -0.003},
                                     {10, 0.022}}};
 
-// A man of 1.75 m: places on the body, by the shares of host/tracking/body_plan.h.
+// A man of 1.75 m: places on the body, by the shares of host/figure/body_plan.h.
 const Vector3d waist_m(0.45, -0.0875, -0.05);
 const Vector3d neck_m(0.0, 0.0, 0.417);        // from the waist, in the trunk's axes
 const Vector3d shoulder_m(0.0, 0.226, 0.417);  // the right one
