@@ -164,7 +164,6 @@ Result<tact::hal::falcon::FalconCalibration> calibrate(const Options& o,
 
 }  // namespace
 
-// The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
   program::Program program(
       "tact-calibrate",

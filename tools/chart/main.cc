@@ -186,7 +186,6 @@ int make_chart(const program::Program& program, const Options& o) {
 
 }  // namespace
 
-// The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
   program::Program program(
       "tact-chart",

@@ -104,7 +104,6 @@ void report(const Options& o, const ComplianceMap& map, const CondenseFacts& fac
 
 }  // namespace
 
-// The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
   tact::tools::program::Program program(
       "tact-condense",
@@ -116,7 +115,7 @@ int main(int argc, char** argv) {
   Options o;
   add_options(program.options(), o);
   if (const auto status = program.parse(argc, argv)) return *status;
-  if (const auto error = tact::tools::program::check_output(o.out, {o.scene.path}))
+  if (const auto error = tact::tools::program::check_output(o.out, "TACTCOMP", {o.scene.path}))
     return program.fail(*error);
   const auto scene = o.scene.load();
   if (!scene) return program.fail(scene.error());

@@ -36,7 +36,6 @@ void add_options(CLI::App& app, Options& o) {
 
 }  // namespace
 
-// The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
   tact::tools::program::Program program(
       "tact-doctor",

@@ -165,7 +165,7 @@ std::string text_of(const FitReport& report) {
 
 std::string toml_of(const FitReport& report) {
   std::string out = "# By tact-fit";
-  if (report.data) out += " from " + report.data->source;
+  if (report.data) out += ", from " + report.data->source;
   out += "\n";
   std::vector<std::string> written;
   for (const FittedLaw& law : report.laws) {

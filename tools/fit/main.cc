@@ -156,16 +156,16 @@ std::optional<Error> check_options(const Options& o) {
     return Error{"nothing to fit to; give --reference, --data or --relaxation"};
   if (!o.data.empty() && !o.reference.empty())
     return Error{"--data and --reference exclude each other; fit one after the other"};
-  for (const std::string& output : {o.out, o.picture})
-    if (auto error =
-            program::check_output(output, {o.scene.path, o.data, o.relaxation, o.reference}))
+  for (const auto& [output, beginning] :
+       {std::pair{o.out, "# By tact-fit"}, std::pair{o.picture, "<?xml version=\"1.0\""}})
+    if (auto error = program::check_output(output, beginning,
+                                           {o.scene.path, o.data, o.relaxation, o.reference}))
       return error;
   return std::nullopt;
 }
 
 }  // namespace
 
-// The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
   program::Program program(
       "tact-fit",

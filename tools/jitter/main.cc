@@ -140,7 +140,7 @@ int measure(const program::Program& program, Options& o) {
   if (!o.out.empty())
     if (auto error = program::prepare_folder(o.out)) return program.fail(*error);
   if (o.json_path != "-")
-    if (auto error = program::check_output(o.json_path, {o.run.scene.path}))
+    if (auto error = program::check_output(o.json_path, "{", {o.run.scene.path}))
       return program.fail(*error);
   o.run.peer = !o.peer.empty();
   o.run.live = isatty(STDERR_FILENO) != 0;
@@ -163,7 +163,6 @@ int measure(const program::Program& program, Options& o) {
 
 }  // namespace
 
-// The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
   program::Program program(
       "tact-jitter",

@@ -94,7 +94,6 @@ int test_limits(const program::Program& program, const Options& o) {
 
 }  // namespace
 
-// The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
   program::Program program(
       "tact-limits",

@@ -139,7 +139,6 @@ Result<std::string> keep(const Choice& choice, const std::vector<Candidate>& can
 
 }  // namespace
 
-// The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
   program::Program program(
       "tact-plan",

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "model/io/file_writer.h"
 #include "model/io/program_end.h"
 #include "tools/program/run_program.h"
 
@@ -86,20 +87,14 @@ std::optional<Error> prepare_folder(const std::string& directory) {
   return std::nullopt;
 }
 
-std::optional<Error> check_output(const std::string& output,
+std::optional<Error> check_output(const std::string& output, std::string_view beginning,
                                   const std::vector<std::string>& inputs) {
   if (output.empty()) return std::nullopt;
   std::error_code failed;
   for (const std::string& input : inputs)
     if (!input.empty() && fs::equivalent(output, input, failed))
       return Error{fmt::format("{}: would be overwritten, and is read; name another", output)};
-  if (fs::is_directory(output, failed))
-    return Error{fmt::format("{}: is a folder; name a file", output)};
-  const fs::path folder = fs::absolute(output).parent_path();
-  if (!fs::is_directory(folder) || access(folder.c_str(), W_OK) != 0)
-    return Error{
-        fmt::format("{}: its folder cannot be written to; make it or name another", output)};
-  return std::nullopt;
+  return model::io::check_target(output, beginning);
 }
 
 }  // namespace tact::tools::program

@@ -75,8 +75,9 @@ struct SweepArguments {
 
 /// Makes the folder and tries to write there, before an hour of work; an error says what to do.
 std::optional<model::Error> prepare_folder(const std::string& directory);
-/// Refuses an output that is one of the inputs, or lies in a folder that does not exist.
-std::optional<model::Error> check_output(const std::string& output,
+/// Refuses, before the work, an output that is one of the inputs or that write_file would refuse;
+/// `beginning`: of what will be written.
+std::optional<model::Error> check_output(const std::string& output, std::string_view beginning,
                                          const std::vector<std::string>& inputs);
 
 }  // namespace tact::tools::program

@@ -245,7 +245,6 @@ int tell(const program::Program& program, const Options& o, const Result<Data>& 
 
 }  // namespace
 
-// The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
   program::Program program(
       "tact-reference", "Solve press and pull of the scene's organ with gmsh and CalculiX.",
@@ -257,7 +256,8 @@ int main(int argc, char** argv) {
     const auto good = self_check(options.self_check);
     return good ? (*good ? 0 : 1) : program.fail(good.error());
   }
-  if (auto error = program::check_output(options.out, {options.scene})) return program.fail(*error);
+  if (auto error = program::check_output(options.out, "{", {options.scene}))
+    return program.fail(*error);
   if (options.tool)
     return tell(program, options, solve_tool(options), ground_truth::tool_reference_text);
   if (options.sideways) return tell(program, options, solve_sideways(options), sideways_text);

@@ -59,7 +59,6 @@ bool all_hold(const std::vector<MapReport>& reports) {
 
 }  // namespace
 
-// The libraries throw when memory or standard output is gone; then the program may as well end.
 int main(int argc, char** argv) {
   tact::tools::program::Program program(
       "tact-stability",

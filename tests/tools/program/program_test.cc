@@ -72,20 +72,21 @@ TEST(Output, IsTriedBeforeTheWork) {
   const std::string folder = testing::TempDir() + "tact-program-test/below";
   EXPECT_FALSE(prepare_folder(folder));
   EXPECT_TRUE(fs::is_directory(folder));
-  EXPECT_TRUE(check_output("/nowhere/at/all.toml", {}));
-  EXPECT_FALSE(check_output(folder + "/new.toml", {}));
-  EXPECT_TRUE(check_output(folder, {})) << "a folder";
-  EXPECT_FALSE(check_output("", {}));
+  EXPECT_TRUE(check_output("/nowhere/at/all.toml", "#", {}));
+  EXPECT_FALSE(check_output(folder + "/new.toml", "#", {}));
+  EXPECT_TRUE(check_output(folder, "#", {})) << "a folder";
+  EXPECT_FALSE(check_output("", "#", {}));
   fs::remove_all(testing::TempDir() + "tact-program-test");
 }
 
 TEST(Output, NeverReplacesAnInput) {
   const std::string file = testing::TempDir() + "tact-program-test.csv";
   std::ofstream(file) << "depth_m,force_N\n";
-  const auto error = check_output(file, {"", file});
+  const auto error = check_output(file, "depth_m,u", {"", file});
   ASSERT_TRUE(error);
   EXPECT_NE(error->sentence.find("name another"), std::string::npos);
-  EXPECT_FALSE(check_output(file, {}));
+  EXPECT_FALSE(check_output(file, "depth_m,u", {}));
+  EXPECT_TRUE(check_output(file, "{", {})) << "another kind of file";
   fs::remove(file);
 }
 
