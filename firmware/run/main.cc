@@ -10,6 +10,7 @@
 #include "firmware/run/replay.h"
 #include "firmware/run/say.h"
 #include "firmware/run/session.h"
+#include "firmware/telemetry/tick_csv.h"
 #include "model/io/file_writer.h"
 #include "model/io/program_end.h"
 #include "model/scene/plan_file.h"
@@ -73,7 +74,8 @@ int run_replay(const model::scene::Scene& scene, const std::string& path) {
   if (!outcome) return complain(outcome.error().sentence, 2);
   say(stdout, "{}: {} ticks computed again, {} differ, force hash {:016x}\n", path, outcome->ticks,
       outcome->different, outcome->force_hash);
-  if (outcome->truncated) say(stdout, "{}: the last tick is torn and was left out\n", path);
+  if (!outcome->damage.empty())
+    return complain(fmt::format("{}: {}; what came before was compared", path, outcome->damage), 1);
   if (outcome->gap_before != 0)
     return complain(fmt::format("{}: ticks {} to {} are missing, so the replay ends there; record "
                                 "to a faster disk",
@@ -125,6 +127,12 @@ int main(int argc, char** argv) {
   if (options.help_scene) {
     say(stdout, "{}", model::scene::scene_reference());
     return 0;
+  }
+  if (!options.csv_path.empty()) {
+    const auto damage = firmware::telemetry::write_tick_csv(options.replay_path, options.csv_path);
+    if (!damage) return complain(damage.error().sentence, 2);
+    if (!damage->empty()) return complain(options.replay_path + ": " + *damage, 1);
+    if (options.scene_path.empty()) return 0;
   }
   auto scene = load(options);
   if (!scene) return complain(scene.error().sentence, 2);

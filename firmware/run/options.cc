@@ -36,10 +36,16 @@ Parsed parse_options(int argc, char** argv) {
   app.add_option("--core", o.core, "CPU core of the loop (default: an isolated one, or the last)")
       ->check(model::io::within(0, CPU_SETSIZE - 1));
   auto* record = app.add_option("--record", o.record_path, "log every tick to this new file");
-  app.add_option("--replay", o.replay_path,
-                 "compute a recorded run again, with its --set values, and compare the forces bit "
-                 "for bit")
-      ->excludes(record);
+  auto* replay =
+      app.add_option(
+             "--replay", o.replay_path,
+             "compute a recorded run again, with its --set values, and compare the forces bit "
+             "for bit")
+          ->excludes(record);
+  app.add_option("--csv", o.csv_path,
+                 "with --replay: write every tick of that log or black box to this CSV file; then "
+                 "SCENE may be left out")
+      ->needs(replay);
   app.add_option("--socket", o.socket_path,
                  "telemetry socket (default: tact/telemetry.sock in XDG_RUNTIME_DIR, or in "
                  "/tmp/tact-UID)");
@@ -64,7 +70,7 @@ Parsed parse_options(int argc, char** argv) {
   app.add_flag("--help-scene", o.help_scene, "print every scene key with its range, then leave");
   try {
     app.parse(argc, argv);
-    if (o.scene_path.empty() && !o.faults && !o.help_scene && !o.list_devices)
+    if (o.scene_path.empty() && !o.faults && !o.help_scene && !o.list_devices && o.csv_path.empty())
       throw CLI::RequiredError("SCENE");
     if (o.free_run && o.duration_s == 0.0 && o.ticks == 0)
       throw CLI::ValidationError("--free-run", "needs --ticks or --seconds");

@@ -14,7 +14,7 @@ struct Options {
   double duration_s = 0.0;             // 0: until Ctrl-C
   std::uint64_t ticks = 0;             // 0: no limit
   std::string json_path;               // "-" is standard output
-  std::string record_path, replay_path;
+  std::string record_path, replay_path, csv_path;
   std::string socket_path;  // empty: in the runtime directory
   bool check = false;       // load everything, then leave
   bool arm = false;         // hardware: force as soon as the device is ready

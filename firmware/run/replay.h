@@ -17,7 +17,7 @@ struct ReplayOutcome {
   std::uint64_t different = 0;        // ticks whose force has other bits
   std::uint64_t first_different = 0;  // tick number, meaningful if different > 0
   std::uint64_t gap_before = 0;       // the log misses ticks before this one; 0: no gap
-  bool truncated = false;             // the log's last tick is torn; all before it was compared
+  std::string damage;                 // of the log; what was good before it was compared
   std::uint64_t force_hash = 0;       // force_hash.h
 };
 

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/run/telemetry_setup.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <sys/utsname.h>
+
+#include <ctime>
+
+#include "firmware/pc/environment.h"
 
 namespace tact::firmware::run {
 namespace {
@@ -47,7 +53,18 @@ bool fill_header(const RunSetup& run, telemetry::LogHeader& header) {
   header.limits = run.limits;
   header.force_share = run.force_share;
   header.non_rt = run.non_rt ? 1 : 0;
-  run.scene.hash.copy(header.scene_hash, sizeof header.scene_hash - 1);
+  const auto keep = [](const std::string& text, auto& field) {
+    text.copy(field, sizeof field - 1);
+  };
+  const pc::Environment environment = pc::read_environment(run.scene.hash);
+  utsname pc_name{};
+  uname(&pc_name);
+  keep(run.scene.hash, header.scene_hash);
+  keep(run.scene.name, header.scene_name);
+  keep(run.tissue.law().title(), header.law);
+  keep(environment.git_revision, header.revision);
+  keep(pc_name.nodename, header.host);
+  keep(fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))), header.began_utc);
   return header.keep_overrides(run.options.overrides);
 }
 

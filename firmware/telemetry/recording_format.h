@@ -4,11 +4,12 @@
 //
 // Recording: FileHeader, Hello, meshes, then one FrameRecord per frame; little-endian, fixed sizes,
 // so a damaged frame costs that frame only. Every part has a CRC-32 (polynomial 0x04C11DB7, as
-// zlib). In version 4 the operator's tracker ran: behind each frame stands one operator record of
-// the viewer, bodies and figure (host/record/operator_record.h). tactd writes version 3.
+// zlib). In version 6 the operator's tracker ran: behind each frame stands one operator record of
+// the viewer, bodies and figure (host/record/operator_record.h). tactd writes version 5.
 // Tick log: LogStart and what else belongs to its header (tick_log.h), then `ticks` records of
-// tick_bytes, in the machine's own layout, and a whole recording of the same seconds. Without a
-// number of ticks they go on to the end of the file, and no recording follows.
+// tick_bytes, each with its CRC, in the machine's own layout, and a whole recording of the same
+// seconds. Without a number of ticks they go on to the end of the file, and no recording follows.
+// A finished file ends with its seal (model/io/seal.h), the SHA-256 of all before.
 #pragma once
 
 #include <boost/crc.hpp>
@@ -22,8 +23,8 @@
 namespace tact::firmware::telemetry {
 
 inline constexpr char kRecordingMagic[8] = {'t', 'a', 'c', 't', 'r', 'e', 'c', '\n'};
-inline constexpr std::uint32_t kRecordingVersion = 3;         // 3: energy and RMS of the force
-inline constexpr std::uint32_t kTrackedRecordingVersion = 4;  // 3 with the tracked operator
+inline constexpr std::uint32_t kRecordingVersion = 5;         // 5: sealed
+inline constexpr std::uint32_t kTrackedRecordingVersion = 6;  // 5 with the tracked operator
 
 struct FileHeader {
   char magic[8] = {};
@@ -40,7 +41,7 @@ struct FrameRecord {
 };
 
 /// The last letter is the format's version.
-inline constexpr char kLogMagic[8] = {'t', 'a', 'c', 't', 'l', 'o', 'g', '6'};
+inline constexpr char kLogMagic[8] = {'t', 'a', 'c', 't', 'l', 'o', 'g', '7'};
 
 struct LogStart {
   char magic[8] = {};
@@ -49,11 +50,13 @@ struct LogStart {
   std::uint64_t ticks = 0;         // 0: to the end of the file
 };
 
-inline std::uint32_t crc_of(const Frame& frame) {
+inline std::uint32_t crc_of(const void* bytes, std::size_t size) {
   boost::crc_32_type crc;
-  crc.process_bytes(&frame, sizeof frame);
+  crc.process_bytes(bytes, size);
   return crc.checksum();
 }
+
+inline std::uint32_t crc_of(const Frame& frame) { return crc_of(&frame, sizeof frame); }
 
 inline std::uint32_t crc_of(const Hello& hello, std::span<const std::byte> mesh) {
   boost::crc_32_type crc;

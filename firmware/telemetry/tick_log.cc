@@ -13,6 +13,8 @@ using model::Error;
 using model::Result;
 
 static_assert(std::is_trivially_copyable_v<LoggedTick>);
+// All but header_crc and pad, its last fields.
+constexpr std::size_t kSummedBytes = sizeof(LogHeader) - 2 * sizeof(std::uint32_t);
 
 bool LogHeader::keep_overrides(const std::vector<std::string>& of_run) {
   std::string text;
@@ -30,12 +32,13 @@ std::vector<std::string> LogHeader::overrides_of_run() const {
 }
 
 Result<TickLogWriter> TickLogWriter::create(const std::string& path, const LogHeader& header) {
-  auto file = model::io::FileWriter::create(path);
+  auto file = model::io::SealedWriter::create(path);
   if (!file) return file.error();
   LogHeader full = header;
   std::memcpy(full.magic, kLogMagic, sizeof full.magic);
   full.header_bytes = sizeof(LogHeader);
-  full.tick_bytes = sizeof(LoggedTick);
+  full.tick_bytes = sizeof(LogRecord);
+  full.header_crc = crc_of(&full, kSummedBytes);
   if (auto error = file->put({reinterpret_cast<const char*>(&full), sizeof full})) return *error;
   return TickLogWriter(std::move(*file), header.non_rt != 0);
 }
@@ -44,13 +47,18 @@ LoggedTick LoggedTick::of(const loop::TickRecord& record, bool non_rt) {
   return {.tick = record.tick,
           .non_rt = static_cast<std::uint8_t>(non_rt ? 1 : 0),
           .due_ns = record.due_ns,
-          .wake_late_ns = record.phase_ns[static_cast<std::size_t>(loop::Phase::kWake)],
+          .margin_ns = record.margin_ns,
+          .phase_ns = record.phase_ns,
           .input = record.input,
           .output = record.output};
 }
 
 void TickLogWriter::add(const LoggedTick& tick) {
-  if (!trouble_) put(&tick, sizeof tick, fmt::format(" at tick {}", tick.tick));
+  if (trouble_) return;
+  LogRecord record;
+  std::memcpy(&record.tick, &tick, sizeof tick);  // with its padding, which the sum counts
+  record.crc = crc_of(&record.tick, sizeof record.tick);
+  put(&record, sizeof record, fmt::format(" at tick {}", tick.tick));
 }
 
 void TickLogWriter::append(const std::string& bytes) {
@@ -69,22 +77,23 @@ std::optional<Error> TickLogWriter::close() {
 }
 
 Result<TickLogReader> TickLogReader::open(const std::string& path) {
-  auto file = model::io::InputFile::open(path, "name a file that tactd --record wrote");
+  auto file = model::io::SealedFile::open(path, "name a file that tactd --record wrote");
   if (!file) return file.error();
   LogHeader header;
-  const auto read = file->read(&header, sizeof header);
-  if (!read) return read.error();
-  const bool whole = *read == sizeof header;
+  const std::size_t read = file->read(&header, sizeof header);
   TickLogReader reader(std::move(*file), header);
   constexpr std::size_t kVersionAt = sizeof header.magic - 1;
-  if (!whole || std::memcmp(header.magic, kLogMagic, kVersionAt) != 0)
+  if (read < sizeof(LogStart) || std::memcmp(header.magic, kLogMagic, kVersionAt) != 0)
     return Error{path + ": is no tick log; name a file that tactd --record wrote"};
   if (header.magic[kVersionAt] != kLogMagic[kVersionAt])
     return Error{fmt::format(
-        "{}: is a tick log of version {}, this tactd reads version {}; replay it with the build "
-        "that recorded it",
+        "{}: is a tick log of version {}, this tactd reads version {}; record it again, or replay "
+        "it with the build that recorded it",
         path, header.magic[kVersionAt], kLogMagic[kVersionAt])};
-  if (header.tick_bytes != sizeof(LoggedTick) || header.header_bytes != sizeof(LogHeader))
+  if (read < sizeof header || header.header_crc != crc_of(&header, kSummedBytes))
+    return Error{path +
+                 ": its header is damaged, so none of its ticks can be used; record it again"};
+  if (header.tick_bytes != sizeof(LogRecord) || header.header_bytes != sizeof(LogHeader))
     return Error{path + ": was written by another version of tactd; replay it with that one"};
   reader.header_.scene_hash[sizeof header.scene_hash - 1] = '\0';
   reader.header_.overrides[sizeof header.overrides - 1] = '\0';
@@ -92,12 +101,30 @@ Result<TickLogReader> TickLogReader::open(const std::string& path) {
 }
 
 bool TickLogReader::next(LoggedTick& tick) {
-  if (header_.ticks != 0 && read_ == header_.ticks) return false;
-  ++read_;
-  const auto read = file_.read(&tick, sizeof tick);
-  const std::size_t bytes = read ? *read : 0;
-  truncated_ = bytes > 0 && bytes < sizeof tick;
-  return bytes == sizeof tick;
+  while (header_.ticks == 0 || read_ < header_.ticks) {
+    LogRecord record;
+    const std::size_t bytes = file_.read(&record, sizeof record);
+    torn_ = torn_ || (bytes < sizeof record && (bytes > 0 || header_.ticks != 0));
+    if (bytes < sizeof record) return false;
+    ++read_;
+    if (record.crc == crc_of(&record.tick, sizeof record.tick)) {
+      ++good_;
+      tick = record.tick;
+      return true;
+    }
+    if (read_ - good_ == 1) first_damaged_ = read_;
+  }
+  return false;
+}
+
+std::string TickLogReader::damage() {
+  std::string out;
+  if (read_ > good_)
+    out = fmt::format("{} of {} ticks are damaged, the first is number {} in the file; ",
+                      read_ - good_, read_, first_damaged_);
+  if (torn_) out += fmt::format("the file is cut off in tick number {}; ", read_ + 1);
+  if (const std::string trouble = file_.trouble(); !trouble.empty()) out += trouble + "; ";
+  return out.empty() ? out : out + fmt::format("{} good ticks were read", good_);
 }
 
 }  // namespace tact::firmware::telemetry

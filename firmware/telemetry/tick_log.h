@@ -2,9 +2,9 @@
 // tick_log.h - a run on disk, tick by tick: what came in and what went out.
 //
 // A header that names the scene (by hash) and the gate's force share, then one LoggedTick per tick
-// in the machine's own byte order. From the first tick on it is enough to compute every force
-// again, bit for bit (replay.h). A black box holds the last seconds before a fault, and pictures of
-// them.
+// in the machine's own byte order, each with its CRC, and the seal of the whole file. From the
+// first tick on it is enough to compute every force again, bit for bit (replay.h). A black box
+// holds the last seconds before a fault, and pictures of them.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,7 @@
 
 #include "firmware/loop/tick_record.h"
 #include "firmware/telemetry/recording_format.h"
-#include "model/io/file_writer.h"
-#include "model/io/input_file.h"
+#include "model/io/seal.h"
 #include "model/limits.h"
 #include "model/result.h"
 
@@ -28,6 +27,10 @@ struct LogHeader : LogStart {
   std::uint8_t non_rt = 0;
   char scene_hash[23] = {};
   char overrides[1024] = {};  // of the run, its law included; one a line
+  char scene_name[64] = {}, law[64] = {}, revision[64] = {}, host[64] = {};
+  char began_utc[24] = {};       // 2026-01-31T12:00:00Z
+  std::uint32_t header_crc = 0;  // of all before it
+  std::uint32_t pad = 0;
 
   /// False if they are too long.
   bool keep_overrides(const std::vector<std::string>& of_run);
@@ -38,11 +41,19 @@ struct LoggedTick {
   std::uint64_t tick = 0;
   std::uint8_t non_rt = 0;  // stamped on every record of a PC without hard real time
   std::int64_t due_ns = 0;
-  std::int32_t wake_late_ns = 0;
+  std::int64_t margin_ns = 0;                              // of the tick before
+  std::array<std::int32_t, loop::kPhaseCount> phase_ns{};  // tell and total of the tick before
   loop::TickInput input;
   loop::TickOutput output;
 
   static LoggedTick of(const loop::TickRecord& record, bool non_rt);
+};
+
+/// As it lies in the file.
+struct LogRecord {
+  LoggedTick tick;
+  std::uint32_t crc = 0;  // of tick
+  std::uint32_t pad = 0;
 };
 
 /// Writes in an ordinary thread. A full disk ends the log, never the run.
@@ -59,12 +70,12 @@ class TickLogWriter {
   std::optional<model::Error> close();
 
  private:
-  TickLogWriter(model::io::FileWriter file, bool non_rt)
+  TickLogWriter(model::io::SealedWriter file, bool non_rt)
       : file_(std::move(file)), non_rt_(non_rt) {}
 
   void put(const void* bytes, std::size_t size, const std::string& where);
 
-  std::optional<model::io::FileWriter> file_;
+  std::optional<model::io::SealedWriter> file_;
   bool non_rt_;
   std::optional<model::Error> trouble_;
 };
@@ -73,18 +84,19 @@ class TickLogReader {
  public:
   static model::Result<TickLogReader> open(const std::string& path);
   const LogHeader& header() const { return header_; }
-  /// False at the end. A torn last tick counts as the end; see truncated().
+  /// The next good tick; damaged ones are left out. False at the end.
   bool next(LoggedTick& tick);
-  bool truncated() const { return truncated_; }
+  /// After all ticks: empty, or what is damaged and how many ticks are good.
+  std::string damage();
 
  private:
-  TickLogReader(model::io::InputFile file, const LogHeader& header)
+  TickLogReader(model::io::SealedFile file, const LogHeader& header)
       : file_(std::move(file)), header_(header) {}
 
-  model::io::InputFile file_;
+  model::io::SealedFile file_;
   LogHeader header_;
-  std::uint64_t read_ = 0;
-  bool truncated_ = false;
+  std::uint64_t read_ = 0, good_ = 0, first_damaged_ = 0;
+  bool torn_ = false;
 };
 
 }  // namespace tact::firmware::telemetry

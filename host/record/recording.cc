@@ -4,16 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
-#include <sstream>
 
 #include "host/record/operator_record.h"
-#include "model/io/input_file.h"
 
 namespace tact::host::record {
 namespace {
 
-constexpr std::uintmax_t kMostBytes = 16'000'000'000;  // 20 h of frames
 constexpr std::int64_t kFlush_ns = 1'000'000'000;
 
 using firmware::telemetry::crc_of;
@@ -27,44 +25,57 @@ struct Setup {
   bool is_tracked = false;
 };
 
+using model::io::SealedFile;
+
 template <typename T>
-bool read(std::istream& in, T& value) {
-  return static_cast<bool>(in.read(reinterpret_cast<char*>(&value), sizeof value));
+bool read(SealedFile& in, T& value) {
+  return in.read(&value, sizeof value) == sizeof value;
 }
 
-/// A black box holds a recording behind its ticks: goes there. The byte at which it starts; Error:
-/// why there is none.
-Result<std::uint64_t> skip_ticks(std::istream& in, std::uint64_t file_bytes) {
+/// How a recording and a tick log begin.
+using Magic = std::array<char, sizeof kRecordingMagic>;
+
+/// A black box holds a recording behind its ticks: goes there and reads its magic. The byte at
+/// which it starts; Error: why there is none.
+Result<std::uint64_t> skip_ticks(SealedFile& in, Magic& magic) {
+  const std::uint64_t file_bytes = in.size_bytes();
   firmware::telemetry::LogStart log;
   constexpr std::size_t kVersionAt = sizeof log.magic - 1;
   const bool is_log =
-      read(in, log) && std::memcmp(log.magic, firmware::telemetry::kLogMagic, kVersionAt) == 0;
-  in.clear();
-  in.seekg(0);
+      read(in, magic) && std::memcmp(magic.data(), firmware::telemetry::kLogMagic, kVersionAt) == 0;
   if (!is_log) return std::uint64_t{0};
+  std::memcpy(log.magic, magic.data(), sizeof log.magic);
   if (log.magic[kVersionAt] != firmware::telemetry::kLogMagic[kVersionAt])
     return Error{fmt::format(
-        "a tick log of version {} cannot be read by this tact-view (version {}); open it with the "
-        "build that made it",
+        "a tick log of version {} cannot be read by this tact-view (version {}); make it "
+        "again, or open it with the build that made it",
         log.magic[kVersionAt], firmware::telemetry::kLogMagic[kVersionAt])};
+  if (in.read(&log.header_bytes, sizeof log - sizeof log.magic) < sizeof log - sizeof log.magic)
+    return Error{"this tick log ends within its header"};
   if (log.ticks == 0)
     return Error{
         "this tick log holds no pictures, only what a replay needs; tactd --replay computes it "
-        "again, a black box or a recording of tact-view can be shown"};
+        "again and writes its ticks with --csv; a black box or a recording of tact-view can be "
+        "shown"};
   if (log.tick_bytes == 0 || log.ticks > file_bytes / log.tick_bytes ||
       log.header_bytes + log.ticks * log.tick_bytes >= file_bytes)
     return Error{
-        "this black box is cut off before its pictures; its ticks are read by tactd's build"};
+        "this black box is cut off before its pictures, or its header is damaged; tactd --replay "
+        "FILE --csv FILE writes its ticks"};
   const std::uint64_t start = log.header_bytes + log.ticks * log.tick_bytes;
-  in.seekg(static_cast<std::streamoff>(start));
+  if (start < sizeof log || !in.skip(start - sizeof log) || !read(in, magic))
+    return Error{"this black box cannot be read up to its pictures"};
   return start;
 }
 
 /// Error: why it cannot be used.
-Result<Setup> read_setup(std::istream& in, std::uint64_t file_bytes) {
+Result<Setup> read_setup(SealedFile& in, const Magic& magic) {
   Setup setup;
   FileHeader header;
-  if (!read(in, header) || std::memcmp(header.magic, kRecordingMagic, sizeof header.magic) != 0) {
+  constexpr std::size_t kRest = sizeof header - sizeof header.magic;
+  std::memcpy(header.magic, magic.data(), sizeof header.magic);
+  if (std::memcmp(header.magic, kRecordingMagic, sizeof header.magic) != 0 ||
+      in.read(&header.version, kRest) < kRest) {
     return Error{
         "this is not a tact recording; give a file made with --record or the page's record "
         "button"};
@@ -73,7 +84,7 @@ Result<Setup> read_setup(std::istream& in, std::uint64_t file_bytes) {
   if (header.version != kRecordingVersion && !setup.is_tracked) {
     return Error{
         fmt::format("recording version {} cannot be read by this tact-view (version {} or {}); "
-                    "open it with the tact-view that made it",
+                    "record it again, or open it with the tact-view that made it",
                     header.version, kRecordingVersion, kTrackedRecordingVersion)};
   }
   if (header.hello_bytes != sizeof(Hello) || header.frame_bytes != sizeof(Frame)) {
@@ -84,11 +95,9 @@ Result<Setup> read_setup(std::istream& in, std::uint64_t file_bytes) {
   }
   constexpr const char* kCutOff =
       "the file ends before its first frame; nothing of it can be shown, record again";
-  if (!read(in, setup.hello) || header.mesh_bytes > file_bytes) return Error{kCutOff};
+  if (!read(in, setup.hello) || header.mesh_bytes > in.size_bytes()) return Error{kCutOff};
   setup.mesh.resize(header.mesh_bytes);
-  in.read(reinterpret_cast<char*>(setup.mesh.data()),
-          static_cast<std::streamsize>(setup.mesh.size()));
-  if (!in) return Error{kCutOff};
+  if (in.read(setup.mesh.data(), setup.mesh.size()) < setup.mesh.size()) return Error{kCutOff};
   if (crc_of(setup.hello, setup.mesh) != header.setup_crc)
     return Error{
         "its scene part is damaged (checksum differs); nothing of it can be shown, record again"};
@@ -98,8 +107,9 @@ Result<Setup> read_setup(std::istream& in, std::uint64_t file_bytes) {
 }
 
 /// All that is good from byte `start` on. Empty, or what is damaged, "; " at its end.
-std::string read_frames(std::istream& in, std::uint64_t start, std::uint64_t file_bytes,
-                        bool is_tracked, Recording& recording) {
+std::string read_frames(SealedFile& in, std::uint64_t start, bool is_tracked,
+                        Recording& recording) {
+  const std::uint64_t file_bytes = in.size_bytes();
   const std::uint64_t stride = sizeof(FrameRecord) + (is_tracked ? sizeof(OperatorRecord) : 0);
   const std::uint64_t records = (file_bytes - start) / stride;
   const std::uint64_t left_bytes = (file_bytes - start) % stride;
@@ -135,6 +145,7 @@ std::string read_frames(std::istream& in, std::uint64_t start, std::uint64_t fil
     damage +=
         fmt::format("the file is cut off inside a frame at byte {}; ", file_bytes - left_bytes);
   }
+  if (const std::string trouble = in.trouble(); !trouble.empty()) damage += trouble + "; ";
   return damage;
 }
 
@@ -155,20 +166,19 @@ std::optional<double> Recording::body_height_m() const {
 }
 
 ReadResult read_recording(const std::string& path) {
-  auto bytes = model::io::read_file(path, "check the name", kMostBytes);
-  if (!bytes) return unusable(bytes.error());
-  const std::uint64_t file_bytes = bytes->size();
-  std::istringstream in(std::move(*bytes));
-  const Result<std::uint64_t> skipped = skip_ticks(in, file_bytes);
+  auto in = SealedFile::open(path, "check the name");
+  if (!in) return unusable(in.error());
+  Magic magic{};
+  const Result<std::uint64_t> skipped = skip_ticks(*in, magic);
   if (!skipped) return unusable(skipped.error());
-  Result<Setup> setup = read_setup(in, file_bytes);
+  Result<Setup> setup = read_setup(*in, magic);
   if (!setup) return unusable(setup.error());
   ReadResult result;
   Recording& recording = result.recording;
   recording.hello = setup->hello;
   recording.mesh = std::move(setup->mesh);
   const std::uint64_t start = *skipped + sizeof(FileHeader) + sizeof(Hello) + recording.mesh.size();
-  result.damage = read_frames(in, start, file_bytes, setup->is_tracked, recording);
+  result.damage = read_frames(*in, start, setup->is_tracked, recording);
   result.usable = !recording.frames.empty();
   if (!result.damage.empty() || !result.usable) {
     result.damage += fmt::format("{} good frames ({:.1f} s) are kept", recording.frames.size(),
@@ -181,7 +191,7 @@ std::optional<Error> RecordingWriter::open(const std::string& path, const Hello&
                                            const MeshBytes& mesh, bool is_tracked) {
   is_tracked_ = is_tracked;
   file_.reset();
-  auto file = model::io::FileWriter::create(path);
+  auto file = model::io::SealedWriter::create(path);
   if (!file) return file.error();
   file_.emplace(std::move(*file));
   flushed_ns_ = 0;

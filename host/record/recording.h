@@ -15,7 +15,7 @@
 #include "firmware/telemetry/recording_format.h"
 #include "host/figure/figure.h"
 #include "host/record/telemetry_check.h"
-#include "model/io/file_writer.h"
+#include "model/io/seal.h"
 #include "model/result.h"
 
 namespace tact::host::record {
@@ -74,7 +74,7 @@ class RecordingWriter {
   std::optional<model::Error> flush();
   std::optional<model::Error> stop(const model::Error& error);
 
-  std::optional<model::io::FileWriter> file_;
+  std::optional<model::io::SealedWriter> file_;
   std::int64_t flushed_ns_ = 0;
   bool is_tracked_ = false;
 };

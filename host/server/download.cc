@@ -7,6 +7,7 @@
 #include <boost/beast/http/chunk_encode.hpp>
 #include <boost/beast/http/write.hpp>
 #include <chrono>
+#include <utility>
 
 #include "host/record/operator_record.h"
 #include "host/record/recording_csv.h"
@@ -46,6 +47,7 @@ std::string Download::first_part() const {
 }
 
 void Download::write_chunk(std::string part) {
+  seal_.add(part);
   part_ = std::move(part);
   stream_.expires_after(kPatience);
   boost::asio::async_write(stream_, http::make_chunk(boost::asio::buffer(part_)),
@@ -56,7 +58,10 @@ void Download::write_chunk(std::string part) {
 
 void Download::write_next() {
   const std::vector<record::Frame>& frames = recording_->frames;
-  if (next_ == frames.size()) return finish();
+  if (next_ == frames.size()) {
+    if (kind_ == DownloadKind::kCsv || std::exchange(is_sealed_, true)) return finish();
+    return write_chunk(seal_.bytes());
+  }
   std::string part;
   const std::size_t end = std::min(next_ + kFramesPerPart, frames.size());
   for (; next_ < end; ++next_) {

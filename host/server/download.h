@@ -12,6 +12,7 @@
 #include <string>
 
 #include "host/record/recording.h"
+#include "model/io/seal.h"
 
 namespace tact::host::server {
 
@@ -43,6 +44,8 @@ class Download : public std::enable_shared_from_this<Download> {
   boost::beast::http::response_serializer<boost::beast::http::empty_body> serializer_{header_};
   std::string part_;
   std::size_t next_ = 0;
+  model::io::Seal seal_;  // of a recording, so far
+  bool is_sealed_ = false;
 };
 
 }  // namespace tact::host::server

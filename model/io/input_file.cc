@@ -67,6 +67,15 @@ Result<std::size_t> InputFile::read(void* to, std::size_t bytes) {
   return done;
 }
 
+Result<std::size_t> InputFile::read_end(void* to, std::size_t bytes) {
+  const std::uintmax_t from = size_bytes_ > bytes ? size_bytes_ - bytes : 0;
+  if (lseek(fd_, static_cast<off_t>(from), SEEK_SET) < 0)
+    return error_of(path_, words_of(errno), cure_);
+  auto got = read(to, bytes);
+  if (lseek(fd_, 0, SEEK_SET) < 0) return error_of(path_, words_of(errno), cure_);
+  return got;
+}
+
 Result<std::string> read_file(const std::string& path, std::string_view cure,
                               std::uintmax_t most_bytes) {
   auto file = InputFile::open(path, cure);

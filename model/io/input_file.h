@@ -36,6 +36,8 @@ class InputFile {
   std::uintmax_t size_bytes() const { return size_bytes_; }
   /// How many bytes there were, at most `bytes`; fewer only at the end of the file.
   Result<std::size_t> read(void* to, std::size_t bytes);
+  /// Its last bytes, or all of a shorter file; the next read() begins at the start.
+  Result<std::size_t> read_end(void* to, std::size_t bytes);
 
  private:
   InputFile(std::string path, std::string cure, int fd, std::uintmax_t size_bytes)

@@ -12,6 +12,7 @@
 
 #include "model/io/file_writer.h"
 #include "model/io/input_file.h"
+#include "model/io/seal.h"
 #include "model/io/toml.h"
 
 namespace tact::model::scene {
@@ -77,6 +78,7 @@ Result<Plan> plan_of(const toml::table& root) {
 Result<Plan> parse_plan(const std::string& path) {
   const auto text = io::read_file(path, "it cannot be used");
   if (!text) return Error{text.error().sentence};
+  if (!io::is_sealed(*text)) return Error{"damaged, its sha256 is missing or another"};
   const auto root = io::parse_toml(*text, "the plan");
   if (!root) return Error{fmt::format("damaged, {}", root.error().sentence)};
   return plan_of(*root);
@@ -171,7 +173,7 @@ std::string plan_text(const Plan& plan) {
       "machine = \"{}\"\nscene_hash = \"{}\"\n",
       plan.tick_p999_us, plan.force_error_ratio, plan.shape_error_ratio, plan.machine,
       plan.scene_hash);
-  return out;
+  return io::sealed_text(out);
 }
 
 Result<std::string> write_plan(const Plan& plan, const std::string& path) {

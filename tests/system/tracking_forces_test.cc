@@ -168,7 +168,7 @@ class Forces : public ::testing::Test {
           firmware::telemetry::hash_wrench(model::kFnvStart, tick.output.wanted);
       out.push_back(firmware::telemetry::hash_wrench(wanted, tick.output.written));
     }
-    EXPECT_FALSE(reader->truncated());
+    EXPECT_EQ(reader->damage(), "");
     return out;
   }
 

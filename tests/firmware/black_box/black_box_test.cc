@@ -13,6 +13,7 @@
 
 #include "firmware/telemetry/telemetry_frame.h"
 #include "host/record/recording.h"
+#include "tests/support/damage.h"
 #include "tests/support/sentence.h"
 #include "tests/support/test_scene.h"
 
@@ -167,9 +168,23 @@ TEST_F(BlackBoxTest, ACutOffFileKeepsItsTicksAndSaysThatThePicturesAreMissing) {
   ticks(*box, 300, model::Fault::kDeviceLost);
   box->finish();
   const std::string path = box->files().at(0);
-  fs::resize_file(path, sizeof(telemetry::LogHeader) + 300 * sizeof(telemetry::LoggedTick) + 7);
+  fs::resize_file(path, sizeof(telemetry::LogHeader) + 300 * sizeof(telemetry::LogRecord) + 7);
   EXPECT_EQ(logged(path).size(), 300u);
   EXPECT_NE(host::record::read_recording(path).damage.find("cut off"), std::string::npos);
+}
+
+TEST_F(BlackBoxTest, EveryDamageIsToldByItsTicksAndByItsPictures) {
+  const auto box = make();
+  ticks(*box, 100);
+  ticks(*box, 300, model::Fault::kDeviceLost);
+  box->finish();
+  tests::expect_all_damage_is_told(box->files().at(0), [](const std::string& path) {
+    auto log = telemetry::TickLogReader::open(path);
+    for (telemetry::LoggedTick one; log && log->next(one);) continue;
+    const bool told = !log || log->damage().find("good ticks were read") != std::string::npos;
+    const host::record::ReadResult read = host::record::read_recording(path);
+    return told && !read.damage.empty();
+  });
 }
 
 TEST_F(BlackBoxTest, AFullDiskIsToldAndCostsNothingElse) {

@@ -4,13 +4,16 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <string>
 
 #include "firmware/loop/rt_loop.h"
 #include "firmware/pc/rt_setup.h"
+#include "firmware/telemetry/tick_csv.h"
 #include "hal/registry/open_device.h"
+#include "tests/support/damage.h"
 #include "tests/support/sentence.h"
 #include "tests/support/test_scene.h"
 
@@ -52,15 +55,6 @@ class ReplayTest : public testing::Test {
     EXPECT_EQ(tests::sentence_of(log.close()), "");
   }
 
-  // Change one byte of the log.
-  void corrupt(long offset) const {
-    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
-    file.seekg(offset);
-    const int byte = file.get();
-    file.seekp(offset);
-    file.put(static_cast<char>(byte ^ 0x10));
-  }
-
   model::scene::Scene scene = tests::make_plate_scene();
   std::unique_ptr<model::scene::Tissue> tissue = std::move(*model::scene::make_tissue(scene));
   std::string path = "/tmp/tact-replay-test-" + std::to_string(getpid());
@@ -71,19 +65,81 @@ TEST_F(ReplayTest, TheSameSamplesGiveTheSameForcesBitForBit) {
   ASSERT_TRUE(outcome) << outcome.error().sentence;
   EXPECT_EQ(outcome->ticks, 3000u);
   EXPECT_EQ(outcome->different, 0u);
-  EXPECT_FALSE(outcome->truncated);
+  EXPECT_EQ(outcome->damage, "");
 }
 
 TEST_F(ReplayTest, AnotherSampleGivesAnotherForceAndIsNamed) {
-  // Twelve bits into the mantissa of one position, in contact.
-  const long at = static_cast<long>(
-      sizeof(telemetry::LogHeader) + 1800 * sizeof(telemetry::LoggedTick) +
-      offsetof(telemetry::LoggedTick, input) + offsetof(loop::TickInput, sample) + 16 + 5);
-  corrupt(at);
+  auto log = std::move(*telemetry::TickLogReader::open(path));
+  const std::string other = path + ".other";
+  {
+    auto writer = std::move(*telemetry::TickLogWriter::create(other, log.header()));
+    for (telemetry::LoggedTick tick; log.next(tick);) {
+      if (tick.tick == 1800) tick.input.sample.tool.position_m.z += 2e-4;  // in contact
+      writer.add(tick);
+    }
+    EXPECT_EQ(tests::sentence_of(writer.close()), "");
+  }
+  const auto outcome = replay(other, scene, *tissue);
+  std::remove(other.c_str());
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->damage, "");
+  EXPECT_GT(outcome->different, 0u);
+  EXPECT_GE(outcome->first_different, 1800u);
+  EXPECT_LE(outcome->first_different, 1801u) << "the gate hides one tick at most";
+}
+
+TEST_F(ReplayTest, EveryDamageIsToldWithHowMuchIsGood) {
+  std::remove(path.c_str());
+  record(200);
+  tests::expect_all_damage_is_told(path, [&](const std::string& damaged) {
+    const auto outcome = replay(damaged, scene, *tissue);
+    if (!outcome) return !outcome.error().sentence.empty();
+    return outcome->damage.find(" good ticks were read") != std::string::npos;
+  });
+}
+
+TEST_F(ReplayTest, ADamagedTickCostsItselfAndIsNeverCompared) {
+  const auto at = static_cast<std::streamoff>(sizeof(telemetry::LogHeader) +
+                                              1800 * sizeof(telemetry::LogRecord) + 100);
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekg(at);
+  const int byte = file.get();
+  file.seekp(at);
+  file.put(static_cast<char>(byte ^ 0x10));
+  file.close();
   const auto outcome = replay(path, scene, *tissue);
   ASSERT_TRUE(outcome);
-  EXPECT_GT(outcome->different, 0u);
-  EXPECT_EQ(outcome->first_different, 1800u);
+  EXPECT_EQ(outcome->ticks, 1800u);
+  EXPECT_EQ(outcome->different, 0u);
+  EXPECT_EQ(outcome->gap_before, 1801u);
+  EXPECT_EQ(outcome->damage.find("1 of 3000 ticks are damaged, the first is number 1801"), 0u)
+      << outcome->damage;
+  EXPECT_NE(outcome->damage.find("; 2999 good ticks were read"), std::string::npos);
+}
+
+TEST_F(ReplayTest, TheTableHasEveryTickAndSaysWhichRunItWas) {
+  const std::string csv = path + ".csv";
+  const auto damage = telemetry::write_tick_csv(path, csv);
+  ASSERT_TRUE(damage) << damage.error().sentence;
+  EXPECT_EQ(*damage, "");
+  std::ifstream file(csv);
+  std::string line, names, row;
+  int comments = 0, rows = 0;
+  while (std::getline(file, line))
+    if (line[0] == '#')
+      ++comments;
+    else if (names.empty())
+      names = line;
+    else if (rows++ == 1800)
+      row = line;
+  std::remove(csv.c_str());
+  EXPECT_EQ(comments, 8);
+  EXPECT_EQ(rows, 3000);
+  for (const char* name : {"tick,time_s,", ",tool_x_m,", ",tool_z_m,", ",wanted_x_N,",
+                           ",force_x_N,", ",acted,", ",given_energy_J,", ",judge_us,"})
+    EXPECT_NE(names.find(name), std::string::npos) << name;
+  EXPECT_EQ(std::count(names.begin(), names.end(), ','), std::count(row.begin(), row.end(), ','));
+  EXPECT_EQ(row.find("1800,"), 0u) << row;
 }
 
 TEST_F(ReplayTest, AnotherSceneIsRefused) {
@@ -95,12 +151,12 @@ TEST_F(ReplayTest, AnotherSceneIsRefused) {
 
 TEST_F(ReplayTest, ATornLogIsReplayedUpToItsTear) {
   ASSERT_EQ(truncate(path.c_str(), static_cast<long>(sizeof(telemetry::LogHeader) +
-                                                     100 * sizeof(telemetry::LoggedTick) + 17)),
+                                                     100 * sizeof(telemetry::LogRecord) + 17)),
             0);
   const auto outcome = replay(path, scene, *tissue);
   ASSERT_TRUE(outcome);
   EXPECT_EQ(outcome->ticks, 100u);
-  EXPECT_TRUE(outcome->truncated);
+  EXPECT_EQ(outcome->damage.find("the file is cut off in tick number 101; "), 0u);
 }
 
 TEST_F(ReplayTest, WhatIsNoLogIsRefused) {
@@ -116,7 +172,7 @@ TEST_F(ReplayTest, ALogOfAnotherVersionIsRefusedByItsNumber) {
   file.close();
   const auto outcome = replay(path, scene, *tissue);
   ASSERT_FALSE(outcome);
-  EXPECT_NE(outcome.error().sentence.find("version 2, this tactd reads version 6"),
+  EXPECT_NE(outcome.error().sentence.find("version 2, this tactd reads version 7"),
             std::string::npos)
       << outcome.error().sentence;
 }

@@ -176,7 +176,10 @@ TEST_F(TrackedFile, WithoutATrackerTheFileIsTheOldOne) {
   ASSERT_EQ(sentence_of(writer.close()), "");
   std::ifstream file(path_, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  EXPECT_EQ(bytes, recording_start(hello_, mesh_) + recording_frame(frame(0)));
+  const std::string content = recording_start(hello_, mesh_) + recording_frame(frame(0));
+  model::io::Seal seal;
+  seal.add(content);
+  EXPECT_EQ(bytes, content + seal.bytes());
   FileHeader header;
   std::memcpy(&header, bytes.data(), sizeof header);
   EXPECT_EQ(header.version, kRecordingVersion);

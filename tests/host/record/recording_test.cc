@@ -15,6 +15,7 @@
 #include "host/record/operator_record.h"
 #include "host/record/recording_csv.h"
 #include "tests/host/record/spoilt_file.h"
+#include "tests/support/damage.h"
 #include "tests/support/sentence.h"
 #include "tests/support/telemetry_source.h"
 
@@ -102,7 +103,12 @@ TEST_F(RecordingFile, OfOtherSizesButTheSameVersionSaysSo) {
   tests::flip_byte(path_, offsetof(FileHeader, frame_bytes));
   const ReadResult read = read_recording(path_);
   EXPECT_FALSE(read.usable);
-  EXPECT_NE(read.damage.find("though both say version 3"), std::string::npos) << read.damage;
+  EXPECT_NE(read.damage.find("though both say version 5"), std::string::npos) << read.damage;
+}
+
+TEST_F(RecordingFile, EveryDamageIsTold) {
+  tests::expect_all_damage_is_told(
+      path_, [](const std::string& path) { return !read_recording(path).damage.empty(); });
 }
 
 TEST_F(RecordingFile, SurvivesEveryLength) {

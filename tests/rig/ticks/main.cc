@@ -32,7 +32,9 @@ std::int64_t now_ns(clockid_t clock) {
 // What a script adds to its own wall clock to get the loop's clock.
 void print_clock_offset() { fmt::print("{}\n", now_ns(CLOCK_MONOTONIC) - now_ns(CLOCK_REALTIME)); }
 
-std::int64_t woke_ns(const LoggedTick& tick) { return tick.due_ns + tick.wake_late_ns; }
+std::int64_t woke_ns(const LoggedTick& tick) {
+  return tick.due_ns + tick.phase_ns[static_cast<std::size_t>(firmware::loop::Phase::kWake)];
+}
 double force_N(const LoggedTick& tick) { return norm(tick.output.written.force_N); }
 bool pushes(const LoggedTick& tick) {
   return force_N(tick) != 0.0 || norm(tick.output.written.torque_Nm) != 0.0;

@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "model/io/seal.h"
+#include "tests/support/damage.h"
 #include "tests/support/program.h"
 #include "tests/support/test_scene.h"
 
@@ -229,12 +231,18 @@ TEST_F(PlanFile, RefusesWhatIsMissingDamagedOrStale) {
   expect_cure(model::scene::read_plan(folder_ + "/none.toml", scene_, kSet),
               "no plan for this scene");
   expect_cure(model::scene::read_plan(write("law = \"comp"), scene_, kSet), "damaged");
-  expect_cure(model::scene::read_plan(write("law = \"glue\"\n"), scene_, kSet), "no law");
-  expect_cure(model::scene::read_plan(write("law = \"auto\"\n"), scene_, kSet), "no law");
-  expect_cure(model::scene::read_plan(write("law = \"rhombus\"\ncurves = -3\n"), scene_, kSet),
+  expect_cure(
+      model::scene::read_plan(write(model::io::sealed_text("law = \"glue\"\n")), scene_, kSet),
+      "no law");
+  expect_cure(
+      model::scene::read_plan(write(model::io::sealed_text("law = \"auto\"\n")), scene_, kSet),
+      "no law");
+  expect_cure(model::scene::read_plan(
+                  write(model::io::sealed_text("law = \"rhombus\"\ncurves = -3\n")), scene_, kSet),
               "out of range");
-  expect_cure(model::scene::read_plan(write("law = \"rhombus\"\n"), scene_, kSet),
-              "tick_p999_us is missing");
+  expect_cure(
+      model::scene::read_plan(write(model::io::sealed_text("law = \"rhombus\"\n")), scene_, kSet),
+      "tick_p999_us is missing");
   model::scene::Plan other = plan_;
   other.machine = "1 x another processor";
   expect_cure(model::scene::read_plan(write(plan_text(other)), scene_, kSet), "another machine");
@@ -244,6 +252,13 @@ TEST_F(PlanFile, RefusesWhatIsMissingDamagedOrStale) {
   other = plan_;
   other.sizes.law = LawKind::kHexSheet;
   expect_cure(model::scene::read_plan(write(plan_text(other)), scene_, kSet), "no law hex_sheet");
+}
+
+TEST_F(PlanFile, EveryDamageIsTold) {
+  tests::expect_all_damage_is_told(write(plan_text(plan_)), [&](const std::string& path) {
+    const auto read = model::scene::read_plan(path, scene_, kSet);
+    return !read && has(read.error().sentence, "damaged, its sha256");
+  });
 }
 
 TEST(Program, SaysWhatIsMissing) {
