@@ -5,6 +5,7 @@
 #include <boost/asio/signal_set.hpp>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -19,6 +20,7 @@
 #include "host/server/viewer_server.h"
 #include "host/tracking/operator_tracking.h"
 #include "model/io/file_writer.h"
+#include "model/io/one_line.h"
 #include "model/io/program_end.h"
 #include "model/result.h"
 
@@ -77,10 +79,21 @@ class Recorder {
   bool failed_ = false;
 };
 
+/// Which run it was, in lines that a reader of tables leaves out.
+std::string csv_facts(const record::Hello& hello) {
+  const auto text_of = [](const auto& field) {
+    return model::io::on_one_line({field, strnlen(field, sizeof field)});
+  };
+  return fmt::format(
+      "# scene: {}\n# law: {}\n# device: {}\n# rate_Hz: {:.10g}\n# frame_rate_Hz: {:.10g}\n",
+      text_of(hello.scene_name), text_of(hello.law_name), text_of(hello.device_name), hello.rate_Hz,
+      hello.frame_rate_Hz);
+}
+
 int export_csv(const Options& options, const record::ReadResult& read) {
   const record::Recording& recording = read.recording;
   const std::vector<tracking::BodyRole> bodies = bodies_in(recording);
-  std::string text = record::csv_header(recording.hello, bodies);
+  std::string text = csv_facts(recording.hello) + record::csv_header(recording.hello, bodies);
   auto out = model::io::FileWriter::replace(options.export_csv, text);
   if (!out) return fail(out.error().sentence);
   for (std::size_t i = 0; i < recording.frames.size(); ++i) {

@@ -57,6 +57,10 @@ TEST_F(StalledTactd, StopsNamesTheFaultAndLeavesAFileThatTactViewShows) {
   const tests::Outcome shown = tests::run_program(
       "tact-view", "--open " + kept + " --export " + folder + "/table.csv --json");
   EXPECT_EQ(shown.status, 0) << shown.output;
+  const tests::Outcome table =
+      tests::run_program("tactd", "--replay " + kept + " --csv " + folder + "/ticks.csv");
+  EXPECT_EQ(table.status, 0) << table.output;
+  EXPECT_GT(tests::run_command("grep -c ,stopped, " + folder + "/ticks.csv").output, "0");
   const tests::Outcome replayed =
       tests::run_program("tactd", std::string(kLiver) + " --replay " + kept);
   EXPECT_EQ(replayed.status, 2);
