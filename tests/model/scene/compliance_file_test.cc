@@ -9,6 +9,7 @@
 #include <iterator>
 #include <limits>
 
+#include "tests/support/damage.h"
 #include "tests/support/shapes.h"
 
 namespace tact::model::scene::compliance_file_test {
@@ -132,6 +133,11 @@ TEST_F(ComplianceFile, TellsThatThereIsNone) {
   ASSERT_FALSE(map);
   EXPECT_NE(map.error().sentence.find("no such file; make it again with tact-condense"),
             std::string::npos);
+}
+
+TEST_F(ComplianceFile, EveryDamageIsTold) {
+  tests::expect_all_damage_is_told(
+      path_, [](const std::string& path) { return !read_compliance_map(path); });
 }
 
 TEST_F(ComplianceFile, WritesNothingHalf) {
