@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "model/types.h"
@@ -48,23 +49,23 @@ constexpr Vec2 solve(const Tensor2& t, const Vec2& v) RT_SAFE {
   return {(t.yy * v.x - t.xy * v.y) / d, (t.xx * v.y - t.xy * v.x) / d};
 }
 
-/// Unit vectors: along the surface, and across that, n x a.
+/// Unit vectors: one along the surface, and n x that.
 struct Axes {
-  Vec3 a, b;
+  std::array<Vec3, 2> unit;
 
-  constexpr Vec2 of(const Vec3& v) const RT_SAFE { return {dot(a, v), dot(b, v)}; }
-  constexpr Vec3 vector(const Vec2& v) const RT_SAFE { return v.x * a + v.y * b; }
+  constexpr Vec2 of(const Vec3& v) const RT_SAFE { return {dot(unit[0], v), dot(unit[1], v)}; }
+  constexpr Vec3 vector(const Vec2& v) const RT_SAFE { return v.x * unit[0] + v.y * unit[1]; }
 };
 
 /// The axes nearest to `before` of a normal that has turned; any, where there were none.
 inline Axes axes_of(const Vec3& normal, const Axes& before = {}) RT_SAFE {
-  constexpr double kUpright = 0.25;  // of its length squared is left: the other one lies flatter
-  Vec3 a = tangential(before.a, normal);
-  if (!(dot(a, a) > kUpright)) a = cross(before.b, normal);
-  if (!(dot(a, a) > kUpright))
-    a = tangential(std::abs(normal.x) < 0.6 ? Vec3{1.0, 0.0, 0.0} : Vec3{0.0, 1.0, 0.0}, normal);
+  constexpr double kFlat = 0.25;  // of a unit vector's square, left along the surface
+  Vec3 a = tangential(before.unit[0], normal);
+  if (!(dot(a, a) > kFlat)) a = cross(before.unit[1], normal);
+  if (!(dot(a, a) > kFlat)) a = tangential({1.0, 0.0, 0.0}, normal);
+  if (!(dot(a, a) > kFlat)) a = tangential({0.0, 1.0, 0.0}, normal);
   a = normalized(a);
-  return {a, cross(normal, a)};
+  return {{a, cross(normal, a)}};
 }
 
 }  // namespace tact::model::contact

@@ -37,22 +37,6 @@ void Contact::reset() RT_SAFE {
   before_.reset();
 }
 
-// A free probe watches the two sheets that its cell names; one in contact follows its own site.
-Site Contact::search(Probe& probe) RT_SAFE {
-  const SurfaceView& surface = scene_.surface;
-  const std::uint32_t cell = scene_.seeds.cell_of(probe.centre_m);
-  if (cell != probe.cell) {
-    probe.cell = cell;
-    probe.candidate = scene_.seeds.cell[cell];
-  }
-  Site best = follow(surface, probe.candidate[0], probe.centre_m);
-  probe.candidate[0] = best.place.triangle;
-  if (probe.candidate[1] == kNoTriangle) return best;
-  const Site other = follow(surface, probe.candidate[1], probe.centre_m);
-  probe.candidate[1] = other.place.triangle;
-  return std::abs(other.distance_m) < std::abs(best.distance_m) ? other : best;
-}
-
 void Contact::touch(const Tool& tool) RT_SAFE {
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
     Probe& probe = probe_[i];
@@ -70,7 +54,7 @@ void Contact::touch(const Tool& tool) RT_SAFE {
     probe.centre_m = centre_m;
     const double radius_m = scene_.spheres[i].radius_m;
     if (touch_[i].state == TouchState::kFree)
-      probe.proxy.restart(search(probe), radius_m);
+      probe.proxy.restart(search(probe, radius_m), radius_m);
     else
       probe.proxy.follow(scene_.surface, centre_m, probe.moved_m, radius_m,
                          touch_[i].law_status == law::LawStatus::kSaturated);
@@ -131,18 +115,17 @@ void Contact::find_depth(std::size_t i) RT_SAFE {
     const Vec3 moved_m = probe.centre_m - probe.held_centre_m;
     touch.normal = probe.held_normal;
     touch.depth_m = probe.held_depth_m - dot(moved_m, touch.normal);
-    shift_m_[i] = probe.held_shift_m + probe.axes.of(moved_m);
   } else if (probe.depth_m > 0.0) {
     touch.state = TouchState::kTouching;
     meet(i);
     // d = r - phi - slack
     touch.slack_m = std::min(touch.slack_m + probe.deepened_m, probe.depth_m);
     touch.depth_m = probe.depth_m - touch.slack_m;
-    shift_m_[i] = shift_m_[i] + probe.axes.of(probe.moved_m);
   } else {
     leave(i);
     return;
   }
+  shift_m_[i] = shift_m_[i] + probe.axes.of(probe.moved_m);
   touch.dent_m += touch.depth_m - before_m;
 }
 
@@ -153,7 +136,7 @@ void Contact::meet(std::size_t i) RT_SAFE {
   const Site& site = probe.proxy.site();
   touch.place = site.place;
   touch.surface_point_m = site.point_m;
-  if (site.normal == touch.normal && probe.axes.a != Vec3{}) return;
+  if (site.normal == touch.normal && probe.axes.unit[0] != Vec3{}) return;
   touch.normal = site.normal;
   probe.axes = axes_of(touch.normal, probe.axes);
 }

@@ -116,15 +116,14 @@ class Contact {
     std::uint32_t cell = kNoTriangle;
     bool seen = false;  // there was a tick before
     Vec3 held_centre_m, held_normal;
-    Vec2 held_shift_m;
     double held_depth_m = 0.0;
     Axes axes;        // of t and f
-    AlongGive along;  // of the triangle and the state that were asked for
+    AlongGive along;  // of the triangle that was asked for
     std::uint32_t asked = kNoTriangle;
-    bool asked_held = false;
   };
 
-  Site search(Probe& probe) RT_SAFE;
+  Site search(Probe& probe, double radius_m) RT_SAFE;
+  Site walk(std::uint32_t& candidate, const Vec3& p_m, double radius_m) const RT_SAFE;
   void use_blade(const Tool& tool, bool may_cut) RT_SAFE;
   void watch_grip(double grip_ratio) RT_SAFE;
   void leave(std::size_t i) RT_SAFE;
@@ -142,7 +141,6 @@ class Contact {
   void let_go(std::size_t i) RT_SAFE;
   Tensor2 give_m_per_N(std::size_t i) const RT_SAFE;
   AlongGive ask_along(std::size_t i, bool held) const RT_SAFE;
-  bool renew_along(std::size_t i) RT_SAFE;
   void begin_along(std::size_t i) RT_SAFE;
   void stiffen() RT_SAFE;
   void resist_sliding() RT_SAFE;

@@ -23,7 +23,7 @@ bool Contact::hold() RT_SAFE {
     Probe& probe = probe_[i];
     probe.held_centre_m = probe.centre_m;
     probe.held_normal = touch.normal;
-    probe.held_shift_m = shift_m_[i];
+    probe.asked = kNoTriangle;  // held, it gives less
     probe.held_depth_m = touch.depth_m;
     touch.state = TouchState::kHeld;
     held = true;

@@ -2,6 +2,7 @@
 // The tissue's springs along the surface, and when a sphere slips: see contact.h.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "model/contact/contact.h"
 
@@ -35,9 +36,9 @@ Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N)
 Tensor2 Contact::give_m_per_N(std::size_t i) const RT_SAFE {
   constexpr double kLeastRadius_ratio = 0.1;
   const double radius_m = scene_.spheres[i].radius_m;
-  const double contact_m = std::clamp(std::sqrt(radius_m * std::max(touch_[i].dent_m, 0.0)),
-                                      kLeastRadius_ratio * radius_m, radius_m);
-  return probe_[i].along.at(probe_[i].asked_held ? radius_m : contact_m);
+  if (touch_[i].state == TouchState::kHeld) return probe_[i].along.at(radius_m);
+  return probe_[i].along.at(std::clamp(std::sqrt(radius_m * std::max(touch_[i].dent_m, 0.0)),
+                                       kLeastRadius_ratio * radius_m, radius_m));
 }
 
 AlongGive Contact::ask_along(std::size_t i, bool held) const RT_SAFE {
@@ -46,22 +47,10 @@ AlongGive Contact::ask_along(std::size_t i, bool held) const RT_SAFE {
   return {.rest_m_per_N = {.xx = 1.0 / fixed_N_per_m, .yy = 1.0 / fixed_N_per_m}};
 }
 
-// Of this place; true: it was another one, or another state.
-bool Contact::renew_along(std::size_t i) RT_SAFE {
-  Probe& probe = probe_[i];
-  const bool is_held = touch_[i].state == TouchState::kHeld;
-  const std::uint32_t triangle = touch_[i].place.triangle;
-  if (probe.asked == triangle && probe.asked_held == is_held) return false;
-  probe.asked = triangle;
-  probe.asked_held = is_held;
-  probe.along = ask_along(i, is_held);
-  return true;
-}
-
 // A sphere without force: any spring is free.
 void Contact::begin_along(std::size_t i) RT_SAFE {
-  probe_[i].asked = kNoTriangle;
-  renew_along(i);
+  probe_[i].asked = touch_[i].place.triangle;
+  probe_[i].along = ask_along(i, false);
   const double least_m_per_N = ask_along(i, true).at(scene_.spheres[i].radius_m).least_eigenvalue();
   shear_.set_own(i, {at_least(give_m_per_N(i), least_m_per_N), least_m_per_N});
 }
@@ -75,26 +64,26 @@ void Contact::stiffen() RT_SAFE {
   bool is_stiffer = false;
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
     if (!presses_[i]) continue;
-    const bool is_elsewhere = renew_along(i);
     const OwnGive before = shear_.own(i);
-    const Tensor2 now = give_m_per_N(i);
-    if (!is_elsewhere && !(now.trace() < kStep_ratio * before.m_per_N.trace())) continue;
-    const OwnGive own{at_least(now, before.least_m_per_N), before.least_m_per_N};
-    const Vec2 force_N = shear_.force_N(shift_m_, i);
-    change_m[i] = own.m_per_N * force_N - before.m_per_N * force_N;
-    if (own == before || !(dot(force_N, change_m[i]) <= 0.0)) {
-      change_m[i] = {};
-      continue;
+    double most_m_per_N = kStep_ratio * before.m_per_N.trace();
+    if (probe_[i].asked != touch_[i].place.triangle) {
+      probe_[i].asked = touch_[i].place.triangle;
+      probe_[i].along = ask_along(i, touch_[i].state == TouchState::kHeld);
+      most_m_per_N = std::numeric_limits<double>::infinity();
     }
+    const Tensor2 now_m_per_N = give_m_per_N(i);
+    if (!(now_m_per_N.trace() < most_m_per_N)) continue;
+    const OwnGive own{at_least(now_m_per_N, before.least_m_per_N), before.least_m_per_N};
+    const Vec2 force_N = shear_.force_N(shift_m_, i);
+    const Vec2 more_m = own.m_per_N * force_N - before.m_per_N * force_N;
+    if (own == before || !(dot(force_N, more_m) <= 0.0)) continue;
+    change_m[i] = more_m;
     shear_.set_own(i, own);
     is_stiffer = true;
   }
   if (!is_stiffer) return;
   shear_.solve();
-  for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
-    shift_m_[i] = shift_m_[i] + change_m[i];
-    probe_[i].held_shift_m = probe_[i].held_shift_m + change_m[i];
-  }
+  for (std::size_t i = 0; i < kMaxSpheres; ++i) shift_m_[i] = shift_m_[i] + change_m[i];
 }
 
 // t up to |f| = mu F; held tissue has no cap. One sphere's slip changes what the next one carries:

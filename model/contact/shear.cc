@@ -16,28 +16,22 @@ void Shear::couple(std::size_t i, std::size_t j, double m_per_N, const Axes& of_
   constexpr double kMost = 0.9 / (kMaxSpheres - 1);
   const double most_m_per_N = kMost * std::min(own_[i].least_m_per_N, own_[j].least_m_per_N);
   const double c = std::clamp(m_per_N, -most_m_per_N, most_m_per_N);
-  const auto set = [&](std::size_t row, std::size_t column, double cosine) RT_SAFE {
-    coupling_m_per_N_[row][column] = coupling_m_per_N_[column][row] = c * cosine;
-  };
-  set(2 * i, 2 * j, dot(of_i.a, of_j.a));
-  set(2 * i, 2 * j + 1, dot(of_i.a, of_j.b));
-  set(2 * i + 1, 2 * j, dot(of_i.b, of_j.a));
-  set(2 * i + 1, 2 * j + 1, dot(of_i.b, of_j.b));
+  for (std::size_t p = 0; p < 2; ++p)
+    for (std::size_t q = 0; q < 2; ++q)
+      coupling_m_per_N_[2 * i + p][2 * j + q] = coupling_m_per_N_[2 * j + q][2 * i + p] =
+          c * dot(of_i.unit[p], of_j.unit[q]);
 }
 
 // Gauss and Jordan, in place, over the rows that take force.
 void Shear::solve() RT_SAFE {
   std::array<std::size_t, 2 * kMaxSpheres> row{};
   std::size_t n = 0;
-  for (std::size_t i = 0; i < kMaxSpheres; ++i)
-    if (takes_force(i)) row[n] = 2 * i, row[n + 1] = 2 * i + 1, n += 2;
-  Matrix& a = stiffness_N_per_m_;
-  a = coupling_m_per_N_;
+  Matrix& a = stiffness_N_per_m_ = coupling_m_per_N_;
   for (std::size_t i = 0; i < kMaxSpheres; ++i) {
     const Tensor2& give = own_[i].m_per_N;
-    a[2 * i][2 * i] = give.xx;
-    a[2 * i + 1][2 * i + 1] = give.yy;
+    a[2 * i][2 * i] = give.xx, a[2 * i + 1][2 * i + 1] = give.yy;
     a[2 * i][2 * i + 1] = a[2 * i + 1][2 * i] = give.xy;
+    if (own_[i].least_m_per_N > 0.0) row[n++] = 2 * i, row[n++] = 2 * i + 1;
   }
   for (std::size_t s = 0; s < n; ++s) {
     const std::size_t k = row[s];

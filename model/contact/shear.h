@@ -60,7 +60,6 @@ class Shear {
 
   /// Rows of i.
   static Vec2 times(const Matrix& m, std::size_t i, const Shifts& v) RT_SAFE;
-  bool takes_force(std::size_t i) const RT_SAFE { return own_[i].least_m_per_N > 0.0; }
 
   std::array<OwnGive, kMaxSpheres> own_{};
   Matrix coupling_m_per_N_{};   // c P, limited

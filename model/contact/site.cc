@@ -123,9 +123,10 @@ Site facing(Site site, const Vec3& p_m, bool is_outside) RT_SAFE {
 
 }  // namespace
 
-Site follow(const SurfaceView& surface, std::uint32_t start, const Vec3& p_m) RT_SAFE {
+Site follow(const SurfaceView& surface, std::uint32_t start, const Vec3& p_m,
+            int most_steps) RT_SAFE {
   Nearest here = nearest_on(surface, start, p_m);
-  for (int i = 0; i < kMaxWalkSteps; ++i) {
+  for (int i = 0; i < most_steps; ++i) {
     const Nearest next = step_from(surface, here, p_m);
     if (next.place.triangle == here.place.triangle) break;
     here = next;

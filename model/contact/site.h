@@ -43,7 +43,9 @@ struct Site {
 
 /// The same q, which need not be the nearest point, seen from another p: phi is +-|p - q|.
 Site seen_from(const Site& site, const Vec3& p_m) RT_SAFE;
-/// Nearest point near `start`; `start` must be a triangle of the surface.
-Site follow(const SurfaceView& surface, std::uint32_t start, const Vec3& p_m) RT_SAFE;
+/// Nearest point near `start`, which must be a triangle of the surface; after most_steps, the
+/// nearest so far.
+Site follow(const SurfaceView& surface, std::uint32_t start, const Vec3& p_m,
+            int most_steps = kMaxWalkSteps) RT_SAFE;
 
 }  // namespace tact::model::contact

@@ -172,9 +172,9 @@ contact::AlongGive ElasticField::give_along(const contact::Place& place, bool he
     const AlongTensors& both = near.along_times_E_per_m[parts_.surface.triangle[place.triangle][i]];
     const Tensor3& s = held ? both.held : both.touching;
     const double share = place.weight[i] / near.youngs_modulus_Pa;
-    give.rest_m_per_N.xx += share * between(axes.a, s, axes.a);
-    give.rest_m_per_N.xy += share * between(axes.a, s, axes.b);
-    give.rest_m_per_N.yy += share * between(axes.b, s, axes.b);
+    give.rest_m_per_N.xx += share * between(axes.unit[0], s, axes.unit[0]);
+    give.rest_m_per_N.xy += share * between(axes.unit[0], s, axes.unit[1]);
+    give.rest_m_per_N.yy += share * between(axes.unit[1], s, axes.unit[1]);
   }
   return give;
 }

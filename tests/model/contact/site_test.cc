@@ -6,10 +6,12 @@
 #include <cmath>
 #include <random>
 
+#include "model/contact/contact.h"
 #include "model/contact/seed_grid.h"
 #include "model/units.h"
 #include "tests/support/no_alloc.h"
 #include "tests/support/shapes.h"
+#include "tests/support/soft_half_space.h"
 
 namespace tact::model::contact::site_test {
 
@@ -105,6 +107,45 @@ TEST(Site, GlobalQueryFindsWhatBruteForceFinds) {
     const double truth_m = nearest_by_brute_force_m(ball.view(), p);
     EXPECT_NEAR(std::abs(query(ball.view(), seeds.view(), p).distance_m), truth_m, 1e-12);
   }
+}
+
+TEST(Site, AfterTheStepsThatItMayTakeAWalkIsOnlyAsNearAsItCame) {
+  const mesh::SurfaceMesh ball = tests::make_ball(50_mm, 6);
+  const Vec3 p{0, 0, 60_mm};
+  const std::uint32_t start = follow(ball.view(), 0, {0.5_mm, 8_mm, 49_mm}).place.triangle;
+  double before_m = follow(ball.view(), start, p, 0).distance_m;
+  for (int steps = 1; steps <= 4; ++steps) {
+    const double now_m = follow(ball.view(), start, p, steps).distance_m;
+    EXPECT_LT(now_m, before_m);
+    before_m = now_m;
+  }
+  EXPECT_GT(before_m, follow(ball.view(), start, p).distance_m);
+}
+
+// A free sphere keeps what it has walked from cell to cell, and walks slowly far away.
+TEST(Site, NearASurfaceAFreeSphereIsAsFarAwayAsBruteForceFinds) {
+  const mesh::SurfaceMesh ball = tests::make_ball(50_mm, 5);
+  const SeedGrid seeds = make_seed_grid(ball.view(), 20_mm);
+  tests::SoftHalfSpace tissue;
+  const ProbeSphere sphere{{}, 4_mm};
+  Contact contact({.law = &tissue.field,
+                   .parameters = {},
+                   .spheres = {&sphere, 1},
+                   .surface = ball.view(),
+                   .seeds = seeds.view(),
+                   .blade = {}});
+  int near = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const double t = 0.01 * i, height_m = 54_mm + 30_mm * (1.0 + std::sin(1.7 * t));
+    const Vec3 p = height_m * normalized(Vec3{std::sin(t), std::cos(1.3 * t), std::sin(0.7 * t)});
+    contact.touch({.position_m = p});
+    contact.feel({.position_m = p}, false);
+    const SphereTouch& touch = contact.touches()[0];
+    if (touch.state != TouchState::kFree || height_m > 60_mm) continue;
+    EXPECT_NEAR(norm(p - touch.surface_point_m), nearest_by_brute_force_m(ball.view(), p), 1e-12);
+    ++near;
+  }
+  EXPECT_GT(near, 500);
 }
 
 TEST(Site, AShortMoveIsFollowedOverAFineSurface) {

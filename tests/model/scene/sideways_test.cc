@@ -40,7 +40,7 @@ TEST(Sideways, StiffnessIsTheFiniteElementsAlongBothDirectionsWithin25Percent) {
     const std::uint32_t vertex = one.at("vertex");
     const std::array<double, 3> v = one.at("along");
     const contact::Axes axes = contact::axes_of(scene->organ_mesh.vertex_normal[vertex],
-                                                {.a = {v[0], v[1], v[2]}, .b = {}});
+                                                {{Vec3{v[0], v[1], v[2]}, Vec3{}}});
     const contact::Tensor2 give_m_per_N =
         (*tissue)
             ->law()
