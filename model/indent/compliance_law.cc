@@ -37,14 +37,13 @@ const char* first_fault(const ComplianceCurveParameters& p) {
   return nullptr;
 }
 
-/// 1 inside, 0 at the last ring, with level slope at both ends.
-double taper(std::size_t ring, std::size_t rings) RT_SAFE {
+}  // namespace
+
+double ring_taper(std::size_t ring, std::size_t rings) RT_SAFE {
   const double x = static_cast<double>(ring) / static_cast<double>(rings);
   const double t = std::fmax(0.0, (x - kTaperStart) / (1.0 - kTaperStart));
   return 1.0 - t * t * (3.0 - 2.0 * t);
 }
-
-}  // namespace
 
 Result<ComplianceCurve> make_compliance_curve(const ComplianceCurveParameters& p) {
   if (const char* fault = first_fault(p)) return Error{std::string("compliance: ") + fault};
@@ -126,7 +125,7 @@ std::size_t ComplianceCurve::profile(double depth_m, std::span<double> ring_m) c
     const double tip_m =
         pulled ? disc_m * pulled_shape(tip_, rho_m) : pressed_shape_m(tip_, press, rho_m);
     // CL-4
-    const double u_m = j == 0 ? d_m : taper(j, rings_) * (tip_m + force_N * ring_m_per_N_[j]);
+    const double u_m = j == 0 ? d_m : ring_taper(j, rings_) * (tip_m + force_N * ring_m_per_N_[j]);
     before_m = std::clamp(u_m, 0.0, before_m);
     ring_m[j] = pulled ? -before_m : before_m;
   }

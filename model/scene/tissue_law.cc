@@ -101,6 +101,7 @@ TissueLawBuilder::Step TissueLawBuilder::add_compliance() {
     law_->curves_.push_back(&keep(std::move(curve)));
   law_->press_coordinate_ = std::move(family->press_coordinate);
   law_->pull_coordinate_ = std::move(family->pull_coordinate);
+  law_->curve_rings_times_E_per_m_ = std::move(family->ring_times_E_per_m);
   law_->memory_bytes_ += law_->curves_.size() * sizeof(indent::ComplianceCurve);
   return finish_field();
 }

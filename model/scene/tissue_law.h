@@ -51,6 +51,7 @@ class TissueLaw {
   std::vector<float> press_coordinate_;           // of each vertex in the family; empty: one curve
   std::vector<float> pull_coordinate_;
   std::vector<float> rings_times_E_per_m_;  // what its sites are to each other
+  std::vector<float> curve_rings_times_E_per_m_;
   std::vector<tissue::AlongTensors> along_times_E_per_m_;
   std::unique_ptr<contact::SiteLaw> site_law_;
   law::LawRange range_;

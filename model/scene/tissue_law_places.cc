@@ -51,6 +51,7 @@ TissueLawBuilder::Step TissueLawBuilder::vary_by_place(const law::Law& curve) {
   law_->title_ += ", in series with the organ";
   law_->press_coordinate_ = std::move(family->press_coordinate);
   law_->pull_coordinate_ = std::move(family->pull_coordinate);
+  law_->curve_rings_times_E_per_m_ = std::move(family->ring_times_E_per_m);
   law_->memory_bytes_ += law_->curves_.size() * sizeof(law::TabulatedLaw);
   return finish_field();
 }
@@ -69,6 +70,7 @@ TissueLawBuilder::Step TissueLawBuilder::finish_field(const law::Law* shape) {
                                 .surface = scene_.organ_mesh.view(),
                                 .relaxation = *relaxation,
                                 .neighbours = neighbours(),
+                                .curve_ring_times_E_per_m = law_->curve_rings_times_E_per_m_,
                                 .damps = law_->damping_Ns_per_m_ > 0.0,
                                 .shape = shape});
   return std::nullopt;
@@ -99,12 +101,10 @@ tissue::ElasticNeighbours TissueLawBuilder::neighbours() {
   law_->along_times_E_per_m_ =
       tissue::along_give(*map, scene_.organ_mesh.view().vertex_normal, widest_m);
   out.along_times_E_per_m = law_->along_times_E_per_m_;
-  if (scene_.tool.spheres.size() > 1) {
-    law_->rings_times_E_per_m_ = std::move(map->ring_times_E_per_m);
-    out.ring_times_E_per_m = law_->rings_times_E_per_m_;
-    out.rings = map->rings;
-    out.ring_pitch_m = map->ring_pitch_m;
-  }
+  law_->rings_times_E_per_m_ = std::move(map->ring_times_E_per_m);
+  out.ring_times_E_per_m = law_->rings_times_E_per_m_;
+  out.rings = map->rings;
+  out.ring_pitch_m = map->ring_pitch_m;
   law_->memory_bytes_ += law_->rings_times_E_per_m_.size() * sizeof(float) +
                          law_->along_times_E_per_m_.size() * sizeof(tissue::AlongTensors);
   return out;

@@ -133,6 +133,8 @@ Result<ComplianceFamily> make_compliance_family(const ComplianceMap& map,
     const double at = static_cast<double>(k);
     const std::vector<double> rings =
         rings_near(map, out.press_coordinate, at, p.youngs_modulus_Pa);
+    for (const double g : rings)
+      out.ring_times_E_per_m.push_back(static_cast<float>(g * p.youngs_modulus_Pa));
     auto curve = indent::make_compliance_curve(
         {.tip = tip,
          .regular_m_per_N = 1.0 / (soft * std::exp(span * at / last)) - disc,

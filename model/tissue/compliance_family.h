@@ -31,6 +31,7 @@ struct ComplianceFamily {
   std::vector<indent::ComplianceCurve> curve;  // K, soft to stiff
   std::vector<float> press_coordinate;         // kappa of r, n vertices
   std::vector<float> pull_coordinate;          // kappa of r_pull, n vertices
+  std::vector<float> ring_times_E_per_m;       // of curve k, as its shape has it, at [k N + j - 1]
   std::size_t limited = 0;                     // vertices held to kStiffest
 
   /// What the loop may touch.

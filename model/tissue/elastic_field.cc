@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/law/compliance_law.h"
 #include "model/law/law_bounds.h"
 
 namespace tact::model::tissue {
@@ -190,7 +191,30 @@ std::size_t ElasticField::profile(const contact::Indentation& in,
   parts_.curves[blend.low + 1]->profile(in.depth_m, stiff_m);
   for (std::size_t j = 0; j < std::min({count, ring_m.size(), kMaxProfile}); ++j)
     ring_m[j] += blend.fraction * (stiff_m[j] - ring_m[j]);
+  tell_own_rings(in, ring_m.first(count));
   return count;
+}
+
+// CL-4 with the rings of this place: those of a curve are the mean of all places that give as much
+// as it, rims and middles of lobes alike.
+void ElasticField::tell_own_rings(const contact::Indentation& in,
+                                  std::span<double> ring_m) const RT_SAFE {
+  const ElasticNeighbours& near = parts_.neighbours;
+  if (parts_.curve_ring_times_E_per_m.empty() || near.rings == 0 || ring_m.empty()) return;
+  const Blend blend = blend_at(in.place, in.depth_m);
+  const double force_N = part_at(in.place, in.depth_m).law.force_N;
+  const double sign = in.depth_m < 0.0 ? -1.0 : 1.0;
+  for (std::size_t j = 1; j < std::min(ring_m.size(), near.rings + 1); ++j) {
+    const auto of_curve = [&](std::size_t k) RT_SAFE {
+      return static_cast<double>(parts_.curve_ring_times_E_per_m[k * near.rings + j - 1]);
+    };
+    const double soft = of_curve(blend.low), stiff = of_curve(blend.low + 1);
+    const double more_m_per_N =
+        regular_m_per_N(in.place, static_cast<double>(j) * near.ring_pitch_m) -
+        (soft + blend.fraction * (stiff - soft)) / near.youngs_modulus_Pa;
+    const double u_m = ring_m[j] + law::ring_taper(j, near.rings) * force_N * more_m_per_N;
+    ring_m[j] = sign * std::clamp(sign * u_m, 0.0, std::abs(ring_m[j - 1]));
+  }
 }
 
 }  // namespace tact::model::tissue

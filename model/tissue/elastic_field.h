@@ -64,6 +64,8 @@ struct ElasticFieldParts {
   contact::SurfaceView surface;
   law::Relaxation relaxation;
   ElasticNeighbours neighbours = {};
+  /// g_j E of curve k at [k rings + j - 1], as its profile has it; empty: it has none of a map.
+  std::span<const float> curve_ring_times_E_per_m{};
   bool damps = false;               // a curve depends on speed
   const law::Law* shape = nullptr;  // of the dent, where the curves are springs that have none
 };
@@ -105,6 +107,7 @@ class ElasticField final : public contact::SiteLaw {
   Blend blend_at(const contact::Place& place, double depth_m) const RT_SAFE;
   Part part_at(const contact::Place& place, double depth_m) const RT_SAFE;
   double regular_m_per_N(const contact::Place& place, double distance_m) const RT_SAFE;
+  void tell_own_rings(const contact::Indentation& in, std::span<double> ring_m) const RT_SAFE;
   Vec3 coordinate_slope(std::uint32_t triangle, double depth_m) const RT_SAFE;
 
   ElasticFieldParts parts_;

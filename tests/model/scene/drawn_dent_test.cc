@@ -19,10 +19,9 @@ namespace tact::model::scene::drawn_dent_test {
 
 using nlohmann::json;
 
-constexpr double kBar = 0.08;       // of the depth, RMS
-constexpr double kOtherBar = 0.19;  // the same at a place that no stroke of the scene presses
-constexpr double kTiltBar = 0.24;   // vertex by vertex
-constexpr double kRing_m = 0.003;   // over which a mean is taken around the tool
+constexpr double kBar = 0.08;      // of the depth, RMS
+constexpr double kTiltBar = 0.18;  // vertex by vertex
+constexpr double kRing_m = 0.003;  // over which a mean is taken around the tool
 constexpr std::size_t kRings = 10;
 
 json reference(const std::string& name) {
@@ -144,8 +143,8 @@ class DrawnDent : public ::testing::Test {
 };
 
 // The organ sinks less towards its held side than towards a free lobe, which no profile of rings
-// shows: single vertices miss by that tilt. Means around the tool are right at the hand's own site;
-// at the other place they too are up to 18 % off.
+// shows: single vertices miss by that tilt. Means around the tool are right, at the hand's own site
+// and at a rim that no stroke presses.
 TEST_F(DrawnDent, OfBothJawsIsThatOfFiniteElementsAroundTheTool) {
   const json truth = reference("liver_tool_skin.json");
   for (const char* law : {"rhombus", "compliance"}) {
@@ -154,8 +153,7 @@ TEST_F(DrawnDent, OfBothJawsIsThatOfFiniteElementsAroundTheTool) {
       for (const json& pressed : place["cases"]) {
         ASSERT_GT(place["skin"].size(), 100U);
         const Errors error = errors(place, pressed);
-        EXPECT_LT(error.rings, place["vertex"].is_null() ? kBar : kOtherBar)
-            << law << " " << place["vertex"] << " " << pressed["depth_m"];
+        EXPECT_LT(error.rings, kBar) << law << " " << place["vertex"] << " " << pressed["depth_m"];
         EXPECT_LT(error.vertices, kTiltBar) << law << " " << place["vertex"];
       }
   }
