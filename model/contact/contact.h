@@ -123,7 +123,6 @@ class Contact {
   };
 
   Site search(Probe& probe, double radius_m) RT_SAFE;
-  Site walk(std::uint32_t& candidate, const Vec3& p_m, double radius_m) const RT_SAFE;
   void use_blade(const Tool& tool, bool may_cut) RT_SAFE;
   void watch_grip(double grip_ratio) RT_SAFE;
   void leave(std::size_t i) RT_SAFE;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which point of the surface a free sphere is nearest to: see contact.h.
 #include <cmath>
+#include <limits>
 
 #include "model/contact/contact.h"
 
@@ -28,33 +29,31 @@ std::uint32_t nearer_than_seed(const SurfaceView& s, std::uint32_t seed, const S
 }  // namespace
 
 // A free probe watches the two sheets that its cell names; one in contact follows its own site.
+// Where a sheet is too far to be touched before the next cell, a few steps a tick are enough: a
+// seed is no further from the nearest point than its cell is wide.
 Site Contact::search(Probe& probe, double radius_m) RT_SAFE {
-  constexpr double kBeside_cells = 2.0;
+  constexpr double kBeside_cells = 2.0, kFar_cells = 4.0;
+  constexpr int kStepsFarAway = 4;
   const SeedGridView& seeds = scene_.seeds;
   const std::uint32_t cell = seeds.cell_of(probe.centre_m);
-  if (cell != probe.cell) {
-    probe.cell = cell;
-    const Seeds watched = probe.candidate;
-    for (std::size_t i = 0; i < watched.size(); ++i)
-      probe.candidate[i] = nearer_than_seed(scene_.surface, seeds.cell[cell][i], watched,
-                                            probe.centre_m, kBeside_cells * seeds.cell_m);
+  const Seeds watched = probe.candidate;
+  Site best;
+  best.distance_m = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < watched.size(); ++k) {
+    std::uint32_t& candidate = probe.candidate[k];
+    if (cell != probe.cell)
+      candidate = nearer_than_seed(scene_.surface, seeds.cell[cell][k], watched, probe.centre_m,
+                                   kBeside_cells * seeds.cell_m);
+    if (candidate == kNoTriangle) continue;
+    const double away_m = norm(a_corner(scene_.surface, candidate) - probe.centre_m) - radius_m;
+    const bool is_far = away_m > kFar_cells * seeds.cell_m;
+    const Site site =
+        follow(scene_.surface, candidate, probe.centre_m, is_far ? kStepsFarAway : kMaxWalkSteps);
+    candidate = site.place.triangle;
+    if (std::abs(site.distance_m) < std::abs(best.distance_m)) best = site;
   }
-  const Site best = walk(probe.candidate[0], probe.centre_m, radius_m);
-  if (probe.candidate[1] == kNoTriangle) return best;
-  const Site other = walk(probe.candidate[1], probe.centre_m, radius_m);
-  return std::abs(other.distance_m) < std::abs(best.distance_m) ? other : best;
-}
-
-// Where the sheet is too far to be touched before the next cell, a few steps a tick are enough: a
-// seed is no further from the nearest point than its cell is wide.
-Site Contact::walk(std::uint32_t& candidate, const Vec3& p_m, double radius_m) const RT_SAFE {
-  constexpr double kFar_cells = 4.0;
-  constexpr int kStepsFarAway = 4;
-  const double away_m = norm(a_corner(scene_.surface, candidate) - p_m) - radius_m;
-  const bool is_far = away_m > kFar_cells * scene_.seeds.cell_m;
-  const Site site = follow(scene_.surface, candidate, p_m, is_far ? kStepsFarAway : kMaxWalkSteps);
-  candidate = site.place.triangle;
-  return site;
+  probe.cell = cell;
+  return best;
 }
 
 }  // namespace tact::model::contact

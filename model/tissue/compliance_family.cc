@@ -62,15 +62,7 @@ Vec3 vector_of(const std::array<float, 3>& v) {
 }
 
 /// s v v'
-Tensor3 square(double s, const Vec3& v) {
-  const auto part = [s](double p, double q) { return static_cast<float>(s * p * q); };
-  return {part(v.x, v.x), part(v.y, v.y), part(v.z, v.z),
-          part(v.x, v.y), part(v.x, v.z), part(v.y, v.z)};
-}
-
-Tensor3 operator+(const Tensor3& a, const Tensor3& b) {
-  return {a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.xy + b.xy, a.xz + b.xz, a.yz + b.yz};
-}
+Mat3 square(double s, const Vec3& v) { return {{s * v.x * v, s * v.y * v, s * v.z * v}}; }
 
 }  // namespace
 
@@ -97,7 +89,7 @@ std::vector<AlongTensors> along_give(const ComplianceMap& map, std::span<const V
     };
     const double most = n1 * n1 / room(s1) + n2 * n2 / room(s2);
     const double share = 1.0 / std::max(normal, most);
-    const Tensor3 s = square(s1, a1) + square(s2, a2);
+    const Mat3 s = square(s1, a1) + square(s2, a2);
     out.push_back({.touching = s, .held = s + square(-share, n1 * a1 + n2 * a2)});
   }
   return out;

@@ -18,14 +18,6 @@ law::LawStatus worse(law::LawStatus a, law::LawStatus b) RT_SAFE {
   return b >= law::LawStatus::kSaturated && b > a ? b : a;
 }
 
-/// u . S v
-double between(const Vec3& u, const Tensor3& s, const Vec3& v) RT_SAFE {
-  const auto row = [&v](float x, float y, float z) RT_SAFE {
-    return dot(Vec3{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)}, v);
-  };
-  return dot(u, {row(s.xx, s.xy, s.xz), row(s.xy, s.yy, s.yz), row(s.xz, s.yz, s.zz)});
-}
-
 }  // namespace
 
 ElasticField::ElasticField(const ElasticFieldParts& parts) : parts_(parts) {
@@ -169,14 +161,14 @@ contact::AlongGive ElasticField::give_along(const contact::Place& place, bool he
       .contact_m2_per_N = (2.0 - nu) / (4.0 * (1.0 - nu) * near.contact_modulus_Pa),
       .rest_m_per_N = {}};
   if (near.along_times_E_per_m.empty() || !is_a_place(place, parts_.surface)) return give;
+  Mat3 s_m_per_N;
   for (std::size_t i = 0; i < 3; ++i) {
     const AlongTensors& both = near.along_times_E_per_m[parts_.surface.triangle[place.triangle][i]];
-    const Tensor3& s = held ? both.held : both.touching;
-    const double share = place.weight[i] / near.youngs_modulus_Pa;
-    give.rest_m_per_N.xx += share * between(axes.unit[0], s, axes.unit[0]);
-    give.rest_m_per_N.xy += share * between(axes.unit[0], s, axes.unit[1]);
-    give.rest_m_per_N.yy += share * between(axes.unit[1], s, axes.unit[1]);
+    s_m_per_N =
+        s_m_per_N + place.weight[i] / near.youngs_modulus_Pa * (held ? both.held : both.touching);
   }
+  const Vec3 &a = axes.unit[0], &b = axes.unit[1], s_a = s_m_per_N * a, s_b = s_m_per_N * b;
+  give.rest_m_per_N = {.xx = dot(a, s_a), .xy = dot(a, s_b), .yy = dot(b, s_b)};
   return give;
 }
 

@@ -28,6 +28,7 @@
 
 #include "model/contact/site_law.h"
 #include "model/law/relaxation.h"
+#include "model/mat3.h"
 
 namespace tact::model::tissue {
 
@@ -35,14 +36,9 @@ namespace tact::model::tissue {
 /// can show.
 inline constexpr double kStiffest = 3.0;
 
-/// Symmetric, 3 x 3, in the scene's axes.
-struct Tensor3 {
-  float xx = 0.0F, yy = 0.0F, zz = 0.0F, xy = 0.0F, xz = 0.0F, yz = 0.0F;
-};
-
-/// S E of a vertex, 1/m, tangential: where it may sink, and where it is held.
+/// S E of a vertex, 1/m, tangential, in the scene's axes: where it may sink, and where it is held.
 struct AlongTensors {
-  Tensor3 touching, held;
+  Mat3 touching, held;
 };
 
 /// What two sites of one elastic body are to each other. Without a map the body is a half-space.

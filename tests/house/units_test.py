@@ -23,7 +23,7 @@ PLAIN = {
     "least_transmission", "least_rod_sigma", "limit_tan", "critical_zeta", "f0", "m0", "c2", "c3", "u0",
     "normal", "tool_orientation",  # a direction; w, x, y, z
     "n1", "n2", "s1", "s2",  # barycentric and normal parts of a map
-    "xx", "xy", "xz", "yy", "yz", "zz",  # of a tensor, which has the unit
+    "xx", "xy", "yy",  # of a tensor, which has the unit
     "limit", "largest", "size", "median", "lower_quartile", "upper_quartile", "rel", "tolerance", "exact",
     "scale", "best_scale", "difference", "good_residual", "shape_weight", "sum_of_squares", "middle_value",
     "first_strain", "rim_slope", "instructions", "kFacing", "kLargePull", "kMmPerM", "kNPerMN",
