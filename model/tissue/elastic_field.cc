@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/law/compliance_law.h"
+#include "model/indent/compliance_law.h"
 #include "model/law/law_bounds.h"
 
 namespace tact::model::tissue {
@@ -204,7 +204,7 @@ void ElasticField::tell_own_rings(const contact::Indentation& in,
     const double more_m_per_N =
         regular_m_per_N(in.place, static_cast<double>(j) * near.ring_pitch_m) -
         (soft + blend.fraction * (stiff - soft)) / near.youngs_modulus_Pa;
-    const double u_m = ring_m[j] + law::ring_taper(j, near.rings) * force_N * more_m_per_N;
+    const double u_m = ring_m[j] + indent::ring_taper(j, near.rings) * force_N * more_m_per_N;
     ring_m[j] = sign * std::clamp(sign * u_m, 0.0, std::abs(ring_m[j - 1]));
   }
 }
