@@ -58,16 +58,16 @@ void TickLogWriter::add(const LoggedTick& tick) {
   LogRecord record;
   std::memcpy(&record.tick, &tick, sizeof tick);  // with its padding, which the sum counts
   record.crc = crc_of(&record.tick, sizeof record.tick);
-  put(&record, sizeof record, fmt::format(" at tick {}", tick.tick));
+  put(&record, sizeof record, fmt::format("tick {}", tick.tick));
 }
 
 void TickLogWriter::append(const std::string& bytes) {
-  if (!trouble_) put(bytes.data(), bytes.size(), " in its pictures");
+  if (!trouble_) put(bytes.data(), bytes.size(), "its pictures");
 }
 
 void TickLogWriter::put(const void* bytes, std::size_t size, const std::string& where) {
   if (const auto error = file_->put({static_cast<const char*>(bytes), size}))
-    trouble_ = Error{fmt::format("{}{}; what came before is kept", error->sentence, where)};
+    trouble_ = Error{fmt::format("{}; what came before {} is kept", error->sentence, where)};
 }
 
 std::optional<Error> TickLogWriter::close() {

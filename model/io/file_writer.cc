@@ -36,7 +36,8 @@ std::string_view first_word(std::string_view text) {
   if (text.starts_with('{')) return text.substr(0, 1);
   const auto ends = [](char c) { return is_control(c) || c == ',' || c == ':'; };
   const auto end = std::find_if(text.begin(), text.end(), ends);
-  return text.substr(0, std::min<std::size_t>(end - text.begin(), kBeginning_bytes));
+  const auto size = static_cast<std::size_t>(end - text.begin());
+  return text.substr(0, std::min(size, kBeginning_bytes));
 }
 
 std::string folder_of(const std::string& path) {

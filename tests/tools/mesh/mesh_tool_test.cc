@@ -83,7 +83,8 @@ TEST_F(MeshTool, RefusesBadUsageInOneLine) {
   expect_one_line_error(run(""), "tact-mesh: FILE is required");
   expect_one_line_error(run(cube_ + " more.obj"), "tact-mesh: ");
   expect_one_line_error(run("--unit-m inch " + cube_), "tact-mesh: ");
-  expect_one_line_error(run("--unit-m 0 " + cube_), "tact-mesh: " + cube_ + ": a file unit of 0 m");
+  expect_one_line_error(run("--unit-m 0 " + cube_),
+                        "tact-mesh: --unit-m: 0 is not in [1e-09 - 1000000]");
   expect_one_line_error(run("--unit-m nan " + cube_), "tact-mesh: ");
   expect_one_line_error(run("--frobnicate " + cube_), "tact-mesh: ");
   expect_one_line_error(run(temp_.path() + "/none.obj"), "tact-mesh: ");

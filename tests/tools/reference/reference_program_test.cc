@@ -139,7 +139,9 @@ TEST(ReferenceProgram, TellsWhichLargeStrainHasNoSolutionAndKeepsTheRest) {
 
 TEST(ReferenceProgram, TriesItsFileBeforeTheWork) {
   expect_refusal(kLiver + " --sites 1714 --out /nowhere/liver.json",
-                 "/nowhere/liver.json: its folder cannot be written to; make it or name another");
+                 "/nowhere/liver.json: cannot be written: No such file or directory; check the "
+                 "folder, who may "
+                 "write there and the free space");
 }
 
 }  // namespace tact::tests::reference_program_test
