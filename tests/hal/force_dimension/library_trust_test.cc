@@ -65,7 +65,7 @@ TEST_F(LibraryTrust, OtherFoldersAreRefusedAlsoByALinkAndByDots) {
 }
 
 TEST_F(LibraryTrust, WhatOthersMayWriteIsRefusedWithItsModeAndTheCure) {
-  for (const mode_t mode : {0664, 0646, 0666}) {
+  for (const mode_t mode : {mode_t{0664}, mode_t{0646}, mode_t{0666}}) {
     set_mode("/opt/fd/libdhd.so.3", mode);
     expect_refusal(good, {"others than its owner may write " + good, "sudo install -D -o root"});
   }
