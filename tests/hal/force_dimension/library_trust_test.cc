@@ -75,7 +75,7 @@ TEST_F(LibraryTrust, WhatOthersMayWriteIsRefusedWithItsModeAndTheCure) {
 
 TEST_F(LibraryTrust, EveryFolderOnTheWayCounts) {
   for (const char* folder : {"/opt/fd", "/opt", ""})
-    for (const mode_t mode : {0775, 0757, 01777}) {
+    for (const mode_t mode : {mode_t{0775}, mode_t{0757}, mode_t{01777}}) {
       set_mode(folder, mode);
       expect_refusal(good, {"others than its owner may write " + top + folder + " "});
       set_mode(folder, 0755);
