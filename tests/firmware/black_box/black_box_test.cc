@@ -201,7 +201,7 @@ TEST_F(BlackBoxTest, AFullDiskIsToldAndCostsNothingElse) {
   EXPECT_TRUE(box->files().empty());
   auto news = box->news();
   ASSERT_EQ(news.size(), 1u);
-  EXPECT_NE(news[0].find("what came before is kept"), std::string::npos) << news[0];
+  EXPECT_NE(news[0].find("what came before tick"), std::string::npos) << news[0];
   EXPECT_TRUE(box->news().empty()) << "told once";
   ticks(*box, 100);
   ticks(*box, 300, model::Fault::kEmergencyStop);
