@@ -69,7 +69,7 @@ Result<std::string> find_library(const std::string& name, const LibraryFolders& 
     return file.string();
   }
   for (const std::string& folder : folders.searched)
-    if (const path file = std::filesystem::canonical(folder + "/" + name, failed); !failed)
+    if (const path file = std::filesystem::canonical(path(folder) / name, failed); !failed)
       return file.string();
   return Error{fmt::format("{}: in no system folder", name)};
 }

@@ -23,9 +23,8 @@ Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N)
   for (int step = 0; step < kSteps; ++step) {
     const Tensor2 m{1.0 + g_m_per_N * k.xx, g_m_per_N * k.xy, 1.0 + g_m_per_N * k.yy};  // I + g K
     left_N = solve(m, f_N);
-    const double squared_N2 = dot(left_N, left_N);
-    g_m_per_N +=
-        (std::sqrt(squared_N2) / cap_N - 1.0) * squared_N2 / dot(left_N, solve(m, k * left_N));
+    const double length2 = dot(left_N, left_N);
+    g_m_per_N += (std::sqrt(length2) / cap_N - 1.0) * length2 / dot(left_N, solve(m, k * left_N));
   }
   return (cap_N / norm(left_N)) * left_N;
 }

@@ -25,16 +25,16 @@ void check_standard_output() {
 }
 
 [[noreturn]] void tell_and_end() {
-  const char* what = "an unknown exception";
   try {
     if (const auto thrown = std::current_exception()) std::rethrow_exception(thrown);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", program_name, error.what());
     _exit(kBadOutput);
   } catch (...) {
+    std::fprintf(stderr, "%s: an unknown exception\n", program_name);
+    _exit(kBadOutput);
   }
-  std::fprintf(stderr, "%s: %s\n", program_name, what);
-  _exit(kBadOutput);
+  _exit(kBadOutput);  // std::terminate without an exception
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ std::string SealedFile::trouble() {
   return {};
 }
 
-std::string sealed_text(std::string text) {
+std::string sealed_text(const std::string& text) {
   Seal seal;
   seal.add(text);
   return text + fmt::format("sha256 = \"{}\"\n", seal.hex());

@@ -81,7 +81,7 @@ class SealedFile {
 };
 
 /// TOML without sections, and the line that seals it.
-std::string sealed_text(std::string text);
+std::string sealed_text(const std::string& text);
 /// Is it what sealed_text made?
 bool is_sealed(std::string_view text);
 
