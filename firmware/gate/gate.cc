@@ -50,6 +50,11 @@ ThermalLimit thermal_limit(const model::Limits& limits, double peak, double peri
   return {peak, share * peak, period_s / limits.thermal_time_s};
 }
 
+// It is the cause of what follows in the same tick.
+void latch_first(Fault fault, GateVerdict& verdict) RT_SAFE {
+  if (!latches(verdict.fault)) verdict.fault = fault;
+}
+
 }  // namespace
 
 model::Limits limits_for(const model::Limits& scene, const hal::DeviceInfo& device) {
@@ -101,10 +106,10 @@ GateVerdict Gate::judge(const GateInput& input) RT_SAFE {
 
 void Gate::note(Stage stage, Fault reason, GateVerdict& verdict) RT_SAFE {
   ++counter_[static_cast<std::size_t>(stage)];
-  if (!latches(reason))
+  if (latches(reason))
+    latch_first(reason, verdict);
+  else
     verdict.limit = reason;
-  else if (!latches(verdict.fault))  // the first is the cause of what follows in the same tick
-    verdict.fault = reason;
 }
 
 void Gate::check_finite(const GateInput& input, GateVerdict& verdict) RT_SAFE {
@@ -122,7 +127,7 @@ void Gate::check_fresh(const GateInput& input, GateVerdict& verdict) RT_SAFE {
   const double level = fresh_.step(missed_ < 2, period_s_, static_cast<double>(missed_ - held));
   if (missed_ > 0 || level < 1.0)
     note(Stage::kFresh, missed_ == 1 ? Fault::kSampleHeld : Fault::kSampleStale, verdict);
-  if (missed_ >= kLostAfter && !latches(verdict.fault)) verdict.fault = Fault::kDeviceLost;
+  if (missed_ >= kLostAfter) latch_first(Fault::kDeviceLost, verdict);
   verdict.wrench = level * verdict.wrench;
 }
 

@@ -12,13 +12,13 @@
 
 #include "firmware/run/control_name.h"
 #include "firmware/run/operator_desk.h"
-#include "tests/support/puppet_loop.h"
+#include "tests/firmware/run/desk_surroundings.h"
 
 namespace tact::firmware::run::desk_by_socket_test {
 
 using loop::State;
 
-class DeskBySocket : public testing::Test {
+class DeskBySocket : public DeskSurroundings {
  protected:
   void SetUp() override {
     testing::internal::CaptureStderr();
@@ -59,17 +59,6 @@ class DeskBySocket : public testing::Test {
   }
 
   std::string path = control_path(testing::TempDir(), "liver.toml", getpid());
-  loop::SimulatedClock clock;
-  PuppetDevice device{clock};
-  PuppetLines lines;
-  loop::Requests requests;
-  std::vector<std::string> edges;  // what the loop saw rise
-  OperatorSignals signals{[this] {
-    if (requests.arm.load()) edges.emplace_back("arm");
-    if (requests.reset.load()) edges.emplace_back("reset");
-  }};
-  OperatorView view{device, lines, false};
-  telemetry::Frame frame;
   std::unique_ptr<ControlSocket> control;
   std::unique_ptr<OperatorDesk> desk;
 };

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/puppet_loop.h"
+#include "tests/firmware/run/desk_surroundings.h"
 
 namespace tact::firmware::run::operator_desk_test {
 
 using loop::State;
 
-class Desk : public testing::Test {
+class Desk : public DeskSurroundings {
  protected:
   std::string ask(int signal) {
     raise(signal);
@@ -30,17 +30,6 @@ class Desk : public testing::Test {
     return testing::internal::GetCapturedStderr();
   }
 
-  loop::SimulatedClock clock;
-  PuppetDevice device{clock};
-  PuppetLines lines;
-  loop::Requests requests;
-  std::vector<std::string> edges;  // what the loop saw rise
-  OperatorSignals signals{[this] {
-    if (requests.arm.load()) edges.emplace_back("arm");
-    if (requests.reset.load()) edges.emplace_back("reset");
-  }};
-  OperatorView view{device, lines, false};
-  telemetry::Frame frame;
   OperatorDesk desk{signals, requests, view, [this] { return frame; }};
 };
 

@@ -16,6 +16,15 @@ namespace tact::model::contact::contact_bench {
 
 inline constexpr double kRadius_m = 4_mm;
 
+inline indent::RhombusChain soft_chain() {
+  return *indent::make_rhombus_chain({.rod_length_m = 5_mm,
+                                      .initial_angle_rad = 30_deg,
+                                      .normal_stiffness_N_per_m = 150.0,
+                                      .tangential_stiffness_N_per_m = 180.0,
+                                      .growth = 2.0,
+                                      .units = 10});
+}
+
 // A soft surface with everything that a Contact borrows.
 struct Bench {
   explicit Bench(mesh::SurfaceMesh m, std::vector<ProbeSphere> s = {{{}, kRadius_m}})
@@ -30,12 +39,7 @@ struct Bench {
                     .blade = {}});
   }
 
-  indent::RhombusChain chain = *indent::make_rhombus_chain({.rod_length_m = 5_mm,
-                                                            .initial_angle_rad = 30_deg,
-                                                            .normal_stiffness_N_per_m = 150.0,
-                                                            .tangential_stiffness_N_per_m = 180.0,
-                                                            .growth = 2.0,
-                                                            .units = 10});
+  indent::RhombusChain chain = soft_chain();
   law::TabulatedLaw law = *tabulate(chain, 65);
   const law::Law* curve = &law;
   tissue::ElasticField field{{.curves = {&curve, 1},

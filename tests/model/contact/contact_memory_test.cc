@@ -11,11 +11,12 @@
 #include "model/indent/rhombus_chain.h"
 #include "model/tissue/elastic_field.h"
 #include "model/units.h"
+#include "tests/model/contact/contact_bench.h"
 #include "tests/support/shapes.h"
 
 namespace tact::model::contact::contact_memory_test {
 
-constexpr double kRadius_m = 4_mm;
+using contact_bench::kRadius_m;
 
 struct RelaxingBench {
   Contact contact() {
@@ -26,12 +27,7 @@ struct RelaxingBench {
                     .seeds = seeds.view(),
                     .blade = {}});
   }
-  indent::RhombusChain chain = *indent::make_rhombus_chain({.rod_length_m = 5_mm,
-                                                            .initial_angle_rad = 30_deg,
-                                                            .normal_stiffness_N_per_m = 150.0,
-                                                            .tangential_stiffness_N_per_m = 180.0,
-                                                            .growth = 2.0,
-                                                            .units = 10});
+  indent::RhombusChain chain = contact_bench::soft_chain();
   const law::Law* curve = &chain;
   mesh::SurfaceMesh mesh = tests::make_plate(100_mm, 20);
   SeedGrid seeds = make_seed_grid(mesh.view(), 20_mm);

@@ -62,4 +62,14 @@ inline SpringNet make_net(std::uint32_t cells, const NetMaterial& m) {
   return net;
 }
 
+inline model::springs::StepRule rule(model::springs::Integrator integrator, double step_s,
+                                     double alpha = 0.5) {
+  return {.method = {integrator, alpha}, .step_s = step_s};
+}
+
+inline void run(SpringNet& net, const model::springs::StepRule& how, int steps) {
+  model::springs::SpringStepper stepper(net.rest_m.size(), net.spring.size());
+  for (int i = 0; i < steps; ++i) stepper.step(net.view(), how);
+}
+
 }  // namespace tact::tests

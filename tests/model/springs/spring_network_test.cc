@@ -11,16 +11,9 @@
 namespace tact::model::springs::spring_network_test {
 
 using tests::make_net;
+using tests::rule;
+using tests::run;
 using tests::SpringNet;
-
-StepRule rule(Integrator integrator, double step_s, double alpha = 0.5) {
-  return {.method = {integrator, alpha}, .step_s = step_s};
-}
-
-void run(SpringNet& net, const StepRule& how, int steps) {
-  SpringStepper stepper(net.rest_m.size(), net.spring.size());
-  for (int i = 0; i < steps; ++i) stepper.step(net.view(), how);
-}
 
 TEST(SpringNetwork, MatchesPenAndPaper) {
   // Two nodes 30 mm apart, L0 = 20 mm, k = 200 N/m: 2 N. Apart at 0.1 m/s, c = 3 Ns/m: 0.3 N more.

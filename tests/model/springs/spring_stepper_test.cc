@@ -10,16 +10,9 @@
 namespace tact::model::springs::spring_stepper_test {
 
 using tests::make_net;
+using tests::rule;
+using tests::run;
 using tests::SpringNet;
-
-StepRule rule(Integrator integrator, double step_s, double alpha = 0.5) {
-  return {.method = {integrator, alpha}, .step_s = step_s};
-}
-
-void run(SpringNet& net, const StepRule& how, int steps) {
-  SpringStepper stepper(net.rest_m.size(), net.spring.size());
-  for (int i = 0; i < steps; ++i) stepper.step(net.view(), how);
-}
 
 TEST(SpringStepper, ThreeEighthsMakesEnergyWhereOneHalfKeepsIt) {
   const auto growth = [](double alpha) {
