@@ -4,7 +4,8 @@
 // Only frame W leaves a device (types.h). read, ready, permit and write are called once per tick,
 // in this order, from the loop thread; everything else belongs to set-up and shut-down. What can be
 // found out before the loop is found out while opening, with a sentence; drives are powered by the
-// loop alone, so that none is ever without commands. A fault of the device stays until it is opened
+// loop alone, so that none is ever without commands (one that must be on to tell where it is gets
+// zero torque all the while). A fault of the device stays until it is opened
 // again: a bus that comes back by itself moves nothing.
 #pragma once
 
@@ -14,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "hal/last_words.h"
 #include "model/device_at_tool.h"
 #include "model/fault.h"
 #include "model/types.h"
@@ -43,6 +45,7 @@ struct DeviceInfo {
   /// What bounds the stiffness it can show; a device without it is never felt.
   std::optional<model::DeviceAtTool> at_tool{};
   std::string damping_key{};  // of the scene; empty: the damping is the hardware's own
+  std::string caution{};      // what its own settings may do to a force, with numbers; or empty
 };
 
 /// Something that a device counted, for the report.
@@ -92,6 +95,10 @@ class Device {
   /// What it counted since it was opened, as frames that are nobody's; read when the loop has
   /// ended.
   virtual std::vector<DeviceCount> tally() const { return {}; }
+
+  /// Set-up, before the loop: what takes the force away after this process has died. None for a
+  /// simulated device, and for one whose handle no other process can use.
+  virtual std::optional<LastWords> last_words() { return std::nullopt; }
 
   /// Zero force and power off; may block. Safe to call twice, and at any time after opening.
   virtual void stop() = 0;

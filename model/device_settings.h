@@ -67,6 +67,7 @@ struct CanSettings {
   // CiA 402
   double counts_per_motor_turn = 10'000.0;
   bool command_at_sync = false;  // RPDO type 1, if the drive insists
+  double rated_torque_Nm = 0.0;  // what 1000 of object 6071 are; 0: the drive's own 6076
 };
 
 enum class UsbTransport { kUsbfs, kLibusb };

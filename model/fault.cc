@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/fault.h"
 
+#include <algorithm>
 #include <array>
 
 namespace tact::model {
@@ -45,8 +46,8 @@ constexpr std::array kTable{
     FaultEntry{Fault::kPowerLimited, "power limited",
                "force times speed of the tool nears limits.power_W",
                "let the tool go back slower, or soften the law"},
-    FaultEntry{Fault::kInternal, "internal", "a value that cannot occur occurred",
-               "report it with the recording; do not use the device until it is explained"},
+    FaultEntry{Fault::kUnknown, "unknown", "a fault of another version of tact, or a broken record",
+               "use programs and recordings of one build"},
     FaultEntry{Fault::kForceNotFinite, "force not finite", "the model produced NaN or infinity",
                "report it with the recording; check the scene's parameters"},
     FaultEntry{Fault::kSampleNotFinite, "sample not finite", "the device reported NaN or infinity",
@@ -112,6 +113,9 @@ constexpr std::array kTable{
     FaultEntry{Fault::kForbiddenCall, "forbidden call",
                "the loop made a system call that its device does not list",
                "report it with the black box; --no-seccomp runs without this check"},
+    FaultEntry{Fault::kGuardianLost, "guardian lost",
+               "tact-guardian, the process that zeroes the device if tactd dies, has ended",
+               "find out who ended it (dmesg), then start tactd again"},
     FaultEntry{Fault::kEnergyOverdrawn, "energy overdrawn",
                "the device gave more energy to the hand than limits.energy_J: the tool jumped, or "
                "the loop paused, under force",
@@ -127,12 +131,8 @@ constexpr std::array kTable{
 std::span<const FaultEntry> fault_table() { return kTable; }
 
 const FaultEntry& describe(Fault fault) {
-  const FaultEntry* internal = nullptr;
-  for (const FaultEntry& entry : kTable) {
-    if (entry.fault == fault) return entry;
-    if (entry.fault == Fault::kInternal) internal = &entry;
-  }
-  return *internal;
+  const auto* const entry = std::ranges::find(kTable, fault, &FaultEntry::fault);
+  return entry != kTable.end() ? *entry : describe(Fault::kUnknown);
 }
 
 }  // namespace tact::model

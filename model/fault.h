@@ -27,7 +27,7 @@ enum class Fault : std::uint16_t {
   kEnergyLimited = 11,
   kContinuousLimited = 12,
   kPowerLimited = 13,
-  kInternal = 100,  // never raised: what is said of a number that the table does not have
+  kUnknown = 100,  // never raised: what is said of a number that the table does not have
   kForceNotFinite = 101,
   kSampleNotFinite = 102,
   kDeviceLost = 103,
@@ -51,6 +51,7 @@ enum class Fault : std::uint16_t {
   kDeviceStalled = 121,
   kLoopRanAway = 122,
   kForbiddenCall = 123,
+  kGuardianLost = 124,
   kEnergyOverdrawn = 130,
   kPowerExceeded = 131,
 };
@@ -66,7 +67,7 @@ struct FaultEntry {
 
 /// All entries, ascending by number. None of the texts is blank.
 std::span<const FaultEntry> fault_table();
-/// The entry of one fault; unknown numbers give kInternal's.
+/// The entry of one fault; kUnknown's of a number that the table does not have.
 const FaultEntry& describe(Fault fault);
 
 }  // namespace tact::model

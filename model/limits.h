@@ -20,4 +20,12 @@ struct Limits {
   double power_W = 20.0;                 // given to the hand
 };
 
+/// As they act where the PC allows this share of the force: 1 with hard real time.
+constexpr Limits limits_in_use(Limits limits, double force_share) {
+  limits.force_N *= force_share;
+  limits.torque_Nm *= force_share;
+  limits.continuous_force_N *= force_share;
+  return limits;
+}
+
 }  // namespace tact::model

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // result.h - a value, or an error with the sentence that a person needs. As std::expected of C++23,
-// but an Error converts by itself, and value() of an error is a mistake of the caller. Set-up code
-// only. What gives no value returns std::optional<Error>: empty is good.
+// but an Error converts by itself, and value() of an error ends the program with its sentence.
+// Set-up code only. What gives no value returns std::optional<Error>: empty is good.
 #pragma once
 
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <utility>
 #include <variant>
@@ -15,6 +17,12 @@ struct Error {
   std::string sentence;
 };
 
+/// A mistake of the code, so the program ends, with NDEBUG too: nothing reads a value that is none.
+[[noreturn]] inline void end_with(const std::string& mistake) {
+  static_cast<void>(std::fputs((mistake + "\n").c_str(), stderr));
+  std::abort();
+}
+
 template <typename T>
 class [[nodiscard]] Result {
  public:
@@ -23,13 +31,19 @@ class [[nodiscard]] Result {
 
   bool has_value() const { return content_.index() == 0; }
   explicit operator bool() const { return has_value(); }
-  T& value() { return *std::get_if<T>(&content_); }
-  const T& value() const { return *std::get_if<T>(&content_); }
+  T& value() { return const_cast<T&>(std::as_const(*this).value()); }
+  const T& value() const {
+    if (const T* value = std::get_if<T>(&content_)) return *value;
+    end_with("value() of an error: " + error().sentence);
+  }
   T& operator*() { return value(); }
   const T& operator*() const { return value(); }
   T* operator->() { return &value(); }
   const T* operator->() const { return &value(); }
-  const Error& error() const { return *std::get_if<Error>(&content_); }
+  const Error& error() const {
+    if (const Error* error = std::get_if<Error>(&content_)) return *error;
+    end_with("error() of a value");
+  }
 
  private:
   std::variant<T, Error> content_;

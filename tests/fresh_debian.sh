@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Both commands of the README on a machine that has only Debian 12's base system: a chroot from
-# debootstrap, this tree copied in as git knows it, tools/run and tools/check twice each.
+# The commands of the README on a machine that has only Debian 12's base system: a chroot from
+# debootstrap, this tree copied in as git knows it, tools/run and tools/check twice each; first
+# tools/run --tools.
 #
 #   tests/fresh_debian.sh [FOLDER]     needs root, debootstrap and 6 GB; FOLDER is kept for a next time
 set -euo pipefail
@@ -29,6 +30,7 @@ mkdir -p "$base/etc/ssl/certs"
 
 rm -rf "$base/root/tact"
 mkdir -p "$base/root/tact"
+chmod 711 "$base/root"  # tests become other users, who run what is built here
 (cd "$root" && git ls-files -z | xargs -0 tar c) | tar x -C "$base/root/tact"
 for kind in proc sys dev; do
   mountpoint -q "$base/$kind" && continue
@@ -47,7 +49,7 @@ inside() {
     NODE_EXTRA_CA_CERTS=/etc/ssl/certs/host.crt bash -c "cd /root/tact && $*"
 }
 for round in first second; do
-  for command in './tools/run --headless --seconds 10' './tools/check'; do
+  for command in './tools/run --tools' './tools/run --headless --seconds 10' './tools/check'; do
     echo "== $round time: $command"
     start=$SECONDS
     inside "$command"

@@ -46,30 +46,44 @@ need_packages() {
 BUILD_PACKAGES=(g++ cmake ninja-build ca-certificates libfmt-dev libcli11-dev
   nlohmann-json3-dev libtomlplusplus-dev libboost-dev libssl-dev libusb-1.0-0-dev libgpiod-dev libseccomp-dev
   libeigen3-dev libopencv-core-dev libopencv-calib3d-dev)
-# What the measuring tools call or link besides.
-TOOL_PACKAGES=(gmsh calculix-ccx gnuplot-nox libmetis-dev libbullet-dev libbenchmark-dev libkainjow-mustache-dev
-  rt-tests=cyclictest stress-ng=stress-ng)
+# What the measuring tools call or link besides: those that judge a PC and a device, and all of them.
+LIGHT_TOOL_PACKAGES=(gnuplot-nox libkainjow-mustache-dev rt-tests=cyclictest stress-ng=stress-ng)
+TOOL_PACKAGES=("${LIGHT_TOOL_PACKAGES[@]}" gmsh calculix-ccx libmetis-dev libbullet-dev libbenchmark-dev)
 # What the tests link or call besides.
-TEST_PACKAGES=(libgtest-dev protobuf-compiler=protoc strace)
+TEST_PACKAGES=(libgtest-dev python3-jsonschema protobuf-compiler=protoc strace systemd=systemd-analyze)
 # What the virtual bench needs on this side (tests/rig).
 RIG_PACKAGES=(qemu-system-x86=qemu-system-x86_64 cpio kmod zstd xz-utils mmdebstrap make g++
   linux-headers-rt-amd64 linux-source-6.1)
 PAGE_PACKAGES=(nodejs=node npm=npm)
+# What makes and judges Debian packages (tools/package).
+DEB_PACKAGES=(debhelper dpkg-dev fakeroot help2man lintian git=git)
+
+# has_option BUILD_DIR OPTION ON|OFF : is no more asked for than is configured?
+has_option() { [ "$3" = OFF ] || grep -q "^$2:[A-Z]*=ON" "$1/CMakeCache.txt"; }
 
 # build_programs BUILD_DIR TARGET... : configure when needed, then build quietly; the log on failure.
 build_programs() {
-  local build=$1 log tools=OFF target
+  local build=$1 log tools=OFF lab=OFF target
   shift
   log=$(mktemp)
   local launcher=()
   command -v ccache >/dev/null 2>&1 && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   for target in "$@"; do  # the measuring tools need more packages than the controller
-    case $target in tactd | tact-view | tact-track-send | tact-mesh | tact-rig-*) ;; *) tools=ON ;; esac
+    case $target in
+      tactd | tactctl | tact-guardian | tact-view | tact-track-send | tact-mesh | tact-rig-*) ;;
+      tact-doctor | tact-jitter | tact-limits | tact-verify | tact-calibrate) tools=ON ;;
+      *) tools=ON lab=ON ;;
+    esac
   done
-  if [ ! -f "$build/build.ninja" ] ||
-    { [ $tools = ON ] && grep -q '^TACT_TOOLS:BOOL=OFF' "$build/CMakeCache.txt"; }; then
-    CXX=g++ cmake -S "$root" -B "$build" -G Ninja "${launcher[@]}" -DBUILD_TESTING=OFF \
-      -DTACT_TOOLS=$tools >"$log" 2>&1 || { cat "$log" >&2; return 2; }
+  local options=("-DTACT_TOOLS=$tools" "-DTACT_LAB=$lab")
+  if [ ! -f "$build/build.ninja" ]; then
+    options+=(-DBUILD_TESTING=OFF)
+  elif has_option "$build" TACT_TOOLS $tools && has_option "$build" TACT_LAB $lab; then
+    options=()  # what an earlier command has asked for stays
+  fi
+  if [ ${#options[@]} -gt 0 ]; then
+    CXX=g++ cmake -S "$root" -B "$build" -G Ninja "${launcher[@]}" "${options[@]}" \
+      >"$log" 2>&1 || { cat "$log" >&2; return 2; }
   fi
   if ninja -C "$build" -n "$@" 2>/dev/null | grep -q 'no work to do'; then
     :

@@ -88,17 +88,19 @@ Gate::Gate(const model::Limits& limits, double period_s, double force_share)
 GateVerdict Gate::judge(const GateInput& input) RT_SAFE {
   const double periods = 1.0 + input.skipped_periods;  // since the last write
   GateVerdict verdict{.wrench = input.wanted};
+  book_last_write(input, periods);
   check_finite(input, verdict);
-  check_fresh(input, verdict);
-  check_energy(input, periods, verdict);
-  if (!input.armed) tank_.refill();
-  if (!input.armed || latches(verdict.fault)) {
-    note(Stage::kArmed, Fault::kNotArmed, verdict);
-    return without_force(verdict);
-  }
+  fade_missed_samples(input, verdict);
+  check_energy(input.armed, verdict);
+  if (!check_armed(input.armed, verdict)) return without_force(verdict);
   fade_outside(input.tool, periods, verdict);
-  limit(input.tool, periods, verdict);
-  ramp_up(input.tool, verdict);
+  const Permitted permitted = permitted_now();
+  keep_passive(permitted, verdict);
+  limit_magnitudes(permitted.heat, verdict);
+  limit_slew(permitted.all, periods, verdict);
+  limit_power(input.tool, permitted.all, periods, verdict);
+  ramp_up(verdict);
+  check_power(input.tool, verdict);
   if (latches(verdict.fault)) return without_force(verdict);
   written_ = verdict.wrench;
   return verdict;
@@ -109,7 +111,14 @@ void Gate::note(Stage stage, Fault reason, GateVerdict& verdict) RT_SAFE {
   if (latches(reason))
     latch_first(reason, verdict);
   else
-    verdict.limit = reason;
+    verdict.acting = reason;
+}
+
+// What was written before this tick has done its work by now: its energy and its heat.
+void Gate::book_last_write(const GateInput& input, double periods) RT_SAFE {
+  tank_.observe(input.tool, input.fresh && is_finite(input.tool), periods, written_);
+  warm_force_.heat(written_.force_N, periods);
+  warm_torque_.heat(written_.torque_Nm, periods);
 }
 
 void Gate::check_finite(const GateInput& input, GateVerdict& verdict) RT_SAFE {
@@ -120,7 +129,7 @@ void Gate::check_finite(const GateInput& input, GateVerdict& verdict) RT_SAFE {
 }
 
 // A period that was skipped has missed its sample, unless a fresh one tells in the end.
-void Gate::check_fresh(const GateInput& input, GateVerdict& verdict) RT_SAFE {
+void Gate::fade_missed_samples(const GateInput& input, GateVerdict& verdict) RT_SAFE {
   const std::int64_t held = std::max<std::int64_t>(missed_, 1);  // the first one is held
   const bool missing = !input.fresh && input.armed;  // a device may take its time to wake
   missed_ = missing ? missed_ + 1 + input.skipped_periods : 0;
@@ -131,13 +140,15 @@ void Gate::check_fresh(const GateInput& input, GateVerdict& verdict) RT_SAFE {
   verdict.wrench = level * verdict.wrench;
 }
 
-// What was written before this tick has done its work by now: its energy and its heat.
-void Gate::check_energy(const GateInput& input, double periods, GateVerdict& verdict) RT_SAFE {
-  tank_.observe(input.tool, input.fresh && is_finite(input.tool), periods, written_);
-  warm_force_.heat(written_.force_N, periods);
-  warm_torque_.heat(written_.torque_Nm, periods);
-  if (input.armed && tank_.is_overdrawn())
-    note(Stage::kPassivity, Fault::kEnergyOverdrawn, verdict);
+void Gate::check_energy(bool armed, GateVerdict& verdict) RT_SAFE {
+  if (armed && tank_.is_overdrawn()) note(Stage::kPassivity, Fault::kEnergyOverdrawn, verdict);
+}
+
+bool Gate::check_armed(bool armed, GateVerdict& verdict) RT_SAFE {
+  if (!armed) tank_.refill();
+  if (armed && !latches(verdict.fault)) return true;
+  note(Stage::kArmed, Fault::kNotArmed, verdict);
+  return false;
 }
 
 void Gate::fade_outside(const model::Tool& tool, double periods, GateVerdict& verdict) RT_SAFE {
@@ -148,27 +159,46 @@ void Gate::fade_outside(const model::Tool& tool, double periods, GateVerdict& ve
   verdict.wrench = inside * slow * verdict.wrench;
 }
 
-void Gate::limit(const model::Tool& tool, double periods, GateVerdict& verdict) RT_SAFE {
-  Wrench& w = verdict.wrench;
+Gate::Permitted Gate::permitted_now() const RT_SAFE {
   const double passive_N = tank_.allowed_N(), passive_Nm = lever_m_ * passive_N;
   const double warm_N = warm_force_.allowed(), warm_Nm = warm_torque_.allowed();
-  const bool damped = tank_.damp(w);
-  const bool braked = passive_N < warm_N && limit_magnitude(w.force_N, passive_N);
-  const bool turn_braked = passive_Nm < warm_Nm && limit_magnitude(w.torque_Nm, passive_Nm);
-  if (damped || braked || turn_braked) note(Stage::kPassivity, Fault::kEnergyLimited, verdict);
-  if (limit_magnitude(w.force_N, warm_N))
-    note(Stage::kMagnitude,
-         warm_N < force_limit_N_ ? Fault::kContinuousLimited : Fault::kForceLimited, verdict);
-  if (limit_magnitude(w.torque_Nm, warm_Nm))
-    note(Stage::kMagnitude,
-         warm_Nm < torque_limit_Nm_ ? Fault::kContinuousLimited : Fault::kTorqueLimited, verdict);
-  Magnitude most{.force_N = std::fmin(warm_N, passive_N),
-                 .torque_Nm = std::fmin(warm_Nm, passive_Nm)};
+  Magnitude all{.force_N = std::fmin(warm_N, passive_N),
+                .torque_Nm = std::fmin(warm_Nm, passive_Nm)};
   if (const double fresh = fresh_.level(); fresh < 1.0) {  // however much is wanted
-    most.force_N = std::fmin(most.force_N, fresh * force_limit_N_);
-    most.torque_Nm = std::fmin(most.torque_Nm, fresh * torque_limit_Nm_);
+    all.force_N = std::fmin(all.force_N, fresh * force_limit_N_);
+    all.torque_Nm = std::fmin(all.torque_Nm, fresh * torque_limit_Nm_);
   }
-  if (step_towards(w, periods, most)) note(Stage::kSlew, Fault::kSlewLimited, verdict);
+  return {.energy = {passive_N, passive_Nm}, .heat = {warm_N, warm_Nm}, .all = all};
+}
+
+void Gate::keep_passive(const Permitted& permitted, GateVerdict& verdict) RT_SAFE {
+  const Magnitude &energy = permitted.energy, &heat = permitted.heat;
+  Wrench& w = verdict.wrench;
+  const bool damped = tank_.damp(w);
+  const bool braked = energy.force_N < heat.force_N && limit_magnitude(w.force_N, energy.force_N);
+  const bool turn_braked =
+      energy.torque_Nm < heat.torque_Nm && limit_magnitude(w.torque_Nm, energy.torque_Nm);
+  if (damped || braked || turn_braked) note(Stage::kPassivity, Fault::kEnergyLimited, verdict);
+}
+
+void Gate::limit_magnitudes(const Magnitude& heat, GateVerdict& verdict) RT_SAFE {
+  if (limit_magnitude(verdict.wrench.force_N, heat.force_N))
+    note(Stage::kMagnitude,
+         heat.force_N < force_limit_N_ ? Fault::kContinuousLimited : Fault::kForceLimited, verdict);
+  if (limit_magnitude(verdict.wrench.torque_Nm, heat.torque_Nm))
+    note(Stage::kMagnitude,
+         heat.torque_Nm < torque_limit_Nm_ ? Fault::kContinuousLimited : Fault::kTorqueLimited,
+         verdict);
+}
+
+void Gate::limit_slew(const Magnitude& most, double periods, GateVerdict& verdict) RT_SAFE {
+  if (step_towards(verdict.wrench, periods, most)) note(Stage::kSlew, Fault::kSlewLimited, verdict);
+}
+
+// What is taken along the motion may turn the force: it keeps its slew once more.
+void Gate::limit_power(const model::Tool& tool, const Magnitude& most, double periods,
+                       GateVerdict& verdict) RT_SAFE {
+  Wrench& w = verdict.wrench;
   if (limit_surplus(w, tool.velocity_mps, tool.angular_velocity_radps,
                     kPowerAim * limits_.power_W)) {
     note(Stage::kPower, Fault::kPowerLimited, verdict);
@@ -185,10 +215,13 @@ bool Gate::step_towards(Wrench& w, double periods, const Magnitude& most) const 
          slow;
 }
 
-void Gate::ramp_up(const model::Tool& tool, GateVerdict& verdict) RT_SAFE {
+void Gate::ramp_up(GateVerdict& verdict) RT_SAFE {
   const double ramp = ramp_.step(true, period_s_);
   if (ramp < 1.0) note(Stage::kRamp, Fault::kRampingUp, verdict);
   verdict.wrench = ramp * verdict.wrench;
+}
+
+void Gate::check_power(const model::Tool& tool, GateVerdict& verdict) RT_SAFE {
   if (!(power_W(verdict.wrench, tool) <= limits_.power_W))
     note(Stage::kPower, Fault::kPowerExceeded, verdict);
 }

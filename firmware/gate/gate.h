@@ -70,9 +70,9 @@ struct GateInput {
 };
 
 struct GateVerdict {
-  Wrench wrench;               // to the device
-  Fault limit = Fault::kNone;  // the last stage that acted, 1..99
-  Fault fault = Fault::kNone;  // 100+: the supervisor must stop
+  Wrench wrench;                // to the device
+  Fault acting = Fault::kNone;  // why the last stage that acted did, 1..99
+  Fault fault = Fault::kNone;   // 100+: the supervisor must stop
 };
 
 class Gate {
@@ -94,14 +94,28 @@ class Gate {
   struct Magnitude {
     double force_N, torque_Nm;
   };
+  /// The longest force and torque of this tick: by energy, by heat, by all that limits them.
+  struct Permitted {
+    Magnitude energy, heat, all;
+  };
 
   void note(Stage stage, Fault reason, GateVerdict& verdict) RT_SAFE;
+  // The stages, one function each; passivity and power have a check that latches besides.
   void check_finite(const GateInput& input, GateVerdict& verdict) RT_SAFE;
-  void check_fresh(const GateInput& input, GateVerdict& verdict) RT_SAFE;
-  void check_energy(const GateInput& input, double periods, GateVerdict& verdict) RT_SAFE;
+  void fade_missed_samples(const GateInput& input, GateVerdict& verdict) RT_SAFE;
+  void check_energy(bool armed, GateVerdict& verdict) RT_SAFE;
+  bool check_armed(bool armed, GateVerdict& verdict) RT_SAFE;  // false: no force
   void fade_outside(const model::Tool& tool, double periods, GateVerdict& verdict) RT_SAFE;
-  void limit(const model::Tool& tool, double periods, GateVerdict& verdict) RT_SAFE;
-  void ramp_up(const model::Tool& tool, GateVerdict& verdict) RT_SAFE;
+  void keep_passive(const Permitted& permitted, GateVerdict& verdict) RT_SAFE;
+  void limit_magnitudes(const Magnitude& heat, GateVerdict& verdict) RT_SAFE;
+  void limit_slew(const Magnitude& most, double periods, GateVerdict& verdict) RT_SAFE;
+  void limit_power(const model::Tool& tool, const Magnitude& most, double periods,
+                   GateVerdict& verdict) RT_SAFE;
+  void ramp_up(GateVerdict& verdict) RT_SAFE;
+  void check_power(const model::Tool& tool, GateVerdict& verdict) RT_SAFE;
+
+  void book_last_write(const GateInput& input, double periods) RT_SAFE;
+  Permitted permitted_now() const RT_SAFE;
   bool step_towards(Wrench& w, double periods, const Magnitude& most) const RT_SAFE;
   GateVerdict without_force(GateVerdict verdict) RT_SAFE;
 

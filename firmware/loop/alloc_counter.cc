@@ -52,12 +52,12 @@ bool is_sanitized() { return true; }
 bool is_sanitized() { return false; }
 #endif
 
-HeapWatch::HeapWatch() {
+HeapCallCounter::HeapCallCounter() {
   counted = 0;
   watching = true;
 }
-HeapWatch::~HeapWatch() { watching = false; }
-std::uint64_t HeapWatch::calls() const { return counted; }
+HeapCallCounter::~HeapCallCounter() { watching = false; }
+std::uint64_t HeapCallCounter::calls() const { return counted; }
 
 }  // namespace tact::firmware::loop
 

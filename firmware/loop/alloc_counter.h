@@ -19,12 +19,12 @@ bool can_count_heap_calls();
 bool is_sanitized();
 
 /// Counts the heap calls of this thread while it lives.
-class HeapWatch {
+class HeapCallCounter {
  public:
-  HeapWatch();
-  ~HeapWatch();
-  HeapWatch(const HeapWatch&) = delete;
-  HeapWatch& operator=(const HeapWatch&) = delete;
+  HeapCallCounter();
+  ~HeapCallCounter();
+  HeapCallCounter(const HeapCallCounter&) = delete;
+  HeapCallCounter& operator=(const HeapCallCounter&) = delete;
   std::uint64_t calls() const;
 };
 

@@ -29,8 +29,7 @@ void Controller::tell_shape() RT_SAFE {
 }
 
 // The device's own word counts first, then what the samples, the law and the clock tell.
-Fault Controller::find_fault(const TickInput& input) RT_SAFE {
-  const bool too_late = late_watch_.step(input.skipped_periods);
+Fault Controller::find_fault(const TickInput& input, bool too_late) const RT_SAFE {
   if (latches(input.device_fault)) return input.device_fault;
   if (!is_finite(input.sample.tool)) return Fault::kSampleNotFinite;
   if (law_.broke()) return Fault::kLawBroke;
@@ -40,7 +39,8 @@ Fault Controller::find_fault(const TickInput& input) RT_SAFE {
 
 TickOutput Controller::judge(const TickInput& input) RT_SAFE {
   const bool finite = is_finite(input.sample.tool);
-  const Fault fault = find_fault(input);
+  const bool too_late = late_watch_.step(input.skipped_periods);
+  const Fault fault = find_fault(input, too_late);
   const bool armed_before = supervisor_.armed();
   supervisor_.step(
       input.commands,
@@ -56,7 +56,7 @@ TickOutput Controller::judge(const TickInput& input) RT_SAFE {
                                                  .armed = supervisor_.armed(),
                                                  .skipped_periods = input.skipped_periods});
   supervisor_.trip(verdict.fault);
-  Fault limit = verdict.limit;
+  Fault limit = verdict.acting;
   // A force that is no longer the tissue's is told before what the gate does with it.
   for (const model::contact::SphereTouch& touch : contact_.touches())
     if (!lets_go(limit) && touch.law_status == model::law::LawStatus::kSaturated)

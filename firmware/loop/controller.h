@@ -36,8 +36,6 @@ struct TickOutput {
 
 using ShapeSlot = hal::LatestSlot<model::contact::PatchShape>;
 
-inline constexpr bool kHardRealTime = true;
-
 class Controller {
  public:
   /// Without hard real time the late watch bears single stalls.
@@ -67,7 +65,7 @@ class Controller {
   const TickOutput& newest() const { return newest_; }
 
  private:
-  Fault find_fault(const TickInput& input) RT_SAFE;
+  Fault find_fault(const TickInput& input, bool too_late) const RT_SAFE;
 
   const model::contact::SiteLaw& law_;
   model::contact::Contact contact_;

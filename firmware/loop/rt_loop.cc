@@ -13,7 +13,7 @@ namespace tact::firmware::loop {
 
 void RtLoop::run() RT_SAFE {
   while (may_run()) step();
-  let_go();
+  release_device();
 }
 
 void RtLoop::step() RT_SAFE {
@@ -36,13 +36,13 @@ void RtLoop::step() RT_SAFE {
   device_.between_ticks(static_cast<double>((1 + skipped) * period_ns) * 1e-9);
 }
 
-void RtLoop::let_go() RT_SAFE {
-  progress_.enter(Place::kLines);
+void RtLoop::release_device() RT_SAFE {
+  progress_.enter(Callee::kLines);
   lines_.write({.healthy = false, .armed = false, .faulted = true});
-  progress_.enter(Place::kDevice);
+  progress_.enter(Callee::kDevice);
   device_.permit(false);
   device_.write(model::Wrench{});
-  progress_.enter(Place::kOwn);
+  progress_.enter(Callee::kOwn);
   progress_.end();
 }
 
@@ -55,12 +55,12 @@ bool RtLoop::asks_itself() const RT_SAFE {
 // The lines' word counts before the device's. The watch's comes last to be asked, as it may be
 // about the calls of this very tick, and first to be told.
 Fault RtLoop::read(std::int64_t now_ns) RT_SAFE {
-  progress_.enter(Place::kLines);
+  progress_.enter(Callee::kLines);
   const Fault lines_fault = lines_.read(now_ns);
   record_.input.sample.fresh = false;
-  progress_.enter(Place::kDevice);
+  progress_.enter(Callee::kDevice);
   const Fault read_fault = device_.read(record_.input.sample, now_ns);
-  progress_.enter(Place::kOwn);
+  progress_.enter(Callee::kOwn);
   const Fault watch_fault = requests_.fault.load(std::memory_order_relaxed);
   for (const Fault fault : {watch_fault, lines_fault, read_fault, write_fault_})
     if (fault != Fault::kNone) return fault;
@@ -72,14 +72,14 @@ Fault RtLoop::read(std::int64_t now_ns) RT_SAFE {
 void RtLoop::write() RT_SAFE {
   const TickOutput& output = record_.output;
   const bool stopped = output.state == State::kStopped;
-  progress_.enter(Place::kLines);
+  progress_.enter(Callee::kLines);
   const Fault lines_fault = lines_.write({.healthy = !stopped && record_.margin_ns > 0,
                                           .armed = output.state == State::kArmed,
                                           .faulted = stopped});
-  progress_.enter(Place::kDevice);
+  progress_.enter(Callee::kDevice);
   device_.permit(lines_.enabled());
   const Fault device_fault = device_.write(output.written);
-  progress_.enter(Place::kOwn);
+  progress_.enter(Callee::kOwn);
   write_fault_ = lines_fault != Fault::kNone ? lines_fault : device_fault;
 }
 

@@ -11,10 +11,13 @@
 #include <cstdint>
 
 #include "firmware/loop/clock.h"
+#include "firmware/loop/controller.h"
 #include "firmware/loop/latency_histogram.h"
 #include "firmware/loop/progress.h"
 #include "firmware/loop/ring.h"
 #include "firmware/loop/stop_times.h"
+#include "firmware/loop/tick_record.h"
+#include "hal/device.h"
 #include "hal/safety_lines.h"
 
 namespace tact::firmware::loop {
@@ -73,7 +76,7 @@ class RtLoop {
   void step() RT_SAFE;
   bool may_run() const RT_SAFE;
   /// Power permission away and zero force to the device: the last thing that any loop does.
-  void let_go() RT_SAFE;
+  void release_device() RT_SAFE;
   const LoopStatistics& statistics() const { return statistics_; }
   /// For the watch, at any time.
   const Progress& progress() const { return progress_; }

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "firmware/pc/pc_files.h"
+#include "model/io/command_line.h"
 
 namespace tact::firmware::pc {
 namespace {
@@ -36,8 +37,8 @@ Environment read_environment(const std::string& scene_hash) {
       .clock_source = line_of("/sys/devices/system/clocksource/clocksource0/current_clocksource"),
       .microcode = cpu_fact("microcode"),
       .boot_parameters = line_of("/proc/cmdline"),
-      .git_revision = TACT_GIT_REVISION,
-      .compiler = __VERSION__,
+      .git_revision = model::io::source_revision(),
+      .compiler = model::io::compiler_version(),
       .scene_hash = scene_hash};
 }
 

@@ -21,20 +21,13 @@ std::vector<int> cpu_list(const PcFiles& files, const std::string& name) {
   return parse_cpu_list(files.line(fmt::format("{}/{}", kCpus, name)).value_or(""));
 }
 
-/// All online CPUs but the loop's, for commands.
-std::string other_cpus(const PcQuestion& q) {
-  std::vector<int> cpus = cpu_list(q.files, "online");
-  cpus.erase(std::remove(cpus.begin(), cpus.end(), q.core), cpus.end());
-  return make_cpu_list(cpus);
-}
-
 std::string boot_parameters(const PcQuestion& q) {
-  const std::string others = other_cpus(q);
-  if (others.empty()) return "a PC with two cores or more: one for the loop, one for all else";
+  const std::string parameters = isolation_parameters(q);
+  if (parameters.empty()) return "a PC with two cores or more: one for the loop, one for all else";
   return fmt::format(
-      "add isolcpus=domain,managed_irq,{0} nohz_full={0} rcu_nocbs={0} irqaffinity={1} to "
-      "GRUB_CMDLINE_LINUX in /etc/default/grub, sudo update-grub, boot",
-      q.core, others);
+      "sudo tact-doctor --fix and boot, or: add {} to GRUB_CMDLINE_LINUX in /etc/default/grub, "
+      "sudo update-grub, boot",
+      parameters);
 }
 
 PcRow isolation_row(const PcQuestion& q) {
@@ -168,6 +161,19 @@ PcRow sibling_row(const PcQuestion& q) {
 }
 
 }  // namespace
+
+std::string other_cpus(const PcQuestion& q) {
+  std::vector<int> cpus = cpu_list(q.files, "online");
+  cpus.erase(std::remove(cpus.begin(), cpus.end(), q.core), cpus.end());
+  return make_cpu_list(cpus);
+}
+
+std::string isolation_parameters(const PcQuestion& q) {
+  const std::string others = other_cpus(q);
+  if (others.empty()) return {};
+  return fmt::format("isolcpus=domain,managed_irq,{0} nohz_full={0} rcu_nocbs={0} irqaffinity={1}",
+                     q.core, others);
+}
 
 void check_core(const PcQuestion& q, std::vector<PcRow>& rows) {
   rows.push_back(isolation_row(q));

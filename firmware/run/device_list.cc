@@ -42,8 +42,8 @@ std::string devices_as_json(const std::vector<FoundPart>& parts) {
                     {"ready", part.lacking.empty()},
                     {"lacking", part.lacking},
                     {"cure", part.cure}});
-  return nlohmann::json{{"devices", list}}.dump(2, ' ', false,
-                                                nlohmann::json::error_handler_t::replace) +
+  return nlohmann::json{{"format", "tactd-devices"}, {"version", 1}, {"devices", list}}.dump(
+             2, ' ', false, nlohmann::json::error_handler_t::replace) +
          "\n";
 }
 

@@ -9,6 +9,7 @@
 #include "firmware/loop/grid.h"
 #include "firmware/watch/call_filter.h"
 #include "hal/gpio/gpio_lines.h"
+#include "model/io/limits_checksum.h"
 
 namespace tact::firmware::run {
 
@@ -30,6 +31,9 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
   auto device = hal::registry::open_device(scene);
   if (!device) return device.error();
   parts.device = std::move(*device);
+  auto guardian = start_guardian(*parts.device, setup.rt);
+  if (!guardian) return guardian.error();
+  parts.guardian = std::move(*guardian);
   const auto stiffness = check_renderable(scene, *parts.tissue, parts.device->info());
   if (!stiffness) return stiffness.error();
   parts.stiffness = *stiffness;
@@ -39,6 +43,8 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
     parts.time = *time;
   }
   parts.limits = gate::limits_for(scene.limits, parts.device->info());
+  parts.limits_checksum =
+      model::io::limits_checksum(model::limits_in_use(parts.limits, setup.force_share()));
   parts.controller = std::make_unique<loop::Controller>(
       parts.tissue->contact_scene(),
       gate::Gate(parts.limits, static_cast<double>(loop::period_ns(scene.rate_Hz)) * 1e-9,
@@ -46,6 +52,13 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
       !setup.non_rt);
   parts.ring = std::make_unique<loop::TickRing>(scene.rate_Hz);
   return parts;
+}
+
+Result<std::unique_ptr<guardian::Guardian>> start_guardian(hal::Device& device,
+                                                           const pc::RtSettings& rt) {
+  const auto words = device.last_words();
+  if (!words) return std::unique_ptr<guardian::Guardian>();
+  return guardian::Guardian::start(*words, {.priority = rt.priority + 1, .program = {}});
 }
 
 void add_to(ThreadCosts& sum, const ThreadCosts& more) {
@@ -67,7 +80,7 @@ ThreadCosts run_as_loop_thread(const pc::RtSettings& settings, const std::functi
   costs.call_filter = filter != nullptr && filter->enter_thread() == 0;  // tried when it was made
   rusage before{}, after{};
   {
-    const loop::HeapWatch heap;
+    const loop::HeapCallCounter heap;
     getrusage(RUSAGE_THREAD, &before);
     loop();
     getrusage(RUSAGE_THREAD, &after);

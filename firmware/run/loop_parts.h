@@ -7,12 +7,15 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "firmware/guardian/guardian.h"
 #include "firmware/loop/controller.h"
 #include "firmware/loop/ring.h"
 #include "firmware/pc/rt_setup.h"
-#include "firmware/run/law_check.h"
+#include "firmware/run/stiffness_check.h"
+#include "firmware/run/tick_budget.h"
 #include "firmware/watch/call_filter.h"
 #include "hal/registry/open_device.h"
 #include "hal/safety_lines.h"
@@ -35,16 +38,22 @@ struct PartsSetup {
 struct LoopParts {
   std::unique_ptr<model::scene::Tissue> tissue;
   std::unique_ptr<hal::SafetyLines> lines;
-  hal::registry::OpenDevice device;  // off when the parts go, whatever ended them
+  std::unique_ptr<guardian::Guardian> guardian;  // outlives the device; null: it has no last words
+  hal::registry::OpenDevice device;              // off when the parts go, whatever ended them
   StiffnessMargin stiffness;
   std::optional<TimeMargin> time;
-  model::Limits limits;  // of scene and device together
+  model::Limits limits;         // of scene and device together
+  std::string limits_checksum;  // in use, the PC's share counted
   std::unique_ptr<loop::Controller> controller;
   std::unique_ptr<loop::TickRing> ring;
 };
 
 /// Opens the device of the scene and checks that the law may be felt on it.
 model::Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsSetup& setup);
+
+/// The process that zeroes this device if its program dies; null: the device has no last words.
+model::Result<std::unique_ptr<guardian::Guardian>> start_guardian(hal::Device& device,
+                                                                  const pc::RtSettings& rt);
 
 /// Kernel's and allocator's view of the loop's thread between its first and its last tick.
 struct ThreadCosts {

@@ -36,7 +36,8 @@ void LoopThreads::keep() {
 
 void LoopThreads::take(const LoopTurn& turn) {
   watch::LoopWatch watch(watch::StallWatch(guarded_.period_ns, guarded_.hard_real_time),
-                         turn.progress, guarded_.requests, guarded_.lines);
+                         turn.progress, guarded_.requests, guarded_.lines,
+                         guarded_.guardian == nullptr ? nullptr : &guarded_.guardian->lost());
   watch.start(guarded_.rt);
   std::thread([&] {
     add_to(costs_, run_as_loop_thread(guarded_.rt, turn.run, guarded_.filter));
@@ -56,7 +57,8 @@ void LoopThreads::join() {
 }
 
 // The device may be in the middle of a call that hangs, so its stop may hang, too, and so may the
-// disk: SIGALRM ends both.
+// disk: SIGALRM ends both. The guardian takes this end for a death, and zeroes the
+// device once more.
 void LoopThreads::leave_behind(int status, const std::function<void()>& last_words) {
   guarded_.lines.drop();
   std::signal(SIGALRM, [](int) { _exit(1); });

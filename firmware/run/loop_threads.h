@@ -32,6 +32,7 @@ struct GuardedLoop {
   hal::SafetyLines& lines;
   loop::Requests& requests;
   watch::CallFilter* filter = nullptr;  // none: any call is allowed
+  const guardian::Guardian* guardian = nullptr;
   pc::RtSettings rt;
   std::int64_t period_ns = 0;
   bool hard_real_time = false;

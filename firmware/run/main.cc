@@ -4,11 +4,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "firmware/console/operator_signals.h"
+#include "firmware/console/say.h"
 #include "firmware/loop/state.h"
 #include "firmware/run/device_list.h"
-#include "firmware/run/operator_signals.h"
 #include "firmware/run/replay.h"
-#include "firmware/run/say.h"
 #include "firmware/run/session.h"
 #include "firmware/telemetry/tick_csv.h"
 #include "model/io/file_writer.h"
@@ -19,7 +19,7 @@
 namespace {
 
 using namespace tact;
-using firmware::run::say;
+using firmware::console::say;
 
 int complain(const std::string& sentence, int status) {
   say(stderr, "tactd: {}\n", sentence);
@@ -43,7 +43,10 @@ std::string faults_as_json() {
                     {"latches", model::latches(f.fault)}});
   for (const auto& s : firmware::loop::kStateTable)
     states.push_back({{"name", s.name}, {"words", s.words}});
-  return nlohmann::json{{"faults", list}, {"states", states}}.dump(2) + "\n";
+  return nlohmann::json{
+             {"format", "tactd-faults"}, {"version", 1}, {"faults", list}, {"states", states}}
+             .dump(2) +
+         "\n";
 }
 
 /// A list for --json PATH; nothing without one.
@@ -118,7 +121,7 @@ model::Result<model::scene::Scene> load(firmware::run::Options& options) {
 
 int main(int argc, char** argv) {
   model::io::watch_standard_output("tactd");
-  firmware::run::outlive_stray_signals();
+  firmware::console::outlive_stray_signals();
   firmware::run::Parsed parsed = firmware::run::parse_options(argc, argv);
   if (parsed.leave) return parsed.status;
   firmware::run::Options& options = parsed.options;

@@ -5,6 +5,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "firmware/console/service_manager.h"
+#include "model/io/command_line.h"
 #include "model/io/within.h"
 
 namespace tact::firmware::run {
@@ -16,9 +18,6 @@ Parsed parse_options(int argc, char** argv) {
       "tactd: the haptic controller. Runs one scene on one device at the scene's fixed rate.\n"
       "Ctrl-C: force to zero, clean exit. Exit status: 0 good, 1 a fault or a difference, 2 bad "
       "usage or input."};
-  app.failure_message([](const CLI::App*, const CLI::Error& error) {
-    return std::string("tactd: ") + error.what() + "; see tactd --help\n";
-  });
   app.add_option("SCENE", o.scene_path, "scene file (TOML), e.g. model/scenes/liver.toml");
   app.add_option("--set", o.overrides, "KEY=VALUE override of a scene key, may be repeated")
       ->take_all()
@@ -49,6 +48,9 @@ Parsed parse_options(int argc, char** argv) {
   app.add_option("--socket", o.socket_path,
                  "telemetry socket (default: tact/telemetry.sock in XDG_RUNTIME_DIR, or in "
                  "/tmp/tact-UID)");
+  app.add_option("--viewers", o.viewers,
+                 "group whose members may look at the telemetry, and move the hand of a simulated "
+                 "device (default: nobody but the same user and root)");
   app.add_flag("--no-telemetry", o.no_telemetry, "open no socket");
   app.add_flag("--free-run", o.free_run,
                "simulated time, as fast as the CPU allows; needs --ticks or --seconds");
@@ -68,15 +70,17 @@ Parsed parse_options(int argc, char** argv) {
   app.add_flag("--list-devices", o.list_devices,
                "print what is plugged in, what it lacks and the cure, then leave");
   app.add_flag("--help-scene", o.help_scene, "print every scene key with its range, then leave");
-  try {
-    app.parse(argc, argv);
+  app.callback([&o] {
     if (o.scene_path.empty() && !o.faults && !o.help_scene && !o.list_devices && o.csv_path.empty())
       throw CLI::RequiredError("SCENE");
+    if (o.arm && console::is_service())
+      throw CLI::ValidationError("--arm", "a service never arms; a person does, by tactctl");
     if (o.free_run && o.duration_s == 0.0 && o.ticks == 0)
       throw CLI::ValidationError("--free-run", "needs --ticks or --seconds");
-  } catch (const CLI::ParseError& error) {
+  });
+  if (const auto status = model::io::parse_command_line(app, "tactd", argc, argv)) {
     parsed.leave = true;
-    parsed.status = app.exit(error) == 0 ? 0 : 2;
+    parsed.status = *status;
   }
   return parsed;
 }

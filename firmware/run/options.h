@@ -16,6 +16,7 @@ struct Options {
   std::string json_path;               // "-" is standard output
   std::string record_path, replay_path, csv_path;
   std::string socket_path;  // empty: in the runtime directory
+  std::string viewers;      // group that may look; empty: nobody but the same user and root
   bool check = false;       // load everything, then leave
   bool arm = false;         // hardware: force as soon as the device is ready
   bool strict = false;      // refuse to run without hard real time
@@ -30,6 +31,7 @@ struct Options {
   bool no_seccomp = false;  // run without it
   bool trust_library = false;
   int core = -1;
+  bool has_json_file() const { return !json_path.empty() && json_path != "-"; }
 };
 
 /// What parse_options decided: run, or leave with this status (after --help or a usage error).

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/run/real_time.h"
 
+#include "firmware/console/say.h"
 #include "firmware/pc/pc_check.h"
 #include "firmware/run/loop_parts.h"
-#include "firmware/run/say.h"
 #include "firmware/watch/runaway.h"
 
 namespace tact::firmware::run {
@@ -16,10 +16,10 @@ void RealTime::enter(const pc::RtSettings& settings) {
 
 // The last line is the short form of tact-doctor.
 void RealTime::tell(const pc::RtSettings& settings) const {
-  for (const pc::Shortfall& s : shortfalls_) say(stderr, "tactd: {}\n", s.sentence);
+  for (const pc::Shortfall& s : shortfalls_) console::say(stderr, "tactd: {}\n", s.sentence);
   const std::string red =
       name_red_rows(pc::check_pc({.files = pc::PcFiles{}, .core = choose_core(settings)}));
-  if (!red.empty()) say(stderr, "tactd: {}\n", red);
+  if (!red.empty()) console::say(stderr, "tactd: {}\n", red);
 }
 
 }  // namespace tact::firmware::run

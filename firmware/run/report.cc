@@ -61,7 +61,9 @@ json make_report(const RunFacts& facts, const loop::LoopStatistics& loop, const 
   for (const pc::Shortfall& s : facts.shortfalls) shortfalls.push_back(s.sentence);
   for (const hal::DeviceCount& one : facts.device_counts) counts[one.name] = one.count;
   const model::FaultEntry& fault = model::describe(facts.fault);
-  return {{"scene", facts.scene_name},
+  return {{"format", "tactd-run"},
+          {"version", 1},
+          {"scene", facts.scene_name},
           {"law", facts.law_title},
           {"device", facts.device_name},
           {"device_counts", counts},
@@ -77,6 +79,7 @@ json make_report(const RunFacts& facts, const loop::LoopStatistics& loop, const 
           {"phases", phases},
           {"force_max_N", loop.max_force_N},
           {"force_limit_N", facts.force_limit_N},
+          {"limits_checksum", facts.limits_checksum},
           {"force_rms_max_N", loop.max_rms_force_N},
           {"force_continuous_N", gate.continuous_force_N()},
           {"energy_given_max_J", loop.max_given_energy_J},
@@ -115,8 +118,9 @@ std::string make_summary(const RunFacts& facts, const loop::LoopStatistics& loop
     out += duration_line("wake latency", loop.phase[static_cast<std::size_t>(loop::Phase::kWake)]);
     out += duration_line("tick", loop.phase[static_cast<std::size_t>(loop::Phase::kTotal)]);
   }
-  out += fmt::format("  force         max {:.3f} N of {:.2f} N allowed, state {}", loop.max_force_N,
-                     facts.force_limit_N, name_of(facts.state));
+  out += fmt::format("  force         max {:.3f} N of {:.2f} N allowed, limits {}, state {}",
+                     loop.max_force_N, facts.force_limit_N, facts.limits_checksum,
+                     name_of(facts.state));
   if (facts.costs.heap_calls_known)
     out += fmt::format(", {} allocations, {} page faults", facts.costs.heap_calls,
                        facts.costs.minor_faults + facts.costs.major_faults);

@@ -10,8 +10,9 @@
 #include "firmware/loop/rt_loop.h"
 #include "firmware/pc/environment.h"
 #include "firmware/pc/rt_setup.h"
-#include "firmware/run/law_check.h"
 #include "firmware/run/loop_parts.h"
+#include "firmware/run/stiffness_check.h"
+#include "firmware/run/tick_budget.h"
 #include "hal/device.h"
 
 namespace tact::firmware::run {
@@ -21,6 +22,7 @@ struct RunFacts {
   double rate_Hz = 0.0;
   double duration_s = 0.0;
   double force_limit_N = 0.0;
+  std::string limits_checksum;  // of all limits in use
   bool non_rt = false;
   bool simulated_time = false;  // durations mean nothing
   std::vector<pc::Shortfall> shortfalls;

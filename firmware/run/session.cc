@@ -6,18 +6,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
-#include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "firmware/console/operator_desk.h"
+#include "firmware/console/say.h"
+#include "firmware/console/service_manager.h"
 #include "firmware/loop/grid.h"
+#include "firmware/run/inertia_note.h"
 #include "firmware/run/loop_parts.h"
 #include "firmware/run/loop_threads.h"
-#include "firmware/run/operator_desk.h"
 #include "firmware/run/real_time.h"
 #include "firmware/run/report.h"
-#include "firmware/run/say.h"
 #include "firmware/run/telemetry_setup.h"
 #include "model/io/file_writer.h"
 #include "model/scene/accuracy_file.h"
@@ -25,8 +25,8 @@
 namespace tact::firmware::run {
 namespace {
 
+using console::say;
 using model::Error;
-using model::Result;
 
 constexpr std::int64_t kStatusPeriod_ns = 200'000'000;
 
@@ -51,7 +51,7 @@ class Session {
   std::optional<Error> open_call_filter();
   void run_real_time();
   void run_free();
-  void watch(LoopThreads& threads);
+  void serve_operator(LoopThreads& threads);
   // Also of a loop that ended before it could tell what the watch had found.
   model::Fault last_fault() const {
     const model::Fault latched = parts_.controller->newest().fault;
@@ -62,6 +62,7 @@ class Session {
   PartsSetup parts_setup() const {
     return {.simulated_time = options_.free_run, .non_rt = non_rt_, .rt = rt_};
   }
+  std::int64_t period_ns() const { return loop::period_ns(scene_.rate_Hz); }
   // As often as a viewer looks.
   std::uint64_t ticks_per_shape() const {
     return std::max(1ul, static_cast<std::uint64_t>(scene_.rate_Hz / scene_.frame_rate_Hz));
@@ -70,7 +71,7 @@ class Session {
   const model::scene::Scene& scene_;
   const Options& options_;
   pc::RtSettings rt_;
-  std::optional<OperatorSignals> operator_;
+  std::optional<console::OperatorSignals> operator_;
   RealTime real_time_;
   bool non_rt_ = false;
   LoopParts parts_;
@@ -100,6 +101,8 @@ int Session::run() {
   if (const auto error = open()) return fail(error->sentence, 2);
   if (const std::string note = inertia_note(scene_, parts_.tissue->law()); !note.empty())
     say(stderr, "tactd: {}\n", note);
+  if (const std::string caution = parts_.device->info().caution; !caution.empty())
+    say(stderr, "tactd: {}\n", caution);
   if (options_.check) {
     say(stdout, "{}\n",
         make_check_line(scene_, parts_.device->info().name, parts_.tissue->law(), parts_.stiffness,
@@ -107,13 +110,13 @@ int Session::run() {
     say(stdout, "{}\n", model::scene::accuracy_line(scene_, parts_.tissue->law()));
     return 0;
   }
-  const bool json_file = !options_.json_path.empty() && options_.json_path != "-";
-  if (const auto error =
-          json_file ? model::io::check_target(options_.json_path, "{") : std::nullopt)
-    return fail(error->sentence, 2);
+  if (options_.has_json_file())
+    if (const auto error = model::io::check_target(options_.json_path, "{"))
+      return fail(error->sentence, 2);
   if (const auto error = open_telemetry()) return fail(error->sentence, 2);
   if (const auto error = open_call_filter()) return fail(error->sentence, 1);
-  requests_.arm_at_start.store(options_.arm || hal::registry::is_simulated(scene_.device));
+  const bool arms_itself = hal::registry::is_simulated(scene_.device) && !console::is_service();
+  requests_.arm_at_start.store(options_.arm || arms_itself);
   if (options_.free_run)
     run_free();
   else
@@ -129,7 +132,7 @@ std::optional<Error> Session::open() {
       static_cast<std::uint64_t>(std::ceil(options_.duration_s * scene_.rate_Hz));
   loop::Clock& clock =
       options_.free_run ? static_cast<loop::Clock&>(simulated_clock_) : monotonic_clock_;
-  loop_.emplace(loop::LoopSettings{.period_ns = loop::period_ns(scene_.rate_Hz),
+  loop_.emplace(loop::LoopSettings{.period_ns = period_ns(),
                                    .max_ticks = options_.ticks,
                                    .max_periods = asked_periods,
                                    .ticks_per_shape = ticks_per_shape()},
@@ -140,12 +143,9 @@ std::optional<Error> Session::open() {
 std::optional<Error> Session::open_telemetry() {
   auto outlets = open_outlets({.scene = scene_,
                                .options = options_,
-                               .tissue = *parts_.tissue,
-                               .device = *parts_.device,
-                               .limits = parts_.limits,
-                               .period_ns = loop::period_ns(scene_.rate_Hz),
+                               .parts = parts_,
+                               .period_ns = period_ns(),
                                .force_share = parts_setup().force_share(),
-                               .gate = parts_.controller->gate(),
                                .non_rt = non_rt_});
   if (!outlets) return outlets.error();
   hand_socket_ = std::move(outlets->hand);
@@ -154,8 +154,7 @@ std::optional<Error> Session::open_telemetry() {
   telemetry_.emplace(*parts_.ring,
                      telemetry::FrameBuilder(parts_.tissue->law().site_law(),
                                              parts_.controller->shapes(), non_rt_),
-                     telemetry::FramePace{.frame_rate_Hz = scene_.frame_rate_Hz,
-                                          .loop_period_ns = loop::period_ns(scene_.rate_Hz)},
+                     telemetry::FramePace{scene_.frame_rate_Hz, period_ns()},
                      std::move(outlets->sinks), &requests_.fault);
   return std::nullopt;
 }
@@ -180,32 +179,36 @@ void Session::run_free() {
     telemetry_->drain();
     if (loop_->statistics().ticks % ticks_per_shape() != 0) continue;
     telemetry_->publish();
-    if (operator_->wait(0) == Act::kLeave) requests_.stop.store(true);
+    if (operator_->wait(0) == console::Act::kLeave) requests_.stop.store(true);
   }
-  loop_->let_go();
+  loop_->release_device();
 }
 
 void Session::run_real_time() {
+  say(stderr, "tactd: limits {} (the page shows them too)\n", parts_.limits_checksum);
   telemetry_->start();
   LoopThreads threads({.turns = {{loop_->progress(), [this] { loop_->run(); }}},
                        .device = *parts_.device,
                        .lines = *parts_.lines,
                        .requests = requests_,
                        .filter = filter_.get(),
+                       .guardian = parts_.guardian.get(),
                        .rt = rt_,
-                       .period_ns = loop::period_ns(scene_.rate_Hz),
+                       .period_ns = period_ns(),
                        .hard_real_time = !non_rt_});
-  watch(threads);
+  serve_operator(threads);
   threads.join();
   costs_ = threads.costs();
 }
 
 // The main thread while the loop runs: waits for signals, tells what happens.
-void Session::watch(LoopThreads& threads) {
-  OperatorView view(*parts_.device, *parts_.lines, requests_.arm_at_start.load(), scene_.path);
-  const auto control = open_control(scene_.path, view);
-  OperatorDesk desk(
+void Session::serve_operator(LoopThreads& threads) {
+  console::OperatorView view(*parts_.device, *parts_.lines, requests_.arm_at_start.load(),
+                             scene_.path);
+  const auto control = console::open_control(scene_.path, view);
+  console::OperatorDesk desk(
       *operator_, requests_, view, [this] { return telemetry_->newest_frame(); }, control.get());
+  console::ServiceManager service;
   const auto tell_news = [&] {
     if (const auto lost = telemetry_->lost_record())
       view.tell(lost->sentence + "; the loop goes on without its record");
@@ -214,9 +217,9 @@ void Session::watch(LoopThreads& threads) {
   };
   while (!threads.ended()) {
     const std::int64_t now_ns = monotonic_clock_.now_ns();
-    const std::int64_t until_ns =
-        loop::next_half_way_ns(now_ns + kStatusPeriod_ns, loop::period_ns(scene_.rate_Hz));
+    const std::int64_t until_ns = loop::next_half_way_ns(now_ns + kStatusPeriod_ns, period_ns());
     desk.obey(until_ns - now_ns);
+    service.tell({now_ns, view.why_not_arm().empty(), loop_->progress().ticks(), view.status()});
     tell_news();
     if (!threads.hangs()) continue;
     threads.leave_behind(1, [&] {
@@ -233,7 +236,7 @@ void Session::watch(LoopThreads& threads) {
 // What the device, the lines and the threads say once they have ended.
 int Session::report() {
   const model::Fault fault = last_fault();
-  const std::string trouble = trouble_behind(fault, *parts_.device, *parts_.lines);
+  const std::string trouble = console::trouble_behind(fault, *parts_.device, *parts_.lines);
   parts_.lines->stop();
   parts_.device->stop();
   if (hand_socket_) hand_socket_->stop();
@@ -248,7 +251,7 @@ int Session::report() {
     say(stdout, "{}\n", report);
   else
     say(stdout, "{}\n", make_summary(facts, loop_->statistics()));
-  if (!options_.json_path.empty() && options_.json_path != "-")
+  if (options_.has_json_file())
     if (const auto error = model::io::write_file(options_.json_path, report + "\n"))
       return fail(error->sentence, 2);
   if (log_error) return fail(log_error->sentence, 1);
@@ -266,6 +269,7 @@ RunFacts Session::collect_facts(model::Fault fault, const std::string& trouble) 
           .duration_s =
               static_cast<double>(statistics.ticks + statistics.skipped_ticks) / scene_.rate_Hz,
           .force_limit_N = parts_.controller->gate().force_limit_N(),
+          .limits_checksum = parts_.limits_checksum,
           .non_rt = non_rt_,
           .simulated_time = options_.free_run,
           .shortfalls = real_time_.shortfalls(),

@@ -8,6 +8,7 @@
 #include <ctime>
 
 #include "firmware/pc/environment.h"
+#include "model/io/socket_file.h"
 
 namespace tact::firmware::run {
 namespace {
@@ -23,34 +24,43 @@ Result<std::string> socket_path(const RunSetup& run) {
 }
 
 telemetry::Hello hello_of(const RunSetup& run, const std::string& hand_path) {
-  const telemetry::HelloFacts facts{.device = run.device.info(),
-                                    .force_limit_N = run.gate.force_limit_N(),
-                                    .continuous_force_N = run.gate.continuous_force_N(),
-                                    .energy_budget_J = run.gate.energy_budget_J(),
+  const gate::Gate& gate = run.parts.controller->gate();
+  const telemetry::HelloFacts facts{.device = run.parts.device->info(),
+                                    .force_limit_N = gate.force_limit_N(),
+                                    .continuous_force_N = gate.continuous_force_N(),
+                                    .energy_budget_J = gate.energy_budget_J(),
+                                    .limits_checksum = run.parts.limits_checksum,
                                     .non_rt = run.non_rt,
                                     .hand_socket = hand_path};
-  return make_hello(run.scene, run.tissue, facts);
+  return make_hello(run.scene, *run.parts.tissue, facts);
 }
 
 /// Takes over `meshes`.
 std::optional<Error> open_sockets(const RunSetup& run, int meshes, Outlets& out) {
   const auto path = socket_path(run);
   if (!path) return path.error();
-  const std::string hand_path = hal::registry::is_simulated(run.device) ? *path + ".hand" : "";
-  auto opened = telemetry::TelemetrySocket::open(*path, hello_of(run, hand_path), meshes);
+  std::optional<gid_t> viewers;
+  if (!run.options.viewers.empty()) {
+    const auto group = model::io::find_group(run.options.viewers);
+    if (!group) return Error{"--viewers " + group.error().sentence};
+    viewers = *group;
+  }
+  const std::string hand_path =
+      hal::registry::is_simulated(*run.parts.device) ? *path + ".hand" : "";
+  auto opened = telemetry::TelemetrySocket::open(*path, hello_of(run, hand_path), meshes, viewers);
   if (!opened) return opened.error();
   out.sinks.socket.emplace(std::move(*opened));
   if (hand_path.empty()) return std::nullopt;
-  auto hand = hal::registry::start_hand_socket(run.device, hand_path);
+  auto hand = hal::registry::start_hand_socket(*run.parts.device, hand_path);
   if (!hand) return hand.error();
   out.hand = std::move(*hand);
-  return std::nullopt;
+  return viewers ? model::io::share_socket(hand_path, *viewers) : std::nullopt;
 }
 
 /// False if the --set values are too long for it.
 bool fill_header(const RunSetup& run, telemetry::LogHeader& header) {
   header.period_ns = run.period_ns;
-  header.limits = run.limits;
+  header.limits = run.parts.limits;
   header.force_share = run.force_share;
   header.non_rt = run.non_rt ? 1 : 0;
   const auto keep = [](const std::string& text, auto& field) {
@@ -61,7 +71,7 @@ bool fill_header(const RunSetup& run, telemetry::LogHeader& header) {
   uname(&pc_name);
   keep(run.scene.hash, header.scene_hash);
   keep(run.scene.name, header.scene_name);
-  keep(run.tissue.law().title(), header.law);
+  keep(run.parts.tissue->law().title(), header.law);
   keep(environment.git_revision, header.revision);
   keep(pc_name.nodename, header.host);
   keep(fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))), header.began_utc);

@@ -7,11 +7,10 @@
 #include <optional>
 
 #include "firmware/black_box/black_box.h"
+#include "firmware/run/loop_parts.h"
 #include "firmware/run/options.h"
 #include "firmware/telemetry/telemetry.h"
-#include "hal/registry/open_device.h"
 #include "model/scene/scene.h"
-#include "model/scene/tissue.h"
 
 namespace tact::firmware::run {
 
@@ -19,12 +18,9 @@ namespace tact::firmware::run {
 struct RunSetup {
   const model::scene::Scene& scene;
   const Options& options;
-  const model::scene::Tissue& tissue;
-  hal::Device& device;
-  model::Limits limits;  // of scene and device together
+  const LoopParts& parts;
   std::int64_t period_ns = 0;
   double force_share = 1.0;
-  const gate::Gate& gate;
   bool non_rt = false;
 };
 

@@ -85,6 +85,7 @@ Hello make_hello(const model::scene::Scene& scene, const model::scene::Tissue& t
   hello.non_rt = facts.non_rt ? 1 : 0;
   hello.simulated = facts.hand_socket.empty() ? 0 : 1;
   put(hello.scene_name, scene.name);
+  put(hello.limits_checksum, facts.limits_checksum);
   put(hello.device_name, facts.device.name);
   put(hello.law_name, tissue.law().title());
   put(hello.hand_socket, facts.hand_socket);
@@ -190,8 +191,10 @@ void FrameBuilder::add_site(const model::contact::SphereTouch& touch, FrameSite&
   const bool is_held = touch.state == model::contact::TouchState::kHeld;
   if (touch.state == model::contact::TouchState::kFree || !(is_held || touch.dent_m > 0.0)) return;
   std::array<double, kMaxRings> ring_m{};
-  const std::size_t count =
-      law_.profile({.place = touch.place, .normal = touch.normal, .depth_m = touch.dent_m}, ring_m);
+  const model::contact::Indentation in{
+      .place = touch.place, .normal = touch.normal, .dent_m = touch.dent_m};
+  const std::size_t count = law_.profile(in, ring_m);
+  put(site.tilt, law_.tilt(in));
   for (std::size_t j = 0; j < count; ++j) site.profile_m[j] = static_cast<float>(ring_m[j]);
 }
 

@@ -19,6 +19,7 @@ struct HelloFacts {
   double force_limit_N = 0.0;
   double continuous_force_N = 0.0;
   double energy_budget_J = 0.0;
+  std::string limits_checksum;
   bool non_rt = false;
   std::string hand_socket;  // empty: the device is not simulated
 };

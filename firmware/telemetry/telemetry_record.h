@@ -19,7 +19,7 @@
 namespace tact::firmware::telemetry {
 
 inline constexpr std::uint32_t kTelemetryMagic = 0x74636174;  // "tact"
-inline constexpr std::uint16_t kTelemetryVersion = 3;
+inline constexpr std::uint16_t kTelemetryVersion = 4;
 inline constexpr std::size_t kMaxSites = 4;            // probe spheres on the tool
 inline constexpr std::size_t kMaxRings = 32;           // profile points of one site
 inline constexpr std::size_t kMaxPatchVertices = 180;  // told one by one
@@ -50,7 +50,8 @@ struct Hello {
   float sphere_offset_m[kMaxSites][3] = {};  // tool frame
   std::uint8_t non_rt = 0;                   // 1: this PC gives no hard real time, force is capped
   std::uint8_t simulated = 0;                // 1: the device is simulated, the hand may be moved
-  char scene_name[62] = {};
+  char scene_name[53] = {};
+  char limits_checksum[9] = {};  // of the limits in use (model/io/limits_checksum.h)
   char device_name[64] = {};
   char law_name[64] = {};
   char hand_socket[108] = {};  // where a simulated device takes hand targets; empty for hardware
@@ -62,6 +63,7 @@ struct FrameSite {
   float shift_m[3] = {};            // tangential displacement of the tissue at the site
   float depth_m = 0.0f;             // press positive, pull negative
   float profile_m[kMaxRings] = {};  // normal displacement of ring j, into the tissue positive
+  float tilt[3] = {};               // what the profile lacks at x: tilt . (x - surface point), m/m
   SiteState state = SiteState::kFree;
   std::uint8_t pad[3] = {};
 };
@@ -105,11 +107,11 @@ struct Frame {
 
 static_assert(std::is_trivially_copyable_v<Hello> && std::is_trivially_copyable_v<Frame>);
 // No hidden padding: recordings are checked by a sum over all bytes, and padding has no value.
-static_assert(sizeof(FrameSite) == (10 + kMaxRings) * sizeof(float) + 4);
+static_assert(sizeof(FrameSite) == (13 + kMaxRings) * sizeof(float) + 4);
 static_assert(sizeof(FramePatch) == 16 + kMaxPatchVertices * 10 + kMaxCutsTold * 4);
 static_assert(sizeof(Frame) ==
               48 + 25 * sizeof(float) + 12 + kMaxSites * sizeof(FrameSite) + sizeof(FramePatch));
 static_assert(sizeof(Frame) <= 4096);
-static_assert(sizeof(Hello) == 122 + 62 + 64 + 64 + 108);
+static_assert(sizeof(Hello) == 122 + 53 + 9 + 64 + 64 + 108);
 
 }  // namespace tact::firmware::telemetry

@@ -25,18 +25,6 @@ Error failed(const std::string& what, const std::string& cure) {
   return Error{fmt::format("{}: {}; {}", what, std::strerror(errno), cure)};
 }
 
-Result<sockaddr_un> address_of(const std::string& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.empty() || path.size() >= sizeof address.sun_path)
-    return Error{
-        fmt::format("{}: a socket path must have 1 to {} characters; choose another with "
-                    "--socket",
-                    path, sizeof address.sun_path - 1)};
-  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
-  return address;
-}
-
 const sockaddr* plain(const sockaddr_un& address) {
   return reinterpret_cast<const sockaddr*>(&address);
 }
@@ -65,15 +53,18 @@ Result<std::string> runtime_directory() {
     return failed(path, "set XDG_RUNTIME_DIR to a folder of yours");
   struct stat info{};
   if (lstat(path.c_str(), &info) != 0 || !S_ISDIR(info.st_mode) || info.st_uid != getuid() ||
-      (info.st_mode & 077) != 0)
-    return Error{path + ": is not a folder that only you can open; remove it and start again"};
+      (info.st_mode & 027) != 0)
+    return Error{path +
+                 ": is not a folder that only you can write to and no stranger can open; remove it "
+                 "and start again"};
   return path;
 }
 
 Result<TelemetrySocket> TelemetrySocket::open(const std::string& path, const Hello& hello,
-                                              int mesh_fd) {
-  const auto address = address_of(path);
+                                              int mesh_fd, std::optional<gid_t> viewers) {
+  const auto address = model::io::socket_address(path);
   if (!address) return address.error();
+  if (auto shared = model::io::check_socket_folder(path)) return std::move(*shared);
   if (somebody_listens(*address))
     return Error{path + ": another tactd is running there; stop it, or choose another --socket"};
   if (is_socket(path)) unlink(path.c_str());
@@ -86,14 +77,19 @@ Result<TelemetrySocket> TelemetrySocket::open(const std::string& path, const Hel
     if (fd >= 0) close(fd);
     return error;
   }
-  return TelemetrySocket(path, hello, fd, mesh_fd);
+  TelemetrySocket opened(model::io::SocketFile(path), hello, fd, mesh_fd,
+                         {.user = std::nullopt, .group = viewers});
+  if (viewers)
+    if (auto refused = model::io::share_socket(path, *viewers)) return std::move(*refused);
+  return opened;
 }
 
 TelemetrySocket::TelemetrySocket(TelemetrySocket&& other) noexcept
-    : path_(std::move(other.path_)),
+    : file_(std::move(other.file_)),
       hello_(other.hello_),
       listen_fd_(std::exchange(other.listen_fd_, -1)),
       mesh_fd_(std::exchange(other.mesh_fd_, -1)),
+      trust_(other.trust_),
       clients_(std::move(other.clients_)),
       dropped_frames_(other.dropped_frames_) {}
 
@@ -102,7 +98,7 @@ TelemetrySocket::~TelemetrySocket() {
   if (mesh_fd_ >= 0) close(mesh_fd_);
   if (listen_fd_ < 0) return;
   close(listen_fd_);
-  unlink(path_.c_str());
+  file_.remove();
 }
 
 void TelemetrySocket::accept_clients() {
@@ -110,7 +106,7 @@ void TelemetrySocket::accept_clients() {
     const int client = accept4(listen_fd_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (client < 0) return;
     shutdown(client, SHUT_RD);  // whatever it says is not listened to
-    if (greet(client))
+    if (model::io::has_trusted_peer(client, trust_) && greet(client))
       clients_.push_back(client);
     else
       close(client);

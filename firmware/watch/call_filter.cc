@@ -29,14 +29,14 @@ constexpr std::array kEveryLoop{
     SYS_rt_sigprocmask,  SYS_getrusage,     SYS_madvise,         SYS_exit};
 
 // SYS_SECCOMP of the kernel's headers, which stand no glibc header beside them.
-constexpr int kOfTheFilter = 1;
+constexpr int kSeccompCode = 1;
 
 std::atomic<loop::Requests*> guarded{nullptr};
 std::atomic<int> refused{-1};  // number of the first refused call
 thread_local bool in_loop = false;
 
 // What the caller of the refused call gets.
-[[maybe_unused]] constexpr bool kAnswers =
+[[maybe_unused]] constexpr bool kCanAnswerRefusedCall =
 #if defined(__x86_64__) || defined(__aarch64__)
     true;
 #else
@@ -53,7 +53,7 @@ void answer([[maybe_unused]] ucontext_t& context, [[maybe_unused]] long long res
 // In the thread that called, lock-free stores only. A wait for a lock is answered with "try again":
 // glibc takes any other error for broken memory.
 void on_refused(int, siginfo_t* info, void* context) {
-  if (info->si_code != kOfTheFilter) return;  // somebody sent it; nothing was called
+  if (info->si_code != kSeccompCode) return;  // somebody sent it; nothing was called
   answer(*static_cast<ucontext_t*>(context), info->si_syscall == SYS_futex ? -EAGAIN : -EPERM);
   loop::Requests* requests = guarded.load();
   if (requests == nullptr || !in_loop) return;
@@ -113,7 +113,7 @@ class Filter final : public CallFilter {
 Result<std::unique_ptr<CallFilter>> CallFilter::make(std::span<const int> of_device,
                                                      std::span<const int> of_lines,
                                                      loop::Requests& requests) {
-  if (!kAnswers) return no_filter("it is not made for this processor");
+  if (!kCanAnswerRefusedCall) return no_filter("it is not made for this processor");
   if (loop::is_sanitized()) return no_filter("a sanitizer makes calls of its own");
   Context context(seccomp_init(SCMP_ACT_TRAP));
   constexpr scmp_datum_t kWhole = ~scmp_datum_t{0},

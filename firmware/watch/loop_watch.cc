@@ -32,6 +32,8 @@ void LoopWatch::run() RT_SAFE {
 void LoopWatch::check() RT_SAFE {
   const model::Fault found = stall_.step(progress_);
   if (found != model::Fault::kNone) requests_.trip(found);
+  if (guardian_lost_ != nullptr && guardian_lost_->load(std::memory_order_relaxed))
+    requests_.trip(model::Fault::kGuardianLost);
   if (requests_.fault.load(std::memory_order_relaxed) != model::Fault::kNone) lines_.drop();
 }
 

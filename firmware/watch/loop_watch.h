@@ -3,7 +3,7 @@
 //
 // It wakes every 5 periods, halfway between two deadlines of the loop (grid.h), above the loop's
 // priority and on another core where there is one. When the loop stalls, hangs in a call or runs
-// away (runaway.h), or a call of it was refused (call_filter.h):
+// away (runaway.h), a call of it was refused (call_filter.h), or its guardian is lost:
 //
 //     the fault is set for the loop   zero force in the first tick to come, latched until the end
 //     enable and heartbeat drop       by this thread itself, at this check and every one after
@@ -23,9 +23,15 @@ namespace tact::firmware::watch {
 
 class LoopWatch {
  public:
+  /// `guardian_lost`: of the process that zeroes the device after this one (firmware/guardian);
+  /// null: there is none.
   LoopWatch(const StallWatch& stall, const loop::Progress& progress, loop::Requests& requests,
-            hal::SafetyLines& lines)
-      : stall_(stall), progress_(progress), requests_(requests), lines_(lines) {}
+            hal::SafetyLines& lines, const std::atomic<bool>* guardian_lost = nullptr)
+      : stall_(stall),
+        progress_(progress),
+        requests_(requests),
+        lines_(lines),
+        guardian_lost_(guardian_lost) {}
   ~LoopWatch() { stop(); }
   LoopWatch(const LoopWatch&) = delete;
   LoopWatch& operator=(const LoopWatch&) = delete;
@@ -43,6 +49,7 @@ class LoopWatch {
   const loop::Progress& progress_;
   loop::Requests& requests_;
   hal::SafetyLines& lines_;
+  const std::atomic<bool>* guardian_lost_;
   loop::MonotonicClock clock_;
   std::atomic<bool> ending_{false};
   std::thread thread_;

@@ -37,12 +37,12 @@ class StallWatch {
     }
     if (still_ < most_checks_) ++still_;
     if (still_ < most_checks_) return model::Fault::kNone;
-    switch (progress.place()) {
-      case loop::Place::kDevice:
+    switch (progress.callee()) {
+      case loop::Callee::kDevice:
         return model::Fault::kDeviceStalled;
-      case loop::Place::kLines:
+      case loop::Callee::kLines:
         return model::Fault::kLinesLost;
-      case loop::Place::kOwn:
+      case loop::Callee::kOwn:
         break;
     }
     return model::Fault::kLoopStalled;

@@ -102,6 +102,11 @@ void CanBus::send() RT_SAFE {
   miss();
 }
 
+std::span<const CanFrameBytes> CanBus::take_batch() {
+  batch_whole_ = true;
+  return std::span(batch_).first(std::exchange(batched_, 0));
+}
+
 void CanBus::miss() RT_SAFE {
   ++counts_.missed_cycles;
   if (++missed_in_a_row_ < kMostMissedInARow) return;

@@ -62,6 +62,8 @@ class CanBus {
   /// For the batch of this tick; what cannot be a frame, or is more than 16, is a missed cycle.
   void push(const std::optional<CanFrame>& frame) RT_SAFE;
   void send() RT_SAFE;
+  /// Set-up: what was pushed, instead of sending it; valid until the next push.
+  std::span<const CanFrameBytes> take_batch();
 
   Fault fault() const RT_SAFE { return latch_.fault(); }
   FaultCause cause() const RT_SAFE { return latch_.cause(); }

@@ -44,7 +44,9 @@ class CanDevice final : public Device {
   std::optional<model::Error> check_home() const { return delta_.check_home(start_.motor_turns); }
 
   DeviceInfo info() const override {
-    return delta_.info(start_.name, start_.counts_per_turn, start_.delay_s);
+    DeviceInfo info = delta_.info(start_.name, start_.counts_per_turn, start_.delay_s);
+    info.caution = start_.caution;
+    return info;
   }
   std::span<const int> loop_calls() const override { return CanSocket::kLoopCalls; }
   void permit(bool powered) RT_SAFE override { permitted_ = powered; }
@@ -72,10 +74,7 @@ class CanDevice final : public Device {
   Fault write(const Wrench& wrench) RT_SAFE override {
     if (loop_.power == CanPower::kStopped) return fault();
     if (fault() != Fault::kNone) {
-      if (fault_batches_ == kFaultBatches) return fault();
-      ++fault_batches_;
-      drives_.push_fault(loop_);
-      bus_->send();
+      stop_drives();
       return fault();
     }
     follow_permission();
@@ -91,11 +90,24 @@ class CanDevice final : public Device {
   void stop() override {
     if (loop_.power == CanPower::kStopped) return;
     loop_.power = CanPower::kStopped;
-    for (int step = 0; drives_.push_stop(loop_, step); ++step) {
+    bool more = true;
+    for (int step = 0; more; ++step) {
+      more = drives_.push_stop(loop_, step);
       bus_->send();
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
+    drives_.push_leave(loop_);
     bus_->send();
+  }
+
+  std::optional<LastWords> last_words() override {
+    LastWords words{.fd = bus_->socket().fd()};
+    bool more = true;
+    for (int step = 0; more; ++step) {
+      more = drives_.push_stop(loop_, step);
+      if (!words.add_step(bus_->take_batch())) return std::nullopt;
+    }
+    return words;
   }
 
   std::string trouble() const override {
@@ -177,6 +189,16 @@ class CanDevice final : public Device {
     loop_.fail(oldest, DriveCause::kNoPosition,
                static_cast<std::uint32_t>(SampleGap::kMostMissing * period_ns_ / kMs_ns),
                Fault::kDeviceLost);
+  }
+
+  void stop_drives() RT_SAFE {
+    if (fault_batches_ < kFaultBatches) {
+      ++fault_batches_;
+      drives_.push_fault(loop_);
+    } else if (bus_->fault() == Fault::kNone) {
+      drives_.push_after_fault(loop_);
+    }
+    bus_->send();
   }
 
   void follow_permission() RT_SAFE {

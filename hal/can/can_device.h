@@ -100,8 +100,13 @@ class CanDrives {
   virtual void push(CanLoop& loop, const delta::Joints& torque_Nm) RT_SAFE = 0;
   /// The frames that stop all three after a fault.
   virtual void push_fault(CanLoop& loop) RT_SAFE = 0;
-  /// For good: the frames of step 0, 1, ..; false: the last ones.
+  /// What goes on after those, tick by tick, so that drives without a fault note none.
+  virtual void push_after_fault(CanLoop& loop) RT_SAFE { (void)loop; }
+  /// For good: the frames of step 0, 1, ..; false: the last ones. Zero torque comes first. They are
+  /// the same at any time, as somebody else may have to send them (hal/last_words.h).
   virtual bool push_stop(CanLoop& loop, int step) = 0;
+  /// After those, so that drives do not miss a host that has left.
+  virtual void push_leave(CanLoop& loop) { (void)loop; }
   /// What a cause of their own means, with the cure. Any thread.
   virtual std::string words(const FaultCause& cause) const = 0;
   /// What they counted.
@@ -118,6 +123,7 @@ struct CanStart {
   double counts_per_turn = 0.0;     // of an arm
   double delay_s = 0.0;             // from position to force, beyond one hold
   delta::Joints motor_turns{};      // of arms at rest
+  std::string caution{};            // DeviceInfo's
 };
 
 /// The device; an error when the arms cannot be where the drives say.

@@ -49,7 +49,7 @@ class CanSocket {
   /// Set-up only: CLOCK_MONOTONIC.
   virtual std::int64_t now_ns();
 
- protected:
+  /// Open as long as this object.
   int fd() const RT_SAFE { return fd_; }
 
  private:

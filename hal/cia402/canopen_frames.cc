@@ -105,6 +105,10 @@ std::optional<SdoReply> decode_canopen_sdo(const can::CanFrame& frame, int node)
       out.size = static_cast<std::uint8_t>(4u - ((frame.data[0] >> 2) & 3u));
       out.value = static_cast<std::uint32_t>(can::get_unsigned(frame.data, 4, out.size));
       return out;
+    case 0x42:  // expedited, without a size: the object has its own
+      out.kind = SdoReplyKind::kUpload;
+      out.value = can::get_u32(frame.data, 4);
+      return out;
     default:
       return std::nullopt;
   }

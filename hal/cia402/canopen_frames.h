@@ -67,7 +67,7 @@ struct SdoReply {
   SdoReplyKind kind;
   std::uint16_t index;  // compare it with the request: an old reply may come late
   std::uint8_t sub;
-  std::uint8_t size = 0;    // of an upload, bytes, 1 to 4
+  std::uint8_t size = 0;  // of an upload, bytes, 1 to 4; 0: it is not said, the value has all four
   std::uint32_t value = 0;  // of an upload; of an abort its code, words in canopen_words.h
 };
 std::optional<SdoReply> decode_canopen_sdo(const can::CanFrame& frame, int node) RT_SAFE;

@@ -9,6 +9,7 @@
 #include "hal/can/can_delta.h"
 #include "hal/cia402/canopen_words.h"
 #include "hal/cia402/cia402_state.h"
+#include "hal/cia402/drive_settings.h"
 #include "hal/cia402/sdo_client.h"
 
 namespace tact::hal::cia402 {
@@ -20,6 +21,7 @@ using model::Result;
 constexpr int kSettle_ms = 1000, kRest_ms = 100, kOperational_ms = 500;
 constexpr double kRest_turns = 0.02;  // of a motor between two looks
 constexpr std::uint32_t kProfile402 = 402, kTorqueMode = 1u << 9;
+constexpr SdoEntry kDeviceType{0x1000, 0, 4};
 
 class BringUp {
  public:
@@ -39,6 +41,7 @@ class BringUp {
     }
     if (auto error = rest(start)) return *error;
     if (auto error = start_all()) return *error;
+    start.caution = settings_.caution();
     return start;
   }
 
@@ -48,11 +51,10 @@ class BringUp {
     return Error{fmt::format("{} {}", can::can_arm_name(i, can_), words)};
   }
 
-  std::optional<Error> get(std::size_t i, std::uint16_t index, std::uint8_t sub,
-                           std::uint32_t& value) {
+  std::optional<Error> get(std::size_t i, const SdoEntry& entry, std::uint32_t& value) {
     SdoFailure failure;
-    const auto got = sdo_.read(can_.node[i], index, sub, failure);
-    if (!got) return wrong(i, sdo_failure_words(failure, index, sub));
+    const auto got = sdo_.read(can_.node[i], entry, failure);
+    if (!got) return wrong(i, sdo_failure_words(failure, entry.index, entry.sub));
     value = *got;
     return std::nullopt;
   }
@@ -68,7 +70,7 @@ class BringUp {
     std::array<bool, 3> answers{};
     for (std::size_t i = 0; i < 3; ++i) {
       SdoFailure failure;
-      answers[i] = sdo_.read(can_.node[i], 0x1000, 0, failure).has_value() || !failure.silent;
+      answers[i] = sdo_.read(can_.node[i], kDeviceType, failure).has_value() || !failure.silent;
     }
     if (std::none_of(answers.begin(), answers.end(), [](bool yes) { return yes; }))
       return Error{silent_bus_trouble(bus_, can_.interface)};
@@ -79,7 +81,7 @@ class BringUp {
 
   std::optional<Error> identify(std::size_t i) {
     std::uint32_t type = 0;
-    if (auto error = get(i, 0x1000, 0, type)) return error;
+    if (auto error = get(i, kDeviceType, type)) return error;
     if ((type & 0xFFFFu) != kProfile402) {
       return wrong(i,
                    fmt::format("is no CiA 402 drive (device type 0x{:08X}): is it the right node, "
@@ -87,7 +89,7 @@ class BringUp {
                                type));
     }
     SdoFailure none;  // an optional setting
-    const auto modes = sdo_.read(can_.node[i], 0x6502, 0, none);
+    const auto modes = sdo_.read(can_.node[i], {0x6502, 0, 4}, none);
     if (modes && (*modes & kTorqueMode) == 0) {
       return wrong(i,
                    "cannot do cyclic synchronous torque: update its firmware, or take a drive "
@@ -97,11 +99,8 @@ class BringUp {
   }
 
   std::optional<Error> configure(std::size_t i) {
-    const auto writes = cst_configuration(can_.node[i], cst_settings(can_, rate_Hz_));
-    if (!writes) return wrong(i, "cannot have this node: device.can.node takes 1 to 126");
-    for (const SdoWrite& one : *writes)
-      if (auto error = set(i, one)) return error;
-    sdo_.write(can_.node[i], {.index = 0x605A, .sub = 0, .value = 0, .size = 2});  // optional
+    const auto words = settings_.write(can_.node[i], cst_settings(can_, rate_Hz_));
+    if (words) return wrong(i, *words);
     return std::nullopt;
   }
 
@@ -115,7 +114,7 @@ class BringUp {
     const std::int64_t end_ns = bus_.socket().now_ns() + kSettle_ms * 1'000'000LL;
     bool reset = false;
     while (true) {
-      if (auto error = get(i, 0x6041, 0, status)) return error;
+      if (auto error = get(i, {0x6041, 0, 2}, status)) return error;
       const Cia402State state = cia402_state(static_cast<std::uint16_t>(status));
       if (state == Cia402State::kSwitchOnDisabled || state == Cia402State::kReady)
         return std::nullopt;
@@ -131,7 +130,7 @@ class BringUp {
 
   Error not_calm(std::size_t i, Cia402State state) {
     std::uint32_t code = 0;
-    if (state == Cia402State::kFault && !get(i, 0x603F, 0, code) && code != 0) {
+    if (state == Cia402State::kFault && !get(i, {0x603F, 0, 2}, code) && code != 0) {
       return wrong(i, fmt::format("keeps a fault: {} (code 0x{:04X})",
                                   emergency_sentence(static_cast<std::uint16_t>(code)), code));
     }
@@ -141,17 +140,24 @@ class BringUp {
   }
 
   std::optional<Error> learn(std::size_t i, Cia402Start& start) {
-    std::uint32_t rated = 0;  // 0.001 N m
-    if (auto error = get(i, 0x6076, 0, rated)) return error;
-    if (rated == 0)
-      return wrong(i, "has a rated torque of zero: set object 6076 with its maker's program");
-    start.rated_torque_Nm[i] = 1e-3 * rated;
+    start.rated_torque_Nm[i] = can_.rated_torque_Nm;
+    if (start.rated_torque_Nm[i] > 0.0) return position(i, start.motor_turns[i]);
+    SdoFailure failure;
+    const auto rated_mNm = sdo_.read(can_.node[i], {0x6076, 0, 4}, failure);
+    if (!rated_mNm && failure.silent) return wrong(i, sdo_failure_words(failure, 0x6076, 0));
+    if (!rated_mNm || *rated_mNm == 0) {
+      return wrong(i, fmt::format("{}: set device.can.rated_torque_Nm to the torque that its "
+                                  "manual calls 1000 of object 6071",
+                                  rated_mNm ? "has a rated torque of zero (object 6076)"
+                                            : "does not tell its rated torque (object 6076)"));
+    }
+    start.rated_torque_Nm[i] = 1e-3 * *rated_mNm;
     return position(i, start.motor_turns[i]);
   }
 
   std::optional<Error> position(std::size_t i, double& turns) {
     std::uint32_t counts = 0;
-    if (auto error = get(i, 0x6064, 0, counts)) return error;
+    if (auto error = get(i, {0x6064, 0, 4}, counts)) return error;
     turns = static_cast<std::int32_t>(counts) / can_.counts_per_motor_turn;
     return std::nullopt;
   }
@@ -194,6 +200,7 @@ class BringUp {
   double rate_Hz_;
   std::array<bool, 3> operational_{};
   SdoClient sdo_;
+  DriveSettings settings_{sdo_};
 };
 
 }  // namespace

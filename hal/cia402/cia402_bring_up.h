@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // cia402_bring_up.h - three CiA 402 drives from power-on to operational, without torque.
 //
-//     NMT pre-operational -> device type 402 (1000), torque mode (6502) -> the settings of
-//     cia402_cst.h, each reply checked -> quick stop disables (605A = 0, where the drive has it) ->
-//     rated torque (6076) -> old fault reset -> position (6064) -> NMT start -> heartbeats say so
+//     NMT pre-operational -> device type 402 (1000), torque mode (6502) -> a watch that a run
+//     before has left behind off (1016) -> the settings of cia402_cst.h, each reply checked ->
+//     mode (6061) -> quick stop disables (605A = 0, where the drive has it) -> old fault reset ->
+//     rated torque (6076) -> position (6064) -> NMT start -> heartbeats say so
+//
+// Not every drive has 6007 (what it does when the host is lost) and 60C2 (its period): then its own
+// settings count, which is told. 6076 may be in the scene instead (CN-5).
 //
 // A quick stop that ramps would drive the arm against the hand, so the drive lets go instead. The
 // host's own heartbeat is not sent here: a drive watches it from the first one on, and that is the
@@ -11,6 +15,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "hal/can/can_bus.h"
@@ -24,6 +29,7 @@ namespace tact::hal::cia402 {
 struct Cia402Start {
   std::array<double, 3> rated_torque_Nm{};
   delta::Joints motor_turns{};  // of arms at rest
+  std::string caution{};        // settings that drives do not have; empty: none
 };
 
 /// What the device needs to hear.

@@ -9,7 +9,8 @@ namespace tact::hal::cia402 {
 namespace {
 
 constexpr std::uint32_t kCommandId = 0x200, kSampleId = 0x180;
-constexpr std::uint32_t kMessageOff = 1u << 31;  // of the identifier in 1400 and 1800
+constexpr std::uint32_t kMessageOff = 1u << 31;      // of the identifier in 1400 and 1800
+constexpr std::uint32_t kWithoutRequest = 1u << 30;  // of that in 1800
 
 /// An entry of a mapping: index, sub 0, length in bits.
 constexpr std::uint32_t mapped(std::uint32_t index, std::uint32_t bits) {
@@ -47,16 +48,20 @@ std::optional<CstSample> decode_cst_sample(const can::CanFrame& frame, int node)
                    .torque_permille = can::get_i16(frame.data, 6)};
 }
 
+std::uint32_t host_watch(const CstConfiguration& can, std::uint16_t timeout_ms) RT_SAFE {
+  return static_cast<std::uint32_t>(can.host_node) << 16 | timeout_ms;
+}
+
 std::optional<CstWrites> cst_configuration(int node, const CstConfiguration& wanted) RT_SAFE {
   const bool timed =
       wanted.host_timeout_ms > 0 && wanted.drive_heartbeat_ms > 0 && wanted.period_ms > 0;
   const bool two = is_canopen_node(node) && is_canopen_node(wanted.host_node);
   if (!two || node == wanted.host_node || !timed) return std::nullopt;
   const auto n = static_cast<std::uint32_t>(node);
-  const std::uint32_t host = static_cast<std::uint32_t>(wanted.host_node) << 16;
+  const std::uint32_t sample_id = (wanted.sample_without_request ? kWithoutRequest : 0) | kSampleId;
   return CstWrites{{
       {0x1017, 0, wanted.drive_heartbeat_ms, 2},
-      {0x1016, 1, host | wanted.host_timeout_ms, 4},
+      {0x1016, 1, host_watch(wanted, wanted.host_timeout_ms), 4},
       {0x6007, 0, 3, 2},  // host lost: quick stop
       {0x1400, 1, kMessageOff | (kCommandId + n), 4},
       {0x1400, 2, wanted.command_transmission_type, 1},
@@ -65,14 +70,14 @@ std::optional<CstWrites> cst_configuration(int node, const CstConfiguration& wan
       {0x1600, 2, mapped(0x6071, 16), 4},  // target torque
       {0x1600, 0, 2, 1},
       {0x1400, 1, kCommandId + n, 4},
-      {0x1800, 1, kMessageOff | (kSampleId + n), 4},
+      {0x1800, 1, kMessageOff | (sample_id + n), 4},
       {0x1800, 2, 1, 1},  // after every SYNC
       {0x1A00, 0, 0, 1},
       {0x1A00, 1, mapped(0x6041, 16), 4},  // statusword
       {0x1A00, 2, mapped(0x6064, 32), 4},  // position
       {0x1A00, 3, mapped(0x6077, 16), 4},  // torque
       {0x1A00, 0, 3, 1},
-      {0x1800, 1, kSampleId + n, 4},
+      {0x1800, 1, sample_id + n, 4},
       {0x60C2, 1, wanted.period_ms, 1},
       {0x60C2, 2, 0xFD, 1},  // times 10^-3 s
       {0x6060, 0, 10, 1},    // cyclic synchronous torque

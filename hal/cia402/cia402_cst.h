@@ -40,9 +40,15 @@ struct CstConfiguration {
   /// 255: torque is applied as it arrives; 1: at the next SYNC, a cycle later, if the drive
   /// insists.
   std::uint8_t command_transmission_type = 255;
+  /// Bit 30 of 1800:01, "no remote request", as the drive has it: some insist on it.
+  bool sample_without_request = false;
 };
 inline constexpr std::size_t kCstWrites = 21;
 using CstWrites = std::array<SdoWrite, kCstWrites>;
+/// Object 1016:01: who is watched and for how long. A time of zero switches the watch over this
+/// node off; a zero as a whole would not name the node, and leave a drive's watch running.
+std::uint32_t host_watch(const CstConfiguration& can, std::uint16_t timeout_ms) RT_SAFE;
+
 /// What to write to the drive, in this order, while it is pre-operational: heartbeats, quick stop
 /// when the host is lost, the two messages above, period, and the mode. A message is switched off
 /// while its mapping changes. Nothing for a node that cannot be or is the host's, or a time of

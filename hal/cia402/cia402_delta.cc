@@ -109,8 +109,7 @@ class Cia402s final : public can::CanDrives {
   void push(CanLoop& loop, const delta::Joints& torque_Nm) RT_SAFE override {
     const bool powered = loop.power != CanPower::kOff;
     if (powered && loop.asked_ns == 0) loop.asked_ns = loop.now_ns;
-    if (ticks_++ % ticks_per_heartbeat_ == 0)
-      loop.bus.push(canopen_heartbeat(configuration_.host_node, NmtState::kOperational));
+    push_heartbeat(loop.bus);
     for (std::size_t i = 0; i < 3; ++i)
       push_command(loop.bus, axes_[i], controlword_of(loop, i), torque_Nm[i]);
     loop.bus.push(canopen_sync());
@@ -121,23 +120,26 @@ class Cia402s final : public can::CanDrives {
   }
 
   void push_fault(CanLoop& loop) RT_SAFE override {
+    push_heartbeat(loop.bus);
     push_commands(loop.bus, kControlQuickStop);
     if (command_at_sync_) loop.bus.push(canopen_sync());
   }
+  /// Drives without a fault of their own would note one if nobody were heard.
+  void push_after_fault(CanLoop& loop) RT_SAFE override { push_heartbeat(loop.bus); }
 
   bool push_stop(CanLoop& loop, int step) override {
-    if (step < 3) {
-      push_commands(loop.bus, step < 2 ? kControlQuickStop : kControlDisableVoltage);
-      loop.bus.push(canopen_sync());
-      return true;
-    }
+    push_commands(loop.bus, step < 2 ? kControlQuickStop : kControlDisableVoltage);
+    loop.bus.push(canopen_sync());
+    return step < 2;
+  }
+  void push_leave(CanLoop& loop) override {
     for (const Axis& axis : axes_) {
       loop.bus.push(canopen_nmt(NmtCommand::kPreOperational, axis.node));
       // Nobody sends the host's heartbeat any more: that is no fault now.
-      loop.bus.push(
-          canopen_sdo_download(axis.node, {.index = 0x1016, .sub = 1, .value = 0, .size = 4}));
+      loop.bus.push(canopen_sdo_download(
+          axis.node,
+          {.index = 0x1016, .sub = 1, .value = host_watch(configuration_, 0), .size = 4}));
     }
-    return false;
   }
 
   std::string words(const can::FaultCause& cause) const override {
@@ -227,6 +229,10 @@ class Cia402s final : public can::CanDrives {
     return next && *next != kControlFaultReset ? *next : axis.controlword;
   }
 
+  void push_heartbeat(can::CanBus& bus) RT_SAFE {
+    if (ticks_++ % ticks_per_heartbeat_ == 0)
+      bus.push(canopen_heartbeat(configuration_.host_node, NmtState::kOperational));
+  }
   void push_command(can::CanBus& bus, Axis& axis, std::uint16_t controlword,
                     double torque_Nm) RT_SAFE {
     axis.controlword = controlword;
@@ -270,7 +276,8 @@ Result<std::unique_ptr<Device>> start_cia402_delta(std::unique_ptr<can::CanBus> 
        .most_silent_ns = kMs_ns * cst_settings(can, rate_Hz).drive_heartbeat_ms * 7 / 2,
        .counts_per_turn = can.counts_per_motor_turn * settings.delta.gear_ratio,
        .delay_s = 1e-9 * static_cast<double>(periods * period_ns) + 1e-6 * bits,
-       .motor_turns = start->motor_turns});
+       .motor_turns = start->motor_turns,
+       .caution = start->caution});
 }
 
 Result<std::unique_ptr<Device>> open_can_cia402(const model::DeviceSettings& settings,

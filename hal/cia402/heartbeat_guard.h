@@ -4,6 +4,9 @@
 //
 //     1016:01 = host node << 16 | timeout, ms       0 instead of the timeout: nobody is missed
 //
+// A watch that is on cannot be written anew in some drives (abort 0x06040043): where "on" was
+// refused or left open, "off" comes first.
+//
 // One expedited SDO download in the loop's own batch, one answer; the next only when that came or
 // 200 ticks are over. A drive that refuses "off" while operational is left on; it then notes
 // a heartbeat fault (EMCY 0x8130) at the end of a run, as after a killed one, and the next start
@@ -30,11 +33,12 @@ class HeartbeatGuard {
     if (waiting_ticks_ > 0) return std::nullopt;
     const bool settled = known_ && on_ == wanted;
     if (settled || (!wanted && refuses_off_)) return std::nullopt;
+    const bool open = !known_ && asked_;  // the last "on"
     known_ = false;
-    asked_ = wanted;
+    asked_ = wanted && (!open || refuses_off_);
+    clears_ = wanted && !asked_;
     waiting_ticks_ = kPatience_ticks;
-    const std::uint32_t watch = static_cast<std::uint32_t>(can.host_node) << 16;
-    const std::uint32_t value = wanted ? watch | can.host_timeout_ms : 0;
+    const std::uint32_t value = host_watch(can, asked_ ? can.host_timeout_ms : std::uint16_t{0});
     return canopen_sdo_download(node, {.index = 0x1016, .sub = 1, .value = value, .size = 4});
   }
 
@@ -43,7 +47,7 @@ class HeartbeatGuard {
     if (waiting_ticks_ <= 0 || reply.index != 0x1016 || reply.sub != 1) return;
     const bool done = reply.kind == SdoReplyKind::kDownloadDone;
     if (done || !asked_) waiting_ticks_ = 0;  // a refused "on" is asked for again, but not at once
-    known_ = done || !asked_;
+    known_ = done || (!asked_ && !clears_);
     on_ = done ? asked_ : true;
     refuses_off_ = refuses_off_ || (!done && !asked_);
   }
@@ -51,6 +55,7 @@ class HeartbeatGuard {
  private:
   bool known_ = true, on_ = true;  // the bring-up wrote it
   bool asked_ = true;
+  bool clears_ = false;  // asks for "off" so that "on" can be asked for
   bool refuses_off_ = false;
   int waiting_ticks_ = 0;
 };

@@ -40,12 +40,15 @@ std::optional<SdoFailure> SdoClient::write(int node, const SdoWrite& what) {
   return std::nullopt;
 }
 
-std::optional<std::uint32_t> SdoClient::read(int node, std::uint16_t index, std::uint8_t sub,
-                                             SdoFailure& failure) {
-  const auto reply = ask(node, canopen_sdo_upload(node, index, sub), index, sub);
+std::optional<std::uint32_t> SdoClient::read(int node, const SdoEntry& entry, SdoFailure& failure) {
+  const auto reply =
+      ask(node, canopen_sdo_upload(node, entry.index, entry.sub), entry.index, entry.sub);
   failure = {.silent = !reply || reply->kind == SdoReplyKind::kDownloadDone};
   if (failure.silent) return std::nullopt;
-  if (reply->kind == SdoReplyKind::kUpload) return reply->value;
+  if (reply->kind == SdoReplyKind::kUpload) {
+    const bool cut = reply->size == 0 && entry.size < 4;
+    return cut ? reply->value & ((1u << 8 * entry.size) - 1u) : reply->value;
+  }
   failure.abort_code = reply->value;
   return std::nullopt;
 }

@@ -21,6 +21,13 @@ struct SdoFailure {
   std::uint32_t abort_code = 0;
 };
 
+/// What is read, and how many bytes it has: a drive need not say it (0x42).
+struct SdoEntry {
+  std::uint16_t index;
+  std::uint8_t sub;
+  std::uint8_t size;  // bytes, 1, 2 or 4
+};
+
 class SdoClient {
  public:
   /// Everything that is no reply goes to `others`.
@@ -30,8 +37,7 @@ class SdoClient {
   /// Nothing when it is written.
   std::optional<SdoFailure> write(int node, const SdoWrite& what);
   /// The value; a failure in `failure`.
-  std::optional<std::uint32_t> read(int node, std::uint16_t index, std::uint8_t sub,
-                                    SdoFailure& failure);
+  std::optional<std::uint32_t> read(int node, const SdoEntry& entry, SdoFailure& failure);
   /// Listens only.
   void wait(int time_ms);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hal/falcon/falcon_at_tool.h"
+#include "hal/falcon/falcon_boot.h"
 #include "hal/falcon/falcon_frame.h"
 
 namespace tact::hal::falcon {
@@ -22,6 +23,11 @@ constexpr std::int64_t kMute_ns = 500'000'000;    // whether anyone is armed or 
 constexpr int kMuteTicks = 20;
 constexpr double kMostCounts_per_s = 250e3;  // 6 m/s where the counts are finest
 constexpr double kMostCountsAtOnce = 250.0;
+constexpr FalconCommand kLastCommand{.lights = kFalconRed};
+constexpr const char* kUnguarded =
+    "if tactd is killed, nothing zeroes the Falcon, because libusb's descriptor is not found: use "
+    "device.falcon.transport = \"usbfs\"";
+constexpr int kLastCommands = 3;  // nobody sees whether the first has come
 
 double component(const Vec3& v, std::size_t i) RT_SAFE { return i == 0 ? v.x : i == 1 ? v.y : v.z; }
 
@@ -46,7 +52,8 @@ DeviceInfo FalconDevice::info() const {
           .workspace_radius_m = kFalconRadius_m,
           .workspace_half_length_m = kFalconHalfLength_m,
           .at_tool = falcon_at_tool(kinematics_, settings_),
-          .damping_key = "device.falcon.joint_damping_Nms_per_rad"};
+          .damping_key = "device.falcon.joint_damping_Nms_per_rad",
+          .caution = pipe_->descriptor() < 0 ? kUnguarded : ""};
 }
 
 Fault FalconDevice::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
@@ -209,11 +216,21 @@ std::string FalconDevice::trouble() const {
   return in_words(FalconTrouble::unpacked(trouble_.load(std::memory_order_relaxed)));
 }
 
+std::optional<LastWords> FalconDevice::last_words() {
+  const std::array<LastWords::Bytes, 1> zero{encode(kLastCommand)};
+  LastWords words{.carrier = LastWords::Carrier::kUsbBulk,
+                  .endpoint = kFalconEndpointOut,
+                  .fd = pipe_->descriptor()};
+  bool fits = words.fd >= 0;
+  for (int i = 0; i < kLastCommands && fits; ++i) fits = words.add_step(zero);
+  return fits ? std::optional(words) : std::nullopt;
+}
+
 void FalconDevice::stop() {
   if (stopped_) return;
   stopped_ = true;
   words_ = {};
-  pipe_->stop(encode(FalconCommand{.lights = kFalconRed}));
+  pipe_->stop(encode(kLastCommand));
 }
 
 }  // namespace tact::hal::falcon

@@ -1,45 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/falcon_usb/falcon_image.h"
 
-#include <optional>
+#include <algorithm>
+#include <cctype>
+#include <string>
 
-#include "hal/falcon_usb/sha256.h"
+#include "model/io/seal.h"
 
 namespace tact::hal::falcon_usb {
 namespace {
 
-std::optional<unsigned> hex_digit(char c) noexcept {
-  if (c >= '0' && c <= '9') return static_cast<unsigned>(c - '0');
-  if (c >= 'a' && c <= 'f') return static_cast<unsigned>(c - 'a') + 10u;
-  if (c >= 'A' && c <= 'F') return static_cast<unsigned>(c - 'A') + 10u;
-  return std::nullopt;
-}
+constexpr std::size_t kDigits = 64;
 
-std::optional<Sha256> digest_of(std::string_view text) noexcept {
-  Sha256 out{};
-  if (text.size() != 2 * out.size()) return std::nullopt;
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const auto high = hex_digit(text[2 * i]), low = hex_digit(text[2 * i + 1]);
-    if (!high || !low) return std::nullopt;
-    out[i] = static_cast<std::uint8_t>(*high << 4 | *low);
-  }
+bool is_hex(char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; }
+
+std::string in_lower_case(std::string_view text) {
+  std::string out(text);
+  std::ranges::transform(out, out.begin(), [](unsigned char c) { return std::tolower(c); });
   return out;
 }
 
 }  // namespace
 
 FalconImageVerdict check_falcon_image(std::span<const std::uint8_t> image,
-                                      std::string_view wanted_sha256) noexcept {
-  const auto wanted = digest_of(wanted_sha256);
-  if (!wanted_sha256.empty() && !wanted) return FalconImageVerdict::kBadDigest;
+                                      std::string_view wanted_sha256) {
+  const bool is_named = !wanted_sha256.empty();
+  if (is_named && (wanted_sha256.size() != kDigits || !std::ranges::all_of(wanted_sha256, is_hex)))
+    return FalconImageVerdict::kBadDigest;
   if (image.empty() || image.size() > kFalconImageMax_bytes) return FalconImageVerdict::kWrongSize;
-  const auto digest = sha256(image);
-  if (wanted)
-    return digest == *wanted ? FalconImageVerdict::kAsNamed : FalconImageVerdict::kOtherDigest;
+  const std::string digest =
+      model::io::sha256_of({reinterpret_cast<const char*>(image.data()), image.size()});
+  if (is_named)
+    return digest == in_lower_case(wanted_sha256) ? FalconImageVerdict::kAsNamed
+                                                  : FalconImageVerdict::kOtherDigest;
   FalconImageVerdict verdict = FalconImageVerdict::kWrongSize;
   for (const FalconKnownImage& known : kFalconKnownImages) {
     if (image.size() != known.size_bytes) continue;
-    if (digest == digest_of(known.sha256)) return FalconImageVerdict::kKnown;
+    if (digest == known.sha256) return FalconImageVerdict::kKnown;
     verdict = FalconImageVerdict::kUnknown;
   }
   return verdict;

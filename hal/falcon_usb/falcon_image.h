@@ -47,6 +47,6 @@ const char* falcon_image_advice(FalconImageVerdict verdict) noexcept;
 
 /// The digest in hexadecimal, upper or lower case; empty: only known images.
 FalconImageVerdict check_falcon_image(std::span<const std::uint8_t> image,
-                                      std::string_view wanted_sha256) noexcept;
+                                      std::string_view wanted_sha256);
 
 }  // namespace tact::hal::falcon_usb

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "hal/device_lock.h"
 #include "hal/udev_rules.h"
@@ -142,6 +143,14 @@ FalconUsb::~FalconUsb() {
   if (claimed_) libusb_release_interface(handle_, falcon::kFalconUsbInterface);
   if (handle_ != nullptr) libusb_close(handle_);
   if (context_ != nullptr) libusb_exit(context_);
+}
+
+int FalconUsb::descriptor() const {
+  std::error_code none;
+  for (const auto& file : std::filesystem::directory_iterator("/proc/self/fd", none))
+    if (std::filesystem::read_symlink(file.path(), none) == node_)
+      return std::stoi(file.path().filename());
+  return -1;
 }
 
 bool FalconUsb::control(const falcon::FtdiRequest& request) {

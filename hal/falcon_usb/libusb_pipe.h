@@ -38,6 +38,7 @@ class LibusbPipe final : public falcon::FalconPipe {
   }
   bool newest(falcon::FalconReply& reply) RT_SAFE override { return receiver_.newest(reply); }
   falcon::FalconPipeHealth health() const RT_SAFE override { return receiver_.health(); }
+  int descriptor() const override { return usb_ ? usb_->descriptor() : -1; }
   void stop(const falcon::FalconPacket& last) override;
   const UsbThread& thread() const { return thread_; }
 

@@ -36,6 +36,7 @@ class UsbfsPipe final : public falcon::FalconPipe {
   }
   bool newest(falcon::FalconReply& reply) RT_SAFE override { return receiver_.newest(reply); }
   falcon::FalconPipeHealth health() const RT_SAFE override { return receiver_.health(); }
+  int descriptor() const override { return port_ ? port_->descriptor() : -1; }
   void stop(const falcon::FalconPacket& last) override;
   const UsbThread& thread() const { return thread_; }
 

@@ -34,6 +34,8 @@ class UsbfsPort {
   virtual void discard(usbdevfs_urb& urb) = 0;
   /// Makes a stalled endpoint carry again; waits for the device. 0, or the errno of the kernel.
   virtual int clear_halt(unsigned endpoint) = 0;
+  /// Of the open node; -1: there is none.
+  virtual int descriptor() const { return -1; }
   /// What transfers may use, kUsbfsBuffer_bytes of it.
   virtual std::span<std::uint8_t> buffer() RT_SAFE = 0;
 };
@@ -52,6 +54,7 @@ class UsbfsNode final : public UsbfsPort {
   int reap(usbdevfs_urb*& urb) override;
   void discard(usbdevfs_urb& urb) override;
   int clear_halt(unsigned endpoint) override;
+  int descriptor() const override { return fd_; }
   std::span<std::uint8_t> buffer() RT_SAFE override { return {buffer_, kUsbfsBuffer_bytes}; }
   /// Set-up: 0 or an errno.
   int control(const falcon::FtdiRequest& request);

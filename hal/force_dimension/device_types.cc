@@ -30,6 +30,8 @@ constexpr std::array kTypes{
     sigma(206, "sigma.3", 0.0, false),
     sigma(104, "sigma.7 right", 0.2, true),
     sigma(105, "sigma.7 left", 0.2, true),
+    sigma(106, "sigma.6+ right", 0.2, true),
+    sigma(107, "sigma.6+ left", 0.2, true),
     lambda(203, "lambda.3", 0.0, false),
     lambda(108, "lambda.7 right", 0.2, true),
     lambda(109, "lambda.7 left", 0.2, true),
@@ -46,7 +48,12 @@ constexpr const char* kDropped =
 constexpr const char* kController =
     "it is a bare controller, whose mechanism and limits tact cannot know; use a delta.3, omega, "
     "sigma or lambda";
+constexpr const char* kNoLimits =
+    "no limits of its force and torque are published that tact could hold it to; use a lambda.3 or "
+    "lambda.7, or ask for it with the figures of its manual";
 constexpr std::array kRefused{
+    Refused{131, "lambda.6 right", kNoLimits},
+    Refused{132, "lambda.6 left", kNoLimits},
     Refused{31, "3-DOF", kDropped},
     Refused{32, "OMEGA", kDropped},
     Refused{61, "6-DOF", kDropped},

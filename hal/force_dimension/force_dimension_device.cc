@@ -37,7 +37,10 @@ DeviceInfo info_of(const SdkSession& session, const model::ForceDimensionSetting
                                          .friction_N = 0.0,  // the maker tells none
                                          .position_step_m = type.resolution_m,
                                          .delay_s = kDelay_s},
-          .damping_key = "device.force_dimension.damping_Ns_per_m"};
+          .damping_key = "device.force_dimension.damping_Ns_per_m",
+          .caution =
+              "if tactd is killed, nothing zeroes this device, because its maker's library "
+              "shares no handle: put its supply on a relay"};
 }
 
 /// Three periods of the loop, and never less than the age of a good sample.

@@ -93,9 +93,9 @@ class GpioLines final : public SafetyLines {
   Fault write(const LinesTick& tick) RT_SAFE override {
     const SafetyOutputs outputs = logic_.drive(tick);
     Values values{};
-    place(values, lines_.enable, outputs.enable && !dropped());
-    place(values, lines_.heartbeat, outputs.heartbeat && !dropped());
-    place(values, lines_.led, outputs.led);
+    set_level(values, lines_.enable, outputs.enable && !dropped());
+    set_level(values, lines_.heartbeat, outputs.heartbeat && !dropped());
+    set_level(values, lines_.led, outputs.led);
     if (!lost() && !lines_.outputs.empty() && !set_levels(lines_.outputs.bulk(), values)) lose();
     return lost() ? Fault::kLinesLost : Fault::kNone;
   }
@@ -128,7 +128,7 @@ class GpioLines final : public SafetyLines {
   static bool level(const Values& values, int place) RT_SAFE {
     return place >= 0 && values[static_cast<std::size_t>(place)] != 0;
   }
-  static void place(Values& values, int place, bool high) RT_SAFE {
+  static void set_level(Values& values, int place, bool high) RT_SAFE {
     if (place >= 0) values[static_cast<std::size_t>(place)] = high ? 1 : 0;
   }
   bool lost() const RT_SAFE { return lost_.load(std::memory_order_relaxed); }
@@ -198,7 +198,7 @@ bool request(Groups& lines) {
 
 /// All lines that the scene wires. One that the chip does not give is an error: an e-stop or a
 /// dead-man without its line would be none.
-Result<Groups> group(gpiod_chip* handle, const GpioChip& chip, const LinesSettings& settings) {
+Result<Groups> find_lines(gpiod_chip* handle, const GpioChip& chip, const LinesSettings& settings) {
   Groups lines;
   int scope = -1;
   LineGroup *const in = &lines.inputs, *const out = &lines.outputs;
@@ -291,7 +291,7 @@ Result<std::unique_ptr<SafetyLines>> open_lines_of(const GpioChip& chip,
   if (handle == nullptr)
     return Error{fmt::format("{} cannot be opened: {}; check its driver (dmesg)", chip.path,
                              std::strerror(errno))};
-  auto lines = group(handle.get(), chip, settings);
+  auto lines = find_lines(handle.get(), chip, settings);
   if (!lines) return lines.error();
   if (!request(*lines)) return why_not_requested(handle.get(), chip, settings, errno);
   return std::unique_ptr<SafetyLines>(new GpioLines(std::move(handle), *lines));

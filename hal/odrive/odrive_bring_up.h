@@ -3,9 +3,11 @@
 //
 //     hear three heartbeats -> Idle -> Get_Version (0.6 answers, 0.5 does not) -> Clear_Errors ->
 //     three heartbeats without error, idle -> Set_Controller_Mode(torque, pass-through) ->
-//     Set_Limits -> [index search] -> positions of all three at the loop's rate
+//     Set_Limits -> [index search] -> 0.5: [each axis alone: closed loop at zero torque, Idle] ->
+//     positions of all three at the loop's rate
 //
-// Zero torque is sent all the while, so a watchdog that a run before has left behind stays fed. The
+// Zero torque is sent all the while (odrive_listener.h). An axis of 0.5 that was never in closed
+// loop since power-on says that it is at 0, wherever it is: nothing is homed on that (OD-2). The
 // protocol acknowledges nothing: what can be seen in heartbeats and positions is checked, no more.
 // Order and messages are those of ODrive's CANSimple manual (OD-2). Set-up code: blocks, at most
 // some seconds; with an index search up to 20 s, while the arms move.
@@ -28,7 +30,6 @@ struct OdriveStart {
 
 /// What the device needs to hear.
 std::vector<std::uint32_t> odrive_ids(const model::CanSettings& can);
-OdriveTorqueLength odrive_torque_length(const model::CanSettings& can);
 /// Of all frames of a tick at worst stuffing.
 int odrive_cycle_bits(const model::CanSettings& can);
 

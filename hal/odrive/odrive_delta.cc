@@ -14,7 +14,9 @@
 #include "hal/odrive/odrive_axis.h"
 #include "hal/odrive/odrive_bring_up.h"
 #include "hal/odrive/odrive_errors.h"
+#include "hal/odrive/odrive_listener.h"
 #include "hal/odrive/odrive_protocol.h"
+#include "hal/odrive/odrive_velocity_limit.h"
 
 namespace tact::hal::odrive {
 namespace {
@@ -209,6 +211,8 @@ Result<std::unique_ptr<Device>> start_odrive_delta(std::unique_ptr<can::CanBus> 
         "device.can.homing \"index\" turns the motors before the loop runs, but "
         "device.lines.enable gives them power only then: use \"absolute\" or \"jig\""};
   }
+  const auto caution = judge_odrive_velocity_limit(settings);
+  if (!caution) return caution.error();
   const auto start = bring_up_odrives(*bus, settings.can, rate_Hz);
   if (!start) return start.error();
   // A position is up to a period old (the drive's own clock); then three positions and three
@@ -223,7 +227,8 @@ Result<std::unique_ptr<Device>> start_odrive_delta(std::unique_ptr<can::CanBus> 
        .most_silent_ns = kSilence_ns,
        .counts_per_turn = settings.delta.counts_per_turn,
        .delay_s = 1e-9 * period_ns + 1e-6 * odrive_cycle_bits(settings.can),
-       .motor_turns = start->motor_turns});
+       .motor_turns = start->motor_turns,
+       .caution = *caution});
 }
 
 Result<std::unique_ptr<Device>> open_can_odrive(const model::DeviceSettings& settings,

@@ -187,6 +187,12 @@ std::optional<OdriveEstimates> decode_odrive_estimates(const can::CanFrame& fram
   return decode_pair<OdriveEstimates>(frame, node, OdriveCommand::kGetEncoderEstimates);
 }
 
+std::optional<OdriveCount05> decode_odrive_count_05(const can::CanFrame& frame, int node) RT_SAFE {
+  if (!is_reply(frame, node, OdriveCommand::kGetEncoderCount05)) return std::nullopt;
+  return OdriveCount05{.shadow = can::get_i32(frame.data, 0),
+                       .in_circle = can::get_i32(frame.data, 4)};
+}
+
 std::optional<OdriveIq> decode_odrive_iq(const can::CanFrame& frame, int node) RT_SAFE {
   return decode_pair<OdriveIq>(frame, node, OdriveCommand::kGetIq);
 }

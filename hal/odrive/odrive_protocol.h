@@ -128,6 +128,12 @@ struct OdriveEstimates {
 std::optional<OdriveEstimates> decode_odrive_estimates(const can::CanFrame& frame,
                                                        int node) RT_SAFE;
 
+struct OdriveCount05 {     // 0.5: of the encoder itself, whatever the estimates say
+  std::int32_t shadow;     // since power-on, or absolute; over turns
+  std::int32_t in_circle;  // within a turn
+};
+std::optional<OdriveCount05> decode_odrive_count_05(const can::CanFrame& frame, int node) RT_SAFE;
+
 struct OdriveIq {
   double setpoint_A;
   double measured_A;

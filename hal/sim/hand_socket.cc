@@ -26,16 +26,12 @@ Error system_error(const std::string& path, const char* what) {
                       std::strerror(errno))};
 }
 
-int call_with_address(int (*call)(int, const sockaddr*, socklen_t), int descriptor,
-                      const std::string& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  path.copy(address.sun_path, sizeof address.sun_path - 1);
-  return call(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+const sockaddr* plain(const sockaddr_un& address) {
+  return reinterpret_cast<const sockaddr*>(&address);
 }
 
 /// Removes the socket file of a process that is gone; refuses anything else that is in the way.
-Result<bool> clear_the_way(const std::string& path) {
+Result<bool> clear_the_way(const std::string& path, const sockaddr_un& address) {
   struct stat status{};
   if (lstat(path.c_str(), &status) != 0) {
     if (errno == ENOENT) return true;
@@ -44,7 +40,7 @@ Result<bool> clear_the_way(const std::string& path) {
   if (!S_ISSOCK(status.st_mode))
     return Error{fmt::format("{}: is a file, not a socket; choose another name", path)};
   const int probe = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  const bool alive = probe >= 0 && call_with_address(connect, probe, path) == 0;
+  const bool alive = probe >= 0 && connect(probe, plain(address), sizeof address) == 0;
   if (probe >= 0) close(probe);
   if (alive) {
     return Error{
@@ -65,16 +61,15 @@ bool is_sound(const HandTarget& target) RT_SAFE {
 
 Result<std::unique_ptr<HandSocket>> HandSocket::start(const std::string& path,
                                                       LatestSlot<HandTarget>& newest) {
-  if (path.empty() || path.size() >= sizeof(sockaddr_un::sun_path)) {
-    return Error{fmt::format("hand socket: the path \"{}\" must have 1 to {} bytes; shorten it",
-                             path, sizeof(sockaddr_un::sun_path) - 1)};
-  }
-  if (const auto clear = clear_the_way(path); !clear) return clear.error();
+  const auto address = model::io::socket_address(path);
+  if (!address) return address.error();
+  if (auto shared = model::io::check_socket_folder(path)) return std::move(*shared);
+  if (const auto clear = clear_the_way(path, *address); !clear) return clear.error();
   const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (descriptor < 0) return system_error(path, "cannot make a socket");
   // The mode of the file is that of the descriptor when it is bound: at no time is it open to
   // others.
-  if (fchmod(descriptor, 0600) != 0 || call_with_address(bind, descriptor, path) != 0) {
+  if (fchmod(descriptor, 0600) != 0 || bind(descriptor, plain(*address), sizeof *address) != 0) {
     const Error error = system_error(path, "cannot listen");
     close(descriptor);
     return error;
@@ -82,11 +77,10 @@ Result<std::unique_ptr<HandSocket>> HandSocket::start(const std::string& path,
   return std::unique_ptr<HandSocket>(new HandSocket(descriptor, path, newest));
 }
 
-HandSocket::HandSocket(int descriptor, std::string path, LatestSlot<HandTarget>& newest)
-    : descriptor_(descriptor),
-      path_(std::move(path)),
-      newest_(newest),
-      thread_([this] { listen(); }) {}
+HandSocket::HandSocket(int descriptor, const std::string& path, LatestSlot<HandTarget>& newest)
+    : descriptor_(descriptor), path_(path), file_(path), newest_(newest), thread_([this] {
+        listen();
+      }) {}
 
 HandSocket::~HandSocket() { stop(); }
 
@@ -96,7 +90,7 @@ void HandSocket::stop() {
   shutdown(descriptor_, SHUT_RD);  // ends the wait
   thread_.join();
   close(descriptor_);
-  unlink(path_.c_str());
+  file_.remove();
 }
 
 void HandSocket::listen() {

@@ -14,6 +14,7 @@
 
 #include "hal/latest_slot.h"
 #include "hal/sim/hand_target.h"
+#include "model/io/socket_file.h"
 #include "model/result.h"
 
 namespace tact::hal::sim {
@@ -35,11 +36,12 @@ class HandSocket {
   const std::string& path() const { return path_; }
 
  private:
-  HandSocket(int descriptor, std::string path, LatestSlot<HandTarget>& newest);
+  HandSocket(int descriptor, const std::string& path, LatestSlot<HandTarget>& newest);
   void listen();
 
   int descriptor_;
   std::string path_;
+  model::io::SocketFile file_;
   LatestSlot<HandTarget>& newest_;
   std::atomic<bool> stopping_{false};
   std::thread thread_;  // last: it uses the others

@@ -52,7 +52,7 @@ Vec3 inside_workspace_m(const Vec3& p_W) RT_SAFE {
 
 }  // namespace
 
-SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::contact::HandSettings& hand)
+SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::HandSettings& hand)
     : settings_(device),
       delta_(kGeometry),
       hand_(hand),
@@ -168,7 +168,7 @@ void SimDelta::steer_hand() RT_SAFE {
 
 void SimDelta::step_physics(double dt_s) RT_SAFE {
   hand_.step(dt_s);
-  const model::contact::HandSettings& hand = hand_.settings();
+  const model::HandSettings& hand = hand_.settings();
   plant_.step(dt_s, motor_Nm_,
               {.mass_kg = hand.mass_kg,
                .stiffness_N_per_m = hand.stiffness_N_per_m,
@@ -223,7 +223,7 @@ void SimDelta::stop() {
 }
 
 model::Result<std::unique_ptr<SimDelta>> make_sim_delta(const model::SimDeviceSettings& device,
-                                                        const model::contact::HandSettings& hand) {
+                                                        const model::HandSettings& hand) {
   const auto refuse = [](const char* key, double value, const char* allowed) {
     return model::Error{fmt::format("{} is {}; it must be {}", key, value, allowed)};
   };

@@ -35,7 +35,7 @@ struct SimFaults {
 class SimDelta final : public Device {
  public:
   /// Settings as checked by make_sim_delta().
-  SimDelta(const model::SimDeviceSettings& device, const model::contact::HandSettings& hand);
+  SimDelta(const model::SimDeviceSettings& device, const model::HandSettings& hand);
 
   DeviceInfo info() const override;
   Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
@@ -92,6 +92,6 @@ class SimDelta final : public Device {
 
 /// Refuses settings that no device can have.
 model::Result<std::unique_ptr<SimDelta>> make_sim_delta(const model::SimDeviceSettings& device,
-                                                        const model::contact::HandSettings& hand);
+                                                        const model::HandSettings& hand);
 
 }  // namespace tact::hal::sim

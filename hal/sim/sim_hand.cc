@@ -7,7 +7,7 @@
 namespace tact::hal::sim {
 namespace {
 
-using model::contact::HandWaypoint;
+using model::HandWaypoint;
 
 constexpr double kSteeringHolds_s = 1.0;
 constexpr double kWalkSpeed_mps = 0.5;
@@ -33,9 +33,9 @@ bool has_arrived(const HandWaypoint& a, const HandWaypoint& b) RT_SAFE {
 
 }  // namespace
 
-SimHand::SimHand(model::contact::HandSettings settings)
+SimHand::SimHand(model::HandSettings settings)
     : settings_(std::move(settings)),
-      at_(model::contact::hand_target(settings_.path, settings_.repeat, 0.0)) {}
+      at_(model::hand_target(settings_.path, settings_.repeat, 0.0)) {}
 
 bool SimHand::is_steered() const RT_SAFE { return unsteered_s_ < kSteeringHolds_s; }
 
@@ -56,19 +56,16 @@ void SimHand::step(double dt_s) RT_SAFE {
     return;
   }
   if (on_script_ && follow_script(dt_s)) return;
-  const HandWaypoint goal =
-      model::contact::hand_target(settings_.path, settings_.repeat, script_s_);
+  const HandWaypoint goal = model::hand_target(settings_.path, settings_.repeat, script_s_);
   walk_to(goal, dt_s);
   on_script_ = has_arrived(at_, goal);
 }
 
 /// One step of the script, unless the script jumps there.
 bool SimHand::follow_script(double dt_s) RT_SAFE {
-  const HandWaypoint last =
-      model::contact::hand_target(settings_.path, settings_.repeat, script_s_);
+  const HandWaypoint last = model::hand_target(settings_.path, settings_.repeat, script_s_);
   script_s_ += dt_s;
-  const HandWaypoint next =
-      model::contact::hand_target(settings_.path, settings_.repeat, script_s_);
+  const HandWaypoint next = model::hand_target(settings_.path, settings_.repeat, script_s_);
   const Vec3 velocity_mps = (next.position_m - last.position_m) / dt_s;
   const Vec3 turn_radps = (next.rotation_rad - last.rotation_rad) / dt_s;
   if (!(norm(velocity_mps) <= kJump_mps && norm(turn_radps) <= kJump_radps)) {

@@ -9,7 +9,7 @@
 //                "head_tracked":false}
 //
 // A frame of the figure is a message of its own, after the frame that it belongs to: so a frame
-// with a full patch keeps its 4096 bytes. trouble: 0 none, 1 held, 2 lost, 3 out of reach.
+// with a full patch keeps its length. trouble: 0 none, 1 held, 2 lost, 3 out of reach.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

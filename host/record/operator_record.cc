@@ -2,6 +2,7 @@
 #include "host/record/operator_record.h"
 
 #include <algorithm>
+#include <array>
 #include <boost/crc.hpp>
 #include <cmath>
 #include <cstddef>
@@ -14,6 +15,8 @@ namespace {
 
 constexpr auto kLastState = static_cast<std::uint8_t>(tracking::BodyState::kLost);
 constexpr auto kLastTrouble = static_cast<std::uint8_t>(tracking::TrackingTrouble::kOutOfOrder);
+
+constexpr std::array<std::uint8_t, 2> kLegReached{kLeftLegReached, kRightLegReached};
 
 std::uint32_t crc_of(const OperatorRecord& record) {
   boost::crc_32_type crc;
@@ -65,9 +68,9 @@ FigureRecord record_of(const figure::FigurePose& pose) {
   for (std::size_t i = 0; i < figure::kFigureJoints; ++i)
     Eigen::Vector3f::Map(out.joint_m[i]) = pose.joint_m[i].cast<float>();
   put({.rotation = pose.head, .position_m = pose.grip_m}, out.grip_m, out.head_wxyz);
-  if (pose.shoulder_too_far) out.legs_reached |= 4u;
+  if (pose.shoulder_too_far) out.flags |= kShoulderTooFar;
   for (std::size_t i = 0; i < pose.leg_reached.size(); ++i)
-    if (pose.leg_reached[i]) out.legs_reached |= static_cast<std::uint8_t>(1u << i);
+    if (pose.leg_reached[i]) out.flags |= kLegReached[i];
   return out;
 }
 
@@ -123,8 +126,8 @@ std::optional<figure::FigurePose> figure_of(const OperatorRecord& record,
              .sweeps = figure.sweeps,
              .updates = figure.updates};
   for (std::size_t i = 0; i < out.leg_reached.size(); ++i)
-    out.leg_reached[i] = (figure.legs_reached & (1u << i)) != 0;
-  out.shoulder_too_far = (figure.legs_reached & 4u) != 0;
+    out.leg_reached[i] = (figure.flags & kLegReached[i]) != 0;
+  out.shoulder_too_far = (figure.flags & kShoulderTooFar) != 0;
   tell(bodies, out);
   return out;
 }

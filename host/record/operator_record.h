@@ -28,6 +28,8 @@ struct BodyRecord {
   std::uint8_t pad[2] = {};
 };
 
+enum FigureFlag : std::uint8_t { kLeftLegReached = 1, kRightLegReached = 2, kShoulderTooFar = 4 };
+
 /// FigurePose; its trouble and its words follow from it and the bodies.
 struct FigureRecord {
   double height_m = 0.0;  // 0: no figure was shown
@@ -37,7 +39,7 @@ struct FigureRecord {
   float error_m = 0.0f;
   std::uint16_t sweeps = 0, updates = 0;
   std::uint8_t reached = 0, out_of_reach = 0, full_chain = 0;
-  std::uint8_t legs_reached = 0;  // bit 0 left, bit 1 right; bit 2: shoulder_too_far
+  std::uint8_t flags = 0;  // FigureFlag
   std::uint8_t pad[4] = {};
 };
 

@@ -239,20 +239,21 @@ std::optional<Error> RecordingWriter::close() {
 
 void RecentFrames::restart(double frame_rate_Hz) {
   frames_.clear();
-  operators_.clear();
-  figures_.clear();
+  is_tracked_ = false;
   capacity_ = static_cast<std::size_t>(std::clamp(frame_rate_Hz, 1.0, 1000.0) * kKeep_s);
 }
 
 void RecentFrames::add(const Frame& frame, const tracking::TrackedOperator* tracked,
                        const figure::FigurePose* figure) {
   if (frames_.size() >= capacity_ && !frames_.empty()) frames_.pop_front();
-  frames_.push_back(frame);
-  if (tracked == nullptr && operators_.empty()) return;
-  operators_.push_back(tracked != nullptr ? *tracked : tracking::TrackedOperator{});
-  figures_.push_back(figure != nullptr ? std::optional(*figure) : std::nullopt);
-  for (; operators_.size() < frames_.size(); figures_.emplace_front()) operators_.emplace_front();
-  for (; operators_.size() > frames_.size(); figures_.pop_front()) operators_.pop_front();
+  auto kept = std::make_shared<KeptFrame>(frame);
+  is_tracked_ = is_tracked_ || tracked != nullptr;
+  if (is_tracked_) {
+    kept->person = std::make_unique<const KeptOperator>(
+        tracked != nullptr ? *tracked : tracking::TrackedOperator{},
+        figure != nullptr ? std::optional(*figure) : std::nullopt);
+  }
+  frames_.push_back(std::move(kept));
 }
 
 }  // namespace tact::host::record

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -79,22 +80,40 @@ class RecordingWriter {
   bool is_tracked_ = false;
 };
 
+/// The operator at one frame.
+struct KeptOperator {
+  tracking::TrackedOperator tracked;
+  std::optional<figure::FigurePose> figure;  // as it was shown
+};
+
+struct KeptFrame {
+  Frame frame;
+  std::unique_ptr<const KeptOperator> person;  // none without a tracker
+};
+
+/// A part of a run. Frames and meshes are shared by all who hold some of them.
+struct Snapshot {
+  Hello hello;
+  std::shared_ptr<const MeshBytes> mesh;
+  std::vector<std::shared_ptr<const KeptFrame>> frames;
+  bool is_tracked = false;
+};
+
 /// The newest frames, oldest first, bounded in time, with the operator where one is tracked.
 class RecentFrames {
  public:
   void restart(double frame_rate_Hz);
   void add(const Frame& frame, const tracking::TrackedOperator* tracked = nullptr,
            const figure::FigurePose* figure = nullptr);
-  const std::deque<Frame>& frames() const { return frames_; }
-  const std::deque<tracking::TrackedOperator>& operators() const { return operators_; }
-  const std::deque<std::optional<figure::FigurePose>>& figures() const { return figures_; }
+  const std::deque<std::shared_ptr<const KeptFrame>>& frames() const { return frames_; }
+  /// Whether a tracker was there at any of them.
+  bool is_tracked() const { return is_tracked_; }
 
   static constexpr double kKeep_s = 300.0;
 
  private:
-  std::deque<Frame> frames_;
-  std::deque<tracking::TrackedOperator> operators_;        // as many as frames, or none
-  std::deque<std::optional<figure::FigurePose>> figures_;  // as many as operators
+  std::deque<std::shared_ptr<const KeptFrame>> frames_;
+  bool is_tracked_ = false;
   std::size_t capacity_ = 0;
 };
 

@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <iterator>
 #include <span>
 
 #include "host/tracking/tracking_setup.h"
+#include "model/io/one_line.h"
 
 namespace tact::host::record {
 namespace {
@@ -67,7 +70,38 @@ void put_body(std::string& out, const tracking::TrackedBody& body) {
                  p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z(), body.rms_px, body.age_s);
 }
 
+/// Which bodies were ever there.
+class Present {
+ public:
+  void add(const tracking::TrackedOperator& person) {
+    for (std::size_t i = 0; i < tracking::kBodyRoles; ++i)
+      if (person.bodies[i].state != tracking::BodyState::kAbsent) is_present_[i] = true;
+  }
+  std::vector<tracking::BodyRole> roles() const {
+    std::vector<tracking::BodyRole> out;
+    for (std::size_t i = 0; i < tracking::kBodyRoles; ++i)
+      if (is_present_[i]) out.push_back(static_cast<tracking::BodyRole>(i));
+    return out;
+  }
+
+ private:
+  std::array<bool, tracking::kBodyRoles> is_present_{};
+};
+
 }  // namespace
+
+std::string csv_facts(const Hello& hello) {
+  const auto text_of = [](const auto& field) {
+    return model::io::on_one_line({field, strnlen(field, sizeof field)});
+  };
+  return fmt::format(
+      "# tact frames\n# scene: {}\n# law: {}\n# device: {}\n# rate_Hz: {:.10g}\n"
+      "# frame_rate_Hz: {:.10g}\n"
+      "# row: the newest tick of each frame; margin, tick_us and peak are over all ticks since the "
+      "row before. Every tick: tactd --record LOG, then tactd --replay LOG --csv FILE\n",
+      text_of(hello.scene_name), text_of(hello.law_name), text_of(hello.device_name), hello.rate_Hz,
+      hello.frame_rate_Hz);
+}
 
 std::string csv_header(const Hello& hello, const std::vector<tracking::BodyRole>& bodies) {
   std::string out =
@@ -85,6 +119,7 @@ std::string csv_header(const Hello& hello, const std::vector<tracking::BodyRole>
                    i);
     for (std::size_t j = 0; j < rings_of(hello); ++j)
       fmt::format_to(std::back_inserter(out), ",site{}_u{}_m", i, j);
+    fmt::format_to(std::back_inserter(out), ",site{0}_tilt_x,site{0}_tilt_y,site{0}_tilt_z", i);
   }
   for (const tracking::BodyRole role : bodies) {
     fmt::format_to(std::back_inserter(out),
@@ -97,15 +132,16 @@ std::string csv_header(const Hello& hello, const std::vector<tracking::BodyRole>
 }
 
 std::vector<tracking::BodyRole> bodies_in(const Recording& recording) {
-  std::vector<tracking::BodyRole> out;
-  for (std::size_t i = 0; i < tracking::kBodyRoles; ++i) {
-    const bool is_present =
-        std::ranges::any_of(recording.operators, [i](const tracking::TrackedOperator& o) {
-          return o.bodies[i].state != tracking::BodyState::kAbsent;
-        });
-    if (is_present) out.push_back(static_cast<tracking::BodyRole>(i));
-  }
-  return out;
+  Present present;
+  for (const tracking::TrackedOperator& person : recording.operators) present.add(person);
+  return present.roles();
+}
+
+std::vector<tracking::BodyRole> bodies_in(const Snapshot& snapshot) {
+  Present present;
+  for (const auto& kept : snapshot.frames)
+    if (kept->person) present.add(kept->person->tracked);
+  return present.roles();
 }
 
 void append_csv_row(std::string& out, const Frame& frame, const Hello& hello,
@@ -137,6 +173,7 @@ void append_csv_row(std::string& out, const Frame& frame, const Hello& hello,
     put(out, site.shift_m);
     put(out, site.depth_m);
     put(out, std::span(site.profile_m).first(rings_of(hello)));
+    put(out, site.tilt);
   }
   const tracking::TrackedOperator none;
   for (const tracking::BodyRole role : bodies)

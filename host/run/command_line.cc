@@ -5,14 +5,19 @@
 #include <filesystem>
 
 #include "host/run/telemetry_client.h"
+#include "model/io/command_line.h"
+#include "model/io/installed.h"
 #include "model/io/within.h"
 
 namespace tact::host::run {
 namespace {
 
-std::string page_beside_program() {
+// Of a build, page/ beside the program; of an installed program, share/tact/page.
+std::string default_page() {
   std::error_code wrong;
-  return (std::filesystem::read_symlink("/proc/self/exe", wrong).parent_path() / "page").string();
+  const auto installed = model::io::installed("page");
+  if (std::filesystem::is_directory(installed, wrong)) return installed.string();
+  return (model::io::program_folder() / "page").string();
 }
 
 }  // namespace
@@ -27,18 +32,21 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
       "or has a residual above 2 mm (written all the same), 2 "
       "bad usage\n"
       "or input."};
-  app.failure_message([](const CLI::App*, const CLI::Error& error) {
-    return std::string("tact-view: ") + error.what() + "; see tact-view --help\n";
-  });
   app.add_option("--socket", options.socket, "tactd's telemetry socket")->capture_default_str();
+  app.add_option("--tactd-user", options.tactd_user,
+                 "user whose tactd is believed (default: nobody's but the same user's and root's)");
   app.add_option("--port", options.viewer.port, "port of the page; 0 takes any free one")
       ->capture_default_str()
       ->check(model::io::within(0, 65535));
   app.add_option("--bind", options.viewer.bind_address,
-                 "IP address to serve on; any but loopback asks browsers for a token")
+                 "IP address to serve on; the link that is printed holds the token")
       ->capture_default_str();
-  app.add_option("--page", options.viewer.page_folder,
-                 "folder of the built page (default: page/ beside this program)");
+  app.add_option("--url", options.viewer.public_url,
+                 "address of a proxy with TLS before it, as https://name:port/, for the link that "
+                 "is printed (host/README.md)");
+  app.add_option(
+      "--page", options.viewer.page_folder,
+      "folder of the built page (default: ../share/tact/page or page/ beside this program)");
   CLI::Option* record =
       app.add_option("--record", options.record, "write all frames to this new file");
   CLI::Option* open = app.add_option(
@@ -67,12 +75,9 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
   record->excludes(open);
   tracking->excludes(open);
   registration->needs(tracking)->excludes(record);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  if (options.viewer.page_folder.empty()) options.viewer.page_folder = page_beside_program();
+  if (const auto status = model::io::parse_command_line(app, "tact-view", argc, argv))
+    return status;
+  if (options.viewer.page_folder.empty()) options.viewer.page_folder = default_page();
   return std::nullopt;
 }
 

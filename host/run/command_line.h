@@ -12,6 +12,7 @@ namespace tact::host::run {
 struct Options {
   server::ViewerOptions viewer;
   std::string socket;         // of tactd's telemetry
+  std::string tactd_user;     // whose tactd is believed too
   std::string record;         // new file for hello and frames
   std::string open;           // recording to replay instead of tactd
   std::string export_csv;     // with open: write this table and leave

@@ -5,7 +5,6 @@
 #include <boost/asio/signal_set.hpp>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -20,7 +19,6 @@
 #include "host/server/viewer_server.h"
 #include "host/tracking/operator_tracking.h"
 #include "model/io/file_writer.h"
-#include "model/io/one_line.h"
 #include "model/io/program_end.h"
 #include "model/result.h"
 
@@ -39,6 +37,11 @@ int fail(const std::string& sentence) {
 bool exists(const std::string& path) {
   std::error_code unreadable;
   return std::filesystem::exists(path, unreadable);
+}
+
+void warn_of_silence(double silence_s) {
+  if (silence_s == 0.0) return warn("news from tactd again");
+  warn(fmt::format("no news from tactd for {:.1f} s: its force is not known", silence_s));
 }
 
 /// A file name with broken UTF-8 is mended instead of throwing.
@@ -79,21 +82,11 @@ class Recorder {
   bool failed_ = false;
 };
 
-/// Which run it was, in lines that a reader of tables leaves out.
-std::string csv_facts(const record::Hello& hello) {
-  const auto text_of = [](const auto& field) {
-    return model::io::on_one_line({field, strnlen(field, sizeof field)});
-  };
-  return fmt::format(
-      "# scene: {}\n# law: {}\n# device: {}\n# rate_Hz: {:.10g}\n# frame_rate_Hz: {:.10g}\n",
-      text_of(hello.scene_name), text_of(hello.law_name), text_of(hello.device_name), hello.rate_Hz,
-      hello.frame_rate_Hz);
-}
-
 int export_csv(const Options& options, const record::ReadResult& read) {
   const record::Recording& recording = read.recording;
   const std::vector<tracking::BodyRole> bodies = bodies_in(recording);
-  std::string text = csv_facts(recording.hello) + record::csv_header(recording.hello, bodies);
+  std::string text =
+      record::csv_facts(recording.hello) + record::csv_header(recording.hello, bodies);
   auto out = model::io::FileWriter::replace(options.export_csv, text);
   if (!out) return fail(out.error().sentence);
   for (std::size_t i = 0; i < recording.frames.size(); ++i) {
@@ -104,10 +97,10 @@ int export_csv(const Options& options, const record::ReadResult& read) {
   }
   if (const auto error = out->finish()) return fail(error->sentence);
   if (options.json) {
-    const nlohmann::json summary{{"file", options.export_csv},
-                                 {"frames", recording.frames.size()},
-                                 {"length_s", recording.length_s()},
-                                 {"damage", read.damage}};
+    const nlohmann::json summary{
+        {"format", "tact-view-export"},     {"version", 1},
+        {"file", options.export_csv},       {"frames", recording.frames.size()},
+        {"length_s", recording.length_s()}, {"damage", read.damage}};
     fmt::print("{}\n", to_text(summary));
   } else {
     fmt::print("{}: {} frames, {:.1f} s\n", options.export_csv, recording.frames.size(),
@@ -118,8 +111,11 @@ int export_csv(const Options& options, const record::ReadResult& read) {
 
 void say_ready(const Options& options, const server::ViewerServer& server) {
   if (options.json) {
-    const nlohmann::json ready{
-        {"url", server.url()}, {"port", server.port()}, {"token", server.token()}};
+    const nlohmann::json ready{{"format", "tact-view"},
+                               {"version", 1},
+                               {"url", server.url()},
+                               {"port", server.port()},
+                               {"token", server.token()}};
     fmt::print("{}\n", to_text(ready));
   } else {
     fmt::print("tact-view: {}\n", server.url());
@@ -147,6 +143,12 @@ int show_live(const Options& options) {
     return fail(options.record +
                 ": exists already; a recording is never overwritten, choose "
                 "another name");
+  }
+  model::io::Trust trust;
+  if (!options.tactd_user.empty()) {
+    const auto user = model::io::find_user(options.tactd_user);
+    if (!user) return fail("--tactd-user " + user.error().sentence);
+    trust.user = *user;
   }
   server::OperatorFigure figure(options.height_m);  // outlives the view
   server::LiveView view;                            // outlives the sessions, which live in io
@@ -177,11 +179,15 @@ int show_live(const Options& options) {
                               [&](const std::string& reason) {
                                 if (!reason.empty()) warn(reason);
                                 view.lose(reason);
-                              }});
-  server::ViewerServer server(io, view,
-                              [&client](const double (&position_m)[3], double grip_ratio) {
-                                client.move_hand(position_m, grip_ratio);
-                              });
+                              },
+                          .silent = warn_of_silence},
+                         trust);
+  server::ViewerServer server(
+      io, view,
+      [&client](const double (&position_m)[3], double grip_ratio) {
+        client.move_hand(position_m, grip_ratio);
+      },
+      warn);
   const int status = serve(options, io, server, [&client, &tracking] {
     client.start();
     if (tracking) tracking->start();
@@ -196,7 +202,7 @@ int show_recording(const Options& options, record::ReadResult read) {
   server::LiveView view;  // outlives the sessions, which live in io
   boost::asio::io_context io(1);
   if (options.figure || !read.recording.operators.empty()) view.accompany(&figure);
-  server::ViewerServer server(io, view, nullptr);
+  server::ViewerServer server(io, view, nullptr, warn);
   server::Playback playback(io, view, std::move(read.recording),
                             std::filesystem::path(options.open).filename().string());
   const int status = serve(options, io, server, [&playback] { playback.start(); });

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -15,8 +16,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 #include "hal/sim/hand_target.h"
+#include "model/io/socket_file.h"
 
 namespace tact::host::run {
 namespace {
@@ -25,24 +28,8 @@ using boost::system::error_code;
 using model::Error;
 
 constexpr std::chrono::milliseconds kRetry{250};
+constexpr double kPatience_s = 0.3;
 constexpr int kMessagesPerTurn = 64;  // then other work gets a turn
-
-/// None: the path is too long for a socket, or empty.
-std::optional<sockaddr_un> address_of(std::string_view path) {
-  sockaddr_un address{};
-  if (path.empty() || path.size() >= sizeof address.sun_path) return std::nullopt;
-  address.sun_family = AF_UNIX;
-  std::copy(path.begin(), path.end(), address.sun_path);
-  return address;
-}
-
-/// A stranger's program behind our path must not be believed.
-bool is_ours(int socket) {
-  ucred peer{};
-  socklen_t size = sizeof peer;
-  if (getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) return false;
-  return peer.uid == geteuid() || peer.uid == 0 || geteuid() == 0;
-}
 
 /// The descriptor in a control message, or -1. Any further ones are closed.
 int take_descriptor(msghdr& message) {
@@ -90,8 +77,13 @@ std::string default_telemetry_path() {
 }
 
 TelemetryClient::TelemetryClient(boost::asio::io_context& io, std::string path,
-                                 TelemetryEvents events)
-    : socket_(io), retry_(io), path_(std::move(path)), events_(std::move(events)) {
+                                 TelemetryEvents events, const model::io::Trust& trust)
+    : socket_(io),
+      retry_(io),
+      silence_(io),
+      path_(std::move(path)),
+      trust_(trust),
+      events_(std::move(events)) {
   hand_socket_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
 }
 
@@ -104,15 +96,15 @@ void TelemetryClient::start() { connect(); }
 void TelemetryClient::stop() {
   error_code ignored;
   retry_.cancel(ignored);
+  silence_.cancel(ignored);
   socket_.close(ignored);
 }
 
 void TelemetryClient::connect() {
-  const std::optional<sockaddr_un> address = address_of(path_);
-  if (!address) {
-    return lose(
-        fmt::format("{}: a socket path has 1 to 107 characters; give a shorter --socket", path_));
-  }
+  const auto address = model::io::socket_address(path_);
+  if (!address) return lose(address.error().sentence);
+  if (const auto shared = model::io::check_socket_folder(path_, trust_))
+    return lose(shared->sentence);
   const int fd = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (fd < 0) return lose(fmt::format("no socket: {}", std::strerror(errno)));
   if (::connect(fd, reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0) {
@@ -122,11 +114,11 @@ void TelemetryClient::connect() {
     const bool absent = why == ENOENT || why == ECONNREFUSED || why == EAGAIN;
     return lose(absent ? std::string() : fmt::format("{}: {}", path_, std::strerror(why)));
   }
-  if (!is_ours(fd)) {
+  if (!model::io::has_trusted_peer(fd, trust_)) {
     ::close(fd);
     return lose(
         fmt::format("{} belongs to another user's program; start tactd and tact-view as "
-                    "one user, or give --socket",
+                    "one user, or give --tactd-user or --socket",
                     path_));
   }
   error_code wrong;
@@ -141,8 +133,9 @@ void TelemetryClient::connect() {
 void TelemetryClient::lose(const std::string& reason) {
   error_code ignored;
   socket_.close(ignored);
+  silence_.cancel(ignored);
   const bool had_hello = has_hello_;
-  has_hello_ = false;
+  has_hello_ = is_silent_ = false;
   if (had_hello || reason != last_reason_) events_.lost(reason);
   last_reason_ = reason;
   retry_later();
@@ -161,6 +154,26 @@ void TelemetryClient::wait_for_data() {
     for (int i = 0; i < kMessagesPerTurn && read_message(); ++i) {
     }
     if (socket_.is_open()) wait_for_data();
+  });
+}
+
+bool TelemetryClient::has_data() {
+  pollfd one{.fd = socket_.native_handle(), .events = POLLIN, .revents = 0};
+  return ::poll(&one, 1, 0) == 1;
+}
+
+/// From each message on: a tactd that stands still keeps its connection.
+void TelemetryClient::listen() {
+  if (std::exchange(is_silent_, false) && events_.silent) events_.silent(0.0);
+  const double patience_s =
+      std::max(kPatience_s, 2.5 / std::max(1.0, static_cast<double>(hello_.frame_rate_Hz)));
+  silence_.expires_after(std::chrono::duration_cast<std::chrono::nanoseconds>(
+      std::chrono::duration<double>(patience_s)));
+  silence_.async_wait([this, patience_s](error_code wrong) {
+    const bool came = silence_.expiry() > boost::asio::steady_timer::clock_type::now();
+    if (wrong || came || !socket_.is_open() || has_data()) return;  // it was we who did not look
+    is_silent_ = true;
+    if (events_.silent) events_.silent(patience_s);
   });
 }
 
@@ -201,6 +214,7 @@ std::optional<Error> TelemetryClient::take_hello(std::span<const std::byte> mess
   record::MeshBytes mesh = read_memory_file(memory_file, record::mesh_size(hello_));
   if (std::optional<Error> error = record::check_mesh(hello_, mesh)) return error;
   has_hello_ = true;
+  listen();
   events_.hello(hello_, std::move(mesh));
   return std::nullopt;
 }
@@ -211,13 +225,14 @@ std::optional<Error> TelemetryClient::take_frame(std::span<const std::byte> mess
     return Error{"a telemetry frame has an unexpected size; use tactd and tact-view of one build"};
   std::memcpy(&frame, message.data(), sizeof frame);
   if (std::optional<Error> error = record::check_frame(frame, hello_)) return error;
+  listen();
   events_.frame(frame);
   return std::nullopt;
 }
 
 void TelemetryClient::move_hand(const double (&position_m)[3], double grip_ratio) {
   if (!has_hello_ || hello_.simulated == 0) return;
-  const auto address = address_of(record::text_of(hello_.hand_socket));
+  const auto address = model::io::socket_address(std::string(record::text_of(hello_.hand_socket)));
   if (!address) return;
   hal::sim::HandTarget target;
   std::copy(std::begin(position_m), std::end(position_m), target.position_m);

@@ -16,6 +16,7 @@
 #include <string>
 
 #include "host/record/telemetry_check.h"
+#include "model/io/socket_file.h"
 #include "model/result.h"
 
 namespace tact::host::run {
@@ -27,11 +28,15 @@ struct TelemetryEvents {
   std::function<void(const record::Hello&, record::MeshBytes)> hello;
   std::function<void(const record::Frame&)> frame;
   std::function<void(const std::string& reason)> lost;  // once per loss; reason may be empty
+  /// Connected, but no frame for 0.3 s (2.5 periods, where those are longer). 0: one came again.
+  std::function<void(double silence_s)> silent{};
 };
 
 class TelemetryClient {
  public:
-  TelemetryClient(boost::asio::io_context& io, std::string path, TelemetryEvents events);
+  /// `trust`: whose tactd is believed besides the same user's and root's.
+  TelemetryClient(boost::asio::io_context& io, std::string path, TelemetryEvents events,
+                  const model::io::Trust& trust = {});
   ~TelemetryClient();
   TelemetryClient(const TelemetryClient&) = delete;
   TelemetryClient& operator=(const TelemetryClient&) = delete;
@@ -47,17 +52,20 @@ class TelemetryClient {
   void retry_later();
   void lose(const std::string& reason);
   void wait_for_data();
+  void listen();
+  bool has_data();
   bool read_message();
   std::optional<model::Error> take_hello(std::span<const std::byte> message, int memory_file);
   std::optional<model::Error> take_frame(std::span<const std::byte> message);
 
   boost::asio::posix::stream_descriptor socket_;
-  boost::asio::steady_timer retry_;
+  boost::asio::steady_timer retry_, silence_;
   std::string path_;
+  model::io::Trust trust_;
   TelemetryEvents events_;
   int hand_socket_ = -1;
   record::Hello hello_;
-  bool has_hello_ = false;
+  bool has_hello_ = false, is_silent_ = false;
   std::string last_reason_ = "never";  // a reason is told once, not four times a second
 };
 

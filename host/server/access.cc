@@ -19,6 +19,13 @@ std::string_view name_of(std::string_view host) {
   return has_port ? host.substr(0, colon) : host;
 }
 
+/// What follows "http://" or "https://"; empty if neither does.
+std::string_view behind_scheme(std::string_view url) {
+  for (const std::string_view scheme : {"http://", "https://"})
+    if (url.starts_with(scheme)) return url.substr(scheme.size());
+  return {};
+}
+
 /// Takes the same time wherever the first difference is.
 bool same_secret(std::string_view a, std::string_view b) {
   return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
@@ -45,21 +52,34 @@ std::string_view value_in(std::string_view list, std::string_view name, char sep
 bool Access::host_allowed(std::string_view host) const {
   if (!loopback) return !host.empty();  // the token decides
   const std::string_view name = name_of(host);
-  return name == "localhost" || name == "127.0.0.1" || name == "[::1]" || name == bind_address;
+  return name == "localhost" || name == "127.0.0.1" || name == "[::1]" || name == bind_address ||
+         (!public_url.empty() && name == name_of(authority_of(public_url)));
 }
 
-bool Access::token_allowed(std::string_view query, std::string_view cookies) const {
-  if (loopback) return true;
+bool Access::token_allowed(std::string_view authorization, std::string_view cookies) const {
   if (token.empty()) return false;
-  return same_secret(query_value(query, "token"), token) ||
-         same_secret(value_in(cookies, cookie_name, ';'), token);
+  constexpr std::string_view kScheme = "Bearer ";
+  if (authorization.starts_with(kScheme) &&
+      same_secret(authorization.substr(kScheme.size()), token))
+    return true;
+  return same_secret(value_in(cookies, cookie_name, ';'), token);
+}
+
+std::string Access::cookie() const {
+  const bool is_tls = public_url.starts_with("https://");
+  return fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/{}", cookie_name, token,
+                     is_tls ? "; Secure" : "");
+}
+
+std::string_view authority_of(std::string_view url) {
+  const std::string_view rest = behind_scheme(url);
+  const std::string_view authority = rest.substr(0, rest.find('/'));
+  const bool is_whole = rest.size() - authority.size() <= 1;
+  return is_whole && authority.find_first_of("?#@ ") == std::string_view::npos ? authority : "";
 }
 
 bool origin_matches(std::string_view origin, std::string_view host) {
-  for (const std::string_view scheme : {"http://", "https://"})
-    if (origin.substr(0, scheme.size()) == scheme)
-      return !host.empty() && origin.substr(scheme.size()) == host;
-  return false;
+  return !host.empty() && behind_scheme(origin) == host;
 }
 
 std::string_view query_value(std::string_view query, std::string_view key) {

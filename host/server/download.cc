@@ -23,16 +23,22 @@ constexpr std::size_t kFramesPerPart = 256;
 
 }  // namespace
 
-Download::Download(beast::tcp_stream stream, std::shared_ptr<const record::Recording> recording,
+Download::Download(beast::tcp_stream stream, Seat seat, record::Snapshot snapshot,
                    DownloadKind kind)
     : stream_(std::move(stream)),
-      recording_(std::move(recording)),
+      seat_(std::move(seat)),
+      snapshot_(std::move(snapshot)),
       kind_(kind),
-      bodies_(bodies_in(*recording_)) {}
+      deadline_(std::chrono::steady_clock::now() + kLongestDownload),
+      bodies_(bodies_in(snapshot_)) {}
+
+void Download::wait_at_most(std::chrono::seconds patience) {
+  stream_.expires_at(std::min(deadline_, std::chrono::steady_clock::now() + patience));
+}
 
 void Download::start(Header header) {
   header_ = std::move(header);
-  stream_.expires_after(kPatience);
+  wait_at_most(kPatience);
   http::async_write_header(stream_, serializer_,
                            [self = shared_from_this()](error_code wrong, std::size_t) {
                              if (!wrong) self->write_chunk(self->first_part());
@@ -40,16 +46,17 @@ void Download::start(Header header) {
 }
 
 std::string Download::first_part() const {
-  if (kind_ == DownloadKind::kCsv) return record::csv_header(recording_->hello, bodies_);
+  if (kind_ == DownloadKind::kCsv)
+    return record::csv_facts(snapshot_.hello) + record::csv_header(snapshot_.hello, bodies_);
   return recording_start(
-      recording_->hello, recording_->mesh,
-      recording_->operators.empty() ? record::kRecordingVersion : record::kTrackedRecordingVersion);
+      snapshot_.hello, *snapshot_.mesh,
+      snapshot_.is_tracked ? record::kTrackedRecordingVersion : record::kRecordingVersion);
 }
 
 void Download::write_chunk(std::string part) {
   seal_.add(part);
   part_ = std::move(part);
-  stream_.expires_after(kPatience);
+  wait_at_most(kPatience);
   boost::asio::async_write(stream_, http::make_chunk(boost::asio::buffer(part_)),
                            [self = shared_from_this()](error_code wrong, std::size_t) {
                              if (!wrong) self->write_next();
@@ -57,7 +64,8 @@ void Download::write_chunk(std::string part) {
 }
 
 void Download::write_next() {
-  const std::vector<record::Frame>& frames = recording_->frames;
+  static const record::KeptOperator kNobody;
+  const auto& frames = snapshot_.frames;
   if (next_ == frames.size()) {
     if (kind_ == DownloadKind::kCsv || std::exchange(is_sealed_, true)) return finish();
     return write_chunk(seal_.bytes());
@@ -65,13 +73,15 @@ void Download::write_next() {
   std::string part;
   const std::size_t end = std::min(next_ + kFramesPerPart, frames.size());
   for (; next_ < end; ++next_) {
-    const tracking::TrackedOperator* tracked = recording_->operator_at(next_);
+    const record::KeptFrame& kept = *frames[next_];
+    const record::KeptOperator& person = kept.person ? *kept.person : kNobody;
     if (kind_ == DownloadKind::kCsv) {
-      record::append_csv_row(part, frames[next_], recording_->hello, tracked, bodies_);
+      record::append_csv_row(part, kept.frame, snapshot_.hello,
+                             snapshot_.is_tracked ? &person.tracked : nullptr, bodies_);
     } else {
-      part += recording_frame(frames[next_]);
-      if (tracked != nullptr)
-        part += record::operator_record(*tracked, recording_->figure_at(next_));
+      part += recording_frame(kept.frame);
+      if (snapshot_.is_tracked)
+        part += record::operator_record(person.tracked, person.figure ? &*person.figure : nullptr);
     }
   }
   write_chunk(std::move(part));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // download.h - sends the kept frames as a file, a few hundred at a time, so that making a long file
-// never holds up the live frames of other browsers.
+// never holds up the live frames of other browsers. All downloads share their frames with the view
+// (record::Snapshot); one that is not read to its end in five minutes is given up, so that old
+// frames do not pile up.
 #pragma once
 
 #include <boost/beast/core/tcp_stream.hpp>
@@ -12,11 +14,13 @@
 #include <string>
 
 #include "host/record/recording.h"
+#include "host/server/seat.h"
 #include "model/io/seal.h"
 
 namespace tact::host::server {
 
-constexpr std::chrono::seconds kPatience{30};  // for a browser that does not read
+constexpr std::chrono::seconds kPatience{30};          // for a browser that does not read
+constexpr std::chrono::seconds kLongestDownload{300};  // for one that reads slowly
 
 enum class DownloadKind { kCsv, kRecording };
 
@@ -24,7 +28,7 @@ class Download : public std::enable_shared_from_this<Download> {
  public:
   using Header = boost::beast::http::response<boost::beast::http::empty_body>;
 
-  Download(boost::beast::tcp_stream stream, std::shared_ptr<const record::Recording> recording,
+  Download(boost::beast::tcp_stream stream, Seat seat, record::Snapshot snapshot,
            DownloadKind kind);
 
   /// Header must be chunked. The connection closes at the end.
@@ -36,9 +40,13 @@ class Download : public std::enable_shared_from_this<Download> {
   void write_next();
   void finish();
 
+  void wait_at_most(std::chrono::seconds patience);
+
   boost::beast::tcp_stream stream_;
-  std::shared_ptr<const record::Recording> recording_;
+  Seat seat_;
+  record::Snapshot snapshot_;
   DownloadKind kind_;
+  std::chrono::steady_clock::time_point deadline_;
   std::vector<tracking::BodyRole> bodies_;
   Header header_;
   boost::beast::http::response_serializer<boost::beast::http::empty_body> serializer_{header_};

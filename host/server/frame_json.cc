@@ -49,6 +49,7 @@ void put_site(std::string& out, std::size_t index, const firmware::telemetry::Fr
   put(out, "shift_m", site.shift_m);
   put(out, "depth_m", site.depth_m);
   put(out, "u_m", std::span(site.profile_m).first(rings));
+  put(out, "tilt", site.tilt);
   out += '}';
 }
 
@@ -137,6 +138,7 @@ std::string scene_json(const record::Hello& hello) {
       {"force_limit_N", hello.force_limit_N},
       {"continuous_force_N", hello.continuous_force_N},
       {"energy_budget_J", hello.energy_budget_J},
+      {"limits_checksum", record::text_of(hello.limits_checksum)},
       {"non_rt", hello.non_rt != 0},
       {"simulated", hello.simulated != 0},
       {"spheres", spheres},

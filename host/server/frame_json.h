@@ -13,7 +13,7 @@
 
 namespace tact::host::server {
 
-inline constexpr std::size_t kMaxFrameJsonBytes = 4096;
+inline constexpr std::size_t kMaxFrameJsonBytes = 4352;
 
 /// {"kind":"frame","tick":..,"time_s":..,"tool_m":[x,y,z],...,"sites":[{"site":0,...,"u_m":[..]}]}
 std::string frame_json(const record::Frame& frame, const record::Hello& hello);

@@ -21,6 +21,8 @@ using beast::error_code;
 
 constexpr std::uint32_t kMaxHeaderBytes = 8192;
 constexpr std::uint64_t kMaxBodyBytes = 1024;
+constexpr std::chrono::seconds kFarewell{2};
+constexpr std::size_t kMostDrained_bytes = 1 << 20;
 
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -29,7 +31,7 @@ void set_common(Message& message) {
   message.set(http::field::server, "tact-view");
   message.set(http::field::cache_control, "no-store");
   message.set("X-Content-Type-Options", "nosniff");
-  message.set("Referrer-Policy", "no-referrer");  // the URL may hold the token
+  message.set("Referrer-Policy", "no-referrer");
   message.set("Cross-Origin-Resource-Policy", "same-origin");
   message.set("Content-Security-Policy",
               "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
@@ -60,18 +62,38 @@ std::string bytes_of(const record::MeshBytes& mesh) {
 
 }  // namespace
 
-HttpSession::HttpSession(beast::tcp_stream stream, Site& site)
-    : stream_(std::move(stream)), site_(site) {}
+HttpSession::HttpSession(beast::tcp_stream stream, Seat seat, Site& site)
+    : stream_(std::move(stream)), seat_(std::move(seat)), site_(site) {}
 
 void HttpSession::read_next() {
   parser_.emplace();
   parser_->header_limit(kMaxHeaderBytes);
   parser_->body_limit(kMaxBodyBytes);
-  stream_.expires_after(kPatience);
+  stream_.expires_after(site_.request_patience);
   http::async_read(stream_, in_, *parser_,
                    [self = shared_from_this()](error_code wrong, std::size_t) {
-                     if (!wrong) self->handle(self->parser_->get());
+                     if (wrong) return self->refuse(wrong);
+                     self->handle(self->parser_->get());
                    });
+}
+
+/// Who left, or was too slow, hears nothing more.
+void HttpSession::refuse(error_code wrong) {
+  const bool is_http = wrong.category() == make_error_code(http::error::bad_method).category();
+  if (!is_http || wrong == http::error::end_of_stream || wrong == http::error::partial_message)
+    return;
+  if (wrong == http::error::header_limit) {
+    response_ = sorry(http::status::request_header_fields_too_large,
+                      "431: the header of this request is too large");
+  } else if (wrong == http::error::body_limit) {
+    response_ = sorry(http::status::payload_too_large, "413: nothing is taken in here");
+  } else {
+    response_ = sorry(http::status::bad_request, "400: this is no HTTP request");
+  }
+  set_common(response_);
+  response_.keep_alive(false);
+  response_.prepare_payload();
+  send();
 }
 
 void HttpSession::handle(const Request& request) {
@@ -80,24 +102,26 @@ void HttpSession::handle(const Request& request) {
   const std::string_view path = target.substr(0, mark);
   const std::string_view query =
       mark == std::string_view::npos ? std::string_view() : target.substr(mark + 1);
-  const bool for_us = site_.access.host_allowed(view_of(request[http::field::host]));
-  const bool may_look =
-      for_us && site_.access.token_allowed(query, view_of(request[http::field::cookie]));
-  if (may_look && beast::websocket::is_upgrade(request) && path == "/live") return upgrade(request);
-  if (may_look && request.method() == http::verb::get && site_.view.has_scene() &&
+  if (!site_.access.host_allowed(view_of(request[http::field::host]))) {
+    return write(
+        sorry(http::status::forbidden, "403: open this page by its address, not by another name"),
+        request);
+  }
+  const bool is_public = site_.page.find(path) != nullptr;
+  if (!is_public && !site_.access.token_allowed(view_of(request[http::field::authorization]),
+                                                view_of(request[http::field::cookie]))) {
+    Response response = sorry(http::status::unauthorized,
+                              "401: the token is missing or wrong; open the whole link that "
+                              "tact-view printed");
+    response.set(http::field::www_authenticate, "Bearer");
+    return write(std::move(response), request);
+  }
+  if (beast::websocket::is_upgrade(request) && path == "/live") return upgrade(request);
+  if (request.method() == http::verb::get && site_.view.has_scene() &&
       (path == "/recording.csv" || path == "/recording.tact")) {
     return download(request, path, query);
   }
-  if (!for_us) {
-    write(sorry(http::status::forbidden, "403: open this page by its address, not by another name"),
-          request);
-  } else if (!may_look) {
-    write(sorry(http::status::forbidden,
-                "403: the token is missing or wrong; use the whole address that tact-view printed"),
-          request);
-  } else {
-    write(answer(request, path, query), request);
-  }
+  write(answer(request, path), request);
 }
 
 void HttpSession::upgrade(const Request& request) {
@@ -105,7 +129,8 @@ void HttpSession::upgrade(const Request& request) {
     return write(sorry(http::status::forbidden, "403: this WebSocket is for tact's own page only"),
                  request);
   }
-  std::make_shared<LiveSession>(std::move(stream_), site_.view, site_.move_hand)->start(request);
+  std::make_shared<LiveSession>(std::move(stream_), std::move(seat_), site_.view, site_.move_hand)
+      ->start(request);
 }
 
 void HttpSession::download(const Request& request, std::string_view path, std::string_view query) {
@@ -119,15 +144,20 @@ void HttpSession::download(const Request& request, std::string_view path, std::s
              fmt::format("attachment; filename=\"{}\"", path.substr(1)));
   header.keep_alive(false);
   header.chunked(true);
-  auto frames = site_.view.recent(tick_value(query, "from_tick", 0),
-                                  tick_value(query, "to_tick", UINT64_MAX));
-  std::make_shared<Download>(std::move(stream_), std::move(frames), kind)->start(std::move(header));
+  record::Snapshot snapshot = site_.view.recent(tick_value(query, "from_tick", 0),
+                                                tick_value(query, "to_tick", UINT64_MAX));
+  std::make_shared<Download>(std::move(stream_), std::move(seat_), std::move(snapshot), kind)
+      ->start(std::move(header));
 }
 
-HttpSession::Response HttpSession::answer(const Request& request, std::string_view path,
-                                          std::string_view query) const {
+HttpSession::Response HttpSession::answer(const Request& request, std::string_view path) const {
   if (request.method() != http::verb::get && request.method() != http::verb::head)
     return sorry(http::status::method_not_allowed, "405: this server can only be read");
+  if (path == "/session") {
+    Response response{http::status::no_content, 11};
+    response.set(http::field::set_cookie, site_.access.cookie());
+    return response;
+  }
   const bool from_tactd = path == "/scene.json" || path == "/mesh.bin" ||
                           path == "/recording.csv" || path == "/recording.tact";
   if (from_tactd && !site_.view.has_scene())
@@ -138,14 +168,7 @@ HttpSession::Response HttpSession::answer(const Request& request, std::string_vi
     return make(http::status::ok, "application/octet-stream", bytes_of(*site_.view.mesh()));
   const PageFile* file = site_.page.find(path);
   if (file == nullptr) return sorry(http::status::not_found, "404: there is no such page");
-  Response response = make(http::status::ok, file->mime.c_str(), file->content);
-  // The token came with the URL: the page's own files get it by cookie.
-  if (!site_.access.loopback && !query_value(query, "token").empty()) {
-    response.set(http::field::set_cookie,
-                 fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/", site_.access.cookie_name,
-                             site_.access.token));
-  }
-  return response;
+  return make(http::status::ok, file->mime.c_str(), file->content);
 }
 
 void HttpSession::write(Response response, const Request& request) {
@@ -160,13 +183,32 @@ void HttpSession::write(Response response, const Request& request) {
   } else {
     response_.prepare_payload();
   }
+  send();
+}
+
+void HttpSession::send() {
   stream_.expires_after(kPatience);
   http::async_write(stream_, response_, [self = shared_from_this()](error_code wrong, std::size_t) {
     if (wrong) return;
-    if (self->response_.keep_alive()) return self->read_next();
-    error_code ignored;
-    self->stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+    self->response_.keep_alive() ? self->read_next() : self->leave();
   });
+}
+
+/// Takes what is still on its way: a socket closed upon unread bytes takes the answer back.
+void HttpSession::leave() {
+  error_code ignored;
+  stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+  stream_.expires_after(kFarewell);
+  drain();
+}
+
+void HttpSession::drain() {
+  in_.clear();
+  stream_.async_read_some(in_.prepare(4096),
+                          [self = shared_from_this()](error_code wrong, std::size_t bytes) {
+                            self->drained_bytes_ += bytes;
+                            if (!wrong && self->drained_bytes_ < kMostDrained_bytes) self->drain();
+                          });
 }
 
 }  // namespace tact::host::server

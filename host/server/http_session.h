@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // http_session.h - one HTTP connection: page files, scene, meshes, downloads, and the upgrade to
-// the WebSocket. Read-only: GET and HEAD, small requests, thirty seconds of patience.
+// the WebSocket. Read-only: GET and HEAD. What is no request, or too large, is answered with its
+// error and the end of the connection; one that is too slow with the end alone.
 #pragma once
 
 #include <boost/beast/core/flat_buffer.hpp>
@@ -8,6 +9,7 @@
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/string_body.hpp>
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +18,7 @@
 #include "host/server/live_session.h"
 #include "host/server/live_view.h"
 #include "host/server/page_files.h"
+#include "host/server/seat.h"
 
 namespace tact::host::server {
 
@@ -25,6 +28,7 @@ struct Site {
   PageFiles page;
   Access access;
   MoveHand move_hand;
+  std::chrono::milliseconds request_patience;  // for one whole request, from the last answer on
 };
 
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
@@ -32,21 +36,27 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   using Request = LiveSession::Request;
   using Response = boost::beast::http::response<boost::beast::http::string_body>;
 
-  HttpSession(boost::beast::tcp_stream stream, Site& site);
+  HttpSession(boost::beast::tcp_stream stream, Seat seat, Site& site);
   void start() { read_next(); }
 
  private:
   void read_next();
+  void refuse(boost::system::error_code wrong);
   void handle(const Request& request);
   void upgrade(const Request& request);
   void download(const Request& request, std::string_view path, std::string_view query);
-  Response answer(const Request& request, std::string_view path, std::string_view query) const;
+  Response answer(const Request& request, std::string_view path) const;
   void write(Response response, const Request& request);
+  void send();
+  void leave();
+  void drain();
 
   boost::beast::tcp_stream stream_;
+  Seat seat_;
   boost::beast::flat_buffer in_;
   std::optional<boost::beast::http::request_parser<boost::beast::http::string_body>> parser_;
   Response response_;
+  std::size_t drained_bytes_ = 0;
   Site& site_;
 };
 

@@ -43,8 +43,9 @@ std::optional<HandWish> parse_hand(const std::string& text) {
                   .grip_ratio = std::clamp(value[3], 0.0, 1.0)};
 }
 
-LiveSession::LiveSession(beast::tcp_stream stream, LiveView& view, const MoveHand& move_hand)
-    : socket_(std::move(stream)), view_(view), move_hand_(move_hand) {}
+LiveSession::LiveSession(beast::tcp_stream stream, Seat seat, LiveView& view,
+                         const MoveHand& move_hand)
+    : socket_(std::move(stream)), seat_(std::move(seat)), view_(view), move_hand_(move_hand) {}
 
 LiveSession::~LiveSession() { view_.unsubscribe(*this); }
 

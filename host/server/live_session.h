@@ -19,6 +19,7 @@
 #include <string>
 
 #include "host/server/live_view.h"
+#include "host/server/seat.h"
 
 namespace tact::host::server {
 
@@ -38,7 +39,8 @@ class LiveSession final : public LiveListener, public std::enable_shared_from_th
   using Request = boost::beast::http::request<boost::beast::http::string_body>;
   static constexpr std::uint64_t kMaxUnseen = 4;
 
-  LiveSession(boost::beast::tcp_stream stream, LiveView& view, const MoveHand& move_hand);
+  LiveSession(boost::beast::tcp_stream stream, Seat seat, LiveView& view,
+              const MoveHand& move_hand);
   ~LiveSession();
 
   void start(const Request& upgrade);
@@ -52,6 +54,7 @@ class LiveSession final : public LiveListener, public std::enable_shared_from_th
   void write_next();
 
   boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
+  Seat seat_;
   boost::beast::flat_buffer in_;
   LiveView& view_;
   const MoveHand& move_hand_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/server/live_view.h"
 
+#include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "host/server/frame_json.h"
@@ -74,21 +76,13 @@ void LiveView::tell(Link link, const std::string& detail) {
   for (LiveListener* listener : listeners_) listener->on_status(status_);
 }
 
-std::shared_ptr<const record::Recording> LiveView::recent(std::uint64_t first_tick,
-                                                          std::uint64_t last_tick) const {
-  auto copy = std::make_shared<record::Recording>();
-  copy->hello = hello_;
-  if (mesh_) copy->mesh = *mesh_;
-  const bool is_tracked = !recent_.operators().empty();
-  for (std::size_t i = 0; i < recent_.frames().size(); ++i) {
-    const record::Frame& frame = recent_.frames()[i];
-    if (frame.tick < first_tick || frame.tick > last_tick) continue;
-    copy->frames.push_back(frame);
-    if (!is_tracked) continue;
-    copy->operators.push_back(recent_.operators()[i]);
-    copy->figures.push_back(recent_.figures()[i]);
-  }
-  return copy;
+record::Snapshot LiveView::recent(std::uint64_t first_tick, std::uint64_t last_tick) const {
+  record::Snapshot out{
+      .hello = hello_, .mesh = mesh_, .frames = {}, .is_tracked = recent_.is_tracked()};
+  std::ranges::copy_if(recent_.frames(), std::back_inserter(out.frames), [&](const auto& kept) {
+    return kept->frame.tick >= first_tick && kept->frame.tick <= last_tick;
+  });
+  return out;
 }
 
 }  // namespace tact::host::server

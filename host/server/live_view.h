@@ -65,9 +65,8 @@ class LiveView {
   const std::shared_ptr<const record::MeshBytes>& mesh() const { return mesh_; }
   std::size_t listeners() const { return listeners_.size(); }
 
-  /// A copy of the kept frames with first_tick <= tick <= last_tick.
-  std::shared_ptr<const record::Recording> recent(std::uint64_t first_tick,
-                                                  std::uint64_t last_tick) const;
+  /// The kept frames with first_tick <= tick <= last_tick.
+  record::Snapshot recent(std::uint64_t first_tick, std::uint64_t last_tick) const;
 
  private:
   void tell(Link link, const std::string& detail);

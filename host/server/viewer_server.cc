@@ -16,6 +16,7 @@ using model::Error;
 using model::Result;
 
 constexpr std::chrono::milliseconds kPauseAfterError{200};
+constexpr std::chrono::seconds kTellAgain{10};
 
 /// An address as a URL writes it. "All addresses" is not one: the machine's name is.
 std::string url_name(const boost::asio::ip::address& address) {
@@ -28,11 +29,18 @@ std::string url_name(const boost::asio::ip::address& address) {
 
 }  // namespace
 
-ViewerServer::ViewerServer(boost::asio::io_context& io, LiveView& view, MoveHand move_hand)
+ViewerServer::ViewerServer(boost::asio::io_context& io, LiveView& view, MoveHand move_hand,
+                           Warn warn)
     : io_(io),
       acceptor_(io),
       pause_(io),
-      site_{.view = view, .page = {}, .access = {}, .move_hand = std::move(move_hand)} {}
+      site_{.view = view,
+            .page = {},
+            .access = {},
+            .move_hand = std::move(move_hand),
+            .request_patience = {}},
+      warn_(std::move(warn)),
+      seat_(std::make_shared<char>()) {}
 
 std::optional<Error> ViewerServer::open(const ViewerOptions& options) {
   error_code wrong;
@@ -43,16 +51,22 @@ std::optional<Error> ViewerServer::open(const ViewerOptions& options) {
                     "for the network",
                     options.bind_address)};
   }
+  if (!options.public_url.empty() && authority_of(options.public_url).empty()) {
+    return Error{
+        fmt::format("--url {}: not the address of a proxy; write it as https://name:port/, "
+                    "without a path",
+                    options.public_url)};
+  }
   if (std::optional<Error> error = site_.page.load(options.page_folder)) return error;
   if (std::optional<Error> error = listen({address, options.port})) return error;
+  site_.request_patience = options.request_patience;
   site_.access.loopback = address.is_loopback();
   site_.access.bind_address = url_name(address);
+  site_.access.public_url = options.public_url;
   site_.access.cookie_name = fmt::format("tact_token_{}", port_);
-  if (!site_.access.loopback) {
-    Result<std::string> made = make_token();
-    if (!made) return made.error();
-    site_.access.token = std::move(*made);
-  }
+  Result<std::string> made = make_token();
+  if (!made) return made.error();
+  site_.access.token = std::move(*made);
   return std::nullopt;
 }
 
@@ -78,16 +92,37 @@ std::optional<Error> ViewerServer::listen(const tcp::endpoint& endpoint) {
 void ViewerServer::accept_next() {
   acceptor_.async_accept(io_, [this](error_code wrong, tcp::socket socket) {
     if (wrong == boost::asio::error::operation_aborted) return;
-    if (!wrong) {
-      std::make_shared<HttpSession>(boost::beast::tcp_stream(std::move(socket)), site_)->start();
-      return accept_next();
-    }
+    if (!wrong && seat_.use_count() > kMostConnections)
+      turn_away(std::move(socket));
+    else if (!wrong)
+      std::make_shared<HttpSession>(boost::beast::tcp_stream(std::move(socket)), seat_, site_)
+          ->start();
+    if (!wrong) return accept_next();
     // Out of descriptors, for example: wait for some to come back instead of spinning.
     pause_.expires_after(kPauseAfterError);
     pause_.async_wait([this](error_code cancelled) {
       if (!cancelled) accept_next();
     });
   });
+}
+
+/// Without waiting for its request: who is turned away holds nothing.
+void ViewerServer::turn_away(tcp::socket socket) {
+  static constexpr std::string_view kAnswer =
+      "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\nContent-Length: 59\r\n"
+      "Connection: close\r\n\r\n503: too many pages and downloads are open; close some now\n";
+  error_code ignored;
+  socket.non_blocking(true, ignored);
+  socket.write_some(boost::asio::buffer(kAnswer), ignored);  // a new connection has room for it
+  socket.shutdown(tcp::socket::shutdown_send, ignored);
+  ++turned_away_;
+  const auto now = std::chrono::steady_clock::now();
+  if (!warn_ || (turned_away_ > 1 && now - told_ < kTellAgain)) return;
+  told_ = now;
+  warn_(
+      fmt::format("{} pages and downloads are open, no more are let in ({} turned away so far); "
+                  "close some",
+                  kMostConnections, turned_away_));
 }
 
 void ViewerServer::stop() {
@@ -97,8 +132,9 @@ void ViewerServer::stop() {
 }
 
 std::string ViewerServer::url() const {
-  const std::string query = token().empty() ? "" : "?token=" + token();
-  return fmt::format("http://{}:{}/{}", site_.access.bind_address, port_, query);
+  std::string at = site_.access.public_url;
+  if (at.empty()) at = fmt::format("http://{}:{}/", site_.access.bind_address, port_);
+  return fmt::format("{}{}#token={}", at, at.ends_with('/') ? "" : "/", token());
 }
 
 }  // namespace tact::host::server

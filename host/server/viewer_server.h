@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // viewer_server.h - listens on one address and gives every browser a session.
 //
-// On loopback it is open to this machine; on any other address a random token guards it (access.h).
+// A random token guards what it shows (access.h). At most 64 connections at once: one more is
+// answered with 503, and told.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -19,11 +22,15 @@ struct ViewerOptions {
   std::string bind_address = "127.0.0.1";
   std::uint16_t port = 8321;  // 0: any free one
   std::string page_folder;
+  std::string public_url{};  // where browsers find it, if not at bind_address and port
+  std::chrono::milliseconds request_patience{10'000};  // for one request to arrive
 };
 
 class ViewerServer {
  public:
-  ViewerServer(boost::asio::io_context& io, LiveView& view, MoveHand move_hand);
+  /// `warn` gets a sentence for the terminal.
+  using Warn = std::function<void(const std::string& sentence)>;
+  ViewerServer(boost::asio::io_context& io, LiveView& view, MoveHand move_hand, Warn warn = {});
 
   /// Loads the page and listens. Error: what is wrong and what to do.
   std::optional<model::Error> open(const ViewerOptions& options);
@@ -32,17 +39,22 @@ class ViewerServer {
 
   std::uint16_t port() const { return port_; }
   const std::string& token() const { return site_.access.token; }
-  /// What a person types into a browser.
+  /// What a person opens in a browser; its fragment holds the token.
   std::string url() const;
 
  private:
   std::optional<model::Error> listen(const boost::asio::ip::tcp::endpoint& endpoint);
   void accept_next();
+  void turn_away(boost::asio::ip::tcp::socket socket);
 
   boost::asio::io_context& io_;
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::steady_timer pause_;
   Site site_;
+  Warn warn_;
+  Seat seat_;  // its copies are the connections
+  std::uint64_t turned_away_ = 0;
+  std::chrono::steady_clock::time_point told_;
   std::uint16_t port_ = 0;
 };
 

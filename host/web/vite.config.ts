@@ -3,7 +3,8 @@ import { defineConfig } from "vite";
 
 // `npm run build` writes the page to build/page, where tact-view finds it beside itself; another
 // place: `npm run build -- --outDir DIR`.
-// `npm run dev` serves the sources and takes the data from a tact-view that runs on its usual port.
+// `npm run dev` serves the sources and takes the data from a tact-view that runs on its usual port:
+// open its address with the fragment (#token=...) of the link that tact-view printed.
 const viewer = "http://127.0.0.1:8321";
 
 export default defineConfig({
@@ -18,6 +19,7 @@ export default defineConfig({
   },
   server: {
     proxy: {
+      "/session": viewer,
       "/scene.json": viewer,
       "/mesh.bin": viewer,
       "/recording.csv": viewer,

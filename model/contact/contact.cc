@@ -28,7 +28,7 @@ void Contact::reset() RT_SAFE {
   probe_ = {};
   touch_ = {};
   pressing_ = {};
-  presses_ = {};
+  in_contact_ = {};
   coupling_ = {};
   energy_J_ = 0.0;
   shear_ = {};
@@ -74,7 +74,7 @@ Wrench Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
   couple();
   keep_definite();
   press();
-  for (std::size_t i = 0; i < scene_.spheres.size() && let_go(); ++i) {
+  for (std::size_t i = 0; i < scene_.spheres.size() && release(); ++i) {
   }
   if (closing_ && hold()) press();
   stiffen();
@@ -146,7 +146,7 @@ Indentation Contact::indentation(std::size_t i) const RT_SAFE {
   return {.sphere = i,
           .place = touch.place,
           .normal = touch.normal,
-          .depth_m = touch.dent_m,
+          .dent_m = touch.dent_m,
           .held = touch.state == TouchState::kHeld,
           .speed_mps = -dot(probe_[i].velocity_mps, touch.normal)};
 }
@@ -154,23 +154,24 @@ Indentation Contact::indentation(std::size_t i) const RT_SAFE {
 // A sphere that has just come couples with those that are there, for as long as it stays. It meets
 // tissue that they have dragged along: its own spring is at rest there.
 void Contact::couple() RT_SAFE {
-  const std::array<bool, kMaxSpheres> before = presses_;
-  for (std::size_t i = 0; i < kMaxSpheres; ++i) presses_[i] = touch_[i].state != TouchState::kFree;
-  if (presses_ == before) return;
+  const std::array<bool, kMaxSpheres> before = in_contact_;
   for (std::size_t i = 0; i < kMaxSpheres; ++i)
-    if (!presses_[i])
+    in_contact_[i] = touch_[i].state != TouchState::kFree;
+  if (in_contact_ == before) return;
+  for (std::size_t i = 0; i < kMaxSpheres; ++i)
+    if (!in_contact_[i])
       shear_.leave(i);
     else if (!before[i])
       begin_along(i);
   for (std::size_t i = 0; i < kMaxSpheres; ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if (!presses_[i] || !presses_[j])
+      if (!in_contact_[i] || !in_contact_[j])
         coupling_[i][j] = coupling_[j][i] = 0.0;
       else if (!before[i] || !before[j])
         couple(i, j);
   shear_.solve();
   for (std::size_t i = 0; i < kMaxSpheres; ++i)
-    if (presses_[i] && !before[i]) {
+    if (in_contact_[i] && !before[i]) {
       shift_m_[i] = shift_m_[i] + shear_.unloaded_m(shear_N_, i);
       shift_m_[i] =
           shift_m_[i] - contact::solve(shear_.own_N_per_m(i), shear_.force_N(shift_m_, i));
@@ -208,8 +209,7 @@ double Contact::press() RT_SAFE {
                     .in = indentation(i),
                     .response = {}};
   energy_J_ = press_together(*scene_.law, coupling_, pressing());
-  for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
-    touch_[i].dent_m = pressing_[i].in.depth_m;
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i) touch_[i].dent_m = pressing_[i].in.dent_m;
   return energy_J_;
 }
 
@@ -218,10 +218,10 @@ double Contact::press() RT_SAFE {
 // of it, and less depth for those that have pressed, so that their forces stay and no energy comes
 // from it. A pull beside a press is left as it is.
 void Contact::keep_definite() RT_SAFE {
-  if (std::count(presses_.begin(), presses_.end(), true) < 2) return;
+  if (std::count(in_contact_.begin(), in_contact_.end(), true) < 2) return;
   std::array<double, kMaxSpheres> stiffest_N_per_m{};
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
-    if (presses_[i])
+    if (in_contact_[i])
       stiffest_N_per_m[i] =
           scene_.law->stiffest_N_per_m(touch_[i].place, touch_[i].state == TouchState::kHeld);
   const double share = definite_share(coupling_, stiffest_N_per_m);

@@ -117,9 +117,9 @@ class Contact {
     bool seen = false;  // there was a tick before
     Vec3 held_centre_m, held_normal;
     double held_depth_m = 0.0;
-    Axes axes;        // of t and f
-    AlongGive along;  // of the triangle that was asked for
-    std::uint32_t asked = kNoTriangle;
+    Axes axes;             // of t and f
+    AlongGive give_along;  // of give_triangle
+    std::uint32_t give_triangle = kNoTriangle;
   };
 
   Site search(Probe& probe, double radius_m) RT_SAFE;
@@ -136,8 +136,8 @@ class Contact {
   void keep_definite() RT_SAFE;
   bool hold() RT_SAFE;
   bool is_torn(std::size_t i) const RT_SAFE;
-  bool let_go() RT_SAFE;
-  void let_go(std::size_t i) RT_SAFE;
+  bool release() RT_SAFE;
+  void release(std::size_t i) RT_SAFE;
   Tensor2 give_m_per_N(std::size_t i) const RT_SAFE;
   AlongGive ask_along(std::size_t i, bool held) const RT_SAFE;
   void begin_along(std::size_t i) RT_SAFE;
@@ -150,8 +150,8 @@ class Contact {
   std::array<Probe, kMaxSpheres> probe_{};
   std::array<SphereTouch, kMaxSpheres> touch_{};
   std::array<PressingSphere, kMaxSpheres> pressing_{};
-  std::array<bool, kMaxSpheres> presses_{};  // touching or held
-  Coupling coupling_{};                      // C as it is felt
+  std::array<bool, kMaxSpheres> in_contact_{};  // touching or held
+  Coupling coupling_{};                         // C as it is felt
   Shear shear_;
   Shear::Shifts shift_m_{}, shear_N_{};  // t, f
   double energy_J_ = 0.0;                // of all presses

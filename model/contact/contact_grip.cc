@@ -23,7 +23,7 @@ bool Contact::hold() RT_SAFE {
     Probe& probe = probe_[i];
     probe.held_centre_m = probe.centre_m;
     probe.held_normal = touch.normal;
-    probe.asked = kNoTriangle;  // held, it gives less
+    probe.give_triangle = kNoTriangle;  // held, it gives less
     probe.held_depth_m = touch.depth_m;
     touch.state = TouchState::kHeld;
     held = true;
@@ -38,10 +38,10 @@ bool Contact::is_torn(std::size_t i) const RT_SAFE {
 }
 
 // The first that must: its going changes what the others feel.
-bool Contact::let_go() RT_SAFE {
+bool Contact::release() RT_SAFE {
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
     if (touch_[i].state == TouchState::kHeld && (!closed_ || is_torn(i))) {
-      let_go(i);
+      release(i);
       return true;
     }
   return false;
@@ -52,7 +52,7 @@ bool Contact::let_go() RT_SAFE {
 // dragged to where tissue is stiffer: the largest depth that leaves the whole tool no more energy.
 // kHalvings bound the work. Pressed tissue remembers on: forgotten relaxation would come back as a
 // stiffer push.
-void Contact::let_go(std::size_t i) RT_SAFE {
+void Contact::release(std::size_t i) RT_SAFE {
   constexpr int kHalvings = 12;
   const Probe& probe = probe_[i];
   SphereTouch& touch = touch_[i];

@@ -35,9 +35,9 @@ Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N)
 Tensor2 Contact::give_m_per_N(std::size_t i) const RT_SAFE {
   constexpr double kLeastRadius_ratio = 0.1;
   const double radius_m = scene_.spheres[i].radius_m;
-  if (touch_[i].state == TouchState::kHeld) return probe_[i].along.at(radius_m);
-  return probe_[i].along.at(std::clamp(std::sqrt(radius_m * std::max(touch_[i].dent_m, 0.0)),
-                                       kLeastRadius_ratio * radius_m, radius_m));
+  if (touch_[i].state == TouchState::kHeld) return probe_[i].give_along.at(radius_m);
+  return probe_[i].give_along.at(std::clamp(std::sqrt(radius_m * std::max(touch_[i].dent_m, 0.0)),
+                                            kLeastRadius_ratio * radius_m, radius_m));
 }
 
 AlongGive Contact::ask_along(std::size_t i, bool held) const RT_SAFE {
@@ -48,8 +48,8 @@ AlongGive Contact::ask_along(std::size_t i, bool held) const RT_SAFE {
 
 // A sphere without force: any spring is free.
 void Contact::begin_along(std::size_t i) RT_SAFE {
-  probe_[i].asked = touch_[i].place.triangle;
-  probe_[i].along = ask_along(i, false);
+  probe_[i].give_triangle = touch_[i].place.triangle;
+  probe_[i].give_along = ask_along(i, false);
   const double least_m_per_N = ask_along(i, true).at(scene_.spheres[i].radius_m).least_eigenvalue();
   shear_.set_own(i, {at_least(give_m_per_N(i), least_m_per_N), least_m_per_N});
 }
@@ -62,12 +62,12 @@ void Contact::stiffen() RT_SAFE {
   Shear::Shifts change_m{};
   bool is_stiffer = false;
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
-    if (!presses_[i]) continue;
+    if (!in_contact_[i]) continue;
     const OwnGive before = shear_.own(i);
     double most_m_per_N = kStep_ratio * before.m_per_N.trace();
-    if (probe_[i].asked != touch_[i].place.triangle) {
-      probe_[i].asked = touch_[i].place.triangle;
-      probe_[i].along = ask_along(i, touch_[i].state == TouchState::kHeld);
+    if (probe_[i].give_triangle != touch_[i].place.triangle) {
+      probe_[i].give_triangle = touch_[i].place.triangle;
+      probe_[i].give_along = ask_along(i, touch_[i].state == TouchState::kHeld);
       most_m_per_N = std::numeric_limits<double>::infinity();
     }
     const Tensor2 now_m_per_N = give_m_per_N(i);
@@ -92,7 +92,7 @@ void Contact::resist_sliding() RT_SAFE {
   for (int sweep = 0; sweep <= kSweeps; ++sweep) {
     bool slipped = false;
     for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
-      if (!presses_[i]) continue;
+      if (!in_contact_[i]) continue;
       const Vec2 spring_N = shear_.force_N(shift_m_, i);
       shear_N_[i] = spring_N;
       const double cap_N = scene_.parameters.friction_ratio * pressing_[i].response.law.force_N;

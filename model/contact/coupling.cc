@@ -21,11 +21,11 @@ bool is_coupled(const Coupling& c, std::size_t i) RT_SAFE {
 
 // A sphere that is not held feels nothing of a dent that lies below it.
 void ask(SiteLaw& law, PressingSphere& sphere) RT_SAFE {
-  const double dent_m = sphere.in.depth_m;
+  const double dent_m = sphere.in.dent_m;
   const bool is_off = !sphere.in.held && !(dent_m > 0.0);
-  if (is_off) sphere.in.depth_m = 0.0;
+  if (is_off) sphere.in.dent_m = 0.0;
   sphere.response = law.respond(sphere.in);
-  sphere.in.depth_m = dent_m;
+  sphere.in.dent_m = dent_m;
   if (is_off) sphere.response.law.stiffness_N_per_m = 0.0;
 }
 
@@ -63,7 +63,7 @@ Vector miss_of(const Coupling& c, std::span<const PressingSphere> spheres) RT_SA
   Vector miss{};
   for (std::size_t i = 0; i < spheres.size(); ++i)
     if (spheres[i].presses)
-      miss[i] = spheres[i].depth_m - sunk_m(c, spheres, i) - spheres[i].in.depth_m;
+      miss[i] = spheres[i].depth_m - sunk_m(c, spheres, i) - spheres[i].in.dent_m;
   return miss;
 }
 
@@ -75,7 +75,7 @@ bool is_solved(SiteLaw& law, const Coupling& c, std::span<PressingSphere> sphere
       sphere.response = {};
       continue;
     }
-    if (!is_coupled(c, i)) sphere.in.depth_m = sphere.depth_m;
+    if (!is_coupled(c, i)) sphere.in.dent_m = sphere.depth_m;
     ask(law, sphere);
   }
   for (int step = 0; step <= kMaxSteps; ++step) {
@@ -86,7 +86,7 @@ bool is_solved(SiteLaw& law, const Coupling& c, std::span<PressingSphere> sphere
     const Vector change_m = newton_step(c, spheres, miss_m);
     for (std::size_t i = 0; i < spheres.size(); ++i) {
       if (!spheres[i].presses || change_m[i] == 0.0) continue;
-      spheres[i].in.depth_m += change_m[i];
+      spheres[i].in.dent_m += change_m[i];
       ask(law, spheres[i]);
     }
   }
@@ -124,7 +124,7 @@ double press_together(SiteLaw& law, Coupling& c, std::span<PressingSphere> spher
   for (int i = 0; i < kTries && !is_solved(law, c, spheres); ++i) {
     for (auto& row : c)
       for (double& m_per_N : row) m_per_N *= i + 2 < kTries ? 0.5 : 0.0;
-    for (PressingSphere& sphere : spheres) sphere.in.depth_m = sphere.depth_m;
+    for (PressingSphere& sphere : spheres) sphere.in.dent_m = sphere.depth_m;
   }
   // MC-3
   double energy_J = 0.0;

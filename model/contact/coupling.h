@@ -33,7 +33,7 @@ namespace tact::model::contact {
 /// C, m/N, of all pairs.
 using Coupling = std::array<std::array<double, kMaxSpheres>, kMaxSpheres>;
 
-/// One sphere of a tool. in.depth_m is e: a guess before press_together, the answer after it.
+/// One sphere of a tool. in.dent_m is e: a guess before press_together, the answer after it.
 struct PressingSphere {
   bool presses = false;  // touches or is held; else the rest does not count
   double depth_m = 0.0;  // d

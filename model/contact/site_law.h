@@ -29,8 +29,9 @@ inline constexpr std::size_t kMaxSpheres = 4;
 struct Indentation {
   std::size_t sphere = 0;  // below kMaxSpheres
   Place place{};
-  Vec3 normal{};         // outward, unit, at the place
-  double depth_m = 0.0;  // d; below 0 only while held
+  Vec3 normal{};  // outward, unit, at the place
+  // e: the depth, less what the other spheres press down here; below 0 only while held
+  double dent_m = 0.0;
   bool held = false;
   double speed_mps = 0.0;  // of the sphere's depth, pressing positive
 };
@@ -98,6 +99,12 @@ class SiteLaw {
   /// read what advance() writes. A law that tells its shape otherwise returns 0.
   virtual std::size_t profile(const Indentation& in, std::span<double> ring_m) const RT_SAFE = 0;
   virtual double ring_pitch_m() const RT_SAFE = 0;
+  /// CF-5: F t, how the dent leans along the surface: what the profile lacks at x is this times the
+  /// way from the place to x. For telemetry, as profile().
+  virtual Vec3 tilt(const Indentation& in) const RT_SAFE {
+    (void)in;
+    return {};
+  }
   /// Loop thread: what such a law shows instead of a profile; false: the profile says all.
   virtual bool shape(PatchShape& out) RT_SAFE {
     (void)out;

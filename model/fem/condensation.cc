@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/fem/condensation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -155,9 +157,10 @@ std::optional<Error> Condenser::run(tissue::ComplianceMap& map) {
     for (std::uint32_t slot = 0; slot < here; ++slot) {
       load(slot, first + slot);
       if (patch_[slot].empty())
-        return Error{"condensation: a patch of " + std::to_string(settings_.patch_radius_m) +
-                     " m is too small for the elements at vertex " + std::to_string(first + slot) +
-                     "; make the patch wider or the elements finer"};
+        return Error{fmt::format(
+            "condensation: a patch of {:g} m is too small for the elements at vertex {}; make the "
+            "patch wider or the elements finer",
+            settings_.patch_radius_m, first + slot)};
     }
     solver_.solve({loads_.data(), here * kAxes}, skin_, moved_m_);
     for (std::uint32_t slot = 0; slot < here; ++slot) read(slot, first + slot, map);

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <string>
 
+#include "model/law/ring_taper.h"
 #include "model/ranges.h"
 
 namespace tact::model::indent {
 namespace {
 
 constexpr int kMaxIterations = 100;
-constexpr double kTaperStart = 0.7;  // of the outermost radius
 
 const char* first_fault(const ComplianceCurveParameters& p) {
   if (!is_positive(p.tip.youngs_modulus_Pa)) return "youngs_modulus_Pa must be finite and above 0";
@@ -38,12 +38,6 @@ const char* first_fault(const ComplianceCurveParameters& p) {
 }
 
 }  // namespace
-
-double ring_taper(std::size_t ring, std::size_t rings) RT_SAFE {
-  const double x = static_cast<double>(ring) / static_cast<double>(rings);
-  const double t = std::fmax(0.0, (x - kTaperStart) / (1.0 - kTaperStart));
-  return 1.0 - t * t * (3.0 - 2.0 * t);
-}
 
 Result<ComplianceCurve> make_compliance_curve(const ComplianceCurveParameters& p) {
   if (const char* fault = first_fault(p)) return Error{std::string("compliance: ") + fault};
@@ -125,7 +119,8 @@ std::size_t ComplianceCurve::profile(double depth_m, std::span<double> ring_m) c
     const double tip_m =
         pulled ? disc_m * pulled_shape(tip_, rho_m) : pressed_shape_m(tip_, press, rho_m);
     // CL-4
-    const double u_m = j == 0 ? d_m : ring_taper(j, rings_) * (tip_m + force_N * ring_m_per_N_[j]);
+    const double u_m =
+        j == 0 ? d_m : law::ring_taper(j, rings_) * (tip_m + force_N * ring_m_per_N_[j]);
     before_m = std::clamp(u_m, 0.0, before_m);
     ring_m[j] = pulled ? -before_m : before_m;
   }

@@ -32,9 +32,6 @@ namespace tact::model::indent {
 
 inline constexpr std::size_t kMaxComplianceRings = 31;
 
-/// Of CL-4: 1 inside, 0 at the last ring, with level slope at both ends.
-double ring_taper(std::size_t ring, std::size_t rings) RT_SAFE;
-
 struct ComplianceCurveParameters {
   ElasticTip tip;
   double regular_m_per_N = 0.0;          // r, > -1 / (largest K_tip) and > -c_disc

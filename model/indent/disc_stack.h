@@ -3,8 +3,8 @@
 //
 //     DS-7   t_i = q^(i-1) t1,  T_i = t_1 + .. + t_i        modelled delay of layer i, s
 //     DS-8   i_max = number of layers with T_i < 1/rate, at most the cap
-//     DS-9   force in:  M = ceil(F/(k h0)) layers move, M - 1 of them flat; depth = (M-1) h0 + h_M
-//     DS-10  depth in:  j = ceil(d/h0) - 1 layers are flat, s = d - j h0,
+//     DS-9   force in:  M = ceil(F/(k h0)),  M - 1 layers flat;  depth = (M - 1) h0 + h_M
+//     DS-10  depth in:  j = ceil(d/h0) - 1 flat layers,  s = d - j h0,
 //                       F = j k h0 + f(s),  f as in disc.h
 //
 // Depths in m, forces in N, press positive. It cannot pull: no contact at d <= 0. Valid to

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/indent/hex_sheet.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <string>
 
@@ -206,10 +208,11 @@ Result<std::size_t> rings_for_tolerance(const HexSheetParameters& parameters,
     miss_ratio = endless_force_N(p, rings) / endless_N - 1.0;
     if (std::abs(miss_ratio) <= tolerance_ratio) return rings;
   }
-  return Error{"hexagonal sheet: " + std::to_string(kMaxHexRings) +
-               " rings still miss the force of an endless sheet by " +
-               std::to_string(100.0 * miss_ratio) +
-               " %; allow a larger force error or take a larger ring_pitch_m or less tension_N"};
+  return Error{
+      fmt::format("hexagonal sheet: {} rings still miss the force of an endless sheet by {:g} %; "
+                  "allow a larger "
+                  "force error or take a larger ring_pitch_m or less tension_N",
+                  kMaxHexRings, 100.0 * miss_ratio)};
 }
 
 }  // namespace tact::model::indent

@@ -5,7 +5,7 @@
 // One chain stands for the area A of the surface, f and u are its force and energy, and the tip is
 // r^2 / (2 R) above the surface at the radius r:
 //
-//     RC-15  F(d) = (1/A) integral of f(d - r^2 / (2 R)) 2 pi r dr = (2 pi R / A) u(d)
+//     RC-15  F(d) = (1/A) integral of f(d - gap) 2 pi r dr = (2 pi R / A) u(d)
 //     RC-16  K(d) = (2 pi R / A) f(d),    U(d) = (2 pi R / A) integral of u from 0 to d
 //     RC-17  w(r) = d - r^2 / (2 R) within sqrt(2 R d), 0 beyond
 //

@@ -13,7 +13,7 @@
 namespace tact::model::io {
 namespace {
 
-constexpr std::size_t kBlock_bytes = 1 << 16;
+constexpr std::size_t kRead_bytes = 1 << 16;
 
 Error error_of(const std::string& path, std::string_view what, std::string_view cure) {
   return {fmt::format("{}: {}; {}", path, what, cure)};
@@ -86,8 +86,8 @@ Result<std::string> read_file(const std::string& path, std::string_view cure,
   if (file->size_bytes() > most_bytes) return too_large();
   std::string text;
   for (std::size_t end = 0;;) {  // what says no size, or grows, is read to its end too
-    const std::size_t step = std::max<std::size_t>(kBlock_bytes, file->size_bytes() - end + 1);
-    text.resize(end + (file->size_bytes() >= end ? step : kBlock_bytes));
+    const std::size_t step = std::max<std::size_t>(kRead_bytes, file->size_bytes() - end + 1);
+    text.resize(end + (file->size_bytes() >= end ? step : kRead_bytes));
     const auto read = file->read(text.data() + end, text.size() - end);
     if (!read) return read.error();
     end += *read;

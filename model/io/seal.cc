@@ -110,10 +110,14 @@ std::string SealedFile::trouble() {
   return {};
 }
 
-std::string sealed_text(const std::string& text) {
+std::string sha256_of(std::string_view bytes) {
   Seal seal;
-  seal.add(text);
-  return text + fmt::format("sha256 = \"{}\"\n", seal.hex());
+  seal.add(bytes);
+  return seal.hex();
+}
+
+std::string sealed_text(const std::string& text) {
+  return text + fmt::format("sha256 = \"{}\"\n", sha256_of(text));
 }
 
 bool is_sealed(std::string_view text) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // haptic_limit.h - how stiff a sampled spring may be before the loop makes energy of its own.
 //
-//     HL-1   K_grow  = (b - |B|) / (T/2 + t_d)   beyond it an oscillation grows
-//     HL-2   K_quiet = 2 c / D                   beyond it the tool may buzz by a few counts
-//     HL-3   K_safe  = min(K_grow, K_quiet)      any hand, any pose: no growing, no lasting motion
+//     HL-1   K_grow  = (b - abs(B)) / (T/2 + t_d)   beyond it an oscillation grows
+//     HL-2   K_quiet = 2 c / D                      beyond it the tool may buzz by a few counts
+//     HL-3   K_safe  = min(K_grow, K_quiet)         any hand and pose: nothing grows or lasts
 //
 //     K  stiffness of the spring shown, N/m        T    period of the loop, s
 //     b  viscous damping of the device, N s/m      t_d  age of the force beyond one hold, s

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/law/linear_pull.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -25,9 +27,9 @@ std::size_t LinearPull::profile(double depth_m, std::span<double> ring_m) const 
 Result<LinearPull> make_linear_pull(const Law& press, const LinearPullParameters& pull) {
   if (!(pull.stiffness_N_per_m > 0.0) || !std::isfinite(pull.stiffness_N_per_m) ||
       !(pull.limit_m > 0.0) || !std::isfinite(pull.limit_m))
-    return Error{"pull: stiffness_N_per_m = " + std::to_string(pull.stiffness_N_per_m) +
-                 " with limit_m = " + std::to_string(pull.limit_m) +
-                 "; allowed: both above 0 and finite"};
+    return Error{fmt::format(
+        "pull: stiffness_N_per_m = {:g} with limit_m = {:g}; allowed: both above 0 and finite",
+        pull.stiffness_N_per_m, pull.limit_m)};
   return LinearPull(press, pull);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/law/relaxation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -39,22 +41,25 @@ RelaxationState Relaxation::after(const RelaxationState& before, double depth_m,
 
 Result<Relaxation> make_relaxation(std::span<const PronyTerm> terms, double tick_s) {
   if (terms.size() > kMaxPronyTerms)
-    return Error{"relaxation: " + std::to_string(terms.size()) +
-                 " terms; allowed: 3 at most, merge those with close times"};
+    return Error{fmt::format(
+        "relaxation: {} terms; allowed: 3 at most, merge those with close times", terms.size())};
   if (!(tick_s > 0.0)) return Error{"relaxation: the tick must last longer than 0 s"};
   Relaxation out;
   for (const PronyTerm& term : terms) {
     if (!(term.share > 0.0) || !(term.time_s > 0.0) || !std::isfinite(term.time_s))
-      return Error{"relaxation: share = " + std::to_string(term.share) + " with time_s = " +
-                   std::to_string(term.time_s) + "; allowed: both above 0 and finite"};
+      return Error{fmt::format(
+          "relaxation: share = {:g} with time_s = {:g}; allowed: both above 0 and finite",
+          term.share, term.time_s)};
     out.tick_share_[out.count_] = tick_s / term.time_s;
     out.share_[++out.count_] = term.share;
     out.share_[0] -= term.share;
   }
   constexpr double kRounding = 1e-12;  // 1 - 0.8 - 0.2 is a little below 0
   if (!(out.share_[0] >= -kRounding))
-    return Error{"relaxation: the shares add up to " + std::to_string(1.0 - out.share_[0]) +
-                 "; allowed: 1 or less, the rest is the force that stays"};
+    return Error{fmt::format(
+        "relaxation: the shares add up to {:g}; allowed: 1 or less, the rest is the force that "
+        "stays",
+        1.0 - out.share_[0])};
   out.share_[0] = std::max(out.share_[0], 0.0);
   return out;
 }

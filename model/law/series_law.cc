@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/law/series_law.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -68,9 +70,10 @@ double SeriesLaw::damping_Ns_per_m(double depth_m) const RT_SAFE {
 Result<SeriesLaw> make_series_law(const Law& law, double give_m_per_N, const Law& shape) {
   const double most_N_per_m = stiffest_N_per_m(law, law.range().pull_m, law.range().press_m);
   if (!(1.0 + give_m_per_N * most_N_per_m > 0.0) || !std::isfinite(give_m_per_N))
-    return Error{"law in series: a give of " + std::to_string(give_m_per_N) +
-                 " m/N with a law of up to " + std::to_string(most_N_per_m) +
-                 " N/m; allowed: finite and above -1 / stiffness"};
+    return Error{fmt::format(
+        "law in series: a give of {:g} m/N with a law of up to {:g} N/m; allowed: finite and above "
+        "-1 / stiffness",
+        give_m_per_N, most_N_per_m)};
   return SeriesLaw(law, give_m_per_N, shape);
 }
 

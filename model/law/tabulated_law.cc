@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/law/tabulated_law.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -45,7 +47,7 @@ double TabulatedLaw::damping_Ns_per_m(double depth_m) const RT_SAFE {
 
 Result<TabulatedLaw> tabulate(const Law& law, std::size_t knots) {
   if (knots < 2 || knots > kMaxKnots)
-    return Error{"law table: knots must lie between 2 and " + std::to_string(kMaxKnots)};
+    return Error{fmt::format("law table: knots must lie between 2 and {}", kMaxKnots)};
   const LawRange range = law.range();
   TabulatedLaw out(law);
   out.press_ = table_to(law, kPressShare * range.press_m, knots);
@@ -62,8 +64,10 @@ Result<TabulatedLaw> tabulate(const Law& law, std::size_t knots) {
     const double depth_m = range.pull_m + share * (kPressShare * range.press_m - range.pull_m);
     const double force_N = out.respond(depth_m).force_N;
     if (!(force_N >= before_N))
-      return Error{"law table: the force falls at a depth of " + std::to_string(depth_m) +
-                   " m; choose parameters whose force grows with depth"};
+      return Error{fmt::format(
+          "law table: the force falls at a depth of {:g} m; choose parameters whose force grows "
+          "with depth",
+          depth_m)};
     before_N = force_N;
   }
   return out;

@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <filesystem>
 #include <optional>
 #include <sstream>
 #include <string_view>
+#include <system_error>
 
 #include "model/io/input_file.h"
+#include "model/io/installed.h"
 #include "model/io/toml.h"
 #include "model/reader/scene_words.h"
 
@@ -16,7 +19,14 @@ namespace tact::model::reader {
 namespace {
 
 constexpr std::uintmax_t kLargestFile_bytes = 1'000'000;
-constexpr const char* kCure = "give the path of a scene, such as model/scenes/liver.toml";
+
+std::string cure() {
+  const auto installed = io::installed("scenes/liver.toml");
+  std::error_code wrong;
+  const bool there = std::filesystem::exists(installed, wrong);
+  return "give the path of a scene, such as " +
+         (there ? installed.string() : "model/scenes/liver.toml");
+}
 
 bool is_bare_word(std::string_view value) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
@@ -123,7 +133,7 @@ TextPlace SceneDocument::place_of(const toml::node& node) const {
 
 Result<SceneDocument> load_scene_document(const std::string& path,
                                           const std::vector<std::string>& overrides) {
-  const Result<std::string> text = io::read_file(path, kCure, kLargestFile_bytes);
+  const Result<std::string> text = io::read_file(path, cure(), kLargestFile_bytes);
   if (!text) return text.error();
   Result<toml::table> root = io::parse_toml(*text, path);
   if (!root) return root.error();

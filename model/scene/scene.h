@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "model/contact/contact.h"
-#include "model/contact/hand_path.h"
 #include "model/device_settings.h"
+#include "model/hand_path.h"
 #include "model/limits.h"
 #include "model/mesh/mesh.h"
 #include "model/result.h"
@@ -54,7 +54,7 @@ struct Scene {
   OrganSettings organ;
   ToolSettings tool;
   DeviceSettings device;
-  contact::HandSettings hand;
+  HandSettings hand;
   Vec3 hand_site_m;  // the point that the simulated hand touches, W
   Vec3 hand_inward;  // its way in, unit, W
   Limits limits;

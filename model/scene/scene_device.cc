@@ -111,6 +111,8 @@ void visit_can(reader::Keys& k, CanSettings& can) {
            can.counts_per_motor_turn, kOptional);
   k.flag("command_at_sync", "CiA 402: torque waits for SYNC, if the drive insists",
          can.command_at_sync, kOptional);
+  k.number("rated_torque_Nm", {0.0, 1000.0}, "CiA 402: of a motor; 0: as the drive tells (6076)",
+           can.rated_torque_Nm, kOptional);
 }
 
 void visit_falcon(reader::Keys& k, FalconSettings& f) {

@@ -66,7 +66,7 @@ void visit_contact(reader::Keys& k, contact::ContactParameters& c) {
 }
 
 void visit_hand(reader::Keys& k, SceneText& out) {
-  contact::HandSettings& hand = out.scene.hand;
+  HandSettings& hand = out.scene.hand;
   HandScript& script = out.script;
   k.number("mass_kg", {0.01, 2.0}, "of the hand that moves with the handle", hand.mass_kg);
   k.number("stiffness_N_per_m", {1.0, 5000.0}, "of the grasp, towards where the hand wants to be",

@@ -54,7 +54,7 @@ class Writer {
   }
 
   void write(const Stroke& stroke) {
-    contact::HandWaypoint next = path_.back();
+    HandWaypoint next = path_.back();
     next.time_s += stroke.duration_s;
     switch (stroke.action) {
       case Action::kHold:
@@ -85,7 +85,7 @@ class Writer {
 
   bool is_closed() const { return path_.back().grip_ratio > 0.0; }
   const Vec3& position_m() const { return path_.back().position_m; }
-  std::vector<contact::HandWaypoint> take() { return std::move(path_); }
+  std::vector<HandWaypoint> take() { return std::move(path_); }
 
  private:
   // p(d) = site + slid - inward (reach - d)
@@ -94,7 +94,7 @@ class Writer {
   }
 
   void open(double after_s) {
-    contact::HandWaypoint opened = path_.back();
+    HandWaypoint opened = path_.back();
     opened.time_s += after_s;
     opened.grip_ratio = 0.0;
     path_.push_back(opened);
@@ -104,7 +104,7 @@ class Writer {
   double reach_m_;
   Vec3 inward_;
   Vec3 slid_m_;
-  std::vector<contact::HandWaypoint> path_;
+  std::vector<HandWaypoint> path_;
 };
 
 }  // namespace
@@ -142,8 +142,8 @@ double reach_m(std::span<const contact::ProbeSphere> spheres, const Vec3& inward
   return reach_m;
 }
 
-std::vector<contact::HandWaypoint> way_points(const HandScript& script, double reach_m,
-                                              const Limits& limits, reader::SceneVisit& visit) {
+std::vector<HandWaypoint> way_points(const HandScript& script, double reach_m, const Limits& limits,
+                                     reader::SceneVisit& visit) {
   const auto refuse = [&](const reader::TextPlace& place, const std::string& why) {
     visit.note(reader::ProblemKind::kConflict, place, why);
   };

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "model/contact/contact.h"
-#include "model/contact/hand_path.h"
+#include "model/hand_path.h"
 #include "model/limits.h"
 #include "model/reader/scene_reader.h"
 
@@ -50,7 +50,7 @@ double reach_m(std::span<const contact::ProbeSphere> spheres, const Vec3& inward
 
 /// From home through every stroke. Home and the end of each stroke lie inside the workspace, a pull
 /// follows a grip, and a script that repeats ends at home; otherwise a conflict is noted.
-std::vector<contact::HandWaypoint> way_points(const HandScript& script, double reach_m,
-                                              const Limits& limits, reader::SceneVisit& visit);
+std::vector<HandWaypoint> way_points(const HandScript& script, double reach_m, const Limits& limits,
+                                     reader::SceneVisit& visit);
 
 }  // namespace tact::model::scene

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/scene/tissue.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace tact::model::scene {
@@ -10,17 +12,16 @@ Result<std::unique_ptr<Tissue>> make_tissue(const Scene& scene) {
   if (!law) return law.error();
   const double pull_limit_N = (*law)->pull_limit_N();
   if (pull_limit_N > 0.0 && !(scene.contact.tear_force_N < pull_limit_N))
-    return Error{scene.path +
-                 ": contact.tear_force_N = " + std::to_string(scene.contact.tear_force_N) +
-                 " is never reached: the law pulls with " + std::to_string(pull_limit_N) +
-                 " N at most; allowed: less than that"};
+    return Error{fmt::format(
+        "{}: contact.tear_force_N = {:g} is never reached: the law pulls with {:g} N at most; "
+        "allowed: less than that",
+        scene.path, scene.contact.tear_force_N, pull_limit_N)};
 
   const std::vector<std::uint32_t>& fans = scene.organ_mesh.fan_start;
   for (std::size_t v = 0; v + 1 < fans.size(); ++v)
     if (fans[v + 1] - fans[v] > contact::kMaxFan)
-      return Error{scene.organ.mesh_path + ": " + std::to_string(fans[v + 1] - fans[v]) +
-                   " triangles meet in one vertex; allowed: " + std::to_string(contact::kMaxFan) +
-                   ", remesh it there"};
+      return Error{fmt::format("{}: {} triangles meet in one vertex; allowed: {}, remesh it there",
+                               scene.organ.mesh_path, fans[v + 1] - fans[v], contact::kMaxFan)};
 
   std::unique_ptr<Tissue> tissue(new Tissue(std::move(*law)));
   double reach_m = 0.0;

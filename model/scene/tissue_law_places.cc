@@ -9,6 +9,7 @@
 #include "model/scene/tissue_law_builder.h"
 #include "model/scene/tissue_map.h"
 #include "model/tissue/compliance_family.h"
+#include "model/tissue/dent_tilt.h"
 
 namespace tact::model::scene {
 namespace {
@@ -72,7 +73,7 @@ TissueLawBuilder::Step TissueLawBuilder::finish_field(const law::Law* shape) {
                                 .neighbours = neighbours(),
                                 .curve_ring_times_E_per_m = law_->curve_rings_times_E_per_m_,
                                 .damps = law_->damping_Ns_per_m_ > 0.0,
-                                .shape = shape});
+                                .dent_shape = shape});
   return std::nullopt;
 }
 
@@ -101,12 +102,15 @@ tissue::ElasticNeighbours TissueLawBuilder::neighbours() {
   law_->along_times_E_per_m_ =
       tissue::along_give(*map, scene_.organ_mesh.view().vertex_normal, widest_m);
   out.along_times_E_per_m = law_->along_times_E_per_m_;
+  law_->tilt_times_E_per_m2_ = tissue::dent_tilt(*map, scene_.organ_mesh.view());
+  out.tilt_times_E_per_m2 = law_->tilt_times_E_per_m2_;
   law_->rings_times_E_per_m_ = std::move(map->ring_times_E_per_m);
   out.ring_times_E_per_m = law_->rings_times_E_per_m_;
   out.rings = map->rings;
   out.ring_pitch_m = map->ring_pitch_m;
   law_->memory_bytes_ += law_->rings_times_E_per_m_.size() * sizeof(float) +
-                         law_->along_times_E_per_m_.size() * sizeof(tissue::AlongTensors);
+                         law_->along_times_E_per_m_.size() * sizeof(tissue::AlongTensors) +
+                         law_->tilt_times_E_per_m2_.size() * sizeof(Vec3);
   return out;
 }
 

@@ -6,7 +6,7 @@
 //
 //     MA-10..15  M of each integrator
 //     MA-16      stable  <=>  det M < 1,  1 - tr M + det M > 0,  1 + tr M + det M > 0      (Jury)
-//     MA-17      z_max: stable for 0 < z < z_max; the undamped neutral cases (det = 1) count
+//     MA-17      z_max, stable for 0 < z < z_max; the undamped neutral cases count
 //
 // What surprises: midpoint-averaging with alpha = 3/8 has z_max = 0 without damping, and with
 // alpha = 1/2 it has z_max = 1 / zeta from zeta = 1/2 upwards, less than explicit Euler from 0.707.

@@ -113,11 +113,11 @@ contact::SiteResponse SpringPatch::respond(const contact::Indentation& in) RT_SA
   Touch& touch = touch_[in.sphere];
   touch = {};
   const contact::SurfaceView& mesh = region_.surface().mesh;
-  if (!std::isfinite(in.depth_m) || !is_a_place(in.place, mesh))
+  if (!std::isfinite(in.dent_m) || !is_a_place(in.place, mesh))
     return {.law = {.status = law::LawStatus::kInvalid}};
-  if (in.depth_m <= 0.0 && !in.held) return {.law = {.status = law::LawStatus::kNoContact}};
+  if (in.dent_m <= 0.0 && !in.held) return {.law = {.status = law::LawStatus::kNoContact}};
   const double limit_m = parameters_.working_depth_m;
-  const double depth_m = std::clamp(in.depth_m, -limit_m, limit_m);
+  const double depth_m = std::clamp(in.dent_m, -limit_m, limit_m);
   touch = {.active = true, .held = in.held, .depth_m = depth_m, .place = in.place};
   if (broke_) return {.law = {.status = law::LawStatus::kSingular}};
 
@@ -138,8 +138,8 @@ contact::SiteResponse SpringPatch::respond(const contact::Indentation& in) RT_SA
                                     .stiffness_N_per_m = stretch_m != 0.0 ? q : 0.0,
                                     .energy_J = 0.5 * q * stretch_m * stretch_m + network_energy_J_,
                                     .status = law::LawStatus::kOk}};
-  if (depth_m != in.depth_m) {
-    out.law.energy_J += out.law.force_N * (in.depth_m - depth_m);
+  if (depth_m != in.dent_m) {
+    out.law.energy_J += out.law.force_N * (in.dent_m - depth_m);
     out.law.stiffness_N_per_m = 0.0;
     out.law.status = law::LawStatus::kSaturated;
   }

@@ -13,7 +13,7 @@ constexpr std::size_t kMaxCurves = 65;
 /// r and r_pull of every vertex, m/N.
 struct Give {
   std::vector<double> press_m_per_N, pull_m_per_N;
-  std::size_t limited = 0;
+  std::size_t limited_vertices = 0;
 };
 
 Give give_of(const ComplianceMap& map, const indent::ElasticTip& tip) {
@@ -33,7 +33,7 @@ Give give_of(const ComplianceMap& map, const indent::ElasticTip& tip) {
     };
     // CF-3
     const double pull = r - kept(s.n1, s.s1) - kept(s.n2, s.s2);
-    out.limited += r < least || pull < least ? 1 : 0;
+    out.limited_vertices += r < least || pull < least ? 1 : 0;
     out.press_m_per_N.push_back(std::max(r, least));
     out.pull_m_per_N.push_back(std::max(pull, least));
   }
@@ -76,10 +76,10 @@ std::vector<AlongTensors> along_give(const ComplianceMap& map, std::span<const V
   for (std::size_t v = 0; v < map.vertices(); ++v) {
     const SidewaysGive& g = map.sideways_times_E_per_m[v];
     const Vec3 a1 = vector_of(g.axis), a2 = cross(vertex_normal[v], a1);
-    const auto limited = [side](float s) {
+    const auto no_stiffer = [side](float s) {
       return std::max(static_cast<double>(s), (1.0 / kStiffest - 1.0) * side);
     };
-    const double s1 = limited(g.s1), s2 = limited(g.s2);
+    const double s1 = no_stiffer(g.s1), s2 = no_stiffer(g.s2);
     // CF-4, with as much of n as leaves S_held within the limit
     const double n1 = static_cast<double>(g.n1), n2 = static_cast<double>(g.n2);
     const double normal =
@@ -114,7 +114,7 @@ Result<ComplianceFamily> make_compliance_family(const ComplianceMap& map,
   const double last = static_cast<double>(p.curves - 1);
   const double span = std::max(std::log(stiff / soft), 1e-9);
   ComplianceFamily out;
-  out.limited = give.limited;
+  out.limited_vertices = give.limited_vertices;
   // CF-2
   const auto coordinate = [&](double r) {
     return static_cast<float>(std::clamp(last * std::log(stiffness(r) / soft) / span, 0.0, last));

@@ -32,7 +32,7 @@ struct ComplianceFamily {
   std::vector<float> press_coordinate;         // kappa of r, n vertices
   std::vector<float> pull_coordinate;          // kappa of r_pull, n vertices
   std::vector<float> ring_times_E_per_m;       // of curve k, as its shape has it, at [k N + j - 1]
-  std::size_t limited = 0;                     // vertices held to kStiffest
+  std::size_t limited_vertices = 0;            // vertices held to kStiffest
 
   /// What the loop may touch.
   std::size_t memory_bytes() const {

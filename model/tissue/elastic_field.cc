@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/indent/compliance_law.h"
 #include "model/law/law_bounds.h"
+#include "model/law/ring_taper.h"
 
 namespace tact::model::tissue {
 namespace {
@@ -74,7 +74,7 @@ ElasticField::Part ElasticField::part_at(const contact::Place& place,
 
 // Where nothing varies, the place does not matter.
 bool ElasticField::is_known(const contact::Indentation& in) const RT_SAFE {
-  return in.sphere < contact::kMaxSpheres && std::isfinite(in.depth_m) &&
+  return in.sphere < contact::kMaxSpheres && std::isfinite(in.dent_m) &&
          (parts_.curves.size() < 2 || is_a_place(in.place, parts_.surface));
 }
 
@@ -82,10 +82,10 @@ contact::SiteResponse ElasticField::respond(const contact::Indentation& in) RT_S
   if (!is_known(in)) return {.law = {.status = law::LawStatus::kInvalid}};
   const law::Relaxation& relaxation = parts_.relaxation;
   law::RelaxationState& next = next_[in.sphere];
-  if (relaxation.terms() > 0) next = relaxation.after(now_[in.sphere], in.depth_m, in.held);
+  if (relaxation.terms() > 0) next = relaxation.after(now_[in.sphere], in.dent_m, in.held);
   contact::SiteResponse sum{};
   for (std::size_t i = 0; i <= relaxation.terms(); ++i) {
-    const double depth_m = i == 0 ? in.depth_m : next.stretch_m[i - 1];
+    const double depth_m = i == 0 ? in.dent_m : next.stretch_m[i - 1];
     const Part part = part_at(in.place, depth_m);
     if (i > 0) next.flow_ratio[i - 1] = law::flow_ratio(depth_m, part.law);
     const double g = relaxation.share(i);
@@ -101,11 +101,11 @@ contact::SiteResponse ElasticField::respond(const contact::Indentation& in) RT_S
 // b is blended as the energy is.
 double ElasticField::resistance_N(const contact::Indentation& in, double force_N) const RT_SAFE {
   if (!parts_.damps || !is_known(in)) return 0.0;
-  const Blend blend = blend_at(in.place, in.depth_m);
-  double b_Ns_per_m = parts_.curves[blend.low]->damping_Ns_per_m(in.depth_m);
+  const Blend blend = blend_at(in.place, in.dent_m);
+  double b_Ns_per_m = parts_.curves[blend.low]->damping_Ns_per_m(in.dent_m);
   if (parts_.curves.size() > 1)
     b_Ns_per_m +=
-        blend.fraction * (parts_.curves[blend.low + 1]->damping_Ns_per_m(in.depth_m) - b_Ns_per_m);
+        blend.fraction * (parts_.curves[blend.low + 1]->damping_Ns_per_m(in.dent_m) - b_Ns_per_m);
   return law::resistance_N(b_Ns_per_m, in.speed_mps, force_N, in.held);
 }
 
@@ -175,12 +175,12 @@ contact::AlongGive ElasticField::give_along(const contact::Place& place, bool he
 std::size_t ElasticField::profile(const contact::Indentation& in,
                                   std::span<double> ring_m) const RT_SAFE {
   if (!is_known(in)) return 0;
-  if (parts_.shape != nullptr) return parts_.shape->profile(in.depth_m, ring_m);
-  const Blend blend = blend_at(in.place, in.depth_m);
-  const std::size_t count = parts_.curves[blend.low]->profile(in.depth_m, ring_m);
+  if (parts_.dent_shape != nullptr) return parts_.dent_shape->profile(in.dent_m, ring_m);
+  const Blend blend = blend_at(in.place, in.dent_m);
+  const std::size_t count = parts_.curves[blend.low]->profile(in.dent_m, ring_m);
   if (parts_.curves.size() < 2) return count;
   std::array<double, kMaxProfile> stiff_m{};
-  parts_.curves[blend.low + 1]->profile(in.depth_m, stiff_m);
+  parts_.curves[blend.low + 1]->profile(in.dent_m, stiff_m);
   for (std::size_t j = 0; j < std::min({count, ring_m.size(), kMaxProfile}); ++j)
     ring_m[j] += blend.fraction * (stiff_m[j] - ring_m[j]);
   tell_own_rings(in, ring_m.first(count));
@@ -193,9 +193,9 @@ void ElasticField::tell_own_rings(const contact::Indentation& in,
                                   std::span<double> ring_m) const RT_SAFE {
   const ElasticNeighbours& near = parts_.neighbours;
   if (parts_.curve_ring_times_E_per_m.empty() || near.rings == 0 || ring_m.empty()) return;
-  const Blend blend = blend_at(in.place, in.depth_m);
-  const double force_N = part_at(in.place, in.depth_m).law.force_N;
-  const double sign = in.depth_m < 0.0 ? -1.0 : 1.0;
+  const Blend blend = blend_at(in.place, in.dent_m);
+  const double force_N = part_at(in.place, in.dent_m).law.force_N;
+  const double sign = in.dent_m < 0.0 ? -1.0 : 1.0;
   for (std::size_t j = 1; j < std::min(ring_m.size(), near.rings + 1); ++j) {
     const auto of_curve = [&](std::size_t k) RT_SAFE {
       return static_cast<double>(parts_.curve_ring_times_E_per_m[k * near.rings + j - 1]);
@@ -204,9 +204,21 @@ void ElasticField::tell_own_rings(const contact::Indentation& in,
     const double more_m_per_N =
         regular_m_per_N(in.place, static_cast<double>(j) * near.ring_pitch_m) -
         (soft + blend.fraction * (stiff - soft)) / near.youngs_modulus_Pa;
-    const double u_m = ring_m[j] + indent::ring_taper(j, near.rings) * force_N * more_m_per_N;
+    const double u_m = ring_m[j] + law::ring_taper(j, near.rings) * force_N * more_m_per_N;
     ring_m[j] = sign * std::clamp(sign * u_m, 0.0, std::abs(ring_m[j - 1]));
   }
+}
+
+Vec3 ElasticField::tilt(const contact::Indentation& in) const RT_SAFE {
+  const ElasticNeighbours& near = parts_.neighbours;
+  if (near.tilt_times_E_per_m2.empty() || !is_known(in)) return {};
+  const double force_N = part_at(in.place, in.dent_m).law.force_N;
+  const contact::TriangleCorners& corner = parts_.surface.triangle[in.place.triangle];
+  Vec3 sum;
+  for (std::size_t i = 0; i < 3; ++i)
+    sum +=
+        force_N / near.youngs_modulus_Pa * in.place.weight[i] * near.tilt_times_E_per_m2[corner[i]];
+  return sum;
 }
 
 }  // namespace tact::model::tissue

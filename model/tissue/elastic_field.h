@@ -11,13 +11,13 @@
 // have a coordinate each: U = 0 between them. A tick costs at most 2 (1 + terms) look-ups a sphere,
 // whatever the mesh. Two sites, s apart, couple as those of one elastic body:
 //
-//     MC-2   h = 1 / (pi E* s) + min(g, 0) >= 0,   b = max(g, 0),   g = (g_i(s) + g_j(s)) / 2
+//     MC-2   h = 1 / (pi E* s_ij) + min(g, 0) >= 0,   b = max(g, 0),   g = (g_i + g_j) / 2
 //
 // half-space and the organ's regular part, g: that of the rings of the compliance map, below 0
 // beside the held side. Sideways a site gives way by half-space and regular part, too, by another
 // length in each direction:
 //
-//     MC-5   G = (2 - nu) / (8 mu a) I + S,   mu = E* (1 - nu) / 2
+//     MC-5   G_i = (2 - nu) / (8 mu a_i) I + S_i,   mu = E* (1 - nu) / 2
 //
 //     G   m/N, 2 x 2, along the surface     S  of the map (CF-4)     a   radius of the contact, m
 #pragma once
@@ -50,6 +50,7 @@ struct ElasticNeighbours {
   std::size_t rings = 0;
   double ring_pitch_m = 0.0;
   std::span<const AlongTensors> along_times_E_per_m{};  // S E of each vertex; or empty
+  std::span<const Vec3> tilt_times_E_per_m2{};          // t E of each vertex (CF-6); or empty
 };
 
 /// What an ElasticField borrows; all of it outlives the field.
@@ -62,8 +63,8 @@ struct ElasticFieldParts {
   ElasticNeighbours neighbours = {};
   /// g_j E of curve k at [k rings + j - 1], as its profile has it; empty: it has none of a map.
   std::span<const float> curve_ring_times_E_per_m{};
-  bool damps = false;               // a curve depends on speed
-  const law::Law* shape = nullptr;  // of the dent, where the curves are springs that have none
+  bool damps = false;                    // a curve depends on speed
+  const law::Law* dent_shape = nullptr;  // of the dent, where the curves are springs that have none
 };
 
 class ElasticField final : public contact::SiteLaw {
@@ -83,9 +84,10 @@ class ElasticField final : public contact::SiteLaw {
   }
   std::size_t profile(const contact::Indentation& in,
                       std::span<double> ring_m) const RT_SAFE override;
+  Vec3 tilt(const contact::Indentation& in) const RT_SAFE override;
   double ring_pitch_m() const RT_SAFE override {
-    return parts_.shape != nullptr ? parts_.shape->ring_pitch_m()
-                                   : parts_.curves[0]->ring_pitch_m();
+    return parts_.dent_shape != nullptr ? parts_.dent_shape->ring_pitch_m()
+                                        : parts_.curves[0]->ring_pitch_m();
   }
 
  private:

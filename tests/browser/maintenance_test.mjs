@@ -10,7 +10,7 @@ import { createSocket } from "node:dgram";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import {
-  build, check, distance, folder, play, root, size, start, start_browser, start_tactd, start_view, stop, waits,
+  build, check, distance, folder, play, root, sharp, size, start, start_browser, start_tactd, start_view, stop, waits,
 } from "./stage.mjs";
 
 const scenes = join(root, "model/scenes");
@@ -250,7 +250,7 @@ async function lose_the_tracker(browser) {
 /** Full quality, whatever it costs here: for the eye. */
 async function take_picture(browser) {
   const all = await start_all(browser, "picture", description);
-  await all.page.goto(`${all.url}#sharp`);
+  await all.page.goto(sharp(all.url));
   await all.page.keyboard.press("v"); // from outside, whoever's head is tracked
   check("shows the operator pressing", await waits(all.page, () =>
     window.tact.figure_m !== null && window.tact.tracking_words === "" && window.tact.tick > 10000 &&

@@ -11,7 +11,7 @@ import { join } from "node:path";
 import { setTimeout as pause } from "node:timers/promises";
 
 import {
-  build, check, distance, first_line, folder, measure_fps, numbers, play, size, start, start_browser,
+  build, check, distance, first_line, folder, measure_fps, numbers, play, sharp, size, start, start_browser,
   start_tactd, start_view, stop, waits,
 } from "./stage.mjs";
 
@@ -28,6 +28,8 @@ async function check_view(page, url) {
   check("finds tactd by itself", await waits(page, () => window.tact.link === "live"));
   check("shows the scene's name", await waits(page, () =>
     document.getElementById("scene").textContent === "liver" && document.title === "tact: liver"));
+  check("shows the checksum of its limits", await waits(page, () =>
+    /^[0-9a-f]{8}$/.test(document.getElementById("limits").textContent)), await page.textContent("#limits"));
   check("shows the liver", await waits(page, () => window.tact.vertex_count > 0) &&
     (await numbers(page)).vertex_count === kVertices, `${(await numbers(page)).vertex_count} vertices`);
   const before = await numbers(page);
@@ -137,7 +139,7 @@ async function check_loss(page, tactd) {
 /** Full quality, whatever it costs here: for the eye. */
 async function take_picture(browser, url) {
   const page = await browser.newPage({ viewport: size });
-  await page.goto(`${url}#sharp`);
+  await page.goto(sharp(url));
   check("shows the tissue being pressed to a second browser", await waits(page, () =>
     window.tact.most_m > 0.006 && parseFloat(document.getElementById("depth").textContent) > 8.5, null, 60000));
   await page.screenshot({ path: join(build, "page.png") });
@@ -150,7 +152,7 @@ async function check_scene(browser, name, sentence, condition) {
   const { viewer, url } = await start_view(["--socket", own_socket]);
   const tactd = start_tactd(name, own_socket);
   const page = await browser.newPage({ viewport: size });
-  await page.goto(`${url}#sharp`);
+  await page.goto(sharp(url));
   check(sentence, await waits(page, condition, null, 60000), JSON.stringify(await page.evaluate(() =>
     ({ moved: window.tact.moved_vertices, most_mm: 1e3 * window.tact.most_ever_m, cut: window.tact.cut_triangles }))));
   await page.screenshot({ path: join(build, `page_${name}.png`) });

@@ -60,11 +60,15 @@ export function first_line(child) {
   });
 }
 
-/** tact-view on a free port, and its address. */
+/** tact-view on a free port, and the link that it prints. */
 export async function start_view(args) {
   const viewer = start("tact-view", [...args, "--port", "0", "--json"]);
-  return { viewer, url: JSON.parse(await first_line(viewer)).url };
+  viewer.ready = JSON.parse(await first_line(viewer));
+  return { viewer, url: viewer.ready.url };
 }
+
+/** The same link in full quality, whatever it costs. */
+export const sharp = (url) => `${url}&sharp`;
 
 export async function start_browser() {
   return chromium.launch({

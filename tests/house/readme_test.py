@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """README.md stays short and narrow, prose of every *.md narrow, and every relative link leads to a file and its heading.
+Every room has a README.md with a line `Tests: ...`, whose programs and files there are.
 
 Reads the tree as text and prints every breach as file:line: sentence. Exit status 0 or 1.
 """
@@ -10,6 +11,8 @@ import posixpath
 import re
 import sys
 
+import rooms
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 MAX_LINES, MAX_COLUMNS = 110, 130  # lines of README.md; columns but of code, a lone link and, elsewhere, tables
 # [text](target) and ![text](target "title"); the text may hold an image of its own
@@ -18,6 +21,11 @@ FENCE, CODE = re.compile(r"\s*(```|~~~)"), re.compile(r"`[^`]*`")
 LONE_LINK = re.compile(r"\s*(?:(?:[*-]|\d+\.)\s+)?!?\[[^\]]*\](?:\([^)]*\)|:\s+\S+)[.,;:]?$")
 HEADING = re.compile(r"#{1,6}\s+(.*?)\s*#*$")
 ELSEWHERE = re.compile(r"[a-z][a-z0-9+.-]*:|//")  # a scheme, as https: and mailto:
+TOPS = ("model/", "hal/", "firmware/", "host/", "tools/")  # whose rooms have a README.md
+SOURCE = re.compile(r"(?:.*/)?([^/]+\.(?:h|cc)|package\.json)")
+TEST_PROGRAM = re.compile(r"`(?:build/tests/)?((?:[a-z0-9]+_)+test)(?: [^`]*)?`")
+TEST_FILE = re.compile(r"`((?:[\w-]+/)*\w+_test\.(?:cc|mjs))`")
+COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 
 
 def prose(text):
@@ -69,8 +77,46 @@ def width_breaches(path, text):
             yield f"{path}:{number}: longer than {MAX_COLUMNS} characters"
 
 
+def room_breaches(files):
+    """A room without README.md; a README.md that names no test of its room, or one that is not there."""
+    for room in sorted({posixpath.dirname(path) for path in files if path.startswith(TOPS) and SOURCE.fullmatch(path)}):
+        if f"{room}/README.md" not in files:
+            yield f"{room}/README.md:1: missing: which question does this room answer, by which files and tests?"
+    tests = [path for path in files if path.startswith("tests/") and path.endswith(("_test.cc", "_test.mjs"))]
+    programs = {posixpath.dirname(path).removeprefix("tests/").replace("/", "_") + "_test" for path in tests}
+    names = {*tests, *map(posixpath.basename, tests)}
+    for path, text in files.items():
+        if not path.startswith(TOPS) or posixpath.basename(path) != "README.md":
+            continue
+        if not re.search(r"^Tests: \S", text, re.M):
+            yield f"{path}:1: no line that begins with `Tests:` and names the test program of this room"
+        named = set(TEST_PROGRAM.findall(text))
+        for name in sorted((named - programs) | (set(TEST_FILE.findall(text)) - names)):
+            yield f"{path}:1: {name}: no such test"
+        own = posixpath.dirname(path).replace("/", "_") + "_test"
+        if own in programs and own not in named:
+            yield f"{path}:1: does not name {own}"
+
+
+def host_breaches(path, text):
+    """What host/ includes of other folders, as tests/house/rooms.py allows it."""
+    single = {f"{other}/{name}" for (room, other), headers in rooms.SINGLE_HEADERS.items()
+              if room.startswith("host/") for name in headers}
+    whole = {other for room, row in rooms.ROOMS.items() if room.startswith("host/") for other in row
+             if not other.startswith("host/") and (room, other) not in rooms.SINGLE_HEADERS}
+    if f"{COUNTS[len(single)]} headers" not in text:
+        yield f"{path}:1: host/ includes {COUNTS[len(single)]} headers of other folders: {', '.join(sorted(single))}"
+    for other in sorted(whole):
+        if other not in text:
+            yield f"{path}:1: does not say that host/ includes {other}"
+
+
 def breaches(files):
     yield from length_breaches("README.md", files["README.md"])
+    yield from room_breaches(files)
+    for path in ("README.md", "host/README.md"):
+        if path in files:
+            yield from host_breaches(path, files[path])
     for path, text in files.items():
         if text is not None:
             yield from width_breaches(path, text)
@@ -95,7 +141,7 @@ def blind_rules():
     wide = "x" * MAX_COLUMNS
     good = ("[a](a/README.md) ![b](a/b.png \"t\") [c](#top) [d](a/README.md#twin-1) `[e](none)` [f](https://g/h)\n"
             "[i](a/README.md#two--words-a_b-c-d) [![j](a/b.png)](a/README.md)\n# Top\n```\n[k](none)\n```\n"
-            f"```\n{wide}x\n```\n* [{wide}](a/b.png)\n[{wide}]: https://g/h\n{wide}\n")
+            f"```\n{wide}x\n```\n* [{wide}](a/b.png)\n[{wide}]: https://g/h\n{wide}\nfour headers, model/io\n")
     bad = {"missing file": "[a](a/none.md)", "missing file behind a title": '[a](none.json "x .1f")',
            "missing heading": "[a](a/README.md#none)", "third twin": "[a](a/README.md#twin-2)",
            "heading in code": "[a](a/README.md#code)", "own heading": "[a](#none)",
@@ -104,12 +150,25 @@ def blind_rules():
            "long line": wide + "x", "long line with a link": f"{wide} [a](a/b.png)",
            "long line in a list": f"* {wide}", "long row of a table": f"| {wide} |",
            "many lines": "\n" * MAX_LINES}
-    files = {"a/README.md": room, "a/b.png": None}
+    files = {"a/README.md": room, "a/b.png": None, "hal/a/b.h": None, "tests/hal/a/b_test.cc": None,
+             "hal/a/README.md": "Tests: `build/tests/hal_a_test`; `b_test.cc`, `tests/hal/a/b_test.cc`.\n"}
     blind = [name for name, line in bad.items() if not list(breaches({**files, "README.md": good + line + "\n"}))]
     if not list(breaches({**files, "README.md": good, "a/c.md": f"{wide}x\n"})):
         blind.append("long line elsewhere")
     if list(breaches({**files, "README.md": good, "a/c.md": f"| {wide} |\n" * (MAX_LINES + 1)})):
         blind.append("takes for a breach: many lines or a long row elsewhere")
+    rooms_of = {"room without README.md": {"hal/c/d.cc": None}, "page without README.md": {"host/c/package.json": None},
+                "no line of tests": {"hal/a/README.md": "The tests: `hal_a_test`\n"},
+                "empty line of tests": {"hal/a/README.md": "Tests: \n\n`hal_a_test`\n"},
+                "own program is not named": {"hal/a/README.md": "Tests: `b_test.cc`\n"},
+                "program that is none": {"hal/a/README.md": "Tests: `hal_a_test`, `build/tests/hal_b_test`\n"},
+                "file that is none": {"hal/a/README.md": "Tests: `hal_a_test`, `c_test.cc`\n"},
+                "file elsewhere": {"hal/a/README.md": "Tests: `hal_a_test`, `tests/hal/b/b_test.cc`\n"},
+                "another number of headers": {"host/README.md": "Tests: none. five headers, model/io\n"},
+                "room of host is not named": {"host/README.md": "Tests: none. four headers\n"}}
+    for name, other in rooms_of.items():
+        if len(list(breaches({**files, "README.md": good, **other}))) != 1:
+            blind.append(name)
     blind += [f"takes for a breach: {found}" for found in breaches({**files, "README.md": good})]
     return blind
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every equation and fact that a text names by an id, as RC-3, stands once in a SOURCES.md.
+"""Every equation and fact that a text names by an id, as RC-3, stands once in a SOURCES.md. Where a
+comment writes the equation out, it is the one that stands there.
 
 Reads the tree as text and prints every breach as file:line: sentence. Exit status 0 or 1.
 """
@@ -15,11 +16,13 @@ SELF = "tests/house/sources_test.py"  # names what it forbids
 # Numbers that machines wrote; of the data the published cases alone name equations.
 DATA = ("tests/data/", "tests/fuzz/corpus/")
 CASES = "tests/data/vectors/"
-ID = r"(?:[A-Z]{2}-\d+[a-z]?|X\d{1,2})"
+ID = r"(?:(?!HZ-)[A-Z]{2}-\d+[a-z]?|X\d{1,2})"  # HZ-nn: a hazard, hazards_test.py
 # "RC-3", "MA-10..15", "RC-1 .. RC-7", "X1 to X7"
 NAME = re.compile(rf"\b({ID})\b(?:\s*\.\.\s*(\d+\b|{ID}\b)|\s+to\s+({ID})\b)?")
 ROW = re.compile(rf"\|\s*({ID})\s*\|")
 FORMULA = re.compile(rf"({ID})\s\s")
+# An equation written out in a comment: "//     RC-3   F = k d,   k > 0"; its first right-hand side.
+WRITTEN_OUT = re.compile(rf"\s*///?\s{{2,}}({ID})\s{{2,}}.*?=\s*(.*?)(?:,|\s{{2,}}|$)")
 # Documents that a reader of the tree does not have.
 FOREIGN = re.compile(r"\b(PHYSICS|REALTIME|REFERENCE|ERRATA)\b|\bDEVICES\s+\d|\.\./shared\b")
 MAX_LINES, MAX_COLUMNS = 300, 160
@@ -71,6 +74,29 @@ def id_breaches(texts):
             yield f"{place}: nothing names {name}: take it out, or name it where it is used"
 
 
+def without_blanks(formula):
+    return re.sub(r"[\s`*\\]", "", formula)
+
+
+def ends_a_term(formula, text):
+    """Stands in the text, and does not go on there."""
+    at = text.find(formula)
+    return at >= 0 and text[at + len(formula):][:1] not in ("/", "*", "+", "-", "^")
+
+
+def formula_breaches(texts):
+    """Equations that a comment writes otherwise than their SOURCES.md."""
+    stands = {name: text.splitlines()[number - 1] for path, text in texts.items() if is_source(path)
+              for name, number in defined_in(text)}
+    for path, text in texts.items():
+        if not path.endswith((".h", ".cc")):
+            continue
+        for number, line in enumerate(text.splitlines(), 1):
+            found = WRITTEN_OUT.match(line)
+            if found and not ends_a_term(without_blanks(found[2]), without_blanks(stands.get(found[1], found[2]))):
+                yield f"{path}:{number}: {found[1]} is another equation than in SOURCES.md: '{found[2]}'"
+
+
 def foreign_breaches(path, text):
     for number, line in enumerate(text.splitlines(), 1):
         found = FOREIGN.search(line)
@@ -117,6 +143,7 @@ def text_of(path):
 
 def breaches(texts):
     yield from id_breaches(texts)
+    yield from formula_breaches(texts)
     for path, text in texts.items():
         yield from foreign_breaches(path, text)
         if is_source(path):
@@ -141,6 +168,7 @@ def blind_rules():
         "twice, table and formula": (good + "```\nRC-2   again\n```\n", names),
         "unnamed": (good, "// RC-1, RC-2, X1"),
         "named by a SOURCES.md alone": (good + "as RC-3\n", "// RC-1, RC-2, X1"),
+        "another formula": (good + "| RC-4 | F = k d / 2 | N |\n", names + "\n//   RC-4   F = k d,   k > 0"),
         "long line": (good + "x" * (MAX_COLUMNS + 1) + "\n", names),
         "long file": (good + "\n" * MAX_LINES, names),
         **{word: (good, f"{names} ({word})") for word in
@@ -148,6 +176,9 @@ def blind_rules():
     }
     blind = [name for name, (text, comment) in cases.items()
              if not list(breaches({source: text, "b.h": comment}))]
+    formula = "| RC-4 | F = k d / (1 + r k) | N |\n"
+    if list(breaches({source: good + formula, "b.h": names + "\n//   RC-4   F = k d/(1 + r k),   k > 0"})):
+        blind.append("takes for a breach: the same formula with other blanks")
     for comment in (names, "// RC-1 to RC-3, X1", "// RC-1..3, X1; DEVICES = []", "// X1, RC-3, RC-2, RC-1"):
         if list(breaches({source: good, "b.h": comment})):
             blind.append(f"takes for a breach: {comment}")

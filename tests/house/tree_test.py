@@ -14,8 +14,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 TOP = {"CMakeLists.txt", "LICENSE", "README.md", "firmware", "hal", "host", "model", "tests", "tools"}
 MAX_BYTES = 1_000_000
 PUSH, NIGHT = ".github/workflows/check.yml", ".github/workflows/nightly.yml"
-# Needs root and a chroot of its own, which a hosted runner's container does not give.
-BY_HAND = {"fresh"}
+# Need root and a chroot of their own, which a hosted runner's container does not give.
+BY_HAND = {"fresh", "installed"}
 
 
 def top_breaches(paths):
@@ -41,8 +41,11 @@ def stage_breaches(check, push, night):
     if set(stages) != {"quick", "more", "hours"}:
         yield "tools/check: its lists of stages are not where this test looks for them"
         return
-    if not re.search(r"^\s*- run: \./tools/check$", push, re.M):
-        yield f"{PUSH}: does not run ./tools/check"
+    if not re.search(r"^\s*- run: \./tools/check \$\{\{ matrix.arguments \}\}$", push, re.M) or \
+            not re.search(r'^\s*arguments: \["", --only tidy, --only asan, --only rtsan\]$', push, re.M):
+        yield f"{PUSH}: does not run ./tools/check, and its stages tidy, asan and rtsan"
+    if "./tools/check --long --only ${{ matrix.stage }}" not in night:
+        yield f"{NIGHT}: does not run ./tools/check --long --only STAGE"
     found = re.search(r"^\s*stage: \[([^\]]*)\]", night, re.M)
     nightly = set(re.split(r",\s*", found[1])) if found else set()
     wanted = (stages["more"] | stages["hours"]) - BY_HAND
@@ -55,14 +58,18 @@ def stage_breaches(check, push, night):
 def blind_rules():
     """Each rule against a breach of it: the names of those that do not see theirs."""
     check = "quick='format tests+browser'\nmore='asan'\nhours='soak fresh'\n"
-    push, night = "      - run: ./tools/check\n", "        stage: [asan, soak]\n"
+    push = '        arguments: ["", --only tidy, --only asan, --only rtsan]\n      - run: ./tools/check ${{ matrix.arguments }}\n'
+    run = "      - run: ./tools/check --long --only ${{ matrix.stage }}\n"
+    night = "        stage: [asan, soak]\n" + run
     cases = {
         "a stray file": top_breaches(["README.md", "notes.txt"]),
         "a stray folder": top_breaches(["scratch/a.cc"]),
         "a large file": size_breaches({"model/a.obj": MAX_BYTES + 1}),
         "a push without check": stage_breaches(check, "- run: true\n", night),
-        "a stage that no night runs": stage_breaches(check, push, "        stage: [asan]\n"),
-        "a night without its stage": stage_breaches(check, push, "        stage: [asan, soak, tsan]\n"),
+        "a stage that no night runs": stage_breaches(check, push, "        stage: [asan]\n" + run),
+        "a night without its stage": stage_breaches(check, push, "        stage: [asan, soak, tsan]\n" + run),
+        "a night without --long": stage_breaches(check, push, night.replace("--long ", "")),
+        "a push without tidy": stage_breaches(check, push.replace(", --only tidy", ""), night),
         "lists that moved": stage_breaches("", push, night)}
     blind = [name for name, found in cases.items() if not list(found)]
     for name, found in {"a tree in order": top_breaches([".gitignore", "LICENSE", "hal/can/a.cc"]),

@@ -21,7 +21,7 @@ PLAIN = {
     "low", "high", "alpha", "lambda", "exponent", "growth", "along", "across", "steepness", "faded_from", "cell",
     "peak", "continuous", "continuous_squared", "heat", "periods",  # of a force or a torque; of a period
     "least_transmission", "least_rod_sigma", "limit_tan", "critical_zeta", "f0", "m0", "c2", "c3", "u0",
-    "normal", "tool_orientation",  # a direction; w, x, y, z
+    "normal", "tilt", "tool_orientation",  # a direction; m/m; w, x, y, z
     "n1", "n2", "s1", "s2",  # barycentric and normal parts of a map
     "xx", "xy", "yy",  # of a tensor, which has the unit
     "limit", "largest", "size", "median", "lower_quartile", "upper_quartile", "rel", "tolerance", "exact",

@@ -27,12 +27,12 @@ TEST(Fault, NumbersAscendAndAreNeverShared) {
 TEST(Fault, LatchesFromOneHundred) {
   EXPECT_FALSE(latches(Fault::kNone));
   EXPECT_FALSE(latches(Fault::kLawSaturated));
-  EXPECT_TRUE(latches(Fault::kInternal));
+  EXPECT_TRUE(latches(Fault::kUnknown));
   EXPECT_TRUE(latches(Fault::kDeviceLost));
 }
 
-TEST(Fault, UnknownNumbersAreDescribedAsInternal) {
-  EXPECT_EQ(describe(static_cast<Fault>(9999)).fault, Fault::kInternal);
+TEST(Fault, ANumberThatTheTableDoesNotHaveIsToldAsUnknown) {
+  EXPECT_EQ(describe(static_cast<Fault>(9999)).fault, Fault::kUnknown);
   EXPECT_EQ(describe(Fault::kForceLimited).fault, Fault::kForceLimited);
 }
 

@@ -87,7 +87,7 @@ model::Result<Outcome> soak(const model::scene::Scene& scene, std::uint64_t tick
   const auto controller = std::make_unique<firmware::loop::Controller>(
       (*tissue)->contact_scene(),
       firmware::gate::Gate(limits, static_cast<double>(period_ns) * 1e-9, 1.0),
-      firmware::loop::kHardRealTime);
+      /*hard_real_time=*/true);
   firmware::loop::RtLoop loop({.period_ns = period_ns}, **device, lines, *controller, clock,
                               requests, *ring);
   Mischief mischief(seed, scene.hand, period_ns);
@@ -102,7 +102,7 @@ model::Result<Outcome> soak(const model::scene::Scene& scene, std::uint64_t tick
   for (; outcome.ticks < ticks && !interrupted.load(); ++outcome.ticks) {
     mischief.step(**device, lines, clock, requests, state == firmware::loop::State::kStopped);
     {
-      const firmware::loop::HeapWatch heap;
+      const firmware::loop::HeapCallCounter heap;
       loop.step();
       outcome.heap_calls += heap.calls();
     }

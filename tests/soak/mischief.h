@@ -15,7 +15,7 @@ namespace tact::soak {
 /// Steps once before each tick. Rates are per tick; the same seed does the same.
 class Mischief {
  public:
-  Mischief(std::uint64_t seed, const model::contact::HandSettings& hand, std::int64_t period_ns)
+  Mischief(std::uint64_t seed, const model::HandSettings& hand, std::int64_t period_ns)
       : chance_(seed), home_m_(hand.path.front().position_m), period_ns_(period_ns) {}
 
   void step(hal::sim::SimDelta& device, hal::sim::SimLines& lines,

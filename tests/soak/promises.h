@@ -13,7 +13,7 @@ namespace tact::soak {
 
 class Promises {
  public:
-  /// Limits of scene and device together (firmware::limits_for).
+  /// Limits of scene and device together (firmware::gate::limits_for).
   Promises(const model::Limits& limits, std::int64_t period_ns)
       : limits_(limits), period_ns_(period_ns) {}
 

@@ -59,17 +59,25 @@ class ScriptedSocket final : public hal::can::CanSocket {
 /// Both ends; what the host sends is read by listen(), what drives say goes through say().
 class ScriptedBus {
  public:
-  explicit ScriptedBus(std::function<void()> millisecond) {
-    int fds[2] = {-1, -1};
-    if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, fds) != 0) std::abort();
-    drives_fd_ = fds[1];
-    auto socket = std::make_unique<ScriptedSocket>(fds[0], std::move(millisecond));
-    socket_ = socket.get();
-    bus_ = std::make_unique<hal::can::CanBus>(std::move(socket));
+  explicit ScriptedBus(std::function<void()> millisecond) : millisecond_(std::move(millisecond)) {
+    connect();
   }
   ScriptedBus(const ScriptedBus&) = delete;
   ScriptedBus& operator=(const ScriptedBus&) = delete;
   ~ScriptedBus() { unplug(); }
+
+  /// A new pair of ends, as for a host that was started again.
+  void connect() {
+    unplug();
+    int fds[2] = {-1, -1};
+    if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, fds) != 0) std::abort();
+    drives_fd_ = fds[1];
+    auto socket = std::make_unique<ScriptedSocket>(fds[0], millisecond_);
+    socket_ = socket.get();
+    bus_ = std::make_unique<hal::can::CanBus>(std::move(socket));
+  }
+  /// The drives' end for somebody else, who closes it.
+  int give_drives_end() { return std::exchange(drives_fd_, -1); }
 
   /// To give to the device; the socket lives with it.
   std::unique_ptr<hal::can::CanBus> bus() { return std::move(bus_); }
@@ -106,6 +114,7 @@ class ScriptedBus {
   }
 
  private:
+  std::function<void()> millisecond_;
   int drives_fd_ = -1;
   std::unique_ptr<hal::can::CanBus> bus_;
   ScriptedSocket* socket_ = nullptr;

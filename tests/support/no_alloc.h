@@ -14,6 +14,6 @@
 
 namespace tact::tests {
 
-using NoAlloc = firmware::loop::HeapWatch;
+using NoAlloc = firmware::loop::HeapCallCounter;
 
 }  // namespace tact::tests

@@ -98,7 +98,7 @@ class PuppetLoop : public testing::Test {
   PuppetDevice device{clock};
   PuppetLines lines;
   loop::Controller controller{tissue->contact_scene(), gate::Gate(scene.limits, 0.001, 1.0),
-                              loop::kHardRealTime};
+                              /*hard_real_time=*/true};
   loop::Requests requests;
   std::unique_ptr<loop::TickRing> ring = std::make_unique<loop::TickRing>();
   loop::RtLoop loop{{.period_ns = 1'000'000}, device, lines, controller, clock, requests, *ring};

@@ -72,7 +72,7 @@ inline Frame make_frame(float value, firmware::telemetry::SiteState state) {
   for (float& part : frame.tool_orientation) part = value;
   frame.grip_ratio = frame.worst_margin_us = frame.median_tick_us = frame.peak_force_N = value;
   for (firmware::telemetry::FrameSite& site : frame.site) {
-    for (float* array : {site.surface_point_m, site.normal, site.shift_m})
+    for (float* array : {site.surface_point_m, site.normal, site.shift_m, site.tilt})
       for (int i = 0; i < 3; ++i) array[i] = value;
     for (float& ring_m : site.profile_m) ring_m = value;
     site.depth_m = value;

@@ -8,6 +8,8 @@
 
 #include <atomic>
 #include <boost/asio/post.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/write.hpp>
 #include <boost/beast/core/buffers_to_string.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
@@ -42,10 +44,14 @@ class Viewer : public ::testing::Test {
                        view_.begin(hello, std::move(mesh), host::server::Link::kLive);
                      },
                  .frame = [this](const Frame& frame) { view_.add(frame), ++frames_; },
-                 .lost = [this](const std::string& reason) { view_.lose(reason); }}),
-        server_(io_, view_, [this](const double (&position_m)[3], double grip_ratio) {
-          client_.move_hand(position_m, grip_ratio);
-        }) {
+                 .lost = [this](const std::string& reason) { view_.lose(reason); },
+                 .silent = [this](double seconds) { silences_s_.push_back(seconds); }}),
+        server_(
+            io_, view_,
+            [this](const double (&position_m)[3], double grip_ratio) {
+              client_.move_hand(position_m, grip_ratio);
+            },
+            [this](const std::string& sentence) { warnings_.push_back(sentence); }) {
     fs::create_directories(folder_);
     std::ofstream(folder_ / "index.html") << "<html>page";
   }
@@ -55,9 +61,12 @@ class Viewer : public ::testing::Test {
     fs::remove_all(folder_);
   }
 
-  void start(const std::string& bind_address = "127.0.0.1") {
-    ASSERT_EQ(tests::sentence_of(
-                  server_.open({.bind_address = bind_address, .port = 0, .page_folder = folder_})),
+  void start(const std::string& bind_address = "127.0.0.1",
+             std::chrono::milliseconds request_patience = std::chrono::seconds(10)) {
+    ASSERT_EQ(tests::sentence_of(server_.open({.bind_address = bind_address,
+                                               .port = 0,
+                                               .page_folder = folder_,
+                                               .request_patience = request_patience})),
               "");
     server_.start();
     client_.start();
@@ -84,14 +93,19 @@ class Viewer : public ::testing::Test {
     ASSERT_TRUE(wait_until([this] { return view_.has_scene(); }));
   }
 
+  template <typename Request>
+  void show_token(Request& request) const {
+    const std::string bearer = bearer_.value_or("Bearer " + server_.token());
+    if (!bearer.empty()) request.set(http::field::authorization, bearer);
+    if (!cookie_.empty()) request.set(http::field::cookie, cookie_);
+  }
+
   http::response<http::string_body> get(const std::string& target,
-                                        const std::string& host = "localhost",
-                                        const std::string& cookie = {}) {
-    tcp::socket socket(client_io_);
-    socket.connect({boost::asio::ip::make_address("127.0.0.1"), server_.port()});
+                                        const std::string& host = "localhost") {
+    tcp::socket socket = connect();
     http::request<http::empty_body> request{http::verb::get, target, 11};
     request.set(http::field::host, host);
-    if (!cookie.empty()) request.set(http::field::cookie, cookie);
+    show_token(request);
     http::write(socket, request);
     boost::beast::flat_buffer buffer;
     http::response_parser<http::string_body> parser;
@@ -102,12 +116,31 @@ class Viewer : public ::testing::Test {
     return parser.release();
   }
 
-  error_code open_live(Socket& socket, const std::string& origin, const std::string& query = {}) {
-    socket.next_layer().connect({boost::asio::ip::make_address("127.0.0.1"), server_.port()});
-    socket.set_option(websocket::stream_base::decorator(
-        [origin](websocket::request_type& request) { request.set(http::field::origin, origin); }));
+  tcp::socket connect() {
+    tcp::socket socket(client_io_);
+    socket.connect({boost::asio::ip::make_address("127.0.0.1"), server_.port()});
+    return socket;
+  }
+  /// All that comes back for these bytes until the connection ends.
+  std::string say(const std::string& bytes) {
+    tcp::socket socket = connect();
     error_code wrong;
-    socket.handshake("localhost:1", "/live" + query, wrong);
+    boost::asio::write(socket, boost::asio::buffer(bytes), wrong);
+    std::string answer;
+    boost::asio::read(socket, boost::asio::dynamic_buffer(answer), wrong);
+    EXPECT_EQ(wrong, boost::asio::error::eof);
+    return answer;
+  }
+
+  error_code open_live(Socket& socket, const std::string& origin) {
+    socket.next_layer().connect({boost::asio::ip::make_address("127.0.0.1"), server_.port()});
+    socket.set_option(
+        websocket::stream_base::decorator([this, origin](websocket::request_type& request) {
+          request.set(http::field::origin, origin);
+          show_token(request);
+        }));
+    error_code wrong;
+    socket.handshake("localhost:1", "/live", wrong);
     return wrong;
   }
   static nlohmann::json read(Socket& socket) {
@@ -127,7 +160,11 @@ class Viewer : public ::testing::Test {
   Hello hello_ = make_hello(3, 1, 3, 1);
   std::vector<std::byte> meshes_ = TinyMeshes{}.bytes();
   std::atomic<std::uint64_t> frames_ = 0;
+  std::vector<double> silences_s_;     // as they were told; of the viewer's thread
+  std::vector<std::string> warnings_;  // as well
   std::thread thread_;
+  std::optional<std::string> bearer_;  // none: that of the server's token
+  std::string cookie_;
 };
 
 }  // namespace tact::test

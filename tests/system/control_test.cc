@@ -19,12 +19,8 @@ class Control : public Tactd {
     std::ofstream(script)
         << "export TACT_STUB_DHD_NO_WATCHDOG=1 XDG_RUNTIME_DIR=" << in_folder("run") << "\ncd "
         << in_folder("") << "\nln -sf " << TACT_SOURCE_DIR "/model/scenes/* .\n"
-        << "stub='device.force_dimension.library=\"" << TACT_BINARY_DIR
-        << "/libtact-stub-dhd.so\"'\n"
-        << "start() { " << program_path("tactd")
-        << " $2 --no-telemetry --no-black-box --no-seccomp --trust-library --set rate_Hz=250 --set "
-           "limits.energy_J=0.2 --set 'device.kind=\"force-dimension\"' --set \"$stub\" --json "
-           "$1.json 2>$1.told & }\n"
+        << "start() { " << program_path("tactd") << " $2 --no-telemetry --no-black-box"
+        << kStubDevice << " --json $1.json 2>$1.told & }\n"
         << "ready() { for i in {1..200}; do grep -q 'ready, force is off' $1.told && break; sleep "
            ".05; done; }\n"
         << "ctl() { " << program_path("tactctl") << " \"$@\"; echo \"status $?\"; }\n"

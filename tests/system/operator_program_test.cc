@@ -64,8 +64,9 @@ class OperatorProgram : public ::testing::Test {
     boost::asio::io_context io;
     test::Socket page(io);
     page.set_option(
-        test::websocket::stream_base::decorator([](test::websocket::request_type& request) {
+        test::websocket::stream_base::decorator([&json](test::websocket::request_type& request) {
           request.set("Origin", "http://localhost:1");
+          request.set("Authorization", "Bearer " + json["token"].get<std::string>());
         }));
     test::error_code wrong;
     const auto loopback = boost::asio::ip::make_address("127.0.0.1");

@@ -13,10 +13,17 @@
 #include <thread>
 
 #include "tests/support/program.h"
+#include "tests/support/stub_dhd/stub_client.h"
 
 namespace tact::tests {
 
 inline const std::string kLiver = TACT_SOURCE_DIR "/model/scenes/liver.toml";
+
+/// Options for a shell: no simulated device, so tactd starts without force, but a stand-in for one.
+inline const std::string kStubDevice =
+    " --no-seccomp --trust-library --set rate_Hz=250 --set limits.energy_J=0.2 --set "
+    "'device.kind=\"force-dimension\"' --set 'device.force_dimension.library=\"" +
+    kStubLibrary + "\"'";
 
 class Tactd : public testing::Test {
  protected:

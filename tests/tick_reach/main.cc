@@ -67,7 +67,7 @@ int reach_sim(const std::string& path) {
   const model::Limits limits = firmware::gate::limits_for(scene->limits, (*device)->info());
   firmware::loop::Controller controller((*tissue)->contact_scene(),
                                         firmware::gate::Gate(limits, 1e-9 * kPeriod_ns, 1.0),
-                                        firmware::loop::kHardRealTime);
+                                        /*hard_real_time=*/true);
   firmware::loop::RtLoop loop({.period_ns = kPeriod_ns}, counted, lines, controller, clock,
                               requests, *ring);
   soak::Mischief mischief(1, scene->hand, kPeriod_ns);

@@ -46,7 +46,7 @@ std::vector<std::uint32_t> held_vertices(const model::scene::Scene& scene) {
 }
 
 std::vector<ProbeCase> fit_cases(const std::vector<ProbeCase>& cases) {
-  const auto away_m = [](const ProbeCase& c) { return std::abs(c.in.depth_m - kFitDepth_m); };
+  const auto away_m = [](const ProbeCase& c) { return std::abs(c.in.dent_m - kFitDepth_m); };
   const bool all_held_out =
       std::all_of(cases.begin(), cases.end(), [](const ProbeCase& c) { return c.held_out; });
   std::vector<ProbeCase> out;

@@ -137,7 +137,7 @@ std::vector<Indentation> moving_probe(const model::scene::Scene& scene, const Pr
     path[i].place = follow(view, triangle, centre + kPathRadius_m * away).place;
     triangle = path[i].place.triangle;
     path[i].held = false;
-    path[i].depth_m = kShallow_m + (kDeep_m - kShallow_m) * 0.5 * (1.0 - std::cos(2.0 * turn_rad));
+    path[i].dent_m = kShallow_m + (kDeep_m - kShallow_m) * 0.5 * (1.0 - std::cos(2.0 * turn_rad));
   }
   return path;
 }

@@ -134,7 +134,7 @@ class BulletPeer final : public Subject {
     double dent_m = 0.0;
     for (std::size_t c = 0; c < 3; ++c)
       dent_m += in.place.weight[c] * dot(moved_m(corner[c]), -mesh.vertex_normal[corner[c]]);
-    double force_N = kCoupling_N_per_m * (in.depth_m - dent_m);
+    double force_N = kCoupling_N_per_m * (in.dent_m - dent_m);
     if (!in.held) force_N = std::max(0.0, force_N);
     for (std::size_t c = 0; c < 3; ++c)
       body_->addForce(to_bullet(-force_N * in.place.weight[c] * mesh.vertex_normal[corner[c]]),

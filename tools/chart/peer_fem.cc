@@ -66,8 +66,7 @@ class FemPeer final : public Subject {
   double tick(const Indentation& in) override {
     const Vec3 inward = -in.normal;
     const auto weights = fem::hertz_weights(body_, boundary_, nearest_vertex(in.place), patch_m_);
-    const double force_N =
-        in.depth_m < 0.0 ? pull(in, inward, weights) : press(in, inward, weights);
+    const double force_N = in.dent_m < 0.0 ? pull(in, inward, weights) : press(in, inward, weights);
     return force_N;
   }
 
@@ -75,7 +74,7 @@ class FemPeer final : public Subject {
 
   void shape(const Indentation& in, double pitch_m, std::span<double> ring_m) override {
     ring_means(scene_.organ_mesh.view(), in, pitch_m, dent_m_, ring_m);
-    if (!ring_m.empty()) ring_m[0] = in.depth_m;
+    if (!ring_m.empty()) ring_m[0] = in.dent_m;
   }
 
   bool is_stepped() const override { return false; }
@@ -102,7 +101,7 @@ class FemPeer final : public Subject {
     double given_m_per_N = 0.0;
     for (const auto& w : weights) given_m_per_N += w.weight * dot(moved_m_[w.node], inward);
     const double regular = given_m_per_N - fem::hertz_normal_m_per_N(material_, patch_m_);
-    const double force_N = pressed(tip_, regular, in.depth_m).force_N;
+    const double force_N = pressed(tip_, regular, in.dent_m).force_N;
     for (std::size_t v = 0; v < dent_m_.size(); ++v)
       dent_m_[v] = force_N * dot(moved_m_[v], inward);
     return force_N;
@@ -135,7 +134,7 @@ class FemPeer final : public Subject {
         1.0 / tip_.pulled_stiffness_N_per_m() - fem::hertz_normal_m_per_N(material_, patch_m_);
     give(1, 1) += side_m_per_N;
     give(2, 2) += side_m_per_N;
-    const Eigen::Vector3d f = give.ldlt().solve(Eigen::Vector3d(in.depth_m, 0.0, 0.0));
+    const Eigen::Vector3d f = give.ldlt().solve(Eigen::Vector3d(in.dent_m, 0.0, 0.0));
     for (std::size_t v = 0; v < dent_m_.size(); ++v) {
       dent_m_[v] = 0.0;
       for (std::size_t q = 0; q < 3; ++q)

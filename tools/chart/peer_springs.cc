@@ -80,7 +80,7 @@ class SpringPeer final : public Subject {
     probe_.node = mesh.triangle[in.place.triangle];
     probe_.weight = in.place.weight;
     for (std::size_t c = 0; c < 3; ++c) probe_.push[c] = -mesh.vertex_normal[probe_.node[c]];
-    probe_.depth_m = in.depth_m;
+    probe_.depth_m = in.dent_m;
     probe_.held = in.held;
     probe_.stiffness_N_per_m = springs_.coupling_N_per_m;
     stepper_.step(network(), rule_);

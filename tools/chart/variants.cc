@@ -73,6 +73,7 @@ void List::laws() {
   if (wants(LawKind::kDiscStack)) discs();
   if (wants(LawKind::kHexSheet))
     each({3, 5, 10, 15, 25}, {5, 15}, LawKind::kHexSheet, &LawSizes::rings);
+  if (wants(LawKind::kHuntCrossley)) add({.law = LawKind::kHuntCrossley});
   if (wants(LawKind::kSpringPatch))
     each({50, 100, 200, 500, 1000}, {100}, LawKind::kSpringPatch, &LawSizes::nodes);
   if (!wants(LawKind::kCompliance)) return;

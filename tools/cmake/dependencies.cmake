@@ -24,8 +24,11 @@ if(TACT_VIEW)
   endif()
 endif()
 if(TACT_TOOLS)
-  find_package(benchmark REQUIRED)
   find_path(MUSTACHE_INCLUDE_DIR kainjow/mustache.hpp REQUIRED)  # a header alone
+endif()
+if(TACT_LAB)
+  find_package(benchmark REQUIRED)
+  find_library(METIS metis REQUIRED)
   find_package(Bullet MODULE REQUIRED)  # a peer of tact-chart; no CONFIG: Debian's has no targets
 endif()
 if(BUILD_TESTING)

@@ -1,31 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
 # The three things a folder can declare: tact_room, tact_program, tact_test.
 
-# tact_room(SOURCES a.cc... LINKS target...)
+# tact_room(SOURCES a.cc... LINKS target... [MOSTLY_LIBRARY])
 # This folder as a library: model/law is the target tact_model_law. LINKS names the rooms that it
 # may include (tests/house/layering_test.py holds it to them) and the libraries that it uses.
+# MOSTLY_LIBRARY: more code of libraries' templates than computing, so a sanitizer optimises nothing.
 function(tact_room)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "MOSTLY_LIBRARY" "" "SOURCES;LINKS" ${ARGN})
   tact_room_name(room)
   if(ARG_SOURCES)
     add_library(tact_${room} STATIC ${ARG_SOURCES})
     target_link_libraries(tact_${room} PUBLIC tact_flags ${ARG_LINKS})
+    set_target_properties(tact_${room} PROPERTIES TACT_MOSTLY_LIBRARY ${ARG_MOSTLY_LIBRARY})
   else()
     add_library(tact_${room} INTERFACE)
     target_link_libraries(tact_${room} INTERFACE tact_flags ${ARG_LINKS})
   endif()
 endfunction()
 
-# tact_room_text(limits.html): the file as kText of "folder/limits.html.h", in the room's namespace
+# tact_room_text(limits.html [NAME PATH]): the file, or that of a path, as kText, or NAME, of
+# "folder/limits.html.h", in the room's namespace
 function(tact_room_text file)
   tact_room_name(room)
   file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   string(REPLACE "/" "::" namespace ${folder})
-  file(READ ${file} text)
+  set(source ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+  set(name kText)
+  if(ARGC GREATER 2)
+    set(name ${ARGV1})
+    set(source ${ARGV2})
+  endif()
+  file(READ ${source} text)
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/text/${folder}/${file}.h @ONLY CONTENT
     "// made from @folder@/@file@\n#pragma once\nnamespace tact::@namespace@ {\n\
-inline constexpr const char* kText = R\"~~(@text@)~~\";\n}\n")
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+inline constexpr const char* @name@ = R\"~~(@text@)~~\";\n}\n")
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
   target_include_directories(tact_${room} PRIVATE ${PROJECT_BINARY_DIR}/text)
 endfunction()
 

@@ -78,6 +78,8 @@ void report(const Options& o, const ComplianceMap& map, const CondenseFacts& fac
   const Range r = range_of(map.regular_times_E_per_m);
   if (o.json) {
     const nlohmann::json out{
+        {"format", "tact-condense"},
+        {"version", 1},
         {"file", o.out},
         {"bytes", bytes},
         {"vertices", map.vertices()},

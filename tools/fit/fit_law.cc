@@ -95,6 +95,17 @@ FitLaw hex_sheet() {
   return law;
 }
 
+/// The dissipation stays: data of a slow press does not tell it.
+FitLaw hunt_crossley() {
+  FitLaw law{.name = "hunt_crossley", .kind = LawKind::kHuntCrossley};
+  law.parameters = {{"hunt_crossley", "force_N", 1e-4, 100.0,
+                     [](Scene& s) -> double& { return s.hunt_crossley.force_N; }, true},
+                    {"hunt_crossley", "exponent", 1.0, 4.0,
+                     [](Scene& s) -> double& { return s.hunt_crossley.exponent; }}};
+  law.starts = {{1, 1}, {1, 1.3}};
+  return law;
+}
+
 FitLaw compliance() {
   FitLaw law{.name = "compliance", .kind = LawKind::kCompliance, .by_place = true};
   law.parameters = {{"elastic", "youngs_modulus_Pa", 1.0, 1e9,
@@ -145,6 +156,7 @@ std::vector<FitLaw> fit_laws_of(const Scene& scene, const FitData& data) {
     laws.push_back(coned_disc_stack(scene));
   }
   if (scene.describes(LawKind::kHexSheet)) laws.push_back(hex_sheet());
+  if (scene.describes(LawKind::kHuntCrossley)) laws.push_back(hunt_crossley());
   if (data.farthest_pull_m() > 0.0) {
     for (FitLaw& law : laws) {
       law.parameters.push_back({"pull", "stiffness_N_per_m", 0.01, 1e5,
@@ -176,8 +188,8 @@ std::size_t keep_parameters(FitLaw& law, const std::vector<std::string>& names) 
 void reach(Scene& scene, const FitData& data) {
   const double deepest_m = std::max(data.deepest_m(), data.farthest_pull_m());
   for (double* working_depth_m :
-       {&scene.hex_sheet.working_depth_m, &scene.compliance.working_depth_m,
-        &scene.spring_patch.working_depth_m}) {
+       {&scene.hex_sheet.working_depth_m, &scene.hunt_crossley.working_depth_m,
+        &scene.compliance.working_depth_m, &scene.spring_patch.working_depth_m}) {
     const double needed_m = std::ceil(deepest_m / kTableReach * 1e4) * 1e-4;
     *working_depth_m = std::max(*working_depth_m, needed_m);
   }

@@ -7,9 +7,10 @@
 //     rhombus      rod_length_m a, initial_angle_rad, normal_ and tangential_stiffness, growth
 //     disc_stack   linear: youngs_modulus_Pa;  almen-laszlo: also free_height_m, up to eta = 0.4
 //     hex_sheet    ring_pitch_m, contact_, body_ and surface_stiffness, tension_N
+//     hunt_crossley  force_N, exponent: a slow press does not tell the dissipation
 //     compliance   elastic.youngs_modulus_Pa: the shape of the organ is known
 //     spring_patch surface_, body_ and coupling_stiffness; the mass keeps its ratio to the springs
-//     pull         stiffness, beside every law of the first three kinds, when the data pulls
+//     pull         stiffness, beside every law of the first four kinds, when the data pulls
 //
 // Bounds are the scene's ranges (model/scene/scene_laws.cc), from the least stiffness above 0.
 #pragma once

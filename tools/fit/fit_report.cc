@@ -182,7 +182,10 @@ std::string toml_of(const FitReport& report) {
 }
 
 ordered_json json_of(const FitReport& report) {
-  ordered_json out{{"follows", report.follows()}, {"laws", ordered_json::array()}};
+  ordered_json out{{"format", "tact-fit"},
+                   {"version", 1},
+                   {"follows", report.follows()},
+                   {"laws", ordered_json::array()}};
   if (report.data) out["data"] = report.data->source;
   for (const FittedLaw& law : report.laws) out["laws"].push_back(json_of(law));
   out["notes"] = report.notes;

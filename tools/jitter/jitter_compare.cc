@@ -26,8 +26,15 @@ bool is_one_of(const List& list, const std::string& name) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
 
+/// Version 1 had both in one word; what is compared is the same in both.
+bool is_known_format(const json& result) {
+  const json format = result.value("format", json());
+  return format == "tact-jitter 1" ||
+         (format == "tact-jitter" && result.value("version", json()) == 2);
+}
+
 bool is_result(const json& result) {
-  return result.is_object() && result.value("format", json()) == "tact-jitter 1" &&
+  return result.is_object() && is_known_format(result) &&
          result.value("series", json()).is_object();
 }
 
@@ -114,7 +121,11 @@ json to_json(const Comparison& comparison) {
                       {"change_ratio", v.change_ratio()},
                       {"judged", v.judged},
                       {"worse", v.worse}});
-  return {{"values", values}, {"unlike", comparison.unlike}, {"worse", comparison.is_worse()}};
+  return {{"format", "tact-jitter-compare"},
+          {"version", 1},
+          {"values", values},
+          {"unlike", comparison.unlike},
+          {"worse", comparison.is_worse()}};
 }
 
 }  // namespace tact::tools::jitter

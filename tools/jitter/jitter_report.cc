@@ -107,6 +107,16 @@ std::optional<PeerVerdict> judge_peer(const JitterResult& result) {
   return PeerVerdict{*result.peer_gate, middle_of(result.turn_ratios)};
 }
 
+Outcome outcome_of(const JitterResult& result) {
+  const auto verdict = judge_peer(result);
+  if (!result.fault.empty()) return {"fail", "FAIL: the run ended with a fault: " + result.fault};
+  if (result.interrupted) return {"part", "NOT JUDGED: the run was ended by Ctrl-C"};
+  if (!verdict)
+    return {"part", "NOT JUDGED: no gate was asked for (--peer-gate); the numbers stand alone"};
+  if (!verdict->turns) return {"part", "NOT JUDGED: " + verdict->sentence()};
+  return {verdict->passed() ? "pass" : "fail", verdict->sentence()};
+}
+
 int exit_status(const JitterResult& result) {
   const auto verdict = judge_peer(result);
   if (!result.fault.empty()) return 1;
@@ -175,7 +185,11 @@ json to_json(const JitterResult& result, const std::string& command) {
   for (const LateTick& tick : result.sink->late_ticks()) late.push_back(late_json(result, tick));
   for (const firmware::pc::Shortfall& s : result.shortfalls) shortfalls.push_back(s.sentence);
   const auto ratio = ratio_to_peer(result);
-  return {{"format", "tact-jitter 1"},
+  return {{"format", "tact-jitter"},
+          {"version", 2},
+          {"began", result.began_utc},
+          {"host", result.host},
+          {"outcome", outcome_of(result).sentence},
           {"command", command},
           {"subject", result.subject},
           {"rate_Hz", result.rate_Hz},

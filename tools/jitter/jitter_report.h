@@ -43,6 +43,12 @@ std::string compare_with_peer(const JitterResult& result);
 
 /// Nothing without a gate.
 std::optional<PeerVerdict> judge_peer(const JitterResult& result);
+/// The run in one sentence that begins with its outcome, for the top of a report.
+struct Outcome {
+  const char* style;  // of page.css: pass, fail, part
+  std::string sentence;
+};
+Outcome outcome_of(const JitterResult& result);
 /// Of the program: 0 good, 1 a fault or a gate that fails, 2 a gate that could not be judged.
 int exit_status(const JitterResult& result);
 

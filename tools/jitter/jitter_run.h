@@ -36,6 +36,7 @@ struct JitterOptions {
 };
 
 struct JitterResult {
+  std::string host, began_utc;
   std::string subject;     // "liver on simulated delta ..., law ..." or "bare loop"
   std::string scene_hash;  // empty for a bare loop
   double rate_Hz = 0.0;

@@ -15,8 +15,10 @@
 #include "tools/jitter/jitter_page.h"
 #include "tools/jitter/jitter_picture.h"
 #include "tools/jitter/load.h"
+#include "tools/jitter/submission.h"
 #include "tools/jitter/tick_trace.h"
 #include "tools/program/run_program.h"
+#include "tools/report/head.h"
 
 namespace {
 
@@ -27,7 +29,7 @@ using tact::model::Error;
 
 struct Options {
   JitterOptions run;
-  std::string out, json_path, peer;
+  std::string out, json_path, peer, submit;
   bool no_pictures = false;
   std::string before, after;
   double gate_percent = 0.0;
@@ -79,6 +81,7 @@ void add_run_options(CLI::App& app, Options& o) {
                  "ticks.perfetto-trace for ui.perfetto.dev; made if need be");
   app.add_flag("--no-pictures", o.no_pictures, "no histogram; needs no gnuplot");
   app.add_option("--json", o.json_path, "write the result to this file too, - for stdout alone");
+  app.add_option("--submit", o.submit, "write a row of the table of PCs to this file, to send it");
 }
 
 CLI::App* add_compare(CLI::App& app, Options& o) {
@@ -142,14 +145,22 @@ int measure(const program::Program& program, Options& o) {
   if (o.json_path != "-")
     if (auto error = program::check_output(o.json_path, "{", {o.run.scene.path}))
       return program.fail(*error);
+  if (auto error = o.submit.empty() ? std::nullopt : program::check_output(o.submit, "| ", {}))
+    return program.fail(*error);
   o.run.peer = !o.peer.empty();
   o.run.live = isatty(STDERR_FILENO) != 0;
-  const auto result = run_jitter(o.run);
+  const std::string began_utc = report::now_utc();
+  auto result = run_jitter(o.run);
   if (!result) return program.fail(result.error());
+  result->began_utc = began_utc;
+  result->host = report::host_name();
   if (o.json_path != "-") fmt::print("{}\n", make_summary(*result));
   if (auto error = write_json(o.json_path.empty() ? json() : to_json(*result, program.command()),
                               o.json_path))
     return program.fail(*error);
+  if (!o.submit.empty())
+    if (auto error = tact::model::io::write_file(o.submit, make_submission(*result)))
+      return program.fail(*error);
   if (!o.out.empty())
     if (auto error = write_folder(*result, o, program.command()))
       return program.fail(*error, "its files are not complete");

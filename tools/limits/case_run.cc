@@ -57,12 +57,12 @@ std::unique_ptr<model::scene::Tissue> make_plate(const model::scene::Scene& scen
 }
 
 /// The hand of a case. Arming takes a second or less with the longest ramp of a scene added.
-model::contact::HandSettings hand_of(const Case& c, const model::Limits& limits) {
-  model::contact::HandSettings hand{.mass_kg = 0.2,
-                                    .stiffness_N_per_m = 3000.0,
-                                    .damping_Ns_per_m = 30.0,
-                                    .repeat = false,
-                                    .path = {}};
+model::HandSettings hand_of(const Case& c, const model::Limits& limits) {
+  model::HandSettings hand{.mass_kg = 0.2,
+                           .stiffness_N_per_m = 3000.0,
+                           .damping_Ns_per_m = 30.0,
+                           .repeat = false,
+                           .path = {}};
   const double begin_s = 0.1 + limits.ramp_s + kLead_s + kCause_s;  // lines, ramp, lead, cause
   const double away_m = limits.workspace_radius_m;
   const auto path = [&](const Vec3& from_m, const Vec3& to_m, double in_s) {
@@ -104,11 +104,7 @@ std::uint32_t acted_since(std::array<std::uint64_t, firmware::gate::kStageCount>
 }  // namespace
 
 model::Limits judged_limits(const Case& c, const LimitsBench& bench) {
-  model::Limits limits = limits_of(c, bench.limits);
-  limits.force_N *= bench.force_share;
-  limits.torque_Nm *= bench.force_share;
-  limits.continuous_force_N *= bench.force_share;
-  return limits;
+  return model::limits_in_use(limits_of(c, bench.limits), bench.force_share);
 }
 
 CaseRun::CaseRun(const Case& c, const LimitsBench& bench)
@@ -174,7 +170,7 @@ bool CaseRun::play() {
     }
     going = !program::is_interrupted() && !requests_.stop.load();
   }
-  loop_->let_go();
+  loop_->release_device();
   return going;
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "firmware/guardian/guardian.h"
 #include "firmware/loop/rt_loop.h"
 #include "hal/registry/open_device.h"
 #include "model/scene/tissue.h"
@@ -37,6 +38,7 @@ struct LimitsBench {
   hal::Device* device = nullptr;                 // real; null: a simulated one for each case
   hal::SafetyLines* lines = nullptr;             // of it
   firmware::loop::Requests* requests = nullptr;  // of all cases on it; a fault of the watch stays
+  const firmware::guardian::Guardian* guardian = nullptr;
   /// Makes the gate's limits from the claimed ones. Null: the same. Others are for tests that must
   /// fail, and for the wall without the passivity stage.
   model::Limits (*gate_limits)(const model::Limits&) = nullptr;

@@ -13,8 +13,9 @@ namespace {
 
 using model::Result;
 
-constexpr int kColumns = 3;
-constexpr int kPanelHeight_px = 230, kWidth_px = 1260, kHead_px = 30;
+// Twelve panels fill an A4 page, and their words are still read there.
+constexpr std::size_t kColumns = 2, kPanels = 12;
+constexpr int kPanelHeight_px = 190, kWidth_px = 900, kHead_px = 30;
 
 /// Has it a moment to mark?
 bool has_cause(const Case& c) {
@@ -47,16 +48,18 @@ std::string panel(const CaseResult& result) {
   return out;
 }
 
-report::Picture curves(const LimitsReport& report) {
-  const int rows = (static_cast<int>(report.cases.size()) + kColumns - 1) / kColumns;
+/// Of up to kPanels cases from `first` on.
+report::Picture curves(const LimitsReport& report, std::size_t first) {
+  const std::size_t panels = std::min(kPanels, report.cases.size() - first);
+  const std::size_t rows = (panels + kColumns - 1) / kColumns;
   std::string script = fmt::format(
       "set multiplot layout {},{}\nset xlabel 's' offset 0,0.7\n"
       "set samples 2\nset tmargin 1.6\nset title offset 0,-0.6\n",
       rows, kColumns);
-  for (const CaseResult& result : report.cases) script += panel(result);
-  return {.name = "curves",
+  for (std::size_t i = first; i < first + panels; ++i) script += panel(report.cases[i]);
+  return {.name = first == 0 ? "curves" : fmt::format("curves_{}", first / kPanels + 1),
           .width_px = kWidth_px,
-          .height_px = kHead_px + rows * kPanelHeight_px,
+          .height_px = kHead_px + static_cast<int>(rows) * kPanelHeight_px,
           .script = script + "unset multiplot\n"};
 }
 
@@ -85,7 +88,8 @@ plot 'wall.csv' using 2:($4*1e3) with linespoints pt 7 lc 2 lw 2 title "without 
 Result<std::vector<std::string>> draw_curves(const LimitsReport& report,
                                              const std::string& directory) {
   std::vector<report::Picture> pictures;
-  if (!report.cases.empty()) pictures.push_back(curves(report));
+  for (std::size_t first = 0; first < report.cases.size(); first += kPanels)
+    pictures.push_back(curves(report, first));
   if (report.wall) pictures.push_back(wall_picture(*report.wall));
   std::vector<std::string> files;
   for (const report::Picture& picture : pictures) {

@@ -42,6 +42,7 @@ firmware::run::ThreadCosts play_guarded(const Runs& runs, const LimitsBench& ben
                                       .lines = *bench.lines,
                                       .requests = requests,
                                       .filter = filter,
+                                      .guardian = bench.guardian,
                                       .rt = {},
                                       .period_ns = firmware::loop::period_ns(bench.scene.rate_Hz),
                                       .hard_real_time = bench.hard_real_time});

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tools/limits/hazard_page.h"
 #include "tools/limits/limit_rows.h"
 #include "tools/limits/limits.html.h"
 #include "tools/report/page.h"
@@ -23,7 +24,16 @@ json facts(const LimitsReport& report) {
   const auto add = [&](const char* name, const std::string& value) {
     out.push_back({{"name", name}, {"value", value}});
   };
-  add("Device", report.device_name + (report.simulated ? " (simulated, on simulated time)" : ""));
+  const Evidence& evidence = report.evidence;
+  add("Report number", evidence.people.number);
+  add("Tested by", evidence.people.tester);
+  add("Place", evidence.people.place);
+  add("Serial numbers", fmt::format("{}", fmt::join(evidence.people.serials, "; ")));
+  add("Begun, ended", evidence.began_utc.empty()
+                          ? report.started
+                          : fmt::format("{}, {}", evidence.began_utc, evidence.ended_utc));
+  add("Host", fmt::format("{}: {}, Linux {}", evidence.host, e.cpu, e.kernel_release));
+  add("Device", report.device_name + (report.simulated ? " (SIMULATED, on simulated time)" : ""));
   add("Scene", fmt::format("{} ({}), hash {}", report.scene_name, report.scene_path, e.scene_hash));
   add("Rate", fmt::format("{:g} Hz", 1.0 / report.period_s));
   if (!report.simulated && !report.hard_real_time)
@@ -33,9 +43,14 @@ json facts(const LimitsReport& report) {
     add("Guards", fmt::format("the watch above the loop, the runaway guard{}",
                               report.call_filter ? ", the filter on the loop's system calls"
                                                  : "; no filter on the loop's system calls"));
-  add("Date", report.started);
+  add("Limits checksum",
+      fmt::format("{} (SHA-256 {})", evidence.limits_checksum, evidence.limits_sha256));
+  add("SHA-256 of the scene", evidence.scene_sha256);
+  add("SHA-256 of tact-limits", evidence.program_sha256);
+  add("SHA-256 of tactd", evidence.tactd_path.empty()
+                              ? "none lies beside tact-limits"
+                              : fmt::format("{} ({})", evidence.tactd_sha256, evidence.tactd_path));
   add("Software", fmt::format("tact {}, {}", e.git_revision, e.compiler));
-  add("PC", fmt::format("{}, Linux {}", e.cpu, e.kernel_release));
   add("Command", report.command);
   return out;
 }
@@ -98,7 +113,7 @@ json case_data(const CaseVerdict& v, const LimitsReport& report) {
           {"zero", v.worst.zero_s ? fmt::format("{:.0f} ms", 1e3 * *v.worst.zero_s) : "-"},
           {"allowed", allowed ? fmt::format("{:.0f} ms", std::floor(1e3 * *allowed)) : "-"},
           {"stages", v.acted_words()},
-          {"fault", v.fault == Fault::kNone ? "-" : model::describe(v.fault).name},
+          {"fault", v.fault == Fault::kNone ? "" : model::describe(v.fault).name},
           {"holds", v.passed()}};
 }
 
@@ -128,6 +143,17 @@ std::string page_html(const LimitsReport& report, const std::vector<std::string>
             {"part_kept", kept && !report.not_run.empty()},
             {"has_left_out", !report.not_run.empty()},
             {"facts", facts(report)},
+            {"number", report.evidence.people.number},
+            {"tester", report.evidence.people.tester},
+            {"hazards", matrix_data(report)},
+            {"tests", tests_data()},
+            {"limits_text", report.evidence.limits_text},
+            {"limits_sha256", report.evidence.limits_sha256},
+            {"scene_path", report.scene_path},
+            {"scene_sha256", report.evidence.scene_sha256},
+            {"scene_text", report.evidence.scene_text},
+            {"has_overrides", !report.evidence.overrides.empty()},
+            {"overrides", report.evidence.overrides},
             {"speed_mps", fmt::format("{:g}", l.speed_mps)},
             {"workspace_radius_m", fmt::format("{:g}", l.workspace_radius_m)},
             {"workspace_half_length_m", fmt::format("{:g}", l.workspace_half_length_m)},
@@ -141,11 +167,12 @@ std::string page_html(const LimitsReport& report, const std::vector<std::string>
     data["left_out"].push_back({{"why", why}, {"names", names}});
   for (const LimitRow& row : limit_rows(report)) data["limits"].push_back(limit_data(row));
   for (const CaseResult& r : report.cases) data["cases"].push_back(case_data(r.verdict, report));
-  const std::size_t curves = report.cases.empty() ? 0 : 1;  // their drawing comes first
-  if (curves > 0 && !svg.empty()) data["curves"] = report::inline_svg(svg.front(), 0);
+  const std::size_t curves = svg.size() - (report.wall && !svg.empty() ? 1 : 0);  // the wall last
+  for (std::size_t i = 0; i < curves; ++i) data["curves"].push_back(report::inline_svg(svg[i], i));
+  data["has_curves"] = curves > 0;
   if (report.wall)
     data["wall"] =
-        wall_data(*report.wall, svg.size() > curves ? report::inline_svg(svg.back(), 1) : "");
+        wall_data(*report.wall, svg.size() > curves ? report::inline_svg(svg.back(), curves) : "");
   return report::render_page(kText, data);
 }
 

@@ -21,6 +21,7 @@ using tact::model::scene::Scene;
 struct Options {
   std::string plan = "all", out, scene;
   std::vector<std::string> overrides;
+  Testers people;
   bool list = false, json = false, no_pictures = false, consent_from_stdin = false;
   bool trust_library = false;
 };
@@ -31,6 +32,13 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--set", o.overrides, "one key of the scene, as KEY=VALUE; repeatable");
   app.add_option("--plan", o.plan, "all, or names of cases with commas")->capture_default_str();
   app.add_option("--out", o.out, "folder of the report; made if need be");
+  app.add_option("--tester", o.people.tester,
+                 "who tests; without it the page has a line to fill in");
+  app.add_option("--place", o.people.place, "where");
+  app.add_option("--serial", o.people.serials,
+                 "serial number of device, PC or tool, with its name; repeatable");
+  app.add_option("--report-number", o.people.number,
+                 "on every page (default: made of time, limits and host)");
   app.add_flag("--list", o.list, "the cases and what they do, nothing else");
   app.add_flag("--no-pictures", o.no_pictures, "tables and page without curves; needs no gnuplot");
   app.add_flag("--consent-from-stdin", o.consent_from_stdin,
@@ -69,10 +77,13 @@ void show_progress(std::size_t done, std::size_t all) {
 }
 
 int test_limits(const program::Program& program, const Options& o) {
+  if (const auto error = check_number(o.people.number)) return program.fail(*error);
   const auto cases = choose_cases(o.plan);
   if (!cases) return program.fail(cases.error());
   auto scene = tact::model::scene::load_scene(o.scene, o.overrides);
   if (!scene) return program.fail(scene.error());
+  auto evidence = collect_evidence(o.scene, o.overrides, o.people);
+  if (!evidence) return program.fail(evidence.error());
   scene->device.force_dimension.trust_library = o.trust_library;
   if (const auto error = program::prepare_folder(o.out)) return program.fail(*error);
   if (!tact::hal::registry::is_simulated(scene->device))
@@ -82,6 +93,8 @@ int test_limits(const program::Program& program, const Options& o) {
   auto report = run_plan(*scene, options);
   if (!report) return program.fail(report.error());
   report->command = program.command();
+  close_evidence(*evidence, report->limits);
+  report->evidence = std::move(*evidence);
   const auto files = write_report(*report, o.out, !o.no_pictures);
   if (o.json)
     fmt::print("{}\n", to_json(*report).dump(2));

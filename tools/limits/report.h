@@ -11,6 +11,7 @@
 
 #include "firmware/pc/environment.h"
 #include "model/result.h"
+#include "tools/limits/evidence.h"
 #include "tools/limits/wall.h"
 
 namespace tact::tools::limits {
@@ -37,11 +38,12 @@ struct LimitsReport {
   firmware::pc::Environment environment{};
   std::vector<CaseResult> cases;
   std::optional<WallVerdict> wall;
+  Evidence evidence{};
   std::vector<LeftOut> not_run;  // the rest of the plan, so that nobody takes it for tested
 
   bool passed() const;
   std::size_t played() const { return cases.size() + (wall ? 1 : 0); }
-  /// "PASS", "PASS of 2 of 25 cases", "FAIL"
+  /// "PASS", "PASS of 2 of 25 cases", "FAIL"; the page says SIMULATED before it
   std::string result_words() const;
   /// Names of the cases that were left out, by why.
   std::vector<std::pair<std::string, std::string>> left_out_by_why() const;

@@ -2,6 +2,7 @@
 // The report for machines: limits.json.
 #include <nlohmann/json.hpp>
 
+#include "tools/limits/hazard_page.h"
 #include "tools/limits/limit_rows.h"
 
 namespace tact::tools::limits {
@@ -55,6 +56,24 @@ json limit_json(const LimitRow& row) {
           {"tighter", tighter}};
 }
 
+json report_json(const LimitsReport& report) {
+  const Evidence& e = report.evidence;
+  return {{"number", e.people.number},
+          {"tester", e.people.tester},
+          {"place", e.people.place},
+          {"serial_numbers", e.people.serials},
+          {"host", e.host},
+          {"began", e.began_utc},
+          {"ended", e.ended_utc}};
+}
+
+json digests_json(const Evidence& e) {
+  return {{"tact_limits", e.program_sha256},
+          {"tactd", e.tactd_path.empty() ? json() : json(e.tactd_sha256)},
+          {"scene", e.scene_sha256},
+          {"limits", e.limits_sha256}};
+}
+
 }  // namespace
 
 json to_json(const LimitsReport& report) {
@@ -65,7 +84,16 @@ json to_json(const LimitsReport& report) {
   for (const CaseResult& result : report.cases)
     cases.push_back(case_json(result.verdict, report.simulated));
   const firmware::pc::Environment& e = report.environment;
-  json out{{"passed", report.passed()},
+  const Evidence& evidence = report.evidence;
+  json out{{"format", "tact-limits"},
+           {"version", 1},
+           {"report", report_json(report)},
+           {"limits_checksum", evidence.limits_checksum},
+           {"sha256", digests_json(evidence)},
+           {"scene_text", evidence.scene_text},
+           {"overrides", evidence.overrides},
+           {"hazard_table", hazards_json(report)},
+           {"passed", report.passed()},
            {"result", report.result_words()},
            {"cases_played", report.played()},
            {"cases_of_plan", report.played() + report.not_run.size()},

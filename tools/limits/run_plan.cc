@@ -8,8 +8,8 @@
 #include <memory>
 #include <string_view>
 
+#include "firmware/console/operator_view.h"
 #include "firmware/run/loop_parts.h"
-#include "firmware/run/operator_view.h"
 #include "firmware/watch/call_filter.h"
 #include "firmware/watch/runaway.h"
 #include "hal/gpio/gpio_lines.h"
@@ -46,7 +46,7 @@ LimitsReport begin_report(const model::scene::Scene& scene, const hal::DeviceInf
 /// What the guards found: no case of its own stands for it.
 void tell_fault(Fault found, const hal::Device& device, const hal::SafetyLines& lines) {
   const model::FaultEntry& fault = model::describe(found);
-  const std::string trouble = firmware::run::trouble_behind(found, device, lines);
+  const std::string trouble = firmware::console::trouble_behind(found, device, lines);
   fmt::print(stderr, "tact-limits: the plan ended with {}: {}{}{}; {}\n", fault.name, fault.cause,
              trouble.empty() ? "" : ": ", trouble, fault.cure);
 }
@@ -102,6 +102,8 @@ Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& dev
     shortfalls.push_back(std::move(*limited));
   const bool hard = shortfalls.empty() && firmware::pc::probe_rt_threads({}).empty();
   const hal::DeviceInfo info = device.info();
+  const auto guardian = firmware::run::start_guardian(device, {});
+  if (!guardian) return guardian.error();
   firmware::loop::Requests requests;
   const LimitsBench bench{.scene = scene,
                           .limits = firmware::gate::limits_for(scene.limits, info),
@@ -110,6 +112,7 @@ Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& dev
                           .device = &device,
                           .lines = lines->get(),
                           .requests = &requests,
+                          .guardian = guardian->get(),
                           .gate_limits = options.gate_limits};
   LimitsReport report = begin_report(scene, info);
   std::vector<Case> cases;

@@ -11,6 +11,7 @@
 #include <optional>
 #include <system_error>
 
+#include "model/io/command_line.h"
 #include "model/io/file_writer.h"
 #include "model/io/program_end.h"
 #include "model/io/within.h"
@@ -105,14 +106,8 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->check(tact::model::io::within(tact::tools::make_meshes::kFewestVertices, kMostVertices));
   app.footer("Exit status: 0 written, 2 bad usage or the directory cannot be written.");
-  app.failure_message([](const CLI::App*, const CLI::Error& e) {
-    return fmt::format("tact-make-meshes: {}; see tact-make-meshes --help\n", e.what());
-  });
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  }
+  if (const auto status = tact::model::io::parse_command_line(app, "tact-make-meshes", argc, argv))
+    return *status;
   std::error_code ignored;
   if (!fs::is_directory(directory, ignored)) {  // said before the work, not after
     fmt::print(stderr, "tact-make-meshes: {}: no such directory; make it first\n", directory);

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "model/io/command_line.h"
 #include "model/io/file_writer.h"
 #include "model/io/program_end.h"
 #include "tools/make_tracking/seen_operator.h"
@@ -121,14 +122,9 @@ int main(int argc, char** argv) {
                "also NAME.truth.jsonl: for each line of the observations the body's true pose in "
                "the device's frame, m");
   app.footer("Exit status: 0 written, 2 bad usage or the directory cannot be written.");
-  app.failure_message([](const CLI::App*, const CLI::Error& e) {
-    return fmt::format("tact-make-tracking: {}; see tact-make-tracking --help\n", e.what());
-  });
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  }
+  if (const auto status =
+          tact::model::io::parse_command_line(app, "tact-make-tracking", argc, argv))
+    return *status;
   const fs::path folder(directory);
   const std::string name(kName);
   const bool good = write(folder / (name + ".tracking.toml"), description()) &&

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "model/io/command_line.h"
 #include "model/io/program_end.h"
 #include "model/io/within.h"
 #include "model/mesh/obj.h"
@@ -21,7 +22,9 @@ json to_json(const Vec3& p) { return json::array({p.x, p.y, p.z}); }
 
 json to_json(const std::string& file, double unit_m, const ObjMesh& obj, const MeshSummary& sum) {
   const bool closed = sum.boundary_edges == 0;
-  return {{"file", file},
+  return {{"format", "tact-mesh"},
+          {"version", 1},
+          {"file", file},
           {"unit_m", unit_m},
           {"vertices", sum.vertices},
           {"triangles", sum.triangles},
@@ -80,14 +83,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--json", as_json, "print one JSON object, SI units (m, m2, m3)");
   app.footer("Exit status: 0 the mesh is sound, 2 bad usage or a bad file.");
-  app.failure_message([](const CLI::App*, const CLI::Error& e) {
-    return fmt::format("tact-mesh: {}; see tact-mesh --help\n", e.what());
-  });
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  }
+  if (const auto status = tact::model::io::parse_command_line(app, "tact-mesh", argc, argv))
+    return *status;
   const auto obj = tact::model::mesh::load_obj(path, unit_m);
   if (!obj) {
     fmt::print(stderr, "tact-mesh: {}\n", obj.error().sentence);

@@ -108,8 +108,11 @@ void print(const Options& o, const std::vector<Candidate>& candidates, const Cho
     if (!written.empty()) fmt::print("{}\n", written);
     return;
   }
-  nlohmann::json out{
-      {"meets", choice.meets}, {"meets_by_rms", choice.meets_by_rms}, {"reason", choice.reason}};
+  nlohmann::json out{{"format", "tact-plan"},
+                     {"version", 1},
+                     {"meets", choice.meets},
+                     {"meets_by_rms", choice.meets_by_rms},
+                     {"reason", choice.reason}};
   if (choice.chosen)
     out[choice.meets_by_rms ? "chosen" : "nearest"] = to_json(candidates[*choice.chosen]);
   if (choice.runner_up) out["runner_up"] = to_json(candidates[*choice.runner_up]);

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "model/io/command_line.h"
 #include "model/io/file_writer.h"
 #include "model/io/program_end.h"
 #include "tools/program/run_program.h"
@@ -21,9 +22,6 @@ Program::Program(std::string name, const std::string& purpose, const std::string
     : name_(std::move(name)), options_(std::make_unique<CLI::App>(purpose)) {
   options_->footer(footer +
                    "\nExit status: 0 good, 1 a check failed or Ctrl-C, 2 bad usage or input.");
-  options_->failure_message([name = name_](const CLI::App*, const CLI::Error& e) {
-    return fmt::format("{0}: {1}; see {0} --help\n", name, e.what());
-  });
 }
 
 Program::~Program() = default;
@@ -32,11 +30,8 @@ std::optional<int> Program::parse(int argc, char** argv) {
   model::io::watch_standard_output(name_.c_str());
   model::io::tell_uncaught(name_.c_str());
   for (int i = 0; i < argc; ++i) command_ += fmt::format("{}{}", i > 0 ? " " : "", argv[i]);
-  try {
-    options_->parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return options_->exit(e) == 0 ? 0 : 2;
-  }
+  if (const auto status = model::io::parse_command_line(*options_, name_.c_str(), argc, argv))
+    return status;
   watch_.emplace();
   return std::nullopt;
 }

@@ -16,7 +16,7 @@ class SimulatedLoop {
   SimulatedLoop(const model::contact::ContactScene& contact, const model::Limits& limits,
                 double rate_Hz, hal::Device& device)
       : controller_(contact, firmware::gate::Gate(limits, 1.0 / rate_Hz, 1.0),
-                    firmware::loop::kHardRealTime),
+                    /*hard_real_time=*/true),
         loop_({.period_ns = firmware::loop::period_ns(rate_Hz)}, device, lines_, controller_,
               clock_, requests_, *ring_) {
     requests_.arm_at_start.store(true);

@@ -50,6 +50,7 @@ void add_options(CLI::App& app, Options& o) {
                  "vertices of the organ's mesh, instead of the scene's or of the six")
       ->delimiter(',');
   app.add_option("--depths", o.depths_m, "m, above 0, rising, at most 5 tool radii; press and pull")
+      ->check(tact::model::io::above_zero())
       ->delimiter(',');
   app.add_option("--large-strain", o.large_strain_sites,
                  "sites also pressed, and pulled up to 1.3 tool radii, with large strain; "

@@ -4,6 +4,7 @@
 Each function takes load(name), the values of tools/results/NAME.json, and gives the lines. A goal
 that was not met says so.
 """
+import textwrap
 
 
 def judged(value, goal, text):
@@ -67,14 +68,17 @@ def laws(load):
 
 
 def known_errors(load):
-    """The own force of each law at its worst place, in the words of the front page."""
-    missed, met = [], []
-    for law in SCENES:
-        worst = max(load("tool")[law]["own_percent_at_mm"].values(), key=abs)
-        (met if abs(worst) <= goals_of(law)[1] else missed).append(f"`{law}` {worst:+.2g} %")
-    told = ", ".join(missed) or "none"
-    yield "[Known errors](#the-laws), own force at the worst depth against finite elements. Goal **missed** by"
-    yield f"{told}; met by {', '.join(met) or 'none'}."
+    """How far the tool's force is off at its worst place and depth, in the words of the front page."""
+    told = "* **Known errors** of the force on the whole tool, at its worst place and depth ([laws](#the-laws))."
+    for goal in sorted({goals_of(law)[1] for law in SCENES}):
+        met, missed = [], []
+        for law in (law for law in SCENES if goals_of(law)[1] == goal):
+            worst = max(load("tool")[law]["own_percent_at_mm"].values(), key=abs)
+            (met if abs(worst) <= goal else missed).append(f"`{law}` {worst:+.2g} %".replace(" ", "\N{NO-BREAK SPACE}"))
+        parts = [f"{', '.join(laws)} {verdict}" for laws, verdict in ((met, "met"), (missed, "**missed**")) if laws]
+        told += f" Goal {goal:.0f} %: {', '.join(parts)}."
+    for line in textwrap.wrap(told, 130, break_long_words=False, break_on_hyphens=False, subsequent_indent="  "):
+        yield line.replace("\N{NO-BREAK SPACE}", " ")
 
 
 def tool(load):

@@ -23,7 +23,7 @@ class FeltTissue {
   model::law::LawResponse tick(double depth_m) {
     if (!site_) return law_->respond(depth_m);
     const model::contact::SiteResponse now = site_->respond(
-        {.place = kMiddle, .normal = {0.0, 0.0, 1.0}, .depth_m = depth_m, .held = depth_m < 0.0});
+        {.place = kMiddle, .normal = {0.0, 0.0, 1.0}, .dent_m = depth_m, .held = depth_m < 0.0});
     site_->advance();
     return now.law;
   }

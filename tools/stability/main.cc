@@ -47,7 +47,7 @@ json to_json(const std::vector<MapReport>& reports) {
                     {"findings", findings},
                     {"files", report.files}});
   }
-  return {{"maps", maps}};
+  return {{"format", "tact-stability"}, {"version", 1}, {"maps", maps}};
 }
 
 bool all_hold(const std::vector<MapReport>& reports) {

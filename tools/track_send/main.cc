@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "host/tracking/observation_player.h"
+#include "model/io/command_line.h"
 #include "model/io/program_end.h"
 #include "model/io/within.h"
 #include "model/result.h"
@@ -65,8 +66,12 @@ int send_all(const Options& options) {
   player.start();
   io.run();
   if (options.json) {
-    fmt::print("{}\n",
-               nlohmann::json{{"sent", sent}, {"unsent", unsent}, {"bad", file->bad}}.dump());
+    fmt::print("{}\n", nlohmann::json{{"format", "tact-track-send"},
+                                      {"version", 1},
+                                      {"sent", sent},
+                                      {"unsent", unsent},
+                                      {"bad", file->bad}}
+                           .dump());
   } else {
     fmt::print(
         "tact-track-send: {} observations sent to 127.0.0.1:{}, {} not taken by the kernel\n", sent,
@@ -96,11 +101,8 @@ int main(int argc, char** argv) {
       ->check(tact::model::io::within(0.01, 100.0));
   app.add_flag("--loop", options.play.loop, "from the start again at the end");
   app.add_flag("--json", options.json, "say what was sent as one line of JSON");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kGood : kBadInput;
-  }
+  if (const auto status = tact::model::io::parse_command_line(app, "tact-track-send", argc, argv))
+    return *status;
   try {
     return send_all(options);
   } catch (const std::exception& error) {  // a library's, when memory or descriptors run out

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "host/figure/figure.h"
+#include "model/io/command_line.h"
 #include "tools/tracking_bench/median_reporter.h"
 #include "tools/tracking_bench/tool_motion.h"
 
@@ -85,11 +86,8 @@ int main(int argc, char** argv) {
       "Exit status: 0 the goal is met (median of the arm <= 50 us, every grip held), 1 it is not,\n"
       "2 bad usage."};
   app.add_flag("--json", json, "the numbers as one line of JSON");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto status = tact::model::io::parse_command_line(app, "tact-arm-bench", argc, argv))
+    return *status;
   long missed = 0, missed_full = 0;
   bench_arm("arm", RootRule::kSubRootFirst, missed);
   bench_arm("arm_full_chain", RootRule::kAlwaysFullChain, missed_full);
@@ -97,6 +95,8 @@ int main(int argc, char** argv) {
   const auto us = tact::tools::tracking_bench::median_times_us();
   if (json) {
     nlohmann::json out(us);
+    out["format"] = "tact-arm-bench";
+    out["version"] = 1;
     out["missed"] = missed;
     out["missed_full_chain"] = missed_full;
     fmt::print("{}\n", out.dump());

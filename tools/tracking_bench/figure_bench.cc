@@ -78,7 +78,9 @@ int main(int argc, char** argv) {
       static_cast<double>(whole.updates) / static_cast<double>(std::max(first.updates, 1L));
   const bool good = ratio >= kGoalRatio && first.unreached == 0 && whole.unreached == 0;
   if (as_json) {
-    fmt::print("{}\n", json{{"scene", scene->name},
+    fmt::print("{}\n", json{{"format", "tact-figure"},
+                            {"version", 1},
+                            {"scene", scene->name},
                             {"seconds", seconds},
                             {"shoulder_first", to_json(first)},
                             {"full_chain", to_json(whole)},

@@ -20,6 +20,7 @@
 #include "host/pose/joint_pose.h"
 #include "host/pose/one_euro.h"
 #include "host/pose/robust_pose.h"
+#include "model/io/command_line.h"
 #include "model/io/within.h"
 #include "tools/tracking_bench/median_reporter.h"
 
@@ -259,13 +260,11 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->check(tact::model::io::within(20, 1000000));
   app.add_flag("--json", options.json, "the numbers as one line of JSON");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto status = tact::model::io::parse_command_line(app, "tact-pose-bench", argc, argv))
+    return *status;
   const auto [alone_us, joint_us] = median_times_us(options);
   const nlohmann::json all{
+      {"format", "tact-pose-bench"},      {"version", 1},
       {"markers", options.markers},       {"size_m", options.size_m},
       {"distance_m", options.distance_m}, {"noise_px", options.noise_px},
       {"time_median_us", alone_us},       {"joint_time_median_us", joint_us},

@@ -11,6 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "model/io/command_line.h"
+#include "model/io/installed.h"
 #include "model/io/json.h"
 #include "model/io/program_end.h"
 #include "model/result.h"
@@ -47,7 +49,8 @@ std::vector<Verifier> known_verifiers() {
   return known;
 }
 
-/// The vectors beside the sources: upwards from here, then upwards from the program.
+/// The vectors beside the sources: upwards from here, then upwards from the program; else the
+/// installed ones.
 Result<std::string> default_directory() {
   std::error_code ignored;
   for (const fs::path& start :
@@ -57,6 +60,9 @@ Result<std::string> default_directory() {
       if (at == at.root_path()) break;
     }
   }
+  if (const fs::path installed = tact::model::io::installed("vectors");
+      fs::is_directory(installed, ignored))
+    return installed.string();
   return Error{fmt::format("no {} here or above; name the vector files", kVectors)};
 }
 
@@ -155,7 +161,12 @@ int run(std::vector<std::string> paths, bool as_json) {
       print_text(*report);
   }
   if (as_json)
-    fmt::print("{}\n", json{{"passed", passed}, {"failed", failed}, {"files", out}}.dump(2));
+    fmt::print("{}\n", json{{"format", "tact-verify"},
+                            {"version", 1},
+                            {"passed", passed},
+                            {"failed", failed},
+                            {"files", out}}
+                           .dump(2));
   if (status != 0) return status;
   return failed > 0 ? 1 : 0;
 }
@@ -171,16 +182,11 @@ int main(int argc, char** argv) {
       "unknown."};
   std::vector<std::string> paths;
   bool as_json = false;
-  app.add_option("files", paths,
-                 "vector files or directories of them (default: tests/data/vectors)");
+  app.add_option(
+      "files", paths,
+      "vector files or directories of them (default: tests/data/vectors, or the installed ones)");
   app.add_flag("--json", as_json, "print one JSON document");
-  app.failure_message([](const CLI::App*, const CLI::Error& error) {
-    return fmt::format("tact-verify: {}; see tact-verify --help\n", error.what());
-  });
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto status = tact::model::io::parse_command_line(app, "tact-verify", argc, argv))
+    return *status;
   return run(paths, as_json);
 }

@@ -43,7 +43,7 @@ json group_results(const json& one_case) {
     at_m[i] = {number(inputs.at("x_m")[i]), number(inputs.at("y_m")[i]), 0.0};
     sphere[i] = {.presses = true,
                  .depth_m = depth_m,
-                 .in = {.sphere = i, .normal = {0, 0, 1}, .depth_m = depth_m},
+                 .in = {.sphere = i, .normal = {0, 0, 1}, .dent_m = depth_m},
                  .response = {}};
   }
   model::contact::Coupling c{};

@@ -9,7 +9,8 @@ export interface ConnectionEvents {
   scene(scene: Scene, organ: Mesh, tool: Mesh): void;
   frame(frame: Frame): void;
   figure(figure: FigureFrame): void;
-  server_gone(): void;
+  /** `refused`: it is there, but the token is missing or of another tact-view. */
+  server_gone(refused: boolean): void;
 }
 
 const kRetry_ms = 1000;
@@ -23,8 +24,13 @@ export class Connection {
   private scene_number = 0;
   private seen = 0; // frames of this socket
 
-  constructor(private readonly events: ConnectionEvents) {
-    this.open();
+  constructor(private readonly events: ConnectionEvents, private token: string | null) {
+    void this.open();
+  }
+
+  /** A new link was opened in this page: it counts from the next try on. */
+  use(token: string): void {
+    this.token = token;
   }
 
   /** Where a simulated hand shall go. Dropped when nobody listens. */
@@ -33,15 +39,32 @@ export class Connection {
     this.send({ hand: { x_m, y_m, z_m, grip_ratio } });
   }
 
-  private open(): void {
+  private async open(): Promise<void> {
+    const status = await this.enter();
+    if (status < 200 || status > 299) return this.retry(status === 401);
     const scheme = location.protocol === "https:" ? "wss" : "ws";
-    this.socket = new WebSocket(`${scheme}://${location.host}/live${location.search}`);
+    this.socket = new WebSocket(`${scheme}://${location.host}/live`);
     this.seen = 0;
     this.socket.onmessage = (message) => this.take(String(message.data));
-    this.socket.onclose = () => {
-      this.events.server_gone();
-      setTimeout(() => this.open(), kRetry_ms);
-    };
+    this.socket.onclose = () => this.retry(false);
+  }
+
+  private retry(refused: boolean): void {
+    this.events.server_gone(refused);
+    setTimeout(() => void this.open(), kRetry_ms);
+  }
+
+  /** Hands the token in, once: its cookie is enough from then on. HTTP status; 0: nobody there. */
+  private async enter(): Promise<number> {
+    const token = this.token;
+    const headers: HeadersInit = token ? { Authorization: `Bearer ${token}` } : {};
+    try {
+      const { status } = await fetch("session", { headers });
+      if (this.token === token) this.token = null; // not one that came meanwhile
+      return status;
+    } catch {
+      return 0;
+    }
   }
 
   private send(message: object): void {

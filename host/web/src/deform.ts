@@ -2,10 +2,12 @@
 // deform.ts - moves the vertices of the organ as the touched sites say. Only sites and profiles
 // travel from tactd; the mesh stays here.
 //
-//     d(v) = fade(v) (-n u(rho) + s w(rho))
+//     d(v) = fade(v) (-n (u(rho) + taper(rho) tilt . (v - p)) + s w(rho))
 //
 //     n, s   normal and tangential shift at the site     rho  distance from the site in its tangent plane
 //     u      profile (profile.ts)                        w    u / u_0, the same shape
+//     tilt   the organ sinks more towards a free lobe (model/tissue/dent_tilt.h); p  the site
+//     taper  1 near the site and 0 a reach away
 //     fade   1 near the tangent plane and 0 a reach away or on skin that looks the other way, so that
 //            the far side of the organ stays where it is
 //
@@ -22,6 +24,13 @@ import type { Site } from "./protocol";
 export interface Deformed {
   moved: number; // vertices that moved by more than a micrometre
   most_m: number; // largest displacement
+}
+
+const kTaperStart = 0.7; // of the reach, as the rings themselves have it
+
+/** u + tilt, but skin that leans does not rise out of a dent. */
+function no_further_than_0(u_m: number, lean_m: number): number {
+  return u_m < 0 ? Math.min(0, u_m + lean_m) : Math.max(0, u_m + lean_m);
 }
 
 export class Deformer {
@@ -94,6 +103,7 @@ export class Deformer {
     const reach_m = this.profile.reach_m;
     const [px, py, pz] = site.point_m;
     const [nx, ny, nz] = site.normal;
+    const [tx, ty, tz] = site.tilt;
     const u0_m = site.u_m[0] ?? 0;
     const per_u0 = Math.abs(u0_m) > 1e-9 ? 1 / u0_m : 0;
     for (let i = 0; i < this.rest_m.length; i += 3) {
@@ -108,8 +118,10 @@ export class Deformer {
         this.rest_normal[i] * nx + this.rest_normal[i + 1] * ny + this.rest_normal[i + 2] * nz;
       const fade =
         (1 - smoothstep(0.4 * reach_m, reach_m, Math.abs(height_m))) * smoothstep(-0.4, 0.2, facing);
-      const u_m = this.profile.at(rho_m) * fade;
-      const w = u_m * per_u0;
+      const mean_m = this.profile.at(rho_m) * fade;
+      const lean_m = fade * (1 - smoothstep(kTaperStart * reach_m, reach_m, rho_m)) * (x * tx + y * ty + z * tz);
+      const u_m = no_further_than_0(mean_m, lean_m);
+      const w = mean_m * per_u0;
       if (!Number.isFinite(u_m)) continue;
       out_m[i] -= nx * u_m;
       out_m[i + 1] -= ny * u_m;

@@ -31,6 +31,9 @@ export class Hud {
   private force_limit_N = 0;
   private continuous_force_N = 0;
   private energy_budget_J = 0;
+  private status: Status | null = null;
+  private refused = false;
+  private silent = false;
 
   scene(scene: Scene): void {
     document.title = `tact: ${scene.scene}`;
@@ -40,15 +43,22 @@ export class Hud {
     write("scene", scene.scene);
     write("law", scene.law);
     write("device", `${scene.device} · ${Math.round(scene.rate_Hz)} Hz`);
+    write("limits", scene.limits_checksum);
     write("force_of", `of ${Number(scene.force_limit_N.toPrecision(3))} N`);
     const banner = by_id("banner");
     banner.hidden = !scene.non_rt;
     banner.textContent = "no hard real time on this PC: force capped at 25 %";
   }
 
-  link(status: Status | null): void {
+  /** No status: tact-view is gone, or it `refused` this page. */
+  link(status: Status | null, refused = false): void {
+    this.status = status;
+    this.refused = refused;
     const detail = status?.detail ? ` (${status.detail})` : "";
-    if (!status) {
+    if (!status && refused) {
+      pill("link", "not allowed", "bad");
+      this.notice("this page has no token, or an old one: open the whole link that tact-view printed");
+    } else if (!status) {
       pill("link", "viewer gone", "bad");
       this.notice("connection to tact-view lost; trying again …");
     } else if (status.link === "live") {
@@ -98,6 +108,22 @@ export class Hud {
     this.fault(now_ms);
   }
 
+  /** After `draw`. While nothing is heard, nothing is said of now. 0: there is news. */
+  silence(seconds: number): void {
+    const silent = seconds > 0;
+    if (silent !== this.silent) {
+      this.silent = silent;
+      for (const id of ["now", "plots"]) by_id(id).classList.toggle("old", silent);
+      this.link(this.status, this.refused);
+    }
+    if (!silent) return;
+    pill("state", `no news for ${seconds.toFixed(1)} s`, "bad");
+    write("state_words", "");
+    if (this.status?.link !== "live") return; // what has gone is told already
+    pill("link", "silent", "bad");
+    this.notice("tactd is silent: what is shown is old, and its force is not known");
+  }
+
   /** Nothing to say hides the chip. */
   tracking(figure: FigureFrame | null): void {
     const chip = by_id("tracking");
@@ -130,9 +156,8 @@ export class Hud {
   }
 
   private notice(text: string): void {
-    const notice = by_id("notice");
-    notice.hidden = text === "";
-    notice.textContent = text;
+    by_id("notice").hidden = text === "";
+    write("notice", text);
   }
 
   private static depth(frame: Frame): string {

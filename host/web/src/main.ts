@@ -7,6 +7,8 @@ import { eyes_of, grip_error_m } from "./figure";
 import { FigureView } from "./figure_view";
 import { HandControl } from "./hand_control";
 import { by_id, Hud } from "./hud";
+import { split_link } from "./link";
+import { News } from "./news";
 import { OrganView } from "./organ_view";
 import { Plots } from "./plots";
 import type { FigureFrame, Frame, Mesh, Scene, Status, Vec } from "./protocol";
@@ -14,10 +16,19 @@ import { Recorder } from "./recorder";
 import { Stage } from "./stage";
 import { ToolView } from "./tool_view";
 
+/** Takes the token out of the address bar: no bookmark, history or screenshot keeps it. */
+function take_token(): string | null {
+  const { token, rest } = split_link(location.hash);
+  if (token !== null) history.replaceState(null, "", location.pathname + location.search + rest);
+  return token;
+}
+
+const token = take_token();
 const canvas = by_id<HTMLCanvasElement>("view");
 const hud = new Hud();
 const plots = new Plots(by_id);
 const recorder = new Recorder();
+const news = new News();
 const kLongestWait_ms = 100; // of a frame for its figure
 
 let scene: Scene | null = null;
@@ -31,6 +42,7 @@ let status: Status | null = null;
 let paused = false;
 let wireframe = false;
 let most_ever_m = 0;
+let silence_s = 0;
 let figure: FigureView | null = null;
 let newest_figure: FigureFrame | null = null;
 let shown_figure: FigureFrame | null = null;
@@ -55,12 +67,16 @@ const connection = new Connection({
   scene: take_scene,
   frame: take_frame,
   figure: take_figure,
-  server_gone: () => {
+  server_gone: (refused) => {
     status = null;
-    hud.link(null);
+    hud.link(null, refused);
     hud.tracking(null); // what a chip said last is not known any more
     recorder.stop();
   },
+}, token);
+window.addEventListener("hashchange", () => {
+  const next = take_token();
+  if (next !== null) connection.use(next);
 });
 
 function may_move_hand(): boolean {
@@ -136,6 +152,7 @@ function draw_figure(): void {
 
 function take_frame(frame: Frame): void {
   recorder.frame(frame);
+  news.frame(performance.now());
   if (paused) return;
   newest = figure ? waiting ?? newest : frame;
   waiting = figure ? frame : null;
@@ -166,6 +183,10 @@ function draw(now_ms: number): void {
     most_ever_m = Math.max(most_ever_m, organ.deformed.most_m);
   }
   hud.draw(now_ms, stage.fps);
+  const silent_s = news.silence_s(performance.now(), scene?.frame_rate_Hz ?? 60);
+  silence_s = status?.link === "replay" ? 0 : silent_s; // a recording may have gaps
+  hud.silence(silence_s);
+  if (silence_s > 0) tool?.hide_force();
   draw_figure();
   tool?.show_hand_target(hand.target ? (hand.target.toArray() as Vec) : null);
   if (!paused) plots.draw(now_ms);
@@ -244,6 +265,7 @@ const numbers = {
   get tick() { return shown?.tick ?? 0; },
   get state() { return shown?.state ?? 0; },
   get paused() { return paused; },
+  get silence_s() { return silence_s; },
   get wireframe() { return wireframe; },
   get figure_on() { return figure !== null && figure_on; },
   get eyes_on() { return eyes_on; },

@@ -22,6 +22,7 @@ export interface Scene {
   force_limit_N: number;
   continuous_force_N: number;
   energy_budget_J: number;
+  limits_checksum: string;
   non_rt: boolean;
   simulated: boolean;
   spheres: Sphere[];
@@ -35,7 +36,8 @@ export interface Site {
   normal: Vec; // outward, unit
   shift_m: Vec; // tangential displacement of the tissue
   depth_m: number; // press positive
-  u_m: number[]; // displacement into the tissue at radius j * ring_pitch_m
+  u_m: number[]; // displacement into the tissue at radius j * ring_pitch_m, its mean around the site
+  tilt: Vec; // what u_m lacks at x: tilt . (x - point_m)
 }
 
 /** Of a law without profiles: vertices that are not at rest, and cut triangles. */

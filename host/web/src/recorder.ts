@@ -7,7 +7,7 @@ import type { Frame } from "./protocol";
 
 function save(path: string, name: string): void {
   const link = document.createElement("a");
-  link.href = path + location.search;
+  link.href = path;
   link.download = name;
   link.click();
 }
@@ -35,12 +35,10 @@ export class Recorder {
   /** Ends the recording and saves it; nothing if none runs. */
   stop(): void {
     if (this.first && this.last) {
-      const separator = location.search ? "&" : "?";
-      const ticks = `${separator}from_tick=${this.first.tick}&to_tick=${this.last.tick}`;
-      const link = document.createElement("a");
-      link.href = `recording.tact${location.search}${ticks}`;
-      link.download = `${document.title.replace(/[^a-z0-9]+/gi, "-")}.tact`;
-      link.click();
+      save(
+        `recording.tact?from_tick=${this.first.tick}&to_tick=${this.last.tick}`,
+        `${document.title.replace(/[^a-z0-9]+/gi, "-")}.tact`,
+      );
     }
     this.first = null;
     const button = by_id("record");

@@ -44,7 +44,7 @@ export class Stage {
 
   constructor(canvas: HTMLCanvasElement, draw: (now_ms: number) => void) {
     // #sharp in the address is for still pictures: full quality whatever it costs.
-    const sharp = location.hash === "#sharp";
+    const sharp = location.hash.slice(1).split("&").includes("sharp");
     const software = draws_in_software();
     this.adapts = !sharp;
     if (software && !sharp) this.sharpness = 0.8;

@@ -95,6 +95,11 @@ export class ToolView {
     this.arrow.set(this.contact_middle(frame), frame.force_N, share, into_tissue);
   }
 
+  /** Until the next frame. */
+  hide_force(): void {
+    this.arrow.object.visible = false;
+  }
+
   /** A place in the tool's own axes, where it is drawn. */
   drawn_m(place_m: Vec): Vec {
     return new THREE.Vector3(...place_m).applyMatrix4(this.tool.matrixWorld).toArray();

@@ -30,7 +30,7 @@ function slab(): { rest_m: Float32Array; normal: Float32Array } {
 }
 
 function site(changes: Partial<Site> = {}): Site {
-  return { site: 0, state: 1, point_m: [0, 0, 0], normal: [0, 0, 1], shift_m: [0, 0, 0], depth_m: 0.01, u_m: kRings, ...changes };
+  return { site: 0, state: 1, point_m: [0, 0, 0], normal: [0, 0, 1], shift_m: [0, 0, 0], depth_m: 0.01, u_m: kRings, tilt: [0, 0, 0], ...changes };
 }
 
 function pressed(sites: Site[]): { rest_m: Float32Array; out_m: Float32Array; moved: number; most_m: number } {
@@ -103,6 +103,24 @@ test("Of two sideways shifts the larger is shown", () => {
   ]);
   for (let i = 0; i < both.out_m.length; i += 3)
     assert.ok(Math.abs(both.out_m[i] - shifted.out_m[i]) < 1e-8);
+});
+
+test("A dent that leans is deeper on one side by as much as it is shallower on the other", () => {
+  const { out_m, rest_m } = pressed([site({ tilt: [0.05, 0, 0] })]);
+  const straight = pressed([site()]).out_m;
+  const lean_m = (x_mm: number): number => {
+    const i = 3 * ((x_mm + 20) * 41 + 20); // y = 0
+    assert.ok(Math.abs(rest_m[i] - x_mm * 1e-3) < 1e-9);
+    return straight[i + 2] - out_m[i + 2];
+  };
+  assert.ok(Math.abs(lean_m(4) - 0.05 * 0.004) < 1e-7);
+  assert.ok(Math.abs(lean_m(-4) + 0.05 * 0.004) < 1e-7);
+  assert.ok(Math.abs(lean_m(0)) < 1e-7);
+});
+
+test("Skin that leans does not rise out of a dent", () => {
+  const { out_m, rest_m } = pressed([site({ tilt: [2, 0, 0] })]);
+  for (let i = 2; i < out_m.length; i += 3) assert.ok(out_m[i] <= rest_m[i]);
 });
 
 test("The tangential shift fades with the same shape", () => {

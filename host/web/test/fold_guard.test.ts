@@ -86,6 +86,7 @@ function site(skin: Skin, vertex: number, depth_m: number): Site {
     shift_m: [0, 0, 0],
     depth_m,
     u_m: rings(depth_m),
+    tilt: [0, 0, 0],
   };
 }
 

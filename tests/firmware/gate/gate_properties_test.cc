@@ -74,7 +74,7 @@ TEST(GateProperties, WhoPushesForEverComesToTheContinuousForceFromBelow) {
   for (int i = 0; i < 10000; ++i) ASSERT_EQ(rules.judge(push), nullptr);
   EXPECT_GT(rules.most_heat_ratio(), 0.999);
   EXPECT_NEAR(rules.verdict().wrench.force_N.x, kRulesLimits.continuous_force_N, 0.01);
-  EXPECT_EQ(rules.verdict().limit, model::Fault::kContinuousLimited);
+  EXPECT_EQ(rules.verdict().acting, model::Fault::kContinuousLimited);
 }
 
 TEST(GateProperties, WhoTwistsForEverComesToTheContinuousTorqueFromBelow) {
@@ -85,7 +85,7 @@ TEST(GateProperties, WhoTwistsForEverComesToTheContinuousTorqueFromBelow) {
   for (int i = 0; i < 10000; ++i) ASSERT_EQ(rules.judge(twist), nullptr);
   EXPECT_GT(rules.most_torque_heat_ratio(), 0.999);
   EXPECT_NEAR(rules.verdict().wrench.torque_Nm.y, 0.1, 0.001) << "half of its peak, as the force";
-  EXPECT_EQ(rules.verdict().limit, model::Fault::kContinuousLimited);
+  EXPECT_EQ(rules.verdict().acting, model::Fault::kContinuousLimited);
 }
 
 // A hand of 150 g leans with 1 N on a wall, on a device of 1 Ns/m at 1 kHz: stable to 2000 N/m.

@@ -38,7 +38,7 @@ TEST(Gate, PassesASmallSteadyForceUntouched) {
   Gate gate = open_gate({0.1, -0.2, 0.3});
   const GateVerdict v = gate.judge(wanting({0.1, -0.2, 0.3}));
   EXPECT_EQ(v.wrench.force_N, (Vec3{0.1, -0.2, 0.3}));
-  EXPECT_EQ(v.limit, Fault::kNone);
+  EXPECT_EQ(v.acting, Fault::kNone);
 }
 
 TEST(Gate, IsShutUnlessArmed) {
@@ -47,7 +47,7 @@ TEST(Gate, IsShutUnlessArmed) {
   input.armed = false;
   const GateVerdict v = gate.judge(input);
   EXPECT_EQ(v.wrench, Wrench{});
-  EXPECT_EQ(v.limit, Fault::kNotArmed);
+  EXPECT_EQ(v.acting, Fault::kNotArmed);
   EXPECT_EQ(count(gate, Stage::kArmed), 1u);
 }
 
@@ -76,7 +76,7 @@ TEST(Gate, OneMissedSampleHoldsTheForce) {
   stale.fresh = false;
   const GateVerdict v = gate.judge(stale);
   EXPECT_NEAR(v.wrench.force_N.x, 1.0, 1e-12);
-  EXPECT_EQ(v.limit, Fault::kSampleHeld);
+  EXPECT_EQ(v.acting, Fault::kSampleHeld);
 }
 
 TEST(Gate, FromTheSecondMissedSampleTheForceFadesToZeroInTenMilliseconds) {
@@ -88,7 +88,7 @@ TEST(Gate, FromTheSecondMissedSampleTheForceFadesToZeroInTenMilliseconds) {
   for (int i = 0; i < 10; ++i) {
     const GateVerdict v = gate.judge(stale);
     EXPECT_LT(v.wrench.force_N.x, before_N);
-    EXPECT_EQ(v.limit, Fault::kSampleStale);
+    EXPECT_EQ(v.acting, Fault::kSampleStale);
     before_N = v.wrench.force_N.x;
   }
   EXPECT_NEAR(before_N, 0.0, 1e-12);
@@ -120,7 +120,7 @@ TEST(Gate, ALoopThatIsLateFadesInTenMillisecondsOfTimeNotOfTicks) {
   for (const double left : {0.9, 0.7, 0.5, 0.3, 0.1, 0.0}) {
     const GateVerdict v = two.judge(late_and_missing({4, 0, 0}, 1));
     EXPECT_NEAR(v.wrench.force_N.x, 4.0 * left, 1e-12);
-    EXPECT_EQ(v.limit, Fault::kSampleStale);
+    EXPECT_EQ(v.acting, Fault::kSampleStale);
     EXPECT_EQ(v.fault, Fault::kNone);
   }
   Gate five = open_gate({8, 0, 0});  // more than one period's slew in a tick, as more time passed
@@ -151,7 +151,7 @@ TEST(Gate, TwentyPeriodsWithoutASampleLoseTheDeviceInHoweverFewTicks) {
   Gate late = open_gate({1, 0, 0});
   GateInput fresh = wanting({1, 0, 0});
   fresh.skipped_periods = 19;
-  EXPECT_EQ(late.judge(fresh).limit, Fault::kNone) << "a sample after all: nothing is missing";
+  EXPECT_EQ(late.judge(fresh).acting, Fault::kNone) << "a sample after all: nothing is missing";
 }
 
 TEST(Gate, AfterALateTickAForceGrowsByOnePeriodsSlew) {
@@ -181,13 +181,13 @@ TEST(Gate, OutsideTheWorkspaceTheForceFadesAndComesBackInside) {
   outside.tool.position_m = {0, 0.19, 0};
   const GateVerdict first = gate.judge(outside);
   EXPECT_GT(first.wrench.force_N.x, 0.9) << "fades, never cuts";
-  EXPECT_EQ(first.limit, Fault::kOutsideWorkspace);
+  EXPECT_EQ(first.acting, Fault::kOutsideWorkspace);
   for (int i = 0; i < 60; ++i) gate.judge(outside);
   EXPECT_EQ(gate.judge(outside).wrench.force_N.x, 0.0);
   for (int i = 0; i < 60; ++i) gate.judge(wanting({1, 0, 0}));
   EXPECT_NEAR(gate.judge(wanting({1, 0, 0})).wrench.force_N.x, 1.0, 1e-12);
   outside.tool.position_m = {-0.151, 0, 0};  // against the force: it takes the energy
-  EXPECT_EQ(gate.judge(outside).limit, Fault::kOutsideWorkspace);
+  EXPECT_EQ(gate.judge(outside).acting, Fault::kOutsideWorkspace);
 }
 
 TEST(Gate, LimitsTheMagnitudeAndKeepsTheDirection) {
@@ -195,7 +195,7 @@ TEST(Gate, LimitsTheMagnitudeAndKeepsTheDirection) {
   const GateVerdict v = gate.judge(wanting({30, 40, 0}));
   EXPECT_NEAR(norm(v.wrench.force_N), 8.0, 1e-9);
   EXPECT_NEAR(v.wrench.force_N.x / v.wrench.force_N.y, 0.75, 1e-12);
-  EXPECT_EQ(v.limit, Fault::kForceLimited);
+  EXPECT_EQ(v.acting, Fault::kForceLimited);
 }
 
 TEST(Gate, WithoutHardRealTimeAQuarterOfTheForceIsLeft) {
@@ -212,7 +212,7 @@ TEST(Gate, LimitsTheTorque) {
   GateVerdict v;
   for (int i = 0; i < 100; ++i) v = gate.judge(twist);
   EXPECT_NEAR(v.wrench.torque_Nm.z, 0.2, 1e-9);
-  EXPECT_EQ(v.limit, Fault::kTorqueLimited);
+  EXPECT_EQ(v.acting, Fault::kTorqueLimited);
 }
 
 TEST(Gate, RampsUpAfterArming) {
@@ -236,14 +236,14 @@ TEST(Gate, TooFastTheForceFadesAndComesBackWhenItIsSlow) {
   fast.tool.velocity_mps = {0, 1.6, 0};
   const GateVerdict first = gate.judge(fast);
   EXPECT_GT(first.wrench.force_N.x, 0.09) << "fades, never cuts";
-  EXPECT_EQ(first.limit, Fault::kTooFast);
+  EXPECT_EQ(first.acting, Fault::kTooFast);
   for (int i = 0; i < 60; ++i) gate.judge(fast);
   EXPECT_EQ(gate.judge(fast).wrench.force_N.x, 0.0);
   for (int i = 0; i < 60; ++i) gate.judge(wanting({0.1, 0, 0}));
-  EXPECT_EQ(gate.judge(wanting({0.1, 0, 0})).limit, Fault::kNone);
+  EXPECT_EQ(gate.judge(wanting({0.1, 0, 0})).acting, Fault::kNone);
   fast.tool.velocity_mps = {};
   fast.tool.angular_velocity_radps = {0, 0, 11};
-  EXPECT_EQ(gate.judge(fast).limit, Fault::kTooFast) << "turning counts too";
+  EXPECT_EQ(gate.judge(fast).acting, Fault::kTooFast) << "turning counts too";
 }
 
 TEST(Gate, AToolThatSpeedsUpAsAHandDoesMeetsThePowerLimitWithoutAStop) {
@@ -259,7 +259,7 @@ TEST(Gate, AToolThatSpeedsUpAsAHandDoesMeetsThePowerLimitWithoutAStop) {
     most_W = std::max(most_W, v.wrench.force_N.x * input.tool.velocity_mps.x);
   }
   EXPECT_NEAR(most_W, 3.0, 0.01) << "three quarters of the limit";
-  EXPECT_EQ(gate.judge(input).limit, Fault::kPowerLimited);
+  EXPECT_EQ(gate.judge(input).acting, Fault::kPowerLimited);
   input.tool.velocity_mps.x = 50.0;  // in one tick: no slew can follow
   const GateVerdict v = gate.judge(input);
   EXPECT_EQ(v.fault, Fault::kPowerExceeded);

@@ -27,7 +27,7 @@ class AllocCounter : public testing::Test {
 
 TEST_F(AllocCounter, SeesEveryKindOfHeapCall) {
   const auto calls_of = [](auto&& what) {
-    const HeapWatch watch;
+    const HeapCallCounter watch;
     what();
     return watch.calls();
   };
@@ -48,7 +48,7 @@ TEST_F(AllocCounter, SeesEveryKindOfHeapCall) {
 }
 
 TEST_F(AllocCounter, CountsAllocAndFreeOnceEach) {
-  const HeapWatch watch;
+  const HeapCallCounter watch;
   int* const block = new int(1);
   keep(block);
   EXPECT_EQ(watch.calls(), 1u);
@@ -64,7 +64,7 @@ TEST_F(AllocCounter, DoesNotSeeOtherThreads) {
     done.store(true);
   });
   {
-    const HeapWatch watch;
+    const HeapCallCounter watch;
     go.store(true);
     while (!done.load()) std::this_thread::yield();
     EXPECT_EQ(watch.calls(), 0u);
@@ -74,10 +74,10 @@ TEST_F(AllocCounter, DoesNotSeeOtherThreads) {
 
 TEST_F(AllocCounter, EndsWithItsWatch) {
   {
-    const HeapWatch watch;
+    const HeapCallCounter watch;
   }
   keep(std::make_unique<int>(1).get());
-  const HeapWatch watch;
+  const HeapCallCounter watch;
   EXPECT_EQ(watch.calls(), 0u);
 }
 

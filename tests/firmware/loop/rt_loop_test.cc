@@ -195,7 +195,8 @@ TEST_F(RtLoopTest, AClockThatStepsBackLetsNoForceChangeFasterThanItsSlew) {
   model::Limits slow = scene.limits;
   slow.force_N = 0.5;
   slow.slew_N_per_s = 20.0;
-  Controller careful(tissue->contact_scene(), gate::Gate(slow, 0.001, 1.0), kHardRealTime);
+  Controller careful(tissue->contact_scene(), gate::Gate(slow, 0.001, 1.0),
+                     /*hard_real_time=*/true);
   RtLoop back({.period_ns = 1'000'000}, device, lines, careful, clock, requests, *ring);
   device.height_m = 0.006;
   requests.arm_at_start.store(true);

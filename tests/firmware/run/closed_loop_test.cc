@@ -77,7 +77,7 @@ Summary run(const model::scene::Scene& scene, double seconds) {
   const auto device = std::move(*hal::registry::open_device(scene));
   loop::Controller controller(tissue->contact_scene(),
                               gate::Gate(scene.limits, 1.0 / scene.rate_Hz, 1.0),
-                              loop::kHardRealTime);
+                              /*hard_real_time=*/true);
   loop::SimulatedClock clock;
   loop::Requests requests;
   hal::NoSafetyLines lines;
@@ -90,7 +90,7 @@ Summary run(const model::scene::Scene& scene, double seconds) {
   const auto ticks = static_cast<int>(seconds * scene.rate_Hz);
   for (int i = 0; i < ticks; ++i) {
     {
-      const loop::HeapWatch watch;
+      const loop::HeapCallCounter watch;
       loop.step();
       summary.heap_calls += watch.calls();
     }

@@ -80,7 +80,7 @@ class WholeController {
       : tissue_(std::move(*model::scene::make_tissue(scene_))),
         device_(std::move(*hal::registry::open_device(scene_))),
         controller_(tissue_->contact_scene(), gate::Gate(scene_.limits, 0.001, 1.0),
-                    loop::kHardRealTime),
+                    /*hard_real_time=*/true),
         loop_({.period_ns = 1'000'000}, *device_, lines_, controller_, clock_, requests_, *ring_),
         telemetry_(*ring_, FrameBuilder(tissue_->law().site_law(), controller_.shapes(), true),
                    FramePace{}, {.socket = open(path)}) {
@@ -100,8 +100,8 @@ class WholeController {
 
  private:
   std::optional<TelemetrySocket> open(const std::string& path) {
-    const Hello hello =
-        make_hello(scene_, *tissue_, {.device = device_->info(), .hand_socket = ""});
+    const Hello hello = make_hello(
+        scene_, *tissue_, {.device = device_->info(), .limits_checksum = "", .hand_socket = ""});
     return std::move(*TelemetrySocket::open(path, hello, *make_mesh_file(scene_)));
   }
 
@@ -235,7 +235,7 @@ TEST(Telemetry, TheShapeOfAPatchReachesThePageWhole) {
   const auto tissue = std::move(*model::scene::make_tissue(*scene));
   const auto device = std::move(*hal::registry::open_device(*scene));
   loop::Controller controller(tissue->contact_scene(), gate::Gate(scene->limits, 0.001, 1.0),
-                              loop::kHardRealTime);
+                              /*hard_real_time=*/true);
   loop::SimulatedClock clock;
   hal::NoSafetyLines lines;
   loop::Requests requests;
@@ -245,7 +245,8 @@ TEST(Telemetry, TheShapeOfAPatchReachesThePageWhole) {
                     clock, requests, *ring);
   Telemetry telemetry(*ring, FrameBuilder(tissue->law().site_law(), controller.shapes(), false),
                       {.frame_rate_Hz = 1000.0}, Sinks{});
-  const Hello hello = make_hello(*scene, *tissue, {.device = device->info(), .hand_socket = ""});
+  const Hello hello = make_hello(
+      *scene, *tissue, {.device = device->info(), .limits_checksum = "", .hand_socket = ""});
   telemetry.start();
   std::uint32_t displaced = 0;
   for (int i = 0; i < 8000; ++i) {

@@ -23,7 +23,7 @@ class SleeplessClock final : public loop::Clock {
 };
 
 TEST(StallWatch, FindsAStallWithinTwentyFivePeriodsAndNoneBeforeTwenty) {
-  StallWatch watch(kMs, loop::kHardRealTime);
+  StallWatch watch(kMs, /*hard_real_time=*/true);
   loop::Progress progress;
   progress.tick();
   ASSERT_EQ(watch.step(progress), model::Fault::kNone) << "this tick is news";
@@ -37,21 +37,21 @@ TEST(StallWatch, FindsAStallWithinTwentyFivePeriodsAndNoneBeforeTwenty) {
 }
 
 TEST(StallWatch, NamesWhoseCallDidNotComeBack) {
-  const auto found_at = [](loop::Place place) {
-    StallWatch watch(kMs, loop::kHardRealTime);
+  const auto found_at = [](loop::Callee callee) {
+    StallWatch watch(kMs, /*hard_real_time=*/true);
     loop::Progress progress;
     progress.tick();
-    progress.enter(place);
+    progress.enter(callee);
     for (int i = 0; i < 10; ++i) watch.step(progress);
     return watch.step(progress);
   };
-  EXPECT_EQ(found_at(loop::Place::kOwn), model::Fault::kLoopStalled);
-  EXPECT_EQ(found_at(loop::Place::kDevice), model::Fault::kDeviceStalled);
-  EXPECT_EQ(found_at(loop::Place::kLines), model::Fault::kLinesLost);
+  EXPECT_EQ(found_at(loop::Callee::kOwn), model::Fault::kLoopStalled);
+  EXPECT_EQ(found_at(loop::Callee::kDevice), model::Fault::kDeviceStalled);
+  EXPECT_EQ(found_at(loop::Callee::kLines), model::Fault::kLinesLost);
 }
 
 TEST(StallWatch, BearsALoopThatHasNotBegunOrIsOver) {
-  StallWatch watch(kMs, loop::kHardRealTime);
+  StallWatch watch(kMs, /*hard_real_time=*/true);
   loop::Progress progress;
   for (int i = 0; i < 100; ++i) ASSERT_EQ(watch.step(progress), model::Fault::kNone);
   progress.tick();
@@ -60,7 +60,7 @@ TEST(StallWatch, BearsALoopThatHasNotBegunOrIsOver) {
 }
 
 TEST(StallWatch, ASlowLoopThatTicksIsNotStalled) {
-  StallWatch watch(kMs, loop::kHardRealTime);
+  StallWatch watch(kMs, /*hard_real_time=*/true);
   loop::Progress progress;
   for (int i = 0; i < 400; ++i) {
     if (i % 4 == 0) progress.tick();  // every 20 ms
@@ -95,6 +95,24 @@ TEST_F(WatchedLoop, ADeviceThatHangsLosesTheEnableLineAndThenTheForce) {
   EXPECT_FALSE(device.permitted);
 }
 
+TEST_F(WatchedLoop, AGuardianThatIsLostTakesTheForceAndTheEnableLine) {
+  std::atomic<bool> lost{false};
+  LoopWatch beside(StallWatch(kMs, false), loop->progress(), requests, lines, &lost);
+  beside.start({});
+  start();
+  EXPECT_EQ(requests.fault.load(), model::Fault::kNone);
+  lost.store(true);
+  ASSERT_TRUE(soon([this] { return lines.drops.load() > 0; }));
+  const std::uint64_t before = loop->progress().ticks();
+  ASSERT_TRUE(soon([&] { return loop->progress().ticks() > before + 5; }));
+  finish();
+  loop::TickRecord record;
+  while (ring->pop(record)) {
+  }
+  EXPECT_EQ(record.output.fault, model::Fault::kGuardianLost);
+  EXPECT_EQ(record.output.written, model::Wrench{});
+}
+
 TEST_F(WatchedLoop, ALoopThatNeverSleepsEndsWithZeroForce) {
   SleeplessClock sleepless;
   loop.emplace(loop::LoopSettings{.period_ns = kMs}, device, lines, controller, sleepless, requests,
@@ -105,7 +123,7 @@ TEST_F(WatchedLoop, ALoopThatNeverSleepsEndsWithZeroForce) {
     become_real_time(allowed);
     const std::int64_t start_ns = clock.now_ns();
     while (loop->may_run() && clock.now_ns() - start_ns < 5 * kSecond) loop->step();
-    loop->let_go();
+    loop->release_device();
     pc::leave_rt_thread();
   });
   thread.join();

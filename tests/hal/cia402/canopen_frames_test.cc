@@ -94,7 +94,7 @@ TEST(CanopenFrames, OnlyAnExpeditedReplyIsRead) {
         from(0x580, 1, {static_cast<std::uint8_t>(command), 0x64, 0x60, 0, 1, 2, 3, 4});
     if (decode_canopen_sdo(frame, 1)) read.insert(command);
   }
-  EXPECT_EQ(read, (std::set<int>{0x43, 0x47, 0x4B, 0x4F, 0x60, 0x80}));
+  EXPECT_EQ(read, (std::set<int>{0x42, 0x43, 0x47, 0x4B, 0x4F, 0x60, 0x80}));
 }
 
 TEST(CanopenFrames, AnUploadHasAsManyBytesAsItSays) {
@@ -106,6 +106,8 @@ TEST(CanopenFrames, AnUploadHasAsManyBytesAsItSays) {
   EXPECT_EQ(value(0x47)->value, 0x030201u);
   EXPECT_EQ(value(0x43)->value, 0x04030201u);
   EXPECT_EQ(value(0x47)->size, 3);
+  EXPECT_EQ(value(0x42)->value, 0x04030201u) << "without a size: who asks knows it";
+  EXPECT_EQ(value(0x42)->size, 0);
   EXPECT_EQ(value(0x43)->index, 0x6064);
   EXPECT_EQ(value(0x43)->sub, 2);
 }

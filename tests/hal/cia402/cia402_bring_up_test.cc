@@ -51,6 +51,7 @@ TEST(Cia402BringUp, WritesEverySettingToEveryDriveAndStartsThem) {
 TEST(Cia402BringUp, EveryRefusedSettingIsToldWithItsReason) {
   const auto writes = cst_configuration(1, {});
   for (const SdoWrite& one : *writes) {
+    if (one.index == 0x6007 || one.index == 0x60C2) continue;  // told, not refused
     Bench bench;
     bench.drives.axis[0].refused = static_cast<std::uint32_t>(one.index) << 8 | one.sub;
     bench.drives.axis[0].abort_code = 0x06040041;
@@ -62,7 +63,7 @@ TEST(Cia402BringUp, EveryRefusedSettingIsToldWithItsReason) {
 }
 
 TEST(Cia402BringUp, SettingsThatNotEveryDriveHasMayBeMissing) {
-  for (const std::uint32_t optional : {0x650200u, 0x605A00u}) {
+  for (const std::uint32_t optional : {0x650200u, 0x605A00u, 0x600700u, 0x60C202u}) {
     Bench bench;
     for (auto& axis : bench.drives.axis) axis.refused = optional, axis.abort_code = 0x06020000;
     EXPECT_EQ(bench.open(), "");

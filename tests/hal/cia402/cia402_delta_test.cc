@@ -165,7 +165,7 @@ TEST(Cia402Delta, EveryDriveWatchesTheHostBeforeItGetsPowerAgain) {
   bench.run();
   bench.permitted = false;
   for (int i = 0; i < 10; ++i) bench.tick();
-  for (auto& axis : bench.drives.axis) EXPECT_EQ(axis.written[0x101601], 0u);
+  for (auto& axis : bench.drives.axis) EXPECT_EQ(axis.written[0x101601], 127u << 16);
   bench.permitted = true;
   bench.drives.axis[1].answers_watch = false;
   EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 4000), 2900);
@@ -201,7 +201,7 @@ TEST(Cia402Delta, StopLetsGoForGoodAndLeavesNoFaultBehind) {
     EXPECT_EQ(axis.status, 0x40);
     EXPECT_EQ(axis.permille, 0);
     EXPECT_EQ(axis.nmt, NmtState::kPreOperational);
-    EXPECT_EQ(axis.written[0x101601], 0u) << "nobody's heartbeat is waited for";
+    EXPECT_EQ(axis.written[0x101601], 127u << 16) << "nobody's heartbeat is waited for";
   }
   bench.drives.forget();
   bench.device->stop();

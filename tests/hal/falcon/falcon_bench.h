@@ -34,6 +34,7 @@ class ScriptedPipe final : public falcon::FalconPipe {
     return true;
   }
   falcon::FalconPipeHealth health() const RT_SAFE override { return state; }
+  int descriptor() const override { return fd; }
   void stop(const falcon::FalconPacket& packet) override {
     last = *falcon::decode_falcon_command(packet), ++stops;
   }
@@ -47,7 +48,7 @@ class ScriptedPipe final : public falcon::FalconPipe {
   falcon::FalconPipeHealth state;
   falcon::FalconCommand command, last;
   falcon::FalconReply reply;
-  int commands = 0, stops = 0;
+  int commands = 0, stops = 0, fd = -1;
 };
 
 inline model::FalconSettings falcon_settings() {

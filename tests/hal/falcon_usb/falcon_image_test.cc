@@ -3,11 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "hal/falcon_usb/sha256.h"
+#include "model/io/seal.h"
 
 namespace tact::hal::falcon_usb::falcon_image_test {
 
@@ -15,12 +16,10 @@ using Bytes = std::vector<std::uint8_t>;
 using Verdict = FalconImageVerdict;
 
 std::string digest_of(const Bytes& bytes) {
-  std::string out;
-  const Sha256 digest = sha256(bytes).value();
-  for (const std::uint8_t byte : digest) {
-    out += "0123456789ABCDEF"[byte >> 4];
-    out += "0123456789abcdef"[byte & 0xF];  // mixed case on purpose
-  }
+  std::string out =
+      model::io::sha256_of({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  for (std::size_t i = 0; i < out.size(); i += 2)  // mixed case on purpose
+    out[i] = static_cast<char>(std::toupper(static_cast<unsigned char>(out[i])));
   return out;
 }
 

@@ -112,16 +112,18 @@ TEST_F(Session, ADelta6IsNamedWithTheReason) {
 }
 
 TEST_F(Session, WhatHasNoKnownLimitsIsRefused) {
-  for (const int type : {31, 32, 61, 62, 60, 81, 82, 91, 7777}) {
+  for (const int type : {31, 32, 61, 62, 60, 81, 82, 91, 131, 132, 7777}) {
     stub.set_type(type);
     EXPECT_TRUE(has(refusal(), std::to_string(type))) << type;
   }
+  stub.set_type(131);
+  EXPECT_TRUE(has(refusal(), "lambda.6 right (type 131): no limits")) << refusal();
   stub.set_type(60);
   EXPECT_TRUE(has(refusal(), "device.kind = \"falcon\"")) << refusal();
 }
 
 TEST_F(Session, EveryTypeOfTheMakerOpensWithForceAndRoom) {
-  for (const int type : {63, 33, 34, 35, 36, 37, 206, 104, 105, 203, 108, 109}) {
+  for (const int type : {63, 33, 34, 35, 36, 37, 206, 104, 105, 106, 107, 203, 108, 109}) {
     const auto known = force_dimension_type(type);
     ASSERT_TRUE(known) << type;
     EXPECT_GE(known->max_force_N, 12.0);

@@ -103,6 +103,12 @@ class PlayedOdrives {
       one.limit_turns_per_s = hal::can::get_f32(frame.data, 0);
       one.limit_A = hal::can::get_f32(frame.data, 4);
     }
+    if (command == kGetEncoderCount05 && frame.rtr && !one.v06) {
+      auto reply = message(one, kGetEncoderCount05);
+      const auto counts = static_cast<std::int32_t>(one.turns * 8192.0);
+      hal::can::put_unsigned(reply.data, 0, 4, static_cast<std::uint32_t>(counts));
+      bus.say(reply);
+    }
     if (command == kGetVersion && frame.rtr && one.v06) {
       auto reply = message(one, kGetVersion);
       reply.data = {2, 4, 4, 58, 0, 6, 10, 0};

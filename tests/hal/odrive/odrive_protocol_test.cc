@@ -195,6 +195,16 @@ TEST(OdriveProtocol, AnOldHeartbeatTakesEveryBitOfAPartForAnError) {
   }
 }
 
+TEST(OdriveProtocol, AnOldDriveTellsItsEncodersCount) {
+  can::CanFrame frame = can::make_can_frame(7u << 5 | 0x0A, 8);
+  frame.data = {0xFE, 0xFF, 0xFF, 0xFF, 0xFE, 0x1F, 0, 0};
+  const auto count = decode_odrive_count_05(frame, 7);
+  ASSERT_TRUE(count);
+  EXPECT_EQ(count->shadow, -2);
+  EXPECT_EQ(count->in_circle, 8190);
+  EXPECT_FALSE(decode_odrive_count_05(frame, 6));
+}
+
 TEST(OdriveProtocol, LeavesTheHeapAlone) {
   const can::CanFrame estimates = reply(7, OdriveCommand::kGetEncoderEstimates, 1.0f, 2.0f);
   const tests::NoAlloc guard;

@@ -126,6 +126,19 @@ TEST(HandSocket, LeavesALivingListenerAndAFileAlone) {
   unlink(file.c_str());
 }
 
+TEST(HandSocket, LeavesTheFileOfTheNextOneWhenItEnds) {
+  const std::string path = fresh_path("next");
+  LatestSlot<HandTarget> slot;
+  const auto first = HandSocket::start(path, slot);
+  ASSERT_TRUE(first);
+  unlink(path.c_str());
+  const auto second = HandSocket::start(path, slot);
+  ASSERT_TRUE(second);
+  (*first)->stop();
+  struct stat status{};
+  EXPECT_EQ(stat(path.c_str(), &status), 0);
+}
+
 TEST(HandSocket, SaysWhatIsWrongWithAPath) {
   LatestSlot<HandTarget> slot;
   EXPECT_FALSE(HandSocket::start("", slot));

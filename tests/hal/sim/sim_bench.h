@@ -26,8 +26,8 @@ inline model::SimDeviceSettings settings() {
           .joint_damping_Nms_per_rad = 0.002,
           .observer_bandwidth_Hz = 40.0};
 }
-inline model::contact::HandSettings hand_at(const Vec3& position_m, double stiffness_N_per_m) {
-  model::contact::HandSettings hand;
+inline model::HandSettings hand_at(const Vec3& position_m, double stiffness_N_per_m) {
+  model::HandSettings hand;
   hand.mass_kg = 0.2;
   hand.stiffness_N_per_m = stiffness_N_per_m;
   hand.damping_Ns_per_m = stiffness_N_per_m > 0.0 ? 12.0 : 0.0;
@@ -35,14 +35,14 @@ inline model::contact::HandSettings hand_at(const Vec3& position_m, double stiff
   return hand;
 }
 /// Reaches 0.07 m to the left and turns, in one second.
-inline model::contact::HandSettings moving_hand() {
-  model::contact::HandSettings hand = hand_at({}, 300.0);
+inline model::HandSettings moving_hand() {
+  model::HandSettings hand = hand_at({}, 300.0);
   hand.path.push_back({1.0, {0.03, -0.07, 0.05}, {0.1, 0.2, -0.1}, 1.0});
   return hand;
 }
 
 struct Bench {
-  explicit Bench(const model::SimDeviceSettings& device, const model::contact::HandSettings& hand)
+  explicit Bench(const model::SimDeviceSettings& device, const model::HandSettings& hand)
       : delta(device, hand) {}
   Sample tick(const Wrench& wrench = {}) {
     delta.between_ticks(kTick_s);

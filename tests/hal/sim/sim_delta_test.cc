@@ -208,7 +208,7 @@ TEST(SimDelta, WorkOfTheMotorsBoundsItsEnergy) {
   model::SimDeviceSettings smooth = settings();
   smooth.joint_friction_Nm = 0.0;
   smooth.joint_damping_Nms_per_rad = 0.0;
-  model::contact::HandSettings none = hand_at({}, 0.0);
+  model::HandSettings none = hand_at({}, 0.0);
   none.mass_kg = 0.0;
   for (const bool damped : {false, true}) {
     Bench bench(damped ? settings() : smooth, none);
@@ -246,7 +246,7 @@ TEST(SimDelta, SurvivesOddTimes) {
 }
 
 TEST(SimDelta, RefusesSettingsThatNoDeviceHas) {
-  const model::contact::HandSettings hand = hand_at({}, 300.0);
+  const model::HandSettings hand = hand_at({}, 300.0);
   EXPECT_TRUE(make_sim_delta(settings(), hand));
   model::SimDeviceSettings bad = settings();
   bad.counts_per_turn = 0.0;
@@ -258,7 +258,7 @@ TEST(SimDelta, RefusesSettingsThatNoDeviceHas) {
   bad = settings();
   bad.observer_bandwidth_Hz = -1.0;
   EXPECT_FALSE(make_sim_delta(bad, hand));
-  EXPECT_FALSE(make_sim_delta(settings(), model::contact::HandSettings{}));  // no waypoint
+  EXPECT_FALSE(make_sim_delta(settings(), model::HandSettings{}));  // no waypoint
 }
 
 TEST(SimDelta, LeavesTheHeapAlone) {

@@ -13,8 +13,8 @@ namespace tact::hal::sim::sim_hand_test {
 
 constexpr double kStep_s = 0.25e-3;
 
-model::contact::HandSettings script(bool repeat) {
-  model::contact::HandSettings hand;
+model::HandSettings script(bool repeat) {
+  model::HandSettings hand;
   hand.mass_kg = 0.2;
   hand.stiffness_N_per_m = 300.0;
   hand.damping_Ns_per_m = 8.0;

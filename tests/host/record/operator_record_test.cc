@@ -252,13 +252,14 @@ TEST(RecentFrames, KeepTheOperatorInStep) {
     const tracking::TrackedOperator tracked{.time_s = static_cast<double>(frame.tick)};
     const figure::FigurePose shown = figure_at(frame.tick);
     recent.add(frame, frame.tick < 10 ? nullptr : &tracked, &shown);
-    EXPECT_EQ(recent.operators().size(), frame.tick < 10 ? 0 : recent.frames().size());
-    EXPECT_EQ(recent.figures().size(), recent.operators().size());
+    EXPECT_EQ(recent.is_tracked(), frame.tick >= 10);
+    EXPECT_EQ(recent.frames().back()->person != nullptr, recent.is_tracked());
   }
-  for (std::size_t i = 0; i < 300; ++i) {
-    EXPECT_EQ(recent.operators()[i].time_s, static_cast<double>(recent.frames()[i].tick));
-    ASSERT_TRUE(recent.figures()[i].has_value());
-    EXPECT_EQ(recent.figures()[i]->grip_m, figure_at(recent.frames()[i].tick).grip_m);
+  ASSERT_EQ(recent.frames().size(), 300u);
+  for (const auto& kept : recent.frames()) {
+    EXPECT_EQ(kept->person->tracked.time_s, static_cast<double>(kept->frame.tick));
+    ASSERT_TRUE(kept->person->figure.has_value());
+    EXPECT_EQ(kept->person->figure->grip_m, figure_at(kept->frame.tick).grip_m);
   }
 }
 

@@ -7,10 +7,12 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <sstream>
 
 #include "host/record/operator_record.h"
 #include "host/record/recording_csv.h"
@@ -159,8 +161,8 @@ TEST(RecentFrames, KeepsFiveMinutesAndNoMore) {
   Frame frame;
   for (frame.tick = 0; frame.tick < 1000; ++frame.tick) recent.add(frame);
   ASSERT_EQ(recent.frames().size(), 600u);
-  EXPECT_EQ(recent.frames().front().tick, 400u);
-  EXPECT_EQ(recent.frames().back().tick, 999u);
+  EXPECT_EQ(recent.frames().front()->frame.tick, 400u);
+  EXPECT_EQ(recent.frames().back()->frame.tick, 999u);
   recent.restart(2.0);
   EXPECT_TRUE(recent.frames().empty());
 }
@@ -169,12 +171,24 @@ std::ptrdiff_t columns(const std::string& line) {
   return std::count(line.begin(), line.end(), ',') + 1;
 }
 
+TEST(RecordingCsv, SaysWhichRunItWasAndWhatARowIs) {
+  Hello hello = test::make_hello(3, 1, 3, 1);
+  std::strcpy(hello.scene_name, "two\nlines");
+  const std::string facts = csv_facts(hello);
+  EXPECT_TRUE(
+      facts.starts_with("# tact frames\n# scene: two lines\n# law: rhombus chain, N = 10\n"))
+      << facts;
+  EXPECT_NE(facts.find("\n# rate_Hz: 4000\n# frame_rate_Hz: 60\n# row: "), std::string::npos);
+  std::istringstream lines(facts);
+  for (std::string line; std::getline(lines, line);) EXPECT_EQ(line.substr(0, 2), "# ");
+}
+
 TEST(RecordingCsv, HasOneNameForEveryColumn) {
   const Hello hello = test::make_hello(3, 1, 3, 1);
   std::string row;
   append_csv_row(row, test::make_frame(1.0f, firmware::telemetry::SiteState::kHeld), hello);
   EXPECT_EQ(columns(row), columns(csv_header(hello)));
-  EXPECT_EQ(columns(row), 37 + 2 * (11 + 11));
+  EXPECT_EQ(columns(row), 37 + 2 * (11 + 11 + 3));
   EXPECT_EQ(std::count(row.begin(), row.end(), '\n'), 1);
 }
 
@@ -206,7 +220,7 @@ TEST(RecordingCsv, GivesEveryColumnAUnitOrNoneOnPurpose) {
   const std::string header = csv_header(test::make_hello(3, 1, 3, 1));
   EXPECT_NE(header.find("force_x_N,"), std::string::npos);
   EXPECT_NE(header.find("worst_margin_us,"), std::string::npos);
-  EXPECT_NE(header.find("site2_u10_m\n"), std::string::npos);
+  EXPECT_NE(header.find("site2_u10_m,site2_tilt_x,site2_tilt_y,site2_tilt_z\n"), std::string::npos);
 }
 
 }  // namespace tact::host::record::recording_test

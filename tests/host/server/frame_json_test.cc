@@ -80,7 +80,10 @@ TEST(FrameJson, DoesNotTrustCountsBeyondTheArrays) {
 }
 
 TEST(SceneJson, SaysWhatTheHelloSays) {
-  const auto json = nlohmann::json::parse(scene_json(test::make_hello(5, 6, 7, 8)), nullptr, false);
+  record::Hello hello = test::make_hello(5, 6, 7, 8);
+  std::strcpy(hello.limits_checksum, "1a2b3c4d");
+  const auto json = nlohmann::json::parse(scene_json(hello), nullptr, false);
+  EXPECT_EQ(json["limits_checksum"], "1a2b3c4d");
   EXPECT_EQ(json["scene"], "liver (synthetic)");
   EXPECT_EQ(json["organ"]["triangles"], 6);
   EXPECT_EQ(json["tool"]["vertices"], 7);

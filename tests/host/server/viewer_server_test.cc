@@ -38,22 +38,39 @@ TEST_F(Viewer, RefusesTheWebSocketOfAForeignPage) {
   EXPECT_EQ(open_live(none, ""), websocket::error::upgrade_declined);
 }
 
-TEST_F(Viewer, AsksForItsTokenOnAnyOtherAddress) {
-  start("0.0.0.0");
+class ViewerAt : public Viewer, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(ViewerAt, ShowsNothingWithoutItsToken) {
+  start(GetParam());
+  start_source();
   EXPECT_EQ(server_.token().size(), 32u);
-  EXPECT_NE(server_.url().find("/?token=" + server_.token()), std::string::npos);
-  EXPECT_EQ(get("/").result(), http::status::forbidden);
-  EXPECT_EQ(get("/?token=wrong").result(), http::status::forbidden);
-  EXPECT_EQ(get("/mesh.bin").result(), http::status::forbidden);
-  const auto page = get("/?token=" + server_.token());
-  EXPECT_EQ(page.result(), http::status::ok);
-  const std::string cookie(page[http::field::set_cookie]);
-  EXPECT_EQ(get("/index.html", "localhost", cookie.substr(0, cookie.find(';'))).result(),
-            http::status::ok);
-  Socket without(client_io_), with(client_io_);
-  EXPECT_EQ(open_live(without, "http://localhost:1"), websocket::error::upgrade_declined);
-  EXPECT_FALSE(open_live(with, "http://localhost:1", "?token=" + server_.token()));
+  EXPECT_NE(server_.url().find("/#token=" + server_.token()), std::string::npos);
+  for (const std::string& wrong : {std::string(), std::string("Bearer wrong")}) {
+    bearer_ = wrong;
+    EXPECT_EQ(get("/").result(), http::status::ok) << "the page itself is no secret";
+    for (const char* path : {"/scene.json", "/mesh.bin", "/recording.csv", "/recording.tact",
+                             "/session", "/live", "/none"}) {
+      EXPECT_EQ(get(path).result(), http::status::unauthorized) << path;
+      EXPECT_EQ(get(path + ("?token=" + server_.token())).result(), http::status::unauthorized)
+          << "an address stands in histories and logs";
+    }
+    Socket without(client_io_);
+    EXPECT_EQ(open_live(without, "http://localhost:1"), websocket::error::upgrade_declined);
+  }
 }
+
+TEST_P(ViewerAt, KeepsItsTokenInACookie) {
+  start(GetParam());
+  start_source();
+  const std::string cookie(get("/session")[http::field::set_cookie]);
+  bearer_ = "";
+  cookie_ = cookie.substr(0, cookie.find(';'));
+  EXPECT_EQ(get("/mesh.bin").result(), http::status::ok);
+  Socket with(client_io_);
+  EXPECT_FALSE(open_live(with, "http://localhost:1"));
+}
+
+INSTANTIATE_TEST_SUITE_P(AnyAddress, ViewerAt, ::testing::Values("127.0.0.1", "0.0.0.0"));
 
 TEST_F(Viewer, PassesSceneMeshesAndFramesOn) {
   start();
@@ -142,6 +159,22 @@ TEST_F(Viewer, SaysThatTactdWentAwayAndFindsItAgain) {
   EXPECT_EQ(status["scene_number"], 2);
 }
 
+TEST_F(Viewer, HearsThatATactdStandsStillAndThatItGoesOn) {
+  start();
+  start_source();
+  Frame frame;
+  for (frame.tick = 1; frame.tick <= 40; ++frame.tick) {
+    source_->send(frame);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  ASSERT_TRUE(wait_until([&] { return frames_ == 40; }));
+  EXPECT_TRUE(wait_until([this] { return silences_s_ == std::vector<double>{0.3}; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  source_->send(frame);
+  EXPECT_TRUE(wait_until([this] { return silences_s_ == std::vector<double>{0.3, 0.0}; }))
+      << "told once each";
+}
+
 TEST_F(Viewer, SaysWhatIsWrongWithTelemetryOfAnotherBuild) {
   hello_.header.version = firmware::telemetry::kTelemetryVersion + 1;
   start();
@@ -199,7 +232,10 @@ TEST_F(Viewer, GivesTheKeptFramesAsATableAndAsARecording) {
       ASSERT_TRUE(wait_until([&] { return frames_ == frame.tick; }));
   }
   const std::string table = get("/recording.csv").body();
-  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 601);
+  EXPECT_TRUE(table.starts_with("# tact frames\n"));
+  EXPECT_EQ(
+      std::count(table.begin(), table.end(), '\n') - std::count(table.begin(), table.end(), '#'),
+      601);
   const auto part = get("/recording.tact?from_tick=101&to_tick=200");
   EXPECT_NE(part[http::field::content_disposition].find("recording.tact"), std::string::npos);
   const fs::path file = folder_ / "part.tact";
@@ -222,6 +258,10 @@ TEST_F(Viewer, SaysThatAPortIsInUse) {
                 second.open({.bind_address = "nonsense", .port = 0, .page_folder = folder_}))
                 .find("--bind"),
             std::string::npos);
+  EXPECT_NE(
+      tests::sentence_of(second.open({.port = 0, .page_folder = folder_, .public_url = "lab"}))
+          .find("--url"),
+      std::string::npos);
 }
 
 }  // namespace tact::test::viewer_server_test

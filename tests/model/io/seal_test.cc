@@ -34,6 +34,14 @@ TEST_F(SealTest, OfAWholeFileIsGood) {
   EXPECT_EQ(trouble("good"), "") << "read by nobody else";
 }
 
+TEST(Seal, IsTheSha256OfFips180) {
+  Seal seal;
+  EXPECT_EQ(seal.hex(), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256_of("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  seal.add("abc");
+  EXPECT_EQ(seal.hex(), sha256_of("abc")) << "also of parts";
+}
+
 TEST_F(SealTest, IsBrokenByEveryBitAndEveryLength) {
   const std::string good = text("good");
   ASSERT_EQ(good.size(), 307 + kSealBytes);

@@ -70,7 +70,7 @@ struct Felt {
                .relaxation = relaxation}),
         held(is_held) {}
   double force_N(double depth_m) {
-    response = field.respond({.depth_m = depth_m, .held = held}).law;
+    response = field.respond({.dent_m = depth_m, .held = held}).law;
     field.advance();
     return response.force_N;
   }
@@ -236,7 +236,7 @@ TEST(Relaxation, AskedTwiceInATickRemembersTheLastAnswerOnly) {
   const PowerLaw law(1.5);
   Felt once(law), twice(law);
   for (int i = 1; i <= 10; ++i) {
-    twice.field.respond({.depth_m = 9e-3});
+    twice.field.respond({.dent_m = 9e-3});
     EXPECT_EQ(once.force_N(i * 1e-3), twice.force_N(i * 1e-3));
   }
 }

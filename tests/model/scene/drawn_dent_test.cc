@@ -19,9 +19,9 @@ namespace tact::model::scene::drawn_dent_test {
 
 using nlohmann::json;
 
-constexpr double kBar = 0.08;      // of the depth, RMS
-constexpr double kTiltBar = 0.18;  // vertex by vertex
-constexpr double kRing_m = 0.003;  // over which a mean is taken around the tool
+constexpr double kBar = 0.08;        // of the depth, RMS
+constexpr double kTaperStart = 0.7;  // of the reach
+constexpr double kRing_m = 0.003;    // over which a mean is taken around the tool
 constexpr std::size_t kRings = 10;
 
 json reference(const std::string& name) {
@@ -84,8 +84,9 @@ class DrawnDent : public ::testing::Test {
   /// What host/web/src/deform.ts adds to a vertex for one site.
   Vec3 dent_m(const contact::SphereTouch& touch, std::uint32_t vertex) const {
     if (!(touch.dent_m > 0.0)) return {};
-    const Curve curve =
-        curve_of({.place = touch.place, .normal = touch.normal, .depth_m = touch.dent_m});
+    const contact::Indentation in{
+        .place = touch.place, .normal = touch.normal, .dent_m = touch.dent_m};
+    const Curve curve = curve_of(in);
     const Vec3 from_m = scene_.organ_mesh.vertex_m[vertex] - touch.surface_point_m;
     const double height_m = dot(from_m, touch.normal);
     const double rho_m = norm(from_m - height_m * touch.normal);
@@ -93,7 +94,10 @@ class DrawnDent : public ::testing::Test {
     const double fade =
         (1.0 - smoothstep(0.4 * curve.reach_m(), curve.reach_m(), std::abs(height_m))) *
         smoothstep(-0.4, 0.2, facing);
-    return -fade * curve.at(rho_m) * touch.normal;
+    const double lean_m =
+        (1.0 - smoothstep(kTaperStart * curve.reach_m(), curve.reach_m(), rho_m)) *
+        dot(tissue_->law().site_law().tilt(in), from_m);
+    return -fade * std::max(0.0, curve.at(rho_m) + lean_m) * touch.normal;
   }
 
   struct Errors {
@@ -142,9 +146,9 @@ class DrawnDent : public ::testing::Test {
   std::unique_ptr<Tissue> tissue_;
 };
 
-// The organ sinks less towards its held side than towards a free lobe, which no profile of rings
-// shows: single vertices miss by that tilt. Means around the tool are right, at the hand's own site
-// and at a rim that no stroke presses.
+// At the hand's own site and at a rim that no stroke presses: vertex by vertex, and in the mean
+// around the tool. The organ sinks less towards its held side than towards a free lobe; without
+// SiteLaw::tilt single vertices miss by 16 %.
 TEST_F(DrawnDent, OfBothJawsIsThatOfFiniteElementsAroundTheTool) {
   const json truth = reference("liver_tool_skin.json");
   for (const char* law : {"rhombus", "compliance"}) {
@@ -154,7 +158,7 @@ TEST_F(DrawnDent, OfBothJawsIsThatOfFiniteElementsAroundTheTool) {
         ASSERT_GT(place["skin"].size(), 100U);
         const Errors error = errors(place, pressed);
         EXPECT_LT(error.rings, kBar) << law << " " << place["vertex"] << " " << pressed["depth_m"];
-        EXPECT_LT(error.vertices, kTiltBar) << law << " " << place["vertex"];
+        EXPECT_LT(error.vertices, kBar) << law << " " << place["vertex"];
       }
   }
 }
@@ -178,7 +182,7 @@ TEST_F(DrawnDent, OfOneSphereIsThatOfFiniteElementsAtEachSite) {
               at.weight = {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
             }
         const Curve curve =
-            curve_of({.place = at, .normal = -vector_of(site["direction"]), .depth_m = depth_m});
+            curve_of({.place = at, .normal = -vector_of(site["direction"]), .dent_m = depth_m});
         double sum_m2 = 0.0;
         const json& known_m = pressed["profile_m"];
         for (std::size_t j = 0; j < known_m.size(); ++j) {

@@ -223,7 +223,7 @@ TEST_F(Liver, TearsWhenItSaysTearAndHoldsWhenItSaysPull) {
   const auto force_N = [&](double depth_m) {
     return (*felt)
         ->site_law()
-        .respond({.place = {touched, {1, 0, 0}}, .depth_m = depth_m, .held = depth_m < 0.0})
+        .respond({.place = {touched, {1, 0, 0}}, .dent_m = depth_m, .held = depth_m < 0.0})
         .law.force_N;
   };
   const double hand_N_per_m = scene_->hand.stiffness_N_per_m;
@@ -239,7 +239,7 @@ TEST_F(Liver, TearsWhenItSaysTearAndHoldsWhenItSaysPull) {
 }
 
 TEST_F(Liver, RepeatsAScriptOfTwentySecondsFromHomeToHome) {
-  const std::vector<contact::HandWaypoint>& path = scene_->hand.path;
+  const std::vector<HandWaypoint>& path = scene_->hand.path;
   EXPECT_TRUE(scene_->hand.repeat);
   EXPECT_NEAR(path.back().time_s, 20.0, 2.0);
   EXPECT_EQ(path.front().position_m, path.back().position_m);

@@ -16,7 +16,7 @@ constexpr Vec3 kSite_m{0.01, 0.02, 0.03};
 constexpr Limits kLimits{.workspace_radius_m = 0.18, .workspace_half_length_m = 0.15};
 
 struct Written {
-  std::vector<contact::HandWaypoint> path;
+  std::vector<HandWaypoint> path;
   std::optional<Error> problem;
 };
 
@@ -45,8 +45,7 @@ const Stroke kHold{.action = Action::kHold, .duration_s = 2.0};
 const Stroke kGrip{.action = Action::kGrip, .duration_s = 0.5};
 const Stroke kRelease{.action = Action::kRelease, .duration_s = 2.0};
 
-void expect_at(const contact::HandWaypoint& p, double time_s, const Vec3& position_m,
-               double grip_ratio) {
+void expect_at(const HandWaypoint& p, double time_s, const Vec3& position_m, double grip_ratio) {
   EXPECT_NEAR(p.time_s, time_s, 1e-12);
   EXPECT_NEAR(norm(p.position_m - position_m), 0.0, 1e-15);
   EXPECT_EQ(p.grip_ratio, grip_ratio);

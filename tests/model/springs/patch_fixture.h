@@ -63,7 +63,7 @@ class PressedPatch {
     const model::contact::Site site =
         follow(mesh_.view(), triangle_, at_m + model::Vec3{0, 0, 0.01});
     return patch_->respond(
-        {.sphere = 0, .place = site.place, .normal = {0, 0, 1}, .depth_m = depth_m, .held = held});
+        {.sphere = 0, .place = site.place, .normal = {0, 0, 1}, .dent_m = depth_m, .held = held});
   }
 
   model::mesh::SurfaceMesh mesh_;

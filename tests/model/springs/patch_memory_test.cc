@@ -220,7 +220,7 @@ TEST(PatchMemory, ASceneThatFadesMakesAPatchThatFades) {
   std::vector<double> force_N;
   for (int i = 0; i < 300; ++i) {
     force_N.push_back(
-        law.respond({.place = {420, {0.3, 0.3, 0.4}}, .depth_m = kShallow_m}).law.force_N);
+        law.respond({.place = {420, {0.3, 0.3, 0.4}}, .dent_m = kShallow_m}).law.force_N);
     law.advance();
   }
   scene.relaxation.clear();
@@ -229,7 +229,7 @@ TEST(PatchMemory, ASceneThatFadesMakesAPatchThatFades) {
   for (int i = 0; i < 300; ++i) {
     elastic_N = (*elastic)
                     ->site_law()
-                    .respond({.place = {420, {0.3, 0.3, 0.4}}, .depth_m = kShallow_m})
+                    .respond({.place = {420, {0.3, 0.3, 0.4}}, .dent_m = kShallow_m})
                     .law.force_N;
     (*elastic)->site_law().advance();
   }
@@ -249,7 +249,7 @@ TEST(PatchMemory, LeavesTheHeapAlone) {
   SpringPatch& patch = pressed.patch();
   const tests::NoAlloc guard;
   for (std::uint32_t i = 0; i < 200; ++i) {
-    patch.respond({.place = {200 + 2 * i, {0.3, 0.3, 0.4}}, .depth_m = 0.002});
+    patch.respond({.place = {200 + 2 * i, {0.3, 0.3, 0.4}}, .dent_m = 0.002});
     patch.cut({{-0.05, 0, -0.01}, {-0.05, 0, 0.01}, {0.05, 0, -0.01}, {0.05, 0, 0.01}});
     patch.advance();
   }

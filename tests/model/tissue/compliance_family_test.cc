@@ -135,7 +135,7 @@ TEST(ComplianceFamily, ForcesScaleWithYoungsModulus) {
 
 TEST(ComplianceFamily, TheHeldSideIsLimitedAndCounted) {
   ComplianceMap map = lobe();
-  const std::size_t limited = make(map).limited;
+  const std::size_t limited = make(map).limited_vertices;
   EXPECT_GT(limited, 5u);
   EXPECT_LT(limited, 60u);
   const ComplianceFamily family = make(map);

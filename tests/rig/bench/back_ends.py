@@ -100,4 +100,5 @@ FORCE_DIMENSION = BackEnd(
               'device.force_dimension.library="/tact/bin/libtact-stub-dhd.so"'),
     options=("--trust-library",),
     programs=("libtact-stub-dhd.so",),
-    system_calls=SLEEP | {("tact-fd", "sys_clock_nanosleep"): 4})  # the library's own rate, 4 kHz
+    # The library's own rate, 4 kHz, and its lock, which may be taken when the status is read, every 50 ms: wait, wake.
+    system_calls=SLEEP | {("tact-fd", "sys_clock_nanosleep"): 4, ("tact-fd", "sys_futex"): 0.04})

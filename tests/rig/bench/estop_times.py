@@ -102,7 +102,7 @@ def table(runs):
 
 
 def readme_table(runs, old):
-    """As hal/README.md has it: a row for each back end, that of `old` where none was measured."""
+    """As hal/gpio/README.md has it: a row for each back end, that of `old` where none was measured."""
     rows = {line.split(" | ")[0].removeprefix("| "): line for line in old.splitlines()[2:]}
     for name, edges in measured(runs).items():
         label = TOLD[name.split()[0]][0]

@@ -149,6 +149,26 @@ class StoppedByDrives:
                 "bound": f"{self.within_ms:g} ms", "moved_after_N": None}
 
 
+@dataclasses.dataclass(frozen=True)
+class StoppedByGuardian:
+    """tactd is gone without a word: its guardian takes the force, before any watchdog could."""
+    within_ms: float = 5.0
+
+    def judge(self, run):
+        wrong = []
+        if run.text("tactd.status").strip() != "137":
+            wrong.append(f"exit status {run.text('tactd.status').strip()}: it was not killed")
+        if run.ticks.get("force_before_N", 0.0) == 0.0:
+            wrong.append("no force when it was killed: it proves nothing")
+        if "tact-guardian: tactd" not in run.text("tactd.log"):
+            wrong.append("the guardian has told nobody that it acted")
+        return wrong + motors_let_go(run, self.within_ms)
+
+    def row(self, run):
+        return {"detected_as": "by the guardian", "detected_ms": None, "zero_ms": None,
+                "motors_ms": motors_ms(run), "bound": f"{self.within_ms:g} ms", "moved_after_N": None}
+
+
 def write_table(runs, folder):
     """faults.md and faults.json in `folder`, a row for every run with a fault."""
     rows = []

@@ -3,7 +3,7 @@
 from bench import checks
 from bench.back_ends import CIA402, ODRIVE05, ODRIVE06
 from bench.case import Case
-from bench.faults import Latches, RidesThrough, StoppedByDrives, attempt
+from bench.faults import Latches, RidesThrough, StoppedByDrives, StoppedByGuardian, attempt
 
 # `ip link set down` needs some 15 ms before the kernel says so.
 AT = "0.9"           # s after the drives are enabled: pressing
@@ -123,10 +123,16 @@ CASES = [
     *(done_to(back_end, f"clock-{way}", "the kernel stamps frames by the time of day, which may jump: no sample is lost",
               f"inject date -s '{day}'", RidesThrough(), proofs=NONE_LOST)
       for back_end in (ODRIVE06, CIA402) for way, day in (("forward", "2031-05-05"), ("back", "2001-01-01"))),
-    done_to(ODRIVE06, "killed", "a controller that is killed: the drives' own watchdogs stop them",
-            "inject kill -KILL $tactd; sleep .1", StoppedByDrives(within_ms=ALONE_ms["odrive06"], trips=3), proofs=()),
-    done_to(CIA402, "killed", "a controller that is killed: the drives miss its heartbeat and stop",
-            "inject kill -KILL $tactd; sleep .1", StoppedByDrives(within_ms=ALONE_ms["cia402"], trips=3), proofs=()),
+    *(done_to(back_end, "killed", "a controller that is killed: its guardian takes the force",
+              "inject kill -KILL $tactd; sleep .1", StoppedByGuardian(), proofs=())
+      for back_end in (ODRIVE06, CIA402)),
+    *(done_to(back_end, "killed-alone", "and its guardian with it: the drives' own watch over their host stops them",
+              "inject kill -KILL $(pgrep tact-guardian) $tactd; sleep .1",
+              StoppedByDrives(within_ms=ALONE_ms[back_end.name], trips=3), proofs=())
+      for back_end in (ODRIVE06, CIA402)),
+    done_to(ODRIVE06, "guardian-killed", "a controller whose guardian is killed stops",
+            "inject kill -KILL $(pgrep tact-guardian)",
+            Latches("guardian lost", detect_ms=7)),
     *(done_to(back_end, "stopped", "drives that stopped a sleeping controller's force keep it stopped",
               "kill -STOP $tactd; sleep .05; inject kill -CONT $tactd",
               Latches("drive fault", detect_ms=3, motors_ms=ALONE_ms[back_end.name] - 50,

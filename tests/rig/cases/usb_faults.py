@@ -3,7 +3,7 @@
 from bench import checks
 from bench.back_ends import FALCON_LIBUSB, FALCON_USBFS
 from bench.case import Case
-from bench.faults import Latches, RidesThrough, attempt
+from bench.faults import Latches, RidesThrough, StoppedByGuardian, attempt
 
 AT = "0.9"
 QUICK = "--homing-ms 100 --hand-tempo 2.5"
@@ -54,6 +54,13 @@ def stopped(back_end):
                 (checks.hard_real_time,), fault=required, seconds=2.1, variables={"EMULATOR": QUICK})
 
 
+def killed(back_end):
+    """A Falcon may hold its last motor words for ever: nobody but the guardian is there to send zeros."""
+    return Case(f"{back_end.name}-killed", "a controller that is killed: its guardian takes the force", back_end,
+                "control $SECONDS_OF_RUN\nsleep 1.2\ninject kill -KILL $tactd; sleep .1\nfinish",
+                (), fault=StoppedByGuardian(), seconds=2.1, variables={"EMULATOR": QUICK})
+
+
 def in_both(kind, sentence, required):
     """By usbfs in every run, by libusb with --long: what a packet says is judged by the same code."""
     return (fault(FALCON_USBFS, kind, sentence, required),
@@ -64,6 +71,8 @@ CASES = [
     held_loop(FALCON_USBFS),
     held_loop(FALCON_LIBUSB),
     stopped(FALCON_USBFS),
+    killed(FALCON_USBFS),
+    killed(FALCON_LIBUSB),
     unplug(FALCON_USBFS),
     unplug(FALCON_LIBUSB),
     fault(FALCON_USBFS, f"stall@{AT}", "a stalled endpoint stops the force for good",

@@ -61,7 +61,7 @@ Cia402Drive::Cia402Drive(int axis, int node, const Cia402Settings& settings, Can
       bus_(bus),
       motor_(motor),
       faults_(faults),
-      dictionary_(node, settings.rated_torque_Nm) {}
+      dictionary_(node, settings.rated_torque_Nm, settings.habits) {}
 
 bool Cia402Drive::tripped() { return std::exchange(has_tripped_, false); }
 
@@ -69,11 +69,12 @@ double Cia402Drive::torque_Nm() const {
   if (state_ != Cia402State::kOperationEnabled || !is_operational() ||
       dictionary_.get(0x6060) != kTorqueMode)
     return 0.0;
-  return 1e-6 * torque_permille_ * static_cast<double>(dictionary_.get(0x6076));
+  return 1e-3 * torque_permille_ * settings_.rated_torque_Nm;
 }
 
 void Cia402Drive::reset(std::int64_t now_ns) {
-  dictionary_ = ObjectDictionary(node_, settings_.rated_torque_Nm);
+  dictionary_ = ObjectDictionary(node_, settings_.rated_torque_Nm, settings_.habits);
+  watch_ = 0;
   nmt_ = Nmt::kBoot;
   state_ = Cia402State::kSwitchOnDisabled;
   previous_controlword_ = 0;
@@ -108,10 +109,15 @@ bool Cia402Drive::receive(const can_frame& frame, std::int64_t now_ns) {
   } else if (id == 0x600 + node_ && nmt_ != Nmt::kStopped && payload.size() == 8) {
     measure();
     send(CanRole::kOther, 0x580, dictionary_.serve(payload, is_operational()), now_ns);
-    dictionary_.set(0x6061, 0, dictionary_.get(0x6060));
+    const bool is_controlword = payload[0] != 0x40 && payload[1] == 0x40 && payload[2] == 0x60;
+    if (is_controlword) obey(now_ns);
+    const std::int64_t written = dictionary_.get(0x1016, 1);
+    if (written == consumer) return false;
     // A watch that was set anew begins with the next heartbeat (CiA 301, 7.5.2.19).
-    if (dictionary_.get(0x1016, 1) != consumer) host_ns_ = 0;
-  } else if (consumer != 0 && id == 0x700 + (consumer >> 16 & 0x7F)) {
+    if (settings_.habits.watch_off_first && written == 0) return false;
+    watch_ = written;
+    host_ns_ = 0;
+  } else if (watch_ != 0 && id == 0x700 + (watch_ >> 16 & 0x7F)) {
     host_ns_ = now_ns;
   } else if (id == dictionary_.get(0x1400, 1) && is_operational()) {
     return set_points(payload, now_ns);
@@ -186,6 +192,7 @@ void Cia402Drive::emergency(std::uint16_t code, std::int64_t now_ns) {
                                                         : is_communication ? 0x11
                                                                            : 0x01);
   dictionary_.set(0x1001, 0, error_register);
+  if (code != 0) noted_.push_back(code);
   send(CanRole::kOther, 0x080, cia402_emergency(code, error_register), now_ns);
 }
 
@@ -204,12 +211,14 @@ bool Cia402Drive::warn(std::int64_t now_ns) {
 void Cia402Drive::lost(std::uint16_t code, std::int64_t now_ns) {
   emergency(code, now_ns);
   has_tripped_ |= is_enabled();
-  if (dictionary_.get(0x6007) == 1) {
+  // Without 6007 its own setting counts: a fault.
+  const std::int64_t reaction = dictionary_.has(0x6007) ? dictionary_.get(0x6007) : 1;
+  if (reaction == 1) {
     state_ = Cia402State::kFault;
     dictionary_.set(0x603F, 0, code);
-  } else if (is_enabled() && dictionary_.get(0x6007) == 3) {
+  } else if (is_enabled() && reaction == 3) {
     state_ = dictionary_.get(0x605A) < 5 ? Cia402State::kSwitchOnDisabled : Cia402State::kQuickStop;
-  } else if (dictionary_.get(0x6007) == 2) {
+  } else if (reaction == 2) {
     state_ = Cia402State::kSwitchOnDisabled;
   }
 }
@@ -239,7 +248,7 @@ void Cia402Drive::tick(std::int64_t now_ns) {
     heard_ns = 0;  // said once; it starts again with the next that is heard
     lost(code, now_ns);
   };
-  silent(host_ns_, dictionary_.get(0x1016, 1) & 0xFFFF, kHeartbeatLost);
+  silent(host_ns_, watch_ & 0xFFFF, kHeartbeatLost);
   silent(set_point_ns_, dictionary_.get(0x1400, 5), kSetPointsLost);
 }
 

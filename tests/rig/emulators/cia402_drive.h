@@ -7,8 +7,10 @@
 //     switch on disabled -6-> ready -7-> switched on -F-> operation enabled
 //
 // Torque acts only in operation enabled, mode 10, node operational. It stops by itself when the
-// host's heartbeat (1016) or the set-points (1400:5) stay out, as 6007 says. Torque of the motor in
-// 1/1000 of 6076, position in 10 000 counts per turn of the motor.
+// host's heartbeat (1016) or the set-points (1400:5) stay out, as 6007 says. A watch ends by a
+// time of zero for its node; in drives that want it off first (ObjectHabits) a zero as a whole
+// leaves it. Torque of the motor in 1/1000 of 6076, position in 10 000 counts per turn of the
+// motor.
 #pragma once
 
 #include "tests/rig/emulators/can_bus.h"
@@ -38,6 +40,7 @@ struct Cia402Settings {
   double rated_torque_Nm = 0.32;
   int boot_ms = 20;   // from reset to the boot-up message
   int enable_ms = 5;  // from the controlword to operation enabled
+  ObjectHabits habits{};
 };
 
 class Cia402Drive final : public Drive {
@@ -53,6 +56,8 @@ class Cia402Drive final : public Drive {
   bool is_enabled() const override { return state_ == Cia402State::kOperationEnabled; }
   double torque_Nm() const override;
   bool tripped() override;
+  /// Codes of the emergencies so far, but 0: what stands in its log.
+  const std::vector<std::uint16_t>& noted() const { return noted_; }
 
  private:
   enum class Nmt : std::uint8_t {
@@ -88,6 +93,8 @@ class Cia402Drive final : public Drive {
   double torque_permille_ = 0.0;
   bool has_tripped_ = false, is_limited_ = false;
   int syncs_ = 0;
+  std::int64_t watch_ = 0;  // whom it misses: 1016:01, but for a zero that names nobody
+  std::vector<std::uint16_t> noted_;
   std::int64_t boot_ns_ = 0, enable_ns_ = 0, heartbeat_ns_ = 0;
   std::int64_t host_ns_ = 0, set_point_ns_ = 0;  // last heard; 0: not yet
 };

@@ -69,10 +69,26 @@ void add_own(CLI::App& app, Options& options) {
                  "ODrive 0.6: period of Get_Error; 0: on request");
   app.add_option("--power-on-turns", options.odrive.power_on_turns,
                  "ODrive: added to the position until the index is found; 0: it is absolute");
+  app.add_flag("--estimates-from-power-on", options.odrive.estimates_from_power_on,
+               "ODrive 0.5: without waiting for closed loop, unlike firmware 0.5.6");
+  app.add_flag("--torque-velocity-limit", options.odrive.torque_velocity_limit,
+               "ODrive: velocity cuts the torque, the maker's default");
+  app.add_option("--velocity-limit-turns-per-s", options.odrive.velocity_limit_turns_per_s,
+                 "ODrive; the maker's default is 2")
+      ->capture_default_str();
   app.add_option("--rated-torque-Nm", options.cia402.rated_torque_Nm,
                  "CiA 402, object 6076, to the mN m")
       ->check(CLI::Range(0.001, 100.0))
       ->capture_default_str();
+  app.add_flag("--no-request-stays", options.cia402.habits.no_request_stays,
+               "CiA 402: bit 30 of 1800:01 may not be cleared");
+  app.add_flag("--watch-off-first", options.cia402.habits.watch_off_first,
+               "CiA 402: 1016:01 is not written anew while it is on");
+  app.add_flag("--sizes-unsaid", options.cia402.habits.sizes_unsaid,
+               "CiA 402: uploads without their size");
+  app.add_option("--absent", options.cia402.habits.absent,
+                 "CiA 402: indices of objects that it does not have")
+      ->delimiter(',');
   app.add_option("--enable-ms", options.cia402.enable_ms, "CiA 402: until the power stage is on")
       ->capture_default_str();
 }

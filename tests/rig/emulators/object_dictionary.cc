@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tact::rig {
 namespace {
 
 using enum WireType;
-constexpr std::int64_t kPdoOff = 0x8000'0000;
+constexpr std::int64_t kPdoOff = 0x8000'0000, kNoRequest = 0x4000'0000;
 constexpr int kLargestPdo_bits = 64, kMostMapped = 4;
 
 /// The field of an entry alone in its bytes.
@@ -37,8 +38,9 @@ Sdo sdo_abort(std::uint16_t index, std::uint8_t sub, SdoAbort code) {
   return answer;
 }
 
-ObjectDictionary::ObjectDictionary(int node, double rated_torque_Nm)
-    : entries_{
+ObjectDictionary::ObjectDictionary(int node, double rated_torque_Nm, ObjectHabits habits)
+    : habits_(std::move(habits)),
+      entries_{
           {0x1000, 0, kU32, false, false, 0x00020192},  // servo drive, profile 402
           {0x1001, 0, kU8, false, true, 0},             // error register
           {0x1005, 0, kU32, true, false, 0x80},
@@ -88,7 +90,13 @@ ObjectDictionary::ObjectDictionary(int node, double rated_torque_Nm)
           {0x60C2, 1, kU8, true, false, 1},
           {0x60C2, 2, kI8, true, false, -3},
           {0x6502, 0, kU32, false, false, 1 << 9},  // supported modes: cyclic synchronous torque
-      } {}
+      } {
+  if (habits_.no_request_stays) set(0x1800, 1, get(0x1800, 1) | kNoRequest);
+  std::erase_if(entries_, [this](const DictionaryEntry& entry) {
+    return std::find(habits_.absent.begin(), habits_.absent.end(), entry.index) !=
+           habits_.absent.end();
+  });
+}
 
 const DictionaryEntry* ObjectDictionary::find(std::uint16_t index, std::uint8_t sub) const {
   for (const DictionaryEntry& entry : entries_)
@@ -121,6 +129,8 @@ SdoAbort ObjectDictionary::check_pdo(const DictionaryEntry& entry, std::int64_t 
   if (entry.sub == 1) {
     // While it is on, only switching it off is allowed.
     if (is_on && (value & 0x7FF) != (cob_id & 0x7FF)) return SdoAbort::kBadValue;
+    const bool requested = entry.index == 0x1800 && (value & kNoRequest) == 0;
+    if (habits_.no_request_stays && requested) return SdoAbort::kBadValue;
     return (value & 0x3FFF'F800) != 0 ? SdoAbort::kBadValue : SdoAbort::kNone;
   }
   if (entry.sub == 2 && entry.index == 0x1800 && (value < 1 || value > 240))
@@ -164,8 +174,12 @@ SdoAbort ObjectDictionary::download(std::uint16_t index, std::uint8_t sub,
     const SdoAbort abort = check_pdo(*entry, value, is_operational);
     if (abort != SdoAbort::kNone) return abort;
   }
+  const bool watches = (entry->value & 0xFFFF) != 0 && (value & 0xFFFF) != 0;
+  if (index == 0x1016 && habits_.watch_off_first && watches && value >> 16 == entry->value >> 16)
+    return SdoAbort::kContradiction;
   if (index == 0x6060 && value != 0 && value != 10) return SdoAbort::kBadValue;
   entry->value = value;
+  if (index == 0x6060) set(0x6061, 0, value == 10 ? habits_.mode_shown : value);
   return SdoAbort::kNone;
 }
 
@@ -181,6 +195,7 @@ Sdo ObjectDictionary::serve(std::span<const std::uint8_t> request, bool is_opera
     if (const DictionaryEntry* const entry = find(index, sub)) {
       const std::size_t size = wire_size(entry->type);
       answer[0] = static_cast<std::uint8_t>(0x43u | (4 - size) << 2u);
+      if (habits_.sizes_unsaid) answer = {0x42, asked[1], asked[2], sub, 0xEE, 0xEE, 0xEE, 0xEE};
       put_field(std::span(answer).subspan(4), whole(entry->type),
                 static_cast<double>(entry->value));
       abort = SdoAbort::kNone;

@@ -18,7 +18,9 @@ constexpr std::uint32_t kEstop06 = 0x0200'0000, kEstop05 = 0x4000;
 constexpr std::uint32_t kOverCurrent06 = 0x400, kMotorFailed05 = 0x40;
 constexpr double kMotorCurrentLimit05 =
     4096.0;  // bit of the motor's own error word, CURRENT_LIMIT_VIOLATION
-constexpr std::uint32_t kInvalidState05 = 0x1;
+constexpr std::uint32_t kInvalidState05 = 0x1, kUnderVoltage05 = 0x2, kUnderVoltage06 = 0x200;
+constexpr std::uint32_t kControllerFailed05 = 0x200, kVelocityLimit06 = 0x8000;
+constexpr double kOverspeedRatio = 1.2, kOverspeed05 = 1.0;  // 0.5: bit of the controller's word
 
 bool is_set_point(std::uint8_t command) { return command >= 0x0C && command <= 0x0E; }
 
@@ -27,14 +29,27 @@ bool is_set_point(std::uint8_t command) { return command >= 0x0C && command <= 0
 OdriveDrive::OdriveDrive(int axis, int node, const OdriveSettings& settings, CanBus& bus,
                          const Motor& motor, const FaultPlan& faults)
     : axis_(axis), node_(node), settings_(settings), bus_(bus), motor_(motor), faults_(faults) {
-  has_index_ = settings.power_on_turns == 0.0;
+  power_on();
+}
+
+void OdriveDrive::power_on() {
+  disarm(0);
+  error_ = disarm_reason_ = 0;
+  input_torque_Nm_ = 0.0;
+  velocity_limit_turns_per_s_ = settings_.velocity_limit_turns_per_s;
+  has_index_ = settings_.power_on_turns == 0.0;
+  entered_closed_loop_ = is_overspeed_ = motor_failed_ = false;
 }
 
 double OdriveDrive::torque_Nm() const {
   if (state_ != kClosedLoop || control_mode_ != kTorqueControl || input_mode_ != kPassThrough)
     return 0.0;
   const double largest_Nm = current_limit_A_ * settings_.torque_constant_Nm_per_A;
-  return std::clamp(input_torque_Nm_, -largest_Nm, largest_Nm);
+  const double torque_Nm = std::clamp(input_torque_Nm_, -largest_Nm, largest_Nm);
+  if (!settings_.torque_velocity_limit) return torque_Nm;
+  const double gain = settings_.velocity_gain, at_turns_per_s = motor_.velocity_turns_per_s;
+  return std::clamp(torque_Nm, (-velocity_limit_turns_per_s_ - at_turns_per_s) * gain,
+                    (velocity_limit_turns_per_s_ - at_turns_per_s) * gain);
 }
 
 bool OdriveDrive::tripped() { return std::exchange(has_tripped_, false); }
@@ -55,15 +70,17 @@ void OdriveDrive::request_state(std::uint32_t state, std::int64_t now_ns) {
   if (state == kIdle) {
     state_ = kIdle;
     procedure_result_ = kSuccess;
-  } else if (error_ != 0 || (state == kClosedLoop && !has_index_) ||
+  } else if (error_ != 0 || (state == kClosedLoop && !(has_index_ && settings_.is_calibrated)) ||
              (state != kClosedLoop && state != kIndexSearch)) {
     if (is_05()) error_ |= kInvalidState05;
     procedure_result_ = kDisarmed;
   } else {
     state_ = state;
     fed_ns_ = now_ns;
+    entered_closed_loop_ |= state == kClosedLoop;
     procedure_result_ = kBusy;
     search_until_ns_ = now_ns + settings_.index_search_ms * std::int64_t{1'000'000};
+    if (!settings_.motor_supply) disarm(is_05() ? kUnderVoltage05 : kUnderVoltage06);
   }
 }
 
@@ -113,17 +130,15 @@ bool OdriveDrive::command(const can_frame& frame, std::uint8_t number, std::int6
       const double current_A = value("set_limits", 1);
       if (frame.can_dlc == 8 && std::isfinite(current_A) && current_A >= 0.0)
         current_limit_A_ = current_A;
+      velocity_limit_turns_per_s_ = value("set_limits", 0);
       return false;
     }
     case 0x16:
-      disarm(0);
-      error_ = disarm_reason_ = 0;
-      input_torque_Nm_ = 0.0;
-      has_index_ = settings_.power_on_turns == 0.0;
+      power_on();
       return false;
     case 0x18:
       error_ = disarm_reason_ = 0;
-      motor_failed_ = false;
+      motor_failed_ = is_overspeed_ = false;
       fed_ns_ = now_ns;
       return false;
     default:
@@ -133,9 +148,13 @@ bool OdriveDrive::command(const can_frame& frame, std::uint8_t number, std::int6
 
 void OdriveDrive::tick(std::int64_t now_ns) {
   if (faults_.active(FaultKind::kUnpowered, axis_, now_ns)) {
-    disarm(0);
-    input_torque_Nm_ = 0.0;
+    power_on();
     return;
+  }
+  if (state_ == kClosedLoop &&
+      std::abs(motor_.velocity_turns_per_s) > kOverspeedRatio * velocity_limit_turns_per_s_) {
+    is_overspeed_ = true;
+    disarm(is_05() ? kControllerFailed05 : kVelocityLimit06);
   }
   const std::uint32_t watchdog = is_05() ? kWatchdog05 : kWatchdog06;
   const bool guarded = state_ == kClosedLoop || settings_.watchdog_in_idle;
@@ -185,8 +204,10 @@ double OdriveDrive::value_of(std::string_view field) const {
       {"active_errors", error_},
       {"disarm_reason", disarm_reason_},
       {"motor_error", motor_failed_ ? kMotorCurrentLimit05 : 0.0},
-      {"pos_turns", counts / kCountsPerTurn},
-      {"vel_turns_s", motor_.velocity_turns_per_s},
+      {"controller_error_flag", is_overspeed_ ? 1.0 : 0.0},
+      {"controller_error", is_overspeed_ ? kOverspeed05 : 0.0},
+      {"pos_turns", knows_estimates() ? counts / kCountsPerTurn : 0.0},
+      {"vel_turns_s", knows_estimates() ? motor_.velocity_turns_per_s : 0.0},
       {"shadow", counts},
       {"in_turn", counts - kCountsPerTurn * std::floor(counts / kCountsPerTurn)},
       {"iq_setpoint", iq_A},

@@ -103,7 +103,7 @@ TEST_F(Peers, HoldTheVerticesOfTheBoxAndNoOther) {
 TEST_F(Peers, FitToTheDepthNearestToFiveMillimetres) {
   const auto fit = fit_cases(cases_);
   ASSERT_EQ(fit.size(), 1U);
-  EXPECT_EQ(fit[0].in.depth_m, 0.005);
+  EXPECT_EQ(fit[0].in.dent_m, 0.005);
   EXPECT_EQ(mean_reference_N(fit), half_space_N(0.005));
 }
 
@@ -114,12 +114,12 @@ TEST_F(Peers, FiniteElementsPressLikeAThickBlock) {
   ASSERT_TRUE(peer) << peer.error().sentence;
   for (const ProbeCase& c : cases_) {
     const double ratio = (*peer)->tick(c.in) / c.reference_N;
-    EXPECT_GT(ratio, 0.97) << c.in.depth_m;
-    EXPECT_LT(ratio, 1.20) << c.in.depth_m;
+    EXPECT_GT(ratio, 0.97) << c.in.dent_m;
+    EXPECT_LT(ratio, 1.20) << c.in.dent_m;
     std::vector<double> ring_m(4);
     (*peer)->shape(c.in, 0.006, ring_m);
-    EXPECT_EQ(ring_m[0], c.in.depth_m);
-    EXPECT_GT(ring_m[1] * c.in.depth_m, 0.0);  // the surface beside follows
+    EXPECT_EQ(ring_m[0], c.in.dent_m);
+    EXPECT_GT(ring_m[1] * c.in.dent_m, 0.0);  // the surface beside follows
     EXPECT_LT(std::abs(ring_m[3]), std::abs(ring_m[1]));
   }
 }

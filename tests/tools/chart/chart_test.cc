@@ -33,7 +33,8 @@ std::string scratch_folder(const std::string& name) {
 model::scene::Scene make_scene() {
   model::scene::Scene scene = tests::make_plate_scene();
   scene.described = {LawKind::kRhombus, LawKind::kDiscStack, LawKind::kHexSheet,
-                     LawKind::kSpringPatch};
+                     LawKind::kSpringPatch, LawKind::kHuntCrossley};
+  scene.hunt_crossley = {.force_N = 0.3, .working_depth_m = 0.01};
   scene.disc_stack = tests::make_linear_discs();
   scene.hex_sheet = {.ring_pitch_m = 0.004,
                      .contact_stiffness_N_per_m = 5.0,
@@ -183,7 +184,7 @@ TEST(Chart, GivesEveryLawARowWithTheErrorWorkedByHand) {
       EXPECT_TRUE(std::isnan(table.number(row, "pull_rms_ratio")));
     }
   }
-  for (const char* law : {"rhombus", "disc_stack", "hex_sheet", "spring_patch"})
+  for (const char* law : {"rhombus", "disc_stack", "hex_sheet", "spring_patch", "hunt_crossley"})
     EXPECT_NE(std::find(families.begin(), families.end(), law), families.end()) << law;
 }
 

@@ -61,6 +61,66 @@ TEST_F(Deploy, TheBusStaysDownAfterBusOff) {
   EXPECT_NE(content(kDeploy + "can0.ifupdown").find("restart-ms 0"), std::string::npos);
 }
 
+TEST_F(Deploy, NoUnitArms) {
+  for (const char* unit : {"tactd@.service", "tact-view.service"}) {
+    std::istringstream lines(content(kDeploy + unit));
+    int starts = 0;
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.starts_with("Exec")) continue;
+      if (line.starts_with("ExecStart=")) ++starts;
+      EXPECT_EQ(line.find("arm"), std::string::npos) << line;
+      EXPECT_EQ(line.find("tactctl"), std::string::npos) << line;
+      EXPECT_EQ(line.find("kill"), std::string::npos) << line;
+    }
+    EXPECT_EQ(starts, 1) << unit;
+  }
+}
+
+std::string value_in(const std::string& unit, const std::string& key) {
+  std::istringstream lines(content(kDeploy + unit));
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(key + "=")) return line.substr(key.size() + 1);
+  return "";
+}
+
+// The socket of tactctl believes the user of tactd.
+TEST_F(Deploy, TheViewerIsNotTheUserOfTheController) {
+  const std::string controller = value_in("tactd@.service", "User");
+  const std::string viewer = value_in("tact-view.service", "User");
+  EXPECT_NE(viewer, controller);
+  EXPECT_NE(content(kDeploy + "tact.sysusers").find("\nu " + controller + " "), std::string::npos);
+  const std::string users = content(kDeploy + "tact-view.sysusers");
+  EXPECT_NE(users.find("\nu " + viewer + " "), std::string::npos);
+  EXPECT_NE(users.find("\nm " + viewer + " haptics\n"), std::string::npos);
+  EXPECT_TRUE(value_in("tactd@.service", "ExecStart").ends_with(" --viewers haptics"));
+  EXPECT_TRUE(value_in("tact-view.service", "ExecStart").ends_with(" --tactd-user " + controller));
+  EXPECT_EQ(value_in("tactd@.service", "RuntimeDirectoryMode"), "0750");
+  EXPECT_EQ(value_in("tact-view.service", "RuntimeDirectory"), "") << "it would become its owner's";
+  EXPECT_EQ(value_in("tact-view.service", "PrivateDevices"), "yes") << "haptics may use devices";
+}
+
+// What the loop needs in a sandbox; where it is missing, tactd tells "no hard real time" alone.
+TEST_F(Deploy, TheUnitLetsTheLoopBeHardRealTime) {
+  const std::string unit = content(kDeploy + "tactd@.service");
+  for (const char* line :
+       {"LimitRTPRIO=85", "LimitMEMLOCK=infinity", "DeviceAllow=/dev/cpu_dma_latency rw",
+        "SystemCallFilter=@system-service seccomp", "KillMode=mixed", "ExecStopPost=sleep 0.5",
+        "Type=notify"})
+    EXPECT_NE(unit.find("\n" + std::string(line) + "\n"), std::string::npos) << line;
+  EXPECT_EQ(unit.find("\nRestrictRealtime=yes"), std::string::npos);
+}
+
+TEST_F(Deploy, AUnitIsExposedToNoMoreThanTwoOfTen) {
+  if (std::system("command -v systemd-analyze >/dev/null") != 0) GTEST_SKIP() << "no systemd";
+  for (const char* unit : {"tactd@.service", "tact-view.service"}) {
+    const std::string command =
+        "systemd-analyze security --offline=true --no-pager --threshold=20 " + kDeploy + unit +
+        " >" + said + " 2>&1";
+    EXPECT_EQ(std::system(command.c_str()), 0) << content(said);
+    EXPECT_NE(content(said).find("Overall exposure level"), std::string::npos);
+  }
+}
+
 TEST_F(Deploy, InstallCopiesEveryFileOnce) {
   EXPECT_EQ(install("--can --into " + folder + "/root", said), 0) << content(said);
   for (const char* path :
@@ -83,6 +143,13 @@ TEST_F(Deploy, AnUnknownOptionIsBadUsage) {
   EXPECT_EQ(install("--froce", said), 2);
   EXPECT_NE(content(said).find("--help"), std::string::npos);
   EXPECT_EQ(install("--user", said), 2);
+}
+
+TEST_F(Deploy, AnEmptyFolderOrNameIsNotThisMachine) {
+  for (const char* option : {"--into", "--user"}) {
+    EXPECT_EQ(install(std::string("--dry-run ") + option + " ''", said), 2);
+    EXPECT_NE(content(said).find(std::string(option) + " needs a value"), std::string::npos);
+  }
 }
 
 }  // namespace

@@ -21,8 +21,8 @@ using model::operator""_mm;
 inline Scene make_scene() {
   Scene scene = tests::make_plate_scene();
   scene.organ_mesh = tests::make_plate(0.08, 16);
-  scene.described = {LawKind::kRhombus, LawKind::kDiscStack, LawKind::kHexSheet,
-                     LawKind::kSpringPatch, LawKind::kCompliance};
+  scene.described = {LawKind::kRhombus,     LawKind::kDiscStack,  LawKind::kHexSheet,
+                     LawKind::kSpringPatch, LawKind::kCompliance, LawKind::kHuntCrossley};
   scene.table_knots = 33;
   scene.disc_stack = {
       .disc = {.outer_diameter_m = 8_mm,
@@ -42,6 +42,7 @@ inline Scene make_scene() {
                      .rings = 10,
                      .weight = model::indent::HexWeight::kNode,
                      .working_depth_m = 12_mm};
+  scene.hunt_crossley = {.force_N = 0.6, .working_depth_m = 12_mm, .exponent = 1.4};
   return scene;
 }
 

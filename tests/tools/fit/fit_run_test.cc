@@ -93,6 +93,20 @@ TEST(FitRun, FindsTheConedDiscsThatMadeTheData) {
               104.0);
 }
 
+TEST(FitRun, FindsThePowerLawThatMadeTheData) {
+  const Scene truth = make_scene();
+  FitData data{.sites = {make_site(truth, 100, 0.0)}};
+  answer(truth, LawKind::kHuntCrossley, data, true);
+  Scene start = make_scene();
+  start.hunt_crossley.force_N = 3.0;
+  start.hunt_crossley.exponent = 2.0;
+  const FittedLaw fitted = fit("hunt_crossley", start, data);
+  EXPECT_NEAR(value_of(fitted, "force_N"), 0.6, 0.006);
+  EXPECT_NEAR(value_of(fitted, "exponent"), 1.4, 0.01);
+  spoil(data);
+  EXPECT_NEAR(value_of(fit("hunt_crossley", start, data), "exponent"), 1.4, 0.05);
+}
+
 TEST(FitRun, FindsTheHexagonalSheetThatMadeTheData) {
   const Scene truth = make_scene();
   FitData data{.sites = {make_site(truth, 100, 0.0)}};

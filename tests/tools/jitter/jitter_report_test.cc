@@ -143,7 +143,8 @@ TEST(Report, ThePictureHasEverySample) {
 }
 
 json result_with(std::uint64_t p99_ns) {
-  return {{"format", "tact-jitter 1"},
+  return {{"format", "tact-jitter"},
+          {"version", 2},
           {"rate_Hz", 1000},
           {"series",
            {{"wake",
@@ -168,6 +169,13 @@ TEST(Compare, JudgesNeitherTheLargestNorAPercentileOfTooFewSamples) {
         << v.series << " " << v.share;
     EXPECT_NE(v.share, "p99.9") << "there is none";
   }
+}
+
+TEST(Compare, ReadsResultsOfTheFirstVersion) {
+  json old = {{"format", "tact-jitter 1"}, {"series", json::object()}};
+  EXPECT_TRUE(compare_results(old, result_with(20'000), 0.1));
+  old["format"] = "tact-limits";
+  EXPECT_FALSE(compare_results(old, result_with(20'000), 0.1));
 }
 
 TEST(Compare, TellsWhichConditionsDiffer) {
@@ -202,7 +210,9 @@ TEST_F(JitterProgram, WritesAReportOfARealLoopThatComparesWithItself) {
   EXPECT_TRUE(result["thread"]["allocations"] == 0 || result["thread"]["allocations"].is_null());
   EXPECT_GE(result["pc"].size(), 15u);
   EXPECT_FALSE(result["environment"]["kernel_release"].get<std::string>().empty());
-  EXPECT_TRUE(has(read_file(out + "/report.html"), "<svg"));
+  const std::string page = read_file(out + "/report.html");
+  EXPECT_TRUE(has(page, "<svg"));
+  EXPECT_TRUE(has(page, "</b> on <b>" + result["host"].get<std::string>()));
   EXPECT_GT(fs::file_size(out + "/ticks.perfetto-trace"), 1000u);
   const std::string itself = out + "/jitter.json " + out + "/jitter.json";
   EXPECT_EQ(run_program("tact-jitter", "compare " + itself + " --gate 1").status, 0);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -220,14 +221,20 @@ TEST(PulseMeter, AnEdgeThatWasLostMakesNoPulse) {
 TEST(LoopBack, ReadsUntilItIsStopped) {
   class Pulses final : public hal::gpio::EdgeWatch {
    public:
+    explicit Pulses(std::atomic<int>& reads) : reads_{reads} {}
     std::vector<hal::gpio::Edge> read(std::chrono::milliseconds) override {
-      now_ns += kMs;
-      return {{true, now_ns}, {false, now_ns + 7'000}};
+      now_ns_ += kMs;
+      ++reads_;
+      return {{true, now_ns_}, {false, now_ns_ + 7'000}};
     }
-    std::int64_t now_ns = 0;
+
+   private:
+    std::atomic<int>& reads_;
+    std::int64_t now_ns_ = 0;
   };
-  LoopBack loop_back(std::make_unique<Pulses>(), kMs);
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  std::atomic<int> reads{0};
+  LoopBack loop_back(std::make_unique<Pulses>(reads), kMs);
+  while (reads < 2) std::this_thread::yield();
   const PulseMeter meter = loop_back.stop();
   EXPECT_GT(meter.pulses().histogram.count(), 0u);
   EXPECT_EQ(meter.pulses().histogram.max_ns(), 7'000u);

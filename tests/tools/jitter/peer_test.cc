@@ -104,6 +104,25 @@ TEST(PeerGate, APeerGateWithoutThreeTurnsIsNeitherPassedNorFailed) {
   EXPECT_EQ(exit_status(result), 1);
 }
 
+TEST(PeerGate, TheReportBeginsWithWhatTheGateFound) {
+  JitterResult result = with_peer();
+  const auto begins_with = [&](const char* banner) {
+    const std::string page = make_page(result, "c", "");
+    return has(page, banner) && page.find(banner) < page.find("<h1>");
+  };
+  EXPECT_TRUE(begins_with("<p class=\"verdict part\">NOT JUDGED: no gate"));
+  result.peer_gate = 1.2;
+  EXPECT_TRUE(begins_with("<p class=\"verdict part\">NOT JUDGED: --peer-gate 1.2 could not"));
+  result.turn_ratios = {1.1, 1.1, 1.1};
+  EXPECT_TRUE(begins_with("<p class=\"verdict pass\">PASS: "));
+  result.turn_ratios = {1.3, 1.3, 1.3};
+  EXPECT_TRUE(begins_with("<p class=\"verdict fail\">FAIL: wake-up"));
+  result.turn_ratios = {1.1, 1.1, 1.1};
+  result.fault = "103 no samples";
+  EXPECT_TRUE(begins_with("<p class=\"verdict fail\">FAIL: the run ended with a fault: 103"))
+      << "a fault is told before a gate that passes";
+}
+
 TEST(PeerGate, AGateOnThePeerNeedsAPeerAndEnoughTurns) {
   EXPECT_EQ(tests::run_program("tact-jitter", "--bare --duration 0.1 --peer-gate 1.2").status, 2);
   const auto run = tests::run_program(

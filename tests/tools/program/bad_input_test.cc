@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -23,9 +24,11 @@ using tests::run_command;
 using tests::run_program;
 
 const std::string kScene = TACT_SOURCE_DIR "/model/scenes/liver.toml";
-const std::vector<std::string> kPrograms{"tactd",       "tact-view",   "tact-jitter",   "tact-fit",
-                                         "tact-plan",   "tact-chart",  "tact-condense", "tact-mesh",
-                                         "tact-doctor", "tact-limits", "tact-verify"};
+const std::vector<std::string> kPrograms{
+    "tactd",          "tact-view",      "tact-jitter",    "tact-fit",
+    "tact-plan",      "tact-chart",     "tact-condense",  "tact-mesh",
+    "tact-doctor",    "tact-limits",    "tact-verify",    "tactctl",
+    "tact-calibrate", "tact-reference", "tact-stability", "tact-track-send"};
 
 class BadInput : public testing::Test {
  protected:
@@ -59,6 +62,21 @@ std::vector<std::string> number_options(const std::string& program) {
       out.push_back(line.substr(option, line.find_first_of(" ,", option) - option));
   }
   return out;
+}
+
+TEST_F(BadInput, EveryProgramTellsItsVersionAndWhatBuiltIt) {
+  for (const std::string& program : kPrograms) {
+    const Outcome outcome = run_program(program, "--version");
+    EXPECT_EQ(outcome.status, 0) << program;
+    EXPECT_TRUE(std::regex_match(outcome.output,
+                                 std::regex(program + R"( \d+\.\d+\.\d+ \(\S+\), compiler .+\n)")))
+        << outcome.output;
+  }
+}
+
+TEST_F(BadInput, AnEmptyArgumentIsRefusedByEveryProgram) {
+  for (const std::string& program : kPrograms)
+    for (const char* empty : {"''", "--out=", "--json ''"}) refuses(program, empty, "is empty");
 }
 
 TEST_F(BadInput, NoProgramTakesANumberThatIsNone) {

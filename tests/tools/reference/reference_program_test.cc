@@ -36,7 +36,7 @@ TEST(ReferenceProgram, RefusesWhatCannotBeSolved) {
   expect_refusal("", "no scene given; see tact-reference --help");
   expect_refusal(kLiver + " --sites 99999",
                  "site 99999 is no vertex of liver_3116.obj; they are 0 to 3115");
-  for (const char* depths : {"0.002,0.001", "0.001,nan", "1.5"})
+  for (const char* depths : {"0.002,0.001", "0.001,0.001", "1.5"})
     expect_refusal(kLiver + " --sites 1714 --depths " + depths,
                    "--depths must rise, all above 0 and at most 0.02 m (5 tool radii); give "
                    "metres: 0.001,0.002");

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/console/control_client.h"
+
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "firmware/console/control_name.h"
+#include "model/io/socket_file.h"
+
+namespace tact::firmware::console {
+namespace {
+
+using model::Error;
+using model::Result;
+
+constexpr timeval kPatience{.tv_sec = 5, .tv_usec = 0};
+
+/// A connected socket; -1: nobody listens there, or not one who may be believed.
+int connect_to(const std::string& path) {
+  const auto address = model::io::socket_address(path);
+  const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
+  if (!address || fd < 0) return fd < 0 ? fd : (close(fd), -1);
+  setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &kPatience, sizeof kPatience);
+  setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &kPatience, sizeof kPatience);
+  ucred peer{};
+  socklen_t bytes = sizeof peer;
+  const bool good =
+      connect(fd, reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0 &&
+      getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &bytes) == 0 &&
+      (geteuid() == 0 || may_ask(peer.uid));
+  return good ? fd : (close(fd), -1);
+}
+
+Result<Answer> talk(int fd, const ControlName& control, const std::string& word) {
+  std::array<char, kLongestControlMessage> message{};
+  const bool sent =
+      send(fd, word.data(), word.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(word.size());
+  // Who is refused is answered before he has asked: the answer waits behind the end of the peer.
+  const bool refused = !sent && (errno == EPIPE || errno == ECONNRESET);
+  ssize_t n = sent || refused ? recv(fd, message.data(), message.size(), 0) : -1;
+  if (n < 0 && errno == ECONNRESET) n = recv(fd, message.data(), message.size(), 0);
+  if (n > 0) return unpack_answer(std::string(message.data(), static_cast<std::size_t>(n)));
+  return Error{fmt::format(
+      "process {} does not answer ({}): it may hang or have been stopped; the power switch is sure",
+      control.process, n == 0 ? "it has ended" : std::strerror(errno))};
+}
+
+}  // namespace
+
+Result<Answer> ask_tactd(const ControlQuestion& question) {
+  int fd = -1;
+  ControlName chosen;
+  std::string alive;
+  for (const ControlName& control : find_controls(question.folder, question.scene_path)) {
+    if (question.process != 0 && control.process != question.process) continue;
+    const int found = connect_to(control.path);
+    if (found < 0) continue;
+    alive += fmt::format("{}{}", alive.empty() ? "" : " and ", control.process);
+    if (fd >= 0) close(found);
+    if (fd < 0) fd = found, chosen = control;
+  }
+  if (fd < 0)
+    return Error{fmt::format("no tactd runs {}{}: start one, or name the file that it was given",
+                             question.scene_path,
+                             question.process == 0 ? "" : fmt::format(" as {}", question.process))};
+  auto answer =
+      alive == std::to_string(chosen.process)
+          ? talk(fd, chosen, question.word)
+          : Result<Answer>(Error{fmt::format("processes {} run {}: say which one by --pid", alive,
+                                             question.scene_path)});
+  close(fd);
+  return answer;
+}
+
+}  // namespace tact::firmware::console

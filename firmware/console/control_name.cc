@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/console/control_name.h"
+
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <filesystem>
+
+#include "model/io/socket_file.h"
+
+namespace tact::firmware::console {
+namespace {
+
+constexpr std::string_view kBegin = "control-", kEnd = ".sock";
+
+/// FNV-1a: a name, no proof.
+std::uint64_t hash_of(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return hash;
+}
+
+std::string end_of(const std::string& scene_path) {
+  std::error_code failed;
+  const auto whole = std::filesystem::weakly_canonical(scene_path, failed);
+  return fmt::format("-{:016x}{}", hash_of(failed ? scene_path : whole.string()), kEnd);
+}
+
+std::vector<ControlName> controls_that_end_in(const std::string& folder, std::string_view end) {
+  std::vector<ControlName> found;
+  std::error_code failed;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
+    const std::string name = entry.path().filename();
+    if (!name.starts_with(kBegin) || !name.ends_with(end)) continue;
+    pid_t process = 0;
+    std::from_chars(name.data() + kBegin.size(), name.data() + name.size(), process);
+    found.push_back({.process = process, .path = entry.path()});
+  }
+  std::ranges::sort(found, {}, &ControlName::process);
+  return found;
+}
+
+bool nobody_listens(const std::string& path) {
+  const auto address = model::io::socket_address(path);
+  const int probe = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  const bool dead =
+      address && probe >= 0 &&
+      connect(probe, reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0 &&
+      errno == ECONNREFUSED;
+  if (probe >= 0) close(probe);
+  return dead;
+}
+
+}  // namespace
+
+std::string control_path(const std::string& folder, const std::string& scene_path, pid_t process) {
+  return fmt::format("{}/{}{}{}", folder, kBegin, process, end_of(scene_path));
+}
+
+std::vector<ControlName> find_controls(const std::string& folder, const std::string& scene_path) {
+  return controls_that_end_in(folder, end_of(scene_path));
+}
+
+void remove_dead_controls(const std::string& folder) {
+  for (const ControlName& control : controls_that_end_in(folder, kEnd))
+    if (nobody_listens(control.path)) unlink(control.path.c_str());
+}
+
+}  // namespace tact::firmware::console

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/console/control_socket.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/epoll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "firmware/console/control_name.h"
+#include "model/io/socket_file.h"
+
+namespace tact::firmware::console {
+namespace {
+
+using model::Error;
+using model::Result;
+
+constexpr std::size_t kMostSilent = 8;
+constexpr int kQueue = 8;
+constexpr unsigned kPause_us = 20'000;  // else it would ask again and again
+
+bool watch_it(int watch, int fd) {
+  epoll_event event{.events = EPOLLIN, .data = {.fd = fd}};
+  return epoll_ctl(watch, EPOLL_CTL_ADD, fd, &event) == 0;
+}
+
+/// It listens before it has its name: whoever finds the name is heard.
+bool listen_at(int listener, const std::string& path) {
+  const std::string before = path + ".new";
+  const auto address = model::io::socket_address(before);
+  unlink(before.c_str());
+  return address &&
+         bind(listener, reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0 &&
+         chmod(before.c_str(), 0600) == 0 && listen(listener, kQueue) == 0 &&
+         rename(before.c_str(), path.c_str()) == 0;
+}
+
+}  // namespace
+
+bool may_ask(uid_t user) { return user == geteuid() || user == 0; }
+
+std::string pack_answer(const Answer& answer) {
+  return ((answer.done ? "+" : "-") + answer.sentence).substr(0, kLongestControlMessage);
+}
+
+Answer unpack_answer(const std::string& message) {
+  return {.done = message.starts_with('+'), .sentence = message.empty() ? "" : message.substr(1)};
+}
+
+ControlRequest::ControlRequest(ControlRequest&& other) noexcept
+    : client_(std::exchange(other.client_, -1)), word_(std::move(other.word_)) {}
+
+ControlRequest::~ControlRequest() {
+  if (client_ >= 0) close(client_);
+}
+
+void ControlRequest::answer(const Answer& answer) const {
+  const std::string message = pack_answer(answer);
+  [[maybe_unused]] const auto heard =  // who has gone needs no answer
+      send(client_, message.data(), message.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+}
+
+Result<std::unique_ptr<ControlSocket>> ControlSocket::open(const std::string& path) {
+  if (const auto fits = model::io::socket_address(path + ".new"); !fits) return fits.error();
+  remove_dead_controls(std::filesystem::path(path).parent_path());
+  const int listener = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  const int watch = epoll_create1(EPOLL_CLOEXEC);
+  std::unique_ptr<ControlSocket> control(new ControlSocket(path, listener, watch));
+  struct stat info{};
+  if (listener < 0 || watch < 0 || !listen_at(listener, path) || !watch_it(watch, listener) ||
+      lstat(path.c_str(), &info) != 0)
+    return Error{fmt::format("{}: {}", path, std::strerror(errno))};
+  control->device_ = info.st_dev;
+  control->inode_ = info.st_ino;
+  return control;
+}
+
+bool ControlSocket::owns_its_file() const {
+  struct stat info{};
+  return inode_ != 0 && lstat(path_.c_str(), &info) == 0 && info.st_dev == device_ &&
+         info.st_ino == inode_;
+}
+
+ControlSocket::~ControlSocket() {
+  if (owns_its_file()) unlink(path_.c_str());
+  for (const int client : silent_) close(client);
+  for (const int fd : {listener_, watch_, spare_})
+    if (fd >= 0) close(fd);
+}
+
+std::optional<ControlRequest> ControlSocket::next() {
+  epoll_event event{};
+  if (spare_ < 0) spare_ = fcntl(listener_, F_DUPFD_CLOEXEC, 0);
+  while (epoll_wait(watch_, &event, 1, 0) == 1) {
+    if (event.data.fd != listener_) {
+      if (auto request = read(event.data.fd)) return request;
+    } else if (!accept_one()) {
+      return std::nullopt;
+    }
+  }
+  return std::nullopt;
+}
+
+// Without a free descriptor the spare one is given up for the first who asks. False: not even that
+// one is free.
+bool ControlSocket::accept_one() {
+  const auto accept_it = [this] {
+    return accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+  };
+  int client = accept_it();
+  if (client < 0 && (errno == EMFILE || errno == ENFILE) && spare_ >= 0) {
+    close(std::exchange(spare_, -1));
+    client = accept_it();
+  }
+  if (client < 0) {
+    const bool is_gone = errno == EAGAIN || errno == ECONNABORTED;
+    if (!is_gone) usleep(kPause_us);
+    return is_gone;
+  }
+  ucred peer{};
+  socklen_t bytes = sizeof peer;
+  const bool known = getsockopt(client, SOL_SOCKET, SO_PEERCRED, &peer, &bytes) == 0;
+  if (!known || !may_ask(peer.uid) || !watch_it(watch_, client)) {
+    const ControlRequest stranger(client, "");
+    stranger.answer(
+        {.done = false, .sentence = "only the user of this tactd, and root, are heard"});
+    return true;
+  }
+  // Whoever connects and says nothing makes room for the next.
+  if (silent_.size() == kMostSilent) {
+    close(silent_.front());
+    silent_.erase(silent_.begin());
+  }
+  silent_.push_back(client);
+  return true;
+}
+
+std::optional<ControlRequest> ControlSocket::read(int client) {
+  std::array<char, 64> word{};
+  const auto n = recv(client, word.data(), word.size(), MSG_DONTWAIT);
+  if (n < 0 && errno == EAGAIN) return std::nullopt;
+  epoll_ctl(watch_, EPOLL_CTL_DEL, client, nullptr);
+  std::erase(silent_, client);
+  ControlRequest request(
+      client, std::string(word.data(), static_cast<std::size_t>(std::max<ssize_t>(n, 0))));
+  if (n <= 0) return std::nullopt;
+  return request;
+}
+
+}  // namespace tact::firmware::console

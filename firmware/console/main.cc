@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactctl: arms, resets, stops or asks the tactd that runs a scene.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "firmware/console/control_client.h"
+#include "firmware/console/control_name.h"
+#include "firmware/console/say.h"
+#include "firmware/telemetry/telemetry_socket.h"
+#include "model/io/command_line.h"
+#include "model/io/within.h"
+
+namespace {
+
+constexpr const char* kServices = "/run/tact";  // RuntimeDirectory of tactd@.service
+
+/// That of the caller's own tactd, or of the one that runs as a service.
+tact::model::Result<std::string> folder_of(const std::string& scene_path) {
+  using tact::firmware::console::find_controls;
+  auto own = tact::firmware::telemetry::runtime_directory();
+  const bool is_own = own && !find_controls(*own, scene_path).empty();
+  if (!is_own && !find_controls(kServices, scene_path).empty()) return std::string(kServices);
+  return own;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace tact::firmware;
+  CLI::App app{
+      "tactctl: asks the tactd that runs SCENE, on this computer and of the same user (or as "
+      "root).\n"
+      "Exit status: 0 done, 1 refused, 2 bad usage, or no such tactd."};
+  console::ControlQuestion question;
+  app.add_option("SCENE", question.scene_path, "the scene file that tactd was given")->required();
+  app.add_option("WORD", question.word,
+                 "arm: force, after the words \"ready, force is off\"; reset: leave a stop whose "
+                 "cause is gone; stop: force to zero, then end; status: how it is")
+      ->required()
+      ->check(CLI::IsMember({"arm", "reset", "stop", "status"}));
+  app.add_option("--pid", question.process, "of several tactds that run it, the one of this pid")
+      ->check(tact::model::io::within(1, 4'194'304));
+  app.add_option("--folder", question.folder,
+                 "runtime folder of tactd's user (default: tact in XDG_RUNTIME_DIR, or "
+                 "/tmp/tact-UID; else /run/tact of the service)");
+  if (const auto status = tact::model::io::parse_command_line(app, "tactctl", argc, argv))
+    return *status;
+  const auto folder = question.folder.empty() ? folder_of(question.scene_path) : question.folder;
+  if (folder) question.folder = *folder;
+  const auto answer = folder ? console::ask_tactd(question) : folder.error();
+  if (!answer) {
+    console::say(stderr, "tactctl: {}\n", answer.error().sentence);
+    return 2;
+  }
+  console::say(answer->done ? stdout : stderr, "{}\n", answer->sentence);
+  return answer->done ? 0 : 1;
+}

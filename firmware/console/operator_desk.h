@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// operator_desk.h - a person asks, the loop does it or not, and the person hears which.
+//
+// Arming is an act, made once, when it may be: after the words "ready, force is off" were told. A
+// request that comes at another time is refused with the reason, and forgotten. By signal or by
+// tactctl, the rule is one.
+#pragma once
+
+#include <functional>
+
+#include "firmware/console/control_socket.h"
+#include "firmware/console/operator_signals.h"
+#include "firmware/console/operator_view.h"
+
+namespace tact::firmware::console {
+
+class OperatorDesk {
+ public:
+  /// `control`: none, and signals alone are heard.
+  OperatorDesk(const OperatorSignals& signals, loop::Requests& requests, OperatorView& view,
+               std::function<telemetry::Frame()> newest, ControlSocket* control = nullptr)
+      : signals_(signals),
+        requests_(requests),
+        view_(view),
+        newest_(std::move(newest)),
+        control_(control) {}
+
+  /// Waits at most so long for a request, shows the newest frame, and does or refuses it.
+  void obey(std::int64_t longest_ns);
+
+ private:
+  std::optional<ControlRequest> next_by_socket() const;
+  bool show();
+  Answer do_word(const std::string& word, bool too_early);
+  Answer arm(bool too_early);
+  Answer reset(bool too_early);
+  Answer stop();
+  Answer refuse(const char* what, const std::string& why) const;
+
+  const OperatorSignals& signals_;
+  loop::Requests& requests_;
+  OperatorView& view_;
+  std::function<telemetry::Frame()> newest_;
+  ControlSocket* control_;
+};
+
+/// The desk's door for tactctl; none, and told, where it cannot be opened: signals are heard still.
+std::unique_ptr<ControlSocket> open_control(const std::string& scene_path,
+                                            const OperatorView& view);
+
+}  // namespace tact::firmware::console

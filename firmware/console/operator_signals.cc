@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/console/operator_signals.h"
+
+#include <poll.h>
+#include <pthread.h>
+#include <sys/signalfd.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace tact::firmware::console {
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr int kLastSignal = 64;
+constexpr std::array kLeave{SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGABRT};
+/// What nobody can ignore, and what ends nothing by itself.
+constexpr std::array kLeftAlone{SIGKILL, SIGSTOP, SIGCHLD, SIGCONT, SIGURG, SIGWINCH};
+
+sigset_t requests_of_a_person() {
+  sigset_t set{};
+  sigemptyset(&set);
+  for (const int signal : {SIGUSR1, SIGUSR2}) sigaddset(&set, signal);
+  return set;
+}
+
+/// glibc keeps two signals to itself (nptl(7)) and lets nobody ignore them; it puts handlers of its
+/// own in place when it needs them.
+void ignore_one_of_glibc(int signal) {
+  const std::array<std::uintptr_t, 4> kernel_sigaction{reinterpret_cast<std::uintptr_t>(SIG_IGN)};
+  constexpr std::size_t kMaskBytes = kLastSignal / 8;
+  syscall(SYS_rt_sigaction, signal, kernel_sigaction.data(), nullptr, kMaskBytes);
+}
+
+/// Unless somebody has a handler for it: a sanitizer, say.
+void ignore(int signal) {
+  struct sigaction now{};
+  if (sigaction(signal, nullptr, &now) != 0) return ignore_one_of_glibc(signal);
+  if (now.sa_handler == SIG_DFL) std::signal(signal, SIG_IGN);
+}
+
+}  // namespace
+
+void wait_several_ticks() {
+  constexpr timespec kSeveralTicks{.tv_sec = 0, .tv_nsec = 20'000'000};
+  nanosleep(&kSeveralTicks, nullptr);
+}
+
+void outlive_stray_signals() {
+  const sigset_t requests = requests_of_a_person();
+  pthread_sigmask(SIG_BLOCK, &requests, nullptr);
+  const auto is_one_of = [](int signal, const auto& some) {
+    return std::ranges::find(some, signal) != some.end();
+  };
+  for (int signal = 1; signal <= kLastSignal; ++signal)
+    if (!is_one_of(signal, kLeave) && !is_one_of(signal, kLeftAlone) &&
+        sigismember(&requests, signal) == 0)
+      ignore(signal);
+}
+
+OperatorSignals::OperatorSignals(std::function<void()> let_loop_read)
+    : signals_(requests_of_a_person()), let_loop_read_(std::move(let_loop_read)) {
+  std::signal(SIGINT, SIG_DFL);  // a shell starts background programs with SIGINT ignored
+  for (const int signal : kLeave) sigaddset(&signals_, signal);
+  pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+  signal_fd_ = signalfd(-1, &signals_, SFD_NONBLOCK | SFD_CLOEXEC);
+}
+
+OperatorSignals::~OperatorSignals() {
+  if (signal_fd_ >= 0) close(signal_fd_);
+}
+
+Act OperatorSignals::wait(std::int64_t longest_ns, int other_fd) const {
+  constexpr timespec kNow{};
+  const timespec longest{.tv_sec = longest_ns / kSecond_ns, .tv_nsec = longest_ns % kSecond_ns};
+  std::array<pollfd, 2> either{{{.fd = signal_fd_, .events = POLLIN, .revents = 0},
+                                {.fd = other_fd, .events = POLLIN, .revents = 0}}};
+  ppoll(either.data(), either.size(), &longest, nullptr);
+  const int signal = sigtimedwait(&signals_, nullptr, &kNow);
+  if (signal == SIGUSR1) return Act::kReset;
+  if (signal == SIGUSR2) return Act::kArm;
+  return signal > 0 ? Act::kLeave : Act::kNone;
+}
+
+int OperatorSignals::forget() const {
+  constexpr timespec kNow{};
+  const sigset_t requests = requests_of_a_person();
+  int forgotten = 0;
+  while (sigtimedwait(&requests, nullptr, &kNow) > 0) ++forgotten;
+  return forgotten;
+}
+
+void OperatorSignals::raise_edge(std::atomic<bool>& request) const {
+  request.store(true);
+  let_loop_read_();
+  request.store(false);
+  let_loop_read_();
+}
+
+}  // namespace tact::firmware::console

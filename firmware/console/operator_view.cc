@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/console/operator_view.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "firmware/console/say.h"
+#include "firmware/console/status_line.h"
+#include "firmware/loop/supervisor.h"
+#include "firmware/watch/call_filter.h"
+
+namespace tact::firmware::console {
+
+using model::Fault;
+
+std::string trouble_behind(Fault fault, const hal::Device& device, const hal::SafetyLines& lines) {
+  if (fault == Fault::kNone) return {};
+  if (fault == Fault::kForbiddenCall) return watch::refused_call();
+  const bool of_lines = fault >= Fault::kEmergencyStop && fault <= Fault::kDeadManReleased;
+  return of_lines ? lines.trouble() : device.trouble();
+}
+
+OperatorView::OperatorView(const hal::Device& device, const hal::SafetyLines& lines,
+                           bool arms_itself, std::string scene_path)
+    : device_(device),
+      lines_(lines),
+      name_(device.info().name),
+      scene_path_(std::move(scene_path)),
+      terminal_(isatty(STDOUT_FILENO) != 0),
+      arms_itself_(arms_itself) {}
+
+bool OperatorView::show(const telemetry::Frame& newest) {
+  const bool was_told = told_ready_;
+  if (newest.state == loop::State::kArmed || newest.state == loop::State::kStopped)
+    arms_itself_ = false;  // at the start alone
+  if (newest.state != loop::State::kReady) told_ready_ = false;
+  if (newest.fault != before_.fault && newest.fault != 0) {
+    const auto number = static_cast<Fault>(newest.fault);
+    const model::FaultEntry& fault = model::describe(number);
+    const std::string trouble = trouble_behind(number, device_, lines_);
+    tell(fmt::format("fault {}, {}: {}{}{}; {}", newest.fault, fault.name, fault.cause,
+                     trouble.empty() ? "" : ": ", trouble, fault.cure));
+  } else if (newest.fault == 0 && newest.state == loop::State::kOff) {
+    const std::string now = device_.trouble();
+    if (!now.empty() && now != waits_for_) tell(now);
+    waits_for_ = now;
+  } else if (newest.state == loop::State::kReady && !told_ready_ && !arms_itself_) {
+    told_ready_ = true;
+    tell(fmt::format(
+        "ready, force is off: hold the device, then arm it (tactctl {} arm, or kill -USR2 {})",
+        scene_path_, getpid()));
+  }
+  if (terminal_) say(stdout, "\r\033[K{}", status_line(newest, before_));
+  std::fflush(stdout);
+  before_ = newest;
+  return told_ready_ && !was_told;
+}
+
+std::string OperatorView::why_not_arm() const {
+  switch (before_.state) {
+    case loop::State::kOff:
+      return waits_for_.empty() ? "the device is not ready yet" : waits_for_;
+    case loop::State::kReady:
+      return told_ready_ ? "" : "it arms itself as soon as it has power";
+    case loop::State::kArmed:
+      return "it is armed already";
+    case loop::State::kStopped:
+      return fmt::format("it has stopped; reset it first (tactctl {} reset, or kill -USR1 {})",
+                         scene_path_, getpid());
+  }
+  return "its state is not known";
+}
+
+std::string OperatorView::why_not_reset() const {
+  if (before_.state == loop::State::kStopped) return {};
+  return fmt::format("it is {}, not stopped", name_of(before_.state));
+}
+
+std::string OperatorView::status() const {
+  const auto& f = before_.force_N;
+  std::string out =
+      fmt::format("{}: {}, {:.3f} N", name_, name_of(before_.state), std::hypot(f[0], f[1], f[2]));
+  if (before_.fault != 0)
+    out += fmt::format(", fault {}, {}", before_.fault,
+                       model::describe(static_cast<Fault>(before_.fault)).name);
+  if (before_.state == loop::State::kOff && !waits_for_.empty()) out += ": " + waits_for_;
+  return out;
+}
+
+void OperatorView::tell(const std::string& sentence) const {
+  say(stderr, "{}tactd: {}\n", terminal_ ? "\n" : "", sentence);
+}
+
+void OperatorView::end() const {
+  if (terminal_) say(stdout, "\n");
+}
+
+}  // namespace tact::firmware::console

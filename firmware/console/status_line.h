@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// status_line.h - one run in one line, for a terminal.
+#pragma once
+
+#include <string>
+
+#include "firmware/telemetry/telemetry_record.h"
+
+namespace tact::firmware::console {
+
+/// Time, rate, late ticks, force, state, and the fault or limit that acts. The rate is measured:
+/// ticks over time since `before`; 0 when no time has passed.
+std::string status_line(const telemetry::Frame& frame, const telemetry::Frame& before);
+
+}  // namespace tact::firmware::console

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/guardian/duty.h"
+
+#include <fcntl.h>
+#include <linux/usbdevice_fs.h>
+#include <sched.h>
+#include <seccomp.h>
+#include <sys/ioctl.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <string_view>
+
+#include "firmware/guardian/lifeline.h"
+#include "firmware/guardian/orders.h"
+
+namespace tact::firmware::guardian {
+namespace {
+
+constexpr std::uint32_t kRefuse = SCMP_ACT_ERRNO(EPERM);
+constexpr std::size_t kTouchedStack_bytes = std::size_t{64} * 1024;
+
+__attribute__((noinline)) void touch_stack() {
+  volatile char bytes[kTouchedStack_bytes];
+  for (std::size_t i = 0; i < sizeof bytes; i += 1024) bytes[i] = 1;
+  static_cast<void>(bytes[0]);
+}
+
+void write_all(int fd, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t n = write(fd, text.data(), text.size());
+    if (n <= 0) return;
+    text.remove_prefix(static_cast<std::size_t>(n));
+  }
+}
+
+/// The out-of-memory killer takes the one with the memory; only root may ask for never.
+void outlive_short_memory() {
+  const int file = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
+  if (file < 0) return;
+  write_all(file, "-1000");
+  close(file);
+}
+
+/// As far as this user may: what is missing tactd itself has told.
+void enter_real_time(int priority) {
+  touch_stack();
+  mlockall(MCL_CURRENT | MCL_FUTURE);
+  prctl(PR_SET_TIMERSLACK, 1);
+  const sched_param wanted{.sched_priority = priority};
+  sched_setscheduler(0, SCHED_FIFO, &wanted);
+}
+
+/// Written before it is needed: after a death nothing is formatted.
+struct Sentence {
+  Sentence(int process, const char* what) {
+    std::snprintf(text.data(), text.size(), "tact-guardian: tactd (process %d) died; %s\n", process,
+                  what);
+  }
+  std::array<char, 200> text{};
+};
+
+scmp_arg_cmp is(unsigned argument, scmp_datum_t value) {
+  return {.arg = argument, .op = SCMP_CMP_EQ, .datum_a = value, .datum_b = 0};
+}
+
+bool allow_on(void* filter, int call, int fd) {
+  const scmp_arg_cmp only = is(0, static_cast<scmp_datum_t>(fd));
+  return seccomp_rule_add_array(filter, SCMP_ACT_ALLOW, call, 1, &only) == 0;
+}
+
+bool allow_ioctl(void* filter, int fd, scmp_datum_t request) {
+  const std::array only{is(0, static_cast<scmp_datum_t>(fd)), is(1, request)};
+  return seccomp_rule_add_array(filter, SCMP_ACT_ALLOW, SYS_ioctl, 2, only.data()) == 0;
+}
+
+/// Any other call fails. Where the kernel has no filters it goes on without.
+void filter_calls(int device, int socket) {
+  void* filter = seccomp_init(kRefuse);
+  if (filter == nullptr) return;
+  bool good = true;
+  for (const int call : {SYS_futex, SYS_clock_nanosleep, SYS_exit_group, SYS_exit,
+                         SYS_restart_syscall, SYS_rt_sigreturn})
+    good = good && seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 0) == 0;
+  good = good && allow_on(filter, SYS_sendmmsg, device) &&
+         allow_ioctl(filter, device, USBDEVFS_BULK) &&
+         allow_ioctl(filter, device, USBDEVFS_CLEAR_HALT);
+  good = good && allow_on(filter, SYS_write, STDERR_FILENO) && allow_on(filter, SYS_write, socket);
+  if (good) seccomp_load(filter);
+  seccomp_release(filter);
+}
+
+}  // namespace
+
+int stand_guard(int socket) {
+  const auto taken = take_orders(socket);
+  auto lifeline = taken ? Lifeline::take(taken->lifeline_fd)
+                        : model::Result<Lifeline>(model::Error{"no orders"});
+  if (!lifeline) {
+    write_all(STDERR_FILENO, "tact-guardian: tactd starts this program; nobody else can\n");
+    return 2;
+  }
+  const Orders orders = taken->orders;
+  const Sentence sent(orders.process, "zero force and power off were sent to its device");
+  const Sentence unsent(orders.process,
+                        "its device did not take zero force and power off: switch it off now");
+  outlive_short_memory();
+  enter_real_time(orders.priority);
+  filter_calls(orders.words.fd, socket);
+  write_all(socket, "r");
+  if (lifeline->await() == Lifeline::End::kLetGo) return 0;
+  const bool taken_all = hal::say_all(orders.words) == 0;
+  write_all(STDERR_FILENO, (taken_all ? sent : unsent).text.data());
+  return 1;
+}
+
+}  // namespace tact::firmware::guardian

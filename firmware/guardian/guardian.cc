@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/guardian/guardian.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <pthread.h>
+#include <spawn.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+
+#include "firmware/guardian/orders.h"
+
+namespace tact::firmware::guardian {
+namespace {
+
+constexpr int kReadyWait_ms = 3000, kEndWait_ms = 100;
+
+std::string beside_this_program() {
+  std::error_code none;
+  return std::filesystem::read_symlink("/proc/self/exe", none).parent_path() / kProgram;
+}
+
+model::Error refused(const std::string& program, const std::string& why) {
+  return model::Error{
+      fmt::format("{} cannot be started ({}), and nobody would zero the device if this program "
+                  "died: build or install it anew, both together",
+                  program, why)};
+}
+
+sigset_t all_signals() {
+  sigset_t all{};
+  sigfillset(&all);
+  return all;
+}
+
+void become_fifo(int priority) {
+  const sched_param wanted{.sched_priority = priority};
+  pthread_setschedparam(pthread_self(), priority > 0 ? SCHED_FIFO : SCHED_OTHER, &wanted);
+}
+
+bool is_hung_up(const pollfd& file) { return (file.revents & (POLLHUP | POLLERR | POLLIN)) != 0; }
+
+}  // namespace
+
+model::Result<std::unique_ptr<Guardian>> Guardian::start(const hal::LastWords& words,
+                                                         const GuardianSettings& settings) {
+  const std::string program = settings.program.empty() ? beside_this_program() : settings.program;
+  auto lifeline = Lifeline::make();
+  if (!lifeline) return lifeline.error();
+  std::unique_ptr<Guardian> guardian(new Guardian(std::move(*lifeline)));
+  if (const std::string why = guardian->spawn(program); !why.empty()) return refused(program, why);
+  guardian->thread_ =
+      std::thread([self = guardian.get(), settings] { self->keep(settings.priority); });
+  guardian->held_.acquire();
+  const Orders orders{.words = words, .priority = settings.priority, .process = getpid()};
+  if (!give_orders(guardian->socket_, orders, guardian->lifeline_.descriptor()))
+    return refused(program, std::strerror(errno));
+  if (!guardian->is_ready()) return refused(program, "it does not answer");
+  return guardian;
+}
+
+/// In a session of its own and with all signals blocked: what a terminal sends to tactd is not for
+/// it. Every other descriptor of ours closes by itself. Empty, or why not.
+std::string Guardian::spawn(const std::string& program) {
+  std::array<int, 2> ends{};
+  dismiss_ = eventfd(0, EFD_CLOEXEC);
+  if (dismiss_ < 0 || socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    return std::strerror(errno);
+  socket_ = ends[0];
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_adddup2(&files, ends[1], kOrdersFd);
+  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  const sigset_t all = all_signals();
+  posix_spawnattr_setsigmask(&attributes, &all);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK);
+  std::string name = kProgram;
+  const std::array<char*, 2> words{name.data(), nullptr};
+  const int error =
+      posix_spawn(&process_, program.c_str(), &files, &attributes, words.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&files);
+  close(ends[1]);
+  if (error == 0) return {};
+  process_ = -1;
+  return std::strerror(error);
+}
+
+bool Guardian::is_ready() const {
+  pollfd one{.fd = socket_, .events = POLLIN, .revents = 0};
+  char answer = 0;
+  return poll(&one, 1, kReadyWait_ms) == 1 && recv(socket_, &answer, 1, MSG_DONTWAIT) == 1;
+}
+
+/// The guardian says nothing after it is ready, so whatever comes is its end. SCHED_FIFO, for a
+/// killed thread must run to be missed.
+void Guardian::keep(int priority) {
+  pthread_setname_np(pthread_self(), "tact-guard");
+  const sigset_t all = all_signals();
+  pthread_sigmask(SIG_BLOCK, &all, nullptr);
+  lifeline_.hold();
+  held_.release();
+  become_fifo(priority);
+  std::array<pollfd, 2> either{{{.fd = dismiss_, .events = POLLIN, .revents = 0},
+                                {.fd = socket_, .events = POLLHUP, .revents = 0}}};
+  while (!is_hung_up(either[0])) {
+    if (poll(either.data(), either.size(), -1) < 0) continue;
+    if (!is_hung_up(either[1])) continue;
+    lost_.store(true);
+    either[1].fd = -1;  // looked at no more
+    either[1].revents = 0;
+  }
+  lifeline_.let_go();
+  become_fifo(0);
+}
+
+Guardian::~Guardian() {
+  if (thread_.joinable()) {
+    const std::uint64_t one = 1;
+    static_cast<void>(::write(dismiss_, &one, sizeof one));
+    thread_.join();
+  }
+  pollfd end{.fd = socket_, .events = POLLHUP, .revents = 0};
+  if (process_ > 0 && poll(&end, 1, kEndWait_ms) == 0) kill(process_, SIGKILL);
+  if (process_ > 0) waitpid(process_, nullptr, 0);
+  for (const int fd : {socket_, dismiss_})
+    if (fd >= 0) close(fd);
+}
+
+}  // namespace tact::firmware::guardian

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// guardian.h - tactd's side of the process that zeroes the device when tactd has died.
+//
+//     start      the program tact-guardian beside this one gets last words, descriptor, lifeline
+//     tact-guard a thread of tactd that holds the lifeline (lifeline.h) for its whole life, and
+//                hears at once when the guardian ends
+//     destructor lets go, after the device is off: the guardian ends and has sent nothing
+//
+// It is spawned, not forked: a fork would make the loop's locked pages faults again. Nothing of it
+// is in the loop: the watch looks at lost() (watch/loop_watch.h).
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <semaphore>
+#include <string>
+#include <thread>
+
+#include "firmware/guardian/lifeline.h"
+#include "hal/last_words.h"
+#include "model/result.h"
+
+namespace tact::firmware::guardian {
+
+struct GuardianSettings {
+  int priority = 0;     // SCHED_FIFO, of the guardian and of the thread whose end it waits for
+  std::string program;  // empty: tact-guardian in the folder of this program
+};
+
+class Guardian {
+ public:
+  /// Ready when it returns. The device must stay open as long as the guardian.
+  static model::Result<std::unique_ptr<Guardian>> start(const hal::LastWords& words,
+                                                        const GuardianSettings& settings);
+  ~Guardian();
+  Guardian(const Guardian&) = delete;
+  Guardian& operator=(const Guardian&) = delete;
+
+  /// It has ended, and not because it was let go: nobody zeroes the device any more. Any thread.
+  const std::atomic<bool>& lost() const { return lost_; }
+  pid_t process() const { return process_; }
+
+ private:
+  explicit Guardian(Lifeline lifeline) : lifeline_(std::move(lifeline)) {}
+  std::string spawn(const std::string& program);
+  bool is_ready() const;
+  void keep(int priority);
+
+  Lifeline lifeline_;
+  int socket_ = -1;   // its death hangs this up
+  int dismiss_ = -1;  // eventfd
+  pid_t process_ = -1;
+  std::binary_semaphore held_{0};
+  std::atomic<bool> lost_{false};
+  std::thread thread_;
+};
+
+}  // namespace tact::firmware::guardian

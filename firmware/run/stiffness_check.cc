@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/run/stiffness_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/law/haptic_limit.h"
+
+namespace tact::firmware::run {
+namespace {
+
+using model::Error;
+
+/// The key or section to change when the law is too stiff.
+std::string stiff_key(const model::scene::Scene& scene, const model::scene::TissueLaw& law) {
+  if (scene.law == model::scene::LawKind::kCompliance) return "elastic.youngs_modulus_Pa";
+  if (scene.pull && law.pull_is_stiffer()) return "pull.stiffness_N_per_m";
+  return fmt::format("[{}]", model::scene::name_of(scene.law));
+}
+
+/// Never above it, so that the number printed is one that is accepted.
+double rounded_down(double value) {
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 3.0);
+  return value > 0.0 ? unit * std::floor(value / unit) : 0.0;
+}
+
+std::string spheres_in_words(std::size_t n) {
+  return n == 1 ? "1 sphere" : fmt::format("{} spheres", n);
+}
+
+// Of a held sphere at the stiffest place; 0: the law does not tell.
+double stiffest_sideways_N_per_m(const model::scene::Scene& scene,
+                                 const model::contact::SiteLaw& law) {
+  if (scene.contact.sliding_stiffness_N_per_m > 0.0) return scene.contact.sliding_stiffness_N_per_m;
+  double most_N_per_m = 0.0;
+  for (std::uint32_t t = 0; t < scene.organ_mesh.triangle.size(); ++t)
+    for (const model::contact::ProbeSphere& sphere : scene.tool.spheres) {
+      const double give_m_per_N =
+          law.give_along({.triangle = t, .weight = {1.0, 0.0, 0.0}}, true,
+                         model::contact::axes_of(scene.organ_mesh.face_normal[t]))
+              .at(sphere.radius_m)
+              .least_eigenvalue();
+      if (give_m_per_N > 0.0) most_N_per_m = std::max(most_N_per_m, 1.0 / give_m_per_N);
+    }
+  return most_N_per_m;
+}
+
+}  // namespace
+
+model::Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene,
+                                                const model::scene::Tissue& tissue,
+                                                const hal::DeviceInfo& device) {
+  if (!device.at_tool)
+    return Error{fmt::format(
+        "device {} does not tell its damping at the tool: fill DeviceInfo::at_tool", device.name)};
+  const std::size_t spheres = scene.tool.spheres.size();
+  const double law_N_per_m = tissue.law().stiffness_N_per_m();
+  const double sliding_N_per_m = stiffest_sideways_N_per_m(scene, tissue.law().site_law());
+  const double damping_Ns_per_m = tissue.law().damping_Ns_per_m();
+  const auto limit_with = [&](double all_Ns_per_m) {
+    return model::law::haptic_limit(*device.at_tool, scene.rate_Hz, all_Ns_per_m).grow_N_per_m;
+  };
+  const double limit_N_per_m = limit_with(static_cast<double>(spheres) * damping_Ns_per_m);
+  const double needed_N_per_m =
+      static_cast<double>(spheres) * std::max(law_N_per_m, sliding_N_per_m);
+  const auto fits = [&](double one_N_per_m) {  // NaN does not
+    return static_cast<double>(spheres) * one_N_per_m <= limit_N_per_m;
+  };
+  if (fits(law_N_per_m) && fits(sliding_N_per_m))
+    return StiffnessMargin{.needed_N_per_m = needed_N_per_m, .limit_N_per_m = limit_N_per_m};
+  const double undamped_N_per_m = limit_with(0.0);
+  if (damping_Ns_per_m > 0.0 && needed_N_per_m <= undamped_N_per_m)
+    // HL-1: B <= b - K (T/2 + t_d)
+    return Error{fmt::format(
+        "{}: law {} damps too much: {:.4g} N s/m on {}, where this device has {:.4g} N s/m of its "
+        "own and {:.4g} N/m to show at {:g} Hz; lower the damping of [{}] to {:.4g} N s/m or less",
+        scene.path, model::scene::name_of(scene.law), damping_Ns_per_m, spheres_in_words(spheres),
+        device.at_tool->damping_Ns_per_m, needed_N_per_m, scene.rate_Hz,
+        model::scene::name_of(scene.law),
+        rounded_down(device.at_tool->damping_Ns_per_m * (1.0 - needed_N_per_m / undamped_N_per_m) /
+                     static_cast<double>(spheres)))};
+  const bool is_law = !(law_N_per_m < sliding_N_per_m);  // the stiffer one; NaN is the law's
+  const bool is_set = scene.contact.sliding_stiffness_N_per_m > 0.0;
+  const std::string what = is_law   ? fmt::format("law {}", model::scene::name_of(scene.law))
+                           : is_set ? std::string("contact.sliding_stiffness_N_per_m")
+                                    : std::string("the tissue, held and pulled along its surface,");
+  const std::string cure = is_law   ? "soften " + stiff_key(scene, tissue.law())
+                           : is_set ? std::string("lower it")
+                                    : std::string("set contact.sliding_stiffness_N_per_m");
+  const double one_N_per_m = is_law ? law_N_per_m : sliding_N_per_m;
+  return Error{fmt::format(
+      "{}: {} is too stiff: {:.4g} N/m on {} is {:.4g} N/m, this device is stable to {:.4g} N/m at "
+      "{:g} Hz; {} to {:.4g} N/m or less, raise rate_Hz{}",
+      scene.path, what, one_N_per_m, spheres_in_words(spheres),
+      static_cast<double>(spheres) * one_N_per_m, limit_N_per_m, scene.rate_Hz, cure,
+      rounded_down(limit_N_per_m / static_cast<double>(spheres)),
+      device.damping_key.empty() ? std::string(", or take a device with more damping")
+                                 : fmt::format(", or raise {}", device.damping_key))};
+}
+
+}  // namespace tact::firmware::run

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/cia402/drive_settings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace tact::hal::cia402 {
+namespace {
+
+constexpr int kModeLooks = 20, kModeLook_ms = 10;
+constexpr std::uint32_t kTorqueMode = 10;
+constexpr std::uint32_t kWithoutRequest = 1u << 30;
+
+}  // namespace
+
+std::optional<std::string> DriveSettings::write(int node, CstConfiguration wanted) {
+  SdoFailure failure;
+  const auto sample_id = sdo_.read(node, {0x1800, 1, 4}, failure);
+  if (!sample_id) return sdo_failure_words(failure, 0x1800, 1);
+  wanted.sample_without_request = (*sample_id & kWithoutRequest) != 0;
+  const auto writes = cst_configuration(node, wanted);
+  if (!writes) return "cannot have this node: device.can.node takes 1 to 126";
+  if (auto words = end_watch(node, wanted)) return words;
+  for (const SdoWrite& one : *writes) {
+    const auto refused = sdo_.write(node, one);
+    if (refused && (refused->silent || !may_lack(node, one.index)))
+      return sdo_failure_words(*refused, one.index, one.sub);
+  }
+  sdo_.write(node, {.index = 0x605A, .sub = 0, .value = 0, .size = 2});  // optional
+  return check_mode(node);
+}
+
+std::optional<std::string> DriveSettings::end_watch(int node, const CstConfiguration& wanted) {
+  SdoFailure failure;
+  const auto watch = sdo_.read(node, {0x1016, 1, 4}, failure);
+  if (watch && (*watch & 0xFFFFu) == 0) return std::nullopt;
+  const std::uint32_t off = watch ? *watch & 0x7F0000u : host_watch(wanted, 0);
+  const auto refused = sdo_.write(node, {.index = 0x1016, .sub = 1, .value = off, .size = 4});
+  if (refused) return sdo_failure_words(*refused, 0x1016, 1);
+  return std::nullopt;
+}
+
+/// Some drives show their mode late, or not at all, but never another one.
+std::optional<std::string> DriveSettings::check_mode(int node) {
+  SdoFailure failure;
+  std::uint32_t mode = 0;
+  for (int looks = 0; looks < kModeLooks; ++looks) {
+    const auto shown = sdo_.read(node, {0x6061, 0, 1}, failure);
+    if (!shown || *shown == kTorqueMode) return std::nullopt;
+    mode = *shown;
+    sdo_.wait(kModeLook_ms);
+  }
+  if (mode == 0) return std::nullopt;
+  return fmt::format(
+      "stays in mode {} of operation (object 6061) and does not take cyclic synchronous torque, "
+      "{}: "
+      "set it with its maker's program",
+      static_cast<std::int8_t>(mode), kTorqueMode);
+}
+
+bool DriveSettings::may_lack(int node, std::uint16_t index) {
+  for (Optional& one : optional_) {
+    if (one.index != index) continue;
+    if (one.nodes.empty() || one.nodes.back() != node) one.nodes.push_back(node);
+    return true;
+  }
+  return false;
+}
+
+std::string DriveSettings::caution() const {
+  std::string all;
+  for (const Optional& one : optional_) {
+    if (one.nodes.empty()) continue;
+    all += fmt::format("{}the drives of nodes {} have no setting 0x{:04X}: {}",
+                       all.empty() ? "" : "; ", fmt::join(one.nodes, ", "), one.index, one.words);
+  }
+  return all;
+}
+
+}  // namespace tact::hal::cia402

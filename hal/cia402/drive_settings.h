@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// drive_settings.h - what is written to a CiA 402 drive before the loop, as makers' drives take it.
+//
+//     1800:01  bit 30, "no remote request", stays as the drive has it
+//     1016:01  a watch that a run before has left behind is switched off by its own node first
+//     6007, 60C2, 605A, 6061  not every drive has them
+//
+// CN-3, CN-4. Set-up code: blocks.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hal/cia402/cia402_cst.h"
+#include "hal/cia402/sdo_client.h"
+
+namespace tact::hal::cia402 {
+
+class DriveSettings {
+ public:
+  explicit DriveSettings(SdoClient& sdo) : sdo_(sdo) {}
+
+  /// Nothing when all is written; else why not, as what follows a drive's name.
+  std::optional<std::string> write(int node, CstConfiguration wanted);
+  /// The settings that drives do not have, and what then counts; empty: none.
+  std::string caution() const;
+
+ private:
+  struct Optional {
+    std::uint16_t index;
+    const char* words;
+    std::vector<int> nodes{};  // that lack it
+  };
+
+  std::optional<std::string> end_watch(int node, const CstConfiguration& wanted);
+  std::optional<std::string> check_mode(int node);
+  bool may_lack(int node, std::uint16_t index);
+
+  SdoClient& sdo_;
+  std::array<Optional, 2> optional_{{
+      {0x6007,
+       "what they do when tactd is gone stands in their own settings; see that they let go"},
+      {0x60C2, "their period is their own; see that it is that of SYNC, or shorter"},
+  }};
+};
+
+}  // namespace tact::hal::cia402

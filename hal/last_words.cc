@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/last_words.h"
+
+#include <linux/usbdevice_fs.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cerrno>
+
+namespace tact::hal {
+namespace {
+
+constexpr unsigned kTransferWait_ms = 2;
+constexpr int kTries = 10;
+constexpr long kBetweenTries_ns = 200'000, kBetweenSteps_ns = 1'000'000;
+
+void wait_ns(long pause_ns) {
+  const timespec pause{.tv_sec = 0, .tv_nsec = pause_ns};
+  clock_nanosleep(CLOCK_MONOTONIC, 0, &pause, nullptr);
+}
+
+int send_datagrams(int fd, std::span<const LastWords::Bytes> words) {
+  std::array<LastWords::Bytes, LastWords::kMost> bytes{};
+  std::array<iovec, LastWords::kMost> place{};
+  std::array<mmsghdr, LastWords::kMost> message{};
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    bytes[i] = words[i];
+    place[i] = {.iov_base = bytes[i].data(), .iov_len = bytes[i].size()};
+    message[i].msg_hdr.msg_iov = &place[i];
+    message[i].msg_hdr.msg_iovlen = 1;
+  }
+  const auto wanted = static_cast<unsigned>(words.size());
+  const int sent = sendmmsg(fd, message.data(), wanted, MSG_DONTWAIT | MSG_NOSIGNAL);
+  if (sent == static_cast<int>(wanted)) return 0;
+  return sent < 0 ? errno : ENOBUFS;
+}
+
+int send_bulk(int fd, std::uint8_t endpoint, std::span<const LastWords::Bytes> words) {
+  for (LastWords::Bytes bytes : words) {
+    usbdevfs_bulktransfer transfer{};
+    transfer.ep = endpoint;
+    transfer.len = static_cast<unsigned>(bytes.size());
+    transfer.timeout = kTransferWait_ms;
+    transfer.data = bytes.data();
+    if (ioctl(fd, USBDEVFS_BULK, &transfer) >= 0) continue;
+    const int error = errno;
+    unsigned halted = endpoint;
+    if (error == EPIPE) ioctl(fd, USBDEVFS_CLEAR_HALT, &halted);
+    return error;
+  }
+  return 0;
+}
+
+}  // namespace
+
+bool LastWords::add_step(std::span<const Bytes> words) {
+  if (count + words.size() > kMost) return false;
+  for (const Bytes& one : words) {
+    step[count] = static_cast<std::uint8_t>(steps);
+    word[count++] = one;
+  }
+  ++steps;
+  return true;
+}
+
+int say_step(const LastWords& words, std::uint32_t step) {
+  const auto all = std::span(words.step).first(std::min<std::size_t>(words.count, words.kMost));
+  const auto [first, last] = std::ranges::equal_range(all, step);
+  const auto of_step = std::span(words.word)
+                           .subspan(static_cast<std::size_t>(first - all.begin()),
+                                    static_cast<std::size_t>(last - first));
+  if (of_step.empty()) return 0;
+  return words.carrier == LastWords::Carrier::kUsbBulk
+             ? send_bulk(words.fd, words.endpoint, of_step)
+             : send_datagrams(words.fd, of_step);
+}
+
+int say_all(const LastWords& words) {
+  int first_error = 0;
+  for (std::uint32_t step = 0; step < words.steps; ++step) {
+    if (step > 0) wait_ns(kBetweenSteps_ns);
+    int error = say_step(words, step);
+    for (int tries = 1; error != 0 && tries < kTries; ++tries) {
+      wait_ns(kBetweenTries_ns);
+      error = say_step(words, step);
+    }
+    if (first_error == 0) first_error = error;
+  }
+  return first_error;
+}
+
+}  // namespace tact::hal

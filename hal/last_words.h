@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// last_words.h - what takes the force away when the program that drives a device has died.
+//
+// A device gives them when it is opened: the messages of its own stop(), zero force first and then
+// power off, as finished bytes, and the open descriptor that carries them. So a process that knows
+// no device can say them (firmware/guardian), and nothing is computed after the death. The drives'
+// own watch over their host stays on. A message is 16 bytes, as a CAN frame of the kernel and a
+// packet of a Falcon are.
+//
+//     kDatagrams   one message each, all of a step by one sendmmsg
+//     kUsbBulk     one transfer each on `endpoint` (USBDEVFS_BULK), a stall is cleared first
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace tact::hal {
+
+struct LastWords {
+  static constexpr std::size_t kMost = 32;  // CiA 402 drives need 12
+  enum class Carrier : std::uint8_t { kDatagrams, kUsbBulk };
+  using Bytes = std::array<std::uint8_t, 16>;
+
+  Carrier carrier = Carrier::kDatagrams;
+  std::uint8_t endpoint = 0;  // of kUsbBulk
+  int fd = -1;                // the device's own, open as long as the device
+  std::uint32_t count = 0, steps = 0;
+  std::array<Bytes, kMost> word{};
+  std::array<std::uint8_t, kMost> step{};  // ascending; a millisecond lies between two steps
+
+  /// Set-up: words of the next step. False: there is no room for them.
+  bool add_step(std::span<const Bytes> words);
+};
+
+/// The words of one step, over `words.fd`. 0: all are with the kernel; else an errno. Neither heap
+/// nor lock.
+int say_step(const LastWords& words, std::uint32_t step);
+/// All of them: zero force at once, the last after `steps` ms and what a full queue takes, 2 ms a
+/// step. 0, or the errno of the first step that a device did not take.
+int say_all(const LastWords& words);
+
+}  // namespace tact::hal

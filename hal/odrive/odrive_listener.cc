@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/odrive/odrive_listener.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "hal/can/can_delta.h"
+
+namespace tact::hal::odrive {
+namespace {
+
+constexpr int kFeed_ms = 5;
+
+}  // namespace
+
+OdriveTorqueLength odrive_torque_length(const model::CanSettings& can) {
+  return can.short_torque ? OdriveTorqueLength::kShort : OdriveTorqueLength::kPadded;
+}
+
+OdriveListener::OdriveListener(can::CanBus& bus, const model::CanSettings& can)
+    : bus_(bus), can_(can) {
+  for (std::size_t i = 0; i < 3; ++i) axes[i].node = can.node[i];
+}
+
+bool OdriveListener::run_until(const Condition& fits, int time_ms) {
+  can::CanSocket& socket = bus_.socket();
+  const std::int64_t end_ns = socket.now_ns() + time_ms * 1'000'000LL;
+  while (bus_.fault() == Fault::kNone) {
+    for (const can::CanReceived& one : bus_.receive()) take(one.frame);
+    if (std::all_of(axes.begin(), axes.end(), fits)) return true;
+    const std::int64_t now_ns = socket.now_ns();
+    if (now_ns >= end_ns) return false;
+    if (now_ns >= feed_ns_) {
+      feed_ns_ = now_ns + kFeed_ms * 1'000'000LL;
+      each([this](int node) { return odrive_input_torque(node, 0.0, odrive_torque_length(can_)); });
+    }
+    socket.wait(kFeed_ms);
+  }
+  return false;
+}
+
+std::optional<model::Error> OdriveListener::wrong(const Condition& fits, const char* words) const {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (fits(axes[i])) return model::Error{fmt::format("{} {}", can::can_arm_name(i, can_), words)};
+  return std::nullopt;
+}
+
+void OdriveListener::take(const can::CanFrame& frame) {
+  for (OdriveHeard& axis : axes) {
+    if (const auto beat = decode_odrive_heartbeat(frame, axis.node)) {
+      take_heartbeat(axis, frame, *beat);
+    } else if (const auto version = decode_odrive_version(frame, axis.node)) {
+      axis.version = *version;
+    } else if (const auto count = decode_odrive_count_05(frame, axis.node)) {
+      axis.shadow_count = count->shadow;
+    } else if (const auto at = decode_odrive_estimates(frame, axis.node)) {
+      const bool first = axis.positions++ == 0;
+      axis.at_turns = at->position_turns;
+      axis.all_zero = axis.all_zero && at->position_turns == 0.0 && at->velocity_turns_per_s == 0.0;
+      axis.least_turns = first ? axis.at_turns : std::min(axis.least_turns, axis.at_turns);
+      axis.most_turns = first ? axis.at_turns : std::max(axis.most_turns, axis.at_turns);
+    }
+  }
+}
+
+void OdriveListener::take_heartbeat(OdriveHeard& axis, const can::CanFrame& frame,
+                                    const OdriveHeartbeat& beat) {
+  ++axis.heartbeats;
+  axis.error = beat.axis_error;
+  axis.state = beat.axis_state;
+  axis.result = beat.procedure_result;
+  axis.searched = axis.searched || axis.is_in(OdriveAxisState::kIndexSearch);
+  const auto beat05 = decode_odrive_heartbeat_05(frame, axis.node);
+  axis.parts = generation == OdriveGeneration::k05 && beat05 ? odrive_parts_05(*beat05) : 0;
+}
+
+}  // namespace tact::hal::odrive

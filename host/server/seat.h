@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// seat.h - what every connection holds while it lasts, whatever it becomes: a request, a download,
+// a WebSocket. The server counts the copies and lets in no more than kMostConnections.
+#pragma once
+
+#include <memory>
+
+namespace tact::host::server {
+
+using Seat = std::shared_ptr<const void>;
+
+constexpr long kMostConnections = 64;
+
+}  // namespace tact::host::server

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/hand_path.h"
+
+#include <cmath>
+
+namespace tact::model {
+namespace {
+
+Vec3 between(const Vec3& a, const Vec3& b, double ratio) RT_SAFE { return a + ratio * (b - a); }
+
+}  // namespace
+
+HandWaypoint hand_target(const std::vector<HandWaypoint>& path, bool repeat,
+                         double time_s) RT_SAFE {
+  if (path.empty()) return {};
+  const double end_s = path.back().time_s;
+  if (repeat && end_s > 0.0 && time_s > end_s) time_s = std::fmod(time_s, end_s);
+  if (!(time_s > path.front().time_s)) return path.front();
+  if (time_s >= end_s) return path.back();
+  std::size_t next = 1;
+  while (path[next].time_s <= time_s) ++next;  // bounded by the path's length
+  const HandWaypoint& from = path[next - 1];
+  const HandWaypoint& to = path[next];
+  const double s = (time_s - from.time_s) / (to.time_s - from.time_s);
+  const double ratio = s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
+  return {.time_s = time_s,
+          .position_m = between(from.position_m, to.position_m, ratio),
+          .rotation_rad = between(from.rotation_rad, to.rotation_rad, ratio),
+          .grip_ratio = from.grip_ratio + ratio * (to.grip_ratio - from.grip_ratio)};
+}
+
+}  // namespace tact::model

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/io/command_line.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+#include "model/io/completion.h"
+
+namespace tact::model::io {
+
+namespace {
+
+/// "" or "--json=": what a shell makes of a variable that is not set.
+bool is_empty_value(std::string_view word) {
+  return word.empty() || (word.starts_with("--") && word.find('=') == word.size() - 1);
+}
+
+}  // namespace
+
+std::optional<int> parse_command_line(CLI::App& options, const char* program, int argc,
+                                      const char* const* argv) {
+  options.failure_message([program](const CLI::App*, const CLI::Error& error) {
+    return fmt::format("{0}: {1}; see {0} --help\n", program, error.what());
+  });
+  options.set_version_flag("--version",
+                           fmt::format("{} {} ({}), compiler {}", program, tact_version(),
+                                       source_revision(), compiler_version()));
+  if (const char* const* empty =
+          std::find_if(argv + std::min(argc, 1), argv + argc, is_empty_value);
+      empty != argv + argc) {
+    fmt::print(stderr, "{0}: argument {1} is empty: is a variable not set? See {0} --help\n",
+               program, empty - argv);
+    return 2;
+  }
+  if (argc == 2 && std::string_view(argv[1]) == "--bash-completion") {  // for who makes a package
+    fmt::print("{}", bash_completion(options, program));
+    return 0;
+  }
+  try {
+    options.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return options.exit(error) == 0 ? 0 : 2;
+  }
+  return std::nullopt;
+}
+
+}  // namespace tact::model::io

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// command_line.h - what every program's command line does alike: one-line errors, --version.
+#pragma once
+
+#include <optional>
+
+namespace CLI {
+class App;
+}
+
+namespace tact::model::io {
+
+/// Version of tact, as CMakeLists.txt has it.
+const char* tact_version();
+/// Revision of the sources, as git describes it; "unknown" where the build had no git.
+const char* source_revision();
+/// Version of the compiler that built this.
+const char* compiler_version();
+
+/// Adds --version and --bash-completion (completion.h), and parses. A bad option is told on
+/// standard error, in one line that names --help. The exit status when the program ends here: 0
+/// after those two or --help, 2 otherwise. What `options.callback` checks may throw a
+/// CLI::ParseError, which is told alike.
+std::optional<int> parse_command_line(CLI::App& options, const char* program, int argc,
+                                      const char* const* argv);
+
+}  // namespace tact::model::io

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/io/socket_file.h"
+
+#include <grp.h>
+#include <pwd.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <span>
+#include <utility>
+
+namespace tact::model::io {
+namespace {
+
+/// NGROUPS_MAX is 65536; who is in more groups than this is asked for the first one alone.
+constexpr std::size_t kMostGroups = 1024;
+
+bool has_peer_in(int socket, gid_t group) {
+  std::array<gid_t, kMostGroups> groups{};
+  socklen_t bytes = sizeof groups;
+  if (getsockopt(socket, SOL_SOCKET, SO_PEERGROUPS, groups.data(), &bytes) != 0) return false;
+  const std::span<const gid_t> is_in(groups.data(), bytes / sizeof(gid_t));
+  return std::ranges::find(is_in, group) != is_in.end();
+}
+
+}  // namespace
+
+Result<sockaddr_un> socket_address(const std::string& path) {
+  sockaddr_un address{.sun_family = AF_UNIX, .sun_path = {}};
+  constexpr std::size_t kMost = sizeof address.sun_path - 1;
+  if (path.empty() || path.size() > kMost)
+    return Error{path + ": a socket's path has 1 to " + std::to_string(kMost) +
+                 " characters; give a shorter --socket, or XDG_RUNTIME_DIR"};
+  path.copy(address.sun_path, kMost);
+  return address;
+}
+
+std::optional<Error> check_socket_folder(const std::string& path, const Trust& trust) {
+  const std::string parent = std::filesystem::path(path).parent_path().string();
+  const std::string folder = parent.empty() ? "." : parent;
+  struct stat info{};
+  if (stat(folder.c_str(), &info) != 0) return std::nullopt;
+  // With the sticky bit, as /tmp has it, nobody replaces what is another's.
+  const bool others_write = (info.st_mode & 022) != 0 && (info.st_mode & S_ISVTX) == 0;
+  if (S_ISDIR(info.st_mode) && is_trusted(info.st_uid, trust) && !others_write) return std::nullopt;
+  return Error{folder +
+               ": another user may put a socket there; give --socket in a folder that only you "
+               "can write to"};
+}
+
+bool is_trusted(uid_t user, const Trust& trust) {
+  return user == geteuid() || user == 0 || user == trust.user;
+}
+
+bool has_trusted_peer(int socket, const Trust& trust) {
+  ucred peer{};
+  socklen_t bytes = sizeof peer;
+  if (getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &bytes) != 0) return false;
+  if (is_trusted(peer.uid, trust)) return true;
+  return trust.group && (peer.gid == *trust.group || has_peer_in(socket, *trust.group));
+}
+
+std::optional<Error> share_socket(const std::string& path, gid_t group) {
+  struct stat info{};
+  if (lstat(path.c_str(), &info) == 0 && !S_ISSOCK(info.st_mode))
+    return Error{path + ": is not a socket"};
+  const bool is_shared =
+      // Not asked for where it holds: a service may not change owners at all.
+      (info.st_gid == group || lchown(path.c_str(), static_cast<uid_t>(-1), group) == 0) &&
+      chmod(path.c_str(), 0660) == 0;
+  if (is_shared) return std::nullopt;
+  return Error{path + ": cannot be given to the group of its viewers: " + std::strerror(errno) +
+               "; name a group that you are in"};
+}
+
+Result<uid_t> find_user(const std::string& name) {
+  if (const passwd* const entry = getpwnam(name.c_str())) return entry->pw_uid;
+  return Error{name + ": no user of this computer has that name; getent passwd lists them"};
+}
+
+Result<gid_t> find_group(const std::string& name) {
+  if (const group* const entry = getgrnam(name.c_str())) return entry->gr_gid;
+  return Error{name + ": no group of this computer has that name; getent group lists them"};
+}
+
+SocketFile::SocketFile(std::string path) : path_(std::move(path)) {
+  struct stat info{};
+  if (lstat(path_.c_str(), &info) != 0 || !S_ISSOCK(info.st_mode)) return;
+  device_ = info.st_dev;
+  inode_ = info.st_ino;
+}
+
+void SocketFile::remove() const {
+  struct stat info{};
+  if (inode_ != 0 && lstat(path_.c_str(), &info) == 0 && info.st_dev == device_ &&
+      info.st_ino == inode_)
+    unlink(path_.c_str());
+}
+
+}  // namespace tact::model::io

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// dent_tilt.h - how the dent of a site leans: an organ sinks more towards a free lobe than towards
+// the side where it is held.
+//
+//     CF-5   u(x) = u(rho) + T(rho) F t . (x - s)
+//     CF-6   t = grad r / 2
+//
+//     u     displacement of the skin, m; u(rho) its mean around the site, the rings of the map
+//     F     force at the site s, N             T   the taper of the outer rings (ring_taper)
+//     r     give of a place beyond a half-space (compliance_map.h), m/N;  t   1/N
+//
+// G(x, s), how far x sinks with a unit force at s, beyond a half-space, is symmetric and r(s) is
+// G(s, s): along the surface r changes twice as fast as G does. grad r is that of the plane through
+// the r of all skin within kTiltReach_m that looks the same way. Set-up code only.
+#pragma once
+
+#include <vector>
+
+#include "model/contact/surface.h"
+#include "model/tissue/compliance_map.h"
+
+namespace tact::model::tissue {
+
+/// Small against an organ, large against the facets of its mesh: from 16 to 30 mm all do.
+inline constexpr double kTiltReach_m = 0.02;
+
+/// t E of each vertex, 1/m^2, in the axes of the surface. Each vertex is held against those of a
+/// slab of twice kTiltReach_m around it.
+std::vector<Vec3> dent_tilt(const ComplianceMap& map, const contact::SurfaceView& surface);
+
+}  // namespace tact::model::tissue

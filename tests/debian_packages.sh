@@ -1,0 +1,89 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# The packages of tools/package on a machine that has only Debian 12's base system: installed, run,
+# installed again over an edited scene, removed and purged, after which nothing of them is left.
+#
+#   tests/debian_packages.sh [FOLDER]    needs root and mmdebstrap; FOLDER keeps the base system
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+packages="$root/build/packages"
+base=$(mktemp -d)
+cache=${1:+$1/bookworm.tar}
+trap 'rm -rf --one-file-system "$base"' EXIT
+[ "$(id -u)" -eq 0 ] || { echo "debian_packages.sh: needs root, for chroot; start it with sudo" >&2; exit 2; }
+ls "$packages"/tact_*.deb >/dev/null || { echo "debian_packages.sh: run tools/package first" >&2; exit 2; }
+
+if [ -n "$cache" ] && [ -e "$cache" ]; then
+  tar xf "$cache" -C "$base"
+else
+  mmdebstrap --quiet --variant=apt --include=systemd,udev,man-db bookworm "$base" \
+    "deb http://deb.debian.org/debian bookworm main" \
+    "deb http://deb.debian.org/debian-security bookworm-security main"
+  if [ -n "$cache" ]; then mkdir -p "$1" && tar cf "$cache" --one-file-system -C "$base" .; fi
+fi
+cp "$packages"/*.deb "$base/root/"
+cp /etc/resolv.conf "$base/etc/resolv.conf"
+
+inside() {  # a mount of proc that ends with the command
+  unshare --mount bash -c 'mount -t proc proc "$0/proc" && exec chroot "$@"' "$base" "$base" env -i \
+    HOME=/root TERM=dumb LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
+    PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin bash -euc "$1"
+}
+step() { echo "== $*"; }
+# What is of tact outside of what apt and this test keep.
+left_over() {
+  find "$base" -xdev \( -iname '*tact*' -o -iname '*haptic*' \) \
+    -not -path "$base/root/*" -not -path "$base/var/lib/apt/*" -not -path "$base/var/cache/*" \
+    -not -path "$base/var/log/*" -not -path "$base/usr/share/*contact*" -not -path "$base/proc/*" \
+    -not -path "$base/usr/include/*" -not -path "$base/usr/lib/*.h"
+  grep -HE '(^|[:,])(tact|tact-view|haptics)(:|,|$)' "$base"/etc/{passwd,shadow,group,gshadow} || true
+}
+
+before=$(left_over)
+step install
+inside 'apt-get -qq update && apt-get -qq install -y --no-install-recommends /root/*.deb' >"$base/root/log" 2>&1 ||
+  { tail -n 30 "$base/root/log"; exit 1; }
+step "every program tells its version and has a manual page"
+inside 'for program in $(dpkg -L tact tact-view tact-tools tact-lab | grep ^/usr/bin/); do
+  $program --version && man -w ${program##*/} >/dev/null; done'
+step "bash completes the options of every program"
+inside 'for program in $(dpkg -L tact tact-view tact-tools tact-lab | grep ^/usr/bin/); do
+  name=${program##*/} function=_$(tr - _ <<<${program##*/})
+  [ $name != tact-guardian ] || continue
+  bash -euc "source /usr/share/bash-completion/completions/$name
+    COMP_WORDS=($name --vers) COMP_CWORD=1; $function; [ \${COMPREPLY[*]} = --version ]"; done'
+step "the user tact runs a scene of /etc/tact and finds what belongs to it"
+inside 'id tact | grep -q haptics
+runuser -u tact -- tactd /etc/tact/liver.toml --check
+for scene in /etc/tact/*.toml; do
+  runuser -u tact -- tactd $scene --free-run --ticks 100 --no-telemetry --no-black-box >/dev/null; done
+cd / && tact-verify | tail -n 1
+tact-doctor >/dev/null || [ $? -eq 1 ]
+test -s /usr/share/tact/page/index.html && test -x /usr/bin/tact-guardian'
+step "the viewer's user looks, and cannot stop what it looks at"
+inside 'export XDG_RUNTIME_DIR=/run
+install -d -o tact -g haptics -m 0750 /run/tact
+install -d -o tact-view -m 0755 /root/seen && chmod 711 /root
+runuser -u tact -g haptics -- tactd /etc/tact/liver.toml --viewers haptics --no-black-box 2>/root/told & tactd=$!
+for i in $(seq 100); do [ -S /run/tact/telemetry.sock ] && break; sleep .1; done
+[ "$(stat -c "%U %G %a" /run/tact/telemetry.sock)" = "tact haptics 660" ]
+timeout --preserve-status -s INT 3 runuser -u tact-view -g haptics -- tact-view --tactd-user tact --port 0 --record /root/seen/r >/dev/null
+tact-view --open /root/seen/r --export /root/frames.csv | grep -v " 0 frames"
+! runuser -u tact-view -g haptics -- tactctl /etc/tact/liver.toml stop --folder /run/tact || exit 1
+! runuser -u tact-view -g haptics -- test -w "$(echo /run/tact/control-*)" || exit 1
+tactctl /etc/tact/liver.toml status && tactctl /etc/tact/liver.toml stop && wait $tactd'
+step "the units are sound"
+inside 'systemd-analyze verify --man=no tactd@liver.service tact-view.service 2>&1 | tee /root/verify
+test ! -s /root/verify'
+step "an edited scene outlives the same package"
+inside 'echo "# mine" >>/etc/tact/liver.toml
+apt-get -qq install -y --reinstall /root/tact_*.deb >/dev/null 2>&1
+grep -q "# mine" /etc/tact/liver.toml'
+step "removed: scenes of /etc/tact stay; purged: nothing stays"
+inside 'apt-get -qq remove -y tact tact-view tact-tools tact-lab >/dev/null 2>&1
+test ! -e /usr/bin/tactd && test -e /etc/tact/liver.toml
+mkdir -p /var/lib/tact/black-box
+dpkg --purge tact tact-view tact-tools tact-lab >/dev/null 2>&1'
+after=$(left_over)
+diff <(echo "$before") <(echo "$after") || { echo "debian_packages.sh: that is left"; exit 1; }
+step "all kept"

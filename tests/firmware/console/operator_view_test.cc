@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/console/operator_view.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/program.h"
+#include "tests/support/puppet_loop.h"
+
+namespace tact::firmware::console::operator_view_test {
+
+class WordyDevice final : public PuppetDevice {
+ public:
+  using PuppetDevice::PuppetDevice;
+  std::string trouble() const override { return words; }
+  std::string words;
+};
+class WordyLines final : public hal::SafetyLines {
+ public:
+  model::Fault read(std::int64_t) RT_SAFE override { return model::Fault::kNone; }
+  model::Fault write(const hal::LinesTick&) RT_SAFE override { return model::Fault::kNone; }
+  bool enabled() const RT_SAFE override { return true; }
+  void scope(bool) RT_SAFE override {}
+  void stop() override {}
+  std::string trouble() const override { return "channel B sticks"; }
+};
+
+class View : public testing::Test {
+ protected:
+  std::string told(const telemetry::Frame& frame) {
+    testing::internal::CaptureStderr();
+    view.show(frame);
+    return testing::internal::GetCapturedStderr();
+  }
+  static telemetry::Frame frame(loop::State state, model::Fault fault) {
+    telemetry::Frame frame;
+    frame.state = state;
+    frame.fault = static_cast<std::uint16_t>(fault);
+    return frame;
+  }
+  loop::SimulatedClock clock;
+  WordyDevice device{clock};
+  WordyLines lines;
+  OperatorView view{device, lines, false};
+};
+
+TEST_F(View, AFaultIsToldOnceWithWhatLiesBehindIt) {
+  device.words = "axis 2 (node 2): over-current";
+  const std::string first = told(frame(loop::State::kStopped, model::Fault::kDriveFault));
+  EXPECT_NE(first.find("fault 113, drive fault"), std::string::npos) << first;
+  EXPECT_NE(first.find("axis 2 (node 2): over-current"), std::string::npos) << first;
+  EXPECT_EQ(told(frame(loop::State::kStopped, model::Fault::kDriveFault)), "");
+}
+
+TEST_F(View, FaultsOfTheLinesAreWordedByTheLines) {
+  device.words = "all is well here";
+  const std::string first = told(frame(loop::State::kStopped, model::Fault::kLinesDiffer));
+  EXPECT_NE(first.find("channel B sticks"), std::string::npos) << first;
+  EXPECT_EQ(first.find("all is well here"), std::string::npos) << first;
+}
+
+TEST_F(View, WhoMustArmIsToldWhenTheDeviceIsReady) {
+  EXPECT_NE(told(frame(loop::State::kReady, model::Fault::kNone)).find("tactctl SCENE arm"),
+            std::string::npos);
+  EXPECT_EQ(told(frame(loop::State::kReady, model::Fault::kNone)), "");
+}
+
+TEST_F(View, AFaultThatComesAgainAfterAResetIsToldAgain) {
+  EXPECT_NE(told(frame(loop::State::kStopped, model::Fault::kEmergencyStop)), "");
+  told(frame(loop::State::kReady, model::Fault::kNone));
+  EXPECT_NE(told(frame(loop::State::kStopped, model::Fault::kEmergencyStop)), "");
+}
+
+TEST_F(View, WhatADeviceWaitsForIsToldOnceUntilItIsReady) {
+  device.words = "not homed: pull the grip out, then push it in";
+  EXPECT_NE(told(frame(loop::State::kOff, model::Fault::kNone)).find("pull the grip out"),
+            std::string::npos);
+  EXPECT_EQ(told(frame(loop::State::kOff, model::Fault::kNone)), "");
+  EXPECT_EQ(told(frame(loop::State::kArmed, model::Fault::kNone)), "")
+      << "ready: nothing to wait for";
+}
+
+TEST(Sayings, WhatCannotBeSaidEndsNothing) {
+  const std::string report = testing::TempDir() + "unheard.json";
+  const tests::Outcome outcome =
+      tests::run_command(tests::program_path("tactd") +
+                         " " TACT_SOURCE_DIR
+                         "/model/scenes/liver.toml --free-run "
+                         "--seconds 1 --no-telemetry --json " +
+                         report + " >/dev/full 2>/dev/full; echo $?; grep -c force_hash " + report);
+  EXPECT_EQ(outcome.output, "2\n1\n");  // the run goes to its end; its status tells
+}
+
+}  // namespace tact::firmware::console::operator_view_test

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/console/status_line.h"
+
+#include <gtest/gtest.h>
+
+namespace tact::firmware::console::status_line_test {
+
+TEST(StatusLine, ShowsRateLateTicksForceAndState) {
+  telemetry::Frame before, now;
+  before.tick = 1000, before.time_ns = 1'000'000'000;
+  now.tick = 1190, now.time_ns = 1'200'000'000;  // ten ticks were skipped
+  now.late_ticks = 3, now.skipped_ticks = 10;
+  now.force_N[0] = 0.3f, now.force_N[2] = 0.4f;
+  now.state = loop::State::kArmed;
+  const std::string line = status_line(now, before);
+  EXPECT_NE(line.find(" 950 Hz"), std::string::npos) << line;
+  EXPECT_NE(line.find("late 3"), std::string::npos) << line;
+  EXPECT_NE(line.find("0.500 N"), std::string::npos) << line;
+  EXPECT_NE(line.find("armed"), std::string::npos) << line;
+}
+
+TEST(StatusLine, SaysBeyondTheLaw) {
+  telemetry::Frame frame;
+  frame.limit = static_cast<std::uint16_t>(model::Fault::kLawSaturated);
+  EXPECT_NE(status_line(frame, frame).find("beyond the law"), std::string::npos);
+}
+
+TEST(StatusLine, NamesTheFaultBeforeTheLimit) {
+  telemetry::Frame frame;
+  frame.limit = 7;
+  EXPECT_NE(status_line(frame, frame).find("slew limited"), std::string::npos);
+  frame.fault = 103;
+  EXPECT_NE(status_line(frame, frame).find("device lost"), std::string::npos);
+}
+
+}  // namespace tact::firmware::console::status_line_test

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// The real tact-guardian beside a program that is killed, and one that leaves.
+#include "firmware/guardian/guardian.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <functional>
+#include <string_view>
+
+#include "tests/support/program.h"
+
+namespace tact::firmware::guardian::guardian_test {
+
+constexpr int kPatience_ms = 20'000, kSilence_ms = 100;
+constexpr hal::LastWords::Bytes kFirst{1}, kSecond{2}, kThird{3};
+
+/// Both ends of a device whose messages are datagrams; three words in two steps.
+struct Wire {
+  Wire() {
+    if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0, end) != 0) std::abort();
+    words.fd = end[0];
+    words.add_step(std::array{kFirst, kSecond});
+    words.add_step(std::array<hal::LastWords::Bytes, 1>{kThird});
+  }
+  Wire(const Wire&) = delete;
+  Wire& operator=(const Wire&) = delete;
+  ~Wire() {
+    for (const int fd : end) close(fd);
+  }
+  std::vector<hal::LastWords::Bytes> hear(std::size_t most, int patience_ms) const {
+    std::vector<hal::LastWords::Bytes> heard;
+    pollfd one{.fd = end[1], .events = POLLIN, .revents = 0};
+    while (heard.size() < most && poll(&one, 1, patience_ms) == 1) {
+      heard.emplace_back();
+      if (recv(end[1], heard.back().data(), heard.back().size(), 0) != 16) heard.pop_back();
+    }
+    return heard;
+  }
+  hal::LastWords words;
+  int end[2] = {-1, -1};
+};
+
+std::unique_ptr<Guardian> start(const hal::LastWords& words) {
+  auto guardian =
+      Guardian::start(words, {.priority = 1, .program = tests::program_path("tact-guardian")});
+  EXPECT_TRUE(guardian) << guardian.error().sentence;
+  return guardian ? std::move(*guardian) : nullptr;
+}
+
+/// A program with a guardian, which does this when it has one; its pid, and its guardian's.
+struct Guarded {
+  Guarded(const Wire& wire, const std::function<void(Guardian&)>& then) {
+    int pipe_ends[2] = {-1, -1};
+    if (pipe(pipe_ends) != 0) std::abort();
+    program = fork();
+    if (program == 0) {
+      const auto own = start(wire.words);
+      const pid_t pid = own ? own->process() : -1;
+      if (write(pipe_ends[1], &pid, sizeof pid) != sizeof pid || pid < 0) _exit(9);
+      then(*own);
+      pause();
+    }
+    close(pipe_ends[1]);
+    EXPECT_EQ(read(pipe_ends[0], &guardian, sizeof guardian),
+              static_cast<ssize_t>(sizeof guardian));
+    close(pipe_ends[0]);
+  }
+  Guarded(const Guarded&) = delete;
+  Guarded& operator=(const Guarded&) = delete;
+  ~Guarded() { end(); }
+  void end() {
+    if (program <= 0) return;
+    kill(program, SIGKILL);
+    waitpid(program, nullptr, 0);
+    program = -1;
+  }
+  pid_t program = -1, guardian = -1;
+};
+
+bool soon(const std::function<bool()>& what) {
+  for (int i = 0; i < kPatience_ms && !what(); ++i) usleep(1000);
+  return what();
+}
+
+bool lives(pid_t process) { return kill(process, 0) == 0; }
+
+using Words = std::vector<hal::LastWords::Bytes>;
+const Words kAll{kFirst, kSecond, kThird};
+
+TEST(Guardian, SaysTheLastWordsOfAProgramThatIsKilled) {
+  const Wire wire;
+  Guarded guarded(wire, [](Guardian&) {});
+  EXPECT_EQ(wire.hear(1, kSilence_ms), Words{}) << "as long as it lives";
+  guarded.end();
+  EXPECT_EQ(wire.hear(3, kPatience_ms), kAll);
+  EXPECT_EQ(wire.hear(1, kSilence_ms), Words{}) << "once";
+}
+
+TEST(Guardian, SaysThemAlsoOfOneThatCrashesOrLeavesWithoutAWord) {
+  const Wire crashed, left;
+  const Guarded one(crashed, [](Guardian&) { std::raise(SIGKILL); });
+  EXPECT_EQ(crashed.hear(3, kPatience_ms), kAll);
+  const Guarded other(left, [](Guardian&) { _exit(0); });
+  EXPECT_EQ(left.hear(3, kPatience_ms), kAll);
+}
+
+TEST(Guardian, TellsThatTheDeviceTookNothing) {
+  Wire wire;
+  close(wire.end[1]);  // nobody at the other end
+  wire.end[1] = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  const int own = dup(STDERR_FILENO), told = memfd_create("told", MFD_CLOEXEC);
+  dup2(told, STDERR_FILENO);
+  Guarded guarded(wire, [](Guardian&) {});
+  dup2(own, STDERR_FILENO);
+  close(own);
+  guarded.end();
+  std::array<char, 300> text{};
+  EXPECT_TRUE(soon([&] { return pread(told, text.data(), text.size() - 1, 0) > 0; }));
+  EXPECT_NE(std::string_view(text.data()).find("did not take zero force"), std::string_view::npos)
+      << text.data();
+  close(told);
+}
+
+TEST(Guardian, SaysNothingWhenItIsLetGoAndIsGoneThen) {
+  const Wire wire;
+  auto guardian = start(wire.words);
+  ASSERT_TRUE(guardian);
+  const pid_t process = guardian->process();
+  EXPECT_TRUE(lives(process));
+  guardian.reset();
+  EXPECT_FALSE(lives(process));
+  EXPECT_EQ(wire.hear(1, kSilence_ms), Words{});
+}
+
+TEST(Guardian, ItsOwnDeathIsNoticed) {
+  const Wire wire;
+  auto guardian = start(wire.words);
+  ASSERT_TRUE(guardian);
+  EXPECT_FALSE(guardian->lost().load());
+  kill(guardian->process(), SIGKILL);
+  EXPECT_TRUE(soon([&] { return guardian->lost().load(); }));
+  guardian.reset();
+  EXPECT_EQ(wire.hear(1, kSilence_ms), Words{});
+}
+
+TEST(Guardian, NoSignalOfATerminalReachesIt) {
+  const Wire wire;
+  Guarded guarded(wire, [](Guardian&) {});
+  EXPECT_EQ(getsid(guarded.guardian), guarded.guardian) << "no terminal of ours is its own";
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGPIPE, SIGUSR1, SIGALRM})
+    kill(guarded.guardian, signal);
+  usleep(20'000);
+  guarded.end();
+  EXPECT_EQ(wire.hear(3, kPatience_ms), kAll);
+}
+
+TEST(Guardian, ItsCallsAreFilteredAndItsFilesAreFew) {
+  const Wire wire;
+  const auto guardian = start(wire.words);
+  ASSERT_TRUE(guardian);
+  const std::string proc = "/proc/" + std::to_string(guardian->process());
+  EXPECT_EQ(tests::run_command("grep -c 'Seccomp:.2' " + proc + "/status").output, "1\n");
+  EXPECT_EQ(tests::run_command("ls " + proc + "/fd | wc -l").output, "5\n")
+      << "socket, /dev/null, standard error, lifeline, device";
+}
+
+TEST(Guardian, AMissingProgramIsRefusedWithTheCure) {
+  const Wire wire;
+  const auto guardian =
+      Guardian::start(wire.words, {.priority = 1, .program = "/nowhere/tact-guardian"});
+  ASSERT_FALSE(guardian);
+  EXPECT_NE(guardian.error().sentence.find("cannot be started (No such file or directory)"),
+            std::string::npos)
+      << guardian.error().sentence;
+}
+
+TEST(Guardian, StartedByAPersonItRefuses) {
+  const tests::Outcome outcome = tests::run_program("tact-guardian", "</dev/null");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.output.find("tactd starts this program"), std::string::npos) << outcome.output;
+}
+
+}  // namespace tact::firmware::guardian::guardian_test

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// What tactd refuses before the loop starts: a law that is too slow for the tick.
+#include "firmware/run/tick_budget.h"
+
+#include <gtest/gtest.h>
+
+#include <bitset>
+
+#include "tests/support/test_scene.h"
+
+namespace tact::firmware::run::tick_budget_test {
+
+bool has(const model::Error& error, const std::string& part) {
+  return error.sentence.find(part) != std::string::npos;
+}
+
+TEST(TickBudget, RefusesALawThatCannotKeepItsBudget) {
+  model::scene::Scene scene = tests::make_plate_scene();
+  const auto free = check_budget(scene, {});
+  ASSERT_TRUE(free) << free.error().sentence;
+  EXPECT_EQ(free->budget_us, 500.0) << "without a tolerance: half a period";
+  EXPECT_GT(free->measured.median_us, 0.0);
+  EXPECT_LE(free->measured.median_us, free->measured.p999_us);
+  EXPECT_EQ(free->judged_us, free->measured.median_us);
+  scene.tolerance = {.force_error_ratio = 0.07, .shape_error_ratio = 0.2, .tick_budget_us = 1e-4};
+  const auto refused = check_budget(scene, {});
+  ASSERT_FALSE(refused);
+  for (const char* part : {"tolerance.tick_budget_us is 0.0001", "tact-plan", "median"})
+    EXPECT_TRUE(has(refused.error(), part)) << refused.error().sentence;
+}
+
+TEST(TickBudget, WithHardRealTimeTheTailIsJudged) {
+  model::scene::Scene scene = tests::make_plate_scene();
+  scene.tolerance = {.force_error_ratio = 0.07, .shape_error_ratio = 0.2, .tick_budget_us = 1e6};
+  const auto judged = check_budget(scene, pc::RtSettings{});
+  ASSERT_TRUE(judged) << judged.error().sentence;
+  EXPECT_EQ(judged->judged_us, judged->measured.p999_us);
+  scene.tolerance->tick_budget_us = 1e-4;
+  const auto refused = check_budget(scene, pc::RtSettings{});
+  ASSERT_FALSE(refused);
+  EXPECT_TRUE(has(refused.error(), "(p99.9)")) << refused.error().sentence;
+}
+
+// A patch that stays where it is costs less than one that follows the hand: count what is asked.
+class AskedLaw final : public model::contact::SiteLaw {
+ public:
+  model::contact::SiteResponse respond(const model::contact::Indentation& in) RT_SAFE override {
+    asked[in.place.triangle % asked.size()] = true;
+    return {};
+  }
+  void leave(std::size_t) RT_SAFE override {}
+  void cut(const model::contact::BladeSweep& sweep) RT_SAFE override {
+    ++cuts;
+    moved = moved || !(sweep.from_a_m == sweep.to_a_m && sweep.from_b_m == sweep.to_b_m);
+  }
+  void advance() RT_SAFE override {}
+  std::size_t profile(const model::contact::Indentation&,
+                      std::span<double>) const RT_SAFE override {
+    return 0;
+  }
+  double ring_pitch_m() const RT_SAFE override { return 1e-3; }
+
+  std::bitset<4096> asked;
+  int cuts = 0;
+  bool moved = false;
+};
+
+TEST(TickBudget, MeasuresAContactThatWalksAndABladeThatCutsNothing) {
+  model::scene::Scene scene = tests::make_plate_scene();
+  scene.tool.blade = model::contact::Blade{.a_m = {}, .b_m = {0, 0, 0.01}};
+  AskedLaw law;
+  const LawTime time = measure_law(scene, law, 0.001);
+  EXPECT_GT(law.asked.count(), 10u) << "triangles on the way";
+  EXPECT_GT(law.cuts, 100);
+  EXPECT_FALSE(law.moved) << "an edge that stands still cuts nothing";
+  EXPECT_GT(time.median_us, 0.0);
+}
+
+}  // namespace tact::firmware::run::tick_budget_test

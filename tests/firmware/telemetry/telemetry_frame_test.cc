@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/telemetry/telemetry_frame.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+#include <span>
+
+namespace tact::firmware::telemetry::telemetry_frame_test {
+
+using model::Vec3;
+using model::contact::Indentation;
+using model::contact::TouchState;
+
+/// A law whose dents lean, the more the deeper.
+class LeaningLaw final : public model::contact::SiteLaw {
+ public:
+  model::contact::SiteResponse respond(const Indentation&) RT_SAFE override { return {}; }
+  void leave(std::size_t) RT_SAFE override {}
+  void advance() RT_SAFE override {}
+  std::size_t profile(const Indentation&, std::span<double>) const RT_SAFE override { return 1; }
+  double ring_pitch_m() const RT_SAFE override { return 0.002; }
+  Vec3 tilt(const Indentation& in) const RT_SAFE override { return in.dent_m * Vec3{10, -20, 30}; }
+};
+
+TEST(TelemetryFrame, CarriesHowTheDentOfATouchedSiteLeans) {
+  const LeaningLaw law;
+  const auto shapes = std::make_unique<loop::ShapeSlot>();
+  FrameBuilder builder(law, *shapes, false);
+  std::array<model::contact::SphereTouch, 2> touches;
+  touches[0].state = TouchState::kTouching;
+  for (auto& touch : touches) touch.dent_m = 0.004;
+  loop::TickRecord record;
+  record.touches.assign(touches);
+  builder.add(record);
+  const Frame frame = builder.take(0);
+  EXPECT_FLOAT_EQ(frame.site[0].tilt[0], 0.04F);
+  EXPECT_FLOAT_EQ(frame.site[0].tilt[1], -0.08F);
+  EXPECT_FLOAT_EQ(frame.site[0].tilt[2], 0.12F);
+  for (const float of_a_free_one : frame.site[1].tilt) EXPECT_EQ(of_a_free_one, 0.0F);
+}
+
+}  // namespace tact::firmware::telemetry::telemetry_frame_test

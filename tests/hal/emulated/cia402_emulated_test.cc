@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+// A delta on CiA 402 drives as several makers have them, the virtual bench's emulators.
+#include <gtest/gtest.h>
+
+#include "hal/cia402/cia402_cst.h"
+#include "hal/cia402/cia402_delta.h"
+#include "hal/cia402/cia402_state.h"
+#include "hal/cia402/heartbeat_guard.h"
+#include "tests/hal/emulated/emulated_drives.h"
+#include "tests/rig/emulators/cia402_drive.h"
+
+namespace tact::hal::emulated::cia402_emulated_test {
+
+using rig::ObjectHabits;
+using tests::published_pose;
+
+constexpr double kRated_Nm = 0.32;
+
+struct Drives : tests::EmulatedDrives {
+  Drives() : EmulatedDrives(1) {}
+  rig::Cia402Drive& at(std::size_t i) { return dynamic_cast<rig::Cia402Drive&>(*drive[i]); }
+  bool any_noted() {
+    return !at(0).noted().empty() || !at(1).noted().empty() || !at(2).noted().empty();
+  }
+};
+
+struct Bench : tests::CanBench<Drives> {
+  explicit Bench(const ObjectHabits& habits = {})
+      : CanBench(tests::jig_settings(published_pose())) {
+    drives.install<rig::Cia402Drive>(
+        rig::Cia402Settings{.rated_torque_Nm = kRated_Nm, .habits = habits});
+    for (int i = 0; i < 50; ++i) drives.millisecond();  // they boot
+  }
+  std::string open() { return CanBench::open(&cia402::start_cia402_delta); }
+  /// Open and ready for a force.
+  testing::AssertionResult run() {
+    const std::string sentence = open();
+    if (!sentence.empty()) return testing::AssertionFailure() << sentence;
+    if (ticks_until_ready() < 0) return testing::AssertionFailure() << device->trouble();
+    return testing::AssertionSuccess();
+  }
+  void expect_no_fault_for(int ticks) {
+    for (int i = 0; i < ticks; ++i) ASSERT_EQ(tick(), Fault::kNone) << device->trouble();
+  }
+  void expect_torques_of(const Vec3& force_N) {
+    for (int i = 0; i < 3; ++i) ASSERT_EQ(tick(force_N), Fault::kNone) << device->trouble();
+    const auto wanted = tests::expected_motor_Nm(settings, published_pose(), force_N);
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_NEAR(drives.drive[i]->torque_Nm(), wanted[i], 0.5e-3 * kRated_Nm);
+  }
+};
+
+/// Every habit alone, and all of them at once.
+std::vector<ObjectHabits> all_habits() {
+  return {{},
+          {.no_request_stays = true},
+          {.watch_off_first = true},
+          {.sizes_unsaid = true},
+          {.absent = {0x6007, 0x60C2, 0x605A, 0x6502, 0x6061}},
+          {.no_request_stays = true,
+           .watch_off_first = true,
+           .sizes_unsaid = true,
+           .absent = {0x6007, 0x60C2, 0x605A}}};
+}
+
+TEST(Cia402Emulated, EveryMakersDriveGivesTheTorquesThatItIsAskedFor) {
+  for (const ObjectHabits& habits : all_habits()) {
+    Bench bench(habits);
+    ASSERT_TRUE(bench.run());
+    bench.expect_torques_of({1.0, -2.0, 3.0});
+    EXPECT_FALSE(bench.drives.any_noted());
+  }
+}
+
+TEST(Cia402Emulated, PermissionThatIsTakenAndComesBackLeavesNoFaultInTheLog) {
+  for (const ObjectHabits& habits : all_habits()) {
+    Bench bench(habits);
+    ASSERT_TRUE(bench.run());
+    for (int press = 0; press < 3; ++press) {
+      bench.permitted = false;
+      bench.expect_no_fault_for(300);
+      for (const auto& drive : bench.drives.drive) EXPECT_FALSE(drive->is_enabled());
+      bench.permitted = true;
+      ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
+    }
+    bench.expect_torques_of({0.0, 0.0, 4.0});
+    EXPECT_FALSE(bench.drives.any_noted());
+  }
+}
+
+TEST(Cia402Emulated, AnEndThatIsPlannedLeavesNoFaultInTheLog) {
+  for (const ObjectHabits& habits : all_habits()) {
+    Bench bench(habits);
+    ASSERT_TRUE(bench.run());
+    bench.expect_torques_of({0.0, 0.0, 4.0});
+    bench.device->stop();
+    for (int i = 0; i < 200; ++i) bench.drives.millisecond();
+    for (const auto& drive : bench.drives.drive) EXPECT_FALSE(drive->is_enabled());
+    EXPECT_FALSE(bench.drives.any_noted());
+  }
+}
+
+TEST(Cia402Emulated, AKilledRunIsMissedAndTheNextStartNeedsNoPowerCycle) {
+  for (const ObjectHabits& habits : all_habits()) {
+    Bench bench(habits);
+    ASSERT_TRUE(bench.run());
+    bench.drives.bus.socket().send_error = ENOBUFS;  // killed: nothing more of it reaches a drive
+    bench.device.reset();
+    for (int i = 0; i < 200; ++i) bench.drives.millisecond();
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_FALSE(bench.drives.drive[i]->is_enabled());
+      EXPECT_EQ(bench.drives.at(i).noted(), std::vector<std::uint16_t>{0x8130});
+    }
+    bench.drives.connect_again();
+    ASSERT_TRUE(bench.run());
+    bench.expect_torques_of({0.0, 0.0, 4.0});
+  }
+}
+
+TEST(Cia402Emulated, LastWordsTakeTheTorqueAtOnceThenThePowerAndLeaveTheWatchOn) {
+  for (const ObjectHabits& habits : all_habits()) {
+    Bench bench(habits);
+    ASSERT_EQ(bench.open(), "");
+    const auto words = bench.device->last_words();  // before the loop, as tactd asks for them
+    ASSERT_TRUE(words);
+    ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
+    bench.expect_torques_of({0.0, 0.0, 4.0});
+    bench.drives.expect_freed_by(*words);
+    for (int i = 0; i < 200; ++i) bench.drives.millisecond();
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_EQ(bench.drives.at(i).noted(), std::vector<std::uint16_t>{0x8130})
+          << "it misses its host all the same";
+    bench.drives.bus.socket().send_error = ENOBUFS;
+  }
+}
+
+TEST(Cia402Emulated, LastWordsAreZeroTorqueWithoutAnEnableAndSyncAndNoMore) {
+  Bench bench;
+  ASSERT_EQ(bench.open(), "");
+  const auto words = bench.device->last_words();
+  ASSERT_TRUE(words && words->count == 12);
+  for (std::size_t i = 0; i < words->count; ++i) {
+    const auto frame = can::unpack_can_frame(words->word[i]);
+    ASSERT_TRUE(frame);
+    if (*frame == cia402::canopen_sync()) continue;
+    const int node = static_cast<int>(frame->id) - 0x200;
+    EXPECT_TRUE(node >= 1 && node <= 3) << frame->id;
+    EXPECT_TRUE(*frame == *cia402::cst_command(node, cia402::kControlQuickStop, 0) ||
+                *frame == *cia402::cst_command(node, cia402::kControlDisableVoltage, 0));
+  }
+}
+
+TEST(Cia402Emulated, AfterTheFaultOfOneDriveTheOthersNoteNone) {
+  Bench bench;
+  ASSERT_TRUE(bench.run());
+  bench.drives.drive[1]->fail(bench.drives.now_ns);
+  EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 20), 0);
+  for (int i = 0; i < 500; ++i) bench.tick();
+  EXPECT_TRUE(bench.drives.at(0).noted().empty());
+  EXPECT_TRUE(bench.drives.at(2).noted().empty());
+  for (const auto& drive : bench.drives.drive) EXPECT_FALSE(drive->is_enabled());
+  EXPECT_EQ(bench.allocations, 0u);
+}
+
+TEST(Cia402Emulated, ARatedTorqueThatNoDriveTellsStandsInTheScene) {
+  Bench silent({.absent = {0x6076}}), told({.absent = {0x6076}});
+  const std::string sentence = silent.open();
+  EXPECT_NE(sentence.find("does not tell its rated torque (object 6076): set "
+                          "device.can.rated_torque_Nm"),
+            std::string::npos)
+      << sentence;
+  told.settings.can.rated_torque_Nm = kRated_Nm;
+  ASSERT_TRUE(told.run());
+  told.expect_torques_of({1.0, -2.0, 3.0});
+}
+
+TEST(Cia402Emulated, ARatedTorqueOfTheSceneOverridesTheDrives) {
+  Bench bench;
+  bench.settings.can.rated_torque_Nm = 2.0 * kRated_Nm;
+  ASSERT_TRUE(bench.run());
+  for (int i = 0; i < 3; ++i) bench.tick({1.0, -2.0, 3.0});
+  const auto wanted = tests::expected_motor_Nm(bench.settings, published_pose(), {1.0, -2.0, 3.0});
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(bench.drives.drive[i]->torque_Nm(), 0.5 * wanted[i], 0.5e-3 * kRated_Nm);
+}
+
+TEST(Cia402Emulated, SettingsThatADriveDoesNotHaveAreToldOnce) {
+  Bench all, none({.absent = {0x6007, 0x60C2}});
+  ASSERT_EQ(all.open(), "");
+  EXPECT_EQ(all.device->info().caution, "");
+  ASSERT_EQ(none.open(), "");
+  const std::string caution = none.device->info().caution;
+  EXPECT_NE(caution.find("the drives of nodes 1, 2, 3 have no setting 0x6007: what they do when "
+                         "tactd is gone"),
+            std::string::npos)
+      << caution;
+  EXPECT_NE(caution.find("have no setting 0x60C2: their period"), std::string::npos) << caution;
+}
+
+TEST(Cia402Emulated, ADriveThatStaysInAnotherModeIsRefused) {
+  Bench velocity({.mode_shown = 3}), late({.mode_shown = 0});
+  const std::string sentence = velocity.open();
+  EXPECT_NE(sentence.find("arm 1 (node 1 on can0) stays in mode 3 of operation (object 6061)"),
+            std::string::npos)
+      << sentence;
+  ASSERT_TRUE(late.run());
+}
+
+TEST(Cia402Emulated, AWatchThatWasLeftOpenIsSwitchedOffBeforeItIsAskedForAgain) {
+  cia402::HeartbeatGuard guard;
+  const cia402::CstConfiguration can;
+  const auto asks = [&](bool wanted) {
+    for (int tick = 0; tick <= cia402::HeartbeatGuard::kPatience_ticks; ++tick)
+      if (const auto frame = guard.step(wanted, 1, can)) return static_cast<int>(frame->data[4]);
+    return -1;
+  };
+  const auto answer = [&](cia402::SdoReplyKind kind) {
+    guard.take({.kind = kind, .index = 0x1016, .sub = 1});
+  };
+  using enum cia402::SdoReplyKind;
+  EXPECT_EQ(asks(false), 0);
+  answer(kDownloadDone);
+  for (const bool refused : {false, true}) {
+    EXPECT_EQ(asks(true), 20);
+    if (refused) answer(kAbort);  // else no answer comes: it may be on
+    EXPECT_FALSE(guard.on());
+    EXPECT_EQ(asks(true), 0) << "off first";
+    answer(kDownloadDone);
+  }
+  EXPECT_EQ(asks(true), 20);
+  answer(kDownloadDone);
+  EXPECT_TRUE(guard.on());
+}
+
+}  // namespace tact::hal::emulated::cia402_emulated_test

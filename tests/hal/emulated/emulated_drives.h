@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// emulated_drives.h - tact's back ends and the virtual bench's drives on one scripted bus.
+//
+// The emulators are written from the makers' objects and share no header with hal/
+// (tests/house/layering_test.py), so what both sides read alike is no accident of one reading. Time
+// is made: each millisecond of the host is one of the drives.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string>
+
+#include "hal/last_words.h"
+#include "tests/rig/emulators/can_bus.h"
+#include "tests/rig/emulators/drive.h"
+#include "tests/support/can_bench.h"
+#include "tests/support/can_drives.h"
+
+namespace tact::tests {
+
+class EmulatedDrives {
+ public:
+  explicit EmulatedDrives(std::uint32_t node_step)
+      : bus([this] { millisecond(); }), cable(plan_, node_step) {
+    cable.adopt(bus.give_drives_end());
+  }
+
+  /// `args` follow axis and node in the constructor of a drive.
+  template <class Drive, class Settings>
+  void install(const Settings& settings) {
+    for (int i = 0; i < 3; ++i)
+      drive[static_cast<std::size_t>(i)] = std::make_unique<Drive>(
+          i, i + 1, settings, cable, motor[static_cast<std::size_t>(i)], plan_);
+  }
+  /// Another host on the same drives.
+  void connect_again() {
+    close(cable.descriptor());
+    bus.connect();
+    cable.adopt(bus.give_drives_end());
+  }
+
+  void listen() {
+    while (const auto frame = cable.receive()) {
+      for (const auto& one : drive) one->receive(*frame, now_ns);
+      look();
+    }
+  }
+  void millisecond() {
+    listen();
+    now_ns += 1'000'000;
+    plan_.tick(now_ns);
+    for (const auto& one : drive) one->tick(now_ns);
+    look();
+  }
+
+  /// What the guardian says of a dead tactd: the first step takes the torque, the rest the power.
+  void expect_freed_by(const hal::LastWords& words) {
+    ASSERT_EQ(say_step(words, 0), 0);
+    millisecond();
+    for (const auto& one : drive) EXPECT_EQ(one->torque_Nm(), 0.0);
+    ASSERT_EQ(say_all(words), 0);
+    millisecond();
+    for (const auto& one : drive) EXPECT_FALSE(one->is_enabled());
+  }
+
+  std::int64_t now_ns = 1'000'000'000;
+  std::array<rig::Motor, 3> motor{};
+  std::array<std::unique_ptr<rig::Drive>, 3> drive{};
+  std::size_t most_enabled = 0;    // at one time
+  double largest_torque_Nm = 0.0;  // of any motor, at any time
+  ScriptedBus bus;
+
+ private:
+  void look() {
+    const auto enabled = std::count_if(drive.begin(), drive.end(),
+                                       [](const auto& one) { return one->is_enabled(); });
+    most_enabled = std::max(most_enabled, static_cast<std::size_t>(enabled));
+    for (const auto& one : drive)
+      largest_torque_Nm = std::max(largest_torque_Nm, std::abs(one->torque_Nm()));
+  }
+
+  rig::FaultPlan plan_;
+
+ public:
+  rig::CanBus cable;
+};
+
+}  // namespace tact::tests

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "hal/falcon/falcon_boot.h"
+#include "tests/hal/falcon/falcon_bench.h"
+
+namespace tact::tests::falcon_last_words_test {
+
+TEST(FalconLastWords, AreZeroWordsOverTheOpenDescriptorAndNoMore) {
+  FalconBench bench;
+  bench.pipe->fd = 42;
+  bench.home();
+  bench.run(3, {0.0, 0.0, 4.0});
+  ASSERT_NE(bench.words(), falcon::FalconWords{});
+  const auto words = bench.device.last_words();
+  ASSERT_TRUE(words);
+  EXPECT_EQ(words->fd, 42);
+  EXPECT_EQ(words->carrier, LastWords::Carrier::kUsbBulk);
+  EXPECT_EQ(words->endpoint, falcon::kFalconEndpointOut);
+  ASSERT_GE(words->count, 2u) << "nobody sees whether one has come";
+  for (std::size_t i = 0; i < words->count; ++i) {
+    const auto command = falcon::decode_falcon_command(words->word[i]);
+    ASSERT_TRUE(command);
+    EXPECT_EQ(command->motor, falcon::FalconWords{});
+    EXPECT_EQ(command->lights, falcon::kFalconRed);
+  }
+  EXPECT_EQ(bench.device.info().caution, "");
+}
+
+TEST(FalconLastWords, WithoutADescriptorThereAreNoneAndThatIsTold) {
+  FalconBench bench;
+  EXPECT_FALSE(bench.device.last_words());
+  EXPECT_NE(bench.device.info().caution.find("nothing zeroes the Falcon"), std::string::npos);
+}
+
+}  // namespace tact::tests::falcon_last_words_test

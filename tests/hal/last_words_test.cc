@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/last_words.h"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <thread>
+#include <vector>
+
+#include "tests/support/no_alloc.h"
+
+namespace tact::hal::last_words_test {
+
+using Bytes = LastWords::Bytes;
+
+struct Ends {
+  Ends() {
+    if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0, fd) != 0) std::abort();
+  }
+  Ends(const Ends&) = delete;
+  Ends& operator=(const Ends&) = delete;
+  ~Ends() {
+    close(fd[0]);
+    close(fd[1]);
+  }
+  std::vector<Bytes> heard() const {
+    std::vector<Bytes> all;
+    for (Bytes one{}; recv(fd[1], one.data(), one.size(), MSG_DONTWAIT) == 16;) all.push_back(one);
+    return all;
+  }
+  int fd[2] = {-1, -1};
+};
+
+LastWords three_words(int fd) {
+  LastWords words{.fd = fd};
+  EXPECT_TRUE(words.add_step(std::array{Bytes{1}, Bytes{2}}));
+  EXPECT_TRUE(words.add_step(std::array<Bytes, 1>{Bytes{3}}));
+  return words;
+}
+
+TEST(LastWords, AStepLeavesAloneAndAllLeaveInOrderWithoutHeap) {
+  const Ends ends;
+  const LastWords words = three_words(ends.fd[0]);
+  const tests::NoAlloc guard;
+  EXPECT_EQ(say_step(words, 0), 0);
+  EXPECT_EQ(guard.calls(), 0u);
+  EXPECT_EQ(ends.heard(), (std::vector<Bytes>{{1}, {2}}));
+  EXPECT_EQ(say_all(words), 0);
+  EXPECT_EQ(ends.heard(), (std::vector<Bytes>{{1}, {2}, {3}}));
+  EXPECT_EQ(say_step(words, 7), 0) << "nothing to say";
+}
+
+TEST(LastWords, WhatDoesNotFitIsRefused) {
+  LastWords words;
+  const std::vector<Bytes> many(LastWords::kMost);
+  EXPECT_TRUE(words.add_step(many));
+  EXPECT_FALSE(words.add_step(std::array<Bytes, 1>{}));
+  EXPECT_EQ(words.count, LastWords::kMost);
+}
+
+TEST(LastWords, AQueueThatIsFullForAMomentIsTriedAgain) {
+  const Ends ends;
+  const LastWords words = three_words(ends.fd[0]);
+  const Bytes other{9};
+  while (send(ends.fd[0], other.data(), other.size(), MSG_DONTWAIT) == 16) {
+  }
+  EXPECT_NE(say_step(words, 0), 0);
+  std::thread reader([&] { ends.heard(); });
+  for (int i = 0; i < 1000 && say_all(words) != 0; ++i) {
+  }
+  reader.join();
+  EXPECT_EQ(say_step(words, 0), 0);
+}
+
+TEST(LastWords, ADeviceThatIsGoneIsAnErrorAndNoMore) {
+  Ends ends;
+  LastWords words = three_words(ends.fd[0]);
+  close(ends.fd[1]);
+  ends.fd[1] = -1;
+  EXPECT_NE(say_all(words), 0);
+  words.carrier = LastWords::Carrier::kUsbBulk;
+  EXPECT_EQ(say_all(words), ENOTTY) << "no USB device at all";
+}
+
+}  // namespace tact::hal::last_words_test

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Wrong variants of the gate: file, what stands there, what stands there instead, the proof that must
+fail, and the property that it must lose."""
+
+GATE, LIMITER, TANK = (f"firmware/gate/{name}" for name in ("gate.cc", "limiter.h", "energy_tank.cc"))
+HEAT = "firmware/gate/thermal_limit.h"
+WRONG = [
+    (GATE, "if (is_finite(input.wanted)) return;", "return;", "judge",
+     "finite: what is not finite latches and gives zero"),
+    (GATE, "if (missed_ >= kLostAfter)", "if (missed_ > kLostAfter)", "judge",
+     "fresh: the 20th missed sample latches"),
+    (GATE, "missed_ + 1 + input.skipped_periods", "missed_ + 1", "judge", "fresh: each missed period is counted"),
+    (GATE, "if (armed && !latches(verdict.fault)) return true;", "if (!latches(verdict.fault)) return true;", "judge",
+     "armed: zero unless armed"),
+    (GATE, "is_inside(limits_, tool.position_m), period_s_", "!is_inside(limits_, tool.position_m), period_s_", "judge",
+     "workspace: it fades outside"),
+    (GATE, "armed && tank_.is_overdrawn()", "false", "judge", "passivity: an overdrawn tank latches"),
+    (TANK, "return !(level_J_ >= -kRounding_J);", "return level_J_ < -kRounding_J;", "tank",
+     "passivity: a tank that is no number is overdrawn"),
+    (GATE, "Magnitude all{.force_N = std::fmin(warm_N, passive_N),", "Magnitude all{.force_N = 1e9,", "judge",
+     "magnitude: |F| <= force limit"),
+    (LIMITER, "if (!is_finite(v)) v = {};", "", "limiter", "magnitude: a limited vector is finite"),
+    (LIMITER, "1.0 - 1e-15", "1.0 - 4e-16", "gappa", "magnitude: rounding leaves no vector above its limit"),
+    (HEAT, "return squared < peak_ * peak_ ? std::sqrt(squared) : peak_;", "return squared < 2.0 * peak_ * peak_ ? std::sqrt(squared) : peak_;",
+     "heat",
+     "magnitude: what heat allows is no more than the peak"),
+    (LIMITER, "std::fmax(radius, length - shrink)", "std::fmax(radius, length + shrink)", "approach",
+     "slew: an approach is no longer than its radius, or than the force before"),
+    (GATE, "if (step_towards(verdict.wrench, periods, most))", "if (periods > 1e9)", "judge",
+     "slew: |dF| before the ramp <= its step"),
+    (GATE, "note(Stage::kPower, Fault::kPowerExceeded, verdict);", "verdict.fault = Fault::kPowerExceeded;", "judge",
+     "power: the counter is right"),
+    (GATE, "  ramp_.set(0.0);\n  written_ = {};", "  written_ = {};", "judge",
+     "armed: after a fault all starts from zero"),
+    (GATE, "verdict.wrench = ramp * verdict.wrench;", "", "judge", "ramp: no force before it opens"),
+]
