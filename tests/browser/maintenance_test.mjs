@@ -20,6 +20,7 @@ const kGrip_m = 0.12; // from the tip of press.obj to where it is held
 const kHold_m = 0.002;
 const kMotion_s = 30;
 const kLeaning_s = [6.5, 9]; // of the recording
+const kSilent_s = 8.9; // of the recording: soon afterwards the waist is hidden for a while
 const kEyes_m = 0.2; // from the head's joint to the eyes, and what a smooth camera lags behind
 const kMostBytes = 4096;
 
@@ -160,6 +161,12 @@ async function free_udp_port() {
   return port;
 }
 
+/** The looks of the recording before a time, s. */
+function write_looks_before(path, end_s) {
+  const lines = readFileSync(observations, "utf8").trim().split("\n");
+  writeFileSync(path, lines.filter((line) => JSON.parse(line).time_s < end_s).join("\n") + "\n");
+}
+
 /**
  * Leaning looks of the recording, then every body at two places 2.4 m apart in turn for more than a
  * second, then looks that are older than the last one.
@@ -217,27 +224,27 @@ async function lose_the_tracker(browser) {
   await page.goto(url);
   check("stands without a tracker", await waits(page, () =>
     window.tact.link === "live" && window.tact.drawn_figure_m !== null));
-  const sender = start("tact-track-send", [observations, "--port", String(port)]);
+  const path = join(folder, "leaning.jsonl");
+  write_looks_before(path, kSilent_s);
+  const sender = start("tact-track-send", [path, "--port", String(port)]);
   sender.stdout.resume();
   check("hears the tracker by UDP", await waits(page, () => window.tact.tracking_words === ""));
-  await page.waitForTimeout(1500); // it has gone to its place
-  const [begin] = await watch(page, 0.2);
-  const leaning = await watch(page, 6); // he leans over the cover now
-  const before = leaning.at(-1);
+  const samples = await watch(page, kSilent_s + 7);
+  check("plays the looks", (await sender.ended) === 0);
+  const well = samples.filter((sample) => sample.words === "");
+  const [begin, before] = [well.find((sample) => sample.time_s > 1.5) ?? samples[0], well.at(-1) ?? samples[0]];
   check("leans with the operator", distance(before.head_m, begin.head_m) > 0.05,
     mm(distance(before.head_m, begin.head_m)));
-  sender.kill("SIGKILL");
-  const after = await watch(page, 7);
-  const held = after.find((sample) => sample.words.includes("held"));
+  const after = samples.slice(samples.indexOf(before) + 1);
   const lost = after.find((sample) => sample.words.includes("lost"));
-  check("holds the pose first", held !== undefined && held.time_s < 4 &&
-    distance(held.head_m, before.head_m) < 0.03, held && `${held.words}, ${held.time_s.toFixed(2)} s`);
-  check("then says in words that the tracker is lost", lost !== undefined && lost.time_s < 4 &&
-    lost.shown.includes("lost (silent)"), lost && `${lost.shown}, ${lost.time_s.toFixed(2)} s`);
+  check("then says in words that the tracker is lost", lost !== undefined && lost.time_s < before.time_s + 4 &&
+    lost.shown.includes("lost (silent)"), lost && `${lost.shown}, ${(lost.time_s - before.time_s).toFixed(2)} s`);
+  check("holds the pose until then", after.slice(0, after.indexOf(lost)).every((sample) =>
+    sample.words.includes("held") && distance(sample.head_m, before.head_m) < 0.03));
   const end = after.at(-1);
   check("fades to the neutral pose", distance(end.head_m, begin.head_m) < 0.03 &&
     distance(end.head_m, before.head_m) > 0.04, `${mm(distance(end.head_m, begin.head_m))} from it`);
-  const rest = after.filter((sample) => sample.time_s > 5.5);
+  const rest = after.filter((sample) => sample.time_s > before.time_s + 5.5);
   check("and stays there", path_m(rest, "head_m") < 0.01, mm(path_m(rest, "head_m")));
   check_grip("without a tracker", after);
   check("tactd stays armed", after.every((sample) => sample.state === "armed"));
