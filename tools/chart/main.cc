@@ -139,10 +139,11 @@ Result<report::Table> table_of(const Options& o, const Scene& scene,
 }
 
 /// What was found, on a terminal; the exit status. A part of the rows proves nothing.
-int tell(const Options& o, const report::Table& table, const std::vector<std::string>& files) {
+int tell(const program::Program& program, const Options& o, const report::Table& table,
+         const Provenance& provenance, const std::vector<std::string>& files) {
   const bool is_whole = o.chart.shard.is_whole();
   if (o.json) {
-    fmt::print("{}", table.to_json());
+    fmt::print("{}", chart_json(table, program.command(), provenance));
   } else {
     fmt::print("{}", chart_text(table, is_whole));
     for (const std::string& file : files) fmt::print("{}\n", file);
@@ -181,7 +182,7 @@ int make_chart(const program::Program& program, const Options& o) {
       return program.fail(pictures.error(), "the tables are written, the pictures are not");
     files->insert(files->end(), pictures->begin(), pictures->end());
   }
-  return tell(o, *table, *files);
+  return tell(program, o, *table, provenance, *files);
 }
 
 }  // namespace

@@ -20,7 +20,8 @@ using model::Error;
 using model::Result;
 using nlohmann::ordered_json;
 
-constexpr const char* kSchema = "tact-chart/2";
+constexpr const char* kFormat = "tact-chart";
+constexpr int kVersion = 3;
 
 /// Numbers as Table::to_json writes them: those that are not finite are words.
 report::Cell cell_of(const nlohmann::json& value, report::CellKind kind) {
@@ -40,24 +41,32 @@ std::string csv_head(const std::string& command, const Provenance& provenance) {
                      provenance.machine);
 }
 
+std::string chart_json(const report::Table& table, const std::string& command,
+                       const Provenance& provenance) {
+  const ordered_json json = *model::io::parse_json<ordered_json>(table.to_json(), "chart");
+  return ordered_json{{"format", kFormat},
+                      {"version", kVersion},
+                      {"command", command},
+                      {"scene", provenance.scene_hash},
+                      {"reference", provenance.reference_hash},
+                      {"revision", provenance.revision},
+                      {"machine", provenance.machine},
+                      {"rows", json["rows"]}}
+             .dump(1) +
+         "\n";
+}
+
 Result<std::vector<std::string>> write_chart(const report::Table& table, bool is_whole,
                                              const std::string& command,
                                              const Provenance& provenance,
                                              const std::string& directory) {
   if (!is_whole) return table.write(directory);
   const std::string stem = (std::filesystem::path(directory) / table.name()).string();
-  const ordered_json json = *model::io::parse_json<ordered_json>(table.to_json(), "chart");
-  ordered_json document{{"schema", kSchema},
-                        {"command", command},
-                        {"scene", provenance.scene_hash},
-                        {"reference", provenance.reference_hash},
-                        {"revision", provenance.revision},
-                        {"machine", provenance.machine},
-                        {"rows", json["rows"]}};
   if (auto error =
           model::io::write_file(stem + ".csv", csv_head(command, provenance) + table.to_csv()))
     return *error;
-  if (auto error = model::io::write_file(stem + ".json", document.dump(1) + "\n")) return *error;
+  if (auto error = model::io::write_file(stem + ".json", chart_json(table, command, provenance)))
+    return *error;
   return std::vector<std::string>{stem + ".csv", stem + ".json"};
 }
 
@@ -67,7 +76,7 @@ Result<report::Table> read_chart(const std::string& path) {
   if (!parsed) return parsed.error();
   try {  // the library reports by exceptions; they end here
     const nlohmann::json& document = *parsed;
-    if (document.value("schema", "") != kSchema)
+    if (document.value("format", "") != kFormat || document.value("version", 0) != kVersion)
       return Error{
           fmt::format("{}: is no chart of this version; make it again: tact-chart SCENE "
                       "--reference FILE --out DIR",

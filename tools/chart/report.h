@@ -13,6 +13,9 @@ namespace tact::tools::chart {
 /// "# command: ..." and so on: how to make these numbers again. Ends in a line end.
 std::string csv_head(const std::string& command, const Provenance& provenance);
 
+/// The document of chart.json and of --json: tools/schema/tact-chart.schema.json.
+std::string chart_json(const report::Table& table, const std::string& command,
+                       const Provenance& provenance);
 /// chart.csv and chart.json of a whole table; of a shard the CSV that merging reads.
 model::Result<std::vector<std::string>> write_chart(const report::Table& table, bool is_whole,
                                                     const std::string& command,

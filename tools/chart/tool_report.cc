@@ -17,8 +17,6 @@ using ground_truth::ToolPlace;
 using ground_truth::ToolReference;
 using nlohmann::ordered_json;
 
-constexpr const char* kToolSchema = "tact-tool-chart/1";
-
 std::string name_of_place(const ToolPlace& place) {
   return place.vertex ? fmt::format("{}", *place.vertex) : "hand's";
 }
@@ -75,9 +73,13 @@ report::Table tool_table(const std::vector<ToolRow>& rows, const ToolReference& 
 
 std::string tool_json(const std::vector<ToolRow>& rows, const ToolReference& reference,
                       const std::string& command, const Provenance& provenance) {
-  ordered_json document{{"schema", kToolSchema},           {"command", command},
-                        {"scene", provenance.scene_hash},  {"reference", provenance.reference_hash},
-                        {"revision", provenance.revision}, {"machine", provenance.machine}};
+  ordered_json document{{"format", "tact-tool-chart"},
+                        {"version", 2},
+                        {"command", command},
+                        {"scene", provenance.scene_hash},
+                        {"reference", provenance.reference_hash},
+                        {"revision", provenance.revision},
+                        {"machine", provenance.machine}};
   for (const ToolRow& row : rows) document["laws"].push_back(summary_of(row, reference));
   const auto table =
       model::io::parse_json<ordered_json>(tool_table(rows, reference).to_json(), "tool");

@@ -78,9 +78,11 @@ int main(int argc, char** argv) {
   const auto rows = check_pc(question);
   if (options.fix || options.undo) return mend(program, question, rows, options);
   if (options.as_json)
-    fmt::print("{}\n",
-               nlohmann::json{{"core", core_in_question(question)}, {"checks", to_json(rows)}}.dump(
-                   2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", nlohmann::json{{"format", "tact-doctor"},
+                                      {"version", 1},
+                                      {"core", core_in_question(question)},
+                                      {"checks", to_json(rows)}}
+                           .dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   else
     fmt::print("{}", make_doctor_table(rows, isatty(STDOUT_FILENO) != 0));
   const bool any_red = std::any_of(rows.begin(), rows.end(),

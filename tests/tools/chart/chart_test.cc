@@ -279,7 +279,7 @@ TEST(Chart, IsReadBackAsItWasWritten) {
   std::string head;
   std::getline(csv, head);
   EXPECT_EQ(head, "# command: tact-chart x");
-  std::ofstream(folder + "/bad.json") << "{\"schema\": \"tact-chart/2\", \"rows\": [{}]}";
+  std::ofstream(folder + "/bad.json") << R"({"format": "tact-chart", "version": 3, "rows": [{}]})";
   EXPECT_FALSE(read_chart(folder + "/bad.json"));
   EXPECT_FALSE(read_chart(folder + "/none.json"));
 }

@@ -163,7 +163,7 @@ TEST(ToolReport, HasARowForEachLawPlaceAndDepthAndASummary) {
   const auto row = judge_tool(scene, LawKind::kDiscStack, truth, kShort);
   ASSERT_TRUE(row) << row.error().sentence;
   const auto j = nlohmann::json::parse(tool_json({*row}, truth, "tact-chart x", {}));
-  EXPECT_EQ(j.at("schema"), "tact-tool-chart/1");
+  EXPECT_EQ(j.at("format"), "tact-tool-chart");
   EXPECT_EQ(j.at("rows").size(), 4U);
   EXPECT_EQ(j.at("rows")[3].at("place"), "220");
   const auto& law = j.at("laws")[0];
