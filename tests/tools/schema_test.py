@@ -5,13 +5,15 @@
     python3 tests/tools/schema_test.py BUILD_DIR
 
 Every program with an option --json is run here; of tact-reference, which takes minutes, the committed files are judged. A
-schema allows no member that it does not name, so a new member is a change of the schema. Needs python3-jsonschema. Exit status 0 or 1.
+schema allows no member that it does not name, so a new member is a change of the schema. Needs python3-jsonschema. Exit
+status 0 or 1.
 """
 import copy
 import json
 import pathlib
 import re
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -25,6 +27,7 @@ LIVER = SCENES / "liver.toml"
 REFERENCES = ROOT / "tests/data/reference"
 BOX = ("--set elastic.youngs_modulus_Pa=5000 elastic.poisson_ratio=0.45 elastic.fixed_min_m=[-1,-1,-1] "
        "elastic.fixed_max_m=[1,1,-0.0199] --mesh-size-m 0.03")
+KINDS = ("status", "frame", "figure")  # of /live
 FEW = "--quick --no-peers --no-pictures --laws"
 VECTORS = ROOT / "tests/data/vectors"
 # format: the programs that write it, with arguments; {t} is a folder that goes in the end
@@ -53,7 +56,8 @@ COMMANDS = {
     "tact-tool-chart": [f"tact-chart {LIVER} --tool-reference {REFERENCES}/liver_tool.json {FEW} rhombus "
                         "--out {t}/tool --json"],
     "tact-plan": [f"tact-plan {LIVER} --chart {{t}}/chart/chart.json --dry-run --json"],
-    "tact-view": [],  # written by viewer_documents()
+    "tact-view": [],  # these by viewer_documents()
+    "tact-live": [],
     "tact-view-export": [],
 }
 # What takes minutes to make is committed.
@@ -95,25 +99,62 @@ def prepare(folder):
     (folder / "hold.csv").write_text("time_s,force_N\n0,1\n0.5,0.9\n1,0.83\n2,0.75\n4,0.66\n8,0.61\n16,0.6\n")
 
 
+def messages(port, token, seconds=20):
+    """Text messages of ws://127.0.0.1:PORT/live, as they come."""
+    with socket.create_connection(("127.0.0.1", port), timeout=seconds) as connection:
+        connection.sendall(f"GET /live HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+                           f"Sec-WebSocket-Key: dGVzdCBvZiB0aGUgdGVzdA==\r\nSec-WebSocket-Version: 13\r\n"
+                           f"Origin: http://127.0.0.1:{port}\r\nAuthorization: Bearer {token}\r\n\r\n".encode())
+        stream, seen = connection.makefile("rb"), 0
+        while stream.readline().strip():
+            pass  # the head of the answer
+        while head := stream.read(2):
+            size = head[1] & 0x7f
+            if size > 125:
+                size = int.from_bytes(stream.read(2 if size == 126 else 8), "big")
+            text = stream.read(size)
+            if head[0] & 0x0f != 1:
+                continue  # no text
+            message = json.loads(text)
+            if message["kind"] == "frame":
+                seen += 1
+                answer = json.dumps({"seen": seen}).encode()
+                connection.sendall(bytes([0x81, 0x80 | len(answer), 0, 0, 0, 0]) + answer)
+            yield message
+
+
+def one_of_each_kind(port, token):
+    seen = {}
+    for message in messages(port, token):
+        sites = message.get("sites") if message["kind"] == "frame" else "-"
+        if sites or message["kind"] not in seen:
+            seen[message["kind"]] = message
+        if len(seen) == len(KINDS) and seen["frame"].get("sites"):
+            return list(seen.values())
+    raise ValueError(f"/live sent {sorted(seen)} alone")
+
+
 def viewer_documents(build, folder):
-    """What tact-view says when it is ready, and of the export of the second that it has recorded."""
-    socket, recording = folder / "socket", folder / "recording"
+    """What tact-view says when it is ready, to a page, and of the export of what it has recorded."""
+    path, recording = folder / "socket", folder / "recording"
     view = str(build / "tact-view")
-    with subprocess.Popen([view, "--socket", str(socket), "--port", "0", "--record", str(recording), "--json"],
-                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as viewer:
+    with subprocess.Popen([view, "--socket", str(path), "--port", "0", "--record", str(recording), "--figure",
+                           "--json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as viewer:
         try:
             ready = json.loads(viewer.stdout.readline())
-            subprocess.run([str(build / "tactd"), str(LIVER), "--seconds", "1", "--no-black-box", "--socket", str(socket)],
-                           capture_output=True, check=False, timeout=60)
+            with subprocess.Popen([str(build / "tactd"), str(LIVER), "--seconds", "20", "--no-black-box", "--socket", str(path)],
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as run:
+                live = one_of_each_kind(ready["port"], ready["token"])
+                run.terminate()
         finally:
             viewer.send_signal(signal.SIGINT)
     export = subprocess.run([view, "--open", str(recording), "--export", str(folder / "frames.csv"), "--json"],
                             capture_output=True, text=True, check=False, timeout=60)
-    return {"tact-view": ready, "tact-view-export": json.loads(export.stdout)}
+    return [("tact-view", ready), ("tact-view-export", json.loads(export.stdout)), *(("tact-live", one) for one in live)]
 
 
 def faults_of(name, document, schema):
-    if document.get("schema", document.get("format")) is None:
+    if document.get("schema", document.get("format", document.get("kind"))) is None:
         yield f"{name}: names neither its format nor its version"
     for error in jsonschema.Draft7Validator(schema).iter_errors(document):
         yield f"{name}: {'/'.join(map(str, error.absolute_path)) or 'top'}: {error.message[:200]}"
@@ -121,7 +162,8 @@ def faults_of(name, document, schema):
 
 def blind(name, document, schema):
     """A document with another format, or a member more, must be refused."""
-    named = ({"schema": "x"},) if "schema" in document else ({"format": "x"}, {"version": 999})
+    key = next(key for key in ("schema", "format", "kind") if key in document)
+    named = ({key: "x"}, {"version": 999}) if key == "format" else ({key: "x"},)
     for change in (*named, {"a_member_that_no_schema_has": 1}):
         if not list(faults_of(name, {**copy.deepcopy(document), **change}, schema)):
             yield f"{name}: its schema takes {change}"
@@ -140,7 +182,7 @@ def documents(build, folder):
         for file in files:
             yield name, json.loads((REFERENCES / file).read_text())
     try:
-        yield from viewer_documents(build, folder).items()
+        yield from viewer_documents(build, folder)
     except (OSError, ValueError, subprocess.TimeoutExpired) as error:
         yield "tact-view", str(error)
 

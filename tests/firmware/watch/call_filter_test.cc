@@ -102,4 +102,49 @@ TEST_F(FilteredLoop, ALockThatHadToBeWaitedForIsNoticed) {
   EXPECT_NE(refused_call().find("futex"), std::string::npos) << refused_call();
 }
 
+TEST_F(FilteredLoop, ACallWithoutANameIsToldByItsNumber) {
+  make({});
+  if (filter == nullptr) return;
+  constexpr long kNobodys = 5000;
+  thread = std::thread([&] {
+    entered = filter->enter_thread();
+    syscall(kNobodys);
+    filter->leave_loop();
+  });
+  thread.join();
+  EXPECT_EQ(refused_call(), "system call 5000");
+  EXPECT_EQ(requests.fault.load(), model::Fault::kForbiddenCall);
+}
+
+TEST_F(FilteredLoop, AThreadThatHasLeftTheLoopIsRefusedButTripsNothing) {
+  make({});
+  if (filter == nullptr) return;
+  long in_the_loop_no_more = 0, of_a_filter_that_is_gone = 0;
+  thread = std::thread([&] {
+    entered = filter->enter_thread();
+    filter->leave_loop();
+    in_the_loop_no_more = ask_parent();
+    filter.reset();
+    of_a_filter_that_is_gone = ask_parent();
+  });
+  thread.join();
+  EXPECT_EQ(in_the_loop_no_more, -1);
+  EXPECT_EQ(of_a_filter_that_is_gone, -1);
+  EXPECT_EQ(requests.fault.load(), model::Fault::kNone);
+}
+
+TEST_F(FilteredLoop, NumbersThatAreNoCallMakeNoFilter) {
+  make({});
+  if (filter == nullptr) return;
+  constexpr std::array kNone{-1};
+  for (const bool of_device : {true, false}) {
+    const auto made =
+        CallFilter::make(of_device ? std::span<const int>(kNone) : std::span<const int>(),
+                         of_device ? std::span<const int>() : kNone, requests);
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().sentence,
+              "the loop's system calls are not filtered: libseccomp cannot make it");
+  }
+}
+
 }  // namespace tact::firmware::watch::call_filter_test
