@@ -13,6 +13,9 @@
 //   power      F . v + T . w
 //   ramp       fades in after arming
 //
+// Two checks that latch run elsewhere than their stage: overdrawn energy (passivity) before armed,
+// and the power of what would be written (power) after ramp.
+//
 // For every sequence of inputs, of the written force, unless a fault stops it at once:
 //
 //   |F| <= force_N, RMS <= continuous_force_N, |dF| <= slew_N_per_s dt, F . v <= power_W,

@@ -14,8 +14,9 @@
 namespace tact::model::scene {
 namespace {
 
-// A place over the law alone: what devices can render, and more than any 2 mm from the held side.
-constexpr double kStiffestPlace_ratio = 1.5;
+// A place over the tip's law alone: what devices can render, and more than any 2 mm from the held
+// side.
+constexpr double kStiffestTip_ratio = 1.5;
 
 /// NaN is the stiffest of all, so that what must bound it refuses it.
 double stiffer_N_per_m(double a, double b) { return a >= b || std::isnan(a) ? a : b; }
@@ -38,8 +39,8 @@ TissueLawBuilder::Step TissueLawBuilder::vary_by_place(const law::Law& curve) {
   auto family = read_scene_family(scene_, false);
   if (!family) return family.error();
   const law::LawRange range = curve.range();
-  const double least_m_per_N = (1.0 / kStiffestPlace_ratio - 1.0) /
-                               law::stiffest_N_per_m(curve, range.pull_m, range.press_m);
+  const double least_m_per_N =
+      (1.0 / kStiffestTip_ratio - 1.0) / law::stiffest_N_per_m(curve, range.pull_m, range.press_m);
   for (indent::ComplianceCurve& of_family : family->curve) {
     const indent::ComplianceCurve& place = keep(std::move(of_family));
     const double give_m_per_N = std::max(place.regular_m_per_N(), least_m_per_N);

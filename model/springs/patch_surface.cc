@@ -55,11 +55,12 @@ double across_N_per_m(const PatchTissue& tissue) {
 
 // MA-22
 double anchor_of_give_N_per_m(const PatchTissue& tissue, double more_m_per_N) {
-  constexpr double kStiffest = 3.0, kLeastModulus_N_per_m = 1e-6;
+  constexpr double kStiffestPlace = 3.0;  // over the mean one, as model/tissue has it
+  constexpr double kLeastModulus_N_per_m = 1e-6;
   const double modulus =
       std::max(std::numbers::sqrt3 * across_N_per_m(tissue), kLeastModulus_N_per_m);
   const double mean_m_per_N = give_m_per_N(modulus, tissue.body_stiffness_N_per_m);
-  const double give = std::max(mean_m_per_N + more_m_per_N, mean_m_per_N / kStiffest);
+  const double give = std::max(mean_m_per_N + more_m_per_N, mean_m_per_N / kStiffestPlace);
   const double all_waves = 4.0 * std::numbers::pi * modulus;
   return all_waves / std::expm1(all_waves * give / kShortWaves);
 }

@@ -14,7 +14,7 @@
 // (compliance_family_test.cc).
 //
 // Close to the held side the organ is stiffer than its own surface can show: r is limited so that a
-// place is at most kStiffest times as stiff as a half-space. Set-up code only.
+// place is at most kStiffestPlace times as stiff as a half-space. Set-up code only.
 #pragma once
 
 #include <span>
@@ -27,12 +27,16 @@
 
 namespace tact::model::tissue {
 
+/// Of a place, over a half-space: close to the held side an organ is stiffer than its own surface
+/// can show.
+inline constexpr double kStiffestPlace = 3.0;
+
 struct ComplianceFamily {
   std::vector<indent::ComplianceCurve> curve;  // K, soft to stiff
   std::vector<float> press_coordinate;         // kappa of r, n vertices
   std::vector<float> pull_coordinate;          // kappa of r_pull, n vertices
   std::vector<float> ring_times_E_per_m;       // of curve k, as its shape has it, at [k N + j - 1]
-  std::size_t limited_vertices = 0;            // vertices held to kStiffest
+  std::size_t limited_vertices = 0;            // vertices held to kStiffestPlace
 
   /// What the loop may touch.
   std::size_t memory_bytes() const {
@@ -54,7 +58,7 @@ struct ComplianceFamilyParameters {
 ///
 ///     CF-4   S = s1 a1 a1' + s2 a2 a2',   S_held = S - n n' / (c_disc + r),   n = n1 a1 + n2 a2
 ///
-/// so limited that no direction is more than kStiffest times as stiff as on a half-space. The
+/// so limited that no direction is more than kStiffestPlace times as stiff as on a half-space. The
 /// normals are those of the surface that the map was made of.
 std::vector<AlongTensors> along_give(const ComplianceMap& map, std::span<const Vec3> vertex_normal,
                                      double tip_radius_m);

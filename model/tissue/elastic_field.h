@@ -32,10 +32,6 @@
 
 namespace tact::model::tissue {
 
-/// Of a place, over a half-space: close to the held side an organ is stiffer than its own surface
-/// can show.
-inline constexpr double kStiffest = 3.0;
-
 /// S E of a vertex, 1/m, tangential, in the scene's axes: where it may sink, and where it is held.
 struct AlongTensors {
   Mat3 touching, held;

@@ -27,7 +27,7 @@ PLAIN = {
     "limit", "largest", "size", "median", "lower_quartile", "upper_quartile", "rel", "tolerance", "exact",
     "scale", "best_scale", "difference", "good_residual", "shape_weight", "sum_of_squares", "middle_value",
     "first_strain", "rim_slope", "instructions", "kFacing", "kLargePull", "kMmPerM", "kNPerMN",
-    "kGripHeight", "kMaxObjCoordinate", "kStiffest", "kNonRtForceShare", "kRoundingRoom", "kNothing",
+    "kGripHeight", "kMaxObjCoordinate", "kStiffestPlace", "kNonRtForceShare", "kRoundingRoom", "kNothing",
 }
 
 
