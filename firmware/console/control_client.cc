@@ -30,10 +30,9 @@ int connect_to(const std::string& path) {
   setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &kPatience, sizeof kPatience);
   ucred peer{};
   socklen_t bytes = sizeof peer;
-  const bool good =
-      connect(fd, reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0 &&
-      getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &bytes) == 0 &&
-      (geteuid() == 0 || may_ask(peer.uid));
+  const bool good = connect(fd, model::io::plain(*address), sizeof *address) == 0 &&
+                    getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &bytes) == 0 &&
+                    (geteuid() == 0 || may_ask(peer.uid));
   return good ? fd : (close(fd), -1);
 }
 

@@ -47,10 +47,9 @@ std::vector<ControlName> controls_that_end_in(const std::string& folder, std::st
 bool nobody_listens(const std::string& path) {
   const auto address = model::io::socket_address(path);
   const int probe = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  const bool dead =
-      address && probe >= 0 &&
-      connect(probe, reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0 &&
-      errno == ECONNREFUSED;
+  const bool dead = address && probe >= 0 &&
+                    connect(probe, model::io::plain(*address), sizeof *address) != 0 &&
+                    errno == ECONNREFUSED;
   if (probe >= 0) close(probe);
   return dead;
 }

@@ -39,8 +39,7 @@ bool listen_at(int listener, const std::string& path) {
   const std::string before = path + ".new";
   const auto address = model::io::socket_address(before);
   unlink(before.c_str());
-  return address &&
-         bind(listener, reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0 &&
+  return address && bind(listener, model::io::plain(*address), sizeof *address) == 0 &&
          chmod(before.c_str(), 0600) == 0 && listen(listener, kQueue) == 0 &&
          rename(before.c_str(), path.c_str()) == 0;
 }

@@ -7,8 +7,8 @@
 #include "firmware/console/control_client.h"
 #include "firmware/console/control_name.h"
 #include "firmware/console/say.h"
-#include "firmware/telemetry/telemetry_socket.h"
 #include "model/io/command_line.h"
+#include "model/io/socket_file.h"
 #include "model/io/within.h"
 
 namespace {
@@ -18,7 +18,7 @@ constexpr const char* kServices = "/run/tact";  // RuntimeDirectory of tactd@.se
 /// That of the caller's own tactd, or of the one that runs as a service.
 tact::model::Result<std::string> folder_of(const std::string& scene_path) {
   using tact::firmware::console::find_controls;
-  auto own = tact::firmware::telemetry::runtime_directory();
+  auto own = tact::model::io::runtime_directory();
   const bool is_own = own && !find_controls(*own, scene_path).empty();
   if (!is_own && !find_controls(kServices, scene_path).empty()) return std::string(kServices);
   return own;

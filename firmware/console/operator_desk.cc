@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "firmware/console/control_name.h"
-#include "firmware/telemetry/telemetry_socket.h"
+#include "model/io/socket_file.h"
 
 namespace tact::firmware::console {
 namespace {
@@ -79,7 +79,7 @@ Answer OperatorDesk::refuse(const char* what, const std::string& why) const {
 
 std::unique_ptr<ControlSocket> open_control(const std::string& scene_path,
                                             const OperatorView& view) {
-  const auto folder = telemetry::runtime_directory();
+  const auto folder = model::io::runtime_directory();
   auto control = folder ? ControlSocket::open(control_path(*folder, scene_path, getpid()))
                         : model::Result<std::unique_ptr<ControlSocket>>(folder.error());
   if (control) return std::move(*control);

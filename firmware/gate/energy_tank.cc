@@ -22,7 +22,7 @@ EnergyTank::EnergyTank(const EnergyTankSettings& settings)
       brake_mps_(settings.speed_mps + settings.lever_m * settings.turn_radps),
       level_J_(settings.budget_J) {
   const double m = settings.force_limit_N;
-  // R = u (m^2 / (2 s) + m dt)
+  // GT-2   R = min(u (Fm^2 / (2 s) + Fm dt), B / 2)
   need_J_ = brake_mps_ * m * (0.5 * m / settings.slew_N_per_s + settings.period_s);
   reserve_J_ = std::fmin(need_J_, 0.5 * settings.budget_J);
 }
@@ -41,7 +41,7 @@ void EnergyTank::observe(const model::Tool& tool, bool fresh, double periods,
   const double share = 1.0 / periods_;
   moved_m_ = is_placed_ ? share * (tool.position_m - position_m_) : Vec3{};
   turned_rad_ = is_placed_ ? share * turn_rad(orientation_, tool.orientation) : Vec3{};
-  // E <- min(2 B, E - F . dx - T . da), then back towards B
+  // GT-1   E <- min(2 B, E - F . dx - T . da), then back towards B
   const double budget_J = settings_.budget_J;
   const double given_J = dot(held_.force_N, moved_m_) + dot(held_.torque_Nm, turned_rad_);
   const double left_J = level_J_ - given_J;
@@ -63,7 +63,7 @@ double EnergyTank::allowed_N() const RT_SAFE {
   const double left_J = level_J_ - unseen_J_;
   if (!is_placed_ || !(left_J > 0.0)) return 0.0;
   if (left_J >= need_J_) return settings_.force_limit_N;
-  // m^2 / (2 s) + m dt = E / u, solved for m
+  // GT-3   m^2 / (2 s) + m dt = E / u, solved for m
   const double step_N = settings_.slew_N_per_s * settings_.period_s;
   return std::sqrt(step_N * step_N + 2.0 * settings_.slew_N_per_s * left_J / brake_mps_) - step_N;
 }

@@ -3,10 +3,10 @@
 // domain (Hannaford, Ryu, IEEE T-RA 18 (2002) 1), kept as a tank (Franken et al., IEEE T-RO 27
 // (2011) 741).
 //
-//     observer    E <- min(2 B, E - F . dx - T . da)      F, T held since the sample before
-//                 E <- E + Pr dt                          up to B; E = B at arming
-//     controller  F . dx + T . da <= E - R                foreseen: the motion of the period before
-//     brake       u (m^2 / (2 s) + m dt) <= E             m: largest |F|, and |T| / l
+//     GT-1   observer     E <- min(2 B, E - F . dx - T . da)   F, T held since the sample before
+//                         E <- min(B, E + Pr dt)               where E < B; E = B at arming
+//     GT-2   controller   F . dx + T . da <= E - R             foreseen: the motion before this one
+//     GT-3   brake        u (m^2 / (2 s) + m dt) <= E          m: largest |F|, and |T| / l
 //
 //     E   what may still be given, J        B   budget, J           Pr  what comes back, W
 //     dx  displacement, m                   da  rotation, rad       u   largest speed v + w l, m/s

@@ -12,7 +12,9 @@ namespace {
 constexpr double kStaleFade_s = 0.010;
 constexpr double kWorkspaceFade_s = 0.050;
 constexpr std::int64_t kLostAfter = 20;  // missed samples in a row
-// Room for the tool to speed up while the force falls at its slew.
+// Room for the tool to speed up while the force falls at its slew:
+//
+//     GT-5   power   F . v + T . w <= 3/4 P
 constexpr double kPowerAim = 0.75;
 
 Wrench operator*(double share, const Wrench& w) RT_SAFE {
@@ -204,13 +206,13 @@ void Gate::limit_power(const model::Tool& tool, const Magnitude& most, double pe
     note(Stage::kPower, Fault::kPowerLimited, verdict);
     step_towards(w, periods, most);
   }
-  before_ = w;
+  before_ramp_ = w;
 }
 
 bool Gate::step_towards(Wrench& w, double periods, const Magnitude& most) const RT_SAFE {
-  const bool slow =
-      approach(w.force_N, before_.force_N, force_step_N_, periods * force_step_N_, most.force_N);
-  return approach(w.torque_Nm, before_.torque_Nm, torque_step_Nm_, periods * torque_step_Nm_,
+  const bool slow = approach(w.force_N, before_ramp_.force_N, force_step_N_,
+                             periods * force_step_N_, most.force_N);
+  return approach(w.torque_Nm, before_ramp_.torque_Nm, torque_step_Nm_, periods * torque_step_Nm_,
                   most.torque_Nm) ||
          slow;
 }
@@ -228,7 +230,7 @@ void Gate::check_power(const model::Tool& tool, GateVerdict& verdict) RT_SAFE {
 
 // Zero now: what comes after starts from zero and ramps up again.
 GateVerdict Gate::without_force(GateVerdict verdict) RT_SAFE {
-  before_ = {};
+  before_ramp_ = {};
   ramp_.set(0.0);
   written_ = {};
   verdict.wrench = {};

@@ -7,10 +7,10 @@
 //              does the largest that is allowed; 20 latch
 //   armed      zero unless the supervisor says armed
 //   workspace  outside the permitted cylinder, or faster than permitted, it fades to zero in 50 ms
-//   passivity  gives no more energy than it took and has a budget for (energy_tank.h)
-//   magnitude  |F| and |T| as vectors: peak, and RMS over a time (thermal_limit.h)
+//   passivity  gives no more energy than it took and has a budget for (GT-1 to GT-3)
+//   magnitude  |F| and |T| as vectors: peak, and RMS over a time (GT-4)
 //   slew       |dF| and |dT| in the time since the last write
-//   power      F . v + T . w
+//   power      F . v + T . w (GT-5)
 //   ramp       fades in after arming
 //
 // Two checks that latch run elsewhere than their stage: overdrawn energy (passivity) before armed,
@@ -131,7 +131,7 @@ class Gate {
   EnergyTank tank_;
   ThermalLimit warm_force_, warm_torque_;
   std::int64_t missed_ = 0;  // samples in a row, one a period
-  Wrench before_;            // after power, before ramp
+  Wrench before_ramp_;       // after power, before ramp
   Wrench written_;
   std::array<std::uint64_t, kStageCount> counter_{};
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // thermal_limit.h - motors bear their peak for a while and their continuous force for ever.
 //
-//     dh/dt = (F^2 - h) / tau              h: square of the RMS of the force, first order
-//     A^2   = Fc^2 + kappa (Fc^2 - h)      allowed, at most Fp^2;  kappa = 2 (Fp^2 / Fc^2 - 1)
+//     GT-4   heat   dh/dt = (F^2 - h) / tau   h: square of the RMS of the force, first order
+//                   A^2 = min(Fc^2 + kappa max(Fc^2 - h, 0), Fp^2),   kappa = 2 (Fp^2 / Fc^2 - 1)
 //
 //     F    written force, N    Fp  peak, N    Fc  continuous, N, <= Fp    tau  time constant, s
 //

@@ -2,7 +2,7 @@
 // tact-guardian: zeroes the device of a tactd that has died. Started by it, never by a person.
 #include <unistd.h>
 
-#include "firmware/guardian/duty.h"
+#include "firmware/guardian/guardian_process.h"
 #include "firmware/guardian/orders.h"
 
 // Nothing runs after the duty: the filter would refuse what a library does at an exit.

@@ -61,8 +61,6 @@ class SimulatedClock final : public Clock {
   void sleep_until_ns(std::int64_t deadline_ns) RT_SAFE override {
     if (deadline_ns > now_ns_) now_ns_ = deadline_ns;
   }
-  /// A tick that takes long: for tests of late ticks.
-  void pass_ns(std::int64_t duration_ns) RT_SAFE { now_ns_ += duration_ns; }
 
  private:
   std::int64_t now_ns_ = 0;

@@ -29,10 +29,10 @@ void Controller::tell_shape() RT_SAFE {
 }
 
 // The device's own word counts first, then what the samples, the law and the clock tell.
-Fault Controller::find_fault(const TickInput& input, bool too_late) const RT_SAFE {
+Fault Controller::find_fault(const TickInput& input, bool finite, bool too_late) const RT_SAFE {
   if (latches(input.device_fault)) return input.device_fault;
-  if (!is_finite(input.sample.tool)) return Fault::kSampleNotFinite;
-  if (law_.broke()) return Fault::kLawBroke;
+  if (!finite) return Fault::kSampleNotFinite;
+  if (contact_.law_broke()) return Fault::kLawBroke;
   if (too_late && supervisor_.armed()) return Fault::kLoopLate;
   return Fault::kNone;
 }
@@ -40,7 +40,7 @@ Fault Controller::find_fault(const TickInput& input, bool too_late) const RT_SAF
 TickOutput Controller::judge(const TickInput& input) RT_SAFE {
   const bool finite = is_finite(input.sample.tool);
   const bool too_late = late_watch_.step(input.skipped_periods);
-  const Fault fault = find_fault(input, too_late);
+  const Fault fault = find_fault(input, finite, too_late);
   const bool armed_before = supervisor_.armed();
   supervisor_.step(
       input.commands,

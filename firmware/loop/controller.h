@@ -40,7 +40,7 @@ class Controller {
  public:
   /// Without hard real time the late watch bears single stalls.
   Controller(const model::contact::ContactScene& scene, const gate::Gate& gate, bool hard_real_time)
-      : law_(*scene.law), contact_(scene), gate_(gate), late_watch_(hard_real_time) {}
+      : contact_(scene), gate_(gate), late_watch_(hard_real_time) {}
 
   void touch(const TickInput& input) RT_SAFE;
   void feel(const TickInput& input) RT_SAFE;
@@ -65,9 +65,8 @@ class Controller {
   const TickOutput& newest() const { return newest_; }
 
  private:
-  Fault find_fault(const TickInput& input, bool too_late) const RT_SAFE;
+  Fault find_fault(const TickInput& input, bool finite, bool too_late) const RT_SAFE;
 
-  const model::contact::SiteLaw& law_;
   model::contact::Contact contact_;
   gate::Gate gate_;
   LateWatch late_watch_;

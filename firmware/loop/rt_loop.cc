@@ -47,7 +47,7 @@ void RtLoop::release_device() RT_SAFE {
 }
 
 // Every second tick, as only an edge arms.
-bool RtLoop::asks_itself() const RT_SAFE {
+bool RtLoop::arms_at_start() const RT_SAFE {
   return requests_.arm_at_start.load(std::memory_order_relaxed) &&
          record_.output.state == State::kReady && !record_.input.commands.arm;
 }
@@ -110,46 +110,46 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   lines_.scope(true);
   record_.tick = statistics_.ticks++;
   record_.due_ns = due_ns;
-  keep(Phase::kWake, wake_ns - due_ns);
+  record_phase(Phase::kWake, wake_ns - due_ns);
 
   TickInput& input = record_.input;
   const bool asked_before = std::exchange(asked_, requests_.arm.load(std::memory_order_relaxed));
-  input.commands = {.arm = asked_ || asks_itself(),
+  input.commands = {.arm = asked_ || arms_at_start(),
                     .stop = requests_.stop.load(std::memory_order_relaxed),
                     .reset = requests_.reset.load(std::memory_order_relaxed)};
   input.device_fault = read(wake_ns);
   input.ready = lines_.enabled() && device_.ready();
-  const std::int64_t read_ns = later_ns();
-  keep(Phase::kRead, read_ns - wake_ns);
+  const std::int64_t read_ns = marked_ns();
+  record_phase(Phase::kRead, read_ns - wake_ns);
 
   controller_.touch(input);
-  const std::int64_t touched_ns = later_ns();
-  keep(Phase::kTouch, touched_ns - read_ns);
+  const std::int64_t touched_ns = marked_ns();
+  record_phase(Phase::kTouch, touched_ns - read_ns);
 
   controller_.feel(input);
-  const std::int64_t felt_ns = later_ns();
-  keep(Phase::kFeel, felt_ns - touched_ns);
+  const std::int64_t felt_ns = marked_ns();
+  record_phase(Phase::kFeel, felt_ns - touched_ns);
 
   record_.output = controller_.judge(input);
   if (asked_ && !asked_before && record_.output.state != State::kArmed)
     requests_.refused.fetch_add(1, std::memory_order_relaxed);
   if (record_.output.state == State::kArmed || record_.output.state == State::kStopped)
     requests_.arm_at_start.store(false, std::memory_order_relaxed);
-  const std::int64_t judged_ns = later_ns();
-  keep(Phase::kJudge, judged_ns - felt_ns);
+  const std::int64_t judged_ns = marked_ns();
+  record_phase(Phase::kJudge, judged_ns - felt_ns);
 
   write();
   lines_.scope(false);
-  const std::int64_t written_ns = later_ns();
-  keep(Phase::kWrite, written_ns - judged_ns);
+  const std::int64_t written_ns = marked_ns();
+  record_phase(Phase::kWrite, written_ns - judged_ns);
   const bool stopped = record_.output.state == State::kStopped;  // a stop is timed by the clock
   stop_watch_.step(input, record_.output, wake_ns, stopped ? clock_.now_ns() : written_ns);
   statistics_.stop = stop_watch_.times();
 
   tell();
-  const std::int64_t end_ns = later_ns();
-  keep(Phase::kTell, end_ns - written_ns);
-  keep(Phase::kTotal, end_ns - wake_ns);
+  const std::int64_t end_ns = marked_ns();
+  record_phase(Phase::kTell, end_ns - written_ns);
+  record_phase(Phase::kTotal, end_ns - wake_ns);
 }
 
 std::int64_t RtLoop::now_ns() RT_SAFE {
@@ -158,7 +158,7 @@ std::int64_t RtLoop::now_ns() RT_SAFE {
   return now_ns;
 }
 
-void RtLoop::keep(Phase phase, std::int64_t duration_ns) RT_SAFE {
+void RtLoop::record_phase(Phase phase, std::int64_t duration_ns) RT_SAFE {
   const auto i = static_cast<std::size_t>(phase);
   statistics_.phase[i].record(duration_ns, record_.tick);
   constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();

@@ -83,14 +83,14 @@ class RtLoop {
 
  private:
   void cycle(std::int64_t due_ns) RT_SAFE;
-  bool asks_itself() const RT_SAFE;
+  bool arms_at_start() const RT_SAFE;
   Fault read(std::int64_t now_ns) RT_SAFE;
   void write() RT_SAFE;
   void tell() RT_SAFE;
-  /// Reads the clock; later_ns() the time since then by marks, for phases alone.
+  /// Reads the clock; marked_ns() the time since then by marks, for phases alone.
   std::int64_t now_ns() RT_SAFE;
-  std::int64_t later_ns() RT_SAFE { return marked_.at_ns(clock_.mark()); }
-  void keep(Phase phase, std::int64_t duration_ns) RT_SAFE;
+  std::int64_t marked_ns() RT_SAFE { return marked_.at_ns(clock_.mark()); }
+  void record_phase(Phase phase, std::int64_t duration_ns) RT_SAFE;
 
   LoopSettings settings_;
   hal::Device& device_;

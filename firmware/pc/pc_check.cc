@@ -35,7 +35,7 @@ std::vector<PcRow> check_pc(const PcQuestion& question) {
   check_kernel(settled, rows);
   check_permissions(settled, rows);
   check_core(settled, rows);
-  check_neighbours(settled, rows);
+  check_others(settled, rows);
   for (PcRow& row : rows)
     if (row.verdict == Verdict::kGreen) row.cure.clear();
   return rows;

@@ -51,6 +51,6 @@ nlohmann::json to_json(const std::vector<PcRow>& rows);
 void check_kernel(const PcQuestion& question, std::vector<PcRow>& rows);
 void check_permissions(const PcQuestion& question, std::vector<PcRow>& rows);
 void check_core(const PcQuestion& question, std::vector<PcRow>& rows);
-void check_neighbours(const PcQuestion& question, std::vector<PcRow>& rows);
+void check_others(const PcQuestion& question, std::vector<PcRow>& rows);
 
 }  // namespace tact::firmware::pc

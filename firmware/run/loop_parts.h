@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // loop_parts.h - everything that a tick touches, opened and checked in the order in which it comes
-// to life, and the thread it runs in. Set-up code: `tactd`, `tact-jitter` and `tact-limits` run the
-// same loop.
+// to life. Set-up code: `tactd`, `tact-jitter` and `tact-limits` run the same loop, in a thread of
+// loop_thread.h.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "firmware/guardian/guardian.h"
 #include "firmware/loop/controller.h"
@@ -16,7 +14,6 @@
 #include "firmware/pc/rt_setup.h"
 #include "firmware/run/stiffness_check.h"
 #include "firmware/run/tick_budget.h"
-#include "firmware/watch/call_filter.h"
 #include "hal/registry/open_device.h"
 #include "hal/safety_lines.h"
 #include "model/scene/scene.h"
@@ -54,22 +51,5 @@ model::Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const
 /// The process that zeroes this device if its program dies; null: the device has no last words.
 model::Result<std::unique_ptr<guardian::Guardian>> start_guardian(hal::Device& device,
                                                                   const pc::RtSettings& rt);
-
-/// Kernel's and allocator's view of the loop's thread between its first and its last tick.
-struct ThreadCosts {
-  std::uint64_t heap_calls = 0;
-  bool heap_calls_known = false;
-  bool call_filter = false;  // was on
-  long minor_faults = 0, major_faults = 0;
-  long voluntary_switches = 0, involuntary_switches = 0;
-};
-
-/// Of several runs together.
-void add_to(ThreadCosts& sum, const ThreadCosts& more);
-
-/// Runs `loop` as the loop's thread, which this one becomes and then leaves again; behind the
-/// filter, if there is one, which stays with the thread to its end.
-ThreadCosts run_as_loop_thread(const pc::RtSettings& settings, const std::function<void()>& loop,
-                               watch::CallFilter* filter = nullptr);
 
 }  // namespace tact::firmware::run

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <csignal>
 
-#include "firmware/run/loop_parts.h"
+#include "firmware/run/loop_thread.h"
 
 namespace tact::firmware::run {
 namespace {

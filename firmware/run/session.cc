@@ -15,6 +15,7 @@
 #include "firmware/loop/grid.h"
 #include "firmware/run/inertia_note.h"
 #include "firmware/run/loop_parts.h"
+#include "firmware/run/loop_thread.h"
 #include "firmware/run/loop_threads.h"
 #include "firmware/run/real_time.h"
 #include "firmware/run/report.h"

@@ -38,8 +38,8 @@ double stiffest_sideways_N_per_m(const model::scene::Scene& scene,
   for (std::uint32_t t = 0; t < scene.organ_mesh.triangle.size(); ++t)
     for (const model::contact::ProbeSphere& sphere : scene.tool.spheres) {
       const double give_m_per_N =
-          law.give_along({.triangle = t, .weight = {1.0, 0.0, 0.0}}, true,
-                         model::contact::axes_of(scene.organ_mesh.face_normal[t]))
+          law.tangent_give({.triangle = t, .weight = {1.0, 0.0, 0.0}}, true,
+                           model::contact::axes_of(scene.organ_mesh.face_normal[t]))
               .at(sphere.radius_m)
               .least_eigenvalue();
       if (give_m_per_N > 0.0) most_N_per_m = std::max(most_N_per_m, 1.0 / give_m_per_N);

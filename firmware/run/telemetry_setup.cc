@@ -18,7 +18,7 @@ using model::Result;
 
 Result<std::string> socket_path(const RunSetup& run) {
   if (!run.options.socket_path.empty()) return run.options.socket_path;
-  auto directory = telemetry::runtime_directory();
+  auto directory = model::io::runtime_directory();
   if (!directory) return directory.error();
   return *directory + "/telemetry.sock";
 }

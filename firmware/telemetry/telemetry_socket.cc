@@ -4,12 +4,10 @@
 #include <fmt/format.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <utility>
 
@@ -25,15 +23,12 @@ Error failed(const std::string& what, const std::string& cure) {
   return Error{fmt::format("{}: {}; {}", what, std::strerror(errno), cure)};
 }
 
-const sockaddr* plain(const sockaddr_un& address) {
-  return reinterpret_cast<const sockaddr*>(&address);
-}
-
 // A file of a dead tactd is replaced; a living one is not disturbed.
 bool somebody_listens(const sockaddr_un& address) {
   const int probe = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  const bool alive = probe >= 0 && (connect(probe, plain(address), sizeof address) == 0 ||
-                                    errno == EAGAIN);  // alive, with a full queue
+  const bool alive =
+      probe >= 0 && (connect(probe, model::io::plain(address), sizeof address) == 0 ||
+                     errno == EAGAIN);  // alive, with a full queue
   if (probe >= 0) close(probe);
   return alive;
 }
@@ -45,21 +40,6 @@ bool is_socket(const std::string& path) {
 
 }  // namespace
 
-Result<std::string> runtime_directory() {
-  const char* base = std::getenv("XDG_RUNTIME_DIR");
-  const std::string path = base != nullptr && *base != '\0' ? std::string(base) + "/tact"
-                                                            : fmt::format("/tmp/tact-{}", getuid());
-  if (mkdir(path.c_str(), 0700) != 0 && errno != EEXIST)
-    return failed(path, "set XDG_RUNTIME_DIR to a folder of yours");
-  struct stat info{};
-  if (lstat(path.c_str(), &info) != 0 || !S_ISDIR(info.st_mode) || info.st_uid != getuid() ||
-      (info.st_mode & 027) != 0)
-    return Error{path +
-                 ": is not a folder that only you can write to and no stranger can open; remove it "
-                 "and start again"};
-  return path;
-}
-
 Result<TelemetrySocket> TelemetrySocket::open(const std::string& path, const Hello& hello,
                                               int mesh_fd, std::optional<gid_t> viewers) {
   const auto address = model::io::socket_address(path);
@@ -70,7 +50,7 @@ Result<TelemetrySocket> TelemetrySocket::open(const std::string& path, const Hel
   if (is_socket(path)) unlink(path.c_str());
   const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   const mode_t before = umask(0177);  // 0600 from the first moment
-  const bool bound = fd >= 0 && bind(fd, plain(*address), sizeof *address) == 0;
+  const bool bound = fd >= 0 && bind(fd, model::io::plain(*address), sizeof *address) == 0;
   umask(before);
   if (!bound || listen(fd, 8) != 0) {
     const Error error = failed(path, "choose a folder that you may write to with --socket");

@@ -18,10 +18,6 @@
 
 namespace tact::firmware::telemetry {
 
-/// $XDG_RUNTIME_DIR/tact, or /tmp/tact-<uid>: made with permissions 0700. Refused if it is not
-/// ours, or open to more than the looks of a group, as the service has it (0750).
-model::Result<std::string> runtime_directory();
-
 class TelemetrySocket {
  public:
   /// Listens at `path`, for the members of the group `viewers` too. An error if another tactd does

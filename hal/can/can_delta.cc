@@ -22,23 +22,14 @@ constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 constexpr double kStopSlack_rad = 2_deg;  // stops give, encoders are not exact
 constexpr double kJump_m = 5e-3;          // between two samples: a new start of the velocity
 constexpr std::int64_t kLongGap_ns = 20'000'000;
-constexpr Vec3 kGravity_W_mps2{0.0, 0.0, -9.81};
 
 delta::Joints joints_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-/// The middle and the edges of the workspace cylinder.
-std::vector<Vec3> corners_D(const CanDelta& delta, const model::DeltaSettings& settings) {
-  std::vector<Vec3> corners{delta.point_D({})};
-  const double half_m = settings.workspace_half_length_m, radius_m = settings.workspace_radius_m;
-  for (const double x_m : {-half_m, half_m}) {
-    corners.push_back(delta.point_D({x_m, 0.0, 0.0}));
-    for (int i = 0; i < 12; ++i) {
-      const double angle_rad = i * std::numbers::pi / 6.0;
-      corners.push_back(
-          delta.point_D({x_m, radius_m * std::cos(angle_rad), radius_m * std::sin(angle_rad)}));
-    }
-  }
-  return corners;
+std::vector<Vec3> samples_D(const CanDelta& delta, const model::DeltaSettings& settings) {
+  std::vector<Vec3> samples =
+      delta::workspace_samples_W(settings.workspace_radius_m, settings.workspace_half_length_m);
+  for (Vec3& p : samples) p = delta.point_D(p);
+  return samples;
 }
 
 double in_deg(double angle_rad) { return angle_rad * 360.0 / kTurn_rad; }
@@ -136,7 +127,8 @@ delta::Joints CanDelta::motor_torques_Nm(const Vec3& force_N, double ratio) cons
   if (!has_pose_) return torque_Nm;
   const Vec3 force = is_finite(force_N) ? saturated(force_N, settings_.max_force_N) : Vec3{};
   // tau = tau_g + s J^T F, one s for all joints
-  torque_Nm = gravity_torques_Nm(delta_.geometry(), masses_, pose_, direction_D(kGravity_W_mps2));
+  torque_Nm =
+      gravity_torques_Nm(delta_.geometry(), masses_, pose_, direction_D(delta::kGravity_W_mps2));
   const delta::Joints wanted_Nm = joint_torques_Nm(pose_, direction_D(force));
   const double within =
       delta::saturation_ratio(torque_Nm, wanted_Nm, settings_.max_joint_torque_Nm);
@@ -159,7 +151,7 @@ DeviceInfo CanDelta::info(std::string name, double counts_per_turn, double delay
                                     .coulomb_Nm = settings_.joint_friction_Nm,
                                     .counts_per_turn = counts_per_turn,
                                     .delay_s = delay_s},
-                                   corners_D(*this, settings_)),
+                                   samples_D(*this, settings_)),
           .damping_key = "device.delta.joint_damping_Nms_per_rad"};
 }
 

@@ -61,7 +61,7 @@ class CanDevice final : public Device {
     if (bus_->fault() != Fault::kNone) loop_.latch.set(bus_->cause());
     if (loop_.power == CanPower::kStopped) return fault();
     watch();
-    drives_.follow(loop_);
+    drives_.update_power(loop_);
     Tool tool;
     std::int64_t stamp_ns = 0;
     const bool measured = fault() == Fault::kNone && measure(tool, stamp_ns);

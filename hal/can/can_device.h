@@ -95,7 +95,7 @@ class CanDrives {
                     std::int64_t arrival_ns) RT_SAFE = 0;
   /// Once all frames are taken: starting becomes ready; a drive that does not start, or lets go, is
   /// a fault.
-  virtual void follow(CanLoop& loop) RT_SAFE = 0;
+  virtual void update_power(CanLoop& loop) RT_SAFE = 0;
   /// All frames of a tick, for these torques at the motors; power is off, starting or ready.
   virtual void push(CanLoop& loop, const delta::Joints& torque_Nm) RT_SAFE = 0;
   /// The frames that stop all three after a fault.

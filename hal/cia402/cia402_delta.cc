@@ -91,7 +91,7 @@ class Cia402s final : public can::CanDrives {
     return true;
   }
 
-  void follow(CanLoop& loop) RT_SAFE override {
+  void update_power(CanLoop& loop) RT_SAFE override {
     if (loop.power == CanPower::kStarting && all_enabled(loop)) loop.power = CanPower::kReady;
     for (std::size_t i = 0; i < 3; ++i) {
       const Axis& axis = axes_[i];

@@ -2,9 +2,22 @@
 #include "hal/delta/delta_at_tool.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace tact::hal::delta {
+
+std::vector<Vec3> workspace_samples_W(double radius_m, double half_length_m) {
+  std::vector<Vec3> samples{Vec3{}};
+  for (const double x_m : {-half_length_m, half_length_m}) {
+    samples.push_back({x_m, 0.0, 0.0});
+    for (int i = 0; i < 12; ++i) {
+      const double angle_rad = i * std::numbers::pi / 6.0;
+      samples.push_back({x_m, radius_m * std::cos(angle_rad), radius_m * std::sin(angle_rad)});
+    }
+  }
+  return samples;
+}
 
 model::DeviceAtTool delta_at_tool(const DeltaKinematics& delta, const DeltaJointQuality& joint,
                                   std::span<const Vec3> positions_m) {

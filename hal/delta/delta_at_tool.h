@@ -8,6 +8,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "hal/delta/delta_kinematics.h"
 #include "model/device_at_tool.h"
@@ -20,6 +21,9 @@ struct DeltaJointQuality {
   double counts_per_turn = 0.0;
   double delay_s = 0.0;  // from position to force, beyond one hold
 };
+
+/// The middle and the edges of a workspace cylinder along W x, in frame W.
+std::vector<Vec3> workspace_samples_W(double radius_m, double half_length_m);
 
 /// Positions in frame D; those out of reach are not looked at.
 model::DeviceAtTool delta_at_tool(const DeltaKinematics& delta, const DeltaJointQuality& joint,

@@ -16,6 +16,8 @@
 
 namespace tact::hal::delta {
 
+inline constexpr Vec3 kGravity_W_mps2{0.0, 0.0, -9.81};
+
 struct DeltaMasses {
   double arm_kg = 0.0;
   double arm_com_m = 0.0;         // from the shoulder

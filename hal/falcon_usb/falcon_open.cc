@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "hal/falcon_usb/falcon_usb.h"
+#include "hal/falcon_usb/falcon_wake.h"
 #include "hal/falcon_usb/libusb_pipe.h"
 #include "hal/falcon_usb/usbfs_pipe.h"
 

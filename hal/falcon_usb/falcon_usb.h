@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// falcon_usb.h - finding, claiming and waking a Falcon through libusb. Set-up code only.
+// falcon_usb.h - finding and claiming a Falcon through libusb. Set-up code only.
 //
 // Every failure is one sentence with the cure. Source: libusb 1.0 API reference,
 // libusb.sourceforge.io/api-1.0.
@@ -53,15 +53,5 @@ class FalconUsb {
   std::string bus_path_, node_;
   std::array<std::uint8_t, falcon::kFtdiPacketSize> buffer_{};
 };
-
-/// The file's bytes if they may be sent; an empty path gives none.
-model::Result<std::vector<std::uint8_t>> load_falcon_image(const std::string& path,
-                                                           std::string_view wanted_sha256);
-
-/// Wakes it until it answers at full speed, and sets its USB chip up; at most 20 s. `usb` may be
-/// opened again on the way.
-model::Result<falcon::FalconBoot> boot_falcon(std::unique_ptr<FalconUsb>& usb,
-                                              std::span<const std::uint8_t> image,
-                                              bool event_character);
 
 }  // namespace tact::hal::falcon_usb

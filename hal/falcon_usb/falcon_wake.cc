@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// falcon_wake.cc - falcon_boot's decisions carried out over libusb, and the firmware file read.
+#include "hal/falcon_usb/falcon_wake.h"
+
 #include <fmt/core.h>
 
-#include <cerrno>
-#include <cstring>
-#include <iterator>
+#include <array>
+#include <utility>
 
 #include "hal/falcon_usb/falcon_image.h"
-#include "hal/falcon_usb/falcon_usb.h"
 #include "hal/monotonic.h"
 #include "model/io/input_file.h"
 

@@ -77,7 +77,7 @@ class Odrives final : public can::CanDrives {
     return true;
   }
 
-  void follow(CanLoop& loop) RT_SAFE override {
+  void update_power(CanLoop& loop) RT_SAFE override {
     if (loop.power == CanPower::kStarting && loop.asked_ns != 0 && all_in_closed_loop(loop))
       loop.power = CanPower::kReady;
     for (std::size_t i = 0; i < 3; ++i) {

@@ -21,9 +21,7 @@ enum class OdriveCommand : std::uint8_t {
   kGetVersion = 0x00,  // 0.6
   kHeartbeat = 0x01,
   kEstop = 0x02,
-  kGetError = 0x03,              // 0.5: of the motor alone, 64 bits
-  kGetEncoderError05 = 0x04,     // 0.5
-  kGetSensorlessError05 = 0x05,  // 0.5
+  kGetError = 0x03,  // 0.5: of the motor alone, 64 bits
   kSetAxisState = 0x07,
   kGetEncoderEstimates = 0x09,
   kGetEncoderCount05 = 0x0A,  // 0.5
@@ -36,9 +34,8 @@ enum class OdriveCommand : std::uint8_t {
   kGetTemperature = 0x15,  // 0.6; another thing in 0.5
   kGetBusVoltageCurrent = 0x17,
   kClearErrors = 0x18,
-  kGetTorques = 0x1C,            // 0.6; another thing in 0.5
-  kGetControllerError05 = 0x1D,  // 0.5
-  kGetPowers = 0x1D,             // 0.6
+  kGetTorques = 0x1C,  // 0.6; another thing in 0.5
+  kGetPowers = 0x1D,   // 0.6
 };
 
 enum class OdriveAxisState : std::uint32_t {
@@ -49,7 +46,7 @@ enum class OdriveAxisState : std::uint32_t {
   kHoming = 11,
 };
 enum class OdriveControlMode : std::uint32_t { kVoltage, kTorque, kVelocity, kPosition };
-enum class OdriveInputMode : std::uint32_t { kInactive = 0, kPassThrough = 1, kTorqueRamp = 6 };
+enum class OdriveInputMode : std::uint32_t { kPassThrough = 1 };
 
 inline constexpr int kOdriveLargestNode = 63;
 

@@ -50,7 +50,7 @@ void DeltaPlant::step(double dt_s, const delta::Joints& motor_Nm, const HandPull
   const model::Mat3 mass_kg =
       task_inertia_kg(kGeometry, kMasses, pose) + model::diagonal(hand.mass_kg);
   const delta::Joints gravity_Nm =
-      gravity_torques_Nm(kGeometry, kMasses, pose, direction_D(kGravity_W_mps2));
+      gravity_torques_Nm(kGeometry, kMasses, pose, direction_D(delta::kGravity_W_mps2));
   const delta::Joints drift = joint_drift_radps2(pose, velocity_mps_);
   // K^T (tau - tau_g - I dK/dt v)
   const auto torque_Nm = [&](std::size_t i) RT_SAFE {
@@ -141,7 +141,7 @@ double DeltaPlant::energy_J() const RT_SAFE {
   const delta::DeltaPose pose = delta_.pose(position_m_, theta_rad_);
   const model::Vec3 momentum_Ns = task_inertia_kg(kGeometry, kMasses, pose) * velocity_mps_;
   return 0.5 * dot(velocity_mps_, momentum_Ns) +
-         gravity_energy_J(kGeometry, kMasses, pose, direction_D(kGravity_W_mps2));
+         gravity_energy_J(kGeometry, kMasses, pose, direction_D(delta::kGravity_W_mps2));
 }
 
 }  // namespace tact::hal::sim

@@ -5,7 +5,6 @@
 #include <signal.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -26,10 +25,6 @@ Error system_error(const std::string& path, const char* what) {
                       std::strerror(errno))};
 }
 
-const sockaddr* plain(const sockaddr_un& address) {
-  return reinterpret_cast<const sockaddr*>(&address);
-}
-
 /// Removes the socket file of a process that is gone; refuses anything else that is in the way.
 Result<bool> clear_the_way(const std::string& path, const sockaddr_un& address) {
   struct stat status{};
@@ -40,7 +35,7 @@ Result<bool> clear_the_way(const std::string& path, const sockaddr_un& address) 
   if (!S_ISSOCK(status.st_mode))
     return Error{fmt::format("{}: is a file, not a socket; choose another name", path)};
   const int probe = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  const bool alive = probe >= 0 && connect(probe, plain(address), sizeof address) == 0;
+  const bool alive = probe >= 0 && connect(probe, model::io::plain(address), sizeof address) == 0;
   if (probe >= 0) close(probe);
   if (alive) {
     return Error{
@@ -69,7 +64,8 @@ Result<std::unique_ptr<HandSocket>> HandSocket::start(const std::string& path,
   if (descriptor < 0) return system_error(path, "cannot make a socket");
   // The mode of the file is that of the descriptor when it is bound: at no time is it open to
   // others.
-  if (fchmod(descriptor, 0600) != 0 || bind(descriptor, plain(*address), sizeof *address) != 0) {
+  if (fchmod(descriptor, 0600) != 0 ||
+      bind(descriptor, model::io::plain(*address), sizeof *address) != 0) {
     const Error error = system_error(path, "cannot listen");
     close(descriptor);
     return error;

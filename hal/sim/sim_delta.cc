@@ -28,18 +28,11 @@ double counted_rad(double angle_rad, double counts_per_turn) RT_SAFE {
   return std::floor(angle_rad / rad_per_count + 0.5) * rad_per_count;
 }
 
-/// The middle and the edges of the workspace cylinder.
-std::vector<Vec3> corners_D() {
-  std::vector<Vec3> corners{point_D({})};
-  for (const double x_m : {-kWorkspaceHalfLength_m, kWorkspaceHalfLength_m}) {
-    corners.push_back(point_D({x_m, 0.0, 0.0}));
-    for (int i = 0; i < 12; ++i) {
-      const double angle_rad = i * std::numbers::pi / 6.0;
-      corners.push_back(point_D({x_m, kWorkspaceRadius_m * std::cos(angle_rad),
-                                 kWorkspaceRadius_m * std::sin(angle_rad)}));
-    }
-  }
-  return corners;
+std::vector<Vec3> samples_D() {
+  std::vector<Vec3> samples =
+      delta::workspace_samples_W(kWorkspaceRadius_m, kWorkspaceHalfLength_m);
+  for (Vec3& p : samples) p = point_D(p);
+  return samples;
 }
 
 /// The nearest point of the workspace cylinder.
@@ -66,7 +59,8 @@ SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::HandSett
   history_.fill(state_now());  // at rest here since before the start
   history_[kHistory - 1].time_s = -2.0 * kMostDelay_s;
   measured_ = delta_.pose(plant_.position_m(), plant_.theta_rad());
-  motor_Nm_ = gravity_torques_Nm(kGeometry, kMasses, measured_, direction_D(kGravity_W_mps2));
+  motor_Nm_ =
+      gravity_torques_Nm(kGeometry, kMasses, measured_, direction_D(delta::kGravity_W_mps2));
 }
 
 DeviceInfo SimDelta::info() const {
@@ -80,7 +74,7 @@ DeviceInfo SimDelta::info() const {
                                     .coulomb_Nm = settings_.joint_friction_Nm,
                                     .counts_per_turn = settings_.counts_per_turn,
                                     .delay_s = settings_.sample_delay_s},
-                                   corners_D()),
+                                   samples_D()),
           .damping_key = "device.sim.joint_damping_Nms_per_rad"};
 }
 
@@ -142,7 +136,8 @@ Fault SimDelta::write(const Wrench& wrench) RT_SAFE {
                                         saturated(wrench.torque_Nm, kMaxTorque_Nm)}
                                : Wrench{};
   // tau = tau_g + s J^T F, one s for all joints
-  motor_Nm_ = gravity_torques_Nm(kGeometry, kMasses, measured_, direction_D(kGravity_W_mps2));
+  motor_Nm_ =
+      gravity_torques_Nm(kGeometry, kMasses, measured_, direction_D(delta::kGravity_W_mps2));
   const delta::Joints wanted_Nm = joint_torques_Nm(measured_, direction_D(limited.force_N));
   const double ratio = delta::saturation_ratio(motor_Nm_, wanted_Nm, kMaxJointTorque_Nm);
   for (std::size_t i = 0; i < 3; ++i) motor_Nm_[i] += ratio * wanted_Nm[i];

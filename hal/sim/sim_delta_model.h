@@ -47,7 +47,6 @@ inline constexpr double kMaxTorque_Nm = 0.2;
 /// 5.82 N m make 20 N anywhere, 1.23 N m hold the arms: 7.05, and a little for the worst corner.
 inline constexpr double kMaxJointTorque_Nm = 7.4;
 inline constexpr double kMiddle_D_m = 345_mm;
-inline constexpr model::Vec3 kGravity_W_mps2{0.0, 0.0, -9.81};
 
 /// Directions: forces, velocities. The matrix is its own inverse, but the names say which way.
 constexpr model::Vec3 direction_W(const model::Vec3& v_D) RT_SAFE { return {v_D.z, -v_D.y, v_D.x}; }

@@ -107,7 +107,7 @@ void TelemetryClient::connect() {
     return lose(shared->sentence);
   const int fd = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (fd < 0) return lose(fmt::format("no socket: {}", std::strerror(errno)));
-  if (::connect(fd, reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0) {
+  if (::connect(fd, model::io::plain(*address), sizeof *address) != 0) {
     const int why = errno;
     ::close(fd);
     // Nobody there is the normal case before tactd starts: no reason to give.
@@ -239,7 +239,7 @@ void TelemetryClient::move_hand(const double (&position_m)[3], double grip_ratio
   target.grip_ratio = grip_ratio;
   // A full or missing socket drops the target: the next one is 16 ms away.
   (void)::sendto(hand_socket_, &target, sizeof target, MSG_DONTWAIT | MSG_NOSIGNAL,
-                 reinterpret_cast<const sockaddr*>(&*address), sizeof *address);
+                 model::io::plain(*address), sizeof *address);
 }
 
 }  // namespace tact::host::run

@@ -34,7 +34,7 @@ void Contact::reset() RT_SAFE {
   shear_ = {};
   shift_m_ = shear_N_ = {};
   closed_ = closing_ = false;
-  before_.reset();
+  blade_tool_before_.reset();
 }
 
 void Contact::touch(const Tool& tool) RT_SAFE {
@@ -71,10 +71,10 @@ Wrench Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
   watch_grip(tool.grip_ratio);
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
     if (probe_[i].seen) find_depth(i);
-  couple();
+  couple_new_spheres();
   keep_definite();
   press();
-  for (std::size_t i = 0; i < scene_.spheres.size() && release(); ++i) {
+  for (std::size_t i = 0; i < scene_.spheres.size() && release_first(); ++i) {
   }
   if (closing_ && hold()) press();
   stiffen();
@@ -93,8 +93,9 @@ Wrench Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
 
 void Contact::use_blade(const Tool& tool, bool may_cut) RT_SAFE {
   if (!scene_.blade) return;
-  if (may_cut && before_) scene_.law->cut(sweep(*scene_.blade, *before_, tool));
-  before_ = tool;
+  if (may_cut && blade_tool_before_)
+    scene_.law->cut(sweep(*scene_.blade, *blade_tool_before_, tool));
+  blade_tool_before_ = tool;
 }
 
 void Contact::leave(std::size_t i) RT_SAFE {
@@ -117,7 +118,7 @@ void Contact::find_depth(std::size_t i) RT_SAFE {
     touch.depth_m = probe.held_depth_m - dot(moved_m, touch.normal);
   } else if (probe.depth_m > 0.0) {
     touch.state = TouchState::kTouching;
-    meet(i);
+    move_to_proxy(i);
     // d = r - phi - slack
     touch.slack_m = std::min(touch.slack_m + probe.deepened_m, probe.depth_m);
     touch.depth_m = probe.depth_m - touch.slack_m;
@@ -130,7 +131,7 @@ void Contact::find_depth(std::size_t i) RT_SAFE {
 }
 
 // Where the proxy is. The axes turn with the normal, t and f with them: that takes no energy.
-void Contact::meet(std::size_t i) RT_SAFE {
+void Contact::move_to_proxy(std::size_t i) RT_SAFE {
   Probe& probe = probe_[i];
   SphereTouch& touch = touch_[i];
   const Site& site = probe.proxy.site();
@@ -153,7 +154,7 @@ Indentation Contact::indentation(std::size_t i) const RT_SAFE {
 
 // A sphere that has just come couples with those that are there, for as long as it stays. It meets
 // tissue that they have dragged along: its own spring is at rest there.
-void Contact::couple() RT_SAFE {
+void Contact::couple_new_spheres() RT_SAFE {
   const std::array<bool, kMaxSpheres> before = in_contact_;
   for (std::size_t i = 0; i < kMaxSpheres; ++i)
     in_contact_[i] = touch_[i].state != TouchState::kFree;
@@ -162,13 +163,13 @@ void Contact::couple() RT_SAFE {
     if (!in_contact_[i])
       shear_.leave(i);
     else if (!before[i])
-      begin_along(i);
+      start_tangent_spring(i);
   for (std::size_t i = 0; i < kMaxSpheres; ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (!in_contact_[i] || !in_contact_[j])
         coupling_[i][j] = coupling_[j][i] = 0.0;
       else if (!before[i] || !before[j])
-        couple(i, j);
+        couple_pair(i, j);
   shear_.solve();
   for (std::size_t i = 0; i < kMaxSpheres; ++i)
     if (in_contact_[i] && !before[i]) {
@@ -180,18 +181,18 @@ void Contact::couple() RT_SAFE {
 
 // On the other's bulge the one that has just come would meet energy that nobody gave: that much is
 // slack. Of the two, only one presses yet.
-void Contact::couple(std::size_t i, std::size_t j) RT_SAFE {
+void Contact::couple_pair(std::size_t i, std::size_t j) RT_SAFE {
   const SiteCoupling along = scene_.law->coupling(indentation(i), indentation(j),
                                                   norm(probe_[i].centre_m - probe_[j].centre_m));
   shear_.couple(i, j, along.skin_m_per_N + along.lobe_m_per_N, probe_[i].axes, probe_[j].axes);
   const double c = coupling_m_per_N(along, touch_[i].normal, touch_[j].normal);
   coupling_[i][j] = coupling_[j][i] = c;
-  take_away(i, std::max(0.0, -c * pressing_[j].response.law.force_N));
-  take_away(j, std::max(0.0, -c * pressing_[i].response.law.force_N));
+  add_slack(i, std::max(0.0, -c * pressing_[j].response.law.force_N));
+  add_slack(j, std::max(0.0, -c * pressing_[i].response.law.force_N));
 }
 
 // d becomes smaller, and so it stays.
-void Contact::take_away(std::size_t i, double depth_m) RT_SAFE {
+void Contact::add_slack(std::size_t i, double depth_m) RT_SAFE {
   SphereTouch& touch = touch_[i];
   if (touch.state == TouchState::kHeld) {
     probe_[i].held_depth_m -= depth_m;
@@ -234,7 +235,7 @@ void Contact::keep_definite() RT_SAFE {
     spared_J += pressing_[i].response.law.force_N * spared_m[i];
   }
   if (!(spared_J >= 0.0)) return;
-  for (std::size_t i = 0; i < scene_.spheres.size(); ++i) take_away(i, spared_m[i]);
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i) add_slack(i, spared_m[i]);
   for (auto& row : coupling_)
     for (double& m_per_N : row) m_per_N *= share;
 }

@@ -97,6 +97,8 @@ class Contact {
   /// Forget every site, as at the start.
   void reset() RT_SAFE;
 
+  /// See SiteLaw::broke.
+  bool law_broke() const RT_SAFE { return scene_.law->broke(); }
   /// See SiteLaw::shape.
   bool shape(PatchShape& out) RT_SAFE { return scene_.law->shape(out); }
 
@@ -117,8 +119,8 @@ class Contact {
     bool seen = false;  // there was a tick before
     Vec3 held_centre_m, held_normal;
     double held_depth_m = 0.0;
-    Axes axes;             // of t and f
-    AlongGive give_along;  // of give_triangle
+    Axes axes;                 // of t and f
+    TangentGive tangent_give;  // of give_triangle
     std::uint32_t give_triangle = kNoTriangle;
   };
 
@@ -127,20 +129,20 @@ class Contact {
   void watch_grip(double grip_ratio) RT_SAFE;
   void leave(std::size_t i) RT_SAFE;
   void find_depth(std::size_t i) RT_SAFE;
-  void meet(std::size_t i) RT_SAFE;
+  void move_to_proxy(std::size_t i) RT_SAFE;
   Indentation indentation(std::size_t i) const RT_SAFE;
-  void couple() RT_SAFE;
-  void couple(std::size_t i, std::size_t j) RT_SAFE;
-  void take_away(std::size_t i, double depth_m) RT_SAFE;
+  void couple_new_spheres() RT_SAFE;
+  void couple_pair(std::size_t i, std::size_t j) RT_SAFE;
+  void add_slack(std::size_t i, double depth_m) RT_SAFE;
   double press() RT_SAFE;
   void keep_definite() RT_SAFE;
   bool hold() RT_SAFE;
   bool is_torn(std::size_t i) const RT_SAFE;
-  bool release() RT_SAFE;
-  void release(std::size_t i) RT_SAFE;
+  bool release_first() RT_SAFE;
+  void release_sphere(std::size_t i) RT_SAFE;
   Tensor2 give_m_per_N(std::size_t i) const RT_SAFE;
-  AlongGive ask_along(std::size_t i, bool held) const RT_SAFE;
-  void begin_along(std::size_t i) RT_SAFE;
+  TangentGive ask_tangent_give(std::size_t i, bool held) const RT_SAFE;
+  void start_tangent_spring(std::size_t i) RT_SAFE;
   void stiffen() RT_SAFE;
   void resist_sliding() RT_SAFE;
   void sum_up(std::size_t i) RT_SAFE;
@@ -153,11 +155,11 @@ class Contact {
   std::array<bool, kMaxSpheres> in_contact_{};  // touching or held
   Coupling coupling_{};                         // C as it is felt
   Shear shear_;
-  Shear::Shifts shift_m_{}, shear_N_{};  // t, f
-  double energy_J_ = 0.0;                // of all presses
-  bool closed_ = false;                  // the grip, with hysteresis
-  bool closing_ = false;                 // it closed in this tick
-  std::optional<Tool> before_;           // of the last tick: where the blade was
+  Shear::Shifts shift_m_{}, shear_N_{};    // t, f
+  double energy_J_ = 0.0;                  // of all presses
+  bool closed_ = false;                    // the grip, with hysteresis
+  bool closing_ = false;                   // it closed in this tick
+  std::optional<Tool> blade_tool_before_;  // of the last tick: where the blade was
 };
 
 }  // namespace tact::model::contact

@@ -38,10 +38,10 @@ bool Contact::is_torn(std::size_t i) const RT_SAFE {
 }
 
 // The first that must: its going changes what the others feel.
-bool Contact::release() RT_SAFE {
+bool Contact::release_first() RT_SAFE {
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
     if (touch_[i].state == TouchState::kHeld && (!closed_ || is_torn(i))) {
-      release(i);
+      release_sphere(i);
       return true;
     }
   return false;
@@ -52,19 +52,19 @@ bool Contact::release() RT_SAFE {
 // dragged to where tissue is stiffer: the largest depth that leaves the whole tool no more energy.
 // kHalvings bound the work. Pressed tissue remembers on: forgotten relaxation would come back as a
 // stiffer push.
-void Contact::release(std::size_t i) RT_SAFE {
+void Contact::release_sphere(std::size_t i) RT_SAFE {
   constexpr int kHalvings = 12;
   const Probe& probe = probe_[i];
   SphereTouch& touch = touch_[i];
   const double held_J = energy_J_, held_m = touch.depth_m;
   if (!(probe.depth_m > 0.0)) {
     leave(i);
-    couple();
+    couple_new_spheres();
     press();
     return;
   }
   touch.state = TouchState::kTouching;
-  meet(i);
+  move_to_proxy(i);
   const auto affords = [&](double depth_m) RT_SAFE {
     touch.dent_m += depth_m - touch.depth_m;
     touch.depth_m = depth_m;
@@ -86,7 +86,7 @@ void Contact::release(std::size_t i) RT_SAFE {
   Shear::Shifts f_N{};
   for (std::size_t j = 0; j < kMaxSpheres; ++j) f_N[j] = without.force_N(shift_m_, j);
   shift_m_[i] = shear_.unloaded_m(f_N, i);
-  begin_along(i);
+  start_tangent_spring(i);
   shear_.solve();
 }
 

@@ -11,9 +11,12 @@ namespace {
 
 constexpr double kAboveCap = 1.0 + 1e-12;  // rounding
 
-// What Coulomb leaves of f at the stiffness K: f' = f - K g f', |f'| = cap, g > 0, so that f' lies
-// along the slip g f'. Newton on 1 / |f'|, which is nearly linear in g; kSteps bound the work, and
-// the length is then set.
+// What Coulomb leaves of f at the stiffness K, so that f' lies along the slip g f':
+//
+//     MC-9   f' = f - K g f',   |f'| = mu F,   g > 0
+//
+// Newton on 1 / |f'|, which is nearly linear in g; kSteps bound the work, and the length is then
+// set.
 Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N) RT_SAFE {
   constexpr int kSteps = 3;
   if (!(cap_N > 0.0)) return {};
@@ -35,22 +38,24 @@ Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N)
 Tensor2 Contact::give_m_per_N(std::size_t i) const RT_SAFE {
   constexpr double kLeastRadius_ratio = 0.1;
   const double radius_m = scene_.spheres[i].radius_m;
-  if (touch_[i].state == TouchState::kHeld) return probe_[i].give_along.at(radius_m);
-  return probe_[i].give_along.at(std::clamp(std::sqrt(radius_m * std::max(touch_[i].dent_m, 0.0)),
-                                            kLeastRadius_ratio * radius_m, radius_m));
+  if (touch_[i].state == TouchState::kHeld) return probe_[i].tangent_give.at(radius_m);
+  return probe_[i].tangent_give.at(std::clamp(std::sqrt(radius_m * std::max(touch_[i].dent_m, 0.0)),
+                                              kLeastRadius_ratio * radius_m, radius_m));
 }
 
-AlongGive Contact::ask_along(std::size_t i, bool held) const RT_SAFE {
+TangentGive Contact::ask_tangent_give(std::size_t i, bool held) const RT_SAFE {
   const double fixed_N_per_m = scene_.parameters.sliding_stiffness_N_per_m;
-  if (!(fixed_N_per_m > 0.0)) return scene_.law->give_along(touch_[i].place, held, probe_[i].axes);
+  if (!(fixed_N_per_m > 0.0))
+    return scene_.law->tangent_give(touch_[i].place, held, probe_[i].axes);
   return {.rest_m_per_N = {.xx = 1.0 / fixed_N_per_m, .yy = 1.0 / fixed_N_per_m}};
 }
 
 // A sphere without force: any spring is free.
-void Contact::begin_along(std::size_t i) RT_SAFE {
+void Contact::start_tangent_spring(std::size_t i) RT_SAFE {
   probe_[i].give_triangle = touch_[i].place.triangle;
-  probe_[i].give_along = ask_along(i, false);
-  const double least_m_per_N = ask_along(i, true).at(scene_.spheres[i].radius_m).least_eigenvalue();
+  probe_[i].tangent_give = ask_tangent_give(i, false);
+  const double least_m_per_N =
+      ask_tangent_give(i, true).at(scene_.spheres[i].radius_m).least_eigenvalue();
   shear_.set_own(i, {at_least(give_m_per_N(i), least_m_per_N), least_m_per_N});
 }
 
@@ -67,7 +72,7 @@ void Contact::stiffen() RT_SAFE {
     double most_m_per_N = kStep_ratio * before.m_per_N.trace();
     if (probe_[i].give_triangle != touch_[i].place.triangle) {
       probe_[i].give_triangle = touch_[i].place.triangle;
-      probe_[i].give_along = ask_along(i, touch_[i].state == TouchState::kHeld);
+      probe_[i].tangent_give = ask_tangent_give(i, touch_[i].state == TouchState::kHeld);
       most_m_per_N = std::numeric_limits<double>::infinity();
     }
     const Tensor2 now_m_per_N = give_m_per_N(i);

@@ -18,8 +18,8 @@
 #include <array>
 #include <cstddef>
 
-#include "model/contact/along.h"
 #include "model/contact/site_law.h"
+#include "model/contact/tangent.h"
 
 namespace tact::model::contact {
 

@@ -14,10 +14,10 @@
 #include <cstddef>
 #include <span>
 
-#include "model/contact/along.h"
 #include "model/contact/blade.h"
 #include "model/contact/patch_shape.h"
 #include "model/contact/site.h"
+#include "model/contact/tangent.h"
 #include "model/law/law.h"
 #include "model/types.h"
 
@@ -48,7 +48,7 @@ struct SiteCoupling {
 };
 
 /// MC-5: G = c / a I + S, m/N, a the radius of the contact, m.
-struct AlongGive {
+struct TangentGive {
   double contact_m2_per_N = 0.0;  // c
   Tensor2 rest_m_per_N;           // S
 
@@ -83,7 +83,7 @@ class SiteLaw {
   }
   /// MC-5: how far the site gives way along the surface under a unit force, in these axes. All 0:
   /// not known.
-  virtual AlongGive give_along(const Place& place, bool held, const Axes& axes) const RT_SAFE {
+  virtual TangentGive tangent_give(const Place& place, bool held, const Axes& axes) const RT_SAFE {
     (void)place, (void)held, (void)axes;
     return {};
   }

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <span>
@@ -30,6 +31,22 @@ bool has_peer_in(int socket, gid_t group) {
 }
 
 }  // namespace
+
+Result<std::string> runtime_directory() {
+  const char* base = std::getenv("XDG_RUNTIME_DIR");
+  const std::string path = base != nullptr && *base != '\0'
+                               ? std::string(base) + "/tact"
+                               : "/tmp/tact-" + std::to_string(getuid());
+  if (mkdir(path.c_str(), 0700) != 0 && errno != EEXIST)
+    return Error{path + ": " + std::strerror(errno) + "; set XDG_RUNTIME_DIR to a folder of yours"};
+  struct stat info{};
+  if (lstat(path.c_str(), &info) != 0 || !S_ISDIR(info.st_mode) || info.st_uid != getuid() ||
+      (info.st_mode & 027) != 0)
+    return Error{path +
+                 ": is not a folder that only you can write to and no stranger can open; remove it "
+                 "and start again"};
+  return path;
+}
 
 Result<sockaddr_un> socket_address(const std::string& path) {
   sockaddr_un address{.sun_family = AF_UNIX, .sun_path = {}};

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// socket_file.h - a local socket: its address, whose folder it stands in, who may be at its other
-// end, and whose file it is when it is time to remove it.
+// socket_file.h - a local socket: its folder and address, who may put one there, who may be at its
+// other end, and whose file it is when it is time to remove it.
 #pragma once
 
+#include <sys/socket.h>
 #include <sys/types.h>
 #include <sys/un.h>
 
@@ -19,8 +20,17 @@ struct Trust {
   std::optional<gid_t> group;  // whose members may be at the other end; no folder is theirs
 };
 
+/// $XDG_RUNTIME_DIR/tact, or /tmp/tact-<uid>: made with permissions 0700. Refused if it is not
+/// ours, or open to more than the looks of a group, as the service has it (0750).
+Result<std::string> runtime_directory();
+
 /// Error: the path is empty, or too long for a socket.
 Result<sockaddr_un> socket_address(const std::string& path);
+
+/// As bind and connect take it.
+inline const sockaddr* plain(const sockaddr_un& address) {
+  return reinterpret_cast<const sockaddr*>(&address);
+}
 
 /// Error: in the folder of `path` another user than this one, root and the trusted one could put a
 /// socket of that name. No error where there is no such folder: who binds or connects there is told

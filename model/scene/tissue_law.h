@@ -52,7 +52,7 @@ class TissueLaw {
   std::vector<float> pull_coordinate_;
   std::vector<float> rings_times_E_per_m_;  // what its sites are to each other
   std::vector<float> curve_rings_times_E_per_m_;
-  std::vector<tissue::AlongTensors> along_times_E_per_m_;
+  std::vector<tissue::TangentTensors> tangent_times_E_per_m_;
   std::vector<Vec3> tilt_times_E_per_m2_;
   std::unique_ptr<contact::SiteLaw> site_law_;
   law::LawRange range_;

@@ -100,9 +100,9 @@ tissue::ElasticNeighbours TissueLawBuilder::neighbours() {
   if (!map) return out;
   const double widest_m =
       std::ranges::max(scene_.tool.spheres, {}, &contact::ProbeSphere::radius_m).radius_m;
-  law_->along_times_E_per_m_ =
-      tissue::along_give(*map, scene_.organ_mesh.view().vertex_normal, widest_m);
-  out.along_times_E_per_m = law_->along_times_E_per_m_;
+  law_->tangent_times_E_per_m_ =
+      tissue::tangent_give(*map, scene_.organ_mesh.view().vertex_normal, widest_m);
+  out.tangent_times_E_per_m = law_->tangent_times_E_per_m_;
   law_->tilt_times_E_per_m2_ = tissue::dent_tilt(*map, scene_.organ_mesh.view());
   out.tilt_times_E_per_m2 = law_->tilt_times_E_per_m2_;
   law_->rings_times_E_per_m_ = std::move(map->ring_times_E_per_m);
@@ -110,7 +110,7 @@ tissue::ElasticNeighbours TissueLawBuilder::neighbours() {
   out.rings = map->rings;
   out.ring_pitch_m = map->ring_pitch_m;
   law_->memory_bytes_ += law_->rings_times_E_per_m_.size() * sizeof(float) +
-                         law_->along_times_E_per_m_.size() * sizeof(tissue::AlongTensors) +
+                         law_->tangent_times_E_per_m_.size() * sizeof(tissue::TangentTensors) +
                          law_->tilt_times_E_per_m2_.size() * sizeof(Vec3);
   return out;
 }

@@ -153,8 +153,8 @@ contact::SiteResponse SpringPatch::respond(const contact::Indentation& in) RT_SA
 }
 
 // 1 / q + that of the place: linear over each triangle.
-contact::AlongGive SpringPatch::give_along(const contact::Place& place, bool,
-                                           const contact::Axes&) const RT_SAFE {
+contact::TangentGive SpringPatch::tangent_give(const contact::Place& place, bool,
+                                               const contact::Axes&) const RT_SAFE {
   const PatchSurface& surface = region_.surface();
   if (!is_a_place(place, surface.mesh)) return {};
   double give_m_per_N = 1.0 / parameters_.coupling_stiffness_N_per_m;

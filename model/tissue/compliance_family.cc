@@ -66,13 +66,13 @@ Mat3 square(double s, const Vec3& v) { return {{s * v.x * v, s * v.y * v, s * v.
 
 }  // namespace
 
-std::vector<AlongTensors> along_give(const ComplianceMap& map, std::span<const Vec3> vertex_normal,
-                                     double tip_radius_m) {
+std::vector<TangentTensors> tangent_give(const ComplianceMap& map,
+                                         std::span<const Vec3> vertex_normal, double tip_radius_m) {
   const indent::ElasticTip unit{
       .youngs_modulus_Pa = 1.0, .poisson_ratio = map.poisson_ratio, .radius_m = tip_radius_m};
   const double disc = 1.0 / unit.pulled_stiffness_N_per_m();
   const double side = 1.0 / unit.sideways_stiffness_N_per_m();
-  std::vector<AlongTensors> out;
+  std::vector<TangentTensors> out;
   for (std::size_t v = 0; v < map.vertices(); ++v) {
     const SidewaysGive& g = map.sideways_times_E_per_m[v];
     const Vec3 a1 = vector_of(g.axis), a2 = cross(vertex_normal[v], a1);

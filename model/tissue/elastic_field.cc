@@ -151,19 +151,20 @@ double ElasticField::stiffest_N_per_m(const contact::Place& place, bool held) co
   return held ? std::max(at(0.0), at(-1.0)) : at(0.0);
 }
 
-contact::AlongGive ElasticField::give_along(const contact::Place& place, bool held,
-                                            const contact::Axes& axes) const RT_SAFE {
+contact::TangentGive ElasticField::tangent_give(const contact::Place& place, bool held,
+                                                const contact::Axes& axes) const RT_SAFE {
   const ElasticNeighbours& near = parts_.neighbours;
   if (!(near.contact_modulus_Pa > 0.0)) return {};
   const double nu = near.poisson_ratio;
   // MC-5
-  contact::AlongGive give{
+  contact::TangentGive give{
       .contact_m2_per_N = (2.0 - nu) / (4.0 * (1.0 - nu) * near.contact_modulus_Pa),
       .rest_m_per_N = {}};
-  if (near.along_times_E_per_m.empty() || !is_a_place(place, parts_.surface)) return give;
+  if (near.tangent_times_E_per_m.empty() || !is_a_place(place, parts_.surface)) return give;
   Mat3 s_m_per_N;
   for (std::size_t i = 0; i < 3; ++i) {
-    const AlongTensors& both = near.along_times_E_per_m[parts_.surface.triangle[place.triangle][i]];
+    const TangentTensors& both =
+        near.tangent_times_E_per_m[parts_.surface.triangle[place.triangle][i]];
     s_m_per_N =
         s_m_per_N + place.weight[i] / near.youngs_modulus_Pa * (held ? both.held : both.touching);
   }

@@ -33,7 +33,7 @@
 namespace tact::model::tissue {
 
 /// S E of a vertex, 1/m, tangential, in the scene's axes: where it may sink, and where it is held.
-struct AlongTensors {
+struct TangentTensors {
   Mat3 touching, held;
 };
 
@@ -45,8 +45,8 @@ struct ElasticNeighbours {
   std::span<const float> ring_times_E_per_m{};  // g_j E of vertex v at [v rings + j - 1]; or empty
   std::size_t rings = 0;
   double ring_pitch_m = 0.0;
-  std::span<const AlongTensors> along_times_E_per_m{};  // S E of each vertex; or empty
-  std::span<const Vec3> tilt_times_E_per_m2{};          // t E of each vertex (CF-6); or empty
+  std::span<const TangentTensors> tangent_times_E_per_m{};  // S E of each vertex; or empty
+  std::span<const Vec3> tilt_times_E_per_m2{};              // t E of each vertex (CF-6); or empty
 };
 
 /// What an ElasticField borrows; all of it outlives the field.
@@ -72,8 +72,8 @@ class ElasticField final : public contact::SiteLaw {
   contact::SiteCoupling coupling(const contact::Indentation& a, const contact::Indentation& b,
                                  double distance_m) const RT_SAFE override;
   double stiffest_N_per_m(const contact::Place& place, bool held) const RT_SAFE override;
-  contact::AlongGive give_along(const contact::Place& place, bool held,
-                                const contact::Axes& axes) const RT_SAFE override;
+  contact::TangentGive tangent_give(const contact::Place& place, bool held,
+                                    const contact::Axes& axes) const RT_SAFE override;
   void leave(std::size_t sphere) RT_SAFE override { now_[sphere] = next_[sphere] = {}; }
   void advance() RT_SAFE override {
     if (parts_.relaxation.terms() > 0) now_ = next_;

@@ -47,8 +47,8 @@ void name_state() {
   name("HALF_LENGTH", "gate", offsetof(Gate, limits_.workspace_half_length_m));
   name("MISSED", "gate", offsetof(Gate, missed_), "q");
   std::printf("#define HOT_FORCE %zu\n", offsetof(Gate, warm_force_));
-  vector("BEFORE_FORCE", "gate", offsetof(Gate, before_.force_N));
-  vector("BEFORE_TORQUE", "gate", offsetof(Gate, before_.torque_Nm));
+  vector("BEFORE_FORCE", "gate", offsetof(Gate, before_ramp_.force_N));
+  vector("BEFORE_TORQUE", "gate", offsetof(Gate, before_ramp_.torque_Nm));
   vector("WRITTEN_FORCE", "gate", offsetof(Gate, written_.force_N));
   vector("WRITTEN_TORQUE", "gate", offsetof(Gate, written_.torque_Nm));
   for (std::size_t i = 0; i < gate::kStageCount; ++i)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/soak/mischief.h"
 
+#include "tests/support/pass_time.h"
+
 namespace tact::soak {
 
 void Mischief::step(hal::sim::SimDelta& device, hal::sim::SimLines& lines,
@@ -10,7 +12,7 @@ void Mischief::step(hal::sim::SimDelta& device, hal::sim::SimLines& lines,
   spoil_device(device);
   pull_wires(lines);
   operate(requests, stopped);
-  if (happens(1e-4)) clock.pass_ns(ticks_between(1, 30) * period_ns_ + period_ns_ / 3);
+  if (happens(1e-4)) tests::pass_ns(clock, ticks_between(1, 30) * period_ns_ + period_ns_ / 3);
 }
 
 // Mostly into the tissue and along it, sometimes to where the device itself gives way.

@@ -10,6 +10,7 @@
 #include "hal/device.h"
 #include "hal/safety_lines.h"
 #include "model/scene/tissue.h"
+#include "tests/support/pass_time.h"
 #include "tests/support/test_scene.h"
 
 namespace tact::firmware {
@@ -21,7 +22,7 @@ class PuppetDevice : public hal::Device {
 
   hal::DeviceInfo info() const override { return {.name = "puppet", .max_force_N = 20.0}; }
   model::Fault read(hal::Sample& sample, std::int64_t now_ns) RT_SAFE override {
-    clock_.pass_ns(slow_ns);
+    tests::pass_ns(clock_, slow_ns);
     slow_ns = 0;
     if (silent) return model::Fault::kNone;
     sample.tool.position_m = {0, 0, height_m};

@@ -14,6 +14,7 @@
 #include "firmware/telemetry/tick_csv.h"
 #include "hal/registry/open_device.h"
 #include "tests/support/damage.h"
+#include "tests/support/pass_time.h"
 #include "tests/support/sentence.h"
 #include "tests/support/test_scene.h"
 
@@ -47,8 +48,8 @@ class ReplayTest : public testing::Test {
     auto log = std::move(*telemetry::TickLogWriter::create(path, header));
     loop::TickRecord record;
     for (int i = 0; i < ticks; ++i) {
-      if (i == 1300) clock.pass_ns(30'300'000);  // a fault, were this hard real time
-      if (i == 1500) clock.pass_ns(5'300'000);
+      if (i == 1300) tests::pass_ns(clock, 30'300'000);  // a fault, were this hard real time
+      if (i == 1500) tests::pass_ns(clock, 5'300'000);
       loop.step();
       while (ring->pop(record)) log.add(record);
     }

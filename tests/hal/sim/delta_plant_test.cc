@@ -20,7 +20,8 @@ delta::DeltaPose pose_of(const DeltaPlant& plant) {
   return kDelta.pose(plant.position_m(), plant.theta_rad());
 }
 delta::Joints gravity_Nm(const DeltaPlant& plant) {
-  return gravity_torques_Nm(kGeometry, kMasses, pose_of(plant), direction_D(kGravity_W_mps2));
+  return gravity_torques_Nm(kGeometry, kMasses, pose_of(plant),
+                            direction_D(delta::kGravity_W_mps2));
 }
 /// Gravity balanced, and a force on the platform besides.
 delta::Joints motors_Nm(const DeltaPlant& plant, const model::Vec3& force_N) {

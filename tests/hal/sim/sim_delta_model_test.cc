@@ -41,8 +41,8 @@ TEST(SimDeltaModel, InTheWholeCylinderPoseAndMotorsAreWithinTheirLimits) {
         EXPECT_TRUE(workspace_indices(delta, p_D, inverse.theta_rad).within_limits);
         // 20 N in the worst direction for joint i, on top of gravity, within the motors
         const delta::DeltaPose pose = delta.pose(p_D, inverse.theta_rad);
-        const delta::Joints gravity_Nm = gravity_torques_Nm(sim::kGeometry, sim::kMasses, pose,
-                                                            sim::direction_D(sim::kGravity_W_mps2));
+        const delta::Joints gravity_Nm = gravity_torques_Nm(
+            sim::kGeometry, sim::kMasses, pose, sim::direction_D(delta::kGravity_W_mps2));
         const model::Mat3 columns = transpose(jacobian(pose));
         for (std::size_t i = 0; i < 3; ++i) {
           const double needed_Nm =

@@ -97,7 +97,7 @@ class Grained final : public SiteLaw {
   explicit Grained(double turn_rad) : turn_rad_(turn_rad) {}
 
   SiteResponse respond(const Indentation& in) RT_SAFE override { return tissue_.field.respond(in); }
-  AlongGive give_along(const Place& place, bool, const Axes& axes) const RT_SAFE override {
+  TangentGive tangent_give(const Place& place, bool, const Axes& axes) const RT_SAFE override {
     const double angle_rad = turn_rad_ * place.triangle;
     const Vec2 grain = axes.of({std::cos(angle_rad), std::sin(angle_rad), 0.0});
     constexpr double kAlong = 0.08, kAcross = 0.02, kMore = kAlong - kAcross;  // m/N

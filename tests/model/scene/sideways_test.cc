@@ -45,7 +45,7 @@ TEST(Sideways, StiffnessIsTheFiniteElementsAlongBothDirectionsWithin15Percent) {
         (*tissue)
             ->law()
             .site_law()
-            .give_along(place_of(scene->organ_mesh, vertex), one.at("held"), axes)
+            .tangent_give(place_of(scene->organ_mesh, vertex), one.at("held"), axes)
             .at(one.at("contact_radius_m"));
     const double ratio = 1.0 / give_m_per_N.xx / one.at("stiffness_N_per_m").get<double>();
     EXPECT_NEAR(ratio, 1.0, 0.15) << one;
@@ -81,8 +81,8 @@ TEST(Sideways, EveryShippedSceneTakesItsStiffnessFromItsTissue) {
         (*tissue)
             ->law()
             .site_law()
-            .give_along(place_of(scene->organ_mesh, vertex), true,
-                        contact::axes_of(scene->organ_mesh.vertex_normal[vertex]))
+            .tangent_give(place_of(scene->organ_mesh, vertex), true,
+                          contact::axes_of(scene->organ_mesh.vertex_normal[vertex]))
             .at(scene->tool.spheres[0].radius_m)
             .xx;
     EXPECT_NEAR(1.0 / give_m_per_N, want.held_N_per_m, 0.5) << want.scene;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// along.h - vectors and symmetric tensors along the surface, in two axes of a site.
+// tangent.h - vectors and symmetric tensors along the surface, in two axes of a site.
 #pragma once
 
 #include <algorithm>

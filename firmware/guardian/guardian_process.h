@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// duty.h - what the guardian process does: waits for the end of its tactd, and zeroes the device.
+// guardian_process.h - what the guardian process does: waits for the end of its tactd, and zeroes
+// the device.
 //
 //     tactd lets go   it ends, and has sent nothing
 //     tactd died      it says the device's last words (hal/last_words.h), tells a person, ends

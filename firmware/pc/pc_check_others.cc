@@ -153,7 +153,7 @@ void check_devices(const PcFiles& files, std::vector<PcRow>& rows) {
 
 }  // namespace
 
-void check_neighbours(const PcQuestion& q, std::vector<PcRow>& rows) {
+void check_others(const PcQuestion& q, std::vector<PcRow>& rows) {
   const std::vector<Thread> threads = find_threads(q.files);
   rows.push_back(swap_row(q.files));
   rows.push_back(balancer_row(q.files, threads));

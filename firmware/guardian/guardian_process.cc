@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/guardian/duty.h"
+#include "firmware/guardian/guardian_process.h"
 
 #include <fcntl.h>
 #include <linux/usbdevice_fs.h>

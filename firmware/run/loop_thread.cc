@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/run/loop_thread.h"
+
+#include <pthread.h>
+#include <sys/resource.h>
+
+#include <vector>
+
+#include "firmware/loop/alloc_counter.h"
+
+namespace tact::firmware::run {
+
+void add_to(ThreadCosts& sum, const ThreadCosts& more) {
+  sum.heap_calls += more.heap_calls;
+  sum.heap_calls_known = more.heap_calls_known;
+  sum.call_filter = more.call_filter;
+  sum.minor_faults += more.minor_faults;
+  sum.major_faults += more.major_faults;
+  sum.voluntary_switches += more.voluntary_switches;
+  sum.involuntary_switches += more.involuntary_switches;
+}
+
+ThreadCosts run_as_loop_thread(const pc::RtSettings& settings, const std::function<void()>& loop,
+                               watch::CallFilter* filter) {
+  pthread_setname_np(pthread_self(), "tact-loop");
+  std::vector<pc::Shortfall> known;  // told before the loop, by probe_rt_threads
+  pc::enter_rt_thread(settings, known);
+  ThreadCosts costs;
+  costs.call_filter = filter != nullptr && filter->enter_thread() == 0;  // tried when it was made
+  rusage before{}, after{};
+  {
+    const loop::HeapCallCounter heap;
+    getrusage(RUSAGE_THREAD, &before);
+    loop();
+    getrusage(RUSAGE_THREAD, &after);
+    costs.heap_calls = heap.calls();
+  }
+  if (filter != nullptr) filter->leave_loop();
+  pc::leave_rt_thread();
+  costs.heap_calls_known = loop::can_count_heap_calls();
+  costs.minor_faults = after.ru_minflt - before.ru_minflt;
+  costs.major_faults = after.ru_majflt - before.ru_majflt;
+  costs.voluntary_switches = after.ru_nvcsw - before.ru_nvcsw;
+  costs.involuntary_switches = after.ru_nivcsw - before.ru_nivcsw;
+  return costs;
+}
+
+}  // namespace tact::firmware::run
