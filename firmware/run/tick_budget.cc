@@ -101,8 +101,8 @@ model::Result<TimeMargin> check_budget(const model::scene::Scene& scene,
   margin.tail_counts = hard_real_time.has_value();
   margin.budget_us = scene.tolerance ? scene.tolerance->tick_budget_us : 0.5e6 / scene.rate_Hz;
   std::thread([&] {
-    std::vector<pc::Shortfall> known;
-    if (hard_real_time) enter_rt_thread(*hard_real_time, known);
+    std::vector<pc::Shortfall> known;  // told before, by probe_rt_threads
+    if (hard_real_time) pc::enter_rt_thread(*hard_real_time, known);
     pc::flush_denormals();
     margin.measured = measure_law(scene, (*twin)->site_law(), (*twin)->range().press_m);
   }).join();
