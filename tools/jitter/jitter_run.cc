@@ -13,6 +13,7 @@
 
 #include "firmware/loop/grid.h"
 #include "firmware/loop/rt_loop.h"
+#include "firmware/run/loop_parts.h"
 #include "tools/jitter/bare_loop.h"
 #include "tools/jitter/live_line.h"
 #include "tools/jitter/load.h"
