@@ -13,6 +13,7 @@
 #include <functional>
 #include <vector>
 
+#include "firmware/guardian/guardian.h"
 #include "firmware/run/loop_thread.h"
 #include "firmware/watch/call_filter.h"
 #include "firmware/watch/loop_watch.h"
