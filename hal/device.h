@@ -67,7 +67,7 @@ class Device {
 
   /// Newest sample; none is fresh until the device knows where it is. Fault::kNone, or what is
   /// wrong with the device.
-  virtual Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE = 0;
+  [[nodiscard]] virtual Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE = 0;
 
   /// May the drives have power in this tick? Safety lines decide; without lines always true.
   virtual void permit(bool powered) RT_SAFE { (void)powered; }
@@ -78,7 +78,7 @@ class Device {
   virtual bool ready() const RT_SAFE { return true; }
 
   /// Hand this wrench to the hardware, on top of its own gravity compensation.
-  virtual Fault write(const Wrench& wrench) RT_SAFE = 0;
+  [[nodiscard]] virtual Fault write(const Wrench& wrench) RT_SAFE = 0;
 
   /// What happens to a simulated device while the loop sleeps: one or more periods of physics.
   /// Hardware lives by itself and does nothing here. Not part of the tick's measured time.

@@ -31,9 +31,9 @@ class SafetyLines {
   virtual ~SafetyLines() = default;
 
   /// Levels of now. kNone, or why force must be zero; the fault stands while its cause does.
-  virtual model::Fault read(std::int64_t now_ns) RT_SAFE = 0;
+  [[nodiscard]] virtual model::Fault read(std::int64_t now_ns) RT_SAFE = 0;
   /// Outputs of this tick; kLinesLost when they cannot be set.
-  virtual model::Fault write(const LinesTick& tick) RT_SAFE = 0;
+  [[nodiscard]] virtual model::Fault write(const LinesTick& tick) RT_SAFE = 0;
   /// May the drives have power?
   virtual bool enabled() const RT_SAFE = 0;
   /// The scope line; nothing where none is wired.

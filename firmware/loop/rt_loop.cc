@@ -38,12 +38,14 @@ void RtLoop::step() RT_SAFE {
 
 void RtLoop::release_device() RT_SAFE {
   progress_.enter(Callee::kLines);
-  lines_.write({.healthy = false, .armed = false, .faulted = true});
+  const Fault lines_fault = lines_.write({.healthy = false, .armed = false, .faulted = true});
   progress_.enter(Callee::kDevice);
   device_.permit(false);
-  device_.write(model::Wrench{});
+  const Fault device_fault = device_.write(model::Wrench{});
   progress_.enter(Callee::kOwn);
   progress_.end();
+  for (const Fault fault : {write_fault_, lines_fault, device_fault})
+    if (fault != Fault::kNone) requests_.trip(fault);  // no tick will come that could tell it
 }
 
 // Every second tick, as only an edge arms.

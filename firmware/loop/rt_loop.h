@@ -2,8 +2,8 @@
 // rt_loop.h - the haptic loop: read, touch, feel, judge, write, tell, on a fixed grid of deadlines.
 //
 // Deadlines are absolute (grid.h). A tick that ends after its own period is late; the
-// periods it has eaten are skipped and counted, the grid never shifts (RT-14). What ends the loop,
-// zero force is written last.
+// periods it has eaten are skipped and counted, the grid never shifts (RT-14). Whatever ends the
+// loop, zero force is written last; a fault of that write is told, too.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // loop_parts.h - everything that a tick touches, opened and checked in the order in which it comes
 // to life. Set-up code: `tactd`, `tact-jitter` and `tact-limits` run the same loop, in a thread of
-// loop_thread.h.
+// thread_costs.h.
 #pragma once
 
 #include <memory>

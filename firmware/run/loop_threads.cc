@@ -6,7 +6,7 @@
 #include <chrono>
 #include <csignal>
 
-#include "firmware/run/loop_thread.h"
+#include "firmware/run/thread_costs.h"
 
 namespace tact::firmware::run {
 namespace {

@@ -10,11 +10,13 @@
 // A loop that does not end when it is asked to is left behind: the process ends without it.
 #pragma once
 
+#include <atomic>
 #include <functional>
+#include <thread>
 #include <vector>
 
 #include "firmware/guardian/guardian.h"
-#include "firmware/run/loop_thread.h"
+#include "firmware/run/thread_costs.h"
 #include "firmware/watch/call_filter.h"
 #include "firmware/watch/loop_watch.h"
 #include "firmware/watch/runaway.h"

@@ -10,8 +10,8 @@
 #include "firmware/loop/rt_loop.h"
 #include "firmware/pc/environment.h"
 #include "firmware/pc/rt_setup.h"
-#include "firmware/run/loop_thread.h"
 #include "firmware/run/stiffness_check.h"
+#include "firmware/run/thread_costs.h"
 #include "firmware/run/tick_budget.h"
 #include "hal/device.h"
 

@@ -15,11 +15,11 @@
 #include "firmware/loop/grid.h"
 #include "firmware/run/inertia_note.h"
 #include "firmware/run/loop_parts.h"
-#include "firmware/run/loop_thread.h"
 #include "firmware/run/loop_threads.h"
 #include "firmware/run/real_time.h"
 #include "firmware/run/report.h"
 #include "firmware/run/telemetry_setup.h"
+#include "firmware/run/thread_costs.h"
 #include "model/io/file_writer.h"
 #include "model/scene/accuracy_file.h"
 

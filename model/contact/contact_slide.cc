@@ -15,8 +15,11 @@ constexpr double kAboveCap = 1.0 + 1e-12;  // rounding
 //
 //     MC-9   f' = f - K g f',   |f'| = mu F,   g > 0
 //
-// Newton on 1 / |f'|, which is nearly linear in g; kSteps bound the work, and the length is then
-// set.
+// Newton on 1 / |f'|, which is nearly linear in g: g grows by
+//
+//     (|f'| / (mu F) - 1) |f'|^2 / (f' . (I + g K)^-1 K f')
+//
+// kSteps bound the work, and the length is then set.
 Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N) RT_SAFE {
   constexpr int kSteps = 3;
   if (!(cap_N > 0.0)) return {};

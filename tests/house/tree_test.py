@@ -42,8 +42,8 @@ def stage_breaches(check, push, night):
         yield "tools/check: its lists of stages are not where this test looks for them"
         return
     if not re.search(r"^\s*- run: \./tools/check \$\{\{ matrix.arguments \}\}$", push, re.M) or \
-            not re.search(r'^\s*arguments: \["", --only tidy, --only asan, --only rtsan\]$', push, re.M):
-        yield f"{PUSH}: does not run ./tools/check, and its stages tidy, asan and rtsan"
+            not re.search(r'^\s*arguments: \["", --only tidy, --only asan, --only rtsan, --only tsan\]$', push, re.M):
+        yield f"{PUSH}: does not run ./tools/check, and its stages tidy, asan, rtsan and tsan"
     if "./tools/check --long --only ${{ matrix.stage }}" not in night:
         yield f"{NIGHT}: does not run ./tools/check --long --only STAGE"
     found = re.search(r"^\s*stage: \[([^\]]*)\]", night, re.M)
@@ -58,7 +58,7 @@ def stage_breaches(check, push, night):
 def blind_rules():
     """Each rule against a breach of it: the names of those that do not see theirs."""
     check = "quick='format tests+browser'\nmore='asan'\nhours='soak fresh'\n"
-    push = '        arguments: ["", --only tidy, --only asan, --only rtsan]\n      - run: ./tools/check ${{ matrix.arguments }}\n'
+    push = '        arguments: ["", --only tidy, --only asan, --only rtsan, --only tsan]\n      - run: ./tools/check ${{ matrix.arguments }}\n'
     run = "      - run: ./tools/check --long --only ${{ matrix.stage }}\n"
     night = "        stage: [asan, soak]\n" + run
     cases = {

@@ -97,12 +97,14 @@ class Client(unittest.TestCase):
         self.assertEqual(len(log.ticks), 4999)
         self.assertEqual(log.damage, "its bytes are not those that were written; 1 of 5000 ticks are damaged")
         broken.write_bytes(data[:100000])
-        self.assertIn("it has no end", tact.read_ticks(broken).damage)
+        self.assertRegex(tact.read_ticks(broken).damage, "it has no end.*; 1 of 286 .*; cut off in tick number 286")
         broken.write_bytes(b"tactlog6" + data[8:])
-        with self.assertRaisesRegex(tact.Error, "no tick log of this version; record it again"):
+        with self.assertRaisesRegex(tact.Error, "a tick log of version 6, no tick log or black box of this version"):
             tact.read_ticks(broken)
-        with self.assertRaisesRegex(tact.Error, "nowhere: No such file"):
-            tact.read_ticks("nowhere")
+        for path, sentence in (("nowhere", "nowhere: No such file"), ("/dev/zero", "is no regular file"),
+                               (ROOT, "is no regular file"), (LIVER, "no file of tact, no tick log")):
+            with self.assertRaisesRegex(tact.Error, sentence):
+                tact.read_ticks(path)
 
     def test_live_frames_and_the_recording_of_the_viewer_agree(self):
         path, recording = self.folder / "socket", self.folder / "run.tactrec"
@@ -110,8 +112,7 @@ class Client(unittest.TestCase):
                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         run = tactd("--seconds", 3, "--no-black-box", "--socket", path)
         try:
-            wait_for(path)
-            frames = tact.live(path)
+            frames = look(path)
             self.assertEqual(tact.text(frames.hello["scene_name"]), "liver")
             self.assertEqual(len(frames.organ.vertex_m), frames.hello["organ_vertices"])
             self.assertLess(frames.organ.triangle.max(), len(frames.organ.vertex_m))
@@ -140,10 +141,33 @@ class Client(unittest.TestCase):
         self.assertGreater(len(box.ticks), 100)
         self.assertGreater(len(box.recording.frames), 0)
         self.assertNotEqual(box.ticks["fault"][-1], 0)
+        data, broken = bytearray(next(boxes.glob("*.tactlog")).read_bytes()), self.folder / "box.tactlog"
+        pictures = tact.LOG_HEADER.itemsize + len(box.ticks) * tact.LOG_RECORD.itemsize
+        broken.write_bytes(data[:pictures + 1000])
+        cut = tact.read_ticks(broken)
+        self.assertEqual((len(cut.ticks), cut.recording), (len(box.ticks), None))
+        self.assertIn("its pictures: ends before its first frame", cut.damage)
+        broken.write_bytes(data[:pictures - 100])
+        self.assertEqual(len(tact.read_ticks(broken).ticks), len(box.ticks) - 1)
 
     def test_nobody_at_the_socket_is_told(self):
-        with self.assertRaisesRegex(tact.Error, "does tactd run, and as this user"):
+        with self.assertRaisesRegex(tact.Error, "does tactd run, and may this user look"):
             tact.live(self.folder / "nobody")
+
+    def test_a_tactd_that_stands_still_is_told_and_one_that_is_gone_ends_it(self):
+        path = self.folder / "still"
+        run = tactd("--seconds", 20, "--no-black-box", "--socket", path)
+        frames = look(path, timeout_s=0.5, newest=True)
+        time.sleep(0.5)
+        first, second = next(frames), next(frames)
+        self.assertGreater(first["time_ns"], 3e8, "the frames of the sleep are left out")
+        self.assertGreater(second["tick"], first["tick"])
+        run.send_signal(signal.SIGSTOP)
+        with self.assertRaisesRegex(tact.Error, "no frame for 0.5 s; tactd is stopped, or hangs"):
+            list(frames)
+        run.send_signal(signal.SIGKILL)
+        run.wait(30)
+        self.assertEqual([*frames, *frames], [])
 
     def test_the_example_draws_its_pictures(self):
         log = self.folder / "clock.tactlog"
@@ -154,10 +178,16 @@ class Client(unittest.TestCase):
             self.assertTrue((self.folder / "pictures" / name).read_bytes().startswith(b"\x89PNG"))
 
 
-def wait_for(path, longest_s=10.0):
+def look(path, longest_s=10.0, **options):
+    """live() as soon as tactd listens."""
     end = time.monotonic() + longest_s
-    while not path.exists() and time.monotonic() < end:
-        time.sleep(0.01)
+    while True:
+        try:
+            return tact.live(path, **options)
+        except tact.Error:
+            if time.monotonic() > end:
+                raise
+            time.sleep(0.02)
 
 
 if __name__ == "__main__":

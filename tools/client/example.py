@@ -12,17 +12,15 @@ import argparse
 import pathlib
 import sys
 
-import numpy as np
-
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-import tact  # noqa: E402
-
 try:
     import matplotlib
     matplotlib.use("Agg")
     from matplotlib import pyplot
-except ImportError:
-    sys.exit("example.py: matplotlib is not installed; apt install python3-matplotlib")
+    import numpy as np
+    import tact
+except ImportError as error:
+    sys.exit(f"example.py: {error}; apt install python3-matplotlib for Debian's python3, else pip install matplotlib")
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("log", help="of tactd --record, or a black box")
@@ -36,25 +34,35 @@ if log.damage:
     print(f"example.py: {log.damage}; what is good of it follows", file=sys.stderr)
 if not len(log.ticks):
     sys.exit(f"example.py: {arguments.log}: no good tick")
-arguments.out.mkdir(parents=True, exist_ok=True)
+
+
+def keep(picture, name):
+    try:
+        arguments.out.mkdir(parents=True, exist_ok=True)
+        picture.savefig(arguments.out / name, dpi=120)
+    except OSError as error:
+        sys.exit(f"example.py: {arguments.out / name}: {error.strerror}; give another folder with --out")
+
 
 # %% Force in time: what the law asked for, and what the gate let through
 wanted_N = np.linalg.norm(log.ticks["wanted_force_N"], axis=1)
 written_N = np.linalg.norm(log.ticks["written_force_N"], axis=1)
 figure, (above, below) = pyplot.subplots(2, 1, sharex=True, figsize=(8, 6))
 above.plot(log.time_s, wanted_N, label="by the law", linewidth=1)
-above.plot(log.time_s, written_N, label="after the gate", linewidth=1)
+above.plot(log.time_s, written_N, "--", label="after the gate", linewidth=1)
 above.set_ylabel("force, N")
 above.legend()
 below.plot(log.time_s, 1e3 * log.ticks["tool_position_m"][:, 2], linewidth=1)
 below.set_ylabel("height of the tool, mm")
 below.set_xlabel("time, s")
 above.set_title(f"{tact.text(log.header['scene_name'])}: {tact.text(log.header['law'])}")
-figure.savefig(arguments.out / "force.png", dpi=120)
+keep(figure, "force.png")
+print(f"{len(log.ticks)} ticks, {log.time_s[-1]:.1f} s, force at most {written_N.max():.3f} N")
 
 # %% Phases of a tick, as shares of ticks that took at most so long
 if not log.ticks["phase_ns"].any():
-    sys.exit("example.py: a run in simulated time (--free-run) has no times of phases; ticks.png needs a run of the clock")
+    print("a run in simulated time (--free-run) has no times of phases: no ticks.png")
+    sys.exit()
 figure, axes = pyplot.subplots(figsize=(8, 4))
 share = np.arange(1, len(log.ticks) + 1) / len(log.ticks)
 for i, phase in enumerate(tact.PHASES):
@@ -63,9 +71,6 @@ axes.set_xscale("log")
 axes.set_xlabel("time, us")
 axes.set_ylabel("share of ticks")
 axes.legend(ncols=2)
-figure.savefig(arguments.out / "ticks.png", dpi=120)
-
-# %% Numbers
-print(f"{len(log.ticks)} ticks, {log.time_s[-1]:.1f} s, force at most {written_N.max():.3f} N")
+keep(figure, "ticks.png")
 print(f"tick: median {np.median(log.ticks['phase_ns'][:, -1]) / 1e3:.2f} us, "
       f"p99.9 {np.quantile(log.ticks['phase_ns'][:, -1], 0.999) / 1e3:.2f} us")

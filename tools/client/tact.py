@@ -7,34 +7,35 @@
     run = tact.read_recording("run.tactrec")       # run.frames["force_N"] is (n, 3), N
     log = tact.read_ticks("run.tactlog")           # log.ticks["written_force_N"], every tick
 
-Fields and units are those of host/PROTOCOL.md; those of a tick have shorter names here. Errors are tact.Error
-with a sentence. Reads alone: nothing here can move a device. Needs numpy.
+Fields and units are those of host/PROTOCOL.md, which also has the shorter names that a tick has here. Errors are
+tact.Error with a sentence. Reads alone: nothing here can move a device. Needs numpy.
 """
 import array
 import dataclasses
 import hashlib
 import os
 import pathlib
+import select
 import socket
+import stat
 import struct
 import zlib
 
-import numpy as np
+try:
+    import numpy as np
+except ImportError:
+    raise ImportError("tact.py needs numpy: apt install python3-numpy for Debian's python3, else pip install numpy") from None
 
 MAGIC, TELEMETRY_VERSION = 0x74636174, 4
 RECORDING_VERSIONS = {5: 0, 6: 1304}  # bytes of the operator behind each frame
-LOG_MAGIC = b"tactlog7"
+LOG_MAGIC, RECORDING_MAGIC = b"tactlog7", b"tactrec\n"
 SEAL = b"tactseal"
 PHASES = ("wake", "read", "touch", "feel", "judge", "write", "tell", "total")
 STATES = ("off", "ready", "armed", "stopped")
 
 
 class Error(Exception):
-    """A sentence: what, where, and the cure."""
-
-
-def _packed(fields):
-    return np.dtype(fields)
+    """A sentence: what, where, the cure."""
 
 
 def _placed(size, fields):
@@ -42,33 +43,31 @@ def _placed(size, fields):
                      "offsets": [f[3] for f in fields], "itemsize": size})
 
 
-MESSAGE_HEADER = _packed([
-    ("magic", "<u4"), ("version", "<u2"), ("kind", "<u2")])
-HELLO = _packed([
+MESSAGE_HEADER = np.dtype([("magic", "<u4"), ("version", "<u2"), ("kind", "<u2")])
+HELLO = np.dtype([
     ("header", MESSAGE_HEADER), ("organ_vertices", "<u4"), ("organ_triangles", "<u4"), ("tool_vertices", "<u4"),
     ("tool_triangles", "<u4"), ("site_count", "<u4"), ("ring_count", "<u4"), ("ring_pitch_m", "<f4"), ("rate_Hz", "<f4"),
     ("frame_rate_Hz", "<f4"), ("force_limit_N", "<f4"), ("continuous_force_N", "<f4"), ("energy_budget_J", "<f4"),
     ("sphere_radius_m", "<f4", 4), ("sphere_offset_m", "<f4", (4, 3)), ("non_rt", "u1"), ("simulated", "u1"),
     ("scene_name", "S53"), ("limits_checksum", "S9"), ("device_name", "S64"), ("law_name", "S64"), ("hand_socket", "S108")])
-FRAME_SITE = _packed([
+FRAME_SITE = np.dtype([
     ("surface_point_m", "<f4", 3), ("normal", "<f4", 3), ("shift_m", "<f4", 3), ("depth_m", "<f4"),
     ("profile_m", "<f4", 32), ("tilt", "<f4", 3), ("state", "u1"), ("pad", "u1", 3)])
-FRAME_PATCH = _packed([
+FRAME_PATCH = np.dtype([
     ("vertex_count", "<u4"), ("cut_total", "<u4"), ("cut_first", "<u4"), ("cut_count", "<u4"), ("vertex", "<u4", 180),
     ("cut_triangle", "<u4", 32), ("displacement_um", "<i2", (180, 3))])
-FRAME = _packed([
+FRAME = np.dtype([
     ("header", MESSAGE_HEADER), ("tick", "<u8"), ("time_ns", "<i8"), ("late_ticks", "<u8"), ("skipped_ticks", "<u8"),
     ("dropped_records", "<u8"), ("tool_position_m", "<f4", 3), ("tool_orientation", "<f4", 4),
     ("tool_velocity_mps", "<f4", 3), ("grip_ratio", "<f4"), ("force_N", "<f4", 3), ("torque_Nm", "<f4", 3),
     ("wanted_force_N", "<f4", 3), ("worst_margin_us", "<f4"), ("median_tick_us", "<f4"), ("peak_force_N", "<f4"),
     ("rms_force_N", "<f4"), ("given_energy_J", "<f4"), ("fault", "<u2"), ("limit", "<u2"), ("state", "u1"),
     ("non_rt", "u1"), ("pad", "u1", 6), ("site", FRAME_SITE, 4), ("patch", FRAME_PATCH)])
-FILE_HEADER = _packed([
+FILE_HEADER = np.dtype([
     ("magic", "S8"), ("version", "<u4"), ("hello_bytes", "<u4"), ("frame_bytes", "<u4"), ("setup_crc", "<u4"),
     ("mesh_bytes", "<u8")])
-FRAME_RECORD = _packed([
-    ("frame", FRAME), ("crc", "<u4"), ("pad", "<u4")])
-LOG_HEADER = _packed([
+FRAME_RECORD = np.dtype([("frame", FRAME), ("crc", "<u4"), ("pad", "<u4")])
+LOG_HEADER = np.dtype([
     ("magic", "S8"), ("header_bytes", "<u4"), ("tick_bytes", "<u4"), ("ticks", "<u8"), ("period_ns", "<i8"),
     ("limits", "<f8", 13), ("force_share", "<f8"), ("non_rt", "u1"), ("scene_hash", "S23"), ("overrides", "S1024"),
     ("scene_name", "S64"), ("law", "S64"), ("revision", "S64"), ("host", "S64"), ("began_utc", "S24"),
@@ -84,8 +83,7 @@ LOGGED_TICK = _placed(336, [
     ("written_force_N", "<f8", 3, 264), ("written_torque_Nm", "<f8", 3, 288), ("state", "u1", None, 312),
     ("limit", "<u2", None, 314), ("fault", "<u2", None, 316), ("given_energy_J", "<f8", None, 320),
     ("rms_force_N", "<f8", None, 328)])
-LOG_RECORD = _packed([
-    ("tick", LOGGED_TICK), ("crc", "<u4"), ("pad", "<u4")])
+LOG_RECORD = np.dtype([("tick", LOGGED_TICK), ("crc", "<u4"), ("pad", "<u4")])
 
 
 @dataclasses.dataclass
@@ -126,131 +124,173 @@ def text(field):
 
 def default_socket():
     """Where tactd listens without --socket."""
-    folder = os.environ.get("XDG_RUNTIME_DIR") or f"/tmp/tact-{os.getuid()}"
-    inside = pathlib.Path(folder, "tact") if os.environ.get("XDG_RUNTIME_DIR") else pathlib.Path(folder)
-    return inside / "telemetry.sock"
+    run = os.environ.get("XDG_RUNTIME_DIR")
+    return pathlib.Path(f"{run}/tact" if run else f"/tmp/tact-{os.getuid()}", "telemetry.sock")
 
 
 class live:  # noqa: N801  # an iterator with a hello
-    """Frames as they come, each one FRAME; ends when tactd leaves. hello, organ and tool are there from the start."""
+    """Frames as they come, each one FRAME; ends when tactd is gone, however it went. hello, organ and tool are there at once.
+    For a slow reader the kernel keeps about 50 frames and drops newer ones; newest=True gives the last of those that wait."""
 
-    def __init__(self, path=None, timeout_s=5.0):
-        path = pathlib.Path(path or default_socket())
+    def __init__(self, path=None, timeout_s=5.0, newest=False):
+        self._path, self._timeout_s, self._newest = pathlib.Path(path or default_socket()), timeout_s, newest
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._socket.settimeout(timeout_s)
         try:
-            self._socket.connect(str(path))
-            data, descriptor = self._hello()
-        except OSError as error:
-            self._socket.close()
-            raise Error(f"{path}: {error.strerror or error}; does tactd run, and as this user?") from None
-        self.hello = _one(data, HELLO, str(path))
-        _check_header(self.hello["header"], 1, str(path))
-        with os.fdopen(descriptor, "rb") as file:
-            self.organ, self.tool = _meshes(self.hello, os.pread(file.fileno(), os.fstat(file.fileno()).st_size, 0))
+            self._meet()
+        except Error:
+            self.close()
+            raise
 
-    def _hello(self):
-        data, control, _, _ = self._socket.recvmsg(65536, socket.CMSG_SPACE(struct.calcsize("i")))
-        for level, kind, content in control:
-            if (level, kind) == (socket.SOL_SOCKET, socket.SCM_RIGHTS):
-                return data, array.array("i", content[:4])[0]
-        raise OSError("no meshes came with the first message")
+    def _meet(self):
+        try:
+            self._socket.connect(str(self._path))
+        except OSError as error:
+            raise Error(f"{self._path}: {error.strerror or error}; does tactd run, and may this user look?") from None
+        data, descriptors = self._receive(socket.CMSG_SPACE(struct.calcsize("i")))
+        if not descriptors:
+            raise Error(f"{self._path}: the first message has no meshes; is this the telemetry of tactd?")
+        with os.fdopen(descriptors[0], "rb") as file:
+            meshes = os.pread(file.fileno(), os.fstat(file.fileno()).st_size, 0)
+        self.hello = self._message(data, HELLO, 1)
+        self.organ, self.tool = _meshes(self.hello, meshes, str(self._path))
+
+    def _receive(self, control_bytes=0):
+        try:
+            data, control, _, _ = self._socket.recvmsg(65536, control_bytes)
+        except socket.timeout:
+            raise Error(f"{self._path}: no frame for {self._timeout_s:g} s; tactd is stopped, or hangs") from None
+        descriptors = [array.array("i", content[:4])[0] for level, kind, content in control
+                       if (level, kind) == (socket.SOL_SOCKET, socket.SCM_RIGHTS)]
+        return data, descriptors
+
+    def _message(self, data, layout, kind):
+        header = _one(data, MESSAGE_HEADER, str(self._path))
+        if (header["magic"], header["kind"]) != (MAGIC, kind):
+            raise Error(f"{self._path}: is no telemetry of tactd")
+        if header["version"] != TELEMETRY_VERSION:
+            raise Error(f"{self._path}: telemetry of version {header['version']}, this reads {TELEMETRY_VERSION}; take the "
+                        "tact.py of that tactd")
+        return _one(data, layout, str(self._path))
+
+    def close(self):
+        self._socket.close()
 
     def __iter__(self):
         return self
 
     def __next__(self):
-        try:
-            data = self._socket.recv(65536)
-        except socket.timeout:
-            raise Error("no frame came: tactd stands still") from None
-        if not data:
-            self._socket.close()
+        if self._socket.fileno() < 0:
             raise StopIteration
-        frame = _one(data, FRAME, "telemetry")
-        _check_header(frame["header"], 2, "telemetry")
-        return frame
+        try:
+            data, _ = self._receive()
+            while self._newest and data and select.select([self._socket], [], [], 0)[0]:
+                data, _ = self._receive()
+        except OSError:
+            data = b""  # reset: gone as well
+        if not data:
+            self.close()
+            raise StopIteration
+        return self._message(data, FRAME, 2)
 
 
 def read_recording(path):
     """A recording of tact-view. Frames with a wrong checksum are left out, and damage says how many."""
-    data, damage = _unsealed(pathlib.Path(path))
+    data, damage = _unsealed(path)
     return _recording(data, str(path), damage)
 
 
 def read_ticks(path):
     """A log of tactd --record, or a black box. Ticks with a wrong checksum are left out, and damage says how many."""
-    data, damage = _unsealed(pathlib.Path(path))
-    header = _one(data[:LOG_HEADER.itemsize], LOG_HEADER, str(path))
-    if bytes(header["magic"]) != LOG_MAGIC or header["tick_bytes"] != LOG_RECORD.itemsize:
-        raise Error(f"{path}: is no tick log of this version; record it again, or read it with its own tact.py")
+    data, damage = _unsealed(path)
+    if not data.startswith(LOG_MAGIC):
+        raise Error(f"{path}: {_kind_of(data)}, no tick log or black box of this version")
+    header = _one(data, LOG_HEADER, str(path))
     if zlib.crc32(data[:LOG_HEADER.itemsize - 8]) != header["header_crc"]:
         raise Error(f"{path}: its header is damaged; nothing of it can be trusted")
-    body = data[LOG_HEADER.itemsize:]
-    count = min(int(header["ticks"]) or len(body), len(body) // LOG_RECORD.itemsize)
-    records = np.frombuffer(body, LOG_RECORD, count)
-    ticks, bad = _good(records, "tick", LOGGED_TICK.itemsize)
-    rest = body[count * LOG_RECORD.itemsize:] if header["ticks"] else b""
-    recording = _recording(rest, str(path), "") if len(rest) > FILE_HEADER.itemsize else None
-    return TickLog(header, ticks, recording, "; ".join(filter(None, (damage, bad))))
+    if (header["header_bytes"], header["tick_bytes"]) != (LOG_HEADER.itemsize, LOG_RECORD.itemsize):
+        raise Error(f"{path}: was written by another version; record it again, or read it with its own tact.py")
+    body, told = data[LOG_HEADER.itemsize:], int(header["ticks"])
+    count = len(body) // LOG_RECORD.itemsize
+    torn = count < told or not told and len(body) % LOG_RECORD.itemsize
+    count = min(count, told or count)
+    ticks, bad = _good(body, LOG_RECORD, count, "tick", LOGGED_TICK.itemsize)
+    recording, words = None, f"cut off in tick number {count}" if torn else ""
+    if told and not torn:
+        try:
+            recording = _recording(body[count * LOG_RECORD.itemsize:], str(path), "")
+        except Error as error:
+            words = f"its pictures: {str(error).removeprefix(f'{path}: ')}"
+    return TickLog(header, ticks, recording, "; ".join(filter(None, (damage, bad, words))))
 
 
 def _recording(data, where, damage):
-    header = _one(data[:FILE_HEADER.itemsize], FILE_HEADER, where)
+    if not data.startswith(RECORDING_MAGIC):
+        raise Error(f"{where}: {_kind_of(data)}, no recording")
+    header = _one(data, FILE_HEADER, where)
     behind = RECORDING_VERSIONS.get(int(header["version"]))
-    if bytes(header["magic"]) != b"tactrec\n" or behind is None or header["frame_bytes"] != FRAME.itemsize:
-        raise Error(f"{where}: is no recording of this version; record it again, or read it with its own tact.py")
-    first = FILE_HEADER.itemsize + HELLO.itemsize
-    setup = data[FILE_HEADER.itemsize:first + int(header["mesh_bytes"])]
+    if behind is None or (header["hello_bytes"], header["frame_bytes"]) != (HELLO.itemsize, FRAME.itemsize):
+        raise Error(f"{where}: a recording of version {header['version']}; record it again, or read it with its own tact.py")
+    end = FILE_HEADER.itemsize + HELLO.itemsize + int(header["mesh_bytes"])
+    if end > len(data):
+        raise Error(f"{where}: ends before its first frame")
+    setup = data[FILE_HEADER.itemsize:end]
     if zlib.crc32(setup) != header["setup_crc"]:
-        raise Error(f"{where}: its head is damaged; nothing of it can be shown")
-    hello = np.frombuffer(setup, HELLO, 1)[0]
-    organ, tool = _meshes(hello, setup[HELLO.itemsize:])
-    body = data[first + int(header["mesh_bytes"]):]
+        raise Error(f"{where}: its hello or its meshes are damaged; nothing of it can be shown")
+    hello = _one(setup, HELLO, where)
+    organ, tool = _meshes(hello, setup[HELLO.itemsize:], where)
     record = np.dtype([("frame", FRAME), ("crc", "<u4"), ("pad", "<u4"), ("operator", "V", behind)] if behind else FRAME_RECORD)
-    frames, bad = _good(np.frombuffer(body, record, len(body) // record.itemsize), "frame", FRAME.itemsize)
+    body = data[end:]
+    frames, bad = _good(body, record, len(body) // record.itemsize, "frame", FRAME.itemsize)
     return Recording(hello, organ, tool, frames, "; ".join(filter(None, (damage, bad))))
 
 
-def _good(records, name, size):
-    """The parts with a right checksum, and the words for the others."""
-    right = [i for i, record in enumerate(records) if zlib.crc32(record.tobytes()[:size]) == record["crc"]]
-    lost = len(records) - len(right)
-    return records[name][right].copy(), f"{lost} of {len(records)} {name}s are damaged" if lost else ""
+def _good(data, layout, count, name, size):
+    """The first part of each record that has the right checksum, and the words for the others."""
+    records, step = np.frombuffer(data, layout, count), layout.itemsize
+    right = [i for i in range(count) if zlib.crc32(data[i * step:i * step + size]) == records["crc"][i]]
+    if len(right) == count:
+        return records[name], ""
+    return records[name][right], f"{count - len(right)} of {count} {name}s are damaged"
+
+
+def _kind_of(data):
+    for magic, words in ((RECORDING_MAGIC, "a recording of tact-view (read_recording)"),
+                         (LOG_MAGIC, "a tick log or black box (read_ticks)"),
+                         (LOG_MAGIC[:-1], f"a tick log of version {chr(data[7]) if len(data) > 7 else '?'}")):
+        if data.startswith(magic):
+            return words
+    return "no file of tact"
 
 
 def _unsealed(path):
     """All before the seal, and what is wrong with the whole."""
     try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise Error(f"{path}: {error.strerror}; check the name") from None
+        if not stat.S_ISREG(os.stat(path).st_mode):
+            raise Error(f"{path}: is no regular file; name one")
+        data = pathlib.Path(path).read_bytes()
+    except (OSError, ValueError) as error:
+        raise Error(f"{path}: {getattr(error, 'strerror', None) or error}; check the name, and who may read it") from None
     end = data[-48:]
     if len(end) < 48 or end[:8] != SEAL:
-        return data, "it has no end: it was cut off, or its program was killed"
+        return data, "it has no end: it was cut off, its program was killed, or it is still being written"
     (count,) = struct.unpack("<Q", end[8:16])
-    whole = count == len(data) - 48 and hashlib.sha256(data[:-48]).digest() == end[16:]
+    whole = count == len(data) - 48 and hashlib.sha256(memoryview(data)[:-48]).digest() == end[16:]
     return data[:-48], "" if whole else "its bytes are not those that were written"
 
 
 def _one(data, layout, where):
     if len(data) < layout.itemsize:
-        raise Error(f"{where}: {len(data)} bytes where {layout.itemsize} are wanted; is it tact's, and of this version?")
+        raise Error(f"{where}: {len(data)} bytes where {layout.itemsize} are due; is it whole, and of this version?")
     return np.frombuffer(data, layout, 1)[0]
 
 
-def _check_header(header, kind, where):
-    if (header["magic"], header["version"], header["kind"]) != (MAGIC, TELEMETRY_VERSION, kind):
-        raise Error(f"{where}: telemetry of version {header['version']}, this reads {TELEMETRY_VERSION}; take the tact.py of "
-                    "that tactd")
-
-
-def _meshes(hello, data):
+def _meshes(hello, data, where):
     out, at = [], 0
     for part in ("organ", "tool"):
         vertices, triangles = int(hello[part + "_vertices"]), int(hello[part + "_triangles"])
         if at + 12 * (vertices + triangles) > len(data):
-            raise Error("the meshes are shorter than they say")
+            raise Error(f"{where}: its meshes are shorter than the hello says")
         vertex = np.frombuffer(data, "<f4", 3 * vertices, at).reshape(-1, 3)
         triangle = np.frombuffer(data, "<u4", 3 * triangles, at + 12 * vertices).reshape(-1, 3)
         out.append(Mesh(vertex, triangle))

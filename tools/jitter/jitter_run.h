@@ -10,7 +10,7 @@
 
 #include "firmware/pc/environment.h"
 #include "firmware/pc/pc_check.h"
-#include "firmware/run/loop_thread.h"
+#include "firmware/run/thread_costs.h"
 #include "model/result.h"
 #include "tools/jitter/costs.h"
 #include "tools/jitter/loop_back.h"

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "firmware/run/loop_thread.h"
+#include "firmware/run/thread_costs.h"
 #include "tools/limits/case_run.h"
 
 namespace tact::tools::limits {

@@ -63,6 +63,26 @@ TEST_F(RtLoopTest, LetsGoWhateverEndsTheLoop) {
   EXPECT_FALSE(loop.progress().running()) << "the watch has nothing left to watch";
 }
 
+TEST_F(RtLoopTest, AZeroThatDoesNotReachTheDeviceAtTheEndIsAFault) {
+  for (const bool of_device : {true, false}) {
+    requests.fault.store(Fault::kNone);
+    press();
+    (of_device ? device.write_fault : lines.write_fault) = Fault::kDeviceFailed;
+    loop.release_device();
+    EXPECT_EQ(requests.fault.load(), Fault::kDeviceFailed);
+    device.write_fault = lines.write_fault = Fault::kNone;
+  }
+}
+
+TEST_F(RtLoopTest, AFaultOfTheLastTicksWriteIsNotForgotten) {
+  press();
+  device.write_fault = Fault::kDeviceFailed;
+  run_ticks(1);
+  device.write_fault = Fault::kNone;
+  loop.release_device();
+  EXPECT_EQ(requests.fault.load(), Fault::kDeviceFailed);
+}
+
 TEST_F(RtLoopTest, TicksLieOnTheGridOfTheClockWheneverItStarts) {
   for (int i = 0; i < 3; ++i) {
     run_ticks(1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/run/loop_thread.h"
+#include "firmware/run/thread_costs.h"
 
 #include <pthread.h>
 #include <sys/resource.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// loop_thread.h - the thread in which a loop runs: real time before its first tick, ordinary again
+// thread_costs.h - the thread in which a loop runs: real time before its first tick, ordinary again
 // after its last, and what the kernel and the allocator counted between them.
 #pragma once
 

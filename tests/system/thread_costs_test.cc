@@ -14,7 +14,7 @@
 #include "firmware/pc/rt_needs.h"
 #include "tests/system/tactd_fixture.h"
 
-namespace tact::tests::loop_thread_test {
+namespace tact::tests::thread_costs_test {
 
 using nlohmann::json;
 using LoopThread = Tactd;
@@ -90,4 +90,4 @@ TEST_F(LoopThread, MakesNoSystemCallButSleep) {
   EXPECT_GT(sleeps, 2000) << "the trace saw the loop: " << traced.output;
 }
 
-}  // namespace tact::tests::loop_thread_test
+}  // namespace tact::tests::thread_costs_test
