@@ -135,7 +135,8 @@ TEST_F(ForceDimension, OneReadAndOneForcePerCycleAndNoneFromTheLoop) {
   const long more = stub.calls("dhdGetPositionAndOrientationFrame") - reads;
   EXPECT_LE(std::abs(stub.calls("dhdSetForceAndTorqueAndGripperForce") - forces - more), 1);
   EXPECT_GT(more, 200);
-  device->read(sample, now_ns());  // without a sleep in between: nothing is asked here
+  static_cast<void>(
+      device->read(sample, now_ns()));  // without a sleep in between: nothing is asked here
   EXPECT_LE(stub.calls("dhdEnableForce"), 2 + 2 * silences)
       << "once off while opening, once on; the same for each silence that a busy PC made";
 }
@@ -182,8 +183,8 @@ TEST_F(ForceDimension, ALibraryThatHangsStopsNothingButItself) {
   std::int64_t in_calls_ns = 0;
   for (int i = 0; i < 20; ++i) {
     const std::int64_t begin_ns = now_ns();
-    device->read(sample, begin_ns);
-    device->write({});
+    static_cast<void>(device->read(sample, begin_ns));
+    static_cast<void>(device->write({}));
     in_calls_ns += now_ns() - begin_ns;
     fresh += sample.fresh ? 1 : 0;
     sleep_ms(1);

@@ -32,7 +32,7 @@ class ForceDimensionTrouble : public testing::Test {
   void tick() {
     sleep_ms(1);
     fault = device->read(sample, now_ns());
-    device->write({.force_N = {0, 0, 2}, .torque_Nm = {}});
+    static_cast<void>(device->write({.force_N = {0, 0, 2}, .torque_Nm = {}}));
   }
   /// The fault that comes within a second, and stays when its cause is gone.
   Fault lasting_fault() {
