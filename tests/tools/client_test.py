@@ -108,7 +108,11 @@ class Client(unittest.TestCase):
 
     def test_live_frames_and_the_recording_of_the_viewer_agree(self):
         path, recording = self.folder / "socket", self.folder / "run.tactrec"
-        viewer = subprocess.Popen([str(BUILD / "tact-view"), "--socket", str(path), "--port", "0", "--record", str(recording)],
+        page = self.folder / "page"  # nobody looks at it here
+        page.mkdir()
+        (page / "index.html").write_text("<!doctype html>")
+        viewer = subprocess.Popen([str(BUILD / "tact-view"), "--socket", str(path), "--port", "0", "--record", str(recording),
+                                   "--page", str(page)],
                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         run = tactd("--seconds", 3, "--no-black-box", "--socket", path)
         try:
