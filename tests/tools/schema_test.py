@@ -136,10 +136,12 @@ def one_of_each_kind(port, token):
 
 def viewer_documents(build, folder):
     """What tact-view says when it is ready, to a page, and of the export of what it has recorded."""
-    path, recording = folder / "socket", folder / "recording"
+    path, recording, page = folder / "socket", folder / "recording", folder / "page"
+    page.mkdir()
+    (page / "index.html").write_text("<!doctype html>")
     view = str(build / "tact-view")
     with subprocess.Popen([view, "--socket", str(path), "--port", "0", "--record", str(recording), "--figure",
-                           "--json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as viewer:
+                           "--page", str(page), "--json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as viewer:
         try:
             ready = json.loads(viewer.stdout.readline())
             with subprocess.Popen([str(build / "tactd"), str(LIVER), "--seconds", "20", "--no-black-box", "--socket", str(path)],
