@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/contact/blade.h"
 
+#include <algorithm>
+
 namespace tact::model::contact {
 namespace {
 
@@ -23,6 +25,24 @@ BladeSweep sweep(const Blade& blade, const Tool& from, const Tool& to) RT_SAFE {
           .from_b_m = from.position_m + rotate(from.orientation, blade.b_m),
           .to_a_m = to.position_m + rotate(to.orientation, blade.a_m),
           .to_b_m = to.position_m + rotate(to.orientation, blade.b_m)};
+}
+
+SweepBox box_around(const BladeSweep& s) RT_SAFE {
+  const auto low = [](const Vec3& a, const Vec3& b) RT_SAFE {
+    return Vec3{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
+  };
+  const auto high = [](const Vec3& a, const Vec3& b) RT_SAFE {
+    return Vec3{std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
+  };
+  return {.low_m = low(low(s.from_a_m, s.from_b_m), low(s.to_a_m, s.to_b_m)),
+          .high_m = high(high(s.from_a_m, s.from_b_m), high(s.to_a_m, s.to_b_m))};
+}
+
+bool misses(const SweepBox& box, const Vec3& p, const Vec3& q) RT_SAFE {
+  const Vec3 &low = box.low_m, &high = box.high_m;
+  return (p.x < low.x && q.x < low.x) || (p.x > high.x && q.x > high.x) ||
+         (p.y < low.y && q.y < low.y) || (p.y > high.y && q.y > high.y) ||
+         (p.z < low.z && q.z < low.z) || (p.z > high.z && q.z > high.z);
 }
 
 bool crosses(const BladeSweep& s, const Vec3& p_m, const Vec3& q_m) RT_SAFE {

@@ -19,7 +19,17 @@ struct BladeSweep {
   Vec3 to_a_m{}, to_b_m{};
 };
 
+/// The least box around a sweep.
+struct SweepBox {
+  Vec3 low_m{}, high_m{};
+};
+
 BladeSweep sweep(const Blade& blade, const Tool& from, const Tool& to) RT_SAFE;
+SweepBox box_around(const BladeSweep& sweep) RT_SAFE;
+
+/// Does the segment p-q lie wholly beyond one face of the box? Then it does not cross the sweep:
+/// six comparisons in place of ten volumes. False for anything not finite.
+bool misses(const SweepBox& box, const Vec3& p_m, const Vec3& q_m) RT_SAFE;
 
 /// Does the segment p-q pass through the sweep? False for anything not finite.
 bool crosses(const BladeSweep& sweep, const Vec3& p_m, const Vec3& q_m) RT_SAFE;

@@ -195,10 +195,12 @@ void PatchRegion::take_from_velocities(double energy_J) RT_SAFE {
 }
 
 std::size_t PatchRegion::cut(const contact::BladeSweep& sweep) RT_SAFE {
+  const contact::SweepBox box = box_around(sweep);
   std::size_t cuts = 0;
   for (std::size_t k = 0; k < springs_;) {
     const Spring& s = spring_[k];
-    if (!crosses(sweep, position_[s.i], position_[s.j]) || !open(spring_edge_[k])) {
+    const Vec3 &p_m = position_[s.i], &q_m = position_[s.j];
+    if (misses(box, p_m, q_m) || !crosses(sweep, p_m, q_m) || !open(spring_edge_[k])) {
       ++k;
       continue;
     }

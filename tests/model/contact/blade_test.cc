@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 namespace tact::model::contact::blade_test {
 
@@ -53,6 +54,26 @@ TEST(Blade, RefusesWhatIsNoNumber) {
     broken.to_a_m.y = bad;
     EXPECT_FALSE(crosses(broken, {0.5, -1, 0}, {0.5, 1, 0}));
   }
+}
+
+TEST(Blade, MissesNothingThatItCrosses) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> at(-2.0, 2.0);
+  const auto place = [&] { return Vec3{at(random), at(random), at(random)}; };
+  int crossed = 0, missed = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const BladeSweep s{
+        .from_a_m = place(), .from_b_m = place(), .to_a_m = place(), .to_b_m = place()};
+    const Vec3 p_m = place(), q_m = place();
+    const bool beyond = misses(box_around(s), p_m, q_m);
+    if (beyond) ASSERT_FALSE(crosses(s, p_m, q_m)) << i;
+    crossed += crosses(s, p_m, q_m);
+    missed += beyond;
+  }
+  EXPECT_GT(crossed, 1000);
+  EXPECT_GT(missed, 10000) << "or it saves nothing";
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(misses(box_around(kSweep), {nan, nan, nan}, {nan, nan, nan}));
 }
 
 TEST(Blade, MovesWithTheTool) {
