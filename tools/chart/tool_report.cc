@@ -13,13 +13,8 @@
 namespace tact::tools::chart {
 namespace {
 
-using ground_truth::ToolPlace;
 using ground_truth::ToolReference;
 using nlohmann::ordered_json;
-
-std::string name_of_place(const ToolPlace& place) {
-  return place.vertex ? fmt::format("{}", *place.vertex) : "hand's";
-}
 
 std::string mm_text(double depth_m) { return fmt::format("{:g}", depth_m * 1e3); }
 
@@ -41,7 +36,7 @@ ordered_json summary_of(const ToolRow& row, const ToolReference& reference) {
     out["own_worst_ratio_at_mm"][mm_text(reference.places.front().cases[k].depth_m)] =
         row.errors.own_worst[k];
   for (std::size_t i = 0; i < reference.places.size(); ++i)
-    out["place_rms_ratio"][name_of_place(reference.places[i])] = row.errors.place_rms_ratio[i];
+    out["place_rms_ratio"][name_of(reference.places[i])] = row.errors.place_rms_ratio[i];
   out["tick_median_us"] = number_or_null(row.timing.median_us);
   out["tick_p999_us"] = number_or_null(row.timing.p999_us);
   out["instructions"] = number_or_null(row.timing.instructions);
@@ -65,7 +60,7 @@ report::Table tool_table(const std::vector<ToolRow>& rows, const ToolReference& 
   for (const ToolRow& row : rows)
     for (const ToolSample& s : row.samples) {
       const auto& place = reference.places[s.place];
-      table.add({std::string(name_of(row.law)), name_of_place(place), place.cases[s.depth].depth_m,
+      table.add({std::string(name_of(row.law)), name_of(place), place.cases[s.depth].depth_m,
                  s.force_N, s.reference_N, s.own_ratio(), place.cases[s.depth].force_error_ratio});
     }
   return table;
@@ -110,9 +105,9 @@ std::string tool_text(const std::vector<ToolRow>& rows, const ToolReference& ref
     for (const ToolSample& s : row.samples) {
       if (s.place != place) {
         place = s.place;
-        out += fmt::format("{}  {:<12} {:>8.2f} {:>8} {:>9}", s.depth + s.place > 0 ? "\n" : "",
-                           name_of_place(reference.places[place]), 100.0 * e.place_rms_ratio[place],
-                           "", "");
+        out +=
+            fmt::format("{}  {:<12} {:>8.2f} {:>8} {:>9}", s.depth + s.place > 0 ? "\n" : "",
+                        name_of(reference.places[place]), 100.0 * e.place_rms_ratio[place], "", "");
       }
       out += percent(s.own_ratio());
     }

@@ -27,6 +27,7 @@ ToolCase tool_case_of(const json& j) {
 ToolPlace place_of(const json& j) {
   const json &v = j.at("vertex"), &q = j.at("orientation_wxyz");
   ToolPlace place{.vertex = {},
+                  .slid_m = j.contains("slid_m") ? vector_of(j.at("slid_m")) : Vec3{},
                   .point_m = vector_of(j.at("point_m")),
                   .direction = vector_of(j.at("direction")),
                   .orientation = {q.at(0).get<double>(), q.at(1).get<double>(),
@@ -91,14 +92,21 @@ std::string text_of(const ToolPlace& place) {
   std::string cases;
   for (const ToolCase& c : place.cases) cases += (cases.empty() ? "\n  " : ",\n  ") + text_of(c);
   return fmt::format(
-      "{{\"vertex\": {}, \"point_m\": {}, \"direction\": {},\n"
+      "{{\"vertex\": {}{}, \"point_m\": {}, \"direction\": {},\n"
       "  \"orientation_wxyz\": [{:.9g}, {:.9g}, {:.9g}, {:.9g}]{}, \"cases\": [{}]}}",
-      place.vertex ? std::to_string(*place.vertex) : "null", vector_text(place.point_m),
-      vector_text(place.direction), q.w, q.x, q.y, q.z,
+      place.vertex ? std::to_string(*place.vertex) : "null",
+      place.slid_m == Vec3{} ? "" : ", \"slid_m\": " + vector_text(place.slid_m),
+      vector_text(place.point_m), vector_text(place.direction), q.w, q.x, q.y, q.z,
       list_text(",\n  \"skin\": [{}]", place.skin), cases);
 }
 
 }  // namespace
+
+std::string name_of(const ToolPlace& place) {
+  if (place.vertex) return std::to_string(*place.vertex);
+  if (place.slid_m == Vec3{}) return "hand's";
+  return fmt::format("slid {:.3g} mm", norm(place.slid_m) * 1e3);
+}
 
 Quat turn_between(const Vec3& from, const Vec3& to) {
   const double along = dot(from, to);

@@ -3,7 +3,9 @@
 // --tool.
 //
 // All spheres of the tool are one rigid body without friction; the organ is linear elastic. Where:
-// the point that the simulated hand touches, and some that no fit has used. The tool comes to each
+// the point that the simulated hand touches, points that its strokes slide to, and some that no fit
+// has used. Without friction a slide leaves nothing behind, so it is felt as a press at its end.
+// The tool comes to each
 // as the hand brings it to its own: turned from its rest by `orientation`, the shortest turn from
 // the hand's way in to `direction`. At depth d its lowest point, seen along `direction`, lies d
 // beyond `point_m`: depths are those of a press stroke.
@@ -30,7 +32,8 @@ struct ToolCase {
 };
 
 struct ToolPlace {
-  std::optional<std::uint32_t> vertex;  // of the organ's mesh; none: the hand's own site
+  std::optional<std::uint32_t> vertex;  // of the organ's mesh; none: the hand's own site, slid
+  model::Vec3 slid_m{};                   // from the hand's own site by a stroke, 0: not
   model::Vec3 point_m{};                // of the tool's lowest point at depth 0, mesh's own frame
   model::Vec3 direction{};              // into the tissue, unit
   model::Quat orientation{};
@@ -43,6 +46,9 @@ struct ToolReference {
   std::vector<model::contact::ProbeSphere> sphere;  // tool frame
   std::vector<ToolPlace> places;
 };
+
+/// "hand's", "slid 10 mm", "1586"
+std::string name_of(const ToolPlace& place);
 
 /// The shortest turn that brings one unit vector to another.
 model::Quat turn_between(const model::Vec3& from, const model::Vec3& to);

@@ -39,9 +39,10 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("scene", o.scene, "scene file (TOML) with [elastic] and [[reference_site]]");
   app.add_option("--out", o.out, "file to write; without it, a table of forces only");
   app.add_option("--set", o.overrides, "one key of the scene, as KEY=VALUE; repeatable");
-  app.add_flag("--tool", o.tool,
-               "press all spheres of the tool together, at the hand's own site and at six places "
-               "that no law is fitted on (README.md says how they are chosen)");
+  app.add_flag(
+      "--tool", o.tool,
+      "press all spheres of the tool together, at the hand's own site, along its slides and "
+      "at six places that no law is fitted on (README.md says how they are chosen)");
   app.add_flag("--skin", o.skin, "with --tool: also how far the skin around it goes")
       ->needs("--tool");
   app.add_flag("--sideways", o.sideways, "drag a round patch along the surface of each site")
@@ -221,8 +222,7 @@ void print_table(const ground_truth::ToolReference& data) {
              "of each sphere N");
   for (const ground_truth::ToolPlace& place : data.places)
     for (const ground_truth::ToolCase& c : place.cases)
-      fmt::print("{:>9} {:>9.3g} {:>10.5f} {:>11.2f}  {:.5f}\n",
-                 place.vertex ? fmt::format("{}", *place.vertex) : "hand's", c.depth_m * 1e3,
+      fmt::print("{:>9} {:>9.3g} {:>10.5f} {:>11.2f}  {:.5f}\n", name_of(place), c.depth_m * 1e3,
                  c.force_N, c.force_error_ratio * 100.0, fmt::join(c.sphere_N, " "));
 }
 

@@ -26,7 +26,8 @@ constexpr double kThickness = 2.0;    // of the deepest press
 constexpr double kFromHeld = 3.0;     // of the radius
 constexpr int kSamples = 10;          // of a sphere's radius, to find where it first touches
 constexpr double kSkin_m = 0.03;      // from the point, whose way is kept
-constexpr double kFromAbove = 5.0;    // radii along the way, in which a first touch is looked for
+constexpr double kLeastSlide_m = 1e-3;
+constexpr double kFromAbove = 5.0;  // radii along the way, in which a first touch is looked for
 
 /// The tool's spheres where it stands at depth 0.
 std::vector<RigidSphere> spheres_at(const std::vector<ProbeSphere>& spheres, const ToolPlace& place,
@@ -155,6 +156,45 @@ std::vector<std::uint32_t> farthest_of(const std::vector<std::uint32_t>& candida
   return out;
 }
 
+/// The places that no fit has used: tool_plan.h has the rule.
+std::vector<std::uint32_t> unseen_of(const model::scene::Scene& scene,
+                                     const model::mesh::SurfaceMesh& surface,
+                                     const PlaceFinder& finder) {
+  std::vector<Vec3> taken_m{scene.hand_site_m - scene.organ.position_m};
+  for (const auto& site : scene.reference_sites)
+    if (!site.held_out && site.vertex < surface.vertex_m.size())
+      taken_m.push_back(surface.vertex_m[site.vertex]);
+  std::vector<std::uint32_t> candidates;
+  for (std::uint32_t v = 0; v < surface.vertex_m.size(); ++v)
+    if (finder.is_reachable(v)) candidates.push_back(v);
+  return farthest_of(candidates, surface.vertex_m, std::move(taken_m));
+}
+
+/// How far the hand's strokes slide the open tool along the tissue from its site: the middle and the
+/// end of each slide, each place once.
+std::vector<Vec3> slides_of(const model::scene::Scene& scene) {
+  const double reach_m = model::scene::reach_m(scene.tool.spheres, scene.hand_inward);
+  const auto along_m = [&](const Vec3& tool_m) {  // of the surface, from the site
+    const Vec3 off_m = tool_m - scene.hand_site_m;
+    return off_m - dot(off_m, scene.hand_inward) * scene.hand_inward;
+  };
+  const auto presses = [&](const model::HandWaypoint& w) {
+    const double depth_m = dot(w.position_m - scene.hand_site_m, scene.hand_inward) + reach_m;
+    return depth_m > 0.0 && w.grip_ratio == 0.0;
+  };
+  std::vector<Vec3> out;
+  for (std::size_t i = 1; i < scene.hand.path.size(); ++i) {
+    const auto &from = scene.hand.path[i - 1], &to = scene.hand.path[i];
+    const Vec3 start_m = along_m(from.position_m), end_m = along_m(to.position_m);
+    if (!presses(from) || !presses(to) || norm(end_m - start_m) < kLeastSlide_m) continue;
+    for (const Vec3& slid_m : {0.5 * (start_m + end_m), end_m})
+      if (std::none_of(out.begin(), out.end(),
+                       [&](const Vec3& o) { return norm(o - slid_m) < kLeastSlide_m; }))
+        out.push_back(slid_m);
+  }
+  return out;
+}
+
 }  // namespace
 
 void ask_for_skin(ToolPlan& plan) {
@@ -187,18 +227,15 @@ Result<ToolPlan> tool_plan_of(const model::scene::Scene& scene,
   const PlaceFinder finder(surface, plan.organ.held, plan.sphere, inward, plan.depths_m.back());
   plan.places.push_back(
       {.vertex = {}, .point_m = site_m, .direction = inward, .orientation = {}, .cases = {}});
-  std::vector<std::uint32_t> chosen = vertices;
-  if (chosen.empty()) {
-    std::vector<Vec3> taken_m{site_m};
-    for (const auto& site : scene.reference_sites)
-      if (!site.held_out && site.vertex < surface.vertex_m.size())
-        taken_m.push_back(surface.vertex_m[site.vertex]);
-    std::vector<std::uint32_t> candidates;
-    for (std::uint32_t v = 0; v < surface.vertex_m.size(); ++v)
-      if (finder.is_reachable(v)) candidates.push_back(v);
-    chosen = farthest_of(candidates, surface.vertex_m, std::move(taken_m));
-  }
-  for (const std::uint32_t v : chosen) plan.places.push_back(finder.touching(finder.place_at(v)));
+  for (const Vec3& slid_m : vertices.empty() ? slides_of(scene) : std::vector<Vec3>{})
+    plan.places.push_back(finder.touching({.vertex = {},
+                                           .slid_m = slid_m,
+                                           .point_m = site_m + slid_m,
+                                           .direction = inward,
+                                           .orientation = {},
+                                           .cases = {}}));
+  for (const std::uint32_t v : vertices.empty() ? unseen_of(scene, surface, finder) : vertices)
+    plan.places.push_back(finder.touching(finder.place_at(v)));
   return plan;
 }
 

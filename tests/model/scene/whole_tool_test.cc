@@ -120,10 +120,10 @@ TEST_F(WholeTool, PressesTheLiverByItsChainsWithinATenth) {
   expect_pressed_within(0.10);
 }
 
-// Two of the 28 miss the goal of 7 %, both at rims: known errors, which shall not grow.
+// Two of the 36 miss the goal of 7 %, both at rims: known errors, which shall not grow.
 TEST_F(WholeTool, PressesEveryPlaceOfTheReferenceAsFiniteElementsDo) {
   const nlohmann::json truth = reference("liver_tool.json");
-  ASSERT_EQ(truth["places"].size(), 7U);
+  ASSERT_EQ(truth["places"].size(), 9U);
   for (const nlohmann::json& place : truth["places"]) {
     const std::vector<double> felt_N = felt_down_the_way_N(place);
     ASSERT_EQ(felt_N.size(), 4U);

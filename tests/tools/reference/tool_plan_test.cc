@@ -35,17 +35,40 @@ TEST(SurfaceRays, GoThroughABall) {
   EXPECT_FALSE(rays.thickness({0, 0, 0.05}, {0, 0, 1})) << "behind the start";
 }
 
+TEST(ToolPlan, PressesAlongTheSlidesOfTheHand) {
+  const auto plan = tool_plan_of(liver(), {}, {}, 1);
+  ASSERT_TRUE(plan) << plan.error().sentence;
+  const auto& middle = plan->places[1];  // of one slide of 20 mm along y
+  const auto& end = plan->places[2];
+  EXPECT_EQ(name_of(plan->places[0]) + ", " + name_of(middle) + ", " + name_of(end),
+            "hand's, slid 10 mm, slid 20 mm");
+  EXPECT_NEAR(norm(end.slid_m - Vec3{0, 0.020, 0}), 0.0, 1e-12);
+  for (const auto* place : {&middle, &end}) {
+    EXPECT_FALSE(place->vertex);
+    EXPECT_EQ(place->direction, plan->places[0].direction);
+    EXPECT_EQ(place->orientation, model::Quat{});
+    const Vec3 off_m = place->point_m - plan->places[0].point_m - place->slid_m;
+    EXPECT_NEAR(norm(off_m - Vec3{0, 0, off_m.z}), 0.0, 1e-12) << "down to where it first touches";
+  }
+  EXPECT_EQ(tool_plan_of(liver(), {1985}, {}, 1)->places.size(), 2U) << "those asked for alone";
+  model::scene::Scene gripped = liver();
+  for (auto& point : gripped.hand.path) point.grip_ratio = 1.0;
+  EXPECT_EQ(tool_plan_of(gripped, {}, {}, 1)->places.size(), 1 + kUnseenPlaces)
+      << "a pull, no slide";
+}
+
 TEST(ToolPlan, PressesAtTheHandsSiteAndAtSixPlacesThatNoFitUses) {
   const auto plan = tool_plan_of(liver(), {}, {}, 1);
   ASSERT_TRUE(plan) << plan.error().sentence;
-  ASSERT_EQ(plan->places.size(), 1 + kUnseenPlaces);
+  constexpr std::size_t kOnTheWay = 3;  // the site and its slide
+  ASSERT_EQ(plan->places.size(), kOnTheWay + kUnseenPlaces);
   EXPECT_FALSE(plan->places[0].vertex);
   EXPECT_NEAR(norm(plan->places[0].point_m - Vec3{0, 0, 0.03}), 0.0, 1e-12) << "of the mesh";
   EXPECT_EQ(plan->places[0].orientation, model::Quat{});
   std::set<std::size_t> fitted, chosen;
   for (const auto& site : liver().reference_sites)
     if (!site.held_out) fitted.insert(site.vertex);
-  for (std::size_t i = 1; i < plan->places.size(); ++i) {
+  for (std::size_t i = kOnTheWay; i < plan->places.size(); ++i) {
     const auto& place = plan->places[i];
     EXPECT_EQ(fitted.count(*place.vertex), 0U);
     EXPECT_TRUE(chosen.insert(*place.vertex).second) << "each once";
