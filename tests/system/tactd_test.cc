@@ -21,7 +21,7 @@ TEST_F(Tactd, ChecksAGoodSceneAndLeaves) {
   const Outcome outcome = tactd(kLiver + " --check");
   EXPECT_EQ(outcome.status, 0) << outcome.output;
   for (const char* part : {"sound", "force of the whole tool: 1.5 % of the peak off",
-                           "against linear finite elements at 7 places; measured 20", ", hash ",
+                           "against linear finite elements at 9 places; measured 20", ", hash ",
                            "law rhombus chain", "stiffness ", " of 354.", " of 50 us a tick"})
     EXPECT_TRUE(has(outcome, part)) << part << " in: " << outcome.output;
 }
