@@ -58,7 +58,7 @@ class Sources:
         wall = re.search(r'kWallName = "([\w-]+)"', (root / "tools/limits/plan.h").read_text())
         self.cases = set(re.findall(r'Case\{\.name = "([\w-]+)"', plan)) | ({wall[1]} if wall else set())
         self.bench = bench_cases(root)  # name: None, "" or the fault that it latches
-        self.wanted = {line for path in (root / "tests/mutations").glob("*.patch") for line in seen_by(path.read_text())}
+        self.wanted = {line for path in (root / "tests/mutations").rglob("*.patch") for line in seen_by(path.read_text())}
 
 
 def bench_cases(root):
