@@ -37,7 +37,6 @@
 #include "firmware/gate/fader.h"
 #include "firmware/gate/limiter.h"
 #include "firmware/gate/thermal_limit.h"
-#include "hal/device.h"
 #include "model/fault.h"
 #include "model/limits.h"
 #include "model/types.h"
@@ -60,9 +59,6 @@ enum class Stage : std::uint8_t {
 inline constexpr std::size_t kStageCount = 9;
 inline constexpr std::array<const char*, kStageCount> kStageName{
     "finite", "fresh", "armed", "workspace", "passivity", "magnitude", "slew", "power", "ramp"};
-
-/// What holds for this scene on this device: the smaller of the two, everywhere.
-model::Limits limits_for(const model::Limits& scene, const hal::DeviceInfo& device);
 
 struct GateInput {
   Wrench wanted;

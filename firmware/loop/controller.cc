@@ -21,7 +21,7 @@ void Controller::touch(const TickInput& input) RT_SAFE {
 }
 
 void Controller::feel(const TickInput& input) RT_SAFE {
-  wanted_ = contact_.feel(input.sample.tool, supervisor_.armed());
+  felt_ = contact_.feel(input.sample.tool, supervisor_.armed());
 }
 
 void Controller::tell_shape() RT_SAFE {
@@ -32,7 +32,7 @@ void Controller::tell_shape() RT_SAFE {
 Fault Controller::find_fault(const TickInput& input, bool finite, bool too_late) const RT_SAFE {
   if (latches(input.device_fault)) return input.device_fault;
   if (!finite) return Fault::kSampleNotFinite;
-  if (contact_.law_broke()) return Fault::kLawBroke;
+  if (felt_.is_broken) return Fault::kLawBroke;
   if (too_late && supervisor_.armed()) return Fault::kLoopLate;
   return Fault::kNone;
 }
@@ -47,10 +47,10 @@ TickOutput Controller::judge(const TickInput& input) RT_SAFE {
       {.sample_good = input.sample.fresh && finite, .ready = input.ready, .fault = fault});
   if (supervisor_.armed() && !armed_before) {  // arming inside the organ pushes nothing
     contact_.reset();
-    wanted_ = {};
+    felt_ = {};
   }
 
-  const gate::GateVerdict verdict = gate_.judge({.wanted = wanted_,
+  const gate::GateVerdict verdict = gate_.judge({.wanted = felt_.wrench,
                                                  .tool = input.sample.tool,
                                                  .fresh = input.sample.fresh,
                                                  .armed = supervisor_.armed(),
@@ -58,10 +58,8 @@ TickOutput Controller::judge(const TickInput& input) RT_SAFE {
   supervisor_.trip(verdict.fault);
   Fault limit = verdict.acting;
   // A force that is no longer the tissue's is told before what the gate does with it.
-  for (const model::contact::SphereTouch& touch : contact_.touches())
-    if (!lets_go(limit) && touch.law_status == model::law::LawStatus::kSaturated)
-      limit = Fault::kLawSaturated;
-  newest_ = {.wanted = wanted_,
+  if (felt_.is_saturated && !lets_go(limit)) limit = Fault::kLawSaturated;
+  newest_ = {.wanted = felt_.wrench,
              .written = verdict.wrench,
              .state = supervisor_.state(),
              .limit = limit,

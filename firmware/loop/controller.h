@@ -71,7 +71,7 @@ class Controller {
   gate::Gate gate_;
   LateWatch late_watch_;
   Supervisor supervisor_;
-  model::Wrench wanted_;
+  model::contact::ContactResponse felt_;  // of this tick
   TickOutput newest_;
   model::contact::PatchShape shape_;
   ShapeSlot shapes_;

@@ -48,6 +48,22 @@ void RtLoop::release_device() RT_SAFE {
     if (fault != Fault::kNone) requests_.trip(fault);  // no tick will come that could tell it
 }
 
+bool RtLoop::hear_requests() RT_SAFE {
+  const bool asked_before = std::exchange(asked_, requests_.arm.load(std::memory_order_relaxed));
+  record_.input.commands = {.arm = asked_ || arms_at_start(),
+                            .stop = requests_.stop.load(std::memory_order_relaxed),
+                            .reset = requests_.reset.load(std::memory_order_relaxed)};
+  return asked_ && !asked_before;
+}
+
+void RtLoop::answer_requests(bool asks_anew) RT_SAFE {
+  const State state = record_.output.state;
+  if (asks_anew && state != State::kArmed)
+    requests_.refused.fetch_add(1, std::memory_order_relaxed);
+  if (state == State::kArmed || state == State::kStopped)
+    requests_.arm_at_start.store(false, std::memory_order_relaxed);
+}
+
 // Every second tick, as only an edge arms.
 bool RtLoop::arms_at_start() const RT_SAFE {
   return requests_.arm_at_start.load(std::memory_order_relaxed) &&
@@ -114,49 +130,41 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   record_.due_ns = due_ns;
   record_phase(Phase::kWake, wake_ns - due_ns);
 
+  const bool asks_anew = hear_requests();
   TickInput& input = record_.input;
-  const bool asked_before = std::exchange(asked_, requests_.arm.load(std::memory_order_relaxed));
-  input.commands = {.arm = asked_ || arms_at_start(),
-                    .stop = requests_.stop.load(std::memory_order_relaxed),
-                    .reset = requests_.reset.load(std::memory_order_relaxed)};
   input.device_fault = read(wake_ns);
   input.ready = lines_.enabled() && device_.ready();
-  const std::int64_t read_ns = marked_ns();
-  record_phase(Phase::kRead, read_ns - wake_ns);
+  const std::int64_t read_ns = end_phase(Phase::kRead, wake_ns);
 
   controller_.touch(input);
-  const std::int64_t touched_ns = marked_ns();
-  record_phase(Phase::kTouch, touched_ns - read_ns);
-
+  const std::int64_t touched_ns = end_phase(Phase::kTouch, read_ns);
   controller_.feel(input);
-  const std::int64_t felt_ns = marked_ns();
-  record_phase(Phase::kFeel, felt_ns - touched_ns);
-
+  const std::int64_t felt_ns = end_phase(Phase::kFeel, touched_ns);
   record_.output = controller_.judge(input);
-  if (asked_ && !asked_before && record_.output.state != State::kArmed)
-    requests_.refused.fetch_add(1, std::memory_order_relaxed);
-  if (record_.output.state == State::kArmed || record_.output.state == State::kStopped)
-    requests_.arm_at_start.store(false, std::memory_order_relaxed);
-  const std::int64_t judged_ns = marked_ns();
-  record_phase(Phase::kJudge, judged_ns - felt_ns);
+  answer_requests(asks_anew);
+  const std::int64_t judged_ns = end_phase(Phase::kJudge, felt_ns);
 
   write();
   lines_.scope(false);
-  const std::int64_t written_ns = marked_ns();
-  record_phase(Phase::kWrite, written_ns - judged_ns);
+  const std::int64_t written_ns = end_phase(Phase::kWrite, judged_ns);
   const bool stopped = record_.output.state == State::kStopped;  // a stop is timed by the clock
   stop_watch_.step(input, record_.output, wake_ns, stopped ? clock_.now_ns() : written_ns);
   statistics_.stop = stop_watch_.times();
 
   tell();
-  const std::int64_t end_ns = marked_ns();
-  record_phase(Phase::kTell, end_ns - written_ns);
+  const std::int64_t end_ns = end_phase(Phase::kTell, written_ns);
   record_phase(Phase::kTotal, end_ns - wake_ns);
 }
 
 std::int64_t RtLoop::now_ns() RT_SAFE {
   const std::int64_t now_ns = clock_.now_ns();
   marked_.set(now_ns, clock_.mark());
+  return now_ns;
+}
+
+std::int64_t RtLoop::end_phase(Phase phase, std::int64_t since_ns) RT_SAFE {
+  const std::int64_t now_ns = marked_ns();
+  record_phase(phase, now_ns - since_ns);
   return now_ns;
 }
 

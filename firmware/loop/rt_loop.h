@@ -83,6 +83,9 @@ class RtLoop {
 
  private:
   void cycle(std::int64_t due_ns) RT_SAFE;
+  /// What others ask goes into this tick; true: to arm, and it was not asked a tick ago.
+  bool hear_requests() RT_SAFE;
+  void answer_requests(bool asks_anew) RT_SAFE;
   bool arms_at_start() const RT_SAFE;
   Fault read(std::int64_t now_ns) RT_SAFE;
   void write() RT_SAFE;
@@ -90,6 +93,8 @@ class RtLoop {
   /// Reads the clock; marked_ns() the time since then by marks, for phases alone.
   std::int64_t now_ns() RT_SAFE;
   std::int64_t marked_ns() RT_SAFE { return marked_.at_ns(clock_.mark()); }
+  /// The phase ends now, and began then; returns now, by marks.
+  std::int64_t end_phase(Phase phase, std::int64_t since_ns) RT_SAFE;
   void record_phase(Phase phase, std::int64_t duration_ns) RT_SAFE;
 
   LoopSettings settings_;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "firmware/gate/limits_for.h"
 #include "firmware/loop/grid.h"
 #include "hal/gpio/gpio_lines.h"
 #include "model/io/limits_checksum.h"

@@ -10,14 +10,9 @@
 #include "model/io/within.h"
 
 namespace tact::firmware::run {
+namespace {
 
-Parsed parse_options(int argc, char** argv) {
-  Parsed parsed;
-  Options& o = parsed.options;
-  CLI::App app{
-      "tactd: the haptic controller. Runs one scene on one device at the scene's fixed rate.\n"
-      "Ctrl-C: force to zero, clean exit. Exit status: 0 good, 1 a fault or a difference, 2 bad "
-      "usage or input."};
+void add_run(CLI::App& app, Options& o) {
   app.add_option("SCENE", o.scene_path, "scene file (TOML), e.g. model/scenes/liver.toml");
   app.add_option("--set", o.overrides, "KEY=VALUE override of a scene key, may be repeated")
       ->take_all()
@@ -25,15 +20,30 @@ Parsed parse_options(int argc, char** argv) {
   auto* seconds = app.add_option("--seconds", o.duration_s, "stop after this time, s");
   seconds->check(model::io::within(1e-3, 1e7));
   app.add_option("--ticks", o.ticks, "stop after this many ticks")->excludes(seconds);
+  app.add_flag("--free-run", o.free_run,
+               "simulated time, as fast as the CPU allows; needs --ticks or --seconds");
+  app.add_flag("--arm", o.arm,
+               "hardware: force as soon as the device is ready, without an operator who arms it");
   app.add_option("--json", o.json_path,
                  "write the report to this file when done, - for stdout; with --list-devices or "
                  "--faults that list");
-  app.add_flag("--check", o.check, "check scene, meshes, law and device, then leave");
-  app.add_flag("--arm", o.arm,
-               "hardware: force as soon as the device is ready, without an operator who arms it");
+}
+
+void add_real_time(CLI::App& app, Options& o) {
   app.add_flag("--strict", o.strict, "refuse to run where the PC gives no hard real time");
   app.add_option("--core", o.core, "CPU core of the loop (default: an isolated one, or the last)")
       ->check(model::io::within(0, CPU_SETSIZE - 1));
+  auto* seccomp = app.add_flag("--seccomp", o.seccomp,
+                               "refuse to run where the loop's system calls cannot be filtered "
+                               "(default: filter if it can be)");
+  app.add_flag("--no-seccomp", o.no_seccomp, "let the loop make any system call")
+      ->excludes(seccomp);
+  app.add_flag("--trust-library", o.trust_library,
+               "load device.force_dimension.library whoever's file it is");
+}
+
+// What is kept of a run, and a kept run again.
+void add_records(CLI::App& app, Options& o) {
   auto* record = app.add_option("--record", o.record_path, "log every tick to this new file");
   auto* replay =
       app.add_option(
@@ -45,6 +55,14 @@ Parsed parse_options(int argc, char** argv) {
                  "with --replay: write every tick of that log or black box to this CSV file; then "
                  "SCENE may be left out")
       ->needs(replay);
+  auto* black_box = app.add_option(
+      "--black-box", o.black_box_folder,
+      "folder for the last 10 s before each fault, one file each (default: tact/black-box in "
+      "XDG_STATE_HOME, or in ~/.local/state)");
+  app.add_flag("--no-black-box", o.no_black_box, "keep no such files")->excludes(black_box);
+}
+
+void add_telemetry(CLI::App& app, Options& o) {
   app.add_option("--socket", o.socket_path,
                  "telemetry socket (default: tact/telemetry.sock in XDG_RUNTIME_DIR, or in "
                  "/tmp/tact-UID)");
@@ -52,33 +70,43 @@ Parsed parse_options(int argc, char** argv) {
                  "group whose members may look at the telemetry, and move the hand of a simulated "
                  "device (default: nobody but the same user and root)");
   app.add_flag("--no-telemetry", o.no_telemetry, "open no socket");
-  app.add_flag("--free-run", o.free_run,
-               "simulated time, as fast as the CPU allows; needs --ticks or --seconds");
-  auto* black_box = app.add_option(
-      "--black-box", o.black_box_folder,
-      "folder for the last 10 s before each fault, one file each (default: tact/black-box in "
-      "XDG_STATE_HOME, or in ~/.local/state)");
-  app.add_flag("--no-black-box", o.no_black_box, "keep no such files")->excludes(black_box);
-  auto* seccomp = app.add_flag("--seccomp", o.seccomp,
-                               "refuse to run where the loop's system calls cannot be filtered "
-                               "(default: filter if it can be)");
-  app.add_flag("--no-seccomp", o.no_seccomp, "let the loop make any system call")
-      ->excludes(seccomp);
-  app.add_flag("--trust-library", o.trust_library,
-               "load device.force_dimension.library whoever's file it is");
+}
+
+// What is done without a run.
+void add_answers(CLI::App& app, Options& o) {
+  app.add_flag("--check", o.check, "check scene, meshes, law and device, then leave");
   app.add_flag("--faults", o.faults, "print every fault with its cause and cure, then leave");
   app.add_flag("--list-devices", o.list_devices,
                "print what is plugged in, what it lacks and the cure, then leave");
   app.add_flag("--help-scene", o.help_scene, "print every scene key with its range, then leave");
-  app.callback([&o] {
-    if (o.scene_path.empty() && !o.faults && !o.help_scene && !o.list_devices && o.csv_path.empty())
-      throw CLI::RequiredError("SCENE");
-    if (o.arm && console::is_service())
-      throw CLI::ValidationError("--arm", "a service never arms; a person does, by tactctl");
-    if (o.free_run && o.duration_s == 0.0 && o.ticks == 0)
-      throw CLI::ValidationError("--free-run", "needs --ticks or --seconds");
-  });
-  if (const auto status = model::io::parse_command_line(app, "tactd", argc, argv)) {
+}
+
+std::optional<model::Error> contradiction(const Options& o) {
+  if (o.scene_path.empty() && !o.faults && !o.help_scene && !o.list_devices && o.csv_path.empty())
+    return model::Error{"SCENE is required"};
+  if (o.arm && console::is_service())
+    return model::Error{"--arm: a service never arms; a person does, by tactctl"};
+  if (o.free_run && o.duration_s == 0.0 && o.ticks == 0)
+    return model::Error{"--free-run: needs --ticks or --seconds"};
+  return std::nullopt;
+}
+
+}  // namespace
+
+Parsed parse_options(int argc, char** argv) {
+  Parsed parsed;
+  Options& o = parsed.options;
+  CLI::App app{
+      "tactd: the haptic controller. Runs one scene on one device at the scene's fixed rate.\n"
+      "Ctrl-C: force to zero, clean exit. Exit status: 0 good, 1 a fault or a difference, 2 bad "
+      "usage or input."};
+  add_run(app, o);
+  add_real_time(app, o);
+  add_records(app, o);
+  add_telemetry(app, o);
+  add_answers(app, o);
+  if (const auto status = model::io::parse_command_line(app, "tactd", argc, argv,
+                                                        [&o] { return contradiction(o); })) {
     parsed.leave = true;
     parsed.status = *status;
   }

@@ -3,16 +3,19 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "firmware/pc/rt_setup.h"
 #include "firmware/telemetry/force_hash.h"
 #include "model/scene/plan_file.h"
 
 namespace tact::firmware::run {
-model::Result<ReplayOutcome> replay(const std::string& path, const model::scene::Scene& scene,
-                                    const model::scene::Tissue& tissue) {
-  auto log = telemetry::TickLogReader::open(path);
-  if (!log) return log.error();
-  const telemetry::LogHeader& header = log->header();
+namespace {
+
+/// A log that this scene cannot play again: why, and what can.
+std::optional<model::Error> check_header(const telemetry::LogHeader& header,
+                                         const std::string& path,
+                                         const model::scene::Scene& scene) {
   if (scene.hash != header.scene_hash)
     return model::Error{fmt::format(
         "{}: was recorded with another scene (hash {}, this one has {}); replay it with the scene "
@@ -27,6 +30,17 @@ model::Result<ReplayOutcome> replay(const std::string& path, const model::scene:
         path +
         ": is a black box, which begins in the middle of a run; tact-view --open "
         "shows it, --csv writes its ticks, tactd --record keeps a run from its start"};
+  return std::nullopt;
+}
+
+}  // namespace
+
+model::Result<ReplayOutcome> replay(const std::string& path, const model::scene::Scene& scene,
+                                    const model::scene::Tissue& tissue) {
+  auto log = telemetry::TickLogReader::open(path);
+  if (!log) return log.error();
+  const telemetry::LogHeader& header = log->header();
+  if (auto error = check_header(header, path, scene)) return *error;
   pc::flush_denormals();  // as in the loop's thread
   const double period_s = static_cast<double>(header.period_ns) * 1e-9;
   loop::Controller controller(tissue.contact_scene(),

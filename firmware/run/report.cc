@@ -20,6 +20,28 @@ json percentiles(const loop::LatencyHistogram& h) {
           {"max_tick", h.max_tick()}};
 }
 
+json phases(const loop::LoopStatistics& loop) {
+  json all;
+  for (std::size_t i = 0; i < loop::kPhaseCount; ++i)
+    all[loop::kPhaseName[i]] = percentiles(loop.phase[i]);
+  return all;
+}
+
+json stages(const gate::Gate& gate) {
+  json all;
+  for (std::size_t i = 0; i < gate::kStageCount; ++i) all[gate::kStageName[i]] = gate.counters()[i];
+  return all;
+}
+
+json fault_entry(const RunFacts& facts) {
+  const model::FaultEntry& fault = model::describe(facts.fault);
+  return {{"number", static_cast<int>(facts.fault)},
+          {"name", fault.name},
+          {"cause", fault.cause},
+          {"trouble", facts.trouble},
+          {"cure", fault.cure}};
+}
+
 std::string duration_line(const char* what, const loop::LatencyHistogram& h) {
   const auto us = [](std::uint64_t ns) { return static_cast<double>(ns) * 1e-3; };
   return fmt::format("  {:13} p50 {:.1f} us, p99.9 {:.1f} us, max {:.1f} us at tick {}\n", what,
@@ -53,14 +75,9 @@ json to_json(const ThreadCosts& c) {
 
 json make_report(const RunFacts& facts, const loop::LoopStatistics& loop, const gate::Gate& gate,
                  const pc::Environment& environment) {
-  json phases, stages, shortfalls = json::array(), counts = json::object();
-  for (std::size_t i = 0; i < loop::kPhaseCount; ++i)
-    phases[loop::kPhaseName[i]] = percentiles(loop.phase[i]);
-  for (std::size_t i = 0; i < gate::kStageCount; ++i)
-    stages[gate::kStageName[i]] = gate.counters()[i];
+  json shortfalls = json::array(), counts = json::object();
   for (const pc::Shortfall& s : facts.shortfalls) shortfalls.push_back(s.sentence);
   for (const hal::DeviceCount& one : facts.device_counts) counts[one.name] = one.count;
-  const model::FaultEntry& fault = model::describe(facts.fault);
   return {{"format", "tactd-run"},
           {"version", 1},
           {"scene", facts.scene_name},
@@ -76,7 +93,7 @@ json make_report(const RunFacts& facts, const loop::LoopStatistics& loop, const 
           {"late", loop.late_ticks},
           {"skipped", loop.skipped_ticks},
           {"thread", to_json(facts.costs)},
-          {"phases", phases},
+          {"phases", phases(loop)},
           {"force_max_N", loop.max_force_N},
           {"force_limit_N", facts.force_limit_N},
           {"limits_checksum", facts.limits_checksum},
@@ -84,14 +101,9 @@ json make_report(const RunFacts& facts, const loop::LoopStatistics& loop, const 
           {"force_continuous_N", gate.continuous_force_N()},
           {"energy_given_max_J", loop.max_given_energy_J},
           {"energy_budget_J", gate.energy_budget_J()},
-          {"gate", stages},
+          {"gate", stages(gate)},
           {"state", name_of(facts.state)},
-          {"fault",
-           {{"number", static_cast<int>(facts.fault)},
-            {"name", fault.name},
-            {"cause", fault.cause},
-            {"trouble", facts.trouble},
-            {"cure", fault.cure}}},
+          {"fault", fault_entry(facts)},
           {"stop",  // CLOCK_MONOTONIC; 0: never
            {{"missed_ns", loop.stop.missed_ns},
             {"fault_ns", loop.stop.fault_ns},

@@ -47,6 +47,52 @@ double stiffest_sideways_N_per_m(const model::scene::Scene& scene,
   return most_N_per_m;
 }
 
+/// What the scene asks of the device, and the most that the device shows, of all spheres together.
+struct Demand {
+  double law_N_per_m, sliding_N_per_m;  // of one sphere
+  double damping_Ns_per_m;              // of one sphere
+  double spheres;
+  double limit_N_per_m, undamped_limit_N_per_m;
+
+  double needed_N_per_m() const { return spheres * std::max(law_N_per_m, sliding_N_per_m); }
+  bool fits(double one_N_per_m) const { return spheres * one_N_per_m <= limit_N_per_m; }  // no NaN
+};
+
+// HL-1: B <= b - K (T/2 + t_d)
+Error damps_too_much(const model::scene::Scene& scene, const Demand& demand, double own_Ns_per_m) {
+  const double needed_N_per_m = demand.needed_N_per_m();
+  return Error{fmt::format(
+      "{}: law {} damps too much: {:.4g} N s/m on {}, where this device has {:.4g} N s/m of its "
+      "own and {:.4g} N/m to show at {:g} Hz; lower the damping of [{}] to {:.4g} N s/m or less",
+      scene.path, model::scene::name_of(scene.law), demand.damping_Ns_per_m,
+      spheres_in_words(scene.tool.spheres.size()), own_Ns_per_m, needed_N_per_m, scene.rate_Hz,
+      model::scene::name_of(scene.law),
+      rounded_down(own_Ns_per_m * (1.0 - needed_N_per_m / demand.undamped_limit_N_per_m) /
+                   demand.spheres))};
+}
+
+Error too_stiff(const model::scene::Scene& scene, const model::scene::TissueLaw& law,
+                const Demand& demand, const std::string& damping_key) {
+  const bool is_law =
+      !(demand.law_N_per_m < demand.sliding_N_per_m);  // the stiffer one; NaN is the law's
+  const bool is_set = scene.contact.sliding_stiffness_N_per_m > 0.0;
+  const std::string what = is_law   ? fmt::format("law {}", model::scene::name_of(scene.law))
+                           : is_set ? std::string("contact.sliding_stiffness_N_per_m")
+                                    : std::string("the tissue, held and pulled along its surface,");
+  const std::string cure = is_law   ? "soften " + stiff_key(scene, law)
+                           : is_set ? std::string("lower it")
+                                    : std::string("set contact.sliding_stiffness_N_per_m");
+  const double one_N_per_m = is_law ? demand.law_N_per_m : demand.sliding_N_per_m;
+  return Error{fmt::format(
+      "{}: {} is too stiff: {:.4g} N/m on {} is {:.4g} N/m, this device is stable to {:.4g} N/m at "
+      "{:g} Hz; {} to {:.4g} N/m or less, raise rate_Hz{}",
+      scene.path, what, one_N_per_m, spheres_in_words(scene.tool.spheres.size()),
+      demand.spheres * one_N_per_m, demand.limit_N_per_m, scene.rate_Hz, cure,
+      rounded_down(demand.limit_N_per_m / demand.spheres),
+      damping_key.empty() ? std::string(", or take a device with more damping")
+                          : fmt::format(", or raise {}", damping_key))};
+}
+
 }  // namespace
 
 model::Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene,
@@ -55,49 +101,23 @@ model::Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene
   if (!device.at_tool)
     return Error{fmt::format(
         "device {} does not tell its damping at the tool: fill DeviceInfo::at_tool", device.name)};
-  const std::size_t spheres = scene.tool.spheres.size();
-  const double law_N_per_m = tissue.law().stiffness_N_per_m();
-  const double sliding_N_per_m = stiffest_sideways_N_per_m(scene, tissue.law().site_law());
+  const auto spheres = static_cast<double>(scene.tool.spheres.size());
   const double damping_Ns_per_m = tissue.law().damping_Ns_per_m();
   const auto limit_with = [&](double all_Ns_per_m) {
     return model::law::haptic_limit(*device.at_tool, scene.rate_Hz, all_Ns_per_m).grow_N_per_m;
   };
-  const double limit_N_per_m = limit_with(static_cast<double>(spheres) * damping_Ns_per_m);
-  const double needed_N_per_m =
-      static_cast<double>(spheres) * std::max(law_N_per_m, sliding_N_per_m);
-  const auto fits = [&](double one_N_per_m) {  // NaN does not
-    return static_cast<double>(spheres) * one_N_per_m <= limit_N_per_m;
-  };
-  if (fits(law_N_per_m) && fits(sliding_N_per_m))
-    return StiffnessMargin{.needed_N_per_m = needed_N_per_m, .limit_N_per_m = limit_N_per_m};
-  const double undamped_N_per_m = limit_with(0.0);
-  if (damping_Ns_per_m > 0.0 && needed_N_per_m <= undamped_N_per_m)
-    // HL-1: B <= b - K (T/2 + t_d)
-    return Error{fmt::format(
-        "{}: law {} damps too much: {:.4g} N s/m on {}, where this device has {:.4g} N s/m of its "
-        "own and {:.4g} N/m to show at {:g} Hz; lower the damping of [{}] to {:.4g} N s/m or less",
-        scene.path, model::scene::name_of(scene.law), damping_Ns_per_m, spheres_in_words(spheres),
-        device.at_tool->damping_Ns_per_m, needed_N_per_m, scene.rate_Hz,
-        model::scene::name_of(scene.law),
-        rounded_down(device.at_tool->damping_Ns_per_m * (1.0 - needed_N_per_m / undamped_N_per_m) /
-                     static_cast<double>(spheres)))};
-  const bool is_law = !(law_N_per_m < sliding_N_per_m);  // the stiffer one; NaN is the law's
-  const bool is_set = scene.contact.sliding_stiffness_N_per_m > 0.0;
-  const std::string what = is_law   ? fmt::format("law {}", model::scene::name_of(scene.law))
-                           : is_set ? std::string("contact.sliding_stiffness_N_per_m")
-                                    : std::string("the tissue, held and pulled along its surface,");
-  const std::string cure = is_law   ? "soften " + stiff_key(scene, tissue.law())
-                           : is_set ? std::string("lower it")
-                                    : std::string("set contact.sliding_stiffness_N_per_m");
-  const double one_N_per_m = is_law ? law_N_per_m : sliding_N_per_m;
-  return Error{fmt::format(
-      "{}: {} is too stiff: {:.4g} N/m on {} is {:.4g} N/m, this device is stable to {:.4g} N/m at "
-      "{:g} Hz; {} to {:.4g} N/m or less, raise rate_Hz{}",
-      scene.path, what, one_N_per_m, spheres_in_words(spheres),
-      static_cast<double>(spheres) * one_N_per_m, limit_N_per_m, scene.rate_Hz, cure,
-      rounded_down(limit_N_per_m / static_cast<double>(spheres)),
-      device.damping_key.empty() ? std::string(", or take a device with more damping")
-                                 : fmt::format(", or raise {}", device.damping_key))};
+  const Demand demand{.law_N_per_m = tissue.law().stiffness_N_per_m(),
+                      .sliding_N_per_m = stiffest_sideways_N_per_m(scene, tissue.law().site_law()),
+                      .damping_Ns_per_m = damping_Ns_per_m,
+                      .spheres = spheres,
+                      .limit_N_per_m = limit_with(spheres * damping_Ns_per_m),
+                      .undamped_limit_N_per_m = limit_with(0.0)};
+  const double needed_N_per_m = demand.needed_N_per_m();
+  if (demand.fits(demand.law_N_per_m) && demand.fits(demand.sliding_N_per_m))
+    return StiffnessMargin{.needed_N_per_m = needed_N_per_m, .limit_N_per_m = demand.limit_N_per_m};
+  if (damping_Ns_per_m > 0.0 && needed_N_per_m <= demand.undamped_limit_N_per_m)
+    return damps_too_much(scene, demand, device.at_tool->damping_Ns_per_m);
+  return too_stiff(scene, tissue.law(), demand, device.damping_key);
 }
 
 }  // namespace tact::firmware::run

@@ -78,6 +78,28 @@ Error refused(const std::string& name, const char* what, int error) {
   return Error{fmt::format("{}: {}: {}", name, what, std::strerror(error))};
 }
 
+// A bus on which frames are not sent, with its cure.
+std::optional<Error> check_state(const CanLink& link, const std::string& name) {
+  if (link.state == CanLinkState::kBusOff) {
+    return Error{
+        fmt::format("{0} is bus-off: check bit rate, termination and cable; then sudo ip "
+                    "link set {0} down; sudo ip link set {0} up",
+                    name)};
+  }
+  if (link.state == CanLinkState::kPassive) {
+    return Error{
+        fmt::format("{0} is error passive: is it at the drives' bit rate, are they powered "
+                    "and both ends terminated? Then sudo ip link set {0} down; sudo ip "
+                    "link set {0} up",
+                    name)};
+  }
+  if (link.state == CanLinkState::kStopped || link.state == CanLinkState::kSleeping) {
+    return Error{
+        fmt::format("{0} sleeps: sudo ip link set {0} down; sudo ip link set {0} up", name)};
+  }
+  return std::nullopt;
+}
+
 class File {
  public:
   explicit File(int fd) : fd_(fd) {}
@@ -138,23 +160,7 @@ std::optional<Error> check_can_link(const CanLink& link, const std::string& name
                     "can bitrate 1000000 restart-ms 0",
                     name, *link.restart_ms)};
   }
-  if (link.state == CanLinkState::kBusOff) {
-    return Error{
-        fmt::format("{0} is bus-off: check bit rate, termination and cable; then sudo ip "
-                    "link set {0} down; sudo ip link set {0} up",
-                    name)};
-  }
-  if (link.state == CanLinkState::kPassive) {
-    return Error{
-        fmt::format("{0} is error passive: is it at the drives' bit rate, are they powered "
-                    "and both ends terminated? Then sudo ip link set {0} down; sudo ip "
-                    "link set {0} up",
-                    name)};
-  }
-  if (link.state == CanLinkState::kStopped || link.state == CanLinkState::kSleeping) {
-    return Error{
-        fmt::format("{0} sleeps: sudo ip link set {0} down; sudo ip link set {0} up", name)};
-  }
+  if (auto error = check_state(link, name)) return error;
   if (link.bitrate && cycle_bits * rate_Hz > kMostLoad * *link.bitrate) {
     return Error{
         fmt::format("{0} runs at {1} bit/s, too slow for three drives at {2} Hz: sudo ip "

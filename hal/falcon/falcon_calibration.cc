@@ -4,7 +4,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace tact::hal::falcon {
@@ -78,20 +80,57 @@ Fit fit_all(std::span<const FalconBalance> samples, std::span<const delta::Joint
   return fit;
 }
 
+/// The least of `squares` between two masses, by golden section.
+template <typename Squares>
+double least_between_kg(double low_kg, double high_kg, const Squares& squares) {
+  const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
+  for (int i = 0; i < kRefinements; ++i) {
+    const double a_kg = high_kg - ratio * (high_kg - low_kg);
+    const double b_kg = low_kg + ratio * (high_kg - low_kg);
+    if (squares(a_kg) < squares(b_kg))
+      high_kg = b_kg;
+    else
+      low_kg = a_kg;
+  }
+  return 0.5 * (low_kg + high_kg);
+}
+
 bool is_one_mass(std::span<const FalconBalance> samples) {
   return std::ranges::all_of(samples,
                              [&](const auto& s) { return s.mass_kg == samples[0].mass_kg; });
 }
 
-}  // namespace
-
-Result<FalconCalibration> fit_falcon(std::span<const FalconBalance> samples) {
+std::optional<Error> check_balances(std::span<const FalconBalance> samples) {
   if (samples.size() < 4 || is_one_mass(samples))
     return Error{"four balances with two masses are the least: hang other masses, at other poses"};
   for (const FalconBalance& s : samples)
     if (!is_finite(s.position_m) ||
         !std::isfinite(s.mass_kg + s.words[0] + s.words[1] + s.words[2]))
       return Error{"a balance holds no numbers: measure it again"};
+  return std::nullopt;
+}
+
+std::optional<Error> check_axes(const std::array<Axis, 3>& axis) {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!(axis[i].gain >= 100.0 && axis[i].gain <= 1e6 && axis[i].dead <= 1000.0))
+      return Error{
+          fmt::format("axis {} comes out at {:.0f} words per N m with a dead band of {:.0f} words: "
+                      "something else carried the load; leave the grip free and measure again",
+                      i + 1, axis[i].gain, axis[i].dead)};
+  return std::nullopt;
+}
+
+double sum_of_squares(std::span<const FalconBalance> samples) {
+  double sum = 0.0;
+  for (const FalconBalance& s : samples)
+    for (const double word : s.words) sum += word * word;
+  return sum;
+}
+
+}  // namespace
+
+Result<FalconCalibration> fit_falcon(std::span<const FalconBalance> samples) {
+  if (auto error = check_balances(samples)) return *error;
   const std::vector<delta::Joints> unit_Nm = unit_torques_Nm(samples);
   const auto squares = [&](double kg) { return fit_all(samples, unit_Nm, kg).squares; };
   double best_kg = 0.0, least = 1e300, most = 0.0;  // of any dead band: is there a least at all?
@@ -103,32 +142,15 @@ Result<FalconCalibration> fit_falcon(std::span<const FalconBalance> samples) {
     least = std::min(least, free);
     most = std::max(most, free);
   }
-  double low_kg = std::max(0.0, best_kg - kStep_kg), high_kg = best_kg + kStep_kg;
-  const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
-  for (int i = 0; i < kRefinements; ++i) {  // golden section
-    const double a_kg = high_kg - ratio * (high_kg - low_kg);
-    const double b_kg = low_kg + ratio * (high_kg - low_kg);
-    if (squares(a_kg) < squares(b_kg))
-      high_kg = b_kg;
-    else
-      low_kg = a_kg;
-  }
-  const double moving_kg = 0.5 * (low_kg + high_kg);
+  const double moving_kg =
+      least_between_kg(std::max(0.0, best_kg - kStep_kg), best_kg + kStep_kg, squares);
   const Fit fit = fit_all(samples, unit_Nm, moving_kg);
-  double all = 0.0;
-  for (const FalconBalance& s : samples)
-    for (const double word : s.words) all += word * word;
-  if (most - least <= kFlatness * kFlatness * all)
+  if (most - least <= kFlatness * kFlatness * sum_of_squares(samples))
     return Error{
         "dead band and moving mass cannot be told apart: balance the same masses at other poses, "
         "some centimetres away"};
   const auto& axis = fit.axis;
-  for (std::size_t i = 0; i < 3; ++i)
-    if (!(axis[i].gain >= 100.0 && axis[i].gain <= 1e6 && axis[i].dead <= 1000.0))
-      return Error{
-          fmt::format("axis {} comes out at {:.0f} words per N m with a dead band of {:.0f} words: "
-                      "something else carried the load; leave the grip free and measure again",
-                      i + 1, axis[i].gain, axis[i].dead)};
+  if (auto error = check_axes(axis)) return *error;
   return FalconCalibration{
       .gain_words_per_Nm = {axis[0].gain, axis[1].gain, axis[2].gain},
       .dead_band_words = {axis[0].dead, axis[1].dead, axis[2].dead},

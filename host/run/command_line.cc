@@ -20,21 +20,7 @@ std::string default_page() {
   return (model::io::program_folder() / "page").string();
 }
 
-}  // namespace
-
-std::optional<int> parse_options(int argc, char** argv, Options& options) {
-  options.socket = default_telemetry_path();
-  CLI::App app{
-      "tact-view: shows what tactd does in a browser: the deforming tissue, the tool, the force "
-      "and\n"
-      "the time left before each deadline. It cannot command a force. Ctrl-C ends it.\n"
-      "Exit status: 0 good, 1 a recording is damaged or incomplete, or a registration failed\n"
-      "or has a residual above 2 mm (written all the same), 2 "
-      "bad usage\n"
-      "or input."};
-  app.add_option("--socket", options.socket, "tactd's telemetry socket")->capture_default_str();
-  app.add_option("--tactd-user", options.tactd_user,
-                 "user whose tactd is believed (default: nobody's but the same user's and root's)");
+void add_page(CLI::App& app, Options& options) {
   app.add_option("--port", options.viewer.port, "port of the page; 0 takes any free one")
       ->capture_default_str()
       ->check(model::io::within(0, 65535));
@@ -47,13 +33,23 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
   app.add_option(
       "--page", options.viewer.page_folder,
       "folder of the built page (default: ../share/tact/page or page/ beside this program)");
-  CLI::Option* record =
-      app.add_option("--record", options.record, "write all frames to this new file");
+  app.add_flag("--json", options.json, "say what is ready or done as one line of JSON");
+}
+
+// Whom to show: a tactd, or a recording of one.
+void add_source(CLI::App& app, Options& options) {
+  app.add_option("--socket", options.socket, "tactd's telemetry socket")->capture_default_str();
+  app.add_option("--tactd-user", options.tactd_user,
+                 "user whose tactd is believed (default: nobody's but the same user's and root's)");
   CLI::Option* open = app.add_option(
       "--open", options.open, "replay this recording, or a black box of tactd, instead of tactd");
+  app.add_option("--record", options.record, "write all frames to this new file")->excludes(open);
   app.add_option("--export", options.export_csv,
                  "with --open: write this CSV file (m, s, N, us, as its columns say) and leave")
       ->needs(open);
+}
+
+void add_operator(CLI::App& app, Options& options) {
   CLI::Option* tracking = app.add_option(
       "--tracking", options.tracking,
       "description of the operator's tracker, SCENE.tracking.toml (host/tracking/README.md)");
@@ -71,10 +67,25 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
                  "the operator's body height, m; a recording with an operator has its own")
       ->capture_default_str()
       ->check(model::io::within(1.2, 2.2));
-  app.add_flag("--json", options.json, "say what is ready or done as one line of JSON");
-  record->excludes(open);
-  tracking->excludes(open);
-  registration->needs(tracking)->excludes(record);
+  tracking->excludes(app.get_option("--open"));
+  registration->needs(tracking)->excludes(app.get_option("--record"));
+}
+
+}  // namespace
+
+std::optional<int> parse_options(int argc, char** argv, Options& options) {
+  options.socket = default_telemetry_path();
+  CLI::App app{
+      "tact-view: shows what tactd does in a browser: the deforming tissue, the tool, the force "
+      "and\n"
+      "the time left before each deadline. It cannot command a force. Ctrl-C ends it.\n"
+      "Exit status: 0 good, 1 a recording is damaged or incomplete, or a registration failed\n"
+      "or has a residual above 2 mm (written all the same), 2 "
+      "bad usage\n"
+      "or input."};
+  add_source(app, options);
+  add_page(app, options);
+  add_operator(app, options);
   if (const auto status = model::io::parse_command_line(app, "tact-view", argc, argv))
     return status;
   if (options.viewer.page_folder.empty()) options.viewer.page_folder = default_page();

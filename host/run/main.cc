@@ -138,18 +138,45 @@ int serve(const Options& options, boost::asio::io_context& io, server::ViewerSer
   return kGood;
 }
 
-int show_live(const Options& options) {
-  if (!options.record.empty() && exists(options.record)) {
-    return fail(options.record +
-                ": exists already; a recording is never overwritten, choose "
-                "another name");
-  }
+/// Whose tactd is believed, besides the same user's and root's.
+model::Result<model::io::Trust> trust_of(const Options& options) {
+  if (options.tactd_user.empty()) return model::io::Trust{};
+  const auto user = model::io::find_user(options.tactd_user);
+  if (!user) return model::Error{"--tactd-user " + user.error().sentence};
   model::io::Trust trust;
-  if (!options.tactd_user.empty()) {
-    const auto user = model::io::find_user(options.tactd_user);
-    if (!user) return fail("--tactd-user " + user.error().sentence);
-    trust.user = *user;
-  }
+  trust.user = *user;
+  return trust;
+}
+
+/// What tactd tells goes to the page and into the recording, with the operator of that moment.
+TelemetryEvents show_and_record(server::LiveView& view, Recorder& recorder,
+                                std::optional<tracking::OperatorTracking>& tracking,
+                                const server::OperatorFigure& figure) {
+  return {.hello =
+              [&view, &recorder](const record::Hello& hello, record::MeshBytes mesh) {
+                recorder.begin(hello, mesh);
+                view.begin(hello, std::move(mesh), server::Link::kLive);
+              },
+          .frame =
+              [&](const record::Frame& frame) {
+                const tracking::TrackedOperator* now = tracking ? &tracking->now() : nullptr;
+                view.add(frame, now);
+                recorder.add(frame, now, figure.figure());
+              },
+          .lost =
+              [&view](const std::string& reason) {
+                if (!reason.empty()) warn(reason);
+                view.lose(reason);
+              },
+          .silent = warn_of_silence};
+}
+
+int show_live(const Options& options) {
+  if (!options.record.empty() && exists(options.record))
+    return fail(options.record +
+                ": exists already; a recording is never overwritten, choose another name");
+  const auto trust = trust_of(options);
+  if (!trust) return fail(trust.error().sentence);
   server::OperatorFigure figure(options.height_m);  // outlives the view
   server::LiveView view;                            // outlives the sessions, which live in io
   boost::asio::io_context io(1);
@@ -162,26 +189,8 @@ int show_live(const Options& options) {
   }
   if (options.figure || tracking) view.accompany(&figure);
   Recorder recorder(options.record, tracking.has_value());
-  TelemetryClient client(io, options.socket,
-                         {.hello =
-                              [&](const record::Hello& hello, record::MeshBytes mesh) {
-                                recorder.begin(hello, mesh);
-                                view.begin(hello, std::move(mesh), server::Link::kLive);
-                              },
-                          .frame =
-                              [&](const record::Frame& frame) {
-                                const tracking::TrackedOperator* now =
-                                    tracking ? &tracking->now() : nullptr;
-                                view.add(frame, now);
-                                recorder.add(frame, now, figure.figure());
-                              },
-                          .lost =
-                              [&](const std::string& reason) {
-                                if (!reason.empty()) warn(reason);
-                                view.lose(reason);
-                              },
-                          .silent = warn_of_silence},
-                         trust);
+  TelemetryClient client(io, options.socket, show_and_record(view, recorder, tracking, figure),
+                         *trust);
   server::ViewerServer server(
       io, view,
       [&client](const double (&position_m)[3], double grip_ratio) {

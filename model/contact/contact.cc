@@ -67,7 +67,7 @@ void Contact::touch(const Tool& tool) RT_SAFE {
   }
 }
 
-Wrench Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
+ContactResponse Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
   watch_grip(tool.grip_ratio);
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
     if (probe_[i].seen) find_depth(i);
@@ -79,16 +79,18 @@ Wrench Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
   if (closing_ && hold()) press();
   stiffen();
   resist_sliding();
-  Wrench sum;
+  ContactResponse felt;
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
     if (!probe_[i].seen) continue;
     sum_up(i);
-    sum.force_N += touch_[i].force_N;
-    sum.torque_Nm += cross(probe_[i].centre_m - tool.position_m, touch_[i].force_N);
+    felt.wrench.force_N += touch_[i].force_N;
+    felt.wrench.torque_Nm += cross(probe_[i].centre_m - tool.position_m, touch_[i].force_N);
+    if (touch_[i].law_status == law::LawStatus::kSaturated) felt.is_saturated = true;
   }
   use_blade(tool, blade_may_cut);
   scene_.law->advance();
-  return sum;
+  felt.is_broken = scene_.law->broke();
+  return felt;
 }
 
 void Contact::use_blade(const Tool& tool, bool may_cut) RT_SAFE {

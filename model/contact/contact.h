@@ -75,6 +75,13 @@ struct SphereTouch {
   Vec3 force_N{};         // on the tool
 };
 
+/// What the tool feels in a tick.
+struct ContactResponse {
+  Wrench wrench;
+  bool is_saturated = false;  // a sphere is beyond its law (LawStatus::kSaturated)
+  bool is_broken = false;     // see SiteLaw::broke
+};
+
 /// What contact is made of; everything outlives it.
 struct ContactScene {
   SiteLaw* law = nullptr;  // may remember: one contact each
@@ -93,12 +100,10 @@ class Contact {
   void touch(const Tool& tool) RT_SAFE;
   /// What the tool feels there: states, laws, forces. Call after touch. A blade cuts only if it
   /// may.
-  Wrench feel(const Tool& tool, bool blade_may_cut) RT_SAFE;
+  ContactResponse feel(const Tool& tool, bool blade_may_cut) RT_SAFE;
   /// Forget every site, as at the start.
   void reset() RT_SAFE;
 
-  /// See SiteLaw::broke.
-  bool law_broke() const RT_SAFE { return scene_.law->broke(); }
   /// See SiteLaw::shape.
   bool shape(PatchShape& out) RT_SAFE { return scene_.law->shape(out); }
 

@@ -19,12 +19,17 @@ bool is_empty_value(std::string_view word) {
   return word.empty() || (word.starts_with("--") && word.find('=') == word.size() - 1);
 }
 
+std::string refusal(const char* program, std::string_view sentence) {
+  return fmt::format("{0}: {1}; see {0} --help\n", program, sentence);
+}
+
 }  // namespace
 
 std::optional<int> parse_command_line(CLI::App& options, const char* program, int argc,
-                                      const char* const* argv) {
+                                      const char* const* argv,
+                                      const std::function<std::optional<Error>()>& check) {
   options.failure_message([program](const CLI::App*, const CLI::Error& error) {
-    return fmt::format("{0}: {1}; see {0} --help\n", program, error.what());
+    return refusal(program, error.what());
   });
   options.set_version_flag("--version",
                            fmt::format("{} {} ({}), compiler {}", program, tact_version(),
@@ -42,8 +47,12 @@ std::optional<int> parse_command_line(CLI::App& options, const char* program, in
   }
   try {
     options.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
+  } catch (const CLI::ParseError& error) {  // the library's way, --help included
     return options.exit(error) == 0 ? 0 : 2;
+  }
+  if (const auto error = check ? check() : std::nullopt) {
+    fmt::print(stderr, "{}", refusal(program, error->sentence));
+    return 2;
   }
   return std::nullopt;
 }

@@ -2,7 +2,10 @@
 // command_line.h - what every program's command line does alike: one-line errors, --version.
 #pragma once
 
+#include <functional>
 #include <optional>
+
+#include "model/result.h"
 
 namespace CLI {
 class App;
@@ -19,9 +22,10 @@ const char* compiler_version();
 
 /// Adds --version and --bash-completion (completion.h), and parses. A bad option is told on
 /// standard error, in one line that names --help. The exit status when the program ends here: 0
-/// after those two or --help, 2 otherwise. What `options.callback` checks may throw a
-/// CLI::ParseError, which is told alike.
+/// after those two or --help, 2 otherwise. `check` looks at what no single option can know, such as
+/// two that contradict each other; its error is told alike.
 std::optional<int> parse_command_line(CLI::App& options, const char* program, int argc,
-                                      const char* const* argv);
+                                      const char* const* argv,
+                                      const std::function<std::optional<Error>()>& check = {});
 
 }  // namespace tact::model::io

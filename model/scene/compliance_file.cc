@@ -63,6 +63,16 @@ std::optional<std::string> first_fault(const Header& h) {
   return std::nullopt;
 }
 
+// What the map holds of each vertex, in the order of the file.
+void take_vertices(std::string_view& bytes, const Header& head, tissue::ComplianceMap& map) {
+  map.regular_times_E_per_m.resize(head.vertices);
+  map.sideways_times_E_per_m.resize(head.vertices);
+  map.ring_times_E_per_m.resize(std::size_t{head.vertices} * head.rings);
+  take(bytes, map.regular_times_E_per_m.data(), map.regular_times_E_per_m.size());
+  take(bytes, map.sideways_times_E_per_m.data(), map.sideways_times_E_per_m.size());
+  take(bytes, map.ring_times_E_per_m.data(), map.ring_times_E_per_m.size());
+}
+
 bool all_finite(const tissue::ComplianceMap& map) {
   const auto finite = [](float v) { return std::isfinite(v); };
   return std::ranges::all_of(map.regular_times_E_per_m, finite) &&
@@ -103,12 +113,7 @@ Result<tissue::ComplianceMap> read_compliance_map(const std::string& path) {
   if (bytes.size() != expected)
     return broken(
         fmt::format("is damaged: {} bytes where {} belong", content.size(), kHeadBytes + expected));
-  map.regular_times_E_per_m.resize(head.vertices);
-  map.sideways_times_E_per_m.resize(head.vertices);
-  map.ring_times_E_per_m.resize(std::size_t{head.vertices} * head.rings);
-  take(bytes, map.regular_times_E_per_m.data(), map.regular_times_E_per_m.size());
-  take(bytes, map.sideways_times_E_per_m.data(), map.sideways_times_E_per_m.size());
-  take(bytes, map.ring_times_E_per_m.data(), map.ring_times_E_per_m.size());
+  take_vertices(bytes, head, map);
   std::uint64_t sum = 0;
   take(bytes, &sum, 1);
   if (sum != fnv1a(std::string_view{content.data(), content.size() - sizeof sum}))

@@ -42,6 +42,16 @@ const char* first_fault(const SpringPatchParameters& p) {
   return nullptr;
 }
 
+// G = -F grad w;  grad w = n x (sum of w_i (edge opposite i)) / (2 area)
+Vec3 slope_N(const contact::SurfaceView& mesh, const contact::TriangleCorners& corner,
+             const std::array<double, 3>& dent_m, double force_N) RT_SAFE {
+  const Vec3 &a = mesh.vertex_m[corner[0]], &b = mesh.vertex_m[corner[1]],
+             &c = mesh.vertex_m[corner[2]];
+  const Vec3 twice_area = cross(b - a, c - a);
+  const Vec3 turn = dent_m[0] * (c - b) + dent_m[1] * (a - c) + dent_m[2] * (b - a);
+  return (-force_N / dot(twice_area, twice_area)) * cross(twice_area, turn);
+}
+
 StepRule rule_of(const SpringPatchParameters& p) RT_SAFE {
   return {.method = p.method, .step_s = p.tick_s / p.substeps, .iterations = p.iterations};
 }
@@ -143,12 +153,7 @@ contact::SiteResponse SpringPatch::respond(const contact::Indentation& in) RT_SA
     out.law.stiffness_N_per_m = 0.0;
     out.law.status = law::LawStatus::kSaturated;
   }
-  // G = -F grad w;  grad w = n x (sum of w_i (edge opposite i)) / (2 area)
-  const Vec3 &a = mesh.vertex_m[corner[0]], &b = mesh.vertex_m[corner[1]],
-             &c = mesh.vertex_m[corner[2]];
-  const Vec3 twice_area = cross(b - a, c - a);
-  const Vec3 turn = dent[0] * (c - b) + dent[1] * (a - c) + dent[2] * (b - a);
-  out.slope_N = (-out.law.force_N / dot(twice_area, twice_area)) * cross(twice_area, turn);
+  out.slope_N = slope_N(mesh, corner, dent, out.law.force_N);
   return out;
 }
 

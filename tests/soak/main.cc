@@ -16,6 +16,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "firmware/gate/limits_for.h"
 #include "firmware/loop/alloc_counter.h"
 #include "firmware/loop/grid.h"
 #include "firmware/loop/rt_loop.h"

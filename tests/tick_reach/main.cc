@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "firmware/gate/limits_for.h"
 #include "firmware/loop/rt_loop.h"
 #include "firmware/pc/rt_setup.h"
 #include "firmware/run/loop_parts.h"

@@ -63,7 +63,7 @@ class Press {
   double tick(double depth_m) {
     const Tool tool = tool_at(scene_, place_, depth_m);
     contact_.touch(tool);
-    return -dot(contact_.feel(tool, false).force_N, place_.direction);
+    return -dot(contact_.feel(tool, false).wrench.force_N, place_.direction);
   }
 
   const Scene& scene_;

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "firmware/console/operator_view.h"
+#include "firmware/gate/limits_for.h"
 #include "firmware/run/loop_parts.h"
 #include "firmware/watch/call_filter.h"
 #include "firmware/watch/runaway.h"

@@ -60,7 +60,7 @@ inline Bench plate_bench() { return Bench(tests::make_plate(100_mm, 20)); }
 inline Wrench feel_at(Contact& contact, const Vec3& position_m, double grip_ratio = 0.0) {
   const Tool tool{.position_m = position_m, .grip_ratio = grip_ratio};
   contact.touch(tool);
-  return contact.feel(tool, true);
+  return contact.feel(tool, true).wrench;
 }
 
 inline void glide(Contact& contact, const Vec3& from_m, const Vec3& to_m, double grip_ratio = 0.0) {

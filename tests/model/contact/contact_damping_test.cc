@@ -75,7 +75,8 @@ TEST(ContactDamping, TakesEnergyFromEverySphereInEveryTickAndNeverPulls) {
     for (int i = 0; i < 1000; ++i) {
       const Tool tool = tool_at(i * kTick_s);
       for (Bench* bench : {&elastic, &damped}) bench->contact.touch(tool);
-      const Wrench plain = elastic.contact.feel(tool, true), with = damped.contact.feel(tool, true);
+      const Wrench plain = elastic.contact.feel(tool, true).wrench,
+                   with = damped.contact.feel(tool, true).wrench;
       const Vec3 added_N = with.force_N - plain.force_N,
                  added_Nm = with.torque_Nm - plain.torque_Nm;
       const double power_W =
@@ -99,10 +100,10 @@ TEST(ContactDamping, PressesHarderTheFaster) {
   damped.contact.touch({.position_m = {0, 0, 5_mm}});
   Tool tool{.position_m = {0, 0, 1_mm}, .velocity_mps = {0, 0, -0.1}};
   damped.contact.touch(tool);
-  const double fast_N = damped.contact.feel(tool, true).force_N.z;
+  const double fast_N = damped.contact.feel(tool, true).wrench.force_N.z;
   tool.velocity_mps = {};
   damped.contact.touch(tool);
-  EXPECT_NEAR(fast_N / damped.contact.feel(tool, true).force_N.z, 1.2, 1e-12);
+  EXPECT_NEAR(fast_N / damped.contact.feel(tool, true).wrench.force_N.z, 1.2, 1e-12);
 }
 
 }  // namespace tact::model::contact::contact_damping_test

@@ -51,7 +51,7 @@ Felt feel(Contact& contact, const Vec3& at_m, double grip_ratio, int ticks = 1) 
   for (int i = 0; i < ticks; ++i) {
     const Tool tool{.position_m = at_m, .grip_ratio = grip_ratio};
     contact.touch(tool);
-    w = contact.feel(tool, false);
+    w = contact.feel(tool, false).wrench;
   }
   return {contact.touches()[0].energy_J, w.force_N.z};
 }

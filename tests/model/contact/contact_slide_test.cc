@@ -19,7 +19,7 @@ class Slide : public testing::Test {
   Wrench feel_at(const Vec3& moved_m, double grip_ratio = 0.0) {
     const Tool tool{.position_m = Vec3{0, 0, kRadius_m} + moved_m, .grip_ratio = grip_ratio};
     contact.touch(tool);
-    return contact.feel(tool, false);
+    return contact.feel(tool, false).wrench;
   }
   void press(double from_m, double to_m, double x_m = 0.0) {
     for (int i = 0; i <= 400; ++i) feel_at({x_m, 0, -from_m - (to_m - from_m) * i / 400.0});
@@ -86,7 +86,7 @@ TEST_F(Slide, AStiffnessOfTheSceneCountsBeforeTheTissuesOwn) {
   Wrench felt;
   for (const Vec3& at : {Vec3{0, 0, kRadius_m}, Vec3{0, 0, 2_mm}, Vec3{0.1_mm, 0, 2_mm}}) {
     fixed.touch({.position_m = at});
-    felt = fixed.feel({.position_m = at}, false);
+    felt = fixed.feel({.position_m = at}, false).wrench;
   }
   EXPECT_NEAR(felt.force_N.x, -100.0 * 0.1_mm, 1e-9);
 }
@@ -127,7 +127,7 @@ class Grain : public Slide {
   }
   static Wrench feel_at(Contact& contact, const Vec3& centre_m) {
     contact.touch({.position_m = centre_m});
-    return contact.feel({.position_m = centre_m}, false);
+    return contact.feel({.position_m = centre_m}, false).wrench;
   }
 };
 

@@ -48,7 +48,7 @@ std::vector<ProbeSphere> jaws(std::size_t count) {
 
 Wrench feel_at(Contact& contact, const Tool& tool) {
   contact.touch(tool);
-  return contact.feel(tool, false);
+  return contact.feel(tool, false).wrench;
 }
 
 double energy_J(const Contact& contact) {

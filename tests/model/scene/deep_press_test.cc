@@ -147,7 +147,7 @@ Felt feel(const contact::ContactScene& scene, const Push& push, const Vec3& tip_
     tool.position_m =
         push.from_m - tip_m + (push.speed_mps * t_s - kBefore_m) * push.along + t_s * push.drag_mps;
     contact.touch(tool);
-    const Vec3 force_N = contact.feel(tool, true).force_N;
+    const Vec3 force_N = contact.feel(tool, true).wrench.force_N;
     const contact::SphereTouch& touch = contact.touches()[0];
     if (i == 0) felt.is_free_at_first = touch.state == contact::TouchState::kFree;
     if (i > 0) felt.given_J += 0.5 * dot(force_N + force_before_N, tool.position_m - before_m);

@@ -45,7 +45,7 @@ class WholeTool : public ::testing::Test {
       const Tool tool{.position_m = {0, 0, -(from_m + (to_m - from_m) * i / 200.0)},
                       .grip_ratio = grip_ratio};
       contact.touch(tool);
-      w = contact.feel(tool, false);
+      w = contact.feel(tool, false).wrench;
     }
     return w;
   }
@@ -80,7 +80,7 @@ class WholeTool : public ::testing::Test {
         const Tool tool{.position_m = at_m + scene_.organ.position_m - (reach - at_depth_m) * along,
                         .orientation = {q[0], q[1], q[2], q[3]}};
         contact.touch(tool);
-        felt_N = -dot(contact.feel(tool, false).force_N, along);
+        felt_N = -dot(contact.feel(tool, false).wrench.force_N, along);
       }
       out.push_back(felt_N);
     }

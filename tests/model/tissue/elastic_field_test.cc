@@ -108,7 +108,7 @@ void expect_slope_of_energy(Bench& bench, const Vec3& at_m) {
     for (int i = 0; i <= 400; ++i)
       contact.touch({.position_m = from_m + (i / 400.0) * (p_m - from_m)}), contact.feel({}, false);
     contact.touch({.position_m = p_m});
-    const Wrench w = contact.feel({.position_m = p_m}, false);
+    const Wrench w = contact.feel({.position_m = p_m}, false).wrench;
     return std::pair{w.force_N, contact.touches()[0].energy_J};
   };
   const Vec3 outside_m = at_m + Vec3{0, 0, 10_mm};
@@ -148,7 +148,7 @@ TEST(ElasticField, AClosedStrokeOverSoftAndStiffPlacesReturnsNoEnergy) {
   for (int i = 0; i <= ticks; ++i) {
     const Vec3 at_m = path(static_cast<double>(i) / ticks);
     contact.touch({.position_m = at_m});
-    const Vec3 force_N = contact.feel({.position_m = at_m}, false).force_N;
+    const Vec3 force_N = contact.feel({.position_m = at_m}, false).wrench.force_N;
     const double part_J = -0.5 * dot(force_N + before_N, at_m - before_m);
     work_J += part_J;
     size_J += std::abs(part_J);
