@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // device.h - one interface for every haptic device, simulated or real.
 //
-// Only frame W leaves a device (types.h). read, ready, permit and write are called once per tick,
-// in this order, from the loop thread; everything else belongs to set-up and shut-down. What can be
-// found out before the loop is found out while opening, with a sentence; drives are powered by the
-// loop alone, so that none is ever without commands (one that must be on to tell where it is gets
-// zero torque all the while). A fault of the device stays until it is opened
-// again: a bus that comes back by itself moves nothing.
+// Only frame W leaves a device (types.h). What can be found out before the loop is found out while
+// opening, with a sentence; drives are powered by the loop alone, so that none is ever without
+// commands (one that must be on to tell where it is gets zero torque all the while). A fault of the
+// device stays until it is opened again: a bus that comes back by itself moves nothing.
 #pragma once
 
 #include <cstdint>
@@ -63,19 +61,31 @@ class Device {
   Device& operator=(const Device&) = delete;
   virtual ~Device() = default;
 
+  // Set-up, before the loop.
+
   virtual DeviceInfo info() const = 0;
+
+  /// System calls that read, permit and write make, by number (sys/syscall.h). The loop's thread
+  /// may make no other: one that is missing here stops the force.
+  virtual std::span<const int> loop_calls() const { return {}; }
+
+  /// What takes the force away after this process has died. None for a
+  /// simulated device, and for one whose handle no other process can use.
+  virtual std::optional<LastWords> last_words() { return std::nullopt; }
+
+  // The loop's thread, once a tick and in this order.
 
   /// Newest sample; none is fresh until the device knows where it is. Fault::kNone, or what is
   /// wrong with the device.
   [[nodiscard]] virtual Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE = 0;
 
-  /// May the drives have power in this tick? Safety lines decide; without lines always true.
-  virtual void permit(bool powered) RT_SAFE { (void)powered; }
-
   /// Would a force of this tick reach the hand? A device whose motors are off may still tell where
   /// it is, with fresh samples: nothing is armed before this is true, and what is armed stops when
   /// it no longer is.
   virtual bool ready() const RT_SAFE { return true; }
+
+  /// May the drives have power in this tick? Safety lines decide; without lines always true.
+  virtual void permit(bool powered) RT_SAFE { (void)powered; }
 
   /// Hand this wrench to the hardware, on top of its own gravity compensation.
   [[nodiscard]] virtual Fault write(const Wrench& wrench) RT_SAFE = 0;
@@ -84,21 +94,16 @@ class Device {
   /// Hardware lives by itself and does nothing here. Not part of the tick's measured time.
   virtual void between_ticks(double elapsed_s) RT_SAFE { (void)elapsed_s; }
 
-  /// System calls that read, permit and write make, by number (sys/syscall.h). The loop's thread
-  /// may make no other: one that is missing here stops the force.
-  virtual std::span<const int> loop_calls() const { return {}; }
+  // Any thread, at any time.
 
   /// What lies behind the latched fault, for a person: which part, why, the cure. Empty when there
-  /// is no more to say than the fault's own words. Any thread, at any time.
+  /// is no more to say than the fault's own words.
   virtual std::string trouble() const { return {}; }
 
-  /// What it counted since it was opened, as frames that are nobody's; read when the loop has
-  /// ended.
-  virtual std::vector<DeviceCount> tally() const { return {}; }
+  // When the loop has ended.
 
-  /// Set-up, before the loop: what takes the force away after this process has died. None for a
-  /// simulated device, and for one whose handle no other process can use.
-  virtual std::optional<LastWords> last_words() { return std::nullopt; }
+  /// What it counted since it was opened, as frames that are nobody's.
+  virtual std::vector<DeviceCount> tally() const { return {}; }
 
   /// Zero force and power off; may block. Safe to call twice, and at any time after opening.
   virtual void stop() = 0;

@@ -28,11 +28,8 @@ int connect_to(const std::string& path) {
   if (!address || fd < 0) return fd < 0 ? fd : (close(fd), -1);
   setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &kPatience, sizeof kPatience);
   setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &kPatience, sizeof kPatience);
-  ucred peer{};
-  socklen_t bytes = sizeof peer;
   const bool good = connect(fd, model::io::plain(*address), sizeof *address) == 0 &&
-                    getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &bytes) == 0 &&
-                    (geteuid() == 0 || may_ask(peer.uid));
+                    (geteuid() == 0 || model::io::has_trusted_peer(fd));
   return good ? fd : (close(fd), -1);
 }
 

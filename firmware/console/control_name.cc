@@ -10,6 +10,7 @@
 #include <charconv>
 #include <filesystem>
 
+#include "model/fnv1a.h"
 #include "model/io/socket_file.h"
 
 namespace tact::firmware::console {
@@ -17,17 +18,10 @@ namespace {
 
 constexpr std::string_view kBegin = "control-", kEnd = ".sock";
 
-/// FNV-1a: a name, no proof.
-std::uint64_t hash_of(const std::string& text) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return hash;
-}
-
 std::string end_of(const std::string& scene_path) {
   std::error_code failed;
   const auto whole = std::filesystem::weakly_canonical(scene_path, failed);
-  return fmt::format("-{:016x}{}", hash_of(failed ? scene_path : whole.string()), kEnd);
+  return fmt::format("-{:016x}{}", model::fnv1a(failed ? scene_path : whole.string()), kEnd);
 }
 
 std::vector<ControlName> controls_that_end_in(const std::string& folder, std::string_view end) {

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <sys/epoll.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,7 +16,6 @@
 #include <utility>
 
 #include "firmware/console/control_name.h"
-#include "model/io/socket_file.h"
 
 namespace tact::firmware::console {
 namespace {
@@ -35,18 +33,18 @@ bool watch_it(int watch, int fd) {
 }
 
 /// It listens before it has its name: whoever finds the name is heard.
-bool listen_at(int listener, const std::string& path) {
+Result<int> listen_at(const std::string& path) {
   const std::string before = path + ".new";
-  const auto address = model::io::socket_address(before);
-  unlink(before.c_str());
-  return address && bind(listener, model::io::plain(*address), sizeof *address) == 0 &&
-         chmod(before.c_str(), 0600) == 0 && listen(listener, kQueue) == 0 &&
-         rename(before.c_str(), path.c_str()) == 0;
+  const auto listener =
+      model::io::bind_socket(before, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC);
+  if (!listener) return listener.error();
+  if (listen(*listener, kQueue) == 0 && rename(before.c_str(), path.c_str()) == 0) return *listener;
+  Error error{fmt::format("{}: {}", path, std::strerror(errno))};
+  close(*listener);
+  return error;
 }
 
 }  // namespace
-
-bool may_ask(uid_t user) { return user == geteuid() || user == 0; }
 
 std::string pack_answer(const Answer& answer) {
   return ((answer.done ? "+" : "-") + answer.sentence).substr(0, kLongestControlMessage);
@@ -70,28 +68,19 @@ void ControlRequest::answer(const Answer& answer) const {
 }
 
 Result<std::unique_ptr<ControlSocket>> ControlSocket::open(const std::string& path) {
-  if (const auto fits = model::io::socket_address(path + ".new"); !fits) return fits.error();
   remove_dead_controls(std::filesystem::path(path).parent_path());
-  const int listener = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  const auto listener = listen_at(path);
+  if (!listener) return listener.error();
   const int watch = epoll_create1(EPOLL_CLOEXEC);
-  std::unique_ptr<ControlSocket> control(new ControlSocket(path, listener, watch));
-  struct stat info{};
-  if (listener < 0 || watch < 0 || !listen_at(listener, path) || !watch_it(watch, listener) ||
-      lstat(path.c_str(), &info) != 0)
+  std::unique_ptr<ControlSocket> control(
+      new ControlSocket(model::io::SocketFile(path), *listener, watch));
+  if (watch < 0 || !watch_it(watch, *listener))
     return Error{fmt::format("{}: {}", path, std::strerror(errno))};
-  control->device_ = info.st_dev;
-  control->inode_ = info.st_ino;
   return control;
 }
 
-bool ControlSocket::owns_its_file() const {
-  struct stat info{};
-  return inode_ != 0 && lstat(path_.c_str(), &info) == 0 && info.st_dev == device_ &&
-         info.st_ino == inode_;
-}
-
 ControlSocket::~ControlSocket() {
-  if (owns_its_file()) unlink(path_.c_str());
+  file_.remove();
   for (const int client : silent_) close(client);
   for (const int fd : {listener_, watch_, spare_})
     if (fd >= 0) close(fd);
@@ -126,10 +115,7 @@ bool ControlSocket::accept_one() {
     if (!is_gone) usleep(kPause_us);
     return is_gone;
   }
-  ucred peer{};
-  socklen_t bytes = sizeof peer;
-  const bool known = getsockopt(client, SOL_SOCKET, SO_PEERCRED, &peer, &bytes) == 0;
-  if (!known || !may_ask(peer.uid) || !watch_it(watch_, client)) {
+  if (!model::io::has_trusted_peer(client) || !watch_it(watch_, client)) {
     const ControlRequest stranger(client, "");
     stranger.answer(
         {.done = false, .sentence = "only the user of this tactd, and root, are heard"});

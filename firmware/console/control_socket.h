@@ -5,13 +5,13 @@
 // says who asks (SO_PEERCRED); the same user and root are heard. No way leads here from a network.
 #pragma once
 
-#include <sys/types.h>
-
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "model/io/socket_file.h"
 #include "model/result.h"
 
 namespace tact::firmware::console {
@@ -59,21 +59,15 @@ class ControlSocket {
   std::optional<ControlRequest> next();
 
  private:
-  ControlSocket(std::string path, int listener, int watch)
-      : path_(std::move(path)), listener_(listener), watch_(watch) {}
+  ControlSocket(model::io::SocketFile file, int listener, int watch)
+      : file_(std::move(file)), listener_(listener), watch_(watch) {}
   bool accept_one();
   std::optional<ControlRequest> read(int client);
-  bool owns_its_file() const;
 
-  std::string path_;
+  model::io::SocketFile file_;
   int listener_, watch_;
-  int spare_ = -1;  // a descriptor to be heard with when no other is free
-  dev_t device_ = 0;
-  ino_t inode_ = 0;
+  int spare_ = -1;           // a descriptor to be heard with when no other is free
   std::vector<int> silent_;  // clients that have not asked yet
 };
-
-/// True for the user of this process, and for root.
-bool may_ask(uid_t user);
 
 }  // namespace tact::firmware::console

@@ -14,8 +14,8 @@
 #include "firmware/console/service_manager.h"
 #include "firmware/loop/grid.h"
 #include "firmware/run/inertia_note.h"
+#include "firmware/run/loop_executor.h"
 #include "firmware/run/loop_parts.h"
-#include "firmware/run/loop_threads.h"
 #include "firmware/run/real_time.h"
 #include "firmware/run/report.h"
 #include "firmware/run/telemetry_setup.h"
@@ -52,7 +52,7 @@ class Session {
   std::optional<Error> open_call_filter();
   void run_real_time();
   void run_free();
-  void serve_operator(LoopThreads& threads);
+  void serve_operator(LoopExecutor& executor);
   // Also of a loop that ended before it could tell what the watch had found.
   model::Fault last_fault() const {
     const model::Fault latched = parts_.controller->newest().fault;
@@ -188,22 +188,22 @@ void Session::run_free() {
 void Session::run_real_time() {
   say(stderr, "tactd: limits {} (the page shows them too)\n", parts_.limits_checksum);
   telemetry_->start();
-  LoopThreads threads({.turns = {{loop_->progress(), [this] { loop_->run(); }}},
-                       .device = *parts_.device,
-                       .lines = *parts_.lines,
-                       .requests = requests_,
-                       .filter = filter_.get(),
-                       .guardian = parts_.guardian.get(),
-                       .rt = rt_,
-                       .period_ns = period_ns(),
-                       .hard_real_time = !non_rt_});
-  serve_operator(threads);
-  threads.join();
-  costs_ = threads.costs();
+  LoopExecutor executor({.turns = {{loop_->progress(), [this] { loop_->run(); }}},
+                         .device = *parts_.device,
+                         .lines = *parts_.lines,
+                         .requests = requests_,
+                         .filter = filter_.get(),
+                         .guardian = parts_.guardian.get(),
+                         .rt = rt_,
+                         .period_ns = period_ns(),
+                         .hard_real_time = !non_rt_});
+  serve_operator(executor);
+  executor.join();
+  costs_ = executor.costs();
 }
 
 // The main thread while the loop runs: waits for signals, tells what happens.
-void Session::serve_operator(LoopThreads& threads) {
+void Session::serve_operator(LoopExecutor& executor) {
   console::OperatorView view(*parts_.device, *parts_.lines, requests_.arm_at_start.load(),
                              scene_.path);
   const auto control = console::open_control(scene_.path, view);
@@ -216,14 +216,14 @@ void Session::serve_operator(LoopThreads& threads) {
     if (black_box_ == nullptr) return;
     for (const std::string& sentence : black_box_->news()) view.tell(sentence);
   };
-  while (!threads.ended()) {
+  while (!executor.ended()) {
     const std::int64_t now_ns = monotonic_clock_.now_ns();
     const std::int64_t until_ns = loop::next_half_way_ns(now_ns + kStatusPeriod_ns, period_ns());
     desk.obey(until_ns - now_ns);
     service.tell({now_ns, view.why_not_arm().empty(), loop_->progress().ticks(), view.status()});
     tell_news();
-    if (!threads.hangs()) continue;
-    threads.leave_behind(1, [&] {
+    if (!executor.hangs()) continue;
+    executor.leave_behind(1, [&] {
       view.tell(
           "the loop does not come back, so tactd ends without it: switch the device's power off");
       telemetry_->stop();

@@ -193,8 +193,8 @@ void FrameBuilder::add_site(const model::contact::SphereTouch& touch, FrameSite&
   std::array<double, kMaxRings> ring_m{};
   const model::contact::Indentation in{
       .place = touch.place, .normal = touch.normal, .dent_m = touch.dent_m};
-  const std::size_t count = law_.profile(in, ring_m);
-  put(site.tilt, law_.tilt(in));
+  const std::size_t count = dents_.profile(in, ring_m);
+  put(site.tilt, dents_.tilt(in));
   for (std::size_t j = 0; j < count; ++j) site.profile_m[j] = static_cast<float>(ring_m[j]);
 }
 

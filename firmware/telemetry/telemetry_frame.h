@@ -35,9 +35,9 @@ Frame frame_of_tick(const Frame& picture, const LoggedTick& tick, std::int64_t t
 /// Gathers records; a frame shows the newest and the extremes since the frame before.
 class FrameBuilder {
  public:
-  /// `law` and `shapes` outlive the builder; profiles are solved here, far from the loop.
-  FrameBuilder(const model::contact::SiteLaw& law, loop::ShapeSlot& shapes, bool non_rt)
-      : law_(law), shapes_(shapes), non_rt_(non_rt) {}
+  /// `dents` and `shapes` outlive the builder; profiles are solved here, far from the loop.
+  FrameBuilder(const model::contact::DentView& dents, loop::ShapeSlot& shapes, bool non_rt)
+      : dents_(dents), shapes_(shapes), non_rt_(non_rt) {}
 
   void add(const loop::TickRecord& record);
   bool has_news() const { return !tick_us_.empty(); }
@@ -47,7 +47,7 @@ class FrameBuilder {
   void add_site(const model::contact::SphereTouch& touch, FrameSite& site) const;
   void add_patch(FramePatch& patch);
 
-  const model::contact::SiteLaw& law_;
+  const model::contact::DentView& dents_;
   loop::ShapeSlot& shapes_;
   model::contact::PatchShape shape_;
   bool non_rt_;

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,42 +18,16 @@ using model::Result;
 
 constexpr std::size_t kMaxClients = 16;
 
-Error failed(const std::string& what, const std::string& cure) {
-  return Error{fmt::format("{}: {}; {}", what, std::strerror(errno), cure)};
-}
-
-// A file of a dead tactd is replaced; a living one is not disturbed.
-bool somebody_listens(const sockaddr_un& address) {
-  const int probe = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  const bool alive =
-      probe >= 0 && (connect(probe, model::io::plain(address), sizeof address) == 0 ||
-                     errno == EAGAIN);  // alive, with a full queue
-  if (probe >= 0) close(probe);
-  return alive;
-}
-
-bool is_socket(const std::string& path) {
-  struct stat info{};
-  return lstat(path.c_str(), &info) == 0 && S_ISSOCK(info.st_mode);
-}
-
 }  // namespace
 
 Result<TelemetrySocket> TelemetrySocket::open(const std::string& path, const Hello& hello,
                                               int mesh_fd, std::optional<gid_t> viewers) {
-  const auto address = model::io::socket_address(path);
-  if (!address) return address.error();
-  if (auto shared = model::io::check_socket_folder(path)) return std::move(*shared);
-  if (somebody_listens(*address))
-    return Error{path + ": another tactd is running there; stop it, or choose another --socket"};
-  if (is_socket(path)) unlink(path.c_str());
-  const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  const mode_t before = umask(0177);  // 0600 from the first moment
-  const bool bound = fd >= 0 && bind(fd, model::io::plain(*address), sizeof *address) == 0;
-  umask(before);
-  if (!bound || listen(fd, 8) != 0) {
-    const Error error = failed(path, "choose a folder that you may write to with --socket");
-    if (fd >= 0) close(fd);
+  const auto bound = model::io::bind_socket(path, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC);
+  if (!bound) return bound.error();
+  const int fd = *bound;
+  if (listen(fd, 8) != 0) {
+    Error error{fmt::format("{}: {}; choose another --socket", path, std::strerror(errno))};
+    close(fd);
     return error;
   }
   TelemetrySocket opened(model::io::SocketFile(path), hello, fd, mesh_fd,

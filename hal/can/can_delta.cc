@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "hal/delta/delta_at_tool.h"
+#include "hal/delta/delta_frame.h"
 #include "hal/saturation.h"
 #include "model/units.h"
 
@@ -24,13 +25,6 @@ constexpr double kJump_m = 5e-3;          // between two samples: a new start of
 constexpr std::int64_t kLongGap_ns = 20'000'000;
 
 delta::Joints joints_of(const Vec3& v) { return {v.x, v.y, v.z}; }
-
-std::vector<Vec3> samples_D(const CanDelta& delta, const model::DeltaSettings& settings) {
-  std::vector<Vec3> samples =
-      delta::workspace_samples_W(settings.workspace_radius_m, settings.workspace_half_length_m);
-  for (Vec3& p : samples) p = delta.point_D(p);
-  return samples;
-}
 
 double in_deg(double angle_rad) { return angle_rad * 360.0 / kTurn_rad; }
 
@@ -117,7 +111,7 @@ std::optional<FaultCause> CanDelta::measure(const delta::Joints& motor_turns, st
   stamp_ns_ = stamp_ns;
   has_pose_ = true;
   tool = Tool{};
-  tool.position_m = point_W(forward.far_m);
+  tool.position_m = delta::point_W(forward.far_m, settings_.middle_m);
   tool.velocity_mps = velocity_.step(tool.position_m, elapsed_s);
   return std::nullopt;
 }
@@ -126,15 +120,11 @@ delta::Joints CanDelta::motor_torques_Nm(const Vec3& force_N, double ratio) cons
   delta::Joints torque_Nm{};
   if (!has_pose_) return torque_Nm;
   const Vec3 force = is_finite(force_N) ? saturated(force_N, settings_.max_force_N) : Vec3{};
-  // tau = tau_g + s J^T F, one s for all joints
-  torque_Nm =
-      gravity_torques_Nm(delta_.geometry(), masses_, pose_, direction_D(delta::kGravity_W_mps2));
-  const delta::Joints wanted_Nm = joint_torques_Nm(pose_, direction_D(force));
-  const double within =
-      delta::saturation_ratio(torque_Nm, wanted_Nm, settings_.max_joint_torque_Nm);
+  const double most_Nm = settings_.max_joint_torque_Nm;
+  torque_Nm = delta::drive_torques_Nm(delta_.geometry(), masses_, pose_, delta::direction_D(force),
+                                      most_Nm);
   for (std::size_t i = 0; i < 3; ++i) {
-    const double most_Nm = settings_.max_joint_torque_Nm;  // gravity alone may be above it
-    const double joint_Nm = std::clamp(torque_Nm[i] + within * wanted_Nm[i], -most_Nm, most_Nm);
+    const double joint_Nm = std::clamp(torque_Nm[i], -most_Nm, most_Nm);  // gravity may be above
     torque_Nm[i] = ratio * direction_[i] * joint_Nm / settings_.gear_ratio;
   }
   return torque_Nm;
@@ -146,12 +136,14 @@ DeviceInfo CanDelta::info(std::string name, double counts_per_turn, double delay
           .max_torque_Nm = 0.0,
           .workspace_radius_m = settings_.workspace_radius_m,
           .workspace_half_length_m = settings_.workspace_half_length_m,
-          .at_tool = delta_at_tool(delta_,
-                                   {.viscous_Nms_per_rad = settings_.joint_damping_Nms_per_rad,
-                                    .coulomb_Nm = settings_.joint_friction_Nm,
-                                    .counts_per_turn = counts_per_turn,
-                                    .delay_s = delay_s},
-                                   samples_D(*this, settings_)),
+          .at_tool = delta_at_tool(
+              delta_,
+              {.viscous_Nms_per_rad = settings_.joint_damping_Nms_per_rad,
+               .coulomb_Nm = settings_.joint_friction_Nm,
+               .counts_per_turn = counts_per_turn,
+               .delay_s = delay_s},
+              delta::workspace_samples_D(settings_.workspace_radius_m,
+                                         settings_.workspace_half_length_m, settings_.middle_m)),
           .damping_key = "device.delta.joint_damping_Nms_per_rad"};
 }
 

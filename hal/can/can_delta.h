@@ -4,8 +4,6 @@
 //     theta_i = 2 pi direction_i (turns_i - zero_i) / gear        rad, from the motor's turns
 //     tau_i   = direction_i (tau_g,i + s (J^T F)_i) / gear        N m, at the motor
 //
-//     W x = D z - middle,   W y = -D y,   W z = D x               the delta lies on its side
-//
 // tau_g holds the arms at the pose that was measured last; s is one for a force within the limits
 // of force and joint torque and shrinks all of F alike beyond them, so its direction stays. Shared
 // by all drives on CAN. Angles beyond the joint stops, or rods that cannot meet, say that the zero
@@ -54,15 +52,6 @@ class CanDelta {
 
   /// `delay_s`: from position to force, beyond one hold; `counts_per_turn` of an arm.
   DeviceInfo info(std::string name, double counts_per_turn, double delay_s) const;
-
-  Vec3 direction_W(const Vec3& v_D) const RT_SAFE { return {v_D.z, -v_D.y, v_D.x}; }
-  Vec3 direction_D(const Vec3& v_W) const RT_SAFE { return {v_W.z, -v_W.y, v_W.x}; }
-  Vec3 point_W(const Vec3& p_D) const RT_SAFE {
-    return direction_W(p_D - Vec3{0.0, 0.0, settings_.middle_m});
-  }
-  Vec3 point_D(const Vec3& p_W) const RT_SAFE {
-    return direction_D(p_W) + Vec3{0.0, 0.0, settings_.middle_m};
-  }
 
  private:
   std::optional<FaultCause> doubt(const delta::Joints& theta_rad,

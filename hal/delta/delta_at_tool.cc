@@ -5,9 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "hal/delta/delta_frame.h"
+
 namespace tact::hal::delta {
 
-std::vector<Vec3> workspace_samples_W(double radius_m, double half_length_m) {
+std::vector<Vec3> workspace_samples_D(double radius_m, double half_length_m, double middle_m) {
   std::vector<Vec3> samples{Vec3{}};
   for (const double x_m : {-half_length_m, half_length_m}) {
     samples.push_back({x_m, 0.0, 0.0});
@@ -16,6 +18,7 @@ std::vector<Vec3> workspace_samples_W(double radius_m, double half_length_m) {
       samples.push_back({x_m, radius_m * std::cos(angle_rad), radius_m * std::sin(angle_rad)});
     }
   }
+  for (Vec3& p : samples) p = point_D(p, middle_m);
   return samples;
 }
 

@@ -22,8 +22,8 @@ struct DeltaJointQuality {
   double delay_s = 0.0;  // from position to force, beyond one hold
 };
 
-/// The middle and the edges of a workspace cylinder along W x, in frame W.
-std::vector<Vec3> workspace_samples_W(double radius_m, double half_length_m);
+/// The middle and the edges of a workspace cylinder along W x, in frame D (delta_frame.h).
+std::vector<Vec3> workspace_samples_D(double radius_m, double half_length_m, double middle_m);
 
 /// Positions in frame D; those out of reach are not looked at.
 model::DeviceAtTool delta_at_tool(const DeltaKinematics& delta, const DeltaJointQuality& joint,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/delta/delta_dynamics.h"
 
+#include "hal/delta/delta_frame.h"
+
 namespace tact::hal::delta {
 
 double joint_inertia_kgm2(const DeltaGeometry& geometry, const DeltaMasses& masses) RT_SAFE {
@@ -19,6 +21,15 @@ Joints gravity_torques_Nm(const DeltaGeometry& geometry, const DeltaMasses& mass
       masses.arm_kg * masses.arm_com_m + 0.5 * masses.forearm_kg * geometry.upper_arm_m;
   for (std::size_t i = 0; i < 3; ++i)
     torque_Nm[i] -= moment_kgm * dot(gravity_mps2, pose.tangent_m[i]) / geometry.upper_arm_m;
+  return torque_Nm;
+}
+
+Joints drive_torques_Nm(const DeltaGeometry& geometry, const DeltaMasses& masses,
+                        const DeltaPose& pose, const Vec3& force_N, double most_Nm) RT_SAFE {
+  Joints torque_Nm = gravity_torques_Nm(geometry, masses, pose, direction_D(kGravity_W_mps2));
+  const Joints wanted_Nm = joint_torques_Nm(pose, force_N);
+  const double ratio = saturation_ratio(torque_Nm, wanted_Nm, most_Nm);
+  for (std::size_t i = 0; i < 3; ++i) torque_Nm[i] += ratio * wanted_Nm[i];
   return torque_Nm;
 }
 

@@ -117,7 +117,7 @@ bool FalconDevice::locate(const FalconReply& reply) RT_SAFE {
       return false;
   }
   FalconForward forward = kinematics_.forward(thigh_rad, position_m_);
-  if (!forward.solved) forward = kinematics_.forward(thigh_rad, kFalconHome);
+  if (!forward.solved) forward = kinematics_.forward(thigh_rad, kFalconHome_m);
   if (!forward.solved) return false;
   position_m_ = forward.position_m;
   rates_ = kinematics_.joint_rate_matrix(kinematics_.inverse(position_m_));

@@ -60,12 +60,12 @@ class FalconDevice final : public Device {
   FalconExchange exchange_;
   VelocityObserver velocity_;
 
-  Vec3 position_m_ = kFalconHome;  // frame D
-  Vec3 velocity_mps_;              // frame W
-  model::Mat3 rates_{};            // K there; zero makes no force
-  FalconWords counts_{};           // of the last good sample
-  std::int64_t stamp_ns_ = 0;      // of it; 0: none since homing
-  std::uint64_t sequence_ = 0;     // of the last report seen
+  Vec3 position_m_ = kFalconHome_m;  // frame D
+  Vec3 velocity_mps_;                // frame W
+  model::Mat3 rates_{};              // K there; zero makes no force
+  FalconWords counts_{};             // of the last good sample
+  std::int64_t stamp_ns_ = 0;        // of it; 0: none since homing
+  std::uint64_t sequence_ = 0;       // of the last report seen
   std::int64_t now_ns_ = 0;
   std::int64_t heard_ns_ = 0;  // when the last good report was read
   std::uint64_t dropped_before_ = 0;

@@ -65,7 +65,7 @@ class FalconKinematics {
 delta::Joints falcon_torques_Nm(const model::Mat3& joint_rate_matrix,
                                 const model::Vec3& force_N) RT_SAFE;
 
-inline constexpr model::Vec3 kFalconHome{
+inline constexpr model::Vec3 kFalconHome_m{
     0.0, 0.0, 0.110};  // all poses within 60 mm of the axis converge from here
 
 /// Thigh angle of an encoder count (FK-4): 1280 a motor turn, 110 mm drum on a 14.25 mm shaft.

@@ -11,8 +11,11 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <filesystem>
 #include <string_view>
+
+#include "hal/udev_rules.h"
 
 namespace tact::hal::gpio {
 namespace {
@@ -96,6 +99,44 @@ std::string name_chips(const std::vector<GpioChip>& chips) {
     names += chip.label.empty() ? chip.name : fmt::format("{} \"{}\"", chip.name, chip.label);
   }
   return names;
+}
+
+model::Error not_permitted(const GpioChip& chip) {
+  return model::Error{fmt::format("{} \"{}\" may not be opened; its udev rule is missing: {}; {}",
+                                  chip.path, chip.label, kGpioRule, kRuleCure)};
+}
+
+model::Result<GpioChip> choose_chip(const std::vector<GpioChip>& chips, const std::string& wanted) {
+  std::error_code no_file;
+  const std::string path = fs::weakly_canonical(wanted, no_file).string();  // a link
+  const GpioChip* found = nullptr;
+  const GpioChip* closed = nullptr;
+  for (const GpioChip& chip : chips) {
+    if (chip.error != 0 && chip.bus.empty()) closed = &chip;
+    if (path != chip.path && wanted != chip.label && wanted != chip.name) continue;
+    if (found != nullptr)
+      return model::Error{
+          fmt::format("device.lines.chip \"{}\" fits {} and {}; name its path instead", wanted,
+                      found->path, chip.path)};
+    found = &chip;
+  }
+  if (found == nullptr && closed != nullptr) found = closed;  // its label could not be read
+  if (found == nullptr)
+    return model::Error{fmt::format(
+        "device.lines.chip is \"{}\", but {}; load the driver of the board that the lines are "
+        "wired to, or correct the name",
+        wanted,
+        chips.empty() ? "this PC shows no GPIO chip" : "here are only " + name_chips(chips))};
+  if (!found->bus.empty())
+    return model::Error{fmt::format(
+        "{} \"{}\" hangs on {}, where an access may wait for milliseconds: it cannot carry safety "
+        "lines; use a chip on PCI, LPC or the processor itself",
+        found->name, found->label, found->bus)};
+  if (found->error == EACCES || found->error == EPERM) return not_permitted(*found);
+  if (found->error != 0)
+    return model::Error{fmt::format("{} cannot be opened: {}; check its driver (dmesg)",
+                                    found->path, std::strerror(found->error))};
+  return *found;
 }
 
 }  // namespace tact::hal::gpio

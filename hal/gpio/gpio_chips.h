@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "model/result.h"
+
 namespace tact::hal::gpio {
 
 /// Where the kernel shows itself; other folders in tests.
@@ -35,6 +37,12 @@ std::vector<GpioChip> find_gpio_chips(const SystemRoots& roots = {});
 
 /// What is there, for a sentence: `gpiochip0 "pinctrl-intel", gpiochip1 "mcp2221"`.
 std::string name_chips(const std::vector<GpioChip>& chips);
+
+/// The chip that is meant: by path, label or name, and on no bus where every access sleeps.
+model::Result<GpioChip> choose_chip(const std::vector<GpioChip>& chips, const std::string& wanted);
+
+/// The chip is there, and the udev rule that opens it is not.
+model::Error not_permitted(const GpioChip& chip);
 
 inline constexpr const char* kUnknownBus = "an unknown bus";
 

@@ -9,11 +9,9 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <utility>
 
 #include "hal/gpio/safety_logic.h"
-#include "hal/udev_rules.h"
 
 namespace tact::hal::gpio {
 namespace {
@@ -163,11 +161,6 @@ std::array<NamedOffset, 7> offsets_of(const LinesSettings& s) {
            {"scope", s.scope}}};
 }
 
-Error not_permitted(const GpioChip& chip) {
-  return Error{fmt::format("{} \"{}\" may not be opened; its udev rule is missing: {}; {}",
-                           chip.path, chip.label, kGpioRule, kRuleCure)};
-}
-
 Error why_not_requested(gpiod_chip* handle, const GpioChip& chip, const LinesSettings& settings,
                         int error) {
   if (error == EACCES || error == EPERM) return not_permitted(chip);
@@ -221,38 +214,6 @@ Result<Groups> find_lines(gpiod_chip* handle, const GpioChip& chip, const LinesS
 }
 
 }  // namespace
-
-Result<GpioChip> choose_chip(const std::vector<GpioChip>& chips, const std::string& wanted) {
-  std::error_code no_file;
-  const std::string path = std::filesystem::weakly_canonical(wanted, no_file).string();  // a link
-  const GpioChip* found = nullptr;
-  const GpioChip* closed = nullptr;
-  for (const GpioChip& chip : chips) {
-    if (chip.error != 0 && chip.bus.empty()) closed = &chip;
-    if (path != chip.path && wanted != chip.label && wanted != chip.name) continue;
-    if (found != nullptr)
-      return Error{fmt::format("device.lines.chip \"{}\" fits {} and {}; name its path instead",
-                               wanted, found->path, chip.path)};
-    found = &chip;
-  }
-  if (found == nullptr && closed != nullptr) found = closed;  // its label could not be read
-  if (found == nullptr)
-    return Error{fmt::format(
-        "device.lines.chip is \"{}\", but {}; load the driver of the board that the lines are "
-        "wired to, or correct the name",
-        wanted,
-        chips.empty() ? "this PC shows no GPIO chip" : "here are only " + name_chips(chips))};
-  if (!found->bus.empty())
-    return Error{fmt::format(
-        "{} \"{}\" hangs on {}, where an access may wait for milliseconds: it cannot carry safety "
-        "lines; use a chip on PCI, LPC or the processor itself",
-        found->name, found->label, found->bus)};
-  if (found->error == EACCES || found->error == EPERM) return not_permitted(*found);
-  if (found->error != 0)
-    return Error{fmt::format("{} cannot be opened: {}; check its driver (dmesg)", found->path,
-                             std::strerror(found->error))};
-  return *found;
-}
 
 Result<bool> check_offsets(const LinesSettings& settings, const GpioChip& chip) {
   const auto lines = offsets_of(settings);

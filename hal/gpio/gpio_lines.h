@@ -27,9 +27,6 @@ model::Result<std::unique_ptr<SafetyLines>> open_safety_lines(const model::Lines
 model::Result<std::unique_ptr<SafetyLines>> open_lines_of(const GpioChip& chip,
                                                           const model::LinesSettings& settings);
 
-/// The chip that is meant: by path, label or name, and on no bus where every access sleeps.
-model::Result<GpioChip> choose_chip(const std::vector<GpioChip>& chips, const std::string& wanted);
-
 /// The first thing wrong with the line numbers: outside the chip, used twice, none at all.
 model::Result<bool> check_offsets(const model::LinesSettings& settings, const GpioChip& chip);
 

@@ -1,49 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/sim/hand_socket.h"
 
-#include <fmt/core.h>
 #include <signal.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 namespace tact::hal::sim {
 namespace {
 
-using model::Error;
 using model::Result;
 
 constexpr double kFarthest_m = 1.0;  // no hand is farther from the middle of this device
-
-Error system_error(const std::string& path, const char* what) {
-  return {fmt::format("{}: {}: {}; choose a writable place for the hand socket", path, what,
-                      std::strerror(errno))};
-}
-
-/// Removes the socket file of a process that is gone; refuses anything else that is in the way.
-Result<bool> clear_the_way(const std::string& path, const sockaddr_un& address) {
-  struct stat status{};
-  if (lstat(path.c_str(), &status) != 0) {
-    if (errno == ENOENT) return true;
-    return system_error(path, "cannot look at it");
-  }
-  if (!S_ISSOCK(status.st_mode))
-    return Error{fmt::format("{}: is a file, not a socket; choose another name", path)};
-  const int probe = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  const bool alive = probe >= 0 && connect(probe, model::io::plain(address), sizeof address) == 0;
-  if (probe >= 0) close(probe);
-  if (alive) {
-    return Error{
-        fmt::format("{}: another process listens here; stop it, or choose another --socket", path)};
-  }
-  if (unlink(path.c_str()) != 0) return system_error(path, "cannot replace the old socket");
-  return true;
-}
 
 }  // namespace
 
@@ -56,21 +26,9 @@ bool is_sound(const HandTarget& target) RT_SAFE {
 
 Result<std::unique_ptr<HandSocket>> HandSocket::start(const std::string& path,
                                                       LatestSlot<HandTarget>& newest) {
-  const auto address = model::io::socket_address(path);
-  if (!address) return address.error();
-  if (auto shared = model::io::check_socket_folder(path)) return std::move(*shared);
-  if (const auto clear = clear_the_way(path, *address); !clear) return clear.error();
-  const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (descriptor < 0) return system_error(path, "cannot make a socket");
-  // The mode of the file is that of the descriptor when it is bound: at no time is it open to
-  // others.
-  if (fchmod(descriptor, 0600) != 0 ||
-      bind(descriptor, model::io::plain(*address), sizeof *address) != 0) {
-    const Error error = system_error(path, "cannot listen");
-    close(descriptor);
-    return error;
-  }
-  return std::unique_ptr<HandSocket>(new HandSocket(descriptor, path, newest));
+  const auto descriptor = model::io::bind_socket(path, SOCK_DGRAM | SOCK_CLOEXEC);
+  if (!descriptor) return descriptor.error();
+  return std::unique_ptr<HandSocket>(new HandSocket(*descriptor, path, newest));
 }
 
 HandSocket::HandSocket(int descriptor, const std::string& path, LatestSlot<HandTarget>& newest)

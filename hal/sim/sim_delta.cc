@@ -28,13 +28,6 @@ double counted_rad(double angle_rad, double counts_per_turn) RT_SAFE {
   return std::floor(angle_rad / rad_per_count + 0.5) * rad_per_count;
 }
 
-std::vector<Vec3> samples_D() {
-  std::vector<Vec3> samples =
-      delta::workspace_samples_W(kWorkspaceRadius_m, kWorkspaceHalfLength_m);
-  for (Vec3& p : samples) p = point_D(p);
-  return samples;
-}
-
 /// The nearest point of the workspace cylinder.
 Vec3 inside_workspace_m(const Vec3& p_W) RT_SAFE {
   const double radius_m = std::hypot(p_W.y, p_W.z);
@@ -69,12 +62,13 @@ DeviceInfo SimDelta::info() const {
           .max_torque_Nm = kMaxTorque_Nm,
           .workspace_radius_m = kWorkspaceRadius_m,
           .workspace_half_length_m = kWorkspaceHalfLength_m,
-          .at_tool = delta_at_tool(delta_,
-                                   {.viscous_Nms_per_rad = settings_.joint_damping_Nms_per_rad,
-                                    .coulomb_Nm = settings_.joint_friction_Nm,
-                                    .counts_per_turn = settings_.counts_per_turn,
-                                    .delay_s = settings_.sample_delay_s},
-                                   samples_D()),
+          .at_tool = delta_at_tool(
+              delta_,
+              {.viscous_Nms_per_rad = settings_.joint_damping_Nms_per_rad,
+               .coulomb_Nm = settings_.joint_friction_Nm,
+               .counts_per_turn = settings_.counts_per_turn,
+               .delay_s = settings_.sample_delay_s},
+              delta::workspace_samples_D(kWorkspaceRadius_m, kWorkspaceHalfLength_m, kMiddle_D_m)),
           .damping_key = "device.sim.joint_damping_Nms_per_rad"};
 }
 
@@ -135,12 +129,8 @@ Fault SimDelta::write(const Wrench& wrench) RT_SAFE {
   const Wrench limited = sound ? Wrench{saturated(wrench.force_N, kMaxForce_N),
                                         saturated(wrench.torque_Nm, kMaxTorque_Nm)}
                                : Wrench{};
-  // tau = tau_g + s J^T F, one s for all joints
-  motor_Nm_ =
-      gravity_torques_Nm(kGeometry, kMasses, measured_, direction_D(delta::kGravity_W_mps2));
-  const delta::Joints wanted_Nm = joint_torques_Nm(measured_, direction_D(limited.force_N));
-  const double ratio = delta::saturation_ratio(motor_Nm_, wanted_Nm, kMaxJointTorque_Nm);
-  for (std::size_t i = 0; i < 3; ++i) motor_Nm_[i] += ratio * wanted_Nm[i];
+  motor_Nm_ = delta::drive_torques_Nm(kGeometry, kMasses, measured_, direction_D(limited.force_N),
+                                      kMaxJointTorque_Nm);
   wrist_Nm_ = limited.torque_Nm;
   return sound ? Fault::kNone : Fault::kForceNotFinite;
 }

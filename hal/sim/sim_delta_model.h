@@ -13,6 +13,7 @@
 #include <numbers>
 
 #include "hal/delta/delta_dynamics.h"
+#include "hal/delta/delta_frame.h"
 #include "hal/delta/delta_kinematics.h"
 #include "model/units.h"
 
@@ -48,15 +49,13 @@ inline constexpr double kMaxTorque_Nm = 0.2;
 inline constexpr double kMaxJointTorque_Nm = 7.4;
 inline constexpr double kMiddle_D_m = 345_mm;
 
-/// Directions: forces, velocities. The matrix is its own inverse, but the names say which way.
-constexpr model::Vec3 direction_W(const model::Vec3& v_D) RT_SAFE { return {v_D.z, -v_D.y, v_D.x}; }
-constexpr model::Vec3 direction_D(const model::Vec3& v_W) RT_SAFE { return {v_W.z, -v_W.y, v_W.x}; }
-/// Points.
+using delta::direction_D;
+using delta::direction_W;
 constexpr model::Vec3 point_W(const model::Vec3& p_D) RT_SAFE {
-  return direction_W(p_D - model::Vec3{0.0, 0.0, kMiddle_D_m});
+  return delta::point_W(p_D, kMiddle_D_m);
 }
 constexpr model::Vec3 point_D(const model::Vec3& p_W) RT_SAFE {
-  return direction_D(p_W) + model::Vec3{0.0, 0.0, kMiddle_D_m};
+  return delta::point_D(p_W, kMiddle_D_m);
 }
 
 }  // namespace tact::hal::sim

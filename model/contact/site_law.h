@@ -12,9 +12,9 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 
 #include "model/contact/blade.h"
+#include "model/contact/dent_view.h"
 #include "model/contact/patch_shape.h"
 #include "model/contact/site.h"
 #include "model/contact/tangent.h"
@@ -22,19 +22,6 @@
 #include "model/types.h"
 
 namespace tact::model::contact {
-
-inline constexpr std::size_t kMaxSpheres = 4;
-
-/// What one sphere does to the tissue.
-struct Indentation {
-  std::size_t sphere = 0;  // below kMaxSpheres
-  Place place{};
-  Vec3 normal{};  // outward, unit, at the place
-  // e: the depth, less what the other spheres press down here; below 0 only while held
-  double dent_m = 0.0;
-  bool held = false;
-  double speed_mps = 0.0;  // of the sphere's depth, pressing positive
-};
 
 struct SiteResponse {
   law::LawResponse law;
@@ -58,9 +45,9 @@ struct TangentGive {
   }
 };
 
-class SiteLaw {
+/// Everything here belongs to the loop's thread; what others may ask is DentView's.
+class SiteLaw : public DentView {
  public:
-  virtual ~SiteLaw() = default;
   /// NaN gives zero force and kInvalid.
   virtual SiteResponse respond(const Indentation& in) RT_SAFE = 0;
   /// LW-3: what the speed adds to the force of the answer, N, outside of the potential.
@@ -95,17 +82,7 @@ class SiteLaw {
   virtual void advance() RT_SAFE = 0;
   /// The law left the finite numbers and gives zero force; true until every sphere has left.
   virtual bool broke() const RT_SAFE { return false; }
-  /// Radial displacement profile as in Law::profile: for telemetry, from any thread; it must not
-  /// read what advance() writes. A law that tells its shape otherwise returns 0.
-  virtual std::size_t profile(const Indentation& in, std::span<double> ring_m) const RT_SAFE = 0;
-  virtual double ring_pitch_m() const RT_SAFE = 0;
-  /// CF-5: F t, how the dent leans along the surface: what the profile lacks at x is this times the
-  /// way from the place to x. For telemetry, as profile().
-  virtual Vec3 tilt(const Indentation& in) const RT_SAFE {
-    (void)in;
-    return {};
-  }
-  /// Loop thread: what such a law shows instead of a profile; false: the profile says all.
+  /// What a law shows instead of a profile; false: the profile says all.
   virtual bool shape(PatchShape& out) RT_SAFE {
     (void)out;
     return false;

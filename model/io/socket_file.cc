@@ -30,6 +30,33 @@ bool has_peer_in(int socket, gid_t group) {
   return std::ranges::find(is_in, group) != is_in.end();
 }
 
+Error system_error(const std::string& path, const char* what) {
+  return Error{path + ": " + what + ": " + std::strerror(errno) +
+               "; choose a folder that you may write to with --socket"};
+}
+
+bool somebody_listens(const sockaddr_un& address, int type) {
+  const int probe = socket(AF_UNIX, type | SOCK_NONBLOCK, 0);
+  const bool alive = probe >= 0 && (connect(probe, plain(address), sizeof address) == 0 ||
+                                    errno == EAGAIN);  // alive, with a full queue
+  if (probe >= 0) close(probe);
+  return alive;
+}
+
+/// The socket of a process that is gone makes way; nothing else does.
+std::optional<Error> clear_the_way(const std::string& path, const sockaddr_un& address, int type) {
+  struct stat info{};
+  if (lstat(path.c_str(), &info) != 0) {
+    if (errno == ENOENT) return std::nullopt;
+    return system_error(path, "cannot look at it");
+  }
+  if (!S_ISSOCK(info.st_mode)) return Error{path + ": is no socket; choose another --socket"};
+  if (somebody_listens(address, type))
+    return Error{path + ": another tactd is running there; stop it, or choose another --socket"};
+  if (unlink(path.c_str()) != 0) return system_error(path, "cannot replace the old socket");
+  return std::nullopt;
+}
+
 }  // namespace
 
 Result<std::string> runtime_directory() {
@@ -81,6 +108,20 @@ bool has_trusted_peer(int socket, const Trust& trust) {
   if (getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &bytes) != 0) return false;
   if (is_trusted(peer.uid, trust)) return true;
   return trust.group && (peer.gid == *trust.group || has_peer_in(socket, *trust.group));
+}
+
+Result<int> bind_socket(const std::string& path, int type) {
+  const auto address = socket_address(path);
+  if (!address) return address.error();
+  if (auto shared = check_socket_folder(path)) return std::move(*shared);
+  if (auto taken = clear_the_way(path, *address, type)) return std::move(*taken);
+  const int fd = socket(AF_UNIX, type, 0);
+  // The file has the permissions of the descriptor when it is bound: it is never open to others.
+  if (fd >= 0 && fchmod(fd, 0600) == 0 && bind(fd, plain(*address), sizeof *address) == 0)
+    return fd;
+  Error error = system_error(path, "cannot be bound");
+  if (fd >= 0) close(fd);
+  return error;
 }
 
 std::optional<Error> share_socket(const std::string& path, gid_t group) {

@@ -44,6 +44,12 @@ bool is_trusted(uid_t user, const Trust& trust = {});
 /// local socket (SO_PEERCRED, SO_PEERGROUPS: who he was when he connected).
 bool has_trusted_peer(int socket, const Trust& trust = {});
 
+/// A new local socket of this type (as SOCK_SEQPACKET | SOCK_CLOEXEC), bound to `path`: its
+/// descriptor. From the first moment nobody but its user may connect (0600). The socket that an
+/// ended process left there is replaced. Error: somebody listens there, another user could put one
+/// there, or none can be made.
+Result<int> bind_socket(const std::string& path, int type);
+
 /// Lets a group connect to the socket at `path`, which this process has bound: its group, 0660.
 std::optional<Error> share_socket(const std::string& path, gid_t group);
 

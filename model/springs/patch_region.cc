@@ -18,9 +18,10 @@ PatchRegion::PatchRegion(PatchSurface surface, double node_mass_kg, std::size_t 
       inverse_mass_per_kg_(1.0 / node_mass_kg),
       memory_(relaxation, nodes) {
   for (auto* ids : {&vertex_, &old_vertex_, &ring_}) ids->resize(nodes);
-  for (auto* v : {&position_, &velocity_, &old_position_, &old_velocity_, &rest_, &load_})
+  for (auto* v :
+       {&position_m_, &velocity_mps_, &old_position_m_, &old_velocity_mps_, &rest_m_, &load_N_})
     v->resize(nodes);
-  for (auto* v : {&inverse_, &anchor_, &drag_}) v->resize(nodes);
+  for (auto* v : {&node_inverse_mass_per_kg_, &anchor_N_per_m_, &drag_Ns_per_m_}) v->resize(nodes);
   spring_.resize(kSpringsPerNode * nodes);
   spring_edge_.resize(spring_.size());
   const std::size_t n = surface_.mesh.vertex_m.size();
@@ -44,20 +45,20 @@ std::size_t PatchRegion::memory_bytes() const {
 
 SpringNetwork PatchRegion::network(std::span<const ProbeSpring> probes) RT_SAFE {
   const std::size_t n = count_;
-  return {.node = {.position_m = relaxes() ? memory_.felt_m(n) : std::span(position_.data(), n),
-                   .velocity_mps = {velocity_.data(), n},
-                   .rest_m = {rest_.data(), n},
-                   .load_N = {load_.data(), n},
-                   .inverse_mass_per_kg = {inverse_.data(), n},
-                   .anchor_N_per_m = {anchor_.data(), n},
-                   .drag_Ns_per_m = {drag_.data(), n}},
+  return {.node = {.position_m = relaxes() ? memory_.felt_m(n) : std::span(position_m_.data(), n),
+                   .velocity_mps = {velocity_mps_.data(), n},
+                   .rest_m = {rest_m_.data(), n},
+                   .load_N = {load_N_.data(), n},
+                   .inverse_mass_per_kg = {node_inverse_mass_per_kg_.data(), n},
+                   .anchor_N_per_m = {anchor_N_per_m_.data(), n},
+                   .drag_Ns_per_m = {drag_Ns_per_m_.data(), n}},
           .spring = {spring_.data(), springs_},
           .probe = probes};
 }
 
 Vec3 PatchRegion::moved_m(std::uint32_t vertex) const RT_SAFE {
   const std::uint32_t slot = slot_of_[vertex];
-  if (slot != kNoSlot) return position_[slot] - rest_[slot];
+  if (slot != kNoSlot) return position_m_[slot] - rest_m_[slot];
   const auto& kept = kept_m_[vertex];
   return {static_cast<double>(kept[0]), static_cast<double>(kept[1]), static_cast<double>(kept[2])};
 }
@@ -67,7 +68,8 @@ bool PatchRegion::holds(std::uint32_t triangle) const RT_SAFE {
   const std::uint32_t outermost = ring_[count_ - 1];
   for (const std::uint32_t v : surface_.mesh.triangle[triangle]) {
     const std::uint32_t slot = slot_of_[v];
-    if (slot == kNoSlot || inverse_[slot] == 0.0 || 4 * ring_[slot] > outermost) return false;
+    if (slot == kNoSlot || node_inverse_mass_per_kg_[slot] == 0.0 || 4 * ring_[slot] > outermost)
+      return false;
   }
   return true;
 }
@@ -103,13 +105,13 @@ void PatchRegion::add(std::uint32_t vertex, std::uint32_t ring) RT_SAFE {
 void PatchRegion::gather(std::span<const std::uint32_t> triangles) RT_SAFE {
   const double before_J = free_energy_J();
   std::swap(vertex_, old_vertex_);
-  std::swap(position_, old_position_);
-  std::swap(velocity_, old_velocity_);
+  std::swap(position_m_, old_position_m_);
+  std::swap(velocity_mps_, old_velocity_mps_);
   memory_.set_aside();
   const std::size_t old_count = count_;
   for (std::size_t i = 0; i < old_count; ++i) {
     const std::uint32_t v = old_vertex_[i];
-    const Vec3 moved_m = old_position_[i] - surface_.mesh.vertex_m[v];
+    const Vec3 moved_m = old_position_m_[i] - surface_.mesh.vertex_m[v];
     if (is_lip_[v] != 0)
       kept_m_[v] = {static_cast<float>(moved_m.x), static_cast<float>(moved_m.y),
                     static_cast<float>(moved_m.z)};
@@ -119,25 +121,25 @@ void PatchRegion::gather(std::span<const std::uint32_t> triangles) RT_SAFE {
   for (std::size_t i = 0; i < count_; ++i) {
     const std::uint32_t v = vertex_[i];
     const auto& kept = kept_m_[v];
-    rest_[i] = surface_.mesh.vertex_m[v];
-    position_[i] = rest_[i] + Vec3{static_cast<double>(kept[0]), static_cast<double>(kept[1]),
-                                   static_cast<double>(kept[2])};
-    velocity_[i] = {};
-    load_[i] = surface_.load_N[v];
-    anchor_[i] = surface_.anchor_N_per_m[v];
-    drag_[i] = surface_.tissue.body_damping_time_s * anchor_[i];
-    inverse_[i] = inverse_mass_per_kg_;
-    memory_.forget(i, rest_[i]);
+    rest_m_[i] = surface_.mesh.vertex_m[v];
+    position_m_[i] = rest_m_[i] + Vec3{static_cast<double>(kept[0]), static_cast<double>(kept[1]),
+                                       static_cast<double>(kept[2])};
+    velocity_mps_[i] = {};
+    load_N_[i] = surface_.load_N[v];
+    anchor_N_per_m_[i] = surface_.anchor_N_per_m[v];
+    drag_Ns_per_m_[i] = surface_.tissue.body_damping_time_s * anchor_N_per_m_[i];
+    node_inverse_mass_per_kg_[i] = inverse_mass_per_kg_;
+    memory_.forget(i, rest_m_[i]);
   }
   for (std::size_t i = 0; i < old_count; ++i) {
     const std::uint32_t slot = slot_of_[old_vertex_[i]];
     if (slot == kNoSlot) continue;
-    position_[slot] = old_position_[i];
-    velocity_[slot] = old_velocity_[i];
+    position_m_[slot] = old_position_m_[i];
+    velocity_mps_[slot] = old_velocity_mps_[i];
     memory_.keep(slot, i);
   }
   connect();
-  memory_.renew(network({}), {position_.data(), count_});
+  memory_.renew(network({}), {position_m_.data(), count_});
   take_from_velocities(free_energy_J() - before_J);
 }
 
@@ -151,7 +153,7 @@ void PatchRegion::connect() RT_SAFE {
     for (const std::uint32_t e : surface_.edges_at(vertex_[i])) {
       const PatchEdge& edge = surface_.edge[e];
       const std::uint32_t j = slot_of_[edge.a == vertex_[i] ? edge.b : edge.a];
-      if (j == kNoSlot) inverse_[i] = 0.0;
+      if (j == kNoSlot) node_inverse_mass_per_kg_[i] = 0.0;
       if (j == kNoSlot || j < i || springs_ == spring_.size()) continue;
       const double length_m = surface_.rest_length_m(edge);
       const double stretch_m = edge.length_m - length_m;
@@ -167,11 +169,11 @@ void PatchRegion::connect() RT_SAFE {
                            .rest_length_m = length_m};
       spring_edge_[springs_++] = e;
     }
-    if (inverse_[i] > 0.0) continue;
-    velocity_[i] = {};
+    if (node_inverse_mass_per_kg_[i] > 0.0) continue;
+    velocity_mps_[i] = {};
     if (is_lip_[vertex_[i]] != 0) continue;
-    position_[i] = rest_[i];
-    memory_.forget(i, rest_[i]);
+    position_m_[i] = rest_m_[i];
+    memory_.forget(i, rest_m_[i]);
   }
 }
 
@@ -182,7 +184,7 @@ double PatchRegion::free_energy_J() RT_SAFE {
 
 double PatchRegion::stored_energy_J() RT_SAFE {
   const SpringNetwork now = network({});
-  return relaxes() ? memory_.stored_energy_J(now, {position_.data(), count_})
+  return relaxes() ? memory_.stored_energy_J(now, {position_m_.data(), count_})
                    : model::springs::stored_energy_J(now);
 }
 
@@ -190,7 +192,7 @@ void PatchRegion::take_from_velocities(double energy_J) RT_SAFE {
   if (!(energy_J > 0.0)) return;
   const double moving_J = kinetic_energy_J(network({}));
   const double left = moving_J > energy_J ? std::sqrt(1.0 - energy_J / moving_J) : 0.0;
-  for (std::size_t i = 0; i < count_; ++i) velocity_[i] *= left;
+  for (std::size_t i = 0; i < count_; ++i) velocity_mps_[i] *= left;
   if (energy_J > moving_J) handover_debt_J_ += energy_J - moving_J;
 }
 
@@ -199,7 +201,7 @@ std::size_t PatchRegion::cut(const contact::BladeSweep& sweep) RT_SAFE {
   std::size_t cuts = 0;
   for (std::size_t k = 0; k < springs_;) {
     const Spring& s = spring_[k];
-    const Vec3 &p_m = position_[s.i], &q_m = position_[s.j];
+    const Vec3 &p_m = position_m_[s.i], &q_m = position_m_[s.j];
     if (misses(box, p_m, q_m) || !crosses(sweep, p_m, q_m) || !open(spring_edge_[k])) {
       ++k;
       continue;
@@ -212,7 +214,7 @@ std::size_t PatchRegion::cut(const contact::BladeSweep& sweep) RT_SAFE {
     spring_edge_[k] = spring_edge_[springs_];
     ++cuts;
   }
-  if (cuts > 0) memory_.renew(network({}), {position_.data(), count_});
+  if (cuts > 0) memory_.renew(network({}), {position_m_.data(), count_});
   return cuts;
 }
 

@@ -47,11 +47,11 @@ class PatchRegion {
   /// What is stepped; with relaxation its positions are what the springs feel, and flow() after
   /// the last step of a tick tells the vertices where they are.
   SpringNetwork network(std::span<const ProbeSpring> probes) RT_SAFE;
-  void flow() RT_SAFE { memory_.flow({position_.data(), count_}, {rest_.data(), count_}); }
+  void flow() RT_SAFE { memory_.flow({position_m_.data(), count_}, {rest_m_.data(), count_}); }
   bool relaxes() const RT_SAFE { return memory_.is_on(); }
   /// How far a vertex of the region is from where its springs feel it.
   Vec3 flowed_m(std::uint32_t slot) const RT_SAFE {
-    return memory_.flowed_m(slot, position_[slot]);
+    return memory_.flowed_m(slot, position_m_[slot]);
   }
   /// Springs, anchors and loads, shared out over the terms of the relaxation.
   double stored_energy_J() RT_SAFE;
@@ -60,7 +60,7 @@ class PatchRegion {
   double handover_debt_J() const RT_SAFE { return handover_debt_J_; }
 
   const PatchSurface& surface() const RT_SAFE { return surface_; }
-  std::size_t capacity() const RT_SAFE { return position_.size(); }
+  std::size_t capacity() const RT_SAFE { return position_m_.size(); }
   /// Nearest to the contact first.
   std::span<const std::uint32_t> vertices() const RT_SAFE { return {vertex_.data(), count_}; }
   std::uint32_t slot_of(std::uint32_t vertex) const RT_SAFE { return slot_of_[vertex]; }
@@ -88,8 +88,9 @@ class PatchRegion {
   PatchMemory memory_;
   // of the region, by slot; old_ is the state before gathering
   std::vector<std::uint32_t> vertex_, old_vertex_, ring_;
-  std::vector<Vec3> position_, velocity_, old_position_, old_velocity_, rest_, load_;
-  std::vector<double> inverse_, anchor_, drag_;
+  std::vector<Vec3> position_m_, velocity_mps_, old_position_m_, old_velocity_mps_, rest_m_,
+      load_N_;
+  std::vector<double> node_inverse_mass_per_kg_, anchor_N_per_m_, drag_Ns_per_m_;
   std::vector<Spring> spring_;
   std::vector<std::uint32_t> spring_edge_;
   std::size_t count_ = 0, springs_ = 0;

@@ -110,7 +110,7 @@ class SpringStepper {
   void apply(const SpringNetwork& network, double h, std::span<const Vec3> in,
              std::span<Vec3> out) const RT_SAFE;
 
-  std::vector<Vec3> force_, position_, velocity_, sum_, direction_, product_;
+  std::vector<Vec3> force_N_, position_m_, velocity_mps_, sum_, direction_, product_;
   std::vector<double> preconditioner_;
   std::vector<Tangent> tangent_;
   std::array<bool, 8> probe_pushes_{};

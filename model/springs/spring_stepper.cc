@@ -8,9 +8,9 @@
 namespace tact::model::springs {
 
 SpringStepper::SpringStepper(std::size_t max_nodes, std::size_t max_springs)
-    : force_(max_nodes),
-      position_(max_nodes),
-      velocity_(max_nodes),
+    : force_N_(max_nodes),
+      position_m_(max_nodes),
+      velocity_mps_(max_nodes),
       sum_(max_nodes),
       direction_(max_nodes),
       product_(max_nodes),
@@ -18,7 +18,7 @@ SpringStepper::SpringStepper(std::size_t max_nodes, std::size_t max_springs)
       tangent_(max_springs) {}
 
 std::size_t SpringStepper::memory_bytes() const {
-  return force_.size() * (6 * sizeof(Vec3) + sizeof(double)) + tangent_.size() * sizeof(Tangent);
+  return force_N_.size() * (6 * sizeof(Vec3) + sizeof(double)) + tangent_.size() * sizeof(Tangent);
 }
 
 double SpringStepper::step(const SpringNetwork& network, const StepRule& rule) RT_SAFE {
@@ -26,8 +26,8 @@ double SpringStepper::step(const SpringNetwork& network, const StepRule& rule) R
   const std::size_t n = node.position_m.size();
   const double h = rule.step_s;
   const std::span<Vec3> x = node.position_m, v = node.velocity_mps;
-  const std::span<Vec3> f(force_.data(), n), x_star(position_.data(), n),
-      v_star(velocity_.data(), n);
+  const std::span<Vec3> f(force_N_.data(), n), x_star(position_m_.data(), n),
+      v_star(velocity_mps_.data(), n);
   const std::span<const double> w = node.inverse_mass_per_kg;
   const double energy_J = forces(network, x, v, f);
   switch (rule.method.integrator) {
@@ -61,25 +61,26 @@ double SpringStepper::step(const SpringNetwork& network, const StepRule& rule) R
   return energy_J;
 }
 
-// MA-8; force_ holds the forces of the start. sum_ and direction_ gather dx and dv.
+// MA-8; force_N_ holds the forces of the start. sum_ and direction_ gather dx and dv.
 void SpringStepper::step_rk4(const SpringNetwork& network, double h) RT_SAFE {
   const SpringNodes& node = network.node;
   const std::size_t n = node.position_m.size();
   constexpr std::array kWeight{1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
   constexpr std::array kReach{0.5, 0.5, 1.0};
   for (std::size_t i = 0; i < n; ++i)
-    velocity_[i] = node.velocity_mps[i], sum_[i] = direction_[i] = {};
+    velocity_mps_[i] = node.velocity_mps[i], sum_[i] = direction_[i] = {};
   for (std::size_t stage = 0; stage < 4; ++stage) {
     for (std::size_t i = 0; i < n; ++i) {
-      const Vec3 slope = velocity_[i], bend = node.inverse_mass_per_kg[i] * force_[i];
+      const Vec3 slope = velocity_mps_[i], bend = node.inverse_mass_per_kg[i] * force_N_[i];
       sum_[i] += h * kWeight[stage] * slope;
       direction_[i] += h * kWeight[stage] * bend;
       if (stage == 3) continue;
-      position_[i] = node.position_m[i] + h * kReach[stage] * slope;
-      velocity_[i] = node.velocity_mps[i] + h * kReach[stage] * bend;
+      position_m_[i] = node.position_m[i] + h * kReach[stage] * slope;
+      velocity_mps_[i] = node.velocity_mps[i] + h * kReach[stage] * bend;
     }
     if (stage < 3)
-      forces_alone(network, {position_.data(), n}, {velocity_.data(), n}, {force_.data(), n});
+      forces_alone(network, {position_m_.data(), n}, {velocity_mps_.data(), n},
+                   {force_N_.data(), n});
   }
   for (std::size_t i = 0; i < n; ++i)
     node.position_m[i] += sum_[i], node.velocity_mps[i] += direction_[i];
@@ -91,14 +92,14 @@ void SpringStepper::step_implicit(const SpringNetwork& network, double h, int it
   const std::size_t n = node.position_m.size();
   const std::span<const double> w = node.inverse_mass_per_kg;
   linearise(network, h);
-  // residual_ lives in force_, v+ in sum_; velocity_ is a zero velocity for f(x, 0)
-  for (std::size_t i = 0; i < n; ++i) velocity_[i] = sum_[i] = {};
-  forces_alone(network, node.position_m, {velocity_.data(), n}, {force_.data(), n});
+  // force_N_ holds the residual (N s), sum_ v+; velocity_mps_ is a zero velocity for f(x, 0)
+  for (std::size_t i = 0; i < n; ++i) velocity_mps_[i] = sum_[i] = {};
+  forces_alone(network, node.position_m, {velocity_mps_.data(), n}, {force_N_.data(), n});
   double old = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
-    force_[i] = w[i] > 0.0 ? node.velocity_mps[i] / w[i] + h * force_[i] : Vec3{};
-    direction_[i] = preconditioner_[i] * force_[i];
-    old += dot(force_[i], direction_[i]);
+    force_N_[i] = w[i] > 0.0 ? node.velocity_mps[i] / w[i] + h * force_N_[i] : Vec3{};
+    direction_[i] = preconditioner_[i] * force_N_[i];
+    old += dot(force_N_[i], direction_[i]);
   }
   for (int k = 0; k < iterations && old > 0.0; ++k) {
     apply(network, h, {direction_.data(), n}, {product_.data(), n});
@@ -109,12 +110,12 @@ void SpringStepper::step_implicit(const SpringNetwork& network, double h, int it
     double fresh = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
       sum_[i] += reach * direction_[i];
-      force_[i] -= reach * product_[i];
-      fresh += preconditioner_[i] * dot(force_[i], force_[i]);
+      force_N_[i] -= reach * product_[i];
+      fresh += preconditioner_[i] * dot(force_N_[i], force_N_[i]);
     }
     const double turn = fresh / old;
     for (std::size_t i = 0; i < n; ++i)
-      direction_[i] = preconditioner_[i] * force_[i] + turn * direction_[i];
+      direction_[i] = preconditioner_[i] * force_N_[i] + turn * direction_[i];
     old = fresh;
   }
   for (std::size_t i = 0; i < n; ++i) {

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """README.md stays short and narrow, prose of every *.md narrow, and every relative link leads to a file and its heading.
-Every room has a README.md with a line `Tests: ...`, whose programs and files there are.
+Every room has a README.md that names each of its sources, with a line `Tests: ...`, whose programs and files there are.
 
 Reads the tree as text and prints every breach as file:line: sentence. Exit status 0 or 1.
 """
+import fnmatch
 import os
 import pathlib
 import posixpath
@@ -25,6 +26,7 @@ TOPS = ("model/", "hal/", "firmware/", "host/", "tools/")  # whose rooms have a 
 SOURCE = re.compile(r"(?:.*/)?([^/]+\.(?:h|cc)|package\.json)")
 TEST_PROGRAM = re.compile(r"`(?:build/tests/)?((?:[a-z0-9]+_)+test)(?: [^`]*)?`")
 TEST_FILE = re.compile(r"`((?:[\w-]+/)*\w+_test\.(?:cc|mjs))`")
+NAMED = re.compile(r"(?<![\w*])((?:[\w-]+/)*[\w*]+)\.(?:h|cc|\*)(?!\w)")
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 
 
@@ -82,6 +84,7 @@ def room_breaches(files):
     for room in sorted({posixpath.dirname(path) for path in files if path.startswith(TOPS) and SOURCE.fullmatch(path)}):
         if f"{room}/README.md" not in files:
             yield f"{room}/README.md:1: missing: which question does this room answer, by which files and tests?"
+    yield from row_breaches(files)
     tests = [path for path in files if path.startswith("tests/") and path.endswith(("_test.cc", "_test.mjs"))]
     programs = {posixpath.dirname(path).removeprefix("tests/").replace("/", "_") + "_test" for path in tests}
     names = {*tests, *map(posixpath.basename, tests)}
@@ -96,6 +99,20 @@ def room_breaches(files):
         own = posixpath.dirname(path).replace("/", "_") + "_test"
         if own in programs and own not in named:
             yield f"{path}:1: does not name {own}"
+
+
+def row_breaches(files):
+    """A source of a room that its README.md does not name; a.h and a.cc are one, and `a_*.cc` names all of them."""
+    rooms_of = {}
+    for path in files:
+        if path.startswith(TOPS) and path.endswith((".h", ".cc")):
+            rooms_of.setdefault(posixpath.dirname(path), set()).add(posixpath.splitext(posixpath.basename(path))[0])
+    for room, names in rooms_of.items():
+        if f"{room}/README.md" not in files:
+            continue  # told already
+        patterns = {posixpath.basename(word) for word in NAMED.findall(files[f"{room}/README.md"])}
+        for name in sorted(name for name in names if not any(fnmatch.fnmatch(name, pattern) for pattern in patterns)):
+            yield f"{room}/README.md:1: does not name {name}: what does it do?"
 
 
 def host_breaches(path, text):
@@ -151,19 +168,22 @@ def blind_rules():
            "long line in a list": f"* {wide}", "long row of a table": f"| {wide} |",
            "many lines": "\n" * MAX_LINES}
     files = {"a/README.md": room, "a/b.png": None, "hal/a/b.h": None, "tests/hal/a/b_test.cc": None,
-             "hal/a/README.md": "Tests: `build/tests/hal_a_test`; `b_test.cc`, `tests/hal/a/b_test.cc`.\n"}
+             "hal/a/c_d.cc": None,
+             "hal/a/README.md": "`b.h`, `c_*.cc`\nTests: `build/tests/hal_a_test`; `b_test.cc`, `tests/hal/a/b_test.cc`.\n"}
     blind = [name for name, line in bad.items() if not list(breaches({**files, "README.md": good + line + "\n"}))]
     if not list(breaches({**files, "README.md": good, "a/c.md": f"{wide}x\n"})):
         blind.append("long line elsewhere")
     if list(breaches({**files, "README.md": good, "a/c.md": f"| {wide} |\n" * (MAX_LINES + 1)})):
         blind.append("takes for a breach: many lines or a long row elsewhere")
+    named = "`b.h`, `c_*.cc`\n"
     rooms_of = {"room without README.md": {"hal/c/d.cc": None}, "page without README.md": {"host/c/package.json": None},
-                "no line of tests": {"hal/a/README.md": "The tests: `hal_a_test`\n"},
-                "empty line of tests": {"hal/a/README.md": "Tests: \n\n`hal_a_test`\n"},
-                "own program is not named": {"hal/a/README.md": "Tests: `b_test.cc`\n"},
-                "program that is none": {"hal/a/README.md": "Tests: `hal_a_test`, `build/tests/hal_b_test`\n"},
-                "file that is none": {"hal/a/README.md": "Tests: `hal_a_test`, `c_test.cc`\n"},
-                "file elsewhere": {"hal/a/README.md": "Tests: `hal_a_test`, `tests/hal/b/b_test.cc`\n"},
+                "source that is not named": {"hal/a/e.cc": None}, "header that is not named": {"hal/a/c.h": None},
+                "no line of tests": {"hal/a/README.md": named + "The tests: `hal_a_test`\n"},
+                "empty line of tests": {"hal/a/README.md": named + "Tests: \n\n`hal_a_test`\n"},
+                "own program is not named": {"hal/a/README.md": named + "Tests: `b_test.cc`\n"},
+                "program that is none": {"hal/a/README.md": named + "Tests: `hal_a_test`, `build/tests/hal_b_test`\n"},
+                "file that is none": {"hal/a/README.md": named + "Tests: `hal_a_test`, `c_test.cc`\n"},
+                "file elsewhere": {"hal/a/README.md": named + "Tests: `hal_a_test`, `tests/hal/b/b_test.cc`\n"},
                 "another number of headers": {"host/README.md": "Tests: none. five headers, model/io\n"},
                 "room of host is not named": {"host/README.md": "Tests: none. four headers\n"}}
     for name, other in rooms_of.items():

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every number that a header keeps names its unit, as force_N does, or is known to have none.
+"""Every number that a header keeps, alone or in a vector, names its unit, as force_N does, or is known to have none.
 
 Reads the members and constants of the headers as text and prints every breach as file:line:
 sentence. Exit status 0 or 1.
@@ -11,9 +11,12 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 TOPS = ("model", "firmware", "hal", "host", "tools")
-MEMBER = re.compile(r"\s*(?:(?:inline|static|mutable|constexpr|const) )*(?:double|float) ([^()]*?)[;{]\s*(?://.*)?$")
-NAME = re.compile(r"([A-Za-z_]\w*)(?:\[\w+\])?(?: = (?:\{[^}]*\}|[^,]*))?(?:, |$)")
-UNIT = re.compile(r"_(?:s|ms|us|m|mm|um|N|Nm|J|W|kg|Hz|rad|radps|mps|m2|m3|Pa|V|A|C|N2|N2s|turns|words|px|ratio|percent|share"
+NUMBER = r"(?:double|float|(?:\w+::)*(?:Vec[23]|Vector3[df]|Joints))"
+MANY = rf"(?:(?:std::array|std::vector|std::span)<(?:const )?(?:{NUMBER}|std::array<{NUMBER}, [^<>]+>)(?:, [^<>]+)?>)"
+MEMBER = re.compile(r"\s*(?:(?:inline|static|mutable|constexpr|const) )*"
+                    rf"(?:{NUMBER}|{MANY}) ([^()]*?)[;{{]\s*(?://.*)?$")
+NAME = re.compile(r"([A-Za-z_]\w*)(?:\[\w+\])?(?:(?: = )?\{[^}]*\}| = [^,]*)?(?:, |$)")
+UNIT = re.compile(r"_(?:s|ms|us|m|mm|um|N|Nm|J|W|kg|Hz|rad|deg|radps|mps|mps2|m2|m3|Pa|V|A|C|N2|N2s|turns|words|px|ratio|percent|share"
                   r"|\w*_?per_\w+|kgm2|Ns|kB|MB|bytes|ticks|m_N|wxyz)_?$")
 # Shares, coordinates of a formula, and what has the unit of something else: the word says so.
 PLAIN = {
@@ -22,6 +25,11 @@ PLAIN = {
     "peak", "continuous", "continuous_squared", "heat", "periods",  # of a force or a torque; of a period
     "least_transmission", "least_rod_sigma", "limit_tan", "critical_zeta", "f0", "m0", "c2", "c3", "u0",
     "normal", "tilt", "tool_orientation",  # a direction; m/m; w, x, y, z
+    "axis", "face_normal", "vertex_normal", "held_normal", "unit", "outward", "inward", "hand_inward", "radial",  # directions
+    "coordinate", "press_coordinate", "pull_coordinate",  # along a family of curves
+    "direction", "product", "preconditioner", "sum",  # of a linear solver, a mean
+    "row", "words", "fade", "strain", "cos_azimuth", "sin_azimuth", "push",  # push: a direction
+    "vertex",  # of an OBJ file, in its units
     "n1", "n2", "s1", "s2",  # barycentric and normal parts of a map
     "xx", "xy", "yy",  # of a tensor, which has the unit
     "limit", "largest", "size", "median", "lower_quartile", "upper_quartile", "rel", "tolerance", "exact",
@@ -55,8 +63,10 @@ def breaches(path, text):
 
 def blind_rules():
     bad = ("  double force = 0.0;\n", "  double low = 0.0, speed = 0.0;\n", "inline constexpr double kLimit = 3.0;\n",
-           "  float mass_;\n")
-    good = ("  double force_N = 0.0, low = 0.0;\n", "  void f(double d) {\n    double sum = d;\n  }\n", "  double f(double v);\n")
+           "  float mass_;\n", "  Vec3 place;\n", "  model::Vec3 place{}, far_m;\n", "  std::array<double, 3> torque{};\n",
+           "  std::vector<Vec3> place_;\n", "  std::span<const double> mass;\n", "  delta::Joints torque{1.0, 2.0, 3.0};\n")
+    good = ("  double force_N = 0.0, low = 0.0;\n", "  void f(double d) {\n    double sum = d;\n  }\n", "  double f(double v);\n",
+            "  std::array<Vec3, 2> place_m{}, far_m;\n", "  delta::Joints angle_rad{1_deg, 2_deg};\n", "  Vec3 f(Vec3 v);\n")
     return [t for t in bad if not list(breaches("x.h", t))] + [t for t in good if list(breaches("x.h", t))]
 
 

@@ -42,7 +42,7 @@ double shape_error(const Sample& s) {
 
 ErrorSummary summarize(std::span<const Sample> samples) {
   ErrorSummary out{.cases = samples.size()};
-  out.own_worst.fill(kNan);
+  out.own_worst_ratio.fill(kNan);
   double peak_N = 0.0;
   std::map<std::size_t, double> site_peak_N;
   for (const Sample& s : samples) {
@@ -61,7 +61,8 @@ ErrorSummary summarize(std::span<const Sample> samples) {
     if (s.depth_m > 0.0) out.own_largest_ratio = std::max(out.own_largest_ratio, std::abs(own));
     for (std::size_t k = 0; k < kOwnDepths_m.size(); ++k) {
       if (std::abs(s.depth_m - kOwnDepths_m[k]) > kSameDepth_m) continue;
-      if (!(std::abs(out.own_worst[k]) >= std::abs(own))) out.own_worst[k] = own;  // NaN before
+      if (!(std::abs(out.own_worst_ratio[k]) >= std::abs(own)))
+        out.own_worst_ratio[k] = own;  // NaN before
     }
     if (s.held_out) held_out.add(e);
     of_site[s.site].add(e_N / site_peak_N[s.site]);

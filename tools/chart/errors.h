@@ -36,10 +36,10 @@ struct ErrorSummary {
   double press_rms_ratio = 0.0, pull_rms_ratio = 0.0;     // of the peak; NaN without such a case
   double held_out_rms_ratio = 0.0;                        // of the peak; NaN without such a site
   double worst_site_rms_ratio = 0.0;                      // of that site's own peak
-  std::array<double, kOwnDepths_m.size()> own_worst{};    // with its sign; NaN: no such depth
-  double own_largest_ratio = 0.0;                         // of any press, its size
-  double within_jnd_ratio = 0.0;                          // share of the cases
-  double shape_rms_ratio = 0.0, shape_worst_ratio = 0.0;  // of the depth
+  std::array<double, kOwnDepths_m.size()> own_worst_ratio{};  // with its sign; NaN: no such depth
+  double own_largest_ratio = 0.0;                             // of any press, its size
+  double within_jnd_ratio = 0.0;                              // share of the cases
+  double shape_rms_ratio = 0.0, shape_worst_ratio = 0.0;      // of the depth
 };
 
 ErrorSummary summarize(std::span<const Sample> samples);

@@ -62,9 +62,11 @@ double clock_cost_ns() {
   return at_share(cost_ns, 0.5);
 }
 
-/// A template, so that what takes some nanoseconds is not called through a pointer.
+// Templates, so that what takes some nanoseconds is not called through a pointer.
+
+/// Warms the caches; how long a tick takes about.
 template <typename Tick>
-Timing time_of(const Tick& tick, const TimingSettings& settings) {
+double warm_tick_s(const Tick& tick, const TimingSettings& settings) {
   const auto warm_begin = Clock::now();
   std::size_t warm_ticks = 0;
   while (warm_ticks < kMostWarmTicks &&
@@ -72,8 +74,47 @@ Timing time_of(const Tick& tick, const TimingSettings& settings) {
     tick();
     ++warm_ticks;
   }
-  const double tick_s = 1e-9 * ns_between(warm_begin, Clock::now()) /
-                        static_cast<double>(std::max<std::size_t>(1, warm_ticks));
+  return 1e-9 * ns_between(warm_begin, Clock::now()) /
+         static_cast<double>(std::max<std::size_t>(1, warm_ticks));
+}
+
+/// Each tick that nothing else interrupted.
+template <typename Tick>
+void time_ticks(const Tick& tick, std::size_t ticks, bool is_long, double cost_ns,
+                std::vector<double>& tick_ns) {
+  tick_ns.clear();
+  for (std::size_t i = 0; i < ticks; ++i) {
+    if (is_long) {
+      const double begin_ns = own_time_ns();
+      tick();
+      tick_ns.push_back(own_time_ns() - begin_ns);
+      continue;
+    }
+    const long pauses = pauses_so_far();
+    const auto begin = Clock::now();
+    tick();
+    const auto end = Clock::now();
+    if (pauses_so_far() == pauses)
+      tick_ns.push_back(std::max(0.0, ns_between(begin, end) - cost_ns));
+  }
+}
+
+/// The mean of each batch.
+template <typename Tick>
+void time_batches(const Tick& tick, std::size_t batches, std::size_t batch, double cost_ns,
+                  std::vector<double>& batch_ns) {
+  batch_ns.clear();
+  for (std::size_t i = 0; i < batches; ++i) {
+    const auto begin = Clock::now();
+    for (std::size_t k = 0; k < batch; ++k) tick();
+    const double whole_ns = ns_between(begin, Clock::now()) - cost_ns;
+    batch_ns.push_back(whole_ns / static_cast<double>(batch));
+  }
+}
+
+template <typename Tick>
+Timing time_of(const Tick& tick, const TimingSettings& settings) {
+  const double tick_s = warm_tick_s(tick, settings);
   const double room = settings.limit_s / (tick_s * settings.rounds);
   const std::size_t ticks = std::clamp(static_cast<std::size_t>(std::min(room, 1e9)), kFewestTicks,
                                        std::max(kFewestTicks, settings.ticks));
@@ -87,28 +128,8 @@ Timing time_of(const Tick& tick, const TimingSettings& settings) {
               .ticks = ticks};
   std::vector<double> tick_ns, batch_ns;
   for (int round = 0; round < settings.rounds; ++round) {
-    tick_ns.clear();
-    batch_ns.clear();
-    for (std::size_t i = 0; i < ticks; ++i) {
-      if (tick_s > kLongTick_s) {
-        const double begin_ns = own_time_ns();
-        tick();
-        tick_ns.push_back(own_time_ns() - begin_ns);
-        continue;
-      }
-      const long pauses = pauses_so_far();
-      const auto begin = Clock::now();
-      tick();
-      const auto end = Clock::now();
-      if (pauses_so_far() == pauses)
-        tick_ns.push_back(std::max(0.0, ns_between(begin, end) - cost_ns));
-    }
-    for (std::size_t i = 0; batch > 1 && i < ticks / batch; ++i) {
-      const auto begin = Clock::now();
-      for (std::size_t k = 0; k < batch; ++k) tick();
-      const double whole_ns = ns_between(begin, Clock::now()) - cost_ns;
-      batch_ns.push_back(whole_ns / static_cast<double>(batch));
-    }
+    time_ticks(tick, ticks, tick_s > kLongTick_s, cost_ns, tick_ns);
+    time_batches(tick, batch > 1 ? ticks / batch : 0, batch, cost_ns, batch_ns);
     if (tick_ns.empty()) continue;
     const double p999_us = 1e-3 * at_share(tick_ns, 0.999);
     best.median_us = std::min(best.median_us, 1e-3 * at_share(batch > 1 ? batch_ns : tick_ns, 0.5));

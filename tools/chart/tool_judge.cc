@@ -142,8 +142,8 @@ ToolErrors summarize_tool(const std::vector<ToolSample>& samples, const std::vec
     out.place_rms_ratio[s.place] += (e_N / place_peak_N[s.place]) * (e_N / place_peak_N[s.place]);
     ++place_count[s.place];
     out.worst_ratio = std::max(out.worst_ratio, std::abs(e));
-    if (out.own_worst.size() <= s.depth) out.own_worst.resize(s.depth + 1, 0.0);
-    double& own = out.own_worst[s.depth];
+    if (out.own_worst_ratio.size() <= s.depth) out.own_worst_ratio.resize(s.depth + 1, 0.0);
+    double& own = out.own_worst_ratio[s.depth];
     if (std::abs(s.own_ratio()) > std::abs(own)) own = s.own_ratio();
     out.own_largest_ratio = std::max(out.own_largest_ratio, std::abs(own));
     if (std::abs(s.own_ratio()) <= report::kJustNoticeable_ratio) ++felt_right;

@@ -33,7 +33,7 @@ struct ToolErrors {
   double rms_ratio = 0.0, worst_ratio = 0.0;  // of the peak
   double unseen_rms_ratio = 0.0;        // of the peak, without the hand's site; NaN: no other place
   double within_jnd_ratio = 0.0;        // share of the samples, by the own force
-  std::vector<double> own_worst;        // of each depth: the largest in size, with its sign
+  std::vector<double> own_worst_ratio;  // of each depth: the largest in size, with its sign
   double own_largest_ratio = 0.0;       // of all depths, its size
   std::vector<double> place_rms_ratio;  // of each place's own peak
 };

@@ -32,9 +32,9 @@ ordered_json summary_of(const ToolRow& row, const ToolReference& reference) {
   out["force_worst_ratio"] = row.errors.worst_ratio;
   out["unseen_rms_ratio"] = number_or_null(row.errors.unseen_rms_ratio);
   out["within_jnd_ratio"] = row.errors.within_jnd_ratio;
-  for (std::size_t k = 0; k < row.errors.own_worst.size(); ++k)
+  for (std::size_t k = 0; k < row.errors.own_worst_ratio.size(); ++k)
     out["own_worst_ratio_at_mm"][mm_text(reference.places.front().cases[k].depth_m)] =
-        row.errors.own_worst[k];
+        row.errors.own_worst_ratio[k];
   for (std::size_t i = 0; i < reference.places.size(); ++i)
     out["place_rms_ratio"][name_of(reference.places[i])] = row.errors.place_rms_ratio[i];
   out["tick_median_us"] = number_or_null(row.timing.median_us);
@@ -97,7 +97,7 @@ std::string tool_text(const std::vector<ToolRow>& rows, const ToolReference& ref
     const ToolErrors& e = row.errors;
     out += fmt::format(" {:>8.2f} {:>8.2f} {:>9.2f}", 100.0 * e.rms_ratio, 100.0 * e.worst_ratio,
                        100.0 * e.unseen_rms_ratio);
-    for (const double own : e.own_worst) out += percent(own);
+    for (const double own : e.own_worst_ratio) out += percent(own);
     const double instructions = row.timing.instructions;
     out += fmt::format(" {:>10.3f} {:>9.3f} {:>8}\n", row.timing.median_us, row.timing.p999_us,
                        std::isfinite(instructions) ? fmt::format("{:.0f}", instructions) : "n/a");
@@ -137,7 +137,7 @@ model::Result<std::vector<model::scene::Accuracy>> accuracy_of(
         .rms_ratio = row.errors.rms_ratio,
         .within_noticeable_ratio = row.errors.within_jnd_ratio,
         .depth_m = {},
-        .own_worst_ratio = row.errors.own_worst};
+        .own_worst_ratio = row.errors.own_worst_ratio};
     for (const ground_truth::ToolCase& c : reference.places.front().cases)
       a.depth_m.push_back(c.depth_m);
     out.push_back(std::move(a));

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "firmware/loop/grid.h"
-#include "firmware/run/loop_threads.h"
+#include "firmware/run/loop_executor.h"
 #include "tools/program/interrupt.h"
 
 namespace tact::tools::limits {
@@ -37,36 +37,36 @@ firmware::run::ThreadCosts play_guarded(const Runs& runs, const LimitsBench& ben
                                         const PlanProgress& progress) {
   firmware::loop::Requests& requests = *bench.requests;
   std::atomic<std::size_t> done{0};
-  firmware::run::LoopThreads threads({.turns = turns_of(runs, requests, done),
-                                      .device = *bench.device,
-                                      .lines = *bench.lines,
-                                      .requests = requests,
-                                      .filter = filter,
-                                      .guardian = bench.guardian,
-                                      .rt = {},
-                                      .period_ns = firmware::loop::period_ns(bench.scene.rate_Hz),
-                                      .hard_real_time = bench.hard_real_time});
-  while (!threads.ended()) {
+  firmware::run::LoopExecutor executor({.turns = turns_of(runs, requests, done),
+                                        .device = *bench.device,
+                                        .lines = *bench.lines,
+                                        .requests = requests,
+                                        .filter = filter,
+                                        .guardian = bench.guardian,
+                                        .rt = {},
+                                        .period_ns = firmware::loop::period_ns(bench.scene.rate_Hz),
+                                        .hard_real_time = bench.hard_real_time});
+  while (!executor.ended()) {
     if (progress) progress(done.load(), runs.size());
     std::this_thread::sleep_for(kLook);
     // from here on it has to end: hangs() counts from the stop request
     if (program::is_interrupted() || requests.fault.load() != Fault::kNone ||
         done.load() == runs.size())
       requests.stop.store(true);
-    if (!threads.hangs()) continue;
-    threads.leave_behind(1, [] {
+    if (!executor.hangs()) continue;
+    executor.leave_behind(1, [] {
       fmt::print(stderr,
                  "tact-limits: a call of the device does not come back, so it ends without a "
                  "report: switch the device's power off\n");
       std::fflush(stderr);
     });
   }
-  threads.join();
+  executor.join();
   if (progress) progress(done.load(), runs.size());
   const Fault found = requests.fault.load();
   for (const auto& run : runs)
     if (found != Fault::kNone && run->rows().empty()) run->refuse(found);
-  return threads.costs();
+  return executor.costs();
 }
 
 }  // namespace tact::tools::limits

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // guarded_play.h - the cases of a plan on a real device, in real time, guarded as tactd's loop is:
 // the watch above it, the runaway guard, the call filter, and a wait that ends
-// (firmware/run/loop_threads.h).
+// (firmware/run/loop_executor.h).
 #pragma once
 
 #include <functional>

@@ -26,15 +26,15 @@ double cotangent(const Vec3& tip, const Vec3& a, const Vec3& b) {
 }  // namespace
 
 Editor::Editor(Shape shape)
-    : p_(std::move(shape.vertex_mm)),
+    : vertex_mm_(std::move(shape.vertex_mm)),
       triangle_(std::move(shape.triangle)),
-      fan_(p_.size()),
-      on_rim_(p_.size(), true),  // not known yet
-      vertices_(p_.size()) {
+      fan_(vertex_mm_.size()),
+      on_rim_(vertex_mm_.size(), true),  // not known yet
+      vertices_(vertex_mm_.size()) {
   for (std::uint32_t t = 0; t < triangle_.size(); ++t)
     for (const std::uint32_t v : triangle_[t]) fan_[v].push_back(t);
   const std::vector<Edge> all = edges();
-  on_rim_.assign(p_.size(), false);
+  on_rim_.assign(vertex_mm_.size(), false);
   for (const Edge& e : all)
     if (e.rim) on_rim_[e.a] = on_rim_[e.b] = true;
 }
@@ -87,9 +87,9 @@ std::vector<Edge> Editor::edges() const {
 }
 
 std::uint32_t Editor::split(std::uint32_t a, std::uint32_t b) {
-  const auto middle = static_cast<std::uint32_t>(p_.size());
+  const auto middle = static_cast<std::uint32_t>(vertex_mm_.size());
   const Pair old = between(a, b);
-  p_.push_back(0.5 * (p_[a] + p_[b]));
+  vertex_mm_.push_back(0.5 * (vertex_mm_[a] + vertex_mm_[b]));
   fan_.emplace_back();
   on_rim_.push_back(old.count == 1);
   ++vertices_;
@@ -109,7 +109,7 @@ std::uint32_t Editor::split(std::uint32_t a, std::uint32_t b) {
 
 bool Editor::keeps_facing(std::uint32_t gone, std::uint32_t kept) const {
   const auto normal = [&](const TriangleCorners& t) {
-    const auto at = [&](std::uint32_t v) { return p_[v]; };
+    const auto at = [&](std::uint32_t v) { return vertex_mm_[v]; };
     return cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
   };
   return std::all_of(fan_[gone].begin(), fan_[gone].end(), [&](std::uint32_t t) {
@@ -162,10 +162,14 @@ bool Editor::flip_if_better(std::uint32_t a, std::uint32_t b) {
     if (fan_[v].size() <= (on_rim_[v] ? 2u : 4u)) return false;
   if (is_edge(c, d)) return false;
   // Delaunay: the angles that face the edge add up to at most 180 degrees, cot c + cot d >= 0.
-  if (!(cotangent(p_[c], p_[a], p_[b]) + cotangent(p_[d], p_[a], p_[b]) < -1e-9)) return false;
-  const Vec3 before = cross(p_[b] - p_[a], p_[c] - p_[a]) + cross(p_[d] - p_[a], p_[b] - p_[a]);
-  const Vec3 left = cross(p_[d] - p_[a], p_[c] - p_[a]);
-  const Vec3 right = cross(p_[b] - p_[d], p_[c] - p_[d]);
+  if (!(cotangent(vertex_mm_[c], vertex_mm_[a], vertex_mm_[b]) +
+            cotangent(vertex_mm_[d], vertex_mm_[a], vertex_mm_[b]) <
+        -1e-9))
+    return false;
+  const Vec3 before = cross(vertex_mm_[b] - vertex_mm_[a], vertex_mm_[c] - vertex_mm_[a]) +
+                      cross(vertex_mm_[d] - vertex_mm_[a], vertex_mm_[b] - vertex_mm_[a]);
+  const Vec3 left = cross(vertex_mm_[d] - vertex_mm_[a], vertex_mm_[c] - vertex_mm_[a]);
+  const Vec3 right = cross(vertex_mm_[b] - vertex_mm_[d], vertex_mm_[c] - vertex_mm_[d]);
   if (!same_way(before, left) || !same_way(before, right)) return false;
   triangle_[near] = {a, d, c};
   triangle_[far] = {d, b, c};
@@ -178,11 +182,11 @@ bool Editor::flip_if_better(std::uint32_t a, std::uint32_t b) {
 
 Shape Editor::shape() const {
   Shape packed;
-  std::vector<std::uint32_t> place(p_.size(), 0);
-  for (std::uint32_t v = 0; v < p_.size(); ++v) {
+  std::vector<std::uint32_t> place(vertex_mm_.size(), 0);
+  for (std::uint32_t v = 0; v < vertex_mm_.size(); ++v) {
     if (!is_alive(v)) continue;
     place[v] = static_cast<std::uint32_t>(packed.vertex_mm.size());
-    packed.vertex_mm.push_back(p_[v]);
+    packed.vertex_mm.push_back(vertex_mm_[v]);
   }
   for (const TriangleCorners& t : triangle_)
     if (t[0] != t[1]) packed.triangle.push_back({place[t[0]], place[t[1]], place[t[2]]});

@@ -20,13 +20,13 @@ class Editor {
  public:
   explicit Editor(Shape shape);
 
-  std::vector<model::Vec3>& vertex_mm() { return p_; }
+  std::vector<model::Vec3>& vertex_mm() { return vertex_mm_; }
   const std::vector<model::contact::TriangleCorners>& triangle() const { return triangle_; }
   const std::vector<std::uint32_t>& fan(std::uint32_t v) const { return fan_[v]; }
   bool is_alive(std::uint32_t v) const { return !fan_[v].empty(); }
   bool is_on_rim(std::uint32_t v) const { return on_rim_[v]; }
   std::size_t vertices() const { return vertices_; }
-  double length_mm(const Edge& e) const { return norm(p_[e.b] - p_[e.a]); }
+  double length_mm(const Edge& e) const { return norm(vertex_mm_[e.b] - vertex_mm_[e.a]); }
 
   /// Each edge once, in the order of the triangles.
   std::vector<Edge> edges() const;
@@ -58,7 +58,7 @@ class Editor {
   void leave(std::uint32_t v, std::uint32_t t);
   bool keeps_facing(std::uint32_t gone, std::uint32_t kept) const;
 
-  std::vector<model::Vec3> p_;                             // mm
+  std::vector<model::Vec3> vertex_mm_;                     // mm
   std::vector<model::contact::TriangleCorners> triangle_;  // a removed one has three equal corners
   std::vector<std::vector<std::uint32_t>> fan_;            // triangles round each vertex
   std::vector<bool> on_rim_;

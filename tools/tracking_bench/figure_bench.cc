@@ -37,6 +37,42 @@ void print_row(const char* name, const FigureWork& work) {
              1e3 * work.worst_error_m, work.median_us, work.p99_us);
 }
 
+struct FigureBench {
+  std::string scene;
+  double duration_s = 0.0;
+  FigureWork first, whole;  // shoulder first; always the whole chain
+
+  double ratio() const {
+    return static_cast<double>(whole.updates) / static_cast<double>(std::max(first.updates, 1L));
+  }
+  bool good() const {
+    return ratio() >= kGoalRatio && first.unreached == 0 && whole.unreached == 0;
+  }
+};
+
+void print_json(const FigureBench& bench) {
+  fmt::print("{}\n", json{{"format", "tact-figure"},
+                          {"version", 1},
+                          {"scene", bench.scene},
+                          {"seconds", bench.duration_s},
+                          {"shoulder_first", to_json(bench.first)},
+                          {"full_chain", to_json(bench.whole)},
+                          {"updates_ratio", bench.ratio()},
+                          {"updates_ratio_goal", kGoalRatio},
+                          {"good", bench.good()}}
+                         .dump());
+}
+
+void print_text(const FigureBench& bench) {
+  fmt::print("{} of {:g} s, {} frames\n", bench.scene, bench.duration_s, bench.first.frames);
+  fmt::print("{:<16} {:>7} {:>7} {:>11} {:>10} {:>8} {:>9} {:>7} {:>7}\n", "CCD", "updates",
+             "sweeps", "whole chain", "unreached", "rms mm", "worst mm", "us", "99 %");
+  print_row("shoulder first", bench.first);
+  print_row("whole chain", bench.whole);
+  fmt::print("joint updates, whole chain over shoulder first: {:.2f} (goal {:g})\n", bench.ratio(),
+             kGoalRatio);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -72,30 +108,13 @@ int main(int argc, char** argv) {
   if (!motion) return program.fail(motion.error());
   const Eigen::Vector3d grip_m =
       tact::host::figure::grip_m(tact::model::mesh::summarize(scene->tool_mesh).high_m.z);
-  const FigureWork first = measure_figure(*motion, grip_m, RootRule::kSubRootFirst);
-  const FigureWork whole = measure_figure(*motion, grip_m, RootRule::kAlwaysFullChain);
-  const double ratio =
-      static_cast<double>(whole.updates) / static_cast<double>(std::max(first.updates, 1L));
-  const bool good = ratio >= kGoalRatio && first.unreached == 0 && whole.unreached == 0;
-  if (as_json) {
-    fmt::print("{}\n", json{{"format", "tact-figure"},
-                            {"version", 1},
-                            {"scene", scene->name},
-                            {"seconds", seconds},
-                            {"shoulder_first", to_json(first)},
-                            {"full_chain", to_json(whole)},
-                            {"updates_ratio", ratio},
-                            {"updates_ratio_goal", kGoalRatio},
-                            {"good", good}}
-                           .dump());
-  } else {
-    fmt::print("{} of {:g} s, {} frames\n", scene->name, seconds, first.frames);
-    fmt::print("{:<16} {:>7} {:>7} {:>11} {:>10} {:>8} {:>9} {:>7} {:>7}\n", "CCD", "updates",
-               "sweeps", "whole chain", "unreached", "rms mm", "worst mm", "us", "99 %");
-    print_row("shoulder first", first);
-    print_row("whole chain", whole);
-    fmt::print("joint updates, whole chain over shoulder first: {:.2f} (goal {:g})\n", ratio,
-               kGoalRatio);
-  }
-  return good ? 0 : 1;
+  const FigureBench bench{.scene = scene->name,
+                          .duration_s = seconds,
+                          .first = measure_figure(*motion, grip_m, RootRule::kSubRootFirst),
+                          .whole = measure_figure(*motion, grip_m, RootRule::kAlwaysFullChain)};
+  if (as_json)
+    print_json(bench);
+  else
+    print_text(bench);
+  return bench.good() ? 0 : 1;
 }

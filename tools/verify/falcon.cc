@@ -170,78 +170,96 @@ int count(const json& sent, const json& word) {
 
 /// One run from open to ready must send what the file says, entry by entry; a run against silence
 /// as often as it says.
-void verify_boot(const json& ftdi, Report& report) {
-  const json& steps = ftdi.at("bootloader");
-  std::map<std::string, Bytes> replies;
-  for (const json& step : steps)
-    if (step.contains("bulk_out")) replies[step.at("bulk_out")] = from_hex(step.at("expect_in"));
-  Bytes image;
-  for (int i = 0; i < 150; ++i) image.push_back(static_cast<std::uint8_t>(i * 7 + 1));
-  const std::string ask =
-      to_hex(encode(hal::falcon::FalconCommand{.lights = hal::falcon::kFalconRed, .homing = true}));
-  const std::string report_hex = to_hex(encode(hal::falcon::FalconReport{}));
+class BootCheck {
+ public:
+  BootCheck(const json& ftdi, Report& report) : ftdi_(ftdi), report_(report) {
+    for (const json& step : ftdi.at("bootloader"))
+      if (step.contains("bulk_out")) replies_[step.at("bulk_out")] = from_hex(step.at("expect_in"));
+    for (int i = 0; i < 150; ++i) image_.push_back(static_cast<std::uint8_t>(i * 7 + 1));
+    sent_ = sent_while_booting(image_, device(false, ""));
+  }
 
-  const auto device = [&](bool null_first, const std::string& silent) {
-    return [&, null_first, silent, last = std::string()](const std::string& written) mutable {
+  void run() {
+    check_requests("open");
+    const std::size_t first_normal = at_;
+    at_ += ftdi_.at("normal").size();
+    const int asked = hal::falcon::FalconBootSettings{}.report_tries;
+    for (int i = 0; i < asked; ++i) equal(report_, "ask", next(), ask_);
+    const json& steps = ftdi_.at("bootloader");
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      report_.begin_case("ftdi/bootloader/" + std::to_string(i));
+      check_step(steps.at(i));
+    }
+    const std::size_t second_normal = at_;
+    check_requests("normal");
+    equal(report_, "ask", next(), ask_);
+    equal(report_, "end", at_, sent_.size());
+    for (std::size_t i = 0; i < second_normal && second_normal + i < at_ - 1; ++i)
+      equal(report_, "before the image", sent_.at(first_normal + i), sent_.at(second_normal + i));
+  }
+
+ private:
+  /// It may begin each reply with a zero, and be silent to one word.
+  Reply device(bool null_first, const std::string& silent) const {
+    return [this, null_first, silent, last = std::string()](const std::string& written) mutable {
       const std::string before = std::exchange(last, written);
       if (written == silent) return Bytes{};
-      if (written == ask)
-        return from_hex(before == to_hex(std::span(image).last(26)) ? report_hex : "");
-      const auto known = replies.find(written);
-      if (known == replies.end()) return from_hex(written);  // the echo of the image
+      if (written == ask_)
+        return from_hex(before == to_hex(std::span(image_).last(26)) ? report_hex_ : "");
+      const auto known = replies_.find(written);
+      if (known == replies_.end()) return from_hex(written);  // the echo of the image
       Bytes out = known->second;
       if (null_first) out.insert(out.begin(), 0);
       return out;
     };
-  };
-  const json sent = sent_while_booting(image, device(false, ""));
-  std::size_t at = 0;
-  const auto next = [&] { return at < sent.size() ? sent.at(at++) : json("nothing"); };
-  const auto requests = [&](const std::string& block) {
-    for (std::size_t i = 0; i < ftdi.at(block).size(); ++i) {
-      json want = ftdi.at(block).at(i);
-      report.begin_case("ftdi/" + block + "/" + std::to_string(i));
-      equal(report, "name", to_json(named(want.at("name"))), next());
-      want.erase("name");
-      equal(report, "request", sent.at(at - 1), want);
-    }
-  };
-  requests("open");
-  const std::size_t first_normal = at;
-  at += ftdi.at("normal").size();
-  const int asked = hal::falcon::FalconBootSettings{}.report_tries;
-  for (int i = 0; i < asked; ++i) equal(report, "ask", next(), ask);
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    json want = steps.at(i);
-    report.begin_case("ftdi/bootloader/" + std::to_string(i));
-    if (want.contains("name")) {
-      const json got = next();
-      equal(report, "name", to_json(named(want.at("name"))), got);
-      want.erase("name");
-      equal(report, "request", got, want);
-    } else if (want.contains("bulk_out")) {
-      const std::string word = want.at("bulk_out");
-      equal(report, "bulk_out", next(), word);
-      equal(report, "retry", count(sent_while_booting(image, device(false, word)), word),
-            want.at("retry"));
-      equal(report, "null first", sent_while_booting(image, device(true, "")), sent);
-    } else {
-      equal(report, "upload", want.at("upload"), true);
-      equal(report, "echo", want.at("echo"), true);
-      const auto chunk = want.at("chunk").get<std::size_t>();
-      for (std::size_t done = 0; done < image.size(); done += chunk) {
-        const auto rest = std::span(image).subspan(done);
-        equal(report, "chunk", next(), to_hex(rest.first(std::min(chunk, rest.size()))));
-      }
+  }
+
+  json next() { return at_ < sent_.size() ? sent_.at(at_++) : json("nothing"); }
+
+  void check_request(json want) {
+    const json got = next();
+    equal(report_, "name", to_json(named(want.at("name"))), got);
+    want.erase("name");
+    equal(report_, "request", got, want);
+  }
+
+  void check_requests(const std::string& block) {
+    for (std::size_t i = 0; i < ftdi_.at(block).size(); ++i) {
+      report_.begin_case("ftdi/" + block + "/" + std::to_string(i));
+      check_request(ftdi_.at(block).at(i));
     }
   }
-  const std::size_t second_normal = at;
-  requests("normal");
-  equal(report, "ask", next(), ask);
-  equal(report, "end", at, sent.size());
-  for (std::size_t i = 0; i < second_normal && second_normal + i < at - 1; ++i)
-    equal(report, "before the image", sent.at(first_normal + i), sent.at(second_normal + i));
-}
+
+  void check_step(const json& want) {
+    if (want.contains("name")) return check_request(want);
+    if (want.contains("bulk_out")) return check_word(want);
+    equal(report_, "upload", want.at("upload"), true);
+    equal(report_, "echo", want.at("echo"), true);
+    const auto chunk = want.at("chunk").get<std::size_t>();
+    for (std::size_t done = 0; done < image_.size(); done += chunk) {
+      const auto rest = std::span(image_).subspan(done);
+      equal(report_, "chunk", next(), to_hex(rest.first(std::min(chunk, rest.size()))));
+    }
+  }
+
+  void check_word(const json& want) {
+    const std::string word = want.at("bulk_out");
+    equal(report_, "bulk_out", next(), word);
+    equal(report_, "retry", count(sent_while_booting(image_, device(false, word)), word),
+          want.at("retry"));
+    equal(report_, "null first", sent_while_booting(image_, device(true, "")), sent_);
+  }
+
+  const json& ftdi_;
+  Report& report_;
+  const std::string ask_ =
+      to_hex(encode(hal::falcon::FalconCommand{.lights = hal::falcon::kFalconRed, .homing = true}));
+  const std::string report_hex_ = to_hex(encode(hal::falcon::FalconReport{}));
+  std::map<std::string, Bytes> replies_;
+  Bytes image_;
+  json sent_;
+  std::size_t at_ = 0;  // in sent_
+};
 
 void verify_falcon(const json& file, Report& report) {
   report.begin_case("usb");
@@ -258,7 +276,7 @@ void verify_falcon(const json& file, Report& report) {
   verify_streams(file.at("streams"), report);
   verify_strip(file.at("strip"), report);
   verify_baud(file.at("ftdi").at("baud"), report);
-  verify_boot(file.at("ftdi"), report);
+  BootCheck(file.at("ftdi"), report).run();
 }
 
 constexpr Verifier kVerifiers[] = {{"falcon_packets/1", verify_falcon}};

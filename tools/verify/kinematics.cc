@@ -220,7 +220,7 @@ void verify_falcon_pose(const hal::falcon::FalconKinematics& falcon, const json&
     counts[i] = std::lround(hal::falcon::falcon_counts(legs.thigh_rad[i]));
   report.compare("counts_rounded", counts, one.at("counts_rounded"), false, 0.0, 0.0);
   const hal::falcon::FalconForward forward =
-      falcon.forward(falcon_thighs_rad(one.at("counts_rounded")), hal::falcon::kFalconHome);
+      falcon.forward(falcon_thighs_rad(one.at("counts_rounded")), hal::falcon::kFalconHome_m);
   compare_abs(report, "p_from_counts", to_json(forward.position_m), one.at("p_from_counts"),
               tolerance.at("p"));
 }
@@ -265,7 +265,7 @@ void verify_falcon_kinematics(const json& file, Report& report) {
   for (const json& one : file.at("symmetric")) {
     report.begin_case("symmetric/" + std::to_string(number++));
     const hal::falcon::FalconForward forward =
-        falcon.forward(falcon_thighs_rad(one.at("counts")), hal::falcon::kFalconHome);
+        falcon.forward(falcon_thighs_rad(one.at("counts")), hal::falcon::kFalconHome_m);
     report.compare("solved", forward.solved, true, false, 0.0, 0.0);
     compare_abs(report, "p", to_json(forward.position_m), one.at("p"), tolerance.at("p"));
     json thighs_deg = json::array(), want_deg = json::array();

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "hal/delta/delta_frame.h"
 #include "hal/sim/sim_delta_model.h"
 
 namespace tact::hal::delta::delta_dynamics_test {
@@ -57,6 +59,27 @@ TEST(DeltaDynamics, GravityTorqueIsTheSlopeOfGravityEnergy) {
       };
       EXPECT_NEAR(torque_Nm[i], (energy_J(h) - energy_J(-h)) / (2.0 * h), 1e-9);
     }
+  }
+}
+
+TEST(DeltaDynamics, DrivesHoldTheDeviceAndPushAsFarAsAJointMay) {
+  const Vec3 force_N{2.0, -3.0, 1.0};
+  for (const Vec3& p : kPlaces) {
+    const DeltaPose pose = kDelta.pose(p, kDelta.inverse(p).theta_rad);
+    const Joints held_Nm =
+        gravity_torques_Nm(kGeometry, kMasses, pose, direction_D(kGravity_W_mps2));
+    const Joints pushed_Nm = joint_torques_Nm(pose, force_N);
+    const Joints free_Nm = drive_torques_Nm(kGeometry, kMasses, pose, force_N, 1e3);
+    const Joints tight_Nm = drive_torques_Nm(kGeometry, kMasses, pose, 100.0 * force_N, 7.4);
+    double most_Nm = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(free_Nm[i], held_Nm[i] + pushed_Nm[i]);
+      const std::size_t j = (i + 1) % 3;  // the direction stays
+      EXPECT_NEAR((tight_Nm[i] - held_Nm[i]) * pushed_Nm[j],
+                  (tight_Nm[j] - held_Nm[j]) * pushed_Nm[i], 1e-9);
+      most_Nm = std::max(most_Nm, std::abs(tight_Nm[i]));
+    }
+    EXPECT_NEAR(most_Nm, 7.4, 1e-12);
   }
 }
 

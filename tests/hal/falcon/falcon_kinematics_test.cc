@@ -27,7 +27,7 @@ TEST(FalconKinematics, ForwardFromHomeUndoesInverse) {
   for (const model::Vec3& p : grip_points()) {
     const FalconInverse legs = kFalcon.inverse(p);
     ASSERT_TRUE(legs.reachable);
-    const FalconForward forward = kFalcon.forward(legs.thigh_rad, kFalconHome);
+    const FalconForward forward = kFalcon.forward(legs.thigh_rad, kFalconHome_m);
     ASSERT_TRUE(forward.solved) << p.x << " " << p.y << " " << p.z;
     EXPECT_LT(norm(forward.position_m - p), 1e-10);
   }
@@ -68,9 +68,9 @@ TEST(FalconKinematics, BadAnglesKeepTheStartAndSayUnsolved) {
   const delta::Joints bad[] = {
       {nan, 0.5, 0.5}, {40.0, -40.0, 40.0}, {std::numeric_limits<double>::infinity(), 0.0, 0.0}};
   for (const delta::Joints& angles : bad) {
-    const FalconForward forward = kFalcon.forward(angles, kFalconHome);
+    const FalconForward forward = kFalcon.forward(angles, kFalconHome_m);
     EXPECT_FALSE(forward.solved);
-    EXPECT_EQ(forward.position_m, kFalconHome);
+    EXPECT_EQ(forward.position_m, kFalconHome_m);
   }
   EXPECT_FALSE(kFalcon.inverse({nan, 0.0, 0.1}).reachable);
   EXPECT_FALSE(kFalcon.inverse({0.0, 0.0, 0.4}).reachable);
@@ -79,7 +79,7 @@ TEST(FalconKinematics, BadAnglesKeepTheStartAndSayUnsolved) {
 
 TEST(FalconKinematics, LeavesTheHeapAlone) {
   tests::NoAlloc guard;
-  (void)kFalcon.forward({0.6, 0.5, 0.7}, kFalconHome);
+  (void)kFalcon.forward({0.6, 0.5, 0.7}, kFalconHome_m);
   EXPECT_EQ(guard.calls(), 0u);
 }
 

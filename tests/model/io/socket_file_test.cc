@@ -149,6 +149,36 @@ TEST_F(SocketFileTest, WhoIsNamedIsTrustedAndNobodyElse) {
   close(listener);
 }
 
+TEST_F(SocketFileTest, IsBoundForItsUserAloneWhateverTheUmask) {
+  const mode_t before = umask(0);
+  const auto fd = bind_socket(path(), SOCK_SEQPACKET | SOCK_CLOEXEC);
+  umask(before);
+  ASSERT_TRUE(fd) << fd.error().sentence;
+  struct stat info{};
+  ASSERT_EQ(stat(path().c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777u, 0600u);
+  close(*fd);
+}
+
+TEST_F(SocketFileTest, IsBoundInThePlaceOfADeadOneAndOfNothingElse) {
+  for (const int type : {SOCK_SEQPACKET | SOCK_CLOEXEC, SOCK_DGRAM | SOCK_CLOEXEC}) {
+    const auto dead = bind_socket(path(), type);
+    ASSERT_TRUE(dead) << dead.error().sentence;
+    close(*dead);  // its file stays
+    const auto living = bind_socket(path(), type);
+    ASSERT_TRUE(living) << living.error().sentence;
+    listen(*living, 1);
+    const auto second = bind_socket(path(), type);
+    ASSERT_FALSE(second);
+    EXPECT_NE(second.error().sentence.find("--socket"), std::string::npos);
+    close(*living);
+    fs::remove(path());
+  }
+  fclose(fopen(path().c_str(), "w"));
+  EXPECT_FALSE(bind_socket(path(), SOCK_SEQPACKET | SOCK_CLOEXEC));
+  EXPECT_TRUE(fs::is_regular_file(path()));
+}
+
 TEST_F(SocketFileTest, ASocketIsSharedWithOneGroupAndAFileIsNot) {
   const int listener = bind_one();
   EXPECT_FALSE(share_socket(path(), getegid()));

@@ -57,9 +57,9 @@ TEST(ToolErrors, MatchPenAndPaper) {
   EXPECT_NEAR(e.rms_ratio, std::sqrt((0.0025 + 0.01 + 0.04) / 3.0), 1e-12);
   EXPECT_NEAR(e.worst_ratio, 0.2, 1e-12);
   EXPECT_NEAR(e.unseen_rms_ratio, 0.2, 1e-12);
-  ASSERT_EQ(e.own_worst.size(), 2U);
-  EXPECT_NEAR(e.own_worst[0], -0.4, 1e-12) << "the largest in size, with its sign";
-  EXPECT_NEAR(e.own_worst[1], -0.1, 1e-12);
+  ASSERT_EQ(e.own_worst_ratio.size(), 2U);
+  EXPECT_NEAR(e.own_worst_ratio[0], -0.4, 1e-12) << "the largest in size, with its sign";
+  EXPECT_NEAR(e.own_worst_ratio[1], -0.1, 1e-12);
   EXPECT_NEAR(e.place_rms_ratio[0], std::sqrt((0.0025 + 0.01) / 2.0), 1e-12);
   EXPECT_NEAR(e.own_largest_ratio, 0.4, 1e-12);
   EXPECT_NEAR(e.place_rms_ratio[1], 0.4, 1e-12) << "of its own peak";
@@ -168,7 +168,7 @@ TEST(ToolReport, HasARowForEachLawPlaceAndDepthAndASummary) {
   EXPECT_EQ(j.at("rows")[3].at("place"), "220");
   const auto& law = j.at("laws")[0];
   EXPECT_EQ(law.at("law"), "disc_stack");
-  EXPECT_NEAR(law.at("own_worst_ratio_at_mm").at("2").get<double>(), row->errors.own_worst[1],
+  EXPECT_NEAR(law.at("own_worst_ratio_at_mm").at("2").get<double>(), row->errors.own_worst_ratio[1],
               1e-9);
   EXPECT_TRUE(law.at("place_rms_ratio").contains("hand's"));
   const std::string text = tool_text({*row}, truth);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/run/loop_threads.h"
+#include "firmware/run/loop_executor.h"
 
 #include <unistd.h>
 
@@ -19,13 +19,13 @@ constexpr unsigned kLastWords_s = 6;
 
 }  // namespace
 
-LoopThreads::LoopThreads(const GuardedLoop& guarded)
+LoopExecutor::LoopExecutor(const GuardedLoop& guarded)
     : guarded_(guarded), runaway_(guarded.requests) {
-  keeper_ = std::thread(&LoopThreads::keep, this);
+  keeper_ = std::thread(&LoopExecutor::keep, this);
 }
 
 // Outside the loop's thread, whose filter would let a device's stop do nothing.
-void LoopThreads::keep() {
+void LoopExecutor::keep() {
   for (const LoopTurn& turn : guarded_.turns) {
     take(turn);
     if (guarded_.requests.stop.load()) break;
@@ -34,7 +34,7 @@ void LoopThreads::keep() {
   ended_.store(true);
 }
 
-void LoopThreads::take(const LoopTurn& turn) {
+void LoopExecutor::take(const LoopTurn& turn) {
   watch::LoopWatch watch(watch::StallWatch(guarded_.period_ns, guarded_.hard_real_time),
                          turn.progress, guarded_.requests, guarded_.lines,
                          guarded_.guardian == nullptr ? nullptr : &guarded_.guardian->lost());
@@ -45,21 +45,21 @@ void LoopThreads::take(const LoopTurn& turn) {
   watch.stop();
 }
 
-bool LoopThreads::hangs() {
+bool LoopExecutor::hangs() {
   if (!guarded_.requests.stop.load() || ended_.load()) return false;
   const std::int64_t now_ns = loop::MonotonicClock().now_ns();
   if (asked_ns_ == 0) asked_ns_ = now_ns;
   return now_ns - asked_ns_ > kPatience_ns;
 }
 
-void LoopThreads::join() {
+void LoopExecutor::join() {
   if (keeper_.joinable()) keeper_.join();
 }
 
 // The device may be in the middle of a call that hangs, so its stop may hang, too, and so may the
 // disk: SIGALRM ends both. The guardian takes this end for a death, and zeroes the
 // device once more.
-void LoopThreads::leave_behind(int status, const std::function<void()>& last_words) {
+void LoopExecutor::leave_behind(int status, const std::function<void()>& last_words) {
   guarded_.lines.drop();
   std::signal(SIGALRM, [](int) { _exit(1); });
   alarm(kLastWords_s);

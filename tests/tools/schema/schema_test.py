@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The JSON of each program names its format and version, and is what tools/schema says of it.
 
-    python3 tests/tools/schema_test.py BUILD_DIR
+    python3 tests/tools/schema/schema_test.py BUILD_DIR
 
 Every program with an option --json is run here; of tact-reference, which takes minutes, the committed files are judged. A
 schema allows no member that it does not name, so a new member is a change of the schema. Needs python3-jsonschema. Exit
@@ -20,7 +20,7 @@ import tempfile
 
 import jsonschema
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 SCHEMAS = ROOT / "tools/schema"
 SCENES = ROOT / "model/scenes"
 LIVER = SCENES / "liver.toml"

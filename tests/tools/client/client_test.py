@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """tools/client/tact.py reads what the programs of BUILD_DIR write and send, and its layouts are those of host/PROTOCOL.md.
 
-    python3 tests/tools/client_test.py BUILD_DIR
+    python3 tests/tools/client/client_test.py BUILD_DIR
 
 Needs python3-numpy and python3-matplotlib. Exit status 0 or 1.
 """
@@ -16,7 +16,7 @@ import tempfile
 import time
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools/client"))
 sys.dont_write_bytecode = True
 import tact  # noqa: E402

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// loop_threads.h - the loop with the threads around it, from its first tick to the device's rest.
+// loop_executor.h - runs the loop, with the threads around it, from its first tick to the device's
+// rest.
 //
 //     tact-loop    the loop behind its call filter (watch/call_filter.h)
 //     tact-watch   above it (watch/loop_watch.h)
@@ -41,12 +42,12 @@ struct GuardedLoop {
   bool hard_real_time = false;
 };
 
-class LoopThreads {
+class LoopExecutor {
  public:
-  explicit LoopThreads(const GuardedLoop& guarded);
-  ~LoopThreads() { join(); }
-  LoopThreads(const LoopThreads&) = delete;
-  LoopThreads& operator=(const LoopThreads&) = delete;
+  explicit LoopExecutor(const GuardedLoop& guarded);
+  ~LoopExecutor() { join(); }
+  LoopExecutor(const LoopExecutor&) = delete;
+  LoopExecutor& operator=(const LoopExecutor&) = delete;
 
   bool ended() const { return ended_.load(); }
   /// Asked to stop, and 3 s later loop or device are still not at their end. Call a few times a
