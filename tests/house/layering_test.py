@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Who may include whom, what real-time functions may not name, how long a file may be.
+"""Who may include whom, what real-time functions may not name, that nothing throws, how long a file may be.
 
 Reads the tree as text and prints every breach as file:line: sentence. Exit status 0 or 1.
 """
@@ -75,6 +75,14 @@ def io_breaches(path, text):
     code = COMMENT.sub(blank, text)
     for found in BY_IO.finditer(code):
         yield f"{path}:{code.count(chr(10), 0, found.start()) + 1}: {found.group()}: use {IO}"
+
+
+def throw_breaches(path, text):
+    if path.startswith("tests/"):
+        return
+    code = COMMENT.sub(blank, text)
+    for found in re.finditer(r"\bthrow\b", code):
+        yield f"{path}:{code.count(chr(10), 0, found.start()) + 1}: throws: return a Result (model/result.h)"
 
 
 def body_end(text, start):
@@ -152,6 +160,7 @@ def blind_rules():
         "stream": io_breaches("tools/x.cc", "std::ifstream file(path);\n"),
         "number": io_breaches("tools/x.cc", "option->check(CLI::Range(0, 1));\n"),
         "parser": io_breaches("host/x.cc", "const auto j = nlohmann::json::parse(text);\n"),
+        "throw": throw_breaches("tools/x.cc", "void f() { throw 1; }\n"),
         "real time": real_time_breaches("x.cc", "void f() RT_SAFE { new int; }\n"),
         "compiler": vouch_breaches("x.cc", '#pragma clang diagnostic ignored "-Wfunction-effects"\n'),
         "sanitizer": vouch_breaches("x.cc", "const __rtsan::ScopedDisabler off;\n"),
@@ -185,6 +194,7 @@ def main():
             if path.suffix in (".h", ".cc"):  # clang-format leaves comments as they are
                 breaches += long_comments(name, text)
                 breaches += misnamed(name, text)
+                breaches += throw_breaches(name, text)
             if top != "tests" and (path.suffix in (".h", ".cc") or path.name == "CMakeLists.txt"):
                 texts[name] = text
             if path.suffix in (".h", ".cc") and not name.startswith(CANARIES):

@@ -21,19 +21,23 @@ std::string to_hex(std::span<const std::uint8_t> bytes) {
   return digits;
 }
 
-std::vector<std::uint8_t> from_hex(const std::string& digits) {
-  if (digits.size() % 2 != 0 || digits.find_first_not_of("0123456789abcdef") != std::string::npos)
-    throw std::invalid_argument(fmt::format("\"{}\" is no row of bytes", digits));
+std::vector<std::uint8_t> from_hex(const std::string& digits, Report& report) {
+  if (digits.size() % 2 != 0 || digits.find_first_not_of("0123456789abcdef") != std::string::npos) {
+    report.call_damaged(fmt::format("\"{}\" is no row of bytes", digits));
+    return {};
+  }
   std::vector<std::uint8_t> bytes;
   for (std::size_t i = 0; i < digits.size(); i += 2)
     bytes.push_back(static_cast<std::uint8_t>(std::stoi(digits.substr(i, 2), nullptr, 16)));
   return bytes;
 }
 
-CanFrame frame_of(std::uint32_t id, const std::string& digits) {
-  const std::vector<std::uint8_t> bytes = from_hex(digits);
-  if (id > hal::can::kCanLargestId || bytes.size() > 8)
-    throw std::invalid_argument(fmt::format("{} with \"{}\" is no CAN frame", id, digits));
+CanFrame frame_of(std::uint32_t id, const std::string& digits, Report& report) {
+  const std::vector<std::uint8_t> bytes = from_hex(digits, report);
+  if (id > hal::can::kCanLargestId || bytes.size() > 8) {
+    report.call_damaged(fmt::format("{} with \"{}\" is no CAN frame", id, digits));
+    return {};
+  }
   CanFrame frame = hal::can::make_can_frame(id, static_cast<std::uint8_t>(bytes.size()));
   std::copy(bytes.begin(), bytes.end(), frame.data.begin());
   return frame;
@@ -55,7 +59,7 @@ void compare_encoded(Report& report, const std::optional<CanFrame>& frame, const
   report.compare("data", to_hex(frame->payload()), want.at("data"), false, 0.0, 0.0);
   if (want.contains("dlc")) report.compare("dlc", frame->length, want["dlc"], false, 0.0, 0.0);
   report.compare("can_frame", to_hex(*bytes), want.at("can_frame"), false, 0.0, 0.0);
-  const auto back = hal::can::unpack_can_frame(from_hex(want.at("can_frame")));
+  const auto back = hal::can::unpack_can_frame(from_hex(want.at("can_frame"), report));
   report.compare("reads back", back == frame, true, false, 0.0, 0.0);
 }
 
@@ -97,7 +101,7 @@ void verify_socketcan(const json& file, Report& report) {
   int number = 0;
   for (const json& one : file.at("error_frames")) {
     report.begin_case("error_frames/" + std::to_string(number++));
-    const auto bytes = from_hex(one.at("can_frame"));
+    const auto bytes = from_hex(one.at("can_frame"), report);
     compare_equal(report, error_results(bytes), one.at("expect"));
     if (bytes.size() != hal::can::kCanFrameBytes) continue;
     report.compare("refuses damage", refuses_damaged_error(bytes), true, false, 0.0, 0.0);
@@ -105,7 +109,7 @@ void verify_socketcan(const json& file, Report& report) {
   number = 0;
   for (const json& one : file.at("bus_bits")) {
     report.begin_case("bus_bits/" + std::to_string(number++));
-    CanFrame frame = frame_of(one.at("id"), one.at("data"));
+    CanFrame frame = frame_of(one.at("id"), one.at("data"), report);
     frame.rtr = one.value("rtr", false);
     if (frame.rtr) frame.length = one.at("dlc");
     const hal::can::CanBits bits = hal::can::can_bits_on_bus(frame);
@@ -118,7 +122,8 @@ void verify_socketcan(const json& file, Report& report) {
   }
 }
 
-std::optional<CanFrame> odrive_encoded(const std::string& message, const json& args) {
+std::optional<CanFrame> odrive_encoded(const std::string& message, const json& args,
+                                       Report& report) {
   const int node = args.at("node");
   const auto value = [&args](const char* name) { return number(args.at(name)); };
   using hal::odrive::OdriveTorqueLength;
@@ -146,7 +151,8 @@ std::optional<CanFrame> odrive_encoded(const std::string& message, const json& a
     return hal::odrive::odrive_clear_errors(node, args.at("identify") != 0);
   if (message == "rtr_get_encoder_estimates")
     return hal::odrive::odrive_request(node, hal::odrive::OdriveCommand::kGetEncoderEstimates);
-  throw std::invalid_argument(fmt::format("no message \"{}\"", message));
+  report.call_damaged(fmt::format("no message \"{}\"", message));
+  return std::nullopt;
 }
 
 json to_json(const hal::odrive::OdriveHeartbeat& h) {
@@ -202,7 +208,7 @@ json odrive_decoded(const CanFrame& frame, const std::string& name, Report& repo
   if (name == "get_temperature") got = read(hal::odrive::decode_odrive_temperature);
   if (name == "get_bus_voltage_current") got = read(hal::odrive::decode_odrive_bus);
   if (name == "get_torques") got = read(hal::odrive::decode_odrive_torques);
-  if (got.is_null()) throw std::invalid_argument(fmt::format("no reply \"{}\"", name));
+  if (got.is_null()) report.call_damaged(fmt::format("no reply \"{}\"", name));
   got.update({{"node", address.node}, {"cmd", address.command}, {"name", name}});
   return got;
 }
@@ -239,20 +245,20 @@ void verify_odrive(const json& file, Report& report) {
   int number = 0;
   for (const json& one : file.at("encode")) {
     report.begin_case("encode/" + std::to_string(number++));
-    compare_encoded(report, odrive_encoded(one.at("message"), one.at("args")), one);
+    compare_encoded(report, odrive_encoded(one.at("message"), one.at("args"), report), one);
   }
   number = 0;
   for (const json& one : file.at("decode")) {
     report.begin_case("decode/" + std::to_string(number++));
     const json& expect = one.at("expect");
-    const CanFrame frame = frame_of(one.at("id"), one.at("data"));
+    const CanFrame frame = frame_of(one.at("id"), one.at("data"), report);
     compare_equal(report, odrive_decoded(frame, expect.at("name"), report), expect);
   }
   number = 0;
   for (const json& one : file.at("heartbeat_v0_5")) {
     report.begin_case("heartbeat_v0_5/" + std::to_string(number++));
     constexpr int kNode = 5;  // the file leaves it open
-    const CanFrame frame = frame_of(kNode << 5 | 1, one.at("data"));
+    const CanFrame frame = frame_of(kNode << 5 | 1, one.at("data"), report);
     compare_equal(report, decoded(frame, kNode, hal::odrive::decode_odrive_heartbeat_05, report),
                   one.at("expect"));
   }

@@ -16,11 +16,11 @@
 namespace tact::tools::verify {
 
 std::string to_hex(std::span<const std::uint8_t> bytes);
-/// An odd number of digits or another letter is damage, reported by an exception.
-std::vector<std::uint8_t> from_hex(const std::string& digits);
+/// An odd number of digits or another letter is damage, and no bytes.
+std::vector<std::uint8_t> from_hex(const std::string& digits, Report& report);
 
 /// A data frame with these bytes; an identifier or a length that cannot be is damage.
-hal::can::CanFrame frame_of(std::uint32_t id, const std::string& digits);
+hal::can::CanFrame frame_of(std::uint32_t id, const std::string& digits, Report& report);
 
 /// Both must have the same fields with equal values.
 void compare_equal(Report& report, const nlohmann::json& got, const nlohmann::json& want);

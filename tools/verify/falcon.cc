@@ -37,7 +37,7 @@ void verify_commands(const json& commands, Report& report) {
         .lights = one.at("leds").get<std::uint8_t>(),
         .homing = one.at("homing").get<bool>()};
     equal(report, "hex", to_hex(encode(wanted)), one.at("hex"));
-    const auto sent = hal::falcon::decode_falcon_command(from_hex(one.at("hex")));
+    const auto sent = hal::falcon::decode_falcon_command(from_hex(one.at("hex"), report));
     equal(report, "decoded", sent.has_value(), true);
     if (!sent) continue;
     equal(report, "motors_sent", sent->motor, one.at("motors_sent"));
@@ -59,7 +59,7 @@ void verify_reports(const json& reports, Report& report) {
         .buttons = one.at("buttons").get<std::uint8_t>(),
         .homed = one.at("homed").get<std::uint8_t>()};
     equal(report, "hex", to_hex(encode(wanted)), one.at("hex"));
-    const auto got = hal::falcon::decode_falcon_report(from_hex(one.at("hex")));
+    const auto got = hal::falcon::decode_falcon_report(from_hex(one.at("hex"), report));
     equal(report, "decoded", got.has_value(), true);
     if (got) equal(report, "report", to_json(*got), to_json(wanted));
   }
@@ -72,7 +72,7 @@ void verify_streams(const json& streams, Report& report) {
     hal::falcon::FalconStream stream;
     json got = json::array();
     for (const json& chunk : one.at("chunks")) {
-      for (const std::uint8_t byte : from_hex(chunk))
+      for (const std::uint8_t byte : from_hex(chunk, report))
         if (const auto whole = stream.push(byte)) got.push_back(to_json(*whole));
     }
     equal(report, "reports", got, one.at("reports"));
@@ -85,7 +85,7 @@ void verify_strip(const json& transfers, Report& report) {
   int number = 0;
   for (const json& one : transfers) {
     report.begin_case("strip/" + std::to_string(number++));
-    const Bytes transfer = from_hex(one.at("transfer"));
+    const Bytes transfer = from_hex(one.at("transfer"), report);
     Bytes data(transfer.size());
     const auto got = hal::falcon::ftdi_strip(transfer, data);
     equal(report, "whole", got.has_value(), true);
@@ -107,7 +107,7 @@ void verify_baud(const json& codes, Report& report) {
   }
 }
 
-FtdiRequest named(const std::string& name) {
+FtdiRequest named(const std::string& name, Report& report) {
   if (name == "purge_rx") return hal::falcon::kFtdiPurgeRx;
   if (name == "purge_tx") return hal::falcon::kFtdiPurgeTx;
   if (name == "latency_1ms") return hal::falcon::ftdi_latency_ms(1);
@@ -120,7 +120,8 @@ FtdiRequest named(const std::string& name) {
   if (name == "rts_low") return hal::falcon::kFtdiRtsLow;
   if (name == "dtr_low") return hal::falcon::kFtdiDtrLow;
   if (name == "dtr_high") return hal::falcon::kFtdiDtrHigh;
-  throw std::invalid_argument("no request is called " + name);
+  report.call_damaged("no request is called " + name);
+  return {};
 }
 json to_json(const FtdiRequest& r) {
   return {{"bmRequestType", r.type},
@@ -174,7 +175,8 @@ class BootCheck {
  public:
   BootCheck(const json& ftdi, Report& report) : ftdi_(ftdi), report_(report) {
     for (const json& step : ftdi.at("bootloader"))
-      if (step.contains("bulk_out")) replies_[step.at("bulk_out")] = from_hex(step.at("expect_in"));
+      if (step.contains("bulk_out"))
+        replies_[step.at("bulk_out")] = from_hex(step.at("expect_in"), report);
     for (int i = 0; i < 150; ++i) image_.push_back(static_cast<std::uint8_t>(i * 7 + 1));
     sent_ = sent_while_booting(image_, device(false, ""));
   }
@@ -205,9 +207,9 @@ class BootCheck {
       const std::string before = std::exchange(last, written);
       if (written == silent) return Bytes{};
       if (written == ask_)
-        return from_hex(before == to_hex(std::span(image_).last(26)) ? report_hex_ : "");
+        return from_hex(before == to_hex(std::span(image_).last(26)) ? report_hex_ : "", report_);
       const auto known = replies_.find(written);
-      if (known == replies_.end()) return from_hex(written);  // the echo of the image
+      if (known == replies_.end()) return from_hex(written, report_);  // the echo of the image
       Bytes out = known->second;
       if (null_first) out.insert(out.begin(), 0);
       return out;
@@ -218,7 +220,7 @@ class BootCheck {
 
   void check_request(json want) {
     const json got = next();
-    equal(report_, "name", to_json(named(want.at("name"))), got);
+    equal(report_, "name", to_json(named(want.at("name"), report_)), got);
     want.erase("name");
     equal(report_, "request", got, want);
   }

@@ -85,16 +85,21 @@ Result<std::vector<std::string>> files_of(const std::vector<std::string>& paths)
   return files;
 }
 
+Error damaged(const std::string& path, const std::string& why) {
+  return Error{fmt::format("{}: damaged vector file: {}; take a fresh copy", path, why)};
+}
+
 Result<FileReport> verify_file(const std::string& path) {
   const auto read = tact::model::io::read_json(path, "check the name, or take a fresh copy");
   if (!read) return read.error();
-  try {  // the libraries report damage by exceptions
+  try {  // nlohmann/json reports damage by exceptions
     const json& file = *read;
     const std::string key = file.contains("law") ? "law" : "schema";
     FileReport out{fs::path(path).filename().string(), file.value(key, ""), {}};
     for (const Verifier& verifier : known_verifiers()) {
       if (verifier.law != out.law) continue;
       verifier.verify(file, out.report);
+      if (!out.report.damage().empty()) return damaged(path, out.report.damage());
       if (out.report.passed() + out.report.failed() > 0) return out;
       return Error{fmt::format("{}: holds no case, so it proves nothing; take a fresh copy", path)};
     }
@@ -103,8 +108,7 @@ Result<FileReport> verify_file(const std::string& path) {
                     "take a build that knows it",
                     path, key, out.law)};
   } catch (const std::exception& damage) {
-    return Error{
-        fmt::format("{}: damaged vector file: {}; take a fresh copy", path, damage.what())};
+    return damaged(path, damage.what());
   }
 }
 

@@ -54,6 +54,10 @@ void Report::begin_case(const std::string& id) {
   ++cases_;
 }
 
+void Report::call_damaged(const std::string& sentence) {
+  if (damage_.empty()) damage_ = sentence;
+}
+
 void Report::fail(Failure failure) {
   if (!id_failed_) ++failed_;
   id_failed_ = true;

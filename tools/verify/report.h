@@ -49,6 +49,10 @@ class Report {
   void compare_all(const nlohmann::json& got, const nlohmann::json& expect,
                    const Tolerance& tolerance);
 
+  /// The file itself is wrong. The first sentence is kept; what follows is computed for nothing.
+  void call_damaged(const std::string& sentence);
+  const std::string& damage() const { return damage_; }  // empty: none
+
   int passed() const { return cases_ - failed(); }
   int failed() const { return failed_; }
   const std::vector<Failure>& failures() const { return failures_; }
@@ -56,7 +60,7 @@ class Report {
  private:
   void fail(Failure failure);
 
-  std::string id_;
+  std::string id_, damage_;
   bool id_failed_ = false;
   int cases_ = 0;
   int failed_ = 0;

@@ -51,11 +51,8 @@ TEST(VerifyFalcon, EveryValueIsLookedAt) {
     json wrong = file;
     wrong[json::json_pointer(where)] = spoiled(value);
     ++looked_at;
-    try {
-      EXPECT_GT(report_on(wrong).failed(), 0) << where << " " << value;
-    } catch (const std::exception&) {  // a name that no request has is damage
-      EXPECT_TRUE(names("/name")) << where;
-    }
+    const Report report = report_on(wrong);
+    EXPECT_TRUE(report.failed() > 0 || !report.damage().empty()) << where << " " << value;
   }
   EXPECT_GT(looked_at, 600);
 }
