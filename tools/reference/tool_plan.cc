@@ -170,8 +170,8 @@ std::vector<std::uint32_t> unseen_of(const model::scene::Scene& scene,
   return farthest_of(candidates, surface.vertex_m, std::move(taken_m));
 }
 
-/// How far the hand's strokes slide the open tool along the tissue from its site: the middle and the
-/// end of each slide, each place once.
+/// How far the hand's strokes slide the open tool along the tissue from its site: the middle and
+/// the end of each slide, each place once.
 std::vector<Vec3> slides_of(const model::scene::Scene& scene) {
   const double reach_m = model::scene::reach_m(scene.tool.spheres, scene.hand_inward);
   const auto along_m = [&](const Vec3& tool_m) {  // of the surface, from the site

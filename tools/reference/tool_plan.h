@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // tool_plan.h - where the whole tool is pressed, and how the solves become one file.
 //
-// The hand's own site comes first, as its stroke presses it, then the middle and the end of each of
-// its slides in contact. Then places that no fit has used, chosen by a rule that nobody can bend: of
-// all vertices where
+// The hand's own site comes first, as its stroke presses it, then the middle and the end of each
+// of its slides in contact. Then places that no fit has used, chosen by a rule that nobody can
+// bend: of all vertices where
 //
 //     the surface looks towards the hand   outward normal within 60 degrees of the hand's way out
 //     the whole tool finds tissue          along the tool's way each sphere's axis meets it within
