@@ -25,10 +25,10 @@ using tests::run_program;
 
 const std::string kScene = TACT_SOURCE_DIR "/model/scenes/liver.toml";
 const std::vector<std::string> kPrograms{
-    "tactd",          "tact-view",      "tact-jitter",    "tact-fit",
-    "tact-plan",      "tact-chart",     "tact-condense",  "tact-mesh",
-    "tact-doctor",    "tact-limits",    "tact-verify",    "tactctl",
-    "tact-calibrate", "tact-reference", "tact-stability", "tact-track-send"};
+    "tactd",           "tact-view",     "tact-jitter",    "tact-fit",       "tact-plan",
+    "tact-chart",      "tact-condense", "tact-mesh",      "tact-doctor",    "tact-limits",
+    "tact-verify",     "tactctl",       "tact-calibrate", "tact-reference", "tact-stability",
+    "tact-track-send", "tact-mcap"};
 
 class BadInput : public testing::Test {
  protected:
@@ -102,6 +102,7 @@ TEST_F(BadInput, AFolderOrPipeWhereAFileBelongsGetsASentence) {
     refuses("tact-chart", kScene + " --reference " + path + " --out " + folder_ + "/out", words);
     refuses("tact-mesh", path, words);
     refuses("tact-view", "--open " + path, words);
+    refuses("tact-mcap", path + " " + folder_ + "/out.mcap", words);
     refuses("tactd", path, words);
     refuses("tactd", kScene + " --replay " + path, words);
   }

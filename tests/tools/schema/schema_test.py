@@ -48,6 +48,7 @@ COMMANDS = {
     "tact-arm-bench": ["tact-arm-bench --json"],
     "tact-pose-bench": ["tact-pose-bench --views 20 --json"],
     "tact-track-send": ["tact-track-send {t}/looks.jsonl --port 39999 --speed 100 --json"],
+    "tact-mcap": ["tact-mcap {t}/run.tactlog {t}/run.mcap --json"],
     "tact-condense": [f"tact-condense {ROOT}/tests/data/scenes/plain.toml {BOX} --out {{t}}/map --json"],
     "tact-fit": [f"tact-fit {LIVER} --relaxation {{t}}/hold.csv --json",
                  f"tact-fit {LIVER} --set varies_by_place=false --data {{t}}/press.csv --law hex_sheet,compliance --json",
@@ -91,10 +92,12 @@ def told_by(build, command, folder):
     return json.loads(done.stdout)
 
 
-def prepare(folder):
-    """Inputs of the programs: looks of a tracker, a press and a hold of a bench."""
+def prepare(build, folder):
+    """Inputs of the programs: looks of a tracker, a log, a press and a hold of a bench."""
     looks = (SCENES / "maintenance.observations.jsonl").read_text().splitlines()[:20]
     (folder / "looks.jsonl").write_text("\n".join(looks) + "\n")
+    subprocess.run([str(build / "tactd"), str(LIVER), "--free-run", "--ticks", "50", "--no-telemetry", "--no-black-box",
+                    "--record", str(folder / "run.tactlog")], stdout=subprocess.DEVNULL, check=True, timeout=60)
     (folder / "press.csv").write_text("depth_m,force_N\n0,0\n0.001,0.05\n0.002,0.14\n0.003,0.26\n0.004,0.4\n0.005,0.56\n")
     (folder / "hold.csv").write_text("time_s,force_N\n0,1\n0.5,0.9\n1,0.83\n2,0.75\n4,0.66\n8,0.61\n16,0.6\n")
 
@@ -173,7 +176,7 @@ def blind(name, document, schema):
 
 def documents(build, folder):
     """(format, document or the words of a failure) of every run and every file."""
-    prepare(folder)
+    prepare(build, folder)
     for name, commands in COMMANDS.items():
         for command in commands:
             try:
