@@ -50,7 +50,7 @@ BUILD_PACKAGES=(g++ cmake ninja-build ca-certificates libfmt-dev libcli11-dev
 LIGHT_TOOL_PACKAGES=(gnuplot-nox libkainjow-mustache-dev rt-tests=cyclictest stress-ng=stress-ng)
 TOOL_PACKAGES=("${LIGHT_TOOL_PACKAGES[@]}" gmsh calculix-ccx libmetis-dev libbullet-dev libbenchmark-dev)
 # What the tests link or call besides.
-TEST_PACKAGES=(libgtest-dev python3-jsonschema python3-numpy python3-matplotlib protobuf-compiler=protoc strace systemd=systemd-analyze)
+TEST_PACKAGES=(libgtest-dev libopenigtlink-dev python3-jsonschema python3-numpy python3-matplotlib protobuf-compiler=protoc strace systemd=systemd-analyze)
 # What the virtual bench needs on this side (tests/rig).
 RIG_PACKAGES=(qemu-system-x86=qemu-system-x86_64 cpio kmod zstd xz-utils mmdebstrap make g++
   linux-headers-rt-amd64 linux-source-6.1)

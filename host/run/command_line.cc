@@ -20,6 +20,26 @@ std::string default_page() {
   return (model::io::program_folder() / "page").string();
 }
 
+void add_igtl(CLI::App& app, igtl::IgtlOptions& options, CLI::Option* registration) {
+  CLI::Option* open = app.get_option("--open");
+  CLI::Option* port =
+      app.add_option(
+             "--igtl", options.port,
+             "TCP port for OpenIGTLink (3D Slicer takes 18944), off without it: pose, force "
+             "and status out, trackers' poses in; 0 takes any free one (host/igtl/README.md)")
+          ->check(model::io::within(0, 65535))
+          ->excludes(open)
+          ->excludes(registration);
+  app.add_option("--igtl-bind", options.bind_address, "IP address for --igtl; there is no password")
+      ->capture_default_str()
+      ->needs(port);
+  app.add_option("--igtl-from", options.from,
+                 "ADDRESS:PORT of an OpenIGTLink server of trackers, such as PLUS; its poses move "
+                 "the operator's figure")
+      ->excludes(open)
+      ->excludes(registration);
+}
+
 void add_page(CLI::App& app, Options& options) {
   app.add_option("--port", options.viewer.port, "port of the page; 0 takes any free one")
       ->capture_default_str()
@@ -61,6 +81,7 @@ void add_operator(CLI::App& app, Options& options) {
       ->capture_default_str()
       ->check(model::io::within(6, 200))
       ->needs(registration);
+  add_igtl(app, options.igtl, registration);
   app.add_flag("--figure", options.figure,
                "show the operator without a tracker, too: the arm that holds the tool");
   app.add_option("--height", options.height_m,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "host/igtl/igtl_link.h"
 #include "host/server/viewer_server.h"
 
 namespace tact::host::run {
@@ -17,6 +18,7 @@ struct Options {
   std::string open;           // recording to replay instead of tactd
   std::string export_csv;     // with open: write this table and leave
   std::string tracking;       // description of the operator's tracker
+  igtl::IgtlOptions igtl;     // OpenIGTLink; none is asked for by default
   bool registration = false;  // with tracking: find the tracker's place and leave
   std::size_t poses = 12;     // for it
   bool figure = false;        // show the operator, without a tracker too

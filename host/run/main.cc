@@ -12,12 +12,12 @@
 
 #include "host/record/recording_csv.h"
 #include "host/run/command_line.h"
+#include "host/run/operator_inputs.h"
 #include "host/run/register_tracker.h"
 #include "host/run/telemetry_client.h"
 #include "host/server/operator_figure.h"
 #include "host/server/playback.h"
 #include "host/server/viewer_server.h"
-#include "host/tracking/operator_tracking.h"
 #include "model/io/file_writer.h"
 #include "model/io/program_end.h"
 #include "model/result.h"
@@ -149,8 +149,7 @@ model::Result<model::io::Trust> trust_of(const Options& options) {
 }
 
 /// What tactd tells goes to the page and into the recording, with the operator of that moment.
-TelemetryEvents show_and_record(server::LiveView& view, Recorder& recorder,
-                                std::optional<tracking::OperatorTracking>& tracking,
+TelemetryEvents show_and_record(server::LiveView& view, Recorder& recorder, OperatorInputs& inputs,
                                 const server::OperatorFigure& figure) {
   return {.hello =
               [&view, &recorder](const record::Hello& hello, record::MeshBytes mesh) {
@@ -159,16 +158,22 @@ TelemetryEvents show_and_record(server::LiveView& view, Recorder& recorder,
               },
           .frame =
               [&](const record::Frame& frame) {
-                const tracking::TrackedOperator* now = tracking ? &tracking->now() : nullptr;
+                const tracking::TrackedOperator* now = inputs.now();
+                inputs.add(frame);
                 view.add(frame, now);
                 recorder.add(frame, now, figure.figure());
               },
           .lost =
-              [&view](const std::string& reason) {
+              [&view, &inputs](const std::string& reason) {
                 if (!reason.empty()) warn(reason);
                 view.lose(reason);
+                inputs.lose();
               },
-          .silent = warn_of_silence};
+          .silent =
+              [&inputs](double silence_s) {
+                warn_of_silence(silence_s);
+                if (silence_s > 0.0) inputs.lose();
+              }};
 }
 
 int show_live(const Options& options) {
@@ -180,16 +185,12 @@ int show_live(const Options& options) {
   server::OperatorFigure figure(options.height_m);  // outlives the view
   server::LiveView view;                            // outlives the sessions, which live in io
   boost::asio::io_context io(1);
-  std::optional<tracking::OperatorTracking> tracking;
-  if (!options.tracking.empty()) {
-    tracking.emplace(io, warn);
-    if (const std::optional<model::Error> error = tracking->open(options.tracking))
-      return fail(error->sentence);
-    if (const auto& shoulder_m = tracking->setup().shoulder_m) figure.put_shoulder_at(*shoulder_m);
-  }
-  if (options.figure || tracking) view.accompany(&figure);
-  Recorder recorder(options.record, tracking.has_value());
-  TelemetryClient client(io, options.socket, show_and_record(view, recorder, tracking, figure),
+  OperatorInputs inputs(io, warn);
+  if (const std::optional<model::Error> error = inputs.open(options)) return fail(error->sentence);
+  if (const auto shoulder_m = inputs.shoulder_m()) figure.put_shoulder_at(*shoulder_m);
+  if (options.figure || inputs.is_there()) view.accompany(&figure);
+  Recorder recorder(options.record, inputs.is_there());
+  TelemetryClient client(io, options.socket, show_and_record(view, recorder, inputs, figure),
                          *trust);
   server::ViewerServer server(
       io, view,
@@ -197,9 +198,10 @@ int show_live(const Options& options) {
         client.move_hand(position_m, grip_ratio);
       },
       warn);
-  const int status = serve(options, io, server, [&client, &tracking] {
+  const int status = serve(options, io, server, [&client, &inputs] {
     client.start();
-    if (tracking) tracking->start();
+    inputs.start();
+    if (const auto port = inputs.igtl_port()) warn(fmt::format("OpenIGTLink on port {}", *port));
   });
   recorder.close();
   return status == kGood && recorder.failed() ? kCheckFailed : status;

@@ -54,7 +54,8 @@ ROOMS = {
     "host/figure": ["host/pose", "host/tracking"],
     "host/record": ["model", "model/io", *OPERATOR, "firmware/telemetry"],
     "host/server": ["model", "model/io", *OPERATOR, "host/record"],
-    "host/run": ["model", "model/io", *OPERATOR, "host/record", "host/server", "hal/sim"],
+    "host/igtl": ["model", "host/pose", "host/tracking", "host/record"],
+    "host/run": ["model", "model/io", *OPERATOR, "host/record", "host/igtl", "host/server", "hal/sim"],
 }
 # A tool measures every room above; of the other tools it may include these.
 TOOLS = {
@@ -70,7 +71,7 @@ TOOLS = {
 }
 # Where another room is known by these headers alone.
 SINGLE_HEADERS = {
-    **{(f"host/{room}", "model"): {"result.h"} for room in ("tracking", "record", "server", "run")},
+    **{(f"host/{room}", "model"): {"result.h"} for room in ("tracking", "record", "igtl", "server", "run")},
     ("host/record", "firmware/telemetry"): {"telemetry_record.h", "recording_format.h"},
     ("host/run", "hal/sim"): {"hand_target.h"},
 }

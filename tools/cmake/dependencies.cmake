@@ -33,5 +33,7 @@ if(TACT_LAB)
 endif()
 if(BUILD_TESTING)
   find_package(GTest REQUIRED)
+  find_library(OPENIGTLINK OpenIGTLink)  # a peer of tests; without it those are left out
+  find_path(OPENIGTLINK_INCLUDE_DIR igtlClientSocket.h PATH_SUFFIXES openigtlink)
   include(GoogleTest)
 endif()

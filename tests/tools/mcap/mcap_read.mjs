@@ -7,7 +7,7 @@ import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { fileURLToPath } from "node:url";
 
-const from_page = createRequire(fileURLToPath(new URL("../../host/web/package.json", import.meta.url)));
+const from_page = createRequire(fileURLToPath(new URL("../../../host/web/package.json", import.meta.url)));
 const { McapIndexedReader, McapStreamReader } = from_page("@mcap/core");
 const { parse } = from_page("@foxglove/rosmsg");
 const { MessageReader } = from_page("@foxglove/rosmsg2-serialization");

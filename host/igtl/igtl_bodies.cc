@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/igtl/igtl_bodies.h"
+
+#include <cctype>
+#include <string>
+
+#include "host/tracking/tracking_setup.h"
+
+namespace tact::host::igtl {
+namespace {
+
+using tracking::BodyRole;
+using tracking::Observation;
+using tracking::TrackedOperator;
+
+/// Up to the "To" before a capital letter.
+std::string_view own_name(std::string_view device) {
+  for (std::size_t at = 1; at + 2 < device.size(); ++at)
+    if (device.substr(at, 2) == "To" && std::isupper(static_cast<unsigned char>(device[at + 2])))
+      return device.substr(0, at);
+  return device;
+}
+
+std::string letters_of(std::string_view name) {
+  std::string out;
+  for (const char c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)))
+      out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
+/// The numbers of a pose in place of a camera's points, so that the same ones again are seen.
+Observation look_of(const pose::Pose& pose, double time_s, std::uint64_t sequence) {
+  const Eigen::Vector3d& p = pose.position_m;
+  const Eigen::Quaterniond& q = pose.rotation;
+  Observation out{.time_s = time_s, .sequence = sequence, .camera = {}, .body = {}, .points = {}};
+  out.points = {{.id = 0, .pixel_px = {p.x(), p.y()}},
+                {.id = 1, .pixel_px = {p.z(), q.w()}},
+                {.id = 2, .pixel_px = {q.x(), q.y()}},
+                {.id = 3, .pixel_px = {q.z(), 0.0}}};
+  return out;
+}
+
+}  // namespace
+
+std::optional<BodyRole> role_of(std::string_view device) {
+  const std::string name = letters_of(own_name(device));
+  for (std::size_t i = 0; i < tracking::kBodyRoles; ++i) {
+    const auto role = static_cast<BodyRole>(i);
+    if (name == letters_of(tracking::name_of(role))) return role;
+  }
+  return std::nullopt;
+}
+
+void IgtlBodies::take(BodyRole role, const pose::Pose& pose, double sent_s, double now_s) {
+  std::optional<Body>& body = bodies_[static_cast<std::size_t>(role)];
+  if (!body) body.emplace();
+  const bool stands = sent_s == body->sent_s && pose.position_m != body->position_m;
+  body->has_clock = body->has_clock && sent_s > 0.0 && !stands;
+  body->sent_s = sent_s;
+  body->position_m = pose.position_m;
+  const double time_s = body->has_clock ? sent_s : now_s;
+  if (!body->tracker.admit(0, look_of(pose, time_s, ++body->looks), now_s)) return;
+  body->tracker.take({.status = pose::PoseStatus::kOk, .pose = pose}, time_s, now_s);
+}
+
+TrackedOperator IgtlBodies::at(double now_s) const {
+  TrackedOperator out{.time_s = now_s};
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    if (bodies_[i]) out.bodies[i] = bodies_[i]->tracker.at(now_s);
+  return out;
+}
+
+TrackedOperator joined(const TrackedOperator& first, const TrackedOperator& second) {
+  TrackedOperator out = first;
+  for (std::size_t i = 0; i < out.bodies.size(); ++i)
+    if (out.bodies[i].state == tracking::BodyState::kAbsent) out.bodies[i] = second.bodies[i];
+  return out;
+}
+
+}  // namespace tact::host::igtl

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/igtl/igtl_frame.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace tact::host::igtl {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+std::string frame_messages(const record::Frame& frame, double time_s) {
+  const auto& [w, x, y, z] = frame.tool_orientation;
+  const auto rotation = pose::rotation_from(std::array<double, 4>{w, x, y, z});
+  const Vector3d position_m(frame.tool_position_m[0], frame.tool_position_m[1],
+                            frame.tool_position_m[2]);
+  const double force_N[3] = {frame.force_N[0], frame.force_N[1], frame.force_N[2]};
+  const Vector3d force(force_N[0], force_N[1], force_N[2]);
+  if (!rotation || !position_m.allFinite() || !force.allFinite()) return {};
+  const bool has_way = force.norm() > 0.0;
+  const pose::Pose arrow{.rotation = has_way ? Quaterniond::FromTwoVectors(Vector3d::UnitZ(), force)
+                                             : Quaterniond::Identity(),
+                         .position_m = position_m};
+  return transform("ToolToDevice", time_s, {.rotation = *rotation, .position_m = position_m}) +
+         transform("ForceToDevice", time_s, arrow, std::max(force.norm(), kLeastScale)) +
+         force_sensor("Force", time_s, force_N);
+}
+
+Status status_of(const record::Frame& frame) {
+  using State = decltype(frame.state);
+  Status out{.code = 1, .subcode = frame.fault, .name = {}, .words = name_of(frame.state)};
+  if (frame.state == State::kOff) out.code = 13;
+  if (frame.state == State::kStopped) out.code = 15;
+  if (frame.fault != 0) out.name = fmt::format("fault {}", frame.fault);
+  return out;
+}
+
+Status lost_status() {
+  return {.code = 7, .subcode = 0, .name = "no tactd", .words = "no news from tactd"};
+}
+
+}  // namespace tact::host::igtl

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// igtl_link.h - OpenIGTLink in the viewer: who comes sees pose, force and status; trackers' poses
+// move the operator's figure.
+//
+// It listens (3D Slicer comes), and goes to a server of trackers (PLUS) as its client, and comes
+// back until it is there. To that server it sends nothing. One thread, the viewer's. No force
+// depends on it.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "host/igtl/igtl_bodies.h"
+#include "host/igtl/igtl_frame.h"
+#include "host/igtl/igtl_session.h"
+#include "model/result.h"
+
+namespace tact::host::igtl {
+
+struct IgtlOptions {
+  std::optional<std::uint16_t> port{};  // 0: any free one; none: nobody may come
+  std::string bind_address = "127.0.0.1";
+  std::string from{};  // ADDRESS:PORT of a server of trackers; empty: none
+
+  bool is_asked_for() const { return port.has_value() || !from.empty(); }
+};
+
+inline constexpr std::size_t kMostClients = 8;
+inline constexpr std::chrono::milliseconds kFrameGap{30}, kStatusGap{1000};
+
+class IgtlLink {
+ public:
+  using Say = std::function<void(const std::string& sentence)>;
+
+  IgtlLink(boost::asio::io_context& io, Say say);
+  ~IgtlLink();
+  IgtlLink(const IgtlLink&) = delete;
+  IgtlLink& operator=(const IgtlLink&) = delete;
+
+  /// Listens. Error: what is wrong and what to do.
+  std::optional<model::Error> open(const IgtlOptions& options);
+  void start();
+  void stop();
+
+  /// To who has come, at most once in kFrameGap; the status when it changes and once in kStatusGap.
+  void add(const record::Frame& frame);
+  /// tactd is gone, or silent.
+  void lose();
+
+  /// The bodies that trackers have sent, as they are now.
+  tracking::TrackedOperator now() const;
+
+  std::uint16_t port() const { return port_; }
+  std::size_t clients() const { return clients_.size(); }
+  std::uint64_t refused() const { return refused_; }  // messages
+
+ private:
+  using Session = std::shared_ptr<IgtlSession>;
+  std::optional<model::Error> listen(const IgtlOptions& options);
+  void accept_next();
+  void welcome(boost::asio::ip::tcp::socket socket);
+  void go_to_server();
+  void come_back();
+  SessionEvents events_of(std::function<void(const std::string& reason)> ended);
+  void take(const MessageHead& head, const pose::Pose& pose);
+  void refuse(const std::string& sentence);
+  void tell(const Status& status, const std::string& before);
+  double now_s() const;
+
+  boost::asio::io_context& io_;
+  boost::asio::ip::tcp::acceptor acceptor_;
+  boost::asio::steady_timer pause_, retry_;
+  Say say_;
+  std::chrono::steady_clock::time_point began_, sent_, told_;
+  std::optional<boost::asio::ip::tcp::endpoint> server_;
+  std::string server_name_;
+  std::unique_ptr<boost::asio::ip::tcp::socket> calling_;
+  Session tracker_;
+  std::set<Session> clients_;
+  IgtlBodies bodies_;
+  Status last_ = lost_status();
+  std::uint64_t refused_ = 0;
+  bool told_strange_ = false, told_away_ = false;
+  std::uint16_t port_ = 0;
+};
+
+}  // namespace tact::host::igtl

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/igtl/igtl_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/write.hpp>
+#include <utility>
+
+namespace tact::host::igtl {
+
+using boost::asio::ip::tcp;
+
+IgtlSession::IgtlSession(tcp::socket socket, SessionEvents events)
+    : socket_(std::move(socket)), patience_(socket_.get_executor()), events_(std::move(events)) {}
+
+void IgtlSession::start() {
+  Error ignored;
+  socket_.set_option(tcp::no_delay(true), ignored);
+  socket_.set_option(boost::asio::socket_base::keep_alive(true), ignored);
+  read_head_next();
+}
+
+void IgtlSession::stop() {
+  Error ignored;
+  ended_ = true;
+  patience_.cancel(ignored);
+  socket_.close(ignored);
+}
+
+void IgtlSession::end(const std::string& reason) {
+  if (std::exchange(ended_, true)) return;
+  stop();
+  if (events_.ended) events_.ended(reason);
+}
+
+void IgtlSession::end(const Error& wrong) {
+  const bool went = wrong == boost::asio::error::eof ||
+                    wrong == boost::asio::error::connection_reset ||
+                    wrong == boost::asio::error::operation_aborted;
+  end(went ? std::string() : wrong.message());
+}
+
+void IgtlSession::read_head_next() {
+  boost::asio::async_read(
+      socket_, boost::asio::buffer(bytes_.data(), kHeaderBytes),
+      [self = shared_from_this()](Error wrong, std::size_t bytes) {
+        if (wrong || self->ended_) return self->end(wrong);
+        auto head = read_head({self->bytes_.data(), bytes});
+        if (!head) return self->end(head.error().sentence);
+        self->head_ = std::move(*head);
+        const std::uint64_t body = self->head_.body_bytes;
+        const bool is_used = self->head_.type == "TRANSFORM" || self->head_.type == "POSITION";
+        if (body > (is_used ? kMostBody : kLargestBody))
+          return self->end(fmt::format("it announces a {} of {} bytes; nothing has so many",
+                                       self->head_.type, body));
+        if (is_used) return self->read_body(static_cast<std::size_t>(body));
+        self->read_away(body);
+      });
+}
+
+void IgtlSession::read_body(std::size_t bytes) {
+  boost::asio::async_read(socket_, boost::asio::buffer(bytes_.data(), bytes),
+                          [self = shared_from_this()](Error wrong, std::size_t got) {
+                            if (wrong || self->ended_) return self->end(wrong);
+                            self->take_body({self->bytes_.data(), got});
+                            if (!self->ended_) self->read_head_next();
+                          });
+}
+
+void IgtlSession::read_away(std::uint64_t bytes) {
+  if (bytes == 0) return read_head_next();
+  const auto part = static_cast<std::size_t>(std::min<std::uint64_t>(bytes, bytes_.size()));
+  socket_.async_read_some(boost::asio::buffer(bytes_.data(), part),
+                          [self = shared_from_this(), bytes](Error wrong, std::size_t got) {
+                            if (wrong || self->ended_) return self->end(wrong);
+                            self->read_away(bytes - got);
+                          });
+}
+
+void IgtlSession::take_body(std::string_view body) {
+  const auto refuse = [this](const std::string& why) {
+    if (events_.refused)
+      events_.refused(fmt::format("{} of \"{}\": {}", head_.type, head_.device, why));
+  };
+  if (crc64(body) != head_.crc) return refuse("its checksum is not that of its bytes");
+  const auto content = content_of(head_, body);
+  if (!content) return refuse(content.error().sentence);
+  if (!content->is_tracked) return;  // its sender does not see it
+  const auto pose = pose_of(head_.type, content->bytes);
+  if (!pose) return refuse(pose.error().sentence);
+  if (events_.pose) events_.pose(head_, *pose);
+}
+
+void IgtlSession::send(const std::string& batch) {
+  if (ended_) return;
+  waiting_ = batch;
+  if (on_its_way_.empty()) write_next();
+}
+
+void IgtlSession::write_next() {
+  on_its_way_ = std::exchange(waiting_, {});
+  patience_.expires_after(kPatience);
+  patience_.async_wait([self = shared_from_this()](Error cancelled) {
+    if (!cancelled && !self->on_its_way_.empty())
+      self->end(fmt::format("it has taken nothing for {} s", kPatience.count()));
+  });
+  boost::asio::async_write(socket_, boost::asio::buffer(on_its_way_),
+                           [self = shared_from_this()](Error wrong, std::size_t) {
+                             if (wrong || self->ended_) return self->end(wrong);
+                             self->on_its_way_.clear();
+                             Error ignored;
+                             self->patience_.cancel(ignored);
+                             if (!self->waiting_.empty()) self->write_next();
+                           });
+}
+
+}  // namespace tact::host::igtl

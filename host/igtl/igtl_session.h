@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// igtl_session.h - one OpenIGTLink connection: messages in, judged, and messages out, never waiting.
+//
+// In: a message that is not asked for is read away unkept, up to kLargestBody. One that is and is
+// damaged is left out; the connection goes on. Bytes that are no header, or a length that nothing
+// has, end it. Out: while one batch is on its way the next waits, and a newer one takes its place,
+// so who reads slowly sees fewer and holds no memory. Who takes nothing for kPatience is let go.
+#pragma once
+
+#include <array>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "host/igtl/igtl_wire.h"
+
+namespace tact::host::igtl {
+
+inline constexpr std::size_t kMostBody = 4096;             // of a message that is used
+inline constexpr std::uint64_t kLargestBody = 256u << 20;  // of one that is read away, an image
+inline constexpr std::chrono::seconds kPatience{10};
+
+struct SessionEvents {
+  std::function<void(const MessageHead& head, const pose::Pose& pose)> pose;
+  /// What was left out; the connection goes on.
+  std::function<void(const std::string& sentence)> refused;
+  /// Once. Empty: the other side went.
+  std::function<void(const std::string& reason)> ended;
+};
+
+class IgtlSession : public std::enable_shared_from_this<IgtlSession> {
+ public:
+  IgtlSession(boost::asio::ip::tcp::socket socket, SessionEvents events);
+
+  void start();
+  void send(const std::string& batch);
+  void stop();
+
+ private:
+  using Error = boost::system::error_code;
+  void read_head_next();
+  void read_body(std::size_t bytes);
+  void read_away(std::uint64_t bytes);
+  void take_body(std::string_view body);
+  void write_next();
+  void end(const std::string& reason);
+  /// Of a read that failed: the other side went, or why.
+  void end(const Error& wrong);
+
+  boost::asio::ip::tcp::socket socket_;
+  boost::asio::steady_timer patience_;
+  SessionEvents events_;
+  MessageHead head_;
+  std::array<char, kMostBody> bytes_{};
+  std::string on_its_way_, waiting_;
+  bool ended_ = false;
+};
+
+}  // namespace tact::host::igtl

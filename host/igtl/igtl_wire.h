@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// igtl_wire.h - the bytes of OpenIGTLink: header, checksum, and the messages that tact reads and
+// writes.
+//
+//     header: u16 version, char[12] type, char[20] device, u64 time, u64 bytes of the body, u64 CRC
+//
+// Big-endian. Time is 32 bits of seconds and 32 of fractions, UTC; 0: none. The checksum of the body
+// is CRC-64 (polynomial 0x42F0E1EBA9EA3693, from 0, not reflected). Lengths are mm on the wire, m
+// here. A body of version 2 has an extended header before its content, and metadata behind it.
+// Source: OpenIGTLink protocol, version 3, http://openigtlink.org. Pure functions.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "host/pose/coordinate_chain.h"
+#include "model/result.h"
+
+namespace tact::host::igtl {
+
+inline constexpr std::size_t kHeaderBytes = 58;
+inline constexpr std::size_t kTypeBytes = 12, kDeviceBytes = 20;
+
+struct MessageHead {
+  std::uint16_t version = 0;
+  std::string type, device;
+  double time_s = 0.0;  // UTC; 0: none
+  std::uint64_t body_bytes = 0, crc = 0;
+};
+
+/// Of exactly kHeaderBytes. Error: these are not the bytes of a header.
+model::Result<MessageHead> read_head(std::string_view bytes);
+std::uint64_t crc64(std::string_view bytes);
+
+/// What a message of a version has between its extended header and its metadata.
+struct Content {
+  std::string_view bytes;
+  bool is_tracked = true;  // false: its metadata TransformStatus is there, and not OK
+};
+/// Error: its parts do not fit into it.
+model::Result<Content> content_of(const MessageHead& head, std::string_view body);
+
+/// Of a TRANSFORM or a POSITION with its orientation. Error: another size, a number that is not
+/// finite, or no rotation.
+model::Result<pose::Pose> pose_of(std::string_view type, std::string_view content);
+
+/// Whole messages, version 1. `time_s` UTC.
+std::string transform(std::string_view device, double time_s, const pose::Pose& pose,
+                      double scale = 1.0);
+/// Newtons.
+std::string force_sensor(std::string_view device, double time_s, const double (&force_N)[3]);
+struct Status {
+  std::uint16_t code = 0;  // 1 good; the table in README.md
+  std::int64_t subcode = 0;
+  std::string name;  // at most 20 bytes
+  std::string words;
+
+  friend bool operator==(const Status&, const Status&) = default;
+};
+std::string status(std::string_view device, double time_s, const Status& status);
+
+}  // namespace tact::host::igtl
