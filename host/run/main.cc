@@ -216,6 +216,7 @@ int show_recording(const Options& options, record::ReadResult read) {
   server::ViewerServer server(io, view, nullptr, warn);
   server::Playback playback(io, view, std::move(read.recording),
                             std::filesystem::path(options.open).filename().string());
+  server.let_steer([&playback](const server::ReplayWish& wish) { playback.steer(wish); });
   const int status = serve(options, io, server, [&playback] { playback.start(); });
   return status == kGood && !read.damage.empty() ? kCheckFailed : status;
 }

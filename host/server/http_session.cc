@@ -129,7 +129,8 @@ void HttpSession::upgrade(const Request& request) {
     return write(sorry(http::status::forbidden, "403: this WebSocket is for tact's own page only"),
                  request);
   }
-  std::make_shared<LiveSession>(std::move(stream_), std::move(seat_), site_.view, site_.move_hand)
+  std::make_shared<LiveSession>(std::move(stream_), std::move(seat_), site_.view, site_.move_hand,
+                                site_.steer)
       ->start(request);
 }
 

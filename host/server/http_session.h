@@ -28,6 +28,7 @@ struct Site {
   PageFiles page;
   Access access;
   MoveHand move_hand;
+  Steer steer;                                 // of a replay alone
   std::chrono::milliseconds request_patience;  // for one whole request, from the last answer on
 };
 

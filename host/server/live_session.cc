@@ -44,8 +44,12 @@ std::optional<HandWish> parse_hand(const std::string& text) {
 }
 
 LiveSession::LiveSession(beast::tcp_stream stream, Seat seat, LiveView& view,
-                         const MoveHand& move_hand)
-    : socket_(std::move(stream)), seat_(std::move(seat)), view_(view), move_hand_(move_hand) {}
+                         const MoveHand& move_hand, const Steer& steer)
+    : socket_(std::move(stream)),
+      seat_(std::move(seat)),
+      view_(view),
+      move_hand_(move_hand),
+      steer_(steer) {}
 
 LiveSession::~LiveSession() { view_.unsubscribe(*this); }
 
@@ -111,6 +115,8 @@ void LiveSession::take(const std::string& text) {
     seen_frames_ = std::clamp(seen, seen_frames_, sent_frames_);
     write_next();
   }
+  if (steer_)
+    if (const std::optional<ReplayWish> wish = parse_replay(text)) steer_(*wish);
   if (!move_hand_) return;
   if (const std::optional<HandWish> hand = parse_hand(text))
     move_hand_(hand->position_m, hand->grip_ratio);

@@ -5,7 +5,8 @@
 // that follows. The page answers {"seen": n} with the number of frames it took so far; at most
 // kMaxUnseen may be on the way, and of those that wait only the newest is kept. So a slow browser
 // sees fewer frames, never older ones, and holds up nobody. A page may send
-// {"hand":{"x_m":..,"y_m":..,"z_m":..,"grip_ratio":..}} for a simulated device.
+// {"hand":{"x_m":..,"y_m":..,"z_m":..,"grip_ratio":..}} for a simulated device, and to a replay what
+// replay_wish.h says. Nothing else is heard: no page arms, stops or resets.
 #pragma once
 
 #include <boost/beast/core/flat_buffer.hpp>
@@ -19,6 +20,7 @@
 #include <string>
 
 #include "host/server/live_view.h"
+#include "host/server/replay_wish.h"
 #include "host/server/seat.h"
 
 namespace tact::host::server {
@@ -39,8 +41,8 @@ class LiveSession final : public LiveListener, public std::enable_shared_from_th
   using Request = boost::beast::http::request<boost::beast::http::string_body>;
   static constexpr std::uint64_t kMaxUnseen = 4;
 
-  LiveSession(boost::beast::tcp_stream stream, Seat seat, LiveView& view,
-              const MoveHand& move_hand);
+  LiveSession(boost::beast::tcp_stream stream, Seat seat, LiveView& view, const MoveHand& move_hand,
+              const Steer& steer);
   ~LiveSession();
 
   void start(const Request& upgrade);
@@ -58,6 +60,7 @@ class LiveSession final : public LiveListener, public std::enable_shared_from_th
   boost::beast::flat_buffer in_;
   LiveView& view_;
   const MoveHand& move_hand_;
+  const Steer& steer_;
   Text next_status_, next_frame_, next_beside_, writing_;
   Text due_beside_;  // of the frame that was written last
   std::uint64_t sent_frames_ = 0, seen_frames_ = 0;

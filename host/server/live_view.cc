@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "host/server/frame_json.h"
 #include "model/io/json.h"
@@ -27,7 +28,7 @@ const char* name_of(Link link) {
 
 }  // namespace
 
-LiveView::LiveView() { tell(Link::kWaiting, {}); }
+LiveView::LiveView() { tell(); }
 
 void LiveView::begin(const record::Hello& hello, record::MeshBytes mesh, Link link,
                      const std::string& detail) {
@@ -37,7 +38,9 @@ void LiveView::begin(const record::Hello& hello, record::MeshBytes mesh, Link li
   if (companion_)
     figure_ = std::make_shared<const std::string>(companion_->begin(hello, *mesh_).dump());
   recent_.restart(static_cast<double>(hello.frame_rate_Hz));
-  tell(link, detail);
+  link_ = link;
+  detail_ = detail;
+  tell();
 }
 
 void LiveView::add(const record::Frame& frame, const tracking::TrackedOperator* tracked,
@@ -48,6 +51,7 @@ void LiveView::add(const record::Frame& frame, const tracking::TrackedOperator* 
     shown = &companion_->figure();
   }
   recent_.add(frame, tracked, shown);
+  newest_beside_ = beside;
   if (listeners_.empty()) return;
   const Text text = std::make_shared<const std::string>(frame_json(frame, hello_));
   for (LiveListener* listener : listeners_) listener->on_frame(text, beside);
@@ -56,21 +60,39 @@ void LiveView::add(const record::Frame& frame, const tracking::TrackedOperator* 
 void LiveView::rewind() { recent_.restart(static_cast<double>(hello_.frame_rate_Hz)); }
 
 void LiveView::lose(const std::string& reason) {
-  tell(has_scene() ? Link::kLost : Link::kWaiting, reason);
+  link_ = has_scene() ? Link::kLost : Link::kWaiting;
+  detail_ = reason;
+  tell();
 }
 
 void LiveView::subscribe(LiveListener& listener) {
   listeners_.insert(&listener);
   listener.on_status(status_);
+  if (link_ == Link::kReplay && !recent_.frames().empty())
+    listener.on_frame(
+        std::make_shared<const std::string>(frame_json(recent_.frames().back()->frame, hello_)),
+        newest_beside_);
+  if (const auto then = std::exchange(watched_, nullptr)) then();
 }
 
-void LiveView::tell(Link link, const std::string& detail) {
+void LiveView::when_watched(std::function<void()> then) {
+  if (!listeners_.empty()) return then();
+  watched_ = std::move(then);
+}
+
+void LiveView::tell_replay(nlohmann::json replay) {
+  replay_ = std::make_shared<const std::string>(replay.dump());
+  tell();
+}
+
+void LiveView::tell() {
   nlohmann::json status{{"kind", "status"},
-                        {"link", name_of(link)},
-                        {"detail", detail},
+                        {"link", name_of(link_)},
+                        {"detail", detail_},
                         {"scene_number", scene_number_},
                         {"kept_s", record::RecentFrames::kKeep_s}};
   if (figure_) status["figure"] = *model::io::parse_json(*figure_, "figure");
+  if (replay_) status["replay"] = *model::io::parse_json(*replay_, "replay");
   status_ = std::make_shared<const std::string>(
       status.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   for (LiveListener* listener : listeners_) listener->on_status(status_);

@@ -4,6 +4,7 @@
 // One thread. Telemetry or a replay writes; sessions listen. Texts are made once and shared.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <set>
@@ -53,10 +54,15 @@ class LiveView {
   /// `tracked` is the operator at this frame, if there is a tracker; `shown` as in Companion.
   void add(const record::Frame& frame, const tracking::TrackedOperator* tracked = nullptr,
            const figure::FigurePose* shown = nullptr);
-  void rewind();  // a replay starts again: forget the frames
+  void rewind();  // a replay starts elsewhere: forget the frames
+  /// Of a replay: the status's "replay".
+  void tell_replay(nlohmann::json replay);
+  /// Once, as soon as somebody looks.
+  void when_watched(std::function<void()> then);
   void lose(const std::string& reason);
 
   // For sessions:
+  /// Tells it the status, and of a replay, which may rest, the frame that is shown.
   void subscribe(LiveListener& listener);
   void unsubscribe(LiveListener& listener) { listeners_.erase(&listener); }
   const Text& status() const { return status_; }
@@ -69,14 +75,19 @@ class LiveView {
   record::Snapshot recent(std::uint64_t first_tick, std::uint64_t last_tick) const;
 
  private:
-  void tell(Link link, const std::string& detail);
+  void tell();
 
   record::Hello hello_;
   std::shared_ptr<const record::MeshBytes> mesh_;
   std::uint64_t scene_number_ = 0;  // grows with every Hello: the page loads the scene again
+  Link link_ = Link::kWaiting;
+  std::string detail_;  // of the link
+  Text replay_;         // how it plays, if it is one
   Text status_;
+  std::function<void()> watched_;
   Companion* companion_ = nullptr;
-  Text figure_;  // of the companion, for this scene
+  Text figure_;         // of the companion, for this scene
+  Text newest_beside_;  // of the newest frame
   record::RecentFrames recent_;
   std::set<LiveListener*> listeners_;
 };

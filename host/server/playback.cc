@@ -4,48 +4,126 @@
 #include <algorithm>
 #include <boost/system/error_code.hpp>
 #include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
 
 namespace tact::host::server {
 namespace {
 
-constexpr std::chrono::nanoseconds kPause{1'000'000'000};  // before it starts again
-constexpr std::int64_t kLongestGap_ns = 5'000'000'000;     // a gap in the file is not waited out
+using Clock = std::chrono::steady_clock;
+
+constexpr std::int64_t kPause_ns = 1'000'000'000;            // before it starts again
+constexpr std::int64_t kLongestGap_ns = 5'000'000'000;       // a gap in the file is not waited out
+constexpr std::int64_t kLongest_ns = std::int64_t{1} << 60;  // a clock beyond is a file's nonsense
+constexpr std::chrono::seconds kMostLate{1};  // after a PC that slept: go on from now
+constexpr std::size_t kMostStops = 32;        // told
+
+double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 }  // namespace
 
 Playback::Playback(boost::asio::io_context& io, LiveView& view, record::Recording recording,
                    std::string name)
-    : timer_(io), view_(view), recording_(std::move(recording)), name_(std::move(name)) {}
+    : timer_(io), view_(view), recording_(std::move(recording)), name_(std::move(name)) {
+  const auto believed_ns = [](const record::Frame& frame) {
+    return std::clamp(frame.time_ns, -kLongest_ns, kLongest_ns);
+  };
+  std::int64_t latest_ns = 0;
+  for (const record::Frame& frame : recording_.frames) {
+    latest_ns = std::max(latest_ns, believed_ns(frame) - believed_ns(recording_.frames.front()));
+    at_ns_.push_back(latest_ns);
+  }
+}
 
 void Playback::start() {
   view_.begin(recording_.hello, recording_.mesh, Link::kReplay, name_);
-  timer_.expires_after(std::chrono::nanoseconds(0));
-  play_next();
+  tell();
+  show(0);
+  view_.when_watched([this] {
+    due_ = Clock::now();
+    if (playing_) schedule();
+  });
 }
 
 void Playback::stop() {
-  boost::system::error_code ignored;
-  timer_.cancel(ignored);
+  ++turn_;
+  timer_.cancel();
 }
 
-void Playback::play_next() {
-  timer_.async_wait([this](boost::system::error_code wrong) {
-    if (wrong) return;
-    if (next_ == recording_.frames.size()) {
-      next_ = 0;
-      view_.rewind();
-    }
-    const record::Frame& frame = recording_.frames[next_];
-    view_.add(frame, recording_.operator_at(next_), recording_.figure_at(next_));
-    ++next_;
-    std::chrono::nanoseconds wait = kPause;
-    if (next_ < recording_.frames.size()) {
-      const std::int64_t gap_ns = recording_.frames[next_].time_ns - frame.time_ns;
-      wait = std::chrono::nanoseconds(std::clamp<std::int64_t>(gap_ns, 0, kLongestGap_ns));
-    }
-    timer_.expires_at(timer_.expiry() + wait);  // absolute: small delays do not add up
-    play_next();
+void Playback::tell() {
+  using firmware::loop::State;
+  nlohmann::json stops = nlohmann::json::array();
+  for (std::size_t i = 0; i < at_ns_.size() && stops.size() < kMostStops; ++i) {
+    const record::Frame& frame = recording_.frames[i];
+    const bool was_stopped = i > 0 && recording_.frames[i - 1].state == State::kStopped;
+    if (frame.state == State::kStopped && !was_stopped)
+      stops.push_back({{"at_s", seconds(at_ns_[i])}, {"fault", frame.fault}});
+  }
+  view_.tell_replay({{"start_s", seconds(recording_.frames.front().time_ns)},
+                     {"length_s", seconds(at_ns_.back())},
+                     {"frames", at_ns_.size()},
+                     {"playing", playing_},
+                     {"speed_ratio", speed_ratio_},
+                     {"repeats", repeats_},
+                     {"stops", std::move(stops)}});
+}
+
+void Playback::show(std::size_t frame) {
+  shown_ = frame;
+  view_.add(recording_.frames[frame], recording_.operator_at(frame), recording_.figure_at(frame));
+}
+
+/// What the view keeps begins here.
+void Playback::jump_to(std::size_t frame) {
+  if (frame != shown_ + 1) view_.rewind();
+  show(frame);
+}
+
+std::size_t Playback::frame_at(double at_s) const {
+  const auto found = std::ranges::lower_bound(at_ns_, std::llround(at_s * 1e9));
+  return std::min(static_cast<std::size_t>(found - at_ns_.begin()), at_ns_.size() - 1);
+}
+
+void Playback::schedule() {
+  if (is_last() && !repeats_) {
+    playing_ = false;
+    return tell();
+  }
+  const std::int64_t gap_ns =
+      is_last() ? kPause_ns : std::min(at_ns_[shown_ + 1] - at_ns_[shown_], kLongestGap_ns);
+  // absolute: small delays do not add up
+  due_ = std::max(due_, Clock::now() - kMostLate) +
+         std::chrono::nanoseconds(std::llround(static_cast<double>(gap_ns) / speed_ratio_));
+  timer_.expires_at(due_);
+  timer_.async_wait([this, turn = ++turn_](boost::system::error_code wrong) {
+    if (!wrong) play_next(turn);
   });
+}
+
+void Playback::play_next(std::uint64_t turn) {
+  if (turn != turn_) return;
+  jump_to(is_last() ? 0 : shown_ + 1);
+  schedule();
+}
+
+void Playback::steer(const ReplayWish& wish) {
+  stop();
+  speed_ratio_ = wish.speed_ratio.value_or(speed_ratio_);
+  repeats_ = wish.repeats.value_or(repeats_);
+  if (wish.at_s) jump_to(frame_at(*wish.at_s));
+  if (wish.step_frames) {
+    playing_ = false;
+    const std::int64_t wanted = static_cast<std::int64_t>(shown_) + *wish.step_frames;
+    const auto last = static_cast<std::int64_t>(at_ns_.size()) - 1;
+    jump_to(static_cast<std::size_t>(std::clamp<std::int64_t>(wanted, 0, last)));
+  }
+  if (wish.playing) {
+    if (*wish.playing && !playing_ && is_last() && !wish.at_s) jump_to(0);
+    playing_ = *wish.playing;
+  }
+  due_ = Clock::now();
+  if (playing_) schedule();
+  tell();
 }
 
 }  // namespace tact::host::server

@@ -38,6 +38,7 @@ ViewerServer::ViewerServer(boost::asio::io_context& io, LiveView& view, MoveHand
             .page = {},
             .access = {},
             .move_hand = std::move(move_hand),
+            .steer = {},
             .request_patience = {}},
       warn_(std::move(warn)),
       seat_(std::make_shared<char>()) {}

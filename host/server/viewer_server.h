@@ -34,6 +34,8 @@ class ViewerServer {
 
   /// Loads the page and listens. Error: what is wrong and what to do.
   std::optional<model::Error> open(const ViewerOptions& options);
+  /// Of a replay: what pages ask of it. Before start.
+  void let_steer(Steer steer) { site_.steer = std::move(steer); }
   void start() { accept_next(); }
   void stop();
 

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/server/replay_wish.h"
+
+#include <cmath>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+
+#include "model/io/json.h"
+
+namespace tact::host::server {
+namespace {
+
+constexpr double kLongest_s = 1e7;     // beyond any recording
+constexpr double kFastest_ratio = 20;  // and the slowest is its inverse
+constexpr std::int64_t kMostFrames = 1'000'000;
+
+bool take(const nlohmann::json& value, std::optional<bool>& into) {
+  if (!value.is_boolean()) return false;
+  into = value.get<bool>();
+  return true;
+}
+
+bool take(const nlohmann::json& value, double low, double high, std::optional<double>& into) {
+  if (!value.is_number()) return false;
+  into = value.get<double>();
+  return *into >= low && *into <= high;  // false for what is not finite
+}
+
+bool take(const nlohmann::json& value, std::optional<int>& into) {
+  if (!value.is_number_integer()) return false;
+  const double frames = value.get<double>();
+  if (std::abs(frames) > static_cast<double>(kMostFrames)) return false;
+  into = static_cast<int>(frames);
+  return true;
+}
+
+}  // namespace
+
+std::optional<ReplayWish> parse_replay(const std::string& text) {
+  const auto message = model::io::parse_json(text, "request");
+  if (!message || !message->is_object()) return std::nullopt;
+  const auto replay = message->find("replay");
+  if (replay == message->end() || !replay->is_object()) return std::nullopt;
+  ReplayWish wish;
+  for (const auto& [key, value] : replay->items()) {
+    const bool good = key == "playing"       ? take(value, wish.playing)
+                      : key == "at_s"        ? take(value, 0.0, kLongest_s, wish.at_s)
+                      : key == "step_frames" ? take(value, wish.step_frames)
+                      : key == "speed_ratio"
+                          ? take(value, 1.0 / kFastest_ratio, kFastest_ratio, wish.speed_ratio)
+                      : key == "repeats" ? take(value, wish.repeats)
+                                         : false;
+    if (!good) return std::nullopt;
+  }
+  return wish;
+}
+
+}  // namespace tact::host::server
