@@ -141,8 +141,7 @@ void HttpSession::download(const Request& request, std::string_view path, std::s
   set_common(header);
   header.set(http::field::content_type,
              kind == DownloadKind::kCsv ? "text/csv; charset=utf-8" : "application/octet-stream");
-  header.set(http::field::content_disposition,
-             fmt::format("attachment; filename=\"{}\"", path.substr(1)));
+  header.set(http::field::content_disposition, "attachment");  // the page knows a better name
   header.keep_alive(false);
   header.chunked(true);
   record::Snapshot snapshot = site_.view.recent(tick_value(query, "from_tick", 0),

@@ -2,7 +2,7 @@
 // connection.ts - the WebSocket to tact-view: comes back by itself, answers every frame with a count
 // so that the server never sends more than this page can draw.
 
-import { split_meshes, type FigureFrame, type Frame, type Mesh, type Scene, type Status, type Vec } from "./protocol";
+import { split_meshes, type FigureFrame, type Frame, type Mesh, type ReplayWish, type Scene, type Status, type Vec } from "./protocol";
 
 export interface ConnectionEvents {
   status(status: Status): void;
@@ -37,6 +37,11 @@ export class Connection {
   move_hand(position_m: Vec, grip_ratio: number): void {
     const [x_m, y_m, z_m] = position_m;
     this.send({ hand: { x_m, y_m, z_m, grip_ratio } });
+  }
+
+  /** To a tact-view that replays; another one hears nothing of it. */
+  steer(replay: ReplayWish): void {
+    this.send({ replay });
   }
 
   private async open(): Promise<void> {

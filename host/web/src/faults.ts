@@ -28,6 +28,16 @@ export interface State {
   words: string;
 }
 
-export function describe_state(number: number): State {
-  return table.states[number] ?? { name: `state ${number}`, words: "unknown" };
+const kStopped = 3;
+
+/** In the state "stopped", no fault means that somebody asked for it. */
+export function describe_state(number: number, fault: number): State {
+  const state = table.states[number] ?? { name: `state ${number}`, words: "unknown" };
+  return number === kStopped && fault === 0 ? { ...state, words: "force is off: stopped on request" } : state;
+}
+
+/** The same of a recording: nothing of it is true now. */
+export function describe_past_state(number: number, fault: number): State {
+  const { name, words } = describe_state(number, fault);
+  return { name: `was ${name}`, words: words.replace(/\bis\b/g, "was").replace(/^no force/, "there was $&") };
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // hand_control.ts - the mouse as the hand of a simulated device: drag moves it in the picture's
-// plane, the wheel into the picture, G closes the grip. Only a wish is sent; forces stay in tactd.
+// plane, the wheel or two fingers into the picture, G closes the grip. Only a wish is sent; forces stay in tactd.
 // The wish is repeated until a few seconds after the last move, or as long as the mode is on.
 
 import * as THREE from "three";
@@ -18,7 +18,7 @@ export class HandControl {
   mode = false; // the mouse moves the hand without Shift
   private grip_ratio = 0;
   private tool_m: Vec | null = null;
-  private dragging = false;
+  private readonly fingers = new Map<number, [number, number]>(); // or the mouse; where they are, px
   private sent_ms = -Infinity;
   private touched_ms = -Infinity;
   private waiting = false;
@@ -42,14 +42,19 @@ export class HandControl {
   frame(frame: Frame, now_ms: number): void {
     this.tool_m = frame.tool_m;
     if (!this.target) this.grip_ratio = frame.grip_ratio ?? 0;
-    const holds = this.mode || this.dragging || now_ms - this.touched_ms < kForget_ms;
+    const holds = this.mode || this.fingers.size > 0 || now_ms - this.touched_ms < kForget_ms;
     if (!holds || !this.allowed()) this.target = null;
     else if (now_ms - this.sent_ms > kRepeat_ms) this.send_now();
   }
 
   toggle_grip(): void {
+    this.grip(this.grip_ratio > 0.5 ? 0 : 1);
+  }
+
+  /** 0 open, 1 closed. */
+  grip(ratio: number): void {
     if (!this.allowed()) return;
-    this.grip_ratio = this.grip_ratio > 0.5 ? 0 : 1;
+    this.grip_ratio = ratio;
     this.move(new THREE.Vector3());
   }
 
@@ -61,12 +66,15 @@ export class HandControl {
     if (event.button !== 0 || !this.wanted(event)) return;
     event.stopImmediatePropagation();
     this.canvas.setPointerCapture(event.pointerId);
-    this.dragging = true;
+    this.fingers.set(event.pointerId, [event.clientX, event.clientY]);
   }
 
   private drag(event: PointerEvent): void {
-    if (!this.dragging) return;
+    const from = this.fingers.get(event.pointerId);
+    if (!from) return;
     event.stopImmediatePropagation();
+    const right_px = event.clientX - from[0], up_px = from[1] - event.clientY;
+    this.fingers.set(event.pointerId, [event.clientX, event.clientY]);
     const camera = this.stage.camera;
     const at = this.target ?? (this.tool_m ? new THREE.Vector3(...this.tool_m) : null);
     if (!at) return;
@@ -74,17 +82,18 @@ export class HandControl {
     const distance_m = at.clone().sub(camera.position).dot(camera.getWorldDirection(new THREE.Vector3()));
     const per_pixel_m =
       (2 * distance_m * Math.tan((camera.fov * Math.PI) / 360)) / this.canvas.clientHeight;
+    if (this.fingers.size > 1) { // each of them tells its half
+      const into = camera.getWorldDirection(new THREE.Vector3());
+      return this.move(into.multiplyScalar((up_px * per_pixel_m) / this.fingers.size));
+    }
     const right = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 0);
     const up = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 1);
-    this.move(
-      right.multiplyScalar(event.movementX * per_pixel_m).addScaledVector(up, -event.movementY * per_pixel_m),
-    );
+    this.move(right.multiplyScalar(right_px * per_pixel_m).addScaledVector(up, up_px * per_pixel_m));
   }
 
   private end(event: PointerEvent): void {
-    if (!this.dragging) return;
+    if (!this.fingers.delete(event.pointerId)) return;
     event.stopImmediatePropagation();
-    this.dragging = false;
   }
 
   private wheel(event: WheelEvent): void {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // hud.ts - the panels: everything that is said in words and numbers.
 
-import { describe, describe_state } from "./faults";
+import { describe, describe_past_state, describe_state } from "./faults";
 import { Pace } from "./pace";
 import { length_of, type FigureFrame, type Frame, type Scene, type Status } from "./protocol";
 
@@ -34,9 +34,14 @@ export class Hud {
   private status: Status | null = null;
   private refused = false;
   private silent = false;
+  private scene_known: Scene | null = null;
+
+  private get is_replay(): boolean {
+    return this.status?.link === "replay";
+  }
 
   scene(scene: Scene): void {
-    document.title = `tact: ${scene.scene}`;
+    this.scene_known = scene;
     this.force_limit_N = scene.force_limit_N;
     this.continuous_force_N = scene.continuous_force_N;
     this.energy_budget_J = scene.energy_budget_J;
@@ -45,15 +50,25 @@ export class Hud {
     write("device", `${scene.device} · ${Math.round(scene.rate_Hz)} Hz`);
     write("limits", scene.limits_checksum);
     write("force_of", `of ${Number(scene.force_limit_N.toPrecision(3))} N`);
-    const banner = by_id("banner");
-    banner.hidden = !scene.non_rt;
-    banner.textContent = "no hard real time on this PC: force capped at 25 %";
+    this.tell_kind();
+  }
+
+  /** What is said of the whole run: it goes on, or it is a recording. */
+  private tell_kind(): void {
+    by_id("now").setAttribute("aria-label", this.is_replay ? "In the recording" : "Now");
+    const scene = this.scene_known;
+    if (!scene) return;
+    document.title = `tact: ${scene.scene}${this.is_replay ? " (replay)" : ""}`;
+    by_id("banner").hidden = !scene.non_rt;
+    write("banner", this.is_replay ? "recorded without hard real time: force capped at 25 %"
+      : "no hard real time on this PC: force capped at 25 %");
   }
 
   /** No status: tact-view is gone, or it `refused` this page. */
   link(status: Status | null, refused = false): void {
     this.status = status;
     this.refused = refused;
+    this.tell_kind();
     const detail = status?.detail ? ` (${status.detail})` : "";
     if (!status && refused) {
       pill("link", "not allowed", "bad");
@@ -77,6 +92,8 @@ export class Hud {
   }
 
   frame(frame: Frame, now_ms: number): void {
+    const over = this.limit >= 100 && frame.fault === 0 && frame.state !== 3;
+    if (over) this.limit = 0; // reset, or a replay went back
     if (frame.limit > 0 || frame.fault > 0) {
       this.limit = frame.fault > 0 ? frame.fault : frame.limit;
       this.limit_seen_ms = now_ms;
@@ -90,8 +107,9 @@ export class Hud {
     if (!frame) return;
     const force_N = length_of(frame.force_N);
     const share = Math.min(1, force_N / (this.force_limit_N || 1));
-    const state = describe_state(frame.state);
-    pill("state", state.name, ["plain", "wait", "good", "bad"][frame.state] ?? "bad");
+    const state = (this.is_replay ? describe_past_state : describe_state)(frame.state, frame.fault);
+    const tones = ["plain", "wait", "good", frame.fault > 0 ? "bad" : "wait"];
+    pill("state", state.name, this.is_replay ? "plain" : tones[frame.state] ?? "bad");
     write("state_words", state.words);
     write("force", force_N.toFixed(2));
     const bar = by_id("force_bar");
@@ -129,7 +147,7 @@ export class Hud {
     const chip = by_id("tracking");
     chip.hidden = !figure || figure.trouble === 0;
     if (figure && !chip.hidden) {
-      const subject = figure.trouble < 3 ? "tracking: " : "";
+      const subject = (this.is_replay ? "recorded " : "") + (figure.trouble < 3 ? "tracking: " : "");
       pill("tracking", subject + figure.words, figure.trouble === 2 ? "bad" : "wait");
     }
   }
@@ -150,7 +168,7 @@ export class Hud {
     }
     const words = describe(this.limit);
     box.dataset.tone = latched ? "bad" : "wait";
-    write("fault_name", `${words.name} (${this.limit})`);
+    write("fault_name", `${this.is_replay ? "in the recording: " : ""}${words.name} (${this.limit})`);
     write("fault_cause", words.cause);
     write("fault_cure", words.cure);
   }

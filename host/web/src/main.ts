@@ -3,17 +3,20 @@
 
 import "./style.css";
 import { Connection } from "./connection";
-import { eyes_of, grip_error_m } from "./figure";
-import { FigureView } from "./figure_view";
+import { describe_past_state, describe_state } from "./faults";
+import { dated_name, save } from "./file_names";
 import { HandControl } from "./hand_control";
 import { by_id, Hud } from "./hud";
+import { bind_keys } from "./keys";
 import { split_link } from "./link";
 import { News } from "./news";
+import { Operator } from "./operator";
 import { OrganView } from "./organ_view";
 import { Plots } from "./plots";
-import type { FigureFrame, Frame, Mesh, Scene, Status, Vec } from "./protocol";
+import { length_of, type FigureFrame, type Frame, type Mesh, type Scene, type Status, type Vec } from "./protocol";
 import { Recorder } from "./recorder";
 import { Stage } from "./stage";
+import { Timeline } from "./timeline";
 import { ToolView } from "./tool_view";
 
 /** Takes the token out of the address bar: no bookmark, history or screenshot keeps it. */
@@ -43,14 +46,11 @@ let paused = false;
 let wireframe = false;
 let most_ever_m = 0;
 let silence_s = 0;
-let figure: FigureView | null = null;
-let newest_figure: FigureFrame | null = null;
-let shown_figure: FigureFrame | null = null;
-let figure_on = true;
-let eyes_on = false;
-let view_chosen = false; // by a key or the mouse: from then on it changes for nobody else
+let first_drawn_ms: number | null = null; // the first picture of tissue, since 1970
 
 const stage = new Stage(canvas, draw);
+const operator = new Operator(stage, hud);
+const timeline = new Timeline((wish) => connection.steer(wish));
 const hand = new HandControl(canvas, stage, may_move_hand, (position_m, grip_ratio) =>
   connection.move_hand(position_m, grip_ratio),
 );
@@ -58,7 +58,11 @@ const connection = new Connection({
   status: (now) => {
     status = now;
     hud.link(now);
-    take_skeleton(now);
+    operator.status(now);
+    timeline.status(now.replay ?? null);
+    plots.zero_s = now.replay?.start_s ?? 0;
+    tell_hand();
+    if (now.replay) paused = false;
     if (now.link === "lost") {
       hud.tracking(null);
       recorder.stop();
@@ -69,6 +73,8 @@ const connection = new Connection({
   figure: take_figure,
   server_gone: (refused) => {
     status = null;
+    timeline.status(null);
+    tell_hand();
     hud.link(null, refused);
     hud.tracking(null); // what a chip said last is not known any more
     recorder.stop();
@@ -81,6 +87,11 @@ window.addEventListener("hashchange", () => {
 
 function may_move_hand(): boolean {
   return scene?.simulated === true && status?.link === "live";
+}
+
+/** What cannot be done is not offered. */
+function tell_hand(): void {
+  document.body.classList.toggle("can_move", may_move_hand());
 }
 
 function take_scene(next: Scene, organ_mesh: Mesh, tool_mesh: Mesh): void {
@@ -100,69 +111,24 @@ function take_scene(next: Scene, organ_mesh: Mesh, tool_mesh: Mesh): void {
   stage.set_home(organ.bounds, floor_m - 0.004);
   hud.scene(next);
   plots.spheres = next.spheres.length;
-  by_id("hand").hidden = !next.simulated;
-}
-
-/** The figure is there if tact-view tells its skeleton; every scene has its own. */
-function take_skeleton(now: Status): void {
-  if (figure) {
-    stage.scene.remove(figure.object);
-    figure.dispose();
-  }
-  const was = figure !== null;
-  figure = now.figure ? new FigureView(now.figure) : null;
-  if (!figure) {
-    newest_figure = shown_figure = null;
-    hud.tracking(null);
-  }
-  newest_figure ??= shown_figure;
-  if (figure) stage.scene.add(figure.object);
-  if (was !== (figure !== null)) show_figure(figure_on);
-  by_id("figure").hidden = by_id("eyes").hidden = !figure;
-}
-
-function show_figure(on: boolean): void {
-  figure_on = on;
-  if (eyes_on) see_with_eyes(false);
-  stage.set_operator(figure !== null && on);
-  hud.pressed("figure", on);
-}
-
-/** With a tracked head by itself, until a person chooses another view; when asked, with any head. */
-function see_with_eyes(on: boolean): void {
-  eyes_on = on && figure !== null;
-  if (!eyes_on) stage.look_through(null);
-  hud.pressed("eyes", eyes_on);
-}
-
-function draw_figure(): void {
-  if (!figure || !status?.figure) return;
-  if (newest_figure) {
-    shown_figure = newest_figure;
-    newest_figure = null;
-    figure.show(shown_figure);
-    hud.tracking(status.link === "lost" ? null : shown_figure);
-  }
-  figure.object.visible = figure_on && shown_figure !== null;
-  if (!shown_figure) return;
-  if (shown_figure.head_tracked && figure_on && !view_chosen && !eyes_on) see_with_eyes(true);
-  if (eyes_on) stage.look_through(eyes_of(shown_figure, status.figure));
-  figure.clear_view(shown_figure, stage.camera.position);
+  recorder.scene = next.scene;
+  tell_hand();
 }
 
 function take_frame(frame: Frame): void {
   recorder.frame(frame);
   news.frame(performance.now());
+  timeline.frame(frame.time_s);
   if (paused) return;
-  newest = figure ? waiting ?? newest : frame;
-  waiting = figure ? frame : null;
+  newest = operator.there ? waiting ?? newest : frame;
+  waiting = operator.there ? frame : null;
   waiting_since_ms = performance.now();
   plots.add(frame);
 }
 
 function take_figure(next: FigureFrame): void {
   if (paused) return;
-  newest_figure = next;
+  operator.take(next);
   if (waiting?.tick !== next.tick) return;
   newest = waiting;
   waiting = null;
@@ -174,6 +140,7 @@ function draw(now_ms: number): void {
     waiting = null;
   }
   if (organ && tool && newest) {
+    first_drawn_ms ??= performance.timeOrigin + performance.now();
     shown = newest;
     newest = null;
     organ.show(shown.sites, shown.patch);
@@ -187,13 +154,30 @@ function draw(now_ms: number): void {
   silence_s = status?.link === "replay" ? 0 : silent_s; // a recording may have gaps
   hud.silence(silence_s);
   if (silence_s > 0) tool?.hide_force();
-  draw_figure();
+  operator.draw(status !== null && status.link !== "lost");
+  timeline.draw();
   tool?.show_hand_target(hand.target ? (hand.target.toArray() as Vec) : null);
   if (!paused) plots.draw(now_ms);
 }
 
+/** As a file, with what it is of. */
+async function save_picture(): Promise<void> {
+  if (!shown || !scene) return;
+  const { name, words } = (status?.link === "replay" ? describe_past_state : describe_state)(shown.state, shown.fault);
+  const from = status?.link === "replay" ? `, ${status.detail}` : "";
+  const blob = await stage.picture([
+    `${scene.scene}${from} · ${scene.law} · ${scene.device}`,
+    `${(shown.time_s - plots.zero_s).toFixed(2)} s · force ${length_of(shown.force_N).toFixed(2)} N · ${name}: ${words}`,
+  ]);
+  if (!blob) return;
+  const url = URL.createObjectURL(blob);
+  save(url, dated_name(scene.scene, "png"));
+  setTimeout(() => URL.revokeObjectURL(url), 60_000);
+}
+
 const actions: Record<string, () => unknown> = {
   p: () => {
+    if (status?.link === "replay") return timeline.toggle();
     paused = !paused;
     hud.pressed("pause", paused);
   },
@@ -210,16 +194,19 @@ const actions: Record<string, () => unknown> = {
     hud.pressed("wire", wireframe);
   },
   v: () => {
-    view_chosen = true;
-    see_with_eyes(false);
+    operator.view_chosen = true;
+    operator.see_with_eyes(false);
     stage.go_home();
   },
-  f: () => figure && show_figure(!figure_on),
+  f: () => operator.there && operator.show(!operator.on),
   e: () => {
-    view_chosen = true;
-    see_with_eyes(!eyes_on);
+    operator.view_chosen = true;
+    operator.see_with_eyes(!operator.eyes_on);
   },
   g: () => hand.toggle_grip(),
+  grip: () => hand.grip(1),
+  "let go": () => hand.grip(0),
+  s: () => void save_picture(),
   h: () => {
     const keys = by_id("keys");
     keys.hidden = !keys.hidden;
@@ -228,24 +215,9 @@ const actions: Record<string, () => unknown> = {
   },
 };
 
-window.addEventListener("keydown", (event) => {
-  if (event.ctrlKey || event.metaKey || event.altKey || event.repeat) return;
-  if (event.key === " ") event.preventDefault();
-  actions[event.key === " " ? "p" : event.key.toLowerCase()]?.();
-});
-const buttons: Record<string, string> = {
-  pause: "p", hand: "m", record: "r", csv: "c", wire: "w", home: "v", figure: "f", eyes: "e",
-  help: "h",
-};
-for (const [id, key] of Object.entries(buttons)) {
-  by_id(id).addEventListener("click", (event) => {
-    event.preventDefault();
-    by_id(id).blur(); // so that the space bar does not press it again
-    actions[key]();
-  });
-}
+bind_keys((key, shift) => timeline.key(key, shift), actions);
 
-stage.controls.addEventListener("start", () => (view_chosen = true));
+stage.controls.addEventListener("start", () => (operator.view_chosen = true));
 
 /** Read-only numbers for tests and for curious people in the console. */
 const numbers = {
@@ -265,27 +237,18 @@ const numbers = {
   get tick() { return shown?.tick ?? 0; },
   get state() { return shown?.state ?? 0; },
   get paused() { return paused; },
+  get first_drawn_ms() { return first_drawn_ms; },
+  get time_s() { return shown?.time_s ?? 0; },
   get silence_s() { return silence_s; },
   get wireframe() { return wireframe; },
-  get figure_on() { return figure !== null && figure_on; },
-  get eyes_on() { return eyes_on; },
-  /** Joints by name, m. */
-  get figure_m() {
-    const names = status?.figure?.joints;
-    if (!names || !shown_figure) return null;
-    const at = shown_figure.joint_m;
-    return Object.fromEntries(names.map((name, i) => [name, at.slice(3 * i, 3 * i + 3)]));
-  },
-  /** The same from what is drawn; null while the figure is not visible. */
-  get drawn_figure_m() {
-    const names = status?.figure?.joints, drawn_m = figure?.drawn_m;
-    if (!names || !drawn_m) return null;
-    return Object.fromEntries([...drawn_m].map(([index, at_m]) => [names[index], at_m]));
-  },
+  get figure_on() { return operator.there && operator.on; },
+  get eyes_on() { return operator.eyes_on; },
+  get figure_m() { return operator.joints_m; },
+  get drawn_figure_m() { return operator.drawn_m; },
   /** Where a place in the tool's own axes is drawn. */
   drawn_tool_m(place_m: Vec) { return tool?.drawn_m(place_m) ?? null; },
-  get grip_error_m() { return shown_figure && status?.figure ? grip_error_m(shown_figure, status.figure) : null; },
-  get tracking_words() { return shown_figure?.words ?? ""; },
+  get grip_error_m() { return operator.grip_error_m; },
+  get tracking_words() { return operator.shown?.words ?? ""; },
   get largest_figure_bytes() { return connection.largest_figure_bytes; },
   get camera_m() { return stage.camera.position.toArray(); },
 };

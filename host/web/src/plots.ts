@@ -1,96 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // plots.ts - depth, force and time left before the deadline over the last ten seconds.
 
-import uPlot from "uplot";
-import "uplot/dist/uPlot.min.css";
+import { largest, Plot } from "./plot";
 import { length_of, type Frame } from "./protocol";
+import { robust_range, whole_range } from "./scale";
 
 const kSpan_s = 10;
 const kRedraw_ms = 80; // plots need fewer pictures than the tissue
-const kHeight_px = 92;
-
-interface Line {
-  label: string;
-  color: string;
-  fill?: string;
-  dash?: number[];
-}
-
-class Plot {
-  private readonly plot: uPlot;
-  private readonly value: HTMLElement;
-
-  constructor(
-    private readonly parent: HTMLElement,
-    title: string,
-    private readonly lines: readonly Line[],
-    least_range: number,
-    private readonly words: (latest: readonly number[]) => string,
-  ) {
-    const caption = document.createElement("figcaption");
-    const name = document.createElement("span");
-    name.textContent = title;
-    this.value = document.createElement("b");
-    caption.append(name, this.value);
-    parent.append(caption);
-    const axis = {
-      stroke: "#7d8b99",
-      font: "11px system-ui, sans-serif",
-      grid: { stroke: "rgba(160,180,200,0.10)", width: 1 },
-      ticks: { show: false },
-    };
-    this.plot = new uPlot(
-      {
-        width: this.width(),
-        height: kHeight_px,
-        pxAlign: false,
-        legend: { show: false },
-        cursor: { show: false },
-        padding: [6, 4, 2, 0],
-        scales: {
-          x: { time: false },
-          y: { range: (_, low, high) => Plot.range(low, high, least_range) },
-        },
-        axes: [
-          { ...axis, show: false },
-          { ...axis, size: 38, gap: 4, space: 17 },
-        ],
-        series: [
-          {},
-          ...lines.map((line) => ({
-            label: line.label,
-            stroke: line.color,
-            fill: line.fill,
-            dash: line.dash,
-            width: 1.6,
-            points: { show: false },
-          })),
-        ],
-      },
-      [[], ...lines.map(() => [])] as uPlot.AlignedData,
-      parent,
-    );
-    new ResizeObserver(() => this.plot.setSize({ width: this.width(), height: kHeight_px })).observe(parent);
-  }
-
-  draw(times_s: number[], values: (number | null)[][]): void {
-    const now_s = times_s[times_s.length - 1] ?? 0;
-    this.plot.setData([times_s, ...values] as uPlot.AlignedData, false);
-    this.plot.setScale("x", { min: now_s - kSpan_s, max: now_s });
-    this.value.textContent = this.words(this.lines.map((_, i) => values[i][values[i].length - 1] ?? 0));
-  }
-
-  private width(): number {
-    return Math.max(120, this.parent.clientWidth - 20);
-  }
-
-  /** Zero stays in sight and noise is not blown up to full height. */
-  private static range(low: number | null, high: number | null, least: number): [number, number] {
-    const bottom = Math.min(0, low ?? 0);
-    const top = Math.max(bottom + least, high ?? 0);
-    return [bottom < 0 ? bottom * 1.1 : 0, top * 1.1];
-  }
-}
+const kLongestGap_s = 1; // more is a jump of a replay, or another run
+const kSites = ["#7fd1c7", "#e2907f", "#b9a3f0", "#d8c46a"];
 
 export class Plots {
   private times_s: number[] = [];
@@ -101,47 +19,39 @@ export class Plots {
   private readonly force: Plot;
   private readonly margin: Plot;
   private drawn_ms = 0;
-  /** Probe spheres in use; the lines of the others stay away. */
-  spheres = 0;
+  /** What the time axis calls zero: where a recording begins. */
+  zero_s = 0;
 
   constructor(byId: (id: string) => HTMLElement) {
-    const deepest = (values: readonly number[]): string =>
-      `${values.reduce((a, b) => (Math.abs(b) > Math.abs(a) ? b : a), 0).toFixed(1)} mm`;
-    const sites = ["#7fd1c7", "#e2907f", "#b9a3f0", "#d8c46a"];
-    this.depth = new Plot(
-      byId("plot_depth"),
-      "depth",
-      sites.map((color, i) => ({ label: `sphere ${i + 1}`, color })),
-      5,
-      deepest,
-    );
-    this.force = new Plot(
-      byId("plot_force"),
-      "force · asked by the law (dashed)",
-      [
-        { label: "asked", color: "#8c99a8", dash: [4, 4] },
+    this.depth = new Plot(byId("plot_depth"), {
+      title: "depth", unit: "mm", digits: 1, range: (values) => whole_range(values, 5), headline: largest,
+      lines: kSites.map((color, i) => ({ label: `sphere ${i + 1}`, color })),
+    });
+    this.force = new Plot(byId("plot_force"), {
+      title: "force", unit: "N", digits: 2, range: (values) => whole_range(values, 0.5),
+      headline: ([, given_N]) => given_N,
+      lines: [
+        { label: "asked by the law", color: "#8c99a8", dash: [4, 4] },
         { label: "given", color: "#f2b04e", fill: "rgba(242,176,78,0.12)" },
       ],
-      0.5,
-      (values) => `${values[1].toFixed(2)} N`,
-    );
-    this.margin = new Plot(
-      byId("plot_margin"),
-      "time left before the deadline",
-      [{ label: "margin", color: "#8fb8ff", fill: "rgba(143,184,255,0.12)" }],
-      50,
-      (values) => `${values[0].toFixed(0)} µs`,
-    );
+    });
+    this.margin = new Plot(byId("plot_margin"), {
+      title: "time left before the deadline", unit: "µs", digits: 0, range: (values) => robust_range(values, 50),
+      headline: largest,
+      lines: [{ label: "least", color: "#8fb8ff", fill: "rgba(143,184,255,0.12)" }],
+    });
+  }
+
+  /** Probe spheres in use; the lines of the others stay away. */
+  set spheres(count: number) {
+    this.depth.use(count);
   }
 
   add(frame: Frame): void {
-    const last_s = this.times_s[this.times_s.length - 1] ?? -Infinity;
-    if (frame.time_s < last_s) this.clear(); // another run, or a replay from its start
+    const last_s = this.times_s[this.times_s.length - 1] ?? frame.time_s;
+    if (frame.time_s < last_s || frame.time_s > last_s + kLongestGap_s) this.clear();
     this.times_s.push(frame.time_s);
-    this.depth_mm.forEach((line, i) => {
-      const depth_m = frame.sites.find((site) => site.site === i)?.depth_m ?? 0;
-      line.push(i < this.spheres ? depth_m * 1e3 : null);
-    });
+    this.depth_mm.forEach((line, i) => line.push((frame.sites.find((site) => site.site === i)?.depth_m ?? 0) * 1e3));
     this.force_N[0].push(length_of(frame.wanted_N));
     this.force_N[1].push(length_of(frame.force_N));
     this.margin_us[0].push(frame.margin_us ?? 0);
@@ -151,9 +61,10 @@ export class Plots {
   draw(now_ms: number): void {
     if (now_ms - this.drawn_ms < kRedraw_ms || this.times_s.length === 0) return;
     this.drawn_ms = now_ms;
-    this.depth.draw(this.times_s, this.depth_mm);
-    this.force.draw(this.times_s, this.force_N);
-    this.margin.draw(this.times_s, this.margin_us);
+    const times_s = this.times_s.map((time_s) => time_s - this.zero_s);
+    this.depth.draw(times_s, this.depth_mm, kSpan_s);
+    this.force.draw(times_s, this.force_N, kSpan_s);
+    this.margin.draw(times_s, this.margin_us, kSpan_s);
   }
 
   private all(): (number | null)[][] {

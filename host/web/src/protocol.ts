@@ -112,6 +112,26 @@ export interface FigureFrame {
 
 export type LinkName = "waiting" | "live" | "lost" | "replay";
 
+/** How a recording is played. */
+export interface Replay {
+  start_s: number; // time_s of its first frame
+  length_s: number;
+  frames: number;
+  playing: boolean;
+  speed_ratio: number;
+  repeats: boolean;
+  stops: { at_s: number; fault: number }[]; // since the start; fault 0: stopped on request
+}
+
+/** What a page may ask of it; each may be missing. */
+export interface ReplayWish {
+  playing?: boolean;
+  at_s?: number; // since the start
+  step_frames?: number;
+  speed_ratio?: number;
+  repeats?: boolean;
+}
+
 export interface Status {
   kind: "status";
   link: LinkName;
@@ -119,6 +139,7 @@ export interface Status {
   scene_number: number;
   kept_s: number;
   figure?: Skeleton;
+  replay?: Replay;
 }
 
 export interface Mesh {

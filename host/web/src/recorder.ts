@@ -2,19 +2,14 @@
 // recorder.ts - the record button. tact-view keeps the last minutes anyway; recording marks a part
 // of them by its ticks and saves it as a file that tact-view can open.
 
+import { dated_name, save } from "./file_names";
 import { by_id } from "./hud";
 import type { Frame } from "./protocol";
-
-function save(path: string, name: string): void {
-  const link = document.createElement("a");
-  link.href = path;
-  link.download = name;
-  link.click();
-}
 
 export class Recorder {
   private first: Frame | null = null;
   private last: Frame | null = null;
+  scene = ""; // its name
 
   get on(): boolean {
     return this.first !== null;
@@ -37,7 +32,7 @@ export class Recorder {
     if (this.first && this.last) {
       save(
         `recording.tact?from_tick=${this.first.tick}&to_tick=${this.last.tick}`,
-        `${document.title.replace(/[^a-z0-9]+/gi, "-")}.tact`,
+        dated_name(this.scene, "tact"),
       );
     }
     this.first = null;
@@ -47,6 +42,6 @@ export class Recorder {
   }
 
   save_table(): void {
-    save("recording.csv", "recording.csv");
+    save("recording.csv", dated_name(this.scene, "csv"));
   }
 }

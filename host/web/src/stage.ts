@@ -7,10 +7,12 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { follow_share, type Eyes } from "./figure";
 import { make_ground } from "./ground";
 import { kSteel, paint } from "./look";
+import { snapshot } from "./snapshot";
 
 const kSlow_fps = 40; // below this the picture gets coarser, because smooth matters more than sharp
 const kCoarsest = 0.6;
 const kSight_deg = 32;
+const kHome_aspect = 0.95; // in a narrower picture the first view is from farther off, and shows the same
 const kEyes_deg = 48; // a person sees more at once
 const kEyes_s = 0.15; // in which the eyes' camera goes two thirds of the way to the head
 
@@ -34,6 +36,7 @@ export class Stage {
   private home = new THREE.Sphere(new THREE.Vector3(), 0.1);
   private ground: THREE.Object3D | null = null;
   private with_operator = false;
+  private at_home = true; // nobody has turned the view yet
   private eyes: Eyes | null = null;
   private readonly looks_at = new THREE.Vector3();
   private drawn_ms = 0;
@@ -59,11 +62,12 @@ export class Stage {
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = true;
+    this.controls.addEventListener("start", () => (this.at_home = false));
     this.controls.minDistance = 0.04;
     this.controls.maxDistance = 4;
     this.go_home();
     this.resize();
-    window.addEventListener("resize", () => this.resize());
+    new ResizeObserver(() => this.resize()).observe(canvas);
     this.renderer.setAnimationLoop((now_ms) => {
       draw(now_ms);
       if (this.eyes) this.see_with(this.eyes, follow_share((now_ms - this.drawn_ms) / 1000, kEyes_s));
@@ -90,8 +94,16 @@ export class Stage {
     this.go_home();
   }
 
+  /** What is drawn now, with these lines under it. */
+  picture(lines: readonly string[]): Promise<Blob | null> {
+    this.renderer.render(this.scene, this.camera); // the browser forgets what it has shown
+    return snapshot(this.renderer.domElement, lines);
+  }
+
   go_home(): void {
     const r = this.home.radius;
+    const farther = Math.max(1, kHome_aspect / this.camera.aspect);
+    this.at_home = true;
     if (this.with_operator) {
       this.controls.target.copy(this.home.center).add(new THREE.Vector3(0.17, 0.0, 0.235));
       this.camera.position.copy(this.controls.target).add(new THREE.Vector3(-1.42, 0.95, 0.42));
@@ -99,6 +111,7 @@ export class Stage {
       this.controls.target.copy(this.home.center).add(new THREE.Vector3(0, 0, 0.22 * r));
       this.camera.position.copy(this.home.center).add(new THREE.Vector3(3.4 * r, 1.5 * r, 2.2 * r));
     }
+    this.camera.position.sub(this.controls.target).multiplyScalar(farther).add(this.controls.target);
     this.controls.update();
   }
 
@@ -131,9 +144,12 @@ export class Stage {
 
   private resize(): void {
     this.renderer.setPixelRatio(this.sharpness);
-    this.renderer.setSize(window.innerWidth, window.innerHeight, false);
-    this.camera.aspect = window.innerWidth / Math.max(1, window.innerHeight);
+    const { clientWidth, clientHeight } = this.renderer.domElement;
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.camera.aspect = clientWidth / Math.max(1, clientHeight);
     this.camera.updateProjectionMatrix();
+    if (this.at_home && !this.eyes) this.go_home();
+    this.renderer.render(this.scene, this.camera); // a resized canvas is empty
   }
 
   private count(now_ms: number): void {

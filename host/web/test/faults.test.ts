@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { describe, describe_state } from "../src/faults";
+import { describe, describe_past_state, describe_state } from "../src/faults";
 
 test("a number of tactd has a name, a cause and a cure", () => {
   const fault = describe(131);
@@ -18,7 +18,23 @@ test("a number of a newer tactd is shown as a number, with what to do", () => {
 });
 
 test("each state has tactd's name and words, and another number is shown as a number", () => {
-  assert.deepEqual([0, 1, 2, 3].map((n) => describe_state(n).name), ["off", "ready", "armed", "stopped"]);
-  for (const n of [0, 1, 2, 3]) assert.match(describe_state(n).words, /force/);
-  assert.equal(describe_state(9).name, "state 9");
+  assert.deepEqual([0, 1, 2, 3].map((n) => describe_state(n, 131).name), ["off", "ready", "armed", "stopped"]);
+  for (const n of [0, 1, 2, 3]) assert.match(describe_state(n, 131).words, /force/);
+  assert.equal(describe_state(9, 0).name, "state 9");
+});
+
+test("stopped on request is not stopped by a fault", () => {
+  assert.match(describe_state(3, 131).words, /after a fault/);
+  assert.doesNotMatch(describe_state(3, 0).words, /fault/);
+  assert.match(describe_state(3, 0).words, /on request/);
+});
+
+test("of a recording nothing is said as if it were so now", () => {
+  for (const n of [0, 1, 2, 3])
+    for (const fault of [0, 131]) {
+      const { name, words } = describe_past_state(n, fault);
+      assert.match(name, /^was /);
+      assert.doesNotMatch(words, /\bis\b/);
+      assert.match(words, /\bwas\b/);
+    }
 });

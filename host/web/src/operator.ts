@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// operator.ts - the operator in the picture: shown or hidden, seen from outside or with the own eyes.
+
+import { eyes_of, grip_error_m } from "./figure";
+import { FigureView } from "./figure_view";
+import { by_id, type Hud } from "./hud";
+import type { FigureFrame, Skeleton, Status, Vec } from "./protocol";
+import type { Stage } from "./stage";
+
+export class Operator {
+  on = true;
+  eyes_on = false;
+  view_chosen = false; // by a key or the mouse: from then on it changes for nobody else
+  shown: FigureFrame | null = null;
+  private newest: FigureFrame | null = null; // not drawn yet
+  private figure: FigureView | null = null;
+  private skeleton: Skeleton | null = null;
+  private known = ""; // what the figure was made of
+
+  constructor(private readonly stage: Stage, private readonly hud: Hud) {}
+
+  get there(): boolean {
+    return this.figure !== null;
+  }
+
+  /** The figure is there if tact-view tells its skeleton; every scene has its own. */
+  status(now: Status): void {
+    const made_of = now.figure ? `${now.scene_number} ${JSON.stringify(now.figure)}` : "";
+    if (made_of === this.known) return;
+    this.known = made_of;
+    const was = this.there;
+    if (this.figure) {
+      this.stage.scene.remove(this.figure.object);
+      this.figure.dispose();
+    }
+    this.skeleton = now.figure ?? null;
+    this.figure = now.figure ? new FigureView(now.figure) : null;
+    if (this.figure) {
+      this.stage.scene.add(this.figure.object);
+    } else {
+      this.newest = this.shown = null;
+      this.hud.tracking(null);
+    }
+    this.newest ??= this.shown;
+    if (was !== this.there) this.show(this.on);
+    by_id("figure").hidden = by_id("eyes").hidden = !this.figure;
+  }
+
+  take(next: FigureFrame): void {
+    this.newest = next;
+  }
+
+  show(on: boolean): void {
+    this.on = on;
+    if (this.eyes_on) this.see_with_eyes(false);
+    this.stage.set_operator(this.there && on);
+    this.hud.pressed("figure", on);
+  }
+
+  /** With a tracked head by itself, until a person chooses another view; when asked, with any head. */
+  see_with_eyes(on: boolean): void {
+    this.eyes_on = on && this.there;
+    if (!this.eyes_on) this.stage.look_through(null);
+    this.hud.pressed("eyes", this.eyes_on);
+  }
+
+  /** Once per picture. `heard`: what a tracker says is of now, or of the recording. */
+  draw(heard: boolean): void {
+    if (!this.figure || !this.skeleton) return;
+    if (this.newest) {
+      this.shown = this.newest;
+      this.newest = null;
+      this.figure.show(this.shown);
+      this.hud.tracking(heard ? this.shown : null);
+    }
+    this.figure.object.visible = this.on && this.shown !== null;
+    if (!this.shown) return;
+    if (this.shown.head_tracked && this.on && !this.view_chosen && !this.eyes_on) this.see_with_eyes(true);
+    if (this.eyes_on) this.stage.look_through(eyes_of(this.shown, this.skeleton));
+    this.figure.clear_view(this.shown, this.stage.camera.position);
+  }
+
+  /** Joints by name, m. */
+  get joints_m(): Record<string, number[]> | null {
+    const names = this.skeleton?.joints, at = this.shown?.joint_m;
+    return names && at ? Object.fromEntries(names.map((name, i) => [name, at.slice(3 * i, 3 * i + 3)])) : null;
+  }
+
+  /** The same from what is drawn; null while the figure is not visible. */
+  get drawn_m(): Record<string, Vec> | null {
+    const names = this.skeleton?.joints, drawn_m = this.figure?.drawn_m;
+    return names && drawn_m ? Object.fromEntries([...drawn_m].map(([index, at_m]) => [names[index], at_m])) : null;
+  }
+
+  get grip_error_m(): number | null {
+    return this.shown && this.skeleton ? grip_error_m(this.shown, this.skeleton) : null;
+  }
+}

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page in Chromium on screens of other sizes: does anything cover or cut anything, can a finger
+// hit every button, and does axe-core find what a screen reader or a keyboard cannot use?
+//
+//     node tests/browser/layout_test.mjs BUILD_DIR   (tactd, tact-view, page/)
+//
+// CHROMIUM names another browser. Pictures: BUILD_DIR/layout_NAME.png, the whole page of each screen, live,
+// with help, and of a replay. Prints "N passed, M failed"; exit status 0 or 1.
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+
+import { build, check, folder, play, root, start_browser, start_tactd, start_view, stop, waits } from "./stage.mjs";
+
+const axe = readFileSync(createRequire(join(root, "host/web/package.json")).resolve("axe-core/axe.min.js"), "utf8");
+const socket = join(folder, "layout.sock");
+const recording = join(folder, "layout.tactview");
+const kFinger_px = 44;
+/** A browser's zoom of 200 % halves the page's own pixels and doubles those of the screen. */
+const kScreens = {
+  phone: { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true },
+  phone_on_its_side: { viewport: { width: 844, height: 390 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true },
+  tablet: { viewport: { width: 820, height: 1180 }, hasTouch: true, isMobile: true },
+  tablet_on_its_side: { viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true },
+  desk: { viewport: { width: 1280, height: 800 } },
+  zoom_200: { viewport: { width: 640, height: 400 }, deviceScaleFactor: 2 },
+};
+
+/** What is wrong with where things are, in words. */
+function faults_of_layout(least_px) {
+  const out = [];
+  const box = (element) => element.getBoundingClientRect();
+  const seen = (element) => element.checkVisibility() && box(element).width > 0;
+  const name = (element) => element.id || `${element.tagName.toLowerCase()} in ${element.parentElement.id}`;
+  const canvas = document.getElementById("view");
+  const desk = document.getElementById("desk");
+  const overlay = getComputedStyle(canvas).position === "absolute"; // the picture lies behind the panels
+  const parts = [...desk.querySelectorAll(".panel, .banner, .notice")].filter(seen);
+  if (!overlay) parts.push(canvas);
+  const cover = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 &&
+    Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1;
+  const pairs = (all) => all.flatMap((a, i) => all.slice(i + 1).map((b) => [a, b]));
+  for (const [a, b] of pairs(parts)) if (cover(box(a), box(b))) out.push(`${name(a)} covers ${name(b)}`);
+  const root = document.documentElement;
+  if (root.scrollWidth > innerWidth) out.push(`the page is ${root.scrollWidth} px wide`);
+  const scrolls = overlay ? innerHeight : root.scrollHeight;
+  for (const part of parts) {
+    const at = box(part);
+    if (at.left < 0 || at.right > innerWidth + 1) out.push(`${name(part)} leaves the screen sideways`);
+    if (at.top + scrollY < 0 || at.bottom + scrollY > scrolls + 1) out.push(`${name(part)} leaves the screen`);
+    const hides = /hidden|clip/.test(getComputedStyle(part).overflowY);
+    if (part !== canvas && (part.scrollWidth > part.clientWidth + 1 || (hides && part.scrollHeight > part.clientHeight + 1)))
+      out.push(`${name(part)} cuts what is in it`);
+    for (const inner of part.querySelectorAll("*")) {
+      if (!seen(inner) || inner.closest(".uplot, #stops, .bar")) continue;
+      const text = box(inner);
+      if (text.left < at.left - 1 || text.right > at.right + 1) out.push(`${name(inner)} leaves ${name(part)}`);
+    }
+  }
+  const hit = [...document.querySelectorAll("button, .button, select, input")].filter(seen);
+  for (const [a, b] of pairs(hit)) if (cover(box(a), box(b))) out.push(`${name(a)} covers ${name(b)}`);
+  for (const one of hit) {
+    const { width, height } = box(one);
+    if (width < least_px || height < least_px) out.push(`${name(one)} has ${width.toFixed(0)} x ${height.toFixed(0)} px`);
+    if (one.scrollWidth > one.clientWidth + 1) out.push(`${name(one)} cuts its words`);
+  }
+  return out;
+}
+
+async function check_page(page, name, least_px) {
+  const faults = await page.evaluate(faults_of_layout, least_px);
+  check(`${name}: nothing covers or cuts anything`, faults.length === 0, faults.slice(0, 6).join("; "));
+  await page.evaluate(axe);
+  const { violations } = await page.evaluate(() => window.axe.run(document));
+  check(`${name}: axe-core finds nothing`, violations.length === 0,
+    violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.target.join(" ")).slice(0, 3).join(", ")}`).join("; "));
+  await page.screenshot({ path: join(build, `layout_${name}.png`), fullPage: true });
+}
+
+async function check_screen(browser, url, name, screen, condition) {
+  const context = await browser.newContext(screen);
+  const page = await context.newPage();
+  await page.goto(url);
+  await waits(page, condition);
+  await page.waitForTimeout(1500);
+  const least_px = screen.hasTouch ? kFinger_px : 20;
+  await check_page(page, name, least_px);
+  await page.keyboard.press("h");
+  await page.waitForTimeout(200);
+  await check_page(page, `${name}_help`, least_px);
+  await context.close();
+}
+
+/** All that can be pressed is reached by the tab key alone, and is seen when it is. */
+async function check_keyboard(browser, url) {
+  const page = await browser.newPage({ viewport: kScreens.desk.viewport });
+  await page.goto(url);
+  await waits(page, () => window.tact.tick > 0);
+  const wanted = await page.evaluate(() => [...document.querySelectorAll("button, .button, select, input")]
+    .filter((one) => one.checkVisibility()).map((one) => one.id));
+  const reached = new Set();
+  let unseen = [];
+  for (let i = 0; i < wanted.length + 5; ++i) {
+    await page.keyboard.press("Tab");
+    const { id, outline } = await page.evaluate(() => ({ id: document.activeElement.id,
+      outline: getComputedStyle(document.activeElement).outlineStyle }));
+    if (wanted.includes(id) && outline === "none") unseen.push(id);
+    reached.add(id);
+  }
+  check("the tab key reaches all that can be pressed", wanted.every((id) => reached.has(id)),
+    wanted.filter((id) => !reached.has(id)).join(" "));
+  check("... and shows where it is", unseen.length === 0, unseen.join(" "));
+  await page.focus("#wire");
+  await page.keyboard.press("Enter");
+  check("Enter presses what has the focus, and leaves it there", await page.evaluate(() =>
+    window.tact.wireframe && document.activeElement.id === "wire"));
+  await page.close();
+}
+
+async function run() {
+  const { viewer, url } = await start_view(["--socket", socket, "--record", recording, "--figure"]);
+  const tactd = start_tactd("liver", socket);
+  const browser = await start_browser();
+  for (const [name, screen] of Object.entries(kScreens))
+    await check_screen(browser, url, name, screen, () => window.tact.link === "live" && window.tact.tick > 0);
+  await check_keyboard(browser, url);
+  await stop(tactd);
+  const page = await browser.newPage(kScreens.phone);
+  await page.goto(url);
+  await waits(page, () => window.tact.link === "lost");
+  await page.waitForTimeout(500);
+  await check_page(page, "phone_lost", 20);
+  await page.close();
+  await stop(viewer);
+  const replay = await start_view(["--open", recording]);
+  for (const [name, screen] of Object.entries(kScreens))
+    await check_screen(browser, replay.url, `replay_${name}`, screen, () => window.tact.link === "replay");
+  await check_keyboard(browser, replay.url);
+  await browser.close();
+  await stop(replay.viewer);
+}
+
+await play(run);
