@@ -106,6 +106,19 @@ Result<Setup> read_setup(SealedFile& in, const Magic& magic) {
   return setup;
 }
 
+/// The operator of a frame; false if he is lost, and then his figure holds.
+bool add_operator(const OperatorRecord& tracked, Recording& recording) {
+  const std::optional<tracking::TrackedOperator> seen = operator_of(tracked);
+  recording.operators.push_back(seen.value_or(tracking::TrackedOperator{}));
+  std::optional<figure::FigurePose> figure;
+  if (seen)
+    figure = figure_of(tracked, *seen);
+  else if (!recording.figures.empty())
+    figure = recording.figures.back();
+  recording.figures.push_back(std::move(figure));
+  return seen.has_value();
+}
+
 /// All that is good from byte `start` on. Empty, or what is damaged, "; " at its end.
 std::string read_frames(SealedFile& in, std::uint64_t start, bool is_tracked,
                         Recording& recording) {
@@ -124,15 +137,7 @@ std::string read_frames(SealedFile& in, std::uint64_t start, bool is_tracked,
       continue;
     }
     recording.frames.push_back(record.frame);
-    if (!is_tracked) continue;
-    const std::optional<tracking::TrackedOperator> seen = operator_of(tracked);
-    recording.operators.push_back(seen.value_or(tracking::TrackedOperator{}));
-    std::optional<figure::FigurePose> figure;
-    if (seen)
-      figure = figure_of(tracked, *seen);
-    else if (++damaged_operators; !recording.figures.empty())
-      figure = recording.figures.back();  // it holds
-    recording.figures.push_back(std::move(figure));
+    if (is_tracked && !add_operator(tracked, recording)) ++damaged_operators;
   }
   std::string damage;
   if (damaged > 0) {

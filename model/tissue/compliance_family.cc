@@ -64,6 +64,37 @@ Vec3 vector_of(const std::array<float, 3>& v) {
 /// s v v'
 Mat3 square(double s, const Vec3& v) { return {{s * v.x * v, s * v.y * v, s * v.z * v}}; }
 
+/// Where a compliance stands among the curves.
+struct Scale {
+  double disc_m_per_N, soft_N_per_m, span;  // c_disc; q_0; ln(q_(K-1) / q_0)
+  double last;                              // K - 1
+
+  // CF-1
+  double stiffness_N_per_m(double r_m_per_N) const { return 1.0 / (disc_m_per_N + r_m_per_N); }
+  // CF-2
+  float coordinate(double r_m_per_N) const {
+    return static_cast<float>(
+        std::clamp(last * std::log(stiffness_N_per_m(r_m_per_N) / soft_N_per_m) / span, 0.0, last));
+  }
+  /// r of the curve `at`.
+  double regular_m_per_N(double at) const {
+    return 1.0 / (soft_N_per_m * std::exp(span * at / last)) - disc_m_per_N;
+  }
+};
+
+Scale scale_of(const Give& give, double disc_m_per_N, std::size_t curves) {
+  Scale scale{.disc_m_per_N = disc_m_per_N,
+              .soft_N_per_m = 0.0,
+              .span = 0.0,
+              .last = static_cast<double>(curves - 1)};
+  scale.soft_N_per_m = scale.stiffness_N_per_m(
+      *std::max_element(give.press_m_per_N.begin(), give.press_m_per_N.end()));
+  const double stiff_N_per_m = scale.stiffness_N_per_m(
+      *std::min_element(give.pull_m_per_N.begin(), give.pull_m_per_N.end()));
+  scale.span = std::max(std::log(stiff_N_per_m / scale.soft_N_per_m), 1e-9);
+  return scale;
+}
+
 }  // namespace
 
 std::vector<TangentTensors> tangent_give(const ComplianceMap& map,
@@ -105,35 +136,23 @@ Result<ComplianceFamily> make_compliance_family(const ComplianceMap& map,
                                .radius_m = p.tip_radius_m,
                                .large_strain = p.large_strain};
   const Give give = give_of(map, tip);
-  const double disc = 1.0 / tip.pulled_stiffness_N_per_m();
-  const auto stiffness = [disc](double r) { return 1.0 / (disc + r); };  // CF-1
-  const double soft =
-      stiffness(*std::max_element(give.press_m_per_N.begin(), give.press_m_per_N.end()));
-  const double stiff =
-      stiffness(*std::min_element(give.pull_m_per_N.begin(), give.pull_m_per_N.end()));
-  const double last = static_cast<double>(p.curves - 1);
-  const double span = std::max(std::log(stiff / soft), 1e-9);
+  const Scale scale = scale_of(give, 1.0 / tip.pulled_stiffness_N_per_m(), p.curves);
   ComplianceFamily out;
   out.limited_vertices = give.limited_vertices;
-  // CF-2
-  const auto coordinate = [&](double r) {
-    return static_cast<float>(std::clamp(last * std::log(stiffness(r) / soft) / span, 0.0, last));
-  };
-  for (const double r : give.press_m_per_N) out.press_coordinate.push_back(coordinate(r));
-  for (const double r : give.pull_m_per_N) out.pull_coordinate.push_back(coordinate(r));
+  for (const double r : give.press_m_per_N) out.press_coordinate.push_back(scale.coordinate(r));
+  for (const double r : give.pull_m_per_N) out.pull_coordinate.push_back(scale.coordinate(r));
   for (std::size_t k = 0; k < p.curves; ++k) {
     const double at = static_cast<double>(k);
     const std::vector<double> rings =
         rings_near(map, out.press_coordinate, at, p.youngs_modulus_Pa);
     for (const double g : rings)
       out.ring_times_E_per_m.push_back(static_cast<float>(g * p.youngs_modulus_Pa));
-    auto curve = indent::make_compliance_curve(
-        {.tip = tip,
-         .regular_m_per_N = 1.0 / (soft * std::exp(span * at / last)) - disc,
-         .working_depth_m = p.working_depth_m,
-         .ring_pitch_m = map.ring_pitch_m,
-         .ring_m_per_N = rings,
-         .table_knots = p.table_knots});
+    auto curve = indent::make_compliance_curve({.tip = tip,
+                                                .regular_m_per_N = scale.regular_m_per_N(at),
+                                                .working_depth_m = p.working_depth_m,
+                                                .ring_pitch_m = map.ring_pitch_m,
+                                                .ring_m_per_N = rings,
+                                                .table_knots = p.table_knots});
     if (!curve) return curve.error();
     out.curve.push_back(std::move(*curve));
   }
