@@ -27,7 +27,7 @@ namespace {
 using boost::system::error_code;
 using model::Error;
 
-constexpr std::chrono::milliseconds kRetry{250};
+constexpr std::chrono::milliseconds kRetry{50};  // a person waits for the first picture
 constexpr double kPatience_s = 0.3;
 constexpr int kMessagesPerTurn = 64;  // then other work gets a turn
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // telemetry_client.h - the wire to tactd: one Hello with the meshes, then frames, for ever again.
 //
-// Connects to tactd's socket and tries again four times a second while nobody is there or after the
+// Connects to tactd's socket and tries again twenty times a second while nobody is there or after the
 // connection ended. Every message is checked before it is passed on. The only thing that travels
 // the other way is a hand target for a simulated device; a force cannot be commanded from here.
 #pragma once
@@ -66,7 +66,7 @@ class TelemetryClient {
   int hand_socket_ = -1;
   record::Hello hello_;
   bool has_hello_ = false, is_silent_ = false;
-  std::string last_reason_ = "never";  // a reason is told once, not four times a second
+  std::string last_reason_ = "never";  // a reason is told once, not at every try
 };
 
 }  // namespace tact::host::run

@@ -155,7 +155,7 @@ async function check_stall(browser) {
   await pause(100);
   tactd.kill("SIGCONT");
   check("one stall is marked at the edge of the plot, with its size", await waits(page, () =>
-    /▼ \d+ beyond, to -\d{5,} µs/.test(document.querySelector("#plot_margin .clipped").textContent)),
+    /▼ \d+, to -\d{5,} µs/.test(document.querySelector("#plot_margin .clipped").textContent)),
     await page.textContent("#plot_margin figcaption"));
   await page.screenshot({ path: join(build, "page_stall.png") });
   await page.close();

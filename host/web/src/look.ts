@@ -58,16 +58,19 @@ export function shade(look: Look, n: Vec): Vec {
   const sky = 0.16 + 0.14 * n[1];
   // F = F0 + (1 - F0) (1 - n.v)^5
   const fresnel = look.metal > 0.5 ? 1 : 0.045 + 0.6 * grazing;
+  // A room: dark floor, a bright horizon, a dim ceiling.
+  const room = 0.06 + smoothstep(-0.15, 0.1, r[1]) * (0.75 - 0.45 * Math.max(0, r[1]));
+  const bright_of: Vec = [room, room, room];
+  for (const window of kWindows) {
+    const angle_rad = Math.acos(Math.min(1, Math.max(-1, dot(r, window.towards))));
+    const inside = 1 - smoothstep(window.half_angle_rad, window.half_angle_rad + window.soft_rad, angle_rad);
+    if (inside > 0) for (let c = 0; c < 3; ++c) bright_of[c] += inside * window.color[c];
+  }
+  const thin = Math.pow(1 - n[2], 2.5) * 0.55;
   const out: Vec = [0, 0, 0];
   for (let c = 0; c < 3; ++c) {
-    // A room: dark floor, a bright horizon, a dim ceiling.
-    let bright = 0.06 + smoothstep(-0.15, 0.1, r[1]) * (0.75 - 0.45 * Math.max(0, r[1]));
-    for (const window of kWindows) {
-      const angle_rad = Math.acos(Math.min(1, Math.max(-1, dot(r, window.towards))));
-      const inside = 1 - smoothstep(window.half_angle_rad, window.half_angle_rad + window.soft_rad, angle_rad);
-      bright += inside * window.color[c];
-    }
-    const diffuse = look.base[c] * (sky + 1.35 * key * key) + look.glow[c] * Math.pow(1 - n[2], 2.5) * 0.55;
+    const bright = bright_of[c];
+    const diffuse = look.base[c] * (sky + 1.35 * key * key) + look.glow[c] * thin;
     const mirror = look.coat * fresnel * bright;
     const cool = [0.30, 0.48, 0.80][c] * rim * 0.9;
     out[c] = look.metal * (look.base[c] * (0.25 * sky + 0.16 * key) + 0.55 * mirror * look.base[c]) +

@@ -48,12 +48,7 @@ let most_ever_m = 0;
 let silence_s = 0;
 let first_drawn_ms: number | null = null; // the first picture of tissue, since 1970
 
-const stage = new Stage(canvas, draw);
-const operator = new Operator(stage, hud);
-const timeline = new Timeline((wish) => connection.steer(wish));
-const hand = new HandControl(canvas, stage, may_move_hand, (position_m, grip_ratio) =>
-  connection.move_hand(position_m, grip_ratio),
-);
+// First: the network has its turn while the picture is set up.
 const connection = new Connection({
   status: (now) => {
     status = now;
@@ -80,6 +75,12 @@ const connection = new Connection({
     recorder.stop();
   },
 }, token);
+const stage = new Stage(canvas, draw);
+const operator = new Operator(stage, hud);
+const timeline = new Timeline((wish) => connection.steer(wish));
+const hand = new HandControl(canvas, stage, may_move_hand, (position_m, grip_ratio) =>
+  connection.move_hand(position_m, grip_ratio),
+);
 window.addEventListener("hashchange", () => {
   const next = take_token();
   if (next !== null) connection.use(next);

@@ -62,6 +62,7 @@ export class Plot {
     });
     this.clipped = span(caption, "span");
     this.clipped.className = "clipped";
+    this.clipped.title = "beyond the range of this plot, and the farthest";
     this.value = span(caption, "b");
     this.used = lines.length;
     this.plot = new uPlot(this.options(), [[], ...lines.map(() => [])] as uPlot.AlignedData, parent);
@@ -86,7 +87,7 @@ export class Plot {
     });
     const shown = this.values[0].slice(first);
     const rare = outside(shown, this.range).map((i) => shown[i] ?? 0);
-    this.clipped.textContent = rare.length === 0 ? "" : `▼ ${rare.length} beyond, to ${this.words(largest(rare))}`;
+    this.clipped.textContent = rare.length === 0 ? "" : `▼ ${rare.length}, to ${this.words(largest(rare))}`;
     this.write();
   }
 

@@ -6,7 +6,7 @@ import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { follow_share, type Eyes } from "./figure";
 import { make_ground } from "./ground";
-import { kSteel, paint } from "./look";
+import { kSteel, look_material, paint } from "./look";
 import { snapshot } from "./snapshot";
 
 const kSlow_fps = 40; // below this the picture gets coarser, because smooth matters more than sharp
@@ -58,6 +58,10 @@ export class Stage {
       powerPreference: "high-performance",
     });
     this.steel = paint(kSteel);
+    // Compiled while the scene is on its way; kept, for else the program goes with it.
+    const warm = new THREE.Mesh(new THREE.BufferGeometry(), look_material(this.steel));
+    this.renderer.compile(warm, this.camera);
+    this.scene.userData.warm = warm;
     this.add_lights();
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
