@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // telemetry_client.h - the wire to tactd: one Hello with the meshes, then frames, for ever again.
 //
-// Connects to tactd's socket and tries again twenty times a second while nobody is there or after the
-// connection ended. Every message is checked before it is passed on. The only thing that travels
-// the other way is a hand target for a simulated device; a force cannot be commanded from here.
+// Connects to tactd's socket and tries again twenty times a second while nobody is there or after
+// the connection ended. Every message is checked before it is passed on. The only thing that
+// travels the other way is a hand target for a simulated device; a force cannot be commanded from
+// here.
 #pragma once
 
 #include <boost/asio/io_context.hpp>

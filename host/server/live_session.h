@@ -5,8 +5,8 @@
 // that follows. The page answers {"seen": n} with the number of frames it took so far; at most
 // kMaxUnseen may be on the way, and of those that wait only the newest is kept. So a slow browser
 // sees fewer frames, never older ones, and holds up nobody. A page may send
-// {"hand":{"x_m":..,"y_m":..,"z_m":..,"grip_ratio":..}} for a simulated device, and to a replay what
-// replay_wish.h says. Nothing else is heard: no page arms, stops or resets.
+// {"hand":{"x_m":..,"y_m":..,"z_m":..,"grip_ratio":..}} for a simulated device, and to a replay
+// what replay_wish.h says. Nothing else is heard: no page arms, stops or resets.
 #pragma once
 
 #include <boost/beast/core/flat_buffer.hpp>

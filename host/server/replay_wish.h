@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// replay_wish.h - what a page may ask of a recording that is shown: where, whether and how fast it plays.
+// replay_wish.h - what a page may ask of a recording that is shown: where, whether and how fast it
+// plays.
 //
-//     {"replay": {"playing": true, "at_s": 1.5, "step_frames": -1, "speed_ratio": 0.25, "repeats": false}}
+//     {"replay": {"playing": true, "at_s": 1.5, "step_frames": -1,
+//                 "speed_ratio": 0.25, "repeats": false}}
 //
 // Each key may be missing. It reaches a tact-view that replays and nothing behind it: there is no
 // tactd that could hear it.

@@ -155,6 +155,13 @@ def viewer_documents(build, folder):
             viewer.send_signal(signal.SIGINT)
     export = subprocess.run([view, "--open", str(recording), "--export", str(folder / "frames.csv"), "--json"],
                             capture_output=True, text=True, check=False, timeout=60)
+    with subprocess.Popen([view, "--open", str(recording), "--port", "0", "--page", str(page), "--json"],
+                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as viewer:
+        try:
+            ready = json.loads(viewer.stdout.readline())
+            live.append(next(one for one in messages(ready["port"], ready["token"]) if "replay" in one))
+        finally:
+            viewer.send_signal(signal.SIGINT)
     return [("tact-view", ready), ("tact-view-export", json.loads(export.stdout)), *(("tact-live", one) for one in live)]
 
 
