@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// igtl_session.h - one OpenIGTLink connection: messages in, judged, and messages out, never waiting.
+// igtl_session.h - one OpenIGTLink connection: messages in, judged; messages out, never waiting.
 //
 // In: a message that is not asked for is read away unkept, up to kLargestBody. One that is and is
 // damaged is left out; the connection goes on. Bytes that are no header, or a length that nothing

@@ -2,11 +2,11 @@
 // igtl_wire.h - the bytes of OpenIGTLink: header, checksum, and the messages that tact reads and
 // writes.
 //
-//     header: u16 version, char[12] type, char[20] device, u64 time, u64 bytes of the body, u64 CRC
+//     header: u16 version, char[12] type, char[20] device, u64 time, u64 body bytes, u64 CRC
 //
-// Big-endian. Time is 32 bits of seconds and 32 of fractions, UTC; 0: none. The checksum of the body
-// is CRC-64 (polynomial 0x42F0E1EBA9EA3693, from 0, not reflected). Lengths are mm on the wire, m
-// here. A body of version 2 has an extended header before its content, and metadata behind it.
+// Big-endian. Time is 32 bits of seconds and 32 of fractions, UTC; 0: none. The body's checksum is
+// CRC-64 (polynomial 0x42F0E1EBA9EA3693, from 0, not reflected). Lengths are mm there, m here.
+// A body of version 2 has an extended header before its content, and metadata behind it.
 // Source: OpenIGTLink protocol, version 3, http://openigtlink.org. Pure functions.
 #pragma once
 

@@ -1,144 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// The viewer's link against OpenIGTLink's own client and server, and against what no client sends.
+// The viewer's link against OpenIGTLink's own client and server.
 #include "host/igtl/igtl_link.h"
 
 #include <gtest/gtest.h>
-#include <igtlClientSocket.h>
 #include <igtlSensorMessage.h>
 #include <igtlServerSocket.h>
 #include <igtlStatusMessage.h>
-#include <igtlTransformMessage.h>
 
-#include <algorithm>
-#include <atomic>
-#include <boost/asio/executor_work_guard.hpp>
-#include <boost/asio/post.hpp>
-#include <boost/asio/read.hpp>
-#include <boost/asio/write.hpp>
 #include <cmath>
-#include <future>
 #include <map>
-#include <thread>
 
+#include "tests/host/igtl/link_fixture.h"
 #include "tests/support/program.h"
-#include "tests/support/sentence.h"
 
 namespace tact::host::igtl::igtl_link_test {
 
 using boost::asio::ip::tcp;
+using tests::Received;
 using tests::sentence_of;
+using tests::transform_of;
 using tracking::BodyRole;
 using tracking::BodyState;
 
-class Link : public testing::Test {
- protected:
-  /// By its thread.
-  template <typename Question>
-  auto ask(const Question& question) {
-    std::promise<decltype(question())> answer;
-    auto future = answer.get_future();
-    boost::asio::post(io_, [&] { answer.set_value(question()); });
-    return future.get();
-  }
-  ~Link() override {
-    if (!thread_.joinable()) return;
-    ask([this] { return link_.stop(), 0; });
-    work_.reset();
-    io_.stop();
-    thread_.join();
-  }
-  /// The link in a thread of its own.
-  std::string open(const IgtlOptions& options = {.port = 0}) {
-    const std::string wrong = sentence_of(link_.open(options));
-    if (!wrong.empty()) return wrong;
-    link_.start();
-    thread_ = std::thread([this] { io_.run(); });
-    return {};
-  }
-  template <typename Condition>
-  bool becomes(const Condition& condition) {
-    for (int i = 0; i < 500; ++i) {
-      if (ask(condition)) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return false;
-  }
-  std::size_t clients() {
-    return ask([this] { return link_.clients(); });
-  }
-  std::uint64_t refused() {
-    return ask([this] { return link_.refused(); });
-  }
-  std::string said() {
-    return ask([this] { return said_.empty() ? std::string() : said_.back(); });
-  }
-  tracking::TrackedBody head() {
-    return ask([this] { return link_.now()[BodyRole::kHead]; });
-  }
-  ::igtl::ClientSocket::Pointer client() {
-    auto socket = ::igtl::ClientSocket::New();
-    EXPECT_EQ(socket->ConnectToServer("127.0.0.1", link_.port()), 0);
-    socket->SetTimeout(3000);
-    return socket;
-  }
-  tcp::socket raw_client() {
-    tcp::socket socket(other_);
-    socket.connect({boost::asio::ip::address_v4::loopback(), link_.port()});
-    return socket;
-  }
-  void show(float force_N, firmware::loop::State state = firmware::loop::State::kArmed) {
-    record::Frame frame;
-    frame.tool_orientation[0] = 1.0f;
-    frame.tool_position_m[1] = 0.125f;
-    frame.force_N[2] = force_N;
-    frame.state = state;
-    ask([&] { return link_.add(frame), 0; });
-  }
-
-  boost::asio::io_context io_{1}, other_{1};
-  std::vector<std::string> said_;
-  IgtlLink link_{io_, [this](const std::string& sentence) { said_.push_back(sentence); }};
-  boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{
-      io_.get_executor()};
-  std::thread thread_;
-};
-
-std::string transform_of(const char* device, float x_mm) {
-  auto message = ::igtl::TransformMessage::New();
-  ::igtl::Matrix4x4 m{};
-  m[0][0] = m[1][1] = m[2][2] = 1.0f;
-  m[0][3] = x_mm;
-  message->SetDeviceName(device);
-  message->SetMatrix(m);
-  message->Pack();
-  return {static_cast<const char*>(message->GetPackPointer()),
-          static_cast<std::size_t>(message->GetPackSize())};
-}
-
-/// The next message of the library's client as `Message`, its checksum judged; the type is told.
-struct Received {
-  std::string type, device;
-  ::igtl::MessageHeader::Pointer header = ::igtl::MessageHeader::New();
-
-  bool next(::igtl::ClientSocket::Pointer& socket) {
-    header->InitPack();
-    const int size = header->GetPackSize();
-    if (socket->Receive(header->GetPackPointer(), size) != size) return false;
-    header->Unpack();
-    type = header->GetDeviceType();
-    device = header->GetDeviceName();
-    return true;
-  }
-  template <typename Message>
-  typename Message::Pointer as(::igtl::ClientSocket::Pointer& socket) {
-    auto message = Message::New();
-    message->SetMessageHeader(header);
-    message->AllocatePack();
-    socket->Receive(message->GetPackBodyPointer(), message->GetPackBodySize());
-    EXPECT_TRUE(message->Unpack(1) & ::igtl::MessageHeader::UNPACK_BODY) << type;
-    return message;
-  }
-};
+using Link = tests::IgtlPeers;
 
 TEST_F(Link, TheLibrarysClientGetsPoseForceAndStatus) {
   ASSERT_EQ(open(), "");
@@ -219,93 +103,6 @@ TEST_F(Link, GoesToAServerOfTrackersAndComesBackToIt) {
     connection->CloseSocket();
     ASSERT_TRUE(becomes([this] { return !said_.empty(); }));
   }
-}
-
-TEST_F(Link, ADamagedMessageIsLeftOutAndTheNextIsTaken) {
-  ASSERT_EQ(open(), "");
-  tcp::socket socket = raw_client();
-  std::string flipped = transform_of("Head", 900.0f);
-  flipped[kHeaderBytes + 45] = static_cast<char>(flipped[kHeaderBytes + 45] ^ 1);
-  std::string sized = transform_of("Head", 900.0f).substr(0, kHeaderBytes);
-  const std::string short_body(40, '\1');
-  sized[49] = 40;  // the last byte of the body's length
-  for (int i = 0; i < 8; ++i)
-    sized[50 + static_cast<std::size_t>(i)] = static_cast<char>(crc64(short_body) >> (8 * (7 - i)));
-  std::string image(kHeaderBytes, '\0');
-  image.replace(0, 7, std::string("\0\1IMAGE", 7));
-  image[47] = 1;  // 65 536 bytes, read away
-  boost::asio::write(
-      socket, boost::asio::buffer(flipped + sized + short_body + image + std::string(65'536, 'x') +
-                                  transform_of("Head", 300.0f)));
-  ASSERT_TRUE(becomes([this] { return link_.now()[BodyRole::kHead].state != BodyState::kAbsent; }));
-  EXPECT_NEAR(head().raw.position_m.x(), 0.3, 1e-6);
-  EXPECT_EQ(refused(), 2u);
-  EXPECT_NE(said().find("its checksum is not that of its bytes"), std::string::npos) << said();
-  EXPECT_EQ(clients(), 1u);
-}
-
-TEST_F(Link, AHugeLengthOrNoHeaderEndsTheConnection) {
-  ASSERT_EQ(open(), "");
-  for (const char* kind : {"TRANSFORM", "IMAGE", "http"}) {
-    tcp::socket socket = raw_client();
-    std::string bytes(kHeaderBytes, '\0');
-    bytes[1] = 1;
-    bytes.replace(2, std::string(kind).size(), kind);
-    if (std::string(kind) == "http")
-      bytes = "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n" + std::string(100, ' ');
-    else
-      bytes.replace(42, 8,
-                    kind[0] == 'T' ? std::string("\0\0\0\0\0\0\x10\1", 8) : std::string(8, '\x7f'));
-    boost::asio::write(socket, boost::asio::buffer(bytes));
-    char byte[200];
-    boost::system::error_code wrong;
-    boost::asio::read(socket, boost::asio::buffer(byte), wrong);  // past its first status
-    EXPECT_TRUE(wrong) << kind;
-    EXPECT_TRUE(becomes([this] { return link_.clients() == 0; })) << kind;
-  }
-  EXPECT_EQ(refused(), 3u);
-  EXPECT_NE(said().find("it announces a TRANSFORM of 4097 bytes"), std::string::npos) << said();
-}
-
-TEST_F(Link, WhoDoesNotReadHoldsNobodyUp) {
-  ASSERT_EQ(open(), "");
-  tcp::socket lazy = raw_client();
-  auto socket = client();
-  ASSERT_TRUE(becomes([this] { return link_.clients() == 2; }));
-  record::Frame frame;
-  frame.tool_orientation[0] = 1.0f;
-  // A status that changes each time is sent each time: more than the kernel keeps.
-  for (int i = 0; i < 40'000; ++i) {
-    frame.fault = static_cast<std::uint16_t>(i % 1000 + 1);
-    ask([&] { return link_.add(frame), 0; });
-  }
-  frame.fault = 0;
-  frame.state = firmware::loop::State::kReady;
-  std::this_thread::sleep_for(kFrameGap);
-  ask([&] { return link_.add(frame), 0; });
-  Received got;
-  std::string words;
-  while (words != "ready" && got.next(socket))
-    if (got.type == "STATUS")
-      words = got.as<::igtl::StatusMessage>(socket)->GetStatusString();
-    else
-      socket->Skip(static_cast<int>(got.header->GetBodySizeToRead()));
-  EXPECT_EQ(words, "ready") << "who reads has the newest in the end";
-  EXPECT_EQ(clients(), 2u);
-}
-
-TEST_F(Link, MoreThanEightAreSentAway) {
-  ASSERT_EQ(open(), "");
-  std::vector<tcp::socket> sockets;
-  for (std::size_t i = 0; i < kMostClients; ++i) sockets.push_back(raw_client());
-  ASSERT_TRUE(becomes([this] { return link_.clients() == kMostClients; }));
-  tcp::socket ninth = raw_client();
-  char byte = 0;
-  boost::system::error_code wrong;
-  boost::asio::read(ninth, boost::asio::buffer(&byte, 1), wrong);
-  EXPECT_TRUE(wrong);
-  sockets.pop_back();
-  EXPECT_TRUE(becomes([this] { return link_.clients() == kMostClients - 1; }));
 }
 
 TEST_F(Link, ListensToThisMachineAloneAndSaysWhenItDoesNot) {

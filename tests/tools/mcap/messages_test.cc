@@ -40,6 +40,19 @@ TEST(Messages, APoseHasItsRealPartLast) {
   for (std::size_t i = 0; i < 7; ++i) EXPECT_EQ(number_at(bytes, kNumbers + 8 * i), expected[i]);
 }
 
+TEST(Messages, OfATickEachVectorHasItsOwnPlace) {
+  firmware::telemetry::LoggedTick tick;
+  tick.output.written = {.force_N = {1.0, 2.0, 3.0}, .torque_Nm = {4.0, 5.0, 6.0}};
+  tick.output.wanted = {.force_N = {7.0, 8.0, 9.0}, .torque_Nm = {10.0, 11.0, 12.0}};
+  const Moment moment = Moment::of(tick, 3'000'000'005);
+  const std::string written = wrench_message(moment, moment.written);
+  const std::string wanted = wrench_message(moment, moment.wanted);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(number_at(written, kNumbers + 8 * i), 1.0 + static_cast<double>(i));
+    EXPECT_EQ(number_at(wanted, kNumbers + 8 * i), 7.0 + static_cast<double>(i));
+  }
+}
+
 TEST(Messages, AFrameHasNoWantedTorque) {
   firmware::telemetry::Frame frame;
   frame.wanted_force_N[2] = 1.5f;
