@@ -119,7 +119,7 @@ Result<std::optional<std::string_view>> metadata_value(std::string_view head, st
 
 Result<pose::Pose> checked(const Vector3d& position_mm, const Quaterniond& rotation) {
   const Vector3d position_m = 1e-3 * position_mm;
-  if (!(position_m.cwiseAbs().maxCoeff() <= kFarthest_m))
+  if (!position_m.allFinite() || position_m.cwiseAbs().maxCoeff() > kFarthest_m)
     return Error{"its place is no number, or farther than 1 km; send mm"};
   return pose::Pose{.rotation = pose::canonical(rotation), .position_m = position_m};
 }

@@ -247,4 +247,31 @@ TEST(IgtlWire, OfVersion2TheTrackersOwnStatusIsHeard) {
   }
 }
 
+TEST(IgtlWire, OfAnyBytesComesAFinitePoseOrASentence) {
+  std::mt19937 random(11);
+  std::uniform_int_distribution<int> byte(0, 255), edits(1, 6);
+  const std::string kinds[] = {version_2("TransformStatus", "OK"),
+                               transform("t", 0.0, kPose).substr(kHeaderBytes),
+                               transform("t", 0.0, kPose).substr(kHeaderBytes, 28)};
+  int poses = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    std::string body = kinds[i % 3];
+    for (int k = edits(random); k > 0; --k)
+      body[random() % body.size()] = static_cast<char>(byte(random));
+    MessageHead head;
+    head.version = i % 3 == 0 ? 2 : 1;
+    const auto content = content_of(head, body);
+    const auto pose = content ? pose_of(i % 3 == 2 ? "POSITION" : "TRANSFORM", content->bytes)
+                              : model::Result<pose::Pose>(content.error());
+    if (!pose) {
+      EXPECT_NE(sentence_of(pose), "");
+      continue;
+    }
+    ++poses;
+    EXPECT_TRUE(pose->position_m.allFinite());
+    EXPECT_NEAR(pose->rotation.norm(), 1.0, 1e-2);
+  }
+  EXPECT_GT(poses, 1000);
+}
+
 }  // namespace tact::host::igtl::igtl_wire_test
