@@ -40,6 +40,15 @@ left_over() {
 }
 
 before=$(left_over)
+# GRUB as a file that says what it would tell the kernel: the chroot has no disk to boot from.
+mkdir -p "$base/boot/grub" "$base/etc/default" && touch "$base/boot/grub/grub.cfg"
+cat >"$base/usr/sbin/update-grub" <<'END'
+#!/bin/sh -e
+GRUB_CMDLINE_LINUX=quiet TACT_ONLINE=0-3
+for file in /etc/default/grub.d/*.cfg; do [ ! -e "$file" ] || . "$file"; done
+echo "$GRUB_CMDLINE_LINUX" >/boot/grub/grub.cfg
+END
+chmod 755 "$base/usr/sbin/update-grub"
 step install
 inside 'apt-get -qq update && apt-get -qq install -y --no-install-recommends /root/*.deb' >"$base/root/log" 2>&1 ||
   { tail -n 30 "$base/root/log"; exit 1; }
@@ -72,18 +81,30 @@ tact-view --open /root/seen/r --export /root/frames.csv | grep -v " 0 frames"
 ! runuser -u tact-view -g haptics -- tactctl /etc/tact/liver.toml stop --folder /run/tact || exit 1
 ! runuser -u tact-view -g haptics -- test -w "$(echo /run/tact/control-*)" || exit 1
 tactctl /etc/tact/liver.toml status && tactctl /etc/tact/liver.toml stop && wait $tactd'
+step "tact-rt keeps a core for the loop, and tact-doctor --fix has no more to write"
+inside 'grep "^quiet isolcpus=domain,managed_irq,3 nohz_full=3 rcu_nocbs=3 irqaffinity=0-2$" /boot/grub/grub.cfg
+systemctl is-enabled tact-rt
+mkdir -p /root/pc/proc /root/pc/sys/devices/system/cpu /root/pc/etc && cd /root/pc
+echo "#1 SMP PREEMPT_RT" >proc/version && echo quiet >proc/cmdline && echo 0-3 >sys/devices/system/cpu/online
+echo >sys/devices/system/cpu/isolated && mkdir -p proc/irq/36/eth0 && echo 0-3 >proc/irq/36/smp_affinity_list
+for of in etc/default/grub.d lib/systemd/system etc/security/limits.d; do mkdir -p $of && cp -L /$of/*tact* $of/; done
+tact-doctor --root /root/pc --fix --yes | tee /root/fixed
+[ "$(grep -c " is up to date\$" /root/fixed)" = 3 ] && grep "^nothing to write" /root/fixed'
 step "the units are sound"
-inside 'systemd-analyze verify --man=no tactd@liver.service tact-view.service 2>&1 | tee /root/verify
+inside 'systemd-analyze verify --man=no tactd@liver.service tact-view.service tact-rt.service 2>&1 | tee /root/verify
 test ! -s /root/verify'
 step "an edited scene outlives the same package"
 inside 'echo "# mine" >>/etc/tact/liver.toml
 apt-get -qq install -y --reinstall /root/tact_*.deb >/dev/null 2>&1
 grep -q "# mine" /etc/tact/liver.toml'
+step "the kernel's parameters go with tact-rt"
+inside 'apt-get -qq remove -y tact-rt >/dev/null 2>&1
+grep -x quiet /boot/grub/grub.cfg'
 step "removed: scenes of /etc/tact stay; purged: nothing stays"
 inside 'apt-get -qq remove -y tact tact-view tact-tools tact-lab >/dev/null 2>&1
 test ! -e /usr/bin/tactd && test -e /etc/tact/liver.toml
 mkdir -p /var/lib/tact/black-box
-dpkg --purge tact tact-view tact-tools tact-lab >/dev/null 2>&1'
+dpkg --purge tact tact-view tact-tools tact-lab tact-rt >/dev/null 2>&1'
 after=$(left_over)
 diff <(echo "$before") <(echo "$after") || { echo "debian_packages.sh: that is left"; exit 1; }
 step "all kept"

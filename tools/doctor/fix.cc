@@ -67,16 +67,22 @@ bool run(const std::vector<std::string>& words, const FixOptions& options) {
   return false;
 }
 
-bool stands(const FixOptions& options, const DropIn& file) {
-  const auto now = model::io::read_file(options.root + file.path);
-  return now && *now == file.content;
+/// Where the file stands as it should, its own place or a package's; empty: nowhere.
+std::string place_of(const FixOptions& options, const DropIn& file) {
+  std::vector<std::string> places{file.path};
+  places.insert(places.end(), file.packaged.begin(), file.packaged.end());
+  for (const std::string& path : places) {
+    const auto now = model::io::read_file(options.root + path);
+    if (now && *now == file.content) return options.root + path;
+  }
+  return {};
 }
 
 /// What is to be written and run; the rest of the plan stands.
 FixPlan what_is_left(const FixPlan& plan, const FixOptions& options) {
   FixPlan rest{.files = {}, .commands = {}, .left = plan.left};
   for (const DropIn& file : plan.files)
-    if (!stands(options, file)) rest.files.push_back(file);
+    if (place_of(options, file).empty()) rest.files.push_back(file);
   for (const FixCommand& command : plan.commands)
     if (command.file.empty() ||
         std::ranges::find(rest.files, command.file, &DropIn::path) != rest.files.end())
@@ -86,7 +92,8 @@ FixPlan what_is_left(const FixPlan& plan, const FixOptions& options) {
 
 void print_plan(const FixPlan& all, const FixPlan& rest, const FixOptions& options) {
   for (const DropIn& file : all.files)
-    if (stands(options, file)) fmt::print("{}{} is up to date\n", options.root, file.path);
+    if (const std::string place = place_of(options, file); !place.empty())
+      fmt::print("{} is up to date\n", place);
   for (const DropIn& file : rest.files)
     fmt::print("--- {}{}\n{}", options.root, file.path, file.content);
   for (const FixCommand& command : rest.commands) fmt::print("+ {}\n", line_of(command.words));
@@ -133,7 +140,7 @@ Result<int> fix(const FixPlan& plan, const FixOptions& options) {
   const FixPlan rest = what_is_left(plan, options);
   print_plan(plan, rest, options);
   if (rest.files.empty() && rest.commands.empty()) {
-    fmt::print("nothing to write\n");
+    fmt::print("nothing to write; what is up to date holds from the next boot\n");
     return kDone;
   }
   if (options.dry_run) return kDone;

@@ -7,6 +7,10 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "tools/doctor/grub_text.h"
+#include "tools/doctor/limits_text.h"
+#include "tools/doctor/unit_text.h"
+
 namespace tact::tools::doctor {
 namespace {
 
@@ -16,31 +20,13 @@ using firmware::pc::Verdict;
 using Rows = std::vector<PcRow>;
 using Names = std::initializer_list<std::string_view>;
 
-// As tools/deploy/haptics.conf, which the package has: a test compares them.
-constexpr const char* kLimits =
-    R"(# SPDX-License-Identifier: Apache-2.0
-# Group haptics may use real-time priorities up to 85 and lock its memory: the loop runs at
-# SCHED_FIFO 80. Goes to /etc/security/limits.d/ (tools/deploy/install); holds from the next login.
-@haptics - rtprio 85
-@haptics - memlock unlimited
-)";
-
-constexpr const char* kUnitText =
-    R"(# tact-doctor --fix: core {0} is the loop's. tact-doctor --undo takes this away.
-[Unit]
-Description=Full CPU speed, and no interrupts on core {0}, for tact
-After=irqbalance.service
-
-[Service]
-Type=oneshot
-RemainAfterExit=yes
-ExecStart=/bin/sh -c 'for f in /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor; do [ ! -w $$f ] || echo performance >$$f; done'
-# Those of a core's own timer cannot be moved.
-ExecStart=/bin/sh -c 'for f in /proc/irq/*/smp_affinity_list; do echo {1} >$$f || true; done 2>/dev/null'
-
-[Install]
-WantedBy=multi-user.target
-)";
+/// A drop-in of tools/deploy/rt for `core`: as it stands where it chooses `own_choice` by itself.
+std::string with_core(std::string text, const std::string& line, int core, int own_choice) {
+  const std::size_t found = text.find("\n" + line + "\n");
+  if (core == own_choice || found == std::string::npos) return text;
+  const std::size_t value = text.find("TACT_CORE=", found) + 10;
+  return text.replace(value, found + 1 + line.size() - value, std::to_string(core));
+}
 
 const PcRow* red_row(const Rows& rows, std::string_view name) {
   for (const PcRow& row : rows)
@@ -55,23 +41,30 @@ bool any_red(const Rows& rows, Names names) {
 /// Somebody else has given the kernel isolated cores: two answers would contradict each other.
 bool is_isolated_by_another(const PcQuestion& q) {
   const auto given = q.files.line("/proc/cmdline");
-  return given && given->find("isolcpus=") != std::string::npos && !q.files.is_there(kGrubDropIn);
+  return given && given->find("isolcpus=") != std::string::npos && !q.files.is_there(kGrubDropIn) &&
+         !q.files.is_there(kPackagedGrubDropIn);
 }
 
 bool plan_core(const PcQuestion& q, const std::string& others, FixPlan& plan) {
   if (others.empty() || is_isolated_by_another(q)) return false;
-  plan.files.push_back(
-      {kGrubDropIn,
-       fmt::format("# tact-doctor --fix: core {} is the loop's. tact-doctor --undo takes this "
-                   "away.\nGRUB_CMDLINE_LINUX=\"$GRUB_CMDLINE_LINUX {}\"\n",
-                   q.core, firmware::pc::isolation_parameters(q))});
+  const auto online =
+      firmware::pc::parse_cpu_list(q.files.line("/sys/devices/system/cpu/online").value_or(""));
+  plan.files.push_back({.path = kGrubDropIn,
+                        .content = with_core(kGrubText, "TACT_CORE=${TACT_CORE:-}", q.core,
+                                             online.empty() ? -1 : online.back()),
+                        .packaged = {kPackagedGrubDropIn}});
   plan.commands.push_back(
       {.file = kGrubDropIn, .words = {"update-grub"}, .back = {"update-grub"}, .back_last = true});
   return true;
 }
 
-void plan_unit(const PcQuestion& q, const std::string& others, FixPlan& plan) {
-  plan.files.push_back({kUnit, fmt::format(fmt::runtime(kUnitText), q.core, others)});
+void plan_unit(const PcQuestion& q, FixPlan& plan) {
+  const int own_choice = firmware::pc::core_in_question({.files = q.files, .core = -1});
+  plan.files.push_back(
+      {.path = kUnit,
+       .content = with_core(kUnitText, "Environment=TACT_CORE=", q.core, own_choice),
+       .packaged = {"/lib/systemd/system/tact-rt.service",
+                    "/usr/lib/systemd/system/tact-rt.service"}});
   plan.commands.push_back({.file = kUnit,
                            .words = {"systemctl", "daemon-reload"},
                            .back = {"systemctl", "daemon-reload"},
@@ -106,10 +99,13 @@ FixPlan plan_fix(const PcQuestion& question, const Rows& rows, const FixPeople& 
   if (any_red(rows, {"isolated core", "timer tick"}) && plan_core(q, others, plan))
     take({"isolated core", "timer tick"});
   if (any_red(rows, {"interrupts", "CPU governor"}) && !others.empty()) {
-    plan_unit(q, others, plan);
+    plan_unit(q, plan);
     take({"interrupts", "CPU governor"});
   }
-  plan.files.push_back({kLimitsDropIn, kLimits});
+  plan.files.push_back(
+      {.path = kLimitsDropIn,
+       .content = kLimitsText,
+       .packaged = {"/etc/security/limits.d/tact.conf", "/etc/security/limits.d/haptics.conf"}});
   plan_group(people, plan);
   for (const PcRow& row : rows)
     if (row.verdict == Verdict::kRed && std::ranges::find(done, row.name) == done.end())

@@ -14,6 +14,7 @@ namespace tact::tools::doctor {
 struct DropIn {
   std::string path;
   std::string content;
+  std::vector<std::string> packaged{};  // where a package may have it: the same bytes there will do
 };
 
 /// A program with its arguments, and the one that takes it back.
@@ -30,7 +31,9 @@ struct FixPlan {
   std::vector<std::string> left;     // red rows that only a person can cure: "NAME: CURE"
 };
 
-inline constexpr const char* kGrubDropIn = "/etc/default/grub.d/tact.cfg";
+// Read before that of the package tact-rt, which then adds nothing.
+inline constexpr const char* kGrubDropIn = "/etc/default/grub.d/tact-doctor.cfg";
+inline constexpr const char* kPackagedGrubDropIn = "/etc/default/grub.d/tact-rt.cfg";
 inline constexpr const char* kLimitsDropIn = "/etc/security/limits.d/tact-doctor.conf";
 inline constexpr const char* kUnit = "/etc/systemd/system/tact-pc.service";
 

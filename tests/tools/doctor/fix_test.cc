@@ -10,6 +10,7 @@
 #include <sstream>
 #include <string>
 
+#include "firmware/pc/pc_check.h"
 #include "tests/support/program.h"
 #include "tools/doctor/fix_plan.h"
 #include "tools/doctor/undo_store.h"
@@ -24,6 +25,16 @@ std::string content(const std::string& path) {
   std::stringstream text;
   text << file.rdbuf();
   return text.str();
+}
+
+const std::string kDeploy = TACT_SOURCE_DIR "/tools/deploy/";
+
+/// What update-grub reads from a drop-in, on a PC with these CPUs and these parameters.
+std::string grub_line(const std::string& file, const std::string& online,
+                      const std::string& before = "quiet") {
+  return tests::run_command("env GRUB_CMDLINE_LINUX='" + before + "' TACT_ONLINE=" + online +
+                            " sh -euc '. " + file + "; echo \"$GRUB_CMDLINE_LINUX\"'")
+      .output;
 }
 
 bool has(const Outcome& outcome, const std::string& text) {
@@ -72,13 +83,9 @@ class Fix : public testing::Test {
 TEST_F(Fix, WritesWhatTheRowsAdviseAndSaysWhatIsLeft) {
   const Outcome out = doctor("--fix --yes");
   EXPECT_EQ(out.status, 0) << out.output;
-  EXPECT_EQ(content(root + kGrubDropIn).substr(content(root + kGrubDropIn).find('\n') + 1),
-            "GRUB_CMDLINE_LINUX=\"$GRUB_CMDLINE_LINUX isolcpus=domain,managed_irq,3 nohz_full=3 "
-            "rcu_nocbs=3 irqaffinity=0-2\"\n");
-  EXPECT_EQ(content(root + kLimitsDropIn), content(TACT_SOURCE_DIR "/tools/deploy/haptics.conf"));
-  const std::string unit = content(root + kUnit);
-  EXPECT_NE(unit.find("echo performance >$$f"), std::string::npos) << unit;
-  EXPECT_NE(unit.find("echo 0-2 >$$f"), std::string::npos) << unit;
+  EXPECT_EQ(content(root + kGrubDropIn), content(kDeploy + "rt/tact-rt.cfg"));
+  EXPECT_EQ(content(root + kUnit), content(kDeploy + "rt/tact-rt.service"));
+  EXPECT_EQ(content(root + kLimitsDropIn), content(kDeploy + "haptics.conf"));
   for (const char* path : {kGrubDropIn, kUnit, kLimitsDropIn}) {
     EXPECT_TRUE(has(out, "--- " + root + path)) << out.output;
     EXPECT_TRUE(has(out, content(root + path))) << "said before it is written: " << out.output;
@@ -88,12 +95,72 @@ TEST_F(Fix, WritesWhatTheRowsAdviseAndSaysWhatIsLeft) {
   EXPECT_FALSE(has(out, "  CPU governor: ")) << out.output;
 }
 
+TEST_F(Fix, TheKernelIsToldWhatTheRowsAdvise) {
+  const std::string file = kDeploy + "rt/tact-rt.cfg";
+  EXPECT_EQ(grub_line(file, "0-3"), "quiet " +
+                                        firmware::pc::isolation_parameters(
+                                            {.files = firmware::pc::PcFiles(root), .core = 3}) +
+                                        "\n");
+  EXPECT_EQ(grub_line(file, "0-1"),
+            "quiet isolcpus=domain,managed_irq,1 nohz_full=1 rcu_nocbs=1 irqaffinity=0\n");
+  EXPECT_EQ(grub_line(file, "0"), "quiet\n") << "one core is nobody's alone";
+  EXPECT_EQ(grub_line(file, "0-3", "isolcpus=1"), "isolcpus=1\n") << "another file has decided";
+  ASSERT_EQ(doctor("--fix --yes --core 2").status, 0);
+  EXPECT_EQ(grub_line(root + kGrubDropIn, "0-3"),
+            "quiet isolcpus=domain,managed_irq,2 nohz_full=2 rcu_nocbs=2 irqaffinity=0-1,3-3\n");
+  EXPECT_NE(content(root + kUnit).find("\nEnvironment=TACT_CORE=2\n"), std::string::npos);
+}
+
+// One of the two adds the parameters, the doctor's first: it may name a core.
+TEST_F(Fix, WhatThePackageTactRtHasIsNotWrittenAgain) {
+  put(kPackagedGrubDropIn, content(kDeploy + "rt/tact-rt.cfg"));
+  put("/lib/systemd/system/tact-rt.service", content(kDeploy + "rt/tact-rt.service"));
+  put("/etc/security/limits.d/tact.conf", content(kDeploy + "haptics.conf"));
+  const auto before = all();
+  const Outcome out = doctor("--fix --yes");
+  EXPECT_EQ(out.status, 0) << out.output;
+  EXPECT_TRUE(has(out, std::string(kPackagedGrubDropIn) + " is up to date\n")) << out.output;
+  EXPECT_TRUE(has(out, "nothing to write")) << out.output;
+  EXPECT_FALSE(has(out, "+ update-grub")) << out.output;
+  EXPECT_EQ(all(), before);
+  ASSERT_EQ(doctor("--fix --yes --core 1").status, 0);
+  EXPECT_LT(std::string(kGrubDropIn), kPackagedGrubDropIn)
+      << "the order in which update-grub reads";
+  const std::string first = grub_line(root + kGrubDropIn, "0-3");
+  EXPECT_NE(first.find("isolcpus=domain,managed_irq,1 "), std::string::npos) << first;
+  EXPECT_EQ(grub_line(root + kPackagedGrubDropIn, "0-3", first.substr(0, first.size() - 1)), first);
+}
+
 TEST_F(Fix, TheUnitIsSound) {
   if (std::system("command -v systemd-analyze >/dev/null") != 0) GTEST_SKIP() << "no systemd";
   ASSERT_EQ(doctor("--fix --yes").status, 0);
   const Outcome judged = tests::run_command("systemd-analyze verify --man=no " + root + kUnit +
                                             " 2>&1 | grep tact-pc");
   EXPECT_EQ(judged.output, "");
+}
+
+// Its commands on this small PC: the paths of /proc and /sys are the only change.
+TEST_F(Fix, TheUnitSetsTheGovernorAndMovesTheInterrupts) {
+  const std::string unit = content(kDeploy + "rt/tact-rt.service");
+  std::istringstream lines(unit);
+  std::string script;
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with("ExecStart=")) script += line.substr(10) + "\n";
+  for (const auto& [from, to] : {std::pair<std::string, std::string>{"$$", "$"},
+                                 {"/sys/devices", root + "/sys/devices"},
+                                 {"/proc/irq", root + "/proc/irq"}})
+    for (std::size_t at = 0; (at = script.find(from, at)) != std::string::npos; at += to.size())
+      script.replace(at, from.size(), to);
+  for (const char* core : {"cpu0", "cpu1", "cpu2"}) fs::create_directories(root + cpus + core);
+  put("/script", script);
+  ASSERT_EQ(tests::run_command("TACT_CORE= sh -eu " + root + "/script").status, 0);
+  EXPECT_EQ(content(root + cpus + "cpu3/cpufreq/scaling_governor"), "performance\n");
+  EXPECT_EQ(content(root + "/proc/irq/36/smp_affinity_list"), "0,1,2\n");
+  put(cpus + "isolated", "1\n");
+  ASSERT_EQ(tests::run_command("TACT_CORE= sh -eu " + root + "/script").status, 0);
+  EXPECT_EQ(content(root + "/proc/irq/36/smp_affinity_list"), "0,2,3\n");
+  ASSERT_EQ(tests::run_command("TACT_CORE=0 sh -eu " + root + "/script").status, 0);
+  EXPECT_EQ(content(root + "/proc/irq/36/smp_affinity_list"), "1,2,3\n");
 }
 
 TEST_F(Fix, TwiceIsAsOnce) {
@@ -116,7 +183,7 @@ TEST_F(Fix, UndoPutsEveryByteBack) {
   EXPECT_NE(content(root + kGrubDropIn), own);
   // Of a second --fix, for another core, the first one's files are not what was there before.
   ASSERT_EQ(doctor("--fix --yes --core 2").status, 0);
-  EXPECT_NE(content(root + kGrubDropIn).find("isolcpus=domain,managed_irq,2"), std::string::npos);
+  EXPECT_NE(content(root + kGrubDropIn).find("\nTACT_CORE=2\n"), std::string::npos);
   const Outcome undone = doctor("--undo --yes");
   EXPECT_EQ(undone.status, 0) << undone.output;
   fs::remove(root + "/var/lib");  // empty, or this fails
@@ -152,7 +219,7 @@ TEST_F(Fix, ADryRunWritesNothing) {
   const auto before = all();
   const Outcome out = doctor("--fix --dry-run");
   EXPECT_EQ(out.status, 0) << out.output;
-  EXPECT_TRUE(has(out, "isolcpus=")) << out.output;
+  EXPECT_TRUE(has(out, "isolcpus=domain")) << out.output;
   EXPECT_EQ(all(), before);
   ASSERT_EQ(doctor("--fix --yes").status, 0);
   const auto after = all();
