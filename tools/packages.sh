@@ -57,6 +57,9 @@ RIG_PACKAGES=(qemu-system-x86=qemu-system-x86_64 cpio kmod zstd xz-utils mmdebst
 PAGE_PACKAGES=(nodejs=node npm=npm)
 # What makes and judges Debian packages (tools/package).
 DEB_PACKAGES=(debhelper dpkg-dev fakeroot help2man lintian git=git)
+# What makes a disk image (tools/image), and what boots it (tests/image).
+IMAGE_PACKAGES=(mmdebstrap fdisk=sfdisk e2fsprogs dosfstools=mkfs.fat mtools=mcopy)
+IMAGE_TEST_PACKAGES=(qemu-system-x86=qemu-system-x86_64 ovmf)
 
 # has_option BUILD_DIR OPTION ON|OFF : is no more asked for than is configured?
 has_option() { [ "$3" = OFF ] || grep -q "^$2:[A-Z]*=ON" "$1/CMakeCache.txt"; }
