@@ -28,7 +28,7 @@ class Pc:
     """Switched on when made. `firmware` is "bios" or "uefi"."""
 
     def __init__(self, disk, firmware, folder):
-        options = ["-drive", f"file={disk},if=virtio,format=raw", "-serial", "stdio"]
+        options = ["-drive", f"file={disk},if=ide,format=raw", "-serial", "stdio"]
         if firmware == "uefi":
             variables = folder / "uefi.fd"
             shutil.copy(OVMF / "OVMF_VARS_4M.fd", variables)

@@ -47,6 +47,7 @@ settle() {
   : >"$pc/etc/machine-id"  # the first boot makes one
   install -D -m 644 "$own/80-wired.network" "$pc/etc/systemd/network/80-wired.network"
   install -D -m 644 "$own/journal.conf" "$pc/etc/systemd/journald.conf.d/tact.conf"
+  install -D -m 644 "$own/resolved.conf" "$pc/etc/systemd/resolved.conf.d/tact.conf"
   install -D -m 644 "$own/root.conf" "$pc/etc/repart.d/50-root.conf"
   inside 'useradd --create-home --shell /bin/bash --groups sudo,haptics lab
     passwd --quiet --delete lab && passwd --quiet --expire lab
