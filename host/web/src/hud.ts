@@ -60,8 +60,8 @@ export class Hud {
     if (!scene) return;
     document.title = `tact: ${scene.scene}${this.is_replay ? " (replay)" : ""}`;
     by_id("banner").hidden = !scene.non_rt;
-    write("banner", this.is_replay ? "recorded without hard real time: force capped at 25 %"
-      : "no hard real time on this PC: force capped at 25 %");
+    write("banner", this.is_replay ? "recorded without hard real time: force capped at 25\u00a0%"
+      : "no hard real time on this PC: force capped at 25\u00a0%");
   }
 
   /** No status: tact-view is gone, or it `refused` this page. */

@@ -36,7 +36,7 @@ export class Plots {
       ],
     });
     this.margin = new Plot(byId("plot_margin"), {
-      title: "time left before the deadline", unit: "µs", digits: 0, range: (values) => robust_range(values, 50),
+      title: "time left", unit: "µs", digits: 0, range: (values) => robust_range(values, 50),
       headline: largest,
       lines: [{ label: "least", color: "#8fb8ff", fill: "rgba(143,184,255,0.12)" }],
     });
