@@ -70,8 +70,8 @@ bool RtLoop::arms_at_start() const RT_SAFE {
          record_.output.state == State::kReady && !record_.input.commands.arm;
 }
 
-// The lines' word counts before the device's. The watch's comes last to be asked, as it may be
-// about the calls of this very tick, and first to be told.
+// The lines' word counts before the device's. The watch is asked last, because its fault may
+// concern the calls just made; its fault is reported first.
 Fault RtLoop::read(std::int64_t now_ns) RT_SAFE {
   progress_.enter(Callee::kLines);
   const Fault lines_fault = lines_.read(now_ns);

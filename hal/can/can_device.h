@@ -6,11 +6,12 @@
 //
 //     off --permit--> starting --all three give torque--> ready --not permitted--> off
 //
-// Torque is zero unless ready. A sample is fresh, with power or without, when drives that sample at
-// one SYNC have all told a new position since the last read; of drives on clocks of their own when
-// one is new and none older than one and a half periods: now and then a tick gets no frame of one
-// axis and the next gets two. Its stamp is the arrival of the oldest. Without samples the torques
-// fade (sample_gap.h). A fault stops all three and latches; only opening the device anew clears it.
+// Torque is zero unless ready. When is a sample fresh? Of drives that sample at one SYNC, when all
+// three have sent a new position since the last read. Of drives on clocks of their own, when one
+// has and none is older than one and a half periods: now and then a tick gets no frame of one axis
+// and the next gets two. Power does not matter. Its stamp is the arrival of the oldest. Without
+// samples the torques fade (sample_gap.h). A fault stops all three and latches; only opening the
+// device anew clears it.
 //
 // A new kind of drive is its frames, its bring-up and a CanDrives; nothing of a device is in them.
 #pragma once

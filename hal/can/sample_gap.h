@@ -4,9 +4,9 @@
 //     missing samples in a row    0, 1      2 .. n + 1                  n = 10 ms of ticks
 //     torque_ratio                   1      falls by 1/n per tick       0 after n + 1
 //
-// Gravity torques belong to a pose: without news of it they push the arms somewhere. One sample
-// less is the drives' own clocks, twenty are a device that is lost. When samples come again the
-// ratio rises as it fell.
+// Gravity torques belong to a pose: without news of it they push the arms somewhere. One
+// missing sample is normal, as the drives run on clocks of their own; twenty mean that the device
+// is lost. When samples come again the ratio rises as it fell.
 #pragma once
 
 #include <algorithm>

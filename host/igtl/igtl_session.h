@@ -3,8 +3,9 @@
 //
 // In: a message that is not asked for is read away unkept, up to kLargestBody. One that is and is
 // damaged is left out; the connection goes on. Bytes that are no header, or a length that nothing
-// has, end it. Out: while one batch is on its way the next waits, and a newer one takes its place,
-// so who reads slowly sees fewer and holds no memory. Who takes nothing for kPatience is let go.
+// has, end it. Out: while one batch is on its way the next waits, and a newer one takes its place:
+// a slow client skips batches and costs no memory. One that reads nothing for kPatience is
+// disconnected.
 #pragma once
 
 #include <array>

@@ -14,16 +14,18 @@
 //
 // U is the site law's (site_law.h), s the place on the surface; as s follows the tool, the slope of
 // U along the surface is felt too. t: tangential displacement of the tissue, m, f = K t (shear.h),
-// in axes that turn with n; the springs are the tissue's own: stiffer as the contact grows, and
-// then until the sphere leaves, with the same force and less energy. On another triangle they are
-// those of the new place, where that leaves no more energy at the same force. The law is asked
-// with the sphere's own dent e = d - what the other spheres have sunk the site (coupling.h); how
-// they couple is kept from a sphere's first touch until it leaves. What a law adds for speed (LW-3)
-// comes after that: b of the dent, times the speed of the sphere's own depth, so that each sphere
-// takes energy by itself. A change of state never adds
-// energy: slack takes up whatever depth would come for free (arming inside the organ, letting go
-// over a bump or stiffer tissue, a nearest point that jumps) and shrinks only as the tool
-// withdraws.
+// in axes that turn with n. The springs stiffen as the contact grows and stay so until the sphere
+// leaves; stiffening keeps the force and lowers the stored energy. On another triangle the springs
+// are those of the new place, if that stores no more energy at the same force.
+//
+// The law is asked with the sphere's own dent e: d less what the other spheres have sunk the site
+// (coupling.h). How they couple is kept from a sphere's first touch until it leaves. Damping (LW-3)
+// is added last: b of the dent, times the speed of the sphere's own depth, so that each sphere
+// takes energy by itself.
+//
+// A change of state never adds energy. Slack takes up the depth that would come for free (arming
+// inside the organ, letting go over a bump or stiffer tissue, a nearest point that jumps). It
+// shrinks only as the tool withdraws.
 //
 // Bodies: contact.cc (which site, how deep, how hard), contact_grip.cc (hold, tear, let go),
 // contact_slide.cc (forces along the surface).

@@ -6,8 +6,8 @@
 // leaves only by sliding [C. Zilles, J. Salisbury, IROS 1995; W. Harwin, N. Melder, EuroHaptics
 // 2002]. It goes to the nearest point as long as that
 //
-//     PX-1   moves at most kSlide_ratio times as far as the tool moves sideways; up to one radius
-//            of the sphere may be saved, for the facets of a mesh
+//     PX-1   moves at most kSlide_ratio times as far as the tool moves sideways; what it has not
+//            used is saved, up to one radius of the sphere, so that it can cross a facet
 //
 // and else stays: then distance and normal are those of the line from the sphere's centre to it. A
 // law beyond its range keeps the proxy where it is. Moves only ever shorten the line: where the law

@@ -10,9 +10,9 @@
 //     P_ij  turns the axes of j into those of i, without what lies along the normals
 //
 // Half-space: across the line that joins two sites h is right, along it a factor of 1 / (1 - nu) is
-// left out [Johnson, Contact Mechanics (1985), 3.6]. b is that of the normal motion: what a lobe's
-// sideways motion at one site is at the other, the map does not know. The axes of a site turn with
-// its normal, G and c P with them.
+// left out [Johnson, Contact Mechanics (1985), 3.6]. b is that of the normal motion,
+// as the map has no sideways coupling between sites. The axes of a site turn with its normal, G and
+// c P with them.
 #pragma once
 
 #include <array>

@@ -4,10 +4,10 @@
 //
 // Vertices outside stay at rest. A vertex with a neighbour outside is the rim and stays there too,
 // so every vertex that moves has all its springs. A vertex that leaves the region returns to rest,
-// except on the lips of a cut, which keep the displacement that they had. What a return adds to the
-// stored energy is taken from the velocities of those that stay; what they do not have is the debt:
-// handover_debt_J, small, since the rim is where nothing moves. With relaxation (patch_memory.h) a
-// vertex that leaves also forgets how it was stretched, lips too.
+// except on the lips of a cut, which keep the displacement that they had. The energy that a return
+// adds is taken from the kinetic energy of those that stay. What that cannot cover is kept as
+// handover_debt_J; it is small, since hardly anything moves at the rim. With relaxation
+// (patch_memory.h) a vertex that leaves also forgets how it was stretched, lips too.
 //
 // Gathering costs the region, not the mesh. Cuts are marks on edges; the list of cut triangles and
 // of lips has a fixed capacity, and a blade that finds it full cuts no more.

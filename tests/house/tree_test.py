@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Nothing strays: what stands at the top, how large a file may be, and that every stage of
-tools/check runs in a workflow.
+tools/check runs in a workflow, but for those that need a chroot.
 
 Prints every breach as file: sentence. Exit status 0 or 1.
 """

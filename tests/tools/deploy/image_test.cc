@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tools/image: what it refuses, and the scene that it writes for a real device. tests/image boots
-// it.
+// tools/image: what it refuses, and the scene of a real device. tests/image boots it.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
