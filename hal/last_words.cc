@@ -22,9 +22,9 @@ void wait_ns(long pause_ns) {
 }
 
 int send_datagrams(int fd, std::span<const LastWords::Bytes> words) {
-  std::array<LastWords::Bytes, LastWords::kMost> bytes{};
-  std::array<iovec, LastWords::kMost> place{};
-  std::array<mmsghdr, LastWords::kMost> message{};
+  std::array<LastWords::Bytes, LastWords::kMax> bytes{};
+  std::array<iovec, LastWords::kMax> place{};
+  std::array<mmsghdr, LastWords::kMax> message{};
   for (std::size_t i = 0; i < words.size(); ++i) {
     bytes[i] = words[i];
     place[i] = {.iov_base = bytes[i].data(), .iov_len = bytes[i].size()};
@@ -56,7 +56,7 @@ int send_bulk(int fd, std::uint8_t endpoint, std::span<const LastWords::Bytes> w
 }  // namespace
 
 bool LastWords::add_step(std::span<const Bytes> words) {
-  if (count + words.size() > kMost) return false;
+  if (count + words.size() > kMax) return false;
   for (const Bytes& one : words) {
     step[count] = static_cast<std::uint8_t>(steps);
     word[count++] = one;
@@ -66,7 +66,7 @@ bool LastWords::add_step(std::span<const Bytes> words) {
 }
 
 int say_step(const LastWords& words, std::uint32_t step) {
-  const auto all = std::span(words.step).first(std::min<std::size_t>(words.count, words.kMost));
+  const auto all = std::span(words.step).first(std::min<std::size_t>(words.count, words.kMax));
   const auto [first, last] = std::ranges::equal_range(all, step);
   const auto of_step = std::span(words.word)
                            .subspan(static_cast<std::size_t>(first - all.begin()),

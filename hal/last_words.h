@@ -19,7 +19,7 @@
 namespace tact::hal {
 
 struct LastWords {
-  static constexpr std::size_t kMost = 32;  // CiA 402 drives need 12
+  static constexpr std::size_t kMax = 32;  // CiA 402 drives need 12
   enum class Carrier : std::uint8_t { kDatagrams, kUsbBulk };
   using Bytes = std::array<std::uint8_t, 16>;
 
@@ -27,8 +27,8 @@ struct LastWords {
   std::uint8_t endpoint = 0;  // of kUsbBulk
   int fd = -1;                // the device's own, open as long as the device
   std::uint32_t count = 0, steps = 0;
-  std::array<Bytes, kMost> word{};
-  std::array<std::uint8_t, kMost> step{};  // ascending; a millisecond lies between two steps
+  std::array<Bytes, kMax> word{};
+  std::array<std::uint8_t, kMax> step{};  // ascending; a millisecond lies between two steps
 
   /// Set-up: words of the next step. False: there is no room for them.
   bool add_step(std::span<const Bytes> words);

@@ -23,7 +23,7 @@ namespace {
 using model::Error;
 using model::Result;
 
-constexpr std::size_t kMostSilent = 8;
+constexpr std::size_t kMaxSilent = 8;
 constexpr int kQueue = 8;
 constexpr unsigned kPause_us = 20'000;  // else it would ask again and again
 
@@ -122,7 +122,7 @@ bool ControlSocket::accept_one() {
     return true;
   }
   // Whoever connects and says nothing makes room for the next.
-  if (silent_.size() == kMostSilent) {
+  if (silent_.size() == kMaxSilent) {
     close(silent_.front());
     silent_.erase(silent_.begin());
   }

@@ -16,7 +16,7 @@ class TickRing {
  public:
   /// For a second of ticks: a viewer may get one frame in that time.
   explicit TickRing(double rate_Hz = 1000.0)
-      : queue_(std::max<std::size_t>(kLeast, static_cast<std::size_t>(1.024 * rate_Hz))) {}
+      : queue_(std::max<std::size_t>(kMin, static_cast<std::size_t>(1.024 * rate_Hz))) {}
 
   /// Loop side. A full ring drops the record and counts it.
   void push(const TickRecord& record) RT_SAFE;
@@ -25,7 +25,7 @@ class TickRing {
   std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
 
  private:
-  static constexpr std::size_t kLeast = 4096;  // 4 s at 1 kHz, for a telemetry thread that is late
+  static constexpr std::size_t kMin = 4096;  // 4 s at 1 kHz, for a telemetry thread that is late
   boost::lockfree::spsc_queue<TickRecord> queue_;
   std::atomic<std::uint64_t> dropped_{0};
 };

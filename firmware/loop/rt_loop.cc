@@ -31,8 +31,8 @@ void RtLoop::step() RT_SAFE {
     ++statistics_.late_ticks;
     statistics_.skipped_ticks += static_cast<std::uint64_t>(skipped);
   }
-  constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max();
-  record_.input.skipped_periods = static_cast<std::uint32_t>(std::min(skipped, kMost));
+  constexpr std::int64_t kMax = std::numeric_limits<std::uint32_t>::max();
+  record_.input.skipped_periods = static_cast<std::uint32_t>(std::min(skipped, kMax));
   device_.between_ticks(static_cast<double>((1 + skipped) * period_ns) * 1e-9);
 }
 
@@ -171,8 +171,8 @@ std::int64_t RtLoop::end_phase(Phase phase, std::int64_t since_ns) RT_SAFE {
 void RtLoop::record_phase(Phase phase, std::int64_t duration_ns) RT_SAFE {
   const auto i = static_cast<std::size_t>(phase);
   statistics_.phase[i].record(duration_ns, record_.tick);
-  constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
-  record_.phase_ns[i] = static_cast<std::int32_t>(std::clamp<std::int64_t>(duration_ns, 0, kMost));
+  constexpr std::int64_t kMax = std::numeric_limits<std::int32_t>::max();
+  record_.phase_ns[i] = static_cast<std::int32_t>(std::clamp<std::int64_t>(duration_ns, 0, kMax));
 }
 
 }  // namespace tact::firmware::loop

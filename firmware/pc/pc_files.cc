@@ -15,12 +15,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostCpus = 4096;  // the kernel's own limit is 8192; a torn list must end
+constexpr int kMaxCpus = 4096;  // the kernel's own limit is 8192; a torn list must end
 
 bool parse_number(const char*& at, const char* end, int& number) {
   const auto [rest, error] = std::from_chars(at, end, number);
   at = rest;
-  return error == std::errc{} && number >= 0 && number < kMostCpus;
+  return error == std::errc{} && number >= 0 && number < kMaxCpus;
 }
 
 }  // namespace

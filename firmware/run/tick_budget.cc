@@ -17,8 +17,8 @@ namespace {
 
 using model::Vec3;
 
-constexpr std::size_t kTurnTicks = 500;   // one turn of the circle
-constexpr std::size_t kMostTicks = 4000;  // enough for a p99.9
+constexpr std::size_t kTurnTicks = 500;  // one turn of the circle
+constexpr std::size_t kMaxTicks = 4000;  // enough for a p99.9
 constexpr std::int64_t kLongest_ns = 150'000'000;
 constexpr double kCircleEdges = 5.0;  // radius: further than a patch bears before it gathers anew
 
@@ -67,11 +67,11 @@ LawTime measure_law(const model::scene::Scene& scene, model::contact::SiteLaw& t
     ways.push_back(circle(scene.organ_mesh, static_cast<std::uint32_t>((triangles * i) / spheres)));
   loop::MonotonicClock clock;
   std::vector<double> tick_us;
-  tick_us.reserve(kMostTicks);
+  tick_us.reserve(kMaxTicks);
   double unused_N = 0.0;
   const std::int64_t begin_ns = clock.now_ns();
   for (std::int64_t start_ns = begin_ns, end_ns = begin_ns;
-       tick_us.size() < kMostTicks && start_ns - begin_ns < kLongest_ns; start_ns = end_ns) {
+       tick_us.size() < kMaxTicks && start_ns - begin_ns < kLongest_ns; start_ns = end_ns) {
     const std::size_t tick = tick_us.size();
     const double wave = std::sin(0.02 * static_cast<double>(tick));
     for (std::size_t i = 0; i < spheres; ++i) {

@@ -165,7 +165,7 @@ Frame FrameBuilder::take(std::uint64_t dropped_records) {
 void FrameBuilder::add_patch(FramePatch& patch) {
   static_assert(kMaxPatchVertices == model::contact::kMaxShapeNodes &&
                 kMaxCutsTold == model::contact::kCutWindow);
-  constexpr double kMost_um = std::numeric_limits<std::int16_t>::max();
+  constexpr double kMax_um = std::numeric_limits<std::int16_t>::max();
   shapes_.read(shape_);  // or the one before
   patch.vertex_count = shape_.node_count;
   patch.cut_total = shape_.cut_total;
@@ -177,7 +177,7 @@ void FrameBuilder::add_patch(FramePatch& patch) {
     for (std::size_t k = 0; k < 3; ++k) {
       const double um = 1e6 * static_cast<double>(shape_.displacement_m[i][k]);
       patch.displacement_um[i][k] =
-          static_cast<std::int16_t>(std::clamp(std::round(um), -kMost_um, kMost_um));
+          static_cast<std::int16_t>(std::clamp(std::round(um), -kMax_um, kMax_um));
     }
 }
 

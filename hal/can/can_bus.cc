@@ -109,7 +109,7 @@ std::span<const CanFrameBytes> CanBus::take_batch() {
 
 void CanBus::miss() RT_SAFE {
   ++counts_.missed_cycles;
-  if (++missed_in_a_row_ < kMostMissedInARow) return;
+  if (++missed_in_a_row_ < kMaxMissedInARow) return;
   latch_.set({.fault = Fault::kBusDown, .kind = kind_of(CanCause::kNoRoom)});
 }
 
@@ -124,7 +124,7 @@ std::string can_bus_trouble(const FaultCause& cause, const std::string& interfac
       return fmt::format(
           "{} took no frames for {} ticks: nobody acknowledges, or its queue is too short; are the "
           "drives powered? ip link set {} txqueuelen 100",
-          interface, CanBus::kMostMissedInARow, interface);
+          interface, CanBus::kMaxMissedInARow, interface);
     case CanCause::kErrorFrame:
       return fmt::format("{}: {}", interface, error_frame_words(cause.code));
     case CanCause::kFirstOwn:

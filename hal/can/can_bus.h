@@ -50,7 +50,7 @@ enum class CanCause : std::uint8_t {
 
 class CanBus {
  public:
-  static constexpr int kMostMissedInARow = 20;
+  static constexpr int kMaxMissedInARow = 20;
 
   explicit CanBus(std::unique_ptr<CanSocket> socket) : socket_(std::move(socket)) {}
 
@@ -78,9 +78,9 @@ class CanBus {
   void miss() RT_SAFE;
 
   std::unique_ptr<CanSocket> socket_;
-  std::array<CanArrival, CanSocket::kMostReceived> arrivals_{};
-  std::array<CanReceived, CanSocket::kMostReceived> received_{};
-  std::array<CanFrameBytes, CanSocket::kMostSent> batch_{};
+  std::array<CanArrival, CanSocket::kMaxReceived> arrivals_{};
+  std::array<CanReceived, CanSocket::kMaxReceived> received_{};
+  std::array<CanFrameBytes, CanSocket::kMaxSent> batch_{};
   std::size_t batched_ = 0;
   bool batch_whole_ = true;
   bool cut_ = false;

@@ -187,7 +187,7 @@ class CanDevice final : public Device {
     for (std::size_t i = 1; i < 3; ++i)
       if (loop_.axes[i].arrival_ns < loop_.axes[oldest].arrival_ns) oldest = i;
     loop_.fail(oldest, DriveCause::kNoPosition,
-               static_cast<std::uint32_t>(SampleGap::kMostMissing * period_ns_ / kMs_ns),
+               static_cast<std::uint32_t>(SampleGap::kMaxMissing * period_ns_ / kMs_ns),
                Fault::kDeviceLost);
   }
 

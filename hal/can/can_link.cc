@@ -31,7 +31,7 @@ constexpr std::uint16_t kLinkInfo = 18, kInfoKind = 1, kInfoData = 2;
 constexpr std::uint16_t kCanBitTiming = 1, kCanState = 4, kCanRestartMs = 6;
 constexpr std::uint16_t kCanHardware = 280;  // ARPHRD_CAN
 constexpr int kReplyTimeout_ms = 1000;
-constexpr double kMostLoad = 0.95;
+constexpr double kMaxLoad = 0.95;
 
 struct Attribute {
   std::uint16_t type = 0;
@@ -161,7 +161,7 @@ std::optional<Error> check_can_link(const CanLink& link, const std::string& name
                     name, *link.restart_ms)};
   }
   if (auto error = check_state(link, name)) return error;
-  if (link.bitrate && cycle_bits * rate_Hz > kMostLoad * *link.bitrate) {
+  if (link.bitrate && cycle_bits * rate_Hz > kMaxLoad * *link.bitrate) {
     return Error{
         fmt::format("{0} runs at {1} bit/s, too slow for three drives at {2} Hz: sudo ip "
                     "link set {0} down; sudo ip link set {0} up type can bitrate 1000000, "

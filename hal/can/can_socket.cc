@@ -59,13 +59,13 @@ timespec wall_clock() RT_SAFE {  // the clock of the kernel's stamps; answered w
 CanSocket::CanSocket(int fd) : fd_(fd) {
   const int on = 1;
   setsockopt(fd_, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
-  for (std::size_t i = 0; i < kMostReceived; ++i) {
+  for (std::size_t i = 0; i < kMaxReceived; ++i) {
     in_place_[i] = {.iov_base = in_bytes_[i].data(), .iov_len = kCanFrameBytes};
     in_[i].msg_hdr.msg_iov = &in_place_[i];
     in_[i].msg_hdr.msg_iovlen = 1;
     in_[i].msg_hdr.msg_control = in_control_[i].bytes.data();
   }
-  for (std::size_t i = 0; i < kMostSent; ++i) {
+  for (std::size_t i = 0; i < kMaxSent; ++i) {
     out_place_[i] = {.iov_base = out_bytes_[i].data(), .iov_len = kCanFrameBytes};
     out_[i].msg_hdr.msg_iov = &out_place_[i];
     out_[i].msg_hdr.msg_iovlen = 1;
@@ -75,7 +75,7 @@ CanSocket::CanSocket(int fd) : fd_(fd) {
 CanSocket::~CanSocket() { close(fd_); }
 
 int CanSocket::receive(std::span<CanArrival> out) RT_SAFE {
-  const std::size_t most = std::min(out.size(), kMostReceived);
+  const std::size_t most = std::min(out.size(), kMaxReceived);
   for (std::size_t i = 0; i < most; ++i)
     in_[i].msg_hdr.msg_controllen = sizeof(Control);  // the kernel wrote what it used
   const int told = receive_batch(fd_, std::span(in_).first(most));
@@ -101,7 +101,7 @@ std::int64_t CanSocket::age_ns(const msghdr& message) const RT_SAFE {
 }
 
 int CanSocket::send(std::span<const CanFrameBytes> frames) RT_SAFE {
-  const std::size_t n = std::min(frames.size(), kMostSent);
+  const std::size_t n = std::min(frames.size(), kMaxSent);
   if (n == 0) return 0;
   std::copy_n(frames.begin(), n, out_bytes_.begin());
   return send_batch(fd_, std::span(out_).first(n));

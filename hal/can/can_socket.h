@@ -29,7 +29,7 @@ struct CanArrival {
 
 class CanSocket {
  public:
-  static constexpr std::size_t kMostReceived = 64, kMostSent = 16;  // in one call
+  static constexpr std::size_t kMaxReceived = 64, kMaxSent = 16;  // in one call
   static constexpr std::array kLoopCalls{SYS_recvmmsg, SYS_sendmmsg};
 
   /// Takes the file over and asks it for time stamps.
@@ -60,13 +60,13 @@ class CanSocket {
   };
   int fd_;
   StampAge stamps_;
-  std::array<mmsghdr, kMostReceived> in_{};
-  std::array<iovec, kMostReceived> in_place_{};
-  std::array<CanFrameBytes, kMostReceived> in_bytes_{};
-  std::array<Control, kMostReceived> in_control_{};
-  std::array<mmsghdr, kMostSent> out_{};
-  std::array<iovec, kMostSent> out_place_{};
-  std::array<CanFrameBytes, kMostSent> out_bytes_{};
+  std::array<mmsghdr, kMaxReceived> in_{};
+  std::array<iovec, kMaxReceived> in_place_{};
+  std::array<CanFrameBytes, kMaxReceived> in_bytes_{};
+  std::array<Control, kMaxReceived> in_control_{};
+  std::array<mmsghdr, kMaxSent> out_{};
+  std::array<iovec, kMaxSent> out_place_{};
+  std::array<CanFrameBytes, kMaxSent> out_bytes_{};
 };
 
 }  // namespace tact::hal::can

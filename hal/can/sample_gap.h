@@ -18,7 +18,7 @@ namespace tact::hal::can {
 
 class SampleGap {
  public:
-  static constexpr int kMostMissing = 20;
+  static constexpr int kMaxMissing = 20;
 
   explicit SampleGap(double period_s)
       : fade_ticks_(std::max(1, static_cast<int>(std::floor(kFade_s / period_s)))),
@@ -26,12 +26,12 @@ class SampleGap {
 
   /// Once per tick.
   void step(bool fresh) RT_SAFE {
-    missing_ = fresh ? 0 : std::min(missing_ + 1, kMostMissing);
+    missing_ = fresh ? 0 : std::min(missing_ + 1, kMaxMissing);
     const int change = missing_ == 1 ? 0 : (fresh ? 1 : -1);
     left_ticks_ = std::clamp(left_ticks_ + change, 0, fade_ticks_);
   }
   double torque_ratio() const RT_SAFE { return static_cast<double>(left_ticks_) / fade_ticks_; }
-  bool lost() const RT_SAFE { return missing_ >= kMostMissing; }
+  bool lost() const RT_SAFE { return missing_ >= kMaxMissing; }
 
  private:
   static constexpr double kFade_s = 0.010 * (1.0 + 1e-9);  // ten periods of 1 ms are ten

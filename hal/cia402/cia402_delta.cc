@@ -25,7 +25,7 @@ using model::Result;
 
 constexpr std::int64_t kMs_ns = 1'000'000;
 constexpr double kHostHeartbeat_Hz = 200.0;
-constexpr int kMostIdleTicks = 20;
+constexpr int kMaxIdleTicks = 20;
 
 /// Kinds of FaultCause, after those that all drives have.
 enum class Cia402Cause : std::uint8_t {
@@ -99,7 +99,7 @@ class Cia402s final : public can::CanDrives {
       const bool enabled = axis.state == Cia402State::kOperationEnabled;
       if (loop.power == CanPower::kReady && !enabled)
         loop.fail(i, Cia402Cause::kLeftEnabled, state);
-      if (loop.power == CanPower::kReady && axis.idle_ticks >= kMostIdleTicks)
+      if (loop.power == CanPower::kReady && axis.idle_ticks >= kMaxIdleTicks)
         loop.fail(i, Cia402Cause::kNotFollowing, 0);
       if (!enabled && loop.start_is_late())
         loop.fail(i, axis.guard.on() ? Cia402Cause::kNotStarted : Cia402Cause::kUnguarded, state);

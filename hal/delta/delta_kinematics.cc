@@ -9,8 +9,8 @@ namespace tact::hal::delta {
 namespace {
 
 constexpr Vec3 kAxis{0.0, 0.0, 1.0};
-constexpr double kLeastTransmission = 0.35;
-constexpr double kLeastRodSigma = 0.25;
+constexpr double kMinTransmission = 0.35;
+constexpr double kMinRodSigma = 0.25;
 
 double wrapped_rad(double angle_rad) RT_SAFE {  // of (-2 pi, 2 pi)
   if (angle_rad > std::numbers::pi) return angle_rad - 2.0 * std::numbers::pi;
@@ -165,8 +165,8 @@ DeltaIndices workspace_indices(const DeltaKinematics& delta, const Vec3& positio
     const bool inside = theta_rad[i] >= g.theta_min_rad && theta_rad[i] <= g.theta_max_rad;
     out.within_limits = out.within_limits && inside;
   }
-  out.within_limits = out.within_limits && out.least_transmission >= kLeastTransmission &&
-                      out.least_rod_sigma >= kLeastRodSigma;
+  out.within_limits = out.within_limits && out.least_transmission >= kMinTransmission &&
+                      out.least_rod_sigma >= kMinRodSigma;
   return out;
 }
 

@@ -134,7 +134,7 @@ Result<FalconCalibration> fit_falcon(std::span<const FalconBalance> samples) {
   const std::vector<delta::Joints> unit_Nm = unit_torques_Nm(samples);
   const auto squares = [&](double kg) { return fit_all(samples, unit_Nm, kg).squares; };
   double best_kg = 0.0, least = 1e300, most = 0.0;  // of any dead band: is there a least at all?
-  for (double kg = 0.0; kg <= kMostMovingMass_kg; kg += kStep_kg) {
+  for (double kg = 0.0; kg <= kMaxMovingMass_kg; kg += kStep_kg) {
     if (!fit_all(samples, unit_Nm, kg + 0.5 * kStep_kg).known)
       return Error{"the loads of an axis are all alike: hang more different masses"};
     if (squares(kg) < squares(best_kg)) best_kg = kg;

@@ -34,7 +34,7 @@ struct FalconCalibration {
   double residual_words = 0.0;  // root of the mean square
 };
 
-inline constexpr double kMostMovingMass_kg = 0.5;
+inline constexpr double kMaxMovingMass_kg = 0.5;
 
 /// An error says what to measure besides, or what went wrong.
 model::Result<FalconCalibration> fit_falcon(std::span<const FalconBalance> samples);

@@ -21,8 +21,8 @@ constexpr std::int64_t kSilent_ns = 2'500'000;    // 3 ticks of 1 ms, with their
 constexpr std::int64_t kGarbled_ns = 17'000'000;  // named before the gate gives up at 20 ticks
 constexpr std::int64_t kMute_ns = 500'000'000;    // whether anyone is armed or not
 constexpr int kMuteTicks = 20;
-constexpr double kMostCounts_per_s = 250e3;  // 6 m/s where the counts are finest
-constexpr double kMostCountsAtOnce = 250.0;
+constexpr double kMaxCounts_per_s = 250e3;  // 6 m/s where the counts are finest
+constexpr double kMaxCountsAtOnce = 250.0;
 constexpr FalconCommand kLastCommand{.lights = kFalconRed};
 constexpr const char* kUnguarded =
     "if tactd is killed, nothing zeroes the Falcon, because libusb's descriptor is not found: use "
@@ -113,7 +113,7 @@ bool FalconDevice::locate(const FalconReply& reply) RT_SAFE {
     const int counts = reply.report.counts[i];
     thigh_rad[i] = falcon_thigh_rad(counts);
     if (stamp_ns_ != 0 &&
-        std::abs(counts - counts_[i]) > kMostCountsAtOnce + kMostCounts_per_s * elapsed_s)
+        std::abs(counts - counts_[i]) > kMaxCountsAtOnce + kMaxCounts_per_s * elapsed_s)
       return false;
   }
   FalconForward forward = kinematics_.forward(thigh_rad, position_m_);

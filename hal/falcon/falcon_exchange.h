@@ -16,11 +16,11 @@ class FalconExchange {
  public:
   static constexpr std::int64_t kLost_ns = 8'000'000;
   static constexpr std::int64_t kResend_ns = 2'000'000;
-  static constexpr std::size_t kMost = 3;  // under way at once; a round trip takes two frames
+  static constexpr std::size_t kMax = 3;  // under way at once; a round trip takes two frames
 
   /// May a command be sent: few are unanswered, or the oldest is so for too long?
   bool may_send(std::int64_t now_ns) const RT_SAFE {
-    return count_ < kMost || now_ns - sent_ns_[first_] >= kResend_ns;
+    return count_ < kMax || now_ns - sent_ns_[first_] >= kResend_ns;
   }
   void sent(std::int64_t now_ns) RT_SAFE {
     if (count_ == kSlots) drop();

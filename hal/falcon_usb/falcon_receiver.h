@@ -49,14 +49,14 @@ class FalconReceiver {
 /// pulled is never taken apart (kernel threads of the USB hub run at normal priority).
 class FalconTurns {
  public:
-  static constexpr int kFree = 8;        // turns without a result before each one pauses
-  static constexpr int kMostEmpty = 40;  // then it is the end, 16 ms after the pauses began
+  static constexpr int kFree = 8;       // turns without a result before each one pauses
+  static constexpr int kMaxEmpty = 40;  // then it is the end, 16 ms after the pauses began
   static constexpr std::int64_t kPause_ns = 500'000;
 
   enum class Next { kGoOn, kPause, kEnd };
   Next turn(bool result) RT_SAFE {
     empty_ = result ? 0 : empty_ + 1;
-    if (empty_ >= kMostEmpty) return Next::kEnd;
+    if (empty_ >= kMaxEmpty) return Next::kEnd;
     return empty_ > kFree ? Next::kPause : Next::kGoOn;
   }
 

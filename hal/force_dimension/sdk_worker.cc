@@ -25,7 +25,7 @@ using model::Vec3;
 using model::Wrench;
 
 constexpr std::int64_t kLongestCycle_ns = 250'000;
-constexpr std::int64_t kLeastPause_ns = 50'000;  // a slow library must not starve the PC
+constexpr std::int64_t kMinPause_ns = 50'000;  // a slow library must not starve the PC
 constexpr std::int64_t kLoopGone_ns = 100'000'000;
 constexpr int kPriority = 78;
 constexpr std::int64_t kZeroFirst_ns = 2'000'000;         // of zero force after the forces went on
@@ -133,7 +133,7 @@ std::shared_ptr<SdkWorker> SdkWorker::start(const SdkSession& session, double ra
 void SdkWorker::run() {
   std::int64_t due_ns = monotonic_ns() / cycle_ns_ * cycle_ns_ + cycle_ns_ * 9 / 10;
   while (!quit_.load(std::memory_order_relaxed) && cycle()) {
-    due_ns = std::max(due_ns + cycle_ns_, monotonic_ns() + kLeastPause_ns);
+    due_ns = std::max(due_ns + cycle_ns_, monotonic_ns() + kMinPause_ns);
     sleep_until_ns(due_ns);
   }
   send({});

@@ -16,7 +16,7 @@ namespace {
 using model::Error;
 using model::Result;
 
-constexpr unsigned kMostEdges = 16;  // that the kernel keeps
+constexpr unsigned kMaxEdges = 16;  // that the kernel keeps
 
 struct CloseChip {
   void operator()(gpiod_chip* chip) const { gpiod_chip_close(chip); }  // releases its line, too
@@ -33,8 +33,8 @@ class GpioEdges final : public EdgeWatch {
                            .tv_nsec = std::chrono::nanoseconds(longest - seconds).count()};
     std::vector<Edge> edges;
     if (gpiod_line_event_wait(line_, &timeout) != 1) return edges;
-    std::array<gpiod_line_event, kMostEdges> events{};
-    const int count = gpiod_line_event_read_multiple(line_, events.data(), kMostEdges);
+    std::array<gpiod_line_event, kMaxEdges> events{};
+    const int count = gpiod_line_event_read_multiple(line_, events.data(), kMaxEdges);
     for (int i = 0; i < count; ++i) {
       const gpiod_line_event& e = events.at(static_cast<std::size_t>(i));
       edges.push_back({.rising = e.event_type == GPIOD_LINE_EVENT_RISING_EDGE,

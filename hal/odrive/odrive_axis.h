@@ -28,7 +28,7 @@ enum class OdriveNews : std::uint8_t {
 
 class OdriveAxis {
  public:
-  static constexpr int kMostJumps = 3;  // in a row, then the encoder is not to be trusted
+  static constexpr int kMaxJumps = 3;  // in a row, then the encoder is not to be trusted
 
   std::uint8_t state = 0;  // OdriveAxisState of the last heartbeat
   bool is_in(OdriveAxisState one) const RT_SAFE { return state == static_cast<std::uint8_t>(one); }
@@ -49,7 +49,7 @@ class OdriveAxis {
       const double most_turns =
           kSlack_turns + speed_turns_per_s * kStampError_s + kHalfMost_turns_per_s2 * dt_s * dt_s;
       if (!(residual_turns <= most_turns)) {
-        axis.jumps = ++jumps_ >= kMostJumps;
+        axis.jumps = ++jumps_ >= kMaxJumps;
         return OdriveNews::kJumped;
       }
     }

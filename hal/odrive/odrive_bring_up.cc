@@ -20,7 +20,7 @@ constexpr int kPositions_ms = 200, kIndexSearch_ms = 20'000, kIndexStart_ms = 30
 constexpr int kAsleep_ms = 50, kCount_ms = 300, kWake_ms = 1500;
 constexpr std::uint32_t kNeverEntered05 = 0x1 | 0x800;  // INVALID_STATE, the watchdog's
 constexpr double kRest_turns = 0.02;  // of a motor while the positions are counted
-constexpr double kMostRate_Hz = 1000.0;
+constexpr double kMaxRate_Hz = 1000.0;
 
 using Axis = OdriveHeard;
 
@@ -221,10 +221,10 @@ Result<OdriveStart> bring_up_odrives(can::CanBus& bus, const model::CanSettings&
     return Error{fmt::format("device.can.node has {}, but an ODrive's node is 0 to {}", node,
                              kOdriveLargestNode)};
   }
-  if (!(rate_Hz <= kMostRate_Hz)) {
+  if (!(rate_Hz <= kMaxRate_Hz)) {
     return Error{fmt::format(
         "rate_Hz is {}, but three drives on one CAN bus tell their positions {} times a second",
-        rate_Hz, kMostRate_Hz)};
+        rate_Hz, kMaxRate_Hz)};
   }
   return BringUp(bus, can, rate_Hz).run();
 }

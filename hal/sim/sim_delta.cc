@@ -17,8 +17,8 @@ namespace tact::hal::sim {
 namespace {
 
 constexpr double kLongestStep_s = 0.25e-3;
-constexpr double kMostPhysics_s = 0.1;  // of one call
-constexpr double kMostDelay_s = 0.1;
+constexpr double kMaxPhysics_s = 0.1;  // of one call
+constexpr double kMaxDelay_s = 0.1;
 constexpr double kWristCountsPerTurn = 65536.0;
 constexpr double kJump_m = 5e-3, kJump_rad = 0.1;  // between two samples: a new start
 constexpr double kGripHalfWidth_m = 0.05;          // the hand holds the handle here, at both sides
@@ -50,7 +50,7 @@ SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::HandSett
       angular_velocity_(device.observer_bandwidth_Hz, kJump_rad),
       shown_s_(-device.sample_delay_s) {
   history_.fill(state_now());  // at rest here since before the start
-  history_[kHistory - 1].time_s = -2.0 * kMostDelay_s;
+  history_[kHistory - 1].time_s = -2.0 * kMaxDelay_s;
   measured_ = delta_.pose(plant_.position_m(), plant_.theta_rad());
   motor_Nm_ =
       gravity_torques_Nm(kGeometry, kMasses, measured_, direction_D(delta::kGravity_W_mps2));
@@ -138,7 +138,7 @@ Fault SimDelta::write(const Wrench& wrench) RT_SAFE {
 void SimDelta::between_ticks(double elapsed_s) RT_SAFE {
   if (!(elapsed_s > 0.0)) return;
   steer_hand();
-  const double simulated_s = std::min(elapsed_s, kMostPhysics_s);
+  const double simulated_s = std::min(elapsed_s, kMaxPhysics_s);
   // The small allowance keeps 1 ms at four steps when the caller's arithmetic says 1.0000001 ms.
   const int steps = std::max(1, static_cast<int>(std::ceil(simulated_s / kLongestStep_s - 1e-6)));
   for (int i = 0; i < steps; ++i) step_physics(simulated_s / steps);
@@ -214,7 +214,7 @@ model::Result<std::unique_ptr<SimDelta>> make_sim_delta(const model::SimDeviceSe
   };
   if (!(device.counts_per_turn >= 100.0 && device.counts_per_turn <= 1e9))
     return refuse("counts_per_turn", device.counts_per_turn, "100 to 1e9");
-  if (!(device.sample_delay_s >= 0.0 && device.sample_delay_s <= kMostDelay_s))
+  if (!(device.sample_delay_s >= 0.0 && device.sample_delay_s <= kMaxDelay_s))
     return refuse("sample_delay_s", device.sample_delay_s, "0 to 0.1 s");
   if (!(device.joint_friction_Nm >= 0.0 && device.joint_friction_Nm <= 10.0))
     return refuse("joint_friction_Nm", device.joint_friction_Nm, "0 to 10 N m");

@@ -13,7 +13,7 @@ using model::operator""_deg;
 
 constexpr double kInertia_kgm2 = 1e-4;
 constexpr double kBearing_Nms_per_rad = 1e-3;
-constexpr double kMostAngle_rad = 20_deg;
+constexpr double kMaxAngle_rad = 20_deg;
 
 struct Axis {  // one of the three, moving by itself
   double angle_rad;
@@ -29,9 +29,9 @@ Axis step_axis(Axis axis, double dt_s, double torque_Nm, double aim_rad,
       kInertia_kgm2 * axis.rate_radps + dt_s * (torque_Nm + k * (aim_rad - axis.angle_rad));
   const double rate_radps = push / (kInertia_kgm2 + dt_s * b + dt_s * dt_s * k);
   const double angle_rad = axis.angle_rad + dt_s * rate_radps;
-  if (std::abs(angle_rad) <= kMostAngle_rad) return {angle_rad, rate_radps};
+  if (std::abs(angle_rad) <= kMaxAngle_rad) return {angle_rad, rate_radps};
   if (!std::isfinite(angle_rad)) return {axis.angle_rad, 0.0};
-  return {std::copysign(kMostAngle_rad, angle_rad), 0.0};  // the stop does not bounce
+  return {std::copysign(kMaxAngle_rad, angle_rad), 0.0};  // the stop does not bounce
 }
 
 }  // namespace
@@ -76,7 +76,7 @@ model::Vec3 wrist_angles_rad(const model::Vec3& rotation_rad) RT_SAFE {
   const model::Vec3 angles{std::atan2(-z.y, z.z), std::asin(std::clamp(z.x, -1.0, 1.0)),
                            std::atan2(-y.x, x.x)};
   const auto limited = [](double a) RT_SAFE {
-    return std::isfinite(a) ? std::clamp(a, -kMostAngle_rad, kMostAngle_rad) : 0.0;
+    return std::isfinite(a) ? std::clamp(a, -kMaxAngle_rad, kMaxAngle_rad) : 0.0;
   };
   return {limited(angles.x), limited(angles.y), limited(angles.z)};
 }

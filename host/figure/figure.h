@@ -28,10 +28,10 @@
 namespace tact::host::figure {
 
 /// A hand takes a tool at this share of the tool's height above its tip, within these bounds.
-inline constexpr double kGripHeight = 0.8, kLeastGrip_m = 0.02, kMostGrip_m = 0.3;
+inline constexpr double kGripHeight = 0.8, kMinGrip_m = 0.02, kMaxGrip_m = 0.3;
 /// Where, in the tool's axes, m: its tip is their origin, its handle points along +z.
 inline Eigen::Vector3d grip_m(double tool_height_m) {
-  return {0.0, 0.0, std::clamp(kGripHeight * tool_height_m, kLeastGrip_m, kMostGrip_m)};
+  return {0.0, 0.0, std::clamp(kGripHeight * tool_height_m, kMinGrip_m, kMaxGrip_m)};
 }
 
 struct FigureSettings {

@@ -51,7 +51,8 @@ struct ArmWork {
 };
 
 inline constexpr int kSweeps = 20;
-inline constexpr int kMostSweeps = 3 * kSweeps;  // of a frame: wrist, grip, grip from the pelvis
+inline constexpr int kMaxSweepsPerFrame =
+    3 * kSweeps;  // of a frame: wrist, grip, grip from the pelvis
 inline constexpr double kGripTolerance_m = 0.5e-3;
 
 class ToolArm {

@@ -10,7 +10,7 @@ namespace tact::host::igtl {
 namespace {
 
 using tracking::BodyRole;
-using tracking::Observation;
+using tracking::Look;
 using tracking::TrackedOperator;
 
 /// Up to the "To" before a capital letter.
@@ -29,16 +29,12 @@ std::string letters_of(std::string_view name) {
   return out;
 }
 
-/// The numbers of a pose in place of a camera's points, so that the same ones again are seen.
-Observation look_of(const pose::Pose& pose, double time_s, std::uint64_t sequence) {
+Look look_of(const pose::Pose& pose, double time_s, std::uint64_t sequence) {
   const Eigen::Vector3d& p = pose.position_m;
   const Eigen::Quaterniond& q = pose.rotation;
-  Observation out{.time_s = time_s, .sequence = sequence, .camera = {}, .body = {}, .points = {}};
-  out.points = {{.id = 0, .pixel_px = {p.x(), p.y()}},
-                {.id = 1, .pixel_px = {p.z(), q.w()}},
-                {.id = 2, .pixel_px = {q.x(), q.y()}},
-                {.id = 3, .pixel_px = {q.z(), 0.0}}};
-  return out;
+  return {.time_s = time_s,
+          .sequence = sequence,
+          .value = {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}};
 }
 
 }  // namespace

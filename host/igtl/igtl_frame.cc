@@ -24,7 +24,7 @@ std::string frame_messages(const record::Frame& frame, double time_s) {
                                              : Quaterniond::Identity(),
                          .position_m = position_m};
   return transform("ToolToDevice", time_s, {.rotation = *rotation, .position_m = position_m}) +
-         transform("ForceToDevice", time_s, arrow, std::max(force.norm(), kLeastForce_N)) +
+         transform("ForceToDevice", time_s, arrow, std::max(force.norm(), kMinForce_N)) +
          force_sensor("Force", time_s, force_N);
 }
 

@@ -3,7 +3,7 @@
 //
 //     TRANSFORM ToolToDevice    the tool in frame W
 //     TRANSFORM ForceToDevice   at the tool's point, +z along the force, scaled by its newtons (at
-//                               least kLeastForce_N): an arrow along +z becomes the force
+//                               least kMinForce_N): an arrow along +z becomes the force
 //     SENSOR    Force           the force on the hand along W's axes, N
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace tact::host::igtl {
 
-inline constexpr double kLeastForce_N = 1e-3;  // of a transform that has an inverse
+inline constexpr double kMinForce_N = 1e-3;  // of a transform that has an inverse
 
 /// The three messages, one behind the other. Empty: the frame has a number that is not finite.
 std::string frame_messages(const record::Frame& frame, double time_s);

@@ -126,7 +126,7 @@ void IgtlLink::accept_next() {
 }
 
 void IgtlLink::welcome(tcp::socket socket) {
-  if (clients_.size() >= kMostClients)
+  if (clients_.size() >= kMaxClients)
     return refuse("more than 8 programs have come; one is sent away");
   // The session holds its events, and they the place of the session, not the session.
   auto place = std::make_shared<std::weak_ptr<IgtlSession>>();

@@ -33,7 +33,7 @@ struct IgtlOptions {
   bool is_asked_for() const { return port.has_value() || !from.empty(); }
 };
 
-inline constexpr std::size_t kMostClients = 8;
+inline constexpr std::size_t kMaxClients = 8;
 inline constexpr std::chrono::milliseconds kFrameGap{30}, kStatusGap{1000};
 
 class IgtlLink {

@@ -53,7 +53,7 @@ void IgtlSession::read_head_next() {
         self->head_ = std::move(*head);
         const std::uint64_t body = self->head_.body_bytes;
         const bool is_used = self->head_.type == "TRANSFORM" || self->head_.type == "POSITION";
-        if (body > (is_used ? kMostBody : kLargestBody))
+        if (body > (is_used ? kMaxUsedBody : kMaxSkippedBody))
           return self->end(fmt::format("it announces a {} of {} bytes; nothing has so many",
                                        self->head_.type, body));
         if (is_used) return self->read_body(static_cast<std::size_t>(body));

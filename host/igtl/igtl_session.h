@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // igtl_session.h - one OpenIGTLink connection: messages in, judged; messages out, never waiting.
 //
-// In: a message that is not asked for is read away unkept, up to kLargestBody. One that is and is
-// damaged is left out; the connection goes on. Bytes that are no header, or a length that nothing
-// has, end it. Out: while one batch is on its way the next waits, and a newer one takes its place:
-// a slow client skips batches and costs no memory. One that reads nothing for kPatience is
-// disconnected.
+// In: a message that is not asked for is read away unkept, up to kMaxSkippedBody. One that is and
+// is damaged is left out; the connection goes on. Bytes that are no header, or a length that
+// nothing has, end it. Out: while one batch is on its way the next waits, and a newer one takes
+// its place: a slow client skips batches and costs no memory. One that reads nothing for
+// kPatience is disconnected.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@
 
 namespace tact::host::igtl {
 
-inline constexpr std::size_t kMostBody = 4096;             // of a message that is used
-inline constexpr std::uint64_t kLargestBody = 256u << 20;  // of one that is read away, an image
+inline constexpr std::size_t kMaxUsedBody = 4096;             // of a message that is used
+inline constexpr std::uint64_t kMaxSkippedBody = 256u << 20;  // of one that is read away, an image
 inline constexpr std::chrono::seconds kPatience{10};
 
 struct SessionEvents {
@@ -55,7 +55,7 @@ class IgtlSession : public std::enable_shared_from_this<IgtlSession> {
   boost::asio::steady_timer patience_;
   SessionEvents events_;
   MessageHead head_;
-  std::array<char, kMostBody> bytes_{};
+  std::array<char, kMaxUsedBody> bytes_{};
   std::string on_its_way_, waiting_;
   bool ended_ = false;
 };

@@ -20,7 +20,7 @@ using model::Error;
 using model::Result;
 
 constexpr double kFraction_s = 1.0 / 4294967296.0;
-constexpr double kMostSkew = 0.01;  // of a rotation of floats; a matrix of another kind is far off
+constexpr double kMaxSkew = 0.01;  // of a rotation of floats; a matrix of another kind is far off
 constexpr double kFarthest_m = 1000.0;
 constexpr std::uint64_t kNewton = 0x0bull << 54 | 1ull << 50;  // no prefix, N to the power 1
 
@@ -132,7 +132,7 @@ Result<pose::Pose> transform_in(std::string_view content) {
   Matrix3d rotation;
   rotation << columns[0], columns[1], columns[2];
   const double skew = (rotation.transpose() * rotation - Matrix3d::Identity()).norm();
-  if (!(skew <= kMostSkew) || rotation.determinant() < 0.0)
+  if (!(skew <= kMaxSkew) || rotation.determinant() < 0.0)
     return Error{"its matrix is no rotation; send one without scale, shear or mirror"};
   return checked(columns[3], Quaterniond(rotation));
 }
@@ -147,7 +147,7 @@ Result<pose::Pose> position_in(std::string_view content) {
   // Three numbers are those of a unit quaternion whose real part is not negative.
   wxyz[0] = content.size() == 24 ? std::sqrt(std::max(0.0, 1.0 - rest)) : in.real32();
   const auto rotation = pose::rotation_from(wxyz);
-  if (!rotation || !(std::abs(rest + wxyz[0] * wxyz[0] - 1.0) <= kMostSkew))
+  if (!rotation || !(std::abs(rest + wxyz[0] * wxyz[0] - 1.0) <= kMaxSkew))
     return Error{"its orientation is no unit quaternion"};
   return checked(position_mm, *rotation);
 }

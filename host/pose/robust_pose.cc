@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr std::size_t kLeastInliers = 5;
+constexpr std::size_t kMinInliers = 5;
 constexpr double kConfidence = 0.999;  // that a draw without outliers was among the rounds
 
 bool all_within(const Camera& camera, std::span<const Vector3d> points_m,
@@ -47,7 +47,7 @@ Markers agreeing(const Camera& camera, std::span<const Vector3d> points_m,
     return {};
   }
   Markers out;
-  if (chosen.size() < kLeastInliers || 2 * chosen.size() <= points.size()) return out;
+  if (chosen.size() < kMinInliers || 2 * chosen.size() <= points.size()) return out;
   for (const int i : chosen) {
     out.points_m.push_back(points_m[static_cast<std::size_t>(i)]);
     out.pixels_px.push_back(pixels_px[static_cast<std::size_t>(i)]);
@@ -60,7 +60,7 @@ Markers agreeing(const Camera& camera, std::span<const Vector3d> points_m,
 PoseEstimate robust_pose(const Camera& camera, std::span<const Vector3d> points_m,
                          std::span<const Vector2d> pixels_px, double outlier_px) {
   PoseEstimate out = estimate_pose(camera, points_m, pixels_px);
-  const bool may_choose = points_m.size() > kLeastForOutliers;
+  const bool may_choose = points_m.size() > kMinForOutliers;
   if (may_choose && (out.status == PoseStatus::kOk || out.status == PoseStatus::kNoPose) &&
       !(out.status == PoseStatus::kOk &&
         all_within(camera, points_m, pixels_px, out.pose, outlier_px))) {

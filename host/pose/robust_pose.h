@@ -2,7 +2,7 @@
 // robust_pose.h - a pose that one wrong marker does not bend.
 //
 // estimate_pose on all markers. If one of them lies farther from its computed pixel than
-// `outlier_px` and there are more than kLeastForOutliers, RANSAC of OpenCV (P3P on four markers,
+// `outlier_px` and there are more than kMinForOutliers, RANSAC of OpenCV (P3P on four markers,
 // kRansacRounds at most, the same draws in every run) finds those that agree; the pose is estimated
 // and polished on them. They must be five or more and more than half of all. A pose whose rms is
 // above `outlier_px` is none: with few markers a wrong one shows, but cannot be found.
@@ -20,7 +20,7 @@ struct Markers {
   std::vector<Eigen::Vector2d> pixels_px;
 };
 
-inline constexpr std::size_t kLeastForOutliers = 6;
+inline constexpr std::size_t kMinForOutliers = 6;
 inline constexpr int kRansacRounds = 100;
 
 /// As estimate_pose; outlier_px > 0 in pixels or tangents, as the camera measures.

@@ -20,7 +20,7 @@ using beast::error_code;
 constexpr std::uint32_t kMaxHeaderBytes = 8192;
 constexpr std::uint64_t kMaxBodyBytes = 1024;
 constexpr std::chrono::seconds kFarewell{2};
-constexpr std::size_t kMostDrained_bytes = 1 << 20;
+constexpr std::size_t kMaxDrained_bytes = 1 << 20;
 
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -205,7 +205,7 @@ void HttpSession::drain() {
   stream_.async_read_some(in_.prepare(4096),
                           [self = shared_from_this()](error_code wrong, std::size_t bytes) {
                             self->drained_bytes_ += bytes;
-                            if (!wrong && self->drained_bytes_ < kMostDrained_bytes) self->drain();
+                            if (!wrong && self->drained_bytes_ < kMaxDrained_bytes) self->drain();
                           });
 }
 

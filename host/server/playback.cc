@@ -15,8 +15,8 @@ using Clock = std::chrono::steady_clock;
 constexpr std::int64_t kPause_ns = 1'000'000'000;            // before it starts again
 constexpr std::int64_t kLongestGap_ns = 5'000'000'000;       // a gap in the file is not waited out
 constexpr std::int64_t kLongest_ns = std::int64_t{1} << 60;  // a clock beyond is a file's nonsense
-constexpr std::chrono::seconds kMostLate{1};  // after a PC that slept: go on from now
-constexpr std::size_t kMostStops = 32;        // told
+constexpr std::chrono::seconds kMaxLate{1};  // after a PC that slept: go on from now
+constexpr std::size_t kMaxStops = 32;        // told
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
@@ -53,7 +53,7 @@ void Playback::stop() {
 void Playback::tell() {
   using firmware::loop::State;
   nlohmann::json stops = nlohmann::json::array();
-  for (std::size_t i = 0; i < at_ns_.size() && stops.size() < kMostStops; ++i) {
+  for (std::size_t i = 0; i < at_ns_.size() && stops.size() < kMaxStops; ++i) {
     const record::Frame& frame = recording_.frames[i];
     const bool was_stopped = i > 0 && recording_.frames[i - 1].state == State::kStopped;
     if (frame.state == State::kStopped && !was_stopped)
@@ -92,7 +92,7 @@ void Playback::schedule() {
   const std::int64_t gap_ns =
       is_last() ? kPause_ns : std::min(at_ns_[shown_ + 1] - at_ns_[shown_], kLongestGap_ns);
   // absolute: small delays do not add up
-  due_ = std::max(due_, Clock::now() - kMostLate) +
+  due_ = std::max(due_, Clock::now() - kMaxLate) +
          std::chrono::nanoseconds(std::llround(static_cast<double>(gap_ns) / speed_ratio_));
   timer_.expires_at(due_);
   timer_.async_wait([this, turn = ++turn_](boost::system::error_code wrong) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLongest_s = 1e7;     // beyond any recording
 constexpr double kFastest_ratio = 20;  // and the slowest is its inverse
-constexpr std::int64_t kMostFrames = 1'000'000;
+constexpr std::int64_t kMaxFrames = 1'000'000;
 
 bool take(const nlohmann::json& value, std::optional<bool>& into) {
   if (!value.is_boolean()) return false;
@@ -29,7 +29,7 @@ bool take(const nlohmann::json& value, double low, double high, std::optional<do
 bool take(const nlohmann::json& value, std::optional<int>& into) {
   if (!value.is_number_integer()) return false;
   const double frames = value.get<double>();
-  if (std::abs(frames) > static_cast<double>(kMostFrames)) return false;
+  if (std::abs(frames) > static_cast<double>(kMaxFrames)) return false;
   into = static_cast<int>(frames);
   return true;
 }

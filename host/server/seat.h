@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // seat.h - what every connection holds while it lasts, whatever it becomes: a request, a download,
-// a WebSocket. The server counts the copies and lets in no more than kMostConnections.
+// a WebSocket. The server counts the copies and lets in no more than kMaxConnections.
 #pragma once
 
 #include <memory>
@@ -9,6 +9,6 @@ namespace tact::host::server {
 
 using Seat = std::shared_ptr<const void>;
 
-constexpr long kMostConnections = 64;
+constexpr long kMaxConnections = 64;
 
 }  // namespace tact::host::server

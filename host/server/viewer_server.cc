@@ -93,7 +93,7 @@ std::optional<Error> ViewerServer::listen(const tcp::endpoint& endpoint) {
 void ViewerServer::accept_next() {
   acceptor_.async_accept(io_, [this](error_code wrong, tcp::socket socket) {
     if (wrong == boost::asio::error::operation_aborted) return;
-    if (!wrong && seat_.use_count() > kMostConnections)
+    if (!wrong && seat_.use_count() > kMaxConnections)
       turn_away(std::move(socket));
     else if (!wrong)
       std::make_shared<HttpSession>(boost::beast::tcp_stream(std::move(socket)), seat_, site_)
@@ -123,7 +123,7 @@ void ViewerServer::turn_away(tcp::socket socket) {
   warn_(
       fmt::format("{} pages and downloads are open, no more are let in ({} turned away so far); "
                   "close some",
-                  kMostConnections, turned_away_));
+                  kMaxConnections, turned_away_));
 }
 
 void ViewerServer::stop() {

@@ -34,21 +34,29 @@ bool is_reachable(const Pose& from, const Pose& to, double since_s) {
 
 }  // namespace
 
+Look look_of(const Observation& seen) {
+  Look out{.time_s = seen.time_s, .sequence = seen.sequence, .value = {}};
+  for (const SeenMarker& point : seen.points)
+    out.value.insert(out.value.end(),
+                     {static_cast<double>(point.id), point.pixel_px.x(), point.pixel_px.y()});
+  return out;
+}
+
 void BodyTracker::begin_again() {
   for (Stream& stream : streams_) stream = {};
   anchored_ = false;
   jump_poses_ = 0;
 }
 
-bool BodyTracker::is_frozen(Stream& stream, const Observation& seen) const {
-  if (seen.points.empty() || seen.points != stream.points) {
-    stream.points = seen.points;
+bool BodyTracker::is_frozen(Stream& stream, const Look& seen) const {
+  if (seen.value.empty() || seen.value != stream.value) {
+    stream.value = seen.value;
     stream.same_since_s = seen.time_s;
   }
   return seen.time_s - stream.same_since_s >= kFrozen_s;
 }
 
-bool BodyTracker::admit(std::size_t camera, const Observation& seen, double now_s) {
+bool BodyTracker::admit(std::size_t camera, const Look& seen, double now_s) {
   Stream& stream = streams_[camera];
   seen_now_s_ = now_s;
   has_seen_ = true;

@@ -32,13 +32,22 @@ inline constexpr double kFastest_mps = 5.0;     // a hand
 inline constexpr double kFastest_radps = 40.0;  // a wrist; a mirrored pose is faster
 inline constexpr int kJumpPoses = 3;
 
+/// What a source told of a body once: a camera its points, a tracker a pose. The numbers only tell
+/// whether it repeats itself.
+struct Look {
+  double time_s = 0.0;
+  std::uint64_t sequence = 0;
+  std::vector<double> value;
+};
+Look look_of(const Observation& seen);
+
 class BodyTracker {
  public:
   explicit BodyTracker(std::size_t cameras) : streams_(cameras) {}
 
   /// True if a pose from this observation is wanted: it goes on in time, is not frozen, and not
   /// more than kTogether_s older than the good one.
-  bool admit(std::size_t camera, const Observation& seen, double now_s);
+  bool admit(std::size_t camera, const Look& seen, double now_s);
   /// The last observation of this camera repeats the one before, bit by bit.
   bool repeats(std::size_t camera) const {
     return streams_[camera].same_since_s < streams_[camera].time_s;
@@ -60,14 +69,14 @@ class BodyTracker {
     bool started = false;
     double time_s = 0.0, same_since_s = 0.0;
     std::uint64_t sequence = 0;
-    std::vector<SeenMarker> points;
+    std::vector<double> value;
   };
   struct Timed {
     Pose pose{};
     double time_s = 0.0;
   };
   void begin_again();
-  bool is_frozen(Stream& stream, const Observation& seen) const;
+  bool is_frozen(Stream& stream, const Look& seen) const;
   /// False while a jump is not believed yet.
   bool is_believed(const Timed& next);
   void show(const pose::PoseEstimate& estimate);

@@ -27,7 +27,7 @@ constexpr double kTurn_s = 1.0 / 60.0;  // from the last line to the first
 Result<ObservationFile> read_observation_file(const std::string& path, KeepText keep) {
   auto text = model::io::read_file(
       path, "give a file of observations, one per line; cut a larger one into parts",
-      kLargestRecording_bytes);
+      kMaxRecording_bytes);
   if (!text) return text.error();
   std::istringstream file(std::move(*text));
   ObservationFile out;

@@ -31,9 +31,9 @@ struct ObservationFile {
 
 enum class KeepText : std::uint8_t { kNo, kYes };
 
-inline constexpr std::uintmax_t kLargestRecording_bytes = 64'000'000;  // hours of a few cameras
+inline constexpr std::uintmax_t kMaxRecording_bytes = 64'000'000;  // hours of a few cameras
 
-/// Error: why the file gives no observation at all. Larger than kLargestRecording_bytes: refused.
+/// Error: why the file gives no observation at all. Larger than kMaxRecording_bytes: refused.
 model::Result<ObservationFile> read_observation_file(const std::string& path,
                                                      KeepText keep = KeepText::kNo);
 

@@ -88,7 +88,7 @@ std::optional<Error> OperatorTracker::take(const Observation& seen, double now_s
   if (is_base && camera->pose) return std::nullopt;  // its place is known
   const auto body_at = static_cast<std::size_t>(body - setup_.bodies.begin());
   BodyTracker& tracker = is_base ? places_[camera_at] : trackers_[body_at];
-  if (!tracker.admit(is_base ? 0 : camera_at, seen, now_s)) return std::nullopt;
+  if (!tracker.admit(is_base ? 0 : camera_at, look_of(seen), now_s)) return std::nullopt;
   const pose::Markers markers = markers_of(*body, seen);
   pose::PoseEstimate estimate =
       pose::robust_pose(camera->lens, markers.points_m, markers.pixels_px, camera->outlier_px);

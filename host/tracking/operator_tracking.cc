@@ -9,7 +9,7 @@
 namespace tact::host::tracking {
 namespace {
 
-constexpr int kMostFailures = 100;  // of the socket, in a row
+constexpr int kMaxFailures = 100;  // of the socket, in a row
 
 }  // namespace
 
@@ -92,7 +92,7 @@ void OperatorTracking::receive_next() {
       boost::asio::buffer(datagram_), sender_, [this](error_code wrong, std::size_t size) {
         if (wrong == boost::asio::error::operation_aborted) return;
         failures_ = wrong ? failures_ + 1 : 0;
-        if (failures_ == kMostFailures) {  // else this thread would do nothing else
+        if (failures_ == kMaxFailures) {  // else this thread would do nothing else
           say(fmt::format("tracking: its port fails ({}); it ends here", wrong.message()));
           return;
         }

@@ -36,9 +36,9 @@ double spread_m(const Points& points) {
 }  // namespace
 
 Result<Registration> fit_registration(std::span<const PosePair> poses) {
-  if (poses.size() < kLeastPoses) {
+  if (poses.size() < kMinPoses) {
     return Error{fmt::format("{} poses are too few for a registration; take {} or more",
-                             poses.size(), kLeastPoses)};
+                             poses.size(), kMinPoses)};
   }
   Points tracked(3, static_cast<Index>(poses.size())), device(3, static_cast<Index>(poses.size()));
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -47,7 +47,7 @@ Result<Registration> fit_registration(std::span<const PosePair> poses) {
   }
   if (!tracked.allFinite() || !device.allFinite())
     return Error{"a pose is not finite; look at the tracker and take the poses again"};
-  if (!(spread_m(tracked) >= kLeastSpread_m && spread_m(device) >= kLeastSpread_m))
+  if (!(spread_m(tracked) >= kMinSpread_m && spread_m(device) >= kMinSpread_m))
     return Error{
         "the poses lie on a line or in one place; move the tool in two directions or more"};
   const Eigen::Matrix4d fit = Eigen::umeyama(tracked, device, /*with_scaling=*/false);

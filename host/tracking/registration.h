@@ -7,8 +7,8 @@
 //
 //     q_i  tip of the tracked tool in the tracker's frame, m     p_i  tool of the device in W, m
 //
-// Refused: fewer than kLeastPoses, and poses that lie on a line: their spread across it (root of
-// the second eigenvalue of their covariance) is below kLeastSpread_m, so that the turn about the
+// Refused: fewer than kMinPoses, and poses that lie on a line: their spread across it (root of
+// the second eigenvalue of their covariance) is below kMinSpread_m, so that the turn about the
 // line is unknown. A plane is enough.
 //
 // [1] S. Umeyama, IEEE Trans. Pattern Analysis and Machine Intelligence 13 (1991) 376-380. By
@@ -27,8 +27,8 @@ namespace tact::host::tracking {
 
 using pose::Pose;
 
-inline constexpr std::size_t kLeastPoses = 6;
-inline constexpr double kLeastSpread_m = 0.005;
+inline constexpr std::size_t kMinPoses = 6;
+inline constexpr double kMinSpread_m = 0.005;
 inline constexpr double kDoubtful_m = 0.002;  // residuals above it are warned of
 
 struct PosePair {

@@ -16,7 +16,7 @@ namespace {
 using model::Error;
 using model::Result;
 
-constexpr std::uintmax_t kLargestFile_bytes = 1'000'000;
+constexpr std::uintmax_t kMaxFile_bytes = 1'000'000;
 constexpr double kFarthest_m = 100.0;
 
 /// None: `node` is no list of `count` numbers, each at most `most`.
@@ -37,7 +37,7 @@ std::optional<std::vector<double>> read_numbers(const toml::node* node, std::siz
 
 Result<toml::table> parse_toml_file(const std::string& path) {
   const auto text = model::io::read_file(
-      path, "give the path of a tracking description of at most 1 MB", kLargestFile_bytes);
+      path, "give the path of a tracking description of at most 1 MB", kMaxFile_bytes);
   if (!text) return text.error();
   return model::io::parse_toml(*text, path);
 }

@@ -19,12 +19,12 @@ namespace fs = std::filesystem;
 using model::Error;
 using model::Result;
 
-constexpr double kLargest_px = 1e6;
+constexpr double kMax_px = 1e6;
 constexpr double kFarthestShoulder_m = 3.0;
 constexpr double kFarthestMarker_m = 10.0;
 constexpr double kOutlierTangent = 0.0025;  // as 3 px with f = 1200 px
-constexpr std::size_t kLeastMarkers = 4;
-constexpr std::size_t kMostSections = 32;
+constexpr std::size_t kMinMarkers = 4;
+constexpr std::size_t kMaxSections = 32;
 constexpr const char* kBase = "base";
 constexpr const char* kSuffix = ".tracking.toml";
 
@@ -53,8 +53,8 @@ void read_input(TrackingKeys& k, TrackingSetup& out) {
 
 /// False if so many sections came before: checked first, names are compared with all of them.
 bool has_room(TrackingKeys& k, std::size_t before) {
-  if (before < kMostSections) return true;
-  k.refuse("name", fmt::format("more than {} cameras or bodies; leave some out", kMostSections));
+  if (before < kMaxSections) return true;
+  k.refuse("name", fmt::format("more than {} cameras or bodies; leave some out", kMaxSections));
   return false;
 }
 
@@ -73,10 +73,10 @@ void read_camera(TrackingKeys& k, TrackingSetup& out) {
       k.refuse(key, fmt::format("a sweep tracker measures tangents; leave {} out", key));
     }
   } else {
-    camera.lens = {.fx_px = k.number("fx_px", 1.0, kLargest_px),
-                   .fy_px = k.number("fy_px", 1.0, kLargest_px),
-                   .cx_px = k.number("cx_px", -kLargest_px, kLargest_px),
-                   .cy_px = k.number("cy_px", -kLargest_px, kLargest_px)};
+    camera.lens = {.fx_px = k.number("fx_px", 1.0, kMax_px),
+                   .fy_px = k.number("fy_px", 1.0, kMax_px),
+                   .cx_px = k.number("cx_px", -kMax_px, kMax_px),
+                   .cy_px = k.number("cy_px", -kMax_px, kMax_px)};
   }
   if (k.has("outlier_px")) camera.outlier_px = k.number("outlier_px", 1e-6, 1e3);
   if (k.has("position_m") || k.has("rotation_wxyz")) camera.pose = k.pose();
@@ -119,7 +119,7 @@ void read_markers(TrackingKeys& k, MarkerBody& body) {
       k.refuse("markers_m", fmt::format("marker {} is there twice; number them apart", number));
     body.markers.push_back({.id = number, .position_m = p});
   }
-  if (body.markers.size() < kLeastMarkers || body.markers.size() > kMaxMarkers) {
+  if (body.markers.size() < kMinMarkers || body.markers.size() > kMaxMarkers) {
     k.refuse("markers_m", fmt::format("a body takes 4 to {} markers; 6 or more, not in a plane, "
                                       "are advised",
                                       kMaxMarkers));

@@ -39,11 +39,11 @@ Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N)
 
 // By a Hertz contact of its own dent; a held patch is as wide as the sphere.
 Tensor2 Contact::give_m_per_N(std::size_t i) const RT_SAFE {
-  constexpr double kLeastRadius_ratio = 0.1;
+  constexpr double kMinRadius_ratio = 0.1;
   const double radius_m = scene_.spheres[i].radius_m;
   if (touch_[i].state == TouchState::kHeld) return probe_[i].tangent_give.at(radius_m);
   return probe_[i].tangent_give.at(std::clamp(std::sqrt(radius_m * std::max(touch_[i].dent_m, 0.0)),
-                                              kLeastRadius_ratio * radius_m, radius_m));
+                                              kMinRadius_ratio * radius_m, radius_m));
 }
 
 TangentGive Contact::ask_tangent_give(std::size_t i, bool held) const RT_SAFE {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMaxSteps = 16;
 constexpr double kTolerance_m = 1e-10;
-constexpr double kLeastPivot = 1e-6;
+constexpr double kMinPivot = 1e-6;
 constexpr double kMargin = 0.95;  // of the largest coupling that is positive definite
 
 using Vector = std::array<double, kMaxSpheres>;
@@ -44,7 +44,7 @@ Vector newton_step(const Coupling& c, std::span<const PressingSphere> spheres,
     for (std::size_t j = 0; j < n; ++j)
       a[i][j] = (i == j ? 1.0 : 0.0) + c[i][j] * stiffness_N_per_m(spheres[j]);
   for (std::size_t k = 0; k < n; ++k) {
-    if (!(a[k][k] > kLeastPivot)) return plain;
+    if (!(a[k][k] > kMinPivot)) return plain;
     for (std::size_t i = k + 1; i < n; ++i) {
       const double f = a[i][k] / a[k][k];
       for (std::size_t j = k; j < n; ++j) a[i][j] -= f * a[k][j];

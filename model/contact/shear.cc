@@ -13,8 +13,8 @@ void Shear::leave(std::size_t i) RT_SAFE {
 // Rows that sum to less than the diagonal: positive definite, and so is what elimination leaves.
 void Shear::couple(std::size_t i, std::size_t j, double m_per_N, const Axes& of_i,
                    const Axes& of_j) RT_SAFE {
-  constexpr double kMost = 0.9 / (kMaxSpheres - 1);
-  const double most_m_per_N = kMost * std::min(own_[i].least_m_per_N, own_[j].least_m_per_N);
+  constexpr double kMax = 0.9 / (kMaxSpheres - 1);
+  const double most_m_per_N = kMax * std::min(own_[i].least_m_per_N, own_[j].least_m_per_N);
   const double c = std::clamp(m_per_N, -most_m_per_N, most_m_per_N);
   for (std::size_t p = 0; p < 2; ++p)
     for (std::size_t q = 0; q < 2; ++q)

@@ -32,8 +32,8 @@ Frame frame_of(const Vec3& n) {
   return {{n, t1, cross(n, t1)}};
 }
 
-const char* first_fault(const TetMesh& body, const contact::SurfaceView& surface,
-                        const CondensationSettings& s) {
+const char* parameter_error(const TetMesh& body, const contact::SurfaceView& surface,
+                            const CondensationSettings& s) {
   if (!(s.patch_radius_m > 0.0)) return "patch_radius_m must be above 0";
   if (!(s.ring_pitch_m > 0.0)) return "ring_pitch_m must be above 0";
   if (s.rings < 1 || s.rings > indent::kMaxComplianceRings)
@@ -173,8 +173,8 @@ std::optional<Error> Condenser::run(tissue::ComplianceMap& map) {
 
 Result<tissue::ComplianceMap> condense(const TetMesh& body, const contact::SurfaceView& surface,
                                        const CondensationSettings& settings) {
-  if (const char* fault = first_fault(body, surface, settings))
-    return Error{std::string("condensation: ") + fault};
+  if (const char* wrong = parameter_error(body, surface, settings))
+    return Error{std::string("condensation: ") + wrong};
   if (settings.progress && !settings.progress(0, surface.vertex_m.size()))
     return Error{"condensation: stopped"};
   Boundary boundary = find_boundary(body);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMaxIterations = 100;
 
-const char* first_fault(const ComplianceCurveParameters& p) {
+const char* parameter_error(const ComplianceCurveParameters& p) {
   if (!is_positive(p.tip.youngs_modulus_Pa)) return "youngs_modulus_Pa must be finite and above 0";
   if (!(p.tip.poisson_ratio >= 0.0 && p.tip.poisson_ratio <= 0.5))
     return "poisson_ratio must lie between 0 and 0.5";
@@ -40,7 +40,7 @@ const char* first_fault(const ComplianceCurveParameters& p) {
 }  // namespace
 
 Result<ComplianceCurve> make_compliance_curve(const ComplianceCurveParameters& p) {
-  if (const char* fault = first_fault(p)) return Error{std::string("compliance: ") + fault};
+  if (const char* wrong = parameter_error(p)) return Error{std::string("compliance: ") + wrong};
   ComplianceCurve curve;
   curve.tip_ = p.tip;
   const TipState last = curve.exact(kDeepestDent_ratio * p.tip.radius_m);  // r = 0: the tip alone

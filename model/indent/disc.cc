@@ -10,7 +10,7 @@
 namespace tact::model::indent {
 namespace {
 
-const char* first_fault(const DiscDimensions& p) {
+const char* parameter_error(const DiscDimensions& p) {
   if (!is_positive(p.inner_diameter_m)) return "inner_diameter_m must be finite and above 0";
   if (!is_positive(p.outer_diameter_m) || p.outer_diameter_m <= p.inner_diameter_m)
     return "outer_diameter_m must be finite and above inner_diameter_m";
@@ -81,18 +81,18 @@ double flattening_at_m(const Disc& disc, DiscForm form, double force_N) RT_SAFE 
 }
 
 Result<Disc> make_disc(const DiscDimensions& p) {
-  if (const char* fault = first_fault(p)) return Error{std::string("disc: ") + fault};
+  if (const char* wrong = parameter_error(p)) return Error{std::string("disc: ") + wrong};
   const double travel_m = p.free_height_m - p.thickness_m;  // DS-4
   Disc disc{.outer_diameter_m = p.outer_diameter_m,
             .stiffness_N_per_m = p.youngs_modulus_Pa * stiffness_per_modulus_m(p),  // DS-3
             .travel_m = travel_m,
             .cone_ratio = travel_m / p.thickness_m};
-  if (const char* fault = disc_fault(disc, DiscForm::kLinear))
-    return Error{std::string("disc: these dimensions have no usable spring: ") + fault};
+  if (const char* wrong = disc_error(disc, DiscForm::kLinear))
+    return Error{std::string("disc: these dimensions have no usable spring: ") + wrong};
   return disc;
 }
 
-const char* disc_fault(const Disc& disc, DiscForm form) {
+const char* disc_error(const Disc& disc, DiscForm form) {
   if (!is_positive(disc.outer_diameter_m)) return "outer_diameter_m must be finite and above 0";
   if (!is_positive(disc.stiffness_N_per_m)) return "stiffness_N_per_m must be finite and above 0";
   if (!is_positive(disc.travel_m)) return "travel_m must be finite and above 0";

@@ -66,6 +66,6 @@ double flattening_at_m(const Disc& disc, DiscForm form, double force_N) RT_SAFE;
 Result<Disc> make_disc(const DiscDimensions& dimensions);
 
 /// nullptr, or what is wrong with a disc given by its stiffness and travel.
-const char* disc_fault(const Disc& disc, DiscForm form);
+const char* disc_error(const Disc& disc, DiscForm form);
 
 }  // namespace tact::model::indent

@@ -9,7 +9,7 @@
 namespace tact::model::indent {
 namespace {
 
-const char* first_fault(const LayerDelays& p) {
+const char* parameter_error(const LayerDelays& p) {
   if (!is_positive(p.first_delay_s)) return "first_delay_s must be finite and above 0";
   if (!is_positive(p.delay_ratio)) return "delay_ratio must be finite and above 0";
   if (!is_positive(p.refresh_rate_Hz)) return "refresh_rate_Hz must be finite and above 0";
@@ -44,9 +44,9 @@ Result<DiscStack> make_disc_stack(const DiscStackParameters& parameters) {
 }
 
 Result<DiscStack> make_disc_stack(const Disc& disc, DiscForm form, const LayerDelays& delays) {
-  const char* fault = disc_fault(disc, form);
-  if (fault == nullptr) fault = first_fault(delays);
-  if (fault != nullptr) return Error{std::string("disc stack: ") + fault};
+  const char* wrong = disc_error(disc, form);
+  if (wrong == nullptr) wrong = parameter_error(delays);
+  if (wrong != nullptr) return Error{std::string("disc stack: ") + wrong};
   DiscStack stack;
   stack.disc_ = disc;
   stack.form_ = form;

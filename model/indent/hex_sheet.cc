@@ -15,7 +15,7 @@ constexpr int kMaxIterations = 60;
 constexpr int kMaxHalvings = 30;
 constexpr std::size_t kEndlessRings = 255;
 
-const char* first_fault(const HexSheetParameters& p) {
+const char* parameter_error(const HexSheetParameters& p) {
   if (!is_positive(p.ring_pitch_m)) return "ring_pitch_m must be finite and above 0";
   if (!is_not_negative(p.contact_stiffness_N_per_m))
     return "contact_stiffness_N_per_m must be finite and not below 0";
@@ -161,7 +161,8 @@ double endless_force_N(const HexSheetParameters& p, std::size_t rings) {
 }  // namespace
 
 Result<HexSheet> make_hex_sheet(const HexSheetParameters& p) {
-  if (const char* fault = first_fault(p)) return Error{std::string("hexagonal sheet: ") + fault};
+  if (const char* wrong = parameter_error(p))
+    return Error{std::string("hexagonal sheet: ") + wrong};
   return HexSheet(p);
 }
 
@@ -198,7 +199,8 @@ Result<std::size_t> rings_for_tolerance(const HexSheetParameters& parameters,
                                         double tolerance_ratio) {
   HexSheetParameters p = parameters;
   p.rings = kMaxHexRings;
-  if (const char* fault = first_fault(p)) return Error{std::string("hexagonal sheet: ") + fault};
+  if (const char* wrong = parameter_error(p))
+    return Error{std::string("hexagonal sheet: ") + wrong};
   if (!is_positive(tolerance_ratio))
     return Error{"hexagonal sheet: the force tolerance must be finite and above 0"};
   const double endless_N = endless_force_N(p, kEndlessRings);

@@ -33,13 +33,13 @@ std::size_t HuntCrossley::profile(double depth_m, std::span<double> ring_m) cons
 }
 
 Result<HuntCrossley> make_hunt_crossley(const HuntCrossleyParameters& p) {
-  const char* fault = nullptr;
-  if (!is_positive(p.force_N)) fault = "force_N must be finite and above 0";
-  if (!is_positive(p.working_depth_m)) fault = "working_depth_m must be finite and above 0";
-  if (!(p.exponent >= 1.0 && p.exponent <= 4.0)) fault = "exponent must lie between 1 and 4";
+  const char* wrong = nullptr;
+  if (!is_positive(p.force_N)) wrong = "force_N must be finite and above 0";
+  if (!is_positive(p.working_depth_m)) wrong = "working_depth_m must be finite and above 0";
+  if (!(p.exponent >= 1.0 && p.exponent <= 4.0)) wrong = "exponent must lie between 1 and 4";
   if (!is_not_negative(p.dissipation_s_per_m))
-    fault = "dissipation_s_per_m must be finite and 0 or more";
-  if (fault != nullptr) return Error{std::string("hunt_crossley: ") + fault};
+    wrong = "dissipation_s_per_m must be finite and 0 or more";
+  if (wrong != nullptr) return Error{std::string("hunt_crossley: ") + wrong};
   return HuntCrossley(p);
 }
 

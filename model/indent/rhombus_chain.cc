@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMaxIterations = 100;
 
-const char* first_fault(const RhombusChainParameters& p) {
+const char* parameter_error(const RhombusChainParameters& p) {
   if (!is_positive(p.rod_length_m)) return "rod_length_m must be finite and above 0";
   if (!(p.initial_angle_rad > 0.0 && p.initial_angle_rad < std::numbers::pi / 2.0))
     return "initial_angle_rad must lie between 0 and pi/2, both excluded";
@@ -30,7 +30,7 @@ const char* first_fault(const RhombusChainParameters& p) {
 }  // namespace
 
 Result<RhombusChain> make_rhombus_chain(const RhombusChainParameters& p) {
-  if (const char* fault = first_fault(p)) return Error{std::string("rhombus chain: ") + fault};
+  if (const char* wrong = parameter_error(p)) return Error{std::string("rhombus chain: ") + wrong};
   RhombusChain chain;
   chain.count_ = p.units;
   for (std::size_t i = 0; i < p.units; ++i) {

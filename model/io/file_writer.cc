@@ -19,7 +19,7 @@ namespace tact::model::io {
 namespace {
 
 constexpr std::size_t kBuffer_bytes = 1 << 16, kBeginning_bytes = 16;
-constexpr int kMostParts = 100;
+constexpr int kMaxParts = 100;
 constexpr mode_t kNewMode = 0666;  // less the umask
 
 Error error_of(const std::string& path, std::string_view what) {
@@ -93,7 +93,7 @@ Result<Target> target_of(const std::string& path, std::string_view beginning) {
 
 /// A temporary that nobody else has, beside the target.
 Result<std::pair<std::string, int>> open_part(const std::string& path, const Target& target) {
-  for (int n = 0; n < kMostParts; ++n) {
+  for (int n = 0; n < kMaxParts; ++n) {
     std::string part = fmt::format("{}.{}-{}.part", target.path, getpid(), n);
     const int fd =
         open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, kNewMode);

@@ -15,7 +15,7 @@
 
 namespace tact::model::io {
 
-inline constexpr std::uintmax_t kMostBytes = 1'000'000'000;
+inline constexpr std::uintmax_t kMaxBytes = 1'000'000'000;
 
 /// A regular file, read from its start on.
 class InputFile {
@@ -50,6 +50,6 @@ class InputFile {
 
 /// All of a file; an error is "PATH: what is wrong; CURE".
 Result<std::string> read_file(const std::string& path, std::string_view cure = "check the name",
-                              std::uintmax_t most_bytes = kMostBytes);
+                              std::uintmax_t most_bytes = kMaxBytes);
 
 }  // namespace tact::model::io

@@ -20,10 +20,10 @@ namespace tact::model::io {
 namespace {
 
 /// NGROUPS_MAX is 65536; who is in more groups than this is asked for the first one alone.
-constexpr std::size_t kMostGroups = 1024;
+constexpr std::size_t kMaxGroups = 1024;
 
 bool has_peer_in(int socket, gid_t group) {
-  std::array<gid_t, kMostGroups> groups{};
+  std::array<gid_t, kMaxGroups> groups{};
   socklen_t bytes = sizeof groups;
   if (getsockopt(socket, SOL_SOCKET, SO_PEERGROUPS, groups.data(), &bytes) != 0) return false;
   const std::span<const gid_t> is_in(groups.data(), bytes / sizeof(gid_t));
@@ -77,11 +77,11 @@ Result<std::string> runtime_directory() {
 
 Result<sockaddr_un> socket_address(const std::string& path) {
   sockaddr_un address{.sun_family = AF_UNIX, .sun_path = {}};
-  constexpr std::size_t kMost = sizeof address.sun_path - 1;
-  if (path.empty() || path.size() > kMost)
-    return Error{path + ": a socket's path has 1 to " + std::to_string(kMost) +
+  constexpr std::size_t kMax = sizeof address.sun_path - 1;
+  if (path.empty() || path.size() > kMax)
+    return Error{path + ": a socket's path has 1 to " + std::to_string(kMax) +
                  " characters; give a shorter --socket, or XDG_RUNTIME_DIR"};
-  path.copy(address.sun_path, kMost);
+  path.copy(address.sun_path, kMax);
   return address;
 }
 

@@ -10,7 +10,7 @@
 namespace tact::model::law {
 namespace {
 
-constexpr double kMostFlow = 4.0;
+constexpr double kMaxFlow = 4.0;
 
 // RX-3: b, free of cancellation; the series is good to 1e-16 and three times as fast as expm1.
 double gain(double x) RT_SAFE {
@@ -24,7 +24,7 @@ double gain(double x) RT_SAFE {
 double flow_ratio(double stretch_m, const LawResponse& at_stretch) RT_SAFE {
   if (at_stretch.force_N == 0.0) return 1.0;
   const double q = at_stretch.force_N / (stretch_m * at_stretch.stiffness_N_per_m);
-  return q >= 0.0 && q < kMostFlow ? q : kMostFlow;
+  return q >= 0.0 && q < kMaxFlow ? q : kMaxFlow;
 }
 
 RelaxationState Relaxation::after(const RelaxationState& before, double depth_m,

@@ -18,7 +18,7 @@
 namespace tact::model::reader {
 namespace {
 
-constexpr std::uintmax_t kLargestFile_bytes = 1'000'000;
+constexpr std::uintmax_t kMaxFile_bytes = 1'000'000;
 
 std::string cure() {
   const auto installed = io::installed("scenes/liver.toml");
@@ -133,7 +133,7 @@ TextPlace SceneDocument::place_of(const toml::node& node) const {
 
 Result<SceneDocument> load_scene_document(const std::string& path,
                                           const std::vector<std::string>& overrides) {
-  const Result<std::string> text = io::read_file(path, cure(), kLargestFile_bytes);
+  const Result<std::string> text = io::read_file(path, cure(), kMaxFile_bytes);
   if (!text) return text.error();
   Result<toml::table> root = io::parse_toml(*text, path);
   if (!root) return root.error();

@@ -87,8 +87,8 @@ void Keys::vector(std::string_view key, Range each, std::string_view meaning, Ve
 
 void Keys::choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning,
                   std::size_t& out, Need need) {
-  constexpr std::size_t kMostOnALine = 4;
-  if (!visit_.document() && choices.size() > kMostOnALine) return describe(key, choices);
+  constexpr std::size_t kMaxOnALine = 4;
+  if (!visit_.document() && choices.size() > kMaxOnALine) return describe(key, choices);
   const std::string fallback =
       need == Need::kOptional ? fmt::format("\"{}\"", choices[out].name) : "";
   const toml::node* node = take(key, names_of(choices), meaning, fallback);

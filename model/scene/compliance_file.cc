@@ -52,7 +52,7 @@ void take(std::string_view& bytes, T* first, std::size_t count) {
   bytes.remove_prefix(count * sizeof(T));
 }
 
-std::optional<std::string> first_fault(const Header& h) {
+std::optional<std::string> header_error(const Header& h) {
   if (h.vertices == 0 || h.vertices > kMaxVertices)
     return fmt::format("it says {} vertices", h.vertices);
   if (h.rings == 0 || h.rings > indent::kMaxComplianceRings)
@@ -100,7 +100,7 @@ Result<tissue::ComplianceMap> read_compliance_map(const std::string& path) {
   take(bytes, &head, 1);
   if (head.version != kVersion)
     return broken(fmt::format("is of version {}, this program reads {}", head.version, kVersion));
-  if (const auto fault = first_fault(head)) return broken("is damaged: " + *fault);
+  if (const auto wrong = header_error(head)) return broken("is damaged: " + *wrong);
   tissue::ComplianceMap map{.poisson_ratio = head.poisson_ratio,
                             .patch_radius_m = head.patch_radius_m,
                             .ring_pitch_m = head.ring_pitch_m,
@@ -136,9 +136,9 @@ Result<std::size_t> write_compliance_map(const tissue::ComplianceMap& map,
   const bool complete = map.sideways_times_E_per_m.size() == map.vertices() &&
                         map.ring_times_E_per_m.size() == map.vertices() * map.rings &&
                         map.mesh_hash.size() == kHashDigits;
-  if (const auto fault = first_fault(head); fault || !complete)
+  if (const auto wrong = header_error(head); wrong || !complete)
     return Error{fmt::format("{}: not written, the map is not complete{}", path,
-                             fault ? ": " + *fault : std::string())};
+                             wrong ? ": " + *wrong : std::string())};
   if (!all_finite(map))
     return Error{path +
                  ": not written, the map holds a value that is no finite number; solve it again "

@@ -10,7 +10,7 @@
 namespace tact::model::scene {
 namespace {
 
-constexpr std::size_t kMostStrokes = 64;
+constexpr std::size_t kMaxStrokes = 64;
 
 void visit_mesh(reader::Keys& k, MeshText& mesh) {
   mesh.place = k.place_of("mesh");
@@ -79,7 +79,7 @@ void visit_hand(reader::Keys& k, SceneText& out) {
            script.inward);
   if (!(norm(script.inward) > 0.0))
     k.refuse({"inward"}, "hand.inward has no direction; allowed: any length but 0");
-  k.entries("stroke", {0, kMostStrokes}, "what the hand does, in this order",
+  k.entries("stroke", {0, kMaxStrokes}, "what the hand does, in this order",
             [&](reader::Keys& stroke) { visit_stroke(stroke, script.strokes.emplace_back()); });
   script.repeat = hand.repeat;
   script.home_place = k.place_of("home_m");

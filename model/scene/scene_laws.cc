@@ -11,10 +11,10 @@
 namespace tact::model::scene {
 namespace {
 
-constexpr std::size_t kFewestKnots = 17;
-constexpr std::size_t kMostUnits = 31;  // one ring each, as many as the viewer shows
-constexpr std::size_t kMostSites = 64;
-constexpr std::size_t kMostVertices = 100'000'000;
+constexpr std::size_t kMinKnots = 17;
+constexpr std::size_t kMaxUnits = 31;  // one ring each, as many as the viewer shows
+constexpr std::size_t kMaxSites = 64;
+constexpr std::size_t kMaxSiteVertex = 100'000'000;
 constexpr reader::Range kDepth_m{1e-4, 0.1};
 
 constexpr std::array<reader::Choice, kLawNames.size()> law_choices() {
@@ -35,7 +35,7 @@ void visit_rhombus(reader::Keys& k, Scene& scene) {
   k.number("tangential_stiffness_N_per_m", {0.0, 1e5}, "kT of the first unit, along the surface",
            p.tangential_stiffness_N_per_m);
   k.number("growth", {0.1, 100.0}, "beta: unit i has kT exp((i - 1) / beta)", p.growth);
-  k.count("units", {1, kMostUnits}, "rhombus units in series", p.units);
+  k.count("units", {1, kMaxUnits}, "rhombus units in series", p.units);
   k.number("area_m2", {0.0, 0.01},
            "of the surface under one chain; 0: one chain under the whole tip",
            scene.rhombus_area_m2, reader::Need::kOptional);
@@ -65,7 +65,7 @@ void visit_disc_stack(reader::Keys& k, Scene& scene) {
   k.number("delay_growth_ratio", {0.1, 100.0}, "q", p.delays.delay_ratio);
   k.number("refresh_rate_Hz", {1.0, 1e5}, "no layer moves later than its period",
            p.delays.refresh_rate_Hz);
-  k.count("layers", {1, kMostUnits}, "discs at most", p.delays.layers);
+  k.count("layers", {1, kMaxUnits}, "discs at most", p.delays.layers);
 }
 
 constexpr std::array kHexWeights{
@@ -160,7 +160,7 @@ void visit_compliance(reader::Keys& k, SceneText& out) {
 void visit_laws(reader::Keys& k, SceneText& out) {
   Scene& scene = out.scene;
   std::size_t law = 0;
-  k.count("table_knots", {kFewestKnots, law::kMaxKnots}, "of the loop's look-up table, each side",
+  k.count("table_knots", {kMinKnots, law::kMaxKnots}, "of the loop's look-up table, each side",
           scene.table_knots, reader::Need::kOptional);
   k.flag("varies_by_place", "closed-form laws in series with [compliance], spring_patch by it",
          scene.varies_by_place, reader::Need::kOptional);
@@ -226,10 +226,10 @@ void visit_truth(reader::Keys& k, Scene& scene) {
                 visit_elastic, reader::Need::kOptional)) {
     scene.elastic = elastic;
   }
-  k.entries("reference_site", {0, kMostSites}, "a vertex where tact-reference solves",
+  k.entries("reference_site", {0, kMaxSites}, "a vertex where tact-reference solves",
             [&](reader::Keys& keys) {
               ReferenceSite& site = scene.reference_sites.emplace_back();
-              keys.count("vertex", {0, kMostVertices}, "of the organ's mesh, from 0", site.vertex);
+              keys.count("vertex", {0, kMaxSiteVertex}, "of the organ's mesh, from 0", site.vertex);
               keys.flag("held_out", "not used by tact-fit, only to judge", site.held_out);
             });
   ToleranceSettings tolerance;

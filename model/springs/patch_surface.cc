@@ -56,9 +56,9 @@ double across_N_per_m(const PatchTissue& tissue) {
 // MA-22
 double anchor_of_give_N_per_m(const PatchTissue& tissue, double more_m_per_N) {
   constexpr double kStiffestPlace = 3.0;  // over the mean one, as model/tissue has it
-  constexpr double kLeastModulus_N_per_m = 1e-6;
+  constexpr double kMinModulus_N_per_m = 1e-6;
   const double modulus =
-      std::max(std::numbers::sqrt3 * across_N_per_m(tissue), kLeastModulus_N_per_m);
+      std::max(std::numbers::sqrt3 * across_N_per_m(tissue), kMinModulus_N_per_m);
   const double mean_m_per_N = give_m_per_N(modulus, tissue.body_stiffness_N_per_m);
   const double give = std::max(mean_m_per_N + more_m_per_N, mean_m_per_N / kStiffestPlace);
   const double all_waves = 4.0 * std::numbers::pi * modulus;

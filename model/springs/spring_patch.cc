@@ -17,7 +17,7 @@ constexpr double kShownMove_m = 1e-6;
 constexpr double kLostDents = 10.0;  // a dent of so many working depths is no tissue any more
 constexpr std::size_t kShownLips = contact::kMaxShapeNodes / 2;
 
-const char* first_fault(const SpringPatchParameters& p) {
+const char* parameter_error(const SpringPatchParameters& p) {
   const PatchTissue& t = p.tissue;
   if (!is_positive(t.surface_stiffness_N_per_m))
     return "surface_stiffness_N_per_m must be finite and above 0";
@@ -93,7 +93,7 @@ SpringPatch::SpringPatch(PatchSurface surface, const SpringPatchParameters& para
 
 Result<std::unique_ptr<SpringPatch>> make_spring_patch(const contact::SurfaceView& surface,
                                                        const SpringPatchParameters& p) {
-  if (const char* fault = first_fault(p)) return Error{std::string("spring patch: ") + fault};
+  if (const char* wrong = parameter_error(p)) return Error{std::string("spring patch: ") + wrong};
   if (surface.triangle.empty()) return Error{"spring patch: the surface has no triangles"};
   if (const auto vertex = crowded_vertex(surface))
     return Error{"spring patch: vertex " + std::to_string(*vertex) + " has " +

@@ -8,8 +8,8 @@
 namespace tact::model::tissue {
 namespace {
 
-constexpr double kFacing = 0.2;        // cosine; skin that looks further away is another side
-constexpr double kLeastSpread = 1e-6;  // of what a disc of skin has: below, there is no plane
+constexpr double kFacing = 0.2;      // cosine; skin that looks further away is another side
+constexpr double kMinSpread = 1e-6;  // of what a disc of skin has: below, there is no plane
 
 /// Moments of r over skin around a point, in two axes of its tangent plane.
 struct Moments {
@@ -49,7 +49,7 @@ std::vector<Vec3> dent_tilt(const ComplianceMap& map, const contact::SurfaceView
     const double xx = m.xx - m.x * m.x / m.count, yy = m.yy - m.y * m.y / m.count;
     const double xy = m.xy - m.x * m.y / m.count, determinant = xx * yy - xy * xy;
     const double disc = m.count * kTiltReach_m * kTiltReach_m;
-    if (!(determinant > kLeastSpread * disc * disc)) continue;
+    if (!(determinant > kMinSpread * disc * disc)) continue;
     const double xr = m.xr - m.x * m.r / m.count, yr = m.yr - m.y * m.r / m.count;
     // CF-6
     out[v] = 0.5 / determinant * ((yy * xr - xy * yr) * e1 + (xx * yr - xy * xr) * e2);

@@ -14,7 +14,7 @@ import {
 
 const socket = join(folder, "figure.sock");
 const kHold_m = 0.001;
-const kMostBytes = 1024;
+const kMaxBytes = 1024;
 
 /** The longest way between finger tips and grip in so many seconds, and how far the hand went. */
 async function watch(page, seconds) {
@@ -45,7 +45,7 @@ async function check_holding(page) {
     `${(hand_m * 1e3).toFixed(0)} mm of ${(tool_m * 1e3).toFixed(0)} mm`);
   const { largest_frame_bytes, largest_figure_bytes } = await numbers(page);
   check("a figure's message is small, and a frame's as before",
-    largest_figure_bytes > 400 && largest_figure_bytes <= kMostBytes && largest_frame_bytes <= 4096,
+    largest_figure_bytes > 400 && largest_figure_bytes <= kMaxBytes && largest_frame_bytes <= 4096,
     `${largest_figure_bytes} bytes`);
 }
 

@@ -22,7 +22,7 @@ const kMotion_s = 30;
 const kLeaning_s = [6.5, 9]; // of the recording
 const kSilent_s = 8.9; // of the recording: soon afterwards the waist is hidden for a while
 const kEyes_m = 0.2; // from the head's joint to the eyes, and what a smooth camera lags behind
-const kMostBytes = 4096;
+const kMaxBytes = 4096;
 
 /** tact-view with a tracker, tactd, and the page. */
 async function start_all(browser, name, tracking) {
@@ -145,8 +145,8 @@ async function follow_the_recording(browser) {
   }
   check("says nothing while all is well", samples.filter((sample) => sample.words === "").length > 0.7 * samples.length);
   const { largest_frame_bytes, largest_figure_bytes } = await page.evaluate(() => ({ ...window.tact }));
-  check(`gets frame and figure in at most ${kMostBytes} bytes`, largest_figure_bytes > 100 &&
-    largest_frame_bytes + largest_figure_bytes <= kMostBytes, `${largest_frame_bytes} and ${largest_figure_bytes}`);
+  check(`gets frame and figure in at most ${kMaxBytes} bytes`, largest_figure_bytes > 100 &&
+    largest_frame_bytes + largest_figure_bytes <= kMaxBytes, `${largest_frame_bytes} and ${largest_figure_bytes}`);
   await check_eyes(page, samples);
   await page.keyboard.press("f");
   check("hides the operator", await waits(page, () => !window.tact.figure_on));

@@ -17,7 +17,7 @@ import {
 
 const socket = join(folder, "telemetry.sock");
 const kVertices = 3116;
-const kMostFrameBytes = 4096;
+const kMaxFrameBytes = 4096;
 
 /** The page before, while and after the controller runs. */
 async function check_view(page, url) {
@@ -51,8 +51,8 @@ async function check_speed(page) {
   // How fast is a question for tools/bench; that it draws at all is one for a test.
   check("draws picture after picture", fps > 1 && fps < 250, `${fps.toFixed(1)} frames/s`);
   const { frames, bytes, largest_frame_bytes } = await numbers(page);
-  check(`gets frames of at most ${kMostFrameBytes} bytes`,
-    frames > 100 && largest_frame_bytes <= kMostFrameBytes,
+  check(`gets frames of at most ${kMaxFrameBytes} bytes`,
+    frames > 100 && largest_frame_bytes <= kMaxFrameBytes,
     `largest ${largest_frame_bytes} bytes, mean ${(bytes / frames).toFixed(0)} of ${frames}`);
 }
 

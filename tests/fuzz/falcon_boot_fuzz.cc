@@ -15,7 +15,7 @@ using What = hal::falcon::FalconBootAction::What;
 constexpr std::array<std::uint8_t, 130> kImage{0xAA, 0x08, 0x01, 0x02};
 constexpr hal::falcon::FalconBootSettings kShort{
     .attempts = 2, .report_tries = 2, .greeting_tries = 3};
-constexpr int kMostSteps = 2000;
+constexpr int kMaxSteps = 2000;
 
 bool inside_image(fuzz::Bytes bytes) {
   return bytes.data() >= kImage.data() &&
@@ -38,7 +38,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::Bytes input(data, size);
   hal::falcon::FalconBoot boot(kImage, kShort);
   hal::falcon::FalconBootInput heard;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     const hal::falcon::FalconBootAction action = boot.next(heard);
     if (action.what == What::kReady || action.what == What::kGiveUp) return 0;
     if (action.what == What::kWrite) check_written(action.bytes);

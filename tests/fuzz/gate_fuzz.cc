@@ -16,7 +16,7 @@ namespace {
 using namespace tact;
 using fuzz::require;
 
-constexpr int kMostTicks = 4096;
+constexpr int kMaxTicks = 4096;
 
 class Story {
  public:
@@ -76,7 +76,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     fuzz::Bytes input(data, size);
     tests::GateRules rules(setting);
     Story story(setting);
-    for (int tick = 0; tick < kMostTicks && !input.empty(); ++tick)
+    for (int tick = 0; tick < kMaxTicks && !input.empty(); ++tick)
       require(rules.judge(story.next(input, rules.verdict().wrench)) == nullptr);
   }
   return 0;

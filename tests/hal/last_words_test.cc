@@ -54,10 +54,10 @@ TEST(LastWords, AStepLeavesAloneAndAllLeaveInOrderWithoutHeap) {
 
 TEST(LastWords, WhatDoesNotFitIsRefused) {
   LastWords words;
-  const std::vector<Bytes> many(LastWords::kMost);
+  const std::vector<Bytes> many(LastWords::kMax);
   EXPECT_TRUE(words.add_step(many));
   EXPECT_FALSE(words.add_step(std::array<Bytes, 1>{}));
-  EXPECT_EQ(words.count, LastWords::kMost);
+  EXPECT_EQ(words.count, LastWords::kMax);
 }
 
 TEST(LastWords, AQueueThatIsFullForAMomentIsTriedAgain) {

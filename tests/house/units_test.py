@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every number that a header keeps, alone or in a vector, names its unit, as force_N does, or is known to have none.
+"""Every number that a header keeps, alone or in a vector, names its unit, as force_N does, or is known to have none; and
+every bound is kMax... or kMin....
 
-Reads the members and constants of the headers as text and prints every breach as file:line:
+Reads the members and constants of the headers, and the bounds of all C++, as text and prints every breach as file:line:
 sentence. Exit status 0 or 1.
 """
 import pathlib
@@ -61,13 +62,24 @@ def breaches(path, text):
             yield f"{path}:{number}: {name} names no unit; if it has none, it is a word of PLAIN in {__file__.rsplit('/', 1)[1]}"
 
 
+BOUND = re.compile(r"\bk(?:Most|Largest|Greatest|Biggest|Least|Smallest|Fewest)(?=[A-Z_]|\b)\w*")
+
+
+def bound_breaches(path, text):
+    for number, line in enumerate(text.splitlines(), 1):
+        for name in BOUND.findall(line):
+            yield f"{path}:{number}: {name}: a bound is kMax... or kMin..."
+
+
 def blind_rules():
     bad = ("  double force = 0.0;\n", "  double low = 0.0, speed = 0.0;\n", "inline constexpr double kLimit = 3.0;\n",
            "  float mass_;\n", "  Vec3 place;\n", "  model::Vec3 place{}, far_m;\n", "  std::array<double, 3> torque{};\n",
            "  std::vector<Vec3> place_;\n", "  std::span<const double> mass;\n", "  delta::Joints torque{1.0, 2.0, 3.0};\n")
     good = ("  double force_N = 0.0, low = 0.0;\n", "  void f(double d) {\n    double sum = d;\n  }\n", "  double f(double v);\n",
             "  std::array<Vec3, 2> place_m{}, far_m;\n", "  delta::Joints angle_rad{1_deg, 2_deg};\n", "  Vec3 f(Vec3 v);\n")
-    return [t for t in bad if not list(breaches("x.h", t))] + [t for t in good if list(breaches("x.h", t))]
+    bounds = ("constexpr int kMostSteps = 3;\n", "for (; i < kLeast; ++i)\n")
+    return ([t for t in bad if not list(breaches("x.h", t))] + [t for t in good if list(breaches("x.h", t))] +
+            [t for t in bounds if not list(bound_breaches("x.h", t))] + list(bound_breaches("x.h", "kMaxSteps kLeastly\n")))
 
 
 def main():
@@ -77,6 +89,10 @@ def main():
             if "node_modules" not in path.parts:
                 count += 1
                 found += breaches(str(path.relative_to(ROOT)), path.read_text())
+    for top in (*TOPS, "tests"):
+        for path in sorted((*(ROOT / top).rglob("*.h"), *(ROOT / top).rglob("*.cc"))):
+            if "node_modules" not in path.parts:
+                found += bound_breaches(str(path.relative_to(ROOT)), path.read_text())
     found += [f"units_test.py: a rule does not see: {text.strip()}" for text in blind_rules()]
     print(*found, sep="\n", end="\n" if found else "")
     print(f"units: {count} headers, {len(found)} breaches")

@@ -28,7 +28,7 @@ using tact::model::Fault;
 using tact::model::Result;
 
 constexpr std::int64_t kPeriod_ns = 1'000'000;
-constexpr int kMostMissed = 20;  // samples in a row
+constexpr int kMaxMissed = 20;  // samples in a row
 
 struct Options {
   std::string device;
@@ -106,7 +106,7 @@ Result<FalconBalance> balance(FalconDevice& device, double mass_kg) {
       held_N = ramp.step(sample.tool.position_m.z, norm(sample.tool.velocity_mps), device.words(),
                          1e-9 * kPeriod_ns);
     up_N = held_N;
-    return missed < kMostMissed && !ramp.ended();
+    return missed < kMaxMissed && !ramp.ended();
   });
   if (fault != Fault::kNone) return failed(device, fault);
   if (ramp.state() == FalconBalanceRamp::State::kBalanced)

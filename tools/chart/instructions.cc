@@ -116,7 +116,7 @@ double stepped(const Call& call, std::size_t calls, std::size_t most_steps) {
 }  // namespace
 
 double instructions_by_steps(const Call& call, std::size_t calls, std::size_t most_steps) {
-  static const double loop = stepped([] {}, 10, kMostSteps);  // of the counting itself
+  static const double loop = stepped([] {}, 10, kMaxSteps);  // of the counting itself
   const double count = stepped(call, calls, most_steps) - loop;
   return count < 0.0 ? 0.0 : count;  // and NaN stays NaN
 }

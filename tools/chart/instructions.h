@@ -4,7 +4,7 @@
 //
 // Counted by the processor where Linux lets us (perf_event_open; virtual machines often hide the
 // counter). Else a copy of this process is stepped through the call one instruction at a time:
-// exact, but some 40 us each, so a call of more than kMostSteps is not counted. Instructions of the
+// exact, but some 40 us each, so a call of more than kMaxSteps is not counted. Instructions of the
 // kernel are not counted.
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace tact::tools::chart {
 
-inline constexpr std::size_t kMostSteps = 300'000;  // of all calls together
+inline constexpr std::size_t kMaxSteps = 300'000;  // of all calls together
 
 /// Mean over up to `calls` calls; NaN where neither way works or one call is too long. Stepped, the
 /// calls happen in the copy alone.
@@ -21,6 +21,6 @@ double instructions_per_call(const std::function<void()>& call, std::size_t call
 
 /// The second way by itself, for tests.
 double instructions_by_steps(const std::function<void()>& call, std::size_t calls,
-                             std::size_t most_steps = kMostSteps);
+                             std::size_t most_steps = kMaxSteps);
 
 }  // namespace tact::tools::chart

@@ -2,7 +2,7 @@
 // measure.h - runs a subject over the reference's sites and depths, and times its tick.
 //
 // Errors are quasi-static: a stepped subject ticks at one depth until its force stays within
-// 0.1 % over 50 ticks, or for kMostSettleTicks. Relaxation is not asked: the reference is elastic.
+// 0.1 % over 50 ticks, or for kMaxSettleTicks. Relaxation is not asked: the reference is elastic.
 // Time is that of a probe that moves, one site, warm, each tick on its own, less what reading the
 // clock costs; the median of very short ticks is that of the mean of a few. What is asked is the
 // law, not the load of the machine: ticks in which the system ran another program are counted and
@@ -19,7 +19,7 @@
 
 namespace tact::tools::chart {
 
-inline constexpr int kMostSettleTicks = 4000;
+inline constexpr int kMaxSettleTicks = 4000;
 
 /// One depth at one site of the scene's mesh.
 struct ProbeCase {

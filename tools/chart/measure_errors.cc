@@ -59,7 +59,7 @@ SettledForce settle(bool is_stepped, const std::function<double()>& tick_force_N
   constexpr double kSteady_ratio = 1e-3;
   if (!is_stepped) return {.force_N = tick_force_N(), .ticks = 1};
   double low_N = 0.0, high_N = 0.0;
-  for (int i = 0; i < kMostSettleTicks; ++i) {
+  for (int i = 0; i < kMaxSettleTicks; ++i) {
     const double force_N = tick_force_N();
     if (i % kWindow == 0) low_N = high_N = force_N;
     low_N = std::min(low_N, force_N);
@@ -69,7 +69,7 @@ SettledForce settle(bool is_stepped, const std::function<double()>& tick_force_N
     if (i % kWindow == kWindow - 1 && high_N - low_N <= kSteady_ratio * size_N)
       return {.force_N = force_N, .ticks = i + 1};
   }
-  return {.force_N = 0.5 * (low_N + high_N), .ticks = kMostSettleTicks};
+  return {.force_N = 0.5 * (low_N + high_N), .ticks = kMaxSettleTicks};
 }
 
 Accuracy measure_accuracy(Subject& subject, const std::vector<ProbeCase>& cases, double pitch_m) {

@@ -20,8 +20,8 @@ using model::contact::Indentation;
 
 constexpr std::size_t kPathTicks = 1000;  // one turn
 constexpr double kPathRadius_m = 0.004;
-constexpr std::size_t kMostWarmTicks = 500;
-constexpr std::size_t kFewestTicks = 100;
+constexpr std::size_t kMaxWarmTicks = 500;
+constexpr std::size_t kMinTicks = 100;
 constexpr std::size_t kCountedTicks = 20;
 constexpr double kBatch_s = 2e-6;
 constexpr double kLongTick_s = 100e-6;
@@ -69,7 +69,7 @@ template <typename Tick>
 double warm_tick_s(const Tick& tick, const TimingSettings& settings) {
   const auto warm_begin = Clock::now();
   std::size_t warm_ticks = 0;
-  while (warm_ticks < kMostWarmTicks &&
+  while (warm_ticks < kMaxWarmTicks &&
          ns_between(warm_begin, Clock::now()) < 0.05e9 * settings.limit_s) {
     tick();
     ++warm_ticks;
@@ -116,8 +116,8 @@ template <typename Tick>
 Timing time_of(const Tick& tick, const TimingSettings& settings) {
   const double tick_s = warm_tick_s(tick, settings);
   const double room = settings.limit_s / (tick_s * settings.rounds);
-  const std::size_t ticks = std::clamp(static_cast<std::size_t>(std::min(room, 1e9)), kFewestTicks,
-                                       std::max(kFewestTicks, settings.ticks));
+  const std::size_t ticks = std::clamp(static_cast<std::size_t>(std::min(room, 1e9)), kMinTicks,
+                                       std::max(kMinTicks, settings.ticks));
   const double cost_ns = clock_cost_ns();
   // ticks shorter than the clock's step: the median is that of the mean of a few
   const auto batch = static_cast<std::size_t>(std::clamp(kBatch_s / tick_s, 1.0, 64.0));

@@ -15,7 +15,7 @@ namespace {
 
 using model::Result;
 
-constexpr double kLeastError_ratio = 1e-4;  // what lies below is drawn there
+constexpr double kMinError_ratio = 1e-4;  // what lies below is drawn there
 
 struct Point {
   double tick_us = 0.0, force = 0.0, own = 0.0, shape = 0.0;  // errors in %
@@ -41,7 +41,7 @@ std::string shown(const std::string& family) {
   return out;
 }
 
-double percent(double ratio) { return 100.0 * std::max(ratio, kLeastError_ratio); }
+double percent(double ratio) { return 100.0 * std::max(ratio, kMinError_ratio); }
 
 struct Families {
   std::vector<std::string> order;

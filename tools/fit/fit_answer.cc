@@ -17,8 +17,8 @@ using model::Vec3;
 using model::contact::Indentation;
 using model::contact::SiteLaw;
 
-constexpr std::size_t kMostRings = 128;
-constexpr int kMostTicks = 4000;     // for a body with inertia to come to rest
+constexpr std::size_t kMaxRings = 128;
+constexpr int kMaxTicks = 4000;      // for a body with inertia to come to rest
 constexpr int kRestTicks = 25;       // the force stands still for so long
 constexpr double kRestRatio = 1e-6;  // a tick, of the force
 
@@ -30,7 +30,7 @@ Indentation touch(const FitSite& site, const FitSample& sample) {
 
 double settled_force_N(SiteLaw& law, const Indentation& in) {
   double force_N = 0.0;
-  for (int tick = 0, still = 0; tick < kMostTicks && still < kRestTicks; ++tick) {
+  for (int tick = 0, still = 0; tick < kMaxTicks && still < kRestTicks; ++tick) {
     const double now_N = law.respond(in).law.force_N;
     law.advance();
     still = std::abs(now_N - force_N) <= kRestRatio * std::abs(now_N) ? still + 1 : 0;
@@ -45,7 +45,7 @@ void read_profile(std::span<const double> own, double pitch_m, std::span<const d
   const std::size_t rings = own.size();
   const auto at = [&](std::size_t j) { return j < rings ? own[j] : 0.0; };
   for (const double r_m : radius_m) {
-    const double x = std::min(r_m / pitch_m, static_cast<double>(kMostRings));
+    const double x = std::min(r_m / pitch_m, static_cast<double>(kMaxRings));
     const auto j = static_cast<std::size_t>(x);
     const double t = x - static_cast<double>(j);
     ring_m.push_back((1.0 - t) * at(j) + t * at(j + 1));
@@ -96,8 +96,8 @@ Result<std::vector<FitAnswer>> solved_answers(const model::law::Law& press,
       FitAnswer& answer = at->second;
       if (is_new) answer.force_N = law->respond(sample.depth_m).force_N;
       if (answer.ring_m.empty() && !sample.ring_m.empty()) {
-        std::array<double, kMostRings> own{};
-        const std::size_t rings = std::min(law->profile(sample.depth_m, own), kMostRings);
+        std::array<double, kMaxRings> own{};
+        const std::size_t rings = std::min(law->profile(sample.depth_m, own), kMaxRings);
         read_profile({own.data(), rings}, law->ring_pitch_m(), data.ring_radius_m, answer.ring_m);
       }
       out.push_back(answer);
@@ -149,11 +149,11 @@ Result<std::vector<FitAnswer>> answers_of(const model::scene::Scene& scene,
       if (is_stepped) {
         read_shape(law, scene.organ_mesh, in, data.ring_radius_m, answer.ring_m);
       } else {
-        std::array<double, kMostRings> own{};
+        std::array<double, kMaxRings> own{};
         const std::size_t rings =
             springs != nullptr ? springs->profile(in.dent_m, own) : law.profile(in, own);
         const double pitch_m = springs != nullptr ? springs->ring_pitch_m() : law.ring_pitch_m();
-        read_profile({own.data(), std::min(rings, kMostRings)}, pitch_m, data.ring_radius_m,
+        read_profile({own.data(), std::min(rings, kMaxRings)}, pitch_m, data.ring_radius_m,
                      answer.ring_m);
       }
     }

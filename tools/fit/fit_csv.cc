@@ -15,7 +15,7 @@ using model::Result;
 using report::Csv;
 using report::CsvLine;
 
-constexpr std::size_t kFewestRows = 3;
+constexpr std::size_t kMinRows = 3;
 constexpr double kAsDeep = 1.0 + 1e-9;  // 9 times 0.001 is more than 0.009
 constexpr const char* kRadius = "radius_m";
 
@@ -92,8 +92,8 @@ Result<FitData> read_bench_csv(const std::string& path, const BenchColumns& colu
     site_named(data.sites, name).samples.push_back(std::move(sample));
     ++rows;
   }
-  if (rows < kFewestRows)
-    return Error{fmt::format("{}: {} rows; a fit needs {} at least", path, rows, kFewestRows)};
+  if (rows < kMinRows)
+    return Error{fmt::format("{}: {} rows; a fit needs {} at least", path, rows, kMinRows)};
   if (auto error = hold_out(data, held_out)) return std::move(*error);
   if (!(data.peak_N() > 0.0))
     return Error{fmt::format("{}: every force is 0; nothing can be fitted to that", path)};

@@ -53,8 +53,8 @@ double growth_of_slope(std::vector<Point> points) {
   points.push_back({0.0, 0.0});
   std::sort(points.begin(), points.end(),
             [](const Point& a, const Point& b) { return a.depth_m < b.depth_m; });
-  constexpr std::size_t kFewest = 4;
-  if (points.size() < kFewest) return std::nan("");
+  constexpr std::size_t kMin = 4;
+  if (points.size() < kMin) return std::nan("");
   const auto slope = [&](bool second) {
     const double middle_m = 0.5 * points.back().depth_m;
     double n = 0.0, d = 0.0, f = 0.0, dd = 0.0, df = 0.0;

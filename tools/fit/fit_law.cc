@@ -11,8 +11,8 @@ using model::indent::DiscForm;
 using model::scene::LawKind;
 using model::scene::Scene;
 
-constexpr double kLeast_N_per_m = 1e-3;  // stands for no spring
-constexpr double kMost_N_per_m = 1e5;
+constexpr double kMin_N_per_m = 1e-3;  // stands for no spring
+constexpr double kMax_N_per_m = 1e5;
 constexpr double kSteepestCone = 0.4;  // eta: beyond, layers can be felt one by one
 constexpr double kFlattestCone = 0.02;
 constexpr double kTableReach = 0.95;  // of the working depth is felt (tabulated_law.h)
@@ -20,8 +20,8 @@ constexpr double kTableReach = 0.95;  // of the working depth is felt (tabulated
 FitParameter spring(const char* section, const char* key, std::function<double&(Scene&)> in) {
   return {.section = section,
           .key = key,
-          .low = kLeast_N_per_m,
-          .high = kMost_N_per_m,
+          .low = kMin_N_per_m,
+          .high = kMax_N_per_m,
           .in = std::move(in),
           .is_stiffness = true};
 }

@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 using model::Error;
 using model::Result;
 
-constexpr double kLeastShare = 1e-3;  // less cannot be told from none
+constexpr double kMinShare = 1e-3;  // less cannot be told from none
 
 /// Shares >= 0 with the least squares, by trying which of them are 0: at most 2^4 sets.
 VectorXd shares_of(const MatrixXd& basis, const VectorXd& force_N) {
@@ -74,8 +74,7 @@ PronyFit HeldProblem::finish(const std::vector<double>& log_time) const {
   out.is_good = out.residual_ratio <= options_.good_residual;
   for (std::size_t c = 0; c < log_time.size(); ++c) {
     const double share = share_N[static_cast<Index>(c) + 1] / out.at_once_N;
-    if (share >= kLeastShare)
-      out.terms.push_back({.share = share, .time_s = std::exp(log_time[c])});
+    if (share >= kMinShare) out.terms.push_back({.share = share, .time_s = std::exp(log_time[c])});
   }
   std::sort(out.terms.begin(), out.terms.end(),
             [](const auto& a, const auto& b) { return a.time_s < b.time_s; });

@@ -10,10 +10,10 @@
 namespace tact::tools::jitter {
 namespace {
 
-constexpr std::int64_t kMost_ns = std::numeric_limits<std::int32_t>::max();
+constexpr std::int64_t kMax_ns = std::numeric_limits<std::int32_t>::max();
 
 std::int32_t clipped(std::int64_t duration_ns) RT_SAFE {
-  return static_cast<std::int32_t>(std::clamp<std::int64_t>(duration_ns, 0, kMost_ns));
+  return static_cast<std::int32_t>(std::clamp<std::int64_t>(duration_ns, 0, kMax_ns));
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ void BareLoop::step() RT_SAFE {
   const std::int64_t behind_ns = end_ns - due_ns_;
   const std::int64_t skipped = behind_ns >= 0 ? behind_ns / period_ns_ + 1 : 0;
   due_ns_ += skipped * period_ns_;
-  record_.input.skipped_periods = static_cast<std::uint32_t>(std::min(skipped, kMost_ns));
+  record_.input.skipped_periods = static_cast<std::uint32_t>(std::min(skipped, kMax_ns));
   periods_ += 1 + static_cast<std::uint64_t>(skipped);
 }
 

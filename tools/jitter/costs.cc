@@ -16,8 +16,8 @@ namespace {
 using firmware::pc::PcFiles;
 using Count = std::optional<std::uint64_t>;
 
-constexpr off_t kSmiCount = 0x34;        // Intel SDM volume 4
-constexpr std::size_t kMostSources = 4;  // in a sentence
+constexpr off_t kSmiCount = 0x34;       // Intel SDM volume 4
+constexpr std::size_t kMaxSources = 4;  // in a sentence
 
 std::vector<std::string> words_of(const std::string& line) {
   std::istringstream stream(line);
@@ -146,7 +146,7 @@ std::string describe(const Costs& delta) {
   for (const auto& [source, count] : delta.interrupts) sources.emplace_back(count, source);
   std::sort(sources.rbegin(), sources.rend());
   std::string named;
-  for (std::size_t i = 0; i < std::min(sources.size(), kMostSources); ++i)
+  for (std::size_t i = 0; i < std::min(sources.size(), kMaxSources); ++i)
     named +=
         fmt::format("{}{} {}", i == 0 ? "interrupts " : ", ", sources[i].second, sources[i].first);
   if (!named.empty()) tell(named);

@@ -19,7 +19,7 @@ using nlohmann::json;
 constexpr std::array kShown{"p50", "p99", "p99.9", "p99.99", "max"};
 constexpr std::array kJudgedShares{"p50", "p99", "p99.9"};
 constexpr std::array kJudgedSeries{"wake", "every_wake", "total", "deadline_to_force"};
-constexpr std::uint64_t kLeast_ns = 1000;
+constexpr std::uint64_t kMin_ns = 1000;
 
 template <typename List>
 bool is_one_of(const List& list, const std::string& name) {
@@ -83,7 +83,7 @@ Result<Comparison> compare_results(const json& before, const json& after,
       ComparedValue value{.series = name, .share = share, .before_ns = *a, .after_ns = *b};
       value.judged =
           gate_ratio && is_one_of(kJudgedSeries, name) && is_one_of(kJudgedShares, share);
-      value.worse = value.judged && *b > *a + kLeast_ns && value.change_ratio() > *gate_ratio;
+      value.worse = value.judged && *b > *a + kMin_ns && value.change_ratio() > *gate_ratio;
       out.values.push_back(value);
     }
   }

@@ -88,7 +88,7 @@ void TickSink::keep(const TickTimes& times) {
 
 void TickSink::note_late(const TickTimes& times, std::int64_t worst_ns) {
   ++over_threshold_;
-  if (late_ticks_.size() == kMostLateTicks) {
+  if (late_ticks_.size() == kMaxLateTicks) {
     const auto mildest = std::min_element(
         late_ticks_.begin(), late_ticks_.end(),
         [](const auto& a, const auto& b) { return a.second.worst_ns < b.second.worst_ns; });

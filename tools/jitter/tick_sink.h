@@ -36,7 +36,7 @@ struct SinkSettings {
 
 class TickSink {
  public:
-  static constexpr std::size_t kMostLateTicks = 50;  // kept one by one: the worst ones
+  static constexpr std::size_t kMaxLateTicks = 50;  // kept one by one: the worst ones
 
   explicit TickSink(const SinkSettings& settings) : settings_(settings) {}
 

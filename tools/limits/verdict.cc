@@ -12,7 +12,7 @@ namespace {
 using firmware::gate::kStageCount;
 using firmware::gate::kStageName;
 
-constexpr double kLeastTurn = 0.45;       // of the torque limit, where a torque must go
+constexpr double kMinTurn = 0.45;         // of the torque limit, where a torque must go
 constexpr double kRounding = 1.0 + 1e-9;  // for sums and products; |F| has none
 
 /// Force that was held since the last sample, and the way that the next one shows.
@@ -142,7 +142,7 @@ void check_expected(Checks& checks, const CaseVerdict& v) {
                fmt::format("the test had force: {:.4g} N, at least {:.4g} N asked", v.worst.force_N,
                            e.least_peak_ratio * v.limits.force_N));
   if (!e.zero_within_s) return;
-  const double least_Nm = kLeastTurn * v.limits.torque_Nm;
+  const double least_Nm = kMinTurn * v.limits.torque_Nm;
   if (v.subject.grip == Grip::kLever)
     checks.add(v.worst.torque_Nm >= least_Nm,
                fmt::format("the test had torque: {:.4g} N m, at least {:.4g} N m asked",

@@ -15,9 +15,9 @@ constexpr double kDuration_s = 4.0;
 constexpr int kWindows = 8, kEarly = 2, kLast = 7;
 constexpr double kGrows = 1.02, kStill_m = 1e-4;
 constexpr double kRaise = 1.25;
-constexpr double kMost = 500.0;  // times the device's own limit
-constexpr int kBeyond = 10;      // points after the first that grows without the stage
-constexpr double kLeast_N_per_m = 50.0;
+constexpr double kMax = 500.0;  // times the device's own limit
+constexpr int kBeyond = 10;     // points after the first that grows without the stage
+constexpr double kMin_N_per_m = 50.0;
 
 /// As good as no stage: no run has so much energy.
 model::Limits without_passivity(const model::Limits& limits) {
@@ -137,9 +137,9 @@ std::optional<WallVerdict> measure_wall(const LimitsBench& bench, const hal::Dev
   WallVerdict v;
   if (device.at_tool)
     v.theory_N_per_m = model::law::haptic_limit(*device.at_tool, bench.scene.rate_Hz).grow_N_per_m;
-  const double first = std::max(v.theory_N_per_m, kLeast_N_per_m);
+  const double first = std::max(v.theory_N_per_m, kMin_N_per_m);
   int beyond = 0;
-  for (double k = first; k < kMost * first && beyond < kBeyond + 1; k *= kRaise) {
+  for (double k = first; k < kMax * first && beyond < kBeyond + 1; k *= kRaise) {
     const auto without = run_wall(k, bench, false);
     const auto with = without ? run_wall(k, bench, true) : std::nullopt;
     if (!with) return std::nullopt;

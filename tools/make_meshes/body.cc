@@ -225,7 +225,7 @@ void relax(const SurfaceMesh& mesh, const std::vector<Vec3>& p_mm, std::vector<V
 }  // namespace
 
 Result<Shape> make_body(std::size_t vertices, const SphereMap& map) {
-  if (vertices < kFewestVertices) return model::Error{"a body needs at least 50 vertices"};
+  if (vertices < kMinVertices) return model::Error{"a body needs at least 50 vertices"};
   const std::vector<Ring> ring = place_rings(vertices, map);
   std::vector<Vec3> on_unit(vertices);
   on_unit.front() = on_sphere(0.0, 0.0);

@@ -13,11 +13,11 @@ using model::dot;
 using model::Vec3;
 using model::contact::TriangleCorners;
 
-constexpr double kLeastTurn = 0.3;  // cosine between normals before and after an edit
+constexpr double kMinTurn = 0.3;  // cosine between normals before and after an edit
 
 bool has(const TriangleCorners& t, std::uint32_t v) { return t[0] == v || t[1] == v || t[2] == v; }
 
-bool same_way(const Vec3& n, const Vec3& m) { return dot(n, m) > kLeastTurn * norm(n) * norm(m); }
+bool same_way(const Vec3& n, const Vec3& m) { return dot(n, m) > kMinTurn * norm(n) * norm(m); }
 
 double cotangent(const Vec3& tip, const Vec3& a, const Vec3& b) {
   return dot(a - tip, b - tip) / norm(cross(a - tip, b - tip));

@@ -19,11 +19,11 @@ using model::norm;
 using model::Vec3;
 using model::contact::TriangleCorners;
 
-constexpr int kRounds = 8;            // of splitting and collapsing to size
-constexpr int kRepairs = 4;           // of edges that came out short on the way to the counts
-constexpr int kMostCorrections = 60;  // rounds towards the exact count
-constexpr int kPolish = 24;           // rounds of flipping and centring at the end
-constexpr int kRimSteps = 8;          // a line settles slower than a surface
+constexpr int kRounds = 8;           // of splitting and collapsing to size
+constexpr int kRepairs = 4;          // of edges that came out short on the way to the counts
+constexpr int kMaxCorrections = 60;  // rounds towards the exact count
+constexpr int kPolish = 24;          // rounds of flipping and centring at the end
+constexpr int kRimSteps = 8;         // a line settles slower than a surface
 constexpr double kLong = 1.40, kShort = 0.72;  // of the wanted length
 
 struct Measured {
@@ -117,7 +117,7 @@ class Grower {
 
   // A small share of the edges in each round, so that the neighbours can make room.
   bool correct(bool rim, std::size_t wanted) {
-    for (int round = 0; round < kMostCorrections; ++round) {
+    for (int round = 0; round < kMaxCorrections; ++round) {
       std::size_t have = count(rim);
       if (have == wanted) return true;
       const bool grow = have < wanted;

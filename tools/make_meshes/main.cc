@@ -26,7 +26,7 @@ using tact::model::Vec3;
 using tact::tools::make_meshes::Shape;
 
 constexpr std::size_t kLiverVertices = 3116;  // as in the published tests of the rhombus chain
-constexpr std::size_t kMostVertices = 9'000'000;
+constexpr std::size_t kMaxVertices = 9'000'000;
 
 struct Mesh {
   const char* name;
@@ -104,7 +104,7 @@ int main(int argc, char** argv) {
   app.add_option("--liver-vertices", liver_vertices,
                  "vertices of the liver, 50 to 9000000; the shape stays")
       ->capture_default_str()
-      ->check(tact::model::io::within(tact::tools::make_meshes::kFewestVertices, kMostVertices));
+      ->check(tact::model::io::within(tact::tools::make_meshes::kMinVertices, kMaxVertices));
   app.footer("Exit status: 0 written, 2 bad usage or the directory cannot be written.");
   if (const auto status = tact::model::io::parse_command_line(app, "tact-make-meshes", argc, argv))
     return *status;

@@ -29,7 +29,7 @@ using SphereMap = std::function<model::Vec3(const model::Vec3&)>;
 model::Result<Shape> make_body(std::size_t vertices, const SphereMap& map);
 
 /// Fewest vertices that make_body can place.
-inline constexpr std::size_t kFewestVertices = 50;
+inline constexpr std::size_t kMinVertices = 50;
 
 /// Liver of 150 x 100 x 60 mm: long axis y, top towards +z, lower edge towards +x.
 model::Result<Shape> make_liver_shape(std::size_t vertices);

@@ -18,7 +18,7 @@ using model::law::HermiteTable;
 constexpr int kMaxIterations = 60;
 constexpr std::size_t kKnots = 129;
 
-const char* first_fault(const HexPaperParameters& p) {
+const char* parameter_error(const HexPaperParameters& p) {
   if (!is_positive(p.ring_pitch_m)) return "ring_pitch_m must be finite and above 0";
   if (!is_positive(p.body_stiffness_N_per_m))
     return "body_stiffness_N_per_m must be finite and above 0";
@@ -138,8 +138,8 @@ PaperRings paper_rings(double first_strain, double rim_slope) RT_SAFE {
 }
 
 Result<HexPaper> make_hex_paper(const HexPaperParameters& p) {
-  if (const char* fault = first_fault(p))
-    return Error{std::string("hexagonal sheet as printed: ") + fault};
+  if (const char* wrong = parameter_error(p))
+    return Error{std::string("hexagonal sheet as printed: ") + wrong};
   return HexPaper(p);
 }
 

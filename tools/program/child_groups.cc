@@ -9,10 +9,10 @@
 namespace tact::tools::program {
 namespace {
 
-constexpr std::size_t kMostGroups = 512;  // more than any --jobs
+constexpr std::size_t kMaxGroups = 512;  // more than any --jobs
 constexpr int kLongestStart_ms = 1000;
 
-std::array<std::atomic<pid_t>, kMostGroups> groups{};  // 0: free
+std::array<std::atomic<pid_t>, kMaxGroups> groups{};  // 0: free
 std::atomic<int> starting{0};
 static_assert(std::atomic<pid_t>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
               "a signal handler reads them");

@@ -10,9 +10,9 @@ namespace {
 using model::Error;
 using model::Result;
 
-constexpr int kPatience = 10;             // rounds of many that may make it no better
-constexpr Eigen::Index kMostPivots = 50;  // times the unknowns
-constexpr double kZero = 1e-10;           // of the largest pressure or overlap
+constexpr int kPatience = 10;            // rounds of many that may make it no better
+constexpr Eigen::Index kMaxPivots = 50;  // times the unknowns
+constexpr double kZero = 1e-10;          // of the largest pressure or overlap
 
 const Error kNotDefinite{
     "the compliance of the patch is not positive definite; ask for another mesh level"};
@@ -75,7 +75,7 @@ Result<Eigen::VectorXd> solve_contact(const Eigen::MatrixXd& compliance,
   ActiveSet set(compliance, overlap);
   std::size_t fewest = static_cast<std::size_t>(overlap.size()) + 1;
   int patience = kPatience;
-  for (Eigen::Index round = 0; round <= kMostPivots * overlap.size(); ++round) {
+  for (Eigen::Index round = 0; round <= kMaxPivots * overlap.size(); ++round) {
     if (!set.solve()) return kNotDefinite;
     const std::vector<Eigen::Index> wrong = set.wrong();
     if (wrong.empty()) return set.pressure();

@@ -21,8 +21,8 @@ constexpr double kKPa = 1e-3;
 constexpr int kNumbersPerLine = 8;
 constexpr double kBallStiffness = 5000.0;  // of E / R: sinks in by 1e-4 of R and less
 
-constexpr double kLargestStep = 0.2;  // of the way
-constexpr double kBallStep = 0.1;     // of R
+constexpr double kMaxStep = 0.2;   // of the way
+constexpr double kBallStep = 0.1;  // of R
 
 using Text = std::back_insert_iterator<fmt::memory_buffer>;
 
@@ -123,8 +123,8 @@ void write_ball(Text out, const ElasticProblem& p, const DeckAxes& axes) {
 
 /// The largest step, as a part of the way.
 double largest_step(const ElasticLoad& load) {
-  if (!load.ball) return kLargestStep;
-  return std::min(kLargestStep, kBallStep * load.ball->radius_m / load.ball->along_m);
+  if (!load.ball) return kMaxStep;
+  return std::min(kMaxStep, kBallStep * load.ball->radius_m / load.ball->along_m);
 }
 
 void write_way(Text out, const ElasticLoad& load) {

@@ -31,7 +31,7 @@ constexpr std::array<Levels, kFinestLevel - kRoughLevel + 1> kLevels{{{0.5, 0.17
                                                                       {0.125, 0.032, 0.35, 8e-3}}};
 // A pull of more of their edges than this draws the elements at a bond's rim out so far that
 // CalculiX stalls.
-constexpr double kMostDrawnOut = 8.0;
+constexpr double kMaxDrawnOut = 8.0;
 
 /// How far a point lies beyond the site along the tool's way.
 double along_m(const Circle& tool, const Vec3& p_m) { return dot(p_m - tool.at_m, tool.axis); }
@@ -90,7 +90,7 @@ ground_truth::EdgeLengths edge_lengths(const Organ& organ, const Indentation& wh
   double fine_m = (bonded ? level.bond : level.fine) * a_m;
   if (bonded && what.large_strain) {
     const double coarser = level.bond / kLevels[kCoarsestLevel].bond;
-    fine_m = std::max(fine_m, -what.depth_m / kMostDrawnOut * coarser);
+    fine_m = std::max(fine_m, -what.depth_m / kMaxDrawnOut * coarser);
   }
   return {.at_m = organ.surface.vertex_m[what.vertex],
           .axis = bonded ? -organ.surface.vertex_normal[what.vertex] : Vec3{},

@@ -18,7 +18,7 @@ constexpr double kUnitPull_m = -1e-3;
 // Measured on the block of --self-check: 5 mm with edges of 0.43, 0.3, 0.2 and 0.12 of the radius
 // is 10.3, 9.2, 7.2 and 4.6 % above the known answer.
 constexpr double kShrinkOfLargePull = 0.8;
-constexpr double kMostDepth = 5.0;  // of the tool's radius
+constexpr double kMaxDepth = 5.0;  // of the tool's radius
 
 bool among(const std::vector<std::uint32_t>& list, std::uint32_t vertex) {
   return std::find(list.begin(), list.end(), vertex) != list.end();
@@ -142,7 +142,7 @@ std::optional<Error> check(const ReferencePlan& plan) {
   for (const std::uint32_t vertex : plan.large_strain_sites)
     if (!among(plan.sites, vertex))
       return Error{fmt::format("large strain at {}, which is no site; add it to --sites", vertex)};
-  const double most_m = kMostDepth * plan.tool_radius_m;
+  const double most_m = kMaxDepth * plan.tool_radius_m;
   bool good = !plan.depths_m.empty();
   double last_m = 0.0;
   for (const double d_m : plan.depths_m) {
@@ -153,7 +153,7 @@ std::optional<Error> check(const ReferencePlan& plan) {
   return Error{
       fmt::format("--depths must rise, all above 0 and at most {:.3g} m ({:g} tool radii); give "
                   "metres: 0.001,0.002",
-                  most_m, kMostDepth)};
+                  most_m, kMaxDepth)};
 }
 
 std::vector<Indentation> cases_of(const ReferencePlan& plan) {

@@ -19,8 +19,8 @@ using model::fem::edge_key;
 
 constexpr std::uint32_t kUnset = 0xFFFFFFFFU;
 // Two rounds halve a triangle's edges: from 0.1 m to 0.1 um, far below any tool.
-constexpr int kMostRounds = 40;
-constexpr std::size_t kMostTriangles = 1000000;  // gmsh would need days for the body of more
+constexpr int kMaxRounds = 40;
+constexpr std::size_t kMaxTriangles = 1000000;  // gmsh would need days for the body of more
 using Middles = std::unordered_map<std::uint64_t, std::uint32_t>;  // of the edges to split
 
 /// Edge k joins corners k and (k + 1) % 3. Equal lengths: the smaller key, so neighbours agree.
@@ -170,7 +170,7 @@ Triangles cut_along(Triangles surface, const Circle& circle, double reach_m) {
 model::Result<Triangles> refine_surface(Triangles surface,
                                         const ground_truth::EdgeLengths& lengths) {
   const bool has_goal = lengths.fine_m > 0.0;  // a NaN is none
-  for (int round = 0; has_goal && round < kMostRounds && surface.triangle.size() < kMostTriangles;
+  for (int round = 0; has_goal && round < kMaxRounds && surface.triangle.size() < kMaxTriangles;
        ++round) {
     if (program::is_interrupted()) return program::interruption();
     Middles middles = edges_to_split(surface, lengths);

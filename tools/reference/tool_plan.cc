@@ -26,7 +26,7 @@ constexpr double kThickness = 2.0;    // of the deepest press
 constexpr double kFromHeld = 3.0;     // of the radius
 constexpr int kSamples = 10;          // of a sphere's radius, to find where it first touches
 constexpr double kSkin_m = 0.03;      // from the point, whose way is kept
-constexpr double kLeastSlide_m = 1e-3;
+constexpr double kMinSlide_m = 1e-3;
 constexpr double kFromAbove = 5.0;  // radii along the way, in which a first touch is looked for
 
 /// The tool's spheres where it stands at depth 0.
@@ -186,10 +186,10 @@ std::vector<Vec3> slides_of(const model::scene::Scene& scene) {
   for (std::size_t i = 1; i < scene.hand.path.size(); ++i) {
     const auto &from = scene.hand.path[i - 1], &to = scene.hand.path[i];
     const Vec3 start_m = along_m(from.position_m), end_m = along_m(to.position_m);
-    if (!presses(from) || !presses(to) || norm(end_m - start_m) < kLeastSlide_m) continue;
+    if (!presses(from) || !presses(to) || norm(end_m - start_m) < kMinSlide_m) continue;
     for (const Vec3& slid_m : {0.5 * (start_m + end_m), end_m})
       if (std::none_of(out.begin(), out.end(),
-                       [&](const Vec3& o) { return norm(o - slid_m) < kLeastSlide_m; }))
+                       [&](const Vec3& o) { return norm(o - slid_m) < kMinSlide_m; }))
         out.push_back(slid_m);
   }
   return out;

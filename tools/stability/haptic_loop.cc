@@ -21,21 +21,21 @@ class DelayLine {
       : periods_(static_cast<std::size_t>(delay_s / period_s + 1e-9)),
         rest_s_(std::max(0.0, delay_s - static_cast<double>(periods_) * period_s)) {
     if (rest_s_ < 1e-9 * period_s) rest_s_ = 0.0;
-    periods_ = std::min(periods_, kMost - 2);
+    periods_ = std::min(periods_, kMax - 2);
   }
   void fill(double force_N) { force_N_.fill(force_N); }
   void push(double force_N) {
-    newest_ = (newest_ + 1) % kMost;
+    newest_ = (newest_ + 1) % kMax;
     force_N_[newest_] = force_N;
   }
   /// Part of a period in which the force before still acts.
   double rest_s() const { return rest_s_; }
-  double acting_N() const { return force_N_[(newest_ + kMost - periods_) % kMost]; }
-  double before_N() const { return force_N_[(newest_ + kMost - periods_ - 1) % kMost]; }
+  double acting_N() const { return force_N_[(newest_ + kMax - periods_) % kMax]; }
+  double before_N() const { return force_N_[(newest_ + kMax - periods_ - 1) % kMax]; }
 
  private:
-  static constexpr std::size_t kMost = 128;
-  std::array<double, kMost> force_N_{};
+  static constexpr std::size_t kMax = 128;
+  std::array<double, kMax> force_N_{};
   std::size_t newest_ = 0;
   std::size_t periods_;
   double rest_s_;

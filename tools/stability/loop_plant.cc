@@ -8,7 +8,7 @@ namespace tact::tools::stability {
 namespace {
 
 constexpr int kBisections = 50;
-constexpr int kMostEvents = 10'000;
+constexpr int kMaxEvents = 10'000;
 
 }  // namespace
 
@@ -56,7 +56,7 @@ double LoopPlant::stop_time_s(double direction, double step_s) const {
 void LoopPlant::move(double force_N, double duration_s) {
   double left_s = duration_s;
   stuck_ = false;
-  for (int i = 0; left_s > 0.0 && i < kMostEvents; ++i) {
+  for (int i = 0; left_s > 0.0 && i < kMaxEvents; ++i) {
     double direction = velocity_mps_ > 0.0 ? 1.0 : -1.0;
     if (velocity_mps_ == 0.0) {
       const double net_N = force_N - p_.stiffness_N_per_m * position_m_;

@@ -10,7 +10,7 @@
 namespace tact::tools::stability {
 namespace {
 
-constexpr double kMost = 4.0;      // z shown
+constexpr double kMax = 4.0;       // z shown
 constexpr double kOverlap = 1.06;  // of cells, so that no seam shows
 
 /// z_max over zeta, as a data block that a script can plot.
@@ -19,9 +19,8 @@ std::string theory_block(int number, const model::springs::Method& method) {
   std::string out = fmt::format("$theory{} << EOD\nz_max,zeta\n", number);
   for (int i = 0; i <= kPoints; ++i) {
     const double zeta = 2.0 * i / kPoints;
-    out +=
-        fmt::format("{:.5g},{:.5g}\n",
-                    std::fmin(model::springs::largest_stable_z(method, zeta), kMost + 1.0), zeta);
+    out += fmt::format("{:.5g},{:.5g}\n",
+                       std::fmin(model::springs::largest_stable_z(method, zeta), kMax + 1.0), zeta);
   }
   return out + "EOD\n";
 }

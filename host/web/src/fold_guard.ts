@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // fold_guard.ts - keeps drawn skin from folding over where dents are deep and steep.
 //
-//     A . A0 >= kLeast |A0|^2       A0, A  area vector of a triangle at rest and now
+//     A . A0 >= kMin |A0|^2       A0, A  area vector of a triangle at rest and now
 //     d_k += (mean d - d_k) / 2     its three corners, where that is not so
 //
 // Alike displacements leave a triangle as it was at rest, so what is too steep spreads to its
 // neighbours, a pass after the other, and the rest of the dent stays as the law says. Without a
 // fold it costs one look at each touched triangle.
 
-const kLeast = 0.1;
-const kMostPasses = 60; // 20 mm deep: the liver needs 14, skin of 1 mm edges 40
+const kMin = 0.1;
+const kMaxPasses = 60; // 20 mm deep: the liver needs 14, skin of 1 mm edges 40
 
 export class FoldGuard {
   private readonly touched: Uint32Array; // triangles, the first so many
@@ -24,7 +24,7 @@ export class FoldGuard {
   /** Mends out_m; returns the passes that this took. */
   hold(out_m: Float32Array): number {
     const touched = this.find_touched(out_m);
-    for (let pass = 0; pass < kMostPasses; ++pass) {
+    for (let pass = 0; pass < kMaxPasses; ++pass) {
       let folded = 0;
       for (let i = 0; i < touched; ++i) {
         if (!this.is_folded(this.touched[i], out_m)) continue;
@@ -33,7 +33,7 @@ export class FoldGuard {
       }
       if (folded === 0) return pass;
     }
-    return kMostPasses;
+    return kMaxPasses;
   }
 
   is_folded(t: number, out_m: Float32Array): boolean {
@@ -50,7 +50,7 @@ export class FoldGuard {
       along += now * before;
       rest += before * before;
     }
-    return along < kLeast * rest;
+    return along < kMin * rest;
   }
 
   private find_touched(out_m: Float32Array): number {

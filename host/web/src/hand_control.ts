@@ -7,7 +7,7 @@ import * as THREE from "three";
 import type { Stage } from "./stage";
 import type { Frame, Vec } from "./protocol";
 
-const kLeastGap_ms = 1000 / 60;
+const kMinGap_ms = 1000 / 60;
 const kWheel_m = 0.00002; // per wheel unit: a notch of 100 is 2 mm
 const kRepeat_ms = 250; // tactd forgets a target after a second
 const kForget_ms = 4000; // after the last move the hand goes back to its script
@@ -111,7 +111,7 @@ export class HandControl {
     this.target.add(by_m);
     this.touched_ms = performance.now();
     if (this.waiting) return; // the send that waits will take the newest target
-    const wait_ms = Math.max(0, this.sent_ms + kLeastGap_ms - this.touched_ms);
+    const wait_ms = Math.max(0, this.sent_ms + kMinGap_ms - this.touched_ms);
     this.waiting = true;
     setTimeout(() => {
       this.waiting = false;

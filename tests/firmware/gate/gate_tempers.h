@@ -14,15 +14,15 @@
 namespace tact::tests {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
-inline constexpr double kMost = std::numeric_limits<double>::max();
-inline constexpr double kLeast = std::numeric_limits<double>::min();
+inline constexpr double kMax = std::numeric_limits<double>::max();
+inline constexpr double kMin = std::numeric_limits<double>::min();
 inline constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
 inline constexpr std::array kOdd{0.0,
                                  -0.0,
                                  kDenormal,
                                  -kDenormal,
-                                 kLeast,
-                                 -kLeast,
+                                 kMin,
+                                 -kMin,
                                  1e-3,
                                  -1e-3,
                                  7.9999,
@@ -31,8 +31,8 @@ inline constexpr std::array kOdd{0.0,
                                  1e6,
                                  1e300,
                                  -1e300,
-                                 kMost,
-                                 -kMost,
+                                 kMax,
+                                 -kMax,
                                  kInfinity,
                                  -kInfinity,
                                  std::numeric_limits<double>::quiet_NaN()};

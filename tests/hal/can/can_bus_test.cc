@@ -93,7 +93,7 @@ TEST(CanBus, AFullQueueOfTheKernelIsAMissedCycle) {
 TEST(CanBus, MissedCyclesCountInARowOnly) {
   Bus b;
   for (int round = 0; round < 5; ++round) {
-    for (int i = 0; i < CanBus::kMostMissedInARow - 1; ++i) {
+    for (int i = 0; i < CanBus::kMaxMissedInARow - 1; ++i) {
       b.wire.socket().send_error = ENOBUFS;
       b.bus->push(frame(1));
       b.bus->send();

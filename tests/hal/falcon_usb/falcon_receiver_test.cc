@@ -82,7 +82,7 @@ TEST(FalconTurns, PausesWhenNothingComesOfItAndEndsWhenThatLasts) {
   for (; next != FalconTurns::Next::kEnd && free + pauses < 1000; next = turns.turn(false))
     ++(next == FalconTurns::Next::kPause ? pauses : free);
   EXPECT_EQ(free, FalconTurns::kFree);
-  EXPECT_EQ(free + pauses + 1, FalconTurns::kMostEmpty);
+  EXPECT_EQ(free + pauses + 1, FalconTurns::kMaxEmpty);
   EXPECT_EQ(turns.turn(true), FalconTurns::Next::kGoOn);
   EXPECT_EQ(turns.turn(false), FalconTurns::Next::kGoOn);
 }

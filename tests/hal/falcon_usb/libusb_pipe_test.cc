@@ -267,7 +267,7 @@ TEST_F(LibusbPipeTest, ReadinessWithoutEndAndWithoutResultIsLeftWithoutSpinning)
   const char one = 1;
   ASSERT_EQ(::write(usb.other_end, &one, 1), 1);  // nobody reads it: poll returns at once for ever
   ASSERT_TRUE(wait_for_fault());
-  const int pauses = FalconTurns::kMostEmpty - FalconTurns::kFree - 1;
+  const int pauses = FalconTurns::kMaxEmpty - FalconTurns::kFree - 1;
   EXPECT_GE(monotonic_ns() - before_ns, pauses * FalconTurns::kPause_ns);
   usb_pause_ns(20'000'000);  // it stays for the commands, and pauses after each look
   const int calls = locked([&] { return usb.event_calls; });

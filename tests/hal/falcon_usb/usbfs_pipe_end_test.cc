@@ -170,14 +170,14 @@ TEST(UsbfsPipeEnd, ABusThatAnswersNothingAtOnceForEverIsLeftWithoutSpinning) {
     EXPECT_EQ(pipe->health().end, falcon::FalconPipeEnd::kBroken);
     EXPECT_EQ(pipe->health().error, storm.error);
     const int pauses =
-        falcon_usb::FalconTurns::kMostEmpty - falcon_usb::FalconTurns::kFree - 1;  // others may run
+        falcon_usb::FalconTurns::kMaxEmpty - falcon_usb::FalconTurns::kFree - 1;  // others may run
     EXPECT_GE(monotonic_ns() - before_ns, pauses * falcon_usb::FalconTurns::kPause_ns);
     falcon_usb::usb_pause_ns(10'000'000);
     const int in_urbs =
         static_cast<int>(falcon_usb::UsbfsPipe::kIn);  // each comes back once more at most
     int reaps = 0;
     bus.change([&] { reaps = bus.reaps; });
-    EXPECT_LE(reaps, falcon_usb::FalconTurns::kMostEmpty + in_urbs + 2);
+    EXPECT_LE(reaps, falcon_usb::FalconTurns::kMaxEmpty + in_urbs + 2);
     EXPECT_TRUE(pipe->submit(zero_command));
     EXPECT_TRUE(bus.wait_for([&] { return bus.taken.size() == 1; }));
   }

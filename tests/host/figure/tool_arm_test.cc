@@ -116,7 +116,7 @@ TEST(ToolArm, KeepsLengthsLimitsAndItsWordWhateverTheGoalIs) {
     const double error_m = (arm.points_m().back() - any.grip_m).norm();
     ASSERT_NEAR(work.error_m, error_m, 1e-12);
     ASSERT_EQ(work.reached, error_m <= kGripTolerance_m);
-    ASSERT_LE(work.sweeps, kMostSweeps);
+    ASSERT_LE(work.sweeps, kMaxSweepsPerFrame);
     reached += work.reached;
     for (std::size_t k = 0; k < ToolArm::kBones; ++k) {
       const Bone& bone = arm.chain().bones[k];

@@ -104,15 +104,15 @@ TEST_F(LinkAndStrangers, WhoDoesNotReadHoldsNobodyUp) {
 TEST_F(LinkAndStrangers, MoreThanEightAreSentAway) {
   ASSERT_EQ(open(), "");
   std::vector<tcp::socket> sockets;
-  for (std::size_t i = 0; i < kMostClients; ++i) sockets.push_back(raw_client());
-  ASSERT_TRUE(becomes([this] { return link_.clients() == kMostClients; }));
+  for (std::size_t i = 0; i < kMaxClients; ++i) sockets.push_back(raw_client());
+  ASSERT_TRUE(becomes([this] { return link_.clients() == kMaxClients; }));
   tcp::socket ninth = raw_client();
   char byte = 0;
   boost::system::error_code wrong;
   boost::asio::read(ninth, boost::asio::buffer(&byte, 1), wrong);
   EXPECT_TRUE(wrong);
   sockets.pop_back();
-  EXPECT_TRUE(becomes([this] { return link_.clients() == kMostClients - 1; }));
+  EXPECT_TRUE(becomes([this] { return link_.clients() == kMaxClients - 1; }));
 }
 
 }  // namespace tact::host::igtl::igtl_strangers_test

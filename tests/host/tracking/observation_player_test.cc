@@ -40,7 +40,7 @@ TEST_F(RecordingFile, KeepsItsTextOnlyForWhoSendsItOn) {
 }
 
 TEST_F(RecordingFile, LargerThan64MegabytesIsRefusedInOneLine) {
-  fs::resize_file(path_, kLargestRecording_bytes + 1);  // takes no room on the disk
+  fs::resize_file(path_, kMaxRecording_bytes + 1);  // takes no room on the disk
   EXPECT_EQ(sentence_of(read_observation_file(path_)),
             path_.string() +
                 ": larger than 64000000 bytes; give a file of observations, one per line; cut a "

@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 constexpr Joints kAzimuth_rad{105.0 * kDegree, -15.0 * kDegree, -135.0 * kDegree};
-constexpr double kRim_m = 0.055;     // of the ball the stops leave
-constexpr double kLeastSine = 0.15;  // of the knee's bend and of the side angle
+constexpr double kRim_m = 0.055;   // of the ball the stops leave
+constexpr double kMinSine = 0.15;  // of the knee's bend and of the side angle
 
 }  // namespace
 
@@ -35,7 +35,7 @@ std::optional<Pose> falcon_pose(const Vec3& position_m) {
     if (!(std::abs(bend) > 1e-9)) return std::nullopt;
     pose.theta_rad[i] = t1;
     pose.k_rad_per_m[i] = (u * std::cos(t2) + v * (cos3 / sin3) + w * std::sin(t2)) / (a * bend);
-    if (bend < kLeastSine || sin3 < kLeastSine) pose.at_stop = true;
+    if (bend < kMinSine || sin3 < kMinSine) pose.at_stop = true;
   }
   return pose;
 }

@@ -6,7 +6,7 @@
 namespace tact::rig {
 namespace {
 
-constexpr std::uint8_t kStart = 0x3C, kEnd = 0x3E, kBias = 0x41, kLargestNibble = 0x50;
+constexpr std::uint8_t kStart = 0x3C, kEnd = 0x3E, kBias = 0x41, kMaxNibble = 0x50;
 constexpr std::size_t kInfo = 13, kExtra = 14, kLast = 15;
 
 void put_word(FalconFrame& frame, std::size_t word, int value) {
@@ -55,7 +55,7 @@ std::optional<FalconFrame> FalconScanner::push(std::uint8_t byte) {
     size_ = 1;
     return std::nullopt;
   }
-  const std::uint8_t largest = size_ == kInfo ? largest_info_ : kLargestNibble;
+  const std::uint8_t largest = size_ == kInfo ? largest_info_ : kMaxNibble;
   const bool in_place = size_ > 0 && (size_ == kLast    ? byte == kEnd
                                       : size_ == kExtra ? byte != kEnd
                                                         : byte >= kBias && byte <= largest);

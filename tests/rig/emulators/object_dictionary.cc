@@ -10,7 +10,7 @@ namespace {
 
 using enum WireType;
 constexpr std::int64_t kPdoOff = 0x8000'0000, kNoRequest = 0x4000'0000;
-constexpr int kLargestPdo_bits = 64, kMostMapped = 4;
+constexpr int kMaxPdo_bits = 64, kMaxMapped = 4;
 
 /// The field of an entry alone in its bytes.
 WireField whole(WireType type) { return {"", 0, type}; }
@@ -151,7 +151,7 @@ SdoAbort ObjectDictionary::check_mapping(const DictionaryEntry& entry, std::int6
       return SdoAbort::kNotMappable;
     return SdoAbort::kNone;
   }
-  if (value > kMostMapped) return SdoAbort::kMappingTooLong;
+  if (value > kMaxMapped) return SdoAbort::kMappingTooLong;
   int bits = 0;
   const auto count = static_cast<std::uint8_t>(value);
   for (std::uint8_t sub = 1; sub <= count; ++sub) {
@@ -159,7 +159,7 @@ SdoAbort ObjectDictionary::check_mapping(const DictionaryEntry& entry, std::int6
     if (mapped.bits == 0) return SdoAbort::kNotMappable;
     bits += mapped.bits;
   }
-  return bits > kLargestPdo_bits ? SdoAbort::kMappingTooLong : SdoAbort::kNone;
+  return bits > kMaxPdo_bits ? SdoAbort::kMappingTooLong : SdoAbort::kNone;
 }
 
 SdoAbort ObjectDictionary::download(std::uint16_t index, std::uint8_t sub,
@@ -211,7 +211,7 @@ Sdo ObjectDictionary::serve(std::span<const std::uint8_t> request, bool is_opera
 }
 
 std::uint8_t ObjectDictionary::mapped_count(std::uint16_t mapping) const {
-  return static_cast<std::uint8_t>(get(mapping, 0));  // kMostMapped at most
+  return static_cast<std::uint8_t>(get(mapping, 0));  // kMaxMapped at most
 }
 
 std::size_t ObjectDictionary::pack(std::uint16_t mapping,

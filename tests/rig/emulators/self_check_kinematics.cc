@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kLargestStep_m = 0.005;
+constexpr double kMaxStep_m = 0.005;
 
 Vec3 vec3(const Json& array) { return {array[0], array[1], array[2]}; }
 Joints joints(const Json& array) { return {array[0], array[1], array[2]}; }
@@ -32,7 +32,7 @@ Vec3 forward(const Inverse& inverse, const Joints& theta_rad, Vec3 position_m) {
       step_m += model::cross(k[(i + 1) % 3], k[(i + 2) % 3]) *
                 ((theta_rad[i] - pose->theta_rad[i]) / det);
     // Not past the reach on the way to a pose near it.
-    position_m += step_m * std::min(1.0, kLargestStep_m / std::max(1e-12, model::norm(step_m)));
+    position_m += step_m * std::min(1.0, kMaxStep_m / std::max(1e-12, model::norm(step_m)));
   }
   return position_m;
 }

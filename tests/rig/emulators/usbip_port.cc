@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint32_t kSubmit = 1, kUnlink = 2, kReturnSubmit = 3, kReturnUnlink = 4;
 constexpr std::uint32_t kDeviceId = 1u << 16u | 2u;  // bus 1, device 2
 constexpr int kFullSpeed = 2;
-constexpr std::uint32_t kLargestTransfer = 65'536;
+constexpr std::uint32_t kMaxTransfer = 65'536;
 constexpr std::size_t kHeader = 48;
 
 using Header = std::array<std::uint32_t, kHeader / 4>;  // as words, big endian on the wire
@@ -115,7 +115,7 @@ std::optional<UsbipRequest> UsbipPort::receive(std::int64_t now_ns) {
                  .data = {},
                  .submitted_ns = now_ns};
   std::memcpy(request.urb.setup, &bytes[4 * kSetup], sizeof request.urb.setup);
-  if (header[kCommand] != kSubmit || header[kLength] > kLargestTransfer) {
+  if (header[kCommand] != kSubmit || header[kLength] > kMaxTransfer) {
     detach();
     return std::nullopt;
   }

@@ -24,7 +24,7 @@
 namespace {
 
 constexpr double kMass_kg = 0.3, kHand_N_per_m = 400.0, kHand_Ns_per_m = 12.0;
-constexpr double kStep_s = 0.25e-3, kMostPhysics_s = 0.1;
+constexpr double kStep_s = 0.25e-3, kMaxPhysics_s = 0.1;
 constexpr double kWatchdogUnit_s = 125e-6;
 constexpr int kErrorCode = 1, kNotEnabled = 9, kBadId = 15;
 constexpr int kPower = 0, kConnected = 1, kStarted = 2, kForce = 5, kWristDetected = 8;
@@ -95,7 +95,7 @@ void step(double dt_s) {
 
 void catch_up() {
   const double now_s = seconds();
-  state.time_s = std::max(state.time_s, now_s - kMostPhysics_s);
+  state.time_s = std::max(state.time_s, now_s - kMaxPhysics_s);
   while (!state.held && state.time_s + kStep_s <= now_s) step(kStep_s);
 }
 

@@ -135,7 +135,7 @@ TEST(TickSink, KeepsTheWorstTicksAndWhatLedToThem) {
                      i % 10 == 0 ? 200'000 + static_cast<std::int32_t>(i) : 5'000));
   EXPECT_EQ(sink.over_threshold(), 100u);
   const auto late = sink.late_ticks();
-  ASSERT_EQ(late.size(), TickSink::kMostLateTicks);
+  ASSERT_EQ(late.size(), TickSink::kMaxLateTicks);
   EXPECT_EQ(late.front().times.tick, 990u);
   EXPECT_EQ(late.back().times.tick, 500u);
   const auto kept = sink.kept_ticks();
