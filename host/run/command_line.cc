@@ -49,7 +49,7 @@ void add_page(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--url", options.viewer.public_url,
                  "address of a proxy with TLS before it, as https://name:port/, for the link that "
-                 "is printed (host/README.md)");
+                 "is printed (host/server/README.md)");
   app.add_option(
       "--page", options.viewer.page_folder,
       "folder of the built page (default: ../share/tact/page or page/ beside this program)");
