@@ -37,7 +37,8 @@ Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N)
 
 }  // namespace
 
-// By a Hertz contact of its own dent; a held patch is as wide as the sphere.
+// By the contact radius of its own dent, sqrt(R d): CT-1 for a << R. A held patch is as wide as the
+// sphere.
 Tensor2 Contact::give_m_per_N(std::size_t i) const RT_SAFE {
   constexpr double kMinRadius_ratio = 0.1;
   const double radius_m = scene_.spheres[i].radius_m;

@@ -3,7 +3,7 @@
 //
 //     W(d, s)   potential, J, of the depth d at the place s of the undeformed surface
 //     F = dW/dd           along the outward normal, as a Law gives it
-//     G = dW/ds           tangential, N: a tissue that differs from place to place, or is dented
+//     F_s = dW/ds         tangential, N: a tissue that differs from place to place, or is dented
 //                         beside the tool, also pushes sideways; without it, sliding makes energy
 //
 // A site law may remember (relaxation, a mass-spring patch): respond() may be called more than once
@@ -25,7 +25,7 @@ namespace tact::model::contact {
 
 struct SiteResponse {
   law::LawResponse law;
-  Vec3 slope_N{};  // G, tangential to the touched triangle
+  Vec3 slope_N{};  // F_s, tangential to the touched triangle
 };
 
 /// MC-2: how far one site of a tissue moves with a unit force at another, m/N.

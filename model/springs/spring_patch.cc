@@ -42,7 +42,7 @@ const char* parameter_error(const SpringPatchParameters& p) {
   return nullptr;
 }
 
-// G = -F grad w;  grad w = n x (sum of w_i (edge opposite i)) / (2 area)
+// F_s = -F grad w;  grad w = n x (sum of w_i (edge opposite i)) / (2 area)
 Vec3 slope_N(const contact::SurfaceView& mesh, const contact::TriangleCorners& corner,
              const std::array<double, 3>& dent_m, double force_N) RT_SAFE {
   const Vec3 &a = mesh.vertex_m[corner[0]], &b = mesh.vertex_m[corner[1]],
