@@ -3,7 +3,7 @@
 //
 //     nodes     vertices of the surface near the contact (patch_region.h), mass m each
 //     springs   along the edges, and from every node to its rest position (patch_surface.h)
-//     tool      W = q (d - w(s))^2 / 2 + springs,   F = dW/dd = q (d - w),   F_s = dW/ds = -F grad w
+//     tool      W = q (d - w(s))^2 / 2 + springs,  F = dW/dd = q (d - w),  F_s = dW/ds = -F grad w
 //               w(s) = sum of weight_i(s) (-n_i).(x_i - X_i)        dent at the place s
 //     tick      substeps of an integrator (integrators.h) with d and s held
 //
