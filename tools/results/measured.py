@@ -5,6 +5,7 @@ Each gives the command, as a person would type it, and the values that READMEs q
 """
 import json
 import pathlib
+import re
 import subprocess
 import tempfile
 
@@ -152,5 +153,19 @@ def measured():
     return " ".join(command) + " --deepest-m METRES", values
 
 
+def image():
+    """From a tree that is built to an emulated PC that is ready; needs root."""
+    told = told_by("tests/image/run")
+    at = {name: float(re.search(rf"^image: (\d+) s: {name}", told, re.M)[1])
+          for name in ("packages", "Debian", "disk", "done")}
+    size_GB, used_GB = re.search(r"^image: ([\d.]+) GB, of which ([\d.]+) GB", told, re.M).groups()
+    ready_s, linux_s = re.search(r"(\d+) s from power-on, (\d+) s of them", told).groups()
+    return "tests/image/run", {
+        "package_s": at["Debian"] - at["packages"], "debian_s": at["disk"] - at["Debian"],
+        "disk_s": at["done"] - at["disk"], "size_GB": float(size_GB), "used_GB": float(used_GB),
+        "login_s": float(re.search(r"BIOS.*login after (\d+) s", told)[1]),
+        "ready_s": float(ready_s), "ready_of_linux_s": float(linux_s)}
+
+
 MEASURED = {f.__name__: f for f in (bench, limits, verify, size, chart, tool, stability, tracking,
-                                   measured)}
+                                   measured, image)}
