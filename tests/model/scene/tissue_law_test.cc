@@ -86,7 +86,7 @@ TEST(TissueLaw, TitlesNameTheirSizes) {
   EXPECT_EQ(made(liver, LawKind::kCompliance)->title(),
             "elastic compliance, large strain under the tip, 17 curves");
   EXPECT_EQ(made(liver, LawKind::kSpringPatch)->title(),
-            "mass-spring patch, 500 nodes, midpoint-averaging");
+            "mass-spring patch, 500 nodes, improved-euler");
   EXPECT_EQ(made(shipped("liver"))->title(), patch + ", in series with the organ");
 }
 
