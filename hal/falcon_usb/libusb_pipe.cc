@@ -254,7 +254,7 @@ void LibusbPipe::release() {
   const bool all_back = drain();
   const bool stalled =
       receiver_.health().end == falcon::FalconPipeEnd::kStalled && !receiver_.gone();
-  if (stalled && usb_)  // for who opens it next
+  if (stalled && usb_)  // for whoever opens it next
     static_cast<void>(libusb_clear_halt(usb_->handle(), falcon::kFalconEndpointIn));
   for (std::unique_ptr<Transfer>& t : transfers_) {
     if (!all_back) static_cast<void>(t.release());

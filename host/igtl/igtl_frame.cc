@@ -12,12 +12,12 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 std::string frame_messages(const record::Frame& frame, double time_s) {
-  const auto& [w, x, y, z] = frame.tool_orientation;
-  const auto rotation = pose::rotation_from(std::array<double, 4>{w, x, y, z});
-  const Vector3d position_m(frame.tool_position_m[0], frame.tool_position_m[1],
-                            frame.tool_position_m[2]);
-  const double force_N[3] = {frame.force_N[0], frame.force_N[1], frame.force_N[2]};
-  const Vector3d force(force_N[0], force_N[1], force_N[2]);
+  std::array<double, 4> wxyz{};
+  std::copy(std::begin(frame.tool_orientation), std::end(frame.tool_orientation), wxyz.begin());
+  const auto rotation = pose::rotation_from(wxyz);
+  const Vector3d position_m = Eigen::Vector3f(frame.tool_position_m).cast<double>();
+  const Vector3d force = Eigen::Vector3f(frame.force_N).cast<double>();
+  const double force_N[3] = {force.x(), force.y(), force.z()};
   if (!rotation || !position_m.allFinite() || !force.allFinite()) return {};
   const bool has_way = force.norm() > 0.0;
   const pose::Pose arrow{.rotation = has_way ? Quaterniond::FromTwoVectors(Vector3d::UnitZ(), force)

@@ -2,6 +2,9 @@
 #include "host/igtl/igtl_link.h"
 
 #include <fmt/format.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
 
 #include <charconv>
 #include <utility>
@@ -16,6 +19,7 @@ using model::Result;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kPauseAfterError{200}, kRetry{1000};
+constexpr std::size_t kMaxTroubles = 16;  // told apart
 
 double utc_s() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -143,6 +147,11 @@ void IgtlLink::welcome(tcp::socket socket) {
 
 void IgtlLink::go_to_server() {
   calling_ = std::make_unique<tcp::socket>(io_);
+  error_code ignored;
+  calling_->open(server_->protocol(), ignored);
+  constexpr int kSyns = 2;  // some 7 s, where nothing answers
+  static_cast<void>(
+      setsockopt(calling_->native_handle(), IPPROTO_TCP, TCP_SYNCNT, &kSyns, sizeof kSyns));
   calling_->async_connect(*server_, [this](error_code wrong) {
     if (wrong == boost::asio::error::operation_aborted) return;
     if (wrong) {
@@ -187,7 +196,8 @@ void IgtlLink::take(const MessageHead& head, const pose::Pose& pose) {
 }
 
 void IgtlLink::refuse(const std::string& sentence) {
-  if (refused_++ == 0)
+  ++refused_;
+  if (troubles_.size() < kMaxTroubles && troubles_.insert(sentence).second)
     say_(fmt::format("OpenIGTLink: {}; others like it are only counted", sentence));
 }
 

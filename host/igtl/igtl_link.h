@@ -88,6 +88,7 @@ class IgtlLink {
   IgtlBodies bodies_;
   Status last_ = lost_status();
   std::uint64_t refused_ = 0;
+  std::set<std::string> troubles_;  // told
   bool told_strange_ = false, told_away_ = false;
   std::uint16_t port_ = 0;
 };

@@ -2,6 +2,9 @@
 #include "host/igtl/igtl_session.h"
 
 #include <fmt/format.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
 
 #include <algorithm>
 #include <boost/asio/buffer.hpp>
@@ -13,18 +16,30 @@ namespace tact::host::igtl {
 
 using boost::asio::ip::tcp;
 
+void notice_vanishing(tcp::socket& socket) {
+  constexpr int kIdle_s = 5, kEvery_s = 2, kTimes = 3;
+  static_assert(kVanished == std::chrono::seconds(kIdle_s + kTimes * kEvery_s));
+  const auto set = [&socket](int level, int name, int value) {
+    static_cast<void>(setsockopt(socket.native_handle(), level, name, &value, sizeof value));
+  };
+  set(SOL_SOCKET, SO_KEEPALIVE, 1);
+  set(IPPROTO_TCP, TCP_KEEPIDLE, kIdle_s);
+  set(IPPROTO_TCP, TCP_KEEPINTVL, kEvery_s);
+  set(IPPROTO_TCP, TCP_KEEPCNT, kTimes);
+}
+
 IgtlSession::IgtlSession(tcp::socket socket, SessionEvents events)
     : socket_(std::move(socket)), patience_(socket_.get_executor()), events_(std::move(events)) {}
 
 void IgtlSession::start() {
-  Error ignored;
+  Code ignored;
   socket_.set_option(tcp::no_delay(true), ignored);
-  socket_.set_option(boost::asio::socket_base::keep_alive(true), ignored);
+  notice_vanishing(socket_);
   read_head_next();
 }
 
 void IgtlSession::stop() {
-  Error ignored;
+  Code ignored;
   ended_ = true;
   patience_.cancel(ignored);
   socket_.close(ignored);
@@ -36,7 +51,7 @@ void IgtlSession::end(const std::string& reason) {
   if (events_.ended) events_.ended(reason);
 }
 
-void IgtlSession::end(const Error& wrong) {
+void IgtlSession::end(const Code& wrong) {
   const bool went = wrong == boost::asio::error::eof ||
                     wrong == boost::asio::error::connection_reset ||
                     wrong == boost::asio::error::operation_aborted;
@@ -46,7 +61,7 @@ void IgtlSession::end(const Error& wrong) {
 void IgtlSession::read_head_next() {
   boost::asio::async_read(
       socket_, boost::asio::buffer(bytes_.data(), kHeaderBytes),
-      [self = shared_from_this()](Error wrong, std::size_t bytes) {
+      [self = shared_from_this()](Code wrong, std::size_t bytes) {
         if (wrong || self->ended_) return self->end(wrong);
         auto head = read_head({self->bytes_.data(), bytes});
         if (!head) return self->end(head.error().sentence);
@@ -63,7 +78,7 @@ void IgtlSession::read_head_next() {
 
 void IgtlSession::read_body(std::size_t bytes) {
   boost::asio::async_read(socket_, boost::asio::buffer(bytes_.data(), bytes),
-                          [self = shared_from_this()](Error wrong, std::size_t got) {
+                          [self = shared_from_this()](Code wrong, std::size_t got) {
                             if (wrong || self->ended_) return self->end(wrong);
                             self->take_body({self->bytes_.data(), got});
                             if (!self->ended_) self->read_head_next();
@@ -74,7 +89,7 @@ void IgtlSession::read_away(std::uint64_t bytes) {
   if (bytes == 0) return read_head_next();
   const auto part = static_cast<std::size_t>(std::min<std::uint64_t>(bytes, bytes_.size()));
   socket_.async_read_some(boost::asio::buffer(bytes_.data(), part),
-                          [self = shared_from_this(), bytes](Error wrong, std::size_t got) {
+                          [self = shared_from_this(), bytes](Code wrong, std::size_t got) {
                             if (wrong || self->ended_) return self->end(wrong);
                             self->read_away(bytes - got);
                           });
@@ -103,15 +118,15 @@ void IgtlSession::send(const std::string& batch) {
 void IgtlSession::write_next() {
   on_its_way_ = std::exchange(waiting_, {});
   patience_.expires_after(kPatience);
-  patience_.async_wait([self = shared_from_this()](Error cancelled) {
+  patience_.async_wait([self = shared_from_this()](Code cancelled) {
     if (!cancelled && !self->on_its_way_.empty())
       self->end(fmt::format("it has taken nothing for {} s", kPatience.count()));
   });
   boost::asio::async_write(socket_, boost::asio::buffer(on_its_way_),
-                           [self = shared_from_this()](Error wrong, std::size_t) {
+                           [self = shared_from_this()](Code wrong, std::size_t) {
                              if (wrong || self->ended_) return self->end(wrong);
                              self->on_its_way_.clear();
-                             Error ignored;
+                             Code ignored;
                              self->patience_.cancel(ignored);
                              if (!self->waiting_.empty()) self->write_next();
                            });

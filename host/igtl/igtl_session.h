@@ -32,6 +32,11 @@ struct SessionEvents {
   std::function<void(const std::string& reason)> ended;
 };
 
+/// The kernel asks a peer that is silent whether it is still there; one that vanished without a
+/// word (a pulled cable, a power cut) ends the connection after kVanished.
+void notice_vanishing(boost::asio::ip::tcp::socket& socket);
+inline constexpr std::chrono::seconds kVanished{11};
+
 class IgtlSession : public std::enable_shared_from_this<IgtlSession> {
  public:
   IgtlSession(boost::asio::ip::tcp::socket socket, SessionEvents events);
@@ -41,7 +46,7 @@ class IgtlSession : public std::enable_shared_from_this<IgtlSession> {
   void stop();
 
  private:
-  using Error = boost::system::error_code;
+  using Code = boost::system::error_code;
   void read_head_next();
   void read_body(std::size_t bytes);
   void read_away(std::uint64_t bytes);
@@ -49,7 +54,7 @@ class IgtlSession : public std::enable_shared_from_this<IgtlSession> {
   void write_next();
   void end(const std::string& reason);
   /// Of a read that failed: the other side went, or why.
-  void end(const Error& wrong);
+  void end(const Code& wrong);
 
   boost::asio::ip::tcp::socket socket_;
   boost::asio::steady_timer patience_;

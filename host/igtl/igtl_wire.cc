@@ -134,7 +134,7 @@ Result<pose::Pose> transform_in(std::string_view content) {
   const double skew = (rotation.transpose() * rotation - Matrix3d::Identity()).norm();
   if (!(skew <= kMaxSkew) || rotation.determinant() < 0.0)
     return Error{"its matrix is no rotation; send one without scale, shear or mirror"};
-  return checked(columns[3], Quaterniond(rotation));
+  return checked(columns[3], Quaterniond(rotation).normalized());
 }
 
 Result<pose::Pose> position_in(std::string_view content) {

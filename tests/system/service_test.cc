@@ -53,4 +53,11 @@ TEST_F(ServiceProgram, RefusesToArmAtItsStart) {
   EXPECT_TRUE(has(out, "a service never arms")) << out.output;
 }
 
+TEST_F(ServiceProgram, DoesNotHomeOnAJigThatNobodySees) {
+  const Outcome out = run_command("NOTIFY_SOCKET=" + in_folder("n") + " " + program_path("tactd") +
+                                  " " + kLiver + " --set 'device.kind=\"can-odrive\"' --ticks 10");
+  EXPECT_EQ(out.status, 2);
+  EXPECT_TRUE(has(out, "start tactd by hand")) << out.output;
+}
+
 }  // namespace tact::tests::service_test

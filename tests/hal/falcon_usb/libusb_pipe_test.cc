@@ -211,7 +211,7 @@ TEST_F(LibusbPipeTest, AfterAStallCommandsStillReachTheDeviceAndStoppingSendsThe
   ASSERT_EQ(usb.taken.size(), 5u);
   EXPECT_TRUE(std::ranges::equal(usb.taken[4], last_command));
   EXPECT_EQ(usb.cleared,
-            std::vector<unsigned>{falcon::kFalconEndpointIn});  // for who opens it next
+            std::vector<unsigned>{falcon::kFalconEndpointIn});  // for whoever opens it next
 }
 
 TEST_F(LibusbPipeTest, AStalledCommandEndpointIsClearedForTheCommandsThatFollow) {

@@ -74,7 +74,7 @@ TEST(UsbfsPipeEnd, AfterAStallCommandsStillReachTheDeviceAndStoppingSendsTheLast
   ASSERT_EQ(bus.taken.size(), 5u);
   EXPECT_EQ(bus.taken[4], last_command);
   EXPECT_EQ(bus.cleared,
-            std::vector<unsigned>{falcon::kFalconEndpointIn});  // for who opens it next
+            std::vector<unsigned>{falcon::kFalconEndpointIn});  // for whoever opens it next
 }
 
 TEST(UsbfsPipeEnd, AfterAStallASilentLoopIsReplacedByZerosToo) {

@@ -2,6 +2,9 @@
 // The viewer's link against what no client sends, and clients that do not read.
 #include <gtest/gtest.h>
 #include <igtlStatusMessage.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
 
 #include <boost/asio/read.hpp>
 #include <boost/asio/write.hpp>
@@ -38,7 +41,8 @@ TEST_F(LinkAndStrangers, ADamagedMessageIsLeftOutAndTheNextIsTaken) {
   ASSERT_TRUE(becomes([this] { return link_.now()[BodyRole::kHead].state != BodyState::kAbsent; }));
   EXPECT_NEAR(head().raw.position_m.x(), 0.3, 1e-6);
   EXPECT_EQ(refused(), 2u);
-  EXPECT_NE(said().find("its checksum is not that of its bytes"), std::string::npos) << said();
+  for (const char* kind : {"its checksum is not that of its bytes", "the size is wrong"})
+    EXPECT_NE(said().find(kind), std::string::npos) << "the first of each kind is told: " << said();
   EXPECT_EQ(clients(), 1u);
 }
 
@@ -113,6 +117,23 @@ TEST_F(LinkAndStrangers, MoreThanEightAreSentAway) {
   EXPECT_TRUE(wrong);
   sockets.pop_back();
   EXPECT_TRUE(becomes([this] { return link_.clients() == kMaxClients - 1; }));
+}
+
+// A pulled cable sends nothing: only the kernel's own questions find it.
+TEST(IgtlSession, NoticesAPeerThatVanishesWithoutAWord) {
+  boost::asio::io_context io;
+  boost::asio::ip::tcp::socket socket(io, boost::asio::ip::tcp::v4());
+  notice_vanishing(socket);
+  const auto option = [&](int level, int name) {
+    int value = 0;
+    socklen_t size = sizeof value;
+    EXPECT_EQ(getsockopt(socket.native_handle(), level, name, &value, &size), 0);
+    return value;
+  };
+  EXPECT_EQ(option(SOL_SOCKET, SO_KEEPALIVE), 1);
+  EXPECT_EQ(option(IPPROTO_TCP, TCP_KEEPIDLE) +
+                option(IPPROTO_TCP, TCP_KEEPINTVL) * option(IPPROTO_TCP, TCP_KEEPCNT),
+            kVanished.count());
 }
 
 }  // namespace tact::host::igtl::igtl_strangers_test

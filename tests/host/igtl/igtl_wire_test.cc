@@ -269,7 +269,7 @@ TEST(IgtlWire, OfAnyBytesComesAFinitePoseOrASentence) {
     }
     ++poses;
     EXPECT_TRUE(pose->position_m.allFinite());
-    EXPECT_NEAR(pose->rotation.norm(), 1.0, 1e-2);
+    EXPECT_NEAR(pose->rotation.norm(), 1.0, 1e-9);
   }
   EXPECT_GT(poses, 1000);
 }

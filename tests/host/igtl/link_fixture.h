@@ -65,7 +65,11 @@ class IgtlPeers : public testing::Test {
     return ask([this] { return link_.refused(); });
   }
   std::string said() {
-    return ask([this] { return said_.empty() ? std::string() : said_.back(); });
+    return ask([this] {
+      std::string all;
+      for (const std::string& sentence : said_) all += sentence + '\n';
+      return all;
+    });
   }
   host::tracking::TrackedBody head() {
     return ask([this] { return link_.now()[BodyRole::kHead]; });

@@ -25,6 +25,7 @@ TEST(Image, RefusesWhatItCannotMake) {
                                             "Debian 11: its programs are built on it"},
         {"--device odrive", "no device odrive; one of: sim-delta can-odrive"},
         {"--out ''", "--out needs a value"},
+        {"--out /dev/null", "/dev/null is no file"},
         {"--froce", "unknown option --froce"}}) {
     const Outcome outcome = run_command(kSource + "/tools/image " + words);
     EXPECT_EQ(outcome.status, 2) << words;

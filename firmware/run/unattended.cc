@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/run/unattended.h"
+
+namespace tact::firmware::run {
+
+std::optional<model::Error> why_not_unattended(const model::scene::Scene& scene, bool is_service) {
+  const bool is_can = scene.device.kind == "can-odrive" || scene.device.kind == "can-cia402";
+  if (!is_service || !is_can || scene.device.can.homing != model::Homing::kJig) return std::nullopt;
+  return model::Error{
+      "device.can.homing = \"jig\": a service would believe that the arms rest on the jig whenever "
+      "it starts, after a crash too; choose \"absolute\" or \"index\", or start tactd by hand with "
+      "the arms on the jig"};
+}
+
+}  // namespace tact::firmware::run

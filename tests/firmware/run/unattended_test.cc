@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/run/unattended.h"
+
+#include <gtest/gtest.h>
+
+namespace tact::firmware::run::unattended_test {
+
+TEST(Unattended, AServiceDoesNotHomeOnAJigThatNobodySees) {
+  model::scene::Scene scene;
+  for (const char* kind : {"can-odrive", "can-cia402"}) {
+    scene.device.kind = kind;
+    scene.device.can.homing = model::Homing::kJig;
+    const auto refused = why_not_unattended(scene, true);
+    ASSERT_TRUE(refused) << kind;
+    EXPECT_NE(refused->sentence.find("\"absolute\""), std::string::npos) << "the cure";
+    EXPECT_FALSE(why_not_unattended(scene, false)) << "a person sees the arms";
+    scene.device.can.homing = model::Homing::kAbsolute;
+    EXPECT_FALSE(why_not_unattended(scene, true));
+  }
+  scene.device.kind = "sim-delta";
+  scene.device.can.homing = model::Homing::kJig;
+  EXPECT_FALSE(why_not_unattended(scene, true)) << "has no drives";
+}
+
+}  // namespace tact::firmware::run::unattended_test
