@@ -80,7 +80,7 @@ void LiveView::when_watched(std::function<void()> then) {
   watched_ = std::move(then);
 }
 
-void LiveView::tell_replay(nlohmann::json replay) {
+void LiveView::tell_replay(const nlohmann::json& replay) {
   replay_ = std::make_shared<const std::string>(replay.dump());
   tell();
 }

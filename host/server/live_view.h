@@ -56,7 +56,7 @@ class LiveView {
            const figure::FigurePose* shown = nullptr);
   void rewind();  // a replay starts elsewhere: forget the frames
   /// Of a replay: the status's "replay".
-  void tell_replay(nlohmann::json replay);
+  void tell_replay(const nlohmann::json& replay);
   /// Once, as soon as somebody looks.
   void when_watched(std::function<void()> then);
   void lose(const std::string& reason);
