@@ -41,7 +41,7 @@ std::optional<int> parse_command_line(CLI::App& options, const char* program, in
                program, empty - argv);
     return 2;
   }
-  if (argc == 2 && std::string_view(argv[1]) == "--bash-completion") {  // for whoever makes a package
+  if (argc == 2 && std::string_view(argv[1]) == "--bash-completion") {  // for packagers
     fmt::print("{}", bash_completion(options, program));
     return 0;
   }

@@ -33,7 +33,7 @@ struct ToolCase {
 
 struct ToolPlace {
   std::optional<std::uint32_t> vertex;  // of the organ's mesh; none: the hand's own site, slid
-  model::Vec3 slid_m{};                   // from the hand's own site by a stroke, 0: not
+  model::Vec3 slid_m{};                 // from the hand's own site by a stroke, 0: not
   model::Vec3 point_m{};                // of the tool's lowest point at depth 0, mesh's own frame
   model::Vec3 direction{};              // into the tissue, unit
   model::Quat orientation{};
