@@ -18,7 +18,7 @@ using model::Error;
 using model::Result;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kPauseAfterError{200}, kRetry{1000};
+constexpr std::chrono::milliseconds kRetry{1000};
 constexpr std::size_t kMaxTroubles = 16;  // told apart
 
 double utc_s() {
@@ -45,7 +45,6 @@ Result<tcp::endpoint> endpoint_of(const std::string& text) {
 IgtlLink::IgtlLink(boost::asio::io_context& io, Say say)
     : io_(io),
       acceptor_(io),
-      pause_(io),
       retry_(io),
       say_(std::move(say)),
       began_(Clock::now()),
@@ -77,56 +76,36 @@ std::optional<Error> IgtlLink::listen(const IgtlOptions& options) {
         "network",
         options.bind_address)};
   }
-  const tcp::endpoint endpoint(address, *options.port);
-  acceptor_.open(endpoint.protocol(), wrong);
-  if (!wrong) acceptor_.set_option(tcp::acceptor::reuse_address(true), wrong);
-  if (!wrong) acceptor_.bind(endpoint, wrong);
-  if (!wrong) acceptor_.listen(boost::asio::socket_base::max_listen_connections, wrong);
+  wrong = acceptor_.listen({address, *options.port});
   if (wrong) {
     return Error{
         fmt::format("OpenIGTLink cannot listen on {} port {}: {}; choose another "
                     "--igtl-bind or --igtl",
                     options.bind_address, *options.port, wrong.message())};
   }
-  port_ = acceptor_.local_endpoint(wrong).port();
   if (!address.is_loopback()) {
     say_(
         fmt::format("OpenIGTLink on {}: whoever reaches port {} sees pose and force, and can move "
                     "the operator's figure; there is no password",
-                    options.bind_address, port_));
+                    options.bind_address, port()));
   }
   return std::nullopt;
 }
 
 void IgtlLink::start() {
-  if (acceptor_.is_open()) accept_next();
+  if (acceptor_.is_listening())
+    acceptor_.start([this](tcp::socket socket) { welcome(std::move(socket)); });
   if (server_) go_to_server();
 }
 
 void IgtlLink::stop() {
   error_code ignored;
-  acceptor_.close(ignored);
-  pause_.cancel(ignored);
+  acceptor_.stop();
   retry_.cancel(ignored);
   if (calling_) calling_->close(ignored);
   if (tracker_) tracker_->stop();
   for (const Session& client : clients_) client->stop();
   clients_.clear();
-}
-
-void IgtlLink::accept_next() {
-  acceptor_.async_accept(io_, [this](error_code wrong, tcp::socket socket) {
-    if (wrong == boost::asio::error::operation_aborted) return;
-    if (!wrong) {
-      welcome(std::move(socket));
-      return accept_next();
-    }
-    // Out of descriptors, for example: wait for some to come back instead of spinning.
-    pause_.expires_after(kPauseAfterError);
-    pause_.async_wait([this](error_code cancelled) {
-      if (!cancelled) accept_next();
-    });
-  });
 }
 
 void IgtlLink::welcome(tcp::socket socket) {

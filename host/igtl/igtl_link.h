@@ -21,6 +21,7 @@
 #include "host/igtl/igtl_bodies.h"
 #include "host/igtl/igtl_frame.h"
 #include "host/igtl/igtl_session.h"
+#include "host/net/acceptor.h"
 #include "model/result.h"
 
 namespace tact::host::igtl {
@@ -58,14 +59,13 @@ class IgtlLink {
   /// The bodies that trackers have sent, as they are now.
   tracking::TrackedOperator now() const;
 
-  std::uint16_t port() const { return port_; }
+  std::uint16_t port() const { return acceptor_.port(); }
   std::size_t clients() const { return clients_.size(); }
   std::uint64_t refused() const { return refused_; }  // messages
 
  private:
   using Session = std::shared_ptr<IgtlSession>;
   std::optional<model::Error> listen(const IgtlOptions& options);
-  void accept_next();
   void welcome(boost::asio::ip::tcp::socket socket);
   void go_to_server();
   void come_back();
@@ -76,8 +76,8 @@ class IgtlLink {
   double now_s() const;
 
   boost::asio::io_context& io_;
-  boost::asio::ip::tcp::acceptor acceptor_;
-  boost::asio::steady_timer pause_, retry_;
+  net::Acceptor acceptor_;
+  boost::asio::steady_timer retry_;
   Say say_;
   std::chrono::steady_clock::time_point began_, sent_, told_;
   std::optional<boost::asio::ip::tcp::endpoint> server_;
@@ -90,7 +90,6 @@ class IgtlLink {
   std::uint64_t refused_ = 0;
   std::set<std::string> troubles_;  // told
   bool told_strange_ = false, told_away_ = false;
-  std::uint16_t port_ = 0;
 };
 
 }  // namespace tact::host::igtl

@@ -15,7 +15,6 @@ using boost::system::error_code;
 using model::Error;
 using model::Result;
 
-constexpr std::chrono::milliseconds kPauseAfterError{200};
 constexpr std::chrono::seconds kTellAgain{10};
 
 /// An address as a URL writes it. "All addresses" is not one: the machine's name is.
@@ -31,9 +30,7 @@ std::string url_name(const boost::asio::ip::address& address) {
 
 ViewerServer::ViewerServer(boost::asio::io_context& io, LiveView& view, MoveHand move_hand,
                            Warn warn)
-    : io_(io),
-      acceptor_(io),
-      pause_(io),
+    : acceptor_(io),
       site_{.view = view,
             .page = {},
             .access = {},
@@ -64,7 +61,7 @@ std::optional<Error> ViewerServer::open(const ViewerOptions& options) {
   site_.access.loopback = address.is_loopback();
   site_.access.bind_address = url_name(address);
   site_.access.public_url = options.public_url;
-  site_.access.cookie_name = fmt::format("tact_token_{}", port_);
+  site_.access.cookie_name = fmt::format("tact_token_{}", port());
   Result<std::string> made = make_token();
   if (!made) return made.error();
   site_.access.token = std::move(*made);
@@ -72,38 +69,22 @@ std::optional<Error> ViewerServer::open(const ViewerOptions& options) {
 }
 
 std::optional<Error> ViewerServer::listen(const tcp::endpoint& endpoint) {
-  error_code wrong;
-  acceptor_.open(endpoint.protocol(), wrong);
-  if (!wrong) acceptor_.set_option(tcp::acceptor::reuse_address(true), wrong);
-  if (!wrong) acceptor_.bind(endpoint, wrong);
-  if (!wrong) acceptor_.listen(boost::asio::socket_base::max_listen_connections, wrong);
+  const error_code wrong = acceptor_.listen(endpoint);
+  if (!wrong) return std::nullopt;
   if (wrong == boost::asio::error::address_in_use) {
     return Error{
         fmt::format("port {} is in use; stop the other program or give --port another number",
                     endpoint.port())};
   }
-  if (wrong) {
-    return Error{fmt::format("cannot listen on {} port {}: {}; choose another --bind or --port",
-                             endpoint.address().to_string(), endpoint.port(), wrong.message())};
-  }
-  port_ = acceptor_.local_endpoint(wrong).port();
-  return std::nullopt;
+  return Error{fmt::format("cannot listen on {} port {}: {}; choose another --bind or --port",
+                           endpoint.address().to_string(), endpoint.port(), wrong.message())};
 }
 
-void ViewerServer::accept_next() {
-  acceptor_.async_accept(io_, [this](error_code wrong, tcp::socket socket) {
-    if (wrong == boost::asio::error::operation_aborted) return;
-    if (!wrong && seat_.use_count() > kMaxConnections)
-      turn_away(std::move(socket));
-    else if (!wrong)
-      std::make_shared<HttpSession>(boost::beast::tcp_stream(std::move(socket)), seat_, site_)
-          ->start();
-    if (!wrong) return accept_next();
-    // Out of descriptors, for example: wait for some to come back instead of spinning.
-    pause_.expires_after(kPauseAfterError);
-    pause_.async_wait([this](error_code cancelled) {
-      if (!cancelled) accept_next();
-    });
+void ViewerServer::start() {
+  acceptor_.start([this](tcp::socket socket) {
+    if (seat_.use_count() > kMaxConnections) return turn_away(std::move(socket));
+    std::make_shared<HttpSession>(boost::beast::tcp_stream(std::move(socket)), seat_, site_)
+        ->start();
   });
 }
 
@@ -126,15 +107,11 @@ void ViewerServer::turn_away(tcp::socket socket) {
                   kMaxConnections, turned_away_));
 }
 
-void ViewerServer::stop() {
-  error_code ignored;
-  acceptor_.close(ignored);
-  pause_.cancel(ignored);
-}
+void ViewerServer::stop() { acceptor_.stop(); }
 
 std::string ViewerServer::url() const {
   std::string at = site_.access.public_url;
-  if (at.empty()) at = fmt::format("http://{}:{}/", site_.access.bind_address, port_);
+  if (at.empty()) at = fmt::format("http://{}:{}/", site_.access.bind_address, port());
   return fmt::format("{}{}#token={}", at, at.ends_with('/') ? "" : "/", token());
 }
 

@@ -7,12 +7,12 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
 
+#include "host/net/acceptor.h"
 #include "host/server/http_session.h"
 #include "model/result.h"
 
@@ -36,28 +36,24 @@ class ViewerServer {
   std::optional<model::Error> open(const ViewerOptions& options);
   /// Of a replay: what pages ask of it. Before start.
   void let_steer(Steer steer) { site_.steer = std::move(steer); }
-  void start() { accept_next(); }
+  void start();
   void stop();
 
-  std::uint16_t port() const { return port_; }
+  std::uint16_t port() const { return acceptor_.port(); }
   const std::string& token() const { return site_.access.token; }
   /// What a person opens in a browser; its fragment holds the token.
   std::string url() const;
 
  private:
   std::optional<model::Error> listen(const boost::asio::ip::tcp::endpoint& endpoint);
-  void accept_next();
   void turn_away(boost::asio::ip::tcp::socket socket);
 
-  boost::asio::io_context& io_;
-  boost::asio::ip::tcp::acceptor acceptor_;
-  boost::asio::steady_timer pause_;
+  net::Acceptor acceptor_;
   Site site_;
   Warn warn_;
   Seat seat_;  // its copies are the connections
   std::uint64_t turned_away_ = 0;
   std::chrono::steady_clock::time_point told_;
-  std::uint16_t port_ = 0;
 };
 
 }  // namespace tact::host::server

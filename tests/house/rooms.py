@@ -53,8 +53,9 @@ ROOMS = {
     "host/tracking": ["model", "model/io", "host/pose"],
     "host/figure": ["host/pose", "host/tracking"],
     "host/record": ["model", "model/io", *OPERATOR, "firmware/telemetry"],
-    "host/server": ["model", "model/io", *OPERATOR, "host/record"],
-    "host/igtl": ["model", "host/pose", "host/tracking", "host/record"],
+    "host/net": [],
+    "host/server": ["model", "model/io", *OPERATOR, "host/record", "host/net"],
+    "host/igtl": ["model", "host/pose", "host/tracking", "host/record", "host/net"],
     "host/run": ["model", "model/io", *OPERATOR, "host/record", "host/igtl", "host/server", "hal/sim"],
 }
 # A tool measures every room above; of the other tools it may include these.
