@@ -117,6 +117,19 @@ async function check_keyboard(browser, url) {
   await page.close();
 }
 
+/** Numbers that are old are grey, and can still be read. */
+async function check_silence(browser, url, tactd) {
+  const page = await browser.newPage(kScreens.phone);
+  await page.goto(url);
+  await waits(page, () => window.tact.link === "live" && window.tact.tick > 0);
+  tactd.kill("SIGSTOP");
+  await waits(page, () => window.tact.silence_s > 0);
+  await page.waitForTimeout(500);
+  await check_page(page, "phone_silent", kFinger_px);
+  tactd.kill("SIGCONT");
+  await page.close();
+}
+
 async function run() {
   const { viewer, url } = await start_view(["--socket", socket, "--record", recording, "--figure"]);
   const tactd = start_tactd("liver", socket);
@@ -124,6 +137,7 @@ async function run() {
   for (const [name, screen] of Object.entries(kScreens))
     await check_screen(browser, url, name, screen, () => window.tact.link === "live" && window.tact.tick > 0);
   await check_keyboard(browser, url);
+  await check_silence(browser, url, tactd);
   await stop(tactd);
   const page = await browser.newPage(kScreens.phone);
   await page.goto(url);

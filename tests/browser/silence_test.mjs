@@ -16,13 +16,13 @@ const socket = join(folder, "silence.sock");
 const seen = (page) => page.evaluate(() => ({
   words: document.body.innerText,
   state: document.getElementById("state").textContent,
-  grey: getComputedStyle(document.querySelector("#now .big")).opacity < 0.5,
-  plots: getComputedStyle(document.querySelector("#plots .panel")).opacity < 0.5,
+  grey: getComputedStyle(document.querySelector("#now .big")).filter === "grayscale(1)",
+  plots: getComputedStyle(document.querySelector("#plots canvas")).opacity < 0.5,
   silence_s: window.tact.silence_s,
 }));
 const is_alive = (page) => waits(page, () => window.tact.silence_s === 0 &&
   /^(armed|ready|stopped)$/.test(document.getElementById("state").textContent) &&
-  getComputedStyle(document.querySelector("#now .big")).opacity === "1");
+  getComputedStyle(document.querySelector("#now .big")).filter === "none");
 
 /** `child` stands still for a while: what does the page say meanwhile, and how soon? */
 async function halt(page, child, name, link_words) {
