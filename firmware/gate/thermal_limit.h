@@ -17,6 +17,7 @@
 
 namespace tact::firmware::gate {
 
+/// Of a force, in N and N^2, or of a torque, in N m and (N m)^2: the gate has one of each.
 class ThermalLimit {
  public:
   ThermalLimit(double peak, double continuous, double share_per_period)
@@ -26,16 +27,18 @@ class ThermalLimit {
         steepness_(continuous > 0.0 ? 2.0 * (peak * peak / continuous_squared_ - 1.0) : 0.0),
         share_(share_per_period) {}
 
+  /// A: what may be written now.
   double allowed() const RT_SAFE {
     const double room = continuous_squared_ - heat_;
     const double squared = continuous_squared_ + steepness_ * std::fmax(room, 0.0);
     return squared < peak_ * peak_ ? std::sqrt(squared) : peak_;
   }
-  /// By a force, or torque, that was held for this many periods.
+  /// GT-4 for a force or torque that was held for this many periods.
   void heat(const model::Vec3& held, double periods) RT_SAFE {
     heat_ += std::fmin(share_ * periods, 1.0) * (dot(held, held) - heat_);
   }
   double continuous() const RT_SAFE { return continuous_; }
+  /// Of what was written, over tau.
   double rms() const RT_SAFE { return std::sqrt(heat_); }
 
  private:

@@ -33,8 +33,9 @@ class MonotonicClock final : public Clock {
   void sleep_until_ns(std::int64_t deadline_ns) RT_SAFE override;
 };
 
-/// Time by marks, between two readings of the clock. Their rate is that of the last two, a tick
-/// apart: a counter that changes its pace errs for one tick, in what is measured and nowhere else.
+/// Time from the counter alone, between two readings of the clock. The counter's rate is taken from
+/// the last two readings, one tick apart. If that rate changes (an old CPU that changes its clock),
+/// the durations measured in one tick are wrong, and no more: deadlines come from the clock.
 class MarkedTime {
  public:
   /// The time and the mark of now.

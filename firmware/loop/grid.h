@@ -3,10 +3,11 @@
 // frames and status lines wake halfway between two of them (tact-fd keeps away, too).
 //
 // The kernel's own tick comes at whole multiples of 1/HZ of that clock (/proc/timer_list of
-// Debian's 6.1). Deadlines that begin anywhere can have it, or a timer of another thread, in the
-// middle of the same ticks for a whole run. Here the kernel's tick lies 0.3 of a period before a
-// deadline, of periods over a millisecond 0.3 ms. With a period that neither divides a millisecond
-// nor is some of them, as that of 3 kHz, the two pass each other slowly, and no start avoids it.
+// Debian's 6.1). Were the first deadline at any time, the kernel's tick, or a timer of another
+// thread, could disturb the same part of every tick of a run. Here the kernel's tick comes before
+// the deadline: by 0.3 of a period, or by 0.3 ms where the period is longer than 1 ms.
+// This needs a period that divides 1 ms or is a multiple of it. With others, as that of 3 kHz, the
+// two clocks drift past each other, and no choice of the first deadline avoids it.
 #pragma once
 
 #include <algorithm>

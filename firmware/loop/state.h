@@ -18,7 +18,7 @@ struct StateEntry {
 
 /// By number of the state.
 inline constexpr std::array<StateEntry, 4> kStateTable{{{"off", "no force"},
-                                                        {"ready", "no force until armed"},
+                                                        {"ready", "no tissue force until armed"},
                                                         {"armed", "force is on"},
                                                         {"stopped", "force is off after a fault"}}};
 

@@ -2,14 +2,15 @@
 // supervisor.h - who may feel force: Off -> Ready -> Armed -> Stopped, faults latched.
 //
 //     Off      nothing known of the device    -> Ready    a good sample
-//     Ready    device good, force zero        -> Armed    rising edge of arm, good sample, power on
+//     Ready    device good, tissue force zero -> Armed    rising edge of arm, good sample, power on
 //     Armed    force passes the gate          -> Stopped  power lost
 //     Stopped  force zero, fault kept         -> Ready    rising edge of reset, good sample, no
 //                                                         fault that latches, no arm request
 //     any                                     -> Stopped  stop request, or a fault that latches
 //
-// Reset never re-arms: arming is a request of its own (RT-16). A request that comes before Ready,
-// or while there is no power, is spent: none is kept for later.
+// What the gate writes is zero but in Armed; the device may carry its own weight while its drives
+// have power. Reset never re-arms: arming is a request of its own (RT-16). A request that comes
+// before Ready, or while there is no power, is spent: none is kept for later.
 #pragma once
 
 #include "firmware/loop/state.h"

@@ -15,7 +15,7 @@ namespace tact::hal::can {
 namespace {
 
 constexpr std::int64_t kMs_ns = 1'000'000;
-constexpr int kFaultBatches = 3;
+constexpr int kFaultBatches = 3;  // zero torque and disable are sent so often: one may be lost
 
 /// Kinds of FaultCause that all drives have, between those of a lost homing and their own.
 enum class DriveCause : std::uint8_t {
@@ -150,6 +150,7 @@ class CanDevice final : public Device {
   }
 
   void watch() RT_SAFE {
+    // After a read that was cut short the heartbeat may still lie in the kernel's queue.
     for (std::size_t i = 0; i < 3; ++i) {
       const std::int64_t silent_ns = loop_.now_ns - loop_.axes[i].heartbeat_ns;
       if (silent_ns > start_.most_silent_ns && !bus_->cut()) {
@@ -172,6 +173,8 @@ class CanDevice final : public Device {
       turns[i] = axis.motor_turns;
       stamp_ns = std::min(stamp_ns, axis.arrival_ns);
     }
+    // With SYNC all three were sampled at once. Without it they are as old as the oldest: more than
+    // one and a half periods would make a velocity out of nothing.
     const bool fresh =
         start_.one_sync ? all : any && 2 * (loop_.now_ns - stamp_ns) <= 3 * period_ns_;
     if (!fresh) return false;
@@ -183,7 +186,7 @@ class CanDevice final : public Device {
   void judge_gap(bool fresh) RT_SAFE {
     gap_.step(fresh);
     if (!gap_.lost()) return;
-    std::size_t oldest = 0;
+    std::size_t oldest = 0;  // the drive that the words name
     for (std::size_t i = 1; i < 3; ++i)
       if (loop_.axes[i].arrival_ns < loop_.axes[oldest].arrival_ns) oldest = i;
     loop_.fail(oldest, DriveCause::kNoPosition,
@@ -192,6 +195,8 @@ class CanDevice final : public Device {
   }
 
   void stop_drives() RT_SAFE {
+    // Then only what keeps healthy drives content, such as the host's heartbeat: a latched fault of
+    // one drive shall log none in the others.
     if (fault_batches_ < kFaultBatches) {
       ++fault_batches_;
       drives_.push_fault(loop_);
@@ -201,6 +206,7 @@ class CanDevice final : public Device {
     bus_->send();
   }
 
+  /// Off at once; on again from the beginning, so that each drive confirms its state anew.
   void follow_permission() RT_SAFE {
     if (!permitted_) loop_.power = CanPower::kOff;
     if (!permitted_ || loop_.power != CanPower::kOff) return;

@@ -64,12 +64,14 @@ class BringUp {
     return std::nullopt;
   }
 
+  /// In pre-operational no PDO flows: a drive that an earlier run left alive cannot take a torque.
   std::optional<Error> find_all() {
     for (const int node : can_.node) bus_.push(canopen_nmt(NmtCommand::kPreOperational, node));
     bus_.send();
     std::array<bool, 3> answers{};
     for (std::size_t i = 0; i < 3; ++i) {
       SdoFailure failure;
+      // An abort is an answer, too: the node is there.
       answers[i] = sdo_.read(can_.node[i], kDeviceType, failure).has_value() || !failure.silent;
     }
     if (std::none_of(answers.begin(), answers.end(), [](bool yes) { return yes; }))
@@ -119,7 +121,7 @@ class BringUp {
       if (state == Cia402State::kSwitchOnDisabled || state == Cia402State::kReady)
         return std::nullopt;
       if (state == Cia402State::kFault && !reset) {
-        reset = true;
+        reset = true;  // once: a fault that comes back is present, and is told
         if (auto error = command(kControlFaultReset)) return error;
         if (auto error = command(kControlDisableVoltage)) return error;
       }
@@ -139,6 +141,8 @@ class BringUp {
                                 cia402_state_name(state)));
   }
 
+  /// The torque that 6071 calls 1000, and the position. What the user states goes before 6076, which
+  /// some drives lack and others fill with a default.
   std::optional<Error> learn(std::size_t i, Cia402Start& start) {
     start.rated_torque_Nm[i] = can_.rated_torque_Nm;
     if (start.rated_torque_Nm[i] > 0.0) return position(i, start.motor_turns[i]);
@@ -162,6 +166,7 @@ class BringUp {
     return std::nullopt;
   }
 
+  /// On a jig the position of now is the zero of the arms: one that still falls would shift it.
   std::optional<Error> rest(Cia402Start& start) {
     if (can_.homing != model::Homing::kJig) return std::nullopt;
     sdo_.wait(kRest_ms);
@@ -174,6 +179,7 @@ class BringUp {
     return std::nullopt;
   }
 
+  /// A drive proves by its heartbeat that it is operational: the NMT command has no reply.
   std::optional<Error> start_all() {
     for (const int node : can_.node) bus_.push(canopen_nmt(NmtCommand::kStart, node));
     bus_.send();

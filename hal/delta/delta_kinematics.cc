@@ -9,8 +9,8 @@ namespace tact::hal::delta {
 namespace {
 
 constexpr Vec3 kAxis{0.0, 0.0, 1.0};
-constexpr double kMinTransmission = 0.35;
-constexpr double kMinRodSigma = 0.25;
+constexpr double kMinTransmission = 0.35;  // DK-5
+constexpr double kMinRodSigma = 0.25;      // DK-5
 
 double wrapped_rad(double angle_rad) RT_SAFE {  // of (-2 pi, 2 pi)
   if (angle_rad > std::numbers::pi) return angle_rad - 2.0 * std::numbers::pi;
@@ -34,7 +34,7 @@ DeltaInverse DeltaKinematics::inverse(const Vec3& position_m) const RT_SAFE {
     const double x = dot(u, position_m) - (geometry_.base_radius_m - geometry_.platform_radius_m);
     const double y = u.x * position_m.y - u.y * position_m.x;
     const double z = position_m.z;
-    // A cos theta + B sin theta = C
+    // DK-2: A cos theta + B sin theta = C
     const double a = 2.0 * la * x, b = 2.0 * la * z;
     const double c = x * x + y * y + z * z + la * la - lb * lb;
     const double reach = std::hypot(a, b);
@@ -43,7 +43,7 @@ DeltaInverse DeltaKinematics::inverse(const Vec3& position_m) const RT_SAFE {
       out.reachable = false;
       continue;
     }
-    // theta = atan2(B, A) -+ acos(C / hypot(A, B))
+    // Two solutions, knee outward or inward. theta = atan2(B, A) -+ acos(C / hypot(A, B))
     const double middle_rad = std::atan2(b, a), half_rad = std::acos(c / reach);
     out.theta_rad[i] = wrapped_rad(middle_rad - half_rad);
     out.theta_inner_rad[i] = wrapped_rad(middle_rad + half_rad);
@@ -61,8 +61,8 @@ DeltaForward DeltaKinematics::forward(const Joints& theta_rad) const RT_SAFE {
   }
   const Vec3 a = centre[1] - centre[0], b = centre[2] - centre[0], n = cross(a, b);
   const double aa = dot(a, a), bb = dot(b, b), nn = dot(n, n);
-  if (!(nn > 1e-18 * aa * bb)) return {};
-  // circumcentre - c_1 = (|a|^2 b - |b|^2 a) x n / (2 |n|^2)
+  if (!(nn > 1e-18 * aa * bb)) return {};  // the three centres lie on a line: no triangle
+  // DK-3: circumcentre - c_1 = (|a|^2 b - |b|^2 a) x n / (2 |n|^2)
   const Vec3 to_circumcentre = cross(aa * b - bb * a, n) / (2.0 * nn);
   const double height_squared = lb * lb - dot(to_circumcentre, to_circumcentre);
   if (!(height_squared >= 0.0)) return {};
@@ -79,7 +79,7 @@ DeltaPose DeltaKinematics::pose(const Vec3& position_m, const Joints& theta_rad)
   for (std::size_t i = 0; i < 3; ++i) {
     const double c = std::cos(theta_rad[i]), s = std::sin(theta_rad[i]);
     pose.radial[i] = outward_[i] * c + kAxis * s;
-    // b_i = la (-u sin theta + z cos theta)
+    // DK-4: b_i = la (-u sin theta + z cos theta)
     pose.tangent_m[i] = la * (kAxis * c - outward_[i] * s);
     // s_i = p - (u R + la radial)
     pose.rod_m[i] = position_m - (outward_[i] * r + la * pose.radial[i]);
@@ -91,7 +91,7 @@ DeltaPose DeltaKinematics::pose(const Vec3& position_m, const Joints& theta_rad)
 Mat3 joint_rate_matrix(const DeltaPose& pose) RT_SAFE {
   Mat3 k;
   for (std::size_t i = 0; i < 3; ++i) {
-    // K_i = s_i / d_i
+    // DK-4: K_i = s_i / d_i. An arm in line with its rod (d = 0) cannot be told: its row stays 0
     const double d = pose.lever_m2[i];
     if (std::abs(d) > 0.0) k.row[i] = pose.rod_m[i] / d;
   }
@@ -99,7 +99,7 @@ Mat3 joint_rate_matrix(const DeltaPose& pose) RT_SAFE {
 }
 
 Mat3 jacobian(const DeltaPose& pose) RT_SAFE {
-  // J = S^-1 diag(d); the rows of S are the rods
+  // DK-4: J = S^-1 diag(d); the rows of S are the rods
   Mat3 j = inverse(Mat3{pose.rod_m});
   const Joints& d = pose.lever_m2;
   for (Vec3& row : j.row) row = {row.x * d[0], row.y * d[1], row.z * d[2]};
@@ -107,7 +107,7 @@ Mat3 jacobian(const DeltaPose& pose) RT_SAFE {
 }
 
 Joints joint_torques_Nm(const DeltaPose& pose, const Vec3& force_N) RT_SAFE {
-  // sum lambda_i s_i = F,  tau_i = lambda_i d_i
+  // Each rod only pushes or pulls along itself: sum lambda_i s_i = F,  tau_i = lambda_i d_i
   const Vec3 lambda = transpose(inverse(Mat3{pose.rod_m})) * force_N;
   return {lambda.x * pose.lever_m2[0], lambda.y * pose.lever_m2[1], lambda.z * pose.lever_m2[2]};
 }
@@ -121,7 +121,7 @@ Joints joint_drift_radps2(const DeltaPose& pose, const Vec3& velocity_mps) RT_SA
   const Joints rate = joint_rates_radps(pose, velocity_mps);
   Joints drift{};
   for (std::size_t i = 0; i < 3; ++i) {
-    // d/dt (s . v = d thetadot) with dv/dt = 0:
+    // DK-4 once more derived: d/dt (s . v = d thetadot) with dv/dt = 0,
     // d thetaddot = |v - b thetadot|^2 + (s . la radial) thetadot^2
     const Vec3 relative = velocity_mps - rate[i] * pose.tangent_m[i];
     const double la = norm(pose.tangent_m[i]);

@@ -7,7 +7,7 @@
 namespace tact::hal::falcon {
 namespace {
 
-constexpr double kThighAtZero_rad = 35_deg;
+constexpr double kThighAtZero_rad = 35_deg;  // FK-4, as the next
 constexpr double kRadPerCount = 2.0 * std::numbers::pi / 1280.0 * (14.25 / 110.0);
 constexpr int kNewtonSteps = 12;      // from home; 3 are enough after a move of 1 mm
 constexpr double kClose_rad = 1e-12;  // 1e-13 m: a further step gains rounding errors only
@@ -35,7 +35,7 @@ FalconInverse FalconKinematics::inverse(const model::Vec3& position_m) const RT_
     const double pu = c_phi * position_m.x + s_phi * position_m.y - g.base_radius_m;
     const double pv = -s_phi * position_m.x + c_phi * position_m.y - g.base_shift_m;
     const double pw = position_m.z;
-    // t3 = acos((pv + f) / b)
+    // FK-1 solved for the angles: t3 = acos((pv + f) / b)
     const double side = (pv + g.side_shift_m) / g.shin_m;
     if (!(std::abs(side) < 1.0)) return {};
     const double t3 = std::acos(side);
@@ -59,7 +59,7 @@ FalconInverse FalconKinematics::inverse(const model::Vec3& position_m) const RT_
 model::Mat3 FalconKinematics::joint_rate_matrix(const FalconInverse& legs) const RT_SAFE {
   model::Mat3 k;
   for (std::size_t i = 0; i < 3; ++i) {
-    // K_i = [cos t2, cot t3, sin t2] / (a sin(t2 - t1)), turned back by phi
+    // FK-2: K_i = [cos t2, cot t3, sin t2] / (a sin(t2 - t1)), turned back by phi
     const double t2 = legs.knee_rad[i], t3 = legs.side_rad[i];
     const double scale = geometry_.thigh_m * std::sin(t2 - legs.thigh_rad[i]);
     const double ku = std::cos(t2) / scale, kw = std::sin(t2) / scale;
@@ -78,7 +78,7 @@ FalconForward FalconKinematics::forward(const delta::Joints& thigh_rad,
   bool moved = legs.reachable;
   for (int step = 0; step < kNewtonSteps && moved && error_rad > kClose_rad; ++step) {
     moved = false;
-    // p <- p + K^-1 (theta - theta(p)), half of it as often as that leaves the reach or gets worse
+    // FK-3: p <- p + K^-1 (theta - theta(p)), half of it as often as that leaves the reach or gets worse
     model::Vec3 move_m = model::inverse(joint_rate_matrix(legs)) * difference_rad(thigh_rad, legs);
     for (int half = 0; half <= kHalvings && !moved; ++half, move_m *= 0.5) {
       const FalconInverse next = inverse(p_m + move_m);
@@ -96,6 +96,7 @@ FalconForward FalconKinematics::forward(const delta::Joints& thigh_rad,
 
 delta::Joints falcon_torques_Nm(const model::Mat3& joint_rate_matrix,
                                 const model::Vec3& force_N) RT_SAFE {
+  // FK-2: K^T tau = F
   const model::Vec3 torque_Nm = transpose(model::inverse(joint_rate_matrix)) * force_N;
   return {torque_Nm.x, torque_Nm.y, torque_Nm.z};
 }

@@ -29,7 +29,8 @@ struct DeltaPlant::Implicit {
   model::Vec3 momentum_Ns;  // right-hand side without friction
 
   /// A spring-damper along n that is `excess` beyond its rest half a step from now, before v+ has
-  /// done its half: implicit in v+.
+  /// done its half: implicit in v+. Along the row of a joint `excess` is in rad, and the others are
+  /// in N m / rad and N m s / rad; in space in m, N/m, N s/m.
   void resist(double dt_s, const model::Vec3& n, double excess, double stiffness,
               double damping) RT_SAFE {
     a = a + (dt_s * damping + 0.5 * dt_s * dt_s * stiffness) * outer(n, n);

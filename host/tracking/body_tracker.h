@@ -9,10 +9,10 @@
 //                   agrees with the one before is believed
 //     silent        nothing came for kHold_s
 //
-// Of two cameras the newest good pose counts. A look of another camera that comes later but is of
-// the same time, kTogether_s at most, is wanted too: both together give a better pose of that time
-// (joint_pose.h), which is refined then. The pose for display is filtered (one_euro.h). Time
-// is an argument: `time_s` of the tracker's clock, `now_s` of the viewer's.
+// Of two cameras the newest good pose counts. If the other camera saw the body within kTogether_s of
+// that time, both observations are solved as one problem, which is more accurate (joint_pose.h).
+// The pose for display is filtered (one_euro.h). Time is an argument: `time_s` of the tracker's
+// clock, `now_s` of the viewer's.
 #pragma once
 
 #include <optional>

@@ -10,10 +10,11 @@
 //     C_ij  sinking of site i under a unit force at site j, m/N; symmetric, C_ii = 0
 //
 //     MC-2   C_ij = x h + x (3 - x^2) / 2 b,   x = n_i . n_j
+//            h   skin of the law's SiteCoupling: half space, and what the organ lacks to one, m/N
+//            b   lobe of it: what the organ's bending adds, m/N
 //
-// h and b: skin and lobe of the law's SiteCoupling. A lobe bends along one axis, which both normals
-// of a rim straddle, and its part was measured along them: it keeps its size, and turns its sign
-// for the other side of the lobe.
+// The lobe's part was measured along the two normals. They straddle the axis along which it bends:
+// so b keeps its size at any x near 1, and turns its sign on the other side of the lobe.
 //
 // With C constant W is a potential: no stroke gives back more than it took. The forces are unique
 // where diag(1 / F'(e_i)) + C is positive definite, with the largest F' that each site's law can

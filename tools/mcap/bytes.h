@@ -6,6 +6,7 @@
 #pragma once
 
 #include <bit>
+#include <concepts>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -14,7 +15,7 @@ namespace tact::tools::mcap {
 
 class Bytes {
  public:
-  template <typename Unsigned>
+  template <std::unsigned_integral Unsigned>
   Bytes& put(Unsigned value) {
     for (unsigned at = 0; at < sizeof value; ++at)
       bytes_ += static_cast<char>((value >> (8 * at)) & 0xffu);
@@ -39,7 +40,7 @@ class Bytes {
 
 class Cdr {
  public:
-  template <typename Unsigned>
+  template <std::unsigned_integral Unsigned>
   Cdr& put(Unsigned value) {
     while ((bytes_.size() - kHead) % sizeof value != 0) bytes_.put(std::uint8_t{0});
     bytes_.put(value);

@@ -14,7 +14,7 @@ import tarfile
 import tempfile
 import time
 
-from bench.image import RigError, digest
+from bench.guest_image import RigError, digest
 
 QEMU = "qemu-system-x86_64"
 READY, LOADED, DONE = b"TACT-READY", b"TACT-LOADED", b"TACT-DONE"

@@ -5,24 +5,18 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <string>
 
 #include "hal/udev_rules.h"
+#include "tests/support/files.h"
 
 namespace {
 
 namespace fs = std::filesystem;
+using tact::tests::content;
 
 const std::string kDeploy = TACT_SOURCE_DIR "/tools/deploy/";
-
-std::string content(const std::string& path) {
-  std::ifstream file(path);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 /// Status of the install script; what it said goes to `said`.
 int install(const std::string& arguments, const std::string& said) {

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "firmware/pc/pc_check.h"
+#include "tests/support/files.h"
 #include "tests/support/program.h"
 #include "tools/doctor/fix_plan.h"
 #include "tools/doctor/undo_store.h"
@@ -18,14 +19,8 @@
 namespace tact::tools::doctor::fix_test {
 
 namespace fs = std::filesystem;
+using tests::content;
 using tests::Outcome;
-
-std::string content(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 const std::string kDeploy = TACT_SOURCE_DIR "/tools/deploy/";
 

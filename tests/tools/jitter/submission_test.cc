@@ -9,20 +9,15 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <string_view>
 
+#include "tests/support/files.h"
 #include "tests/support/program.h"
 
 namespace tact::tools::jitter::submission_test {
 
-std::string content(const std::string& path) {
-  std::ifstream file(path);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
+using tests::content;
 
 TEST(SubmissionRow, HasACellForEachColumnAndNoNameOfThePC) {
   const std::string path = testing::TempDir() + "tact-row-" + std::to_string(getpid());

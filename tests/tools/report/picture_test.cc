@@ -7,20 +7,14 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
+#include "tests/support/files.h"
 #include "tools/report/table.h"
 
 namespace tact::tools::report::picture_test {
 
 namespace fs = std::filesystem;
-
-std::string content(const std::string& path) {
-  std::ostringstream out;
-  out << std::ifstream(path, std::ios::binary).rdbuf();
-  return out.str();
-}
+using tests::content;
 
 class PictureFiles : public testing::Test {
  protected:

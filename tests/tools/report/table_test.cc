@@ -9,11 +9,13 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <sstream>
+
+#include "tests/support/files.h"
 
 namespace tact::tools::report::table_test {
 
 namespace fs = std::filesystem;
+using tests::content;
 constexpr std::size_t kJobs = 11;
 
 const std::vector<Column> kColumns{{"depth_m"}, {"force_N"}, {"status", CellKind::kWord}};
@@ -28,12 +30,6 @@ Table table_of(const program::Shard& shard) {
   Table table("forces", kColumns, kJobs, shard);
   for (std::size_t k = 0; k < shard.jobs_of(kJobs); ++k) table.add(row_of(shard.job(k)));
   return table;
-}
-
-std::string content(const std::string& path) {
-  std::ostringstream out;
-  out << std::ifstream(path).rdbuf();
-  return out.str();
 }
 
 class TableFiles : public testing::Test {
