@@ -8,9 +8,11 @@
 namespace tact::hal::cia402 {
 namespace {
 
+// CN-1. SYNC and EMCY share 0x080 and never meet: SYNC has no node, a node is at least 1.
 constexpr std::uint32_t kNmtId = 0x000, kSyncId = 0x080, kEmergencyId = 0x080, kSdoReplyId = 0x580,
                         kSdoRequestId = 0x600, kHeartbeatId = 0x700;
 
+/// CiA 301's connection set: the message's base, and the node in the lower seven bits.
 std::uint32_t id_of(std::uint32_t base, int node) RT_SAFE {
   return base + static_cast<std::uint32_t>(node);
 }
@@ -19,6 +21,7 @@ bool is_from(const can::CanFrame& frame, std::uint32_t base, int node, std::size
   return is_canopen_node(node) && is_data(frame, id_of(base, node), length);
 }
 
+/// Byte 0 command, 1 and 2 index, 3 sub-index, 4 to 7 the value of a download.
 can::CanFrame sdo_request(int node, std::uint8_t command, std::uint16_t index,
                           std::uint8_t sub) RT_SAFE {
   can::CanFrame frame = can::make_can_frame(id_of(kSdoRequestId, node), 8);
@@ -50,6 +53,7 @@ std::optional<can::CanFrame> canopen_heartbeat(int node, NmtState state) RT_SAFE
 std::optional<NmtState> decode_canopen_heartbeat(const can::CanFrame& frame, int node) RT_SAFE {
   if (!is_from(frame, kHeartbeatId, node, 1)) return std::nullopt;
   const auto state = static_cast<NmtState>(frame.data[0]);
+  // A damaged frame may hold any byte: only these four are states.
   switch (state) {
     case NmtState::kBoot:
     case NmtState::kStopped:
@@ -71,6 +75,7 @@ std::optional<Emergency> decode_canopen_emergency(const can::CanFrame& frame, in
 std::optional<can::CanFrame> canopen_sdo_download(int node, const SdoWrite& write) RT_SAFE {
   const bool sized = write.size == 1 || write.size == 2 || write.size == 4;
   if (!is_canopen_node(node) || !sized) return std::nullopt;
+  // The size first: a shift of 32 bits by 32 is undefined.
   if (write.size < 4 && write.value >> (8 * write.size) != 0) return std::nullopt;
   // Download request, expedited, with its size: 4 minus the size in bits 2 and 3.
   const auto command = static_cast<std::uint8_t>(0x23u | (4u - write.size) << 2);
@@ -82,7 +87,7 @@ std::optional<can::CanFrame> canopen_sdo_download(int node, const SdoWrite& writ
 std::optional<can::CanFrame> canopen_sdo_upload(int node, std::uint16_t index,
                                                 std::uint8_t sub) RT_SAFE {
   if (!is_canopen_node(node)) return std::nullopt;
-  return sdo_request(node, 0x40, index, sub);
+  return sdo_request(node, 0x40, index, sub);  // upload request, CN-1
 }
 
 std::optional<SdoReply> decode_canopen_sdo(const can::CanFrame& frame, int node) RT_SAFE {
@@ -91,12 +96,13 @@ std::optional<SdoReply> decode_canopen_sdo(const can::CanFrame& frame, int node)
                .index = can::get_u16(frame.data, 1),
                .sub = frame.data[3]};
   switch (frame.data[0]) {
-    case 0x60:
+    case 0x60:  // download done
       return out;
     case 0x80:
       out.kind = SdoReplyKind::kAbort;
       out.value = can::get_u32(frame.data, 4);
       return out;
+    // Expedited upload: 4 minus the size in bits 2 and 3, as in a download.
     case 0x43:
     case 0x47:
     case 0x4B:

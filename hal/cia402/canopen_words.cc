@@ -6,6 +6,7 @@ namespace {
 
 constexpr std::uint32_t kExact = 0xFFFFFFFF, kFamily = 0xFF00, kGroup = 0xF000;
 
+// The first entry that fits is told: a group before its exact codes would hide them.
 constexpr CanopenWords kEmergency[] = {
     {0x3210, kExact, "DC bus voltage too high: brake more gently or fit a brake resistor."},
     {0x3220, kExact, "DC bus voltage too low: is the drive's supply on?"},
@@ -85,6 +86,7 @@ constexpr CanopenWords kAbort[] = {
 const char* sentence_of(std::uint32_t code, std::span<const CanopenWords> words) RT_SAFE {
   for (const CanopenWords& one : words)
     if ((code & one.mask) == one.code) return one.sentence;
+  // Never reached, as the last entry has mask 0; the compiler cannot know.
   return words.back().sentence;
 }
 

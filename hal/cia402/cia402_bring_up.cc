@@ -18,8 +18,10 @@ namespace {
 using model::Error;
 using model::Result;
 
+// Chosen: for a fault reaction to end, between two looks at a resting arm, for 50 heartbeats.
 constexpr int kSettle_ms = 1000, kRest_ms = 100, kOperational_ms = 500;
-constexpr double kRest_turns = 0.02;  // of a motor between two looks
+constexpr double kRest_turns = 0.02;  // of a motor between two looks; a falling arm of DK-8: 0.3
+// The profile is the lower half of object 1000. Bit 9 of 6502: cyclic synchronous torque.
 constexpr std::uint32_t kProfile402 = 402, kTorqueMode = 1u << 9;
 constexpr SdoEntry kDeviceType{0x1000, 0, 4};
 
@@ -39,7 +41,9 @@ class BringUp {
         if (auto error = (this->*step)(i)) return *error;
       if (auto error = learn(i, start)) return *error;
     }
+    // After all three: the arms have had the time of two drives to come to rest.
     if (auto error = rest(start)) return *error;
+    // Last: PDOs flow in operational alone, so no drive takes a torque before all are set up.
     if (auto error = start_all()) return *error;
     start.caution = settings_.caution();
     return start;
@@ -47,6 +51,7 @@ class BringUp {
 
  private:
   Error wrong(std::size_t i, const std::string& words) const {
+    // A bus that failed makes every drive look silent: it is told, not the drive.
     if (bus_.fault() != Fault::kNone) return Error{can_bus_trouble(bus_.cause(), can_.interface)};
     return Error{fmt::format("{} {}", can::can_arm_name(i, can_), words)};
   }
@@ -68,6 +73,7 @@ class BringUp {
   std::optional<Error> find_all() {
     for (const int node : can_.node) bus_.push(canopen_nmt(NmtCommand::kPreOperational, node));
     bus_.send();
+    // All three are asked before one is blamed: when none answers it is the bus.
     std::array<bool, 3> answers{};
     for (std::size_t i = 0; i < 3; ++i) {
       SdoFailure failure;
@@ -90,6 +96,8 @@ class BringUp {
                                "and is its profile 402 switched on?",
                                type));
     }
+    // Not every drive has 6502 (CN-5): one that is silent about its modes shows in 6061 what it can
+    // do.
     SdoFailure none;  // an optional setting
     const auto modes = sdo_.read(can_.node[i], {0x6502, 0, 4}, none);
     if (modes && (*modes & kTorqueMode) == 0) {
@@ -118,11 +126,13 @@ class BringUp {
     while (true) {
       if (auto error = get(i, {0x6041, 0, 2}, status)) return error;
       const Cia402State state = cia402_state(static_cast<std::uint16_t>(status));
+      // In both the power stage is off.
       if (state == Cia402State::kSwitchOnDisabled || state == Cia402State::kReady)
         return std::nullopt;
       if (state == Cia402State::kFault && !reset) {
         reset = true;  // once: a fault that comes back is present, and is told
         if (auto error = command(kControlFaultReset)) return error;
+        // Bit 7 acts as it rises (CN-2): it goes down again, for whoever needs it next.
         if (auto error = command(kControlDisableVoltage)) return error;
       }
       if (bus_.socket().now_ns() > end_ns) return not_calm(i, state);
@@ -162,12 +172,14 @@ class BringUp {
   std::optional<Error> position(std::size_t i, double& turns) {
     std::uint32_t counts = 0;
     if (auto error = get(i, {0x6064, 0, 4}, counts)) return error;
+    // 6064 is signed; SDO carries its bits.
     turns = static_cast<std::int32_t>(counts) / can_.counts_per_motor_turn;
     return std::nullopt;
   }
 
   /// On a jig the position of now is the zero of the arms: one that still falls would shift it.
   std::optional<Error> rest(Cia402Start& start) {
+    // An absolute encoder's zero does not depend on where the arms are now.
     if (can_.homing != model::Homing::kJig) return std::nullopt;
     sdo_.wait(kRest_ms);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -183,6 +195,7 @@ class BringUp {
   std::optional<Error> start_all() {
     for (const int node : can_.node) bus_.push(canopen_nmt(NmtCommand::kStart, node));
     bus_.send();
+    // A heartbeat from before the command proves nothing.
     operational_ = {};
     for (int i = 0; i < kOperational_ms / 10; ++i) {
       sdo_.wait(10);
@@ -220,6 +233,7 @@ std::vector<std::uint32_t> cia402_ids(const model::CanSettings& can) {
 }
 
 int cia402_cycle_bits() {
+  // SYNC, three commands, three samples (CB-2).
   const auto most = [](std::uint8_t length) {
     return can_bits_on_bus(can::make_can_frame(0, length)).most;
   };
@@ -228,6 +242,7 @@ int cia402_cycle_bits() {
 
 CstConfiguration cst_settings(const model::CanSettings& can, double rate_Hz) {
   CstConfiguration out;
+  // 60C2 takes whole ms; bring_up_cia402 has refused every other rate.
   out.period_ms = static_cast<std::uint8_t>(std::lround(1000.0 / rate_Hz));
   out.command_transmission_type = can.command_at_sync ? 1 : 255;
   return out;

@@ -34,7 +34,7 @@ struct Cia402Start {
 
 /// What the device needs to hear.
 std::vector<std::uint32_t> cia402_ids(const model::CanSettings& can);
-/// Of all frames of a tick at worst stuffing.
+/// Of SYNC, commands and samples of a tick at worst stuffing; heartbeats and SDO come on top.
 int cia402_cycle_bits();
 /// For one drive at this rate.
 CstConfiguration cst_settings(const model::CanSettings& can, double rate_Hz);

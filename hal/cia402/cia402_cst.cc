@@ -8,6 +8,7 @@
 namespace tact::hal::cia402 {
 namespace {
 
+// RPDO1 and TPDO1 of CiA 301's connection set.
 constexpr std::uint32_t kCommandId = 0x200, kSampleId = 0x180;
 constexpr std::uint32_t kMessageOff = 1u << 31;      // of the identifier in 1400 and 1800
 constexpr std::uint32_t kWithoutRequest = 1u << 30;  // of that in 1800
@@ -26,6 +27,7 @@ bool is_rated(double rated_torque_Nm) RT_SAFE {
 std::optional<std::int16_t> cst_torque_permille(double torque_Nm, double rated_torque_Nm) RT_SAFE {
   if (!std::isfinite(torque_Nm) || !is_rated(rated_torque_Nm)) return std::nullopt;
   const double permille = std::nearbyint(torque_Nm / rated_torque_Nm * 1000.0);
+  // Beyond 16 bits the cast is undefined.
   if (permille >= 32767.0) return std::int16_t{32767};
   if (permille <= -32768.0) return std::int16_t{-32768};
   return static_cast<std::int16_t>(permille);
@@ -36,6 +38,7 @@ std::optional<can::CanFrame> cst_command(int node, std::uint16_t controlword,
   if (!is_canopen_node(node)) return std::nullopt;
   can::CanFrame frame = can::make_can_frame(kCommandId + static_cast<std::uint32_t>(node), 4);
   can::put_unsigned(frame.data, 0, 2, controlword);
+  // As two's complement.
   can::put_unsigned(frame.data, 2, 2, static_cast<std::uint16_t>(torque_permille));
   return frame;
 }
@@ -58,7 +61,10 @@ std::optional<CstWrites> cst_configuration(int node, const CstConfiguration& wan
   const bool two = is_canopen_node(node) && is_canopen_node(wanted.host_node);
   if (!two || node == wanted.host_node || !timed) return std::nullopt;
   const auto n = static_cast<std::uint32_t>(node);
+  // Bit 30 stays as read: drives that serve no remote request insist on it (CN-3).
   const std::uint32_t sample_id = (wanted.sample_without_request ? kWithoutRequest : 0) | kSampleId;
+  // CiA 301's order for a mapping: message off, count 0, entries, count, message on. Drives refuse
+  // an entry of a mapping that counts.
   return CstWrites{{
       {0x1017, 0, wanted.drive_heartbeat_ms, 2},
       {0x1016, 1, host_watch(wanted, wanted.host_timeout_ms), 4},
@@ -79,7 +85,7 @@ std::optional<CstWrites> cst_configuration(int node, const CstConfiguration& wan
       {0x1A00, 0, 3, 1},
       {0x1800, 1, sample_id + n, 4},
       {0x60C2, 1, wanted.period_ms, 1},
-      {0x60C2, 2, 0xFD, 1},  // times 10^-3 s
+      {0x60C2, 2, 0xFD, 1},  // -3: times 10^-3 s
       {0x6060, 0, 10, 1},    // cyclic synchronous torque
   }};
 }

@@ -24,7 +24,9 @@ using can::CanPower;
 using model::Result;
 
 constexpr std::int64_t kMs_ns = 1'000'000;
+// Four in the 20 ms that a drive waits (CstConfiguration): one may be lost.
 constexpr double kHostHeartbeat_Hz = 200.0;
+// As many as the gate bears without a sample (gate.h): 20 ms at 1 kHz.
 constexpr int kMaxIdleTicks = 20;
 
 /// Kinds of FaultCause, after those that all drives have.
@@ -69,6 +71,7 @@ class Cia402s final : public can::CanDrives {
   }
 
   int node_of(const can::CanFrame& frame) const RT_SAFE override {
+    // The lower seven bits of every identifier with a node (CN-1).
     return static_cast<int>(frame.id & 0x7Fu);
   }
 
@@ -96,6 +99,7 @@ class Cia402s final : public can::CanDrives {
     for (std::size_t i = 0; i < 3; ++i) {
       const Axis& axis = axes_[i];
       const auto state = static_cast<std::uint32_t>(axis.state);
+      // While starting, a drive on its way up is no fault; once ready it is.
       const bool enabled = axis.state == Cia402State::kOperationEnabled;
       if (loop.power == CanPower::kReady && !enabled)
         loop.fail(i, Cia402Cause::kLeftEnabled, state);
@@ -122,6 +126,7 @@ class Cia402s final : public can::CanDrives {
   void push_fault(CanLoop& loop) RT_SAFE override {
     push_heartbeat(loop.bus);
     push_commands(loop.bus, kControlQuickStop);
+    // A drive of type 1 acts on the quick stop at SYNC, not before.
     if (command_at_sync_) loop.bus.push(canopen_sync());
   }
   /// Drives without a fault of their own would note one if nobody were heard.
@@ -134,6 +139,7 @@ class Cia402s final : public can::CanDrives {
   }
   void push_leave(CanLoop& loop) override {
     for (const Axis& axis : axes_) {
+      // First, as some drives refuse to end their watch while operational (heartbeat_guard.h).
       loop.bus.push(canopen_nmt(NmtCommand::kPreOperational, axis.node));
       // Nobody sends the host's heartbeat any more: that is no fault now.
       loop.bus.push(canopen_sdo_download(
@@ -193,6 +199,7 @@ class Cia402s final : public can::CanDrives {
     loop.axes[at].sample(sample.position_increments / counts_per_motor_turn_, arrival_ns);
     Axis& axis = axes_[at];
     axis.state = cia402_state(sample.statusword);
+    // Bit 12 counts from ready on: before it, no drive has to follow.
     const bool idle = loop.power == CanPower::kReady &&
                       axis.state == Cia402State::kOperationEnabled &&
                       !cia402_flags(sample.statusword).following;
@@ -204,6 +211,7 @@ class Cia402s final : public can::CanDrives {
   /// The state may have come first, without a reason.
   void take_emergency(CanLoop& loop, std::size_t at, std::uint16_t code) RT_SAFE {
     const auto kind = static_cast<std::uint8_t>(Cia402Cause::kEmergency);
+    // The code says more than the state: it takes the place of a cause without a reason.
     if (loop.latch.cause().kind == static_cast<std::uint8_t>(Cia402Cause::kStatus)) {
       loop.latch.explain({.fault = Fault::kDriveFault,
                           .axis = static_cast<std::uint8_t>(at),
@@ -222,6 +230,7 @@ class Cia402s final : public can::CanDrives {
   /// One step per statusword; a drive that said nothing in this tick hears the same again.
   std::uint16_t controlword_of(const CanLoop& loop, std::size_t at) const RT_SAFE {
     const Axis& axis = axes_[at];
+    // No power without the drive's own watch: if tactd died, nothing would take the torque away.
     if (loop.power == CanPower::kOff || !axis.guard.on()) return kControlDisableVoltage;
     if (!loop.axes[at].sampled) return axis.controlword;
     const auto next = next_controlword(axis.state, axis.controlword);
@@ -237,6 +246,7 @@ class Cia402s final : public can::CanDrives {
                     double torque_Nm) RT_SAFE {
     axis.controlword = controlword;
     const auto permille = cst_torque_permille(torque_Nm, axis.rated_torque_Nm);
+    // Nothing to push makes the batch a missed cycle (can_bus.h): the bus then counts it.
     bus.push(permille ? cst_command(axis.node, controlword, *permille) : std::nullopt);
   }
   void push_commands(can::CanBus& bus, std::uint16_t controlword) RT_SAFE {

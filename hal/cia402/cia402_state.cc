@@ -4,6 +4,7 @@
 namespace tact::hal::cia402 {
 
 Cia402State cia402_state(std::uint16_t statusword) RT_SAFE {
+  // CN-2. In these four states bit 5 (quick stop) may be anything; in the next four it tells.
   switch (statusword & 0x4Fu) {
     case 0x00:
       return Cia402State::kNotReady;
@@ -56,6 +57,7 @@ const char* cia402_state_name(Cia402State state) RT_SAFE {
 
 Cia402Flags cia402_flags(std::uint16_t statusword) RT_SAFE {
   const auto bit = [statusword](int n) { return ((statusword >> n) & 1) != 0; };
+  // Bit 12 belongs to the mode: outside operation it says nothing about the torque.
   const bool enabled = cia402_state(statusword) == Cia402State::kOperationEnabled;
   return {.warning = bit(7), .internal_limit = bit(11), .following = enabled && bit(12)};
 }
@@ -72,6 +74,7 @@ std::optional<std::uint16_t> next_controlword(Cia402State state, std::uint16_t l
     case Cia402State::kQuickStop:
       return kControlDisableVoltage;
     case Cia402State::kFault:
+      // Down, then up: only the rising edge resets.
       return (last & kControlFaultReset) != 0 ? kControlDisableVoltage : kControlFaultReset;
     case Cia402State::kUnknown:
     case Cia402State::kNotReady:

@@ -7,6 +7,7 @@
 namespace tact::hal::cia402 {
 namespace {
 
+// Chosen: 0.2 s for a mode to show in 6061.
 constexpr int kModeLooks = 20, kModeLook_ms = 10;
 constexpr std::uint32_t kTorqueMode = 10;
 constexpr std::uint32_t kWithoutRequest = 1u << 30;
@@ -20,12 +21,14 @@ std::optional<std::string> DriveSettings::write(int node, CstConfiguration wante
   wanted.sample_without_request = (*sample_id & kWithoutRequest) != 0;
   const auto writes = cst_configuration(node, wanted);
   if (!writes) return "cannot have this node: device.can.node takes 1 to 126";
+  // Before 1016 is written: a watch that runs may refuse it (0x06040043, CN-4).
   if (auto words = end_watch(node, wanted)) return words;
   for (const SdoWrite& one : *writes) {
     const auto refused = sdo_.write(node, one);
     if (refused && (refused->silent || !may_lack(node, one.index)))
       return sdo_failure_words(*refused, one.index, one.sub);
   }
+  // 0: a quick stop lets go; a ramp would drive the arm against the hand.
   sdo_.write(node, {.index = 0x605A, .sub = 0, .value = 0, .size = 2});  // optional
   return check_mode(node);
 }
@@ -34,6 +37,7 @@ std::optional<std::string> DriveSettings::end_watch(int node, const CstConfigura
   SdoFailure failure;
   const auto watch = sdo_.read(node, {0x1016, 1, 4}, failure);
   if (watch && (*watch & 0xFFFFu) == 0) return std::nullopt;
+  // Its own node stays, the time goes: a zero as a whole would name no node, and be ignored (CN-4).
   const std::uint32_t off = watch ? *watch & 0x7F0000u : host_watch(wanted, 0);
   const auto refused = sdo_.write(node, {.index = 0x1016, .sub = 1, .value = off, .size = 4});
   if (refused) return sdo_failure_words(*refused, 0x1016, 1);
@@ -50,6 +54,7 @@ std::optional<std::string> DriveSettings::check_mode(int node) {
     mode = *shown;
     sdo_.wait(kModeLook_ms);
   }
+  // 0 is "no mode yet": CiA 402 lets a drive show it until it is enabled.
   if (mode == 0) return std::nullopt;
   return fmt::format(
       "stays in mode {} of operation (object 6061) and does not take cyclic synchronous torque, "
@@ -61,6 +66,7 @@ std::optional<std::string> DriveSettings::check_mode(int node) {
 bool DriveSettings::may_lack(int node, std::uint16_t index) {
   for (Optional& one : optional_) {
     if (one.index != index) continue;
+    // Once a drive, although 60C2 is written in two parts.
     if (one.nodes.empty() || one.nodes.back() != node) one.nodes.push_back(node);
     return true;
   }

@@ -8,6 +8,7 @@
 namespace tact::hal::cia402 {
 namespace {
 
+// CiA 301 leaves this time to the host; a silent drive costs it once.
 constexpr int kReply_ms = 300;
 constexpr std::int64_t kMs_ns = 1'000'000;
 
@@ -24,6 +25,7 @@ std::optional<SdoReply> SdoClient::ask(int node, const std::optional<can::CanFra
     socket.wait(kReply_ms);
     for (const can::CanReceived& one : bus_.receive()) {
       const auto reply = decode_canopen_sdo(one.frame, node);
+      // The answer to an earlier request, given up on, may come now.
       if (reply && reply->index == index && reply->sub == sub)
         ours = reply;
       else
@@ -35,6 +37,7 @@ std::optional<SdoReply> SdoClient::ask(int node, const std::optional<can::CanFra
 
 std::optional<SdoFailure> SdoClient::write(int node, const SdoWrite& what) {
   const auto reply = ask(node, canopen_sdo_download(node, what), what.index, what.sub);
+  // An answer of the wrong kind proves nothing: it counts as none.
   if (!reply || reply->kind == SdoReplyKind::kUpload) return SdoFailure{.silent = true};
   if (reply->kind == SdoReplyKind::kAbort) return SdoFailure{.abort_code = reply->value};
   return std::nullopt;
@@ -46,6 +49,7 @@ std::optional<std::uint32_t> SdoClient::read(int node, const SdoEntry& entry, Sd
   failure = {.silent = !reply || reply->kind == SdoReplyKind::kDownloadDone};
   if (failure.silent) return std::nullopt;
   if (reply->kind == SdoReplyKind::kUpload) {
+    // Without a size (0x42), bytes behind the object's own may hold anything.
     const bool cut = reply->size == 0 && entry.size < 4;
     return cut ? reply->value & ((1u << 8 * entry.size) - 1u) : reply->value;
   }

@@ -13,6 +13,7 @@ std::vector<Vec3> workspace_samples_D(double radius_m, double half_length_m, dou
   std::vector<Vec3> samples{Vec3{}};
   for (const double x_m : {-half_length_m, half_length_m}) {
     samples.push_back({x_m, 0.0, 0.0});
+    // Every 30 degrees: the plane of each arm, and the middle between two.
     for (int i = 0; i < 12; ++i) {
       const double angle_rad = i * std::numbers::pi / 6.0;
       samples.push_back({x_m, radius_m * std::cos(angle_rad), radius_m * std::sin(angle_rad)});
@@ -27,6 +28,7 @@ model::DeviceAtTool delta_at_tool(const DeltaKinematics& delta, const DeltaJoint
   double s = 0.0;
   for (const Vec3& p_m : positions_m) {
     const DeltaInverse solved = delta.inverse(p_m);
+    // None reachable leaves the damping at 0, and tactd refuses the device.
     if (!solved.reachable) continue;
     s = std::max(s, workspace_indices(delta, p_m, solved.theta_rad).sigma_m_per_rad[0]);
   }

@@ -12,7 +12,8 @@ constexpr Vec3 kAxis{0.0, 0.0, 1.0};
 constexpr double kMinTransmission = 0.35;  // DK-5
 constexpr double kMinRodSigma = 0.25;      // DK-5
 
-double wrapped_rad(double angle_rad) RT_SAFE {  // of (-2 pi, 2 pi)
+/// An angle of (-2 pi, 2 pi) to (-pi, pi], to compare with joint stops.
+double wrapped_rad(double angle_rad) RT_SAFE {
   if (angle_rad > std::numbers::pi) return angle_rad - 2.0 * std::numbers::pi;
   if (angle_rad <= -std::numbers::pi) return angle_rad + 2.0 * std::numbers::pi;
   return angle_rad;
@@ -61,12 +62,14 @@ DeltaForward DeltaKinematics::forward(const Joints& theta_rad) const RT_SAFE {
   }
   const Vec3 a = centre[1] - centre[0], b = centre[2] - centre[0], n = cross(a, b);
   const double aa = dot(a, a), bb = dot(b, b), nn = dot(n, n);
-  if (!(nn > 1e-18 * aa * bb)) return {};  // the three centres lie on a line: no triangle
+  if (!(nn > 1e-18 * aa * bb)) return {};  // sine below 1e-9: the centres lie on a line
   // DK-3: circumcentre - c_1 = (|a|^2 b - |b|^2 a) x n / (2 |n|^2)
   const Vec3 to_circumcentre = cross(aa * b - bb * a, n) / (2.0 * nn);
   const double height_squared = lb * lb - dot(to_circumcentre, to_circumcentre);
+  // The rods are too short to meet; so written, NaN ends here too.
   if (!(height_squared >= 0.0)) return {};
   const Vec3 circumcentre = centre[0] + to_circumcentre;
+  // The sign by n.z: far_m is the larger z, whichever way the arms turn n.
   const Vec3 up = n * (std::sqrt(height_squared / nn) * (n.z < 0.0 ? -1.0 : 1.0));
   return {.solved = true, .far_m = circumcentre + up, .near_m = circumcentre - up};
 }
@@ -137,6 +140,7 @@ double saturation_ratio(const Joints& held_Nm, const Joints& wanted_Nm, double l
   double ratio = 1.0;
   for (std::size_t i = 0; i < 3; ++i) {
     const double size = std::abs(wanted_Nm[i]);
+    // What is held uses up one side of the limit and widens the other.
     const double room = wanted_Nm[i] > 0.0 ? limit_Nm - held_Nm[i] : limit_Nm + held_Nm[i];
     if (room >= size) continue;
     const double here = room / size;
@@ -160,6 +164,7 @@ DeltaIndices workspace_indices(const DeltaKinematics& delta, const Vec3& positio
                                       std::abs(pose.lever_m2[i]) / (g.upper_arm_m * g.forearm_m));
     // y_i: platform point across the plane of arm i; normal of that plane: radial x tangent / la
     const Vec3 across = cross(pose.radial[i], pose.tangent_m[i]) / g.upper_arm_m;
+    // The elbow lies in that plane and the axis too, so the point's distance is the rod's.
     const double side = std::abs(dot(across, position_m)) / g.forearm_m;
     out.largest_side_rad = std::max(out.largest_side_rad, std::asin(std::min(side, 1.0)));
     const bool inside = theta_rad[i] >= g.theta_min_rad && theta_rad[i] <= g.theta_max_rad;

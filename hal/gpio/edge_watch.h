@@ -6,24 +6,19 @@
 // Times are CLOCK_MONOTONIC, as Linux stamps line events since 5.7. The kernel keeps 16 edges; who
 // reads too slowly loses the newest. The thread of the line's interrupt (irq/N-tact-jitter) tells
 // rise from fall by the level that it finds: on the loop's own core, below the loop, it sees one
-// edge of a tick. Source: libgpiod 1.6 (gpiod.h, gpiod_line_event_*).
+// edge of a tick.
 #pragma once
 
 #include <chrono>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "hal/gpio/gpio_chips.h"
+#include "hal/gpio/line_request.h"
 #include "model/result.h"
 
 namespace tact::hal::gpio {
-
-struct Edge {
-  bool rising = false;
-  std::int64_t time_ns = 0;
-};
 
 class EdgeWatch {
  public:

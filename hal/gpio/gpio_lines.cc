@@ -2,15 +2,17 @@
 #include "hal/gpio/gpio_lines.h"
 
 #include <fmt/format.h>
-#include <gpiod.h>
 #include <sys/syscall.h>
 
 #include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <utility>
+#include <vector>
 
+#include "hal/gpio/line_request.h"
 #include "hal/gpio/safety_logic.h"
 
 namespace tact::hal::gpio {
@@ -22,65 +24,27 @@ using model::LinesSettings;
 using model::Result;
 
 constexpr const char* kConsumer = "tactd";
-constexpr std::size_t kMaxLines = 3;
-using Values = std::array<int, kMaxLines>;
 
-struct CloseChip {
-  void operator()(gpiod_chip* chip) const { gpiod_chip_close(chip); }  // releases its lines, too
-};
-using ChipHandle = std::unique_ptr<gpiod_chip, CloseChip>;
-
-// One ioctl each, on a chip that is known not to sleep; libgpiod only copies the values.
-#if defined(__clang__) && __clang_major__ >= 20
-#pragma clang diagnostic push
-#pragma clang diagnostic ignored "-Wfunction-effects"
-#endif
-bool get_levels(gpiod_line_bulk& lines, Values& values) RT_SAFE {
-  return gpiod_line_get_value_bulk(&lines, values.data()) == 0;
-}
-bool set_levels(gpiod_line_bulk& lines, const Values& values) RT_SAFE {
-  return gpiod_line_set_value_bulk(&lines, values.data()) == 0;
-}
-#if defined(__clang__) && __clang_major__ >= 20
-#pragma clang diagnostic pop
-#endif
-
-/// Lines of one direction, requested and moved together. Each level knows its place in the request.
-class LineGroup {
- public:
-  LineGroup() { gpiod_line_bulk_init(&bulk_); }
-
-  /// Adds a line and tells its place.
-  int add(gpiod_line* line) {
-    gpiod_line_bulk_add(&bulk_, line);
-    return static_cast<int>(bulk_.num_lines) - 1;
-  }
-  bool empty() const RT_SAFE { return bulk_.num_lines == 0; }
-  gpiod_line_bulk& bulk() RT_SAFE { return bulk_; }
-
- private:
-  gpiod_line_bulk bulk_{};
-};
-
+/// The requested lines, and the place of each in its request; -1: not wired.
 struct Groups {
-  LineGroup inputs, outputs, scope;
+  LineRequest inputs, outputs, scope;
   int estop_a = -1, estop_b = -1, dead_man = -1;
   int enable = -1, heartbeat = -1, led = -1;
 };
 
 class GpioLines final : public SafetyLines {
  public:
-  GpioLines(ChipHandle chip, const Groups& lines)
+  GpioLines(Chip chip, Groups lines)
       : chip_(std::move(chip)),
-        lines_(lines),
-        logic_({.estop = lines.estop_a >= 0, .dead_man = lines.dead_man >= 0}) {}
+        lines_(std::move(lines)),
+        logic_({.estop = lines_.estop_a >= 0, .dead_man = lines_.dead_man >= 0}) {}
   ~GpioLines() override { release(); }
   GpioLines(const GpioLines&) = delete;
   GpioLines& operator=(const GpioLines&) = delete;
 
   Fault read(std::int64_t now_ns) RT_SAFE override {
-    Values values{};
-    if (!lost() && !lines_.inputs.empty() && !get_levels(lines_.inputs.bulk(), values)) lose();
+    Levels values{};
+    if (!lost() && !lines_.inputs.empty() && !lines_.inputs.get(values)) lose();
     const Fault fault = logic_.judge({.estop_a = level(values, lines_.estop_a),
                                       .estop_b = level(values, lines_.estop_b),
                                       .dead_man = level(values, lines_.dead_man)},
@@ -90,21 +54,21 @@ class GpioLines final : public SafetyLines {
 
   Fault write(const LinesTick& tick) RT_SAFE override {
     const SafetyOutputs outputs = logic_.drive(tick);
-    Values values{};
+    Levels values{};
     set_level(values, lines_.enable, outputs.enable && !dropped());
     set_level(values, lines_.heartbeat, outputs.heartbeat && !dropped());
     set_level(values, lines_.led, outputs.led);
-    if (!lost() && !lines_.outputs.empty() && !set_levels(lines_.outputs.bulk(), values)) lose();
+    if (!lost() && !lines_.outputs.empty() && !lines_.outputs.set(values)) lose();
     return lost() ? Fault::kLinesLost : Fault::kNone;
   }
 
   bool enabled() const RT_SAFE override { return !lost() && !dropped() && logic_.enabled(); }
 
-  // libgpiod keeps the last level of each line in plain memory that nobody reads: two threads here
-  // disturb no more than that.
+  // libgpiod 1.6 keeps the last level of each line in plain memory that nobody reads: two threads
+  // here disturb no more than that.
   void drop() RT_SAFE override {
     dropped_.store(true, std::memory_order_relaxed);
-    if (!lost() && !lines_.outputs.empty()) set_levels(lines_.outputs.bulk(), {});
+    if (!lost() && !lines_.outputs.empty()) lines_.outputs.set({});
   }
 
   std::span<const int> loop_calls() const override {
@@ -113,7 +77,7 @@ class GpioLines final : public SafetyLines {
   }
 
   void scope(bool up) RT_SAFE override {
-    if (!lost() && !lines_.scope.empty()) set_levels(lines_.scope.bulk(), {up ? 1 : 0});
+    if (!lost() && !lines_.scope.empty()) lines_.scope.set({up ? 1 : 0});
   }
 
   std::string trouble() const override {
@@ -123,10 +87,10 @@ class GpioLines final : public SafetyLines {
   void stop() override { release(); }
 
  private:
-  static bool level(const Values& values, int place) RT_SAFE {
+  static bool level(const Levels& values, int place) RT_SAFE {
     return place >= 0 && values[static_cast<std::size_t>(place)] != 0;
   }
-  static void set_level(Values& values, int place, bool high) RT_SAFE {
+  static void set_level(Levels& values, int place, bool high) RT_SAFE {
     if (place >= 0) values[static_cast<std::size_t>(place)] = high ? 1 : 0;
   }
   bool lost() const RT_SAFE { return lost_.load(std::memory_order_relaxed); }
@@ -134,14 +98,15 @@ class GpioLines final : public SafetyLines {
   bool dropped() const RT_SAFE { return dropped_.load(std::memory_order_relaxed); }
 
   void release() {
-    if (chip_ == nullptr) return;
-    if (!lines_.outputs.empty()) set_levels(lines_.outputs.bulk(), {});
+    if (chip_.empty()) return;
+    if (!lines_.outputs.empty()) lines_.outputs.set({});
     scope(false);
     lose();
-    chip_.reset();
+    lines_ = {};
+    chip_ = {};
   }
 
-  ChipHandle chip_;
+  Chip chip_;
   Groups lines_;
   SafetyLogic logic_;
   std::atomic<bool> lost_{false}, dropped_{false};
@@ -161,56 +126,76 @@ std::array<NamedOffset, 7> offsets_of(const LinesSettings& s) {
            {"scope", s.scope}}};
 }
 
-Error why_not_requested(gpiod_chip* handle, const GpioChip& chip, const LinesSettings& settings,
+/// After the refusal, with all lines of this scene free again.
+Error why_not_requested(const Chip& handle, const GpioChip& chip, const LinesSettings& settings,
                         int error) {
   if (error == EACCES || error == EPERM) return not_permitted(chip);
   for (const auto& [key, offset] : offsets_of(settings)) {
     if (offset < 0) continue;
-    gpiod_line* line = gpiod_chip_get_line(handle, static_cast<unsigned>(offset));
-    if (line == nullptr || gpiod_line_is_requested(line) || !gpiod_line_is_used(line)) continue;
-    const char* user = gpiod_line_consumer(line);
+    const auto user = handle.user_of(offset);
+    if (!user) continue;
     return Error{fmt::format(
         "device.lines.{} is line {} of {} \"{}\", which {} uses already; end it, or choose another "
         "line (gpioinfo {} shows them)",
-        key, offset, chip.name, chip.label, user == nullptr ? "the kernel" : user, chip.name)};
+        key, offset, chip.name, chip.label, user->empty() ? "the kernel" : *user, chip.name)};
   }
   return Error{fmt::format("the lines of {} \"{}\" cannot be requested: {}; gpioinfo {} shows them",
                            chip.name, chip.label, std::strerror(error), chip.name)};
 }
 
-bool request(Groups& lines) {
-  const Values low{};
-  if (!lines.inputs.empty() && gpiod_line_request_bulk_input(&lines.inputs.bulk(), kConsumer) != 0)
-    return false;
-  if (!lines.outputs.empty() &&
-      gpiod_line_request_bulk_output(&lines.outputs.bulk(), kConsumer, low.data()) != 0)
-    return false;
-  return lines.scope.empty() ||
-         gpiod_line_request_bulk_output(&lines.scope.bulk(), kConsumer, low.data()) == 0;
+/// One that the chip does not give is an error: an e-stop or a dead-man without its line would be
+/// none.
+std::optional<Error> check_given(const Chip& handle, const GpioChip& chip,
+                                 const LinesSettings& settings) {
+  for (const auto& [key, offset] : offsets_of(settings)) {
+    if (offset < 0 || handle.gives(offset)) continue;
+    return Error{fmt::format(
+        "device.lines.{} is line {} of {} \"{}\", which the chip does not give: {}; correct the "
+        "number (gpioinfo {} shows the lines), or check its driver (dmesg)",
+        key, offset, chip.name, chip.label, std::strerror(errno), chip.name)};
+  }
+  return std::nullopt;
 }
 
-/// All lines that the scene wires. One that the chip does not give is an error: an e-stop or a
-/// dead-man without its line would be none.
-Result<Groups> find_lines(gpiod_chip* handle, const GpioChip& chip, const LinesSettings& settings) {
-  Groups lines;
-  int scope = -1;
-  LineGroup *const in = &lines.inputs, *const out = &lines.outputs;
-  const std::array<LineGroup*, 7> groups{in, in, in, out, out, out, &lines.scope};
-  const std::array<int*, 7> places{&lines.estop_a,   &lines.estop_b, &lines.dead_man, &lines.enable,
-                                   &lines.heartbeat, &lines.led,     &scope};
-  const auto wanted = offsets_of(settings);
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    const auto& [key, offset] = wanted[i];
-    if (offset < 0) continue;
-    gpiod_line* line = gpiod_chip_get_line(handle, static_cast<unsigned>(offset));
-    if (line == nullptr)
-      return Error{fmt::format(
-          "device.lines.{} is line {} of {} \"{}\", which the chip does not give: {}; correct the "
-          "number (gpioinfo {} shows the lines), or check its driver (dmesg)",
-          key, offset, chip.name, chip.label, std::strerror(errno), chip.name)};
-    *places[i] = groups[i]->add(line);
+/// Lines of one direction on their way into a request.
+class Wanted {
+ public:
+  /// Its place; -1 if it is not wired.
+  int add(int offset) {
+    if (offset < 0) return -1;
+    offsets_.push_back(offset);
+    return static_cast<int>(offsets_.size()) - 1;
   }
-  return lines;
+  /// False, with errno, if the kernel refuses. No line, no request.
+  bool request(Chip& chip, LineUse use, LineRequest& out) const {
+    if (offsets_.empty()) return true;
+    out = chip.request(use, offsets_, kConsumer);
+    return !out.empty();
+  }
+
+ private:
+  std::vector<int> offsets_;
+};
+
+/// All lines that the scene wires; nothing, with errno and all lines free, if one is refused.
+std::optional<Groups> request(Chip& chip, const LinesSettings& s) {
+  Groups lines;
+  Wanted inputs, outputs, scope;
+  lines.estop_a = inputs.add(s.estop_a);
+  lines.estop_b = inputs.add(s.estop_b);
+  lines.dead_man = inputs.add(s.dead_man);
+  lines.enable = outputs.add(s.enable);
+  lines.heartbeat = outputs.add(s.heartbeat);
+  lines.led = outputs.add(s.led);
+  scope.add(s.scope);
+  const bool given = inputs.request(chip, LineUse::kInput, lines.inputs) &&
+                     outputs.request(chip, LineUse::kOutput, lines.outputs) &&
+                     scope.request(chip, LineUse::kOutput, lines.scope);
+  if (given) return lines;
+  const int error = errno;
+  lines = {};  // may change errno
+  errno = error;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -248,14 +233,14 @@ Result<std::unique_ptr<SafetyLines>> open_safety_lines(const LinesSettings& sett
 
 Result<std::unique_ptr<SafetyLines>> open_lines_of(const GpioChip& chip,
                                                    const LinesSettings& settings) {
-  ChipHandle handle(gpiod_chip_open(chip.path.c_str()));
-  if (handle == nullptr)
+  Chip handle(chip.path);
+  if (handle.empty())
     return Error{fmt::format("{} cannot be opened: {}; check its driver (dmesg)", chip.path,
                              std::strerror(errno))};
-  auto lines = find_lines(handle.get(), chip, settings);
-  if (!lines) return lines.error();
-  if (!request(*lines)) return why_not_requested(handle.get(), chip, settings, errno);
-  return std::unique_ptr<SafetyLines>(new GpioLines(std::move(handle), *lines));
+  if (auto error = check_given(handle, chip, settings)) return *error;
+  auto lines = request(handle, settings);
+  if (!lines) return why_not_requested(handle, chip, settings, errno);
+  return std::unique_ptr<SafetyLines>(new GpioLines(std::move(handle), *std::move(lines)));
 }
 
 }  // namespace tact::hal::gpio

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// gpio_lines.h - safety lines on a GPIO chip, by libgpiod 1.6 (GP-2).
+// gpio_lines.h - safety lines on a GPIO chip, by libgpiod (GP-2).
 //
 // Inputs are one request and outputs are one request, so a tick costs one ioctl for all levels and
 // one for all outputs; the scope line has its own request and costs two more. Outputs start low and
 // go low in stop(); what they do after a crash is up to their pull-down resistors. Once the chip
 // has failed to answer, the lines stay lost until they are opened again.
 //
-// Source: libgpiod 1.6 (gpiod.h, gpiod_line_*_bulk), linux/gpio.h.
+// Source: libgpiod (gpiod.h), linux/gpio.h.
 #pragma once
 
 #include <memory>

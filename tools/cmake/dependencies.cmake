@@ -7,7 +7,8 @@ find_package(nlohmann_json REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(Boost REQUIRED)
 find_package(OpenSSL REQUIRED)
-find_library(GPIOD gpiod REQUIRED)  # libgpiod 1.6 has no CMake file
+find_library(GPIOD gpiod REQUIRED)  # Debian's libgpiod has no CMake file
+find_path(GPIOD_INCLUDE_DIR gpiod.h REQUIRED)
 find_library(LIBUSB usb-1.0 REQUIRED)  # nor has Debian's libusb
 find_library(SECCOMP seccomp REQUIRED)
 if(TACT_TOOLS AND NOT TACT_VIEW)

@@ -1,75 +1,84 @@
 // SPDX-License-Identifier: Apache-2.0
-// Safety lines on a chip that this test plays: it answers in place of libgpiod.
-#include <gpiod.h>
+// Safety lines on a chip that this test plays: line_request.h answers from here in place of libgpiod.
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cerrno>
+#include <map>
 #include <set>
 
 #include "hal/gpio/gpio_lines.h"
+#include "hal/gpio/line_request.h"
 
-struct gpiod_chip {};
-struct gpiod_line {
-  unsigned offset = 0;
-  int level = 0;
-  bool requested = false;
-};
-
+namespace tact::hal::gpio {
 namespace {
 
 struct PlayedChip {
-  gpiod_chip chip;
-  std::array<gpiod_line, 32> lines{};
-  std::set<unsigned> not_given;
+  std::array<int, 32> level{};
+  std::set<int> requested, not_given;
+  std::map<int, std::string> user;  // of another program
   int open = 0;
 };
 PlayedChip& played() {
   static PlayedChip one;
   return one;
 }
-int request(gpiod_line_bulk* bulk) {
-  for (unsigned i = 0; i < bulk->num_lines; ++i) bulk->lines[i]->requested = true;
-  return 0;
-}
 
 }  // namespace
 
-extern "C" {
-gpiod_chip* gpiod_chip_open(const char* /*path*/) {
-  ++played().open;
-  return &played().chip;
-}
-void gpiod_chip_close(gpiod_chip* /*chip*/) { --played().open; }
-gpiod_line* gpiod_chip_get_line(gpiod_chip* /*chip*/, unsigned offset) {
-  if (played().not_given.count(offset) != 0) {
-    errno = EINVAL;
-    return nullptr;
+struct LineRequest::Lines {
+  std::vector<int> offsets;
+
+  ~Lines() {
+    for (const int offset : offsets) played().requested.erase(offset);
   }
-  played().lines.at(offset).offset = offset;
-  return &played().lines.at(offset);
+};
+struct Chip::Handle {
+  Handle() { ++played().open; }
+  ~Handle() { --played().open; }
+};
+
+LineRequest::LineRequest() = default;
+LineRequest::LineRequest(std::unique_ptr<Lines> lines) : lines_(std::move(lines)) {}
+LineRequest::LineRequest(LineRequest&& other) noexcept = default;
+LineRequest& LineRequest::operator=(LineRequest&& other) noexcept = default;
+LineRequest::~LineRequest() = default;
+bool LineRequest::get(Levels& levels) RT_SAFE {
+  for (std::size_t i = 0; i < lines_->offsets.size(); ++i)
+    levels[i] = played().level[static_cast<std::size_t>(lines_->offsets[i])];
+  return true;
 }
-int gpiod_line_request_bulk_input(gpiod_line_bulk* bulk, const char* /*consumer*/) {
-  return request(bulk);
+bool LineRequest::set(const Levels& levels) RT_SAFE {
+  for (std::size_t i = 0; i < lines_->offsets.size(); ++i)
+    played().level[static_cast<std::size_t>(lines_->offsets[i])] = levels[i];
+  return true;
 }
-int gpiod_line_request_bulk_output(gpiod_line_bulk* bulk, const char* /*consumer*/,
-                                   const int* /*levels*/) {
-  return request(bulk);
+std::vector<Edge> LineRequest::edges(std::chrono::milliseconds /*longest*/) { return {}; }
+
+Chip::Chip() = default;
+Chip::Chip(const std::string& /*path*/) : handle_(new Handle) {}
+Chip::Chip(Chip&& other) noexcept = default;
+Chip& Chip::operator=(Chip&& other) noexcept = default;
+Chip::~Chip() = default;
+bool Chip::gives(int offset) const {
+  errno = EINVAL;
+  return played().not_given.count(offset) == 0;
 }
-int gpiod_line_get_value_bulk(gpiod_line_bulk* bulk, int* levels) {
-  for (unsigned i = 0; i < bulk->num_lines; ++i) levels[i] = bulk->lines[i]->level;
-  return 0;
+std::optional<std::string> Chip::user_of(int offset) const {
+  if (played().requested.count(offset) != 0) return "tactd";
+  const auto found = played().user.find(offset);
+  return found == played().user.end() ? std::nullopt : std::optional(found->second);
 }
-int gpiod_line_set_value_bulk(gpiod_line_bulk* bulk, const int* levels) {
-  for (unsigned i = 0; i < bulk->num_lines; ++i) bulk->lines[i]->level = levels[i];
-  return 0;
-}
-bool gpiod_line_is_requested(gpiod_line* line) { return line->requested; }
-bool gpiod_line_is_used(gpiod_line* line) { return line->requested; }
-const char* gpiod_line_consumer(gpiod_line* /*line*/) { return nullptr; }
+LineRequest Chip::request(LineUse /*use*/, std::span<const int> offsets, const char* /*consumer*/) {
+  for (const int offset : offsets) {
+    errno = EBUSY;
+    if (played().user.count(offset) != 0) return {};
+  }
+  played().requested.insert(offsets.begin(), offsets.end());
+  return LineRequest(std::unique_ptr<LineRequest::Lines>(
+      new LineRequest::Lines{.offsets = {offsets.begin(), offsets.end()}}));
 }
 
-namespace tact::hal::gpio {
 namespace {
 
 constexpr int kEstopA = 16, kEstopB = 17, kDeadMan = 18, kEnable = 0, kHeartbeat = 1, kLed = 2,
@@ -86,7 +95,7 @@ class GpioWiring : public testing::Test {
     for (const int input : {kEstopA, kEstopB, kDeadMan}) set(input, 1);
   }
   static void set(int offset, int level) {
-    played().lines.at(static_cast<std::size_t>(offset)).level = level;
+    played().level.at(static_cast<std::size_t>(offset)) = level;
   }
   model::Result<std::unique_ptr<SafetyLines>> open() const {
     return open_lines_of({.name = "gpiochip0",
@@ -110,7 +119,7 @@ TEST_F(GpioWiring, ALineThatTheChipDoesNotGiveIsAnErrorAndNeverALineThatIsNotWir
                                                           {kLed, "led"},
                                                           {kScope, "scope"}}};
   for (const auto& [offset, key] : lines) {
-    played().not_given = {static_cast<unsigned>(offset)};
+    played().not_given = {offset};
     const auto opened = open();
     ASSERT_FALSE(opened) << key << " was taken for a line that is not wired";
     EXPECT_EQ(
@@ -143,6 +152,32 @@ TEST_F(GpioWiring, WhatIsNotWiredIsLeftAlone) {
   const auto opened = open();
   ASSERT_TRUE(opened) << opened.error().sentence;
   EXPECT_EQ((*opened)->read(1'000'000), model::Fault::kNone);
+}
+
+TEST_F(GpioWiring, ALineInUseIsToldWithItsUserAndTheOthersAreFreeAgain) {
+  played().user = {{kHeartbeat, "lamp"}};
+  const auto opened = open();
+  ASSERT_FALSE(opened);
+  EXPECT_EQ(opened.error().sentence,
+            "device.lines.heartbeat is line 1 of gpiochip0 \"board\", which lamp uses already; end "
+            "it, or choose another line (gpioinfo gpiochip0 shows them)");
+  EXPECT_TRUE(played().requested.empty());
+  EXPECT_EQ(played().open, 0);
+}
+
+TEST_F(GpioWiring, OutputsAreLowAndAllLinesFreeAfterStop) {
+  const auto opened = open();
+  ASSERT_TRUE(opened) << opened.error().sentence;
+  (*opened)->scope(true);
+  EXPECT_EQ((*opened)->write({.healthy = true, .armed = true}), model::Fault::kNone);
+  for (const int output : {kHeartbeat, kLed, kScope})
+    EXPECT_EQ(played().level.at(static_cast<std::size_t>(output)), 1) << "line " << output;
+  EXPECT_EQ(played().requested.size(), 7u);
+  (*opened)->stop();
+  for (const int output : {kEnable, kHeartbeat, kLed, kScope})
+    EXPECT_EQ(played().level.at(static_cast<std::size_t>(output)), 0) << "line " << output;
+  EXPECT_TRUE(played().requested.empty());
+  EXPECT_EQ((*opened)->read(2'000'000), model::Fault::kLinesLost);
 }
 
 }  // namespace

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// line_request.h - a GPIO chip and some of its lines, as libgpiod asks the kernel for them.
+//
+// libgpiod_1.cc speaks version 1.6 (Debian 12), libgpiod_2.cc version 2 (Debian 13): CMake builds
+// the one whose header is installed. What fails leaves its reason in errno, as libgpiod does.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/rt.h"
+
+namespace tact::hal::gpio {
+
+inline constexpr std::size_t kMaxRequestLines = 3;
+using Levels = std::array<int, kMaxRequestLines>;  // by place in the request; 1: high
+
+enum class LineUse { kInput, kOutput, kEdges };  // outputs begin low
+
+struct Edge {
+  bool rising = false;
+  std::int64_t time_ns = 0;  // CLOCK_MONOTONIC, in the line's interrupt
+};
+
+/// Lines that were requested together and move together.
+class LineRequest {
+ public:
+  struct Lines;
+
+  LineRequest();
+  explicit LineRequest(std::unique_ptr<Lines> lines);
+  LineRequest(LineRequest&& other) noexcept;
+  LineRequest& operator=(LineRequest&& other) noexcept;
+  ~LineRequest();
+
+  bool empty() const RT_SAFE { return lines_ == nullptr; }
+  /// One ioctl for all, on a chip that does not sleep. False: the chip does not answer.
+  bool get(Levels& levels) RT_SAFE;
+  bool set(const Levels& levels) RT_SAFE;
+  /// Of kEdges: waits at most so long for an edge, and returns all that are there, in order.
+  std::vector<Edge> edges(std::chrono::milliseconds longest);
+
+ private:
+  std::unique_ptr<Lines> lines_;
+};
+
+/// Lives longer than the requests that it gave.
+class Chip {
+ public:
+  struct Handle;
+
+  Chip();  // empty
+  /// Empty if it cannot be opened.
+  explicit Chip(const std::string& path);
+  Chip(Chip&& other) noexcept;
+  Chip& operator=(Chip&& other) noexcept;
+  ~Chip();
+
+  bool empty() const { return handle_ == nullptr; }
+  bool gives(int offset) const;
+  /// Who has the line; "" where the kernel does not name its user, nothing if it is free.
+  std::optional<std::string> user_of(int offset) const;
+  /// At most kMaxRequestLines lines. Empty if the kernel refuses one of them.
+  LineRequest request(LineUse use, std::span<const int> offsets, const char* consumer);
+
+ private:
+  std::unique_ptr<Handle> handle_;
+};
+
+}  // namespace tact::hal::gpio
