@@ -22,6 +22,7 @@ using model::Error;
 
 constexpr std::string_view kPrefix{"\0tact/device/", 13};  // the zero makes a name abstract
 constexpr int kManyRefused = 4096;  // each of them waits in the queue of the one who has it
+// 50 ms in all: the other program may stand between bind and listen.
 constexpr int kLooks = 50, kLook_us = 1000;
 
 class Address {
@@ -31,6 +32,7 @@ class Address {
     fits_ = whole.size() <= sizeof address_.sun_path;
     address_.sun_family = AF_UNIX;
     std::copy_n(whole.data(), std::min(whole.size(), sizeof address_.sun_path), address_.sun_path);
+    // Exactly the name: in an abstract name trailing zeros would count.
     bytes_ = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + whole.size());
   }
   bool fits() const { return fits_; }
@@ -76,6 +78,7 @@ Error taken(const std::string& name, const Address& address) {
 }  // namespace
 
 std::optional<Error> lock_device(const std::string& name) {
+  // By name, and for the whole process: one that opens a device again has it already.
   static std::mutex mutex;
   static std::set<std::string> ours;
   const std::lock_guard<std::mutex> guard(mutex);

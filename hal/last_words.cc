@@ -12,6 +12,7 @@
 namespace tact::hal {
 namespace {
 
+// Chosen: two frames of USB, 2 ms for a full queue, a tick at 1 kHz between steps.
 constexpr unsigned kTransferWait_ms = 2;
 constexpr int kTries = 10;
 constexpr long kBetweenTries_ns = 200'000, kBetweenSteps_ns = 1'000'000;
@@ -22,6 +23,7 @@ void wait_ns(long pause_ns) {
 }
 
 int send_datagrams(int fd, std::span<const LastWords::Bytes> words) {
+  // Copies on the stack: an iovec takes no const, and the guardian uses no heap.
   std::array<LastWords::Bytes, LastWords::kMax> bytes{};
   std::array<iovec, LastWords::kMax> place{};
   std::array<mmsghdr, LastWords::kMax> message{};
@@ -34,6 +36,7 @@ int send_datagrams(int fd, std::span<const LastWords::Bytes> words) {
   const auto wanted = static_cast<unsigned>(words.size());
   const int sent = sendmmsg(fd, message.data(), wanted, MSG_DONTWAIT | MSG_NOSIGNAL);
   if (sent == static_cast<int>(wanted)) return 0;
+  // Some went and some did not: the queue is full, and the step is said again as a whole.
   return sent < 0 ? errno : ENOBUFS;
 }
 
@@ -47,6 +50,7 @@ int send_bulk(int fd, std::uint8_t endpoint, std::span<const LastWords::Bytes> w
     if (ioctl(fd, USBDEVFS_BULK, &transfer) >= 0) continue;
     const int error = errno;
     unsigned halted = endpoint;
+    // A stalled endpoint would refuse the zeros for ever; the next try then gets through.
     if (error == EPIPE) ioctl(fd, USBDEVFS_CLEAR_HALT, &halted);
     return error;
   }
@@ -86,6 +90,7 @@ int say_all(const LastWords& words) {
       wait_ns(kBetweenTries_ns);
       error = say_step(words, step);
     }
+    // The steps after it are said all the same: power off may get through where zero did not.
     if (first_error == 0) first_error = error;
   }
   return first_error;

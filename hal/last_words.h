@@ -8,7 +8,7 @@
 // packet of a Falcon are.
 //
 //     kDatagrams   one message each, all of a step by one sendmmsg
-//     kUsbBulk     one transfer each on `endpoint` (USBDEVFS_BULK), a stall is cleared first
+//     kUsbBulk     one transfer each on `endpoint` (USBDEVFS_BULK); after a stall again
 #pragma once
 
 #include <array>
@@ -38,7 +38,8 @@ struct LastWords {
 /// nor lock.
 int say_step(const LastWords& words, std::uint32_t step);
 /// All of them: zero force at once, the last after `steps` ms and what a full queue takes, 2 ms a
-/// step. 0, or the errno of the first step that a device did not take.
+/// step (22 ms where a USB device does not answer). 0, or the errno of the first step that a device
+/// did not take.
 int say_all(const LastWords& words);
 
 }  // namespace tact::hal

@@ -20,7 +20,8 @@ using model::Result;
 
 // Chosen: for a fault reaction to end, between two looks at a resting arm, for 50 heartbeats.
 constexpr int kSettle_ms = 1000, kRest_ms = 100, kOperational_ms = 500;
-constexpr double kRest_turns = 0.02;  // of a motor between two looks; a falling arm of DK-8: 0.3
+// Turns of a motor between two looks at resting arms; a free arm of DK-8 falls by 0.3.
+constexpr double kRest_turns = 0.02;
 // The profile is the lower half of object 1000. Bit 9 of 6502: cyclic synchronous torque.
 constexpr std::uint32_t kProfile402 = 402, kTorqueMode = 1u << 9;
 constexpr SdoEntry kDeviceType{0x1000, 0, 4};
@@ -41,7 +42,7 @@ class BringUp {
         if (auto error = (this->*step)(i)) return *error;
       if (auto error = learn(i, start)) return *error;
     }
-    // After all three: the arms have had the time of two drives to come to rest.
+    // After all are calm: arms that have just lost their power may still be falling.
     if (auto error = rest(start)) return *error;
     // Last: PDOs flow in operational alone, so no drive takes a torque before all are set up.
     if (auto error = start_all()) return *error;
@@ -96,8 +97,7 @@ class BringUp {
                                "and is its profile 402 switched on?",
                                type));
     }
-    // Not every drive has 6502 (CN-5): one that is silent about its modes shows in 6061 what it can
-    // do.
+    // Not every drive has 6502 (CN-5); DriveSettings looks at 6061 besides.
     SdoFailure none;  // an optional setting
     const auto modes = sdo_.read(can_.node[i], {0x6502, 0, 4}, none);
     if (modes && (*modes & kTorqueMode) == 0) {
@@ -126,13 +126,13 @@ class BringUp {
     while (true) {
       if (auto error = get(i, {0x6041, 0, 2}, status)) return error;
       const Cia402State state = cia402_state(static_cast<std::uint16_t>(status));
-      // In both the power stage is off.
+      // In both the motor has no power.
       if (state == Cia402State::kSwitchOnDisabled || state == Cia402State::kReady)
         return std::nullopt;
       if (state == Cia402State::kFault && !reset) {
         reset = true;  // once: a fault that comes back is present, and is told
         if (auto error = command(kControlFaultReset)) return error;
-        // Bit 7 acts as it rises (CN-2): it goes down again, for whoever needs it next.
+        // Bit 7 acts as it rises (CN-2), so it goes down again.
         if (auto error = command(kControlDisableVoltage)) return error;
       }
       if (bus_.socket().now_ns() > end_ns) return not_calm(i, state);
@@ -151,8 +151,8 @@ class BringUp {
                                 cia402_state_name(state)));
   }
 
-  /// The torque that 6071 calls 1000, and the position. What the user states goes before 6076, which
-  /// some drives lack and others fill with a default.
+  /// The torque that 6071 calls 1000, and the position. What the user states goes before 6076,
+  /// which some drives lack and others fill with a default.
   std::optional<Error> learn(std::size_t i, Cia402Start& start) {
     start.rated_torque_Nm[i] = can_.rated_torque_Nm;
     if (start.rated_torque_Nm[i] > 0.0) return position(i, start.motor_turns[i]);

@@ -54,7 +54,7 @@ std::optional<std::string> DriveSettings::check_mode(int node) {
     mode = *shown;
     sdo_.wait(kModeLook_ms);
   }
-  // 0 is "no mode yet": CiA 402 lets a drive show it until it is enabled.
+  // 0 is "no mode yet": only another mode is a refusal.
   if (mode == 0) return std::nullopt;
   return fmt::format(
       "stays in mode {} of operation (object 6061) and does not take cyclic synchronous torque, "

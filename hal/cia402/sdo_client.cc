@@ -8,7 +8,7 @@
 namespace tact::hal::cia402 {
 namespace {
 
-// CiA 301 leaves this time to the host; a silent drive costs it once.
+// Chosen: CiA 301 leaves this time to the host.
 constexpr int kReply_ms = 300;
 constexpr std::int64_t kMs_ns = 1'000'000;
 

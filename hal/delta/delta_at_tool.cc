@@ -28,7 +28,7 @@ model::DeviceAtTool delta_at_tool(const DeltaKinematics& delta, const DeltaJoint
   double s = 0.0;
   for (const Vec3& p_m : positions_m) {
     const DeltaInverse solved = delta.inverse(p_m);
-    // None reachable leaves the damping at 0, and tactd refuses the device.
+    // None reachable leaves no damping: the safe side.
     if (!solved.reachable) continue;
     s = std::max(s, workspace_indices(delta, p_m, solved.theta_rad).sigma_m_per_rad[0]);
   }

@@ -164,7 +164,7 @@ DeltaIndices workspace_indices(const DeltaKinematics& delta, const Vec3& positio
                                       std::abs(pose.lever_m2[i]) / (g.upper_arm_m * g.forearm_m));
     // y_i: platform point across the plane of arm i; normal of that plane: radial x tangent / la
     const Vec3 across = cross(pose.radial[i], pose.tangent_m[i]) / g.upper_arm_m;
-    // The elbow lies in that plane and the axis too, so the point's distance is the rod's.
+    // Elbow and joint of the platform differ within that plane: what is across is the rod's.
     const double side = std::abs(dot(across, position_m)) / g.forearm_m;
     out.largest_side_rad = std::max(out.largest_side_rad, std::asin(std::min(side, 1.0)));
     const bool inside = theta_rad[i] >= g.theta_min_rad && theta_rad[i] <= g.theta_max_rad;

@@ -14,6 +14,7 @@ namespace {
 /// K^-1 at the middle, the rims and between of the workspace cylinder.
 template <typename Visit>
 void visit_workspace(const FalconKinematics& falcon, Visit visit) {
+  // 15 degrees: the azimuths of the legs, 105, -15 and -135 degrees (FK), are among them.
   constexpr int kAlong = 2, kOut = 2, kAround = 24;
   for (int i = -kAlong; i <= kAlong; ++i) {
     for (int j = 0; j <= kOut; ++j) {
@@ -37,6 +38,7 @@ model::DeviceAtTool falcon_at_tool(const FalconKinematics& falcon,
   visit_workspace(falcon, [&](const model::Mat3& jacobian) {
     s = std::max(s, model::singular_values(jacobian)[0]);
   });
+  // The angle is linear in the counts: any step tells it.
   const double rad_per_count = falcon_thigh_rad(1.0) - falcon_thigh_rad(0.0);
   return {.damping_Ns_per_m = s > 0.0 ? settings.joint_damping_Nms_per_rad / (s * s) : 0.0,
           .friction_N = s > 0.0 ? settings.joint_friction_Nm / s : 0.0,
@@ -54,6 +56,7 @@ double falcon_max_force_N(const FalconKinematics& falcon, const model::FalconSet
   visit_workspace(falcon, [&](const model::Mat3& jacobian) {
     const model::Mat3 torque_of_force = model::transpose(jacobian);  // tau = J^T F
     for (std::size_t i = 0; i < 3; ++i)
+      // A force of any direction takes at most |row i| times itself from axis i.
       force_N = std::min(force_N, torque_Nm[i] / norm(torque_of_force.row[i]));
   });
   return force_N;

@@ -9,6 +9,7 @@ double FalconBalanceRamp::step(double height_m, double speed_mps, const std::arr
                                double elapsed_s) RT_SAFE {
   if (ended()) return 0.0;
   elapsed_s_ += elapsed_s;
+  // From the lowest place: the grip may sag before it lifts.
   lowest_m_ = started_ ? std::min(lowest_m_, height_m) : height_m;
   started_ = true;
   // Not a number falls to the safe side.
@@ -20,6 +21,7 @@ double FalconBalanceRamp::step(double height_m, double speed_mps, const std::arr
     if (!(force_N_ <= settings_.largest_N)) return end(State::kTooHeavy), 0.0;
     if (height_m - lowest_m_ >= settings_.move_m) {
       state_ = State::kLowering;
+      // Weight plus friction; when it sinks, weight less friction.
       lifted_ = words;
       highest_m_ = height_m;
     }

@@ -31,6 +31,7 @@ FalconBootAction FalconBoot::next(const FalconBootInput& input) noexcept {
   } else if (last_ == What::kRead) {
     action = heard(input);
   } else if (last_ == What::kWrite) {
+    // The time to answer begins when the write is through, not when it was asked for.
     deadline_ms_ = input.now_ms + wait_ms_;
     action = read(input.now_ms);
   } else if (request_ < requests().size()) {
@@ -53,6 +54,7 @@ FalconBootAction FalconBoot::enter(Stage stage, std::int64_t now_ms) noexcept {
 
 /// The requests of this stage are through: its first word, or its next.
 FalconBootAction FalconBoot::exchange(std::int64_t now_ms) noexcept {
+  // Bytes of an earlier try count for no later one.
   matched_ = 0;
   spoiled_ = null_seen_ = false;
   ++tries_;
@@ -82,6 +84,7 @@ FalconBootAction FalconBoot::write(std::span<const std::uint8_t> bytes, int wait
 
 FalconBootAction FalconBoot::read(std::int64_t now_ms) noexcept {
   const std::int64_t left_ms = deadline_ms_ - now_ms;
+  // At least 1 ms: libusb takes 0 for "without end".
   return {.what = What::kRead, .wait_ms = static_cast<int>(std::max<std::int64_t>(left_ms, 1))};
 }
 
@@ -126,6 +129,7 @@ FalconBootAction FalconBoot::heard(const FalconBootInput& input) noexcept {
 FalconBootAction FalconBoot::heard_echo(const FalconBootInput& input) noexcept {
   const std::size_t chunk = std::min(kFalconChunk, image_.size() - echoed_);
   for (const std::uint8_t byte : input.bytes) {
+    // More than was sent is as wrong as something else: the image would go on shifted.
     if (chunk_echoed_ == chunk || byte != image_[echoed_ + chunk_echoed_])
       return restart(FalconBootFault::kEchoDiffers);
     ++chunk_echoed_;
@@ -143,11 +147,13 @@ FalconBootAction FalconBoot::timed_out(std::int64_t now_ms) noexcept {
   switch (stage_) {
     case Stage::kReport:
       if (tries_ < settings_.report_tries) return exchange(now_ms);
+      // The image went through and does not run: the reset by DTR has to come first again.
       if (uploaded_) return restart(FalconBootFault::kNoReport);
       if (!image_.empty()) return enter(Stage::kGreet, now_ms);
       return give_up(FalconBootFault::kNoImage);  // trying again would change nothing
     case Stage::kGreet:  // what came late or damaged must not meet the next answer
       if (tries_ < settings_.greeting_tries)
+        // No request of the stage is left after it, so next() greets again.
         return {.what = What::kControl, .request = kFtdiPurgeRx};
       return restart(FalconBootFault::kNoGreeting);
     case Stage::kSpeed:  // not every adapter brings CTS: go on and see
@@ -171,6 +177,7 @@ FalconBootAction FalconBoot::restart(FalconBootFault fault) noexcept {
   ++attempt_;
   stage_ = Stage::kOpen;
   request_ = 0;
+  // The reset throws away what was sent: the image begins with its first byte again.
   uploaded_ = false;
   echoed_ = chunk_echoed_ = 0;
   return {.what = What::kReopen};

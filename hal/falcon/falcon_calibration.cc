@@ -33,6 +33,7 @@ std::vector<delta::Joints> unit_torques_Nm(std::span<const FalconBalance> sample
   for (const FalconBalance& s : samples) {
     const FalconInverse legs = falcon.inverse(s.position_m);
     out.push_back(legs.reachable
+                      // Up is y of the device's frame (falcon_frame.h).
                       ? falcon_torques_Nm(falcon.joint_rate_matrix(legs), {0.0, kGravity_mps2, 0.0})
                       : delta::Joints{});
   }
@@ -47,16 +48,19 @@ Axis fit_axis(std::span<const FalconBalance> samples, std::span<const delta::Joi
   double tt = 0.0, ts = 0.0, ss = 0.0, ty = 0.0, sy = 0.0, yy = 0.0;
   for (std::size_t n = 0; n < samples.size(); ++n) {
     const double t = (samples[n].mass_kg + moving_kg) * unit_Nm[n][i];
+    // The dead band adds words in the direction of the torque.
     const double s = t > 0.0 ? 1.0 : t < 0.0 ? -1.0 : 0.0;
     const double y = -samples[n].words[i];
     tt += t * t, ts += t * s, ss += s * s, ty += t * y, sy += s * y, yy += y * y;
   }
   Axis axis;
+  // Normal equations of two unknowns, by Cramer.
   const double determinant = tt * ss - ts * ts;
   axis.known = determinant > kParallel * tt * ss;
   if (!axis.known) return axis;
   axis.gain = (ty * ss - sy * ts) / determinant;
   axis.dead = (sy * tt - ty * ts) / determinant;
+  // A motor has no dead band below zero: then the best at zero, which is a line through 0.
   if (sign == DeadBand::kNotNegative && axis.dead < 0.0) axis.gain = ty / tt, axis.dead = 0.0;
   axis.squares = yy - 2.0 * (axis.gain * ty + axis.dead * sy) + axis.gain * axis.gain * tt +
                  2.0 * axis.gain * axis.dead * ts + axis.dead * axis.dead * ss;
@@ -112,6 +116,7 @@ std::optional<Error> check_balances(std::span<const FalconBalance> samples) {
 
 std::optional<Error> check_axes(const std::array<Axis, 3>& axis) {
   for (std::size_t i = 0; i < 3; ++i)
+    // libnifalcon's 10 000 words per N m (FK-5), a hundred times less or more; a quarter of 4095.
     if (!(axis[i].gain >= 100.0 && axis[i].gain <= 1e6 && axis[i].dead <= 1000.0))
       return Error{
           fmt::format("axis {} comes out at {:.0f} words per N m with a dead band of {:.0f} words: "
@@ -138,6 +143,8 @@ Result<FalconCalibration> fit_falcon(std::span<const FalconBalance> samples) {
     if (!fit_all(samples, unit_Nm, kg + 0.5 * kStep_kg).known)
       return Error{"the loads of an axis are all alike: hang more different masses"};
     if (squares(kg) < squares(best_kg)) best_kg = kg;
+    // Squares that stay flat over the mass, with any dead band, mean that each mass has one that
+    // fits.
     const double free = fit_all(samples, unit_Nm, kg, DeadBand::kAny).squares;
     least = std::min(least, free);
     most = std::max(most, free);
@@ -156,7 +163,8 @@ Result<FalconCalibration> fit_falcon(std::span<const FalconBalance> samples) {
       .dead_band_words = {axis[0].dead, axis[1].dead, axis[2].dead},
       .moving_mass_kg = moving_kg,
       .residual_words =
-          std::sqrt(std::max(fit.squares, 0.0) / (3.0 * static_cast<double>(samples.size())))};
+          // Rounding can leave a perfect fit a little below zero.
+      std::sqrt(std::max(fit.squares, 0.0) / (3.0 * static_cast<double>(samples.size())))};
 }
 
 std::string scene_lines(const FalconCalibration& c) {

@@ -16,13 +16,14 @@ using What = FalconTrouble::What;
 constexpr double kGravity_mps2 = 9.81;
 constexpr double kJump_m = 5e-3;              // between two samples: a new start
 constexpr double kDeadBandRamp_words = 20.0;  // a force near zero does not chatter
+// Silent means both: in a loop above 1 kHz an answer takes several ticks.
 constexpr int kSilentTicks = 3;
 constexpr std::int64_t kSilent_ns = 2'500'000;    // 3 ticks of 1 ms, with their jitter
 constexpr std::int64_t kGarbled_ns = 17'000'000;  // named before the gate gives up at 20 ticks
 constexpr std::int64_t kMute_ns = 500'000'000;    // whether anyone is armed or not
 constexpr int kMuteTicks = 20;
 constexpr double kMaxCounts_per_s = 250e3;  // 6 m/s where the counts are finest
-constexpr double kMaxCountsAtOnce = 250.0;
+constexpr double kMaxCountsAtOnce = 250.0;  // 1 ms of it: a stamp may be a USB frame off
 constexpr FalconCommand kLastCommand{.lights = kFalconRed};
 constexpr const char* kUnguarded =
     "if tactd is killed, nothing zeroes the Falcon, because libusb's descriptor is not found: use "
@@ -82,6 +83,7 @@ bool FalconDevice::take(const FalconReply& reply, std::int64_t now_ns) RT_SAFE {
   if (answers == 0) return false;
   const bool homed = follow_homing(reply.report);
   if (fault_ != Fault::kNone) return false;
+  // Before homing the counts mean nothing; afterwards a report must be one that a hand can make.
   if (homed && !locate(reply)) {
     ++misfits_;
     return false;
@@ -99,6 +101,7 @@ bool FalconDevice::follow_homing(const FalconReport& report) RT_SAFE {
     latch(Fault::kHomingLost, {.what = What::kHomingLost, .homed = report.homed});
   if (homed_ || fault_ != Fault::kNone) return homed;
   const FalconTrouble state{.what = homed ? What::kNone : What::kNotHomed, .homed = report.homed};
+  // Relaxed: one word that says all; nothing else is published by it. The same in latch().
   trouble_.store(state.packed(), std::memory_order_relaxed);
   if (!homed) return false;
   homed_ = true;  // the counts jump with it; nothing was believed before
@@ -117,6 +120,7 @@ bool FalconDevice::locate(const FalconReply& reply) RT_SAFE {
       return false;
   }
   FalconForward forward = kinematics_.forward(thigh_rad, position_m_);
+  // After a gap the last place may be too far for Newton; home is not (falcon_kinematics.h).
   if (!forward.solved) forward = kinematics_.forward(thigh_rad, kFalconHome_m);
   if (!forward.solved) return false;
   position_m_ = forward.position_m;
@@ -132,6 +136,7 @@ void FalconDevice::judge_silence(std::int64_t now_ns) RT_SAFE {
   if (fault_ != Fault::kNone || misses_ < kSilentTicks) return;
   const FalconPipeHealth health = pipe_->health();
   const std::int64_t silence_ns = now_ns - heard_ns_;
+  // Who sends rubbish is named as garbled, before the longer silence would name it mute.
   const bool babbles = misfits_ > 0 || health.dropped_bytes != dropped_before_;
   if (babbles && silence_ns >= kGarbled_ns)
     latch(Fault::kDeviceGarbled, {.what = What::kGarbled, .line_errors = health.line_errors});
@@ -190,11 +195,13 @@ FalconWords FalconDevice::words_for(const Vec3& force_W_N) const RT_SAFE {
   const delta::Joints wanted_Nm = falcon_torques_Nm(rates_, falcon_direction_D(force_W_N));
   delta::Joints held{}, wanted{};  // 1 is all that an axis can do
   for (std::size_t i = 0; i < 3; ++i) {
+    // The dead band takes its words first: only the rest makes torque.
     const double most_words = kFalconMotorMax - component(settings_.dead_band_words, i);
     const double per_Nm = component(settings_.gain_words_per_Nm, i) / most_words;
     held[i] = per_Nm * held_Nm[i];
     wanted[i] = per_Nm * wanted_Nm[i];
   }
+  // In shares of each axis, as the axes have different limits in N m.
   const double ratio = delta::saturation_ratio(held, wanted, 1.0);
   std::array<double, 3> words{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -209,6 +216,7 @@ FalconWords FalconDevice::words_for(const Vec3& force_W_N) const RT_SAFE {
 FalconCommand FalconDevice::command(const FalconWords& words) const RT_SAFE {
   const bool ready = homed_ && fault_ == Fault::kNone;
   const std::uint8_t light = !ready ? kFalconRed : powered_ ? kFalconGreen : kFalconBlue;
+  // FP-4: sources disagree whether a Falcon forgets its home without the bit: a setting.
   return {.motor = words, .lights = light, .homing = !homed_ || settings_.keep_homing};
 }
 
@@ -230,6 +238,7 @@ void FalconDevice::stop() {
   if (stopped_) return;
   stopped_ = true;
   words_ = {};
+  // StopAndDelete and the destructor both call it: the pipe is told once.
   pipe_->stop(encode(kLastCommand));
 }
 

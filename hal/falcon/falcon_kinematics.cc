@@ -61,6 +61,7 @@ model::Mat3 FalconKinematics::joint_rate_matrix(const FalconInverse& legs) const
   for (std::size_t i = 0; i < 3; ++i) {
     // FK-2: K_i = [cos t2, cot t3, sin t2] / (a sin(t2 - t1)), turned back by phi
     const double t2 = legs.knee_rad[i], t3 = legs.side_rad[i];
+    // 0 where thigh and shin align: outside kFalconRadius_m only (falcon_frame.h).
     const double scale = geometry_.thigh_m * std::sin(t2 - legs.thigh_rad[i]);
     const double ku = std::cos(t2) / scale, kw = std::sin(t2) / scale;
     const double kv = std::cos(t3) / std::sin(t3) / scale;
@@ -78,7 +79,7 @@ FalconForward FalconKinematics::forward(const delta::Joints& thigh_rad,
   bool moved = legs.reachable;
   for (int step = 0; step < kNewtonSteps && moved && error_rad > kClose_rad; ++step) {
     moved = false;
-    // FK-3: p <- p + K^-1 (theta - theta(p)), half of it as often as that leaves the reach or gets worse
+    // FK-3: p <- p + K^-1 (theta - theta(p)), halved while that leaves the reach or gets worse
     model::Vec3 move_m = model::inverse(joint_rate_matrix(legs)) * difference_rad(thigh_rad, legs);
     for (int half = 0; half <= kHalvings && !moved; ++half, move_m *= 0.5) {
       const FalconInverse next = inverse(p_m + move_m);
@@ -90,6 +91,7 @@ FalconForward FalconKinematics::forward(const delta::Joints& thigh_rad,
       moved = true;
     }
   }
+  // 1e-9 rad is 1e-10 m, far below a count; a Newton that has stalled is farther away.
   const bool solved = legs.reachable && error_rad < 1e-9;
   return {.solved = solved, .position_m = solved ? p_m : start_m};
 }

@@ -15,6 +15,7 @@ FalconPacket packet(const FalconWords& words, unsigned info) RT_SAFE {
   out[0] = kFalconStart;
   std::size_t place = 1;
   for (const int word : words) {
+    // Two's complement: the lower four nibbles of a negative word are its 16 bits.
     unsigned rest = static_cast<unsigned>(word);
     for (int i = 0; i < kNibblesPerWord; ++i, rest >>= 4)
       out[place++] = static_cast<std::uint8_t>(kFalconZero + (rest & 0xFu));
@@ -39,6 +40,7 @@ FalconWords words_of(std::span<const std::uint8_t> bytes) RT_SAFE {
     unsigned bits = 0;
     for (int i = 0; i < kNibblesPerWord; ++i)
       bits |= static_cast<unsigned>(bytes[place++] - kFalconZero) << (4 * i);
+    // Back from 16 bits with the sign.
     word = static_cast<std::int16_t>(bits);
   }
   return out;
@@ -50,6 +52,7 @@ bool falcon_report_may_have(std::uint8_t byte, std::size_t place) RT_SAFE {
   if (place == 0) return byte == kFalconStart;
   if (place < kInfoPlace) return byte >= kFalconZero && byte <= kFalconZero + 0xF;
   if (place == kInfoPlace) return byte >= kFalconZero && byte <= kFalconZero + 0x7F;
+  // Its meaning is unknown: anything but the two marks, so that finding the start stays exact.
   if (place == kExtraPlace) return byte != kFalconStart && byte != kFalconEnd;
   return place == kEndPlace && byte == kFalconEnd;
 }
@@ -61,6 +64,7 @@ FalconWords falcon_motor_words(const std::array<double, 3>& wanted) RT_SAFE {
     largest = std::max(largest, std::abs(word));
   }
   const double range = kFalconMotorMax;
+  // One factor for all three: cut words alone would turn the force.
   const double scale = largest > range ? range / largest : 1.0;
   FalconWords out{};
   for (std::size_t i = 0; i < 3; ++i) out[i] = static_cast<int>(std::lround(wanted[i] * scale));
@@ -83,6 +87,7 @@ FalconPacket encode(const FalconReport& report) RT_SAFE {
 std::optional<FalconCommand> decode_falcon_command(std::span<const std::uint8_t> bytes) RT_SAFE {
   if (!is_packet(bytes)) return std::nullopt;
   const unsigned info = bytes[kInfoPlace] - unsigned{kFalconZero};
+  // A command uses the lower four bits; the rest of 0x7F belongs to reports.
   if (info > 0xFu) return std::nullopt;
   const FalconWords words = words_of(bytes);
   for (const int word : words)

@@ -11,6 +11,7 @@
 namespace tact::hal::falcon {
 namespace {
 
+// As seen from the front (FP-3).
 constexpr std::array kAxis{"1 (top)", "2 (right)", "3 (left)"};
 
 std::string missing_axes(std::uint8_t homed) {

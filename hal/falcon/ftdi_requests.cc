@@ -9,6 +9,7 @@ namespace tact::hal::falcon {
 std::optional<double> ftdi_baud_Hz(std::uint16_t code) RT_SAFE {
   constexpr double kClock_Hz = 3e6;
   constexpr std::array<double, 4> kFraction{0.0, 0.5, 0.25, 0.125};
+  // AN232B-05: 0 and 1 are codes of their own, not divisors.
   if (code == 0) return kClock_Hz;
   if (code == 1) return kClock_Hz / 1.5;
   const unsigned whole = code & 0x3FFFu;
@@ -29,8 +30,10 @@ std::optional<FtdiRead> ftdi_strip(std::span<const std::uint8_t> transfer,
     out.modem = packet[0];
     out.line = packet[1];
     errors |= packet[1] & unsigned{kFtdiLineErrors};
+    // Forward, and never past what is read: `data` may begin where the transfer does.
     for (const std::uint8_t byte : packet.subspan(kFtdiStatusSize)) data[out.size++] = byte;
   }
+  // An error of an earlier packet is told, although the last one no longer shows it.
   out.line = static_cast<std::uint8_t>(out.line | errors);
   return out;
 }

@@ -30,9 +30,11 @@ FalconImageVerdict check_falcon_image(std::span<const std::uint8_t> image,
   if (image.empty() || image.size() > kFalconImageMax_bytes) return FalconImageVerdict::kWrongSize;
   const std::string digest =
       model::io::sha256_of({reinterpret_cast<const char*>(image.data()), image.size()});
+  // A digest that the person names vouches for any size.
   if (is_named)
     return digest == in_lower_case(wanted_sha256) ? FalconImageVerdict::kAsNamed
                                                   : FalconImageVerdict::kOtherDigest;
+  // Two known images share a size: all are looked at before "unknown" is said.
   FalconImageVerdict verdict = FalconImageVerdict::kWrongSize;
   for (const FalconKnownImage& known : kFalconKnownImages) {
     if (image.size() != known.size_bytes) continue;

@@ -19,6 +19,7 @@ using model::Result;
 /// more, should anything have touched it in between.
 Result<std::unique_ptr<falcon::FalconPipe>> open_usbfs_pipe(std::unique_ptr<FalconUsb> usb,
                                                             bool event_character) {
+  // Asked before libusb closes: afterwards nobody tells it.
   const std::string path = usb->node();
   usb.reset();
   auto node = UsbfsNode::open(path, falcon::kFalconUsbInterface);
@@ -27,6 +28,7 @@ Result<std::unique_ptr<falcon::FalconPipe>> open_usbfs_pipe(std::unique_ptr<Falc
   for (const falcon::FtdiRequest& request : falcon::kFalconRunRequests)
     if (error == 0) error = (*node)->control(request);
   if (error == 0)
+    // Off is sent, too: the chip may still have it from a run before.
     error = (*node)->control(event_character ? falcon::ftdi_event_character(falcon::kFalconEnd)
                                              : falcon::ftdi_request(6, 0));
   if (error != 0)
@@ -40,6 +42,7 @@ Result<std::unique_ptr<falcon::FalconPipe>> open_usbfs_pipe(std::unique_ptr<Falc
 
 Result<std::unique_ptr<falcon::FalconDevice>> open_falcon_device(
     const model::FalconSettings& settings) {
+  // First: a wrong file is told before the device is touched.
   const auto image = load_falcon_image(settings.firmware_path, settings.firmware_sha256);
   if (!image) return image.error();
   auto usb = FalconUsb::open(settings.bus_path);

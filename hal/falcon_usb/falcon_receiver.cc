@@ -18,8 +18,10 @@ void FalconReceiver::take(std::span<const std::uint8_t> transfer, std::int64_t n
       const auto report = stream_.push(data[i]);
       if (report) newest = {.report = *report, .stamp_ns = now_ns, .sequence = stream_.reports()};
     }
+    // Only the newest of a transfer: the loop takes no older one.
     if (newest.sequence != 0) slot_.write(newest);
   }
+  // Relaxed: a counter, for the report and for "does it babble"; no other data hangs on it.
   dropped_bytes_.store(stream_.dropped_bytes() + bad_transfers_, std::memory_order_relaxed);
 }
 
@@ -27,7 +29,9 @@ void FalconReceiver::finish(falcon::FalconPipeEnd end, int error) RT_SAFE {
   std::uint32_t open = 0;
   const std::uint32_t code =
       static_cast<std::uint32_t>(end) | static_cast<std::uint32_t>(error & 0xFFFF) << 8;
+  // Before end_, and whatever ended first: gone also stops commands, which other ends do not.
   if (end == falcon::FalconPipeEnd::kUnplugged) gone_.store(true, std::memory_order_release);
+  // One word for end and errno: a reader never meets one without the other. The first is the cause.
   end_.compare_exchange_strong(open, code, std::memory_order_acq_rel);
 }
 

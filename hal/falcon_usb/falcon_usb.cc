@@ -15,8 +15,10 @@ namespace {
 using model::Error;
 using model::Result;
 
+// Chosen: far longer than a transfer of the set-up takes.
 constexpr unsigned kTransferWait_ms = 1000;
 
+/// As sysfs names it and device.falcon.bus_path takes it: bus, then port by port.
 std::string path_of(libusb_device* device) {
   std::array<std::uint8_t, 7> ports{};  // the deepest tree USB allows
   const int depth = libusb_get_port_numbers(device, ports.data(), static_cast<int>(ports.size()));
@@ -121,6 +123,7 @@ Result<std::unique_ptr<FalconUsb>> FalconUsb::open(const std::string& bus_path) 
   if (!device) return device.error();
   usb->bus_path_ = path_of(*device);
   usb->node_ = node_of(*device);
+  // Before it is opened: nothing of another tactd's device is touched.
   if (auto error = lock_device("the Falcon at USB " + usb->bus_path_)) return *error;
   if (const int error = libusb_open(*device, &usb->handle_); error != 0)
     return open_error(error, usb->node_);
@@ -147,6 +150,7 @@ FalconUsb::~FalconUsb() {
 
 int FalconUsb::descriptor() const {
   std::error_code none;
+  // libusb tells no descriptor; the guardian needs it to zero the motors (hal/last_words.h).
   for (const auto& file : std::filesystem::directory_iterator("/proc/self/fd", none))
     if (std::filesystem::read_symlink(file.path(), none) == node_)
       return std::stoi(file.path().filename());
@@ -159,6 +163,7 @@ bool FalconUsb::control(const falcon::FtdiRequest& request) {
 }
 
 bool FalconUsb::write(std::span<const std::uint8_t> bytes) {
+  // A copy, as libusb's buffer is not const.
   std::array<std::uint8_t, falcon::kFtdiPacketSize> out{};
   while (!bytes.empty()) {
     const std::size_t size = std::min(bytes.size(), out.size());
@@ -177,6 +182,7 @@ std::optional<std::span<const std::uint8_t>> FalconUsb::read(int wait_ms) {
   const int error = libusb_bulk_transfer(handle_, falcon::kFalconEndpointIn, buffer_.data(),
                                          static_cast<int>(buffer_.size()), &size,
                                          static_cast<unsigned>(std::max(wait_ms, 1)));
+  // A timeout is an answer: nothing has come. The boot sequence decides what that means.
   if (error != 0 && error != LIBUSB_ERROR_TIMEOUT) return std::nullopt;
   return std::span<const std::uint8_t>(buffer_.data(), static_cast<std::size_t>(size));
 }

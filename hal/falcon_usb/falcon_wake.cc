@@ -59,6 +59,7 @@ Result<std::vector<std::uint8_t>> load_falcon_image(const std::string& path,
   auto file = model::io::InputFile::open(
       path, "device.falcon.firmware names the file of your copy of the Falcon's firmware");
   if (!file) return file.error();
+  // One byte more than is allowed: a longer file is seen as too long, without being read.
   image.resize(kFalconImageMax_bytes + 1);
   const auto read = file->read(image.data(), image.size());
   if (!read) return read.error();
@@ -79,6 +80,7 @@ Result<falcon::FalconBoot> boot_falcon(std::unique_ptr<FalconUsb>& usb,
   while (true) {
     const falcon::FalconBootAction action = boot.next(input);
     if (action.what == What::kReady) break;
+    // Attempts bound the tries, this the time: opening and writing wait on their own.
     if (action.what == What::kGiveUp || input.now_ms > end_ms) {
       const auto fault = boot.fault() == falcon::FalconBootFault::kNone
                              ? falcon::FalconBootFault::kTransport
@@ -95,6 +97,7 @@ Result<falcon::FalconBoot> boot_falcon(std::unique_ptr<FalconUsb>& usb,
       input = carry_out(action, usb, data);
     }
   }
+  // After the upload: the image's bytes are no packets, and 3E may stand in them.
   const falcon::FtdiRequest at_end = event_character
                                          ? falcon::ftdi_event_character(falcon::kFalconEnd)
                                          : falcon::ftdi_request(6, 0);

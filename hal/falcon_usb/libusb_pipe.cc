@@ -13,7 +13,7 @@
 namespace tact::hal::falcon_usb {
 namespace {
 
-constexpr int kPollWait_ms = 100;
+constexpr int kPollWait_ms = 100;  // as LoopSilence: on a mute bus its end looks after the loop
 constexpr std::int64_t kLastCommand_ns = 50'000'000;
 constexpr int kDrainTurns = 400;  // of FalconTurns::kPause_ns: 0.2 s
 
@@ -68,8 +68,10 @@ std::optional<model::Error> LibusbPipe::prepare() {
     Transfer& t = *transfers_[i];
     t.pipe = this;
     t.is_in = i < kIn;
+    // All memory before the loop; what libusb allocates at each submit stays in the thread (UB-1).
     t.transfer = libusb_alloc_transfer(0);
     if (t.transfer == nullptr) return refuse("no memory");
+    // No timeout (the last 0): an IN transfer waits as long as the device is silent.
     libusb_fill_bulk_transfer(
         t.transfer, usb_->handle(),
         t.is_in ? falcon::kFalconEndpointIn : falcon::kFalconEndpointOut, t.buffer.data(),
@@ -96,6 +98,7 @@ LibusbPipe::~LibusbPipe() {
 
 bool LibusbPipe::submit(const falcon::FalconPacket& command) RT_SAFE {
   if (receiver_.gone()) return false;
+  // The slot first, then the wake: a thread that wakes finds the command.
   commands_.write({.packet = command, .number = ++submitted_});
   return wake(wake_fd_);
 }
@@ -116,6 +119,7 @@ void LibusbPipe::completed(Transfer& t) {
   t.busy = false;
   const int error = error_of(t.transfer->status);
   const int size = std::clamp(t.transfer->actual_length, 0, t.transfer->length);
+  // At once; other errors may be noise, and end the pipe only by number (FalconTurns).
   if (error == ENODEV || error == EPIPE) finish(error);
   if (error == 0) {
     if (t.is_in) receiver_.take({t.buffer.data(), static_cast<std::size_t>(size)}, monotonic_ns());
@@ -135,6 +139,7 @@ void LibusbPipe::submit_transfer(Transfer& t) {
   const int error = libusb_submit_transfer(t.transfer);
   t.busy = error == 0;
   if (error == LIBUSB_ERROR_NO_DEVICE) finish(ENODEV);
+  // A refused IN would never come back, and four of them are all that hear the device.
   if (error != 0 && t.is_in) finish(EIO);
   if (error != 0 && !t.is_in) over_.store(t.number, std::memory_order_release);
 }
@@ -202,6 +207,7 @@ void LibusbPipe::turn() {
   const bool ready =
       std::any_of(fds_.begin() + 1, fds_.end(), [](const pollfd& fd) { return fd.revents != 0; });
   timeval now{};
+  // Also when it is gone: the transfers that it still hands back carry the reason.
   if (ready) libusb_handle_events_timeout_completed(usb_->context(), &now, nullptr);
   if (gone) return finish(ENODEV);  // nothing comes after a hang-up
   if (out_halted_) clear_command_halt();
@@ -233,6 +239,7 @@ bool LibusbPipe::send_last(const falcon::FalconPacket& last) {
   };
   while (may_wait()) {
     if (!submit(last)) return false;
+    // Acquire with the release of over_: then sent_ of that command is known, too.
     while (over_.load(std::memory_order_acquire) < submitted_ && may_wait())
       usb_pause_ns(FalconTurns::kPause_ns / 2);
     if (sent_.load(std::memory_order_relaxed) == submitted_) return true;
@@ -243,6 +250,7 @@ bool LibusbPipe::send_last(const falcon::FalconPacket& last) {
 void LibusbPipe::stop(const falcon::FalconPacket& last) {
   if (stopping_.load(std::memory_order_acquire)) return;
   if (thread_.started()) static_cast<void>(send_last(last));
+  // After the last command: a thread that stops sends nothing more.
   stopping_.store(true, std::memory_order_release);
   if (wake_fd_ >= 0) wake(wake_fd_);
   thread_.join();

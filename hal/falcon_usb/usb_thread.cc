@@ -9,6 +9,7 @@
 namespace tact::hal::falcon_usb {
 namespace {
 
+// Small on purpose: MCL_FUTURE locks the whole of it in memory.
 constexpr std::size_t kStack_bytes = 131'072;
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 
@@ -34,6 +35,7 @@ void* UsbThread::enter(void* self) {
   auto& thread = *static_cast<UsbThread*>(self);
   pthread_setname_np(pthread_self(), "tact-usb");
   const sched_param fifo{.sched_priority = kUsbThreadPriority};
+  // Not checked: a refusal leaves normal priority, which still works, only later.
   pthread_setschedparam(pthread_self(), SCHED_FIFO, &fifo);
   thread.body_(thread.argument_);
   const sched_param other{};

@@ -13,6 +13,7 @@
 namespace tact::hal::falcon_usb {
 namespace {
 
+// 50 ms as falcon_pipe.h promises.
 constexpr std::int64_t kLastCommand_ns = 50'000'000;
 constexpr std::int64_t kStopPause_ns = 1'000'000;
 
@@ -48,6 +49,7 @@ UsbfsPipe::UsbfsPipe(std::unique_ptr<UsbfsPort> port) : port_(std::move(port)) {
     urbs_[i] = std::make_unique<usbdevfs_urb>();
     urbs_[i]->type = USBDEVFS_URB_TYPE_BULK;
     urbs_[i]->endpoint = is_in ? falcon::kFalconEndpointIn : falcon::kFalconEndpointOut;
+    // In the kernel's own pages where it maps them: then it copies nothing (UB-2).
     urbs_[i]->buffer = buffer.subspan(i * kFalconTransfer, kFalconTransfer).data();
     urbs_[i]->buffer_length = static_cast<int>(is_in ? kFalconTransfer : falcon::kFalconPacketSize);
   }
@@ -57,10 +59,13 @@ UsbfsPipe::~UsbfsPipe() { stop(encode(falcon::FalconCommand{.lights = falcon::kF
 
 bool UsbfsPipe::submit(const falcon::FalconPacket& command) RT_SAFE {
   if (receiver_.gone()) return false;
+  // Relaxed, and no increment: the loop alone writes it, the thread only looks for a change.
   commands_.store(commands_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   for (std::size_t i = kIn; i < kOwn; ++i) {
+    // Acquire with completed(): the thread is done with the buffer.
     if (busy_[i].load(std::memory_order_acquire)) continue;
     std::memcpy(urbs_[i]->buffer, command.data(), command.size());
+    // Before submit: the thread may reap it before submit has returned.
     busy_[i].store(true, std::memory_order_release);
     const int error = port_->submit(*urbs_[i]);
     if (error == 0) return true;
@@ -113,6 +118,7 @@ bool UsbfsPipe::completed(usbdevfs_urb& urb) {
   if (found == urbs_.end()) return false;
   const auto i = static_cast<std::size_t>(found - urbs_.begin());
   const bool is_in = i < kIn;
+  // What stop() has asked for comes back so; it is progress only then.
   const bool discarded = urb.status == -ENOENT || urb.status == -ECONNRESET;
   const int size = std::clamp(urb.actual_length, 0, urb.buffer_length);
   // An IN transfer without even its status is no result.
@@ -127,6 +133,7 @@ bool UsbfsPipe::completed(usbdevfs_urb& urb) {
                      now_ns);
     stand_in_for_loop(now_ns);
   }
+  // Commands are not sent again: the next tick has a newer one.
   const bool again = is_in && !stopping_.load(std::memory_order_acquire) && receiver_.open();
   const int error = again ? port_->submit(urb) : 0;
   if (error != 0) finish(error);
@@ -146,6 +153,7 @@ void UsbfsPipe::command_completed(int error) {
 
 void UsbfsPipe::stand_in_for_loop(std::int64_t now_ns) {
   if (!silence_.is_due(commands_.load(std::memory_order_relaxed), now_ns)) return;
+  // Zeros are under way already; they are sent again only after they came back.
   if (busy_[kOwn].load(std::memory_order_acquire)) return;
   receiver_.stand_in();
   const falcon::FalconPacket zero = LoopSilence::zero();

@@ -49,6 +49,7 @@ UsbfsNode::UsbfsNode(int fd, int interface, bool mapped) : fd_(fd), interface_(i
   mapped_ = memory != MAP_FAILED;
   if (!mapped_) own_ = std::make_unique<std::uint8_t[]>(kUsbfsBuffer_bytes);
   buffer_ = mapped_ ? static_cast<std::uint8_t*>(memory) : own_.get();
+  // Touches the page before the loop could fault on it.
   std::memset(buffer_, 0, kUsbfsBuffer_bytes);
 }
 
@@ -72,6 +73,7 @@ int UsbfsNode::submit(usbdevfs_urb& urb) RT_SAFE {
 
 int UsbfsNode::reap(usbdevfs_urb*& urb) {
   void* done = nullptr;
+  // The waiting one, not REAPURBNDELAY: this is the thread that has nothing else to do.
   if (ioctl(fd_, USBDEVFS_REAPURB, &done) != 0) return errno;
   urb = static_cast<usbdevfs_urb*>(done);
   return 0;

@@ -10,6 +10,7 @@ namespace {
 
 using model::Error;
 
+// Force, torque and radius: FD-1; the lengths and 1e-5 m are the data sheets'.
 constexpr ForceDimensionType omega(int code, const char* name, bool wrist) {
   return {code, name, 12.0, 0.0, 0.075, 0.055, 1e-5, wrist};
 }
@@ -20,6 +21,7 @@ constexpr ForceDimensionType lambda(int code, const char* name, double torque_Nm
   return {code, name, 12.0, torque_Nm, 0.1125, 0.085, 1e-5, wrist};
 }
 
+// Code, name, N, N m, radius m, half length m, resolution m, wrist.
 constexpr std::array kTypes{
     ForceDimensionType{63, "delta.3", 20.0, 0.0, 0.15, 0.13, 2e-5, false},
     omega(33, "omega.3", false),
@@ -70,6 +72,7 @@ constexpr std::array kRefused{
 model::Result<ForceDimensionType> force_dimension_type(int code) {
   for (const ForceDimensionType& type : kTypes)
     if (type.code == code) return type;
+  // A name beside the number: the person sees that the device was recognized, and why not taken.
   for (const Refused& refused : kRefused)
     if (refused.code == code)
       return Error{

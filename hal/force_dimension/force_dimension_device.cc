@@ -11,6 +11,7 @@
 namespace tact::hal::force_dimension {
 namespace {
 
+// Chosen: twenty cycles of the thread.
 constexpr std::int64_t kOldest_ns = 5'000'000;
 constexpr double kObserver_Hz = 40.0;
 constexpr double kJump_m = 0.02, kJump_rad = 0.5;  // between two samples: a new start
@@ -21,6 +22,7 @@ Vec3 rotation_vector_rad(const model::Quat& q) RT_SAFE {
   const double sign = q.w < 0.0 ? -1.0 : 1.0;
   const Vec3 v{sign * q.x, sign * q.y, sign * q.z};
   const double s = norm(v);
+  // Near zero the quotient loses its digits; there the vector part is half the angle.
   return s > 1e-12 ? v * (2.0 * std::atan2(s, sign * q.w) / s) : 2.0 * v;
 }
 
@@ -66,6 +68,8 @@ Fault ForceDimensionDevice::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
   if (const Fault fault = worker_->trouble().fault; fault != Fault::kNone) return fault;
   SdkPose pose;
   if (!worker_->poses().read(pose)) return Fault::kNone;
+  // The forces are still off, or show zero first: an armed loop would trust a force that is not
+  // there.
   if (permitted_ && !pose.follows_commands) return Fault::kNone;
   if (now_ns - pose.stamp_ns > kOldest_ns) return Fault::kNone;
   sample.tool.position_m = pose.position_m;
@@ -80,6 +84,7 @@ Fault ForceDimensionDevice::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
 void ForceDimensionDevice::observe(const SdkPose& pose, Tool& tool) RT_SAFE {
   const double elapsed_s = 1e-9 * static_cast<double>(pose.stamp_ns - before_.stamp_ns);
   const Vec3 turn_rad = rotation_vector_rad(pose.orientation * conjugate(before_.orientation));
+  // Turns add up: the observer needs a line, and a quaternion's coordinates are none.
   turned_rad_ = is_finite(turn_rad) ? turned_rad_ + turn_rad : Vec3{};
   tool.velocity_mps = linear_.step(pose.position_m, elapsed_s);
   tool.angular_velocity_radps = angular_.step(turned_rad_, elapsed_s);
@@ -98,6 +103,7 @@ std::string ForceDimensionDevice::trouble() const {
 }
 
 void ForceDimensionDevice::stop() {
+  // Once: the library's device is closed by it.
   if (!stopped_) worker_->stop();
   stopped_ = true;
 }

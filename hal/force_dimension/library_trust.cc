@@ -21,6 +21,7 @@ constexpr const char* kCure =
     "let root install it (sudo install -D -o root -m 644 libdhd.so.3 /opt/fd/libdhd.so.3) and "
     "device.force_dimension.library name that, or say --trust-library if you know the file";
 
+// By parts of the path, not by letters: /optional is not below /opt.
 bool lies_below(const path& file, const path& folder) {
   const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
   return end == folder.end() && rest != file.end();
@@ -64,6 +65,7 @@ LibraryFolders system_folders() {
 Result<std::string> find_library(const std::string& name, const LibraryFolders& folders) {
   std::error_code failed;
   if (name.find('/') != std::string::npos) {
+    // Links followed first: what is judged is what will be loaded.
     const path file = std::filesystem::canonical(name, failed);
     if (failed) return Error{fmt::format("{}: {}", name, failed.message())};
     return file.string();
@@ -78,6 +80,7 @@ std::optional<Error> distrust_library(const std::string& file, const LibraryFold
   const bool allowed = std::ranges::any_of(
       folders.allowed, [&](const std::string& folder) { return lies_below(file, folder); });
   if (!allowed) return refused(file, "as it lies below no system folder, nor /opt");
+  // Every folder up to the top: whoever may write one of them can put another file in its place.
   for (path part = file; part == folders.top || lies_below(part, folders.top);
        part = part.parent_path()) {
     if (const auto why = fault_of(part, part == file, folders)) return refused(file, *why);

@@ -34,6 +34,7 @@ model::Result<SdkFunctions> load_sdk(const std::string& name, bool trusted) {
   if (!file) return not_loaded(file.error().sentence);
   if (!trusted)
     if (const auto refused = distrust_library(*file)) return *refused;
+  // NOW: no symbol is looked up in the loop. LOCAL: its names do not reach our other libraries.
   void* library = dlopen(file->c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
     const char* why = dlerror();
@@ -65,6 +66,7 @@ model::Result<SdkFunctions> load_sdk(const std::string& name, bool trusted) {
         "device.force_dimension.library name libdhd.so.3 of a current SDK",
         name, missing)};
   }
+  // Not needed for a force: an old library may lack them.
   find(library, "dhdSetEffectorMass", sdk.set_effector_mass);
   find(library, "dhdGetSerialNumber", sdk.serial_number);
   return sdk;

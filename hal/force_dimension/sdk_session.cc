@@ -18,6 +18,7 @@ using model::Error;
 using model::ForceDimensionSettings;
 using model::Result;
 
+// Some hundred, so that the library touches all memory that a cycle needs; 0.1 s at its 4 kHz.
 constexpr int kWarmUpCycles = 400;
 constexpr double kWatchdogUnit_s = 125e-6;
 
@@ -27,6 +28,7 @@ Error failed(const SdkFunctions& sdk, const char* what) {
 }
 
 Result<char> open_device(const SdkFunctions& sdk, int wanted) {
+  // Missing rights look like no device, so the sentence names the rule, too.
   const int count = sdk.device_count();
   if (count <= 0)
     return Error{fmt::format(
@@ -56,9 +58,11 @@ std::optional<Error> find_shortfall(const SdkSession& s) {
     return Error{
         fmt::format("the {} reports an error of its own; switch it off and on, then calibrate it",
                     s.type.name)};
+  // A wrist that is there and does not know its angles.
   const bool wrist_lost =
       s.type.wrist && status[kSdkWristDetected] != 0 && status[kSdkWristInit] == 0;
   if (status[kSdkReset] != 0 || wrist_lost) {
+    // A delta.3 is swept by hand; the others move by themselves, so the person starts that.
     const bool by_hand = s.type.code == 63;
     return Error{fmt::format(
         "the {} is not calibrated; {}, then start tactd again", s.type.name,
@@ -71,9 +75,12 @@ std::optional<Error> find_shortfall(const SdkSession& s) {
 
 std::optional<Error> configure(const SdkSession& s, const ForceDimensionSettings& settings) {
   const auto watchdog = static_cast<unsigned char>(
+      // In units of 125 us, one byte (FD-3); 0 would switch it off.
       std::clamp(std::round(settings.watchdog_s / kWatchdogUnit_s), 1.0, 255.0));
+  // Forces off first: another program may have left them on.
   if (s.sdk.enable_force(0, s.id) < 0) return failed(s.sdk, "keep its forces off");
   if (s.sdk.enable_expert_mode() < 0) return failed(s.sdk, "enter expert mode");
+  // Off: with it a call that comes too early waits, or gives no new pose.
   if (s.sdk.set_time_guard(0, s.id) < 0) return failed(s.sdk, "switch its time guard off");
   if (s.sdk.set_watchdog(watchdog, s.id) < 0) return failed(s.sdk, "start its watchdog");
   if (settings.effector_mass_kg > 0.0) {
@@ -113,6 +120,7 @@ Result<SdkSession> open_sdk_session(const ForceDimensionSettings& settings) {
   if (!id) return id.error();
   SdkSession session{.sdk = *sdk, .id = *id, .type = {}};
   unsigned short number = 0;
+  // By serial number where it is known: two programs may count devices differently.
   if (sdk->serial_number != nullptr && sdk->serial_number(&number, *id) >= 0)
     session.serial_number = number;
   if (auto error = lock_device(name_of_lock(session))) {
@@ -136,6 +144,7 @@ Result<SdkSession> open_sdk_session(const ForceDimensionSettings& settings) {
   return session;
 }
 
+/// No answer is looked at: each step is tried, whatever became of the one before.
 void close_sdk_session(const SdkSession& s) {
   s.sdk.set_force(0, 0, 0, 0, 0, 0, 0, s.id);
   s.sdk.enable_force(0, s.id);

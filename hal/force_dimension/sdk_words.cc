@@ -6,6 +6,7 @@
 namespace tact::hal::force_dimension {
 namespace {
 
+// The place is the code of dhdErrorGetLast; in kForceOff it is that of status word 14.
 constexpr std::array kErrors{
     "no error is given; start tactd again",
     "an error without a name; switch the device off and on",
@@ -43,6 +44,7 @@ constexpr std::array kForceOff{
     "the dead-man switch of the device is open; hold it and start tactd again",
 };
 
+/// A code that a newer library adds gets the first words.
 template <std::size_t n>
 const char* pick(const std::array<const char*, n>& table, int i) {
   return table[i >= 0 && i < static_cast<int>(n) ? static_cast<std::size_t>(i) : 0];

@@ -24,10 +24,13 @@ using model::Quat;
 using model::Vec3;
 using model::Wrench;
 
+// 4 kHz, the rate that the maker claims: the pose is young, and the watchdog fed, whatever the
+// loop's rate.
 constexpr std::int64_t kLongestCycle_ns = 250'000;
 constexpr std::int64_t kMinPause_ns = 50'000;  // a slow library must not starve the PC
+// As for a Falcon (loop_silence.h).
 constexpr std::int64_t kLoopGone_ns = 100'000'000;
-constexpr int kPriority = 78;
+constexpr int kPriority = 78;  // below the loop's 80: a black box must not delay it
 constexpr std::int64_t kZeroFirst_ns = 2'000'000;         // of zero force after the forces went on
 constexpr std::int64_t kPoweredForSure_ns = 100'000'000;  // before "forces off" is news
 constexpr int kTimeGuard = 1;                             // pose: nothing new
@@ -45,6 +48,7 @@ bool is_rotation(const double r[3][3]) {
       z{r[2][0], r[2][1], r[2][2]};
   const double off[] = {dot(x, x) - 1.0, dot(y, y) - 1.0, dot(z, z) - 1.0,
                         dot(x, y),       dot(y, z),       dot(z, x)};
+  // So written, a NaN is no rotation. The determinant is -1 for a mirror.
   return dot(cross(x, y), z) > 0.0 && std::all_of(std::begin(off), std::end(off), [](double one) {
            return std::abs(one) <= kNoRotation;
          });
@@ -110,6 +114,7 @@ std::int64_t sdk_cycle_ns(double rate_Hz) {
 std::shared_ptr<SdkWorker> SdkWorker::start(const SdkSession& session, double rate_Hz,
                                             std::int64_t command_life_ns) {
   std::shared_ptr<SdkWorker> worker(new SdkWorker(session, sdk_cycle_ns(rate_Hz), command_life_ns));
+  // Before the threads: stop() must not see zero while they begin.
   worker->running_ = 2;
   // Each thread keeps the worker alive: one that hangs in the library outlives its device.
   std::thread([worker] {
@@ -145,6 +150,7 @@ bool SdkWorker::cycle() {
   if (trouble_.load(std::memory_order_acquire) != 0) return false;
   const std::int64_t now_ns = monotonic_ns();
   if (!read_pose(now_ns)) return false;
+  // Nothing new keeps the last one; its age then tells that the loop is late.
   commands_.read(command_);
   const std::int64_t age_ns = now_ns - command_.stamp_ns;
   if (!follow_power(command_.powered && age_ns <= kLoopGone_ns)) return false;
@@ -158,6 +164,7 @@ bool SdkWorker::read_pose(std::int64_t now_ns) {
   Vec3& p_m = pose.position_m;
   const int answer = session_.sdk.pose(&p_m.x, &p_m.y, &p_m.z, rotation, session_.id);
   if (answer < 0) return fail(SdkTroubleSource::kPose);
+  // No sample: the loop counts the gap by the stamp of the last one.
   if (answer == kTimeGuard) return true;
   pose.orientation = session_.type.wrist ? quat_from_rotation(rotation) : Quat{};
   pose.sequence = ++sequence_;
@@ -167,6 +174,7 @@ bool SdkWorker::read_pose(std::int64_t now_ns) {
 }
 
 bool SdkWorker::follow_power(bool wanted) {
+  // Zero force is shown for a while after the forces went on: no step into the hand.
   if (wanted == (power_ != Power::kOff)) {
     if (power_ == Power::kZeroFirst && ++zero_cycles_ * cycle_ns_ >= kZeroFirst_ns)
       power_ = Power::kOn;
@@ -198,6 +206,7 @@ void SdkWorker::watch() {
 }
 
 void SdkWorker::check_status() {
+  // Before and after the call: it may take long, and "off" is news only if they were on throughout.
   const bool on_before = powered_for_sure();
   SdkStatusWords status{};
   if (session_.sdk.status(status.data(), session_.id) < 0) {
@@ -208,6 +217,7 @@ void SdkWorker::check_status() {
   const auto found = [&](Fault fault, SdkTroubleSource source, int code) {
     keep({fault, source, static_cast<std::uint8_t>(std::clamp(code, 0, 255))});
   };
+  // From cause to consequence: an unplugged device has no power either.
   if (status[kSdkConnected] == 0)
     found(Fault::kDeviceUnplugged, SdkTroubleSource::kStatus, kSdkConnected);
   else if (status[kSdkPower] == 0)
@@ -229,6 +239,7 @@ bool SdkWorker::fail(SdkTroubleSource source) {
 
 void SdkWorker::keep(const SdkTrouble& t) {
   std::uint32_t none = 0;  // the first one is the cause
+  // One word, so that the first trouble is kept whole by one exchange.
   const auto packed = static_cast<std::uint32_t>(t.fault) << 16 |
                       static_cast<std::uint32_t>(t.source) << 8 | std::uint32_t{t.code};
   trouble_.compare_exchange_strong(none, packed, std::memory_order_acq_rel);
@@ -242,6 +253,7 @@ SdkTrouble SdkWorker::trouble() const RT_SAFE {
 
 bool SdkWorker::stop() {
   quit_ = true;
+  // 2 s, no join: a library that hangs must not keep tactd from ending.
   for (int i = 0; i < 2000 && running_ > 0; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   if (running_ > 0) return false;

@@ -38,6 +38,7 @@ Result<std::unique_ptr<EdgeWatch>> open_edge_watch(const std::string& wanted, in
     return Error{fmt::format("line {} is none of {} \"{}\", which has lines 0 to {}", line,
                              chip->name, chip->label, chip->lines - 1)};
   Chip handle(chip->path);
+  // The name also is that of the interrupt's thread, irq/N-tact-jitter.
   LineRequest found;
   if (!handle.empty()) found = handle.request(LineUse::kEdges, {&line, 1}, "tact-jitter");
   if (found.empty())

@@ -40,6 +40,7 @@ int number_of(const std::string& name) {
   return number;
 }
 
+/// Label and number of lines; the errno of opening stays, as the cure depends on it.
 void ask_chip(GpioChip& chip) {
   const int fd = open(chip.path.c_str(), O_RDWR | O_CLOEXEC);
   if (fd < 0) {
@@ -48,6 +49,7 @@ void ask_chip(GpioChip& chip) {
   }
   gpiochip_info info{};
   if (ioctl(fd, GPIO_GET_CHIPINFO_IOCTL, &info) == 0) {
+    // The kernel need not end a full label with a zero.
     chip.label.assign(info.label, strnlen(info.label, sizeof info.label));
     chip.lines = static_cast<int>(info.lines);
   } else {
@@ -64,6 +66,7 @@ std::string slow_bus(const std::string& device, const std::string& sys_root) {
   fs::path folder = fs::canonical(device, error);
   if (error) return kUnknownBus;
   bool known = false;
+  // Up through every parent: a fast chip on a slow bus is slow.
   while (folder != root && folder.has_relative_path()) {
     const fs::path link = fs::read_symlink(folder / "subsystem", error);
     const std::string bus = error ? std::string() : link.filename().string();
@@ -112,6 +115,7 @@ model::Result<GpioChip> choose_chip(const std::vector<GpioChip>& chips, const st
   const GpioChip* found = nullptr;
   const GpioChip* closed = nullptr;
   for (const GpioChip& chip : chips) {
+    // Its label cannot be read, so it may be the one that is meant: the rights are then the cure.
     if (chip.error != 0 && chip.bus.empty()) closed = &chip;
     if (path != chip.path && wanted != chip.label && wanted != chip.name) continue;
     if (found != nullptr)

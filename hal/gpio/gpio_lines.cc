@@ -43,6 +43,7 @@ class GpioLines final : public SafetyLines {
   GpioLines& operator=(const GpioLines&) = delete;
 
   Fault read(std::int64_t now_ns) RT_SAFE override {
+    // A failed read leaves zeros: every contact open, which is a stop.
     Levels values{};
     if (!lost() && !lines_.inputs.empty() && !lines_.inputs.get(values)) lose();
     const Fault fault = logic_.judge({.estop_a = level(values, lines_.estop_a),
@@ -55,6 +56,7 @@ class GpioLines final : public SafetyLines {
   Fault write(const LinesTick& tick) RT_SAFE override {
     const SafetyOutputs outputs = logic_.drive(tick);
     Levels values{};
+    // drop() may come from the watch at any time; what it took away no tick gives back.
     set_level(values, lines_.enable, outputs.enable && !dropped());
     set_level(values, lines_.heartbeat, outputs.heartbeat && !dropped());
     set_level(values, lines_.led, outputs.led);
@@ -67,6 +69,8 @@ class GpioLines final : public SafetyLines {
   // libgpiod 1.6 keeps the last level of each line in plain memory that nobody reads: two threads
   // here disturb no more than that.
   void drop() RT_SAFE override {
+    // Before the levels, so that a write after this cannot raise them; one under way may, hence
+    // "again" in safety_lines.h.
     dropped_.store(true, std::memory_order_relaxed);
     if (!lost() && !lines_.outputs.empty()) lines_.outputs.set({});
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// libgpiod_1.cc - line_request.h by libgpiod 1.6: a line belongs to its chip, and a bulk moves some.
+// libgpiod_1.cc - line_request.h by libgpiod 1.6: a line belongs to its chip, a bulk moves some.
 #include <gpiod.h>
 
 #include "hal/gpio/line_request.h"
@@ -53,6 +53,7 @@ std::vector<Edge> LineRequest::edges(std::chrono::milliseconds longest) {
                          .tv_nsec = std::chrono::nanoseconds(longest - seconds).count()};
   std::vector<Edge> edges;
   gpiod_line* line = gpiod_line_bulk_get_line(&lines_->bulk, 0);
+  // A timeout and an error alike: no edges came.
   if (gpiod_line_event_wait(line, &timeout) != 1) return edges;
   std::array<gpiod_line_event, kMaxEdges> events{};
   const int count = gpiod_line_event_read_multiple(line, events.data(), kMaxEdges);

@@ -71,6 +71,7 @@ bool LineRequest::set(const Levels& levels) RT_SAFE {
 std::vector<Edge> LineRequest::edges(std::chrono::milliseconds longest) {
   std::vector<Edge> edges;
   const std::int64_t timeout_ns = std::chrono::nanoseconds(longest).count();
+  // A timeout and an error alike: no edges came.
   if (gpiod_line_request_wait_edge_events(lines_->request, timeout_ns) != 1) return edges;
   const EdgeBuffer buffer(gpiod_edge_event_buffer_new(kMaxEdges));
   const int count = gpiod_line_request_read_edge_events(lines_->request, buffer.get(), kMaxEdges);

@@ -40,11 +40,13 @@ void SafetyLogic::compare(const SafetyLevels& levels) RT_SAFE {
   if (levels.estop_a == levels.estop_b) {
     differing_ = false;
     agreed_closed_ = levels.estop_a;
+    // Both open together: each contact has shown that it can move.
     if (!levels.estop_a) unproven_ = false;
     return;
   }
   if (!differing_) differ_since_ns_ = now_ns_;
   differing_ = true;
+  // The contacts of one button do not open at the same instant (GP-1).
   if (now_ns_ - differ_since_ns_ <= kDiscrepancy_ns) return;
   unproven_ = true;
   // The channel that has not moved since they agreed is the one to look at.
@@ -60,6 +62,7 @@ Fault SafetyLogic::judge(const SafetyLevels& levels, std::int64_t now_ns) RT_SAF
   LinesCause cause = LinesCause::kNone;
   const bool stood = fault_ != Fault::kNone;
   fault_ = Fault::kNone;
+  // The dead-man first: an e-stop that is open as well takes its place below.
   if (wiring_.dead_man && !levels.dead_man) {
     fault_ = Fault::kDeadManReleased;
     cause = LinesCause::kDeadManOpen;
@@ -74,13 +77,16 @@ Fault SafetyLogic::judge(const SafetyLevels& levels, std::int64_t now_ns) RT_SAF
       cause = levels.estop_a == levels.estop_b ? LinesCause::kBothOpen : LinesCause::kOneOpen;
     }
   }
+  // A new fault starts with its own cause; a standing one only learns more (order of LinesCause).
   if (fault_ != Fault::kNone && (!stood || cause > this->cause()))
+    // Relaxed: one byte for a sentence; the fault itself goes by the loop.
     cause_.store(cause, std::memory_order_relaxed);
   return fault_;
 }
 
 SafetyOutputs SafetyLogic::drive(const LinesTick& tick) RT_SAFE {
   const bool good = fault_ == Fault::kNone && !tick.faulted;
+  // A heartbeat that paused starts its 100 ms anew: the relay beside it has dropped.
   if (!good || now_ns_ - last_toggle_ns_ > kHeartbeatPause_ns) beating_ = false;
   if (good && tick.healthy) {
     outputs_.heartbeat = !outputs_.heartbeat;

@@ -18,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// linux/if_arp.h and linux/if.h.
 constexpr int kArpHrdCan = 280;
 constexpr unsigned long kInterfaceUp = 0x1;
 
@@ -39,6 +40,7 @@ std::vector<fs::path> entries(const std::string& folder) {
 }
 
 int system_access_error(const std::string& path) {
+  // Asked, not opened: whoever uses the device is not disturbed.
   return access(path.c_str(), R_OK | W_OK) == 0 ? 0 : errno;
 }
 
@@ -74,6 +76,7 @@ FoundPart can_part(const PartProbes& probes, const fs::path& folder) {
                  .lacking = {},
                  .cure = {}};
   if (link.bitrate.value_or(0) != 0) part.what += fmt::format(", {} bit/s", *link.bitrate);
+  // No bits and no rate: what a scene would load the bus with is not known here.
   if (const auto refusal = check_can_link(link, name, 0, 0.0)) {
     const std::string& sentence = refusal->sentence;  // "what: cure"
     const std::size_t colon = std::min(sentence.find(": "), sentence.size());
@@ -98,10 +101,12 @@ std::string bound_driver(const fs::path& device) {
 void lack_driver(FoundPart& part, const std::string& driver) {
   if (driver.empty()) return;
   part.what += fmt::format(", bound to {}", driver);
+  // Missing rights come first: without them the driver's cure cannot be tried.
   if (!part.lacking.empty()) return;
   if (driver == "usbfs") {
     part.lacking = "another program uses it";
     part.cure = "end that program";
+    // Force Dimension's library takes the interface itself.
   } else if (part.kind == PartKind::kFalcon) {
     part.lacking = fmt::format("the kernel driver {} holds it", driver);
     part.cure =

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // list_devices.h - what is plugged into this PC, what each part lacks, and the cure.
 //
-// Read from sysfs without opening a device, so a running tactd is not disturbed:
+// Read from sysfs, so a running tactd is not disturbed. GPIO chips alone are opened, for a label:
 //   class/net/*/type 280 (ARPHRD_CAN), flags bit 0 (IFF_UP)          CAN interfaces; bit rate by
 //                                                                    netlink (can/can_link.h)
 //   bus/usb/devices/*/idVendor idProduct busnum devnum, *:N/driver   0403:cb48 Novint Falcon,

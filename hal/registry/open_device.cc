@@ -67,6 +67,7 @@ bool is_simulated(const model::DeviceSettings& settings) {
       kKinds, [&](const Kind& kind) { return kind.simulated && settings.kind == kind.name; });
 }
 
+/// By type, not by name: only this class has a hand to move.
 bool is_simulated(const Device& device) {
   return dynamic_cast<const sim::SimDelta*>(&device) != nullptr;
 }

@@ -9,6 +9,7 @@
 namespace tact::hal::sim {
 namespace {
 
+// Chosen: stiff beside any tissue; the steps stay stable, as they are implicit. Rim: README.
 constexpr double kStopStiffness_Nm_per_rad = 2000.0;
 constexpr double kStopDamping_Nms_per_rad = 5.0;
 constexpr double kRimStiffness_N_per_m = 20e3;
@@ -69,6 +70,7 @@ void DeltaPlant::step(double dt_s, const delta::Joints& motor_Nm, const HandPull
   };
   add_stops(dt_s, k, step);
   add_rim(dt_s, step);
+  // Friction last: it needs the speed that all else would give, to know what would stop the joint.
   const model::Mat3 a_inverse = model::inverse(step.a);
   const model::Vec3 free_mps = a_inverse * step.momentum_Ns;
   move(dt_s, with_friction(free_mps, k, a_inverse, dt_s * friction_.coulomb_Nm));
@@ -115,6 +117,7 @@ model::Vec3 DeltaPlant::with_friction(const model::Vec3& free_mps, const model::
   for (int sweep = 0; sweep < kFrictionSweeps; ++sweep) {
     for (std::size_t i = 0; i < 3; ++i) {
       const double compliance = dot(k.row[i], give_columns.row[i]);
+      // A joint in line with its rod has a row of zeros: nothing can be told of it.
       if (!(compliance > 0.0)) continue;
       // the impulse that would stop joint i, as far as friction can give it
       const double wanted = impulse_Nms[i] - dot(k.row[i], velocity_mps) / compliance;
@@ -127,6 +130,7 @@ model::Vec3 DeltaPlant::with_friction(const model::Vec3& free_mps, const model::
 }
 
 void DeltaPlant::move(double dt_s, const model::Vec3& velocity_mps) RT_SAFE {
+  // x+ = x + h (v + v+) / 2, as the header has it.
   const model::Vec3 next_m = position_m_ + 0.5 * dt_s * (velocity_mps_ + velocity_mps);
   const delta::DeltaInverse inverse = delta_.inverse(next_m);
   if (!inverse.reachable || !is_finite(velocity_mps)) {  // rods pulled tight, or NaN: dead stop

@@ -16,15 +16,19 @@
 namespace tact::hal::sim {
 namespace {
 
+// Chosen: four steps a tick at 1 kHz.
 constexpr double kLongestStep_s = 0.25e-3;
+// A longer pause of the loop is cut to this: one call stays bounded.
 constexpr double kMaxPhysics_s = 0.1;  // of one call
 constexpr double kMaxDelay_s = 0.1;
+// 16 bits, chosen: fine beside the +-20 degrees of the wrist.
 constexpr double kWristCountsPerTurn = 65536.0;
 constexpr double kJump_m = 5e-3, kJump_rad = 0.1;  // between two samples: a new start
 constexpr double kGripHalfWidth_m = 0.05;          // the hand holds the handle here, at both sides
 
 double counted_rad(double angle_rad, double counts_per_turn) RT_SAFE {
   const double rad_per_count = 2.0 * std::numbers::pi / counts_per_turn;
+  // The nearest count: a plain floor would be half a count low.
   return std::floor(angle_rad / rad_per_count + 0.5) * rad_per_count;
 }
 
@@ -50,8 +54,10 @@ SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::HandSett
       angular_velocity_(device.observer_bandwidth_Hz, kJump_rad),
       shown_s_(-device.sample_delay_s) {
   history_.fill(state_now());  // at rest here since before the start
+  // An end that is older than any delay: state_at always finds two states around its time.
   history_[kHistory - 1].time_s = -2.0 * kMaxDelay_s;
   measured_ = delta_.pose(plant_.position_m(), plant_.theta_rad());
+  // The motors hold the arms from the start, or they would fall before the first write.
   motor_Nm_ =
       gravity_torques_Nm(kGeometry, kMasses, measured_, direction_D(delta::kGravity_W_mps2));
 }
@@ -84,6 +90,7 @@ Fault SimDelta::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
     return Fault::kNone;
   }
   const State state = state_at(time_s_ - settings_.sample_delay_s);
+  // Fails where the rods cannot meet (DK-3): no pose of this device.
   if (!measure(state, sample.tool)) return Fault::kDeviceFailed;
   if (faults_.nan_sample.load(std::memory_order_relaxed)) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -129,6 +136,7 @@ Fault SimDelta::write(const Wrench& wrench) RT_SAFE {
   const Wrench limited = sound ? Wrench{saturated(wrench.force_N, kMaxForce_N),
                                         saturated(wrench.torque_Nm, kMaxTorque_Nm)}
                                : Wrench{};
+  // From the pose it has measured, not the true one: a real device knows no better.
   motor_Nm_ = delta::drive_torques_Nm(kGeometry, kMasses, measured_, direction_D(limited.force_N),
                                       kMaxJointTorque_Nm);
   wrist_Nm_ = limited.torque_Nm;

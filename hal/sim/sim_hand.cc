@@ -9,6 +9,7 @@ namespace {
 
 using model::HandWaypoint;
 
+// Chosen. The walk's numbers are the header's; 0.5 m/s within 0.1 s are its 5 m/s^2.
 constexpr double kSteeringHolds_s = 1.0;
 constexpr double kWalkSpeed_mps = 0.5;
 constexpr double kWalkAcceleration_mps2 = 5.0;
@@ -51,6 +52,7 @@ void SimHand::step(double dt_s) RT_SAFE {
   if (!(dt_s > 0.0)) return;
   if (is_steered()) {
     unsteered_s_ += dt_s;
+    // The script's time stands still meanwhile: the hand comes back to where it was led away.
     on_script_ = false;
     walk_to(steered_, dt_s);
     return;
@@ -81,6 +83,7 @@ void SimHand::walk_to(const HandWaypoint& goal, double dt_s) RT_SAFE {
   const Vec3 wanted_mps =
       shortened((goal.position_m - at_.position_m) / kWalkTime_s, kWalkSpeed_mps);
   velocity_mps_ += shortened(wanted_mps - velocity_mps_, kWalkAcceleration_mps2 * dt_s);
+  // The script may have been faster when the walk began.
   velocity_mps_ = shortened(velocity_mps_, kWalkSpeed_mps);
   at_.position_m += dt_s * velocity_mps_;
   at_.rotation_rad += shortened(goal.rotation_rad - at_.rotation_rad, kTurnSpeed_radps * dt_s);

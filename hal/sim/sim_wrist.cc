@@ -11,6 +11,7 @@ namespace {
 
 using model::operator""_deg;
 
+// Chosen: a light handle in good bearings.
 constexpr double kInertia_kgm2 = 1e-4;
 constexpr double kBearing_Nms_per_rad = 1e-3;
 constexpr double kMaxAngle_rad = 20_deg;
@@ -27,6 +28,7 @@ Axis step_axis(Axis axis, double dt_s, double torque_Nm, double aim_rad,
   // (I + h b + h^2 k) w+ = I w + h (torque + k (a_h - a)),  a+ = a + h w+
   const double push =
       kInertia_kgm2 * axis.rate_radps + dt_s * (torque_Nm + k * (aim_rad - axis.angle_rad));
+  // Implicit in the hand's spring and damper: stable for any of them.
   const double rate_radps = push / (kInertia_kgm2 + dt_s * b + dt_s * dt_s * k);
   const double angle_rad = axis.angle_rad + dt_s * rate_radps;
   if (std::abs(angle_rad) <= kMaxAngle_rad) return {angle_rad, rate_radps};
@@ -75,6 +77,7 @@ model::Vec3 wrist_angles_rad(const model::Vec3& rotation_rad) RT_SAFE {
   // R = R_x R_y R_z:  R_02 = sin a_1,  R_12/R_22 = -tan a_0,  R_01/R_00 = -tan a_2
   const model::Vec3 angles{std::atan2(-z.y, z.z), std::asin(std::clamp(z.x, -1.0, 1.0)),
                            std::atan2(-y.x, x.x)};
+  // A scene may turn the hand farther than the wrist goes.
   const auto limited = [](double a) RT_SAFE {
     return std::isfinite(a) ? std::clamp(a, -kMaxAngle_rad, kMaxAngle_rad) : 0.0;
   };

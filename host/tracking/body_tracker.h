@@ -9,8 +9,8 @@
 //                   agrees with the one before is believed
 //     silent        nothing came for kHold_s
 //
-// Of two cameras the newest good pose counts. If the other camera saw the body within kTogether_s of
-// that time, both observations are solved as one problem, which is more accurate (joint_pose.h).
+// Of two cameras the newest good pose counts. If the other camera saw the body within kTogether_s
+// of that time, both observations are solved as one problem, which is more accurate (joint_pose.h).
 // The pose for display is filtered (one_euro.h). Time is an argument: `time_s` of the tracker's
 // clock, `now_s` of the viewer's.
 #pragma once

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Safety lines on a chip that this test plays: line_request.h answers from here in place of libgpiod.
+// Safety lines on a chip that this test plays: it answers in place of line_request.h.
 #include <gtest/gtest.h>
 
 #include <array>
