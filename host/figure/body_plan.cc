@@ -14,15 +14,18 @@ using Eigen::Vector3d;
 // Shares of the body height; Winter's are marked W.
 constexpr double kAnkle = 0.039, kKnee = 0.285, kHip = 0.530, kShoulder = 0.818;  // W, heights
 constexpr double kChin = 0.870;                                                   // W, height
+// Chosen (body_plan.h): the back bends here; the origin of W is about a bench above the floor.
 constexpr double kBackHeight = 0.630, kOriginHeight = 0.600;
 constexpr double kHeadRadius = 0.044;
 
+// Chosen: the right hand comes to the device, the face looks at the tool.
 constexpr double kStandsAt_m = 0.40;  // x of the pelvis, for 1.75 m
 constexpr double kLooksDown_rad = 0.75;
 
 }  // namespace
 
 BodyPlan make_body_plan(double height_m) {
+  // A height that is none must not make a figure without size: a common one instead.
   const double h = std::clamp(std::isfinite(height_m) ? height_m : 1.75, 1.2, 2.2);
   return {.height_m = h,
           .lumbar_m = (kBackHeight - kHip) * h,
@@ -95,6 +98,7 @@ Chain arm_chain(const BodyPlan& plan) {
     return Bone{
         .length_m = length_m, .rest = rest, .hinge = axis, .lo_rad = lo_rad, .hi_rad = hi_rad};
   };
+  // Limits and cones: chosen, as the table in body_plan.h has them.
   return {.bones = {bend(plan.lumbar_m, up, Vector3d::UnitY(), -0.60, 0.15),
                     ball(plan.thorax_m, up, 0.40), ball(plan.clavicle_m, Vector3d::UnitY(), 0.35),
                     ball(plan.upper_arm_m, along, 1.60),
@@ -118,6 +122,7 @@ std::array<Capsule, kCapsules> capsules(const BodyPlan& plan) {
   const auto arm = [h](FigureJoint a, FigureJoint b, double ra, double rb, double depth = 1.0) {
     return Capsule{a, b, ra * h, rb * h, depth, true};
   };
+  // Radii as shares of the height, and how flat front to back: drawn by eye.
   return {part(kPelvis, kBack, 0.080, 0.078, 0.72),
           part(kBack, kChest, 0.080, 0.070, 0.70),
           part(kLeftHip, kRightHip, 0.060, 0.060, 0.90),

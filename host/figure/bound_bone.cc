@@ -24,11 +24,13 @@ const Pose& BoundBone::follow(const TrackedBody& body, const Pose& neutral, doub
   const bool good = is_good(body.pose);
   if (body.state == BodyState::kTracked && good) {
     if (!offset_) {
+      // TR-5, once: later poses of the tracker move the bone from here.
       offset_ = pose::bind(body.pose, neutral);
       shown_ = target_ = neutral;
     }
     const Pose next = pose::drive(body.pose, *offset_);
     if (mode_ == Mode::kNeutral) shown_ = neutral;
+    // Back from a gap, or a jump of the tracker: the bone glides there, or a limb would fly.
     if (mode_ != Mode::kFollows || is_step_too_fast(target_, next, dt_s))
       begin_fade(next, kReturn_s);
     mode_ = Mode::kFollows;
@@ -50,6 +52,7 @@ const Pose& BoundBone::follow(const TrackedBody& body, const Pose& neutral, doub
 }
 
 void BoundBone::begin_fade(const Pose& to, double least_s) {
+  // From what is seen now, wherever an earlier fade had come to.
   from_ = shown_;
   faded_from_ = share_;
   faded_s_ = 0.0;

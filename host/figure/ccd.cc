@@ -27,9 +27,11 @@ Vector3d axis_across(const Vector3d& v) {
   return (across.norm() > kParallel ? across : Vector3d(v.cross(Vector3d::UnitX()))).normalized();
 }
 
+/// Of a length above zero that is a number.
 bool has_direction(const Vector3d& v) { return v.allFinite() && v.squaredNorm() > 0.0; }
 
 bool is_valid(const Bone& bone, const JointState& joint) {
+  // Of each test the positive form: a NaN fails it.
   if (!(bone.length_m > 0.0 && std::isfinite(bone.length_m))) return false;
   if (!has_direction(bone.rest)) return false;
   if (bone.kind == JointKind::kHinge) {
@@ -82,6 +84,7 @@ class Mover {
   }
 
   bool turn_hinge(std::size_t i, const Vector3d& ve, const Vector3d& vd) {
+    // The axis is fixed in the parent's axes (CC-9).
     const Vector3d w = parent_[i] * bones_[i].hinge;
     const Vector3d flat_ve = ve - w * w.dot(ve), flat_vd = vd - w * w.dot(vd);
     if (!have_directions(flat_ve, flat_vd)) return false;
@@ -98,6 +101,7 @@ class Mover {
     const Vector3d from = ve.stableNormalized(), to = vd.stableNormalized();
     const Vector3d across = from.cross(to);
     const bool parallel = across.norm() < kParallel;
+    // Points there already. Opposite: any axis across will do, but it has to be named.
     if (parallel && from.dot(to) > 0.0) return false;
     const AngleAxisd world = parallel ? AngleAxisd(pi, axis_across(from))
                                       : AngleAxisd(angle_between(from, to), across.normalized());
@@ -111,6 +115,7 @@ class Mover {
   /// Forward kinematics from joint i outwards.
   void follow(std::size_t i) {
     for (; i < bones_.size(); ++i) {
+      // Normalized at each joint: a product of many rotations would slowly leave length 1.
       const Quaterniond here = (parent_[i] * rotation_of(bones_[i], joints_[i])).normalized();
       points_m_[i + 1] = points_m_[i] + here * (bones_[i].length_m * bones_[i].rest);
       if (i + 1 < bones_.size()) parent_[i + 1] = here;
@@ -130,6 +135,7 @@ bool out_of_reach(std::span<const Bone> bones, double distance_m, double toleran
     sum_m += bone.length_m;
     longest_m = std::max(longest_m, bone.length_m);
   }
+  // One bone longer than all others together leaves a hole around the root.
   const double hole_m = std::max(2.0 * longest_m - sum_m, 0.0);
   return distance_m > sum_m + tolerance_m || distance_m < hole_m - tolerance_m;
 }
@@ -152,6 +158,7 @@ double swing_rad(const Bone& bone, const JointState& joint) {
 
 Quaterniond within_cone(const Bone& bone, const Quaterniond& q) {
   const Vector3d bone_now = q * bone.rest;
+  // How far the bone points from rest; its turn about itself is free (CC-7).
   const double swing = angle_between(bone.rest, bone_now);
   if (bone.kind == JointKind::kHinge || swing <= bone.cone_rad) return q;
   const Vector3d across = bone.rest.cross(bone_now);
@@ -170,6 +177,7 @@ std::size_t choose_root(const Chain& chain, std::span<const JointState> joints,
   if (points_m.empty() || sub_root >= joints.size()) return 0;
   double sum_m = 0.0;
   for (std::size_t i = sub_root; i < joints.size(); ++i) sum_m += chain.bones[i].length_m;
+  // Nearly stretched the sub chain would take many sweeps for a little way: the chest then helps.
   return (target_m - points_m[sub_root]).norm() <= kSubChainShare * sum_m ? sub_root : 0;
 }
 
@@ -184,6 +192,7 @@ ReachResult reach(const Chain& chain, std::span<const JointState> start, const R
   bool there = error_m() <= goal.tolerance_m;
   while (!there && out.sweeps < goal.sweeps) {
     ++out.sweeps;
+    // CC-3: the outermost first, as it moves least of the body.
     for (std::size_t i = start.size(); i-- > goal.root && !there;) {
       if (!mover.turn(i, goal.target_m)) continue;
       ++out.updates;

@@ -64,12 +64,15 @@ void Figure::go_on_with(const Vector3d& tool_grip_m) {
 }
 
 const FigurePose& Figure::update(double time_s, const Pose& tool, const TrackedOperator& bodies) {
+  // A step back is another run of the clock: nothing that was bound belongs to it.
   if (begun_ && time_s < time_s_) *this = Figure(settings_);
+  // After a pause of the page nothing may jump by what a long step would allow.
   dt_s_ = begun_ ? std::clamp(time_s - time_s_, 0.0, kLongestStep_s) : 0.0;
   time_s_ = time_s;
   begun_ = true;
   if (is_good(tool)) tool_ = tool;
   if (!may_bind_) settle(bodies);
+  // In this order: the arm begins at the trunk, the head at the chest that the arm has bent.
   pose_trunk(bodies);
   pose_arm(tool_, bodies);
   pose_head();
@@ -94,6 +97,7 @@ void Figure::settle(const TrackedOperator& bodies) {
       const Vector3d by_m = to_shoulder(plan_, shoulder.pose.position_m);
       pose_.shoulder_too_far = !((by_m - start_m_).norm() <= kFarthestPlace_m);
       place_goal_m_ = pose_.shoulder_too_far ? start_m_ : by_m;
+      // A description without a shoulder, or one that hides: stand where untracked figures do.
     } else if (shoulder.state == BodyState::kAbsent || waited_s_ > kWaitForShoulder_s) {
       place_goal_m_ = start_m_;
     } else {
@@ -106,11 +110,13 @@ void Figure::settle(const TrackedOperator& bodies) {
   const double way_m = way.norm();
   const double way_s = way_m > 0.0 ? std::max(kReturn_s, way_m / kGlide_mps) : 0.0;
   const double t = way_s > waited_s_ ? waited_s_ / way_s : 1.0;
+  // 3 t^2 - 2 t^3: at rest at both ends.
   place_m_ = start_m_ + t * t * (3.0 - 2.0 * t) * way;
   may_bind_ = t >= 1.0;
 }
 
 const Pose& Figure::follow(BodyRole role, const TrackedOperator& bodies, const Pose& neutral) {
+  // Before it stands where it shall, binding would fix the wrong offset.
   const TrackedBody absent{};
   return bones_[static_cast<std::size_t>(role)].follow(may_bind_ ? bodies[role] : absent, neutral,
                                                        dt_s_);
@@ -130,6 +136,7 @@ void Figure::pose_trunk(const TrackedOperator& bodies) {
                                upright(FigureJoint::kRightShoulder, Quaterniond::Identity()));
   const Pose head = follow(BodyRole::kHead, bodies, upright(FigureJoint::kHead, looking_down()));
   const double by_shoulder = share(BodyRole::kShoulder);
+  // The shoulder says more of the trunk: the head leads only as far as the shoulder does not.
   const double by_head = (1.0 - by_shoulder) * share(BodyRole::kHead);
   arm_.lean(TrunkEnd::kChest, in_pelvis(head.position_m) - plan_.neck_m * Vector3d::UnitZ(),
             by_head);
@@ -142,6 +149,7 @@ void Figure::pose_arm(const Pose& tool, const TrackedOperator& bodies) {
   const Pose held{.rotation = tool.rotation * holding_hand(), .position_m = grip_m};
   const Pose wrist = follow(BodyRole::kWrist, bodies, held);
   const Pose hand = follow(BodyRole::kHand, bodies, held);
+  // A tracker on the hand knows its turn better than one on the wrist.
   const Quaterniond turn = wrist.rotation.slerp(share(BodyRole::kHand), hand.rotation);
   const Quaterniond to_pelvis = pelvis_.rotation.conjugate();
   pose_.arm = arm_.hold({.grip_m = to_pelvis * (grip_m - pelvis_.position_m),
@@ -200,11 +208,13 @@ void Figure::place_leg(bool right, const TrackedOperator& bodies) {
   // CC-10 in the plane of hip, ankle and hint: x along hip - ankle, y towards the hint.
   const Vector3d leg_m = foot.position_m - hip_m;
   const double distance_m = leg_m.norm();
+  // A foot at the hip gives no direction: down then.
   const Vector3d x = distance_m > 1e-6 ? Vector3d(leg_m / distance_m) : -Vector3d::UnitZ();
   const Vector3d y = across(shin.position_m - hip_m, x, forward);
   const LegPose leg =
       pose_leg({.thigh_m = plan_.thigh_m, .calf_m = plan_.calf_m}, {0.0, 0.0}, {distance_m, 0.0});
   const double missed_m = std::abs(distance_m - leg.ankle_m.x());
+  // Untracked, the foot stands where the figure puts it: that is no trouble to tell.
   pose_.leg_reached[right ? 1 : 0] = share(ankle) == 0.0 || missed_m <= kLegTolerance_m;
   const auto in_plane = [&](const Eigen::Vector2d& p_m) -> Vector3d {
     return hip_m + p_m.x() * x + p_m.y() * y;

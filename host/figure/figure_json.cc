@@ -37,6 +37,7 @@ nlohmann::json skeleton_json(const BodyPlan& plan) {
 
 std::string figure_json(const FigurePose& pose, std::uint64_t tick, bool head_tracked) {
   std::string out;
+  // Once, and never longer: every number has a bounded width, and the words come from a table.
   out.reserve(kMaxFigureJsonBytes);
   fmt::format_to(std::back_inserter(out), "{{\"kind\":\"figure\",\"tick\":{},\"joint_m\":[", tick);
   for (std::size_t i = 0; i < kFigureJoints; ++i) {
@@ -51,6 +52,7 @@ std::string figure_json(const FigurePose& pose, std::uint64_t tick, bool head_tr
                  "\"sweeps\":{},\"updates\":{},\"full_chain\":{},\"trouble\":{},\"words\":\"{}\","
                  "\"head_tracked\":{}}}",
                  head.w(), head.x(), head.y(), head.z(), pose.arm.reached,
+                 // Bounded, so that the text stays within kMaxFigureJsonBytes.
                  std::min(pose.arm.error_m, 99.0) * 1e3, pose.arm.sweeps, pose.arm.updates,
                  pose.arm.full_chain, static_cast<int>(pose.trouble), pose.words, head_tracked);
   return out;

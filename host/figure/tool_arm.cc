@@ -10,6 +10,7 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
+// Chosen below kGripTolerance_m: what the wrist misses, step 4 need not make good.
 constexpr double kWristTolerance_m = 0.3e-3;
 
 Chain first_bones(const Chain& chain, std::size_t n) {
@@ -30,6 +31,7 @@ Quaterniond turn_from_to(const Vector3d& a, const Vector3d& b, const Vector3d& t
 }  // namespace
 
 Quaterniond holding_hand() {
+  // By eye: the palm from the operator's side (-x), the finger tips down.
   const Vector3d palm = Vector3d(-0.85, -0.45, -0.28).normalized();
   const Vector3d down(-0.05, -0.15, -1.0);
   const Vector3d curl = (down - down.dot(palm) * palm).normalized();
@@ -69,6 +71,7 @@ void ToolArm::lean(TrunkEnd end, const Vector3d& target_m, double share) {
       reach(chain, start, {.target_m = target_m, .tolerance_m = 1e-3, .sweeps = kSweeps});
   for (std::size_t i = 0; i < result.joints.size(); ++i) {
     trunk_[i].angle_rad += share * (result.joints[i].angle_rad - trunk_[i].angle_rad);
+    // Between two states within the cone slerp may leave it.
     trunk_[i].rotation = within_cone(
         chain.bones[i], trunk_[i].rotation.slerp(share, result.joints[i].rotation).normalized());
   }
@@ -95,8 +98,10 @@ ArmWork ToolArm::hold(const ArmGoal& goal) {
   ArmWork work;
   if (!goal.grip_m.allFinite() || !goal.hand.coeffs().allFinite()) return work;
   bend_trunk();
+  // The fingers begin curled, so that step 4 finds the same grip from frame to frame.
   joints_[kFingerBone] = rest_[kFingerBone];
   const Vector3d wrist_m = wrist_for(goal);
+  // Classical CCD (kAlwaysFullChain) goes without, as it is there to be compared with.
   if (rule_ == RootRule::kSubRootFirst) work.updates += point_two_bones(wrist_m);
   take(run(to_wrist_, wrist_m, kWristTolerance_m, root_for(to_wrist_, wrist_m), work));
   turn_hand(goal.hand);
@@ -135,11 +140,13 @@ ReachResult ToolArm::grip(const Vector3d& grip_m, ArmWork& work) {
   take(result);
   ReachResult whole = run(chain_, grip_m, kGripTolerance_m, 0, work);
   work.out_of_reach = whole.status == ReachStatus::kUnreachable;
+  // The arm alone may have come nearer than the whole body in its sweeps.
   return whole.error_m < result.error_m ? whole : result;
 }
 
 int ToolArm::point_two_bones(const Vector3d& wrist_m) {
   const auto start = std::span(joints_).first(kHandBone);
+  // Too far for the arm: the trunk has to help, and two bones know nothing of it.
   if (choose_root(to_wrist_, start, kShoulderBone, wrist_m) != kShoulderBone) return 0;
   const std::vector<Vector3d> at_m = joint_points_m(to_wrist_, start);
   const Vector3d to_target = wrist_m - at_m[kShoulderBone];
@@ -166,6 +173,7 @@ void ToolArm::take(const ReachResult& result) {
 }
 
 Vector3d ToolArm::wrist_for(const ArmGoal& goal) const {
+  // Backwards from the grip: less the curled fingers, less the palm.
   const double curl_rad = joints_[kFingerBone].angle_rad;
   const Vector3d palm = goal.hand * arm_along();
   const Vector3d fingers =

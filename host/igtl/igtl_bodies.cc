@@ -15,12 +15,14 @@ using tracking::TrackedOperator;
 
 /// Up to the "To" before a capital letter.
 std::string_view own_name(std::string_view device) {
+  // PLUS writes FROMToTO: the capital behind "To" tells it from a name such as "Tool".
   for (std::size_t at = 1; at + 2 < device.size(); ++at)
     if (device.substr(at, 2) == "To" && std::isupper(static_cast<unsigned char>(device[at + 2])))
       return device.substr(0, at);
   return device;
 }
 
+/// Case and '_' do not matter: "LeftLeg" is left_leg.
 std::string letters_of(std::string_view name) {
   std::string out;
   for (const char c : name)
@@ -51,6 +53,7 @@ std::optional<BodyRole> role_of(std::string_view device) {
 void IgtlBodies::take(BodyRole role, const pose::Pose& pose, double sent_s, double now_s) {
   std::optional<Body>& body = bodies_[static_cast<std::size_t>(role)];
   if (!body) body.emplace();
+  // A time that stands while the place moves is no time of the pose: from now on arrival counts.
   const bool stands = sent_s == body->sent_s && pose.position_m != body->position_m;
   body->has_clock = body->has_clock && sent_s > 0.0 && !stands;
   body->sent_s = sent_s;
@@ -70,6 +73,7 @@ TrackedOperator IgtlBodies::at(double now_s) const {
 TrackedOperator joined(const TrackedOperator& first, const TrackedOperator& second) {
   TrackedOperator out = first;
   for (std::size_t i = 0; i < out.bodies.size(); ++i)
+    // Absent alone: a body that the description knows and has lost is still its own.
     if (out.bodies[i].state == tracking::BodyState::kAbsent) out.bodies[i] = second.bodies[i];
   return out;
 }

@@ -19,6 +19,7 @@ std::string frame_messages(const record::Frame& frame, double time_s) {
   const Vector3d force = Eigen::Vector3f(frame.force_N).cast<double>();
   const double force_N[3] = {force.x(), force.y(), force.z()};
   if (!rotation || !position_m.allFinite() || !force.allFinite()) return {};
+  // Without a force there is no direction; the arrow then is kMinForce_N long along +z.
   const bool has_way = force.norm() > 0.0;
   const pose::Pose arrow{.rotation = has_way ? Quaterniond::FromTwoVectors(Vector3d::UnitZ(), force)
                                              : Quaterniond::Identity(),
@@ -30,6 +31,7 @@ std::string frame_messages(const record::Frame& frame, double time_s) {
 
 Status status_of(const record::Frame& frame) {
   using State = decltype(frame.state);
+  // Codes of the protocol's table (README.md): 1 good, 7 time out, 13 not ready, 15 disabled.
   Status out{.code = 1, .subcode = frame.fault, .name = {}, .words = name_of(frame.state)};
   if (frame.state == State::kOff) out.code = 13;
   if (frame.state == State::kStopped) out.code = 15;

@@ -19,6 +19,7 @@ using model::Result;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kRetry{1000};
+// A peer writes these sentences' names: without a bound it would fill memory and terminal.
 constexpr std::size_t kMaxTroubles = 16;  // told apart
 
 double utc_s() {
@@ -26,6 +27,7 @@ double utc_s() {
 }
 
 Result<tcp::endpoint> endpoint_of(const std::string& text) {
+  // The last one: an IPv6 address has others, in its brackets.
   const std::size_t colon = text.rfind(':');
   const std::string port = colon == std::string::npos ? "" : text.substr(colon + 1);
   std::uint16_t number = 0;
@@ -104,6 +106,7 @@ void IgtlLink::stop() {
   retry_.cancel(ignored);
   if (calling_) calling_->close(ignored);
   if (tracker_) tracker_->stop();
+  // stop() tells no event: erasing from the set while it is walked would be the end of both.
   for (const Session& client : clients_) client->stop();
   clients_.clear();
 }
@@ -121,6 +124,7 @@ void IgtlLink::welcome(tcp::socket socket) {
   *place = session;
   clients_.insert(session);
   session->start();
+  // At once: it need not wait a second to learn that there is no tactd.
   session->send(igtl::status("Tact", utc_s(), last_));
 }
 
@@ -128,12 +132,14 @@ void IgtlLink::go_to_server() {
   calling_ = std::make_unique<tcp::socket>(io_);
   error_code ignored;
   calling_->open(server_->protocol(), ignored);
+  // The kernel's own six would keep a dead address for two minutes.
   constexpr int kSyns = 2;  // some 7 s, where nothing answers
   static_cast<void>(
       setsockopt(calling_->native_handle(), IPPROTO_TCP, TCP_SYNCNT, &kSyns, sizeof kSyns));
   calling_->async_connect(*server_, [this](error_code wrong) {
     if (wrong == boost::asio::error::operation_aborted) return;
     if (wrong) {
+      // Once for each loss, not each second.
       if (!std::exchange(told_away_, true))
         say_(fmt::format("OpenIGTLink: no server at {} ({}); asked again each second", server_name_,
                          wrong.message()));
@@ -185,6 +191,7 @@ void IgtlLink::add(const record::Frame& frame) {
   const Status status = status_of(frame);
   const bool is_due = now - sent_ >= kFrameGap;
   const bool tells = status != last_ || now - told_ >= kStatusGap;
+  // A frame's messages are made for somebody only.
   if (clients_.empty() || (!is_due && !tells)) return;
   sent_ = now;
   const std::string messages = frame_messages(frame, utc_s());

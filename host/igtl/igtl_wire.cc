@@ -20,8 +20,10 @@ using model::Error;
 using model::Result;
 
 constexpr double kFraction_s = 1.0 / 4294967296.0;
+// Of the matrix R^T R - 1, and of a quaternion's square length.
 constexpr double kMaxSkew = 0.01;  // of a rotation of floats; a matrix of another kind is far off
 constexpr double kFarthest_m = 1000.0;
+// The protocol's 64 bits of a unit: prefix, then pairs of unit and exponent.
 constexpr std::uint64_t kNewton = 0x0bull << 54 | 1ull << 50;  // no prefix, N to the power 1
 
 /// Big-endian, one after the other; beyond the end: 0, and `is_short`.
@@ -38,6 +40,7 @@ class Reader {
   }
   double real32() { return static_cast<double>(std::bit_cast<float>(number<std::uint32_t>())); }
   std::string_view take(std::size_t count) {
+    // Once short, always: what follows would be read from the wrong place.
     is_short_ = is_short_ || count > bytes_.size();
     const std::string_view out = is_short_ ? std::string_view() : bytes_.substr(0, count);
     bytes_.remove_prefix(out.size());
@@ -87,6 +90,7 @@ std::optional<std::string> name_in(std::string_view field) {
 
 std::string message(std::string_view type, std::string_view device, double time_s,
                     const std::string& body) {
+  // Before 1970 there is no time here: 0 means "none".
   const double whole_s = std::floor(std::max(time_s, 0.0));
   return Writer()
       .number(std::uint16_t{1})
@@ -106,6 +110,7 @@ Result<std::optional<std::string_view>> metadata_value(std::string_view head, st
   Reader sizes(head), texts(data);
   std::optional<std::string_view> found;
   const auto count = sizes.number<std::uint16_t>();
+  // A count is a claim: it ends where the bytes do.
   for (int i = 0; i < count && !sizes.is_short() && !texts.is_short(); ++i) {
     const auto key_bytes = sizes.number<std::uint16_t>();
     (void)sizes.number<std::uint16_t>();  // the value's character set
@@ -131,6 +136,7 @@ Result<pose::Pose> transform_in(std::string_view content) {
     for (double& number : column) number = in.real32();
   Matrix3d rotation;
   rotation << columns[0], columns[1], columns[2];
+  // A scale or a mirror would pass as a turn after normalizing: refused before.
   const double skew = (rotation.transpose() * rotation - Matrix3d::Identity()).norm();
   if (!(skew <= kMaxSkew) || rotation.determinant() < 0.0)
     return Error{"its matrix is no rotation; send one without scale, shear or mirror"};
@@ -177,6 +183,7 @@ Result<MessageHead> read_head(std::string_view bytes) {
 }
 
 Result<Content> content_of(const MessageHead& head, std::string_view body) {
+  // Version 1 has neither extended header nor metadata.
   if (head.version == 1) return Content{.bytes = body};
   Reader in(body);
   const std::size_t extended = in.number<std::uint16_t>();
@@ -189,6 +196,7 @@ Result<Content> content_of(const MessageHead& head, std::string_view body) {
   const auto status = metadata_value(body.substr(extended + content, index),
                                      body.substr(extended + content + index), "TransformStatus");
   if (!status) return status.error();
+  // PLUS writes "OK", or why it does not see the body; a sender without it is believed.
   out.is_tracked = !*status || **status == "OK";
   return out;
 }
@@ -205,6 +213,7 @@ std::string transform(std::string_view device, double time_s, const pose::Pose& 
                       double scale) {
   const Matrix3d axes = scale * pose.rotation.toRotationMatrix();
   Writer body;
+  // Column by column, and the origin last, as the protocol has it.
   for (int column = 0; column < 3; ++column)
     for (int row = 0; row < 3; ++row) body.real32(axes(row, column));
   for (const double at_m : pose.position_m) body.real32(1e3 * at_m);

@@ -20,6 +20,7 @@ constexpr double kFlat = 1e-10;  // lambda_2 / lambda_1 at or below: on a line, 
 constexpr double kSpot = 1e-12;  // radius over distance from the origin at or below: one place
 
 // From EPnP alone: six points or more, sqrt(lambda_3 / lambda_1) and rms over the focal length.
+// epnp.h has the random views behind these three.
 constexpr std::size_t kSurePoints = 6;
 constexpr double kSureThickness = 0.3, kSure_rad = 0.0015;
 // A start this near to a polished pose would end there, too.
@@ -43,6 +44,7 @@ Cloud cloud_of(std::span<const Vector3d> points_m) {
   double radius_m = 0.0;  // the largest, so that squares neither overflow nor vanish
   for (const Vector3d& p : points_m)
     radius_m = std::max(radius_m, (p - out.centroid_m).stableNorm());
+  // Beside a far origin, points in one place differ by rounding alone.
   if (!(radius_m > kSpot * farthest_m)) return out;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const Vector3d& p : points_m) {
@@ -61,6 +63,7 @@ Cloud cloud_of(std::span<const Vector3d> points_m) {
 
 /// Four points far apart: the one farthest out, then three times the one farthest from those taken.
 std::array<std::size_t, 4> widest_four(std::span<const Vector3d> points) {
+  // P3P on a small triangle amplifies the noise of the pixels.
   std::array<std::size_t, 4> taken{};
   const auto gap = [&](std::size_t i, std::size_t count) {
     double least = count == 0 ? points[i].norm() : std::numeric_limits<double>::infinity();
@@ -93,6 +96,7 @@ void add_poses(const std::vector<cv::Mat>& turns, const std::vector<cv::Mat>& sh
   for (std::size_t i = 0; i < turns.size(); ++i) {
     const Vector3d turn(turns[i].at<double>(0), turns[i].at<double>(1), turns[i].at<double>(2));
     const Vector3d t(shifts[i].at<double>(0), shifts[i].at<double>(1), shifts[i].at<double>(2));
+    // OpenCV may give NaN for a view without a solution.
     if (!turn.allFinite() || !t.allFinite()) continue;
     const double angle_rad = turn.norm();
     Pose pose{.rotation = Quaterniond::Identity(), .position_m = t};
@@ -177,6 +181,7 @@ PoseEstimate estimate_pose(const Camera& camera, std::span<const Vector3d> point
                            std::span<const Vector2d> pixels_px) {
   if (!is_valid(camera, points_m, pixels_px)) return {};
   if (points_m.size() < 4) return {.status = PoseStatus::kTooFewPoints};
+  // In units of the body's radius: a body in mm has the same numbers as one in m.
   const Cloud cloud = cloud_of(points_m);
   if (cloud.points.empty()) return {.status = PoseStatus::kDegenerate};
 
@@ -187,10 +192,12 @@ PoseEstimate estimate_pose(const Camera& camera, std::span<const Vector3d> point
     for (const Pose& start : found) {
       const bool known =
           std::ranges::any_of(polished, [&](const Pose& pose) { return is_near(start, pose); });
+      // Polishing is what costs: a start in a known valley would end at the same pose.
       if (known) continue;
       const Pose pose = polish_pose(camera, cloud.points, pixels_px, start);
       polished.push_back(pose);
       const double rms_px = reprojection_rms_px(camera, cloud.points, pixels_px, pose);
+      // EP-9: the smallest rms; infinite where a point lies behind the camera.
       if (!(rms_px < out.rms_px)) continue;
       out = {.status = PoseStatus::kOk, .pose = pose, .rms_px = rms_px};
     }

@@ -18,6 +18,7 @@ constexpr double kStill = 1e-12;  // a step below this ends it: rad, and shift o
 constexpr double kFine = 1e-8;    // a step below this that does not shrink is rounding
 // At the bottom rms is flat: a pose moves by 1e-8 while rms moves by rounding.
 constexpr double kRounding = 1.0 + 1e-12;
+// 2^-16 of a step: a way down that is not found by then is rounding.
 constexpr int kHalvings = 16;
 
 Vector2d pixel_of(const Camera& camera, const Vector3d& x) {
@@ -72,6 +73,7 @@ Vector6d gauss_newton_step(std::span<const MarkerView> views, const Pose& pose) 
       residual.segment<2>(row) = view.pixels_px[i] - pixel_of(camera, x);
     }
   }
+  // Not the normal equations: they would square the condition of a flat or distant body.
   return jacobian.colPivHouseholderQr().solve(residual);
 }
 
@@ -83,6 +85,7 @@ double reprojection_rms_px(std::span<const MarkerView> views, const Pose& pose) 
     const Sight sight(view.eye);
     for (std::size_t i = 0; i < view.points_m.size(); ++i) {
       const Vector3d x = sight(to_world(pose, view.points_m[i]));
+      // Behind the camera the projection is a mirror image with a good rms: never accepted.
       if (!(x.z() > 0.0)) return std::numeric_limits<double>::infinity();
       sum_px2 += (pixel_of(view.camera, x) - view.pixels_px[i]).squaredNorm();
     }
@@ -100,6 +103,7 @@ Pose polish_pose(std::span<const MarkerView> views, const Pose& start) {
   Pose pose = start;
   double best_px = reprojection_rms_px(views, pose);
   double last_size = std::numeric_limits<double>::infinity();
+  // A start behind the camera has no way down that could be measured.
   if (!std::isfinite(best_px)) return pose;
   for (int i = 0; i < kPolishSteps; ++i) {
     Vector6d step = gauss_newton_step(views, pose);
@@ -115,6 +119,7 @@ Pose polish_pose(std::span<const MarkerView> views, const Pose& start) {
     pose = next;
     best_px = std::min(best_px, next_px);
     const double distance_m = (pose.position_m - views.front().eye.position_m).norm();
+    // Shift over distance, so that both parts are angles.
     const double size = step.head<3>().norm() + step.tail<3>().norm() / distance_m;
     if (size < kStill || (size < kFine && size >= last_size)) break;
     last_size = size;

@@ -11,6 +11,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+// P3P takes four: a fifth that agrees is the first that proves anything.
 constexpr std::size_t kMinInliers = 5;
 constexpr double kConfidence = 0.999;  // that a draw without outliers was among the rounds
 
@@ -35,6 +36,7 @@ Markers agreeing(const Camera& camera, std::span<const Vector3d> points_m,
     tangents.emplace_back((pixels_px[i].x() - camera.cx_px) / camera.fx_px,
                           (pixels_px[i].y() - camera.cy_px) / camera.fy_px);
   }
+  // The smaller one gives the larger tangent: no good marker is lost to unequal axes.
   const double f_px = std::min(camera.fx_px, camera.fy_px);
   std::vector<int> chosen;
   try {
@@ -47,6 +49,7 @@ Markers agreeing(const Camera& camera, std::span<const Vector3d> points_m,
     return {};
   }
   Markers out;
+  // Half of all or fewer may agree about a wrong pose.
   if (chosen.size() < kMinInliers || 2 * chosen.size() <= points.size()) return out;
   for (const int i : chosen) {
     out.points_m.push_back(points_m[static_cast<std::size_t>(i)]);

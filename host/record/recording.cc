@@ -12,6 +12,7 @@
 namespace tact::host::record {
 namespace {
 
+// A crash loses a second at most, and a disk is not asked at each frame.
 constexpr std::int64_t kFlush_ns = 1'000'000'000;
 
 using firmware::telemetry::crc_of;
@@ -57,6 +58,7 @@ Result<std::uint64_t> skip_ticks(SealedFile& in, Magic& magic) {
         "this tick log holds no pictures, only what a replay needs; tactd --replay computes it "
         "again and writes its ticks with --csv; a black box or a recording of tact-view can be "
         "shown"};
+  // Divided, not multiplied: a damaged header must not overflow into a place that fits.
   if (log.tick_bytes == 0 || log.ticks > file_bytes / log.tick_bytes ||
       log.header_bytes + log.ticks * log.tick_bytes >= file_bytes)
     return Error{
@@ -95,6 +97,7 @@ Result<Setup> read_setup(SealedFile& in, const Magic& magic) {
   }
   constexpr const char* kCutOff =
       "the file ends before its first frame; nothing of it can be shown, record again";
+  // Before the memory is taken: a length in a file is a claim.
   if (!read(in, setup.hello) || header.mesh_bytes > in.size_bytes()) return Error{kCutOff};
   setup.mesh.resize(header.mesh_bytes);
   if (in.read(setup.mesh.data(), setup.mesh.size()) < setup.mesh.size()) return Error{kCutOff};
@@ -111,8 +114,8 @@ bool add_operator(const OperatorRecord& tracked, Recording& recording) {
   const std::optional<tracking::TrackedOperator> seen = operator_of(tracked);
   recording.operators.push_back(seen.value_or(tracking::TrackedOperator{}));
   std::optional<figure::FigurePose> figure;
-  if (seen)
-    figure = figure_of(tracked, *seen);
+  if (seen) figure = figure_of(tracked, *seen);
+  // A frame whose operator is damaged shows him as he was, instead of a blink.
   else if (!recording.figures.empty())
     figure = recording.figures.back();
   recording.figures.push_back(std::move(figure));
@@ -132,6 +135,7 @@ std::string read_frames(SealedFile& in, std::uint64_t start, bool is_tracked,
   OperatorRecord tracked;
   for (std::uint64_t i = 0; i < records && read(in, record); ++i) {
     if (is_tracked && !read(in, tracked)) break;
+    // Frames have one size, so the next begins where it should, whatever this one holds.
     if (crc_of(record.frame) != record.crc || check_frame(record.frame, recording.hello)) {
       if (damaged++ == 0) first_damaged = start + i * stride;
       continue;
@@ -245,6 +249,7 @@ std::optional<Error> RecordingWriter::close() {
 void RecentFrames::restart(double frame_rate_Hz) {
   frames_.clear();
   is_tracked_ = false;
+  // The rate comes from a Hello: bounded, so that it bounds the memory.
   capacity_ = static_cast<std::size_t>(std::clamp(frame_rate_Hz, 1.0, 1000.0) * kKeep_s);
 }
 
@@ -252,6 +257,7 @@ void RecentFrames::add(const Frame& frame, const tracking::TrackedOperator* trac
                        const figure::FigurePose* figure) {
   if (frames_.size() >= capacity_ && !frames_.empty()) frames_.pop_front();
   auto kept = std::make_shared<KeptFrame>(frame);
+  // Once tracked, every later frame has an operator: a recording's records have one size.
   is_tracked_ = is_tracked_ || tracked != nullptr;
   if (is_tracked_) {
     kept->person = std::make_unique<const KeptOperator>(

@@ -42,6 +42,7 @@ const char* name_of(tracking::BodyState state) {
   return "unknown";
 }
 
+/// Bounded here as well: an array is not read on the word of a check elsewhere.
 std::size_t sites_of(const Hello& hello) {
   return std::min<std::size_t>(hello.site_count, firmware::telemetry::kMaxSites);
 }
@@ -50,6 +51,7 @@ std::size_t rings_of(const Hello& hello) {
 }
 
 void put(std::string& out, std::span<const float> values) {
+  // The shortest decimals that read back to the same float.
   for (const float value : values) fmt::format_to(std::back_inserter(out), ",{}", value);
 }
 void put(std::string& out, float value) { put(out, std::span(&value, 1)); }
@@ -175,6 +177,7 @@ void append_csv_row(std::string& out, const Frame& frame, const Hello& hello,
     put(out, std::span(site.profile_m).first(rings_of(hello)));
     put(out, site.tilt);
   }
+  // A frame without an operator has the columns all the same: rows have one length.
   const tracking::TrackedOperator none;
   for (const tracking::BodyRole role : bodies)
     put_body(out, (tracked != nullptr ? *tracked : none)[role]);

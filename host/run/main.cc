@@ -39,6 +39,7 @@ bool exists(const std::string& path) {
   return std::filesystem::exists(path, unreadable);
 }
 
+/// 0: a frame came again (TelemetryEvents).
 void warn_of_silence(double silence_s) {
   if (silence_s == 0.0) return warn("news from tactd again");
   warn(fmt::format("no news from tactd for {:.1f} s: its force is not known", silence_s));
@@ -58,6 +59,7 @@ class Recorder {
     if (path_.empty()) return;
     note(writer_.close());
     ++runs_;
+    // A new run of tactd has another scene: its frames do not fit behind the old ones.
     note(writer_.open(runs_ == 1 ? path_ : fmt::format("{}.{}", path_, runs_), hello, mesh,
                       is_tracked_));
   }
@@ -106,6 +108,7 @@ int export_csv(const Options& options, const record::ReadResult& read) {
     fmt::print("{}: {} frames, {:.1f} s\n", options.export_csv, recording.frames.size(),
                recording.length_s());
   }
+  // What is good was written, but a script must hear that it is not all.
   return read.damage.empty() ? kGood : kCheckFailed;
 }
 
@@ -120,6 +123,7 @@ void say_ready(const Options& options, const server::ViewerServer& server) {
   } else {
     fmt::print("tact-view: {}\n", server.url());
   }
+  // Who waits for this line by a pipe needs it now, not at the end.
   std::fflush(stdout);
 }
 
@@ -158,6 +162,7 @@ TelemetryEvents show_and_record(server::LiveView& view, Recorder& recorder, Oper
               },
           .frame =
               [&](const record::Frame& frame) {
+                // Once a frame: page and recording show the same moment.
                 const tracking::TrackedOperator* now = inputs.now();
                 inputs.add(frame);
                 view.add(frame, now);
@@ -177,6 +182,7 @@ TelemetryEvents show_and_record(server::LiveView& view, Recorder& recorder, Oper
 }
 
 int show_live(const Options& options) {
+  // Asked before the server starts: nobody should look on for an hour without a recording.
   if (!options.record.empty() && exists(options.record))
     return fail(options.record +
                 ": exists already; a recording is never overwritten, choose another name");
@@ -213,6 +219,7 @@ int show_recording(const Options& options, record::ReadResult read) {
   server::LiveView view;  // outlives the sessions, which live in io
   boost::asio::io_context io(1);
   if (options.figure || !read.recording.operators.empty()) view.accompany(&figure);
+  // No hand to move: a recording has no tactd behind it.
   server::ViewerServer server(io, view, nullptr, warn);
   server::Playback playback(io, view, std::move(read.recording),
                             std::filesystem::path(options.open).filename().string());

@@ -42,6 +42,7 @@ class Collecting {
   bool add(const record::Frame& frame) {
     const tracking::TrackedBody& tool = tracking_.now()[tracking::BodyRole::kTool];
     std::optional<Eigen::Vector3d> tip_m;
+    // The raw pose: the filtered one lags behind.
     if (tool.state == tracking::BodyState::kTracked) tip_m = to_world(tool.raw, tip_m_);
     tell_when_lost(tip_m.has_value());
     const Eigen::Vector3d device_m = Eigen::Vector3f(frame.tool_position_m).cast<double>();
@@ -76,6 +77,7 @@ std::vector<std::size_t> worst_of(const tracking::Registration& fit) {
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::ranges::sort(
       order, [&](std::size_t a, std::size_t b) { return fit.residual_m[a] > fit.residual_m[b]; });
+  // Sorted first, so that the worst stay when three are named.
   std::erase_if(order, [&](std::size_t i) { return !(fit.residual_m[i] > tracking::kDoubtful_m); });
   order.resize(std::min(order.size(), kWorstNamed));
   return order;
@@ -115,6 +117,7 @@ int finish(const Options& options, const std::vector<tracking::PosePair>& poses)
     return kBadInput;
   }
   tell(options, path, poses, *fit);
+  // Written all the same: a doubtful place is better than none, and the old file is kept as .bak.
   return fit->largest_m <= tracking::kDoubtful_m ? kGood : kCheckFailed;
 }
 
@@ -131,6 +134,7 @@ std::optional<Error> check(const std::string& path, const tracking::OperatorTrac
         "for recording under [input]",
         path)};
   }
+  // Its own section goes before the file that would be written: the work would have no effect.
   if (tracking.setup().registered_by == path) {
     return Error{fmt::format(
         "{}: has a [registration] of its own, which would go first; remove it, then register",
@@ -145,6 +149,7 @@ int register_tracker(const Options& options) {
   boost::asio::io_context io(1);
   tracking::OperatorTracking tracking(io, say);
   std::optional<Error> error =
+      // In the tracker's own frame: the fit is from there to the device.
       tracking.open(options.tracking, tracking::OperatorTracking::Registered::kNo);
   if (!error) error = check(options.tracking, tracking);
   if (error) {

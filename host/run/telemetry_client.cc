@@ -28,8 +28,8 @@ using boost::system::error_code;
 using model::Error;
 
 constexpr std::chrono::milliseconds kRetry{50};  // a person waits for the first picture
-constexpr double kPatience_s = 0.3;
-constexpr int kMessagesPerTurn = 64;  // then other work gets a turn
+constexpr double kPatience_s = 0.3;              // as the page has it (host/README.md)
+constexpr int kMessagesPerTurn = 64;             // then other work gets a turn
 
 /// The descriptor in a control message, or -1. Any further ones are closed.
 int take_descriptor(msghdr& message) {
@@ -40,6 +40,7 @@ int take_descriptor(msghdr& message) {
     for (std::size_t i = 0; i < count; ++i) {
       int fd = -1;
       std::memcpy(&fd, CMSG_DATA(c) + i * sizeof(int), sizeof fd);
+      // Every descriptor that came is ours to close, or each message could take one of them.
       if (found < 0)
         found = fd;
       else
@@ -53,6 +54,7 @@ int take_descriptor(msghdr& message) {
 record::MeshBytes read_memory_file(int fd, std::uint64_t expected) {
   record::MeshBytes mesh;
   struct stat status{};
+  // Before the memory is taken: the size has to be the one that the Hello announces.
   if (fstat(fd, &status) != 0 || static_cast<std::uint64_t>(status.st_size) != expected)
     return mesh;
   mesh.resize(expected);
@@ -103,6 +105,7 @@ void TelemetryClient::stop() {
 void TelemetryClient::connect() {
   const auto address = model::io::socket_address(path_);
   if (!address) return lose(address.error().sentence);
+  // In a folder that others may write, anybody could have put a socket of this name.
   if (const auto shared = model::io::check_socket_folder(path_, trust_))
     return lose(shared->sentence);
   const int fd = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
@@ -114,6 +117,7 @@ void TelemetryClient::connect() {
     const bool absent = why == ENOENT || why == ECONNREFUSED || why == EAGAIN;
     return lose(absent ? std::string() : fmt::format("{}: {}", path_, std::strerror(why)));
   }
+  // Asked of the kernel, after connecting: the file's owner says nothing of who listens.
   if (!model::io::has_trusted_peer(fd, trust_)) {
     ::close(fd);
     return lose(
@@ -134,6 +138,7 @@ void TelemetryClient::lose(const std::string& reason) {
   error_code ignored;
   socket_.close(ignored);
   silence_.cancel(ignored);
+  // What is told once: a loss, or a new reason; not the same one at each try.
   const bool had_hello = has_hello_;
   has_hello_ = is_silent_ = false;
   if (had_hello || reason != last_reason_) events_.lost(reason);
@@ -151,6 +156,7 @@ void TelemetryClient::retry_later() {
 void TelemetryClient::wait_for_data() {
   socket_.async_wait(boost::asio::posix::descriptor_base::wait_read, [this](error_code wrong) {
     if (wrong) return;  // closed by stop()
+    // All that waits, in one turn: the newest frame is the one that a person should see.
     for (int i = 0; i < kMessagesPerTurn && read_message(); ++i) {
     }
     if (socket_.is_open()) wait_for_data();
@@ -166,6 +172,7 @@ bool TelemetryClient::has_data() {
 void TelemetryClient::listen() {
   if (std::exchange(is_silent_, false) && events_.silent) events_.silent(0.0);
   const double patience_s =
+      // Below 8 frames a second 0.3 s would end within a gap that is none.
       std::max(kPatience_s, 2.5 / std::max(1.0, static_cast<double>(hello_.frame_rate_Hz)));
   silence_.expires_after(std::chrono::duration_cast<std::chrono::nanoseconds>(
       std::chrono::duration<double>(patience_s)));
@@ -180,6 +187,7 @@ void TelemetryClient::listen() {
 /// One message. False when there is none left or the connection ended.
 bool TelemetryClient::read_message() {
   alignas(record::Frame)
+      // One byte more than the largest message: a longer one shows by its size.
       std::byte bytes[std::max(sizeof(record::Hello), sizeof(record::Frame)) + 1];
   alignas(cmsghdr) char control[CMSG_SPACE(4 * sizeof(int))];
   iovec part{.iov_base = bytes, .iov_len = sizeof bytes};
@@ -190,6 +198,7 @@ bool TelemetryClient::read_message() {
   message.msg_controllen = sizeof control;
   const ssize_t got = ::recvmsg(socket_.native_handle(), &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
   if (got < 0 && (errno == EAGAIN || errno == EINTR)) return false;
+  // 0: tactd closed its end.
   if (got <= 0) return lose({}), false;
 
   const int memory_file = take_descriptor(message);
@@ -231,6 +240,7 @@ std::optional<Error> TelemetryClient::take_frame(std::span<const std::byte> mess
 }
 
 void TelemetryClient::move_hand(const double (&position_m)[3], double grip_ratio) {
+  // Never to hardware: a real hand is where it is.
   if (!has_hello_ || hello_.simulated == 0) return;
   const auto address = model::io::socket_address(std::string(record::text_of(hello_.hand_socket)));
   if (!address) return;

@@ -50,6 +50,7 @@ std::string_view value_in(std::string_view list, std::string_view name, char sep
 }  // namespace
 
 bool Access::host_allowed(std::string_view host) const {
+  // DNS rebinding needs no guard there: a name that was turned to us still lacks the token.
   if (!loopback) return !host.empty();  // the token decides
   const std::string_view name = name_of(host);
   return name == "localhost" || name == "127.0.0.1" || name == "[::1]" || name == bind_address ||
@@ -57,6 +58,7 @@ bool Access::host_allowed(std::string_view host) const {
 }
 
 bool Access::token_allowed(std::string_view authorization, std::string_view cookies) const {
+  // An unset token would match an empty header.
   if (token.empty()) return false;
   constexpr std::string_view kScheme = "Bearer ";
   if (authorization.starts_with(kScheme) &&
@@ -67,6 +69,7 @@ bool Access::token_allowed(std::string_view authorization, std::string_view cook
 
 std::string Access::cookie() const {
   const bool is_tls = public_url.starts_with("https://");
+  // Secure only behind TLS: on plain http the browser would not send it back.
   return fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/{}", cookie_name, token,
                      is_tls ? "; Secure" : "");
 }
@@ -74,6 +77,7 @@ std::string Access::cookie() const {
 std::string_view authority_of(std::string_view url) {
   const std::string_view rest = behind_scheme(url);
   const std::string_view authority = rest.substr(0, rest.find('/'));
+  // A path would break the page's own links, which begin at the top.
   const bool is_whole = rest.size() - authority.size() <= 1;
   return is_whole && authority.find_first_of("?#@ ") == std::string_view::npos ? authority : "";
 }
@@ -88,6 +92,7 @@ std::string_view query_value(std::string_view query, std::string_view key) {
 
 model::Result<std::string> make_token() {
   std::array<unsigned char, 16> bytes{};
+  // Not std::random_device: who is let in hangs on it, and this says where it is from.
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
     return model::Error{"the kernel gives no random numbers for the token"};
   std::string out;

@@ -19,6 +19,7 @@ namespace beast = boost::beast;
 namespace http = boost::beast::http;
 using beast::error_code;
 
+// Some hundred rows a turn: live frames of other browsers go between.
 constexpr std::size_t kFramesPerPart = 256;
 
 }  // namespace
@@ -33,6 +34,7 @@ Download::Download(beast::tcp_stream stream, Seat seat, record::Snapshot snapsho
       bodies_(bodies_in(snapshot_)) {}
 
 void Download::wait_at_most(std::chrono::seconds patience) {
+  // Two limits: 30 s for a part, five minutes for all.
   stream_.expires_at(std::min(deadline_, std::chrono::steady_clock::now() + patience));
 }
 
@@ -67,6 +69,7 @@ void Download::write_next() {
   static const record::KeptOperator kNobody;
   const auto& frames = snapshot_.frames;
   if (next_ == frames.size()) {
+    // The seal goes last: it tells a whole recording from one that was cut off on its way.
     if (kind_ == DownloadKind::kCsv || std::exchange(is_sealed_, true)) return finish();
     return write_chunk(seal_.bytes());
   }
@@ -91,6 +94,7 @@ void Download::finish() {
   boost::asio::async_write(
       stream_, http::make_chunk_last(), [self = shared_from_this()](error_code, std::size_t) {
         error_code ignored;
+        // Says "that was all", so that the browser does not wait for a next answer.
         self->stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
       });
 }

@@ -16,6 +16,7 @@
 namespace tact::host::server {
 namespace {
 
+// Beyond what a picture or a plot shows; the tool's place to a micrometre at 1 m.
 constexpr int kDigits = 4;
 constexpr int kPositionDigits = 6;
 
@@ -107,12 +108,14 @@ std::string frame_json(const record::Frame& frame, const record::Hello& hello) {
   const std::size_t rings = std::min<std::size_t>(hello.ring_count, firmware::telemetry::kMaxRings);
   bool first = true;
   for (std::size_t i = 0; i < sites; ++i) {
+    // A free site has nothing to show: the frame stays short (kMaxFrameJsonBytes).
     if (frame.site[i].state == firmware::telemetry::SiteState::kFree) continue;
     if (!first) out += ',';
     first = false;
     put_site(out, i, frame.site[i], rings);
   }
   out += ']';
+  // A law has profiles or a patch, never both.
   if (rings == 0) put_patch(out, frame.patch);
   out += '}';
   return out;

@@ -17,8 +17,10 @@ namespace beast = boost::beast;
 namespace http = boost::beast::http;
 using beast::error_code;
 
+// Chosen: browsers send some hundred bytes; nobody has a body to send.
 constexpr std::uint32_t kMaxHeaderBytes = 8192;
 constexpr std::uint64_t kMaxBodyBytes = 1024;
+// A peer that goes on sending is read away for so long, or so much, then dropped.
 constexpr std::chrono::seconds kFarewell{2};
 constexpr std::size_t kMaxDrained_bytes = 1 << 20;
 
@@ -27,10 +29,12 @@ std::string_view view_of(beast::string_view text) { return {text.data(), text.si
 template <typename Message>
 void set_common(Message& message) {
   message.set(http::field::server, "tact-view");
+  // A scene must not come from a cache after tactd has begun another one.
   message.set(http::field::cache_control, "no-store");
   message.set("X-Content-Type-Options", "nosniff");
   message.set("Referrer-Policy", "no-referrer");
   message.set("Cross-Origin-Resource-Policy", "same-origin");
+  // Nothing from elsewhere, no framing: a foreign page cannot put its script beside ours.
   message.set("Content-Security-Policy",
               "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
               "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
@@ -64,6 +68,7 @@ HttpSession::HttpSession(beast::tcp_stream stream, Seat seat, Site& site)
     : stream_(std::move(stream)), seat_(std::move(seat)), site_(site) {}
 
 void HttpSession::read_next() {
+  // A parser reads one message; its limits have to be set anew.
   parser_.emplace();
   parser_->header_limit(kMaxHeaderBytes);
   parser_->body_limit(kMaxBodyBytes);
@@ -78,6 +83,7 @@ void HttpSession::read_next() {
 /// Who left, or was too slow, hears nothing more.
 void HttpSession::refuse(error_code wrong) {
   const bool is_http = wrong.category() == make_error_code(http::error::bad_method).category();
+  // A connection that ended, or timed out: nobody is there to read an answer.
   if (!is_http || wrong == http::error::end_of_stream || wrong == http::error::partial_message)
     return;
   if (wrong == http::error::header_limit) {
@@ -100,11 +106,13 @@ void HttpSession::handle(const Request& request) {
   const std::string_view path = target.substr(0, mark);
   const std::string_view query =
       mark == std::string_view::npos ? std::string_view() : target.substr(mark + 1);
+  // Host before token: a page under a foreign name learns nothing, even with a cookie.
   if (!site_.access.host_allowed(view_of(request[http::field::host]))) {
     return write(
         sorry(http::status::forbidden, "403: open this page by its address, not by another name"),
         request);
   }
+  // The page's own files are in the repository: no secret.
   const bool is_public = site_.page.find(path) != nullptr;
   if (!is_public && !site_.access.token_allowed(view_of(request[http::field::authorization]),
                                                 view_of(request[http::field::cookie]))) {
@@ -123,6 +131,7 @@ void HttpSession::handle(const Request& request) {
 }
 
 void HttpSession::upgrade(const Request& request) {
+  // A browser lets any page open a WebSocket to us, with our cookie: Origin is what tells.
   if (!origin_matches(view_of(request[http::field::origin]), view_of(request[http::field::host]))) {
     return write(sorry(http::status::forbidden, "403: this WebSocket is for tact's own page only"),
                  request);
@@ -174,6 +183,7 @@ void HttpSession::write(Response response, const Request& request) {
   set_common(response_);
   response_.version(request.version());
   response_.keep_alive(request.keep_alive());
+  // HEAD: the length that GET would have, and no body.
   if (request.method() == http::verb::head) {
     const std::size_t length = response_.body().size();
     response_.body().clear();

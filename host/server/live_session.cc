@@ -37,6 +37,7 @@ std::optional<HandWish> parse_hand(const std::string& text) {
     const auto found = hand.find(kKeys[i]);
     if (found == hand.end() || !found->is_number()) return std::nullopt;
     value[i] = found->get<double>();
+    // The simulator clamps to its workspace; this keeps nonsense off its socket.
     if (!std::isfinite(value[i]) || std::abs(value[i]) > kFarthestHand_m) return std::nullopt;
   }
   return HandWish{.position_m = {value[0], value[1], value[2]},
@@ -51,6 +52,7 @@ LiveSession::LiveSession(beast::tcp_stream stream, Seat seat, LiveView& view,
       move_hand_(move_hand),
       steer_(steer) {}
 
+// The view holds a plain pointer.
 LiveSession::~LiveSession() { view_.unsubscribe(*this); }
 
 void LiveSession::start(const Request& upgrade) {
@@ -80,6 +82,7 @@ void LiveSession::on_frame(const Text& frame, const Text& beside) {
 
 void LiveSession::write_next() {
   if (writing_) return;
+  // The figure belongs to the frame that has just gone: nothing may come between.
   if (due_beside_) {
     writing_ = std::move(due_beside_);
   } else if (next_status_) {
@@ -112,6 +115,7 @@ void LiveSession::take(const std::string& text) {
   const nlohmann::json message = parse(text);
   if (message.is_object() && message.contains("seen") && message["seen"].is_number_unsigned()) {
     const std::uint64_t seen = message["seen"].get<std::uint64_t>();
+    // Never back, and never more than were sent: a page cannot open its own window.
     seen_frames_ = std::clamp(seen, seen_frames_, sent_frames_);
     write_next();
   }

@@ -36,6 +36,7 @@ void LiveView::begin(const record::Hello& hello, record::MeshBytes mesh, Link li
   mesh_ = std::make_shared<const record::MeshBytes>(std::move(mesh));
   ++scene_number_;
   if (companion_)
+    // Before tell(): the status of a new scene has its figure.
     figure_ = std::make_shared<const std::string>(companion_->begin(hello, *mesh_).dump());
   recent_.restart(static_cast<double>(hello.frame_rate_Hz));
   link_ = link;
@@ -52,6 +53,7 @@ void LiveView::add(const record::Frame& frame, const tracking::TrackedOperator* 
   }
   recent_.add(frame, tracked, shown);
   newest_beside_ = beside;
+  // Kept above, but no JSON is made for nobody.
   if (listeners_.empty()) return;
   const Text text = std::make_shared<const std::string>(frame_json(frame, hello_));
   for (LiveListener* listener : listeners_) listener->on_frame(text, beside);
@@ -68,10 +70,12 @@ void LiveView::lose(const std::string& reason) {
 void LiveView::subscribe(LiveListener& listener) {
   listeners_.insert(&listener);
   listener.on_status(status_);
+  // A replay may rest: without this the page would stay empty until somebody plays.
   if (link_ == Link::kReplay && !recent_.frames().empty())
     listener.on_frame(
         std::make_shared<const std::string>(frame_json(recent_.frames().back()->frame, hello_)),
         newest_beside_);
+  // Once: a replay begins for its first page.
   if (const auto then = std::exchange(watched_, nullptr)) then();
 }
 

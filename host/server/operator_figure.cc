@@ -24,12 +24,14 @@ pose::Pose pose_of(const record::Frame& frame) {
 }  // namespace
 
 Eigen::Vector3d grip_of(const record::Hello& hello, const record::MeshBytes& mesh) {
+  // Behind the organ's vertices and triangles, 12 bytes each (telemetry_check.h).
   const std::size_t at = 12 * (std::size_t{hello.organ_vertices} + hello.organ_triangles);
   const std::size_t bytes = 12 * std::size_t{hello.tool_vertices};
   if (bytes == 0 || mesh.size() < at + bytes) return figure::FigureSettings{}.grip_m;
   double top_m = 0.0;
   for (std::size_t i = 0; i < bytes; i += 12) {
     float z_m = 0.0f;
+    // z is the third float of a vertex; the tool's handle points along +z (figure.h).
     std::memcpy(&z_m, mesh.data() + at + i + 8, sizeof z_m);
     top_m = std::max(top_m, static_cast<double>(z_m));
   }
@@ -55,6 +57,7 @@ std::string OperatorFigure::with(const record::Frame& frame,
                                  const figure::FigurePose* shown) {
   static const tracking::TrackedOperator kNobody{};
   const double time_s = static_cast<double>(frame.time_ns) * 1e-9;
+  // A recording's figure is told as it was shown, not posed anew.
   told_ = shown ? *shown : figure_.update(time_s, pose_of(frame), tracked ? *tracked : kNobody);
   const bool head_tracked =
       tracked && (*tracked)[tracking::BodyRole::kHead].state == tracking::BodyState::kTracked;

@@ -13,6 +13,7 @@ namespace {
 
 using model::Error;
 
+// Chosen: more is a wrong folder, such as /.
 constexpr std::uintmax_t kMaxPageBytes = 64 << 20;
 
 std::string mime_of(const std::filesystem::path& path) {

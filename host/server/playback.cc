@@ -28,6 +28,7 @@ Playback::Playback(boost::asio::io_context& io, LiveView& view, record::Recordin
   const auto believed_ns = [](const record::Frame& frame) {
     return std::clamp(frame.time_ns, -kLongest_ns, kLongest_ns);
   };
+  // A clock that steps back in the file stands here: at_ns_ never falls, so it can be searched.
   std::int64_t latest_ns = 0;
   for (const record::Frame& frame : recording_.frames) {
     latest_ns = std::max(latest_ns, believed_ns(frame) - believed_ns(recording_.frames.front()));
@@ -75,6 +76,7 @@ void Playback::show(std::size_t frame) {
 
 /// What the view keeps begins here.
 void Playback::jump_to(std::size_t frame) {
+  // What is kept for "save" has to be one stretch of time.
   if (frame != shown_ + 1) view_.rewind();
   show(frame);
 }
@@ -95,6 +97,8 @@ void Playback::schedule() {
   due_ = std::max(due_, Clock::now() - kMaxLate) +
          std::chrono::nanoseconds(std::llround(static_cast<double>(gap_ns) / speed_ratio_));
   timer_.expires_at(due_);
+  // cancel() cannot call back a handler that is queued already: the number tells it that it is
+  // late.
   timer_.async_wait([this, turn = ++turn_](boost::system::error_code wrong) {
     if (!wrong) play_next(turn);
   });
@@ -118,6 +122,7 @@ void Playback::steer(const ReplayWish& wish) {
     jump_to(static_cast<std::size_t>(std::clamp<std::int64_t>(wanted, 0, last)));
   }
   if (wish.playing) {
+    // Play at the end means: again from the start.
     if (*wish.playing && !playing_ && is_last() && !wish.at_s) jump_to(0);
     playing_ = *wish.playing;
   }

@@ -10,9 +10,9 @@
 namespace tact::host::server {
 namespace {
 
-constexpr double kLongest_s = 1e7;     // beyond any recording
-constexpr double kFastest_ratio = 20;  // and the slowest is its inverse
-constexpr std::int64_t kMaxFrames = 1'000'000;
+constexpr double kLongest_s = 1e7;              // beyond any recording
+constexpr double kFastest_ratio = 20;           // and the slowest is its inverse
+constexpr std::int64_t kMaxFrames = 1'000'000;  // of one step; fits an int
 
 bool take(const nlohmann::json& value, std::optional<bool>& into) {
   if (!value.is_boolean()) return false;
@@ -28,6 +28,7 @@ bool take(const nlohmann::json& value, double low, double high, std::optional<do
 
 bool take(const nlohmann::json& value, std::optional<int>& into) {
   if (!value.is_number_integer()) return false;
+  // Through a double: an integer of 64 bits would be cut to an int without a word.
   const double frames = value.get<double>();
   if (std::abs(frames) > static_cast<double>(kMaxFrames)) return false;
   into = static_cast<int>(frames);
@@ -50,6 +51,7 @@ std::optional<ReplayWish> parse_replay(const std::string& text) {
                           ? take(value, 1.0 / kFastest_ratio, kFastest_ratio, wish.speed_ratio)
                       : key == "repeats" ? take(value, wish.repeats)
                                          : false;
+    // One wrong key refuses all: half a wish would play what nobody asked for.
     if (!good) return std::nullopt;
   }
   return wish;

@@ -55,12 +55,14 @@ std::optional<Error> ViewerServer::open(const ViewerOptions& options) {
                     "without a path",
                     options.public_url)};
   }
+  // The page first: a server without it would only answer 404.
   if (std::optional<Error> error = site_.page.load(options.page_folder)) return error;
   if (std::optional<Error> error = listen({address, options.port})) return error;
   site_.request_patience = options.request_patience;
   site_.access.loopback = address.is_loopback();
   site_.access.bind_address = url_name(address);
   site_.access.public_url = options.public_url;
+  // Cookies know no port: two tact-view on one PC would overwrite each other's.
   site_.access.cookie_name = fmt::format("tact_token_{}", port());
   Result<std::string> made = make_token();
   if (!made) return made.error();
@@ -82,6 +84,7 @@ std::optional<Error> ViewerServer::listen(const tcp::endpoint& endpoint) {
 
 void ViewerServer::start() {
   acceptor_.start([this](tcp::socket socket) {
+    // One of the uses is our own.
     if (seat_.use_count() > kMaxConnections) return turn_away(std::move(socket));
     std::make_shared<HttpSession>(boost::beast::tcp_stream(std::move(socket)), seat_, site_)
         ->start();
@@ -94,6 +97,7 @@ void ViewerServer::turn_away(tcp::socket socket) {
       "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\nContent-Length: 59\r\n"
       "Connection: close\r\n\r\n503: too many pages and downloads are open; close some now\n";
   error_code ignored;
+  // It may not hold up the others.
   socket.non_blocking(true, ignored);
   socket.write_some(boost::asio::buffer(kAnswer), ignored);  // a new connection has room for it
   socket.shutdown(tcp::socket::shutdown_send, ignored);

@@ -19,6 +19,7 @@ namespace {
 using model::Error;
 using model::Result;
 
+// Chosen; a turn is one picture of 60 Hz, so the loop never stands.
 constexpr double kLongestGap_s = 60.0;  // a longer one is not waited out
 constexpr double kTurn_s = 1.0 / 60.0;  // from the last line to the first
 
@@ -34,6 +35,7 @@ Result<ObservationFile> read_observation_file(const std::string& path, KeepText 
   std::size_t number = 0;
   for (std::string line; std::getline(file, line);) {
     ++number;
+    // A file from Windows ends its lines with \r.
     if (line.empty() || line == "\r") continue;
     Result<Observation> seen = parse_observation(line);
     if (seen) {
@@ -60,6 +62,8 @@ std::optional<Error> check_loop(const std::string& path, const ObservationFile& 
     span.last_s = std::max(span.last_s, seen.time_s);
   }
   for (const auto& [who, span] : spans) {
+    // A shorter step back counts as disorder (body_tracker.h), and the second round would be
+    // refused.
     if (span.last_s - span.first_s > kRestart_s) continue;
     return Error{fmt::format(
         "{}: camera {} looks at body {} for {:.2f} s, and a file that begins again at its end "

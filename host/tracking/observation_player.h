@@ -2,7 +2,7 @@
 // observation_player.h - plays a file of observations, one per line, with the time that they carry.
 //
 // The order of the file is kept: a line whose time goes back comes at once. Lines that are no
-// observation are left out; open() says how many and where the first is.
+// observation are left out; ObservationFile says how many and where the first is.
 #pragma once
 
 #include <boost/asio/io_context.hpp>

@@ -48,6 +48,7 @@ std::optional<OperatorTracker::Joint> OperatorTracker::join(std::size_t body, st
   for (std::size_t other = 0; other < setup_.cameras.size(); ++other) {
     const std::optional<Look>& beside = looks_[body][other];
     if (other == camera || !beside) continue;
+    // Both ways: which camera's datagram comes first is chance.
     if (!(std::abs(beside->time_s - look.time_s) <= kTogether_s)) continue;
     views.push_back(beside->view);
     const pose::PoseEstimate joint = pose::joint_pose(views);
@@ -67,11 +68,15 @@ void OperatorTracker::take(std::size_t body, std::size_t camera, Look look,
     return e;
   };
   BodyTracker& tracker = trackers_[body];
+  // From the camera's axes to the tracker's.
   estimate.pose = pose::drive(look.view.eye, estimate.pose);
+  // A picture that repeats itself would hold a joint pose back where the body no longer is.
   const bool enters = !tracker.repeats(camera);
   const std::optional<Joint> joint = enters ? join(body, camera, look) : std::nullopt;
   bool good = tracker.take(registered(joint ? joint->estimate : estimate), look.time_s, now_s);
+  // Not newer than the good pose, but of its moment: better, without advancing the filter.
   if (!good && joint) good = tracker.refine(registered(joint->estimate), joint->time_s);
+  // What was refused must not be joined with a later look of another camera.
   looks_[body][camera].reset();
   if (good && enters) looks_[body][camera] = std::move(look);
 }
@@ -94,6 +99,7 @@ std::optional<Error> OperatorTracker::take(const Observation& seen, double now_s
       pose::robust_pose(camera->lens, markers.points_m, markers.pixels_px, camera->outlier_px);
   const std::optional<Pose> place = camera_pose(camera_at);
   if (is_base) {
+    // The base is the tracker's frame: (camera <- base) turned round is the camera's place.
     estimate.pose = inverse(estimate.pose);
   } else if (estimate.status == pose::PoseStatus::kOk && place) {
     Look look{.time_s = seen.time_s,

@@ -41,7 +41,8 @@ std::optional<Error> OperatorTracking::open(const std::string& path, Registered 
                     path));
   }
   if (std::optional<Error> error =
-          setup->udp_port != 0 ? listen(setup->udp_port) : load(setup->recording)) {
+          // 0 is no port of a tracker here: tracking_setup.cc has asked for exactly one input.
+      setup->udp_port != 0 ? listen(setup->udp_port) : load(setup->recording)) {
     return error;
   }
   tracker_.emplace(std::move(*setup));
@@ -51,6 +52,7 @@ std::optional<Error> OperatorTracking::open(const std::string& path, Registered 
 std::optional<Error> OperatorTracking::listen(std::uint16_t port) {
   error_code wrong;
   socket_.open(udp::v4(), wrong);
+  // This PC alone: datagrams have no sender that could be believed.
   if (!wrong) socket_.bind({boost::asio::ip::address_v4::loopback(), port}, wrong);
   if (wrong) {
     return Error{
@@ -109,6 +111,7 @@ void OperatorTracking::take(const Observation& seen) {
 }
 
 void OperatorTracking::refuse(const Error& error) {
+  // A sender with a fault has it in each datagram.
   if (refused_by_content_++ == 0) {
     say(fmt::format("tracking: an observation is left out: {}; others like it are only counted",
                     error.sentence));

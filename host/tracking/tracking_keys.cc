@@ -16,6 +16,7 @@ namespace {
 using model::Error;
 using model::Result;
 
+// Chosen: a description has a few kB, a room less than 100 m.
 constexpr std::uintmax_t kMaxFile_bytes = 1'000'000;
 constexpr double kFarthest_m = 100.0;
 
@@ -43,10 +44,12 @@ Result<toml::table> parse_toml_file(const std::string& path) {
 }
 
 void TrackingKeys::refuse(std::string_view key, const std::string& sentence) {
+  // The first one: later ones often follow from it.
   if (error_) return;
   const toml::node* node = table_.get(key);
   const std::uint32_t line =
       node != nullptr ? node->source().begin.line : table_.source().begin.line;
+  // toml++ counts from 1 and gives 0 for a table that nobody wrote.
   error_ = Error{fmt::format("{}:{}: {}", path_, std::max(line, 1u), sentence)};
 }
 
@@ -82,6 +85,7 @@ std::string TrackingKeys::text(std::string_view key) {
 bool TrackingKeys::flag(std::string_view key) {
   const toml::node* node = table_.get(key);
   if (node == nullptr) return false;
+  // Exact: toml++ would take the number 1 for true.
   const auto value = node->value_exact<bool>();
   if (!value) refuse(key, fmt::format("{} must be true or false", key));
   return value.value_or(false);

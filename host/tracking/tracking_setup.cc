@@ -19,10 +19,12 @@ namespace fs = std::filesystem;
 using model::Error;
 using model::Result;
 
+// Chosen bounds: beyond any camera, any operator, any marker body; a wrong unit shows.
 constexpr double kMax_px = 1e6;
 constexpr double kFarthestShoulder_m = 3.0;
 constexpr double kFarthestMarker_m = 10.0;
 constexpr double kOutlierTangent = 0.0025;  // as 3 px with f = 1200 px
+// EPnP's least (epnp.h).
 constexpr std::size_t kMinMarkers = 4;
 constexpr std::size_t kMaxSections = 32;
 constexpr const char* kBase = "base";
@@ -39,6 +41,7 @@ void read_name(TrackingKeys& k, std::string& out) {
 
 void read_input(TrackingKeys& k, TrackingSetup& out) {
   k.only({"udp_port", "recording"});
+  // Both or none: equal.
   if (k.has("udp_port") == k.has("recording"))
     return k.refuse("udp_port", "[input] takes udp_port or recording, one of them; write one");
   if (k.has("udp_port")) {
@@ -47,6 +50,7 @@ void read_input(TrackingKeys& k, TrackingSetup& out) {
       k.refuse("udp_port", "udp_port must be a whole number; write one");
     out.udp_port = static_cast<std::uint16_t>(port);
   } else {
+    // Beside the description, wherever the program was started.
     out.recording = (fs::path(out.path).parent_path() / k.text("recording")).string();
   }
 }
@@ -66,6 +70,7 @@ void read_camera(TrackingKeys& k, TrackingSetup& out) {
   read_name(k, camera.name);
   const bool sweep = k.flag("sweep");
   if (sweep) {
+    // Tangents are pixels of a camera with focal length 1 (epnp.h).
     camera.lens = {.fx_px = 1.0, .fy_px = 1.0};
     camera.outlier_px = kOutlierTangent;
     for (const char* key : {"fx_px", "fy_px", "cx_px", "cy_px"}) {
@@ -91,6 +96,7 @@ void read_role(TrackingKeys& k, const TrackingSetup& out, MarkerBody& body) {
   const auto found = std::ranges::find(kRoleNames, role);
   if (found != kRoleNames.end()) {
     body.role = static_cast<BodyRole>(found - kRoleNames.begin());
+    // The base has no role of the operator: it is the tracker's own frame.
   } else if (role != kBase) {
     k.refuse("role", fmt::format("role is none of: {}, {}; write one of them",
                                  fmt::join(kRoleNames, ", "), kBase));
@@ -103,6 +109,7 @@ void read_role(TrackingKeys& k, const TrackingSetup& out, MarkerBody& body) {
 
 void read_markers(TrackingKeys& k, MarkerBody& body) {
   for (const std::vector<double>& row :
+       // Any number here: id and metres have different bounds, each told below.
        k.rows("markers_m", 4, std::numeric_limits<double>::max())) {
     const double id = row[0];
     const Eigen::Vector3d p(row[1], row[2], row[3]);
@@ -215,8 +222,8 @@ Result<TrackingSetup> load_tracking_setup(const std::string& path) {
   check_base(k, out);
   if (k.has("operator"))
     k.section("operator", [&](TrackingKeys& keys) { read_operator(keys, out); });
-  if (k.has("registration"))
-    read_registration(k, path, out);
+  if (k.has("registration")) read_registration(k, path, out);
+  // The description's own section goes first; a file beside it is not even opened then.
   else if (!error)
     error = read_registration_beside(out);
   if (error) return *error;
