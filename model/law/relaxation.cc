@@ -10,6 +10,7 @@
 namespace tact::model::law {
 namespace {
 
+// RX-4, chosen. A sphere on a half-space has 2/3, a spring 1; only a law near its limit comes here.
 constexpr double kMaxFlow = 4.0;
 
 // RX-3: b, free of cancellation; the series is good to 1e-16 and three times as fast as expm1.
@@ -20,7 +21,8 @@ double gain(double x) RT_SAFE {
 
 }  // namespace
 
-// RX-4. Whatever is no number is above the most.
+// RX-4. Beyond the range of a law F' is 0, and q infinite or NaN: both fail the test and get
+// the most.
 double flow_ratio(double stretch_m, const LawResponse& at_stretch) RT_SAFE {
   if (at_stretch.force_N == 0.0) return 1.0;
   const double q = at_stretch.force_N / (stretch_m * at_stretch.stiffness_N_per_m);
@@ -34,6 +36,7 @@ RelaxationState Relaxation::after(const RelaxationState& before, double depth_m,
     const double x = before.flow_ratio[i] * tick_share_[i];
     const double b = gain(x);
     const double e = (1.0 - x * b) * before.stretch_m[i] + b * (depth_m - before.depth_m);
+    // Tissue that is not held cannot pull: what would be below zero is let go, and its energy lost.
     now.stretch_m[i] = held ? e : std::max(e, 0.0);
   }
   return now;
@@ -52,6 +55,7 @@ Result<Relaxation> make_relaxation(std::span<const PronyTerm> terms, double tick
           term.share, term.time_s)};
     out.tick_share_[out.count_] = tick_s / term.time_s;
     out.share_[++out.count_] = term.share;
+    // share_[0] is g_0, what no term takes: it began at 1.
     out.share_[0] -= term.share;
   }
   constexpr double kRounding = 1e-12;  // 1 - 0.8 - 0.2 is a little below 0

@@ -12,6 +12,7 @@
 namespace tact::model::law {
 namespace {
 
+// Bisection alone needs 60 to reach the last bit of a double; Newton ends far earlier.
 constexpr int kMaxIterations = 100;
 
 }  // namespace
@@ -19,6 +20,8 @@ constexpr int kMaxIterations = 100;
 SeriesLaw::SeriesLaw(const Law& law, double give_m_per_N, const Law& shape)
     : law_(&law), shape_(&shape), give_m_per_N_(give_m_per_N) {
   const LawRange own = law.range();
+  // A give above zero deepens the pair, but no place saturates
+  // deeper than the law alone; one below zero shortens it.
   range_ = {.pull_m = std::max(own.pull_m, depth_of(own.pull_m)),
             .press_m = std::min(own.press_m, depth_of(own.press_m))};
 }
@@ -30,6 +33,8 @@ double SeriesLaw::depth_of(double dent_m) const RT_SAFE {
 
 /// The dent whose depth this is; the depth grows with it.
 double SeriesLaw::dent_at(double depth_m) const RT_SAFE {
+  // 0 is an end of both brackets, which a Newton step may
+  // not reach: it would be halved towards for ever.
   if (depth_m == 0.0) return 0.0;
   double low_m = depth_m > 0.0 ? 0.0 : law_->range().pull_m;
   double high_m = depth_m > 0.0 ? law_->range().press_m : 0.0;
@@ -40,6 +45,7 @@ double SeriesLaw::dent_at(double depth_m) const RT_SAFE {
     (miss_m < 0.0 ? low_m : high_m) = dent_m;
     double next_m = dent_m - miss_m / (1.0 + give_m_per_N_ * at.stiffness_N_per_m);
     if (!(next_m > low_m && next_m < high_m)) next_m = 0.5 * (low_m + high_m);
+    // Two roundings of a double: nothing better can be reached.
     const bool done = std::abs(next_m - dent_m) <= 4e-16 * std::abs(next_m);
     dent_m = next_m;
     if (done) break;
@@ -58,7 +64,7 @@ LawResponse SeriesLaw::respond(double depth_m) const RT_SAFE {
   return beyond_limit(out, inside_m, depth_m);
 }
 
-// SL-4
+// SL-4. A give below zero would raise the damping above the law's own: it counts as none.
 double SeriesLaw::damping_Ns_per_m(double depth_m) const RT_SAFE {
   if (!(depth_m > 0.0) || !std::isfinite(depth_m)) return 0.0;
   const double dent_m = dent_at(std::min(depth_m, range_.press_m));

@@ -12,6 +12,7 @@
 namespace tact::model::law {
 namespace {
 
+// Of the table's end: off the jump of the slope at rest, and of no weight against a knot.
 constexpr double kBesideRest = 1e-9;
 constexpr double kPressShare = 0.95;  // the slope of a snapping chain is infinite at its very limit
 
@@ -39,6 +40,7 @@ LawResponse TabulatedLaw::respond(double depth_m) const RT_SAFE {
 double TabulatedLaw::damping_Ns_per_m(double depth_m) const RT_SAFE {
   if (damping_Ns_per_m_.empty() || !(depth_m > 0.0) || !std::isfinite(depth_m)) return 0.0;
   const std::size_t last = damping_Ns_per_m_.size() - 1;
+  // Linear and not a cubic: damping has no slope to keep, and a cubic could fall below zero.
   const double at = std::min(depth_m / press_.end(), 1.0) * static_cast<double>(last);
   const std::size_t low = std::min(static_cast<std::size_t>(at), last - 1);
   const double low_Ns_per_m = damping_Ns_per_m_[low], high_Ns_per_m = damping_Ns_per_m_[low + 1];
@@ -57,6 +59,8 @@ Result<TabulatedLaw> tabulate(const Law& law, std::size_t knots) {
     for (std::size_t k = 0; k < knots; ++k)
       out.damping_Ns_per_m_.push_back(law.damping_Ns_per_m(
           out.press_.end() * static_cast<double>(k) / static_cast<double>(knots - 1)));
+  // Knots that rise do not make a cubic between them rise:
+  // what the loop will read is tried, not the law.
   const std::size_t checks = 8 * knots;
   double before_N = law.respond(range.pull_m).force_N;
   for (std::size_t i = 1; i <= checks; ++i) {
