@@ -12,6 +12,8 @@
 namespace tact::model::indent {
 namespace {
 
+// Of the doublings, and of Newton and bisection together,
+// which need 60 for the last bit of a double.
 constexpr int kMaxIterations = 100;
 
 const char* parameter_error(const ComplianceCurveParameters& p) {
@@ -43,7 +45,8 @@ Result<ComplianceCurve> make_compliance_curve(const ComplianceCurveParameters& p
   if (const char* wrong = parameter_error(p)) return Error{std::string("compliance: ") + wrong};
   ComplianceCurve curve;
   curve.tip_ = p.tip;
-  const TipState last = curve.exact(kDeepestDent_ratio * p.tip.radius_m);  // r = 0: the tip alone
+  // In this order: r is still 0, so exact() speaks of the tip alone. CT-8 ends at this dent of it.
+  const TipState last = curve.exact(kDeepestDent_ratio * p.tip.radius_m);
   curve.regular_m_per_N_ = p.regular_m_per_N;
   curve.press_depth_m_ = p.working_depth_m;
   if (p.tip.large_strain)
@@ -71,6 +74,8 @@ TipState ComplianceCurve::exact(double depth_m) const RT_SAFE {
   // CL-1 in s, where a = R tanh s: d(s) = d_tip(s) + r F(s) grows with s.
   const auto below = [this, depth_m](const TipState& t)
                          RT_SAFE { return depth_m - t.depth_m - regular_m_per_N_ * t.force_N; };
+  // R s tanh s grows without limit, and CL-3 keeps the
+  // slope above zero: some doubling is deep enough.
   double low = 0.0, high = 1.0;
   for (int i = 0; i < kMaxIterations && below(tip_state(tip_, high)) > 0.0; ++i)
     low = high, high *= 2.0;
@@ -84,6 +89,8 @@ TipState ComplianceCurve::exact(double depth_m) const RT_SAFE {
     const double slope_m =
         tip_.radius_m * (t + s * (1.0 - t * t)) * (1.0 + at.stiffness_N_per_m * regular_m_per_N_);
     double next = s + miss_m / slope_m;
+    // Newton where it stays in the bracket, else the middle:
+    // so the bracket shrinks whatever the slope.
     if (!(next > low && next < high)) next = 0.5 * (low + high);
     const bool done = std::abs(next - s) <= 4e-16 * next;
     s = next;
@@ -101,6 +108,7 @@ law::LawResponse ComplianceCurve::respond(double depth_m) const RT_SAFE {
     out = {p.value, p.slope, p.integral, law::LawStatus::kOk};
   } else {
     const double k = pulled_N_per_m_;
+    // At rest the slope jumps from the pull's to zero: the mean of both.
     out = {k * inside_m, inside_m < 0.0 ? k : 0.5 * k, 0.5 * k * inside_m * inside_m,
            law::LawStatus::kOk};
   }
@@ -121,6 +129,7 @@ std::size_t ComplianceCurve::profile(double depth_m, std::span<double> ring_m) c
     // CL-4
     const double u_m =
         j == 0 ? d_m : law::ring_taper(j, rings_) * (tip_m + force_N * ring_m_per_N_[j]);
+    // CL-4  0 <= u_j <= u_(j-1): a dent is drawn as one bowl; errors of the map do not ripple it.
     before_m = std::clamp(u_m, 0.0, before_m);
     ring_m[j] = pulled ? -before_m : before_m;
   }
@@ -131,6 +140,7 @@ Result<ComplianceCurve> half_space_under(double radius_m, double working_depth_m
   constexpr double kRingsARadius = 3.0;  // LW-4: the dent bends most at the rim of the touch
   constexpr std::array<double, 23> kNothingRegular{};
   return make_compliance_curve(
+      // nu = 0, so that E* is E, 1 Pa: its force is scaled by who asks.
       {.tip = {.youngs_modulus_Pa = 1.0, .poisson_ratio = 0.0, .radius_m = radius_m},
        .working_depth_m = working_depth_m,
        .ring_pitch_m = radius_m / kRingsARadius,

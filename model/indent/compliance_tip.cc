@@ -8,9 +8,12 @@
 namespace tact::model::indent {
 namespace {
 
-constexpr double kSmall = 1e-2;  // below, CT-2 loses digits: use its series
+// Of s. Below, CT-2 is a difference of nearly equal numbers: its series. At 1e-2 both are right to
+// 2e-13; at 1e-3 the closed form would be off by 2e-11.
+constexpr double kSmall = 1e-2;
 
-// Gauss-Legendre, 8 points on -1 .. 1.
+// Gauss-Legendre, 8 points on -1 .. 1, the positive half of them. CT-4 comes out within 1e-5 of the
+// depth for dents up to 1.9 R: enough for a picture.
 constexpr std::array<double, 4> kNode{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
                                       0.9602898564975363};
 constexpr std::array<double, 4> kWeight{0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
@@ -19,8 +22,11 @@ constexpr std::array<double, 4> kWeight{0.3626837833783620, 0.3137066458778873, 
 /// CT-8 and CT-9 in place of CT-2 and CT-3; s > 0, so that dt/dx is finite. x stops at its reach.
 void enlarge_strain(const ElasticTip& tip, double s, TipState& state) RT_SAFE {
   const double w = 1.0 - 2.0 * tip.poisson_ratio, t = std::tanh(s), x = s * t;
+  // CT-9  d(a/R)/dx, as t = a/R = tanh s and x = s t
   const double dt_dx = (1.0 - t * t) / (t + s * (1.0 - t * t));
+  // Beyond the reach of the fit the terms in x stay as they are there; the one in a/R goes on.
   const double y = std::fmin(x, kDeepestDent_ratio);
+  // CT-8
   const double g = 1.0 + y * (-0.1210 + y * (0.0651 - y * 0.0259)) + w * (0.2559 * t + 0.2525 * y);
   double dg_dx = w * 0.2559 * dt_dx;
   if (x < kDeepestDent_ratio) dg_dx += -0.1210 + x * (0.1302 - x * 0.0777) + w * 0.2525;
@@ -49,6 +55,7 @@ double ElasticTip::sideways_stiffness_N_per_m() const RT_SAFE {
 double ElasticTip::stiffest_press_N_per_m() const {
   if (!large_strain) return 2.0 * contact_modulus_Pa() * radius_m;
   constexpr double kDeepest = 5.0;  // s: a is R within 1e-4
+  // CT-9 need not grow with s: sampled, as set-up has the time.
   constexpr int kSteps = 500;
   double most_N_per_m = 0.0;
   for (int i = 1; i <= kSteps; ++i)
@@ -82,6 +89,7 @@ double pressed_shape_m(const ElasticTip& tip, const TipState& state, double rho_
   for (std::size_t i = 0; i < kNode.size(); ++i)
     for (const double side : {-1.0, 1.0}) {
       const double t =
+          // A deep tip's a rounds to R, where atanh is infinite.
           std::fmin(rho_m * std::sin(half * (1.0 + side * kNode[i])) / r_m, 1.0 - 1e-12);
       sum_m += kWeight[i] * (state.depth_m - r_m * t * std::atanh(t));
     }

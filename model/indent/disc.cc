@@ -18,6 +18,7 @@ const char* parameter_error(const DiscDimensions& p) {
   if (!is_positive(p.free_height_m) || p.free_height_m <= p.thickness_m)
     return "free_height_m must be finite and above thickness_m, or there is no cone to flatten";
   if (!is_positive(p.youngs_modulus_Pa)) return "youngs_modulus_Pa must be finite and above 0";
+  // Outside of this an isotropic solid would give energy away.
   if (!(p.poisson_ratio > -1.0 && p.poisson_ratio < 0.5))
     return "poisson_ratio must lie between -1 and 0.5, both excluded";
   return nullptr;
@@ -62,11 +63,14 @@ DiscResponse respond(const Disc& disc, DiscForm form, double flattening_m) RT_SA
 double flattening_at_m(const Disc& disc, DiscForm form, double force_N) RT_SAFE {
   const double g = force_N / disc.flat_force_N();  // 0 .. 1
   const double half_eta2 = 0.5 * disc.cone_ratio * disc.cone_ratio;
+  // Without a cone DS-5 is the linear form, and what follows divides by eta^2.
   if (form == DiscForm::kLinear || half_eta2 < 1e-12) return disc.travel_m * g;
   // With z = x - 1, DS-5 reads  z^3 + p z + q = 0,  p = (1 - eta^2/2)/(eta^2/2) >= 0,
   // q = (1 - g)/(eta^2/2) >= 0: one real root.
   const double p = (1.0 - half_eta2) / half_eta2, q = (1.0 - g) / half_eta2;
   double x = 1.0;
+  // eta = sqrt(2) has p = 0: the general root would be 0
+  // times infinity; the cube root is what it tends to.
   if (p > 1e-9) {
     const double root = std::sqrt(p / 3.0);
     x -= 2.0 * root * std::sinh(std::asinh(1.5 * q / (p * root)) / 3.0);
@@ -87,6 +91,7 @@ Result<Disc> make_disc(const DiscDimensions& p) {
             .stiffness_N_per_m = p.youngs_modulus_Pa * stiffness_per_modulus_m(p),  // DS-3
             .travel_m = travel_m,
             .cone_ratio = travel_m / p.thickness_m};
+  // The form is not known here: whether the disc may snap is asked by who stacks it.
   if (const char* wrong = disc_error(disc, DiscForm::kLinear))
     return Error{std::string("disc: these dimensions have no usable spring: ") + wrong};
   return disc;

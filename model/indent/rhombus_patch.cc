@@ -10,11 +10,14 @@
 namespace tact::model::indent {
 namespace {
 
+// Both chosen. kRings: of its own displacements, which tact-fit compares (LW-2). kPastLimit: beyond
+// the limit of one chain those in the middle keep their force, while those at the rim still press.
 constexpr std::size_t kRings = 24;
 constexpr double kPastLimit = 2.0;  // of the chain's range
 
 }  // namespace
 
+// press_ comes last of the members: its curve reads the chain and the factor.
 RhombusPatch::RhombusPatch(const RhombusChain& chain, const RhombusPatchParameters& p)
     : chain_(chain),
       tip_radius_m_(p.tip_radius_m),
@@ -34,6 +37,7 @@ law::LawResponse RhombusPatch::respond(double depth_m) const RT_SAFE {
   if (!std::isfinite(depth_m)) return {.status = law::LawStatus::kInvalid};
   if (depth_m < 0.0) return {.status = law::LawStatus::kNoContact};
   const double inside_m = std::min(depth_m, press_.end());
+  // F and K are closed forms of the chain; U is the integral that only the table has.
   const law::CurvePoint at = under_tip(inside_m);
   const law::LawResponse out{
       .force_N = at.value, .stiffness_N_per_m = at.slope, .energy_J = press_.at(inside_m).integral};

@@ -54,6 +54,7 @@ UnitPressLimit press_limit(const RhombusUnit& unit) RT_SAFE {
   const double kN = unit.normal_stiffness_N_per_m, kT = unit.tangential_stiffness_N_per_m;
   const double s0 = std::sin(unit.initial_angle_rad), c0 = std::cos(unit.initial_angle_rad);
   const double flat_m = 2.0 * unit.rod_length_m * s0;
+  // RC-7: the sideways spring is so stiff that k reaches 0 before the rods are flat.
   if (kT > kN && kT * c0 / (kT - kN) < 1.0) {
     // cos(theta_c) = (kT cos(theta0) / (kT - kN))^(1/3),  x_lim = 2a (sin(theta0) - sin(theta_c))
     const double c = std::cbrt(kT * c0 / (kT - kN));
@@ -80,6 +81,7 @@ UnitResponse respond(const RhombusUnit& unit, double shortening_m) RT_SAFE {
   const double y = x * (s0 + s) / (c0 + c);
   // RC-2  sin(theta0 - theta') = (x / 2a)(sin(theta0) + s) / (sin(theta0) c + cos(theta0) s)
   const double sine = x / (2.0 * unit.rod_length_m) * (s0 + s) / (s0 * c + c0 * s);
+  // Rounding may take the sine above 1 where the rods are flat.
   const double change_rad = -std::asin(sine < 1.0 ? sine : 1.0);
   UnitResponse out;
   out.angle_rad = beyond_flat ? 0.0 : std::asin(s);
@@ -97,6 +99,7 @@ UnitResponse respond(const RhombusUnit& unit, double shortening_m) RT_SAFE {
 double shortening_at(const RhombusUnit& unit, const UnitPressLimit& limit, double force_N) RT_SAFE {
   if (force_N == 0.0) return 0.0;
   if (force_N >= limit.force_N) return limit.shortening_m;
+  // The branch through x = 0: beyond a snap the same force has other roots, which no press reaches.
   double low = force_N > 0.0 ? 0.0 : straight_m(unit);
   double high = force_N > 0.0 ? limit.shortening_m : 0.0;
   const InitialSides initial = initial_sides(unit);
