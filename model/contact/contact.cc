@@ -24,6 +24,7 @@ Vec3 movable(const SurfaceView& s, const Place& place, const Vec3& v) RT_SAFE {
 }  // namespace
 
 void Contact::reset() RT_SAFE {
+  // The law remembers by sphere (relaxation, a stepped patch): it must forget, too.
   for (std::size_t i = 0; i < kMaxSpheres; ++i) scene_.law->leave(i);
   probe_ = {};
   touch_ = {};
@@ -41,6 +42,7 @@ void Contact::touch(const Tool& tool) RT_SAFE {
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
     Probe& probe = probe_[i];
     const Vec3 centre_m = tool.position_m + rotate(tool.orientation, scene_.spheres[i].offset_m);
+    // A pose that is no number touches nothing, and leaves no memory that could be no number.
     if (!is_finite(centre_m)) {
       probe = {};
       touch_[i] = {};
@@ -52,6 +54,8 @@ void Contact::touch(const Tool& tool) RT_SAFE {
     probe.velocity_mps =
         tool.velocity_mps + cross(tool.angular_velocity_radps, centre_m - tool.position_m);
     probe.centre_m = centre_m;
+    // A free sphere looks over both sheets near it; one in contact follows its own place, or a thin
+    // lobe would push it out on the other side.
     const double radius_m = scene_.spheres[i].radius_m;
     if (touch_[i].state == TouchState::kFree)
       probe.proxy.restart(search(probe, radius_m), radius_m);
@@ -68,6 +72,8 @@ void Contact::touch(const Tool& tool) RT_SAFE {
 }
 
 ContactResponse Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
+  // This order holds: depths before couplings, couplings before forces; what tears is let go before
+  // the grip takes hold; friction last, as its cap is the force of the press.
   watch_grip(tool.grip_ratio);
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
     if (probe_[i].seen) find_depth(i);
@@ -87,6 +93,7 @@ ContactResponse Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
     felt.wrench.torque_Nm += cross(probe_[i].centre_m - tool.position_m, touch_[i].force_N);
     if (touch_[i].law_status == law::LawStatus::kSaturated) felt.is_saturated = true;
   }
+  // The force of this tick is that of the tissue before the cut; the cut is felt from the next on.
   use_blade(tool, blade_may_cut);
   scene_.law->advance();
   felt.is_broken = scene_.law->broke();
@@ -113,6 +120,7 @@ void Contact::leave(std::size_t i) RT_SAFE {
 void Contact::find_depth(std::size_t i) RT_SAFE {
   Probe& probe = probe_[i];
   SphereTouch& touch = touch_[i];
+  // e moves by what d moves: the guess from which MC-1 is solved is then near.
   const double before_m = touch.depth_m;
   if (touch.state == TouchState::kHeld) {
     const Vec3 moved_m = probe.centre_m - probe.held_centre_m;
@@ -139,6 +147,7 @@ void Contact::move_to_proxy(std::size_t i) RT_SAFE {
   const Site& site = probe.proxy.site();
   touch.place = site.place;
   touch.surface_point_m = site.point_m;
+  // A press straight down turns nothing: axes that are not made anew do not drift.
   if (site.normal == touch.normal && probe.axes.unit[0] != Vec3{}) return;
   touch.normal = site.normal;
   probe.axes = axes_of(touch.normal, probe.axes);
@@ -160,6 +169,8 @@ void Contact::couple_new_spheres() RT_SAFE {
   const std::array<bool, kMaxSpheres> before = in_contact_;
   for (std::size_t i = 0; i < kMaxSpheres; ++i)
     in_contact_[i] = touch_[i].state != TouchState::kFree;
+  // Couplings stay from touch to release: MC-3 is a potential only while C is constant. Own springs
+  // come first, as couple() bounds each pair by both of them.
   if (in_contact_ == before) return;
   for (std::size_t i = 0; i < kMaxSpheres; ++i)
     if (!in_contact_[i])
@@ -212,6 +223,7 @@ double Contact::press() RT_SAFE {
                     .in = indentation(i),
                     .response = {}};
   energy_J_ = press_together(*scene_.law, coupling_, pressing());
+  // The guess for the next tick.
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) touch_[i].dent_m = pressing_[i].in.dent_m;
   return energy_J_;
 }
@@ -236,6 +248,7 @@ void Contact::keep_definite() RT_SAFE {
     spared_m[i] = (1.0 - share) * sunk_m(coupling_, pressing(), i);
     spared_J += pressing_[i].response.law.force_N * spared_m[i];
   }
+  // A pull beside a press: scaling C would give energy here.
   if (!(spared_J >= 0.0)) return;
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) add_slack(i, spared_m[i]);
   for (auto& row : coupling_)
@@ -253,6 +266,7 @@ void Contact::sum_up(std::size_t i) RT_SAFE {
   const Axes& axes = probe_[i].axes;
   touch.shift_m = axes.vector(shift_m_[i]);
   touch.force_N = push_N * touch.normal - axes.vector(shear_N_[i]);
+  // dU/ds belongs to a place that follows the tool; held tissue and a proxy that stays do not.
   if (touch.state == TouchState::kTouching && !probe_[i].proxy.stays())
     touch.force_N -= movable(scene_.surface, touch.place, site.slope_N);
   touch.energy_J = site.law.energy_J + 0.5 * site.law.force_N * sunk_m(coupling_, pressing(), i) +

@@ -7,6 +7,7 @@
 
 namespace tact::model::contact {
 void Contact::watch_grip(double grip_ratio) RT_SAFE {
+  // Two thresholds: a hand that trembles at one would grip and let go many times a second.
   const bool was_closed = closed_;
   if (grip_ratio >= scene_.parameters.grip_close_ratio) closed_ = true;
   if (!(grip_ratio >= scene_.parameters.grip_open_ratio)) closed_ = false;  // NaN opens
@@ -21,6 +22,8 @@ bool Contact::hold() RT_SAFE {
     SphereTouch& touch = touch_[i];
     if (touch.state != TouchState::kTouching || !(touch.dent_m > 0.0)) continue;
     Probe& probe = probe_[i];
+    // The frame of this moment: the depth goes on from
+    // what it is, so gripping itself moves nothing.
     probe.held_centre_m = probe.centre_m;
     probe.held_normal = touch.normal;
     probe.give_triangle = kNoTriangle;  // held, it gives less
@@ -34,6 +37,7 @@ bool Contact::hold() RT_SAFE {
 bool Contact::is_torn(std::size_t i) const RT_SAFE {
   const double pull_N = std::hypot(std::max(0.0, -pressing_[i].response.law.force_N),
                                    norm(shear_.force_N(shift_m_, i)));
+  // What is no number tears: it must not hold the tool.
   return !(pull_N <= scene_.parameters.tear_force_N);
 }
 
@@ -53,10 +57,12 @@ bool Contact::release_first() RT_SAFE {
 // kHalvings bound the work. Pressed tissue remembers on: forgotten relaxation would come back as a
 // stiffer push.
 void Contact::release_sphere(std::size_t i) RT_SAFE {
+  // MC-8: 1/4096 of the depth. Each one solves the whole tool, so they are few.
   constexpr int kHalvings = 12;
   const Probe& probe = probe_[i];
   SphereTouch& touch = touch_[i];
   const double held_J = energy_J_, held_m = touch.depth_m;
+  // Pulled out already: nothing to go back to.
   if (!(probe.depth_m > 0.0)) {
     leave(i);
     couple_new_spheres();
@@ -78,6 +84,7 @@ void Contact::release_sphere(std::size_t i) RT_SAFE {
   }
   touch.slack_m = probe.depth_m - low_m;
   if (!(low_m > 0.0)) scene_.law->leave(i);
+  // Once more, as the last depth tried may be another: answers and dents become those of low_m.
   affords(low_m);
   // Without it the others share the shift; it goes where they have dragged it.
   Shear without = shear_;

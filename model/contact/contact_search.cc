@@ -32,6 +32,7 @@ std::uint32_t nearer_than_seed(const SurfaceView& s, std::uint32_t seed, const S
 // Where a sheet is too far to be touched before the next cell, a few steps a tick are enough: a
 // seed is no further from the nearest point than its cell is wide.
 Site Contact::search(Probe& probe, double radius_m) RT_SAFE {
+  // Chosen, in cells of the grid: the walk of a far sheet has some ticks until the sphere is there.
   constexpr double kBeside_cells = 2.0, kFar_cells = 4.0;
   constexpr int kStepsFarAway = 4;
   const SeedGridView& seeds = scene_.seeds;
@@ -41,6 +42,7 @@ Site Contact::search(Probe& probe, double radius_m) RT_SAFE {
   best.distance_m = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < watched.size(); ++k) {
     std::uint32_t& candidate = probe.candidate[k];
+    // Only where the cell changes: else the walk goes on from where it was.
     if (cell != probe.cell)
       candidate = nearer_than_seed(scene_.surface, seeds.cell[cell][k], watched, probe.centre_m,
                                    kBeside_cells * seeds.cell_m);
@@ -50,6 +52,7 @@ Site Contact::search(Probe& probe, double radius_m) RT_SAFE {
     const Site site =
         follow(scene_.surface, candidate, probe.centre_m, is_far ? kStepsFarAway : kMaxWalkSteps);
     candidate = site.place.triangle;
+    // By its size: from inside the body both sheets have a distance below zero.
     if (std::abs(site.distance_m) < std::abs(best.distance_m)) best = site;
   }
   probe.cell = cell;

@@ -9,7 +9,8 @@
 namespace tact::model::contact {
 namespace {
 
-constexpr double kAboveCap = 1.0 + 1e-12;  // rounding
+// A sphere that slips ends at its cap up to rounding: it must not slip again in the next sweep.
+constexpr double kAboveCap = 1.0 + 1e-12;
 
 // What Coulomb leaves of f at the stiffness K, so that f' lies along the slip g f':
 //
@@ -32,6 +33,7 @@ Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N)
     const double length2 = dot(left_N, left_N);
     g_m_per_N += (std::sqrt(length2) / cap_N - 1.0) * length2 / dot(left_N, solve(m, k * left_N));
   }
+  // Three steps leave a little of the length; it is set, so that only the direction is not exact.
   return (cap_N / norm(left_N)) * left_N;
 }
 
@@ -40,6 +42,7 @@ Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N)
 // By the contact radius of its own dent, sqrt(R d): CT-1 for a << R. A held patch is as wide as the
 // sphere.
 Tensor2 Contact::give_m_per_N(std::size_t i) const RT_SAFE {
+  // Of the sphere, chosen: G of MC-5 grows without limit as a contact closes.
   constexpr double kMinRadius_ratio = 0.1;
   const double radius_m = scene_.spheres[i].radius_m;
   if (touch_[i].state == TouchState::kHeld) return probe_[i].tangent_give.at(radius_m);
@@ -57,6 +60,8 @@ TangentGive Contact::ask_tangent_give(std::size_t i, bool held) const RT_SAFE {
 // A sphere without force: any spring is free.
 void Contact::start_tangent_spring(std::size_t i) RT_SAFE {
   probe_[i].give_triangle = touch_[i].place.triangle;
+  // The least that this spring can become, held and as wide as the sphere,
+  // bounds its couplings: they stay definite however it stiffens.
   probe_[i].tangent_give = ask_tangent_give(i, false);
   const double least_m_per_N =
       ask_tangent_give(i, true).at(scene_.spheres[i].radius_m).least_eigenvalue();
@@ -82,6 +87,7 @@ void Contact::stiffen() RT_SAFE {
     const Tensor2 now_m_per_N = give_m_per_N(i);
     if (!(now_m_per_N.trace() < most_m_per_N)) continue;
     const OwnGive own{at_least(now_m_per_N, before.least_m_per_N), before.least_m_per_N};
+    // MC-7: W falls by f . (G - G') f / 2, or the spring stays.
     const Vec2 force_N = shear_.force_N(shift_m_, i);
     const Vec2 more_m = own.m_per_N * force_N - before.m_per_N * force_N;
     if (own == before || !(dot(force_N, more_m) <= 0.0)) continue;

@@ -10,6 +10,8 @@ namespace {
 
 constexpr int kMaxSteps = 16;
 constexpr double kTolerance_m = 1e-10;
+// All chosen. The tolerance is 1e-7 N on a tissue of 1 kN/m. Below this
+// pivot the matrix is hardly definite, and a Newton step would leap.
 constexpr double kMinPivot = 1e-6;
 constexpr double kMargin = 0.95;  // of the largest coupling that is positive definite
 
@@ -24,8 +26,10 @@ void ask(SiteLaw& law, PressingSphere& sphere) RT_SAFE {
   const double dent_m = sphere.in.dent_m;
   const bool is_off = !sphere.in.held && !(dent_m > 0.0);
   if (is_off) sphere.in.dent_m = 0.0;
+  // Asked at 0, not left out: a law that remembers must know that the sphere is there.
   sphere.response = law.respond(sphere.in);
   sphere.in.dent_m = dent_m;
+  // Its force stays 0 while its dent changes: at rest a law tells a slope all the same.
   if (is_off) sphere.response.law.stiffness_N_per_m = 0.0;
 }
 
@@ -75,6 +79,7 @@ bool is_solved(SiteLaw& law, const Coupling& c, std::span<PressingSphere> sphere
       sphere.response = {};
       continue;
     }
+    // Alone, e is d to the bit: a single sphere pays for no iteration and gets no rounding.
     if (!is_coupled(c, i)) sphere.in.dent_m = sphere.depth_m;
     ask(law, sphere);
   }
@@ -120,6 +125,7 @@ double sunk_m(const Coupling& c, std::span<const PressingSphere> spheres, std::s
 }
 
 double press_together(SiteLaw& law, Coupling& c, std::span<PressingSphere> spheres) RT_SAFE {
+  // All of C, a half, a quarter, none. With none each sphere is alone, which has always a solution.
   constexpr int kTries = 4;
   for (int i = 0; i < kTries && !is_solved(law, c, spheres); ++i) {
     for (auto& row : c)
@@ -139,7 +145,7 @@ double definite_share(const Coupling& c,
                       const std::array<double, kMaxSpheres>& stiffest_N_per_m) RT_SAFE {
   std::size_t n = kMaxSpheres;  // rows after the last stiffness are those of I
   while (n > 0 && stiffest_N_per_m[n - 1] == 0.0) --n;
-  // Scaled by the stiffnesses, which may be 0: margin I + factor sqrt(K) C sqrt(K)
+  // MC-6. Scaled by the stiffnesses, which may be 0: margin I + factor sqrt(K) C sqrt(K)
   const auto is_definite = [&](double factor) RT_SAFE {
     Coupling a;  // n rows of it
     for (std::size_t i = 0; i < n; ++i) {
@@ -153,6 +159,7 @@ double definite_share(const Coupling& c,
   };
   if (is_definite(1.0)) return 1.0;
   constexpr int kHalvings = 10;
+  // q to 2^-10
   double low = 0.0, high = 1.0;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (low + high);

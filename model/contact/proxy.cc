@@ -6,7 +6,7 @@
 namespace tact::model::contact {
 
 namespace {
-constexpr double kSameSide_cosine = 0.7;  // between outward normals
+constexpr double kSameSide_cosine = 0.7;  // between outward normals; 45 degrees, chosen
 }  // namespace
 
 void Proxy::restart(const Site& site, double radius_m) RT_SAFE {
@@ -21,6 +21,7 @@ void Proxy::follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& move
     return restart(contact::follow(surface, entry_.place.triangle, p_m), radius_m);
   const Site nearest = contact::follow(surface, site_.place.triangle, p_m);
   Site here = seen_from(site_, p_m);
+  // The centre is above the proxy's own tangent plane, and not above that of the entry.
   if (!(here.distance_m < 0.0)) {
     if (here.distance_m <= radius_m) return restart(nearest, radius_m);
     here.distance_m = -here.distance_m;  // it came out on another side
@@ -34,6 +35,7 @@ void Proxy::follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& move
   site_ = stays_ ? here : nearest;
   if (stays_) return;
   may_slide_m_ -= way_m;
+  // While it is shallow the place where it goes in slides with the tool.
   if (site_.distance_m > -0.5 * radius_m && dot(site_.outward, entry_.outward) > kSameSide_cosine)
     entry_ = site_;
 }

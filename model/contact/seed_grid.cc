@@ -7,10 +7,12 @@
 namespace tact::model::contact {
 namespace {
 
+// Along the longest edge: 64^3 cells of two numbers are 2 MB.
 constexpr double kMaxCells = 64.0;
 
 std::uint32_t axis_cell(double p, double low, double cell, std::uint32_t size) RT_SAFE {
   const double k = (p - low) / cell;
+  // NaN, too.
   if (!(k > 0.0)) return 0;
   return k < static_cast<double>(size) ? static_cast<std::uint32_t>(k) : size - 1;
 }
@@ -35,8 +37,11 @@ class Seeder {
   }
 
   void fill() {
+    // Twice, as the second seed of a cell must face away from the first one that has won.
     for (std::uint32_t t = 0; t < surface_.triangle.size(); ++t) offer_to_crossed_cells(t, 0);
     for (std::uint32_t t = 0; t < surface_.triangle.size(); ++t) offer_to_crossed_cells(t, 1);
+    // There and back a seed reaches every cell; the second
+    // time mends what the first brought round a corner.
     for (int sweep = 0; sweep < 2; ++sweep) {
       const auto n = static_cast<std::uint32_t>(grid_.cell.size());
       for (std::uint32_t i = 0; i < n; ++i) offer_from_neighbours(i);
@@ -56,6 +61,7 @@ class Seeder {
     const Vec3 middle = (surface_.vertex_m[corner[0]] + surface_.vertex_m[corner[1]] +
                          surface_.vertex_m[corner[2]]) /
                         3.0;
+    // By the middle of the triangle: near enough for a start, the walk does the rest.
     const double d = norm(centre(cell) - middle);
     if (d >= distance_m_[rank][cell]) return;
     distance_m_[rank][cell] = d;

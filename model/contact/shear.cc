@@ -13,6 +13,7 @@ void Shear::leave(std::size_t i) RT_SAFE {
 // Rows that sum to less than the diagonal: positive definite, and so is what elimination leaves.
 void Shear::couple(std::size_t i, std::size_t j, double m_per_N, const Axes& of_i,
                    const Axes& of_j) RT_SAFE {
+  // Of each pair, so that all pairs of a sphere stay below its own spring; 0.9 leaves a margin.
   constexpr double kMax = 0.9 / (kMaxSpheres - 1);
   const double most_m_per_N = kMax * std::min(own_[i].least_m_per_N, own_[j].least_m_per_N);
   const double c = std::clamp(m_per_N, -most_m_per_N, most_m_per_N);
@@ -35,6 +36,7 @@ void Shear::solve() RT_SAFE {
   }
   for (std::size_t s = 0; s < n; ++s) {
     const std::size_t k = row[s];
+    // No search for pivots: the matrix is positive definite.
     const double pivot = a[k][k];
     a[k][k] = 1.0;
     for (std::size_t j = 0; j < n; ++j) a[k][row[j]] /= pivot;

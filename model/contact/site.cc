@@ -23,6 +23,7 @@ struct Spot {
   Weights weight{};
 };
 
+/// The spot, with its squared distance to p: comparing needs no root.
 Nearest at(const Spot& q, const Vec3& p, std::uint32_t t, Feature f, std::uint32_t i) RT_SAFE {
   return {q.point_m, dot(p - q.point_m, p - q.point_m), {t, q.weight}, f, i};
 }
@@ -32,6 +33,7 @@ Nearest nearest_on(const SurfaceView& s, std::uint32_t t, const Vec3& p) RT_SAFE
   const auto& [a, b, c] = s.record[t].corner_m;
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+  // A weight that does not count is exactly 0, so that contact knows edges and corners (Place).
   if (d1 <= 0.0 && d2 <= 0.0) return at({a, {1, 0, 0}}, p, t, Feature::kCorner, 0);
   const Vec3 bp = p - b;
   const double d3 = dot(ab, bp), d4 = dot(ac, bp);
@@ -61,6 +63,7 @@ Nearest nearest_on(const SurfaceView& s, std::uint32_t t, const Vec3& p) RT_SAFE
 void try_triangle(const SurfaceView& s, std::uint32_t t, const Vec3& p, Nearest& best) RT_SAFE {
   if (t == kNoTriangle) return;
   const Nearest other = nearest_on(s, t, p);
+  // Nearer, never as near: so no walk can go round in a circle.
   if (other.squared_m2 < best.squared_m2) best = other;
 }
 
@@ -114,6 +117,8 @@ Vec3 pseudo_normal(const SurfaceView& s, const Nearest& at) RT_SAFE {
 Site facing(Site site, const Vec3& p_m, bool is_outside) RT_SAFE {
   const Vec3 away = p_m - site.point_m;
   const double length_m = norm(away);
+  // The pseudo-normal gives the right sign at edges and
+  // corners, too, where a face normal would not.
   const double sign = is_outside || dot(away, site.outward) >= 0.0 ? 1.0 : -1.0;
   constexpr double kOnSurface_m = 1e-9;  // below this the direction of p - q is rounding noise
   site.normal = length_m > kOnSurface_m ? (sign / length_m) * away : site.outward;
