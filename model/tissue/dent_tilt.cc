@@ -27,6 +27,7 @@ struct Moments {
 
 std::vector<Vec3> dent_tilt(const ComplianceMap& map, const contact::SurfaceView& surface) {
   std::vector<Vec3> out(map.vertices());
+  // Sorted along x, a slab of skin moves over the organ: no vertex is held against all others.
   const auto x_m = [&](std::size_t v) { return surface.vertex_m[v].x; };
   std::vector<std::size_t> by_x(out.size());
   std::iota(by_x.begin(), by_x.end(), 0);
@@ -34,9 +35,11 @@ std::vector<Vec3> dent_tilt(const ComplianceMap& map, const contact::SurfaceView
   auto first = by_x.begin();
   for (const std::size_t v : by_x) {
     const Vec3 &at_m = surface.vertex_m[v], &n = surface.vertex_normal[v];
+    // Across whichever axis is not near n.
     const Vec3 e1 = normalized(cross(n, std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
     const Vec3 e2 = cross(n, e1);
     Moments m;
+    // The slab only moves on, as the vertices come in its order.
     while (x_m(*first) < at_m.x - kTiltReach_m) ++first;
     for (auto near = first; near != by_x.end() && x_m(*near) <= at_m.x + kTiltReach_m; ++near) {
       const std::size_t w = *near;
@@ -49,6 +52,7 @@ std::vector<Vec3> dent_tilt(const ComplianceMap& map, const contact::SurfaceView
     const double xx = m.xx - m.x * m.x / m.count, yy = m.yy - m.y * m.y / m.count;
     const double xy = m.xy - m.x * m.y / m.count, determinant = xx * yy - xy * xy;
     const double disc = m.count * kTiltReach_m * kTiltReach_m;
+    // Too few vertices, or all on a line: no slope is told.
     if (!(determinant > kMinSpread * disc * disc)) continue;
     const double xr = m.xr - m.x * m.r / m.count, yr = m.yr - m.y * m.r / m.count;
     // CF-6

@@ -11,6 +11,7 @@
 namespace tact::model::tissue {
 namespace {
 
+// More than telemetry shows (32) and than any family has (kMaxComplianceRings + 1).
 constexpr std::size_t kMaxProfile = 64;
 
 // Of two parts of one force: a limit reached by either is told.
@@ -21,6 +22,7 @@ law::LawStatus worse(law::LawStatus a, law::LawStatus b) RT_SAFE {
 }  // namespace
 
 ElasticField::ElasticField(const ElasticFieldParts& parts) : parts_(parts) {
+  // Once, at set-up: coupling asks for it every tick.
   for (const law::Law* curve : parts_.curves)
     stiffest_N_per_m_.push_back(
         law::stiffest_N_per_m(*curve, curve->range().pull_m, curve->range().press_m));
@@ -39,6 +41,7 @@ ElasticField::Blend ElasticField::blend_at(const contact::Place& place,
   double kappa = 0.0;
   for (std::size_t i = 0; i < 3; ++i)
     kappa += place.weight[i] * static_cast<double>(of_vertex[corner[i]]);
+  // The last curve has none above it: there f is 1.
   const std::size_t last = parts_.curves.size() - 2;
   const std::size_t low = kappa > 0.0 ? std::min(static_cast<std::size_t>(kappa), last) : 0;
   return {.low = low, .fraction = kappa - static_cast<double>(low)};
@@ -60,6 +63,7 @@ Vec3 ElasticField::coordinate_slope(std::uint32_t triangle, double depth_m) cons
 ElasticField::Part ElasticField::part_at(const contact::Place& place,
                                          double depth_m) const RT_SAFE {
   const Blend blend = blend_at(place, depth_m);
+  // Energies are blended, and with the same f forces: so F stays dU/dd between two curves.
   const law::LawResponse soft = parts_.curves[blend.low]->respond(depth_m);
   if (parts_.curves.size() < 2) return {.law = soft};
   const law::LawResponse stiff = parts_.curves[blend.low + 1]->respond(depth_m);
@@ -82,11 +86,13 @@ contact::SiteResponse ElasticField::respond(const contact::Indentation& in) RT_S
   if (!is_known(in)) return {.law = {.status = law::LawStatus::kInvalid}};
   const law::Relaxation& relaxation = parts_.relaxation;
   law::RelaxationState& next = next_[in.sphere];
+  // From now_, not from next_: asked again in the same tick, the last answer counts.
   if (relaxation.terms() > 0) next = relaxation.after(now_[in.sphere], in.dent_m, in.held);
   contact::SiteResponse sum{};
   for (std::size_t i = 0; i <= relaxation.terms(); ++i) {
     const double depth_m = i == 0 ? in.dent_m : next.stretch_m[i - 1];
     const Part part = part_at(in.place, depth_m);
+    // RX-4: q of this tick, for the next one.
     if (i > 0) next.flow_ratio[i - 1] = law::flow_ratio(depth_m, part.law);
     const double g = relaxation.share(i);
     sum.law.force_N += g * part.law.force_N;
@@ -148,6 +154,7 @@ double ElasticField::stiffest_N_per_m(const contact::Place& place, bool held) co
     const double soft = stiffest_N_per_m_[blend.low];
     return soft + blend.fraction * (stiffest_N_per_m_[blend.low + 1] - soft);
   };
+  // Any depth below 0 stands for pull, which has coordinates of its own.
   return held ? std::max(at(0.0), at(-1.0)) : at(0.0);
 }
 
@@ -176,6 +183,7 @@ contact::TangentGive ElasticField::tangent_give(const contact::Place& place, boo
 std::size_t ElasticField::profile(const contact::Indentation& in,
                                   std::span<double> ring_m) const RT_SAFE {
   if (!is_known(in)) return 0;
+  // The curves are springs without a shape (LW-4).
   if (parts_.dent_shape != nullptr) return parts_.dent_shape->profile(in.dent_m, ring_m);
   const Blend blend = blend_at(in.place, in.dent_m);
   const std::size_t count = parts_.curves[blend.low]->profile(in.dent_m, ring_m);

@@ -8,7 +8,7 @@
 //     dU/ds    = (U_(k+1)(d) - U_k(d)) grad kappa
 //
 // so the field has one potential and no stroke along the surface makes energy. Press and pull may
-// have a coordinate each: U = 0 between them. A tick costs at most 2 (1 + terms) look-ups a sphere,
+// have a coordinate each: U = 0 between them. An answer costs at most 2 (1 + terms) look-ups,
 // whatever the mesh. Two sites, s apart, couple as those of one elastic body:
 //
 //     MC-2   h = 1 / (pi E* s_ij) + min(g, 0) >= 0,   b = max(g, 0),   g = (g_i + g_j) / 2
