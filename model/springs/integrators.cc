@@ -74,6 +74,7 @@ OscillatorState step(const Oscillator& o, const OscillatorState& from, const Met
 
 OscillatorState exact(const Oscillator& o, const OscillatorState& from, double time_s) {
   const double m = o.mass_kg, k = o.stiffness_N_per_m, c = o.damping_Ns_per_m, t = time_s;
+  // Without a spring there is no rest position to swing about: two limits of their own.
   if (k == 0.0 && c == 0.0) {
     const double a = o.force_N / m;
     return {from.position_m + from.velocity_mps * t + 0.5 * a * t * t, from.velocity_mps + a * t};
@@ -90,6 +91,7 @@ OscillatorState exact(const Oscillator& o, const OscillatorState& from, double t
   const std::complex<double> r = std::sqrt(std::complex<double>(b * b - k / m));
   const std::complex<double> up = std::exp((r - b) * t), down = std::exp((-r - b) * t);
   const double cosine = 0.5 * (up + down).real();
+  // Near critical damping both exponentials are alike, and their difference over r is 0/0.
   const double sine =
       std::abs(r) * t > 1e-8 ? (0.5 * (up - down) / r).real() : t * std::exp(-b * t);
   return {o.force_N / k + y0 * cosine + (v0 + b * y0) * sine,

@@ -7,6 +7,8 @@ PatchMemory::PatchMemory(const law::Relaxation& relaxation, std::size_t nodes)
     : relaxation_(relaxation) {
   if (!is_on()) return;
   law::RelaxationState stretched;
+  // A stretch of 1 after one tick without motion is a_i =
+  // exp(-dt / tau_i) of each term (RX-3, q = 1).
   stretched.stretch_m.fill(1.0);
   fade_ = relaxation.after(stretched, 0.0, true).stretch_m;
   for (std::size_t i = 0; i < relaxation.terms(); ++i)
@@ -45,6 +47,7 @@ void PatchMemory::renew(const SpringNetwork& network, std::span<const Vec3> posi
   const std::size_t n = position_m.size();
   const std::span<const Vec3> rest_m = network.node.rest_m;
   for (std::size_t i = 0; i < n; ++i) felt_m_[i] = blend_m(i, position_m[i], rest_m[i]);
+  // c: what springs and loads leave over at rest. The tool is no part of it.
   SpringNetwork alone = network;
   alone.probe = {};
   forces_alone(alone, rest_m, {still_mps_.data(), n}, {opening_N_.data(), n});
@@ -53,6 +56,7 @@ void PatchMemory::renew(const SpringNetwork& network, std::span<const Vec3> posi
 void PatchMemory::flow(std::span<Vec3> position_m, std::span<const Vec3> rest_m) RT_SAFE {
   if (!is_on()) return;
   for (std::size_t n = 0; n < position_m.size(); ++n) {
+    // du: what the steps have added to z, for within a tick nothing flows and z moves as u does.
     const Vec3 moved_m = felt_m_[n] - blend_m(n, position_m[n], rest_m[n]);
     position_m[n] += moved_m;
     for (std::size_t i = 0; i < relaxation_.terms(); ++i) {
@@ -73,6 +77,7 @@ double PatchMemory::stored_energy_J(const SpringNetwork& network,
     energy_J += relaxation_.share(i + 1) * model::springs::stored_energy_J(at);
   }
   for (std::size_t n = 0; is_on() && n < position_m.size(); ++n)
+    // - c . (u - z): pretension that was cut does not relax.
     energy_J -= dot(opening_N_[n], flowed_m(n, position_m[n]));
   return energy_J;
 }

@@ -8,7 +8,8 @@
 namespace tact::model::springs {
 namespace {
 
-constexpr std::size_t kSpringsPerNode = 4;  // a closed surface has fewer than 3, whatever its shape
+// Euler: a closed surface of n vertices has 3 n - 6 edges, and 6 more for each handle.
+constexpr std::size_t kSpringsPerNode = 4;
 
 }  // namespace
 
@@ -31,6 +32,7 @@ PatchRegion::PatchRegion(PatchSurface surface, double node_mass_kg, std::size_t 
   edge_is_cut_.assign(surface_.edge.size(), 0);
   triangle_is_cut_.assign(surface_.mesh.triangle.size(), 0);
   cut_triangle_.resize(kMaxCutTriangles);
+  // Each cut triangle has three corners.
   lip_.resize(3 * kMaxCutTriangles);
 }
 
@@ -68,6 +70,7 @@ bool PatchRegion::holds(std::uint32_t triangle) const RT_SAFE {
   const std::uint32_t outermost = ring_[count_ - 1];
   for (const std::uint32_t v : surface_.mesh.triangle[triangle]) {
     const std::uint32_t slot = slot_of_[v];
+    // The inner quarter of the rings: a tool that slides needs a new region once in many ticks.
     if (slot == kNoSlot || node_inverse_mass_per_kg_[slot] == 0.0 || 4 * ring_[slot] > outermost)
       return false;
   }
@@ -103,6 +106,8 @@ void PatchRegion::add(std::uint32_t vertex, std::uint32_t ring) RT_SAFE {
 }
 
 void PatchRegion::gather(std::span<const std::uint32_t> triangles) RT_SAFE {
+  // In this order: energy, while the old region stands; lips, before their slots are gone; the new
+  // region at rest; what stays from the old one; springs; and only then what all that has added.
   const double before_J = free_energy_J();
   std::swap(vertex_, old_vertex_);
   std::swap(position_m_, old_position_m_);
@@ -153,7 +158,9 @@ void PatchRegion::connect() RT_SAFE {
     for (const std::uint32_t e : surface_.edges_at(vertex_[i])) {
       const PatchEdge& edge = surface_.edge[e];
       const std::uint32_t j = slot_of_[edge.a == vertex_[i] ? edge.b : edge.a];
+      // A neighbour outside makes it the rim: with a spring missing it must not move.
       if (j == kNoSlot) node_inverse_mass_per_kg_[i] = 0.0;
+      // Each spring once, from its lower end.
       if (j == kNoSlot || j < i || springs_ == spring_.size()) continue;
       const double length_m = surface_.rest_length_m(edge);
       const double stretch_m = edge.length_m - length_m;
@@ -191,6 +198,7 @@ double PatchRegion::stored_energy_J() RT_SAFE {
 void PatchRegion::take_from_velocities(double energy_J) RT_SAFE {
   if (!(energy_J > 0.0)) return;
   const double moving_J = kinetic_energy_J(network({}));
+  // Speeds scale as the root of energy; what is not there is debt.
   const double left = moving_J > energy_J ? std::sqrt(1.0 - energy_J / moving_J) : 0.0;
   for (std::size_t i = 0; i < count_; ++i) velocity_mps_[i] *= left;
   if (energy_J > moving_J) handover_debt_J_ += energy_J - moving_J;
@@ -210,10 +218,12 @@ std::size_t PatchRegion::cut(const contact::BladeSweep& sweep) RT_SAFE {
     const double stretch_m = edge.length_m - s.rest_length_m;
     cut_energy_J_ += 0.5 * s.stiffness_N_per_m * stretch_m * stretch_m;
     --springs_;
+    // The last one takes its place, so k is looked at again.
     spring_[k] = spring_[springs_];
     spring_edge_[k] = spring_edge_[springs_];
     ++cuts;
   }
+  // c has changed: what was cut held pretension.
   if (cuts > 0) memory_.renew(network({}), {position_m_.data(), count_});
   return cuts;
 }

@@ -14,6 +14,7 @@ std::vector<PatchEdge> edges_of(const contact::SurfaceView& mesh) {
   for (std::uint32_t t = 0; t < mesh.triangle.size(); ++t) {
     for (std::size_t e = 0; e < 3; ++e) {
       const std::uint32_t other = mesh.neighbour[t][e];
+      // The lower triangle has told it.
       if (other != contact::kNoTriangle && other < t) continue;
       const auto [a, b] = std::minmax(mesh.triangle[t][e], mesh.triangle[t][(e + 1) % 3]);
       edges.push_back({.a = a,
@@ -48,6 +49,7 @@ double give_m_per_N(double modulus_N_per_m, double anchor_N_per_m) {
   return kShortWaves * std::log1p(all_waves / anchor_N_per_m) / all_waves;
 }
 
+/// k_x of MA-21: what a spring under pretension resists across itself.
 double across_N_per_m(const PatchTissue& tissue) {
   return tissue.surface_stiffness_N_per_m * tissue.pretension_ratio /
          (1.0 + tissue.pretension_ratio);
@@ -56,6 +58,7 @@ double across_N_per_m(const PatchTissue& tissue) {
 // MA-22
 double anchor_of_give_N_per_m(const PatchTissue& tissue, double more_m_per_N) {
   constexpr double kStiffestPlace = 3.0;  // over the mean one, as model/tissue has it
+  // Without pretension M_n is 0 and MA-22 is 0/0: this is near enough to its limit.
   constexpr double kMinModulus_N_per_m = 1e-6;
   const double modulus =
       std::max(std::numbers::sqrt3 * across_N_per_m(tissue), kMinModulus_N_per_m);
@@ -79,7 +82,7 @@ std::optional<std::uint32_t> crowded_vertex(const contact::SurfaceView& mesh) {
   return std::nullopt;
 }
 
-// MA-21
+// MA-21. kLattice: moduli of a net of equal triangles.
 double sideways_give_m_per_N(const PatchTissue& tissue, double anchor_N_per_m) {
   constexpr double kLattice = 0.25 * std::numbers::sqrt3;
   const double k = tissue.surface_stiffness_N_per_m, across = across_N_per_m(tissue);
@@ -96,6 +99,7 @@ PatchSurface make_patch_surface(const contact::SurfaceView& mesh, const PatchTis
   for (const auto& [a, b, c] : mesh.triangle) {
     const double area_m2 =
         0.5 * norm(cross(mesh.vertex_m[b] - mesh.vertex_m[a], mesh.vertex_m[c] - mesh.vertex_m[a]));
+    // For now it gathers area; per_m2 below makes it stiffness.
     for (const std::uint32_t v : {a, b, c}) out.anchor_N_per_m[v] += area_m2;
     sum_m2 += 3.0 * area_m2;
   }
@@ -114,6 +118,7 @@ PatchSurface make_patch_surface(const contact::SurfaceView& mesh, const PatchTis
   for (const PatchEdge& e : out.edge) {
     const double tension_N = tissue.surface_stiffness_N_per_m * (e.length_m - out.rest_length_m(e));
     const Vec3 pull_N = (tension_N / e.length_m) * (mesh.vertex_m[e.b] - mesh.vertex_m[e.a]);
+    // Against the pull of the edge: at rest the sum is zero, and only a cut sets it free.
     out.load_N[e.a] -= pull_N;
     out.load_N[e.b] += pull_N;
   }

@@ -58,6 +58,7 @@ inline Pull pull(const Spring& s, const Spring& t, const Vec3* x, const Vec3* v)
   Pull out;
   if constexpr (kWithEnergy) out.stored_J = 0.5 * tension_N * stretch_m;
   // MA-1  k (|D| - L0) + c (v_j - v_i).u
+  // A spring of no length has no direction: it pulls nowhere.
   const Pair per_m = length_m > 0.0 ? 1.0 / length_m : Pair{};
   const Vec3Pair u{per_m * along_m.x, per_m * along_m.y, per_m * along_m.z};
   const Pair pull_N =
@@ -81,6 +82,7 @@ double add_springs(std::span<const Spring> springs, const Vec3* x, const Vec3* v
     add(f[t.i], of_t, p.force_N.z[1]);
     take(f[t.j], of_t, p.force_N.z[1]);
   }
+  // The odd one is computed twice and counted once.
   if (springs.size() % 2 == 1) {
     const Pull p = pull<kWithEnergy>(*s, *s, x, v);
     if constexpr (kWithEnergy) energy_J += p.stored_J[0];
@@ -107,6 +109,8 @@ void add_probes(const SpringNetwork& network, std::span<const Vec3> x, std::span
     for (std::size_t c = 0; c < 3; ++c)
       rate_mps += probe.weight[c] * dot(probe.push[c], v[probe.node[c]]);
     double total_N = push_N - probe.damping_Ns_per_m * rate_mps;
+    // Damping may take the push away, but not turn it
+    // into a pull: tissue does not stick to the tool.
     if (!probe.held && !(total_N > 0.0)) total_N = 0.0;
     for (std::size_t c = 0; c < 3; ++c)
       f[probe.node[c]] += total_N * probe.weight[c] * probe.push[c];

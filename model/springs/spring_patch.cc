@@ -13,6 +13,8 @@
 namespace tact::model::springs {
 namespace {
 
+// What moved by less than a micrometre is not seen. Lips get half of
+// the room at most, or an old cut would hide the contact.
 constexpr double kShownMove_m = 1e-6;
 constexpr double kLostDents = 10.0;  // a dent of so many working depths is no tissue any more
 constexpr std::size_t kShownLips = contact::kMaxShapeNodes / 2;
@@ -102,6 +104,7 @@ Result<std::unique_ptr<SpringPatch>> make_spring_patch(const contact::SurfaceVie
   if (auto failed = check_everywhere(springs, p)) return *failed;
   SpringPatchParameters fitted = p;
   fitted.nodes = std::min(p.nodes, surface.vertex_m.size());
+  // Read by now: the span need not outlive this.
   fitted.tissue.give_m_per_N = {};
   return std::unique_ptr<SpringPatch>(new SpringPatch(std::move(springs), fitted));
 }
@@ -120,6 +123,7 @@ void SpringPatch::leave(std::size_t sphere) RT_SAFE {
 
 contact::SiteResponse SpringPatch::respond(const contact::Indentation& in) RT_SAFE {
   if (in.sphere >= contact::kMaxSpheres) return {.law = {.status = law::LawStatus::kInvalid}};
+  // Whatever is answered with no force below must not be stepped either.
   Touch& touch = touch_[in.sphere];
   touch = {};
   const contact::SurfaceView& mesh = region_.surface().mesh;
@@ -143,6 +147,7 @@ contact::SiteResponse SpringPatch::respond(const contact::Indentation& in) RT_SA
     give_up();
     return {.law = {.status = law::LawStatus::kSingular}};
   }
+  // Without a grip the virtual spring never pulls.
   const double stretch_m = in.held ? depth_m - w_m : std::max(depth_m - w_m, 0.0);
   contact::SiteResponse out{.law = {.force_N = q * stretch_m,
                                     .stiffness_N_per_m = stretch_m != 0.0 ? q : 0.0,
@@ -178,6 +183,8 @@ void SpringPatch::follow_touches() RT_SAFE {
     if (!touch_[i].active) continue;
     const std::uint32_t t = touch_[i].place.triangle;
     triangle[count++] = t;
+    // In a very small region even the touched triangle is
+    // at the rim: it must not gather in every tick.
     if (t != gathered_[i] && !region_.holds(t)) must_gather = true;
   }
   if (!must_gather) return;
@@ -220,11 +227,13 @@ void SpringPatch::advance() RT_SAFE {
   if (network.node.position_m.empty()) return;
   const StepRule rule = rule_of(parameters_);
   double energy_J = 0.0;
+  // Depth and place are held over all substeps: the tool moves once a tick.
   for (int i = 0; i < parameters_.substeps; ++i) energy_J = stepper_.step(network, rule);
   if (region_.relaxes()) {
     region_.flow();
     energy_J = region_.stored_energy_J();
   }
+  // Above the surface at rest, so that W is 0 without contact.
   network_energy_J_ = energy_J - region_.rest_energy_J();
   if (!std::isfinite(energy_J)) give_up();
 }
@@ -267,6 +276,7 @@ bool SpringPatch::shape(contact::PatchShape& out) RT_SAFE {
   for (const std::uint32_t v : region_.vertices())
     if (out.node_count < contact::kMaxShapeNodes && (newest > 0 || !region_.is_lip(v))) show(v);
   const std::span<const std::uint32_t> cut = region_.cut_triangles();
+  // The window goes round the list: a viewer that lost some frames learns of all cuts in the end.
   if (next_cut_ >= cut.size()) next_cut_ = 0;
   out.cut_total = static_cast<std::uint32_t>(cut.size());
   out.cut_first = next_cut_;

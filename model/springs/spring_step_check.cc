@@ -12,6 +12,7 @@ namespace tact::model::springs {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// MA-20.
 constexpr double kMargin = 0.8;
 
 /// What the modes of a network lie between.
@@ -36,6 +37,7 @@ Bounds bounds_of(const SpringNetwork& network, const ProbeLoad& probe) {
   out.high_s = probe.damping_time_s;
   for (const Spring& s : network.spring) {
     const double k = s.stiffness_N_per_m;
+    // Two ends that move against each other feel the spring twice (Gershgorin).
     sum_N_per_m[s.i] += node.inverse_mass_per_kg[s.j] > 0.0 ? 2.0 * k : k;
     sum_N_per_m[s.j] += node.inverse_mass_per_kg[s.i] > 0.0 ? 2.0 * k : k;
     out.add_ratio(s.damping_Ns_per_m, k);
@@ -51,6 +53,7 @@ Bounds bounds_of(const SpringNetwork& network, const ProbeLoad& probe) {
     if (square > largest) largest = square, out.fastest_node = i;
   }
   out.omega_radps = std::sqrt(largest);
+  // No spring has told a ratio: count on no damping.
   if (std::isinf(out.low_s)) out.low_s = 0.0;
   return out;
 }
@@ -71,6 +74,7 @@ StepLimit limit_of(const Bounds& bounds, const Method& method) {
     const double omega = bounds.omega_radps * std::exp2(-0.25 * quarter);
     const double low = 0.5 * bounds.low_s * omega;
     const double high = 0.5 * (bounds.high_s * omega + bounds.drag_per_s / omega);
+    // zeta of a mode lies between both; z_max is not monotone in it, so five are asked.
     for (int share = 0; share <= 4; ++share) {
       const double zeta = low + 0.25 * share * (std::max(low, high) - low);
       const double step_s = kMargin * largest_stable_z(method, zeta) / omega;
@@ -85,6 +89,7 @@ StepLimit limit_of(const Bounds& bounds, const Method& method) {
 
 /// How many times the mass would do; empty if mass is no cure.
 std::string mass_advice(const Bounds& bounds, const StepRule& rule) {
+  // In steps of a quarter; a mass 10 000 times as large is no advice.
   for (double factor = 1.25; factor < 1e4; factor *= 1.25) {
     Bounds heavier = bounds;
     heavier.omega_radps /= std::sqrt(factor);

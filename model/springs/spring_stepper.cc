@@ -29,6 +29,7 @@ double SpringStepper::step(const SpringNetwork& network, const StepRule& rule) R
   const std::span<Vec3> f(force_N_.data(), n), x_star(position_m_.data(), n),
       v_star(velocity_mps_.data(), n);
   const std::span<const double> w = node.inverse_mass_per_kg;
+  // Of the start: all but implicit Euler need these forces, and the energy comes with them.
   const double energy_J = forces(network, x, v, f);
   switch (rule.method.integrator) {
     case Integrator::kExplicitEuler:
@@ -105,6 +106,7 @@ void SpringStepper::step_implicit(const SpringNetwork& network, double h, int it
     apply(network, h, {direction_.data(), n}, {product_.data(), n});
     double curvature = 0.0;
     for (std::size_t i = 0; i < n; ++i) curvature += dot(direction_[i], product_[i]);
+    // Nothing is left to do, or something is no number.
     if (!(curvature > 0.0)) break;
     const double reach = old / curvature;
     double fresh = 0.0;
@@ -113,6 +115,7 @@ void SpringStepper::step_implicit(const SpringNetwork& network, double h, int it
       force_N_[i] -= reach * product_[i];
       fresh += preconditioner_[i] * dot(force_N_[i], force_N_[i]);
     }
+    // Fletcher and Reeves; old > 0 by the loop.
     const double turn = fresh / old;
     for (std::size_t i = 0; i < n; ++i)
       direction_[i] = preconditioner_[i] * force_N_[i] + turn * direction_[i];
@@ -139,13 +142,18 @@ void SpringStepper::linearise(const SpringNetwork& network, double h) RT_SAFE {
     const double squeeze = 1.0 - s.rest_length_m / length_m;
     t.direction = (1.0 / length_m) * along_m;
     t.along = h * s.damping_Ns_per_m + h * h * s.stiffness_N_per_m;
+    // A compressed spring buckles sideways: its negative stiffness is
+    // left out, or the matrix might not be definite.
     t.across = squeeze > 0.0 ? h * h * s.stiffness_N_per_m * squeeze : 0.0;
+    // The mean of its three axes: one number a node as
+    // preconditioner, whatever way the springs point.
     const double mean = (t.along + 2.0 * t.across) / 3.0;
     preconditioner_[s.i] += mean;
     preconditioner_[s.j] += mean;
   }
   for (std::size_t p = 0; p < network.probe.size() && p < probe_pushes_.size(); ++p) {
     const ProbeSpring& probe = network.probe[p];
+    // Decided once a step: the matrix must stay the same for all iterations.
     probe_pushes_[p] = probe.stiffness_N_per_m > 0.0 &&
                        probe_force_N(probe, dent_m(probe, node.position_m, node.rest_m)) != 0.0;
     if (!probe_pushes_[p]) continue;
