@@ -7,6 +7,7 @@
 namespace tact::model {
 namespace {
 
+// Ascending by number. A search from the front is enough: no tick asks for words.
 constexpr std::array kTable{
     FaultEntry{Fault::kNone, "none", "nothing limits the force", "nothing to do"},
     FaultEntry{Fault::kSampleHeld, "sample held", "the device gave no new sample this tick",

@@ -14,6 +14,7 @@ HandWaypoint hand_target(const std::vector<HandWaypoint>& path, bool repeat,
                          double time_s) RT_SAFE {
   if (path.empty()) return {};
   const double end_s = path.back().time_s;
+  // A path that starts over ends where it begins (scene_strokes.cc sees to it): no jump.
   if (repeat && end_s > 0.0 && time_s > end_s) time_s = std::fmod(time_s, end_s);
   if (!(time_s > path.front().time_s)) return path.front();
   if (time_s >= end_s) return path.back();
@@ -22,6 +23,7 @@ HandWaypoint hand_target(const std::vector<HandWaypoint>& path, bool repeat,
   const HandWaypoint& from = path[next - 1];
   const HandWaypoint& to = path[next];
   const double s = (time_s - from.time_s) / (to.time_s - from.time_s);
+  // Minimum jerk: speed and acceleration are zero at both ends, so strokes join without a kick.
   const double ratio = s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
   return {.time_s = time_s,
           .position_m = between(from.position_m, to.position_m, ratio),

@@ -6,12 +6,14 @@
 namespace tact::model {
 
 std::array<double, 3> singular_values(const Mat3& a) RT_SAFE {
+  // Its eigenvalues are the squares of the singular values, and it is symmetric: Jacobi's method.
   std::array<std::array<double, 3>, 3> g{};  // A A^T
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) g[i][j] = dot(a.row[i], a.row[j]);
   constexpr int kSweeps = 8;  // converges quadratically: five are enough for a double
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (std::size_t k = 0; k < 3; ++k) {
+      // The pairs (0 1), (0 2), (1 2); r is the third axis.
       const std::size_t p = k == 2 ? 1 : 0, q = k == 0 ? 1 : 2, r = 3 - p - q;
       if (!(std::abs(g[p][q]) > 0.0)) continue;
       // t = sign(w) / (|w| + sqrt(w^2 + 1)),  w = (g_qq - g_pp) / (2 g_pq)
@@ -27,6 +29,7 @@ std::array<double, 3> singular_values(const Mat3& a) RT_SAFE {
     }
   }
   std::array<double, 3> sigma{};
+  // Rounding can leave the square of a vanishing value a little below zero.
   for (std::size_t i = 0; i < 3; ++i) sigma[i] = g[i][i] > 0.0 ? std::sqrt(g[i][i]) : 0.0;
   // Three compare-exchanges instead of a sort that may recurse.
   if (sigma[0] < sigma[1]) std::swap(sigma[0], sigma[1]);
