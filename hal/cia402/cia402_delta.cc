@@ -71,7 +71,6 @@ class Cia402s final : public can::CanDrives {
   }
 
   int node_of(const can::CanFrame& frame) const RT_SAFE override {
-    // The lower seven bits of every identifier with a node (CN-1).
     return static_cast<int>(frame.id & 0x7Fu);
   }
 
@@ -99,7 +98,6 @@ class Cia402s final : public can::CanDrives {
     for (std::size_t i = 0; i < 3; ++i) {
       const Axis& axis = axes_[i];
       const auto state = static_cast<std::uint32_t>(axis.state);
-      // While starting, a drive on its way up is no fault; once ready it is.
       const bool enabled = axis.state == Cia402State::kOperationEnabled;
       if (loop.power == CanPower::kReady && !enabled)
         loop.fail(i, Cia402Cause::kLeftEnabled, state);
@@ -199,7 +197,6 @@ class Cia402s final : public can::CanDrives {
     loop.axes[at].sample(sample.position_increments / counts_per_motor_turn_, arrival_ns);
     Axis& axis = axes_[at];
     axis.state = cia402_state(sample.statusword);
-    // Bit 12 counts from ready on: before it, no drive has to follow.
     const bool idle = loop.power == CanPower::kReady &&
                       axis.state == Cia402State::kOperationEnabled &&
                       !cia402_flags(sample.statusword).following;
