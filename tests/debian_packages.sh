@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# The packages of tools/package on a machine that has only Debian 12's base system: installed, run,
+# The packages of tools/package on a machine that has only this release's base system: installed, run,
 # installed again over an edited scene, removed and purged, after which nothing of them is left.
 #
 #   tests/debian_packages.sh [FOLDER]    needs root and mmdebstrap; FOLDER keeps the base system
@@ -8,7 +8,8 @@ set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 packages="$root/build/packages"
 base=$(mktemp -d)
-cache=${1:+$1/bookworm.tar}
+name=$(. /etc/os-release && echo "$VERSION_CODENAME")  # where the packages were built
+cache=${1:+$1/$name.tar}
 trap 'rm -rf --one-file-system "$base"' EXIT
 [ "$(id -u)" -eq 0 ] || { echo "debian_packages.sh: needs root, for chroot; start it with sudo" >&2; exit 2; }
 ls "$packages"/tact_*.deb >/dev/null || { echo "debian_packages.sh: run tools/package first" >&2; exit 2; }
@@ -16,9 +17,9 @@ ls "$packages"/tact_*.deb >/dev/null || { echo "debian_packages.sh: run tools/pa
 if [ -n "$cache" ] && [ -e "$cache" ]; then
   tar xf "$cache" -C "$base"
 else
-  mmdebstrap --quiet --variant=apt --include=systemd,udev,man-db bookworm "$base" \
-    "deb http://deb.debian.org/debian bookworm main" \
-    "deb http://deb.debian.org/debian-security bookworm-security main"
+  mmdebstrap --quiet --variant=apt --include=systemd,udev,man-db "$name" "$base" \
+    "deb http://deb.debian.org/debian $name main" \
+    "deb http://deb.debian.org/debian-security $name-security main"
   if [ -n "$cache" ]; then mkdir -p "$1" && tar cf "$cache" --one-file-system -C "$base" .; fi
 fi
 cp "$packages"/*.deb "$base/root/"

@@ -1,27 +1,32 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# The commands of the README on a machine that has only Debian 12's base system: a chroot from
-# debootstrap, this tree copied in as git knows it, tools/run and tools/check twice each; first
-# tools/run --tools.
+# The commands of the README on a machine that has only the base system of a release of Debian: a
+# chroot from debootstrap, this tree copied in as git knows it, tools/run and tools/check twice each;
+# first tools/run --tools.
 #
-#   tests/fresh_debian.sh [FOLDER]     needs root, debootstrap and 6 GB; FOLDER is kept for a next time
+#   tests/fresh_debian.sh [12|13] [FOLDER]    the oldest of tools/releases unless told; needs root,
+#                                             debootstrap and 6 GB; FOLDER is kept for a next time
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
-keep=${1:+yes}
-base=${1:-$(mktemp -d)}
+. "$root/tools/packages.sh"
+number=${1:-12}
+name=$(release_name "$number")
+[ -n "$name" ] || { echo "fresh_debian.sh: tools/releases has no Debian $number" >&2; exit 2; }
+keep=${2:+yes}
+base=${2:-$(mktemp -d)}
 mirror=http://deb.debian.org
 
 [ "$(id -u)" -eq 0 ] || { echo "fresh_debian.sh: needs root, for chroot; start it with sudo" >&2; exit 2; }
 command -v debootstrap >/dev/null || apt-get install -y debootstrap
 
 if [ ! -e "$base/etc/debian_version" ]; then
-  echo "fresh Debian 12 base system in $base"
-  debootstrap --variant=minbase bookworm "$base" $mirror/debian >/dev/null
+  echo "fresh Debian $number base system in $base"
+  debootstrap --variant=minbase "$name" "$base" $mirror/debian >/dev/null
 fi
 cat >"$base/etc/apt/sources.list" <<EOT
-deb $mirror/debian bookworm main
-deb $mirror/debian bookworm-updates main
-deb $mirror/debian-security bookworm-security main
+deb $mirror/debian $name main
+deb $mirror/debian $name-updates main
+deb $mirror/debian-security $name-security main
 EOT
 cp /etc/resolv.conf "$base/etc/resolv.conf"
 # A network with a certificate authority of its own: the chroot trusts what this machine trusts.

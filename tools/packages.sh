@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 # packages.sh - sourced by run and check: installs Debian packages that are missing, after saying so.
 #
-#   need_packages "what for" package [package=command] ...
+#   need_packages "what for" package [package=command] [optional:package] ...
 #
-# A package counts as present when dpkg has it or, with =command, when the command exists.
+# A package counts as present when dpkg has it or, with =command, when the command exists. An
+# optional one is left out, with a sentence, where the release of Debian does not have it.
+
+# release_name NUMBER: of a release in tools/releases; nothing if it is none of them
+release_name() { sed -n "s/^$1 //p" "$root/tools/releases"; }
 
 is_present() {
   local package=${1%%=*} command=${1#*=}
@@ -17,10 +21,24 @@ as_root() {
   else return 127; fi
 }
 
+# release_lacks PACKAGE: by the lists of apt, which are fetched where there are none
+release_lacks() {
+  apt-cache show dpkg 2>/dev/null | grep -q '^Filename' || as_root apt-get update >/dev/null 2>&1
+  ! apt-cache show "$1" >/dev/null 2>&1
+}
+
 need_packages() {
   local what=$1 missing=() package
   shift
-  for package in "$@"; do is_present "$package" || missing+=("${package%%=*}"); done
+  for package in "$@"; do
+    is_present "${package#optional:}" && continue
+    if [[ $package == optional:* ]] && release_lacks "${package#optional:}"; then
+      echo "tact: this release of Debian has no ${package#optional:}: what needs it is left out, and says so"
+      continue
+    fi
+    package=${package#optional:}
+    missing+=("${package%%=*}")
+  done
   [ ${#missing[@]} -eq 0 ] && return 0
   echo "tact: missing for $what, installing these Debian packages now:"
   echo "      ${missing[*]}"
@@ -48,12 +66,12 @@ BUILD_PACKAGES=(g++ cmake ninja-build ca-certificates libfmt-dev libcli11-dev
   libeigen3-dev libopencv-core-dev libopencv-calib3d-dev)
 # What the measuring tools call or link besides: those that judge a PC and a device, and all of them.
 LIGHT_TOOL_PACKAGES=(gnuplot-nox libkainjow-mustache-dev rt-tests=cyclictest stress-ng=stress-ng)
-TOOL_PACKAGES=("${LIGHT_TOOL_PACKAGES[@]}" gmsh calculix-ccx libmetis-dev libbullet-dev libbenchmark-dev)
+TOOL_PACKAGES=("${LIGHT_TOOL_PACKAGES[@]}" gmsh optional:calculix-ccx libmetis-dev libbullet-dev libbenchmark-dev)
 # What the tests link or call besides.
 TEST_PACKAGES=(libgtest-dev libopenigtlink-dev python3-jsonschema python3-numpy python3-matplotlib protobuf-compiler=protoc strace systemd=systemd-analyze)
 # What the virtual bench needs on this side (tests/rig).
 RIG_PACKAGES=(qemu-system-x86=qemu-system-x86_64 cpio kmod zstd xz-utils mmdebstrap make g++
-  linux-headers-rt-amd64 linux-source-6.1)
+  linux-headers-rt-amd64 linux-source)
 PAGE_PACKAGES=(nodejs=node npm=npm)
 # What makes and judges Debian packages (tools/package).
 DEB_PACKAGES=(debhelper dpkg-dev fakeroot help2man lintian git=git)

@@ -5,7 +5,7 @@ find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(tomlplusplus REQUIRED)
-find_package(Boost REQUIRED)
+find_package(Boost CONFIG REQUIRED)
 find_package(OpenSSL REQUIRED)
 find_library(GPIOD gpiod REQUIRED)  # Debian's libgpiod has no CMake file
 find_path(GPIOD_INCLUDE_DIR gpiod.h REQUIRED)

@@ -8,6 +8,7 @@ import hashlib
 import inspect
 import os
 import pathlib
+import platform
 import shutil
 import subprocess
 import tempfile
@@ -16,9 +17,9 @@ from bench import cpio
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 GUEST = ROOT / "tests" / "rig" / "guest"
-HEADERS = "linux-headers-rt-amd64"  # depends on the headers of the newest kernel of Debian 12
-GUEST_PACKAGES = ("kmod udev iproute2 procps can-utils gpiod usbutils rt-tests stress-ng strace "
-                  "libusb-1.0-0 libgpiod2 libfmt9 libssl3 libstdc++6 libtomlplusplus3")
+HEADERS = "linux-headers-rt-amd64"  # depends on the headers of the release's newest kernel
+GUEST_PACKAGES = "kmod udev iproute2 procps can-utils gpiod usbutils rt-tests stress-ng strace libstdc++6".split()
+LINKED = "libusb-1.0-0-dev libgpiod-dev libfmt-dev libssl-dev libtomlplusplus-dev libseccomp-dev".split()
 MODULES = ("configfs vcan vxcan can_raw can_bcm can_gw sch_netem vhci_hcd usbmon "
            "ftdi_sio libcomposite usb_f_fs dummy_hcd gpio-sim softdog")
 PRUNED = ("usr/share/doc", "usr/share/man", "usr/share/locale", "usr/share/info", "usr/share/perl*",
@@ -67,6 +68,18 @@ def kernel_release():
     return depends.split()[0].removeprefix("linux-headers-").rstrip(",")
 
 
+def kernel_source(release):
+    """Debian's package of the source of 6.1.0-56-rt-amd64 is linux-source-6.1."""
+    return "linux-source-" + ".".join(release.split(".")[:2])
+
+
+def guest_packages():
+    """With the libraries that tactd is linked to, by the names that this release gives them."""
+    depends = command(["dpkg-query", "-W", "-f=${Depends}\n", *LINKED],
+                      f"the libraries of tactd are not installed; apt-get install {' '.join(LINKED)}")
+    return GUEST_PACKAGES + [line.split()[0].rstrip(",") for line in depends.splitlines()]
+
+
 def build_in(target, make):
     """Calls make(folder) for a folder that becomes `target` only when all of it is there."""
     if target.exists():
@@ -94,7 +107,7 @@ def build_kernel(folder, release):
         command(["apt-get", "-o", "APT::Sandbox::User=root", "download", f"linux-image-{release}"],
                 f"linux-image-{release} cannot be downloaded; without network this needs the cache "
                 f"of an earlier run (TACT_RIG_CACHE); after an update of Debian's kernel: apt-get "
-                f"update && apt-get install {HEADERS} linux-source-6.1", cwd=work)
+                f"update && apt-get install {HEADERS} linux-source", cwd=work)
         package = next(work.glob("*.deb"))
         command(["dpkg", "-x", str(package), str(work / "image")], f"{package} cannot be unpacked")
         shutil.copy(work / "image" / "boot" / f"vmlinuz-{release}", folder / "vmlinuz")
@@ -121,7 +134,7 @@ def build_gpio_sim(work, release, target):
     irq_data_to_desc() is an inline function that gives the same."""
     work.mkdir()
     target.mkdir()
-    source = "linux-source-6.1"
+    source = kernel_source(release)
     command(["tar", "-xJf", f"/usr/src/{source}.tar.xz", "-C", str(work), "--strip-components=3",
              f"{source}/drivers/gpio/gpio-sim.c", f"{source}/drivers/gpio/gpiolib.h",
              f"{source}/kernel/irq/irq_sim.c"], f"/usr/src/{source}.tar.xz cannot be unpacked")
@@ -139,10 +152,11 @@ def build_gpio_sim(work, release, target):
 
 def build_guest_root(folder):
     """A Debian root as tar."""
+    codename = platform.freedesktop_os_release()["VERSION_CODENAME"]
     sources = [p for p in ("/etc/apt/sources.list.d/debian.sources", "/etc/apt/sources.list")
-               if os.path.exists(p) and "bookworm" in pathlib.Path(p).read_text()]
+               if os.path.exists(p) and codename in pathlib.Path(p).read_text()]
     command(["mmdebstrap", "--quiet", "--variant=minbase", f"--mode={'root' if os.getuid() == 0 else 'unshare'}",
-             f"--include={','.join(GUEST_PACKAGES.split())}", "bookworm", str(folder / "root.tar"),
+             f"--include={','.join(guest_packages())}", codename, str(folder / "root.tar"),
              *sources[:1]],
             "the guest's Debian root cannot be made by mmdebstrap; it needs the network, and the "
             "right to make namespaces when not root")
@@ -156,7 +170,7 @@ def build(cache, say):
     version = command(["dpkg-query", "-W", "-f=${Version}", f"linux-headers-{release}"], "no headers")
     recipe = [inspect.getsource(step) for step in (build_kernel, build_gpio_sim, build_guest_root)]
     kernel = cache / f"kernel-{release}-{digest(version, MODULES, *recipe[:2])}"
-    root = cache / f"root-{digest(GUEST_PACKAGES, recipe[2])}"
+    root = cache / f"root-{digest(guest_packages(), recipe[2])}"
     early = [GUEST / "init", GUEST / "fw_cfg_read.cc", pathlib.Path(cpio.__file__),
              inspect.getsource(pack)]
     guest = cache / f"guest-{digest(kernel.name, root.name, PRUNED, *early)}"

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "tests/support/needs_calculix.h"
 #include "tools/reference/block.h"
 #include "tools/reference/rigid_ball.h"
 
@@ -76,7 +77,9 @@ Pressed press_cylinder(double depth_m) {
   return out;
 }
 
-TEST(BallPress, TissueSlidesAroundTheBallAndIsNeverInIt) {
+using BallPress = tests::NeedsCalculiX;
+
+TEST_F(BallPress, TissueSlidesAroundTheBallAndIsNeverInIt) {
   constexpr double kDepth_m = 3e-3;
   const Pressed p = press_cylinder(kDepth_m);
   ASSERT_FALSE(p.displacement_m.empty());
@@ -100,7 +103,7 @@ TEST(BallPress, TissueSlidesAroundTheBallAndIsNeverInIt) {
   EXPECT_LT(std::hypot(p.force_N.x, p.force_N.y), 0.02 * std::abs(p.force_N.z));
 }
 
-TEST(BallPress, MayTouchWhatLooksAtItWithinTwoRadii) {
+TEST_F(BallPress, MayTouchWhatLooksAtItWithinTwoRadii) {
   const auto block = make_block(0.03, 0.03, kTissue);
   ASSERT_TRUE(block) << block.error().sentence;
   const auto body = make_organ_body(

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "tests/support/needs_calculix.h"
 #include "tools/ground_truth/gmsh.h"
 #include "tools/program/run_program.h"
 
@@ -81,7 +82,9 @@ TEST(Gmsh, RefusesAnOpenSurfaceAndKeepsItsLog) {
   EXPECT_FALSE(std::filesystem::is_empty(where->path()));
 }
 
-TEST(CalculiX, PassesThePatchTest) {
+using SolvedByCalculiX = tests::NeedsCalculiX;
+
+TEST_F(SolvedByCalculiX, PassesThePatchTest) {
   // A linear displacement is in the element's space: inside it must be linear too, exactly.
   const Vec3 direction = normalized(Vec3{0.3, -0.5, 0.8});
   const auto linear = [](const Vec3& x) { return 1e-3 * (2.0 * x.x - x.y + 0.5 * x.z); };
@@ -94,7 +97,7 @@ TEST(CalculiX, PassesThePatchTest) {
   EXPECT_LT(norm(answer->force_N), 1e-9) << "constant stress has no resultant";
 }
 
-TEST(CalculiX, GivesYoungsModulusInTension) {
+TEST_F(SolvedByCalculiX, GivesYoungsModulusInTension) {
   // nu = 0: the held bottom does not hinder, and F = E A strain = 5000 * 1e-4 * 1e-3 = 0.5 mN.
   ElasticProblem p{.body = &cube(),
                    .material = {.youngs_modulus_Pa = 5000.0, .poisson_ratio = 0.0},
@@ -125,7 +128,7 @@ double confined_work_J(bool large_strain) {
   return sum_J;
 }
 
-TEST(CalculiX, KnowsBothElasticConstantsAlsoAtLargeStrain) {
+TEST_F(SolvedByCalculiX, KnowsBothElasticConstantsAlsoAtLargeStrain) {
   // W = E (1 - nu) / ((1 + nu)(1 - 2 nu)) strain^2 / 2 V; at 0.1 % neo-Hookean is the same.
   const double modulus_Pa = 5000.0 * 0.55 / (1.45 * 0.1);
   const double work_J = 0.5 * modulus_Pa * 1e-6 * 1e-6;
@@ -145,7 +148,7 @@ TEST(CalculiX, SaysWhatToInstall) {
   EXPECT_EQ(gmsh.error().sentence, "gmsh is not installed; apt install gmsh");
 }
 
-TEST(CalculiX, TellsItsVersion) {
+TEST_F(SolvedByCalculiX, TellsItsVersion) {
   const auto version = calculix_version();
   ASSERT_TRUE(version) << version.error().sentence;
   EXPECT_EQ(version->substr(0, 2), "2.") << *version;
