@@ -6,12 +6,14 @@
 namespace tact::firmware::gate {
 namespace {
 
+// Chosen: above the rounding of a sum over hours, far below what a hand feels.
 constexpr double kRounding_J = 1e-9;
 
 /// Rotation from one orientation to the next: its axis times 2 sin(angle / 2), within 0.1 % of the
 /// angle up to 0.15 rad and never more than it.
 Vec3 turn_rad(const model::Quat& from, const model::Quat& to) RT_SAFE {
   const model::Quat q = to * conjugate(from);
+  // q and -q are one rotation: the shorter way round.
   return (q.w < 0.0 ? -2.0 : 2.0) * Vec3{q.x, q.y, q.z};
 }
 
@@ -38,6 +40,7 @@ void EnergyTank::observe(const model::Tool& tool, bool fresh, double periods,
         (settings_.speed_mps * norm(held.force_N) + settings_.turn_radps * norm(held.torque_Nm));
     return;
   }
+  // Mean motion of a period, times the sum of what was held: exact for a steady motion.
   const double share = 1.0 / periods_;
   moved_m_ = is_placed_ ? share * (tool.position_m - position_m_) : Vec3{};
   turned_rad_ = is_placed_ ? share * turn_rad(orientation_, tool.orientation) : Vec3{};
@@ -49,12 +52,14 @@ void EnergyTank::observe(const model::Tool& tool, bool fresh, double periods,
   if (level_J_ < budget_J)
     level_J_ = std::fmin(budget_J, level_J_ + settings_.recovery_W * settings_.period_s * periods_);
   forget_motion();
+  // From here on there is a place to count from: the first sample after arming gives no motion.
   is_placed_ = true;
   position_m_ = tool.position_m;
   orientation_ = tool.orientation;
 }
 
 bool EnergyTank::damp(Wrench& wrench) const RT_SAFE {
+  // GT-2. What was not seen counts as given, and the reserve is the brake's.
   const double room_J = std::fmax(level_J_ - unseen_J_ - reserve_J_, 0.0);
   return limit_surplus(wrench, moved_m_, turned_rad_, room_J);
 }

@@ -9,6 +9,7 @@
 namespace tact::firmware::gate {
 namespace {
 
+// RT-15. The fade of the workspace is chosen: nothing is wrong with the device, it may be gentler.
 constexpr double kStaleFade_s = 0.010;
 constexpr double kWorkspaceFade_s = 0.050;
 constexpr std::int64_t kLostAfter = 20;  // missed samples in a row
@@ -34,6 +35,7 @@ double slew_step_N(const model::Limits& limits, double force_limit_N, double per
   return std::fmax(step_N - ramp_step_N, 0.1 * step_N);
 }
 
+/// The tank brakes by the slew that the gate keeps for it, not by the whole.
 EnergyTankSettings tank_settings(const model::Limits& limits, double force_limit_N, double lever_m,
                                  double period_s) {
   return {.budget_J = limits.energy_J,
@@ -46,6 +48,7 @@ EnergyTankSettings tank_settings(const model::Limits& limits, double force_limit
           .period_s = period_s};
 }
 
+/// A scene states what is continuous of the force; of the torque it is the same share.
 ThermalLimit thermal_limit(const model::Limits& limits, double peak, double period_s) {
   const double share =
       limits.force_N > 0.0 ? std::fmin(limits.continuous_force_N / limits.force_N, 1.0) : 1.0;
@@ -74,6 +77,7 @@ Gate::Gate(const model::Limits& limits, double period_s, double force_share)
       tank_(tank_settings(limits, force_limit_N_, lever_m_, period_s)),
       warm_force_(thermal_limit(limits, force_limit_N_, period_s)),
       warm_torque_(thermal_limit(limits, torque_limit_Nm_, period_s)) {
+  // Closed at the start, and after each stop: a force is always faded in.
   ramp_.set(0.0);
 }
 
@@ -81,6 +85,7 @@ GateVerdict Gate::judge(const GateInput& input) RT_SAFE {
   const double periods = 1.0 + input.skipped_periods;  // since the last write
   GateVerdict verdict{.wrench = input.wanted};
   book_last_write(input, periods);
+  // In the order of gate.h; each stage keeps what the ones before it promised (README.md).
   check_finite(input, verdict);
   fade_missed_samples(input, verdict);
   check_energy(input.armed, verdict);
@@ -122,6 +127,7 @@ void Gate::check_finite(const GateInput& input, GateVerdict& verdict) RT_SAFE {
 
 // A period that was skipped has missed its sample, unless a fresh one tells in the end.
 void Gate::fade_missed_samples(const GateInput& input, GateVerdict& verdict) RT_SAFE {
+  // Closes by the periods missed since the last tick, the first of a row not among them.
   const std::int64_t held = std::max<std::int64_t>(missed_, 1);  // the first one is held
   const bool missing = !input.fresh && input.armed;  // a device may take its time to wake
   missed_ = missing ? missed_ + 1 + input.skipped_periods : 0;
@@ -137,6 +143,7 @@ void Gate::check_energy(bool armed, GateVerdict& verdict) RT_SAFE {
 }
 
 bool Gate::check_armed(bool armed, GateVerdict& verdict) RT_SAFE {
+  // Nobody is pushed: a new budget, and no motion of before is counted.
   if (!armed) tank_.refill();
   if (armed && !latches(verdict.fault)) return true;
   note(Stage::kArmed, Fault::kNotArmed, verdict);
@@ -147,6 +154,7 @@ void Gate::fade_outside(const model::Tool& tool, double periods, GateVerdict& ve
   const double inside = workspace_.step(is_inside(limits_, tool.position_m), period_s_, periods);
   const double slow = speed_.step(is_slow(limits_, tool), period_s_, periods);
   if (slow < 1.0) note(Stage::kWorkspace, Fault::kTooFast, verdict);
+  // Where both act, outside is told.
   if (inside < 1.0) note(Stage::kWorkspace, Fault::kOutsideWorkspace, verdict);
   verdict.wrench = inside * slow * verdict.wrench;
 }
@@ -166,6 +174,7 @@ Gate::Permitted Gate::permitted_now() const RT_SAFE {
 void Gate::keep_passive(const Permitted& permitted, GateVerdict& verdict) RT_SAFE {
   const Magnitude &energy = permitted.energy, &heat = permitted.heat;
   Wrench& w = verdict.wrench;
+  // Of energy and heat the tighter one shortens and is told: here, or in the next stage.
   const bool damped = tank_.damp(w);
   const bool braked = energy.force_N < heat.force_N && limit_magnitude(w.force_N, energy.force_N);
   const bool turn_braked =
@@ -196,6 +205,8 @@ void Gate::limit_power(const model::Tool& tool, const Magnitude& most, double pe
     note(Stage::kPower, Fault::kPowerLimited, verdict);
     step_towards(w, periods, most);
   }
+  // What the slew of the next tick is measured from. The ramp is no part of it: it has a slew of
+  // its own (slew_step_N).
   before_ramp_ = w;
 }
 
@@ -213,6 +224,7 @@ void Gate::ramp_up(GateVerdict& verdict) RT_SAFE {
   verdict.wrench = ramp * verdict.wrench;
 }
 
+// Of the force after the ramp, as it would be written. NaN fails, and latches.
 void Gate::check_power(const model::Tool& tool, GateVerdict& verdict) RT_SAFE {
   if (!(power_W(verdict.wrench, tool) <= limits_.power_W))
     note(Stage::kPower, Fault::kPowerExceeded, verdict);
