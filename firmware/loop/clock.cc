@@ -23,6 +23,8 @@ std::int64_t MonotonicClock::now_ns() RT_SAFE {
 }
 
 void MonotonicClock::sleep_until_ns(std::int64_t deadline_ns) RT_SAFE {
+  // TIMER_ABSTIME: a sleep that a signal cuts short begins again with the same deadline and loses
+  // no time. The error is the return value; errno is not set.
   const timespec t{.tv_sec = deadline_ns / kNsPerSecond, .tv_nsec = deadline_ns % kNsPerSecond};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
   }

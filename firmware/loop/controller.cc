@@ -15,12 +15,14 @@ bool lets_go(Fault limit) RT_SAFE {
 // A tool that moved unseen starts anew: whatever depth it has by then comes without force.
 void Controller::touch(const TickInput& input) RT_SAFE {
   unseen_ += input.skipped_periods;
+  // One period unseen is what the gate holds, too (RT-15); after two the tool may be anywhere.
   if (input.sample.fresh && unseen_ >= 2) contact_.reset();
   unseen_ = input.sample.fresh ? 0 : unseen_ + 1;
   contact_.touch(input.sample.tool);
 }
 
 void Controller::feel(const TickInput& input) RT_SAFE {
+  // A blade cuts only what a hand can feel: armed, as the tick before left it.
   felt_ = contact_.feel(input.sample.tool, supervisor_.armed());
 }
 
@@ -33,6 +35,7 @@ Fault Controller::find_fault(const TickInput& input, bool finite, bool too_late)
   if (latches(input.device_fault)) return input.device_fault;
   if (!finite) return Fault::kSampleNotFinite;
   if (felt_.is_broken) return Fault::kLawBroke;
+  // Late without a force harms nobody; a start may take its time.
   if (too_late && supervisor_.armed()) return Fault::kLoopLate;
   return Fault::kNone;
 }
@@ -41,6 +44,7 @@ TickOutput Controller::judge(const TickInput& input) RT_SAFE {
   const bool finite = is_finite(input.sample.tool);
   const bool too_late = late_watch_.step(input.skipped_periods);
   const Fault fault = find_fault(input, finite, too_late);
+  // The supervisor before the gate: a fault found in this tick has zero force in this tick.
   const bool armed_before = supervisor_.armed();
   supervisor_.step(
       input.commands,
@@ -50,6 +54,7 @@ TickOutput Controller::judge(const TickInput& input) RT_SAFE {
     felt_ = {};
   }
 
+  // Where the gate latches it makes the force zero by itself; the state follows.
   const gate::GateVerdict verdict = gate_.judge({.wanted = felt_.wrench,
                                                  .tool = input.sample.tool,
                                                  .fresh = input.sample.fresh,

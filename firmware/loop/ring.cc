@@ -3,6 +3,7 @@
 
 namespace tact::firmware::loop {
 
+// dropped_ is a count alone, nothing is ordered by it: relaxed.
 // Boost does not carry the mark; its fixed-capacity push copies into storage it already has.
 #if defined(__clang__) && __clang_major__ >= 20
 #pragma clang diagnostic push

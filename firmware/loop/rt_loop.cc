@@ -12,6 +12,7 @@
 namespace tact::firmware::loop {
 
 void RtLoop::run() RT_SAFE {
+  // A stop request makes no further tick: its zero force is the one of release_device().
   while (may_run()) step();
   release_device();
 }
@@ -22,7 +23,9 @@ void RtLoop::step() RT_SAFE {
   clock_.sleep_until_ns(due_ns_);
   cycle(due_ns_);
   due_ns_ += period_ns;  // absolute deadlines: one late tick does not delay the next
+  // By the clock, not by marks: lateness and the grid must be the kernel's own time (RT-14).
   const std::int64_t behind_ns = clock_.now_ns() - due_ns_;
+  // Taken before between_ticks(): simulated physics is no part of the tick.
   record_.margin_ns = -behind_ns;
   std::int64_t skipped = 0;
   if (behind_ns >= 0) {
@@ -37,6 +40,7 @@ void RtLoop::step() RT_SAFE {
 }
 
 void RtLoop::release_device() RT_SAFE {
+  // Lines first: should the device hang in the next call, its power is on its way off already.
   progress_.enter(Callee::kLines);
   const Fault lines_fault = lines_.write({.healthy = false, .armed = false, .faulted = true});
   progress_.enter(Callee::kDevice);
@@ -49,6 +53,8 @@ void RtLoop::release_device() RT_SAFE {
 }
 
 bool RtLoop::hear_requests() RT_SAFE {
+  // Relaxed, as everywhere here: each flag stands for itself, no other data is read because of it.
+  // One that is seen a tick later is a request made a tick later.
   const bool asked_before = std::exchange(asked_, requests_.arm.load(std::memory_order_relaxed));
   record_.input.commands = {.arm = asked_ || arms_at_start(),
                             .stop = requests_.stop.load(std::memory_order_relaxed),
@@ -57,6 +63,7 @@ bool RtLoop::hear_requests() RT_SAFE {
 }
 
 void RtLoop::answer_requests(bool asks_anew) RT_SAFE {
+  // A person's request is answered in the tick that saw it: armed by now, or refused and counted.
   const State state = record_.output.state;
   if (asks_anew && state != State::kArmed)
     requests_.refused.fetch_add(1, std::memory_order_relaxed);
@@ -75,6 +82,8 @@ bool RtLoop::arms_at_start() const RT_SAFE {
 Fault RtLoop::read(std::int64_t now_ns) RT_SAFE {
   progress_.enter(Callee::kLines);
   const Fault lines_fault = lines_.read(now_ns);
+  // A device with nothing new leaves the rest untouched
+  // (hal/device.h): the old sample must not pass for a new one.
   record_.input.sample.fresh = false;
   progress_.enter(Callee::kDevice);
   const Fault read_fault = device_.read(record_.input.sample, now_ns);
@@ -124,6 +133,7 @@ bool RtLoop::may_run() const RT_SAFE {
 
 void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   const std::int64_t wake_ns = now_ns();
+  // Told to the watch before any call that could hang.
   progress_.tick();
   lines_.scope(true);
   record_.tick = statistics_.ticks++;
@@ -133,6 +143,7 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   const bool asks_anew = hear_requests();
   TickInput& input = record_.input;
   input.device_fault = read(wake_ns);
+  // After both were read: power that fell in this tick stops the force in this tick.
   input.ready = lines_.enabled() && device_.ready();
   const std::int64_t read_ns = end_phase(Phase::kRead, wake_ns);
 
@@ -170,6 +181,7 @@ std::int64_t RtLoop::end_phase(Phase phase, std::int64_t since_ns) RT_SAFE {
 
 void RtLoop::record_phase(Phase phase, std::int64_t duration_ns) RT_SAFE {
   const auto i = static_cast<std::size_t>(phase);
+  // The histogram has all 64 bits; the record 32, where 2 s are as good as never.
   statistics_.phase[i].record(duration_ns, record_.tick);
   constexpr std::int64_t kMax = std::numeric_limits<std::int32_t>::max();
   record_.phase_ns[i] = static_cast<std::int32_t>(std::clamp<std::int64_t>(duration_ns, 0, kMax));

@@ -8,6 +8,8 @@ State Supervisor::step(const Commands& commands, const Findings& found) RT_SAFE 
   const bool reset_edge = commands.reset && !reset_before_;
   arm_before_ = commands.arm;
   reset_before_ = commands.reset;
+  // Levels are taken in every state, so a request that came too early is spent (RT-16). A fault
+  // goes before a stop request: it stays as the cause.
   trip(found.fault);
   if (commands.stop) return state_ = State::kStopped;
   switch (state_) {
@@ -20,6 +22,7 @@ State Supervisor::step(const Commands& commands, const Findings& found) RT_SAFE 
     case State::kArmed:  // power that comes back must not bring a force with it
       if (!found.ready) trip(Fault::kPowerLost);
       break;
+    // Reset and arm are two acts: a request to arm that stands keeps the stop.
     case State::kStopped:
       if (reset_edge && found.sample_good && !latches(found.fault) && !commands.arm) {
         state_ = State::kReady;
