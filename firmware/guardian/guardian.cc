@@ -22,8 +22,10 @@
 namespace tact::firmware::guardian {
 namespace {
 
+// Chosen: patience with a busy PC; at the end the guardian has nothing left to do.
 constexpr int kReadyWait_ms = 3000, kEndWait_ms = 100;
 
+// Both programs are built and installed together: one of another build is refused (orders.h).
 std::string beside_this_program() {
   std::error_code none;
   return std::filesystem::read_symlink("/proc/self/exe", none).parent_path() / kProgram;
@@ -60,7 +62,9 @@ model::Result<std::unique_ptr<Guardian>> Guardian::start(const hal::LastWords& w
   if (const std::string why = guardian->spawn(program); !why.empty()) return refused(program, why);
   guardian->thread_ =
       std::thread([self = guardian.get(), settings] { self->keep(settings.priority); });
+  // The lifeline must be held before the guardian has it: one that it finds free means "let go".
   guardian->held_.acquire();
+  // getpid() is for the sentence that a person reads; nothing is sent to that number.
   const Orders orders{.words = words, .priority = settings.priority, .process = getpid()};
   if (!give_orders(guardian->socket_, orders, guardian->lifeline_.descriptor()))
     return refused(program, std::strerror(errno));
@@ -78,7 +82,9 @@ std::string Guardian::spawn(const std::string& program) {
   socket_ = ends[0];
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
+  // A copy by dup2 stays open in the new program; every other descriptor here closes by itself.
   posix_spawn_file_actions_adddup2(&files, ends[1], kOrdersFd);
+  // So that it holds no pipe of tactd's standard output open.
   posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
@@ -122,10 +128,13 @@ void Guardian::keep(int priority) {
     either[1].revents = 0;
   }
   lifeline_.let_go();
+  // A thread that gives its memory back at FIFO priority holds up all others (pc/rt_setup.h).
   become_fifo(0);
 }
 
 Guardian::~Guardian() {
+  // In this order: the lifeline is let go in good order, the guardian ends by itself, and only one
+  // that does not is killed. Either way it has sent nothing.
   if (thread_.joinable()) {
     const std::uint64_t one = 1;
     static_cast<void>(::write(dismiss_, &one, sizeof one));
@@ -133,6 +142,7 @@ Guardian::~Guardian() {
   }
   pollfd end{.fd = socket_, .events = POLLHUP, .revents = 0};
   if (process_ > 0 && poll(&end, 1, kEndWait_ms) == 0) kill(process_, SIGKILL);
+  // Else it would stay as a zombie for as long as tactd lives.
   if (process_ > 0) waitpid(process_, nullptr, 0);
   for (const int fd : {socket_, dismiss_})
     if (fd >= 0) close(fd);

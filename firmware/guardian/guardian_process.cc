@@ -24,6 +24,7 @@ namespace tact::firmware::guardian {
 namespace {
 
 constexpr std::uint32_t kRefuse = SCMP_ACT_ERRNO(EPERM);
+// Chosen, deeper than what follows should go: a page that was touched and locked faults no more.
 constexpr std::size_t kTouchedStack_bytes = std::size_t{64} * 1024;
 
 __attribute__((noinline)) void touch_stack() {
@@ -52,6 +53,7 @@ void outlive_short_memory() {
 void enter_real_time(int priority) {
   touch_stack();
   mlockall(MCL_CURRENT | MCL_FUTURE);
+  // RT-4
   prctl(PR_SET_TIMERSLACK, 1);
   const sched_param wanted{.sched_priority = priority};
   sched_setscheduler(0, SCHED_FIFO, &wanted);
@@ -85,9 +87,13 @@ void filter_calls(int device, int socket) {
   void* filter = seccomp_init(kRefuse);
   if (filter == nullptr) return;
   bool good = true;
+  // Waiting for the lifeline, a millisecond between two
+  // steps, the end, and what a signal leaves behind.
   for (const int call : {SYS_futex, SYS_clock_nanosleep, SYS_exit_group, SYS_exit,
                          SYS_restart_syscall, SYS_rt_sigreturn})
     good = good && seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 0) == 0;
+  // Last words over CAN are sent by one call each step,
+  // those over USB by transfers on its endpoint.
   good = good && allow_on(filter, SYS_sendmmsg, device) &&
          allow_ioctl(filter, device, USBDEVFS_BULK) &&
          allow_ioctl(filter, device, USBDEVFS_CLEAR_HALT);
@@ -106,6 +112,8 @@ int stand_guard(int socket) {
     write_all(STDERR_FILENO, "tact-guardian: tactd starts this program; nobody else can\n");
     return 2;
   }
+  // In this order: what needs a file or a priority comes before the filter, which then refuses it;
+  // "r", that it stands guard, comes last.
   const Orders orders = taken->orders;
   const Sentence sent(orders.process, "zero force and power off were sent to its device");
   const Sentence unsent(orders.process,

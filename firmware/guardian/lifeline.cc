@@ -32,10 +32,12 @@ model::Result<Lifeline> Lifeline::make() {
   if (mutex == nullptr) return refused(fd, errno);
   pthread_mutexattr_t attributes;
   pthread_mutexattr_init(&attributes);
+  // Two processes lock it, and the kernel hands it on when its holder's thread is gone (RT-18).
   pthread_mutexattr_setpshared(&attributes, PTHREAD_PROCESS_SHARED);
   pthread_mutexattr_setrobust(&attributes, PTHREAD_MUTEX_ROBUST);
   const int error = pthread_mutex_init(mutex, &attributes);
   pthread_mutexattr_destroy(&attributes);
+  // Owner of both from here on: its destructor closes and unmaps.
   Lifeline lifeline(fd, mutex);
   if (error != 0) return refused(-1, error);
   return lifeline;
@@ -59,7 +61,7 @@ void Lifeline::hold() { pthread_mutex_lock(mutex_); }
 
 void Lifeline::let_go() { pthread_mutex_unlock(mutex_); }
 
-// Whatever cannot be waited for any more counts as a death.
+// The death is told as EOWNERDEAD; whatever else cannot be waited for counts as one, too.
 Lifeline::End Lifeline::await() {
   if (pthread_mutex_lock(mutex_) != 0) return End::kDied;
   pthread_mutex_unlock(mutex_);

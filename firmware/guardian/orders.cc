@@ -34,6 +34,7 @@ class Message {
 }  // namespace
 
 bool give_orders(int socket, const Orders& orders, int lifeline_fd) {
+  // sendmsg takes no const.
   Orders copy = orders;
   Message message(copy);
   cmsghdr* header = message.descriptors();
@@ -50,6 +51,8 @@ std::optional<TakenOrders> take_orders(int socket) {
   Message message(taken.orders);
   const ssize_t size = recvmsg(socket, message.header(), MSG_CMSG_CLOEXEC);
   const cmsghdr* header = size > 0 ? message.descriptors() : nullptr;
+  // A datagram of another length, or without both
+  // descriptors, is of another build or another sender.
   const bool whole = size == static_cast<ssize_t>(sizeof taken.orders) &&
                      taken.orders.magic == Orders{}.magic && header != nullptr &&
                      header->cmsg_type == SCM_RIGHTS &&
@@ -58,6 +61,7 @@ std::optional<TakenOrders> take_orders(int socket) {
   std::array<int, kFds> fds{};
   std::memcpy(fds.data(), CMSG_DATA(header), sizeof fds);
   taken.lifeline_fd = fds[0];
+  // The number that came inside the words is one of tactd's table; here it has another.
   taken.orders.words.fd = fds[1];
   return taken;
 }
