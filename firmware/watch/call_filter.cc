@@ -31,6 +31,8 @@ constexpr std::array kEveryLoop{
 // SYS_SECCOMP of the kernel's headers, which stand no glibc header beside them.
 constexpr int kSeccompCode = 1;
 
+// Read by a signal handler in the loop's thread: lock-free, and
+// in the default order, as nothing here is in a hurry.
 std::atomic<loop::Requests*> guarded{nullptr};
 std::atomic<int> refused{-1};  // number of the first refused call
 thread_local bool in_loop = false;
@@ -58,6 +60,7 @@ void on_refused(int, siginfo_t* info, void* context) {
   loop::Requests* requests = guarded.load();
   if (requests == nullptr || !in_loop) return;
   int none = -1;
+  // The first call is the one to tell: what is refused after it may follow from it.
   refused.compare_exchange_strong(none, info->si_syscall);
   requests->trip(model::Fault::kForbiddenCall);
 }
@@ -92,6 +95,7 @@ class Filter final : public CallFilter {
     guarded.store(&requests);
     struct sigaction action{};
     action.sa_sigaction = on_refused;
+    // SIGSYS tells which call it was (si_syscall); without a handler it would end the process.
     action.sa_flags = SA_SIGINFO;
     sigaction(SIGSYS, &action, nullptr);
   }
@@ -115,11 +119,13 @@ Result<std::unique_ptr<CallFilter>> CallFilter::make(std::span<const int> of_dev
                                                      loop::Requests& requests) {
   if (!kCanAnswerRefusedCall) return no_filter("it is not made for this processor");
   if (loop::is_sanitized()) return no_filter("a sanitizer makes calls of its own");
+  // TRAP, not KILL: the call fails, and the loop lives to write zero force.
   Context context(seccomp_init(SCMP_ACT_TRAP));
   constexpr scmp_datum_t kWhole = ~scmp_datum_t{0},
                          kCommand = static_cast<unsigned>(FUTEX_CMD_MASK);
   std::array<int, kEveryLoop.size()> every{};
   for (std::size_t i = 0; i < every.size(); ++i) every[i] = static_cast<int>(kEveryLoop[i]);
+  // By argument: FUTEX_WAKE, whatever its flags, and a step down to SCHED_OTHER at the end.
   const bool good = context != nullptr && allow(context.get(), every) &&
                     allow(context.get(), of_device) && allow(context.get(), of_lines) &&
                     allow_with(context.get(), SYS_futex, 1, kCommand, FUTEX_WAKE) &&

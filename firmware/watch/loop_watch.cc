@@ -11,6 +11,7 @@ void LoopWatch::start(const pc::RtSettings& loop) {
   thread_ = std::thread([this, loop] {
     pthread_setname_np(pthread_self(), "tact-watch");
     std::vector<pc::Shortfall> known;
+    // What is refused here was told before the loop (pc::probe_rt_threads).
     enter_watch_thread(loop, known);
     run();
     pc::leave_rt_thread();
@@ -23,6 +24,7 @@ void LoopWatch::stop() {
 }
 
 void LoopWatch::run() RT_SAFE {
+  // Relaxed: join() orders whatever the end needs.
   while (!ending_.load(std::memory_order_relaxed)) {
     clock_.sleep_until_ns(next_ns(clock_.now_ns()));
     check();
@@ -30,6 +32,7 @@ void LoopWatch::run() RT_SAFE {
 }
 
 void LoopWatch::check() RT_SAFE {
+  // The first fault stays (Requests::trip), so the order of these says which is told.
   const model::Fault found = stall_.step(progress_);
   if (found != model::Fault::kNone) requests_.trip(found);
   if (guardian_lost_ != nullptr && guardian_lost_->load(std::memory_order_relaxed))

@@ -29,6 +29,7 @@ std::optional<pc::Shortfall> lift_rttime_limit() {
   getrlimit(RLIMIT_RTTIME, &limit);
   if (limit.rlim_cur == RLIM_INFINITY && limit.rlim_max == RLIM_INFINITY) return std::nullopt;
   const rlimit none{.rlim_cur = RLIM_INFINITY, .rlim_max = RLIM_INFINITY};
+  // Only who may raise a hard limit gets through here; else as much as the hard one allows.
   if (setrlimit(RLIMIT_RTTIME, &none) == 0) return std::nullopt;
   const rlimit most{.rlim_cur = limit.rlim_max, .rlim_max = limit.rlim_max};
   setrlimit(RLIMIT_RTTIME, &most);
@@ -44,8 +45,10 @@ RunawayGuard::RunawayGuard(loop::Requests& requests, rlim_t longest_us) {
   guarded.store(&requests);
   struct sigaction action{};
   action.sa_handler = on_runaway;
+  // The signal may meet any thread: its calls go on as if nothing had been.
   action.sa_flags = SA_RESTART;
   sigaction(SIGXCPU, &action, nullptr);
+  // The soft limit sends the signal; the hard one would kill, and stays where it was.
   getrlimit(RLIMIT_RTTIME, &before_);
   const rlimit ours{.rlim_cur = std::min(longest_us, before_.rlim_max),
                     .rlim_max = before_.rlim_max};
