@@ -25,6 +25,7 @@ void Telemetry::start() { thread_ = std::thread(&Telemetry::run, this); }
 
 std::optional<model::Error> Telemetry::stop() {
   ending_.store(true, std::memory_order_relaxed);
+  // The thread first: from here on this one is the only reader of the ring.
   if (thread_.joinable()) thread_.join();
   drain();
   publish();
@@ -43,6 +44,8 @@ void Telemetry::run() {
     drain();
     publish();
     due_ns += frame_ns;
+    // Halfway between two deadlines: its wake-up must not
+    // meet the same phase of every tick (RT-14).
     clock.sleep_until_ns(loop::next_half_way_ns(due_ns, pace_.loop_period_ns));
   }
 }
@@ -54,6 +57,7 @@ void Telemetry::drain() {
     if (sinks_.log) sinks_.log->add(record_);
     if (sinks_.recorder) sinks_.recorder->add(record_);
   }
+  // Told once: a full disk loses every tick from then on.
   if (told_lost_ || !sinks_.log || !sinks_.log->trouble()) return;
   told_lost_ = true;
   const std::lock_guard lock(newest_mutex_);
@@ -74,6 +78,7 @@ std::optional<Frame> Telemetry::next_frame() {
     frame = builder_.take(ring_.dropped());
   } else {
     if (sinks_.recorder) sinks_.recorder->stands(found);
+    // newest_ is written by this thread alone, so reading it takes no lock.
     if (found != model::Fault::kNone && newest_.fault == 0) frame = newest_;
   }
   if (frame && frame->fault == 0 && found != model::Fault::kNone) {

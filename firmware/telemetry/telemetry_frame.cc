@@ -70,6 +70,7 @@ Hello make_hello(const model::scene::Scene& scene, const model::scene::Tissue& t
   hello.tool_triangles = static_cast<std::uint32_t>(scene.tool_mesh.triangle.size());
   hello.site_count = static_cast<std::uint32_t>(scene.tool.spheres.size());
   std::array<double, kMaxRings> ring_m{};
+  // At no depth, in any place: only how many rings there are is asked.
   hello.ring_count = static_cast<std::uint32_t>(
       tissue.law().site_law().profile({.place = {.triangle = 0, .weight = {1, 0, 0}}}, ring_m));
   hello.ring_pitch_m = static_cast<float>(tissue.law().site_law().ring_pitch_m());
@@ -96,6 +97,7 @@ model::Result<int> make_mesh_file(const model::scene::Scene& scene) {
   std::vector<char> bytes;
   append(bytes, scene.organ_mesh);
   append(bytes, scene.tool_mesh);
+  // Sealed at last, so that a viewer can map it without fear that it shrinks, and change nothing.
   const int fd = memfd_create("tact-meshes", MFD_CLOEXEC | MFD_ALLOW_SEALING);
   std::size_t written = 0;
   while (fd >= 0 && written < bytes.size()) {
@@ -114,8 +116,10 @@ void FrameBuilder::add(const loop::TickRecord& record) {
   if (first_due_ns_ < 0) first_due_ns_ = record.due_ns;
   const float margin_us = to_us(record.margin_ns);
   const auto given_J = static_cast<float>(record.output.given_energy_J);
+  // tick_us_ is empty at the first tick of a frame: extremes begin anew.
   given_energy_J_ = tick_us_.empty() ? given_J : std::max(given_energy_J_, given_J);
   worst_margin_us_ = tick_us_.empty() ? margin_us : std::min(worst_margin_us_, margin_us);
+  // The total of the tick before: a tick's own is known after its record has left.
   tick_us_.push_back(to_us(record.phase_ns[static_cast<std::size_t>(loop::Phase::kTotal)]));
   peak_force_N_ = std::max(peak_force_N_, static_cast<float>(norm(record.output.written.force_N)));
   if (record.output.limit != model::Fault::kNone) limit_ = record.output.limit;
@@ -145,6 +149,7 @@ Frame FrameBuilder::take(std::uint64_t dropped_records) {
   put(frame, r.input, r.output);
   frame.worst_margin_us = worst_margin_us_;
   const auto middle = tick_us_.begin() + static_cast<std::ptrdiff_t>(tick_us_.size() / 2);
+  // It moves them about; they are forgotten below.
   std::nth_element(tick_us_.begin(), middle, tick_us_.end());
   frame.median_tick_us = tick_us_.empty() ? 0.0f : *middle;
   frame.peak_force_N = peak_force_N_;
@@ -175,6 +180,7 @@ void FrameBuilder::add_patch(FramePatch& patch) {
   std::copy(shape_.cut_triangle.begin(), shape_.cut_triangle.end(), patch.cut_triangle);
   for (std::size_t i = 0; i < shape_.node_count; ++i)
     for (std::size_t k = 0; k < 3; ++k) {
+      // Micrometres in 16 bits: half the bytes of a float, up to 32 mm; beyond, it is cut off.
       const double um = 1e6 * static_cast<double>(shape_.displacement_m[i][k]);
       patch.displacement_um[i][k] =
           static_cast<std::int16_t>(std::clamp(std::round(um), -kMax_um, kMax_um));

@@ -16,6 +16,7 @@ namespace {
 using model::Error;
 using model::Result;
 
+// Chosen: each costs a call a frame. More wait in the queue of the socket.
 constexpr std::size_t kMaxClients = 16;
 
 }  // namespace
@@ -30,6 +31,7 @@ Result<TelemetrySocket> TelemetrySocket::open(const std::string& path, const Hel
     close(fd);
     return error;
   }
+  // Owner of the file from here on: an error below removes it.
   TelemetrySocket opened(model::io::SocketFile(path), hello, fd, mesh_fd,
                          {.user = std::nullopt, .group = viewers});
   if (viewers)
@@ -59,6 +61,7 @@ void TelemetrySocket::accept_clients() {
     const int client = accept4(listen_fd_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (client < 0) return;
     shutdown(client, SHUT_RD);  // whatever it says is not listened to
+    // Who is at the other end is asked before it gets anything.
     if (model::io::has_trusted_peer(client, trust_) && greet(client))
       clients_.push_back(client);
     else
@@ -67,6 +70,7 @@ void TelemetrySocket::accept_clients() {
 }
 
 bool TelemetrySocket::greet(int client_fd) const {
+  // sendmsg takes no const.
   Hello hello = hello_;
   iovec bytes{.iov_base = &hello, .iov_len = sizeof hello};
   alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
@@ -88,6 +92,7 @@ void TelemetrySocket::send(const Frame& frame) {
   const auto gone = [&](int client) {
     if (::send(client, &frame, sizeof frame, MSG_DONTWAIT | MSG_NOSIGNAL) == sizeof frame)
       return false;
+    // A viewer that is slow loses this frame; one that has gone is forgotten.
     if (errno == EAGAIN || errno == EWOULDBLOCK || errno == ENOBUFS) {
       ++dropped_frames_;
       return false;

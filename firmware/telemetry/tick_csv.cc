@@ -75,9 +75,11 @@ model::Result<std::string> write_tick_csv(const std::string& log_path,
   auto log = TickLogReader::open(log_path);
   if (!log) return log.error();
   const std::string head = tick_csv_head(log->header());
+  // After the log was opened: a log that cannot be read leaves an older table as it is.
   auto out = model::io::FileWriter::replace(csv_path, head);
   if (!out) return out.error();
   if (auto error = out->put(head)) return *error;
+  // Damaged ticks are left out: their numbers are missing in the first column.
   for (LoggedTick tick; log->next(tick);)
     if (auto error = out->put(tick_csv_row(tick))) return *error;
   if (auto error = out->finish()) return *error;

@@ -37,6 +37,7 @@ Result<TickLogWriter> TickLogWriter::create(const std::string& path, const LogHe
   LogHeader full = header;
   std::memcpy(full.magic, kLogMagic, sizeof full.magic);
   full.header_bytes = sizeof(LogHeader);
+  // Sizes tell a build whose structs differ, where the version is the same.
   full.tick_bytes = sizeof(LogRecord);
   full.header_crc = crc_of(&full, kSummedBytes);
   if (auto error = file->put({reinterpret_cast<const char*>(&full), sizeof full})) return *error;
@@ -54,6 +55,7 @@ LoggedTick LoggedTick::of(const loop::TickRecord& record, bool non_rt) {
 }
 
 void TickLogWriter::add(const LoggedTick& tick) {
+  // A log with a hole in it could not be replayed: after the first loss nothing more is written.
   if (trouble_) return;
   LogRecord record;
   std::memcpy(&record.tick, &tick, sizeof tick);  // with its padding, which the sum counts
@@ -82,6 +84,7 @@ Result<TickLogReader> TickLogReader::open(const std::string& path) {
   LogHeader header;
   const std::size_t read = file->read(&header, sizeof header);
   TickLogReader reader(std::move(*file), header);
+  // What is asked first is told first: another file, another version, damage, another build.
   constexpr std::size_t kVersionAt = sizeof header.magic - 1;
   if (read < sizeof(LogStart) || std::memcmp(header.magic, kLogMagic, kVersionAt) != 0)
     return Error{path + ": is no tick log; name a file that tactd --record wrote"};
@@ -95,6 +98,7 @@ Result<TickLogReader> TickLogReader::open(const std::string& path) {
                  ": its header is damaged, so none of its ticks can be used; record it again"};
   if (header.tick_bytes != sizeof(LogRecord) || header.header_bytes != sizeof(LogHeader))
     return Error{path + ": was written by another version of tactd; replay it with that one"};
+  // A sound sum does not mean that texts end: who wrote the file may have been anybody.
   reader.header_.scene_hash[sizeof header.scene_hash - 1] = '\0';
   reader.header_.overrides[sizeof header.overrides - 1] = '\0';
   return reader;
@@ -104,6 +108,7 @@ bool TickLogReader::next(LoggedTick& tick) {
   while (header_.ticks == 0 || read_ < header_.ticks) {
     LogRecord record;
     const std::size_t bytes = file_.read(&record, sizeof record);
+    // Without a number of ticks the end of the file is the end; part of a tick never is.
     torn_ = torn_ || (bytes < sizeof record && (bytes > 0 || header_.ticks != 0));
     if (bytes < sizeof record) return false;
     ++read_;
