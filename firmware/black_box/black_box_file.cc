@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 using model::Error;
 using model::Result;
 
+// Of the end, where pictures at the frame rate would be too coarse; chosen.
 constexpr std::int64_t kEveryTick_ns = 500'000'000;
 
 std::vector<std::byte> read_all(int fd) {
@@ -49,6 +50,7 @@ std::string free_path(const BlackBoxRun& run, model::Fault fault) {
       fmt::format("{}/{}-{:%Y%m%dT%H%M%SZ}-{}-{}", run.folder, plain(run.scene_name),
                   fmt::gmtime(now), static_cast<int>(fault), plain(model::describe(fault).name));
   std::string path = stem + ".tactlog";
+  // Two faults in one second; should one appear meanwhile, TickLogWriter::create refuses it.
   for (int n = 2; fs::exists(path); ++n) path = fmt::format("{}-{}.tactlog", stem, n);
   return path;
 }
@@ -71,6 +73,7 @@ Result<std::string> black_box_folder(const std::string& asked) {
     folder = state / "tact" / "black-box";
   }
   std::error_code failed;
+  // The folder may not be made yet: what counts is the nearest one above that is there.
   fs::path there = fs::absolute(folder, failed);
   while (!fs::exists(there, failed) && there.has_relative_path()) there = there.parent_path();
   int wrong = 0;
@@ -98,6 +101,7 @@ std::vector<telemetry::Frame> with_last_ticks(const Kept& kept) {
     out.push_back(picture);
     const bool last = i + 1 == kept.frames.size();
     const auto shown = tick(picture.tick);
+    // Of this frame no tick is kept: no pictures can be put between.
     if (shown == kept.ticks.end() || shown->tick != picture.tick) continue;
     const auto end = last ? kept.ticks.end() : tick(kept.frames[i + 1].tick);
     for (auto t = shown + 1; t < end; ++t)
@@ -115,6 +119,7 @@ Result<std::string> write_black_box(const BlackBoxRun& run, const Kept& kept) {
   const std::string path = free_path(run, kept.fault);
   auto log = telemetry::TickLogWriter::create(path, header);
   if (!log) return log.error();
+  // Ticks before pictures: of a file that is cut off they are what is left.
   for (const telemetry::LoggedTick& tick : kept.ticks) log->add(tick);
   log->append(recording_start(run.hello, read_all(run.mesh_fd)));
   for (const telemetry::Frame& frame : with_last_ticks(kept)) log->append(recording_frame(frame));
