@@ -22,6 +22,7 @@ const char* name_of(Verdict verdict) {
 
 int core_in_question(const PcQuestion& question) {
   if (question.core >= 0) return question.core;
+  // An isolated one if there is one, as rt_setup.h takes it; else the last.
   for (const char* list : {"/sys/devices/system/cpu/isolated", "/sys/devices/system/cpu/online"}) {
     const std::vector<int> cpus = parse_cpu_list(question.files.line(list).value_or(""));
     if (!cpus.empty()) return cpus.back();
@@ -36,6 +37,8 @@ std::vector<PcRow> check_pc(const PcQuestion& question) {
   check_permissions(settled, rows);
   check_core(settled, rows);
   check_others(settled, rows);
+  // Rows are written with their cure, whatever they
+  // find; here it is dropped where nothing is wrong.
   for (PcRow& row : rows)
     if (row.verdict == Verdict::kGreen) row.cure.clear();
   return rows;

@@ -30,6 +30,7 @@ std::string boot_parameters(const PcQuestion& q) {
       parameters);
 }
 
+/// RT-6
 PcRow isolation_row(const PcQuestion& q) {
   const bool known = q.files.is_there(fmt::format("{}/isolated", kCpus));
   const bool isolated = contains(cpu_list(q.files, "isolated"), q.core);
@@ -43,6 +44,7 @@ PcRow isolation_row(const PcQuestion& q) {
           .cure = boot_parameters(q)};
 }
 
+/// RT-6
 PcRow tick_row(const PcQuestion& q) {
   const bool known = q.files.is_there(fmt::format("{}/nohz_full", kCpus));
   const bool quiet = contains(cpu_list(q.files, "nohz_full"), q.core);
@@ -68,6 +70,7 @@ std::string name_interrupt(const PcFiles& files, const std::string& number) {
   return {};
 }
 
+/// RT-13
 PcRow interrupt_row(const PcQuestion& q) {
   PcRow row{.name = "interrupts",
             .verdict = Verdict::kUnknown,
@@ -81,11 +84,13 @@ PcRow interrupt_row(const PcQuestion& q) {
   for (const std::string& number : q.files.names("/proc/irq")) {
     const std::string folder = "/proc/irq/" + number;
     auto list = q.files.line(folder + "/effective_affinity_list");
+    // Where an interrupt really comes is told by newer kernels; else where it may come.
     if (!list || list->empty()) list = q.files.line(folder + "/smp_affinity_list");
     const std::string name = list ? name_interrupt(q.files, number) : "";
     if (name.empty()) continue;  // nobody waits for it
     ++there;
     if (!contains(parse_cpu_list(*list), q.core)) continue;
+    // A row stays readable: the cure has all numbers, the finding four names.
     if (here++ < 4) named += fmt::format("{}{} {}", named.empty() ? "" : ", ", number, name);
     numbers += fmt::format("{}{}", numbers.empty() ? "" : " ", number);
   }
@@ -104,6 +109,7 @@ PcRow interrupt_row(const PcQuestion& q) {
   return row;
 }
 
+/// RT-7
 PcRow governor_row(const PcQuestion& q) {
   const std::string path = fmt::format("{}/cpu{}/cpufreq/scaling_governor", kCpus, q.core);
   const auto governor = q.files.line(path);
@@ -120,6 +126,7 @@ PcRow governor_row(const PcQuestion& q) {
                            : "set the highest speed in the firmware (BIOS) or on the host"};
 }
 
+/// RT-5, RT-7: tactd may forbid deep sleep for its own time, or there is none.
 PcRow sleep_row(const PcQuestion& q) {
   const std::string folder = fmt::format("{}/cpu{}/cpuidle", kCpus, q.core);
   long slowest_us = 0;
@@ -141,6 +148,7 @@ PcRow sleep_row(const PcQuestion& q) {
           .cure = kPowerReason.cure};
 }
 
+/// RT-7
 PcRow sibling_row(const PcQuestion& q) {
   const auto list =
       q.files.line(fmt::format("{}/cpu{}/topology/thread_siblings_list", kCpus, q.core));

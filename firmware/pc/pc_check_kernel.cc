@@ -18,6 +18,7 @@ constexpr unsigned kCapIpcLock = 14, kCapSysNice = 23;              // linux/cap
 bool has_capability(const PcFiles& files, unsigned capability) {
   std::istringstream status(files.text("/proc/self/status").value_or(""));
   for (std::string line; std::getline(status, line);) {
+    // What the process may do now, as hexadecimal bits (proc(5)).
     if (!line.starts_with("CapEff:")) continue;
     return ((std::strtoull(line.c_str() + 7, nullptr, 16) >> capability) & 1U) != 0;
   }
@@ -37,6 +38,7 @@ std::string soft_limit(const PcFiles& files, const std::string& name) {
   return {};
 }
 
+/// RT-1
 PcRow kernel_row(const PcFiles& files) {
   const bool realtime = is_realtime_kernel(files);
   const auto release = files.line("/proc/sys/kernel/osrelease");
@@ -53,6 +55,7 @@ PcRow kernel_row(const PcFiles& files) {
           .cure = kKernelReason.cure};
 }
 
+/// RT-9. The flag "hypervisor" is set by the machine that the kernel runs in.
 PcRow machine_row(const PcFiles& files) {
   const auto cpu = files.text("/proc/cpuinfo");
   const bool guest = cpu && cpu->find(" hypervisor") != std::string::npos;
@@ -67,6 +70,7 @@ PcRow machine_row(const PcFiles& files) {
           .cure = "run tactd on the PC itself; here numbers only compare with each other"};
 }
 
+/// RT-10. A clock that is on neither list is not judged.
 PcRow clock_row(const PcFiles& files) {
   const auto source =
       files.line("/sys/devices/system/clocksource/clocksource0/current_clocksource");
@@ -89,6 +93,7 @@ PcRow clock_row(const PcFiles& files) {
   return row;
 }
 
+/// RT-11
 PcRow throttling_row(const PcFiles& files) {
   const auto runtime = files.line("/proc/sys/kernel/sched_rt_runtime_us");
   const auto period = files.line("/proc/sys/kernel/sched_rt_period_us");
@@ -107,6 +112,7 @@ PcRow throttling_row(const PcFiles& files) {
   return row;
 }
 
+/// RT-3. The highest that tactd asks for is the watch's.
 PcRow priority_row(const PcFiles& files) {
   const std::string limit = soft_limit(files, "Max realtime priority");
   const bool free = has_capability(files, kCapSysNice);
@@ -123,6 +129,7 @@ PcRow priority_row(const PcFiles& files) {
           .cure = kPriorityReason.cure};
 }
 
+/// RT-2. A limit in bytes is red, whatever it is: MCL_FUTURE counts all that is to come.
 PcRow memory_row(const PcFiles& files) {
   const std::string limit = soft_limit(files, "Max locked memory");
   const bool free = has_capability(files, kCapIpcLock);
@@ -138,6 +145,7 @@ PcRow memory_row(const PcFiles& files) {
           .cure = kMemoryReason.cure};
 }
 
+/// RT-12
 PcRow time_limit_row(const PcFiles& files) {
   const std::string limit = soft_limit(files, "Max realtime timeout");
   return {.name = "real-time time limit",

@@ -13,6 +13,7 @@
 namespace tact::firmware::pc {
 namespace {
 
+// Chosen: a thousandth of a period at 1 kHz. The kernel's default is 50 us (prctl(2)).
 constexpr long kQuickSlack_ns = 1000;
 
 bool is_number(const std::string& name) {
@@ -49,6 +50,7 @@ std::optional<long> real_time_priority(const PcFiles& files, const Thread& threa
   return std::strtol(field.c_str(), nullptr, 10);
 }
 
+/// RT-2. The first line of /proc/swaps is its head.
 PcRow swap_row(const PcFiles& files) {
   const auto swaps = files.text("/proc/swaps");
   const auto lines = swaps ? std::count(swaps->begin(), swaps->end(), '\n') : 0;
@@ -63,6 +65,7 @@ PcRow swap_row(const PcFiles& files) {
           .cure = "sudo swapoff -a, and take swap out of /etc/fstab"};
 }
 
+/// RT-13
 PcRow balancer_row(const PcFiles& files, const std::vector<Thread>& threads) {
   const bool known = files.is_there("/proc/self/comm") || !threads.empty();
   const bool runs = std::any_of(threads.begin(), threads.end(),
@@ -78,6 +81,7 @@ PcRow balancer_row(const PcFiles& files, const std::vector<Thread>& threads) {
           .cure = "sudo systemctl disable --now irqbalance"};
 }
 
+/// RT-4. Only of a loop that runs: the limit belongs to a thread.
 PcRow slack_row(const PcFiles& files, const std::vector<Thread>& threads) {
   PcRow row{.name = "timer slack",
             .verdict = Verdict::kUnknown,
@@ -108,6 +112,7 @@ bool carries_a_bus(const std::string& name) {
   return false;
 }
 
+/// RT-13
 PcRow bus_row(const PcFiles& files, const std::vector<Thread>& threads) {
   PcRow row{.name = "bus interrupts",
             .verdict = Verdict::kUnknown,

@@ -67,6 +67,7 @@ std::vector<int> parse_cpu_list(const std::string& list) {
       ++at;
       if (!parse_number(at, end, last)) return {};
     }
+    // Bounded by kMaxCpus, whatever the file says.
     for (int cpu = first; cpu <= last; ++cpu) cpus.push_back(cpu);
     if (at != end && *at == ',')
       ++at;
@@ -90,6 +91,7 @@ std::string make_cpu_list(const std::vector<int>& cpus) {
 
 bool is_realtime_kernel(const PcFiles& files) {
   const auto version = files.line("/proc/sys/kernel/version");
+  // RT-1: the version first, as newer kernels lack the file.
   if (version && version->find("PREEMPT_RT") != std::string::npos) return true;
   return files.line("/sys/kernel/realtime").value_or("0") == "1";
 }

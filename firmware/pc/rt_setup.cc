@@ -24,6 +24,7 @@
 namespace tact::firmware::pc {
 namespace {
 
+// RT-2. Sizes chosen: MCL_FUTURE locks all of each stack; half of it is touched before the loop.
 constexpr std::size_t kStackBytes = std::size_t{256} * 1024;
 constexpr std::size_t kTouchedStackBytes = std::size_t{128} * 1024;
 
@@ -36,7 +37,7 @@ void lock_memory(std::vector<Shortfall>& shortfalls) {
                                     kMemoryReason.why, kMemoryReason.cure)});
 }
 
-// The kernel keeps the promise while the file stays open.
+// RT-5. The kernel keeps the promise while the file stays open.
 int hold_power_latency(std::vector<Shortfall>& shortfalls) {
   const int fd = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
   const std::int32_t latency_us = 0;
@@ -48,6 +49,8 @@ int hold_power_latency(std::vector<Shortfall>& shortfalls) {
 }
 
 __attribute__((noinline)) void touch_stack() {
+  // Volatile, or the compiler would leave it out; noinline, so
+  // that the frame lies where the loop's will.
   volatile char bytes[kTouchedStackBytes];
   for (std::size_t i = 0; i < sizeof bytes; i += 1024) bytes[i] = 1;
   static_cast<void>(bytes[0]);
@@ -100,6 +103,7 @@ void flush_denormals() {
 
 void enter_rt_thread(const RtSettings& settings, std::vector<Shortfall>& shortfalls) {
   flush_denormals();
+  // RT-4: before the thread becomes FIFO.
   prctl(PR_SET_TIMERSLACK, 1);
   const int core = choose_core(settings);
   cpu_set_t cores;
@@ -122,9 +126,12 @@ void enter_watch_thread(const RtSettings& loop, std::vector<Shortfall>& shortfal
   CPU_ZERO(&cores);
   sched_getaffinity(getpid(), sizeof cores, &cores);  // of the main thread
   CPU_CLR(static_cast<std::size_t>(choose_core(loop)), &cores);
+  // With one core alone the watch shares it, and its priority must do.
   if (CPU_COUNT(&cores) > 0) pthread_setaffinity_np(pthread_self(), sizeof cores, &cores);
   const int wanted = loop.priority + kWatchAboveLoop;
   const sched_param priority{.sched_priority = wanted};
+  // In a probe this thread has been the loop's before:
+  // what that was refused needs no second sentence.
   const bool loop_may = sched_getscheduler(0) == SCHED_FIFO;  // else that is told already
   const int refused = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
   if (refused != 0 && loop_may)
