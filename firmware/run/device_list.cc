@@ -22,6 +22,7 @@ std::string devices_as_text(const std::vector<FoundPart>& parts) {
     else
       fmt::format_to(out, "  not ready: {}\n  cure: {}\n", part.lacking, part.cure);
   }
+  // Of a kind that is not there it is told, too, what was looked for.
   for (const PartKind kind :
        {PartKind::kCan, PartKind::kFalcon, PartKind::kForceDimension, PartKind::kGpio}) {
     const bool there = std::any_of(parts.begin(), parts.end(),
@@ -42,6 +43,7 @@ std::string devices_as_json(const std::vector<FoundPart>& parts) {
                     {"ready", part.lacking.empty()},
                     {"lacking", part.lacking},
                     {"cure", part.cure}});
+  // A device's own name may be any bytes: what is no UTF-8 is replaced, not thrown at.
   return nlohmann::json{{"format", "tactd-devices"}, {"version", 1}, {"devices", list}}.dump(
              2, ' ', false, nlohmann::json::error_handler_t::replace) +
          "\n";

@@ -25,6 +25,7 @@ std::optional<model::indent::ElasticTip> half_space_of(const model::scene::Scene
   const double depth_m = std::min(radius_m, law.range().press_m);
   const auto unit = model::indent::half_space_under(radius_m, depth_m);
   if (!unit) return std::nullopt;
+  // Tissue is mostly water. E from E* of the half-space with the same force: E = E* (1 - nu^2).
   constexpr double kIncompressible = 0.5;
   return model::indent::ElasticTip{.youngs_modulus_Pa = (1.0 - kIncompressible * kIncompressible) *
                                                         law.curve()->respond(depth_m).force_N /
@@ -43,6 +44,7 @@ struct Press {
 /// 30 s^2 (1 - s)^2 of its mean, at most 15/8.
 Press fastest_press(const model::scene::Scene& scene, const model::indent::ElasticTip& tip,
                     double share) {
+  // Chosen: the ratio of two smooth curves.
   constexpr int kSamples = 100;
   const double least_m = 0.25 * tip.radius_m;  // lighter touches are hardly felt
   const double reach_m = model::scene::reach_m(scene.tool.spheres, scene.hand_inward);
@@ -55,6 +57,7 @@ Press fastest_press(const model::scene::Scene& scene, const model::indent::Elast
       const double s = static_cast<double>(k) / kSamples, rest = 1.0 - s;
       Press at{.depth_m = start_m + way_m * s * s * s * (10.0 + s * (-15.0 + 6.0 * s)),
                .speed_mps = 30.0 * s * s * rest * rest * way_m / (to.time_s - from.time_s)};
+      // A limit of IN-2 falls to 0 with the depth.
       if (at.depth_m < least_m) continue;
       at.limit_mps = model::indent::inertia_speed_mps(tip, at.depth_m, share);
       if (at.speed_mps * worst.limit_mps > worst.speed_mps * at.limit_mps) worst = at;
@@ -67,6 +70,7 @@ Press fastest_press(const model::scene::Scene& scene, const model::indent::Elast
 
 std::string inertia_note(const model::scene::Scene& scene, const model::scene::TissueLaw& law) {
   constexpr double kFelt = 0.07;  // of a force: the least difference that people notice
+  // A stepped law has masses of its own.
   if (law.curve() == nullptr) return {};
   const auto tip = half_space_of(scene, law);
   if (!tip) return {};

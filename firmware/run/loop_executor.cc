@@ -14,6 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::int64_t kPatience_ns = 3'000'000'000;  // more than any device's stop may take
+// Chosen: the device gets 2 s to stop, and the process ends within 6 s whatever hangs.
 constexpr auto kDeviceStop = 2000ms, kLook = 10ms;
 constexpr unsigned kLastWords_s = 6;
 
@@ -35,6 +36,7 @@ void LoopExecutor::keep() {
 }
 
 void LoopExecutor::take(const LoopTurn& turn) {
+  // It starts before the loop's thread and stops after it: no tick is without its watch.
   watch::LoopWatch watch(watch::StallWatch(guarded_.period_ns, guarded_.hard_real_time),
                          turn.progress, guarded_.requests, guarded_.lines,
                          guarded_.guardian == nullptr ? nullptr : &guarded_.guardian->lost());
@@ -48,6 +50,7 @@ void LoopExecutor::take(const LoopTurn& turn) {
 bool LoopExecutor::hangs() {
   if (!guarded_.requests.stop.load() || ended_.load()) return false;
   const std::int64_t now_ns = loop::MonotonicClock().now_ns();
+  // The patience begins when the request is seen, whoever made it.
   if (asked_ns_ == 0) asked_ns_ = now_ns;
   return now_ns - asked_ns_ > kPatience_ns;
 }
@@ -60,6 +63,7 @@ void LoopExecutor::join() {
 // disk: SIGALRM ends both. The guardian takes this end for a death, and zeroes the
 // device once more.
 void LoopExecutor::leave_behind(int status, const std::function<void()>& last_words) {
+  // The lines first: whatever hangs below, the power is on its way off.
   guarded_.lines.drop();
   std::signal(SIGALRM, [](int) { _exit(1); });
   alarm(kLastWords_s);
@@ -71,6 +75,7 @@ void LoopExecutor::leave_behind(int status, const std::function<void()>& last_wo
   for (auto waited = 0ms; !stopped.load() && waited < kDeviceStop; waited += kLook)
     std::this_thread::sleep_for(kLook);
   last_words();
+  // No destructors: one of them would wait for the loop's thread.
   _exit(status);
 }
 

@@ -22,18 +22,21 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
     return Error{fmt::format(
         "{}: --free-run is simulated time, and device.kind \"{}\" is hardware; leave it out",
         scene.path, scene.device.kind)};
+  // The enable line before the device: it is low, so no drive has power while it opens.
   auto lines = hal::gpio::open_safety_lines(scene.device.lines);
   if (!lines) return Error{fmt::format("{}: {}", scene.path, lines.error().sentence)};
   parts.lines = std::move(*lines);
   auto device = hal::registry::open_device(scene);
   if (!device) return device.error();
   parts.device = std::move(*device);
+  // At once: from here on a crash would leave an open device.
   auto guardian = start_guardian(*parts.device, setup.rt);
   if (!guardian) return guardian.error();
   parts.guardian = std::move(*guardian);
   const auto stiffness = check_renderable(scene, *parts.tissue, parts.device->info());
   if (!stiffness) return stiffness.error();
   parts.stiffness = *stiffness;
+  // Simulated time waits: there no law is too slow.
   if (!setup.simulated_time) {
     const auto time = check_budget(scene, setup.non_rt ? std::nullopt : std::optional(setup.rt));
     if (!time) return time.error();

@@ -122,6 +122,7 @@ model::Result<model::scene::Scene> load(firmware::run::Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Both before anything can print, or start a thread that a stray signal would end.
   model::io::watch_standard_output("tactd");
   firmware::console::outlive_stray_signals();
   firmware::run::Parsed parsed = firmware::run::parse_options(argc, argv);
@@ -133,6 +134,7 @@ int main(int argc, char** argv) {
     say(stdout, "{}", model::scene::scene_reference());
     return 0;
   }
+  // A table of a log needs no scene: only a replay does.
   if (!options.csv_path.empty()) {
     const auto damage = firmware::telemetry::write_tick_csv(options.replay_path, options.csv_path);
     if (!damage) return complain(damage.error().sentence, 2);

@@ -25,6 +25,7 @@ std::optional<model::Error> check_header(const telemetry::LogHeader& header,
             ? "no --set"
             : "with" + model::scene::command_text(header.overrides_of_run()) +
                   " or no --set at all")};
+  // Only a black box counts its ticks in the header: it begins with a state that it does not hold.
   if (header.ticks != 0)
     return model::Error{
         path +
@@ -50,12 +51,14 @@ model::Result<ReplayOutcome> replay(const std::string& path, const model::scene:
   outcome.force_hash = model::kFnvStart;
   telemetry::LoggedTick tick;
   for (; log->next(tick); ++outcome.ticks) {
+    // Contact, gate and supervisor remember: behind a gap nothing can be computed.
     if (tick.tick != outcome.ticks) {
       outcome.gap_before = tick.tick;
       break;
     }
     const loop::TickOutput output = controller.tick(tick.input);
     outcome.force_hash = telemetry::hash_wrench(outcome.force_hash, output.written);
+    // Bits, so that -0 and NaN count, too.
     if (telemetry::bits_of(output.written) == telemetry::bits_of(tick.output.written)) continue;
     if (outcome.different++ == 0) outcome.first_different = tick.tick;
   }

@@ -66,6 +66,7 @@ json to_json(const pc::Environment& e) {
 }
 
 json to_json(const ThreadCosts& c) {
+  // null, not 0: a build that cannot count has not seen none.
   return {{"allocations", c.heap_calls_known ? json(c.heap_calls) : json(nullptr)},
           {"minor_page_faults", c.minor_faults},
           {"major_page_faults", c.major_faults},
@@ -136,6 +137,7 @@ std::string make_summary(const RunFacts& facts, const loop::LoopStatistics& loop
   if (facts.costs.heap_calls_known)
     out += fmt::format(", {} allocations, {} page faults", facts.costs.heap_calls,
                        facts.costs.minor_faults + facts.costs.major_faults);
+  // Five seconds: time to touch something; the usual cause is an organ that stands elsewhere.
   if (loop.max_force_N == 0.0 && facts.duration_s > 5.0 && facts.fault == model::Fault::kNone)
     out +=
         "\n  nothing was touched: see organ.position_m, organ.mesh_unit_m and hand.site_m in the "

@@ -22,6 +22,7 @@ std::string stiff_key(const model::scene::Scene& scene, const model::scene::Tiss
 
 /// Never above it, so that the number printed is one that is accepted.
 double rounded_down(double value) {
+  // Four digits, as {:.4g} prints them.
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 3.0);
   return value > 0.0 ? unit * std::floor(value / unit) : 0.0;
 }
@@ -35,6 +36,7 @@ double stiffest_sideways_N_per_m(const model::scene::Scene& scene,
                                  const model::contact::SiteLaw& law) {
   if (scene.contact.sliding_stiffness_N_per_m > 0.0) return scene.contact.sliding_stiffness_N_per_m;
   double most_N_per_m = 0.0;
+  // At the first corner of every triangle: most vertices are one.
   for (std::uint32_t t = 0; t < scene.organ_mesh.triangle.size(); ++t)
     for (const model::contact::ProbeSphere& sphere : scene.tool.spheres) {
       const double give_m_per_N =
@@ -103,6 +105,7 @@ model::Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene
         "device {} does not tell its damping at the tool: fill DeviceInfo::at_tool", device.name)};
   const auto spheres = static_cast<double>(scene.tool.spheres.size());
   const double damping_Ns_per_m = tissue.law().damping_Ns_per_m();
+  // HL-1. All spheres may stand on the stiffest place and damp at once.
   const auto limit_with = [&](double all_Ns_per_m) {
     return model::law::haptic_limit(*device.at_tool, scene.rate_Hz, all_Ns_per_m).grow_N_per_m;
   };
@@ -115,6 +118,7 @@ model::Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene
   const double needed_N_per_m = demand.needed_N_per_m();
   if (demand.fits(demand.law_N_per_m) && demand.fits(demand.sliding_N_per_m))
     return StiffnessMargin{.needed_N_per_m = needed_N_per_m, .limit_N_per_m = demand.limit_N_per_m};
+  // Stiff enough without its damping: then the damping is what must change.
   if (damping_Ns_per_m > 0.0 && needed_N_per_m <= demand.undamped_limit_N_per_m)
     return damps_too_much(scene, demand, device.at_tool->damping_Ns_per_m);
   return too_stiff(scene, tissue.law(), demand, device.damping_key);

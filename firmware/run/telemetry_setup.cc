@@ -40,6 +40,7 @@ std::optional<Error> open_sockets(const RunSetup& run, int meshes, Outlets& out)
   const auto path = socket_path(run);
   if (!path) return path.error();
   std::optional<gid_t> viewers;
+  // Before a socket is made: a group that does not exist leaves nothing behind.
   if (!run.options.viewers.empty()) {
     const auto group = model::io::find_group(run.options.viewers);
     if (!group) return Error{"--viewers " + group.error().sentence};
@@ -75,6 +76,7 @@ bool fill_header(const RunSetup& run, telemetry::LogHeader& header) {
   keep(environment.git_revision, header.revision);
   keep(pc_name.nodename, header.host);
   keep(fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))), header.began_utc);
+  // Last: a black box does without them, and all else of its header is filled.
   return header.keep_overrides(run.options.overrides);
 }
 
@@ -122,6 +124,7 @@ Result<Outlets> open_outlets(const RunSetup& run) {
     out.no_black_box = folder.error().sentence;
     return out;
   }
+  // One of its own: socket and black box close theirs.
   const auto meshes = telemetry::make_mesh_file(run.scene);
   if (!meshes) return meshes.error();
   out.black_box = make_black_box(run, *folder, *meshes);

@@ -26,6 +26,8 @@ ThreadCosts run_as_loop_thread(const pc::RtSettings& settings, const std::functi
   std::vector<pc::Shortfall> known;  // told before the loop, by probe_rt_threads
   pc::enter_rt_thread(settings, known);
   ThreadCosts costs;
+  // In this order: real time before the filter, which refuses
+  // FIFO; counters last, so that they count the loop alone.
   costs.call_filter = filter != nullptr && filter->enter_thread() == 0;  // tried when it was made
   rusage before{}, after{};
   {
@@ -35,6 +37,7 @@ ThreadCosts run_as_loop_thread(const pc::RtSettings& settings, const std::functi
     getrusage(RUSAGE_THREAD, &after);
     costs.heap_calls = heap.calls();
   }
+  // The filter stays; what it refuses from here on is no fault of the loop.
   if (filter != nullptr) filter->leave_loop();
   pc::leave_rt_thread();
   costs.heap_calls_known = loop::can_count_heap_calls();

@@ -73,9 +73,11 @@ LawTime measure_law(const model::scene::Scene& scene, model::contact::SiteLaw& t
   for (std::int64_t start_ns = begin_ns, end_ns = begin_ns;
        tick_us.size() < kMaxTicks && start_ns - begin_ns < kLongest_ns; start_ns = end_ns) {
     const std::size_t tick = tick_us.size();
+    // From no depth to half of the deepest and back, in 314 ticks.
     const double wave = std::sin(0.02 * static_cast<double>(tick));
     for (std::size_t i = 0; i < spheres; ++i) {
       const model::contact::Site& site = ways[i][tick % kTurnTicks];
+      // Summed, so that no answer can be left out, and a law that blew up is seen.
       unused_N += twin.respond({.sphere = i,
                                 .place = site.place,
                                 .normal = site.normal,
@@ -84,10 +86,12 @@ LawTime measure_law(const model::scene::Scene& scene, model::contact::SiteLaw& t
     }
     if (scene.tool.blade) twin.cut(still(*scene.tool.blade, ways[0][tick % kTurnTicks].point_m));
     twin.advance();
+    // One reading a tick: the end of one is the start of the next.
     end_ns = clock.now_ns();
     tick_us.push_back(1e-3 * static_cast<double>(end_ns - start_ns));
   }
   constexpr double kNever = std::numeric_limits<double>::infinity();
+  // A law that blows up is never fast enough.
   if (!std::isfinite(unused_N)) return {.median_us = kNever, .p999_us = kNever};
   std::sort(tick_us.begin(), tick_us.end());
   return {.median_us = at_share(tick_us, 0.5), .p999_us = at_share(tick_us, 0.999)};
