@@ -19,6 +19,7 @@ namespace {
 using model::Error;
 using model::Result;
 
+// Chosen: a tactd that runs answers at once.
 constexpr timeval kPatience{.tv_sec = 5, .tv_usec = 0};
 
 /// A connected socket; -1: nobody listens there, or not one who may be believed.
@@ -28,6 +29,7 @@ int connect_to(const std::string& path) {
   if (!address || fd < 0) return fd < 0 ? fd : (close(fd), -1);
   setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &kPatience, sizeof kPatience);
   setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &kPatience, sizeof kPatience);
+  // Root may ask anybody's; others believe only their own user and root.
   const bool good = connect(fd, model::io::plain(*address), sizeof *address) == 0 &&
                     (geteuid() == 0 || model::io::has_trusted_peer(fd));
   return good ? fd : (close(fd), -1);
@@ -56,6 +58,7 @@ Result<Answer> ask_tactd(const ControlQuestion& question) {
   for (const ControlName& control : find_controls(question.folder, question.scene_path)) {
     if (question.process != 0 && control.process != question.process) continue;
     const int found = connect_to(control.path);
+    // Left over from a tactd that was killed.
     if (found < 0) continue;
     alive += fmt::format("{}{}", alive.empty() ? "" : " and ", control.process);
     if (fd >= 0) close(found);

@@ -20,6 +20,7 @@ constexpr std::string_view kBegin = "control-", kEnd = ".sock";
 
 std::string end_of(const std::string& scene_path) {
   std::error_code failed;
+  // The whole path, without links: tactd and tactctl may name one file differently.
   const auto whole = std::filesystem::weakly_canonical(scene_path, failed);
   return fmt::format("-{:016x}{}", model::fnv1a(failed ? scene_path : whole.string()), kEnd);
 }
@@ -31,6 +32,7 @@ std::vector<ControlName> controls_that_end_in(const std::string& folder, std::st
     const std::string name = entry.path().filename();
     if (!name.starts_with(kBegin) || !name.ends_with(end)) continue;
     pid_t process = 0;
+    // The number ends at the next dash; what is none gives 0.
     std::from_chars(name.data() + kBegin.size(), name.data() + name.size(), process);
     found.push_back({.process = process, .path = entry.path()});
   }
@@ -41,6 +43,7 @@ std::vector<ControlName> controls_that_end_in(const std::string& folder, std::st
 bool nobody_listens(const std::string& path) {
   const auto address = model::io::socket_address(path);
   const int probe = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  // ECONNREFUSED alone means that nobody is there; a full queue, say, means somebody.
   const bool dead = address && probe >= 0 &&
                     connect(probe, model::io::plain(*address), sizeof *address) != 0 &&
                     errno == ECONNREFUSED;

@@ -23,6 +23,7 @@ namespace {
 using model::Error;
 using model::Result;
 
+// Chosen, both: tactctl connects, asks and ends.
 constexpr std::size_t kMaxSilent = 8;
 constexpr int kQueue = 8;
 constexpr unsigned kPause_us = 20'000;  // else it would ask again and again
@@ -88,6 +89,7 @@ ControlSocket::~ControlSocket() {
 
 std::optional<ControlRequest> ControlSocket::next() {
   epoll_event event{};
+  // Taken again as soon as one is free.
   if (spare_ < 0) spare_ = fcntl(listener_, F_DUPFD_CLOEXEC, 0);
   while (epoll_wait(watch_, &event, 1, 0) == 1) {
     if (event.data.fd != listener_) {
@@ -134,6 +136,7 @@ std::optional<ControlRequest> ControlSocket::read(int client) {
   std::array<char, 64> word{};
   const auto n = recv(client, word.data(), word.size(), MSG_DONTWAIT);
   if (n < 0 && errno == EAGAIN) return std::nullopt;
+  // One word a connection: what else it sends is not read.
   epoll_ctl(watch_, EPOLL_CTL_DEL, client, nullptr);
   std::erase(silent_, client);
   ControlRequest request(

@@ -16,6 +16,8 @@ constexpr const char* kTooEarly = "the request came before it was ready";
 
 void OperatorDesk::obey(std::int64_t longest_ns) {
   const Act act = signals_.wait(longest_ns, control_ != nullptr ? control_->fd() : -1);
+  // Taken before show(): what was asked before the words
+  // were told must not count as an answer to them.
   const auto asked = next_by_socket();
   if (act == Act::kLeave) stop();
   const bool just_told = show();
@@ -47,6 +49,7 @@ Answer OperatorDesk::do_word(const std::string& word, bool too_early) {
 Answer OperatorDesk::arm(bool too_early) {
   if (too_early) return refuse("armed", kTooEarly);
   if (const std::string why = view_.why_not_arm(); !why.empty()) return refuse("armed", why);
+  // The loop answers by its counter: it is asked, and counts what it could not do.
   const std::uint32_t before = requests_.refused.load();
   signals_.raise_edge(requests_.arm);
   if (requests_.refused.load() == before)

@@ -31,6 +31,7 @@ sigset_t requests_of_a_person() {
 /// own in place when it needs them.
 void ignore_one_of_glibc(int signal) {
   const std::array<std::uintptr_t, 4> kernel_sigaction{reinterpret_cast<std::uintptr_t>(SIG_IGN)};
+  // The kernel's set of 64 signals.
   constexpr std::size_t kMaskBytes = kLastSignal / 8;
   syscall(SYS_rt_sigaction, signal, kernel_sigaction.data(), nullptr, kMaskBytes);
 }
@@ -45,6 +46,7 @@ void ignore(int signal) {
 }  // namespace
 
 void wait_several_ticks() {
+  // 20 ms: two ticks at 100 Hz, the lowest rate of a scene.
   constexpr timespec kSeveralTicks{.tv_sec = 0, .tv_nsec = 20'000'000};
   nanosleep(&kSeveralTicks, nullptr);
 }
@@ -79,6 +81,7 @@ Act OperatorSignals::wait(std::int64_t longest_ns, int other_fd) const {
   std::array<pollfd, 2> either{{{.fd = signal_fd_, .events = POLLIN, .revents = 0},
                                 {.fd = other_fd, .events = POLLIN, .revents = 0}}};
   ppoll(either.data(), either.size(), &longest, nullptr);
+  // The descriptor only wakes; this takes the signal, and works without a descriptor, too.
   const int signal = sigtimedwait(&signals_, nullptr, &kNow);
   if (signal == SIGUSR1) return Act::kReset;
   if (signal == SIGUSR2) return Act::kArm;
@@ -94,6 +97,7 @@ int OperatorSignals::forget() const {
 }
 
 void OperatorSignals::raise_edge(std::atomic<bool>& request) const {
+  // Up and down again, each for some ticks: the loop acts on an edge, and the next request is one.
   request.store(true);
   let_loop_read_();
   request.store(false);

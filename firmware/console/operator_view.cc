@@ -20,6 +20,7 @@ using model::Fault;
 std::string trouble_behind(Fault fault, const hal::Device& device, const hal::SafetyLines& lines) {
   if (fault == Fault::kNone) return {};
   if (fault == Fault::kForbiddenCall) return watch::refused_call();
+  // By their numbers, 107 to 110 (model/fault.h).
   const bool of_lines = fault >= Fault::kEmergencyStop && fault <= Fault::kDeadManReleased;
   return of_lines ? lines.trouble() : device.trouble();
 }
@@ -37,6 +38,7 @@ bool OperatorView::show(const telemetry::Frame& newest) {
   const bool was_told = told_ready_;
   if (newest.state == loop::State::kArmed || newest.state == loop::State::kStopped)
     arms_itself_ = false;  // at the start alone
+  // Each time it becomes ready it is told anew: the words before are no leave to arm.
   if (newest.state != loop::State::kReady) told_ready_ = false;
   if (newest.fault != before_.fault && newest.fault != 0) {
     const auto number = static_cast<Fault>(newest.fault);
@@ -55,6 +57,7 @@ bool OperatorView::show(const telemetry::Frame& newest) {
         scene_path_, getpid()));
   }
   if (terminal_) say(stdout, "\r\033[K{}", status_line(newest, before_));
+  // A live line has no line end that would send it.
   std::fflush(stdout);
   before_ = newest;
   return told_ready_ && !was_told;

@@ -25,6 +25,7 @@ bool is_service() { return !named_socket().empty(); }
 
 ServiceManager::ServiceManager() {
   const std::string_view path = named_socket();
+  // A name that does not fit is no manager that could be told.
   if (path.empty() || path.size() >= sizeof address_.sun_path) return;
   address_.sun_family = AF_UNIX;
   std::memcpy(address_.sun_path, path.data(), path.size());
@@ -42,6 +43,7 @@ ServiceManager::~ServiceManager() {
 void ServiceManager::tell(const ServiceNews& news) {
   if (socket_ < 0) return;
   const bool first_ready = news.may_be_armed && !told_ready_;
+  // READY at once, since systemctl start waits for it; all else once a second.
   if (!first_ready && news.now_ns < next_ns_) return;
   std::string words = first_ready ? "READY=1\n" : "";
   if (news.ticks != ticks_) words += "WATCHDOG=1\n";
