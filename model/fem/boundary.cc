@@ -6,6 +6,7 @@
 namespace tact::model::fem {
 namespace {
 
+// Nodes of an element (tet_mesh.h), corners counter-clockwise seen from outside.
 constexpr std::array<std::array<std::size_t, 6>, 4> kFaces{
     {{0, 2, 1, 6, 5, 4}, {0, 1, 3, 4, 8, 7}, {1, 2, 3, 5, 9, 8}, {0, 3, 2, 7, 9, 6}}};
 
@@ -32,6 +33,7 @@ Boundary find_boundary(const TetMesh& mesh) {
       std::sort(f.key.begin(), f.key.end());
       all.push_back(f);
     }
+  // Faces of two elements lie side by side then: what has no twin is skin.
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
   Boundary out;
   out.faces_of_node.resize(mesh.node_m.size());

@@ -18,8 +18,10 @@ namespace tact::model::fem {
 namespace {
 
 constexpr double kFacing = 0.2;  // cosine; skin that looks further away belongs to another side
+// The step of surface_hash(): what a mesh tool rounds is still the same place.
 constexpr double kSamePlace_m = 1e-7;
 constexpr std::size_t kAxes = 3;  // normal, two tangential
+// Three loads a vertex: five vertices fill 15 of the 16 columns of a solve.
 constexpr std::size_t kVerticesAtOnce = kLoadsAtOnce / kAxes;
 
 struct Frame {
@@ -27,6 +29,7 @@ struct Frame {
 };
 
 Frame frame_of(const Vec3& n) {
+  // Whichever axis is not near n.
   const Vec3 other = std::abs(n.x) < 0.6 ? Vec3{1.0, 0.0, 0.0} : Vec3{0.0, 1.0, 0.0};
   const Vec3 t1 = normalized(cross(n, other));
   return {{n, t1, cross(n, t1)}};
@@ -86,6 +89,7 @@ class Condenser {
   std::array<std::vector<NodeWeight>, kVerticesAtOnce> patch_;
   std::vector<std::vector<NodeLoad>> loads_{kVerticesAtOnce * kAxes};
   std::vector<std::vector<Vec3>> moved_m_{kVerticesAtOnce * kAxes};
+  // At E = 1 Pa a compliance is that times E, as the map has it.
   Elasticity unit_{.youngs_modulus_Pa = 1.0, .poisson_ratio = settings_.poisson_ratio};
 };
 
@@ -106,6 +110,7 @@ void Condenser::read(std::size_t slot, std::uint32_t vertex, tissue::ComplianceM
     for (std::size_t q = 0; q < kAxes; ++q)
       for (const NodeWeight& w : patch_[slot])  // C_pq = sum w_a e_p . u_a^(q)
         c[p][q] += w.weight * dot(frame_[slot].axis[p], moved(slot, q, w.node));
+  // Less the half-space under the same patch: the part that knows only the patch cancels.
   const double side = hertz_tangential_m_per_N(unit_, settings_.patch_radius_m);
   const double r = c[0][0] - hertz_normal_m_per_N(unit_, settings_.patch_radius_m);
   map.regular_times_E_per_m[vertex] = static_cast<float>(r);
@@ -133,6 +138,7 @@ void Condenser::read_rings(std::size_t slot, std::uint32_t vertex, std::span<flo
     if (at >= static_cast<double>(ring.size() + 1) || dot(skin_normal_[i], n) < kFacing) continue;
     const double g = dot(n, moved(slot, 0, skin_[i])) -
                      hertz_displacement_m_per_N(unit_, settings_.patch_radius_m, rho_m);
+    // A hat a ring: a node between two rings counts for both, by its nearness.
     const auto low = static_cast<std::size_t>(at);
     const double high_share = at - static_cast<double>(low);
     sum[low] += (1.0 - high_share) * g, weights[low] += 1.0 - high_share;
@@ -141,6 +147,7 @@ void Condenser::read_rings(std::size_t slot, std::uint32_t vertex, std::span<flo
   // at rho = 0, should no skin beside it count
   double before = dot(n, moved(slot, 0, vertex)) -
                   hertz_displacement_m_per_N(unit_, settings_.patch_radius_m, 0.0);
+  // Chosen: a ring of less than a thousandth of a node has no skin.
   if (weights[0] > 1e-3) before = sum[0] / weights[0];
   for (std::size_t j = 1; j <= ring.size(); ++j) {
     if (weights[j] > 1e-3) before = sum[j] / weights[j];  // beyond an edge: as the last ring
@@ -156,6 +163,7 @@ std::optional<Error> Condenser::run(tissue::ComplianceMap& map) {
     const std::uint32_t here = std::min(static_cast<std::uint32_t>(kVerticesAtOnce), count - first);
     for (std::uint32_t slot = 0; slot < here; ++slot) {
       load(slot, first + slot);
+      // No point of the sum fell into the patch: its weights would be 0/0.
       if (patch_[slot].empty())
         return Error{fmt::format(
             "condensation: a patch of {:g} m is too small for the elements at vertex {}; make the "

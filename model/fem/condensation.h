@@ -11,9 +11,9 @@
 //     g_j E = mean over the ring j of  n . u^(n) - u_half(rho)
 //
 // Ring j gathers the nodes of the skin at straight distance rho from the vertex that look its way,
-// weighted by a hat of width one pitch. Elements near the surface should be no longer than about
-// a0 / 1.6, inside the body too: flat elements behind a fine surface make r too small. Offline
-// only.
+// weighted by a hat that reaches one pitch to either side. Elements near the surface should be no
+// longer than about a0 / 1.6, inside the body too: flat elements behind a fine surface make r too
+// small. Offline only.
 #pragma once
 
 #include <functional>

@@ -30,6 +30,7 @@ Gradients reference_gradients(const std::array<double, 4>& l) {
 /// Reference gradients at the four Gauss points; each weighs 1/24.
 const std::array<Gradients, 4>& gauss_gradients() {
   static const std::array<Gradients, 4> points = [] {
+    // (5 + 3 sqrt(5))/20 and (5 - sqrt(5))/20
     constexpr double kFar = 0.5854101966249685, kNear = 0.1381966011250105;
     std::array<Gradients, 4> out;
     for (std::size_t k = 0; k < 4; ++k) {
@@ -46,6 +47,7 @@ const std::array<Gradients, 4>& gauss_gradients() {
 bool middles_in_order(const TetMesh& mesh, const TetNodes& nodes) {
   for (std::size_t e = 0; e < kTetEdge.size(); ++e) {
     const Vec3 &p = mesh.node_m[nodes[kTetEdge[e][0]]], &q = mesh.node_m[nodes[kTetEdge[e][1]]];
+    // Chosen: curved edges pass; another order of the nodes puts a middle on a wrong edge.
     if (!(norm(mesh.node_m[nodes[4 + e]] - 0.5 * (p + q)) < 0.25 * norm(p - q))) return false;
   }
   return true;
@@ -102,6 +104,7 @@ Result<StiffnessMatrix> assemble_stiffness(const TetMesh& mesh, const Elasticity
   const double mu_Pa = material.shear_modulus_Pa();
   const double lambda_Pa = e_Pa * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
   std::vector<Eigen::Triplet<double, std::int32_t>> entries;
+  // 30 x 31 / 2: the lower triangle of an element.
   entries.reserve(mesh.element.size() * 465);
   ElementStiffness k;
   for (std::size_t e = 0; e < mesh.element.size(); ++e) {
@@ -116,6 +119,7 @@ Result<StiffnessMatrix> assemble_stiffness(const TetMesh& mesh, const Elasticity
       for (int c = 0; c < 30; ++c) {
         const std::int32_t row = free.first_unknown[nodes[static_cast<std::size_t>(r / 3)]];
         const std::int32_t col = free.first_unknown[nodes[static_cast<std::size_t>(c / 3)]];
+        // K u = f of the free nodes alone: fixed ones do not move, so their columns add nothing.
         if (row == FreeNodes::kFixed || col == FreeNodes::kFixed) continue;
         if (row + r % 3 >= col + c % 3) entries.emplace_back(row + r % 3, col + c % 3, k(r, c));
       }

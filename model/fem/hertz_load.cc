@@ -18,6 +18,7 @@ Vec3 point_of(const TetMesh& mesh, const FaceNodes& f, const std::array<double, 
 /// Calls visit(barycentric middle) for each of kCuts^2 equal parts.
 template <typename Visit>
 void for_each_part(const Visit& visit) {
+  // Of each cell of the grid one triangle stands up, and all but the last have one upside down.
   constexpr double kStep = 1.0 / kCuts;
   for (int i = 0; i < kCuts; ++i)
     for (int j = 0; j < kCuts - i; ++j) {
@@ -39,6 +40,7 @@ bool is_near(const TetMesh& mesh, const FaceNodes& f, const Vec3& centre, double
 std::vector<std::uint32_t> faces_near(const TetMesh& mesh, const Boundary& boundary,
                                       std::uint32_t centre, double radius_m) {
   std::vector<std::uint32_t> found = boundary.faces_of_node[centre];
+  // Sorted, to look up in; found keeps the order and is the queue of the walk.
   std::vector<std::uint32_t> known = found;
   std::sort(known.begin(), known.end());
   for (std::size_t i = 0; i < found.size(); ++i)
@@ -68,10 +70,12 @@ std::vector<NodeWeight> hertz_weights(const TetMesh& mesh, const Boundary& bound
     for_each_part([&](const std::array<double, 3>& l) {
       const double ratio = norm(point_of(mesh, f, l) - middle) / radius_m;
       if (ratio >= 1.0) return;
+      // Hertz; its factor falls out where the weights are made to sum to 1.
       const double p = std::sqrt(1.0 - ratio * ratio) * area_m2;
       sum += p;
       for (std::size_t i = 0; i < 3; ++i) {
         // N_a = L (2 L - 1) at a corner, 4 L_i L_(i+1) in the middle of an edge
+        // A corner's shape function is negative near the other side, and so may its weight be.
         weight[f[i]] += p * l[i] * (2.0 * l[i] - 1.0);
         weight[f[3 + i]] += p * 4.0 * l[i] * l[(i + 1) % 3];
       }

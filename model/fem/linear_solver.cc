@@ -20,6 +20,8 @@ template <int Width>
 void solve_factored(const StiffnessMatrix& l, double* x) {
   using Loads = Eigen::Array<double, Width, 1>;
   const auto at = [x](std::int64_t row) { return Eigen::Map<Loads>(x + row * Width); };
+  // Own loops over L: Eigen would read it anew for each
+  // load, and it is what does not fit into a cache.
   const std::int32_t* start = l.outerIndexPtr();
   const std::int32_t* row = l.innerIndexPtr();
   const double* value = l.valuePtr();
@@ -44,6 +46,7 @@ bool hold_still(const TetMesh& mesh, const std::vector<std::uint32_t>& fixed) {
   for (const std::uint32_t node : fixed)
     if (norm(mesh.node_m[node] - o) > norm(far)) far = mesh.node_m[node] - o;
   return std::any_of(fixed.begin(), fixed.end(), [&](std::uint32_t node) {
+    // Chosen: off the line by more than rounding.
     return norm(cross(far, mesh.node_m[node] - o)) > 1e-6 * dot(far, far);
   });
 }
@@ -104,6 +107,7 @@ void LinearSolver::solve(std::span<const std::vector<NodeLoad>> loads,
                          std::span<const std::uint32_t> wanted,
                          std::span<std::vector<Vec3>> displacement_m) {
   Factor& f = *factor_;
+  // All columns, those without a load too: the width is fixed, so that the compiler can unroll it.
   f.work.assign(unknowns() * kLoadsAtOnce, 0.0);
   for (std::size_t c = 0; c < loads.size(); ++c) f.add(loads[c], kLoadsAtOnce, c);
   solve_factored<kLoadsAtOnce>(f.lower, f.work.data());
@@ -127,6 +131,7 @@ Result<LinearSolver> make_linear_solver(const TetMesh& mesh, const Elasticity& m
   const auto matrix = assemble_stiffness(mesh, material, factor->free);
   if (!matrix) return matrix.error();
   const Cholesky cholesky(*matrix);
+  // Not positive definite: a part of the body can move without force.
   if (cholesky.info() != Eigen::Success) return loose;
   factor->lower = cholesky.matrixL().nestedExpression();
   const auto& order = cholesky.permutationP().indices();
