@@ -34,6 +34,7 @@ std::optional<MeshFlaw> corner_flaw(const std::vector<Vec3>& vertex_m,
                                     const contact::TriangleCorners& t) {
   double longest2_m2 = 0.0;
   for (std::size_t e = 0; e < 3; ++e) {
+    // All corners before any arithmetic with them.
     if (t[e] >= vertex_m.size()) return MeshFlaw::kMissingVertex;
     if (!is_finite(vertex_m[t[e]])) return MeshFlaw::kNotFinite;
   }
@@ -99,7 +100,9 @@ std::optional<MeshDefect> fill_neighbours(SurfaceMesh& mesh) {
     for (std::uint32_t i = mesh.fan_start[from]; i < mesh.fan_start[from + 1]; ++i) {
       const HalfEdge& here = half_edge[i];
       const std::span<const HalfEdge> back = run(mesh, half_edge, here.to, from);
+      // The half edge of the neighbour runs the other way.
       if (!back.empty()) mesh.neighbour[here.id / 3][here.id % 3] = back[0].id / 3;
+      // Sorted by their end: two alike in a row are two triangles on one side of an edge.
       if (i == mesh.fan_start[from] || half_edge[i - 1].to != here.to) continue;
       const std::uint32_t t = here.id / 3;
       if (worst && worst->triangle <= t) continue;
@@ -192,6 +195,7 @@ void fill_records(SurfaceMesh& mesh) {
       const std::uint32_t count = mesh.fan_start[v + 1] - mesh.fan_start[v];
       record.corner_m[e] = mesh.vertex_m[v];
       record.fan_start[e] = mesh.fan_start[v];
+      // More than kMaxFan are refused for the organ (scene/tissue.cc); a tool's mesh is only drawn.
       record.fan_count[e] = static_cast<std::uint8_t>(std::min(count, contact::kMaxFan));
       record.on_rim[e] = on_rim[v];
     }

@@ -32,6 +32,7 @@ Result<ObjText> read_obj(const std::string& path) {
 std::uint64_t hash(const Vec3& p) {
   std::uint64_t h = 0;
   for (const double x : {p.x, p.y, p.z}) {
+    // 2^64 over the golden ratio: spreads neighbours over the table.
     h = (h ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9E3779B97F4A7C15u;  // + 0.0: -0 is 0
     h ^= h >> 29;
   }
@@ -40,6 +41,7 @@ std::uint64_t hash(const Vec3& p) {
 
 // For each vertex, the first one at exactly the same place.
 std::vector<std::uint32_t> first_at_place(const std::vector<Vec3>& vertex) {
+  // A power of two, at most half full: looking up stays short, and the remainder is a mask.
   const std::size_t slots = std::bit_ceil(2 * vertex.size() + 1);
   std::vector<std::uint32_t> table(slots, contact::kNoTriangle);  // open addressing
   std::vector<std::uint32_t> first(vertex.size());
@@ -152,6 +154,7 @@ Result<ObjMesh> load_obj(const std::string& path, double unit_m) {
     return defect_error(path, *defect, found.line, found.file_vertex);
   obj.mesh = std::move(*std::get_if<SurfaceMesh>(&built));
   const MeshSummary sum = summarize(obj.mesh);
+  // An open surface has no volume, so nothing says which side is out: it is left as it is.
   obj.flipped = sum.boundary_edges == 0 && sum.volume_m3 < 0.0;
   if (obj.flipped) turn_inside_out(obj.mesh);
   return obj;

@@ -103,6 +103,7 @@ class Parser {
     const std::string_view word = peek_word();
     at_ += word.size();
     if (word == "v") return parse_vertex();
+    // fo: the face outline of old files, read as f.
     if (word == "f" || word == "fo") return parse_face();
     if (holds(kNumbered, word)) {
       while (!at_statement_end()) at_ += peek_word().size();
@@ -119,8 +120,10 @@ class Parser {
     const char* first = word.data() + (word.size() > 1 && word[0] == '+' && word[1] != '-');
     const auto [stopped, code] = std::from_chars(first, last, number);
     const bool beyond = code == std::errc::result_out_of_range;
+    // Out of range is told of 1e-400 as of 1e400; the sign of the exponent tells which.
     const bool tiny = word.find("e-") != word.npos || word.find("E-") != word.npos;
     const bool read = (code == std::errc{} || beyond) && stopped == last;
+    // 0 is near enough to the tiny one; the other is made large enough to be refused below.
     if (beyond) number = tiny ? 0.0 : 2.0 * kMaxObjCoordinate;
     at_ = last;
     if (read && std::abs(number) <= kMaxObjCoordinate) return true;
@@ -180,6 +183,8 @@ class Parser {
       fail("the face names vertex 0 but OBJ counts from 1; export the mesh again");
       return false;
     }
+    // A number below zero counts back from the vertices above; one
+    // above zero may name a later one (check_corners).
     const auto known = static_cast<std::int64_t>(text_.vertex.size());
     const std::int64_t index = number > 0 ? number - 1 : known + number;
     if (index < 0 || index >= static_cast<std::int64_t>(kMaxObjVertices)) {
@@ -207,6 +212,7 @@ class Parser {
                       "export it again",
                       corners));
     }
+    // Of the polygon when it is cut; counted now, so that a huge file is refused early.
     triangles_ += corners - 2;
     if (triangles_ > kMaxObjTriangles)
       return fail(fmt::format("more than {} triangles; simplify the mesh", kMaxObjTriangles));

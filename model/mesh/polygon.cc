@@ -55,6 +55,7 @@ class EarClipper {
     const std::size_t a = before(i), c = after(i);
     for (std::size_t other = 0; other < left_.size(); ++other) {
       const std::uint32_t v = left_[other];
+      // By vertex, not by place: a polygon with a slit names a vertex twice.
       if (v == left_[a] || v == left_[i] || v == left_[c]) continue;
       if (dot(doubled_area(a, i, other), normal_) >= 0.0 &&
           dot(doubled_area(i, c, other), normal_) >= 0.0 &&
