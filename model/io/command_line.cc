@@ -28,12 +28,14 @@ std::string refusal(const char* program, std::string_view sentence) {
 std::optional<int> parse_command_line(CLI::App& options, const char* program, int argc,
                                       const char* const* argv,
                                       const std::function<std::optional<Error>()>& check) {
+  // CLI11's own words take two lines and do not name the program.
   options.failure_message([program](const CLI::App*, const CLI::Error& error) {
     return refusal(program, error.what());
   });
   options.set_version_flag("--version",
                            fmt::format("{} {} ({}), compiler {}", program, tact_version(),
                                        source_revision(), compiler_version()));
+  // Before the library parses: it would take an empty argument for a value.
   if (const char* const* empty =
           std::find_if(argv + std::min(argc, 1), argv + argc, is_empty_value);
       empty != argv + argc) {

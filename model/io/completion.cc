@@ -48,6 +48,7 @@ struct Words {
     for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
     for (const std::string& name : option.get_snames()) names.push_back("-" + name);
     for (const std::string& name : names) options += name + " ";
+    // A positional argument: its values stand where no option is asked for.
     if (names.empty()) others += values + (values.empty() ? "" : " ");
     if (!names.empty() && option.get_items_expected_max() > 0)
       cases += fmt::format("    {}) words='{}' ;;\n", fmt::join(names, " | "), values);
@@ -60,6 +61,7 @@ std::string bash_completion(const CLI::App& options, const std::string& program)
   Words words;
   words.add(options);
   std::string function = "_" + program;
+  // Not every shell takes dashes in the name of a function.
   std::ranges::replace(function, '-', '_');
   return fmt::format(fmt::runtime(kScript), program, function, words.cases, words.options,
                      words.others);

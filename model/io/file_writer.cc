@@ -18,7 +18,9 @@
 namespace tact::model::io {
 namespace {
 
+// Chosen: one call for many ticks; what tells a format fits into 16 bytes.
 constexpr std::size_t kBuffer_bytes = 1 << 16, kBeginning_bytes = 16;
+// Of one process in one folder at a time.
 constexpr int kMaxParts = 100;
 constexpr mode_t kNewMode = 0666;  // less the umask
 
@@ -57,6 +59,8 @@ struct Target {
 Result<Target> target_of(const std::string& path, std::string_view beginning) {
   Target target{.path = path};
   struct stat status{};
+  // Nothing there: the folder must take a new file. A link
+  // that leads nowhere is there, and is refused below.
   if (lstat(path.c_str(), &status) != 0) {
     if (errno != ENOENT || path.empty()) return cannot_write(path, errno);
     if (access(folder_of(path).c_str(), W_OK | X_OK) != 0) return cannot_write(path, errno);
@@ -79,6 +83,7 @@ Result<Target> target_of(const std::string& path, std::string_view beginning) {
   if (access(target.path.c_str(), W_OK) != 0 ||
       access(folder_of(target.path).c_str(), W_OK | X_OK) != 0)
     return cannot_write(path, errno);
+  // What mktemp or touch made for the result.
   if (status.st_size == 0) return target;
   auto file = InputFile::open(target.path, "name another file to write");
   if (!file) return file.error();
@@ -94,6 +99,8 @@ Result<Target> target_of(const std::string& path, std::string_view beginning) {
 /// A temporary that nobody else has, beside the target.
 Result<std::pair<std::string, int>> open_part(const std::string& path, const Target& target) {
   for (int n = 0; n < kMaxParts; ++n) {
+    // In the same folder: only then a rename is one step. O_EXCL and O_NOFOLLOW: nobody else's
+    // file, and no link that somebody laid there.
     std::string part = fmt::format("{}.{}-{}.part", target.path, getpid(), n);
     const int fd =
         open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, kNewMode);
@@ -148,6 +155,7 @@ FileWriter& FileWriter::operator=(FileWriter&& other) noexcept {
 }
 
 FileWriter::~FileWriter() {
+  // What grows keeps all that was put; what replaces was not finished, so it never was.
   if (fd_ >= 0 && part_.empty()) flush();
   if (fd_ >= 0) close(fd_);
   if (!part_.empty()) unlink(part_.c_str());
@@ -182,6 +190,7 @@ std::optional<Error> FileWriter::flush() {
 std::optional<Error> FileWriter::finish() {
   if (auto error = flush()) return error;
   const bool is_file = !target_.empty();
+  // The bytes before the name: after a crash the name leads to all of them, or to the older file.
   if (is_file && fsync(fd_) != 0) return fail(errno);
   if (close(std::exchange(fd_, -1)) != 0) return fail(errno);
   if (!is_file) return std::nullopt;
@@ -191,6 +200,7 @@ std::optional<Error> FileWriter::finish() {
   }
   const int folder = open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder < 0) return std::nullopt;  // a folder that cannot be listed; the file itself is there
+  // The name itself is on the disk only now.
   fsync(folder);
   close(folder);
   return std::nullopt;

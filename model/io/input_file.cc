@@ -41,6 +41,8 @@ Result<InputFile> InputFile::open(const std::string& path, std::string_view cure
   // Not blocking, should a pipe have taken its place since.
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (fd < 0) return error_of(path, words_of(errno), cure);
+  // Owner of fd from here on. Asked once more: what was
+  // opened may be another than what was looked at.
   InputFile file(path, std::string(cure), fd, 0);
   if (fstat(fd, &status) != 0) return error_of(path, words_of(errno), cure);
   if (const auto kind = kind_of(status.st_mode); !kind.empty()) return error_of(path, kind, cure);
@@ -86,6 +88,7 @@ Result<std::string> read_file(const std::string& path, std::string_view cure,
   if (file->size_bytes() > most_bytes) return too_large();
   std::string text;
   for (std::size_t end = 0;;) {  // what says no size, or grows, is read to its end too
+    // One byte more than is expected: the end is then seen in the same read.
     const std::size_t step = std::max<std::size_t>(kRead_bytes, file->size_bytes() - end + 1);
     text.resize(end + (file->size_bytes() >= end ? step : kRead_bytes));
     const auto read = file->read(text.data() + end, text.size() - end);

@@ -8,6 +8,7 @@
 namespace tact::model::io {
 
 std::string limits_text(const Limits& limits) {
+  // A limit that is not in the text could change without the digits.
   static_assert(sizeof(Limits) == 13 * sizeof(double), "a limit without a line below");
   std::string out;
   const auto add = [&out](const char* name, double value) {

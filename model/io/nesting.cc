@@ -11,6 +11,7 @@ std::size_t behind_string(std::string_view text, std::size_t at, bool is_toml) {
   const char quote = text[at];
   const std::string_view three = quote == '"' ? R"(""")" : "'''";
   const bool long_one = is_toml && text.substr(at, 3) == three;
+  // TOML's single quotes take a backslash as it is.
   const bool escapes = quote == '"';
   for (at += long_one ? 3 : 1; at < text.size(); ++at) {
     if (escapes && text[at] == '\\') {
@@ -47,7 +48,9 @@ std::optional<std::size_t> too_deep(std::string_view text, bool is_toml) {
       continue;
     }
     if (c == '[' || c == '{') ++depth;
+    // Too many closing ones are for the parser to tell.
     if ((c == ']' || c == '}') && depth > 0) --depth;
+    // Dots add up over one key, blanks between its parts included.
     if (is_toml && c == '.')
       ++dots;
     else if (!is_of_key(c))

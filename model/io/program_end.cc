@@ -16,11 +16,13 @@ constexpr int kBadOutput = 2;
 const char* program_name = "";
 
 void check_standard_output() {
+  // A write that failed before has set the mark; errno may be of something else by now.
   const bool failed_before = std::ferror(stdout) != 0;
   if (std::fflush(stdout) == 0 && !failed_before) return;
   std::fprintf(stderr, "%s: standard output cannot be written: %s; check where it goes\n",
                program_name, failed_before && errno == 0 ? "error" : std::strerror(errno));
   std::fflush(nullptr);
+  // exit() is running already, and may not be called again.
   _exit(kBadOutput);
 }
 

@@ -29,6 +29,7 @@ void Seal::add(std::string_view bytes) {
 
 std::array<unsigned char, 32> Seal::digest() const {
   std::array<unsigned char, 32> out{};
+  // Of a copy: ending a digest ends its context, and more bytes may come.
   const std::unique_ptr<evp_md_ctx_st, Closer> copy(EVP_MD_CTX_new());
   EVP_MD_CTX_copy_ex(copy.get(), context_.get());
   EVP_DigestFinal_ex(copy.get(), out.data(), nullptr);
@@ -71,6 +72,7 @@ Result<SealedFile> SealedFile::open(const std::string& path, std::string_view cu
   std::uint64_t size_bytes = file->size_bytes();
   const auto end = file->read_end(seal.data(), seal.size());
   if (!end) return end.error();
+  // Without one it is read to its end all the same; trouble() tells.
   if (*end == kSealBytes && seal.starts_with(kMagic))
     size_bytes -= kSealBytes;
   else
@@ -79,6 +81,7 @@ Result<SealedFile> SealedFile::open(const std::string& path, std::string_view cu
 }
 
 std::size_t SealedFile::read(void* to, std::size_t bytes) {
+  // Never into the seal: it is no part of what it seals.
   bytes = static_cast<std::size_t>(std::min<std::uint64_t>(bytes, size_bytes_ - read_bytes_));
   const auto read = file_.read(to, bytes);
   if (!read) failed_ = read.error().sentence;
@@ -100,6 +103,7 @@ bool SealedFile::skip(std::uint64_t bytes) {
 }
 
 std::string SealedFile::trouble() {
+  // The digest is of all bytes, also of those that nobody wanted.
   skip(size_bytes_ - read_bytes_);
   if (!failed_.empty()) return failed_;
   if (seal_.empty())
@@ -121,6 +125,7 @@ std::string sealed_text(const std::string& text) {
 }
 
 bool is_sealed(std::string_view text) {
+  // The last one: the text before may hold such a line of its own.
   const std::size_t at = text.rfind("sha256 = \"");
   return at != text.npos && sealed_text(std::string(text.substr(0, at))) == text;
 }

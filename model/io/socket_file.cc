@@ -36,6 +36,7 @@ Error system_error(const std::string& path, const char* what) {
 }
 
 bool somebody_listens(const sockaddr_un& address, int type) {
+  // Asked by a connection: a file alone says nothing, as it stays when its process is killed.
   const int probe = socket(AF_UNIX, type | SOCK_NONBLOCK, 0);
   const bool alive = probe >= 0 && (connect(probe, plain(address), sizeof address) == 0 ||
                                     errno == EAGAIN);  // alive, with a full queue
@@ -67,6 +68,8 @@ Result<std::string> runtime_directory() {
   if (mkdir(path.c_str(), 0700) != 0 && errno != EEXIST)
     return Error{path + ": " + std::strerror(errno) + "; set XDG_RUNTIME_DIR to a folder of yours"};
   struct stat info{};
+  // lstat: in /tmp somebody may have laid a link of that name.
+  // 027: nobody but its owner writes, no stranger looks.
   if (lstat(path.c_str(), &info) != 0 || !S_ISDIR(info.st_mode) || info.st_uid != getuid() ||
       (info.st_mode & 027) != 0)
     return Error{path +
@@ -89,6 +92,7 @@ std::optional<Error> check_socket_folder(const std::string& path, const Trust& t
   const std::string parent = std::filesystem::path(path).parent_path().string();
   const std::string folder = parent.empty() ? "." : parent;
   struct stat info{};
+  // Nobody can put anything into what is not there.
   if (stat(folder.c_str(), &info) != 0) return std::nullopt;
   // With the sticky bit, as /tmp has it, nobody replaces what is another's.
   const bool others_write = (info.st_mode & 022) != 0 && (info.st_mode & S_ISVTX) == 0;
@@ -106,6 +110,7 @@ bool has_trusted_peer(int socket, const Trust& trust) {
   ucred peer{};
   socklen_t bytes = sizeof peer;
   if (getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &bytes) != 0) return false;
+  // Who connected, by the kernel's word; the group is asked for viewers alone.
   if (is_trusted(peer.uid, trust)) return true;
   return trust.group && (peer.gid == *trust.group || has_peer_in(socket, *trust.group));
 }
