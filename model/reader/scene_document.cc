@@ -18,6 +18,7 @@
 namespace tact::model::reader {
 namespace {
 
+// A scene has some kilobytes: a megabyte is a file that was named by mistake.
 constexpr std::uintmax_t kMaxFile_bytes = 1'000'000;
 
 std::string cure() {
@@ -30,6 +31,7 @@ std::string cure() {
 
 bool is_bare_word(std::string_view value) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  // What begins as a word or a path does; a broken number or quote must not become text.
   if (value.empty() || value.find_first_of("'\"") != value.npos) return false;
   return is_letter(value[0]) || value[0] == '/' || value[0] == '.' || value[0] == '_';
 }
@@ -81,6 +83,8 @@ class Override {
       toml::node* child = nullptr;
       if (toml::table* table = parent->as_table()) {
         child = table->get(head);
+        // A section that the file does not have is made by
+        // put(); whether it may be there the keys tell.
         if (!child) return std::nullopt;
       } else {
         toml::array& entries = *parent->as_array();
@@ -111,6 +115,7 @@ class Override {
     std::ostringstream meaning;
     meaning << text_.substr(0, text_.find('=')) << '\n' << *parsed;
     meaning_ = meaning.str();
+    // Moved, not parsed again: each node keeps the name of the override as its source.
     for (auto&& [key, node] : *parsed) {
       node.visit([&, &name = key](auto& concrete) {
         parent.insert_or_assign(name.str(), std::move(concrete));
@@ -127,6 +132,7 @@ class Override {
 
 TextPlace SceneDocument::place_of(const toml::node& node) const {
   const toml::source_region& source = node.source();
+  // An override has no line: its own text is its place.
   if (source.path && *source.path != path) return {.where = *source.path};
   return {.where = fmt::format("{}:{}", path, source.begin.line), .line = source.begin.line};
 }
@@ -142,6 +148,7 @@ Result<SceneDocument> load_scene_document(const std::string& path,
   for (const std::string& one : overrides) {
     Override change(one);
     if (auto failed = change.lay_over(*root)) return *failed;
+    // The meaning, so that law=auto and law="auto" are one run.
     hash.add(change.meaning());
   }
   return SceneDocument{.path = path, .root = std::move(*root), .hash = hash.hex()};

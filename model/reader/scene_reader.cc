@@ -29,6 +29,8 @@ void SceneVisit::note(ProblemKind kind, const TextPlace& place, const std::strin
 std::optional<Error> SceneVisit::problem() const {
   const auto first =
       std::min_element(problems_.begin(), problems_.end(), [](const Problem& a, const Problem& b) {
+        // A wrong value makes keys seem missing, and missing ones make others contradict: the first
+        // kind may be the cause.
         return std::tie(a.kind, a.line) < std::tie(b.kind, b.line);
       });
   if (first == problems_.end()) return std::nullopt;
@@ -53,6 +55,7 @@ void Keys::store(const toml::node& node, std::string_view key, Result<T> value, 
 void Keys::text(std::string_view key, std::string_view meaning, std::string& out, Need need) {
   const std::string fallback = need == Need::kOptional ? fmt::format("\"{}\"", out) : "";
   const toml::node* node = take(key, "text", meaning, fallback);
+  // Empty is how a text says "none"; only what is required refuses it.
   if (node && need == Need::kOptional && node->value<std::string>() == "") return out.clear();
   if (node) store(*node, key, as_text(*node), out);
 }
@@ -88,6 +91,7 @@ void Keys::vector(std::string_view key, Range each, std::string_view meaning, Ve
 void Keys::choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning,
                   std::size_t& out, Need need) {
   constexpr std::size_t kMaxOnALine = 4;
+  // More would not fit into the column of the reference.
   if (!visit_.document() && choices.size() > kMaxOnALine) return describe(key, choices);
   const std::string fallback =
       need == Need::kOptional ? fmt::format("\"{}\"", choices[out].name) : "";
@@ -107,6 +111,7 @@ void Keys::one_of(std::string_view key, std::span<const Choice> choices,
   const toml::node* node = take(key, names_of(choices), "");
   const std::optional<std::size_t> index =
       node ? match(key, choices, *node) : std::optional<std::size_t>{};
+  // Without the deciding key nobody knows which others belong: none is called unknown.
   all_named_ = index.has_value();
   if (index) further(*index);
 }
@@ -201,6 +206,7 @@ const toml::node* Keys::take(std::string_view key, std::string allowed, std::str
     visit_.note(ProblemKind::kMissing, place_of(key),
                 fmt::format("{} is missing; allowed: {}", path_to(key), allowed));
   }
+  // Also of a key that is missing: it is no unknown one, and what is near to it is suggested.
   known_.push_back({key, std::move(allowed)});
   return node;
 }

@@ -22,6 +22,7 @@ std::string_view type_name(const toml::node& node) {
       return "a number";
     case toml::node_type::boolean:
       return "true or false";
+    // TOML's four kinds of dates and times: no key takes one.
     default:
       return "a date or time";
   }
@@ -38,6 +39,7 @@ std::string range_text(CountRange range) {
 
 Result<double> as_number(const toml::node& node, Range range) {
   if (!node.is_number()) return Error{fmt::format("is {}, not a number", type_name(node))};
+  // 2 may be written for 2.0: whole numbers are exact in a double far beyond any range here.
   const double given = node.is_integer() ? static_cast<double>(node.as_integer()->get())
                                          : node.as_floating_point()->get();
   if (!std::isfinite(given)) return Error{fmt::format("= {} is not finite", given)};
@@ -50,6 +52,7 @@ Result<std::size_t> as_count(const toml::node& node, CountRange range) {
   const Range bounds{static_cast<double>(range.low), static_cast<double>(range.high)};
   const Result<double> given = as_number(node, bounds);
   if (!given) return given.error();
+  // 8.0, too: a count is written as one.
   if (!node.is_integer()) return Error{fmt::format("= {} is written with a fraction", *given)};
   return static_cast<std::size_t>(*given);
 }
@@ -72,7 +75,9 @@ Result<Vec3> as_vector(const toml::node& node, Range each) {
 Result<std::string> as_text(const toml::node& node) {
   const toml::value<std::string>* text = node.as_string();
   if (!text) return Error{fmt::format("is {}, not text", type_name(node))};
+  // What is optional may be empty, and is asked for before (Keys::text).
   if (text->get().empty()) return Error{"is empty"};
+  // It would break the lines of a terminal, a log or a header.
   for (const char c : text->get())
     if (is_control(c)) return Error{"has a control character"};
   return text->get();

@@ -51,6 +51,7 @@ const UnitName* find_unit(std::string_view key) {
 }
 
 std::size_t edits_between(std::string_view a, std::string_view b) {
+  // One row of the table of Levenshtein; diagonal is what it held before.
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -75,6 +76,7 @@ bool differs_only_in_unit(std::string_view key, std::string_view known) {
   const UnitName* unit = find_unit(known);
   if (!unit || key == known) return false;
   const std::string_view stem = known.substr(0, known.size() - unit->suffix.size());
+  // Whatever stands behind the stem was meant as a unit, known or not.
   return key == stem || (key.starts_with(stem) && key[stem.size()] == '_');
 }
 
