@@ -18,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// A file of another schema is measured anew, not translated.
 constexpr std::string_view kSchema = "tact-accuracy/2";
 
 std::vector<double> numbers_of(const toml::table& table, const char* key) {
@@ -58,6 +59,8 @@ Result<Accuracy> accuracy_of(const toml::table& table, const std::string& law) {
 }  // namespace
 
 std::string hash_of_forces(const Scene& scene, const TissueLaw& law) {
+  // Chosen: enough that another law, parameter, organ or tool
+  // changes some force, few enough for every --check.
   constexpr std::size_t kPlaces = 9;
   constexpr double kDepths_m[] = {0.0005, 0.002, 0.005, 0.01};
   contact::SiteLaw& site = law.site_law();
@@ -74,7 +77,10 @@ std::string hash_of_forces(const Scene& scene, const TissueLaw& law) {
         .normal = organ.vertex_normal[organ.triangle[triangle][0]]};
     for (const double depth_m : kDepths_m) {
       at.dent_m = depth_m;
+      // Six digits: the last bits may differ between compilers,
+      // a law that is another one differs before.
       hash.add(fmt::format("{:.6g}", site.respond(at).law.force_N));
+      // A law that relaxes must not remember the depth before.
       site.leave(0);
     }
     if (k > 0) {
@@ -114,6 +120,8 @@ Result<Accuracy> read_accuracy(const Scene& scene, const TissueLaw& law) {
   std::error_code failed;
   if (!fs::exists(path, failed))
     return Error{fmt::format("nobody has measured it; {}", cure(scene))};
+  // What is lacking is told from the outside inwards,
+  // each time with the commands that make it anew.
   const auto text = io::read_file(path, cure(scene));
   if (!text) return text.error();
   const auto parsed = io::parse_toml(*text, path);
@@ -138,6 +146,7 @@ std::size_t worst_depth(const Accuracy& accuracy) {
 }
 
 bool keeps(const Accuracy& accuracy, const ToleranceSettings& tolerance) {
+  // Both: an RMS of the peak hides a light touch that is far off.
   const double own_ratio = std::abs(accuracy.own_worst_ratio[worst_depth(accuracy)]);
   return std::max(accuracy.rms_ratio, own_ratio) <= tolerance.force_error_ratio;
 }

@@ -27,6 +27,7 @@ static_assert(sizeof(tissue::SidewaysGive) == kSidewaysFloats * sizeof(float));
 constexpr std::string_view kMagic = "TACTCOMP";
 constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kHashDigits = 16;
+// Of an OBJ file, too (mesh/obj_parser.h): before a size is computed from it.
 constexpr std::uint32_t kMaxVertices = 10'000'000;
 
 struct Header {
@@ -100,6 +101,7 @@ Result<tissue::ComplianceMap> read_compliance_map(const std::string& path) {
   take(bytes, &head, 1);
   if (head.version != kVersion)
     return broken(fmt::format("is of version {}, this program reads {}", head.version, kVersion));
+  // Magic, version, numbers, length, checksum: each is asked only where the ones before are good.
   if (const auto wrong = header_error(head)) return broken("is damaged: " + *wrong);
   tissue::ComplianceMap map{.poisson_ratio = head.poisson_ratio,
                             .patch_radius_m = head.patch_radius_m,
@@ -113,11 +115,13 @@ Result<tissue::ComplianceMap> read_compliance_map(const std::string& path) {
   if (bytes.size() != expected)
     return broken(
         fmt::format("is damaged: {} bytes where {} belong", content.size(), kHeadBytes + expected));
+  // The length is right by now: no memory is taken for what a broken header says.
   take_vertices(bytes, head, map);
   std::uint64_t sum = 0;
   take(bytes, &sum, 1);
   if (sum != fnv1a(std::string_view{content.data(), content.size() - sizeof sum}))
     return broken("is damaged: its checksum is wrong");
+  // A sound checksum of values that are no numbers: they came so from the solver.
   if (!all_finite(map)) return broken("holds a value that is no finite number");
   return map;
 }
@@ -143,6 +147,7 @@ Result<std::size_t> write_compliance_map(const tissue::ComplianceMap& map,
     return Error{path +
                  ": not written, the map holds a value that is no finite number; solve it again "
                  "with another mesh size or patch radius"};
+  // Whole in memory, and written by one call: a reader never sees half a map.
   std::string bytes(kMagic);
   append(bytes, &head, 1);
   bytes += map.mesh_hash;
@@ -159,10 +164,13 @@ std::string compliance_checksum(const std::string& path) {
   constexpr std::size_t kSum_bytes = sizeof(std::uint64_t);
   const auto bytes = io::read_file(path);
   if (!bytes || bytes->size() < kSum_bytes) return {};
+  // Not computed: it stands for the file in the hash of a scene, and read_compliance_map checks it.
   return bytes->substr(bytes->size() - kSum_bytes);
 }
 
 std::string surface_hash(const contact::SurfaceView& surface) {
+  // 0.1 um: a mesh that was moved or rounded is the same
+  // organ; relative to a vertex, so place does not count.
   constexpr double kStep_m = 1e-7;
   reader::TextHash hash;
   for (const Vec3& p : surface.vertex_m) {

@@ -50,6 +50,7 @@ Result<Plan> plan_of(const toml::table& root) {
   plan.sizes.law = known->kind;
   for (const Count& count : kCounts) {
     const auto number = root[count.key].value_or<std::int64_t>(0);
+    // Chosen, above every size that a scene takes: the scene's own ranges come later.
     if (number < 0 || number > 100000) return Error{fmt::format("{} is out of range", count.key)};
     plan.sizes.*count.value = static_cast<std::size_t>(number);
   }
@@ -78,6 +79,7 @@ Result<Plan> plan_of(const toml::table& root) {
 Result<Plan> parse_plan(const std::string& path) {
   const auto text = io::read_file(path, "it cannot be used");
   if (!text) return Error{text.error().sentence};
+  // A plan that somebody edited was never measured.
   if (!io::is_sealed(*text)) return Error{"damaged, its sha256 is missing or another"};
   const auto root = io::parse_toml(*text, "the plan");
   if (!root) return Error{fmt::format("damaged, {}", root.error().sentence)};
@@ -136,6 +138,7 @@ std::string command_text(const std::vector<std::string>& overrides) {
 std::string machine_name() {
   const auto facts = io::read_file("/proc/cpuinfo");
   std::istringstream file(facts ? *facts : std::string());
+  // /proc/cpuinfo of some processors has no model name.
   std::string cpu = "unknown processor";
   int cores = 0;
   for (std::string line; std::getline(file, line);) {
@@ -206,6 +209,7 @@ Result<Plan> read_plan(const std::string& path, const Scene& scene,
 Result<Plan> find_plan(const Scene& scene, const std::vector<std::string>& overrides) {
   const auto path = plan_path(scene.hash);
   if (!path) return path.error();
+  // law=auto as an override changes the hash: the plan may be that of the scene as it is without.
   std::vector<std::string> others = overrides;
   std::erase_if(others, [](const std::string& one) { return one.starts_with("law="); });
   std::error_code ignored;

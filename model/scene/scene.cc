@@ -77,6 +77,7 @@ std::string whole_hash(const std::string& text_hash, const Scene& scene) {
     bytes(mesh->vertex_m);
     bytes(mesh->triangle);
   }
+  // law = "auto" counts as felt: tact-plan tries the compliance law, too.
   if (needs_compliance(scene)) hash.add(compliance_checksum(scene.compliance.map_path));
   return hash.hex();
 }
@@ -115,6 +116,7 @@ Result<Scene> load_scene(const std::string& path, const std::vector<std::string>
   scene.hand_site_m = text.script.site_m;
   scene.hand_inward = normalized(text.script.inward);
   const double tool_reach_m = reach_m(scene.tool.spheres, scene.hand_inward);
+  // Strokes before meshes: what is wrong in the text is told before files are read that take long.
   scene.hand.path = way_points(text.script, tool_reach_m, scene.limits, visit);
   if (auto problem = visit.problem()) return *problem;
   if (auto failed = load_meshes(text, scene)) return *failed;

@@ -12,6 +12,7 @@ constexpr reader::Need kOptional = reader::Need::kOptional;
 /// A whole number that may be negative.
 void visit_whole(reader::Keys& k, std::string_view key, reader::Range range, const char* meaning,
                  int& out) {
+  // Keys::count knows no number below zero; a number that must be whole is asked afterwards.
   double value = out;
   k.number(key, range, meaning, value, kOptional);
   if (value != std::floor(value)) k.refuse({key}, std::string(key) + " takes a whole number");
@@ -71,6 +72,7 @@ void visit_delta(reader::Keys& k, DeltaSettings& d) {
 void visit_nodes(reader::Keys& k, CanSettings& can) {
   Vec3 node{static_cast<double>(can.node[0]), static_cast<double>(can.node[1]),
             static_cast<double>(can.node[2])};
+  // A CANopen drive has node 1 to 126, an ODrive 0 to 63: each device refuses the rest by itself.
   k.vector("node", {0.0, 127.0}, "of the drives of arms 1, 2, 3", node, kOptional);
   can.node = {static_cast<int>(node.x), static_cast<int>(node.y), static_cast<int>(node.z)};
   const bool whole =
@@ -147,6 +149,7 @@ void visit_falcon(reader::Keys& k, FalconSettings& f) {
 void visit_force_dimension(reader::Keys& k, ForceDimensionSettings& f) {
   k.text("library", "the maker's, by name or path", f.library, kOptional);
   visit_whole(k, "id", {-1.0, 15.0}, "of the device, -1: the only one", f.id);
+  // FD-3: the device counts 255 units of 125 us at most.
   k.number("watchdog_s", {0.001, 0.0318}, "without a force for so long the device lets go",
            f.watchdog_s, kOptional);
   k.number("effector_mass_kg", {0.0, 5.0}, "0: the maker's value", f.effector_mass_kg, kOptional);
@@ -168,6 +171,7 @@ void visit_lines(reader::Keys& k, LinesSettings& lines) {
   visit_line(k, "heartbeat", "out, toggles after every healthy tick", lines.heartbeat);
   visit_line(k, "led", "out, high = armed", lines.led);
   visit_line(k, "scope", "out, high from wake to write", lines.scope);
+  // One channel could fail unseen (RT-16).
   if ((lines.estop_a < 0) != (lines.estop_b < 0))
     k.refuse({"estop_a", "estop_b"},
              "device.lines needs both channels of the e-stop, estop_a and estop_b, or none");
@@ -177,6 +181,7 @@ void visit_lines(reader::Keys& k, LinesSettings& lines) {
 
 void visit_device(reader::Keys& k, DeviceSettings& out) {
   k.text("kind", "sim-delta is the simulated device; tactd --list-devices", out.kind);
+  // Without a kind, as where the reference is written, the simulated device is the one to show.
   const bool simulated = out.kind.empty() || out.kind == "sim-delta";
   k.section(
       "sim", "imperfections of the simulated device",

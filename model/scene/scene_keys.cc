@@ -10,9 +10,11 @@
 namespace tact::model::scene {
 namespace {
 
+// Chosen: a slip of the pen, not a long session, is what it keeps out.
 constexpr std::size_t kMaxStrokes = 64;
 
 void visit_mesh(reader::Keys& k, MeshText& mesh) {
+  // For the sentence that says which line names a file that is not there.
   mesh.place = k.place_of("mesh");
   k.text("mesh", "OBJ file, absolute or from the folder of the scene", mesh.file);
   k.number("mesh_unit_m", {1e-6, 1.0}, "length of one unit of the file", mesh.unit_m,
@@ -36,6 +38,7 @@ void visit_tool(reader::Keys& k, SceneText& out) {
   if (k.section("blade", "a cutting edge, for law = \"spring_patch\"", visit_blade,
                 reader::Need::kOptional)) {
     out.scene.tool.blade = blade;
+    // Known by now: visit_scene visits the laws before the tool.
     const LawKind law = out.scene.law;
     if (law != LawKind::kSpringPatch && law != LawKind::kAuto)
       k.refuse({"blade"}, fmt::format("tool.blade cuts nothing with law = \"{}\"; write law = "
@@ -55,6 +58,7 @@ void visit_contact(reader::Keys& k, contact::ContactParameters& c) {
            c.grip_close_ratio, reader::Need::kOptional);
   k.number("grip_open_ratio", {0.0, 0.95}, "opening the grip below it lets go; < grip_close_ratio",
            c.grip_open_ratio, reader::Need::kOptional);
+  // Without a gap between them a trembling hand would grip and let go many times a second.
   if (!(c.grip_open_ratio < c.grip_close_ratio)) {
     k.refuse(
         {"grip_open_ratio", "grip_close_ratio"},
@@ -91,6 +95,7 @@ void visit_scene(reader::Keys& k, SceneText& out) {
   Scene& scene = out.scene;
   k.text("name", "of the scene, shown by the viewer", scene.name);
   k.number("rate_Hz", {100.0, 10000.0}, "ticks of the control loop", scene.rate_Hz);
+  // In the order of the reference page. rate_Hz and law come first: limits and tool ask for them.
   visit_laws(k, out);
   visit_law_options(k, scene);
   visit_truth(k, scene);

@@ -11,10 +11,12 @@
 namespace tact::model::scene {
 namespace {
 
+// LW-1 names 17, 33 and 65 knots; fewer were not measured.
 constexpr std::size_t kMinKnots = 17;
 constexpr std::size_t kMaxUnits = 31;  // one ring each, as many as the viewer shows
 constexpr std::size_t kMaxSites = 64;
 constexpr std::size_t kMaxSiteVertex = 100'000'000;
+// Chosen: it keeps out millimetres that were written for metres.
 constexpr reader::Range kDepth_m{1e-4, 0.1};
 
 constexpr std::array<reader::Choice, kLawNames.size()> law_choices() {
@@ -45,6 +47,7 @@ constexpr std::array kDiscForms{
     reader::Choice{"almen-laszlo", "the disc as it is: stiffness jumps at every layer"},
     reader::Choice{"linear", "its secant: one linear spring"},
 };
+// In the order of the choices above.
 constexpr std::array kFormOf{indent::DiscForm::kAlmenLaszlo, indent::DiscForm::kLinear};
 static_assert(kDiscForms.size() == kFormOf.size());
 
@@ -136,6 +139,7 @@ void visit_spring_patch(reader::Keys& k, Scene& scene) {
   p.method.integrator = springs::kIntegratorNames[integrator].integrator;
   k.number("alpha_ratio", {0.1, 1.0}, "of midpoint-averaging; 0.375 makes energy", p.method.alpha,
            reader::Need::kOptional);
+  // count() takes std::size_t; the default is the parameter's own.
   std::size_t iterations = static_cast<std::size_t>(p.iterations);
   k.count("iterations", {1, 100}, "of implicit-euler", iterations, reader::Need::kOptional);
   p.iterations = static_cast<int>(iterations);
@@ -184,6 +188,7 @@ void visit_laws(reader::Keys& k, SceneText& out) {
   section(LawKind::kCompliance, "the elastic organ of [elastic], condensed to its surface",
           [&](reader::Keys& compliance) { visit_compliance(compliance, out); });
 
+  // After all sections: which of them are there is known only now.
   if (scene.varies_by_place && !scene.describes(LawKind::kCompliance))
     k.refuse({"varies_by_place"},
              "varies_by_place = true needs a section [compliance]; write it or leave the key out");

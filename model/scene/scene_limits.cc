@@ -77,6 +77,7 @@ void refuse_fast_heat(reader::Keys& k, double rate_Hz, const Limits& limits) {
   const double peak_N = limits.force_N;
   const double continuous_N = std::min(limits.continuous_force_N, peak_N);
   if (!(continuous_N > 0.0 && rate_Hz > 0.0)) return;
+  // thermal_limit.h: (1 + kappa) T <= tau, and kappa Fp^2 / (2 Fc tau) <= slew.
   const double ratio = peak_N / continuous_N;
   const double steepness = 2.0 * (ratio * ratio - 1.0);
   const double least_s = std::max((1.0 + steepness) / rate_Hz,

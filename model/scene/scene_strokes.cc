@@ -50,6 +50,7 @@ class Writer {
  public:
   Writer(const HandScript& script, double reach_m)
       : script_(script), reach_m_(reach_m), inward_(normalized(script.inward)) {
+    // The first way point is home, at rest, with an open grip.
     path_.push_back({.time_s = 0.0, .position_m = script.home_m});
   }
 
@@ -67,6 +68,7 @@ class Writer {
         next.position_m = at_depth(-stroke.height_m);
         break;
       case Action::kSlide:
+        // Kept for the strokes that follow: a pull goes up from where the slide ended.
         slid_m_ += stroke.offset_m;
         next.position_m += stroke.offset_m;
         break;
@@ -153,6 +155,7 @@ std::vector<HandWaypoint> way_points(const HandScript& script, double reach_m, c
   for (std::size_t i = 0; i < script.strokes.size(); ++i) {
     const Stroke& stroke = script.strokes[i];
     const std::string name = fmt::format("hand.stroke.{}", i);
+    // An open grip holds nothing: the tool would only leave the surface.
     const bool pulls = stroke.action == Action::kPull || stroke.action == Action::kTear;
     if (pulls && !writer.is_closed())
       refuse(stroke.place, name + " pulls with an open grip; put a grip stroke before it");

@@ -11,6 +11,7 @@ Result<std::unique_ptr<Tissue>> make_tissue(const Scene& scene) {
   auto law = make_tissue_law(scene, scene.law);
   if (!law) return law.error();
   const double pull_limit_N = (*law)->pull_limit_N();
+  // Else the tool would hang on the tissue, whatever the hand pulls.
   if (pull_limit_N > 0.0 && !(scene.contact.tear_force_N < pull_limit_N))
     return Error{fmt::format(
         "{}: contact.tear_force_N = {:g} is never reached: the law pulls with {:g} N at most; "
@@ -19,11 +20,13 @@ Result<std::unique_ptr<Tissue>> make_tissue(const Scene& scene) {
 
   const std::vector<std::uint32_t>& fans = scene.organ_mesh.fan_start;
   for (std::size_t v = 0; v + 1 < fans.size(); ++v)
+    // A corner is left over all its triangles in one step: their number bounds the tick.
     if (fans[v + 1] - fans[v] > contact::kMaxFan)
       return Error{fmt::format("{}: {} triangles meet in one vertex; allowed: {}, remesh it there",
                                scene.organ.mesh_path, fans[v + 1] - fans[v], contact::kMaxFan)};
 
   std::unique_ptr<Tissue> tissue(new Tissue(std::move(*law)));
+  // Cells as far out as a sphere that comes near: its diameter.
   double reach_m = 0.0;
   for (const contact::ProbeSphere& sphere : scene.tool.spheres)
     reach_m = std::max(reach_m, 2.0 * sphere.radius_m);

@@ -68,6 +68,7 @@ TissueLawBuilder::Step TissueLawBuilder::add_disc_stack() {
 
 TissueLawBuilder::Step TissueLawBuilder::add_hex_sheet() {
   auto parameters = scene_.hex_sheet;
+  // 0: chosen here, as few as the tolerance allows.
   if (parameters.rings == 0) {
     const double tolerance_ratio =
         scene_.tolerance ? scene_.tolerance->force_error_ratio : kRingTolerance;
@@ -78,6 +79,7 @@ TissueLawBuilder::Step TissueLawBuilder::add_hex_sheet() {
   law_->title_ = fmt::format("hexagonal sheet, energy form, {} rings", parameters.rings);
   auto sheet = make_hex_sheet(parameters);
   if (!sheet) return blame(sheet.error());
+  // LW-2: its rings are given by the source, so it is drawn by them.
   draws_tissue_ = true;
   return add_table(keep(std::move(*sheet)));
 }
@@ -108,10 +110,12 @@ TissueLawBuilder::Step TissueLawBuilder::add_compliance() {
 
 // The hand meets no more than the virtual spring, whatever the nodes do in one tick.
 TissueLawBuilder::Step TissueLawBuilder::add_spring_patch() {
+  // As the patch does: a mesh may have fewer vertices.
   const std::size_t nodes = std::min(scene_.spring_patch.nodes, scene_.organ_mesh.vertex_m.size());
   law_->title_ = fmt::format("mass-spring patch, {} nodes, {}", nodes,
                              name_of(scene_.spring_patch.method.integrator));
   springs::SpringPatchParameters parameters = scene_.spring_patch;
+  // What the scene says elsewhere: rate, tool, relaxation.
   parameters.tick_s = 1.0 / scene_.rate_Hz;
   parameters.spheres = scene_.tool.spheres.size();
   auto relaxation = make_relaxation(scene_.relaxation, parameters.tick_s);
@@ -131,6 +135,7 @@ TissueLawBuilder::Step TissueLawBuilder::add_spring_patch() {
 
 /// Press as the law gives it, pull as [pull] says.
 Result<const law::Law*> TissueLawBuilder::with_pull(const law::Law& press) {
+  // Without [pull] the law's own pull counts, if it has one.
   if (!scene_.pull) return &press;
   auto pulled = make_linear_pull(press, *scene_.pull);
   if (!pulled) return blame(pulled.error());

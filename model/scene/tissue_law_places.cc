@@ -63,6 +63,7 @@ TissueLawBuilder::Step TissueLawBuilder::finish_field(const law::Law* shape) {
   if (!relaxation) return blame(relaxation.error());
   law_->memory_bytes_ +=
       (law_->press_coordinate_.size() + law_->pull_coordinate_.size()) * sizeof(float);
+  // Before the field is made: it asks whether a curve damps.
   for (const law::Law* curve : law_->curves_) measure(*curve);
   law_->range_ = law_->curve()->range();
   law_->site_law_ = std::make_unique<tissue::ElasticField>(
@@ -98,6 +99,7 @@ tissue::ElasticNeighbours TissueLawBuilder::neighbours() {
   if (law_->press_coordinate_.empty()) return out;  // a law that knows no place
   auto map = read_scene_map(scene_);
   if (!map) return out;
+  // Nothing of the tip is wider: with it S is limited for every sphere.
   const double widest_m =
       std::ranges::max(scene_.tool.spheres, {}, &contact::ProbeSphere::radius_m).radius_m;
   law_->tangent_times_E_per_m_ =

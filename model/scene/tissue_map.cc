@@ -12,6 +12,7 @@ namespace tact::model::scene {
 Result<tissue::ComplianceMap> read_scene_map(const Scene& scene) {
   const std::string& path = scene.compliance.map_path;
   const std::string command = fmt::format("tact-condense {} --out {}", scene.path, path);
+  // From the scene to the file to what is in it: each is asked only where the one before is good.
   if (!scene.elastic)
     return Error{scene.path +
                  ": compliance needs a section [elastic]: modulus, Poisson's ratio "
@@ -26,6 +27,8 @@ Result<tissue::ComplianceMap> read_scene_map(const Scene& scene) {
   const ElasticSettings& e = *scene.elastic;
   if (map->mesh_hash != surface_hash(scene.organ_mesh.view()))
     return Error{fmt::format("{} belongs to another organ mesh; make one: {}", path, command)};
+  // E may change, since the map holds r E; nu and what is held may not. Equal to the bit, as both
+  // come from the same TOML.
   if (map->poisson_ratio != e.poisson_ratio || !(map->fixed_min_m == e.fixed_min_m) ||
       !(map->fixed_max_m == e.fixed_max_m))
     return Error{
@@ -38,6 +41,7 @@ Result<tissue::ComplianceMap> read_scene_map(const Scene& scene) {
 Result<double> scene_tip_radius_m(const Scene& scene) {
   const std::vector<contact::ProbeSphere>& spheres = scene.tool.spheres;
   for (const contact::ProbeSphere& sphere : spheres)
+    // One family of curves is made for one tip.
     if (sphere.radius_m != spheres[0].radius_m)
       return Error{fmt::format(
           "{}: tool.sphere has radii of {} and {} m, but compliance, varies_by_place and "
@@ -53,6 +57,7 @@ Result<std::vector<float>> read_scene_give(const Scene& scene) {
   auto map = read_scene_map(scene);
   if (!map) return map.error();
   out = std::move(map->regular_times_E_per_m);
+  // r E to r.
   for (float& r : out) r /= static_cast<float>(scene.elastic->youngs_modulus_Pa);
   return out;
 }
