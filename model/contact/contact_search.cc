@@ -8,6 +8,7 @@
 namespace tact::model::contact {
 namespace {
 
+// One corner stands for its triangle: from a record that the walk reads next.
 Vec3 a_corner(const SurfaceView& s, std::uint32_t triangle) RT_SAFE {
   return s.record[triangle].corner_m[0];
 }

@@ -17,6 +17,7 @@ constexpr double kMargin = 0.95;  // of the largest coupling that is positive de
 
 using Vector = std::array<double, kMaxSpheres>;
 
+/// Does another sphere press its site, too?
 bool is_coupled(const Coupling& c, std::size_t i) RT_SAFE {
   return std::ranges::any_of(c[i], [](double m_per_N) RT_SAFE { return m_per_N != 0.0; });
 }
@@ -33,6 +34,7 @@ void ask(SiteLaw& law, PressingSphere& sphere) RT_SAFE {
   if (is_off) sphere.response.law.stiffness_N_per_m = 0.0;
 }
 
+/// A slope below 0 would turn the matrix; 0 in its place only slows Newton.
 double stiffness_N_per_m(const PressingSphere& sphere) RT_SAFE {
   return sphere.presses ? std::max(sphere.response.law.stiffness_N_per_m, 0.0) : 0.0;
 }

@@ -10,6 +10,7 @@ namespace {
 // Along the longest edge: 64^3 cells of two numbers are 2 MB.
 constexpr double kMaxCells = 64.0;
 
+// Clamped: a tool far outside still gets the nearest cell.
 std::uint32_t axis_cell(double p, double low, double cell, std::uint32_t size) RT_SAFE {
   const double k = (p - low) / cell;
   // NaN, too.

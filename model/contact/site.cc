@@ -97,6 +97,8 @@ bool is_on_rim(const SurfaceView& s, const Nearest& at) RT_SAFE {
   return at.feature == Feature::kCorner && record.on_rim[at.index];
 }
 
+// The normal with which the sign is right: of the face, of both faces of an edge, of the fan of a
+// corner [Baerentzen, Aanaes 2005].
 Vec3 pseudo_normal(const SurfaceView& s, const Nearest& at) RT_SAFE {
   const TriangleRecord& record = s.record[at.place.triangle];
   switch (at.feature) {

@@ -28,6 +28,7 @@ struct Frame {
   std::array<Vec3, kAxes> axis{};  // n, t1, t2
 };
 
+// n and any two axes along the surface; read() turns them.
 Frame frame_of(const Vec3& n) {
   // Whichever axis is not near n.
   const Vec3 other = std::abs(n.x) < 0.6 ? Vec3{1.0, 0.0, 0.0} : Vec3{0.0, 1.0, 0.0};
@@ -93,6 +94,7 @@ class Condenser {
   Elasticity unit_{.youngs_modulus_Pa = 1.0, .poisson_ratio = settings_.poisson_ratio};
 };
 
+// The patch of a vertex and its three unit loads.
 void Condenser::load(std::size_t slot, std::uint32_t vertex) {
   frame_[slot] = frame_of(surface_.vertex_normal[vertex]);
   patch_[slot] = hertz_weights(body_, boundary_, vertex, settings_.patch_radius_m);
@@ -104,6 +106,7 @@ void Condenser::load(std::size_t slot, std::uint32_t vertex) {
   }
 }
 
+// What the solve says of that vertex goes into the map.
 void Condenser::read(std::size_t slot, std::uint32_t vertex, tissue::ComplianceMap& map) const {
   std::array<std::array<double, kAxes>, kAxes> c{};
   for (std::size_t p = 0; p < kAxes; ++p)

@@ -37,6 +37,8 @@ bool is_near(const TetMesh& mesh, const FaceNodes& f, const Vec3& centre, double
   });
 }
 
+// The patch, grown from triangle to triangle: over the rim of a thin lobe it would reach the far
+// side only by walking there.
 std::vector<std::uint32_t> faces_near(const TetMesh& mesh, const Boundary& boundary,
                                       std::uint32_t centre, double radius_m) {
   std::vector<std::uint32_t> found = boundary.faces_of_node[centre];

@@ -38,6 +38,7 @@ struct SpringForce {
   double force_N, slope_N_per_m, energy_J;
 };
 
+/// One surface spring at the drop l, m: its force across the surface.
 SpringForce surface_spring(const HexSheetParameters& p, double l) RT_SAFE {
   const double r = p.ring_pitch_m, s = std::sqrt(r * r + l * l);
   // HX-20  e = s - r, without cancellation

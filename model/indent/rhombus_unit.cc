@@ -31,6 +31,7 @@ struct ForceAndSlope {
   double f, k;
 };
 
+/// All that Newton asks of a unit, without the angles: no asin.
 ForceAndSlope force_and_slope(const RhombusUnit& unit, InitialSides initial, double x) RT_SAFE {
   const auto [s0, c0] = initial;
   const auto [s, c] = sides_at(unit, s0, x);

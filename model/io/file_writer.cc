@@ -34,6 +34,7 @@ Error cannot_write(const std::string& path, int number) {
                                     std::strerror(number)));
 }
 
+/// By what a file of ours is known: see the header.
 std::string_view first_word(std::string_view text) {
   if (text.starts_with('{')) return text.substr(0, 1);
   const auto ends = [](char c) { return is_control(c) || c == ',' || c == ':'; };
@@ -56,6 +57,7 @@ struct Target {
   bool straight = false;  // a pipe or a character device
 };
 
+/// Nothing is opened for writing yet: what must not be replaced is refused before anything changes.
 Result<Target> target_of(const std::string& path, std::string_view beginning) {
   Target target{.path = path};
   struct stat status{};

@@ -29,11 +29,14 @@ std::size_t behind_string(std::string_view text, std::size_t at, bool is_toml) {
   return text.size();
 }
 
+/// May stand in a bare key of TOML, or between its parts.
 bool is_of_key(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
          c == '-' || c == '+' || c == ' ' || c == '\t' || static_cast<unsigned char>(c) >= 0x80;
 }
 
+/// One pass without a stack: it must not itself end on what it
+/// looks for. Lines are counted only for the answer.
 std::optional<std::size_t> too_deep(std::string_view text, bool is_toml) {
   std::size_t depth = 0, dots = 0, line = 1, counted = 0;
   for (std::size_t at = 0; at < text.size();) {

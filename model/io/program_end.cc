@@ -15,6 +15,7 @@ namespace {
 constexpr int kBadOutput = 2;
 const char* program_name = "";
 
+/// A full disk shows when the last bytes leave, after main().
 void check_standard_output() {
   // A write that failed before has set the mark; errno may be of something else by now.
   const bool failed_before = std::ferror(stdout) != 0;
@@ -26,6 +27,7 @@ void check_standard_output() {
   _exit(kBadOutput);
 }
 
+/// std::terminate by itself would leave a core dump, and words of the library's.
 [[noreturn]] void tell_and_end() {
   try {
     if (const auto thrown = std::current_exception()) std::rethrow_exception(thrown);

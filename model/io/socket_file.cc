@@ -30,6 +30,7 @@ bool has_peer_in(int socket, gid_t group) {
   return std::ranges::find(is_in, group) != is_in.end();
 }
 
+/// errno is that of the call just made.
 Error system_error(const std::string& path, const char* what) {
   return Error{path + ": " + what + ": " + std::strerror(errno) +
                "; choose a folder that you may write to with --socket"};

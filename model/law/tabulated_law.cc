@@ -16,6 +16,7 @@ namespace {
 constexpr double kBesideRest = 1e-9;
 constexpr double kPressShare = 0.95;  // the slope of a snapping chain is infinite at its very limit
 
+/// From rest to a limit, which lies below 0 for pull.
 HermiteTable table_to(const Law& law, double end_m, std::size_t knots) {
   return {end_m / static_cast<double>(knots - 1), knots, [&law, end_m](double depth_m) {
             // At rest each side has its own slope: a law may pull softer than it presses.

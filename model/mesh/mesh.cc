@@ -30,6 +30,7 @@ Vec3 doubled_area_m2(const std::vector<Vec3>& vertex_m, const contact::TriangleC
   return cross(vertex_m[t[1]] - vertex_m[t[0]], vertex_m[t[2]] - vertex_m[t[0]]);
 }
 
+// What is wrong with a triangle by itself.
 std::optional<MeshFlaw> corner_flaw(const std::vector<Vec3>& vertex_m,
                                     const contact::TriangleCorners& t) {
   double longest2_m2 = 0.0;

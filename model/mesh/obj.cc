@@ -29,6 +29,7 @@ Result<ObjText> read_obj(const std::string& path) {
   return text;
 }
 
+// Of the bits: welded is only what lies at exactly the same place.
 std::uint64_t hash(const Vec3& p) {
   std::uint64_t h = 0;
   for (const double x : {p.x, p.y, p.z}) {
@@ -108,6 +109,7 @@ void keep_used_vertices(const ObjText& text, double unit_m, Triangles& out) {
     for (std::uint32_t& v : t) v = number[v];
 }
 
+// In numbers and lines of the file, which a person can look up.
 Error defect_error(const std::string& path, const MeshDefect& defect,
                    const std::vector<std::uint32_t>& line,
                    const std::vector<std::uint32_t>& file_vertex) {

@@ -36,6 +36,7 @@ bool is_bare_word(std::string_view value) {
   return is_letter(value[0]) || value[0] == '/' || value[0] == '.' || value[0] == '_';
 }
 
+/// Checked before it becomes text for the parser: a key could else bring lines of its own.
 bool is_key_path(std::string_view path) {
   constexpr std::string_view kAllowed =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";

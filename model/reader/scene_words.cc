@@ -50,6 +50,7 @@ const UnitName* find_unit(std::string_view key) {
   return nullptr;
 }
 
+/// Levenshtein's distance.
 std::size_t edits_between(std::string_view a, std::string_view b) {
   // One row of the table of Levenshtein; diagonal is what it held before.
   std::vector<std::size_t> row(b.size() + 1);

@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 // A file of another schema is measured anew, not translated.
 constexpr std::string_view kSchema = "tact-accuracy/2";
 
+/// What is no number becomes NaN, and is refused with the others.
 std::vector<double> numbers_of(const toml::table& table, const char* key) {
   std::vector<double> out;
   if (const toml::array* array = table[key].as_array())

@@ -53,6 +53,7 @@ void take(std::string_view& bytes, T* first, std::size_t count) {
   bytes.remove_prefix(count * sizeof(T));
 }
 
+/// Asked when it is read, and before it is written.
 std::optional<std::string> header_error(const Header& h) {
   if (h.vertices == 0 || h.vertices > kMaxVertices)
     return fmt::format("it says {} vertices", h.vertices);

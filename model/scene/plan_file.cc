@@ -76,6 +76,7 @@ Result<Plan> plan_of(const toml::table& root) {
   return plan;
 }
 
+/// Seal before meaning: a damaged plan is told as such.
 Result<Plan> parse_plan(const std::string& path) {
   const auto text = io::read_file(path, "it cannot be used");
   if (!text) return Error{text.error().sentence};

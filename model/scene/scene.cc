@@ -49,6 +49,7 @@ std::optional<Error> load_meshes(const SceneText& text, Scene& scene) {
   return std::nullopt;
 }
 
+/// Would another map give other forces?
 bool needs_compliance(const Scene& scene) {
   return scene.varies_by_place || scene.law == LawKind::kCompliance || scene.law == LawKind::kAuto;
 }

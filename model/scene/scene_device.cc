@@ -19,6 +19,8 @@ void visit_whole(reader::Keys& k, std::string_view key, reader::Range range, con
   out = static_cast<int>(value);
 }
 
+/// Required, all of them: a simulated device that is perfect by
+/// default would hide what a real one cannot show.
 void visit_sim(reader::Keys& k, SimDeviceSettings& sim) {
   k.number("counts_per_turn", {100.0, 1e8}, "encoder counts of one turn of a joint",
            sim.counts_per_turn);
@@ -32,6 +34,7 @@ void visit_sim(reader::Keys& k, SimDeviceSettings& sim) {
            sim.observer_bandwidth_Hz);
 }
 
+/// Optional: the defaults are the reference device (model/device_settings.h).
 void visit_delta(reader::Keys& k, DeltaSettings& d) {
   k.number("base_radius_m", {0.01, 1.0}, "motor axes from the middle", d.base_radius_m, kOptional);
   k.number("platform_radius_m", {0.0, 1.0}, "rod ends from the middle of the platform",
@@ -161,6 +164,7 @@ void visit_line(reader::Keys& k, std::string_view key, const char* meaning, int&
   visit_whole(k, key, {-1.0, 511.0}, meaning, offset);
 }
 
+/// -1, the default of each: that line is not wired.
 void visit_lines(reader::Keys& k, LinesSettings& lines) {
   k.text("chip", "label of the GPIO chip, as gpiodetect shows it, or its path", lines.chip,
          kOptional);

@@ -19,6 +19,7 @@ constexpr std::size_t kMaxSiteVertex = 100'000'000;
 // Chosen: it keeps out millimetres that were written for metres.
 constexpr reader::Range kDepth_m{1e-4, 0.1};
 
+/// From the one table of names, so that no law can lack one.
 constexpr std::array<reader::Choice, kLawNames.size()> law_choices() {
   std::array<reader::Choice, kLawNames.size()> out{};
   std::transform(kLawNames.begin(), kLawNames.end(), out.begin(),

@@ -40,6 +40,7 @@ void visit_keys(reader::Keys& k, Limits& limits) {
 /// Rounded up to what a person would write.
 double rounded_up(double value) { return std::ceil(1e3 * value) * 1e-3; }
 
+/// RT-15: in 10 ms the gate fades the largest force to zero, and its slew must not hold that up.
 void refuse_slow_slew(reader::Keys& k, const Limits& limits) {
   // The gate keeps force_N / ramp_s of the slew for its ramp.
   const double least_N_per_s = limits.force_N / kStaleFade_s + limits.force_N / limits.ramp_s;

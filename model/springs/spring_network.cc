@@ -17,6 +17,7 @@ Pair firsts(const Pair& a, const Pair& b) RT_SAFE { return Pair{a[0], b[0]}; }
 Pair seconds(const Pair& a, const Pair& b) RT_SAFE { return Pair{a[1], b[1]}; }
 Pair root(const Pair& a) RT_SAFE { return Pair{std::sqrt(a[0]), std::sqrt(a[1])}; }
 
+// x and y lie side by side in a Vec3: one load of 16 bytes.
 Pair xy(const Vec3& v) RT_SAFE {
   Pair out;
   std::memcpy(&out, &v, sizeof out);

@@ -28,6 +28,7 @@ struct Bounds {
   }
 };
 
+/// MA-20, over all nodes that move.
 Bounds bounds_of(const SpringNetwork& network, const ProbeLoad& probe) {
   const SpringNodes& node = network.node;
   const std::size_t n = node.position_m.size();
@@ -64,6 +65,7 @@ std::string text(const char* format, double v) {
   return buffer;
 }
 
+/// The shortest step that some mode allows: 12 octaves down, by quarters, and five dampings each.
 StepLimit limit_of(const Bounds& bounds, const Method& method) {
   StepLimit out{.step_s = kInfinity,
                 .omega_radps = bounds.omega_radps,

@@ -17,6 +17,7 @@ struct Give {
   std::size_t limited_vertices = 0;
 };
 
+/// CF-3, each limited to kStiffestPlace.
 Give give_of(const ComplianceMap& map, const indent::ElasticTip& tip) {
   const double disc = 1.0 / tip.pulled_stiffness_N_per_m();
   const double side = 1.0 / tip.sideways_stiffness_N_per_m();
@@ -87,6 +88,7 @@ struct Scale {
   }
 };
 
+/// From the softest press to the stiffest pull.
 Scale scale_of(const Give& give, double disc_m_per_N, std::size_t curves) {
   Scale scale{.disc_m_per_N = disc_m_per_N,
               .soft_N_per_m = 0.0,
