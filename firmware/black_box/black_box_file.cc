@@ -24,6 +24,7 @@ using model::Result;
 // Of the end, where pictures at the frame rate would be too coarse; chosen.
 constexpr std::int64_t kEveryTick_ns = 500'000'000;
 
+/// All of a memory file; shorter where it cannot be read.
 std::vector<std::byte> read_all(int fd) {
   const off_t size = lseek(fd, 0, SEEK_END);
   std::vector<std::byte> bytes(size > 0 ? static_cast<std::size_t>(size) : 0);
@@ -44,6 +45,7 @@ std::string plain(std::string text) {
   return text;
 }
 
+/// SCENE-DATE-NUMBER-FAULT.tactlog of now, with a number where that is taken.
 std::string free_path(const BlackBoxRun& run, model::Fault fault) {
   const std::time_t now = std::time(nullptr);
   const std::string stem =

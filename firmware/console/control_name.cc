@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::string_view kBegin = "control-", kEnd = ".sock";
 
+/// "-HASH.sock" of a scene.
 std::string end_of(const std::string& scene_path) {
   std::error_code failed;
   // The whole path, without links: tactd and tactctl may name one file differently.
@@ -40,6 +41,7 @@ std::vector<ControlName> controls_that_end_in(const std::string& folder, std::st
   return found;
 }
 
+/// A socket whose process was killed stays as a file: only a connection tells.
 bool nobody_listens(const std::string& path) {
   const auto address = model::io::socket_address(path);
   const int probe = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);

@@ -28,6 +28,8 @@ constexpr std::size_t kMaxSilent = 8;
 constexpr int kQueue = 8;
 constexpr unsigned kPause_us = 20'000;  // else it would ask again and again
 
+/// Listener and clients are watched as one descriptor,
+/// which the main thread waits for beside signals.
 bool watch_it(int watch, int fd) {
   epoll_event event{.events = EPOLLIN, .data = {.fd = fd}};
   return epoll_ctl(watch, EPOLL_CTL_ADD, fd, &event) == 0;

@@ -20,6 +20,7 @@ constexpr std::array kLeave{SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGABRT};
 /// What nobody can ignore, and what ends nothing by itself.
 constexpr std::array kLeftAlone{SIGKILL, SIGSTOP, SIGCHLD, SIGCONT, SIGURG, SIGWINCH};
 
+/// Blocked from the first moment: by default either would end the process.
 sigset_t requests_of_a_person() {
   sigset_t set{};
   sigemptyset(&set);

@@ -22,6 +22,7 @@ Wrench operator*(double share, const Wrench& w) RT_SAFE {
   return {share * w.force_N, share * w.torque_Nm};
 }
 
+/// What the device would give to the hand; below 0 the hand gives.
 double power_W(const Wrench& w, const model::Tool& tool) RT_SAFE {
   return dot(w.force_N, tool.velocity_mps) + dot(w.torque_Nm, tool.angular_velocity_radps);
 }

@@ -44,11 +44,14 @@ sigset_t all_signals() {
   return all;
 }
 
+/// 0: ordinary. Refused where the user may not: the guardian is
+/// then slower to hear, and that was told (pc/rt_setup.h).
 void become_fifo(int priority) {
   const sched_param wanted{.sched_priority = priority};
   pthread_setschedparam(pthread_self(), priority > 0 ? SCHED_FIFO : SCHED_OTHER, &wanted);
 }
 
+/// The other end has gone, or has something to say: here both mean the same.
 bool is_hung_up(const pollfd& file) { return (file.revents & (POLLHUP | POLLERR | POLLIN)) != 0; }
 
 }  // namespace

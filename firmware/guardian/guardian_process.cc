@@ -27,12 +27,14 @@ constexpr std::uint32_t kRefuse = SCMP_ACT_ERRNO(EPERM);
 // Chosen, deeper than what follows should go: a page that was touched and locked faults no more.
 constexpr std::size_t kTouchedStack_bytes = std::size_t{64} * 1024;
 
+/// As pc/rt_setup.cc does; this small program links nothing of it.
 __attribute__((noinline)) void touch_stack() {
   volatile char bytes[kTouchedStack_bytes];
   for (std::size_t i = 0; i < sizeof bytes; i += 1024) bytes[i] = 1;
   static_cast<void>(bytes[0]);
 }
 
+/// As far as it goes: nobody is there who could do anything about an error.
 void write_all(int fd, std::string_view text) {
   while (!text.empty()) {
     const ssize_t n = write(fd, text.data(), text.size());
@@ -72,6 +74,7 @@ scmp_arg_cmp is(unsigned argument, scmp_datum_t value) {
   return {.arg = argument, .op = SCMP_CMP_EQ, .datum_a = value, .datum_b = 0};
 }
 
+/// By its first argument: this call on this descriptor alone.
 bool allow_on(void* filter, int call, int fd) {
   const scmp_arg_cmp only = is(0, static_cast<scmp_datum_t>(fd));
   return seccomp_rule_add_array(filter, SCMP_ACT_ALLOW, call, 1, &only) == 0;

@@ -12,6 +12,7 @@
 namespace tact::firmware::guardian {
 namespace {
 
+/// The same page in both processes.
 pthread_mutex_t* map(int fd) {
   void* memory = mmap(nullptr, sizeof(pthread_mutex_t), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
   return memory == MAP_FAILED ? nullptr : static_cast<pthread_mutex_t*>(memory);

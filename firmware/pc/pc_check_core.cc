@@ -21,6 +21,7 @@ std::vector<int> cpu_list(const PcFiles& files, const std::string& name) {
   return parse_cpu_list(files.line(fmt::format("{}/{}", kCpus, name)).value_or(""));
 }
 
+/// The cure of whatever only a boot can change.
 std::string boot_parameters(const PcQuestion& q) {
   const std::string parameters = isolation_parameters(q);
   if (parameters.empty()) return "a PC with two cores or more: one for the loop, one for all else";

@@ -136,6 +136,7 @@ PcRow bus_row(const PcFiles& files, const std::vector<Thread>& threads) {
   return row;
 }
 
+/// A row for each part that is plugged in; the devices are not opened.
 void check_devices(const PcFiles& files, std::vector<PcRow>& rows) {
   hal::list::PartProbes probes = hal::list::system_probes();
   probes.roots = {.sys = files.root() + "/sys", .dev = files.root() + "/dev"};

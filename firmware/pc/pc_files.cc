@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr int kMaxCpus = 4096;  // the kernel's own limit is 8192; a torn list must end
 
+/// The number at `at`, which moves behind it. False: none, or no CPU's.
 bool parse_number(const char*& at, const char* end, int& number) {
   const auto [rest, error] = std::from_chars(at, end, number);
   at = rest;

@@ -28,6 +28,7 @@ namespace {
 constexpr std::size_t kStackBytes = std::size_t{256} * 1024;
 constexpr std::size_t kTouchedStackBytes = std::size_t{128} * 1024;
 
+/// RT-2. How glibc takes and keeps memory is settled before it is locked.
 void lock_memory(std::vector<Shortfall>& shortfalls) {
   mallopt(M_TRIM_THRESHOLD, -1);  // freed memory stays ours
   mallopt(M_MMAP_MAX, 0);         // no block of its own mapping that goes back on free
@@ -48,6 +49,7 @@ int hold_power_latency(std::vector<Shortfall>& shortfalls) {
   return -1;
 }
 
+/// A page of a stack comes at its first touch, by a page fault: here, not in a tick.
 __attribute__((noinline)) void touch_stack() {
   // Volatile, or the compiler would leave it out; noinline, so
   // that the frame lies where the loop's will.

@@ -72,6 +72,7 @@ int print_devices(const std::string& json_path) {
   return write_json(json_path, firmware::run::devices_as_json(parts));
 }
 
+/// Exit status 0 only where every force has the same bits and nothing is missing.
 int run_replay(const model::scene::Scene& scene, const std::string& path) {
   const auto tissue = model::scene::make_tissue(scene);
   if (!tissue) return complain(tissue.error().sentence, 2);

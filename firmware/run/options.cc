@@ -81,11 +81,14 @@ void add_answers(CLI::App& app, Options& o) {
   app.add_flag("--help-scene", o.help_scene, "print every scene key with its range, then leave");
 }
 
+/// What no single option can know.
 std::optional<model::Error> contradiction(const Options& o) {
   if (o.scene_path.empty() && !o.faults && !o.help_scene && !o.list_devices && o.csv_path.empty())
     return model::Error{"SCENE is required"};
+  // Nobody holds the tool when a machine boots, or after a crash.
   if (o.arm && console::is_service())
     return model::Error{"--arm: a service never arms; a person does, by tactctl"};
+  // Simulated time never waits: it would run until somebody kills it.
   if (o.free_run && o.duration_s == 0.0 && o.ticks == 0)
     return model::Error{"--free-run: needs --ticks or --seconds"};
   return std::nullopt;

@@ -20,6 +20,7 @@ json percentiles(const loop::LatencyHistogram& h) {
           {"max_tick", h.max_tick()}};
 }
 
+/// RT-17: each phase by itself, as a wake-up that is in time says nothing of the bus.
 json phases(const loop::LoopStatistics& loop) {
   json all;
   for (std::size_t i = 0; i < loop::kPhaseCount; ++i)

@@ -73,6 +73,7 @@ Error damps_too_much(const model::scene::Scene& scene, const Demand& demand, dou
                    demand.spheres))};
 }
 
+/// Names the spring that decides, the key that softens it and to what number.
 Error too_stiff(const model::scene::Scene& scene, const model::scene::TissueLaw& law,
                 const Demand& demand, const std::string& damping_key) {
   const bool is_law =

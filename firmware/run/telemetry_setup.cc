@@ -16,6 +16,7 @@ namespace {
 using model::Error;
 using model::Result;
 
+/// As asked, or in the folder that only this user can open.
 Result<std::string> socket_path(const RunSetup& run) {
   if (!run.options.socket_path.empty()) return run.options.socket_path;
   auto directory = model::io::runtime_directory();
@@ -23,6 +24,7 @@ Result<std::string> socket_path(const RunSetup& run) {
   return *directory + "/telemetry.sock";
 }
 
+/// What a viewer is told first; with limits as they act on this PC.
 telemetry::Hello hello_of(const RunSetup& run, const std::string& hand_path) {
   const gate::Gate& gate = run.parts.controller->gate();
   const telemetry::HelloFacts facts{.device = run.parts.device->info(),

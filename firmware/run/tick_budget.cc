@@ -50,6 +50,7 @@ model::contact::BladeSweep still(const model::contact::Blade& blade, const Vec3&
   return {.from_a_m = a_m, .from_b_m = b_m, .to_a_m = a_m, .to_b_m = b_m};
 }
 
+/// Rounded up to a sample: a p99.9 is never told too low.
 double at_share(const std::vector<double>& ascending, double share) {
   const auto last = static_cast<double>(ascending.size() - 1);
   return ascending[static_cast<std::size_t>(std::ceil(share * last))];

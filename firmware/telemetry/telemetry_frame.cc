@@ -14,6 +14,7 @@
 namespace tact::firmware::telemetry {
 namespace {
 
+/// A field of a message: cut to its size, and always ended.
 template <std::size_t kSize>
 void put(char (&field)[kSize], const std::string& text) {
   const std::size_t length = std::min(text.size(), kSize - 1);
@@ -46,6 +47,7 @@ void put(Frame& frame, const loop::TickInput& input, const loop::TickOutput& out
 
 float to_us(std::int64_t ns) { return static_cast<float>(static_cast<double>(ns) * 1e-3); }
 
+/// In the order of telemetry_record.h; floats, as a picture needs no more.
 void append(std::vector<char>& bytes, const model::mesh::SurfaceMesh& mesh) {
   const auto add = [&bytes](const void* data, std::size_t size) {
     const char* from = static_cast<const char*>(data);
