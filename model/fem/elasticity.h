@@ -22,7 +22,7 @@ namespace tact::model::fem {
 
 struct Elasticity {
   double youngs_modulus_Pa = 0.0;  // E, > 0
-  double poisson_ratio = 0.0;      // nu, 0 .. 0.4999: quadratic tetrahedra lock beyond
+  double poisson_ratio = 0.0;      // nu, from 0 to below 0.5; close to it quadratic tetrahedra lock
 
   double shear_modulus_Pa() const { return youngs_modulus_Pa / (2.0 * (1.0 + poisson_ratio)); }
   /// E* = E / (1 - nu^2), of a half-space under a frictionless tool.

@@ -60,7 +60,7 @@ class Law {
     return 0.0;
   }
   virtual LawRange range() const RT_SAFE = 0;
-  /// Fills u_0 .. u_N and returns N + 1; entries beyond the span are dropped.
+  /// Fills u_0 .. u_N and returns how many: N + 1, or as many as the span takes.
   virtual std::size_t profile(double depth_m, std::span<double> ring_m) const RT_SAFE = 0;
   virtual double ring_pitch_m() const RT_SAFE = 0;
 };

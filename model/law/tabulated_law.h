@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // tabulated_law.h - any closed-form law as the loop sees it: two Hermite tables, press and pull.
 //
-// 65 knots a side over [pull limit, 0] and [0, 0.95 press limit]. Under press they reproduce the
-// rhombus chain RC-13 within 1e-8 of its force limit (LW-1). Beyond the tables the force stays at
-// the last knot's value, the energy goes on with it, and the status is kSaturated. Damping is
-// linear between the knots of press.
+// As many knots a side as asked, over [pull limit, 0] and [0, 0.95 press limit]. 65 under press
+// reproduce the rhombus chain RC-13 within 1e-8 of its force limit (LW-1). Beyond the tables the
+// force stays at the last knot's value, the energy goes on with it, and the status is kSaturated.
+// Damping is linear between the knots of press.
 #pragma once
 
 #include <vector>
