@@ -39,6 +39,7 @@ void BlackBox::stands(model::Fault fault) {
 void BlackBox::work() {
   // While a file is being written the next one waits, not the telemetry thread.
   if (waiting_ == model::Fault::kNone || to_wait_ > 0 || writing_.load()) return;
+  // It is at its end (writing_), so joining hardly waits.
   if (writer_.joinable()) writer_.join();
   writing_.store(true);
   // Copied here, as the rings go on; formatted and written there.

@@ -63,6 +63,7 @@ Result<Answer> ask_tactd(const ControlQuestion& question) {
     if (found < 0) continue;
     alive += fmt::format("{}{}", alive.empty() ? "" : " and ", control.process);
     if (fd >= 0) close(found);
+    // The first is kept; whether there is another one must be known before it is asked.
     if (fd < 0) fd = found, chosen = control;
   }
   if (fd < 0)

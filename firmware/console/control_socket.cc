@@ -75,6 +75,7 @@ Result<std::unique_ptr<ControlSocket>> ControlSocket::open(const std::string& pa
   const auto listener = listen_at(path);
   if (!listener) return listener.error();
   const int watch = epoll_create1(EPOLL_CLOEXEC);
+  // Owner of both descriptors and of the file from here on, also where one of them failed.
   std::unique_ptr<ControlSocket> control(
       new ControlSocket(model::io::SocketFile(path), *listener, watch));
   if (watch < 0 || !watch_it(watch, *listener))
@@ -83,6 +84,7 @@ Result<std::unique_ptr<ControlSocket>> ControlSocket::open(const std::string& pa
 }
 
 ControlSocket::~ControlSocket() {
+  // The name first: who comes now finds nobody, instead of a socket that will not answer.
   file_.remove();
   for (const int client : silent_) close(client);
   for (const int fd : {listener_, watch_, spare_})

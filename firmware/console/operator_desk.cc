@@ -70,11 +70,13 @@ Answer OperatorDesk::reset(bool too_early) {
 }
 
 Answer OperatorDesk::stop() {
+  // The one request that is never refused.
   requests_.stop.store(true);
   return {.done = true, .sentence = view_.device() + ": force to zero, then tactd ends"};
 }
 
 Answer OperatorDesk::refuse(const char* what, const std::string& why) const {
+  // Counted with those that the loop refuses: the report has one number.
   requests_.refused.fetch_add(1);
   view_.tell(fmt::format("not {}: {}", what, why));
   return {.done = false, .sentence = fmt::format("{}: not {}: {}", view_.device(), what, why)};

@@ -67,6 +67,7 @@ void outlive_stray_signals() {
 OperatorSignals::OperatorSignals(std::function<void()> let_loop_read)
     : signals_(requests_of_a_person()), let_loop_read_(std::move(let_loop_read)) {
   std::signal(SIGINT, SIG_DFL);  // a shell starts background programs with SIGINT ignored
+  // Blocked in this thread and all that it starts: a thread that is not would end the process.
   for (const int signal : kLeave) sigaddset(&signals_, signal);
   pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
   signal_fd_ = signalfd(-1, &signals_, SFD_NONBLOCK | SFD_CLOEXEC);

@@ -40,6 +40,7 @@ bool OperatorView::show(const telemetry::Frame& newest) {
     arms_itself_ = false;  // at the start alone
   // Each time it becomes ready it is told anew: the words before are no leave to arm.
   if (newest.state != loop::State::kReady) told_ready_ = false;
+  // Each fault once, when it latches.
   if (newest.fault != before_.fault && newest.fault != 0) {
     const auto number = static_cast<Fault>(newest.fault);
     const model::FaultEntry& fault = model::describe(number);

@@ -27,9 +27,8 @@ double power_W(const Wrench& w, const model::Tool& tool) RT_SAFE {
   return dot(w.force_N, tool.velocity_mps) + dot(w.torque_Nm, tool.angular_velocity_radps);
 }
 
-/// All fades after the slew stage together change the force by less than the room between the slew
-/// and this, so that the written force keeps |dF| <= slew dt. A slew too slow for its ramp keeps at
-/// least a tenth.
+/// The slew stage gets what the ramp behind it leaves, so that the written force keeps |dF| <= slew
+/// dt. A slew that is too slow for its ramp keeps a tenth.
 double slew_step_N(const model::Limits& limits, double force_limit_N, double period_s) {
   const double step_N = limits.slew_N_per_s * period_s;
   const double ramp_step_N = force_limit_N * period_s / limits.ramp_s;

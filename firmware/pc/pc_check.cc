@@ -33,6 +33,7 @@ int core_in_question(const PcQuestion& question) {
 std::vector<PcRow> check_pc(const PcQuestion& question) {
   const PcQuestion settled{.files = question.files, .core = core_in_question(question)};
   std::vector<PcRow> rows;
+  // Most important first: what the kernel is, what the process may, then the core, then the rest.
   check_kernel(settled, rows);
   check_permissions(settled, rows);
   check_core(settled, rows);

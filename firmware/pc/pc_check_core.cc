@@ -132,6 +132,7 @@ PcRow sleep_row(const PcQuestion& q) {
   const std::string folder = fmt::format("{}/cpu{}/cpuidle", kCpus, q.core);
   long slowest_us = 0;
   for (const std::string& state : q.files.names(folder)) {
+    // A state that is switched off does not count.
     if (q.files.line(fmt::format("{}/{}/disable", folder, state)) == "1") continue;
     const auto exit_us = q.files.line(fmt::format("{}/{}/latency", folder, state));
     slowest_us = std::max(slowest_us, std::strtol(exit_us.value_or("0").c_str(), nullptr, 10));
@@ -165,6 +166,7 @@ PcRow sibling_row(const PcQuestion& q) {
       .cure = "switch SMT off in the firmware (BIOS)"};
   if (siblings.empty()) return row;
   row.found = fmt::format("CPU {} shares the core of CPU {}", make_cpu_list(siblings), q.core);
+  // Until the next boot: a switch that can be taken back.
   row.cure = fmt::format("echo 0 | sudo tee {}/cpu{}/online", kCpus, siblings.front());
   return row;
 }

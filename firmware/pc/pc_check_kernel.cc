@@ -58,6 +58,7 @@ PcRow kernel_row(const PcFiles& files) {
 /// RT-9. The flag "hypervisor" is set by the machine that the kernel runs in.
 PcRow machine_row(const PcFiles& files) {
   const auto cpu = files.text("/proc/cpuinfo");
+  // With the blank: the word stands among the flags of a processor.
   const bool guest = cpu && cpu->find(" hypervisor") != std::string::npos;
   return {.name = "machine",
           .verdict = !cpu    ? Verdict::kUnknown

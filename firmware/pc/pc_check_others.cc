@@ -106,6 +106,7 @@ PcRow slack_row(const PcFiles& files, const std::vector<Thread>& threads) {
 bool carries_a_bus(const std::string& name) {
   if (!name.starts_with("irq/")) return false;
   const std::string device = name.substr(std::min(name.find('-'), name.size() - 1) + 1);
+  // Drivers of USB hosts and CAN controllers by the beginning of their thread's name.
   for (const char* bus : {"xhci", "ehci", "ohci", "uhci", "dwc2", "dwc3", "can", "peak", "kvaser",
                           "mcan", "c_can", "m_can", "sja1000"})
     if (device.starts_with(bus)) return true;
@@ -139,6 +140,7 @@ PcRow bus_row(const PcFiles& files, const std::vector<Thread>& threads) {
 /// A row for each part that is plugged in; the devices are not opened.
 void check_devices(const PcFiles& files, std::vector<PcRow>& rows) {
   hal::list::PartProbes probes = hal::list::system_probes();
+  // Below the same root as all other files, so that a copy of another PC can be judged.
   probes.roots = {.sys = files.root() + "/sys", .dev = files.root() + "/dev"};
   if (!files.root().empty()) probes.can_link = nullptr;  // another PC's bus is not ours to ask
   const auto parts = hal::list::list_devices(probes);

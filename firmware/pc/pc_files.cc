@@ -43,6 +43,7 @@ std::vector<std::string> PcFiles::names(const std::string& folder) const {
   std::error_code error;  // a process may end while its folder is read
   for (fs::directory_iterator i(root_ + folder, error), end; !error && i != end; i.increment(error))
     found.push_back(i->path().filename().string());
+  // A folder lists in any order; rows and their numbers should not change with it.
   std::sort(found.begin(), found.end());
   return found;
 }

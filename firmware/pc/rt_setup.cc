@@ -67,6 +67,7 @@ int choose_core(const RtSettings& settings) {
   sched_getaffinity(0, sizeof allowed, &allowed);
   const auto isolated =
       parse_cpu_list(PcFiles{}.line("/sys/devices/system/cpu/isolated").value_or(""));
+  // An isolated core, whatever affinity was inherited: that is what it was isolated for.
   if (!isolated.empty()) return isolated.back();
   int core = 0;
   for (int i = 0; i < CPU_SETSIZE; ++i)

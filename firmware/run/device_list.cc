@@ -17,6 +17,8 @@ std::string devices_as_text(const std::vector<FoundPart>& parts) {
   auto out = std::back_inserter(text);
   for (const FoundPart& part : parts) {
     fmt::format_to(out, "{}: {}\n", part.name, part.what);
+    // A part that is ready is told as the lines that a
+    // scene needs; else what it lacks, and the cure.
     if (part.lacking.empty())
       fmt::format_to(out, "  ready: {}\n", part.scene);
     else

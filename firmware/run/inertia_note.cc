@@ -51,6 +51,7 @@ Press fastest_press(const model::scene::Scene& scene, const model::indent::Elast
   Press worst{.limit_mps = std::numeric_limits<double>::infinity()};
   for (std::size_t i = 1; i < scene.hand.path.size(); ++i) {
     const auto &from = scene.hand.path[i - 1], &to = scene.hand.path[i];
+    // The depth of scene_strokes.h, read back from the way points.
     const double start_m = dot(from.position_m - scene.hand_site_m, scene.hand_inward) + reach_m;
     const double way_m = dot(to.position_m - from.position_m, scene.hand_inward);
     for (int k = 1; k < kSamples && way_m > 0.0; ++k) {
@@ -60,6 +61,7 @@ Press fastest_press(const model::scene::Scene& scene, const model::indent::Elast
       // A limit of IN-2 falls to 0 with the depth.
       if (at.depth_m < least_m) continue;
       at.limit_mps = model::indent::inertia_speed_mps(tip, at.depth_m, share);
+      // Speed over limit, compared without a division: the first limit is infinite.
       if (at.speed_mps * worst.limit_mps > worst.speed_mps * at.limit_mps) worst = at;
     }
   }

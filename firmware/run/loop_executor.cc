@@ -59,9 +59,8 @@ void LoopExecutor::join() {
   if (keeper_.joinable()) keeper_.join();
 }
 
-// The device may be in the middle of a call that hangs, so its stop may hang, too, and so may the
-// disk: SIGALRM ends both. The guardian takes this end for a death, and zeroes the
-// device once more.
+// The device may hang in a call, so its stop may hang, too, and so may the disk: SIGALRM ends both.
+// To the guardian this end is a death: it zeroes the device once more.
 void LoopExecutor::leave_behind(int status, const std::function<void()>& last_words) {
   // The lines first: whatever hangs below, the power is on its way off.
   guarded_.lines.drop();

@@ -33,6 +33,7 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
   auto guardian = start_guardian(*parts.device, setup.rt);
   if (!guardian) return guardian.error();
   parts.guardian = std::move(*guardian);
+  // After the device is open: its damping decides, and it may tell it only then.
   const auto stiffness = check_renderable(scene, *parts.tissue, parts.device->info());
   if (!stiffness) return stiffness.error();
   parts.stiffness = *stiffness;
@@ -43,6 +44,7 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
     parts.time = *time;
   }
   parts.limits = gate::limits_for(scene.limits, parts.device->info());
+  // Of the limits as they act: a quarter of the force on this PC is another checksum.
   parts.limits_checksum =
       model::io::limits_checksum(model::limits_in_use(parts.limits, setup.force_share()));
   parts.controller = std::make_unique<loop::Controller>(
@@ -57,6 +59,7 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
 Result<std::unique_ptr<guardian::Guardian>> start_guardian(hal::Device& device,
                                                            const pc::RtSettings& rt) {
   const auto words = device.last_words();
+  // Simulated, or its maker's handle cannot be shared (hal/last_words.h).
   if (!words) return std::unique_ptr<guardian::Guardian>();
   return guardian::Guardian::start(*words, {.priority = rt.priority + 1, .program = {}});
 }

@@ -82,6 +82,7 @@ int run_replay(const model::scene::Scene& scene, const std::string& path) {
       outcome->different, outcome->force_hash);
   if (!outcome->damage.empty())
     return complain(fmt::format("{}: {}; what came before was compared", path, outcome->damage), 1);
+  // Damage goes before a gap, a gap before a difference: what comes first explains what follows.
   if (outcome->gap_before != 0)
     return complain(fmt::format("{}: ticks {} to {} are missing, so the replay ends there; record "
                                 "to a faster disk",
@@ -116,6 +117,7 @@ model::Result<model::scene::Scene> load(firmware::run::Options& options) {
   const auto choice = model::scene::overrides_of(plan->sizes);
   say(stderr, "tactd: law \"auto\" is{}: p99.9 {:.3g} us, force error {:.1f} %\n",
       model::scene::command_text(choice), plan->tick_p999_us, 100.0 * plan->force_error_ratio);
+  // At the end, so that the plan's law wins over law=auto.
   options.overrides.insert(options.overrides.end(), choice.begin(), choice.end());
   return model::scene::load_scene(options.scene_path, options.overrides);
 }
@@ -144,6 +146,7 @@ int main(int argc, char** argv) {
   }
   auto scene = load(options);
   if (!scene) return complain(scene.error().sentence, 2);
+  // Of the command line alone: no scene may name a library and call it trusted.
   scene->device.force_dimension.trust_library = options.trust_library;
   if (!scene->note.empty()) say(stderr, "tactd: {}\n", scene->note);
   if (!options.replay_path.empty()) return run_replay(*scene, options.replay_path);

@@ -16,6 +16,7 @@ void add_run(CLI::App& app, Options& o) {
   app.add_option("SCENE", o.scene_path, "scene file (TOML), e.g. model/scenes/liver.toml");
   app.add_option("--set", o.overrides, "KEY=VALUE override of a scene key, may be repeated")
       ->take_all()
+      // CLI11 would take further words for values of the same --set.
       ->allow_extra_args(false);
   auto* seconds = app.add_option("--seconds", o.duration_s, "stop after this time, s");
   seconds->check(model::io::within(1e-3, 1e7));

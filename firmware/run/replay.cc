@@ -16,6 +16,7 @@ namespace {
 std::optional<model::Error> check_header(const telemetry::LogHeader& header,
                                          const std::string& path,
                                          const model::scene::Scene& scene) {
+  // Same hash, same forces: anything else would find differences that nobody made.
   if (scene.hash != header.scene_hash)
     return model::Error{fmt::format(
         "{}: was recorded with another scene (hash {}, this one has {}); replay it with the scene "

@@ -10,6 +10,7 @@ namespace {
 
 using nlohmann::json;
 
+/// The worst with its tick, which a tick log can be asked for.
 json percentiles(const loop::LatencyHistogram& h) {
   return {{"count", h.count()},
           {"p50_ns", h.percentile_ns(0.50)},
@@ -126,6 +127,7 @@ std::string make_summary(const RunFacts& facts, const loop::LoopStatistics& loop
       fmt::format("{}, law {}, on {}: {} ticks at {:g} Hz, {} late, {} skipped{}\n",
                   facts.scene_name, facts.law_title, facts.device_name, loop.ticks, facts.rate_Hz,
                   loop.late_ticks, loop.skipped_ticks, facts.non_rt ? ", non-rt" : "");
+  // Time stands still within a simulated tick.
   if (facts.simulated_time) {
     out += "  simulated time: durations are not measured\n";
   } else {

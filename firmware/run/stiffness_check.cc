@@ -34,6 +34,7 @@ std::string spheres_in_words(std::size_t n) {
 // Of a held sphere at the stiffest place; 0: the law does not tell.
 double stiffest_sideways_N_per_m(const model::scene::Scene& scene,
                                  const model::contact::SiteLaw& law) {
+  // Set by hand: the tissue's own does not count (contact/contact.h).
   if (scene.contact.sliding_stiffness_N_per_m > 0.0) return scene.contact.sliding_stiffness_N_per_m;
   double most_N_per_m = 0.0;
   // At the first corner of every triangle: more than 90 % of the vertices of each shipped organ.
@@ -101,6 +102,7 @@ Error too_stiff(const model::scene::Scene& scene, const model::scene::TissueLaw&
 model::Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene,
                                                 const model::scene::Tissue& tissue,
                                                 const hal::DeviceInfo& device) {
+  // A device that does not say what it can bear is never felt.
   if (!device.at_tool)
     return Error{fmt::format(
         "device {} does not tell its damping at the tool: fill DeviceInfo::at_tool", device.name)};

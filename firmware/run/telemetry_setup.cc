@@ -48,6 +48,7 @@ std::optional<Error> open_sockets(const RunSetup& run, int meshes, Outlets& out)
     if (!group) return Error{"--viewers " + group.error().sentence};
     viewers = *group;
   }
+  // Of a simulated device alone: on hardware no program may move the hand.
   const std::string hand_path =
       hal::registry::is_simulated(*run.parts.device) ? *path + ".hand" : "";
   auto opened = telemetry::TelemetrySocket::open(*path, hello_of(run, hand_path), meshes, viewers);
@@ -121,6 +122,8 @@ Result<Outlets> open_outlets(const RunSetup& run) {
   }
   if (run.options.no_black_box) return out;
   const auto folder = black_box::black_box_folder(run.options.black_box_folder);
+  // What was asked for and cannot be is an error; the
+  // usual folder is done without, and that is told.
   if (!folder && !run.options.black_box_folder.empty()) return folder.error();
   if (!folder) {
     out.no_black_box = folder.error().sentence;

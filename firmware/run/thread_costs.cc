@@ -12,6 +12,7 @@ namespace tact::firmware::run {
 
 void add_to(ThreadCosts& sum, const ThreadCosts& more) {
   sum.heap_calls += more.heap_calls;
+  // A matter of the build: alike in all turns.
   sum.heap_calls_known = more.heap_calls_known;
   sum.call_filter = more.call_filter;
   sum.minor_faults += more.minor_faults;

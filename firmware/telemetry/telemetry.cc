@@ -39,6 +39,7 @@ std::optional<model::Error> Telemetry::stop() {
 void Telemetry::run() {
   loop::MonotonicClock clock;
   const std::int64_t frame_ns = std::llround(1e9 / pace_.frame_rate_Hz);
+  // Absolute, as in the loop: a slow disk delays one frame and shifts none.
   std::int64_t due_ns = clock.now_ns();
   while (!ending_.load(std::memory_order_relaxed)) {
     drain();
@@ -52,6 +53,7 @@ void Telemetry::run() {
 
 void Telemetry::drain() {
   while (ring_.pop(record_)) {
+    // Every record goes to every sink; which ticks become a frame is decided in publish().
     builder_.add(record_);
     force_hash_ = hash_wrench(force_hash_, record_.output.written);
     if (sinks_.log) sinks_.log->add(record_);
@@ -81,6 +83,7 @@ std::optional<Frame> Telemetry::next_frame() {
     // newest_ is written by this thread alone, so reading it takes no lock.
     if (found != model::Fault::kNone && newest_.fault == 0) frame = newest_;
   }
+  // The loop's own word goes first; the watch's counts where the loop has not told any.
   if (frame && frame->fault == 0 && found != model::Fault::kNone) {
     frame->fault = static_cast<std::uint16_t>(found);
     frame->state = loop::State::kStopped;
@@ -92,6 +95,7 @@ void Telemetry::publish() {
   if (const std::optional<Frame> frame = next_frame()) {
     if (sinks_.recorder) sinks_.recorder->add(*frame);
     if (sinks_.socket) {
+      // Never waits: a viewer that does not read loses it.
       sinks_.socket->send(*frame);
       dropped_frames_.store(sinks_.socket->dropped_frames(), std::memory_order_relaxed);
     }

@@ -124,6 +124,7 @@ void FrameBuilder::add(const loop::TickRecord& record) {
   // The total of the tick before: a tick's own is known after its record has left.
   tick_us_.push_back(to_us(record.phase_ns[static_cast<std::size_t>(loop::Phase::kTotal)]));
   peak_force_N_ = std::max(peak_force_N_, static_cast<float>(norm(record.output.written.force_N)));
+  // A limit that acted for one tick is seen in the frame, though the newest tick has none.
   if (record.output.limit != model::Fault::kNone) limit_ = record.output.limit;
   newest_ = record;
 }
@@ -133,6 +134,7 @@ Frame frame_of_tick(const Frame& picture, const LoggedTick& tick, std::int64_t t
   frame.tick = tick.tick;
   frame.time_ns = time_ns;
   put(frame, tick.input, tick.output);
+  // Of this tick alone: frame and tick are one here.
   frame.peak_force_N = static_cast<float>(norm(tick.output.written.force_N));
   frame.rms_force_N = static_cast<float>(tick.output.rms_force_N);
   frame.given_energy_J = static_cast<float>(tick.output.given_energy_J);

@@ -23,6 +23,7 @@ constexpr std::size_t kMaxClients = 16;
 
 Result<TelemetrySocket> TelemetrySocket::open(const std::string& path, const Hello& hello,
                                               int mesh_fd, std::optional<gid_t> viewers) {
+  // Nobody but this user can connect from the first moment; the group is let in last.
   const auto bound = model::io::bind_socket(path, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC);
   if (!bound) return bound.error();
   const int fd = *bound;
@@ -81,6 +82,7 @@ bool TelemetrySocket::greet(int client_fd) const {
   message.msg_controllen = sizeof control;
   cmsghdr* rights = CMSG_FIRSTHDR(&message);
   rights->cmsg_level = SOL_SOCKET;
+  // The meshes go as a descriptor: megabytes that no message has to carry.
   rights->cmsg_type = SCM_RIGHTS;
   rights->cmsg_len = CMSG_LEN(sizeof(int));
   std::memcpy(CMSG_DATA(rights), &mesh_fd_, sizeof mesh_fd_);

@@ -42,6 +42,7 @@ std::string tick_csv_head(const LogHeader& header) {
       "force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,"
       "wanted_x_N,wanted_y_N,wanted_z_N,wanted_x_Nm,wanted_y_Nm,wanted_z_Nm,"
       "rms_force_N,given_energy_J,margin_us";
+  // From the one table of names, so that columns and record cannot differ.
   for (const char* phase : loop::kPhaseName)
     fmt::format_to(std::back_inserter(out), ",{}_us", phase);
   return out + '\n';

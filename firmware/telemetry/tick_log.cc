@@ -19,6 +19,7 @@ constexpr std::size_t kSummedBytes = sizeof(LogHeader) - 2 * sizeof(std::uint32_
 bool LogHeader::keep_overrides(const std::vector<std::string>& of_run) {
   std::string text;
   for (const std::string& one : of_run) text += one + '\n';
+  // One byte is kept for the end of the text.
   if (text.size() >= sizeof overrides) return false;
   text.copy(overrides, text.size());
   return true;
@@ -73,6 +74,7 @@ void TickLogWriter::put(const void* bytes, std::size_t size, const std::string& 
 }
 
 std::optional<Error> TickLogWriter::close() {
+  // After a loss there is nothing to seal: the file stays unfinished, and readers say so.
   if (file_ && !trouble_) trouble_ = file_->finish();
   file_.reset();
   return trouble_;
