@@ -229,9 +229,9 @@ double Contact::press() RT_SAFE {
 }
 
 // MC-6   C <- q C,   slack_i <- slack_i + (1 - q) sum over j of C_ij F_j
-// Where sites are so stiff that their coupling could leave the forces undecided at some depth: less
-// of it, and less depth for those that have pressed, so that their forces stay and no energy comes
-// from it. A pull beside a press is left as it is.
+// Sites that are too stiff for their coupling could have two solutions at some depth. Then C
+// becomes smaller, and what presses gets slack for it: its force stays, and the change gives no
+// energy.
 void Contact::keep_definite() RT_SAFE {
   if (std::count(in_contact_.begin(), in_contact_.end(), true) < 2) return;
   std::array<double, kMaxSpheres> stiffest_N_per_m{};

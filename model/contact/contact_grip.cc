@@ -52,10 +52,10 @@ bool Contact::release_first() RT_SAFE {
 }
 
 // MC-8   d' = max d in 0 .. min(d_now, d_held) with W(d) <= W_held
-// Back to the surface with no stored shift, and no deeper than it was held. The tool may have been
-// dragged to where tissue is stiffer: the largest depth that leaves the whole tool no more energy.
-// kHalvings bound the work. Pressed tissue remembers on: forgotten relaxation would come back as a
-// stiffer push.
+// Back to the surface, with no stored shift and no deeper than it was held. Tissue may be stiffer
+// where the tool has been dragged to. So the depth is the largest at which the whole tool stores no
+// more than before. Pressed tissue keeps its memory: relaxation that was forgotten would come back
+// as a stiffer push.
 void Contact::release_sphere(std::size_t i) RT_SAFE {
   // MC-8: 1/4096 of the depth. Each one solves the whole tool, so they are few.
   constexpr int kHalvings = 12;
