@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Every equation and fact that a text names by an id, as RC-3, stands once in a SOURCES.md. Where a
-comment writes the equation out, it is the one that stands there.
+comment writes the equation out, it is the one that stands there. model/CLAIMS.md has a row for every
+error X1, X2, .., and a test that a document names, as `Suite.Name`, is there.
 
 Reads the tree as text and prints every breach as file:line: sentence. Exit status 0 or 1.
 """
+import fnmatch
 import os
 import pathlib
 import re
@@ -25,6 +27,10 @@ FORMULA = re.compile(rf"({ID})\s\s")
 WRITTEN_OUT = re.compile(rf"\s*///?\s{{2,}}({ID})\s{{2,}}.*?=\s*(.*?)(?:,|\s{{2,}}|$)")
 # Documents that a reader of the tree does not have.
 FOREIGN = re.compile(r"\b(PHYSICS|REALTIME|REFERENCE|ERRATA)\b|\bDEVICES\s+\d|\.\./shared\b")
+CLAIMS = "model/CLAIMS.md"
+TEST = re.compile(r"^TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", re.M)
+# `Suite.Name`, with * for any; `...Name`: of the suite named before
+TEST_NAME = re.compile(r"`((?:[A-Z]\w*|\.\.)\.[A-Z*][\w*]*)`")
 MAX_LINES, MAX_COLUMNS = 300, 160
 
 
@@ -113,6 +119,25 @@ def shape_breaches(path, text):
             yield f"{path}:{number}: longer than {MAX_COLUMNS} columns outside a table"
 
 
+def claim_breaches(texts):
+    """Tests that a document names and that are not there; errors of the sources without a row among the claims."""
+    tests = [f"{suite}.{name}" for path, text in texts.items() if path.endswith("_test.cc")
+             for suite, name in TEST.findall(text)]
+    for path, text in texts.items():
+        if not path.endswith(".md"):
+            continue
+        for number, line in enumerate(text.splitlines(), 1):
+            for name in TEST_NAME.findall(line):
+                if not fnmatch.filter(tests, name.replace("...", "*.", 1)):
+                    yield f"{path}:{number}: {name}: no such test"
+    rows = {name for name, _ in defined_in(texts.get(CLAIMS, ""))}
+    for path, text in texts.items():
+        if is_source(path):
+            for name, number in defined_in(text):
+                if name[0] == "X" and name not in rows:
+                    yield f"{path}:{number}: {name} has no row in {CLAIMS}: how far off is it, which test shows it?"
+
+
 def is_source(path):
     return path.endswith("SOURCES.md")
 
@@ -144,6 +169,7 @@ def text_of(path):
 def breaches(texts):
     yield from id_breaches(texts)
     yield from formula_breaches(texts)
+    yield from claim_breaches(texts)
     for path, text in texts.items():
         yield from foreign_breaches(path, text)
         if is_source(path):
@@ -174,13 +200,23 @@ def blind_rules():
         **{word: (good, f"{names} ({word})") for word in
            ("PHYSICS 4.2", "REALTIME 4", "DEVICES 3.4", "REFERENCE", "ERRATA", "../shared/seeds")},
     }
+    claims = {CLAIMS: "| X1 | fails | `Suite.Name` |\n", "c_test.cc": "TEST_F(Suite,\n       Name) {}\n"}
     blind = [name for name, (text, comment) in cases.items()
-             if not list(breaches({source: text, "b.h": comment}))]
+             if not list(breaches({source: text, "b.h": comment, **claims}))]
     formula = "| RC-4 | F = k d / (1 + r k) | N |\n"
-    if list(breaches({source: good + formula, "b.h": names + "\n//   RC-4   F = k d/(1 + r k),   k > 0"})):
+    if list(breaches({source: good + formula, "b.h": names + "\n//   RC-4   F = k d/(1 + r k),   k > 0", **claims})):
         blind.append("takes for a breach: the same formula with other blanks")
+    bad_claims = {"error without a row": "see X1 and `Suite.Name`\n",
+                  "test that is none": "| X1 | `Suite.Nam` |\n", "suite that is none": "| X1 | `Suit.Name` |\n",
+                  "test behind another that is none": "| X1 | `Suite.Name`, `...Other` |\n",
+                  "tests that are none": "| X1 | `Suite.Other*` |\n"}
+    blind += [name for name, text in bad_claims.items()
+              if len(list(breaches({source: good, "b.h": names, **claims, CLAIMS: text}))) != 1]
+    for text in ("`Suite.*`", "`Suite.Name`, `...Name`", "`Suite.N*`, `file.h`, `CLAIMS.md`, Any.Thing"):
+        if list(breaches({source: good, "b.h": names, **claims, "d.md": text})):
+            blind.append(f"takes for a breach: {text}")
     for comment in (names, "// RC-1 to RC-3, X1", "// RC-1..3, X1; DEVICES = []", "// X1, RC-3, RC-2, RC-1"):
-        if list(breaches({source: good, "b.h": comment})):
+        if list(breaches({source: good, "b.h": comment, **claims})):
             blind.append(f"takes for a breach: {comment}")
     return blind
 

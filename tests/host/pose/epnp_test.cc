@@ -54,7 +54,7 @@ double distance(const Pose& a, const Pose& b) {
   return a.rotation.angularDistance(b.rotation) + (a.position_m - b.position_m).norm();
 }
 
-/// EPnP as the source has it, then the same polish.
+/// EPnP as the source has it.
 Pose epnp_alone(const View& view) {
   std::vector<cv::Point3d> points;
   std::vector<cv::Point2d> pixels;
@@ -64,9 +64,8 @@ Pose epnp_alone(const View& view) {
   cv::Vec3d turn, t;
   cv::solvePnP(points, pixels, lens, cv::noArray(), turn, t, false, cv::SOLVEPNP_EPNP);
   const Vector3d w(turn[0], turn[1], turn[2]);
-  const Pose start{.rotation = Quaterniond(Eigen::AngleAxisd(w.norm(), w.normalized())),
-                   .position_m = {t[0], t[1], t[2]}};
-  return polish_pose(view.camera, view.points_m, view.pixels_px, start);
+  return {.rotation = Quaterniond(Eigen::AngleAxisd(w.norm(), w.normalized())),
+          .position_m = {t[0], t[1], t[2]}};
 }
 
 TEST(Epnp, FindsThePoseExactlyWithoutNoise) {
@@ -91,7 +90,9 @@ TEST(Epnp, AloneItMissesFlatObjectsAndSomeOfFourPoints) {
     int out = 0;
     for (int i = 0; i < 300; ++i) {
       const View view = views.next(count, flat, 0.0);
-      if (!(distance(epnp_alone(view), view.truth) < 1e-6)) ++out;
+      const Pose polished =
+          polish_pose(view.camera, view.points_m, view.pixels_px, epnp_alone(view));
+      if (!(distance(polished, view.truth) < 1e-6)) ++out;
     }
     return out;
   };
@@ -99,6 +100,26 @@ TEST(Epnp, AloneItMissesFlatObjectsAndSomeOfFourPoints) {
   EXPECT_GT(missed(9, true), 10);
   EXPECT_GT(missed(4, false), 0);
   EXPECT_EQ(missed(8, false), 0);
+}
+
+TEST(Epnp, MarkersThatSlideOnTheirBodyBendItsPoseToo) {
+  // The source takes EPnP since PnP is unsteady where markers move on their body. Both solve for a
+  // rigid one: where each of eight slides by 5 mm, EPnP is off no less than the best rigid pose.
+  Views views;
+  std::mt19937 random(5);
+  std::normal_distribution<double> slide_m(0.0, 0.005 / std::sqrt(3.0));
+  std::vector<double> epnp_m, best_m;
+  for (int i = 0; i < 201; ++i) {
+    View view = views.next(8, false, 0.0);
+    for (Vector3d& p : view.points_m)
+      p += Vector3d(slide_m(random), slide_m(random), slide_m(random));
+    epnp_m.push_back((epnp_alone(view).position_m - view.truth.position_m).norm());
+    best_m.push_back((view.estimate().pose.position_m - view.truth.position_m).norm());
+  }
+  std::ranges::sort(epnp_m);
+  std::ranges::sort(best_m);
+  EXPECT_NEAR(epnp_m[100], 9.5e-3, 1e-3);
+  EXPECT_NEAR(best_m[100], 7.7e-3, 1e-3);
 }
 
 TEST(Epnp, NoPoseNearTheTruthExplainsThePixelsBetter) {

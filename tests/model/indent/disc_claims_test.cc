@@ -161,4 +161,20 @@ TEST(DiscClaims, ALargerDiameterRatioDoesNotAlwaysSoften) {
               1e-9);
 }
 
+TEST(DiscClaims, OtherDimensionsMakeAnotherTissue) {
+  // DS-13: the printed disc a hundred times as large, of the modulus for 500 N/m.
+  DiscDimensions soft = kPrinted;
+  for (double* length_m :
+       {&soft.outer_diameter_m, &soft.inner_diameter_m, &soft.thickness_m, &soft.free_height_m})
+    *length_m *= 100.0;
+  EXPECT_NEAR(make_disc(soft)->stiffness_N_per_m / make_disc(kPrinted)->stiffness_N_per_m, 100.0,
+              1e-9);
+  soft.youngs_modulus_Pa = 500.0 *
+                           disc_shape_factor(soft.outer_diameter_m / soft.inner_diameter_m) *
+                           std::pow(soft.outer_diameter_m, 2) * (1.0 - 0.3 * 0.3) /
+                           (4.0 * std::pow(soft.thickness_m, 3));
+  EXPECT_NEAR(make_disc(soft)->stiffness_N_per_m, 500.0, 1e-9);
+  EXPECT_NEAR(make_disc(soft)->travel_m, 0.9_mm, 1e-15);
+}
+
 }  // namespace tact::model::indent::disc_claims_test

@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
+#include <utility>
 
 #include "model/units.h"
 #include "tools/printed/hex_paper.h"
@@ -133,6 +136,40 @@ TEST(HexClaims, RingsAreHexagonsNotCircles) {
   }
   EXPECT_NEAR(farthest_m, i * kPitch_m, 1e-12);
   EXPECT_NEAR(nearest_m, 0.866 * i * kPitch_m, 1e-5);
+}
+
+TEST(HexClaims, ARingHasTheNodesAndSpringsThatAreCounted) {
+  // Triangular lattice in the axes e and f at 60 degrees: 6 m nodes in ring m, 6 (2 m - 1) springs
+  // to the ring within.
+  const auto ring_of = [](int e, int f) {
+    return std::max({std::abs(e), std::abs(f), std::abs(e + f)});
+  };
+  constexpr int kRings = 25;
+  std::array<int, kRings + 1> nodes{}, springs{};
+  for (int e = -kRings; e <= kRings; ++e) {
+    for (int f = -kRings; f <= kRings; ++f) {
+      const int ring = ring_of(e, f);
+      if (ring > kRings) continue;
+      ++nodes[static_cast<std::size_t>(ring)];
+      for (const auto& [de, df] : {std::pair{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}})
+        springs[static_cast<std::size_t>(ring)] += ring_of(e + de, f + df) == ring - 1;
+    }
+  }
+  for (int m = 1; m <= kRings; ++m) {
+    EXPECT_EQ(nodes[static_cast<std::size_t>(m)], 6 * m);
+    EXPECT_EQ(springs[static_cast<std::size_t>(m)], 6 * (2 * m - 1));
+  }
+}
+
+TEST(HexClaims, TheFirstStrainTellsTheDepthAndNotTheTissue) {
+  // "The larger eps_1, the softer the tissue". But HX-11 gives it from depth, pitch and rings: no
+  // stiffness is in it, and one tissue has every value.
+  const auto first_strain = [](double depth_m) {
+    return paper_shape_at_depth(kPitch_m, 25, depth_m).first_strain;
+  };
+  EXPECT_NEAR(first_strain(1_mm), 0.0028, 5e-5);
+  EXPECT_NEAR(first_strain(5_mm), 0.0742, 5e-5);
+  EXPECT_NEAR(first_strain(10_mm), 0.3416, 5e-5);
 }
 
 }  // namespace tact::tools::printed::hex_claims_test

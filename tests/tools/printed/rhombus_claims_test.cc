@@ -125,6 +125,8 @@ TEST(RhombusClaims, X6ThePrintedUnitsCannotBeFelt) {
 // X7  the lambda cut: no depth at all up to a force, then jumps.
 TEST(RhombusClaims, X7TheLambdaCutHasADeadZoneAndJumps) {
   EXPECT_EQ(cut(0.01 * 15.0).units, 0);  // 0.28 mm deep, and shown as untouched
+  EXPECT_EQ(cut(0.061 * 15.0).units, 0);
+  EXPECT_EQ(cut(0.063 * 15.0).units, 1);
   EXPECT_NEAR(cut(0.01 * 15.0).whole_m, 0.2841_mm, 1e-7);
   EXPECT_EQ(cut(0.1 * 15.0).units, 3);
   EXPECT_NEAR(cut(0.1 * 15.0).depth_m, 1.881_mm, 1e-6);
@@ -135,8 +137,36 @@ TEST(RhombusClaims, X7TheLambdaCutHasADeadZoneAndJumps) {
     largest_jump_m = std::max(largest_jump_m, after.depth_m - before.depth_m);
     largest_step_m = std::max(largest_step_m, after.whole_m - before.whole_m);
   }
-  EXPECT_GT(largest_jump_m, 0.2_mm);
+  EXPECT_NEAR(largest_jump_m, 0.46_mm, 0.01_mm);
   EXPECT_LT(largest_step_m, 0.01_mm) << "the chain itself is smooth";
+}
+
+// "With the force the dented part grows ever more slowly": so it is, by the source's own rule.
+TEST(RhombusClaims, TheDentedPartGrowsEverMoreSlowlyWithTheForce) {
+  EXPECT_EQ(cut(0.1 * 15.0).units, 3);
+  EXPECT_EQ(cut(0.3 * 15.0).units, 6);
+  EXPECT_EQ(cut(0.6 * 15.0).units, 8);
+  EXPECT_EQ(cut(0.9 * 15.0).units, 8);
+}
+
+// "Other rods and angles are other tissues": angles are, rods only reach farther.
+TEST(RhombusClaims, RodsOfAnotherLengthAreNoOtherStiffness) {
+  const auto chain = [](double rod_m, double angle_rad) {
+    return *make_rhombus_chain({.rod_length_m = rod_m,
+                                .initial_angle_rad = angle_rad,
+                                .normal_stiffness_N_per_m = 1500.0,
+                                .tangential_stiffness_N_per_m = 1800.0,
+                                .growth = kBeta,
+                                .units = 10});
+  };
+  const auto at_rest_N_per_m = [&chain](double rod_m, double angle_rad) {
+    return chain(rod_m, angle_rad).at_force(0.0).stiffness_N_per_m;
+  };
+  EXPECT_NEAR(at_rest_N_per_m(20_mm, 30_deg), at_rest_N_per_m(5_mm, 30_deg), 1e-9);
+  EXPECT_NEAR(chain(20_mm, 30_deg).range().press_m / chain(5_mm, 30_deg).range().press_m, 4.0,
+              1e-9);
+  EXPECT_NEAR(at_rest_N_per_m(10_mm, 10_deg), 223.0, 0.5);
+  EXPECT_NEAR(at_rest_N_per_m(10_mm, 60_deg), 2495.0, 0.5);
 }
 
 }  // namespace tact::tools::printed::rhombus_claims_test
