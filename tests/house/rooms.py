@@ -67,7 +67,7 @@ TOOLS = {
     "fit": ["program", "report", "ground_truth"],
     "chart": ["program", "report", "condense", "ground_truth", "reference"],
     "plan": ["program", "report", "chart"],
-    "stability": ["program", "report", "printed"],
+    **dict.fromkeys(["figures", "stability"], ["program", "report", "printed"]),
     "verify": ["printed"],
 }
 # Where another room is known by these headers alone.

@@ -29,6 +29,7 @@ PLAIN = {
     "axis", "face_normal", "vertex_normal", "held_normal", "unit", "outward", "inward", "hand_inward", "radial",  # directions
     "coordinate", "press_coordinate", "pull_coordinate",  # along a family of curves
     "direction", "product", "preconditioner", "sum",  # of a linear solver, a mean
+    "printed", "ours",  # of a quantity whose name says the unit
     "row", "words", "fade", "strain", "cos_azimuth", "sin_azimuth", "push",  # push: a direction
     "vertex",  # of an OBJ file, in its units
     "n1", "n2", "s1", "s2",  # barycentric and normal parts of a map
