@@ -34,6 +34,7 @@ void tell(const std::string& sentence) { fmt::print(stderr, "tact-doctor: {}\n",
 
 /// True: go on. False: the answer was no. An error: there is nobody to ask, or this is not root.
 Result<bool> may_go_on(const FixOptions& options) {
+  // Below another root nothing of this PC is touched.
   if (options.root.empty() && geteuid() != 0)
     return Error{"only root may change this PC: sudo tact-doctor, or --dry-run to look"};
   if (options.yes) return true;
@@ -108,6 +109,7 @@ bool run_back(UndoStore& store, const FixOptions& options, bool last) {
   for (auto command = commands.rbegin(); command != commands.rend(); ++command) {
     if (command->back_last != last) continue;
     const group* const haptics = getgrnam("haptics");
+    // Somebody has joined since: without the group those people lose their devices.
     const bool is_used = haptics != nullptr && *haptics->gr_mem != nullptr;
     if (!command->back.empty() && command->back.front() == "groupdel" && is_used)
       fmt::print("the group haptics has members, so it stays\n");
@@ -148,6 +150,7 @@ Result<int> fix(const FixPlan& plan, const FixOptions& options) {
   if (!go) return go.error();
   if (!*go) return kNotAll;
   bool good = true;
+  // Files first, as update-grub and systemctl read them.
   for (const DropIn& file : rest.files) {
     if (const auto failed = store->write(file)) {
       tell(failed->sentence);
@@ -155,6 +158,7 @@ Result<int> fix(const FixPlan& plan, const FixOptions& options) {
     }
   }
   for (const FixCommand& command : rest.commands) {
+    // Noted only if it ran: --undo must not take back what never was.
     const bool ran = run(command.words, options);
     if (ran)
       if (const auto failed = store->note(command)) tell(failed->sentence), good = false;
@@ -179,7 +183,9 @@ Result<int> undo(const FixOptions& options) {
   const auto go = may_go_on(options);
   if (!go) return go.error();
   if (!*go) return kNotAll;
+  // Services stop while their unit file is still there; reloading comes when the files are back.
   bool good = run_back(*store, options, false);
+  // The newest first, as in any undo.
   for (std::size_t i = store->files().size(); i-- > 0;) {  // what is back leaves the list
     const std::string path = options.root + store->files()[i].path;
     const auto back = store->put_back(i);

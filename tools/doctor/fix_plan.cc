@@ -23,6 +23,7 @@ using Names = std::initializer_list<std::string_view>;
 /// A drop-in of tools/deploy/rt for `core`: as it stands where it chooses `own_choice` by itself.
 std::string with_core(std::string text, const std::string& line, int core, int own_choice) {
   const std::size_t found = text.find("\n" + line + "\n");
+  // Untouched where it would choose this core itself: the bytes of a package then are the same.
   if (core == own_choice || found == std::string::npos) return text;
   const std::size_t value = text.find("TACT_CORE=", found) + 10;
   return text.replace(value, found + 1 + line.size() - value, std::to_string(core));
@@ -46,6 +47,7 @@ bool is_isolated_by_another(const PcQuestion& q) {
 }
 
 bool plan_core(const PcQuestion& q, const std::string& others, FixPlan& plan) {
+  // With one core there is nothing to isolate it from.
   if (others.empty() || is_isolated_by_another(q)) return false;
   const auto online =
       firmware::pc::parse_cpu_list(q.files.line("/sys/devices/system/cpu/online").value_or(""));
@@ -94,6 +96,7 @@ FixPlan plan_fix(const PcQuestion& question, const Rows& rows, const FixPeople& 
   const PcQuestion q{.files = question.files, .core = firmware::pc::core_in_question(question)};
   const std::string others = firmware::pc::other_cpus(q);
   FixPlan plan;
+  // By the limits, which are always planned.
   std::vector<std::string_view> done{"real-time priority", "locked memory"};
   const auto take = [&](Names names) { done.insert(done.end(), names); };
   if (any_red(rows, {"isolated core", "timer tick"}) && plan_core(q, others, plan))

@@ -23,6 +23,7 @@ using model::Error;
 using model::Result;
 using nlohmann::json;
 
+// As /etc has its drop-ins: read by all, written by root.
 constexpr mode_t kDropInMode = 0644;
 
 /// Whole, whatever stood there: it is kept.
@@ -65,6 +66,7 @@ Result<UndoStore> UndoStore::open(const std::string& root) {
   const std::string folder = root + kUndoFolder;
   struct stat info{};
   if (lstat(folder.c_str(), &info) != 0) return store;
+  // What stands here is written as root by --undo: a folder that others write would make them root.
   const bool is_ours = S_ISDIR(info.st_mode) && (info.st_uid == 0 || info.st_uid == geteuid()) &&
                        (info.st_mode & 022) == 0;
   if (!is_ours)
@@ -82,6 +84,7 @@ std::string UndoStore::copy_of(const KeptFile& kept) const {
 // An error: its copy is gone.
 Result<bool> UndoStore::is_edited(const KeptFile& kept) const {
   const auto now = model::io::read_file(root_ + kept.path);
+  // Gone is no edit: what was there can be put back.
   if (!now || *now == kept.written) return false;
   if (!kept.existed) return true;
   const auto before = model::io::read_file(copy_of(kept));
@@ -93,6 +96,7 @@ std::optional<Error> UndoStore::load() {
   const std::string path = root_ + kUndoFolder + "/undo.json";
   struct stat info{};
   if (lstat(path.c_str(), &info) != 0) {
+    // Nothing was ever fixed.
     if (errno == ENOENT) return std::nullopt;
     return Error{path + ": only root can read what --fix kept; use sudo"};
   }
@@ -142,6 +146,7 @@ std::optional<Error> UndoStore::keep(const DropIn& file) {
   KeptFile kept{.path = file.path, .written = file.content, .made = {}};
   for (const KeptFile& other : files_) kept.copy = std::max(kept.copy, other.copy + 1);
   if (lstat(path.c_str(), &info) == 0) {
+    // A link could point anywhere: following it as root would write there.
     if (!S_ISREG(info.st_mode)) return Error{path + ": is no plain file; move it away first"};
     kept.existed = true;
     kept.mode = info.st_mode & 07777;
@@ -155,6 +160,7 @@ std::optional<Error> UndoStore::keep(const DropIn& file) {
     if (auto failed = replace(copy_of(kept), *content, 0600)) return failed;
   }
   std::error_code unseen;
+  // Folders that are made now go again with the last file in them.
   for (fs::path folder = fs::path(path).parent_path(); !fs::exists(folder, unseen);
        folder = folder.parent_path())
     kept.made.push_back(folder.string().substr(root_.size()));
@@ -175,6 +181,7 @@ std::optional<Error> UndoStore::write(const DropIn& file) {
   }
   if (auto failed = save()) return failed;
   std::error_code wrong;
+  // Only after the list is on disk: a crash in between leaves an undo that knows of the file.
   fs::create_directories(fs::path(root_ + file.path).parent_path(), wrong);
   return replace(root_ + file.path, file.content, kDropInMode);
 }

@@ -17,6 +17,7 @@ using model::Vec3;
 using model::contact::Indentation;
 using model::contact::SiteLaw;
 
+// More than a law of a scene has.
 constexpr std::size_t kMaxRings = 128;
 constexpr int kMaxTicks = 4000;      // for a body with inertia to come to rest
 constexpr int kRestTicks = 25;       // the force stands still for so long
@@ -30,6 +31,7 @@ Indentation touch(const FitSite& site, const FitSample& sample) {
 
 double settled_force_N(SiteLaw& law, const Indentation& in) {
   double force_N = 0.0;
+  // Still for many ticks: a body that swings stands for one at its turning points.
   for (int tick = 0, still = 0; tick < kMaxTicks && still < kRestTicks; ++tick) {
     const double now_N = law.respond(in).law.force_N;
     law.advance();
@@ -45,6 +47,7 @@ void read_profile(std::span<const double> own, double pitch_m, std::span<const d
   const std::size_t rings = own.size();
   const auto at = [&](std::size_t j) { return j < rings ? own[j] : 0.0; };
   for (const double r_m : radius_m) {
+    // Far out the quotient would not fit the cast; beyond the last ring the shape is 0 anyway.
     const double x = std::min(r_m / pitch_m, static_cast<double>(kMaxRings));
     const auto j = static_cast<std::size_t>(x);
     const double t = x - static_cast<double>(j);
@@ -64,10 +67,13 @@ void read_shape(SiteLaw& law, const model::mesh::SurfaceMesh& surface, const Ind
     double sum = 0.0, weights = 0.0;
     for (std::uint32_t i = 0; i < shape.node_count; ++i) {
       const double away_m = norm(surface.vertex_m[shape.vertex[i]] - centre);
+      // At radius 0 the one vertex that is pressed: a mean with its neighbours would flatten the
+      // dent.
       const double weight = r_m > 0.0 ? 1.0 - std::abs(away_m - r_m) / law.ring_pitch_m()
                                       : (away_m == 0.0 ? 1.0 : 0.0);
       if (!(weight > 0.0)) continue;
       const auto& u = shape.displacement_m[i];
+      // Minus: outward is the normal, into the tissue is positive (fit_data.h).
       sum -= weight * dot(Vec3{static_cast<double>(u[0]), static_cast<double>(u[1]),
                                static_cast<double>(u[2])},
                           in.normal);
@@ -88,6 +94,7 @@ Result<std::vector<FitAnswer>> solved_answers(const model::law::Law& press,
     if (!made) return made.error();
     law = &pulled.emplace(std::move(*made));
   }
+  // Sites of a law without a place share their depths: each is solved once.
   std::map<double, FitAnswer> known;
   std::vector<FitAnswer> out;
   for (const FitSite& site : data.sites) {
@@ -142,6 +149,7 @@ Result<std::vector<FitAnswer>> answers_of(const model::scene::Scene& scene,
     for (const FitSample& sample : site.samples) {
       const Indentation in = touch(site, sample);
       FitAnswer& answer = out.emplace_back();
+      // From rest: what the sample before left behind must not act on this one.
       law.leave(0);
       law.advance();
       answer.force_N = is_stepped ? settled_force_N(law, in) : law.respond(in).law.force_N;

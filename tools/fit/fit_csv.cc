@@ -71,6 +71,7 @@ Result<FitData> read_bench_csv(const std::string& path, const BenchColumns& colu
   FitData data{.source = path, .ring_radius_m = rings->radius_m};
   std::size_t rows = 0;
   for (const CsvLine& line : csv->rows()) {
+    // The row of radii, which find_rings has read.
     if (line.cells[*depth] == kRadius) continue;
     const auto depth_value = csv->number(line, *depth);
     if (!depth_value) return depth_value.error();
@@ -78,6 +79,7 @@ Result<FitData> read_bench_csv(const std::string& path, const BenchColumns& colu
     if (!force_value) return force_value.error();
     FitSample sample{.depth_m = *depth_value * columns.depth_unit_m,
                      .force_N = *force_value * columns.force_unit_N};
+    // Millimetres taken for metres show here, before a fit runs for minutes on them.
     if (std::abs(sample.depth_m) > 0.5)
       return csv->blame(line.number, fmt::format("{} = {} is {} m deep; say what its unit is with "
                                                  "--depth-unit-m (0.001 for mm)",
@@ -95,6 +97,7 @@ Result<FitData> read_bench_csv(const std::string& path, const BenchColumns& colu
   if (rows < kMinRows)
     return Error{fmt::format("{}: {} rows; a fit needs {} at least", path, rows, kMinRows)};
   if (auto error = hold_out(data, held_out)) return std::move(*error);
+  // Residuals are shares of the peak.
   if (!(data.peak_N() > 0.0))
     return Error{fmt::format("{}: every force is 0; nothing can be fitted to that", path)};
   return data;

@@ -48,6 +48,7 @@ bool FitData::has_places() const {
 std::optional<FitPlace> place_at_vertex(const model::mesh::SurfaceMesh& surface,
                                         std::size_t vertex) {
   if (vertex >= surface.vertex_m.size()) return std::nullopt;
+  // A vertex of no triangle is no place of a surface.
   if (surface.fan_start[vertex] == surface.fan_start[vertex + 1]) return std::nullopt;
   FitPlace out{.normal = surface.vertex_normal[vertex]};
   out.place.triangle = surface.fan[surface.fan_start[vertex]];
@@ -84,6 +85,7 @@ Result<FitData> fit_data_of(const ground_truth::ReferenceData& reference,
   for (const ground_truth::SolvedSite& solved : reference.sites) {
     FitSite site{.name = std::to_string(solved.vertex),
                  .at = place_at_vertex(scene.organ_mesh, solved.vertex)};
+    // The reference pressed along its own direction: the law is asked along the same one.
     site.at->normal = -solved.direction;
     for (const model::scene::ReferenceSite& known : scene.reference_sites)
       if (known.vertex == solved.vertex) site.held_out = known.held_out;
@@ -102,6 +104,7 @@ Result<FitData> fit_data_of(const ground_truth::ReferenceData& reference,
                     large_strain ? " --large-strain SITES" : "")};
   if (auto error = hold_out(data, held_out)) return std::move(*error);
   for (FitSite& site : data.sites)
+    // Cases may know fewer rings: the others are unknown, not zero.
     for (FitSample& s : site.samples) s.ring_m.resize(rings, std::nan(""));
   for (std::size_t k = 0; k < rings; ++k)
     data.ring_radius_m.push_back(static_cast<double>(k) * reference.ring_pitch_m);

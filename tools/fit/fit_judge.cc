@@ -50,9 +50,11 @@ struct Point {
 
 /// dF/dd of the second half of the press over that of the first, by straight lines; NaN: too few.
 double growth_of_slope(std::vector<Point> points) {
+  // Rest is a point that every press has, measured or not.
   points.push_back({0.0, 0.0});
   std::sort(points.begin(), points.end(),
             [](const Point& a, const Point& b) { return a.depth_m < b.depth_m; });
+  // Two for each half.
   constexpr std::size_t kMin = 4;
   if (points.size() < kMin) return std::nan("");
   const auto slope = [&](bool second) {
@@ -69,6 +71,7 @@ double growth_of_slope(std::vector<Point> points) {
 }
 
 std::string word_of(double growth) {
+  // Below half a percent the rounded word would say "by 0 %".
   constexpr double kNone = 0.005;
   if (std::abs(growth) < kNone) return "stays";
   return fmt::format("{} by {:.0f} %", growth < 0.0 ? "falls" : "grows", 100.0 * std::abs(growth));
@@ -93,6 +96,7 @@ std::string slope_reason(const FitData& data, std::span<const FitAnswer> answers
   }
   if (sites == 0) return {};
   of_data /= sites, of_law /= sites;
+  // A difference that no hand feels is no reason.
   if (std::abs(of_data - of_law) < kJustNoticeable_ratio) return {};
   const auto way = [](double growth) {
     return growth > kJustNoticeable_ratio    ? "hardens"
@@ -125,6 +129,7 @@ std::vector<std::string> reasons_of(const FitData& data, std::span<const FitAnsw
         fmt::format("one stiffness for all sites: sites differ by ±{:.0f} %, from "
                     "{} to {}",
                     100.0 * spread, low->name, high->name));
+  // None of the known reasons: say at least that it is the form.
   if (reasons.empty()) reasons.emplace_back("its curve has another form than the data");
   return reasons;
 }
@@ -137,6 +142,7 @@ double best_scale(std::span<const FitSample> samples, std::span<const FitAnswer>
     sum_ab += answers[i].force_N * samples[i].force_N;
     sum_aa += answers[i].force_N * answers[i].force_N;
   }
+  // Least squares of one factor; a law without force has none that would help.
   return sum_aa > 0.0 ? sum_ab / sum_aa : 1.0;
 }
 
@@ -159,6 +165,7 @@ Judgement judge(const FitData& data, std::span<const FitAnswer> answers, bool sc
     first += site.samples.size();
     SiteResidual row{.name = site.name, .held_out = site.held_out};
     row.best_scale = best_scale(site.samples, own);
+    // Told even where it is not used: it shows how much the sites differ.
     if (scale_by_site) row.scale = row.best_scale;
     Errors of_site;
     Mean site_shape;

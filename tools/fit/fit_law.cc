@@ -15,7 +15,7 @@ constexpr double kMin_N_per_m = 1e-3;  // stands for no spring
 constexpr double kMax_N_per_m = 1e5;
 constexpr double kSteepestCone = 0.4;  // eta: beyond, layers can be felt one by one
 constexpr double kFlattestCone = 0.02;
-constexpr double kTableReach = 0.95;  // of the working depth is felt (tabulated_law.h)
+constexpr double kTableReach = 0.95;  // share of the working depth that is felt (tabulated_law.h)
 
 FitParameter spring(const char* section, const char* key, std::function<double&(Scene&)> in) {
   return {.section = section,
@@ -39,7 +39,9 @@ FitLaw rhombus() {
       spring("rhombus", "tangential_stiffness_N_per_m",
              [p](Scene& s) -> double& { return p(s).tangential_stiffness_N_per_m; }),
       {"rhombus", "growth", 0.1, 100.0, [p](Scene& s) -> double& { return p(s).growth; }}};
+  // Without its normal springs the chain would carry nothing at rest.
   law.parameters[2].low = 0.01;
+  // Chosen: as the scene, steeper, and with the tangential springs strong or nearly away.
   law.starts = {{1, 1, 1, 1, 1}, {1, 1.8, 1, 1, 1}, {0.5, 2.4, 1, 5, 3}, {2, 1, 1, 0.1, 1}};
   return law;
 }
@@ -141,6 +143,8 @@ FitLaw spring_patch(const Scene& scene) {
   };
   law.follow = [mass_kg = scene.spring_patch.node_mass_kg, before = stiffest(scene),
                 stiffest](Scene& s) {
+    // Mass in proportion to the springs: the ticks to rest, and the step's stability, stay as they
+    // are.
     s.spring_patch.node_mass_kg = std::clamp(mass_kg * stiffest(s) / before, 1e-7, 1.0);
   };
   return law;
@@ -179,6 +183,7 @@ std::size_t keep_parameters(FitLaw& law, const std::vector<std::string>& names) 
     if (!is_kept) continue;
     const auto at = static_cast<std::ptrdiff_t>(i);
     law.parameters.erase(law.parameters.begin() + at);
+    // Backwards, so that the places of those still to be looked at stay.
     for (std::vector<double>& start : law.starts) start.erase(start.begin() + at);
     ++kept;
   }
@@ -190,6 +195,7 @@ void reach(Scene& scene, const FitData& data) {
   for (double* working_depth_m :
        {&scene.hex_sheet.working_depth_m, &scene.hunt_crossley.working_depth_m,
         &scene.compliance.working_depth_m, &scene.spring_patch.working_depth_m}) {
+    // Up to a tenth of a millimetre: a number that reads well in a scene.
     const double needed_m = std::ceil(deepest_m / kTableReach * 1e4) * 1e-4;
     *working_depth_m = std::max(*working_depth_m, needed_m);
   }

@@ -18,6 +18,7 @@ using Eigen::VectorXd;
 using model::Error;
 using model::Result;
 
+// Chosen: a thousandth of the force is below a bench's noise.
 constexpr double kMinShare = 1e-3;  // less cannot be told from none
 
 /// Shares >= 0 with the least squares, by trying which of them are 0: at most 2^4 sets.
@@ -29,6 +30,7 @@ VectorXd shares_of(const MatrixXd& basis, const VectorXd& force_N) {
     for (Index c = 0; c < basis.cols(); ++c)
       if ((set >> c & 1U) != 0) in.push_back(c);
     const VectorXd part = basis(Eigen::all, in).colPivHouseholderQr().solve(force_N);
+    // A negative share would be a tissue that gains force while it is held.
     if (!part.allFinite() || part.minCoeff() < 0.0) continue;
     VectorXd all = VectorXd::Zero(basis.cols());
     all(in) = part;
@@ -82,6 +84,7 @@ PronyFit HeldProblem::finish(const std::vector<double>& log_time) const {
 }
 
 PronyFit HeldProblem::fit(std::size_t terms) const {
+  // Times that the data can show: a third of its first step to three times its length.
   const double shortest = std::log(0.3 * (time_s_[1] - time_s_[0]));
   const double longest = std::log(3.0 * time_s_[time_s_.size() - 1]);
   const double scale =
@@ -92,6 +95,8 @@ PronyFit HeldProblem::fit(std::size_t terms) const {
                               .residual = [&](std::span<const double> x, std::span<double> r) {
                                 const MatrixXd at = basis(x);
                                 Eigen::Map<VectorXd>(r.data(), time_s_.size()) =
+                                    // Only times are searched: the shares are linear, and solved
+                                    // for at each step.
                                     scale * (at * shares_of(at, force_N_) - force_N_);
                                 return true;
                               }};

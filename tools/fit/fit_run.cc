@@ -49,6 +49,7 @@ class Fit {
  public:
   Fit(const FitLaw& law, const Scene& scene, const FitData& data, const FitOptions& options)
       : law_(law), data_(fitted_part(data, law)), options_(options), scene_(scene) {
+    // The data is slow or solved: what relaxes is fitted apart (fit_prony.h).
     scene_.relaxation.clear();  // forces at once
     if (data.large_strain) scene_.compliance.large_strain = *data.large_strain;
     reach(scene_, data);
@@ -64,6 +65,7 @@ class Fit {
                       .difference = law_.difference,
                       .most_evaluations = law_.most_evaluations};
     for (const FitParameter& p : law_.parameters) {
+      // Logarithms: a step means a ratio, whatever the unit (fit_search.h).
       out.low.push_back(std::log(p.low));
       out.high.push_back(std::log(p.high));
     }
@@ -85,6 +87,7 @@ class Fit {
     }
     set(x);
     const auto answers = answers_of(scene_, law_.kind, data_, AnswerBy::kSolving);
+    // A start that makes no law: the search finds its own way, or another start wins.
     if (!answers) return x;
     const double factor = press_factor(*answers);
     for (std::size_t i = 0; i < law_.parameters.size(); ++i) {
@@ -116,12 +119,14 @@ class Fit {
   }
 
   void fill(std::span<const FitAnswer> answers, std::span<double> r) const {
+    // The sum of squares then is a mean: many samples do not outweigh the shape.
     const double share = 1.0 / std::sqrt(static_cast<double>(samples_));
     std::size_t i = 0;
     double log_scales = 0.0;
     for (const FitSite& site : data_.sites) {
       const auto own = answers.subspan(i, site.samples.size());
       const double scale = options_.scale_by_site ? best_scale(site.samples, own) : 1.0;
+      // A factor of 0 or less would have no logarithm.
       log_scales += std::log(std::max(scale, 1e-9));
       for (std::size_t k = 0; k < own.size(); ++k, ++i) {
         r[i] = share * (scale * own[k].force_N - site.samples[k].force_N) / peak_N_;
@@ -156,6 +161,7 @@ SearchResult search_from_all(const FitLaw& law, Fit& fit, int& evaluations) {
   };
   SearchResult best;
   if (law.starts.size() > 1)
+    // A tenth shows which valley is the deepest.
     problem.most_evaluations = static_cast<int>(kShort * law.most_evaluations);
   for (const std::vector<double>& ratios : law.starts) {
     SearchResult found = go(fit.start(ratios));
@@ -167,6 +173,7 @@ SearchResult search_from_all(const FitLaw& law, Fit& fit, int& evaluations) {
 }
 
 FittedKey key_of(const FitParameter& p, Scene& scene) {
+  // Within a thousandth: the search stops a little beside a bound.
   constexpr double kNear = 1.001;
   const double value = p.in(scene);
   return {p.section, p.key, value, value < kNear * p.low || value > p.high / kNear};
@@ -210,6 +217,7 @@ Result<FittedLaw> fit_law(const FitLaw& law, const Scene& scene, const FitData& 
   fit.set(best.x);
   const auto made = make_tissue_law(fit.scene(), law.kind);
   if (!made) return made.error();
+  // By the loop's tables, with all samples: what is judged is what a hand would feel.
   auto answers = answers_of(fit.scene(), law.kind, data);
   if (!answers) return answers.error();
   out.title = (*made)->title();

@@ -15,6 +15,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+// A thousand peaks: the search turns away from there at once.
 constexpr double kNoLaw = 1e3;        // residual of parameters that make no law
 constexpr double kOutOfBounds = 0.1;  // weight of the way back to a bound
 
@@ -84,6 +85,7 @@ class Functor {
 SearchResult search(const SearchProblem& problem, const std::vector<double>& start) {
   Functor functor(problem);
   Eigen::LevenbergMarquardt<Functor> solver(functor);
+  // A millionth of a logarithm is far below what data can tell; tighter only takes time.
   solver.parameters.xtol = 1e-6;
   solver.parameters.ftol = 1e-7;
   // the solver does not count the slopes: two evaluations an unknown
@@ -92,6 +94,7 @@ SearchResult search(const SearchProblem& problem, const std::vector<double>& sta
   VectorXd x = Eigen::Map<const VectorXd>(start.data(), functor.inputs());
   solver.minimize(x);
   VectorXd r(functor.values());
+  // What is told lies within the bounds, and its residual is that of the place told.
   x = Eigen::Map<const VectorXd>(functor.clamp(x).data(), functor.inputs());
   functor(x, r);
   return {.x = {x.data(), x.data() + x.size()},

@@ -34,6 +34,7 @@ Count number_in(const std::vector<std::string>& words, std::size_t i) {
 
 /// "24: 5 0 PCI-MSIX 0-edge eth0" is "24 eth0"; "LOC: 5 0 Local timer interrupts" is "LOC".
 std::string name_source(const std::vector<std::string>& words, std::size_t cpus) {
+  // Without the colon. The kernel's own lines (LOC, RES) end in words that describe, not name.
   std::string name = words[0].substr(0, words[0].size() - 1);
   const bool of_a_device = name.find_first_not_of("0123456789") == std::string::npos;
   return of_a_device && words.size() > cpus + 1 ? name + " " + words.back() : name;
@@ -66,6 +67,7 @@ Count number_after(const std::string& text, const std::string& key) {
   return std::nullopt;
 }
 
+/// Nothing without the module msr, without root, and on other CPUs than Intel's.
 Count read_smi_count(const PcFiles& files, int core) {
   const std::string path = fmt::format("{}/dev/cpu/{}/msr", files.root(), core);
   const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -73,6 +75,7 @@ Count read_smi_count(const PcFiles& files, int core) {
   std::uint64_t value = 0;
   const bool read = pread(fd, &value, sizeof value, kSmiCount) == sizeof value;
   close(fd);
+  // The upper half of the register is reserved.
   return read ? Count(value & 0xffffffffU) : std::nullopt;
 }
 
@@ -97,6 +100,7 @@ Costs read_costs(const PcFiles& files, int thread, int core) {
   read_interrupts(files, core, costs);
   const std::string task = fmt::format("/proc/self/task/{}", thread);
   const std::string stat = files.line(task + "/stat").value_or("");
+  // Behind the last bracket: a thread's name may have blanks and brackets of its own.
   const auto fields = words_of(stat.substr(std::min(stat.rfind(')') + 1, stat.size())));
   costs.minor_faults = number_in(fields, 10 - 3);  // field 3 is the first behind the name
   costs.major_faults = number_in(fields, 12 - 3);
@@ -118,10 +122,12 @@ Costs operator-(const Costs& after, const Costs& before) {
   Costs delta;
   for (const auto& [source, count] : after.interrupts) {
     const auto old = before.interrupts.find(source);
+    // A source may be new since then: an interrupt that was requested in between.
     const std::uint64_t more = count - (old == before.interrupts.end() ? 0 : old->second);
     if (more != 0) delta.interrupts[source] = more;
   }
   for (const Counter& c : kCounters)
+    // Known at both ends, or not told at all: half a difference would be the count since boot.
     if (after.*c.value && before.*c.value) delta.*c.value = *(after.*c.value) - *(before.*c.value);
   return delta;
 }
@@ -140,6 +146,7 @@ std::string describe(const Costs& delta) {
   if (delta.waited_ns.value_or(0) > 0)
     tell(fmt::format("ready without the CPU {:.0f} us",
                      static_cast<double>(*delta.waited_ns) * 1e-3));
+  // Faults, forced switches, migrations. Its own switches are the loop's sleep: no trouble.
   for (const Counter& c : {kCounters[0], kCounters[1], kCounters[3], kCounters[4]})
     if ((delta.*c.value).value_or(0) > 0) tell(fmt::format("{} {}", c.name, *(delta.*c.value)));
   std::vector<std::pair<std::uint64_t, std::string>> sources;

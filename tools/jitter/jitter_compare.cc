@@ -19,6 +19,7 @@ using nlohmann::json;
 constexpr std::array kShown{"p50", "p99", "p99.9", "p99.99", "max"};
 constexpr std::array kJudgedShares{"p50", "p99", "p99.9"};
 constexpr std::array kJudgedSeries{"wake", "every_wake", "total", "deadline_to_force"};
+// The clock's own steps and the cache lie below (jitter_compare.h).
 constexpr std::uint64_t kMin_ns = 1000;
 
 template <typename List>
@@ -69,6 +70,7 @@ Result<Comparison> compare_results(const json& before, const json& after,
   if (!is_result(before) || !is_result(after))
     return Error{"not a result of tact-jitter; give two jitter.json of its --out folders"};
   Comparison out;
+  // Told, not refused: one may want to see what another kernel gives.
   for (const char* key : {"subject", "rate_Hz", "load", "armed", "core", "priority", "non_rt"})
     note_unlike(before, after, key, out.unlike);
   for (const char* key : {"kernel_release", "boot_parameters", "cpu", "microcode", "clock_source",
@@ -79,6 +81,7 @@ Result<Comparison> compare_results(const json& before, const json& after,
     const json other = after["series"].value(name, json());
     for (const char* share : kShown) {
       const auto a = value_of(series, share), b = value_of(other, share);
+      // Without a sample beyond it a percentile is none (jitter_report.h).
       if (!a || !b) continue;  // too few samples in one of them
       ComparedValue value{.series = name, .share = share, .before_ns = *a, .after_ns = *b};
       value.judged =

@@ -12,12 +12,14 @@
 namespace tact::tools::jitter {
 namespace {
 
+// Below it lies the clock's own reading; twenty buckets a decade show a width of 12 %.
 constexpr double kFirst_us = 0.1;
 constexpr int kPerDecade = 20;
 
 std::size_t bin_of(std::uint64_t ns) {
   const double decades =
       std::log10(std::max(1e-3 * static_cast<double>(ns), kFirst_us) / kFirst_us);
+  // A value on an edge belongs to the bucket above it, whatever the logarithm's rounding.
   return static_cast<std::size_t>(decades * kPerDecade + 1e-9);
 }
 

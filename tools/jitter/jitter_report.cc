@@ -67,6 +67,7 @@ std::vector<NamedSeries> series_of(const JitterResult& result) {
   const TickSink& sink = *result.sink;
   std::vector<NamedSeries> all;
   const auto add = [&](const char* key, const char* title, const Series& series) {
+    // A phase that the run does not have (a bare loop has none but wake-up) is all zeros.
     if (series.histogram.max_ns() > 0) all.push_back({key, title, &series});
   };
   add("wake", "wake-up", sink.phase(Phase::kWake));
@@ -78,6 +79,7 @@ std::vector<NamedSeries> series_of(const JitterResult& result) {
     add(name, name, sink.phase(p));
   }
   add("total", "tick", sink.phase(Phase::kTotal));
+  // A bare loop hands no force to anybody.
   if (!result.scene_hash.empty())
     add("deadline_to_force", "deadline to force", sink.deadline_to_force());
   add("round_trip", "device round trip", sink.round_trip());
@@ -113,6 +115,7 @@ Outcome outcome_of(const JitterResult& result) {
   if (result.interrupted) return {"part", "NOT JUDGED: the run was ended by Ctrl-C"};
   if (!verdict)
     return {"part", "NOT JUDGED: no gate was asked for (--peer-gate); the numbers stand alone"};
+  // Too few turns is neither pass nor fail: a script must not take it for one of them.
   if (!verdict->turns) return {"part", "NOT JUDGED: " + verdict->sentence()};
   return {verdict->passed() ? "pass" : "fail", verdict->sentence()};
 }
@@ -131,6 +134,7 @@ double seconds_into(const JitterResult& result, std::int64_t at_ns) {
 std::string in_us(std::optional<std::uint64_t> duration_ns) {
   if (!duration_ns) return "-";
   const double us = 1e-3 * static_cast<double>(*duration_ns);
+  // Three digits: more would be the clock's noise.
   return us >= 100.0 ? fmt::format("{:.0f}", us) : fmt::format("{:.3g}", us);
 }
 

@@ -104,6 +104,7 @@ class Run {
 Result<JitterResult> Run::run() {
   firmware::pc::use_small_thread_stacks();
   rt_.core = options_.core;
+  // Before anything of the scene allocates: memory is locked from here on.
   process_.emplace(result_.shortfalls);
   for (firmware::pc::Shortfall& s : probe_rt_threads(rt_))
     result_.shortfalls.push_back(std::move(s));
@@ -115,6 +116,7 @@ Result<JitterResult> Run::run() {
       options_.threshold_us > 0.0 ? options_.threshold_us : kThresholdShare * 1e6 / result_.rate_Hz;
   result_.sink = std::make_unique<TickSink>(SinkSettings{
       .period_ns = loop_period_ns(), .threshold_ns = std::llround(1e3 * threshold_us)});
+  // Before the loop: while it runs nothing is opened.
   marker_.emplace(files_, options_.stop_trace);
   result_.has_marker = marker_->is_open();
   if (options_.stop_trace && !marker_->is_open())
@@ -205,6 +207,7 @@ std::optional<Error> Run::measure() {
   result_.interrupted = program::is_interrupted();
   result_.measured_s =
       static_cast<double>(sink.ticks() + sink.skipped() + sink.unseen()) / result_.rate_Hz;
+  // A load that died in between would make the numbers better than they are told.
   if (load && !load->is_running()) return Error{"stress-ng ended before the loop; nothing counts"};
   return std::nullopt;
 }
@@ -224,6 +227,7 @@ void Run::run_slice(double duration_s, bool last) {
   result_.sink->begin_slice();
   std::atomic<bool> ended{false};
   firmware::run::ThreadCosts costs;
+  // follow() waits for the new thread's number: the counters of the old one are gone.
   loop_thread_.store(0);
   std::thread thread([&] {
     costs = firmware::run::run_as_loop_thread(rt_, [&] {

@@ -21,7 +21,7 @@ class LiveLine {
   std::chrono::steady_clock::time_point due_{};
 };
 
-/// "12.3 s  12300 ticks  late 0  wake p50 5.2 p99.9 31 max 80 us".
+/// "12.3 of 60 s  12300 ticks  late 0  skipped 0  wake-up p50 5.2 p99.9 31.0 max 80.0 us  ...".
 std::string make_live_line(const TickSink& sink, double elapsed_s, double duration_s);
 
 }  // namespace tact::tools::jitter

@@ -17,6 +17,7 @@ using model::Error;
 constexpr int kBuckets_us = 50000;  // longer stalls than this are counted as the largest
 constexpr std::int64_t kMicrosecond_ns = 1000;
 
+/// A bucket of us holds all up to the next microsecond; ours count at their upper edge, too.
 std::int64_t upper_edge_ns(std::int64_t us) { return (us + 1) * kMicrosecond_ns - 1; }
 
 }  // namespace
@@ -40,6 +41,7 @@ std::vector<std::string> cyclictest_arguments(const PeerCall& call, const std::s
 
 std::optional<Error> add_cyclictest(const std::string& text, std::uint64_t asked_cycles,
                                     Series& series) {
+  // Another program's file: each member is asked for before it is used.
   const auto parsed = model::io::parse_json(text, "cyclictest");
   const nlohmann::json json = parsed ? *parsed : nlohmann::json();
   const auto thread = json.is_object() && json.contains("thread") && json["thread"].is_object()
@@ -50,6 +52,7 @@ std::optional<Error> add_cyclictest(const std::string& text, std::uint64_t asked
       !thread.value("max", nlohmann::json()).is_number_unsigned())
     return Error{"cyclictest told no histogram of a thread; this reads rt-tests 2.4"};
   const auto cycles = thread["cycles"].get<std::uint64_t>();
+  // Counted before one is recorded: a file that claims 2^60 samples would keep the loop below busy.
   std::uint64_t counted = 0;
   for (const auto& [us, samples] : thread["histogram"].items()) {
     if (!samples.is_number_unsigned()) continue;
@@ -71,6 +74,7 @@ std::optional<Error> add_cyclictest(const std::string& text, std::uint64_t asked
   for (const auto& [us, samples] : thread["histogram"].items())
     if (samples.is_number_unsigned())
       add(std::strtoll(us.c_str(), nullptr, 10), samples.get<std::uint64_t>());
+  // What lies beyond its histogram has no bucket: all of it counts as the largest.
   if (told < cycles) add(thread["max"].get<std::int64_t>(), cycles - told);
   return std::nullopt;
 }
@@ -83,6 +87,7 @@ std::optional<double> ratio_at_p999(const Series& loop, const Series& peer) {
 }
 
 std::optional<TurnRatios> middle_of(std::vector<double> ratios) {
+  // A median of two is decided by either of them.
   if (ratios.size() < 3) return std::nullopt;
   std::ranges::sort(ratios);
   const auto at = [&](double share) {
@@ -110,6 +115,8 @@ std::optional<Error> run_cyclictest(const PeerCall& call, const program::Scratch
                                           .directory = folder.path(),
                                           .log_path = folder.file("cyclictest.txt"),
                                           .package = "rt-tests",
+                                          // Generous: under load cyclictest may be late, too;
+                                          // without it a hang would be for ever.
                                           .time_limit_s = 60.0 + 5.0 * call.duration_s,
                                           .environment = {}});
   if (!said) return said.error();

@@ -20,11 +20,13 @@ constexpr std::uint64_t kOurSequence = 1;  // all packets come from one writer
 constexpr std::uint64_t kStateCleared = 1;
 
 void put_varint(std::string& out, std::uint64_t value) {
+  // Seven bits a byte, the lowest first; bit 7 says that more follow.
   for (; value >= 0x80; value >>= 7) out += static_cast<char>(value | 0x80);
   out += static_cast<char>(value);
 }
 
 void put_number(std::string& out, unsigned field, std::uint64_t value) {
+  // Kind 0, a varint, has no bits of its own.
   put_varint(out, std::uint64_t{field} << 3);
   put_varint(out, value);
 }
@@ -53,6 +55,7 @@ std::string make_packet(std::int64_t time_ns, std::string_view event) {
 std::string make_descriptor_packet(std::string_view descriptor) {
   std::string packet;
   put_number(packet, kPacketSequence, kOurSequence);
+  // The sequence's state begins here: no event refers to anything before it.
   put_number(packet, kPacketSequenceFlags, kStateCleared);
   put_bytes(packet, kPacketDescriptor, descriptor);
   return packet;
@@ -103,6 +106,7 @@ void PerfettoTrace::mark(std::uint64_t track, std::int64_t time_ns, std::string_
 
 void PerfettoTrace::count(std::uint64_t track, std::int64_t time_ns, std::int64_t value) {
   std::string event = make_event(track, kCounter);
+  // int64 in protobuf: two's complement in ten bytes where it is negative.
   put_number(event, kEventCounter, static_cast<std::uint64_t>(value));
   add_packet(make_packet(time_ns, event));
 }

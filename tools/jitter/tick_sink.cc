@@ -18,6 +18,7 @@ constexpr std::array kOfThisTick{Phase::kWake, Phase::kRead,  Phase::kTouch,
 void TickSink::begin_slice() {
   unfinished_.reset();  // its tell phase is not told any more
   handed_ns_.reset();
+  // A slice's loop counts from 0; the run goes on counting.
   base_ = ticks_ + unseen_;
   slice_wake_ = {};
 }
@@ -29,6 +30,7 @@ void TickSink::add(const firmware::loop::TickRecord& record) {
                   .phase_ns = record.phase_ns};
   if (ticks_ == 0) first_due_ns_ = times.due_ns;
   const std::uint64_t expected = ticks_ + unseen_;
+  // A gap in the numbers: the ring was full. What crosses it cannot be measured.
   if (times.tick > expected) {
     unseen_ += times.tick - expected;
     unfinished_.reset();
@@ -53,6 +55,7 @@ void TickSink::add(const firmware::loop::TickRecord& record) {
                               times.due_ns - waited_ns);
   }
   measure_round_trip(times, record);
+  // These two are those of the tick before, and were given to it above.
   times.phase_ns[static_cast<std::size_t>(Phase::kTell)] = 0;
   times.phase_ns[static_cast<std::size_t>(Phase::kTotal)] = 0;
   keep(times);
@@ -72,6 +75,7 @@ void TickSink::finish(TickTimes times) {
 void TickSink::measure_round_trip(const TickTimes& times,
                                   const firmware::loop::TickRecord& record) {
   const hal::Sample& sample = record.input.sample;
+  // The first sample taken after the force was handed over: an older one knows nothing of it.
   if (handed_ns_ && sample.fresh && sample.stamp_ns >= *handed_ns_) {
     round_trip_.record(times.read_end_ns() - *handed_ns_, times.tick, *handed_ns_);
     handed_ns_.reset();
@@ -89,6 +93,7 @@ void TickSink::keep(const TickTimes& times) {
 void TickSink::note_late(const TickTimes& times, std::int64_t worst_ns) {
   ++over_threshold_;
   if (late_ticks_.size() == kMaxLateTicks) {
+    // The worst fifty, not the first: a run of a day would else show its first minute.
     const auto mildest = std::min_element(
         late_ticks_.begin(), late_ticks_.end(),
         [](const auto& a, const auto& b) { return a.second.worst_ns < b.second.worst_ns; });
@@ -99,6 +104,7 @@ void TickSink::note_late(const TickTimes& times, std::int64_t worst_ns) {
   unexplained_.push_back(times.tick);
   const auto from = newest_.lower_bound(times.tick - std::min(times.tick, kKeptBefore));
   around_late_.insert(from, newest_.end());
+  // What came after it may show the cause, too.
   keep_until_ = times.tick + kKeptAfter + 1;
   const std::uint64_t oldest = late_ticks_.begin()->first;
   around_late_.erase(around_late_.begin(),
@@ -126,6 +132,7 @@ std::vector<LateTick> TickSink::late_ticks() const {
 
 std::vector<TickTimes> TickSink::kept_ticks() const {
   std::map<std::uint64_t, TickTimes> all = around_late_;
+  // A tick of both is there once: a map takes no second one.
   all.insert(newest_.begin(), newest_.end());
   std::vector<TickTimes> ticks;
   ticks.reserve(all.size());

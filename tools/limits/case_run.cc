@@ -15,9 +15,11 @@
 namespace tact::tools::limits {
 namespace {
 
-constexpr double kLead_s = 0.1;  // beyond the ramp
+constexpr double kLead_s = 0.1;  // beyond the ramp, so that the gate is wide open at t = 0
+// A person may have to close an e-stop first.
 constexpr double kSimulatedWait_s = 2.0, kRealWait_s = 60.0;
 constexpr double kLeverWithoutTorque_m = 0.05;
+// The sphere of 2 m around a tool within some tenths of a metre always reaches a plate 1 m below.
 constexpr double kHalfPlate_m = 4.0, kPlate_m = -1.0, kReach_m = 2.0;
 
 /// A plate far below and a sphere so large that it always touches: contact adds nothing to the
@@ -131,6 +133,7 @@ CaseRun::CaseRun(const Case& c, const LimitsBench& bench)
   } else {
     clock_ = std::make_unique<firmware::loop::MonotonicClock>();
   }
+  // Between loop and device: what it sees written is what the hand gets.
   device_ = std::make_unique<PlayedDevice>(case_, moment_, *device, *clock_);
   lines_ = std::make_unique<PlayedLines>(case_, moment_, *lines,
                                          lines == &simulated_lines_ ? &simulated_lines_ : nullptr);
@@ -170,6 +173,7 @@ bool CaseRun::play() {
     }
     going = !program::is_interrupted() && !requests_.stop.load();
   }
+  // Zero force and power off, whatever ended it.
   loop_->release_device();
   return going;
 }
@@ -178,7 +182,9 @@ void CaseRun::keep(const firmware::loop::TickRecord& record, bool cause) {
   const std::uint32_t acted = acted_since(counted_, controller_->gate().counters());
   const bool armed = record.output.state == firmware::loop::State::kArmed;
   if (rows_.empty() && !armed) return;
+  // Full: a push would allocate in the loop.
   if (rows_.size() == rows_.capacity()) return;
+  // t = 0 is the deadline of the first tick that is played.
   if (!moment_.playing || moment_.ticks == 0) begin_ns_ = record.due_ns;
   const double lead_s = moment_.playing ? 0.0 : moment_.t_s();
   const firmware::loop::TickInput& in = record.input;

@@ -38,6 +38,8 @@ std::string panel(const CaseResult& result) {
         "set arrow 1 from {0},graph 0 to {0},graph 1 nohead lc rgb '#b00020' dt 3 lw 1.5\n",
         kCause_s);
   const char* column = torque ? "6" : "3";
+  // Limit, commanded (grey), let through (blue, wide), written (black): equal ones lie on each
+  // other.
   out += fmt::format(
       "plot L with lines lc rgb '#b00020' dt 2 notitle, -L with lines lc rgb '#b00020' dt 2 "
       "notitle, \\\n"

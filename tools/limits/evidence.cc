@@ -22,7 +22,7 @@ using model::Result;
 
 constexpr std::size_t kLongestNumber = 60;
 
-/// This program as it was started, or one beside it; empty if there is none.
+/// The file of this program, links followed; empty if it cannot be told.
 fs::path own_program() {
   std::error_code none;
   return fs::read_symlink("/proc/self/exe", none);
@@ -37,6 +37,7 @@ Result<std::string> digest_of_file(const std::string& path) {
 }  // namespace
 
 std::optional<Error> check_number(const std::string& number) {
+  // It goes into the foot of each page by CSS: nothing there may end a string.
   const auto is_plain = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
            std::string_view(" -_./").find(c) != std::string_view::npos;
@@ -83,6 +84,7 @@ void close_evidence(Evidence& evidence, const model::Limits& in_use) {
   std::string began = evidence.began_utc;  // 20261125T164002Z-1a2b3c4d-3f00
   std::erase_if(began, [](char c) { return c == '-' || c == ':'; });
   const std::string rest = model::io::sha256_of(evidence.host + evidence.scene_sha256);
+  // Two reports of one second differ by host and scene.
   evidence.people.number =
       fmt::format("TL-{}-{}-{}", began, evidence.limits_checksum, rest.substr(0, 4));
 }

@@ -53,6 +53,7 @@ firmware::run::ThreadCosts play_guarded(const Runs& runs, const LimitsBench& ben
     if (program::is_interrupted() || requests.fault.load() != Fault::kNone ||
         done.load() == runs.size())
       requests.stop.store(true);
+    // A call of the device that does not return holds the loop's thread: nothing here could end it.
     if (!executor.hangs()) continue;
     executor.leave_behind(1, [] {
       fmt::print(stderr,
@@ -65,6 +66,7 @@ firmware::run::ThreadCosts play_guarded(const Runs& runs, const LimitsBench& ben
   if (progress) progress(done.load(), runs.size());
   const Fault found = requests.fault.load();
   for (const auto& run : runs)
+    // A case that never began failed for what the guards found, not for a reason of its own.
     if (found != Fault::kNone && run->rows().empty()) run->refuse(found);
   return executor.costs();
 }

@@ -24,6 +24,7 @@ std::string text_of(const toml::table& row, std::string_view key) {
 // tests/house/hazards_test.py has read the file that was built in: it is whole.
 const toml::table& parsed() {
   static const auto table = model::io::parse_toml(kHazards, "tests/safety/hazards.toml");
+  // For a table that does not parse: none, instead of a crash.
   static const toml::table none;
   return table ? *table : none;
 }

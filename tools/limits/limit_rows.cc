@@ -33,12 +33,14 @@ bool has_reached(const CaseVerdict& v, std::size_t bound) {
 
 void add_case(LimitRow& row, const CaseVerdict& v, bool reached, const TighterLimit& own) {
   const bool is_tighter = own.limit < row.limit;
+  // A case with a tighter limit says nothing of how near the scene's own was come.
   if (!is_tighter) row.largest = std::max(row.largest, own.largest);
   if (reached) {
     row.reached_by.emplace_back(v.subject.name);
     if (is_tighter) row.tighter.push_back(own);
     row.kept = std::max(row.kept, is_tighter ? Kept::kPassTighter : Kept::kPass);
   }
+  // Last, so that no pass of another case hides it.
   if (!own.holds) row.kept = Kept::kFail;
 }
 
@@ -73,6 +75,7 @@ std::vector<LimitRow> limit_rows(const LimitsReport& report) {
     const CaseVerdict& v = result.verdict;
     const Values own = limits_in_order(v.limits, report.period_s);
     const Values largest = largest_in_order(v.worst);
+    // In the order of Bound, as the rows are.
     const std::vector<Check> bounds = check_bounds(v.worst, v.limits, report.period_s);
     for (std::size_t i = 0; i < rows.size(); ++i)
       add_case(rows[i], v, has_reached(v, i),

@@ -36,6 +36,7 @@ json facts(const LimitsReport& report) {
   add("Device", report.device_name + (report.simulated ? " (SIMULATED, on simulated time)" : ""));
   add("Scene", fmt::format("{} ({}), hash {}", report.scene_name, report.scene_path, e.scene_hash));
   add("Rate", fmt::format("{:g} Hz", 1.0 / report.period_s));
+  // Simulated time needs no real time: the line would frighten for nothing.
   if (!report.simulated && !report.hard_real_time)
     add("Real time", fmt::format("this PC gives no hard real time; force capped to {:g} %",
                                  100.0 * report.force_share));
@@ -93,6 +94,7 @@ std::string tightened(const model::Limits& here, const model::Limits& all) {
 
 /// Four digits, and none of them an exponent.
 std::string plain(double value) {
+  // An impulse of 10^6 N for a reader who knows no exponents.
   return value < 1e4 ? fmt::format("{:.4g}", value) : fmt::format("{:.0f}", value);
 }
 
@@ -167,6 +169,7 @@ std::string page_html(const LimitsReport& report, const std::vector<std::string>
     data["left_out"].push_back({{"why", why}, {"names", names}});
   for (const LimitRow& row : limit_rows(report)) data["limits"].push_back(limit_data(row));
   for (const CaseResult& r : report.cases) data["cases"].push_back(case_data(r.verdict, report));
+  // draw_curves puts the wall behind the cases.
   const std::size_t curves = svg.size() - (report.wall && !svg.empty() ? 1 : 0);  // the wall last
   for (std::size_t i = 0; i < curves; ++i) data["curves"].push_back(report::inline_svg(svg[i], i));
   data["has_curves"] = curves > 0;

@@ -22,6 +22,7 @@ constexpr double kAtOnce_s = 0.0;
 constexpr double kStale_s = 0.010;
 constexpr double kWorkspace_s = 0.050;
 constexpr double kFadeTicks = 1.5;
+// 100 Hz, the slowest scene.
 constexpr double kLongestPeriod_s = 0.01;
 // Late ticks of two periods: 20 with hard real time, 100 without, where a stall may come between.
 constexpr double kLateTicks = 42;
@@ -237,8 +238,10 @@ Case at_rate(Case c, double period_s, bool hard_real_time) {
   if (c.expected.zero_within_s) *c.expected.zero_within_s += more_s;
   c.expected.and_ticks = 0.0;
   // Samples that come back before the fade is over: at high rates, so many do not make 10 ms.
+  // Then no zero is asked for; that the stage acted still is.
   if (c.trouble == Trouble::kNoSample && c.trouble_ticks * period_s < c.expected.zero_within_s)
     c.expected.zero_within_s.reset();
+  // Slow rates need longer to show that the force stays zero; 1.2: a fifth of it to look on.
   c.duration_s = std::max(c.duration_s, kCause_s + 1.2 * more_s);
   return c;
 }
@@ -274,6 +277,7 @@ model::Limits limits_of(const Case& c, const model::Limits& limits) {
   model::Limits tight = limits;
   if (c.budget_share > 0.0) {  // less than twice what the brake needs is refused in a scene
     const double slew_N_per_s = limits.slew_N_per_s - limits.force_N / limits.ramp_s;
+    // What the gate's tank keeps for its brake (energy_tank.cc), with the longest period.
     const double fall_s = 0.5 * limits.force_N / slew_N_per_s + kLongestPeriod_s;
     const double need_J =
         (limits.speed_mps * limits.force_N + limits.turn_radps * limits.torque_Nm) * fall_s;

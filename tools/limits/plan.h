@@ -21,8 +21,8 @@ namespace tact::tools::limits {
 
 /// How the commanded force goes with time; along z if nothing else is said.
 enum class Shape : std::uint8_t {
-  kHold,      // size from 0.1 s on
-  kRamp,      // 0 to size in 0.8 s
+  kHold,      // size from 0.1 s on; with a trouble from the start
+  kRamp,      // 0 to size in 0.8 s; with a trouble size from the start
   kImpulse,   // 10^6 N in one tick, at 0.1 s
   kNan,       // size, then NaN from 0.1 s on
   kInfinity,  // the same with infinity
@@ -96,7 +96,7 @@ Case at_rate(Case c, double period_s, bool hard_real_time);
 
 /// All cases but the wall (wall.h), in the order of the report.
 std::span<const Case> all_cases();
-/// "all", or names with commas. An error lists what there is.
+/// "all", or names with commas. An error says how to see what there is.
 model::Result<std::vector<Case>> choose_cases(const std::string& names);
 /// The name of the Z-width test in --plan, and is it asked for?
 inline constexpr std::string_view kWallName = "stiff-wall";

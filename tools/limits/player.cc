@@ -7,6 +7,7 @@
 namespace tact::tools::limits {
 namespace {
 
+// Chosen: slow beside any slew, fast beside the case; a million newtons are beyond any limit.
 constexpr double kRampTime_s = 0.8;
 constexpr double kImpulse_N = 1e6;
 constexpr double kFlip_s = 0.1, kChatter_s = 0.0025;  // half a wave
@@ -14,6 +15,7 @@ constexpr double kHair_s = 1e-9;                      // times are multiples of 
 
 /// +1 and -1, each for so long.
 double square(double t_s, double half_s) RT_SAFE {
+  // A multiple of the period may come out a hair too small, and the sign would change a tick late.
   return std::fmod(std::floor((t_s + kHair_s) / half_s), 2.0) == 0.0 ? 1.0 : -1.0;
 }
 
@@ -58,8 +60,10 @@ bool in_trouble(const Case& c, const Moment& now) RT_SAFE {
 model::contact::SiteResponse CommandLaw::respond(const model::contact::Indentation& in) RT_SAFE {
   const Vec3 force_N = command_at(case_, now_, tool_, limit_N_);
   model::contact::SiteResponse response;
+  // A tool of one sphere: others would command the force again.
   if (in.sphere != 0) return response;
   response.law.force_N = force_N.z;
+  // The law gives the part along the normal; the slope carries the rest through contact.
   response.slope_N = {-force_N.x, -force_N.y, 0.0};  // contact takes the slope from the force
   return response;
 }
@@ -96,6 +100,7 @@ Fault PlayedLines::read(std::int64_t now_ns) RT_SAFE {
     simulated_->inputs().dead_man.store(!let_go, std::memory_order_relaxed);
   }
   const Fault fault = lines_.read(now_ns);
+  // A real line that has opened goes before the one that is told.
   if (simulated_ != nullptr || fault != Fault::kNone) return fault;
   if (stop) return Fault::kEmergencyStop;
   return let_go ? Fault::kDeadManReleased : Fault::kNone;

@@ -138,6 +138,7 @@ report::Table wall_table(const WallVerdict& wall) {
 }  // namespace
 
 bool LimitsReport::passed() const {
+  // A run that played nothing has not passed.
   return !(cases.empty() && !wall) && (!wall || wall->passed()) &&
          std::all_of(cases.begin(), cases.end(),
                      [](const CaseResult& r) { return r.verdict.passed(); });
@@ -199,6 +200,7 @@ Result<std::vector<std::string>> write_report(const LimitsReport& report,
     if (auto error = write(table.name() + ".csv", table.to_csv())) return *error;
   if (auto error = write("limits.json", to_json(report).dump(2) + "\n")) return *error;
   std::vector<std::string> drawings;
+  // Tables first: without gnuplot the numbers are there all the same.
   if (draw_pictures) {
     const auto drawn = draw_curves(report, directory);
     if (!drawn) return drawn.error();

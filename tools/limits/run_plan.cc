@@ -83,6 +83,7 @@ Result<LimitsReport> run_simulated(const model::scene::Scene& scene, const hal::
   const LimitsBench bench{.scene = scene,
                           .limits = firmware::gate::limits_for(scene.limits, info),
                           .gate_limits = options.gate_limits};
+  // As the loop's thread does: else the last digits of a fading force would differ from tactd's.
   firmware::pc::flush_denormals();
   const Runs runs = prepare(options.cases, bench);
   for (const auto& run : runs)
@@ -101,8 +102,10 @@ Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& dev
   const firmware::pc::ProcessSetup setup(shortfalls);
   if (auto limited = firmware::watch::lift_rttime_limit())
     shortfalls.push_back(std::move(*limited));
+  // As tactd decides: a PC that lacks anything gets the quarter of the force.
   const bool hard = shortfalls.empty() && firmware::pc::probe_rt_threads({}).empty();
   const hal::DeviceInfo info = device.info();
+  // Before the first tick: should this program die, somebody has to take the force away.
   const auto guardian = firmware::run::start_guardian(device, {});
   if (!guardian) return guardian.error();
   firmware::loop::Requests requests;
@@ -127,6 +130,7 @@ Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& dev
   const Runs runs = prepare(cases, bench);
   const auto filter =
       firmware::watch::CallFilter::make(device.loop_calls(), (*lines)->loop_calls(), requests);
+  // A kernel without it is no reason not to test; the report says so.
   if (!filter) fmt::print(stderr, "tact-limits: {}\n", filter.error().sentence);
   report.call_filter =
       play_guarded(runs, bench, filter ? filter->get() : nullptr, options.progress).call_filter;
@@ -139,6 +143,7 @@ Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& dev
 }  // namespace
 
 const char* why_left_out(const Case& c, const model::LinesSettings& lines) {
+  // Nobody can be asked to tear at a device by so many m/s in a given tick.
   if (c.hand != HandMove::kStill) return kNeedsHand;
   const bool has_estop = lines.wired() && (lines.estop_a >= 0 || lines.estop_b >= 0);
   if (c.trouble == Trouble::kEmergencyStop && !has_estop) return "no emergency stop is wired";

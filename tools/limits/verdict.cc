@@ -23,16 +23,20 @@ class EnergyAccount {
   void add(const TickRow& row, double period_s) {
     const double periods = 1.0 + row.skipped_periods;
     time_s_ += periods * period_s;
+    // The force of the write before was on the hand until now, through every period that was
+    // skipped.
     sum_.force_N += periods * held_.force_N;
     sum_.torque_Nm += periods * held_.torque_Nm;
     periods_ += periods;
     held_ = {.force_N = row.written_N, .torque_Nm = row.written_Nm};
+    // Without a sample the way is not known: the force is added up until one comes.
     if (!row.fresh || !is_finite(row.tool)) return;
     if (placed_) {
       const Vec3 moved_m = row.tool.position_m - position_m_;
       given_J_ += dot(sum_.force_N, moved_m) / periods_ + turned_J(row.tool.orientation);
     }
     largest_J_ = std::max(largest_J_, given_J_);
+    // The budget recovers with time, as the gate's does, but on a clock of its own.
     const double allowed_J = limits_.energy_J + limits_.recovery_W * time_s_;
     overdrawn_J_ = std::max(overdrawn_J_, given_J_ - allowed_J * kRounding);
     placed_ = true;
@@ -85,8 +89,10 @@ std::optional<double> time_to_zero_s(const std::vector<TickRow>& rows,
       since_s = row.t_s;
       stands = true;
     }
+    // A cause that has gone may let the force come back: that is no late force.
     stands = stands && cause;
     if (is_zero(row) && !zero_s) zero_s = row.t_s - *since_s;
+    // Zero for a tick in between is not zero for good.
     if (!is_zero(row) && stands) zero_s.reset();
   }
   return zero_s;
@@ -141,6 +147,7 @@ void check_expected(Checks& checks, const CaseVerdict& v) {
     checks.add(v.worst.force_N >= e.least_peak_ratio * v.limits.force_N,
                fmt::format("the test had force: {:.4g} N, at least {:.4g} N asked", v.worst.force_N,
                            e.least_peak_ratio * v.limits.force_N));
+  // Cases that end in zero must have had a torque to lose, where they are on a lever.
   if (!e.zero_within_s) return;
   const double least_Nm = kMinTurn * v.limits.torque_Nm;
   if (v.subject.grip == Grip::kLever)
@@ -218,6 +225,7 @@ Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limi
                      double period_s) {
   Extremes worst;
   EnergyAccount energy(limits);
+  // First order, as a motor warms: the mean square over thermal_time_s.
   const double share = period_s / limits.thermal_time_s;
   double heat = 0.0, torque_heat = 0.0;
   Vec3 before_N, before_Nm;
@@ -256,6 +264,7 @@ CaseVerdict judge_rows(const Case& c, const std::vector<TickRow>& rows, const mo
   v.overshoot_N = std::max(v.worst.force_N - limits.force_N, 0.0);
   for (const TickRow& row : rows) {
     if (row.t_s >= 0.0) v.acted |= row.acted;
+    // The first one is the cause; what comes after it may follow from it.
     if (v.fault == Fault::kNone) v.fault = row.fault;
   }
   Checks checks;

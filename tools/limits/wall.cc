@@ -11,6 +11,7 @@
 namespace tact::tools::limits {
 namespace {
 
+// Numbers of wall.h: eighths of 4 s, the third and the last; 2 %, 0.1 mm, a quarter at a time.
 constexpr double kDuration_s = 4.0;
 constexpr int kWindows = 8, kEarly = 2, kLast = 7;
 constexpr double kGrows = 1.02, kStill_m = 1e-4;
@@ -27,6 +28,7 @@ model::Limits without_passivity(const model::Limits& limits) {
 }
 
 double swing_m(const std::vector<TickRow>& rows, int window) {
+  // Turned round, beyond any device: a window without rows has no swing.
   double low_m = 1.0, high_m = -1.0;
   for (const TickRow& row : rows) {
     if (static_cast<int>(std::floor(row.t_s * kWindows / kDuration_s)) != window) continue;
@@ -48,6 +50,7 @@ std::optional<WallRun> run_wall(double stiffness_N_per_m, const LimitsBench& ben
   CaseRun run(wall, here);
   if (!run.play()) return std::nullopt;
   model::Limits limits = run.limits();
+  // Judged by the limits that this run's gate had.
   if (!passive) limits = without_passivity(limits);
   const Extremes worst = extremes_of(run.rows(), limits, run.period_s());
   const std::vector<Check> checks = check_bounds(worst, limits, run.period_s());
@@ -137,6 +140,7 @@ std::optional<WallVerdict> measure_wall(const LimitsBench& bench, const hal::Dev
   WallVerdict v;
   if (device.at_tool)
     v.theory_N_per_m = model::law::haptic_limit(*device.at_tool, bench.scene.rate_Hz).grow_N_per_m;
+  // Where theory is 0 (no damping) a product would never leave it.
   const double first = std::max(v.theory_N_per_m, kMin_N_per_m);
   int beyond = 0;
   for (double k = first; k < kMax * first && beyond < kBeyond + 1; k *= kRaise) {

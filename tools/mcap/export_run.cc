@@ -59,6 +59,7 @@ std::uint64_t utc_ns(const std::string& date) {
 
 /// In the file's time; one that would be before 1970 is at its start.
 std::uint64_t time_of(std::uint64_t epoch_ns, std::int64_t since_start_ns) {
+  // Unsigned: a damaged time may overflow, which is defined here.
   const std::uint64_t sum = epoch_ns + static_cast<std::uint64_t>(since_start_ns);
   return static_cast<std::int64_t>(sum) < 0 ? 0 : sum;
 }
@@ -107,6 +108,7 @@ class Export {
   std::optional<Error> put(std::optional<Topics>& topics, const char* under, const Moment& moment) {
     first_ns_ = out_.messages() == 0 ? moment.time_ns : std::min(first_ns_, moment.time_ns);
     last_ns_ = std::max(last_ns_, moment.time_ns);
+    // At its first message: a file has no topic that is always empty.
     if (!topics) topics = Topics::add(out_, under);
     auto error = out_.put(topics->pose, moment.time_ns, pose_message(moment));
     if (!error)
@@ -141,6 +143,7 @@ Result<Exported> export_recording(const ReadResult& read, const std::string& to)
 /// due_ns at which the loop started, so that a frame's time is that of its tick. Without a frame
 /// whose tick is there: reckoned from the number of the first tick. None: no good tick.
 Result<std::optional<std::uint64_t>> start_of(const std::string& from, const ReadResult& read) {
+  // Frames name their tick, so one common tick joins the two clocks.
   std::unordered_map<std::uint64_t, std::int64_t> time_ns;  // of frames, by tick
   for (const Frame& frame : read.recording.frames) time_ns[frame.tick] = frame.time_ns;
   auto log = TickLogReader::open(from);
@@ -152,6 +155,7 @@ Result<std::optional<std::uint64_t>> start_of(const std::string& from, const Rea
     if (const auto found = time_ns.find(tick.tick); found != time_ns.end())
       return std::optional(due_ns - static_cast<std::uint64_t>(found->second));
     if (!reckoned) reckoned = due_ns - tick.tick * period_ns;
+    // Without a frame the first tick is all that there is to reckon from.
     if (time_ns.empty()) break;
   }
   return reckoned;
@@ -190,6 +194,7 @@ Result<Exported> export_ticks(const std::string& from, const std::string& to) {
   for (LoggedTick tick; log->next(tick);) {
     const std::uint64_t since_ns = static_cast<std::uint64_t>(tick.due_ns) - start->value_or(0);
     const std::uint64_t at_ns = time_of(epoch_ns, static_cast<std::int64_t>(since_ns));
+    // In the order of time: a reader plays the file from front to back.
     if (const auto error = put_frames_before(at_ns)) return *error;
     if (const auto error = out.put(tick, at_ns)) return *error;
   }

@@ -13,6 +13,7 @@ using model::Result;
 constexpr std::string_view kMagic = "\x89MCAP0\r\n";
 constexpr std::size_t kChunkBytes = 1 << 20;  // a reader seeks by chunks
 
+// Op codes of the specification; attachments are not written.
 enum class Op : std::uint8_t {
   kHeader = 0x01,
   kFooter = 0x02,
@@ -45,6 +46,7 @@ std::uint32_t crc_of(std::string_view bytes) {
 
 Bytes map_of(const std::map<std::uint16_t, std::uint64_t>& numbers) {
   Bytes out;
+  // MCAP's maps begin with their bytes: u16 and u64 are ten for each pair.
   out.put(static_cast<std::uint32_t>(numbers.size() * 10));
   for (const auto& [key, value] : numbers) out.put(key).put(value);
   return out;
@@ -86,11 +88,13 @@ std::optional<Error> McapWriter::add_metadata(std::string_view name, const Pairs
 }
 
 std::uint16_t McapWriter::add_channel(const std::string& topic, const Schema& schema) {
+  // From 1: schema 0 means "none".
   const auto next = static_cast<std::uint16_t>(schema_of_.size() + 1);
   const auto [found, is_new] = schema_of_.try_emplace(std::string(schema.name), next);
   if (is_new) {
     const std::string whole = record(
         Op::kSchema, Bytes().put(next).text(schema.name).text(schema.encoding).text(schema.text));
+    // In the chunk, for who reads from the front, and in the summary, for who seeks.
     schemas_.raw(whole);
     chunk_.raw(whole);
   }
@@ -110,6 +114,7 @@ std::uint16_t McapWriter::add_channel(const std::string& topic, const Schema& sc
 
 std::optional<Error> McapWriter::put(std::uint16_t channel, std::uint64_t time_ns,
                                      std::string_view message) {
+  // Where the message's record begins within the chunk.
   chunk_index_[channel].put(time_ns).put(std::uint64_t{chunk_.size()});
   chunk_.raw(record(
       Op::kMessage,
@@ -132,6 +137,7 @@ std::optional<Error> McapWriter::end_chunk() {
   std::string after;
   std::map<std::uint16_t, std::uint64_t> indexes;
   for (const auto& [channel, places] : chunk_index_) {
+    // Places count from the start of the file; the indexes stand right behind their chunk.
     indexes[channel] = chunk.start + whole.size() + after.size();
     after += record(Op::kMessageIndex, Bytes().put(channel).text(places.str()));
   }

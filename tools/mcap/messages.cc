@@ -48,6 +48,7 @@ constexpr const char* kState =
 #undef TACT_PART
 
 Cdr stamped(std::uint64_t time_ns) {
+  // ROS has int32 seconds: a damaged time stays in range.
   const std::uint64_t most_s = std::numeric_limits<std::int32_t>::max();
   Cdr out;
   out.put(static_cast<std::uint32_t>(std::min(time_ns / kSecond_ns, most_s)));
@@ -120,6 +121,7 @@ Moment Moment::of(const Frame& frame, std::uint64_t time_ns) {
   std::ranges::copy(frame.force_N, out.written.force_N);
   std::ranges::copy(frame.torque_Nm, out.written.torque_Nm);
   std::ranges::copy(frame.wanted_force_N, out.wanted.force_N);
+  // A frame does not tell it: NaN, as zero would be a claim.
   std::ranges::fill(out.wanted.torque_Nm, std::numeric_limits<double>::quiet_NaN());
   return out;
 }
@@ -128,6 +130,7 @@ std::string pose_message(const Moment& moment) {
   Cdr out = stamped(moment.time_ns);
   put(out, moment.position_m);
   const auto& [w, x, y, z] = moment.rotation_wxyz;
+  // ROS writes w last.
   return out.real(x).real(y).real(z).real(w).str();
 }
 

@@ -12,6 +12,7 @@ namespace {
 
 using model::scene::ToleranceSettings;
 
+/// A candidate that crashed or timed out has NaN in its row.
 bool is_measured(const Candidate& c) {
   return std::isfinite(c.force_error_ratio) && std::isfinite(c.own_error_ratio.value_or(0.0)) &&
          std::isfinite(c.shape_error_ratio) && std::isfinite(c.tick_p999_us) &&
@@ -61,6 +62,7 @@ std::size_t least_of(std::span<const Candidate> candidates, const std::vector<st
   std::size_t best = among.size();
   for (std::size_t k = 0; k < among.size(); ++k) {
     const Candidate& c = candidates[among[k]];
+    // Times within 10 % are one time (choose.h).
     if (c.tick_median_us > (1.0 + chart::kSameTime_ratio) * fastest_us) continue;
     const auto key = [](const Candidate& x) {
       return std::pair{x.memory_bytes, x.force_error_ratio};
@@ -78,6 +80,7 @@ bool is_enough(const Candidate& c, const ToleranceSettings& t) {
 
 bool is_enough_by_rms(const Candidate& c, const ToleranceSettings& t) {
   Candidate by_rms = c;
+  // The same judgement without the own force: light touch at a rim may spoil every law.
   by_rms.own_error_ratio.reset();
   return is_measured(c) && is_enough(by_rms, t);
 }
@@ -115,6 +118,7 @@ Choice choose(std::span<const Candidate> candidates, const ToleranceSettings& to
   if (!out.meets) enough = by_rms;
   out.chosen = least_of(candidates, enough);
   const Candidate& least = candidates[*out.chosen];
+  // A runner-up of another law says more than another size of the same.
   const auto same_law = [&](std::size_t i) { return candidates[i].sizes.law == least.sizes.law; };
   std::vector<std::size_t> others;
   for (const std::size_t i : enough)

@@ -22,6 +22,7 @@ std::string as_word(std::string text) {
 std::vector<Candidate> candidates_of(const report::Table& table) {
   std::vector<Candidate> out;
   for (const report::Row& row : table.rows()) {
+    // Peers of a chart are measured for comparison; tactd has none of them.
     if (table.word(row, "kind") != "tact" || table.word(row, "failure") != "-") continue;
     const auto count = [&](const char* column) {
       return static_cast<std::size_t>(table.number(row, column));
@@ -37,6 +38,7 @@ std::vector<Candidate> candidates_of(const report::Table& table) {
     if (form != "-")
       sizes.disc_form = form == "linear" ? model::indent::DiscForm::kLinear
                                          : model::indent::DiscForm::kAlmenLaszlo;
+    // A chart made without --tool-reference has no numbers of the whole tool.
     const bool whole_tool = std::isfinite(table.number(row, "tool_rms_ratio"));
     out.push_back(
         {.sizes = sizes,
@@ -61,6 +63,7 @@ std::optional<Error> check_chart_fits(const report::Table& table, const model::s
                                       const std::string& path) {
   const std::string machine = as_word(model::scene::machine_name());
   for (const report::Row& row : table.rows()) {
+    // Before the machine: a changed scene is the likelier slip, and its cure the same.
     if (table.word(row, "scene_hash") != scene.hash)
       return Error{fmt::format(
           "{}: the chart of another scene, or of this one before a change; chart it again: "
