@@ -53,6 +53,7 @@ Made make_and_judge(const Scene& scene, const Scene& elastic, const Variant& var
     made.row.failure = subject.error().sentence;
     return made;
   }
+  // Judged first, on the elastic scene; what is timed is made anew with the scene's relaxation.
   const Accuracy accuracy = measure_accuracy(**subject, cases, pitch_m);
   made.row.errors = accuracy.errors;
   made.row.settle_ticks = accuracy.settle_ticks;
@@ -120,6 +121,7 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
   });
   if (!judged) return program::interruption();
   const auto path = moving_probe(scene, cases->front());
+  // One after the other: a second one on another core would share cache and memory with the first.
   const program::SweepOptions one_by_one{
       .label = options.label + ", time", .shard = options.shard, .threads = 1};
   const bool timed = run_jobs(variants.size(), one_by_one, [&](std::size_t job) {
@@ -130,6 +132,7 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
       made[job].row.timing = *timing;
     else
       made[job].row.failure = timing.error().sentence;
+    // Its memory goes before the next one is timed.
     made[job].subject.reset();
   });
   if (!timed) return program::interruption();
@@ -191,6 +194,7 @@ report::Table empty_chart(std::size_t variants, const program::Shard& shard) {
 report::Row table_row(const ChartRow& row, const Provenance& provenance) {
   const model::scene::LawSizes& sizes = row.variant.sizes;
   const bool measured = row.failure.empty();
+  // A row that failed has NaN: a zero would look like the best of all.
   const auto number = [&](auto value) {
     return report::Cell(measured ? static_cast<double>(value) : kNotMeasured);
   };
@@ -265,6 +269,7 @@ std::vector<std::size_t> peers_ahead(const report::Table& table) {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < peers.size(); ++i) {
     const bool faster_and_better = std::any_of(front.begin(), front.end(), [&](std::size_t k) {
+      // Without kSameTime_ratio: the promise has no allowance.
       return points[i].tick_us < laws[k].tick_us && points[i].error_ratio < laws[k].error_ratio;
     });
     if (faster_and_better) out.push_back(peers[i]);

@@ -9,6 +9,7 @@
 namespace tact::tools::chart {
 namespace {
 
+// Chosen: the middle of the reference's depths of 1 to 10 mm.
 constexpr double kFitDepth_m = 0.005;
 
 }  // namespace
@@ -51,6 +52,7 @@ std::vector<ProbeCase> fit_cases(const std::vector<ProbeCase>& cases) {
       std::all_of(cases.begin(), cases.end(), [](const ProbeCase& c) { return c.held_out; });
   std::vector<ProbeCase> out;
   for (const ProbeCase& c : cases) {
+    // Presses alone; where every site is held out there is nothing else to fit to.
     if (c.in.held || (c.held_out && !all_held_out)) continue;
     if (out.empty() || out.back().site != c.site)
       out.push_back(c);
@@ -64,6 +66,7 @@ double mean_force_N(Subject& subject, const std::vector<ProbeCase>& cases) {
   double sum_N = 0.0;
   for (const ProbeCase& c : cases) {
     sum_N += settle(subject.is_stepped(), [&] { return subject.tick(c.in); }).force_N;
+    // Each from rest: what the one before left behind would act on the next.
     subject.release();
   }
   return sum_N / static_cast<double>(std::max<std::size_t>(1, cases.size()));

@@ -57,6 +57,7 @@ ErrorSummary summarize(std::span<const Sample> samples) {
     const double e = e_N / peak_N;
     all.add(e);
     (s.depth_m > 0.0 ? press : pull).add(e);
+    // Of the force there: light touch counts as much as a deep press.
     const double own = e_N / std::abs(s.reference_N);
     if (s.depth_m > 0.0) out.own_largest_ratio = std::max(out.own_largest_ratio, std::abs(own));
     for (std::size_t k = 0; k < kOwnDepths_m.size(); ++k) {
@@ -97,6 +98,7 @@ std::vector<std::size_t> front_of(std::span<const SpeedAndError> points) {
   });
   std::vector<std::size_t> front;
   for (const std::size_t i : order)
+    // Sorted by time: what is slower has to be nearer to be worth it.
     if (front.empty() || points[i].error_ratio < points[front.back()].error_ratio)
       front.push_back(i);
   return front;

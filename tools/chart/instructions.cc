@@ -28,6 +28,7 @@ int open_counter() {
   wanted.type = PERF_TYPE_HARDWARE;
   wanted.size = sizeof(wanted);
   wanted.config = PERF_COUNT_HW_INSTRUCTIONS;
+  // An interrupt or a page fault is the machine's, not the call's.
   wanted.exclude_kernel = 1;
   wanted.exclude_hv = 1;
   constexpr int kThisThread = 0, kAnyCore = -1, kNoGroup = -1;
@@ -50,6 +51,7 @@ struct Progress {
 
 [[noreturn]] void be_stepped(const Call& call, std::size_t calls, Progress& progress) {
   ptrace(PTRACE_TRACEME, 0, nullptr, nullptr);
+  // From here on the parent steps it.
   raise(SIGSTOP);
   for (std::size_t i = 0; i <= calls; ++i) {  // one more: the first only starts the count
     call();
@@ -68,11 +70,13 @@ double step(pid_t child, const Progress& progress, std::size_t most_steps) {
         waitpid(child, &status, 0) != child || !WIFSTOPPED(status))
       break;
     const std::uint64_t now = progress.calls.load(std::memory_order_relaxed);
+    // Counted by the calls that have ended: no breakpoint is needed.
     if (now == seen) continue;
     if (seen == 0) first = steps;
     last = steps;
     seen = now;
   }
+  // However far it came: it must not run on as a second copy of this program.
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
   return seen > 1 ? static_cast<double>(last - first) / static_cast<double>(seen - 1) : kUnknown;

@@ -38,6 +38,7 @@ Result<std::vector<ProbeCase>> cases_of(const model::scene::Scene& scene,
   for (std::size_t i = 0; i < reference.sites.size(); ++i) {
     const ground_truth::SolvedSite& site = reference.sites[i];
     for (const ground_truth::ReferenceCase& c : site.cases) {
+      // The chart's reference is linear (measure.h).
       if (c.large_strain) continue;
       const Indentation in{.sphere = 0,
                            .place = place_of(scene.organ_mesh, site.vertex),
@@ -55,6 +56,7 @@ Result<std::vector<ProbeCase>> cases_of(const model::scene::Scene& scene,
 }
 
 SettledForce settle(bool is_stepped, const std::function<double()>& tick_force_N) {
+  // As measure.h says: within 0.1 % over 50 ticks.
   constexpr int kWindow = 50;
   constexpr double kSteady_ratio = 1e-3;
   if (!is_stepped) return {.force_N = tick_force_N(), .ticks = 1};
@@ -69,6 +71,7 @@ SettledForce settle(bool is_stepped, const std::function<double()>& tick_force_N
     if (i % kWindow == kWindow - 1 && high_N - low_N <= kSteady_ratio * size_N)
       return {.force_N = force_N, .ticks = i + 1};
   }
+  // It never stood: the middle of its last swing.
   return {.force_N = 0.5 * (low_N + high_N), .ticks = kMaxSettleTicks};
 }
 
@@ -78,6 +81,7 @@ Accuracy measure_accuracy(Subject& subject, const std::vector<ProbeCase>& cases,
     const ProbeCase& c = cases[i];
     const bool elsewhere =
         i > 0 && (cases[i - 1].site != c.site || cases[i - 1].in.held != c.in.held);
+    // Deeper at the same site it goes on, as a press does; elsewhere it begins from rest.
     if (elsewhere) subject.release();
     const SettledForce settled = settle(subject.is_stepped(), [&] { return subject.tick(c.in); });
     Sample sample{.site = c.site,

@@ -18,13 +18,14 @@ using Clock = std::chrono::steady_clock;
 using model::Vec3;
 using model::contact::Indentation;
 
+// All chosen. The path is so wide that touch meets new triangles.
 constexpr std::size_t kPathTicks = 1000;  // one turn
 constexpr double kPathRadius_m = 0.004;
 constexpr std::size_t kMaxWarmTicks = 500;
 constexpr std::size_t kMinTicks = 100;
 constexpr std::size_t kCountedTicks = 20;
-constexpr double kBatch_s = 2e-6;
-constexpr double kLongTick_s = 100e-6;
+constexpr double kBatch_s = 2e-6;       // a shorter tick is near the clock's own step
+constexpr double kLongTick_s = 100e-6;  // a longer one always meets other programs
 
 /// Time that this thread was given, whatever else ran: for ticks so long that others always come in
 /// between. Too dear and too coarse for short ones.
@@ -94,6 +95,7 @@ void time_ticks(const Tick& tick, std::size_t ticks, bool is_long, double cost_n
     const auto begin = Clock::now();
     tick();
     const auto end = Clock::now();
+    // Whoever came in between is the machine's load, not the law's cost (measure.h).
     if (pauses_so_far() == pauses)
       tick_ns.push_back(std::max(0.0, ns_between(begin, end) - cost_ns));
   }
@@ -133,6 +135,7 @@ Timing time_of(const Tick& tick, const TimingSettings& settings) {
     if (tick_ns.empty()) continue;
     const double p999_us = 1e-3 * at_share(tick_ns, 0.999);
     best.median_us = std::min(best.median_us, 1e-3 * at_share(batch > 1 ? batch_ns : tick_ns, 0.5));
+    // The least of the rounds: noise only ever adds.
     if (p999_us >= best.p999_us) continue;
     best.p999_us = p999_us;
     best.paused = ticks - tick_ns.size();

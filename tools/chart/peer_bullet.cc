@@ -106,13 +106,16 @@ class BulletPeer final : public Subject {
     auto& material = *body_->m_materials[0];
     material.m_kLST = static_cast<btScalar>(volume_ ? stiffness : std::sqrt(stiffness));
     if (!volume_) body_->generateBendingConstraints(2);
+    // Bullet: against a bias of its solver from the order of the links.
     body_->randomizeConstraints();
     auto& settings = body_->m_cfg;
     settings.piterations = iterations;
     settings.kDP = static_cast<btScalar>(kDamping_ratio);
+    // The tip is a spring of ours; Bullet's own contact would be a second one.
     settings.collisions = 0;
     const double volume_m3 = std::abs(summarize(scene.organ_mesh).volume_m3);
     body_->setTotalMass(static_cast<btScalar>(kDensity_kg_per_m3 * volume_m3), false);
+    // Mass 0 is Bullet's word for "does not move".
     for (const std::uint32_t v : held_vertices(scene)) body_->setMass(static_cast<int>(v), 0);
     if (!volume_) {
       settings.kMT = static_cast<btScalar>(stiffness);
@@ -135,6 +138,7 @@ class BulletPeer final : public Subject {
     for (std::size_t c = 0; c < 3; ++c)
       dent_m += in.place.weight[c] * dot(moved_m(corner[c]), -mesh.vertex_normal[corner[c]]);
     double force_N = kCoupling_N_per_m * (in.dent_m - dent_m);
+    // A press never pulls.
     if (!in.held) force_N = std::max(0.0, force_N);
     for (std::size_t c = 0; c < 3; ++c)
       body_->addForce(to_bullet(-force_N * in.place.weight[c] * mesh.vertex_normal[corner[c]]),
@@ -176,6 +180,7 @@ class BulletPeer final : public Subject {
     return from_bullet(body_->m_nodes[static_cast<int>(vertex)].m_x) -
            scene_.organ_mesh.vertex_m[vertex];
   }
+  // 0 substeps: one step of the tick's own length, without interpolation.
   void step() { world_.stepSimulation(static_cast<btScalar>(1.0 / scene_.rate_Hz), 0); }
 
   const Scene& scene_;

@@ -74,6 +74,7 @@ class FemPeer final : public Subject {
 
   void shape(const Indentation& in, double pitch_m, std::span<double> ring_m) override {
     ring_means(scene_.organ_mesh.view(), in, pitch_m, dent_m_, ring_m);
+    // Under the tip the exact dent, which the mesh does not resolve.
     if (!ring_m.empty()) ring_m[0] = in.dent_m;
   }
 
@@ -100,6 +101,7 @@ class FemPeer final : public Subject {
     solver_.solve(load_, moved_m_);
     double given_m_per_N = 0.0;
     for (const auto& w : weights) given_m_per_N += w.weight * dot(moved_m_[w.node], inward);
+    // Less what a half-space gives under the same patch: the tip's own dent is exact (CT-1).
     const double regular = given_m_per_N - fem::hertz_normal_m_per_N(material_, patch_m_);
     const double force_N = pressed(tip_, regular, in.dent_m).force_N;
     for (std::size_t v = 0; v < dent_m_.size(); ++v)

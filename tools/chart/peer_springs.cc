@@ -60,6 +60,7 @@ class SpringPeer final : public Subject {
     position_ = scene.organ_mesh.vertex_m;
     velocity_.resize(n);
     inverse_mass_.assign(n, 1.0 / mass_kg);
+    // An infinite mass does not move.
     for (const std::uint32_t v : held_vertices(scene)) inverse_mass_[v] = 0.0;
     drag_.resize(n);
     for (std::size_t v = 0; v < n; ++v)

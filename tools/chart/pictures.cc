@@ -54,6 +54,7 @@ Families families_of(const report::Table& table) {
   Families out;
   for (const report::Row& row : table.rows()) {
     const double tick_us = table.number(row, "tick_median_us");
+    // A row that was not measured.
     if (!(tick_us > 0.0)) continue;
     std::string family = table.word(row, "family");
     const std::string& form = table.word(row, "form");
@@ -102,6 +103,7 @@ std::vector<Point> front_points(const report::Table& table, const Families& fami
          0.0, fmt::format("{} {}", shown(table.word(row, "family")), table.word(row, "size"))});
   }
   if (out.empty()) return out;
+  // Beyond the outermost points, where the axes cut it.
   out.insert(out.begin(), {out.front().tick_us, 2.0 * families.most_force, 0.0, 0.0, " "});
   out.push_back({2.0 * families.most_us, out.back().force, 0.0, 0.0, " "});
   return out;
@@ -119,6 +121,7 @@ std::string plot_of(const Families& families, const Panel& panel) {
   for (std::size_t i = 0; i < families.order.size(); ++i) {
     const std::string& family = families.order[i];
     const bool is_peer = families.is_peer.at(family);
+    // Warm inks are peers, cold ones laws.
     static constexpr const char* kPeerInk[] = {"#D55E00", "#CC3311", "#882255", "#E69F00"};
     static constexpr const char* kLawInk[] = {"#0072B2", "#009E73", "#56B4E9", "#004D73",
                                               "#6A3D9A", "#44AA99", "#332288"};

@@ -60,6 +60,7 @@ Result<std::vector<std::string>> write_chart(const report::Table& table, bool is
                                              const std::string& command,
                                              const Provenance& provenance,
                                              const std::string& directory) {
+  // A shard's CSV has no head: merging reads it.
   if (!is_whole) return table.write(directory);
   const std::string stem = (std::filesystem::path(directory) / table.name()).string();
   if (auto error =
@@ -101,6 +102,7 @@ std::optional<Error> check_same_source(const report::Table& table, const Provena
     return std::any_of(table.rows().begin(), table.rows().end(),
                        [&](const report::Row& row) { return table.word(row, column) != wanted; });
   };
+  // Times of several machines may stand together (machines_of); errors of several sources may not.
   if (differs("scene_hash", provenance.scene_hash))
     return Error{"a shard was measured with another scene; run its shards again with this one"};
   if (differs("reference_hash", provenance.reference_hash))

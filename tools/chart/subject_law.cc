@@ -42,6 +42,7 @@ class LawSubject final : public Subject {
   void release() override {
     law_->site_law().leave(0);
     law_->site_law().advance();
+    // A body with inertia swings on after the tip has left.
     if (is_stepped()) wait_for_rest();
   }
 
@@ -80,6 +81,7 @@ class LawSubject final : public Subject {
   }
 
   void wait_for_rest() {
+    // Now and then: the sum goes over all vertices.
     constexpr int kLookEvery = 50;
     double before_m = 0.0;
     for (int i = 0; i < kRestTicks; ++i) {
@@ -133,6 +135,7 @@ void ring_means(const SurfaceView& surface, const Indentation& in, double pitch_
       value[c] = dent_m[corner[c]];
     }
     const Vec3 outward = normalized(cross(p[1] - p[0], p[2] - p[0]));
+    // The other side of a thin lobe is no ring around the site.
     if (dot(outward, in.normal) >= ground_truth::kFacing) means.add_triangle(p, rho, value);
   }
   std::ranges::copy(means.means(), ring_m.begin());

@@ -23,8 +23,8 @@ using model::Tool;
 using model::Vec3;
 using model::scene::Scene;
 
-constexpr double kSpeed_mps = 0.02;
-constexpr double kAbove_m = 0.003;  // where the way begins
+constexpr double kSpeed_mps = 0.02;  // of a press stroke (tool_judge.h)
+constexpr double kAbove_m = 0.003;   // where the way begins
 
 /// As the reference is: elastic, linear, without friction.
 Scene reference_scene(Scene scene) {
@@ -54,6 +54,7 @@ class Press {
 
   double force_at(double depth_m) {
     const double step_m = kSpeed_mps / scene_.rate_Hz;
+    // Tick by tick, as a hand brings it: contact remembers where it touched first.
     while (at_m_ + step_m < depth_m) tick(at_m_ += step_m);
     at_m_ = depth_m;
     return settle(is_stepped_, [&] { return tick(depth_m); }).force_N;

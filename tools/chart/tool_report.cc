@@ -129,6 +129,8 @@ model::Result<std::vector<model::scene::Accuracy>> accuracy_of(
     if (!law) return law.error();
     model::scene::Accuracy a{
         .law = std::string(model::scene::name_of(row.law)),
+        // By its forces, not by the file: tactd knows the law again whatever else of the scene
+        // changes.
         .law_hash = hash_of_forces(scene, **law),
         .reference = fmt::format("linear finite elements at {} places", reference.places.size()),
         .date = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))),

@@ -24,6 +24,7 @@ class ActiveSet {
         overlap_(overlap),
         touches_(static_cast<std::size_t>(overlap.size())),
         pressure_(Eigen::VectorXd::Zero(overlap.size())) {
+    // To begin with, all that would overlap touches.
     for (Eigen::Index i = 0; i < overlap.size(); ++i) set(i, overlap[i] > 0.0);
   }
 
@@ -47,6 +48,7 @@ class ActiveSet {
 
   /// What pulls, and what lies inside without touching.
   std::vector<Eigen::Index> wrong() const {
+    // Rounding of a pressure that is zero must not flip it for ever.
     const double least_Pa = -kZero * pressure_.lpNorm<Eigen::Infinity>();
     const double least_m = -kZero * overlap_.lpNorm<Eigen::Infinity>();
     std::vector<Eigen::Index> out;
@@ -88,6 +90,7 @@ Result<Eigen::VectorXd> solve_contact(const Eigen::MatrixXd& compliance,
     if (patience > 0)
       for (const Eigen::Index i : wrong) set.flip(i);
     else
+      // Always the largest number: a fixed order cannot turn in a circle.
       set.flip(wrong.back());
   }
   return kNotDefinite;

@@ -6,8 +6,8 @@
 //
 // p pressures, g how far the bodies would overlap without them, C compliance, symmetric and
 // positive definite: then there is exactly one solution. Block principal pivoting: all that pulls
-// leaves, all that overlaps joins; where that turns in a circle, one at a time by the least number,
-// which ends for every such C.
+// leaves, all that overlaps joins; where that turns in a circle, one at a time, the one with the
+// largest number, which ends for every such C.
 // Source: J. J. Judice, F. M. Pires, Comput. Oper. Res. 21 (1994) 587.
 #pragma once
 

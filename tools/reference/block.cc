@@ -25,6 +25,7 @@ void add_disc(double radius_m, double z_m, bool up, std::vector<Vec3>& vertex,
     triangle.push_back({base + a, base + (up ? b : c), base + (up ? c : b)});
   };
   vertex.push_back({0, 0, z_m});
+  // Ring k has 6 k vertices: triangles of about one size out to the rim.
   for (std::uint32_t k = 1; k <= kDiscRings; ++k) {
     const double r_m = radius_m * k / kDiscRings;
     for (std::uint32_t i = 0; i < kSides * k; ++i) {

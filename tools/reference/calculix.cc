@@ -18,6 +18,7 @@ using model::Error;
 using model::Result;
 using model::Vec3;
 
+// Chosen: a site with large strain takes about 25 min.
 constexpr double kTimeLimit_s = 4.0 * 3600.0;
 constexpr const char* kNoSolution = "CalculiX found no solution";
 
@@ -93,6 +94,7 @@ Result<std::string> run_ccx(const program::ScratchFolder& folder,
        .package = "calculix-ccx",
        .time_limit_s = kTimeLimit_s,
        .any_status = any_status,
+       // One core a solve: --jobs runs several.
        .environment = {{"OMP_NUM_THREADS", "1"}, {"CCX_NPROC_STIFFNESS", "1"}}});
 }
 

@@ -29,6 +29,7 @@ using Text = std::back_insert_iterator<fmt::memory_buffer>;
 template <typename Nodes, typename Number>
 void write_set(Text out, const char* name, const Nodes& nodes, Number number) {
   fmt::format_to(out, "*NSET,NSET={}\n", name);
+  // A line of CalculiX takes at most 16 numbers.
   int in_line = 0;
   for (const auto& n : nodes)
     fmt::format_to(out, "{}{}", number(n), ++in_line % kNumbersPerLine == 0 ? "\n" : ",\n");
@@ -163,6 +164,7 @@ std::string deck_of(const ElasticProblem& p) {
   write_set(out, "REPORTED", p.reported, number);
   write_material(out, p.material, p.load.large_strain);
   if (p.load.ball) write_ball(out, p, axes);
+  // Before the step: it holds from the start.
   fmt::format_to(out, "*BOUNDARY\nHELD,1,3\n");
   write_way(out, p.load);
   fmt::format_to(out,

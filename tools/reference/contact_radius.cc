@@ -13,7 +13,8 @@ namespace {
 
 using model::Vec3;
 
-constexpr int kSteps = 200;        // of the integrals, midpoint rule
+constexpr int kSteps = 200;  // of the integrals, midpoint rule
+// At R itself the slope of the gap is infinite.
 constexpr double kWidest = 0.999;  // of R
 
 /// Where a rising function is zero between 0 and `high`: halve the interval.
@@ -40,6 +41,7 @@ double TipContact::gap_slope(double rho) const {
   // g' = rho / sqrt(R^2 - rho^2) + s'
   double slope = rho / std::sqrt(sphere_radius_m_ * sphere_radius_m_ - rho * rho);
   if (fall_m_.size() < 2) return slope;
+  // Straight between rings; beyond the last its slope goes on.
   const auto k = std::min(static_cast<std::size_t>(rho / pitch_m_), fall_m_.size() - 2);
   slope += (fall_m_[k + 1] - fall_m_[k]) / pitch_m_;
   return slope;
@@ -98,6 +100,7 @@ model::Result<std::vector<double>> surface_fall_m(const model::mesh::SurfaceMesh
       fall[k] = dot(p[k] - at_m, axis.axis);
     }
     const Vec3 normal = cross(p[1] - p[0], p[2] - p[0]);
+    // Another lobe of the organ may face the same way.
     const bool is_near = norm(p[0] - at_m) < 2.0 * reach_m;
     if (is_near && dot(normal, axis.axis) < -ground_truth::kFacing * norm(normal))
       means.add_triangle(p, rho, fall);

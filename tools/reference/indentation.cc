@@ -24,6 +24,7 @@ struct Levels {
   double growth;     // of the edge with distance
   double largest_m;  // edge inside the body
 };
+// Edges shrink by about 0.7 from level to level (kErrorShrink_ratio).
 constexpr std::array<Levels, kFinestLevel - kRoughLevel + 1> kLevels{{{0.5, 0.17, 0.72, 16e-3},
                                                                       {0.35, 0.12, 0.6, 14e-3},
                                                                       {0.25, 0.08, 0.5, 12e-3},
@@ -45,6 +46,7 @@ std::vector<MovedNode> press(const OrganBody& body, const Circle& tool, const In
     if (rho > kSphereShare * R) continue;
     // u_n = d - (R - sqrt(R^2 - rho^2)) - s
     const double u_m = what.depth_m - (R - std::sqrt(R * R - rho * rho)) - along_m(tool, p);
+    // Only pushed: a node that the sphere does not reach is free.
     if (u_m > 0.0) moved.push_back({n, u_m});
   }
   return moved;
@@ -88,6 +90,7 @@ ground_truth::EdgeLengths edge_lengths(const Organ& organ, const Indentation& wh
   const bool bonded = what.is_bonded();  // stress is singular at the rim of a bond
   const double a_m = contact_radius_of(what);
   double fine_m = (bonded ? level.bond : level.fine) * a_m;
+  // Finer edges would be drawn out so far that CalculiX stalls; the ratio between levels stays.
   if (bonded && what.large_strain) {
     const double coarser = level.bond / kLevels[kCoarsestLevel].bond;
     fine_m = std::max(fine_m, -what.depth_m / kMaxDrawnOut * coarser);

@@ -85,6 +85,7 @@ Result<ReferencePlan> make_plan(const Options& o) {
   plan->level = o.level;
   if (auto error = check(*plan)) return std::move(*error);
   const double most_m = kLargePull * plan->tool_radius_m;
+  // Told, not refused: the rest of the plan is worth its hours.
   if (!plan->large_strain_sites.empty() && plan->depths_m.back() > most_m) {
     fmt::print(stderr,
                "tact-reference: left out: pulls with large strain beyond {:.3g} mm ({:g} tool "
@@ -257,6 +258,7 @@ int main(int argc, char** argv) {
     const auto good = self_check(options.self_check);
     return good ? (*good ? 0 : 1) : program.fail(good.error());
   }
+  // Before hours of work.
   if (auto error = program::check_output(options.out, "{", {options.scene}))
     return program.fail(*error);
   if (options.tool)

@@ -34,10 +34,12 @@ model::Result<OrganBody> make_organ_body(const model::mesh::SurfaceMesh& surface
                                          const ground_truth::EdgeLengths& lengths,
                                          const HeldBox& held, const std::optional<Circle>& circle) {
   ground_truth::EdgeLengths on_surface = lengths;
+  // It is for the inside: the skin is refined near the site alone.
   on_surface.largest_m = 0.0;
   auto refined = refine_surface({surface.vertex_m, surface.triangle}, on_surface);
   if (!refined) return refined.error();
   Triangles fine = std::move(*refined);
+  // Edges along the rim: there the stress ends, or is singular.
   if (circle) fine = cut_along(std::move(fine), *circle, 2.0 * circle->radius_m);
   auto mesh = fill_with_gmsh(fine.vertex_m, fine.triangle, lengths);
   if (!mesh) return mesh.error();
@@ -47,6 +49,7 @@ model::Result<OrganBody> make_organ_body(const model::mesh::SurfaceMesh& surface
     FaceNodes nodes{t[0], t[1], t[2], 0, 0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
       const auto found = middle.find(edge_key(t[k], t[(k + 1) % 3]));
+      // Every triangle of the skin has to be a face of an element, or its six nodes are not known.
       if (found == middle.end())
         return model::Error{"gmsh changed the surface; ask tact-mesh whether it crosses itself"};
       nodes[3 + k] = found->second;

@@ -13,7 +13,9 @@ namespace {
 
 using model::Error;
 
+// Chosen: steps in about the same ratio.
 constexpr double kDefaultDepths_m[] = {1e-3, 2e-3, 3.5e-3, 5e-3, 7e-3, 10e-3};
+// Linear: solved once and scaled to every depth.
 constexpr double kUnitPull_m = -1e-3;
 // Measured on the block of --self-check: 5 mm with edges of 0.43, 0.3, 0.2 and 0.12 of the radius
 // is 10.3, 9.2, 7.2 and 4.6 % above the known answer.
@@ -71,6 +73,7 @@ void add_with_errors(const Series& series, std::vector<ground_truth::ReferenceCa
       const auto fine = std::find_if(
           series.fine.begin(), series.fine.end(),
           [&](const ground_truth::ReferenceCase* f) { return f->depth_m == coarse->depth_m; });
+      // The nearer end; at large strain one of them may have no solution.
       if (away_m >= nearest_m || fine == series.fine.end()) continue;
       nearest_m = away_m;
       out.back().force_error_ratio = remaining_error(**fine, *coarse);
@@ -101,6 +104,7 @@ model::Result<ReferencePlan> plan_of(const model::scene::Scene& scene) {
   }
   ReferencePlan plan;
   plan.organ.surface = scene.organ_mesh;
+  // Back to the mesh's own frame: solved cases are found again wherever a scene places the organ.
   model::mesh::shift(plan.organ.surface, -scene.organ.position_m);
   plan.organ.hash = mesh_hash(plan.organ.surface);
   plan.organ.held = {scene.elastic->fixed_min_m, scene.elastic->fixed_max_m};
@@ -168,6 +172,7 @@ std::vector<Indentation> cases_of(const ReferencePlan& plan) {
     };
     for (const double d_m : plan.depths_m) add(d_m, plan.level, false);
     add(kUnitPull_m, plan.level, false);
+    // Both ends one level coarser: their change tells the error that is left.
     if (plan.level > kCoarsestLevel) {
       add(plan.depths_m.front(), plan.level - 1, false);
       if (plan.depths_m.size() > 1) add(plan.depths_m.back(), plan.level - 1, false);

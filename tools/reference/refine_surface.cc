@@ -43,6 +43,7 @@ Middles edges_to_split(const Triangles& s, const ground_truth::EdgeLengths& leng
   for (const TriangleCorners& t : s.triangle) {
     const std::size_t k = longest_edge(s, t);
     const Vec3 &p = s.vertex_m[t[k]], &q = s.vertex_m[t[(k + 1) % 3]];
+    // The longest edge only: the others follow in later rounds (Rivara).
     if (norm(q - p) > lengths.at(0.5 * (p + q))) out[edge_key(t[k], t[(k + 1) % 3])] = kUnset;
   }
   for (bool changed = !out.empty(); changed;) {  // to the neighbours, until all agree
@@ -63,6 +64,7 @@ std::uint32_t middle_of(Triangles& s, Middles& middles, std::uint32_t p, std::ui
   if (found == middles.end()) return kUnset;
   if (found->second == kUnset) {
     found->second = static_cast<std::uint32_t>(s.vertex_m.size());
+    // In the order of the numbers: the same bits, whichever triangle comes first.
     s.vertex_m.push_back(0.5 * (s.vertex_m[std::min(p, q)] + s.vertex_m[std::max(p, q)]));
   }
   return found->second;
@@ -156,6 +158,7 @@ Triangles cut_along(Triangles surface, const Circle& circle, double reach_m) {
   std::vector<int> side(surface.vertex_m.size(), 0);  // 0 far away too: nothing is cut there
   for (std::size_t i = 0; i < side.size(); ++i) {
     const double beyond_m = circle.away_m(surface.vertex_m[i]) - circle.radius_m;
+    // The cylinder meets the far side of the organ, too.
     if (norm(surface.vertex_m[i] - circle.at_m) > reach_m) continue;
     if (std::abs(beyond_m) > kNear * shortest_m[i]) side[i] = beyond_m < 0.0 ? -1 : 1;
   }

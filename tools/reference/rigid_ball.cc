@@ -65,6 +65,7 @@ RigidBall make_rigid_ball(double radius_m) {
                                          {3, 2, 1}, {3, 4, 2}, {3, 5, 4}, {3, 1, 5}};
   for (int i = 0; i < kHalvings; ++i) triangles = halved(triangles, sphere);
   RigidBall ball;
+  // All nodes move by one vector: the inner layers only give the wedges their thickness.
   Layer inner(sphere, kInner * radius_m, ball), outer(sphere, radius_m, ball),
       middle(sphere, kMiddle * radius_m, ball);
   for (const auto& [a, b, c] : triangles) {

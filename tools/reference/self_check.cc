@@ -20,6 +20,7 @@ using model::Result;
 using model::Vec3;
 using nlohmann::json;
 
+// As the independent answers have it; forces scale with E.
 constexpr Elasticity kTissue{.youngs_modulus_Pa = 1000.0, .poisson_ratio = 0.45};
 constexpr double kRadius_m = 5e-3;
 constexpr int kLevel = 2;
@@ -75,6 +76,7 @@ std::set<std::uint32_t> triangles_around(const model::mesh::SurfaceMesh& s, std:
 bool is_in(const model::mesh::SurfaceMesh& s, std::uint32_t triangle, const Vec3& p) {
   const auto& t = s.triangle[triangle];
   const Vec3& n = s.face_normal[triangle];
+  // A nanometre: a finer triangle lies in its parent's plane up to rounding.
   if (std::abs(dot(p - s.vertex_m[t[0]], n)) > 1e-9) return false;
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 &a = s.vertex_m[t[k]], &b = s.vertex_m[t[(k + 1) % 3]];
@@ -118,6 +120,7 @@ Result<bool> check_patch(const model::mesh::SurfaceMesh& surface, const HeldBox&
   const Known known{.name = "organ patch " + c.at("name").get<std::string>(),
                     .depth_m = depth_m,
                     .force_N = c.at("force_N").get<double>(),
+                    // The independent answer's own error bar.
                     .bar_ratio = 0.03};
   return judge(known, dot(answer->force_N, direction));
 }

@@ -31,6 +31,7 @@ std::array<Vec3, 2> tangents(const Vec3& normal) {
 
 std::vector<Indentation> sideways_cases(const ReferencePlan& plan) {
   std::vector<Indentation> out;
+  // All of one level, then the coarser one: assemble_sideways finds the pair n apart.
   for (const int level : {plan.level, plan.level - 1})
     for (const std::uint32_t vertex : plan.sites)
       for (const DraggedPatch& patch : kPatches)

@@ -26,6 +26,7 @@ constexpr int kBallMethod = 1;  // calculix_deck.cc, rigid_ball.cc, ball_press.c
 constexpr int kToolMethod = 1;  // tool_press.cc, active_set.cc
 
 constexpr double kProbeContact = 0.75;  // of R at depth R: a little less than a half-space has
+// Chosen: sixteen steps over a radius.
 constexpr int kFallRings = 17;
 
 std::string text_of(const Vec3& v) { return fmt::format("{:.9g} {:.9g} {:.9g}", v.x, v.y, v.z); }
@@ -44,6 +45,7 @@ std::string SolveCache::path_of(const std::string& key) const {
 
 std::optional<json> SolveCache::read(const std::string& key) const {
   auto j = model::io::read_json(path_of(key));
+  // The whole key, as two may share a hash.
   if (!j || !j->is_object() || j->value("key", json{}) != key) return std::nullopt;
   return std::move(*j);
 }
@@ -53,6 +55,7 @@ std::optional<model::Error> SolveCache::write(const std::string& key, json solve
   fs::create_directories(directory_, ignored);
   solved["key"] = key;
   const auto error = model::io::write_file(path_of(key), solved.dump(1) + "\n");
+  // Another program may have kept the same case at this moment: then it is there.
   if (!error || read(key)) return std::nullopt;
   return model::Error{error->sentence + ", or name another --cache"};
 }
@@ -192,6 +195,7 @@ Indentation probe_of(std::uint32_t vertex, double tool_radius_m) {
 model::Result<ground_truth::ReferenceCase> solve_once(const Organ& organ, const Indentation& what,
                                                       const std::string& solver,
                                                       const SolveCache& cache) {
+  // A bond's radius is the tool's; one that is given needs no probe.
   if (what.depth_m < 0.0 || what.contact_radius_m > 0.0)
     return solve_or_find(organ, what, solver, cache);
   const Indentation probe = probe_of(what.vertex, what.tool_radius_m);

@@ -147,8 +147,10 @@ std::vector<std::uint32_t> farthest_of(const std::vector<std::uint32_t>& candida
     for (const std::uint32_t v : candidates) {
       double away_m = std::numeric_limits<double>::infinity();
       for (const Vec3& t : taken_m) away_m = std::min(away_m, norm(vertex_m[v] - t));
+      // Larger, not equal: a tie goes to the lowest number.
       if (away_m > best_m) best = v, best_m = away_m;
     }
+    // Only places that are taken already are left.
     if (best_m <= 0.0) break;
     out.push_back(best);
     taken_m.push_back(vertex_m[best]);

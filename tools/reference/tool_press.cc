@@ -41,6 +41,7 @@ struct GaussPoint {
   std::array<double, 3> corner;  // barycentric
   double weight;
 };
+// Radon's seven points of degree five (1948).
 constexpr double kA = 0.470142064105115, kB = 0.101286507323456;
 constexpr double kWa = 0.132394152788506, kWb = 0.125939180544827;
 constexpr std::array<GaussPoint, 7> kGauss{{{{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}, 0.225},
@@ -156,6 +157,7 @@ Result<Eigen::MatrixXd> compliance_of(const Patch& patch, model::fem::LinearSolv
         compliance(static_cast<Eigen::Index>(v), static_cast<Eigen::Index>(first + k)) = sum;
       }
   }
+  // Symmetric by Betti; rounding is not, and active_set.cc factors it as symmetric.
   return Eigen::MatrixXd(0.5 * (compliance + compliance.transpose()));
 }
 
