@@ -12,15 +12,18 @@ namespace tact::tools::stability {
 namespace {
 
 constexpr double kPlain = 20.0;  // times the kick: it grows, whatever comes
+// More than DelayLine holds: no other force is still on its way.
 constexpr int kStillTicks = 200;
 
 /// Forces on their way to the device.
 class DelayLine {
  public:
   DelayLine(double delay_s, double period_s)
+      // A delay of whole periods must not lose one by rounding.
       : periods_(static_cast<std::size_t>(delay_s / period_s + 1e-9)),
         rest_s_(std::max(0.0, delay_s - static_cast<double>(periods_) * period_s)) {
     if (rest_s_ < 1e-9 * period_s) rest_s_ = 0.0;
+    // before_N() looks one further back.
     periods_ = std::min(periods_, kMax - 2);
   }
   void fill(double force_N) { force_N_.fill(force_N); }
@@ -66,6 +69,7 @@ class Luck {
   explicit Luck(const LoopCase& loop) : loop_(loop), random_(loop.seed) {}
   /// True if this tick does not take place: a late one before it has eaten it.
   bool skips() {
+    // The late tick itself takes place; those that it eats come after it.
     if (eaten_ > 0) return --eaten_, true;
     if (loop_.late_share > 0.0 && random_.uniform() < loop_.late_share) eaten_ = loop_.late_periods;
     return false;
@@ -79,6 +83,7 @@ class Luck {
 };
 
 Verdict verdict_of(const Window& first, const Window& last, bool counts) {
+  // Thirds of the run: close to the line one swing hardly differs from the next.
   if (last.swing_m() > first.swing_m()) return Verdict::kGrow;
   return counts && last.moved ? Verdict::kBuzz : Verdict::kRest;
 }
@@ -99,6 +104,7 @@ const char* name_of(Verdict verdict) {
 
 double between_counts_m(double depth_m, double position_step_m) {
   if (!(position_step_m > 0.0)) return depth_m;
+  // Counts are rounded, so they change half-way between two.
   return position_step_m * (std::floor(depth_m / position_step_m) + 0.5);
 }
 
@@ -112,6 +118,7 @@ LoopRun run_loop(const LoopCase& loop, const TissueForce& tissue, const Judge& j
   const double push_N = tissue(loop.balance_m);
   plant.place(loop.kick_m);
   DelayLine line(loop.device.delay_s, period_s);
+  // As if it had stood at the balance for long: the first forces are in balance with the hand.
   line.fill(push_N);
   Luck luck(loop);
   LoopRun run;
@@ -129,14 +136,18 @@ LoopRun run_loop(const LoopCase& loop, const TissueForce& tissue, const Judge& j
         if (3 * k >= 2 * ticks) last.add(plant.position_m(), now_m != count_m);
         count_m = now_m;
       }
+      // A lost sample holds the force; the gate is told, and fades it.
       const double force_N = judge ? judge(wanted_N, fresh) : wanted_N;
       if (k > 0) run.max_step_N = std::max(run.max_step_N, std::abs(force_N - written_N));
       run.max_force_N = std::max(run.max_force_N, std::abs(force_N));
       written_N = force_N;
     }
     line.push(written_N);
+    // Within one period two forces act, one after the other: the delay is no whole number of
+    // periods.
     if (line.rest_s() > 0.0) plant.move(push_N - line.before_N(), line.rest_s());
     plant.move(push_N - line.acting_N(), period_s - line.rest_s());
+    // The gate's extremes may come at any time, so such a run has no early end.
     if (judge) continue;
     still = plant.is_stuck() ? still + 1 : 0;
     if (still > kStillTicks) return run;  // at rest for good
@@ -158,11 +169,13 @@ double largest_factor(const LoopCase& loop, const TissueForce& tissue, Verdict w
 double largest_factor(const LoopCase& loop, const TissueMaker& fresh, Verdict worse, double low,
                       double high) {
   const auto holds = [&](double factor) {
+    // One with memory would begin where the run before has left it.
     const TissueForce tissue = fresh();
     return run_loop(loop, [&](double depth_m) { return factor * tissue(depth_m); }).verdict < worse;
   };
   if (!holds(low)) return 0.0;
   if (holds(high)) return high;
+  // In the logarithm: a wall's limit may lie anywhere between 1 and 1e7 N/m.
   while (high / low > 1.01) {
     const double middle = std::sqrt(low * high);
     (holds(middle) ? low : high) = middle;

@@ -19,14 +19,17 @@ namespace {
 
 constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
+// LW-1: the table is then within 1e-6 of the largest force.
 constexpr std::size_t kKnots = 65;
 
 /// Laws that solve equations are felt through a table, the others directly.
 template <typename L>
 void add(std::vector<NamedLaw>& laws, const char* name, const model::Result<L>& law,
          const char* beyond) {
+  // Left out: a map shows what this build has.
   if (!law) return;
   const auto direct = std::make_shared<const L>(*law);
+  // Laws in closed form are felt as they are.
   std::shared_ptr<const model::law::Law> felt = direct;
   if constexpr (std::is_same_v<L, model::indent::RhombusChain> ||
                 std::is_same_v<L, model::indent::HexSheet>) {
@@ -87,6 +90,7 @@ model::Result<model::indent::DiscStack> discs(model::indent::DiscForm form, doub
       form, {.first_delay_s = first_s, .delay_ratio = 1.1, .refresh_rate_Hz = 1000.0, .layers = 6});
 }
 
+// HX-26.
 constexpr model::indent::HexSheetParameters kSheet{.ring_pitch_m = 2e-3,
                                                    .contact_stiffness_N_per_m = 20.0,
                                                    .body_stiffness_N_per_m = 20.0,
@@ -119,14 +123,17 @@ std::vector<NamedLaw> make_laws() {
       "rods flat: the force stays at its limit");
   add(laws, "rhombus (30 deg)", model::indent::make_rhombus_chain(chain(30.0, 1800.0)),
       "rods flat: the force stays at its limit");
+  // RC-5: its slope is below zero before the rods are flat.
   add(laws, "rhombus (snaps)", model::indent::make_rhombus_chain(chain(45.0, 60000.0)),
       "a unit snaps: the stiffness is zero there and the force stays");
   add(laws, "discs linear", discs(DiscForm::kLinear, 0.4, 1e-5),
       "all layers flat: the force stays at its limit");
   add(laws, "discs eta 0.4", discs(DiscForm::kAlmenLaszlo, 0.4, 1e-5),
       "all layers flat: the force stays at its limit");
+  // DS-5: flat, the slope is k (1 - eta^2/2).
   add(laws, "discs eta 1.4", discs(DiscForm::kAlmenLaszlo, 1.4, 1e-5),
       "next to sqrt 2 every layer ends without stiffness");
+  // DS-8: T_i < 1 ms for four of the six layers.
   add(laws, "discs slow", discs(DiscForm::kAlmenLaszlo, 0.4, 2e-4),
       "the modelled delay ends the stack after a few layers");
   add(laws, "hex sheet", model::indent::make_hex_sheet(kSheet),
@@ -135,6 +142,7 @@ std::vector<NamedLaw> make_laws() {
   bare.tension_N = 0.0;
   add(laws, "hex sheet no tension", model::indent::make_hex_sheet(bare),
       "the dent is a spike and the force stays");
+  // X15: as printed, the force of both weights grows with the number of rings.
   add(laws, "hex printed ring",
       printed::make_hex_paper({.ring_pitch_m = 2e-3,
                                .body_stiffness_N_per_m = 50.0,
@@ -163,6 +171,7 @@ const std::vector<NamedLaw>& probed_laws() {
 
 double steepest_N_per_m(const NamedLaw& named) {
   constexpr int kSamples = 200;
+  // From rest and down in steps, as a tool comes: one with memory answers to the way, too.
   FeltTissue tissue = named.fresh();
   double most = 0.0;
   for (int i = 1; i <= kSamples; ++i)

@@ -7,7 +7,9 @@
 namespace tact::tools::stability {
 namespace {
 
+// As far as a double can tell two times of one step apart.
 constexpr int kBisections = 50;
+// Rounding must not make stops and starts go on for ever.
 constexpr int kMaxEvents = 10'000;
 
 }  // namespace
@@ -58,10 +60,12 @@ void LoopPlant::move(double force_N, double duration_s) {
   stuck_ = false;
   for (int i = 0; left_s > 0.0 && i < kMaxEvents; ++i) {
     double direction = velocity_mps_ > 0.0 ? 1.0 : -1.0;
+    // Coulomb: at rest friction takes whatever pulls, up to c; in motion it is c against the way.
     if (velocity_mps_ == 0.0) {
       const double net_N = force_N - p_.stiffness_N_per_m * position_m_;
       stuck_ = std::abs(net_N) <= p_.friction_N;
       if (stuck_) {  // until the force changes
+        // Not if it came to rest within this move: then it has moved.
         stuck_ = i == 0;
         return;
       }
@@ -70,6 +74,7 @@ void LoopPlant::move(double force_N, double duration_s) {
     const double step_s = std::min(left_s, longest_step_s_);
     expand(force_N - direction * p_.friction_N);
     const double end_mps = velocity_at(step_s);
+    // Without friction a turn is no event: the series goes on through it.
     const bool stops = p_.friction_N > 0.0 && end_mps * direction < 0.0;
     const double moved_s = stops ? stop_time_s(direction, step_s) : step_s;
     position_m_ = position_at(moved_s);

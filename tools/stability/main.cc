@@ -87,11 +87,13 @@ int main(int argc, char** argv) {
       sweep.quick ? tact::tools::stability::Grid::kQuick : tact::tools::stability::Grid::kFull;
   options.draw_pictures = !sweep.no_pictures;
   const auto run = tact::tools::stability::run_maps(options);
+  // Maps that were finished are told even if a later one failed.
   if (as_json)
     fmt::print("{}\n", to_json(run.reports).dump(2));
   else
     print_text(run.reports);
   if (run.error)
     return program.fail(*run.error, fmt::format("{} maps are written", run.reports.size()));
+  // 1: measured, and a sentence about it is false.
   return all_hold(run.reports) ? 0 : 1;
 }

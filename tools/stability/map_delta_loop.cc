@@ -32,7 +32,9 @@ using model::Vec3;
 constexpr const char* kBounces = "bounces on the surface within the limits of the gate";
 constexpr double kRadius_m = 0.004;  // of the tip
 constexpr double kPush_N = 2.0;
+// The independent loop has the same hand.
 constexpr double kHandMass_kg = 0.05, kHand_N_per_m = 50.0;
+// The swing of one second is compared, two seconds after the hand has arrived and at the end.
 constexpr double kApproach_s = 2.0, kFirst_s = 4.0, kRun_s = 10.0, kWindow_s = 1.0;
 
 struct Settings {
@@ -98,6 +100,7 @@ model::scene::Scene wall_scene(double stiffness_N_per_m, double rate_Hz,
   scene.tool.spheres = {{{}, kRadius_m}};
   scene.device.kind = "sim-delta";
   scene.device.sim = device;
+  // Their energy budget has no end: the passivity stage must not hide the limit (gate_watch.h).
   scene.limits = kSceneLimits;
   scene.organ_mesh = make_plate();
   // the hand's spring is stretched by the push when the tool rests at its depth
@@ -140,6 +143,7 @@ ControllerRun run_controller(double stiffness_N_per_m, double rate_Hz,
   Swing first, last;
   const int ticks = static_cast<int>(kRun_s * rate_Hz);
   for (int i = 0; i < ticks; ++i) {
+    // What the gate lets through, not what contact asks for.
     const Vec3& force_N = loop.step().output.written.force_N;
     out.max_force_N = std::max(out.max_force_N, norm(force_N));
     out.max_step_N = std::max(out.max_step_N, norm(force_N - before_N));
@@ -156,6 +160,7 @@ ControllerRun run_controller(double stiffness_N_per_m, double rate_Hz,
 
 double largest_by_controller(double rate_Hz, const model::SimDeviceSettings& device, double low,
                              double high, double precision) {
+  // No limit within the bounds: 0 says so.
   if (run_controller(low, rate_Hz, device).grows) return 0.0;
   while (high / low > precision) {
     const double middle = std::sqrt(low * high);
@@ -170,6 +175,7 @@ struct AtTool {
 };
 AtTool at_tool(double joint_damping_Nms_per_rad) {
   const hal::delta::DeltaKinematics delta(hal::sim::kGeometry);
+  // Where the tip touches the plate: the device's damping and mass depend on the pose.
   const Vec3 p_D = hal::sim::point_D({0.0, 0.0, kRadius_m});
   const hal::delta::DeltaPose pose = delta.pose(p_D, delta.inverse(p_D).theta_rad);
   const Vec3 up_D = hal::sim::direction_D({0.0, 0.0, 1.0});
@@ -186,6 +192,7 @@ AtTool at_tool(double joint_damping_Nms_per_rad) {
 report::Row run(std::size_t job, Grid grid) {
   const Settings s = settings(grid);
   const auto [rate, delay, damping] = axes(s).at(job);
+  // Hardly any encoder step, and no friction: HL-1 alone is the limit.
   const model::SimDeviceSettings device{.counts_per_turn = 1e7,
                                         .sample_delay_s = s.delay_s[delay],
                                         .joint_friction_Nm = 0.0,

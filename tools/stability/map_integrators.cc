@@ -50,6 +50,7 @@ double measured_log_growth(const model::springs::Method& method, double z, doubl
   // m = 1 kg, omega = 1 rad/s: h = z, c = 2 zeta
   const model::springs::Oscillator oscillator{
       .mass_kg = 1.0, .damping_Ns_per_m = 2.0 * zeta, .stiffness_N_per_m = 1.0};
+  // Two starts span the plane: one alone might lie in the direction that does not grow.
   model::springs::OscillatorState a{.position_m = 1.0}, b{.velocity_mps = 1.0 / z};
   double log_norm = 0.0, half = 0.0;
   for (int i = 0; i < kSteps; i += kChunk) {
@@ -57,16 +58,19 @@ double measured_log_growth(const model::springs::Method& method, double z, doubl
       a = model::springs::step(oscillator, a, method, z);
       b = model::springs::step(oscillator, b, method, z);
     }
+    // With h v for v, so that both parts are lengths and of one size.
     const double norm = std::hypot(std::hypot(a.position_m, z * a.velocity_mps),
                                    std::hypot(b.position_m, z * b.velocity_mps));
     if (!(norm > 0.0)) return -1.0;  // died out: nothing left to measure
     log_norm += std::log(norm);
+    // Both by the same number: the step is linear, so nothing changes but the size.
     for (model::springs::OscillatorState* s : {&a, &b}) {
       s->position_m /= norm;
       s->velocity_mps /= norm;
     }
     if (i + kChunk == kSteps / 2) half = log_norm;
   }
+  // The first half is left out: there the directions that fade still count.
   return (log_norm - half) / (0.5 * kSteps);
 }
 
@@ -75,6 +79,7 @@ report::Row run(std::size_t job, Grid grid) {
       Axes<3>{{std::size(kProbedMethods), cells(grid).zeta, cells(grid).z}}.at(job);
   const ProbedMethod& probed = kProbedMethods[which];
   const double zeta = zeta_of(i, grid), z = z_of(j, grid);
+  // MA-10 to MA-15.
   const double radius =
       model::springs::spectral_radius(model::springs::amplification(probed.method, z, zeta));
   const double growth = measured_log_growth(probed.method, z, zeta);
@@ -93,6 +98,7 @@ std::vector<Finding> judge(const report::Table& t) {
   std::string rest;
   for (const report::Row& row : t.rows()) {
     const double theory = t.number(row, "theory_growth_per_step");
+    // What shrinks faster is gone before it can be measured.
     if (theory > 0.5)
       worst = std::max(worst, std::abs(t.number(row, "measured_growth_per_step") / theory - 1.0));
     if (t.word(row, "theory") == t.word(row, "measured")) {
@@ -103,6 +109,7 @@ std::vector<Finding> judge(const report::Table& t) {
                         t.number(row, "z"), t.number(row, "zeta"), theory);
   }
   const double share = static_cast<double>(agree) / static_cast<double>(t.rows().size());
+  // Right on the line a growth below kGrows cannot be told from none.
   return {{share >= 0.995,
            fmt::format("the oscillator grows where its amplification matrix says in {:.3f} % of {} "
                        "cells{}{}",

@@ -19,6 +19,7 @@ namespace tact::tools::stability {
 namespace {
 
 constexpr double kRate_Hz = 1000.0;
+// Chosen: a quick press.
 constexpr double kSpeed_mps = 0.2;
 
 std::size_t depths(Grid grid) { return grid == Grid::kQuick ? 9 : 401; }
@@ -64,13 +65,16 @@ report::Row run(std::size_t job, Grid grid) {
   const NamedLaw& named = probed_laws()[which];
   const double range_m = named.range_m;
   const double share = depth_share(depth, grid), depth_m = share * range_m;
+  // A new gate for each cell: cells are independent, whoever computes them.
   GateWatch gate(kRate_Hz);
   gate.open(0.0);
   const int ticks = static_cast<int>(std::ceil(std::abs(depth_m) / kSpeed_mps * kRate_Hz));
   FeltTissue tissue = named.fresh();
   for (int i = 1; i <= ticks; ++i) gate.step(tissue.tick(depth_m * i / ticks).force_N, true);
+  // The law itself and not its table: the map is about the law's own limit.
   const model::law::LawResponse at =
       named.remembers() ? tissue.settle(depth_m) : named.law->respond(depth_m);
+  // At the end of the range: forces and tangents of all laws come on one scale.
   const double edge_N = named.remembers() ? named.fresh().settle(range_m).force_N
                                           : named.law->respond(range_m).force_N;
   return {named.name,
@@ -92,6 +96,7 @@ std::vector<Finding> judge(const report::Table& t) {
   for (const report::Row& row : t.rows()) {
     in_bounds += t.word(row, "gate") == "in bounds";
     finite += std::isfinite(t.number(row, "force_N"));
+    // Only beyond the range a law has to say that it is.
     if (t.number(row, "depth_ratio") <= 1.0) continue;
     ++beyond;
     told += t.word(row, "status") == "saturated";

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lines in the parameters of the laws that no depth shows: where a law stops being one.
 //
-//     disc_cone     least slope of a disc over its stiffness, by eta: 1 - eta^2/2 or less, 0 at
-//     sqrt 2 disc_rate     layers that move, by the loop's rate: the modelled delay makes it fall
+//     disc_cone     least slope of a disc over its stiffness, by eta: 1 - eta^2/2, 0 at sqrt 2
+//     disc_rate     layers that move, by the loop's rate: the modelled delay makes it fall
 //     rhombus_snap  least slope of a unit over kN, by kT/kN at 60 deg: it snaps below 0
 //     hex_ring, hex_node, hex_sheet   force at 5 mm, N, by the number of rings: the printed forms
 //                                     have no limit, the energy form has
@@ -40,6 +40,7 @@ struct Point {
   const char* what = "";
 };
 
+// Chosen: so fine that the least sampled slope is the least one within the bounds of judge().
 constexpr int kSamples = 2000;
 
 Point disc_cone(double t) {
@@ -60,6 +61,7 @@ Point disc_rate(double t) {
   const double rate_Hz = 250.0 * std::pow(2.0, 5.0 * t);
   const model::indent::LayerDelays delays{
       .first_delay_s = 2e-5, .delay_ratio = 1.1, .refresh_rate_Hz = rate_Hz, .layers = 64};
+  // DS-8.
   const auto layers = static_cast<double>(model::indent::layer_budget(delays));
   // T_i = t1 (q^i - 1)/(q - 1) < T
   const double theory = std::log(1.0 + 0.1 / (rate_Hz * 2e-5)) / std::log(1.1);
@@ -86,6 +88,7 @@ Point rhombus_snap(double t) {
 
 Point hex(double t, int kind) {
   constexpr double kDepth_m = 5e-3, kPitch_m = 2e-3, kBody_N_per_m = 50.0;
+  // The energy form has an upper number of rings of its own (HX-27).
   const auto most =
       static_cast<double>(kind == 2 ? model::indent::kMaxHexRings : printed::kMaxPaperRings);
   const auto rings = static_cast<std::size_t>(std::lround(3.0 + (most - 3.0) * t));

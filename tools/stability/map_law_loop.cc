@@ -65,7 +65,9 @@ TissueForce settled(const NamedLaw& named, double balance_m) {
 /// The law three times stiffer than what is stable, every force through the gate.
 void run_gated(const LoopCase& loop, const TissueForce& tissue, GateWatch& gate) {
   LoopCase shaken = loop;
+  // So large that the gate is put to the test.
   shaken.kick_m = 1e-3;
+  // A law three times too stiff may ask for more than the gate may give.
   gate.open(std::min(tissue(loop.balance_m), kSceneLimits.force_N));
   run_loop(shaken, tissue, [&](double wanted_N, bool fresh) { return gate.step(wanted_N, fresh); });
 }
@@ -79,6 +81,7 @@ report::Row run(std::size_t job, Grid grid) {
   loop.device.damping_Ns_per_m = s.damping_Ns_per_m[damping];
   loop.device.delay_s = s.delay_s[delay];
   loop.balance_m = s.depth_ratio[depth] * range_m;
+  // So small that the law is straight over it: then its tangent is the wall's K.
   loop.kick_m = 1e-4 * range_m;
   const TissueMaker fresh = [&] { return settled(named, loop.balance_m); };
   const double theory = model::law::haptic_limit(loop.device, loop.rate_Hz).grow_N_per_m;
@@ -88,6 +91,7 @@ report::Row run(std::size_t job, Grid grid) {
   // holds
   const double low = named.remembers() ? 0.85 : 0.02, high = named.remembers() ? 500.0 : 50.0;
   const double factor = largest_factor(loop, fresh, Verdict::kGrow, low * guess, high * guess);
+  // Settled anew: each run of the search had one of its own.
   const TissueForce tissue = fresh();
   GateWatch gate(loop.rate_Hz);
   run_gated(loop, [&](double depth_m) { return 3.0 * factor * tissue(depth_m); }, gate);
@@ -127,6 +131,7 @@ std::vector<Finding> judge(const report::Table& t) {
        fmt::format("every closed-form law at every depth loses stability where its tangent "
                    "passes b / (T/2 + t_d): measured {:.3f} to {:.3f} of it",
                    closed.low, closed.high)},
+      // Memory only helps, so its spread has no upper end.
       {memory.low > 0.9,
        fmt::format("laws with memory are stable at least as far, with the tangent that one tick "
                    "can meet: measured {:.2f} to {:.2f} of it",

@@ -25,6 +25,7 @@ struct Hand {
   const char* name;
   HandAtTool at_tool;
 };
+// Chosen: a hand that gives no help, a light grip and a firm one.
 constexpr Hand kHands[] = {
     {"bare", {}},
     {"light", {.mass_kg = 0.15, .stiffness_N_per_m = 600.0, .damping_Ns_per_m = 15.0}},
@@ -75,6 +76,7 @@ std::vector<report::Column> columns() {
 
 /// Three times too stiff, pressed with 2 N, every force through the gate.
 LoopRun run_gated(LoopCase loop, double stiffness_N_per_m, GateWatch& gate) {
+  // A quarter of the gate's limit: the swing has room before it is clipped.
   constexpr double kPush_N = 2.0;
   loop.balance_m = kPush_N / stiffness_N_per_m;
   gate.open(kPush_N);
@@ -99,6 +101,7 @@ report::Row run(std::size_t job, Grid grid) {
   patient.duration_s *= 3.0;
   const double rest_N_per_m = largest_wall_N_per_m(patient, Verdict::kBuzz);
   GateWatch gate(loop.rate_Hz);
+  // A cell may have no limit above zero; the gate still has to be tested there.
   const LoopRun gated = run_gated(loop, 3.0 * std::max(grow_N_per_m, 1.0), gate);
   return {loop.rate_Hz,
           loop.device.delay_s,
@@ -125,8 +128,10 @@ std::vector<Finding> judge(const report::Table& t) {
     const double ratio = t.number(row, "largest_without_growth_N_per_m") / theory;
     least_grow = std::min(least_grow, ratio);
     below += ratio < 1.0 ? 1 : 0;
+    // HL-2 is zero without friction: nothing to compare.
     if (safe > 0.0)
       least_rest = std::min(least_rest, t.number(row, "largest_at_rest_N_per_m") / safe);
+    // Here the formula is the limit itself, not only a bound.
     if (t.word(row, "hand") == "bare" && !(t.number(row, "friction_N") > 0.0)) {
       ++bare;
       low = std::min(low, ratio);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A burst of lost samples: what each policy does to the hand.
 //
-// The tool is 2 N deep in a wall of 1 kN/m when the samples stop, and the hand goes on moving: in,
-// or out with 0.1 m/s. Per length of the burst: the force at its end, and the energy that the hand
-// got beyond what the wall itself would have given back, if the controller
+// The tool is 2 N deep in a wall of 1 kN/m when the samples stop, and the hand withdraws with
+// 0.1 m/s. Per length of the burst: the force at its end, and the energy that the hand got beyond
+// what the wall itself would have given back, if the controller
 //
 //     holds   the last force for ever
 //     gate    holds one tick, fades to zero within 10 ms, latches at 20 (firmware/gate/gate.h)
@@ -21,6 +21,7 @@ namespace tact::tools::stability {
 namespace {
 
 constexpr double kRates_Hz[] = {1000.0, 4000.0};
+// Chosen: out of the wall in 20 ms, so the fade ends while the hand is still inside.
 constexpr double kSpeed_mps = 0.1;
 constexpr double kWall_N_per_m = 1000.0;
 constexpr double kPush_N = 2.0;
@@ -38,6 +39,7 @@ report::Row run(std::size_t job, Grid grid) {
   const auto [rate, lost] = axes(grid).at(job);
   const double period_s = 1.0 / kRates_Hz[rate];
   GateWatch gate(kRates_Hz[rate]);
+  // Armed and at the wall's force before the burst begins.
   gate.open(kPush_N);
   double depth_m = kPush_N / kWall_N_per_m, hold_J = 0.0, gate_J = 0.0;
   for (std::size_t i = 0; i < lost; ++i) {
@@ -45,6 +47,7 @@ report::Row run(std::size_t job, Grid grid) {
     // the hand withdraws: a force pushes it on its way; the wall's own share is not a gift
     const double way_m = std::min(kSpeed_mps * period_s, depth_m);
     const double wall_J = kWall_N_per_m * (depth_m - 0.5 * way_m) * way_m;
+    // The hand goes on beyond the surface, and so does a held force.
     hold_J += kPush_N * kSpeed_mps * period_s - wall_J;
     gate_J += gate.written_N() * kSpeed_mps * period_s - wall_J;
     depth_m -= way_m;
@@ -72,9 +75,11 @@ std::vector<Finding> judge(const report::Table& t) {
     worst_hold_J = std::max(worst_hold_J, t.number(row, "hold_gift_J"));
     worst_gate_J = std::max(worst_gate_J, t.number(row, "gate_gift_J"));
     const double rate_Hz = t.number(row, "rate_Hz"), lost = t.number(row, "lost_in_a_row");
+    // As a share of the slew limit: what a tick may do depends on the rate.
     worst_step = std::max(worst_step,
                           t.number(row, "gate_max_step_N") * rate_Hz / kSceneLimits.slew_N_per_s);
     if ((lost - 2.0) / rate_Hz >= 0.010) ends_at_zero &= t.number(row, "gate_force_N") == 0.0;
+    // Counted in samples, whatever the rate.
     latches &= (t.word(row, "state") == "latched") == (lost >= 20.0);
   }
   return {{ends_at_zero, "10 ms after the second lost sample the force is zero, or latched at 20"},

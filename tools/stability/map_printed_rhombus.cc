@@ -27,7 +27,7 @@ constexpr double kDegree_rad = std::numbers::pi / 180.0;
 constexpr int kUnits = 10;
 constexpr double kGrowth = 2.0;       // beta
 constexpr double kSmall_rad = -1e-6;  // a press that only shows the slope
-constexpr double kPress_rad = -0.02;  // a press that can be seen
+constexpr double kPress_rad = -0.02;  // of theta0: a press that can be seen
 
 struct Cells {
   std::size_t angles = 0, ratios = 0;
@@ -58,6 +58,7 @@ model::indent::RhombusUnit unit_of(double angle_rad, double ratio, int i) {
   return {.rod_length_m = 0.010,
           .initial_angle_rad = angle_rad,
           .normal_stiffness_N_per_m = 1500.0,
+          // (11), with i from 0.
           .tangential_stiffness_N_per_m = 1500.0 * ratio * std::exp(i / kGrowth)};
 }
 
@@ -65,6 +66,7 @@ model::indent::RhombusUnit unit_of(double angle_rad, double ratio, int i) {
 int first_failing(double angle_rad, double ratio) {
   for (int i = 0; i < kUnits; ++i) {
     const printed::PaperUnit at = printed::paper_forward(unit_of(angle_rad, ratio, i), kSmall_rad);
+    // X2: under a press it gets longer.
     if (!(at.force_N / at.shortening_m > 0.0)) return i + 1;
   }
   return kUnits + 1;
@@ -84,6 +86,7 @@ report::Row run(std::size_t job, Grid grid) {
   const model::indent::RhombusUnit unit = unit_of(angle_rad, kT_over_kN, 0);
   const printed::PaperUnit small = printed::paper_forward(unit, kSmall_rad);
   const printed::PaperUnit pressed = printed::paper_forward(unit, kPress_rad * angle_rad);
+  // The paper counts a shortening below zero, the energy form above.
   const model::indent::UnitResponse energy = model::indent::respond(unit, -pressed.shortening_m);
   const int first = first_failing(angle_rad, kT_over_kN);
   const char* what = first > kUnits ? "softer than the springs"
@@ -104,16 +107,19 @@ std::vector<Finding> judge(const report::Table& t) {
   double low = 1e9, high = 0.0;
   for (const report::Row& row : t.rows()) {
     agree += t.number(row, "first_failing_unit") == t.number(row, "theory_first_failing_unit");
+    // RC-5 at rest: kN + kT tan^2(theta0).
     energy_resists += t.number(row, "energy_stiffness_ratio") >= 1.0;
     low = std::min(low, t.number(row, "printed_force_12_ratio"));
     high = std::max(high, t.number(row, "printed_force_12_ratio"));
   }
   const double share = static_cast<double>(agree) / static_cast<double>(t.rows().size());
+  // X2, with the springs that the paper prints for liver: kN 1.5, kT1 1.8.
   const double line_deg = std::atan(std::sqrt(1.5 / 1.8)) / kDegree_rad;
   return {{share >= 0.995, fmt::format("the printed chain fails at the unit that the formula says "
                                        "in {:.2f} % of cells; the liver's first unit at {:.3f} deg",
                                        100.0 * share, line_deg)},
           {energy_resists == t.rows().size(), "the energy form resists in every cell"},
+          // X4: one half for small presses, more as they grow.
           {low > 0.499 && high < 0.53,
            fmt::format("(12) is {:.4f} to {:.4f} of the force of the stored energy", low, high)}};
 }

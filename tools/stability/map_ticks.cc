@@ -51,6 +51,7 @@ std::vector<report::Column> columns() {
 }
 
 double theory_N_per_m(const LoopCase& loop) {
+  // HL-4.
   if (loop.late_periods == 0)
     return model::law::haptic_limit(loop.device, loop.rate_Hz, 0.0, loop.lost_share).grow_N_per_m;
   const double p = loop.late_share, n = 1.0 + loop.late_periods;
@@ -64,7 +65,9 @@ report::Row run(std::size_t job, Grid grid) {
   loop.device.damping_Ns_per_m = dampings_Ns_per_m(grid)[damping];
   loop.late_periods = kEaten[event];
   (loop.late_periods == 0 ? loop.lost_share : loop.late_share) = shares(grid)[share];
+  // Rare events have to come: a share of 0.001 comes 30 times at 1 kHz.
   loop.duration_s = grid == Grid::kQuick ? 5.0 : 30.0;
+  // One for all: neighbouring cells differ by their settings, not by their luck.
   loop.seed = 17;
   const double theory = theory_N_per_m(loop);
   const double measured = largest_wall_N_per_m(loop, Verdict::kGrow);
@@ -96,6 +99,7 @@ std::vector<Finding> judge(const report::Table& t) {
     high = std::max(high, ratio);
   }
   return {
+      // Wide: the theory is about the mean, and a run is one draw.
       {low > 0.7 && high < 1.5,
        fmt::format("held forces cost stiffness as (2 b / T) E[n] / E[n^2] says: measured {:.3f} "
                    "to {:.3f} of it",

@@ -13,10 +13,12 @@ namespace tact::tools::stability {
 namespace {
 
 constexpr double kTick_s = 0.001;
+// Chosen: half of the force fades, within the run of a cell (memory_laws.h).
 constexpr std::array<model::law::PronyTerm, 2> kTerms{
     {{.share = 0.3, .time_s = 0.03}, {.share = 0.2, .time_s = 0.1}}};
 
 const model::mesh::SurfaceMesh& plate() {
+  // One for all: every run of a search makes a law of its own, and they only read it.
   static const model::mesh::SurfaceMesh mesh = [] {
     constexpr std::uint32_t kCells = 20;
     constexpr double kWidth_m = 0.1;
@@ -41,6 +43,7 @@ const model::mesh::SurfaceMesh& plate() {
 class RelaxingLaw final : public model::contact::SiteLaw {
  public:
   RelaxingLaw(std::shared_ptr<const model::law::Law> law, const model::law::Relaxation& relaxation)
+      // Before curve_ and field_, which point into it; so the object neither copies nor moves.
       : law_(std::move(law)),
         curve_{law_.get()},
         field_({.curves = curve_,
@@ -77,6 +80,7 @@ SiteLawMaker patch_maker(bool relaxes) {
                                                      .body_damping_time_s = 0.03,
                                                      .pretension_ratio = 0.05},
                                           .coupling_stiffness_N_per_m = 300.0,
+                                          // Chosen: the step check accepts it at 1 ms (MA-20).
                                           .node_mass_kg = 0.002,
                                           .working_depth_m = kPatchRange_m,
                                           .tick_s = kTick_s,

@@ -20,6 +20,7 @@ std::string theory_block(int number, const model::springs::Method& method) {
   for (int i = 0; i <= kPoints; ++i) {
     const double zeta = 2.0 * i / kPoints;
     out += fmt::format("{:.5g},{:.5g}\n",
+                       // Infinity is no number for gnuplot: just beyond what is shown.
                        std::fmin(model::springs::largest_stable_z(method, zeta), kMax + 1.0), zeta);
   }
   return out + "EOD\n";
@@ -28,6 +29,7 @@ std::string theory_block(int number, const model::springs::Method& method) {
 }  // namespace
 
 std::vector<report::Picture> integrator_pictures(Grid grid) {
+  // Width and height of a cell, as map_integrators.cc has them.
   const double dz = grid == Grid::kQuick ? 4.0 / 15.0 : 4.0 / 60.0;
   const double dzeta = grid == Grid::kQuick ? 2.0 / 8.0 : 2.0 / 40.0;
   std::string script = fmt::format("f = 'integrators.csv'\ndz = {:.6g}\ndzeta = {:.6g}\n",

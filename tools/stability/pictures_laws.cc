@@ -17,6 +17,7 @@ std::vector<report::Picture> printed_rhombus_pictures(Grid grid) {
   return {{.name = "printed_rhombus",
            .width_px = 1200,
            .height_px = 800,
+           // Half a cell of map_printed_rhombus.cc, in degrees and in decades.
            .script = fmt::format("dx = {}\ndy = {}\n", kOverlap * (quick ? 57.0 / 36 : 57.0 / 180),
                                  kOverlap * (quick ? 1.0 / 12 : 1.0 / 60)) +
                      R"gp(
@@ -67,6 +68,7 @@ plot 0 lc rgb '#444444' notitle)gp";
       script += fmt::format(
           ", \\\n  f using (strcol(2) eq '{0}' ? $3 : NaN):{1} with lines lw 1.8 lc "
           "{2} dt {3} title '{0}'",
+          // Eight inks, then the same ones dashed.
           named.name, column, i % 8 + 1, i / 8 + 1),
           ++i;
   };

@@ -21,6 +21,7 @@ report::Table empty_table(const Map& map, const StabilityOptions& options,
 
 Result<report::Table> computed(const Map& map, const StabilityOptions& options) {
   report::Table table = empty_table(map, options, options.shard);
+  // In the order of the jobs, whoever was first: a second run gives the same bytes.
   const auto rows =
       program::sweep<report::Row>(table.jobs(), {.label = map.name, .shard = options.shard},
                                   [&](std::size_t job) { return map.run(job, options.grid); });
@@ -33,6 +34,7 @@ Result<report::Table> computed(const Map& map, const StabilityOptions& options) 
 Result<MapReport> finished(const Map& map, const report::Table& table,
                            const StabilityOptions& options, bool is_whole) {
   MapReport report{.name = map.name, .rows = table.rows().size(), .findings = {}, .files = {}};
+  // Before it is judged and drawn: the work stays even if gnuplot is missing.
   auto files = table.write(options.out);
   if (!files) return files.error();
   report.files = std::move(*files);
@@ -60,6 +62,7 @@ Result<std::map<std::string, std::vector<std::string>>> sorted(
 }
 
 bool is_chosen(const Map& map, const StabilityOptions& options) {
+  // --only wins over --map.
   if (!options.only.empty()) return options.only == map.name;
   return options.letters.find(map.letter) != std::string::npos;
 }
@@ -71,6 +74,7 @@ MapsRun merged(const StabilityOptions& options) {
   for (const Map& map : all_maps()) {
     const auto files = of_table->find(map.name);
     if (files == of_table->end()) continue;
+    // Refuses shards that are missing, given twice or run with other options.
     const auto table = merge_table(empty_table(map, options, {}), files->second);
     if (!table) return {std::move(run.reports), table.error()};
     auto report = finished(map, *table, options, true);
