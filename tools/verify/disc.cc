@@ -27,10 +27,12 @@ model::indent::DiscDimensions dimensions_of(const json& p) {
 json constants_results(const json& one_case) {
   const model::indent::DiscDimensions dimensions = dimensions_of(one_case.at("params"));
   const auto disc = model::indent::make_disc(dimensions);
+  // The files name every refusal alike.
   if (!disc) return {{"status", "INVALID_ARGUMENT"}};
   const DiscForm form = DiscForm::kAlmenLaszlo;
   const double ratio = dimensions.outer_diameter_m / dimensions.inner_diameter_m;
   return {{"status", model::indent::is_monotone(*disc, form) ? "OK" : "NON_MONOTONE"},
+          // DS-1 to DS-5.
           {"C", ratio},
           {"alpha", model::indent::disc_shape_factor(ratio)},
           {"k", disc->stiffness_N_per_m},
@@ -78,6 +80,7 @@ json stack_results(const json& one_case) {
                            .layers = p.at("Ncap").get<std::size_t>()};
   const auto stack = model::indent::make_disc_stack(disc, form, delays);
   if (!stack) {
+    // make_disc_stack() has one error for all: ask again which of the file's words it is.
     if (!model::indent::is_monotone(disc, form)) return {{"status", "NON_MONOTONE"}};
     const bool too_slow = delays.refresh_rate_Hz > 0.0 && model::indent::layer_budget(delays) == 0;
     return too_slow ? without_layers(inputs) : json{{"status", "INVALID_ARGUMENT"}, {"h", 0.0}};
@@ -87,6 +90,7 @@ json stack_results(const json& one_case) {
                                      : stack->at_depth(number(inputs.at("depth")));
   return {{"status", word(at.status, stack->truncated_by())},
           {"F", at.force_N},
+          // DS-9: with a force in, the rest is not carried beyond the last layer that moves.
           {"F_supported", at.force_N},
           {"F_unsupported", at.unsupported_force_N},
           {"M", at.moving_layers},
@@ -105,11 +109,13 @@ double rounded(double value, double unit) { return std::round(value / unit) * un
 json printed_results(const json& one_case) {
   const json& p = one_case.at("params");
   const model::indent::DiscDimensions in = dimensions_of(p);
+  // DS-11, X10.
   const double ratio = rounded(in.outer_diameter_m / in.inner_diameter_m, 0.01);
   const double alpha = rounded(model::indent::disc_shape_factor(ratio), 0.001);
   const double l = in.thickness_m, outer = in.outer_diameter_m, mu = in.poisson_ratio;
   const double k_exact =
       4.0 * in.youngs_modulus_Pa / (1.0 - mu * mu) * l * l * l / (alpha * outer * outer);
+  // Four digits, whatever the size.
   const double k = rounded(k_exact, std::pow(10.0, std::floor(std::log10(k_exact)) - 3.0));
   const double h0 = in.free_height_m - l, flat_N = rounded(k * h0, 0.001);
   const double force_N = number(one_case.at("inputs").at("F"));

@@ -36,6 +36,7 @@ void verify_commands(const json& commands, Report& report) {
         .motor = one.at("motors_requested").get<hal::falcon::FalconWords>(),
         .lights = one.at("leds").get<std::uint8_t>(),
         .homing = one.at("homing").get<bool>()};
+    // Both ways: an error that encoding and decoding share would hide itself in one round trip.
     equal(report, "hex", to_hex(encode(wanted)), one.at("hex"));
     const auto sent = hal::falcon::decode_falcon_command(from_hex(one.at("hex"), report));
     equal(report, "decoded", sent.has_value(), true);
@@ -103,6 +104,7 @@ void verify_baud(const json& codes, Report& report) {
   for (const json& one : codes) {
     report.begin_case("ftdi/baud/" + std::to_string(number++));
     const auto got = hal::falcon::ftdi_baud_Hz(one.at("wValue").get<std::uint16_t>());
+    // A quotient: only its last bits may differ.
     report.compare("baud", got.value_or(0.0), one.at("baud"), true, 0.0, 1e-15);
   }
 }
@@ -134,11 +136,13 @@ json to_json(const FtdiRequest& r) {
 /// What is sent, in order, to a device that replies so; a reply to each write, none: silence.
 using Reply = std::function<Bytes(const std::string& written)>;
 json sent_while_booting(const Bytes& image, const Reply& reply) {
+  // One way through: a second one would send everything again.
   hal::falcon::FalconBoot boot(image, {.attempts = 1});
   json sent = json::array();
   Bytes pending;
   std::int64_t now_ms = 0;
   FalconBootAction action = boot.next({.now_ms = now_ms});
+  // A boot that never ends must fail the file, not hang the program.
   for (int step = 0; step < 10'000; ++step) {
     hal::falcon::FalconBootInput input;
     Bytes heard;
@@ -152,6 +156,7 @@ json sent_while_booting(const Bytes& image, const Reply& reply) {
         break;
       case FalconBootAction::What::kRead:
         heard.swap(pending);
+        // Time passes by waiting in vain alone, so that every timeout is met at once.
         if (heard.empty()) now_ms += action.wait_ms;
         input.bytes = heard;
         input.clear_to_send = true;
@@ -177,6 +182,7 @@ class BootCheck {
     for (const json& step : ftdi.at("bootloader"))
       if (step.contains("bulk_out"))
         replies_[step.at("bulk_out")] = from_hex(step.at("expect_in"), report);
+    // Two whole chunks and a rest of 26, and no byte twice: what is out of place is told.
     for (int i = 0; i < 150; ++i) image_.push_back(static_cast<std::uint8_t>(i * 7 + 1));
     sent_ = sent_while_booting(image_, device(false, ""));
   }
@@ -184,6 +190,7 @@ class BootCheck {
   void run() {
     check_requests("open");
     const std::size_t first_normal = at_;
+    // Checked at the end, against the second time: the file has the block once.
     at_ += ftdi_.at("normal").size();
     const int asked = hal::falcon::FalconBootSettings{}.report_tries;
     for (int i = 0; i < asked; ++i) equal(report_, "ask", next(), ask_);
@@ -206,11 +213,13 @@ class BootCheck {
     return [this, null_first, silent, last = std::string()](const std::string& written) mutable {
       const std::string before = std::exchange(last, written);
       if (written == silent) return Bytes{};
+      // It runs, and reports, only when the rest of the image has come.
       if (written == ask_)
         return from_hex(before == to_hex(std::span(image_).last(26)) ? report_hex_ : "", report_);
       const auto known = replies_.find(written);
       if (known == replies_.end()) return from_hex(written, report_);  // the echo of the image
       Bytes out = known->second;
+      // A stray zero may come after a change of the baud rate.
       if (null_first) out.insert(out.begin(), 0);
       return out;
     };
@@ -220,6 +229,7 @@ class BootCheck {
 
   void check_request(json want) {
     const json got = next();
+    // The name and the numbers, each by itself: the file must not contradict itself either.
     equal(report_, "name", to_json(named(want.at("name"), report_)), got);
     want.erase("name");
     equal(report_, "request", got, want);

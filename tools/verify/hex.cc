@@ -32,12 +32,15 @@ json energy_results(const json& one_case) {
       .tension_N = number(p.at("T0")),
       .rings = p.at("m").get<std::size_t>(),
       .weight = p.at("weight") == "NODE" ? HexWeight::kNode : HexWeight::kRing,
+      // A sheet needs one above zero; the cases at d <= 0 never reach it.
       .working_depth_m = depth_m > 0.0 ? depth_m : 1.0,
   });
   if (!sheet) return refused();
   const model::indent::HexSheetState at = sheet->at_depth(depth_m);
+  // Before the depth: a bad number is refused even where there is nothing to feel.
   if (at.status == LawStatus::kInvalid) return refused();
   if (depth_m <= 0.0) return no_contact();
+  // HX-6: rings 0 .. m.
   std::vector<double> ring_m(sheet->parameters().rings + 1);
   sheet->profile(depth_m, ring_m);
   return {{"status", "OK"},
@@ -49,6 +52,7 @@ json energy_results(const json& one_case) {
 
 json boundary_results(const json& inputs) {
   const printed::PaperRings rings =
+      // HX-13.
       printed::paper_rings(number(inputs.at("eps1")), number(inputs.at("b")));
   if (rings.status == LawStatus::kInvalid) return refused();
   const bool saturated = rings.status == LawStatus::kSaturated;
@@ -62,6 +66,7 @@ json paper_results(const json& one_case) {
   const auto rings = p.at("m").get<std::size_t>();
   const bool by_strain = inputs.at("mode") == "EPS1";
   const double input = number(inputs.at(by_strain ? "eps1" : "depth"));
+  // paper_force_N() does not check it.
   if (!(stiffness_N_per_m > 0.0)) return refused();
   if (!by_strain && input <= 0.0) return no_contact();
   const printed::PaperShape at = by_strain ? printed::paper_shape_at_strain(pitch_m, rings, input)
@@ -80,6 +85,7 @@ json paper_results(const json& one_case) {
           {"l", l},
           {"Z", z},
           {"lm_over_r", at.rim_slope},
+          // HX-12 with both weights (X17).
           {"F_ring", printed::paper_force_N(at, stiffness_N_per_m, HexWeight::kRing)},
           {"F_node", printed::paper_force_N(at, stiffness_N_per_m, HexWeight::kNode)}};
 }

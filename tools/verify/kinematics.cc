@@ -70,6 +70,7 @@ void verify_delta_pose(const DeltaKinematics& delta, const DeltaMasses& masses, 
   const Vec3 p = vec3(one.at("p"));
   const hal::delta::DeltaInverse inverse = delta.inverse(p);
   report.compare("reachable", inverse.reachable, one.at("reachable"), false, 0.0, 0.0);
+  // A pose that nobody reaches has no numbers; where the two disagree, that has been told.
   if (!inverse.reachable || !one.at("reachable").get<bool>()) return;
   const double theta = tolerance.at("theta"), tau = tolerance.at("tau_abs");
   compare_abs(report, "theta", inverse.theta_rad, one.at("theta"), theta);
@@ -77,6 +78,7 @@ void verify_delta_pose(const DeltaKinematics& delta, const DeltaMasses& masses, 
   compare_abs(report, "margin", inverse.margin_ratio, one.at("margin"), theta);
 
   const hal::delta::DeltaForward forward = delta.forward(inverse.theta_rad);
+  // Three spheres meet in two points: the file has both.
   compare_abs(report, "fk_far", to_json(forward.far_m), one.at("fk_far"), tolerance.at("p"));
   compare_abs(report, "fk_near", to_json(forward.near_m), one.at("fk_near"), tolerance.at("p"));
 
@@ -116,6 +118,7 @@ void verify_delta(const json& file, Report& report) {
 /// The summary over the cylinder: 13 radii (the axis once), 48 angles, 31 heights.
 void verify_cylinder(const DeltaKinematics& delta, const json& want, double rel, Report& report) {
   bool reachable = true;
+  // 9 rad lies beyond every joint angle.
   double sigma_max = 0.0, cond_max = 0.0, column_max = 0.0, theta_min = 9.0, theta_max = -9.0;
   for (int r = 0; r < 13; ++r) {
     for (int k = 0; k < (r == 0 ? 1 : 48); ++k) {
@@ -128,6 +131,7 @@ void verify_cylinder(const DeltaKinematics& delta, const json& want, double rel,
         const hal::delta::DeltaInverse inverse = delta.inverse(p);
         reachable = reachable && inverse.reachable;
         const Mat3 j = jacobian(delta.pose(p, inverse.theta_rad));
+        // Largest first.
         const Joints sigma = model::singular_values(j);
         sigma_max = std::max(sigma_max, sigma[0]);
         cond_max = std::max(cond_max, sigma[0] / sigma[2]);
@@ -187,6 +191,7 @@ void verify_trajectory(const json& file, Report& report) {
     std::array<long, 3> got_counts{};
     for (std::size_t i = 0; i < 3; ++i) {
       counted_rad[i] = static_cast<double>(counts[i]) / counts_per_rad;
+      // What an encoder would have counted there.
       got_counts[i] = std::lround(inverse.theta_rad[i] * counts_per_rad);
     }
     report.compare("counts", got_counts, row.at("counts"), false, 0.0, 0.0);
@@ -212,6 +217,7 @@ void verify_falcon_pose(const hal::falcon::FalconKinematics& falcon, const json&
   compare_abs(report, "theta3", legs.side_rad, one.at("theta3"), tolerance.at("theta"));
   const Mat3 k = falcon.joint_rate_matrix(legs);
   compare_matrix(report, "K", k, one.at("K"), tolerance.at("K_rel"));
+  // The file has no tolerance for J; it is the inverse of K.
   compare_matrix(report, "J", model::inverse(k), one.at("J"), tolerance.at("K_rel"));
   compare_abs(report, "tau", hal::falcon::falcon_torques_Nm(k, vec3(one.at("force"))),
               one.at("tau"), tolerance.at("tau_abs"));
@@ -247,6 +253,7 @@ void verify_falcon_constants(const json& want, Report& report) {
   const double motor_rad = 2.0 * std::numbers::pi / want.at("counts_per_motor_rev").get<double>();
   const double drum_m = want.at("drum_diameter"), shaft_m = want.at("shaft_diameter");
   compare_rel(report, "counts_per_motor_rev", motor_rad * shaft_m / rad_per_count, drum_m, kRel);
+  // An encoder in quadrature counts four edges a slot.
   compare_rel(report, "encoder_slots", want.at("counts_per_motor_rev").get<double>() / 4.0,
               want.at("encoder_slots"), kRel);
 }

@@ -54,6 +54,7 @@ std::vector<Verifier> known_verifiers() {
 Result<std::string> default_directory() {
   std::error_code ignored;
   for (const fs::path& start :
+       // A build folder has the vectors above itself, wherever the program was called from.
        {fs::current_path(ignored), fs::read_symlink("/proc/self/exe", ignored)}) {
     for (fs::path at = start; !at.empty(); at = at.parent_path()) {
       if (fs::is_directory(at / kVectors, ignored)) return (at / kVectors).string();
@@ -79,6 +80,7 @@ Result<std::vector<std::string>> files_of(const std::vector<std::string>& paths)
       if (entry.path().extension() == ".json") found.push_back(entry.path().string());
     if (error) return Error{fmt::format("{}: {}", path, error.message())};
     if (found.empty()) return Error{fmt::format("{}: no .json file in it; name another", path)};
+    // A directory lists in any order; two runs must print alike.
     std::sort(found.begin(), found.end());
     files.insert(files.end(), found.begin(), found.end());
   }
@@ -100,6 +102,7 @@ Result<FileReport> verify_file(const std::string& path) {
       if (verifier.law != out.law) continue;
       verifier.verify(file, out.report);
       if (!out.report.damage().empty()) return damaged(path, out.report.damage());
+      // All of nothing would pass.
       if (out.report.passed() + out.report.failed() > 0) return out;
       return Error{fmt::format("{}: holds no case, so it proves nothing; take a fresh copy", path)};
     }
@@ -154,6 +157,7 @@ int run(std::vector<std::string> paths, bool as_json) {
   for (const std::string& path : *files) {
     const auto report = verify_file(path);
     if (!report) {
+      // The other files are judged all the same; the exit status remembers.
       status = complain(report.error());
       continue;
     }
@@ -171,6 +175,7 @@ int run(std::vector<std::string> paths, bool as_json) {
                             {"failed", failed},
                             {"files", out}}
                            .dump(2));
+  // A file that could not be judged weighs more than a case that failed.
   if (status != 0) return status;
   return failed > 0 ? 1 : 0;
 }

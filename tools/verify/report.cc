@@ -14,6 +14,7 @@ using nlohmann::json;
 
 std::optional<double> as_number(const json& value) {
   if (value.is_number()) return value.get<double>();
+  // JSON has no word for these.
   if (value == "NaN") return std::numeric_limits<double>::quiet_NaN();
   if (value == "Infinity") return std::numeric_limits<double>::infinity();
   if (value == "-Infinity") return -std::numeric_limits<double>::infinity();
@@ -21,6 +22,7 @@ std::optional<double> as_number(const json& value) {
 }
 
 bool near(double got, double want, double tolerance) {
+  // Not by the difference: it would be NaN, which is within no tolerance.
   if (std::isnan(want)) return std::isnan(got);
   if (std::isinf(want)) return got == want;
   return std::abs(got - want) <= tolerance;
@@ -59,6 +61,7 @@ void Report::call_damaged(const std::string& sentence) {
 }
 
 void Report::fail(Failure failure) {
+  // A case counts once, however many of its fields are wrong.
   if (!id_failed_) ++failed_;
   id_failed_ = true;
   failures_.push_back(std::move(failure));
@@ -67,6 +70,7 @@ void Report::fail(Failure failure) {
 void Report::compare(const std::string& field, const json& got, const json& want, bool numeric,
                      double abs, double rel) {
   if (want.is_array()) {
+    // Too short must not pass because nobody looked at the rest.
     if (!got.is_array() || got.size() != want.size())
       return fail({id_, field + " (length)", got.size(), want.size(), 0.0});
     for (std::size_t i = 0; i < want.size(); ++i)
@@ -78,6 +82,7 @@ void Report::compare(const std::string& field, const json& got, const json& want
     if (got != want) fail({id_, field, got, want, 0.0});
     return;
   }
+  // The larger of the two: rel alone would ask zero to be exact.
   const double tolerance = numeric ? std::max(abs, rel * std::abs(*want_number)) : 0.0;
   if (!near(*got_number, *want_number, tolerance)) fail({id_, field, got, want, tolerance});
 }
@@ -88,6 +93,7 @@ void Report::compare_all(const json& got, const json& expect, const Tolerance& t
     const bool numeric = kind != tolerance.kind_of.end();
     double abs = 0.0;
     if (numeric && tolerance.abs.contains(kind->second)) abs = tolerance.abs.at(kind->second);
+    // A field that nobody computes fails, too.
     compare(field, got.contains(field) ? got.at(field) : json("missing"), want, numeric, abs,
             tolerance.rel);
   }

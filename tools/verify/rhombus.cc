@@ -45,6 +45,7 @@ json unit_results(const json& one_case) {
   const model::indent::UnitResponse r =
       model::indent::respond(unit, number(one_case.at("inputs").at("x")));
   json got{{"status", word(r.status)}, {"f", r.force_N}};
+  // The file expects nothing more of a unit that is none.
   if (r.status == LawStatus::kInvalid) return got;
   const model::indent::UnitPressLimit limit = model::indent::press_limit(unit);
   got.update({{"theta", r.angle_rad},
@@ -67,6 +68,7 @@ model::indent::RhombusChainParameters chain_parameters(const json& p) {
           .normal_stiffness_N_per_m = first.normal_stiffness_N_per_m,
           .tangential_stiffness_N_per_m = first.tangential_stiffness_N_per_m,
           .growth = number(p.at("beta")),
+          // Below zero it must not wrap to a huge number; 0 is refused, and is a case.
           .units = units > 0 ? static_cast<std::size_t>(units) : 0};
 }
 
@@ -81,6 +83,7 @@ void add_lambda_rule(const model::indent::RhombusChain& chain, const model::inde
     const double lambda = model::indent::respond(chain.unit(i), x).lambda;
     shortenings.push_back(x);
     lambdas.push_back(lambda);
+    // Only an unbroken row from the contact on counts.
     if (leading == static_cast<int>(i) && lambda >= 0.05) ++leading, depth_m += x;
   }
   got.update(
@@ -104,8 +107,10 @@ json chain_results(const json& one_case) {
               {"profile", ring_m},
               {"F_lim", chain->force_limit_N()},
               {"d_lim", chain->range().press_m},
+              // The file counts units from 1, as RC-8 does.
               {"lim_unit", chain->weakest_unit() + 1},
               {"lim_kind", word(chain->limit_kind())},
+              // RC-12.
               {"F_eq12", at.depth_m != 0.0 ? at.energy_J / at.depth_m : 0.0}});
   add_lambda_rule(*chain, at, got);
   return got;
@@ -121,11 +126,13 @@ json paper_forward_results(const json& one_case) {
     RhombusUnit unit = unit_of(p, "kT1");
     unit.tangential_stiffness_N_per_m *= std::exp(i / number(p.at("beta")));  // (11)
     const printed::PaperUnit at = printed::paper_forward(unit, number(angle));
+    // X2: the first unit at which D is zero.
     if (printed::paper_divides_by_zero(unit, at) && singular_unit == 0) singular_unit = i + 1;
     dl.push_back(at.shortening_m);
     dv.push_back(at.widening_m);
     d.push_back(at.stiffness_N_per_m);
     f3.push_back(at.force_N);
+    // A press is below zero in the paper and above it in the energy form.
     f_energy.push_back(-model::indent::respond(unit, -at.shortening_m).force_N);
     depth_m += at.shortening_m;
     energy_J += at.energy_J;

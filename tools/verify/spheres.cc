@@ -21,8 +21,10 @@ json group_results(const json& one_case) {
                                       .radius_m = number(p.at("radius_m"))};
   double deepest_m = 0.0;
   for (const json& d : inputs.at("depth_m")) deepest_m = std::max(deepest_m, number(d));
+  // A half-space and nothing else: no give of the organ's own, no ring.
   constexpr std::array<double, 1> kFlat{};
   const auto curve = model::indent::make_compliance_curve({.tip = tip,
+                                                           // Beyond it the force would stay.
                                                            .working_depth_m = deepest_m,
                                                            .ring_pitch_m = tip.radius_m,
                                                            .ring_m_per_N = kFlat,
@@ -49,8 +51,10 @@ json group_results(const json& one_case) {
   model::contact::Coupling c{};
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j)
+      // MC-2. What a sphere does to itself is in its own curve.
       if (i != j)
         c[i][j] = tissue.coupling(sphere[i].in, sphere[j].in, norm(at_m[i] - at_m[j])).skin_m_per_N;
+  // MC-1.
   press_together(tissue, c, {sphere.data(), n});
   json force_N = json::array();
   for (std::size_t i = 0; i < n; ++i) force_N.push_back(sphere[i].response.law.force_N);

@@ -21,6 +21,7 @@ using model::springs::Oscillator;
 using model::springs::OscillatorState;
 using nlohmann::json;
 
+// As the file writes it: JSON has no infinity.
 json printed(double v) { return std::isinf(v) ? json("Infinity") : json(v); }
 
 /// Another word is damage, which the library reports.
@@ -57,6 +58,7 @@ json oscillator_results(const json& one_case) {
     at = model::springs::step(o, at, method, h);
   if (at.status != model::law::LawStatus::kOk) return {{"status", "INVALID_ARGUMENT"}};
   const double omega = std::sqrt(o.stiffness_N_per_m / o.mass_kg);
+  // Without a spring z is zero, and zeta does not matter.
   const double zeta = omega > 0.0 ? o.damping_Ns_per_m / (2.0 * o.mass_kg * omega) : 0.0;
   const OscillatorState truth = model::springs::exact(o, start, h * steps);
   return {{"status", "OK"},
@@ -115,6 +117,7 @@ void verify_claims(const json& file, Report& report) {
   for (const json& one_case : file.at("cases")) {
     report.begin_case(one_case.at("id"));
     for (const auto& [step, methods] : one_case.at("expect").at("errors").items()) {
+      // "h=0.1"; a word that is no number throws, which main.cc tells as damage.
       const double h = std::stod(step.substr(step.find('=') + 1));
       double least = std::numeric_limits<double>::infinity();
       std::string best;
@@ -124,6 +127,7 @@ void verify_claims(const json& file, Report& report) {
         report.compare(where + "rms_x", got.position_m, want.at("rms_x"), true, abs, tolerance.rel);
         report.compare(where + "rms_v", got.velocity_mps, want.at("rms_v"), true, abs,
                        tolerance.rel);
+        // MA-19 is about alpha: the other methods take no part.
         if (name.find('@') == std::string::npos || got.velocity_mps >= least) continue;
         least = got.velocity_mps;
         best = name.substr(name.find('@') + 1);
@@ -149,7 +153,9 @@ json network_results(const json& one_case) {
   for (const json& node : p.at("nodes")) {
     x.push_back(vector_of(node.at("x")));
     v.push_back(vector_of(node.at("v")));
+    // An infinite mass does not move.
     inverse.push_back(node.at("fixed").get<bool>() ? 0.0 : 1.0 / number(node.at("m")));
+    // The published networks have no anchors; those are ours (MA-22).
     anchor.push_back(0.0);
     drag.push_back(number(p.at("global_damping")));
   }

@@ -30,10 +30,12 @@ json list(const Vector& v, Eigen::Index count = Vector::RowsAtCompileTime) {
   for (Eigen::Index i = 0; i < count; ++i) out.push_back(v[i]);
   return out;
 }
+// w first, as the files have it; Eigen stores it last.
 json list(const Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 
 Pose pose_of(const json& inputs, const char* rotation, const char* position) {
   const auto q = host::pose::rotation_from(inputs.at(rotation).get<std::array<double, 4>>());
+  // A quaternion that is refused becomes NaN, which equals nothing but the file's own NaN.
   const double nan = std::numeric_limits<double>::quiet_NaN();
   return {.rotation = q.value_or(Quaterniond(nan, nan, nan, nan)),
           .position_m = vector_3(inputs.at(position))};
@@ -42,6 +44,7 @@ Pose pose_of(const json& inputs, const char* rotation, const char* position) {
 json transform_results(const json& one_case) {
   const json& inputs = one_case.at("inputs");
   if (inputs.at("mode") == "BIND_DRIVE") {
+    // TR-5, TR-6.
     const Pose offset = host::pose::bind(pose_of(inputs, "q_tracker0", "p_tracker0"),
                                          pose_of(inputs, "q_bone0", "p_bone0"));
     const Pose bone = host::pose::drive(pose_of(inputs, "q_tracker", "p_tracker"), offset);
@@ -51,6 +54,7 @@ json transform_results(const json& one_case) {
             {"p_bone", list(bone.position_m)}};
   }
   const Vector3d angles = vector_3(inputs.at("euler")), p = vector_3(inputs.at("p"));
+  // TR-1 to TR-4.
   const host::pose::EulerAngles euler{
       .alpha_rad = angles[0], .beta_rad = angles[1], .gamma_rad = angles[2]};
   const Quaterniond q = host::pose::rotation_from(euler);
@@ -62,6 +66,7 @@ json transform_results(const json& one_case) {
 
 json leg_results(const json& one_case) {
   const json &p = one_case.at("params"), &inputs = one_case.at("inputs");
+  // CC-10.
   const host::figure::Leg leg{.thigh_m = number(p.at("L_lap")),
                               .calf_m = number(p.at("L_calf")),
                               .bend = p.at("bend") == 1 ? host::figure::Bend::kCounterClockwise
@@ -116,6 +121,7 @@ void add_spatial_joint(const json& j, host::figure::Chain& chain,
 
 json ccd_results(const json& one_case) {
   const json &p = one_case.at("params"), &inputs = one_case.at("inputs");
+  // CC-5: a plane is z = 0 here, with hinges about z.
   const bool planar = p.at("kind") == "PLANAR";
   const auto point = [&](const json& v) { return planar ? in_plane(v) : vector_3(v); };
   host::figure::Chain chain{.base_m = point(inputs.at("base")), .bones = {}};
@@ -135,6 +141,7 @@ json ccd_results(const json& one_case) {
                           {.target_m = point(inputs.at("target")),
                            .tolerance_m = number(p.at("eps")),
                            .sweeps = p.at("max_sweeps").get<int>()});
+  // Nothing else is defined then.
   if (at.status == host::figure::ReachStatus::kInvalid) return {{"status", word(at.status)}};
   json points = json::array(), swing = json::array();
   for (const Vector3d& m : at.points_m) points.push_back(list(m, planar ? 2 : 3));
@@ -166,6 +173,7 @@ double angle_to(const Quaterniond& got, const json& rows) {
   Eigen::Matrix3d want;
   for (Eigen::Index i = 0; i < 9; ++i)
     want(i / 3, i % 3) = number(rows.at(static_cast<std::size_t>(i)));
+  // One number for nine: how far the rotation is off, in any direction.
   return got.angularDistance(Quaterniond(want));
 }
 
