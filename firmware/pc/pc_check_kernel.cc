@@ -79,7 +79,7 @@ PcRow clock_row(const PcFiles& files) {
             .verdict = Verdict::kUnknown,
             .found = source.value_or("not told"),
             .why =
-                "the loop reads the clock eight times a tick; some clocks need a system call of "
+                "the loop reads the clock twice a tick; some clocks need a system call of "
                 "a microsecond for each",
             .cure =
                 "add tsc=reliable clocksource=tsc to GRUB_CMDLINE_LINUX, sudo update-grub, "

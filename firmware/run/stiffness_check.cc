@@ -37,16 +37,22 @@ double stiffest_sideways_N_per_m(const model::scene::Scene& scene,
   // Set by hand: the tissue's own does not count (contact/contact.h).
   if (scene.contact.sliding_stiffness_N_per_m > 0.0) return scene.contact.sliding_stiffness_N_per_m;
   double most_N_per_m = 0.0;
-  // At the first corner of every triangle: more than 90 % of the vertices of each shipped organ.
-  for (std::uint32_t t = 0; t < scene.organ_mesh.triangle.size(); ++t)
+  const auto ask = [&](const model::contact::Place& place, const model::contact::Axes& axes) {
+    const model::contact::TangentGive give = law.tangent_give(place, true, axes);
     for (const model::contact::ProbeSphere& sphere : scene.tool.spheres) {
-      const double give_m_per_N =
-          law.tangent_give({.triangle = t, .weight = {1.0, 0.0, 0.0}}, true,
-                           model::contact::axes_of(scene.organ_mesh.face_normal[t]))
-              .at(sphere.radius_m)
-              .least_eigenvalue();
+      const double give_m_per_N = give.at(sphere.radius_m).least_eigenvalue();
       if (give_m_per_N > 0.0) most_N_per_m = std::max(most_N_per_m, 1.0 / give_m_per_N);
     }
+  };
+  // At every vertex, from every triangle that meets there: in between the give is a mean of them.
+  for (std::uint32_t t = 0; t < scene.organ_mesh.triangle.size(); ++t) {
+    const model::contact::Axes axes = model::contact::axes_of(scene.organ_mesh.face_normal[t]);
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      model::contact::Place place{.triangle = t, .weight = {}};
+      place.weight[corner] = 1.0;
+      ask(place, axes);
+    }
+  }
   return most_N_per_m;
 }
 

@@ -21,7 +21,7 @@ namespace tact::firmware::telemetry {
 class TelemetrySocket {
  public:
   /// Listens at `path`, for the members of the group `viewers` too. An error if another tactd does
-  /// so already. Takes over `mesh_fd`.
+  /// so already. Takes over `mesh_fd` unless it fails.
   static model::Result<TelemetrySocket> open(const std::string& path, const Hello& hello,
                                              int mesh_fd, std::optional<gid_t> viewers = {});
   TelemetrySocket(TelemetrySocket&& other) noexcept;

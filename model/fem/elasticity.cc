@@ -99,7 +99,7 @@ Result<StiffnessMatrix> assemble_stiffness(const TetMesh& mesh, const Elasticity
     return Error{"finite elements: youngs_modulus_Pa must be finite and above 0"};
   if (!(nu >= 0.0 && nu < 0.5))
     return Error{
-        "finite elements: poisson_ratio must lie between 0 and 0.4999; 0.49 is usual for "
+        "finite elements: poisson_ratio must be 0 or more and below 0.5; 0.49 is usual for "
         "tissue that keeps its volume"};
   const double mu_Pa = material.shear_modulus_Pa();
   const double lambda_Pa = e_Pa * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));

@@ -30,8 +30,9 @@ double HuntCrossley::damping_Ns_per_m(double depth_m) const RT_SAFE {
 
 std::size_t HuntCrossley::profile(double depth_m, std::span<double> ring_m) const RT_SAFE {
   const std::array<double, 2> u_m{std::fmax(depth_m, 0.0), 0.0};
-  std::copy_n(u_m.begin(), std::min(u_m.size(), ring_m.size()), ring_m.begin());
-  return u_m.size();
+  const std::size_t count = std::min(u_m.size(), ring_m.size());
+  std::copy_n(u_m.begin(), count, ring_m.begin());
+  return count;
 }
 
 Result<HuntCrossley> make_hunt_crossley(const HuntCrossleyParameters& p) {

@@ -26,6 +26,7 @@
 #include <span>
 #include <vector>
 
+#include "model/contact/dent_view.h"
 #include "model/springs/integrators.h"
 #include "model/types.h"
 
@@ -113,7 +114,7 @@ class SpringStepper {
   std::vector<Vec3> force_N_, position_m_, velocity_mps_, sum_, direction_, product_;
   std::vector<double> preconditioner_;
   std::vector<Tangent> tangent_;
-  std::array<bool, 8> probe_pushes_{};
+  std::array<bool, contact::kMaxSpheres> probe_pushes_{};
 };
 
 }  // namespace tact::model::springs
