@@ -23,6 +23,10 @@
 
 namespace tact::model::contact {
 
+/// The most that a place may be stiffer than the organ's own stiffness, a half-space or the mean of
+/// its springs: beside what holds it an organ is stiffer than its own surface can show.
+inline constexpr double kStiffestPlace = 3.0;
+
 struct SiteResponse {
   law::LawResponse law;
   Vec3 slope_N{};  // F_s, tangential to the touched triangle

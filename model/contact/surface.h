@@ -32,6 +32,9 @@ struct alignas(128) TriangleRecord {
 };
 static_assert(sizeof(TriangleRecord) == 128);
 
+/// Cosine between the normals of two places: skin that looks further away belongs to another side.
+inline constexpr double kFacing = 0.2;
+
 struct SurfaceView {
   std::span<const Vec3> vertex_m;              // n
   std::span<const TriangleCorners> triangle;   // m

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/contact/site_law.h"
+
 namespace tact::model::springs {
 namespace {
 
@@ -57,13 +59,12 @@ double across_N_per_m(const PatchTissue& tissue) {
 
 // MA-22
 double anchor_of_give_N_per_m(const PatchTissue& tissue, double more_m_per_N) {
-  constexpr double kStiffestPlace = 3.0;  // over the mean one, as model/tissue has it
   // Without pretension M_n is 0 and MA-22 is 0/0: this is near enough to its limit.
   constexpr double kMinModulus_N_per_m = 1e-6;
   const double modulus =
       std::max(std::numbers::sqrt3 * across_N_per_m(tissue), kMinModulus_N_per_m);
   const double mean_m_per_N = give_m_per_N(modulus, tissue.body_stiffness_N_per_m);
-  const double give = std::max(mean_m_per_N + more_m_per_N, mean_m_per_N / kStiffestPlace);
+  const double give = std::max(mean_m_per_N + more_m_per_N, mean_m_per_N / contact::kStiffestPlace);
   const double all_waves = 4.0 * std::numbers::pi * modulus;
   return all_waves / std::expm1(all_waves * give / kShortWaves);
 }

@@ -14,7 +14,7 @@
 // (compliance_family_test.cc).
 //
 // Close to the held side the organ is stiffer than its own surface can show: r is limited so that a
-// place is at most kStiffestPlace times as stiff as a half-space. Set-up code only.
+// place is at most kStiffestPlace (site_law.h) times as stiff as a half-space. Set-up code only.
 #pragma once
 
 #include <span>
@@ -26,10 +26,6 @@
 #include "model/tissue/elastic_field.h"
 
 namespace tact::model::tissue {
-
-/// Of a place, over a half-space: close to the held side an organ is stiffer than its own surface
-/// can show.
-inline constexpr double kStiffestPlace = 3.0;
 
 struct ComplianceFamily {
   std::vector<indent::ComplianceCurve> curve;  // K, soft to stiff

@@ -8,7 +8,6 @@
 namespace tact::model::tissue {
 namespace {
 
-constexpr double kFacing = 0.2;      // cosine; skin that looks further away is another side
 constexpr double kMinSpread = 1e-6;  // of what a disc of skin has: below, there is no plane
 
 /// Moments of r over skin around a point, in two axes of its tangent plane.
@@ -45,7 +44,7 @@ std::vector<Vec3> dent_tilt(const ComplianceMap& map, const contact::SurfaceView
       const std::size_t w = *near;
       const Vec3 away_m = surface.vertex_m[w] - at_m;
       if (dot(away_m, away_m) > kTiltReach_m * kTiltReach_m ||
-          dot(surface.vertex_normal[w], n) < kFacing)
+          dot(surface.vertex_normal[w], n) < contact::kFacing)
         continue;
       m.add(dot(away_m, e1), dot(away_m, e2), static_cast<double>(map.regular_times_E_per_m[w]));
     }

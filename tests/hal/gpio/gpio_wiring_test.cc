@@ -19,10 +19,8 @@ struct PlayedChip {
   std::map<int, std::string> user;  // of another program
   int open = 0;
 };
-PlayedChip& played() {
-  static PlayedChip one;
-  return one;
-}
+PlayedChip the_chip;
+PlayedChip& played() RT_SAFE { return the_chip; }
 
 }  // namespace
 
