@@ -49,6 +49,7 @@ constexpr CanopenWords kEmergency[] = {
     {0, 0, "An error that no standard names: look it up in the drive's manual."},
 };
 
+// CiA 301's abort codes of SDO.
 constexpr CanopenWords kAbort[] = {
     {0x05030000, kExact, "Request and reply got out of step: try again."},
     {0x05040000, kExact, "The drive did not answer in time: is it on, and at this node?"},

@@ -59,6 +59,7 @@ std::string hash_of_references(const Options& o) {
   for (const std::string& path : {o.reference, o.tool_reference}) {
     if (path.empty()) continue;
     const auto text = tact::model::io::read_file(path);
+    // A file that cannot be read is told by whoever needs it, with its name.
     hash.add(text ? *text : std::string());
   }
   return hash.hex();
@@ -83,6 +84,7 @@ int judge_whole_tool(const program::Program& program, const Options& o) {
   std::vector<ToolRow> rows;
   for (const auto& name : tact::model::scene::kLawNames) {
     const auto& laws = o.chart.wish.laws;
+    // Laws without a section of their own would be judged with numbers that nobody wrote.
     if (!scene->describes(name.kind)) continue;
     if (!laws.empty() && std::find(laws.begin(), laws.end(), name.name) == laws.end()) continue;
     auto row = judge_tool(*scene, name.kind, *reference, o.chart.timing);
@@ -132,6 +134,7 @@ Result<report::Table> table_of(const Options& o, const Scene& scene,
   if (!rows) return rows.error();
   report::Table table = empty_chart(all, o.chart.shard);
   const auto failed = [](const ChartRow& row) { return !row.failure.empty(); };
+  // One sentence instead of a table of failures; a shard may be all peers that are missing here.
   if (std::all_of(rows->begin(), rows->end(), failed) && o.chart.shard.is_whole())
     return Error{rows->front().failure};
   for (const ChartRow& row : *rows) table.add(table_row(row, provenance));
@@ -149,6 +152,7 @@ int tell(const program::Program& program, const Options& o, const report::Table&
     for (const std::string& file : files) fmt::print("{}\n", file);
   }
   int status = 0;
+  // tact's own promise: where a peer beats it, the check fails.
   for (const std::size_t i : is_whole ? peers_ahead(table) : std::vector<std::size_t>{}) {
     const report::Row& row = table.rows()[i];
     fmt::print(stderr, "tact-chart: the peer {} {} is both faster and nearer than tact's front\n",

@@ -21,11 +21,13 @@ using model::Result;
 using nlohmann::ordered_json;
 
 constexpr const char* kFormat = "tact-chart";
+// read_chart() takes this one alone: an older chart has other columns.
 constexpr int kVersion = 3;
 
 /// Numbers as Table::to_json writes them: those that are not finite are words.
 report::Cell cell_of(const nlohmann::json& value, report::CellKind kind) {
   if (kind == report::CellKind::kWord) return value.get<std::string>();
+  // Infinity becomes NaN, too: both mean "not measured" to whoever chooses by it.
   return value.is_number() ? value.get<double>() : std::nan("");
 }
 
@@ -86,6 +88,7 @@ Result<report::Table> read_chart(const std::string& path) {
     report::Table table = empty_chart(rows.size(), {});
     for (const auto& row : rows) {
       report::Row cells;
+      // By name: the order in the file does not matter.
       for (const report::Column& column : table.columns())
         cells.push_back(cell_of(row.at(column.name), column.kind));
       table.add(std::move(cells));

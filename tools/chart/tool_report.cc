@@ -18,6 +18,7 @@ using nlohmann::ordered_json;
 
 std::string mm_text(double depth_m) { return fmt::format("{:g}", depth_m * 1e3); }
 
+// JSON has no NaN.
 ordered_json number_or_null(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json();
 }
@@ -30,6 +31,7 @@ ordered_json summary_of(const ToolRow& row, const ToolReference& reference) {
   }
   out["force_rms_ratio"] = row.errors.rms_ratio;
   out["force_worst_ratio"] = row.errors.worst_ratio;
+  // NaN where the reference has no unseen place.
   out["unseen_rms_ratio"] = number_or_null(row.errors.unseen_rms_ratio);
   out["within_jnd_ratio"] = row.errors.within_jnd_ratio;
   for (std::size_t k = 0; k < row.errors.own_worst_ratio.size(); ++k)
@@ -124,6 +126,7 @@ model::Result<std::vector<model::scene::Accuracy>> accuracy_of(
     const ground_truth::ToolReference& reference) {
   std::vector<model::scene::Accuracy> out;
   for (const ToolRow& row : rows) {
+    // A law that could not be made has no accuracy to tell.
     if (!row.failure.empty()) continue;
     const auto law = model::scene::make_tissue_law(scene, row.law);
     if (!law) return law.error();

@@ -58,6 +58,7 @@ class List {
 };
 
 void List::discs() {
+  // At most the scene's: more layers would be another tissue.
   const std::size_t layers = scene_.disc_stack.delays.layers;
   for (const auto form :
        {model::indent::DiscForm::kLinear, model::indent::DiscForm::kAlmenLaszlo}) {
@@ -77,6 +78,7 @@ void List::laws() {
   if (wants(LawKind::kHuntCrossley)) add({.law = LawKind::kHuntCrossley});
   if (wants(LawKind::kSpringPatch))
     each({50, 100, 200, 500, 1000}, {100}, LawKind::kSpringPatch, &LawSizes::nodes);
+  // Two sizes, one after the other: curves over the organ, then knots of a curve.
   if (!wants(LawKind::kCompliance)) return;
   each({2, 3, 5, 9, 17, 33}, {5, 17}, LawKind::kCompliance, &LawSizes::curves);
   if (wish_.quick) return;
@@ -89,6 +91,7 @@ void List::peers() {
     for (const std::size_t size : sizes)
       out_.push_back({.sizes = {}, .peer = kind, .peer_size = size});
   };
+  // Sizes in um: edges of 12, 8 and 5 mm. Without [elastic] it has no material.
   if (wants("fem") && scene_.elastic) each_size(PeerKind::kFem, {12000, 8000, 5000});
   if (wants("spring_mesh")) each_size(PeerKind::kSpringMesh, {5, 10, 20});
   if (wants("bullet_surface")) each_size(PeerKind::kBulletSurface, {4, 10, 20});

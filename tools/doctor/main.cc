@@ -51,6 +51,7 @@ void add_options(CLI::App& app, Options& o) {
 int mend(const tact::tools::program::Program& program, const PcQuestion& question,
          const std::vector<PcRow>& rows, const Options& options) {
   const FixPeople people =
+      // A copy of another PC has no users of ours.
       options.root.empty() ? people_of_this_pc() : FixPeople{.user = "", .has_group = true};
   const auto ended =
       options.undo ? undo(options.how) : fix(plan_fix(question, rows, people), options.how);
@@ -71,6 +72,7 @@ int main(int argc, char** argv) {
   if (!options.root.empty() && !std::filesystem::is_directory(options.root + "/proc"))
     return program.fail(Error{options.root + ": has no proc/ below it; name a folder that has"});
   PcQuestion question{.files = PcFiles(options.root), .core = options.core};
+  // Of a copy the rows choose by its own files.
   if (options.root.empty()) question.core = choose_core({.core = options.core});
   options.how.root = options.root;
   if ((options.how.dry_run || options.how.yes) && !options.fix && !options.undo)
@@ -87,5 +89,6 @@ int main(int argc, char** argv) {
     fmt::print("{}", make_doctor_table(rows, isatty(STDOUT_FILENO) != 0));
   const bool any_red = std::any_of(rows.begin(), rows.end(),
                                    [](const PcRow& row) { return row.verdict == Verdict::kRed; });
+  // Unknown does not fail: a virtual machine or a container does not tell everything.
   return any_red ? 1 : 0;
 }

@@ -15,6 +15,7 @@ using model::Result;
 using report::Csv;
 using report::CsvLine;
 
+// Chosen: fewer points than that fit anything.
 constexpr std::size_t kMinRows = 3;
 constexpr double kAsDeep = 1.0 + 1e-9;  // 9 times 0.001 is more than 0.009
 constexpr const char* kRadius = "radius_m";

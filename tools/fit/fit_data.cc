@@ -29,6 +29,7 @@ double FitData::deepest_m() const {
 double FitData::farthest_pull_m() const {
   double farthest = 0.0;
   for (const FitSite& site : sites)
+    // A pull is a depth below zero.
     for (const FitSample& s : site.samples) farthest = std::max(farthest, -s.depth_m);
   return farthest;
 }
@@ -90,6 +91,7 @@ Result<FitData> fit_data_of(const ground_truth::ReferenceData& reference,
     for (const model::scene::ReferenceSite& known : scene.reference_sites)
       if (known.vertex == solved.vertex) site.held_out = known.held_out;
     for (const ground_truth::ReferenceCase& c : solved.cases) {
+      // One kind or the other: a law cannot follow both with one set of numbers.
       if (c.large_strain != large_strain) continue;
       site.samples.push_back({.depth_m = c.depth_m, .force_N = c.force_N, .ring_m = c.profile_m});
       rings = std::max(rings, c.profile_m.size());

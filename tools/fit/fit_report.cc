@@ -14,6 +14,7 @@ using nlohmann::ordered_json;
 
 double judged_ratio(const FittedLaw& law) {
   const Judgement& j = law.judged;
+  // More parameters never fit worse: only a site that the law has not seen can tell.
   return j.held_out.samples > 0 ? j.held_out.rms_ratio() : j.fitted.rms_ratio();
 }
 
@@ -38,11 +39,13 @@ std::string toml_of_keys(const FittedLaw& law, std::vector<std::string>& written
   bool wrote_choice = law.choice.empty();
   for (const FittedKey& k : law.keys) {
     const std::string name = k.section + "." + k.key;
+    // TOML refuses a key or a section that stands twice, so later laws have theirs as comments.
     const char* mark = known(name) ? "# " : "";
     if (k.section != section) {
       section = k.section;
       const bool has_section = known(section);
       out += fmt::format("{}[{}]\n", has_section ? "# " : "", section);
+      // Such as the form of a disc: without it the numbers below are those of another law.
       if (!wrote_choice) out += fmt::format("{}{}\n", has_section ? "# " : "", law.choice);
       wrote_choice = true;
       mine.push_back(section);
@@ -87,6 +90,7 @@ std::string text_of_law(const FittedLaw& law) {
     out += fmt::format("  factor: {}\n", by_site ? "of each site's force, used above"
                                                  : "what would suit the site best; not used");
   }
+  // On the screen each law stands alone.
   std::vector<std::string> none;
   return out + toml_of_keys(law, none);
 }
@@ -97,6 +101,7 @@ ordered_json json_of(const Residual& r) {
 }
 
 ordered_json json_of(double value) {
+  // JSON has no NaN.
   return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
 }
 
@@ -139,6 +144,7 @@ bool FitReport::follows() const {
 
 void FitReport::sort() {
   std::sort(laws.begin(), laws.end(), [](const FittedLaw& a, const FittedLaw& b) {
+    // By name where two are alike: std::sort keeps no order of its own.
     return std::tuple(judged_ratio(a), a.name) < std::tuple(judged_ratio(b), b.name);
   });
 }

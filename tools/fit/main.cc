@@ -79,6 +79,7 @@ Result<FitData> read_data(const Options& o, const Scene& scene) {
   }
   auto data = read_bench_csv(o.data, o.columns, o.held_out);
   if (!data) return data;
+  // Fewer than ten digits: stoul() below cannot fail.
   for (FitSite& site : data->sites) {  // a site named by a vertex has a place
     const bool is_number =
         !site.name.empty() && site.name.size() < 10 &&
@@ -101,6 +102,7 @@ Result<std::vector<FitLaw>> chosen_laws(const Options& o, const Scene& scene, co
     for (const FitLaw& law : all) {
       if (!answers_to(law, name)) continue;
       is_known = true;
+      // "disc_stack,disc_stack_linear" names the linear form twice.
       const bool is_new = std::none_of(chosen.begin(), chosen.end(),
                                        [&](const FitLaw& c) { return c.name == law.name; });
       if (is_new) chosen.push_back(law);
@@ -112,6 +114,7 @@ Result<std::vector<FitLaw>> chosen_laws(const Options& o, const Scene& scene, co
   for (const std::string& key : o.keep) {
     std::size_t kept = 0;
     for (FitLaw& law : chosen) kept += keep_parameters(law, {key});
+    // A key that is misspelt would be fitted in silence.
     if (kept == 0)
       return Error{fmt::format("--keep {}: no chosen law fits that key; leave it out", key)};
   }
@@ -136,6 +139,7 @@ std::optional<Error> fit_laws(const Options& o, const Scene& scene, FitReport& r
     if (*fitted[i])
       report.laws.push_back(std::move(**fitted[i]));
     else
+      // One law that cannot be made must not cost the others.
       report.notes.push_back((*laws)[i].name + " was not fitted: " + fitted[i]->error().sentence);
   if (report.laws.empty()) return Error{report.notes.front()};
   return std::nullopt;
@@ -157,6 +161,7 @@ std::optional<Error> check_options(const Options& o) {
   if (!o.data.empty() && !o.reference.empty())
     return Error{"--data and --reference exclude each other; fit one after the other"};
   for (const auto& [output, beginning] :
+       // Files of ours may be overwritten: by their beginnings they are known.
        {std::pair{o.out, "# By tact-fit"}, std::pair{o.picture, "<?xml version=\"1.0\""}})
     if (auto error = program::check_output(output, beginning,
                                            {o.scene.path, o.data, o.relaxation, o.reference}))

@@ -78,6 +78,7 @@ json cost_rows(const JitterResult& result) {
   add("system management interrupts", count(c.smi));
   std::vector<std::pair<std::uint64_t, std::string>> sources;
   for (const auto& [source, n] : c.interrupts) sources.emplace_back(n, source);
+  // The most frequent first.
   std::sort(sources.rbegin(), sources.rend());
   for (const auto& [n, source] : sources)
     add("interrupts of its core: " + source, std::to_string(n));
@@ -115,6 +116,7 @@ json peer_data(const JitterResult& result) {
   if (!result.peer) return nullptr;
   json out{{"compared", compare_with_peer(result)}};
   if (const auto verdict = judge_peer(result))
+    // Too few turns are neither green nor red.
     out["gate"] = {{"color", !verdict->turns     ? "unknown"
                              : verdict->passed() ? "green"
                                                  : "red"},

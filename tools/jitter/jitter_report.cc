@@ -26,6 +26,7 @@ json series_json(const JitterResult& result, const NamedSeries& named) {
     out[std::string(share.name) + "_ns"] = ns ? json(*ns) : json(nullptr);
   }
   json buckets = json::array();
+  // All of them: others can make their own shares out of it.
   h.for_each_bucket([&](std::uint64_t low_ns, std::uint64_t high_ns, std::uint64_t samples) {
     buckets.push_back({low_ns, high_ns, samples});
   });
@@ -40,6 +41,7 @@ json late_json(const JitterResult& result, const LateTick& late) {
   return {{"tick", late.times.tick},
           {"at_s", seconds_into(result, late.times.due_ns)},
           {"due_ns", late.times.due_ns},
+          // What the person feels; the phases say where it came from.
           {"deadline_to_force_ns", late.worst_ns},
           {"skipped_before", late.times.skipped_before},
           {"phases_ns", phases},
@@ -123,7 +125,9 @@ Outcome outcome_of(const JitterResult& result) {
 int exit_status(const JitterResult& result) {
   const auto verdict = judge_peer(result);
   if (!result.fault.empty()) return 1;
+  // Without a gate nothing was promised.
   if (!verdict || verdict->passed()) return 0;
+  // Too few turns: nothing could be judged.
   return verdict->turns ? 1 : 2;
 }
 

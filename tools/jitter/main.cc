@@ -99,6 +99,7 @@ CLI::App* add_compare(CLI::App& app, Options& o) {
 
 /// To the file, or to standard output; nothing without a path.
 std::optional<Error> write_json(const json& result, const std::string& path) {
+  // Words of the kernel and of the machine may hold any byte: a wrong one is replaced.
   const std::string text = result.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
   if (path == "-") fmt::print("{}", text);
   if (path.empty() || path == "-") return std::nullopt;
@@ -132,15 +133,18 @@ int compare(const program::Program& program, const Options& o) {
   if (!comparison) return program.fail(comparison.error());
   if (o.json_path != "-") fmt::print("{}", make_comparison_text(*comparison));
   if (auto error = write_json(to_json(*comparison), o.json_path)) return program.fail(*error);
+  // A gate that judged nothing must not look passed.
   if (gate && !comparison->judged_any())
     return program.fail(Error{"nothing could be judged: too few samples; measure for longer"});
   return comparison->is_worse() ? 1 : 0;
 }
 
 int measure(const program::Program& program, Options& o) {
+  // Both or neither.
   if (o.run.bare != o.run.scene.path.empty())
     return program.fail(Error{"name one SCENE, or --bare for an empty loop; see --help"});
   if (!o.out.empty())
+    // Outputs are checked before a measurement that may take hours.
     if (auto error = program::prepare_folder(o.out)) return program.fail(*error);
   if (o.json_path != "-")
     if (auto error = program::check_output(o.json_path, "{", {o.run.scene.path}))
@@ -148,12 +152,14 @@ int measure(const program::Program& program, Options& o) {
   if (auto error = o.submit.empty() ? std::nullopt : program::check_output(o.submit, "| ", {}))
     return program.fail(*error);
   o.run.peer = !o.peer.empty();
+  // The line overwrites itself: in a file it would be thousands.
   o.run.live = isatty(STDERR_FILENO) != 0;
   const std::string began_utc = report::now_utc();
   auto result = run_jitter(o.run);
   if (!result) return program.fail(result.error());
   result->began_utc = began_utc;
   result->host = report::host_name();
+  // A reader of JSON on standard output must get nothing else.
   if (o.json_path != "-") fmt::print("{}\n", make_summary(*result));
   if (auto error = write_json(o.json_path.empty() ? json() : to_json(*result, program.command()),
                               o.json_path))

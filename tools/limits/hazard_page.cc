@@ -23,6 +23,7 @@ const char* words_of(Played played) {
 
 Played played(const LimitsReport& report, const std::string& name) {
   const auto verdict = [](bool passed) { return passed ? Played::kPassed : Played::kFailed; };
+  // The wall is no case of the plan's table.
   if (name == kWallName) return report.wall ? verdict(report.wall->passed()) : Played::kNot;
   for (const CaseResult& result : report.cases)
     if (name == result.verdict.subject.name) return verdict(result.verdict.passed());
@@ -33,6 +34,7 @@ Played played(const LimitsReport& report, const std::string& name) {
 std::vector<std::string> own_cases(const Requirement& requirement) {
   std::vector<std::string> names;
   for (const HazardTest& test : requirement.tests)
+    // The other tests ran elsewhere: this run says nothing about them.
     if (test.by == kOwnCommand) names.insert(names.end(), test.names.begin(), test.names.end());
   return names;
 }

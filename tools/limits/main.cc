@@ -58,6 +58,7 @@ int list_cases() {
 
 /// A real device moves only for a person who has typed that it may.
 std::optional<Error> ask_for_consent(const Options& o, const Scene& scene) {
+  // A script that feeds the words by accident is no person who has read them.
   if (!o.consent_from_stdin && (isatty(STDIN_FILENO) == 0 || isatty(STDERR_FILENO) == 0))
     return Error{
         "drives a real device to its limits, so it asks on a terminal first: start it from one "
@@ -82,10 +83,13 @@ int test_limits(const program::Program& program, const Options& o) {
   if (!cases) return program.fail(cases.error());
   auto scene = tact::model::scene::load_scene(o.scene, o.overrides);
   if (!scene) return program.fail(scene.error());
+  // Before the run: whoever changes a file meanwhile must not get its digest into the report.
   auto evidence = collect_evidence(o.scene, o.overrides, o.people);
   if (!evidence) return program.fail(evidence.error());
+  // By the command line alone: a scene must not bring the permission for its own library.
   scene->device.force_dimension.trust_library = o.trust_library;
   if (const auto error = program::prepare_folder(o.out)) return program.fail(*error);
+  // Last of all checks: after the words the device moves.
   if (!tact::hal::registry::is_simulated(scene->device))
     if (const auto refused = ask_for_consent(o, *scene)) return program.fail(*refused);
   PlanOptions options{.cases = *cases, .wall = names_wall(o.plan)};
@@ -95,6 +99,7 @@ int test_limits(const program::Program& program, const Options& o) {
   report->command = program.command();
   close_evidence(*evidence, report->limits);
   report->evidence = std::move(*evidence);
+  // Told below even if it could not be written: a run on a device is not repeated lightly.
   const auto files = write_report(*report, o.out, !o.no_pictures);
   if (o.json)
     fmt::print("{}\n", to_json(*report).dump(2));

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using model::Result;
 
-/// Length of a vector, with the sign of its z: what the curves show.
+/// Length of a vector, with the sign of its z, along which most cases act: what the curves show.
 double along_z(const Vec3& v) { return v.z < 0.0 ? -norm(v) : norm(v); }
 
 std::string word_of(std::string text) {  // a word of a table has no comma
@@ -51,6 +51,7 @@ report::Table case_table(const LimitsReport& report) {
     table.add({std::string(v.subject.name), v.passed() ? 1.0 : 0.0, v.limits.force_N,
                v.worst.commanded_N, v.worst.force_N, v.overshoot_N, v.worst.torque_Nm,
                v.worst.step_N, v.worst.step_Nm, v.worst.power_W, v.worst.given_J, v.worst.rms_N,
+               // NaN: never, or not asked for.
                v.worst.rms_Nm, v.worst.zero_s.value_or(std::nan("")),
                v.subject.expected.zero_within_s.value_or(std::nan("")), word_of(v.acted_words()),
                static_cast<double>(v.fault)});
@@ -194,6 +195,7 @@ Result<std::vector<std::string>> write_report(const LimitsReport& report,
   };
   std::vector<report::Table> tables;
   if (!report.cases.empty()) tables.push_back(case_table(report));
+  // Every tick: the verdict can be checked without this program.
   for (const CaseResult& result : report.cases) tables.push_back(trace_table(result));
   if (report.wall) tables.push_back(wall_table(*report.wall));
   for (const report::Table& table : tables)

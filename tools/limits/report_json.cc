@@ -16,11 +16,13 @@ json checks_json(const std::vector<Check>& checks) {
   return out;
 }
 
+// No zero was reached, or none is asked for: a number would be a claim.
 json or_null(const std::optional<double>& value) { return value ? json(*value) : json(); }
 
 json case_json(const CaseVerdict& v, bool simulated) {
   return {{"case", v.subject.name},
           {"what", v.subject.what},
+          // On a real device no program opens a line: this was no test of the wire.
           {"cause", simulated || !opens_line(v.subject) ? "played" : kToldInSoftware},
           {"passed", v.passed()},
           {"force_limit_N", v.limits.force_N},
@@ -69,6 +71,7 @@ json report_json(const LimitsReport& report) {
 
 json digests_json(const Evidence& e) {
   return {{"tact_limits", e.program_sha256},
+          // tact-limits judges the parts that it has in common with tactd, so both files are named.
           {"tactd", e.tactd_path.empty() ? json() : json(e.tactd_sha256)},
           {"scene", e.scene_sha256},
           {"limits", e.limits_sha256}};
@@ -96,6 +99,7 @@ json to_json(const LimitsReport& report) {
            {"passed", report.passed()},
            {"result", report.result_words()},
            {"cases_played", report.played()},
+           // So that "2 passed" cannot be read as all.
            {"cases_of_plan", report.played() + report.not_run.size()},
            {"command", report.command},
            {"started", report.started},

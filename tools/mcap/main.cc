@@ -22,6 +22,7 @@ int run(const std::string& from, const std::string& to, bool json) {
     fmt::print(stderr, "tact-mcap: {}\n", done.error().sentence);
     return kBadInput;
   }
+  // What is whole was written: a log that a crash cut off is still worth looking at.
   if (!done->damage.empty())
     fmt::print(stderr, "tact-mcap: {}: {}; what is whole is in {}\n", from, done->damage, to);
   if (json) {

@@ -74,6 +74,7 @@ const Schema& wrench_schema() {
   return kSchema;
 }
 const Schema& state_schema() {
+  // Ours: no message of ROS has state, fault and margin.
   static constexpr Schema kSchema{"tact_msgs/msg/State", "ros2msg", kState, "cdr"};
   return kSchema;
 }
@@ -112,6 +113,7 @@ Moment Moment::of(const Frame& frame, std::uint64_t time_ns) {
              .non_rt = frame.non_rt,
              .fault = frame.fault,
              .limit = frame.limit,
+             // A frame has the worst of its ticks; a tick has its own.
              .margin_us = frame.worst_margin_us,
              .grip_ratio = frame.grip_ratio,
              .rms_force_N = frame.rms_force_N,
@@ -142,6 +144,7 @@ std::string wrench_message(const Moment& moment, const Wrench& wrench) {
 }
 
 std::string state_message(const Moment& moment) {
+  // In the order of kState: CDR has no names.
   return stamped(moment.time_ns)
       .put(moment.tick)
       .put(moment.state)

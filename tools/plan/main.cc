@@ -51,7 +51,9 @@ Result<std::vector<Candidate>> measure(const Options& o, const Scene& scene) {
     options.tool_reference = &*whole_tool;
   }
   options.label = "tact-plan";
+  // tactd has no peers to choose.
   options.wish.peers = false;
+  // Chosen: minutes, not hours; no instructions, as a plan is chosen by time.
   options.timing = {.ticks = 20000, .rounds = 2, .limit_s = 2.0, .instructions = false};
   const auto rows = measure_chart(scene, *reference, options);
   if (!rows) return rows.error();
@@ -75,6 +77,7 @@ Result<std::vector<Candidate>> all_candidates(const Options& o, const Scene& sce
 
 Result<std::vector<Candidate>> find_candidates(const Options& o, const Scene& scene) {
   auto candidates = all_candidates(o, scene);
+  // Only springs can be cut.
   if (!candidates || !scene.tool.blade) return candidates;
   keep_what_cuts(*candidates);
   if (candidates->empty())
@@ -127,6 +130,7 @@ Result<std::string> keep(const Choice& choice, const std::vector<Candidate>& can
   if (!path) return path.error();
   if (!choice.meets_by_rms) {
     std::error_code ignored;
+    // An older plan would go on to be used for a tolerance that it does not meet.
     std::filesystem::remove(*path, ignored);
     return std::string{};
   }
@@ -170,5 +174,6 @@ int main(int argc, char** argv) {
     written = *path;
   }
   print(o, *candidates, choice, written);
+  // 1: measured, and nothing is good enough.
   return choice.meets_by_rms ? 0 : 1;
 }
