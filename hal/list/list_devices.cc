@@ -106,8 +106,8 @@ void lack_driver(FoundPart& part, const std::string& driver) {
   if (driver == "usbfs") {
     part.lacking = "another program uses it";
     part.cure = "end that program";
-    // Force Dimension's library takes the interface itself.
   } else if (part.kind == PartKind::kFalcon) {
+    // The Falcon alone: what the vendor's library does about a driver is not known here.
     part.lacking = fmt::format("the kernel driver {} holds it", driver);
     part.cure =
         fmt::format("echo {}:1.0 | sudo tee /sys/bus/usb/drivers/{}/unbind", part.name, driver);

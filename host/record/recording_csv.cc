@@ -113,6 +113,7 @@ std::string csv_header(const Hello& hello, const std::vector<tracking::BodyRole>
       "torque_x_Nm,torque_y_Nm,torque_z_Nm,wanted_x_N,wanted_y_N,wanted_z_N,"
       "worst_margin_us,median_tick_us,peak_force_N,rms_force_N,given_energy_J,cut_triangles,patch_"
       "vertices,patch_most_m";
+  // Counted from 1, as people do; the rings from 0, which is the contact itself.
   for (std::size_t i = 1; i <= sites_of(hello); ++i) {
     fmt::format_to(std::back_inserter(out),
                    ",site{0}_state,site{0}_x_m,site{0}_y_m,site{0}_z_m,site{0}_normal_x,"

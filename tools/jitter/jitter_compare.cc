@@ -17,6 +17,7 @@ using model::Result;
 using nlohmann::json;
 
 constexpr std::array kShown{"p50", "p99", "p99.9", "p99.99", "max"};
+// Not p99.99 and not the largest: a handful of samples makes them.
 constexpr std::array kJudgedShares{"p50", "p99", "p99.9"};
 constexpr std::array kJudgedSeries{"wake", "every_wake", "total", "deadline_to_force"};
 // The clock's own steps and the cache lie below (jitter_compare.h).
@@ -53,6 +54,7 @@ void note_unlike(const json& a, const json& b, const char* key, std::vector<std:
 }  // namespace
 
 double ComparedValue::change_ratio() const {
+  // No ratio to nothing.
   if (before_ns == 0) return 0.0;
   return static_cast<double>(after_ns) / static_cast<double>(before_ns) - 1.0;
 }

@@ -169,7 +169,6 @@ std::string page_html(const LimitsReport& report, const std::vector<std::string>
     data["left_out"].push_back({{"why", why}, {"names", names}});
   for (const LimitRow& row : limit_rows(report)) data["limits"].push_back(limit_data(row));
   for (const CaseResult& r : report.cases) data["cases"].push_back(case_data(r.verdict, report));
-  // draw_curves puts the wall behind the cases.
   const std::size_t curves = svg.size() - (report.wall && !svg.empty() ? 1 : 0);  // the wall last
   for (std::size_t i = 0; i < curves; ++i) data["curves"].push_back(report::inline_svg(svg[i], i));
   data["has_curves"] = curves > 0;

@@ -118,6 +118,7 @@ Result<ground_truth::ToolReference> solve_tool(const Options& o) {
                             const std::lock_guard lock(mutex);
                             if (first_error) return;
                           }
+                          // Without the lock: a solve takes minutes.
                           auto result = solve_once(plan->organ, presses[job], solver, cache);
                           const std::lock_guard lock(mutex);
                           if (result)
@@ -152,12 +153,14 @@ Result<Solved> solve_all(const Organ& organ, const std::vector<Indentation>& cas
       const std::lock_guard lock(mutex);
       if (first_error) return;
     }
+    // Without the lock: a solve takes minutes. Each job has a place of its own in `solved`.
     auto result = solve_once(organ, cases[job], solver, cache);
     if (result) {
       solved[job] = std::move(*result);
       return;
     }
     const std::lock_guard lock(mutex);
+    // No mesh stands every pull: that is an answer, no failure of the run.
     if (cases[job].large_strain && found_no_solution(result.error()))
       why_not[job] = result.error().sentence;
     else if (!first_error)
