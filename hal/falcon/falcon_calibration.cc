@@ -143,8 +143,7 @@ Result<FalconCalibration> fit_falcon(std::span<const FalconBalance> samples) {
     if (!fit_all(samples, unit_Nm, kg + 0.5 * kStep_kg).known)
       return Error{"the loads of an axis are all alike: hang more different masses"};
     if (squares(kg) < squares(best_kg)) best_kg = kg;
-    // Squares that stay flat over the mass, with any dead band, mean that each mass has one that
-    // fits.
+    // If these stay flat, every mass fits with some dead band: the two cannot be told apart.
     const double free = fit_all(samples, unit_Nm, kg, DeadBand::kAny).squares;
     least = std::min(least, free);
     most = std::max(most, free);

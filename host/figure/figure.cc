@@ -97,8 +97,8 @@ void Figure::settle(const TrackedOperator& bodies) {
       const Vector3d by_m = to_shoulder(plan_, shoulder.pose.position_m);
       pose_.shoulder_too_far = !((by_m - start_m_).norm() <= kFarthestPlace_m);
       place_goal_m_ = pose_.shoulder_too_far ? start_m_ : by_m;
-      // A description without a shoulder, or one that hides: stand where untracked figures do.
     } else if (shoulder.state == BodyState::kAbsent || waited_s_ > kWaitForShoulder_s) {
+      // A description without a shoulder, or one that hides: stand where untracked figures do.
       place_goal_m_ = start_m_;
     } else {
       return;

@@ -114,8 +114,9 @@ bool add_operator(const OperatorRecord& tracked, Recording& recording) {
   const std::optional<tracking::TrackedOperator> seen = operator_of(tracked);
   recording.operators.push_back(seen.value_or(tracking::TrackedOperator{}));
   std::optional<figure::FigurePose> figure;
-  if (seen) figure = figure_of(tracked, *seen);
   // A frame whose operator is damaged shows him as he was, instead of a blink.
+  if (seen)
+    figure = figure_of(tracked, *seen);
   else if (!recording.figures.empty())
     figure = recording.figures.back();
   recording.figures.push_back(std::move(figure));

@@ -96,8 +96,8 @@ void read_role(TrackingKeys& k, const TrackingSetup& out, MarkerBody& body) {
   const auto found = std::ranges::find(kRoleNames, role);
   if (found != kRoleNames.end()) {
     body.role = static_cast<BodyRole>(found - kRoleNames.begin());
-    // The base has no role of the operator: it is the tracker's own frame.
   } else if (role != kBase) {
+    // The base has no role of the operator: it is the tracker's own frame.
     k.refuse("role", fmt::format("role is none of: {}, {}; write one of them",
                                  fmt::join(kRoleNames, ", "), kBase));
   }
@@ -222,8 +222,9 @@ Result<TrackingSetup> load_tracking_setup(const std::string& path) {
   check_base(k, out);
   if (k.has("operator"))
     k.section("operator", [&](TrackingKeys& keys) { read_operator(keys, out); });
-  if (k.has("registration")) read_registration(k, path, out);
   // The description's own section goes first; a file beside it is not even opened then.
+  if (k.has("registration"))
+    read_registration(k, path, out);
   else if (!error)
     error = read_registration_beside(out);
   if (error) return *error;
