@@ -37,8 +37,9 @@ std::optional<HandWish> parse_hand(const std::string& text) {
     const auto found = hand.find(kKeys[i]);
     if (found == hand.end() || !found->is_number()) return std::nullopt;
     value[i] = found->get<double>();
+    if (!std::isfinite(value[i])) return std::nullopt;
     // The simulator clamps to its workspace; this keeps nonsense off its socket.
-    if (!std::isfinite(value[i]) || std::abs(value[i]) > kFarthestHand_m) return std::nullopt;
+    if (i < 3 && std::abs(value[i]) > kFarthestHand_m) return std::nullopt;
   }
   return HandWish{.position_m = {value[0], value[1], value[2]},
                   .grip_ratio = std::clamp(value[3], 0.0, 1.0)};

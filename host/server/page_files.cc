@@ -45,7 +45,7 @@ std::optional<Error> PageFiles::load(const std::string& folder) {
     total_bytes += it->file_size(wrong);
     if (total_bytes > kMaxPageBytes)
       return Error{
-          fmt::format("{}: more than 64 MB of files; give the folder of the built page", folder)};
+          fmt::format("{}: more than 64 MiB of files; give the folder of the built page", folder)};
     auto content = model::io::read_file(it->path().string());
     if (!content) return content.error();
     const std::string url = "/" + it->path().lexically_relative(folder).generic_string();

@@ -189,6 +189,9 @@ void add_raised(const FitLaw& law, const Scene& before, const Scene& after,
   if (law.kind == kHexSheet)
     add("hex_sheet", "working_depth_m", before.hex_sheet.working_depth_m,
         after.hex_sheet.working_depth_m);
+  if (law.kind == kHuntCrossley)
+    add("hunt_crossley", "working_depth_m", before.hunt_crossley.working_depth_m,
+        after.hunt_crossley.working_depth_m);
   if (law.kind == kCompliance)
     add("compliance", "working_depth_m", before.compliance.working_depth_m,
         after.compliance.working_depth_m);

@@ -36,7 +36,7 @@ void add_options(CLI::App& app, Options& o) {
   o.scene.add_to(app, "the laws to fit");
   app.add_option("--law", o.laws,
                  "which laws, by name: rhombus, disc_stack (both forms), disc_stack_linear, "
-                 "disc_stack_almen_laszlo, hex_sheet, compliance, spring_patch")
+                 "disc_stack_almen_laszlo, hex_sheet, hunt_crossley, compliance, spring_patch")
       ->delimiter(',')
       ->capture_default_str();
   app.add_option("--reference", o.reference, "JSON of tact-reference; its held-out sites judge");

@@ -149,8 +149,9 @@ int measure(const program::Program& program, Options& o) {
   if (o.json_path != "-")
     if (auto error = program::check_output(o.json_path, "{", {o.run.scene.path}))
       return program.fail(*error);
-  if (auto error = o.submit.empty() ? std::nullopt : program::check_output(o.submit, "| ", {}))
-    return program.fail(*error);
+  if (!o.submit.empty())
+    if (auto error = program::check_output(o.submit, submission_beginning(), {}))
+      return program.fail(*error);
   o.run.peer = !o.peer.empty();
   // The line overwrites itself: in a file it would be thousands.
   o.run.live = isatty(STDERR_FILENO) != 0;

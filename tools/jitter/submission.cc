@@ -26,14 +26,18 @@ std::string settings_of(const JitterResult& result) {
       result.non_rt ? ", non-rt" : "");
 }
 
+std::string beginning_of(const std::string& cpu) { return fmt::format("| {}, ", cell(cpu)); }
+
 }  // namespace
+
+std::string submission_beginning() { return beginning_of(firmware::pc::read_environment("").cpu); }
 
 std::string make_submission(const JitterResult& result) {
   const auto& pc = result.environment;
   const auto& wake = result.sink->phase(firmware::loop::Phase::kWake).histogram;
   const auto& force = result.sink->deadline_to_force().histogram;
   return fmt::format(
-      "| {}, {} | {}{} | {} | {} | {} | {} | {:.6g} |\n", cell(pc.cpu), pc.cores,
+      "{}{} | {}{} | {} | {} | {} | {} | {:.6g} |\n", beginning_of(pc.cpu), pc.cores,
       cell(pc.kernel_release), pc.realtime_kernel ? ", PREEMPT_RT" : "", cell(settings_of(result)),
       in_us(percentile_ns(wake, 0.999)), in_us(percentile_ns(force, 0.999)),
       in_us(std::max<std::uint64_t>(wake.max_ns(), force.max_ns())), result.measured_s);

@@ -207,7 +207,7 @@ report::Row run(std::size_t job, Grid grid) {
   const double theory = model::law::haptic_limit(loop.device, loop.rate_Hz).grow_N_per_m;
   const double measured =
       largest_by_controller(loop.rate_Hz, device, 0.3 * theory, 10.0 * theory, s.precision);
-  const ControllerRun beyond = run_controller(3.0 * measured, loop.rate_Hz, device);
+  const ControllerRun beyond = run_controller(3.0 * std::max(measured, 1.0), loop.rate_Hz, device);
   const double step_limit_N = kSceneLimits.slew_N_per_s / loop.rate_Hz + 1e-12;
   const bool bounded =
       beyond.max_force_N <= kSceneLimits.force_N && beyond.max_step_N <= step_limit_N;

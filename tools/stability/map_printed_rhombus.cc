@@ -25,9 +25,9 @@ namespace {
 
 constexpr double kDegree_rad = std::numbers::pi / 180.0;
 constexpr int kUnits = 10;
-constexpr double kGrowth = 2.0;       // beta
-constexpr double kSmall_rad = -1e-6;  // a press that only shows the slope
-constexpr double kPress_rad = -0.02;  // of theta0: a press that can be seen
+constexpr double kGrowth = 2.0;         // beta
+constexpr double kSmall_rad = -1e-6;    // a press that only shows the slope
+constexpr double kPress_ratio = -0.02;  // of theta0: a press that can be seen
 
 struct Cells {
   std::size_t angles = 0, ratios = 0;
@@ -85,7 +85,7 @@ report::Row run(std::size_t job, Grid grid) {
   const double kT_over_kN = spring_ratio(ratio, grid);
   const model::indent::RhombusUnit unit = unit_of(angle_rad, kT_over_kN, 0);
   const printed::PaperUnit small = printed::paper_forward(unit, kSmall_rad);
-  const printed::PaperUnit pressed = printed::paper_forward(unit, kPress_rad * angle_rad);
+  const printed::PaperUnit pressed = printed::paper_forward(unit, kPress_ratio * angle_rad);
   // The paper counts a shortening below zero, the energy form above.
   const model::indent::UnitResponse energy = model::indent::respond(unit, -pressed.shortening_m);
   const int first = first_failing(angle_rad, kT_over_kN);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <optional>
 
@@ -71,7 +72,12 @@ MapsRun merged(const StabilityOptions& options) {
   const auto of_table = sorted(options.merge);
   if (!of_table) return {{}, of_table.error()};
   MapsRun run;
-  for (const Map& map : all_maps()) {
+  const std::vector<Map> maps = all_maps();
+  for (const auto& [name, files] : *of_table)
+    if (std::ranges::find(maps, name, &Map::name) == maps.end())
+      return {{},
+              Error{fmt::format("{}: \"{}\" is no map of tact-stability", files.front(), name)}};
+  for (const Map& map : maps) {
     const auto files = of_table->find(map.name);
     if (files == of_table->end()) continue;
     // Refuses shards that are missing, given twice or run with other options.

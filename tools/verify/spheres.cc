@@ -38,11 +38,12 @@ json group_results(const json& one_case) {
        .relaxation = {},
        .neighbours = {.contact_modulus_Pa = tip.contact_modulus_Pa()}});
   const std::size_t n = inputs.at("depth_m").size();
+  if (!curve || n > model::contact::kMaxSpheres) return {};  // main.cc names the damaged case
   std::array<PressingSphere, model::contact::kMaxSpheres> sphere{};
   std::array<Vec3, model::contact::kMaxSpheres> at_m{};
   for (std::size_t i = 0; i < n; ++i) {
-    const double depth_m = number(inputs.at("depth_m")[i]);
-    at_m[i] = {number(inputs.at("x_m")[i]), number(inputs.at("y_m")[i]), 0.0};
+    const double depth_m = number(inputs.at("depth_m").at(i));
+    at_m[i] = {number(inputs.at("x_m").at(i)), number(inputs.at("y_m").at(i)), 0.0};
     sphere[i] = {.presses = true,
                  .depth_m = depth_m,
                  .in = {.sphere = i, .normal = {0, 0, 1}, .dent_m = depth_m},

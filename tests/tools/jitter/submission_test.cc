@@ -43,6 +43,17 @@ TEST(SubmissionRow, IsOfTheTableThatIsPublished) {
             std::string::npos);
 }
 
+TEST(SubmissionRow, ReplacesTheRowOfAnEarlierMeasurement) {
+  const std::string path = testing::TempDir() + "tact-row-twice-" + std::to_string(getpid());
+  const std::string once = "--bare --duration 0.2 --no-pictures --submit " + path;
+  for (int run = 0; run < 2; ++run) {
+    const auto outcome = tests::run_program("tact-jitter", once);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+  }
+  EXPECT_EQ(std::ranges::count(content(path), '\n'), 1);
+  std::filesystem::remove(path);
+}
+
 TEST(SubmissionRow, ReplacesNoFileOfAnotherKind) {
   const std::string path = testing::TempDir() + "tact-row-" + std::to_string(getpid()) + ".md";
   std::ofstream(path) << "# notes\n";

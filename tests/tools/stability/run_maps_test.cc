@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
+#include <regex>
 
 #include "tests/support/files.h"
 
@@ -74,6 +76,15 @@ TEST_F(RunMaps, ShardsMergeToTheTableOfOneRun) {
               content(folder_ + "/whole/law_limits" + end));
   together.grid = Grid::kFull;
   EXPECT_TRUE(run_maps(together).error) << "shards of another grid";
+  fs::copy_file(together.merge.front(), folder_ + "/chart.csv");
+  const auto header = content(folder_ + "/chart.csv");
+  std::ofstream(folder_ + "/chart.csv")
+      << std::regex_replace(header, std::regex("law_limits"), "chart");
+  together.merge = {folder_ + "/chart.csv"};
+  const auto stranger = run_maps(together);
+  ASSERT_TRUE(stranger.error) << "a table of another program";
+  EXPECT_NE(stranger.error->sentence.find("\"chart\" is no map"), std::string::npos)
+      << stranger.error->sentence;
 }
 
 }  // namespace tact::tools::stability::run_maps_test
