@@ -31,7 +31,7 @@ std::string boot_parameters(const PcQuestion& q) {
       parameters);
 }
 
-/// RT-6
+/// RT-6: a core of its own.
 PcRow isolation_row(const PcQuestion& q) {
   const bool known = q.files.is_there(fmt::format("{}/isolated", kCpus));
   const bool isolated = contains(cpu_list(q.files, "isolated"), q.core);
@@ -45,7 +45,7 @@ PcRow isolation_row(const PcQuestion& q) {
           .cure = boot_parameters(q)};
 }
 
-/// RT-6
+/// RT-6: and without the kernel's tick.
 PcRow tick_row(const PcQuestion& q) {
   const bool known = q.files.is_there(fmt::format("{}/nohz_full", kCpus));
   const bool quiet = contains(cpu_list(q.files, "nohz_full"), q.core);
@@ -71,7 +71,7 @@ std::string name_interrupt(const PcFiles& files, const std::string& number) {
   return {};
 }
 
-/// RT-13
+/// RT-13: interrupts off the loop's core.
 PcRow interrupt_row(const PcQuestion& q) {
   PcRow row{.name = "interrupts",
             .verdict = Verdict::kUnknown,
@@ -110,7 +110,7 @@ PcRow interrupt_row(const PcQuestion& q) {
   return row;
 }
 
-/// RT-7
+/// RT-7: a governor that keeps the clock up.
 PcRow governor_row(const PcQuestion& q) {
   const std::string path = fmt::format("{}/cpu{}/cpufreq/scaling_governor", kCpus, q.core);
   const auto governor = q.files.line(path);
@@ -150,7 +150,7 @@ PcRow sleep_row(const PcQuestion& q) {
           .cure = kPowerReason.cure};
 }
 
-/// RT-7
+/// RT-7: nobody on the other half of the core.
 PcRow sibling_row(const PcQuestion& q) {
   const auto list =
       q.files.line(fmt::format("{}/cpu{}/topology/thread_siblings_list", kCpus, q.core));

@@ -38,7 +38,7 @@ std::string soft_limit(const PcFiles& files, const std::string& name) {
   return {};
 }
 
-/// RT-1
+/// RT-1: PREEMPT_RT, by the version string first.
 PcRow kernel_row(const PcFiles& files) {
   const bool realtime = is_realtime_kernel(files);
   const auto release = files.line("/proc/sys/kernel/osrelease");
@@ -94,7 +94,7 @@ PcRow clock_row(const PcFiles& files) {
   return row;
 }
 
-/// RT-11
+/// RT-11: throttling may stop a runaway loop, and no other.
 PcRow throttling_row(const PcFiles& files) {
   const auto runtime = files.line("/proc/sys/kernel/sched_rt_runtime_us");
   const auto period = files.line("/proc/sys/kernel/sched_rt_period_us");
@@ -146,7 +146,7 @@ PcRow memory_row(const PcFiles& files) {
           .cure = kMemoryReason.cure};
 }
 
-/// RT-12
+/// RT-12: an inherited limit kills the thread without a word.
 PcRow time_limit_row(const PcFiles& files) {
   const std::string limit = soft_limit(files, "Max realtime timeout");
   return {.name = "real-time time limit",

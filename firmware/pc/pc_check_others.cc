@@ -65,7 +65,7 @@ PcRow swap_row(const PcFiles& files) {
           .cure = "sudo swapoff -a, and take swap out of /etc/fstab"};
 }
 
-/// RT-13
+/// RT-13: irqbalance moves interrupts back.
 PcRow balancer_row(const PcFiles& files, const std::vector<Thread>& threads) {
   const bool known = files.is_there("/proc/self/comm") || !threads.empty();
   const bool runs = std::any_of(threads.begin(), threads.end(),
@@ -113,7 +113,7 @@ bool carries_a_bus(const std::string& name) {
   return false;
 }
 
-/// RT-13
+/// RT-13: the interrupts of the device's bus above the loop.
 PcRow bus_row(const PcFiles& files, const std::vector<Thread>& threads) {
   PcRow row{.name = "bus interrupts",
             .verdict = Verdict::kUnknown,

@@ -14,8 +14,8 @@
 // the device, the feet stand. A body that is held, lost or back: bound_bone.h.
 //
 // Time is an argument, s, of any clock; a step back begins anew, binding and all. No number that is
-// not finite comes out. Frame W, m. For display, not for the force loop. Source: TR-1 to TR-6,
-// CC-10.
+// not finite comes out. Frame W, m. For display, not for the force loop. Source: CC-10,
+// TR-1 to TR-6.
 #pragma once
 
 #include <algorithm>

@@ -39,7 +39,7 @@ struct Pose {
 Eigen::Quaterniond canonical(const Eigen::Quaterniond& q);
 /// Four numbers of a tracker as a rotation; nothing if they are no direction (zero, NaN, infinity).
 std::optional<Eigen::Quaterniond> rotation_from(const std::array<double, 4>& wxyz);
-/// TR-2.
+/// TR-2: q = qz(gamma) qy(beta) qx(alpha).
 Eigen::Quaterniond rotation_from(const EulerAngles& angles);
 
 /// TR-3 and TR-4.

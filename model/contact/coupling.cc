@@ -9,9 +9,8 @@ namespace tact::model::contact {
 namespace {
 
 constexpr int kMaxSteps = 16;
-constexpr double kTolerance_m = 1e-10;
-// All chosen. The tolerance is 1e-7 N on a tissue of 1 kN/m. Below this
-// pivot the matrix is hardly definite, and a Newton step would leap.
+constexpr double kTolerance_m = 1e-10;  // 1e-7 N on a tissue of 1 kN/m
+// Below this pivot the matrix is hardly definite, and a Newton step would be too long.
 constexpr double kMinPivot = 1e-6;
 constexpr double kMargin = 0.95;  // of the largest coupling that is positive definite
 
@@ -134,7 +133,7 @@ double press_together(SiteLaw& law, Coupling& c, std::span<PressingSphere> spher
       for (double& m_per_N : row) m_per_N *= i + 2 < kTries ? 0.5 : 0.0;
     for (PressingSphere& sphere : spheres) sphere.in.dent_m = sphere.depth_m;
   }
-  // MC-3
+  // MC-3  W = sum U_i(e_i) + F' C F / 2
   double energy_J = 0.0;
   for (std::size_t i = 0; i < spheres.size(); ++i)
     if (spheres[i].presses)

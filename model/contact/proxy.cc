@@ -27,7 +27,7 @@ void Proxy::follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& move
     here.distance_m = -here.distance_m;  // it came out on another side
     here.normal = -here.normal;
   }
-  // PX-1
+  // PX-1  |q' - q| <= saved,   saved <- min(saved + 1.5 |sideways|, radius)
   const double sideways_m = norm(tangential(moved_m, site_.normal));
   may_slide_m_ = std::min(may_slide_m_ + kSlide_ratio * sideways_m, radius_m);
   const double way_m = norm(nearest.point_m - site_.point_m);

@@ -76,8 +76,8 @@ std::vector<NodeWeight> hertz_weights(const TetMesh& mesh, const Boundary& bound
       const double p = std::sqrt(1.0 - ratio * ratio) * area_m2;
       sum += p;
       for (std::size_t i = 0; i < 3; ++i) {
-        // N_a = L (2 L - 1) at a corner, 4 L_i L_(i+1) in the middle of an edge
-        // A corner's shape function is negative near the other side, and so may its weight be.
+        // N_a = L (2 L - 1) at a corner, 4 L_i L_(i+1) in the middle of an edge. That of a corner
+        // is negative near the opposite side, and so may its weight be.
         weight[f[i]] += p * l[i] * (2.0 * l[i] - 1.0);
         weight[f[3 + i]] += p * 4.0 * l[i] * l[(i + 1) % 3];
       }
@@ -99,10 +99,13 @@ double hertz_displacement_m_per_N(const Elasticity& material, double radius_m, d
          ((2.0 * a * a - r * r) * std::asin(a / r) + a * std::sqrt(r * r - a * a));
 }
 
+// Mean of u over the patch, weighted by the pressure: integral of p u / F.
 double hertz_normal_m_per_N(const Elasticity& material, double radius_m) {
   return 3.0 / (5.0 * material.contact_modulus_Pa() * radius_m);
 }
 
+// The same for a traction of that shape along the surface: 1/E* is replaced by
+// (2 - nu)/(4 mu) (Johnson 3.6), so C_t/C_n = (2 - nu)/(2 (1 - nu)).
 double hertz_tangential_m_per_N(const Elasticity& material, double radius_m) {
   return 3.0 * (2.0 - material.poisson_ratio) / (20.0 * material.shear_modulus_Pa() * radius_m);
 }

@@ -52,7 +52,7 @@ Result<ComplianceCurve> make_compliance_curve(const ComplianceCurveParameters& p
   if (p.tip.large_strain)
     curve.press_depth_m_ = std::min(p.working_depth_m,
                                     last.depth_m + p.regular_m_per_N * last.force_N);  // CL-1
-  // CL-2
+  // CL-2  d = (c_disc + r) F
   curve.pulled_N_per_m_ = 1.0 / (1.0 / p.tip.pulled_stiffness_N_per_m() + p.regular_m_per_N);
   curve.working_depth_m_ = p.working_depth_m;
   curve.ring_pitch_m_ = p.ring_pitch_m;
@@ -126,7 +126,7 @@ std::size_t ComplianceCurve::profile(double depth_m, std::span<double> ring_m) c
     const double rho_m = static_cast<double>(j) * ring_pitch_m_;
     const double tip_m =
         pulled ? disc_m * pulled_shape(tip_, rho_m) : pressed_shape_m(tip_, press, rho_m);
-    // CL-4
+    // CL-4  u_j = taper_j (u_tip(rho_j) + F g_j),  u_0 = d
     const double u_m =
         j == 0 ? d_m : law::ring_taper(j, rings_) * (tip_m + force_N * ring_m_per_N_[j]);
     // CL-4  0 <= u_j <= u_(j-1): a dent is drawn as one bowl; errors of the map do not ripple it.

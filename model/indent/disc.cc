@@ -41,7 +41,7 @@ double disc_shape_factor(double diameter_ratio) RT_SAFE {
     const double w = std::log1p(c - 1.0), w2 = w * w;
     difference = w * (1.0 / 6.0 - w2 * (1.0 / 360.0 - w2 / 15120.0));
   }
-  // DS-2
+  // DS-2  alpha = (1/pi) ((C - 1)/C)^2 / ((C + 1)/(C - 1) - 2/ln C)
   return (c - 1.0) / c * ((c - 1.0) / c) / difference / std::numbers::pi;
 }
 

@@ -20,11 +20,11 @@ double inertia_speed_mps(const ElasticTip& tip, double depth_m, double share) {
   // The upper end, which is above zero: a force of zero over a contact of zero would be no number.
   const TipState at = tip_state(small, high);
   const double shear_Pa = tip.youngs_modulus_Pa / (2.0 * (1.0 + tip.poisson_ratio));
-  // IN-1
+  // IN-1  F_wave = c v,   c = 3.4 a^2 sqrt(rho G)/(1 - nu)
   const double wave_Ns_per_m = 3.4 * at.contact_radius_m * at.contact_radius_m *
                                std::sqrt(kTissueDensity_kg_per_m3 * shear_Pa) /
                                (1.0 - tip.poisson_ratio);
-  // IN-2
+  // IN-2  v_q = q F(d)/c
   return share * at.force_N / wave_Ns_per_m;
 }
 

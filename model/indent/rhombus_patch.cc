@@ -49,7 +49,7 @@ std::size_t RhombusPatch::profile(double depth_m, std::span<double> ring_m) cons
   const std::size_t count = std::min(kRings + 1, ring_m.size());
   for (std::size_t j = 0; j < count; ++j) {
     const double r_m = static_cast<double>(j) * ring_pitch_m_;
-    // RC-17
+    // RC-17  w(r) = d - r^2/(2R) within sqrt(2 R d), 0 beyond
     const double w_m = d_m - r_m * r_m / (2.0 * tip_radius_m_);
     ring_m[j] = j < kRings ? std::fmax(w_m, 0.0) : 0.0;
   }

@@ -26,7 +26,7 @@ SeriesLaw::SeriesLaw(const Law& law, double give_m_per_N, const Law& shape)
             .press_m = std::min(own.press_m, depth_of(own.press_m))};
 }
 
-// SL-1
+// SL-1  d = e + r F(e)
 double SeriesLaw::depth_of(double dent_m) const RT_SAFE {
   return dent_m + give_m_per_N_ * law_->respond(dent_m).force_N;
 }

@@ -28,7 +28,7 @@ constexpr double trace(const Amplification& m) { return m[0] + m[3]; }
 constexpr double determinant(const Amplification& m) { return m[0] * m[3] - m[1] * m[2]; }
 /// Growth a step, of the mode that grows most.
 double spectral_radius(const Amplification& m);
-/// MA-16
+/// MA-16: det M < 1 and |tr M| < 1 + det M (Jury's criterion).
 bool is_stable(const Amplification& m);
 
 /// MA-17; infinity for implicit Euler, 0 where no step is stable or an argument is not a number.

@@ -64,7 +64,7 @@ OscillatorState step(const Oscillator& o, const OscillatorState& from, const Met
       return step_rk4(o, x, v, h);  // MA-8
     case Integrator::kImplicitEuler: {
       const double m = o.mass_kg, k = o.stiffness_N_per_m, c = o.damping_Ns_per_m;
-      // MA-9
+      // MA-9  v+ = (v + h (f - k x)/m)/(1 + h c/m + h^2 k/m),  x+ = x + h v+
       const double next = (v + h / m * (o.force_N - k * x)) / (1.0 + h * c / m + h * h * k / m);
       return {x + h * next, next};
     }

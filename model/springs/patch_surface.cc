@@ -57,7 +57,7 @@ double across_N_per_m(const PatchTissue& tissue) {
          (1.0 + tissue.pretension_ratio);
 }
 
-// MA-22
+// MA-22  a_i = 4 pi M_n/(exp(4 pi M_n G_i/1.2) - 1),  M_n = sqrt(3) k_x; with the mean area
 double anchor_of_give_N_per_m(const PatchTissue& tissue, double more_m_per_N) {
   // Without pretension M_n is 0 and MA-22 is 0/0: this is near enough to its limit.
   constexpr double kMinModulus_N_per_m = 1e-6;

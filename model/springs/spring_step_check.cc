@@ -12,7 +12,7 @@ namespace tact::model::springs {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// MA-20.
+// MA-20 bounds the fastest mode from above; of the step that it allows this much is taken.
 constexpr double kMargin = 0.8;
 
 /// What the modes of a network lie between.

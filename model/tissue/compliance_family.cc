@@ -36,7 +36,7 @@ Give give_of(const ComplianceMap& map, const indent::ElasticTip& tip) {
     const auto kept = [&](float n, float own) {
       return scaled(n) * scaled(n) / std::max(side + scaled(own), side / contact::kStiffestPlace);
     };
-    // CF-3
+    // CF-3  r_pull = r - n1^2/(c_side + s1) - n2^2/(c_side + s2)
     const double pull = r - kept(s.n1, s.s1) - kept(s.n2, s.s2);
     out.limited_vertices += r < least || pull < least ? 1 : 0;
     out.press_m_per_N.push_back(std::max(r, least));
@@ -75,9 +75,9 @@ struct Scale {
   double disc_m_per_N, soft_N_per_m, span;  // c_disc; q_0; ln(q_(K-1) / q_0)
   double last;                              // K - 1
 
-  // CF-1
+  // CF-1  q = 1/(c_disc + r)
   double stiffness_N_per_m(double r_m_per_N) const { return 1.0 / (disc_m_per_N + r_m_per_N); }
-  // CF-2
+  // CF-2  kappa = (K - 1) ln(q/q_0)/ln(q_(K-1)/q_0)
   float coordinate(double r_m_per_N) const {
     return static_cast<float>(
         std::clamp(last * std::log(stiffness_N_per_m(r_m_per_N) / soft_N_per_m) / span, 0.0, last));

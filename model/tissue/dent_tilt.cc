@@ -54,7 +54,7 @@ std::vector<Vec3> dent_tilt(const ComplianceMap& map, const contact::SurfaceView
     // Too few vertices, or all on a line: no slope is told.
     if (!(determinant > kMinSpread * disc * disc)) continue;
     const double xr = m.xr - m.x * m.r / m.count, yr = m.yr - m.y * m.r / m.count;
-    // CF-6
+    // CF-6  t = grad r / 2, grad r by least squares over the disc of skin
     out[v] = 0.5 / determinant * ((yy * xr - xy * yr) * e1 + (xx * yr - xy * xr) * e2);
   }
   return out;

@@ -163,7 +163,7 @@ contact::TangentGive ElasticField::tangent_give(const contact::Place& place, boo
   const ElasticNeighbours& near = parts_.neighbours;
   if (!(near.contact_modulus_Pa > 0.0)) return {};
   const double nu = near.poisson_ratio;
-  // MC-5
+  // MC-5  G = c/a I + S,  c = (2 - nu)/(8 mu),  mu = E* (1 - nu)/2
   contact::TangentGive give{
       .contact_m2_per_N = (2.0 - nu) / (4.0 * (1.0 - nu) * near.contact_modulus_Pa),
       .rest_m_per_N = {}};

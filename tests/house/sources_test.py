@@ -103,6 +103,18 @@ def formula_breaches(texts):
                 yield f"{path}:{number}: {found[1]} is another equation than in SOURCES.md: '{found[2]}'"
 
 
+BARE = re.compile(rf"\s*///?\s*{ID}\.?\s*$")
+
+
+def bare_breaches(path, text):
+    """A comment that is an id alone sends the reader away: the equation stands above its line."""
+    lines = text.splitlines()
+    for number, line in enumerate(lines, 1):
+        goes_on = number > 1 and lines[number - 2].lstrip().startswith("//")
+        if BARE.match(line) and not goes_on:
+            yield f"{path}:{number}: an id alone: write its equation, or what it says, behind it"
+
+
 def foreign_breaches(path, text):
     for number, line in enumerate(text.splitlines(), 1):
         found = FOREIGN.search(line)
@@ -172,6 +184,7 @@ def breaches(texts):
     yield from claim_breaches(texts)
     for path, text in texts.items():
         yield from foreign_breaches(path, text)
+        yield from bare_breaches(path, text)
         if is_source(path):
             yield from shape_breaches(path, text)
 
@@ -195,6 +208,7 @@ def blind_rules():
         "unnamed": (good, "// RC-1, RC-2, X1"),
         "named by a SOURCES.md alone": (good + "as RC-3\n", "// RC-1, RC-2, X1"),
         "another formula": (good + "| RC-4 | F = k d / 2 | N |\n", names + "\n//   RC-4   F = k d,   k > 0"),
+        "an id alone": (good, names + "\nint a;\n// RC-1\nint b;"),
         "long line": (good + "x" * (MAX_COLUMNS + 1) + "\n", names),
         "long file": (good + "\n" * MAX_LINES, names),
         **{word: (good, f"{names} ({word})") for word in

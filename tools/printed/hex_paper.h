@@ -53,7 +53,7 @@ struct PaperShape {
 PaperShape paper_shape_at_strain(double pitch_m, std::size_t rings, double first_strain) RT_SAFE;
 /// HX-11, depth >= 0.
 PaperShape paper_shape_at_depth(double pitch_m, std::size_t rings, double depth_m) RT_SAFE;
-/// HX-12.
+/// HX-12, N: F = K_N sum W_j Z_j.
 double paper_force_N(const PaperShape& shape, double stiffness_N_per_m, HexWeight weight) RT_SAFE;
 
 /// HX-13: how many rings a rim slope asks for. kSaturated: less than one, take one; kInvalid: no

@@ -90,7 +90,7 @@ model::Result<model::indent::DiscStack> discs(model::indent::DiscForm form, doub
       form, {.first_delay_s = first_s, .delay_ratio = 1.1, .refresh_rate_Hz = 1000.0, .layers = 6});
 }
 
-// HX-26.
+// The defaults of HX-26.
 constexpr model::indent::HexSheetParameters kSheet{.ring_pitch_m = 2e-3,
                                                    .contact_stiffness_N_per_m = 20.0,
                                                    .body_stiffness_N_per_m = 20.0,

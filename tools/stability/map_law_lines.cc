@@ -61,7 +61,7 @@ Point disc_rate(double t) {
   const double rate_Hz = 250.0 * std::pow(2.0, 5.0 * t);
   const model::indent::LayerDelays delays{
       .first_delay_s = 2e-5, .delay_ratio = 1.1, .refresh_rate_Hz = rate_Hz, .layers = 64};
-  // DS-8.
+  // DS-8: layers of which T_i < 1/rate.
   const auto layers = static_cast<double>(model::indent::layer_budget(delays));
   // T_i = t1 (q^i - 1)/(q - 1) < T
   const double theory = std::log(1.0 + 0.1 / (rate_Hz * 2e-5)) / std::log(1.1);

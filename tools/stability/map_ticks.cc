@@ -51,7 +51,7 @@ std::vector<report::Column> columns() {
 }
 
 double theory_N_per_m(const LoopCase& loop) {
-  // HL-4.
+  // HL-4: T becomes T (1 + p)/(1 - p) with a share p of ticks without a sample.
   if (loop.late_periods == 0)
     return model::law::haptic_limit(loop.device, loop.rate_Hz, 0.0, loop.lost_share).grow_N_per_m;
   const double p = loop.late_share, n = 1.0 + loop.late_periods;

@@ -52,7 +52,7 @@ json energy_results(const json& one_case) {
 
 json boundary_results(const json& inputs) {
   const printed::PaperRings rings =
-      // HX-13.
+      // HX-13: rings from the slope of the rim.
       printed::paper_rings(number(inputs.at("eps1")), number(inputs.at("b")));
   if (rings.status == LawStatus::kInvalid) return refused();
   const bool saturated = rings.status == LawStatus::kSaturated;

@@ -110,7 +110,7 @@ json chain_results(const json& one_case) {
               // The file counts units from 1, as RC-8 does.
               {"lim_unit", chain->weakest_unit() + 1},
               {"lim_kind", word(chain->limit_kind())},
-              // RC-12.
+              // RC-12: U / depth, as the source prints it.
               {"F_eq12", at.depth_m != 0.0 ? at.energy_J / at.depth_m : 0.0}});
   add_lambda_rule(*chain, at, got);
   return got;

@@ -55,7 +55,7 @@ json group_results(const json& one_case) {
       // MC-2. What a sphere does to itself is in its own curve.
       if (i != j)
         c[i][j] = tissue.coupling(sphere[i].in, sphere[j].in, norm(at_m[i] - at_m[j])).skin_m_per_N;
-  // MC-1.
+  // MC-1: e_i = d_i - sum over j != i of C_ij F_j.
   press_together(tissue, c, {sphere.data(), n});
   json force_N = json::array();
   for (std::size_t i = 0; i < n; ++i) force_N.push_back(sphere[i].response.law.force_N);

@@ -66,7 +66,7 @@ json transform_results(const json& one_case) {
 
 json leg_results(const json& one_case) {
   const json &p = one_case.at("params"), &inputs = one_case.at("inputs");
-  // CC-10.
+  // CC-10: a leg by the law of cosines.
   const host::figure::Leg leg{.thigh_m = number(p.at("L_lap")),
                               .calf_m = number(p.at("L_calf")),
                               .bend = p.at("bend") == 1 ? host::figure::Bend::kCounterClockwise
