@@ -62,7 +62,7 @@ model::Result<std::unique_ptr<Guardian>> Guardian::start(const hal::LastWords& w
   auto lifeline = Lifeline::make();
   if (!lifeline) return lifeline.error();
   std::unique_ptr<Guardian> guardian(new Guardian(std::move(*lifeline)));
-  if (const std::string why = guardian->spawn(program); !why.empty()) return refused(program, why);
+  if (const auto why = guardian->spawn(program)) return refused(program, std::strerror(*why));
   guardian->thread_ =
       std::thread([self = guardian.get(), settings] { self->keep(settings.priority); });
   // The lifeline must be held before the guardian has it: one that it finds free means "let go".
@@ -76,12 +76,12 @@ model::Result<std::unique_ptr<Guardian>> Guardian::start(const hal::LastWords& w
 }
 
 /// In a session of its own and with all signals blocked: what a terminal sends to tactd is not for
-/// it. Every other descriptor of ours closes by itself. Empty, or why not.
-std::string Guardian::spawn(const std::string& program) {
+/// it. Every other descriptor of ours closes by itself. The errno, if that fails.
+std::optional<int> Guardian::spawn(const std::string& program) {
   std::array<int, 2> ends{};
   dismiss_ = eventfd(0, EFD_CLOEXEC);
   if (dismiss_ < 0 || socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
-    return std::strerror(errno);
+    return errno;
   socket_ = ends[0];
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
@@ -101,9 +101,9 @@ std::string Guardian::spawn(const std::string& program) {
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&files);
   close(ends[1]);
-  if (error == 0) return {};
+  if (error == 0) return std::nullopt;
   process_ = -1;
-  return std::strerror(error);
+  return error;
 }
 
 bool Guardian::is_ready() const {

@@ -12,6 +12,7 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <semaphore>
 #include <string>
 #include <thread>
@@ -42,7 +43,7 @@ class Guardian {
 
  private:
   explicit Guardian(Lifeline lifeline) : lifeline_(std::move(lifeline)) {}
-  std::string spawn(const std::string& program);
+  [[nodiscard]] std::optional<int> spawn(const std::string& program);
   bool is_ready() const;
   void keep(int priority);
 

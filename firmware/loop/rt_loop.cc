@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nothing in here may wait but for the clock and the device; nothing locks, allocates, prints or
-// throws. The gate sees every force before the hand does.
+// Nothing in here may wait but for the clock; nothing locks, allocates, prints or throws. The gate
+// sees every force before the hand does.
 #include "firmware/loop/rt_loop.h"
 
 #include <algorithm>

@@ -119,10 +119,10 @@ std::optional<FaultCause> CanDelta::measure(const delta::Joints& motor_turns, st
 delta::Joints CanDelta::motor_torques_Nm(const Vec3& force_N, double ratio) const RT_SAFE {
   delta::Joints torque_Nm{};
   if (!has_pose_) return torque_Nm;
-  const Vec3 force = is_finite(force_N) ? saturated(force_N, settings_.max_force_N) : Vec3{};
+  const Vec3 borne_N = is_finite(force_N) ? saturated(force_N, settings_.max_force_N) : Vec3{};
   const double most_Nm = settings_.max_joint_torque_Nm;
-  torque_Nm = delta::drive_torques_Nm(delta_.geometry(), masses_, pose_, delta::direction_D(force),
-                                      most_Nm);
+  torque_Nm = delta::drive_torques_Nm(delta_.geometry(), masses_, pose_,
+                                      delta::direction_D(borne_N), most_Nm);
   for (std::size_t i = 0; i < 3; ++i) {
     const double joint_Nm = std::clamp(torque_Nm[i], -most_Nm, most_Nm);  // gravity may be above
     torque_Nm[i] = ratio * direction_[i] * joint_Nm / settings_.gear_ratio;

@@ -29,7 +29,9 @@ std::optional<std::string> DriveSettings::write(int node, CstConfiguration wante
       return sdo_failure_words(*refused, one.index, one.sub);
   }
   // 0: a quick stop lets go; a ramp would drive the arm against the hand.
-  sdo_.write(node, {.index = 0x605A, .sub = 0, .value = 0, .size = 2});  // optional
+  const auto refused = sdo_.write(node, {.index = 0x605A, .sub = 0, .value = 0, .size = 2});
+  if (refused && (refused->silent || !may_lack(node, 0x605A)))
+    return sdo_failure_words(*refused, 0x605A, 0);
   return check_mode(node);
 }
 

@@ -39,9 +39,10 @@ class DriveSettings {
   bool may_lack(int node, std::uint16_t index);
 
   SdoClient& sdo_;
-  std::array<Optional, 2> optional_{{
+  std::array<Optional, 3> optional_{{
       {0x6007,
        "what they do when tactd is gone stands in their own settings; see that they let go"},
+      {0x605A, "how they stop stands in their own settings; see that a quick stop lets go"},
       {0x60C2, "their period is their own; see that it is that of SYNC, or shorter"},
   }};
 };

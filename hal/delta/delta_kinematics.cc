@@ -139,11 +139,11 @@ Joints joint_drift_radps2(const DeltaPose& pose, const Vec3& velocity_mps) RT_SA
 double saturation_ratio(const Joints& held_Nm, const Joints& wanted_Nm, double limit_Nm) RT_SAFE {
   double ratio = 1.0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const double size = std::abs(wanted_Nm[i]);
+    const double size_Nm = std::abs(wanted_Nm[i]);
     // What is held uses up one side of the limit and widens the other.
-    const double room = wanted_Nm[i] > 0.0 ? limit_Nm - held_Nm[i] : limit_Nm + held_Nm[i];
-    if (room >= size) continue;
-    const double here = room / size;
+    const double room_Nm = wanted_Nm[i] > 0.0 ? limit_Nm - held_Nm[i] : limit_Nm + held_Nm[i];
+    if (room_Nm >= size_Nm) continue;
+    const double here = room_Nm / size_Nm;
     ratio = here > 0.0 ? std::min(ratio, here) : 0.0;  // NaN ends here too
     if (!(ratio > 0.0)) return 0.0;
   }

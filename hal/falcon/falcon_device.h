@@ -31,10 +31,10 @@ class FalconDevice final : public Device {
   ~FalconDevice() override;
 
   DeviceInfo info() const override;
-  Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
+  [[nodiscard]] Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
   bool ready() const RT_SAFE override;
   void permit(bool powered) RT_SAFE override { powered_ = powered; }
-  Fault write(const Wrench& wrench) RT_SAFE override;
+  [[nodiscard]] Fault write(const Wrench& wrench) RT_SAFE override;
   std::span<const int> loop_calls() const override { return pipe_->loop_calls(); }
   std::string trouble() const override;
   std::optional<LastWords> last_words() override;

@@ -27,9 +27,9 @@ class ForceDimensionDevice final : public Device {
   ForceDimensionDevice& operator=(const ForceDimensionDevice&) = delete;
 
   DeviceInfo info() const override { return info_; }
-  Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
+  [[nodiscard]] Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
   void permit(bool powered) RT_SAFE override { permitted_ = powered; }
-  Fault write(const Wrench& wrench) RT_SAFE override;
+  [[nodiscard]] Fault write(const Wrench& wrench) RT_SAFE override;
   std::string trouble() const override;
   void stop() override;
 

@@ -48,7 +48,7 @@ DeltaPlant::DeltaPlant(const JointFriction& friction, const model::Vec3& start_m
 void DeltaPlant::step(double dt_s, const delta::Joints& motor_Nm, const HandPull& hand) RT_SAFE {
   const delta::DeltaPose pose = delta_.pose(position_m_, theta_rad_);
   const model::Mat3 k = joint_rate_matrix(pose), k_transposed = transpose(k);
-  const double joint_inertia = joint_inertia_kgm2(kGeometry, kMasses);
+  const double inertia_kgm2 = joint_inertia_kgm2(kGeometry, kMasses);
   const model::Mat3 mass_kg =
       task_inertia_kg(kGeometry, kMasses, pose) + model::diagonal(hand.mass_kg);
   const delta::Joints gravity_Nm =
@@ -56,7 +56,7 @@ void DeltaPlant::step(double dt_s, const delta::Joints& motor_Nm, const HandPull
   const delta::Joints drift = joint_drift_radps2(pose, velocity_mps_);
   // K^T (tau - tau_g - I dK/dt v)
   const auto torque_Nm = [&](std::size_t i) RT_SAFE {
-    return motor_Nm[i] - gravity_Nm[i] - joint_inertia * drift[i];
+    return motor_Nm[i] - gravity_Nm[i] - inertia_kgm2 * drift[i];
   };
   const model::Vec3 ahead_m = position_m_ + 0.5 * dt_s * velocity_mps_;  // x+ without v+
   const model::Vec3 force_N = k_transposed * model::Vec3{torque_Nm(0), torque_Nm(1), torque_Nm(2)} +
@@ -120,10 +120,10 @@ model::Vec3 DeltaPlant::with_friction(const model::Vec3& free_mps, const model::
       // A joint in line with its rod has a row of zeros: nothing can be told of it.
       if (!(compliance > 0.0)) continue;
       // the impulse that would stop joint i, as far as friction can give it
-      const double wanted = impulse_Nms[i] - dot(k.row[i], velocity_mps) / compliance;
-      const double next = std::clamp(wanted, -most_Nms, most_Nms);
-      velocity_mps += (next - impulse_Nms[i]) * give_columns.row[i];
-      impulse_Nms[i] = next;
+      const double wanted_Nms = impulse_Nms[i] - dot(k.row[i], velocity_mps) / compliance;
+      const double next_Nms = std::clamp(wanted_Nms, -most_Nms, most_Nms);
+      velocity_mps += (next_Nms - impulse_Nms[i]) * give_columns.row[i];
+      impulse_Nms[i] = next_Nms;
     }
   }
   return velocity_mps;

@@ -38,8 +38,8 @@ class SimDelta final : public Device {
   SimDelta(const model::SimDeviceSettings& device, const model::HandSettings& hand);
 
   DeviceInfo info() const override;
-  Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
-  Fault write(const Wrench& wrench) RT_SAFE override;
+  [[nodiscard]] Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
+  [[nodiscard]] Fault write(const Wrench& wrench) RT_SAFE override;
   void permit(bool powered) RT_SAFE override { permitted_ = powered; }
   bool ready() const RT_SAFE override { return permitted_; }
   void between_ticks(double elapsed_s) RT_SAFE override;

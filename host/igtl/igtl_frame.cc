@@ -16,17 +16,18 @@ std::string frame_messages(const record::Frame& frame, double time_s) {
   std::copy(std::begin(frame.tool_orientation), std::end(frame.tool_orientation), wxyz.begin());
   const auto rotation = pose::rotation_from(wxyz);
   const Vector3d position_m = Eigen::Vector3f(frame.tool_position_m).cast<double>();
-  const Vector3d force = Eigen::Vector3f(frame.force_N).cast<double>();
-  const double force_N[3] = {force.x(), force.y(), force.z()};
-  if (!rotation || !position_m.allFinite() || !force.allFinite()) return {};
+  const Vector3d force_N = Eigen::Vector3f(frame.force_N).cast<double>();
+  const double parts_N[3] = {force_N.x(), force_N.y(), force_N.z()};
+  if (!rotation || !position_m.allFinite() || !force_N.allFinite()) return {};
   // Without a force there is no direction; the arrow then is kMinForce_N long along +z.
-  const bool has_way = force.norm() > 0.0;
-  const pose::Pose arrow{.rotation = has_way ? Quaterniond::FromTwoVectors(Vector3d::UnitZ(), force)
-                                             : Quaterniond::Identity(),
+  const bool has_way = force_N.norm() > 0.0;
+  const pose::Pose arrow{.rotation = has_way
+                                         ? Quaterniond::FromTwoVectors(Vector3d::UnitZ(), force_N)
+                                         : Quaterniond::Identity(),
                          .position_m = position_m};
   return transform("ToolToDevice", time_s, {.rotation = *rotation, .position_m = position_m}) +
-         transform("ForceToDevice", time_s, arrow, std::max(force.norm(), kMinForce_N)) +
-         force_sensor("Force", time_s, force_N);
+         transform("ForceToDevice", time_s, arrow, std::max(force_N.norm(), kMinForce_N)) +
+         force_sensor("Force", time_s, parts_N);
 }
 
 Status status_of(const record::Frame& frame) {

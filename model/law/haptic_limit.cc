@@ -25,10 +25,11 @@ HapticLimit haptic_limit(const DeviceAtTool& device, double rate_Hz,
   // HL-4: a hold lasts n periods where n - 1 samples in a row are lost, each with the share p. What
   // counts is E[n^2] / E[n] of the holds, for the longer one is felt for longer.
   const double hold_s = (1.0 + lost_share) / (1.0 - lost_share) / rate_Hz;
-  const double spare = device.damping_Ns_per_m - std::abs(virtual_damping_Ns_per_m);
+  const double spare_Ns_per_m = device.damping_Ns_per_m - std::abs(virtual_damping_Ns_per_m);
   HapticLimit limit;
   // HL-1  K_grow = (b - |B|) / (T/2 + t_d)
-  limit.grow_N_per_m = spare > 0.0 ? spare / (0.5 * hold_s + device.delay_s) : 0.0;
+  limit.grow_N_per_m =
+      spare_Ns_per_m > 0.0 ? spare_Ns_per_m / (0.5 * hold_s + device.delay_s) : 0.0;
   // HL-2  K_quiet = 2 c / D
   limit.quiet_N_per_m = device.position_step_m > 0.0
                             ? 2.0 * device.friction_N / device.position_step_m

@@ -139,11 +139,12 @@ contact::SiteCoupling ElasticField::coupling(const contact::Indentation& a,
   const double modulus_Pa = parts_.neighbours.contact_modulus_Pa;
   if (!(modulus_Pa > 0.0) || !(distance_m > 0.0)) return {};
   // MC-2   h = 1 / (pi E* s) + min(g, 0),   b = max(g, 0)
-  const double half_space = 1.0 / (std::numbers::pi * modulus_Pa * distance_m);
-  const double regular =
+  const double half_space_m_per_N = 1.0 / (std::numbers::pi * modulus_Pa * distance_m);
+  const double map_m_per_N =
       0.5 * (regular_m_per_N(a.place, distance_m) + regular_m_per_N(b.place, distance_m));
-  return {.skin_m_per_N = std::max(half_space + std::min(regular, 0.0), 0.0),  // the map has errors
-          .lobe_m_per_N = std::max(regular, 0.0)};
+  return {.skin_m_per_N =
+              std::max(half_space_m_per_N + std::min(map_m_per_N, 0.0), 0.0),  // the map has errors
+          .lobe_m_per_N = std::max(map_m_per_N, 0.0)};
 }
 
 double ElasticField::stiffest_N_per_m(const contact::Place& place, bool held) const RT_SAFE {

@@ -65,8 +65,8 @@ Fault run(FalconDevice& device, Sample& sample, Tick tick) {
     const Fault written = device.write({.force_N = {0.0, 0.0, more ? up_N : 0.0}, .torque_Nm = {}});
     if (fault == Fault::kNone) fault = written;
   }
-  device.write({});
-  return fault;
+  const Fault zeroed = device.write({});
+  return fault == Fault::kNone ? zeroed : fault;
 }
 
 void ask(const std::string& question) {

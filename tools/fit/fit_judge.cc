@@ -33,8 +33,8 @@ class Errors {
   double sum_ = 0.0, worst_N_ = 0.0;
 };
 
-/// Root of a mean of squares; NaN of nothing.
-struct Mean {
+/// Root of the mean of the squares that were added; NaN if there were none.
+struct RootMeanSquare {
   double sum = 0.0;
   int count = 0;
 
@@ -147,7 +147,7 @@ double best_scale(std::span<const FitSample> samples, std::span<const FitAnswer>
 }
 
 double shape_error(const FitSample& sample, const FitAnswer& answer) {
-  Mean rms;
+  RootMeanSquare rms;
   if (sample.depth_m != 0.0)
     for (std::size_t k = 0; k < std::min(sample.ring_m.size(), answer.ring_m.size()); ++k)
       rms.add((answer.ring_m[k] - sample.ring_m[k]) / sample.depth_m);
@@ -158,7 +158,7 @@ Judgement judge(const FitData& data, std::span<const FitAnswer> answers, bool sc
                 double press_limit_m) {
   Judgement out;
   Errors fitted, held_out, press, pull;
-  Mean shape, held_out_shape;
+  RootMeanSquare shape, held_out_shape;
   std::size_t first = 0;
   for (const FitSite& site : data.sites) {
     const auto own = answers.subspan(first, site.samples.size());
@@ -168,7 +168,7 @@ Judgement judge(const FitData& data, std::span<const FitAnswer> answers, bool sc
     // Told even where it is not used: it shows how much the sites differ.
     if (scale_by_site) row.scale = row.best_scale;
     Errors of_site;
-    Mean site_shape;
+    RootMeanSquare site_shape;
     double peak_N = 0.0;
     for (std::size_t i = 0; i < own.size(); ++i) {
       const FitSample& s = site.samples[i];

@@ -69,7 +69,7 @@ def laws(load):
 
 def known_errors(load):
     """How far the tool's force is off at its worst place and depth, in the words of the front page."""
-    told = "* **Known errors** of the force on the whole tool, at its worst place and depth ([laws](#the-laws))."
+    told = "* **Known errors** of the whole tool's force, the largest that was found ([laws](#the-laws))."
     for goal in sorted({goals_of(law)[1] for law in SCENES}):
         met, missed = [], []
         for law in (law for law in SCENES if goals_of(law)[1] == goal):

@@ -185,7 +185,7 @@ TEST(Cia402Emulated, ARatedTorqueOfTheSceneOverridesTheDrives) {
 }
 
 TEST(Cia402Emulated, SettingsThatADriveDoesNotHaveAreToldOnce) {
-  Bench all, none({.absent = {0x6007, 0x60C2}});
+  Bench all, none({.absent = {0x6007, 0x605A, 0x60C2}});
   ASSERT_EQ(all.open(), "");
   EXPECT_EQ(all.device->info().caution, "");
   ASSERT_EQ(none.open(), "");
@@ -194,6 +194,7 @@ TEST(Cia402Emulated, SettingsThatADriveDoesNotHaveAreToldOnce) {
                          "tactd is gone"),
             std::string::npos)
       << caution;
+  EXPECT_NE(caution.find("have no setting 0x605A: how they stop"), std::string::npos) << caution;
   EXPECT_NE(caution.find("have no setting 0x60C2: their period"), std::string::npos) << caution;
 }
 
