@@ -14,8 +14,9 @@
 //     R   what the brake needs for the largest force, at most B / 2
 //
 // A held force makes the observer exact (a rotation to 0.1 %: 2 sin(angle/2)). With missed samples
-// it takes their mean force, exact for a steady motion. The controller takes from the force what pushes along the motion, no more: the
-// least damping. It can be wrong, as the hand may turn round within a period; the brake cannot:
+// it takes their mean force, exact for a steady motion. The controller takes from the force what
+// pushes along the motion, no more: the least damping. It can be wrong, as the hand may turn round
+// within a period; the brake cannot:
 //
 //     E >= 0 for every input that moves at most v dt and turns at most w dt in a period,
 //
