@@ -39,5 +39,5 @@ export function describe_state(number: number, fault: number): State {
 /** The same of a recording: nothing of it is true now. */
 export function describe_past_state(number: number, fault: number): State {
   const { name, words } = describe_state(number, fault);
-  return { name: `was ${name}`, words: words.replace(/\bis\b/g, "was").replace(/^no force/, "there was $&") };
+  return { name: `was ${name}`, words: words.replace(/\bis\b/g, "was").replace(/^no (tissue )?force/, "there was $&") };
 }
