@@ -32,11 +32,11 @@ function faults_of_layout(least_px) {
   const box = (element) => element.getBoundingClientRect();
   const seen = (element) => element.checkVisibility() && box(element).width > 0;
   const name = (element) => element.id || `${element.tagName.toLowerCase()} in ${element.parentElement.id}`;
-  const canvas = document.getElementById("view");
+  const picture = document.getElementById("picture");
   const desk = document.getElementById("desk");
-  const overlay = getComputedStyle(canvas).position === "absolute"; // the picture lies behind the panels
+  const overlay = getComputedStyle(picture).position === "absolute"; // the picture lies behind the panels
   const parts = [...desk.querySelectorAll(".panel, .banner, .notice")].filter(seen);
-  if (!overlay) parts.push(canvas);
+  if (!overlay) parts.push(picture);
   const cover = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 &&
     Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1;
   const pairs = (all) => all.flatMap((a, i) => all.slice(i + 1).map((b) => [a, b]));
@@ -49,7 +49,7 @@ function faults_of_layout(least_px) {
     if (at.left < 0 || at.right > innerWidth + 1) out.push(`${name(part)} leaves the screen sideways`);
     if (at.top + scrollY < 0 || at.bottom + scrollY > scrolls + 1) out.push(`${name(part)} leaves the screen`);
     const hides = /hidden|clip/.test(getComputedStyle(part).overflowY);
-    if (part !== canvas && (part.scrollWidth > part.clientWidth + 1 || (hides && part.scrollHeight > part.clientHeight + 1)))
+    if (part !== picture && (part.scrollWidth > part.clientWidth + 1 || (hides && part.scrollHeight > part.clientHeight + 1)))
       out.push(`${name(part)} cuts what is in it`);
     for (const inner of part.querySelectorAll("*")) {
       if (!seen(inner) || inner.closest(".uplot, #stops, .bar")) continue;

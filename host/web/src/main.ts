@@ -12,6 +12,7 @@ import { split_link } from "./link";
 import { News } from "./news";
 import { Operator } from "./operator";
 import { OrganView } from "./organ_view";
+import { Outside } from "./outside";
 import { Plots } from "./plots";
 import { length_of, type FigureFrame, type Frame, type Mesh, type Scene, type Status, type Vec } from "./protocol";
 import { Recorder } from "./recorder";
@@ -77,6 +78,7 @@ const connection = new Connection({
 }, token);
 const stage = new Stage(canvas, draw);
 const operator = new Operator(stage, hud);
+const outside = new Outside(canvas, stage.camera);
 const timeline = new Timeline((wish) => connection.steer(wish));
 const hand = new HandControl(canvas, stage, may_move_hand, (position_m, grip_ratio) =>
   connection.move_hand(position_m, grip_ratio),
@@ -159,6 +161,8 @@ function draw(now_ms: number): void {
   timeline.draw();
   tool?.show_hand_target(hand.target ? (hand.target.toArray() as Vec) : null);
   if (!paused) plots.draw(now_ms);
+  const drawn = organ && tool && shown;
+  outside.draw(now_ms, drawn ? organ!.target : null, drawn ? tool!.target : null);
 }
 
 /** As a file, with what it is of. */
@@ -252,6 +256,8 @@ const numbers = {
   get tracking_words() { return operator.shown?.words ?? ""; },
   get largest_figure_bytes() { return connection.largest_figure_bytes; },
   get camera_m() { return stage.camera.position.toArray(); },
+  get camera() { return { projection: stage.camera.projectionMatrix.toArray(), view: stage.camera.matrixWorldInverse.toArray() }; },
+  get organ_m() { return organ?.drawn_m ?? null; },
 };
 export type TactNumbers = Readonly<typeof numbers>;
 declare global {

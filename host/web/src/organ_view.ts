@@ -6,8 +6,9 @@ import * as THREE from "three";
 import { Deformer, type Deformed } from "./deform";
 import { look_material, paint } from "./look";
 import { material_of, pieces_of, type Material } from "./material";
+import type { Target } from "./outside";
 import { Cuts, decode_moved } from "./patch";
-import type { Mesh, Patch, Scene, Site } from "./protocol";
+import type { Mesh, Patch, Scene, Site, Vec } from "./protocol";
 import { Wound } from "./wound";
 
 // Factors on the baked colour of the tissue (look.ts).
@@ -77,6 +78,17 @@ export class OrganView {
   /** Middle and radius of the undeformed organ. */
   get bounds(): THREE.Sphere {
     return this.geometry.boundingSphere ?? new THREE.Sphere(new THREE.Vector3(), 0.1);
+  }
+
+  get target(): Target {
+    return { at_m: this.bounds.center, radius_m: 0.5 * this.bounds.radius };
+  }
+
+  /** Its corners as it is drawn now: least, most. */
+  get drawn_m(): [Vec, Vec] {
+    const box = new THREE.Box3().setFromBufferAttribute(this.geometry.getAttribute("position") as THREE.BufferAttribute);
+    box.applyMatrix4(this.object.matrixWorld);
+    return [box.min.toArray(), box.max.toArray()];
   }
 
   set wireframe(on: boolean) {

@@ -4,6 +4,7 @@
 import * as THREE from "three";
 import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
 import { look_material } from "./look";
+import type { Target } from "./outside";
 import { dot, length_of, type Frame, type Mesh, type Scene, type Vec } from "./protocol";
 
 const kTouch = new THREE.Color("#7fd1c7");
@@ -11,6 +12,7 @@ const kHeld = new THREE.Color("#f2b04e");
 const kCalm = new THREE.Color("#7fd1c7");
 const kStrong = new THREE.Color("#f2b04e");
 const kLimit = new THREE.Color("#ff5d52");
+const kTip_m = 0.01; // what is to be seen of a tool that is in the picture
 const kArrow_m = 0.08; // length at the force limit
 
 /** Unit cylinder and cone along +y, scaled by set(). */
@@ -93,6 +95,11 @@ export class ToolView {
     const share = length_of(frame.force_N) / (this.scene.force_limit_N || 1);
     const into_tissue = frame.sites.some((site) => dot(site.normal, frame.force_N) < 0);
     this.arrow.set(this.contact_middle(frame), frame.force_N, share, into_tissue);
+  }
+
+  /** Its tip. */
+  get target(): Target {
+    return { at_m: this.tool.position, radius_m: kTip_m };
   }
 
   /** Until the next frame. */
