@@ -77,11 +77,19 @@ async function check_page(page, name, least_px) {
   await page.screenshot({ path: join(build, `layout_${name}.png`), fullPage: true });
 }
 
-async function check_screen(browser, url, name, screen, condition) {
+/** One button more. */
+function offer_headset() {
+  const offers = Object.assign(new EventTarget(), { isSessionSupported: async () => true });
+  Object.defineProperty(navigator, "xr", { value: offers, configurable: true });
+}
+
+async function check_screen(browser, url, name, screen, condition, with_headset) {
   const context = await browser.newContext(screen);
   const page = await context.newPage();
+  if (with_headset) await page.addInitScript(offer_headset);
   await page.goto(url);
   await waits(page, condition);
+  if (with_headset) check(`${name}: a headset is offered`, await waits(page, () => document.getElementById("headset").checkVisibility()));
   await page.waitForTimeout(1500);
   const least_px = screen.hasTouch ? kFinger_px : 20;
   await check_page(page, name, least_px);
@@ -135,7 +143,7 @@ async function run() {
   const tactd = start_tactd("liver", socket);
   const browser = await start_browser();
   for (const [name, screen] of Object.entries(kScreens))
-    await check_screen(browser, url, name, screen, () => window.tact.link === "live" && window.tact.tick > 0);
+    await check_screen(browser, url, name, screen, () => window.tact.link === "live" && window.tact.tick > 0, true);
   await check_keyboard(browser, url);
   await check_silence(browser, url, tactd);
   await stop(tactd);
@@ -148,7 +156,7 @@ async function run() {
   await stop(viewer);
   const replay = await start_view(["--open", recording]);
   for (const [name, screen] of Object.entries(kScreens))
-    await check_screen(browser, replay.url, `replay_${name}`, screen, () => window.tact.link === "replay");
+    await check_screen(browser, replay.url, `replay_${name}`, screen, () => window.tact.link === "replay", false);
   await check_keyboard(browser, replay.url);
   await browser.close();
   await stop(replay.viewer);

@@ -24,6 +24,20 @@ function pill(id: string, text: string, tone: string): void {
   by_id(id).dataset.tone = tone;
 }
 
+/** What the panels say, for who does not see them. */
+export interface Said {
+  state: string;
+  state_tone: string;
+  state_words: string;
+  link: string;
+  link_tone: string;
+  force_N: string;
+  force_of: string;
+  old: boolean;
+  alarm: boolean;
+  warnings: { text: string; tone: string }[];
+}
+
 export class Hud {
   private limit = 0;
   private limit_seen_ms = -Infinity;
@@ -140,6 +154,28 @@ export class Hud {
     if (this.status?.link !== "live") return; // what has gone is told already
     pill("link", "silent", "bad");
     this.notice("tactd is silent: what is shown is old, and its force is not known");
+  }
+
+  /** After `silence`. `frozen`: a key holds the display. */
+  said(frozen: boolean): Said {
+    const text = (id: string): string => (by_id(id).hidden ? "" : by_id(id).textContent ?? "");
+    const tone = (id: string): string => by_id(id).dataset.tone ?? "plain";
+    const warnings: Said["warnings"] = [];
+    const warn = (words: string, of: string): void => void (words && warnings.push({ text: words, tone: of }));
+    if (frozen) warn("the display is frozen: what is shown is old", "wait");
+    warn(text("notice"), tone("link"));
+    if (!by_id("fault").hidden) {
+      warn(text("fault_name"), tone("fault"));
+      warn(`${text("fault_cause")}; ${text("fault_cure")}`, "plain");
+    }
+    warn(text("banner"), "wait");
+    const held = frozen && !this.silent;
+    return {
+      state: held ? `old: ${text("state")}` : text("state"), state_tone: held ? "wait" : tone("state"),
+      state_words: text("state_words"), link: text("link"), link_tone: tone("link"),
+      force_N: text("force"), force_of: text("force_of"), old: frozen || this.silent,
+      alarm: [tone("state"), tone("link")].includes("bad"), warnings,
+    };
   }
 
   /** Nothing to say hides the chip. */

@@ -6,7 +6,7 @@ import { by_id } from "./hud";
 /** Buttons of the page, and the key that does the same. */
 const kButtons: Record<string, string> = {
   pause: "p", hand: "m", close_grip: "grip", open_grip: "let go", record: "r", csv: "c", snap: "s", wire: "w", home: "v",
-  figure: "f", eyes: "e", help: "h",
+  figure: "f", eyes: "e", headset: "x", help: "h",
 };
 
 /** Who has the focus may want the key for itself: then it is not ours. */

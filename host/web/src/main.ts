@@ -6,6 +6,7 @@ import { Connection } from "./connection";
 import { describe_past_state, describe_state } from "./faults";
 import { dated_name, save } from "./file_names";
 import { HandControl } from "./hand_control";
+import type { Headset } from "./headset";
 import { by_id, Hud } from "./hud";
 import { bind_keys } from "./keys";
 import { split_link } from "./link";
@@ -48,6 +49,7 @@ let wireframe = false;
 let most_ever_m = 0;
 let silence_s = 0;
 let first_drawn_ms: number | null = null; // the first picture of tissue, since 1970
+let headset: Headset | null = null;
 
 // First: the network has its turn while the picture is set up.
 const connection = new Connection({
@@ -143,6 +145,7 @@ function draw(now_ms: number): void {
     waiting = null;
   }
   if (organ && tool && newest) {
+    if (first_drawn_ms === null) void look_for_headset();
     first_drawn_ms ??= performance.timeOrigin + performance.now();
     shown = newest;
     newest = null;
@@ -161,8 +164,17 @@ function draw(now_ms: number): void {
   timeline.draw();
   tool?.show_hand_target(hand.target ? (hand.target.toArray() as Vec) : null);
   if (!paused) plots.draw(now_ms);
-  const drawn = organ && tool && shown;
+  const drawn = organ && tool && shown && !stage.wearer;
   outside.draw(now_ms, drawn ? organ!.target : null, drawn ? tool!.target : null);
+  headset?.tell(now_ms, () => hud.said(paused));
+}
+
+/** After the first picture, so that it waits for nothing. */
+async function look_for_headset(): Promise<void> {
+  if (!navigator.xr) return;
+  const { Headset } = await import("./headset");
+  headset = new Headset(stage, draw);
+  await headset.offer();
 }
 
 /** As a file, with what it is of. */
@@ -208,6 +220,7 @@ const actions: Record<string, () => unknown> = {
     operator.view_chosen = true;
     operator.see_with_eyes(!operator.eyes_on);
   },
+  x: () => headset?.toggle(),
   g: () => hand.toggle_grip(),
   grip: () => hand.grip(1),
   "let go": () => hand.grip(0),
@@ -258,6 +271,7 @@ const numbers = {
   get camera_m() { return stage.camera.position.toArray(); },
   get camera() { return { projection: stage.camera.projectionMatrix.toArray(), view: stage.camera.matrixWorldInverse.toArray() }; },
   get organ_m() { return organ?.drawn_m ?? null; },
+  get headset() { return headset?.numbers ?? null; },
 };
 export type TactNumbers = Readonly<typeof numbers>;
 declare global {

@@ -73,7 +73,7 @@ export class Operator {
       this.figure.show(this.shown);
       this.hud.tracking(heard ? this.shown : null);
     }
-    this.figure.object.visible = this.on && this.shown !== null;
+    this.figure.object.visible = this.on && this.shown !== null && !this.stage.wearer; // who has a body of their own
     if (!this.shown) return;
     if (this.shown.head_tracked && this.on && !this.view_chosen && !this.eyes_on) this.see_with_eyes(true);
     if (this.eyes_on) this.stage.look_through(eyes_of(this.shown, this.skeleton));

@@ -32,7 +32,9 @@ export class Stage {
 
   readonly steel: THREE.Texture;
   fps = 0;
-  private readonly renderer: THREE.WebGLRenderer;
+  readonly renderer: THREE.WebGLRenderer;
+  /** In a headset: the camera of its wearer's eyes. The desk's own stays as it is meanwhile. */
+  wearer: THREE.PerspectiveCamera | null = null;
   private home = new THREE.Sphere(new THREE.Vector3(), 0.1);
   private ground: THREE.Object3D | null = null;
   private with_operator = false;
@@ -75,9 +77,9 @@ export class Stage {
     this.renderer.setAnimationLoop((now_ms) => {
       draw(now_ms);
       if (this.eyes) this.see_with(this.eyes, follow_share((now_ms - this.drawn_ms) / 1000, kEyes_s));
-      else this.controls.update();
+      else if (!this.wearer) this.controls.update();
       this.drawn_ms = now_ms;
-      this.renderer.render(this.scene, this.camera);
+      this.renderer.render(this.scene, this.wearer ?? this.camera);
       this.count(now_ms);
     });
   }
@@ -98,8 +100,16 @@ export class Stage {
     this.go_home();
   }
 
-  /** What is drawn now, with these lines under it. */
-  picture(lines: readonly string[]): Promise<Blob | null> {
+  /** Draws for a headset from now on; null: on the desk again. */
+  wear(camera: THREE.PerspectiveCamera | null): void {
+    this.wearer = camera;
+    this.free_controls();
+    this.resize();
+  }
+
+  /** What is drawn now, with these lines under it; null while that is in a headset. */
+  async picture(lines: readonly string[]): Promise<Blob | null> {
+    if (this.wearer) return null;
     this.renderer.render(this.scene, this.camera); // the browser forgets what it has shown
     return snapshot(this.renderer.domElement, lines);
   }
@@ -124,13 +134,17 @@ export class Stage {
     const begins = eyes !== null && this.eyes === null;
     const ends = eyes === null && this.eyes !== null;
     this.eyes = eyes;
-    this.controls.enabled = eyes === null;
+    this.free_controls();
     if (begins || ends) {
       this.camera.fov = eyes ? kEyes_deg : kSight_deg;
       this.camera.updateProjectionMatrix();
     }
     if (begins && eyes) this.see_with(eyes, 1);
     if (ends) this.go_home();
+  }
+
+  private free_controls(): void {
+    this.controls.enabled = this.eyes === null && this.wearer === null;
   }
 
   private see_with(eyes: Eyes, share: number): void {
@@ -147,6 +161,7 @@ export class Stage {
   }
 
   private resize(): void {
+    if (this.wearer) return; // the headset has its own size
     this.renderer.setPixelRatio(this.sharpness);
     const { clientWidth, clientHeight } = this.renderer.domElement;
     this.renderer.setSize(clientWidth, clientHeight, false);
@@ -164,7 +179,7 @@ export class Stage {
     this.frames = 0;
     this.counted_since_ms = now_ms;
     const hidden = elapsed_ms > 3000; // a page in the background is not slow
-    if (this.adapts && this.fps < kSlow_fps && !hidden && this.sharpness > kCoarsest) {
+    if (this.adapts && this.fps < kSlow_fps && !hidden && !this.wearer && this.sharpness > kCoarsest) {
       this.sharpness = Math.max(kCoarsest, this.sharpness * 0.85);
       this.resize();
     }
