@@ -22,63 +22,67 @@ void wait_ns(long pause_ns) {
   clock_nanosleep(CLOCK_MONOTONIC, 0, &pause, nullptr);
 }
 
-int send_datagrams(int fd, std::span<const LastWords::Bytes> words) {
+int send_datagrams(const LastWords& words, std::size_t first, std::size_t last) {
   // Copies on the stack: an iovec takes no const, and the guardian uses no heap.
-  std::array<LastWords::Bytes, LastWords::kMax> bytes{};
+  std::array<LastWords::LongBytes, LastWords::kMax> bytes{};
   std::array<iovec, LastWords::kMax> place{};
   std::array<mmsghdr, LastWords::kMax> message{};
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    bytes[i] = words[i];
-    place[i] = {.iov_base = bytes[i].data(), .iov_len = bytes[i].size()};
+  for (std::size_t i = first; i < last; ++i) {
+    bytes[i] = words.word[i];
+    place[i] = {.iov_base = bytes[i].data(), .iov_len = words.bytes_of(i).size()};
     message[i].msg_hdr.msg_iov = &place[i];
     message[i].msg_hdr.msg_iovlen = 1;
   }
-  const auto wanted = static_cast<unsigned>(words.size());
-  const int sent = sendmmsg(fd, message.data(), wanted, MSG_DONTWAIT | MSG_NOSIGNAL);
+  const auto wanted = static_cast<unsigned>(last - first);
+  const int sent = sendmmsg(words.fd, &message[first], wanted, MSG_DONTWAIT | MSG_NOSIGNAL);
   if (sent == static_cast<int>(wanted)) return 0;
   // Some went and some did not: the queue is full, and the step is said again as a whole.
   return sent < 0 ? errno : ENOBUFS;
 }
 
-int send_bulk(int fd, std::uint8_t endpoint, std::span<const LastWords::Bytes> words) {
-  for (LastWords::Bytes bytes : words) {
+int send_bulk(const LastWords& words, std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) {
+    LastWords::LongBytes bytes = words.word[i];
     usbdevfs_bulktransfer transfer{};
-    transfer.ep = endpoint;
-    transfer.len = static_cast<unsigned>(bytes.size());
+    transfer.ep = words.endpoint;
+    transfer.len = static_cast<unsigned>(words.bytes_of(i).size());
     transfer.timeout = kTransferWait_ms;
     transfer.data = bytes.data();
-    if (ioctl(fd, USBDEVFS_BULK, &transfer) >= 0) continue;
+    if (ioctl(words.fd, USBDEVFS_BULK, &transfer) >= 0) continue;
     const int error = errno;
-    unsigned halted = endpoint;
+    unsigned halted = words.endpoint;
     // A stalled endpoint would refuse the zeros for ever; the next try then gets through.
-    if (error == EPIPE) ioctl(fd, USBDEVFS_CLEAR_HALT, &halted);
+    if (error == EPIPE) ioctl(words.fd, USBDEVFS_CLEAR_HALT, &halted);
     return error;
   }
   return 0;
 }
 
-}  // namespace
-
-bool LastWords::add_step(std::span<const Bytes> words) {
-  if (count + words.size() > kMax) return false;
+template <class Bytes>
+bool add(LastWords& to, std::span<const Bytes> words) {
+  if (to.count + words.size() > LastWords::kMax) return false;
   for (const Bytes& one : words) {
-    step[count] = static_cast<std::uint8_t>(steps);
-    word[count++] = one;
+    to.step[to.count] = static_cast<std::uint8_t>(to.steps);
+    to.size[to.count] = static_cast<std::uint8_t>(one.size());
+    std::ranges::copy(one, to.word[to.count++].begin());
   }
-  ++steps;
+  ++to.steps;
   return true;
 }
 
+}  // namespace
+
+bool LastWords::add_step(std::span<const Bytes> words) { return add(*this, words); }
+bool LastWords::add_step(std::span<const LongBytes> words) { return add(*this, words); }
+
 int say_step(const LastWords& words, std::uint32_t step) {
   const auto all = std::span(words.step).first(std::min<std::size_t>(words.count, words.kMax));
-  const auto [first, last] = std::ranges::equal_range(all, step);
-  const auto of_step = std::span(words.word)
-                           .subspan(static_cast<std::size_t>(first - all.begin()),
-                                    static_cast<std::size_t>(last - first));
-  if (of_step.empty()) return 0;
-  return words.carrier == LastWords::Carrier::kUsbBulk
-             ? send_bulk(words.fd, words.endpoint, of_step)
-             : send_datagrams(words.fd, of_step);
+  const auto of_step = std::ranges::equal_range(all, step);
+  const auto first = static_cast<std::size_t>(of_step.begin() - all.begin());
+  const auto last = first + of_step.size();
+  if (first == last) return 0;
+  return words.carrier == LastWords::Carrier::kUsbBulk ? send_bulk(words, first, last)
+                                                       : send_datagrams(words, first, last);
 }
 
 int say_all(const LastWords& words) {

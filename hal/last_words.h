@@ -5,7 +5,7 @@
 // power off, as finished bytes, and the open descriptor that carries them. So a process that knows
 // no device can say them (firmware/guardian), and nothing is computed after the death. The drives'
 // own watch over their host stays on. A message is 16 bytes, as a CAN frame of the kernel and a
-// packet of a Falcon are.
+// packet of a Falcon are, or the 72 of a CAN FD frame.
 //
 //     kDatagrams   one message each, all of a step by one sendmmsg
 //     kUsbBulk     one transfer each on `endpoint` (USBDEVFS_BULK); after a stall again
@@ -22,16 +22,23 @@ struct LastWords {
   static constexpr std::size_t kMax = 32;  // CiA 402 drives need 12
   enum class Carrier : std::uint8_t { kDatagrams, kUsbBulk };
   using Bytes = std::array<std::uint8_t, 16>;
+  using LongBytes = std::array<std::uint8_t, 72>;
 
   Carrier carrier = Carrier::kDatagrams;
   std::uint8_t endpoint = 0;  // of kUsbBulk
   int fd = -1;                // the device's own, open as long as the device
   std::uint32_t count = 0, steps = 0;
-  std::array<Bytes, kMax> word{};
+  std::array<LongBytes, kMax> word{};
+  std::array<std::uint8_t, kMax> size{};  // of each word
   std::array<std::uint8_t, kMax> step{};  // ascending; a millisecond lies between two steps
 
   /// Set-up: words of the next step. False: there is no room for them.
   bool add_step(std::span<const Bytes> words);
+  bool add_step(std::span<const LongBytes> words);
+  /// As it leaves.
+  std::span<const std::uint8_t> bytes_of(std::size_t i) const {
+    return std::span(word[i]).first(size[i] > sizeof(LongBytes) ? 0 : size[i]);
+  }
 };
 
 /// The words of one step, over `words.fd`. 0: all are with the kernel; else an errno. Neither heap

@@ -35,9 +35,17 @@ std::string error_frame_words(std::uint32_t code) {
   return "The CAN controller left its normal state: check cable, termination and bit rate.";
 }
 
+std::optional<CanFrame> unpack(const CanFrameBytes& bytes) RT_SAFE {
+  return unpack_can_frame(bytes);
+}
+std::optional<CanFdFrame> unpack(const CanFdFrameBytes& bytes) RT_SAFE {
+  return unpack_can_fd_frame(bytes);
+}
+
 }  // namespace
 
-std::span<const CanReceived> CanBus::receive() RT_SAFE {
+template <class Frame>
+auto BasicCanBus<Frame>::receive() RT_SAFE -> std::span<const Received> {
   const int n = socket_->receive(arrivals_);
   cut_ = n == static_cast<int>(arrivals_.size());
   counts_.cut_reads += cut_ ? 1 : 0;
@@ -49,10 +57,11 @@ std::span<const CanReceived> CanBus::receive() RT_SAFE {
   }
   std::size_t frames = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
-    const CanArrival& arrival = arrivals_[i];
-    if (const auto frame = unpack_can_frame(arrival.bytes))
+    const auto& arrival = arrivals_[i];
+    if (const auto frame = unpack(arrival.bytes))
       received_[frames++] = {.frame = *frame, .age_ns = arrival.age_ns};
-    else if (const auto error = decode_can_error(arrival.bytes))
+    else if (const auto error =
+                 decode_can_error(std::span(arrival.bytes).template first<kCanFrameBytes>()))
       judge(*error);
     else
       ++counts_.unreadable;
@@ -60,7 +69,8 @@ std::span<const CanReceived> CanBus::receive() RT_SAFE {
   return std::span(received_).first(frames);
 }
 
-void CanBus::judge(const CanError& error) RT_SAFE {
+template <class Frame>
+void BasicCanBus<Frame>::judge(const CanError& error) RT_SAFE {
   ++counts_.error_frames;
   classes_seen_ |= error.classes;
   controller_seen_ = static_cast<std::uint8_t>(controller_seen_ | error.controller);
@@ -74,7 +84,8 @@ void CanBus::judge(const CanError& error) RT_SAFE {
        .code = (error.classes & 0xFFFFu) | static_cast<std::uint32_t>(error.controller) << 16});
 }
 
-void CanBus::push(const std::optional<CanFrame>& frame) RT_SAFE {
+template <class Frame>
+void BasicCanBus<Frame>::push(const std::optional<Frame>& frame) RT_SAFE {
   const auto bytes = frame ? pack_can_frame(*frame) : std::nullopt;
   if (!bytes || batched_ == batch_.size()) {
     batch_whole_ = false;
@@ -83,7 +94,8 @@ void CanBus::push(const std::optional<CanFrame>& frame) RT_SAFE {
   batch_[batched_++] = *bytes;
 }
 
-void CanBus::send() RT_SAFE {
+template <class Frame>
+void BasicCanBus<Frame>::send() RT_SAFE {
   const std::size_t wanted = batched_;
   const bool whole = batch_whole_;
   batched_ = 0;
@@ -102,24 +114,26 @@ void CanBus::send() RT_SAFE {
   miss();
 }
 
-std::span<const CanFrameBytes> CanBus::take_batch() {
+template <class Frame>
+auto BasicCanBus<Frame>::take_batch() -> std::span<const Bytes> {
   batch_whole_ = true;
   return std::span(batch_).first(std::exchange(batched_, 0));
 }
 
-void CanBus::miss() RT_SAFE {
+template <class Frame>
+void BasicCanBus<Frame>::miss() RT_SAFE {
   ++counts_.missed_cycles;
   if (++missed_in_a_row_ < kMaxMissedInARow) return;
   latch_.set({.fault = Fault::kBusDown, .kind = kind_of(CanCause::kNoRoom)});
 }
 
-std::string can_bus_trouble(const FaultCause& cause, const std::string& interface) {
+std::string can_bus_trouble(const FaultCause& cause, const std::string& interface,
+                            const char* link_type) {
   switch (static_cast<CanCause>(cause.kind)) {
     case CanCause::kCall:
       return fmt::format(
-          "{}: {}; is the adapter plugged in and the interface up? ip link set {} up type can "
-          "bitrate 1000000",
-          interface, std::strerror(static_cast<int>(cause.code)), interface);
+          "{}: {}; is the adapter plugged in and the interface up? ip link set {} up {}", interface,
+          std::strerror(static_cast<int>(cause.code)), interface, link_type);
     case CanCause::kNoRoom:
       return fmt::format(
           "{} took no frames for {} ticks: nobody acknowledges, or its queue is too short; are the "
@@ -133,7 +147,8 @@ std::string can_bus_trouble(const FaultCause& cause, const std::string& interfac
   return {};
 }
 
-std::string silent_bus_trouble(const CanBus& bus, const std::string& interface) {
+template <class Frame>
+std::string silent_bus_trouble(const BasicCanBus<Frame>& bus, const std::string& interface) {
   const auto classes = [&bus](CanErrorClass one) {
     return (bus.error_classes_seen() & static_cast<std::uint32_t>(one)) != 0;
   };
@@ -155,14 +170,18 @@ std::string silent_bus_trouble(const CanBus& bus, const std::string& interface) 
   if (disturbed) {
     return fmt::format(
         "{0} understands nothing of what is on the bus: give it the drives' bit rate (sudo ip link "
-        "set {0} down; sudo ip link set {0} up type can bitrate 1000000) and check both 120 ohm "
-        "terminators",
-        interface);
+        "set {0} down; sudo ip link set {0} up {1}) and check both 120 ohm terminators",
+        interface, Frame::kLinkType);
   }
-  if (bus.fault() != Fault::kNone) return can_bus_trouble(bus.cause(), interface);
+  if (bus.fault() != Fault::kNone) return can_bus_trouble(bus.cause(), interface, Frame::kLinkType);
   return fmt::format(
       "no drive is heard on {}: are they on, at its bit rate and at the nodes of device.can.node?",
       interface);
 }
+
+template class BasicCanBus<CanFrame>;
+template class BasicCanBus<CanFdFrame>;
+template std::string silent_bus_trouble(const CanBus&, const std::string&);
+template std::string silent_bus_trouble(const CanFdBus&, const std::string&);
 
 }  // namespace tact::hal::can

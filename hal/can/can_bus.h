@@ -28,8 +28,9 @@ namespace tact::hal::can {
 
 using model::Fault;
 
-struct CanReceived {
-  CanFrame frame;
+template <class Frame>
+struct BasicCanReceived {
+  Frame frame;
   std::int64_t age_ns = 0;
 };
 
@@ -48,22 +49,27 @@ enum class CanCause : std::uint8_t {
   kFirstOwn = 16,
 };
 
-class CanBus {
+/// Of classic frames or of CAN FD frames.
+template <class Frame>
+class BasicCanBus {
  public:
+  using Received = BasicCanReceived<Frame>;
+  using Bytes = typename Frame::Bytes;
+  using Socket = BasicCanSocket<Bytes>;
   static constexpr int kMaxMissedInARow = 20;
 
-  explicit CanBus(std::unique_ptr<CanSocket> socket) : socket_(std::move(socket)) {}
+  explicit BasicCanBus(std::unique_ptr<Socket> socket) : socket_(std::move(socket)) {}
 
   /// Data frames and requests since the last call, oldest first; valid until the next call.
-  std::span<const CanReceived> receive() RT_SAFE;
+  std::span<const Received> receive() RT_SAFE;
   /// The last receive() was full: newer frames may still wait.
   bool cut() const RT_SAFE { return cut_; }
 
   /// For the batch of this tick; what cannot be a frame, or is more than 16, is a missed cycle.
-  void push(const std::optional<CanFrame>& frame) RT_SAFE;
+  void push(const std::optional<Frame>& frame) RT_SAFE;
   void send() RT_SAFE;
   /// Set-up: what was pushed, instead of sending it; valid until the next push.
-  std::span<const CanFrameBytes> take_batch();
+  std::span<const Bytes> take_batch();
 
   Fault fault() const RT_SAFE { return latch_.fault(); }
   FaultCause cause() const RT_SAFE { return latch_.cause(); }
@@ -71,16 +77,16 @@ class CanBus {
   /// All error classes and controller states of error frames so far: why nobody answers at start.
   std::uint32_t error_classes_seen() const RT_SAFE { return classes_seen_; }
   std::uint8_t controller_seen() const RT_SAFE { return controller_seen_; }
-  CanSocket& socket() { return *socket_; }
+  Socket& socket() { return *socket_; }
 
  private:
   void judge(const CanError& error) RT_SAFE;
   void miss() RT_SAFE;
 
-  std::unique_ptr<CanSocket> socket_;
-  std::array<CanArrival, CanSocket::kMaxReceived> arrivals_{};
-  std::array<CanReceived, CanSocket::kMaxReceived> received_{};
-  std::array<CanFrameBytes, CanSocket::kMaxSent> batch_{};
+  std::unique_ptr<Socket> socket_;
+  std::array<BasicCanArrival<Bytes>, Socket::kMaxReceived> arrivals_{};
+  std::array<Received, Socket::kMaxReceived> received_{};
+  std::array<Bytes, Socket::kMaxSent> batch_{};
   std::size_t batched_ = 0;
   bool batch_whole_ = true;
   bool cut_ = false;
@@ -91,10 +97,17 @@ class CanBus {
   FaultLatch latch_;
 };
 
+using CanReceived = BasicCanReceived<CanFrame>;
+using CanBus = BasicCanBus<CanFrame>;
+using CanFdReceived = BasicCanReceived<CanFdFrame>;
+using CanFdBus = BasicCanBus<CanFdFrame>;
+
 /// What a cause of the bus means, with the cure; empty for causes that are not the bus's.
-std::string can_bus_trouble(const FaultCause& cause, const std::string& interface);
+std::string can_bus_trouble(const FaultCause& cause, const std::string& interface,
+                            const char* link_type = CanFrame::kLinkType);
 
 /// Set-up: why nobody was heard at all, as far as the bus itself says.
-std::string silent_bus_trouble(const CanBus& bus, const std::string& interface);
+template <class Frame>
+std::string silent_bus_trouble(const BasicCanBus<Frame>& bus, const std::string& interface);
 
 }  // namespace tact::hal::can

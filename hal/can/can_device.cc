@@ -24,10 +24,11 @@ enum class DriveCause : std::uint8_t {
   kJumped,       // position without motion
 };
 
+template <class Frame>
 class CanDevice final : public Device {
  public:
-  CanDevice(std::unique_ptr<CanBus> bus, const model::DeviceSettings& settings, double rate_Hz,
-            CanStart start)
+  CanDevice(std::unique_ptr<BasicCanBus<Frame>> bus, const model::DeviceSettings& settings,
+            double rate_Hz, BasicCanStart<Frame> start)
       : bus_(std::move(bus)),
         settings_(settings),
         delta_(settings.delta, settings.can),
@@ -57,7 +58,7 @@ class CanDevice final : public Device {
   Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override {
     sample.fresh = false;
     begin(now_ns);
-    for (const CanReceived& one : bus_->receive()) take(one.frame, now_ns - one.age_ns);
+    for (const auto& one : bus_->receive()) take(one.frame, now_ns - one.age_ns);
     if (bus_->fault() != Fault::kNone) loop_.latch.set(bus_->cause());
     if (loop_.power == CanPower::kStopped) return fault();
     watch();
@@ -113,7 +114,9 @@ class CanDevice final : public Device {
   std::string trouble() const override {
     const FaultCause cause = loop_.latch.cause();
     if (cause.fault == Fault::kNone || cause.axis > 2) return {};
-    if (auto words = can_bus_trouble(cause, settings_.can.interface); !words.empty()) return words;
+    if (auto words = can_bus_trouble(cause, settings_.can.interface, Frame::kLinkType);
+        !words.empty())
+      return words;
     if (auto words = homing_trouble(cause, settings_.delta); !words.empty()) return words;
     return fmt::format("{}: {}", can_arm_name(cause.axis, settings_.can), words(cause));
   }
@@ -142,7 +145,7 @@ class CanDevice final : public Device {
     for (CanAxis& axis : loop_.axes) axis.sampled = false;
   }
 
-  void take(const CanFrame& frame, std::int64_t arrival_ns) RT_SAFE {
+  void take(const Frame& frame, std::int64_t arrival_ns) RT_SAFE {
     const int node = drives_.node_of(frame);
     std::size_t i = 0;
     while (i < 3 && loop_.axes[i].node != node) ++i;
@@ -231,14 +234,14 @@ class CanDevice final : public Device {
     return drives_.words(cause);
   }
 
-  std::unique_ptr<CanBus> bus_;
+  std::unique_ptr<BasicCanBus<Frame>> bus_;
   model::DeviceSettings settings_;
   CanDelta delta_;
-  CanStart start_;
-  CanDrives& drives_;
+  BasicCanStart<Frame> start_;
+  BasicCanDrives<Frame>& drives_;
   std::int64_t period_ns_;
   SampleGap gap_;
-  CanLoop loop_;
+  BasicCanLoop<Frame> loop_;
   bool permitted_ = false;
   int fault_batches_ = 0;  // sent since the fault
   std::uint64_t sequence_ = 0;
@@ -247,12 +250,22 @@ class CanDevice final : public Device {
 
 }  // namespace
 
-model::Result<std::unique_ptr<Device>> start_can_device(std::unique_ptr<CanBus> bus,
+template <class Frame>
+model::Result<std::unique_ptr<Device>> start_can_device(std::unique_ptr<BasicCanBus<Frame>> bus,
                                                         const model::DeviceSettings& settings,
-                                                        double rate_Hz, CanStart start) {
-  auto device = std::make_unique<CanDevice>(std::move(bus), settings, rate_Hz, std::move(start));
+                                                        double rate_Hz,
+                                                        BasicCanStart<Frame> start) {
+  auto device =
+      std::make_unique<CanDevice<Frame>>(std::move(bus), settings, rate_Hz, std::move(start));
   if (auto error = device->check_home()) return *error;
   return std::unique_ptr<Device>(std::move(device));
 }
+
+template model::Result<std::unique_ptr<Device>> start_can_device(std::unique_ptr<CanBus>,
+                                                                 const model::DeviceSettings&,
+                                                                 double, CanStart);
+template model::Result<std::unique_ptr<Device>> start_can_device(std::unique_ptr<CanFdBus>,
+                                                                 const model::DeviceSettings&,
+                                                                 double, CanFdStart);
 
 }  // namespace tact::hal::can

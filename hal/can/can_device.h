@@ -14,6 +14,7 @@
 // device anew clears it.
 //
 // A new kind of drive is its frames, its bring-up and a CanDrives; nothing of a device is in them.
+// All of it is there twice, for classic frames and for CAN FD (CanFdDrives).
 #pragma once
 
 #include <array>
@@ -57,8 +58,9 @@ struct CanAxis {
 };
 
 /// The bus and its three drives in the loop, as device and rules share them.
-struct CanLoop {
-  CanBus& bus;
+template <class Frame>
+struct BasicCanLoop {
+  BasicCanBus<Frame>& bus;
   std::array<CanAxis, 3> axes{};
   CanPower power = CanPower::kOff;
   std::int64_t now_ns = 0;     // of the last read; 0: none yet
@@ -83,31 +85,34 @@ struct CanLoop {
 };
 
 /// The rules of one kind of drives. All but words() and tally() belong to the loop.
-class CanDrives {
+template <class Frame>
+class BasicCanDrives {
  public:
-  CanDrives() = default;
-  CanDrives(const CanDrives&) = delete;
-  CanDrives& operator=(const CanDrives&) = delete;
-  virtual ~CanDrives() = default;
+  using Loop = BasicCanLoop<Frame>;
 
-  virtual int node_of(const CanFrame& frame) const RT_SAFE = 0;
+  BasicCanDrives() = default;
+  BasicCanDrives(const BasicCanDrives&) = delete;
+  BasicCanDrives& operator=(const BasicCanDrives&) = delete;
+  virtual ~BasicCanDrives() = default;
+
+  virtual int node_of(const Frame& frame) const RT_SAFE = 0;
   /// A frame of this axis: its position, its heartbeat, its faults. False: nobody asked for it.
-  virtual bool take(CanLoop& loop, std::size_t axis, const CanFrame& frame,
+  virtual bool take(Loop& loop, std::size_t axis, const Frame& frame,
                     std::int64_t arrival_ns) RT_SAFE = 0;
   /// Once all frames are taken: starting becomes ready; a drive that does not start, or lets go, is
   /// a fault.
-  virtual void update_power(CanLoop& loop) RT_SAFE = 0;
+  virtual void update_power(Loop& loop) RT_SAFE = 0;
   /// All frames of a tick, for these torques at the motors; power is off, starting or ready.
-  virtual void push(CanLoop& loop, const delta::Joints& torque_Nm) RT_SAFE = 0;
+  virtual void push(Loop& loop, const delta::Joints& torque_Nm) RT_SAFE = 0;
   /// The frames that stop all three after a fault.
-  virtual void push_fault(CanLoop& loop) RT_SAFE = 0;
+  virtual void push_fault(Loop& loop) RT_SAFE = 0;
   /// What goes on after those, tick by tick, so that drives without a fault note none.
-  virtual void push_after_fault(CanLoop& loop) RT_SAFE { (void)loop; }
+  virtual void push_after_fault(Loop& loop) RT_SAFE { (void)loop; }
   /// For good: the frames of step 0, 1, ..; false: the last ones. Zero torque comes first. They are
   /// the same at any time, as somebody else may have to send them (hal/last_words.h).
-  virtual bool push_stop(CanLoop& loop, int step) = 0;
+  virtual bool push_stop(Loop& loop, int step) = 0;
   /// After those, so that drives do not miss a host that has left.
-  virtual void push_leave(CanLoop& loop) { (void)loop; }
+  virtual void push_leave(Loop& loop) { (void)loop; }
   /// What a cause of their own means, with the cure. Any thread.
   virtual std::string words(const FaultCause& cause) const = 0;
   /// What they counted.
@@ -115,8 +120,9 @@ class CanDrives {
 };
 
 /// Drives that are up, and what opening them told.
-struct CanStart {
-  std::unique_ptr<CanDrives> drives;
+template <class Frame>
+struct BasicCanStart {
+  std::unique_ptr<BasicCanDrives<Frame>> drives;
   std::string name;                 // of the device
   const char* position;             // what is missed when no sample comes
   bool one_sync = false;            // all three sample at one time
@@ -127,9 +133,17 @@ struct CanStart {
   std::string caution{};            // DeviceInfo's
 };
 
+using CanLoop = BasicCanLoop<CanFrame>;
+using CanDrives = BasicCanDrives<CanFrame>;
+using CanStart = BasicCanStart<CanFrame>;
+using CanFdLoop = BasicCanLoop<CanFdFrame>;
+using CanFdDrives = BasicCanDrives<CanFdFrame>;
+using CanFdStart = BasicCanStart<CanFdFrame>;
+
 /// The device; an error when the arms cannot be where the drives say.
-model::Result<std::unique_ptr<Device>> start_can_device(std::unique_ptr<CanBus> bus,
+template <class Frame>
+model::Result<std::unique_ptr<Device>> start_can_device(std::unique_ptr<BasicCanBus<Frame>> bus,
                                                         const model::DeviceSettings& settings,
-                                                        double rate_Hz, CanStart start);
+                                                        double rate_Hz, BasicCanStart<Frame> start);
 
 }  // namespace tact::hal::can

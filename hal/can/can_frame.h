@@ -27,6 +27,10 @@ inline constexpr std::size_t kCanFrameBytes = 16;
 using CanFrameBytes = std::array<std::uint8_t, kCanFrameBytes>;
 
 struct CanFrame {
+  using Bytes = CanFrameBytes;
+  /// How its interface is set up, for a cure.
+  static constexpr const char* kLinkType = "type can bitrate 1000000";
+
   std::uint32_t id = 0;                // 0 to 0x7FF; the lower one wins the bus
   bool rtr = false;                    // a request for this identifier: a length but no data
   std::uint8_t length = 0;             // of the data, bytes, 0 to 8

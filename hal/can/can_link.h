@@ -4,20 +4,21 @@
 // The kernel's answer to RTM_GETLINK (rtnetlink(7), linux/if_link.h, linux/can/netlink.h):
 //
 //     nlmsghdr 16 bytes, ifinfomsg 16 bytes (type u16 at 2, index i32 at 4, flags u32 at 8), then
-//     attributes: length u16, type u16, value, padded to 4:  LINKINFO 18 { KIND 1, DATA 2 {
-//     BITTIMING 1 { bit rate u32, .. }, STATE 4 u32, RESTART_MS 6 u32 } }
+//     attributes: length u16, type u16, value, padded to 4:  MTU 4 u32, LINKINFO 18 { KIND 1, DATA
+//     2 { BITTIMING 1 { bit rate u32, .. }, STATE 4 u32, RESTART_MS 6 u32, DATA_BITTIMING 9 } }
 //
-// A virtual bus (vcan, vxcan) has no DATA: no bit rate, no state, and nothing to refuse. The
-// interface is configured from outside; nothing here changes it. Set-up code only.
+// An MTU of 72 says that the interface carries CAN FD. A virtual bus (vcan, vxcan) has no DATA: no
+// bit rate, no state, and nothing to refuse. The interface is configured from outside; nothing here
+// changes it. Set-up code only.
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 
-#include "hal/can/can_socket.h"
+#include "hal/can/can_fd_frame.h"
+#include "hal/can/can_frame.h"
 #include "model/result.h"
 
 namespace tact::hal::can {
@@ -36,8 +37,10 @@ struct CanLink {
   int index = 0;
   bool is_can = false;
   bool up = false;
-  bool only_local = false;               // vcan: a bus that ends in this kernel's loopback
-  std::optional<std::uint32_t> bitrate;  // bit/s
+  bool only_local = false;  // vcan: a bus that ends in this kernel's loopback
+  bool carries_fd = false;
+  std::optional<std::uint32_t> bitrate;         // bit/s; of CAN FD the slow one
+  std::optional<std::uint32_t> fast_bitrate{};  // of CAN FD
   std::optional<CanLinkState> state;
   std::optional<std::uint32_t> restart_ms;
 };
@@ -49,16 +52,8 @@ std::optional<CanLink> decode_can_link(std::span<const std::uint8_t> message);
 std::optional<model::Error> check_can_link(const CanLink& link, const std::string& name,
                                            int cycle_bits, double rate_Hz);
 
-/// Asks the kernel. An error: no such interface, or the kernel's own words.
-model::Result<CanLink> read_can_link(const std::string& name);
-
-/// A raw socket for data frames of exactly these identifiers, and for error frames.
-model::Result<std::unique_ptr<CanSocket>> open_can_socket(const std::string& name, int index,
-                                                          std::span<const std::uint32_t> ids);
-
-/// All of the above, in this order.
-model::Result<std::unique_ptr<CanSocket>> open_checked_can(const std::string& name, int cycle_bits,
-                                                           double rate_Hz,
-                                                           std::span<const std::uint32_t> ids);
+/// The same for CAN FD.
+std::optional<model::Error> check_can_fd_link(const CanLink& link, const std::string& name,
+                                              const CanFdBits& cycle, double rate_Hz);
 
 }  // namespace tact::hal::can

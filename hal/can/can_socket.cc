@@ -54,27 +54,41 @@ timespec wall_clock() RT_SAFE {  // the clock of the kernel's stamps; answered w
 #pragma clang diagnostic pop
 #endif
 
+/// As it came, of a datagram of so many bytes: whole, a classic frame, or zeroes.
+template <class Bytes>
+Bytes arrived(const Bytes& bytes, std::size_t told) RT_SAFE {
+  if (told == bytes.size()) return bytes;
+  Bytes out{};
+  if (told == kCanFrameBytes) std::copy_n(bytes.begin(), kCanFrameBytes, out.begin());
+  return out;
+}
+
 }  // namespace
 
-CanSocket::CanSocket(int fd) : fd_(fd) {
+template <class Bytes>
+BasicCanSocket<Bytes>::BasicCanSocket(int fd) : fd_(fd) {
   const int on = 1;
   setsockopt(fd_, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
   for (std::size_t i = 0; i < kMaxReceived; ++i) {
-    in_place_[i] = {.iov_base = in_bytes_[i].data(), .iov_len = kCanFrameBytes};
+    in_place_[i] = {.iov_base = in_bytes_[i].data(), .iov_len = sizeof(Bytes)};
     in_[i].msg_hdr.msg_iov = &in_place_[i];
     in_[i].msg_hdr.msg_iovlen = 1;
     in_[i].msg_hdr.msg_control = in_control_[i].bytes.data();
   }
   for (std::size_t i = 0; i < kMaxSent; ++i) {
-    out_place_[i] = {.iov_base = out_bytes_[i].data(), .iov_len = kCanFrameBytes};
+    out_place_[i] = {.iov_base = out_bytes_[i].data(), .iov_len = sizeof(Bytes)};
     out_[i].msg_hdr.msg_iov = &out_place_[i];
     out_[i].msg_hdr.msg_iovlen = 1;
   }
 }
 
-CanSocket::~CanSocket() { close(fd_); }
+template <class Bytes>
+BasicCanSocket<Bytes>::~BasicCanSocket() {
+  close(fd_);
+}
 
-int CanSocket::receive(std::span<CanArrival> out) RT_SAFE {
+template <class Bytes>
+int BasicCanSocket<Bytes>::receive(std::span<Arrival> out) RT_SAFE {
   const std::size_t most = std::min(out.size(), kMaxReceived);
   for (std::size_t i = 0; i < most; ++i)
     in_[i].msg_hdr.msg_controllen = sizeof(Control);  // the kernel wrote what it used
@@ -83,14 +97,13 @@ int CanSocket::receive(std::span<CanArrival> out) RT_SAFE {
   if (n < 0) return n;
   const bool empties = static_cast<std::size_t>(n) < most && told != -EINTR;
   stamps_.look(in_ns(wall_clock()), monotonic_ns(), empties);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
-    const bool whole = in_[i].msg_len == kCanFrameBytes;
-    out[i] = {.bytes = whole ? in_bytes_[i] : CanFrameBytes{}, .age_ns = age_ns(in_[i].msg_hdr)};
-  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i)
+    out[i] = {.bytes = arrived(in_bytes_[i], in_[i].msg_len), .age_ns = age_ns(in_[i].msg_hdr)};
   return n;
 }
 
-std::int64_t CanSocket::age_ns(const msghdr& message) const RT_SAFE {
+template <class Bytes>
+std::int64_t BasicCanSocket<Bytes>::age_ns(const msghdr& message) const RT_SAFE {
   const auto* header = static_cast<const cmsghdr*>(message.msg_control);
   const bool stamped = message.msg_controllen >= CMSG_LEN(sizeof(timespec)) &&
                        header->cmsg_level == SOL_SOCKET && header->cmsg_type == SCM_TIMESTAMPNS;
@@ -100,18 +113,26 @@ std::int64_t CanSocket::age_ns(const msghdr& message) const RT_SAFE {
   return stamps_.of(in_ns(stamp));
 }
 
-int CanSocket::send(std::span<const CanFrameBytes> frames) RT_SAFE {
+template <class Bytes>
+int BasicCanSocket<Bytes>::send(std::span<const Bytes> frames) RT_SAFE {
   const std::size_t n = std::min(frames.size(), kMaxSent);
   if (n == 0) return 0;
   std::copy_n(frames.begin(), n, out_bytes_.begin());
   return send_batch(fd_, std::span(out_).first(n));
 }
 
-void CanSocket::wait(int timeout_ms) {
+template <class Bytes>
+void BasicCanSocket<Bytes>::wait(int timeout_ms) {
   pollfd one{.fd = fd_, .events = POLLIN, .revents = 0};
   poll(&one, 1, timeout_ms);
 }
 
-std::int64_t CanSocket::now_ns() { return monotonic_ns(); }
+template <class Bytes>
+std::int64_t BasicCanSocket<Bytes>::now_ns() {
+  return monotonic_ns();
+}
+
+template class BasicCanSocket<CanFrameBytes>;
+template class BasicCanSocket<CanFdFrameBytes>;
 
 }  // namespace tact::hal::can

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "hal/can/can_device.h"
-#include "hal/can/can_link.h"
 #include "hal/can/can_lock.h"
+#include "hal/can/can_open.h"
 #include "hal/cia402/canopen_frames.h"
 #include "hal/cia402/canopen_words.h"
 #include "hal/cia402/cia402_bring_up.h"

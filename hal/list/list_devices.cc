@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <tuple>
 
+#include "hal/can/can_open.h"
 #include "hal/udev_rules.h"
 #include "model/io/input_file.h"
 

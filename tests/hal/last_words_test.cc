@@ -52,6 +52,20 @@ TEST(LastWords, AStepLeavesAloneAndAllLeaveInOrderWithoutHeap) {
   EXPECT_EQ(say_step(words, 7), 0) << "nothing to say";
 }
 
+TEST(LastWords, AWordOfACanFdFrameLeavesWholeBesideShortOnes) {
+  const Ends ends;
+  LastWords words{.fd = ends.fd[0]};
+  LastWords::LongBytes one{};
+  one.front() = 7, one.back() = 9;
+  EXPECT_TRUE(words.add_step(std::array<LastWords::LongBytes, 1>{one}));
+  EXPECT_TRUE(words.add_step(std::array<Bytes, 1>{Bytes{1}}));
+  EXPECT_EQ(say_all(words), 0);
+  LastWords::LongBytes heard{};
+  ASSERT_EQ(recv(ends.fd[1], heard.data(), heard.size(), MSG_DONTWAIT), 72);
+  EXPECT_EQ(heard, one);
+  EXPECT_EQ(ends.heard(), (std::vector<Bytes>{{1}}));
+}
+
 TEST(LastWords, WhatDoesNotFitIsRefused) {
   LastWords words;
   const std::vector<Bytes> many(LastWords::kMax);

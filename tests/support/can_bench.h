@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// can_bench.h - a delta on CAN with played drives, tick by tick, for both kinds of drives.
+// can_bench.h - a delta on CAN with played drives, tick by tick, whatever the drives.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,6 +12,7 @@
 #include <numbers>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "hal/can/can_bus.h"
 #include "hal/can/can_delta.h"
@@ -66,8 +67,8 @@ inline hal::delta::Joints expected_motor_Nm(const model::DeviceSettings& setting
 /// One device, and drives that live a millisecond per tick. Drives: `millisecond`, `listen`, `bus`.
 template <class Drives>
 struct CanBench {
-  using Start = model::Result<std::unique_ptr<hal::Device>> (*)(std::unique_ptr<hal::can::CanBus>,
-                                                                const model::DeviceSettings&,
+  using Bus = decltype(std::declval<Drives&>().bus.bus());
+  using Start = model::Result<std::unique_ptr<hal::Device>> (*)(Bus, const model::DeviceSettings&,
                                                                 double);
 
   explicit CanBench(const model::DeviceSettings& wanted) : settings(wanted) {}

@@ -15,6 +15,8 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -23,22 +25,26 @@
 namespace tact::tests {
 
 /// The host's end, with misfortunes.
-class ScriptedSocket final : public hal::can::CanSocket {
+template <class Frame>
+class BasicScriptedSocket final : public hal::can::BasicCanSocket<typename Frame::Bytes> {
  public:
-  ScriptedSocket(int fd, std::function<void()> millisecond)
-      : CanSocket(fd), millisecond_(std::move(millisecond)) {}
+  using Bytes = typename Frame::Bytes;
+  using Base = hal::can::BasicCanSocket<Bytes>;
 
-  int receive(std::span<hal::can::CanArrival> out) RT_SAFE override {
+  BasicScriptedSocket(int fd, std::function<void()> millisecond)
+      : Base(fd), millisecond_(std::move(millisecond)) {}
+
+  int receive(std::span<hal::can::BasicCanArrival<Bytes>> out) RT_SAFE override {
     ++calls;
     if (receive_error != 0) return -receive_error;
-    const int n = CanSocket::receive(out);
+    const int n = Base::receive(out);
     for (int i = 0; i < n; ++i) out[static_cast<std::size_t>(i)].age_ns = age_ns;
     return n;
   }
-  int send(std::span<const hal::can::CanFrameBytes> frames) RT_SAFE override {
+  int send(std::span<const Bytes> frames) RT_SAFE override {
     ++calls;
     if (send_error != 0) return -send_error;
-    return CanSocket::send(frames);
+    return Base::send(frames);
   }
   void wait(int timeout_ms) override {
     (void)timeout_ms;
@@ -57,14 +63,20 @@ class ScriptedSocket final : public hal::can::CanSocket {
 };
 
 /// Both ends; what the host sends is read by listen(), what drives say goes through say().
-class ScriptedBus {
+template <class Frame>
+class BasicScriptedBus {
  public:
-  explicit ScriptedBus(std::function<void()> millisecond) : millisecond_(std::move(millisecond)) {
+  using Bytes = typename Frame::Bytes;
+  using Socket = BasicScriptedSocket<Frame>;
+  using Bus = hal::can::BasicCanBus<Frame>;
+
+  explicit BasicScriptedBus(std::function<void()> millisecond)
+      : millisecond_(std::move(millisecond)) {
     connect();
   }
-  ScriptedBus(const ScriptedBus&) = delete;
-  ScriptedBus& operator=(const ScriptedBus&) = delete;
-  ~ScriptedBus() { unplug(); }
+  BasicScriptedBus(const BasicScriptedBus&) = delete;
+  BasicScriptedBus& operator=(const BasicScriptedBus&) = delete;
+  ~BasicScriptedBus() { unplug(); }
 
   /// A new pair of ends, as for a host that was started again.
   void connect() {
@@ -72,21 +84,21 @@ class ScriptedBus {
     int fds[2] = {-1, -1};
     if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, fds) != 0) std::abort();
     drives_fd_ = fds[1];
-    auto socket = std::make_unique<ScriptedSocket>(fds[0], millisecond_);
+    auto socket = std::make_unique<Socket>(fds[0], millisecond_);
     socket_ = socket.get();
-    bus_ = std::make_unique<hal::can::CanBus>(std::move(socket));
+    bus_ = std::make_unique<Bus>(std::move(socket));
   }
   /// The drives' end for somebody else, who closes it.
   int give_drives_end() { return std::exchange(drives_fd_, -1); }
 
   /// To give to the device; the socket lives with it.
-  std::unique_ptr<hal::can::CanBus> bus() { return std::move(bus_); }
-  ScriptedSocket& socket() { return *socket_; }
+  std::unique_ptr<Bus> bus() { return std::move(bus_); }
+  Socket& socket() { return *socket_; }
 
-  void say(const hal::can::CanFrame& frame) {
+  void say(const Frame& frame) {
     if (const auto bytes = hal::can::pack_can_frame(frame)) say_bytes(*bytes);
   }
-  void say_bytes(const hal::can::CanFrameBytes& bytes) {
+  void say_bytes(std::span<const std::uint8_t> bytes) {
     [[maybe_unused]] const auto n = ::send(drives_fd_, bytes.data(), bytes.size(), MSG_DONTWAIT);
   }
   void say_error(std::uint32_t classes, std::uint8_t controller) {
@@ -97,14 +109,18 @@ class ScriptedBus {
     bytes[9] = controller;
     say_bytes(bytes);
   }
-  std::optional<hal::can::CanFrame> hear() {
-    hal::can::CanFrameBytes bytes{};
+  std::optional<Frame> hear() {
+    Bytes bytes{};
     const auto n = ::recv(drives_fd_, bytes.data(), bytes.size(), MSG_DONTWAIT);
-    return n == 16 ? hal::can::unpack_can_frame(bytes) : std::nullopt;
+    if (n != static_cast<ssize_t>(bytes.size())) return std::nullopt;
+    if constexpr (std::is_same_v<Frame, hal::can::CanFrame>)
+      return hal::can::unpack_can_frame(bytes);
+    else
+      return hal::can::unpack_can_fd_frame(bytes);
   }
   /// All that the host sent since the last call.
-  std::vector<hal::can::CanFrame> hear_all() {
-    std::vector<hal::can::CanFrame> frames;
+  std::vector<Frame> hear_all() {
+    std::vector<Frame> frames;
     while (auto frame = hear()) frames.push_back(*frame);
     return frames;
   }
@@ -116,8 +132,12 @@ class ScriptedBus {
  private:
   std::function<void()> millisecond_;
   int drives_fd_ = -1;
-  std::unique_ptr<hal::can::CanBus> bus_;
-  ScriptedSocket* socket_ = nullptr;
+  std::unique_ptr<Bus> bus_;
+  Socket* socket_ = nullptr;
 };
+
+using ScriptedSocket = BasicScriptedSocket<hal::can::CanFrame>;
+using ScriptedBus = BasicScriptedBus<hal::can::CanFrame>;
+using ScriptedFdBus = BasicScriptedBus<hal::can::CanFdFrame>;
 
 }  // namespace tact::tests

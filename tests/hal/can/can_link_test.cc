@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "hal/can/can_open.h"
 #include "hal/can/little_endian.h"
 
 namespace tact::hal::can::can_link_test {
@@ -112,7 +113,9 @@ TEST(CanLink, EveryUnfitInterfaceHasItsSentence) {
                .is_can = true,
                .up = true,
                .only_local = false,
+               .carries_fd = false,
                .bitrate = 1'000'000,
+               .fast_bitrate = {},
                .state = CanLinkState::kActive,
                .restart_ms = 0};
   EXPECT_EQ(refusal(good), "");
@@ -138,6 +141,52 @@ TEST(CanLink, EveryUnfitInterfaceHasItsSentence) {
   EXPECT_NE(refusal(link).find("500000 bit/s, too slow for three drives at 1000 Hz"),
             std::string::npos);
   EXPECT_EQ(refusal(link, 690, 500.0), "");
+}
+
+TEST(CanLink, ReadsWhetherAnInterfaceCarriesCanFdAndHowFast) {
+  Bytes timing = word(1'000'000), fast = word(5'000'000);
+  timing.resize(32), fast.resize(32);
+  const Bytes data = join({attribute(1, timing), attribute(9, fast)});
+  const Bytes info = attribute(18, join({attribute(1, text("can")), attribute(2, data)}));
+  const auto link = decode_can_link(link_message(280, 1, join({attribute(4, word(72)), info})));
+  ASSERT_TRUE(link);
+  EXPECT_TRUE(link->carries_fd);
+  EXPECT_EQ(link->fast_bitrate, 5'000'000u);
+  const auto classic = decode_can_link(link_message(280, 1, join({attribute(4, word(16)), info})));
+  EXPECT_FALSE(classic->carries_fd);
+}
+
+TEST(CanLink, ALinkForCanFdIsHeldToMoreThanOneForClassicFrames) {
+  const auto refusal_fd = [](const CanLink& link, double rate_Hz = 1000.0) {
+    const auto error = check_can_fd_link(link, "can0", {.slow = 273, .fast = 1908}, rate_Hz);
+    return error ? error->sentence : std::string();
+  };
+  const CanLink good{.index = 7,
+                     .is_can = true,
+                     .up = true,
+                     .only_local = false,
+                     .carries_fd = true,
+                     .bitrate = 1'000'000,
+                     .fast_bitrate = 5'000'000,
+                     .state = CanLinkState::kActive,
+                     .restart_ms = 0};
+  EXPECT_EQ(refusal_fd(good), "");
+  CanLink link = good;
+  link.carries_fd = false;
+  EXPECT_NE(refusal_fd(link).find(
+                "can0 carries classic CAN alone: sudo ip link set can0 down; sudo ip link set can0 "
+                "up type can bitrate 1000000 dbitrate 5000000 sample-point 0.666"),
+            std::string::npos)
+      << refusal_fd(link);
+  link = good, link.up = false;
+  EXPECT_NE(refusal_fd(link).find("dbitrate 5000000 sample-point 0.666"), std::string::npos);
+  link = good, link.state = CanLinkState::kBusOff;
+  EXPECT_NE(refusal_fd(link).find("can0 is bus-off"), std::string::npos);
+  link = good, link.fast_bitrate = 2'000'000;
+  EXPECT_NE(refusal_fd(link).find("1000000 and 2000000 bit/s, too slow"), std::string::npos);
+  EXPECT_NE(refusal_fd(good, 2000.0).find("lower rate_Hz"), std::string::npos);
+  link = good, link.bitrate = link.fast_bitrate = std::nullopt;  // a virtual one
+  EXPECT_EQ(refusal_fd(link), "");
 }
 
 TEST(CanLink, AnInterfaceThatIsNotThereIsNamedWithTheCure) {

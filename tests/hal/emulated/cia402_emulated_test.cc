@@ -140,7 +140,7 @@ TEST(Cia402Emulated, LastWordsAreZeroTorqueWithoutAnEnableAndSyncAndNoMore) {
   const auto words = bench.device->last_words();
   ASSERT_TRUE(words && words->count == 12);
   for (std::size_t i = 0; i < words->count; ++i) {
-    const auto frame = can::unpack_can_frame(words->word[i]);
+    const auto frame = can::unpack_can_frame(words->bytes_of(i));
     ASSERT_TRUE(frame);
     if (*frame == cia402::canopen_sync()) continue;
     const int node = static_cast<int>(frame->id) - 0x200;

@@ -159,7 +159,7 @@ TEST(OdriveEmulated, LastWordsAreZeroTorqueAndIdleAndNoMore) {
   const auto words = bench.device->last_words();
   ASSERT_TRUE(words && words->count == 9);
   for (std::size_t i = 0; i < words->count; ++i) {
-    const auto frame = can::unpack_can_frame(words->word[i]);
+    const auto frame = can::unpack_can_frame(words->bytes_of(i));
     ASSERT_TRUE(frame);
     const int node = odrive::odrive_address(*frame).node;
     EXPECT_TRUE(node >= 1 && node <= 3);

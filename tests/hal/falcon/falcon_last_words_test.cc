@@ -19,7 +19,7 @@ TEST(FalconLastWords, AreZeroWordsOverTheOpenDescriptorAndNoMore) {
   EXPECT_EQ(words->endpoint, falcon::kFalconEndpointOut);
   ASSERT_GE(words->count, 2u) << "nobody sees whether one has come";
   for (std::size_t i = 0; i < words->count; ++i) {
-    const auto command = falcon::decode_falcon_command(words->word[i]);
+    const auto command = falcon::decode_falcon_command(words->bytes_of(i));
     ASSERT_TRUE(command);
     EXPECT_EQ(command->motor, falcon::FalconWords{});
     EXPECT_EQ(command->lights, falcon::kFalconRed);

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// can_open.h - from the name of a CAN interface to a socket that is fit for a force.
+//
+// Set-up code only.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "hal/can/can_link.h"
+#include "hal/can/can_socket.h"
+#include "model/result.h"
+
+namespace tact::hal::can {
+
+/// Asks the kernel. An error: no such interface, or the kernel's own words.
+model::Result<CanLink> read_can_link(const std::string& name);
+
+/// A raw socket for data frames of exactly these identifiers, and for error frames. Of CAN FD: a
+/// small identifier may come as an extended one.
+model::Result<std::unique_ptr<CanSocket>> open_can_socket(const std::string& name, int index,
+                                                          std::span<const std::uint32_t> ids);
+model::Result<std::unique_ptr<CanFdSocket>> open_can_fd_socket(const std::string& name, int index,
+                                                               std::span<const std::uint32_t> ids);
+
+/// All of the above, in this order.
+model::Result<std::unique_ptr<CanSocket>> open_checked_can(const std::string& name, int cycle_bits,
+                                                           double rate_Hz,
+                                                           std::span<const std::uint32_t> ids);
+model::Result<std::unique_ptr<CanFdSocket>> open_checked_can_fd(const std::string& name,
+                                                                const CanFdBits& cycle,
+                                                                double rate_Hz,
+                                                                std::span<const std::uint32_t> ids);
+
+}  // namespace tact::hal::can
