@@ -4,7 +4,8 @@
 namespace tact::firmware::run {
 
 std::optional<model::Error> why_not_unattended(const model::scene::Scene& scene, bool is_service) {
-  const bool is_can = scene.device.kind == "can-odrive" || scene.device.kind == "can-cia402";
+  const bool is_can = scene.device.kind == "can-odrive" || scene.device.kind == "can-cia402" ||
+                      scene.device.kind == "can-moteus";
   if (!is_service || !is_can || scene.device.can.homing != model::Homing::kJig) return std::nullopt;
   return model::Error{
       "device.can.homing = \"jig\": a service would believe that the arms rest on the jig whenever "

@@ -68,14 +68,15 @@ FoundPart can_part(const PartProbes& probes, const fs::path& folder) {
   link.up = (number_of(folder / "flags", 16) & kInterfaceUp) != 0;
   if (const auto known = probes.can_link == nullptr ? std::nullopt : probes.can_link(name))
     link = *known;
-  FoundPart part{.kind = PartKind::kCan,
-                 .name = name,
-                 .what = fmt::format("CAN interface, {}", link.up ? "up" : "down"),
-                 .scene = fmt::format("device.kind = \"can-odrive\" or \"can-cia402\", "
-                                      "device.can.interface = \"{}\"",
-                                      name),
-                 .lacking = {},
-                 .cure = {}};
+  FoundPart part{
+      .kind = PartKind::kCan,
+      .name = name,
+      .what = fmt::format("CAN interface, {}", link.up ? "up" : "down"),
+      .scene = fmt::format("device.kind = \"can-odrive\", \"can-cia402\" or \"can-moteus\", "
+                           "device.can.interface = \"{}\"",
+                           name),
+      .lacking = {},
+      .cure = {}};
   if (link.bitrate.value_or(0) != 0) part.what += fmt::format(", {} bit/s", *link.bitrate);
   // No bits and no rate: what a scene would load the bus with is not known here.
   if (const auto refusal = check_can_link(link, name, 0, 0.0)) {

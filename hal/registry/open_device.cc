@@ -9,6 +9,7 @@
 #include "hal/cia402/cia402_delta.h"
 #include "hal/falcon_usb/falcon_open.h"
 #include "hal/force_dimension/force_dimension_device.h"
+#include "hal/moteus/moteus_delta.h"
 #include "hal/odrive/odrive_delta.h"
 #include "hal/sim/sim_delta.h"
 
@@ -42,6 +43,7 @@ struct Kind {
 constexpr Kind kKinds[] = {{"sim-delta", open_sim_delta, true},
                            {"can-odrive", opened<odrive::open_can_odrive>},
                            {"can-cia402", opened<cia402::open_can_cia402>},
+                           {"can-moteus", opened<moteus::open_can_moteus>},
                            {"falcon", opened<falcon_usb::open_falcon>},
                            {"force-dimension", opened<force_dimension::open_force_dimension>}};
 

@@ -195,7 +195,7 @@ void visit_device(reader::Keys& k, DeviceSettings& out) {
       "delta", "a delta on CAN", [&](reader::Keys& delta) { visit_delta(delta, out.delta); },
       kOptional);
   k.section(
-      "can", "its drives, can-odrive or can-cia402",
+      "can", "its drives, can-odrive, can-cia402 or can-moteus",
       [&](reader::Keys& can) { visit_can(can, out.can); }, kOptional);
   k.section(
       "falcon", "a Novint Falcon", [&](reader::Keys& falcon) { visit_falcon(falcon, out.falcon); },

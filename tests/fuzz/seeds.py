@@ -10,6 +10,7 @@ import sys
 SOURCES = {
     'can_frame': ['can_socketcan.json', 'can_odrive.json', 'can_cia402.json'],
     'odrive': ['can_odrive.json'],
+    'moteus': ['can_moteus.json'],
     'cia402': ['can_cia402.json'],
     'falcon_stream': ['falcon_packets.json'],
     'ftdi': ['falcon_packets.json'],

@@ -9,7 +9,7 @@ CONTACT = ["model", "model/law", "model/contact"]
 SURFACE_LAWS = [*CONTACT, "model/indent", "model/tissue", "model/springs"]
 SCENE = [*SURFACE_LAWS, "model/io", "model/mesh", "model/reader", "model/scene"]
 DELTA = ["model", "hal", "hal/delta"]
-DEVICES = ["hal/sim", "hal/odrive", "hal/cia402", "hal/falcon_usb", "hal/force_dimension"]
+DEVICES = ["hal/sim", "hal/odrive", "hal/cia402", "hal/moteus", "hal/falcon_usb", "hal/force_dimension"]
 LOOP = [*CONTACT, "hal", "firmware/gate"]
 OPERATOR = ["host/pose", "host/tracking", "host/figure"]
 # What a folder may include beside itself; CMake links no more than that.
@@ -31,6 +31,7 @@ ROOMS = {
     "hal/can": DELTA,
     "hal/odrive": [*DELTA, "hal/can"],
     "hal/cia402": [*DELTA, "hal/can"],
+    "hal/moteus": [*DELTA, "hal/can"],
     "hal/falcon": DELTA,
     "hal/falcon_usb": [*DELTA, "model/io", "hal/falcon"],
     "hal/force_dimension": ["model", "hal"],

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The published CAN frames: SocketCAN's error frames and bits on the bus, ODrive's messages; the
-// frames of CiA 402 are in can_cia402.cc.
+// frames of CiA 402 are in can_cia402.cc, those of moteus in can_moteus.cc.
 #include "tools/verify/can.h"
 
 #include <fmt/core.h>
@@ -268,6 +268,7 @@ constexpr Verifier kVerifiers[] = {
     {"can_socketcan/1", verify_socketcan},
     {"can_odrive/1", verify_odrive},
     {"can_cia402/1", verify_cia402},
+    {"can_moteus/1", verify_moteus},
 };
 
 }  // namespace

@@ -45,5 +45,7 @@ bool refuses_damage(const hal::can::CanFrame& sound, Decode decode) {
 
 /// Of can_cia402.cc.
 void verify_cia402(const nlohmann::json& file, Report& report);
+/// Of can_moteus.cc.
+void verify_moteus(const nlohmann::json& file, Report& report);
 
 }  // namespace tact::tools::verify

@@ -7,7 +7,7 @@ namespace tact::firmware::run::unattended_test {
 
 TEST(Unattended, AServiceDoesNotHomeOnAJigThatNobodySees) {
   model::scene::Scene scene;
-  for (const char* kind : {"can-odrive", "can-cia402"}) {
+  for (const char* kind : {"can-odrive", "can-cia402", "can-moteus"}) {
     scene.device.kind = kind;
     scene.device.can.homing = model::Homing::kJig;
     const auto refused = why_not_unattended(scene, true);

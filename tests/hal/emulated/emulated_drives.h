@@ -11,8 +11,10 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <memory>
 #include <string>
+#include <type_traits>
 
 #include "hal/last_words.h"
 #include "tests/rig/emulators/can_bus.h"
@@ -22,19 +24,24 @@
 
 namespace tact::tests {
 
-class EmulatedDrives {
+template <class Frame>
+class BasicEmulatedDrives {
  public:
-  explicit EmulatedDrives(std::uint32_t node_step)
-      : bus([this] { millisecond(); }), cable(plan_, node_step) {
+  explicit BasicEmulatedDrives(std::uint32_t node_step)
+      : bus([this] { millisecond(); }),
+        cable(plan_, node_step, !std::is_same_v<Frame, hal::can::CanFrame>) {
     cable.adopt(bus.give_drives_end());
   }
 
   /// `args` follow axis and node in the constructor of a drive.
   template <class Drive, class Settings>
   void install(const Settings& settings) {
-    for (int i = 0; i < 3; ++i)
-      drive[static_cast<std::size_t>(i)] = std::make_unique<Drive>(
-          i, i + 1, settings, cable, motor[static_cast<std::size_t>(i)], plan_);
+    for (std::size_t i = 0; i < 3; ++i) install<Drive>(i, settings);
+  }
+  template <class Drive, class Settings>
+  void install(std::size_t i, const Settings& settings) {
+    const int axis = static_cast<int>(i);
+    drive[i] = std::make_unique<Drive>(axis, axis + 1, settings, cable, motor[i], plan_);
   }
   /// Another host on the same drives.
   void connect_again() {
@@ -52,6 +59,7 @@ class EmulatedDrives {
   void millisecond() {
     listen();
     now_ns += 1'000'000;
+    if (also) also();
     plan_.tick(now_ns);
     for (const auto& one : drive) one->tick(now_ns);
     look();
@@ -72,7 +80,8 @@ class EmulatedDrives {
   std::array<std::unique_ptr<rig::Drive>, 3> drive{};
   std::size_t most_enabled = 0;    // at one time
   double largest_torque_Nm = 0.0;  // of any motor, at any time
-  ScriptedBus bus;
+  std::function<void()> also;      // in every millisecond
+  BasicScriptedBus<Frame> bus;
 
  private:
   void look() {
@@ -87,6 +96,13 @@ class EmulatedDrives {
 
  public:
   rig::CanBus cable;
+};
+
+struct EmulatedDrives : BasicEmulatedDrives<hal::can::CanFrame> {
+  using BasicEmulatedDrives::BasicEmulatedDrives;
+};
+struct EmulatedFdDrives : BasicEmulatedDrives<hal::can::CanFdFrame> {
+  using BasicEmulatedDrives::BasicEmulatedDrives;
 };
 
 }  // namespace tact::tests

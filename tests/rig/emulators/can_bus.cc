@@ -43,6 +43,11 @@ bool CanBus::open(const std::string& interface, std::string& error) {
             "): modprobe can_raw";
     return false;
   }
+  const int on = 1;
+  if (with_fd_ && setsockopt(fd_, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on) != 0) {
+    error = std::string("this kernel has no CAN FD (") + std::strerror(errno) + ")";
+    return false;
+  }
   sockaddr_can address{};
   address.can_family = AF_CAN;
   address.can_ifindex = static_cast<int>(if_nametoindex(interface.c_str()));
@@ -58,16 +63,26 @@ bool CanBus::open(const std::string& interface, std::string& error) {
   return true;
 }
 
-std::optional<can_frame> CanBus::receive() {
-  can_frame frame{};
-  if (read(fd_, &frame, sizeof frame) != static_cast<ssize_t>(sizeof frame)) return std::nullopt;
-  if ((frame.can_id & (CAN_ERR_FLAG | CAN_EFF_FLAG)) != 0) return std::nullopt;
+std::optional<canfd_frame> CanBus::receive() {
+  canfd_frame frame{};
+  const ssize_t size = read(fd_, &frame, with_fd_ ? CANFD_MTU : CAN_MTU);
+  if (size != static_cast<ssize_t>(CAN_MTU) && size != static_cast<ssize_t>(CANFD_MTU))
+    return std::nullopt;
+  if ((frame.can_id & (CAN_ERR_FLAG | (with_fd_ ? 0u : CAN_EFF_FLAG))) != 0) return std::nullopt;
   return frame;
 }
 
-void CanBus::write(const can_frame& frame) {
+void CanBus::write(const void* frame, std::size_t size) {
   // A full queue or a downed link loses the frame, as it would on the wire.
-  [[maybe_unused]] const ssize_t written = ::write(fd_, &frame, sizeof frame);
+  [[maybe_unused]] const ssize_t written = ::write(fd_, frame, size);
+}
+
+void CanBus::write(const canfd_frame& frame) {
+  canfd_frame out = frame;
+  if (!with_fd_) return write(&out, CAN_MTU);
+  out.flags = CANFD_BRS | CANFD_FDF;
+  if (out.can_id > CAN_SFF_MASK) out.can_id |= CAN_EFF_FLAG;
+  write(&out, CANFD_MTU);
 }
 
 void CanBus::send(int axis, CanRole role, std::uint32_t id, std::span<const std::uint8_t> payload,
@@ -75,17 +90,18 @@ void CanBus::send(int axis, CanRole role, std::uint32_t id, std::span<const std:
   if (faults_.active(FaultKind::kSilent, axis, now_ns) ||
       (role == CanRole::kHeartbeat && faults_.active(FaultKind::kHeartbeatMissing, axis, now_ns)))
     return;
-  can_frame frame{};
+  canfd_frame frame{};
   frame.can_id = id;
-  frame.can_dlc = static_cast<std::uint8_t>(std::min<std::size_t>(payload.size(), CAN_MAX_DLEN));
-  std::copy_n(payload.begin(), frame.can_dlc, std::begin(frame.data));
+  frame.len = static_cast<std::uint8_t>(
+      std::min<std::size_t>(payload.size(), with_fd_ ? CANFD_MAX_DLEN : CAN_MAX_DLEN));
+  std::copy_n(payload.begin(), frame.len, std::begin(frame.data));
   if (role == CanRole::kSample)
     send_sample(static_cast<std::size_t>(axis), frame, now_ns);
   else
     write(frame);
 }
 
-void CanBus::send_sample(std::size_t axis, can_frame frame, std::int64_t now_ns) {
+void CanBus::send_sample(std::size_t axis, canfd_frame frame, std::int64_t now_ns) {
   const int number = static_cast<int>(axis);
   const auto acts = [&](FaultKind kind) { return faults_.active(kind, number, now_ns); };
   if (!acts(FaultKind::kStale))
@@ -94,13 +110,15 @@ void CanBus::send_sample(std::size_t axis, can_frame frame, std::int64_t now_ns)
     frame = *stale_[axis];
   if (acts(FaultKind::kLost)) return;
   if (acts(FaultKind::kGarbage)) {
-    for (std::uint8_t& byte : frame.data) {
+    for (std::uint8_t& byte : std::span(frame.data).first(with_fd_ ? frame.len : CAN_MAX_DLEN)) {
       noise_ = noise_ * 1664525u + 1013904223u;  // Numerical Recipes' generator
       byte = static_cast<std::uint8_t>(noise_ >> 24u);
     }
-    frame.can_dlc = static_cast<std::uint8_t>(noise_ >> 8u & 8u) != 0
-                        ? std::uint8_t{CAN_MAX_DLEN}
-                        : static_cast<std::uint8_t>(noise_ >> 12u & 7u);
+    if (!with_fd_) {
+      frame.len = static_cast<std::uint8_t>(noise_ >> 8u & 8u) != 0
+                      ? std::uint8_t{CAN_MAX_DLEN}
+                      : static_cast<std::uint8_t>(noise_ >> 12u & 7u);
+    }
   }
   if (acts(FaultKind::kWrongNode)) frame.can_id ^= kStranger * node_step_;
   if (acts(FaultKind::kReordered) && !held_[axis]) {
@@ -115,8 +133,11 @@ void CanBus::send_sample(std::size_t axis, can_frame frame, std::int64_t now_ns)
 
 void CanBus::tick(std::int64_t now_ns) {
   for (const FaultKind kind :
-       {FaultKind::kBusOffFrame, FaultKind::kErrorPassiveFrame, FaultKind::kNoAckFrame})
-    if (faults_.once(kind, -1, now_ns)) write(error_frame(kind));
+       {FaultKind::kBusOffFrame, FaultKind::kErrorPassiveFrame, FaultKind::kNoAckFrame}) {
+    if (!faults_.once(kind, -1, now_ns)) continue;
+    const can_frame frame = error_frame(kind);
+    write(&frame, sizeof frame);
+  }
 }
 
 }  // namespace tact::rig

@@ -95,9 +95,9 @@ void Cia402Drive::network(std::span<const std::uint8_t> payload, std::int64_t no
     state_ = Cia402State::kSwitchOnDisabled;
 }
 
-bool Cia402Drive::receive(const can_frame& frame, std::int64_t now_ns) {
+bool Cia402Drive::receive(const canfd_frame& frame, std::int64_t now_ns) {
   if (faults_.active(FaultKind::kUnpowered, axis_, now_ns)) return false;
-  const std::span<const std::uint8_t> payload(std::begin(frame.data), frame.can_dlc);
+  const std::span<const std::uint8_t> payload(std::begin(frame.data), frame.len);
   const auto id = static_cast<std::int64_t>(frame.can_id & CAN_SFF_MASK);
   const std::int64_t consumer = dictionary_.get(0x1016, 1);
   if (id == 0) {

@@ -49,7 +49,7 @@ class Cia402Drive final : public Drive {
   Cia402Drive(int axis, int node, const Cia402Settings& settings, CanBus& bus, const Motor& motor,
               const FaultPlan& faults);
 
-  bool receive(const can_frame& frame, std::int64_t now_ns) override;
+  bool receive(const canfd_frame& frame, std::int64_t now_ns) override;
   void tick(std::int64_t now_ns) override;
   void fail(std::int64_t now_ns) override;
   bool warn(std::int64_t now_ns) override;

@@ -18,7 +18,7 @@ class Drive {
  public:
   virtual ~Drive() = default;
   /// Any frame of the bus. True: it was a torque command of this drive.
-  virtual bool receive(const can_frame& frame, std::int64_t now_ns) = 0;
+  virtual bool receive(const canfd_frame& frame, std::int64_t now_ns) = 0;
   /// Every millisecond: monitors, cyclic messages.
   virtual void tick(std::int64_t now_ns) = 0;
   /// An over-current trips it.

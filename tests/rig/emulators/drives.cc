@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // tact-rig-drives - three emulated motor drives of a delta on a CAN bus, with its arms and a hand.
 //
-// The other side of the cable: it speaks ODrive CANSimple 0.5, 0.6 or CiA 402 over CANopen, turns
-// torques into motion of the example delta and counts into samples, and commits faults to order.
+// The other side of the cable: it speaks ODrive CANSimple 0.5, 0.6, CiA 402 over CANopen or moteus
+// over CAN FD, turns torques into motion of the example delta and counts into samples, and commits
+// faults to order.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -11,6 +12,7 @@
 #include "tests/rig/emulators/cia402_drive.h"
 #include "tests/rig/emulators/delta_mechanism.h"
 #include "tests/rig/emulators/emulator_options.h"
+#include "tests/rig/emulators/moteus_drive.h"
 #include "tests/rig/emulators/odrive_drive.h"
 #include "tests/rig/emulators/real_time.h"
 #include "tests/rig/emulators/run_record.h"
@@ -33,13 +35,17 @@ struct Options : EmulatorOptions {
   int phase_us = 0;
   OdriveSettings odrive{};
   Cia402Settings cia402{};
+  MoteusSettings moteus{};
 
   bool is_cia402() const { return protocol == "cia402"; }
+  bool is_moteus() const { return protocol == "moteus"; }
+  /// Estimates leave every millisecond, whatever the host does.
+  bool has_own_clock() const { return !is_cia402() && !is_moteus(); }
 };
 
 void add_own(CLI::App& app, Options& options) {
   app.add_option("--protocol", options.protocol)
-      ->check(CLI::IsMember({"odrive05", "odrive06", "cia402"}))
+      ->check(CLI::IsMember({"odrive05", "odrive06", "cia402", "moteus"}))
       ->capture_default_str();
   app.add_option("--interface", options.interface)->capture_default_str();
   app.add_option("--nodes", options.nodes, "Node numbers of the axes")
@@ -76,6 +82,10 @@ void add_own(CLI::App& app, Options& options) {
   app.add_option("--velocity-limit-turns-per-s", options.odrive.velocity_limit_turns_per_s,
                  "ODrive; the maker's default is 2")
       ->capture_default_str();
+  app.add_option("--timeout-mode", options.moteus.timeout_mode,
+                 "moteus: what its watchdog does; 0: lets go, 12: damps")
+      ->check(CLI::IsMember({0, 12}))
+      ->capture_default_str();
   app.add_option("--rated-torque-Nm", options.cia402.rated_torque_Nm,
                  "CiA 402, object 6076, to the mN m")
       ->check(CLI::Range(0.001, 100.0))
@@ -105,6 +115,9 @@ class Drives {
       const auto i = static_cast<std::size_t>(axis);
       if (options.is_cia402()) {
         drives_[i] = std::make_unique<Cia402Drive>(axis, options.nodes[i], options.cia402, bus,
+                                                   motors_[i], faults);
+      } else if (options.is_moteus()) {
+        drives_[i] = std::make_unique<MoteusDrive>(axis, options.nodes[i], options.moteus, bus,
                                                    motors_[i], faults);
       } else {
         drives_[i] = std::make_unique<OdriveDrive>(axis, options.nodes[i], options.odrive, bus,
@@ -162,7 +175,7 @@ class Drives {
     return drives_[0]->is_enabled() && drives_[1]->is_enabled() && drives_[2]->is_enabled();
   }
 
-  void receive(const can_frame& frame, std::int64_t now_ns) {
+  void receive(const canfd_frame& frame, std::int64_t now_ns) {
     move(now_ns);
     const bool is_sync = options_.is_cia402() && (frame.can_id & CAN_SFF_MASK) == 0x080;
     if (is_sync) record_.cycle_begins(now_ns);
@@ -170,6 +183,10 @@ class Drives {
       if (!drives_[static_cast<std::size_t>(axis)]->receive(frame, now_ns)) continue;
       take_torques();
       record_.commanded(axis, platform_, tau_Nm_, faults_, now_ns);
+      if (!options_.is_moteus() || axis != 2) continue;
+      // The last command of a tick has asked for the positions of the next one.
+      record_.cycle_begins(now_ns);
+      record_.answer_sent(now_ns, monotonic_ns());
     }
     take_torques();
     if (is_sync) record_.answer_sent(now_ns, monotonic_ns());
@@ -183,7 +200,7 @@ class Drives {
     bus_.tick(now_ns);
     take_torques();
     record_.tick(platform_, tau_Nm_, all_enabled(), faults_, now_ns);
-    if (!options_.is_cia402()) record_.cycle_begins(now_ns);
+    if (options_.has_own_clock()) record_.cycle_begins(now_ns);
     for (int axis = 0; axis < 3; ++axis) {
       Drive& drive = *drives_[static_cast<std::size_t>(axis)];
       if (faults_.once(FaultKind::kDriveFault, axis, now_ns)) drive.fail(now_ns);
@@ -194,7 +211,7 @@ class Drives {
       faults_.watchdog_tripped();
     }
     take_torques();
-    if (!options_.is_cia402()) record_.answer_sent(now_ns, monotonic_ns());
+    if (options_.has_own_clock()) record_.answer_sent(now_ns, monotonic_ns());
   }
 
   const Options& options_;
@@ -227,8 +244,12 @@ int main(int argc, char** argv) {
   if (!parse_faults(options, FaultSide::kDrives, faults, error)) return refuse(kProgram, error);
   for (const Fault& fault : faults.faults())
     if (fault.kind == FaultKind::kEmcy && !options.is_cia402())
-      return refuse(kProgram, "ODrives send no emergency frames: take drive-fault, or cia402");
-  CanBus bus(faults, options.is_cia402() ? 1 : 32);
+      return refuse(kProgram, "these drives send no emergency frames: take drive-fault, or cia402");
+  CanBus bus(faults,
+             options.is_cia402()   ? 1
+             : options.is_moteus() ? 0x100
+                                   : 32,
+             options.is_moteus());
   if (!bus.open(options.interface, error)) return refuse(kProgram, error);
   Drives drives(options, faults, bus);
   if (!enter_real_time(options.priority, error)) return refuse(kProgram, error);

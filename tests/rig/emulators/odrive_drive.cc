@@ -84,7 +84,7 @@ void OdriveDrive::request_state(std::uint32_t state, std::int64_t now_ns) {
   }
 }
 
-bool OdriveDrive::receive(const can_frame& frame, std::int64_t now_ns) {
+bool OdriveDrive::receive(const canfd_frame& frame, std::int64_t now_ns) {
   const std::uint32_t id = frame.can_id & CAN_SFF_MASK;
   if (id >> 5u != static_cast<std::uint32_t>(node_) ||
       faults_.active(FaultKind::kUnpowered, axis_, now_ns))
@@ -93,15 +93,15 @@ bool OdriveDrive::receive(const can_frame& frame, std::int64_t now_ns) {
   if (is_05() || is_set_point(number)) fed_ns_ = now_ns;
   const OdriveMessage* const reply = odrive_reply(number, settings_.generation);
   // A request is a remote frame; the drives also take an empty data frame for one.
-  if (reply != nullptr && ((frame.can_id & CAN_RTR_FLAG) != 0 || frame.can_dlc == 0)) {
+  if (reply != nullptr && ((frame.can_id & CAN_RTR_FLAG) != 0 || frame.len == 0)) {
     send(*reply, CanRole::kOther, now_ns);
     return false;
   }
   return (frame.can_id & CAN_RTR_FLAG) == 0 && command(frame, number, now_ns);
 }
 
-bool OdriveDrive::command(const can_frame& frame, std::uint8_t number, std::int64_t now_ns) {
-  const std::span<const std::uint8_t> payload(std::begin(frame.data), frame.can_dlc);
+bool OdriveDrive::command(const canfd_frame& frame, std::uint8_t number, std::int64_t now_ns) {
+  const std::span<const std::uint8_t> payload(std::begin(frame.data), frame.len);
   const auto value = [&](std::string_view name, std::size_t field) {
     const OdriveMessage* const message = odrive_message(name, OdriveFrom::kHost);
     return get_field(payload, message->fields[field]);
@@ -122,13 +122,13 @@ bool OdriveDrive::command(const can_frame& frame, std::uint8_t number, std::int6
       return false;
     case 0x0E: {
       const double torque_Nm = value("set_input_torque", 0);
-      if (frame.can_dlc < 4 || !std::isfinite(torque_Nm)) return false;
+      if (frame.len < 4 || !std::isfinite(torque_Nm)) return false;
       input_torque_Nm_ = torque_Nm;
       return true;
     }
     case 0x0F: {
       const double current_A = value("set_limits", 1);
-      if (frame.can_dlc == 8 && std::isfinite(current_A) && current_A >= 0.0)
+      if (frame.len == 8 && std::isfinite(current_A) && current_A >= 0.0)
         current_limit_A_ = current_A;
       velocity_limit_turns_per_s_ = value("set_limits", 0);
       return false;

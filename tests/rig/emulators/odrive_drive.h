@@ -45,7 +45,7 @@ class OdriveDrive final : public Drive {
   OdriveDrive(int axis, int node, const OdriveSettings& settings, CanBus& bus, const Motor& motor,
               const FaultPlan& faults);
 
-  bool receive(const can_frame& frame, std::int64_t now_ns) override;
+  bool receive(const canfd_frame& frame, std::int64_t now_ns) override;
   void tick(std::int64_t now_ns) override;
   void fail(std::int64_t now_ns) override;
   bool warn(std::int64_t) override { return false; }
@@ -57,7 +57,7 @@ class OdriveDrive final : public Drive {
   static constexpr std::uint32_t kIdle = 1, kIndexSearch = 6, kClosedLoop = 8;
 
   bool is_05() const { return settings_.generation == OdriveGeneration::k05; }
-  bool command(const can_frame& frame, std::uint8_t number, std::int64_t now_ns);
+  bool command(const canfd_frame& frame, std::uint8_t number, std::int64_t now_ns);
   bool knows_estimates() const {
     return !is_05() || settings_.estimates_from_power_on || entered_closed_loop_;
   }

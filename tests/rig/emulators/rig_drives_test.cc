@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "tests/rig/emulators/cia402_drive.h"
+#include "tests/rig/emulators/moteus_drive.h"
 #include "tests/rig/emulators/odrive_drive.h"
 #include "tests/rig/emulators/self_check.h"
 
@@ -14,10 +15,10 @@ namespace tact::rig::rig_drives_test {
 
 constexpr std::int64_t kMs = 1'000'000, kStart = 1'000 * kMs;
 
-can_frame frame_of(std::uint32_t id, std::vector<std::uint8_t> data) {
-  can_frame frame{};
+canfd_frame frame_of(std::uint32_t id, std::vector<std::uint8_t> data) {
+  canfd_frame frame{};
   frame.can_id = id;
-  frame.can_dlc = static_cast<std::uint8_t>(data.size());
+  frame.len = static_cast<std::uint8_t>(data.size());
   std::copy(data.begin(), data.end(), std::begin(frame.data));
   return frame;
 }
@@ -157,6 +158,35 @@ TEST(RigDrives, ACia402DriveStopsWhenTheHostsHeartbeatIsLost) {
   for (const can_frame& frame : cable.heard())
     said |= frame.can_id == 0x085u && get_raw({&frame.data[0], 2}) == 0x8130;
   EXPECT_TRUE(said);
+}
+
+TEST(RigDrives, AMoteusHoldsPositionUnlessBothGainsAreScaledAwayAndEndsWithItsWatchdog) {
+  FaultPlan faults = ordered("lost@1000");
+  Cable cable(faults, 0x100);
+  const Motor motor{.position_turns = 0.25};
+  MoteusDrive drive(0, 1, {.prepare_ms = 2}, cable.bus, motor, faults);
+  std::int64_t now = kStart;
+  const auto wait = [&](int ms) {
+    for (int i = 0; i < ms; ++i) drive.tick(now += kMs);
+  };
+  const auto tell = [&](std::vector<std::uint8_t> data) {
+    return drive.receive(frame_of(0x8001 | CAN_EFF_FLAG, std::move(data)), now);
+  };
+  EXPECT_TRUE(tell({0x01, 0x00, 0x0A}));
+  wait(2);
+  ASSERT_TRUE(drive.is_enabled());
+  EXPECT_DOUBLE_EQ(drive.torque_Nm(), -1.0);  // 4 N m/turn towards position 0
+  // Both scales as int8 0, then 0.5 N m as int16, then 10 ms as int8.
+  EXPECT_TRUE(tell({0x01, 0x00, 0x0A, 0x02, 0x23, 0, 0, 0x05, 0x22, 50, 0, 0x01, 0x27, 1}));
+  EXPECT_DOUBLE_EQ(drive.torque_Nm(), 0.5);
+  wait(11);
+  EXPECT_FALSE(drive.is_enabled());
+  EXPECT_TRUE(drive.tripped());
+  tell({0x01, 0x00, 0x0A});
+  wait(5);
+  EXPECT_EQ(drive.mode(), 11) << "a stop alone leads out";
+  EXPECT_FALSE(tell({0x01, 0x00, 0x00}));
+  EXPECT_EQ(drive.mode(), 0);
 }
 
 TEST(RigDrives, EveryFaultOfTheCableIsCommitted) {

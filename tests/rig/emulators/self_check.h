@@ -47,6 +47,7 @@ void check_delta_kinematics(SelfCheck& check);
 void check_falcon_kinematics(SelfCheck& check);
 void check_odrive(SelfCheck& check);
 void check_cia402(SelfCheck& check);
+void check_moteus(SelfCheck& check);
 void check_falcon_packets(SelfCheck& check);
 
 }  // namespace tact::rig

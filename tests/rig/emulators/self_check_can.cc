@@ -49,6 +49,7 @@ int check_drives(const std::string& folder) {
   return run_self_check(folder, [](SelfCheck& check) {
     check_odrive(check);
     check_cia402(check);
+    check_moteus(check);
     check_delta_kinematics(check);
   });
 }

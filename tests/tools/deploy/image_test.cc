@@ -40,6 +40,7 @@ TEST(Image, TheSceneOfARealDeviceHasItsExampleKeys) {
        {std::tuple<std::string, std::string, std::string>{"can-odrive", "can",
                                                           "no network interface"},
         {"can-cia402", "delta", "no network interface"},
+        {"can-moteus", "can", "no network interface"},
         {"falcon", "falcon", "no Novint Falcon"},
         {"force-dimension", "force_dimension", "library cannot be loaded"}}) {
     fs::remove_all(folder);

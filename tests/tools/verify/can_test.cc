@@ -101,6 +101,31 @@ TEST(VerifyCan, EveryPublishedFrameOfCia402PassesAndEveryFieldIsLookedAt) {
               {"torque_conversion", {"rated_mNm"}}});
 }
 
+TEST(VerifyCan, EveryPublishedFrameOfMoteusPassesAndEveryFieldIsLookedAt) {
+  check_file("can_moteus.json", 25, {{"encode", {}}, {"decode", {"data"}}});
+}
+
+TEST(VerifyCan, ACaseOfMoteusThatCannotBeReadIsNamedAndTheOthersAreJudged) {
+  json file = json::parse(std::ifstream(TACT_SOURCE_DIR "/tests/data/vectors/can_moteus.json"));
+  file["encode"][2]["message"] = "dance";
+  file["encode"][4]["args"].erase("torque");
+  file["decode"][1]["data"] = "2g";
+  file["decode"][3].erase("expect");
+  file["decode"][5]["data"] = std::string(130, '5');
+  Report report;
+  for (const Verifier& verifier : can_verifiers())
+    if (file.at("schema") == verifier.law) verifier.verify(file, report);
+  EXPECT_EQ(report.damage(), "");
+  EXPECT_EQ(report.passed(), 20);
+  std::set<std::string> named;
+  for (const Failure& one : report.failures()) {
+    named.insert(one.id);
+    EXPECT_EQ(one.field, "reads") << one.id;
+  }
+  EXPECT_EQ(named,
+            (std::set<std::string>{"encode/2", "encode/4", "decode/1", "decode/3", "decode/5"}));
+}
+
 TEST(VerifyCan, EveryStepOfTheConfigurationIsLookedAtAndNoneMayBeMissing) {
   json file = json::parse(std::ifstream(TACT_SOURCE_DIR "/tests/data/vectors/can_cia402.json"));
   json& sequence = file["config_sequence_node5"];

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// moteus_bring_up.h - three moteus from power-on to ready for the loop, which alone gives torque.
+//
+//     ask all three -> home state, register map -> stop -> stopped, with a position -> at rest
+//
+// Nothing that is sent here gives power. A stop clears a fault, so a drive that was in one is told
+// in `caution`; one that stays in it is refused. Refused too: a drive of another register map, one
+// that tells no position or lacks what the loop asks for, one that somebody else drives, and
+// absolute homing on a position that no output reference stands behind (MO-4). Set-up code: blocks,
+// at most some seconds.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hal/can/can_bus.h"
+#include "hal/delta/delta_kinematics.h"
+#include "hal/moteus/moteus_protocol.h"
+#include "model/device_settings.h"
+#include "model/result.h"
+
+namespace tact::hal::moteus {
+
+struct MoteusStart {
+  delta::Joints motor_turns{};  // of arms at rest
+  std::string caution{};        // what was wrong and is cleared
+};
+
+/// What the device needs to hear.
+std::vector<std::uint32_t> moteus_ids(const model::CanSettings& can);
+/// Of all frames of a tick at worst stuffing.
+can::CanFdBits moteus_cycle_bits(const model::CanSettings& can);
+/// What a reply lacks of what moteus_torque asks for, by name; nullptr: nothing.
+const char* lacking_in(const MoteusReply& reply) RT_SAFE;
+
+model::Result<MoteusStart> bring_up_moteus(can::CanFdBus& bus, const model::CanSettings& can);
+
+}  // namespace tact::hal::moteus

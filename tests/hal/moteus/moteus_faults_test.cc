@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every fault of a moteus delta: seen, named, latched, and no torque after it.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "hal/moteus/moteus_protocol.h"
+#include "tests/hal/moteus/moteus_bench.h"
+
+namespace tact::hal::moteus::moteus_faults_test {
+
+struct Bench : tests::MoteusBench {
+  using MoteusBench::MoteusBench;
+  /// The fault stays, whatever the bus and the drives do from now on; the hand feels nothing.
+  void expect_latched(Fault fault) {
+    drives.bus.socket().send_error = drives.bus.socket().receive_error = 0;
+    for (int i = 0; i < 100; ++i) {
+      ASSERT_EQ(tick({0.0, 0.0, 5.0}), fault);
+      ASSERT_FALSE(sample.fresh);
+      for (const auto& drive : drives.drive) ASSERT_EQ(drive->torque_Nm(), 0.0);
+    }
+    EXPECT_EQ(allocations, 0u);
+  }
+};
+
+TEST(MoteusFaults, ADrivesFaultIsToldInWordsAndStopsAllThree) {
+  Bench bench;
+  bench.run();
+  bench.tick({0.0, 0.0, 5.0});
+  bench.drives.drive[1]->fail(bench.drives.now_ns);
+  const int ticks = bench.ticks_until(Fault::kDriveFault, 5);
+  EXPECT_TRUE(ticks == 1 || ticks == 2) << ticks;
+  EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): The power stage reports a fault"))
+      << bench.device->trouble();
+  EXPECT_TRUE(bench.says("(fault 33)"));
+  EXPECT_TRUE(bench.all_stopped());
+  bench.expect_latched(Fault::kDriveFault);
+}
+
+TEST(MoteusFaults, ADriveThatCannotBeEnabledIsNamedWithItsReason) {
+  Bench bench;
+  bench.drives.install<rig::MoteusDrive>(2, rig::MoteusSettings{.is_calibrated = false});
+  ASSERT_EQ(bench.open(), "");
+  const int ticks = bench.ticks_until(Fault::kDriveFault, 100);
+  EXPECT_GT(ticks, 0);
+  EXPECT_TRUE(bench.says("arm 3 (node 3 on can0): The motor is not configured"))
+      << bench.device->trouble();
+  EXPECT_FALSE(bench.device->ready());
+}
+
+TEST(MoteusFaults, ADriveThatNeverGetsReadyIsNamedAfterThreeSeconds) {
+  Bench bench;
+  bench.drives.install<rig::MoteusDrive>(0, rig::MoteusSettings{.prepare_ms = 100'000});
+  ASSERT_EQ(bench.open(), "");
+  const int ticks = bench.ticks_until(Fault::kDriveFault, 4000);
+  EXPECT_GT(ticks, 2900);
+  EXPECT_LT(ticks, 3100);
+  EXPECT_TRUE(
+      bench.says("arm 1 (node 1 on can0): the drive does not enter position mode and is "
+                 "preparing"))
+      << bench.device->trouble();
+}
+
+TEST(MoteusFaults, ADriveWithATorqueOfItsOwnNeverGetsReady) {
+  // The integral term of its position loop, which no scale in a command turns off.
+  Bench bench;
+  bench.drives.install<rig::MoteusDrive>(1, rig::MoteusSettings{.integral_limit_Nm = 0.5});
+  ASSERT_EQ(bench.open(), "");
+  EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 4000), 0);
+  EXPECT_TRUE(
+      bench.says("arm 2 (node 2 on can0): the drive gives -0.50 N m although 0 is asked "
+                 "for: set servo.pid_position.ilimit = 0"))
+      << bench.device->trouble();
+}
+
+TEST(MoteusFaults, ADriveThatIsStoppedBySomebodyElseIsAFault) {
+  Bench bench;
+  bench.run();
+  canfd_frame frame{};
+  const auto bytes = can::pack_can_frame(*moteus_stop(3));
+  std::copy(bytes->begin(), bytes->end(), reinterpret_cast<std::uint8_t*>(&frame));
+  bench.drives.drive[2]->receive(frame, bench.drives.now_ns);
+  EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 5), 0);
+  EXPECT_TRUE(bench.says("arm 3 (node 3 on can0): the drive left position mode"))
+      << bench.device->trouble();
+  bench.expect_latched(Fault::kDriveFault);
+}
+
+TEST(MoteusFaults, TorquesFadeWithoutRepliesAndTheDeviceIsLostAfterTwenty) {
+  Bench bench;
+  bench.run();
+  bench.tick();
+  const double full_Nm = bench.axis(0).torque_Nm();
+  ASSERT_NE(full_Nm, 0.0) << "gravity";
+  bench.drives.drive[1] = std::make_unique<tests::DeadDrive>();
+  bench.tick();  // its last reply was on the way
+  for (int missing = 1; missing < 20; ++missing) {
+    ASSERT_EQ(bench.tick(), Fault::kNone) << missing;
+    const double ratio = missing == 1 ? 1.0 : std::max(0.0, (11 - missing) / 10.0);
+    EXPECT_NEAR(bench.axis(0).torque_Nm(), ratio * full_Nm, 1e-6) << missing;
+  }
+  EXPECT_EQ(bench.tick(), Fault::kDeviceLost);
+  EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): no reply for 20 ms")) << bench.device->trouble();
+  bench.expect_latched(Fault::kDeviceLost);
+}
+
+TEST(MoteusFaults, RepliesThatLackWhatWasAskedForAreNoSamplesAndTenAreAFault) {
+  Bench bench;
+  bench.run();
+  bench.tick({0.0, 0.0, 5.0});
+  bench.axis(0).lose_position();
+  bench.tick();
+  bench.tick();
+  EXPECT_FALSE(bench.sample.fresh);
+  const int ticks = bench.ticks_until(Fault::kDriveFault, 20);
+  EXPECT_GT(ticks, 7);
+  EXPECT_LT(ticks, 12);
+  EXPECT_TRUE(bench.says("arm 1 (node 1 on can0): its replies lack what was asked for"))
+      << bench.device->trouble();
+  EXPECT_EQ(bench.count("incomplete"), 10u);
+}
+
+TEST(MoteusFaults, AFaultIsToldAlsoByADriveThatHasLostItsPosition) {
+  Bench bench;
+  bench.run();
+  bench.axis(0).lose_position();
+  bench.drives.drive[0]->fail(bench.drives.now_ns);
+  EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 3), 0);
+  EXPECT_TRUE(bench.says("(fault 33)")) << bench.device->trouble();
+}
+
+TEST(MoteusFaults, ABusThatGoesOffLatches) {
+  Bench bench;
+  bench.run();
+  bench.drives.bus.socket().receive_error = ENETDOWN;
+  EXPECT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kBusDown);
+  EXPECT_TRUE(bench.says("dbitrate 5000000 sample-point 0.666")) << bench.device->trouble();
+  bench.expect_latched(Fault::kBusDown);
+}
+
+TEST(MoteusFaults, OldRepliesAreNotFresh) {
+  Bench bench;
+  bench.run();
+  bench.drives.bus.socket().age_ns = 5'000'000;  // they lay in the queue
+  bench.tick();
+  EXPECT_FALSE(bench.sample.fresh);
+  EXPECT_GE(bench.count("old"), 3u);
+}
+
+}  // namespace tact::hal::moteus::moteus_faults_test
