@@ -69,6 +69,9 @@ def odrive(protocol):
 ODRIVE06, ODRIVE05 = odrive("odrive06"), odrive("odrive05")
 CIA402 = BackEnd("cia402", settings=('device.kind="can-cia402"', 'device.can.homing="absolute"', SLIDE),
                  setup=drives("cia402"), programs=("tact-rig-drives",), system_calls=CAN_CALLS)
+# Their watchdog lets go, as hal/moteus/README.md has it set.
+MOTEUS = BackEnd("moteus", settings=('device.kind="can-moteus"', 'device.can.homing="absolute"', SLIDE),
+                 setup=drives("moteus", "--timeout-mode 0"), programs=("tact-rig-drives",), system_calls=CAN_CALLS)
 
 
 # The bus's own thread waits, reaps and submits; libusb's needs more for the same.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Drives on CAN: tactd's own bus code, the kernel's, and three emulated drives that swing an arm."""
 from bench import checks
-from bench.back_ends import CIA402, ODRIVE05, ODRIVE06
+from bench.back_ends import CIA402, MOTEUS, ODRIVE05, ODRIVE06
 from bench.case import Case
 
 SOUND = (checks.hard_real_time, checks.no_fault, checks.no_late_tick, checks.touched,
@@ -61,9 +61,10 @@ CASES = [
     swept(CIA402, long_only=True),
     recorded(ODRIVE06, checks.bus_of_odrives),
     recorded(CIA402, checks.bus_of_cia402),
-    *(calls(back_end) for back_end in (ODRIVE06, CIA402)),
+    *(calls(back_end) for back_end in (ODRIVE06, CIA402, MOTEUS)),
     refused(ODRIVE06, "unpowered", "--fault unpowered@0", "are they on"),
     refused(CIA402, "unpowered", "--fault unpowered@0", "are they on"),
+    refused(MOTEUS, "unpowered", "--fault unpowered@0", "are they on"),
     Case("odrive06-bus-down", "refused before any force, with the cure", ODRIVE06,
          "ip link set can0 down\nrefused", (checks.refused("ip link set can0 up"),)),
     refused(ODRIVE06, "no-ack", "--fault unpowered@0 --clock start " +

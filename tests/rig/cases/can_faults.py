@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What goes wrong on a CAN bus and in drives, while tactd presses 10 mm deep, 0.9 s after enabling."""
 from bench import checks
-from bench.back_ends import CIA402, ODRIVE05, ODRIVE06
+from bench.back_ends import CIA402, MOTEUS, ODRIVE05, ODRIVE06
 from bench.case import Case
 from bench.faults import Latches, RidesThrough, StoppedByDrives, StoppedByGuardian, attempt
 
@@ -11,10 +11,10 @@ TEMPO = "--hand-tempo 2.5"
 RAMP_ms = 12.0       # a missed sample holds, from the second the force fades in 10 ms
 REAL_TIME = (checks.hard_real_time,)
 # Motors behind a bus that still carries frames: zero torque and the stop leave in the tick that knows, and
-# the emulated drives run when it is over. Without frames they stop by themselves: an ODrive's watchdog of
-# 10 ms, a CiA 402 drive's consumer of heartbeats, and a tick and its look at the time.
+# the emulated drives run when it is over. Without frames they stop by themselves: an ODrive's and a moteus'
+# watchdog of 10 ms, a CiA 402 drive's consumer of heartbeats, and a tick and its look at the time.
 TOLD_ms = 1.0
-ALONE_ms = {"odrive06": 12.0, "cia402": 25.0}
+ALONE_ms = {"odrive06": 12.0, "cia402": 25.0, "moteus": 12.0}
 # The same happens on ODrives in every run.
 LONG = {("cia402", name) for name in ("link-down", "error-passive", "duplicated", "reordered", "wrong-node")}
 LONG |= {("cia402", name) for name in ("clock-forward", "clock-back", "no-buffers", "silent", "stopped")}
@@ -111,6 +111,8 @@ CASES = [
               Latches("drive fault", detect_ms=103, motors_ms=104)),
     committed(CIA402, f"drive-fault:2@{AT}", "a drive that reports an error stops all three",
               Latches("drive fault", detect_ms=3, motors_ms=5)),
+    committed(MOTEUS, f"drive-fault:2@{AT}", "a drive that reports an error stops all three",
+              Latches("drive fault", detect_ms=3, motors_ms=5)),
     committed(CIA402, f"emcy:3@{AT}", "an emergency message stops all three",
               Latches("drive fault", detect_ms=3, motors_ms=5)),
     committed(ODRIVE06, f"heartbeat-missing:1@{AT}+600", "a drive without heartbeat stops all three",
@@ -125,11 +127,11 @@ CASES = [
       for back_end in (ODRIVE06, CIA402) for way, day in (("forward", "2031-05-05"), ("back", "2001-01-01"))),
     *(done_to(back_end, "killed", "a controller that is killed: its guardian takes the force",
               "inject kill -KILL $tactd; sleep .1", StoppedByGuardian(), proofs=())
-      for back_end in (ODRIVE06, CIA402)),
+      for back_end in (ODRIVE06, CIA402, MOTEUS)),
     *(done_to(back_end, "killed-alone", "and its guardian with it: the drives' own watch over their host stops them",
               "inject kill -KILL $(pgrep tact-guardian) $tactd; sleep .1",
               StoppedByDrives(within_ms=ALONE_ms[back_end.name], trips=3), proofs=())
-      for back_end in (ODRIVE06, CIA402)),
+      for back_end in (ODRIVE06, CIA402, MOTEUS)),
     done_to(ODRIVE06, "guardian-killed", "a controller whose guardian is killed stops",
             "inject kill -KILL $(pgrep tact-guardian)",
             Latches("guardian lost", detect_ms=7)),
