@@ -54,15 +54,6 @@ timespec wall_clock() RT_SAFE {  // the clock of the kernel's stamps; answered w
 #pragma clang diagnostic pop
 #endif
 
-/// As it came, of a datagram of so many bytes: whole, a classic frame, or zeroes.
-template <class Bytes>
-Bytes arrived(const Bytes& bytes, std::size_t told) RT_SAFE {
-  if (told == bytes.size()) return bytes;
-  Bytes out{};
-  if (told == kCanFrameBytes) std::copy_n(bytes.begin(), kCanFrameBytes, out.begin());
-  return out;
-}
-
 }  // namespace
 
 template <class Bytes>
@@ -97,8 +88,14 @@ int BasicCanSocket<Bytes>::receive(std::span<Arrival> out) RT_SAFE {
   if (n < 0) return n;
   const bool empties = static_cast<std::size_t>(n) < most && told != -EINTR;
   stamps_.look(in_ns(wall_clock()), monotonic_ns(), empties);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i)
-    out[i] = {.bytes = arrived(in_bytes_[i], in_[i].msg_len), .age_ns = age_ns(in_[i].msg_hdr)};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
+    const bool whole = in_[i].msg_len == sizeof(Bytes);
+    out[i] = {.bytes = whole ? in_bytes_[i] : Bytes{}, .age_ns = age_ns(in_[i].msg_hdr)};
+    if constexpr (sizeof(Bytes) > kCanFrameBytes) {  // an error frame comes as a classic one
+      if (in_[i].msg_len == kCanFrameBytes)
+        std::copy_n(in_bytes_[i].begin(), kCanFrameBytes, out[i].bytes.begin());
+    }
+  }
   return n;
 }
 
