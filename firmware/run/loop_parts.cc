@@ -34,12 +34,13 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
   if (!guardian) return guardian.error();
   parts.guardian = std::move(*guardian);
   // After the device is open: its damping decides, and it may tell it only then.
-  const auto stiffness = check_renderable(scene, *parts.tissue, parts.device->info());
+  const auto stiffness = admission::check_renderable(scene, *parts.tissue, parts.device->info());
   if (!stiffness) return stiffness.error();
   parts.stiffness = *stiffness;
   // Simulated time waits: there no law is too slow.
   if (!setup.simulated_time) {
-    const auto time = check_budget(scene, setup.non_rt ? std::nullopt : std::optional(setup.rt));
+    const auto time =
+        admission::check_budget(scene, setup.non_rt ? std::nullopt : std::optional(setup.rt));
     if (!time) return time.error();
     parts.time = *time;
   }

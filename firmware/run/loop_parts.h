@@ -8,12 +8,12 @@
 #include <optional>
 #include <string>
 
+#include "firmware/admission/stiffness_check.h"
+#include "firmware/admission/tick_budget.h"
 #include "firmware/guardian/guardian.h"
 #include "firmware/loop/controller.h"
 #include "firmware/loop/ring.h"
 #include "firmware/pc/rt_setup.h"
-#include "firmware/run/stiffness_check.h"
-#include "firmware/run/tick_budget.h"
 #include "hal/registry/open_device.h"
 #include "hal/safety_lines.h"
 #include "model/scene/scene.h"
@@ -37,8 +37,8 @@ struct LoopParts {
   std::unique_ptr<hal::SafetyLines> lines;
   std::unique_ptr<guardian::Guardian> guardian;  // outlives the device; null: it has no last words
   hal::registry::OpenDevice device;              // off when the parts go, whatever ended them
-  StiffnessMargin stiffness;
-  std::optional<TimeMargin> time;
+  admission::StiffnessMargin stiffness;
+  std::optional<admission::TimeMargin> time;
   model::Limits limits;         // of scene and device together
   std::string limits_checksum;  // in use, the PC's share counted
   std::unique_ptr<loop::Controller> controller;

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "firmware/admission/unattended.h"
 #include "firmware/console/operator_signals.h"
 #include "firmware/console/say.h"
 #include "firmware/console/service_manager.h"
@@ -11,7 +12,6 @@
 #include "firmware/run/device_list.h"
 #include "firmware/run/replay.h"
 #include "firmware/run/session.h"
-#include "firmware/run/unattended.h"
 #include "firmware/telemetry/tick_csv.h"
 #include "model/io/file_writer.h"
 #include "model/io/program_end.h"
@@ -151,7 +151,7 @@ int main(int argc, char** argv) {
   if (!scene->note.empty()) say(stderr, "tactd: {}\n", scene->note);
   if (!options.replay_path.empty()) return run_replay(*scene, options.replay_path);
   if (const auto refused =
-          firmware::run::why_not_unattended(*scene, firmware::console::is_service()))
+          firmware::admission::why_not_unattended(*scene, firmware::console::is_service()))
     return complain(options.scene_path + ": " + refused->sentence, 2);
   return firmware::run::run_session(*scene, options);
 }

@@ -154,8 +154,9 @@ std::string make_summary(const RunFacts& facts, const loop::LoopStatistics& loop
 }
 
 std::string make_check_line(const model::scene::Scene& scene, const std::string& device_name,
-                            const model::scene::TissueLaw& law, const StiffnessMargin& stiffness,
-                            const std::optional<TimeMargin>& time) {
+                            const model::scene::TissueLaw& law,
+                            const admission::StiffnessMargin& stiffness,
+                            const std::optional<admission::TimeMargin>& time) {
   std::string out = fmt::format(
       "{}: sound. {} on {}, {} vertices; law {}, range {:.1f} to {:.1f} mm, stiffness {:.4g} of "
       "{:.4g} N/m",

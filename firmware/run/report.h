@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "firmware/admission/stiffness_check.h"
+#include "firmware/admission/tick_budget.h"
 #include "firmware/loop/rt_loop.h"
 #include "firmware/pc/environment.h"
 #include "firmware/pc/rt_setup.h"
-#include "firmware/run/stiffness_check.h"
 #include "firmware/run/thread_costs.h"
-#include "firmware/run/tick_budget.h"
 #include "hal/device.h"
 
 namespace tact::firmware::run {
@@ -47,7 +47,8 @@ nlohmann::json make_report(const RunFacts& facts, const loop::LoopStatistics& lo
 std::string make_summary(const RunFacts& facts, const loop::LoopStatistics& loop);
 /// What --check found; without a time where none was measured.
 std::string make_check_line(const model::scene::Scene& scene, const std::string& device_name,
-                            const model::scene::TissueLaw& law, const StiffnessMargin& stiffness,
-                            const std::optional<TimeMargin>& time);
+                            const model::scene::TissueLaw& law,
+                            const admission::StiffnessMargin& stiffness,
+                            const std::optional<admission::TimeMargin>& time);
 
 }  // namespace tact::firmware::run

@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "firmware/admission/inertia_note.h"
 #include "firmware/console/operator_desk.h"
 #include "firmware/console/say.h"
 #include "firmware/console/service_manager.h"
 #include "firmware/loop/grid.h"
-#include "firmware/run/inertia_note.h"
 #include "firmware/run/loop_executor.h"
 #include "firmware/run/loop_parts.h"
 #include "firmware/run/real_time.h"
@@ -100,7 +100,7 @@ int Session::run() {
     say(stderr, "tactd: no hard real time: force capped to {:g} %, records stamped non-rt\n",
         100.0 * kNonRtForceShare);
   if (const auto error = open()) return fail(error->sentence, 2);
-  if (const std::string note = inertia_note(scene_, parts_.tissue->law()); !note.empty())
+  if (const std::string note = admission::inertia_note(scene_, parts_.tissue->law()); !note.empty())
     say(stderr, "tactd: {}\n", note);
   if (const std::string caution = parts_.device->info().caution; !caution.empty())
     say(stderr, "tactd: {}\n", caution);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/run/unattended.h"
+#include "firmware/admission/unattended.h"
 
 #include <gtest/gtest.h>
 
-namespace tact::firmware::run::unattended_test {
+namespace tact::firmware::admission::unattended_test {
 
 TEST(Unattended, AServiceDoesNotHomeOnAJigThatNobodySees) {
   model::scene::Scene scene;
@@ -22,4 +22,4 @@ TEST(Unattended, AServiceDoesNotHomeOnAJigThatNobodySees) {
   EXPECT_FALSE(why_not_unattended(scene, true)) << "has no drives";
 }
 
-}  // namespace tact::firmware::run::unattended_test
+}  // namespace tact::firmware::admission::unattended_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/run/tick_budget.h"
+#include "firmware/admission/tick_budget.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 
 #include "firmware/loop/clock.h"
 
-namespace tact::firmware::run {
+namespace tact::firmware::admission {
 namespace {
 
 using model::Vec3;
@@ -126,4 +126,4 @@ model::Result<TimeMargin> check_budget(const model::scene::Scene& scene,
       margin.budget_us, scene.tolerance ? "raise the budget" : "lower rate_Hz")};
 }
 
-}  // namespace tact::firmware::run
+}  // namespace tact::firmware::admission

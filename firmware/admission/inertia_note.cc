@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/run/inertia_note.h"
+#include "firmware/admission/inertia_note.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "model/indent/inertia.h"
 #include "model/scene/scene_strokes.h"
 
-namespace tact::firmware::run {
+namespace tact::firmware::admission {
 namespace {
 
 /// The organ as a half-space under the first sphere: that of [elastic], or the incompressible one
@@ -85,4 +85,4 @@ std::string inertia_note(const model::scene::Scene& scene, const model::scene::T
       scene.path, 1e3 * press.speed_mps, 1e3 * press.depth_m, 1e3 * press.limit_mps, 100.0 * kFelt);
 }
 
-}  // namespace tact::firmware::run
+}  // namespace tact::firmware::admission

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What tactd refuses before the loop starts: a law that is too slow for the tick.
-#include "firmware/run/tick_budget.h"
+#include "firmware/admission/tick_budget.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "tests/support/test_scene.h"
 
-namespace tact::firmware::run::tick_budget_test {
+namespace tact::firmware::admission::tick_budget_test {
 
 bool has(const model::Error& error, const std::string& part) {
   return error.sentence.find(part) != std::string::npos;
@@ -76,4 +76,4 @@ TEST(TickBudget, MeasuresAContactThatWalksAndABladeThatCutsNothing) {
   EXPECT_GT(time.median_us, 0.0);
 }
 
-}  // namespace tact::firmware::run::tick_budget_test
+}  // namespace tact::firmware::admission::tick_budget_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/run/stiffness_check.h"
+#include "firmware/admission/stiffness_check.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "model/law/haptic_limit.h"
 
-namespace tact::firmware::run {
+namespace tact::firmware::admission {
 namespace {
 
 using model::Error;
@@ -133,4 +133,4 @@ model::Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene
   return too_stiff(scene, tissue.law(), demand, device.damping_key);
 }
 
-}  // namespace tact::firmware::run
+}  // namespace tact::firmware::admission

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/run/unattended.h"
+#include "firmware/admission/unattended.h"
 
-namespace tact::firmware::run {
+namespace tact::firmware::admission {
 
 std::optional<model::Error> why_not_unattended(const model::scene::Scene& scene, bool is_service) {
   const bool is_can = scene.device.kind == "can-odrive" || scene.device.kind == "can-cia402" ||
@@ -13,4 +13,4 @@ std::optional<model::Error> why_not_unattended(const model::scene::Scene& scene,
       "the arms on the jig"};
 }
 
-}  // namespace tact::firmware::run
+}  // namespace tact::firmware::admission

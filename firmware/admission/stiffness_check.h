@@ -9,7 +9,7 @@
 #include "model/scene/scene.h"
 #include "model/scene/tissue.h"
 
-namespace tact::firmware::run {
+namespace tact::firmware::admission {
 
 struct StiffnessMargin {
   double needed_N_per_m = 0.0;  // by all spheres together
@@ -22,4 +22,4 @@ model::Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene
                                                 const model::scene::Tissue& tissue,
                                                 const hal::DeviceInfo& device);
 
-}  // namespace tact::firmware::run
+}  // namespace tact::firmware::admission

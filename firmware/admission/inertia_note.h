@@ -7,10 +7,10 @@
 #include "model/scene/scene.h"
 #include "model/scene/tissue.h"
 
-namespace tact::firmware::run {
+namespace tact::firmware::admission {
 
 /// A sentence for people where the hand's own strokes press so fast that the inertia of tissue,
 /// which the law leaves out, would be felt (IN-2); empty where they do not, or the law has masses.
 std::string inertia_note(const model::scene::Scene& scene, const model::scene::TissueLaw& law);
 
-}  // namespace tact::firmware::run
+}  // namespace tact::firmware::admission

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What tactd tells before the loop starts: a stroke that is too fast for its law.
-#include "firmware/run/inertia_note.h"
+#include "firmware/admission/inertia_note.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/test_scene.h"
 
-namespace tact::firmware::run::inertia_note_test {
+namespace tact::firmware::admission::inertia_note_test {
 
 TEST(InertiaNote, TellsOfAStrokeThatIsTooFastForALawWithoutInertia) {
   model::scene::Scene scene = tests::make_plate_scene();
@@ -43,4 +43,4 @@ TEST(InertiaNote, OfTheShippedScenesTheHeartIsPressedTooFastForItsLaw) {
   }
 }
 
-}  // namespace tact::firmware::run::inertia_note_test
+}  // namespace tact::firmware::admission::inertia_note_test

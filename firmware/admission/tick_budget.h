@@ -12,7 +12,7 @@
 #include "model/scene/scene.h"
 #include "model/scene/tissue.h"
 
-namespace tact::firmware::run {
+namespace tact::firmware::admission {
 
 /// Time of a law's share of a tick on this machine.
 struct LawTime {
@@ -38,4 +38,4 @@ struct TimeMargin {
 model::Result<TimeMargin> check_budget(const model::scene::Scene& scene,
                                        const std::optional<pc::RtSettings>& hard_real_time);
 
-}  // namespace tact::firmware::run
+}  // namespace tact::firmware::admission

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What tactd refuses before the loop starts: a law that is too stiff for the device.
-#include "firmware/run/stiffness_check.h"
+#include "firmware/admission/stiffness_check.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/test_scene.h"
 
-namespace tact::firmware::run::stiffness_check_test {
+namespace tact::firmware::admission::stiffness_check_test {
 
 hal::DeviceInfo device_with(double damping_Ns_per_m) {
   hal::DeviceInfo device;
@@ -112,4 +112,4 @@ TEST(StiffnessCheck, RefusesADampingThatLeavesTheDeviceTooLittle) {
             "[hunt_crossley] to 0.05 N s/m or less");
 }
 
-}  // namespace tact::firmware::run::stiffness_check_test
+}  // namespace tact::firmware::admission::stiffness_check_test
