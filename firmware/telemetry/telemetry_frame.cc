@@ -91,6 +91,12 @@ Hello make_hello(const model::scene::Scene& scene, const model::scene::Tissue& t
   put(hello.limits_checksum, facts.limits_checksum);
   put(hello.device_name, facts.device.name);
   put(hello.law_name, tissue.law().title());
+  put(hello.organ_material, scene.look.organ);
+  put(hello.tool_material, scene.look.tool);
+  static_assert(model::scene::kMaxPieces <= kMaxPieces);
+  hello.piece_count = static_cast<std::uint32_t>(scene.look.piece_color_ratio.size());
+  for (std::size_t i = 0; i < scene.look.piece_color_ratio.size(); ++i)
+    put(hello.piece_color_ratio[i], scene.look.piece_color_ratio[i]);
   put(hello.hand_socket, facts.hand_socket);
   return hello;
 }

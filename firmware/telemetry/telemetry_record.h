@@ -19,11 +19,12 @@
 namespace tact::firmware::telemetry {
 
 inline constexpr std::uint32_t kTelemetryMagic = 0x74636174;  // "tact"
-inline constexpr std::uint16_t kTelemetryVersion = 4;
+inline constexpr std::uint16_t kTelemetryVersion = 5;
 inline constexpr std::size_t kMaxSites = 4;            // probe spheres on the tool
 inline constexpr std::size_t kMaxRings = 32;           // profile points of one site
 inline constexpr std::size_t kMaxPatchVertices = 180;  // told one by one
 inline constexpr std::size_t kMaxCutsTold = 32;        // in one frame
+inline constexpr std::size_t kMaxPieces = 4;           // of the organ's mesh, with a colour each
 
 enum class MessageKind : std::uint16_t { kHello = 1, kFrame = 2 };
 enum class SiteState : std::uint8_t { kFree = 0, kTouching = 1, kHeld = 2 };
@@ -54,7 +55,11 @@ struct Hello {
   char limits_checksum[9] = {};  // of the limits in use (model/io/limits_checksum.h)
   char device_name[64] = {};
   char law_name[64] = {};
-  char hand_socket[108] = {};  // where a simulated device takes hand targets; empty for hardware
+  char hand_socket[108] = {};    // where a simulated device takes hand targets; empty for hardware
+  char organ_material[12] = {};  // what it looks like: [look] of the scene
+  char tool_material[12] = {};
+  std::uint32_t piece_count = 0;                // connected pieces of the organ that have a colour
+  float piece_color_ratio[kMaxPieces][3] = {};  // red, green, blue, times the material's
 };
 
 struct FrameSite {
@@ -112,6 +117,6 @@ static_assert(sizeof(FramePatch) == 16 + kMaxPatchVertices * 10 + kMaxCutsTold *
 static_assert(sizeof(Frame) ==
               48 + 25 * sizeof(float) + 12 + kMaxSites * sizeof(FrameSite) + sizeof(FramePatch));
 static_assert(sizeof(Frame) <= 4096);
-static_assert(sizeof(Hello) == 122 + 53 + 9 + 64 + 64 + 108);
+static_assert(sizeof(Hello) == 122 + 53 + 9 + 64 + 64 + 108 + 24 + 4 + 48);
 
 }  // namespace tact::firmware::telemetry

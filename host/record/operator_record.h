@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // operator_record.h - the tracked operator in a recording: one record of fixed size behind each
-// frame of a recording of version 6 (firmware/telemetry/recording_format.h).
+// frame of a recording of version 8 (firmware/telemetry/recording_format.h).
 //
 // Of each body the raw pose, as solved, and the one that was shown, both in the device's frame W.
 // Behind them the figure as it was shown: where it stood and how it was bound began before the

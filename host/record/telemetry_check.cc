@@ -90,6 +90,11 @@ std::optional<Error> check_hello(const Hello& hello) {
     return Error{"there are more probe spheres than fit"};
   if (hello.ring_count > firmware::telemetry::kMaxRings)
     return Error{"there are more profile rings than fit"};
+  if (hello.piece_count > firmware::telemetry::kMaxPieces)
+    return Error{"there are more coloured pieces than fit"};
+  for (const auto& color : hello.piece_color_ratio)
+    for (const float ratio : color)
+      if (!std::isfinite(ratio) || ratio < 0.0f) return Error{"a colour is not sensible"};
   for (const float value : {hello.ring_pitch_m, hello.rate_Hz, hello.frame_rate_Hz,
                             hello.force_limit_N, hello.continuous_force_N, hello.energy_budget_J}) {
     if (!std::isfinite(value) || value < 0.0f)

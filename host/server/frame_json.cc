@@ -128,6 +128,10 @@ std::string scene_json(const record::Hello& hello) {
     spheres.push_back(
         {{"radius_m", hello.sphere_radius_m[i]}, {"offset_m", hello.sphere_offset_m[i]}});
   }
+  nlohmann::json pieces = nlohmann::json::array();
+  for (std::size_t i = 0;
+       i < std::min<std::size_t>(hello.piece_count, firmware::telemetry::kMaxPieces); ++i)
+    pieces.push_back(hello.piece_color_ratio[i]);
   const nlohmann::json scene{
       {"scene", record::text_of(hello.scene_name)},
       {"device", record::text_of(hello.device_name)},
@@ -145,6 +149,10 @@ std::string scene_json(const record::Hello& hello) {
       {"non_rt", hello.non_rt != 0},
       {"simulated", hello.simulated != 0},
       {"spheres", spheres},
+      {"look",
+       {{"organ", record::text_of(hello.organ_material)},
+        {"tool", record::text_of(hello.tool_material)},
+        {"pieces", pieces}}},
   };
   // A name with broken UTF-8 is mended instead of throwing.
   return scene.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);

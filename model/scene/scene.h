@@ -30,6 +30,14 @@ struct ToolSettings {
   std::optional<contact::Blade> blade;
 };
 
+inline constexpr std::size_t kMaxPieces = 4;  // of the organ, with a colour each
+
+/// What the viewer paints. No force depends on it.
+struct LookSettings {
+  std::string organ = "tissue", tool = "steel";  // materials, as scene_keys.cc lists them
+  std::vector<Vec3> piece_color_ratio;           // red, green, blue, times the material's
+};
+
 struct Scene {
   std::string path;  // of the TOML file
   std::string name;
@@ -53,6 +61,7 @@ struct Scene {
   contact::ContactParameters contact;
   OrganSettings organ;
   ToolSettings tool;
+  LookSettings look;
   DeviceSettings device;
   HandSettings hand;
   Vec3 hand_site_m;  // the point that the simulated hand touches, W

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "model/scene/scene_device.h"
 #include "model/scene/scene_laws.h"
 #include "model/scene/scene_limits.h"
@@ -45,6 +47,29 @@ void visit_tool(reader::Keys& k, SceneText& out) {
                                       "\"spring_patch\" or leave [tool.blade] out",
                                       name_of(law)));
   }
+}
+
+// The page has a picture of each: host/web/src/material.ts.
+constexpr std::array kMaterials{
+    reader::Choice{"tissue", "moist and red, paler where it is stretched"},
+    reader::Choice{"skin", "dry, paler where it is stretched"},
+    reader::Choice{"glove", "smooth, of pale blue rubber"},
+    reader::Choice{"paint", "grey lacquer"},
+    reader::Choice{"steel", "polished"},
+};
+
+void visit_look(reader::Keys& k, LookSettings& look) {
+  std::size_t organ = 0, tool = kMaterials.size() - 1;
+  k.choice("organ", kMaterials, "what it looks like", organ, reader::Need::kOptional);
+  k.choice("tool", kMaterials, "the same of the tool", tool, reader::Need::kOptional);
+  look.organ = kMaterials[organ].name;
+  look.tool = kMaterials[tool].name;
+  k.entries("piece", {0, kMaxPieces},
+            "a connected piece of the organ's mesh, in its order; the last: all others too",
+            [&](reader::Keys& piece) {
+              piece.vector("color_ratio", {0.0, 4.0}, "red, green, blue, times the material's",
+                           look.piece_color_ratio.emplace_back());
+            });
 }
 
 void visit_contact(reader::Keys& k, contact::ContactParameters& c) {
@@ -104,6 +129,9 @@ void visit_scene(reader::Keys& k, SceneText& out) {
     organ.vector("position_m", {-1.0, 1.0}, "of the mesh's origin, in W", scene.organ.position_m);
   });
   k.section("tool", "what touches it", [&](reader::Keys& tool) { visit_tool(tool, out); });
+  k.section(
+      "look", "what the viewer paints; no force depends on it",
+      [&](reader::Keys& look) { visit_look(look, scene.look); }, reader::Need::kOptional);
   k.section("contact", "between tool and organ",
             [&](reader::Keys& contact) { visit_contact(contact, scene.contact); });
   k.section("device", "what the hand holds",

@@ -26,8 +26,8 @@ try:
 except ImportError:
     raise ImportError("tact.py needs numpy: apt install python3-numpy for Debian's python3, else pip install numpy") from None
 
-MAGIC, TELEMETRY_VERSION = 0x74636174, 4
-RECORDING_VERSIONS = {5: 0, 6: 1304}  # bytes of the operator behind each frame
+MAGIC, TELEMETRY_VERSION = 0x74636174, 5
+RECORDING_VERSIONS = {7: 0, 8: 1304}  # bytes of the operator behind each frame
 LOG_MAGIC, RECORDING_MAGIC = b"tactlog7", b"tactrec\n"
 SEAL = b"tactseal"
 PHASES = ("wake", "read", "touch", "feel", "judge", "write", "tell", "total")
@@ -49,7 +49,8 @@ HELLO = np.dtype([
     ("tool_triangles", "<u4"), ("site_count", "<u4"), ("ring_count", "<u4"), ("ring_pitch_m", "<f4"), ("rate_Hz", "<f4"),
     ("frame_rate_Hz", "<f4"), ("force_limit_N", "<f4"), ("continuous_force_N", "<f4"), ("energy_budget_J", "<f4"),
     ("sphere_radius_m", "<f4", 4), ("sphere_offset_m", "<f4", (4, 3)), ("non_rt", "u1"), ("simulated", "u1"),
-    ("scene_name", "S53"), ("limits_checksum", "S9"), ("device_name", "S64"), ("law_name", "S64"), ("hand_socket", "S108")])
+    ("scene_name", "S53"), ("limits_checksum", "S9"), ("device_name", "S64"), ("law_name", "S64"), ("hand_socket", "S108"),
+    ("organ_material", "S12"), ("tool_material", "S12"), ("piece_count", "<u4"), ("piece_color_ratio", "<f4", (4, 3))])
 FRAME_SITE = np.dtype([
     ("surface_point_m", "<f4", 3), ("normal", "<f4", 3), ("shift_m", "<f4", 3), ("depth_m", "<f4"),
     ("profile_m", "<f4", 32), ("tilt", "<f4", 3), ("state", "u1"), ("pad", "u1", 3)])

@@ -23,6 +23,8 @@ export interface Look {
 }
 
 export const kTissue: Look = { base: [0.27, 0.024, 0.018], glow: [0.42, 0.07, 0.04], coat: 1.0, metal: 0 };
+export const kSkin: Look = { base: [0.5, 0.27, 0.18], glow: [0.2, 0.06, 0.03], coat: 0.3, metal: 0 };
+export const kGlove: Look = { base: [0.12, 0.3, 0.5], glow: [0.04, 0.1, 0.16], coat: 0.5, metal: 0 };
 export const kSteel: Look = { base: [0.56, 0.6, 0.65], glow: [0, 0, 0], coat: 1.0, metal: 1 };
 export const kCover: Look = { base: [0.2, 0.2, 0.2], glow: [0.02, 0.02, 0.02], coat: 0.75, metal: 0 };
 export const kFigure: Look = { base: [0.40, 0.42, 0.45], glow: [0.05, 0.06, 0.08], coat: 0.35, metal: 0 };

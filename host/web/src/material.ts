@@ -1,25 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
-// material.ts - what the touched body of a scene is made of: tissue, unless the scene is named here.
+// material.ts - what organ and tool look like: the materials that [look] of a scene may name (model/scene/scene_keys.cc).
 
-import { kCover, kTissue, type Look } from "./look";
-import type { Mesh, Vec } from "./protocol";
+import { kCover, kGlove, kSkin, kSteel, kTissue, type Look } from "./look";
+import type { Mesh, Scene, Vec } from "./protocol";
 
 export interface Material {
   look: Look;
-  /** Factors on the colour of the look, for each connected piece of the mesh; none: flesh. */
-  pieces: readonly Vec[];
+  mottled: number; // unevenness of its colour, 0 .. 1
+  alive: boolean; // paler where it is stretched
+  soft: boolean; // has no sharp edges
 }
 
-// By the scene's name, because neither scene.json nor mesh.bin says what a body is made of: what
-// travels is shape, law and limits, and a soft gasket has the law of a tissue.
-const kFlesh: Material = { look: kTissue, pieces: [] };
-const kMaterials = new Map<string, Material>([
-  // Painted metal and the silicone of its gasket.
-  ["maintenance", { look: kCover, pieces: [[0.92, 1.0, 1.06], [1.55, 0.72, 0.4]] }],
+const kPlain = { mottled: 0, alive: false };
+export const kMaterials: ReadonlyMap<string, Material> = new Map([
+  ["tissue", { look: kTissue, mottled: 1, alive: true, soft: true }],
+  ["skin", { look: kSkin, mottled: 0.35, alive: true, soft: true }],
+  ["glove", { look: kGlove, ...kPlain, soft: true }],
+  ["paint", { look: kCover, ...kPlain, soft: false }],
+  ["steel", { look: kSteel, ...kPlain, soft: false }],
 ]);
 
-export function material_of(scene_name: string): Material {
-  return kMaterials.get(scene_name) ?? kFlesh;
+/** A name that this page does not know is tissue. */
+export function organ_material(scene: Scene): Material {
+  const made_of = kMaterials.get(scene.look.organ) ?? kMaterials.get("tissue")!;
+  return scene.look.pieces.length > 0 ? { ...made_of, ...kPlain } : made_of; // its colours are given
+}
+
+/** Of the tool it is steel. */
+export function tool_material(scene: Scene): Material {
+  return kMaterials.get(scene.look.tool) ?? kMaterials.get("steel")!;
+}
+
+/** Red, green and blue of each vertex, times the material's; one colour for each connected piece. */
+export function piece_tints(mesh: Mesh, colors: readonly Vec[]): Float32Array {
+  const out = new Float32Array(mesh.vertex_m.length).fill(1);
+  if (colors.length === 0) return out;
+  pieces_of(mesh).forEach((piece, v) => out.set(colors[Math.min(piece, colors.length - 1)], 3 * v));
+  return out;
 }
 
 /** The piece of each vertex: 0 is the piece of the first vertex, 1 the next one in the mesh. */

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// organ_view.ts - what is touched. Tissue is warm, moist and paler where it is stretched; another
-// material keeps the colours of its pieces (material.ts).
+// organ_view.ts - what is touched. Tissue is warm, moist and paler where it is stretched; what a scene's [look] says else
+// stands in material.ts.
 
 import * as THREE from "three";
 import { Deformer, type Deformed } from "./deform";
 import { look_material, paint } from "./look";
-import { material_of, pieces_of, type Material } from "./material";
+import { organ_material, piece_tints, type Material } from "./material";
 import type { Target } from "./outside";
 import { Cuts, decode_moved } from "./patch";
 import type { Mesh, Patch, Scene, Site, Vec } from "./protocol";
@@ -34,22 +34,22 @@ export class OrganView {
   private readonly lines: THREE.Mesh<THREE.BufferGeometry, THREE.MeshBasicMaterial>;
   private readonly deformer: Deformer;
   private readonly rest_tint: Float32Array;
-  private readonly is_flesh: boolean;
+  private readonly made_of: Material;
   private readonly picture: THREE.Texture;
   private readonly cuts = new Cuts();
   private readonly wound: Wound;
 
   constructor(private readonly mesh: Mesh, scene: Scene) {
-    const made_of = material_of(scene.scene);
-    this.is_flesh = made_of.pieces.length === 0;
-    this.picture = paint(made_of.look);
+    this.made_of = organ_material(scene);
+    this.picture = paint(this.made_of.look);
     const position = new THREE.BufferAttribute(mesh.vertex_m.slice(), 3);
     position.setUsage(THREE.DynamicDrawUsage);
     this.geometry.setAttribute("position", position);
     this.geometry.setIndex(new THREE.BufferAttribute(mesh.triangle.slice(), 1));
     this.geometry.computeVertexNormals();
     this.geometry.computeBoundingSphere();
-    this.rest_tint = this.is_flesh ? OrganView.tints(mesh) : OrganView.piece_tints(mesh, made_of);
+    this.rest_tint = this.made_of.mottled > 0 ? OrganView.tints(mesh, this.made_of.mottled)
+      : piece_tints(mesh, scene.look.pieces);
     const tint = new THREE.BufferAttribute(this.rest_tint.slice(), 3);
     tint.setUsage(THREE.DynamicDrawUsage);
     this.geometry.setAttribute("tint", tint);
@@ -108,7 +108,7 @@ export class OrganView {
     position.needsUpdate = true;
     this.geometry.computeVertexNormals();
     this.wound.follow(vertex_m, this.geometry.getAttribute("normal").array as Float32Array);
-    if (!this.is_flesh) return;
+    if (!this.made_of.alive) return;
     const tint = this.geometry.getAttribute("tint") as THREE.BufferAttribute;
     this.pale(tint.array as Float32Array);
     tint.needsUpdate = true;
@@ -150,20 +150,12 @@ export class OrganView {
     return new THREE.MeshBasicMaterial({ color: "#ffd9cc", wireframe: true, transparent: true, opacity: 0.35 });
   }
 
-  private static piece_tints(mesh: Mesh, made_of: Material): Float32Array {
-    const out = new Float32Array(mesh.vertex_m.length);
-    pieces_of(mesh).forEach((piece, v) => {
-      out.set(made_of.pieces[Math.min(piece, made_of.pieces.length - 1)], 3 * v);
-    });
-    return out;
-  }
-
-  private static tints(mesh: Mesh): Float32Array {
+  private static tints(mesh: Mesh, mottled: number): Float32Array {
     const out = new Float32Array(mesh.vertex_m.length);
     const color = new THREE.Color();
     for (let i = 0; i < out.length; i += 3) {
       const share = mottle(mesh.vertex_m[i], mesh.vertex_m[i + 1], mesh.vertex_m[i + 2]);
-      color.lerpColors(kFlesh, kDark, 0.5 + 0.5 * share).toArray(out, i);
+      color.lerpColors(kFlesh, kDark, 0.5 * mottled * (1 + share)).toArray(out, i);
     }
     return out;
   }

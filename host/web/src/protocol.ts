@@ -26,6 +26,7 @@ export interface Scene {
   non_rt: boolean;
   simulated: boolean;
   spheres: Sphere[];
+  look: { organ: string; tool: string; pieces: Vec[] }; // [look] of the scene
 }
 
 /** A probe sphere in contact. */

@@ -3,7 +3,8 @@
 
 import * as THREE from "three";
 import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
-import { look_material } from "./look";
+import { look_material, paint } from "./look";
+import { kMaterials, tool_material } from "./material";
 import type { Target } from "./outside";
 import { dot, length_of, type Frame, type Mesh, type Scene, type Vec } from "./protocol";
 
@@ -58,22 +59,26 @@ export class ToolView {
   private readonly arrow = new Arrow();
   private readonly mark: THREE.Mesh; // where the mouse wants the hand to be
   private readonly spheres: THREE.Mesh<THREE.SphereGeometry, THREE.MeshBasicMaterial>[] = [];
+  private readonly picture: THREE.Texture | null = null; // of its own
   private readonly from_m = new THREE.Vector3();
 
   constructor(
     mesh: Mesh,
     private readonly scene: Scene,
-    look: THREE.Texture,
+    steel: THREE.Texture,
   ) {
+    const made_of = tool_material(scene);
+    if (made_of !== kMaterials.get("steel")) this.picture = paint(made_of.look);
     let geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(mesh.vertex_m, 3));
     geometry.setIndex(new THREE.BufferAttribute(mesh.triangle, 1));
-    geometry = toCreasedNormals(geometry, Math.PI / 5);
+    if (made_of.soft) geometry.computeVertexNormals();
+    else geometry = toCreasedNormals(geometry, Math.PI / 5);
     const count = geometry.getAttribute("position").count;
     geometry.setAttribute("tint", new THREE.BufferAttribute(new Float32Array(3 * count).fill(1), 3));
-    const steel = look_material(look);
-    steel.side = THREE.DoubleSide;
-    this.tool.add(new THREE.Mesh(geometry, steel));
+    const material = look_material(this.picture ?? steel);
+    material.side = THREE.DoubleSide;
+    this.tool.add(new THREE.Mesh(geometry, material));
     for (const sphere of scene.spheres) this.add_sphere(sphere.radius_m, sphere.offset_m);
     this.mark = new THREE.Mesh(
       new THREE.SphereGeometry(0.004, 20, 12),
@@ -119,6 +124,7 @@ export class ToolView {
   }
 
   dispose(): void {
+    this.picture?.dispose();
     this.object.traverse((part) => {
       if (!(part instanceof THREE.Mesh)) return;
       (part.geometry as THREE.BufferGeometry).dispose();

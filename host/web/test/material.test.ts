@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { material_of, pieces_of } from "../src/material";
+import { readFileSync } from "node:fs";
+import { kMaterials, organ_material, piece_tints, pieces_of, tool_material } from "../src/material";
+import type { Scene, Vec } from "../src/protocol";
 
 function mesh(vertices: number, triangle: number[]) {
   return { vertex_m: new Float32Array(3 * vertices), triangle: Uint32Array.from(triangle) };
@@ -15,8 +17,27 @@ test("pieces are numbered in the order of the mesh", () => {
   assert.deepEqual([...pieces_of(mesh(3, []))], [0, 1, 2]);
 });
 
-test("an unknown scene is tissue; the cover is two pieces of its own", () => {
-  assert.equal(material_of("liver").pieces.length, 0);
-  assert.equal(material_of("constructor").pieces.length, 0);
-  assert.equal(material_of("maintenance").pieces.length, 2);
+const scene = (organ: string, tool: string, pieces: Vec[] = []) => ({ look: { organ, tool, pieces } }) as unknown as Scene;
+
+test("organ and tool look as the scene says, else like tissue and steel", () => {
+  assert.equal(organ_material(scene("skin", "glove")), kMaterials.get("skin"));
+  assert.equal(tool_material(scene("skin", "glove")), kMaterials.get("glove"));
+  assert.equal(organ_material(scene("", "")), kMaterials.get("tissue"));
+  assert.equal(tool_material(scene("constructor", "constructor")), kMaterials.get("steel"));
+});
+
+test("each piece has its colour, and those that have none that of the last", () => {
+  const three = mesh(9, [0, 1, 2, 3, 4, 5, 6, 7, 8]);
+  const tints = piece_tints(three, [[1, 0.5, 0.25], [2, 2, 2]]);
+  assert.deepEqual([...tints.slice(0, 3)], [1, 0.5, 0.25]);
+  assert.deepEqual([...tints.slice(9, 12)], [2, 2, 2]);
+  assert.deepEqual([...tints.slice(24, 27)], [2, 2, 2]);
+  assert.ok(piece_tints(three, []).every((tint) => tint === 1));
+  assert.equal(organ_material(scene("tissue", "steel", [[1, 1, 1]])).alive, false); // given colours stay
+});
+
+test("the page has a picture of each material that a scene may name, and of no other", () => {
+  const keys = readFileSync("../../model/scene/scene_keys.cc", "utf8");
+  const list = /kMaterials\{([^;]*)\};/.exec(keys)![1];
+  assert.deepEqual([...list.matchAll(/Choice\{"(\w+)"/g)].map((found) => found[1]), [...kMaterials.keys()]);
 });

@@ -131,6 +131,10 @@ TEST(Telemetry, GreetsAViewerWithTheMeshesAndFramesFollow) {
   EXPECT_EQ(hello.organ_vertices, run.scene().organ_mesh.vertex_m.size());
   EXPECT_EQ(hello.ring_count, 24u);
   EXPECT_STREQ(hello.scene_name, "plate");
+  EXPECT_STREQ(hello.organ_material, "skin");
+  EXPECT_STREQ(hello.tool_material, "steel");
+  ASSERT_EQ(hello.piece_count, 1u);
+  EXPECT_EQ(hello.piece_color_ratio[0][2], 0.5f);
   struct stat info{};
   ASSERT_EQ(fstat(mesh_fd, &info), 0);
   const std::size_t expected = 12u * (hello.organ_vertices + hello.organ_triangles +

@@ -105,7 +105,7 @@ TEST_F(RecordingFile, OfOtherSizesButTheSameVersionSaysSo) {
   tests::flip_byte(path_, offsetof(FileHeader, frame_bytes));
   const ReadResult read = read_recording(path_);
   EXPECT_FALSE(read.usable);
-  EXPECT_NE(read.damage.find("though both say version 5"), std::string::npos) << read.damage;
+  EXPECT_NE(read.damage.find("though both say version 7"), std::string::npos) << read.damage;
 }
 
 TEST_F(RecordingFile, EveryDamageIsTold) {

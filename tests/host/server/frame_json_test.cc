@@ -92,6 +92,26 @@ TEST(SceneJson, SaysWhatTheHelloSays) {
   EXPECT_EQ(json["non_rt"], false);
 }
 
+TEST(SceneJson, SaysWhatOrganAndToolLookLike) {
+  record::Hello hello = test::make_hello(5, 6, 7, 8);
+  std::strcpy(hello.organ_material, "paint");
+  std::strcpy(hello.tool_material, "glove");
+  hello.piece_count = 1;
+  hello.piece_color_ratio[0][1] = 0.5f;
+  const auto look = nlohmann::json::parse(scene_json(hello)).at("look");
+  EXPECT_EQ(look.at("organ"), "paint");
+  EXPECT_EQ(look.at("tool"), "glove");
+  EXPECT_EQ(look.at("pieces"), nlohmann::json::parse("[[0.0, 0.5, 0.0]]"));
+  EXPECT_EQ(sentence_of(record::check_hello(hello)), "");
+  hello.piece_count = UINT32_MAX;
+  EXPECT_NE(sentence_of(record::check_hello(hello)), "");
+  EXPECT_EQ(nlohmann::json::parse(scene_json(hello)).at("look").at("pieces").size(),
+            firmware::telemetry::kMaxPieces);
+  hello.piece_count = 1;
+  hello.piece_color_ratio[3][2] = -1.0f;
+  EXPECT_NE(sentence_of(record::check_hello(hello)), "");
+}
+
 TEST(SceneJson, SurvivesANameWithoutEndAndWithBrokenUtf8) {
   record::Hello hello = test::make_hello(3, 1, 3, 1);
   std::memset(hello.scene_name, 0xFF, sizeof hello.scene_name);
