@@ -63,8 +63,8 @@ ROOMS = {
 }
 # A tool measures every room above; of the other tools it may include these.
 TOOLS = {
-    **dict.fromkeys(["make_meshes", "make_tracking", "mcap", "mesh", "printed", "program", "track_send"], []),
-    **dict.fromkeys(["calibrate", "doctor", "ground_truth", "report", "tracking_bench"], ["program"]),
+    **dict.fromkeys(["make_meshes", "make_tracking", "mcap", "printed", "program", "track_send"], []),
+    **dict.fromkeys(["calibrate", "doctor", "ground_truth", "mesh", "report", "tracking_bench"], ["program"]),
     **dict.fromkeys(["jitter", "limits"], ["program", "report"]),
     **dict.fromkeys(["condense", "reference"], ["program", "ground_truth"]),
     "fit": ["program", "report", "ground_truth"],

@@ -1,100 +1,140 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-mesh: what is in this mesh file, and is it sound?
+// tact-mesh: what is in this mesh file, is it sound, and if not, make it so.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 
-#include "model/io/command_line.h"
-#include "model/io/program_end.h"
+#include "model/io/file_writer.h"
 #include "model/io/within.h"
-#include "model/mesh/obj.h"
+#include "tools/mesh/mesh_report.h"
+#include "tools/mesh/repair_file.h"
+#include "tools/program/program.h"
 
 namespace {
 
-using nlohmann::json;
-using tact::model::Vec3;
-using tact::model::mesh::MeshSummary;
-using tact::model::mesh::ObjMesh;
+namespace mesh = tact::tools::mesh;
+using tact::model::Error;
+using tact::model::Result;
+using tact::tools::program::Program;
 
-json to_json(const Vec3& p) { return json::array({p.x, p.y, p.z}); }
+struct Step {
+  const char* option;
+  const char* what;
+};
 
-json to_json(const std::string& file, double unit_m, const ObjMesh& obj, const MeshSummary& sum) {
-  const bool closed = sum.boundary_edges == 0;
-  return {{"format", "tact-mesh"},
-          {"version", 1},
-          {"file", file},
-          {"unit_m", unit_m},
-          {"vertices", sum.vertices},
-          {"triangles", sum.triangles},
-          {"closed", closed},
-          {"boundary_edges", sum.boundary_edges},
-          {"area_m2", sum.area_m2},
-          {"volume_m3", closed ? json(sum.volume_m3) : json(nullptr)},
-          {"low_m", to_json(sum.low_m)},
-          {"high_m", to_json(sum.high_m)},
-          {"file_vertices", obj.file_vertices},
-          {"welded_vertices", obj.welded_vertices},
-          {"unused_vertices", obj.unused_vertices},
-          {"flipped", obj.flipped}};
+/// In the order of the work.
+constexpr std::array<Step, 5> kSteps{{
+    {"--weld", "join vertices nearer than 1e-5 of the surface's size, not equal ones alone"},
+    {"--drop-degenerate", "drop faces without area, and doubled ones"},
+    {"--largest", "keep the part with most faces, drop the others"},
+    {"--close-holes", "close every hole"},
+    {"--smooth", "take away the steps of voxels, and keep the volume"},
+}};
+
+struct Options {
+  std::string file, out;
+  double unit_m = 0.0;  // 0: not given
+  std::array<bool, kSteps.size()> wanted{};
+  std::size_t decimate = 0;  // 0: not asked for
+  bool json = false;
+};
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("FILE", o.file, "OBJ, STL, PLY, VTK, VTP, OFF, glTF or GLB, by its ending")
+      ->required();
+  app.add_option("--out", o.out,
+                 "OBJ file to write, in the units and the frame of FILE, after these steps:");
+  const std::map<std::string, double> units{
+      {"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"um", 1e-6}, {"in", 0.0254}};
+  CLI::Option* named =
+      app.add_option("--unit", o.unit_m, "of FILE: m, cm, mm, um or in (default mm; glTF: m)");
+  named->transform(CLI::CheckedTransformer(units, CLI::ignore_case).description(""));
+  app.add_option("--unit-m", o.unit_m, "the same as a number: length of one file unit, m")
+      ->check(tact::model::io::within(1e-9, 1e6))
+      ->excludes(named);
+  app.add_flag("--json", o.json, "print one JSON object, SI units (m, m2, m3)");
+  for (std::size_t i = 0; i < kSteps.size(); ++i)
+    app.add_flag(kSteps[i].option, o.wanted[i], kSteps[i].what);
+  app.add_option("--decimate", o.decimate, "leave about so many faces")
+      ->check(tact::model::io::within(4, 20'000'000));
 }
 
-std::string range_mm(double low_m, double high_m) {
-  return fmt::format("{:.6g} to {:.6g} mm ({:.6g} mm)", 1e3 * low_m, 1e3 * high_m,
-                     1e3 * (high_m - low_m));
+/// What of the command line repair.py does.
+std::vector<std::string> repair_options(const Options& o) {
+  std::vector<std::string> options;
+  for (std::size_t i = 0; i < kSteps.size(); ++i)
+    if (o.wanted[i]) options.emplace_back(kSteps[i].option);
+  if (o.decimate > 0) options.push_back(fmt::format("--decimate={}", o.decimate));
+  return options;
 }
 
-std::string to_text(const ObjMesh& obj, const MeshSummary& sum) {
-  const bool closed = sum.boundary_edges == 0;
-  std::string text = fmt::format("vertices   {}\n", sum.vertices);
-  text += fmt::format("           {} in the file, {} welded, {} unused\n", obj.file_vertices,
-                      obj.welded_vertices, obj.unused_vertices);
-  text += fmt::format("triangles  {}\n", sum.triangles);
-  text += closed ? "surface    closed\n"
-                 : fmt::format("surface    open, {} boundary edges\n", sum.boundary_edges);
-  text += fmt::format("area       {:.6g} cm2\n", 1e4 * sum.area_m2);
-  text += closed ? fmt::format("volume     {:.6g} cm3\n", 1e6 * sum.volume_m3)
-                 : "volume     none, the surface is open\n";
-  text += "x          " + range_mm(sum.low_m.x, sum.high_m.x) + "\n";
-  text += "y          " + range_mm(sum.low_m.y, sum.high_m.y) + "\n";
-  text += "z          " + range_mm(sum.low_m.z, sum.high_m.z) + "\n";
-  if (obj.flipped)
-    text += "note       the file's normals point inwards; turned outwards on loading\n";
-  return text;
+void show_percent(const std::string& step, int percent) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  fmt::print(stderr, "\r{:<15}  {} %\r", step, percent);
+  std::fflush(stderr);
+}
+
+double unit_of(const Options& o) {
+  if (o.unit_m > 0.0) return o.unit_m;
+  const bool in_metres = o.file.ends_with(".gltf") || o.file.ends_with(".glb");
+  return in_metres ? 1.0 : 0.001;
+}
+
+/// Read as it is, or repaired.
+Result<mesh::Repaired> read_mesh(const Options& o, std::vector<std::string> steps) {
+  if (steps.empty() && o.out.empty() && mesh::is_obj(o.file)) {
+    auto obj = tact::model::mesh::load_obj(o.file, unit_of(o));
+    if (!obj) return obj.error();
+    return mesh::Repaired{.steps = {}, .obj_text = {}, .obj = std::move(*obj)};
+  }
+  if (const auto error =
+          tact::tools::program::check_output(o.out, mesh::kRepairedBeginning, {o.file}))
+    return *error;
+  const auto on_step = [&o](const mesh::RepairStep& step) {
+    if (!o.json) fmt::print("{}", mesh::to_text(step));
+    std::fflush(stdout);
+  };
+  auto repaired = mesh::repair_file({.source = o.file, .options = std::move(steps)}, unit_of(o),
+                                    on_step, show_percent);
+  if (!repaired || o.out.empty()) return repaired;
+  if (const auto error = tact::model::io::write_file(o.out, repaired->obj_text)) return *error;
+  if (!o.json) fmt::print("{:<15}  {}\n", "wrote", o.out);
+  return repaired;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  tact::model::io::watch_standard_output("tact-mesh");
-  tact::model::io::tell_uncaught("tact-mesh");
-  CLI::App app{
-      "What is in this mesh file, and is it sound? Reads a Wavefront OBJ surface as tact does:\n"
-      "cuts faces into triangles, welds equal vertices, and refuses what is no surface (an edge\n"
-      "with more than two triangles, a face without area, a broken line) with the line of the "
-      "file."};
-  std::string path;
-  double unit_m = 0.001;
-  bool as_json = false;
-  app.add_option("FILE", path, "OBJ file")->required();
-  app.add_option("--unit-m", unit_m, "length of one file unit, m: 0.001 for mm, 0.01 for cm")
-      ->check(tact::model::io::within(1e-9, 1e6))
-      ->capture_default_str();
-  app.add_flag("--json", as_json, "print one JSON object, SI units (m, m2, m3)");
-  app.footer("Exit status: 0 the mesh is sound, 2 bad usage or a bad file.");
-  if (const auto status = tact::model::io::parse_command_line(app, "tact-mesh", argc, argv))
-    return *status;
-  const auto obj = tact::model::mesh::load_obj(path, unit_m);
-  if (!obj) {
-    fmt::print(stderr, "tact-mesh: {}\n", obj.error().sentence);
-    return 2;
-  }
-  const MeshSummary sum = tact::model::mesh::summarize(obj->mesh);
+  Program program("tact-mesh",
+                  "What is in this mesh file, and is it sound? Tells its size, and refuses what is "
+                  "no surface:\n"
+                  "an edge with more than two triangles, a face without area, a broken line. OBJ "
+                  "files are read\n"
+                  "as tact reads them. The steps below make a sound surface of what is none, in "
+                  "this order, and\n"
+                  "say what they did; VTK does them, from the package tact-lab.",
+                  "With any step or --out: equal vertices are joined, faces turned as their "
+                  "neighbours, sheets\n"
+                  "that meet at one edge parted. Colours and textures are not kept.\n"
+                  "A scan as one command: tact-mesh scan.stl --out organ.obj --weld "
+                  "--drop-degenerate --largest\n"
+                  "--close-holes --smooth --decimate 6000");
+  Options options;
+  add_options(program.options(), options);
+  if (const auto status = program.parse(argc, argv)) return *status;
+  const auto read = read_mesh(options, repair_options(options));
+  if (!read) return program.fail(read.error());
   // A path may hold bytes that are no UTF-8; JSON then shows them as replacement characters.
-  fmt::print("{}", as_json ? to_json(path, unit_m, obj.value(), sum)
-                                     .dump(2, ' ', false, json::error_handler_t::replace) +
-                                 "\n"
-                           : to_text(obj.value(), sum));
+  fmt::print(
+      "{}", options.json
+                ? mesh::to_json(options.file, unit_of(options), read->obj, read->steps, options.out)
+                          .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                      "\n"
+                : mesh::to_text(read->obj));
   return 0;
 }

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -114,6 +115,34 @@ Result<pid_t> start_child(const ProgramCall& call) {
                            has_folder ? std::strerror(failed) : "no such folder")};
 }
 
+/// Hands on the lines that a program has printed since the last call.
+class LineReader {
+ public:
+  LineReader(const std::string& path, const std::function<void(std::string_view)>& on_line)
+      : on_line_(on_line), fd_(on_line ? open(path.c_str(), O_RDONLY | O_CLOEXEC) : -1) {}
+  LineReader(const LineReader&) = delete;
+  LineReader& operator=(const LineReader&) = delete;
+  ~LineReader() {
+    if (fd_ >= 0) close(fd_);
+  }
+
+  void hand_on() {
+    std::array<char, 4096> part{};
+    for (ssize_t n = 0; fd_ >= 0 && (n = read(fd_, part.data(), part.size())) > 0;) {
+      rest_.append(part.data(), static_cast<std::size_t>(n));
+      for (std::size_t end = 0; (end = rest_.find('\n')) != std::string::npos;) {
+        on_line_(std::string_view(rest_).substr(0, end));
+        rest_.erase(0, end + 1);
+      }
+    }
+  }
+
+ private:
+  const std::function<void(std::string_view)>& on_line_;
+  int fd_ = -1;
+  std::string rest_;
+};
+
 std::string tail(const std::string& text) {
   std::size_t at = text.size();
   for (int line = 0; line <= kLastLines && at != std::string::npos && at > 0; ++line)
@@ -128,7 +157,9 @@ Result<std::string> run_program(const ProgramCall& call) {
   const auto begun = Clock::now();
   const auto child = start_child(call);
   if (!child) return child.error();
+  LineReader lines(call.log_path, call.on_line);
   while (still_runs(*child)) {
+    lines.hand_on();
     if (is_interrupted()) {
       end(*child);
       return interruption();
@@ -142,6 +173,7 @@ Result<std::string> run_program(const ProgramCall& call) {
     std::this_thread::sleep_for(10ms);
   }
   const auto status = end(*child);
+  lines.hand_on();
   if (is_interrupted()) return interruption();
   if (!status)
     return Error{fmt::format(

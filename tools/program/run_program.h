@@ -9,7 +9,9 @@
 // goes on to its own end, without a time limit.
 #pragma once
 
+#include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -26,6 +28,7 @@ struct ProgramCall {
   double time_limit_s = 0.0;  // 0: none
   bool any_status = false;    // some programs end well with a status above 0
   std::vector<std::pair<std::string, std::string>> environment;  // on top of ours
+  std::function<void(std::string_view)> on_line{};  // each line that it prints, as it comes
 };
 
 /// What the program printed, if it ended with status 0. Otherwise a sentence: not installed (and

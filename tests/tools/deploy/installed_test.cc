@@ -89,6 +89,20 @@ TEST_F(Installed, TheFilesOfAPCLieWhereSystemdLooks) {
     EXPECT_TRUE(fs::exists(prefix_ + "/" + path)) << path;
 }
 
+TEST_F(Installed, AMeshIsJudgedByTheToolsAndRepairedWithTheLab) {
+  for (const char* program : {"tact-calibrate", "tact-stability"})
+    if (!fs::exists(TACT_BINARY_DIR "/" + std::string(program)))
+      GTEST_SKIP() << "built without " << program;
+  const std::string mesh = "tact-mesh " TACT_SOURCE_DIR "/model/scenes/meshes/liver_3116.obj";
+  install("tact-tools");
+  EXPECT_EQ(run(mesh).status, 0);
+  const Outcome alone = run(mesh + " --smooth");
+  EXPECT_EQ(alone.status, 2);
+  EXPECT_NE(alone.output.find("apt install tact-lab"), std::string::npos) << alone.output;
+  install("tact-lab");
+  EXPECT_EQ(run(mesh + " --smooth").status, 0);
+}
+
 /// Targets of a build that finds neither the peers nor the solvers.
 TEST_F(Installed, TheLightToolsNeedNoSolver) {
   const Outcome configured = run_command(
@@ -108,7 +122,7 @@ TEST_F(Installed, TheLightToolsAskForNoSolverAndNoOtherCompiler) {
       run_command("bash -c '. " TACT_SOURCE_DIR
                   "/tools/packages.sh; echo ${BUILD_PACKAGES[@]} ${LIGHT_TOOL_PACKAGES[@]}'");
   EXPECT_NE(asked.output.find("libfmt-dev"), std::string::npos) << asked.output;
-  for (const char* absent : {"gmsh", "calculix", "metis", "bullet", "clang", "qemu", "nodejs"})
+  for (const char* absent : {"gmsh", "calculix", "metis", "bullet", "clang", "qemu", "nodejs", "vtk"})
     EXPECT_EQ(asked.output.find(absent), std::string::npos) << absent;
   EXPECT_NE(run_command(TACT_SOURCE_DIR "/tools/run --help").output.find("--tools"),
             std::string::npos);

@@ -55,6 +55,26 @@ TEST(RunProgram, KeepsWhatWasPrintedAndTakesArgumentsAsTheyAre) {
   EXPECT_EQ(*said, "a b|$HOME|'\"*|");
 }
 
+TEST(RunProgram, HandsOnEachLineAsItComes) {
+  const auto where = folder();
+  std::vector<std::string> lines;
+  bool came_before_the_end = false;
+  const auto said = run_program({.program = "sh",
+                                 .arguments = {"-c", "echo one; sleep 0.3; echo two; printf thr"},
+                                 .directory = where.path(),
+                                 .log_path = where.file("log"),
+                                 .package = "the-package",
+                                 .environment = {},
+                                 .on_line = [&](std::string_view line) {
+                                   lines.emplace_back(line);
+                                   came_before_the_end |=
+                                       lines.size() == 1 && fs::file_size(where.file("log")) == 4;
+                                 }});
+  ASSERT_TRUE(said) << said.error().sentence;
+  EXPECT_EQ(lines, (std::vector<std::string>{"one", "two"}));
+  EXPECT_TRUE(came_before_the_end);
+}
+
 TEST(RunProgram, RunsInItsFolderWithItsEnvironment) {
   const auto where = folder();
   const auto said = run(where, "sh", {"-c", "pwd; echo $TACT_TEST; echo to stderr >&2"});

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/mesh/mesh_report.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace tact::tools::mesh {
+namespace {
+
+using model::Vec3;
+using model::mesh::MeshSummary;
+using model::mesh::ObjMesh;
+using nlohmann::json;
+
+json to_json(const Vec3& p) { return json::array({p.x, p.y, p.z}); }
+
+std::string range_mm(double low_m, double high_m) {
+  return fmt::format("{:.6g} to {:.6g} mm ({:.6g} mm)", 1e3 * low_m, 1e3 * high_m,
+                     1e3 * (high_m - low_m));
+}
+
+}  // namespace
+
+std::string to_text(const RepairStep& step) {
+  return fmt::format("{:<15}  {}\n", step.name, step.text);
+}
+
+std::string to_text(const ObjMesh& obj) {
+  const MeshSummary sum = model::mesh::summarize(obj.mesh);
+  const bool closed = sum.boundary_edges == 0;
+  std::string text = fmt::format("vertices   {}\n", sum.vertices);
+  text += fmt::format("           {} in the file, {} welded, {} unused\n", obj.file_vertices,
+                      obj.welded_vertices, obj.unused_vertices);
+  text += fmt::format("triangles  {}\n", sum.triangles);
+  text += closed ? "surface    closed\n"
+                 : fmt::format("surface    open, {} boundary edges\n", sum.boundary_edges);
+  text += fmt::format("area       {:.6g} cm2\n", 1e4 * sum.area_m2);
+  text += closed ? fmt::format("volume     {:.6g} cm3\n", 1e6 * sum.volume_m3)
+                 : "volume     none, the surface is open\n";
+  text += "x          " + range_mm(sum.low_m.x, sum.high_m.x) + "\n";
+  text += "y          " + range_mm(sum.low_m.y, sum.high_m.y) + "\n";
+  text += "z          " + range_mm(sum.low_m.z, sum.high_m.z) + "\n";
+  if (obj.flipped)
+    text += "note       the file's normals point inwards; turned outwards on loading\n";
+  return text;
+}
+
+json to_json(const std::string& file, double unit_m, const ObjMesh& obj,
+             const std::vector<RepairStep>& steps, const std::string& out) {
+  const MeshSummary sum = model::mesh::summarize(obj.mesh);
+  const bool closed = sum.boundary_edges == 0;
+  json told{{"format", "tact-mesh"},
+            {"version", 1},
+            {"file", file},
+            {"unit_m", unit_m},
+            {"vertices", sum.vertices},
+            {"triangles", sum.triangles},
+            {"closed", closed},
+            {"boundary_edges", sum.boundary_edges},
+            {"area_m2", sum.area_m2},
+            {"volume_m3", closed ? json(sum.volume_m3) : json(nullptr)},
+            {"low_m", to_json(sum.low_m)},
+            {"high_m", to_json(sum.high_m)},
+            {"file_vertices", obj.file_vertices},
+            {"welded_vertices", obj.welded_vertices},
+            {"unused_vertices", obj.unused_vertices},
+            {"flipped", obj.flipped}};
+  for (const RepairStep& step : steps)
+    told["steps"].push_back(
+        {{"step", step.name}, {"count", step.count}, {"faces", step.faces}, {"text", step.text}});
+  if (!out.empty()) told["out"] = out;
+  return told;
+}
+
+}  // namespace tact::tools::mesh

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// mesh_report.h - what a person, or a machine, is told of a mesh.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "model/mesh/obj.h"
+#include "tools/mesh/repair_file.h"
+
+namespace tact::tools::mesh {
+
+/// "read             200000 faces, ...", a line.
+std::string to_text(const RepairStep& step);
+std::string to_text(const model::mesh::ObjMesh& obj);
+
+/// SI units. `file`: where it was read; `steps` and `out` are members where there are any.
+nlohmann::json to_json(const std::string& file, double unit_m, const model::mesh::ObjMesh& obj,
+                       const std::vector<RepairStep>& steps, const std::string& out);
+
+}  // namespace tact::tools::mesh

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reads a triangle surface with VTK, repairs it and writes it as OBJ. tact-mesh runs this; --help there says what it does.
+
+    /usr/bin/python3 repair.py IN OUT.obj [--weld] [--drop-degenerate] [--largest] [--close-holes] [--smooth] [--decimate N]
+
+Prints one JSON object a line: {"step", "count", "text", "faces", "vertices"} as each step ends, {"step", "percent"} on the
+way, or {"error"} with status 2.
+"""
+import argparse
+import json
+import pathlib
+import sys
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+
+def tell(**what):
+    print(json.dumps(what), flush=True)
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("source")
+    options.add_argument("target")
+    for step in ("weld", "drop-degenerate", "largest", "close-holes", "smooth"):
+        options.add_argument("--" + step, action="store_true")
+    options.add_argument("--decimate", type=int, metavar="N")
+    asked = options.parse_args()
+    try:
+        import steps
+        import surface_file
+    except ImportError as missing:
+        tell(error=f"{missing.name} is missing in Debian's python3; apt install python3-vtk9 python3-numpy")
+        return 2
+    try:
+        points, triangles = surface_file.read(asked.source)
+        surface_file.write_obj(asked.target, *steps.repair(points, triangles, asked, tell))
+    except surface_file.Refused as refused:
+        tell(error=str(refused))
+        return 2
+    except MemoryError:
+        tell(error=f"{asked.source}: not enough memory for it; simplify the mesh")
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

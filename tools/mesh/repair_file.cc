@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/mesh/repair_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
+#include "model/io/file_writer.h"
+#include "model/io/input_file.h"
+#include "model/io/installed.h"
+#include "model/io/json.h"
+#include "model/mesh/obj_parser.h"
+#include "tools/program/run_program.h"
+
+namespace tact::tools::mesh {
+namespace {
+
+namespace fs = std::filesystem;
+using model::Error;
+using model::Result;
+using nlohmann::json;
+
+constexpr std::string_view kCure = "name a mesh file of at most 2 GB";
+
+std::string ending_of(const std::string& path) {
+  std::string ending = fs::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+/// Beside the program in a build folder, else where it is installed.
+Result<std::string> find_script() {
+  for (const fs::path& path : {model::io::program_folder() / "mesh" / "repair.py",
+                               model::io::installed("mesh/repair.py")}) {
+    std::error_code failed;
+    if (fs::is_regular_file(path, failed)) return path.string();
+  }
+  return Error{
+      "only an OBJ file is read, and only looked at, without the package tact-lab; apt install "
+      "tact-lab"};
+}
+
+/// An OBJ file is read by tact's own parser, which knows the line of an error, and handed on with
+/// vertices and faces alone.
+std::optional<Error> write_plain_obj(const std::string& from, const std::string& to) {
+  const auto file = model::io::read_file(from, kCure, model::mesh::kMaxObjBytes);
+  if (!file) return file.error();
+  if (file->empty()) return Error{from + ":1: the file is empty; export the mesh again"};
+  const auto text = model::mesh::parse_obj(*file, from);
+  if (!text) return text.error();
+  std::string plain;
+  for (const model::Vec3& p : text->vertex)
+    fmt::format_to(std::back_inserter(plain), "v {} {} {}\n", p.x, p.y, p.z);
+  std::size_t corner = 0;
+  for (const std::uint32_t end : text->face_end) {
+    plain += 'f';
+    for (; corner < end; ++corner)
+      fmt::format_to(std::back_inserter(plain), " {}", text->corner[corner] + 1);
+    plain += '\n';
+  }
+  return model::io::write_file(to, plain);
+}
+
+/// What repair.py says, line by line.
+class Listener {
+ public:
+  Listener(const std::function<void(const RepairStep&)>& on_step,
+           const std::function<void(const std::string&, int)>& on_percent)
+      : on_step_(on_step), on_percent_(on_percent) {}
+
+  void hear(std::string_view line) {
+    const auto said = model::io::parse_json(line, "repair.py");
+    if (!said || !said->is_object()) return;  // a last word of a library that crashes
+    if (said->contains("error")) {
+      error = said->value("error", "");
+    } else if (said->contains("percent")) {
+      on_percent_(said->value("step", ""), said->value("percent", 0));
+    } else if (said->contains("text")) {
+      steps.push_back({.name = said->value("step", ""),
+                       .text = said->value("text", ""),
+                       .count = said->value("count", std::int64_t{0}),
+                       .faces = said->value("faces", std::int64_t{0})});
+      on_step_(steps.back());
+    }
+  }
+
+  std::vector<RepairStep> steps;
+  std::string error;
+
+ private:
+  const std::function<void(const RepairStep&)>& on_step_;
+  const std::function<void(const std::string&, int)>& on_percent_;
+};
+
+/// `sentence` with the name of the file that a person knows.
+std::string about(const std::string& source, const std::string& scratch, std::string sentence) {
+  const std::size_t at = sentence.find(scratch);
+  return at == std::string::npos ? sentence : sentence.replace(at, scratch.size(), source);
+}
+
+}  // namespace
+
+bool is_obj(const std::string& path) { return ending_of(path) == ".obj"; }
+
+Result<Repaired> repair_file(const RepairOrder& order, double unit_m,
+                             const std::function<void(const RepairStep&)>& on_step,
+                             const std::function<void(const std::string&, int)>& on_percent) {
+  if (const auto file = model::io::InputFile::open(order.source, kCure); !file) return file.error();
+  const auto script = find_script();
+  if (!script) return Error{fmt::format("{}: {}", order.source, script.error().sentence)};
+  const auto scratch = program::ScratchFolder::make("tact-mesh");
+  if (!scratch) return scratch.error();
+  std::string source = order.source;
+  if (is_obj(source)) {
+    source = scratch->file("source.obj");
+    if (const auto error = write_plain_obj(order.source, source)) return *error;
+  }
+  const std::string target = scratch->file("repaired.obj");
+  Listener listener(on_step, on_percent);
+  std::vector<std::string> arguments{*script};
+  arguments.insert(arguments.end(), order.options.begin(), order.options.end());
+  arguments.insert(arguments.end(), {"--", source, target});
+  const auto ran = program::run_program(
+      {.program = "/usr/bin/python3",  // Debian's own, which finds Debian's VTK
+       .arguments = arguments,
+       .directory = ".",
+       .log_path = scratch->file("log"),
+       .package = "python3",
+       .environment = {},
+       .on_line = [&listener](std::string_view line) { listener.hear(line); }});
+  if (!listener.error.empty()) return Error{about(order.source, source, listener.error)};
+  if (!ran && program::was_interrupted(ran.error())) return ran.error();
+  if (!ran && ran.error().sentence.find("ended with signal") != std::string::npos) {
+    return Error{
+        fmt::format("{}: its reader in VTK crashed: the file is damaged, or not of the "
+                    "format that its ending says; export the mesh again",
+                    order.source)};
+  }
+  if (!ran)
+    return Error{fmt::format("{}: {}", order.source, model::io::on_one_line(ran.error().sentence))};
+
+  auto text = model::io::read_file(target, "try again", model::mesh::kMaxObjBytes);
+  if (!text) return text.error();
+  auto obj = model::mesh::load_obj(target, unit_m);
+  if (!obj) {
+    // "PATH:LINE: the face ...; cure in a mesh editor"
+    const std::string& told = obj.error().sentence;
+    const std::size_t what = told.find(": ", target.size());
+    const std::string sentence = what == std::string::npos ? told : told.substr(what + 2);
+    return Error{fmt::format("{}: after these steps {}", order.source, sentence)};
+  }
+  return Repaired{
+      .steps = std::move(listener.steps), .obj_text = std::move(*text), .obj = std::move(*obj)};
+}
+
+}  // namespace tact::tools::mesh

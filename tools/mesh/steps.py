@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From what a scanner gives to a surface that tact can press: the steps, in the order in which each helps the next."""
+import numpy as np
+import vtk
+
+import sheets
+from holes import closed
+from surface_file import Refused, to_numpy, to_vtk
+
+NEAR_RATIO = 1e-5   # of the surface's size: vertices so near are one, with --weld
+FLAT_RATIO = 1e-8   # doubled area over the square of the longest side: below it a face has no area
+FOLD_COSINE = -0.9  # between the normals of two neighbours
+MOST_UNFOLDINGS = 10
+
+
+def repair(points, triangles, asked, tell):
+    """`asked` has a member for each option. Tells what each step did; gives points and triangles."""
+    def told(step, count, text):
+        if len(triangles) == 0:
+            raise Refused(f"{asked.source}: no face is left after {step}; look at the mesh in a mesh editor")
+        tell(step=step, count=int(count), text=text, faces=len(triangles), vertices=len(points))
+
+    def watched(step, work):
+        percent = -10
+
+        def note(caller, _):
+            nonlocal percent
+            if 100 * caller.GetProgress() >= percent + 10:
+                percent = int(100 * caller.GetProgress())
+                tell(step=step, percent=percent)
+        work.AddObserver("ProgressEvent", note)
+        work.Update()
+        return to_numpy(work.GetOutput())
+
+    told("read", len(triangles), f"{len(triangles)} faces, {len(points)} vertices")
+    centre = (points.max(0) + points.min(0)) / 2  # a scanner's origin lies far away; the digits are for the shape
+    points = points - centre
+    vertices, faces = len(points), len(triangles)
+    size = np.linalg.norm(points.max(0) - points.min(0))
+    points, triangles = watched("weld", welding(points, triangles, NEAR_RATIO * size if asked.weld else 0.0))
+    told("weld", vertices - len(points),
+         f"{vertices - len(points)} vertices joined, {faces - len(triangles)} faces vanished")
+    if asked.drop_degenerate:
+        faces = len(triangles)
+        points, triangles = without_degenerate(points, triangles)
+        told("drop-degenerate", faces - len(triangles), f"{faces - len(triangles)} faces dropped")
+    triangles, turned = sheets.consistent(points, triangles)
+    told("turn", turned, f"{turned} faces turned like their neighbours")
+    faces = len(triangles)
+    points, triangles, crowded = sheets.parted(points, triangles)
+    told("part", crowded, f"{crowded} edges with more than two faces, {faces - len(triangles)} faces dropped there")
+    faces, parts = len(triangles), len(part_faces(points, triangles))
+    if asked.largest:
+        points, triangles = largest(points, triangles)
+        told("largest", parts - 1, f"{parts - 1} of {parts} parts dropped, {faces - len(triangles)} faces")
+    if asked.close_holes:
+        points, triangles, holes, added = closed(points, triangles)
+        told("close-holes", holes, f"{holes} holes closed with {added} faces")
+    if asked.smooth:
+        before = points
+        points = watched("smooth", smoothing(points, triangles))[0]
+        told("smooth", len(points), f"vertices moved by {np.linalg.norm(points - before, axis=1).mean():.2g} units in the mean")
+    if asked.decimate is not None and asked.decimate < len(triangles):
+        faces = len(triangles)
+        points, triangles = used(*watched("decimate", decimation(points, triangles, asked.decimate)))
+        points, triangles = unfolded(points, triangles)
+        told("decimate", faces - len(triangles), f"{faces} faces became {len(triangles)}")
+    if volume(points, triangles) < 0:
+        triangles = triangles[:, ::-1]
+    return points + centre, triangles
+
+
+def volume(points, triangles):
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    return np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+
+
+def used(points, triangles):
+    """Without the points that no triangle names."""
+    names, corners = np.unique(triangles, return_inverse=True)
+    return points[names], corners.reshape(-1, 3)
+
+
+def welding(points, triangles, distance):
+    weld = vtk.vtkCleanPolyData()  # also drops faces that have a vertex twice then
+    weld.SetInputData(to_vtk(points, triangles))
+    weld.ToleranceIsAbsoluteOn()
+    weld.SetAbsoluteTolerance(distance)
+    weld.ConvertLinesToPointsOff()
+    weld.ConvertPolysToLinesOff()
+    return weld
+
+
+def without_degenerate(points, triangles):
+    """Without faces that have no area, and of faces with the same corners: one if more run its way, none if they cancel."""
+    sides = [np.linalg.norm(points[triangles[:, k]] - points[triangles[:, k - 1]], axis=1) for k in range(3)]
+    area = np.linalg.norm(sheets.doubled_areas(points, triangles), axis=1)
+    triangles = triangles[area > FLAT_RATIO * np.max(sides, axis=0)**2]
+    if len(triangles) == 0:
+        return points, triangles
+    low, middle, high = np.sort(triangles, axis=1).T
+    pair = np.unique(low * len(points) + middle, return_inverse=True)[1]
+    group = np.unique(pair * len(points) + high, return_inverse=True)[1]
+    first = np.argmin(triangles, axis=1)
+    rows = np.arange(len(triangles))
+    forwards = triangles[rows, (first + 1) % 3] < triangles[rows, (first + 2) % 3]
+    surplus = np.bincount(group, np.where(forwards, 1, -1))[group]
+    wanted = np.flatnonzero(np.where(forwards, surplus, -surplus) > 0)
+    kept = wanted[np.unique(group[wanted], return_index=True)[1]]
+    return used(points, triangles[np.sort(kept)])
+
+
+def connectivity(points, triangles):
+    parts = vtk.vtkPolyDataConnectivityFilter()
+    parts.SetInputData(to_vtk(points, triangles))
+    return parts
+
+
+def part_faces(points, triangles):
+    """How many faces each part has."""
+    parts = connectivity(points, triangles)
+    parts.SetExtractionModeToAllRegions()
+    parts.Update()
+    sizes = parts.GetRegionSizes()
+    return [sizes.GetValue(k) for k in range(parts.GetNumberOfExtractedRegions())]
+
+
+def largest(points, triangles):
+    """The part with most faces."""
+    parts = connectivity(points, triangles)
+    parts.SetExtractionModeToLargestRegion()
+    parts.Update()
+    return used(*to_numpy(parts.GetOutput()))
+
+
+def smoothing(points, triangles):
+    """Taubin's filter, which keeps the volume: takes the steps of voxels away, and leaves rims where they are."""
+    smooth = vtk.vtkWindowedSincPolyDataFilter()
+    smooth.SetInputData(to_vtk(points, triangles))
+    smooth.SetNumberOfIterations(20)
+    smooth.SetPassBand(0.1)
+    smooth.BoundarySmoothingOff()
+    smooth.FeatureEdgeSmoothingOff()
+    smooth.NormalizeCoordinatesOn()
+    return smooth
+
+
+def decimation(points, triangles, faces):
+    fewer = vtk.vtkQuadricDecimation()
+    fewer.SetInputData(to_vtk(points, triangles))
+    fewer.SetTargetReduction(1 - faces / len(triangles))
+    fewer.VolumePreservationOn()
+    return fewer
+
+
+def unfolded(points, triangles):
+    """Where decimation has left a crowded edge or a fold, the faces around it go and the hole is closed.
+
+    A surface with rims loses crowded faces alone: its own holes stay.
+    """
+    if len(sheets.Edges(triangles).single()):
+        return sheets.parted(points, triangles)[:2]
+    for _ in range(MOST_UNFOLDINGS):
+        bad = np.union1d(sheets.bad_faces(triangles), folded_faces(points, triangles))
+        if len(bad) == 0:
+            break
+        around = np.isin(triangles, triangles[bad]).any(1)
+        points, triangles, _ = sheets.parted(points, triangles[~around])
+        points, triangles = used(*closed(points, triangles)[:2])
+    return points, triangles
+
+
+def folded_faces(points, triangles):
+    normal = sheets.doubled_areas(points, triangles)
+    normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
+    one, other = sheets.Edges(triangles).pairs()
+    fold = np.einsum("ij,ij->i", normal[one // 3], normal[other // 3]) < FOLD_COSINE
+    return np.concatenate((one[fold], other[fold])) // 3

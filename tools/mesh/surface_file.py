@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Files of triangle surfaces, all that VTK reads and OFF, as numpy arrays; OBJ to write."""
+import os
+import pathlib
+import re
+import struct
+
+import numpy as np
+import vtk
+from vtk.util import numpy_support
+
+MOST_BYTES = 2_000_000_000
+MOST_COORDINATE = 1e12  # file units
+AGAIN = "; export the mesh again"
+FORMATS = "OBJ, STL, PLY, VTK, VTP, OFF, glTF or GLB"
+READERS = {".obj": vtk.vtkOBJReader, ".stl": vtk.vtkSTLReader, ".ply": vtk.vtkPLYReader, ".vtk": vtk.vtkPolyDataReader,
+           ".vtp": vtk.vtkXMLPolyDataReader, ".gltf": vtk.vtkGLTFReader, ".glb": vtk.vtkGLTFReader}
+
+
+class Refused(Exception):
+    """One sentence: file, line where known, what, cure."""
+
+
+def to_vtk(points, triangles):
+    places = vtk.vtkPoints()
+    places.SetDataTypeToDouble()
+    places.SetData(numpy_support.numpy_to_vtk(np.ascontiguousarray(points), deep=1))
+    ends = np.arange(0, 3 * len(triangles) + 1, 3, dtype=np.int64)
+    cells = vtk.vtkCellArray()
+    cells.SetData(numpy_support.numpy_to_vtkIdTypeArray(ends, deep=1),
+                  numpy_support.numpy_to_vtkIdTypeArray(triangles.ravel().astype(np.int64), deep=1))
+    surface = vtk.vtkPolyData()
+    surface.SetPoints(places)
+    surface.SetPolys(cells)
+    return surface
+
+
+def to_numpy(surface):
+    """Points (n x 3) and corners (m x 3) of a vtkPolyData that holds triangles alone."""
+    if surface.GetNumberOfPolys() == 0:
+        return np.empty((0, 3)), np.empty((0, 3), np.int64)
+    points = numpy_support.vtk_to_numpy(surface.GetPoints().GetData()).astype(float)
+    corners = numpy_support.vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
+    return points, corners.reshape(-1, 3).astype(np.int64)
+
+
+def read(path):
+    """Points in file units, and triangles of their numbers from 0."""
+    ending = pathlib.Path(path).suffix.lower()
+    try:
+        size_bytes = os.path.getsize(path)
+        with open(path, "rb") as file:
+            beginning = file.read(84)
+    except OSError as wrong:
+        raise Refused(f"{path}: {wrong.strerror}; name a file of {FORMATS}") from None
+    if size_bytes == 0:
+        raise Refused(f"{path}:1: the file is empty{AGAIN}")
+    if size_bytes > MOST_BYTES:
+        raise Refused(f"{path}: more than 2 GB; simplify the mesh")
+    if ending == ".stl":
+        check_stl(path, size_bytes, beginning)
+    if ending == ".off":
+        surface = read_off(path)
+    elif ending in READERS:
+        surface = read_by_vtk(path, READERS[ending]())
+    else:
+        raise Refused(f"{path}: {ending or 'no ending'} is no format that is read; export the mesh as {FORMATS}")
+    points, triangles = to_numpy(triangulated(surface))
+    if len(triangles) == 0:
+        raise Refused(f"{path}: no faces in it; export the mesh with faces")
+    if triangles.min() < 0 or triangles.max() >= len(points):
+        raise Refused(f"{path}: a face names vertex {triangles.max() + 1} of {len(points)}{AGAIN}")
+    sane = (np.abs(points) <= MOST_COORDINATE).all(1)  # a NaN is not
+    if not sane.all():
+        raise Refused(f"{path}: vertex {np.argmin(sane) + 1} is not finite, or beyond 1e12{AGAIN}")
+    return points, triangles
+
+
+def check_stl(path, size_bytes, beginning):
+    """Binary STL says how many triangles follow. Of fewer VTK reads what there is, without a word."""
+    if beginning.lstrip().startswith(b"solid") and b"\0" not in beginning:
+        return
+    if size_bytes < 84:
+        raise Refused(f"{path}: no STL: neither 'solid' nor a head of 84 bytes{AGAIN}")
+    triangles = struct.unpack_from("<I", beginning, 80)[0]
+    if size_bytes < 84 + 50 * triangles:
+        raise Refused(f"{path}: cut short, after {(size_bytes - 84) // 50} of {triangles} triangles{AGAIN}")
+
+
+def read_by_vtk(path, reader):
+    said = vtk.vtkStringOutputWindow()
+    vtk.vtkOutputWindow.SetInstance(said)
+    vtk.vtkLogger.SetStderrVerbosity(vtk.vtkLogger.VERBOSITY_OFF)
+    reader.SetFileName(path)
+    reader.Update()
+    if "ERROR" in said.GetOutput():
+        raise Refused(complaint(path, said.GetOutput()))
+    surface = reader.GetOutput()
+    if surface.IsA("vtkCompositeDataSet"):  # glTF: all meshes, each at its place
+        together = vtk.vtkCompositeDataGeometryFilter()
+        together.SetInputData(surface)
+        together.Update()
+        surface = together.GetOutput()
+    return surface
+
+
+def complaint(path, text):
+    """VTK's first error, without the place in VTK's own sources, and with the line of the file where VTK says it."""
+    lines = [line.strip() for line in text.split("ERROR", 1)[1].splitlines()[1:] if line.strip()]
+    what = (lines[0] if lines else "").split("): ", 1)[-1].rstrip(".")
+    line = re.search(r"\b[Ll]ine (\d+)", what)
+    what = re.sub(r".*(?:\bat line \d+:|\bat line \d+, column \d+, byte index \d+:|\* Line \d+, Column \d+)\s*", "", what)
+    if not what or what.startswith("Algorithm"):
+        what = "is not of the format that its ending says"
+    return f"{path}{':' + line[1] if line else ''}: {what[:120]}{AGAIN}"
+
+
+def read_off(path):
+    """OFF and COFF as text, which this VTK does not read: the counts, a vertex a line, a face a line after its count."""
+    with open(path, encoding="ascii", errors="replace") as file:
+        rows = [(number, line.split("#")[0].split()) for number, line in enumerate(file, 1)]
+    rows = iter([(number, words) for number, words in rows if words])
+    number, words = 1, []
+    places, cells = vtk.vtkPoints(), vtk.vtkCellArray()
+    places.SetDataTypeToDouble()
+    try:
+        number, words = next(rows)
+        if words[0] not in ("OFF", "COFF"):
+            raise Refused(f"{path}:{number}: does not begin with OFF; export the mesh as OFF text")
+        if len(words) == 1:
+            number, words = next(rows)
+        vertices, faces = (int(word) for word in words[-3:-1])
+        for _ in range(vertices):
+            number, words = next(rows)
+            places.InsertNextPoint(*(float(word) for word in words[:3]))
+        for _ in range(faces):
+            number, words = next(rows)
+            corners = [int(word) for word in words[1:int(words[0]) + 1]]
+            if len(corners) != int(words[0]) or len(corners) < 3:
+                raise Refused(f"{path}:{number}: the face has {len(corners)} corners{AGAIN}")
+            if min(corners) < 0 or max(corners) >= vertices:
+                raise Refused(f"{path}:{number}: the face names vertex {max(corners)} of {vertices}, from 0{AGAIN}")
+            cells.InsertNextCell(len(corners), corners)
+    except StopIteration:
+        raise Refused(f"{path}:{number}: the file ends too early{AGAIN}") from None
+    except (ValueError, TypeError, OverflowError):
+        raise Refused(f"{path}:{number}: '{' '.join(words)[:24]}' is not what OFF has there{AGAIN}") from None
+    surface = vtk.vtkPolyData()
+    surface.SetPoints(places)
+    surface.SetPolys(cells)
+    return surface
+
+
+def triangulated(surface):
+    """Polygons and strips cut; lines and single vertices dropped."""
+    cut = vtk.vtkTriangleFilter()
+    cut.SetInputData(surface)
+    cut.PassLinesOff()
+    cut.PassVertsOff()
+    cut.Update()
+    return cut.GetOutput()
+
+
+def write_obj(path, points, triangles):
+    with open(path, "w", encoding="ascii") as file:
+        file.write("# made by tact-mesh\n")
+        np.savetxt(file, points, "v %.9g %.9g %.9g")
+        np.savetxt(file, triangles + 1, "f %d %d %d")
