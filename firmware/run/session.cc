@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "firmware/admission/inertia_note.h"
+#include "firmware/admission/reach_note.h"
 #include "firmware/console/operator_desk.h"
 #include "firmware/console/say.h"
 #include "firmware/console/service_manager.h"
@@ -100,10 +101,10 @@ int Session::run() {
     say(stderr, "tactd: no hard real time: force capped to {:g} %, records stamped non-rt\n",
         100.0 * kNonRtForceShare);
   if (const auto error = open()) return fail(error->sentence, 2);
-  if (const std::string note = admission::inertia_note(scene_, parts_.tissue->law()); !note.empty())
-    say(stderr, "tactd: {}\n", note);
-  if (const std::string caution = parts_.device->info().caution; !caution.empty())
-    say(stderr, "tactd: {}\n", caution);
+  for (const std::string& note :
+       {admission::inertia_note(scene_, parts_.tissue->law()), parts_.device->info().caution,
+        options_.check ? admission::reach_note(scene_) : std::string()})
+    if (!note.empty()) say(stderr, "tactd: {}\n", note);
   if (options_.check) {
     say(stdout, "{}\n",
         make_check_line(scene_, parts_.device->info().name, parts_.tissue->law(), parts_.stiffness,

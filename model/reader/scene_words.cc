@@ -28,6 +28,7 @@ constexpr std::array kUnits{
     UnitName{"_words", "word"},
     UnitName{"_kgm2", "kg m^2"},
     UnitName{"_rad", "rad"},
+    UnitName{"_deg", "deg"},
     UnitName{"_Nm", "N m"},
     UnitName{"_kg", "kg"},
     UnitName{"_Hz", "Hz"},

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "model/mesh/obj.h"
+#include "model/mesh/turn.h"
 #include "model/reader/scene_words.h"
 #include "model/scene/compliance_file.h"
 #include "model/scene/scene_keys.h"
@@ -43,6 +44,8 @@ std::optional<Error> load_meshes(const SceneText& text, Scene& scene) {
   if (!organ) return organ.error();
   Result<mesh::SurfaceMesh> tool = load_mesh(text.tool_mesh, scene.tool.mesh_path);
   if (!tool) return tool.error();
+  if (const Vec3& turn_deg = text.organ_orientation_deg; norm(turn_deg) > 0.0)
+    mesh::turn(*organ, mesh::turn_of(turn_deg));
   mesh::shift(*organ, scene.organ.position_m);
   scene.organ_mesh = std::move(*organ);
   scene.tool_mesh = std::move(*tool);

@@ -14,6 +14,8 @@ namespace {
 
 // Chosen: a slip of the pen, not a long session, is what it keeps out.
 constexpr std::size_t kMaxStrokes = 64;
+// A scanner's origin may lie anywhere.
+constexpr reader::Range kAnywhere_m{-1e6, 1e6};
 
 void visit_mesh(reader::Keys& k, MeshText& mesh) {
   // For the sentence that says which line names a file that is not there.
@@ -126,7 +128,10 @@ void visit_scene(reader::Keys& k, SceneText& out) {
   visit_truth(k, scene);
   k.section("organ", "what is touched", [&](reader::Keys& organ) {
     visit_mesh(organ, out.organ_mesh);
-    organ.vector("position_m", {-1.0, 1.0}, "of the mesh's origin, in W", scene.organ.position_m);
+    organ.vector("orientation_deg", {-360.0, 360.0},
+                 "turn about the mesh's origin, axis times angle", out.organ_orientation_deg,
+                 reader::Need::kOptional);
+    organ.vector("position_m", kAnywhere_m, "of the mesh's origin, in W", scene.organ.position_m);
   });
   k.section("tool", "what touches it", [&](reader::Keys& tool) { visit_tool(tool, out); });
   k.section(

@@ -223,10 +223,10 @@ void visit_truth(reader::Keys& k, Scene& scene) {
   const auto visit_elastic = [&](reader::Keys& keys) {
     keys.number("youngs_modulus_Pa", {1.0, 1e9}, "E", elastic.youngs_modulus_Pa);
     keys.number("poisson_ratio", {0.0, 0.495}, "nu", elastic.poisson_ratio);
-    keys.vector("fixed_min_m", {-1.0, 1.0}, "low corner of the box whose triangles are held",
+    keys.vector("fixed_min_m", {-1e6, 1e6}, "low corner of the box whose triangles are held",
                 elastic.fixed_min_m);
-    keys.vector("fixed_max_m", {-1.0, 1.0}, "high corner; both in the mesh's own frame",
-                elastic.fixed_max_m);
+    keys.vector("fixed_max_m", {-1e6, 1e6},
+                "high corner; both of the turned mesh, without position_m", elastic.fixed_max_m);
   };
   if (k.section("elastic", "the organ as a linear elastic body, for tact-reference and compliance",
                 visit_elastic, reader::Need::kOptional)) {

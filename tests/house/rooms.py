@@ -47,7 +47,7 @@ ROOMS = {
     "firmware/black_box": ["model", "firmware/loop", "firmware/telemetry"],
     "firmware/console": ["model", "model/io", "hal", "firmware/loop", "firmware/watch",
                          "firmware/telemetry"],
-    "firmware/admission": ["model", "model/contact", "model/indent", "model/law", "model/scene", "hal",
+    "firmware/admission": ["model", "model/contact", "model/indent", "model/law", "model/mesh", "model/scene", "hal",
                            "firmware/loop", "firmware/pc"],
     "firmware/run": [*LOOP, *SCENE, "hal/gpio", "hal/list", "hal/registry", "firmware/loop",
                      "firmware/watch", "firmware/telemetry", "firmware/black_box", "firmware/pc",

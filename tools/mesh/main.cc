@@ -8,10 +8,12 @@
 #include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "model/io/file_writer.h"
 #include "model/io/within.h"
 #include "tools/mesh/mesh_report.h"
+#include "tools/mesh/place.h"
 #include "tools/mesh/repair_file.h"
 #include "tools/program/program.h"
 
@@ -40,8 +42,10 @@ struct Options {
   std::string file, out;
   double unit_m = 0.0;  // 0: not given
   std::array<bool, kSteps.size()> wanted{};
-  std::size_t decimate = 0;  // 0: not asked for
-  bool json = false;
+  std::size_t decimate = 0;   // 0: not asked for
+  std::string scene;          // empty: nothing is placed
+  std::vector<double> point;  // in file units
+  bool write = false, json = false;
 };
 
 void add_options(CLI::App& app, Options& o) {
@@ -62,6 +66,36 @@ void add_options(CLI::App& app, Options& o) {
     app.add_flag(kSteps[i].option, o.wanted[i], kSteps[i].what);
   app.add_option("--decimate", o.decimate, "leave about so many faces")
       ->check(tact::model::io::within(4, 20'000'000));
+  CLI::Option* place = app.add_option(
+      "--place", o.scene,
+      "scene (TOML): print unit, orientation and position that put the organ under its tool");
+  app.add_option("--point", o.point,
+                 "the point that the tool shall touch, X Y Z in file units; its normal is turned "
+                 "towards the tool (default: the top as the mesh lies, not turned)")
+      ->expected(3)
+      ->check(tact::model::io::within(-1e12, 1e12))
+      ->needs(place);
+  app.add_flag("--write", o.write, "write them into the scene; its other lines stay")->needs(place);
+}
+
+bool is_gltf(const std::string& path) {  // in metres by its standard
+  return path.ends_with(".gltf") || path.ends_with(".glb");
+}
+
+/// The organ, under the tool of the scene.
+Result<mesh::Placement> place_mesh(const Options& o) {
+  if (o.out.empty() && !mesh::is_obj(o.file))
+    return Error{fmt::format("{}: a scene reads OBJ; add --out OBJ", o.file)};
+  mesh::PlaceOrder order{.scene_path = o.scene,
+                         .mesh_path = o.out.empty() ? o.file : o.out,
+                         .unit_m = o.unit_m,
+                         .point = {}};
+  if (o.unit_m == 0.0 && is_gltf(o.file)) order.unit_m = 1.0;
+  if (!o.point.empty()) order.point = {o.point[0], o.point[1], o.point[2]};
+  auto placement = mesh::place(order);
+  if (!placement || !o.write) return placement;
+  if (const auto error = mesh::write_placement(o.scene, *placement)) return *error;
+  return placement;
 }
 
 /// What of the command line repair.py does.
@@ -81,8 +115,7 @@ void show_percent(const std::string& step, int percent) {
 
 double unit_of(const Options& o) {
   if (o.unit_m > 0.0) return o.unit_m;
-  const bool in_metres = o.file.ends_with(".gltf") || o.file.ends_with(".glb");
-  return in_metres ? 1.0 : 0.001;
+  return is_gltf(o.file) ? 1.0 : 0.001;
 }
 
 /// Read as it is, or repaired.
@@ -129,12 +162,21 @@ int main(int argc, char** argv) {
   if (const auto status = program.parse(argc, argv)) return *status;
   const auto read = read_mesh(options, repair_options(options));
   if (!read) return program.fail(read.error());
+  std::optional<mesh::Placement> placement;
+  if (!options.scene.empty()) {
+    auto placed = place_mesh(options);
+    if (!placed) return program.fail(placed.error());
+    placement = std::move(*placed);
+  }
   // A path may hold bytes that are no UTF-8; JSON then shows them as replacement characters.
-  fmt::print(
-      "{}", options.json
-                ? mesh::to_json(options.file, unit_of(options), read->obj, read->steps, options.out)
-                          .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-                      "\n"
-                : mesh::to_text(read->obj));
+  if (options.json) {
+    auto told = mesh::to_json(options.file, unit_of(options), read->obj, read->steps, options.out);
+    if (placement) told["placement"] = mesh::to_json(*placement);
+    fmt::print("{}\n", told.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    return 0;
+  }
+  fmt::print("{}", mesh::to_text(read->obj));
+  if (placement) fmt::print("\n{}", mesh::toml_of(*placement));
+  if (options.write) fmt::print("\n{:<15}  {}\n", "wrote", options.scene);
   return 0;
 }

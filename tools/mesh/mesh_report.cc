@@ -73,4 +73,12 @@ json to_json(const std::string& file, double unit_m, const ObjMesh& obj,
   return told;
 }
 
+json to_json(const Placement& placement) {
+  return {{"mesh", placement.mesh_path},
+          {"mesh_unit_m", placement.unit_m},
+          {"orientation_deg", to_json(placement.orientation_deg)},
+          {"position_m", to_json(placement.position_m)},
+          {"site_m", to_json(placement.site_m)}};
+}
+
 }  // namespace tact::tools::mesh

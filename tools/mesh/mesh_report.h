@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/mesh/obj.h"
+#include "tools/mesh/place.h"
 #include "tools/mesh/repair_file.h"
 
 namespace tact::tools::mesh {
@@ -18,5 +19,8 @@ std::string to_text(const model::mesh::ObjMesh& obj);
 /// SI units. `file`: where it was read; `steps` and `out` are members where there are any.
 nlohmann::json to_json(const std::string& file, double unit_m, const model::mesh::ObjMesh& obj,
                        const std::vector<RepairStep>& steps, const std::string& out);
+
+/// Unit, orientation and position, as a scene has them.
+nlohmann::json to_json(const Placement& placement);
 
 }  // namespace tact::tools::mesh

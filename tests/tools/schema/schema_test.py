@@ -41,7 +41,7 @@ COMMANDS = {
                     f"tact-jitter {LIVER} --duration 0.3 --peer cyclictest --peer-gate 9 --json {{t}}/jitter.json"],
     "tact-jitter-compare": ["tact-jitter compare {t}/bare.json {t}/bare.json --json {t}/compared.json"],
     "tact-mesh": [f"tact-mesh --json --unit-m 0.01 {ROOT}/{{mesh}}",
-                  f"tact-mesh --json {ROOT}/{{mesh}} --weld --out {{t}}/welded.obj"],
+                  f"tact-mesh --json {ROOT}/{{mesh}} --weld --out {{t}}/welded.obj --place {LIVER}"],
     "tact-verify": [f"tact-verify {VECTORS}/{{vectors}} --json"],
     "tact-stability": ["tact-stability --out {t}/maps --quick --only loss --no-pictures --json"],
     "tact-doctor": ["tact-doctor --json"],
