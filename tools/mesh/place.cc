@@ -153,9 +153,11 @@ Result<Placement> place(const PlaceOrder& order) {
 
 std::string toml_of(const Placement& placement) {
   std::string text = "[organ]\n";
-  for (const auto& [key, value] : organ_keys(placement)) text += key + " = " + value + "\n";
+  for (const auto& [key, value] : organ_keys(placement))
+    text += fmt::format("{} = {}\n", key, value);
   text += "\n[hand]\n";
-  for (const auto& [key, value] : hand_keys(placement)) text += key + " = " + value + "\n";
+  for (const auto& [key, value] : hand_keys(placement))
+    text += fmt::format("{} = {}\n", key, value);
   return text;
 }
 
