@@ -152,6 +152,11 @@ TEST_F(MeshRepair, AScannedOrganBecomesSoundInOneCommand) {
   EXPECT_GT(sharpest_fold(loaded->mesh), -0.9);
   EXPECT_EQ(crossings(loaded->mesh), 0u);
   EXPECT_FALSE(loaded->flipped);
+  std::uint32_t widest = 0;
+  const auto& fans = loaded->mesh.fan_start;
+  for (std::size_t v = 0; v + 1 < fans.size(); ++v)
+    widest = std::max(widest, fans[v + 1] - fans[v]);
+  EXPECT_LE(widest, model::contact::kMaxFan) << "more triangles around a vertex than contact takes";
   EXPECT_EQ(run(out).status, 0);
 }
 
