@@ -15,7 +15,8 @@ using model::Error;
 
 /// The key or section to change when the law is too stiff.
 std::string stiff_key(const model::scene::Scene& scene, const model::scene::TissueLaw& law) {
-  if (scene.law == model::scene::LawKind::kCompliance) return "elastic.youngs_modulus_Pa";
+  if (scene.law == model::scene::LawKind::kCompliance)
+    return "the tissue by elastic.youngs_modulus_Pa";
   if (scene.pull && law.pull_is_stiffer()) return "pull.stiffness_N_per_m";
   return fmt::format("[{}]", model::scene::name_of(scene.law));
 }
