@@ -11,6 +11,7 @@ namespace {
 constexpr int kModeLooks = 20, kModeLook_ms = 10;
 constexpr std::uint32_t kTorqueMode = 10;
 constexpr std::uint32_t kWithoutRequest = 1u << 30;
+constexpr std::uint32_t kNoObject = 0x06020000, kNoSubIndex = 0x06090011;
 
 }  // namespace
 
@@ -21,6 +22,9 @@ std::optional<std::string> DriveSettings::write(int node, CstConfiguration wante
   wanted.sample_without_request = (*sample_id & kWithoutRequest) != 0;
   const auto writes = cst_configuration(node, wanted);
   if (!writes) return "cannot have this node: device.can.node takes 1 to 126";
+  // First: a drive that is refused for it keeps what another host has set.
+  if (auto words = check_heartbeat(node)) return words;
+  if (auto words = end_guarding(node)) return words;
   // Before 1016 is written: a watch that runs may refuse it (0x06040043, CN-4).
   if (auto words = end_watch(node, wanted)) return words;
   for (const SdoWrite& one : *writes) {
@@ -33,6 +37,44 @@ std::optional<std::string> DriveSettings::write(int node, CstConfiguration wante
   if (refused && (refused->silent || !may_lack(node, 0x605A)))
     return sdo_failure_words(*refused, 0x605A, 0);
   return check_mode(node);
+}
+
+std::optional<std::string> DriveSettings::check_heartbeat(int node) {
+  for (const SdoEntry& entry : {SdoEntry{0x1017, 0, 2}, SdoEntry{0x1016, 1, 4}}) {
+    SdoFailure failure;
+    if (sdo_.read(node, entry, failure)) continue;
+    if (failure.silent) return sdo_failure_words(failure, entry.index, entry.sub);
+    // Whatever else it says, it has the object: writing it will tell.
+    if (failure.abort_code != kNoObject && failure.abort_code != kNoSubIndex) continue;
+    return fmt::format(
+        "{} (object {:04X}), and its node guarding (object 100C) is not used: update its firmware, "
+        "or take a drive with heartbeat",
+        entry.index == 0x1017 ? "sends no heartbeat" : "does not watch the controller's heartbeat",
+        entry.index);
+  }
+  return std::nullopt;
+}
+
+/// Off as soon as one of the two is zero or not there; both are cleared: some want that (CN-6).
+std::optional<std::string> DriveSettings::end_guarding(int node) {
+  bool off = false;
+  std::string refusal;
+  for (const SdoEntry& entry : {SdoEntry{0x100C, 0, 2}, SdoEntry{0x100D, 0, 1}}) {
+    SdoFailure failure;
+    const auto value = sdo_.read(node, entry, failure);
+    if (failure.silent) return sdo_failure_words(failure, entry.index, entry.sub);
+    const bool unset = !value || *value == 0;
+    const auto refused =
+        unset ? std::nullopt
+              : sdo_.write(node, {.index = entry.index, .sub = 0, .value = 0, .size = entry.size});
+    off = off || !refused;
+    if (refused) refusal = sdo_failure_words(*refused, entry.index, entry.sub);
+  }
+  if (off) return std::nullopt;
+  return fmt::format(
+      "keeps its node guarding on (objects 100C, 100D), which does not go with heartbeat: set both "
+      "to 0 with its maker's program. It {}",
+      refusal);
 }
 
 std::optional<std::string> DriveSettings::end_watch(int node, const CstConfiguration& wanted) {

@@ -2,10 +2,13 @@
 // drive_settings.h - what is written to a CiA 402 drive before the loop, as makers' drives take it.
 //
 //     1800:01  bit 30, "no remote request", stays as the drive has it
+//     1016:01, 1017  heartbeat, theirs and ours: a drive without is refused
+//     100C, 100D  node guarding that another host has left on is switched off: its life time would
+//                 end under ours, and beside it some drives do not miss a heartbeat
 //     1016:01  a watch that a run before has left behind is switched off by its own node first
 //     6007, 60C2, 605A, 6061  not every drive has them
 //
-// CN-3, CN-4. Set-up code: blocks.
+// CN-3, CN-4, CN-6. Set-up code: blocks.
 #pragma once
 
 #include <array>
@@ -34,6 +37,8 @@ class DriveSettings {
     std::vector<int> nodes{};  // that lack it
   };
 
+  std::optional<std::string> check_heartbeat(int node);
+  std::optional<std::string> end_guarding(int node);
   std::optional<std::string> end_watch(int node, const CstConfiguration& wanted);
   std::optional<std::string> check_mode(int node);
   bool may_lack(int node, std::uint16_t index);

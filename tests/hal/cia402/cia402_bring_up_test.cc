@@ -70,6 +70,49 @@ TEST(Cia402BringUp, SettingsThatNotEveryDriveHasMayBeMissing) {
   }
 }
 
+TEST(Cia402BringUp, NodeGuardingOfAnotherHostIsSwitchedOff) {
+  Bench bench;
+  for (auto& axis : bench.drives.axis) axis.written = {{0x100C00, 100}, {0x100D00, 3}};
+  ASSERT_EQ(bench.open(), "");
+  for (auto& axis : bench.drives.axis) {
+    EXPECT_EQ(axis.written[0x100C00], 0u);
+    EXPECT_EQ(axis.written[0x100D00], 0u);
+  }
+}
+
+TEST(Cia402BringUp, NodeGuardingMayBeReadOnlyUnlessItStaysOn) {
+  Bench half, never, stays;
+  for (Bench* bench : {&half, &never, &stays}) {
+    bench->drives.axis[1].written = {{0x100C00, 100}, {0x100D00, bench == &never ? 0u : 3u}};
+    bench->drives.axis[1].read_only = {0x100C00};
+  }
+  EXPECT_EQ(half.open(), "");
+  EXPECT_EQ(never.open(), "");
+  stays.drives.axis[1].read_only = {0x100C00, 0x100D00};
+  stays.expect_refused(
+      "arm 2 (node 2 on can0) keeps its node guarding on (objects 100C, 100D), which does not go "
+      "with heartbeat: set both to 0 with its maker's program. It refuses setting 0x100D:00");
+}
+
+TEST(Cia402BringUp, ADriveWithoutHeartbeatIsRefusedWithTheCureAndItsGuardingStays) {
+  for (const std::uint32_t entry : {0x101700u, 0x101601u}) {
+    for (const std::uint32_t abort : {0x06020000u, 0x06090011u}) {
+      Bench bench;
+      auto& axis = bench.drives.axis[0];
+      axis.written = {{0x100C00, 100}, {0x100D00, 3}};
+      axis.refused = entry;
+      axis.abort_code = abort;
+      bench.expect_refused(
+          std::string("arm 1 (node 1 on can0) ") +
+          (entry == 0x101700 ? "sends no heartbeat (object 1017)"
+                             : "does not watch the controller's heartbeat (object 1016)") +
+          ", and its node guarding (object 100C) is not used: update its firmware, "
+          "or take a drive with heartbeat");
+      EXPECT_EQ(axis.written[0x100C00], 100u);
+    }
+  }
+}
+
 TEST(Cia402BringUp, ADriveOfAnotherProfileOrWithoutTorqueModeIsNamed) {
   Bench io, old;
   io.drives.axis[1].device_type = 0x00030191;

@@ -22,6 +22,7 @@ struct PlayedCia402 {
   std::uint32_t rated = 500;  // torque, 0.001 N m
   std::uint32_t refused = 0;  // index << 8 | sub that is answered by `abort_code`
   std::uint32_t abort_code = 0;
+  std::vector<std::uint32_t> read_only{};  // indices << 8 | sub: writing is refused
   bool stuck_fault = false;
   std::uint16_t error_code = 0;
   std::uint16_t status = 0x40;  // switch-on disabled
@@ -139,9 +140,10 @@ class PlayedCia402s {
     std::copy_n(request.data.begin() + 1, 3, reply.data.begin() + 1);
     const bool watch = entry == 0x101601 && one.nmt == hal::cia402::NmtState::kOperational;
     if (watch && !one.answers_watch) return;
-    if (entry == one.refused || (watch && one.refuses_watch)) {
+    const bool constant = request.data[0] != 0x40 && std::ranges::count(one.read_only, entry) > 0;
+    if (entry == one.refused || constant || (watch && one.refuses_watch)) {
       reply.data[0] = 0x80;
-      hal::can::put_unsigned(reply.data, 4, 4, one.abort_code);
+      hal::can::put_unsigned(reply.data, 4, 4, constant ? 0x06010002u : one.abort_code);
     } else if (request.data[0] == 0x40) {
       reply.data[0] = 0x43;
       hal::can::put_unsigned(reply.data, 4, 4, value(one, entry));

@@ -31,6 +31,14 @@ struct Bench : tests::CanBench<Drives> {
         rig::Cia402Settings{.rated_torque_Nm = kRated_Nm, .habits = habits});
     for (int i = 0; i < 50; ++i) drives.millisecond();  // they boot
   }
+  /// What a host that guards the drives says once.
+  void guard() {
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      canfd_frame request{};
+      request.can_id = CAN_RTR_FLAG | (0x701 + i);
+      drives.drive[i]->receive(request, drives.now_ns);
+    }
+  }
   std::string open() { return CanBench::open(&cia402::start_cia402_delta); }
   /// Open and ready for a force.
   testing::AssertionResult run() {
@@ -56,11 +64,15 @@ std::vector<ObjectHabits> all_habits() {
           {.no_request_stays = true},
           {.watch_off_first = true},
           {.sizes_unsaid = true},
-          {.absent = {0x6007, 0x60C2, 0x605A, 0x6502, 0x6061}},
+          {.absent = {0x100C, 0x100D, 0x6007, 0x60C2, 0x605A, 0x6502, 0x6061}},
+          {.guard_time_ms = 100, .life_time_factor = 4, .life_from_boot = true},
           {.no_request_stays = true,
            .watch_off_first = true,
            .sizes_unsaid = true,
-           .absent = {0x6007, 0x60C2, 0x605A}}};
+           .absent = {0x6007, 0x60C2, 0x605A},
+           .guard_time_ms = 100,
+           .life_time_factor = 4,
+           .life_from_boot = true}};
 }
 
 TEST(Cia402Emulated, EveryMakersDriveGivesTheTorquesThatItIsAskedFor) {
@@ -114,6 +126,41 @@ TEST(Cia402Emulated, AKilledRunIsMissedAndTheNextStartNeedsNoPowerCycle) {
     bench.drives.connect_again();
     ASSERT_TRUE(bench.run());
     bench.expect_torques_of({0.0, 0.0, 4.0});
+  }
+}
+
+TEST(Cia402Emulated, ALifeTimeThatAnotherHostLeftRunningStopsNoDriveUnderTactd) {
+  for (const bool from_boot : {false, true}) {
+    Bench bench({.guard_time_ms = 100, .life_time_factor = 5, .life_from_boot = from_boot});
+    if (!from_boot) bench.guard();  // for the last time, then that host is gone
+    ASSERT_TRUE(bench.run());
+    bench.expect_no_fault_for(2000);
+    bench.expect_torques_of({1.0, -2.0, 3.0});
+    EXPECT_FALSE(bench.drives.any_noted());
+  }
+}
+
+TEST(Cia402Emulated, AKilledRunIsMissedInTimeWhateverLifeTimeAnotherHostHasSet) {
+  Bench bench({.guard_time_ms = 1000, .life_time_factor = 200, .life_hides_host = true});
+  bench.guard();
+  ASSERT_TRUE(bench.run());
+  bench.expect_torques_of({0.0, 0.0, 4.0});
+  bench.drives.bus.socket().send_error = ENOBUFS;  // killed
+  for (int i = 0; i < 25; ++i) bench.drives.millisecond();
+  for (const auto& drive : bench.drives.drive) EXPECT_EQ(drive->torque_Nm(), 0.0);
+}
+
+TEST(Cia402Emulated, ADriveWithNodeGuardingAloneIsRefusedAndStaysGuarded) {
+  for (const std::uint16_t heartbeat : {std::uint16_t{0x1016}, std::uint16_t{0x1017}}) {
+    Bench bench({.absent = {heartbeat}, .guard_time_ms = 100, .life_time_factor = 5});
+    bench.guard();
+    const std::string sentence = bench.open();
+    EXPECT_NE(sentence.find("its node guarding (object 100C) is not used: update its firmware"),
+              std::string::npos)
+        << sentence;
+    for (int i = 0; i < 600; ++i) bench.drives.millisecond();
+    EXPECT_EQ(bench.drives.at(0).noted(), std::vector<std::uint16_t>{0x8130})
+        << "as the other host has set it";
   }
 }
 

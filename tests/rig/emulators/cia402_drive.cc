@@ -80,7 +80,8 @@ void Cia402Drive::reset(std::int64_t now_ns) {
   previous_controlword_ = 0;
   waiting_size_ = 0;
   torque_permille_ = 0.0;
-  host_ns_ = set_point_ns_ = enable_ns_ = 0;
+  guard_toggle_ = false;
+  host_ns_ = set_point_ns_ = guard_ns_ = enable_ns_ = 0;
   boot_ns_ = now_ns + settings_.boot_ms * kMs_ns;
 }
 
@@ -100,7 +101,9 @@ bool Cia402Drive::receive(const canfd_frame& frame, std::int64_t now_ns) {
   const std::span<const std::uint8_t> payload(std::begin(frame.data), frame.len);
   const auto id = static_cast<std::int64_t>(frame.can_id & CAN_SFF_MASK);
   const std::int64_t consumer = dictionary_.get(0x1016, 1);
-  if (id == 0) {
+  if ((frame.can_id & CAN_RTR_FLAG) != 0) {
+    if (nmt_ != Nmt::kBoot && id == 0x700 + node_) answer_guard(now_ns);
+  } else if (id == 0) {
     network(payload, now_ns);
   } else if (nmt_ == Nmt::kBoot) {
     return false;
@@ -123,6 +126,15 @@ bool Cia402Drive::receive(const canfd_frame& frame, std::int64_t now_ns) {
     return set_points(payload, now_ns);
   }
   return false;
+}
+
+void Cia402Drive::answer_guard(std::int64_t now_ns) {
+  guard_ns_ = now_ns;
+  if (dictionary_.get(0x1017) != 0) return;  // its heartbeat has this identifier
+  const std::uint8_t state[] = {
+      static_cast<std::uint8_t>((guard_toggle_ ? 0x80u : 0u) | static_cast<unsigned>(nmt_))};
+  guard_toggle_ = !guard_toggle_;
+  send(CanRole::kOther, 0x700, state, now_ns);
 }
 
 bool Cia402Drive::set_points(std::span<const std::uint8_t> payload, std::int64_t now_ns) {
@@ -235,6 +247,7 @@ void Cia402Drive::tick(std::int64_t now_ns) {
     send(CanRole::kOther, 0x700, boot_up, now_ns);
     nmt_ = Nmt::kPreOperational;
     heartbeat_ns_ = now_ns;
+    if (settings_.habits.life_from_boot) guard_ns_ = now_ns;
   }
   const std::int64_t period_ns = dictionary_.get(0x1017) * kMs_ns;
   if (period_ns > 0 && now_ns - heartbeat_ns_ >= period_ns) {
@@ -248,7 +261,10 @@ void Cia402Drive::tick(std::int64_t now_ns) {
     heard_ns = 0;  // said once; it starts again with the next that is heard
     lost(code, now_ns);
   };
-  silent(host_ns_, watch_ & 0xFFFF, kHeartbeatLost);
+  const std::int64_t life_ms = dictionary_.get(0x100C) * dictionary_.get(0x100D);
+  if (life_ms == 0 || !settings_.habits.life_hides_host)
+    silent(host_ns_, watch_ & 0xFFFF, kHeartbeatLost);
+  silent(guard_ns_, life_ms, kHeartbeatLost);
   silent(set_point_ns_, dictionary_.get(0x1400, 5), kSetPointsLost);
 }
 

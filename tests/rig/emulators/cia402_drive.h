@@ -9,8 +9,9 @@
 // Torque acts only in operation enabled, mode 10, node operational. It stops by itself when the
 // host's heartbeat (1016) or the set-points (1400:5) stay out, as 6007 says. A watch ends by a
 // time of zero for its node; in drives that want it off first (ObjectHabits) a zero as a whole
-// leaves it. Torque of the motor in 1/1000 of 6076, position in 10 000 counts per turn of the
-// motor.
+// leaves it. Node guarding is answered, and a pause of more than its life time (100C x 100D) is an
+// emergency, beside a heartbeat too: the worst that a drive may do. Torque of the motor in 1/1000
+// of 6076, position in 10 000 counts per turn of the motor.
 #pragma once
 
 #include "tests/rig/emulators/can_bus.h"
@@ -70,6 +71,7 @@ class Cia402Drive final : public Drive {
   bool is_operational() const { return nmt_ == Nmt::kOperational; }
   void reset(std::int64_t now_ns);
   void network(std::span<const std::uint8_t> payload, std::int64_t now_ns);
+  void answer_guard(std::int64_t now_ns);
   void synchronise(std::int64_t now_ns);
   bool set_points(std::span<const std::uint8_t> payload, std::int64_t now_ns);
   void obey(std::int64_t now_ns);
@@ -93,10 +95,11 @@ class Cia402Drive final : public Drive {
   double torque_permille_ = 0.0;
   bool has_tripped_ = false, is_limited_ = false;
   int syncs_ = 0;
+  bool guard_toggle_ = false;
   std::int64_t watch_ = 0;  // whom it misses: 1016:01, but for a zero that names nobody
   std::vector<std::uint16_t> noted_;
   std::int64_t boot_ns_ = 0, enable_ns_ = 0, heartbeat_ns_ = 0;
-  std::int64_t host_ns_ = 0, set_point_ns_ = 0;  // last heard; 0: not yet
+  std::int64_t host_ns_ = 0, set_point_ns_ = 0, guard_ns_ = 0;  // last heard; 0: not yet
 };
 
 }  // namespace tact::rig

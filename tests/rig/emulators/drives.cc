@@ -99,6 +99,15 @@ void add_own(CLI::App& app, Options& options) {
   app.add_option("--absent", options.cia402.habits.absent,
                  "CiA 402: indices of objects that it does not have")
       ->delimiter(',');
+  app.add_option("--guard-time-ms", options.cia402.habits.guard_time_ms, "CiA 402: 100C as stored")
+      ->check(CLI::Range(0, 65535));
+  app.add_option("--life-time-factor", options.cia402.habits.life_time_factor,
+                 "CiA 402: 100D as stored")
+      ->check(CLI::Range(0, 255));
+  app.add_flag("--life-hides-host", options.cia402.habits.life_hides_host,
+               "CiA 402: with a life time a host that falls silent is not missed");
+  app.add_flag("--life-from-boot", options.cia402.habits.life_from_boot,
+               "CiA 402: the life time counts from boot-up, not from the first guard request");
   app.add_option("--enable-ms", options.cia402.enable_ms, "CiA 402: until the power stage is on")
       ->capture_default_str();
 }

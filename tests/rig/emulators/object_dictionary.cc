@@ -44,6 +44,8 @@ ObjectDictionary::ObjectDictionary(int node, double rated_torque_Nm, ObjectHabit
           {0x1000, 0, kU32, false, false, 0x00020192},  // servo drive, profile 402
           {0x1001, 0, kU8, false, true, 0},             // error register
           {0x1005, 0, kU32, true, false, 0x80},
+          {0x100C, 0, kU16, true, false, habits_.guard_time_ms},
+          {0x100D, 0, kU8, true, false, habits_.life_time_factor},
           {0x1014, 0, kU32, true, false, 0x80 + node},
           {0x1016, 0, kU8, false, false, 1},
           {0x1016, 1, kU32, true, false, 0},

@@ -56,8 +56,11 @@ struct ObjectHabits {
       false;  // 1800:01: bit 30, no remote request, is set and may not be cleared
   bool watch_off_first = false;  // 1016:01: a watch that is on is not written anew (0x06040043)
   bool sizes_unsaid = false;     // uploads by 42
-  std::vector<std::uint16_t> absent{};  // indices that it does not have
-  int mode_shown = 10;                  // 6061, once 10 was written to 6060
+  std::vector<std::uint16_t> absent{};          // indices that it does not have
+  int mode_shown = 10;                          // 6061, once 10 was written to 6060
+  int guard_time_ms = 0, life_time_factor = 0;  // 100C, 100D as they were stored
+  bool life_hides_host = false;  // with a life time a host that falls silent is not missed
+  bool life_from_boot = false;   // its life time counts from boot-up, not from the first request
 };
 
 class ObjectDictionary {

@@ -160,6 +160,43 @@ TEST(RigDrives, ACia402DriveStopsWhenTheHostsHeartbeatIsLost) {
   EXPECT_TRUE(said);
 }
 
+TEST(RigDrives, ACia402DriveAnswersItsGuardAndMissesItAfterTheFirstRequest) {
+  for (const bool from_boot : {false, true}) {
+    FaultPlan faults = ordered("lost@1000");
+    Cable cable(faults, 1);
+    const Motor motor{};
+    const ObjectHabits habits{
+        .guard_time_ms = 10, .life_time_factor = 3, .life_from_boot = from_boot};
+    Cia402Drive drive(0, 5, {.habits = habits}, cable.bus, motor, faults);
+    std::int64_t now = kStart;
+    const auto wait = [&](int ms) {
+      for (int i = 0; i < ms; ++i) drive.tick(now += kMs);
+    };
+    const auto guard = [&] { drive.receive(frame_of(CAN_RTR_FLAG | 0x705, {}), now); };
+    const std::vector<std::uint16_t> missed = {0x8130};
+    wait(100);
+    EXPECT_EQ(drive.noted().empty(), !from_boot);
+    if (from_boot) continue;
+    cable.heard();
+    std::vector<std::uint8_t> states;
+    for (int i = 0; i < 3; ++i) {
+      guard();
+      wait(30);
+    }
+    EXPECT_TRUE(drive.noted().empty());
+    for (const can_frame& frame : cable.heard()) states.push_back(frame.data[0]);
+    EXPECT_EQ(states, (std::vector<std::uint8_t>{0x7F, 0xFF, 0x7F}));
+    wait(1);
+    EXPECT_EQ(drive.noted(), missed);
+    wait(100);
+    EXPECT_EQ(drive.noted(), missed) << "once";
+    guard();
+    drive.receive(frame_of(0x605, {0x2B, 0x0C, 0x10, 0, 0, 0, 0, 0}), now);  // 100C = 0
+    wait(100);
+    EXPECT_EQ(drive.noted(), missed) << "switched off";
+  }
+}
+
 TEST(RigDrives, AMoteusHoldsPositionUnlessBothGainsAreScaledAwayAndEndsWithItsWatchdog) {
   FaultPlan faults = ordered("lost@1000");
   Cable cable(faults, 0x100);
