@@ -9,9 +9,25 @@
 
 namespace tact::model::scene {
 
+namespace {
+
+/// Makes the scene's own map beside it. One that the scene names elsewhere may be of other scenes,
+/// as the shipped ones are, and is never the output.
+std::string cure_of(const Scene& scene) {
+  const std::filesystem::path own =
+      std::filesystem::path(scene.path).replace_extension(".compliance");
+  std::string command = fmt::format("tact-condense {} --out {}", scene.path, own.string());
+  std::error_code failed;
+  if (std::filesystem::absolute(own, failed).lexically_normal() == scene.compliance.map_path)
+    return command;
+  return fmt::format("write compliance.map = \"{}\", then {}", own.filename().string(), command);
+}
+
+}  // namespace
+
 Result<tissue::ComplianceMap> read_scene_map(const Scene& scene) {
   const std::string& path = scene.compliance.map_path;
-  const std::string command = fmt::format("tact-condense {} --out {}", scene.path, path);
+  const std::string command = cure_of(scene);
   // From the scene to the file to what is in it: each is asked only where the one before is good.
   if (!scene.elastic)
     return Error{scene.path +

@@ -19,8 +19,11 @@ std::string refusal(const Scene& scene) {
   return map ? "" : map.error().sentence;
 }
 
+/// A map beside the scene, and never the one that the scene names: it may be another scene's.
 bool ends_with_command(const std::string& said, const Scene& scene) {
-  return said.ends_with("tact-condense " + scene.path + " --out " + scene.compliance.map_path);
+  const std::string own = TACT_SOURCE_DIR "/model/scenes/liver.compliance";
+  return said.ends_with("write compliance.map = \"liver.compliance\", then tact-condense " +
+                        scene.path + " --out " + own);
 }
 
 TEST(TissueMap, IsReadWhereItBelongs) {
@@ -36,6 +39,14 @@ TEST(TissueMap, AMissingFileHasOneCure) {
       << said;
   EXPECT_TRUE(ends_with_command(said, scene)) << said;
   EXPECT_EQ(std::count(said.begin(), said.end(), ';'), 1) << said;
+}
+
+TEST(TissueMap, AMissingMapOfItsOwnIsMadeUnderItsName) {
+  const Scene scene = liver({"compliance.map=liver.compliance"});
+  const std::string said = refusal(scene);
+  EXPECT_TRUE(said.ends_with("make it: tact-condense " + scene.path + " --out " +
+                             scene.compliance.map_path))
+      << said;
 }
 
 TEST(TissueMap, RefusesTheMapOfAnotherOrgan) {
