@@ -70,6 +70,7 @@ TOOLS = {
     "fit": ["program", "report", "ground_truth"],
     "chart": ["program", "report", "condense", "ground_truth", "reference"],
     "plan": ["program", "report", "chart"],
+    "new_scene": ["program", "mesh", "ground_truth", "condense"],
     **dict.fromkeys(["figures", "stability"], ["program", "report", "printed"]),
     "verify": ["printed"],
 }

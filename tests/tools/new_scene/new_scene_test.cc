@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// tact-new-scene as a person meets it: a mesh in, a scene out that tactd runs, or nothing at all.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "model/scene/compliance_file.h"
+#include "model/scene/scene.h"
+#include "tests/support/mesh_files.h"
+#include "tests/support/shapes.h"
+#include "tools/new_scene/outputs.h"
+#include "tools/new_scene/scene_text.h"
+
+namespace tact::tools::new_scene::new_scene_test {
+
+namespace fs = std::filesystem;
+
+using model::Vec3;
+using model::mesh::SurfaceMesh;
+using nlohmann::json;
+using tests::Ran;
+
+/// 100 x 80 x 60 mm, far from the origin, as a scanner has it.
+SurfaceMesh ellipsoid_mm(int levels) {
+  SurfaceMesh mesh = tests::make_ball(1.0, levels);
+  for (Vec3& p : mesh.vertex_m) p = {50.0 * p.x + 12.0, 40.0 * p.y - 205.0, 30.0 * p.z + 1310.0};
+  return mesh;
+}
+
+std::string as_stl(const SurfaceMesh& mesh) {
+  std::string text = "solid organ\n";
+  const auto add = [&text](const Vec3& p) {
+    text += "vertex " + std::to_string(p.x) + " " + std::to_string(p.y) + " " +
+            std::to_string(p.z) + "\n";
+  };
+  for (const auto& t : mesh.triangle) {
+    text += "facet normal 0 0 0\nouter loop\n";
+    for (const std::uint32_t v : t) add(mesh.vertex_m[v]);
+    text += "endloop\nendfacet\n";
+  }
+  return text + "endsolid organ\n";
+}
+
+std::string as_obj(const SurfaceMesh& mesh) {
+  std::string text;
+  for (const Vec3& p : mesh.vertex_m)
+    text +=
+        "v " + std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) + "\n";
+  for (const auto& t : mesh.triangle)
+    text += "f " + std::to_string(t[0] + 1) + " " + std::to_string(t[1] + 1) + " " +
+            std::to_string(t[2] + 1) + "\n";
+  return text;
+}
+
+class NewScene : public testing::Test {
+ protected:
+  Ran run(const std::string& arguments) const {
+    return tests::run_apart(temp_, "tact-new-scene", arguments);
+  }
+  std::string path(const std::string& name) const { return temp_.path() + "/" + name; }
+  /// Names in the folder that begin with "mine", in order.
+  std::vector<std::string> made() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(temp_.path()))
+      if (entry.path().filename().string().starts_with("mine"))
+        names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  tests::TempDirectory temp_;
+  const std::string out_ = path("mine.toml");
+};
+
+TEST_F(NewScene, AScanBecomesASceneThatIsFelt) {
+  const std::string organ = temp_.write("organ.stl", as_stl(ellipsoid_mm(3)));
+  const Ran ran = run(organ + " --out " + out_ + " --youngs-modulus-Pa 8000");
+  ASSERT_EQ(ran.status, 0) << ran.err << ran.out;
+  EXPECT_EQ(made(), (std::vector<std::string>{"mine.compliance", "mine.obj", "mine.toml",
+                                              "mine_tool.obj"}));
+  for (const char* told : {"organ  ", "place  ", "condense  ", "check  ", "wrote  ", "law  "})
+    EXPECT_NE(ran.out.find(told), ran.out.npos) << told << ran.out;
+
+  const auto scene = model::scene::load_scene(out_, {});
+  ASSERT_TRUE(scene) << scene.error().sentence;
+  EXPECT_EQ(scene->name, "mine");
+  EXPECT_EQ(scene->law, model::scene::LawKind::kCompliance);
+  EXPECT_TRUE(scene->varies_by_place) << "the map is of this organ";
+  EXPECT_EQ(scene->elastic->youngs_modulus_Pa, 8000.0);
+  const auto sum = summarize(scene->organ_mesh);
+  EXPECT_NEAR(sum.high_m.z, 0.0, 1e-6) << "its top is under the tool";
+  EXPECT_NEAR(sum.high_m.z - sum.low_m.z, 0.06, 1e-3) << "millimetres";
+
+  const tests::Outcome check = tests::run_program("tactd", out_ + " --check");
+  EXPECT_EQ(check.status, 0) << check.output;
+  const tests::Outcome run = tests::run_program(
+      "tactd",
+      out_ + " --free-run --seconds 5 --no-telemetry --no-black-box --json " + path("run"));
+  ASSERT_EQ(run.status, 0) << run.output;
+  const double felt_N = json::parse(tests::read_text(path("run")))["force_max_N"];
+  EXPECT_GT(felt_N, 0.1);
+  EXPECT_LT(felt_N, 5.0);
+}
+
+TEST_F(NewScene, ASoundObjFileIsTakenAsItIsAndAnEarlierSceneIsKeptUnlessForced) {
+  const std::string organ = temp_.write("organ.obj", as_obj(ellipsoid_mm(2)));
+  const std::string arguments = organ + " --out " + out_;
+  Ran ran = run(arguments);
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_EQ(made(), (std::vector<std::string>{"mine.compliance", "mine.toml", "mine_tool.obj"}));
+  auto scene = model::scene::load_scene(out_, {});
+  ASSERT_TRUE(scene) << scene.error().sentence;
+  EXPECT_EQ(scene->organ.mesh_path, fs::path(organ).lexically_normal().string());
+
+  const std::string first = tests::read_text(out_);
+  ran = run(arguments + " --poisson-ratio 0.3");
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.err.find("mine.toml: exists already; choose another --out, or add --force"),
+            ran.err.npos)
+      << ran.err;
+  EXPECT_EQ(tests::read_text(out_), first);
+  ran = run(arguments + " --poisson-ratio 0.3 --force");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  scene = model::scene::load_scene(out_, {});
+  ASSERT_TRUE(scene) << scene.error().sentence;
+  EXPECT_EQ(scene->elastic->poisson_ratio, 0.3);
+  EXPECT_EQ(model::scene::read_compliance_map(path("mine.compliance"))->poisson_ratio, 0.3);
+}
+
+TEST_F(NewScene, RefusesBeforeTheWorkAndWritesNothing) {
+  const std::string organ = temp_.write("organ.obj", as_obj(ellipsoid_mm(1)));
+  const std::string foreign = temp_.write("theirs.toml", "name = \"theirs\"\n");
+  const std::string liver = TACT_SOURCE_DIR "/model/scenes/liver.toml";
+  const std::string shipped = tests::read_text(liver);
+  for (const auto& [arguments, words] : std::vector<std::pair<std::string, std::string>>{
+           {organ + " --out " + path("mine.txt"), "a scene's name ends in .toml"},
+           {organ + " --force --out " + foreign, "holds something else"},
+           {organ + " --force --out " + liver, "holds something else"},
+           {organ + " --out " + path("none/mine.toml"), "cannot be written"},
+           {path("none.stl") + " --out " + out_, "no such file"},
+           {organ + " --out " + out_ + " --poisson-ratio 0.5", "--poisson-ratio"},
+           {organ + " --out " + out_ + " --unit m", "an organ is 0.005 to 2.5 m; name its --unit"},
+           {organ, "--out is required"}}) {
+    const Ran ran = run(arguments);
+    EXPECT_EQ(ran.status, 2) << arguments;
+    EXPECT_NE(ran.err.find(words), ran.err.npos) << arguments << ": " << ran.err;
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+  EXPECT_EQ(made(), std::vector<std::string>{});
+  EXPECT_EQ(tests::read_text(foreign), "name = \"theirs\"\n");
+  EXPECT_EQ(tests::read_text(liver), shipped);
+}
+
+TEST_F(NewScene, CtrlCLeavesNothing) {
+  const std::string organ = temp_.write("organ.obj", as_obj(ellipsoid_mm(4)));
+  const std::string log = path("log"), program = tests::program_path("tact-new-scene");
+  const tests::Outcome ran = tests::run_command(
+      "( " + program + " " + organ + " --out " + out_ + " >" + log + " 2>&1 & " +
+      "for i in $(seq 600); do grep -q condense " + log + " && break; sleep 0.05; done; " +
+      "kill -INT $!; wait $!; status=$?; cat " + log + "; exit $status )");
+  EXPECT_EQ(ran.status, 1) << ran.output;
+  EXPECT_NE(ran.output.find("condense  "), ran.output.npos) << "in the midst of the work";
+  EXPECT_NE(ran.output.find("interrupted; nothing was written"), ran.output.npos) << ran.output;
+  EXPECT_EQ(made(), std::vector<std::string>{});
+}
+
+TEST_F(NewScene, WhatTactdRefusesIsNotWritten) {
+  const std::string organ = temp_.write("organ.obj", as_obj(ellipsoid_mm(2)));
+  const Ran ran = run(organ + " --out " + out_ + " --youngs-modulus-Pa 100000");
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.err.find("mine.toml: law compliance is too stiff"), ran.err.npos) << ran.err;
+  EXPECT_EQ(made(), std::vector<std::string>{});
+}
+
+TEST_F(NewScene, NoFileAppearsWhereOneCannot) {
+  EXPECT_TRUE(write_all({{path("mine.a"), "first"}, {path("none/mine.b"), "second"}}));
+  EXPECT_EQ(made(), std::vector<std::string>{});
+  EXPECT_FALSE(write_all({{path("mine.a"), "first"}, {path("mine.b"), "second"}}));
+  EXPECT_EQ(made(), (std::vector<std::string>{"mine.a", "mine.b"}));
+}
+
+TEST(ScenePlace, HoldsTheLowestTenthAndPressesNoDeeperThanAFifth) {
+  SurfaceMesh organ = tests::make_ball(1.0, 2);
+  for (Vec3& p : organ.vertex_m) p = {0.05 * p.x, 0.04 * p.y, 0.02 * p.z + 1.0};
+  const ScenePlace place = place_of(organ);
+  // 0.98 to 1.02 m high: a tenth is 4 mm, a fifth 8 mm.
+  EXPECT_NEAR(place.fixed_max_m.z, 0.984, 1e-12);
+  EXPECT_LT(place.fixed_min_m.z, 0.98);
+  EXPECT_NEAR(place.working_depth_m, 0.008, 1e-12);
+  EXPECT_NEAR(organ.vertex_m[place.top].z, 1.02, 1e-12);
+  EXPECT_NEAR(norm(organ.vertex_m[place.top] + place.position_m), 0.0, 1e-12);
+}
+
+}  // namespace tact::tools::new_scene::new_scene_test

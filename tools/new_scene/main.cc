@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+// tact-new-scene: a mesh in, a scene out.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "model/io/file_writer.h"
+#include "model/io/input_file.h"
+#include "model/io/installed.h"
+#include "model/io/within.h"
+#include "model/scene/compliance_file.h"
+#include "tools/condense/condense_organ.h"
+#include "tools/ground_truth/gmsh.h"
+#include "tools/mesh/mesh_report.h"
+#include "tools/new_scene/organ.h"
+#include "tools/new_scene/outputs.h"
+#include "tools/new_scene/scene_text.h"
+#include "tools/program/program.h"
+#include "tools/program/run_program.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+namespace new_scene = tact::tools::new_scene;
+namespace program = tact::tools::program;
+using new_scene::Organ;
+using new_scene::OutputNames;
+using tact::model::Error;
+using tact::model::Result;
+
+struct Options {
+  new_scene::OrganOrder organ{.source = {}, .faces = 6000};
+  std::string out;
+  double youngs_modulus_Pa = 5000.0, poisson_ratio = 0.45;
+  bool force = false;
+};
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("ORGAN", o.organ.source,
+                 "mesh: OBJ, STL, PLY, VTK, VTP, OFF, glTF or GLB, by its ending")
+      ->required();
+  app.add_option("--out", o.out, "scene to write, NAME.toml; its files come beside it, NAME.*")
+      ->required();
+  const std::map<std::string, double> units{
+      {"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"um", 1e-6}, {"in", 0.0254}};
+  app.add_option("--unit", o.organ.unit_m,
+                 "of ORGAN: m, cm, mm, um or in (default: mm for 25 units or more, cm for 1 or "
+                 "more, else m)")
+      ->transform(CLI::CheckedTransformer(units, CLI::ignore_case).description(""));
+  app.add_option("--youngs-modulus-Pa", o.youngs_modulus_Pa, "E of the tissue")
+      ->check(tact::model::io::within(100.0, 1e6))
+      ->capture_default_str();
+  app.add_option("--poisson-ratio", o.poisson_ratio, "nu of the tissue")
+      ->check(tact::model::io::within(0.0, 0.495))
+      ->capture_default_str();
+  app.add_option("--faces", o.organ.faces, "leave at most about so many")
+      ->check(tact::model::io::within(100, 40'000))
+      ->capture_default_str();
+  app.add_flag("--smooth", o.organ.smooth, "take the steps of voxels away");
+  app.add_flag("--force", o.force, "replace the files of an earlier run");
+}
+
+void tell(const char* step, const std::string& text) {
+  fmt::print("{:<15}  {}\n", step, text);
+  std::fflush(stdout);
+}
+
+void show_percent(const std::string& step, int percent) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  fmt::print(stderr, "\r{:<15}  {} %\r", step, percent);
+  std::fflush(stderr);
+}
+
+/// What can be refused is refused before the minutes of work.
+std::optional<Error> check_before(const Options& o, const OutputNames& names) {
+  const std::string& source = o.organ.source;
+  if (auto error = new_scene::check_new(names.scene, "# made by tact-new-scene", source, o.force))
+    return error;
+  if (auto error = new_scene::check_new(names.map, "TACTCOMP", source, o.force)) return error;
+  if (auto error = new_scene::check_new(names.tool, new_scene::tool_mesh(), source, o.force))
+    return error;
+  const auto input = tact::model::io::InputFile::open(source, "name a mesh file");
+  if (!input) return input.error();
+  if (!new_scene::is_sound(o.organ))
+    if (auto error = new_scene::check_new(
+            names.organ, std::string(tact::tools::mesh::kRepairedBeginning), source, o.force))
+      return error;
+  const auto gmsh = tact::tools::ground_truth::gmsh_version();
+  return gmsh ? std::nullopt : std::optional(gmsh.error());
+}
+
+Result<Organ> read(const Options& o, const std::string& folder) {
+  auto organ = new_scene::read_organ(
+      o.organ, folder,
+      [](const tact::tools::mesh::RepairStep& step) {
+        fmt::print("{}", tact::tools::mesh::to_text(step));
+        std::fflush(stdout);
+      },
+      show_percent);
+  if (!organ) return organ;
+  const auto sum = summarize(organ->mesh);
+  const auto size_m = sum.high_m - sum.low_m;
+  tell("organ", fmt::format("{} vertices, {} faces, closed, {:.3g} x {:.3g} x {:.3g} mm{}",
+                            sum.vertices, sum.triangles, 1e3 * size_m.x, 1e3 * size_m.y,
+                            1e3 * size_m.z, organ->obj_text.empty() ? ", taken as it is" : ""));
+  return organ;
+}
+
+std::string write_text(const Options& o, const OutputNames& names, const Organ& organ) {
+  const auto place = new_scene::place_of(organ.mesh);
+  tell("place", fmt::format("unit {:g} m; the top comes to the tool; held below z = {:.4g} mm, the "
+                            "lowest tenth",
+                            organ.unit_m, 1e3 * place.fixed_max_m.z));
+  const auto beside = [](const std::string& path) { return fs::path(path).filename().string(); };
+  std::error_code failed;
+  const std::string source = fs::absolute(o.organ.source, failed).lexically_normal().string();
+  return new_scene::scene_text({.source = o.organ.source,
+                                .name = names.name,
+                                .map = beside(names.map),
+                                .tool = beside(names.tool),
+                                .mesh = organ.obj_text.empty() ? source : beside(names.organ),
+                                .mesh_unit_m = organ.unit_m,
+                                .youngs_modulus_Pa = o.youngs_modulus_Pa,
+                                .poisson_ratio = o.poisson_ratio},
+                               place);
+}
+
+bool show_progress(std::size_t done, std::size_t vertices) {
+  if (done > 0) show_percent("condense", static_cast<int>(100 * done / vertices));
+  return !program::is_interrupted();
+}
+
+/// The map of the scene's organ, into its file.
+std::optional<Error> condense(const std::string& scene_path, const std::string& map_path) {
+  const auto scene = tact::model::scene::load_scene(scene_path, {});
+  if (!scene) return scene.error();
+  auto input = tact::tools::condense::condense_input(*scene);
+  if (!input) return input.error();
+  tell("condense", fmt::format("{} vertices, by finite elements: minutes for thousands",
+                               input->surface.vertex_m.size()));
+  input->settings.organ.progress = show_progress;
+  tact::tools::condense::CondenseFacts facts;
+  const auto map = tact::tools::condense::condense_organ(*input, facts);
+  if (!map) return map.error();
+  const auto bytes = tact::model::scene::write_compliance_map(*map, map_path);
+  return bytes ? std::nullopt : std::optional(bytes.error());
+}
+
+/// Does tactd take it? Its own sentence if not.
+std::optional<Error> ask_tactd(const std::string& scene_path, const std::string& log_path) {
+  std::string last;
+  const auto ran =
+      program::run_program({.program = (tact::model::io::program_folder() / "tactd").string(),
+                            .arguments = {scene_path, "--check"},
+                            .directory = ".",
+                            .log_path = log_path,
+                            .package = "tact",
+                            .environment = {},
+                            .on_line = [&last](std::string_view line) { last = line; }});
+  if (ran) return std::nullopt;
+  if (program::was_interrupted(ran.error()) || last.empty()) return ran.error();
+  return Error{last};
+}
+
+/// `sentence` with the folder where the files would have come; nothing was written there.
+Error about(Error error, const std::string& scratch, const OutputNames& names) {
+  std::error_code failed;
+  const std::string folder = fs::absolute(names.scene, failed).parent_path().string();
+  for (std::size_t at = 0; (at = error.sentence.find(scratch, at)) != std::string::npos;
+       at += folder.size())
+    error.sentence.replace(at, scratch.size(), folder);
+  return error;
+}
+
+/// Every file of the scene in `folder`, whole and judged; then all of them to their places.
+std::optional<Error> make_scene(const Options& o, const OutputNames& names,
+                                const std::string& folder) {
+  const auto inside = [&folder](const std::string& path) {
+    return folder + "/" + fs::path(path).filename().string();
+  };
+  const auto organ = read(o, folder);
+  if (!organ) return organ.error();
+  std::vector<new_scene::OutputFile> files;
+  if (!organ->obj_text.empty()) files.push_back({names.organ, organ->obj_text});
+  files.push_back({names.tool, new_scene::tool_mesh()});
+  files.push_back({names.scene, write_text(o, names, *organ)});
+  for (const auto& file : files)
+    if (auto error = tact::model::io::write_file(inside(file.path), file.content)) return error;
+  if (auto error = condense(inside(names.scene), inside(names.map))) return error;
+  if (auto error = ask_tactd(inside(names.scene), folder + "/log")) return error;
+  tell("check", "tactd takes the scene");
+  auto map = tact::model::io::read_file(inside(names.map), "try again");
+  if (!map) return map.error();
+  files.insert(files.end() - 1, {names.map, std::move(*map)});  // the scene is the last to appear
+  if (program::is_interrupted()) return program::interruption();
+  if (auto error = new_scene::write_all(files)) return error;
+  for (const auto& file : files) tell("wrote", file.path);
+  return std::nullopt;
+}
+
+void tell_what_next(const OutputNames& names) {
+  const std::string reference = fs::path(names.map).replace_extension(".reference.json").string();
+  tell("law", "compliance, from the map; no other law was compared");
+  fmt::print(
+      "\nFeel it:\n"
+      "  tactd {0} --free-run --seconds 5\n"
+      "Is a faster law good enough? Minutes to an hour, by CalculiX: write law = \"auto\", then\n"
+      "  tact-reference {0} --out {1}\n"
+      "  tact-plan {0} --reference {1}\n",
+      names.scene, reference);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  program::Program program(
+      "tact-new-scene",
+      "Make a scene of an organ: repair its mesh where needed, put its top under the forceps, "
+      "hold\n"
+      "its lowest tenth, condense it, and ask tactd whether it takes the scene. Minutes of work.\n"
+      "The law is compliance, from the map. Beside NAME.toml come NAME.compliance, NAME_tool.obj\n"
+      "and, if ORGAN was repaired or is no OBJ file, NAME.obj. No file appears before all are "
+      "whole.",
+      "Needs gmsh: apt install gmsh; to repair a mesh Python's VTK: apt install python3-vtk9.\n"
+      "E and nu are those of the shipped liver. Nothing is turned: what is on top in the file is\n"
+      "touched.");
+  Options options;
+  add_options(program.options(), options);
+  if (const auto status = program.parse(argc, argv)) return *status;
+  const auto names = new_scene::names_of(options.out);
+  if (!names) return program.fail(names.error());
+  if (const auto error = check_before(options, *names)) return program.fail(*error);
+  const auto folder = program::ScratchFolder::make("tact-new-scene");
+  if (!folder) return program.fail(folder.error());
+  if (const auto error = make_scene(options, *names, folder->path()))
+    return program.fail(about(*error, folder->path(), *names));
+  tell_what_next(*names);
+  return 0;
+}

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/new_scene/organ.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/io/file_writer.h"
+#include "tools/mesh/place.h"
+
+namespace tact::tools::new_scene {
+namespace {
+
+using model::Error;
+using model::Result;
+using model::Vec3;
+using model::mesh::SurfaceMesh;
+
+// Chosen: a lymph node, and a whole person.
+constexpr double kMinSize_m = 0.005, kMaxSize_m = 2.5;
+
+bool is_one_part(const SurfaceMesh& mesh) {
+  std::vector<bool> seen(mesh.triangle.size());
+  std::vector<std::uint32_t> left{0};
+  std::size_t reached = 0;
+  while (!left.empty()) {
+    const std::uint32_t t = left.back();
+    left.pop_back();
+    if (seen[t]) continue;
+    seen[t] = true;
+    ++reached;
+    for (const std::uint32_t next : mesh.neighbour[t])
+      if (next != model::contact::kNoTriangle) left.push_back(next);
+  }
+  return reached == mesh.triangle.size();
+}
+
+std::vector<std::string> repair_options(const OrganOrder& order) {
+  std::vector<std::string> options{"--weld", "--drop-degenerate", "--largest", "--close-holes"};
+  if (order.smooth) options.emplace_back("--smooth");
+  options.push_back(fmt::format("--decimate={}", order.faces));
+  return options;
+}
+
+}  // namespace
+
+bool is_sound(const OrganOrder& order) {
+  if (order.smooth || !mesh::is_obj(order.source)) return false;
+  const auto obj = model::mesh::load_obj(order.source, 1.0);
+  if (!obj || obj->mesh.triangle.size() > order.faces) return false;
+  return summarize(obj->mesh).boundary_edges == 0 && is_one_part(obj->mesh);
+}
+
+Result<Organ> read_organ(const OrganOrder& order, const std::string& folder,
+                         const std::function<void(const mesh::RepairStep&)>& on_step,
+                         const std::function<void(const std::string&, int)>& on_percent) {
+  Organ organ;
+  std::string path = order.source;
+  if (!is_sound(order)) {
+    auto repaired = mesh::repair_file({.source = order.source, .options = repair_options(order)},
+                                      1.0, on_step, on_percent);
+    if (!repaired) return repaired.error();
+    organ.obj_text = std::move(repaired->obj_text);
+    path = folder + "/organ.obj";
+    if (const auto error = model::io::write_file(path, organ.obj_text)) return *error;
+  }
+  const auto in_file_units = model::mesh::load_obj(path, 1.0);
+  if (!in_file_units) return in_file_units.error();
+  const auto sum = summarize(in_file_units->mesh);
+  if (sum.boundary_edges > 0)
+    return Error{fmt::format(
+        "{}: {} edges stay open after the repair, so it has no inside; close it in a mesh editor",
+        order.source, sum.boundary_edges)};
+  const Vec3 size = sum.high_m - sum.low_m;
+  const double longest = std::max({size.x, size.y, size.z});
+  organ.unit_m = order.unit_m > 0.0 ? order.unit_m : mesh::likely_unit_m(longest);
+  if (const double size_m = longest * organ.unit_m; size_m < kMinSize_m || size_m > kMaxSize_m)
+    return Error{fmt::format("{}: {:.3g} m long, and an organ is {:g} to {:g} m; name its --unit",
+                             order.source, size_m, kMinSize_m, kMaxSize_m)};
+  auto obj = model::mesh::load_obj(path, organ.unit_m);
+  if (!obj) return obj.error();
+  organ.mesh = std::move(obj->mesh);
+  return organ;
+}
+
+}  // namespace tact::tools::new_scene

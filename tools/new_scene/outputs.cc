@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/new_scene/outputs.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "model/io/file_writer.h"
+#include "tools/program/program.h"
+
+namespace tact::tools::new_scene {
+
+namespace fs = std::filesystem;
+using model::Error;
+
+model::Result<OutputNames> names_of(const std::string& out) {
+  const fs::path path(out);
+  if (path.extension() != ".toml" || path.stem().empty())
+    return Error{fmt::format("{}: a scene's name ends in .toml; write --out mine.toml", out)};
+  const std::string stem = path.stem().string();
+  const auto beside = [&](const std::string& ending) {
+    return (path.parent_path() / (stem + ending)).string();
+  };
+  return OutputNames{.scene = out,
+                     .map = beside(".compliance"),
+                     .organ = beside(".obj"),
+                     .tool = beside("_tool.obj"),
+                     .name = stem};
+}
+
+std::optional<Error> check_new(const std::string& path, const std::string& beginning,
+                               const std::string& source, bool force) {
+  std::error_code failed;
+  if (!force && fs::exists(fs::symlink_status(path, failed)))
+    return Error{fmt::format("{}: exists already; choose another --out, or add --force", path)};
+  return program::check_output(path, beginning, {source});
+}
+
+std::optional<Error> write_all(const std::vector<OutputFile>& files) {
+  std::vector<model::io::FileWriter> writers;
+  for (const OutputFile& file : files) {
+    auto writer = model::io::FileWriter::replace(file.path, file.content);
+    if (!writer) return writer.error();
+    if (auto error = writer->put(file.content)) return error;
+    if (auto error = writer->flush()) return error;
+    writers.push_back(std::move(*writer));
+  }
+  for (model::io::FileWriter& writer : writers)
+    if (auto error = writer.finish()) return error;
+  return std::nullopt;
+}
+
+}  // namespace tact::tools::new_scene
