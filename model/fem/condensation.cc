@@ -137,7 +137,8 @@ void Condenser::read_rings(std::size_t slot, std::uint32_t vertex, std::span<flo
   for (std::uint32_t i = 0; i < skin_.size(); ++i) {
     const double rho_m = norm(body_.node_m[skin_[i]] - body_.node_m[vertex]);
     const double at = rho_m / settings_.ring_pitch_m;
-    if (at >= static_cast<double>(ring.size() + 1) || dot(skin_normal_[i], n) < contact::kFacing) continue;
+    if (at >= static_cast<double>(ring.size() + 1) || dot(skin_normal_[i], n) < contact::kFacing)
+      continue;
     const double g = dot(n, moved(slot, 0, skin_[i])) -
                      hertz_displacement_m_per_N(unit_, settings_.patch_radius_m, rho_m);
     // A hat a ring: a node between two rings counts for both, by its nearness.

@@ -122,7 +122,8 @@ TEST_F(Installed, TheLightToolsAskForNoSolverAndNoOtherCompiler) {
       run_command("bash -c '. " TACT_SOURCE_DIR
                   "/tools/packages.sh; echo ${BUILD_PACKAGES[@]} ${LIGHT_TOOL_PACKAGES[@]}'");
   EXPECT_NE(asked.output.find("libfmt-dev"), std::string::npos) << asked.output;
-  for (const char* absent : {"gmsh", "calculix", "metis", "bullet", "clang", "qemu", "nodejs", "vtk"})
+  for (const char* absent :
+       {"gmsh", "calculix", "metis", "bullet", "clang", "qemu", "nodejs", "vtk"})
     EXPECT_EQ(asked.output.find(absent), std::string::npos) << absent;
   EXPECT_NE(run_command(TACT_SOURCE_DIR "/tools/run --help").output.find("--tools"),
             std::string::npos);
