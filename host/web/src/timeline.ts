@@ -9,6 +9,8 @@ import type { Replay, ReplayWish } from "./protocol";
 const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4, 8];
 const kBack_s = 1;
 const kNear_s = 0.02; // a stop that is shown is not the next one
+const kArrived_s = 0.5; // a frame so near to where it shall go comes from there
+const kPatience_ms = 1000; // then frames count again, wherever they are from
 
 /** The next speed of the list; at its end the same again. */
 export function next_speed(ratio: number, faster: boolean): number {
@@ -26,6 +28,7 @@ export class Timeline {
   private replay: Replay | null = null;
   private at_s = 0;
   private wanted_s: number | null = null; // not asked for yet: once per picture is enough
+  private gone_to: { at_s: number; until_ms: number } | null = null; // frames on their way are from before
   private readonly seek = by_id<HTMLInputElement>("seek");
   private readonly speed = by_id<HTMLSelectElement>("speed");
   private held = false; // by a finger: frames do not move it
@@ -59,7 +62,11 @@ export class Timeline {
 
   frame(time_s: number): void {
     if (!this.replay) return;
-    this.at_s = Math.min(Math.max(time_s - this.replay.start_s, 0), this.replay.length_s);
+    const at_s = Math.min(Math.max(time_s - this.replay.start_s, 0), this.replay.length_s);
+    const gone = this.gone_to;
+    if (gone && Math.abs(at_s - gone.at_s) > kArrived_s && performance.now() < gone.until_ms) return;
+    this.gone_to = null;
+    this.at_s = at_s;
     this.write();
   }
 
@@ -99,6 +106,7 @@ export class Timeline {
   private go(at_s: number): void {
     if (!this.replay) return;
     this.at_s = this.wanted_s = Math.min(Math.max(at_s, 0), this.replay.length_s);
+    this.gone_to = { at_s: this.at_s, until_ms: performance.now() + kPatience_ms };
     this.write();
   }
 
