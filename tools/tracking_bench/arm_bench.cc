@@ -58,7 +58,7 @@ void bench_arm(const std::string& name, RootRule rule, long& missed) {
         std::size_t i = 0;
         for (auto _ : state) {
           arm.relax(kMotionFrame_s / tact::host::figure::kRelax_s);
-          const ArmWork work = arm.hold(all[i++ % all.size()]);
+          ArmWork work = arm.hold(all[i++ % all.size()]);
           missed += work.reached ? 0 : 1;
           benchmark::DoNotOptimize(work);
         }
@@ -72,8 +72,10 @@ void bench_figure(const std::string& name) {
         tact::host::figure::Figure figure;
         double t_s = 0.0;
         std::size_t i = 0;
-        for (auto _ : state)
-          benchmark::DoNotOptimize(figure.update(t_s += kMotionFrame_s, all[i++ % all.size()], {}));
+        for (auto _ : state) {
+          const auto* pose = &figure.update(t_s += kMotionFrame_s, all[i++ % all.size()], {});
+          benchmark::DoNotOptimize(pose);
+        }
       }));
 }
 
