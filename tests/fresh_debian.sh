@@ -9,9 +9,13 @@
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 . "$root/tools/packages.sh"
-number=${1:-12}
+number=${1-$(sed -n 's/^\([0-9]*\) .*/\1/p' "$root/tools/releases" | head -n 1)}
 name=$(release_name "$number")
-[ -n "$name" ] || { echo "fresh_debian.sh: tools/releases has no Debian $number" >&2; exit 2; }
+[ -n "$name" ] || {
+  echo "usage: tests/fresh_debian.sh [RELEASE] [FOLDER]: \"$number\" is none of tools/releases:" >&2
+  grep -v '^#' "$root/tools/releases" >&2
+  exit 2
+}
 keep=${2:+yes}
 base=${2:-$(mktemp -d)}
 mirror=http://deb.debian.org

@@ -120,7 +120,8 @@ Result<Repaired> repair_file(const RepairOrder& order, double unit_m,
   }
   const std::string target = scratch->file("repaired.obj");
   Listener listener(on_step, on_percent);
-  std::vector<std::string> arguments{*script};
+  // -I: whatever PYTHONPATH and PYTHONHOME say (ROS sets them), it finds Debian's numpy and VTK.
+  std::vector<std::string> arguments{"-I", *script};
   arguments.insert(arguments.end(), order.options.begin(), order.options.end());
   arguments.insert(arguments.end(), {"--", source, target});
   const auto ran = program::run_program(
@@ -139,8 +140,14 @@ Result<Repaired> repair_file(const RepairOrder& order, double unit_m,
                     "format that its ending says; export the mesh again",
                     order.source)};
   }
-  if (!ran)
-    return Error{fmt::format("{}: {}", order.source, model::io::on_one_line(ran.error().sentence))};
+  if (!ran) {
+    // The folder of its log goes with this function.
+    const auto said = model::io::read_file(scratch->file("log"));
+    const std::string text = said ? *said : "";
+    const std::string last = text.substr(text.size() - std::min<std::size_t>(text.size(), 300));
+    return Error{fmt::format("{}: the repair failed; try fewer steps, or export the mesh again: {}",
+                             order.source, model::io::on_one_line(last))};
+  }
 
   auto text = model::io::read_file(target, "try again", model::mesh::kMaxObjBytes);
   if (!text) return text.error();

@@ -11,6 +11,7 @@ NEAR_RATIO = 1e-5   # of the surface's size: vertices so near are one, with --we
 FLAT_RATIO = 1e-8   # doubled area over the square of the longest side: below it a face has no area
 FOLD_COSINE = -0.9  # between the normals of two neighbours
 MOST_UNFOLDINGS = 10
+LEAST_KEPT_RATIO = 0.8  # of the faces that were asked for: more loss takes the shape away
 
 
 def repair(points, triangles, asked, tell):
@@ -61,9 +62,12 @@ def repair(points, triangles, asked, tell):
         points = watched("smooth", smoothing(points, triangles))[0]
         told("smooth", len(points), f"vertices moved by {np.linalg.norm(points - before, axis=1).mean():.2g} units in the mean")
     if asked.decimate is not None and asked.decimate < len(triangles):
-        faces = len(triangles)
+        faces, had_rims = len(triangles), len(sheets.Edges(triangles).single()) > 0
         points, triangles = used(*watched("decimate", decimation(points, triangles, asked.decimate)))
-        points, triangles = unfolded(points, triangles)
+        points, triangles = unfolded(points, triangles, had_rims)
+        if len(triangles) < LEAST_KEPT_RATIO * asked.decimate:
+            raise Refused(f"{asked.source}: too rough for {asked.decimate} faces, {len(triangles)} would be left without a fold; "
+                          "ask for more, or smooth it more in a mesh editor")
         told("decimate", faces - len(triangles), f"{faces} faces became {len(triangles)}")
     if volume(points, triangles) < 0:
         triangles = triangles[:, ::-1]
@@ -153,16 +157,16 @@ def decimation(points, triangles, faces):
     return fewer
 
 
-def unfolded(points, triangles):
-    """Where decimation has left a crowded edge or a fold, the faces around it go and the hole is closed.
+def unfolded(points, triangles, had_rims):
+    """Where decimation has left a crowded edge, a fold or a hole, the faces around it go and the hole is closed.
 
-    A surface with rims loses crowded faces alone: its own holes stay.
+    A surface that had rims before loses crowded faces alone: its own holes stay.
     """
-    if len(sheets.Edges(triangles).single()):
+    if had_rims:
         return sheets.parted(points, triangles)[:2]
     for _ in range(MOST_UNFOLDINGS):
         bad = np.union1d(sheets.bad_faces(triangles), folded_faces(points, triangles))
-        if len(bad) == 0:
+        if len(bad) == 0 and len(sheets.Edges(triangles).single()) == 0:
             break
         around = np.isin(triangles, triangles[bad]).any(1)
         points, triangles, _ = sheets.parted(points, triangles[~around])

@@ -59,6 +59,8 @@ def read(path):
         raise Refused(f"{path}: more than 2 GB; simplify the mesh")
     if ending == ".stl":
         check_stl(path, size_bytes, beginning)
+    if ending == ".ply":
+        check_ply(path, size_bytes)
     if ending == ".off":
         surface = read_off(path)
     elif ending in READERS:
@@ -87,14 +89,26 @@ def check_stl(path, size_bytes, beginning):
         raise Refused(f"{path}: cut short, after {(size_bytes - 84) // 50} of {triangles} triangles{AGAIN}")
 
 
+def check_ply(path, size_bytes):
+    """VTK reserves what the head promises: one that promises more elements than the file has bytes fills the memory."""
+    with open(path, "rb") as file:
+        head = file.read(65536).split(b"end_header")[0].decode("ascii", errors="replace")
+    promised = sum(int(count) for count in re.findall(r"^element \w+ (\d+)\s*$", head, re.MULTILINE))
+    if promised > size_bytes:
+        raise Refused(f"{path}: its head promises {promised} vertices and faces, and the file has {size_bytes} bytes{AGAIN}")
+
+
 def read_by_vtk(path, reader):
     said = vtk.vtkStringOutputWindow()
     vtk.vtkOutputWindow.SetInstance(said)
     vtk.vtkLogger.SetStderrVerbosity(vtk.vtkLogger.VERBOSITY_OFF)
     reader.SetFileName(path)
     reader.Update()
-    if "ERROR" in said.GetOutput():
-        raise Refused(complaint(path, said.GetOutput()))
+    text = said.GetOutput()
+    if isinstance(text, bytes):  # VTK quotes the file, and that is not text
+        text = text.decode(errors="replace")
+    if "ERROR" in text:
+        raise Refused(complaint(path, text))
     surface = reader.GetOutput()
     if surface.IsA("vtkCompositeDataSet"):  # glTF: all meshes, each at its place
         together = vtk.vtkCompositeDataGeometryFilter()

@@ -205,6 +205,11 @@ TEST_F(MeshFormats, ABrokenFileGetsOneSentenceWithItsLineWhereThatIsKnown) {
     expect_refused(std::string("words.") + ending, std::string(200, 'x') + "\n",
                    "; export the mesh");
   }
+  expect_refused("lie.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 2000000000\nproperty float x\n"
+                 "property float y\nproperty float z\nend_header\n",
+                 "promises 2000000000 vertices and faces, and the file has 109 bytes");
+  expect_refused("noise.vtk", std::string(300, '\xfe') + "\n", "; export the mesh");
   expect_refused("mesh.step", "ISO-10303", ".step is no format that is read");
   expect_refused("far.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1e300 0\n3 0 1 2\n",
                  "vertex 3 is not finite, or beyond");
