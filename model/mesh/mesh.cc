@@ -264,4 +264,26 @@ MeshSummary summarize(const SurfaceMesh& mesh) {
   return sum;
 }
 
+std::size_t count_parts(const SurfaceMesh& mesh) {
+  std::vector<bool> seen(mesh.triangle.size());
+  std::vector<std::uint32_t> left;
+  std::size_t parts = 0;
+  for (std::uint32_t first = 0; first < seen.size(); ++first) {
+    if (seen[first]) continue;
+    ++parts;
+    seen[first] = true;
+    left.assign(1, first);
+    while (!left.empty()) {
+      const std::uint32_t t = left.back();
+      left.pop_back();
+      for (const std::uint32_t next : mesh.neighbour[t]) {
+        if (next == contact::kNoTriangle || seen[next]) continue;
+        seen[next] = true;
+        left.push_back(next);
+      }
+    }
+  }
+  return parts;
+}
+
 }  // namespace tact::model::mesh

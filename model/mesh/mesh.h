@@ -51,4 +51,7 @@ struct MeshSummary {
 };
 MeshSummary summarize(const SurfaceMesh& mesh);
 
+/// Parts that share no edge: an organ is one, and what else a scan has may come under the tool.
+std::size_t count_parts(const SurfaceMesh& mesh);
+
 }  // namespace tact::model::mesh

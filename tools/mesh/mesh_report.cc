@@ -41,6 +41,11 @@ std::string to_text(const ObjMesh& obj) {
   text += "x          " + range_mm(sum.low_m.x, sum.high_m.x) + "\n";
   text += "y          " + range_mm(sum.low_m.y, sum.high_m.y) + "\n";
   text += "z          " + range_mm(sum.low_m.z, sum.high_m.z) + "\n";
+  if (const std::size_t parts = model::mesh::count_parts(obj.mesh); parts > 1)
+    text += fmt::format(
+        "note       {} parts that share no edge: only one is the organ? --largest keeps that with "
+        "most faces\n",
+        parts);
   if (obj.flipped)
     text += "note       the file's normals point inwards; turned outwards on loading\n";
   return text;
@@ -56,6 +61,7 @@ json to_json(const std::string& file, double unit_m, const ObjMesh& obj,
             {"unit_m", unit_m},
             {"vertices", sum.vertices},
             {"triangles", sum.triangles},
+            {"parts", model::mesh::count_parts(obj.mesh)},
             {"closed", closed},
             {"boundary_edges", sum.boundary_edges},
             {"area_m2", sum.area_m2},

@@ -36,25 +36,6 @@ class MeshRepair : public testing::Test {
   const std::string cube_ = temp_.write("cube.obj", kCubeVertices + kCubeFaces);
 };
 
-std::size_t parts_of(const SurfaceMesh& mesh) {
-  std::vector<bool> seen(mesh.triangle.size());
-  std::size_t parts = 0;
-  for (std::uint32_t first = 0; first < seen.size(); ++first) {
-    if (seen[first]) continue;
-    ++parts;
-    std::vector<std::uint32_t> left{first};
-    while (!left.empty()) {
-      const std::uint32_t t = left.back();
-      left.pop_back();
-      if (seen[t]) continue;
-      seen[t] = true;
-      for (const std::uint32_t next : mesh.neighbour[t])
-        if (next != model::contact::kNoTriangle) left.push_back(next);
-    }
-  }
-  return parts;
-}
-
 double sharpest_fold(const SurfaceMesh& mesh) {
   double least = 1.0;
   for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
@@ -146,7 +127,7 @@ TEST_F(MeshRepair, AScannedOrganBecomesSoundInOneCommand) {
   EXPECT_EQ(sum.boundary_edges, 0u);
   EXPECT_GT(sum.triangles, 5900u);
   EXPECT_LE(sum.triangles, 6000u);
-  EXPECT_EQ(parts_of(loaded->mesh), 1u);
+  EXPECT_EQ(model::mesh::count_parts(loaded->mesh), 1u);
   EXPECT_NEAR(1e9 * sum.volume_m3 / whole_mm3, 1.0, 0.02);
   EXPECT_NEAR(1e3 * sum.low_m.z, kScannerOffset_mm.z, 0.5) << "stays where the scanner saw it";
   EXPECT_GT(sharpest_fold(loaded->mesh), -0.9);

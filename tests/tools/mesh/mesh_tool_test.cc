@@ -55,6 +55,16 @@ TEST_F(MeshTool, PrintsJsonInSiUnits) {
   EXPECT_NEAR(json["high_m"][2].get<double>(), 0.1, 1e-12);
 }
 
+TEST_F(MeshTool, SaysThatThereIsMoreThanOnePart) {
+  EXPECT_EQ(run(temp_.write("one.obj", kCubeVertices + kCubeFaces)).out.find("parts"),
+            std::string::npos);
+  std::string two = kCubeVertices + kCubeFaces;
+  two += "v 50 0 0\nv 51 0 0\nv 50 1 0\nv 50 0 1\nf 9 11 10\nf 9 10 12\nf 9 12 11\nf 10 11 12\n";
+  const std::string path = temp_.write("two.obj", two);
+  EXPECT_NE(run(path).out.find("2 parts that share no edge"), std::string::npos) << run(path).out;
+  EXPECT_EQ(nlohmann::json::parse(run("--json " + path).out)["parts"], 2);
+}
+
 TEST_F(MeshTool, SaysWhatAnOpenSurfaceLacks) {
   const std::string path = temp_.write("open.obj", kCubeVertices + kCubeFaces.substr(16));
   const Ran ran = run(path);
