@@ -63,7 +63,9 @@ std::optional<std::string> DriveSettings::end_guarding(int node) {
     SdoFailure failure;
     const auto value = sdo_.read(node, entry, failure);
     if (failure.silent) return sdo_failure_words(failure, entry.index, entry.sub);
-    const bool unset = !value || *value == 0;
+    // Another abort than these says nothing of the object: the write decides.
+    const bool absent = failure.abort_code == kNoObject || failure.abort_code == kNoSubIndex;
+    const bool unset = value ? *value == 0 : absent;
     const auto refused =
         unset ? std::nullopt
               : sdo_.write(node, {.index = entry.index, .sub = 0, .value = 0, .size = entry.size});

@@ -29,6 +29,8 @@ constexpr std::int64_t kSilence_ns = 100'000'000;
 constexpr int kSettledTicks = 10;    // in position mode and without torque, before a force may pass
 constexpr int kMaxIncomplete = 10;   // replies in a row
 constexpr double kIdleTorque = 0.1;  // of the largest: measured at rest, when 0 is asked for
+// Each reply moves the mean of what nobody asked for by so much: 50 ms at 1 kHz.
+constexpr double kUnaskedShare = 0.02;
 
 /// Kinds of FaultCause, after those that all drives have.
 enum class MoteusCause : std::uint8_t {
@@ -74,6 +76,7 @@ class Moteuses final : public can::CanFdDrives {
     const bool idle =
         axis.is_in(MoteusMode::kPosition) && std::abs(axis.torque_Nm) <= idle_torque_Nm_;
     axis.settled = loop.power == CanPower::kStarting && idle ? axis.settled + 1 : 0;
+    axis.compare(loop.power == CanPower::kReady);
     return true;
   }
 
@@ -91,6 +94,8 @@ class Moteuses final : public can::CanFdDrives {
     const bool powered = loop.power != CanPower::kOff;
     if (powered && loop.asked_ns == 0) loop.asked_ns = loop.now_ns;
     for (std::size_t i = 0; i < 3; ++i) {
+      axes_[i].asked_before_Nm = axes_[i].asked_Nm;
+      axes_[i].asked_Nm = powered ? torque_Nm[i] : 0.0;
       loop.bus.push(powered ? moteus_torque(nodes_[i], torque_Nm[i], kWatchdog_s)
                             : moteus_stop_and_ask(nodes_[i]));
     }
@@ -123,9 +128,8 @@ class Moteuses final : public can::CanFdDrives {
             moteus_mode_name(static_cast<int>(cause.code)));
       case MoteusCause::kUnaskedTorque:
         return fmt::format(
-            "the drive gives {:.2f} N m although 0 is asked for: set servo.pid_position.ilimit = "
-            "0, "
-            "and calibrate it with moteus_tool",
+            "the drive gives {:.2f} N m that nobody asked for: set servo.pid_position.ki and "
+            "ilimit to 0, and calibrate it with moteus_tool",
             1e-3 * static_cast<std::int32_t>(cause.code));
       case MoteusCause::kIncomplete:
         return "its replies lack what was asked for: is another device at this id, or another "
@@ -140,11 +144,23 @@ class Moteuses final : public can::CanFdDrives {
 
  private:
   struct Axis {
-    int mode = 0, fault = 0;  // of the last reply
-    double torque_Nm = 0.0;   // measured
-    int settled = 0;          // replies in a row, while starting
-    int incomplete = 0;       // the same, of those that are not whole
+    int mode = 0, fault = 0;                       // of the last reply
+    double torque_Nm = 0.0;                        // measured
+    double asked_Nm = 0.0, asked_before_Nm = 0.0;  // by the last command, and by the one before it
+    double unasked_Nm = 0.0;                       // mean of what is measured beyond what was asked
+    int settled = 0;                               // replies in a row, while starting
+    int incomplete = 0;                            // the same, of those that are not whole
     bool is_in(MoteusMode one) const RT_SAFE { return mode == static_cast<int>(one); }
+
+    /// A reply tells of the moment before its command (MO-2), so of the torque asked before that.
+    /// Less than that is a limit of the drive's own; more, or another way, is an integral term that
+    /// winds up towards position 0, or a wrong calibration.
+    void compare(bool ready) RT_SAFE {
+      const double asked = asked_before_Nm;
+      const bool cut = torque_Nm * asked >= 0.0 && std::abs(torque_Nm) <= std::abs(asked);
+      const double more_Nm = cut ? 0.0 : torque_Nm - asked;
+      unasked_Nm = ready ? unasked_Nm + kUnaskedShare * (more_Nm - unasked_Nm) : 0.0;
+    }
   };
 
   /// One drive that shall have power.
@@ -158,9 +174,14 @@ class Moteuses final : public can::CanFdDrives {
     if (asked && axis.is_in(MoteusMode::kTimeout)) loop.fail(i, MoteusCause::kTimeout, 0);
     if (loop.power == CanPower::kReady && !axis.is_in(MoteusMode::kPosition))
       loop.fail(i, MoteusCause::kLeftPosition, mode);
+    if (std::abs(axis.unasked_Nm) > idle_torque_Nm_) return fail_unasked(loop, i, axis.unasked_Nm);
     if (!loop.start_is_late() || axis.settled >= kSettledTicks) return;
     if (!axis.is_in(MoteusMode::kPosition)) return loop.fail(i, MoteusCause::kNotStarted, mode);
-    const auto torque_mNm = static_cast<std::int32_t>(std::clamp(1e3 * axis.torque_Nm, -1e6, 1e6));
+    fail_unasked(loop, i, axis.torque_Nm);
+  }
+
+  static void fail_unasked(Loop& loop, std::size_t i, double torque_Nm) RT_SAFE {
+    const auto torque_mNm = static_cast<std::int32_t>(std::clamp(1e3 * torque_Nm, -1e6, 1e6));
     loop.fail(i, MoteusCause::kUnaskedTorque, static_cast<std::uint32_t>(torque_mNm));
   }
 

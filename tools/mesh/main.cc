@@ -78,10 +78,6 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--write", o.write, "write them into the scene; its other lines stay")->needs(place);
 }
 
-bool is_gltf(const std::string& path) {  // in metres by its standard
-  return path.ends_with(".gltf") || path.ends_with(".glb");
-}
-
 /// The organ, under the tool of the scene.
 Result<mesh::Placement> place_mesh(const Options& o) {
   if (o.out.empty() && !mesh::is_obj(o.file))
@@ -90,7 +86,7 @@ Result<mesh::Placement> place_mesh(const Options& o) {
                          .mesh_path = o.out.empty() ? o.file : o.out,
                          .unit_m = o.unit_m,
                          .point = {}};
-  if (o.unit_m == 0.0 && is_gltf(o.file)) order.unit_m = 1.0;
+  if (o.unit_m == 0.0 && mesh::is_gltf(o.file)) order.unit_m = 1.0;
   if (!o.point.empty()) order.point = {o.point[0], o.point[1], o.point[2]};
   auto placement = mesh::place(order);
   if (!placement || !o.write) return placement;
@@ -115,7 +111,7 @@ void show_percent(const std::string& step, int percent) {
 
 double unit_of(const Options& o) {
   if (o.unit_m > 0.0) return o.unit_m;
-  return is_gltf(o.file) ? 1.0 : 0.001;
+  return mesh::is_gltf(o.file) ? 1.0 : 0.001;
 }
 
 /// Read as it is, or repaired.

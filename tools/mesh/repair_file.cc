@@ -105,6 +105,10 @@ std::string about(const std::string& source, const std::string& scratch, std::st
 
 bool is_obj(const std::string& path) { return ending_of(path) == ".obj"; }
 
+bool is_gltf(const std::string& path) {
+  return ending_of(path) == ".gltf" || ending_of(path) == ".glb";
+}
+
 Result<Repaired> repair_file(const RepairOrder& order, double unit_m,
                              const std::function<void(const RepairStep&)>& on_step,
                              const std::function<void(const std::string&, int)>& on_percent) {

@@ -40,6 +40,8 @@ struct Repaired {
 
 /// Is this an OBJ file by its name?
 bool is_obj(const std::string& path);
+/// In metres by its standard.
+bool is_gltf(const std::string& path);
 
 /// `on_step` hears of each step when it ends, `on_percent` how far a long one is. An error names
 /// the source, and the line where that is known.

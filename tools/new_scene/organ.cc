@@ -19,22 +19,6 @@ using model::mesh::SurfaceMesh;
 // Chosen: a lymph node, and a whole person.
 constexpr double kMinSize_m = 0.005, kMaxSize_m = 2.5;
 
-bool is_one_part(const SurfaceMesh& mesh) {
-  std::vector<bool> seen(mesh.triangle.size());
-  std::vector<std::uint32_t> left{0};
-  std::size_t reached = 0;
-  while (!left.empty()) {
-    const std::uint32_t t = left.back();
-    left.pop_back();
-    if (seen[t]) continue;
-    seen[t] = true;
-    ++reached;
-    for (const std::uint32_t next : mesh.neighbour[t])
-      if (next != model::contact::kNoTriangle) left.push_back(next);
-  }
-  return reached == mesh.triangle.size();
-}
-
 std::vector<std::string> repair_options(const OrganOrder& order) {
   std::vector<std::string> options{"--weld", "--drop-degenerate", "--largest", "--close-holes"};
   if (order.smooth) options.emplace_back("--smooth");
@@ -48,7 +32,7 @@ bool is_sound(const OrganOrder& order) {
   if (order.smooth || !mesh::is_obj(order.source)) return false;
   const auto obj = model::mesh::load_obj(order.source, 1.0);
   if (!obj || obj->mesh.triangle.size() > order.faces) return false;
-  return summarize(obj->mesh).boundary_edges == 0 && is_one_part(obj->mesh);
+  return summarize(obj->mesh).boundary_edges == 0 && model::mesh::count_parts(obj->mesh) == 1;
 }
 
 Result<Organ> read_organ(const OrganOrder& order, const std::string& folder,
@@ -73,7 +57,9 @@ Result<Organ> read_organ(const OrganOrder& order, const std::string& folder,
         order.source, sum.boundary_edges)};
   const Vec3 size = sum.high_m - sum.low_m;
   const double longest = std::max({size.x, size.y, size.z});
-  organ.unit_m = order.unit_m > 0.0 ? order.unit_m : mesh::likely_unit_m(longest);
+  organ.unit_m = order.unit_m > 0.0            ? order.unit_m
+                 : mesh::is_gltf(order.source) ? 1.0
+                                               : mesh::likely_unit_m(longest);
   if (const double size_m = longest * organ.unit_m; size_m < kMinSize_m || size_m > kMaxSize_m)
     return Error{fmt::format("{}: {:.3g} m long, and an organ is {:g} to {:g} m; name its --unit",
                              order.source, size_m, kMinSize_m, kMaxSize_m)};

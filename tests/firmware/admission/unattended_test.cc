@@ -13,6 +13,9 @@ TEST(Unattended, AServiceDoesNotHomeOnAJigThatNobodySees) {
     const auto refused = why_not_unattended(scene, true);
     ASSERT_TRUE(refused) << kind;
     EXPECT_NE(refused->sentence.find("\"absolute\""), std::string::npos) << "the cure";
+    EXPECT_EQ(refused->sentence.find("\"index\"") != std::string::npos,
+              scene.device.kind == "can-odrive")
+        << "the others cannot";
     EXPECT_FALSE(why_not_unattended(scene, false)) << "a person sees the arms";
     scene.device.can.homing = model::Homing::kAbsolute;
     EXPECT_FALSE(why_not_unattended(scene, true));

@@ -94,6 +94,16 @@ TEST(Cia402BringUp, NodeGuardingMayBeReadOnlyUnlessItStaysOn) {
       "with heartbeat: set both to 0 with its maker's program. It refuses setting 0x100D:00");
 }
 
+TEST(Cia402BringUp, NodeGuardingThatCannotBeReadIsNotTakenForNone) {
+  Bench bench;
+  auto& axis = bench.drives.axis[1];
+  axis.written = {{0x100C00, 100}, {0x100D00, 3}};
+  axis.read_only = {0x100C00};
+  axis.refused = 0x100D00;
+  axis.abort_code = 0x08000022;  // "not in this state"
+  bench.expect_refused("arm 2 (node 2 on can0) keeps its node guarding on");
+}
+
 TEST(Cia402BringUp, ADriveWithoutHeartbeatIsRefusedWithTheCureAndItsGuardingStays) {
   for (const std::uint32_t entry : {0x101700u, 0x101601u}) {
     for (const std::uint32_t abort : {0x06020000u, 0x06090011u}) {

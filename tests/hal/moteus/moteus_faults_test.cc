@@ -62,15 +62,33 @@ TEST(MoteusFaults, ADriveThatNeverGetsReadyIsNamedAfterThreeSeconds) {
 }
 
 TEST(MoteusFaults, ADriveWithATorqueOfItsOwnNeverGetsReady) {
-  // The integral term of its position loop, which no scale in a command turns off.
+  // The integral term of its position loop, with a gain that acts at once.
   Bench bench;
-  bench.drives.install<rig::MoteusDrive>(1, rig::MoteusSettings{.integral_limit_Nm = 0.5});
+  bench.drives.install<rig::MoteusDrive>(
+      1, rig::MoteusSettings{.integral_gain_Nm_per_turn_s = 1e6, .integral_limit_Nm = 0.5});
   ASSERT_EQ(bench.open(), "");
   EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 4000), 0);
   EXPECT_TRUE(
-      bench.says("arm 2 (node 2 on can0): the drive gives -0.50 N m although 0 is asked "
-                 "for: set servo.pid_position.ilimit = 0"))
+      bench.says("arm 2 (node 2 on can0): the drive gives -0.50 N m that nobody asked for: set "
+                 "servo.pid_position.ki"))
       << bench.device->trouble();
+}
+
+TEST(MoteusFaults, ATorqueThatGrowsSlowlyIsAFaultOfAReadyDrive) {
+  Bench bench;
+  bench.drives.install<rig::MoteusDrive>(
+      1, rig::MoteusSettings{.integral_gain_Nm_per_turn_s = 2.0, .integral_limit_Nm = 1.0});
+  bench.run();
+  EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 4000), 0);
+  EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): the drive gives")) << bench.device->trouble();
+  bench.expect_latched(Fault::kDriveFault);
+}
+
+TEST(MoteusFaults, GravityAndForceAreNoTorqueThatNobodyAskedFor) {
+  Bench bench;
+  bench.run();
+  for (int i = 0; i < 500; ++i) bench.tick();
+  EXPECT_TRUE(bench.device->ready()) << bench.device->trouble();
 }
 
 TEST(MoteusFaults, ADriveThatIsStoppedBySomebodyElseIsAFault) {

@@ -45,9 +45,7 @@ double MoteusDrive::torque_Nm() const {
   const double error_turns =
       std::isnan(c.position_turns) ? 0.0 : c.position_turns - motor_.position_turns;
   const double error_turns_per_s = c.velocity_turns_per_s - motor_.velocity_turns_per_s;
-  const double integral_Nm =
-      error_turns == 0.0 ? 0.0 : std::copysign(settings_.integral_limit_Nm, error_turns);
-  const double torque_Nm = c.kp_scale * settings_.kp_Nm * error_turns + integral_Nm +
+  const double torque_Nm = c.kp_scale * settings_.kp_Nm * error_turns + integral_Nm_ +
                            std::min(c.kp_scale, c.kd_scale) * settings_.kd_Nms * error_turns_per_s +
                            c.feedforward_Nm;
   const double most_Nm = std::min(settings_.max_torque_Nm, c.max_torque_Nm);
@@ -90,6 +88,15 @@ void MoteusDrive::tick(std::int64_t now_ns) {
     mode_ = command_.mode;
     if (!settings_.is_calibrated) trip(kMotorNotConfigured);
     if (!settings_.knows_position) trip(kPositionInvalid);
+  }
+  const double dt_s = 1e-9 * static_cast<double>(now_ns - std::exchange(ticked_ns_, now_ns));
+  const double error_turns = command_.position_turns - motor_.position_turns;
+  if (mode_ != kPosition || std::isnan(error_turns)) {
+    integral_Nm_ = 0.0;
+  } else {
+    integral_Nm_ = std::clamp(
+        integral_Nm_ + settings_.integral_gain_Nm_per_turn_s * error_turns * std::min(dt_s, 0.01),
+        -settings_.integral_limit_Nm, settings_.integral_limit_Nm);
   }
   const double timeout_s =
       command_.timeout_s == 0.0 ? settings_.default_timeout_s : command_.timeout_s;

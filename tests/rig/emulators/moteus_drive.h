@@ -6,8 +6,9 @@
 //
 // Each command of a mode begins with every other command register at its default: position 0, both
 // gains whole, the watchdog the drive's own. So a torque is only a torque when both gain scales are
-// written as 0. The integral term knows no scale: with a limit of its own it acts all the same. A
-// reply tells of the moment before the command of its frame. Torque counts at the output.
+// written as 0. The integral term has a scale of its own (0x02b), of newer firmware, which nobody
+// writes here: with a gain and a limit it winds up all the same. A reply tells of the moment before
+// the command of its frame. Torque counts at the output.
 //
 // Reading of the maker's register reference and open firmware; nothing here comes from the drivers
 // under test.
@@ -25,7 +26,7 @@ struct MoteusSettings {
   int timeout_mode = 12;  // 0: lets go; 12: damps, the maker's default
   double timeout_max_torque_Nm = 5.0;
   double kp_Nm = 4.0, kd_Nms = 0.05;  // per turn, the maker's defaults
-  double integral_limit_Nm = 0.0;
+  double integral_gain_Nm_per_turn_s = 0.0, integral_limit_Nm = 0.0;
   double max_torque_Nm = 1.6;
   int home_state = 2;  // 0 relative, 1 rotor, 2 output
   int register_map = 5;
@@ -77,6 +78,8 @@ class MoteusDrive final : public Drive, public MoteusRegisters {
   int mode_ = kStopped, fault_ = 0;
   Command command_{};  // that acts
   Command written_{};  // of the frame that is served
+  double integral_Nm_ = 0.0;
+  std::int64_t ticked_ns_ = 0;
   bool has_written_ = false, has_tripped_ = false;
   std::int64_t commanded_ns_ = 0, prepared_ns_ = 0;
 };
