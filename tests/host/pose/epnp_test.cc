@@ -112,14 +112,16 @@ TEST(Epnp, MarkersThatSlideOnTheirBodyBendItsPoseToo) {
   for (int i = 0; i < 201; ++i) {
     View view = views.next(8, false, 0.0);
     for (Vector3d& p : view.points_m)
-      p += Vector3d(slide_m(random), slide_m(random), slide_m(random));
+      p += Vector3d{slide_m(random), slide_m(random), slide_m(random)};  // in this order
     epnp_m.push_back((epnp_alone(view).position_m - view.truth.position_m).norm());
     best_m.push_back((view.estimate().pose.position_m - view.truth.position_m).norm());
   }
   std::ranges::sort(epnp_m);
   std::ranges::sort(best_m);
-  EXPECT_NEAR(epnp_m[100], 9.5e-3, 1e-3);
-  EXPECT_NEAR(best_m[100], 7.7e-3, 1e-3);
+  // Medians of 201 views: by chance, and by compiler, 8.4 to 9.7 and 7.3 to 7.7 mm.
+  EXPECT_NEAR(epnp_m[100], 9e-3, 1.5e-3);
+  EXPECT_NEAR(best_m[100], 7.5e-3, 1e-3);
+  EXPECT_GT(epnp_m[100], best_m[100]);
 }
 
 TEST(Epnp, NoPoseNearTheTruthExplainsThePixelsBetter) {
