@@ -81,7 +81,9 @@ void add_run_options(CLI::App& app, Options& o) {
                  "ticks.perfetto-trace for ui.perfetto.dev; made if need be");
   app.add_flag("--no-pictures", o.no_pictures, "no histogram; needs no gnuplot");
   app.add_option("--json", o.json_path, "write the result to this file too, - for stdout alone");
-  app.add_option("--submit", o.submit, "write a row of the table of PCs to this file, to send it; a row that stands there is replaced");
+  app.add_option("--submit", o.submit,
+                 "write a row of the table of PCs to this file, to send it; a row that stands "
+                 "there is replaced");
 }
 
 CLI::App* add_compare(CLI::App& app, Options& o) {
