@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // tact-mesh: what is in this mesh file, is it sound, and if not, make it so.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -53,11 +51,9 @@ void add_options(CLI::App& app, Options& o) {
       ->required();
   app.add_option("--out", o.out,
                  "OBJ file to write, in the units and the frame of FILE, after these steps:");
-  const std::map<std::string, double> units{
-      {"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"um", 1e-6}, {"in", 0.0254}};
   CLI::Option* named =
       app.add_option("--unit", o.unit_m, "of FILE: m, cm, mm, um or in (default mm; glTF: m)");
-  named->transform(CLI::CheckedTransformer(units, CLI::ignore_case).description(""));
+  named->transform(CLI::CheckedTransformer(mesh::units_m(), CLI::ignore_case).description(""));
   app.add_option("--unit-m", o.unit_m, "the same as a number: length of one file unit, m")
       ->check(tact::model::io::within(1e-9, 1e6))
       ->excludes(named);
@@ -103,12 +99,6 @@ std::vector<std::string> repair_options(const Options& o) {
   return options;
 }
 
-void show_percent(const std::string& step, int percent) {
-  if (isatty(STDERR_FILENO) == 0) return;
-  fmt::print(stderr, "\r{:<15}  {} %\r", step, percent);
-  std::fflush(stderr);
-}
-
 double unit_of(const Options& o) {
   if (o.unit_m > 0.0) return o.unit_m;
   return mesh::is_gltf(o.file) ? 1.0 : 0.001;
@@ -129,7 +119,7 @@ Result<mesh::Repaired> read_mesh(const Options& o, std::vector<std::string> step
     std::fflush(stdout);
   };
   auto repaired = mesh::repair_file({.source = o.file, .options = std::move(steps)}, unit_of(o),
-                                    on_step, show_percent);
+                                    on_step, mesh::show_percent);
   if (!repaired || o.out.empty()) return repaired;
   if (const auto error = tact::model::io::write_file(o.out, repaired->obj_text)) return *error;
   if (!o.json) fmt::print("{:<15}  {}\n", "wrote", o.out);

@@ -2,7 +2,9 @@
 #include "tools/mesh/mesh_report.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 namespace tact::tools::mesh {
@@ -24,6 +26,12 @@ std::string range_mm(double low_m, double high_m) {
 
 std::string to_text(const RepairStep& step) {
   return fmt::format("{:<15}  {}\n", step.name, step.text);
+}
+
+void show_percent(const std::string& step, int percent) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  fmt::print(stderr, "\r{:<15}  {} %\r", step, percent);
+  std::fflush(stderr);
 }
 
 std::string to_text(const ObjMesh& obj) {

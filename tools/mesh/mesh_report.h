@@ -14,6 +14,8 @@ namespace tact::tools::mesh {
 
 /// "read             200000 faces, ...", a line.
 std::string to_text(const RepairStep& step);
+/// How far a long step is, on one line of a terminal that a person watches; nowhere else.
+void show_percent(const std::string& step, int percent);
 std::string to_text(const model::mesh::ObjMesh& obj);
 
 /// SI units. `file`: where it was read; `steps` and `out` are members where there are any.

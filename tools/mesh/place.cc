@@ -27,20 +27,14 @@ using model::Vec3;
 
 using KeyValue = std::pair<std::string, std::string>;
 
-/// To a tenth of a micrometre, without -0.
-std::string text_of(const Vec3& v) {
-  const auto number = [](double x) { return std::round(x * 1e7) / 1e7 + 0.0; };
-  return fmt::format("[{}, {}, {}]", number(v.x), number(v.y), number(v.z));
-}
-
 std::vector<KeyValue> organ_keys(const Placement& p) {
   return {{"mesh", nlohmann::json(p.mesh_path).dump()},  // quoted alike in TOML
           {"mesh_unit_m", fmt::format("{}", p.unit_m)},
-          {"orientation_deg", text_of(p.orientation_deg)},
-          {"position_m", text_of(p.position_m)}};
+          {"orientation_deg", toml_of(p.orientation_deg)},
+          {"position_m", toml_of(p.position_m)}};
 }
 
-std::vector<KeyValue> hand_keys(const Placement& p) { return {{"site_m", text_of(p.site_m)}}; }
+std::vector<KeyValue> hand_keys(const Placement& p) { return {{"site_m", toml_of(p.site_m)}}; }
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
@@ -120,6 +114,16 @@ void place_under_hand(const model::mesh::SurfaceMesh& mesh, std::optional<Vec3> 
 }
 
 }  // namespace
+
+std::map<std::string, double> units_m() {
+  return {{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"um", 1e-6}, {"in", 0.0254}};
+}
+
+double rounded_m(double x_m) { return std::round(x_m * 1e7) / 1e7 + 0.0; }
+
+std::string toml_of(const Vec3& v) {
+  return fmt::format("[{}, {}, {}]", rounded_m(v.x), rounded_m(v.y), rounded_m(v.z));
+}
 
 double likely_unit_m(double size_in_file_units) {
   if (size_in_file_units >= 25.0) return 0.001;

@@ -9,6 +9,7 @@
 // Without a chosen point it is the top of the mesh as it lies, and R turns nothing.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 
@@ -16,6 +17,14 @@
 #include "model/types.h"
 
 namespace tact::tools::mesh {
+
+/// The units that a file of a mesh may have, by name: the length of one, m.
+std::map<std::string, double> units_m();
+
+/// To a tenth of a micrometre, without -0.
+double rounded_m(double x_m);
+/// As an array of TOML, each number so rounded.
+std::string toml_of(const model::Vec3& v);
 
 struct Placement {
   std::string mesh_path;  // absolute

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // tact-new-scene: a mesh in, a scene out.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
-#include <map>
 #include <optional>
 
 #include "model/io/file_writer.h"
@@ -46,12 +44,11 @@ void add_options(CLI::App& app, Options& o) {
       ->required();
   app.add_option("--out", o.out, "scene to write, NAME.toml; its files come beside it, NAME.*")
       ->required();
-  const std::map<std::string, double> units{
-      {"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"um", 1e-6}, {"in", 0.0254}};
   app.add_option("--unit", o.organ.unit_m,
                  "of ORGAN: m, cm, mm, um or in (default: mm for 25 units or more, cm for 1 or "
                  "more, else m)")
-      ->transform(CLI::CheckedTransformer(units, CLI::ignore_case).description(""));
+      ->transform(
+          CLI::CheckedTransformer(tact::tools::mesh::units_m(), CLI::ignore_case).description(""));
   app.add_option("--youngs-modulus-Pa", o.youngs_modulus_Pa, "E of the tissue")
       ->check(tact::model::io::within(100.0, 1e6))
       ->capture_default_str();
@@ -68,12 +65,6 @@ void add_options(CLI::App& app, Options& o) {
 void tell(const char* step, const std::string& text) {
   fmt::print("{:<15}  {}\n", step, text);
   std::fflush(stdout);
-}
-
-void show_percent(const std::string& step, int percent) {
-  if (isatty(STDERR_FILENO) == 0) return;
-  fmt::print(stderr, "\r{:<15}  {} %\r", step, percent);
-  std::fflush(stderr);
 }
 
 /// What can be refused is refused before the minutes of work.
@@ -101,7 +92,7 @@ Result<Organ> read(const Options& o, const std::string& folder) {
         fmt::print("{}", tact::tools::mesh::to_text(step));
         std::fflush(stdout);
       },
-      show_percent);
+      tact::tools::mesh::show_percent);
   if (!organ) return organ;
   const auto sum = summarize(organ->mesh);
   const auto size_m = sum.high_m - sum.low_m;
@@ -131,7 +122,8 @@ std::string write_text(const Options& o, const OutputNames& names, const Organ& 
 }
 
 bool show_progress(std::size_t done, std::size_t vertices) {
-  if (done > 0) show_percent("condense", static_cast<int>(100 * done / vertices));
+  if (done > 0)
+    tact::tools::mesh::show_percent("condense", static_cast<int>(100 * done / vertices));
   return !program::is_interrupted();
 }
 

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tools/mesh/place.h"
 #include "tools/new_scene/forceps.h"
 #include "tools/new_scene/scene.in.h"
 
@@ -21,13 +21,6 @@ constexpr double kMaxDepth_m = 0.012;  // as the liver's
 constexpr double kDepth_ratio = 0.2;   // of the height: small strain beyond the tip
 constexpr double kPress_ratio = 0.8;   // of the working depth
 constexpr double kLiver_Pa = 6270.0;   // E / (1 - nu^2), of the numbers below
-
-/// To a tenth of a micrometre, without -0.
-double rounded_m(double x_m) { return std::round(x_m * 1e7) / 1e7 + 0.0; }
-
-std::string text_of(const Vec3& v_m) {
-  return fmt::format("[{}, {}, {}]", rounded_m(v_m.x), rounded_m(v_m.y), rounded_m(v_m.z));
-}
 
 /// Quoted alike in JSON and TOML; what is no UTF-8 is shown as a replacement character.
 std::string quoted(const std::string& text) {
@@ -58,18 +51,18 @@ std::string tool_mesh() { return kForceps; }
 std::string scene_text(const SceneValues& values, const ScenePlace& place) {
   const double nu = values.poisson_ratio;
   const double of_liver = values.youngs_modulus_Pa / (1.0 - nu * nu) / kLiver_Pa;
-  const double press_m = rounded_m(kPress_ratio * place.working_depth_m);
+  const double press_m = mesh::rounded_m(kPress_ratio * place.working_depth_m);
   using fmt::arg;
   return fmt::format(fmt::runtime(kScene), arg("organ", quoted(values.source)),
                      arg("name", quoted(values.name)), arg("map", quoted(values.map)),
                      arg("tool", quoted(values.tool)), arg("mesh", quoted(values.mesh)),
                      arg("mesh_unit_m", values.mesh_unit_m),
-                     arg("position_m", text_of(place.position_m)), arg("vertex", place.top),
-                     arg("fixed_min_m", text_of(place.fixed_min_m)),
-                     arg("fixed_max_m", text_of(place.fixed_max_m)),
+                     arg("position_m", mesh::toml_of(place.position_m)), arg("vertex", place.top),
+                     arg("fixed_min_m", mesh::toml_of(place.fixed_min_m)),
+                     arg("fixed_max_m", mesh::toml_of(place.fixed_max_m)),
                      arg("youngs_modulus_Pa", values.youngs_modulus_Pa), arg("poisson_ratio", nu),
-                     arg("working_depth_m", rounded_m(place.working_depth_m)),
-                     arg("press_m", press_m), arg("grip_m", rounded_m(press_m / 2.0)),
+                     arg("working_depth_m", mesh::rounded_m(place.working_depth_m)),
+                     arg("press_m", press_m), arg("grip_m", mesh::rounded_m(press_m / 2.0)),
                      arg("rhombus_normal_N_per_m", four_digits(1.604 * of_liver)),
                      arg("rhombus_tangential_N_per_m", four_digits(0.8257 * of_liver)),
                      arg("pull_N_per_m", four_digits(50.3 * of_liver)),
