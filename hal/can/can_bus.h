@@ -78,6 +78,7 @@ class BasicCanBus {
   std::uint32_t error_classes_seen() const RT_SAFE { return classes_seen_; }
   std::uint8_t controller_seen() const RT_SAFE { return controller_seen_; }
   Socket& socket() { return *socket_; }
+  const CanRate& rate() const { return socket_->rate(); }
 
  private:
   void judge(const CanError& error) RT_SAFE;

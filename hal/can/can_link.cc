@@ -114,6 +114,13 @@ std::optional<Error> check_interface(const CanLink& link, const std::string& nam
 
 }  // namespace
 
+CanRate CanLink::rate() const {
+  CanRate rate;
+  if (bitrate) rate.slow_bps = *bitrate;
+  if (fast_bitrate) rate.fast_bps = *fast_bitrate;
+  return rate;
+}
+
 std::optional<CanLink> decode_can_link(std::span<const std::uint8_t> message) {
   if (message.size() < kHeader + kLinkHeader) return std::nullopt;
   const std::size_t length = get_u32(message, 0);
@@ -140,7 +147,7 @@ std::optional<CanLink> decode_can_link(std::span<const std::uint8_t> message) {
 std::optional<Error> check_can_link(const CanLink& link, const std::string& name, int cycle_bits,
                                     double rate_Hz) {
   if (auto error = check_interface(link, name, CanFrame::kLinkType)) return error;
-  if (link.bitrate && cycle_bits * rate_Hz > kMaxLoad * *link.bitrate) {
+  if (link.bitrate && bus_time_s(cycle_bits, link.rate()) * rate_Hz > kMaxLoad) {
     return Error{
         fmt::format("{0} runs at {1} bit/s, too slow for three drives at {2} Hz: sudo ip "
                     "link set {0} down; sudo ip link set {0} up type can bitrate 1000000, "
@@ -160,9 +167,7 @@ std::optional<Error> check_can_fd_link(const CanLink& link, const std::string& n
                     name, CanFdFrame::kLinkType)};
   }
   if (!link.bitrate || !link.fast_bitrate) return std::nullopt;
-  const double cycle_s = cycle.slow / static_cast<double>(*link.bitrate) +
-                         cycle.fast / static_cast<double>(*link.fast_bitrate);
-  if (cycle_s * rate_Hz <= kMaxLoad) return std::nullopt;
+  if (bus_time_s(cycle, link.rate()) * rate_Hz <= kMaxLoad) return std::nullopt;
   return Error{fmt::format(
       "{0} runs at {1} and {2} bit/s, too slow for three drives at {3} Hz: sudo ip link "
       "set {0} down; sudo ip link set {0} up {4}, and the drives alike, or lower rate_Hz",

@@ -19,6 +19,7 @@
 
 #include "hal/can/can_fd_frame.h"
 #include "hal/can/can_frame.h"
+#include "hal/can/can_rate.h"
 #include "model/result.h"
 
 namespace tact::hal::can {
@@ -43,6 +44,8 @@ struct CanLink {
   std::optional<std::uint32_t> fast_bitrate{};  // of CAN FD
   std::optional<CanLinkState> state;
   std::optional<std::uint32_t> restart_ms;
+
+  CanRate rate() const;
 };
 
 /// Of one netlink message; nothing if it is no link or is cut short.

@@ -78,6 +78,30 @@ Result<int> open_socket(const std::string& name, int index, std::span<const can_
   return file.release();
 }
 
+Result<std::unique_ptr<CanSocket>> open_can_socket(const std::string& name, const CanLink& link,
+                                                   std::span<const std::uint32_t> ids) {
+  std::vector<can_filter> filters;
+  for (const std::uint32_t id : ids)  // exact: data frames of 11 bits, no requests
+    filters.push_back({.can_id = id, .can_mask = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG});
+  const auto fd = open_socket(name, link.index, filters, false);
+  if (!fd) return fd.error();
+  return std::make_unique<CanSocket>(*fd, link.rate());
+}
+
+Result<std::unique_ptr<CanFdSocket>> open_can_fd_socket(const std::string& name,
+                                                        const CanLink& link,
+                                                        std::span<const std::uint32_t> ids) {
+  std::vector<can_filter> filters;
+  for (const std::uint32_t id : ids) {  // exact
+    constexpr canid_t kAll = CAN_EFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG;
+    filters.push_back({.can_id = id | CAN_EFF_FLAG, .can_mask = kAll});
+    if (id <= CAN_SFF_MASK) filters.push_back({.can_id = id, .can_mask = kAll});
+  }
+  const auto fd = open_socket(name, link.index, filters, true);
+  if (!fd) return fd.error();
+  return std::make_unique<CanFdSocket>(*fd, link.rate());
+}
+
 }  // namespace
 
 Result<CanLink> read_can_link(const std::string& name) {
@@ -106,36 +130,13 @@ Result<CanLink> read_can_link(const std::string& name) {
   return *link;
 }
 
-Result<std::unique_ptr<CanSocket>> open_can_socket(const std::string& name, int index,
-                                                   std::span<const std::uint32_t> ids) {
-  std::vector<can_filter> filters;
-  for (const std::uint32_t id : ids)  // exact: data frames of 11 bits, no requests
-    filters.push_back({.can_id = id, .can_mask = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG});
-  const auto fd = open_socket(name, index, filters, false);
-  if (!fd) return fd.error();
-  return std::make_unique<CanSocket>(*fd);
-}
-
-Result<std::unique_ptr<CanFdSocket>> open_can_fd_socket(const std::string& name, int index,
-                                                        std::span<const std::uint32_t> ids) {
-  std::vector<can_filter> filters;
-  for (const std::uint32_t id : ids) {  // exact
-    constexpr canid_t kAll = CAN_EFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG;
-    filters.push_back({.can_id = id | CAN_EFF_FLAG, .can_mask = kAll});
-    if (id <= CAN_SFF_MASK) filters.push_back({.can_id = id, .can_mask = kAll});
-  }
-  const auto fd = open_socket(name, index, filters, true);
-  if (!fd) return fd.error();
-  return std::make_unique<CanFdSocket>(*fd);
-}
-
 Result<std::unique_ptr<CanSocket>> open_checked_can(const std::string& name, int cycle_bits,
                                                     double rate_Hz,
                                                     std::span<const std::uint32_t> ids) {
   const auto link = read_can_link(name);
   if (!link) return link.error();
   if (auto error = check_can_link(*link, name, cycle_bits, rate_Hz)) return *error;
-  return open_can_socket(name, link->index, ids);
+  return open_can_socket(name, *link, ids);
 }
 
 Result<std::unique_ptr<CanFdSocket>> open_checked_can_fd(const std::string& name,
@@ -144,7 +145,7 @@ Result<std::unique_ptr<CanFdSocket>> open_checked_can_fd(const std::string& name
   const auto link = read_can_link(name);
   if (!link) return link.error();
   if (auto error = check_can_fd_link(*link, name, cycle, rate_Hz)) return *error;
-  return open_can_fd_socket(name, link->index, ids);
+  return open_can_fd_socket(name, *link, ids);
 }
 
 }  // namespace tact::hal::can

@@ -18,14 +18,9 @@ namespace tact::hal::can {
 /// Asks the kernel. An error: no such interface, or the kernel's own words.
 model::Result<CanLink> read_can_link(const std::string& name);
 
-/// A raw socket for data frames of exactly these identifiers, and for error frames. Of CAN FD: a
-/// small identifier may come as an extended one.
-model::Result<std::unique_ptr<CanSocket>> open_can_socket(const std::string& name, int index,
-                                                          std::span<const std::uint32_t> ids);
-model::Result<std::unique_ptr<CanFdSocket>> open_can_fd_socket(const std::string& name, int index,
-                                                               std::span<const std::uint32_t> ids);
-
-/// All of the above, in this order.
+/// Asks for the link, checks it, and opens a raw socket that knows its rate: for data frames of
+/// exactly these identifiers, and for error frames. Of CAN FD: a small identifier may come as an
+/// extended one.
 model::Result<std::unique_ptr<CanSocket>> open_checked_can(const std::string& name, int cycle_bits,
                                                            double rate_Hz,
                                                            std::span<const std::uint32_t> ids);

@@ -57,7 +57,7 @@ timespec wall_clock() RT_SAFE {  // the clock of the kernel's stamps; answered w
 }  // namespace
 
 template <class Bytes>
-BasicCanSocket<Bytes>::BasicCanSocket(int fd) : fd_(fd) {
+BasicCanSocket<Bytes>::BasicCanSocket(int fd, const CanRate& rate) : fd_(fd), rate_(rate) {
   const int on = 1;
   setsockopt(fd_, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
   for (std::size_t i = 0; i < kMaxReceived; ++i) {

@@ -20,6 +20,7 @@
 
 #include "hal/can/can_fd_frame.h"
 #include "hal/can/can_frame.h"
+#include "hal/can/can_rate.h"
 #include "hal/can/stamp_age.h"
 
 namespace tact::hal::can {
@@ -38,8 +39,8 @@ class BasicCanSocket {
   static constexpr std::size_t kMaxReceived = 64, kMaxSent = 16;  // in one call
   static constexpr std::array kLoopCalls{SYS_recvmmsg, SYS_sendmmsg};
 
-  /// Takes the file over and asks it for time stamps.
-  explicit BasicCanSocket(int fd);
+  /// Takes the file over and asks it for time stamps. `rate`: of the bus behind it.
+  explicit BasicCanSocket(int fd, const CanRate& rate = {});
   BasicCanSocket(const BasicCanSocket&) = delete;
   BasicCanSocket& operator=(const BasicCanSocket&) = delete;
   virtual ~BasicCanSocket();
@@ -57,6 +58,7 @@ class BasicCanSocket {
 
   /// Open as long as this object.
   int fd() const RT_SAFE { return fd_; }
+  const CanRate& rate() const { return rate_; }
 
  private:
   std::int64_t age_ns(const msghdr& message) const RT_SAFE;
@@ -65,6 +67,7 @@ class BasicCanSocket {
     std::array<std::uint8_t, 64> bytes;
   };
   int fd_;
+  CanRate rate_;
   StampAge stamps_;
   std::array<mmsghdr, kMaxReceived> in_{};
   std::array<iovec, kMaxReceived> in_place_{};

@@ -268,11 +268,12 @@ Result<std::unique_ptr<Device>> start_cia402_delta(std::unique_ptr<can::CanBus> 
   const model::CanSettings& can = settings.can;
   const auto start = bring_up_cia402(*bus, can, rate_Hz);
   if (!start) return start.error();
-  // A sample is one period old when it is used; then three commands at 1 Mbit/s, and a period more
+  // A sample is one period old when it is used; then three commands on the bus, and a period more
   // if they wait for SYNC.
   const auto period_ns = std::llround(1e9 / rate_Hz);
   const int periods = can.command_at_sync ? 2 : 1;
   const int bits = 3 * can_bits_on_bus(can::make_can_frame(0, 4)).most;
+  const double bus_s = can::bus_time_s(bits, bus->rate());
   return can::start_can_device(
       std::move(bus), settings, rate_Hz,
       {.drives = std::make_unique<Cia402s>(can, rate_Hz, *start),
@@ -282,7 +283,7 @@ Result<std::unique_ptr<Device>> start_cia402_delta(std::unique_ptr<can::CanBus> 
        // Three heartbeats and half of one.
        .most_silent_ns = kMs_ns * cst_settings(can, rate_Hz).drive_heartbeat_ms * 7 / 2,
        .counts_per_turn = can.counts_per_motor_turn * settings.delta.gear_ratio,
-       .delay_s = 1e-9 * static_cast<double>(periods * period_ns) + 1e-6 * bits,
+       .delay_s = 1e-9 * static_cast<double>(periods * period_ns) + bus_s,
        .motor_turns = start->motor_turns,
        .caution = start->caution});
 }

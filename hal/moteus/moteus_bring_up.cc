@@ -177,9 +177,10 @@ class BringUp {
     }
   }
 
-  std::optional<Error> wrong(Condition fits, const char* words) const {
+  /// The first drive that `is_wrong`.
+  std::optional<Error> wrong(Condition is_wrong, const char* words) const {
     for (std::size_t i = 0; i < 3; ++i)
-      if (fits(axes_[i])) return Error{fmt::format("{} {}", can::can_arm_name(i, can_), words)};
+      if (is_wrong(axes_[i])) return Error{fmt::format("{} {}", can::can_arm_name(i, can_), words)};
     return std::nullopt;
   }
 

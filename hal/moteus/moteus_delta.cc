@@ -214,9 +214,7 @@ Result<std::unique_ptr<Device>> start_moteus_delta(std::unique_ptr<can::CanFdBus
   // A reply tells of the moment before its command (MO-2), so a position is one period old when it
   // is used; then all frames of a tick on the bus, at most.
   const auto period_ns = static_cast<double>(std::llround(1e9 / rate_Hz));
-  const can::CanFdBits bits = moteus_cycle_bits(settings.can);
-  const double bus_s = static_cast<double>(bits.slow) / can::kCanFdSlow_bps +
-                       static_cast<double>(bits.fast) / can::kCanFdFast_bps;
+  const double bus_s = can::bus_time_s(moteus_cycle_bits(settings.can), bus->rate());
   return can::start_can_device(
       std::move(bus), settings, rate_Hz,
       {.drives = std::make_unique<Moteuses>(

@@ -216,8 +216,9 @@ Result<std::unique_ptr<Device>> start_odrive_delta(std::unique_ptr<can::CanBus> 
   const auto start = bring_up_odrives(*bus, settings.can, rate_Hz);
   if (!start) return start.error();
   // A position is up to a period old (the drive's own clock); then three positions and three
-  // torques on the bus at 1 Mbit/s.
+  // torques on the bus.
   const auto period_ns = static_cast<double>(std::llround(1e9 / rate_Hz));
+  const can::CanRate rate = bus->rate();
   return can::start_can_device(
       std::move(bus), settings, rate_Hz,
       {.drives = std::make_unique<Odrives>(settings.can, start->generation),
@@ -226,7 +227,7 @@ Result<std::unique_ptr<Device>> start_odrive_delta(std::unique_ptr<can::CanBus> 
        .one_sync = false,
        .most_silent_ns = kSilence_ns,
        .counts_per_turn = settings.delta.counts_per_turn,
-       .delay_s = 1e-9 * period_ns + 1e-6 * odrive_cycle_bits(settings.can),
+       .delay_s = 1e-9 * period_ns + can::bus_time_s(odrive_cycle_bits(settings.can), rate),
        .motor_turns = start->motor_turns,
        .caution = *caution});
 }

@@ -31,8 +31,8 @@ class BasicScriptedSocket final : public hal::can::BasicCanSocket<typename Frame
   using Bytes = typename Frame::Bytes;
   using Base = hal::can::BasicCanSocket<Bytes>;
 
-  BasicScriptedSocket(int fd, std::function<void()> millisecond)
-      : Base(fd), millisecond_(std::move(millisecond)) {}
+  BasicScriptedSocket(int fd, const hal::can::CanRate& rate, std::function<void()> millisecond)
+      : Base(fd, rate), millisecond_(std::move(millisecond)) {}
 
   int receive(std::span<hal::can::BasicCanArrival<Bytes>> out) RT_SAFE override {
     ++calls;
@@ -78,13 +78,13 @@ class BasicScriptedBus {
   BasicScriptedBus& operator=(const BasicScriptedBus&) = delete;
   ~BasicScriptedBus() { unplug(); }
 
-  /// A new pair of ends, as for a host that was started again.
-  void connect() {
+  /// A new pair of ends, as for a host that was started again, or a bus at another rate.
+  void connect(const hal::can::CanRate& rate = {}) {
     unplug();
     int fds[2] = {-1, -1};
     if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, fds) != 0) std::abort();
     drives_fd_ = fds[1];
-    auto socket = std::make_unique<Socket>(fds[0], millisecond_);
+    auto socket = std::make_unique<Socket>(fds[0], rate, millisecond_);
     socket_ = socket.get();
     bus_ = std::make_unique<Bus>(std::move(socket));
   }

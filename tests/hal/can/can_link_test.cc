@@ -189,6 +189,18 @@ TEST(CanLink, ALinkForCanFdIsHeldToMoreThanOneForClassicFrames) {
   EXPECT_EQ(refusal_fd(link), "");
 }
 
+TEST(CanLink, ItsRateIsWhatItTellsAndAVirtualOneCountsAsWellSetUp) {
+  const CanFdBits bits{.slow = 300, .fast = 1000};
+  CanLink link;
+  EXPECT_DOUBLE_EQ(bus_time_s(230, link.rate()), 230e-6);
+  EXPECT_DOUBLE_EQ(bus_time_s(bits, link.rate()), 500e-6);
+  link.bitrate = 500'000;
+  EXPECT_DOUBLE_EQ(bus_time_s(230, link.rate()), 460e-6);
+  EXPECT_DOUBLE_EQ(bus_time_s(bits, link.rate()), 800e-6);
+  link.fast_bitrate = 2'000'000;
+  EXPECT_DOUBLE_EQ(bus_time_s(bits, link.rate()), 1100e-6);
+}
+
 TEST(CanLink, AnInterfaceThatIsNotThereIsNamedWithTheCure) {
   for (const char* name : {"can99", "", "aNameThatIsFarTooLongForAnInterface"}) {
     const auto socket = open_checked_can(name, 690, 1000.0, {});

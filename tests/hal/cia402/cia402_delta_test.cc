@@ -27,6 +27,16 @@ TEST(Cia402Delta, GoesToTorqueStepByStepInsideTheLoop) {
   }
 }
 
+TEST(Cia402Delta, ASlowerBusIsALaterForce) {
+  Bench fast, slow;
+  slow.drives.bus.connect({.slow_bps = 500'000});
+  ASSERT_EQ(fast.open(), "");
+  ASSERT_EQ(slow.open(), "");
+  constexpr double kThreeCommands_s = 3 * 95e-6;
+  EXPECT_NEAR(fast.device->info().at_tool->delay_s, 1e-3 + kThreeCommands_s, 1e-12);
+  EXPECT_NEAR(slow.device->info().at_tool->delay_s, 1e-3 + 2.0 * kThreeCommands_s, 1e-12);
+}
+
 TEST(Cia402Delta, TorqueIsZeroUntilAllThreeAreEnabled) {
   Bench bench;
   ASSERT_EQ(bench.open(), "");

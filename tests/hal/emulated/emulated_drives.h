@@ -43,10 +43,10 @@ class BasicEmulatedDrives {
     const int axis = static_cast<int>(i);
     drive[i] = std::make_unique<Drive>(axis, axis + 1, settings, cable, motor[i], plan_);
   }
-  /// Another host on the same drives.
-  void connect_again() {
+  /// Another host on the same drives, or another rate.
+  void connect_again(const hal::can::CanRate& rate = {}) {
     close(cable.descriptor());
-    bus.connect();
+    bus.connect(rate);
     cable.adopt(bus.give_drives_end());
   }
 

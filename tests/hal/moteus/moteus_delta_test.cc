@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "hal/moteus/moteus_bring_up.h"
 #include "hal/moteus/moteus_protocol.h"
 #include "tests/hal/moteus/moteus_bench.h"
 
@@ -22,6 +23,18 @@ TEST(MoteusDelta, IsReadyWhenAllThreeAreInPositionModeAndNoneHasHadATorqueBefore
   }
   EXPECT_GT(ticks, 50) << "40 ms to prepare, ten replies without torque";
   EXPECT_LT(ticks, 60);
+}
+
+TEST(MoteusDelta, ASlowerBusIsALaterForce) {
+  MoteusBench fast, slow;
+  slow.drives.connect_again({.slow_bps = 1e6, .fast_bps = 2e6});
+  ASSERT_EQ(fast.open(), "");
+  ASSERT_EQ(slow.open(), "");
+  const can::CanFdBits bits = moteus_cycle_bits(fast.settings.can);
+  EXPECT_NEAR(fast.device->info().at_tool->delay_s, 1e-3 + bits.slow / 1e6 + bits.fast / 5e6,
+              1e-12);
+  EXPECT_NEAR(slow.device->info().at_tool->delay_s, 1e-3 + bits.slow / 1e6 + bits.fast / 2e6,
+              1e-12);
 }
 
 TEST(MoteusDelta, NothingHasPowerWithoutPermissionAndThePoseIsKnown) {

@@ -43,6 +43,16 @@ TEST(OdriveDelta, IsReadyWhenAllThreeHeartbeatsSayClosedLoop) {
   EXPECT_GT(bench.ticks_until_ready(300), 0);
 }
 
+TEST(OdriveDelta, ASlowerBusIsALaterForce) {
+  Bench fast, slow;
+  slow.drives.bus.connect({.slow_bps = 500'000});
+  ASSERT_EQ(fast.open(), "");
+  ASSERT_EQ(slow.open(), "");
+  const double cycle_s = odrive_cycle_bits(fast.settings.can) / 1e6;
+  EXPECT_NEAR(fast.device->info().at_tool->delay_s, 1e-3 + cycle_s, 1e-12);
+  EXPECT_NEAR(slow.device->info().at_tool->delay_s, 1e-3 + 2.0 * cycle_s, 1e-12);
+}
+
 TEST(OdriveDelta, SendsZeroTorqueBeforeItAsksForPower) {
   Bench bench;
   ASSERT_EQ(bench.open(), "");
