@@ -56,7 +56,7 @@ def refused(back_end, name, emulator, *words):
 
 
 CASES = [
-    *(alive(back_end) for back_end in (ODRIVE06, ODRIVE05, CIA402)),
+    *(alive(back_end) for back_end in (ODRIVE06, ODRIVE05, CIA402, MOTEUS)),
     swept(ODRIVE06),
     swept(CIA402, long_only=True),
     recorded(ODRIVE06, checks.bus_of_odrives),

@@ -198,6 +198,8 @@ class Drives {
       record_.answer_sent(now_ns, monotonic_ns());
     }
     take_torques();
+    // A frame that stops commands no torque; no torque at all is no middle of a batch.
+    if (tau_Nm_ == Joints{}) record_.watch(platform_, tau_Nm_, faults_, now_ns);
     if (is_sync) record_.answer_sent(now_ns, monotonic_ns());
   }
 

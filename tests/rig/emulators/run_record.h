@@ -25,6 +25,9 @@ class RunRecord {
   /// A torque command arrived: `axis` -1 carries all three.
   void commanded(int axis, const Platform& platform, const Joints& tau_Nm, FaultPlan& faults,
                  std::int64_t now_ns);
+  /// These are the motors' torques, and no command is half taken.
+  void watch(const Platform& platform, const Joints& tau_Nm, FaultPlan& faults,
+             std::int64_t now_ns);
   /// Every millisecond. `enabled`: the motors obey, so the age of a command counts.
   void tick(const Platform& platform, const Joints& tau_Nm, bool enabled, FaultPlan& faults,
             std::int64_t now_ns);
@@ -44,8 +47,6 @@ class RunRecord {
     Vec3 position_m, force_N;
     Joints tau_Nm;
   };
-  void watch(const Platform& platform, const Joints& tau_Nm, FaultPlan& faults,
-             std::int64_t now_ns);
 
   std::vector<std::int64_t> cycle_ns_, own_ns_;
   std::vector<Row> rows_;
