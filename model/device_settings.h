@@ -112,6 +112,8 @@ struct DeviceSettings {
   FalconSettings falcon{};
   ForceDimensionSettings force_dimension{};
   LinesSettings lines{};
+
+  bool is_on_can() const { return kind.starts_with("can-"); }
 };
 
 }  // namespace tact::model

@@ -62,8 +62,7 @@ std::string reach_note(const model::scene::Scene& scene) {
   if (ratio < kMinOrgan_ratio || ratio > kMaxOrgan_ratio)
     return fmt::format(
         "{}: the organ is {:.3g} m long in a workspace {:.3g} m wide: is organ.mesh_unit_m the "
-        "unit "
-        "of its file? {}",
+        "unit of its file? {}",
         scene.path, size_m, 2.0 * scene.limits.workspace_radius_m, cure);
   if (scene.hand.path.size() < 2) return {};
   const double gap_m = least_gap_m(scene);

@@ -104,8 +104,7 @@ std::optional<std::string> DriveSettings::check_mode(int node) {
   if (mode == 0) return std::nullopt;
   return fmt::format(
       "stays in mode {} of operation (object 6061) and does not take cyclic synchronous torque, "
-      "{}: "
-      "set it with its maker's program",
+      "{}: set it with its maker's program",
       static_cast<std::int8_t>(mode), kTorqueMode);
 }
 

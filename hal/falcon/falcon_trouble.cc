@@ -63,8 +63,7 @@ std::string in_words(const FalconTrouble& t) {
           missing_axes(t.homed));
     case FalconTrouble::What::kStoodIn:
       return "the loop gave the Falcon no command for 100 ms, so its USB thread took the force "
-             "away: "
-             "free the loop's core of other work, then start again";
+             "away: free the loop's core of other work, then start again";
   }
   return {};
 }

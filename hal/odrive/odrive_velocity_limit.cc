@@ -67,15 +67,13 @@ model::Result<std::string> judge_odrive_velocity_limit(const model::DeviceSettin
   if (!own) {
     return fmt::format(
         "the ODrives keep their own velocity limit, which CAN does not tell; the maker's 2 turn/s "
-        "{}, "
-        "and {}: {}",
+        "{}, and {}: {}",
         at_rest, trips, cure);
   }
   if (limit.uncut_mps >= kHand_mps) return std::string();
   return fmt::format(
       "device.can.max_velocity_turns_per_s = {:g} may cut torque from {:.2f} m/s of the hand on, "
-      "and "
-      "{}: {}",
+      "and {}: {}",
       own_turns_per_s, limit.uncut_mps, trips, cure);
 }
 

@@ -221,8 +221,7 @@ Result<std::size_t> rings_for_tolerance(const HexSheetParameters& parameters,
   }
   return Error{
       fmt::format("hexagonal sheet: {} rings still miss the force of an endless sheet by {:g} %; "
-                  "allow a larger "
-                  "force error or take a larger ring_pitch_m or less tension_N",
+                  "allow a larger force error or take a larger ring_pitch_m or less tension_N",
                   kMaxHexRings, 100.0 * miss_ratio)};
 }
 

@@ -68,8 +68,7 @@ TEST_F(Scarce, WithoutAFreeDescriptorTheLoopGoesOnAndItsPersonIsHeard) {
   const Outcome out =
       in_bash("", "--socket t.sock",
               "begun; last=$(ls /proc/$tactd/fd | sort -n | tail -1); prlimit --pid $tactd "
-              "--nofile=$((last "
-              "+ 1)):$((last + 1))\n"
+              "--nofile=$((last + 1)):$((last + 1))\n"
               "sleep .3\n" +
                   program_path("tactctl") + " " + kLiver + " status; " + program_path("tactctl") +
                   " " + kLiver + " stop; wait $tactd; echo status $?; cat told out");

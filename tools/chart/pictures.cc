@@ -174,9 +174,7 @@ Result<std::vector<std::string>> draw_chart(const report::Table& table, const st
       "set size 1,0.46\nset origin 0,0.5\n"
       "set ylabel 'force error, RMS, % of the peak'\n"
       "set label 1 'a hand can tell a difference of 7 %' at graph 0.5, first 7 center offset 0,0.5 "
-      "font "
-      "',8' "
-      "tc rgb '#555555'\n"
+      "font ',8' tc rgb '#555555'\n"
       "set arrow 1 from graph 0, first 7 to graph 1, first 7 nohead dt 2 lc rgb '#555555'\n",
       title, families.least_us / 6.0, 3.0 * families.most_us, 2.0 * families.most_force);
   script += plot_of(families, kForce);

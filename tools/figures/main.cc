@@ -12,13 +12,11 @@ int main(int argc, char** argv) {
   tact::tools::program::Program program(
       "tact-figures",
       "The figures of the documents behind tact, drawn anew with its laws, and the numbers that "
-      "they "
-      "print\nbeside tact's.",
+      "they print\nbeside tact's.",
       "Each figure becomes a table (CSV and JSON, units in the column names) and a picture (SVG "
       "and "
       "PNG by\ngnuplot, with the script). numbers.csv: what the documents print, what tact has, "
-      "the "
-      "difference in\npercent of the printed number. [1] to [4]: model/SOURCES.md.");
+      "the difference in\npercent of the printed number. [1] to [4]: model/SOURCES.md.");
   std::string out;
   bool no_pictures = false;
   program.options()

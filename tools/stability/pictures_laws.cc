@@ -165,8 +165,7 @@ plot x lc 'black' dt 2 title "theory")gp";
   for (const NamedLaw& named : probed_laws()) {
     script += fmt::format(
         ", \\\n  f using (strcol(2) eq '{0}' ? $7*{1:.3f} : NaN):8 with points pt {2} ps 0.9 lc "
-        "{2} "
-        "title '{0}'",
+        "{2} title '{0}'",
         named.name, 1.0 + 0.03 * (i - 5), i + 1);
     ++i;
   }

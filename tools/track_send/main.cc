@@ -90,8 +90,7 @@ int main(int argc, char** argv) {
       "tact-track-send: plays a file of tracker observations (one JSON object per line, see\n"
       "host/tracking/README.md) as UDP datagrams to tact-view --tracking, with their own timing.\n"
       "Ctrl-C ends it. Exit status: 0 good, 1 lines were no observation or could not be sent, 2 "
-      "bad "
-      "usage\nor input."};
+      "bad usage\nor input."};
   app.add_option("file", options.file, "observations, one per line")->required();
   app.add_option("--port", options.port, "UDP port of tact-view on 127.0.0.1")
       ->capture_default_str()

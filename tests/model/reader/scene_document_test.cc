@@ -105,8 +105,7 @@ TEST(Override, ThatIsWrongIsToldAsItWasTyped) {
        "0.375 or more, or a lower speed_mps"},
       {"limits.continuous_force_N=0.5",
        "limits.thermal_time_s = 10 is too short to come from force_N = 8 to continuous_force_N = "
-       "0.5 "
-       "within the slew; allowed: 33.171 or more"},
+       "0.5 within the slew; allowed: 33.171 or more"},
       {"limits.slew_N_per_s=700",
        "limits.slew_N_per_s = 700 is too slow for force_N = 8: a lost device must fade to zero in "
        "10 ms; allowed: 816 or more"},

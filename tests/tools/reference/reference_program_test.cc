@@ -140,8 +140,7 @@ TEST(ReferenceProgram, TellsWhichLargeStrainHasNoSolutionAndKeepsTheRest) {
 TEST(ReferenceProgram, TriesItsFileBeforeTheWork) {
   expect_refusal(kLiver + " --sites 1714 --out /nowhere/liver.json",
                  "/nowhere/liver.json: cannot be written: No such file or directory; check the "
-                 "folder, who may "
-                 "write there and the free space");
+                 "folder, who may write there and the free space");
 }
 
 }  // namespace tact::tests::reference_program_test
