@@ -27,8 +27,10 @@ class Trouble(Exception):
 class Pc:
     """Switched on when made. `firmware` is "bios" or "uefi"."""
 
-    def __init__(self, disk, firmware, folder):
+    def __init__(self, disk, firmware, folder, stick=None):
         options = ["-drive", f"file={disk},if=ide,format=raw", "-serial", "stdio"]
+        if stick:  # its blocks are the file's: /dev/vda
+            options += ["-drive", f"file={stick},if=virtio,format=raw,readonly=on"]
         if firmware == "uefi":
             variables = folder / "uefi.fd"
             shutil.copy(OVMF / "OVMF_VARS_4M.fd", variables)
