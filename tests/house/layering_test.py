@@ -200,6 +200,7 @@ def main():
             if path.suffix in (".h", ".cc") and not name.startswith(CANARIES):
                 marks += len(re.findall(r"\bRT_SAFE\b", text))
                 breaches += foreign_breaches(name, text)
+                breaches += rooms.part_breaches(name, text)
                 breaches += real_time_breaches(name, text)
                 breaches += io_breaches(name, text)
                 breaches += vouch_breaches(name, text)

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """README.md stays short and narrow, prose of every *.md narrow, and every relative link leads to a file and its heading.
-Every room has a README.md that names each of its sources, with a line `Tests: ...`, whose programs and files there are.
+Every room has a README.md that names each of its sources and parts, with a line `Tests: ...`, whose programs and files
+there are.
 
 Reads the tree as text and prints every breach as file:line: sentence. Exit status 0 or 1.
 """
@@ -81,10 +82,11 @@ def width_breaches(path, text):
 
 def room_breaches(files):
     """A room without README.md; a README.md that names no test of its room, or one that is not there."""
-    for room in sorted({posixpath.dirname(path) for path in files if path.startswith(TOPS) and SOURCE.fullmatch(path)}):
+    for room in sorted({rooms.room_of(path) for path in files if path.startswith(TOPS) and SOURCE.fullmatch(path)}):
         if f"{room}/README.md" not in files:
             yield f"{room}/README.md:1: missing: which question does this room answer, by which files and tests?"
     yield from row_breaches(files)
+    yield from part_breaches(files)
     tests = [path for path in files if path.startswith("tests/") and path.endswith(("_test.cc", "_test.mjs"))]
     programs = {posixpath.dirname(path).removeprefix("tests/").replace("/", "_") + "_test" for path in tests}
     names = {*tests, *map(posixpath.basename, tests)}
@@ -106,13 +108,22 @@ def row_breaches(files):
     rooms_of = {}
     for path in files:
         if path.startswith(TOPS) and path.endswith((".h", ".cc")):
-            rooms_of.setdefault(posixpath.dirname(path), set()).add(posixpath.splitext(posixpath.basename(path))[0])
+            rooms_of.setdefault(rooms.room_of(path), set()).add(posixpath.splitext(posixpath.basename(path))[0])
     for room, names in rooms_of.items():
         if f"{room}/README.md" not in files:
             continue  # told already
         patterns = {posixpath.basename(word) for word in NAMED.findall(files[f"{room}/README.md"])}
         for name in sorted(name for name in names if not any(fnmatch.fnmatch(name, pattern) for pattern in patterns)):
             yield f"{room}/README.md:1: does not name {name}: what does it do?"
+
+
+def part_breaches(files):
+    """A part of a room that the room's README.md does not name, as `part/`."""
+    for room, parts in rooms.PARTS.items():
+        path = f"{room}/README.md"
+        for part in parts if path in files else []:
+            if f"`{part}/`" not in files[path]:
+                yield f"{path}:1: does not name {part}/: what is there?"
 
 
 def host_breaches(path, text):
@@ -175,7 +186,7 @@ def blind_rules():
         blind.append("long line elsewhere")
     if list(breaches({**files, "README.md": good, "a/c.md": f"| {wide} |\n" * (MAX_LINES + 1)})):
         blind.append("takes for a breach: many lines or a long row elsewhere")
-    named = "`b.h`, `c_*.cc`\n"
+    named, whole = "`b.h`, `c_*.cc`\n", "tests/rig/emulators"
     rooms_of = {"room without README.md": {"hal/c/d.cc": None}, "page without README.md": {"host/c/package.json": None},
                 "source that is not named": {"hal/a/e.cc": None}, "header that is not named": {"hal/a/c.h": None},
                 "no line of tests": {"hal/a/README.md": named + "The tests: `hal_a_test`\n"},
@@ -184,6 +195,7 @@ def blind_rules():
                 "program that is none": {"hal/a/README.md": named + "Tests: `hal_a_test`, `build/tests/hal_b_test`\n"},
                 "file that is none": {"hal/a/README.md": named + "Tests: `hal_a_test`, `c_test.cc`\n"},
                 "file elsewhere": {"hal/a/README.md": named + "Tests: `hal_a_test`, `tests/hal/b/b_test.cc`\n"},
+                "part that is not named": {f"{whole}/README.md": "".join(f"`{part}/` " for part in [*rooms.PARTS[whole]][1:])},
                 "another number of headers": {"host/README.md": "Tests: none. five headers, model/io\n"},
                 "room of host is not named": {"host/README.md": "Tests: none. four headers\n"}}
     for name, other in rooms_of.items():

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The rooms of the house: a folder is a namespace, a CMake target and an include path, and includes
-downwards only. `breaches(tree)` says where the tree does not hold to that; `blind_rules()` tries
-each rule on a breach of it.
+downwards only. A room that is too full has parts: folders of one responsibility each, in the room's
+namespace and library, which include each other downwards only, too. `breaches(tree)` says where the
+tree does not hold to that; `blind_rules()` tries each rule on a breach of it.
 """
 import re
 
@@ -74,6 +75,18 @@ TOOLS = {
     **dict.fromkeys(["figures", "stability"], ["program", "report", "printed"]),
     "verify": ["printed"],
 }
+# The parts of a room, and what each may include of the others. What stands in the room itself, as main.cc, includes
+# every part, and no part includes that. Other rooms take a room as a whole.
+PARTS = {
+    "tests/rig/emulators": {
+        "mechanics": [],
+        "run": ["mechanics"],
+        "can": ["run"],
+        **dict.fromkeys(["odrive", "cia402", "moteus"], ["can"]),
+        "falcon": ["mechanics", "run"],
+        "self_check": ["mechanics", "odrive", "cia402", "moteus", "falcon"],
+    },
+}
 # Where another room is known by these headers alone.
 SINGLE_HEADERS = {
     **{(f"host/{room}", "model"): {"result.h"} for room in ("tracking", "record", "igtl", "server", "run")},
@@ -87,13 +100,20 @@ OURS = re.compile(r'^\s*#include "([^"]+)"', re.M)
 NAMESPACE = re.compile(r"^namespace (tact(?:::\w+)+) \{", re.M)
 
 
+def room_and_part(path):
+    """Of a file in a part, its room and its part; of any other, its folder and nothing."""
+    folder = path.rsplit("/", 1)[0]
+    room, _, part = folder.rpartition("/")
+    return (room, part) if part in PARTS.get(room, {}) else (folder, "")
+
+
 def room_of(path):
-    return path.rsplit("/", 1)[0]
+    return room_and_part(path)[0]
 
 
 def may_include(room, header):
     """Tools measure every room, and tests prove them; no other room knows a tool or a test."""
-    other, name = header.rsplit("/", 1)
+    other, name = room_of(header), header.rsplit("/", 1)[1]
     if other == room:
         return True
     if room.startswith("tools/"):
@@ -111,6 +131,20 @@ def include_breaches(path, text):
         found = OURS.match(line)
         if found and not may_include(room, found[1]):
             yield f"{path}:{number}: {room}/ may not include {found[1]}"
+
+
+def part_breaches(path, text):
+    """A folder of a room that has parts and is none; what a part may not include of its room."""
+    room, part = room_and_part(path)
+    inside = next((other for other in PARTS if room.startswith(other + "/")), None)
+    if inside:
+        yield f"{path}:1: {room}/ is no part of {inside}/: give it a row in tests/house/rooms.py"
+    for number, line in enumerate(text.splitlines(), 1):
+        found = OURS.match(line)
+        if part and found:
+            other, its = room_and_part(found[1])
+            if other == room and its not in [part, *PARTS[room][part]]:
+                yield f"{path}:{number}: the part {part}/ may not include {found[1]}"
 
 
 def namespace_breaches(path, text):
@@ -170,6 +204,10 @@ def blind_rules():
     for name, found in {
             "a folder without a row": include_breaches("hal/new/x.h", ""),
             "a tool without a row": include_breaches("tools/new/x.h", ""),
+            "a folder that is no part": part_breaches("tests/rig/emulators/new/x.h", ""),
+            "a part knows few others": part_breaches("tests/rig/emulators/can/x.h", '#include "tests/rig/emulators/odrive/y.h"\n'),
+            "no part knows what its room itself holds": part_breaches("tests/rig/emulators/can/x.h",
+                                                                     '#include "tests/rig/emulators/y.h"\n'),
             "a tool knows few others": include_breaches("tools/verify/x.cc", '#include "tools/chart/y.h"\n'),
             "tools know no test": include_breaches("tools/chart/x.cc", '#include "tests/support/y.h"\n'),
             "namespace": namespace_breaches("hal/can/x.h", "namespace tact::hal {\n"),

@@ -1,21 +1,33 @@
 # SPDX-License-Identifier: Apache-2.0
-# The three things a folder can declare: tact_room, tact_program, tact_test.
+# What a folder can declare: tact_room, tact_part, tact_program, tact_test.
 
-# tact_room(SOURCES a.cc... LINKS target... [MOSTLY_LIBRARY])
+# tact_room([SOURCES a.cc...] [PARTS folder...] LINKS target... [MOSTLY_LIBRARY])
 # This folder as a library: model/law is the target tact_model_law. LINKS names the rooms that it
-# may include (tests/house/layering_test.py holds it to them) and the libraries that it uses.
+# may include (tests/house/layering_test.py holds it to them) and the libraries that it uses. PARTS:
+# its own folders, each with a tact_part of its sources.
 # MOSTLY_LIBRARY: more code of libraries' templates than computing, so a sanitizer optimises nothing.
 function(tact_room)
-  cmake_parse_arguments(ARG "MOSTLY_LIBRARY" "" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "MOSTLY_LIBRARY" "" "SOURCES;PARTS;LINKS" ${ARGN})
   tact_room_name(room)
-  if(ARG_SOURCES)
+  if(ARG_SOURCES OR ARG_PARTS)
     add_library(tact_${room} STATIC ${ARG_SOURCES})
     target_link_libraries(tact_${room} PUBLIC tact_flags ${ARG_LINKS})
     set_target_properties(tact_${room} PROPERTIES TACT_MOSTLY_LIBRARY ${ARG_MOSTLY_LIBRARY})
+    set(TACT_ROOM ${room})  # for tact_part
+    foreach(part ${ARG_PARTS})
+      add_subdirectory(${part})
+    endforeach()
   else()
     add_library(tact_${room} INTERFACE)
     target_link_libraries(tact_${room} INTERFACE tact_flags ${ARG_LINKS})
   endif()
+endfunction()
+
+# tact_part(SOURCES a.cc...)
+# A folder inside a room, in its library and its namespace: tools/jitter/run is of tact_tools_jitter.
+function(tact_part)
+  cmake_parse_arguments(ARG "" "" "SOURCES" ${ARGN})
+  target_sources(tact_${TACT_ROOM} PRIVATE ${ARG_SOURCES})
 endfunction()
 
 # tact_room_text(limits.html [NAME PATH]): the file, or that of a path, as kText, or NAME, of

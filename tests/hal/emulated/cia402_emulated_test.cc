@@ -7,7 +7,7 @@
 #include "hal/cia402/cia402_state.h"
 #include "hal/cia402/heartbeat_guard.h"
 #include "tests/hal/emulated/emulated_drives.h"
-#include "tests/rig/emulators/cia402_drive.h"
+#include "tests/rig/emulators/cia402/cia402_drive.h"
 
 namespace tact::hal::emulated::cia402_emulated_test {
 

@@ -17,8 +17,8 @@
 #include <type_traits>
 
 #include "hal/last_words.h"
-#include "tests/rig/emulators/can_bus.h"
-#include "tests/rig/emulators/drive.h"
+#include "tests/rig/emulators/can/can_bus.h"
+#include "tests/rig/emulators/can/drive.h"
 #include "tests/support/can_bench.h"
 #include "tests/support/can_drives.h"
 

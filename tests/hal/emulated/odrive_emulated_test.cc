@@ -6,7 +6,7 @@
 #include "hal/odrive/odrive_protocol.h"
 #include "hal/odrive/odrive_velocity_limit.h"
 #include "tests/hal/emulated/emulated_drives.h"
-#include "tests/rig/emulators/odrive_drive.h"
+#include "tests/rig/emulators/odrive/odrive_drive.h"
 
 namespace tact::hal::emulated::odrive_emulated_test {
 

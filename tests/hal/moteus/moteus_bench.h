@@ -8,7 +8,7 @@
 
 #include "hal/moteus/moteus_delta.h"
 #include "tests/hal/emulated/emulated_drives.h"
-#include "tests/rig/emulators/moteus_drive.h"
+#include "tests/rig/emulators/moteus/moteus_drive.h"
 
 namespace tact::tests {
 

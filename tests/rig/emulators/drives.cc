@@ -9,14 +9,14 @@
 #include <cstdio>
 #include <memory>
 
-#include "tests/rig/emulators/cia402_drive.h"
-#include "tests/rig/emulators/delta_mechanism.h"
-#include "tests/rig/emulators/emulator_options.h"
-#include "tests/rig/emulators/moteus_drive.h"
-#include "tests/rig/emulators/odrive_drive.h"
-#include "tests/rig/emulators/real_time.h"
-#include "tests/rig/emulators/run_record.h"
-#include "tests/rig/emulators/self_check.h"
+#include "tests/rig/emulators/cia402/cia402_drive.h"
+#include "tests/rig/emulators/mechanics/delta_mechanism.h"
+#include "tests/rig/emulators/moteus/moteus_drive.h"
+#include "tests/rig/emulators/odrive/odrive_drive.h"
+#include "tests/rig/emulators/run/emulator_options.h"
+#include "tests/rig/emulators/run/real_time.h"
+#include "tests/rig/emulators/run/run_record.h"
+#include "tests/rig/emulators/self_check/self_check.h"
 
 namespace {
 

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tests/rig/emulators/emulator_options.h"
-#include "tests/rig/emulators/falcon_mechanism.h"
-#include "tests/rig/emulators/falcon_usb.h"
-#include "tests/rig/emulators/real_time.h"
-#include "tests/rig/emulators/run_record.h"
-#include "tests/rig/emulators/self_check.h"
+#include "tests/rig/emulators/falcon/falcon_usb.h"
+#include "tests/rig/emulators/mechanics/falcon_mechanism.h"
+#include "tests/rig/emulators/run/emulator_options.h"
+#include "tests/rig/emulators/run/real_time.h"
+#include "tests/rig/emulators/run/run_record.h"
+#include "tests/rig/emulators/self_check/self_check.h"
 
 namespace {
 

@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tests/rig/emulators/real_time.h"
+#include "tests/rig/emulators/run/real_time.h"
 
 namespace {
 

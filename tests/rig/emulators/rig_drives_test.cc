@@ -6,10 +6,10 @@
 
 #include <cstring>
 
-#include "tests/rig/emulators/cia402_drive.h"
-#include "tests/rig/emulators/moteus_drive.h"
-#include "tests/rig/emulators/odrive_drive.h"
-#include "tests/rig/emulators/self_check.h"
+#include "tests/rig/emulators/cia402/cia402_drive.h"
+#include "tests/rig/emulators/moteus/moteus_drive.h"
+#include "tests/rig/emulators/odrive/odrive_drive.h"
+#include "tests/rig/emulators/self_check/self_check.h"
 
 namespace tact::rig::rig_drives_test {
 

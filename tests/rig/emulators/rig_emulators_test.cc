@@ -8,11 +8,11 @@
 #include <fstream>
 #include <sstream>
 
-#include "tests/rig/emulators/delta_mechanism.h"
-#include "tests/rig/emulators/falcon_mechanism.h"
-#include "tests/rig/emulators/ftdi_chip.h"
-#include "tests/rig/emulators/platform.h"
-#include "tests/rig/emulators/self_check.h"
+#include "tests/rig/emulators/falcon/ftdi_chip.h"
+#include "tests/rig/emulators/mechanics/delta_mechanism.h"
+#include "tests/rig/emulators/mechanics/falcon_mechanism.h"
+#include "tests/rig/emulators/mechanics/platform.h"
+#include "tests/rig/emulators/self_check/self_check.h"
 
 namespace tact::rig::rig_emulators_test {
 
