@@ -121,9 +121,9 @@ build_programs() {
 # which must be built, and npm packages by lock file; both only when changed.
 build_page() {
   local page="$1/page" web="$root/host/web" log stamp
-  "$1/tactd" --faults --json "$web/src/faults.json" >/dev/null || return 2
+  "$1/tactd" --faults --json "$web/src/panels/faults.json" >/dev/null || return 2
   stamp=$(cat "$web"/package-lock.json "$web"/*.json "$web"/*.ts "$web"/index.html \
-    "$web"/src/* "$web"/public/* 2>/dev/null | sha256sum)
+    "$web"/src/* "$web"/src/*/* "$web"/public/* 2>/dev/null | sha256sum)
   [ -f "$page/index.html" ] && [ "$(cat "$page/.stamp" 2>/dev/null)" = "$stamp" ] && return 0
   log=$(mktemp)
   if [ "$(sha256sum <"$web/package-lock.json")" != "$(cat "$web/node_modules/.stamp" 2>/dev/null)" ]

@@ -51,7 +51,7 @@ void visit_tool(reader::Keys& k, SceneText& out) {
   }
 }
 
-// The page has a picture of each: host/web/src/material.ts.
+// The page has a picture of each: host/web/src/scene/material.ts.
 constexpr std::array kMaterials{
     reader::Choice{"tissue", "moist and red, paler where it is stretched"},
     reader::Choice{"skin", "dry, paler where it is stretched"},

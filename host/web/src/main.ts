@@ -2,24 +2,24 @@
 // main.ts - puts the parts together: connection -> stage, panels, plots; mouse and keys -> hand.
 
 import "./style.css";
-import { Connection } from "./connection";
-import { describe_past_state, describe_state } from "./faults";
-import { dated_name, save } from "./file_names";
-import { HandControl } from "./hand_control";
-import type { Headset } from "./headset";
-import { by_id, Hud } from "./hud";
-import { bind_keys } from "./keys";
-import { split_link } from "./link";
-import { News } from "./news";
-import { Operator } from "./operator";
-import { OrganView } from "./organ_view";
-import { Outside } from "./outside";
-import { Plots } from "./plots";
-import { length_of, type FigureFrame, type Frame, type Mesh, type Scene, type Status, type Vec } from "./protocol";
-import { Recorder } from "./recorder";
-import { Stage } from "./stage";
-import { Timeline } from "./timeline";
-import { ToolView } from "./tool_view";
+import { Connection } from "./link/connection";
+import { describe_past_state, describe_state } from "./panels/faults";
+import { dated_name, save } from "./controls/file_names";
+import { HandControl } from "./controls/hand_control";
+import type { Headset } from "./operator/headset";
+import { by_id, Hud } from "./panels/hud";
+import { bind_keys } from "./controls/keys";
+import { split_link } from "./link/link";
+import { News } from "./link/news";
+import { Operator } from "./operator/operator";
+import { OrganView } from "./organ/organ_view";
+import { Outside } from "./scene/outside";
+import { Plots } from "./panels/plots";
+import { length_of, type FigureFrame, type Frame, type Mesh, type Scene, type Status, type Vec } from "./link/protocol";
+import { Recorder } from "./controls/recorder";
+import { Stage } from "./scene/stage";
+import { Timeline } from "./controls/timeline";
+import { ToolView } from "./scene/tool_view";
 
 /** Takes the token out of the address bar: no bookmark, history or screenshot keeps it. */
 function take_token(): string | null {
@@ -172,7 +172,7 @@ function draw(now_ms: number): void {
 /** After the first picture, so that it waits for nothing. */
 async function look_for_headset(): Promise<void> {
   if (!navigator.xr) return;
-  const { Headset } = await import("./headset");
+  const { Headset } = await import("./operator/headset");
   headset = new Headset(stage, draw);
   await headset.offer();
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { Deformer } from "../src/deform";
-import { Profile } from "../src/profile";
-import type { Site } from "../src/protocol";
+import { Deformer } from "../src/organ/deform";
+import { Profile } from "../src/organ/profile";
+import type { Site } from "../src/link/protocol";
 
 const kPitch_m = 0.004;
 const kRings = [0.01, 0.006, 0.003, 0.001, 0];

@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { describe, describe_past_state, describe_state } from "../src/faults";
+import { describe, describe_past_state, describe_state } from "../src/panels/faults";
 
 test("a number of tactd has a name, a cause and a cure", () => {
   const fault = describe(131);

@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { dated_name } from "../src/file_names";
+import { dated_name } from "../src/controls/file_names";
 
 const then = new Date(2026, 2, 1, 4, 5, 9);
 

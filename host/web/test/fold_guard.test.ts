@@ -3,9 +3,9 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { Deformer } from "../src/deform";
-import { FoldGuard } from "../src/fold_guard";
-import type { Site, Vec } from "../src/protocol";
+import { Deformer } from "../src/organ/deform";
+import { FoldGuard } from "../src/organ/fold_guard";
+import type { Site, Vec } from "../src/link/protocol";
 
 const kPitch_m = 0.001;
 const kTip_m = 0.004;

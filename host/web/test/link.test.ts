@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { split_link } from "../src/link";
+import { split_link } from "../src/link/link";
 
 test("the token leaves the fragment, the rest stays", () => {
   assert.deepEqual(split_link("#token=0f9a"), { token: "0f9a", rest: "" });

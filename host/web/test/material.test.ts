@@ -2,8 +2,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { readFileSync } from "node:fs";
-import { kMaterials, organ_material, piece_tints, pieces_of, tool_material } from "../src/material";
-import type { Scene, Vec } from "../src/protocol";
+import { kMaterials, organ_material, piece_tints, pieces_of, tool_material } from "../src/scene/material";
+import type { Scene, Vec } from "../src/link/protocol";
 
 function mesh(vertices: number, triangle: number[]) {
   return { vertex_m: new Float32Array(3 * vertices), triangle: Uint32Array.from(triangle) };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { News } from "../src/news";
+import { News } from "../src/link/news";
 
 /** The silence that is told last, of pictures so many ms apart from one time to another. */
 function look(news: News, from_ms: number, to_ms: number, apart_ms: number, frame_rate_Hz = 60): number {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { direction_words, edge_of } from "../src/outside";
+import { direction_words, edge_of } from "../src/scene/outside";
 
 // A picture of 1000 x 800 px, 800 px of focal length, with a panel at its right; an arrow may be from 200 to 700, 100 to 600.
 const free = { left: 200, top: 100, right: 700, bottom: 600 };

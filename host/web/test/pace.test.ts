@@ -2,7 +2,7 @@
 // What was told last before a silence is what tells why it is silent: it must never be dropped.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { Pace } from "../src/pace";
+import { Pace } from "../src/link/pace";
 
 test("gives the first at once, then the newest, once per period", () => {
   const pace = new Pace<string>(100);

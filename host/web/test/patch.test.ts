@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { Deformer } from "../src/deform";
-import { Cuts, decode_moved } from "../src/patch";
-import type { Patch } from "../src/protocol";
+import { Deformer } from "../src/organ/deform";
+import { Cuts, decode_moved } from "../src/organ/patch";
+import type { Patch } from "../src/link/protocol";
 
 /** Two vertices, 7 and 70 000, moved by 1, -2, 3 um and by 32 767, 0, -1 um: as tact-view writes it. */
 const kPatch: Patch = { count: 2, moved: "BwAAAHARAQABAP7/AwD/fwAA//8=", cut_total: 0, cut: [] };

@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { outside, robust_range, whole_range } from "../src/scale";
+import { outside, robust_range, whole_range } from "../src/panels/scale";
 
 const usual = Array.from({ length: 600 }, (_, i) => 800 + (i % 50));
 

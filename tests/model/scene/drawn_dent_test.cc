@@ -31,7 +31,7 @@ json reference(const std::string& name) {
 
 Vec3 vector_of(const json& j) { return {j[0], j[1], j[2]}; }
 
-/// The curve through the rings of a profile, as host/web/src/profile.ts draws it.
+/// The curve through the rings of a profile, as host/web/src/organ/profile.ts draws it.
 class Curve {
  public:
   Curve(std::span<const double> ring_m, double pitch_m) : pitch_m_(pitch_m) {
@@ -81,7 +81,7 @@ class DrawnDent : public ::testing::Test {
     return {{ring_m.data(), count}, law.ring_pitch_m()};
   }
 
-  /// What host/web/src/deform.ts adds to a vertex for one site.
+  /// What host/web/src/organ/deform.ts adds to a vertex for one site.
   Vec3 dent_m(const contact::SphereTouch& touch, std::uint32_t vertex) const {
     if (!(touch.dent_m > 0.0)) return {};
     const contact::Indentation in{

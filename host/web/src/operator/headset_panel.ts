@@ -3,8 +3,8 @@
 // page's own words.
 
 import * as THREE from "three";
-import type { Said } from "./hud";
-import type { Vec } from "./protocol";
+import type { Said } from "../panels/hud";
+import type { Vec } from "../link/protocol";
 
 const kWide_px = 1024;
 const kHigh_px = 576;

@@ -2,9 +2,9 @@
 // timeline.ts - where a recording is, how long it is, how fast it plays, where the force was stopped.
 // It asks; the tact-view that replays moves, and all pages with it.
 
-import { describe } from "./faults";
-import { by_id } from "./hud";
-import type { Replay, ReplayWish } from "./protocol";
+import { describe } from "../panels/faults";
+import { by_id } from "../panels/hud";
+import type { Replay, ReplayWish } from "../link/protocol";
 
 const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4, 8];
 const kBack_s = 1;

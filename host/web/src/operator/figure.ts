@@ -2,7 +2,7 @@
 // figure.ts - pure functions of the operator's figure: the outline of a capsule, when one hides the
 // view, where the eyes are. Vectors are [x, y, z] in frame W, m.
 
-import type { FigureFrame, Skeleton, Vec } from "./protocol";
+import type { FigureFrame, Skeleton, Vec } from "../link/protocol";
 
 /** Eyes are so far from the head's joint, in the head's own axes (-x is where the face looks). */
 const kEyes_m: Vec = [-0.085, 0, 0.04];

@@ -3,8 +3,8 @@
 
 import * as THREE from "three";
 import { hides, joint, outline } from "./figure";
-import { kAccent, kFigure, look_material, paint } from "./look";
-import type { Capsule, FigureFrame, Skeleton, Vec } from "./protocol";
+import { kAccent, kFigure, look_material, paint } from "../scene/look";
+import type { Capsule, FigureFrame, Skeleton, Vec } from "../link/protocol";
 
 const kSegments = 32;
 

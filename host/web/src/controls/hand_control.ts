@@ -4,8 +4,8 @@
 // The wish is repeated until a few seconds after the last move, or as long as the mode is on.
 
 import * as THREE from "three";
-import type { Stage } from "./stage";
-import type { Frame, Vec } from "./protocol";
+import type { Stage } from "../scene/stage";
+import type { Frame, Vec } from "../link/protocol";
 
 const kMinGap_ms = 1000 / 60;
 const kWheel_m = 0.00002; // per wheel unit: a notch of 100 is 2 mm

@@ -9,8 +9,8 @@
 //     S  bright windows of a soft-lit room                       Forum 13 (1994) 233]
 
 import * as THREE from "three";
-import { smoothstep } from "./profile";
-import { dot, type Vec } from "./protocol";
+import { smoothstep } from "../organ/profile";
+import { dot, type Vec } from "../link/protocol";
 
 const kPixels = 256;
 const kEdge = 0.495; // the picture's rim stays inside: at = kEdge n.xy + 0.5

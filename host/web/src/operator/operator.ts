@@ -3,9 +3,9 @@
 
 import { eyes_of, grip_error_m } from "./figure";
 import { FigureView } from "./figure_view";
-import { by_id, type Hud } from "./hud";
-import type { FigureFrame, Skeleton, Status, Vec } from "./protocol";
-import type { Stage } from "./stage";
+import { by_id, type Hud } from "../panels/hud";
+import type { FigureFrame, Skeleton, Status, Vec } from "../link/protocol";
+import type { Stage } from "../scene/stage";
 
 export class Operator {
   on = true;

@@ -2,8 +2,8 @@
 // hud.ts - the panels: everything that is said in words and numbers.
 
 import { describe, describe_past_state, describe_state } from "./faults";
-import { Pace } from "./pace";
-import { length_of, type FigureFrame, type Frame, type Scene, type Status } from "./protocol";
+import { Pace } from "../link/pace";
+import { length_of, type FigureFrame, type Frame, type Scene, type Status } from "../link/protocol";
 
 const kHold_ms = 1500; // a limit that acted for one tick stays readable this long
 const kRewrite_ms = 100; // numbers that change faster cannot be read

@@ -3,8 +3,8 @@
 // of them by its ticks and saves it as a file that tact-view can open.
 
 import { dated_name, save } from "./file_names";
-import { by_id } from "./hud";
-import type { Frame } from "./protocol";
+import { by_id } from "../panels/hud";
+import type { Frame } from "../link/protocol";
 
 export class Recorder {
   private first: Frame | null = null;

@@ -3,7 +3,7 @@
 // blade has cut. Cuts come in windows over one growing list, so a lost frame costs nothing: the
 // window moves on and comes round again.
 
-import type { Patch } from "./protocol";
+import type { Patch } from "../link/protocol";
 
 const kVertexBytes = 4;
 const kMoveBytes = 6; // three int16, micrometres

@@ -2,7 +2,7 @@
 // plots.ts - depth, force and time left before the deadline over the last ten seconds.
 
 import { largest, Plot } from "./plot";
-import { length_of, type Frame } from "./protocol";
+import { length_of, type Frame } from "../link/protocol";
 import { robust_range, whole_range } from "./scale";
 
 const kSpan_s = 10;

@@ -2,7 +2,7 @@
 // material.ts - what organ and tool look like: the materials that [look] of a scene may name (model/scene/scene_keys.cc).
 
 import { kCover, kGlove, kSkin, kSteel, kTissue, type Look } from "./look";
-import type { Mesh, Scene, Vec } from "./protocol";
+import type { Mesh, Scene, Vec } from "../link/protocol";
 
 export interface Material {
   look: Look;

@@ -4,11 +4,11 @@
 
 import * as THREE from "three";
 import { Deformer, type Deformed } from "./deform";
-import { look_material, paint } from "./look";
-import { organ_material, piece_tints, type Material } from "./material";
-import type { Target } from "./outside";
+import { look_material, paint } from "../scene/look";
+import { organ_material, piece_tints, type Material } from "../scene/material";
+import type { Target } from "../scene/outside";
 import { Cuts, decode_moved } from "./patch";
-import type { Mesh, Patch, Scene, Site, Vec } from "./protocol";
+import type { Mesh, Patch, Scene, Site, Vec } from "../link/protocol";
 import { Wound } from "./wound";
 
 // Factors on the baked colour of the tissue (look.ts).

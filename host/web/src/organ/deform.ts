@@ -19,7 +19,7 @@
 import { FoldGuard } from "./fold_guard";
 import type { Moved } from "./patch";
 import { Profile, smoothstep } from "./profile";
-import type { Site } from "./protocol";
+import type { Site } from "../link/protocol";
 
 export interface Deformed {
   moved: number; // vertices that moved by more than a micrometre

@@ -6,7 +6,7 @@ import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
 import { look_material, paint } from "./look";
 import { kMaterials, tool_material } from "./material";
 import type { Target } from "./outside";
-import { dot, length_of, type Frame, type Mesh, type Scene, type Vec } from "./protocol";
+import { dot, length_of, type Frame, type Mesh, type Scene, type Vec } from "../link/protocol";
 
 const kTouch = new THREE.Color("#7fd1c7");
 const kHeld = new THREE.Color("#f2b04e");
