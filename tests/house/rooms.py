@@ -86,6 +86,12 @@ PARTS = {
         "falcon": ["mechanics", "run"],
         "self_check": ["mechanics", "odrive", "cia402", "moteus", "falcon"],
     },
+    "tools/jitter": {
+        "statistics": [],
+        "trace": ["statistics"],
+        "run": ["statistics", "trace"],
+        "report": ["statistics", "run"],
+    },
 }
 # Where another room is known by these headers alone.
 SINGLE_HEADERS = {

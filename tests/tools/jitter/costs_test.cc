@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the kernel counts of the loop's core and thread, read from files that a test has written.
-#include "tools/jitter/costs.h"
+#include "tools/jitter/statistics/costs.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "tools/jitter/marker.h"
+#include "tools/jitter/trace/marker.h"
 #include "tools/program/run_program.h"
 
 namespace tact::tools::jitter::costs_test {

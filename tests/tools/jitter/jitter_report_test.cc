@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/jitter/jitter_report.h"
+#include "tools/jitter/report/jitter_report.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <sstream>
 
 #include "tests/support/program.h"
-#include "tools/jitter/jitter_compare.h"
-#include "tools/jitter/jitter_page.h"
-#include "tools/jitter/jitter_picture.h"
+#include "tools/jitter/report/jitter_compare.h"
+#include "tools/jitter/report/jitter_page.h"
+#include "tools/jitter/report/jitter_picture.h"
 #include "tools/program/run_program.h"
 
 namespace tact::tools::jitter::jitter_report_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/jitter/jitter_run.h"
+#include "tools/jitter/run/jitter_run.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include "tests/support/no_alloc.h"
 #include "tests/support/program.h"
 #include "tests/support/puppet_loop.h"
-#include "tools/jitter/bare_loop.h"
-#include "tools/jitter/load.h"
+#include "tools/jitter/run/bare_loop.h"
+#include "tools/jitter/run/load.h"
 
 namespace tact::tools::jitter::jitter_run_test {
 

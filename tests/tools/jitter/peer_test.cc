@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // cyclictest beside the loop: its samples, its turns, and the ratio that is told and judged.
-#include "tools/jitter/peer.h"
+#include "tools/jitter/run/peer.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/program.h"
-#include "tools/jitter/jitter_page.h"
-#include "tools/jitter/jitter_report.h"
+#include "tools/jitter/report/jitter_page.h"
+#include "tools/jitter/report/jitter_report.h"
 
 namespace tact::tools::jitter::peer_test {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The row that a person sends for the table of PCs.
-#include "tools/jitter/submission.h"
+#include "tools/jitter/report/submission.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The trace of tact-jitter, read by Google's own protoc: what ui.perfetto.dev is given.
-#include "tools/jitter/tick_trace.h"
+#include "tools/jitter/trace/tick_trace.h"
 
 #include <gtest/gtest.h>
 
