@@ -92,6 +92,13 @@ PARTS = {
         "run": ["statistics", "trace"],
         "report": ["statistics", "run"],
     },
+    "tools/reference": {
+        "calculix": [],
+        "organ": [],
+        "press": ["calculix", "organ"],
+        "plan": ["organ", "press"],
+        "self_check": ["press"],
+    },
 }
 # Where another room is known by these headers alone.
 SINGLE_HEADERS = {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tools/reference/calculix.h"
+#include "tools/reference/calculix/calculix.h"
 
 namespace tact::tests {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/reference/organ_body.h"
+#include "tools/reference/organ/organ_body.h"
 
 namespace tact::tools::chart {
 namespace {

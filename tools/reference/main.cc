@@ -13,10 +13,10 @@
 #include "tools/program/program.h"
 #include "tools/program/run_program.h"
 #include "tools/program/sweep.h"
-#include "tools/reference/reference_plan.h"
-#include "tools/reference/self_check.h"
-#include "tools/reference/sideways_plan.h"
-#include "tools/reference/tool_plan.h"
+#include "tools/reference/plan/reference_plan.h"
+#include "tools/reference/plan/sideways_plan.h"
+#include "tools/reference/plan/tool_plan.h"
+#include "tools/reference/self_check/self_check.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The contact of rigid spheres with a half-space, from the compliance of uniformly pressed squares
 // (A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377), held against answers that are known.
-#include "tools/reference/active_set.h"
+#include "tools/reference/press/active_set.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <numbers>
 #include <random>
 
-#include "tools/reference/half_space.h"
+#include "tools/reference/press/half_space.h"
 
 namespace tact::tools::reference::active_set_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/reference/ball_press.h"
+#include "tools/reference/press/ball_press.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <set>
 
 #include "tests/support/needs_calculix.h"
-#include "tools/reference/block.h"
-#include "tools/reference/rigid_ball.h"
+#include "tools/reference/calculix/rigid_ball.h"
+#include "tools/reference/self_check/block.h"
 
 namespace tact::tools::reference::ball_press_test {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/reference/calculix_deck.h"
+#include "tools/reference/calculix/calculix_deck.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdio>
 
-#include "tools/reference/rigid_ball.h"
+#include "tools/reference/calculix/rigid_ball.h"
 
 namespace tact::tools::reference::calculix_deck_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/reference/calculix.h"
+#include "tools/reference/calculix/calculix.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/reference/contact_radius.h"
+#include "tools/reference/press/contact_radius.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "tests/support/shapes.h"
-#include "tools/reference/half_space.h"
+#include "tools/reference/press/half_space.h"
 
 namespace tact::tools::reference::contact_radius_test {
 

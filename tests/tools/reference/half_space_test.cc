@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/reference/half_space.h"
+#include "tools/reference/press/half_space.h"
 
 #include <gtest/gtest.h>
 

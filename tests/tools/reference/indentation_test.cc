@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/reference/indentation.h"
+#include "tools/reference/press/indentation.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "tests/support/shapes.h"
-#include "tools/reference/block.h"
-#include "tools/reference/half_space.h"
+#include "tools/reference/press/half_space.h"
+#include "tools/reference/self_check/block.h"
 
 namespace tact::tools::reference::indentation_test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/reference/reference_plan.h"
+#include "tools/reference/plan/reference_plan.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "tools/reference/block.h"
+#include "tools/reference/self_check/block.h"
 
 namespace tact::tools::reference::reference_plan_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/reference/refine_surface.h"
+#include "tools/reference/organ/refine_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "tests/support/shapes.h"
 #include "tools/program/interrupt.h"
 #include "tools/program/run_program.h"
-#include "tools/reference/block.h"
+#include "tools/reference/self_check/block.h"
 
 namespace tact::tools::reference::refine_surface_test {
 

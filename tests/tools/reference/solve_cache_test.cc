@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/reference/solve_cache.h"
+#include "tools/reference/plan/solve_cache.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <thread>
 
 #include "tools/program/run_program.h"
-#include "tools/reference/block.h"
-#include "tools/reference/contact_radius.h"
-#include "tools/reference/half_space.h"
+#include "tools/reference/press/contact_radius.h"
+#include "tools/reference/press/half_space.h"
+#include "tools/reference/self_check/block.h"
 
 namespace tact::tools::reference::solve_cache_test {
 

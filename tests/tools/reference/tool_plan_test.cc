@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/reference/tool_plan.h"
+#include "tools/reference/plan/tool_plan.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <set>
 
 #include "tests/support/shapes.h"
-#include "tools/reference/surface_rays.h"
+#include "tools/reference/organ/surface_rays.h"
 
 namespace tact::tools::reference::tool_plan_test {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Several spheres pressed by finite elements, against answers that are known otherwise.
-#include "tools/reference/tool_press.h"
+#include "tools/reference/press/tool_press.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "tools/reference/block.h"
-#include "tools/reference/half_space.h"
-#include "tools/reference/reference_plan.h"
+#include "tools/reference/plan/reference_plan.h"
+#include "tools/reference/press/half_space.h"
+#include "tools/reference/self_check/block.h"
 
 namespace tact::tools::reference::tool_press_test {
 
