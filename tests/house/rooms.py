@@ -99,6 +99,13 @@ PARTS = {
         "plan": ["organ", "press"],
         "self_check": ["press"],
     },
+    "tools/stability": {
+        "sweep": [],
+        "laws": [],
+        "loop": ["sweep"],
+        "pictures": ["sweep", "laws"],
+        "maps": ["sweep", "laws", "loop", "pictures"],
+    },
 }
 # Where another room is known by these headers alone.
 SINGLE_HEADERS = {

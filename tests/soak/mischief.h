@@ -8,7 +8,7 @@
 #include "hal/sim/sim_delta.h"
 #include "hal/sim/sim_lines.h"
 #include "model/scene/scene.h"
-#include "tools/stability/random.h"
+#include "tools/stability/loop/random.h"
 
 namespace tact::soak {
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/program/program.h"
-#include "tools/stability/run_maps.h"
+#include "tools/stability/sweep/run_maps.h"
 
 namespace {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The independent simulation of the loop against closed formulas, so that the maps can be believed.
-#include "tools/stability/haptic_loop.h"
+#include "tools/stability/loop/haptic_loop.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "model/law/haptic_limit.h"
-#include "tools/stability/gate_watch.h"
+#include "tools/stability/loop/gate_watch.h"
 
 namespace tact::tools::stability::haptic_loop_test {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The laws with memory that the stability maps probe are what the maps say of them.
-#include "tools/stability/memory_laws.h"
+#include "tools/stability/laws/memory_laws.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "tools/stability/haptic_loop.h"
-#include "tools/stability/laws.h"
+#include "tools/stability/laws/laws.h"
+#include "tools/stability/loop/haptic_loop.h"
 
 namespace tact::tools::stability::memory_laws_test {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every map on its coarse grid: each finding is a theorem of the method it measures.
-#include "tools/stability/run_maps.h"
+#include "tools/stability/sweep/run_maps.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

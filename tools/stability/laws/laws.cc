@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/stability/laws.h"
+#include "tools/stability/laws/laws.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include "model/indent/rhombus_chain.h"
 #include "model/law/tabulated_law.h"
 #include "tools/printed/hex_paper.h"
-#include "tools/stability/memory_laws.h"
+#include "tools/stability/laws/memory_laws.h"
 
 namespace tact::tools::stability {
 namespace {

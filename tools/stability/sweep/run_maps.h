@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/stability/map.h"
+#include "tools/stability/sweep/map.h"
 
 namespace tact::tools::stability {
 

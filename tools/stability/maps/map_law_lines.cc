@@ -16,8 +16,8 @@
 #include "model/indent/hex_sheet.h"
 #include "model/indent/rhombus_unit.h"
 #include "tools/printed/hex_paper.h"
-#include "tools/stability/map.h"
-#include "tools/stability/pictures.h"
+#include "tools/stability/pictures/pictures.h"
+#include "tools/stability/sweep/map.h"
 
 namespace tact::tools::stability {
 namespace {

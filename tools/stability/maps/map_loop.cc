@@ -9,11 +9,11 @@
 #include <algorithm>
 
 #include "model/law/haptic_limit.h"
-#include "tools/stability/axes.h"
-#include "tools/stability/gate_watch.h"
-#include "tools/stability/haptic_loop.h"
-#include "tools/stability/map.h"
-#include "tools/stability/pictures.h"
+#include "tools/stability/loop/gate_watch.h"
+#include "tools/stability/loop/haptic_loop.h"
+#include "tools/stability/pictures/pictures.h"
+#include "tools/stability/sweep/axes.h"
+#include "tools/stability/sweep/map.h"
 
 namespace tact::tools::stability {
 namespace {

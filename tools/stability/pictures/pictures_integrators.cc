@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "model/springs/integrator_stability.h"
-#include "tools/stability/pictures.h"
-#include "tools/stability/probed_methods.h"
+#include "tools/stability/laws/probed_methods.h"
+#include "tools/stability/pictures/pictures.h"
 
 namespace tact::tools::stability {
 namespace {

@@ -12,10 +12,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/stability/axes.h"
-#include "tools/stability/gate_watch.h"
-#include "tools/stability/map.h"
-#include "tools/stability/pictures.h"
+#include "tools/stability/loop/gate_watch.h"
+#include "tools/stability/pictures/pictures.h"
+#include "tools/stability/sweep/axes.h"
+#include "tools/stability/sweep/map.h"
 
 namespace tact::tools::stability {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/stability/map.h"
+#include "tools/stability/sweep/map.h"
 
 namespace tact::tools::stability {
 

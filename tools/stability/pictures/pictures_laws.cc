@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "tools/stability/laws.h"
-#include "tools/stability/pictures.h"
+#include "tools/stability/laws/laws.h"
+#include "tools/stability/pictures/pictures.h"
 
 namespace tact::tools::stability {
 

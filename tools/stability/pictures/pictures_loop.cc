@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/stability/pictures.h"
+#include "tools/stability/pictures/pictures.h"
 
 namespace tact::tools::stability {
 

@@ -10,10 +10,10 @@
 #include <cmath>
 
 #include "model/springs/integrator_stability.h"
-#include "tools/stability/axes.h"
-#include "tools/stability/map.h"
-#include "tools/stability/pictures.h"
-#include "tools/stability/probed_methods.h"
+#include "tools/stability/laws/probed_methods.h"
+#include "tools/stability/pictures/pictures.h"
+#include "tools/stability/sweep/axes.h"
+#include "tools/stability/sweep/map.h"
 
 namespace tact::tools::stability {
 namespace {

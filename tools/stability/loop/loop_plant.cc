@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/stability/loop_plant.h"
+#include "tools/stability/loop/loop_plant.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/stability/run_maps.h"
+#include "tools/stability/sweep/run_maps.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/stability/memory_laws.h"
+#include "tools/stability/laws/memory_laws.h"
 
 #include <array>
 #include <vector>

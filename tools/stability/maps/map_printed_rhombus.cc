@@ -16,9 +16,9 @@
 #include <numbers>
 
 #include "tools/printed/rhombus_paper.h"
-#include "tools/stability/axes.h"
-#include "tools/stability/map.h"
-#include "tools/stability/pictures.h"
+#include "tools/stability/pictures/pictures.h"
+#include "tools/stability/sweep/axes.h"
+#include "tools/stability/sweep/map.h"
 
 namespace tact::tools::stability {
 namespace {

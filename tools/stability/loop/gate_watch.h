@@ -11,7 +11,7 @@
 #include <cmath>
 
 #include "firmware/gate/gate.h"
-#include "tools/stability/map.h"
+#include "tools/stability/sweep/map.h"
 
 namespace tact::tools::stability {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "tools/stability/map.h"
+#include "tools/stability/sweep/map.h"
 
 namespace tact::tools::stability {
 

@@ -19,10 +19,10 @@
 #include "model/law/haptic_limit.h"
 #include "model/scene/tissue.h"
 #include "tools/program/simulated_loop.h"
-#include "tools/stability/axes.h"
-#include "tools/stability/gate_watch.h"
-#include "tools/stability/haptic_loop.h"
-#include "tools/stability/map.h"
+#include "tools/stability/loop/gate_watch.h"
+#include "tools/stability/loop/haptic_loop.h"
+#include "tools/stability/sweep/axes.h"
+#include "tools/stability/sweep/map.h"
 
 namespace tact::tools::stability {
 namespace {

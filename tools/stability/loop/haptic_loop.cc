@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/stability/haptic_loop.h"
+#include "tools/stability/loop/haptic_loop.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "tools/stability/loop_plant.h"
-#include "tools/stability/random.h"
+#include "tools/stability/loop/loop_plant.h"
+#include "tools/stability/loop/random.h"
 
 namespace tact::tools::stability {
 namespace {
