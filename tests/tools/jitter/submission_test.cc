@@ -27,8 +27,7 @@ TEST(SubmissionRow, HasACellForEachColumnAndNoNameOfThePC) {
   const std::string row = content(path);
   std::filesystem::remove(path);
   const std::string head(kSubmissionHead);
-  EXPECT_EQ(std::ranges::count(row, '|'),
-            std::count(head.begin(), head.begin() + head.find('\n'), '|'));
+  EXPECT_EQ(std::ranges::count(row, '|'), std::ranges::count(head.substr(0, head.find('\n')), '|'));
   EXPECT_EQ(std::ranges::count(row, '\n'), 1) << row;
   EXPECT_NE(row.find("bare loop, 1000 Hz, core "), std::string::npos) << row;
   std::array<char, 256> name{};
