@@ -131,9 +131,7 @@ DiscStackState DiscStack::at_depth(double depth_m) const RT_SAFE {
 
 law::LawResponse DiscStack::respond(double depth_m) const RT_SAFE {
   const DiscStackState at = at_depth(depth_m);
-  const law::LawResponse out{at.force_N, at.stiffness_N_per_m, at.energy_J, at.status};
-  const bool beyond = at.status == law::LawStatus::kSaturated;
-  return law::beyond_limit(out, beyond ? at.depth_m : depth_m, depth_m);
+  return law::response_of(at, at.depth_m, depth_m);
 }
 
 std::size_t DiscStack::profile(double depth_m, std::span<double> ring_m) const RT_SAFE {

@@ -192,9 +192,7 @@ HexSheetState HexSheet::at_depth(double depth_m) const RT_SAFE {
 
 law::LawResponse HexSheet::respond(double depth_m) const RT_SAFE {
   const HexSheetState at = at_depth(depth_m);
-  const law::LawResponse out{at.force_N, at.stiffness_N_per_m, at.energy_J, at.status};
-  const bool beyond = at.status == law::LawStatus::kSaturated;
-  return law::beyond_limit(out, beyond ? at.ring_m[0] : depth_m, depth_m);
+  return law::response_of(at, at.ring_m[0], depth_m);
 }
 
 std::size_t HexSheet::profile(double depth_m, std::span<double> ring_m) const RT_SAFE {

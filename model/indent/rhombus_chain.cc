@@ -124,10 +124,7 @@ ChainState RhombusChain::at_depth(double depth_m) const RT_SAFE {
 }
 
 law::LawResponse RhombusChain::respond(double depth_m) const RT_SAFE {
-  const ChainState at = at_depth(depth_m);
-  const law::LawResponse out{at.force_N, at.stiffness_N_per_m, at.energy_J, at.status};
-  const bool beyond = at.status == law::LawStatus::kSaturated;
-  return law::beyond_limit(out, beyond ? range_.press_m : depth_m, depth_m);
+  return law::response_of(at_depth(depth_m), range_.press_m, depth_m);
 }
 
 std::size_t RhombusChain::profile(double depth_m, std::span<double> ring_m) const RT_SAFE {

@@ -76,6 +76,13 @@ inline LawResponse beyond_limit(const LawResponse& at, double inside_m, double d
           .status = LawStatus::kSaturated};
 }
 
+/// What a law says by its state: force, slope, energy, status. A saturated one stands at limit_m.
+template <typename State>
+LawResponse response_of(const State& at, double limit_m, double depth_m) RT_SAFE {
+  const LawResponse out{at.force_N, at.stiffness_N_per_m, at.energy_J, at.status};
+  return beyond_limit(out, at.status == LawStatus::kSaturated ? limit_m : depth_m, depth_m);
+}
+
 /// LW-3: what speed adds to the force, N.
 inline double resistance_N(double damping_Ns_per_m, double speed_mps, double force_N,
                            bool held) RT_SAFE {
