@@ -208,6 +208,11 @@ void shift(SurfaceMesh& mesh, const Vec3& by_m) {
   fill_records(mesh);
 }
 
+void scale(SurfaceMesh& mesh, double factor) {
+  for (Vec3& p : mesh.vertex_m) p = p * factor;
+  fill_records(mesh);
+}
+
 SurfaceOrDefect build_surface(std::vector<Vec3> vertex_m,
                               std::vector<contact::TriangleCorners> triangle) {
   for (std::uint32_t t = 0; t < triangle.size(); ++t) {

@@ -37,6 +37,8 @@ Result<SurfaceMesh> make_surface_mesh(std::vector<Vec3> vertex_m,
 
 /// Moves all of it.
 void shift(SurfaceMesh& mesh, const Vec3& by_m);
+/// Every length times `factor`, above 0.
+void scale(SurfaceMesh& mesh, double factor);
 /// From the other arrays, after a change of them.
 void fill_records(SurfaceMesh& mesh);
 

@@ -13,6 +13,7 @@
 #include "tools/mesh/mesh_report.h"
 #include "tools/mesh/place.h"
 #include "tools/mesh/repair_file.h"
+#include "tools/mesh/unit.h"
 #include "tools/program/program.h"
 
 namespace {
@@ -51,8 +52,9 @@ void add_options(CLI::App& app, Options& o) {
       ->required();
   app.add_option("--out", o.out,
                  "OBJ file to write, in the units and the frame of FILE, after these steps:");
-  CLI::Option* named =
-      app.add_option("--unit", o.unit_m, "of FILE: m, cm, mm, um or in (default mm; glTF: m)");
+  CLI::Option* named = app.add_option("--unit", o.unit_m,
+                                      "of FILE: m, cm, mm, um or in (default: mm for 25 units or "
+                                      "more, cm for 1 or more, else m; glTF: m)");
   named->transform(CLI::CheckedTransformer(mesh::units_m(), CLI::ignore_case).description(""));
   app.add_option("--unit-m", o.unit_m, "the same as a number: length of one file unit, m")
       ->check(tact::model::io::within(1e-9, 1e6))
@@ -75,16 +77,16 @@ void add_options(CLI::App& app, Options& o) {
 }
 
 /// The organ, under the tool of the scene.
-Result<mesh::Placement> place_mesh(const Options& o) {
+Result<mesh::Placement> place_mesh(const Options& o, double unit_m,
+                                   const tact::model::mesh::SurfaceMesh& organ) {
   if (o.out.empty() && !mesh::is_obj(o.file))
     return Error{fmt::format("{}: a scene reads OBJ; add --out OBJ", o.file)};
   mesh::PlaceOrder order{.scene_path = o.scene,
                          .mesh_path = o.out.empty() ? o.file : o.out,
-                         .unit_m = o.unit_m,
+                         .unit_m = unit_m,
                          .point = {}};
-  if (o.unit_m == 0.0 && mesh::is_gltf(o.file)) order.unit_m = 1.0;
   if (!o.point.empty()) order.point = {o.point[0], o.point[1], o.point[2]};
-  auto placement = mesh::place(order);
+  auto placement = mesh::place(order, organ);
   if (!placement || !o.write) return placement;
   if (const auto error = mesh::write_placement(o.scene, *placement)) return *error;
   return placement;
@@ -99,15 +101,10 @@ std::vector<std::string> repair_options(const Options& o) {
   return options;
 }
 
-double unit_of(const Options& o) {
-  if (o.unit_m > 0.0) return o.unit_m;
-  return mesh::is_gltf(o.file) ? 1.0 : 0.001;
-}
-
-/// Read as it is, or repaired.
+/// Read as it is, or repaired; in file units.
 Result<mesh::Repaired> read_mesh(const Options& o, std::vector<std::string> steps) {
   if (steps.empty() && o.out.empty() && mesh::is_obj(o.file)) {
-    auto obj = tact::model::mesh::load_obj(o.file, unit_of(o));
+    auto obj = tact::model::mesh::load_obj(o.file, 1.0);
     if (!obj) return obj.error();
     return mesh::Repaired{.steps = {}, .obj_text = {}, .obj = std::move(*obj)};
   }
@@ -118,8 +115,8 @@ Result<mesh::Repaired> read_mesh(const Options& o, std::vector<std::string> step
     if (!o.json) fmt::print("{}", mesh::to_text(step));
     std::fflush(stdout);
   };
-  auto repaired = mesh::repair_file({.source = o.file, .options = std::move(steps)}, unit_of(o),
-                                    on_step, mesh::show_percent);
+  auto repaired = mesh::repair_file({.source = o.file, .options = std::move(steps)}, on_step,
+                                    mesh::show_percent);
   if (!repaired || o.out.empty()) return repaired;
   if (const auto error = tact::model::io::write_file(o.out, repaired->obj_text)) return *error;
   if (!o.json) fmt::print("{:<15}  {}\n", "wrote", o.out);
@@ -146,22 +143,24 @@ int main(int argc, char** argv) {
   Options options;
   add_options(program.options(), options);
   if (const auto status = program.parse(argc, argv)) return *status;
-  const auto read = read_mesh(options, repair_options(options));
+  auto read = read_mesh(options, repair_options(options));
   if (!read) return program.fail(read.error());
+  const mesh::Unit unit = mesh::unit_of(options.file, options.unit_m, read->obj.mesh);
+  scale(read->obj.mesh, unit.unit_m);
   std::optional<mesh::Placement> placement;
   if (!options.scene.empty()) {
-    auto placed = place_mesh(options);
+    auto placed = place_mesh(options, unit.unit_m, read->obj.mesh);
     if (!placed) return program.fail(placed.error());
     placement = std::move(*placed);
   }
   // A path may hold bytes that are no UTF-8; JSON then shows them as replacement characters.
   if (options.json) {
-    auto told = mesh::to_json(options.file, unit_of(options), read->obj, read->steps, options.out);
+    auto told = mesh::to_json(options.file, unit, read->obj, read->steps, options.out);
     if (placement) told["placement"] = mesh::to_json(*placement);
     fmt::print("{}\n", told.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     return 0;
   }
-  fmt::print("{}", mesh::to_text(read->obj));
+  fmt::print("{}", mesh::to_text(read->obj, unit));
   if (placement) fmt::print("\n{}", mesh::toml_of(*placement));
   if (options.write) fmt::print("\n{:<15}  {}\n", "wrote", options.scene);
   return 0;

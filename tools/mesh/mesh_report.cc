@@ -34,10 +34,11 @@ void show_percent(const std::string& step, int percent) {
   std::fflush(stderr);
 }
 
-std::string to_text(const ObjMesh& obj) {
+std::string to_text(const ObjMesh& obj, const Unit& unit) {
   const MeshSummary sum = model::mesh::summarize(obj.mesh);
   const bool closed = sum.boundary_edges == 0;
-  std::string text = fmt::format("vertices   {}\n", sum.vertices);
+  std::string text = fmt::format("unit       {}\n", to_text(unit, obj.mesh));
+  text += fmt::format("vertices   {}\n", sum.vertices);
   text += fmt::format("           {} in the file, {} welded, {} unused\n", obj.file_vertices,
                       obj.welded_vertices, obj.unused_vertices);
   text += fmt::format("triangles  {}\n", sum.triangles);
@@ -59,14 +60,15 @@ std::string to_text(const ObjMesh& obj) {
   return text;
 }
 
-json to_json(const std::string& file, double unit_m, const ObjMesh& obj,
+json to_json(const std::string& file, const Unit& unit, const ObjMesh& obj,
              const std::vector<RepairStep>& steps, const std::string& out) {
   const MeshSummary sum = model::mesh::summarize(obj.mesh);
   const bool closed = sum.boundary_edges == 0;
   json told{{"format", "tact-mesh"},
             {"version", 1},
             {"file", file},
-            {"unit_m", unit_m},
+            {"unit_m", unit.unit_m},
+            {"unit_from", to_text(unit.from)},
             {"vertices", sum.vertices},
             {"triangles", sum.triangles},
             {"parts", model::mesh::count_parts(obj.mesh)},

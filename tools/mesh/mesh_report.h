@@ -9,6 +9,7 @@
 #include "model/mesh/obj.h"
 #include "tools/mesh/place.h"
 #include "tools/mesh/repair_file.h"
+#include "tools/mesh/unit.h"
 
 namespace tact::tools::mesh {
 
@@ -16,10 +17,10 @@ namespace tact::tools::mesh {
 std::string to_text(const RepairStep& step);
 /// How far a long step is, on one line of a terminal that a person watches; nowhere else.
 void show_percent(const std::string& step, int percent);
-std::string to_text(const model::mesh::ObjMesh& obj);
+std::string to_text(const model::mesh::ObjMesh& obj, const Unit& unit);
 
 /// SI units. `file`: where it was read; `steps` and `out` are members where there are any.
-nlohmann::json to_json(const std::string& file, double unit_m, const model::mesh::ObjMesh& obj,
+nlohmann::json to_json(const std::string& file, const Unit& unit, const model::mesh::ObjMesh& obj,
                        const std::vector<RepairStep>& steps, const std::string& out);
 
 /// Unit, orientation and position, as a scene has them.

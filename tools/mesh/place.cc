@@ -14,7 +14,7 @@
 
 #include "model/io/file_writer.h"
 #include "model/io/input_file.h"
-#include "model/mesh/obj.h"
+#include "model/mesh/mesh.h"
 #include "model/mesh/turn.h"
 #include "model/scene/scene.h"
 
@@ -115,43 +115,25 @@ void place_under_hand(const model::mesh::SurfaceMesh& mesh, std::optional<Vec3> 
 
 }  // namespace
 
-std::map<std::string, double> units_m() {
-  return {{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"um", 1e-6}, {"in", 0.0254}};
-}
-
 double rounded_m(double x_m) { return std::round(x_m * 1e7) / 1e7 + 0.0; }
 
 std::string toml_of(const Vec3& v) {
   return fmt::format("[{}, {}, {}]", rounded_m(v.x), rounded_m(v.y), rounded_m(v.z));
 }
 
-double likely_unit_m(double size_in_file_units) {
-  if (size_in_file_units >= 25.0) return 0.001;
-  return size_in_file_units >= 1.0 ? 0.01 : 1.0;
-}
-
-Result<Placement> place(const PlaceOrder& order) {
+Result<Placement> place(const PlaceOrder& order, const model::mesh::SurfaceMesh& organ) {
   Placement placement;
   std::error_code failed;
   placement.mesh_path =
       std::filesystem::absolute(order.mesh_path, failed).lexically_normal().string();
   placement.unit_m = order.unit_m;
-  if (!(order.unit_m > 0.0)) {
-    const auto in_file_units = model::mesh::load_obj(order.mesh_path, 1.0);
-    if (!in_file_units) return in_file_units.error();
-    const auto sum = model::mesh::summarize(in_file_units->mesh);
-    const Vec3 size = sum.high_m - sum.low_m;
-    placement.unit_m = likely_unit_m(std::max({size.x, size.y, size.z}));
-  }
-  const auto obj = model::mesh::load_obj(order.mesh_path, placement.unit_m);
-  if (!obj) return obj.error();
   const auto scene = model::scene::load_scene(
       order.scene_path, {"organ.mesh=" + nlohmann::json(placement.mesh_path).dump(),
                          fmt::format("organ.mesh_unit_m={}", placement.unit_m)});
   if (!scene) return scene.error();
   const std::optional<Vec3> point_m =
       order.point ? std::optional(*order.point * placement.unit_m) : std::nullopt;
-  place_under_hand(obj->mesh, point_m, *scene, placement);
+  place_under_hand(organ, point_m, *scene, placement);
   return placement;
 }
 

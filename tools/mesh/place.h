@@ -9,17 +9,14 @@
 // Without a chosen point it is the top of the mesh as it lies, and R turns nothing.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
 
+#include "model/mesh/mesh.h"
 #include "model/result.h"
 #include "model/types.h"
 
 namespace tact::tools::mesh {
-
-/// The units that a file of a mesh may have, by name: the length of one, m.
-std::map<std::string, double> units_m();
 
 /// To a tenth of a micrometre, without -0.
 double rounded_m(double x_m);
@@ -34,18 +31,15 @@ struct Placement {
   model::Vec3 site_m;
 };
 
-/// mm for an organ of at least 25 units, cm for one of at least 1, else m.
-double likely_unit_m(double size_in_file_units);
-
 struct PlaceOrder {
   std::string scene_path;
-  std::string mesh_path;             // OBJ
-  double unit_m = 0.0;               // 0: the likely one
+  std::string mesh_path;  // OBJ
+  double unit_m = 0.001;
   std::optional<model::Vec3> point;  // in file units; the nearest vertex counts
 };
 
-/// The scene must load with this organ.
-model::Result<Placement> place(const PlaceOrder& order);
+/// The scene must load with this organ. `organ`: what the file holds, m.
+model::Result<Placement> place(const PlaceOrder& order, const model::mesh::SurfaceMesh& organ);
 
 /// The lines of a scene.
 std::string toml_of(const Placement& placement);

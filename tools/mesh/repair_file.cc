@@ -109,7 +109,7 @@ bool is_gltf(const std::string& path) {
   return ending_of(path) == ".gltf" || ending_of(path) == ".glb";
 }
 
-Result<Repaired> repair_file(const RepairOrder& order, double unit_m,
+Result<Repaired> repair_file(const RepairOrder& order,
                              const std::function<void(const RepairStep&)>& on_step,
                              const std::function<void(const std::string&, int)>& on_percent) {
   if (const auto file = model::io::InputFile::open(order.source, kCure); !file) return file.error();
@@ -155,7 +155,7 @@ Result<Repaired> repair_file(const RepairOrder& order, double unit_m,
 
   auto text = model::io::read_file(target, "try again", model::mesh::kMaxObjBytes);
   if (!text) return text.error();
-  auto obj = model::mesh::load_obj(target, unit_m);
+  auto obj = model::mesh::load_obj(target, 1.0);
   if (!obj) {
     // "PATH:LINE: the face ...; cure in a mesh editor"
     const std::string& told = obj.error().sentence;

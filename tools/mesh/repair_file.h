@@ -35,7 +35,7 @@ struct RepairStep {
 struct Repaired {
   std::vector<RepairStep> steps;
   std::string obj_text;      // in the units of the source
-  model::mesh::ObjMesh obj;  // the same, read as tact reads it
+  model::mesh::ObjMesh obj;  // the same, read as tact reads it, with a metre for a unit
 };
 
 /// Is this an OBJ file by its name?
@@ -45,7 +45,7 @@ bool is_gltf(const std::string& path);
 
 /// `on_step` hears of each step when it ends, `on_percent` how far a long one is. An error names
 /// the source, and the line where that is known.
-model::Result<Repaired> repair_file(const RepairOrder& order, double unit_m,
+model::Result<Repaired> repair_file(const RepairOrder& order,
                                     const std::function<void(const RepairStep&)>& on_step,
                                     const std::function<void(const std::string&, int)>& on_percent);
 

@@ -15,6 +15,7 @@
 #include "tools/condense/condense_organ.h"
 #include "tools/ground_truth/gmsh.h"
 #include "tools/mesh/mesh_report.h"
+#include "tools/mesh/unit.h"
 #include "tools/new_scene/organ.h"
 #include "tools/new_scene/outputs.h"
 #include "tools/new_scene/scene_text.h"
@@ -94,6 +95,7 @@ Result<Organ> read(const Options& o, const std::string& folder) {
       },
       tact::tools::mesh::show_percent);
   if (!organ) return organ;
+  tell("unit", to_text(organ->unit, organ->mesh));
   const auto sum = summarize(organ->mesh);
   const auto size_m = sum.high_m - sum.low_m;
   tell("organ", fmt::format("{} vertices, {} faces, closed, {:.3g} x {:.3g} x {:.3g} mm{}",
@@ -104,9 +106,8 @@ Result<Organ> read(const Options& o, const std::string& folder) {
 
 std::string write_text(const Options& o, const OutputNames& names, const Organ& organ) {
   const auto place = new_scene::place_of(organ.mesh);
-  tell("place", fmt::format("unit {:g} m; the top comes to the tool; held below z = {:.4g} mm, the "
-                            "lowest tenth",
-                            organ.unit_m, 1e3 * place.fixed_max_m.z));
+  tell("place", fmt::format("the top comes to the tool; held below z = {:.4g} mm, the lowest tenth",
+                            1e3 * place.fixed_max_m.z));
   const auto beside = [](const std::string& path) { return fs::path(path).filename().string(); };
   std::error_code failed;
   const std::string source = fs::absolute(o.organ.source, failed).lexically_normal().string();
@@ -115,7 +116,7 @@ std::string write_text(const Options& o, const OutputNames& names, const Organ& 
                                 .map = beside(names.map),
                                 .tool = beside(names.tool),
                                 .mesh = organ.obj_text.empty() ? source : beside(names.organ),
-                                .mesh_unit_m = organ.unit_m,
+                                .mesh_unit_m = organ.unit.unit_m,
                                 .youngs_modulus_Pa = o.youngs_modulus_Pa,
                                 .poisson_ratio = o.poisson_ratio},
                                place);

@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "model/io/file_writer.h"
-#include "tools/mesh/place.h"
 
 namespace tact::tools::new_scene {
 namespace {
@@ -42,30 +41,27 @@ Result<Organ> read_organ(const OrganOrder& order, const std::string& folder,
   std::string path = order.source;
   if (!is_sound(order)) {
     auto repaired = mesh::repair_file({.source = order.source, .options = repair_options(order)},
-                                      1.0, on_step, on_percent);
+                                      on_step, on_percent);
     if (!repaired) return repaired.error();
     organ.obj_text = std::move(repaired->obj_text);
     path = folder + "/organ.obj";
     if (const auto error = model::io::write_file(path, organ.obj_text)) return *error;
   }
-  const auto in_file_units = model::mesh::load_obj(path, 1.0);
-  if (!in_file_units) return in_file_units.error();
-  const auto sum = summarize(in_file_units->mesh);
+  auto obj = model::mesh::load_obj(path, 1.0);
+  if (!obj) return obj.error();
+  organ.unit = mesh::unit_of(order.source, order.unit_m, obj->mesh);
+  model::mesh::scale(obj->mesh, organ.unit.unit_m);
+  organ.mesh = std::move(obj->mesh);
+  const auto sum = summarize(organ.mesh);
   if (sum.boundary_edges > 0)
     return Error{fmt::format(
         "{}: {} edges stay open after the repair, so it has no inside; close it in a mesh editor",
         order.source, sum.boundary_edges)};
-  const Vec3 size = sum.high_m - sum.low_m;
-  const double longest = std::max({size.x, size.y, size.z});
-  organ.unit_m = order.unit_m > 0.0            ? order.unit_m
-                 : mesh::is_gltf(order.source) ? 1.0
-                                               : mesh::likely_unit_m(longest);
-  if (const double size_m = longest * organ.unit_m; size_m < kMinSize_m || size_m > kMaxSize_m)
+  const Vec3 extent_m = sum.high_m - sum.low_m;
+  const double size_m = std::max({extent_m.x, extent_m.y, extent_m.z});
+  if (size_m < kMinSize_m || size_m > kMaxSize_m)
     return Error{fmt::format("{}: {:.3g} m long, and an organ is {:g} to {:g} m; name its --unit",
                              order.source, size_m, kMinSize_m, kMaxSize_m)};
-  auto obj = model::mesh::load_obj(path, organ.unit_m);
-  if (!obj) return obj.error();
-  organ.mesh = std::move(obj->mesh);
   return organ;
 }
 

@@ -9,6 +9,7 @@
 #include "model/mesh/obj.h"
 #include "model/result.h"
 #include "tools/mesh/repair_file.h"
+#include "tools/mesh/unit.h"
 
 namespace tact::tools::new_scene {
 
@@ -21,7 +22,7 @@ struct OrganOrder {
 
 struct Organ {
   std::string obj_text;  // repaired, in the units of the source; empty: the source is sound
-  double unit_m = 0.001;
+  mesh::Unit unit;
   model::mesh::SurfaceMesh mesh;  // m, in its own frame
 };
 

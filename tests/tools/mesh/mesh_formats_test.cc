@@ -25,8 +25,8 @@ class MeshFormats : public testing::Test {
   }
 
   Ran run(const std::string& arguments) const { return run_apart(temp_, "tact-mesh", arguments); }
-  /// A cube of 10 units, as whatever it was written.
-  void expect_cube(const std::string& name, const std::string& text, double unit_m = 0.001) {
+  /// A cube of 10 units, as whatever it was written; 10 units of an organ are centimetres.
+  void expect_cube(const std::string& name, const std::string& text, double unit_m = 0.01) {
     SCOPED_TRACE(name);
     const Ran ran = run("--json " + temp_.write(name, text));
     ASSERT_EQ(ran.status, 0) << ran.err;
@@ -167,6 +167,8 @@ TEST_F(MeshFormats, EveryFormatGivesTheSameCube) {
   temp_.write("cube.bin", buffer());
   expect_cube("a.gltf", in_file.dump(), 1.0);  // a glTF file is in metres
   expect_cube("b.glb", glb(), 1.0);
+  EXPECT_NE(run(temp_.path() + "/b.glb").out.find("\nunit       m, as glTF is in metres"),
+            std::string::npos);
 }
 
 TEST_F(MeshFormats, TheUnitIsNamedOrANumber) {

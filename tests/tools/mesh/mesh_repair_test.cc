@@ -21,7 +21,7 @@ class MeshRepair : public testing::Test {
  protected:
   Ran run(const std::string& arguments) const { return run_apart(temp_, "tact-mesh", arguments); }
   json told(const std::string& arguments) const {
-    const Ran ran = run("--json " + arguments);
+    const Ran ran = run("--json --unit mm " + arguments);
     EXPECT_EQ(ran.status, 0) << ran.err;
     return ran.status == 0 ? json::parse(ran.out) : json();
   }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/mesh_files.h"
@@ -25,10 +26,11 @@ class MeshTool : public testing::Test {
 };
 
 TEST_F(MeshTool, PrintsWhatACubeIs) {
-  const Ran ran = run(cube_);
+  const Ran ran = run(cube_ + " --unit mm");
   EXPECT_EQ(ran.status, 0);
   EXPECT_EQ(ran.err, "");
   EXPECT_EQ(ran.out,
+            "unit       mm, as named\n"
             "vertices   8\n"
             "           8 in the file, 0 welded, 0 unused\n"
             "triangles  12\n"
@@ -53,6 +55,33 @@ TEST_F(MeshTool, PrintsJsonInSiUnits) {
   EXPECT_NEAR(json["area_m2"].get<double>(), 0.06, 1e-12);
   EXPECT_NEAR(json["volume_m3"].get<double>(), 1e-3, 1e-12);
   EXPECT_NEAR(json["high_m"][2].get<double>(), 0.1, 1e-12);
+}
+
+TEST_F(MeshTool, SaysWhichUnitItTookAndWhyAndHowToSetIt) {
+  const auto told = [this](const std::string& arguments, const std::string& line,
+                           const std::string& from, double unit_m) {
+    SCOPED_TRACE(arguments);
+    EXPECT_EQ(run(arguments).out.substr(0, line.size() + 1), line + "\n");
+    const auto json = nlohmann::json::parse(run("--json " + arguments).out);
+    EXPECT_EQ(json["unit_from"], from);
+    EXPECT_EQ(json["unit_m"], unit_m);
+    EXPECT_NEAR(json["volume_m3"].get<double>() / std::pow(json["high_m"][0].get<double>(), 3), 1.0,
+                1e-12)
+        << "all lengths in the same unit";
+  };
+  told(cube_, "unit       taken as cm: 100 mm across; --unit sets another", "size", 0.01);
+  const auto cube = [this](const std::string& name, const std::string& ten) {
+    std::string text = kCubeVertices;
+    for (std::size_t at = 0; (at = text.find("10", at)) != text.npos; at += ten.size())
+      text.replace(at, 2, ten);
+    return temp_.write(name, text + kCubeFaces);
+  };
+  told(cube("scan.obj", "210"), "unit       taken as mm: 210 mm across; --unit sets another",
+       "size", 0.001);
+  told(cube("metres.obj", "0.21"), "unit       taken as m: 210 mm across; --unit sets another",
+       "size", 1.0);
+  told(cube_ + " --unit in", "unit       in, as named", "named", 0.0254);
+  told(cube_ + " --unit-m 0.02", "unit       0.02 m, as named", "named", 0.02);
 }
 
 TEST_F(MeshTool, SaysThatThereIsMoreThanOnePart) {

@@ -11,6 +11,7 @@
 #include "model/mesh/mesh.h"
 #include "model/scene/scene.h"
 #include "tests/support/mesh_files.h"
+#include "tools/mesh/unit.h"
 
 namespace tact::tools::mesh::place_test {
 
@@ -71,6 +72,7 @@ TEST_F(Place, TheTopOfTheOrganComesToTheSiteAndIsNotTurned) {
   for (const std::string& part :
        {"[organ]\nmesh = \"" + fs::path(organ_).lexically_normal().string() +
             "\"\nmesh_unit_m = 0.001\n",
+        std::string("unit       taken as mm: "),
         std::string("orientation_deg = [0, 0, 0]\nposition_m = ["),
         std::string("[hand]\nsite_m = [0, 0, 0]\n")})
     EXPECT_NE(printed.out.find(part), std::string::npos) << part << printed.out;
@@ -130,9 +132,13 @@ TEST_F(Place, RefusesWhatItCannotWriteAndLeavesTheSceneAsItWas) {
 TEST_F(Place, TellsMachinesToo) {
   const tests::Ran ran = run(organ_ + " --json --unit cm --place " + scene_);
   ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_EQ(json::parse(ran.out)["unit_from"], "named");
   const json told = json::parse(ran.out)["placement"];
   EXPECT_EQ(told["mesh_unit_m"], 0.01) << "a unit that is named is not guessed";
   EXPECT_EQ(told["orientation_deg"], json::array({0.0, 0.0, 0.0}));
+  const json guessed = json::parse(run(organ_ + " --json --place " + scene_).out);
+  EXPECT_EQ(guessed["unit_from"], "size");
+  EXPECT_EQ(guessed["unit_m"], guessed["placement"]["mesh_unit_m"]) << "one unit, told once";
 }
 
 TEST(LikelyUnit, IsTheOneThatMakesAnOrgan) {

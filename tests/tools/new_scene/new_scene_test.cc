@@ -80,7 +80,8 @@ TEST_F(NewScene, AScanBecomesASceneThatIsFelt) {
   ASSERT_EQ(ran.status, 0) << ran.err << ran.out;
   EXPECT_EQ(made(), (std::vector<std::string>{"mine.compliance", "mine.obj", "mine.toml",
                                               "mine_tool.obj"}));
-  for (const char* told : {"organ  ", "place  ", "condense  ", "check  ", "wrote  ", "law  "})
+  for (const char* told : {"unit             taken as mm: 100 mm across; --unit sets another\n",
+                           "organ  ", "place  ", "condense  ", "check  ", "wrote  ", "law  "})
     EXPECT_NE(ran.out.find(told), ran.out.npos) << told << ran.out;
 
   const auto scene = model::scene::load_scene(out_, {});
