@@ -13,6 +13,7 @@
 #include "tools/mesh/mesh_report.h"
 #include "tools/mesh/place.h"
 #include "tools/mesh/repair_file.h"
+#include "tools/mesh/scene_edit.h"
 #include "tools/mesh/unit.h"
 #include "tools/program/program.h"
 
@@ -163,5 +164,8 @@ int main(int argc, char** argv) {
   fmt::print("{}", mesh::to_text(read->obj, unit));
   if (placement) fmt::print("\n{}", mesh::toml_of(*placement));
   if (options.write) fmt::print("\n{:<15}  {}\n", "wrote", options.scene);
+  if (placement && !placement->misfits.empty()) fmt::print("\n");
+  if (placement)
+    for (const auto& misfit : placement->misfits) fmt::print("{}", mesh::to_text(misfit));
   return 0;
 }

@@ -89,12 +89,20 @@ json to_json(const std::string& file, const Unit& unit, const ObjMesh& obj,
   return told;
 }
 
+std::string to_text(const Misfit& misfit) {
+  return fmt::format("note       {}: {}\n", misfit.keys, misfit.text);
+}
+
 json to_json(const Placement& placement) {
+  json misfits = json::array();
+  for (const Misfit& misfit : placement.misfits)
+    misfits.push_back({{"keys", misfit.keys}, {"text", misfit.text}});
   return {{"mesh", placement.mesh_path},
           {"mesh_unit_m", placement.unit_m},
           {"orientation_deg", to_json(placement.orientation_deg)},
           {"position_m", to_json(placement.position_m)},
-          {"site_m", to_json(placement.site_m)}};
+          {"site_m", to_json(placement.site_m)},
+          {"misfits", misfits}};
 }
 
 }  // namespace tact::tools::mesh

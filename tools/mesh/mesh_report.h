@@ -23,7 +23,9 @@ std::string to_text(const model::mesh::ObjMesh& obj, const Unit& unit);
 nlohmann::json to_json(const std::string& file, const Unit& unit, const model::mesh::ObjMesh& obj,
                        const std::vector<RepairStep>& steps, const std::string& out);
 
-/// Unit, orientation and position, as a scene has them.
+/// "note       elastic.fixed_min_m, ...", a line.
+std::string to_text(const Misfit& misfit);
+/// Unit, orientation and position, as a scene has them, and which of its keys no longer fit.
 nlohmann::json to_json(const Placement& placement);
 
 }  // namespace tact::tools::mesh

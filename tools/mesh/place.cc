@@ -2,21 +2,16 @@
 #include "tools/mesh/place.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <utility>
-#include <vector>
+#include <string_view>
 
-#include "model/io/file_writer.h"
-#include "model/io/input_file.h"
-#include "model/mesh/mesh.h"
 #include "model/mesh/turn.h"
 #include "model/scene/scene.h"
+#include "tools/mesh/unit.h"
 
 namespace tact::tools::mesh {
 namespace {
@@ -25,92 +20,68 @@ using model::Error;
 using model::Result;
 using model::Vec3;
 
-using KeyValue = std::pair<std::string, std::string>;
+/// Of the organ's size. Chosen: who reads a point off a picture is off by less.
+constexpr double kFar_ratio = 0.1;
 
-std::vector<KeyValue> organ_keys(const Placement& p) {
-  return {{"mesh", nlohmann::json(p.mesh_path).dump()},  // quoted alike in TOML
-          {"mesh_unit_m", fmt::format("{}", p.unit_m)},
-          {"orientation_deg", toml_of(p.orientation_deg)},
-          {"position_m", toml_of(p.position_m)}};
+/// The longest side of the triangles around a vertex: a point of the surface is nearer than this.
+double longest_side_m(const model::mesh::SurfaceMesh& mesh, std::size_t vertex) {
+  double longest_m = 0.0;
+  for (std::uint32_t i = mesh.fan_start[vertex]; i < mesh.fan_start[vertex + 1]; ++i)
+    for (const std::uint32_t v : mesh.triangle[mesh.fan[i]])
+      longest_m = std::max(longest_m, norm(mesh.vertex_m[v] - mesh.vertex_m[vertex]));
+  return longest_m;
 }
 
-std::vector<KeyValue> hand_keys(const Placement& p) { return {{"site_m", toml_of(p.site_m)}}; }
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    lines.push_back(text.substr(at, end - at));
-    at = end + 1;
-  }
-  return lines;
-}
-
-std::string trimmed(std::string line) {
-  line.erase(0, std::min(line.find_first_not_of(" \t"), line.size()));
-  return line;
-}
-
-bool is_key(const std::string& line, const std::string& key) {
-  std::string rest = trimmed(line);
-  if (!rest.starts_with(key)) return false;
-  rest = trimmed(rest.substr(key.size()));
-  return rest.starts_with("=");
-}
-
-/// Does a value go on in the next line?
-bool is_open(const std::string& line) {
-  return std::count(line.begin(), line.end(), '[') > std::count(line.begin(), line.end(), ']') ||
-         line.find("\"\"\"") != std::string::npos || line.find("'''") != std::string::npos;
-}
-
-std::optional<Error> set_keys(std::vector<std::string>& lines, const std::string& section,
-                              const std::vector<KeyValue>& keys) {
-  const std::string cure = "write the printed lines yourself";
-  const auto header = std::find_if(lines.begin(), lines.end(), [&](const std::string& line) {
-    return trimmed(line).starts_with("[" + section + "]");
-  });
-  if (header == lines.end())
-    return Error{fmt::format("the scene has no line [{}]; {}", section, cure)};
-  auto at = header - lines.begin();
-  for (const auto& [key, value] : keys) {
-    const auto begin = header + 1;
-    const auto end = std::find_if(
-        begin, lines.end(), [](const std::string& line) { return trimmed(line).starts_with("["); });
-    const std::string text = fmt::format("{} = {}", key, value);
-    const auto found = std::find_if(
-        begin, end, [&key = key](const std::string& line) { return is_key(line, key); });
-    if (found == end) continue;
-    if (is_open(*found))
-      return Error{fmt::format("{}.{} goes over several lines; {}", section, key, cure)};
-    *found = text;
-    at = std::max(at, found - lines.begin());
-  }
-  for (const auto& [key, value] : keys) {
-    const auto first = lines.begin() + (header - lines.begin()) + 1;
-    const bool there = std::any_of(first, lines.begin() + at + 1,
-                                   [&key = key](const std::string& l) { return is_key(l, key); });
-    if (!there) lines.insert(lines.begin() + ++at, fmt::format("{} = {}", key, value));
-  }
-  return std::nullopt;
+std::optional<Error> check_near(const model::mesh::SurfaceMesh& mesh, const PlaceOrder& order,
+                                std::size_t nearest) {
+  const auto sum = summarize(mesh);
+  const double away_m = norm(mesh.vertex_m[nearest] - *order.point * order.unit_m);
+  if (away_m <= longest_side_m(mesh, nearest) + kFar_ratio * norm(sum.high_m - sum.low_m))
+    return std::nullopt;
+  const Vec3 low = sum.low_m / order.unit_m, high = sum.high_m / order.unit_m;
+  return Error{fmt::format(
+      "--point is {:.4g} mm from the organ, which lies in X {:.6g} to {:.6g}, Y {:.6g} to {:.6g}, "
+      "Z {:.6g} to {:.6g} of its file ({}); name a point of its surface, in the file's own frame "
+      "and unit",
+      1e3 * away_m, low.x, high.x, low.y, high.y, low.z, high.z, name_of(order.unit_m))};
 }
 
 /// Fills all but path and unit.
-void place_under_hand(const model::mesh::SurfaceMesh& mesh, std::optional<Vec3> point_m,
-                      const model::scene::Scene& scene, Placement& placement) {
+std::optional<Error> place_under_hand(const model::mesh::SurfaceMesh& mesh, const PlaceOrder& order,
+                                      const model::scene::Scene& scene, Placement& placement) {
   // The chosen vertex has the least of this: distance from the point, or depth below the top.
   const auto worth = [&](const Vec3& p) {
-    return point_m ? norm(p - *point_m) : dot(p, scene.hand_inward);
+    return order.point ? norm(p - *order.point * order.unit_m) : dot(p, scene.hand_inward);
   };
   std::size_t chosen = 0;
   for (std::size_t v = 0; v < mesh.vertex_m.size(); ++v)
     if (worth(mesh.vertex_m[v]) < worth(mesh.vertex_m[chosen])) chosen = v;
+  if (order.point)
+    if (auto error = check_near(mesh, order, chosen)) return error;
   const model::Quat turn =
-      point_m ? model::mesh::turn_between(mesh.vertex_normal[chosen], -scene.hand_inward)
-              : model::Quat{};
+      order.point ? model::mesh::turn_between(mesh.vertex_normal[chosen], -scene.hand_inward)
+                  : model::Quat{};
   placement.orientation_deg = model::mesh::rotation_deg_of(turn);
   placement.site_m = scene.hand_site_m;
   placement.position_m = scene.hand_site_m - rotate(turn, mesh.vertex_m[chosen]);
+  return std::nullopt;
+}
+
+/// TOML is; a name in Linux may be any bytes.
+bool is_utf8(const std::string& text) {
+  const auto shown =
+      nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  const std::string_view replaced = "\uFFFD";
+  return shown.find(replaced) == shown.npos || text.find(replaced) != text.npos;
+}
+
+std::vector<std::string> overrides_of(const std::string& section,
+                                      const std::vector<KeyValue>& keys) {
+  std::vector<std::string> overrides;
+  overrides.reserve(keys.size());
+  for (const auto& [key, value] : keys)
+    overrides.push_back(fmt::format("{}.{}={}", section, key, value));
+  return overrides;
 }
 
 }  // namespace
@@ -121,19 +92,35 @@ std::string toml_of(const Vec3& v) {
   return fmt::format("[{}, {}, {}]", rounded_m(v.x), rounded_m(v.y), rounded_m(v.z));
 }
 
+std::vector<KeyValue> organ_keys(const Placement& p) {
+  return {{"mesh", nlohmann::json(p.mesh_path).dump()},  // quoted alike in TOML
+          {"mesh_unit_m", fmt::format("{}", p.unit_m)},
+          {"orientation_deg", toml_of(p.orientation_deg)},
+          {"position_m", toml_of(p.position_m)}};
+}
+
+std::vector<KeyValue> hand_keys(const Placement& p) { return {{"site_m", toml_of(p.site_m)}}; }
+
 Result<Placement> place(const PlaceOrder& order, const model::mesh::SurfaceMesh& organ) {
   Placement placement;
   std::error_code failed;
   placement.mesh_path =
       std::filesystem::absolute(order.mesh_path, failed).lexically_normal().string();
   placement.unit_m = order.unit_m;
-  const auto scene = model::scene::load_scene(
-      order.scene_path, {"organ.mesh=" + nlohmann::json(placement.mesh_path).dump(),
-                         fmt::format("organ.mesh_unit_m={}", placement.unit_m)});
+  if (!is_utf8(placement.mesh_path))
+    return Error{fmt::format("{}: a scene is UTF-8, and this name is not; rename the file",
+                             order.mesh_path)};
+  auto overrides = overrides_of("organ", organ_keys(placement));
+  const auto scene = model::scene::load_scene(order.scene_path, overrides);
   if (!scene) return scene.error();
-  const std::optional<Vec3> point_m =
-      order.point ? std::optional(*order.point * placement.unit_m) : std::nullopt;
-  place_under_hand(organ, point_m, *scene, placement);
+  if (const auto error = place_under_hand(organ, order, *scene, placement)) return *error;
+  overrides = overrides_of("organ", organ_keys(placement));
+  const auto site = overrides_of("hand", hand_keys(placement));
+  overrides.insert(overrides.end(), site.begin(), site.end());
+  const auto placed = model::scene::load_scene(order.scene_path, overrides);
+  if (!placed) return placed.error();
+  const auto before = model::scene::load_scene(order.scene_path, {});
+  placement.misfits = misfits_of(before ? &*before : nullptr, *placed);
   return placement;
 }
 
@@ -145,26 +132,6 @@ std::string toml_of(const Placement& placement) {
   for (const auto& [key, value] : hand_keys(placement))
     text += fmt::format("{} = {}\n", key, value);
   return text;
-}
-
-Result<std::string> placed_in(const std::string& scene_text, const Placement& placement) {
-  std::vector<std::string> lines = lines_of(scene_text);
-  if (const auto error = set_keys(lines, "organ", organ_keys(placement))) return *error;
-  if (const auto error = set_keys(lines, "hand", hand_keys(placement))) return *error;
-  return fmt::format("{}\n", fmt::join(lines, "\n"));
-}
-
-std::optional<Error> write_placement(const std::string& scene_path, const Placement& placement) {
-  const auto before = model::io::read_file(scene_path);
-  if (!before) return before.error();
-  const auto after = placed_in(*before, placement);
-  if (!after) return Error{fmt::format("{}: {}", scene_path, after.error().sentence)};
-  if (const auto error = model::io::write_file(scene_path, *after)) return error;
-  const auto loaded = model::scene::load_scene(scene_path, {});
-  if (loaded) return std::nullopt;
-  if (const auto error = model::io::write_file(scene_path, *before)) return error;
-  return Error{fmt::format("{} stays as it was, since it would not load: {}", scene_path,
-                           loaded.error().sentence)};
 }
 
 }  // namespace tact::tools::mesh

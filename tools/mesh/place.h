@@ -11,10 +11,13 @@
 
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "model/mesh/mesh.h"
 #include "model/result.h"
 #include "model/types.h"
+#include "tools/mesh/misfit.h"
 
 namespace tact::tools::mesh {
 
@@ -29,6 +32,7 @@ struct Placement {
   model::Vec3 orientation_deg;  // axis times angle
   model::Vec3 position_m;
   model::Vec3 site_m;
+  std::vector<Misfit> misfits;  // of the scene's other keys
 };
 
 struct PlaceOrder {
@@ -38,17 +42,15 @@ struct PlaceOrder {
   std::optional<model::Vec3> point;  // in file units; the nearest vertex counts
 };
 
-/// The scene must load with this organ. `organ`: what the file holds, m.
+/// The scene must load with this organ, and the point be near it. `organ`: what the file holds, m.
 model::Result<Placement> place(const PlaceOrder& order, const model::mesh::SurfaceMesh& organ);
 
-/// The lines of a scene.
+using KeyValue = std::pair<std::string, std::string>;
+
+/// What a scene says of it in [organ] and [hand], as TOML writes values.
+std::vector<KeyValue> organ_keys(const Placement& placement);
+std::vector<KeyValue> hand_keys(const Placement& placement);
+/// The same as lines of a scene.
 std::string toml_of(const Placement& placement);
-
-/// The text of a scene with these values in [organ] and [hand]; all else stays.
-model::Result<std::string> placed_in(const std::string& scene_text, const Placement& placement);
-
-/// Writes them into the scene's file, which must load then; if not, the file is as it was.
-std::optional<model::Error> write_placement(const std::string& scene_path,
-                                            const Placement& placement);
 
 }  // namespace tact::tools::mesh

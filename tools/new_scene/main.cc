@@ -107,7 +107,7 @@ Result<Organ> read(const Options& o, const std::string& folder) {
 std::string write_text(const Options& o, const OutputNames& names, const Organ& organ) {
   const auto place = new_scene::place_of(organ.mesh);
   tell("place", fmt::format("the top comes to the tool; held below z = {:.4g} mm, the lowest tenth",
-                            1e3 * place.fixed_max_m.z));
+                            1e3 * place.held.max_m.z));
   const auto beside = [](const std::string& path) { return fs::path(path).filename().string(); };
   std::error_code failed;
   const std::string source = fs::absolute(o.organ.source, failed).lexically_normal().string();

@@ -15,8 +15,6 @@ namespace {
 
 using model::Vec3;
 
-constexpr double kHeld_ratio = 0.1;    // of the height
-constexpr double kAround_m = 0.01;     // of the held box beyond the organ
 constexpr double kMaxDepth_m = 0.012;  // as the liver's
 constexpr double kDepth_ratio = 0.2;   // of the height: small strain beyond the tip
 constexpr double kPress_ratio = 0.8;   // of the working depth
@@ -39,9 +37,7 @@ ScenePlace place_of(const model::mesh::SurfaceMesh& organ) {
   const auto sum = summarize(organ);
   const double height_m = sum.high_m.z - sum.low_m.z;
   place.position_m = -p_m[place.top];
-  place.fixed_min_m = sum.low_m - Vec3{kAround_m, kAround_m, kAround_m};
-  place.fixed_max_m = sum.high_m + Vec3{kAround_m, kAround_m, 0.0};
-  place.fixed_max_m.z = sum.low_m.z + kHeld_ratio * height_m;
+  place.held = mesh::far_tenth(organ, {0.0, 0.0, -1.0});
   place.working_depth_m = std::clamp(kDepth_ratio * height_m, 1e-3, kMaxDepth_m);
   return place;
 }
@@ -58,8 +54,8 @@ std::string scene_text(const SceneValues& values, const ScenePlace& place) {
                      arg("tool", quoted(values.tool)), arg("mesh", quoted(values.mesh)),
                      arg("mesh_unit_m", values.mesh_unit_m),
                      arg("position_m", mesh::toml_of(place.position_m)), arg("vertex", place.top),
-                     arg("fixed_min_m", mesh::toml_of(place.fixed_min_m)),
-                     arg("fixed_max_m", mesh::toml_of(place.fixed_max_m)),
+                     arg("fixed_min_m", mesh::toml_of(place.held.min_m)),
+                     arg("fixed_max_m", mesh::toml_of(place.held.max_m)),
                      arg("youngs_modulus_Pa", values.youngs_modulus_Pa), arg("poisson_ratio", nu),
                      arg("working_depth_m", mesh::rounded_m(place.working_depth_m)),
                      arg("press_m", press_m), arg("grip_m", mesh::rounded_m(press_m / 2.0)),

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "model/mesh/mesh.h"
+#include "tools/mesh/held_box.h"
 
 namespace tact::tools::new_scene {
 
@@ -25,7 +26,7 @@ struct SceneValues {
 struct ScenePlace {
   std::size_t top = 0;  // vertex
   model::Vec3 position_m;
-  model::Vec3 fixed_min_m, fixed_max_m;
+  mesh::HeldBox held;
   double working_depth_m = 0.0;
 };
 

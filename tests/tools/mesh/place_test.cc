@@ -3,6 +3,7 @@
 #include "tools/mesh/place.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -11,6 +12,8 @@
 #include "model/mesh/mesh.h"
 #include "model/scene/scene.h"
 #include "tests/support/mesh_files.h"
+#include "tests/support/shapes.h"
+#include "tools/mesh/held_box.h"
 #include "tools/mesh/unit.h"
 
 namespace tact::tools::mesh::place_test {
@@ -127,6 +130,104 @@ TEST_F(Place, RefusesWhatItCannotWriteAndLeavesTheSceneAsItWas) {
         organ_ + " --place " + temp_.path() + "/none.toml"})
     EXPECT_EQ(run(arguments).status, 2) << arguments;
   EXPECT_EQ(tests::read_text(scene_), before_);
+}
+
+TEST_F(Place, APointFarFromTheOrganIsRefusedWithTheDistanceAndWhereTheOrganLies) {
+  const std::string cube =
+      temp_.write("cube.obj", tests::kCubeVertices + tests::kCubeFaces);  // 10 units each way
+  const auto point = [&](const std::string& xyz, const std::string& more = "") {
+    return run(cube + " --unit cm --place " + scene_ + " --point " + xyz + more);
+  };
+  EXPECT_EQ(point("5 5 10").status, 0) << "the middle of a face, 7 units from the next vertex";
+  const tests::Ran ran = point("5 5 100", " --write");
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_EQ(
+      ran.err,
+      "tact-mesh: --point is 902.8 mm from the organ, which lies in X 0 to 10, Y 0 to 10, Z 0 "
+      "to 10 of its file (cm); name a point of its surface, in the file's own frame and "
+      "unit\n");
+  EXPECT_EQ(tests::read_text(scene_), before_);
+}
+
+TEST_F(Place, TellsWhatOfTheSceneWasMadeForAnotherOrgan) {
+  const auto misfits = [&](const std::string& organ, const std::string& scene) {
+    const tests::Ran ran = run(organ + " --json --place " + scene);
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    return json::parse(ran.out)["placement"]["misfits"];
+  };
+  EXPECT_EQ(misfits(kScenes + "meshes/liver_3116.obj", scene_), json::array())
+      << "the scene's own organ";
+  const json found = misfits(organ_, scene_);
+  ASSERT_EQ(found.size(), 3u) << found;
+  EXPECT_EQ(found[0]["keys"], "elastic.fixed_min_m, elastic.fixed_max_m");
+  const std::string held = found[0]["text"], map = found[2]["text"];
+  EXPECT_TRUE(held.starts_with("hold 0 of this organ's 6228 triangles; ")) << held;
+  EXPECT_EQ(found[1]["keys"], "reference_site");
+  EXPECT_EQ(found[1]["text"],
+            "8 vertices of another organ; write vertices of this one, 0 to 3115, or remove these "
+            "sections");
+  EXPECT_EQ(found[2]["keys"], "compliance.map");
+  EXPECT_NE(map.find("write compliance.map = \"scene.compliance\", then tact-condense " + scene_),
+            map.npos)
+      << map;
+
+  // What is told as a text is what must be written.
+  const tests::Ran written = run(organ_ + " --write --place " + scene_);
+  EXPECT_NE(written.out.find("\nnote       elastic.fixed_min_m, elastic.fixed_max_m: " + held),
+            written.out.npos)
+      << written.out;
+  std::string text = tests::read_text(scene_);
+  for (const std::string key : {"fixed_min_m = [", "fixed_max_m = ["}) {
+    const std::size_t from = held.find(key), at = text.find(key);
+    text.replace(at, text.find(']', at) + 1 - at, held, from, held.find(']', from) + 1 - from);
+  }
+  const json left = misfits(organ_, temp_.write("mended.toml", text));
+  ASSERT_EQ(left.size(), 1u) << left;
+  EXPECT_EQ(left[0]["keys"], "compliance.map");
+}
+
+TEST_F(Place, AFailureLeavesTheSceneUntouched) {
+  std::string text = before_;
+  text.replace(text.find("position_m = ["), 10, "\"position_m\"");
+  const std::string odd = temp_.write("odd.toml", text);
+  struct stat was{}, is{};
+  ASSERT_EQ(stat(odd.c_str(), &was), 0);
+  const tests::Ran ran = run(organ_ + " --write --place " + odd);
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.err.find("odd.toml: the keys of [organ] or [hand] stand in a form that is not "
+                         "understood; run it without --write"),
+            ran.err.npos)
+      << ran.err;
+  ASSERT_EQ(stat(odd.c_str(), &is), 0);
+  EXPECT_EQ(is.st_ino, was.st_ino) << "was never written, not put back";
+  EXPECT_EQ(tests::read_text(odd), text);
+  EXPECT_EQ(run(organ_ + " --place " + odd).status, 0) << "they are printed";
+}
+
+TEST_F(Place, ANameThatIsNoTextIsRefused) {
+  const std::string organ = temp_.write("b\xff.obj", tests::read_text(organ_));
+  const tests::Ran ran = run(organ + " --place " + scene_);
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.err.find("a scene is UTF-8, and this name is not; rename the file"), ran.err.npos)
+      << ran.err;
+}
+
+TEST(HeldBox, IsTheTenthFarthestFromTheTool) {
+  model::mesh::SurfaceMesh organ = tests::make_ball(0.1, 3);
+  for (const auto& [inward, away] : std::vector<std::pair<Vec3, Vec3>>{
+           {{0.0, 0.0, -1.0}, {0.0, 0.0, -0.1}}, {{-0.1, 0.9, 0.2}, {0.0, 0.1, 0.0}}}) {
+    const HeldBox box = far_tenth(organ, inward);
+    const std::size_t held = held_triangles(organ, box);
+    EXPECT_GT(held, 0u);
+    EXPECT_LT(held, organ.triangle.size() / 5);
+    const auto inside = [&box = box](const Vec3& p) {
+      return box.min_m.x <= p.x && p.x <= box.max_m.x && box.min_m.y <= p.y && p.y <= box.max_m.y &&
+             box.min_m.z <= p.z && p.z <= box.max_m.z;
+    };
+    EXPECT_TRUE(inside(away));
+    EXPECT_TRUE(inside(0.81 * away));
+    EXPECT_FALSE(inside(0.79 * away)) << "a tenth of its height";
+  }
 }
 
 TEST_F(Place, TellsMachinesToo) {

@@ -187,8 +187,8 @@ TEST(ScenePlace, HoldsTheLowestTenthAndPressesNoDeeperThanAFifth) {
   for (Vec3& p : organ.vertex_m) p = {0.05 * p.x, 0.04 * p.y, 0.02 * p.z + 1.0};
   const ScenePlace place = place_of(organ);
   // 0.98 to 1.02 m high: a tenth is 4 mm, a fifth 8 mm.
-  EXPECT_NEAR(place.fixed_max_m.z, 0.984, 1e-12);
-  EXPECT_LT(place.fixed_min_m.z, 0.98);
+  EXPECT_NEAR(place.held.max_m.z, 0.984, 1e-12);
+  EXPECT_LT(place.held.min_m.z, 0.98);
   EXPECT_NEAR(place.working_depth_m, 0.008, 1e-12);
   EXPECT_NEAR(organ.vertex_m[place.top].z, 1.02, 1e-12);
   EXPECT_NEAR(norm(organ.vertex_m[place.top] + place.position_m), 0.0, 1e-12);
