@@ -193,7 +193,8 @@ Result<tissue::ComplianceMap> condense(const TetMesh& body, const contact::Surfa
       nodes_of_faces_in_box(body, boundary, settings.fixed_min_m, settings.fixed_max_m);
   if (fixed.empty())
     return Error{
-        "condensation: no triangle of the surface lies in the fixed box; make it hold one"};
+        "condensation: no triangle of the surface lies in the held box, elastic.fixed_min_m to "
+        "elastic.fixed_max_m; make it hold one"};
   auto solver = make_linear_solver(body, {1.0, settings.poisson_ratio}, fixed);
   if (!solver) return solver.error();
   const std::size_t n = surface.vertex_m.size();

@@ -121,13 +121,15 @@ void LinearSolver::solve(std::span<const std::vector<NodeLoad>> loads,
 Result<LinearSolver> make_linear_solver(const TetMesh& mesh, const Elasticity& material,
                                         const std::vector<std::uint32_t>& fixed) {
   const Error loose{
-      "finite elements: the body is not held, or a node belongs to no element; make the fixed box "
-      "hold at least one triangle of the surface"};
+      "finite elements: the body is not held, or a node belongs to no element; make the box from "
+      "elastic.fixed_min_m to elastic.fixed_max_m hold at least one triangle of the surface"};
   if (!hold_still(mesh, fixed)) return loose;
   auto factor = std::make_unique<LinearSolver::Factor>();
   factor->free = free_nodes(mesh.node_m.size(), fixed);
   if (factor->free.unknowns == 0)
-    return Error{"finite elements: every node is fixed; make the fixed box smaller"};
+    return Error{
+        "finite elements: every node is held; make the box from elastic.fixed_min_m to "
+        "elastic.fixed_max_m smaller"};
   const auto matrix = assemble_stiffness(mesh, material, factor->free);
   if (!matrix) return matrix.error();
   const Cholesky cholesky(*matrix);

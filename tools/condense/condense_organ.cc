@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <string>
 
 #include "tools/ground_truth/gmsh.h"
+#include "tools/mesh/held_box.h"
 #include "tools/program/run_program.h"
 
 namespace tact::tools::condense {
@@ -18,6 +21,26 @@ constexpr double kRingPitch_m = 0.002;
 constexpr std::size_t kRings = 20;
 constexpr double kInside = 1.5;           // element edge over the surface's median edge
 constexpr double kElementsInPatch = 1.6;  // patch radius over element edge: r within 2 % of C_half
+
+std::string text_of(const model::Vec3& v) {
+  return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", v.x, v.y, v.z);
+}
+
+/// Before gmsh and finite elements, which would find it minutes later and know no key.
+std::optional<Error> check_held(const CondenseInput& input) {
+  const auto& organ = input.settings.organ;
+  const std::size_t held =
+      mesh::held_triangles(input.surface, {organ.fixed_min_m, organ.fixed_max_m});
+  const std::size_t all = input.surface.triangle.size();
+  if (held > 0 && held < all) return std::nullopt;
+  const auto sum = summarize(input.surface);
+  return Error{fmt::format(
+      "the held box, elastic.fixed_min_m = {} to elastic.fixed_max_m = {}, holds {} triangle of "
+      "the "
+      "organ, which lies in {} to {} there; make it hold a part (tact-mesh --place proposes one)",
+      text_of(organ.fixed_min_m), text_of(organ.fixed_max_m), held == 0 ? "no" : "every",
+      text_of(sum.low_m), text_of(sum.high_m))};
+}
 
 }  // namespace
 
@@ -56,6 +79,7 @@ Result<model::tissue::ComplianceMap> condense_organ(const CondenseInput& input,
   if (open > 0)
     return Error{
         fmt::format("the organ's surface has {} open edges, so it has no inside; close it", open)};
+  if (auto error = check_held(input)) return *error;
   const double edge_m = median_edge_m(surface);
   CondenseSettings settings = input.settings;
   if (settings.mesh_size_m <= 0.0) settings.mesh_size_m = kInside * edge_m;

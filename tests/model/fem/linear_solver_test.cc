@@ -79,7 +79,11 @@ TEST(LinearSolver, WorkIsReciprocal) {
 TEST(LinearSolver, RefusesABodyThatIsNotHeld) {
   const TetMesh mesh = beam();
   const Elasticity material{1e4, 0.3};
-  EXPECT_FALSE(make_linear_solver(mesh, material, {}));
+  const auto loose = make_linear_solver(mesh, material, {});
+  ASSERT_FALSE(loose);
+  EXPECT_NE(loose.error().sentence.find("elastic.fixed_min_m to elastic.fixed_max_m"),
+            std::string::npos)
+      << "the keys that hold it";
   const auto edge = nodes_where(mesh, [](const Vec3& p) { return p.x < 1e-9 && p.y < 1e-9; });
   EXPECT_FALSE(make_linear_solver(mesh, material, edge)) << "it can turn about the edge";
   EXPECT_FALSE(

@@ -29,6 +29,25 @@ TEST(CondenseProgram, RefusesLengthsThatAreNone) {
     }
 }
 
+TEST(CondenseProgram, NamesTheKeysOfTheHeldBoxWhenItHoldsNothingOrEverything) {
+  const auto held = [](const char* low, const char* high) {
+    return kLiver + " --out x.map --set elastic.fixed_min_m=" + low +
+           " --set elastic.fixed_max_m=" + high;
+  };
+  const std::string organ =
+      "of the organ, which lies in [-0.05008, -0.07497, -0.03007] to [0.05009, 0.07499, 0.02999] "
+      "there; make it hold a part (tact-mesh --place proposes one)";
+  expect_refusal(
+      held("[5,5,5]", "[6,6,6]"),
+      "the held box, elastic.fixed_min_m = [5, 5, 5] to elastic.fixed_max_m = [6, 6, 6], "
+      "holds no triangle " +
+          organ);
+  expect_refusal(held("[-1,-1,-1]", "[1,1,1]"),
+                 "the held box, elastic.fixed_min_m = [-1, -1, -1] to elastic.fixed_max_m = [1, 1, "
+                 "1], holds every triangle " +
+                     organ);
+}
+
 TEST(CondenseProgram, TriesItsFileBeforeTheWork) {
   expect_refusal(
       kLiver + " --out /nowhere/liver.map",

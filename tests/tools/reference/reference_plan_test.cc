@@ -122,7 +122,9 @@ TEST(ReferencePlan, RefusesWhatCannotBeSolved) {
   EXPECT_EQ(sentence([](ReferencePlan& p) { p.sites = {0, 434}; }),
             "site 434 is no vertex of block.obj; they are 0 to 433");
   EXPECT_EQ(sentence([](ReferencePlan& p) { p.sites = {3, 217}; }),
-            "site 217 lies in the box that is held; choose another");
+            "site 217 lies in the held box, elastic.fixed_min_m to elastic.fixed_max_m; choose "
+            "another, or "
+            "move the box");
   EXPECT_EQ(sentence([](ReferencePlan& p) { p.sites = {0, 3, 0}; }),
             "site 0 is there twice; give it once");
   EXPECT_EQ(sentence([](ReferencePlan& p) { p.sites.clear(); }),

@@ -40,7 +40,14 @@ TEST(ReferenceProgram, RefusesWhatCannotBeSolved) {
     expect_refusal(kLiver + " --sites 1714 --depths " + depths,
                    "--depths must rise, all above 0 and at most 0.02 m (5 tool radii); give "
                    "metres: 0.001,0.002");
-  expect_refusal(kLiver + " --sites 125", "site 125 lies in the box that is held; choose another");
+  expect_refusal(kLiver + " --sites 125",
+                 "site 125 lies in the held box, elastic.fixed_min_m to elastic.fixed_max_m; "
+                 "choose another, or move the box");
+  expect_refusal(kLiver +
+                     " --sites 1714 --set elastic.fixed_min_m=[5,5,5] --set "
+                     "elastic.fixed_max_m=[6,6,6]",
+                 "no triangle of the organ lies in the held box, so it would fly away; move "
+                 "elastic.fixed_min_m and elastic.fixed_max_m (tact-mesh --place proposes them)");
   expect_refusal("--self-check /nowhere",
                  "/nowhere/organ_patch.json: no such file; give the "
                  "folder tests/data/reference");

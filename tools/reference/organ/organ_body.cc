@@ -68,7 +68,9 @@ model::Result<OrganBody> make_organ_body(const model::mesh::SurfaceMesh& surface
   });
   if (!body.held_node.empty()) return body;
   return model::Error{
-      "no triangle of the organ lies in the box that is held, so it would fly away; move the box"};
+      "no triangle of the organ lies in the held box, so it would fly away; move "
+      "elastic.fixed_min_m "
+      "and elastic.fixed_max_m (tact-mesh --place proposes them)"};
 }
 
 std::vector<std::uint32_t> nodes_of_faces(const OrganBody& body,

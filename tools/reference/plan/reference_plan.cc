@@ -141,7 +141,11 @@ std::optional<Error> check(const ReferencePlan& plan) {
                                plan.mesh_name, summary.vertices - 1)};
     }
     if (plan.organ.held.holds(plan.organ.surface.vertex_m[vertex]))
-      return Error{fmt::format("site {} lies in the box that is held; choose another", vertex)};
+      return Error{
+          fmt::format("site {} lies in the held box, elastic.fixed_min_m to elastic.fixed_max_m; "
+                      "choose another, "
+                      "or move the box",
+                      vertex)};
   }
   for (const std::uint32_t vertex : plan.large_strain_sites)
     if (!among(plan.sites, vertex))
