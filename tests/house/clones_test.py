@@ -59,7 +59,7 @@ def breaches(texts, limit, excused):
         if (a, b) not in shared:
             yield f"{a}:1: shares no {limit} tokens with {b}: take the pair off the list of the excused"
         elif shared[a, b] > tokens:
-            yield f"{a}:1: shares {shared[a, b]} tokens with {b}, {tokens} are excused: make it one function of both"
+            yield f"{a}:1: shares {shared[a, b]} tokens with {b}, excused {tokens}: make it one function of both"
 
 
 def blind_rules():

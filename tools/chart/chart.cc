@@ -142,6 +142,7 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
   return rows;
 }
 
+// NOLINTNEXTLINE(readability-function-size): a table of columns
 report::Table empty_chart(std::size_t variants, const program::Shard& shard) {
   const auto word = [](const char* name) { return report::Column{name, report::CellKind::kWord}; };
   const auto number = [](const char* name) {
@@ -191,6 +192,7 @@ report::Table empty_chart(std::size_t variants, const program::Shard& shard) {
           shard};
 }
 
+// NOLINTNEXTLINE(readability-function-size): a table of columns
 report::Row table_row(const ChartRow& row, const Provenance& provenance) {
   const model::scene::LawSizes& sizes = row.variant.sizes;
   const bool measured = row.failure.empty();

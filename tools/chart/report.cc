@@ -121,45 +121,48 @@ std::string machines_of(const report::Table& table) {
   return fmt::format("{}", fmt::join(names, " + "));
 }
 
+namespace {
+
+constexpr char kLine[] =
+    "{:<40} {:>8} {:>8} {:>8} {:>7} {:>7} {:>7} {:>7} {:>7} {:>8} {:>8} {:>9} {:>9} {:>8} {:>9}\n";
+
+std::string row_text(const report::Table& table, const report::Row& row, bool on_front) {
+  const auto number = [&](const char* column) { return table.number(row, column); };
+  const bool is_peer = table.word(row, "kind") == "peer";
+  const std::string name = fmt::format("{}{} {}",
+                                       is_peer    ? "peer "
+                                       : on_front ? "* "
+                                                  : "  ",
+                                       table.word(row, "family"), table.word(row, "size"));
+  if (table.word(row, "failure") != "-")
+    return fmt::format("{:<40} not measured: {}\n", name, table.word(row, "failure"));
+  const double instructions = number("instructions");
+  return fmt::format(kLine, name, text_or_dash(number("force_rms_ratio"), 100.0, 2),
+                     text_or_dash(number("force_worst_ratio"), 100.0, 2),
+                     text_or_dash(number("held_out_rms_ratio"), 100.0, 2),
+                     text_or_dash(number("own_worst_1mm_ratio"), 100.0, 1),
+                     text_or_dash(number("own_worst_2mm_ratio"), 100.0, 1),
+                     text_or_dash(number("own_worst_5mm_ratio"), 100.0, 1),
+                     text_or_dash(number("own_worst_10mm_ratio"), 100.0, 1),
+                     text_or_dash(number("within_jnd_ratio"), 100.0, 0) + " %",
+                     text_or_dash(number("shape_rms_ratio"), 100.0, 2),
+                     text_or_dash(number("tool_rms_ratio"), 100.0, 2),
+                     text_or_dash(number("tick_median_us"), 1.0, 3),
+                     text_or_dash(number("tick_p999_us"), 1.0, 3),
+                     std::isfinite(instructions) ? fmt::format("{:.0f}", instructions) : "n/a",
+                     text_or_dash(number("memory_bytes"), 1e-3, 1));
+}
+
+}  // namespace
+
 std::string chart_text(const report::Table& table, bool is_whole) {
-  std::string out = fmt::format(
-      "{:<40} {:>8} {:>8} {:>8} {:>7} {:>7} {:>7} {:>7} {:>7} {:>8} {:>8} {:>9} {:>9} {:>8} "
-      "{:>9}\n",
-      "law and size", "force %", "worst %", "held o %", "1 mm", "2 mm", "5 mm", "10 mm", "in JND",
-      "shape %", "tool %", "median us", "p99.9 us", "instr.", "memory kB");
+  std::string out = fmt::format(kLine, "law and size", "force %", "worst %", "held o %", "1 mm",
+                                "2 mm", "5 mm", "10 mm", "in JND", "shape %", "tool %", "median us",
+                                "p99.9 us", "instr.", "memory kB");
   const auto front = is_whole ? front_rows(table) : std::vector<std::size_t>{};
   for (std::size_t i = 0; i < table.rows().size(); ++i) {
-    const report::Row& row = table.rows()[i];
-    const auto number = [&](const char* column) { return table.number(row, column); };
     const bool on_front = std::find(front.begin(), front.end(), i) != front.end();
-    const bool is_peer = table.word(row, "kind") == "peer";
-    const std::string name = fmt::format("{}{} {}",
-                                         is_peer    ? "peer "
-                                         : on_front ? "* "
-                                                    : "  ",
-                                         table.word(row, "family"), table.word(row, "size"));
-    if (table.word(row, "failure") != "-") {
-      out += fmt::format("{:<40} not measured: {}\n", name, table.word(row, "failure"));
-      continue;
-    }
-    const double instructions = number("instructions");
-    out += fmt::format(
-        "{:<40} {:>8} {:>8} {:>8} {:>7} {:>7} {:>7} {:>7} {:>7} {:>8} {:>8} {:>9} {:>9} {:>8} "
-        "{:>9}\n",
-        name, text_or_dash(number("force_rms_ratio"), 100.0, 2),
-        text_or_dash(number("force_worst_ratio"), 100.0, 2),
-        text_or_dash(number("held_out_rms_ratio"), 100.0, 2),
-        text_or_dash(number("own_worst_1mm_ratio"), 100.0, 1),
-        text_or_dash(number("own_worst_2mm_ratio"), 100.0, 1),
-        text_or_dash(number("own_worst_5mm_ratio"), 100.0, 1),
-        text_or_dash(number("own_worst_10mm_ratio"), 100.0, 1),
-        text_or_dash(number("within_jnd_ratio"), 100.0, 0) + " %",
-        text_or_dash(number("shape_rms_ratio"), 100.0, 2),
-        text_or_dash(number("tool_rms_ratio"), 100.0, 2),
-        text_or_dash(number("tick_median_us"), 1.0, 3),
-        text_or_dash(number("tick_p999_us"), 1.0, 3),
-        std::isfinite(instructions) ? fmt::format("{:.0f}", instructions) : "n/a",
-        text_or_dash(number("memory_bytes"), 1e-3, 1));
+    out += row_text(table, table.rows()[i], on_front);
   }
   return out +
          "* on the front of tact: no other law is both faster and nearer to the reference.\n"

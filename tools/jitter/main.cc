@@ -35,6 +35,7 @@ struct Options {
   double gate_percent = 0.0;
 };
 
+// NOLINTNEXTLINE(readability-function-size): a table of options
 void add_run_options(CLI::App& app, Options& o) {
   app.add_option("SCENE", o.run.scene.path, "scene file (TOML) whose loop and device are measured");
   app.add_option("--set", o.run.scene.overrides, "one key of the scene, as KEY=VALUE; repeatable")

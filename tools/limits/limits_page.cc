@@ -128,43 +128,48 @@ json wall_data(const WallVerdict& wall, const std::string& picture) {
           {"picture", picture}};
 }
 
-}  // namespace
-
-std::string page_html(const LimitsReport& report, const std::vector<std::string>& svg) {
+/// What the page fills in as it is: words, numbers, and what is there to be told.
+json words_data(const LimitsReport& report) {
   const auto failed = static_cast<std::size_t>(std::ranges::count_if(
                           report.cases, [](const auto& r) { return !r.verdict.passed(); })) +
                       (report.wall && !report.wall->passed() ? 1 : 0);
   const bool kept = report.played() > 0 && failed == 0;
   const model::Limits& l = report.limits;
-  json data{{"result", report.result_words()},
-            {"played", std::to_string(report.played())},
-            {"not_played", std::to_string(report.not_run.size())},
-            {"none_played", report.played() == 0},
-            {"failed", failed > 0 ? std::to_string(failed) : ""},
-            {"all_kept", kept && report.not_run.empty()},
-            {"part_kept", kept && !report.not_run.empty()},
-            {"has_left_out", !report.not_run.empty()},
-            {"facts", facts(report)},
-            {"number", report.evidence.people.number},
-            {"tester", report.evidence.people.tester},
-            {"hazards", matrix_data(report)},
-            {"tests", tests_data()},
-            {"limits_text", report.evidence.limits_text},
-            {"limits_sha256", report.evidence.limits_sha256},
-            {"scene_path", report.scene_path},
-            {"scene_sha256", report.evidence.scene_sha256},
-            {"scene_text", report.evidence.scene_text},
-            {"has_overrides", !report.evidence.overrides.empty()},
-            {"overrides", report.evidence.overrides},
-            {"speed_mps", fmt::format("{:g}", l.speed_mps)},
-            {"workspace_radius_m", fmt::format("{:g}", l.workspace_radius_m)},
-            {"workspace_half_length_m", fmt::format("{:g}", l.workspace_half_length_m)},
-            {"recovery_W", fmt::format("{:g}", l.recovery_W)},
-            {"has_cases", !report.cases.empty()},
-            {"simulated", report.simulated},
-            {"any_told", std::ranges::any_of(report.cases, [&](const auto& r) {
-               return is_told(report, r.verdict);
-             })}};
+  return {{"result", report.result_words()},
+          {"played", std::to_string(report.played())},
+          {"not_played", std::to_string(report.not_run.size())},
+          {"none_played", report.played() == 0},
+          {"failed", failed > 0 ? std::to_string(failed) : ""},
+          {"all_kept", kept && report.not_run.empty()},
+          {"part_kept", kept && !report.not_run.empty()},
+          {"has_left_out", !report.not_run.empty()},
+          {"facts", facts(report)},
+          {"number", report.evidence.people.number},
+          {"tester", report.evidence.people.tester},
+          {"hazards", matrix_data(report)},
+          {"tests", tests_data()},
+          {"limits_text", report.evidence.limits_text},
+          {"limits_sha256", report.evidence.limits_sha256},
+          {"scene_path", report.scene_path},
+          {"scene_sha256", report.evidence.scene_sha256},
+          {"scene_text", report.evidence.scene_text},
+          {"has_overrides", !report.evidence.overrides.empty()},
+          {"overrides", report.evidence.overrides},
+          {"speed_mps", fmt::format("{:g}", l.speed_mps)},
+          {"workspace_radius_m", fmt::format("{:g}", l.workspace_radius_m)},
+          {"workspace_half_length_m", fmt::format("{:g}", l.workspace_half_length_m)},
+          {"recovery_W", fmt::format("{:g}", l.recovery_W)},
+          {"has_cases", !report.cases.empty()},
+          {"simulated", report.simulated},
+          {"any_told", std::ranges::any_of(report.cases, [&](const auto& r) {
+             return is_told(report, r.verdict);
+           })}};
+}
+
+}  // namespace
+
+std::string page_html(const LimitsReport& report, const std::vector<std::string>& svg) {
+  json data = words_data(report);
   for (const auto& [why, names] : report.left_out_by_why())
     data["left_out"].push_back({{"why", why}, {"names", names}});
   for (const LimitRow& row : limit_rows(report)) data["limits"].push_back(limit_data(row));

@@ -59,6 +59,7 @@ report::Table case_table(const LimitsReport& report) {
   return table;
 }
 
+// NOLINTNEXTLINE(readability-function-size): a table of columns
 report::Table trace_table(const CaseResult& result) {
   report::Table table(std::string("trace_") + result.verdict.subject.name,
                       {{"t_s"},

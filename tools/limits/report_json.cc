@@ -77,6 +77,21 @@ json digests_json(const Evidence& e) {
           {"limits", e.limits_sha256}};
 }
 
+json wall_json(const WallVerdict& wall) {
+  return {{"passed", wall.passed()},
+          {"theory_N_per_m", wall.theory_N_per_m},
+          {"bounded_without_N_per_m", wall.bounded_without_N_per_m},
+          {"bounded_with_N_per_m", wall.bounded_with_N_per_m},
+          {"bounded_with_is_a_least_value", wall.with_is_least},
+          {"bounded_ratio", wall.bounded_ratio()},
+          {"rest_without_N_per_m", wall.rest_without_N_per_m},
+          {"rest_with_N_per_m", wall.rest_with_N_per_m},
+          {"rest_ratio", wall.rest_ratio()},
+          {"largest_swing_without_m", wall.swing_without_m},
+          {"largest_swing_with_m", wall.swing_with_m},
+          {"checks", checks_json(wall.checks)}};
+}
+
 }  // namespace
 
 json to_json(const LimitsReport& report) {
@@ -118,19 +133,7 @@ json to_json(const LimitsReport& report) {
              {"cpu", e.cpu},
              {"revision", e.git_revision},
              {"compiler", e.compiler}}}};
-  if (report.wall)
-    out["wall"] = {{"passed", report.wall->passed()},
-                   {"theory_N_per_m", report.wall->theory_N_per_m},
-                   {"bounded_without_N_per_m", report.wall->bounded_without_N_per_m},
-                   {"bounded_with_N_per_m", report.wall->bounded_with_N_per_m},
-                   {"bounded_with_is_a_least_value", report.wall->with_is_least},
-                   {"bounded_ratio", report.wall->bounded_ratio()},
-                   {"rest_without_N_per_m", report.wall->rest_without_N_per_m},
-                   {"rest_with_N_per_m", report.wall->rest_with_N_per_m},
-                   {"rest_ratio", report.wall->rest_ratio()},
-                   {"largest_swing_without_m", report.wall->swing_without_m},
-                   {"largest_swing_with_m", report.wall->swing_with_m},
-                   {"checks", checks_json(report.wall->checks)}};
+  if (report.wall) out["wall"] = wall_json(*report.wall);
   return out;
 }
 

@@ -149,6 +149,7 @@ std::span<const TrackingCamera> tracking_cameras() {
   return eyes;
 }
 
+// NOLINTNEXTLINE(readability-function-size): a table of markers
 std::span<const TrackedBody> tracked_bodies() {
   // Each on stalks, no two alike, and their middle near the body's origin.
   static const std::vector<TrackedBody> bodies{{"head",

@@ -101,6 +101,23 @@ std::string about(const std::string& source, const std::string& scratch, std::st
   return at == std::string::npos ? sentence : sentence.replace(at, scratch.size(), source);
 }
 
+/// Why repair.py ended without a mesh and without a word.
+Error no_mesh(const std::string& source, const Error& ran, const std::string& log_path) {
+  if (program::was_interrupted(ran)) return ran;
+  if (ran.sentence.find("ended with signal") != std::string::npos) {
+    return Error{
+        fmt::format("{}: its reader in VTK crashed: the file is damaged, or not of the "
+                    "format that its ending says; export the mesh again",
+                    source)};
+  }
+  // The folder of its log goes with its caller.
+  const auto said = model::io::read_file(log_path);
+  const std::string text = said ? *said : "";
+  const std::string last = text.substr(text.size() - std::min<std::size_t>(text.size(), 300));
+  return Error{fmt::format("{}: the repair failed; try fewer steps, or export the mesh again: {}",
+                           source, model::io::on_one_line(last))};
+}
+
 }  // namespace
 
 bool is_obj(const std::string& path) { return ending_of(path) == ".obj"; }
@@ -137,21 +154,7 @@ Result<Repaired> repair_file(const RepairOrder& order,
        .environment = {},
        .on_line = [&listener](std::string_view line) { listener.hear(line); }});
   if (!listener.error.empty()) return Error{about(order.source, source, listener.error)};
-  if (!ran && program::was_interrupted(ran.error())) return ran.error();
-  if (!ran && ran.error().sentence.find("ended with signal") != std::string::npos) {
-    return Error{
-        fmt::format("{}: its reader in VTK crashed: the file is damaged, or not of the "
-                    "format that its ending says; export the mesh again",
-                    order.source)};
-  }
-  if (!ran) {
-    // The folder of its log goes with this function.
-    const auto said = model::io::read_file(scratch->file("log"));
-    const std::string text = said ? *said : "";
-    const std::string last = text.substr(text.size() - std::min<std::size_t>(text.size(), 300));
-    return Error{fmt::format("{}: the repair failed; try fewer steps, or export the mesh again: {}",
-                             order.source, model::io::on_one_line(last))};
-  }
+  if (!ran) return no_mesh(order.source, ran.error(), scratch->file("log"));
 
   auto text = model::io::read_file(target, "try again", model::mesh::kMaxObjBytes);
   if (!text) return text.error();

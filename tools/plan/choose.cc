@@ -72,6 +72,17 @@ std::size_t least_of(std::span<const Candidate> candidates, const std::vector<st
   return among[best];
 }
 
+/// Of `enough`, those beside the least. One of another law says more than another size of the same.
+std::vector<std::size_t> others_of(std::span<const Candidate> candidates,
+                                   std::span<const std::size_t> enough, std::size_t least) {
+  std::vector<std::size_t> other_laws, others;
+  for (const std::size_t i : enough) {
+    if (candidates[i].sizes.law != candidates[least].sizes.law) other_laws.push_back(i);
+    if (i != least) others.push_back(i);
+  }
+  return other_laws.empty() ? others : other_laws;
+}
+
 }  // namespace
 
 bool is_enough(const Candidate& c, const ToleranceSettings& t) {
@@ -117,22 +128,13 @@ Choice choose(std::span<const Candidate> candidates, const ToleranceSettings& to
   }
   if (!out.meets) enough = by_rms;
   out.chosen = least_of(candidates, enough);
-  const Candidate& least = candidates[*out.chosen];
-  // A runner-up of another law says more than another size of the same.
-  const auto same_law = [&](std::size_t i) { return candidates[i].sizes.law == least.sizes.law; };
-  std::vector<std::size_t> others;
-  for (const std::size_t i : enough)
-    if (!same_law(i)) others.push_back(i);
-  if (others.empty()) {
-    for (const std::size_t i : enough)
-      if (i != *out.chosen) others.push_back(i);
-  }
+  const auto others = others_of(candidates, enough, *out.chosen);
   out.reason = fmt::format(
       "{}{} of {} measured laws and sizes meet [tolerance]{}; of these it is the fastest, "
       "within {:g} % the smallest. {}",
       out.meets ? "" : "every law misses [tolerance] by its own force at some place and depth. ",
       enough.size(), candidates.size(), out.meets ? "" : " by the RMS",
-      100.0 * chart::kSameTime_ratio, text_of(least));
+      100.0 * chart::kSameTime_ratio, text_of(candidates[*out.chosen]));
   if (others.empty()) return out;
   out.runner_up = least_of(candidates, others);
   out.reason += fmt::format(". Runner-up: {}", text_of(candidates[*out.runner_up]));

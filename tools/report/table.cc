@@ -157,6 +157,20 @@ std::optional<ReadRow> read_row(const std::string& line, const std::vector<Colum
   return out;
 }
 
+/// Why the shard at `path` is none of the others' table; `count`: of their shards, 0 at the first.
+std::optional<Error> check_shard(const Table& empty, const std::string& path, const ShardLine& line,
+                                 std::size_t count) {
+  if (line.table != empty.name() || line.jobs != empty.jobs())
+    return Error{
+        fmt::format("{}: {} jobs of {}, but {} jobs of {} are wanted; merge with the "
+                    "options that the shards were run with",
+                    path, line.jobs, line.table, empty.jobs(), empty.name())};
+  if (count != 0 && line.shard.count != count)
+    return Error{fmt::format("{}: one of {} shards among files of {}; leave it out", path,
+                             line.shard.count, count)};
+  return std::nullopt;
+}
+
 }  // namespace
 
 Result<Table> merge_table(const Table& empty, const std::vector<std::string>& files) {
@@ -166,14 +180,7 @@ Result<Table> merge_table(const Table& empty, const std::vector<std::string>& fi
   for (const std::string& path : files) {
     const auto line = read_shard_line(path);
     if (!line) return line.error();
-    if (line->table != empty.name() || line->jobs != empty.jobs())
-      return Error{
-          fmt::format("{}: {} jobs of {}, but {} jobs of {} are wanted; merge with the "
-                      "options that the shards were run with",
-                      path, line->jobs, line->table, empty.jobs(), empty.name())};
-    if (count != 0 && line->shard.count != count)
-      return Error{fmt::format("{}: one of {} shards among files of {}; leave it out", path,
-                               line->shard.count, count)};
+    if (auto differs = check_shard(empty, path, *line, count)) return std::move(*differs);
     count = line->shard.count;
     const auto content = model::io::read_file(path);
     if (!content) return content.error();

@@ -14,6 +14,18 @@ using model::Vec3;
 using model::contact::PressingSphere;
 using nlohmann::json;
 
+/// MC-2 between any two. What a sphere does to itself is in its own curve.
+model::contact::Coupling coupling_of(const model::tissue::ElasticField& tissue,
+                                     std::span<const PressingSphere> sphere,
+                                     std::span<const Vec3> at_m) {
+  model::contact::Coupling c{};
+  for (std::size_t i = 0; i < sphere.size(); ++i)
+    for (std::size_t j = 0; j < sphere.size(); ++j)
+      if (i != j)
+        c[i][j] = tissue.coupling(sphere[i].in, sphere[j].in, norm(at_m[i] - at_m[j])).skin_m_per_N;
+  return c;
+}
+
 json group_results(const json& one_case) {
   const json &p = one_case.at("params"), &inputs = one_case.at("inputs");
   const model::indent::ElasticTip tip{.youngs_modulus_Pa = number(p.at("youngs_modulus_Pa")),
@@ -49,12 +61,7 @@ json group_results(const json& one_case) {
                  .in = {.sphere = i, .normal = {0, 0, 1}, .dent_m = depth_m},
                  .response = {}};
   }
-  model::contact::Coupling c{};
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < n; ++j)
-      // MC-2. What a sphere does to itself is in its own curve.
-      if (i != j)
-        c[i][j] = tissue.coupling(sphere[i].in, sphere[j].in, norm(at_m[i] - at_m[j])).skin_m_per_N;
+  auto c = coupling_of(tissue, {sphere.data(), n}, at_m);
   // MC-1: e_i = d_i - sum over j != i of C_ij F_j.
   press_together(tissue, c, {sphere.data(), n});
   json force_N = json::array();

@@ -82,6 +82,20 @@ class Luck {
   int eaten_ = 0;
 };
 
+/// Device and hand as one mass.
+LoopPlant plant_of(const LoopCase& loop) {
+  return LoopPlant({.mass_kg = loop.mass_kg + loop.hand.mass_kg,
+                    .damping_Ns_per_m = loop.device.damping_Ns_per_m + loop.hand.damping_Ns_per_m,
+                    .stiffness_N_per_m = loop.hand.stiffness_N_per_m,
+                    .friction_N = loop.device.friction_N});
+}
+
+/// One period, in which two forces act in turn: the delay is no whole number of periods.
+void move(LoopPlant& plant, const DelayLine& line, double push_N, double period_s) {
+  if (line.rest_s() > 0.0) plant.move(push_N - line.before_N(), line.rest_s());
+  plant.move(push_N - line.acting_N(), period_s - line.rest_s());
+}
+
 Verdict verdict_of(const Window& first, const Window& last, bool counts) {
   // Thirds of the run: close to the line one swing hardly differs from the next.
   if (last.swing_m() > first.swing_m()) return Verdict::kGrow;
@@ -111,10 +125,7 @@ double between_counts_m(double depth_m, double position_step_m) {
 LoopRun run_loop(const LoopCase& loop, const TissueForce& tissue, const Judge& judge) {
   const double period_s = 1.0 / loop.rate_Hz;
   const double step_m = loop.device.position_step_m;
-  LoopPlant plant({.mass_kg = loop.mass_kg + loop.hand.mass_kg,
-                   .damping_Ns_per_m = loop.device.damping_Ns_per_m + loop.hand.damping_Ns_per_m,
-                   .stiffness_N_per_m = loop.hand.stiffness_N_per_m,
-                   .friction_N = loop.device.friction_N});
+  LoopPlant plant = plant_of(loop);
   const double push_N = tissue(loop.balance_m);
   plant.place(loop.kick_m);
   DelayLine line(loop.device.delay_s, period_s);
@@ -143,10 +154,7 @@ LoopRun run_loop(const LoopCase& loop, const TissueForce& tissue, const Judge& j
       written_N = force_N;
     }
     line.push(written_N);
-    // Within one period two forces act, one after the other: the delay is no whole number of
-    // periods.
-    if (line.rest_s() > 0.0) plant.move(push_N - line.before_N(), line.rest_s());
-    plant.move(push_N - line.acting_N(), period_s - line.rest_s());
+    move(plant, line, push_N, period_s);
     // The gate's extremes may come at any time, so such a run has no early end.
     if (judge) continue;
     still = plant.is_stuck() ? still + 1 : 0;

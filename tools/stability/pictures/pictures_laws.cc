@@ -87,8 +87,9 @@ plot 0 lc rgb '#444444' notitle)gp";
   return {{.name = "law_limits", .width_px = 1600, .height_px = 800, .script = script}};
 }
 
-std::vector<report::Picture> law_line_pictures(Grid) {
-  return {{.name = "law_lines", .width_px = 1400, .height_px = 1000, .script = R"gp(
+namespace {
+
+constexpr char kLines[] = R"gp(
 f = 'law_lines.csv'
 of(s, i) = strcol(2) eq s ? column(i) : NaN
 set multiplot layout 2,2 title \
@@ -143,7 +144,12 @@ plot f using (of('hex_node', 3)):4 with points pt 7 lc 2 title "printed, spring 
      f using (of('hex_sheet', 3)):4 with points pt 7 lc 1 title "energy form", \
      2.5806 lc 1 dt 2 notitle
 unset multiplot
-)gp"}};
+)gp";
+
+}  // namespace
+
+std::vector<report::Picture> law_line_pictures(Grid) {
+  return {{.name = "law_lines", .width_px = 1400, .height_px = 1000, .script = kLines}};
 }
 
 std::vector<report::Picture> law_loop_pictures(Grid) {
