@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """README.md stays short and narrow, prose of every *.md narrow, and every relative link leads to a file and its heading.
-Every room has a README.md that names each of its sources and parts, with a line `Tests: ...`, whose programs and files
-there are.
+Every room has a README.md that names each of its sources, scripts and parts, with a line `Tests: ...`, whose programs
+and files there are.
 
 Reads the tree as text and prints every breach as file:line: sentence. Exit status 0 or 1.
 """
@@ -27,7 +27,8 @@ TOPS = ("model/", "hal/", "firmware/", "host/", "tools/")  # whose rooms have a 
 SOURCE = re.compile(r"(?:.*/)?([^/]+\.(?:h|cc)|package\.json)")
 TEST_PROGRAM = re.compile(r"`(?:build/tests/)?((?:[a-z0-9]+_)+test)(?: [^`]*)?`")
 TEST_FILE = re.compile(r"`((?:[\w-]+/)*\w+_test\.(?:cc|mjs))`")
-NAMED = re.compile(r"(?<![\w*])((?:[\w-]+/)*[\w*]+)\.(?:h|cc|\*)(?!\w)")
+NAMED = re.compile(r"(?<![\w*])((?:[\w-]+/)*[\w*]+)\.(?:h|cc|py|ts|\*)(?!\w)")
+SCRIPT = re.compile(r".*/(?!vite\.config)[^/]+(?<!\.test)\.(?:py|ts)")  # README.md may stand in a folder above
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 
 
@@ -107,8 +108,11 @@ def row_breaches(files):
     """A source of a room that its README.md does not name; a.h and a.cc are one, and `a_*.cc` names all of them."""
     rooms_of = {}
     for path in files:
-        if path.startswith(TOPS) and path.endswith((".h", ".cc")):
-            rooms_of.setdefault(rooms.room_of(path), set()).add(posixpath.splitext(posixpath.basename(path))[0])
+        if path.startswith(TOPS) and (path.endswith((".h", ".cc")) or SCRIPT.fullmatch(path)):
+            room = rooms.room_of(path)
+            while SCRIPT.fullmatch(path) and room and f"{room}/README.md" not in files:
+                room = posixpath.dirname(room)
+            rooms_of.setdefault(room, set()).add(posixpath.splitext(posixpath.basename(path))[0])
     for room, names in rooms_of.items():
         if f"{room}/README.md" not in files:
             continue  # told already
@@ -189,6 +193,7 @@ def blind_rules():
     named, whole = "`b.h`, `c_*.cc`\n", "tests/rig/emulators"
     rooms_of = {"room without README.md": {"hal/c/d.cc": None}, "page without README.md": {"host/c/package.json": None},
                 "source that is not named": {"hal/a/e.cc": None}, "header that is not named": {"hal/a/c.h": None},
+                "script that is not named": {"hal/a/e.py": None}, "page that is not named": {"hal/a/src/e.ts": None},
                 "no line of tests": {"hal/a/README.md": named + "The tests: `hal_a_test`\n"},
                 "empty line of tests": {"hal/a/README.md": named + "Tests: \n\n`hal_a_test`\n"},
                 "own program is not named": {"hal/a/README.md": named + "Tests: `b_test.cc`\n"},
