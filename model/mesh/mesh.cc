@@ -171,11 +171,11 @@ const char* cure(MeshFlaw flaw) {
       return "export the mesh again";
     case MeshFlaw::kRepeatedCorner:
     case MeshFlaw::kZeroArea:
-      return "remove degenerate faces in the mesh editor and export again";
+      return "tact-mesh FILE --weld --drop-degenerate --out NEW.obj removes such faces";
     case MeshFlaw::kSameDirection:
-      return "make the face normals consistent in the mesh editor and export again";
+      return "tact-mesh FILE --out NEW.obj turns faces as their neighbours";
     case MeshFlaw::kCrowdedEdge:
-      return "remove inner or doubled faces in the mesh editor and export again";
+      return "tact-mesh FILE --weld --drop-degenerate --out NEW.obj removes or parts such faces";
   }
   return "export the mesh again";
 }

@@ -14,6 +14,7 @@
 #include "tools/mesh/place.h"
 #include "tools/mesh/repair_file.h"
 #include "tools/mesh/scene_edit.h"
+#include "tools/mesh/solid.h"
 #include "tools/mesh/unit.h"
 #include "tools/program/program.h"
 
@@ -107,6 +108,7 @@ Result<mesh::Repaired> read_mesh(const Options& o, std::vector<std::string> step
   if (steps.empty() && o.out.empty() && mesh::is_obj(o.file)) {
     auto obj = tact::model::mesh::load_obj(o.file, 1.0);
     if (!obj) return obj.error();
+    if (const auto error = mesh::check_solid(o.file, obj->mesh)) return *error;
     return mesh::Repaired{.steps = {}, .obj_text = {}, .obj = std::move(*obj)};
   }
   if (const auto error =
@@ -118,7 +120,9 @@ Result<mesh::Repaired> read_mesh(const Options& o, std::vector<std::string> step
   };
   auto repaired = mesh::repair_file({.source = o.file, .options = std::move(steps)}, on_step,
                                     mesh::show_percent);
-  if (!repaired || o.out.empty()) return repaired;
+  if (!repaired) return repaired;
+  if (const auto error = mesh::check_solid(o.file, repaired->obj.mesh)) return *error;
+  if (o.out.empty()) return repaired;
   if (const auto error = tact::model::io::write_file(o.out, repaired->obj_text)) return *error;
   if (!o.json) fmt::print("{:<15}  {}\n", "wrote", o.out);
   return repaired;

@@ -64,6 +64,15 @@ std::optional<Error> write_plain_obj(const std::string& from, const std::string&
   return model::io::write_file(to, plain);
 }
 
+/// Of what these steps have left.
+std::string cure_of(const std::vector<std::string>& options) {
+  std::string missing;
+  for (const char* option : {"--weld", "--drop-degenerate"})
+    if (std::find(options.begin(), options.end(), option) == options.end())
+      missing += fmt::format(" {}", option);
+  return missing.empty() ? "cure it in a mesh editor" : "add" + missing;
+}
+
 /// What repair.py says, line by line.
 class Listener {
  public:
@@ -163,8 +172,11 @@ Result<Repaired> repair_file(const RepairOrder& order,
     // "PATH:LINE: the face ...; cure in a mesh editor"
     const std::string& told = obj.error().sentence;
     const std::size_t what = told.find(": ", target.size());
-    const std::string sentence = what == std::string::npos ? told : told.substr(what + 2);
-    return Error{fmt::format("{}: after these steps {}", order.source, sentence)};
+    std::string sentence = what == std::string::npos ? told : told.substr(what + 2);
+    // The reader's cure is this repair.
+    sentence.resize(std::min(sentence.find("; "), sentence.size()));
+    return Error{fmt::format("{}: after these steps {}; {}", order.source, sentence,
+                             cure_of(order.options))};
   }
   return Repaired{
       .steps = std::move(listener.steps), .obj_text = std::move(*text), .obj = std::move(*obj)};

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Files of triangle surfaces, all that VTK reads and OFF, as numpy arrays; OBJ to write."""
+import json
 import os
 import pathlib
 import re
 import struct
+import urllib.parse
 
 import numpy as np
 import vtk
@@ -61,6 +63,8 @@ def read(path):
         check_stl(path, size_bytes, beginning)
     if ending == ".ply":
         check_ply(path, size_bytes)
+    if ending == ".gltf":
+        check_gltf(path)
     if ending == ".off":
         surface = read_off(path)
     elif ending in READERS:
@@ -68,13 +72,15 @@ def read(path):
     else:
         raise Refused(f"{path}: {ending or 'no ending'} is no format that is read; export the mesh as {FORMATS}")
     points, triangles = to_numpy(triangulated(surface))
+    if len(triangles) == 0 and surface.GetNumberOfPoints() > 0:
+        raise Refused(f"{path}: no faces in it, {surface.GetNumberOfPoints()} points alone; make a surface of them in a mesh editor")
     if len(triangles) == 0:
         raise Refused(f"{path}: no faces in it; export the mesh with faces")
     if triangles.min() < 0 or triangles.max() >= len(points):
         raise Refused(f"{path}: a face names vertex {triangles.max() + 1} of {len(points)}{AGAIN}")
     sane = (np.abs(points) <= MOST_COORDINATE).all(1)  # a NaN is not
     if not sane.all():
-        raise Refused(f"{path}: vertex {np.argmin(sane) + 1} is not finite, or beyond 1e12{AGAIN}")
+        raise Refused(f"{path}{line_of_no_number(path, ending)}: vertex {np.argmin(sane) + 1} is not finite, or beyond 1e12{AGAIN}")
     return points, triangles
 
 
@@ -85,6 +91,8 @@ def check_stl(path, size_bytes, beginning):
     if size_bytes < 84:
         raise Refused(f"{path}: no STL: neither 'solid' nor a head of 84 bytes{AGAIN}")
     triangles = struct.unpack_from("<I", beginning, 80)[0]
+    if triangles == 0:
+        raise Refused(f"{path}: no faces in it; export the mesh with faces")
     if size_bytes < 84 + 50 * triangles:
         raise Refused(f"{path}: cut short, after {(size_bytes - 84) // 50} of {triangles} triangles{AGAIN}")
 
@@ -96,6 +104,32 @@ def check_ply(path, size_bytes):
     promised = sum(int(count) for count in re.findall(r"^element \w+ (\d+)\s*$", head, re.MULTILINE))
     if promised > size_bytes:
         raise Refused(f"{path}: its head promises {promised} vertices and faces, and the file has {size_bytes} bytes{AGAIN}")
+
+
+def check_gltf(path):
+    """VTK crashes where a buffer is missing or too short, and knows no %20 in its name."""
+    try:
+        with open(path, "rb") as file:
+            buffers = [(buffer["uri"], buffer["byteLength"]) for buffer in json.load(file)["buffers"] if "uri" in buffer]
+        named = [(uri, urllib.parse.unquote(uri), int(size)) for uri, size in buffers if not uri.startswith("data:")]
+    except (ValueError, KeyError, TypeError, AttributeError):
+        return  # VTK says what is wrong
+    for uri, name, size_bytes in named:
+        buffer = pathlib.Path(path).parent / name
+        if not buffer.is_file():
+            raise Refused(f"{path}: its buffer file {name!r} is missing beside it; copy it there, or export as GLB, which is one file")
+        if buffer.stat().st_size < size_bytes:
+            raise Refused(f"{path}: its buffer file {name!r} is cut short, {buffer.stat().st_size} of {size_bytes} bytes{AGAIN}")
+        if name != uri:
+            raise Refused(f"{path}: VTK does not read the name of its buffer file {name!r}; export as GLB, which is one file")
+
+
+def line_of_no_number(path, ending):
+    """":LINE" of the first vertex of an STL text that is no number; else nothing."""
+    if ending != ".stl":
+        return ""
+    with open(path, encoding="ascii", errors="replace") as file:
+        return next((f":{number}" for number, line in enumerate(file, 1) if re.match(r"\s*vertex\b.*\b(nan|inf)", line, re.I)), "")
 
 
 def read_by_vtk(path, reader):

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "model/io/file_writer.h"
+#include "tools/mesh/solid.h"
 
 namespace tact::tools::new_scene {
 namespace {
@@ -57,6 +58,7 @@ Result<Organ> read_organ(const OrganOrder& order, const std::string& folder,
     return Error{fmt::format(
         "{}: {} edges stay open after the repair, so it has no inside; close it in a mesh editor",
         order.source, sum.boundary_edges)};
+  if (auto error = mesh::check_solid(order.source, organ.mesh)) return *error;
   const Vec3 extent_m = sum.high_m - sum.low_m;
   const double size_m = std::max({extent_m.x, extent_m.y, extent_m.z});
   if (size_m < kMinSize_m || size_m > kMaxSize_m)

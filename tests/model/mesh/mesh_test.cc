@@ -247,8 +247,8 @@ TEST(Mesh, RefusesTwoTrianglesInTheSameDirectionOnAnEdge) {
   const MeshDefect defect = defect_of(kCubeVertices, triangles);
   EXPECT_EQ(defect.flaw, MeshFlaw::kSameDirection);
   EXPECT_EQ(sentence_of(kCubeVertices, triangles),
-            "triangle 9 faces the other way than its neighbour; make the face normals consistent "
-            "in the mesh editor and export again");
+            "triangle 9 faces the other way than its neighbour; tact-mesh FILE --out NEW.obj turns "
+            "faces as their neighbours");
 }
 
 TEST(Mesh, RefusesADoubledTriangle) {

@@ -215,7 +215,34 @@ TEST_F(MeshFormats, ABrokenFileGetsOneSentenceWithItsLineWhereThatIsKnown) {
   expect_refused("mesh.step", "ISO-10303", ".step is no format that is read");
   expect_refused("far.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1e300 0\n3 0 1 2\n",
                  "vertex 3 is not finite, or beyond");
-  expect_refused("none.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "no faces in it");
+  expect_refused("none.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n",
+                 "no faces in it, 3 points alone; make a surface of them");
+  expect_refused("cloud.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+                 "property float z\nend_header\n0 0 0\n1 1 1\n",
+                 "no faces in it, 2 points alone");
+  expect_refused("none.stl", std::string(84, '\0'), "no faces in it; export the mesh with faces");
+  std::string spoilt = ascii_stl();
+  spoilt.replace(spoilt.find("vertex 10 10 0"), 9, "vertex nan");
+  expect_refused("nan.stl", spoilt, "nan.stl:6: vertex ");
+}
+
+TEST_F(MeshFormats, WhatAGltfFileLacksIsNamed) {
+  json file = gltf();
+  file["buffers"][0]["uri"] = "gone.bin";
+  expect_refused(
+      "a.gltf", file.dump(),
+      "a.gltf: its buffer file 'gone.bin' is missing beside it; copy it there, or export "
+      "as GLB");
+  file["buffers"][0]["uri"] = "the%20cube.bin";
+  expect_refused("b.gltf", file.dump(), "its buffer file 'the cube.bin' is missing beside it");
+  temp_.write("the cube.bin", buffer());
+  expect_refused("b.gltf", file.dump(), "'the cube.bin'; export as GLB");
+  temp_.write("gone.bin", buffer().substr(0, 100));
+  file["buffers"][0]["uri"] = "gone.bin";
+  expect_refused("a.gltf", file.dump(), "'gone.bin' is cut short, 100 of 240 bytes");
+  file["buffers"] = {7, {{"uri", 5}, {"byteLength", "x"}}};
+  expect_refused("a.gltf", file.dump(), "a.gltf");
 }
 
 TEST_F(MeshFormats, AnObjFileKeepsItsLinesWhereItIsRepairedToo) {

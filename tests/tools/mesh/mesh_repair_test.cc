@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <numeric>
 
 #include "model/mesh/obj.h"
@@ -180,6 +181,25 @@ TEST_F(MeshRepair, DropDegenerateDropsFacesWithoutAreaAndDoubledOnes) {
   EXPECT_EQ(count(report, "drop-degenerate"), 4);
   EXPECT_EQ(report["triangles"], 12);
   EXPECT_EQ(report["closed"], true);
+}
+
+TEST_F(MeshRepair, WhatIsLeftWithoutAreaOrVolumeIsAnErrorWithItsCure) {
+  const std::string needle =
+      temp_.write("needle.obj", kCubeVertices + "v 5 0 0\n" + kCubeFaces + "f 1 9 2\n");
+  const std::string out = temp_.path() + "/out.obj";
+  const auto refused = [&](const std::string& arguments, const std::string& words) {
+    const Ran ran = run(arguments + " --out " + out);
+    EXPECT_EQ(ran.status, 2) << ran.out;
+    EXPECT_NE(ran.err.find(words), std::string::npos) << ran.err;
+    EXPECT_FALSE(std::filesystem::exists(out));
+  };
+  refused(needle + " --weld", "after these steps the face has zero area; add --drop-degenerate\n");
+  const std::string line = temp_.write("line.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n");
+  refused(line + " --drop-degenerate", "no face is left after drop-degenerate");
+  const std::string flat =
+      temp_.write("flat.obj", "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 9 9 0\nf 1 2 3\nf 2 4 3\n");
+  EXPECT_EQ(told(flat + " --weld")["closed"], false) << "one sheet is a skin";
+  refused(flat + " --close-holes", "closed, of 4 faces, and without a volume");
 }
 
 TEST_F(MeshRepair, FacesAreTurnedAsTheirNeighboursAndOutwards) {

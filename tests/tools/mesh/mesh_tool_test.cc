@@ -104,6 +104,29 @@ TEST_F(MeshTool, SaysWhatAnOpenSurfaceLacks) {
   EXPECT_TRUE(json["volume_m3"].is_null());
 }
 
+TEST_F(MeshTool, AClosedSurfaceWithoutVolumeIsAnError) {
+  const std::string path =
+      temp_.write("flat.obj", "v 0 0 0\nv 10 0 0\nv 0 10 0\nf 1 2 3\nf 1 3 2\n");
+  expect_one_line_error(run(path),
+                        "tact-mesh: " + path +
+                            ": closed, of 2 faces, and without a volume: two sheets that "
+                            "lie on each other; take one sheet, or a solid");
+  expect_one_line_error(run(path + " --json"), "tact-mesh: ");
+  // A leaf of 1/1000 of its size is thin, and a solid.
+  std::string thin = kCubeVertices;
+  for (std::size_t at = 0; (at = thin.find(" 10\n", at)) != thin.npos;)
+    thin.replace(at, 3, " 0.01");
+  EXPECT_EQ(run(temp_.write("thin.obj", thin + kCubeFaces)).status, 0);
+}
+
+TEST_F(MeshTool, TheCureOfAFaceWithoutAreaIsACommand) {
+  const std::string flat = kCubeVertices + "v 5 0 0\n" + kCubeFaces + "f 1 9 2\n";
+  const Ran ran = run(temp_.write("bad.obj", flat));
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.err.find("tact-mesh FILE --weld --drop-degenerate --out NEW.obj"), ran.err.npos)
+      << ran.err;
+}
+
 TEST_F(MeshTool, EveryLineOfTheManifestOfBadFilesHolds) {
   for (const BadFile& file : bad_files(temp_)) {
     SCOPED_TRACE(file.name);
