@@ -93,6 +93,13 @@ PARTS = {
         "run": ["statistics", "trace"],
         "report": ["statistics", "run"],
     },
+    "tools/limits": {
+        "cases": [],
+        "real_device": ["cases"],
+        "verdict": ["cases"],
+        "evidence": [],
+        "report": ["verdict", "evidence"],
+    },
     "tools/reference": {
         "calculix": [],
         "organ": [],

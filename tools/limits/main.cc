@@ -7,7 +7,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "tools/limits/consent.h"
+#include "tools/limits/real_device/consent.h"
 #include "tools/limits/run_plan.h"
 #include "tools/program/program.h"
 

@@ -14,7 +14,7 @@
 #include "firmware/watch/call_filter.h"
 #include "firmware/watch/runaway.h"
 #include "hal/gpio/gpio_lines.h"
-#include "tools/limits/guarded_play.h"
+#include "tools/limits/real_device/guarded_play.h"
 #include "tools/program/interrupt.h"
 #include "tools/program/run_program.h"
 

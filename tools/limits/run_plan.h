@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "model/result.h"
-#include "tools/limits/guarded_play.h"
-#include "tools/limits/report.h"
+#include "tools/limits/real_device/guarded_play.h"
+#include "tools/limits/report/report.h"
 
 namespace tact::tools::limits {
 

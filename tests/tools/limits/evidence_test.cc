@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Can a report of tact-limits be filed: who, where, what exactly, and which hazards it is about?
-#include "tools/limits/evidence.h"
+#include "tools/limits/evidence/evidence.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -13,8 +13,8 @@
 #include "model/io/seal.h"
 #include "tests/support/program.h"
 #include "tests/support/test_scene.h"
-#include "tools/limits/hazard_page.h"
-#include "tools/limits/hazards.h"
+#include "tools/limits/evidence/hazards.h"
+#include "tools/limits/report/hazard_page.h"
 #include "tools/limits/run_plan.h"
 
 namespace tact::tools::limits::evidence_test {

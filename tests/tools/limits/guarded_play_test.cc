@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cases of tact-limits on a device that is not simulated: what guards tactd's loop guards theirs.
-#include "tools/limits/guarded_play.h"
+#include "tools/limits/real_device/guarded_play.h"
 
 #include <gtest/gtest.h>
 
 #include "firmware/watch/call_filter.h"
 #include "tests/support/watched_loop.h"
-#include "tools/limits/verdict.h"
+#include "tools/limits/verdict/verdict.h"
 
 namespace tact::tools::limits::guarded_play_test {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a report of tact-limits claims: no more than was played.
-#include "tools/limits/limit_rows.h"
+#include "tools/limits/report/limit_rows.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

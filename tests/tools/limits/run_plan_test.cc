@@ -14,8 +14,8 @@
 #include "tests/support/program.h"
 #include "tests/support/stub_dhd/stub_client.h"
 #include "tests/support/test_scene.h"
-#include "tools/limits/consent.h"
-#include "tools/limits/limit_rows.h"
+#include "tools/limits/real_device/consent.h"
+#include "tools/limits/report/limit_rows.h"
 
 namespace tact::tools::limits::run_plan_test {
 

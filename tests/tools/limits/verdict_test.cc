@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What tact-limits judges by, on rows written by hand.
-#include "tools/limits/verdict.h"
+#include "tools/limits/verdict/verdict.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,7 +10,7 @@
 #include <map>
 #include <sstream>
 
-#include "tools/limits/report.h"
+#include "tools/limits/report/report.h"
 
 namespace tact::tools::limits::verdict_test {
 

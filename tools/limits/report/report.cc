@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/limits/report/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "model/io/file_writer.h"
+#include "model/io/input_file.h"
+#include "tools/report/table.h"
+
+namespace tact::tools::limits {
+namespace {
+
+namespace fs = std::filesystem;
+using model::Result;
+
+/// Length of a vector, with the sign of its z, along which most cases act: what the curves show.
+double along_z(const Vec3& v) { return v.z < 0.0 ? -norm(v) : norm(v); }
+
+std::string word_of(std::string text) {  // a word of a table has no comma
+  std::replace(text.begin(), text.end(), ',', ' ');
+  return text;
+}
+
+report::Table case_table(const LimitsReport& report) {
+  report::Table table("cases",
+                      {{"case", report::CellKind::kWord},
+                       {"passed"},
+                       {"force_limit_N"},
+                       {"largest_commanded_N"},
+                       {"largest_written_N"},
+                       {"overshoot_N"},
+                       {"largest_torque_Nm"},
+                       {"largest_step_N"},
+                       {"largest_step_Nm"},
+                       {"largest_power_W"},
+                       {"given_energy_J"},
+                       {"largest_rms_N"},
+                       {"largest_rms_Nm"},
+                       {"time_to_zero_s"},
+                       {"allowed_zero_s"},
+                       {"stages", report::CellKind::kWord},
+                       {"fault"}},
+                      report.cases.size());
+  for (const CaseResult& result : report.cases) {
+    const CaseVerdict& v = result.verdict;
+    table.add({std::string(v.subject.name), v.passed() ? 1.0 : 0.0, v.limits.force_N,
+               v.worst.commanded_N, v.worst.force_N, v.overshoot_N, v.worst.torque_Nm,
+               v.worst.step_N, v.worst.step_Nm, v.worst.power_W, v.worst.given_J, v.worst.rms_N,
+               // NaN: never, or not asked for.
+               v.worst.rms_Nm, v.worst.zero_s.value_or(std::nan("")),
+               v.subject.expected.zero_within_s.value_or(std::nan("")), word_of(v.acted_words()),
+               static_cast<double>(v.fault)});
+  }
+  return table;
+}
+
+// NOLINTNEXTLINE(readability-function-size): a table of columns
+report::Table trace_table(const CaseResult& result) {
+  report::Table table(std::string("trace_") + result.verdict.subject.name,
+                      {{"t_s"},
+                       {"commanded_N"},
+                       {"gated_N"},
+                       {"written_N"},
+                       {"commanded_Nm"},
+                       {"gated_Nm"},
+                       {"written_Nm"},
+                       {"written_x_N"},
+                       {"written_y_N"},
+                       {"written_z_N"},
+                       {"position_x_m"},
+                       {"position_y_m"},
+                       {"position_z_m"},
+                       {"speed_mps"},
+                       {"power_W"},
+                       {"given_energy_J"},
+                       {"rms_N"},
+                       {"fresh"},
+                       {"armed"},
+                       {"skipped_periods"},
+                       {"stages", report::CellKind::kWord},
+                       {"limit"},
+                       {"fault"}},
+                      result.rows.size());
+  for (const TickRow& r : result.rows) {
+    CaseVerdict stages;
+    stages.acted = r.acted;
+    table.add({r.t_s,
+               along_z(r.commanded_N),
+               along_z(r.gated_N),
+               along_z(r.written_N),
+               norm(r.commanded_Nm),
+               norm(r.gated_Nm),
+               norm(r.written_Nm),
+               r.written_N.x,
+               r.written_N.y,
+               r.written_N.z,
+               r.tool.position_m.x,
+               r.tool.position_m.y,
+               r.tool.position_m.z,
+               norm(r.tool.velocity_mps),
+               power_W(r),
+               r.given_J,
+               r.rms_N,
+               r.fresh ? 1.0 : 0.0,
+               r.armed ? 1.0 : 0.0,
+               static_cast<double>(r.skipped_periods),
+               word_of(stages.acted_words()),
+               static_cast<double>(r.limit),
+               static_cast<double>(r.fault)});
+  }
+  return table;
+}
+
+report::Table wall_table(const WallVerdict& wall) {
+  report::Table table("wall",
+                      {{"stiffness_N_per_m"},
+                       {"without_early_swing_m"},
+                       {"without_last_swing_m"},
+                       {"without_grows"},
+                       {"without_given_J"},
+                       {"with_early_swing_m"},
+                       {"with_last_swing_m"},
+                       {"with_grows"},
+                       {"with_given_J"},
+                       {"in_bounds"}},
+                      wall.points.size());
+  for (const WallPoint& p : wall.points)
+    table.add({p.stiffness_N_per_m, p.without.early_swing_m, p.without.last_swing_m,
+               p.without.grows ? 1.0 : 0.0, p.without.given_J, p.with.early_swing_m,
+               p.with.last_swing_m, p.with.grows ? 1.0 : 0.0, p.with.given_J,
+               p.without.in_bounds && p.with.in_bounds ? 1.0 : 0.0});
+  return table;
+}
+
+}  // namespace
+
+bool LimitsReport::passed() const {
+  // A run that played nothing has not passed.
+  return !(cases.empty() && !wall) && (!wall || wall->passed()) &&
+         std::all_of(cases.begin(), cases.end(),
+                     [](const CaseResult& r) { return r.verdict.passed(); });
+}
+
+std::string LimitsReport::result_words() const {
+  if (!passed()) return "FAIL";
+  if (not_run.empty()) return "PASS";
+  return fmt::format("PASS of {} of {} cases", played(), played() + not_run.size());
+}
+
+std::vector<std::pair<std::string, std::string>> LimitsReport::left_out_by_why() const {
+  std::vector<std::pair<std::string, std::string>> groups;
+  for (const LeftOut& out : not_run) {
+    const auto same = std::find_if(groups.begin(), groups.end(),
+                                   [&](const auto& g) { return g.first == out.why; });
+    if (same == groups.end())
+      groups.emplace_back(out.why, out.name);
+    else
+      same->second += ", " + out.name;
+  }
+  return groups;
+}
+
+std::string to_text(const LimitsReport& report) {
+  std::string out;
+  for (const CaseResult& result : report.cases) {
+    const CaseVerdict& v = result.verdict;
+    out += fmt::format("{:4}  {:16} {:7.3f} N of {:.3g}, overshoot {:g}, zero {}, {}\n",
+                       v.passed() ? "ok" : "FAIL", v.subject.name, v.worst.force_N,
+                       v.limits.force_N, v.overshoot_N,
+                       v.worst.zero_s ? fmt::format("after {:.0f} ms", 1e3 * *v.worst.zero_s) : "-",
+                       v.acted_words());
+    for (const Check& c : v.checks)
+      if (!c.holds) out += fmt::format("      FAIL: {}\n", c.sentence);
+  }
+  if (report.wall) {
+    out += fmt::format("{:4}  {}\n", report.wall->passed() ? "ok" : "FAIL", kWallName);
+    for (const Check& c : report.wall->checks)
+      out += fmt::format("      {}{}\n", c.holds ? "" : "FAIL: ", c.sentence);
+  }
+  for (const auto& [why, names] : report.left_out_by_why())
+    out += fmt::format("-     not tested, {}: {}\n", why, names);
+  return out;
+}
+
+Result<std::vector<std::string>> write_report(const LimitsReport& report,
+                                              const std::string& directory, bool draw_pictures) {
+  std::vector<std::string> files;
+  const auto write = [&](const std::string& name, const std::string& content) {
+    files.push_back((fs::path(directory) / name).string());
+    return model::io::write_file(files.back(), content);
+  };
+  std::vector<report::Table> tables;
+  if (!report.cases.empty()) tables.push_back(case_table(report));
+  // Every tick: the verdict can be checked without this program.
+  for (const CaseResult& result : report.cases) tables.push_back(trace_table(result));
+  if (report.wall) tables.push_back(wall_table(*report.wall));
+  for (const report::Table& table : tables)
+    if (auto error = write(table.name() + ".csv", table.to_csv())) return *error;
+  if (auto error = write("limits.json", to_json(report).dump(2) + "\n")) return *error;
+  std::vector<std::string> drawings;
+  // Tables first: without gnuplot the numbers are there all the same.
+  if (draw_pictures) {
+    const auto drawn = draw_curves(report, directory);
+    if (!drawn) return drawn.error();
+    for (const std::string& path : *drawn) {
+      files.push_back(path);
+      if (fs::path(path).extension() != ".svg") continue;
+      auto svg = model::io::read_file(path);
+      if (!svg) return svg.error();
+      drawings.push_back(std::move(*svg));
+    }
+  }
+  if (auto error = write("limits.html", page_html(report, drawings))) return *error;
+  return files;
+}
+
+}  // namespace tact::tools::limits

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// report.h - what a test of the limits leaves behind: JSON for machines, CSV of every tick, curves
+// by gnuplot, and one page that a safety officer can read.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "firmware/pc/environment.h"
+#include "model/result.h"
+#include "tools/limits/evidence/evidence.h"
+#include "tools/limits/verdict/wall.h"
+
+namespace tact::tools::limits {
+
+struct CaseResult {
+  CaseVerdict verdict;
+  std::vector<TickRow> rows;
+};
+
+/// A case of the whole plan that was not played.
+struct LeftOut {
+  std::string name, why;
+};
+
+struct LimitsReport {
+  std::string command, started;  // as typed; UTC
+  std::string scene_name, scene_path, device_name;
+  bool simulated = true;
+  model::Limits limits{};  // in use: of scene, device and PC
+  double period_s = 0.001;
+  double force_share = 1.0;
+  bool hard_real_time = true;  // asked of the PC; simulated time needs none
+  bool call_filter = false;    // over the loop's system calls, on a real device
+  firmware::pc::Environment environment{};
+  std::vector<CaseResult> cases;
+  std::optional<WallVerdict> wall;
+  Evidence evidence{};
+  std::vector<LeftOut> not_run;  // the rest of the plan, so that nobody takes it for tested
+
+  bool passed() const;
+  std::size_t played() const { return cases.size() + (wall ? 1 : 0); }
+  /// "PASS", "PASS of 2 of 25 cases", "FAIL"; the page says SIMULATED before it
+  std::string result_words() const;
+  /// Names of the cases that were left out, by why.
+  std::vector<std::pair<std::string, std::string>> left_out_by_why() const;
+};
+
+nlohmann::json to_json(const LimitsReport& report);
+/// A line for each case, on a terminal.
+std::string to_text(const LimitsReport& report);
+/// limits.json, cases.csv, a trace_NAME.csv for each case, wall.csv, curves.* and wall.*,
+/// limits.html. Returns the paths.
+model::Result<std::vector<std::string>> write_report(const LimitsReport& report,
+                                                     const std::string& directory,
+                                                     bool draw_pictures);
+
+/// The pictures beside the tables: paths without ending of the folder.
+model::Result<std::vector<std::string>> draw_curves(const LimitsReport& report,
+                                                    const std::string& directory);
+/// `svg`: the drawings, in their order; empty: without.
+std::string page_html(const LimitsReport& report, const std::vector<std::string>& svg);
+
+}  // namespace tact::tools::limits

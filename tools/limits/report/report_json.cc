@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// The report for machines: limits.json.
+#include <nlohmann/json.hpp>
+
+#include "tools/limits/report/hazard_page.h"
+#include "tools/limits/report/limit_rows.h"
+
+namespace tact::tools::limits {
+namespace {
+
+using nlohmann::json;
+
+json checks_json(const std::vector<Check>& checks) {
+  json out = json::array();
+  for (const Check& c : checks) out.push_back({{"holds", c.holds}, {"sentence", c.sentence}});
+  return out;
+}
+
+// No zero was reached, or none is asked for: a number would be a claim.
+json or_null(const std::optional<double>& value) { return value ? json(*value) : json(); }
+
+json case_json(const CaseVerdict& v, bool simulated) {
+  return {{"case", v.subject.name},
+          {"what", v.subject.what},
+          // On a real device no program opens a line: this was no test of the wire.
+          {"cause", simulated || !opens_line(v.subject) ? "played" : kToldInSoftware},
+          {"passed", v.passed()},
+          {"force_limit_N", v.limits.force_N},
+          {"largest_commanded_N", v.worst.commanded_N},
+          {"largest_written_N", v.worst.force_N},
+          {"overshoot_N", v.overshoot_N},
+          {"largest_torque_Nm", v.worst.torque_Nm},
+          {"largest_step_N", v.worst.step_N},
+          {"largest_step_Nm", v.worst.step_Nm},
+          {"largest_power_W", v.worst.power_W},
+          {"given_energy_J", v.worst.given_J},
+          {"largest_rms_N", v.worst.rms_N},
+          {"largest_rms_Nm", v.worst.rms_Nm},
+          {"time_to_zero_s", or_null(v.worst.zero_s)},
+          {"allowed_zero_s", or_null(v.subject.expected.zero_within_s)},
+          {"stages", v.acted_words()},
+          {"fault", static_cast<int>(v.fault)},
+          {"checks", checks_json(v.checks)}};
+}
+
+json limit_json(const LimitRow& row) {
+  json tighter = json::array();
+  for (const TighterLimit& t : row.tighter)
+    tighter.push_back(
+        {{"case", t.case_name}, {"value", t.limit}, {"largest", t.largest}, {"holds", t.holds}});
+  return {{"limit", row.name},
+          {"key", row.key},
+          {"unit", row.unit},
+          {"value", row.limit},
+          {"largest", row.largest},
+          {"kept", kept_words(row.kept)},
+          {"reached_by", row.reached_by},
+          {"tighter", tighter}};
+}
+
+json report_json(const LimitsReport& report) {
+  const Evidence& e = report.evidence;
+  return {{"number", e.people.number},
+          {"tester", e.people.tester},
+          {"place", e.people.place},
+          {"serial_numbers", e.people.serials},
+          {"host", e.host},
+          {"began", e.began_utc},
+          {"ended", e.ended_utc}};
+}
+
+json digests_json(const Evidence& e) {
+  return {{"tact_limits", e.program_sha256},
+          // tact-limits judges the parts that it has in common with tactd, so both files are named.
+          {"tactd", e.tactd_path.empty() ? json() : json(e.tactd_sha256)},
+          {"scene", e.scene_sha256},
+          {"limits", e.limits_sha256}};
+}
+
+json wall_json(const WallVerdict& wall) {
+  return {{"passed", wall.passed()},
+          {"theory_N_per_m", wall.theory_N_per_m},
+          {"bounded_without_N_per_m", wall.bounded_without_N_per_m},
+          {"bounded_with_N_per_m", wall.bounded_with_N_per_m},
+          {"bounded_with_is_a_least_value", wall.with_is_least},
+          {"bounded_ratio", wall.bounded_ratio()},
+          {"rest_without_N_per_m", wall.rest_without_N_per_m},
+          {"rest_with_N_per_m", wall.rest_with_N_per_m},
+          {"rest_ratio", wall.rest_ratio()},
+          {"largest_swing_without_m", wall.swing_without_m},
+          {"largest_swing_with_m", wall.swing_with_m},
+          {"checks", checks_json(wall.checks)}};
+}
+
+}  // namespace
+
+json to_json(const LimitsReport& report) {
+  json limits = json::array(), cases = json::array(), not_run = json::array();
+  for (const LimitRow& row : limit_rows(report)) limits.push_back(limit_json(row));
+  for (const LeftOut& out : report.not_run)
+    not_run.push_back({{"case", out.name}, {"why", out.why}});
+  for (const CaseResult& result : report.cases)
+    cases.push_back(case_json(result.verdict, report.simulated));
+  const firmware::pc::Environment& e = report.environment;
+  const Evidence& evidence = report.evidence;
+  json out{{"format", "tact-limits"},
+           {"version", 1},
+           {"report", report_json(report)},
+           {"limits_checksum", evidence.limits_checksum},
+           {"sha256", digests_json(evidence)},
+           {"scene_text", evidence.scene_text},
+           {"overrides", evidence.overrides},
+           {"hazard_table", hazards_json(report)},
+           {"passed", report.passed()},
+           {"result", report.result_words()},
+           {"cases_played", report.played()},
+           // So that "2 passed" cannot be read as all.
+           {"cases_of_plan", report.played() + report.not_run.size()},
+           {"command", report.command},
+           {"started", report.started},
+           {"scene", report.scene_name},
+           {"scene_hash", e.scene_hash},
+           {"device", report.device_name},
+           {"simulated", report.simulated},
+           {"force_share", report.force_share},
+           {"call_filter", report.call_filter},
+           {"rate_Hz", 1.0 / report.period_s},
+           {"limits", limits},
+           {"cases", cases},
+           {"not_run", not_run},
+           {"environment",
+            {{"kernel", e.kernel_release},
+             {"cpu", e.cpu},
+             {"revision", e.git_revision},
+             {"compiler", e.compiler}}}};
+  if (report.wall) out["wall"] = wall_json(*report.wall);
+  return out;
+}
+
+}  // namespace tact::tools::limits

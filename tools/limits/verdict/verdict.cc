@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/limits/verdict/verdict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tact::tools::limits {
+namespace {
+
+using firmware::gate::kStageCount;
+using firmware::gate::kStageName;
+
+constexpr double kMinTurn = 0.45;         // of the torque limit, where a torque must go
+constexpr double kRounding = 1.0 + 1e-9;  // for sums and products; |F| has none
+
+/// Force that was held since the last sample, and the way that the next one shows.
+class EnergyAccount {
+ public:
+  explicit EnergyAccount(const model::Limits& limits) : limits_(limits) {}
+
+  void add(const TickRow& row, double period_s) {
+    const double periods = 1.0 + row.skipped_periods;
+    time_s_ += periods * period_s;
+    // The force of the write before was on the hand until now, through every period that was
+    // skipped.
+    sum_.force_N += periods * held_.force_N;
+    sum_.torque_Nm += periods * held_.torque_Nm;
+    periods_ += periods;
+    held_ = {.force_N = row.written_N, .torque_Nm = row.written_Nm};
+    // Without a sample the way is not known: the force is added up until one comes.
+    if (!row.fresh || !is_finite(row.tool)) return;
+    if (placed_) {
+      const Vec3 moved_m = row.tool.position_m - position_m_;
+      given_J_ += dot(sum_.force_N, moved_m) / periods_ + turned_J(row.tool.orientation);
+    }
+    largest_J_ = std::max(largest_J_, given_J_);
+    // The budget recovers with time, as the gate's does, but on a clock of its own.
+    const double allowed_J = limits_.energy_J + limits_.recovery_W * time_s_;
+    overdrawn_J_ = std::max(overdrawn_J_, given_J_ - allowed_J * kRounding);
+    placed_ = true;
+    position_m_ = row.tool.position_m;
+    orientation_ = row.tool.orientation;
+    sum_ = {};
+    periods_ = 0.0;
+  }
+  double largest_J() const { return largest_J_; }
+  double overdrawn_J() const { return overdrawn_J_; }
+
+ private:
+  double turned_J(const model::Quat& now) const {
+    const model::Quat turn = now * conjugate(orientation_);
+    const double sign = turn.w < 0.0 ? -2.0 : 2.0;  // small turns: twice the vector part
+    return dot(sum_.torque_Nm, sign * Vec3{turn.x, turn.y, turn.z}) / periods_;
+  }
+
+  const model::Limits& limits_;
+  Wrench held_, sum_;
+  double periods_ = 0.0, time_s_ = 0.0;
+  bool placed_ = false;
+  Vec3 position_m_;
+  model::Quat orientation_;
+  double given_J_ = 0.0, largest_J_ = 0.0, overdrawn_J_ = 0.0;
+};
+
+bool is_outside(const TickRow& row, const model::Limits& limits) {
+  const Vec3& p = row.tool.position_m;
+  return std::hypot(p.y, p.z) > limits.workspace_radius_m ||
+         std::abs(p.x) > limits.workspace_half_length_m ||
+         norm(row.tool.velocity_mps) > limits.speed_mps;
+}
+
+bool is_cause(const TickRow& row, const model::Limits& limits) {
+  return row.t_s >= 0.0 && (row.cause || !is_finite(row.commanded_N) || is_outside(row, limits));
+}
+
+bool is_zero(const TickRow& row) { return row.written_N == Vec3{} && row.written_Nm == Vec3{}; }
+
+/// From the cause to the first zero behind which no force or torque comes while the cause stands.
+std::optional<double> time_to_zero_s(const std::vector<TickRow>& rows,
+                                     const model::Limits& limits) {
+  std::optional<double> since_s, zero_s;
+  bool stands = false;
+  for (const TickRow& row : rows) {
+    const bool cause = is_cause(row, limits);
+    if (!since_s) {
+      if (!cause) continue;
+      since_s = row.t_s;
+      stands = true;
+    }
+    // A cause that has gone may let the force come back: that is no late force.
+    stands = stands && cause;
+    if (is_zero(row) && !zero_s) zero_s = row.t_s - *since_s;
+    // Zero for a tick in between is not zero for good.
+    if (!is_zero(row) && stands) zero_s.reset();
+  }
+  return zero_s;
+}
+
+class Checks {
+ public:
+  void add(std::vector<Check> more) {
+    for (Check& check : more) list_.push_back(std::move(check));
+  }
+  void add(bool holds, const char* good, const char* broken) { add(holds, holds ? good : broken); }
+  void add(bool holds, std::string sentence) { list_.push_back({std::move(sentence), holds}); }
+  std::vector<Check> list() { return std::move(list_); }
+
+ private:
+  std::vector<Check> list_;
+};
+
+void check_silence(Checks& checks, const std::vector<TickRow>& rows) {
+  const auto all = [&](auto holds) { return std::all_of(rows.begin(), rows.end(), holds); };
+  checks.add(
+      all([](const TickRow& r) { return is_finite(r.written_N) && is_finite(r.written_Nm); }),
+      "every force written is a number");
+  checks.add(
+      all([](const TickRow& r) { return r.written_N == r.gated_N && r.written_Nm == r.gated_Nm; }),
+      "the device was handed what the gate let through, bit for bit");
+  checks.add(all([&](const TickRow& r) { return r.armed || is_zero(r); }),
+             "no force while it was not armed", "a force while it was not armed");
+  bool faulted = false;
+  checks.add(all([&](const TickRow& r) {
+               faulted = faulted || latches(r.fault);
+               return !faulted || is_zero(r);
+             }),
+             "no force from a latched fault on", "a force from a latched fault on");
+}
+
+void check_expected(Checks& checks, const CaseVerdict& v) {
+  const Expected& e = v.subject.expected;
+  const bool acted = (v.acted >> static_cast<unsigned>(e.stage) & 1u) != 0;
+  checks.add(acted, fmt::format("the stage {} {}", kStageName[static_cast<std::size_t>(e.stage)],
+                                acted ? "acted" : "did not act"));
+  checks.add(v.fault == e.fault,
+             e.fault == Fault::kNone
+                 ? fmt::format(
+                       "no fault latched{}",
+                       v.fault == e.fault ? "" : fmt::format(": {}", model::describe(v.fault).name))
+                 : fmt::format("the fault \"{}\" latched{}", model::describe(e.fault).name,
+                               v.fault == e.fault
+                                   ? ""
+                                   : fmt::format(", not \"{}\"", model::describe(v.fault).name)));
+  if (e.least_peak_ratio > 0.0)
+    checks.add(v.worst.force_N >= e.least_peak_ratio * v.limits.force_N,
+               fmt::format("the test had force: {:.4g} N, at least {:.4g} N asked", v.worst.force_N,
+                           e.least_peak_ratio * v.limits.force_N));
+  // Cases that end in zero must have had a torque to lose, where they are on a lever.
+  if (!e.zero_within_s) return;
+  const double least_Nm = kMinTurn * v.limits.torque_Nm;
+  if (v.subject.grip == Grip::kLever)
+    checks.add(v.worst.torque_Nm >= least_Nm,
+               fmt::format("the test had torque: {:.4g} N m, at least {:.4g} N m asked",
+                           v.worst.torque_Nm, least_Nm));
+  checks.add(v.worst.zero_s && *v.worst.zero_s <= *e.zero_within_s,
+             v.worst.zero_s ? fmt::format("zero {:.4g} ms after the cause, allowed {:.4g} ms",
+                                          1e3 * *v.worst.zero_s, 1e3 * *e.zero_within_s)
+                            : std::string("force or torque never came to zero for good"));
+}
+
+}  // namespace
+
+double power_W(const TickRow& row) {
+  return dot(row.written_N, row.tool.velocity_mps) +
+         dot(row.written_Nm, row.tool.angular_velocity_radps);
+}
+
+double torque_step_Nm(const model::Limits& limits, double period_s) {
+  return limits.force_N > 0.0 ? limits.slew_N_per_s * period_s * limits.torque_Nm / limits.force_N
+                              : 0.0;
+}
+
+double continuous_torque_Nm(const model::Limits& limits) {
+  return limits.force_N > 0.0
+             ? limits.torque_Nm * std::min(limits.continuous_force_N / limits.force_N, 1.0)
+             : limits.torque_Nm;
+}
+
+std::vector<Check> check_bounds(const Extremes& worst, const model::Limits& limits,
+                                double period_s) {
+  Checks checks;
+  const double step_N = limits.slew_N_per_s * period_s;
+  checks.add(worst.force_N <= limits.force_N,
+             fmt::format("largest force {:.4g} N, limit {:.4g} N", worst.force_N, limits.force_N));
+  checks.add(worst.torque_Nm <= limits.torque_Nm,
+             fmt::format("largest torque {:.4g} N m, limit {:.4g} N m", worst.torque_Nm,
+                         limits.torque_Nm));
+  checks.add(
+      worst.step_N <= step_N * kRounding,
+      fmt::format("largest change in a tick {:.4g} N, limit {:.4g} N", worst.step_N, step_N));
+  const double step_Nm = torque_step_Nm(limits, period_s);
+  checks.add(worst.step_Nm <= step_Nm * kRounding,
+             fmt::format("largest change of torque in a tick {:.4g} N m, limit {:.4g} N m",
+                         worst.step_Nm, step_Nm));
+  checks.add(worst.power_W <= limits.power_W * kRounding,
+             fmt::format("largest power {:.4g} W, limit {:.4g} W", worst.power_W, limits.power_W));
+  checks.add(worst.overdrawn_J <= 0.0,
+             fmt::format("energy given {:.4g} J, budget {:.4g} J and {:.4g} W", worst.given_J,
+                         limits.energy_J, limits.recovery_W));
+  checks.add(worst.rms_N <= limits.continuous_force_N * kRounding,
+             fmt::format("largest RMS {:.4g} N, limit {:.4g} N", worst.rms_N,
+                         std::min(limits.continuous_force_N, limits.force_N)));
+  const double continuous_Nm = continuous_torque_Nm(limits);
+  checks.add(worst.rms_Nm <= continuous_Nm * kRounding,
+             fmt::format("largest RMS of the torque {:.4g} N m, limit {:.4g} N m", worst.rms_Nm,
+                         continuous_Nm));
+  return checks.list();
+}
+
+bool CaseVerdict::passed() const {
+  return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.holds; });
+}
+
+std::string CaseVerdict::acted_words() const {
+  std::string words;
+  for (std::size_t i = 0; i < kStageCount; ++i)
+    if ((acted >> i & 1u) != 0)
+      words += fmt::format("{}{}", words.empty() ? "" : ", ", kStageName[i]);
+  return words.empty() ? "none" : words;
+}
+
+Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limits,
+                     double period_s) {
+  Extremes worst;
+  EnergyAccount energy(limits);
+  // First order, as a motor warms: the mean square over thermal_time_s.
+  const double share = period_s / limits.thermal_time_s;
+  double heat = 0.0, torque_heat = 0.0;
+  Vec3 before_N, before_Nm;
+  for (const TickRow& row : rows) {
+    const auto larger = [](double& most, double value) { most = std::max(most, value); };
+    larger(worst.force_N, norm(row.written_N));
+    larger(worst.torque_Nm, norm(row.written_Nm));
+    if (is_finite(row.commanded_N)) larger(worst.commanded_N, norm(row.commanded_N));
+    const bool stopped = !row.armed || latches(row.fault);  // then it goes to zero at once
+    const double periods = 1.0 + row.skipped_periods;       // since the write before
+    if (!stopped) {
+      larger(worst.step_N, norm(row.written_N - before_N) / periods);
+      larger(worst.step_Nm, norm(row.written_Nm - before_Nm) / periods);
+    }
+    if (is_finite(row.tool)) larger(worst.power_W, power_W(row));
+    // the force of the tick before was held until now
+    const double cooled = std::min(share * periods, 1.0);
+    heat += cooled * (dot(before_N, before_N) - heat);
+    torque_heat += cooled * (dot(before_Nm, before_Nm) - torque_heat);
+    larger(worst.rms_N, std::sqrt(heat));
+    larger(worst.rms_Nm, std::sqrt(torque_heat));
+    energy.add(row, period_s);
+    before_N = row.written_N;
+    before_Nm = row.written_Nm;
+  }
+  worst.given_J = energy.largest_J();
+  worst.overdrawn_J = energy.overdrawn_J();
+  worst.zero_s = time_to_zero_s(rows, limits);
+  return worst;
+}
+
+CaseVerdict judge_rows(const Case& c, const std::vector<TickRow>& rows, const model::Limits& limits,
+                       double period_s) {
+  CaseVerdict v{
+      .subject = c, .limits = limits, .worst = extremes_of(rows, limits, period_s), .checks = {}};
+  v.overshoot_N = std::max(v.worst.force_N - limits.force_N, 0.0);
+  for (const TickRow& row : rows) {
+    if (row.t_s >= 0.0) v.acted |= row.acted;
+    // The first one is the cause; what comes after it may follow from it.
+    if (v.fault == Fault::kNone) v.fault = row.fault;
+  }
+  Checks checks;
+  checks.add(!rows.empty() && rows.back().t_s >= 0.0, "it armed, and the case began",
+             "it did not arm, or the case did not begin");
+  checks.add(check_bounds(v.worst, limits, period_s));
+  check_silence(checks, rows);
+  check_expected(checks, v);
+  v.checks = checks.list();
+  return v;
+}
+
+CaseVerdict judge_case(const CaseRun& run) {
+  CaseVerdict v = judge_rows(run.subject(), run.rows(), run.limits(), run.period_s());
+  if (run.refused() == Fault::kNone) return v;
+  v.fault = run.refused();
+  v.checks.push_back(
+      {fmt::format("it could not be armed: {}", model::describe(v.fault).cause), false});
+  return v;
+}
+
+}  // namespace tact::tools::limits
