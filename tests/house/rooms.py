@@ -87,6 +87,13 @@ PARTS = {
         "falcon": ["mechanics", "run"],
         "self_check": ["mechanics", "odrive", "cia402", "moteus", "falcon"],
     },
+    "tools/chart": {
+        "subject": [],
+        "measure": ["subject"],
+        "peers": ["subject", "measure"],
+        "compare": ["subject", "measure", "peers"],
+        "report": ["compare"],
+    },
     "tools/jitter": {
         "statistics": [],
         "trace": ["statistics"],

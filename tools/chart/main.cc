@@ -10,10 +10,10 @@
 #include "model/io/file_writer.h"
 #include "model/io/input_file.h"
 #include "model/reader/scene_words.h"
-#include "tools/chart/chart.h"
-#include "tools/chart/pictures.h"
-#include "tools/chart/report.h"
-#include "tools/chart/tool_report.h"
+#include "tools/chart/compare/chart.h"
+#include "tools/chart/report/pictures.h"
+#include "tools/chart/report/report.h"
+#include "tools/chart/report/tool_report.h"
 #include "tools/program/program.h"
 
 namespace {

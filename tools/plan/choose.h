@@ -16,7 +16,7 @@
 #include <string>
 
 #include "model/scene/plan_file.h"
-#include "tools/chart/errors.h"
+#include "tools/chart/measure/errors.h"
 
 namespace tact::tools::plan {
 

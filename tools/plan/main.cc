@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tools/chart/report.h"
+#include "tools/chart/report/report.h"
 #include "tools/plan/plan.h"
 #include "tools/program/program.h"
 

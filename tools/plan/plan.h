@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "model/result.h"
-#include "tools/chart/chart.h"
+#include "tools/chart/compare/chart.h"
 #include "tools/plan/choose.h"
 
 namespace tact::tools::plan {

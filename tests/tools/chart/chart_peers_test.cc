@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The peers on a small block: each is held, gives what theory or the fit asks, and is not crippled.
-#include "tools/chart/chart_peers.h"
+#include "tools/chart/peers/chart_peers.h"
 
 #include <gtest/gtest.h>
 

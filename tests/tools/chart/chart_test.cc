@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The chart: errors as worked by hand, a front without a dominated point, shards that merge to the
 // same table. Times are never asserted.
-#include "tools/chart/chart.h"
+#include "tools/chart/compare/chart.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 
 #include "model/indent/disc_stack.h"
 #include "tests/support/test_scene.h"
-#include "tools/chart/report.h"
+#include "tools/chart/report/report.h"
 
 namespace tact::tools::chart::chart_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/chart/instructions.h"
+#include "tools/chart/measure/instructions.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The whole tool judged: errors as worked by hand, and every sphere felt. Times are never asserted.
-#include "tools/chart/tool_judge.h"
+#include "tools/chart/compare/tool_judge.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include "model/indent/disc_stack.h"
 #include "tests/support/program.h"
 #include "tests/support/test_scene.h"
-#include "tools/chart/chart.h"
-#include "tools/chart/tool_report.h"
+#include "tools/chart/compare/chart.h"
+#include "tools/chart/report/tool_report.h"
 
 namespace tact::tools::chart::tool_judge_test {
 

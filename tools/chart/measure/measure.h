@@ -13,8 +13,8 @@
 #include <functional>
 #include <vector>
 
-#include "tools/chart/errors.h"
-#include "tools/chart/subject.h"
+#include "tools/chart/measure/errors.h"
+#include "tools/chart/subject/subject.h"
 #include "tools/ground_truth/reference_data.h"
 
 namespace tact::tools::chart {

@@ -19,7 +19,7 @@
 #include "model/fem/linear_solver.h"
 #include "model/indent/compliance_law.h"
 #include "model/indent/compliance_tip.h"
-#include "tools/chart/chart_peers.h"
+#include "tools/chart/peers/chart_peers.h"
 #include "tools/condense/condense_organ.h"
 #include "tools/ground_truth/gmsh.h"
 

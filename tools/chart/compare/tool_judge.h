@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "model/scene/scene.h"
-#include "tools/chart/measure.h"
+#include "tools/chart/measure/measure.h"
 #include "tools/ground_truth/tool_reference.h"
 
 namespace tact::tools::chart {

@@ -20,7 +20,7 @@
 #include <set>
 
 #include "model/fem/boundary.h"
-#include "tools/chart/chart_peers.h"
+#include "tools/chart/peers/chart_peers.h"
 #include "tools/condense/condense_organ.h"
 #include "tools/ground_truth/gmsh.h"
 #include "tools/program/interrupt.h"

@@ -9,7 +9,7 @@
 
 #include "model/contact/site.h"
 #include "model/scene/tissue_law.h"
-#include "tools/chart/subject.h"
+#include "tools/chart/subject/subject.h"
 #include "tools/ground_truth/ring_means.h"
 
 namespace tact::tools::chart {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "model/result.h"
-#include "tools/chart/chart.h"
+#include "tools/chart/compare/chart.h"
 
 namespace tact::tools::chart {
 

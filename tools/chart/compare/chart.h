@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/chart/measure.h"
-#include "tools/chart/tool_judge.h"
-#include "tools/chart/variants.h"
+#include "tools/chart/compare/tool_judge.h"
+#include "tools/chart/measure/measure.h"
+#include "tools/chart/subject/variants.h"
 #include "tools/program/sweep.h"
 #include "tools/report/table.h"
 

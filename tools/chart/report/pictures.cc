@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/chart/pictures.h"
+#include "tools/chart/report/pictures.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "tools/chart/chart.h"
+#include "tools/chart/compare/chart.h"
 #include "tools/report/picture.h"
 
 namespace tact::tools::chart {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/chart/tool_judge.h"
+#include "tools/chart/compare/tool_judge.h"
 
 #include <algorithm>
 #include <cmath>

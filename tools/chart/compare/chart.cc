@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/chart/chart.h"
+#include "tools/chart/compare/chart.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "tools/chart/chart_peers.h"
+#include "tools/chart/peers/chart_peers.h"
 #include "tools/ground_truth/reference_fits.h"
 #include "tools/program/run_program.h"
 

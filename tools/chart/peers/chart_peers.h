@@ -13,9 +13,9 @@
 
 #include <vector>
 
-#include "tools/chart/measure.h"
-#include "tools/chart/subject.h"
-#include "tools/chart/variants.h"
+#include "tools/chart/measure/measure.h"
+#include "tools/chart/subject/subject.h"
+#include "tools/chart/subject/variants.h"
 
 namespace tact::tools::chart {
 

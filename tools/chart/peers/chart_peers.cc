@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/chart/chart_peers.h"
+#include "tools/chart/peers/chart_peers.h"
 
 #include <algorithm>
 #include <cmath>

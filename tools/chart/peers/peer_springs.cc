@@ -12,7 +12,7 @@
 #include "model/mesh/mesh.h"
 #include "model/springs/patch_surface.h"
 #include "model/springs/spring_network.h"
-#include "tools/chart/chart_peers.h"
+#include "tools/chart/peers/chart_peers.h"
 
 namespace tact::tools::chart {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/chart/tool_report.h"
+#include "tools/chart/report/tool_report.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "model/scene/accuracy_file.h"
-#include "tools/chart/chart.h"
-#include "tools/chart/tool_judge.h"
+#include "tools/chart/compare/chart.h"
+#include "tools/chart/compare/tool_judge.h"
 
 namespace tact::tools::chart {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/chart/report.h"
+#include "tools/chart/report/report.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "model/contact/site.h"
-#include "tools/chart/instructions.h"
-#include "tools/chart/measure.h"
+#include "tools/chart/measure/instructions.h"
+#include "tools/chart/measure/measure.h"
 
 namespace tact::tools::chart {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/chart/errors.h"
+#include "tools/chart/measure/errors.h"
 
 #include <algorithm>
 #include <cmath>

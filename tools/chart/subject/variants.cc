@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/chart/variants.h"
+#include "tools/chart/subject/variants.h"
 
 #include <fmt/format.h>
 

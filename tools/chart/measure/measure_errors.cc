@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/chart/measure.h"
+#include "tools/chart/measure/measure.h"
 #include "tools/ground_truth/reference_fits.h"
 #include "tools/program/interrupt.h"
 
