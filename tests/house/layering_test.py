@@ -191,6 +191,8 @@ def main():
             if text.count("\n") > MAX_LINES:
                 breaches.append(f"{name}:1: longer than {MAX_LINES} lines: split it by idea")
             breaches += unlicensed(name, text)
+            if name.startswith(rooms.PAGE) and path.suffix == ".ts":
+                breaches += rooms.page_breaches(name, text)
             if path.suffix in (".h", ".cc"):  # clang-format leaves comments as they are
                 breaches += long_comments(name, text)
                 breaches += misnamed(name, text)

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The rooms of the house: a folder is a namespace, a CMake target and an include path, and includes
 downwards only. A room that is too full has parts: folders of one responsibility each, in the room's
-namespace and library, which include each other downwards only, too. `breaches(tree)` says where the
-tree does not hold to that; `blind_rules()` tries each rule on a breach of it.
+namespace and library, which include each other downwards only, too. So do the folders of the page.
+`breaches(tree)` says where the tree does not hold to that; `blind_rules()` tries each rule on a
+breach of it.
 """
+import posixpath
 import re
 
 CONTACT = ["model", "model/law", "model/contact"]
@@ -122,6 +124,15 @@ PARTS = {
         "maps": ["sweep", "laws", "loop", "pictures"],
     },
 }
+# The folders of the page, and what each may import of the others; what stands in src/ itself, as main.ts, imports all.
+PAGE = "host/web/src/"
+PAGE_FOLDERS = {
+    "link": [],
+    "panels": ["link"],
+    "scene": ["link", "panels"],
+    "organ": ["link", "scene"],
+    **dict.fromkeys(["operator", "controls"], ["link", "panels", "scene"]),
+}
 # Where another room is known by these headers alone.
 SINGLE_HEADERS = {
     **{(f"host/{room}", "model"): {"result.h"} for room in ("tracking", "record", "igtl", "server", "run")},
@@ -132,6 +143,7 @@ SINGLE_HEADERS = {
 OFFLINE = ("model/io/", "model/mesh/", "model/fem/", "model/reader/", "model/scene/")
 LOOP_ROOMS = ("firmware/gate", "firmware/loop", "firmware/watch")
 OURS = re.compile(r'^\s*#include "([^"]+)"', re.M)
+IMPORTED = re.compile(r'(?:\bfrom|\bimport)\s*\(?\s*"(\.[^"]*)"')
 NAMESPACE = re.compile(r"^namespace (tact(?:::\w+)+) \{", re.M)
 
 
@@ -180,6 +192,21 @@ def part_breaches(path, text):
             other, its = room_and_part(found[1])
             if other == room and its not in [part, *PARTS[room][part]]:
                 yield f"{path}:{number}: the part {part}/ may not include {found[1]}"
+
+
+def page_breaches(path, text):
+    """`path` is a source of the page. An import is told from the folder that it is written in."""
+    folder = posixpath.dirname(path).removeprefix(PAGE)
+    if path.count("/") == PAGE.count("/"):
+        return
+    if folder not in PAGE_FOLDERS:
+        yield f"{path}:1: {folder}/ is no folder of the page: give it a row in tests/house/rooms.py"
+        return
+    for found in IMPORTED.finditer(text):
+        other = posixpath.dirname(posixpath.normpath(posixpath.join(folder, found[1])))
+        if other not in [folder, *PAGE_FOLDERS[folder]]:
+            line = text.count("\n", 0, found.start()) + 1
+            yield f"{path}:{line}: {folder}/ may not import {found[1]}"
 
 
 def namespace_breaches(path, text):
@@ -243,6 +270,9 @@ def blind_rules():
             "a part knows few others": part_breaches("tests/rig/emulators/can/x.h", '#include "tests/rig/emulators/odrive/y.h"\n'),
             "no part knows what its room itself holds": part_breaches("tests/rig/emulators/can/x.h",
                                                                      '#include "tests/rig/emulators/y.h"\n'),
+            "a folder of the page without a row": page_breaches(f"{PAGE}new/x.ts", ""),
+            "a folder of the page knows few others": page_breaches(f"{PAGE}scene/x.ts", 'import { y } from "../organ/y";\n'),
+            "no folder of the page knows main.ts": page_breaches(f"{PAGE}scene/x.ts", 'await import("../main");\n'),
             "a tool knows few others": include_breaches("tools/verify/x.cc", '#include "tools/chart/y.h"\n'),
             "tools know no test": include_breaches("tools/chart/x.cc", '#include "tests/support/y.h"\n'),
             "namespace": namespace_breaches("hal/can/x.h", "namespace tact::hal {\n"),

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { distance_to_line, eyes_of, follow_share, grip_error_m, hides, joint, outline, turned } from "../src/operator/figure";
+import { distance_to_line, eyes_of, grip_error_m, hides, joint, outline, turned } from "../src/operator/figure";
+import { follow_share } from "../src/scene/eyes";
 import type { FigureFrame, Skeleton } from "../src/link/protocol";
 
 const kSkeleton: Skeleton = { joints: ["pelvis", "head", "hand"], capsules: [], sides: [0, 1], hand: 2, head: 1 };

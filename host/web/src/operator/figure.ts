@@ -3,6 +3,7 @@
 // view, where the eyes are. Vectors are [x, y, z] in frame W, m.
 
 import type { FigureFrame, Skeleton, Vec } from "../link/protocol";
+import type { Eyes } from "../scene/eyes";
 
 /** Eyes are so far from the head's joint, in the head's own axes (-x is where the face looks). */
 const kEyes_m: Vec = [-0.085, 0, 0.04];
@@ -56,11 +57,6 @@ export function turned(q: readonly number[], v: Vec): Vec {
   ];
 }
 
-export interface Eyes {
-  at_m: Vec;
-  towards: Vec; // unit
-}
-
 /** Where the figure's eyes are and look. */
 export function eyes_of(frame: FigureFrame, skeleton: Skeleton): Eyes {
   const head_m = joint(frame, skeleton.head);
@@ -69,11 +65,6 @@ export function eyes_of(frame: FigureFrame, skeleton: Skeleton): Eyes {
     at_m: [head_m[0] + from_head_m[0], head_m[1] + from_head_m[1], head_m[2] + from_head_m[2]],
     towards: turned(frame.head, kGaze),
   };
-}
-
-/** The share of the way that a smooth follower goes in `dt_s`, with time constant `tau_s`. */
-export function follow_share(dt_s: number, tau_s: number): number {
-  return dt_s > 0 ? 1 - Math.exp(-dt_s / tau_s) : 0;
 }
 
 /** How far the finger tips are from the tool's grip. */

@@ -18,7 +18,8 @@
 
 import { FoldGuard } from "./fold_guard";
 import type { Moved } from "./patch";
-import { Profile, smoothstep } from "./profile";
+import { Profile } from "./profile";
+import { smoothstep } from "../scene/smoothstep";
 import type { Site } from "../link/protocol";
 
 export interface Deformed {

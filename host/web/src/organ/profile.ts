@@ -53,9 +53,3 @@ export class Profile {
     );
   }
 }
-
-/** 0 below low, 1 above high, smooth between. */
-export function smoothstep(low: number, high: number, x: number): number {
-  const s = Math.min(1, Math.max(0, (x - low) / (high - low)));
-  return s * s * (3 - 2 * s);
-}

@@ -9,7 +9,7 @@
 //     S  bright windows of a soft-lit room                       Forum 13 (1994) 233]
 
 import * as THREE from "three";
-import { smoothstep } from "../organ/profile";
+import { smoothstep } from "./smoothstep";
 import { dot, type Vec } from "../link/protocol";
 
 const kPixels = 256;

@@ -4,7 +4,7 @@
 
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { follow_share, type Eyes } from "../operator/figure";
+import { follow_share, type Eyes } from "./eyes";
 import { make_ground } from "./ground";
 import { kSteel, look_material, paint } from "./look";
 import { snapshot } from "./snapshot";
