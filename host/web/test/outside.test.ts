@@ -7,8 +7,8 @@ import { direction_words, edge_of } from "../src/scene/outside";
 const free = { left: 200, top: 100, right: 700, bottom: 600 };
 const picture = { left: 0, top: 0, right: 1000, bottom: 800 };
 const panel = { left: 750, top: 0, right: 1000, bottom: 800 };
-const edge = (x: number, y: number, z: number, radius_m = 0.01) =>
-  edge_of({ x, y, z }, radius_m, [800, 800], { picture, panels: [panel], free });
+const edge = (right_m: number, up_m: number, back_m: number, radius_m = 0.01) =>
+  edge_of([right_m, up_m, back_m], radius_m, [800, 800], { picture, panels: [panel], free });
 
 test("what is seen needs no arrow", () => {
   assert.equal(edge(0, 0, -1), null);
@@ -42,11 +42,11 @@ test("what is behind the camera is on the side to which one turns", () => {
 });
 
 test("an arrow stays in the free part, however small that is", () => {
-  for (const [x, y] of [[3, 1], [-3, 1], [1, 9], [-1, -9], [5, 5]]) {
-    const at = edge(x, y, -1)!;
+  for (const [right_m, up_m] of [[3, 1], [-3, 1], [1, 9], [-1, -9], [5, 5]]) {
+    const at = edge(right_m, up_m, -1)!;
     assert.ok(at.x_px >= free.left && at.x_px <= free.right && at.y_px >= free.top && at.y_px <= free.bottom);
   }
-  const tiny = edge_of({ x: 3, y: 1, z: -1 }, 0.01, [800, 800],
+  const tiny = edge_of([3, 1, -1], 0.01, [800, 800],
     { picture, panels: [], free: { left: 10, top: 10, right: 30, bottom: 20 } })!;
   assert.ok(tiny.x_px >= 10 && tiny.x_px <= 30 && tiny.y_px >= 10 && tiny.y_px <= 20);
 });

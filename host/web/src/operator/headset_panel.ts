@@ -9,7 +9,10 @@ import type { Vec } from "../link/protocol";
 const kWide_px = 1024;
 const kHigh_px = 576;
 const kMargin_px = 40;
-const kLowest_px = kHigh_px - 16; // of a line
+const kLine_px = 36; // letters of a line
+const kRow_px = 46;
+const kRows_px = 312; // where the first line of the warnings stands
+const kRows = Math.ceil((kHigh_px - 16 - kRows_px) / kRow_px);
 const kWide_m = 0.32;
 const kHigh_m = (kWide_m * kHigh_px) / kWide_px;
 // To the left of the organ, behind it and above: the tool's handle does not cover it, and who looks at the organ sees it.
@@ -19,9 +22,40 @@ const kTones: Record<string, string> = { good: "#7fd1c7", wait: "#f2b04e", bad: 
 
 const font = (px: number, weight = 400): string => `${weight} ${px}px system-ui, "Segoe UI", "DejaVu Sans", sans-serif`;
 
+/** A text word by word; a word that is wider than a line has one of its own. */
+function wrapped(text: string, fits: (line: string) => boolean): string[] {
+  const lines: string[] = [];
+  for (const word of text.split(" ")) {
+    const longer = lines.length === 0 ? word : `${lines[lines.length - 1]} ${word}`;
+    if (lines.length > 0 && fits(longer)) lines[lines.length - 1] = longer;
+    else lines.push(word);
+  }
+  return lines;
+}
+
+/** What of each text is shown in so many rows, the first texts first. Where a row is missing the last one ends with "…". */
+export function shown_lines(texts: readonly string[], rows: number, fits: (line: string) => boolean): string[][] {
+  let free = rows, cut = false;
+  let last: string[] = []; // of the text that has the last row
+  const shown = texts.map((text) => {
+    const wanted = wrapped(text, fits);
+    const lines = wanted.slice(0, free);
+    free -= lines.length;
+    cut ||= lines.length < wanted.length;
+    if (lines.length > 0) last = lines;
+    return lines;
+  });
+  if (cut && last.length > 0) {
+    const words = last[last.length - 1].split(" ");
+    while (words.length > 1 && !fits(`${words.join(" ")} …`)) words.pop();
+    last[last.length - 1] = `${words.join(" ")} …`;
+  }
+  return shown;
+}
+
 export class HeadsetPanel {
   readonly object: THREE.Mesh;
-  /** What it says, line by line. */
+  /** What is to be read on it, text by text. */
   told: string[] = [];
   private readonly canvas = document.createElement("canvas");
   private readonly pen: CanvasRenderingContext2D;
@@ -43,8 +77,8 @@ export class HeadsetPanel {
   }
 
   get corners_m(): Vec[] {
-    return [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([x, y]) =>
-      new THREE.Vector3((x * kWide_m) / 2, (y * kHigh_m) / 2, 0).applyMatrix4(this.object.matrixWorld).toArray());
+    return [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([right, up]) =>
+      new THREE.Vector3((right * kWide_m) / 2, (up * kHigh_m) / 2, 0).applyMatrix4(this.object.matrixWorld).toArray());
   }
 
   tell(said: Said): void {
@@ -58,12 +92,11 @@ export class HeadsetPanel {
     this.write(said.link, right_px, 84, font(38), kTones[said.link_tone] ?? kSoft);
     this.pen.textAlign = "left";
     this.write(said.state, kMargin_px, 90, font(62, 600), kTones[said.state_tone] ?? kInk);
-    this.write(said.state_words, kMargin_px, 142, font(36), kSoft);
+    this.write(said.state_words, kMargin_px, 142, font(kLine_px), kSoft);
     const force = said.old ? `old: ${said.force_N} N` : `${said.force_N} N`;
     const wide_px = this.write(force, kMargin_px, 248, font(96, 300), said.old ? kSoft : kInk);
     this.write(said.force_of, kMargin_px + wide_px + 20, 248, font(40), kSoft);
-    let at_px = 312;
-    for (const { text, tone } of said.warnings) at_px = this.write_wrapped(text, at_px, kTones[tone] ?? kInk);
+    this.write_warnings(said.warnings);
     this.texture.needsUpdate = true;
   }
 
@@ -75,9 +108,9 @@ export class HeadsetPanel {
       pen.strokeStyle = "rgb(160 180 200 / 14%)";
       pen.lineWidth = 9;
       pen.beginPath();
-      for (let x = -kHigh_px; x < kWide_px; x += 28) {
-        pen.moveTo(x, kHigh_px);
-        pen.lineTo(x + kHigh_px, 0);
+      for (let x_px = -kHigh_px; x_px < kWide_px; x_px += 28) {
+        pen.moveTo(x_px, kHigh_px);
+        pen.lineTo(x_px + kHigh_px, 0);
       }
       pen.stroke();
     }
@@ -96,27 +129,17 @@ export class HeadsetPanel {
     return this.pen.measureText(text).width;
   }
 
-  /** Word by word; returns where the next line would stand. What has no room is not said: the worst comes first. */
-  private write_wrapped(text: string, y_px: number, color: string): number {
-    if (y_px >= kLowest_px) return y_px;
-    this.pen.font = font(36);
-    this.pen.fillStyle = color;
-    let line = "";
-    const end = (): void => {
-      if (y_px < kLowest_px) this.pen.fillText(line, kMargin_px, y_px);
-      y_px += 46;
-    };
-    for (const word of text.split(" ")) {
-      const longer = line === "" ? word : `${line} ${word}`;
-      if (this.pen.measureText(longer).width > kWide_px - 2 * kMargin_px && line !== "") {
-        end();
-        line = word;
-      } else {
-        line = longer;
+  private write_warnings(warnings: Said["warnings"]): void {
+    this.pen.font = font(kLine_px);
+    const fits = (line: string): boolean => this.pen.measureText(line).width <= kWide_px - 2 * kMargin_px;
+    let y_px = kRows_px;
+    shown_lines(warnings.map(({ text }) => text), kRows, fits).forEach((lines, i) => {
+      this.pen.fillStyle = kTones[warnings[i].tone] ?? kInk;
+      for (const line of lines) {
+        this.pen.fillText(line, kMargin_px, y_px, kWide_px - 2 * kMargin_px);
+        y_px += kRow_px;
       }
-    }
-    if (line !== "") end();
-    this.told.push(text);
-    return y_px;
+      if (lines.length > 0) this.told.push(lines.join(" "));
+    });
   }
 }

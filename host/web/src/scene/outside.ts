@@ -3,6 +3,7 @@
 
 import * as THREE from "three";
 import { by_id } from "../panels/hud";
+import type { Vec } from "../link/protocol";
 
 export interface Box {
   left: number;
@@ -30,30 +31,31 @@ export interface View {
 }
 
 /**
- * The place of an arrow to a ball which is not seen; null when it is. `ball`: its middle in the camera's axes (x right,
- * y up, z backwards), m; `focal_px`: of a ray at 45 deg, px from the middle of the picture.
+ * The place of an arrow to a ball which is not seen; null when it is. `ball_m`: its middle in the camera's axes (right, up,
+ * backwards); `focal_px`: of a ray at 45 deg, px from the middle of the picture.
  */
-export function edge_of(ball: { x: number; y: number; z: number }, radius_m: number, focal_px: [number, number],
-  view: View): Edge | null {
+export function edge_of(ball_m: Vec, radius_m: number, focal_px: [number, number], view: View): Edge | null {
   const { picture, free } = view;
-  let x_px = ball.x * focal_px[0], y_px = -ball.y * focal_px[1]; // behind the camera: which way to turn
+  const [right_m, up_m, back_m] = ball_m;
   const from_px = [(free.left + free.right) / 2, (free.top + free.bottom) / 2];
-  if (ball.z < -1e-3) {
-    x_px = (picture.left + picture.right) / 2 + x_px / -ball.z;
-    y_px = (picture.top + picture.bottom) / 2 + y_px / -ball.z;
-    const radius_px = (radius_m * focal_px[1]) / -ball.z;
+  let towards = [right_m * focal_px[0], -up_m * focal_px[1]]; // on the screen, of any length: which way to turn
+  if (back_m < -1e-3) { // before the camera
+    const x_px = (picture.left + picture.right) / 2 + towards[0] / -back_m;
+    const y_px = (picture.top + picture.bottom) / 2 + towards[1] / -back_m;
+    const radius_px = (radius_m * focal_px[1]) / -back_m;
     const inside = [picture, ...view.panels].map((box) => // how far its middle is from the nearest edge
       Math.min(x_px - box.left, box.right - x_px, y_px - box.top, box.bottom - y_px));
     const [in_picture_px, ...in_panels_px] = inside;
     if (in_picture_px > -radius_px && in_panels_px.every((px) => px < radius_px)) return null;
-    x_px -= from_px[0];
-    y_px -= from_px[1];
+    towards = [x_px - from_px[0], y_px - from_px[1]];
   }
-  if (Math.hypot(x_px, y_px) < 1e-9) x_px = 1;
-  // To the nearer of two sides: from + t (x, y)
+  if (Math.hypot(...towards) < 1e-9) towards = [1, 0];
+  // To the nearer of two sides: from + t towards
   const half_px = [(free.right - free.left) / 2 - kHalf_px[0], (free.bottom - free.top) / 2 - kHalf_px[1]];
-  const t = Math.min(Math.max(0, half_px[0]) / Math.abs(x_px), Math.max(0, half_px[1]) / Math.abs(y_px));
-  return { x_px: from_px[0] + t * x_px, y_px: from_px[1] + t * y_px, angle_rad: Math.atan2(y_px, x_px) };
+  const t = Math.min(Math.max(0, half_px[0]) / Math.abs(towards[0]), Math.max(0, half_px[1]) / Math.abs(towards[1]));
+  return {
+    x_px: from_px[0] + t * towards[0], y_px: from_px[1] + t * towards[1], angle_rad: Math.atan2(towards[1], towards[0]),
+  };
 }
 
 /** An angle on the screen in words. */
@@ -90,9 +92,9 @@ export class Outside {
 
   private edge(target: Target): Edge | null {
     const { clientWidth, clientHeight } = this.canvas;
-    const ball = target.at_m.clone().applyMatrix4(this.camera.matrixWorldInverse);
+    const ball_m = target.at_m.clone().applyMatrix4(this.camera.matrixWorldInverse).toArray();
     const of = this.camera.projectionMatrix.elements;
-    return edge_of(ball, target.radius_m, [(of[0] * clientWidth) / 2, (of[5] * clientHeight) / 2], this.view);
+    return edge_of(ball_m, target.radius_m, [(of[0] * clientWidth) / 2, (of[5] * clientHeight) / 2], this.view);
   }
 
   /** Where the panels are. On a desk they lie on the picture, and what is in the middle of them is free. */
