@@ -157,8 +157,9 @@ FileWriter& FileWriter::operator=(FileWriter&& other) noexcept {
 }
 
 FileWriter::~FileWriter() {
-  // What grows keeps all that was put; what replaces was not finished, so it never was.
-  if (fd_ >= 0 && part_.empty()) flush();
+  // What grows keeps all that was put; what replaces was not finished, so it never was. Who
+  // wants to hear of an error has called finish().
+  if (fd_ >= 0 && part_.empty()) static_cast<void>(flush());
   if (fd_ >= 0) close(fd_);
   if (!part_.empty()) unlink(part_.c_str());
 }
