@@ -147,7 +147,7 @@ def long_run(tactd_path, path):
 
 def connections(view):
     before = resident_bytes(view.program)
-    wires, full = [], 0
+    wires, let_in = [], 0
     for i in range(100):
         wire = view.connect()
         name = "recording.csv" if i % 2 else "recording.tact"
@@ -155,11 +155,10 @@ def connections(view):
         wires.append(wire)
     time.sleep(1.0)
     for wire in wires:
-        wire.settimeout(0.5)
-        with contextlib.suppress(OSError):
-            full += wire.recv(12) == b"HTTP/1.1 503"
+        with contextlib.suppress(ConnectionResetError):  # turned away, its words lost as ours came too late
+            let_in += wire.recv(12) == b"HTTP/1.1 200"
     grown = (resident_bytes(view.program) - before) / MIB
-    check("of 100 downloads that nobody reads 64 are let in", 36 <= full <= 37, full)
+    check("of 100 downloads that nobody reads 64 are let in", 63 <= let_in <= 64, let_in)
     check("... and share their frames", grown < 64, f"{grown:.0f} MiB")
     for wire in wires:
         wire.close()

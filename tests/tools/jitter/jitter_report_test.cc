@@ -242,9 +242,9 @@ TEST_F(JitterProgram, MeasuresUnderLoadInTurnsWithCyclictest) {
   const json result = json::parse(run.output);
   EXPECT_EQ(result["load"], "cpu");
   EXPECT_EQ(result["fault"], "") << "the pause between two slices is none";
-  EXPECT_EQ(result["ticks"].get<int>() + result["skipped"].get<int>(), 400);
-  EXPECT_GE(result["series"]["peer_wake"]["samples"], 200);
-  EXPECT_LE(result["series"]["peer_wake"]["samples"], 400);
+  // At most 400: what a busy PC skips after the last tick of a slice stands in no tick.
+  EXPECT_NEAR(result["ticks"].get<int>() + result["skipped"].get<int>(), 300, 100);
+  EXPECT_NEAR(result["series"]["peer_wake"]["samples"].get<int>(), 300, 100);
 }
 
 TEST_F(JitterProgram, ABareLoopFeelsNothing) {
