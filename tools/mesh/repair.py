@@ -1,15 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads a triangle surface with VTK, repairs it and writes it as OBJ. tact-mesh runs this; --help there says what it does.
 
-    /usr/bin/python3 repair.py IN OUT.obj [--weld] [--drop-degenerate] [--largest] [--close-holes] [--smooth] [--decimate N]
+    /usr/bin/python3 repair.py IN OUT.obj [--ending .stl] [--weld] [--drop-degenerate] [--largest] [--close-holes] [--smooth]
+                               [--decimate N]
 
 Prints one JSON object a line: {"step", "count", "text", "faces", "vertices"} as each step ends, {"step", "percent"} on the
 way, or {"error"} with status 2.
 """
 import argparse
+import ctypes
 import json
 import pathlib
+import signal
 import sys
+
+PR_SET_PDEATHSIG = 1
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
@@ -20,9 +25,11 @@ def tell(**what):
 
 
 def main():
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)  # without tact-mesh nobody reads what comes
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("source")
     options.add_argument("target")
+    options.add_argument("--ending", help="of IN, where its name has none")
     for step in ("weld", "drop-degenerate", "largest", "close-holes", "smooth"):
         options.add_argument("--" + step, action="store_true")
     options.add_argument("--decimate", type=int, metavar="N")
@@ -34,7 +41,7 @@ def main():
         tell(error=f"{missing.name} is missing in Debian's python3; apt install python3-vtk9 python3-numpy")
         return 2
     try:
-        points, triangles = surface_file.read(asked.source)
+        points, triangles = surface_file.read(asked.source, asked.ending)
         surface_file.write_obj(asked.target, *steps.repair(points, triangles, asked, tell))
     except surface_file.Refused as refused:
         tell(error=str(refused))

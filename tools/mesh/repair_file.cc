@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <iterator>
 
-#include "model/io/file_writer.h"
 #include "model/io/input_file.h"
 #include "model/io/installed.h"
 #include "model/io/json.h"
 #include "model/mesh/obj_parser.h"
+#include "tools/program/memory_file.h"
 #include "tools/program/run_program.h"
 
 namespace tact::tools::mesh {
@@ -45,7 +45,7 @@ Result<std::string> find_script() {
 
 /// An OBJ file is read by tact's own parser, which knows the line of an error, and handed on with
 /// vertices and faces alone.
-std::optional<Error> write_plain_obj(const std::string& from, const std::string& to) {
+std::optional<Error> write_plain_obj(const std::string& from, const program::MemoryFile& to) {
   const auto file = model::io::read_file(from, kCure, model::mesh::kMaxObjBytes);
   if (!file) return file.error();
   if (file->empty()) return Error{from + ":1: the file is empty; export the mesh again"};
@@ -61,7 +61,7 @@ std::optional<Error> write_plain_obj(const std::string& from, const std::string&
       fmt::format_to(std::back_inserter(plain), " {}", text->corner[corner] + 1);
     plain += '\n';
   }
-  return model::io::write_file(to, plain);
+  return to.put(plain);
 }
 
 /// Of what these steps have left.
@@ -119,7 +119,7 @@ Error no_mesh(const std::string& source, const Error& ran, const std::string& lo
                     "format that its ending says; export the mesh again",
                     source)};
   }
-  // The folder of its log goes with its caller.
+  // Its log goes with its caller.
   const auto said = model::io::read_file(log_path);
   const std::string text = said ? *said : "";
   const std::string last = text.substr(text.size() - std::min<std::size_t>(text.size(), 300));
@@ -141,29 +141,32 @@ Result<Repaired> repair_file(const RepairOrder& order,
   if (const auto file = model::io::InputFile::open(order.source, kCure); !file) return file.error();
   const auto script = find_script();
   if (!script) return Error{fmt::format("{}: {}", order.source, script.error().sentence)};
-  const auto scratch = program::ScratchFolder::make("tact-mesh");
-  if (!scratch) return scratch.error();
+  // In memory: whoever kills this program with all the numbers of a scan in it cleans up nothing.
+  const auto plain = program::MemoryFile::make(), repaired = program::MemoryFile::make(),
+             log = program::MemoryFile::make();
+  for (const auto* file : {&plain, &repaired, &log})
+    if (!*file) return file->error();
   std::string source = order.source;
   if (is_obj(source)) {
-    source = scratch->file("source.obj");
-    if (const auto error = write_plain_obj(order.source, source)) return *error;
+    source = plain->path();
+    if (const auto error = write_plain_obj(order.source, *plain)) return *error;
   }
-  const std::string target = scratch->file("repaired.obj");
+  const std::string target = repaired->path();
   Listener listener(on_step, on_percent);
   // -I: whatever PYTHONPATH and PYTHONHOME say (ROS sets them), it finds Debian's numpy and VTK.
   std::vector<std::string> arguments{"-I", *script};
   arguments.insert(arguments.end(), order.options.begin(), order.options.end());
-  arguments.insert(arguments.end(), {"--", source, target});
+  arguments.insert(arguments.end(), {"--ending=" + ending_of(order.source), "--", source, target});
   const auto ran = program::run_program(
       {.program = "/usr/bin/python3",  // Debian's own, which finds Debian's VTK
        .arguments = arguments,
        .directory = ".",
-       .log_path = scratch->file("log"),
+       .log_path = log->path(),
        .package = "python3",
        .environment = {},
        .on_line = [&listener](std::string_view line) { listener.hear(line); }});
   if (!listener.error.empty()) return Error{about(order.source, source, listener.error)};
-  if (!ran) return no_mesh(order.source, ran.error(), scratch->file("log"));
+  if (!ran) return no_mesh(order.source, ran.error(), log->path());
 
   auto text = model::io::read_file(target, "try again", model::mesh::kMaxObjBytes);
   if (!text) return text.error();

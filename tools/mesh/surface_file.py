@@ -46,9 +46,9 @@ def to_numpy(surface):
     return points, corners.reshape(-1, 3).astype(np.int64)
 
 
-def read(path):
-    """Points in file units, and triangles of their numbers from 0."""
-    ending = pathlib.Path(path).suffix.lower()
+def read(path, ending=None):
+    """Points in file units, and triangles of their numbers from 0. `ending`: of the path, if it has another name."""
+    ending = pathlib.Path(path).suffix.lower() if ending is None else ending
     try:
         size_bytes = os.path.getsize(path)
         with open(path, "rb") as file:

@@ -257,6 +257,21 @@ TEST_F(MeshRepair, SmoothAndDecimateKeepTheSizeAndAnOpening) {
   }
 }
 
+TEST_F(MeshRepair, AKillLeavesNoFileAndNoProgramBehind) {
+  const std::string path = temp_.write("scan.obj", as_obj(ScannedOrgan(80).surface()));
+  const std::string folder = temp_.path() + "/tmp", log = temp_.path() + "/log";
+  std::filesystem::create_directory(folder);
+  const Outcome ran = run_command(
+      "( export TMPDIR=" + folder + "; " + program_path("tact-mesh") + " " + path + kAll + " >" +
+      log + " 2>&1 & mesh=$!; for i in $(seq 600); do grep -q '^weld' " + log +
+      " && break; sleep 0.05; done; repair=$(cat /proc/$mesh/task/$mesh/children); " +
+      // Stopped, it cannot end by itself.
+      "kill -STOP $repair && echo works; kill -9 $mesh; " +
+      "for i in $(seq 200); do kill -0 $repair 2>/dev/null || break; sleep 0.05; done; " +
+      "kill -9 $repair 2>/dev/null || echo gone; ls -A " + folder + " )");
+  EXPECT_EQ(ran.output, "works\ngone\n");
+}
+
 TEST_F(MeshRepair, SaysEachStepToAPersonAndWritesOverNoSource) {
   const std::string out = temp_.path() + "/out.obj";
   const Ran ran = run(cube_ + " --out " + out + " --weld --largest");
