@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <climits>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
@@ -32,6 +33,21 @@ Error cannot_write(const std::string& path, int number) {
   return error_of(path, fmt::format("cannot be written: {}; check the folder, who may write there "
                                     "and the free space",
                                     std::strerror(number)));
+}
+
+Error cannot_add(const std::string& path, int number) {
+  if (number != EEXIST) return cannot_write(path, number);
+  return error_of(path, "exists already and is never overwritten; choose another name");
+}
+
+/// A rename that replaces nothing. 0, or what errno says.
+int rename_to_nothing(const char* from, const char* to) {
+  if (renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0) return 0;
+  if (errno != EINVAL && errno != ENOSYS) return errno;
+  // NFS knows no such rename, and links.
+  if (link(from, to) != 0) return errno;
+  unlink(from);
+  return 0;
 }
 
 /// By what a file of ours is known: see the header.
@@ -129,9 +145,15 @@ Result<int> open_straight(const std::string& path, const Target& target) {
 Result<FileWriter> FileWriter::create(const std::string& path) {
   const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kNewMode);
   if (fd >= 0) return FileWriter(path, path, {}, fd);
-  if (errno == EEXIST)
-    return error_of(path, "exists already and is never overwritten; choose another name");
-  return cannot_write(path, errno);
+  return cannot_add(path, errno);
+}
+
+Result<FileWriter> FileWriter::add(const std::string& path) {
+  struct stat status{};
+  if (lstat(path.c_str(), &status) == 0) return cannot_add(path, EEXIST);
+  auto file = replace(path, {});
+  if (file) file->only_new_ = true;
+  return file;
 }
 
 Result<FileWriter> FileWriter::replace(const std::string& path, std::string_view beginning) {
@@ -152,6 +174,7 @@ FileWriter& FileWriter::operator=(FileWriter&& other) noexcept {
   std::swap(target_, other.target_);
   std::swap(part_, other.part_);
   std::swap(waiting_, other.waiting_);
+  std::swap(only_new_, other.only_new_);
   std::swap(fd_, other.fd_);
   return *this;
 }
@@ -168,7 +191,7 @@ std::optional<Error> FileWriter::fail(int number) {
   waiting_.clear();
   if (fd_ >= 0) close(std::exchange(fd_, -1));
   if (!part_.empty()) unlink(std::exchange(part_, {}).c_str());
-  return cannot_write(path_, number);
+  return only_new_ ? cannot_add(path_, number) : cannot_write(path_, number);
 }
 
 std::optional<Error> FileWriter::put(std::string_view bytes) {
@@ -198,7 +221,11 @@ std::optional<Error> FileWriter::finish() {
   if (close(std::exchange(fd_, -1)) != 0) return fail(errno);
   if (!is_file) return std::nullopt;
   if (!part_.empty()) {
-    if (rename(part_.c_str(), target_.c_str()) != 0) return fail(errno);
+    if (only_new_) {
+      if (const int wrong = rename_to_nothing(part_.c_str(), target_.c_str())) return fail(wrong);
+    } else if (rename(part_.c_str(), target_.c_str()) != 0) {
+      return fail(errno);
+    }
     part_.clear();
   }
   const int folder = open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);

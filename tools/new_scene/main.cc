@@ -191,7 +191,7 @@ std::optional<Error> make_scene(const Options& o, const OutputNames& names,
   if (!map) return map.error();
   files.insert(files.end() - 1, {names.map, std::move(*map)});  // the scene is the last to appear
   if (program::is_interrupted()) return program::interruption();
-  if (auto error = new_scene::write_all(files)) return error;
+  if (auto error = new_scene::write_all(files, o.force)) return error;
   for (const auto& file : files) tell("wrote", file.path);
   return std::nullopt;
 }

@@ -37,17 +37,24 @@ std::optional<Error> check_new(const std::string& path, const std::string& begin
   return program::check_output(path, beginning, {source});
 }
 
-std::optional<Error> write_all(const std::vector<OutputFile>& files) {
+std::optional<Error> write_all(const std::vector<OutputFile>& files, bool force) {
   std::vector<model::io::FileWriter> writers;
   for (const OutputFile& file : files) {
-    auto writer = model::io::FileWriter::replace(file.path, file.content);
+    auto writer = force ? model::io::FileWriter::replace(file.path, file.content)
+                        : model::io::FileWriter::add(file.path);
     if (!writer) return writer.error();
     if (auto error = writer->put(file.content)) return error;
     if (auto error = writer->flush()) return error;
     writers.push_back(std::move(*writer));
   }
-  for (model::io::FileWriter& writer : writers)
-    if (auto error = writer.finish()) return error;
+  for (std::size_t i = 0; i < writers.size(); ++i) {
+    auto error = writers[i].finish();
+    if (!error) continue;
+    // What replaced nothing goes again.
+    std::error_code ignored;
+    for (std::size_t made = 0; made < i && !force; ++made) fs::remove(files[made].path, ignored);
+    return error;
+  }
   return std::nullopt;
 }
 

@@ -28,7 +28,8 @@ struct OutputFile {
   std::string path, content;
 };
 
-/// All under temporary names and on the disk first, then one rename each, in this order.
-std::optional<model::Error> write_all(const std::vector<OutputFile>& files);
+/// All under temporary names and on the disk first, then one rename each, in this order. Without
+/// `force` a file that has appeared since check_new() is kept, and none of ours stays.
+std::optional<model::Error> write_all(const std::vector<OutputFile>& files, bool force);
 
 }  // namespace tact::tools::new_scene

@@ -176,10 +176,26 @@ TEST_F(NewScene, WhatTactdRefusesIsNotWritten) {
 }
 
 TEST_F(NewScene, NoFileAppearsWhereOneCannot) {
-  EXPECT_TRUE(write_all({{path("mine.a"), "first"}, {path("none/mine.b"), "second"}}));
+  EXPECT_TRUE(write_all({{path("mine.a"), "first"}, {path("none/mine.b"), "second"}}, false));
   EXPECT_EQ(made(), std::vector<std::string>{});
-  EXPECT_FALSE(write_all({{path("mine.a"), "first"}, {path("mine.b"), "second"}}));
+  EXPECT_FALSE(write_all({{path("mine.a"), "first"}, {path("mine.b"), "second"}}, false));
   EXPECT_EQ(made(), (std::vector<std::string>{"mine.a", "mine.b"}));
+}
+
+TEST_F(NewScene, AFileThatAppearsDuringTheWorkIsKept) {
+  // Two files of one name: when the second comes to its place, the first is there.
+  const auto error = write_all(
+      {{path("mine.a"), "a"}, {path("mine.b"), "same kind"}, {path("mine.b"), "same kind"}}, false);
+  ASSERT_TRUE(error);
+  EXPECT_NE(error->sentence.find("mine.b: exists already and is never overwritten"),
+            std::string::npos)
+      << error->sentence;
+  EXPECT_FALSE(fs::exists(path("mine.a"))) << "none of ours stays";
+  const std::string theirs = temp_.write("mine.c", "same kind, theirs");
+  EXPECT_TRUE(write_all({{path("mine.a"), "a"}, {theirs, "same kind, ours"}}, false));
+  EXPECT_EQ(tests::read_text(theirs), "same kind, theirs");
+  EXPECT_FALSE(write_all({{path("mine.a"), "a"}, {theirs, "same kind, ours"}}, true));
+  EXPECT_EQ(tests::read_text(theirs), "same kind, ours");
 }
 
 TEST(ScenePlace, HoldsTheLowestTenthAndPressesNoDeeperThanAFifth) {
