@@ -196,6 +196,15 @@ std::optional<Error> make_scene(const Options& o, const OutputNames& names,
   return std::nullopt;
 }
 
+/// As a shell reads it as one word.
+std::string as_word(const std::string& path) {
+  if (path.find_first_of(" \t\"'\\$&;|<>()*?[]#~`!") == path.npos) return path;
+  std::string word = path;
+  for (std::size_t at = 0; (at = word.find('\'', at)) != word.npos; at += 4)
+    word.replace(at, 1, "'\\''");
+  return "'" + word + "'";
+}
+
 void tell_what_next(const OutputNames& names) {
   const std::string reference = fs::path(names.map).replace_extension(".reference.json").string();
   tell("law", "compliance, from the map; no other law was compared");
@@ -205,7 +214,7 @@ void tell_what_next(const OutputNames& names) {
       "Is a faster law good enough? Minutes to an hour, by CalculiX: write law = \"auto\", then\n"
       "  tact-reference {0} --out {1}\n"
       "  tact-plan {0} --reference {1}\n",
-      names.scene, reference);
+      as_word(names.scene), as_word(reference));
 }
 
 }  // namespace

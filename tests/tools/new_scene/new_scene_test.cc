@@ -130,6 +130,15 @@ TEST_F(NewScene, ASoundObjFileIsTakenAsItIsAndAnEarlierSceneIsKeptUnlessForced) 
   EXPECT_EQ(model::scene::read_compliance_map(path("mine.compliance"))->poisson_ratio, 0.3);
 }
 
+TEST_F(NewScene, TakesNamesWithSpacesAndPrintsCommandsThatCanBePasted) {
+  const std::string organ = temp_.write("an organ.obj", as_obj(ellipsoid_mm(2)));
+  const Ran ran = run("'" + organ + "' --out '" + path("mine, too.toml") + "'");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.out.find("  tactd '" + path("mine, too.toml") + "' --free-run"), ran.out.npos)
+      << ran.out;
+  EXPECT_EQ(tests::run_program("tactd", "'" + path("mine, too.toml") + "' --check").status, 0);
+}
+
 TEST_F(NewScene, RefusesBeforeTheWorkAndWritesNothing) {
   const std::string organ = temp_.write("organ.obj", as_obj(ellipsoid_mm(1)));
   const std::string foreign = temp_.write("theirs.toml", "name = \"theirs\"\n");
