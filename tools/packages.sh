@@ -24,13 +24,14 @@ as_root() {
 # release_lacks PACKAGE: by the lists of apt, which are fetched where there are none
 release_lacks() {
   apt-cache show dpkg 2>/dev/null | grep -q '^Filename' || as_root apt-get update >/dev/null 2>&1
-  ! apt-cache show "$1" >/dev/null 2>&1
+  # Of a name that others only refer to, apt-cache tells nothing, and says that all is well.
+  [ -z "$(apt-cache show "$1" 2>/dev/null)" ]
 }
 
 need_packages() {
   local what=$1 missing=() package
   shift
-  for package in "$@"; do
+  for package in $(printf '%s\n' "$@" | sort -u); do
     is_present "${package#optional:}" && continue
     if [[ $package == optional:* ]] && release_lacks "${package#optional:}"; then
       echo "tact: this release of Debian has no ${package#optional:}: what needs it is left out, and says so"
