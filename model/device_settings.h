@@ -88,7 +88,6 @@ struct FalconSettings {
 
 struct ForceDimensionSettings {
   std::string library = "libdhd.so.3";  // name or path; the maker's, never part of tact
-  bool trust_library = false;           // whoever's file it is; a person says so, no scene can
   int id = -1;                          // -1: the only device
   double watchdog_s = 0.004;            // the device lets go by itself; at most 0.0318
   double effector_mass_kg = 0.0;        // 0: the maker's value
@@ -105,7 +104,8 @@ struct LinesSettings {
 };
 
 struct DeviceSettings {
-  std::string kind;  // "sim-delta", or another that hal/registry knows
+  std::string kind;            // "sim-delta", or another that hal/registry knows
+  bool trust_library = false;  // whoever's file the maker's is; a person says so, no scene can
   SimDeviceSettings sim{};
   DeltaSettings delta{};
   CanSettings can{};

@@ -147,7 +147,7 @@ int main(int argc, char** argv) {
   auto scene = load(options);
   if (!scene) return complain(scene.error().sentence, 2);
   // Of the command line alone: no scene may name a library and call it trusted.
-  scene->device.force_dimension.trust_library = options.trust_library;
+  scene->device.trust_library = options.trust_library;
   if (!scene->note.empty()) say(stderr, "tactd: {}\n", scene->note);
   if (!options.replay_path.empty()) return run_replay(*scene, options.replay_path);
   if (const auto refused =

@@ -6,8 +6,6 @@
 // takes the device's id last (FD-2). 0 is success, 1 "no new data yet" (time guard), 2 "force
 // scaled down, direction kept"; negative is an error, whose code dhdErrorGetLast tells the same
 // thread.
-//
-// Once loaded it stays: a library with threads of its own cannot be unloaded safely.
 #pragma once
 
 #include <string>
@@ -41,7 +39,7 @@ struct SdkFunctions {
 };
 
 /// Loads the file that device.force_dimension.library names and finds the functions in it. Unless
-/// the person trusts it, it must be one of root's (library_trust.h).
+/// the person trusts it, it must be one of root's (maker_library/library_trust.h).
 model::Result<SdkFunctions> load_sdk(const std::string& library, bool trusted);
 
 }  // namespace tact::hal::force_dimension

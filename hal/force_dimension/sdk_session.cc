@@ -113,8 +113,8 @@ std::string name_of_lock(const SdkSession& s) {
 
 }  // namespace
 
-Result<SdkSession> open_sdk_session(const ForceDimensionSettings& settings) {
-  const auto sdk = load_sdk(settings.library, settings.trust_library);
+Result<SdkSession> open_sdk_session(const ForceDimensionSettings& settings, bool trust_library) {
+  const auto sdk = load_sdk(settings.library, trust_library);
   if (!sdk) return sdk.error();
   const auto id = open_device(*sdk, settings.id);
   if (!id) return id.error();

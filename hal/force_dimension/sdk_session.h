@@ -21,7 +21,8 @@ struct SdkSession {
 };
 
 /// Leaves nothing open when it fails.
-model::Result<SdkSession> open_sdk_session(const model::ForceDimensionSettings& settings);
+model::Result<SdkSession> open_sdk_session(const model::ForceDimensionSettings& settings,
+                                           bool trust_library);
 
 /// Zero force, forces off, closed. May block.
 void close_sdk_session(const SdkSession& session);

@@ -44,7 +44,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--consent-from-stdin", o.consent_from_stdin,
                "read the words of consent from a pipe: for a test bench that nobody holds");
   app.add_flag("--trust-library", o.trust_library,
-               "load device.force_dimension.library whoever's file it is");
+               "load the maker's library of the scene whoever's file it is");
   app.add_flag("--json", o.json, "print one JSON document");
 }
 
@@ -87,7 +87,7 @@ int test_limits(const program::Program& program, const Options& o) {
   auto evidence = collect_evidence(o.scene, o.overrides, o.people);
   if (!evidence) return program.fail(evidence.error());
   // By the command line alone: a scene must not bring the permission for its own library.
-  scene->device.force_dimension.trust_library = o.trust_library;
+  scene->device.trust_library = o.trust_library;
   if (const auto error = program::prepare_folder(o.out)) return program.fail(*error);
   // Last of all checks: after the words the device moves.
   if (!tact::hal::registry::is_simulated(scene->device))

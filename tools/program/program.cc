@@ -51,7 +51,7 @@ void SceneArguments::add_to(CLI::App& options, const std::string& needs) {
 
 Result<model::scene::Scene> SceneArguments::load() const {
   auto scene = model::scene::load_scene(path, overrides);
-  if (scene) scene->device.force_dimension.trust_library = trust_library;
+  if (scene) scene->device.trust_library = trust_library;
   return scene;
 }
 

@@ -19,7 +19,7 @@ class Session : public testing::Test {
  protected:
   /// Why it does not open; everything is closed again by then.
   std::string refusal() {
-    const auto session = open_sdk_session(settings);
+    const auto session = open_sdk_session(settings, trusted);
     if (session) {
       close_sdk_session(*session);
       return "";
@@ -30,11 +30,12 @@ class Session : public testing::Test {
 
   tests::StubDhd stub;
   model::ForceDimensionSettings settings = tests::stub_scene().device.force_dimension;
+  bool trusted = true;
 };
 
 TEST_F(Session, OpensADelta3) {
   setenv("TACT_STUB_DHD_SERIAL", "1234", 1);
-  const auto session = open_sdk_session(settings);
+  const auto session = open_sdk_session(settings, true);
   ASSERT_TRUE(session) << session.error().sentence;
   EXPECT_STREQ(session->type.name, "delta.3");
   EXPECT_EQ(session->type.max_force_N, 20.0);
@@ -45,7 +46,7 @@ TEST_F(Session, OpensADelta3) {
 
 TEST_F(Session, IsConfiguredOnceAndWarmWithoutForce) {
   settings.watchdog_s = 0.004;
-  const auto session = open_sdk_session(settings);
+  const auto session = open_sdk_session(settings, true);
   ASSERT_TRUE(session);
   int watchdog = 0, time_guard = 7, gravity = 0;
   stub.settings(&watchdog, &time_guard, &gravity);
@@ -62,7 +63,7 @@ TEST_F(Session, IsConfiguredOnceAndWarmWithoutForce) {
 
 TEST_F(Session, TheLongestWatchdogFitsItsByte) {
   settings.watchdog_s = 0.0318;
-  const auto session = open_sdk_session(settings);
+  const auto session = open_sdk_session(settings, true);
   ASSERT_TRUE(session);
   int watchdog = 0, time_guard = 0, gravity = 0;
   stub.settings(&watchdog, &time_guard, &gravity);
@@ -79,7 +80,7 @@ TEST_F(Session, AMissingLibrarySaysWhereItIsHad) {
 }
 
 TEST_F(Session, ALibraryOfNobodyKnownIsNotLoadedUnlessAPersonSaysSo) {
-  settings.trust_library = false;
+  trusted = false;
   EXPECT_TRUE(has(refusal(), tests::kStubLibrary + " is not loaded")) << refusal();
   EXPECT_EQ(stub.calls("dhdGetDeviceCount"), 0);
   settings.library = "libdhd-that-is-not-here.so.3";

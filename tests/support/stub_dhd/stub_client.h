@@ -76,7 +76,7 @@ inline model::scene::Scene stub_scene() {
   scene.rate_Hz = 1000.0;
   scene.device.kind = "force-dimension";
   scene.device.force_dimension.library = kStubLibrary;
-  scene.device.force_dimension.trust_library = true;
+  scene.device.trust_library = true;
   return scene;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/force_dimension/library_trust.h"
+#include "hal/maker_library/library_trust.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -10,25 +10,17 @@
 #include <filesystem>
 #include <optional>
 
-namespace tact::hal::force_dimension {
+namespace tact::hal::maker_library {
 namespace {
 
 using model::Error;
 using model::Result;
 using std::filesystem::path;
 
-constexpr const char* kCure =
-    "let root install it (sudo install -D -o root -m 644 libdhd.so.3 /opt/fd/libdhd.so.3) and "
-    "device.force_dimension.library name that, or say --trust-library if you know the file";
-
 // By parts of the path, not by letters: /optional is not below /opt.
 bool lies_below(const path& file, const path& folder) {
   const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
   return end == folder.end() && rest != file.end();
-}
-
-Error refused(const std::string& file, const std::string& why) {
-  return Error{fmt::format("{} is not loaded, {}: {}", file, why, kCure)};
 }
 
 /// Whose it is and who else may write it.
@@ -76,17 +68,21 @@ Result<std::string> find_library(const std::string& name, const LibraryFolders& 
   return Error{fmt::format("{}: in no system folder", name)};
 }
 
-std::optional<Error> distrust_library(const std::string& file, const LibraryFolders& folders) {
+std::optional<Error> distrust_library(const std::string& file, const std::string& cure,
+                                      const LibraryFolders& folders) {
+  const auto refused = [&](const std::string& why) {
+    return Error{fmt::format("{} is not loaded, {}: {}", file, why, cure)};
+  };
   const bool allowed = std::ranges::any_of(
       folders.allowed, [&](const std::string& folder) { return lies_below(file, folder); });
-  if (!allowed) return refused(file, "as it lies below no system folder, nor /opt");
+  if (!allowed) return refused("as it lies below no system folder, nor /opt");
   // Every folder up to the top: whoever may write one of them can put another file in its place.
   for (path part = file; part == folders.top || lies_below(part, folders.top);
        part = part.parent_path()) {
-    if (const auto why = fault_of(part, part == file, folders)) return refused(file, *why);
+    if (const auto why = fault_of(part, part == file, folders)) return refused(*why);
     if (part == part.root_path()) break;
   }
   return std::nullopt;
 }
 
-}  // namespace tact::hal::force_dimension
+}  // namespace tact::hal::maker_library

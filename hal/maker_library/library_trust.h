@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// library_trust.h - which file may be loaded as the maker's library.
+// library_trust.h - which file may be loaded as a maker's library.
 //
 // A scene names it, and a scene may come from anybody; what is loaded runs with all that tactd may
 // do. So the file, and every folder on its way, belongs to root and can be written by nobody else,
@@ -15,7 +15,7 @@
 
 #include "model/result.h"
 
-namespace tact::hal::force_dimension {
+namespace tact::hal::maker_library {
 
 /// Where it may lie, and whose it must be; a test has others.
 struct LibraryFolders {
@@ -31,8 +31,8 @@ model::Result<std::string> find_library(const std::string& name,
                                         const LibraryFolders& folders = system_folders());
 
 /// Why this file, by its whole path, is not loaded: the first part of the path that may not be
-/// trusted, with owner, mode and cure.
-std::optional<model::Error> distrust_library(const std::string& file,
+/// trusted, with owner, mode and this cure.
+std::optional<model::Error> distrust_library(const std::string& file, const std::string& cure,
                                              const LibraryFolders& folders = system_folders());
 
-}  // namespace tact::hal::force_dimension
+}  // namespace tact::hal::maker_library

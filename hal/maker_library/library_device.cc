@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/maker_library/library_device.h"
+
+#include <utility>
+
+#include "hal/maker_library/rotation.h"
+#include "hal/saturation.h"
+
+namespace tact::hal::maker_library {
+namespace {
+
+constexpr double kObserver_Hz = 40.0;
+constexpr double kJump_m = 0.02, kJump_rad = 0.5;  // between two samples: a new start
+
+}  // namespace
+
+LibraryDevice::LibraryDevice(DeviceInfo info, std::shared_ptr<LibraryWorker> worker)
+    : info_(std::move(info)),
+      worker_(std::move(worker)),
+      linear_(kObserver_Hz, kJump_m),
+      angular_(kObserver_Hz, kJump_rad) {}
+
+LibraryDevice::~LibraryDevice() { stop(); }
+
+Fault LibraryDevice::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
+  now_ns_ = now_ns;
+  sample.fresh = false;
+  if (const Fault fault = worker_->trouble().fault; fault != Fault::kNone) return fault;
+  LibraryPose pose;
+  if (!worker_->poses().read(pose)) return Fault::kNone;
+  // The forces are still off, or show zero first: an armed loop would trust a force that is not
+  // there.
+  if (permitted_ && !pose.follows_commands) return Fault::kNone;
+  if (now_ns - pose.stamp_ns > kOldest_ns) return Fault::kNone;
+  sample.tool.position_m = pose.position_m;
+  sample.tool.orientation = pose.orientation;
+  observe(pose, sample.tool);
+  sample.stamp_ns = pose.stamp_ns;
+  sample.sequence = pose.sequence;
+  sample.fresh = true;
+  return Fault::kNone;
+}
+
+void LibraryDevice::observe(const LibraryPose& pose, Tool& tool) RT_SAFE {
+  const double elapsed_s = 1e-9 * static_cast<double>(pose.stamp_ns - before_.stamp_ns);
+  const Vec3 turn_rad = rotation_vector_rad(pose.orientation * conjugate(before_.orientation));
+  // Turns add up: the observer needs a line, and a quaternion's coordinates are none.
+  turned_rad_ = is_finite(turn_rad) ? turned_rad_ + turn_rad : Vec3{};
+  tool.velocity_mps = linear_.step(pose.position_m, elapsed_s);
+  tool.angular_velocity_radps = angular_.step(turned_rad_, elapsed_s);
+  before_ = pose;
+}
+
+Fault LibraryDevice::write(const Wrench& wrench) RT_SAFE {
+  const Wrench within{.force_N = saturated(wrench.force_N, info_.max_force_N),
+                      .torque_Nm = saturated(wrench.torque_Nm, info_.max_torque_Nm)};
+  worker_->commands().write({.wrench = within, .stamp_ns = now_ns_, .powered = permitted_});
+  return worker_->trouble().fault;
+}
+
+void LibraryDevice::stop() {
+  // Once: the library's device is closed by it.
+  if (!stopped_) worker_->stop();
+  stopped_ = true;
+}
+
+}  // namespace tact::hal::maker_library

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// library_device.h - a device that its maker's library drives.
+//
+// The loop only exchanges slots with the thread that calls the library (library_worker.h): no
+// system call in read or write. Velocities come from the shared observer. A sample is fresh when it
+// is new, younger than 5 ms, and the forces are on whenever they may be: while power is not
+// permitted the device still tells its pose, so that a fault can be reset.
+#pragma once
+
+#include <memory>
+
+#include "hal/device.h"
+#include "hal/maker_library/library_worker.h"
+#include "hal/velocity_observer.h"
+
+namespace tact::hal::maker_library {
+
+/// Of every such device, for `DeviceInfo::caution`.
+inline constexpr const char* kNoGuardian =
+    "if tactd is killed, nothing zeroes this device, because its maker's library shares no handle: "
+    "put its supply on a relay";
+
+class LibraryDevice final : public Device {
+ public:
+  LibraryDevice(DeviceInfo info, std::shared_ptr<LibraryWorker> worker);
+  ~LibraryDevice() override;
+  LibraryDevice(const LibraryDevice&) = delete;
+  LibraryDevice& operator=(const LibraryDevice&) = delete;
+
+  DeviceInfo info() const override { return info_; }
+  [[nodiscard]] Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
+  void permit(bool powered) RT_SAFE override { permitted_ = powered; }
+  [[nodiscard]] Fault write(const Wrench& wrench) RT_SAFE override;
+  std::string trouble() const override { return worker_->words(); }
+  void stop() override;
+
+ private:
+  void observe(const LibraryPose& pose, Tool& tool) RT_SAFE;
+
+  DeviceInfo info_;
+  std::shared_ptr<LibraryWorker> worker_;
+  VelocityObserver linear_, angular_;
+  LibraryPose before_;
+  Vec3 turned_rad_;  // all rotations since the start, added up
+  std::int64_t now_ns_ = 0;
+  bool permitted_ = true;
+  bool stopped_ = false;
+};
+
+}  // namespace tact::hal::maker_library

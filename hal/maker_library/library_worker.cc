@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/maker_library/library_worker.h"
+
+#include <pthread.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+namespace tact::hal::maker_library {
+namespace {
+
+using model::Fault;
+using model::Wrench;
+
+// As for a Falcon (loop_silence.h).
+constexpr std::int64_t kLoopGone_ns = 100'000'000;
+constexpr int kPriority = 78;                             // the loop has 80
+constexpr std::int64_t kZeroFirst_ns = 2'000'000;         // of zero force after the forces went on
+constexpr std::int64_t kPoweredForSure_ns = 100'000'000;  // before "forces off" is news
+
+}  // namespace
+
+// A command lives for three periods of the loop, and never less than a good sample.
+LibraryWorker::LibraryWorker(std::int64_t cycle_ns, double rate_Hz)
+    : cycle_ns_(cycle_ns),
+      command_life_ns_(std::max(kOldest_ns, static_cast<std::int64_t>(3e9 / rate_Hz))) {}
+
+void LibraryWorker::enter_fifo(const char* name) {
+  pthread_setname_np(pthread_self(), name);
+  const sched_param priority{.sched_priority = kPriority};
+  pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);  // tactd names what it lacks
+}
+
+void LibraryWorker::publish(LibraryPose pose) {
+  pose.sequence = ++sequence_;
+  pose.follows_commands = power_ == Power::kOn;
+  poses_.write(pose);
+}
+
+std::optional<Wrench> LibraryWorker::next_wrench(std::int64_t now_ns) {
+  // Nothing new keeps the last one; its age then tells that the loop is late.
+  commands_.read(command_);
+  const std::int64_t age_ns = now_ns - command_.stamp_ns;
+  if (!follow_power(command_.powered && age_ns <= kLoopGone_ns)) return std::nullopt;
+  const bool follow = power_ == Power::kOn && age_ns <= command_life_ns_;
+  return follow ? command_.wrench : Wrench{};
+}
+
+bool LibraryWorker::follow_power(bool wanted) {
+  // Zero force is shown for a while after the forces went on: no step into the hand.
+  if (wanted == (power_ != Power::kOff)) {
+    if (power_ == Power::kZeroFirst && ++zero_cycles_ * cycle_ns_ >= kZeroFirst_ns)
+      power_ = Power::kOn;
+    if (power_ == Power::kOn && !powered_for_sure())
+      powered_cycles_.fetch_add(1, std::memory_order_relaxed);
+    return true;
+  }
+  powered_cycles_.store(0, std::memory_order_relaxed);
+  zero_cycles_ = 0;
+  power_ = wanted ? Power::kZeroFirst : Power::kOff;
+  return switch_forces(wanted);
+}
+
+bool LibraryWorker::powered_for_sure() const {
+  return powered_cycles_.load(std::memory_order_relaxed) * cycle_ns_ >= kPoweredForSure_ns;
+}
+
+void LibraryWorker::keep(const LibraryTrouble& t) {
+  std::uint64_t none = 0;  // the first one is the cause
+  // One word, so that the first trouble is kept whole by one exchange.
+  const auto packed = static_cast<std::uint64_t>(t.fault) << 32 |
+                      static_cast<std::uint64_t>(t.source) << 16 | std::uint64_t{t.code};
+  trouble_.compare_exchange_strong(none, packed, std::memory_order_acq_rel);
+}
+
+LibraryTrouble LibraryWorker::trouble() const RT_SAFE {
+  const std::uint64_t packed = trouble_.load(std::memory_order_acquire);
+  return {static_cast<Fault>(packed >> 32), static_cast<std::uint8_t>(packed >> 16 & 0xFF),
+          static_cast<std::uint16_t>(packed & 0xFFFF)};
+}
+
+bool LibraryWorker::stop() {
+  quit_ = true;
+  // 2 s, no join: a library that hangs must not keep tactd from ending.
+  for (int i = 0; i < 2000 && running_ > 0; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  if (running_ > 0) return false;
+  close();
+  return true;
+}
+
+}  // namespace tact::hal::maker_library

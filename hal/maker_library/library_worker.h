@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// library_worker.h - what the threads that call a maker's library share with the loop.
+//
+// The library may wait for USB, for locks, for threads of its own; the loop never calls it. It
+// exchanges the newest pose and the newest command with the worker's thread, which calls the
+// library once a cycle:
+//
+//   a command that the loop has not renewed for its life is worth zero;
+//   without one for 100 ms, or without power, the forces are switched off;
+//   they come back through 2 ms of zero force, so that no step goes into the hand.
+//
+// The first trouble is kept. After it: zero force and forces off once, then not one call more.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "hal/latest_slot.h"
+#include "model/fault.h"
+#include "model/types.h"
+
+namespace tact::hal::maker_library {
+
+struct LibraryPose {
+  model::Vec3 position_m;
+  model::Quat orientation;
+  std::int64_t stamp_ns = 0;      // CLOCK_MONOTONIC before the library was asked
+  std::uint64_t sequence = 0;     // of poses
+  bool follows_commands = false;  // forces are on, zero force has been shown first
+};
+
+struct LibraryCommand {
+  model::Wrench wrench;
+  std::int64_t stamp_ns = 0;  // of the tick that made it
+  bool powered = false;
+};
+
+/// One atomic word: fault, who found it (a number of the device's room), and the library's code.
+struct LibraryTrouble {
+  model::Fault fault = model::Fault::kNone;
+  std::uint8_t source = 0;
+  std::uint16_t code = 0;
+};
+
+/// How long a sample is good, and a command at least.
+inline constexpr std::int64_t kOldest_ns = 5'000'000;
+
+class LibraryWorker {
+ public:
+  LibraryWorker(const LibraryWorker&) = delete;
+  LibraryWorker& operator=(const LibraryWorker&) = delete;
+  virtual ~LibraryWorker() = default;
+
+  LatestSlot<LibraryPose>& poses() RT_SAFE { return poses_; }
+  LatestSlot<LibraryCommand>& commands() RT_SAFE { return commands_; }
+  LibraryTrouble trouble() const RT_SAFE;
+  /// The trouble for a person; empty without one.
+  virtual std::string words() const = 0;
+
+  /// Ends the threads, zeroes the force and closes the device; false when the library did not
+  /// return within 2 s. Once.
+  bool stop();
+
+ protected:
+  /// For a loop of this rate.
+  LibraryWorker(std::int64_t cycle_ns, double rate_Hz);
+
+  /// Both of a thread that has just begun: its name, and SCHED_FIFO below the loop, which a black
+  /// box must not delay.
+  static void enter_fifo(const char* name);
+
+  // The thread of the cycle.
+  /// Passes on what the library told in this cycle.
+  void publish(LibraryPose pose);
+  /// Switches the forces as the loop wants them; the wrench of this cycle, or nothing when the
+  /// forces did not switch.
+  std::optional<model::Wrench> next_wrench(std::int64_t now_ns);
+  virtual bool switch_forces(bool on) = 0;
+  virtual void close() = 0;
+
+  // Any thread.
+  std::int64_t cycle_ns() const { return cycle_ns_; }
+  bool quits() const { return quit_.load(std::memory_order_relaxed); }
+  /// The forces are on for so long that "off" is news.
+  bool powered_for_sure() const;
+  void keep(const LibraryTrouble& trouble);
+
+  std::atomic<int> running_{0};  // threads inside the library
+
+ private:
+  enum class Power : std::uint8_t { kOff, kZeroFirst, kOn };
+  bool follow_power(bool wanted);
+
+  std::int64_t cycle_ns_, command_life_ns_;
+  LatestSlot<LibraryPose> poses_;
+  LatestSlot<LibraryCommand> commands_;
+  LibraryCommand command_;  // the thread of the cycle, as the next three
+  std::uint64_t sequence_ = 0;
+  std::int64_t zero_cycles_ = 0;
+  Power power_ = Power::kOff;
+  std::atomic<std::int64_t> powered_cycles_{0};  // since the forces were switched on
+  std::atomic<std::uint64_t> trouble_{0};
+  std::atomic<bool> quit_{false};
+};
+
+}  // namespace tact::hal::maker_library
