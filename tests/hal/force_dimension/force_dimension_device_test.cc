@@ -4,58 +4,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <ctime>
-#include <functional>
-#include <limits>
-#include <numbers>
 
-#include "hal/registry/open_device.h"
+#include "tests/support/device_loop.h"
 #include "tests/support/no_alloc.h"
 #include "tests/support/stub_dhd/stub_client.h"
 
 namespace tact::hal::force_dimension::force_dimension_device_test {
 
-constexpr std::int64_t kMs = 1'000'000;
-
-std::int64_t now_ns() {
-  timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return t.tv_sec * 1'000'000'000 + t.tv_nsec;
-}
-void sleep_ms(int ms) {
-  const timespec t{.tv_sec = ms / 1000, .tv_nsec = ms % 1000 * kMs};
-  nanosleep(&t, nullptr);
-}
-
-/// The device in a loop of about 1 ms, as tactd drives it.
-class ForceDimension : public testing::Test {
+class ForceDimension : public tests::DeviceLoop {
  protected:
   void open(int type = 63) {
     stub.set_type(type);
-    auto opened = registry::open_device(tests::stub_scene());
-    ASSERT_TRUE(opened) << opened.error().sentence;
-    device = std::move(*opened);
-    ticked_ns = now_ns();
-  }
-  /// Ticks until `done` or for 2 s; false after that.
-  bool tick_until(const std::function<bool()>& done, const Wrench& wrench = {}) {
-    for (const std::int64_t end_ns = now_ns() + 2000 * kMs; now_ns() < end_ns;) {
-      tick(wrench);
-      if (done()) return true;
-    }
-    return false;
-  }
-  void tick(const Wrench& wrench = {}) {
-    sleep_ms(1);
-    fault = device->read(sample, now_ns());
-    device->permit(permitted);
-    const Fault written = device->write(wrench);
-    if (fault == Fault::kNone) fault = written;
-    if (now_ns() - ticked_ns > 80 * kMs) ++silences;  // forces go off at 100
-    ticked_ns = now_ns();
-  }
-  bool ready() {
-    return tick_until([&] { return sample.fresh; });
+    DeviceLoop::open(tests::stub_scene());
   }
   /// What arrives at the device's motors: 0 while its forces are off.
   Vec3 felt_N() {
@@ -64,12 +24,6 @@ class ForceDimension : public testing::Test {
   }
 
   tests::StubDhd stub;
-  registry::OpenDevice device;
-  Sample sample;
-  Fault fault = Fault::kNone;
-  bool permitted = true;
-  std::int64_t ticked_ns = 0;
-  int silences = 0;  // of the loop, by other work
 };
 
 TEST_F(ForceDimension, MakesNoForceBeforeTheLoopPermitsIt) {
@@ -200,13 +154,9 @@ TEST_F(ForceDimension, ALoopThatDiesTakesItsForceAlong) {
   ASSERT_TRUE(
       tick_until([&] { return felt_N().z == 5.0; }, {.force_N = {0, 0, 5}, .torque_Nm = {}}));
   double force[6];
-  const auto wait_until = [&](const std::function<bool()>& done) {
-    for (int i = 0; i < 2000 && !done(); ++i) sleep_ms(1);
-    return done();
-  };
-  EXPECT_TRUE(wait_until([&] { return stub.last_force(force) >= 0 && force[2] == 0.0; }));
+  EXPECT_TRUE(comes([&] { return stub.last_force(force) >= 0 && force[2] == 0.0; }));
   EXPECT_EQ(stub.last_force(force), 1) << "zero, but its weight is still balanced";
-  EXPECT_TRUE(wait_until([&] { return stub.last_force(force) == 0; })) << "then the forces go off";
+  EXPECT_TRUE(comes([&] { return stub.last_force(force) == 0; })) << "then the forces go off";
 }
 
 TEST_F(ForceDimension, WithdrawnPowerSwitchesTheForcesOffAndComesBackThroughZero) {

@@ -2,64 +2,40 @@
 // What a Force Dimension device says and does when it fails in the middle of a run.
 #include <gtest/gtest.h>
 
-#include <ctime>
-
 #include "hal/force_dimension/sdk_words.h"
-#include "hal/registry/open_device.h"
+#include "tests/support/device_loop.h"
 #include "tests/support/stub_dhd/stub_client.h"
 
 namespace tact::hal::force_dimension::force_dimension_trouble_test {
 
-std::int64_t now_ns() {
-  timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return t.tv_sec * 1'000'000'000 + t.tv_nsec;
-}
-void sleep_ms(int ms) {
-  const timespec t{.tv_sec = 0, .tv_nsec = ms * 1'000'000};
-  nanosleep(&t, nullptr);
-}
+constexpr Wrench kUp{.force_N = {0, 0, 2}, .torque_Nm = {}};
 
-class ForceDimensionTrouble : public testing::Test {
+class ForceDimensionTrouble : public tests::DeviceLoop {
  protected:
   void SetUp() override {
-    auto opened = registry::open_device(tests::stub_scene());
-    ASSERT_TRUE(opened) << opened.error().sentence;
-    device = std::move(*opened);
-    for (int i = 0; i < 300; ++i) tick();  // armed in earnest, forces known to be on
+    open(tests::stub_scene());
+    for (int i = 0; i < 300; ++i) tick(kUp);  // armed in earnest, forces known to be on
     ASSERT_TRUE(fault == Fault::kNone);
-  }
-  void tick() {
-    sleep_ms(1);
-    fault = device->read(sample, now_ns());
-    static_cast<void>(device->write({.force_N = {0, 0, 2}, .torque_Nm = {}}));
   }
   /// The fault that comes within a second, and stays when its cause is gone.
   Fault lasting_fault() {
-    for (int i = 0; i < 1000 && fault == Fault::kNone; ++i) tick();
+    for (int i = 0; i < 1000 && fault == Fault::kNone; ++i) tick(kUp);
     const Fault found = fault;
     EXPECT_TRUE(forces_go_off()) << "the last thing that the thread asks for";
     stub.reset();
-    for (int i = 0; i < 100; ++i) tick();
+    for (int i = 0; i < 100; ++i) tick(kUp);
     EXPECT_EQ(fault, found) << "a fault stays until the device is opened again";
     EXPECT_FALSE(sample.fresh);
     EXPECT_EQ(stub.calls("dhdGetPositionAndOrientationFrame"), 0) << "not one call more";
     return found;
   }
-  /// Within 2 s: the thread that drives the device may be in the middle of a cycle.
+  /// The thread that drives the device may be in the middle of a cycle.
   bool forces_go_off() const {
     double force[6];
-    for (int i = 0; i < 2000 && stub.last_force(force) != 0; ++i) sleep_ms(1);
-    return stub.last_force(force) == 0;
-  }
-  bool told(const std::string& part) const {
-    return device->trouble().find(part) != std::string::npos;
+    return comes([&] { return stub.last_force(force) == 0; });
   }
 
   tests::StubDhd stub;
-  registry::OpenDevice device;
-  Sample sample;
-  Fault fault = Fault::kNone;
 };
 
 TEST_F(ForceDimensionTrouble, NothingIsWrongAtFirst) {
@@ -69,7 +45,7 @@ TEST_F(ForceDimensionTrouble, NothingIsWrongAtFirst) {
 
 TEST_F(ForceDimensionTrouble, APoseThatFailsEndsTheForceAtOnce) {
   stub.fail("dhdGetPositionAndOrientationFrame", 8);
-  for (int i = 0; i < 100; ++i) tick();
+  for (int i = 0; i < 100; ++i) tick(kUp);
   double force[6];
   EXPECT_EQ(stub.last_force(force), 0);
   EXPECT_EQ(force[2], 0.0);
@@ -107,7 +83,7 @@ TEST_F(ForceDimensionTrouble, ForcesThatTheDeviceSwitchedOffAreToldByCause) {
 TEST_F(ForceDimensionTrouble, TheDevicesOwnWatchdogEndsWhatALibraryThatHangsLeftBehind) {
   stub.ignore_watchdog(0);
   stub.set_delay_us(60'000);
-  for (int i = 0; i < 1000 && fault == Fault::kNone; ++i) tick();
+  for (int i = 0; i < 1000 && fault == Fault::kNone; ++i) tick(kUp);
   EXPECT_EQ(fault, Fault::kForceOff);
   EXPECT_TRUE(told("watchdog_s")) << device->trouble();
   stub.set_delay_us(0);

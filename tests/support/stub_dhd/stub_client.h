@@ -2,27 +2,19 @@
 // stub_client.h - a test's grip on the stand-in for Force Dimension's library.
 #pragma once
 
-#include <dlfcn.h>
-#include <gtest/gtest.h>
-
-#include <cstdlib>
 #include <string>
 
 #include "model/scene/scene.h"
 #include "tests/support/stub_dhd/stub_dhd.h"
+#include "tests/support/stub_library.h"
 
 namespace tact::tests {
 
 inline const std::string kStubLibrary = std::string(TACT_BINARY_DIR) + "/libtact-stub-dhd.so";
 
-/// Loads the stand-in once more (it is the same one) and finds its control functions.
-class StubDhd {
+class StubDhd : public StubLibrary {
  public:
-  StubDhd() : library_(dlopen(kStubLibrary.c_str(), RTLD_NOW | RTLD_LOCAL)) {
-    if (library_ == nullptr) {
-      ADD_FAILURE() << dlerror();
-      std::abort();
-    }
+  StubDhd() : StubLibrary(kStubLibrary) {
     find("stub_dhd_reset", reset);
     find("stub_dhd_set_type", set_type);
     find("stub_dhd_set_count", set_count);
@@ -41,9 +33,6 @@ class StubDhd {
     reset();
     ignore_watchdog(1);
   }
-  ~StubDhd() { dlclose(library_); }
-  StubDhd(const StubDhd&) = delete;
-  StubDhd& operator=(const StubDhd&) = delete;
 
   decltype(&stub_dhd_reset) reset = nullptr;
   decltype(&stub_dhd_set_type) set_type = nullptr;
@@ -60,14 +49,6 @@ class StubDhd {
   decltype(&stub_dhd_settings) settings = nullptr;
   decltype(&stub_dhd_strongest_N) strongest_N = nullptr;
   decltype(&stub_dhd_is_open) is_open = nullptr;
-
- private:
-  template <typename Function>
-  void find(const char* symbol, Function& function) {
-    function = reinterpret_cast<Function>(dlsym(library_, symbol));
-    ASSERT_NE(function, nullptr) << symbol;
-  }
-  void* library_;
 };
 
 inline model::scene::Scene stub_scene() {

@@ -2,11 +2,9 @@
 // stub_dhd.cc - a library with the symbols of Force Dimension's, for PCs without it: a stand-in for
 // tests and for the bench (device.force_dimension.library = ".../libtact-stub-dhd.so").
 //
-// Behind it a handle of 0.3 kg on a delta that balances its weight, led by a hand of 400 N/m and
-// 12 N s/m down to z = -10 mm and back to 20 mm every 4 s. The physics runs in the calls, in steps
-// of 0.25 ms of CLOCK_MONOTONIC. Forces are cut by the watchdog as the device cuts them. Each
-// process has a device of its own, as TACT_STUB_DHD_SERIAL or its pid numbers it. With
-// TACT_STUB_DHD_NO_WATCHDOG it bears a PC that stalls.
+// Behind it a delta.3, led by a hand (led_handle.h). Forces are cut by the watchdog as the device
+// cuts them. Each process has a device of its own, as TACT_STUB_DHD_SERIAL or its pid numbers it.
+// With TACT_STUB_DHD_NO_WATCHDOG it bears a PC that stalls.
 #include "tests/support/stub_dhd/stub_dhd.h"
 
 #include <unistd.h>
@@ -15,36 +13,31 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <ctime>
 #include <map>
 #include <mutex>
-#include <numbers>
 #include <string>
+
+#include "tests/support/led_handle.h"
 
 namespace {
 
-constexpr double kMass_kg = 0.3, kHand_N_per_m = 400.0, kHand_Ns_per_m = 12.0;
-constexpr double kStep_s = 0.25e-3, kMaxPhysics_s = 0.1;
+using tact::tests::LedHandle;
+using tact::tests::monotonic_s;
+
 constexpr double kWatchdogUnit_s = 125e-6;
 constexpr int kErrorCode = 1, kNotEnabled = 9, kBadId = 15;
 constexpr int kPower = 0, kConnected = 1, kStarted = 2, kForce = 5, kWristDetected = 8;
 constexpr int kGravity = 10, kWristInit = 12, kForceOffCause = 14;
 constexpr int kCausedByWatchdog = 3, kCausedBySoftware = 4;
 
-double seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 struct State {
   int count = 1, type = 63;
-  bool open = false, expert = false, held = false;
+  bool open = false, expert = false;
   int pose_answer = 0, delay_us = 0;
   int watchdog = 0, time_guard = -1, gravity = 0;
   double force[6] = {};
-  double position_m[3] = {0.0, 0.0, 0.02}, velocity_mps[3] = {};
-  double begin_s = seconds(), time_s = seconds(), fed_s = seconds();
+  LedHandle handle;
+  double fed_s = monotonic_s();
   double spin_radps = 0.0, strongest_N = 0.0;
   std::array<int, 17> status{};
   std::map<int, int> fixed_status;
@@ -71,32 +64,20 @@ int enter(const char* function) {
   return last_error == 0 ? 0 : -1;
 }
 
-double hand_z_m(double since_s) {
-  const double swing = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * since_s / 4.0);
-  return 0.02 - 0.03 * swing;
-}
-
-void step(double dt_s) {
-  state.time_s += dt_s;
-  const double hand_m[3] = {0.0, 0.0, hand_z_m(state.time_s - state.begin_s)};
+void watch(double time_s) {
   if (!watchdog_sleeps && state.watchdog > 0 && state.status[kForce] != 0 &&
-      state.time_s - state.fed_s > kWatchdogUnit_s * state.watchdog) {
+      time_s - state.fed_s > kWatchdogUnit_s * state.watchdog) {
     state.status[kForce] = 0;
     state.status[kForceOffCause] = kCausedByWatchdog;
-  }
-  for (int i = 0; i < 3; ++i) {
-    const double device_N = state.status[kForce] != 0 ? state.force[i] : 0.0;
-    const double total_N = device_N + kHand_N_per_m * (hand_m[i] - state.position_m[i]) -
-                           kHand_Ns_per_m * state.velocity_mps[i];
-    state.velocity_mps[i] += dt_s * total_N / kMass_kg;
-    state.position_m[i] += dt_s * state.velocity_mps[i];
   }
 }
 
 void catch_up() {
-  const double now_s = seconds();
-  state.time_s = std::max(state.time_s, now_s - kMaxPhysics_s);
-  while (!state.held && state.time_s + kStep_s <= now_s) step(kStep_s);
+  state.handle.catch_up([](double time_s) {
+    watch(time_s);
+    const double* f = state.force;
+    return state.status[kForce] != 0 ? std::array{f[0], f[1], f[2]} : std::array<double, 3>{};
+  });
 }
 
 struct Locked {
@@ -167,8 +148,9 @@ int dhdGetPositionAndOrientationFrame(double* x_m, double* y_m, double* z_m, dou
   const Locked locked;
   if (enter("dhdGetPositionAndOrientationFrame") < 0) return -1;
   catch_up();
-  *x_m = state.position_m[0], *y_m = state.position_m[1], *z_m = state.position_m[2];
-  const double angle_rad = state.spin_radps * (seconds() - state.begin_s);
+  *x_m = state.handle.position_m[0], *y_m = state.handle.position_m[1];
+  *z_m = state.handle.position_m[2];
+  const double angle_rad = state.spin_radps * (monotonic_s() - state.handle.begin_s);
   const double c = std::cos(angle_rad), s = std::sin(angle_rad);
   const double frame[3][3] = {{c, -s, 0.0}, {s, c, 0.0}, {0.0, 0.0, 1.0}};
   std::copy(&frame[0][0], &frame[0][0] + 9, &r[0][0]);
@@ -182,7 +164,7 @@ int dhdSetForceAndTorqueAndGripperForce(double fx, double fy, double fz, double 
   catch_up();
   const double force[6] = {fx, fy, fz, tx, ty, tz};
   std::copy(force, force + 6, state.force);
-  state.fed_s = seconds();
+  state.fed_s = monotonic_s();
   if (state.status[kForce] != 0)
     state.strongest_N = std::max(state.strongest_N, std::hypot(fx, fy, fz));
   return 0;
@@ -194,7 +176,7 @@ int dhdEnableForce(unsigned char on, char) {
   catch_up();
   state.status[kForce] = on != 0 ? 1 : 0;
   state.status[kForceOffCause] = on != 0 ? 0 : kCausedBySoftware;
-  state.fed_s = seconds();
+  state.fed_s = monotonic_s();
   return 0;
 }
 
@@ -259,8 +241,7 @@ void stub_dhd_set_pose_answer(int answer) {
 }
 void stub_dhd_hold(double x_m, double y_m, double z_m) {
   const Locked locked;
-  state.held = true;
-  state.position_m[0] = x_m, state.position_m[1] = y_m, state.position_m[2] = z_m;
+  state.handle.hold(x_m, y_m, z_m);
 }
 void stub_dhd_spin(double radps) {
   const Locked locked;

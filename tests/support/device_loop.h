@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// device_loop.h - a device in a loop of about 1 ms on the real clock, as tactd drives it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <ctime>
+#include <functional>
+
+#include "hal/monotonic.h"
+#include "hal/registry/open_device.h"
+
+namespace tact::tests {
+
+class DeviceLoop : public testing::Test {
+ protected:
+  static constexpr std::int64_t kMs = 1'000'000;
+
+  static std::int64_t now_ns() { return hal::monotonic_ns(); }
+  static void sleep_ms(int ms) {
+    const timespec t{.tv_sec = ms / 1000, .tv_nsec = ms % 1000 * kMs};
+    nanosleep(&t, nullptr);
+  }
+
+  void open(const model::scene::Scene& scene) {
+    auto opened = hal::registry::open_device(scene);
+    ASSERT_TRUE(opened) << opened.error().sentence;
+    device = std::move(*opened);
+    fault = hal::Fault::kNone;
+    ticked_ns = now_ns();
+  }
+  void tick(const hal::Wrench& wrench = {}) {
+    sleep_ms(1);
+    fault = device->read(sample, now_ns());
+    device->permit(permitted);
+    const hal::Fault written = device->write(wrench);
+    if (fault == hal::Fault::kNone) fault = written;
+    if (now_ns() - ticked_ns > 80 * kMs) ++silences;  // forces go off at 100
+    ticked_ns = now_ns();
+  }
+  /// Ticks until `done` or for 2 s; false after that.
+  bool tick_until(const std::function<bool()>& done, const hal::Wrench& wrench = {}) {
+    for (const std::int64_t end_ns = now_ns() + 2000 * kMs; now_ns() < end_ns;) {
+      tick(wrench);
+      if (done()) return true;
+    }
+    return false;
+  }
+  bool ready() {
+    return tick_until([&] { return sample.fresh; });
+  }
+  /// Without a tick, for 2 s at most.
+  static bool comes(const std::function<bool()>& done) {
+    for (int i = 0; i < 2000 && !done(); ++i) sleep_ms(1);
+    return done();
+  }
+  bool told(const std::string& part) const {
+    return device->trouble().find(part) != std::string::npos;
+  }
+
+  hal::registry::OpenDevice device;
+  hal::Sample sample;
+  hal::Fault fault = hal::Fault::kNone;
+  bool permitted = true;
+  std::int64_t ticked_ns = 0;
+  int silences = 0;  // of the loop, by other work
+};
+
+}  // namespace tact::tests
