@@ -9,6 +9,9 @@ inline constexpr const char* kFalconRule =
     R"(SUBSYSTEM=="usb", ATTR{idVendor}=="0403", ATTR{idProduct}=="cb48", GROUP="haptics", MODE="0660")";
 inline constexpr const char* kForceDimensionRule =
     R"(SUBSYSTEM=="usb", ATTR{idVendor}=="1451", GROUP="haptics", MODE="0660")";
+/// Of the serial port or the HID node too, as the maker's library opens that.
+inline constexpr const char* kPhantomRule =
+    R"(SUBSYSTEMS=="usb", ATTRS{idVendor}=="2988", GROUP="haptics", MODE="0660")";
 inline constexpr const char* kGpioRule =
     R"(SUBSYSTEM=="gpio", KERNEL=="gpiochip[0-9]*", GROUP="haptics", MODE="0660")";
 

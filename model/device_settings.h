@@ -94,6 +94,13 @@ struct ForceDimensionSettings {
   double damping_Ns_per_m = 1.0;        // what the device itself has, at the handle
 };
 
+struct PhantomSettings {
+  std::string library = "libHD.so";  // name or path; the maker's, never part of tact
+  std::string name;                  // that the maker's Touch_Setup gave; empty: the default device
+  double damping_Ns_per_m = 1.0;     // what the device itself has, at the stylus
+  double position_step_m = 5.5e-5;   // of its encoders, at the stylus
+};
+
 /// Lines of one GPIO chip, by offset; -1: not wired.
 struct LinesSettings {
   std::string chip;  // label or path; empty: no lines
@@ -111,6 +118,7 @@ struct DeviceSettings {
   CanSettings can{};
   FalconSettings falcon{};
   ForceDimensionSettings force_dimension{};
+  PhantomSettings phantom{};
   LinesSettings lines{};
 
   bool is_on_can() const { return kind.starts_with("can-"); }

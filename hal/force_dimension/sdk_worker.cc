@@ -70,18 +70,17 @@ std::int64_t sdk_cycle_ns(double rate_Hz) {
 
 std::shared_ptr<SdkWorker> SdkWorker::start(const SdkSession& session, double rate_Hz) {
   std::shared_ptr<SdkWorker> worker(new SdkWorker(session, rate_Hz));
-  // Before the threads: stop() must not see zero while they begin.
-  worker->running_ = 2;
+  worker->expect_threads(2);
   // Each thread keeps the worker alive: one that hangs in the library outlives its device.
   std::thread([worker] {
     enter_fifo("tact-fd");
     worker->run();
-    --worker->running_;
+    worker->thread_ends();
   }).detach();
   std::thread([worker] {
     pthread_setname_np(pthread_self(), "tact-fd-status");
     worker->watch();
-    --worker->running_;
+    worker->thread_ends();
   }).detach();
   return worker;
 }

@@ -116,27 +116,54 @@ void lack_driver(FoundPart& part, const std::string& driver) {
   }
 }
 
+/// A device on USB that tact knows.
+struct UsbKind {
+  PartKind kind;
+  const char* vendor;
+  const char* product;  // null: any
+  const char* words;
+  const char* rule;
+};
+constexpr UsbKind kUsbKinds[] = {
+    {PartKind::kFalcon, "0403", "cb48", "Novint Falcon", kFalconRule},
+    {PartKind::kForceDimension, "1451", nullptr, "Force Dimension device", kForceDimensionRule},
+    {PartKind::kPhantom, "2988", nullptr, "PHANTOM", kPhantomRule},
+    {PartKind::kPhantom, "0301", "2988", "PHANTOM", kPhantomRule}};
+
+/// The serial port or the HID node of a USB device, else the node of the device itself.
+std::string node_of(const PartProbes& probes, const fs::path& device) {
+  const std::string prefix = device.filename().string() + ":";
+  for (const fs::path& interface : entries(device.string())) {
+    if (!interface.filename().string().starts_with(prefix)) continue;
+    std::vector<fs::path> nodes = entries((interface / "tty").string());
+    for (const fs::path& part : entries(interface.string()))
+      for (const fs::path& node : entries((part / "hidraw").string())) nodes.push_back(node);
+    if (!nodes.empty())
+      return fmt::format("{}/{}", probes.roots.dev, nodes.front().filename().string());
+  }
+  return fmt::format("{}/bus/usb/{:03}/{:03}", probes.roots.dev, number_of(device / "busnum", 10),
+                     number_of(device / "devnum", 10));
+}
+
 std::optional<FoundPart> usb_part(const PartProbes& probes, const fs::path& folder) {
   const std::string vendor = line_of(folder / "idVendor"), product = line_of(folder / "idProduct");
-  const bool falcon = vendor == "0403" && product == "cb48";
-  if (!falcon && vendor != "1451") return std::nullopt;
-  FoundPart part{.kind = falcon ? PartKind::kFalcon : PartKind::kForceDimension,
+  const auto* known = std::ranges::find_if(kUsbKinds, [&](const UsbKind& kind) {
+    return vendor == kind.vendor && (kind.product == nullptr || product == kind.product);
+  });
+  if (known == std::end(kUsbKinds)) return std::nullopt;
+  FoundPart part{.kind = known->kind,
                  .name = folder.filename().string(),
-                 .what = falcon ? "Novint Falcon" : "Force Dimension device",
-                 .scene = {},
+                 .what = known->words,
+                 .scene = fmt::format("device.kind = \"{}\"", name_of(known->kind)),
                  .lacking = {},
                  .cure = {}};
-  if (const std::string words = line_of(folder / "product"); !falcon && !words.empty())
+  if (part.kind == PartKind::kFalcon)
+    part.scene += fmt::format(", device.falcon.bus_path = \"{}\"", part.name);
+  else if (const std::string words = line_of(folder / "product"); !words.empty())
     part.what += fmt::format(" \"{}\"", words);
   part.what += fmt::format(", USB {}:{}", vendor, product);
-  part.scene =
-      falcon ? fmt::format("device.kind = \"falcon\", device.falcon.bus_path = \"{}\"", part.name)
-             : std::string("device.kind = \"force-dimension\"");
-  const std::string node =
-      fmt::format("{}/bus/usb/{:03}/{:03}", probes.roots.dev, number_of(folder / "busnum", 10),
-                  number_of(folder / "devnum", 10));
-  lack_permission(part, node, falcon ? kFalconRule : kForceDimensionRule,
-                  probes.access_error(node));
+  const std::string node = node_of(probes, folder);
+  lack_permission(part, node, known->rule, probes.access_error(node));
   lack_driver(part, bound_driver(folder));
   return part;
 }
@@ -172,6 +199,8 @@ const char* name_of(PartKind kind) {
       return "falcon";
     case PartKind::kForceDimension:
       return "force-dimension";
+    case PartKind::kPhantom:
+      return "phantom";
     case PartKind::kGpio:
       break;
   }
@@ -206,6 +235,10 @@ const char* words_of_absence(PartKind kind) {
     case PartKind::kForceDimension:
       return "no Force Dimension device (USB 1451:*); switch its supply on and plug in its cable "
              "(lsusb shows it)";
+    case PartKind::kPhantom:
+      return "no PHANTOM or Touch on USB (2988:*); switch its supply on and plug in its cable "
+             "(lsusb "
+             "shows it); one on Ethernet or FireWire is not looked for";
     case PartKind::kGpio:
       break;
   }

@@ -5,7 +5,9 @@
 //   class/net/*/type 280 (ARPHRD_CAN), flags bit 0 (IFF_UP)          CAN interfaces; bit rate by
 //                                                                    netlink (can/can_link.h)
 //   bus/usb/devices/*/idVendor idProduct busnum devnum, *:N/driver   0403:cb48 Novint Falcon,
-//                                                                    1451:* Force Dimension
+//                                                                    1451:* Force Dimension,
+//                                                                    2988:* PHANTOM (HD-6)
+//   .../tty/ttyACM*, .../hidraw/hidraw*                              what a PHANTOM is opened by
 //   bus/gpio/devices/gpiochip*                                       GPIO chips (gpio/gpio_chips.h)
 // Set-up code only.
 #pragma once
@@ -19,8 +21,8 @@
 
 namespace tact::hal::list {
 
-enum class PartKind { kCan, kFalcon, kForceDimension, kGpio };
-/// "can", "falcon", "force-dimension", "gpio".
+enum class PartKind { kCan, kFalcon, kForceDimension, kPhantom, kGpio };
+/// "can", "falcon", "force-dimension", "phantom", "gpio".
 const char* name_of(PartKind kind);
 
 struct FoundPart {

@@ -86,8 +86,9 @@ class LibraryWorker {
   /// The forces are on for so long that "off" is news.
   bool powered_for_sure() const;
   void keep(const LibraryTrouble& trouble);
-
-  std::atomic<int> running_{0};  // threads inside the library
+  /// So many threads will call the library: said before the first begins, as stop() waits for them.
+  void expect_threads(int threads) { running_ = threads; }
+  void thread_ends() { --running_; }
 
  private:
   enum class Power : std::uint8_t { kOff, kZeroFirst, kOn };
@@ -103,6 +104,7 @@ class LibraryWorker {
   std::atomic<std::int64_t> powered_cycles_{0};  // since the forces were switched on
   std::atomic<std::uint64_t> trouble_{0};
   std::atomic<bool> quit_{false};
+  std::atomic<int> running_{0};
 };
 
 }  // namespace tact::hal::maker_library

@@ -11,6 +11,7 @@
 #include "hal/force_dimension/force_dimension_device.h"
 #include "hal/moteus/moteus_delta.h"
 #include "hal/odrive/odrive_delta.h"
+#include "hal/phantom/phantom_device.h"
 #include "hal/sim/sim_delta.h"
 
 namespace tact::hal::registry {
@@ -45,7 +46,8 @@ constexpr Kind kKinds[] = {{"sim-delta", open_sim_delta, true},
                            {"can-cia402", opened<cia402::open_can_cia402>},
                            {"can-moteus", opened<moteus::open_can_moteus>},
                            {"falcon", opened<falcon_usb::open_falcon>},
-                           {"force-dimension", opened<force_dimension::open_force_dimension>}};
+                           {"force-dimension", opened<force_dimension::open_force_dimension>},
+                           {"phantom", opened<phantom::open_phantom>}};
 
 }  // namespace
 

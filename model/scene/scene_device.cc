@@ -160,6 +160,16 @@ void visit_force_dimension(reader::Keys& k, ForceDimensionSettings& f) {
            kOptional);
 }
 
+void visit_phantom(reader::Keys& k, PhantomSettings& p) {
+  k.text("library", "the maker's, by name or path", p.library, kOptional);
+  k.text("name", "that the maker's Touch_Setup gave it; empty: the default device", p.name,
+         kOptional);
+  k.number("damping_Ns_per_m", {0.0, 50.0}, "that the device has at the stylus", p.damping_Ns_per_m,
+           kOptional);
+  k.number("position_step_m", {1e-6, 1e-3}, "of its encoders, at the stylus", p.position_step_m,
+           kOptional);
+}
+
 void visit_line(reader::Keys& k, std::string_view key, const char* meaning, int& offset) {
   visit_whole(k, key, {-1.0, 511.0}, meaning, offset);
 }
@@ -201,8 +211,11 @@ void visit_device(reader::Keys& k, DeviceSettings& out) {
       "falcon", "a Novint Falcon", [&](reader::Keys& falcon) { visit_falcon(falcon, out.falcon); },
       kOptional);
   k.section(
-      "force_dimension", "a device with the maker's library",
+      "force_dimension", "a Force Dimension device, by its maker's library",
       [&](reader::Keys& keys) { visit_force_dimension(keys, out.force_dimension); }, kOptional);
+  k.section(
+      "phantom", "a PHANTOM or 3D Systems Touch, by its maker's library",
+      [&](reader::Keys& keys) { visit_phantom(keys, out.phantom); }, kOptional);
   k.section(
       "lines", "safety lines", [&](reader::Keys& lines) { visit_lines(lines, out.lines); },
       kOptional);

@@ -12,7 +12,8 @@ CONTACT = ["model", "model/law", "model/contact"]
 SURFACE_LAWS = [*CONTACT, "model/indent", "model/tissue", "model/springs"]
 SCENE = [*SURFACE_LAWS, "model/io", "model/mesh", "model/reader", "model/scene"]
 DELTA = ["model", "hal", "hal/delta"]
-DEVICES = ["hal/sim", "hal/odrive", "hal/cia402", "hal/moteus", "hal/falcon_usb", "hal/force_dimension"]
+DEVICES = ["hal/sim", "hal/odrive", "hal/cia402", "hal/moteus", "hal/falcon_usb", "hal/force_dimension",
+           "hal/phantom"]
 LOOP = [*CONTACT, "hal", "firmware/gate"]
 OPERATOR = ["host/pose", "host/tracking", "host/figure"]
 # What a folder may include beside itself; CMake links no more than that.
@@ -39,6 +40,7 @@ ROOMS = {
     "hal/falcon_usb": [*DELTA, "model/io", "hal/falcon"],
     "hal/maker_library": ["model", "hal"],
     "hal/force_dimension": ["model", "hal", "hal/maker_library"],
+    "hal/phantom": ["model", "hal", "hal/maker_library"],
     "hal/sim": [*DELTA, "model/io", "hal/gpio"],
     "hal/list": ["model/io", "hal", "hal/can", "hal/gpio"],
     "hal/registry": ["model", "hal", *DEVICES, "model/scene"],

@@ -14,7 +14,7 @@
 
 namespace tact::tests {
 
-inline double monotonic_s() {
+inline double monotonic_s() noexcept {
   timespec t{};
   clock_gettime(CLOCK_MONOTONIC, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);

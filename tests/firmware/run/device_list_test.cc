@@ -30,17 +30,20 @@ bool has(const std::string& text, const std::string& part) {
 }
 
 TEST(DeviceList, TellsWhatIsReadyWhatLacksAndWhatIsNotThere) {
-  EXPECT_EQ(devices_as_text(kParts),
-            "can0: CAN interface, down\n"
-            "  not ready: it is down\n"
-            "  cure: ip link set can0 up\n"
-            "1-2: Novint Falcon\n"
-            "  ready: device.kind = \"falcon\"\n"
-            "no Force Dimension device (USB 1451:*); switch its supply on and plug in its cable "
-            "(lsusb shows it)\n"
-            "no GPIO chip; load the driver of the board that has one (gpiodetect shows it)\n"
-            "sim-delta: the simulated device\n"
-            "  ready: device.kind = \"sim-delta\"\n");
+  EXPECT_EQ(
+      devices_as_text(kParts),
+      "can0: CAN interface, down\n"
+      "  not ready: it is down\n"
+      "  cure: ip link set can0 up\n"
+      "1-2: Novint Falcon\n"
+      "  ready: device.kind = \"falcon\"\n"
+      "no Force Dimension device (USB 1451:*); switch its supply on and plug in its cable "
+      "(lsusb shows it)\n"
+      "no PHANTOM or Touch on USB (2988:*); switch its supply on and plug in its cable (lsusb "
+      "shows it); one on Ethernet or FireWire is not looked for\n"
+      "no GPIO chip; load the driver of the board that has one (gpiodetect shows it)\n"
+      "sim-delta: the simulated device\n"
+      "  ready: device.kind = \"sim-delta\"\n");
 }
 
 TEST(DeviceList, TheJsonTellsTheSame) {

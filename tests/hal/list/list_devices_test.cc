@@ -139,6 +139,29 @@ TEST_F(ListDevices, AForceDimensionDeviceShowsItsOwnWords) {
   EXPECT_EQ(part.what, "Force Dimension device \"omega.x haptic device\", USB 1451:0402");
 }
 
+TEST_F(ListDevices, APhantomIsOpenedByItsSerialPortOrItsHidNodeWhoeverMadeItsNumbers) {
+  probes.access_error = nobody_may;
+  const struct {
+    const char *vendor, *product, *inside, *node;
+  } cases[] = {{"2988", "0302", "1-2:1.0/tty/ttyACM0", "/dev/ttyACM0"},
+               {"2988", "0304", "1-2:1.0/0003:2988:0304.0001/hidraw/hidraw3", "/dev/hidraw3"},
+               {"0301", "2988", "1-2:1.1/power", "/dev/bus/usb/001/007"}};
+  for (const auto& c : cases) {
+    fs::remove_all(root_ + "/sys/bus");
+    usb("1-2", c.vendor, c.product, "cdc_acm");
+    fs::create_directories(root_ + "/sys/bus/usb/devices/1-2/" + c.inside);
+    const FoundPart part = only();
+    EXPECT_EQ(part.kind, PartKind::kPhantom);
+    EXPECT_EQ(part.what, std::string("PHANTOM \"omega.x haptic device\", USB ") + c.vendor + ":" +
+                             c.product + ", bound to cdc_acm");
+    EXPECT_EQ(part.scene, "device.kind = \"phantom\"");
+    EXPECT_TRUE(has(part.lacking, root_ + c.node + " may not be opened")) << part.lacking;
+    EXPECT_TRUE(has(part.lacking, kPhantomRule)) << part.lacking;
+  }
+  usb("1-2", "0301", "0001");
+  EXPECT_TRUE(list_devices(probes).empty()) << "another device of that vendor number";
+}
+
 TEST_F(ListDevices, AMissingPermissionPrintsTheRuleOfThatDevice) {
   probes.access_error = nobody_may;
   usb("1-2", "0403", "cb48");

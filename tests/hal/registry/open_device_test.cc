@@ -55,7 +55,8 @@ TEST(OpenDevice, AnUnknownKindListsTheKnownOnes) {
       "liver.toml: device.kind is \"sim-dleta\", which this build does not know; use "
       "\"sim-delta\", "))
       << said;
-  EXPECT_NE(said.find(", \"can-odrive\""), std::string::npos) << said;
+  for (const char* known : {", \"can-odrive\"", ", \"force-dimension\"", ", \"phantom\""})
+    EXPECT_NE(said.find(known), std::string::npos) << known << " in " << said;
 }
 
 TEST(OpenDevice, PassesOnWhatTheDeviceRefuses) {

@@ -91,6 +91,7 @@ TEST(SceneReference, TheSectionsOfRealDevicesHoldTheDefaultsAndFitAScene) {
   EXPECT_EQ(scene->device.can.homing, fresh.can.homing);
   EXPECT_EQ(scene->device.falcon.gain_words_per_Nm, fresh.falcon.gain_words_per_Nm);
   EXPECT_EQ(scene->device.force_dimension.watchdog_s, fresh.force_dimension.watchdog_s);
+  EXPECT_EQ(scene->device.phantom.position_step_m, fresh.phantom.position_step_m);
   EXPECT_FALSE(scene->device.lines.wired());
 }
 

@@ -41,7 +41,8 @@ TEST(Image, TheSceneOfARealDeviceHasItsExampleKeys) {
         {"can-cia402", "delta", "no network interface"},
         {"can-moteus", "can", "no network interface"},
         {"falcon", "falcon", "no Novint Falcon"},
-        {"force-dimension", "force_dimension", "library cannot be loaded"}}) {
+        {"force-dimension", "force_dimension", "library cannot be loaded"},
+        {"phantom", "phantom", "library cannot be loaded"}}) {
     fs::remove_all(folder);
     fs::create_directories(folder);
     fs::copy(kSource + "/model/scenes", folder, fs::copy_options::recursive);

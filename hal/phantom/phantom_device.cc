@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/phantom/phantom_device.h"
+
+#include <fmt/format.h>
+
+#include "hal/maker_library/library_device.h"
+#include "hal/phantom/phantom_worker.h"
+
+namespace tact::hal::phantom {
+namespace {
+
+// A cycle of the library before the loop, one after, and half of one for USB.
+constexpr double kDelay_s = 2.5e-3;
+
+DeviceInfo info_of(const PhantomSession& session, const model::PhantomSettings& settings) {
+  const std::string name = session.model.empty() ? "PHANTOM" : session.model;
+  return {.name = session.serial_number.empty()
+                      ? name
+                      : fmt::format("{} no. {}", name, session.serial_number),
+          .max_force_N = session.max_force_N,
+          .max_torque_Nm = 0.0,
+          .workspace_radius_m = session.radius_m,
+          .workspace_half_length_m = session.half_length_m,
+          .at_tool = model::DeviceAtTool{.damping_Ns_per_m = settings.damping_Ns_per_m,
+                                         .friction_N = 0.0,  // the library tells none
+                                         .position_step_m = settings.position_step_m,
+                                         .delay_s = kDelay_s},
+          .damping_key = "device.phantom.damping_Ns_per_m",
+          .caution = fmt::format("{}; its motors bear {:g} N for long (limits.continuous_force_N), "
+                                 "and its maker advises no law above {:g} N/m",
+                                 maker_library::kNoGuardian, session.continuous_force_N,
+                                 session.max_stiffness_N_per_m)};
+}
+
+}  // namespace
+
+model::Result<std::unique_ptr<Device>> open_phantom(const model::DeviceSettings& settings,
+                                                    double rate_Hz) {
+  if (rate_Hz > kPhantomRate_Hz)
+    return model::Error{fmt::format(
+        "rate_Hz is {:g}, but the maker's library serves a PHANTOM {:g} times a second: set "
+        "rate_Hz to {:g} or less",
+        rate_Hz, kPhantomRate_Hz, kPhantomRate_Hz)};
+  const auto session = open_phantom_session(settings.phantom, settings.trust_library);
+  if (!session) return session.error();
+  auto worker = PhantomWorker::start(*session, rate_Hz);
+  if (!worker) return worker.error();
+  return std::unique_ptr<Device>(
+      new maker_library::LibraryDevice(info_of(*session, settings.phantom), *worker));
+}
+
+}  // namespace tact::hal::phantom

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// phantom_worker.h - what the library's own thread does for tact, 1000 times a second.
+//
+// The library drives its device from a thread of its own, its scheduler (HD-3), and calls
+// `on_cycle` there: take the device's state, pass the pose on, set the newest force, send it. The
+// thread becomes "tact-phantom", SCHED_FIFO 78, below the loop. What it shares with the loop, and
+// what follows from a trouble: library_worker.h. Any error of the library is a trouble, and so are
+// forces that are off, and a calibration that is lost.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "hal/maker_library/library_worker.h"
+#include "hal/phantom/phantom_session.h"
+
+namespace tact::hal::phantom {
+
+/// The scheduler's rate, which every device of the maker bears.
+inline constexpr double kPhantomRate_Hz = 1000.0;
+
+class PhantomWorker final : public maker_library::LibraryWorker {
+ public:
+  /// Starts the scheduler, for a loop of that rate, and waits until the device is calibrated. It
+  /// closes the device when that fails.
+  static model::Result<std::shared_ptr<PhantomWorker>> start(const PhantomSession& session,
+                                                             double rate_Hz);
+
+  std::string words() const override;
+
+ private:
+  enum class Source : std::uint8_t { kNone, kError, kForceOff, kCalibration };
+
+  PhantomWorker(const PhantomSession& session, double rate_Hz)
+      : LibraryWorker(static_cast<std::int64_t>(1e9 / kPhantomRate_Hz), rate_Hz),
+        session_(session) {}
+  std::optional<model::Error> wait_until_calibrated();
+  static unsigned on_cycle(void* of);
+  bool cycle();
+  void exchange();
+  void set_force(const model::Vec3& force_N);
+  void let_go();
+  bool switch_forces(bool on) override;
+  void close() override;
+  void fail(model::Fault fault, Source source, unsigned code);
+
+  PhantomSession session_;
+  std::shared_ptr<PhantomWorker> self_;   // while the library may call
+  bool entered_ = false;                  // the library's thread
+  std::atomic<unsigned> calibration_{0};  // what the library told last; 0: nothing yet
+  std::atomic<bool> calibrated_{false};   // once
+};
+
+}  // namespace tact::hal::phantom

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/phantom/phantom_device.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/device_loop.h"
+#include "tests/support/no_alloc.h"
+#include "tests/support/stub_hd/hd_client.h"
+
+namespace tact::hal::phantom::phantom_device_test {
+
+class Phantom : public tests::DeviceLoop {
+ protected:
+  void open() { DeviceLoop::open(tests::phantom_scene()); }
+  /// What arrives at the motors, in the device's frame: 0 while the force output is off.
+  Vec3 felt_N() {
+    double force[3];
+    return stub.last_force(force) == 0 ? Vec3{} : Vec3{force[0], force[1], force[2]};
+  }
+  bool output_is_on() {
+    double force[3];
+    return stub.last_force(force) != 0;
+  }
+
+  tests::StubHd stub;
+};
+
+TEST_F(Phantom, MakesNoForceBeforeTheLoopPermitsIt) {
+  open();
+  permitted = false;
+  for (int i = 0; i < 50; ++i) tick({.force_N = {0, 0, 2}, .torque_Nm = {}});
+  EXPECT_EQ(stub.strongest_N(), 0.0);
+  EXPECT_FALSE(output_is_on());
+  EXPECT_TRUE(sample.fresh || ready()) << "the pose is told without power";
+}
+
+TEST_F(Phantom, IsFreshOnlyAfterTheForceOutputIsOnWithZeroShown) {
+  open();
+  for (int i = 0; i < 500; ++i) {
+    tick({.force_N = {0, 0, 2}, .torque_Nm = {}});
+    if (!sample.fresh) continue;
+    EXPECT_TRUE(output_is_on());
+    return;
+  }
+  FAIL() << "never fresh";
+}
+
+TEST_F(Phantom, RightUpAndTowardsTheOperatorAreYZAndXOfW) {
+  open();
+  // The middle of the box where the maker promises forces is 0, 10, 5 mm.
+  stub.hold(11.0, 32.0, -28.0);
+  const auto there = [&] {
+    return sample.fresh && norm(sample.tool.position_m - Vec3{-0.033, 0.011, 0.022}) < 1e-12;
+  };
+  EXPECT_TRUE(tick_until(there));
+  // 1 N towards the operator, 2 to the right, 1.5 up.
+  EXPECT_TRUE(tick_until([&] { return felt_N() == Vec3{2.0, 1.5, 1.0}; },
+                         {.force_N = {1.0, 2.0, 1.5}, .torque_Nm = {}}));
+}
+
+TEST_F(Phantom, AStylusThatTurnsAboutTheVerticalTurnsAboutZOfW) {
+  stub.spin(2.0);
+  open();
+  ASSERT_TRUE(ready());
+  EXPECT_TRUE(tick_until([&] {
+    return std::abs(sample.tool.angular_velocity_radps.z - 2.0) < 0.2;
+  })) << sample.tool.angular_velocity_radps.z;
+  EXPECT_NEAR(sample.tool.angular_velocity_radps.x, 0.0, 1e-9);
+  EXPECT_NEAR(sample.tool.angular_velocity_radps.y, 0.0, 1e-9);
+}
+
+TEST_F(Phantom, ADeviceWithThreeAxesHasNoOrientation) {
+  stub.set_number(0x2553, 3);
+  stub.spin(2.0);
+  open();
+  ASSERT_TRUE(ready());
+  EXPECT_EQ(sample.tool.orientation, model::Quat{});
+}
+
+TEST_F(Phantom, TooMuchForceIsScaledWithItsDirection) {
+  open();
+  ASSERT_TRUE(ready());
+  EXPECT_TRUE(
+      tick_until([&] { return norm(felt_N()) > 3.2; }, {.force_N = {6, 0, 8}, .torque_Nm = {}}));
+  EXPECT_NEAR(felt_N().z, 3.3 * 0.6, 1e-12);
+  EXPECT_NEAR(felt_N().y, 3.3 * 0.8, 1e-12);
+}
+
+TEST_F(Phantom, NoForceIsMadeOfNaN) {
+  open();
+  ASSERT_TRUE(ready());
+  for (int i = 0; i < 20; ++i) {
+    tick({.force_N = {std::nan(""), 1, 1}, .torque_Nm = {1, 1, 1}});
+    ASSERT_EQ(felt_N(), Vec3{});
+  }
+}
+
+TEST_F(Phantom, OneFrameForEachCycleOfTheLibraryAndNoneFromTheLoop) {
+  open();
+  ASSERT_TRUE(ready());
+  const long begun = stub.calls("hdBeginFrame");
+  for (int i = 0; i < 200; ++i) tick({.force_N = {0, 0, 1}, .torque_Nm = {}});
+  EXPECT_EQ(fault, Fault::kNone) << device->trouble() << ": the stub refuses a second frame";
+  EXPECT_GT(stub.calls("hdBeginFrame") - begun, 100);
+  EXPECT_LE(stub.calls("hdEnable"), 2 + silences) << "the clamping, and the output once";
+}
+
+TEST_F(Phantom, SamplesNeverRepeatAndOldOnesAreNotFresh) {
+  open();
+  ASSERT_TRUE(ready());
+  std::uint64_t before = sample.sequence;
+  for (int i = 0; i < 200; ++i) {
+    tick();
+    if (!sample.fresh) continue;
+    ASSERT_GT(sample.sequence, before);
+    before = sample.sequence;
+  }
+  sleep_ms(2);
+  EXPECT_EQ(device->read(sample, now_ns() + 6 * kMs), Fault::kNone);
+  EXPECT_FALSE(sample.fresh);
+}
+
+TEST_F(Phantom, ALibraryThatHangsStopsNothingButItself) {
+  open();
+  ASSERT_TRUE(ready());
+  stub.set_delay_us(30'000);
+  sleep_ms(5);
+  int fresh = 0;
+  std::int64_t in_calls_ns = 0;
+  for (int i = 0; i < 20; ++i) {
+    const std::int64_t begin_ns = now_ns();
+    static_cast<void>(device->read(sample, begin_ns));
+    static_cast<void>(device->write({}));
+    in_calls_ns += now_ns() - begin_ns;
+    fresh += sample.fresh ? 1 : 0;
+    sleep_ms(1);
+  }
+  EXPECT_LT(in_calls_ns, 300 * kMs) << "20 calls of 30 ms take 600";
+  EXPECT_LE(fresh, 2) << "what took 30 ms is old";
+  stub.set_delay_us(0);
+}
+
+TEST_F(Phantom, ALoopThatDiesTakesItsForceAlong) {
+  open();
+  ASSERT_TRUE(ready());
+  ASSERT_TRUE(
+      tick_until([&] { return felt_N().y == 2.0; }, {.force_N = {0, 0, 2}, .torque_Nm = {}}));
+  double force[3];
+  EXPECT_TRUE(comes([&] { return stub.last_force(force) >= 0 && force[1] == 0.0; }));
+  EXPECT_EQ(stub.last_force(force), 1) << "zero first";
+  EXPECT_TRUE(comes([&] { return !output_is_on(); })) << "then the force output goes off";
+}
+
+TEST_F(Phantom, WithdrawnPowerSwitchesTheForceOutputOffAndComesBackThroughZero) {
+  open();
+  ASSERT_TRUE(ready());
+  permitted = false;
+  EXPECT_TRUE(tick_until([&] { return !output_is_on(); }, {.force_N = {0, 0, 2}, .torque_Nm = {}}));
+  for (int i = 0; i < 200; ++i) tick();
+  EXPECT_EQ(fault, Fault::kNone) << "an output that we switched off is no news";
+  permitted = true;
+  EXPECT_TRUE(tick_until([&] { return output_is_on() && sample.fresh; }));
+}
+
+TEST_F(Phantom, VelocityFollowsTheHandle) {
+  open();
+  ASSERT_TRUE(ready());
+  double fastest_mps = 0.0;
+  tick_until([&] {
+    fastest_mps = std::min(fastest_mps, sample.tool.velocity_mps.z);
+    return sample.tool.position_m.z < -0.005;
+  });
+  // 30 mm by a cosine of 4 s: at most pi/2 * 30 mm / 2 s = 23.6 mm/s
+  EXPECT_LT(fastest_mps, -0.012);
+  EXPECT_GT(fastest_mps, -0.060);
+}
+
+TEST_F(Phantom, InfoIsWhatTheLibraryTells) {
+  open();
+  const DeviceInfo info = device->info();
+  EXPECT_EQ(info.name, "Touch no. " + std::to_string(getpid()));
+  EXPECT_EQ(info.max_force_N, 3.3);
+  EXPECT_EQ(info.max_torque_Nm, 0.0);
+  EXPECT_NEAR(info.workspace_radius_m, 0.060, 1e-12) << "of 160 x 120 mm";
+  EXPECT_NEAR(info.workspace_half_length_m, 0.035, 1e-12);
+  ASSERT_TRUE(info.at_tool);
+  EXPECT_EQ(info.at_tool->damping_Ns_per_m, 1.0);
+  EXPECT_EQ(info.damping_key, "device.phantom.damping_Ns_per_m");
+  for (const char* part : {"nothing zeroes this device", "0.88 N for long", "above 500 N/m"})
+    EXPECT_NE(info.caution.find(part), std::string::npos) << info.caution;
+  EXPECT_FALSE(device->last_words());
+  EXPECT_TRUE(device->loop_calls().empty());
+}
+
+TEST_F(Phantom, StopSwitchesOffAndClosesTwiceWithoutHarm) {
+  open();
+  ASSERT_TRUE(ready());
+  ASSERT_TRUE(
+      tick_until([&] { return felt_N().y == 2.0; }, {.force_N = {0, 0, 2}, .torque_Nm = {}}));
+  device->stop();
+  double force[3];
+  EXPECT_EQ(stub.last_force(force), 0);
+  EXPECT_EQ(force[1], 0.0);
+  EXPECT_FALSE(stub.is_open());
+  device->stop();
+  EXPECT_EQ(stub.calls("hdDisableDevice"), 1);
+}
+
+TEST_F(Phantom, TheLoopLeavesTheHeapAlone) {
+  open();
+  ASSERT_TRUE(ready());
+  const tests::NoAlloc guard;
+  for (int i = 0; i < 50; ++i) tick({.force_N = {0, 0, 1}, .torque_Nm = {}});
+  EXPECT_EQ(guard.calls(), 0u);
+}
+
+}  // namespace tact::hal::phantom::phantom_device_test

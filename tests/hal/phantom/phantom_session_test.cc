@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a PHANTOM needs before the loop.
+#include <gtest/gtest.h>
+
+#include "hal/phantom/phantom_device.h"
+#include "hal/udev_rules.h"
+#include "tests/support/stub_hd/hd_client.h"
+
+namespace tact::hal::phantom::phantom_session_test {
+
+class PhantomSessions : public testing::Test {
+ protected:
+  /// Why it does not open; everything is closed again by then.
+  std::string refusal() {
+    const auto device = open_phantom(settings, rate_Hz);
+    if (device) return "";
+    EXPECT_FALSE(stub.is_open());
+    return device.error().sentence;
+  }
+  void expect_refusal(const std::vector<std::string>& words) {
+    const std::string said = refusal();
+    for (const std::string& part : words)
+      EXPECT_NE(said.find(part), std::string::npos) << part << " in " << said;
+  }
+
+  tests::StubHd stub;
+  model::DeviceSettings settings = tests::phantom_scene().device;
+  double rate_Hz = 1000.0;
+};
+
+TEST_F(PhantomSessions, OpensTheDeviceOfThatNameAndTheDefaultOneWithoutAName) {
+  EXPECT_EQ(refusal(), "");
+  EXPECT_EQ(stub.name(), settings.phantom.name);
+  settings.phantom.name.clear();
+  EXPECT_EQ(refusal(), "");
+  EXPECT_STREQ(stub.name(), "(default)");
+}
+
+TEST_F(PhantomSessions, AMissingLibraryIsToldWithWhereToGetIt) {
+  settings.phantom.library = "libHD-that-is-not-here.so";
+  settings.trust_library = false;
+  expect_refusal({"3D Systems' library cannot be loaded", "OpenHaptics at 3dsystems.com",
+                  "let device.phantom.library name its libHD.so"});
+}
+
+TEST_F(PhantomSessions, ALibraryOfAnybodyIsNotLoadedWithoutATrustingPerson) {
+  settings.trust_library = false;
+  expect_refusal({tests::kStubHdLibrary + " is not loaded", "--trust-library"});
+}
+
+TEST_F(PhantomSessions, AnotherLibraryIsRefusedByTheFunctionThatItLacks) {
+  settings.phantom.library = "libm.so.6";
+  expect_refusal({"libm.so.6 has no function hdInitDevice", "device.phantom.library"});
+}
+
+TEST_F(PhantomSessions, ADeviceThatIsNotThereIsToldWithItsNameAndTheRule) {
+  stub.fail("hdInitDevice", 0x0302);
+  expect_refusal({"the PHANTOM \"" + settings.phantom.name + "\" does not open",
+                  "the device does not answer", "device.phantom.name", kPhantomRule});
+}
+
+TEST_F(PhantomSessions, WithoutCalibrationItSaysWhatToDo) {
+  stub.set_calibration(0x5002);
+  expect_refusal({"the Touch is not calibrated; put its stylus into the inkwell"});
+  stub.set_number(0x2555, 1);
+  expect_refusal({"the Touch is not calibrated; calibrate it by the maker's Touch_Diagnostic"});
+}
+
+TEST_F(PhantomSessions, AStylusInTheInkwellIsCalibratedByTheStart) {
+  stub.set_calibration(0x5001);
+  EXPECT_EQ(refusal(), "");
+  EXPECT_EQ(stub.calls("hdUpdateCalibration"), 1);
+}
+
+TEST_F(PhantomSessions, EncodersThatAreResetByHandAreNeverResetByTact) {
+  stub.set_number(0x2555, 1);
+  stub.set_calibration(0x5001);
+  expect_refusal({"not calibrated; calibrate it by the maker's Touch_Diagnostic"});
+  EXPECT_EQ(stub.calls("hdUpdateCalibration"), 0);
+}
+
+TEST_F(PhantomSessions, ADeviceWithoutLimitsIsRefused) {
+  stub.set_number(0x2603, 0.0);
+  expect_refusal({"tells 0 N and a workspace of 0.12 x 0.07 m, which cannot be"});
+}
+
+TEST_F(PhantomSessions, EveryCallThatFailsIsToldInWords) {
+  for (const char* function :
+       {"hdInitDevice", "hdGetDoublev", "hdGetIntegerv", "hdSetSchedulerRate", "hdStartScheduler",
+        "hdBeginFrame", "hdCheckCalibration", "hdEndFrame"}) {
+    stub.reset();
+    stub.fail(function, 0x0600);
+    expect_refusal({"the library has no valid licence"});
+  }
+}
+
+TEST_F(PhantomSessions, ASchedulerThatNeverCallsIsTold) {
+  stub.silence(1);
+  const auto device = open_phantom(settings, rate_Hz);
+  EXPECT_EQ(stub.calls("hdSetDoublev"), 0);
+  stub.silence(0);  // its first call comes after all: zero, and no other
+  for (int i = 0; i < 2000 && stub.calls("hdEndFrame") == 0; ++i) usleep(1000);
+  usleep(20'000);
+  EXPECT_EQ(stub.calls("hdEndFrame"), 1);
+  EXPECT_EQ(stub.strongest_N(), 0.0);
+  ASSERT_FALSE(device);
+  EXPECT_NE(device.error().sentence.find("its scheduler made no call within a second"),
+            std::string::npos)
+      << device.error().sentence;
+}
+
+TEST_F(PhantomSessions, ALoopFasterThanTheLibraryIsRefused) {
+  rate_Hz = 2000.0;
+  expect_refusal({"rate_Hz is 2000", "set rate_Hz to 1000 or less"});
+}
+
+}  // namespace tact::hal::phantom::phantom_session_test

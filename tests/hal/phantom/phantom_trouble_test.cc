@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a PHANTOM says and does when it fails in the middle of a run.
+#include <gtest/gtest.h>
+
+#include "hal/phantom/hd_words.h"
+#include "tests/support/device_loop.h"
+#include "tests/support/stub_hd/hd_client.h"
+
+namespace tact::hal::phantom::phantom_trouble_test {
+
+constexpr Wrench kUp{.force_N = {0, 0, 2}, .torque_Nm = {}};
+
+class PhantomTrouble : public tests::DeviceLoop {
+ protected:
+  void SetUp() override {
+    device.reset();
+    stub.reset();
+    open(tests::phantom_scene());
+    for (int i = 0; i < 300; ++i) tick(kUp);  // armed in earnest, forces known to be on
+    ASSERT_EQ(fault, Fault::kNone) << device->trouble();
+    ASSERT_GT(stub.strongest_N(), 1.9);
+  }
+  /// The fault that comes within two seconds, and stays when its cause is gone.
+  Fault lasting_fault() {
+    tick_until([&] { return fault != Fault::kNone; }, kUp);
+    const Fault found = fault;
+    double force[3];
+    EXPECT_TRUE(comes([&] { return stub.last_force(force) == 0 && force[1] == 0.0; }))
+        << "the last thing that is asked for";
+    sleep_ms(20);
+    stub.reset();
+    for (int i = 0; i < 100; ++i) tick(kUp);
+    EXPECT_EQ(fault, found) << "a fault stays until the device is opened again";
+    EXPECT_FALSE(sample.fresh);
+    EXPECT_EQ(stub.calls("hdBeginFrame"), 0) << "not one call more";
+    return found;
+  }
+
+  tests::StubHd stub;
+};
+
+TEST_F(PhantomTrouble, NothingIsWrongAtFirst) {
+  EXPECT_EQ(fault, Fault::kNone);
+  EXPECT_EQ(device->trouble(), "");
+}
+
+TEST_F(PhantomTrouble, EveryErrorOfTheLibraryEndsTheForceAndIsToldInWords) {
+  const struct {
+    const char* function;
+    unsigned code;
+    Fault fault;
+    const char* words;
+  } cases[] = {
+      {"hdBeginFrame", 0x0302, Fault::kDeviceUnplugged, "does not answer; check its cable"},
+      {"hdEndFrame", 0x0200, Fault::kForceOff, "motors are too warm"},
+      {"hdEndFrame", 0x0203, Fault::kForceOff, "stylus moved too fast"},
+      {"hdSetDoublev", 0x0204, Fault::kForceOff, "its forces failed"},
+      {"hdGetDoublev", 0x0300, Fault::kDeviceFailed, "a fault of its own"},
+      {"hdCheckCalibration", 0x0999, Fault::kDeviceFailed, "error 0x0999"}};
+  for (const auto& c : cases) {
+    SetUp();
+    stub.fail(c.function, c.code);
+    EXPECT_EQ(lasting_fault(), c.fault) << c.words;
+    EXPECT_TRUE(told("the PHANTOM failed: ") && told(c.words)) << device->trouble();
+  }
+}
+
+TEST_F(PhantomTrouble, AForceOutputThatAnotherProgramSwitchedOffIsAFault) {
+  stub.lose_force_output();
+  EXPECT_EQ(lasting_fault(), Fault::kForceOff);
+  EXPECT_TRUE(told("force output is off; end other programs")) << device->trouble();
+}
+
+TEST_F(PhantomTrouble, ALostCalibrationIsAFaultAndSaysWhatToDo) {
+  stub.set_calibration(0x5002);
+  EXPECT_EQ(lasting_fault(), Fault::kHomingLost);
+  EXPECT_TRUE(told("put its stylus into the inkwell, then start tactd again")) << device->trouble();
+}
+
+TEST_F(PhantomTrouble, AnUpdateOfTheCalibrationWaitsForTheNextStart) {
+  const long updates = stub.calls("hdUpdateCalibration");
+  stub.set_calibration(0x5001);  // the stylus rests in the inkwell
+  for (int i = 0; i < 100; ++i) tick(kUp);
+  EXPECT_EQ(fault, Fault::kNone) << device->trouble();
+  EXPECT_EQ(stub.calls("hdUpdateCalibration"), updates)
+      << "the position would jump under the force";
+}
+
+TEST_F(PhantomTrouble, ASchedulerThatFallsSilentLeavesNoFreshSample) {
+  stub.silence(1);
+  sleep_ms(10);
+  tick(kUp);  // takes what came before
+  for (int i = 0; i < 30; ++i) {
+    tick(kUp);
+    ASSERT_FALSE(sample.fresh);
+  }
+  stub.silence(0);
+}
+
+TEST(HdWords, NoCodeIsBlankOrWithoutACure) {
+  for (unsigned code = 0x0100; code < 0x0700; ++code)
+    EXPECT_NE(words_of_hd_error(code).find("; "), std::string::npos) << words_of_hd_error(code);
+}
+
+}  // namespace tact::hal::phantom::phantom_trouble_test
