@@ -105,3 +105,10 @@ FORCE_DIMENSION = BackEnd(
     programs=("libtact-stub-dhd.so",),
     # The library's own rate, 4 kHz, and its lock, which may be taken when the status is read, every 50 ms: wait, wake.
     system_calls=SLEEP | {("tact-fd", "sys_clock_nanosleep"): 4, ("tact-fd", "sys_futex"): 0.04})
+PHANTOM = BackEnd(
+    "phantom",
+    settings=('device.kind="phantom"', SLIDE, 'device.phantom.library="/tact/bin/libtact-stub-hd.so"'),
+    options=("--trust-library",),
+    programs=("libtact-stub-hd.so",),
+    # The library's own thread, once a cycle. Nobody shares its lock.
+    system_calls=SLEEP | {("tact-phantom", "sys_clock_nanosleep"): 1})

@@ -13,6 +13,7 @@ TOLD = {
     "falcon-usbfs": ("`falcon`, usbfs", "1 ioctl; its thread 3"),
     "falcon-libusb": ("`falcon`, libusb", "1 write; its thread 12"),
     "force-dimension": ("`force-dimension`, stub", "0; its thread the library's"),
+    "phantom": ("`phantom`, stub", "0; its thread the library's"),
 }
 
 
