@@ -103,7 +103,7 @@ Result<pid_t> start_child(const ProgramCall& call) {
   posix_spawnattr_destroy(&how);
   posix_spawn_file_actions_destroy(&files);
   if (!remembered) {
-    end(child);
+    static_cast<void>(end(child));
     return Error{
         fmt::format("{} is one program too many at a time; use fewer --jobs", call.program)};
   }
@@ -161,12 +161,12 @@ Result<std::string> run_program(const ProgramCall& call) {
   while (still_runs(*child)) {
     lines.hand_on();
     if (is_interrupted()) {
-      end(*child);
+      static_cast<void>(end(*child));
       return interruption();
     }
     if (call.time_limit_s > 0.0 &&
         Clock::now() - begun > std::chrono::duration<double>(call.time_limit_s)) {
-      end(*child);
+      static_cast<void>(end(*child));
       return Error{fmt::format("{} took longer than {:g} s and was ended; what it printed is in {}",
                                call.program, call.time_limit_s, call.log_path)};
     }
@@ -194,7 +194,7 @@ Result<RunningProgram> RunningProgram::start(const ProgramCall& call) {
 }
 
 RunningProgram::~RunningProgram() {
-  if (child_ > 0) end(child_);
+  if (child_ > 0) static_cast<void>(end(child_));
 }
 
 bool RunningProgram::is_running() const { return child_ > 0 && still_runs(child_); }
