@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <ctime>
 #include <functional>
 
@@ -53,6 +54,37 @@ class DeviceLoop : public testing::Test {
   static bool comes(const std::function<bool()>& done) {
     for (int i = 0; i < 2000 && !done(); ++i) sleep_ms(1);
     return done();
+  }
+  /// The library of `stub` takes 30 ms for a call: the loop does not wait, and its samples are old.
+  template <class Stub>
+  void expect_a_hang_to_stop_nothing(Stub& stub) {
+    ASSERT_TRUE(ready());
+    stub.set_delay_us(30'000);
+    sleep_ms(5);
+    int fresh = 0;
+    std::int64_t in_calls_ns = 0;
+    for (int i = 0; i < 20; ++i) {
+      const std::int64_t begin_ns = now_ns();
+      static_cast<void>(device->read(sample, begin_ns));
+      static_cast<void>(device->write({}));
+      in_calls_ns += now_ns() - begin_ns;
+      fresh += sample.fresh ? 1 : 0;
+      sleep_ms(1);
+    }
+    EXPECT_LT(in_calls_ns, 300 * kMs) << "20 calls of 30 ms take 600";
+    EXPECT_LE(fresh, 2) << "what took 30 ms is old";
+    stub.set_delay_us(0);
+  }
+  /// Of led_handle.h: 30 mm by a cosine of 4 s, so at most pi/2 * 30 mm / 2 s = 23.6 mm/s.
+  void expect_velocity_of_the_led_handle() {
+    ASSERT_TRUE(ready());
+    double fastest_mps = 0.0;
+    tick_until([&] {
+      fastest_mps = std::min(fastest_mps, sample.tool.velocity_mps.z);
+      return sample.tool.position_m.z < -0.005;
+    });
+    EXPECT_LT(fastest_mps, -0.012);
+    EXPECT_GT(fastest_mps, -0.060);
   }
   bool told(const std::string& part) const {
     return device->trouble().find(part) != std::string::npos;

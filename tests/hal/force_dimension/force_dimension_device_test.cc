@@ -130,22 +130,7 @@ TEST_F(ForceDimension, ASampleOlderThan5msIsNotFresh) {
 
 TEST_F(ForceDimension, ALibraryThatHangsStopsNothingButItself) {
   open();
-  ASSERT_TRUE(ready());
-  stub.set_delay_us(30'000);
-  sleep_ms(5);
-  int fresh = 0;
-  std::int64_t in_calls_ns = 0;
-  for (int i = 0; i < 20; ++i) {
-    const std::int64_t begin_ns = now_ns();
-    static_cast<void>(device->read(sample, begin_ns));
-    static_cast<void>(device->write({}));
-    in_calls_ns += now_ns() - begin_ns;
-    fresh += sample.fresh ? 1 : 0;
-    sleep_ms(1);
-  }
-  EXPECT_LT(in_calls_ns, 300 * kMs) << "20 calls of 30 ms take 600";
-  EXPECT_LE(fresh, 2) << "what took 30 ms is old";
-  stub.set_delay_us(0);
+  expect_a_hang_to_stop_nothing(stub);
 }
 
 TEST_F(ForceDimension, ALoopThatDiesTakesItsForceAlong) {
@@ -174,15 +159,7 @@ TEST_F(ForceDimension, WithdrawnPowerSwitchesTheForcesOffAndComesBackThroughZero
 
 TEST_F(ForceDimension, VelocityFollowsTheHandle) {
   open();
-  ASSERT_TRUE(ready());
-  double fastest_mps = 0.0;
-  tick_until([&] {
-    fastest_mps = std::min(fastest_mps, sample.tool.velocity_mps.z);
-    return sample.tool.position_m.z < -0.005;
-  });
-  // 30 mm by a cosine of 4 s: at most pi/2 * 30 mm / 2 s = 23.6 mm/s
-  EXPECT_LT(fastest_mps, -0.012);
-  EXPECT_GT(fastest_mps, -0.060);
+  expect_velocity_of_the_led_handle();
 }
 
 TEST_F(ForceDimension, AWristThatTurnsHasARate) {
