@@ -29,16 +29,16 @@ release_lacks() {
 }
 
 need_packages() {
-  local what=$1 missing=() package
+  local what=$1 missing=() package name
   shift
   for package in $(printf '%s\n' "$@" | sort -u); do
     is_present "${package#optional:}" && continue
-    if [[ $package == optional:* ]] && release_lacks "${package#optional:}"; then
-      echo "tact: this release of Debian has no ${package#optional:}: what needs it is left out, and says so"
+    name=${package#optional:} name=${name%%=*}
+    if [[ $package == optional:* ]] && release_lacks "$name"; then
+      echo "tact: this release of Debian has no $name: what needs it is left out, and says so"
       continue
     fi
-    package=${package#optional:}
-    missing+=("${package%%=*}")
+    missing+=("$name")
   done
   [ ${#missing[@]} -eq 0 ] && return 0
   echo "tact: missing for $what, installing these Debian packages now:"

@@ -191,6 +191,7 @@ async function check_silence(page, tactd) {
     document.getElementById("state").textContent.startsWith("no news for"), null, 5000));
   tactd.kill("SIGCONT");
   await page.evaluate(() => window.lay_aside(false));
+  await waits(page, () => !window.tact.headset.alarm && window.tact.headset.told.includes("armed")); // what is frozen then
   await page.keyboard.press("p");
   check("a frozen display is told as such", await waits(page, () => window.tact.headset.told.some((line) => /frozen/.test(line)) &&
     window.tact.headset.told.includes("old: armed")));
