@@ -59,7 +59,8 @@ void take_link_info(std::span<const std::uint8_t> info, CanLink& link) {
     kind.assign(one.value.begin(), std::find(one.value.begin(), one.value.end(), 0));
   }
   link.only_local = kind == "vcan";
-  if (kind != "can") return;  // others have other data
+  link.has_controller = kind == "can";
+  if (!link.has_controller) return;  // others have other data
   for (const Attribute& one : parts)
     if (one.type == kInfoData) take_can_data(one.value, link);
 }
@@ -109,6 +110,13 @@ std::optional<Error> check_interface(const CanLink& link, const std::string& nam
         "old by then: sudo ip link set {0} down; sudo ip link set {0} up {2} restart-ms 0",
         name, *link.restart_ms, link_type)};
   }
+  // A serial adapter (slcan) that its daemon has set up tells none.
+  if (link.has_controller && !link.bitrate) {
+    return Error{
+        fmt::format("{0} does not tell its bit rate, so nobody knows how late a force is: sudo ip "
+                    "link set {0} down; sudo ip link set {0} up {1}",
+                    name, link_type)};
+  }
   return check_state(link, name);
 }
 
@@ -131,6 +139,7 @@ std::optional<CanLink> decode_can_link(std::span<const std::uint8_t> message) {
                .is_can = get_u16(body, 2) == kCanHardware,
                .up = (get_u32(body, 8) & IFF_UP) != 0,
                .only_local = false,
+               .has_controller = false,
                .carries_fd = false,
                .bitrate = {},
                .fast_bitrate = {},
@@ -150,9 +159,9 @@ std::optional<Error> check_can_link(const CanLink& link, const std::string& name
   if (link.bitrate && bus_time_s(cycle_bits, link.rate()) * rate_Hz > kMaxLoad) {
     return Error{
         fmt::format("{0} runs at {1} bit/s, too slow for three drives at {2} Hz: sudo ip "
-                    "link set {0} down; sudo ip link set {0} up type can bitrate 1000000, "
+                    "link set {0} down; sudo ip link set {0} up {3}, "
                     "and the drives alike, or lower rate_Hz",
-                    name, *link.bitrate, rate_Hz)};
+                    name, *link.bitrate, rate_Hz, CanFrame::kLinkType)};
   }
   return std::nullopt;
 }
@@ -164,6 +173,12 @@ std::optional<Error> check_can_fd_link(const CanLink& link, const std::string& n
     return Error{
         fmt::format("{0} carries classic CAN alone: sudo ip link set {0} down; sudo ip link set "
                     "{0} up {1}; if that is refused, take an adapter that has CAN FD",
+                    name, CanFdFrame::kLinkType)};
+  }
+  if (link.has_controller && !link.fast_bitrate) {
+    return Error{
+        fmt::format("{0} has no fast bit rate: sudo ip link set {0} down; sudo ip link set {0} up "
+                    "{1}",
                     name, CanFdFrame::kLinkType)};
   }
   if (!link.bitrate || !link.fast_bitrate) return std::nullopt;

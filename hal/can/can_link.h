@@ -38,7 +38,8 @@ struct CanLink {
   int index = 0;
   bool is_can = false;
   bool up = false;
-  bool only_local = false;  // vcan: a bus that ends in this kernel's loopback
+  bool only_local = false;      // vcan: a bus that ends in this kernel's loopback
+  bool has_controller = false;  // with bits on a wire; a virtual bus has none
   bool carries_fd = false;
   std::optional<std::uint32_t> bitrate;         // bit/s; of CAN FD the slow one
   std::optional<std::uint32_t> fast_bitrate{};  // of CAN FD

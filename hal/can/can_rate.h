@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // can_rate.h - how fast a CAN bus is, and how long it takes for so many bits.
 //
-// A bus at half the rate delays the force twice as long, and bears less stiffness (HL-1). Set-up
-// code only.
+// Frames are twice as long on a bus at half the rate: the force is later, and less stiffness is
+// sound (HL-1). Set-up code only.
 #pragma once
 
 #include "hal/can/can_fd_frame.h"

@@ -80,6 +80,7 @@ TEST(CanLink, ReadsWhatTheKernelTellsOfAController) {
   EXPECT_TRUE(link->is_can);
   EXPECT_TRUE(link->up);
   EXPECT_FALSE(link->only_local);
+  EXPECT_TRUE(link->has_controller);
   EXPECT_EQ(link->bitrate, 1'000'000u);
   EXPECT_EQ(link->state, CanLinkState::kPassive);
   EXPECT_EQ(link->restart_ms, 100u);
@@ -90,7 +91,7 @@ TEST(CanLink, AVirtualPairHasNoBitRateAndIsNotRefused) {
   const Bytes info = join({attribute(1, text("vxcan")), attribute(2, attribute(4, word(3)))});
   const auto link = decode_can_link(link_message(280, 1, attribute(18, info)));
   ASSERT_TRUE(link);
-  EXPECT_FALSE(link->bitrate || link->state || link->restart_ms);
+  EXPECT_FALSE(link->has_controller || link->bitrate || link->state || link->restart_ms);
   EXPECT_EQ(refusal(*link), "");
 }
 
@@ -137,6 +138,10 @@ TEST(CanLink, EveryUnfitInterfaceHasItsSentence) {
             std::string::npos);
   link = good, link.state = CanLinkState::kStopped;
   EXPECT_NE(refusal(link).find("can0 sleeps"), std::string::npos);
+  link = good, link.has_controller = true;
+  EXPECT_EQ(refusal(link), "");
+  link.bitrate = std::nullopt;
+  EXPECT_NE(refusal(link).find("can0 does not tell its bit rate"), std::string::npos);
   link = good, link.bitrate = 500'000;
   EXPECT_NE(refusal(link).find("500000 bit/s, too slow for three drives at 1000 Hz"),
             std::string::npos);
@@ -185,6 +190,8 @@ TEST(CanLink, ALinkForCanFdIsHeldToMoreThanOneForClassicFrames) {
   link = good, link.fast_bitrate = 2'000'000;
   EXPECT_NE(refusal_fd(link).find("1000000 and 2000000 bit/s, too slow"), std::string::npos);
   EXPECT_NE(refusal_fd(good, 2000.0).find("lower rate_Hz"), std::string::npos);
+  link = good, link.has_controller = true, link.fast_bitrate = std::nullopt;
+  EXPECT_NE(refusal_fd(link).find("has no fast bit rate"), std::string::npos);
   link = good, link.bitrate = link.fast_bitrate = std::nullopt;  // a virtual one
   EXPECT_EQ(refusal_fd(link), "");
 }
