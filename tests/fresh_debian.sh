@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # The commands of the README on a machine that has only the base system of a release of Debian: a
-# chroot from debootstrap, this tree copied in as git knows it, tools/run and tools/check twice each;
+# chroot from debootstrap, a clone of this tree's last commit, tools/run and tools/check twice each;
 # first tools/run --tools.
 #
 #   tests/fresh_debian.sh [12|13] [FOLDER]    the oldest of tools/releases unless told; needs root,
@@ -38,9 +38,8 @@ mkdir -p "$base/etc/ssl/certs"
 [ -e "$base/etc/ssl/certs/host.crt" ] || cp /etc/ssl/certs/ca-certificates.crt "$base/etc/ssl/certs/host.crt" || true
 
 rm -rf "$base/root/tact"
-mkdir -p "$base/root/tact"
 chmod 711 "$base/root"  # tests become other users, who run what is built here
-(cd "$root" && git ls-files -z | xargs -0 tar c) | tar x -C "$base/root/tact"
+git clone -q --no-hardlinks "$root" "$base/root/tact"
 for kind in proc sys dev; do
   mountpoint -q "$base/$kind" && continue
   mount --rbind "/$kind" "$base/$kind"
