@@ -42,7 +42,7 @@ struct DeviceInfo {
   double workspace_half_length_m = 0.0;
   /// What bounds the stiffness it can show; a device without it is never felt.
   std::optional<model::DeviceAtTool> at_tool{};
-  std::string damping_key{};  // of the scene; empty: the damping is the hardware's own
+  std::string damping_key{};  // of the scene, where the damping was entered; empty: nowhere
   std::string caution{};      // what its own settings may do to a force, with numbers; or empty
 };
 

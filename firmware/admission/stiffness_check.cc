@@ -96,12 +96,12 @@ Error too_stiff(const model::scene::Scene& scene, const model::scene::TissueLaw&
   const double one_N_per_m = is_law ? demand.law_N_per_m : demand.sliding_N_per_m;
   return Error{fmt::format(
       "{}: {} is too stiff: {:.4g} N/m on {} is {:.4g} N/m, this device is stable to {:.4g} N/m at "
-      "{:g} Hz; {} to {:.4g} N/m or less, raise rate_Hz{}",
+      "{:g} Hz; {} to {:.4g} N/m or less, raise rate_Hz, or take a device with more damping{}",
       scene.path, what, one_N_per_m, spheres_in_words(scene.tool.spheres.size()),
       demand.spheres * one_N_per_m, demand.limit_N_per_m, scene.rate_Hz, cure,
       rounded_down(demand.limit_N_per_m / demand.spheres),
-      damping_key.empty() ? std::string(", or take a device with more damping")
-                          : fmt::format(", or raise {}", damping_key))};
+      damping_key.empty() ? std::string()
+                          : fmt::format(" ({} says what this one has)", damping_key))};
 }
 
 }  // namespace

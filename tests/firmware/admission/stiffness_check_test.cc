@@ -33,12 +33,27 @@ TEST(StiffnessCheck, RefusesAStiffnessBeyondTheDevicesLimitAndSaysWhichKeyToChan
       refused.error().sentence,
       "plate.toml: contact.sliding_stiffness_N_per_m is too stiff: 100 N/m on 1 sphere is 100 "
       "N/m, this device is stable to 99 N/m at 1000 Hz; lower it to 99 N/m or less, raise "
-      "rate_Hz, or raise device.sim.joint_damping_Nms_per_rad");
+      "rate_Hz, or take a device with more damping (device.sim.joint_damping_Nms_per_rad says what "
+      "this one has)");
   scene.tool.spheres.push_back({{}, 0.004});  // two spheres push at once
   const auto two = check_renderable(scene, *tissue, device_with(0.101));
   ASSERT_FALSE(two);
   EXPECT_TRUE(has(two.error(), "100 N/m on 2 spheres is 200 N/m")) << two.error().sentence;
   EXPECT_TRUE(has(two.error(), "to 50.5 N/m or less")) << two.error().sentence;
+}
+
+// Of a real device it is measured: raising the number would make no hand safer.
+TEST(StiffnessCheck, NeverAsksForALargerNumberOfTheDevicesDamping) {
+  const model::scene::Scene scene = tests::make_plate_scene();
+  const auto tissue = std::move(*model::scene::make_tissue(scene));
+  hal::DeviceInfo device = device_with(0.05);
+  device.damping_key = "device.falcon.joint_damping_Nms_per_rad";
+  const auto refused = check_renderable(scene, *tissue, device);
+  ASSERT_FALSE(refused);
+  EXPECT_FALSE(has(refused.error(), "raise device.")) << refused.error().sentence;
+  EXPECT_TRUE(
+      has(refused.error(), "device.falcon.joint_damping_Nms_per_rad says what this one has"))
+      << refused.error().sentence;
 }
 
 TEST(StiffnessCheck, NamesTheKeyToSetWhereTheTissueItselfIsTooStiffAlongItsSurface) {
@@ -76,7 +91,8 @@ TEST(StiffnessCheck, NamesTheLawWhereItIsTheStifferOne) {
   ASSERT_FALSE(refused);
   EXPECT_TRUE(has(refused.error(), "law rhombus is too stiff")) << refused.error().sentence;
   EXPECT_TRUE(has(refused.error(), "soften [rhombus] to 50 N/m")) << refused.error().sentence;
-  EXPECT_TRUE(has(refused.error(), "take a device with more damping")) << refused.error().sentence;
+  EXPECT_TRUE(refused.error().sentence.ends_with("or take a device with more damping"))
+      << refused.error().sentence;
 }
 
 TEST(StiffnessCheck, RefusesADeviceThatDoesNotTellItsDamping) {
