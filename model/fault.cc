@@ -75,13 +75,14 @@ constexpr std::array kTable{
                "check the chip and its driver (gpiodetect), then start tactd again"},
     FaultEntry{Fault::kDeadManReleased, "dead man released", "the dead-man switch is open",
                "hold it, then reset and arm"},
-    FaultEntry{Fault::kBusDown, "bus down", "the CAN interface went down or takes no frames",
-               "bring it up (ip link set can0 up type can bitrate 1000000), check cable and "
-               "termination, then start tactd again"},
-    FaultEntry{Fault::kBusOff, "bus off",
-               "the CAN controller is error passive, or has left the bus",
-               "check bit rate, termination and cable; ip link set can0 down, then up; then start "
-               "tactd again"},
+    FaultEntry{
+        Fault::kBusDown, "bus down", "the CAN interface went down or takes no frames",
+        "check adapter, cable and termination, then start tactd again: it says how to bring the "
+        "interface up"},
+    FaultEntry{
+        Fault::kBusOff, "bus off", "the CAN controller is error passive, or has left the bus",
+        "check bit rate, termination and cable, then start tactd again: it says how to set the "
+        "interface up anew"},
     FaultEntry{Fault::kDriveFault, "drive fault", "a drive reported an error",
                "the sentence beside it says which and why; mend the cause, then start tactd again"},
     FaultEntry{Fault::kDriveSilent, "drive silent", "a drive's heartbeat is missing",

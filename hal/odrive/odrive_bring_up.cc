@@ -222,9 +222,10 @@ Result<OdriveStart> bring_up_odrives(can::CanBus& bus, const model::CanSettings&
                              kOdriveLargestNode)};
   }
   if (!(rate_Hz <= kMaxRate_Hz)) {
-    return Error{fmt::format(
-        "rate_Hz is {}, but three drives on one CAN bus tell their positions {} times a second",
-        rate_Hz, kMaxRate_Hz)};
+    return Error{
+        fmt::format("rate_Hz is {}, but three drives on one CAN bus tell their positions {} times "
+                    "a second; set rate_Hz to {} or less",
+                    rate_Hz, kMaxRate_Hz, kMaxRate_Hz)};
   }
   return BringUp(bus, can, rate_Hz).run();
 }

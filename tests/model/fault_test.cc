@@ -16,6 +16,14 @@ TEST(Fault, EveryEntryHasNameCauseAndCure) {
   }
 }
 
+// One fault serves classic CAN and CAN FD; the sentence beside it knows which, and where.
+TEST(Fault, NoCureNamesOneInterfaceOrOneKindOfBus) {
+  for (const FaultEntry& entry : fault_table()) {
+    EXPECT_EQ(std::string(entry.cure).find("can0"), std::string::npos) << entry.name;
+    EXPECT_EQ(std::string(entry.cure).find("bitrate"), std::string::npos) << entry.name;
+  }
+}
+
 TEST(Fault, NumbersAscendAndAreNeverShared) {
   int before = -1;
   for (const FaultEntry& entry : fault_table()) {

@@ -176,7 +176,9 @@ TEST(OdriveBringUp, AnIndexThatIsNotFoundIsNamed) {
 
 TEST(OdriveBringUp, NumbersThatCannotWorkAreRefusedAtOnce) {
   Bench fast, high, wired;
-  EXPECT_NE(fast.open(2000.0).find("rate_Hz is 2000"), std::string::npos);
+  const std::string too_fast = fast.open(2000.0);
+  EXPECT_NE(too_fast.find("rate_Hz is 2000"), std::string::npos) << too_fast;
+  EXPECT_NE(too_fast.find("set rate_Hz to 1000 or less"), std::string::npos) << too_fast;
   high.settings.can.node = {1, 2, 99};
   high.expect_refused("an ODrive's node is 0 to 63");
   wired.settings.can.homing = model::Homing::kIndex;
