@@ -130,11 +130,10 @@ PARTS = {
 # The folders of the page, and what each may import of the others; what stands in src/ itself, as main.ts, imports all.
 PAGE = "host/web/src/"
 PAGE_FOLDERS = {
-    "link": [],
-    "panels": ["link"],
-    "scene": ["link", "panels"],
+    **dict.fromkeys(["link", "document"], []),
+    **dict.fromkeys(["panels", "scene"], ["link", "document"]),
     "organ": ["link", "scene"],
-    **dict.fromkeys(["operator", "controls"], ["link", "panels", "scene"]),
+    **dict.fromkeys(["operator", "controls"], ["link", "document", "panels", "scene"]),
 }
 # Where another room is known by these headers alone.
 SINGLE_HEADERS = {

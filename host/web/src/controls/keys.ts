@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // keys.ts - which key and which button does what.
 
-import { by_id } from "../panels/hud";
+import { by_id } from "../document/dom";
 
 /** Buttons of the page, and the key that does the same. */
 const kButtons: Record<string, string> = {

@@ -3,7 +3,7 @@
 // of them by its ticks and saves it as a file that tact-view can open.
 
 import { dated_name, save } from "./file_names";
-import { by_id } from "../panels/hud";
+import { by_id } from "../document/dom";
 import type { Frame } from "../link/protocol";
 
 export class Recorder {

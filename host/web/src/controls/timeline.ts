@@ -3,7 +3,7 @@
 // It asks; the tact-view that replays moves, and all pages with it.
 
 import { describe } from "../panels/faults";
-import { by_id } from "../panels/hud";
+import { by_id } from "../document/dom";
 import type { Replay, ReplayWish } from "../link/protocol";
 
 const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4, 8];

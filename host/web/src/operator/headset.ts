@@ -4,7 +4,8 @@
 
 import * as THREE from "three";
 import { HeadsetPanel } from "./headset_panel";
-import { by_id, type Said } from "../panels/hud";
+import { by_id } from "../document/dom";
+import type { Said } from "../panels/hud";
 import type { Stage } from "../scene/stage";
 
 // Where the eyes are when a session begins, from the middle of the device's workspace. That is 0.57 m away and 38 deg

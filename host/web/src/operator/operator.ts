@@ -3,7 +3,8 @@
 
 import { eyes_of, grip_error_m } from "./figure";
 import { FigureView } from "./figure_view";
-import { by_id, type Hud } from "../panels/hud";
+import { by_id } from "../document/dom";
+import type { Hud } from "../panels/hud";
 import type { FigureFrame, Skeleton, Status, Vec } from "../link/protocol";
 import type { Stage } from "../scene/stage";
 

@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // hud.ts - the panels: everything that is said in words and numbers.
 
+import { by_id } from "../document/dom";
 import { describe, describe_past_state, describe_state } from "./faults";
 import { Pace } from "../link/pace";
 import { length_of, type FigureFrame, type Frame, type Scene, type Status } from "../link/protocol";
 
 const kHold_ms = 1500; // a limit that acted for one tick stays readable this long
 const kRewrite_ms = 100; // numbers that change faster cannot be read
-
-export function by_id<T extends HTMLElement = HTMLElement>(id: string): T {
-  const found = document.getElementById(id);
-  if (!found) throw new Error(`index.html has no #${id}`);
-  return found as T;
-}
 
 function write(id: string, text: string): void {
   const element = by_id(id);

@@ -2,7 +2,7 @@
 // outside.ts - an arrow at the picture's edge, with its word, to what is not in the picture: the organ, the tool.
 
 import * as THREE from "three";
-import { by_id } from "../panels/hud";
+import { by_id } from "../document/dom";
 import type { Vec } from "../link/protocol";
 
 export interface Box {
