@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Every number that a header keeps, alone or in a vector, names its unit, as force_N does, or is known to have none; and
-every bound is kMax... or kMin....
+a bound is kMax... or kMin..., not kMost..., kLargest..., kLeast... and their like; kLongest... and kFastest... may be.
 
 Reads the members and constants of the headers, and the bounds of all C++, as text and prints every breach as file:line:
 sentence. Exit status 0 or 1.
