@@ -28,4 +28,12 @@ constexpr Limits limits_in_use(Limits limits, double force_share) {
   return limits;
 }
 
+/// Without a sample the force fades to zero in this time (RT-15), and no slew may hold that up.
+inline constexpr double kStaleFade_s = 0.010;
+
+/// The gate keeps a part of the slew for its ramp; this is what it leaves for everything else.
+constexpr double slew_beside_ramp_N_per_s(const Limits& limits) {
+  return limits.slew_N_per_s - limits.force_N / limits.ramp_s;
+}
+
 }  // namespace tact::model

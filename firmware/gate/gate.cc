@@ -9,8 +9,9 @@
 namespace tact::firmware::gate {
 namespace {
 
-// RT-15. The fade of the workspace is chosen: nothing is wrong with the device, it may be gentler.
-constexpr double kStaleFade_s = 0.010;
+using model::kStaleFade_s;
+
+// Chosen: nothing is wrong with the device, it may be gentler than without a sample.
 constexpr double kWorkspaceFade_s = 0.050;
 constexpr std::int64_t kLostAfter = 20;  // missed samples in a row
 // Room for the tool to speed up while the force falls at its slew:
@@ -65,8 +66,8 @@ void latch_first(Fault fault, GateVerdict& verdict) RT_SAFE {
 Gate::Gate(const model::Limits& limits, double period_s, double force_share)
     : limits_(limits),
       period_s_(period_s),
-      force_limit_N_(force_share * limits.force_N),
-      torque_limit_Nm_(force_share * limits.torque_Nm),
+      force_limit_N_(model::limits_in_use(limits, force_share).force_N),
+      torque_limit_Nm_(model::limits_in_use(limits, force_share).torque_Nm),
       lever_m_(force_limit_N_ > 0.0 ? torque_limit_Nm_ / force_limit_N_ : 0.0),
       force_step_N_(slew_step_N(limits, force_limit_N_, period_s)),
       torque_step_Nm_(lever_m_ * force_step_N_),

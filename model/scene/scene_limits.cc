@@ -9,8 +9,6 @@
 namespace tact::model::scene {
 namespace {
 
-constexpr double kStaleFade_s = 0.010;  // a lost device must fade to zero in this time
-
 void visit_keys(reader::Keys& k, Limits& limits) {
   k.number("force_N", {0.0, 20.0}, "largest force on the hand", limits.force_N);
   k.number("torque_Nm", {0.0, 2.0}, "largest torque on the hand", limits.torque_Nm);
@@ -51,11 +49,6 @@ void refuse_slow_slew(reader::Keys& k, const Limits& limits) {
                        limits.slew_N_per_s, limits.force_N, least_N_per_s));
 }
 
-/// What the gate keeps of the slew for everything but its ramp.
-double slew_N_per_s(const Limits& limits) {
-  return limits.slew_N_per_s - limits.force_N / limits.ramp_s;
-}
-
 // The energy that the largest force gives at the largest speed while it falls at the slew must be
 // there before the force is (firmware/gate/energy_tank.h); else the scene's force is never reached.
 void refuse_small_budget(reader::Keys& k, double rate_Hz, const Limits& limits) {
@@ -64,7 +57,7 @@ void refuse_small_budget(reader::Keys& k, double rate_Hz, const Limits& limits) 
   const double speed_mps = limits.speed_mps + limits.torque_Nm / force_N * limits.turn_radps;
   // u (F^2 / (2 s) + F dt)
   const double least_J =
-      speed_mps * force_N * (0.5 * force_N / slew_N_per_s(limits) + 1.0 / rate_Hz);
+      speed_mps * force_N * (0.5 * force_N / slew_beside_ramp_N_per_s(limits) + 1.0 / rate_Hz);
   if (limits.energy_J >= least_J) return;
   k.refuse({"energy_J", "force_N", "speed_mps"},
            fmt::format("limits.energy_J = {} is too little to let go of force_N = {} at speed_mps "
@@ -81,8 +74,9 @@ void refuse_fast_heat(reader::Keys& k, double rate_Hz, const Limits& limits) {
   // thermal_limit.h: (1 + kappa) T <= tau, and kappa Fp^2 / (2 Fc tau) <= slew.
   const double ratio = peak_N / continuous_N;
   const double steepness = 2.0 * (ratio * ratio - 1.0);
-  const double least_s = std::max((1.0 + steepness) / rate_Hz,
-                                  steepness * 0.5 * ratio * peak_N / slew_N_per_s(limits));
+  const double least_s =
+      std::max((1.0 + steepness) / rate_Hz,
+               steepness * 0.5 * ratio * peak_N / slew_beside_ramp_N_per_s(limits));
   if (limits.thermal_time_s >= least_s) return;
   k.refuse({"thermal_time_s", "continuous_force_N"},
            fmt::format("limits.thermal_time_s = {} is too short to come from force_N = {} to "

@@ -276,7 +276,7 @@ bool names_wall(const std::string& names) {
 model::Limits limits_of(const Case& c, const model::Limits& limits) {
   model::Limits tight = limits;
   if (c.budget_share > 0.0) {  // less than twice what the brake needs is refused in a scene
-    const double slew_N_per_s = limits.slew_N_per_s - limits.force_N / limits.ramp_s;
+    const double slew_N_per_s = model::slew_beside_ramp_N_per_s(limits);
     // What the gate's tank keeps for its brake (energy_tank.cc), with the longest period.
     const double fall_s = 0.5 * limits.force_N / slew_N_per_s + kLongestPeriod_s;
     const double need_J =
