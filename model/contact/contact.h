@@ -27,8 +27,8 @@
 // inside the organ, letting go over a bump or stiffer tissue, a nearest point that jumps). It
 // shrinks only as the tool withdraws.
 //
-// Bodies: contact.cc (which site, how deep, how hard), contact_grip.cc (hold, tear, let go),
-// contact_slide.cc (forces along the surface).
+// Bodies: contact.cc (how deep, how hard), contact_search.cc (which site), contact_grip.cc (hold,
+// tear, let go), contact_slide.cc (forces along the surface).
 #pragma once
 
 #include <array>

@@ -19,17 +19,17 @@ using tact::model::Error;
 using tact::model::scene::Scene;
 
 struct Options {
-  std::string plan = "all", out, scene;
-  std::vector<std::string> overrides;
+  std::string plan = "all", out;
+  program::SceneArguments scene;
   Testers people;
   bool list = false, json = false, no_pictures = false, consent_from_stdin = false;
-  bool trust_library = false;
 };
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("SCENE,--scene", o.scene,
+  // Not SceneArguments::add_to: --list needs no scene.
+  app.add_option("SCENE,--scene", o.scene.path,
                  "scene file (TOML): its device and its limits are tested");
-  app.add_option("--set", o.overrides, "one key of the scene, as KEY=VALUE; repeatable");
+  app.add_option("--set", o.scene.overrides, "one key of the scene, as KEY=VALUE; repeatable");
   app.add_option("--plan", o.plan, "all, or names of cases with commas")->capture_default_str();
   app.add_option("--out", o.out, "folder of the report; made if need be");
   app.add_option("--tester", o.people.tester,
@@ -43,7 +43,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--no-pictures", o.no_pictures, "tables and page without curves; needs no gnuplot");
   app.add_flag("--consent-from-stdin", o.consent_from_stdin,
                "read the words of consent from a pipe: for a test bench that nobody holds");
-  app.add_flag("--trust-library", o.trust_library,
+  app.add_flag("--trust-library", o.scene.trust_library,
                "load the maker's library of the scene whoever's file it is");
   app.add_flag("--json", o.json, "print one JSON document");
 }
@@ -81,13 +81,11 @@ int test_limits(const program::Program& program, const Options& o) {
   if (const auto error = check_number(o.people.number)) return program.fail(*error);
   const auto cases = choose_cases(o.plan);
   if (!cases) return program.fail(cases.error());
-  auto scene = tact::model::scene::load_scene(o.scene, o.overrides);
+  const auto scene = o.scene.load();
   if (!scene) return program.fail(scene.error());
   // Before the run: whoever changes a file meanwhile must not get its digest into the report.
-  auto evidence = collect_evidence(o.scene, o.overrides, o.people);
+  auto evidence = collect_evidence(o.scene.path, o.scene.overrides, o.people);
   if (!evidence) return program.fail(evidence.error());
-  // By the command line alone: a scene must not bring the permission for its own library.
-  scene->device.trust_library = o.trust_library;
   if (const auto error = program::prepare_folder(o.out)) return program.fail(*error);
   // Last of all checks: after the words the device moves.
   if (!tact::hal::registry::is_simulated(scene->device))
@@ -127,7 +125,7 @@ int main(int argc, char** argv) {
   add_options(program.options(), o);
   if (const auto status = program.parse(argc, argv)) return *status;
   if (o.list) return list_cases();
-  if (o.scene.empty() || o.out.empty())
+  if (o.scene.path.empty() || o.out.empty())
     return program.fail({"SCENE and --out DIR are needed; see --help"});
   return test_limits(program, o);
 }

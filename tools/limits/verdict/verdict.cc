@@ -64,7 +64,7 @@ class EnergyAccount {
   double given_J_ = 0.0, largest_J_ = 0.0, overdrawn_J_ = 0.0;
 };
 
-bool is_outside(const TickRow& row, const model::Limits& limits) {
+bool is_outside_or_too_fast(const TickRow& row, const model::Limits& limits) {
   const Vec3& p = row.tool.position_m;
   return std::hypot(p.y, p.z) > limits.workspace_radius_m ||
          std::abs(p.x) > limits.workspace_half_length_m ||
@@ -72,7 +72,8 @@ bool is_outside(const TickRow& row, const model::Limits& limits) {
 }
 
 bool is_cause(const TickRow& row, const model::Limits& limits) {
-  return row.t_s >= 0.0 && (row.cause || !is_finite(row.commanded_N) || is_outside(row, limits));
+  return row.t_s >= 0.0 &&
+         (row.cause || !is_finite(row.commanded_N) || is_outside_or_too_fast(row, limits));
 }
 
 bool is_zero(const TickRow& row) { return row.written_N == Vec3{} && row.written_Nm == Vec3{}; }
