@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "model/io/file_writer.h"
@@ -95,6 +94,10 @@ Result<ReferencePlan> make_plan(const Options& o) {
   return plan;
 }
 
+program::SweepOptions sweep_options(const Options& o) {
+  return {.label = "tact-reference", .shard = {}, .threads = o.jobs};
+}
+
 /// All places, in the order of presses_of; stops at the first error.
 Result<ground_truth::ToolReference> solve_tool(const Options& o) {
   if (o.scene.empty()) return kNoScene;
@@ -109,25 +112,15 @@ Result<ground_truth::ToolReference> solve_tool(const Options& o) {
   const std::vector<ToolPress> presses = presses_of(*plan);
   const SolveCache cache(o.cache);
   std::vector<std::vector<ground_truth::ToolCase>> solved(presses.size());
-  std::mutex mutex;
-  std::optional<Error> first_error;
-  const bool whole =
-      program::run_jobs(presses.size(), {.label = "tact-reference", .shard = {}, .threads = o.jobs},
-                        [&](std::size_t job) {
-                          {
-                            const std::lock_guard lock(mutex);
-                            if (first_error) return;
-                          }
-                          // Without the lock: a solve takes minutes.
-                          auto result = solve_once(plan->organ, presses[job], solver, cache);
-                          const std::lock_guard lock(mutex);
-                          if (result)
-                            solved[job] = std::move(*result);
-                          else if (!first_error)
-                            first_error = result.error();
-                        });
-  if (first_error) return *first_error;
-  if (!whole) return program::interruption();
+  // Each job has a place of its own in `solved`.
+  const auto work = [&](std::size_t job) -> std::optional<Error> {
+    auto result = solve_once(plan->organ, presses[job], solver, cache);
+    if (!result) return result.error();
+    solved[job] = std::move(*result);
+    return std::nullopt;
+  };
+  if (auto error = program::run_until_error(presses.size(), sweep_options(o), work))
+    return std::move(*error);
   return assemble(*plan, solved, solver);
 }
 
@@ -146,33 +139,23 @@ Result<Solved> solve_all(const Organ& organ, const std::vector<Indentation>& cas
   const SolveCache cache(o.cache);
   Solved solved(cases.size());
   std::vector<std::string> why_not(cases.size());
-  std::mutex mutex;
-  std::optional<Error> first_error;
-  const auto work = [&](std::size_t job) {
-    {
-      const std::lock_guard lock(mutex);
-      if (first_error) return;
-    }
-    // Without the lock: a solve takes minutes. Each job has a place of its own in `solved`.
+  // Each job has a place of its own in `solved` and `why_not`.
+  const auto work = [&](std::size_t job) -> std::optional<Error> {
     auto result = solve_once(organ, cases[job], solver, cache);
-    if (result) {
-      solved[job] = std::move(*result);
-      return;
-    }
-    const std::lock_guard lock(mutex);
-    // No mesh stands every pull: that is an answer, no failure of the run.
-    if (cases[job].large_strain && found_no_solution(result.error()))
+    if (!result) {
+      if (!cases[job].large_strain || !found_no_solution(result.error())) return result.error();
+      // No mesh stands every pull: that is an answer, no failure of the run.
       why_not[job] = result.error().sentence;
-    else if (!first_error)
-      first_error = result.error();
+      return std::nullopt;
+    }
+    solved[job] = std::move(*result);
+    return std::nullopt;
   };
-  const bool whole = program::run_jobs(
-      cases.size(), {.label = "tact-reference", .shard = {}, .threads = o.jobs}, work);
+  auto error = program::run_until_error(cases.size(), sweep_options(o), work);
   for (std::size_t i = 0; i < cases.size(); ++i)
     if (!why_not[i].empty())
       fmt::print(stderr, "tact-reference: left out: {}: {}\n", name_of(cases[i]), why_not[i]);
-  if (first_error) return *first_error;
-  if (!whole) return program::interruption();
+  if (error) return std::move(*error);
   return solved;
 }
 
@@ -251,9 +234,10 @@ int tell(const program::Program& program, const Options& o, const Result<Data>& 
 }  // namespace
 
 int main(int argc, char** argv) {
-  program::Program program(
-      "tact-reference", "Solve press and pull of the scene's organ with gmsh and CalculiX.",
-      "Needs gmsh and CalculiX: apt install gmsh calculix-ccx. Solved cases are kept and reused.");
+  program::Program program("tact-reference",
+                           "Solve press and pull of the scene's organ by finite elements.",
+                           "Needs gmsh, and CalculiX but for --tool, which tact solves itself:\n"
+                           "apt install gmsh calculix-ccx. Solved cases are kept and reused.");
   Options options;
   add_options(program.options(), options);
   if (const auto status = program.parse(argc, argv)) return *status;
