@@ -16,6 +16,12 @@ constexpr std::array<double Vec3::*, 3> kAxes{&Vec3::x, &Vec3::y, &Vec3::z};
 
 }  // namespace
 
+bool HeldBox::holds(const Vec3& p_m) const {
+  return std::all_of(kAxes.begin(), kAxes.end(), [&](auto axis) {
+    return min_m.*axis <= p_m.*axis && p_m.*axis <= max_m.*axis;
+  });
+}
+
 HeldBox far_tenth(const model::mesh::SurfaceMesh& organ, const Vec3& inward) {
   const auto sum = summarize(organ);
   const Vec3 around_m{kAround_m, kAround_m, kAround_m};
@@ -32,11 +38,7 @@ HeldBox far_tenth(const model::mesh::SurfaceMesh& organ, const Vec3& inward) {
 }
 
 std::size_t held_triangles(const model::mesh::SurfaceMesh& organ, const HeldBox& box) {
-  const auto holds = [&](std::uint32_t v) {
-    return std::all_of(kAxes.begin(), kAxes.end(), [&, &p = organ.vertex_m[v]](auto axis) {
-      return box.min_m.*axis <= p.*axis && p.*axis <= box.max_m.*axis;
-    });
-  };
+  const auto holds = [&](std::uint32_t v) { return box.holds(organ.vertex_m[v]); };
   return static_cast<std::size_t>(
       std::count_if(organ.triangle.begin(), organ.triangle.end(),
                     [&](const auto& t) { return std::all_of(t.begin(), t.end(), holds); }));

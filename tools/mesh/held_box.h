@@ -11,13 +11,16 @@
 namespace tact::tools::mesh {
 
 struct HeldBox {
-  model::Vec3 min_m, max_m;
+  model::Vec3 min_m{}, max_m{};
+
+  /// Its sides included.
+  bool holds(const model::Vec3& p_m) const;
 };
 
 /// The tenth of the organ that lies farthest along the axis nearest to `inward`.
 HeldBox far_tenth(const model::mesh::SurfaceMesh& organ, const model::Vec3& inward);
 
-/// Triangles whose three corners lie in the box, its sides included.
+/// Triangles whose three corners lie in the box.
 std::size_t held_triangles(const model::mesh::SurfaceMesh& organ, const HeldBox& box);
 
 }  // namespace tact::tools::mesh

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/reference/organ/organ_body.h"
+#include "tools/mesh/held_box.h"
 
 namespace tact::tools::chart {
 namespace {
@@ -35,7 +35,7 @@ std::vector<std::uint32_t> held_vertices(const model::scene::Scene& scene) {
   std::vector<std::uint32_t> held;
   if (!scene.elastic) return held;
   const auto& mesh = scene.organ_mesh;
-  const reference::HeldBox box{scene.elastic->fixed_min_m, scene.elastic->fixed_max_m};
+  const mesh::HeldBox box{scene.elastic->fixed_min_m, scene.elastic->fixed_max_m};
   const auto is_inside = [&](std::uint32_t v) {
     return box.holds(mesh.vertex_m[v] - scene.organ.position_m);
   };

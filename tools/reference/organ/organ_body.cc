@@ -25,14 +25,10 @@ std::unordered_map<std::uint64_t, std::uint32_t> middles_of(const model::fem::Te
 
 }  // namespace
 
-bool HeldBox::holds(const Vec3& p) const {
-  return p.x >= min_m.x && p.x <= max_m.x && p.y >= min_m.y && p.y <= max_m.y && p.z >= min_m.z &&
-         p.z <= max_m.z;
-}
-
 model::Result<OrganBody> make_organ_body(const model::mesh::SurfaceMesh& surface,
                                          const ground_truth::EdgeLengths& lengths,
-                                         const HeldBox& held, const std::optional<Circle>& circle) {
+                                         const mesh::HeldBox& held,
+                                         const std::optional<Circle>& circle) {
   ground_truth::EdgeLengths on_surface = lengths;
   // It is for the inside: the skin is refined near the site alone.
   on_surface.largest_m = 0.0;

@@ -15,18 +15,12 @@
 #include "model/mesh/mesh.h"
 #include "model/result.h"
 #include "tools/ground_truth/gmsh.h"
+#include "tools/mesh/held_box.h"
 #include "tools/reference/organ/refine_surface.h"
 
 namespace tact::tools::reference {
 
 using FaceNodes = std::array<std::uint32_t, 6>;
-
-/// Triangles with all corners in the box are held.
-struct HeldBox {
-  model::Vec3 min_m{}, max_m{};
-
-  bool holds(const model::Vec3& p_m) const;
-};
 
 struct OrganBody {
   model::fem::TetMesh mesh;
@@ -36,10 +30,11 @@ struct OrganBody {
 };
 
 /// Refines the surface around `lengths.at_m`, draws the circle on it, fills it and finds the held
-/// nodes. `largest_m` of the lengths counts inside only. An error if nothing is held.
+/// nodes: those of the triangles with all corners in the box. `largest_m` of the lengths counts
+/// inside only. An error if nothing is held.
 model::Result<OrganBody> make_organ_body(const model::mesh::SurfaceMesh& surface,
                                          const ground_truth::EdgeLengths& lengths,
-                                         const HeldBox& held,
+                                         const mesh::HeldBox& held,
                                          const std::optional<Circle>& circle = {});
 
 /// Nodes, each once, of the faces that `wanted` chooses by number.

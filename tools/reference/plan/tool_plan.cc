@@ -44,7 +44,7 @@ std::vector<RigidSphere> spheres_at(const std::vector<ProbeSphere>& spheres, con
 
 class PlaceFinder {
  public:
-  PlaceFinder(const model::mesh::SurfaceMesh& surface, const HeldBox& held,
+  PlaceFinder(const model::mesh::SurfaceMesh& surface, const mesh::HeldBox& held,
               const std::vector<ProbeSphere>& spheres, const Vec3& rest_inward, double deepest_m)
       : surface_(surface),
         rays_(surface),

@@ -27,7 +27,7 @@ namespace tact::tools::reference {
 struct Organ {
   model::mesh::SurfaceMesh surface;  // mesh's own frame
   std::string hash;                  // of the surface
-  HeldBox held{};
+  mesh::HeldBox held{};
   Elasticity material{};
   double size_ratio = 1.0;  // of the edges far inside: 1 suits a body as large as a hand
 };

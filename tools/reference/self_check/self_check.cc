@@ -86,7 +86,7 @@ bool is_in(const model::mesh::SurfaceMesh& s, std::uint32_t triangle, const Vec3
 }
 
 /// One patch of the mesh's own triangles, moved as one piece.
-Result<bool> check_patch(const model::mesh::SurfaceMesh& surface, const HeldBox& held,
+Result<bool> check_patch(const model::mesh::SurfaceMesh& surface, const mesh::HeldBox& held,
                          const json& c) {
   const auto vertex = c.at("vertex").get<std::uint32_t>();
   const int rings = c.at("rings").get<int>();
@@ -134,7 +134,7 @@ Result<bool> check_organ(const std::string& folder) {
     const auto organ = model::mesh::load_obj(folder + "/" + j.at("mesh").get<std::string>(),
                                              j.at("mesh_unit_m").get<double>());
     if (!organ) return organ.error();
-    const HeldBox held{{-1.0, -1.0, -1.0}, {1.0, j.at("fixed_max_y_m").get<double>(), 1.0}};
+    const mesh::HeldBox held{{-1.0, -1.0, -1.0}, {1.0, j.at("fixed_max_y_m").get<double>(), 1.0}};
     bool good = true;
     for (const json& c : j.at("cases")) {
       auto one = check_patch(organ->mesh, held, c);
