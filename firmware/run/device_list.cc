@@ -25,8 +25,7 @@ std::string devices_as_text(const std::vector<FoundPart>& parts) {
       fmt::format_to(out, "  not ready: {}\n  cure: {}\n", part.lacking, part.cure);
   }
   // Of a kind that is not there it is told, too, what was looked for.
-  for (const PartKind kind : {PartKind::kCan, PartKind::kFalcon, PartKind::kForceDimension,
-                              PartKind::kPhantom, PartKind::kGpio}) {
+  for (const PartKind kind : hal::list::kPartKinds) {
     const bool there = std::any_of(parts.begin(), parts.end(),
                                    [&](const FoundPart& part) { return part.kind == kind; });
     if (!there) fmt::format_to(out, "{}\n", hal::list::words_of_absence(kind));

@@ -12,6 +12,8 @@
 // Set-up code only.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +24,10 @@
 namespace tact::hal::list {
 
 enum class PartKind { kCan, kFalcon, kForceDimension, kPhantom, kGpio };
+/// All of them. kGpio stays the last: by its number it is known that none is missing.
+inline constexpr std::array kPartKinds{PartKind::kCan, PartKind::kFalcon, PartKind::kForceDimension,
+                                       PartKind::kPhantom, PartKind::kGpio};
+static_assert(kPartKinds.size() == static_cast<std::size_t>(PartKind::kGpio) + 1);
 /// "can", "falcon", "force-dimension", "phantom", "gpio".
 const char* name_of(PartKind kind);
 
