@@ -43,6 +43,47 @@ struct Options : EmulatorOptions {
   bool has_own_clock() const { return !is_cia402() && !is_moteus(); }
 };
 
+void add_odrive(CLI::App& app, OdriveSettings& odrive) {
+  app.add_option("--watchdog-ms", odrive.watchdog_ms, "ODrive; 0: off")->capture_default_str();
+  app.add_flag("--watchdog-in-idle", odrive.watchdog_in_idle,
+               "ODrive: it runs in idle too, as some firmware has it");
+  app.add_option("--heartbeat-ms", odrive.heartbeat_ms, "ODrive")->capture_default_str();
+  app.add_option("--error-ms", odrive.error_ms, "ODrive 0.6: period of Get_Error; 0: on request");
+  app.add_option("--power-on-turns", odrive.power_on_turns,
+                 "ODrive: added to the position until the index is found; 0: it is absolute");
+  app.add_flag("--estimates-from-power-on", odrive.estimates_from_power_on,
+               "ODrive 0.5: without waiting for closed loop, unlike firmware 0.5.6");
+  app.add_flag("--torque-velocity-limit", odrive.torque_velocity_limit,
+               "ODrive: velocity cuts the torque, the maker's default");
+  app.add_option("--velocity-limit-turns-per-s", odrive.velocity_limit_turns_per_s,
+                 "ODrive; the maker's default is 2")
+      ->capture_default_str();
+}
+
+void add_cia402(CLI::App& app, Cia402Settings& cia402) {
+  app.add_option("--rated-torque-Nm", cia402.rated_torque_Nm, "CiA 402, object 6076, to the mN m")
+      ->check(CLI::Range(0.001, 100.0))
+      ->capture_default_str();
+  app.add_flag("--no-request-stays", cia402.habits.no_request_stays,
+               "CiA 402: bit 30 of 1800:01 may not be cleared");
+  app.add_flag("--watch-off-first", cia402.habits.watch_off_first,
+               "CiA 402: 1016:01 is not written anew while it is on");
+  app.add_flag("--sizes-unsaid", cia402.habits.sizes_unsaid, "CiA 402: uploads without their size");
+  app.add_option("--absent", cia402.habits.absent,
+                 "CiA 402: indices of objects that it does not have")
+      ->delimiter(',');
+  app.add_option("--guard-time-ms", cia402.habits.guard_time_ms, "CiA 402: 100C as stored")
+      ->check(CLI::Range(0, 65535));
+  app.add_option("--life-time-factor", cia402.habits.life_time_factor, "CiA 402: 100D as stored")
+      ->check(CLI::Range(0, 255));
+  app.add_flag("--life-hides-host", cia402.habits.life_hides_host,
+               "CiA 402: with a life time a host that falls silent is not missed");
+  app.add_flag("--life-from-boot", cia402.habits.life_from_boot,
+               "CiA 402: the life time counts from boot-up, not from the first guard request");
+  app.add_option("--enable-ms", cia402.enable_ms, "CiA 402: until the power stage is on")
+      ->capture_default_str();
+}
+
 void add_own(CLI::App& app, Options& options) {
   app.add_option("--protocol", options.protocol)
       ->check(CLI::IsMember({"odrive05", "odrive06", "cia402", "moteus"}))
@@ -66,49 +107,11 @@ void add_own(CLI::App& app, Options& options) {
   app.add_option("--phase-us", options.phase_us,
                  "Shift of the drives' clock within the millisecond")
       ->check(CLI::Range(0, 999));
-  app.add_option("--watchdog-ms", options.odrive.watchdog_ms, "ODrive; 0: off")
-      ->capture_default_str();
-  app.add_flag("--watchdog-in-idle", options.odrive.watchdog_in_idle,
-               "ODrive: it runs in idle too, as some firmware has it");
-  app.add_option("--heartbeat-ms", options.odrive.heartbeat_ms, "ODrive")->capture_default_str();
-  app.add_option("--error-ms", options.odrive.error_ms,
-                 "ODrive 0.6: period of Get_Error; 0: on request");
-  app.add_option("--power-on-turns", options.odrive.power_on_turns,
-                 "ODrive: added to the position until the index is found; 0: it is absolute");
-  app.add_flag("--estimates-from-power-on", options.odrive.estimates_from_power_on,
-               "ODrive 0.5: without waiting for closed loop, unlike firmware 0.5.6");
-  app.add_flag("--torque-velocity-limit", options.odrive.torque_velocity_limit,
-               "ODrive: velocity cuts the torque, the maker's default");
-  app.add_option("--velocity-limit-turns-per-s", options.odrive.velocity_limit_turns_per_s,
-                 "ODrive; the maker's default is 2")
-      ->capture_default_str();
+  add_odrive(app, options.odrive);
+  add_cia402(app, options.cia402);
   app.add_option("--timeout-mode", options.moteus.timeout_mode,
                  "moteus: what its watchdog does; 0: lets go, 12: damps")
       ->check(CLI::IsMember({0, 12}))
-      ->capture_default_str();
-  app.add_option("--rated-torque-Nm", options.cia402.rated_torque_Nm,
-                 "CiA 402, object 6076, to the mN m")
-      ->check(CLI::Range(0.001, 100.0))
-      ->capture_default_str();
-  app.add_flag("--no-request-stays", options.cia402.habits.no_request_stays,
-               "CiA 402: bit 30 of 1800:01 may not be cleared");
-  app.add_flag("--watch-off-first", options.cia402.habits.watch_off_first,
-               "CiA 402: 1016:01 is not written anew while it is on");
-  app.add_flag("--sizes-unsaid", options.cia402.habits.sizes_unsaid,
-               "CiA 402: uploads without their size");
-  app.add_option("--absent", options.cia402.habits.absent,
-                 "CiA 402: indices of objects that it does not have")
-      ->delimiter(',');
-  app.add_option("--guard-time-ms", options.cia402.habits.guard_time_ms, "CiA 402: 100C as stored")
-      ->check(CLI::Range(0, 65535));
-  app.add_option("--life-time-factor", options.cia402.habits.life_time_factor,
-                 "CiA 402: 100D as stored")
-      ->check(CLI::Range(0, 255));
-  app.add_flag("--life-hides-host", options.cia402.habits.life_hides_host,
-               "CiA 402: with a life time a host that falls silent is not missed");
-  app.add_flag("--life-from-boot", options.cia402.habits.life_from_boot,
-               "CiA 402: the life time counts from boot-up, not from the first guard request");
-  app.add_option("--enable-ms", options.cia402.enable_ms, "CiA 402: until the power stage is on")
       ->capture_default_str();
 }
 
