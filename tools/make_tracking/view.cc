@@ -34,10 +34,10 @@ constexpr double kOutlier_px = 45.0;
 constexpr std::size_t kLeftOver = 3;  // markers
 
 constexpr Camera kLens{.fx_px = 2000.0, .fy_px = 2000.0, .cx_px = 960.0, .cy_px = 540.0};
-const Vector3d look_at_m(0.30, 0.02, 0.26);
 
 // Upright camera, from one place to another.
 TrackingCamera camera(const char* name, const Vector3d& from_m) {
+  const Vector3d look_at_m(0.30, 0.02, 0.26);
   const Vector3d ahead = (look_at_m - from_m).normalized();
   const Vector3d right = ahead.cross(Vector3d::UnitZ()).normalized();
   Matrix3d axes;  // 3 x 3, columns: right, down, ahead
@@ -101,7 +101,9 @@ class Cameraman {
   bool is_hidden(const std::string& body, std::size_t id) {
     int& left = hidden_[{body, id}];
     if (share_(random_) < kHide_ratio && left == 0) left = kHiddenLooks;
-    return left > 0 && left-- > 0;
+    if (left == 0) return false;
+    --left;
+    return true;
   }
 
   void spoil(Sight& sight) {
@@ -125,7 +127,7 @@ class Cameraman {
     }
   }
 
-  std::mt19937 random_{kSeed};
+  std::mt19937 random_{kSeed};  // NOLINT(bugprone-random-generator-seed): the same run every time
   std::normal_distribution<double> normal_;
   std::uniform_real_distribution<double> share_;
   std::map<std::pair<std::string, std::size_t>, int> hidden_;  // looks left
