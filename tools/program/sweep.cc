@@ -67,6 +67,7 @@ bool run_jobs(std::size_t jobs, const SweepOptions& options,
   const std::size_t wanted = options.threads > 0 ? options.threads : cores;
   {
     std::vector<std::jthread> threads;
+    threads.reserve(std::min(wanted, mine));
     for (std::size_t i = 0; i < std::min(wanted, mine); ++i) threads.emplace_back(worker);
     show_progress(options.label, done, mine);
   }  // joined
