@@ -37,8 +37,9 @@ struct Sample {
 struct DeviceInfo {
   std::string name;
   double max_force_N = 0.0;
-  double max_torque_Nm = 0.0;       // 0: the device has no torque
-  double workspace_radius_m = 0.0;  // cylinder about the W x axis, centred on the origin of W
+  double max_torque_Nm = 0.0;           // 0: the device has no torque
+  double max_continuous_force_N = 0.0;  // largest RMS that its motors bear; 0: not told
+  double workspace_radius_m = 0.0;      // cylinder about the W x axis, centred on the origin of W
   double workspace_half_length_m = 0.0;
   /// What bounds the stiffness it can show; a device without it is never felt.
   std::optional<model::DeviceAtTool> at_tool{};
@@ -107,6 +108,9 @@ class Device {
 
   /// Zero force and power off; may block. Safe to call twice, and at any time after opening.
   virtual void stop() = 0;
+
+  /// What stop() could not switch off, with the cure; empty: all is off.
+  virtual std::string why_not_off() const { return {}; }
 };
 
 }  // namespace tact::hal

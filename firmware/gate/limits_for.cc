@@ -15,6 +15,9 @@ double smaller(double scene, double device) {
 model::Limits limits_for(const model::Limits& scene, const hal::DeviceInfo& device) {
   model::Limits limits = scene;
   limits.force_N = smaller(scene.force_N, device.max_force_N);
+  // Not "> 0": of one that is no number smaller() makes zero.
+  if (device.max_continuous_force_N != 0.0)
+    limits.continuous_force_N = smaller(scene.continuous_force_N, device.max_continuous_force_N);
   limits.torque_Nm = smaller(scene.torque_Nm, device.max_torque_Nm);
   limits.workspace_radius_m = smaller(scene.workspace_radius_m, device.workspace_radius_m);
   limits.workspace_half_length_m =

@@ -250,13 +250,12 @@ int Session::report() {
   const std::string report = make_report(facts, loop_->statistics(), parts_.controller->gate(),
                                          pc::read_environment(scene_.hash))
                                  .dump(2);
-  if (options_.json_path == "-")
-    say(stdout, "{}\n", report);
-  else
-    say(stdout, "{}\n", make_summary(facts, loop_->statistics()));
+  say(stdout, "{}\n",
+      options_.json_path == "-" ? report : make_summary(facts, loop_->statistics()));
   if (options_.has_json_file())
     if (const auto error = model::io::write_file(options_.json_path, report + "\n"))
       return fail(error->sentence, 2);
+  if (const std::string on = parts_.device->why_not_off(); !on.empty()) leave_now(fail(on, 1));
   if (log_error) return fail(log_error->sentence, 1);
   return fault == model::Fault::kNone ? 0 : 1;
 }

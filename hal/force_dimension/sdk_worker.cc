@@ -96,15 +96,19 @@ void SdkWorker::run() {
   }
   send({});
   session_.sdk.enable_force(0, session_.id);
+  cycles_ended();
 }
 
 /// One pose, one force. False after a trouble.
 bool SdkWorker::cycle() {
-  if (trouble().fault != Fault::kNone) return false;
-  const std::int64_t now_ns = monotonic_ns();
-  if (!read_pose(now_ns)) return false;
-  const auto wrench = next_wrench(now_ns);
-  return wrench && (send(*wrench) || fail(SdkTroubleSource::kForce));
+  if (first_trouble().fault != Fault::kNone) return false;
+  if (!read_pose(monotonic_ns())) return false;
+  // The time once more: the library may have waited for the pose, and the command has aged.
+  const auto wrench = next_wrench(monotonic_ns());
+  if (!wrench) return false;
+  if (!send(*wrench)) return fail(SdkTroubleSource::kForce);
+  cycle_ended(monotonic_ns());
+  return true;
 }
 
 bool SdkWorker::read_pose(std::int64_t now_ns) {
@@ -121,6 +125,8 @@ bool SdkWorker::read_pose(std::int64_t now_ns) {
 }
 
 bool SdkWorker::switch_forces(bool on) {
+  // Zero first: what the device would hold when it next switches on.
+  if (!send({})) return fail(SdkTroubleSource::kForce);
   return session_.sdk.enable_force(on ? 1 : 0, session_.id) >= 0 || fail(SdkTroubleSource::kEnable);
 }
 
@@ -130,7 +136,7 @@ bool SdkWorker::send(const Wrench& w) {
 }
 
 void SdkWorker::watch() {
-  while (!quits() && trouble().fault == Fault::kNone) {
+  while (!quits() && first_trouble().fault == Fault::kNone) {
     check_status();
     std::this_thread::sleep_for(kStatusPeriod);
   }

@@ -40,11 +40,10 @@ class SdkWorker final : public maker_library::LibraryWorker {
   /// Starts both threads, for a loop of that rate.
   static std::shared_ptr<SdkWorker> start(const SdkSession& session, double rate_Hz);
 
-  std::string words() const override { return words_of_sdk_trouble(trouble()); }
-
  private:
   SdkWorker(const SdkSession& session, double rate_Hz)
       : LibraryWorker(sdk_cycle_ns(rate_Hz), rate_Hz), session_(session) {}
+  std::string words_of_trouble() const override { return words_of_sdk_trouble(first_trouble()); }
   void run();
   bool cycle();
   bool read_pose(std::int64_t now_ns);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "hal/maker_library/rotation.h"
+#include "hal/monotonic.h"
 #include "hal/saturation.h"
 
 namespace tact::hal::maker_library {
@@ -25,9 +26,10 @@ LibraryDevice::~LibraryDevice() { stop(); }
 Fault LibraryDevice::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
   now_ns_ = now_ns;
   sample.fresh = false;
-  if (const Fault fault = worker_->trouble().fault; fault != Fault::kNone) return fault;
+  if (const Fault fault = worker_->first_trouble().fault; fault != Fault::kNone) return fault;
   LibraryPose pose;
   if (!worker_->poses().read(pose)) return Fault::kNone;
+  follows_ = pose.follows_commands;
   // The forces are still off, or show zero first: an armed loop would trust a force that is not
   // there.
   if (permitted_ && !pose.follows_commands) return Fault::kNone;
@@ -52,16 +54,26 @@ void LibraryDevice::observe(const LibraryPose& pose, Tool& tool) RT_SAFE {
 }
 
 Fault LibraryDevice::write(const Wrench& wrench) RT_SAFE {
+  const bool sound = is_finite(wrench);
   const Wrench within{.force_N = saturated(wrench.force_N, info_.max_force_N),
                       .torque_Nm = saturated(wrench.torque_Nm, info_.max_torque_Nm)};
-  worker_->commands().write({.wrench = within, .stamp_ns = now_ns_, .powered = permitted_});
-  return worker_->trouble().fault;
+  worker_->commands().write(
+      {.wrench = sound ? within : Wrench{}, .stamp_ns = now_ns_, .powered = permitted_});
+  return sound ? worker_->first_trouble().fault : Fault::kForceNotFinite;
+}
+
+std::string LibraryDevice::trouble() const {
+  const std::string said = worker_->words(monotonic_ns()), left = why_not_off();
+  return said.empty() || left.empty() ? said + left : said + "; " + left;
+}
+
+std::string LibraryDevice::why_not_off() const {
+  return stuck_ ? "the library does not return: switch the device's supply off" : "";
 }
 
 void LibraryDevice::stop() {
   // Once: the library's device is closed by it.
-  if (!stopped_) worker_->stop();
-  stopped_ = true;
+  if (!stopped_.exchange(true)) stuck_ = !worker_->stop();
 }
 
 }  // namespace tact::hal::maker_library

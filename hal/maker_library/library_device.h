@@ -7,7 +7,9 @@
 // permitted the device still tells its pose, so that a fault can be reset.
 #pragma once
 
+#include <atomic>
 #include <memory>
+#include <string>
 
 #include "hal/device.h"
 #include "hal/maker_library/library_worker.h"
@@ -17,8 +19,8 @@ namespace tact::hal::maker_library {
 
 /// Of every such device, for `DeviceInfo::caution`.
 inline constexpr const char* kNoGuardian =
-    "if tactd is killed, nothing zeroes this device, because its maker's library shares no handle: "
-    "put its supply on a relay";
+    "if tactd is killed or the library hangs, nothing zeroes this device, because its maker's "
+    "library shares no handle: put its supply on a relay";
 
 class LibraryDevice final : public Device {
  public:
@@ -29,10 +31,12 @@ class LibraryDevice final : public Device {
 
   DeviceInfo info() const override { return info_; }
   [[nodiscard]] Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
+  bool ready() const RT_SAFE override { return permitted_ && follows_; }
   void permit(bool powered) RT_SAFE override { permitted_ = powered; }
   [[nodiscard]] Fault write(const Wrench& wrench) RT_SAFE override;
-  std::string trouble() const override { return worker_->words(); }
+  std::string trouble() const override;
   void stop() override;
+  std::string why_not_off() const override;
 
  private:
   void observe(const LibraryPose& pose, Tool& tool) RT_SAFE;
@@ -43,8 +47,9 @@ class LibraryDevice final : public Device {
   LibraryPose before_;
   Vec3 turned_rad_;  // all rotations since the start, added up
   std::int64_t now_ns_ = 0;
-  bool permitted_ = true;
-  bool stopped_ = false;
+  bool permitted_ = false;
+  bool follows_ = false;  // the newest pose: forces are on
+  std::atomic<bool> stopped_{false}, stuck_{false};
 };
 
 }  // namespace tact::hal::maker_library

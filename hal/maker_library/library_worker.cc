@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/maker_library/library_worker.h"
 
+#include <fmt/format.h>
 #include <pthread.h>
 #include <sched.h>
 
 #include <algorithm>
-#include <chrono>
 #include <thread>
 
 namespace tact::hal::maker_library {
 namespace {
 
+using namespace std::chrono_literals;
 using model::Fault;
 using model::Wrench;
 
@@ -75,17 +76,29 @@ void LibraryWorker::keep(const LibraryTrouble& t) {
   trouble_.compare_exchange_strong(none, packed, std::memory_order_acq_rel);
 }
 
-LibraryTrouble LibraryWorker::trouble() const RT_SAFE {
+LibraryTrouble LibraryWorker::first_trouble() const RT_SAFE {
   const std::uint64_t packed = trouble_.load(std::memory_order_acquire);
   return {static_cast<Fault>(packed >> 32), static_cast<std::uint8_t>(packed >> 16 & 0xFF),
           static_cast<std::uint16_t>(packed & 0xFFFF)};
 }
 
-bool LibraryWorker::stop() {
+std::string LibraryWorker::words(std::int64_t now_ns) const {
+  std::string said = words_of_trouble();
+  const std::int64_t cycle_ns = last_cycle_ns_;
+  // Always the same sentence, as whoever watches tells each one that is new.
+  if (cycle_ns != 0 && now_ns - cycle_ns > kLibrarySilence_ns)
+    said += fmt::format(
+        "{}the library has made no call for more than {} ms: the device may still push; switch its "
+        "supply off",
+        said.empty() ? "" : "; ", kLibrarySilence_ns / 1'000'000);
+  return said;
+}
+
+bool LibraryWorker::stop(std::chrono::milliseconds patience) {
   quit_ = true;
-  // 2 s, no join: a library that hangs must not keep tactd from ending.
-  for (int i = 0; i < 2000 && running_ > 0; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  // No join: a library that hangs must not keep tactd from ending.
+  for (auto waited = 0ms; waited < patience && running_ > 0; waited += 1ms)
+    std::this_thread::sleep_for(1ms);
   if (running_ > 0) return false;
   close();
   return true;

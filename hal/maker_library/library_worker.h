@@ -9,10 +9,13 @@
 //   without one for 100 ms, or without power, the forces are switched off;
 //   they come back through 2 ms of zero force, so that no step goes into the hand.
 //
-// The first trouble is kept. After it: zero force and forces off once, then not one call more.
+// The first trouble is kept. After it: zero force, then forces off, then not one call more. A
+// library that does not return can be helped by nobody here: the last force may stay in the motors,
+// and all that is left is to say so.
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -46,6 +49,8 @@ struct LibraryTrouble {
 
 /// How long a sample is good, and a command at least.
 inline constexpr std::int64_t kOldest_ns = 5'000'000;
+/// A library whose last cycle is older than this has fallen silent.
+inline constexpr std::int64_t kLibrarySilence_ns = 20'000'000;
 
 class LibraryWorker {
  public:
@@ -55,20 +60,20 @@ class LibraryWorker {
 
   LatestSlot<LibraryPose>& poses() RT_SAFE { return poses_; }
   LatestSlot<LibraryCommand>& commands() RT_SAFE { return commands_; }
-  LibraryTrouble trouble() const RT_SAFE;
-  /// The trouble for a person; empty without one.
-  virtual std::string words() const = 0;
+  LibraryTrouble first_trouble() const RT_SAFE;
+  /// For a person: the first trouble, and a library that has fallen silent; empty without either.
+  std::string words(std::int64_t now_ns) const;
 
   /// Ends the threads, zeroes the force and closes the device; false when the library did not
-  /// return within 2 s. Once.
-  bool stop();
+  /// return within `patience`: then it is not closed, and its last force may stay. Once.
+  [[nodiscard]] bool stop(std::chrono::milliseconds patience = std::chrono::seconds(2));
 
  protected:
   /// For a loop of this rate.
   LibraryWorker(std::int64_t cycle_ns, double rate_Hz);
 
-  /// Both of a thread that has just begun: its name, and SCHED_FIFO below the loop, which a black
-  /// box must not delay.
+  /// Gives the calling thread its name, and SCHED_FIFO below the loop, which a black box must not
+  /// delay.
   static void enter_fifo(const char* name);
 
   // The thread of the cycle.
@@ -77,10 +82,18 @@ class LibraryWorker {
   /// Switches the forces as the loop wants them; the wrench of this cycle, or nothing when the
   /// forces did not switch.
   std::optional<model::Wrench> next_wrench(std::int64_t now_ns);
+  /// Switches the forces, or notes that they shall be; the wrench is zero in this cycle and, after
+  /// "on", in the next ones. False: they do not switch.
   virtual bool switch_forces(bool on) = 0;
   virtual void close() = 0;
+  /// The library has come back from all calls of a cycle.
+  void cycle_ended(std::int64_t now_ns) { last_cycle_ns_ = now_ns; }
+  /// There will be none more, so silence is no news.
+  void cycles_ended() { last_cycle_ns_ = 0; }
 
   // Any thread.
+  /// The first trouble for a person; empty without one.
+  virtual std::string words_of_trouble() const = 0;
   std::int64_t cycle_ns() const { return cycle_ns_; }
   bool quits() const { return quit_.load(std::memory_order_relaxed); }
   /// The forces are on for so long that "off" is news.
@@ -102,6 +115,7 @@ class LibraryWorker {
   std::int64_t zero_cycles_ = 0;
   Power power_ = Power::kOff;
   std::atomic<std::int64_t> powered_cycles_{0};  // since the forces were switched on
+  std::atomic<std::int64_t> last_cycle_ns_{0};   // CLOCK_MONOTONIC; 0: none is due
   std::atomic<std::uint64_t> trouble_{0};
   std::atomic<bool> quit_{false};
   std::atomic<int> running_{0};

@@ -12,6 +12,19 @@ namespace {
 // A cycle of the library before the loop, one after, and half of one for USB.
 constexpr double kDelay_s = 2.5e-3;
 
+std::string caution_of(const PhantomSession& session) {
+  const std::string for_long = session.continuous_force_N > 0.0
+                                   ? fmt::format("{:g} N", session.continuous_force_N)
+                                   : "not told, so choose limits.continuous_force_N yourself";
+  const std::string stiffness = session.max_stiffness_N_per_m > 0.0
+                                    ? fmt::format("{:g} N/m", session.max_stiffness_N_per_m)
+                                    : "not told";
+  return fmt::format(
+      "{}; what its motors bear for long: {}; the stiffest law that its maker advises: {}; the "
+      "damping of this device is assumed, not measured (device.phantom.damping_Ns_per_m)",
+      maker_library::kNoGuardian, for_long, stiffness);
+}
+
 DeviceInfo info_of(const PhantomSession& session, const model::PhantomSettings& settings) {
   const std::string name = session.model.empty() ? "PHANTOM" : session.model;
   return {.name = session.serial_number.empty()
@@ -19,6 +32,7 @@ DeviceInfo info_of(const PhantomSession& session, const model::PhantomSettings& 
                       : fmt::format("{} no. {}", name, session.serial_number),
           .max_force_N = session.max_force_N,
           .max_torque_Nm = 0.0,
+          .max_continuous_force_N = session.continuous_force_N,
           .workspace_radius_m = session.radius_m,
           .workspace_half_length_m = session.half_length_m,
           .at_tool = model::DeviceAtTool{.damping_Ns_per_m = settings.damping_Ns_per_m,
@@ -26,10 +40,7 @@ DeviceInfo info_of(const PhantomSession& session, const model::PhantomSettings& 
                                          .position_step_m = settings.position_step_m,
                                          .delay_s = kDelay_s},
           .damping_key = "device.phantom.damping_Ns_per_m",
-          .caution = fmt::format("{}; its motors bear {:g} N for long (limits.continuous_force_N), "
-                                 "and its maker advises no law above {:g} N/m",
-                                 maker_library::kNoGuardian, session.continuous_force_N,
-                                 session.max_stiffness_N_per_m)};
+          .caution = caution_of(session)};
 }
 
 }  // namespace

@@ -44,7 +44,8 @@ std::optional<Error> ask_limits(PhantomSession& s) {
   s.model = text_of(s.hd, kHdModel);
   s.serial_number = text_of(s.hd, kHdSerialNumber);
   s.max_force_N = number_of(s.hd, kHdMaxForce);
-  s.continuous_force_N = number_of(s.hd, kHdContinuousForce);
+  const double continuous_N = number_of(s.hd, kHdContinuousForce);
+  s.continuous_force_N = is_positive(continuous_N) ? continuous_N : 0.0;
   s.max_stiffness_N_per_m = number_of(s.hd, kHdMaxStiffness) / kMetresPerMm;
   s.wrist = whole_of(s.hd, kHdInputDof) >= 6;
   s.calibration_styles = whole_of(s.hd, kHdCalibrationStyle);
@@ -57,7 +58,9 @@ std::optional<Error> ask_limits(PhantomSession& s) {
   s.half_length_m = half_m.x;
   if (const unsigned code = take_hd_errors(s.hd); code != 0)
     return Error{fmt::format("the PHANTOM does not tell its limits: {}", words_of_hd_error(code))};
-  if (!is_positive(s.max_force_N) || !is_positive(s.radius_m) || !is_positive(s.half_length_m))
+  // NaN in one corner is a NaN here, which std::min may pass over.
+  if (!is_finite(half_m) || !is_finite(s.middle_m) || !is_positive(s.max_force_N) ||
+      !is_positive(s.radius_m) || !is_positive(s.half_length_m))
     return Error{fmt::format(
         "the PHANTOM tells {:g} N and a workspace of {:g} x {:g} m, which cannot be: install the "
         "driver of this device, and configure it by the maker's Touch_Setup",
@@ -81,20 +84,30 @@ Result<PhantomSession> open_phantom_session(const model::PhantomSettings& settin
                          .serial_number = {},
                          .middle_m = {}};
   const unsigned code = take_hd_errors(*hd);
-  if (code != 0 || session.id == kHdNoDevice)
+  if (code != 0 || session.id == kHdNoDevice) {
+    if (session.id != kHdNoDevice) {  // a library may open it and complain
+      hd->make_current(session.id);
+      hd->disable(kHdForceOutput);
+      hd->disable_device(session.id);
+    }
     return Error{fmt::format(
         "the PHANTOM \"{}\" does not open: {}; device.phantom.name is the name that the maker's "
         "Touch_Setup gave it; if only root opens it, this udev rule is missing: {}; {}",
         name, code == 0 ? "there is no such device" : words_of_hd_error(code), kPhantomRule,
         kRuleCure)};
+  }
   hd->make_current(session.id);
+  auto error = ask_limits(session);
+  // Two names may be one device.
+  if (!error && !session.serial_number.empty())
+    error = lock_device(fmt::format("the PHANTOM no. {}", session.serial_number));
+  if (error) {
+    hd->disable_device(session.id);  // and nothing else: its forces may be another program's
+    return *error;
+  }
   // Off first: another program may have left them on. More than it can show is cut, no error.
   hd->disable(kHdForceOutput);
   hd->enable(kHdMaxForceClamping);
-  if (auto error = ask_limits(session)) {
-    hd->disable_device(session.id);
-    return *error;
-  }
   return session;
 }
 

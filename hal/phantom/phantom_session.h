@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // phantom_session.h - a PHANTOM or a Touch, opened, with what its library tells of it.
 //
-// W is the device's frame with its axes renamed: x of W is z of the device, y is x, z is y. Its
-// origin is the middle of the box in which the maker promises forces (HD-5). Set-up code only; tact
+// W is the device's frame with its axes renamed (kAxisOfDevice). Its origin is the middle of the
+// box in which the maker promises forces (HD-5). Set-up code only; tact
 // locks its memory before, and the library's heap with it.
 #pragma once
 
@@ -18,7 +18,8 @@ struct PhantomSession {
   HdFunctions hd;
   HdDevice id = kHdNoDevice;
   std::string model, serial_number;  // empty: the library does not tell
-  double max_force_N = 0.0, continuous_force_N = 0.0, max_stiffness_N_per_m = 0.0;
+  double max_force_N = 0.0;
+  double continuous_force_N = 0.0, max_stiffness_N_per_m = 0.0;  // 0: it does not tell
   model::Vec3 middle_m;  // origin of W, from the device's origin, along the axes of W
   double radius_m = 0.0, half_length_m = 0.0;  // of the cylinder within that box
   bool wrist = false;                          // it measures an orientation
@@ -32,9 +33,16 @@ model::Result<PhantomSession> open_phantom_session(const model::PhantomSettings&
 /// What a person does for a device that has no calibration.
 const char* calibration_cure(const PhantomSession& session);
 
-/// The device's axes, renamed.
+/// Which axis of the device is x, y, z of W.
+inline constexpr int kAxisOfDevice[3] = {2, 0, 1};
+
 inline model::Vec3 to_w(const double of_device[3], double scale = 1.0) {
-  return {scale * of_device[2], scale * of_device[0], scale * of_device[1]};
+  const auto& [x, y, z] = kAxisOfDevice;
+  return {scale * of_device[x], scale * of_device[y], scale * of_device[z]};
+}
+inline void to_device(const model::Vec3& of_w, double (&of_device)[3]) {
+  const auto& [x, y, z] = kAxisOfDevice;
+  of_device[x] = of_w.x, of_device[y] = of_w.y, of_device[z] = of_w.z;
 }
 
 }  // namespace tact::hal::phantom

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <thread>
 #include <utility>
 
@@ -21,16 +22,19 @@ using model::Fault;
 using model::Quat;
 using model::Vec3;
 
-constexpr unsigned short kFirst = 0xFFFF;  // of the scheduler's callbacks
-constexpr int kPatience_ms = 1000;         // until it is calibrated
+constexpr unsigned short kHighestPriority = 0xFFFF;  // of the scheduler's callbacks
+constexpr int kPatience_ms = 1000;                   // until it is calibrated
 
-/// Of a matrix by columns; its axes renamed on both sides.
+/// Of a matrix by columns, the axes of the stylus along those of the device. The handle is +z of
+/// the stylus and +z of the tool. x of the tool is -y of the stylus, y is x, so that an upright
+/// stylus is the tool's identity (HD-7).
 Quat orientation_of(const double transform[16]) {
-  constexpr int kAxis[3] = {2, 0, 1};  // of the device, for x, y, z of W
+  constexpr int kAxisOfStylus[3] = {1, 0, 2};
+  constexpr double kSign[3] = {-1.0, 1.0, 1.0};
   double r[3][3];
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column)
-      r[row][column] = transform[4 * kAxis[column] + kAxis[row]];
+      r[row][column] = kSign[column] * transform[4 * kAxisOfStylus[column] + kAxisOfDevice[row]];
   return maker_library::quat_from_rotation(r);
 }
 
@@ -42,27 +46,35 @@ model::Result<std::shared_ptr<PhantomWorker>> PhantomWorker::start(const Phantom
   const HdFunctions& hd = session.hd;
   worker->expect_threads(1);
   worker->self_ = worker;  // the library must not call what is gone
-  hd.set_scheduler_rate(static_cast<unsigned long>(kPhantomRate_Hz));
-  const unsigned long scheduled = hd.schedule(on_cycle, worker.get(), kFirst);
-  hd.start_scheduler();
-  if (const unsigned code = take_hd_errors(hd); code != 0) {
-    hd.unschedule(scheduled);
-    hd.stop_scheduler();
-    hd.disable_device(session.id);
-    worker->self_.reset();  // nobody calls any more
+  const auto does_not_start = [](unsigned code) {
     return Error{
         fmt::format("the PHANTOM's scheduler does not start: {}", words_of_hd_error(code))};
+  };
+  hd.set_scheduler_rate(static_cast<unsigned long>(kPhantomRate_Hz));
+  const unsigned long scheduled = hd.schedule(on_cycle, worker.get(), kHighestPriority);
+  if (const unsigned code = take_hd_errors(hd); code != 0) {
+    hd.unschedule(scheduled);
+    hd.disable_device(session.id);
+    worker->self_.reset();  // nobody calls: the scheduler has not been started
+    return does_not_start(code);
+  }
+  hd.start_scheduler();
+  if (const unsigned code = take_hd_errors(hd); code != 0) {
+    // From here on a call may come at any time, so the worker is not freed: it keeps itself.
+    if (!worker->stop()) worker->close();
+    return does_not_start(code);
   }
   if (auto error = worker->wait_until_calibrated()) return *error;
   return worker;
 }
 
 std::optional<Error> PhantomWorker::wait_until_calibrated() {
-  for (int i = 0; i < kPatience_ms && !calibrated_ && trouble().fault == Fault::kNone; ++i)
+  for (int i = 0; i < kPatience_ms && !calibrated_ && first_trouble().fault == Fault::kNone; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  if (calibrated_ && trouble().fault == Fault::kNone) return std::nullopt;
-  stop();
-  if (const std::string why = words(); !why.empty()) return Error{why};
+  if (calibrated_ && first_trouble().fault == Fault::kNone) return std::nullopt;
+  // False: the library hangs, with its forces off, and the device stays open until tactd ends.
+  static_cast<void>(stop());
+  if (const std::string why = words(monotonic_ns()); !why.empty()) return Error{why};
   const std::string device = session_.model.empty() ? "PHANTOM" : session_.model;
   if (calibration_ == 0)
     return Error{fmt::format(
@@ -73,8 +85,8 @@ std::optional<Error> PhantomWorker::wait_until_calibrated() {
                            calibration_cure(session_))};
 }
 
-std::string PhantomWorker::words() const {
-  const auto told = trouble();
+std::string PhantomWorker::words_of_trouble() const {
+  const auto told = first_trouble();
   switch (static_cast<Source>(told.source)) {
     case Source::kNone:
       return {};
@@ -83,6 +95,10 @@ std::string PhantomWorker::words() const {
     case Source::kForceOff:
       return "the PHANTOM's force output is off; end other programs that use the device, then "
              "start tactd again";
+    case Source::kPose:
+      return "the PHANTOM tells a pose that is no number; check its cable, calibrate it, then "
+             "start "
+             "tactd again";
     case Source::kCalibration:
       break;
   }
@@ -99,13 +115,14 @@ bool PhantomWorker::cycle() {
   if (!entered_) enter_fifo("tact-phantom");
   entered_ = true;
   session_.hd.make_current(session_.id);
-  if (!quits() && trouble().fault == Fault::kNone) {
+  if (!quits() && first_trouble().fault == Fault::kNone) {
     exchange();
-    // At once; the zero force follows in the next cycle, as the library takes one frame in each.
-    if (trouble().fault != Fault::kNone) session_.hd.disable(kHdForceOutput);
+    cycle_ended(monotonic_ns());
     return true;
   }
+  // In a cycle of its own after a trouble, as the library takes one frame in each.
   let_go();
+  cycles_ended();
   // When nobody has waited so long, this thread is the last to know the worker.
   const std::shared_ptr<PhantomWorker> last = std::move(self_);
   thread_ends();  // whoever waits may close the device now
@@ -114,52 +131,81 @@ bool PhantomWorker::cycle() {
 
 /// One pose, one force.
 void PhantomWorker::exchange() {
-  const HdFunctions& hd = session_.hd;
   LibraryPose pose{.position_m = {}, .orientation = {}, .stamp_ns = monotonic_ns()};
-  double transform[16] = {};
-  hd.begin_frame(session_.id);
-  hd.get_doubles(kHdCurrentTransform, transform);
-  const unsigned calibration = hd.check_calibration();
-  // HD-4. Later, with force, its position may jump. By hand: with the maker's program alone.
-  const int ways = session_.calibration_styles & (kHdAuto | kHdInkwell);
-  if (calibration == kHdNeedsUpdate && !calibrated_ && ways != 0)
-    hd.update_calibration((ways & kHdAuto) != 0 ? kHdAuto : kHdInkwell);
-  const auto wrench = next_wrench(pose.stamp_ns);
-  set_force(wrench ? wrench->force_N : Vec3{});
-  hd.end_frame(session_.id);
-  calibration_ = calibration;
-  if (const unsigned code = take_hd_errors(hd); code != 0)
-    return fail(fault_of_hd_error(code), Source::kError, code);
-  if (calibrated_ && calibration == kHdNeedsHand)
-    return fail(Fault::kHomingLost, Source::kCalibration, calibration);
-  if (powered_for_sure() && hd.is_enabled(kHdForceOutput) == 0)
-    return fail(Fault::kForceOff, Source::kForceOff, 0);
-  if (calibration == kHdCalibrated) calibrated_ = true;
-  pose.position_m = to_w(transform + 12, 1e-3) - session_.middle_m;
-  if (session_.wrist) pose.orientation = orientation_of(transform);
+  session_.hd.begin_frame(session_.id);
+  const bool sound = judge(pose);
+  // The time once more: the library may have waited for the state, and the command has aged.
+  const auto wrench = sound ? next_wrench(monotonic_ns()) : std::nullopt;
+  const Vec3 force_N = wrench ? wrench->force_N : Vec3{};
+  send(force_N);
+  if (!sound) return;
+  if (force_N == Vec3{}) switch_output();
+  if (errors()) return;
+  if (powered_for_sure() && session_.hd.is_enabled(kHdForceOutput) == 0) {
+    fail(Fault::kForceOff, Source::kForceOff, 0);
+    return;
+  }
   if (calibrated_) publish(pose);
 }
 
-void PhantomWorker::set_force(const Vec3& force_N) {
-  const double of_device[3] = {force_N.y, force_N.z, force_N.x};
+/// The state of this frame; false when no force may follow it.
+bool PhantomWorker::judge(LibraryPose& pose) {
+  const HdFunctions& hd = session_.hd;
+  double transform[16] = {};
+  hd.get_doubles(kHdCurrentTransform, transform);
+  const unsigned calibration = hd.check_calibration();
+  // Before any force alone: an update during a run might move the position under the force (HD-4).
+  // Encoders that a person resets by hand are left to the maker's program.
+  const int ways = session_.calibration_styles & (kHdAuto | kHdInkwell);
+  if (calibration == kHdNeedsUpdate && !calibrated_ && ways != 0)
+    hd.update_calibration((ways & kHdAuto) != 0 ? kHdAuto : kHdInkwell);
+  calibration_ = calibration;
+  if (errors()) return false;
+  if (calibrated_ && calibration != kHdCalibrated && calibration != kHdNeedsUpdate)
+    return fail(Fault::kHomingLost, Source::kCalibration, calibration);
+  if (calibration == kHdCalibrated) calibrated_ = true;
+  if (!calibrated_) return true;
+  pose.position_m = to_w(transform + 12, 1e-3) - session_.middle_m;
+  if (session_.wrist) pose.orientation = orientation_of(transform);
+  const bool told = is_finite(pose.position_m) && std::isfinite(pose.orientation.w);
+  return told || fail(Fault::kSampleNotFinite, Source::kPose, 0);
+}
+
+/// Takes the library's errors; true when there was one.
+bool PhantomWorker::errors() {
+  const unsigned code = take_hd_errors(session_.hd);
+  return code != 0 && !fail(fault_of_hd_error(code), Source::kError, code);
+}
+
+/// Ends the frame with this force.
+void PhantomWorker::send(const Vec3& force_N) {
+  double of_device[3];
+  to_device(force_N, of_device);
   session_.hd.set_doubles(kHdCurrentForce, of_device);
+  session_.hd.end_frame(session_.id);
 }
 
 /// No answer is looked at: each step is tried, whatever became of the one before.
 void PhantomWorker::let_go() {
   session_.hd.begin_frame(session_.id);
-  set_force({});
-  session_.hd.end_frame(session_.id);
+  send({});
   session_.hd.disable(kHdForceOutput);
   take_hd_errors(session_.hd);
 }
 
 bool PhantomWorker::switch_forces(bool on) {
-  if (on)
+  wanted_on_ = on;
+  return true;  // done after the frame, and what is wrong is on the stack of errors
+}
+
+/// After a frame that carried zero.
+void PhantomWorker::switch_output() {
+  if (wanted_on_ == output_on_) return;
+  output_on_ = wanted_on_;
+  if (output_on_)
     session_.hd.enable(kHdForceOutput);
   else
     session_.hd.disable(kHdForceOutput);
-  return true;  // what is wrong is on the stack of errors
 }
 
 void PhantomWorker::close() {
@@ -167,10 +213,12 @@ void PhantomWorker::close() {
   session_.hd.disable_device(session_.id);
 }
 
-void PhantomWorker::fail(Fault fault, Source source, unsigned code) {
+/// False, for the caller to pass on.
+bool PhantomWorker::fail(Fault fault, Source source, unsigned code) {
   keep({.fault = fault,
         .source = static_cast<std::uint8_t>(source),
         .code = static_cast<std::uint16_t>(std::min(code, 0xFFFFu))});
+  return false;
 }
 
 }  // namespace tact::hal::phantom

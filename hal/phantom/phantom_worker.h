@@ -2,10 +2,13 @@
 // phantom_worker.h - what the library's own thread does for tact, 1000 times a second.
 //
 // The library drives its device from a thread of its own, its scheduler (HD-3), and calls
-// `on_cycle` there: take the device's state, pass the pose on, set the newest force, send it. The
-// thread becomes "tact-phantom", SCHED_FIFO 78, below the loop. What it shares with the loop, and
-// what follows from a trouble: library_worker.h. Any error of the library is a trouble, and so are
-// forces that are off, and a calibration that is lost.
+// `on_cycle` there: take the device's state, judge it, set the newest force, send it, pass the pose
+// on. The thread becomes "tact-phantom", SCHED_FIFO 78, below the loop. What it shares with the
+// loop, and what follows from a trouble: library_worker.h. Any error of the library is a trouble,
+// and so are forces that are off, a calibration that is lost, and a pose that is no number.
+//
+// A frame with a trouble carries zero force. The force output is switched only after a frame that
+// carried zero.
 #pragma once
 
 #include <atomic>
@@ -18,7 +21,7 @@
 
 namespace tact::hal::phantom {
 
-/// The scheduler's rate, which every device of the maker bears.
+/// The scheduler's rate (HD-3).
 inline constexpr double kPhantomRate_Hz = 1000.0;
 
 class PhantomWorker final : public maker_library::LibraryWorker {
@@ -28,10 +31,8 @@ class PhantomWorker final : public maker_library::LibraryWorker {
   static model::Result<std::shared_ptr<PhantomWorker>> start(const PhantomSession& session,
                                                              double rate_Hz);
 
-  std::string words() const override;
-
  private:
-  enum class Source : std::uint8_t { kNone, kError, kForceOff, kCalibration };
+  enum class Source : std::uint8_t { kNone, kError, kForceOff, kCalibration, kPose };
 
   PhantomWorker(const PhantomSession& session, double rate_Hz)
       : LibraryWorker(static_cast<std::int64_t>(1e9 / kPhantomRate_Hz), rate_Hz),
@@ -40,15 +41,20 @@ class PhantomWorker final : public maker_library::LibraryWorker {
   static unsigned on_cycle(void* of);
   bool cycle();
   void exchange();
-  void set_force(const model::Vec3& force_N);
+  bool judge(maker_library::LibraryPose& pose);
+  bool errors();
+  void send(const model::Vec3& force_N);
   void let_go();
   bool switch_forces(bool on) override;
+  void switch_output();
+  std::string words_of_trouble() const override;
   void close() override;
-  void fail(model::Fault fault, Source source, unsigned code);
+  bool fail(model::Fault fault, Source source, unsigned code);
 
   PhantomSession session_;
-  std::shared_ptr<PhantomWorker> self_;   // while the library may call
-  bool entered_ = false;                  // the library's thread
+  std::shared_ptr<PhantomWorker> self_;  // while the library may call
+  bool entered_ = false;                 // the library's thread, as the next two
+  bool wanted_on_ = false, output_on_ = false;
   std::atomic<unsigned> calibration_{0};  // what the library told last; 0: nothing yet
   std::atomic<bool> calibrated_{false};   // once
 };

@@ -28,6 +28,7 @@ class DeviceLoop : public testing::Test {
     ASSERT_TRUE(opened) << opened.error().sentence;
     device = std::move(*opened);
     fault = hal::Fault::kNone;
+    device->permit(permitted);
     ticked_ns = now_ns();
   }
   void tick(const hal::Wrench& wrench = {}) {

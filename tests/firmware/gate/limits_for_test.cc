@@ -40,6 +40,19 @@ TEST(LimitsFor, AStrongerDeviceDoesNotRaiseTheScene) {
   EXPECT_DOUBLE_EQ(limits.workspace_half_length_m, 0.08);
 }
 
+TEST(LimitsFor, WhatTheMotorsBearForLongLimitsTheSceneWhereTheDeviceTellsIt) {
+  model::Limits limits = scene();
+  limits.continuous_force_N = 1.5;
+  hal::DeviceInfo info = device(1.0);
+  EXPECT_DOUBLE_EQ(limits_for(limits, info).continuous_force_N, 1.5) << "not told";
+  info.max_continuous_force_N = 0.88;
+  EXPECT_DOUBLE_EQ(limits_for(limits, info).continuous_force_N, 0.88);
+  info.max_continuous_force_N = 3.0;
+  EXPECT_DOUBLE_EQ(limits_for(limits, info).continuous_force_N, 1.5);
+  info.max_continuous_force_N = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(limits_for(limits, info).continuous_force_N, 0.0);
+}
+
 TEST(LimitsFor, ALimitThatIsNoNumberIsZero) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const model::Limits by_device = limits_for(scene(), device(nan));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace tact::hal::maker_library::rotation_test {
 
@@ -19,6 +20,29 @@ TEST(Rotation, ARotationBecomesTheQuaternionThatTurnsTheSame) {
     EXPECT_NEAR(half.w, 0.0, 1e-15);
     EXPECT_NEAR(i == 0 ? half.x : i == 1 ? half.y : half.z, 1.0, 1e-15);
   }
+}
+
+TEST(Rotation, AQuaternionAndItsNegativeHaveOneRotationVector) {
+  const auto about = [](double angle_rad) {
+    const double half_rad = 0.5 * angle_rad;
+    return model::Quat{std::cos(half_rad), 0.0, 0.6 * std::sin(half_rad), 0.8 * std::sin(half_rad)};
+  };
+  for (const double angle_rad : {0.0, 1e-14, 1e-9, 0.3, -0.3, 3.0}) {
+    const model::Quat q = about(angle_rad);
+    for (const double sign : {1.0, -1.0}) {
+      const model::Vec3 v = rotation_vector_rad({sign * q.w, sign * q.x, sign * q.y, sign * q.z});
+      EXPECT_NEAR(v.x, 0.0, 1e-15);
+      EXPECT_NEAR(v.y, 0.6 * angle_rad, 1e-14) << angle_rad;
+      EXPECT_NEAR(v.z, 0.8 * angle_rad, 1e-14) << angle_rad;
+    }
+  }
+}
+
+TEST(Rotation, HalfATurnHasThatLengthAndMoreGoesTheOtherWay) {
+  constexpr double kPi = std::numbers::pi;
+  EXPECT_NEAR(norm(rotation_vector_rad({0.0, 0.0, 0.6, 0.8})), kPi, 1e-15);
+  const model::Vec3 v = rotation_vector_rad({std::cos(2.0), std::sin(2.0), 0.0, 0.0});
+  EXPECT_NEAR(v.x, 4.0 - 2.0 * kPi, 1e-15);
 }
 
 TEST(Rotation, WhatIsNoRotationIsNoOrientation) {

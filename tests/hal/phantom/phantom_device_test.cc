@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
+#include "hal/phantom/hd_library.h"
 #include "tests/support/device_loop.h"
 #include "tests/support/no_alloc.h"
 #include "tests/support/stub_hd/hd_client.h"
@@ -13,6 +15,10 @@ namespace tact::hal::phantom::phantom_device_test {
 
 class Phantom : public tests::DeviceLoop {
  protected:
+  void TearDown() override {
+    device.reset();
+    EXPECT_EQ(stub.unsafe_calls(), 0) << "the output is switched at zero alone";
+  }
   void open() { DeviceLoop::open(tests::phantom_scene()); }
   /// What arrives at the motors, in the device's frame: 0 while the force output is off.
   Vec3 felt_N() {
@@ -71,8 +77,24 @@ TEST_F(Phantom, AStylusThatTurnsAboutTheVerticalTurnsAboutZOfW) {
   EXPECT_NEAR(sample.tool.angular_velocity_radps.y, 0.0, 1e-9);
 }
 
+TEST_F(Phantom, AnUprightStylusIsAnUprightTool) {
+  open();
+  ASSERT_TRUE(ready());
+  EXPECT_NEAR(std::abs(sample.tool.orientation.w), 1.0, 1e-12);
+}
+
+TEST_F(Phantom, AStylusThatLiesTowardsTheOperatorHasItsHandleAlongXOfW) {
+  stub.lean(std::numbers::pi / 2);
+  open();
+  ASSERT_TRUE(ready());
+  const Vec3 handle = rotate(sample.tool.orientation, {0, 0, 1});
+  EXPECT_NEAR(handle.x, 1.0, 1e-12);
+  const Vec3 right = rotate(sample.tool.orientation, {0, 1, 0});
+  EXPECT_NEAR(right.y, 1.0, 1e-12) << "it was leant about the device's x";
+}
+
 TEST_F(Phantom, ADeviceWithThreeAxesHasNoOrientation) {
-  stub.set_number(0x2553, 3);
+  stub.set_number(kHdInputDof, 3);
   stub.spin(2.0);
   open();
   ASSERT_TRUE(ready());
@@ -88,13 +110,42 @@ TEST_F(Phantom, TooMuchForceIsScaledWithItsDirection) {
   EXPECT_NEAR(felt_N().y, 3.3 * 0.8, 1e-12);
 }
 
-TEST_F(Phantom, NoForceIsMadeOfNaN) {
+TEST_F(Phantom, NoForceIsMadeOfNaNAndItIsAFaultOfThatTick) {
   open();
   ASSERT_TRUE(ready());
   for (int i = 0; i < 20; ++i) {
     tick({.force_N = {std::nan(""), 1, 1}, .torque_Nm = {1, 1, 1}});
     ASSERT_EQ(felt_N(), Vec3{});
+    ASSERT_EQ(fault, Fault::kForceNotFinite);
   }
+  tick();
+  EXPECT_EQ(fault, Fault::kNone);
+}
+
+TEST_F(Phantom, IsReadyOnlyWhileAForceWouldReachTheHand) {
+  open();
+  EXPECT_FALSE(device->ready()) << "the force output is off";
+  ASSERT_TRUE(ready());
+  EXPECT_TRUE(device->ready());
+  permitted = false;
+  tick();
+  EXPECT_FALSE(device->ready());
+  for (int i = 0; i < 50; ++i) tick();
+  permitted = true;
+  tick();
+  EXPECT_FALSE(device->ready()) << "the force output is still off";
+  EXPECT_TRUE(tick_until([&] { return device->ready(); }));
+}
+
+TEST_F(Phantom, ACommandThatGrewOldWhileTheLibraryWaitedIsWorthZero) {
+  open();
+  ASSERT_TRUE(ready());
+  ASSERT_TRUE(
+      tick_until([&] { return felt_N().y == 2.0; }, {.force_N = {0, 0, 2}, .torque_Nm = {}}));
+  stub.set_delay_us(40'000);  // of the frame that begins within a millisecond
+  sleep_ms(55);
+  EXPECT_EQ(felt_N(), Vec3{});
+  stub.set_delay_us(0);
 }
 
 TEST_F(Phantom, OneFrameForEachCycleOfTheLibraryAndNoneFromTheLoop) {
@@ -160,15 +211,26 @@ TEST_F(Phantom, InfoIsWhatTheLibraryTells) {
   EXPECT_EQ(info.name, "Touch no. " + std::to_string(getpid()));
   EXPECT_EQ(info.max_force_N, 3.3);
   EXPECT_EQ(info.max_torque_Nm, 0.0);
+  EXPECT_EQ(info.max_continuous_force_N, 0.88);
   EXPECT_NEAR(info.workspace_radius_m, 0.060, 1e-12) << "of 160 x 120 mm";
   EXPECT_NEAR(info.workspace_half_length_m, 0.035, 1e-12);
   ASSERT_TRUE(info.at_tool);
   EXPECT_EQ(info.at_tool->damping_Ns_per_m, 1.0);
   EXPECT_EQ(info.damping_key, "device.phantom.damping_Ns_per_m");
-  for (const char* part : {"nothing zeroes this device", "0.88 N for long", "above 500 N/m"})
+  for (const char* part : {"nothing zeroes this device", "or the library hangs", "for long: 0.88 N",
+                           "advises: 500 N/m", "assumed, not measured"})
     EXPECT_NE(info.caution.find(part), std::string::npos) << info.caution;
   EXPECT_FALSE(device->last_words());
   EXPECT_TRUE(device->loop_calls().empty());
+}
+
+TEST_F(Phantom, WhatItsMotorsBearForLongMayNotBeTold) {
+  for (const double told_N : {0.0, -1.0, std::nan("")}) {
+    stub.set_number(kHdContinuousForce, told_N);
+    open();
+    EXPECT_EQ(device->info().max_continuous_force_N, 0.0);
+    EXPECT_NE(device->info().caution.find("for long: not told"), std::string::npos);
+  }
 }
 
 TEST_F(Phantom, StopSwitchesOffAndClosesTwiceWithoutHarm) {
@@ -181,6 +243,8 @@ TEST_F(Phantom, StopSwitchesOffAndClosesTwiceWithoutHarm) {
   EXPECT_EQ(stub.last_force(force), 0);
   EXPECT_EQ(force[1], 0.0);
   EXPECT_FALSE(stub.is_open());
+  EXPECT_EQ(device->why_not_off(), "");
+  EXPECT_EQ(device->trouble(), "");
   device->stop();
   EXPECT_EQ(stub.calls("hdDisableDevice"), 1);
 }

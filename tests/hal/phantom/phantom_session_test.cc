@@ -2,8 +2,13 @@
 // What a PHANTOM needs before the loop.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "hal/device_lock.h"
+#include "hal/phantom/hd_library.h"
 #include "hal/phantom/phantom_device.h"
 #include "hal/udev_rules.h"
+#include "tests/support/forked.h"
 #include "tests/support/stub_hd/hd_client.h"
 
 namespace tact::hal::phantom::phantom_session_test {
@@ -59,29 +64,54 @@ TEST_F(PhantomSessions, ADeviceThatIsNotThereIsToldWithItsNameAndTheRule) {
                   "the device does not answer", "device.phantom.name", kPhantomRule});
 }
 
+TEST_F(PhantomSessions, ADeviceThatOpensWithAnErrorIsClosedAgainWithItsForcesOff) {
+  stub.open_anyway(1);
+  stub.fail("hdInitDevice", 0x0303);
+  expect_refusal({"its connection is not set up"});
+  EXPECT_EQ(stub.calls("hdDisable"), 1);
+}
+
+TEST_F(PhantomSessions, OneDeviceOfTwoNamesServesOneProgram) {
+  const std::string number = "two names " + std::to_string(getpid());
+  const tests::Forked other([&] { lock_device("the PHANTOM no. " + number); });
+  stub.set_serial(number.c_str());
+  expect_refusal({"the PHANTOM no. " + number + " is driven by process"});
+  EXPECT_EQ(stub.calls("hdDisable"), 0) << "its forces are the other program's";
+  EXPECT_EQ(stub.calls("hdDisableDevice"), 1);
+}
+
 TEST_F(PhantomSessions, WithoutCalibrationItSaysWhatToDo) {
-  stub.set_calibration(0x5002);
+  stub.set_calibration(kHdNeedsHand);
   expect_refusal({"the Touch is not calibrated; put its stylus into the inkwell"});
-  stub.set_number(0x2555, 1);
+  stub.set_number(kHdCalibrationStyle, 1);
   expect_refusal({"the Touch is not calibrated; calibrate it by the maker's Touch_Diagnostic"});
 }
 
 TEST_F(PhantomSessions, AStylusInTheInkwellIsCalibratedByTheStart) {
-  stub.set_calibration(0x5001);
+  stub.set_calibration(kHdNeedsUpdate);
   EXPECT_EQ(refusal(), "");
   EXPECT_EQ(stub.calls("hdUpdateCalibration"), 1);
 }
 
 TEST_F(PhantomSessions, EncodersThatAreResetByHandAreNeverResetByTact) {
-  stub.set_number(0x2555, 1);
-  stub.set_calibration(0x5001);
+  stub.set_number(kHdCalibrationStyle, 1);
+  stub.set_calibration(kHdNeedsUpdate);
   expect_refusal({"not calibrated; calibrate it by the maker's Touch_Diagnostic"});
   EXPECT_EQ(stub.calls("hdUpdateCalibration"), 0);
 }
 
 TEST_F(PhantomSessions, ADeviceWithoutLimitsIsRefused) {
-  stub.set_number(0x2603, 0.0);
+  stub.set_number(kHdMaxForce, 0.0);
   expect_refusal({"tells 0 N and a workspace of 0.12 x 0.07 m, which cannot be"});
+}
+
+TEST_F(PhantomSessions, AWorkspaceThatIsNoNumberIsRefused) {
+  for (int corner = 0; corner < 6; ++corner) {
+    stub.reset();
+    stub.set_number(kHdUsableWorkspace + 0x10000u * static_cast<unsigned>(corner + 1),
+                    std::nan(""));
+    expect_refusal({"which cannot be"});
+  }
 }
 
 TEST_F(PhantomSessions, EveryCallThatFailsIsToldInWords) {

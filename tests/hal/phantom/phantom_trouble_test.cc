@@ -2,6 +2,9 @@
 // What a PHANTOM says and does when it fails in the middle of a run.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "hal/phantom/hd_library.h"
 #include "hal/phantom/hd_words.h"
 #include "tests/support/device_loop.h"
 #include "tests/support/stub_hd/hd_client.h"
@@ -28,6 +31,7 @@ class PhantomTrouble : public tests::DeviceLoop {
     EXPECT_TRUE(comes([&] { return stub.last_force(force) == 0 && force[1] == 0.0; }))
         << "the last thing that is asked for";
     sleep_ms(20);
+    EXPECT_EQ(stub.unsafe_calls(), 0) << "the frame of the trouble carries zero, then off";
     stub.reset();
     for (int i = 0; i < 100; ++i) tick(kUp);
     EXPECT_EQ(fault, found) << "a fault stays until the device is opened again";
@@ -72,21 +76,35 @@ TEST_F(PhantomTrouble, AForceOutputThatAnotherProgramSwitchedOffIsAFault) {
 }
 
 TEST_F(PhantomTrouble, ALostCalibrationIsAFaultAndSaysWhatToDo) {
-  stub.set_calibration(0x5002);
+  stub.set_calibration(kHdNeedsHand);
   EXPECT_EQ(lasting_fault(), Fault::kHomingLost);
   EXPECT_TRUE(told("put its stylus into the inkwell, then start tactd again")) << device->trouble();
 }
 
+TEST_F(PhantomTrouble, AnAnswerThatIsNoCalibrationIsAFault) {
+  for (const unsigned status : {0u, 0x5003u}) {
+    SetUp();
+    stub.set_calibration(status);
+    EXPECT_EQ(lasting_fault(), Fault::kHomingLost) << status;
+  }
+}
+
+TEST_F(PhantomTrouble, APoseThatIsNoNumberIsAFault) {
+  stub.hold(std::nan(""), 0, 0);
+  EXPECT_EQ(lasting_fault(), Fault::kSampleNotFinite);
+  EXPECT_TRUE(told("a pose that is no number; check its cable")) << device->trouble();
+}
+
 TEST_F(PhantomTrouble, AnUpdateOfTheCalibrationWaitsForTheNextStart) {
   const long updates = stub.calls("hdUpdateCalibration");
-  stub.set_calibration(0x5001);  // the stylus rests in the inkwell
+  stub.set_calibration(kHdNeedsUpdate);  // the stylus rests in the inkwell
   for (int i = 0; i < 100; ++i) tick(kUp);
   EXPECT_EQ(fault, Fault::kNone) << device->trouble();
   EXPECT_EQ(stub.calls("hdUpdateCalibration"), updates)
       << "the position would jump under the force";
 }
 
-TEST_F(PhantomTrouble, ASchedulerThatFallsSilentLeavesNoFreshSample) {
+TEST_F(PhantomTrouble, ASchedulerThatFallsSilentLeavesNoFreshSampleAndIsToldWithItsForce) {
   stub.silence(1);
   sleep_ms(10);
   tick(kUp);  // takes what came before
@@ -94,7 +112,20 @@ TEST_F(PhantomTrouble, ASchedulerThatFallsSilentLeavesNoFreshSample) {
     tick(kUp);
     ASSERT_FALSE(sample.fresh);
   }
+  EXPECT_TRUE(told("no call for more than 20 ms: the device may still push; switch its supply off"))
+      << device->trouble();
   stub.silence(0);
+  EXPECT_TRUE(comes([&] { return device->trouble().empty(); }));
+}
+
+TEST_F(PhantomTrouble, AStopThatTheLibraryDoesNotAnswerIsTold) {
+  stub.silence(1);
+  device->stop();
+  EXPECT_EQ(device->why_not_off(), "the library does not return: switch the device's supply off");
+  EXPECT_TRUE(told("the library does not return")) << device->trouble();
+  EXPECT_TRUE(stub.is_open()) << "what it still runs is not closed";
+  stub.silence(0);  // it lets go after all, before the next test
+  EXPECT_TRUE(comes([&] { return !told("no call for more than"); }));
 }
 
 TEST(HdWords, NoCodeIsBlankOrWithoutACure) {

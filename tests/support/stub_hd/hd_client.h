@@ -24,6 +24,10 @@ class StubHd : public StubLibrary {
     find("stub_hd_lose_force_output", lose_force_output);
     find("stub_hd_hold", hold);
     find("stub_hd_spin", spin);
+    find("stub_hd_unsafe_calls", unsafe_calls);
+    find("stub_hd_set_serial", set_serial);
+    find("stub_hd_open_anyway", open_anyway);
+    find("stub_hd_lean", lean);
     find("stub_hd_set_delay_us", set_delay_us);
     find("stub_hd_silence", silence);
     find("stub_hd_calls", calls);
@@ -41,6 +45,10 @@ class StubHd : public StubLibrary {
   decltype(&stub_hd_lose_force_output) lose_force_output = nullptr;
   decltype(&stub_hd_hold) hold = nullptr;
   decltype(&stub_hd_spin) spin = nullptr;
+  decltype(&stub_hd_unsafe_calls) unsafe_calls = nullptr;
+  decltype(&stub_hd_set_serial) set_serial = nullptr;
+  decltype(&stub_hd_open_anyway) open_anyway = nullptr;
+  decltype(&stub_hd_lean) lean = nullptr;
   decltype(&stub_hd_set_delay_us) set_delay_us = nullptr;
   decltype(&stub_hd_silence) silence = nullptr;
   decltype(&stub_hd_calls) calls = nullptr;

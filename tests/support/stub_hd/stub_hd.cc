@@ -4,13 +4,14 @@
 //
 // Behind it a Touch, led by a hand (led_handle.h). As in the maker's, the device is driven by a
 // thread of the library, 1000 times a second, with one frame in each of its cycles; a force counts
-// when its frame ends.
+// when its frame ends. With TACT_STUB_HD_HANGS_AT=N that thread stands for ever in its N-th cycle.
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <ctime>
 #include <string>
 #include <thread>
@@ -53,12 +54,19 @@ Scheduler scheduler;
 void enter(const char* function) {
   ++state.calls[function];
   const auto found = state.failing.find(function);
-  if (found != state.failing.end() && found->second != 0) state.errors.push_back(found->second);
+  if (found == state.failing.end() || found->second == 0) return;
+  state.errors.push_back(found->second);
+  state.bad_frame = true;
 }
 
 double number_of(unsigned what) {
   const auto set = state.numbers.find(what);
   return set == state.numbers.end() ? number_of_touch(what) : set->second;
+}
+
+/// Of the force output: what is then in the motors is felt, or is held until the next "on".
+void count_switch(unsigned what) {
+  if (what == kForceOutput && state.force_N != std::array<double, 3>{}) ++state.unsafe_calls;
 }
 
 void catch_up() {
@@ -69,6 +77,8 @@ void catch_up() {
 }
 
 void call_once_a_millisecond() {
+  const char* at = std::getenv("TACT_STUB_HD_HANGS_AT");
+  const long hangs_at = at == nullptr ? 0 : std::atol(at);
   timespec due{};
   clock_gettime(CLOCK_MONOTONIC, &due);
   while (running) {
@@ -82,6 +92,8 @@ void call_once_a_millisecond() {
       const Locked locked;
       now = callback, of = callback_of;
     }
+    if (hangs_at > 0 && cycle >= hangs_at)
+      for (;;) pause();
     if (silent || now == nullptr || now(of) != 0) continue;
     const Locked locked;
     callback = nullptr;
@@ -102,7 +114,7 @@ struct HDErrorInfo {
 unsigned hdInitDevice(const char* name) {
   const Locked locked;
   enter("hdInitDevice");
-  if (!state.errors.empty()) return kInvalidHandle;
+  if (!state.errors.empty() && !state.opens_anyway) return kInvalidHandle;
   state.open = true;
   state.name = name == nullptr ? "(default)" : name;
   return kDevice;
@@ -128,6 +140,7 @@ void hdBeginFrame(unsigned) {
   }
   if (delay_us > 0) usleep(static_cast<useconds_t>(delay_us));
   const Locked locked;
+  state.bad_frame = false;
   enter("hdBeginFrame");
   if (state.in_frame || state.frame_of_cycle == cycle) state.errors.push_back(kIllegalBegin);
   state.in_frame = true;
@@ -157,12 +170,14 @@ HDErrorInfo hdGetError() {
 void hdEnable(unsigned what) {
   const Locked locked;
   enter("hdEnable");
+  count_switch(what);
   if (what == kForceOutput && !state.output_lost) state.output = true;
 }
 
 void hdDisable(unsigned what) {
   const Locked locked;
   enter("hdDisable");
+  count_switch(what);
   catch_up();
   if (what == kForceOutput) state.output = false;
 }
@@ -177,14 +192,20 @@ void hdGetDoublev(unsigned what, double* values) {
   const Locked locked;
   enter("hdGetDoublev");
   if (what == kUsableWorkspace) {
-    std::copy(kBox_mm.begin(), kBox_mm.end(), values);
+    for (unsigned i = 0; i < 6; ++i) {
+      const auto set = state.numbers.find(what + 0x10000 * (i + 1));
+      values[i] = set == state.numbers.end() ? kBox_mm[i] : set->second;
+    }
   } else if (what == kTransform) {
     if (!state.in_frame) state.errors.push_back(kFrameError);
     const double angle_rad = state.spin_radps * (tact::tests::monotonic_s() - state.handle.begin_s);
     const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+    const double up = std::cos(state.lean_rad), out = std::sin(state.lean_rad);
     const std::array<double, 3> at_mm = to_device_mm(state.handle.position_m);
-    const double columns[16] = {c, 0.0, -s, 0.0, 0.0,      1.0,      0.0,      0.0,
-                                s, 0.0, c,  0.0, at_mm[0], at_mm[1], at_mm[2], 1.0};
+    if (!std::isfinite(at_mm[0])) state.bad_frame = true;
+    // Upright, its handle up; leant towards the operator about x, then turned about y.
+    const double columns[16] = {c,       0.0, -s,      0.0, -s * up,  out,      -c * up,  0.0,
+                                s * out, up,  c * out, 0.0, at_mm[0], at_mm[1], at_mm[2], 1.0};
     std::copy(columns, columns + 16, values);
   } else {
     *values = number_of(what);
@@ -200,21 +221,23 @@ void hdGetIntegerv(unsigned what, int* values) {
 const char* hdGetString(unsigned what) {
   const Locked locked;
   enter("hdGetString");
-  static const std::string serial = std::to_string(getpid());
-  return what == 0x2501 ? "Touch" : what == 0x2504 ? serial.c_str() : nullptr;
+  return what == 0x2501 ? "Touch" : what == 0x2504 ? state.serial.c_str() : nullptr;
 }
 
 void hdSetDoublev(unsigned what, const double* values) {
   const Locked locked;
+  const bool was_bad = state.bad_frame;  // by what came before
   enter("hdSetDoublev");
   if (what != kForce) return;
   if (!state.in_frame) state.errors.push_back(kFrameError);
   std::copy(values, values + 3, state.set_N.begin());
+  if (was_bad && state.set_N != std::array<double, 3>{}) ++state.unsafe_calls;
 }
 
 unsigned hdCheckCalibration() {
   const Locked locked;
   enter("hdCheckCalibration");
+  if (state.calibration != kCalibrated && state.calibration != kNeedsUpdate) state.bad_frame = true;
   return state.calibration;
 }
 

@@ -10,7 +10,8 @@ extern "C" {
 void stub_hd_reset();
 /// What hdCheckCalibration answers; an update makes 0x5001 ("needs one") 0x5000 ("is").
 void stub_hd_set_calibration(unsigned status);
-/// What a number of the device is, as hdGetDoublev or hdGetIntegerv tells it.
+/// What a number of the device is, as hdGetDoublev or hdGetIntegerv tells it; of several, the n-th
+/// from 1 is what + n * 0x10000.
 void stub_hd_set_number(unsigned what, double value);
 /// The named function leaves this error on the stack until the next reset; 0: works again.
 void stub_hd_fail(const char* function, unsigned error);
@@ -18,10 +19,15 @@ void stub_hd_fail(const char* function, unsigned error);
 void stub_hd_lose_force_output();
 /// Holds the stylus here, in mm of the device's frame, instead of leaving it to the hand.
 void stub_hd_hold(double x_mm, double y_mm, double z_mm);
+/// Leans the upright stylus so far towards the operator: pi/2 lays it down.
+void stub_hd_lean(double rad);
 /// Turns the stylus at this rate about the device's y.
 void stub_hd_spin(double radps);
 /// hdBeginFrame takes so long.
 void stub_hd_set_delay_us(int us);
+/// hdInitDevice opens the device although it leaves an error.
+void stub_hd_open_anyway(int whether);
+void stub_hd_set_serial(const char* number);
 /// The scheduler makes no calls.
 void stub_hd_silence(int silent);
 /// Calls of the named function since the reset.
@@ -30,6 +36,9 @@ long stub_hd_calls(const char* function);
 int stub_hd_last_force(double force_N[3]);
 /// Largest force that was felt since the reset.
 double stub_hd_strongest_N();
+/// How often the force output was switched, on or off, while the last frame had carried a force, or
+/// a frame carried one although its beginning, its state or its calibration were bad.
+long stub_hd_unsafe_calls();
 int stub_hd_is_open();
 /// The name with which it was opened; "(default)" for none.
 const char* stub_hd_name();

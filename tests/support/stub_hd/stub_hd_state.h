@@ -2,6 +2,8 @@
 // stub_hd_state.h - what the library's side and the test's side of the stand-in share.
 #pragma once
 
+#include <unistd.h>
+
 #include <array>
 #include <atomic>
 #include <map>
@@ -26,12 +28,15 @@ struct State {
   bool open = false, output = false, output_lost = false, in_frame = false;
   unsigned calibration = 0x5000;  // is calibrated
   long frame_of_cycle = -1;
+  bool opens_anyway = false;
+  bool bad_frame = false;  // a force may not follow
+  long unsafe_calls = 0;   // stub_hd.h
   int delay_us = 0;
   std::array<double, 3> set_N{}, force_N{};  // of the device's frame
-  double strongest_N = 0.0, spin_radps = 0.0;
+  double strongest_N = 0.0, spin_radps = 0.0, lean_rad = 0.0;
   LedHandle handle;
   std::vector<unsigned> errors;
-  std::string name;
+  std::string name, serial = std::to_string(getpid());
   std::map<unsigned, double> numbers;  // that a test has set
   std::map<std::string, unsigned> failing;
   std::map<std::string, long> calls;

@@ -36,6 +36,10 @@ void stub_hd_hold(double x_mm, double y_mm, double z_mm) {
   state.handle.hold(1e-3 * (z_mm - kMiddle_mm[2]), 1e-3 * (x_mm - kMiddle_mm[0]),
                     1e-3 * (y_mm - kMiddle_mm[1]));
 }
+void stub_hd_lean(double rad) {
+  const Locked locked;
+  state.lean_rad = rad;
+}
 void stub_hd_spin(double radps) {
   const Locked locked;
   state.spin_radps = radps;
@@ -43,6 +47,14 @@ void stub_hd_spin(double radps) {
 void stub_hd_set_delay_us(int us) {
   const Locked locked;
   state.delay_us = us;
+}
+void stub_hd_open_anyway(int whether) {
+  const Locked locked;
+  state.opens_anyway = whether != 0;
+}
+void stub_hd_set_serial(const char* number) {
+  const Locked locked;
+  state.serial = number;
 }
 void stub_hd_silence(int whether) { silent = whether != 0; }
 long stub_hd_calls(const char* function) {
@@ -57,6 +69,10 @@ int stub_hd_last_force(double force_N[3]) {
 double stub_hd_strongest_N() {
   const Locked locked;
   return state.strongest_N;
+}
+long stub_hd_unsafe_calls() {
+  const Locked locked;
+  return state.unsafe_calls;
 }
 int stub_hd_is_open() {
   const Locked locked;
