@@ -112,7 +112,7 @@ struct LinesSettings {
 
 struct DeviceSettings {
   std::string kind;            // "sim-delta", or another that hal/registry knows
-  bool trust_library = false;  // whoever's file the maker's is; a person says so, no scene can
+  bool trust_library = false;  // the maker's may be anybody's file; a person says so, no scene can
   SimDeviceSettings sim{};
   DeltaSettings delta{};
   CanSettings can{};

@@ -10,19 +10,17 @@
 #include <cstdint>
 
 #include "hal/falcon/falcon_packets.h"
+#include "hal/loop_gone.h"
 
 namespace tact::hal::falcon_usb {
 
 class LoopSilence {
  public:
-  /// The watch above the loop acts sooner with hard real time above 250 Hz, else later.
-  static constexpr std::int64_t kSilence_ns = 100'000'000;
-
   /// `commands`: how many the loop has sent. True: silent for so long; again after as long.
   bool is_due(std::uint64_t commands, std::int64_t now_ns) {
     const bool heard = commands != commands_;
     commands_ = commands;
-    if (!heard && (commands == 0 || now_ns - since_ns_ < kSilence_ns)) return false;
+    if (!heard && (commands == 0 || now_ns - since_ns_ < kLoopGone_ns)) return false;
     since_ns_ = now_ns;
     return !heard;
   }

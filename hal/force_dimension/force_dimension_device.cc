@@ -10,6 +10,7 @@ namespace tact::hal::force_dimension {
 namespace {
 
 constexpr double kDelay_s = 0.75e-3;  // a cycle of the thread before the loop, one after, and USB
+constexpr const char* kDampingKey = "device.force_dimension.damping_Ns_per_m";
 
 DeviceInfo info_of(const SdkSession& session, const model::ForceDimensionSettings& settings) {
   const ForceDimensionType& type = session.type;
@@ -24,8 +25,11 @@ DeviceInfo info_of(const SdkSession& session, const model::ForceDimensionSetting
                                          .friction_N = 0.0,  // the maker tells none
                                          .position_step_m = type.resolution_m,
                                          .delay_s = kDelay_s},
-          .damping_key = "device.force_dimension.damping_Ns_per_m",
-          .caution = maker_library::kNoGuardian};
+          .damping_key = kDampingKey,
+          .caution = maker_library::kNoGuardian +
+                     maker_library::words_of_assumed_damping(
+                         settings.damping_Ns_per_m,
+                         model::ForceDimensionSettings{}.damping_Ns_per_m, kDampingKey)};
 }
 
 }  // namespace

@@ -128,7 +128,7 @@ constexpr UsbKind kUsbKinds[] = {
     {PartKind::kFalcon, "0403", "cb48", "Novint Falcon", kFalconRule},
     {PartKind::kForceDimension, "1451", nullptr, "Force Dimension device", kForceDimensionRule},
     {PartKind::kPhantom, "2988", nullptr, "PHANTOM", kPhantomRule},
-    {PartKind::kPhantom, "0301", "2988", "PHANTOM", kPhantomRule}};
+    {PartKind::kPhantom, "0301", "2988", "PHANTOM", kOldPhantomRule}};
 
 /// The serial port or the HID node of a USB device, else the node of the device itself.
 std::string node_of(const PartProbes& probes, const fs::path& device) {
@@ -237,8 +237,7 @@ const char* words_of_absence(PartKind kind) {
              "(lsusb shows it)";
     case PartKind::kPhantom:
       return "no PHANTOM or Touch on USB (2988:*); switch its supply on and plug in its cable "
-             "(lsusb "
-             "shows it); one on Ethernet or FireWire is not looked for";
+             "(lsusb shows it); one on Ethernet or FireWire is not looked for";
     case PartKind::kGpio:
       break;
   }

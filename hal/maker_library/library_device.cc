@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/maker_library/library_device.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "hal/maker_library/rotation.h"
@@ -14,6 +16,12 @@ constexpr double kObserver_Hz = 40.0;
 constexpr double kJump_m = 0.02, kJump_rad = 0.5;  // between two samples: a new start
 
 }  // namespace
+
+std::string words_of_assumed_damping(double damping_Ns_per_m, double default_Ns_per_m,
+                                     const char* key) {
+  if (damping_Ns_per_m != default_Ns_per_m) return "";
+  return fmt::format("; the damping of this device is assumed, not measured ({})", key);
+}
 
 LibraryDevice::LibraryDevice(DeviceInfo info, std::shared_ptr<LibraryWorker> worker)
     : info_(std::move(info)),

@@ -22,6 +22,11 @@ inline constexpr const char* kNoGuardian =
     "if tactd is killed or the library hangs, nothing zeroes this device, because its maker's "
     "library shares no handle: put its supply on a relay";
 
+/// For `DeviceInfo::caution`, "; " first: the damping is the default of this key. Empty where the
+/// scene gives one of its own.
+std::string words_of_assumed_damping(double damping_Ns_per_m, double default_Ns_per_m,
+                                     const char* key);
+
 class LibraryDevice final : public Device {
  public:
   LibraryDevice(DeviceInfo info, std::shared_ptr<LibraryWorker> worker);

@@ -4,7 +4,8 @@
 // A scene names it, and a scene may come from anybody; what is loaded runs with all that tactd may
 // do. So the file, and every folder on its way, belongs to root and can be written by nobody else,
 // and it lies where software is installed. A name without a path is looked for in the system's
-// folders alone: LD_LIBRARY_PATH does not count. --trust-library leaves all of this out.
+// folders alone, whatever LD_LIBRARY_PATH says; where the libraries that it needs itself are found
+// is the loader's matter, and that variable counts there. --trust-library leaves all of this out.
 #pragma once
 
 #include <sys/types.h>

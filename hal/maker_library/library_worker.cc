@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <thread>
 
+#include "hal/loop_gone.h"
+
 namespace tact::hal::maker_library {
 namespace {
 
@@ -15,8 +17,6 @@ using namespace std::chrono_literals;
 using model::Fault;
 using model::Wrench;
 
-// As for a Falcon (loop_silence.h).
-constexpr std::int64_t kLoopGone_ns = 100'000'000;
 constexpr int kPriority = 78;                             // the loop has 80
 constexpr std::int64_t kZeroFirst_ns = 2'000'000;         // of zero force after the forces went on
 constexpr std::int64_t kPoweredForSure_ns = 100'000'000;  // before "forces off" is news

@@ -11,8 +11,9 @@ namespace {
 
 // A cycle of the library before the loop, one after, and half of one for USB.
 constexpr double kDelay_s = 2.5e-3;
+constexpr const char* kDampingKey = "device.phantom.damping_Ns_per_m";
 
-std::string caution_of(const PhantomSession& session) {
+std::string caution_of(const PhantomSession& session, const model::PhantomSettings& settings) {
   const std::string for_long = session.continuous_force_N > 0.0
                                    ? fmt::format("{:g} N", session.continuous_force_N)
                                    : "not told, so choose limits.continuous_force_N yourself";
@@ -20,9 +21,10 @@ std::string caution_of(const PhantomSession& session) {
                                     ? fmt::format("{:g} N/m", session.max_stiffness_N_per_m)
                                     : "not told";
   return fmt::format(
-      "{}; what its motors bear for long: {}; the stiffest law that its maker advises: {}; the "
-      "damping of this device is assumed, not measured (device.phantom.damping_Ns_per_m)",
-      maker_library::kNoGuardian, for_long, stiffness);
+      "{}; what its motors bear for long: {}; the stiffest law that its maker advises: {}{}",
+      maker_library::kNoGuardian, for_long, stiffness,
+      maker_library::words_of_assumed_damping(
+          settings.damping_Ns_per_m, model::PhantomSettings{}.damping_Ns_per_m, kDampingKey));
 }
 
 DeviceInfo info_of(const PhantomSession& session, const model::PhantomSettings& settings) {
@@ -39,8 +41,8 @@ DeviceInfo info_of(const PhantomSession& session, const model::PhantomSettings& 
                                          .friction_N = 0.0,  // the library tells none
                                          .position_step_m = settings.position_step_m,
                                          .delay_s = kDelay_s},
-          .damping_key = "device.phantom.damping_Ns_per_m",
-          .caution = caution_of(session)};
+          .damping_key = kDampingKey,
+          .caution = caution_of(session, settings)};
 }
 
 }  // namespace

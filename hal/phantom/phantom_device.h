@@ -12,8 +12,8 @@
 
 namespace tact::hal::phantom {
 
-/// Loads the library, opens and checks the device, starts the library's scheduler; up to a second.
-/// No force before the loop permits power.
+/// Loads the library, opens and checks the device, starts the library's scheduler, and waits up to
+/// a second until the device is calibrated. No force before the loop permits power.
 model::Result<std::unique_ptr<Device>> open_phantom(const model::DeviceSettings& settings,
                                                     double rate_Hz);
 

@@ -224,6 +224,13 @@ TEST_F(Phantom, InfoIsWhatTheLibraryTells) {
   EXPECT_TRUE(device->loop_calls().empty());
 }
 
+TEST_F(Phantom, ADampingOfTheSceneIsNotCalledAssumed) {
+  auto scene = tests::phantom_scene();
+  scene.device.phantom.damping_Ns_per_m = 0.4;
+  DeviceLoop::open(scene);
+  EXPECT_EQ(device->info().caution.find("assumed"), std::string::npos) << device->info().caution;
+}
+
 TEST_F(Phantom, WhatItsMotorsBearForLongMayNotBeTold) {
   for (const double told_N : {0.0, -1.0, std::nan("")}) {
     stub.set_number(kHdContinuousForce, told_N);

@@ -39,8 +39,9 @@ class Deploy : public testing::Test {
 
 TEST_F(Deploy, TheRulesAreThoseThatTheSentencesPrint) {
   const std::string rules = content(kDeploy + "60-tact.rules");
-  for (const char* rule : {tact::hal::kFalconRule, tact::hal::kForceDimensionRule,
-                           tact::hal::kPhantomRule, tact::hal::kGpioRule})
+  for (const char* rule :
+       {tact::hal::kFalconRule, tact::hal::kForceDimensionRule, tact::hal::kPhantomRule,
+        tact::hal::kOldPhantomRule, tact::hal::kGpioRule})
     EXPECT_NE(rules.find(std::string("\n") + rule + "\n"), std::string::npos) << rule;
   EXPECT_NE(rules.find("\nKERNEL==\"cpu_dma_latency\", GROUP=\"haptics\""), std::string::npos);
 }
