@@ -192,6 +192,8 @@ TEST_F(Phantom, ALoopThatDiesTakesItsForceAlong) {
 TEST_F(Phantom, WithdrawnPowerSwitchesTheForceOutputOffAndComesBackThroughZero) {
   open();
   ASSERT_TRUE(ready());
+  ASSERT_TRUE(
+      tick_until([&] { return felt_N().y == 2.0; }, {.force_N = {0, 0, 2}, .torque_Nm = {}}));
   permitted = false;
   EXPECT_TRUE(tick_until([&] { return !output_is_on(); }, {.force_N = {0, 0, 2}, .torque_Nm = {}}));
   for (int i = 0; i < 200; ++i) tick();
