@@ -147,14 +147,17 @@ TEST_F(ForceDimension, ALoopThatDiesTakesItsForceAlong) {
 TEST_F(ForceDimension, WithdrawnPowerSwitchesTheForcesOffAndComesBackThroughZero) {
   open();
   ASSERT_TRUE(ready());
-  permitted = false;
   double force[6];
+  ASSERT_TRUE(tick_until([&] { return stub.last_force(force) == 1 && force[2] == 5.0; },
+                         {.force_N = {0, 0, 5}, .torque_Nm = {}}));
+  permitted = false;
   EXPECT_TRUE(tick_until([&] { return stub.last_force(force) == 0; },
                          {.force_N = {0, 0, 5}, .torque_Nm = {}}));
   for (int i = 0; i < 200; ++i) tick();
   EXPECT_EQ(fault, Fault::kNone) << "forces that we switched off are no news";
   permitted = true;
   EXPECT_TRUE(tick_until([&] { return stub.last_force(force) == 1 && sample.fresh; }));
+  EXPECT_EQ(stub.switched_with_force(), 0) << "zero first";
 }
 
 TEST_F(ForceDimension, VelocityFollowsTheHandle) {

@@ -29,6 +29,7 @@ class StubDhd : public StubLibrary {
     find("stub_dhd_last_force", last_force);
     find("stub_dhd_settings", settings);
     find("stub_dhd_strongest_N", strongest_N);
+    find("stub_dhd_switched_with_force", switched_with_force);
     find("stub_dhd_is_open", is_open);
     reset();
     ignore_watchdog(1);
@@ -48,6 +49,7 @@ class StubDhd : public StubLibrary {
   decltype(&stub_dhd_last_force) last_force = nullptr;
   decltype(&stub_dhd_settings) settings = nullptr;
   decltype(&stub_dhd_strongest_N) strongest_N = nullptr;
+  decltype(&stub_dhd_switched_with_force) switched_with_force = nullptr;
   decltype(&stub_dhd_is_open) is_open = nullptr;
 };
 

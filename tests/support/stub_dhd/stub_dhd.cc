@@ -39,6 +39,7 @@ struct State {
   LedHandle handle;
   double fed_s = monotonic_s();
   double spin_radps = 0.0, strongest_N = 0.0;
+  long switched_with_force = 0;
   std::array<int, 17> status{};
   std::map<int, int> fixed_status;
   std::map<std::string, int> failing;
@@ -174,6 +175,8 @@ int dhdEnableForce(unsigned char on, char) {
   const Locked locked;
   if (enter("dhdEnableForce") < 0) return -1;
   catch_up();
+  const auto is_set = [](double part) { return part != 0.0; };
+  if (std::any_of(state.force, state.force + 6, is_set)) ++state.switched_with_force;
   state.status[kForce] = on != 0 ? 1 : 0;
   state.status[kForceOffCause] = on != 0 ? 0 : kCausedBySoftware;
   state.fed_s = monotonic_s();
@@ -267,6 +270,10 @@ int stub_dhd_last_force(double force[6]) {
 void stub_dhd_settings(int* watchdog, int* time_guard, int* gravity) {
   const Locked locked;
   *watchdog = state.watchdog, *time_guard = state.time_guard, *gravity = state.gravity;
+}
+long stub_dhd_switched_with_force() {
+  const Locked locked;
+  return state.switched_with_force;
 }
 double stub_dhd_strongest_N() {
   const Locked locked;

@@ -32,5 +32,7 @@ int stub_dhd_last_force(double force[6]);
 void stub_dhd_settings(int* watchdog, int* time_guard, int* gravity);
 /// Largest force that was felt in newtons since the reset.
 double stub_dhd_strongest_N();
+/// How often the forces were switched while the last one was not zero.
+long stub_dhd_switched_with_force();
 int stub_dhd_is_open();
 }
