@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <cstdio>
 
 #include "firmware/run/thread_costs.h"
 
@@ -75,11 +74,7 @@ void LoopExecutor::leave_behind(int status, const std::function<void()>& last_wo
   for (auto waited = 0ms; !stopped.load() && waited < kDeviceStop; waited += kLook)
     std::this_thread::sleep_for(kLook);
   last_words();
-  leave_now(status);
-}
-
-void leave_now(int status) {
-  std::fflush(stdout);
+  // No destructors: one of them would wait for the loop's thread.
   _exit(status);
 }
 

@@ -74,8 +74,4 @@ class LoopExecutor {
   std::thread keeper_;
 };
 
-/// Ends the process without a destructor: one of ours, or of a maker's library, would wait for the
-/// thread that does not come back.
-[[noreturn]] void leave_now(int status);
-
 }  // namespace tact::firmware::run

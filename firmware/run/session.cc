@@ -255,7 +255,7 @@ int Session::report() {
   if (options_.has_json_file())
     if (const auto error = model::io::write_file(options_.json_path, report + "\n"))
       return fail(error->sentence, 2);
-  if (const std::string on = parts_.device->why_not_off(); !on.empty()) leave_now(fail(on, 1));
+  if (const std::string on = parts_.device->why_not_off(); !on.empty()) return fail(on, 1);
   if (log_error) return fail(log_error->sentence, 1);
   return fault == model::Fault::kNone ? 0 : 1;
 }

@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 #include <pthread.h>
 #include <sched.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <thread>
 
 #include "hal/loop_gone.h"
@@ -20,6 +23,15 @@ using model::Wrench;
 constexpr int kPriority = 78;                             // the loop has 80
 constexpr std::int64_t kZeroFirst_ns = 2'000'000;         // of zero force after the forces went on
 constexpr std::int64_t kPoweredForSure_ns = 100'000'000;  // before "forces off" is news
+
+std::atomic<int> hanging{0};  // workers that were given up and have not come back
+
+/// Called at exit before the destructors of a library, which was loaded earlier.
+void leave_if_one_hangs(int status, void* /*unused*/) {
+  if (hanging == 0) return;
+  std::fflush(stdout);
+  _exit(status);
+}
 
 }  // namespace
 
@@ -94,12 +106,21 @@ std::string LibraryWorker::words(std::int64_t now_ns) const {
   return said;
 }
 
+void LibraryWorker::thread_ends() {
+  if (--running_ == 0 && given_up_.exchange(false)) --hanging;
+}
+
 bool LibraryWorker::stop(std::chrono::milliseconds patience) {
   quit_ = true;
   // No join: a library that hangs must not keep tactd from ending.
   for (auto waited = 0ms; waited < patience && running_ > 0; waited += 1ms)
     std::this_thread::sleep_for(1ms);
-  if (running_ > 0) return false;
+  if (running_ > 0) {
+    ++hanging;
+    given_up_ = true;
+    on_exit(leave_if_one_hangs, nullptr);
+    return false;
+  }
   close();
   return true;
 }

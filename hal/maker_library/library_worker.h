@@ -65,7 +65,8 @@ class LibraryWorker {
   std::string words(std::int64_t now_ns) const;
 
   /// Ends the threads, zeroes the force and closes the device; false when the library did not
-  /// return within `patience`: then it is not closed, and its last force may stay. Once.
+  /// return within `patience`: then it is not closed, its last force may stay, and the process,
+  /// while the library hangs, ends without the destructors that would wait for it. Once.
   [[nodiscard]] bool stop(std::chrono::milliseconds patience = std::chrono::seconds(2));
 
  protected:
@@ -101,7 +102,7 @@ class LibraryWorker {
   void keep(const LibraryTrouble& trouble);
   /// So many threads will call the library: said before the first begins, as stop() waits for them.
   void expect_threads(int threads) { running_ = threads; }
-  void thread_ends() { --running_; }
+  void thread_ends();
 
  private:
   enum class Power : std::uint8_t { kOff, kZeroFirst, kOn };
@@ -117,7 +118,7 @@ class LibraryWorker {
   std::atomic<std::int64_t> powered_cycles_{0};  // since the forces were switched on
   std::atomic<std::int64_t> last_cycle_ns_{0};   // CLOCK_MONOTONIC; 0: none is due
   std::atomic<std::uint64_t> trouble_{0};
-  std::atomic<bool> quit_{false};
+  std::atomic<bool> quit_{false}, given_up_{false};
   std::atomic<int> running_{0};
 };
 

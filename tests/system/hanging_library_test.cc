@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the whole program says and does when its device's library hangs in the middle of a run.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdlib>
 
@@ -9,22 +10,35 @@
 
 namespace tact::tests::hanging_library_test {
 
-class HangingLibrary : public Tactd {};
-
 // The stand-in waits for its thread when it is unloaded, as a library may: tactd must not.
+class HangingLibrary : public Tactd {
+ protected:
+  Outcome hangs_at(const char* cycle) {
+    setenv("TACT_STUB_HD_HANGS_AT", cycle, 1);
+    const Outcome out = tactd(
+        kLiver +
+        " --no-telemetry --no-seccomp --trust-library --arm --ticks 400 --set rate_Hz=250 --set "
+        "limits.energy_J=0.2 --set 'device.kind=\"phantom\"' --set 'device.phantom.library=\"" +
+        kStubHdLibrary + "\"' --set 'device.phantom.name=\"stub " + std::to_string(getpid()) +
+        "\"'");
+    unsetenv("TACT_STUB_HD_HANGS_AT");
+    return out;
+  }
+};
+
 TEST_F(HangingLibrary, EndsTheRunWithItsWordsAndAStatus) {
-  setenv("TACT_STUB_HD_HANGS_AT", "800", 1);
-  const Outcome out = tactd(
-      kLiver +
-      " --no-telemetry --no-seccomp --trust-library --arm --ticks 400 --set rate_Hz=250 --set "
-      "limits.energy_J=0.2 --set 'device.kind=\"phantom\"' --set 'device.phantom.library=\"" +
-      kStubHdLibrary + "\"'");
-  unsetenv("TACT_STUB_HD_HANGS_AT");
+  const Outcome out = hangs_at("800");
   EXPECT_EQ(out.status, 1) << out.output;
   EXPECT_TRUE(has(out, "no call for more than 20 ms: the device may still push")) << out.output;
   EXPECT_TRUE(has(out, "tactd: the library does not return: switch the device's supply off"))
       << out.output;
   EXPECT_TRUE(has(out, "400 ticks at 250 Hz")) << "and its report is complete: " << out.output;
+}
+
+TEST_F(HangingLibrary, IsRefusedWhereItHangsAtTheStart) {
+  const Outcome out = hangs_at("1");
+  EXPECT_EQ(out.status, 2) << out.output;
+  EXPECT_TRUE(has(out, "its scheduler made no call within a second")) << out.output;
 }
 
 }  // namespace tact::tests::hanging_library_test
