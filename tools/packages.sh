@@ -123,8 +123,7 @@ build_programs() {
 build_page() {
   local page="$1/page" web="$root/host/web" log stamp
   "$1/tactd" --faults --json "$web/src/panels/faults.json" >/dev/null || return 2
-  stamp=$(cat "$web"/package-lock.json "$web"/*.json "$web"/*.ts "$web"/index.html \
-    "$web"/src/* "$web"/src/*/* "$web"/public/* 2>/dev/null | sha256sum)
+  stamp=$(find "$web" -path "$web/node_modules" -prune -o -type f -print0 | sort -z | xargs -0 cat | sha256sum)
   [ -f "$page/index.html" ] && [ "$(cat "$page/.stamp" 2>/dev/null)" = "$stamp" ] && return 0
   log=$(mktemp)
   if [ "$(sha256sum <"$web/package-lock.json")" != "$(cat "$web/node_modules/.stamp" 2>/dev/null)" ]
