@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "firmware/admission/heat_check.h"
 #include "firmware/gate/limits_for.h"
 #include "firmware/loop/grid.h"
 #include "hal/gpio/gpio_lines.h"
@@ -45,6 +46,7 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
     parts.time = *time;
   }
   parts.limits = gate::limits_for(scene.limits, parts.device->info());
+  if (auto error = admission::check_heat(scene, parts.limits)) return *error;
   // Of the limits as they act: a quarter of the force on this PC is another checksum.
   parts.limits_checksum =
       model::io::limits_checksum(model::limits_in_use(parts.limits, setup.force_share()));

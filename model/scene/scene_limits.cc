@@ -65,23 +65,14 @@ void refuse_small_budget(reader::Keys& k, double rate_Hz, const Limits& limits) 
                        limits.energy_J, force_N, limits.speed_mps, rounded_up(least_J)));
 }
 
-// The allowed force must fall no faster than the slew, and not below what is continuous
-// (firmware/gate/thermal_limit.h).
 void refuse_fast_heat(reader::Keys& k, double rate_Hz, const Limits& limits) {
-  const double peak_N = limits.force_N;
-  const double continuous_N = std::min(limits.continuous_force_N, peak_N);
-  if (!(continuous_N > 0.0 && rate_Hz > 0.0)) return;
-  // thermal_limit.h: (1 + kappa) T <= tau, and kappa Fp^2 / (2 Fc tau) <= slew.
-  const double ratio = peak_N / continuous_N;
-  const double steepness = 2.0 * (ratio * ratio - 1.0);
-  const double least_s =
-      std::max((1.0 + steepness) / rate_Hz,
-               steepness * 0.5 * ratio * peak_N / slew_beside_ramp_N_per_s(limits));
+  const double least_s = least_thermal_time_s(limits, rate_Hz);
   if (limits.thermal_time_s >= least_s) return;
   k.refuse({"thermal_time_s", "continuous_force_N"},
            fmt::format("limits.thermal_time_s = {} is too short to come from force_N = {} to "
                        "continuous_force_N = {} within the slew; allowed: {:.3f} or more",
-                       limits.thermal_time_s, peak_N, continuous_N, rounded_up(least_s)));
+                       limits.thermal_time_s, limits.force_N,
+                       std::min(limits.continuous_force_N, limits.force_N), rounded_up(least_s)));
 }
 
 }  // namespace
@@ -91,6 +82,18 @@ void visit_limits(reader::Keys& k, double rate_Hz, Limits& limits) {
   refuse_slow_slew(k, limits);
   refuse_small_budget(k, rate_Hz, limits);
   refuse_fast_heat(k, rate_Hz, limits);
+}
+
+// The allowed force must fall no faster than the slew, and not below what is continuous.
+double least_thermal_time_s(const Limits& limits, double rate_Hz) {
+  const double peak_N = limits.force_N;
+  const double continuous_N = std::min(limits.continuous_force_N, peak_N);
+  if (!(continuous_N > 0.0 && rate_Hz > 0.0)) return 0.0;
+  // thermal_limit.h: (1 + kappa) T <= tau, and kappa Fp^2 / (2 Fc tau) <= slew.
+  const double ratio = peak_N / continuous_N;
+  const double steepness = 2.0 * (ratio * ratio - 1.0);
+  return std::max((1.0 + steepness) / rate_Hz,
+                  steepness * 0.5 * ratio * peak_N / slew_beside_ramp_N_per_s(limits));
 }
 
 }  // namespace tact::model::scene
