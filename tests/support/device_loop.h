@@ -10,6 +10,7 @@
 
 #include "hal/monotonic.h"
 #include "hal/registry/open_device.h"
+#include "tests/support/no_alloc.h"
 
 namespace tact::tests {
 
@@ -86,6 +87,12 @@ class DeviceLoop : public testing::Test {
     });
     EXPECT_LT(fastest_mps, -0.012);
     EXPECT_GT(fastest_mps, -0.060);
+  }
+  void expect_the_heap_left_alone() {
+    ASSERT_TRUE(ready());
+    const NoAlloc guard;
+    for (int i = 0; i < 50; ++i) tick({.force_N = {0, 0, 1}, .torque_Nm = {}});
+    EXPECT_EQ(guard.calls(), 0u);
   }
   bool told(const std::string& part) const {
     return device->trouble().find(part) != std::string::npos;
