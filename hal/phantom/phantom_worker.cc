@@ -97,8 +97,7 @@ std::string PhantomWorker::words_of_trouble() const {
              "start tactd again";
     case Source::kPose:
       return "the PHANTOM tells a pose that is no number; check its cable, calibrate it, then "
-             "start "
-             "tactd again";
+             "start tactd again";
     case Source::kCalibration:
       break;
   }
