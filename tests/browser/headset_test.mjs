@@ -138,8 +138,10 @@ async function check_picture(page) {
     return w > 0 && Math.abs(x / w) < 1 && Math.abs(y / w) < 1;
   }));
   check("who looks at the organ has the panel in view, with both eyes", in_view);
-  check("the panel says state and force", headset.told.includes("armed") && headset.told.includes("live") &&
-    headset.told.some((line) => /^\d+\.\d\d N$/.test(line)), headset.told.join(" | "));
+  check("the panel says state and force", await waits(page, () => {
+    const { told } = window.tact.headset;
+    return told.includes("armed") && told.includes("live") && told.some((line) => /^\d+\.\d\d N$/.test(line));
+  }), headset.told.join(" | "));
 }
 
 /** Trigger, grip, stick and fingers: nothing goes to tact-view but how many frames were seen. */

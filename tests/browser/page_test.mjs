@@ -42,7 +42,8 @@ async function check_view(page, url) {
   check("moves the tool", await waits(page, (from_m) => Math.hypot(
     ...from_m.map((at_m, axis) => window.tact.tool_m[axis] - at_m)) > 0.005, before.tool_m));
   check("shows a force", await waits(page, () => Number(document.getElementById("force").textContent) > 0.05));
-  check("says the state in words", (await page.textContent("#state")) === "armed");
+  check("says the state in words", await waits(page, () => document.getElementById("state").textContent === "armed"),
+    await page.textContent("#state"));
   return tactd;
 }
 

@@ -32,11 +32,20 @@ async function halt(page, child, name, link_words) {
       if (state.textContent.startsWith("no news")) window.told_s ??= window.tact.silence_s;
     }).observe(state, { childList: true, characterData: true, subtree: true });
     window.told_s = undefined;
+    window.slowest_s = 0; // from picture to picture: a page that was busy has not listened
+    let before_ms = performance.now();
+    const picture = () => {
+      window.slowest_s = Math.max(window.slowest_s, (performance.now() - before_ms) / 1000);
+      before_ms = performance.now();
+      if (window.told_s === undefined) requestAnimationFrame(picture);
+    };
+    requestAnimationFrame(picture);
   });
   child.kill("SIGSTOP");
   check(`${name} that stands still is told`, await waits(page, () => window.told_s !== undefined, null, 5000));
-  const told_s = await page.evaluate(() => window.told_s);
-  check("... 0.3 s after the last frame", told_s > 0.3 && told_s < 1, `${told_s.toFixed(2)} s`);
+  const { told_s, slowest_s } = await page.evaluate(() => ({ told_s: window.told_s, slowest_s: window.slowest_s }));
+  check("... 0.3 s after the last frame", told_s > 0.3 && told_s < 0.5 + 4 * slowest_s,
+    `${told_s.toFixed(2)} s, the slowest picture took ${slowest_s.toFixed(2)} s`);
   const first = await seen(page);
   check("... and how long it lasts", /^no news for \d+\.\d s$/.test(first.state) &&
     await waits(page, (than_s) => window.tact.silence_s > than_s + 0.5, first.silence_s), first.state);
