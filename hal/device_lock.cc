@@ -68,6 +68,13 @@ std::string words_of(pid_t process) {
   return fmt::format("process {}{}", process, name.empty() ? "" : " (" + name + ")");
 }
 
+Error cannot_lock(const std::string& name, int error) {
+  return Error{
+      fmt::format("{} cannot be locked for this program alone ({}): it needs a socket of AF_UNIX, "
+                  "which a sandbox or a full table of open files may forbid (ulimit -n)",
+                  name, std::strerror(error))};
+}
+
 Error taken(const std::string& name, const Address& address) {
   return Error{
       fmt::format("{} is driven by {} already, and two would push against each other: end "
@@ -84,10 +91,10 @@ std::optional<Error> lock_device(const std::string& name) {
   const std::lock_guard<std::mutex> guard(mutex);
   if (ours.contains(name)) return std::nullopt;
   const Address address(name);
-  const int lock = address.fits() ? make_socket() : -1;
-  if (lock < 0)
-    return Error{fmt::format("{} cannot be locked for this program alone: {}", name,
-                             address.fits() ? std::strerror(errno) : "its name is too long")};
+  if (!address.fits())
+    return Error{fmt::format("the name of the device is too long to lock it: {}", name)};
+  const int lock = make_socket();
+  if (lock < 0) return cannot_lock(name, errno);
   if (bind(lock, address.plain(), address.bytes()) == 0 && listen(lock, kManyRefused) == 0) {
     ours.insert(name);  // the socket stays open until the process ends
     return std::nullopt;
@@ -95,8 +102,7 @@ std::optional<Error> lock_device(const std::string& name) {
   const int error = errno;
   close(lock);
   if (error == EADDRINUSE) return taken(name, address);
-  return Error{
-      fmt::format("{} cannot be locked for this program alone: {}", name, std::strerror(error))};
+  return cannot_lock(name, error);
 }
 
 }  // namespace tact::hal

@@ -9,6 +9,7 @@
 #include <ctime>
 
 #include "model/rt.h"
+#include "model/time_ns.h"
 
 namespace tact::hal {
 
@@ -20,7 +21,7 @@ namespace tact::hal {
 inline std::int64_t monotonic_ns() RT_SAFE {
   timespec t{};
   clock_gettime(CLOCK_MONOTONIC, &t);
-  return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
+  return std::int64_t{t.tv_sec} * model::kSecond_ns + t.tv_nsec;
 }
 #if defined(__clang__) && __clang_major__ >= 20
 #pragma clang diagnostic pop

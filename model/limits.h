@@ -2,6 +2,8 @@
 // limits.h - what a scene allows at the most: the settings of the gate (firmware/gate/).
 #pragma once
 
+#include <cmath>
+
 namespace tact::model {
 
 struct Limits {
@@ -31,9 +33,27 @@ constexpr Limits limits_in_use(Limits limits, double force_share) {
 /// Without a sample the force fades to zero in this time (RT-15), and no slew may hold that up.
 inline constexpr double kStaleFade_s = 0.010;
 
-/// The gate keeps a part of the slew for its ramp; this is what it leaves for everything else.
-constexpr double slew_beside_ramp_N_per_s(const Limits& limits) {
-  return limits.slew_N_per_s - limits.force_N / limits.ramp_s;
+/// Change of force in a period that the ramp leaves for everything else, so that the written force
+/// keeps |dF| <= slew dt. A slew that is too slow for its ramp keeps a tenth.
+inline double slew_beside_ramp_N(const Limits& limits, double force_limit_N, double period_s) {
+  const double step_N = limits.slew_N_per_s * period_s;
+  const double ramp_step_N = force_limit_N * period_s / limits.ramp_s;
+  return std::fmax(step_N - ramp_step_N, 0.1 * step_N);
+}
+inline double slew_beside_ramp_N_per_s(const Limits& limits) {
+  return slew_beside_ramp_N(limits, limits.force_N, 1.0);
+}
+
+/// GT-2, GT-3: what a force gives at most, at this speed, while it falls at the slew:
+/// u (F^2 / (2 s) + F dt).
+inline double brake_energy_J(double speed_mps, double force_N, double slew_N_per_s,
+                             double period_s) {
+  return speed_mps * force_N * (0.5 * force_N / slew_N_per_s + period_s);
+}
+
+/// GT-4: kappa = 2 (Fp^2 / Fc^2 - 1), of forces or of torques.
+inline double heat_steepness(double peak, double continuous) {
+  return continuous > 0.0 ? 2.0 * (peak * peak / (continuous * continuous) - 1.0) : 0.0;
 }
 
 }  // namespace tact::model

@@ -6,6 +6,8 @@
 
 namespace tact::model {
 
+inline constexpr double kGravity_mps2 = 9.81;  // what hangs on a device weighs so much
+
 constexpr double operator""_mm(long double v) { return static_cast<double>(v) * 1e-3; }
 constexpr double operator""_mm(unsigned long long v) { return static_cast<double>(v) * 1e-3; }
 constexpr double operator""_ms(long double v) { return static_cast<double>(v) * 1e-3; }

@@ -149,9 +149,9 @@ def arm():
 def sub_root():
     """What the two-bone start from the shoulder saves on the scene's recorded motion."""
     scene = ROOT / "model/scenes/maintenance.toml"
-    told = told_by("tact-figure", scene)
+    told = told_by("tact-figure-bench", scene)
     row("joint updates, whole chain over shoulder first", round(told["updates_ratio"], 2), "", ">= 2",
-        "tact-figure maintenance.toml")
+        "tact-figure-bench maintenance.toml")
 
 
 def browser(test):

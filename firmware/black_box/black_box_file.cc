@@ -61,7 +61,7 @@ std::string free_path(const BlackBoxRun& run, model::Fault fault) {
 
 Result<std::string> black_box_folder(const std::string& asked) {
   const auto variable = [](const char* name) {
-    const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): before threads
+    const char* value = std::getenv(name);  // before threads
     return fs::path(value == nullptr ? "" : value);
   };
   fs::path folder = asked;

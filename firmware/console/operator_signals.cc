@@ -11,10 +11,11 @@
 #include <array>
 #include <utility>
 
+#include "model/time_ns.h"
+
 namespace tact::firmware::console {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr int kLastSignal = 64;
 constexpr std::array kLeave{SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGABRT};
 /// What nobody can ignore, and what ends nothing by itself.
@@ -79,7 +80,8 @@ OperatorSignals::~OperatorSignals() {
 
 Act OperatorSignals::wait(std::int64_t longest_ns, int other_fd) const {
   constexpr timespec kNow{};
-  const timespec longest{.tv_sec = longest_ns / kSecond_ns, .tv_nsec = longest_ns % kSecond_ns};
+  const timespec longest{.tv_sec = longest_ns / model::kSecond_ns,
+                         .tv_nsec = longest_ns % model::kSecond_ns};
   std::array<pollfd, 2> either{{{.fd = signal_fd_, .events = POLLIN, .revents = 0},
                                 {.fd = other_fd, .events = POLLIN, .revents = 0}}};
   ppoll(either.data(), either.size(), &longest, nullptr);

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "model/limits.h"
+
 namespace tact::firmware::gate {
 namespace {
 
@@ -23,9 +25,9 @@ EnergyTank::EnergyTank(const EnergyTankSettings& settings)
     : settings_(settings),
       brake_mps_(settings.speed_mps + settings.lever_m * settings.turn_radps),
       level_J_(settings.budget_J) {
-  const double m = settings.force_limit_N;
   // GT-2   R = min(u (Fm^2 / (2 s) + Fm dt), B / 2)
-  need_J_ = brake_mps_ * m * (0.5 * m / settings.slew_N_per_s + settings.period_s);
+  need_J_ = model::brake_energy_J(brake_mps_, settings.force_limit_N, settings.slew_N_per_s,
+                                  settings.period_s);
   reserve_J_ = std::fmin(need_J_, 0.5 * settings.budget_J);
 }
 

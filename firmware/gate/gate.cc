@@ -10,6 +10,7 @@ namespace tact::firmware::gate {
 namespace {
 
 using model::kStaleFade_s;
+using model::slew_beside_ramp_N;
 
 // Chosen: nothing is wrong with the device, it may be gentler than without a sample.
 constexpr double kWorkspaceFade_s = 0.050;
@@ -28,14 +29,6 @@ double power_W(const Wrench& w, const model::Tool& tool) RT_SAFE {
   return dot(w.force_N, tool.velocity_mps) + dot(w.torque_Nm, tool.angular_velocity_radps);
 }
 
-/// The slew stage gets what the ramp behind it leaves, so that the written force keeps |dF| <= slew
-/// dt. A slew that is too slow for its ramp keeps a tenth.
-double slew_step_N(const model::Limits& limits, double force_limit_N, double period_s) {
-  const double step_N = limits.slew_N_per_s * period_s;
-  const double ramp_step_N = force_limit_N * period_s / limits.ramp_s;
-  return std::fmax(step_N - ramp_step_N, 0.1 * step_N);
-}
-
 /// The tank brakes by the slew that the gate keeps for it, not by the whole.
 EnergyTankSettings tank_settings(const model::Limits& limits, double force_limit_N, double lever_m,
                                  double period_s) {
@@ -45,7 +38,7 @@ EnergyTankSettings tank_settings(const model::Limits& limits, double force_limit
           .turn_radps = limits.turn_radps,
           .force_limit_N = force_limit_N,
           .lever_m = lever_m,
-          .slew_N_per_s = slew_step_N(limits, force_limit_N, period_s) / period_s,
+          .slew_N_per_s = slew_beside_ramp_N(limits, force_limit_N, period_s) / period_s,
           .period_s = period_s};
 }
 
@@ -69,7 +62,7 @@ Gate::Gate(const model::Limits& limits, double period_s, double force_share)
       force_limit_N_(model::limits_in_use(limits, force_share).force_N),
       torque_limit_Nm_(model::limits_in_use(limits, force_share).torque_Nm),
       lever_m_(force_limit_N_ > 0.0 ? torque_limit_Nm_ / force_limit_N_ : 0.0),
-      force_step_N_(slew_step_N(limits, force_limit_N_, period_s)),
+      force_step_N_(slew_beside_ramp_N(limits, force_limit_N_, period_s)),
       torque_step_Nm_(lever_m_ * force_step_N_),
       fresh_(kStaleFade_s),
       workspace_(kWorkspaceFade_s),

@@ -13,6 +13,7 @@
 
 #include <cmath>
 
+#include "model/limits.h"
 #include "model/types.h"
 
 namespace tact::firmware::gate {
@@ -24,7 +25,7 @@ class ThermalLimit {
       : peak_(peak),
         continuous_(continuous),
         continuous_squared_(continuous * continuous),
-        steepness_(continuous > 0.0 ? 2.0 * (peak * peak / continuous_squared_ - 1.0) : 0.0),
+        steepness_(model::heat_steepness(peak, continuous)),
         share_(share_per_period) {}
 
   /// A: what may be written now.

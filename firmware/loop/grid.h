@@ -11,15 +11,12 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 
 #include "model/rt.h"
+#include "model/time_ns.h"
 
 namespace tact::firmware::loop {
-
-/// Of one tick, of a loop that is set up.
-inline std::int64_t period_ns(double rate_Hz) { return std::llround(1e9 / rate_Hz); }
 
 /// The first multiple of period_ns, shifted by phase_ns, at or after from_ns >= 0.
 constexpr std::int64_t next_in_phase_ns(std::int64_t from_ns, std::int64_t period_ns,
@@ -30,8 +27,7 @@ constexpr std::int64_t next_in_phase_ns(std::int64_t from_ns, std::int64_t perio
 
 /// From the kernel's tick, which comes at most once a millisecond, to a deadline.
 constexpr std::int64_t after_kernel_tick_ns(std::int64_t period_ns) RT_SAFE {
-  constexpr std::int64_t kFastestTick_ns = 1'000'000;
-  return std::min(period_ns, kFastestTick_ns) * 3 / 10;
+  return std::min(period_ns, model::kMillisecond_ns) * 3 / 10;
 }
 
 /// The loop's first deadline at or after from_ns.

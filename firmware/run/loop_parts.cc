@@ -5,9 +5,9 @@
 
 #include "firmware/admission/heat_check.h"
 #include "firmware/gate/limits_for.h"
-#include "firmware/loop/grid.h"
 #include "hal/gpio/gpio_lines.h"
 #include "model/io/limits_checksum.h"
+#include "model/time_ns.h"
 
 namespace tact::firmware::run {
 
@@ -52,7 +52,7 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
       model::io::limits_checksum(model::limits_in_use(parts.limits, setup.force_share()));
   parts.controller = std::make_unique<loop::Controller>(
       parts.tissue->contact_scene(),
-      gate::Gate(parts.limits, static_cast<double>(loop::period_ns(scene.rate_Hz)) * 1e-9,
+      gate::Gate(parts.limits, static_cast<double>(model::period_ns(scene.rate_Hz)) * 1e-9,
                  setup.force_share()),
       !setup.non_rt);
   parts.ring = std::make_unique<loop::TickRing>(scene.rate_Hz);

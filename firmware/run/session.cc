@@ -23,6 +23,7 @@
 #include "firmware/run/thread_costs.h"
 #include "model/io/file_writer.h"
 #include "model/scene/accuracy_file.h"
+#include "model/time_ns.h"
 
 namespace tact::firmware::run {
 namespace {
@@ -64,7 +65,7 @@ class Session {
   PartsSetup parts_setup() const {
     return {.simulated_time = options_.free_run, .non_rt = non_rt_, .rt = rt_};
   }
-  std::int64_t period_ns() const { return loop::period_ns(scene_.rate_Hz); }
+  std::int64_t period_ns() const { return model::period_ns(scene_.rate_Hz); }
   // As often as a viewer looks.
   std::uint64_t ticks_per_shape() const {
     return std::max(1ul, static_cast<std::uint64_t>(scene_.rate_Hz / scene_.frame_rate_Hz));

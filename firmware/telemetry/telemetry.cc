@@ -7,6 +7,7 @@
 #include "firmware/loop/clock.h"
 #include "firmware/loop/grid.h"
 #include "firmware/telemetry/force_hash.h"
+#include "model/time_ns.h"
 
 namespace tact::firmware::telemetry {
 
@@ -39,7 +40,7 @@ std::optional<model::Error> Telemetry::stop() {
 
 void Telemetry::run() {
   loop::MonotonicClock clock;
-  const std::int64_t frame_ns = std::llround(1e9 / pace_.frame_rate_Hz);
+  const std::int64_t frame_ns = model::period_ns(pace_.frame_rate_Hz);
   // Absolute, as in the loop: a slow disk delays one frame and shifts none.
   std::int64_t due_ns = clock.now_ns();
   while (!ending_.load(std::memory_order_relaxed)) {

@@ -148,7 +148,7 @@ std::string refused_call() {
   char* name = seccomp_syscall_resolve_num_arch(SCMP_ARCH_NATIVE, call);
   std::string text =
       name == nullptr ? fmt::format("system call {}", call) : fmt::format("{}({})", name, call);
-  std::free(name);  // NOLINT(cppcoreguidelines-no-malloc): libseccomp's
+  std::free(name);  // libseccomp's
   return text;
 }
 

@@ -141,10 +141,9 @@ std::string can_bus_trouble(const FaultCause& cause, const std::string& interfac
           interface, CanBus::kMaxMissedInARow, interface);
     case CanCause::kErrorFrame:
       return fmt::format("{}: {}", interface, error_frame_words(cause.code));
-    case CanCause::kFirstOwn:
-      break;
+    default:
+      return {};
   }
-  return {};
 }
 
 template <class Frame>

@@ -41,14 +41,6 @@ struct CanBusCounts {
   std::uint64_t cut_reads = 0;   // the kernel may have had more than one call takes
 };
 
-/// Kinds of FaultCause that a bus has; a drive's own begin at kFirstOwn.
-enum class CanCause : std::uint8_t {
-  kCall = 1,        // code: errno
-  kNoRoom = 2,      // twenty batches in a row
-  kErrorFrame = 3,  // code: classes, controller state << 16
-  kFirstOwn = 16,
-};
-
 /// Of classic frames or of CAN FD frames.
 template <class Frame>
 class BasicCanBus {

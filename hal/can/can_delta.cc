@@ -85,12 +85,12 @@ std::optional<FaultCause> CanDelta::doubt(const delta::Joints& theta_rad,
     const double mrad = std::abs(theta_rad[i]) < 1e6 ? 1000.0 * theta_rad[i] : 1e9;
     return FaultCause{.fault = Fault::kHomingLost,
                       .axis = static_cast<std::uint8_t>(i),
-                      .kind = static_cast<std::uint8_t>(HomingCause::kBeyondStop),
+                      .kind = static_cast<std::uint8_t>(CanCause::kBeyondStop),
                       .code = static_cast<std::uint32_t>(static_cast<std::int32_t>(mrad))};
   }
   if (pose.solved) return std::nullopt;
   return FaultCause{.fault = Fault::kHomingLost,
-                    .kind = static_cast<std::uint8_t>(HomingCause::kRodsApart)};
+                    .kind = static_cast<std::uint8_t>(CanCause::kRodsApart)};
 }
 
 std::optional<model::Error> CanDelta::check_home(const delta::Joints& motor_turns) const {
@@ -152,19 +152,20 @@ std::string can_arm_name(std::size_t axis, const model::CanSettings& can) {
 }
 
 std::string homing_trouble(const FaultCause& cause, const model::DeltaSettings& delta) {
-  switch (static_cast<HomingCause>(cause.kind)) {
-    case HomingCause::kBeyondStop:
+  switch (static_cast<CanCause>(cause.kind)) {
+    case CanCause::kBeyondStop:
       return fmt::format(
           "arm {} would be at {:.0f} degrees, beyond its stops of {:.0f} and {:.0f}: put the arms "
           "on the jig and start tactd again, or correct zero_turns, direction or home_rad in "
           "device.can",
           cause.axis + 1, in_deg(1e-3 * static_cast<std::int32_t>(cause.code)),
           in_deg(delta.theta_min_rad), in_deg(delta.theta_max_rad));
-    case HomingCause::kRodsApart:
+    case CanCause::kRodsApart:
       return "no platform can lie where the three arms would be: put the arms on the jig and start "
              "tactd again, or correct device.can and device.delta";
+    default:
+      return {};
   }
-  return {};
 }
 
 }  // namespace tact::hal::can

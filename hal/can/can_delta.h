@@ -26,12 +26,6 @@ namespace tact::hal::can {
 delta::DeltaGeometry delta_geometry(const model::DeltaSettings& delta);
 delta::DeltaMasses delta_masses(const model::DeltaSettings& delta);
 
-/// Kinds of FaultCause of a lost homing.
-enum class HomingCause : std::uint8_t {
-  kBeyondStop = 8,  // code: the arm's angle, mrad, two's complement
-  kRodsApart = 9,
-};
-
 class CanDelta {
  public:
   CanDelta(const model::DeltaSettings& delta, const model::CanSettings& can);

@@ -10,19 +10,12 @@
 #include <utility>
 
 #include "hal/can/sample_gap.h"
+#include "model/time_ns.h"
 
 namespace tact::hal::can {
 namespace {
 
-constexpr std::int64_t kMs_ns = 1'000'000;
 constexpr int kFaultBatches = 3;  // zero torque and disable are sent so often: one may be lost
-
-/// Kinds of FaultCause that all drives have, between those of a lost homing and their own.
-enum class DriveCause : std::uint8_t {
-  kSilent = 12,  // code: for how long, ms
-  kNoPosition,   // code: for how long, ms
-  kJumped,       // position without motion
-};
 
 template <class Frame>
 class CanDevice final : public Device {
@@ -34,7 +27,7 @@ class CanDevice final : public Device {
         delta_(settings.delta, settings.can),
         start_(std::move(start)),
         drives_(*start_.drives),
-        period_ns_(std::llround(1e9 / rate_Hz)),
+        period_ns_(model::period_ns(rate_Hz)),
         gap_(1.0 / rate_Hz),
         loop_{.bus = *bus_} {
     for (std::size_t i = 0; i < 3; ++i) loop_.axes[i].node = settings.can.node[i];
@@ -157,10 +150,11 @@ class CanDevice final : public Device {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::int64_t silent_ns = loop_.now_ns - loop_.axes[i].heartbeat_ns;
       if (silent_ns > start_.most_silent_ns && !bus_->cut()) {
-        loop_.fail(i, DriveCause::kSilent, static_cast<std::uint32_t>(silent_ns / kMs_ns),
+        loop_.fail(i, CanCause::kSilent,
+                   static_cast<std::uint32_t>(silent_ns / model::kMillisecond_ns),
                    Fault::kDriveSilent);
       }
-      if (loop_.axes[i].jumps) loop_.fail(i, DriveCause::kJumped, 0, Fault::kHomingLost);
+      if (loop_.axes[i].jumps) loop_.fail(i, CanCause::kJumped, 0, Fault::kHomingLost);
     }
   }
 
@@ -192,9 +186,10 @@ class CanDevice final : public Device {
     std::size_t oldest = 0;  // the drive that the words name
     for (std::size_t i = 1; i < 3; ++i)
       if (loop_.axes[i].arrival_ns < loop_.axes[oldest].arrival_ns) oldest = i;
-    loop_.fail(oldest, DriveCause::kNoPosition,
-               static_cast<std::uint32_t>(SampleGap::kMaxMissing * period_ns_ / kMs_ns),
-               Fault::kDeviceLost);
+    loop_.fail(
+        oldest, CanCause::kNoPosition,
+        static_cast<std::uint32_t>(SampleGap::kMaxMissing * period_ns_ / model::kMillisecond_ns),
+        Fault::kDeviceLost);
   }
 
   void stop_drives() RT_SAFE {
@@ -218,20 +213,21 @@ class CanDevice final : public Device {
   }
 
   std::string words(const FaultCause& cause) const {
-    switch (static_cast<DriveCause>(cause.kind)) {
-      case DriveCause::kSilent:
+    switch (static_cast<CanCause>(cause.kind)) {
+      case CanCause::kSilent:
         return fmt::format(
             "no heartbeat for {} ms: check its supply and the CAN cable, then start tactd again",
             cause.code);
-      case DriveCause::kNoPosition:
+      case CanCause::kNoPosition:
         return fmt::format(
             "no {} for {} ms: check its supply and the CAN cable, then start tactd again",
             start_.position, cause.code);
-      case DriveCause::kJumped:
+      case CanCause::kJumped:
         return "its position jumped without motion: the encoder slips or two drives share a node; "
                "check both and home again";
+      default:
+        return drives_.words(cause);
     }
-    return drives_.words(cause);
   }
 
   std::unique_ptr<BasicCanBus<Frame>> bus_;

@@ -69,7 +69,7 @@ struct BasicCanLoop {
   std::int64_t asked_ns = 0;   // for torque, since starting; 0: not yet
   FaultLatch latch{};
 
-  /// Latches; `kind` is of the drives' own list or a DriveCause.
+  /// Latches; `kind` is a CanCause, or of the drives' own list.
   template <class Kind>
   void fail(std::size_t axis, Kind kind, std::uint32_t code,
             Fault fault = Fault::kDriveFault) RT_SAFE {

@@ -28,9 +28,12 @@ using model::Result;
 constexpr std::size_t kHeader = 16, kLinkHeader = 16;
 constexpr int kReplyTimeout_ms = 1000;
 
-Error refused(const std::string& name, const char* what, int error) {
-  return Error{fmt::format("{}: {}: {}", name, what, std::strerror(error))};
+Error refused(const std::string& name, const char* what, int error, const char* cure) {
+  return Error{fmt::format("{}: {} ({}): {}", name, what, std::strerror(error), cure)};
 }
+constexpr const char* kLookAtLink = "the link may have gone; ip -details link shows it";
+constexpr const char* kNewerKernel =
+    "a kernel of Debian 12 or 13 takes them; uname -r tells which one runs";
 
 class File {
  public:
@@ -57,7 +60,8 @@ Result<int> open_socket(const std::string& name, int index, std::span<const can_
                     "or sandbox that forbids AF_CAN",
                     name)};
   }
-  if (file.get() < 0) return refused(name, "this kernel has no CAN (sudo modprobe can_raw)", errno);
+  if (file.get() < 0)
+    return refused(name, "this kernel has no CAN", errno, "sudo modprobe can_raw");
   const can_err_mask_t errors = CAN_ERR_MASK & ~CAN_ERR_LOSTARB;
   const int off = 0, on = 1;
   const auto filter_bytes = static_cast<socklen_t>(filters.size_bytes());
@@ -66,15 +70,15 @@ Result<int> open_socket(const std::string& name, int index, std::span<const can_
       setsockopt(file.get(), SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors) == 0 &&
       setsockopt(file.get(), SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &off, sizeof off) == 0 &&
       setsockopt(file.get(), SOL_CAN_RAW, CAN_RAW_LOOPBACK, &off, sizeof off) == 0;
-  if (!set) return refused(name, "the kernel refuses the CAN filters", errno);
+  if (!set) return refused(name, "the kernel refuses the CAN filters", errno, kNewerKernel);
   if (fd_frames && setsockopt(file.get(), SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on) != 0)
-    return refused(name, "the kernel refuses CAN FD", errno);
+    return refused(name, "the kernel refuses CAN FD", errno, kNewerKernel);
   sockaddr_can address{};
   address.can_family = AF_CAN;
   address.can_ifindex = index;
-  // NOLINTNEXTLINE: bind takes every family through this one type
+  // bind takes every family through this one type
   if (bind(file.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-    return refused(name, "cannot bind to it", errno);
+    return refused(name, "cannot bind to it", errno, kLookAtLink);
   return file.release();
 }
 
@@ -112,7 +116,10 @@ Result<CanLink> read_can_link(const std::string& name) {
                     name)};
   }
   const File file(socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_ROUTE));
-  if (file.get() < 0) return refused(name, "no netlink socket", errno);
+  if (file.get() < 0) {
+    return refused(name, "no netlink socket", errno,
+                   "a unit or sandbox around tactd must allow AF_NETLINK, as tactd@.service does");
+  };
   const timeval patience{.tv_sec = kReplyTimeout_ms / 1000, .tv_usec = 0};
   setsockopt(file.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   std::array<std::uint8_t, kHeader + kLinkHeader> request{};
@@ -121,12 +128,13 @@ Result<CanLink> read_can_link(const std::string& name) {
   put_unsigned(request, 6, 2, NLM_F_REQUEST);
   put_unsigned(request, kHeader + 4, 4, if_nametoindex(name.c_str()));
   if (send(file.get(), request.data(), request.size(), 0) < 0)
-    return refused(name, "cannot ask for its state", errno);
+    return refused(name, "cannot ask for its state", errno, kLookAtLink);
   std::vector<std::uint8_t> reply(32768);
   const ssize_t n = recv(file.get(), reply.data(), reply.size(), 0);
-  if (n < 0) return refused(name, "cannot read its state", errno);
+  if (n < 0) return refused(name, "cannot read its state", errno, kLookAtLink);
   const auto link = decode_can_link(std::span(reply).first(static_cast<std::size_t>(n)));
-  if (!link) return Error{fmt::format("{}: the kernel does not tell its state", name)};
+  if (!link)
+    return Error{fmt::format("{}: the kernel does not tell its state: {}", name, kLookAtLink)};
   return *link;
 }
 

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "hal/monotonic.h"
+#include "model/time_ns.h"
 
 #if defined(__has_feature)
 #if __has_feature(realtime_sanitizer)
@@ -23,9 +24,7 @@
 namespace tact::hal::can {
 namespace {
 
-constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-
-std::int64_t in_ns(const timespec& t) RT_SAFE { return t.tv_sec * kNsPerSecond + t.tv_nsec; }
+std::int64_t in_ns(const timespec& t) RT_SAFE { return t.tv_sec * model::kSecond_ns + t.tv_nsec; }
 
 // The only calls that a tick makes: neither the compiler nor the real-time sanitizer can see that
 // they do not wait.

@@ -12,10 +12,23 @@
 
 namespace tact::hal::can {
 
+/// Kinds of FaultCause that all CAN devices have; the drives' own begin at kFirstOwn.
+enum class CanCause : std::uint8_t {
+  kCall = 1,        // of the bus; code: errno
+  kNoRoom,          // twenty batches in a row
+  kErrorFrame,      // code: classes, controller state << 16
+  kBeyondStop = 8,  // of a lost homing; code: the arm's angle, mrad, two's complement
+  kRodsApart,
+  kSilent = 12,  // of a drive; code: for how long, ms
+  kNoPosition,   // code: for how long, ms
+  kJumped,       // position without motion
+  kFirstOwn = 16,
+};
+
 struct FaultCause {
   model::Fault fault = model::Fault::kNone;
   std::uint8_t axis = 0;   // 0, 1, 2
-  std::uint8_t kind = 0;   // of the device's own list
+  std::uint8_t kind = 0;   // a CanCause, or of the drives' own list
   std::uint32_t code = 0;  // means what the kind says
 };
 

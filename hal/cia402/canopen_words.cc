@@ -99,4 +99,19 @@ std::span<const CanopenWords> sdo_abort_words() RT_SAFE { return kAbort; }
 const char* emergency_sentence(std::uint16_t code) RT_SAFE { return sentence_of(code, kEmergency); }
 const char* sdo_abort_sentence(std::uint32_t code) RT_SAFE { return sentence_of(code, kAbort); }
 
+const char* nmt_sentence(NmtState state) {
+  switch (state) {
+    case NmtState::kBoot:
+      return "the drive restarted by itself: check its supply";
+    case NmtState::kStopped:
+      return "the drive was stopped over the bus: is a second controller on it?";
+    case NmtState::kPreOperational:
+      return "the drive went pre-operational: it lost the controller's heartbeat or had bus "
+             "errors, or a second controller is on the bus";
+    case NmtState::kOperational:
+      break;
+  }
+  return "the drive left its normal state on the bus";
+}
+
 }  // namespace tact::hal::cia402

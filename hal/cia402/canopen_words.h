@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 
+#include "hal/cia402/canopen_frames.h"
 #include "model/rt.h"
 
 namespace tact::hal::cia402 {
@@ -24,5 +25,8 @@ std::span<const CanopenWords> sdo_abort_words() RT_SAFE;
 
 const char* emergency_sentence(std::uint16_t code) RT_SAFE;
 const char* sdo_abort_sentence(std::uint32_t code) RT_SAFE;
+
+/// Why a drive in this state is not at work.
+const char* nmt_sentence(NmtState state);
 
 }  // namespace tact::hal::cia402

@@ -11,6 +11,7 @@
 #include "hal/cia402/cia402_state.h"
 #include "hal/cia402/drive_settings.h"
 #include "hal/cia402/sdo_client.h"
+#include "model/time_ns.h"
 
 namespace tact::hal::cia402 {
 namespace {
@@ -121,7 +122,7 @@ class BringUp {
     };
     std::uint32_t status = 0;
     if (auto error = command(kControlDisableVoltage)) return error;
-    const std::int64_t end_ns = bus_.socket().now_ns() + kSettle_ms * 1'000'000LL;
+    const std::int64_t end_ns = bus_.socket().now_ns() + kSettle_ms * model::kMillisecond_ns;
     bool reset = false;
     while (true) {
       if (auto error = get(i, {0x6041, 0, 2}, status)) return error;

@@ -15,6 +15,7 @@
 #include "hal/cia402/cia402_bring_up.h"
 #include "hal/cia402/cia402_state.h"
 #include "hal/cia402/heartbeat_guard.h"
+#include "model/time_ns.h"
 
 namespace tact::hal::cia402 {
 namespace {
@@ -23,7 +24,6 @@ using can::CanLoop;
 using can::CanPower;
 using model::Result;
 
-constexpr std::int64_t kMs_ns = 1'000'000;
 // Four in the 20 ms that a drive waits (CstConfiguration): one may be lost.
 constexpr double kHostHeartbeat_Hz = 200.0;
 // As many as the gate bears without a sample (gate.h): 20 ms at 1 kHz.
@@ -39,21 +39,6 @@ enum class Cia402Cause : std::uint8_t {
   kLeftOperational,  // code: NmtState
   kUnguarded,        // would not notice that the host is gone
 };
-
-const char* nmt_words(std::uint32_t code) {
-  switch (static_cast<NmtState>(code)) {
-    case NmtState::kBoot:
-      return "the drive restarted by itself: check its supply";
-    case NmtState::kStopped:
-      return "the drive was stopped over the bus: is a second controller on it?";
-    case NmtState::kPreOperational:
-      return "the drive went pre-operational: it lost the controller's heartbeat or had bus "
-             "errors, or a second controller is on the bus";
-    case NmtState::kOperational:
-      break;
-  }
-  return "the drive left its normal state on the bus";
-}
 
 class Cia402s final : public can::CanDrives {
  public:
@@ -170,7 +155,7 @@ class Cia402s final : public can::CanDrives {
         return "the drive does not take up its watch over the controller's heartbeat again (object "
                "1016): start tactd again";
       case Cia402Cause::kLeftOperational:
-        return nmt_words(cause.code);
+        return nmt_sentence(static_cast<NmtState>(cause.code));
     }
     return {};
   }
@@ -270,7 +255,7 @@ Result<std::unique_ptr<Device>> start_cia402_delta(std::unique_ptr<can::CanBus> 
   if (!start) return start.error();
   // A sample is one period old when it is used; then three commands on the bus, and a period more
   // if they wait for SYNC.
-  const auto period_ns = std::llround(1e9 / rate_Hz);
+  const auto period_ns = model::period_ns(rate_Hz);
   const int periods = can.command_at_sync ? 2 : 1;
   const int bits = 3 * can_bits_on_bus(can::make_can_frame(0, 4)).most;
   const double bus_s = can::bus_time_s(bits, bus->rate());
@@ -281,7 +266,8 @@ Result<std::unique_ptr<Device>> start_cia402_delta(std::unique_ptr<can::CanBus> 
        .position = "position",
        .one_sync = true,
        // Three heartbeats and half of one.
-       .most_silent_ns = kMs_ns * cst_settings(can, rate_Hz).drive_heartbeat_ms * 7 / 2,
+       .most_silent_ns =
+           model::kMillisecond_ns * cst_settings(can, rate_Hz).drive_heartbeat_ms * 7 / 2,
        .counts_per_turn = can.counts_per_motor_turn * settings.delta.gear_ratio,
        .delay_s = 1e-9 * static_cast<double>(periods * period_ns) + bus_s,
        .motor_turns = start->motor_turns,

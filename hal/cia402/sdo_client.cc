@@ -4,13 +4,13 @@
 #include <fmt/core.h>
 
 #include "hal/cia402/canopen_words.h"
+#include "model/time_ns.h"
 
 namespace tact::hal::cia402 {
 namespace {
 
 // Chosen: CiA 301 leaves this time to the host.
 constexpr int kReply_ms = 300;
-constexpr std::int64_t kMs_ns = 1'000'000;
 
 }  // namespace
 
@@ -20,7 +20,7 @@ std::optional<SdoReply> SdoClient::ask(int node, const std::optional<can::CanFra
   bus_.push(request);
   bus_.send();
   std::optional<SdoReply> ours;
-  for (const std::int64_t end_ns = socket.now_ns() + kReply_ms * kMs_ns;
+  for (const std::int64_t end_ns = socket.now_ns() + kReply_ms * model::kMillisecond_ns;
        !ours && bus_.fault() == Fault::kNone && socket.now_ns() < end_ns;) {
     socket.wait(kReply_ms);
     for (const can::CanReceived& one : bus_.receive()) {
@@ -59,7 +59,7 @@ std::optional<std::uint32_t> SdoClient::read(int node, const SdoEntry& entry, Sd
 
 void SdoClient::wait(int time_ms) {
   can::CanSocket& socket = bus_.socket();
-  const std::int64_t end_ns = socket.now_ns() + time_ms * kMs_ns;
+  const std::int64_t end_ns = socket.now_ns() + time_ms * model::kMillisecond_ns;
   while (bus_.fault() == Fault::kNone && socket.now_ns() < end_ns) {
     socket.wait(1);
     for (const can::CanReceived& one : bus_.receive()) others_(one.frame);

@@ -13,10 +13,11 @@
 #pragma once
 
 #include "hal/delta/delta_kinematics.h"
+#include "model/units.h"
 
 namespace tact::hal::delta {
 
-inline constexpr Vec3 kGravity_W_mps2{0.0, 0.0, -9.81};
+inline constexpr Vec3 kGravity_W_mps2{0.0, 0.0, -model::kGravity_mps2};
 
 struct DeltaMasses {
   double arm_kg = 0.0;

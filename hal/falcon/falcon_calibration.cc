@@ -9,13 +9,14 @@
 #include <optional>
 #include <vector>
 
+#include "model/units.h"
+
 namespace tact::hal::falcon {
 namespace {
 
 using model::Error;
 using model::Result;
 
-constexpr double kGravity_mps2 = 9.81;
 constexpr double kStep_kg = 0.005;  // of the first look; then finer
 constexpr int kRefinements = 40;    // each keeps 0.618 of the range
 constexpr double kFlatness = 1e-3;  // relative: below it every moving mass fits as well
@@ -32,10 +33,11 @@ std::vector<delta::Joints> unit_torques_Nm(std::span<const FalconBalance> sample
   std::vector<delta::Joints> out;
   for (const FalconBalance& s : samples) {
     const FalconInverse legs = falcon.inverse(s.position_m);
-    out.push_back(legs.reachable
-                      // Up is y of the device's frame (falcon_frame.h).
-                      ? falcon_torques_Nm(falcon.joint_rate_matrix(legs), {0.0, kGravity_mps2, 0.0})
-                      : delta::Joints{});
+    out.push_back(
+        legs.reachable
+            // Up is y of the device's frame (falcon_frame.h).
+            ? falcon_torques_Nm(falcon.joint_rate_matrix(legs), {0.0, model::kGravity_mps2, 0.0})
+            : delta::Joints{});
   }
   return out;
 }

@@ -7,13 +7,13 @@
 #include "hal/falcon/falcon_at_tool.h"
 #include "hal/falcon/falcon_boot.h"
 #include "hal/falcon/falcon_frame.h"
+#include "model/units.h"
 
 namespace tact::hal::falcon {
 namespace {
 
 using What = FalconTrouble::What;
 
-constexpr double kGravity_mps2 = 9.81;
 constexpr double kJump_m = 5e-3;              // between two samples: a new start
 constexpr double kDeadBandRamp_words = 20.0;  // a force near zero does not chatter
 // Silent means both: in a loop above 1 kHz an answer takes several ticks.
@@ -190,7 +190,7 @@ Fault FalconDevice::write(const Wrench& wrench) RT_SAFE {
 
 /// tau = tau_gravity + s K^-T F, one s for all axes; then words.
 FalconWords FalconDevice::words_for(const Vec3& force_W_N) const RT_SAFE {
-  const Vec3 weight_N{0.0, 0.0, kGravity_mps2 * settings_.moving_mass_kg};
+  const Vec3 weight_N{0.0, 0.0, model::kGravity_mps2 * settings_.moving_mass_kg};
   const delta::Joints held_Nm = falcon_torques_Nm(rates_, falcon_direction_D(weight_N));
   const delta::Joints wanted_Nm = falcon_torques_Nm(rates_, falcon_direction_D(force_W_N));
   delta::Joints held{}, wanted{};  // 1 is all that an axis can do

@@ -9,6 +9,7 @@
 #include "hal/falcon_usb/falcon_image.h"
 #include "hal/monotonic.h"
 #include "model/io/input_file.h"
+#include "model/time_ns.h"
 
 namespace tact::hal::falcon_usb {
 namespace {
@@ -20,7 +21,7 @@ using What = falcon::FalconBootAction::What;
 constexpr std::int64_t kLongest_ms = 20'000;
 constexpr falcon::FalconBootSettings kBoot{.greeting_tries = 20};  // 1 s a time, 10 attempts
 
-std::int64_t now_ms() { return monotonic_ns() / 1'000'000; }
+std::int64_t now_ms() { return monotonic_ns() / model::kMillisecond_ns; }
 
 /// Does what the machine says; `data` keeps what was read until the next call.
 falcon::FalconBootInput carry_out(const falcon::FalconBootAction& action,

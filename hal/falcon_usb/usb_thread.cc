@@ -6,12 +6,13 @@
 #include <csignal>
 #include <ctime>
 
+#include "model/time_ns.h"
+
 namespace tact::hal::falcon_usb {
 namespace {
 
 // Small on purpose: MCL_FUTURE locks the whole of it in memory.
 constexpr std::size_t kStack_bytes = 131'072;
-constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 
 }  // namespace
 
@@ -55,7 +56,7 @@ void UsbThread::join() {
 }
 
 void usb_pause_ns(std::int64_t pause_ns) {
-  const timespec t{.tv_sec = pause_ns / kNsPerSecond, .tv_nsec = pause_ns % kNsPerSecond};
+  const timespec t{.tv_sec = pause_ns / model::kSecond_ns, .tv_nsec = pause_ns % model::kSecond_ns};
   clock_nanosleep(CLOCK_MONOTONIC, 0, &t, nullptr);
 }
 

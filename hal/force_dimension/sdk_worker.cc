@@ -12,6 +12,7 @@
 #include "hal/force_dimension/sdk_words.h"
 #include "hal/maker_library/rotation.h"
 #include "hal/monotonic.h"
+#include "model/time_ns.h"
 
 namespace tact::hal::force_dimension {
 namespace {
@@ -31,7 +32,8 @@ constexpr int kTimeGuard = 1;                  // pose: nothing new
 constexpr auto kStatusPeriod = std::chrono::milliseconds(50);
 
 void sleep_until_ns(std::int64_t deadline_ns) {
-  const timespec t{.tv_sec = deadline_ns / 1'000'000'000, .tv_nsec = deadline_ns % 1'000'000'000};
+  const timespec t{.tv_sec = deadline_ns / model::kSecond_ns,
+                   .tv_nsec = deadline_ns % model::kSecond_ns};
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr);
 }
 
@@ -65,7 +67,7 @@ std::string words_of_sdk_trouble(const LibraryTrouble& t) {
 }
 
 std::int64_t sdk_cycle_ns(double rate_Hz) {
-  return std::min(kLongestCycle_ns, static_cast<std::int64_t>(std::llround(1e9 / rate_Hz)));
+  return std::min(kLongestCycle_ns, model::period_ns(rate_Hz));
 }
 
 std::shared_ptr<SdkWorker> SdkWorker::start(const SdkSession& session, double rate_Hz) {

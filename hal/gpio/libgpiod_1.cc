@@ -3,6 +3,7 @@
 #include <gpiod.h>
 
 #include "hal/gpio/line_request.h"
+#include "model/time_ns.h"
 
 namespace tact::hal::gpio {
 namespace {
@@ -60,7 +61,7 @@ std::vector<Edge> LineRequest::edges(std::chrono::milliseconds longest) {
   for (int i = 0; i < count; ++i) {
     const gpiod_line_event& e = events.at(static_cast<std::size_t>(i));
     edges.push_back({.rising = e.event_type == GPIOD_LINE_EVENT_RISING_EDGE,
-                     .time_ns = e.ts.tv_sec * 1'000'000'000 + e.ts.tv_nsec});
+                     .time_ns = e.ts.tv_sec * model::kSecond_ns + e.ts.tv_nsec});
   }
   return edges;
 }

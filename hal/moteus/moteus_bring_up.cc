@@ -8,6 +8,7 @@
 
 #include "hal/can/can_delta.h"
 #include "hal/moteus/moteus_words.h"
+#include "model/time_ns.h"
 
 namespace tact::hal::moteus {
 namespace {
@@ -140,14 +141,14 @@ class BringUp {
   /// Asks and listens until all three fit: true, or the time is over or the bus broke: false.
   bool run_until(Message message, Condition fits, int time_ms) {
     can::CanFdSocket& socket = bus_.socket();
-    const std::int64_t end_ns = socket.now_ns() + time_ms * 1'000'000LL;
+    const std::int64_t end_ns = socket.now_ns() + time_ms * model::kMillisecond_ns;
     while (bus_.fault() == Fault::kNone) {
       for (const can::CanFdReceived& one : bus_.receive()) take(one.frame);
       if (std::ranges::all_of(axes_, fits)) return true;
       const std::int64_t now_ns = socket.now_ns();
       if (now_ns >= end_ns) return false;
       if (now_ns >= ask_ns_) {
-        ask_ns_ = now_ns + kAsk_ms * 1'000'000LL;
+        ask_ns_ = now_ns + kAsk_ms * model::kMillisecond_ns;
         for (Heard& axis : axes_) {
           bus_.push(message(axis.node));
           ++axis.asked;

@@ -14,6 +14,7 @@
 #include "hal/moteus/moteus_bring_up.h"
 #include "hal/moteus/moteus_protocol.h"
 #include "hal/moteus/moteus_words.h"
+#include "model/time_ns.h"
 
 namespace tact::hal::moteus {
 namespace {
@@ -213,7 +214,7 @@ Result<std::unique_ptr<Device>> start_moteus_delta(std::unique_ptr<can::CanFdBus
   if (!start) return start.error();
   // A reply tells of the moment before its command (MO-2), so a position is one period old when it
   // is used; then all frames of a tick on the bus, at most.
-  const auto period_ns = static_cast<double>(std::llround(1e9 / rate_Hz));
+  const auto period_ns = static_cast<double>(model::period_ns(rate_Hz));
   const double bus_s = can::bus_time_s(moteus_cycle_bits(settings.can), bus->rate());
   return can::start_can_device(
       std::move(bus), settings, rate_Hz,

@@ -17,6 +17,7 @@
 #include "hal/odrive/odrive_listener.h"
 #include "hal/odrive/odrive_protocol.h"
 #include "hal/odrive/odrive_velocity_limit.h"
+#include "model/time_ns.h"
 
 namespace tact::hal::odrive {
 namespace {
@@ -217,7 +218,7 @@ Result<std::unique_ptr<Device>> start_odrive_delta(std::unique_ptr<can::CanBus> 
   if (!start) return start.error();
   // A position is up to a period old (the drive's own clock); then three positions and three
   // torques on the bus.
-  const auto period_ns = static_cast<double>(std::llround(1e9 / rate_Hz));
+  const auto period_ns = static_cast<double>(model::period_ns(rate_Hz));
   const can::CanRate rate = bus->rate();
   return can::start_can_device(
       std::move(bus), settings, rate_Hz,

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "hal/can/can_delta.h"
+#include "model/time_ns.h"
 
 namespace tact::hal::odrive {
 namespace {
@@ -25,14 +26,14 @@ OdriveListener::OdriveListener(can::CanBus& bus, const model::CanSettings& can)
 
 bool OdriveListener::run_until(const Condition& fits, int time_ms) {
   can::CanSocket& socket = bus_.socket();
-  const std::int64_t end_ns = socket.now_ns() + time_ms * 1'000'000LL;
+  const std::int64_t end_ns = socket.now_ns() + time_ms * model::kMillisecond_ns;
   while (bus_.fault() == Fault::kNone) {
     for (const can::CanReceived& one : bus_.receive()) take(one.frame);
     if (std::all_of(axes.begin(), axes.end(), fits)) return true;
     const std::int64_t now_ns = socket.now_ns();
     if (now_ns >= end_ns) return false;
     if (now_ns >= feed_ns_) {
-      feed_ns_ = now_ns + kFeed_ms * 1'000'000LL;
+      feed_ns_ = now_ns + kFeed_ms * model::kMillisecond_ns;
       each([this](int node) { return odrive_input_torque(node, 0.0, odrive_torque_length(can_)); });
     }
     socket.wait(kFeed_ms);

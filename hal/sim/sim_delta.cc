@@ -7,11 +7,13 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "hal/delta/delta_at_tool.h"
 #include "hal/saturation.h"
 #include "hal/sim/sim_delta_model.h"
+#include "model/ranges.h"
 
 namespace tact::hal::sim {
 namespace {
@@ -217,25 +219,26 @@ void SimDelta::stop() {
 
 model::Result<std::unique_ptr<SimDelta>> make_sim_delta(const model::SimDeviceSettings& device,
                                                         const model::HandSettings& hand) {
+  // What the device cannot work with; a scene's own ranges are narrower (model/scene).
   const auto refuse = [](const char* key, double value, const char* allowed) {
     return model::Error{fmt::format("{} is {}; it must be {}", key, value, allowed)};
   };
-  if (!(device.counts_per_turn >= 100.0 && device.counts_per_turn <= 1e9))
-    return refuse("counts_per_turn", device.counts_per_turn, "100 to 1e9");
-  if (!(device.sample_delay_s >= 0.0 && device.sample_delay_s <= kMaxDelay_s))
-    return refuse("sample_delay_s", device.sample_delay_s, "0 to 0.1 s");
-  if (!(device.joint_friction_Nm >= 0.0 && device.joint_friction_Nm <= 10.0))
-    return refuse("joint_friction_Nm", device.joint_friction_Nm, "0 to 10 N m");
-  if (!(device.joint_damping_Nms_per_rad >= 0.0 && device.joint_damping_Nms_per_rad <= 100.0)) {
-    return refuse("joint_damping_Nms_per_rad", device.joint_damping_Nms_per_rad,
-                  "0 to 100 N m s/rad");
-  }
-  if (!(device.observer_bandwidth_Hz > 0.0 && device.observer_bandwidth_Hz <= 1e4))
-    return refuse("observer_bandwidth_Hz", device.observer_bandwidth_Hz, "above 0, at most 1e4 Hz");
-  const double hand_values[] = {hand.mass_kg, hand.stiffness_N_per_m, hand.damping_Ns_per_m};
-  for (const double value : hand_values)
-    if (!(value >= 0.0 && value <= 1e6))
-      return refuse("a mass, stiffness or damping of the hand", value, "0 to 1e6");
+  const std::pair<const char*, double> above_zero[] = {
+      {"counts_per_turn", device.counts_per_turn},
+      {"observer_bandwidth_Hz", device.observer_bandwidth_Hz}};
+  for (const auto& [key, value] : above_zero)
+    if (!model::is_positive(value)) return refuse(key, value, "above 0");
+  const std::pair<const char*, double> zero_or_above[] = {
+      {"sample_delay_s", device.sample_delay_s},
+      {"joint_friction_Nm", device.joint_friction_Nm},
+      {"joint_damping_Nms_per_rad", device.joint_damping_Nms_per_rad},
+      {"hand.mass_kg", hand.mass_kg},
+      {"hand.stiffness_N_per_m", hand.stiffness_N_per_m},
+      {"hand.damping_Ns_per_m", hand.damping_Ns_per_m}};
+  for (const auto& [key, value] : zero_or_above)
+    if (!model::is_not_negative(value)) return refuse(key, value, "0 or above");
+  if (device.sample_delay_s > kMaxDelay_s)
+    return refuse("sample_delay_s", device.sample_delay_s, "at most 0.1 s");
   if (hand.path.empty()) return model::Error{"the hand has no waypoint; give it at least one"};
   return std::make_unique<SimDelta>(device, hand);
 }

@@ -154,7 +154,7 @@ std::string machine_name() {
 
 Result<std::string> plan_path(const std::string& scene_hash) {
   const auto folder = [](const char* variable) {
-    const char* value = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): before threads
+    const char* value = std::getenv(variable);  // before threads
     return fs::path(value == nullptr ? "" : value);
   };
   fs::path cache = folder("XDG_CACHE_HOME");

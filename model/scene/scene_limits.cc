@@ -55,9 +55,8 @@ void refuse_small_budget(reader::Keys& k, double rate_Hz, const Limits& limits) 
   const double force_N = limits.force_N;
   if (!(force_N > 0.0 && rate_Hz > 0.0)) return;
   const double speed_mps = limits.speed_mps + limits.torque_Nm / force_N * limits.turn_radps;
-  // u (F^2 / (2 s) + F dt)
   const double least_J =
-      speed_mps * force_N * (0.5 * force_N / slew_beside_ramp_N_per_s(limits) + 1.0 / rate_Hz);
+      brake_energy_J(speed_mps, force_N, slew_beside_ramp_N_per_s(limits), 1.0 / rate_Hz);
   if (limits.energy_J >= least_J) return;
   k.refuse({"energy_J", "force_N", "speed_mps"},
            fmt::format("limits.energy_J = {} is too little to let go of force_N = {} at speed_mps "
@@ -90,10 +89,9 @@ double least_thermal_time_s(const Limits& limits, double rate_Hz) {
   const double continuous_N = std::min(limits.continuous_force_N, peak_N);
   if (!(continuous_N > 0.0 && rate_Hz > 0.0)) return 0.0;
   // thermal_limit.h: (1 + kappa) T <= tau, and kappa Fp^2 / (2 Fc tau) <= slew.
-  const double ratio = peak_N / continuous_N;
-  const double steepness = 2.0 * (ratio * ratio - 1.0);
-  return std::max((1.0 + steepness) / rate_Hz,
-                  steepness * 0.5 * ratio * peak_N / slew_beside_ramp_N_per_s(limits));
+  const double steepness = heat_steepness(peak_N, continuous_N);
+  return std::max((1.0 + steepness) / rate_Hz, steepness * 0.5 * peak_N * peak_N / continuous_N /
+                                                   slew_beside_ramp_N_per_s(limits));
 }
 
 }  // namespace tact::model::scene

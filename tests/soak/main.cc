@@ -18,13 +18,13 @@
 
 #include "firmware/gate/limits_for.h"
 #include "firmware/loop/alloc_counter.h"
-#include "firmware/loop/grid.h"
 #include "firmware/loop/rt_loop.h"
 #include "firmware/pc/rt_setup.h"
 #include "firmware/run/loop_parts.h"
 #include "firmware/run/replay.h"
 #include "firmware/telemetry/force_hash.h"
 #include "model/scene/tissue.h"
+#include "model/time_ns.h"
 #include "tests/soak/mischief.h"
 #include "tests/soak/promises.h"
 
@@ -83,7 +83,7 @@ model::Result<Outcome> soak(const model::scene::Scene& scene, std::uint64_t tick
   firmware::loop::SimulatedClock clock;
   firmware::loop::Requests requests;
   const auto ring = std::make_unique<firmware::loop::TickRing>();
-  const std::int64_t period_ns = firmware::loop::period_ns(scene.rate_Hz);
+  const std::int64_t period_ns = model::period_ns(scene.rate_Hz);
   const model::Limits limits = firmware::gate::limits_for(scene.limits, (*device)->info());
   const auto controller = std::make_unique<firmware::loop::Controller>(
       (*tissue)->contact_scene(),

@@ -17,7 +17,7 @@
 
 namespace {
 
-using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
+using namespace tact::tools;
 using tact::firmware::loop::MonotonicClock;
 using tact::hal::Sample;
 using tact::hal::falcon::FalconBalance;

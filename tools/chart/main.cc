@@ -18,8 +18,8 @@
 
 namespace {
 
-using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
-using namespace tact::tools::chart;  // NOLINT(google-build-using-namespace)
+using namespace tact::tools;
+using namespace tact::tools::chart;
 using tact::model::Error;
 using tact::model::Result;
 using tact::model::scene::Scene;

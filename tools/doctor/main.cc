@@ -17,8 +17,8 @@
 
 namespace {
 
-using namespace tact::firmware::pc;   // NOLINT(google-build-using-namespace): the rows it shows
-using namespace tact::tools::doctor;  // NOLINT(google-build-using-namespace): this folder's
+using namespace tact::firmware::pc;
+using namespace tact::tools::doctor;
 using tact::model::Error;
 
 struct Options {

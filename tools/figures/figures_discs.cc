@@ -9,7 +9,7 @@
 namespace tact::tools::figures {
 namespace {
 
-using namespace model;  // NOLINT(google-build-using-namespace): units
+using namespace model;
 
 constexpr double kContact_N = 4.0;
 constexpr indent::DiscStackParameters kExample{

@@ -8,7 +8,7 @@
 
 namespace tact::tools::figures {
 
-using namespace model;  // NOLINT(google-build-using-namespace): units
+using namespace model;
 
 Figure rhombus_units() {
   // RC-13: the printed liver in N/mm. A tenth of its limit.

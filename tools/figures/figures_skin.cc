@@ -10,7 +10,7 @@
 namespace tact::tools::figures {
 namespace {
 
-using namespace model;  // NOLINT(google-build-using-namespace): units
+using namespace model;
 using indent::HexWeight;
 
 constexpr double kPitch_m = 2_mm;       // printed

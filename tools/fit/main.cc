@@ -16,8 +16,8 @@
 
 namespace {
 
-using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
-using namespace tact::tools::fit;  // NOLINT(google-build-using-namespace)
+using namespace tact::tools;
+using namespace tact::tools::fit;
 using tact::model::Error;
 using tact::model::Result;
 using tact::model::scene::Scene;

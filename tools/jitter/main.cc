@@ -22,8 +22,8 @@
 
 namespace {
 
-using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
-using namespace tact::tools::jitter;  // NOLINT(google-build-using-namespace)
+using namespace tact::tools;
+using namespace tact::tools::jitter;
 using nlohmann::json;
 using tact::model::Error;
 

@@ -13,8 +13,8 @@
 
 namespace {
 
-using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
-using namespace tact::tools::limits;  // NOLINT(google-build-using-namespace)
+using namespace tact::tools;
+using namespace tact::tools::limits;
 using tact::model::Error;
 using tact::model::scene::Scene;
 

@@ -12,8 +12,8 @@
 
 namespace {
 
-using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
-using namespace tact::tools::plan;  // NOLINT(google-build-using-namespace)
+using namespace tact::tools;
+using namespace tact::tools::plan;
 using tact::model::Error;
 using tact::model::Result;
 using tact::model::scene::Plan;

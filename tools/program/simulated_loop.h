@@ -5,9 +5,9 @@
 
 #include <memory>
 
-#include "firmware/loop/grid.h"
 #include "firmware/loop/rt_loop.h"
 #include "model/contact/contact.h"
+#include "model/time_ns.h"
 
 namespace tact::tools::program {
 
@@ -17,8 +17,8 @@ class SimulatedLoop {
                 double rate_Hz, hal::Device& device)
       : controller_(contact, firmware::gate::Gate(limits, 1.0 / rate_Hz, 1.0),
                     /*hard_real_time=*/true),
-        loop_({.period_ns = firmware::loop::period_ns(rate_Hz)}, device, lines_, controller_,
-              clock_, requests_, *ring_) {
+        loop_({.period_ns = model::period_ns(rate_Hz)}, device, lines_, controller_, clock_,
+              requests_, *ring_) {
     requests_.arm_at_start.store(true);
   }
 

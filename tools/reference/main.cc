@@ -19,8 +19,8 @@
 
 namespace {
 
-using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
-using namespace tact::tools::reference;  // NOLINT(google-build-using-namespace)
+using namespace tact::tools;
+using namespace tact::tools::reference;
 using tact::model::Error;
 using tact::model::Result;
 

@@ -124,7 +124,7 @@ def stability():
 def tracking():
     """Errors of poses and joint updates; the times are bench's."""
     pose = ["build/tact-pose-bench", "--json"]
-    figure = ["build/tact-figure", "model/scenes/maintenance.toml", "--json"]
+    figure = ["build/tact-figure-bench", "model/scenes/maintenance.toml", "--json"]
     poses, played = (json.loads(told_by(*command, status=(0, 1))) for command in (pose, figure))
     values = {"one_camera": poses["errors"], "two_cameras": poses["joint_errors"]}
     for start in ("shoulder_first", "full_chain"):

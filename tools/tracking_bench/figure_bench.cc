@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-figure: what the figure of the operator costs on a scene's own motion, and what starting
-// CCD at the shoulder saves.
+// tact-figure-bench: what the figure of the operator costs on a scene's own motion, and what
+// starting CCD at the shoulder saves.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -12,8 +12,8 @@
 
 namespace {
 
-using namespace tact::tools;  // NOLINT(google-build-using-namespace): the program of this folder
-using namespace tact::tools::tracking_bench;  // NOLINT(google-build-using-namespace)
+using namespace tact::tools;
+using namespace tact::tools::tracking_bench;
 using nlohmann::json;
 using tact::host::figure::RootRule;
 
@@ -51,7 +51,7 @@ struct FigureBench {
 };
 
 void print_json(const FigureBench& bench) {
-  fmt::print("{}\n", json{{"format", "tact-figure"},
+  fmt::print("{}\n", json{{"format", "tact-figure-bench"},
                           {"version", 1},
                           {"scene", bench.scene},
                           {"seconds", bench.duration_s},
@@ -77,7 +77,7 @@ void print_text(const FigureBench& bench) {
 
 int main(int argc, char** argv) {
   program::Program program(
-      "tact-figure",
+      "tact-figure-bench",
       "Play a scene's hand and its recorded tracker to the figure of the operator, and "
       "count the joints that CCD turns: shoulder first, and always the whole chain.",
       "Errors of the finger tips in mm, times of a frame of the figure in us. The check fails "

@@ -12,7 +12,7 @@
 
 namespace tact::tests {
 
-using namespace hal;  // NOLINT(google-build-using-namespace): this is about nothing else
+using namespace hal;
 
 /// Never allocates: it stands inside the loop.
 class ScriptedPipe final : public falcon::FalconPipe {

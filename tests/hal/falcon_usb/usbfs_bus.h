@@ -19,7 +19,7 @@
 
 namespace tact::tests {
 
-using namespace hal;  // NOLINT(google-build-using-namespace): this is about nothing else
+using namespace hal;
 
 /// Transfers complete in the order of submission.
 struct Bus {

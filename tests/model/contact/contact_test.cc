@@ -53,12 +53,15 @@ TEST(Contact, NeverPullsOnAToolThatDoesNotHold) {
   std::mt19937 random(3);
   std::normal_distribution<double> nudge(0.0, 0.3_mm);
   Vec3 p{0, 0, 53_mm};
+  int pressing = 0;
   for (int i = 0; i < 20000; ++i) {
     p += Vec3{nudge(random), nudge(random), nudge(random)};
     if (norm(p) < 40_mm || norm(p) > 60_mm) p = 53_mm * normalized(p);
     const Wrench w = feel_at(contact, p);
     EXPECT_GE(dot(w.force_N, contact.touches()[0].normal), -1e-12);
+    if (contact.touches()[0].state == TouchState::kTouching) ++pressing;
   }
+  EXPECT_GT(pressing, 1000) << "most of the walk is in the tissue";
 }
 
 TEST(Contact, ForceIsTheSlopeOfItsPotential) {

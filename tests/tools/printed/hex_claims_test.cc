@@ -15,8 +15,8 @@
 
 namespace tact::tools::printed::hex_claims_test {
 
-using namespace model;          // NOLINT(google-build-using-namespace): units
-using namespace model::indent;  // NOLINT(google-build-using-namespace): the law beside its print
+using namespace model;
+using namespace model::indent;
 
 constexpr double kPitch_m = 2_mm;
 constexpr double kBody_N_per_m = 50.0;

@@ -12,8 +12,8 @@
 
 namespace tact::tools::printed::hex_paper_test {
 
-using namespace model;          // NOLINT(google-build-using-namespace): units
-using namespace model::indent;  // NOLINT(google-build-using-namespace): the law beside its print
+using namespace model;
+using namespace model::indent;
 
 constexpr HexPaperParameters kPrinted{.ring_pitch_m = 2_mm,
                                       .body_stiffness_N_per_m = 50.0,

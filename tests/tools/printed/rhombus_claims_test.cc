@@ -11,8 +11,8 @@
 
 namespace tact::tools::printed::rhombus_claims_test {
 
-using namespace model;          // NOLINT(google-build-using-namespace): units
-using namespace model::indent;  // NOLINT(google-build-using-namespace): the law beside its print
+using namespace model;
+using namespace model::indent;
 
 constexpr double kBeta = 2.0;
 constexpr double kCut = 0.05;  // of lambda

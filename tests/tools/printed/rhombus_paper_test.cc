@@ -9,8 +9,8 @@
 
 namespace tact::tools::printed::rhombus_paper_test {
 
-using namespace model;          // NOLINT(google-build-using-namespace): units
-using namespace model::indent;  // NOLINT(google-build-using-namespace): the law beside its print
+using namespace model;
+using namespace model::indent;
 
 RhombusUnit liver_at(double angle_rad) {
   return {.rod_length_m = 10_mm,

@@ -50,7 +50,8 @@ TEST(ToolPress, OfOneSphereOnTheLiverIsWhatCalculixFinds) {
   ASSERT_TRUE(known) << known.error().sentence;
   const ground_truth::SolvedSite& site = known->sites[2];
   ASSERT_EQ(site.vertex, 2780U) << "far from what is held: it gives most";
-  const double R = known->tool_radius_m;  // NOLINT
+  const double R =
+      known->tool_radius_m;  // NOLINT(readability-identifier-naming): the symbol of the equation
   ToolPress press{.direction = site.direction,
                   .sphere = {{.centre_m = site.point_m - R * site.direction, .radius_m = R}},
                   .depths_m = {},
@@ -69,7 +70,8 @@ TEST(ToolPress, OfOneSphereOnTheLiverIsWhatCalculixFinds) {
 
 TEST(ToolPress, OfTwoSpheresCouplesThem) {
   // Boundary elements by others: alone they would feel 35 and 17 % more.
-  const double first_m = 0.002872, second_m = 0.003423, R = 3.66e-3;  // NOLINT
+  const double first_m = 0.002872, second_m = 0.003423,
+               R = 3.66e-3;  // NOLINT(readability-identifier-naming): the symbol of the equation
   const ToolPress press{
       .direction = {0, 0, -1},
       .sphere = {{.centre_m = {0.006714, -0.005797, R + second_m - first_m}, .radius_m = R},

@@ -45,7 +45,7 @@ COMMANDS = {
     "tact-verify": [f"tact-verify {VECTORS}/{{vectors}} --json"],
     "tact-stability": ["tact-stability --out {t}/maps --quick --only loss --no-pictures --json"],
     "tact-doctor": ["tact-doctor --json"],
-    "tact-figure": [f"tact-figure {SCENES}/maintenance.toml --seconds 0.5 --json"],
+    "tact-figure-bench": [f"tact-figure-bench {SCENES}/maintenance.toml --seconds 0.5 --json"],
     "tact-arm-bench": ["tact-arm-bench --json"],
     "tact-pose-bench": ["tact-pose-bench --views 20 --json"],
     "tact-track-send": ["tact-track-send {t}/looks.jsonl --port 39999 --speed 100 --json"],

@@ -86,7 +86,7 @@ TEST(FigureWork, RefusesWhatMakesNoMotionInOneLine) {
 
 TEST(FigureWork, TheProgramTellsItAsJson) {
   const tests::TempDirectory temp;
-  const tests::Ran ran = tests::run_apart(temp, "tact-figure", kScene + " --json");
+  const tests::Ran ran = tests::run_apart(temp, "tact-figure-bench", kScene + " --json");
   ASSERT_EQ(ran.status, 0) << ran.err;
   const auto json = nlohmann::json::parse(ran.out);
   EXPECT_EQ(json["shoulder_first"]["frames"], 1800);

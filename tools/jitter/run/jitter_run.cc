@@ -11,9 +11,9 @@
 #include <cmath>
 #include <thread>
 
-#include "firmware/loop/grid.h"
 #include "firmware/loop/rt_loop.h"
 #include "firmware/run/loop_parts.h"
+#include "model/time_ns.h"
 #include "tools/jitter/run/bare_loop.h"
 #include "tools/jitter/run/live_line.h"
 #include "tools/jitter/run/load.h"
@@ -23,7 +23,7 @@
 namespace tact::tools::jitter {
 namespace {
 
-using namespace firmware;  // NOLINT(google-build-using-namespace): the loop it measures
+using namespace firmware;
 using namespace std::chrono_literals;
 using model::Error;
 using model::Result;
@@ -80,7 +80,7 @@ class Run {
   }
   // Drives and safety lines hold a pause for a fault.
   bool in_one_piece() const { return is_hardware() || (scene_ && scene_->device.lines.wired()); }
-  std::int64_t loop_period_ns() const { return firmware::loop::period_ns(result_.rate_Hz); }
+  std::int64_t loop_period_ns() const { return model::period_ns(result_.rate_Hz); }
   firmware::loop::TickRing& ring() { return options_.bare ? *bare_ring_ : *parts_.ring; }
 
   const JitterOptions& options_;

@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "firmware/loop/grid.h"
 #include "hal/sim/sim_delta.h"
+#include "model/time_ns.h"
 #include "tools/program/interrupt.h"
 
 namespace tact::tools::limits {
@@ -147,8 +147,8 @@ CaseRun::CaseRun(const Case& c, const LimitsBench& bench)
                            moment_.period_s, bench.force_share),
       bench.hard_real_time);
   loop_ = std::make_unique<firmware::loop::RtLoop>(
-      firmware::loop::LoopSettings{.period_ns = firmware::loop::period_ns(bench.scene.rate_Hz)},
-      *device_, *lines_, *controller_, *clock_, requests_, *ring_);
+      firmware::loop::LoopSettings{.period_ns = model::period_ns(bench.scene.rate_Hz)}, *device_,
+      *lines_, *controller_, *clock_, requests_, *ring_);
   rows_.reserve(static_cast<std::size_t>(lead_ticks_) +
                 static_cast<std::size_t>(c.duration_s / moment_.period_s) + 2);
 }

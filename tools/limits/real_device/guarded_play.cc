@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <thread>
 
-#include "firmware/loop/grid.h"
 #include "firmware/run/loop_executor.h"
+#include "model/time_ns.h"
 #include "tools/program/interrupt.h"
 
 namespace tact::tools::limits {
@@ -44,7 +44,7 @@ firmware::run::ThreadCosts play_guarded(const Runs& runs, const LimitsBench& ben
                                         .filter = filter,
                                         .guardian = bench.guardian,
                                         .rt = {},
-                                        .period_ns = firmware::loop::period_ns(bench.scene.rate_Hz),
+                                        .period_ns = model::period_ns(bench.scene.rate_Hz),
                                         .hard_real_time = bench.hard_real_time});
   while (!executor.ended()) {
     if (progress) progress(done.load(), runs.size());

@@ -57,7 +57,9 @@ void write_body(Text out, const model::fem::TetMesh& body, const DeckAxes& axes)
 }
 
 void write_material(Text out, const Elasticity& m, bool large_strain) {
-  const double E_kPa = m.youngs_modulus_Pa * kKPa, nu = m.poisson_ratio;  // NOLINT
+  const double
+      E_kPa = m.youngs_modulus_Pa * kKPa,
+      nu = m.poisson_ratio;  // NOLINT(readability-identifier-naming): the symbol of the equation
   fmt::format_to(out, "*MATERIAL,NAME=TISSUE\n");
   if (large_strain) {
     // kPa; C10 = G / 2, D1 = 2 / K
@@ -107,7 +109,8 @@ void write_ball(Text out, const ElasticProblem& p, const DeckAxes& axes) {
       fmt::format_to(out, "{}{}", k == 12 ? ",\n" : ",", first_node + wedge[k] + 1);
     fmt::format_to(out, "\n");
   }
-  const double E_kPa = p.material.youngs_modulus_Pa * kKPa;  // NOLINT
+  const double E_kPa = p.material.youngs_modulus_Pa *
+                       kKPa;  // NOLINT(readability-identifier-naming): the symbol of the equation
   // Every node of the ball is moved by the same way: its own stiffness does not matter.
   fmt::format_to(out,
                  "*MATERIAL,NAME=BALL\n*ELASTIC\n{:.12g},0.3\n"

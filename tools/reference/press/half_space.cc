@@ -31,7 +31,10 @@ double sphere_contact_radius_m(double sphere_radius_m, double depth_m) {
 }
 
 double sphere_force_N(const Elasticity& material, double sphere_radius_m, double depth_m) {
-  const double R = sphere_radius_m, a = sphere_contact_radius_m(R, depth_m);  // NOLINT
+  const double R = sphere_radius_m,
+               a = sphere_contact_radius_m(
+                   R,
+                   depth_m);  // NOLINT(readability-identifier-naming): the symbol of the equation
   // F = E* ((R^2 + a^2) / 2 ln((R + a) / (R - a)) - a R)
   return material.contact_modulus_Pa() *
          ((R * R + a * a) / 2.0 * std::log((R + a) / (R - a)) - a * R);

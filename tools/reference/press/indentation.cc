@@ -38,7 +38,8 @@ constexpr double kMaxDrawnOut = 8.0;
 double along_m(const Circle& tool, const Vec3& p_m) { return dot(p_m - tool.at_m, tool.axis); }
 
 std::vector<MovedNode> press(const OrganBody& body, const Circle& tool, const Indentation& what) {
-  const double R = what.tool_radius_m;  // NOLINT
+  const double R =
+      what.tool_radius_m;  // NOLINT(readability-identifier-naming): the symbol of the equation
   std::vector<MovedNode> moved;
   for (const std::uint32_t n : nodes_of_faces(body, faces_within(body, tool))) {
     const Vec3& p = body.mesh.node_m[n];

@@ -108,7 +108,7 @@ Patch make_patch(const OrganBody& body, const ToolPress& what) {
     const double cosine = dot(in, what.direction);
     for (const GaussPoint& gauss : kGauss) {
       const auto& l = gauss.corner;
-      const auto N = shape(l);  // NOLINT
+      const auto N = shape(l);  // NOLINT(readability-identifier-naming): the symbol of the equation
       const Vec3 at_m = l[0] * a + l[1] * b + l[2] * c;
       for (std::size_t k = 0; k < 3; ++k) {
         const auto v = number.find(node[k]);
