@@ -92,7 +92,7 @@ std::optional<Error> lock_device(const std::string& name) {
   if (ours.contains(name)) return std::nullopt;
   const Address address(name);
   if (!address.fits())
-    return Error{fmt::format("the name of the device is too long to lock it: {}", name)};
+    return Error{fmt::format("the device's name is too long to lock it: {}; rename it", name)};
   const int lock = make_socket();
   if (lock < 0) return cannot_lock(name, errno);
   if (bind(lock, address.plain(), address.bytes()) == 0 && listen(lock, kManyRefused) == 0) {

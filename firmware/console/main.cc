@@ -7,9 +7,9 @@
 #include "firmware/console/control_client.h"
 #include "firmware/console/control_name.h"
 #include "firmware/console/say.h"
-#include "model/io/command_line.h"
+#include "model/io/program/command_line.h"
+#include "model/io/program/within.h"
 #include "model/io/socket_file.h"
-#include "model/io/within.h"
 
 namespace {
 

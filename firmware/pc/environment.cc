@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "firmware/pc/pc_files.h"
-#include "model/io/command_line.h"
+#include "model/io/program/command_line.h"
 
 namespace tact::firmware::pc {
 namespace {

@@ -7,6 +7,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "model/io/json.h"
+
 namespace tact::firmware::run {
 
 using hal::list::FoundPart;
@@ -44,9 +46,8 @@ std::string devices_as_json(const std::vector<FoundPart>& parts) {
                     {"ready", part.lacking.empty()},
                     {"lacking", part.lacking},
                     {"cure", part.cure}});
-  // A device's own name may be any bytes: what is no UTF-8 is replaced, not thrown at.
-  return nlohmann::json{{"format", "tactd-devices"}, {"version", 1}, {"devices", list}}.dump(
-             2, ' ', false, nlohmann::json::error_handler_t::replace) +
+  return model::io::text_of(
+             nlohmann::json{{"format", "tactd-devices"}, {"version", 1}, {"devices", list}}, 2) +
          "\n";
 }
 

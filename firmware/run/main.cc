@@ -14,7 +14,8 @@
 #include "firmware/run/session.h"
 #include "firmware/telemetry/tick_csv.h"
 #include "model/io/file_writer.h"
-#include "model/io/program_end.h"
+#include "model/io/json.h"
+#include "model/io/program/program_end.h"
 #include "model/scene/plan_file.h"
 #include "model/scene/scene.h"
 
@@ -45,9 +46,10 @@ std::string faults_as_json() {
                     {"latches", model::latches(f.fault)}});
   for (const auto& s : firmware::loop::kStateTable)
     states.push_back({{"name", s.name}, {"words", s.words}});
-  return nlohmann::json{
-             {"format", "tactd-faults"}, {"version", 1}, {"faults", list}, {"states", states}}
-             .dump(2) +
+  return model::io::text_of(
+             nlohmann::json{
+                 {"format", "tactd-faults"}, {"version", 1}, {"faults", list}, {"states", states}},
+             2) +
          "\n";
 }
 

@@ -6,8 +6,8 @@
 #include <CLI/CLI.hpp>
 
 #include "firmware/console/service_manager.h"
-#include "model/io/command_line.h"
-#include "model/io/within.h"
+#include "model/io/program/command_line.h"
+#include "model/io/program/within.h"
 
 namespace tact::firmware::run {
 namespace {

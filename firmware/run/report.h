@@ -42,8 +42,9 @@ struct RunFacts {
 
 nlohmann::json to_json(const pc::Environment& environment);
 nlohmann::json to_json(const ThreadCosts& costs);
-nlohmann::json make_report(const RunFacts& facts, const loop::LoopStatistics& loop,
-                           const gate::Gate& gate, const pc::Environment& environment);
+/// As JSON.
+std::string make_report(const RunFacts& facts, const loop::LoopStatistics& loop,
+                        const gate::Gate& gate, const pc::Environment& environment);
 std::string make_summary(const RunFacts& facts, const loop::LoopStatistics& loop);
 /// What --check found; without a time where none was measured.
 std::string make_check_line(const model::scene::Scene& scene, const std::string& device_name,

@@ -249,8 +249,7 @@ int Session::report() {
     say(stderr, "tactd: {}\n", sentence);
   const RunFacts facts = collect_facts(fault, trouble);
   const std::string report = make_report(facts, loop_->statistics(), parts_.controller->gate(),
-                                         pc::read_environment(scene_.hash))
-                                 .dump(2);
+                                         pc::read_environment(scene_.hash));
   say(stdout, "{}\n",
       options_.json_path == "-" ? report : make_summary(facts, loop_->statistics()));
   if (options_.has_json_file())

@@ -28,6 +28,7 @@
 #include "hal/device.h"
 #include "model/device_settings.h"
 #include "model/result.h"
+#include "model/time_ns.h"
 
 namespace tact::hal::can {
 
@@ -57,6 +58,9 @@ struct CanAxis {
   }
 };
 
+/// From the request for torque to torque; after it the start is late.
+inline constexpr std::int64_t kLongestStart_ns = 3 * model::kSecond_ns;
+
 /// The bus and its three drives in the loop, as device and rules share them.
 template <class Frame>
 struct BasicCanLoop {
@@ -78,9 +82,8 @@ struct BasicCanLoop {
                .kind = static_cast<std::uint8_t>(kind),
                .code = code});
   }
-  /// Not there in time: asked for torque longer than 3 s ago.
   bool start_is_late() const RT_SAFE {
-    return power == CanPower::kStarting && asked_ns != 0 && now_ns - asked_ns > 3'000'000'000;
+    return power == CanPower::kStarting && asked_ns != 0 && now_ns - asked_ns > kLongestStart_ns;
   }
 };
 

@@ -65,8 +65,8 @@ Fault FalconDevice::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
   check_pipe();
   FalconReply reply;
   if (fault_ == Fault::kNone && pipe_->newest(reply) && take(reply, now_ns)) {
-    sample.tool = {.position_m = falcon_point_W(position_m_),
-                   .velocity_mps = velocity_mps_,
+    sample.tool = {.position_m = falcon_point_W(position_D_m_),
+                   .velocity_mps = velocity_W_mps_,
                    .grip_ratio = is_pressed(reply.report, kFalconCentre) ? 1.0 : 0.0};
     sample.stamp_ns = reply.stamp_ns;
     sample.sequence = reply.sequence;
@@ -119,13 +119,13 @@ bool FalconDevice::locate(const FalconReply& reply) RT_SAFE {
         std::abs(counts - counts_[i]) > kMaxCountsAtOnce + kMaxCounts_per_s * elapsed_s)
       return false;
   }
-  FalconForward forward = kinematics_.forward(thigh_rad, position_m_);
+  FalconForward forward = kinematics_.forward(thigh_rad, position_D_m_);
   // After a gap the last place may be too far for Newton; home is not (falcon_kinematics.h).
   if (!forward.solved) forward = kinematics_.forward(thigh_rad, kFalconHome_m);
   if (!forward.solved) return false;
-  position_m_ = forward.position_m;
-  rates_ = kinematics_.joint_rate_matrix(kinematics_.inverse(position_m_));
-  velocity_mps_ = velocity_.step(falcon_point_W(position_m_), elapsed_s);
+  position_D_m_ = forward.position_m;
+  rates_ = kinematics_.joint_rate_matrix(kinematics_.inverse(position_D_m_));
+  velocity_W_mps_ = velocity_.step(falcon_point_W(position_D_m_), elapsed_s);
   counts_ = reply.report.counts;
   stamp_ns_ = reply.stamp_ns;
   return true;

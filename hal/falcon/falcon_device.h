@@ -42,7 +42,7 @@ class FalconDevice final : public Device {
 
   /// What the last write sent; for calibration.
   const FalconWords& words() const RT_SAFE { return words_; }
-  Vec3 position_D_m() const RT_SAFE { return position_m_; }
+  Vec3 position_D_m() const RT_SAFE { return position_D_m_; }
 
  private:
   bool take(const FalconReply& reply, std::int64_t now_ns) RT_SAFE;
@@ -60,12 +60,12 @@ class FalconDevice final : public Device {
   FalconExchange exchange_;
   VelocityObserver velocity_;
 
-  Vec3 position_m_ = kFalconHome_m;  // frame D
-  Vec3 velocity_mps_;                // frame W
-  model::Mat3 rates_{};              // K there; zero makes no force
-  FalconWords counts_{};             // of the last good sample
-  std::int64_t stamp_ns_ = 0;        // of it; 0: none since homing
-  std::uint64_t sequence_ = 0;       // of the last report seen
+  Vec3 position_D_m_ = kFalconHome_m;
+  Vec3 velocity_W_mps_;
+  model::Mat3 rates_{};         // K at position_D_m_; zero makes no force
+  FalconWords counts_{};        // of the last good sample
+  std::int64_t stamp_ns_ = 0;   // of it; 0: none since homing
+  std::uint64_t sequence_ = 0;  // of the last report seen
   std::int64_t now_ns_ = 0;
   std::int64_t heard_ns_ = 0;  // when the last good report was read
   std::uint64_t dropped_before_ = 0;

@@ -44,7 +44,7 @@ class DeltaPlant {
 
   void step(double dt_s, const delta::Joints& motor_Nm, const HandPull& hand) RT_SAFE;
 
-  const model::Vec3& position_m() const RT_SAFE { return position_m_; }
+  const model::Vec3& position_D_m() const RT_SAFE { return position_m_; }
   const model::Vec3& velocity_mps() const RT_SAFE { return velocity_mps_; }
   const delta::Joints& theta_rad() const RT_SAFE { return theta_rad_; }
   /// Motion and gravity, without the hand; stops hold a little more while they are pressed.

@@ -21,7 +21,7 @@ namespace {
 // Chosen: four steps a tick at 1 kHz.
 constexpr double kLongestStep_s = 0.25e-3;
 // A longer pause of the loop is cut to this: one call stays bounded.
-constexpr double kMaxPhysics_s = 0.1;  // of one call
+constexpr double kMaxPhysics_s = 0.1;
 constexpr double kMaxDelay_s = 0.1;
 // 16 bits, chosen: fine beside the +-20 degrees of the wrist.
 constexpr double kWristCountsPerTurn = 65536.0;
@@ -50,7 +50,7 @@ SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::HandSett
       hand_(hand),
       plant_({.coulomb_Nm = device.joint_friction_Nm,
               .viscous_Nms_per_rad = device.joint_damping_Nms_per_rad},
-             point_D(inside_workspace_m(hand_.position_m()))),
+             point_D(inside_workspace_m(hand_.position_W_m()))),
       wrist_(wrist_angles_rad(hand_.rotation_rad())),
       velocity_(device.observer_bandwidth_Hz, kJump_m),
       angular_velocity_(device.observer_bandwidth_Hz, kJump_rad),
@@ -58,7 +58,7 @@ SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::HandSett
   history_.fill(state_now());  // at rest here since before the start
   // An end that is older than any delay: state_at always finds two states around its time.
   history_[kHistory - 1].time_s = -2.0 * kMaxDelay_s;
-  measured_ = delta_.pose(plant_.position_m(), plant_.theta_rad());
+  measured_ = delta_.pose(plant_.position_D_m(), plant_.theta_rad());
   // The motors hold the arms from the start, or they would fall before the first write.
   motor_Nm_ =
       gravity_torques_Nm(kGeometry, kMasses, measured_, direction_D(delta::kGravity_W_mps2));
@@ -80,7 +80,7 @@ DeviceInfo SimDelta::info() const {
           .damping_key = "device.sim.joint_damping_Nms_per_rad"};
 }
 
-Vec3 SimDelta::true_position_m() const RT_SAFE { return point_W(plant_.position_m()); }
+Vec3 SimDelta::true_position_W_m() const RT_SAFE { return point_W(plant_.position_D_m()); }
 
 Fault SimDelta::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
   sample.fresh = false;
@@ -168,7 +168,7 @@ void SimDelta::step_physics(double dt_s) RT_SAFE {
               {.mass_kg = hand.mass_kg,
                .stiffness_N_per_m = hand.stiffness_N_per_m,
                .damping_Ns_per_m = hand.damping_Ns_per_m,
-               .aim_m = point_D(hand_.position_m()),
+               .aim_m = point_D(hand_.position_W_m()),
                .aim_velocity_mps = direction_D(hand_.velocity_mps())});
   // A hand that holds the handle at a distance r turns it through the same spring: k r^2.
   const double square_m2 = kGripHalfWidth_m * kGripHalfWidth_m;

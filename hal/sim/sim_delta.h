@@ -51,7 +51,7 @@ class SimDelta final : public Device {
   /// The truth behind the encoders.
   const DeltaPlant& plant() const { return plant_; }
   const SimHand& hand() const { return hand_; }
-  Vec3 true_position_m() const RT_SAFE;
+  Vec3 true_position_W_m() const RT_SAFE;
 
  private:
   struct State {  // what the encoders could see at one time

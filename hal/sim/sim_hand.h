@@ -26,7 +26,7 @@ class SimHand {
   void step(double dt_s) RT_SAFE;
 
   const model::HandSettings& settings() const RT_SAFE { return settings_; }
-  const Vec3& position_m() const RT_SAFE { return at_.position_m; }
+  const Vec3& position_W_m() const RT_SAFE { return at_.position_m; }
   const Vec3& velocity_mps() const RT_SAFE { return velocity_mps_; }
   const Vec3& rotation_rad() const RT_SAFE { return at_.rotation_rad; }
   double grip_ratio() const RT_SAFE { return at_.grip_ratio; }

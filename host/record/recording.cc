@@ -66,8 +66,15 @@ Result<std::uint64_t> skip_ticks(SealedFile& in, Magic& magic) {
         "FILE --csv FILE writes its ticks"};
   const std::uint64_t start = log.header_bytes + log.ticks * log.tick_bytes;
   if (start < sizeof log || !in.skip(start - sizeof log) || !read(in, magic))
-    return Error{"this black box cannot be read up to its pictures"};
+    return Error{
+        "this black box cannot be read up to its pictures; tactd --replay FILE --csv FILE writes "
+        "its "
+        "ticks"};
   return start;
+}
+
+Error damaged(const Error& error) {
+  return Error{error.sentence + "; nothing of it can be shown, record again"};
 }
 
 /// Error: why it cannot be used.
@@ -104,8 +111,9 @@ Result<Setup> read_setup(SealedFile& in, const Magic& magic) {
   if (crc_of(setup.hello, setup.mesh) != header.setup_crc)
     return Error{
         "its scene part is damaged (checksum differs); nothing of it can be shown, record again"};
-  if (const std::optional<Error> error = check_hello(setup.hello)) return *error;
-  if (const std::optional<Error> error = check_mesh(setup.hello, setup.mesh)) return *error;
+  if (const std::optional<Error> error = check_hello(setup.hello)) return damaged(*error);
+  if (const std::optional<Error> error = check_mesh(setup.hello, setup.mesh))
+    return damaged(*error);
   return setup;
 }
 

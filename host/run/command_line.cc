@@ -5,9 +5,9 @@
 #include <filesystem>
 
 #include "host/run/telemetry_client.h"
-#include "model/io/command_line.h"
-#include "model/io/installed.h"
-#include "model/io/within.h"
+#include "model/io/program/command_line.h"
+#include "model/io/program/installed.h"
+#include "model/io/program/within.h"
 
 namespace tact::host::run {
 namespace {

@@ -19,7 +19,8 @@
 #include "host/server/playback.h"
 #include "host/server/viewer_server.h"
 #include "model/io/file_writer.h"
-#include "model/io/program_end.h"
+#include "model/io/json.h"
+#include "model/io/program/program_end.h"
 #include "model/result.h"
 
 namespace tact::host::run {
@@ -46,9 +47,7 @@ void warn_of_silence(double silence_s) {
 }
 
 /// A file name with broken UTF-8 is mended instead of throwing.
-std::string to_text(const nlohmann::json& json) {
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
+std::string to_text(const nlohmann::json& json) { return model::io::text_of(json); }
 
 /// Writes every frame of every run to its own file: FILE, then FILE.2, FILE.3.
 class Recorder {

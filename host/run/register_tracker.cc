@@ -14,6 +14,7 @@
 #include "host/run/telemetry_client.h"
 #include "host/tracking/operator_tracking.h"
 #include "host/tracking/registration.h"
+#include "model/io/json.h"
 #include "model/result.h"
 
 namespace tact::host::run {
@@ -91,7 +92,7 @@ void tell(const Options& options, const std::string& path,
                              {"rms_m", fit.rms_m},
                              {"largest_m", fit.largest_m},
                              {"residuals_m", fit.residual_m}};
-    fmt::print("{}\n", all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", model::io::text_of(all));
   } else {
     fmt::print("{}: {} poses, residuals {:.2f} mm rms, {:.2f} mm at most\n", path, poses.size(),
                1e3 * fit.rms_m, 1e3 * fit.largest_m);

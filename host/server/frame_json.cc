@@ -13,6 +13,8 @@
 #include <string_view>
 #include <vector>
 
+#include "model/io/json.h"
+
 namespace tact::host::server {
 namespace {
 
@@ -155,7 +157,7 @@ std::string scene_json(const record::Hello& hello) {
         {"pieces", pieces}}},
   };
   // A name with broken UTF-8 is mended instead of throwing.
-  return scene.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return model::io::text_of(scene);
 }
 
 }  // namespace tact::host::server

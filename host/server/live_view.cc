@@ -37,7 +37,8 @@ void LiveView::begin(const record::Hello& hello, record::MeshBytes mesh, Link li
   ++scene_number_;
   if (companion_)
     // Before tell(): the status of a new scene has its figure.
-    figure_ = std::make_shared<const std::string>(companion_->begin(hello, *mesh_).dump());
+    figure_ =
+        std::make_shared<const std::string>(model::io::text_of(companion_->begin(hello, *mesh_)));
   recent_.restart(static_cast<double>(hello.frame_rate_Hz));
   link_ = link;
   detail_ = detail;
@@ -85,7 +86,7 @@ void LiveView::when_watched(std::function<void()> then) {
 }
 
 void LiveView::tell_replay(const nlohmann::json& replay) {
-  replay_ = std::make_shared<const std::string>(replay.dump());
+  replay_ = std::make_shared<const std::string>(model::io::text_of(replay));
   tell();
 }
 
@@ -97,8 +98,7 @@ void LiveView::tell() {
                         {"kept_s", record::RecentFrames::kKeep_s}};
   if (figure_) status["figure"] = *model::io::parse_json(*figure_, "figure");
   if (replay_) status["replay"] = *model::io::parse_json(*replay_, "replay");
-  status_ = std::make_shared<const std::string>(
-      status.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  status_ = std::make_shared<const std::string>(model::io::text_of(status));
   for (LiveListener* listener : listeners_) listener->on_status(status_);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// json.h - the one reader of JSON: errors as sentences with their place, no text too deep for it.
+// json.h - the one reader and writer of JSON: errors as sentences with their place, no text that is
+// too deep to read, none that cannot be written.
 #pragma once
 
 #include <fmt/format.h>
@@ -37,6 +38,12 @@ Result<Json> read_json(const std::string& path, std::string_view cure = "check t
   auto json = parse_json<Json>(*text, path);
   if (!json) return Error{fmt::format("{}; {}", json.error().sentence, cure)};
   return json;
+}
+
+/// Bytes that are no UTF-8, as a path or the name of a device may have, become U+FFFD.
+template <typename Json>
+std::string text_of(const Json& json, int indent = -1) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace tact::model::io

@@ -133,7 +133,7 @@ Result<int> bind_socket(const std::string& path, int type) {
 std::optional<Error> share_socket(const std::string& path, gid_t group) {
   struct stat info{};
   if (lstat(path.c_str(), &info) == 0 && !S_ISSOCK(info.st_mode))
-    return Error{path + ": is not a socket"};
+    return Error{path + ": is not a socket; name another path, or remove that file"};
   const bool is_shared =
       // Not asked for where it holds: a service may not change owners at all.
       (info.st_gid == group || lchown(path.c_str(), static_cast<uid_t>(-1), group) == 0) &&

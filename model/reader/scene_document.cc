@@ -11,7 +11,7 @@
 #include <system_error>
 
 #include "model/io/input_file.h"
-#include "model/io/installed.h"
+#include "model/io/program/installed.h"
 #include "model/io/toml.h"
 #include "model/reader/scene_words.h"
 

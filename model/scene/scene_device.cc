@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/scene/scene_device.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 
@@ -84,7 +86,23 @@ void visit_nodes(reader::Keys& k, CanSettings& can) {
     k.refuse({"node"}, "device.can.node needs three different whole numbers, as [1, 2, 3]");
 }
 
-void visit_can(reader::Keys& k, CanSettings& can) {
+/// What one kind of drives takes, another would leave aside without a word: a current that nobody
+/// limits.
+void refuse_foreign_keys(reader::Keys& k, std::string_view kind, const CanSettings& can) {
+  const auto refuse = [&](std::string_view key, std::string_view owner) {
+    k.refuse({key}, fmt::format("device.can.{} is for {}, and a {} would not take it; remove it",
+                                key, owner, kind));
+  };
+  const bool on_can = kind.starts_with("can-");
+  if (on_can && kind != "can-odrive" && can.max_current_A != 0.0)
+    refuse("max_current_A", "an ODrive");
+  if (on_can && kind != "can-cia402" && can.rated_torque_Nm != 0.0)
+    refuse("rated_torque_Nm", "a CiA 402 drive");
+  if (on_can && kind != "can-cia402" && can.command_at_sync)
+    refuse("command_at_sync", "a CiA 402 drive");
+}
+
+void visit_can(reader::Keys& k, std::string_view kind, CanSettings& can) {
   constexpr std::array kHoming{
       reader::Choice{"absolute", "absolute encoders, zero_turns holds for good"},
       reader::Choice{"index", "the drives look for the index pulse at start"},
@@ -118,6 +136,7 @@ void visit_can(reader::Keys& k, CanSettings& can) {
          can.command_at_sync, kOptional);
   k.number("rated_torque_Nm", {0.0, 1000.0}, "CiA 402: of a motor; 0: as the drive tells (6076)",
            can.rated_torque_Nm, kOptional);
+  refuse_foreign_keys(k, kind, can);
 }
 
 void visit_falcon(reader::Keys& k, FalconSettings& f) {
@@ -206,7 +225,7 @@ void visit_device(reader::Keys& k, DeviceSettings& out) {
       kOptional);
   k.section(
       "can", "its drives, can-odrive, can-cia402 or can-moteus",
-      [&](reader::Keys& can) { visit_can(can, out.can); }, kOptional);
+      [&](reader::Keys& can) { visit_can(can, out.kind, out.can); }, kOptional);
   k.section(
       "falcon", "a Novint Falcon", [&](reader::Keys& falcon) { visit_falcon(falcon, out.falcon); },
       kOptional);

@@ -84,6 +84,7 @@ TOOLS = {
 # The parts of a room, and what each may include of the others. What stands in the room itself, as main.cc, includes
 # every part, and no part includes that. Other rooms take a room as a whole.
 PARTS = {
+    "model/io": {"program": []},
     "tests/rig/emulators": {
         "mechanics": [],
         "run": ["mechanics"],

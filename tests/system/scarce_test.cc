@@ -53,7 +53,7 @@ TEST_F(Scarce, AFullDiskEndsTheRecordAndNotTheLoop) {
   if (can.status != 0) GTEST_SKIP() << "no file system of one's own here: " << can.output;
   const Outcome out = run_command(
       "cd " + folder + " && mkdir disk && XDG_RUNTIME_DIR=" + folder +
-      " timeout -s KILL 60 unshare -rm sh -c 'mount -t tmpfs -o size=64k none disk && " +
+      " timeout -s KILL 60 unshare -rm sh -c 'mount -t tmpfs -o size=16k none disk && " +
       program_path("tactd") + " " + kLiver +
       " --set rate_Hz=500 --no-black-box --no-telemetry --record disk/log --seconds 2 --json "
       "report.json'");

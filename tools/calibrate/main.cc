@@ -12,7 +12,7 @@
 #include "hal/falcon/falcon_balance.h"
 #include "hal/falcon/falcon_calibration.h"
 #include "hal/falcon_usb/falcon_open.h"
-#include "model/io/within.h"
+#include "model/io/program/within.h"
 #include "tools/program/program.h"
 
 namespace {

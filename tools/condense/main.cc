@@ -9,7 +9,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "model/io/within.h"
+#include "model/io/json.h"
+#include "model/io/program/within.h"
 #include "model/scene/compliance_file.h"
 #include "tools/condense/condense_organ.h"
 #include "tools/program/interrupt.h"
@@ -93,7 +94,7 @@ void report(const Options& o, const ComplianceMap& map, const CondenseFacts& fac
         {"elements", facts.elements},
         {"regular_times_E_per_m", {{"least", r.low}, {"median", r.middle}, {"most", r.high}}},
         {"seconds_s", seconds}};
-    fmt::print("{}\n", out.dump(2));
+    fmt::print("{}\n", tact::model::io::text_of(out, 2));
     return;
   }
   fmt::print("{}: {} bytes, {} vertices, {} rings of {:.3g} mm, nu = {:.3g}\n", o.out, bytes,

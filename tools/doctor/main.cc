@@ -10,7 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware/pc/rt_setup.h"
-#include "model/io/within.h"
+#include "model/io/json.h"
+#include "model/io/program/within.h"
 #include "tools/doctor/doctor_table.h"
 #include "tools/doctor/fix.h"
 #include "tools/program/program.h"
@@ -80,11 +81,11 @@ int main(int argc, char** argv) {
   const auto rows = check_pc(question);
   if (options.fix || options.undo) return mend(program, question, rows, options);
   if (options.as_json)
-    fmt::print("{}\n", nlohmann::json{{"format", "tact-doctor"},
-                                      {"version", 1},
-                                      {"core", core_in_question(question)},
-                                      {"checks", to_json(rows)}}
-                           .dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", tact::model::io::text_of(nlohmann::json{{"format", "tact-doctor"},
+                                                               {"version", 1},
+                                                               {"core", core_in_question(question)},
+                                                               {"checks", to_json(rows)}},
+                                                2));
   else
     fmt::print("{}", make_doctor_table(rows, isatty(STDOUT_FILENO) != 0));
   const bool any_red = std::any_of(rows.begin(), rows.end(),

@@ -136,8 +136,9 @@ std::optional<Error> UndoStore::save() const {
   std::error_code wrong;
   fs::create_directories(root_ + kUndoFolder, wrong);
   fs::permissions(root_ + kUndoFolder, fs::perms(0700), wrong);
-  return model::io::write_file(root_ + kUndoFolder + "/undo.json",
-                               json{{"files", files}, {"commands", commands}}.dump(2) + "\n");
+  return model::io::write_file(
+      root_ + kUndoFolder + "/undo.json",
+      model::io::text_of(json{{"files", files}, {"commands", commands}}, 2) + "\n");
 }
 
 std::optional<Error> UndoStore::keep(const DropIn& file) {

@@ -7,7 +7,8 @@
 #include <cmath>
 
 #include "model/io/file_writer.h"
-#include "model/io/within.h"
+#include "model/io/json.h"
+#include "model/io/program/within.h"
 #include "tools/fit/fit_csv.h"
 #include "tools/fit/fit_report.h"
 #include "tools/program/program.h"
@@ -197,7 +198,7 @@ int main(int argc, char** argv) {
   if (!o.picture.empty())
     if (const auto drawn = draw_fit(report, o.picture); !drawn) return program.fail(drawn.error());
   if (o.json)
-    fmt::print("{}\n", json_of(report).dump(2));
+    fmt::print("{}\n", tact::model::io::text_of(json_of(report), 2));
   else
     fmt::print("{}", text_of(report));
   return report.follows() ? 0 : 1;

@@ -51,9 +51,9 @@ inline std::string body_text(const SolvedBody& body) {
       "\"mesh\": {}, \"mesh_hash\": {}, \"solver\": {},\n"
       "\"youngs_modulus_Pa\": {:.7g}, \"poisson_ratio\": {:.7g},\n"
       "\"fixed_min_m\": {}, \"fixed_max_m\": {}",
-      json(body.mesh).dump(), json(body.mesh_hash).dump(), json(body.solver).dump(),
-      body.youngs_modulus_Pa, body.poisson_ratio, vector_text(body.fixed_min_m),
-      vector_text(body.fixed_max_m));
+      model::io::text_of(json(body.mesh)), model::io::text_of(json(body.mesh_hash)),
+      model::io::text_of(json(body.solver)), body.youngs_modulus_Pa, body.poisson_ratio,
+      vector_text(body.fixed_min_m), vector_text(body.fixed_max_m));
 }
 
 /// `make` is the command that makes such a file; `data_of` reads the JSON, `check` says what a

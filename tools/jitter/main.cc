@@ -10,7 +10,8 @@
 
 #include "model/io/file_writer.h"
 #include "model/io/input_file.h"
-#include "model/io/within.h"
+#include "model/io/json.h"
+#include "model/io/program/within.h"
 #include "tools/jitter/report/jitter_compare.h"
 #include "tools/jitter/report/jitter_page.h"
 #include "tools/jitter/report/jitter_picture.h"
@@ -103,7 +104,7 @@ CLI::App* add_compare(CLI::App& app, Options& o) {
 /// To the file, or to standard output; nothing without a path.
 std::optional<Error> write_json(const json& result, const std::string& path) {
   // Words of the kernel and of the machine may hold any byte: a wrong one is replaced.
-  const std::string text = result.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+  const std::string text = tact::model::io::text_of(result, 2) + "\n";
   if (path == "-") fmt::print("{}", text);
   if (path.empty() || path == "-") return std::nullopt;
   return tact::model::io::write_file(path, text);

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "model/io/json.h"
 #include "tools/limits/real_device/consent.h"
 #include "tools/limits/run_plan.h"
 #include "tools/program/program.h"
@@ -100,7 +101,7 @@ int test_limits(const program::Program& program, const Options& o) {
   // Told below even if it could not be written: a run on a device is not repeated lightly.
   const auto files = write_report(*report, o.out, !o.no_pictures);
   if (o.json)
-    fmt::print("{}\n", to_json(*report).dump(2));
+    fmt::print("{}\n", tact::model::io::text_of(to_json(*report), 2));
   else
     fmt::print("{}", to_text(*report));
   if (!files) return program.fail(files.error(), "the tables are written, the page is not");

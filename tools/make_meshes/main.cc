@@ -11,10 +11,10 @@
 #include <optional>
 #include <system_error>
 
-#include "model/io/command_line.h"
 #include "model/io/file_writer.h"
-#include "model/io/program_end.h"
-#include "model/io/within.h"
+#include "model/io/program/command_line.h"
+#include "model/io/program/program_end.h"
+#include "model/io/program/within.h"
 #include "tools/make_meshes/meshes.h"
 
 namespace {

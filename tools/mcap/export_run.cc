@@ -12,9 +12,9 @@
 
 #include "firmware/telemetry/tick_log.h"
 #include "host/record/recording.h"
-#include "model/io/command_line.h"
 #include "model/io/input_file.h"
 #include "model/io/one_line.h"
+#include "model/io/program/command_line.h"
 #include "tools/mcap/mcap_writer.h"
 #include "tools/mcap/messages.h"
 

@@ -8,8 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "model/io/command_line.h"
-#include "model/io/program_end.h"
+#include "model/io/json.h"
+#include "model/io/program/command_line.h"
+#include "model/io/program/program_end.h"
 #include "tools/mcap/export_run.h"
 
 namespace {
@@ -30,7 +31,7 @@ int run(const std::string& from, const std::string& to, bool json) {
         {"format", "tact-mcap"},      {"version", 1},           {"file", to},
         {"ticks", done->ticks},       {"frames", done->frames}, {"messages", done->messages},
         {"length_s", done->length_s}, {"damage", done->damage}};
-    fmt::print("{}\n", told.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", tact::model::io::text_of(told));
   } else {
     fmt::print("{}: {} ticks, {} frames, {:.1f} s\n", to, done->ticks, done->frames,
                done->length_s);

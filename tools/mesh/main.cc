@@ -9,7 +9,8 @@
 #include <optional>
 
 #include "model/io/file_writer.h"
-#include "model/io/within.h"
+#include "model/io/json.h"
+#include "model/io/program/within.h"
 #include "tools/mesh/mesh_report.h"
 #include "tools/mesh/place.h"
 #include "tools/mesh/repair_file.h"
@@ -162,7 +163,7 @@ int main(int argc, char** argv) {
   if (options.json) {
     auto told = mesh::to_json(options.file, unit, read->obj, read->steps, options.out);
     if (placement) told["placement"] = mesh::to_json(*placement);
-    fmt::print("{}\n", told.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", tact::model::io::text_of(told, 2));
     return 0;
   }
   fmt::print("{}", mesh::to_text(read->obj, unit));

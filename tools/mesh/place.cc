@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "model/io/json.h"
 #include "model/mesh/turn.h"
 #include "model/scene/scene.h"
 #include "tools/mesh/unit.h"
@@ -69,8 +70,7 @@ std::optional<Error> place_under_hand(const model::mesh::SurfaceMesh& mesh, cons
 
 /// TOML is; a name in Linux may be any bytes.
 bool is_utf8(const std::string& text) {
-  const auto shown =
-      nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  const auto shown = model::io::text_of(nlohmann::json(text));
   const std::string_view replaced = "\uFFFD";
   return shown.find(replaced) == shown.npos || text.find(replaced) != text.npos;
 }
@@ -93,7 +93,7 @@ std::string toml_of(const Vec3& v) {
 }
 
 std::vector<KeyValue> organ_keys(const Placement& p) {
-  return {{"mesh", nlohmann::json(p.mesh_path).dump()},  // quoted alike in TOML
+  return {{"mesh", model::io::text_of(nlohmann::json(p.mesh_path))},  // quoted alike in TOML
           {"mesh_unit_m", fmt::format("{}", p.unit_m)},
           {"orientation_deg", toml_of(p.orientation_deg)},
           {"position_m", toml_of(p.position_m)}};

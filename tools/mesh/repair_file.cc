@@ -8,8 +8,8 @@
 #include <iterator>
 
 #include "model/io/input_file.h"
-#include "model/io/installed.h"
 #include "model/io/json.h"
+#include "model/io/program/installed.h"
 #include "model/mesh/obj_parser.h"
 #include "tools/program/memory_file.h"
 #include "tools/program/run_program.h"

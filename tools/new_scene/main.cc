@@ -9,8 +9,8 @@
 
 #include "model/io/file_writer.h"
 #include "model/io/input_file.h"
-#include "model/io/installed.h"
-#include "model/io/within.h"
+#include "model/io/program/installed.h"
+#include "model/io/program/within.h"
 #include "model/scene/compliance_file.h"
 #include "tools/condense/condense_organ.h"
 #include "tools/ground_truth/gmsh.h"

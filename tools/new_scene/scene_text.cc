@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "model/io/json.h"
 #include "tools/mesh/place.h"
 #include "tools/new_scene/forceps.h"
 #include "tools/new_scene/scene.in.h"
@@ -21,9 +22,7 @@ constexpr double kPress_ratio = 0.8;   // of the working depth
 constexpr double kLiver_Pa = 6270.0;   // E / (1 - nu^2), of the numbers below
 
 /// Quoted alike in JSON and TOML; what is no UTF-8 is shown as a replacement character.
-std::string quoted(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
+std::string quoted(const std::string& text) { return model::io::text_of(nlohmann::json(text)); }
 
 std::string four_digits(double x) { return fmt::format("{:.4g}", x); }
 

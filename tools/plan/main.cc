@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "model/io/json.h"
 #include "tools/chart/report/report.h"
 #include "tools/plan/plan.h"
 #include "tools/program/program.h"
@@ -120,7 +121,7 @@ void print(const Options& o, const std::vector<Candidate>& candidates, const Cho
     out[choice.meets_by_rms ? "chosen" : "nearest"] = to_json(candidates[*choice.chosen]);
   if (choice.runner_up) out["runner_up"] = to_json(candidates[*choice.runner_up]);
   if (!written.empty()) out["plan"] = written;
-  fmt::print("{}\n", out.dump(2));
+  fmt::print("{}\n", tact::model::io::text_of(out, 2));
 }
 
 /// Writes the plan that tactd reads, or takes away the one that is no longer good enough.

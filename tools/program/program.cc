@@ -7,9 +7,9 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "model/io/command_line.h"
 #include "model/io/file_writer.h"
-#include "model/io/program_end.h"
+#include "model/io/program/command_line.h"
+#include "model/io/program/program_end.h"
 #include "tools/program/run_program.h"
 
 namespace tact::tools::program {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "model/io/file_writer.h"
-#include "model/io/within.h"
+#include "model/io/program/within.h"
 #include "tools/program/program.h"
 #include "tools/program/run_program.h"
 #include "tools/program/sweep.h"

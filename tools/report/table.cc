@@ -14,6 +14,7 @@
 
 #include "model/io/file_writer.h"
 #include "model/io/input_file.h"
+#include "model/io/json.h"
 #include "tools/report/csv.h"
 
 namespace tact::tools::report {
@@ -109,7 +110,7 @@ std::string Table::to_json() const {
     }
     rows.push_back(std::move(row));
   }
-  return ordered_json{{"table", name_}, {"rows", rows}}.dump(1) + "\n";
+  return model::io::text_of(ordered_json{{"table", name_}, {"rows", rows}}, 1) + "\n";
 }
 
 Result<std::vector<std::string>> Table::write(const std::string& directory) const {

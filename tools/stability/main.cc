@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "model/io/json.h"
 #include "tools/program/program.h"
 #include "tools/stability/sweep/run_maps.h"
 
@@ -89,7 +90,7 @@ int main(int argc, char** argv) {
   const auto run = tact::tools::stability::run_maps(options);
   // Maps that were finished are told even if a later one failed.
   if (as_json)
-    fmt::print("{}\n", to_json(run.reports).dump(2));
+    fmt::print("{}\n", tact::model::io::text_of(to_json(run.reports), 2));
   else
     print_text(run.reports);
   if (run.error)

@@ -13,9 +13,10 @@
 #include <optional>
 
 #include "host/tracking/observation_player.h"
-#include "model/io/command_line.h"
-#include "model/io/program_end.h"
-#include "model/io/within.h"
+#include "model/io/json.h"
+#include "model/io/program/command_line.h"
+#include "model/io/program/program_end.h"
+#include "model/io/program/within.h"
 #include "model/result.h"
 
 namespace {
@@ -66,12 +67,11 @@ int send_all(const Options& options) {
   player.start();
   io.run();
   if (options.json) {
-    fmt::print("{}\n", nlohmann::json{{"format", "tact-track-send"},
-                                      {"version", 1},
-                                      {"sent", sent},
-                                      {"unsent", unsent},
-                                      {"bad", file->bad}}
-                           .dump());
+    fmt::print("{}\n", tact::model::io::text_of(nlohmann::json{{"format", "tact-track-send"},
+                                                               {"version", 1},
+                                                               {"sent", sent},
+                                                               {"unsent", unsent},
+                                                               {"bad", file->bad}}));
   } else {
     fmt::print(
         "tact-track-send: {} observations sent to 127.0.0.1:{}, {} not taken by the kernel\n", sent,

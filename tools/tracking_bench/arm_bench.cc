@@ -11,7 +11,8 @@
 #include <vector>
 
 #include "host/figure/figure.h"
-#include "model/io/command_line.h"
+#include "model/io/json.h"
+#include "model/io/program/command_line.h"
 #include "tools/tracking_bench/median_reporter.h"
 #include "tools/tracking_bench/tool_motion.h"
 
@@ -101,7 +102,7 @@ int main(int argc, char** argv) {
     out["version"] = 1;
     out["missed"] = missed;
     out["missed_full_chain"] = missed_full;
-    fmt::print("{}\n", out.dump());
+    fmt::print("{}\n", tact::model::io::text_of(out));
   } else {
     fmt::print("arm, median             {:6.2f} us     goal <= {:.0f}\n", us.at("arm"), kGoal_us);
     fmt::print("with the full chain     {:6.2f} us\n", us.at("arm_full_chain"));

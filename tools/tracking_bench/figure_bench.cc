@@ -6,7 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "model/io/within.h"
+#include "model/io/json.h"
+#include "model/io/program/within.h"
 #include "tools/program/program.h"
 #include "tools/tracking_bench/figure_work.h"
 
@@ -51,16 +52,15 @@ struct FigureBench {
 };
 
 void print_json(const FigureBench& bench) {
-  fmt::print("{}\n", json{{"format", "tact-figure-bench"},
-                          {"version", 1},
-                          {"scene", bench.scene},
-                          {"seconds", bench.duration_s},
-                          {"shoulder_first", to_json(bench.first)},
-                          {"full_chain", to_json(bench.whole)},
-                          {"updates_ratio", bench.ratio()},
-                          {"updates_ratio_goal", kGoalRatio},
-                          {"good", bench.good()}}
-                         .dump());
+  fmt::print("{}\n", tact::model::io::text_of(json{{"format", "tact-figure-bench"},
+                                                   {"version", 1},
+                                                   {"scene", bench.scene},
+                                                   {"seconds", bench.duration_s},
+                                                   {"shoulder_first", to_json(bench.first)},
+                                                   {"full_chain", to_json(bench.whole)},
+                                                   {"updates_ratio", bench.ratio()},
+                                                   {"updates_ratio_goal", kGoalRatio},
+                                                   {"good", bench.good()}}));
 }
 
 void print_text(const FigureBench& bench) {

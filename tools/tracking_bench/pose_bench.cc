@@ -20,8 +20,9 @@
 #include "host/pose/joint_pose.h"
 #include "host/pose/one_euro.h"
 #include "host/pose/robust_pose.h"
-#include "model/io/command_line.h"
-#include "model/io/within.h"
+#include "model/io/json.h"
+#include "model/io/program/command_line.h"
+#include "model/io/program/within.h"
 #include "tools/tracking_bench/median_reporter.h"
 
 namespace {
@@ -270,7 +271,7 @@ int main(int argc, char** argv) {
       {"time_median_us", alone_us},       {"joint_time_median_us", joint_us},
       {"errors", errors(options)},        {"joint_errors", joint_errors(options)}};
   if (options.json)
-    fmt::print("{}\n", all.dump());
+    fmt::print("{}\n", tact::model::io::text_of(all));
   else
     print(all);
   const bool fast = alone_us <= kGoal_us && joint_us <= kGoal_us;

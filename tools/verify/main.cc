@@ -11,10 +11,10 @@
 #include <variant>
 #include <vector>
 
-#include "model/io/command_line.h"
-#include "model/io/installed.h"
 #include "model/io/json.h"
-#include "model/io/program_end.h"
+#include "model/io/program/command_line.h"
+#include "model/io/program/installed.h"
+#include "model/io/program/program_end.h"
 #include "model/result.h"
 #include "tools/verify/report.h"
 
@@ -118,8 +118,8 @@ Result<FileReport> verify_file(const std::string& path) {
 void print_text(const FileReport& file) {
   fmt::print("{}: {} passed, {} failed\n", file.name, file.report.passed(), file.report.failed());
   for (const Failure& f : file.report.failures()) {
-    fmt::print("  {} {}: got {}, want {}, tolerance {:g}\n", f.id, f.field, f.got.dump(),
-               f.want.dump(), f.tolerance);
+    fmt::print("  {} {}: got {}, want {}, tolerance {:g}\n", f.id, f.field,
+               tact::model::io::text_of(f.got), tact::model::io::text_of(f.want), f.tolerance);
   }
 }
 
@@ -169,12 +169,12 @@ int run(std::vector<std::string> paths, bool as_json) {
       print_text(*report);
   }
   if (as_json)
-    fmt::print("{}\n", json{{"format", "tact-verify"},
-                            {"version", 1},
-                            {"passed", passed},
-                            {"failed", failed},
-                            {"files", out}}
-                           .dump(2));
+    fmt::print("{}\n", tact::model::io::text_of(json{{"format", "tact-verify"},
+                                                     {"version", 1},
+                                                     {"passed", passed},
+                                                     {"failed", failed},
+                                                     {"files", out}},
+                                                2));
   // A file that could not be judged weighs more than a case that failed.
   if (status != 0) return status;
   return failed > 0 ? 1 : 0;

@@ -17,7 +17,7 @@ constexpr model::Vec3 kStart{0.05, -0.04, 0.33};
 const delta::DeltaKinematics kDelta(kGeometry);
 
 delta::DeltaPose pose_of(const DeltaPlant& plant) {
-  return kDelta.pose(plant.position_m(), plant.theta_rad());
+  return kDelta.pose(plant.position_D_m(), plant.theta_rad());
 }
 delta::Joints gravity_Nm(const DeltaPlant& plant) {
   return gravity_torques_Nm(kGeometry, kMasses, pose_of(plant),
@@ -32,8 +32,8 @@ delta::Joints motors_Nm(const DeltaPlant& plant, const model::Vec3& force_N) {
 }
 
 TEST(DeltaPlant, StartsWhereItIsToldOrInTheMiddle) {
-  EXPECT_EQ(DeltaPlant({}, kStart).position_m(), kStart);
-  EXPECT_DOUBLE_EQ(DeltaPlant({}, {9.0, 0.0, 0.0}).position_m().z, 0.345);
+  EXPECT_EQ(DeltaPlant({}, kStart).position_D_m(), kStart);
+  EXPECT_DOUBLE_EQ(DeltaPlant({}, {9.0, 0.0, 0.0}).position_D_m().z, 0.345);
 }
 
 TEST(DeltaPlant, AForceAcceleratesTheApparentMass) {
@@ -54,7 +54,7 @@ TEST(DeltaPlant, AHeldForceMovesItAsFarAsItReallyWould) {
         inverse(task_inertia_kg(kGeometry, kMasses, pose_of(plant))) * force_N;
     for (int i = 0; i < steps; ++i) plant.step(kStep_s, motors_Nm(plant, force_N), {});
     const double t_s = steps * kStep_s;
-    EXPECT_LT(norm(plant.position_m() - kStart - 0.5 * t_s * t_s * a_mps2),
+    EXPECT_LT(norm(plant.position_D_m() - kStart - 0.5 * t_s * t_s * a_mps2),
               2e-3 * 0.5 * t_s * t_s * norm(a_mps2));
   }
 }
@@ -103,19 +103,19 @@ TEST(DeltaPlant, ComesToRestByFriction) {
   for (int i = 0; i < 200; ++i) plant.step(kStep_s, motors_Nm(plant, {2.0, -1.0, 1.0}), {});
   EXPECT_GT(norm(plant.velocity_mps()), 0.1);
   for (int i = 0; i < 8000; ++i) plant.step(kStep_s, gravity_Nm(plant), {});
-  const model::Vec3 resting_m = plant.position_m();
+  const model::Vec3 resting_m = plant.position_D_m();
   for (int i = 0; i < 4000; ++i) plant.step(kStep_s, gravity_Nm(plant), {});
-  EXPECT_LT(norm(plant.position_m() - resting_m), 1e-9);
+  EXPECT_LT(norm(plant.position_D_m() - resting_m), 1e-9);
 }
 
 TEST(DeltaPlant, StaysPutUnderAForceBelowFriction) {
   DeltaPlant plant({.coulomb_Nm = 0.05, .viscous_Nms_per_rad = 0.0}, kStart);
   // largest singular value of J is below 0.3 here, so 0.1 N ask for less than 0.03 N m
   for (int i = 0; i < 4000; ++i) plant.step(kStep_s, motors_Nm(plant, {0.1, 0.0, 0.0}), {});
-  EXPECT_LT(norm(plant.position_m() - kStart), 1e-6);
+  EXPECT_LT(norm(plant.position_D_m() - kStart), 1e-6);
   // and 1 N, far above friction, moves it
   for (int i = 0; i < 400; ++i) plant.step(kStep_s, motors_Nm(plant, {1.0, 0.0, 0.0}), {});
-  EXPECT_GT(norm(plant.position_m() - kStart), 1e-3);
+  EXPECT_GT(norm(plant.position_D_m() - kStart), 1e-3);
 }
 
 TEST(DeltaPlant, SettlesWhereTheHandSpringBalancesTheForce) {
@@ -127,7 +127,7 @@ TEST(DeltaPlant, SettlesWhereTheHandSpringBalancesTheForce) {
                       .aim_velocity_mps = {}};
   DeltaPlant plant({}, kStart);
   for (int i = 0; i < 12000; ++i) plant.step(kStep_s, motors_Nm(plant, force_N), hand);
-  EXPECT_LT(norm(plant.position_m() - (kStart + force_N / 400.0)), 1e-9);
+  EXPECT_LT(norm(plant.position_D_m() - (kStart + force_N / 400.0)), 1e-9);
 }
 
 TEST(DeltaPlant, AnySpringIsStable) {
@@ -138,7 +138,7 @@ TEST(DeltaPlant, AnySpringIsStable) {
                       .aim_m = kStart + model::Vec3{0.002, 0.0, 0.0},
                       .aim_velocity_mps = {}};
   for (int i = 0; i < 2000; ++i) plant.step(kStep_s, gravity_Nm(plant), vice);
-  EXPECT_LT(norm(plant.position_m() - vice.aim_m), 1e-6);
+  EXPECT_LT(norm(plant.position_D_m() - vice.aim_m), 1e-6);
 }
 
 TEST(DeltaPlant, CannotBePushedNearASingularPose) {
@@ -151,7 +151,7 @@ TEST(DeltaPlant, CannotBePushedNearASingularPose) {
       plant.step(kStep_s, step < 2000 ? motors_Nm(plant, force_N) : delta::Joints{}, {});
       if (step % 20 != 0) continue;
       const delta::DeltaIndices indices =
-          workspace_indices(kDelta, plant.position_m(), plant.theta_rad());
+          workspace_indices(kDelta, plant.position_D_m(), plant.theta_rad());
       ASSERT_GT(indices.least_transmission, 0.2);
       ASSERT_GT(indices.least_rod_sigma, 0.25);
       ASSERT_LT(norm(plant.velocity_mps()), 6.0);
@@ -164,7 +164,7 @@ TEST(DeltaPlant, NanStopsItInsteadOfSpreading) {
   DeltaPlant plant({.coulomb_Nm = 0.01, .viscous_Nms_per_rad = 0.01}, kStart);
   plant.step(kStep_s, {nan, 0.0, 0.0}, {});
   plant.step(kStep_s, {std::numeric_limits<double>::infinity(), 0.0, 0.0}, {});
-  EXPECT_EQ(plant.position_m(), kStart);
+  EXPECT_EQ(plant.position_D_m(), kStart);
   EXPECT_EQ(plant.velocity_mps(), model::Vec3{});
 }
 

@@ -44,9 +44,9 @@ TEST(SimDelta, StartsAtRestInTheHand) {
 
 TEST(SimDelta, HoldsItselfAgainstGravityWithoutAHand) {
   Bench bench(settings(), hand_at({0.0, 0.1, -0.05}, 0.0));
-  const Vec3 start = bench.delta.true_position_m();
+  const Vec3 start = bench.delta.true_position_W_m();
   for (int i = 0; i < 2000; ++i) bench.tick();
-  EXPECT_LT(norm(bench.delta.true_position_m() - start), 1e-6);
+  EXPECT_LT(norm(bench.delta.true_position_W_m() - start), 1e-6);
 }
 
 TEST(SimDelta, ComesToRestAfterAPush) {
@@ -62,8 +62,8 @@ TEST(SimDelta, FallsWhenItIsStopped) {
   bench.delta.stop();
   bench.delta.stop();
   for (int i = 0; i < 100; ++i) bench.tick({.force_N = {0.0, 0.0, 9.0}, .torque_Nm = {}});
-  EXPECT_LT(bench.delta.true_position_m().z, -0.02);  // g t^2 / 2 = 49 mm, less for the arms
-  EXPECT_GT(bench.delta.true_position_m().z, -0.06);
+  EXPECT_LT(bench.delta.true_position_W_m().z, -0.02);  // g t^2 / 2 = 49 mm, less for the arms
+  EXPECT_GT(bench.delta.true_position_W_m().z, -0.06);
 }
 
 TEST(SimDelta, AConstantForceMovesTheHandByForceOverStiffness) {
@@ -72,7 +72,7 @@ TEST(SimDelta, AConstantForceMovesTheHandByForceOverStiffness) {
   smooth.joint_friction_Nm = 0.0;
   Bench bench(smooth, hand_at({}, 400.0));
   for (int i = 0; i < 4000; ++i) bench.tick({.force_N = force_N, .torque_Nm = {}});
-  EXPECT_LT(norm(bench.delta.true_position_m() - force_N / 400.0), 2e-6);
+  EXPECT_LT(norm(bench.delta.true_position_W_m() - force_N / 400.0), 2e-6);
 }
 
 TEST(SimDelta, CountingErrsByAtMostTheHalfCount) {
@@ -82,7 +82,7 @@ TEST(SimDelta, CountingErrsByAtMostTheHalfCount) {
   double worst_m = 0.0;
   for (int i = 0; i < 1200; ++i) {
     const Sample sample = bench.tick();
-    worst_m = std::max(worst_m, norm(sample.tool.position_m - bench.delta.true_position_m()));
+    worst_m = std::max(worst_m, norm(sample.tool.position_m - bench.delta.true_position_W_m()));
   }
   EXPECT_LE(worst_m, 0.0202e-3);
   EXPECT_GE(worst_m, 0.005e-3);
@@ -106,8 +106,8 @@ TEST(SimDelta, ShowsThePastExactlyAsOldAsTheDelay) {
       (void)twin.write({});
     }
     twin.between_ticks(left_s);
-    EXPECT_LT(norm(sample.tool.position_m - twin.true_position_m()), 0.0202e-3 + 2e-6);
-    EXPECT_GT(norm(delayed.delta.true_position_m() - twin.true_position_m()), 0.1 * delay_s);
+    EXPECT_LT(norm(sample.tool.position_m - twin.true_position_W_m()), 0.0202e-3 + 2e-6);
+    EXPECT_GT(norm(delayed.delta.true_position_W_m() - twin.true_position_W_m()), 0.1 * delay_s);
   }
 }
 
@@ -142,8 +142,8 @@ TEST(SimDelta, ForceBeyondTheDeviceIsCutInItsOwnDirection) {
     strong.tick({.force_N = {60.0, -80.0, 0.0}, .torque_Nm = {}});
     limited.tick({.force_N = {12.0, -16.0, 0.0}, .torque_Nm = {}});
   }
-  EXPECT_EQ(strong.delta.true_position_m(), limited.delta.true_position_m());
-  EXPECT_NEAR(norm(strong.delta.true_position_m()), 20.0 / 3000.0, 1e-4);
+  EXPECT_EQ(strong.delta.true_position_W_m(), limited.delta.true_position_W_m());
+  EXPECT_NEAR(norm(strong.delta.true_position_W_m()), 20.0 / 3000.0, 1e-4);
 }
 
 TEST(SimDelta, NanForceIsNoForceAndIsReported) {
@@ -152,14 +152,14 @@ TEST(SimDelta, NanForceIsNoForceAndIsReported) {
   EXPECT_EQ(bench.delta.write({.force_N = {kNan, 0.0, 0.0}, .torque_Nm = {}}),
             Fault::kForceNotFinite);
   for (int i = 0; i < 50; ++i) bench.delta.between_ticks(kTick_s);
-  EXPECT_LT(norm(bench.delta.true_position_m()), 1e-6);
+  EXPECT_LT(norm(bench.delta.true_position_W_m()), 1e-6);
 }
 
 TEST(SimDelta, ForceIsHeldUntilTheNextWrite) {
   Bench bench(settings(), hand_at({}, 300.0));
   bench.tick({.force_N = {3.0, 0.0, 0.0}, .torque_Nm = {}});
   for (int i = 0; i < 2000; ++i) bench.delta.between_ticks(kTick_s);
-  EXPECT_NEAR(bench.delta.true_position_m().x, 3.0 / 300.0, 1e-3);
+  EXPECT_NEAR(bench.delta.true_position_W_m().x, 3.0 / 300.0, 1e-3);
 }
 
 TEST(SimDelta, HasTheMisfortunesThatATestAsksFor) {
@@ -187,8 +187,8 @@ TEST(SimDelta, FollowsTheMouseThatSteersTheHand) {
     if (i % 50 == 0) bench.delta.hand_targets().write({.position_m = {0.05, 5.0, 0.0}});
     bench.tick();
   }
-  EXPECT_NEAR(bench.delta.true_position_m().x, 0.05, 1e-3);
-  EXPECT_NEAR(bench.delta.true_position_m().y, 0.18, 1e-3);  // no farther than the workspace
+  EXPECT_NEAR(bench.delta.true_position_W_m().x, 0.05, 1e-3);
+  EXPECT_NEAR(bench.delta.true_position_W_m().y, 0.18, 1e-3);  // no farther than the workspace
 }
 
 TEST(SimDelta, TheSameCallsGiveTheSameBits) {
@@ -217,16 +217,16 @@ TEST(SimDelta, WorkOfTheMotorsBoundsItsEnergy) {
     double work_J = 0.0, moved_J = 0.0, worst_J = 0.0, least_J = 0.0;
     Vec3 force_N;  // cosines: swings about the start and stays clear of stops and rim
     for (int i = 0; i < 1000; ++i) {
-      const Vec3 before = bench.delta.true_position_m();
+      const Vec3 before = bench.delta.true_position_W_m();
       bench.delta.between_ticks(kTick_s);
-      work_J += dot(force_N, bench.delta.true_position_m() - before);
+      work_J += dot(force_N, bench.delta.true_position_W_m() - before);
       moved_J = std::max(moved_J, std::abs(work_J));
       force_N = {3.0 * std::cos(0.02 * i), 2.0 * std::cos(0.03 * i), 0.0};
       Sample sample;
       (void)bench.delta.read(sample, 0);
       (void)bench.delta.write({.force_N = force_N, .torque_Nm = {}});
       const model::Mat3 mass_kg =
-          task_inertia_kg(kGeometry, kMasses, delta.pose(plant.position_m(), plant.theta_rad()));
+          task_inertia_kg(kGeometry, kMasses, delta.pose(plant.position_D_m(), plant.theta_rad()));
       const double kinetic_J = 0.5 * dot(plant.velocity_mps(), mass_kg * plant.velocity_mps());
       worst_J = std::max(worst_J, kinetic_J - work_J);
       least_J = std::min(least_J, kinetic_J - work_J);

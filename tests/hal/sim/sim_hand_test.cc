@@ -26,23 +26,23 @@ model::HandSettings script(bool repeat) {
 double run(SimHand& hand, double seconds) {
   double longest_m = 0.0;
   for (long steps = std::lround(seconds / kStep_s); steps > 0; --steps) {
-    const Vec3 before = hand.position_m();
+    const Vec3 before = hand.position_W_m();
     hand.step(kStep_s);
-    longest_m = std::max(longest_m, norm(hand.position_m() - before));
+    longest_m = std::max(longest_m, norm(hand.position_W_m() - before));
   }
   return longest_m;
 }
 
 TEST(SimHand, FollowsItsScript) {
   SimHand hand(script(false));
-  EXPECT_EQ(hand.position_m(), (Vec3{0.05, 0.0, 0.0}));
+  EXPECT_EQ(hand.position_W_m(), (Vec3{0.05, 0.0, 0.0}));
   run(hand, 0.5);  // half of a minimum-jerk move is half of the way, at 15/8 of the mean speed
-  EXPECT_NEAR(hand.position_m().x, 0.015, 1e-6);
+  EXPECT_NEAR(hand.position_W_m().x, 0.015, 1e-6);
   EXPECT_NEAR(hand.velocity_mps().x, -0.07 * 15.0 / 8.0, 1e-5);
   EXPECT_NEAR(hand.grip_ratio(), 0.5, 1e-5);
   EXPECT_NEAR(hand.rotation_rad().y, 0.05, 1e-6);
   run(hand, 2.0);
-  EXPECT_EQ(hand.position_m(), (Vec3{-0.02, 0.01, 0.0}));
+  EXPECT_EQ(hand.position_W_m(), (Vec3{-0.02, 0.01, 0.0}));
   EXPECT_EQ(hand.velocity_mps(), Vec3{});
 }
 
@@ -56,7 +56,7 @@ TEST(SimHand, WalksToTheMouseAtHalfAMetrePerSecond) {
   }
   EXPECT_LE(longest_m, 0.5 * kStep_s * 1.0001);
   EXPECT_GE(longest_m, 0.4 * kStep_s);
-  EXPECT_LT(norm(hand.position_m() - goal), 1e-3);
+  EXPECT_LT(norm(hand.position_W_m() - goal), 1e-3);
   EXPECT_NEAR(hand.grip_ratio(), 0.7, 1e-9);
   EXPECT_TRUE(hand.is_steered());
 }
@@ -72,7 +72,7 @@ TEST(SimHand, TheScriptWaitsForThePersonAndGoesOnWithoutAJump) {
   EXPECT_FALSE(hand.is_steered());
   run(hand, 2.0);
   run(undisturbed, 2.0);
-  EXPECT_LT(norm(hand.position_m() - undisturbed.position_m()), 1e-12);
+  EXPECT_LT(norm(hand.position_W_m() - undisturbed.position_W_m()), 1e-12);
   EXPECT_DOUBLE_EQ(hand.grip_ratio(), undisturbed.grip_ratio());
 }
 
@@ -82,7 +82,7 @@ TEST(SimHand, ARepeatedScriptThatJumpsIsJoinedByAWalk) {
   double most_x = -1.0;
   for (double t = 0.0; t < 4.0; t += kStep_s) {
     hand.step(kStep_s);
-    most_x = std::max(most_x, hand.position_m().x);
+    most_x = std::max(most_x, hand.position_W_m().x);
   }
   EXPECT_GT(most_x, 0.049);  // it does come back
 }
@@ -107,7 +107,7 @@ TEST(SimHand, IgnoresNanAndNothing) {
   hand.step(0.0);
   hand.step(nan);
   EXPECT_FALSE(hand.is_steered());
-  EXPECT_EQ(hand.position_m(), (Vec3{0.05, 0.0, 0.0}));
+  EXPECT_EQ(hand.position_W_m(), (Vec3{0.05, 0.0, 0.0}));
 }
 
 TEST(SimHand, LeavesTheHeapAlone) {

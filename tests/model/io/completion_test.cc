@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What bash offers after the script that a program makes of its own options.
-#include "model/io/completion.h"
+#include "model/io/program/completion.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

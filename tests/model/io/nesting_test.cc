@@ -79,4 +79,8 @@ TEST(Toml, ThatIsBrokenIsToldWithItsLine) {
   EXPECT_EQ(refusal(parse_toml("a = 1\nb = \n", "s.toml")).find("s.toml:2: not TOML: "), 0u);
 }
 
+TEST(Json, BytesThatAreNoTextAreReplacedAndNotThrownAt) {
+  EXPECT_EQ(text_of(nlohmann::json{{"device", "Touch \xff"}}), "{\"device\":\"Touch \uFFFD\"}");
+}
+
 }  // namespace tact::model::io::nesting_test

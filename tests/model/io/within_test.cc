@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/io/within.h"
+#include "model/io/program/within.h"
 
 #include <gtest/gtest.h>
 

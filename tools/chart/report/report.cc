@@ -46,15 +46,15 @@ std::string csv_head(const std::string& command, const Provenance& provenance) {
 std::string chart_json(const report::Table& table, const std::string& command,
                        const Provenance& provenance) {
   const ordered_json json = *model::io::parse_json<ordered_json>(table.to_json(), "chart");
-  return ordered_json{{"format", kFormat},
-                      {"version", kVersion},
-                      {"command", command},
-                      {"scene", provenance.scene_hash},
-                      {"reference", provenance.reference_hash},
-                      {"revision", provenance.revision},
-                      {"machine", provenance.machine},
-                      {"rows", json["rows"]}}
-             .dump(1) +
+  return model::io::text_of(ordered_json{{"format", kFormat},
+                                         {"version", kVersion},
+                                         {"command", command},
+                                         {"scene", provenance.scene_hash},
+                                         {"reference", provenance.reference_hash},
+                                         {"revision", provenance.revision},
+                                         {"machine", provenance.machine},
+                                         {"rows", json["rows"]}},
+                            1) +
          "\n";
 }
 

@@ -81,7 +81,7 @@ std::string tool_json(const std::vector<ToolRow>& rows, const ToolReference& ref
   const auto table =
       model::io::parse_json<ordered_json>(tool_table(rows, reference).to_json(), "tool");
   document["rows"] = table->at("rows");
-  return document.dump(1) + "\n";
+  return model::io::text_of(document, 1) + "\n";
 }
 
 std::string tool_text(const std::vector<ToolRow>& rows, const ToolReference& reference) {

@@ -48,7 +48,9 @@ std::optional<std::uint64_t> value_of(const json& series, const char* share) {
 
 void note_unlike(const json& a, const json& b, const char* key, std::vector<std::string>& unlike) {
   const json left = a.value(key, json()), right = b.value(key, json());
-  if (left != right) unlike.push_back(fmt::format("{} {} and {}", key, left.dump(), right.dump()));
+  if (left != right)
+    unlike.push_back(
+        fmt::format("{} {} and {}", key, model::io::text_of(left), model::io::text_of(right)));
 }
 
 }  // namespace

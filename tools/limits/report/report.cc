@@ -10,6 +10,7 @@
 
 #include "model/io/file_writer.h"
 #include "model/io/input_file.h"
+#include "model/io/json.h"
 #include "tools/report/table.h"
 
 namespace tact::tools::limits {
@@ -201,7 +202,8 @@ Result<std::vector<std::string>> write_report(const LimitsReport& report,
   if (report.wall) tables.push_back(wall_table(*report.wall));
   for (const report::Table& table : tables)
     if (auto error = write(table.name() + ".csv", table.to_csv())) return *error;
-  if (auto error = write("limits.json", to_json(report).dump(2) + "\n")) return *error;
+  if (auto error = write("limits.json", model::io::text_of(to_json(report), 2) + "\n"))
+    return *error;
   std::vector<std::string> drawings;
   // Tables first: without gnuplot the numbers are there all the same.
   if (draw_pictures) {

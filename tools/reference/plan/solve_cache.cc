@@ -54,7 +54,7 @@ std::optional<model::Error> SolveCache::write(const std::string& key, json solve
   std::error_code ignored;  // write_file says it better
   fs::create_directories(directory_, ignored);
   solved["key"] = key;
-  const auto error = model::io::write_file(path_of(key), solved.dump(1) + "\n");
+  const auto error = model::io::write_file(path_of(key), model::io::text_of(solved, 1) + "\n");
   // Another program may have kept the same case at this moment: then it is there.
   if (!error || read(key)) return std::nullopt;
   return model::Error{error->sentence + ", or name another --cache"};

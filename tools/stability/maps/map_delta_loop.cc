@@ -148,7 +148,7 @@ ControllerRun run_controller(double stiffness_N_per_m, double rate_Hz,
     out.max_force_N = std::max(out.max_force_N, norm(force_N));
     out.max_step_N = std::max(out.max_step_N, norm(force_N - before_N));
     before_N = force_N;
-    const double now_s = i / rate_Hz, z_m = (*device)->true_position_m().z;
+    const double now_s = i / rate_Hz, z_m = (*device)->true_position_W_m().z;
     if (now_s >= kFirst_s && now_s < kFirst_s + kWindow_s) first.add(z_m);
     if (now_s >= kRun_s - kWindow_s) last.add(z_m);
   }

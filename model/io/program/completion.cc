@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/io/completion.h"
+#include "model/io/program/completion.h"
 
 #include <fmt/format.h>
 

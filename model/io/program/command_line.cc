@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/io/command_line.h"
+#include "model/io/program/command_line.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "model/io/completion.h"
+#include "model/io/program/completion.h"
 
 namespace tact::model::io {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/io/program_end.h"
+#include "model/io/program/program_end.h"
 
 #include <unistd.h>
 

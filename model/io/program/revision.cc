@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // revision.cc - what built this, apart from what is slow to compile: it is new with every commit.
-#include "model/io/command_line.h"
+#include "model/io/program/command_line.h"
 
 namespace tact::model::io {
 
