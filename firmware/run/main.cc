@@ -10,6 +10,7 @@
 #include "firmware/console/service_manager.h"
 #include "firmware/loop/state.h"
 #include "firmware/run/device_list.h"
+#include "firmware/run/parameter_list.h"
 #include "firmware/run/replay.h"
 #include "firmware/run/session.h"
 #include "firmware/telemetry/tick_csv.h"
@@ -72,6 +73,13 @@ int print_devices(const std::string& json_path) {
   const auto parts = hal::list::list_devices();
   if (json_path != "-") say(stdout, "{}", firmware::run::devices_as_text(parts));
   return write_json(json_path, firmware::run::devices_as_json(parts));
+}
+
+int print_parameters(const model::scene::Scene& scene, const firmware::run::Options& options) {
+  const auto numbers = model::scene::law_numbers(scene, options.overrides);
+  if (!numbers) return complain(numbers.error().sentence, 2);
+  if (options.json_path != "-") say(stdout, "{}", firmware::run::parameters_as_text(*numbers));
+  return write_json(options.json_path, firmware::run::parameters_as_json(scene, *numbers));
 }
 
 /// Exit status 0 only where every force has the same bits and nothing is missing.
@@ -148,6 +156,7 @@ int main(int argc, char** argv) {
   }
   auto scene = load(options);
   if (!scene) return complain(scene.error().sentence, 2);
+  if (options.parameters) return print_parameters(*scene, options);
   // Of the command line alone: no scene may name a library and call it trusted.
   scene->device.trust_library = options.trust_library;
   if (!scene->note.empty()) say(stderr, "tactd: {}\n", scene->note);

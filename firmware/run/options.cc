@@ -26,8 +26,8 @@ void add_run(CLI::App& app, Options& o) {
   app.add_flag("--arm", o.arm,
                "hardware: force as soon as the device is ready, without an operator who arms it");
   app.add_option("--json", o.json_path,
-                 "write the report to this file when done, - for stdout; with --list-devices or "
-                 "--faults that list");
+                 "write the report to this file when done, - for stdout; with --list-devices, "
+                 "--parameters or --faults that list");
 }
 
 void add_real_time(CLI::App& app, Options& o) {
@@ -79,6 +79,8 @@ void add_answers(CLI::App& app, Options& o) {
   app.add_flag("--faults", o.faults, "print every fault with its cause and cure, then leave");
   app.add_flag("--list-devices", o.list_devices,
                "print what is plugged in, what it lacks and the cure, then leave");
+  app.add_flag("--parameters", o.parameters,
+               "print the numbers of the scene's law with their ranges, then leave");
   app.add_flag("--help-scene", o.help_scene, "print every scene key with its range, then leave");
 }
 

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "model/reader/scene_document.h"
+#include "model/reader/scene_number.h"
 #include "model/reader/scene_values.h"
 #include "model/result.h"
 #include "model/types.h"
@@ -47,6 +48,9 @@ class SceneVisit {
   const SceneDocument* document() const { return document_; }
   const std::vector<ReferenceRow>& rows() const { return rows_; }
   void add(ReferenceRow row) { rows_.push_back(std::move(row)); }
+  /// What was read, in the order of the visit.
+  const std::vector<SceneNumber>& numbers() const { return numbers_; }
+  void add(SceneNumber number) { numbers_.push_back(std::move(number)); }
   void note(ProblemKind kind, const TextPlace& place, const std::string& sentence);
   /// The problem to tell, if there is one.
   std::optional<Error> problem() const;
@@ -59,6 +63,7 @@ class SceneVisit {
   };
   const SceneDocument* document_;
   std::vector<ReferenceRow> rows_;
+  std::vector<SceneNumber> numbers_;
   std::vector<Problem> problems_;
 };
 
@@ -115,6 +120,8 @@ class Keys {
   template <typename T>
   void store(const toml::node& node, std::string_view key, Result<T> value, T& out);
   void judge(const toml::node& node, std::string_view key, std::string_view problem);
+  void tell(std::string_view key, double value, Range range, bool is_whole,
+            std::string_view meaning);
   void finish();
   std::string unknown_sentence(std::string_view key) const;
   std::string path_to(std::string_view key) const;

@@ -34,6 +34,7 @@ VECTORS = ROOT / "tests/data/vectors"
 COMMANDS = {
     "tactd-run": [f"tactd {LIVER} --free-run --ticks 50 --no-telemetry --no-black-box --json -"],
     "tactd-faults": ["tactd --faults --json {t}/faults.json"],
+    "tactd-parameters": [f"tactd {LIVER} --parameters --json -", f"tactd {SCENES}/gum.toml --parameters --json {{t}}/gum.json"],
     "tactd-devices": ["tactd --list-devices --json {t}/devices.json"],
     "tact-limits": [f"tact-limits {LIVER} --out {{t}}/limits --no-pictures --plan late-ticks,e-stop,torque --json",
                     f"tact-limits {LIVER} --out {{t}}/wall --no-pictures --plan stiff-wall --json --tester T --serial A"],
