@@ -68,6 +68,11 @@ void add_source(CLI::App& app, Options& options) {
   app.add_option("--export", options.export_csv,
                  "with --open: write this CSV file (m, s, N, us, as its columns say) and leave")
       ->needs(open);
+  app.add_option("--scenes", options.scenes,
+                 "for who starts tactd and tact-view in simulation, as tools/run: folder with the "
+                 "--parameters of scenes that the page offers; a wish is a line of the output "
+                 "(host/server/README.md)")
+      ->excludes(open);
 }
 
 void add_operator(CLI::App& app, Options& options) {

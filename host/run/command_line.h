@@ -17,6 +17,7 @@ struct Options {
   std::string record;         // new file for hello and frames
   std::string open;           // recording to replay instead of tactd
   std::string export_csv;     // with open: write this table and leave
+  std::string scenes;         // folder of what pages may choose; empty: nothing
   std::string tracking;       // description of the operator's tracker
   igtl::IgtlOptions igtl;     // OpenIGTLink; none is asked for by default
   bool registration = false;  // with tracking: find the tracker's place and leave

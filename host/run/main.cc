@@ -12,11 +12,13 @@
 
 #include "host/record/recording_csv.h"
 #include "host/run/command_line.h"
+#include "host/run/launcher.h"
 #include "host/run/operator_inputs.h"
 #include "host/run/register_tracker.h"
 #include "host/run/telemetry_client.h"
 #include "host/server/operator_figure.h"
 #include "host/server/playback.h"
+#include "host/server/scene_picker.h"
 #include "host/server/viewer_server.h"
 #include "model/io/file_writer.h"
 #include "model/io/json.h"
@@ -153,11 +155,13 @@ model::Result<model::io::Trust> trust_of(const Options& options) {
 
 /// What tactd tells goes to the page and into the recording, with the operator of that moment.
 TelemetryEvents show_and_record(server::LiveView& view, Recorder& recorder, OperatorInputs& inputs,
-                                const server::OperatorFigure& figure) {
+                                const server::OperatorFigure& figure,
+                                std::optional<server::ScenePicker>& picker) {
   return {.hello =
-              [&view, &recorder](const record::Hello& hello, record::MeshBytes mesh) {
+              [&](const record::Hello& hello, record::MeshBytes mesh) {
                 recorder.begin(hello, mesh);
                 view.begin(hello, std::move(mesh), server::Link::kLive);
+                if (picker) picker->begin();
               },
           .frame =
               [&](const record::Frame& frame) {
@@ -195,17 +199,29 @@ int show_live(const Options& options) {
   if (const auto shoulder_m = inputs.shoulder_m()) figure.put_shoulder_at(*shoulder_m);
   if (options.figure || inputs.is_there()) view.accompany(&figure);
   Recorder recorder(options.record, inputs.is_there());
-  TelemetryClient client(io, options.socket, show_and_record(view, recorder, inputs, figure),
-                         *trust);
+  std::optional<server::ScenePicker> picker;
+  std::string scenes;  // as the page gets them
+  Launcher launcher(io, [&picker](const std::string& sentence) { picker->refuse(sentence); });
+  if (!options.scenes.empty()) {
+    auto offers = server::load_offers(options.scenes);
+    if (!offers) return fail(offers.error().sentence);
+    scenes = server::list_of(*offers);
+    picker.emplace(view, std::move(*offers), &Launcher::hand);
+  }
+  TelemetryClient client(io, options.socket,
+                         show_and_record(view, recorder, inputs, figure, picker), *trust);
   server::ViewerServer server(
       io, view,
       [&client](const double (&position_m)[3], double grip_ratio) {
         client.move_hand(position_m, grip_ratio);
       },
       warn);
-  const int status = serve(options, io, server, [&client, &inputs] {
+  if (picker)
+    server.let_choose([&picker](const server::SceneWish& wish) { picker->ask(wish); }, scenes);
+  const int status = serve(options, io, server, [&] {
     client.start();
     inputs.start();
+    if (picker) launcher.start();
     if (const auto port = inputs.igtl_port()) warn(fmt::format("OpenIGTLink on port {}", *port));
   });
   recorder.close();

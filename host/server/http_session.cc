@@ -137,7 +137,7 @@ void HttpSession::upgrade(const Request& request) {
                  request);
   }
   std::make_shared<LiveSession>(std::move(stream_), std::move(seat_), site_.view, site_.move_hand,
-                                site_.steer)
+                                site_.steer, site_.ask_scene)
       ->start(request);
 }
 
@@ -173,6 +173,8 @@ HttpSession::Response HttpSession::answer(const Request& request, std::string_vi
     return make(http::status::ok, "application/json", scene_json(site_.view.hello()));
   if (path == "/mesh.bin")
     return make(http::status::ok, "application/octet-stream", bytes_of(*site_.view.mesh()));
+  if (path == "/scenes.json" && !site_.scenes.empty())
+    return make(http::status::ok, "application/json", site_.scenes);
   const PageFile* file = site_.page.find(path);
   if (file == nullptr) return sorry(http::status::not_found, "404: there is no such page");
   return make(http::status::ok, file->mime.c_str(), file->content);

@@ -29,6 +29,8 @@ struct Site {
   Access access;
   MoveHand move_hand;
   Steer steer;                                 // of a replay alone
+  AskScene ask_scene;                          // of a session in simulation, where it is offered
+  std::string scenes;                          // what may be asked for, as JSON; or empty
   std::chrono::milliseconds request_patience;  // for one whole request, from the last answer on
 };
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "host/server/page_message.h"
 #include "model/io/json.h"
 
 namespace tact::host::server {
@@ -27,10 +28,8 @@ nlohmann::json parse(const std::string& text) {
 }  // namespace
 
 std::optional<HandWish> parse_hand(const std::string& text) {
-  const nlohmann::json message = parse(text);
-  if (!message.is_object() || !message.contains("hand")) return std::nullopt;
-  const nlohmann::json& hand = message["hand"];
-  if (!hand.is_object()) return std::nullopt;
+  const nlohmann::json hand = object_in(text, "hand");
+  if (hand.is_null()) return std::nullopt;
   double value[4];
   constexpr const char* kKeys[4] = {"x_m", "y_m", "z_m", "grip_ratio"};
   for (int i = 0; i < 4; ++i) {
@@ -46,12 +45,13 @@ std::optional<HandWish> parse_hand(const std::string& text) {
 }
 
 LiveSession::LiveSession(beast::tcp_stream stream, Seat seat, LiveView& view,
-                         const MoveHand& move_hand, const Steer& steer)
+                         const MoveHand& move_hand, const Steer& steer, const AskScene& ask_scene)
     : socket_(std::move(stream)),
       seat_(std::move(seat)),
       view_(view),
       move_hand_(move_hand),
-      steer_(steer) {}
+      steer_(steer),
+      ask_scene_(ask_scene) {}
 
 // The view holds a plain pointer.
 LiveSession::~LiveSession() { view_.unsubscribe(*this); }
@@ -125,6 +125,9 @@ void LiveSession::take(const std::string& text) {
   if (!move_hand_) return;
   if (const std::optional<HandWish> hand = parse_hand(text))
     move_hand_(hand->position_m, hand->grip_ratio);
+  // Behind the hand's right: who may not move it chooses no scene.
+  if (ask_scene_)
+    if (const std::optional<SceneWish> wish = parse_scene_wish(text)) ask_scene_(*wish);
 }
 
 }  // namespace tact::host::server

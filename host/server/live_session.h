@@ -6,7 +6,8 @@
 // kMaxUnseen may be on the way, and of those that wait only the newest is kept. So a slow browser
 // sees fewer frames, never older ones, and holds up nobody. A page may send
 // {"hand":{"x_m":..,"y_m":..,"z_m":..,"grip_ratio":..}} for a simulated device, and to a replay
-// what replay_wish.h says. Nothing else is heard: no page arms, stops or resets.
+// what replay_wish.h says. Where the scene of a simulation may be chosen (scene_picker.h) it may
+// also send what scene_wish.h says. Nothing else is heard: no page arms, stops or resets a device.
 #pragma once
 
 #include <boost/beast/core/flat_buffer.hpp>
@@ -21,6 +22,7 @@
 
 #include "host/server/live_view.h"
 #include "host/server/replay_wish.h"
+#include "host/server/scene_wish.h"
 #include "host/server/seat.h"
 
 namespace tact::host::server {
@@ -42,7 +44,7 @@ class LiveSession final : public LiveListener, public std::enable_shared_from_th
   static constexpr std::uint64_t kMaxUnseen = 4;
 
   LiveSession(boost::beast::tcp_stream stream, Seat seat, LiveView& view, const MoveHand& move_hand,
-              const Steer& steer);
+              const Steer& steer, const AskScene& ask_scene);
   ~LiveSession();
 
   void start(const Request& upgrade);
@@ -61,6 +63,7 @@ class LiveSession final : public LiveListener, public std::enable_shared_from_th
   LiveView& view_;
   const MoveHand& move_hand_;
   const Steer& steer_;
+  const AskScene& ask_scene_;
   Text next_status_, next_frame_, next_beside_, writing_;
   Text due_beside_;  // of the frame that was written last
   std::uint64_t sent_frames_ = 0, seen_frames_ = 0;

@@ -90,6 +90,14 @@ void LiveView::tell_replay(const nlohmann::json& replay) {
   tell();
 }
 
+void LiveView::tell_picker(const nlohmann::json& picker) {
+  picker_.reset();
+  if (!picker.is_null())  // a sentence of another program may have any bytes
+    picker_ = std::make_shared<const std::string>(
+        picker.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  tell();
+}
+
 void LiveView::tell() {
   nlohmann::json status{{"kind", "status"},
                         {"link", name_of(link_)},
@@ -98,6 +106,7 @@ void LiveView::tell() {
                         {"kept_s", record::RecentFrames::kKeep_s}};
   if (figure_) status["figure"] = *model::io::parse_json(*figure_, "figure");
   if (replay_) status["replay"] = *model::io::parse_json(*replay_, "replay");
+  if (picker_) status["picker"] = *model::io::parse_json(*picker_, "picker");
   status_ = std::make_shared<const std::string>(model::io::text_of(status));
   for (LiveListener* listener : listeners_) listener->on_status(status_);
 }

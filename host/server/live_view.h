@@ -57,6 +57,8 @@ class LiveView {
   void rewind();  // a replay starts elsewhere: forget the frames
   /// Of a replay: the status's "replay".
   void tell_replay(const nlohmann::json& replay);
+  /// Of a session whose scene may be chosen: the status's "picker"; null: none.
+  void tell_picker(const nlohmann::json& picker);
   /// Once, as soon as somebody looks.
   void when_watched(std::function<void()> then);
   void lose(const std::string& reason);
@@ -83,6 +85,7 @@ class LiveView {
   Link link_ = Link::kWaiting;
   std::string detail_;  // of the link
   Text replay_;         // how it plays, if it is one
+  Text picker_;         // what may be chosen, if anything may
   Text status_;
   std::function<void()> watched_;
   Companion* companion_ = nullptr;

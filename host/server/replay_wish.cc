@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
-#include "model/io/json.h"
+#include "host/server/page_message.h"
 
 namespace tact::host::server {
 namespace {
@@ -38,12 +38,10 @@ bool take(const nlohmann::json& value, std::optional<int>& into) {
 }  // namespace
 
 std::optional<ReplayWish> parse_replay(const std::string& text) {
-  const auto message = model::io::parse_json(text, "request");
-  if (!message || !message->is_object()) return std::nullopt;
-  const auto replay = message->find("replay");
-  if (replay == message->end() || !replay->is_object()) return std::nullopt;
+  const nlohmann::json replay = object_in(text, "replay");
+  if (replay.is_null()) return std::nullopt;
   ReplayWish wish;
-  for (const auto& [key, value] : replay->items()) {
+  for (const auto& [key, value] : replay.items()) {
     const bool good = key == "playing"       ? take(value, wish.playing)
                       : key == "at_s"        ? take(value, 0.0, kLongest_s, wish.at_s)
                       : key == "step_frames" ? take(value, wish.step_frames)

@@ -36,6 +36,8 @@ ViewerServer::ViewerServer(boost::asio::io_context& io, LiveView& view, MoveHand
             .access = {},
             .move_hand = std::move(move_hand),
             .steer = {},
+            .ask_scene = {},
+            .scenes = {},
             .request_patience = {}},
       warn_(std::move(warn)),
       seat_(std::make_shared<char>()) {}

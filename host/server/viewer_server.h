@@ -36,6 +36,11 @@ class ViewerServer {
   std::optional<model::Error> open(const ViewerOptions& options);
   /// Of a replay: what pages ask of it. Before start.
   void let_steer(Steer steer) { site_.steer = std::move(steer); }
+  /// Where another scene may be asked for, and what is offered, as JSON. Before start.
+  void let_choose(AskScene ask, std::string scenes) {
+    site_.ask_scene = std::move(ask);
+    site_.scenes = std::move(scenes);
+  }
   void start();
   void stop();
 

@@ -14,6 +14,7 @@ import contextlib
 import json
 import os
 import random
+import select
 import signal
 import socket
 import struct
@@ -175,12 +176,14 @@ def web_sockets(view):
     wire = view.live()
     check("the page's WebSocket opens", wire is not None)
     for text in (b"{", b"\xff\xfe", b"[" * 900, b'{"seen":1e400}', b'{"seen":-1}', b'{"hand":{"x_m":1e999}}',
-                 b'{"hand":{"x_m":"a","y_m":[],"z_m":{},"grip_ratio":null}}', b'{"force_N":[9,9,9]}'):
+                 b'{"hand":{"x_m":"a","y_m":[],"z_m":{},"grip_ratio":null}}', b'{"force_N":[9,9,9]}',
+                 *(b'{"wish":{"scene":"%s}}' % a for a in (b'../x"', b'liver;ls"', b'liver","set":{"device.kind":1}'))):
         view.live().sendall(text_frame(text))
     for _ in range(40):
         view.live().sendall(rng.randbytes(rng.randrange(2, 2000)))
     view.live().sendall(text_frame(b"a" * 60000))
     check("WebSockets that talk nonsense hold up nobody", view.status("scene.json", view.bearer) == 200)
+    check("... and who started tact-view hears of no wish", not select.select([view.program.stdout], [], [], 0.5)[0])
 
 
 def as_stranger(action):
@@ -258,7 +261,8 @@ def files(folder, recording):
 def run(folder):
     path, recording = folder / "tactd.sock", folder / "view.tact"
     tactd = start("tactd", ROOT / "model/scenes/liver.toml", "--socket", path, "--no-black-box")
-    view = View("--socket", path, "--record", recording)
+    run_status("tactd", ROOT / "model/scenes/liver.toml", "--parameters", "--json", folder / "liver.json")
+    view = View("--socket", path, "--record", recording, "--scenes", folder)
     for _ in range(200):
         if view.status("scene.json", view.bearer) == 200:
             break

@@ -143,10 +143,13 @@ def viewer_documents(build, folder):
     """What tact-view says when it is ready, to a page, and of the export of what it has recorded."""
     path, recording, page = folder / "socket", folder / "recording", folder / "page"
     page.mkdir()
+    scenes = folder / "scenes"
+    scenes.mkdir()
+    (scenes / "liver.json").write_text(json.dumps(told_by(build, f"tactd {LIVER} --parameters --json -", folder)))
     (page / "index.html").write_text("<!doctype html>")
     view = str(build / "tact-view")
     with subprocess.Popen([view, "--socket", str(path), "--port", "0", "--record", str(recording), "--figure",
-                           "--page", str(page), "--json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as viewer:
+                           "--scenes", str(scenes), "--page", str(page), "--json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as viewer:
         try:
             ready = json.loads(viewer.stdout.readline())
             with subprocess.Popen([str(build / "tactd"), str(LIVER), "--seconds", "20", "--no-black-box", "--socket", str(path)],
