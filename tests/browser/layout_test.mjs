@@ -5,16 +5,17 @@
 //     node tests/browser/layout_test.mjs BUILD_DIR   (tactd, tact-view, page/)
 //
 // CHROMIUM names another browser. Pictures: BUILD_DIR/layout_NAME.png, the whole page of each screen, live,
-// with help, and of a replay. Prints "N passed, M failed"; exit status 0 or 1.
-import { readFileSync } from "node:fs";
+// with help, with the choice of scenes, and of a replay. Prints "N passed, M failed"; exit status 0 or 1.
+import { mkdirSync, readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
 
-import { build, check, folder, play, root, start_browser, start_tactd, start_view, stop, waits } from "./stage.mjs";
+import { build, check, folder, play, root, start, start_browser, start_tactd, start_view, stop, waits } from "./stage.mjs";
 
 const axe = readFileSync(createRequire(join(root, "host/web/package.json")).resolve("axe-core/axe.min.js"), "utf8");
 const socket = join(folder, "layout.sock");
 const recording = join(folder, "layout.tactview");
+const scenes = join(folder, "scenes");
 const kFinger_px = 44;
 /** A browser's zoom of 200 % halves the page's own pixels and doubles those of the screen. */
 const kScreens = {
@@ -83,27 +84,39 @@ function offer_headset() {
   Object.defineProperty(navigator, "xr", { value: offers, configurable: true });
 }
 
-async function check_screen(browser, url, name, screen, condition, with_headset) {
+/** The scene with the most numbers; it is not asked for. */
+async function open_picker(page) {
+  await page.keyboard.press("l");
+  await page.selectOption("#wished_scene", "gum");
+  await page.waitForTimeout(200);
+}
+
+async function check_screen(browser, url, name, screen, condition, is_live) {
   const context = await browser.newContext(screen);
   const page = await context.newPage();
-  if (with_headset) await page.addInitScript(offer_headset);
+  if (is_live) await page.addInitScript(offer_headset);
   await page.goto(url);
   await waits(page, condition);
-  if (with_headset) check(`${name}: a headset is offered`, await waits(page, () => document.getElementById("headset").checkVisibility()));
+  if (is_live) check(`${name}: a headset is offered`, await waits(page, () => document.getElementById("headset").checkVisibility()));
   await page.waitForTimeout(1500);
   const least_px = screen.hasTouch ? kFinger_px : 20;
   await check_page(page, name, least_px);
   await page.keyboard.press("h");
   await page.waitForTimeout(200);
   await check_page(page, `${name}_help`, least_px);
+  if (is_live) {
+    await open_picker(page);
+    await check_page(page, `${name}_picker`, least_px);
+  }
   await context.close();
 }
 
 /** All that can be pressed is reached by the tab key alone, and is seen when it is. */
-async function check_keyboard(browser, url) {
+async function check_keyboard(browser, url, is_live) {
   const page = await browser.newPage({ viewport: kScreens.desk.viewport });
   await page.goto(url);
   await waits(page, () => window.tact.tick > 0);
+  if (is_live) await open_picker(page);
   const wanted = await page.evaluate(() => [...document.querySelectorAll("button, .button, select, input")]
     .filter((one) => one.checkVisibility()).map((one) => one.id));
   const reached = new Set();
@@ -139,12 +152,15 @@ async function check_silence(browser, url, tactd) {
 }
 
 async function run() {
-  const { viewer, url } = await start_view(["--socket", socket, "--record", recording, "--figure"]);
+  mkdirSync(scenes);
+  for (const scene of ["liver", "gum"])
+    await start("tactd", [join(root, `model/scenes/${scene}.toml`), "--parameters", "--json", join(scenes, `${scene}.json`)]).ended;
+  const { viewer, url } = await start_view(["--socket", socket, "--record", recording, "--figure", "--scenes", scenes]);
   const tactd = start_tactd("liver", socket);
   const browser = await start_browser();
   for (const [name, screen] of Object.entries(kScreens))
     await check_screen(browser, url, name, screen, () => window.tact.link === "live" && window.tact.tick > 0, true);
-  await check_keyboard(browser, url);
+  await check_keyboard(browser, url, true);
   await check_silence(browser, url, tactd);
   await stop(tactd);
   const page = await browser.newPage(kScreens.phone);
@@ -157,7 +173,7 @@ async function run() {
   const replay = await start_view(["--open", recording]);
   for (const [name, screen] of Object.entries(kScreens))
     await check_screen(browser, replay.url, `replay_${name}`, screen, () => window.tact.link === "replay", false);
-  await check_keyboard(browser, replay.url);
+  await check_keyboard(browser, replay.url, false);
   await browser.close();
   await stop(replay.viewer);
 }

@@ -26,8 +26,11 @@ export function check(sentence, holds, seen = "") {
 }
 
 /** A program of BUILD_DIR; its standard output is first_line's, or nobody's. */
-export function start(program, args) {
-  const child = spawn(join(build, program), args, { stdio: ["ignore", "pipe", "inherit"] });
+export const start = (program, args) => start_at(join(build, program), args);
+
+/** One from elsewhere. */
+export function start_at(path, args, env = process.env) {
+  const child = spawn(path, args, { stdio: ["ignore", "pipe", "inherit"], env });
   children.add(child);
   child.ended = new Promise((done) => child.on("exit", (status) => {
     children.delete(child);
@@ -48,13 +51,14 @@ export async function stop(child) {
   return child.ended;
 }
 
-/** The first line of a program's output. */
-export function first_line(child) {
+/** The first line of a program's output, or the first that begins so. */
+export function first_line(child, beginning = "") {
   return new Promise((done, fail) => {
     let text = "";
     child.stdout.on("data", (data) => {
       text += data;
-      if (text.includes("\n")) done(text.slice(0, text.indexOf("\n")));
+      const line = text.split("\n").slice(0, -1).find((one) => one.startsWith(beginning));
+      if (line !== undefined) done(line);
     });
     child.ended.then((status) => fail(new Error(`${child.spawnfile} left with status ${status}`)));
   });

@@ -18,6 +18,7 @@ import { Outside } from "./scene/outside";
 import { Plots } from "./panels/plots";
 import { length_of, type FigureFrame, type Frame, type Mesh, type Scene, type Status, type Vec } from "./link/protocol";
 import { Recorder } from "./controls/recorder";
+import { ScenePicker } from "./controls/scene_picker";
 import { Stage } from "./scene/stage";
 import { Timeline } from "./controls/timeline";
 import { ToolView } from "./scene/tool_view";
@@ -61,6 +62,7 @@ const connection = new Connection({
     timeline.status(now.replay ?? null);
     plots.zero_s = now.replay?.start_s ?? 0;
     tell_hand();
+    void picker.status(now.picker ?? null);
     if (now.replay) paused = false;
     if (now.link === "lost") {
       hud.tracking(null);
@@ -73,6 +75,7 @@ const connection = new Connection({
   server_gone: (refused) => {
     status = null;
     timeline.status(null);
+    void picker.status(null);
     tell_hand();
     hud.link(null, refused);
     hud.tracking(null); // what a chip said last is not known any more
@@ -83,6 +86,7 @@ const stage = new Stage(canvas, draw);
 const operator = new Operator(stage, hud);
 const outside = new Outside(canvas, stage.camera);
 const timeline = new Timeline((wish) => connection.steer(wish));
+const picker = new ScenePicker((wish) => connection.choose(wish), () => connection.offered());
 const hand = new HandControl(canvas, stage, may_move_hand, (position_m, grip_ratio) =>
   connection.move_hand(position_m, grip_ratio),
 );
@@ -193,6 +197,17 @@ async function save_picture(): Promise<void> {
   setTimeout(() => URL.revokeObjectURL(url), 60_000);
 }
 
+/** Two panels that share one place, and their buttons. */
+function toggle_panel(id: "keys" | "picker"): void {
+  for (const [panel, button] of [["keys", "help"], ["picker", "pick"]]) {
+    const open = panel === id && by_id(panel).hidden;
+    by_id(panel).hidden = !open;
+    by_id(button).classList.toggle("on", open);
+    by_id(button).setAttribute("aria-expanded", String(open));
+    if (open) by_id(panel).focus(); // the next tab goes into it
+  }
+}
+
 const actions: Record<string, () => unknown> = {
   p: () => {
     if (status?.link === "replay") return timeline.toggle();
@@ -226,12 +241,8 @@ const actions: Record<string, () => unknown> = {
   grip: () => hand.grip(1),
   "let go": () => hand.grip(0),
   s: () => void save_picture(),
-  h: () => {
-    const keys = by_id("keys");
-    keys.hidden = !keys.hidden;
-    hud.pressed("help", !keys.hidden);
-    by_id("help").setAttribute("aria-expanded", String(!keys.hidden));
-  },
+  l: () => picker.there && toggle_panel("picker"),
+  h: () => toggle_panel("keys"),
 };
 
 bind_keys((key, shift) => timeline.key(key, shift), actions);

@@ -2,7 +2,7 @@
 // connection.ts - the WebSocket to tact-view: comes back by itself, answers every frame with a count
 // so that the server never sends more than this page can draw.
 
-import { split_meshes, type FigureFrame, type Frame, type Mesh, type ReplayWish, type Scene, type Status, type Vec } from "./protocol";
+import { split_meshes, type FigureFrame, type Frame, type Mesh, type OfferedScene, type ReplayWish, type Scene, type SceneWish, type Status, type Vec } from "./protocol";
 
 export interface ConnectionEvents {
   status(status: Status): void;
@@ -42,6 +42,17 @@ export class Connection {
   /** To a tact-view that replays; another one hears nothing of it. */
   steer(replay: ReplayWish): void {
     this.send({ replay });
+  }
+
+  /** To who has started the simulation; a tact-view that offers no scenes hears nothing of it. */
+  choose(wish: SceneWish): void {
+    this.send({ wish });
+  }
+
+  /** What may be chosen. */
+  async offered(): Promise<OfferedScene[]> {
+    const answer = await fetch("scenes.json");
+    return answer.ok ? ((await answer.json()) as OfferedScene[]) : [];
   }
 
   private async open(): Promise<void> {

@@ -133,6 +133,36 @@ export interface ReplayWish {
   repeats?: boolean;
 }
 
+/** What may be set of a law, its ends included. */
+export interface Parameter {
+  key: string; // as --set takes it
+  unit: string;
+  value: number; // as shipped
+  low: number;
+  high: number;
+  whole: boolean;
+  meaning: string;
+}
+
+/** A scene that may be chosen: of `tactd SCENE --parameters --json`. */
+export interface OfferedScene {
+  scene: string;
+  law: string;
+  parameters: Parameter[];
+}
+
+/** What a page may ask for, in simulation: what `set` does not name is as shipped. */
+export interface SceneWish {
+  scene: string;
+  set: Record<string, number>;
+}
+
+/** What runs, what was asked for and has not come yet, why the last wish was refused. */
+export interface Picker extends SceneWish {
+  asked: string;
+  answer: string;
+}
+
 export interface Status {
   kind: "status";
   link: LinkName;
@@ -141,6 +171,7 @@ export interface Status {
   kept_s: number;
   figure?: Skeleton;
   replay?: Replay;
+  picker?: Picker; // where a scene may be chosen
 }
 
 export interface Mesh {

@@ -91,6 +91,9 @@ export class Hud {
     } else if (status.link === "replay") {
       pill("link", `replay: ${status.detail}`, "plain");
       this.notice("");
+    } else if (status.picker?.asked) {
+      pill("link", `starting ${status.picker.asked}`, "wait");
+      this.notice(`starting ${status.picker.asked} …`);
     } else if (status.link === "lost") {
       pill("link", "connection lost", "bad");
       this.notice(`connection lost: tactd went away${detail}; waiting for it …`);

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// tools/run as a person starts it, and its page in Chromium: another scene, another number of its law, and
+// what happens to the force; wishes that are refused, with a sentence, while the scene goes on.
+//
+//     node tests/browser/picker_test.mjs BUILD_DIR   (tools/run builds what is missing, there)
+//
+// CHROMIUM names another browser. Picture: BUILD_DIR/page_picker.png. Prints "N passed, M failed"; exit status 0 or 1.
+import { join } from "node:path";
+
+import { build, check, first_line, folder, numbers, play, root, size, start_at, start_browser, start_tactd, start_view, stop, waits } from "./stage.mjs";
+
+const kScenes = ["gum", "heart", "liver", "maintenance", "skin"];
+const kSoft_Pa = "set_disc_stack.youngs_modulus_Pa";
+
+const words = (page) => page.textContent("#picker_words");
+const says = (page, text) => waits(page, (wanted) => document.getElementById("picker_words").textContent.includes(wanted), text);
+const runs = (page, name) => waits(page, (wanted) => window.tact.link === "live" && window.tact.scene_name === wanted &&
+  window.tact.state === 2 && window.tact.tick > 0, name);
+
+/** The largest force of this many seconds, N. */
+async function peak_N(page, seconds) {
+  return page.evaluate(async (duration_ms) => {
+    const begin = performance.now();
+    let peak = 0;
+    while (performance.now() - begin < duration_ms) {
+      await new Promise((done) => requestAnimationFrame(done));
+      peak = Math.max(peak, Math.hypot(...(window.tact.force_N ?? [0])));
+    }
+    return peak;
+  }, seconds * 1000);
+}
+
+/** Types a number into its field, as a person does, and presses Enter. */
+async function set(page, id, value) {
+  await page.locator(`[id="${id}"]`).fill(value);
+  await page.keyboard.press("Enter");
+}
+
+async function check_scenes(page) {
+  check("the page of tools/run shows the liver", await runs(page, "liver"));
+  check("... and offers scenes", await waits(page, () => document.getElementById("pick").checkVisibility()));
+  await page.keyboard.press("l");
+  const offered = await page.$$eval("#wished_scene option", (all) => all.map((one) => one.value));
+  check("... all that are shipped", offered.join() === kScenes.join(), offered.join(" "));
+  check("... with the numbers of the law that runs", await page.locator(".parameter").count() === 7);
+  await page.selectOption("#wished_scene", "heart");
+  await page.click("#apply");
+  check("another scene is there when it was chosen, armed", await runs(page, "heart"));
+  check("... and the page says so", await says(page, "heart runs, as shipped"), await words(page));
+}
+
+async function check_numbers(page) {
+  const shipped_N = await peak_N(page, 8);
+  const shipped_Pa = Number(await page.inputValue(`[id="${kSoft_Pa}"]`));
+  await set(page, kSoft_Pa, String(shipped_Pa / 4));
+  check("a number of the law is changed from its field", await says(page, "heart runs, 1 changed"), await words(page));
+  const soft_N = await peak_N(page, 8);
+  check("... and the force is another", soft_N > 0.01 && soft_N < 0.7 * shipped_N,
+    `${shipped_N.toFixed(2)} N, then ${soft_N.toFixed(2)} N with a quarter of the modulus`);
+  await page.screenshot({ path: join(build, "page_picker.png") });
+}
+
+async function check_refusals(page) {
+  const scene_before = await page.evaluate(() => window.tact.tick);
+  await set(page, kSoft_Pa, "1e14");
+  check("a number out of its range is refused with its range", await says(page, "is out of range; allowed: 1 .. "),
+    await words(page));
+  await set(page, kSoft_Pa, "1e12");
+  check("what tactd refuses is told in its words", await says(page, "law disc_stack is too stiff"), await words(page));
+  await set(page, kSoft_Pa, "");
+  check("no number is none", await says(page, "has no number"), await words(page));
+  check("... and the scene before has gone on", await waits(page, (before) => window.tact.link === "live" &&
+    window.tact.scene_name === "heart" && window.tact.tick > before, scene_before));
+  await page.click("#as_shipped");
+  check("as shipped gives the scene back", await says(page, "heart runs, as shipped"), await words(page));
+}
+
+/** The slider moves by the keyboard, is read aloud, and moves the field. */
+async function check_slider(page) {
+  const id = kSoft_Pa.replace("set_", "slide_");
+  const before = Number(await page.inputValue(`[id="${kSoft_Pa}"]`));
+  await page.focus(`[id="${id}"]`);
+  await page.keyboard.press("ArrowRight");
+  const after = Number(await page.inputValue(`[id="${kSoft_Pa}"]`));
+  check("an arrow key moves a slider and its field", after > before, `${before} Pa, then ${after} Pa`);
+  check("... and it is read with its unit", await page.getAttribute(`[id="${id}"]`, "aria-valuetext") === `${after} Pa`);
+  await page.focus(`[id="${kSoft_Pa}"]`);
+  await page.keyboard.press("End");
+  await page.keyboard.type("e1");
+  check("letters in a field are no keys of the page", !(await numbers(page)).eyes_on && await page.isVisible("#picker"));
+}
+
+/** Where nobody could start another scene, none is offered. */
+async function check_nothing_offered(browser) {
+  const socket = join(folder, "alone.sock");
+  const { viewer, url } = await start_view(["--socket", socket]);
+  const tactd = start_tactd("liver", socket);
+  const page = await browser.newPage({ viewport: size });
+  await page.goto(url);
+  check("without a launcher nothing is offered", await runs(page, "liver") && !(await page.isVisible("#pick")));
+  await page.keyboard.press("l");
+  check("... by the key neither", !(await page.isVisible("#picker")));
+  await page.close();
+  await stop(tactd);
+  await stop(viewer);
+}
+
+async function run() {
+  const browser = await start_browser();
+  await check_nothing_offered(browser);
+  const environment = { ...process.env, XDG_RUNTIME_DIR: folder, XDG_STATE_HOME: folder };
+  const launcher = start_at(join(root, "tools/run"), ["--port", "8397"], environment);
+  try {
+    const url = (await first_line(launcher, "tact-view: ")).replace("tact-view: ", "");
+    const page = await browser.newPage({ viewport: size });
+    await page.goto(url);
+    await check_scenes(page);
+    await check_numbers(page);
+    await check_refusals(page);
+    await check_slider(page);
+  } finally {
+    launcher.kill("SIGTERM"); // it ends its own programs; SIGKILL would leave them
+    check("tools/run ends cleanly", (await launcher.ended) === 0);
+  }
+  await browser.close();
+}
+
+await play(run);
