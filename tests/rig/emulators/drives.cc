@@ -46,7 +46,7 @@ struct Options : EmulatorOptions {
 void add_odrive(CLI::App& app, OdriveSettings& odrive) {
   app.add_option("--watchdog-ms", odrive.watchdog_ms, "ODrive; 0: off")->capture_default_str();
   app.add_flag("--watchdog-in-idle", odrive.watchdog_in_idle,
-               "ODrive: it runs in idle too, as some firmware has it");
+               "ODrive 0.6: it runs in idle too, as in 0.5");
   app.add_option("--heartbeat-ms", odrive.heartbeat_ms, "ODrive")->capture_default_str();
   app.add_option("--error-ms", odrive.error_ms, "ODrive 0.6: period of Get_Error; 0: on request");
   app.add_option("--power-on-turns", odrive.power_on_turns,

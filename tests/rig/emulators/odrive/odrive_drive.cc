@@ -157,7 +157,7 @@ void OdriveDrive::tick(std::int64_t now_ns) {
     disarm(is_05() ? kControllerFailed05 : kVelocityLimit06);
   }
   const std::uint32_t watchdog = is_05() ? kWatchdog05 : kWatchdog06;
-  const bool guarded = state_ == kClosedLoop || settings_.watchdog_in_idle;
+  const bool guarded = state_ == kClosedLoop || is_05() || settings_.watchdog_in_idle;
   if (settings_.watchdog_ms > 0 && guarded && (error_ & watchdog) == 0 &&
       now_ns - fed_ns_ > settings_.watchdog_ms * std::int64_t{1'000'000}) {
     has_tripped_ = state_ == kClosedLoop;

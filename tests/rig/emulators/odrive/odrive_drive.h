@@ -4,13 +4,14 @@
 //     idle --index search--> idle        idle --closed loop, no error--> closed loop
 //     any error, e-stop or silent host -> idle with torque 0, latched until Clear_Errors
 //
-// The watchdog is fed by every frame to the axis in 0.5 and by set-points in 0.6, and runs in
-// closed loop. A set-point outlives idle, as nothing in the open firmware clears it: who enables
-// without asking for zero first gets the old torque. The torque is limited by current limit x
-// torque constant and, where its owner left that on, by velocity: between
-// (+-velocity limit - velocity) x velocity gain; above 1.2 x velocity limit it stops with an error.
-// Estimates of 0.5 are 0 and 0 until the axis has entered closed loop once since power-on, whatever
-// its encoder counts; that lasts when it leaves again, also at once for a motor without supply.
+// The watchdog of 0.5 is fed by every frame to the axis and runs in idle too, as its control loop
+// looks at it in every state; that of 0.6 is fed by set-points and runs in closed loop. A set-point
+// outlives idle, as nothing in the open firmware clears it: who enables without asking for zero
+// first gets the old torque. The torque is limited by current limit x torque constant and, where
+// its owner left that on, by velocity: between (+-velocity limit - velocity) x velocity gain; above
+// 1.2 x velocity limit it stops with an error. Estimates of 0.5 are 0 and 0 until the axis has
+// entered closed loop once since power-on, whatever its encoder counts; that lasts when it leaves
+// again, also at once for a motor without supply.
 // Reading of public documentation and of the open firmware 0.5; nothing here comes from the drivers
 // under test.
 #pragma once
@@ -23,8 +24,8 @@ namespace tact::rig {
 
 struct OdriveSettings {
   OdriveGeneration generation = OdriveGeneration::k06;
-  int watchdog_ms = 10;  // 0: off
-  bool watchdog_in_idle = false;
+  int watchdog_ms = 10;           // 0: off
+  bool watchdog_in_idle = false;  // of 0.6, too
   int heartbeat_ms = 100;
   int estimates_ms = 1;
   int error_ms = 0;             // cyclic Get_Error of 0.6; 0: only on request
