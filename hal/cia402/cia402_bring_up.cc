@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hal/can/can_delta.h"
 #include "hal/cia402/canopen_words.h"
+#include "hal/cia402/cia402_network.h"
 #include "hal/cia402/cia402_state.h"
 #include "hal/cia402/drive_settings.h"
 #include "hal/cia402/sdo_client.h"
@@ -19,8 +19,8 @@ namespace {
 using model::Error;
 using model::Result;
 
-// Chosen: for a fault reaction to end, between two looks at a resting arm, for 50 heartbeats.
-constexpr int kSettle_ms = 1000, kRest_ms = 100, kOperational_ms = 500;
+// Chosen: for a fault reaction to end, between two looks at a resting arm.
+constexpr int kSettle_ms = 1000, kRest_ms = 100;
 // Turns of a motor between two looks at resting arms; a free arm of DK-8 falls by 0.3.
 constexpr double kRest_turns = 0.02;
 // The profile is the lower half of object 1000. Bit 9 of 6502: cyclic synchronous torque.
@@ -30,33 +30,33 @@ constexpr SdoEntry kDeviceType{0x1000, 0, 4};
 class BringUp {
  public:
   BringUp(can::CanBus& bus, const model::CanSettings& can, double rate_Hz)
-      : bus_(bus),
-        can_(can),
-        rate_Hz_(rate_Hz),
-        sdo_(bus, [this](const can::CanFrame& frame) { take(frame); }) {}
+      : bus_(bus), can_(can), rate_Hz_(rate_Hz), network_(bus, can) {}
 
   Result<Cia402Start> run() {
-    Cia402Start start;
-    if (auto error = find_all()) return *error;
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (const auto step : {&BringUp::identify, &BringUp::configure, &BringUp::make_calm})
-        if (auto error = (this->*step)(i)) return *error;
-      if (auto error = learn(i, start)) return *error;
+    for (const bool last : {false, true}) {
+      Cia402Start start;
+      if (auto error = set_up(start)) return *error;
+      start.caution = settings_.caution();
+      // Last: PDOs flow in operational alone, so no drive takes a torque before all are set up.
+      if (network_.start_all()) return start;
+      if (!last) network_.reset_idle();
     }
-    // After all are calm: arms that have just lost their power may still be falling.
-    if (auto error = rest(start)) return *error;
-    // Last: PDOs flow in operational alone, so no drive takes a torque before all are set up.
-    if (auto error = start_all()) return *error;
-    start.caution = settings_.caution();
-    return start;
+    return network_.not_started();
   }
 
  private:
-  Error wrong(std::size_t i, const std::string& words) const {
-    // A bus that failed makes every drive look silent: it is told, not the drive.
-    if (bus_.fault() != Fault::kNone) return Error{can_bus_trouble(bus_.cause(), can_.interface)};
-    return Error{fmt::format("{} {}", can::can_arm_name(i, can_), words)};
+  std::optional<Error> set_up(Cia402Start& start) {
+    if (auto error = network_.find_all()) return error;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (const auto step : {&BringUp::identify, &BringUp::configure, &BringUp::make_calm})
+        if (auto error = (this->*step)(i)) return error;
+      if (auto error = learn(i, start)) return error;
+    }
+    // After all are calm: arms that have just lost their power may still be falling.
+    return rest(start);
   }
+
+  Error wrong(std::size_t i, const std::string& words) const { return network_.wrong(i, words); }
 
   std::optional<Error> get(std::size_t i, const SdoEntry& entry, std::uint32_t& value) {
     SdoFailure failure;
@@ -68,24 +68,6 @@ class BringUp {
   std::optional<Error> set(std::size_t i, const SdoWrite& what) {
     const auto failure = sdo_.write(can_.node[i], what);
     if (failure) return wrong(i, sdo_failure_words(*failure, what.index, what.sub));
-    return std::nullopt;
-  }
-
-  /// In pre-operational no PDO flows: a drive that an earlier run left alive cannot take a torque.
-  std::optional<Error> find_all() {
-    for (const int node : can_.node) bus_.push(canopen_nmt(NmtCommand::kPreOperational, node));
-    bus_.send();
-    // All three are asked before one is blamed: when none answers it is the bus.
-    std::array<bool, 3> answers{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      SdoFailure failure;
-      // An abort is an answer, too: the node is there.
-      answers[i] = sdo_.read(can_.node[i], kDeviceType, failure).has_value() || !failure.silent;
-    }
-    if (std::none_of(answers.begin(), answers.end(), [](bool yes) { return yes; }))
-      return Error{silent_bus_trouble(bus_, can_.interface)};
-    for (std::size_t i = 0; i < 3; ++i)
-      if (!answers[i]) return wrong(i, "does not answer: is it on, and does it have this node?");
     return std::nullopt;
   }
 
@@ -192,34 +174,11 @@ class BringUp {
     return std::nullopt;
   }
 
-  /// A drive proves by its heartbeat that it is operational: the NMT command has no reply.
-  std::optional<Error> start_all() {
-    for (const int node : can_.node) bus_.push(canopen_nmt(NmtCommand::kStart, node));
-    bus_.send();
-    // A heartbeat from before the command proves nothing.
-    operational_ = {};
-    for (int i = 0; i < kOperational_ms / 10; ++i) {
-      sdo_.wait(10);
-      if (operational_[0] && operational_[1] && operational_[2]) return std::nullopt;
-    }
-    for (std::size_t i = 0; i < 3; ++i)
-      if (!operational_[i])
-        return wrong(i, "does not say that it is operational: does it send its heartbeat (1017)?");
-    return std::nullopt;
-  }
-
-  void take(const can::CanFrame& frame) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto state = decode_canopen_heartbeat(frame, can_.node[i]);
-      if (state) operational_[i] = *state == NmtState::kOperational;
-    }
-  }
-
   can::CanBus& bus_;
   const model::CanSettings& can_;
   double rate_Hz_;
-  std::array<bool, 3> operational_{};
-  SdoClient sdo_;
+  Cia402Network network_;
+  SdoClient& sdo_ = network_.sdo();
   DriveSettings settings_{sdo_};
 };
 

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 namespace tact::hal::cia402 {
 namespace {
 
@@ -27,6 +29,8 @@ std::optional<std::string> DriveSettings::write(int node, CstConfiguration wante
   if (auto words = end_guarding(node)) return words;
   // Before 1016 is written: a watch that runs may refuse it (0x06040043, CN-4).
   if (auto words = end_watch(node, wanted)) return words;
+  if (auto words = end_other_watches(node, wanted)) return words;
+  if (auto words = expect_sync(node, wanted)) return words;
   for (const SdoWrite& one : *writes) {
     const auto refused = sdo_.write(node, one);
     if (refused && (refused->silent || !may_lack(node, one.index)))
@@ -90,6 +94,44 @@ std::optional<std::string> DriveSettings::end_watch(int node, const CstConfigura
   return std::nullopt;
 }
 
+/// Two watches over one node are refused (0x06040043); and the other one would outlive the loop.
+std::optional<std::string> DriveSettings::end_other_watches(int node,
+                                                            const CstConfiguration& wanted) {
+  SdoFailure failure;
+  const auto count = sdo_.read(node, {0x1016, 0, 1}, failure).value_or(1);
+  for (std::uint8_t sub = 2; sub <= std::min(count, 127u); ++sub) {
+    const auto watch = sdo_.read(node, {0x1016, sub, 4}, failure);
+    if (failure.silent) return sdo_failure_words(failure, 0x1016, sub);
+    if (!watch || (*watch & 0xFFFFu) == 0) continue;
+    if ((*watch & 0x7F0000u) != host_watch(wanted, 0)) continue;
+    const auto refused =
+        sdo_.write(node, {.index = 0x1016, .sub = sub, .value = host_watch(wanted, 0), .size = 4});
+    if (refused) return sdo_failure_words(*refused, 0x1016, sub);
+  }
+  return std::nullopt;
+}
+
+/// A drive that is told neither keeps its own: 0 means that it does not ask.
+std::optional<std::string> DriveSettings::expect_sync(int node, const CstConfiguration& wanted) {
+  SdoFailure failure;
+  const std::uint32_t period_us = 1000u * wanted.period_ms;
+  const std::uint32_t counter = sdo_.read(node, {0x1019, 0, 1}, failure).value_or(0);
+  const std::uint32_t told_us = sdo_.read(node, {0x1006, 0, 4}, failure).value_or(0);
+  const auto write = [&](const SdoWrite& what) -> std::optional<std::string> {
+    const auto refused = sdo_.write(node, what);
+    if (refused) return sdo_failure_words(*refused, what.index, what.sub);
+    return std::nullopt;
+  };
+  if (counter != 0) {
+    // CiA 301: while there is a period, the counter does not change.
+    if (told_us != 0)
+      if (auto words = write({.index = 0x1006, .sub = 0, .value = 0, .size = 4})) return words;
+    if (auto words = write({.index = 0x1019, .sub = 0, .value = 0, .size = 1})) return words;
+  }
+  if (told_us == 0 || (counter == 0 && told_us == period_us)) return std::nullopt;
+  return write({.index = 0x1006, .sub = 0, .value = period_us, .size = 4});
+}
+
 /// Some drives show their mode late, or not at all, but never another one.
 std::optional<std::string> DriveSettings::check_mode(int node) {
   SdoFailure failure;
@@ -111,8 +153,8 @@ std::optional<std::string> DriveSettings::check_mode(int node) {
 bool DriveSettings::may_lack(int node, std::uint16_t index) {
   for (Optional& one : optional_) {
     if (one.index != index) continue;
-    // Once a drive, although 60C2 is written in two parts.
-    if (one.nodes.empty() || one.nodes.back() != node) one.nodes.push_back(node);
+    // Once a drive, although 60C2 is written in two parts, and all of it twice after a reset.
+    if (std::ranges::find(one.nodes, node) == one.nodes.end()) one.nodes.push_back(node);
     return true;
   }
   return false;

@@ -5,10 +5,13 @@
 //     1016:01, 1017  heartbeat, theirs and ours: a drive without is refused
 //     100C, 100D  node guarding that another host has left on is switched off: its life time would
 //                 end under ours, and beside it some drives do not miss a heartbeat
-//     1016:01  a watch that a run before has left behind is switched off by its own node first
+//     1016     a watch that a run before has left behind is switched off by its own node first,
+//              and one over our node under another sub-index
+//     1019     SYNC comes without a counter
+//     1006     its period, where a drive is told one: else it misses SYNC, or follows another clock
 //     6007, 60C2, 605A, 6061  not every drive has them
 //
-// CN-3, CN-4, CN-6. Set-up code: blocks.
+// CN-3, CN-4, CN-6, CN-7. Set-up code: blocks.
 #pragma once
 
 #include <array>
@@ -40,6 +43,8 @@ class DriveSettings {
   std::optional<std::string> check_heartbeat(int node);
   std::optional<std::string> end_guarding(int node);
   std::optional<std::string> end_watch(int node, const CstConfiguration& wanted);
+  std::optional<std::string> end_other_watches(int node, const CstConfiguration& wanted);
+  std::optional<std::string> expect_sync(int node, const CstConfiguration& wanted);
   std::optional<std::string> check_mode(int node);
   bool may_lack(int node, std::uint16_t index);
 

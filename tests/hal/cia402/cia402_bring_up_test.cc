@@ -175,6 +175,21 @@ TEST(Cia402BringUp, ADriveThatDoesNotStartIsNamed) {
   bench.expect_refused("arm 1 (node 1 on can0) does not say that it is operational");
 }
 
+TEST(Cia402BringUp, ADriveThatStaysOutOfOperationIsResetOnceAndThenTellsItsError) {
+  Bench noted, silent;
+  for (Bench* bench : {&noted, &silent}) bench->drives.axis[1].starts = false;
+  noted.drives.axis[1].written[0x100301] = 0x1234'8130;
+  noted.expect_refused(
+      "arm 2 (node 2 on can0) does not become operational and notes an error: The drive missed the "
+      "controller's heartbeat");
+  silent.expect_refused(
+      "arm 2 (node 2 on can0) does not become operational: is a second controller");
+  for (Bench* bench : {&noted, &silent}) {
+    EXPECT_EQ(bench->drives.axis[0].resets, 0) << "it did start";
+    EXPECT_EQ(bench->drives.axis[1].resets, 1);
+  }
+}
+
 TEST(Cia402BringUp, ATorqueScaleOfZeroIsRefused) {
   Bench bench;
   bench.drives.axis[0].rated = 0;

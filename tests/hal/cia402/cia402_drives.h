@@ -18,6 +18,8 @@ struct PlayedCia402 {
   int node = 0;
   bool powered = true;
   bool says_heartbeat = true, says_sample = true, obeys = true, follows = true;
+  bool starts = true;  // becomes operational
+  int resets = 0;      // of its communication
   std::uint32_t device_type = 0x00020192, modes = 1u << 9;
   std::uint32_t rated = 500;  // torque, 0.001 N m
   std::uint32_t refused = 0;  // index << 8 | sub that is answered by `abort_code`
@@ -112,9 +114,13 @@ class PlayedCia402s {
     if (frame.id == 0x080 && one.nmt == hal::cia402::NmtState::kOperational && one.says_sample)
       say_sample(one);
   }
-  static void take_nmt(PlayedCia402& one, std::uint8_t code) {
+  void take_nmt(PlayedCia402& one, std::uint8_t code) {
     if (!one.obeys) return;
-    if (code == 0x01) one.nmt = hal::cia402::NmtState::kOperational;
+    if (code == 0x82) {
+      ++one.resets;
+      bus.say(*hal::cia402::canopen_heartbeat(one.node, hal::cia402::NmtState::kBoot));
+    }
+    if (code == 0x01 && one.starts) one.nmt = hal::cia402::NmtState::kOperational;
     if (code == 0x80) one.nmt = hal::cia402::NmtState::kPreOperational;
   }
   static void command(PlayedCia402& one, std::uint16_t word) {

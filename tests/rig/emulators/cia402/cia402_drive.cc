@@ -11,7 +11,7 @@ namespace {
 constexpr double kCountsPerTurn = 10'000.0;
 constexpr std::int64_t kMs_ns = 1'000'000, kTorqueMode = 10;
 constexpr std::uint16_t kHeartbeatLost = 0x8130, kSetPointsLost = 0x8250, kOverCurrent = 0x2310,
-                        kOverTemperature = 0x4310;
+                        kOverTemperature = 0x4310, kSyncLost = 0x8100, kSyncLength = 0x8240;
 constexpr std::uint16_t kFollows = 1u << 12u, kLimited = 1u << 11u;
 
 }  // namespace
@@ -81,13 +81,14 @@ void Cia402Drive::reset(std::int64_t now_ns) {
   waiting_size_ = 0;
   torque_permille_ = 0.0;
   guard_toggle_ = false;
-  host_ns_ = set_point_ns_ = guard_ns_ = enable_ns_ = 0;
+  host_ns_ = set_point_ns_ = guard_ns_ = sync_ns_ = enable_ns_ = 0;
+  misses_sync_ = false;
   boot_ns_ = now_ns + settings_.boot_ms * kMs_ns;
 }
 
 void Cia402Drive::network(std::span<const std::uint8_t> payload, std::int64_t now_ns) {
   if (payload.size() < 2 || (payload[1] != 0 && payload[1] != node_) || nmt_ == Nmt::kBoot) return;
-  if (payload[0] == 0x01) nmt_ = Nmt::kOperational;
+  if (payload[0] == 0x01 && !is_barred()) nmt_ = Nmt::kOperational;
   if (payload[0] == 0x02) nmt_ = Nmt::kStopped;
   if (payload[0] == 0x80) nmt_ = Nmt::kPreOperational;
   if (payload[0] == 0x81 || payload[0] == 0x82) reset(now_ns);
@@ -107,8 +108,8 @@ bool Cia402Drive::receive(const canfd_frame& frame, std::int64_t now_ns) {
     network(payload, now_ns);
   } else if (nmt_ == Nmt::kBoot) {
     return false;
-  } else if (id == 0x080 && is_operational()) {
-    synchronise(now_ns);
+  } else if (id == 0x080) {
+    take_sync(!payload.empty(), now_ns);
   } else if (id == 0x600 + node_ && nmt_ != Nmt::kStopped && payload.size() == 8) {
     measure();
     send(CanRole::kOther, 0x580, dictionary_.serve(payload, is_operational()), now_ns);
@@ -116,6 +117,8 @@ bool Cia402Drive::receive(const canfd_frame& frame, std::int64_t now_ns) {
     if (is_controlword) obey(now_ns);
     const std::int64_t written = dictionary_.get(0x1016, 1);
     if (written == consumer) return false;
+    const bool ends = (written & 0xFFFF) == 0 && dictionary_.get(0x1001) != 0;
+    if (ends && !misses_sync_) emergency(0, now_ns);
     // A watch that was set anew begins with the next heartbeat (CiA 301, 7.5.2.19).
     if (settings_.habits.watch_off_first && written == 0) return false;
     watch_ = written;
@@ -126,6 +129,21 @@ bool Cia402Drive::receive(const canfd_frame& frame, std::int64_t now_ns) {
     return set_points(payload, now_ns);
   }
   return false;
+}
+
+bool Cia402Drive::is_barred() const {
+  return settings_.habits.errors_bar_operational && (dictionary_.get(0x1001) & 0x10) != 0;
+}
+
+void Cia402Drive::take_sync(bool counts, std::int64_t now_ns) {
+  if (dictionary_.get(0x1019) != 0 && !counts) {
+    if (dictionary_.get(0x1001) == 0) emergency(kSyncLength, now_ns);
+    return;
+  }
+  sync_ns_ = now_ns;
+  if (misses_sync_) emergency(0, now_ns);
+  misses_sync_ = false;
+  if (is_operational()) synchronise(now_ns);
 }
 
 void Cia402Drive::answer_guard(std::int64_t now_ns) {
@@ -204,6 +222,7 @@ void Cia402Drive::emergency(std::uint16_t code, std::int64_t now_ns) {
                                                         : is_communication ? 0x11
                                                                            : 0x01);
   dictionary_.set(0x1001, 0, error_register);
+  if (code != 0) dictionary_.set(0x1003, 1, code);
   if (code != 0) noted_.push_back(code);
   send(CanRole::kOther, 0x080, cia402_emergency(code, error_register), now_ns);
 }
@@ -266,6 +285,11 @@ void Cia402Drive::tick(std::int64_t now_ns) {
     silent(host_ns_, watch_ & 0xFFFF, kHeartbeatLost);
   silent(guard_ns_, life_ms, kHeartbeatLost);
   silent(set_point_ns_, dictionary_.get(0x1400, 5), kSetPointsLost);
+  const std::int64_t most_ns = dictionary_.get(0x1006) * 1500;
+  if (most_ns == 0 || sync_ns_ == 0 || now_ns - sync_ns_ <= most_ns) return;
+  sync_ns_ = 0;
+  misses_sync_ = true;
+  emergency(kSyncLost, now_ns);
 }
 
 void Cia402Drive::send(CanRole role, std::uint32_t function, std::span<const std::uint8_t> payload,

@@ -10,8 +10,11 @@
 // host's heartbeat (1016) or the set-points (1400:5) stay out, as 6007 says. A watch ends by a
 // time of zero for its node; in drives that want it off first (ObjectHabits) a zero as a whole
 // leaves it. Node guarding is answered, and a pause of more than its life time (100C x 100D) is an
-// emergency, beside a heartbeat too: the worst that a drive may do. Torque of the motor in 1/1000
-// of 6076, position in 10 000 counts per turn of the motor.
+// emergency, beside a heartbeat too: the worst that a drive may do. A SYNC that stays out for 1.5
+// times 1006, or comes without the counter of 1019, is an emergency. Where an error of the bus
+// keeps a node out of operation (ObjectHabits), it ends with SYNC, the watch's end or the reset of
+// its communication. Torque of the motor in 1/1000 of 6076, position in 10 000 counts per turn of
+// the motor.
 #pragma once
 
 #include "tests/rig/emulators/can/can_bus.h"
@@ -77,6 +80,8 @@ class Cia402Drive final : public Drive {
   void obey(std::int64_t now_ns);
   void lost(std::uint16_t code, std::int64_t now_ns);
   void emergency(std::uint16_t code, std::int64_t now_ns);
+  bool is_barred() const;
+  void take_sync(bool counts, std::int64_t now_ns);
   void measure();
   void send(CanRole role, std::uint32_t function, std::span<const std::uint8_t> payload,
             std::int64_t now_ns);
@@ -99,7 +104,8 @@ class Cia402Drive final : public Drive {
   std::int64_t watch_ = 0;  // whom it misses: 1016:01, but for a zero that names nobody
   std::vector<std::uint16_t> noted_;
   std::int64_t boot_ns_ = 0, enable_ns_ = 0, heartbeat_ns_ = 0;
-  std::int64_t host_ns_ = 0, set_point_ns_ = 0, guard_ns_ = 0;  // last heard; 0: not yet
+  std::int64_t host_ns_ = 0, set_point_ns_ = 0, guard_ns_ = 0, sync_ns_ = 0;  // last heard; 0: no
+  bool misses_sync_ = false;
 };
 
 }  // namespace tact::rig

@@ -43,18 +43,23 @@ ObjectDictionary::ObjectDictionary(int node, double rated_torque_Nm, ObjectHabit
       entries_{
           {0x1000, 0, kU32, false, false, 0x00020192},  // servo drive, profile 402
           {0x1001, 0, kU8, false, true, 0},             // error register
+          {0x1003, 0, kU8, true, false, 0},
+          {0x1003, 1, kU32, false, false, 0},  // the newest error
           {0x1005, 0, kU32, true, false, 0x80},
+          {0x1006, 0, kU32, true, false, habits_.sync_period_us},
           {0x100C, 0, kU16, true, false, habits_.guard_time_ms},
           {0x100D, 0, kU8, true, false, habits_.life_time_factor},
           {0x1014, 0, kU32, true, false, 0x80 + node},
-          {0x1016, 0, kU8, false, false, 1},
+          {0x1016, 0, kU8, false, false, 2},
           {0x1016, 1, kU32, true, false, 0},
+          {0x1016, 2, kU32, true, false, habits_.second_watch},
           {0x1017, 0, kU16, true, false, 0},
           {0x1018, 0, kU8, false, false, 4},
           {0x1018, 1, kU32, false, false, 0x7AC7},  // nobody's vendor id
           {0x1018, 2, kU32, false, false, 0x0402},
           {0x1018, 3, kU32, false, false, 0x0001'0000},
           {0x1018, 4, kU32, false, false, 1000 + node},
+          {0x1019, 0, kU8, true, false, habits_.sync_counter},
           {0x1400, 0, kU8, false, false, 5},
           {0x1400, 1, kU32, true, false, 0x200 + node},
           {0x1400, 2, kU8, true, false, 255},
@@ -179,6 +184,11 @@ SdoAbort ObjectDictionary::download(std::uint16_t index, std::uint8_t sub,
   const bool watches = (entry->value & 0xFFFF) != 0 && (value & 0xFFFF) != 0;
   if (index == 0x1016 && habits_.watch_off_first && watches && value >> 16 == entry->value >> 16)
     return SdoAbort::kContradiction;
+  // No node is watched twice.
+  const std::int64_t other = get(0x1016, sub == 1 ? 2 : 1);
+  const bool twice = (value & 0xFFFF) != 0 && (other & 0xFFFF) != 0 && value >> 16 == other >> 16;
+  if (index == 0x1016 && twice) return SdoAbort::kContradiction;
+  if (index == 0x1019 && get(0x1006) != 0) return SdoAbort::kWrongState;
   if (index == 0x6060 && value != 0 && value != 10) return SdoAbort::kBadValue;
   entry->value = value;
   if (index == 0x6060) set(0x6061, 0, value == 10 ? habits_.mode_shown : value);

@@ -59,8 +59,12 @@ struct ObjectHabits {
   std::vector<std::uint16_t> absent{};          // indices that it does not have
   int mode_shown = 10;                          // 6061, once 10 was written to 6060
   int guard_time_ms = 0, life_time_factor = 0;  // 100C, 100D as they were stored
-  bool life_hides_host = false;  // with a life time a host that falls silent is not missed
-  bool life_from_boot = false;   // its life time counts from boot-up, not from the first request
+  bool life_hides_host = false;    // with a life time a host that falls silent is not missed
+  bool life_from_boot = false;     // its life time counts from boot-up, not from the first request
+  int sync_period_us = 0;          // 1006 as it was stored: SYNC is missed after 1.5 of it
+  int sync_counter = 0;            // 1019 as it was stored: a SYNC without a counter is none
+  std::uint32_t second_watch = 0;  // 1016:02 as it was stored
+  bool errors_bar_operational = false;  // an error of the bus (1001, bit 4) keeps it out of it
 };
 
 class ObjectDictionary {
