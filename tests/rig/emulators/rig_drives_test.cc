@@ -103,6 +103,19 @@ TEST(RigDrives, AnOdriveThatHearsNothingStopsByItsOwnWatchdog) {
   }
 }
 
+TEST(RigDrives, OnlyAnIdleOdriveOf05IsWatched) {
+  for (const bool is_05 : {true, false}) {
+    OdriveBench bench(is_05 ? OdriveGeneration::k05 : OdriveGeneration::k06);
+    bench.wait(30);
+    bench.enable();
+    EXPECT_EQ(bench.drive.is_enabled(), !is_05);
+    bench.tell(0x18, {0});
+    bench.enable();
+    EXPECT_TRUE(bench.drive.is_enabled());
+    EXPECT_FALSE(bench.drive.tripped()) << "no torque was taken";
+  }
+}
+
 TEST(RigDrives, OnlyAnOdriveOf05IsFedByAnyFrame) {
   for (const bool is_05 : {true, false}) {
     OdriveBench bench(is_05 ? OdriveGeneration::k05 : OdriveGeneration::k06);
