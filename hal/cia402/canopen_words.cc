@@ -57,11 +57,15 @@ constexpr CanopenWords kAbort[] = {
     {0x05040005, kExact, "The drive has no memory left: restart it."},
     {0x06010000, kExact, "This setting cannot be reached in this way: see the drive's manual."},
     {0x06010001, kExact, "This setting can only be written."},
-    {0x06010002, kExact, "This setting can only be read: leave it out of the configuration."},
+    {0x06010002, kExact,
+     "This setting can only be read: update the drive's firmware, or take another drive."},
     {0x06020000, kExact, "The drive does not have this setting: is it the right drive?"},
     {0x06040041, kExact,
-     "The drive cannot send or take this value every cycle: choose another mapping."},
-    {0x06040042, kExact, "The mapping is longer than eight bytes: map fewer values."},
+     "The drive cannot send or take this value every cycle: update its firmware, or take another "
+     "drive."},
+    {0x06040042, kExact,
+     "The drive sends fewer values a cycle than three: update its firmware, or take another "
+     "drive."},
     {0x06040043, kExact, "Settings contradict each other: see the drive's manual."},
     {0x06040047, kExact, "The drive cannot combine these settings: see its manual."},
     {0x06060000, kExact, "The drive's memory failed: restart it, then have it repaired."},
