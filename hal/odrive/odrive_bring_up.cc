@@ -81,14 +81,20 @@ class BringUp {
       return drives_.wrong([&](const Axis& a) { return !told(a); },
                            "stopped sending its heartbeat: check its supply and the CAN cable");
     }
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto words =
-          odrive_error_sentence(drives_.generation, drives_.axes[i].error, drives_.axes[i].parts);
-      if (!words.empty()) return Error{fmt::format("{}: {}", can::can_arm_name(i, can_), words)};
-    }
+    if (auto error = error_of_first()) return error;
     return drives_.wrong(
         [](const Axis& a) { return !a.is_in(OdriveAxisState::kIdle); },
         "does not go idle: end the program that drives it, then start tactd again");
+  }
+
+  /// Of the first axis that reports one, in words.
+  std::optional<Error> error_of_first() const {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const OdriveHeard& axis = drives_.axes[i];
+      const auto words = odrive_error_sentence(drives_.generation, axis.error, axis.parts);
+      if (!words.empty()) return Error{fmt::format("{}: {}", can::can_arm_name(i, can_), words)};
+    }
+    return std::nullopt;
   }
 
   std::optional<Error> set_torque_mode() {
@@ -116,8 +122,15 @@ class BringUp {
       return a.heartbeats > 0 && searched && good && a.error == 0 && a.parts == 0 &&
              a.is_in(OdriveAxisState::kIdle);
     };
-    if (drives_.run_until(done, kIndexSearch_ms)) return {};
+    // One that refuses says so at once: it shall not search for the whole time.
+    const auto refuses = [](const Axis& a) {
+      return a.heartbeats > 0 && (a.error != 0 || a.parts != 0);
+    };
+    const bool ended =
+        drives_.run_until([&](const Axis& a) { return done(a) || refuses(a); }, kIndexSearch_ms);
+    if (ended && std::none_of(drives_.axes.begin(), drives_.axes.end(), refuses)) return {};
     drives_.each([](int node) { return odrive_axis_state(node, OdriveAxisState::kIdle); });
+    if (auto error = error_of_first()) return error;
     return drives_.wrong(
         [&](const Axis& a) { return !done(a); },
         "does not find its index pulse: let the arm move freely and check the encoder's "

@@ -112,6 +112,17 @@ TEST(OdriveEmulated, APositionThatCannotBeProvedIsRefused) {
   }
 }
 
+TEST(OdriveEmulated, AnIndexSearchThatIsRefusedIsToldByTheDrivesOwnErrorAtOnce) {
+  Bench bench({.generation = OdriveGeneration::k05, .is_calibrated = false}, Homing::kIndex);
+  const std::int64_t before_ns = bench.drives.now_ns;
+  const std::string sentence = bench.open();
+  EXPECT_NE(sentence.find("arm 1 (node 1 on can0): The drive cannot enter the state that was asked "
+                          "for: calibrate motor and encoder first"),
+            std::string::npos)
+      << sentence;
+  EXPECT_LT(bench.drives.now_ns - before_ns, 3'000'000'000);
+}
+
 TEST(OdriveEmulated, DrivesThatKnowTheirPositionGetNoPowerAtOpening) {
   for (const auto generation : {OdriveGeneration::k05, OdriveGeneration::k06}) {
     Bench bench({.generation = generation, .estimates_from_power_on = true}, Homing::kAbsolute);

@@ -70,7 +70,7 @@ void OdriveDrive::request_state(std::uint32_t state, std::int64_t now_ns) {
   if (state == kIdle) {
     state_ = kIdle;
     procedure_result_ = kSuccess;
-  } else if (error_ != 0 || (state == kClosedLoop && !(has_index_ && settings_.is_calibrated)) ||
+  } else if (error_ != 0 || !settings_.is_calibrated || (state == kClosedLoop && !has_index_) ||
              (state != kClosedLoop && state != kIndexSearch)) {
     if (is_05()) error_ |= kInvalidState05;
     procedure_result_ = kDisarmed;

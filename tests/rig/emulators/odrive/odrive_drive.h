@@ -33,7 +33,7 @@ struct OdriveSettings {
   int index_search_ms = 300;
   double torque_constant_Nm_per_A = 0.08;
   bool estimates_from_power_on = false;       // 0.5: not as firmware 0.5.6 has them
-  bool is_calibrated = true;                  // else it refuses closed loop
+  bool is_calibrated = true;                  // else it refuses closed loop and index search
   bool motor_supply = true;                   // else it falls out of closed loop at once
   bool torque_velocity_limit = false;         // the maker's default is true
   double velocity_limit_turns_per_s = 100.0;  // the maker's default is 2
