@@ -3,10 +3,10 @@
 //
 //     NMT pre-operational -> device type 402 (1000), torque mode (6502) -> it has a heartbeat
 //     (1016, 1017) -> node guarding off (100C, 100D) -> a watch that a run before has left behind
-//     off (1016) -> SYNC as it will come (1006, 1019) -> the settings of cia402_cst.h, each reply
-//     checked -> mode (6061) -> quick stop disables (605A = 0, where the drive has it) -> old fault
-//     reset -> rated torque (6076) -> position (6064) -> NMT start -> heartbeats say so; if not,
-//     once more after NMT reset communication (cia402_network.h)
+//     off (1016) -> SYNC as it will come (1005, 1006, 1019) -> the settings of cia402_cst.h, each
+//     reply checked -> mode (6061) -> quick stop disables (605A = 0, where the drive has it) -> old
+//     fault reset -> rated torque (6076) -> position (6064) -> NMT start -> heartbeats say so; if
+//     not, once more after NMT reset communication (cia402_network.h)
 //
 // Not every drive has 6007 (what it does when the host is lost) and 60C2 (its period): then its own
 // settings count, which is told. 6076 may be in the scene instead (CN-5).

@@ -13,6 +13,7 @@ namespace {
 constexpr int kModeLooks = 20, kModeLook_ms = 10;
 constexpr std::uint32_t kTorqueMode = 10;
 constexpr std::uint32_t kWithoutRequest = 1u << 30;
+constexpr std::uint32_t kSyncId = 0x80;
 constexpr std::uint32_t kNoObject = 0x06020000, kNoSubIndex = 0x06090011;
 
 }  // namespace
@@ -111,22 +112,27 @@ std::optional<std::string> DriveSettings::end_other_watches(int node,
   return std::nullopt;
 }
 
-/// A drive that is told neither keeps its own: 0 means that it does not ask.
+/// Its identifier always: after a reset some drives know it again only when it is written (CN-7).
+/// Of period and counter, 0 means that a drive does not ask.
 std::optional<std::string> DriveSettings::expect_sync(int node, const CstConfiguration& wanted) {
   SdoFailure failure;
-  const std::uint32_t period_us = 1000u * wanted.period_ms;
-  const std::uint32_t counter = sdo_.read(node, {0x1019, 0, 1}, failure).value_or(0);
-  const std::uint32_t told_us = sdo_.read(node, {0x1006, 0, 4}, failure).value_or(0);
   const auto write = [&](const SdoWrite& what) -> std::optional<std::string> {
     const auto refused = sdo_.write(node, what);
     if (refused) return sdo_failure_words(*refused, what.index, what.sub);
     return std::nullopt;
   };
+  auto words = write({.index = 0x1005, .sub = 0, .value = kSyncId, .size = 4});
+  // One that cannot be written may be right already, or not there.
+  const std::uint32_t has = sdo_.read(node, {0x1005, 0, 4}, failure).value_or(kSyncId);
+  if (words && (has & 0x7FFF'FFFFu) != kSyncId) return words;
+  const std::uint32_t period_us = 1000u * wanted.period_ms;
+  const std::uint32_t counter = sdo_.read(node, {0x1019, 0, 1}, failure).value_or(0);
+  const std::uint32_t told_us = sdo_.read(node, {0x1006, 0, 4}, failure).value_or(0);
   if (counter != 0) {
     // CiA 301: while there is a period, the counter does not change.
     if (told_us != 0)
-      if (auto words = write({.index = 0x1006, .sub = 0, .value = 0, .size = 4})) return words;
-    if (auto words = write({.index = 0x1019, .sub = 0, .value = 0, .size = 1})) return words;
+      if (auto error = write({.index = 0x1006, .sub = 0, .value = 0, .size = 4})) return error;
+    if (auto error = write({.index = 0x1019, .sub = 0, .value = 0, .size = 1})) return error;
   }
   if (told_us == 0 || (counter == 0 && told_us == period_us)) return std::nullopt;
   return write({.index = 0x1006, .sub = 0, .value = period_us, .size = 4});

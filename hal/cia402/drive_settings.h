@@ -7,7 +7,8 @@
 //                 end under ours, and beside it some drives do not miss a heartbeat
 //     1016     a watch that a run before has left behind is switched off by its own node first,
 //              and one over our node under another sub-index
-//     1019     SYNC comes without a counter
+//     1005     SYNC is 0x80, and not theirs to send
+//     1019     it comes without a counter
 //     1006     its period, where a drive is told one: else it misses SYNC, or follows another clock
 //     6007, 60C2, 605A, 6061  not every drive has them
 //

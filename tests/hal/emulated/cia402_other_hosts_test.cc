@@ -40,6 +40,12 @@ TEST(Cia402OtherHosts, SyncIsWhatEachDriveExpectsWhateverAnotherHostHasStored) {
   }
 }
 
+TEST(Cia402OtherHosts, SyncHasItsIdentifierWhateverAnotherHostHasStored) {
+  Bench bench({.sync_id = 0x90});
+  ASSERT_TRUE(bench.run());
+  bench.expect_torques_of({1.0, -2.0, 3.0});
+}
+
 TEST(Cia402OtherHosts, AWatchOverOurNodeUnderAnotherSubIndexIsSwitchedOff) {
   constexpr std::uint32_t kOurs = 127u << 16 | 100u, kAnothers = 126u << 16 | 100u;
   for (const std::uint32_t stored : {kOurs, kAnothers}) {

@@ -108,7 +108,7 @@ bool Cia402Drive::receive(const canfd_frame& frame, std::int64_t now_ns) {
     network(payload, now_ns);
   } else if (nmt_ == Nmt::kBoot) {
     return false;
-  } else if (id == 0x080) {
+  } else if (id == (dictionary_.get(0x1005) & 0x7FF)) {
     take_sync(!payload.empty(), now_ns);
   } else if (id == 0x600 + node_ && nmt_ != Nmt::kStopped && payload.size() == 8) {
     measure();

@@ -45,7 +45,7 @@ ObjectDictionary::ObjectDictionary(int node, double rated_torque_Nm, ObjectHabit
           {0x1001, 0, kU8, false, true, 0},             // error register
           {0x1003, 0, kU8, true, false, 0},
           {0x1003, 1, kU32, false, false, 0},  // the newest error
-          {0x1005, 0, kU32, true, false, 0x80},
+          {0x1005, 0, kU32, true, false, habits_.sync_id},
           {0x1006, 0, kU32, true, false, habits_.sync_period_us},
           {0x100C, 0, kU16, true, false, habits_.guard_time_ms},
           {0x100D, 0, kU8, true, false, habits_.life_time_factor},

@@ -61,6 +61,7 @@ struct ObjectHabits {
   int guard_time_ms = 0, life_time_factor = 0;  // 100C, 100D as they were stored
   bool life_hides_host = false;    // with a life time a host that falls silent is not missed
   bool life_from_boot = false;     // its life time counts from boot-up, not from the first request
+  std::uint32_t sync_id = 0x80;    // 1005 as it was stored
   int sync_period_us = 0;          // 1006 as it was stored: SYNC is missed after 1.5 of it
   int sync_counter = 0;            // 1019 as it was stored: a SYNC without a counter is none
   std::uint32_t second_watch = 0;  // 1016:02 as it was stored
