@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hal/registry/open_device.h"
+#include "model/io/json.h"
 
 namespace tact::firmware::run {
 
@@ -32,14 +33,13 @@ std::string parameters_as_json(const model::scene::Scene& scene,
                     {"high", number.high},
                     {"whole", number.is_whole},
                     {"meaning", number.meaning}});
-  return nlohmann::json{{"format", "tactd-parameters"},
-                        {"version", 1},
-                        {"scene", scene.name},
-                        {"law", model::scene::name_of(scene.law)},
-                        {"simulated", hal::registry::is_simulated(scene.device)},
-                        {"parameters", list}}
-             .dump(2) +
-         "\n";
+  const nlohmann::json out{{"format", "tactd-parameters"},
+                           {"version", 1},
+                           {"scene", scene.name},
+                           {"law", model::scene::name_of(scene.law)},
+                           {"simulated", hal::registry::is_simulated(scene.device)},
+                           {"parameters", list}};
+  return model::io::text_of(out, 2) + "\n";
 }
 
 }  // namespace tact::firmware::run

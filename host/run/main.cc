@@ -128,7 +128,7 @@ void say_ready(const Options& options, const server::ViewerServer& server) {
   std::fflush(stdout);
 }
 
-/// Runs until a signal. `source` starts what feeds the view.
+/// Runs until a signal. `start` starts what feeds the view.
 template <typename Start>
 int serve(const Options& options, boost::asio::io_context& io, server::ViewerServer& server,
           const Start& start) {

@@ -92,9 +92,7 @@ void LiveView::tell_replay(const nlohmann::json& replay) {
 
 void LiveView::tell_picker(const nlohmann::json& picker) {
   picker_.reset();
-  if (!picker.is_null())  // a sentence of another program may have any bytes
-    picker_ = std::make_shared<const std::string>(
-        picker.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  if (!picker.is_null()) picker_ = std::make_shared<const std::string>(model::io::text_of(picker));
   tell();
 }
 
