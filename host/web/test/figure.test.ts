@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { distance_to_line, eyes_of, grip_error_m, hides, joint, outline, turned } from "../src/operator/figure";
+import { across, distance_to_line, eyes_of, grip_error_m, hides, joint, outline, turned } from "../src/operator/figure";
 import { follow_share } from "../src/scene/eyes";
 import type { FigureFrame, Skeleton } from "../src/link/protocol";
 
@@ -14,6 +14,15 @@ const near = (a: number, b: number): void => assert.ok(Math.abs(a - b) < 1e-9, `
 
 test("joints are three numbers each", () => {
   assert.deepEqual(joint(kFrame, 1), [0.4, -0.1, 0.5]);
+});
+
+test("a capsule along the body's side has a way across it, whatever rounding leaves", () => {
+  for (const along of [[1e-9, -1, 0], [0, 1, 1e-17], [1e-17, -1 + 1e-16, 1e-17]] as const) {
+    const x = across([...along], [1e-12, 1, 1e-17]);
+    near(Math.hypot(...x), 1);
+    assert.ok(Math.abs(x[0] * along[0] + x[1] * along[1] + x[2] * along[2]) < 1e-6, String(x));
+  }
+  assert.deepEqual(across([0, 0, 1], [0, 0.8, 0.6]), [0, 1, 0]);
 });
 
 test("a capsule's outline goes from tip to tip and keeps both radii", () => {

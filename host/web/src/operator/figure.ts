@@ -31,6 +31,19 @@ export function outline(length_m: number, radius_a_m: number, radius_b_m: number
   return points;
 }
 
+/** A unit vector across the unit vector `along`, as near to `side` as can be; upward if they are parallel. */
+export function across(along: Vec, side: Vec): Vec {
+  const part = (v: Vec): Vec => {
+    const share = v[0] * along[0] + v[1] * along[1] + v[2] * along[2];
+    return [v[0] - share * along[0], v[1] - share * along[1], v[2] - share * along[2]];
+  };
+  let x = part(side);
+  // What is left of a parallel one is rounding, of any direction.
+  if (Math.hypot(...x) < 1e-3) x = part([0, 0, 1]);
+  const length = Math.hypot(...x);
+  return [x[0] / length, x[1] / length, x[2] / length];
+}
+
 /** Distance from a point to the line between two others. */
 export function distance_to_line(p: Vec, a: Vec, b: Vec): number {
   const ab = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];

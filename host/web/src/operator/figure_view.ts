@@ -2,7 +2,7 @@
 // figure_view.ts - the operator: light, plain capsules; the arm that holds the tool in the accent.
 
 import * as THREE from "three";
-import { hides, joint, outline } from "./figure";
+import { across, hides, joint, outline } from "./figure";
 import { kAccent, kFigure, look_material, paint } from "../scene/look";
 import type { Capsule, FigureFrame, Skeleton, Vec } from "../link/protocol";
 
@@ -25,8 +25,7 @@ class Part {
     // Bones keep their length; only what spans two of them is made anew.
     if (Math.abs(length_m - this.length_m) > 0.002) this.shape(length_m);
     along.normalize();
-    const x = side.clone().addScaledVector(along, -side.dot(along)).normalize();
-    if (x.lengthSq() < 0.5) x.set(0, 0, 1).addScaledVector(along, -along.z).normalize();
+    const x = new THREE.Vector3(...across(along.toArray(), side.toArray()));
     const z = x.clone().cross(along).multiplyScalar(this.capsule.depth_ratio);
     this.mesh.matrix.makeBasis(x, along, z).setPosition(a);
   }
