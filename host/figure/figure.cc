@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "host/figure/figure_words.h"
-#include "host/figure/leg_ik.h"
+#include "host/figure/limb.h"
 
 namespace tact::host::figure {
 namespace {
@@ -17,6 +17,8 @@ using Eigen::Vector3d;
 constexpr double kLongestStep_s = 0.1;  // what came before is old; a fade goes on from there
 constexpr double kWaitForShoulder_s = 1.0;
 
+constexpr double kElbowHint = 0.35;  // by eye: the left elbow's is then down and outward
+
 /// The part of a rotation that is at most `most_rad`.
 Quaterniond at_most(const Quaterniond& q, double most_rad) {
   const double angle_rad = q.angularDistance(Quaterniond::Identity());
@@ -25,13 +27,6 @@ Quaterniond at_most(const Quaterniond& q, double most_rad) {
 
 Quaterniond part_of(const Quaterniond& q, double share) {
   return Quaterniond::Identity().slerp(share, q);
-}
-
-/// The part of `v` across the unit vector `along`, of length 1; `otherwise` if there is none.
-Vector3d across(const Vector3d& v, const Vector3d& along, const Vector3d& otherwise) {
-  const Vector3d part = v - v.dot(along) * along;
-  if (part.norm() > 1e-6) return part.normalized();
-  return (otherwise - otherwise.dot(along) * along).normalized();
 }
 
 Pose placed(const Pose& pose, const Vector3d& by_m) {
@@ -76,7 +71,7 @@ const FigurePose& Figure::update(double time_s, const Pose& tool, const TrackedO
   pose_trunk(bodies);
   pose_arm(tool_, bodies);
   pose_head();
-  pose_left_arm();
+  pose_left_arm(bodies);
   place_leg(false, bodies);
   place_leg(true, bodies);
   tell(bodies, pose_);
@@ -144,6 +139,7 @@ void Figure::pose_trunk(const TrackedOperator& bodies) {
 }
 
 void Figure::pose_arm(const Pose& tool, const TrackedOperator& bodies) {
+  using enum FigureJoint;
   const Vector3d grip_m = pose::to_world(tool, settings_.grip_m);
   // Hand and wrist are bound to the hand as the tool turns it.
   const Pose held{.rotation = tool.rotation * holding_hand(), .position_m = grip_m};
@@ -151,11 +147,16 @@ void Figure::pose_arm(const Pose& tool, const TrackedOperator& bodies) {
   const Pose hand = follow(BodyRole::kHand, bodies, held);
   // A tracker on the hand knows its turn better than one on the wrist.
   const Quaterniond turn = wrist.rotation.slerp(share(BodyRole::kHand), hand.rotation);
+  // Bound to where the arm had it in the frame before; from a lost one the arm goes back to rest.
+  const Pose elbow = follow(BodyRole::kElbow, bodies, {.position_m = pose_[kRightElbow]});
   const Quaterniond to_pelvis = pelvis_.rotation.conjugate();
-  pose_.arm = arm_.hold({.grip_m = to_pelvis * (grip_m - pelvis_.position_m),
-                         .hand = (to_pelvis * turn).normalized()});
+  const auto in_pelvis = [&](const Vector3d& p_m) -> Vector3d {
+    return to_pelvis * (p_m - pelvis_.position_m);
+  };
+  ArmGoal goal{.grip_m = in_pelvis(grip_m), .hand = (to_pelvis * turn).normalized()};
+  if (share(BodyRole::kElbow) > 0.0) goal.elbow_m = in_pelvis(elbow.position_m);
+  pose_.arm = arm_.hold(goal);
   pose_.grip_m = grip_m;
-  using enum FigureJoint;
   constexpr std::array kPoints{kPelvis,     kBack,       kChest,         kRightShoulder,
                                kRightElbow, kRightWrist, kRightKnuckles, kRightFingers};
   for (std::size_t i = 0; i < kPoints.size(); ++i)
@@ -179,18 +180,31 @@ void Figure::pose_head() {
       pose_[FigureJoint::kHead] + pose_.head * (plan_.head_m * Vector3d::UnitZ());
 }
 
-/// It rests on the bench's edge and moves with the trunk.
-void Figure::pose_left_arm() {
+/// Untracked it rests on the bench's edge and moves with the trunk.
+void Figure::pose_left_arm(const TrackedOperator& bodies) {
   using enum FigureJoint;
   const Quaterniond thorax = pelvis_.rotation * arm_.axes(kThoraxBone);
-  const auto next = [&](FigureJoint from, FigureJoint to, double length_m, const Vector3d& along) {
-    pose_[to] = pose_[from] + thorax * (length_m * along.normalized());
+  const Vector3d shoulder_m = pose_[kChest] - thorax * (plan_.clavicle_m * Vector3d::UnitY());
+  // At rest, in the thorax's axes, by eye.
+  const auto bone = [](double length_m, const Vector3d& along) -> Vector3d {
+    return length_m * along.normalized();
   };
-  next(kChest, kLeftShoulder, plan_.clavicle_m, {0.0, -1.0, 0.0});
-  next(kLeftShoulder, kLeftElbow, plan_.upper_arm_m, {-0.22, -0.18, -0.95});
-  next(kLeftElbow, kLeftWrist, plan_.forearm_m, {-0.93, 0.28, -0.12});
-  next(kLeftWrist, kLeftKnuckles, plan_.palm_m, {-0.88, 0.30, -0.35});
-  next(kLeftKnuckles, kLeftFingers, plan_.fingers_m, {-0.75, 0.30, -0.55});
+  const Vector3d elbow_m = bone(plan_.upper_arm_m, {-0.22, -0.18, -0.95}),
+                 wrist_m = elbow_m + bone(plan_.forearm_m, {-0.93, 0.28, -0.12}),
+                 palm_m = bone(plan_.palm_m, {-0.88, 0.30, -0.35}),
+                 fingers_m = bone(plan_.fingers_m, {-0.75, 0.30, -0.55});
+  const Pose hand = follow(BodyRole::kLeftHand, bodies,
+                           {.rotation = thorax, .position_m = shoulder_m + thorax * wrist_m});
+  // Down and outward, and in the plane of the arm at rest: so binding the hand moves no elbow.
+  const Vector3d hint = elbow_m - kElbowHint * wrist_m;
+  const Limb arm = pose_limb({.upper_m = plan_.upper_arm_m, .lower_m = plan_.forearm_m}, shoulder_m,
+                             hand.position_m, thorax * hint, thorax * Vector3d::UnitX());
+  pose_.left_hand_reached = share(BodyRole::kLeftHand) == 0.0 || arm.missed_m <= kLimbTolerance_m;
+  pose_[kLeftShoulder] = shoulder_m;
+  pose_[kLeftElbow] = arm.middle_m;
+  pose_[kLeftWrist] = arm.end_m;
+  pose_[kLeftKnuckles] = arm.end_m + hand.rotation * palm_m;
+  pose_[kLeftFingers] = pose_[kLeftKnuckles] + hand.rotation * fingers_m;
 }
 
 void Figure::place_leg(bool right, const TrackedOperator& bodies) {
@@ -205,26 +219,15 @@ void Figure::place_leg(bool right, const TrackedOperator& bodies) {
   const Vector3d knee_hint_m = 0.5 * (hip_m + foot.position_m) + 0.1 * forward;
   const Pose shin =
       follow(right ? BodyRole::kRightLeg : BodyRole::kLeftLeg, bodies, {.position_m = knee_hint_m});
-  // CC-10 in the plane of hip, ankle and hint: x along hip - ankle, y towards the hint.
-  const Vector3d leg_m = foot.position_m - hip_m;
-  const double distance_m = leg_m.norm();
-  // A foot at the hip gives no direction: down then.
-  const Vector3d x = distance_m > 1e-6 ? Vector3d(leg_m / distance_m) : -Vector3d::UnitZ();
-  const Vector3d y = across(shin.position_m - hip_m, x, forward);
-  const LegPose leg =
-      pose_leg({.thigh_m = plan_.thigh_m, .calf_m = plan_.calf_m}, {0.0, 0.0}, {distance_m, 0.0});
-  const double missed_m = std::abs(distance_m - leg.ankle_m.x());
+  const Limb leg = pose_limb({.upper_m = plan_.thigh_m, .lower_m = plan_.calf_m}, hip_m,
+                             foot.position_m, shin.position_m - hip_m, forward);
   // Untracked, the foot stands where the figure puts it: that is no trouble to tell.
-  pose_.leg_reached[right ? 1 : 0] = share(ankle) == 0.0 || missed_m <= kLegTolerance_m;
-  const auto in_plane = [&](const Eigen::Vector2d& p_m) -> Vector3d {
-    return hip_m + p_m.x() * x + p_m.y() * y;
-  };
+  pose_.leg_reached[right ? 1 : 0] = share(ankle) == 0.0 || leg.missed_m <= kLimbTolerance_m;
   pose_[pick(kRightHip, kLeftHip)] = hip_m;
-  pose_[pick(kRightKnee, kLeftKnee)] = in_plane(leg.knee_m);
-  pose_[pick(kRightAnkle, kLeftAnkle)] = in_plane(leg.ankle_m);
+  pose_[pick(kRightKnee, kLeftKnee)] = leg.middle_m;
+  pose_[pick(kRightAnkle, kLeftAnkle)] = leg.end_m;
   pose_[pick(kRightToes, kLeftToes)] =
-      in_plane(leg.ankle_m) +
-      foot.rotation * (plan_.foot_m * Vector3d(-0.95, 0.0, -0.31).normalized());
+      leg.end_m + foot.rotation * (plan_.foot_m * Vector3d(-0.95, 0.0, -0.31).normalized());
 }
 
 }  // namespace tact::host::figure

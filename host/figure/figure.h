@@ -5,6 +5,9 @@
 //     shoulder, head   the trunk leans so that the right shoulder, else the chest, comes there;
 //                      the neck does the rest, within a cone
 //     hand, wrist      how the right hand is turned; where it is, the tool alone says
+//     elbow            where the right elbow is about the line from shoulder to wrist
+//     left hand        wrist and turn of the left hand; the elbow bends down and outward
+//                                                         TR-6, CC-10
 //     leg, ankle       knee hint and foot, left and right  TR-6, CC-10
 //     tool             not asked: the device's own encoders know better
 //
@@ -49,8 +52,10 @@ struct FigurePose {
   Eigen::Quaterniond head = Eigen::Quaterniond::Identity();  // its -x is where the face looks
   Eigen::Vector3d grip_m = Eigen::Vector3d::Zero();          // where the finger tips shall be
   ArmWork arm;
-  std::array<bool, 2> leg_reached{true, true};  // left, right: within kLegTolerance_m, or untracked
-  bool shoulder_too_far = false;  // the tracked one does not say where the figure stands
+  std::array<bool, 2> leg_reached{true,
+                                  true};  // left, right: within kLimbTolerance_m, or untracked
+  bool left_hand_reached = true;          // likewise
+  bool shoulder_too_far = false;          // the tracked one does not say where the figure stands
   FigureTrouble trouble = FigureTrouble::kNone;  // the worst
   std::string words;                             // "head lost (silent)"; empty if there is none
 
@@ -63,7 +68,8 @@ struct FigurePose {
 };
 
 inline constexpr double kFarthestPlace_m = 0.5;
-inline constexpr double kLegTolerance_m = 0.01;  // a straight leg and a little noise are no trouble
+inline constexpr double kLimbTolerance_m =
+    0.01;  // a straight limb and a little noise are no trouble
 inline constexpr double kNeckCone_rad = 0.8, kHeadTurn_rad = 1.4;
 inline constexpr double kRelax_s = 1.5;  // in which the arm goes two thirds of its way to rest
 
@@ -86,7 +92,7 @@ class Figure {
   void pose_trunk(const TrackedOperator& bodies);
   void pose_arm(const Pose& tool, const TrackedOperator& bodies);
   void pose_head();
-  void pose_left_arm();
+  void pose_left_arm(const TrackedOperator& bodies);
   void place_leg(bool right, const TrackedOperator& bodies);
 
   FigureSettings settings_;

@@ -65,6 +65,8 @@ void tell(const TrackedOperator& bodies, FigurePose& pose) {
     say(FigureTrouble::kOutOfReach,
         std::string("the leg cannot reach the ") + (right ? "right" : "left") + " ankle");
   }
+  if (!pose.left_hand_reached)
+    say(FigureTrouble::kOutOfReach, "the arm cannot reach the left hand");
 }
 
 }  // namespace tact::host::figure

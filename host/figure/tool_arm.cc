@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace tact::host::figure {
 namespace {
@@ -12,11 +13,26 @@ using Eigen::Vector3d;
 
 // Chosen below kGripTolerance_m: what the wrist misses, step 4 need not make good.
 constexpr double kWristTolerance_m = 0.3e-3;
+constexpr double kNoSide_m = 1e-3;  // an elbow nearer to the line from shoulder to wrist has none
 
 Chain first_bones(const Chain& chain, std::size_t n) {
   Chain out{.base_m = chain.base_m, .bones = {}};
   out.bones.assign(chain.bones.begin(), chain.bones.begin() + static_cast<std::ptrdiff_t>(n));
   return out;
+}
+
+/// The part of a turn about the unit vector `axis` that keeps `bone` within `cone_rad` of `rest`.
+double turn_within(double turn_rad, const Vector3d& axis, const Vector3d& bone,
+                   const Vector3d& rest, double cone_rad) {
+  const Vector3d b = bone.normalized(), r = rest.normalized();
+  const Vector3d side = b - b.dot(axis) * axis;
+  // cos(angle to rest) = level + swing cos(turn - best)
+  const double level = b.dot(axis) * r.dot(axis), x = side.dot(r), y = axis.cross(side).dot(r);
+  const double swing = std::hypot(x, y), best_rad = std::atan2(y, x);
+  const double half_rad =
+      std::acos(std::clamp((std::cos(cone_rad) - level) / std::max(swing, 1e-12), -1.0, 1.0));
+  return best_rad + std::clamp(std::remainder(turn_rad - best_rad, 2.0 * std::numbers::pi),
+                               -half_rad, half_rad);
 }
 
 /// The rotation that takes two directions across each other to two others.
@@ -104,6 +120,7 @@ ArmWork ToolArm::hold(const ArmGoal& goal) {
   // Classical CCD (kAlwaysFullChain) goes without, as it is there to be compared with.
   if (rule_ == RootRule::kSubRootFirst) work.updates += point_two_bones(wrist_m);
   take(run(to_wrist_, wrist_m, kWristTolerance_m, root_for(to_wrist_, wrist_m), work));
+  if (goal.elbow_m) work.updates += swivel(*goal.elbow_m);
   turn_hand(goal.hand);
   const ReachResult result = grip(goal.grip_m, work);
   take(result);
@@ -166,6 +183,30 @@ int ToolArm::point_two_bones(const Vector3d& wrist_m) {
   const auto turn = Quaterniond::FromTwoVectors(wrist, parent.conjugate() * to_target);
   shoulder.rotation = within_cone(upper, (turn * shoulder.rotation).normalized());
   return 2;
+}
+
+int ToolArm::swivel(const Vector3d& elbow_m) {
+  if (!elbow_m.allFinite()) return 0;
+  const std::vector<Vector3d> at_m = joint_points_m(to_wrist_, std::span(joints_).first(kHandBone));
+  const Vector3d line_m = at_m[kHandBone] - at_m[kShoulderBone];
+  if (line_m.norm() < kNoSide_m) return 0;
+  const Vector3d axis = line_m.normalized();
+  const auto beside = [&](const Vector3d& p_m) -> Vector3d {
+    const Vector3d from_m = p_m - at_m[kShoulderBone];
+    return from_m - from_m.dot(axis) * axis;
+  };
+  const Vector3d now = beside(at_m[kElbowBone]), wanted = beside(elbow_m);
+  // A straight arm, or a tracker on the line, has no side.
+  if (now.norm() < kNoSide_m || wanted.norm() < kNoSide_m) return 0;
+  double turn_rad = std::atan2(axis.dot(now.cross(wanted)), now.dot(wanted));
+  const Quaterniond parent = axes(kShoulderBone - 1);
+  const Bone& upper = chain_.bones[kShoulderBone];
+  turn_rad = turn_within(turn_rad, axis, at_m[kElbowBone] - at_m[kShoulderBone],
+                         parent * upper.rest, upper.cone_rad);
+  JointState& shoulder = joints_[kShoulderBone];
+  const Quaterniond turn(Eigen::AngleAxisd(turn_rad, parent.conjugate() * axis));
+  shoulder.rotation = within_cone(upper, (turn * shoulder.rotation).normalized());
+  return 1;
 }
 
 void ToolArm::take(const ReachResult& result) {

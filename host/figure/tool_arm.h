@@ -5,6 +5,8 @@
 //     -  the trunk leans to where the trackers have it; what the arm bent it beyond that is kept
 //        apart as `bent` and fades
 //     2  the wrist goes to where the hand would hold the grip as it is wanted to
+//     -  where the elbow is told, the upper arm turns about the line from shoulder to wrist, as far
+//        as its cone lets it: the wrist stays
 //     3  the wrist takes the wanted turn, as far as its cone lets it; the fingers curl
 //     4  CCD brings the finger tips to the grip, if a limit kept the hand from its turn
 //
@@ -24,15 +26,18 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <optional>
 
 #include "host/figure/body_plan.h"
 
 namespace tact::host::figure {
 
-/// What the hand holds: the finger tips go to `grip_m`; `hand` turns the palm's rest axes.
+/// What the hand holds: the finger tips go to `grip_m`; `hand` turns the palm's rest axes. Of
+/// `elbow_m` counts to which side of the line from shoulder to wrist it is.
 struct ArmGoal {
   Eigen::Vector3d grip_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond hand = Eigen::Quaterniond::Identity();
+  std::optional<Eigen::Vector3d> elbow_m{};
 };
 
 /// kAlwaysFullChain is classical CCD, to compare with.
@@ -85,6 +90,8 @@ class ToolArm {
   void take(const ReachResult& result);
   /// Elbow to the distance, shoulder to the direction; how many joints it turned.
   int point_two_bones(const Eigen::Vector3d& wrist_m);
+  /// Elbow towards the side where `elbow_m` is; how many joints it turned.
+  int swivel(const Eigen::Vector3d& elbow_m);
   void bend_trunk();
   void note_bend();
   void turn_hand(const Eigen::Quaterniond& hand);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // operator_record.h - the tracked operator in a recording: one record of fixed size behind each
-// frame of a recording of version 8 (firmware/telemetry/recording_format.h).
+// frame of a recording of version 9 (firmware/telemetry/recording_format.h). Version 8 has the
+// first ten bodies alone.
 //
 // Of each body the raw pose, as solved, and the one that was shown, both in the device's frame W.
 // Behind them the figure as it was shown: where it stood and how it was bound began before the
@@ -10,6 +11,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <type_traits>
 
@@ -28,7 +30,12 @@ struct BodyRecord {
   std::uint8_t pad[2] = {};
 };
 
-enum FigureFlag : std::uint8_t { kLeftLegReached = 1, kRightLegReached = 2, kShoulderTooFar = 4 };
+enum FigureFlag : std::uint8_t {
+  kLeftLegReached = 1,
+  kRightLegReached = 2,
+  kShoulderTooFar = 4,
+  kLeftHandMissed = 8,  // not "reached": version 8 has 0 here
+};
 
 /// FigurePose; its trouble and its words follow from it and the bodies.
 struct FigureRecord {
@@ -58,9 +65,17 @@ static_assert(sizeof(FigureRecord) % 8 == 0);
 static_assert(sizeof(OperatorRecord) ==
               16 + tracking::kBodyRoles * sizeof(BodyRecord) + sizeof(FigureRecord));
 
+inline constexpr std::size_t kRolesOfVersion8 = 10;
+/// Bytes behind each frame of version 8.
+inline constexpr std::size_t kOperatorBytesOfVersion8 =
+    sizeof(OperatorRecord) - (tracking::kBodyRoles - kRolesOfVersion8) * sizeof(BodyRecord);
+static_assert(kOperatorBytesOfVersion8 == 1304 && sizeof(OperatorRecord) == 1496);
+
 /// The bytes behind one frame; `figure` may be null.
 std::string operator_record(const tracking::TrackedOperator& tracked,
                             const figure::FigurePose* figure = nullptr);
+/// The record of version 8 with bodies that are absent behind its own. Damage stays damage.
+OperatorRecord from_version_8(std::span<const std::byte, kOperatorBytesOfVersion8> old);
 /// Nothing if the checksum differs or a number makes no sense.
 std::optional<tracking::TrackedOperator> operator_of(const OperatorRecord& record);
 /// The figure that was shown with these bodies, to a millionth; nothing if none was, or a number is

@@ -23,7 +23,7 @@ using model::Result;
 struct Setup {
   Hello hello;
   MeshBytes mesh;
-  bool is_tracked = false;
+  std::size_t operator_bytes = 0;  // behind each frame
 };
 
 using model::io::SealedFile;
@@ -77,6 +77,28 @@ Error damaged(const Error& error) {
   return Error{error.sentence + "; nothing of it can be shown, record again"};
 }
 
+/// How many bytes of an operator are behind each frame; nothing: a version that is not read here.
+std::optional<std::size_t> operator_bytes_of(std::uint32_t version) {
+  switch (version) {
+    case kRecordingVersion:
+      return 0;
+    case kTenBodiesRecordingVersion:
+      return kOperatorBytesOfVersion8;
+    case kTrackedRecordingVersion:
+      return sizeof(OperatorRecord);
+    default:
+      return std::nullopt;
+  }
+}
+
+bool read_operator(SealedFile& in, std::size_t bytes, OperatorRecord& out) {
+  if (bytes == sizeof out) return read(in, out);
+  std::array<std::byte, kOperatorBytesOfVersion8> old;
+  if (!read(in, old)) return false;
+  out = from_version_8(old);
+  return true;
+}
+
 /// Error: why it cannot be used.
 Result<Setup> read_setup(SealedFile& in, const Magic& magic) {
   Setup setup;
@@ -89,13 +111,14 @@ Result<Setup> read_setup(SealedFile& in, const Magic& magic) {
         "this is not a tact recording; give a file made with --record or the page's record "
         "button"};
   }
-  setup.is_tracked = header.version == kTrackedRecordingVersion;
-  if (header.version != kRecordingVersion && !setup.is_tracked) {
+  const auto operator_bytes = operator_bytes_of(header.version);
+  if (!operator_bytes) {
     return Error{
-        fmt::format("recording version {} cannot be read by this tact-view (version {} or {}); "
+        fmt::format("recording version {} cannot be read by this tact-view (version {} to {}); "
                     "record it again, or open it with the tact-view that made it",
                     header.version, kRecordingVersion, kTrackedRecordingVersion)};
   }
+  setup.operator_bytes = *operator_bytes;
   if (header.hello_bytes != sizeof(Hello) || header.frame_bytes != sizeof(Frame)) {
     return Error{fmt::format(
         "its frames have {} bytes, those of this tact-view {}, though both say version {}; open it "
@@ -132,10 +155,10 @@ bool add_operator(const OperatorRecord& tracked, Recording& recording) {
 }
 
 /// All that is good from byte `start` on. Empty, or what is damaged, "; " at its end.
-std::string read_frames(SealedFile& in, std::uint64_t start, bool is_tracked,
+std::string read_frames(SealedFile& in, std::uint64_t start, std::size_t operator_bytes,
                         Recording& recording) {
   const std::uint64_t file_bytes = in.size_bytes();
-  const std::uint64_t stride = sizeof(FrameRecord) + (is_tracked ? sizeof(OperatorRecord) : 0);
+  const std::uint64_t stride = sizeof(FrameRecord) + operator_bytes;
   const std::uint64_t records = (file_bytes - start) / stride;
   const std::uint64_t left_bytes = (file_bytes - start) % stride;
   recording.frames.reserve(records);
@@ -143,14 +166,14 @@ std::string read_frames(SealedFile& in, std::uint64_t start, bool is_tracked,
   FrameRecord record;
   OperatorRecord tracked;
   for (std::uint64_t i = 0; i < records && read(in, record); ++i) {
-    if (is_tracked && !read(in, tracked)) break;
+    if (operator_bytes > 0 && !read_operator(in, operator_bytes, tracked)) break;
     // Frames have one size, so the next begins where it should, whatever this one holds.
     if (crc_of(record.frame) != record.crc || check_frame(record.frame, recording.hello)) {
       if (damaged++ == 0) first_damaged = start + i * stride;
       continue;
     }
     recording.frames.push_back(record.frame);
-    if (is_tracked && !add_operator(tracked, recording)) ++damaged_operators;
+    if (operator_bytes > 0 && !add_operator(tracked, recording)) ++damaged_operators;
   }
   std::string damage;
   if (damaged > 0) {
@@ -196,7 +219,7 @@ ReadResult read_recording(const std::string& path) {
   recording.hello = setup->hello;
   recording.mesh = std::move(setup->mesh);
   const std::uint64_t start = *skipped + sizeof(FileHeader) + sizeof(Hello) + recording.mesh.size();
-  result.damage = read_frames(*in, start, setup->is_tracked, recording);
+  result.damage = read_frames(*in, start, setup->operator_bytes, recording);
   result.usable = !recording.frames.empty();
   if (!result.damage.empty() || !result.usable) {
     result.damage += fmt::format("{} good frames ({:.1f} s) are kept", recording.frames.size(),

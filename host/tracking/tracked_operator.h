@@ -30,8 +30,10 @@ enum class BodyRole : std::uint8_t {
   kLeftAnkle,
   kRightAnkle,
   kTool,
+  kLeftHand,
+  kElbow,  // of the right arm, which holds the tool
 };
-inline constexpr std::size_t kBodyRoles = 10;
+inline constexpr std::size_t kBodyRoles = 12;
 
 enum class BodyState : std::uint8_t { kAbsent, kTracked, kHeld, kLost };
 

@@ -31,8 +31,8 @@ constexpr const char* kBase = "base";
 constexpr const char* kSuffix = ".tracking.toml";
 
 constexpr std::array<const char*, kBodyRoles> kRoleNames = {
-    "head",     "shoulder",  "waist",      "wrist",       "hand",
-    "left_leg", "right_leg", "left_ankle", "right_ankle", "tool"};
+    "head",      "shoulder",   "waist",       "wrist", "hand",      "left_leg",
+    "right_leg", "left_ankle", "right_ankle", "tool",  "left_hand", "elbow"};
 
 void read_name(TrackingKeys& k, std::string& out) {
   out = k.text("name");

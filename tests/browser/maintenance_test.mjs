@@ -6,12 +6,12 @@
 //
 // CHROMIUM names another browser. Picture: BUILD_DIR/page-maintenance.png. Prints "N passed, M
 // failed"; exit status 0 or 1.
-import { createSocket } from "node:dgram";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import {
   build, check, distance, folder, play, root, sharp, size, start, start_browser, start_tactd, start_view, stop, waits,
 } from "./stage.mjs";
+import { free_udp_port } from "./marker_body.mjs";
 
 const scenes = join(root, "model/scenes");
 const description = join(scenes, "maintenance.tracking.toml");
@@ -151,14 +151,6 @@ async function follow_the_recording(browser) {
   await page.keyboard.press("f");
   check("hides the operator", await waits(page, () => !window.tact.figure_on));
   await stop_all(all);
-}
-
-async function free_udp_port() {
-  const socket = createSocket("udp4");
-  await new Promise((done) => socket.bind(0, "127.0.0.1", done));
-  const { port } = socket.address();
-  await new Promise((done) => socket.close(done));
-  return port;
 }
 
 /** The looks of the recording before a time, s. */

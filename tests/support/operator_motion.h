@@ -38,10 +38,13 @@ inline host::tracking::TrackedOperator bodies_at(double t_s) {
   out[BodyRole::kRightLeg] = sways({0.35, 0.05, -0.55}, 0.02, t_s);
   out[BodyRole::kLeftAnkle] = sways({0.42, -0.20, -0.98}, 0.02, t_s);
   out[BodyRole::kRightAnkle] = sways({0.42, 0.05, -0.98}, 0.01, t_s);
+  out[BodyRole::kLeftHand] = sways({0.10, -0.30, 0.02}, 0.05, t_s);
+  out[BodyRole::kElbow] = sways({0.42, 0.28, 0.06}, 0.03, t_s);
   return out;
 }
 
-/// The same with trouble: head silent, shoulder frozen, waist jumps for good, hand comes and goes.
+/// The same with trouble: head silent, shoulder frozen, waist jumps for good, hands come and go,
+/// and the elbow is lost.
 inline host::tracking::TrackedOperator troubled_bodies_at(double t_s) {
   using host::tracking::BodyRole;
   using host::tracking::BodyState;
@@ -57,8 +60,10 @@ inline host::tracking::TrackedOperator troubled_bodies_at(double t_s) {
   lose(BodyRole::kHead, 5.0, 9.0, host::tracking::TrackingTrouble::kSilent);
   lose(BodyRole::kShoulder, 12.0, 15.0, host::tracking::TrackingTrouble::kFrozen);
   if (t_s > 17.0) out[BodyRole::kWaist].pose.position_m += Eigen::Vector3d(0.06, -0.10, 0.0);
+  lose(BodyRole::kElbow, 10.0, 16.0, host::tracking::TrackingTrouble::kNoPose);
   for (double at_s = 18.0; at_s < 24.0; at_s += 0.9) {
     lose(BodyRole::kHand, at_s, at_s + 0.7, host::tracking::TrackingTrouble::kTooFewPoints);
+    lose(BodyRole::kLeftHand, at_s, at_s + 0.6, host::tracking::TrackingTrouble::kSilent);
     lose(BodyRole::kLeftAnkle, at_s, at_s + 0.3, host::tracking::TrackingTrouble::kOutOfOrder);
   }
   return out;

@@ -16,6 +16,8 @@ using enum FigureJoint;
 constexpr std::array kLeftLeg{kLeftHip, kLeftKnee, kLeftAnkle, kLeftToes};
 constexpr std::array kRightLeg{kRightHip, kRightKnee, kRightAnkle, kRightToes};
 constexpr std::array kLeftArm{kLeftShoulder, kLeftElbow, kLeftWrist, kLeftKnuckles, kLeftFingers};
+constexpr std::array kRightArm{kRightShoulder, kRightElbow, kRightWrist, kRightKnuckles,
+                               kRightFingers};
 
 /// The figure whose body stays, the one whose body moved, and the motion of the body in W.
 struct Compared {
@@ -119,6 +121,91 @@ TEST_P(Binding, AKneeGoesToTheSideWhereItsLegIsAndNothingElseMoves) {
 
 INSTANTIATE_TEST_SUITE_P(Sides, Binding,
                          testing::Combine(testing::Bool(), testing::Values(1, 2, 3)));
+
+TEST(LeftHand, WristAndHandGoWithItsTrackerAndNothingElseMoves) {
+  for (const double turn_rad : {0.0, 0.4}) {
+    const Compared figures = compare(BodyRole::kLeftHand, {0.10, -0.35, 0.05}, {-0.04, -0.08, 0.12},
+                                     turn_rad, {1, 2, 3});
+    expect_followed(figures, std::array{kLeftWrist, kLeftKnuckles, kLeftFingers});
+    expect_stayed(figures, kRightArm);
+    expect_stayed(figures, kLeftLeg);
+    expect_stayed(figures, std::array{kLeftShoulder, kHead, kPelvis});
+  }
+}
+
+TEST(LeftHand, IsBoundWhereItRestsAndTheElbowStaysThere) {
+  Figure untracked;
+  const Compared figures =
+      compare(BodyRole::kLeftHand, {0.10, -0.35, 0.05}, Vector3d::Zero(), 0.0, {1, 0, 0});
+  for (const FigureJoint joint : kLeftArm)
+    EXPECT_LT((figures.stays[joint] - untracked.pose()[joint]).norm(), 1e-9);
+}
+
+TEST(LeftHand, TheElbowIsBelowTheArmOrBesideItAndNeverInside) {
+  for (const Vector3d& by_m : {Vector3d(0.0, 0.0, 0.35), Vector3d(0.15, 0.30, 0.25),
+                               Vector3d(0.20, -0.15, 0.0), Vector3d(0.25, -0.1, -0.15)}) {
+    const Compared figures = compare(BodyRole::kLeftHand, {0.10, -0.30, 0.0}, by_m, 0.0, {1, 0, 0});
+    const Vector3d shoulder_m = figures.moved[kLeftShoulder], wrist_m = figures.moved[kLeftWrist];
+    const Vector3d along = (wrist_m - shoulder_m).normalized();
+    const Vector3d elbow_m = figures.moved[kLeftElbow] - shoulder_m;
+    const Vector3d beside_m = elbow_m - elbow_m.dot(along) * along;
+    EXPECT_GT(beside_m.norm(), 0.05) << "the arm is bent";
+    EXPECT_TRUE(beside_m.z() < -0.02 || beside_m.y() < -0.02) << beside_m.transpose();
+    EXPECT_LT(beside_m.y(), 0.01);
+  }
+}
+
+TEST(LeftHand, GoesBackToRestWhenItIsLost) {
+  Figure figure;
+  const FigurePose rest = figure.pose();
+  TrackedOperator bodies;
+  TrackedBody& hand = bodies[BodyRole::kLeftHand];
+  double t_s = 0.0;
+  const auto run_s = [&](double duration_s, BodyState state, double z_m) {
+    hand.state = state;
+    hand.pose.position_m = {0.1, -0.3, z_m};
+    for (const double end_s = t_s + duration_s; t_s < end_s; t_s += test::kMotionFrame_s)
+      figure.update(t_s, test::tool_at(0.0), bodies);
+    return (figure.pose()[kLeftWrist] - rest[kLeftWrist]).norm();
+  };
+  run_s(2.0, BodyState::kTracked, 0.0);
+  EXPECT_NEAR(run_s(2.0, BodyState::kTracked, 0.1), 0.1, 1e-9);
+  EXPECT_NEAR(run_s(0.4, BodyState::kHeld, 5.0), 0.1, 1e-9);
+  EXPECT_EQ(figure.pose().words, "left hand held (no pose)");
+  EXPECT_LT(run_s(1.2, BodyState::kLost, 5.0), 1e-9);
+}
+
+class ElbowBinding : public testing::Test {
+ protected:
+  static Compared compared(const Vector3d& by_m) {
+    return compare(BodyRole::kElbow, {0.45, 0.30, 0.05}, by_m, 0.3, {0, 0, 1});
+  }
+  /// Angle about the line from shoulder to wrist, from one figure's elbow to the other's, rad.
+  static double swivel_rad(const FigurePose& from, const Vector3d& to_m) {
+    const Vector3d axis = (from[kRightWrist] - from[kRightShoulder]).normalized();
+    const auto beside = [&](const Vector3d& p_m) -> Vector3d {
+      const Vector3d from_m = p_m - from[kRightShoulder];
+      return from_m - from_m.dot(axis) * axis;
+    };
+    const Vector3d a = beside(from[kRightElbow]), b = beside(to_m);
+    return std::atan2(axis.dot(a.cross(b)), a.dot(b));
+  }
+};
+
+TEST_F(ElbowBinding, TheElbowGoesToTheSideWhereItsTrackerIsAndTheHandStays) {
+  for (const Vector3d& by_m : {Vector3d(0.0, 0.06, 0.05), Vector3d(0.0, -0.02, 0.0)}) {
+    const Compared figures = compared(by_m);
+    // What is bound is the elbow of the frame before.
+    const Vector3d wanted_m = figures.motion * Figure().pose()[kRightElbow];
+    const double wanted_rad = swivel_rad(figures.stays, wanted_m);
+    EXPECT_GT(std::abs(wanted_rad), 0.05) << "nothing was asked of it";
+    EXPECT_NEAR(swivel_rad(figures.stays, figures.moved[kRightElbow]), wanted_rad, 1e-6);
+    expect_stayed(figures, std::array{kChest, kRightShoulder});
+    for (const FigureJoint joint : {kRightWrist, kRightKnuckles, kRightFingers})
+      EXPECT_LT((figures.moved[joint] - figures.stays[joint]).norm(), 1e-6);
+    expect_stayed(figures, kLeftArm);
+  }
+}
 
 class HandBinding : public testing::TestWithParam<BodyRole> {};
 

@@ -42,8 +42,26 @@ TEST(FigureWords, OfALegAreNotSaidWithoutATrackerAtItsAnkle) {
     figure.update(i * test::kMotionFrame_s, test::tool_at(0.0), bodies);
   }
   const Vector3d standing_m = standing_ankle_m(figure.plan(), true);
-  EXPECT_GT((figure.pose()[FigureJoint::kRightAnkle] - standing_m).norm(), kLegTolerance_m);
+  EXPECT_GT((figure.pose()[FigureJoint::kRightAnkle] - standing_m).norm(), kLimbTolerance_m);
   EXPECT_EQ(figure.pose().words, "");
+}
+
+TEST(FigureWords, SayThatTheArmCannotReachTheLeftHand) {
+  const auto after = [](double by_x_m) {
+    Figure figure;
+    TrackedOperator bodies;
+    bodies[BodyRole::kLeftHand].state = BodyState::kTracked;
+    for (int i = 0; i < 120; ++i) {
+      bodies[BodyRole::kLeftHand].pose.position_m = {i < 60 ? 0.1 : 0.1 + by_x_m, -0.3, 0.0};
+      figure.update(i * test::kMotionFrame_s, test::tool_at(0.0), bodies);
+    }
+    return figure.pose();
+  };
+  const FigurePose far = after(-0.30);
+  EXPECT_EQ(far.words, "the arm cannot reach the left hand");
+  EXPECT_EQ(far.trouble, FigureTrouble::kOutOfReach);
+  EXPECT_FALSE(far.left_hand_reached);
+  EXPECT_EQ(after(-0.05).words, "") << "a bent elbow reaches";
 }
 
 TEST(FigureWords, TheWorstIsSaid) {

@@ -30,6 +30,8 @@ void PrintTo(const Case& of, std::ostream* out) { *out << of.name; }
 const std::vector<FigureJoint> kFeet{kLeftAnkle, kLeftToes, kRightAnkle, kRightToes};
 const std::vector<FigureJoint> kLeft{kLeftHip, kLeftKnee, kLeftAnkle, kLeftToes};
 const std::vector<FigureJoint> kRight{kRightHip, kRightKnee, kRightAnkle, kRightToes};
+const std::vector<FigureJoint> kLeftArm{kLeftShoulder, kLeftElbow, kLeftWrist, kLeftFingers};
+const std::vector<FigureJoint> kRightArm{kRightShoulder, kRightElbow, kRightWrist, kRightFingers};
 const std::vector<FigureJoint> kBelow{kPelvis, kLeftKnee, kRightKnee, kLeftAnkle, kRightAnkle};
 
 const std::vector<Case> kCases{
@@ -41,7 +43,9 @@ const std::vector<Case> kCases{
     {"left_leg", BodyRole::kLeftLeg, {0.35, -0.20, -0.55}, kLeftKnee, kRight},
     {"right_leg", BodyRole::kRightLeg, {0.35, 0.05, -0.55}, kRightKnee, kLeft},
     {"left_ankle", BodyRole::kLeftAnkle, {0.42, -0.20, -0.98}, kLeftAnkle, kRight},
-    {"right_ankle", BodyRole::kRightAnkle, {0.42, 0.05, -0.98}, kRightAnkle, kLeft}};
+    {"right_ankle", BodyRole::kRightAnkle, {0.42, 0.05, -0.98}, kRightAnkle, kLeft},
+    {"left_hand", BodyRole::kLeftHand, {0.10, -0.30, 0.05}, kLeftWrist, kRightArm},
+    {"elbow", BodyRole::kElbow, {0.42, 0.28, 0.06}, kRightElbow, kLeftArm}};
 
 /// The camera stands behind the device and looks at the operator.
 const std::string kRegistration =

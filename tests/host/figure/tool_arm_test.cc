@@ -131,12 +131,52 @@ TEST(ToolArm, KeepsLengthsLimitsAndItsWordWhateverTheGoalIs) {
   EXPECT_LT(reached, 2000) << "and some are not";
 }
 
+TEST(ToolArm, TurnsTheElbowToWhereItIsToldUnlessALimitIsInTheWay) {
+  int free = 0, by_cone = 0;
+  // High and near the cone of the upper arm leaves the elbow no room above.
+  for (const ArmGoal& same : {goal(-0.40, 0.09, 0.22), goal(-0.22, 0.12, 0.45)}) {
+    ToolArm settled(kPlan);
+    for (int i = 0; i < 100; ++i) settled.relax(0.05), settled.hold(same);
+    for (double told_rad = -3.0; told_rad <= 3.0; told_rad += 0.1) {
+      ToolArm arm = settled;
+      const auto before = arm.points_m();
+      const Vector3d shoulder_m = before[kShoulderBone],
+                     along = (before[kHandBone] - shoulder_m).normalized();
+      const auto beside = [&](const Vector3d& p_m) -> Vector3d {
+        return (p_m - shoulder_m) - (p_m - shoulder_m).dot(along) * along;
+      };
+      ArmGoal told = same;
+      told.elbow_m =
+          shoulder_m + Eigen::AngleAxisd(told_rad, along) * (1.3 * beside(before[kElbowBone]));
+      EXPECT_TRUE(arm.hold(told).reached);
+      const auto left_rad = [&](std::size_t i) {
+        const Bone& bone = arm.chain().bones[i];
+        return bone.cone_rad - swing_rad(bone, arm.joints()[i]);
+      };
+      EXPECT_GE(left_rad(kShoulderBone), -1e-9);
+      const Vector3d now = beside(arm.points_m()[kElbowBone]), wanted = beside(*told.elbow_m);
+      const double off_rad = std::atan2(now.cross(wanted).norm(), now.dot(wanted));
+      free += off_rad < 1e-6;
+      by_cone += off_rad > 0.3 && left_rad(kShoulderBone) < 1e-3;
+      // The wrist's limit is in the way of the hand; the elbow then gives a little.
+      if (off_rad > 1e-6) EXPECT_LT(std::min(left_rad(kShoulderBone), left_rad(kHandBone)), 0.05);
+    }
+  }
+  EXPECT_GT(free, 5);
+  EXPECT_GT(by_cone, 5);
+}
+
 TEST(ToolArm, ANumberThatIsNotFiniteChangesNothing) {
   ToolArm arm(kPlan);
   arm.hold(goal(-0.40, 0.09, 0.22));
   const auto before = arm.points_m();
   EXPECT_FALSE(arm.hold(goal(std::numeric_limits<double>::quiet_NaN(), 0.0, 0.2)).reached);
   EXPECT_EQ(arm.points_m(), before);
+  ArmGoal no_elbow = goal(-0.40, 0.09, 0.22);
+  no_elbow.elbow_m = Vector3d(0.0, std::numeric_limits<double>::infinity(), 0.0);
+  EXPECT_TRUE(arm.hold(no_elbow).reached);
+  for (std::size_t i = 0; i < before.size(); ++i)
+    EXPECT_LT((arm.points_m()[i] - before[i]).norm(), 1e-12) << "of an elbow that is none";
 }
 
 struct Counted {

@@ -16,6 +16,8 @@ TEST(IgtlBodies, ANameIsThatOfARoleAloneOrAsPlusWritesIt) {
     EXPECT_EQ(role_of(name), BodyRole::kLeftLeg) << name;
   EXPECT_EQ(role_of("ToolToDevice"), BodyRole::kTool);
   EXPECT_EQ(role_of("HEAD"), BodyRole::kHead);
+  EXPECT_EQ(role_of("LeftHandToDevice"), BodyRole::kLeftHand);
+  EXPECT_EQ(role_of("Elbow"), BodyRole::kElbow);
   for (const char* name : {"", "To", "ToHead", "Probe", "ProbeToHead", "headtodevice", "Headed"})
     EXPECT_FALSE(role_of(name)) << name;
 }

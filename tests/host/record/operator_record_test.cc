@@ -53,6 +53,7 @@ figure::FigurePose figure_at(std::size_t i) {
              .updates = 44};
   out.leg_reached = {true, false};
   out.shoulder_too_far = true;
+  out.left_hand_reached = false;
   return out;
 }
 
@@ -130,6 +131,7 @@ TEST_F(TrackedFile, GivesTheFigureBackAsItWasShown) {
   EXPECT_EQ(got.arm.updates, truth.arm.updates);
   EXPECT_EQ(got.leg_reached, truth.leg_reached);
   EXPECT_EQ(got.shoulder_too_far, truth.shoulder_too_far);
+  EXPECT_EQ(got.left_hand_reached, truth.left_hand_reached);
   EXPECT_EQ(got.words, "the arm cannot reach the tool");
   EXPECT_EQ(recording.figure_at(3), nullptr) << "none was shown there";
 }

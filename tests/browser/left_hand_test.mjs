@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// A tracker at the left hand alone, in Chromium: does the drawn hand follow it, and rest without it?
+//
+//     node tests/browser/left_hand_test.mjs BUILD_DIR   (tactd, tact-view, page/)
+//
+// CHROMIUM names another browser. Picture: BUILD_DIR/page_left_hand.png. Prints "N passed, M failed";
+// exit status 0 or 1.
+import { writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { MarkerBody, description, free_udp_port } from "./marker_body.mjs";
+import {
+  build, check, distance, folder, play, sharp, size, start_browser, start_tactd, start_view, stop, waits,
+} from "./stage.mjs";
+
+const kHome_m = [0.1, -0.3, 0.05];
+const kWay_m = [0.08, -0.12, 0.3];
+const mm = (length_m) => `${(1e3 * length_m).toFixed(2)} mm`;
+const drawn_m = (page) => page.evaluate(() => window.tact.drawn_figure_m);
+
+async function raise(page, body) {
+  const before = await drawn_m(page);
+  for (let i = 1; i <= 100; ++i) {
+    body.at_m = kHome_m.map((m, k) => m + kWay_m[k] * i / 100);
+    await page.waitForTimeout(10);
+  }
+  await page.waitForTimeout(1500);
+  const raised = await drawn_m(page);
+  for (const part of ["left wrist", "left fingers"]) {
+    const off_m = distance(raised[part], before[part].map((m, k) => m + kWay_m[k]));
+    check(`${part}: goes with the tracker`, off_m < 0.01, `${mm(off_m)} from where it is`);
+  }
+  check("the elbow hangs below wrist and shoulder", raised["left elbow"][2] <
+    Math.min(raised["left wrist"][2], raised["left shoulder"][2]) - 0.02);
+  check("the right hand stays at the tool", (await page.evaluate(() => window.tact.grip_error_m)) < 0.002);
+  await page.screenshot({ path: join(build, "page_left_hand.png") });
+  return before;
+}
+
+await play(async () => {
+  const port = await free_udp_port();
+  const tracking = join(folder, "hand.tracking.toml");
+  writeFileSync(tracking, description("left_hand", port));
+  const socket = join(folder, "hand.sock");
+  const { viewer, url } = await start_view(["--socket", socket, "--tracking", tracking]);
+  const tactd = start_tactd("maintenance", socket);
+  const browser = await start_browser();
+  const page = await browser.newPage({ viewport: size });
+  await page.goto(sharp(url));
+  const body = new MarkerBody(port, kHome_m);
+  check("hears of the left hand", await waits(page, () => window.tact?.drawn_figure_m && window.tact.tracking_words === ""));
+  await page.waitForTimeout(1500);
+  const before = await raise(page, body);
+  body.stop();
+  check("says that it is lost", await waits(page, () =>
+    document.getElementById("tracking").textContent.includes("left hand lost (silent)")));
+  await page.waitForTimeout(2000);
+  const rest_m = distance((await drawn_m(page))["left wrist"], before["left wrist"]);
+  check("then it rests again", rest_m < 0.005, mm(rest_m));
+  check("tactd ends cleanly", (await stop(tactd)) === 0);
+  check("tact-view ends cleanly", (await stop(viewer)) === 0);
+  await browser.close();
+});
