@@ -118,7 +118,7 @@ ArmWork ToolArm::hold(const ArmGoal& goal) {
   joints_[kFingerBone] = rest_[kFingerBone];
   const Vector3d wrist_m = wrist_for(goal);
   // Classical CCD (kAlwaysFullChain) goes without, as it is there to be compared with.
-  if (rule_ == RootRule::kSubRootFirst) work.updates += point_two_bones(wrist_m);
+  if (rule_ != RootRule::kAlwaysFullChain) work.updates += point_two_bones(wrist_m);
   take(run(to_wrist_, wrist_m, kWristTolerance_m, root_for(to_wrist_, wrist_m), work));
   if (goal.elbow_m) work.updates += swivel(*goal.elbow_m);
   turn_hand(goal.hand);
@@ -138,9 +138,10 @@ std::size_t ToolArm::root_for(const Chain& chain, const Vector3d& target_m) cons
 
 ReachResult ToolArm::run(const Chain& chain, const Vector3d& target_m, double tolerance_m,
                          std::size_t root, ArmWork& work) const {
+  const int sweeps = rule_ == RootRule::kFormulaAlone ? 0 : kSweeps;
   ReachResult result =
       reach(chain, std::span(joints_).first(chain.bones.size()),
-            {.target_m = target_m, .tolerance_m = tolerance_m, .sweeps = kSweeps, .root = root});
+            {.target_m = target_m, .tolerance_m = tolerance_m, .sweeps = sweeps, .root = root});
   work.sweeps += result.sweeps;
   work.updates += result.updates;
   work.full_chain |= root == 0 && result.updates > 0;
@@ -164,7 +165,7 @@ ReachResult ToolArm::grip(const Vector3d& grip_m, ArmWork& work) {
 int ToolArm::point_two_bones(const Vector3d& wrist_m) {
   const auto start = std::span(joints_).first(kHandBone);
   // Too far for the arm: the trunk has to help, and two bones know nothing of it.
-  if (choose_root(to_wrist_, start, kShoulderBone, wrist_m) != kShoulderBone) return 0;
+  if (rule_ != RootRule::kFormulaAlone && root_for(to_wrist_, wrist_m) != kShoulderBone) return 0;
   const std::vector<Vector3d> at_m = joint_points_m(to_wrist_, start);
   const Vector3d to_target = wrist_m - at_m[kShoulderBone];
   if ((wrist_m - at_m.back()).norm() <= kWristTolerance_m || to_target.norm() < 1e-6) return 0;

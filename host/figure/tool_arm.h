@@ -40,8 +40,8 @@ struct ArmGoal {
   std::optional<Eigen::Vector3d> elbow_m{};
 };
 
-/// kAlwaysFullChain is classical CCD, to compare with.
-enum class RootRule : std::uint8_t { kSubRootFirst, kAlwaysFullChain };
+/// To compare with: kAlwaysFullChain is classical CCD, kFormulaAlone makes no sweep of the arm.
+enum class RootRule : std::uint8_t { kSubRootFirst, kAlwaysFullChain, kFormulaAlone };
 
 /// The chest ends lumbar and thorax, the shoulder the collar bone, too.
 enum class TrunkEnd : std::uint8_t { kChest, kShoulder };

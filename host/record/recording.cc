@@ -58,18 +58,15 @@ Result<std::uint64_t> skip_ticks(SealedFile& in, Magic& magic) {
         "this tick log holds no pictures, only what a replay needs; tactd --replay computes it "
         "again and writes its ticks with --csv; a black box or a recording of tact-view can be "
         "shown"};
+  const Error no_pictures{
+      "this black box is cut off before its pictures, or its header is damaged; tactd --replay "
+      "FILE --csv FILE writes its ticks"};
   // Divided, not multiplied: a damaged header must not overflow into a place that fits.
   if (log.tick_bytes == 0 || log.ticks > file_bytes / log.tick_bytes ||
       log.header_bytes + log.ticks * log.tick_bytes >= file_bytes)
-    return Error{
-        "this black box is cut off before its pictures, or its header is damaged; tactd --replay "
-        "FILE --csv FILE writes its ticks"};
+    return no_pictures;
   const std::uint64_t start = log.header_bytes + log.ticks * log.tick_bytes;
-  if (start < sizeof log || !in.skip(start - sizeof log) || !read(in, magic))
-    return Error{
-        "this black box cannot be read up to its pictures; tactd --replay FILE --csv FILE writes "
-        "its "
-        "ticks"};
+  if (start < sizeof log || !in.skip(start - sizeof log) || !read(in, magic)) return no_pictures;
   return start;
 }
 

@@ -10,6 +10,7 @@
 #include "model/io/program/within.h"
 #include "tools/program/program.h"
 #include "tools/tracking_bench/figure_work.h"
+#include "tools/tracking_bench/tool_motion.h"
 
 namespace {
 
@@ -38,29 +39,48 @@ void print_row(const char* name, const FigureWork& work) {
              1e3 * work.worst_error_m, work.median_us, work.p99_us);
 }
 
+/// A motion that the two-bone formula cannot follow: without CCD and with it.
+struct ReachBench {
+  FigureWork formula, ccd;
+
+  ReachBench(const std::vector<MotionFrame>& motion, const Eigen::Vector3d& grip_m)
+      : formula(measure_figure(motion, grip_m, RootRule::kFormulaAlone)),
+        ccd(measure_figure(motion, grip_m, RootRule::kSubRootFirst)) {}
+  bool good() const { return formula.unreached > 0 && ccd.unreached == 0; }
+};
+
+json to_json(const ReachBench& reach) {
+  return {{"formula_alone", to_json(reach.formula)}, {"with_ccd", to_json(reach.ccd)}};
+}
+
 struct FigureBench {
   std::string scene;
   double duration_s = 0.0;
   FigureWork first, whole;  // shoulder first; always the whole chain
+  ReachBench far, turned;   // beyond the arm; a limit of the wrist in the way
 
   double ratio() const {
     return static_cast<double>(whole.updates) / static_cast<double>(std::max(first.updates, 1L));
   }
   bool good() const {
-    return ratio() >= kGoalRatio && first.unreached == 0 && whole.unreached == 0;
+    return ratio() >= kGoalRatio && first.unreached == 0 && whole.unreached == 0 && far.good() &&
+           turned.good();
   }
 };
 
 void print_json(const FigureBench& bench) {
-  fmt::print("{}\n", tact::model::io::text_of(json{{"format", "tact-figure-bench"},
-                                                   {"version", 1},
-                                                   {"scene", bench.scene},
-                                                   {"seconds", bench.duration_s},
-                                                   {"shoulder_first", to_json(bench.first)},
-                                                   {"full_chain", to_json(bench.whole)},
-                                                   {"updates_ratio", bench.ratio()},
-                                                   {"updates_ratio_goal", kGoalRatio},
-                                                   {"good", bench.good()}}));
+  const json told{{"format", "tact-figure-bench"},
+                  {"version", 1},
+                  {"scene", bench.scene},
+                  {"seconds", bench.duration_s},
+                  {"shoulder_first", to_json(bench.first)},
+                  {"full_chain", to_json(bench.whole)},
+                  {"updates_ratio", bench.ratio()},
+                  {"updates_ratio_goal", kGoalRatio},
+                  {"reach", {{"far", to_json(bench.far)}, {"turned", to_json(bench.turned)}}},
+                  {"good", bench.good()}};
+  fmt::print("{}
+", tact::model::io::text_of(told));
 }
 
 void print_text(const FigureBench& bench) {
@@ -71,6 +91,11 @@ void print_text(const FigureBench& bench) {
   print_row("whole chain", bench.whole);
   fmt::print("joint updates, whole chain over shoulder first: {:.2f} (goal {:g})\n", bench.ratio(),
              kGoalRatio);
+  fmt::print("where the two-bone formula cannot reach, {:g} s each:\n", kReach_s);
+  print_row("far, alone", bench.far.formula);
+  print_row("far, with CCD", bench.far.ccd);
+  print_row("turned, alone", bench.turned.formula);
+  print_row("turned, with CCD", bench.turned.ccd);
 }
 
 }  // namespace
@@ -79,9 +104,11 @@ int main(int argc, char** argv) {
   program::Program program(
       "tact-figure-bench",
       "Play a scene's hand and its recorded tracker to the figure of the operator, and "
-      "count the joints that CCD turns: shoulder first, and always the whole chain.",
+      "count the joints that CCD turns: shoulder first, and always the whole chain. Then two "
+      "motions that the two-bone formula cannot follow, without CCD and with it.",
       "Errors of the finger tips in mm, times of a frame of the figure in us. The check fails "
-      "where the fingers do not hold the tool, or the shoulder first does not save half.");
+      "where the fingers do not hold the tool, the shoulder first does not save half, or the "
+      "formula alone follows everything.");
   program::SceneArguments arguments;
   std::string tracking;
   double seconds = 30.0, frames_Hz = 60.0;
@@ -111,7 +138,9 @@ int main(int argc, char** argv) {
   const FigureBench bench{.scene = scene->name,
                           .duration_s = seconds,
                           .first = measure_figure(*motion, grip_m, RootRule::kSubRootFirst),
-                          .whole = measure_figure(*motion, grip_m, RootRule::kAlwaysFullChain)};
+                          .whole = measure_figure(*motion, grip_m, RootRule::kAlwaysFullChain),
+                          .far{made_up_motion(far_tool_at, kReach_s, frames_Hz), grip_m},
+                          .turned{made_up_motion(turned_tool_at, kReach_s, frames_Hz), grip_m}};
   if (as_json)
     print_json(bench);
   else

@@ -89,6 +89,16 @@ Result<std::vector<MotionFrame>> figure_motion(const model::scene::Scene& scene,
   return out;
 }
 
+std::vector<MotionFrame> made_up_motion(Pose (*tool_at)(double t_s), double seconds,
+                                        double frames_Hz) {
+  std::vector<MotionFrame> out(static_cast<std::size_t>(std::lround(seconds * frames_Hz)));
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double time_s = static_cast<double>(i) / frames_Hz;
+    out[i] = {.time_s = time_s, .tool = tool_at(time_s), .bodies = {}};
+  }
+  return out;
+}
+
 FigureWork measure_figure(const std::vector<MotionFrame>& motion, const Eigen::Vector3d& grip_m,
                           host::figure::RootRule rule) {
   FigureWork out;

@@ -6,7 +6,8 @@
 //              (SCENE.tracking.toml)
 //     updates  joints turned by CCD in all frames; equal error: both rules end at one tolerance
 //
-// A rule of CCD: the shoulder first and the whole chain only if it must, or always the whole chain.
+// A rule of CCD: the shoulder first and the whole chain only if it must, or always the whole chain;
+// or none, which shows where CCD must help.
 #pragma once
 
 #include <vector>
@@ -37,6 +38,10 @@ model::Result<FigureInput> load_figure_input(const std::string& tracking_path);
 model::Result<std::vector<MotionFrame>> figure_motion(const model::scene::Scene& scene,
                                                       const FigureInput& input, double seconds,
                                                       double frames_Hz);
+
+/// A made-up tool (tool_motion.h) and no tracker.
+std::vector<MotionFrame> made_up_motion(host::pose::Pose (*tool_at)(double t_s), double seconds,
+                                        double frames_Hz);
 
 struct FigureWork {
   int frames = 0;

@@ -24,4 +24,20 @@ inline host::pose::Pose tool_at(double t_s) {
   return tool;
 }
 
+inline constexpr double kReach_s = 10.0;
+
+/// Out and back, 0 to 1.
+inline double reach_share(double t_s) { return std::pow(std::sin(M_PI * t_s / kReach_s), 2); }
+
+/// Goes 0.4 m away from the operator: beyond what the arm spans, so that the trunk must bend.
+inline host::pose::Pose far_tool_at(double t_s) {
+  return {.position_m = {-0.4 * reach_share(t_s), 0.0, 0.05}};
+}
+
+/// Turns about its own handle until the wrist's cone is in the way: near enough all the time.
+inline host::pose::Pose turned_tool_at(double t_s) {
+  const Eigen::AngleAxisd turn(0.9 * reach_share(t_s), Eigen::Vector3d::UnitZ());
+  return {.rotation = Eigen::Quaterniond(turn), .position_m = {0.0, 0.0, 0.05}};
+}
+
 }  // namespace tact::tools::tracking_bench

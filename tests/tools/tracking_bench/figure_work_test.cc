@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/mesh_files.h"
+#include "tools/tracking_bench/tool_motion.h"
 
 namespace tact::tools::tracking_bench::figure_work_test {
 
@@ -66,6 +67,24 @@ TEST(FigureWork, BothRulesHoldTheToolInEveryFrameAndTheShoulderFirstTurnsHalfOfT
   EXPECT_EQ(whole.full_chain, 1800);
 }
 
+TEST(FigureWork, CcdHoldsTheToolWhereTheFormulaAloneMissesIt) {
+  const auto far = made_up_motion(far_tool_at, kReach_s, kFrames_Hz),
+             turned = made_up_motion(turned_tool_at, kReach_s, kFrames_Hz);
+  for (const auto* motion : {&far, &turned}) {
+    const FigureWork alone =
+                         measure_figure(*motion, kGrip_m, host::figure::RootRule::kFormulaAlone),
+                     ccd = measure_figure(*motion, kGrip_m, host::figure::RootRule::kSubRootFirst);
+    EXPECT_EQ(alone.sweeps, 0);
+    EXPECT_GT(alone.unreached, 200);
+    EXPECT_GT(alone.worst_error_m, 0.02);
+    EXPECT_GT(ccd.sweeps, 200);
+    EXPECT_EQ(ccd.unreached, 0);
+    EXPECT_LE(ccd.worst_error_m, host::figure::kGripTolerance_m);
+    // Beyond the arm the trunk bends; for the wrist's limit it does not.
+    EXPECT_EQ(ccd.full_chain > 0, motion == &far);
+  }
+}
+
 TEST(FigureWork, CountsTheSameInEveryRun) {
   const FigureWork a = measure_figure(motion(3.0), kGrip_m, host::figure::RootRule::kSubRootFirst);
   const FigureWork b = measure_figure(motion(3.0), kGrip_m, host::figure::RootRule::kSubRootFirst);
@@ -91,6 +110,8 @@ TEST(FigureWork, TheProgramTellsItAsJson) {
   const auto json = nlohmann::json::parse(ran.out);
   EXPECT_EQ(json["shoulder_first"]["frames"], 1800);
   EXPECT_GE(json["updates_ratio"], 2.0);
+  EXPECT_EQ(json["reach"]["far"]["with_ccd"]["unreached_frames"], 0);
+  EXPECT_GT(json["reach"]["turned"]["formula_alone"]["unreached_frames"], 0);
 }
 
 }  // namespace tact::tools::tracking_bench::figure_work_test
