@@ -131,7 +131,19 @@ def tracking():
         values[start] = {key: played[start][key] for key in ("joint_updates", "sweeps")}
         values[start]["worst_error_mm"] = played[start]["worst_error_m"] * 1e3
     values["updates_ratio"] = played["updates_ratio"]
+    values["reach"] = {
+        motion: {"alone_missed": told["formula_alone"]["unreached_frames"],
+                 "alone_worst_mm": told["formula_alone"]["worst_error_m"] * 1e3,
+                 "sweeps": told["with_ccd"]["sweeps"],
+                 "worst_mm": told["with_ccd"]["worst_error_m"] * 1e3}
+        for motion, told in played["reach"].items()}
     return f"{' '.join(pose)}; {' '.join(figure)}", values
+
+
+def coupling():
+    """From a marker that moved to the picture of it; with whatever else the machine does (load)."""
+    return "node tests/browser/operator_latency.mjs build 60", json_in_file(
+        "node", "tests/browser/operator_latency.mjs", "build", "60", option="--json")
 
 
 def measured():
@@ -168,4 +180,4 @@ def image():
 
 
 MEASURED = {f.__name__: f for f in (bench, limits, verify, size, chart, tool, stability, tracking,
-                                   measured, image)}
+                                   coupling, measured, image)}
