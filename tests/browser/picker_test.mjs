@@ -4,7 +4,7 @@
 //
 //     node tests/browser/picker_test.mjs BUILD_DIR   (tools/run builds what is missing, there)
 //
-// CHROMIUM names another browser. Picture: BUILD_DIR/page_picker.png. Prints "N passed, M failed"; exit status 0 or 1.
+// CHROMIUM names another browser. Pictures: BUILD_DIR/page_picker*.png. Prints "N passed, M failed"; exit status 0 or 1.
 import { join } from "node:path";
 
 import { build, check, first_line, folder, numbers, play, root, size, start_at, start_browser, start_tactd, start_view, stop, waits } from "./stage.mjs";
@@ -16,6 +16,13 @@ const words = (page) => page.textContent("#picker_words");
 const says = (page, text) => waits(page, (wanted) => document.getElementById("picker_words").textContent.includes(wanted), text);
 const runs = (page, name) => waits(page, (wanted) => window.tact.link === "live" && window.tact.scene_name === wanted &&
   window.tact.state === 2 && window.tact.tick > 0, name);
+
+/** Wholly on the screen, and nothing lies over it. */
+const in_sight = (page, id) => page.evaluate((wanted) => {
+  const element = document.getElementById(wanted);
+  const { left, right, top, bottom } = element.getBoundingClientRect();
+  return top >= 0 && bottom <= innerHeight && element.contains(document.elementFromPoint((left + right) / 2, (top + bottom) / 2));
+}, id);
 
 /** The largest force of this many seconds, N. */
 async function peak_N(page, seconds) {
@@ -44,9 +51,14 @@ async function check_scenes(page) {
   check("... all that are shipped", offered.join() === kScenes.join(), offered.join(" "));
   check("... with the numbers of the law that runs", await page.locator(".parameter").count() === 7);
   await page.selectOption("#wished_scene", "heart");
+  check("what is chosen and not applied is told", await words(page) === "heart is not applied yet", await words(page));
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("p");
+  await page.keyboard.press("l");
   await page.click("#apply");
   check("another scene is there when it was chosen, armed", await runs(page, "heart"));
   check("... and the page says so", await says(page, "heart runs, as shipped"), await words(page));
+  check("... and a pause is over", !(await numbers(page)).paused);
 }
 
 async function check_numbers(page) {
@@ -65,14 +77,39 @@ async function check_refusals(page) {
   await set(page, kSoft_Pa, "1e14");
   check("a number out of its range is refused with its range", await says(page, "is out of range; allowed: 1 .. "),
     await words(page));
+  check("... in sight, with the button", await in_sight(page, "picker_words") && await in_sight(page, "apply"));
+  await page.locator(`[id="${kSoft_Pa}"]`).fill("2000");
+  check("... until a number is edited", await words(page) === "1 change not applied yet", await words(page));
   await set(page, kSoft_Pa, "1e12");
   check("what tactd refuses is told in its words", await says(page, "law disc_stack is too stiff"), await words(page));
+  await page.reload();
+  check("... and not to who comes later", await says(page, "heart runs, 1 changed"), await words(page));
+  await waits(page, () => document.getElementById("pick").checkVisibility());
+  await page.keyboard.press("l");
   await set(page, kSoft_Pa, "");
   check("no number is none", await says(page, "has no number"), await words(page));
+  await page.locator(`[id="${kSoft_Pa}"]`).fill("1,5");
+  await page.click("#apply");
+  check("... a decimal comma is told", await says(page, "youngs_modulus_Pa: 1,5 is no number: write 1.5"), await words(page));
+  check("... where it stands", await page.evaluate(() => document.activeElement.id) === kSoft_Pa && await in_sight(page, kSoft_Pa));
   check("... and the scene before has gone on", await waits(page, (before) => window.tact.link === "live" &&
     window.tact.scene_name === "heart" && window.tact.tick > before, scene_before));
-  await page.click("#as_shipped");
-  check("as shipped gives the scene back", await says(page, "heart runs, as shipped"), await words(page));
+}
+
+/** Another page, by touch. */
+async function check_phone(browser, url, page) {
+  const phone = await browser.newPage({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  await phone.goto(url);
+  await waits(phone, () => document.getElementById("pick").checkVisibility());
+  await phone.tap("#pick");
+  check("on a phone the panel opens at its top", await in_sight(phone, "picker_title") && await in_sight(phone, "wished_scene"));
+  await set(phone, kSoft_Pa, "1e14");
+  check("... and a refusal is in sight there", await says(phone, "is out of range") && await in_sight(phone, "picker_words"));
+  await phone.screenshot({ path: join(build, "page_picker_phone.png") });
+  await phone.tap("#as_shipped");
+  check("as shipped gives the scene back", await says(phone, "heart runs, as shipped"), await words(phone));
+  check("... and another page hears of it", await says(page, "the scene was chosen elsewhere: heart runs"), await words(page));
+  await phone.close();
 }
 
 /** The slider moves by the keyboard, is read aloud, and moves the field. */
@@ -88,6 +125,9 @@ async function check_slider(page) {
   await page.keyboard.press("End");
   await page.keyboard.type("e1");
   check("letters in a field are no keys of the page", !(await numbers(page)).eyes_on && await page.isVisible("#picker"));
+  await page.keyboard.press("Escape");
+  check("Escape closes the panel, and the focus is where it was opened", !(await page.isVisible("#picker")) &&
+    await page.evaluate(() => document.activeElement.id) === "pick");
 }
 
 /** Where nobody could start another scene, none is offered. */
@@ -117,6 +157,7 @@ async function run() {
     await check_scenes(page);
     await check_numbers(page);
     await check_refusals(page);
+    await check_phone(browser, url, page);
     await check_slider(page);
   } finally {
     launcher.kill("SIGTERM"); // it ends its own programs; SIGKILL would leave them

@@ -17,6 +17,7 @@ import { OrganView } from "./organ/organ_view";
 import { Outside } from "./scene/outside";
 import { Plots } from "./panels/plots";
 import { length_of, type FigureFrame, type Frame, type Mesh, type Scene, type Status, type Vec } from "./link/protocol";
+import { close_panel, toggle_panel } from "./controls/open_panel";
 import { Recorder } from "./controls/recorder";
 import { ScenePicker } from "./controls/scene_picker";
 import { Stage } from "./scene/stage";
@@ -111,6 +112,7 @@ function take_scene(next: Scene, organ_mesh: Mesh, tool_mesh: Mesh): void {
     tool.dispose();
   }
   waiting = null;
+  freeze(false); // what was frozen is gone
   scene = next;
   organ = new OrganView(organ_mesh, next);
   organ.wireframe = wireframe;
@@ -197,22 +199,15 @@ async function save_picture(): Promise<void> {
   setTimeout(() => URL.revokeObjectURL(url), 60_000);
 }
 
-/** Two panels that share one place, and their buttons. */
-function toggle_panel(id: "keys" | "picker"): void {
-  for (const [panel, button] of [["keys", "help"], ["picker", "pick"]]) {
-    const open = panel === id && by_id(panel).hidden;
-    by_id(panel).hidden = !open;
-    by_id(button).classList.toggle("on", open);
-    by_id(button).setAttribute("aria-expanded", String(open));
-    if (open) by_id(panel).focus(); // the next tab goes into it
-  }
+function freeze(on: boolean): void {
+  paused = on;
+  hud.pressed("pause", on);
 }
 
 const actions: Record<string, () => unknown> = {
   p: () => {
     if (status?.link === "replay") return timeline.toggle();
-    paused = !paused;
-    hud.pressed("pause", paused);
+    freeze(!paused);
   },
   m: () => {
     hand.mode = !hand.mode && may_move_hand();
@@ -243,6 +238,7 @@ const actions: Record<string, () => unknown> = {
   s: () => void save_picture(),
   l: () => picker.there && toggle_panel("picker"),
   h: () => toggle_panel("keys"),
+  Escape: close_panel,
 };
 
 bind_keys((key, shift) => timeline.key(key, shift), actions);

@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { range_words, share_of, value_at } from "../src/controls/parameter_scale";
+import { number_in, range_words, share_of, value_at, why_no_number } from "../src/controls/parameter_scale";
 import type { Parameter } from "../src/link/protocol";
 
 const number = (value: number, low: number, high: number, whole = false): Parameter =>
@@ -39,4 +39,13 @@ test("a range is told as tactd tells it", () => {
   assert.equal(range_words(number(1, 0.01, 1e5)), "0.01 .. 100000 N/m");
   assert.equal(range_words({ ...number(10, 1, 31, true), unit: "" }), "1 .. 31, whole");
   assert.equal(range_words({ ...number(10, 1, 1e13), unit: "Pa" }), "1 .. 1e+13 Pa");
+});
+
+test("a text is a number as a whole, or none: a decimal comma is told, and never another number", () => {
+  for (const [text, value] of [["1.5", 1.5], [" 1.5 ", 1.5], ["-2e3", -2000], ["0", 0]] as const) assert.equal(number_in(text), value);
+  for (const text of ["1,5", "1,000.5", "", " ", "1.5 m", "soft", "1e999", "Infinity"]) assert.ok(Number.isNaN(number_in(text)), text);
+  assert.equal(why_no_number("rod_length_m", " 1,5 "), "rod_length_m: 1,5 is no number: write 1.5");
+  assert.equal(why_no_number("rod_length_m", "1,000,000"), "rod_length_m: 1,000,000 is no number");
+  assert.equal(why_no_number("rod_length_m", "soft"), "rod_length_m: soft is no number");
+  assert.equal(why_no_number("rod_length_m", ""), "rod_length_m has no number");
 });

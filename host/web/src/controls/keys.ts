@@ -11,7 +11,8 @@ const kButtons: Record<string, string> = {
 
 /** Who has the focus may want the key for itself: then it is not ours. */
 function takes(target: EventTarget | null, key: string): boolean {
-  if (target instanceof HTMLSelectElement || (target instanceof HTMLInputElement && target.type === "number")) return true;
+  if (key === "Escape") return false;
+  if (target instanceof HTMLSelectElement || (target instanceof HTMLInputElement && target.type === "text")) return true;
   return key === " " && (target instanceof HTMLButtonElement || target instanceof HTMLAnchorElement);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // parameter_scale.ts - a slider for a number whose range spans many decades: by the logarithm, from a
 // tenth of the shipped value to ten times it, within the range. The field beside it takes all of the
-// range. A number that is shipped as 0 has its whole range, evenly.
+// range. A number that is shipped as 0 has its whole range, evenly. And which text is a number.
 
 import type { Parameter } from "../link/protocol";
 
@@ -34,4 +34,19 @@ const short = (value: number): string => (value >= 1e6 ? value.toExponential() :
 /** "0.01 .. 100000 N/m" */
 export function range_words(of: Parameter): string {
   return `${short(of.low)} .. ${short(of.high)}${of.unit && ` ${of.unit}`}${of.whole ? ", whole" : ""}`;
+}
+
+/** NaN: the text is no number, as with a decimal comma. */
+export function number_in(text: string): number {
+  const value = text.trim() === "" ? NaN : Number(text);
+  return Number.isFinite(value) ? value : NaN;
+}
+
+/** Of a text that is none: what is wrong with it. */
+export function why_no_number(name: string, text: string): string {
+  const written = text.trim();
+  if (written === "") return `${name} has no number`;
+  const with_point = written.replace(",", ".");
+  const cure = Number.isNaN(number_in(with_point)) ? "" : `: write ${with_point}`;
+  return `${name}: ${written} is no number${cure}`;
 }

@@ -4,25 +4,28 @@
 
 import { by_id } from "../document/dom";
 import type { OfferedScene, Parameter, Picker, SceneWish } from "../link/protocol";
-import { range_words, share_of, value_at } from "./parameter_scale";
+import { number_in, range_words, share_of, value_at, why_no_number } from "./parameter_scale";
 
 function element<K extends keyof HTMLElementTagNameMap>(tag: K, set: Partial<HTMLElementTagNameMap[K]>): HTMLElementTagNameMap[K] {
   return Object.assign(document.createElement(tag), set);
 }
 
+/** The same text for the same wish. */
+const text_of = ({ scene, set }: SceneWish): string => JSON.stringify([scene, Object.entries(set).sort()]);
+
 /** A slider and a field for one number. */
 class Row {
   readonly box = element("div", { className: "parameter" });
-  private readonly field = element("input", { type: "number", step: "any" });
+  // No type=number: some browsers take "1,5" for 15 there.
+  private readonly field = element("input", { type: "text", inputMode: "decimal", autocomplete: "off", spellcheck: false });
   private readonly slider = element("input", { type: "range", min: "0", max: "1", step: "0.002" });
 
-  constructor(readonly of: Parameter, value: number) {
-    const name = of.key.slice(of.key.indexOf(".") + 1);
+  /** `runs`: the value that it has in the simulation, if this scene runs. */
+  constructor(readonly of: Parameter, value: number, readonly runs: number) {
+    const { name } = this;
     const small = element("small", { className: "soft", id: `about_${of.key}`, textContent: `${of.meaning}; ${range_words(of)}` });
     this.field.id = `set_${of.key}`;
     this.slider.id = `slide_${of.key}`;
-    this.field.min = String(of.low);
-    this.field.max = String(of.high);
     for (const input of [this.field, this.slider]) input.setAttribute("aria-describedby", small.id);
     this.slider.setAttribute("aria-label", `${name}, slider`);
     this.field.addEventListener("input", () => this.follow());
@@ -33,9 +36,19 @@ class Row {
     this.put(value);
   }
 
-  /** NaN: nothing is written there. */
+  private get name(): string {
+    return this.of.key.slice(this.of.key.indexOf(".") + 1);
+  }
+
+  /** NaN: no number is written there. */
   get value(): number {
-    return this.field.valueAsNumber;
+    return number_in(this.field.value);
+  }
+
+  /** Where no number is written: why, after the focus went there. */
+  correct(): string {
+    this.field.focus();
+    return why_no_number(this.name, this.field.value);
   }
 
   put(value: number): void {
@@ -56,11 +69,19 @@ export class ScenePicker {
   private scenes: OfferedScene[] = [];
   private now: Picker | null = null;
   private shown = ""; // what runs, as it was put into the form
+  private wished = ""; // what this page asked for last
+  private heard = ""; // the answer that is known already
+  private refusal = ""; // why the last wish came to nothing, until something is edited
+  private elsewhere = false; // another page chose what runs
   private rows: Row[] = [];
   private readonly select = by_id<HTMLSelectElement>("wished_scene");
 
   constructor(private readonly ask: (wish: SceneWish) => void, private readonly offered: () => Promise<OfferedScene[]>) {
-    this.select.addEventListener("change", () => this.show(this.select.value === this.now?.scene ? this.now.set : {}));
+    this.select.addEventListener("change", () => {
+      this.show(this.select.value === this.now?.scene ? this.now.set : {});
+      this.edited();
+    });
+    by_id("parameters").addEventListener("input", () => this.edited());
     by_id("wish").addEventListener("submit", (event) => {
       event.preventDefault();
       this.apply();
@@ -76,6 +97,8 @@ export class ScenePicker {
     const is_new = picker !== null && this.now === null; // of another tact-view, maybe with others
     this.now = picker;
     if (is_new) {
+      this.heard = picker.answer; // to somebody, before this page looked
+      this.refusal = "";
       this.scenes = await this.offered().catch(() => []);
       this.select.replaceChildren(...this.scenes.map((one) => new Option(one.scene)));
       this.shown = "";
@@ -88,35 +111,57 @@ export class ScenePicker {
     this.there = picker !== null && this.scenes.length > 0;
     document.body.classList.toggle("can_pick", this.there);
     if (!picker || !this.there) return;
-    const runs = JSON.stringify([picker.scene, picker.set]);
+    const runs = text_of(picker);
     if (runs !== this.shown) {
+      this.elsewhere = this.shown !== "" && runs !== this.wished;
       this.shown = runs;
       this.select.value = picker.scene;
       this.show(picker.set);
     }
-    const changed = Object.keys(picker.set).length;
+    if (picker.answer !== this.heard) this.refusal = this.heard = picker.answer;
     if (picker.asked) this.say(`starting ${picker.asked} …`);
-    else if (picker.answer) this.say(picker.answer, "bad");
-    else this.say(`${picker.scene} runs, ${changed === 0 ? "as shipped" : `${changed} changed`}`);
+    else if (this.refusal) this.say(this.refusal, "bad");
+    else this.say(this.words(picker));
+  }
+
+  /** What runs, or what is not asked for yet. */
+  private words(picker: Picker): string {
+    if (this.select.value !== picker.scene) return `${this.select.value} is not applied yet`;
+    const edits = this.rows.filter((row) => row.value !== row.runs).length;
+    if (edits > 0) return `${edits} ${edits === 1 ? "change" : "changes"} not applied yet`;
+    const changed = Object.keys(picker.set).length;
+    const runs = `${picker.scene} runs, ${changed === 0 ? "as shipped" : `${changed} changed`}`;
+    return this.elsewhere ? `the scene was chosen elsewhere: ${runs}` : runs;
+  }
+
+  private edited(): void {
+    this.refusal = "";
+    this.elsewhere = false;
+    this.tell();
   }
 
   /** The numbers of the chosen scene, as shipped but for these. */
   private show(set: Record<string, number>): void {
     const scene = this.scenes.find((one) => one.scene === this.select.value);
-    this.rows = (scene?.parameters ?? []).map((of) => new Row(of, set[of.key] ?? of.value));
+    const running = this.now?.scene === scene?.scene ? this.now?.set : {};
+    this.rows = (scene?.parameters ?? []).map((of) => new Row(of, set[of.key] ?? of.value, running?.[of.key] ?? of.value));
     by_id("parameters").replaceChildren(...this.rows.map((row) => row.box));
     by_id("wished_law").textContent = scene ? `law ${scene.law}` : "";
   }
 
   private apply(): void {
-    const empty = this.rows.find((row) => Number.isNaN(row.value));
-    if (empty) return this.say(`${empty.of.key} has no number`, "bad");
+    this.refusal = this.rows.find((row) => Number.isNaN(row.value))?.correct() ?? "";
+    if (this.refusal) return this.tell();
     const changed = this.rows.filter((row) => row.value !== row.of.value);
-    this.ask({ scene: this.select.value, set: Object.fromEntries(changed.map((row) => [row.of.key, row.value])) });
+    const wish = { scene: this.select.value, set: Object.fromEntries(changed.map((row) => [row.of.key, row.value])) };
+    this.wished = text_of(wish);
+    this.heard = ""; // the same answer again is another
+    this.ask(wish);
   }
 
   private say(words: string, tone = "plain"): void {
-    by_id("picker_words").textContent = words;
-    by_id("picker_words").dataset.tone = tone;
+    const line = by_id("picker_words");
+    if (line.textContent !== words) line.textContent = words; // else it is read aloud again
+    line.dataset.tone = tone;
   }
 }
