@@ -79,8 +79,7 @@ void print_json(const FigureBench& bench) {
                   {"updates_ratio_goal", kGoalRatio},
                   {"reach", {{"far", to_json(bench.far)}, {"turned", to_json(bench.turned)}}},
                   {"good", bench.good()}};
-  fmt::print("{}
-", tact::model::io::text_of(told));
+  fmt::print("{}\n", tact::model::io::text_of(told));
 }
 
 void print_text(const FigureBench& bench) {
