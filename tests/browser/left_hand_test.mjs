@@ -23,7 +23,8 @@ async function raise(page, body) {
     body.at_m = kHome_m.map((m, k) => m + kWay_m[k] * i / 100);
     await page.waitForTimeout(10);
   }
-  await page.waitForTimeout(1500);
+  const there = before["left wrist"].map((m, k) => m + kWay_m[k]);
+  await waits(page, (goal) => Math.hypot(...goal.map((m, k) => window.tact.drawn_figure_m["left wrist"][k] - m)) < 0.005, there);
   const raised = await drawn_m(page);
   for (const part of ["left wrist", "left fingers"]) {
     const off_m = distance(raised[part], before[part].map((m, k) => m + kWay_m[k]));
@@ -53,7 +54,8 @@ await play(async () => {
   body.stop();
   check("says that it is lost", await waits(page, () =>
     document.getElementById("tracking").textContent.includes("left hand lost (silent)")));
-  await page.waitForTimeout(2000);
+  await waits(page, (home) => Math.hypot(...home.map((m, k) => window.tact.drawn_figure_m["left wrist"][k] - m)) < 0.002,
+    before["left wrist"]);
   const rest_m = distance((await drawn_m(page))["left wrist"], before["left wrist"]);
   check("then it rests again", rest_m < 0.005, mm(rest_m));
   check("tactd ends cleanly", (await stop(tactd)) === 0);

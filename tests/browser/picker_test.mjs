@@ -145,6 +145,16 @@ async function check_nothing_offered(browser) {
   await stop(viewer);
 }
 
+/** Of a tactd that has only just begun: a shell lets it ignore SIGINT until it says otherwise. */
+async function check_early_end(environment) {
+  const launcher = start_at(join(root, "tools/run"), ["--port", "8397"], environment);
+  await first_line(launcher, "tact-view: ");
+  launcher.kill("SIGINT");
+  const status = await Promise.race([launcher.ended, new Promise((done) => setTimeout(done, 20000, "none"))]);
+  check("Ctrl-C in the first moments ends tools/run and its programs", [0, 130].includes(status), `status ${status}`);
+  if (status === "none") launcher.kill("SIGTERM");
+}
+
 async function run() {
   const browser = await start_browser();
   await check_nothing_offered(browser);
@@ -163,6 +173,7 @@ async function run() {
     launcher.kill("SIGTERM"); // it ends its own programs; SIGKILL would leave them
     check("tools/run ends cleanly", (await launcher.ended) === 0);
   }
+  await check_early_end(environment);
   await browser.close();
 }
 
