@@ -5,6 +5,7 @@
 //     node tests/browser/picker_test.mjs BUILD_DIR   (tools/run builds what is missing, there)
 //
 // CHROMIUM names another browser. Pictures: BUILD_DIR/page_picker*.png. Prints "N passed, M failed"; exit status 0 or 1.
+import { spawn } from "node:child_process";
 import { join } from "node:path";
 
 import { build, check, first_line, folder, numbers, play, root, size, start_at, start_browser, start_tactd, start_view, stop, waits } from "./stage.mjs";
@@ -148,8 +149,15 @@ async function check_nothing_offered(browser) {
 /** Of a tactd that has only just begun: a shell lets it ignore SIGINT until it says otherwise. */
 async function check_early_end(environment) {
   const launcher = start_at(join(root, "tools/run"), ["--port", "8397"], environment);
-  await first_line(launcher, "tact-view: ");
-  launcher.kill("SIGINT");
+  launcher.stdout.resume();
+  // The one with a scene and nothing else; builtins alone, as it has only some milliseconds.
+  const when_it_begins = `while read -ra all </proc/$0/task/$0/children; do
+    for one in "\${all[@]}"; do
+      mapfile -d "" words 2>/dev/null </proc/$one/cmdline
+      [[ \${words[0]-} == */tactd && \${#words[@]} -eq 2 ]] && { kill -INT $0; exit; }
+    done
+  done`;
+  spawn("bash", ["-c", when_it_begins, String(launcher.pid)]);
   const status = await Promise.race([launcher.ended, new Promise((done) => setTimeout(done, 20000, "none"))]);
   check("Ctrl-C in the first moments ends tools/run and its programs", [0, 130].includes(status), `status ${status}`);
   if (status === "none") launcher.kill("SIGTERM");
