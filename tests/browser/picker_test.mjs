@@ -151,7 +151,7 @@ async function check_early_end(environment) {
   const launcher = start_at(join(root, "tools/run"), ["--port", "8397"], environment);
   launcher.stdout.resume();
   // The one with a scene and nothing else; builtins alone, as it has only some milliseconds.
-  const when_it_begins = `while read -ra all </proc/$0/task/$0/children; do
+  const when_it_begins = `while read -ra all </proc/$0/task/$0/children; [[ -d /proc/$0 ]]; do
     for one in "\${all[@]}"; do
       mapfile -d "" words 2>/dev/null </proc/$one/cmdline
       [[ \${words[0]-} == */tactd && \${#words[@]} -eq 2 ]] && { kill -INT $0; exit; }
@@ -160,7 +160,8 @@ async function check_early_end(environment) {
   spawn("bash", ["-c", when_it_begins, String(launcher.pid)]);
   const status = await Promise.race([launcher.ended, new Promise((done) => setTimeout(done, 20000, "none"))]);
   check("Ctrl-C in the first moments ends tools/run and its programs", [0, 130].includes(status), `status ${status}`);
-  if (status === "none") launcher.kill("SIGTERM");
+  if (status === "none") launcher.kill("SIGTERM"); // a second one is heard
+  await launcher.ended;
 }
 
 async function run() {
