@@ -120,9 +120,6 @@ const Pose& Figure::follow(BodyRole role, const TrackedOperator& bodies, const P
 void Figure::pose_trunk(const TrackedOperator& bodies) {
   pelvis_ = follow(BodyRole::kWaist, bodies, placed(standing_pelvis(plan_), place_m_));
   arm_.relax(1.0 - std::exp(-dt_s_ / kRelax_s));
-  const auto in_pelvis = [this](const Vector3d& p_m) -> Vector3d {
-    return pelvis_.rotation.conjugate() * (p_m - pelvis_.position_m);
-  };
   const auto upright = [this](FigureJoint joint, const Quaterniond& turn) {
     return Pose{.rotation = pelvis_.rotation * turn,
                 .position_m = pose::to_world(pelvis_, upright_m(plan_, joint))};
@@ -133,9 +130,9 @@ void Figure::pose_trunk(const TrackedOperator& bodies) {
   const double by_shoulder = share(BodyRole::kShoulder);
   // The shoulder says more of the trunk: the head leads only as far as the shoulder does not.
   const double by_head = (1.0 - by_shoulder) * share(BodyRole::kHead);
-  arm_.lean(TrunkEnd::kChest, in_pelvis(head.position_m) - plan_.neck_m * Vector3d::UnitZ(),
-            by_head);
-  arm_.lean(TrunkEnd::kShoulder, in_pelvis(shoulder.position_m), by_shoulder);
+  arm_.lean(TrunkEnd::kChest,
+            pose::to_local(pelvis_, head.position_m) - plan_.neck_m * Vector3d::UnitZ(), by_head);
+  arm_.lean(TrunkEnd::kShoulder, pose::to_local(pelvis_, shoulder.position_m), by_shoulder);
 }
 
 void Figure::pose_arm(const Pose& tool, const TrackedOperator& bodies) {
@@ -149,12 +146,9 @@ void Figure::pose_arm(const Pose& tool, const TrackedOperator& bodies) {
   const Quaterniond turn = wrist.rotation.slerp(share(BodyRole::kHand), hand.rotation);
   // Bound to where the arm had it in the frame before; from a lost one the arm goes back to rest.
   const Pose elbow = follow(BodyRole::kElbow, bodies, {.position_m = pose_[kRightElbow]});
-  const Quaterniond to_pelvis = pelvis_.rotation.conjugate();
-  const auto in_pelvis = [&](const Vector3d& p_m) -> Vector3d {
-    return to_pelvis * (p_m - pelvis_.position_m);
-  };
-  ArmGoal goal{.grip_m = in_pelvis(grip_m), .hand = (to_pelvis * turn).normalized()};
-  if (share(BodyRole::kElbow) > 0.0) goal.elbow_m = in_pelvis(elbow.position_m);
+  ArmGoal goal{.grip_m = pose::to_local(pelvis_, grip_m),
+               .hand = (pelvis_.rotation.conjugate() * turn).normalized()};
+  if (share(BodyRole::kElbow) > 0.0) goal.elbow_m = pose::to_local(pelvis_, elbow.position_m);
   pose_.arm = arm_.hold(goal);
   pose_.grip_m = grip_m;
   constexpr std::array kPoints{kPelvis,     kBack,       kChest,         kRightShoulder,

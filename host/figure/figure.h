@@ -52,10 +52,9 @@ struct FigurePose {
   Eigen::Quaterniond head = Eigen::Quaterniond::Identity();  // its -x is where the face looks
   Eigen::Vector3d grip_m = Eigen::Vector3d::Zero();          // where the finger tips shall be
   ArmWork arm;
-  std::array<bool, 2> leg_reached{true,
-                                  true};  // left, right: within kLimbTolerance_m, or untracked
-  bool left_hand_reached = true;          // likewise
-  bool shoulder_too_far = false;          // the tracked one does not say where the figure stands
+  std::array<bool, 2> leg_reached{true, true};  // left, right: within kLimbTolerance_m; or free
+  bool left_hand_reached = true;                // likewise
+  bool shoulder_too_far = false;  // the tracked one does not say where the figure stands
   FigureTrouble trouble = FigureTrouble::kNone;  // the worst
   std::string words;                             // "head lost (silent)"; empty if there is none
 
@@ -68,8 +67,7 @@ struct FigurePose {
 };
 
 inline constexpr double kFarthestPlace_m = 0.5;
-inline constexpr double kLimbTolerance_m =
-    0.01;  // a straight limb and a little noise are no trouble
+inline constexpr double kLimbTolerance_m = 0.01;  // a straight limb, a little noise: no trouble
 inline constexpr double kNeckCone_rad = 0.8, kHeadTurn_rad = 1.4;
 inline constexpr double kRelax_s = 1.5;  // in which the arm goes two thirds of its way to rest
 

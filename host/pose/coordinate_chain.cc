@@ -38,6 +38,10 @@ Vector3d to_world(const Pose& local, const Vector3d& p_local_m) {
   return local.rotation * p_local_m + local.position_m;
 }
 
+Vector3d to_local(const Pose& local, const Vector3d& p_world_m) {
+  return local.rotation.conjugate() * (p_world_m - local.position_m);
+}
+
 Pose bind(const Pose& tracker, const Pose& bone) {
   // q_off = q_trk^-1 q_bone ,  p_off = q_trk^-1 (p_bone - p_trk) q_trk    (TR-5)
   const Quaterniond back = tracker.rotation.conjugate();

@@ -44,6 +44,8 @@ Eigen::Quaterniond rotation_from(const EulerAngles& angles);
 
 /// TR-3 and TR-4.
 Eigen::Vector3d to_world(const Pose& local, const Eigen::Vector3d& p_local_m);
+/// Back.
+Eigen::Vector3d to_local(const Pose& local, const Eigen::Vector3d& p_world_m);
 
 /// TR-5: the bone as the tracker sees it, measured once in the binding pose.
 Pose bind(const Pose& tracker, const Pose& bone);

@@ -64,7 +64,7 @@ std::string description() {
   for (const auto& eye : tact::tools::make_tracking::tracking_cameras()) {
     const Quaterniond rotation =
         tact::host::pose::canonical(to_W.rotation.conjugate() * eye.pose.rotation);
-    const Vector3d position_m = to_W.rotation.conjugate() * (eye.pose.position_m - to_W.position_m);
+    const Vector3d position_m = tact::host::pose::to_local(to_W, eye.pose.position_m);
     out += fmt::format(
         "\n[[camera]]\nname = \"{}\"\nfx_px = {:.1f}\nfy_px = {:.1f}\ncx_px = {:.1f}\n"
         "cy_px = {:.1f}\nposition_m = {}\nrotation_wxyz = {}\n",

@@ -48,7 +48,7 @@ TrackingCamera camera(const char* name, const Vector3d& from_m) {
 }
 
 Vector2d pixel(const TrackingCamera& eye, const Vector3d& p_W_m) {
-  const Vector3d x = eye.pose.rotation.conjugate() * (p_W_m - eye.pose.position_m);
+  const Vector3d x = host::pose::to_local(eye.pose, p_W_m);
   return {eye.lens.fx_px * x.x() / x.z() + eye.lens.cx_px,
           eye.lens.fy_px * x.y() / x.z() + eye.lens.cy_px};
 }

@@ -35,6 +35,7 @@ TEST(CoordinateChain, MatchesPenAndPaper) {
   const Pose local = pose({.alpha_rad = kQuarter_rad, .beta_rad = 0.0, .gamma_rad = kQuarter_rad},
                           {10.0, 20.0, 30.0});
   expect_near(to_world(local, Vector3d::UnitZ()), {11.0, 20.0, 30.0}, 1e-14);
+  expect_near(to_local(local, {11.0, 20.0, 30.0}), Vector3d::UnitZ(), 1e-14);
   // qz qx = (1 + k)(1 + i) / 2 = (1 + i + j + k) / 2
   const Vector3d half = Vector3d::Constant(0.5);
   expect_near(local.rotation.vec(), half, 1e-15);
