@@ -21,7 +21,7 @@ class Control : public Tactd {
         << in_folder("") << "\nln -sf " << TACT_SOURCE_DIR "/model/scenes/* .\n"
         << "start() { " << program_path("tactd") << " $2 --no-telemetry --no-black-box"
         << kStubDevice << " --json $1.json 2>$1.told & }\n"
-        << "ready() { for i in {1..200}; do grep -q 'ready, force is off' $1.told && break; sleep "
+        << "ready() { for i in {1..200}; do grep -qs 'ready, force is off' $1.told && break; sleep "
            ".05; done; }\n"
         << "ctl() { " << program_path("tactctl") << " \"$@\"; echo \"status $?\"; }\n"
         << acts << "\n";

@@ -28,7 +28,7 @@ class Arming : public Tactd {
         << before << program_path("tactd") << " " << kLiver
         << " --no-black-box --seconds 1 --socket " << in_folder("t.sock") << kStubDevice
         << " --json " << in_folder("report.json") << " 2>" << told()
-        << " & tactd=$!\nready() { for i in {1..100}; do grep -q 'ready, force is off' " << told()
+        << " & tactd=$!\nready() { for i in {1..100}; do grep -qs 'ready, force is off' " << told()
         << " && break; sleep .05; done; }\n"
         << "blocked() { while kill -0 $tactd && "
            "! (( 0x0$(awk '/SigBlk/ {print $2}' /proc/$tactd/status) & 0x800 )); do :; done; }\n"

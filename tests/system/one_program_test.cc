@@ -19,7 +19,7 @@ class OneProgram : public Tactd {
         << " --set device.force_dimension.library=\\\"" << TACT_BINARY_DIR
         << "/libtact-stub-dhd.so\\\"\"\n"
         << "$tactd 2>" << in_folder("told") << " & first=$!\n"
-        << "for i in {1..100}; do grep -q 'ready, force is off' " << in_folder("told")
+        << "for i in {1..100}; do grep -qs 'ready, force is off' " << in_folder("told")
         << " && break; sleep .05; done\n"
         << second << "\nstatus=$?; echo first=$first\n"
         << "kill -0 $first && echo lives; kill -KILL $first\nexit $status\n";

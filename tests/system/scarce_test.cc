@@ -19,7 +19,7 @@ class Scarce : public Tactd {
         << " >out 2>told & tactd=$!; }\n"
         << "begun() { for i in {1..200}; do " << program_path("tactctl") << " " << kLiver
         << " status 2>&1 | grep -q armed && break; sleep .05; done; }\n"
-        << "told() { for i in {1..100}; do grep -q \"$1\" told && break; sleep .05; done; }\n"
+        << "told() { for i in {1..100}; do grep -qs \"$1\" told && break; sleep .05; done; }\n"
         << before << "\nstart\n"
         << acts << "\n";
     return run_command("timeout -s KILL 60 bash " + script);

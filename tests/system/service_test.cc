@@ -19,7 +19,7 @@ class ServiceProgram : public Tactd {
         << "manager=$!\nuntil [ -S n ]; do sleep .05; done\n"
         << program_path("tactd") << " " << kLiver << " --json report.json --set rate_Hz=500 "
         << options << " >told 2>&1 & tactd=$!\n"
-        << "for i in {1..100}; do grep -q READY heard && break; sleep .1; done\n"
+        << "for i in {1..100}; do grep -qs READY heard && break; sleep .1; done\n"
         << acts << "\nkill -TERM $tactd; wait $tactd; status=$?\nsleep .1; kill $manager\n"
         << "cat heard told; exit $status\n";
     return run_command("bash " + script);

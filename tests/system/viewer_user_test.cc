@@ -26,14 +26,15 @@ constexpr const char* kWords =
     "as_tactd='setpriv --reuid=daemon --regid=games --clear-groups'\n"
     "as_viewer='setpriv --reuid=nobody --regid=nogroup --groups=games'\n"
     "as_stranger='setpriv --reuid=man --regid=man --clear-groups'\n"
-    "ready() { for i in {1..200}; do grep -q 'ready, force is off' told && break; sleep .05; "
+    "ready() { for i in {1..200}; do grep -qs 'ready, force is off' told && break; sleep .05; "
     "done; }\n"
     // look NAME USER OPTIONS: how many frames the viewer got
     "look() { local name=$1 user=$2; shift 2; rm -f seen/r; timeout -s INT 1.5 $user $view --port "
     "0 --json --page page --record seen/r \"$@\" >$name.said 2>&1; echo \"$name saw $($view --open "
     "seen/r --export r.csv --json 2>&1 | grep -o '\"frames\":[0-9]*')\"; }\n"
     // A busy PC may take longer to start a viewer than it looks.
-    "look_until_seen() { local i; for i in 1 2 3 4 5; do look \"$@\" >saw; grep -q ':[1-9]' saw && "
+    "look_until_seen() { local i; for i in 1 2 3 4 5; do look \"$@\" >saw; grep -qs ':[1-9]' saw "
+    "&& "
     "break; done; cat saw; }\n";
 
 class ViewerUser : public Tactd {

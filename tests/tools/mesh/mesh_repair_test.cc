@@ -263,7 +263,7 @@ TEST_F(MeshRepair, AKillLeavesNoFileAndNoProgramBehind) {
   std::filesystem::create_directory(folder);
   const Outcome ran = run_command(
       "( export TMPDIR=" + folder + "; " + program_path("tact-mesh") + " " + path + kAll + " >" +
-      log + " 2>&1 & mesh=$!; for i in $(seq 600); do grep -q '^weld' " + log +
+      log + " 2>&1 & mesh=$!; for i in $(seq 600); do grep -qs '^weld' " + log +
       " && break; sleep 0.05; done; repair=$(cat /proc/$mesh/task/$mesh/children); " +
       // Stopped, it cannot end by itself.
       "kill -STOP $repair && echo works; kill -9 $mesh; " +

@@ -168,7 +168,7 @@ TEST_F(NewScene, CtrlCLeavesNothing) {
   const std::string log = path("log"), program = tests::program_path("tact-new-scene");
   const tests::Outcome ran = tests::run_command(
       "( " + program + " " + organ + " --out " + out_ + " >" + log + " 2>&1 & " +
-      "for i in $(seq 600); do grep -q condense " + log + " && break; sleep 0.05; done; " +
+      "for i in $(seq 600); do grep -qs condense " + log + " && break; sleep 0.05; done; " +
       "kill -INT $!; wait $!; status=$?; cat " + log + "; exit $status )");
   EXPECT_EQ(ran.status, 1) << ran.output;
   EXPECT_NE(ran.output.find("condense  "), ran.output.npos) << "in the midst of the work";
