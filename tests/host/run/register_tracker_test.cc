@@ -56,7 +56,7 @@ class Register : public ::testing::Test {
   /// The program while the tool goes from place to place; `wrong_m` bends what the tracker sees of
   /// one of them.
   tests::Outcome run(const std::string& arguments, std::size_t places, double wrong_m = 0.0,
-                     int most_s = 60) {
+                     int most_s = 240) {
     test::TelemetrySource source(folder_ + "/t.sock");
     EXPECT_TRUE(source.ok());
     std::atomic<bool> done = false;
