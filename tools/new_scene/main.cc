@@ -16,6 +16,7 @@
 #include "tools/ground_truth/gmsh.h"
 #include "tools/mesh/mesh_report.h"
 #include "tools/mesh/unit.h"
+#include "tools/new_scene/choose_law.h"
 #include "tools/new_scene/organ.h"
 #include "tools/new_scene/outputs.h"
 #include "tools/new_scene/scene_text.h"
@@ -36,7 +37,7 @@ struct Options {
   new_scene::OrganOrder organ{.source = {}, .faces = 6000};
   std::string out;
   double youngs_modulus_Pa = 5000.0, poisson_ratio = 0.45;
-  bool force = false;
+  bool plan = false, force = false;
 };
 
 void add_options(CLI::App& app, Options& o) {
@@ -60,6 +61,9 @@ void add_options(CLI::App& app, Options& o) {
       ->check(tact::model::io::within(100, 40'000))
       ->capture_default_str();
   app.add_flag("--smooth", o.organ.smooth, "take the steps of voxels away");
+  app.add_flag("--plan", o.plan,
+               "also solve references and let tact-plan choose the law for this PC: minutes to an "
+               "hour; needs CalculiX, apt install calculix-ccx");
   app.add_flag("--force", o.force, "replace the files of an earlier run");
 }
 
@@ -76,6 +80,10 @@ std::optional<Error> check_before(const Options& o, const OutputNames& names) {
   if (auto error = new_scene::check_new(names.map, "TACTCOMP", source, o.force)) return error;
   if (auto error = new_scene::check_new(names.tool, new_scene::tool_mesh(), source, o.force))
     return error;
+  if (o.plan)
+    for (const std::string& path : {names.reference, names.tool_reference})
+      if (auto error = new_scene::check_new(path, "{\"schema\": \"tact-", source, o.force))
+        return error;
   const auto input = tact::model::io::InputFile::open(source, "name a mesh file");
   if (!input) return input.error();
   if (!new_scene::is_sound(o.organ))
@@ -104,10 +112,8 @@ Result<Organ> read(const Options& o, const std::string& folder) {
   return organ;
 }
 
-std::string write_text(const Options& o, const OutputNames& names, const Organ& organ) {
-  const auto place = new_scene::place_of(organ.mesh);
-  tell("place", fmt::format("the top comes to the tool; held below z = {:.4g} mm, the lowest tenth",
-                            1e3 * place.held.max_m.z));
+std::string text_of(const Options& o, const OutputNames& names, const Organ& organ,
+                    const new_scene::ScenePlace& place, const char* law) {
   const auto beside = [](const std::string& path) { return fs::path(path).filename().string(); };
   std::error_code failed;
   const std::string source = fs::absolute(o.organ.source, failed).lexically_normal().string();
@@ -116,6 +122,7 @@ std::string write_text(const Options& o, const OutputNames& names, const Organ& 
                                 .map = beside(names.map),
                                 .tool = beside(names.tool),
                                 .mesh = organ.obj_text.empty() ? source : beside(names.organ),
+                                .law = law,
                                 .mesh_unit_m = organ.unit.unit_m,
                                 .youngs_modulus_Pa = o.youngs_modulus_Pa,
                                 .poisson_ratio = o.poisson_ratio},
@@ -160,40 +167,69 @@ std::optional<Error> ask_tactd(const std::string& scene_path, const std::string&
   return Error{last};
 }
 
-/// `sentence` with the folder where the files would have come; nothing was written there.
-Error about(Error error, const std::string& scratch, const OutputNames& names) {
+/// `sentence` with the folder where the files will come; none is there yet.
+std::string about(std::string sentence, const std::string& scratch, const OutputNames& names) {
   std::error_code failed;
   const std::string folder = fs::absolute(names.scene, failed).parent_path().string();
-  for (std::size_t at = 0; (at = error.sentence.find(scratch, at)) != std::string::npos;
+  for (std::size_t at = 0; (at = sentence.find(scratch, at)) != std::string::npos;
        at += folder.size())
-    error.sentence.replace(at, scratch.size(), folder);
-  return error;
+    sentence.replace(at, scratch.size(), folder);
+  return sentence;
 }
 
-/// Every file of the scene in `folder`, whole and judged; then all of them to their places.
-std::optional<Error> make_scene(const Options& o, const OutputNames& names,
-                                const std::string& folder) {
-  const auto inside = [&folder](const std::string& path) {
-    return folder + "/" + fs::path(path).filename().string();
-  };
+/// What lies in the scratch folder, under the names it will have; the scene is the last to appear.
+Result<std::vector<new_scene::OutputFile>> collect(const OutputNames& made,
+                                                   const OutputNames& names) {
+  std::vector<new_scene::OutputFile> files;
+  for (const auto name :
+       {&OutputNames::organ, &OutputNames::tool, &OutputNames::map, &OutputNames::reference,
+        &OutputNames::tool_reference, &OutputNames::scene}) {
+    if (!fs::exists(made.*name)) continue;
+    auto content = tact::model::io::read_file(made.*name, "try again");
+    if (!content) return content.error();
+    files.push_back({names.*name, std::move(*content)});
+  }
+  return files;
+}
+
+/// Every file of the scene in `folder`, whole and judged; then all of them to their places. True if
+/// tact-plan has chosen its law.
+Result<bool> make_scene(const Options& o, const OutputNames& names, const std::string& folder) {
+  const auto made = new_scene::names_of(folder + "/" + fs::path(names.scene).filename().string());
+  if (!made) return made.error();
   const auto organ = read(o, folder);
   if (!organ) return organ.error();
-  std::vector<new_scene::OutputFile> files;
-  if (!organ->obj_text.empty()) files.push_back({names.organ, organ->obj_text});
-  files.push_back({names.tool, new_scene::tool_mesh()});
-  files.push_back({names.scene, write_text(o, names, *organ)});
-  for (const auto& file : files)
-    if (auto error = tact::model::io::write_file(inside(file.path), file.content)) return error;
-  if (auto error = condense(inside(names.scene), inside(names.map))) return error;
-  if (auto error = ask_tactd(inside(names.scene), folder + "/log")) return error;
+  const auto place = new_scene::place_of(organ->mesh);
+  tell("place", fmt::format("the top comes to the tool; held below z = {:.4g} mm, the lowest tenth",
+                            1e3 * place.held.max_m.z));
+  const auto write_scene = [&](const char* law) {
+    return tact::model::io::write_file(made->scene, text_of(o, names, *organ, place, law));
+  };
+  const std::string log = folder + "/log";
+  if (!organ->obj_text.empty())
+    if (auto error = tact::model::io::write_file(made->organ, organ->obj_text)) return *error;
+  if (auto error = tact::model::io::write_file(made->tool, new_scene::tool_mesh())) return *error;
+  if (auto error = write_scene("compliance")) return *error;
+  if (auto error = condense(made->scene, made->map)) return *error;
+  if (auto error = ask_tactd(made->scene, log)) return *error;
+  bool is_planned = false;
+  if (o.plan) {
+    if (auto error = write_scene("auto")) return *error;
+    const auto chosen = new_scene::choose_law(
+        *made, log,
+        [&](const char* step, const std::string& text) { tell(step, about(text, folder, names)); });
+    if (!chosen) return chosen;
+    is_planned = *chosen;
+    auto error = is_planned ? ask_tactd(made->scene, log) : write_scene("compliance");
+    if (error) return *error;
+  }
   tell("check", "tactd takes the scene");
-  auto map = tact::model::io::read_file(inside(names.map), "try again");
-  if (!map) return map.error();
-  files.insert(files.end() - 1, {names.map, std::move(*map)});  // the scene is the last to appear
+  const auto files = collect(*made, names);
+  if (!files) return files.error();
   if (program::is_interrupted()) return program::interruption();
-  if (auto error = new_scene::write_all(files, o.force)) return error;
-  for (const auto& file : files) tell("wrote", file.path);
-  return std::nullopt;
+  if (auto error = new_scene::write_all(*files, o.force)) return *error;
+  for (const auto& file : *files) tell("wrote", file.path);
+  return is_planned;
 }
 
 /// As a shell reads it as one word.
@@ -205,16 +241,17 @@ std::string as_word(const std::string& path) {
   return "'" + word + "'";
 }
 
-void tell_what_next(const OutputNames& names) {
-  const std::string reference = fs::path(names.map).replace_extension(".reference.json").string();
-  tell("law", "compliance, from the map; no other law was compared");
-  fmt::print(
-      "\nFeel it:\n"
-      "  tactd {0} --free-run --seconds 5\n"
-      "Is a faster law good enough? Minutes to an hour, by CalculiX: write law = \"auto\", then\n"
-      "  tact-reference {0} --out {1}\n"
-      "  tact-plan {0} --reference {1}\n",
-      as_word(names.scene), as_word(reference));
+void tell_what_next(const OutputNames& names, bool is_planned) {
+  const std::string scene = as_word(names.scene);
+  tell("law", is_planned ? "as tact-plan has chosen for this PC" : "compliance, from the map");
+  fmt::print("\nFeel it:\n  tactd {} --free-run --seconds 5\n", scene);
+  if (is_planned)
+    fmt::print(
+        "On another PC its times differ; there, once:\n  tact-plan {} --reference {} "
+        "--tool-reference {}\n",
+        scene, as_word(names.reference), as_word(names.tool_reference));
+  else
+    fmt::print("Is a faster law good enough? tact-new-scene with --plan compares them.\n");
 }
 
 }  // namespace
@@ -225,9 +262,10 @@ int main(int argc, char** argv) {
       "Make a scene of an organ: repair its mesh where needed, put its top under the forceps, "
       "hold\n"
       "its lowest tenth, condense it, and ask tactd whether it takes the scene. Minutes of work.\n"
-      "The law is compliance, from the map. Beside NAME.toml come NAME.compliance, NAME_tool.obj\n"
-      "and, if ORGAN was repaired or is no OBJ file, NAME.obj. No file appears before all are "
-      "whole.",
+      "The law is compliance, from the map; with --plan the one that tact-plan chooses. Beside\n"
+      "NAME.toml come NAME.compliance, NAME_tool.obj and, if ORGAN was repaired or is no OBJ "
+      "file,\n"
+      "NAME.obj; with --plan two references. No file appears before all are whole.",
       "Needs gmsh: apt install gmsh; to repair a mesh Python's VTK: apt install python3-vtk9.\n"
       "E and nu are those of the shipped liver. Nothing is turned: what is on top in the file is\n"
       "touched.");
@@ -239,8 +277,9 @@ int main(int argc, char** argv) {
   if (const auto error = check_before(options, *names)) return program.fail(*error);
   const auto folder = program::ScratchFolder::make("tact-new-scene");
   if (!folder) return program.fail(folder.error());
-  if (const auto error = make_scene(options, *names, folder->path()))
-    return program.fail(about(*error, folder->path(), *names));
-  tell_what_next(*names);
+  const auto is_planned = make_scene(options, *names, folder->path());
+  if (!is_planned)
+    return program.fail({about(is_planned.error().sentence, folder->path(), *names)});
+  tell_what_next(*names, *is_planned);
   return 0;
 }

@@ -26,6 +26,8 @@ model::Result<OutputNames> names_of(const std::string& out) {
                      .map = beside(".compliance"),
                      .organ = beside(".obj"),
                      .tool = beside("_tool.obj"),
+                     .reference = beside(".reference.json"),
+                     .tool_reference = beside("_tool.reference.json"),
                      .name = stem};
 }
 

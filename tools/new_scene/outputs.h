@@ -13,7 +13,8 @@ namespace tact::tools::new_scene {
 /// FOLDER/NAME.toml and what lies beside it.
 struct OutputNames {
   std::string scene, map, organ, tool;
-  std::string name;  // NAME
+  std::string reference, tool_reference;  // of tact-reference, with --plan
+  std::string name;                       // NAME
 };
 
 /// An error if `out` does not end in .toml.

@@ -49,9 +49,9 @@ std::string scene_text(const SceneValues& values, const ScenePlace& place) {
   const double press_m = mesh::rounded_m(kPress_ratio * place.working_depth_m);
   using fmt::arg;
   return fmt::format(fmt::runtime(kScene), arg("organ", quoted(values.source)),
-                     arg("name", quoted(values.name)), arg("map", quoted(values.map)),
-                     arg("tool", quoted(values.tool)), arg("mesh", quoted(values.mesh)),
-                     arg("mesh_unit_m", values.mesh_unit_m),
+                     arg("name", quoted(values.name)), arg("law", quoted(values.law)),
+                     arg("map", quoted(values.map)), arg("tool", quoted(values.tool)),
+                     arg("mesh", quoted(values.mesh)), arg("mesh_unit_m", values.mesh_unit_m),
                      arg("position_m", mesh::toml_of(place.position_m)), arg("vertex", place.top),
                      arg("fixed_min_m", mesh::toml_of(place.held.min_m)),
                      arg("fixed_max_m", mesh::toml_of(place.held.max_m)),

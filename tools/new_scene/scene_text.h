@@ -18,6 +18,7 @@ struct SceneValues {
   std::string name;       // of the scene
   std::string map, tool;  // files beside the scene
   std::string mesh;       // absolute or beside the scene
+  std::string law = "compliance";
   double mesh_unit_m = 0.001;
   double youngs_modulus_Pa = 0.0, poisson_ratio = 0.0;
 };

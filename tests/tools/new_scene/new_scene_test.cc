@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <utility>
 
@@ -182,6 +183,46 @@ TEST_F(NewScene, WhatTactdRefusesIsNotWritten) {
   EXPECT_EQ(ran.status, 2);
   EXPECT_NE(ran.err.find("mine.toml: law compliance is too stiff"), ran.err.npos) << ran.err;
   EXPECT_EQ(made(), std::vector<std::string>{});
+}
+
+TEST_F(NewScene, PlansTheLawForThisPcWithReferencesThatAnotherCanUse) {
+  if (std::getenv("TACT_LONG") == nullptr)
+    GTEST_SKIP() << "two minutes of finite elements: with TACT_LONG=1, as tools/check --long";
+  if (std::system("command -v ccx >/dev/null") != 0)
+    GTEST_SKIP() << "no CalculiX: apt install calculix-ccx, where the release has it";
+  ASSERT_EQ(setenv("XDG_CACHE_HOME", path("cache").c_str(), 1), 0);
+  const std::string organ = temp_.write("organ.obj", as_obj(ellipsoid_mm(2)));
+  const Ran ran = run(organ + " --out " + out_ + " --plan");
+  ASSERT_EQ(ran.status, 0) << ran.err << ran.out;
+  EXPECT_EQ(made(), (std::vector<std::string>{"mine.compliance", "mine.reference.json", "mine.toml",
+                                              "mine_tool.obj", "mine_tool.reference.json"}));
+  EXPECT_EQ(model::scene::load_scene(out_, {})->law, model::scene::LawKind::kAuto);
+  const Ran felt = tests::run_apart(temp_, "tactd", out_ + " --check");
+  EXPECT_EQ(felt.status, 0) << felt.err;
+  EXPECT_NE(felt.err.find("law \"auto\" is --set law="), felt.err.npos) << felt.err;
+  const Ran again =
+      tests::run_apart(temp_, "tact-plan",
+                       out_ + " --dry-run --reference " + path("mine.reference.json") +
+                           " --tool-reference " + path("mine_tool.reference.json"));
+  EXPECT_EQ(again.status, 0) << again.err;
+  unsetenv("XDG_CACHE_HOME");
+}
+
+TEST_F(NewScene, WithoutCalculiXThePlanIsNoneAndTheSceneIsFeltAllTheSame) {
+  const std::string organ = temp_.write("organ.obj", as_obj(ellipsoid_mm(2)));
+  const std::string programs = path("programs");
+  fs::create_directory(programs);
+  fs::create_symlink("/usr/bin/gmsh", programs + "/gmsh");
+  const tests::Outcome ran =
+      tests::run_command("PATH=" + programs + " " + tests::program_path("tact-new-scene") + " " +
+                         organ + " --out " + out_ + " --plan");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  EXPECT_NE(ran.output.find("plan             none: "), ran.output.npos) << ran.output;
+  EXPECT_NE(ran.output.find("ccx is not installed; apt install calculix-ccx"), ran.output.npos)
+      << ran.output;
+  EXPECT_EQ(ran.output.find("/tmp/tact-new-scene"), ran.output.npos) << ran.output;
+  EXPECT_EQ(made(), (std::vector<std::string>{"mine.compliance", "mine.toml", "mine_tool.obj"}));
+  EXPECT_EQ(model::scene::load_scene(out_, {})->law, model::scene::LawKind::kCompliance);
 }
 
 TEST_F(NewScene, NoFileAppearsWhereOneCannot) {

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// choose_law.h - the law of a new scene as tact-plan chooses it: references by tact-reference, then
+// tact-plan, which leaves its choice in the cache of this user for this PC.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "model/result.h"
+#include "tools/new_scene/outputs.h"
+
+namespace tact::tools::new_scene {
+
+/// `files.scene` says law = "auto"; files.reference and files.tool_reference are written. False:
+/// no law was planned, and `tell` has heard why: CalculiX is missing, or no law is good enough. An
+/// error only after Ctrl-C. Minutes to an hour.
+model::Result<bool> choose_law(
+    const OutputNames& files, const std::string& log_path,
+    const std::function<void(const char* step, const std::string& text)>& tell);
+
+}  // namespace tact::tools::new_scene
