@@ -24,6 +24,11 @@ class Trouble(Exception):
     """One sentence, and the end of the console."""
 
 
+def must(condition, sentence):
+    if not condition:
+        raise Trouble(sentence)
+
+
 class Pc:
     """Switched on when made. `firmware` is "bios" or "uefi"."""
 
