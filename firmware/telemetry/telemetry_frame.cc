@@ -105,6 +105,8 @@ model::Result<int> make_mesh_file(const model::scene::Scene& scene) {
   std::vector<char> bytes;
   append(bytes, scene.organ_mesh);
   append(bytes, scene.tool_mesh);
+  for (const model::mesh::Rgb& color : scene.look.vertex_color)
+    bytes.insert(bytes.end(), color.begin(), color.end());
   // Sealed at last, so that a viewer can map it without fear that it shrinks, and change nothing.
   const int fd = memfd_create("tact-meshes", MFD_CLOEXEC | MFD_ALLOW_SEALING);
   std::size_t written = 0;

@@ -13,6 +13,7 @@ namespace {
 using model::Error;
 
 constexpr std::uint64_t kTripleBytes = 12;  // 3 floats or 3 uint32
+constexpr std::uint64_t kColorBytes = 3;    // red, green, blue
 // Chosen: far beyond an organ, and 48 MB of one mesh at most.
 constexpr std::uint32_t kMaxElements = 4'000'000;  // vertices or triangles of one mesh
 
@@ -27,6 +28,13 @@ std::optional<Error> check_header(const firmware::telemetry::MessageHeader& head
   }
   if (header.kind != kind) return Error{"a telemetry message has an unexpected kind"};
   return std::nullopt;
+}
+
+std::uint64_t mesh_size(const Hello& hello) {
+  // In 64 bits: four 32-bit counts of a stranger may overflow their own type.
+  const std::uint64_t triples = std::uint64_t{hello.organ_vertices} + hello.organ_triangles +
+                                hello.tool_vertices + hello.tool_triangles;
+  return triples * kTripleBytes;
 }
 
 std::optional<Error> check_part(std::span<const std::byte> part, std::uint32_t vertices,
@@ -70,11 +78,9 @@ std::optional<Error> check_patch(const firmware::telemetry::FramePatch& patch, c
 
 }  // namespace
 
-std::uint64_t mesh_size(const Hello& hello) {
-  // In 64 bits: four 32-bit counts of a stranger may overflow their own type.
-  const std::uint64_t triples = std::uint64_t{hello.organ_vertices} + hello.organ_triangles +
-                                hello.tool_vertices + hello.tool_triangles;
-  return triples * kTripleBytes;
+bool is_mesh_size(const Hello& hello, std::uint64_t bytes) {
+  const std::uint64_t meshes = mesh_size(hello);
+  return bytes == meshes || bytes == meshes + kColorBytes * hello.organ_vertices;
 }
 
 std::optional<Error> check_hello(const Hello& hello) {
@@ -104,16 +110,18 @@ std::optional<Error> check_hello(const Hello& hello) {
 }
 
 std::optional<Error> check_mesh(const Hello& hello, std::span<const std::byte> mesh) {
-  const std::uint64_t expected = mesh_size(hello);
-  if (mesh.size() != expected)
-    return Error{fmt::format("the meshes have {} bytes instead of {}", mesh.size(), expected)};
+  const std::uint64_t meshes = mesh_size(hello);
+  if (!is_mesh_size(hello, mesh.size()))
+    return Error{fmt::format("the meshes have {} bytes instead of {}, or {} with colours",
+                             mesh.size(), meshes, meshes + kColorBytes * hello.organ_vertices)};
   const std::size_t organ_size =
       (std::size_t{hello.organ_vertices} + hello.organ_triangles) * kTripleBytes;
   if (std::optional<Error> error =
           check_part(mesh.first(organ_size), hello.organ_vertices, "organ")) {
     return error;
   }
-  return check_part(mesh.subspan(organ_size), hello.tool_vertices, "tool");
+  const std::span<const std::byte> tool = mesh.subspan(organ_size, meshes - organ_size);
+  return check_part(tool, hello.tool_vertices, "tool");
 }
 
 std::optional<Error> check_frame(const Frame& frame, const Hello& hello) {

@@ -21,8 +21,9 @@ using firmware::telemetry::Hello;
 /// Content of the memory file that comes with a Hello.
 using MeshBytes = std::vector<std::byte>;
 
-/// Size in bytes of the meshes that this Hello announces.
-std::uint64_t mesh_size(const Hello& hello);
+/// Are the meshes that this Hello announces so long, with colours of the organ's vertices or
+/// without?
+bool is_mesh_size(const Hello& hello, std::uint64_t bytes);
 
 /// Header, counts, and finite lengths of a Hello.
 std::optional<model::Error> check_hello(const Hello& hello);

@@ -51,13 +51,14 @@ int take_descriptor(msghdr& message) {
 }
 
 /// Copies instead of mapping: a file that shrinks later cannot hurt.
-record::MeshBytes read_memory_file(int fd, std::uint64_t expected) {
+record::MeshBytes read_memory_file(int fd, const record::Hello& hello) {
   record::MeshBytes mesh;
   struct stat status{};
   // Before the memory is taken: the size has to be the one that the Hello announces.
-  if (fstat(fd, &status) != 0 || static_cast<std::uint64_t>(status.st_size) != expected)
+  if (fstat(fd, &status) != 0 || status.st_size < 0 ||
+      !record::is_mesh_size(hello, static_cast<std::uint64_t>(status.st_size)))
     return mesh;
-  mesh.resize(expected);
+  mesh.resize(static_cast<std::size_t>(status.st_size));
   std::size_t done = 0;
   while (done < mesh.size()) {
     const ssize_t got = pread(fd, &mesh[done], mesh.size() - done, static_cast<off_t>(done));
@@ -220,7 +221,7 @@ std::optional<Error> TelemetryClient::take_hello(std::span<const std::byte> mess
   std::memcpy(&hello_, message.data(), sizeof hello_);
   if (std::optional<Error> error = record::check_hello(hello_)) return error;
   if (memory_file < 0) return Error{"tactd sent no meshes with its first message"};
-  record::MeshBytes mesh = read_memory_file(memory_file, record::mesh_size(hello_));
+  record::MeshBytes mesh = read_memory_file(memory_file, hello_);
   if (std::optional<Error> error = record::check_mesh(hello_, mesh)) return error;
   has_hello_ = true;
   listen();

@@ -151,6 +151,9 @@ Result<ObjMesh> load_obj(const std::string& path, double unit_m) {
   for (std::uint32_t v = 0; v < first.size(); ++v) obj.welded_vertices += first[v] != v;
   obj.unused_vertices = obj.file_vertices - obj.welded_vertices - found.vertex_m.size();
 
+  if (!text.color.empty())
+    for (const std::uint32_t v : found.file_vertex) obj.vertex_color.push_back(text.color[v - 1]);
+
   SurfaceOrDefect built = build_surface(std::move(found.vertex_m), std::move(found.triangle));
   if (const auto* defect = std::get_if<MeshDefect>(&built))
     return defect_error(path, *defect, found.line, found.file_vertex);

@@ -9,8 +9,10 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "model/mesh/mesh.h"
+#include "model/mesh/rgb.h"
 #include "model/result.h"
 
 namespace tact::model::mesh {
@@ -19,6 +21,7 @@ inline constexpr std::uintmax_t kMaxObjBytes = 2'000'000'000;
 
 struct ObjMesh {
   SurfaceMesh mesh;                 // m
+  std::vector<Rgb> vertex_color;    // of each vertex, or none where one has none
   std::size_t file_vertices = 0;    // in the file
   std::size_t welded_vertices = 0;  // of these, dropped for an earlier one at the same place
   std::size_t unused_vertices = 0;  // of these, dropped because no face names them

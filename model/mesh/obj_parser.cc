@@ -57,6 +57,7 @@ class Parser {
     if (!error_) check_corners();
     if (error_) return *error_;
     text_.lines = line_;
+    if (text_.color.size() != text_.vertex.size()) text_.color.clear();
     return std::move(text_);
   }
 
@@ -141,12 +142,12 @@ class Parser {
   }
 
   void parse_vertex() {
-    std::array<double, 3> x{};
+    std::array<double, 6> x{};  // x y z, red green blue
     std::size_t count = 0;
     for (; !at_statement_end(); ++count) {
       double number = 0.0;
       if (!parse_number(number)) return;
-      if (count < 3) x[count] = number;
+      if (count < x.size()) x[count] = number;
     }
     if (count < 3) {
       return fail(
@@ -157,6 +158,10 @@ class Parser {
     if (text_.vertex.size() == kMaxObjVertices)
       return fail(fmt::format("more than {} vertices; simplify the mesh", kMaxObjVertices));
     text_.vertex.push_back({x[0], x[1], x[2]});
+    const auto is_share = [](double c) { return c >= 0.0 && c <= 1.0; };
+    if (count != x.size() || !std::all_of(x.begin() + 3, x.end(), is_share)) return;
+    const auto level = [](double c) { return static_cast<std::uint8_t>(std::lround(255.0 * c)); };
+    text_.color.push_back({level(x[3]), level(x[4]), level(x[5])});
   }
 
   // v, v/vt, v//vn or v/vt/vn: the vertex number counts, the rest must be whole numbers or absent.

@@ -25,30 +25,35 @@ std::string absolute_path(const std::string& scene_path, const std::string& file
 }
 
 /// The mesh's own error names its file and line; one that is not there is the scene's error.
-Result<mesh::SurfaceMesh> load_mesh(const MeshText& text, const std::string& path) {
+Result<mesh::ObjMesh> load_mesh(const MeshText& text, const std::string& path) {
   std::error_code failed;
   if (!fs::is_regular_file(path, failed)) {
     return Error{
         fmt::format("{}: {} is no file; name an OBJ file, absolute or from the folder of the scene",
                     text.place.where, path)};
   }
-  Result<mesh::ObjMesh> loaded = mesh::load_obj(path, text.unit_m);
-  if (!loaded) return loaded.error();
-  return std::move(loaded->mesh);
+  return mesh::load_obj(path, text.unit_m);
 }
 
 std::optional<Error> load_meshes(const SceneText& text, Scene& scene) {
   scene.organ.mesh_path = absolute_path(scene.path, text.organ_mesh.file);
   scene.tool.mesh_path = absolute_path(scene.path, text.tool_mesh.file);
-  Result<mesh::SurfaceMesh> organ = load_mesh(text.organ_mesh, scene.organ.mesh_path);
+  Result<mesh::ObjMesh> organ = load_mesh(text.organ_mesh, scene.organ.mesh_path);
   if (!organ) return organ.error();
-  Result<mesh::SurfaceMesh> tool = load_mesh(text.tool_mesh, scene.tool.mesh_path);
+  Result<mesh::ObjMesh> tool = load_mesh(text.tool_mesh, scene.tool.mesh_path);
   if (!tool) return tool.error();
   if (const Vec3& turn_deg = text.organ_orientation_deg; norm(turn_deg) > 0.0)
-    mesh::turn(*organ, mesh::turn_of(turn_deg));
-  mesh::shift(*organ, scene.organ.position_m);
-  scene.organ_mesh = std::move(*organ);
-  scene.tool_mesh = std::move(*tool);
+    mesh::turn(organ->mesh, mesh::turn_of(turn_deg));
+  mesh::shift(organ->mesh, scene.organ.position_m);
+  scene.organ_mesh = std::move(organ->mesh);
+  scene.tool_mesh = std::move(tool->mesh);
+  if (!scene.look.has_vertex_colors) return std::nullopt;
+  if (organ->vertex_color.empty())
+    return Error{fmt::format(
+        "{}: look.vertex_colors = true, but {} has no colours: \"v x y z red green blue\", 0 to 1, "
+        "at each vertex; tact-mesh keeps those of a scan, or leave the key out",
+        text.organ_mesh.place.where, scene.organ.mesh_path)};
+  scene.look.vertex_color = std::move(organ->vertex_color);
   return std::nullopt;
 }
 

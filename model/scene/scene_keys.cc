@@ -66,12 +66,17 @@ void visit_look(reader::Keys& k, LookSettings& look) {
   k.choice("tool", kMaterials, "the same of the tool", tool, reader::Need::kOptional);
   look.organ = kMaterials[organ].name;
   look.tool = kMaterials[tool].name;
+  k.flag("vertex_colors", "the organ's colours are those of its mesh's vertices",
+         look.has_vertex_colors, reader::Need::kOptional);
   k.entries("piece", {0, kMaxPieces},
             "a connected piece of the organ's mesh, in its order; the last: all others too",
             [&](reader::Keys& piece) {
               piece.vector("color_ratio", {0.0, 4.0}, "red, green, blue, times the material's",
                            look.piece_color_ratio.emplace_back());
             });
+  if (look.has_vertex_colors && !look.piece_color_ratio.empty())
+    k.refuse({"vertex_colors"},
+             "look.vertex_colors and look.piece both colour the organ; leave one of them out");
 }
 
 void visit_contact(reader::Keys& k, contact::ContactParameters& c) {

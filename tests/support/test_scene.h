@@ -10,7 +10,7 @@ namespace tact::tests {
 
 inline model::scene::Scene make_plate_scene() {
   model::scene::Scene scene;
-  scene.look = {.organ = "skin", .piece_color_ratio = {{1.0, 1.0, 0.5}}};
+  scene.look = {.organ = "skin", .piece_color_ratio = {{1.0, 1.0, 0.5}}, .vertex_color = {}};
   scene.path = "plate.toml";
   scene.name = "plate";
   scene.rate_Hz = 1000.0;

@@ -89,9 +89,10 @@ LOG_RECORD = np.dtype([("tick", LOGGED_TICK), ("crc", "<u4"), ("pad", "<u4")])
 
 @dataclasses.dataclass
 class Mesh:
-    """vertex_m is (n, 3), m; triangle is (m, 3), numbers of vertices."""
+    """vertex_m is (n, 3), m; triangle is (m, 3), numbers of vertices; color is (n, 3), 0 to 255, or None."""
     vertex_m: np.ndarray
     triangle: np.ndarray
+    color: np.ndarray | None = None
 
 
 @dataclasses.dataclass
@@ -275,8 +276,7 @@ def _unsealed(path):
     end = data[-48:]
     if len(end) < 48 or end[:8] != SEAL:
         return data, "it has no end: it was cut off, its program was killed, or it is still being written"
-    (count,) = struct.unpack("<Q", end[8:16])
-    whole = count == len(data) - 48 and hashlib.sha256(memoryview(data)[:-48]).digest() == end[16:]
+    whole = struct.unpack("<Q", end[8:16])[0] == len(data) - 48 and hashlib.sha256(memoryview(data)[:-48]).digest() == end[16:]
     return data[:-48], "" if whole else "its bytes are not those that were written"
 
 
@@ -292,8 +292,9 @@ def _meshes(hello, data, where):
         vertices, triangles = int(hello[part + "_vertices"]), int(hello[part + "_triangles"])
         if at + 12 * (vertices + triangles) > len(data):
             raise Error(f"{where}: its meshes are shorter than the hello says")
-        vertex = np.frombuffer(data, "<f4", 3 * vertices, at).reshape(-1, 3)
-        triangle = np.frombuffer(data, "<u4", 3 * triangles, at + 12 * vertices).reshape(-1, 3)
-        out.append(Mesh(vertex, triangle))
+        out.append(Mesh(np.frombuffer(data, "<f4", 3 * vertices, at).reshape(-1, 3),
+                        np.frombuffer(data, "<u4", 3 * triangles, at + 12 * vertices).reshape(-1, 3)))
         at += 12 * (vertices + triangles)
+    if len(data) == at + out[0].vertex_m.size:
+        out[0].color = np.frombuffer(data, "u1", -1, at).reshape(-1, 3)
     return out

@@ -35,14 +35,21 @@ def main():
     options.add_argument("--decimate", type=int, metavar="N")
     asked = options.parse_args()
     try:
+        import colors
         import steps
         import surface_file
     except ImportError as missing:
         tell(error=f"{missing.name} is missing in Debian's python3; apt install python3-vtk9 python3-numpy")
         return 2
     try:
-        points, triangles = surface_file.read(asked.source, asked.ending)
-        surface_file.write_obj(asked.target, *steps.repair(points, triangles, asked, tell))
+        surface = surface_file.read(asked.source, asked.ending)
+        before, color = surface_file.to_numpy(surface)[0], colors.of_surface(surface)
+        points, triangles = steps.repair(*surface_file.to_numpy(surface), asked, tell)
+        if color is not None:
+            color = colors.nearest(before, color, points)
+            tell(step="color", count=len(points), text=f"{len(points)} vertices have the colour of the nearest of the file",
+                 faces=len(triangles), vertices=len(points))
+        surface_file.write_obj(asked.target, points, triangles, color)
     except surface_file.Refused as refused:
         tell(error=str(refused))
         return 2

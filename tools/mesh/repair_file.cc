@@ -44,7 +44,7 @@ Result<std::string> find_script() {
 }
 
 /// An OBJ file is read by tact's own parser, which knows the line of an error, and handed on with
-/// vertices and faces alone.
+/// vertices, their colours and faces alone.
 std::optional<Error> write_plain_obj(const std::string& from, const program::MemoryFile& to) {
   const auto file = model::io::read_file(from, kCure, model::mesh::kMaxObjBytes);
   if (!file) return file.error();
@@ -52,8 +52,14 @@ std::optional<Error> write_plain_obj(const std::string& from, const program::Mem
   const auto text = model::mesh::parse_obj(*file, from);
   if (!text) return text.error();
   std::string plain;
-  for (const model::Vec3& p : text->vertex)
-    fmt::format_to(std::back_inserter(plain), "v {} {} {}\n", p.x, p.y, p.z);
+  for (std::size_t v = 0; v < text->vertex.size(); ++v) {
+    const model::Vec3& p = text->vertex[v];
+    fmt::format_to(std::back_inserter(plain), "v {} {} {}", p.x, p.y, p.z);
+    if (!text->color.empty())
+      for (const std::uint8_t level : text->color[v])
+        fmt::format_to(std::back_inserter(plain), " {:.4f}", level / 255.0);
+    plain += '\n';
+  }
   std::size_t corner = 0;
   for (const std::uint32_t end : text->face_end) {
     plain += 'f';

@@ -11,6 +11,8 @@ import numpy as np
 import vtk
 from vtk.util import numpy_support
 
+import colors
+
 MOST_BYTES = 2_000_000_000
 MOST_COORDINATE = 1e12  # file units
 AGAIN = "; export the mesh again"
@@ -47,7 +49,7 @@ def to_numpy(surface):
 
 
 def read(path, ending=None):
-    """Points in file units, and triangles of their numbers from 0. `ending`: of the path, if it has another name."""
+    """A vtkPolyData of triangles alone, sound enough to work on, in file units. `ending`: of the path, if it has another name."""
     ending = pathlib.Path(path).suffix.lower() if ending is None else ending
     try:
         size_bytes = os.path.getsize(path)
@@ -69,9 +71,12 @@ def read(path, ending=None):
         surface = read_off(path)
     elif ending in READERS:
         surface = read_by_vtk(path, READERS[ending]())
+        if ending == ".obj":  # VTK leaves them aside
+            colors.add_of_text(surface, obj_colors(path))
     else:
         raise Refused(f"{path}: {ending or 'no ending'} is no format that is read; export the mesh as {FORMATS}")
-    points, triangles = to_numpy(triangulated(surface))
+    surface = triangulated(surface)
+    points, triangles = to_numpy(surface)
     if len(triangles) == 0 and surface.GetNumberOfPoints() > 0:
         raise Refused(f"{path}: no faces in it, {surface.GetNumberOfPoints()} points alone; make a surface of them in a mesh editor")
     if len(triangles) == 0:
@@ -81,7 +86,7 @@ def read(path, ending=None):
     sane = (np.abs(points) <= MOST_COORDINATE).all(1)  # a NaN is not
     if not sane.all():
         raise Refused(f"{path}{line_of_no_number(path, ending)}: vertex {np.argmin(sane) + 1} is not finite, or beyond 1e12{AGAIN}")
-    return points, triangles
+    return surface
 
 
 def check_stl(path, size_bytes, beginning):
@@ -98,12 +103,18 @@ def check_stl(path, size_bytes, beginning):
 
 
 def check_ply(path, size_bytes):
-    """VTK reserves what the head promises: one that promises more elements than the file has bytes fills the memory."""
+    """VTK reserves what the head promises: one that promises more elements than the file has bytes fills the memory. Of
+    fewer lines it makes what it can, with or without a word."""
     with open(path, "rb") as file:
-        head = file.read(65536).split(b"end_header")[0].decode("ascii", errors="replace")
+        head = file.read(65536).split(b"end_header")[0]
+        file.seek(len(head))
+        lines = sum(1 for line in file if line.strip()) - 1
+    head = head.decode("ascii", errors="replace")
     promised = sum(int(count) for count in re.findall(r"^element \w+ (\d+)\s*$", head, re.MULTILINE))
     if promised > size_bytes:
         raise Refused(f"{path}: its head promises {promised} vertices and faces, and the file has {size_bytes} bytes{AGAIN}")
+    if re.search(r"^format ascii\b", head, re.MULTILINE) and lines < promised:
+        raise Refused(f"{path}: cut short, after {lines} of {promised} vertices and faces{AGAIN}")
 
 
 def check_gltf(path):
@@ -163,13 +174,18 @@ def complaint(path, text):
     return f"{path}{':' + line[1] if line else ''}: {what[:120]}{AGAIN}"
 
 
+def obj_colors(path):
+    with open(path, encoding="ascii", errors="replace") as file:
+        return [line.split()[4:] for line in file if line.startswith("v ")]
+
+
 def read_off(path):
     """OFF and COFF as text, which this VTK does not read: the counts, a vertex a line, a face a line after its count."""
     with open(path, encoding="ascii", errors="replace") as file:
         rows = [(number, line.split("#")[0].split()) for number, line in enumerate(file, 1)]
     rows = iter([(number, words) for number, words in rows if words])
     number, words = 1, []
-    places, cells = vtk.vtkPoints(), vtk.vtkCellArray()
+    places, cells, after = vtk.vtkPoints(), vtk.vtkCellArray(), []
     places.SetDataTypeToDouble()
     try:
         number, words = next(rows)
@@ -181,6 +197,7 @@ def read_off(path):
         for _ in range(vertices):
             number, words = next(rows)
             places.InsertNextPoint(*(float(word) for word in words[:3]))
+            after.append(words[3:])
         for _ in range(faces):
             number, words = next(rows)
             corners = [int(word) for word in words[1:int(words[0]) + 1]]
@@ -196,6 +213,7 @@ def read_off(path):
     surface = vtk.vtkPolyData()
     surface.SetPoints(places)
     surface.SetPolys(cells)
+    colors.add_of_text(surface, after)
     return surface
 
 
@@ -209,8 +227,11 @@ def triangulated(surface):
     return cut.GetOutput()
 
 
-def write_obj(path, points, triangles):
+def write_obj(path, points, triangles, color=None):
     with open(path, "w", encoding="ascii") as file:
         file.write("# made by tact-mesh\n")
-        np.savetxt(file, points, "v %.9g %.9g %.9g")
+        if color is None:
+            np.savetxt(file, points, "v %.9g %.9g %.9g")
+        else:
+            np.savetxt(file, np.hstack([points, color]), "v %.9g %.9g %.9g %.4g %.4g %.4g")
         np.savetxt(file, triangles + 1, "f %d %d %d")

@@ -123,6 +123,7 @@ std::string text_of(const Options& o, const OutputNames& names, const Organ& org
                                 .tool = beside(names.tool),
                                 .mesh = organ.obj_text.empty() ? source : beside(names.organ),
                                 .law = law,
+                                .has_colors = organ.has_colors,
                                 .mesh_unit_m = organ.unit.unit_m,
                                 .youngs_modulus_Pa = o.youngs_modulus_Pa,
                                 .poisson_ratio = o.poisson_ratio},

@@ -53,6 +53,7 @@ Result<Organ> read_organ(const OrganOrder& order, const std::string& folder,
   organ.unit = mesh::unit_of(order.source, order.unit_m, obj->mesh);
   model::mesh::scale(obj->mesh, organ.unit.unit_m);
   organ.mesh = std::move(obj->mesh);
+  organ.has_colors = !obj->vertex_color.empty();
   const auto sum = summarize(organ.mesh);
   if (sum.boundary_edges > 0)
     return Error{fmt::format(

@@ -24,6 +24,7 @@ struct Organ {
   std::string obj_text;  // repaired, in the units of the source; empty: the source is sound
   mesh::Unit unit;
   model::mesh::SurfaceMesh mesh;  // m, in its own frame
+  bool has_colors = false;        // at its vertices
 };
 
 /// Is the file an OBJ with one closed part, and small enough?

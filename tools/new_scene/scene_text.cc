@@ -52,6 +52,7 @@ std::string scene_text(const SceneValues& values, const ScenePlace& place) {
                      arg("name", quoted(values.name)), arg("law", quoted(values.law)),
                      arg("map", quoted(values.map)), arg("tool", quoted(values.tool)),
                      arg("mesh", quoted(values.mesh)), arg("mesh_unit_m", values.mesh_unit_m),
+                     arg("vertex_colors", values.has_colors),
                      arg("position_m", mesh::toml_of(place.position_m)), arg("vertex", place.top),
                      arg("fixed_min_m", mesh::toml_of(place.held.min_m)),
                      arg("fixed_max_m", mesh::toml_of(place.held.max_m)),

@@ -19,6 +19,7 @@ struct SceneValues {
   std::string map, tool;  // files beside the scene
   std::string mesh;       // absolute or beside the scene
   std::string law = "compliance";
+  bool has_colors = false;  // at the mesh's vertices
   double mesh_unit_m = 0.001;
   double youngs_modulus_Pa = 0.0, poisson_ratio = 0.0;
 };

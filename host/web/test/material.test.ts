@@ -2,8 +2,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { readFileSync } from "node:fs";
-import { kMaterials, organ_material, piece_tints, pieces_of, tool_material } from "../src/scene/material";
-import type { Scene, Vec } from "../src/link/protocol";
+import { kMaterials, organ_material, piece_tints, pieces_of, tool_material, vertex_tints } from "../src/scene/material";
+import { split_meshes, type Scene, type Vec } from "../src/link/protocol";
 
 function mesh(vertices: number, triangle: number[]) {
   return { vertex_m: new Float32Array(3 * vertices), triangle: Uint32Array.from(triangle) };
@@ -20,9 +20,9 @@ test("pieces are numbered in the order of the mesh", () => {
 const scene = (organ: string, tool: string, pieces: Vec[] = []) => ({ look: { organ, tool, pieces } }) as unknown as Scene;
 
 test("organ and tool look as the scene says, else like tissue and steel", () => {
-  assert.equal(organ_material(scene("skin", "glove")), kMaterials.get("skin"));
+  assert.equal(organ_material(scene("skin", "glove"), mesh(0, [])), kMaterials.get("skin"));
   assert.equal(tool_material(scene("skin", "glove")), kMaterials.get("glove"));
-  assert.equal(organ_material(scene("", "")), kMaterials.get("tissue"));
+  assert.equal(organ_material(scene("", ""), mesh(0, [])), kMaterials.get("tissue"));
   assert.equal(tool_material(scene("constructor", "constructor")), kMaterials.get("steel"));
 });
 
@@ -33,7 +33,22 @@ test("each piece has its colour, and those that have none that of the last", () 
   assert.deepEqual([...tints.slice(9, 12)], [2, 2, 2]);
   assert.deepEqual([...tints.slice(24, 27)], [2, 2, 2]);
   assert.ok(piece_tints(three, []).every((tint) => tint === 1));
-  assert.equal(organ_material(scene("tissue", "steel", [[1, 1, 1]])).alive, false); // given colours stay
+  assert.equal(organ_material(scene("tissue", "steel", [[1, 1, 1]]), three).alive, false); // given colours stay
+});
+
+test("vertices have the colours of their mesh, over no colour of the material", () => {
+  const bytes = new Uint8Array(72 + 24 + 9);
+  bytes.set([255, 0, 128, 0, 255, 0, 255, 255, 255], 96);
+  const parts = { organ: { vertices: 3, triangles: 1 }, tool: { vertices: 3, triangles: 1 } };
+  const whole = { ...scene("tissue", "steel"), ...parts } as unknown as Scene;
+  const { organ } = split_meshes(whole, bytes.buffer);
+  const tints = vertex_tints(organ.color!);
+  assert.deepEqual([...tints.slice(3, 6)], [0, 1, 0]);
+  assert.ok(Math.abs(tints[2] - 0.2158) < 1e-3, "of sRGB");
+  const made_of = organ_material(whole, organ);
+  assert.equal(made_of.alive, false);
+  assert.ok(made_of.look.base.every((part) => part === made_of.look.base[0]));
+  assert.equal(split_meshes(whole, bytes.buffer.slice(0, 96)).organ.color, undefined);
 });
 
 test("the page has a picture of each material that a scene may name, and of no other", () => {

@@ -2,10 +2,14 @@
 #include "firmware/telemetry/telemetry_frame.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <array>
 #include <memory>
 #include <span>
+#include <utility>
+
+#include "tests/support/shapes.h"
 
 namespace tact::firmware::telemetry::telemetry_frame_test {
 
@@ -39,6 +43,26 @@ TEST(TelemetryFrame, CarriesHowTheDentOfATouchedSiteLeans) {
   EXPECT_FLOAT_EQ(frame.site[0].tilt[1], -0.08F);
   EXPECT_FLOAT_EQ(frame.site[0].tilt[2], 0.12F);
   for (const float of_a_free_one : frame.site[1].tilt) EXPECT_EQ(of_a_free_one, 0.0F);
+}
+
+TEST(TelemetryFrame, TheMeshFileEndsWithTheColoursOfTheOrgansVertices) {
+  model::scene::Scene scene;
+  scene.organ_mesh = tests::make_plate(0.1, 1);
+  const auto length = [&scene] {
+    const auto fd = make_mesh_file(scene);
+    EXPECT_TRUE(fd);
+    const off_t end = lseek(*fd, 0, SEEK_END);
+    std::array<std::uint8_t, 3> last{};
+    EXPECT_EQ(pread(*fd, last.data(), 3, end - 3), 3);
+    close(*fd);
+    return std::pair(end, last);
+  };
+  const off_t plain = length().first;
+  scene.look.vertex_color.assign(scene.organ_mesh.vertex_m.size(), {1, 2, 3});
+  scene.look.vertex_color.back() = {7, 8, 9};
+  const auto [end, last] = length();
+  EXPECT_EQ(end, plain + 3 * static_cast<off_t>(scene.organ_mesh.vertex_m.size()));
+  EXPECT_EQ(last, (std::array<std::uint8_t, 3>{7, 8, 9}));
 }
 
 }  // namespace tact::firmware::telemetry::telemetry_frame_test

@@ -111,7 +111,9 @@ TEST(UsbfsPipeEnd, StoppingSendsTheLastCommandAgainUntilItIsTaken) {
     pipe->stop(last_command);
     taken = bus.taken;
   }
-  EXPECT_EQ(taken, std::vector<falcon::FalconPacket>{last_command});
+  ASSERT_FALSE(taken.empty());
+  for (const falcon::FalconPacket& command : taken)  // again where its answer was late
+    EXPECT_EQ(command, last_command);
 }
 
 TEST(UsbfsPipeEnd, AForceThatWaitsBehindAStalledCommandIsDropped) {

@@ -12,10 +12,12 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <sstream>
 
 #include "host/record/operator_record.h"
 #include "host/record/recording_csv.h"
+#include "host/record/telemetry_check.h"
 #include "tests/host/record/spoilt_file.h"
 #include "tests/support/damage.h"
 #include "tests/support/sentence.h"
@@ -55,6 +57,16 @@ class RecordingFile : public ::testing::Test {
   Hello hello_ = test::make_hello(3, 1, 3, 1);
   MeshBytes mesh_ = test::TinyMeshes{}.bytes();
 };
+
+TEST(Meshes, MayEndWithColoursOfAllVerticesOfTheOrganAndNotOfSome) {
+  const Hello hello = test::make_hello(3, 1, 3, 1);
+  MeshBytes mesh = test::TinyMeshes{}.bytes();
+  EXPECT_EQ(check_mesh(hello, mesh), std::nullopt);
+  mesh.resize(mesh.size() + 9, std::byte{0xFF});
+  EXPECT_EQ(check_mesh(hello, mesh), std::nullopt);
+  mesh.pop_back();
+  EXPECT_TRUE(check_mesh(hello, mesh));
+}
 
 TEST_F(RecordingFile, ComesBackAsItWasWritten) {
   const ReadResult read = read_recording(path_);

@@ -77,6 +77,19 @@ TEST(ObjParser, NamesTheLineOfABrokenStatement) {
   expect_error("v 0 0 0\rv 1 0\r", 2, "2 of 3 numbers");
 }
 
+TEST(ObjParser, ReadsTheColourOfEachVertexAndLeavesHalfColouredFilesPlain) {
+  const auto color = [](const std::string& last) {
+    const auto parsed = parse_obj("v 0 0 0 1 0 0.5\nv 1 0 0 0 1 0\n" + last + "f 1 2 3\n", "a.obj");
+    EXPECT_TRUE(parsed) << last;
+    return parsed ? parsed->color : std::vector<Rgb>{};
+  };
+  EXPECT_EQ(color("v 0 1 0 .2 .4 1\n"),
+            (std::vector<Rgb>{{255, 0, 128}, {0, 255, 0}, {51, 102, 255}}));
+  for (const char* plain : {"v 0 1 0\n", "v 0 1 0 1\n", "v 0 1 0 1 1\n", "v 0 1 0 1 1 1.01\n",
+                            "v 0 1 0 1 1 -0.1\n", "v 0 1 0 1 1 1 1\n"})
+    EXPECT_TRUE(color(plain).empty()) << plain;
+}
+
 TEST(ObjParser, RefusesMoreVerticesThanTheLimitAtTheirLine) {
   std::string text;
   for (std::size_t i = 0; i <= kMaxObjVertices; ++i) text += "v 0 0 0\n";

@@ -273,6 +273,15 @@ TEST_F(Obj, AFileCutAnywhereLoadsOrGivesOneLine) {
   EXPECT_GT(loaded, 10);
 }
 
+TEST_F(Obj, AColourStaysWithItsVertexWhereOthersAreWeldedOrUnused) {
+  // The second lies at the first, no face names the third.
+  const auto obj =
+      load("v 0 0 0 1 0 0\nv 0 0 0 0 0 0\nv 9 9 9 0 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 2 4 5\n");
+  ASSERT_TRUE(obj);
+  EXPECT_EQ(obj->vertex_color, (std::vector<Rgb>{{255, 0, 0}, {0, 255, 0}, {0, 0, 255}}));
+  EXPECT_TRUE(load(kCubeVertices + kCubeFaces)->vertex_color.empty());
+}
+
 TEST_F(Obj, AFileWithOneByteChangedLoadsOrGivesOneLine) {
   const std::string text = kCubeVertices + kCubeFaces;
   for (std::size_t at = 0; at < text.size(); at += 3) {

@@ -99,38 +99,6 @@ TEST(Scene, FillsInDefaults) {
   EXPECT_EQ(scene->contact.grip_open_ratio, 0.5);
 }
 
-TEST(Scene, LooksAsItSaysElseLikeTissueUnderSteel) {
-  const Result<Scene> plain = load_scene(kPlain, {});
-  ASSERT_TRUE(plain) << plain.error().sentence;
-  EXPECT_EQ(plain->look.organ, "tissue");
-  EXPECT_EQ(plain->look.tool, "steel");
-  EXPECT_TRUE(plain->look.piece_color_ratio.empty());
-  const Result<Scene> dressed = load_scene(kPlain, {"look.organ=\"skin\"", "look.tool=\"glove\""});
-  ASSERT_TRUE(dressed) << dressed.error().sentence;
-  EXPECT_EQ(dressed->look.organ, "skin");
-  EXPECT_EQ(dressed->look.tool, "glove");
-  const Result<Scene> cover = load_scene(TACT_SOURCE_DIR "/model/scenes/maintenance.toml", {});
-  ASSERT_TRUE(cover) << cover.error().sentence;
-  EXPECT_EQ(cover->look.organ, "paint");
-  EXPECT_EQ(cover->look.piece_color_ratio,
-            (std::vector<Vec3>{{0.92, 1.0, 1.06}, {1.55, 0.72, 0.4}}));
-}
-
-TEST(Scene, RefusesALookThatThePageCannotPaint) {
-  const std::string stone = complaint(edited("[contact]", "[look]\norgan = \"stone\"\n[contact]"));
-  EXPECT_NE(stone.find("look.organ"), stone.npos) << stone;
-  for (const char* known : {"stone", "tissue", "skin", "glove", "paint", "steel"})
-    EXPECT_NE(stone.find(known), stone.npos) << stone;
-  const std::string bright =
-      complaint(edited("[contact]", "[[look.piece]]\ncolor_ratio = [1, 1, 4.1]\n[contact]"));
-  EXPECT_NE(bright.find("color_ratio"), bright.npos) << bright;
-  EXPECT_NE(bright.find("4"), bright.npos) << bright;
-  std::string five;
-  for (int i = 0; i < 5; ++i) five += "[[look.piece]]\ncolor_ratio = [1, 1, 1]\n";
-  const std::string many = complaint(edited("[contact]", five + "[contact]"));
-  EXPECT_NE(many.find("look.piece"), many.npos) << many;
-}
-
 TEST(Scene, BringsItsMeshesInMetresAndTheOrganWhereItLies) {
   const Result<Scene> scene = load_scene(kPlain, {"tool.mesh_unit_m=0.0001"});
   ASSERT_TRUE(scene) << scene.error().sentence;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // tact-new-scene as a person meets it: a mesh in, a scene out that tactd runs, or nothing at all.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <utility>
@@ -129,6 +131,26 @@ TEST_F(NewScene, ASoundObjFileIsTakenAsItIsAndAnEarlierSceneIsKeptUnlessForced) 
   ASSERT_TRUE(scene) << scene.error().sentence;
   EXPECT_EQ(scene->elastic->poisson_ratio, 0.3);
   EXPECT_EQ(model::scene::read_compliance_map(path("mine.compliance"))->poisson_ratio, 0.3);
+}
+
+TEST_F(NewScene, AScanWithColoursKeepsThem) {
+  std::string text;
+  const SurfaceMesh ball = ellipsoid_mm(3);
+  for (const Vec3& p : ball.vertex_m)
+    text += fmt::format("v {} {} {} {} 0.5 0\n", p.x, p.y, p.z, p.z > 1310.0 ? 1 : 0);
+  for (const auto& t : ball.triangle)
+    text += fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+  const Ran ran = run(temp_.write("scan.obj", text) + " --smooth --faces 600 --out " + out_);
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const auto scene = model::scene::load_scene(out_, {});
+  ASSERT_TRUE(scene) << scene.error().sentence;
+  ASSERT_EQ(scene->look.vertex_color.size(), scene->organ_mesh.vertex_m.size());
+  for (std::size_t v = 0; v < scene->look.vertex_color.size(); ++v) {
+    const double above_m = scene->organ_mesh.vertex_m[v].z + 0.03;  // its top is at 0
+    if (std::abs(above_m) < 0.008) continue;
+    EXPECT_EQ(scene->look.vertex_color[v],
+              (model::mesh::Rgb{static_cast<std::uint8_t>(above_m > 0 ? 255 : 0), 128, 0}));
+  }
 }
 
 TEST_F(NewScene, TakesNamesWithSpacesAndPrintsCommandsThatCanBePasted) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tests/support/needs_calculix.h"
 #include "tests/support/shapes.h"
 #include "tools/reference/press/half_space.h"
 #include "tools/reference/self_check/block.h"
@@ -78,7 +79,9 @@ TEST(Indentation, APullWithLargeStrainHasEdgesItCanDrawOut) {
   EXPECT_GT(fine_m(5e-3, true, kRoughLevel), 1.3 * fine_m(5e-3, true, kCoarsestLevel));
 }
 
-TEST(Indentation, OfABlockIsThatOfAnIndependentSolution) {
+using SolvedIndentation = tests::NeedsCalculiX;
+
+TEST_F(SolvedIndentation, OfABlockIsThatOfAnIndependentSolution) {
   // Round block 50 x 50 mm, E = 1 kPa, nu = 0.45, sphere R = 5 mm: 40.46 mN at 5 mm (FEniCS).
   const auto block = make_block(0.05, 0.05, {.youngs_modulus_Pa = 1000.0, .poisson_ratio = 0.45});
   ASSERT_TRUE(block) << block.error().sentence;

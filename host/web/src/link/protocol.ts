@@ -177,9 +177,10 @@ export interface Status {
 export interface Mesh {
   vertex_m: Float32Array; // 3 per vertex
   triangle: Uint32Array; // 3 per triangle
+  color?: Uint8Array; // red, green, blue of each vertex, where the scene has them
 }
 
-/** Takes organ and tool out of /mesh.bin: vertices, triangles, vertices, triangles. */
+/** Takes organ and tool out of /mesh.bin: vertices, triangles, vertices, triangles, colours of the organ's vertices. */
 export function split_meshes(scene: Scene, bytes: ArrayBuffer): { organ: Mesh; tool: Mesh } {
   let at = 0;
   const take = (part: { vertices: number; triangles: number }): Mesh => {
@@ -189,7 +190,10 @@ export function split_meshes(scene: Scene, bytes: ArrayBuffer): { organ: Mesh; t
     at += triangle.byteLength;
     return { vertex_m, triangle };
   };
-  return { organ: take(scene.organ), tool: take(scene.tool) };
+  const organ = take(scene.organ);
+  const tool = take(scene.tool);
+  if (bytes.byteLength > at) organ.color = new Uint8Array(bytes, at, organ.vertex_m.length);
+  return { organ, tool };
 }
 
 export function length_of(v: Vec): number {

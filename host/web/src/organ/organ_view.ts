@@ -5,7 +5,7 @@
 import * as THREE from "three";
 import { Deformer, type Deformed } from "./deform";
 import { look_material, paint } from "../scene/look";
-import { organ_material, piece_tints, type Material } from "../scene/material";
+import { organ_material, piece_tints, vertex_tints, type Material } from "../scene/material";
 import type { Target } from "../scene/outside";
 import { Cuts, decode_moved } from "./patch";
 import type { Mesh, Patch, Scene, Site, Vec } from "../link/protocol";
@@ -40,7 +40,7 @@ export class OrganView {
   private readonly wound: Wound;
 
   constructor(private readonly mesh: Mesh, scene: Scene) {
-    this.made_of = organ_material(scene);
+    this.made_of = organ_material(scene, mesh);
     this.picture = paint(this.made_of.look);
     const position = new THREE.BufferAttribute(mesh.vertex_m.slice(), 3);
     position.setUsage(THREE.DynamicDrawUsage);
@@ -48,7 +48,8 @@ export class OrganView {
     this.geometry.setIndex(new THREE.BufferAttribute(mesh.triangle.slice(), 1));
     this.geometry.computeVertexNormals();
     this.geometry.computeBoundingSphere();
-    this.rest_tint = this.made_of.mottled > 0 ? OrganView.tints(mesh, this.made_of.mottled)
+    this.rest_tint = mesh.color ? vertex_tints(mesh.color)
+      : this.made_of.mottled > 0 ? OrganView.tints(mesh, this.made_of.mottled)
       : piece_tints(mesh, scene.look.pieces);
     const tint = new THREE.BufferAttribute(this.rest_tint.slice(), 3);
     tint.setUsage(THREE.DynamicDrawUsage);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // material.ts - what organ and tool look like: the materials that [look] of a scene may name (model/scene/scene_keys.cc).
 
+import * as THREE from "three";
 import { kCover, kGlove, kSkin, kSteel, kTissue, type Look } from "./look";
 import type { Mesh, Scene, Vec } from "../link/protocol";
 
@@ -11,6 +12,8 @@ export interface Material {
   soft: boolean; // has no sharp edges
 }
 
+const kUncoloured: Vec = [0.5, 0.5, 0.5]; // what its vertices' colours are times
+const kNoGlow: Vec = [0.04, 0.04, 0.04];
 const kPlain = { mottled: 0, alive: false };
 export const kMaterials: ReadonlyMap<string, Material> = new Map([
   ["tissue", { look: kTissue, mottled: 1, alive: true, soft: true }],
@@ -20,10 +23,20 @@ export const kMaterials: ReadonlyMap<string, Material> = new Map([
   ["steel", { look: kSteel, ...kPlain, soft: false }],
 ]);
 
-/** A name that this page does not know is tissue. */
-export function organ_material(scene: Scene): Material {
+/** A name that this page does not know is tissue. Colours that are given are shown as they are. */
+export function organ_material(scene: Scene, mesh: Mesh): Material {
   const made_of = kMaterials.get(scene.look.organ) ?? kMaterials.get("tissue")!;
-  return scene.look.pieces.length > 0 ? { ...made_of, ...kPlain } : made_of; // its colours are given
+  if (mesh.color) return { ...made_of, ...kPlain, look: { ...made_of.look, base: kUncoloured, glow: kNoGlow } };
+  return scene.look.pieces.length > 0 ? { ...made_of, ...kPlain } : made_of;
+}
+
+/** Red, green and blue of each vertex, times the material's: of sRGB, as scanners and files have it. */
+export function vertex_tints(color: Uint8Array): Float32Array {
+  const linear = new THREE.Color();
+  const out = new Float32Array(color.length);
+  for (let i = 0; i < out.length; i += 3)
+    linear.setRGB(color[i] / 255, color[i + 1] / 255, color[i + 2] / 255, THREE.SRGBColorSpace).toArray(out, i);
+  return out;
 }
 
 /** Of the tool it is steel. */
