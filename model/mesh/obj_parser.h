@@ -4,8 +4,8 @@
 // Read: v (x y z; a weight after it is checked and dropped; red, green and blue of 0 to 1 after it
 // are the vertex's colour) and f (v, v/vt, v//vn, v/vt/vn; counted from 1, or from the end when
 // negative). Comments, names, groups, texture coordinates, normals, lines and free-form curves are
-// skipped; a word that OBJ does not know is an error: then this is no OBJ file. Numbers never depend
-// on the locale. Set-up code only.
+// skipped; a word that OBJ does not know is an error: then this is no OBJ file. Numbers never
+// depend on the locale. Set-up code only.
 #pragma once
 
 #include <cstdint>
