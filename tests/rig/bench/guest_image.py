@@ -111,7 +111,9 @@ def build_kernel(folder, release):
         package = next(work.glob("*.deb"))
         command(["dpkg", "-x", str(package), str(work / "image")], f"{package} cannot be unpacked")
         shutil.copy(work / "image" / "boot" / f"vmlinuz-{release}", folder / "vmlinuz")
-        modules = work / "image" / "lib" / "modules" / release
+        if not (work / "image" / "lib").exists():  # from Debian 13 on all lies in /usr
+            (work / "image" / "lib").symlink_to("usr/lib")
+        modules = (work / "image" / "lib" / "modules" / release).resolve()
         build_gpio_sim(work / "gpio", release, modules / "updates")
         command(["depmod", "-b", str(work / "image"), release], "depmod failed")
         keep = folder / "root" / "lib" / "modules" / release
@@ -120,7 +122,7 @@ def build_kernel(folder, release):
                               "--show-depends", name], f"the kernel has no module {name}")
             for line in needed.splitlines():
                 if line.startswith("insmod"):
-                    source = pathlib.Path(line.split()[1])
+                    source = pathlib.Path(line.split()[1]).resolve()
                     target = keep / source.relative_to(modules)
                     target.parent.mkdir(parents=True, exist_ok=True)
                     shutil.copy(source, target)

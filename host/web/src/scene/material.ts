@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // material.ts - what organ and tool look like: the materials that [look] of a scene may name (model/scene/scene_keys.cc).
 
-import * as THREE from "three";
 import { kCover, kGlove, kSkin, kSteel, kTissue, type Look } from "./look";
 import type { Mesh, Scene, Vec } from "../link/protocol";
 
@@ -12,8 +11,8 @@ export interface Material {
   soft: boolean; // has no sharp edges
 }
 
-const kUncoloured: Vec = [0.5, 0.5, 0.5]; // what its vertices' colours are times
-const kNoGlow: Vec = [0.04, 0.04, 0.04];
+const kUncoloured: Vec = [0.7, 0.7, 0.7]; // what its vertices' colours are times
+const kNoGlow: Vec = [0.06, 0.06, 0.06];
 const kPlain = { mottled: 0, alive: false };
 export const kMaterials: ReadonlyMap<string, Material> = new Map([
   ["tissue", { look: kTissue, mottled: 1, alive: true, soft: true }],
@@ -30,13 +29,9 @@ export function organ_material(scene: Scene, mesh: Mesh): Material {
   return scene.look.pieces.length > 0 ? { ...made_of, ...kPlain } : made_of;
 }
 
-/** Red, green and blue of each vertex, times the material's: of sRGB, as scanners and files have it. */
+/** Red, green and blue of each vertex, times the picture of the material, which is of sRGB as they are. */
 export function vertex_tints(color: Uint8Array): Float32Array {
-  const linear = new THREE.Color();
-  const out = new Float32Array(color.length);
-  for (let i = 0; i < out.length; i += 3)
-    linear.setRGB(color[i] / 255, color[i + 1] / 255, color[i + 2] / 255, THREE.SRGBColorSpace).toArray(out, i);
-  return out;
+  return Float32Array.from(color, (level) => level / 255);
 }
 
 /** Of the tool it is steel. */
