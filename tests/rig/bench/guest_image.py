@@ -28,7 +28,8 @@ PRUNED = ("usr/share/doc", "usr/share/man", "usr/share/locale", "usr/share/info"
           "usr/lib/udev/hwdb.bin", "etc/udev/hwdb.bin", "usr/lib/debug", "usr/libexec",
           "usr/lib/python3*", "usr/lib/*/perl*", "usr/lib/*/gconv", "usr/bin/perl*",
           "usr/bin/python3*", "usr/lib/apt", "usr/lib/*/libapt*", "usr/bin/apt*", "usr/bin/dpkg*",
-          "usr/lib/*/libpython*", "usr/lib/*/*.a", "usr/lib/*/libicu*", "usr/bin/stress-ng-*")
+          "usr/lib/*/libpython*", "usr/lib/*/*.a", "usr/lib/*/libicu*", "usr/bin/stress-ng-*",
+          "usr/lib/*/libLLVM*", "usr/lib/*/libgallium*", "usr/lib/*/libz3.so*")
 
 
 class RigError(Exception):
