@@ -52,7 +52,7 @@ std::optional<Error> load_meshes(const SceneText& text, Scene& scene) {
     return Error{fmt::format(
         "{}: look.vertex_colors = true, but {} has no colours: \"v x y z red green blue\", 0 to 1, "
         "at each vertex; tact-mesh keeps those of a scan, or leave the key out",
-        text.organ_mesh.place.where, scene.organ.mesh_path)};
+        text.vertex_colors_place.where, scene.organ.mesh_path)};
   scene.look.vertex_color = std::move(organ->vertex_color);
   return std::nullopt;
 }

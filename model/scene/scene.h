@@ -37,8 +37,8 @@ inline constexpr std::size_t kMaxPieces = 4;  // of the organ, with a colour eac
 struct LookSettings {
   std::string organ = "tissue", tool = "steel";  // materials, as scene_keys.cc lists them
   std::vector<Vec3> piece_color_ratio;           // red, green, blue, times the material's
-  bool has_vertex_colors = false;                // the organ's colours are those of its mesh:
-  std::vector<mesh::Rgb> vertex_color;           // one of each vertex
+  bool has_vertex_colors = false;                // the organ has those of its mesh
+  std::vector<mesh::Rgb> vertex_color;           // of each of its vertices, then
 };
 
 struct Scene {

@@ -60,7 +60,8 @@ constexpr std::array kMaterials{
     reader::Choice{"steel", "polished"},
 };
 
-void visit_look(reader::Keys& k, LookSettings& look) {
+void visit_look(reader::Keys& k, SceneText& out) {
+  LookSettings& look = out.scene.look;
   std::size_t organ = 0, tool = kMaterials.size() - 1;
   k.choice("organ", kMaterials, "what it looks like", organ, reader::Need::kOptional);
   k.choice("tool", kMaterials, "the same of the tool", tool, reader::Need::kOptional);
@@ -74,6 +75,7 @@ void visit_look(reader::Keys& k, LookSettings& look) {
               piece.vector("color_ratio", {0.0, 4.0}, "red, green, blue, times the material's",
                            look.piece_color_ratio.emplace_back());
             });
+  out.vertex_colors_place = k.place_of("vertex_colors");
   if (look.has_vertex_colors && !look.piece_color_ratio.empty())
     k.refuse({"vertex_colors"},
              "look.vertex_colors and look.piece both colour the organ; leave one of them out");
@@ -141,7 +143,7 @@ void visit_scene(reader::Keys& k, SceneText& out) {
   k.section("tool", "what touches it", [&](reader::Keys& tool) { visit_tool(tool, out); });
   k.section(
       "look", "what the viewer paints; no force depends on it",
-      [&](reader::Keys& look) { visit_look(look, scene.look); }, reader::Need::kOptional);
+      [&](reader::Keys& look) { visit_look(look, out); }, reader::Need::kOptional);
   k.section("contact", "between tool and organ",
             [&](reader::Keys& contact) { visit_contact(contact, scene.contact); });
   k.section("device", "what the hand holds",

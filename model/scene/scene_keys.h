@@ -32,6 +32,7 @@ struct FileText {
 struct SceneText {
   Scene scene;
   MeshText organ_mesh;
+  reader::TextPlace vertex_colors_place;
   Vec3 organ_orientation_deg;  // axis times angle, about the mesh's origin
   MeshText tool_mesh;
   FileText compliance_map;

@@ -287,14 +287,13 @@ def _one(data, layout, where):
 
 
 def _meshes(hello, data, where):
-    out, at = [], 0
-    for part in ("organ", "tool"):
-        vertices, triangles = int(hello[part + "_vertices"]), int(hello[part + "_triangles"])
-        if at + 12 * (vertices + triangles) > len(data):
-            raise Error(f"{where}: its meshes are shorter than the hello says")
+    sizes = {part: (int(hello[part + "_vertices"]), int(hello[part + "_triangles"])) for part in ("organ", "tool")}
+    out, at, colors = [], 0, 3 * sizes["organ"][0]
+    if len(data) - 12 * sum(map(sum, sizes.values())) not in (0, colors):
+        raise Error(f"{where}: its meshes are not as long as the hello says")
+    for vertices, triangles in sizes.values():
         out.append(Mesh(np.frombuffer(data, "<f4", 3 * vertices, at).reshape(-1, 3),
                         np.frombuffer(data, "<u4", 3 * triangles, at + 12 * vertices).reshape(-1, 3)))
         at += 12 * (vertices + triangles)
-    if len(data) == at + out[0].vertex_m.size:
-        out[0].color = np.frombuffer(data, "u1", -1, at).reshape(-1, 3)
+    out[0].color = np.frombuffer(data, "u1", colors, at).reshape(-1, 3) if len(data) > at else None
     return out

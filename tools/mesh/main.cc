@@ -142,7 +142,7 @@ int main(int argc, char** argv) {
                   "say what they did; VTK does them, from the package tact-lab.",
                   "With any step or --out: equal vertices are joined, faces turned as their "
                   "neighbours, sheets\n"
-                  "that meet at one edge parted. Colours and textures are not kept.\n"
+                  "that meet at one edge parted. Colours of vertices are kept, textures not.\n"
                   "A scan as one command: tact-mesh scan.stl --out organ.obj --weld "
                   "--drop-degenerate --largest\n"
                   "--close-holes --smooth --decimate 6000");

@@ -35,6 +35,8 @@ def main():
     options.add_argument("--decimate", type=int, metavar="N")
     asked = options.parse_args()
     try:
+        import numpy as np
+
         import colors
         import steps
         import surface_file
@@ -43,12 +45,16 @@ def main():
         return 2
     try:
         surface = surface_file.read(asked.source, asked.ending)
-        before, color = surface_file.to_numpy(surface)[0], colors.of_surface(surface)
-        points, triangles = steps.repair(*surface_file.to_numpy(surface), asked, tell)
+        color, left_aside = colors.of_surface(surface)
+        before, faces = surface_file.to_numpy(surface)
+        points, triangles = steps.repair(before, faces, asked, tell)
         if color is not None:
-            color = colors.nearest(before, color, points)
+            used = np.unique(faces)
+            color = colors.nearest(before[used], color[used], points)
             tell(step="color", count=len(points), text=f"{len(points)} vertices have the colour of the nearest of the file",
                  faces=len(triangles), vertices=len(points))
+        elif left_aside:
+            tell(step="color", count=0, text=f"none: {left_aside}", faces=len(triangles), vertices=len(points))
         surface_file.write_obj(asked.target, points, triangles, color)
     except surface_file.Refused as refused:
         tell(error=str(refused))

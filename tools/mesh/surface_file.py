@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files of triangle surfaces, all that VTK reads and OFF, as numpy arrays; OBJ to write."""
+"""Files of triangle surfaces, all that VTK reads and OFF, as vtkPolyData and as arrays; OBJ to write."""
 import json
 import os
 import pathlib
@@ -63,18 +63,21 @@ def read(path, ending=None):
         raise Refused(f"{path}: more than 2 GB; simplify the mesh")
     if ending == ".stl":
         check_stl(path, size_bytes, beginning)
-    if ending == ".ply":
-        check_ply(path, size_bytes)
+    promised, has_float_colors = check_ply(path, size_bytes) if ending == ".ply" else (0, False)
     if ending == ".gltf":
         check_gltf(path)
     if ending == ".off":
         surface = read_off(path)
     elif ending in READERS:
         surface = read_by_vtk(path, READERS[ending]())
-        if ending == ".obj":  # VTK leaves them aside
-            colors.add_of_text(surface, obj_colors(path))
+        if ending == ".obj":
+            colors.add(surface, colors.of_obj(path))
     else:
         raise Refused(f"{path}: {ending or 'no ending'} is no format that is read; export the mesh as {FORMATS}")
+    if surface.GetNumberOfPolys() < promised:  # VTK 9.3 makes of a file what it can
+        raise Refused(f"{path}: cut short, after {surface.GetNumberOfPolys()} of {promised} faces{AGAIN}")
+    if has_float_colors:  # VTK has cut them to 0 and 1
+        colors.drop(surface)
     surface = triangulated(surface)
     points, triangles = to_numpy(surface)
     if len(triangles) == 0 and surface.GetNumberOfPoints() > 0:
@@ -103,18 +106,15 @@ def check_stl(path, size_bytes, beginning):
 
 
 def check_ply(path, size_bytes):
-    """VTK reserves what the head promises: one that promises more elements than the file has bytes fills the memory. Of
-    fewer lines it makes what it can, with or without a word."""
+    """VTK reserves what the head promises: one that promises more elements than the file has bytes fills the memory. Returns
+    the faces that are promised, and whether colours are no bytes."""
     with open(path, "rb") as file:
-        head = file.read(65536).split(b"end_header")[0]
-        file.seek(len(head))
-        lines = sum(1 for line in file if line.strip()) - 1
-    head = head.decode("ascii", errors="replace")
+        head = file.read(65536).split(b"end_header")[0].decode("ascii", errors="replace")
     promised = sum(int(count) for count in re.findall(r"^element \w+ (\d+)\s*$", head, re.MULTILINE))
     if promised > size_bytes:
         raise Refused(f"{path}: its head promises {promised} vertices and faces, and the file has {size_bytes} bytes{AGAIN}")
-    if re.search(r"^format ascii\b", head, re.MULTILINE) and lines < promised:
-        raise Refused(f"{path}: cut short, after {lines} of {promised} vertices and faces{AGAIN}")
+    faces = sum(int(count) for count in re.findall(r"^element face (\d+)\s*$", head, re.MULTILINE))
+    return faces, re.search(r"^property (float|double)\w* (red|green|blue)\s*$", head, re.MULTILINE) is not None
 
 
 def check_gltf(path):
@@ -174,11 +174,6 @@ def complaint(path, text):
     return f"{path}{':' + line[1] if line else ''}: {what[:120]}{AGAIN}"
 
 
-def obj_colors(path):
-    with open(path, encoding="ascii", errors="replace") as file:
-        return [line.split()[4:] for line in file if line.startswith("v ")]
-
-
 def read_off(path):
     """OFF and COFF as text, which this VTK does not read: the counts, a vertex a line, a face a line after its count."""
     with open(path, encoding="ascii", errors="replace") as file:
@@ -213,7 +208,7 @@ def read_off(path):
     surface = vtk.vtkPolyData()
     surface.SetPoints(places)
     surface.SetPolys(cells)
-    colors.add_of_text(surface, after)
+    colors.add(surface, colors.of_off(after))
     return surface
 
 

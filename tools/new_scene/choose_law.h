@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "model/result.h"
@@ -11,10 +12,10 @@
 
 namespace tact::tools::new_scene {
 
-/// `files.scene` says law = "auto"; files.reference and files.tool_reference are written. False:
-/// no law was planned, and `tell` has heard why: CalculiX is missing, or no law is good enough. An
-/// error only after Ctrl-C. Minutes to an hour.
-model::Result<bool> choose_law(
+/// `files.scene` says law = "auto"; files.reference and files.tool_reference are written, tactd
+/// takes the scene with the law that was chosen. An error says why none was: CalculiX is missing,
+/// no law is good enough, Ctrl-C. Minutes to an hour.
+std::optional<model::Error> choose_law(
     const OutputNames& files, const std::string& log_path,
     const std::function<void(const char* step, const std::string& text)>& tell);
 

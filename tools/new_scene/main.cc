@@ -9,13 +9,13 @@
 
 #include "model/io/file_writer.h"
 #include "model/io/input_file.h"
-#include "model/io/program/installed.h"
 #include "model/io/program/within.h"
 #include "model/scene/compliance_file.h"
 #include "tools/condense/condense_organ.h"
 #include "tools/ground_truth/gmsh.h"
 #include "tools/mesh/mesh_report.h"
 #include "tools/mesh/unit.h"
+#include "tools/new_scene/ask.h"
 #include "tools/new_scene/choose_law.h"
 #include "tools/new_scene/organ.h"
 #include "tools/new_scene/outputs.h"
@@ -63,7 +63,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--smooth", o.organ.smooth, "take the steps of voxels away");
   app.add_flag("--plan", o.plan,
                "also solve references and let tact-plan choose the law for this PC: minutes to an "
-               "hour; needs CalculiX, apt install calculix-ccx");
+               "hour; needs CalculiX, which Debian 13 has not");
   app.add_flag("--force", o.force, "replace the files of an earlier run");
 }
 
@@ -152,22 +152,6 @@ std::optional<Error> condense(const std::string& scene_path, const std::string& 
   return bytes ? std::nullopt : std::optional(bytes.error());
 }
 
-/// Does tactd take it? Its own sentence if not.
-std::optional<Error> ask_tactd(const std::string& scene_path, const std::string& log_path) {
-  std::string last;
-  const auto ran =
-      program::run_program({.program = (tact::model::io::program_folder() / "tactd").string(),
-                            .arguments = {scene_path, "--check"},
-                            .directory = ".",
-                            .log_path = log_path,
-                            .package = "tact",
-                            .environment = {},
-                            .on_line = [&last](std::string_view line) { last = line; }});
-  if (ran) return std::nullopt;
-  if (program::was_interrupted(ran.error()) || last.empty()) return ran.error();
-  return Error{last};
-}
-
 /// `sentence` with the folder where the files will come; none is there yet.
 std::string about(std::string sentence, const std::string& scratch, const OutputNames& names) {
   std::error_code failed;
@@ -185,7 +169,8 @@ Result<std::vector<new_scene::OutputFile>> collect(const OutputNames& made,
   for (const auto name :
        {&OutputNames::organ, &OutputNames::tool, &OutputNames::map, &OutputNames::reference,
         &OutputNames::tool_reference, &OutputNames::scene}) {
-    if (!fs::exists(made.*name)) continue;
+    std::error_code failed;
+    if (!fs::exists(made.*name, failed)) continue;
     auto content = tact::model::io::read_file(made.*name, "try again");
     if (!content) return content.error();
     files.push_back({names.*name, std::move(*content)});
@@ -212,17 +197,21 @@ Result<bool> make_scene(const Options& o, const OutputNames& names, const std::s
   if (auto error = tact::model::io::write_file(made->tool, new_scene::tool_mesh())) return *error;
   if (auto error = write_scene("compliance")) return *error;
   if (auto error = condense(made->scene, made->map)) return *error;
-  if (auto error = ask_tactd(made->scene, log)) return *error;
-  bool is_planned = false;
+  // Its own sentence if it does not.
+  if (const auto taken = new_scene::ask("tactd", {made->scene, "--check"}, log); !taken)
+    return taken.error();
+  bool is_planned = o.plan;
   if (o.plan) {
     if (auto error = write_scene("auto")) return *error;
-    const auto chosen = new_scene::choose_law(
-        *made, log,
-        [&](const char* step, const std::string& text) { tell(step, about(text, folder, names)); });
-    if (!chosen) return chosen;
-    is_planned = *chosen;
-    auto error = is_planned ? ask_tactd(made->scene, log) : write_scene("compliance");
-    if (error) return *error;
+    const auto tell_here = [&](const char* step, const std::string& text) {
+      tell(step, about(text, folder, names));
+    };
+    if (const auto none = new_scene::choose_law(*made, log, tell_here)) {
+      if (program::was_interrupted(*none)) return *none;
+      is_planned = false;
+      tell_here("plan", "none: " + none->sentence);
+      if (auto error = write_scene("compliance")) return *error;
+    }
   }
   tell("check", "tactd takes the scene");
   const auto files = collect(*made, names);
@@ -242,7 +231,7 @@ std::string as_word(const std::string& path) {
   return "'" + word + "'";
 }
 
-void tell_what_next(const OutputNames& names, bool is_planned) {
+void tell_what_next(const OutputNames& names, bool was_asked, bool is_planned) {
   const std::string scene = as_word(names.scene);
   tell("law", is_planned ? "as tact-plan has chosen for this PC" : "compliance, from the map");
   fmt::print("\nFeel it:\n  tactd {} --free-run --seconds 5\n", scene);
@@ -251,8 +240,9 @@ void tell_what_next(const OutputNames& names, bool is_planned) {
         "On another PC its times differ; there, once:\n  tact-plan {} --reference {} "
         "--tool-reference {}\n",
         scene, as_word(names.reference), as_word(names.tool_reference));
-  else
-    fmt::print("Is a faster law good enough? tact-new-scene with --plan compares them.\n");
+  else if (!was_asked)
+    fmt::print(
+        "Is a faster law good enough? The same with --plan --force compares them, by CalculiX.\n");
 }
 
 }  // namespace
@@ -281,6 +271,6 @@ int main(int argc, char** argv) {
   const auto is_planned = make_scene(options, *names, folder->path());
   if (!is_planned)
     return program.fail({about(is_planned.error().sentence, folder->path(), *names)});
-  tell_what_next(*names, *is_planned);
+  tell_what_next(*names, options.plan, *is_planned);
   return 0;
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 
@@ -19,6 +20,9 @@ model::Result<OutputNames> names_of(const std::string& out) {
   if (path.extension() != ".toml" || path.stem().empty())
     return Error{fmt::format("{}: a scene's name ends in .toml; write --out mine.toml", out)};
   const std::string stem = path.stem().string();
+  // A scene's text would not take it.
+  if (std::any_of(stem.begin(), stem.end(), [](unsigned char c) { return c < ' ' || c == 0x7F; }))
+    return Error{"the scene's name has a control character; choose another --out"};
   const auto beside = [&](const std::string& ending) {
     return (path.parent_path() / (stem + ending)).string();
   };

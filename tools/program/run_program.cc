@@ -32,6 +32,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::string_view kInterrupted = "interrupted";
 constexpr int kLastLines = 12;
+constexpr std::chrono::seconds kGrace{3};  // chosen: gmsh and ccx end at once
 
 /// The char* array that exec wants, over strings that stay where they are.
 std::vector<char*> pointers(std::vector<std::string>& words) {
@@ -150,6 +151,15 @@ std::string tail(const std::string& text) {
   return at == std::string::npos ? text : text.substr(at);
 }
 
+/// Asks the group to end, as its leader may have programs and files of its own; then kills what is
+/// left of it.
+std::optional<int> stop(pid_t child) {
+  kill(-child, SIGTERM);
+  for (const auto begun = Clock::now(); still_runs(child) && Clock::now() - begun < kGrace;)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  return end(child);
+}
+
 }  // namespace
 
 Result<std::string> run_program(const ProgramCall& call) {
@@ -161,12 +171,12 @@ Result<std::string> run_program(const ProgramCall& call) {
   while (still_runs(*child)) {
     lines.hand_on();
     if (is_interrupted()) {
-      static_cast<void>(end(*child));
+      static_cast<void>(stop(*child));
       return interruption();
     }
     if (call.time_limit_s > 0.0 &&
         Clock::now() - begun > std::chrono::duration<double>(call.time_limit_s)) {
-      static_cast<void>(end(*child));
+      static_cast<void>(stop(*child));
       return Error{fmt::format("{} took longer than {:g} s and was ended; what it printed is in {}",
                                call.program, call.time_limit_s, call.log_path)};
     }

@@ -4,7 +4,8 @@
 //
 // The program's standard output and standard error go to one file, which stays when it fails. It
 // reads nothing. It is a process group of its own, and the whole group is killed when its leader
-// has ended, at its time limit, at Ctrl-C, SIGTERM or a closed terminal (interrupt.h). A second
+// has ended. At its time limit, at Ctrl-C, SIGTERM or a closed terminal (interrupt.h) it is asked
+// to end first, by SIGTERM, and has 3 s for what it has started and written itself. A second
 // Ctrl-C kills it too but leaves the scratch folder; a SIGKILL of ours leaves both: the program
 // goes on to its own end, without a time limit.
 #pragma once

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "model/scene/scene.h"
 
@@ -47,7 +49,7 @@ TEST(SceneLook, RefusesALookThatThePageCannotPaint) {
 }
 
 TEST(SceneLook, ShowsTheColoursOfItsMeshWhereItAsksForThem) {
-  const std::string path = testing::TempDir() + "coloured.obj";
+  const std::string path = std::string(TACT_BINARY_DIR) + "/scene_look_test.obj";
   std::ofstream(path) << "v -.1 -.1 0 1 0 0\nv .1 -.1 0 0 1 0\nv 0 .1 0 0 0 1\nf 1 2 3\n";
   const std::vector<std::string> mesh{"organ.mesh=\"" + path + "\"", "organ.mesh_unit_m=1"};
   auto asked = mesh;
@@ -56,7 +58,9 @@ TEST(SceneLook, ShowsTheColoursOfItsMeshWhereItAsksForThem) {
   ASSERT_TRUE(coloured) << coloured.error().sentence;
   EXPECT_EQ(coloured->look.vertex_color,
             (std::vector<mesh::Rgb>{{255, 0, 0}, {0, 255, 0}, {0, 0, 255}}));
-  EXPECT_TRUE(load_scene(kPlain, mesh)->look.vertex_color.empty());
+  const Result<Scene> plain = load_scene(kPlain, mesh);
+  ASSERT_TRUE(plain);
+  EXPECT_TRUE(plain->look.vertex_color.empty());
   EXPECT_NE(complaint({"look.vertex_colors=true"}).find("look.vertex_colors = true, but"),
             std::string::npos);
   const std::string both =

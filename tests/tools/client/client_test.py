@@ -154,6 +154,16 @@ class Client(unittest.TestCase):
         broken.write_bytes(data[:pictures - 100])
         self.assertEqual(len(tact.read_ticks(broken).ticks), len(box.ticks) - 1)
 
+    def test_meshes_may_end_with_colours_of_all_vertices_and_not_of_some(self):
+        hello = {"organ_vertices": 2, "organ_triangles": 1, "tool_vertices": 1, "tool_triangles": 1}
+        self.assertIsNone(tact._meshes(hello, bytes(60), "here")[0].color)
+        organ, tool = tact._meshes(hello, bytes(60) + bytes(range(6)), "here")
+        self.assertEqual(organ.color.tolist(), [[0, 1, 2], [3, 4, 5]])
+        self.assertIsNone(tool.color)
+        for wrong in (59, 61, 65, 67):
+            with self.assertRaisesRegex(tact.Error, "here: its meshes are not as long"):
+                tact._meshes(hello, bytes(wrong), "here")
+
     def test_nobody_at_the_socket_is_told(self):
         with self.assertRaisesRegex(tact.Error, "does tactd run, and may this user look"):
             tact.live(self.folder / "nobody")

@@ -11,8 +11,8 @@ export interface Material {
   soft: boolean; // has no sharp edges
 }
 
-const kUncoloured: Vec = [0.7, 0.7, 0.7]; // what its vertices' colours are times
-const kNoGlow: Vec = [0.06, 0.06, 0.06];
+// Linear; the vertices' colours multiply the picture that is painted of them.
+const kGrey = { base: [0.7, 0.7, 0.7] as Vec, glow: [0.06, 0.06, 0.06] as Vec };
 const kPlain = { mottled: 0, alive: false };
 export const kMaterials: ReadonlyMap<string, Material> = new Map([
   ["tissue", { look: kTissue, mottled: 1, alive: true, soft: true }],
@@ -25,7 +25,7 @@ export const kMaterials: ReadonlyMap<string, Material> = new Map([
 /** A name that this page does not know is tissue. Colours that are given are shown as they are. */
 export function organ_material(scene: Scene, mesh: Mesh): Material {
   const made_of = kMaterials.get(scene.look.organ) ?? kMaterials.get("tissue")!;
-  if (mesh.color) return { ...made_of, ...kPlain, look: { ...made_of.look, base: kUncoloured, glow: kNoGlow } };
+  if (mesh.color) return { ...made_of, ...kPlain, look: { ...made_of.look, ...kGrey } };
   return scene.look.pieces.length > 0 ? { ...made_of, ...kPlain } : made_of;
 }
 
