@@ -112,8 +112,10 @@ std::optional<Error> check_hello(const Hello& hello) {
 std::optional<Error> check_mesh(const Hello& hello, std::span<const std::byte> mesh) {
   const std::uint64_t meshes = mesh_size(hello);
   if (!is_mesh_size(hello, mesh.size()))
-    return Error{fmt::format("the meshes have {} bytes instead of {}, or {} with colours; use tactd and tact-view of one build",
-                             mesh.size(), meshes, meshes + kColorBytes * hello.organ_vertices)};
+    return Error{
+        fmt::format("the meshes have {} bytes instead of {}, or {} with colours; use tactd and "
+                    "tact-view of one build",
+                    mesh.size(), meshes, meshes + kColorBytes * hello.organ_vertices)};
   const std::size_t organ_size =
       (std::size_t{hello.organ_vertices} + hello.organ_triangles) * kTripleBytes;
   if (std::optional<Error> error =
