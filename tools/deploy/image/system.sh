@@ -5,7 +5,7 @@
 # No recommended packages: linux-image-rt-amd64 of tact-rt is named here.
 IMAGE_DEBIAN=(systemd systemd-sysv udev dbus linux-image-rt-amd64 initramfs-tools zstd e2fsprogs
   grub-pc-bin grub-efi-amd64-bin grub-efi-amd64-signed shim-signed grub2-common
-  systemd-resolved systemd-timesyncd sudo man-db nano less iproute2 kmod rt-tests)
+  systemd-resolved systemd-timesyncd sudo passwd login man-db nano less iproute2 kmod rt-tests)
 
 # make_system SUITE FOLDER PACKAGE...
 make_system() {
