@@ -34,7 +34,7 @@ class Pc:
 
     def __init__(self, disk, firmware, folder, stick=None):
         options = ["-drive", f"file={disk},if=ide,format=raw", "-serial", "stdio"]
-        if stick:  # its blocks are the file's: /dev/sdb; virtio would have interrupts on core 1
+        if stick:  # its blocks are the file's; virtio would have interrupts on core 1
             options += ["-drive", f"file={stick},if=ide,format=raw"]
         if firmware == "uefi":
             variables = folder / "uefi.fd"
