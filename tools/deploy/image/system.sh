@@ -11,6 +11,8 @@ IMAGE_DEBIAN=(systemd systemd-sysv udev dbus linux-image-rt-amd64 initramfs-tool
 make_system() {
   local suite=$1 pc=$2
   shift 2
+  # A package of its own from Debian 13 on: the root takes the whole disk.
+  [ "$suite" = bookworm ] || IMAGE_DEBIAN+=(systemd-repart)
   local included
   included=$(IFS=,; echo "${IMAGE_DEBIAN[*]}")
   mmdebstrap --variant=apt --include="$included" \
