@@ -114,23 +114,6 @@ TEST(RunProgram, EndsAProgramAndItsChildrenAfterTheTimeLimit) {
   EXPECT_TRUE(goes_away(child)) << "process " << child << " goes on";
 }
 
-TEST(RunProgram, AsksAProgramToEndSoThatItCanEndWhatItHasStarted) {
-  const auto where = folder();
-  const std::string file = where.file("its");
-  // A group of its own, as run_program gives each program; set -m does it in a shell.
-  const auto said =
-      run(where, "bash",
-          {"-c", "set -m; touch " + file + "; sleep 60 & echo $!; trap 'kill %1; rm " + file +
-                     "; exit' TERM; wait"},
-          1.0);
-  ASSERT_FALSE(said);
-  EXPECT_FALSE(std::filesystem::exists(file));
-  pid_t child = 0;
-  std::ifstream(where.file("log")) >> child;
-  ASSERT_GT(child, 1);
-  EXPECT_TRUE(goes_away(child)) << "process " << child << " goes on";
-}
-
 TEST(RunProgram, EndsAProgramAtCtrlC) {
   const auto where = folder();
   const InterruptWatch watch;
@@ -177,6 +160,26 @@ TEST(InterruptWatch, LetsNohupBeAndForgetsWhatItEndsWith) {
   }
   EXPECT_FALSE(is_interrupted());
   EXPECT_EQ(std::signal(SIGHUP, SIG_DFL), SIG_IGN);
+}
+
+TEST(RunProgram, AsksAProgramToEndSoThatItCanEndWhatItHasStarted) {
+  const auto where = folder();
+  const std::string file = where.file("its");
+  const InterruptWatch watch;
+  const std::jthread hand([&] {
+    written_number(where.file("log"));
+    std::raise(SIGINT);
+  });
+  // A group of its own, as run_program gives each program; set -m does it in a shell.
+  const auto said = run(where, "bash",
+                        {"-c", "set -m; touch " + file + "; sleep 60 & trap 'kill %1; rm " + file +
+                                   "; exit' TERM; echo $!; wait"},
+                        20.0);
+  ASSERT_FALSE(said);
+  EXPECT_FALSE(std::filesystem::exists(file));
+  const pid_t child = written_number(where.file("log"));
+  ASSERT_GT(child, 1);
+  EXPECT_TRUE(goes_away(child)) << "process " << child << " goes on";
 }
 
 TEST(RunProgram, ASecondCtrlCLeavesNoProgramBehind) {
