@@ -37,14 +37,17 @@ const hud = new Hud();
 const plots = new Plots(by_id);
 const recorder = new Recorder();
 const news = new News();
-const kLongestWait_ms = 100; // of a frame for its figure
+// Of a frame for its figure, in pictures, or in frames that have none: no clock, as a page that stood still has both in
+// its queue.
+const kLongestWait = 6;
 
 let scene: Scene | null = null;
 let organ: OrganView | null = null;
 let tool: ToolView | null = null;
 let newest: Frame | null = null; // not drawn yet
 let waiting: Frame | null = null; // its figure is not here yet: a hand and its tool are drawn together
-let waiting_since_ms = 0;
+let pictures_waited = 0;
+let frames_alone = 0; // since the last figure
 let shown: Frame | null = null;
 let status: Status | null = null;
 let paused = false;
@@ -132,22 +135,24 @@ function take_frame(frame: Frame): void {
   news.frame(performance.now());
   timeline.frame(frame.time_s);
   if (paused) return;
-  newest = operator.there ? waiting ?? newest : frame;
-  waiting = operator.there ? frame : null;
-  waiting_since_ms = performance.now();
+  if (!waiting) pictures_waited = 0;
+  const waits = operator.there && ++frames_alone <= kLongestWait;
+  waiting = waits ? frame : null;
+  if (!waits) newest = frame;
   plots.add(frame);
 }
 
 function take_figure(next: FigureFrame): void {
   if (paused) return;
   operator.take(next);
+  frames_alone = 0;
   if (waiting?.tick !== next.tick) return;
   newest = waiting;
   waiting = null;
 }
 
 function draw(now_ms: number): void {
-  if (waiting && now_ms - waiting_since_ms > kLongestWait_ms) {
+  if (waiting && ++pictures_waited > kLongestWait) {
     newest = waiting; // without its figure, then: no tick is kept from a person's eyes
     waiting = null;
   }

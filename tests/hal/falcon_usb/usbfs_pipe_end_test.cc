@@ -103,17 +103,16 @@ TEST(UsbfsPipeEnd, AStalledCommandEndpointIsClearedForTheCommandsThatFollow) {
 
 TEST(UsbfsPipeEnd, StoppingSendsTheLastCommandAgainUntilItIsTaken) {
   // It has 50 ms for it. A busy machine may take those: one of ten stops has them.
+  const std::vector<falcon::FalconPacket> once{last_command};
   std::vector<falcon::FalconPacket> taken;
-  for (int i = 0; i < 10 && taken.empty(); ++i) {
+  for (int i = 0; i < 10 && taken != once; ++i) {
     Bus bus;
     bus.out_stalls = 2;
     const auto pipe = start(bus);
     pipe->stop(last_command);
     taken = bus.taken;
   }
-  ASSERT_FALSE(taken.empty());
-  for (const falcon::FalconPacket& command : taken)  // again where its answer was late
-    EXPECT_EQ(command, last_command);
+  EXPECT_EQ(taken, once);
 }
 
 TEST(UsbfsPipeEnd, AForceThatWaitsBehindAStalledCommandIsDropped) {
