@@ -22,7 +22,7 @@ using model::Error;
 using model::Result;
 using nlohmann::json;
 
-constexpr std::string_view kCure = "name a mesh file of at most 2 GB";
+constexpr std::string_view kFileCure = "name a mesh file of at most 2 GB";
 
 std::string ending_of(const std::string& path) {
   std::string ending = fs::path(path).extension().string();
@@ -46,7 +46,7 @@ Result<std::string> find_script() {
 /// An OBJ file is read by tact's own parser, which knows the line of an error, and handed on with
 /// vertices, their colours and faces alone.
 std::optional<Error> write_plain_obj(const std::string& from, const program::MemoryFile& to) {
-  const auto file = model::io::read_file(from, kCure, model::mesh::kMaxObjBytes);
+  const auto file = model::io::read_file(from, kFileCure, model::mesh::kMaxObjBytes);
   if (!file) return file.error();
   if (file->empty()) return Error{from + ":1: the file is empty; export the mesh again"};
   const auto text = model::mesh::parse_obj(*file, from);
@@ -144,7 +144,8 @@ bool is_gltf(const std::string& path) {
 Result<Repaired> repair_file(const RepairOrder& order,
                              const std::function<void(const RepairStep&)>& on_step,
                              const std::function<void(const std::string&, int)>& on_percent) {
-  if (const auto file = model::io::InputFile::open(order.source, kCure); !file) return file.error();
+  if (const auto file = model::io::InputFile::open(order.source, kFileCure); !file)
+    return file.error();
   const auto script = find_script();
   if (!script) return Error{fmt::format("{}: {}", order.source, script.error().sentence)};
   // In memory: whoever kills this program with all the numbers of a scan in it cleans up nothing.

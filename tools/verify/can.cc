@@ -63,7 +63,7 @@ void compare_encoded(Report& report, const std::optional<CanFrame>& frame, const
   report.compare("reads back", back == frame, true, false, 0.0, 0.0);
 }
 
-namespace {
+namespace can_cases {
 
 json names_of(std::uint32_t bits, std::span<const hal::can::CanErrorWords> words) {
   json names = json::array();
@@ -271,8 +271,8 @@ constexpr Verifier kVerifiers[] = {
     {"can_moteus/1", verify_moteus},
 };
 
-}  // namespace
+}  // namespace can_cases
 
-std::span<const Verifier> can_verifiers() { return kVerifiers; }
+std::span<const Verifier> can_verifiers() { return can_cases::kVerifiers; }
 
 }  // namespace tact::tools::verify

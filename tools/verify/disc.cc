@@ -6,7 +6,7 @@
 #include "tools/verify/report.h"
 
 namespace tact::tools::verify {
-namespace {
+namespace disc_cases {
 
 using model::indent::Disc;
 using model::indent::DiscForm;
@@ -144,8 +144,8 @@ constexpr Verifier kVerifiers[] = {
     {"disc_patent_rounded", verify_cases<printed_results>},
 };
 
-}  // namespace
+}  // namespace disc_cases
 
-std::span<const Verifier> disc_verifiers() { return kVerifiers; }
+std::span<const Verifier> disc_verifiers() { return disc_cases::kVerifiers; }
 
 }  // namespace tact::tools::verify

@@ -17,7 +17,7 @@
 #include "tools/verify/report.h"
 
 namespace tact::tools::verify {
-namespace {
+namespace falcon_cases {
 
 using hal::falcon::FalconBootAction;
 using hal::falcon::FtdiRequest;
@@ -293,8 +293,8 @@ void verify_falcon(const json& file, Report& report) {
 
 constexpr Verifier kVerifiers[] = {{"falcon_packets/1", verify_falcon}};
 
-}  // namespace
+}  // namespace falcon_cases
 
-std::span<const Verifier> falcon_verifiers() { return kVerifiers; }
+std::span<const Verifier> falcon_verifiers() { return falcon_cases::kVerifiers; }
 
 }  // namespace tact::tools::verify

@@ -6,7 +6,7 @@
 #include "tools/verify/report.h"
 
 namespace tact::tools::verify {
-namespace {
+namespace hex_cases {
 
 using model::indent::HexWeight;
 using model::law::LawStatus;
@@ -95,8 +95,8 @@ constexpr Verifier kVerifiers[] = {
     {"hex_surface_paper", verify_cases<paper_results>},
 };
 
-}  // namespace
+}  // namespace hex_cases
 
-std::span<const Verifier> hex_verifiers() { return kVerifiers; }
+std::span<const Verifier> hex_verifiers() { return hex_cases::kVerifiers; }
 
 }  // namespace tact::tools::verify

@@ -12,7 +12,7 @@
 #include "tools/verify/report.h"
 
 namespace tact::tools::verify {
-namespace {
+namespace kinematics_cases {
 
 using hal::delta::DeltaGeometry;
 using hal::delta::DeltaKinematics;
@@ -291,8 +291,8 @@ constexpr std::array kVerifiers{
     Verifier{"kinematics_falcon/1", verify_falcon_kinematics},
 };
 
-}  // namespace
+}  // namespace kinematics_cases
 
-std::span<const Verifier> kinematics_verifiers() { return kVerifiers; }
+std::span<const Verifier> kinematics_verifiers() { return kinematics_cases::kVerifiers; }
 
 }  // namespace tact::tools::verify

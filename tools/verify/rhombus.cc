@@ -7,7 +7,7 @@
 #include "tools/verify/report.h"
 
 namespace tact::tools::verify {
-namespace {
+namespace rhombus_cases {
 
 using model::indent::RhombusUnit;
 using model::law::LawStatus;
@@ -170,8 +170,8 @@ constexpr Verifier kVerifiers[] = {
     {"rhombus_paper_literal", verify_cases<paper_results>},
 };
 
-}  // namespace
+}  // namespace rhombus_cases
 
-std::span<const Verifier> rhombus_verifiers() { return kVerifiers; }
+std::span<const Verifier> rhombus_verifiers() { return rhombus_cases::kVerifiers; }
 
 }  // namespace tact::tools::verify

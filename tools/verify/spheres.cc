@@ -8,7 +8,7 @@
 #include "tools/verify/report.h"
 
 namespace tact::tools::verify {
-namespace {
+namespace spheres_cases {
 
 using model::Vec3;
 using model::contact::PressingSphere;
@@ -71,8 +71,8 @@ json group_results(const json& one_case) {
 
 constexpr Verifier kVerifiers[] = {{"half_space_spheres", verify_cases<group_results>}};
 
-}  // namespace
+}  // namespace spheres_cases
 
-std::span<const Verifier> sphere_verifiers() { return kVerifiers; }
+std::span<const Verifier> sphere_verifiers() { return spheres_cases::kVerifiers; }
 
 }  // namespace tact::tools::verify

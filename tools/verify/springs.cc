@@ -12,7 +12,7 @@
 #include "tools/verify/report.h"
 
 namespace tact::tools::verify {
-namespace {
+namespace springs_cases {
 
 using model::Vec3;
 using model::springs::Integrator;
@@ -180,8 +180,8 @@ constexpr Verifier kVerifiers[] = {
     {"mass_spring_network", verify_cases<network_results>},
 };
 
-}  // namespace
+}  // namespace springs_cases
 
-std::span<const Verifier> spring_verifiers() { return kVerifiers; }
+std::span<const Verifier> spring_verifiers() { return springs_cases::kVerifiers; }
 
 }  // namespace tact::tools::verify

@@ -10,7 +10,7 @@
 #include "tools/verify/report.h"
 
 namespace tact::tools::verify {
-namespace {
+namespace tracking_cases {
 
 using Eigen::Quaterniond;
 using Eigen::Vector2d;
@@ -222,8 +222,8 @@ constexpr Verifier kVerifiers[] = {
     {"ccd_sub_root", verify_cases<ccd_results>},
 };
 
-}  // namespace
+}  // namespace tracking_cases
 
-std::span<const Verifier> tracking_verifiers() { return kVerifiers; }
+std::span<const Verifier> tracking_verifiers() { return tracking_cases::kVerifiers; }
 
 }  // namespace tact::tools::verify

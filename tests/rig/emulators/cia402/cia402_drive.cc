@@ -8,7 +8,7 @@
 namespace tact::rig {
 namespace {
 
-constexpr double kCountsPerTurn = 10'000.0;
+constexpr double kEncoderCountsPerTurn = 10'000.0;
 constexpr std::int64_t kMs_ns = 1'000'000, kTorqueMode = 10;
 constexpr std::uint16_t kHeartbeatLost = 0x8130, kSetPointsLost = 0x8250, kOverCurrent = 0x2310,
                         kOverTemperature = 0x4310, kSyncLost = 0x8100, kSyncLength = 0x8240;
@@ -211,8 +211,8 @@ void Cia402Drive::measure() {
   if (is_enabled() && dictionary_.get(0x6060) == kTorqueMode) status |= kFollows;
   if (is_enabled() && is_limited_) status |= kLimited;
   dictionary_.set(0x6041, 0, status);
-  dictionary_.set(0x6064, 0, std::llround(motor_.position_turns * kCountsPerTurn));
-  dictionary_.set(0x606C, 0, std::llround(motor_.velocity_turns_per_s * kCountsPerTurn));
+  dictionary_.set(0x6064, 0, std::llround(motor_.position_turns * kEncoderCountsPerTurn));
+  dictionary_.set(0x606C, 0, std::llround(motor_.velocity_turns_per_s * kEncoderCountsPerTurn));
   dictionary_.set(0x6077, 0, is_enabled() ? std::llround(torque_permille_) : 0);
 }
 

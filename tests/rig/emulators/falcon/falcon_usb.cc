@@ -12,8 +12,8 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr std::size_t kPacket = 64;
 constexpr int kTransfersPerTurn = 32;
 
-constexpr std::uint8_t kDevice[]{18,   1,    0x00, 0x02, 0,    0, 0, 8, 0x03,
-                                 0x04, 0x48, 0xCB, 0x00, 0x06, 1, 2, 0, 1};
+constexpr std::uint8_t kDeviceDescriptor[]{18,   1,    0x00, 0x02, 0,    0, 0, 8, 0x03,
+                                           0x04, 0x48, 0xCB, 0x00, 0x06, 1, 2, 0, 1};
 constexpr std::uint8_t kConfiguration[]{
     9, 2, 32,   0, 1,       1,    0,    0x80, 45,  // bus powered, 90 mA
     9, 4, 0,    0, 2,       0xFF, 0xFF, 0xFF, 0,   // vendor specific
@@ -87,11 +87,11 @@ std::optional<Bytes> FalconUsb::standard(const FtdiSetup& setup) const {
       return Bytes{1};
     case kGetDescriptor: {
       const auto number = static_cast<std::uint8_t>(setup.value & 0xFF);
-      Bytes bytes = setup.value >> 8 == 1 ? Bytes(std::begin(kDevice), std::end(kDevice))
-                    : setup.value >> 8 == 2
-                        ? Bytes(std::begin(kConfiguration), std::end(kConfiguration))
-                    : setup.value >> 8 == 3 ? string_descriptor(number)
-                                            : Bytes{};
+      Bytes bytes =
+          setup.value >> 8 == 1 ? Bytes(std::begin(kDeviceDescriptor), std::end(kDeviceDescriptor))
+          : setup.value >> 8 == 2 ? Bytes(std::begin(kConfiguration), std::end(kConfiguration))
+          : setup.value >> 8 == 3 ? string_descriptor(number)
+                                  : Bytes{};
       return bytes.empty() ? std::nullopt : std::optional(bytes);
     }
     case kClearFeature:

@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 constexpr Joints kAzimuth_rad{105.0 * kDegree, -15.0 * kDegree, -135.0 * kDegree};
-constexpr double kRim_m = 0.055;   // of the ball the stops leave
-constexpr double kMinSine = 0.15;  // of the knee's bend and of the side angle
+constexpr double kBallRim_m = 0.055;  // of the ball the stops leave
+constexpr double kMinSine = 0.15;     // of the knee's bend and of the side angle
 
 }  // namespace
 
@@ -41,7 +41,7 @@ std::optional<Pose> falcon_pose(const Vec3& position_m) {
 }
 
 std::optional<Pose> FalconMechanism::pose(const Vec3& position_m) const {
-  if (!(model::norm(position_m) < kRim_m)) return std::nullopt;
+  if (!(model::norm(position_m) < kBallRim_m)) return std::nullopt;
   auto pose = falcon_pose({position_m.y, position_m.z, position_m.x + middle_m_});
   if (!pose || pose->at_stop) return std::nullopt;
   for (Vec3& row : pose->k_rad_per_m) row = {row.z, row.x, row.y};
