@@ -2,7 +2,8 @@
 // fault.h - everything that can limit or stop the force, by number.
 //
 // 0 is none; 1 to 99 is a limit that is acting while the loop goes on; 100 and above latch: force
-// goes to zero until an operator resets (supervisor.h). Numbers are never reused.
+// goes to zero until an operator resets (supervisor.h) or, where its cure says so, starts tactd
+// anew. Numbers are never reused.
 #pragma once
 
 #include <cstdint>

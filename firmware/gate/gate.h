@@ -60,6 +60,9 @@ inline constexpr std::size_t kStageCount = 9;
 inline constexpr std::array<const char*, kStageCount> kStageName{
     "finite", "fresh", "armed", "workspace", "passivity", "magnitude", "slew", "power", "ramp"};
 
+/// Of the force, on a PC without hard real time.
+inline constexpr double kNonRtForceShare = 0.25;
+
 struct GateInput {
   Wrench wanted;
   model::Tool tool;  // of the newest sample
@@ -76,7 +79,7 @@ struct GateVerdict {
 
 class Gate {
  public:
-  /// `force_share` scales the magnitude limits: 0.25 on a PC without hard real time.
+  /// `force_share` scales the magnitude limits: 1, or kNonRtForceShare.
   Gate(const model::Limits& limits, double period_s, double force_share);
 
   GateVerdict judge(const GateInput& input) RT_SAFE;

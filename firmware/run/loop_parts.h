@@ -10,6 +10,7 @@
 
 #include "firmware/admission/stiffness_check.h"
 #include "firmware/admission/tick_budget.h"
+#include "firmware/gate/gate.h"
 #include "firmware/guardian/guardian.h"
 #include "firmware/loop/controller.h"
 #include "firmware/loop/ring.h"
@@ -21,15 +22,12 @@
 
 namespace tact::firmware::run {
 
-/// Of the force, where the PC gives no hard real time.
-inline constexpr double kNonRtForceShare = 0.25;
-
 struct PartsSetup {
   bool simulated_time = false;  // waits for any law, so no law is too slow
   bool non_rt = false;          // caps the force; simulated time is never late
   pc::RtSettings rt;
 
-  double force_share() const { return non_rt ? kNonRtForceShare : 1.0; }
+  double force_share() const { return non_rt ? gate::kNonRtForceShare : 1.0; }
 };
 
 struct LoopParts {

@@ -100,7 +100,7 @@ int Session::run() {
   if (non_rt_ && options_.strict) return fail("refused by --strict: no hard real time here", 1);
   if (non_rt_)
     say(stderr, "tactd: no hard real time: force capped to {:g} %, records stamped non-rt\n",
-        100.0 * kNonRtForceShare);
+        100.0 * gate::kNonRtForceShare);
   if (const auto error = open()) return fail(error->sentence, 2);
   for (const std::string& note :
        {admission::inertia_note(scene_, parts_.tissue->law()), parts_.device->info().caution,

@@ -87,7 +87,8 @@ struct BasicCanLoop {
   }
 };
 
-/// The rules of one kind of drives. All but words() and tally() belong to the loop.
+/// The rules of one kind of drives. All but words(), tally() and the two of
+/// the end, push_stop() and push_leave(), belong to the loop.
 template <class Frame>
 class BasicCanDrives {
  public:

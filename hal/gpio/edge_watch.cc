@@ -31,6 +31,7 @@ class GpioEdges final : public EdgeWatch {
 }  // namespace
 
 Result<std::unique_ptr<EdgeWatch>> open_edge_watch(const std::string& wanted, int line,
+                                                   const std::string& who,
                                                    const SystemRoots& roots) {
   const auto chip = choose_chip(find_gpio_chips(roots), wanted);
   if (!chip) return chip.error();
@@ -38,9 +39,8 @@ Result<std::unique_ptr<EdgeWatch>> open_edge_watch(const std::string& wanted, in
     return Error{fmt::format("line {} is none of {} \"{}\", which has lines 0 to {}", line,
                              chip->name, chip->label, chip->lines - 1)};
   Chip handle(chip->path);
-  // The name also is that of the interrupt's thread, irq/N-tact-jitter.
   LineRequest found;
-  if (!handle.empty()) found = handle.request(LineUse::kEdges, {&line, 1}, "tact-jitter");
+  if (!handle.empty()) found = handle.request(LineUse::kEdges, {&line, 1}, who.c_str());
   if (found.empty())
     return Error{fmt::format("line {} of {} cannot be watched: {}; gpioinfo {} shows who uses it",
                              line, chip->name, std::strerror(errno), chip->name)};

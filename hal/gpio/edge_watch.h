@@ -32,8 +32,10 @@ class EdgeWatch {
 };
 
 /// The line becomes an input. `chip`: label, name or path, as device.lines.chip has it. An error
-/// says which line, who uses it, or what the chip is.
+/// says which line, who uses it, or what the chip is. `who`: the name of the interrupt's thread,
+/// irq/N-who.
 model::Result<std::unique_ptr<EdgeWatch>> open_edge_watch(const std::string& chip, int line,
+                                                          const std::string& who,
                                                           const SystemRoots& roots = {});
 
 }  // namespace tact::hal::gpio

@@ -13,6 +13,7 @@
 #include "hal/falcon/falcon_calibration.h"
 #include "hal/falcon_usb/falcon_open.h"
 #include "model/io/program/within.h"
+#include "tools/calibrate/gated_run.h"
 #include "tools/program/program.h"
 
 namespace {
@@ -27,7 +28,6 @@ using tact::model::Error;
 using tact::model::Fault;
 using tact::model::Result;
 
-constexpr std::int64_t kPeriod_ns = 1'000'000;
 constexpr int kMaxMissed = 20;  // samples in a row
 
 struct Options {
@@ -49,24 +49,13 @@ void add_options(CLI::App& app, Options& o) {
       ->capture_default_str();
 }
 
-/// Runs the device at 1 kHz; `tick` gives the force up and says whether to go on.
+/// `tick` gives the force up and says whether to go on.
 template <typename Tick>
 Fault run(FalconDevice& device, Sample& sample, Tick tick) {
   MonotonicClock clock;
-  std::int64_t due_ns = clock.now_ns() + kPeriod_ns;
-  Fault fault = Fault::kNone;
-  bool more = true;
-  while (more && fault == Fault::kNone) {
-    clock.sleep_until_ns(due_ns);
-    due_ns += kPeriod_ns;
-    fault = device.read(sample, clock.now_ns());
-    double up_N = 0.0;
-    more = tick(up_N) && !program::is_interrupted();
-    const Fault written = device.write({.force_N = {0.0, 0.0, more ? up_N : 0.0}, .torque_Nm = {}});
-    if (fault == Fault::kNone) fault = written;
-  }
-  const Fault zeroed = device.write({});
-  return fault == Fault::kNone ? zeroed : fault;
+  return calibrate::run_gated(device, clock, sample, [&](double& up_N) {
+    return tick(up_N) && !program::is_interrupted();
+  });
 }
 
 void ask(const std::string& question) {
@@ -104,7 +93,7 @@ Result<FalconBalance> balance(FalconDevice& device, double mass_kg) {
     missed = sample.fresh ? 0 : missed + 1;
     if (sample.fresh)
       held_N = ramp.step(sample.tool.position_m.z, norm(sample.tool.velocity_mps), device.words(),
-                         1e-9 * kPeriod_ns);
+                         1e-9 * calibrate::kPeriod_ns);
     up_N = held_N;
     return missed < kMaxMissed && !ramp.ended();
   });
@@ -149,8 +138,8 @@ Result<std::vector<FalconBalance>> measure(FalconDevice& device, const Options& 
   return samples;
 }
 
-Result<tact::hal::falcon::FalconCalibration> calibrate(const Options& o,
-                                                       tact::model::FalconSettings settings) {
+Result<tact::hal::falcon::FalconCalibration> find_calibration(
+    const Options& o, tact::model::FalconSettings settings) {
   settings.moving_mass_kg = 0.0;  // the words shall be those of the load alone
   settings.dead_band_words = {};
   auto device = tact::hal::falcon_usb::open_falcon_device(settings);
@@ -180,7 +169,7 @@ int main(int argc, char** argv) {
   if (!scene) return program.fail(scene.error());
   ask("The grip will move by itself, with at most 6 N. Keep faces and cups away. Go on (yes)?");
   if (!read_yes()) return program.fail({"not agreed to: nothing moved"});
-  const auto found = calibrate(o, scene->device.falcon);
+  const auto found = find_calibration(o, scene->device.falcon);
   if (!found) return program.fail(found.error(), "no force is left");
   fmt::print("\n# {} masses at {} poses; the fit leaves {:.0f} words\n{}", o.masses_kg.size(),
              o.poses, found->residual_words, tact::hal::falcon::scene_lines(*found));

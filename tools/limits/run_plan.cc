@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "firmware/console/operator_view.h"
+#include "firmware/gate/gate.h"
 #include "firmware/gate/limits_for.h"
 #include "firmware/run/loop_parts.h"
 #include "firmware/watch/call_filter.h"
@@ -111,7 +112,7 @@ Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& dev
   firmware::loop::Requests requests;
   const LimitsBench bench{.scene = scene,
                           .limits = firmware::gate::limits_for(scene.limits, info),
-                          .force_share = hard ? 1.0 : firmware::run::kNonRtForceShare,
+                          .force_share = hard ? 1.0 : firmware::gate::kNonRtForceShare,
                           .hard_real_time = hard,
                           .device = &device,
                           .lines = lines->get(),

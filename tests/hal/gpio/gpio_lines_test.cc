@@ -139,11 +139,11 @@ TEST_F(Sysfs, APcWithoutChipsSaysSo) {
 }
 
 TEST_F(Sysfs, EdgesAreWatchedUnderTheSameRulesAsSafetyLines) {
-  const auto none = open_edge_watch("board", 3, roots());
+  const auto none = open_edge_watch("board", 3, "a test", roots());
   ASSERT_FALSE(none);
   EXPECT_NE(none.error().sentence.find("no GPIO chip"), std::string::npos);
   chip(0, {"platform", "usb"});
-  const auto slow = open_edge_watch("gpiochip0", 3, roots());
+  const auto slow = open_edge_watch("gpiochip0", 3, "a test", roots());
   ASSERT_FALSE(slow);
   EXPECT_NE(slow.error().sentence.find("hangs on usb"), std::string::npos);
 }

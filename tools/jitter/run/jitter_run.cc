@@ -160,7 +160,8 @@ std::optional<Error> Run::open() {
   result_.subject = fmt::format("{} on {}, law {}", scene_->name, parts_.device->info().name,
                                 parts_.tissue->law().title());
   if (options_.loop_back >= 0) {
-    auto edges = hal::gpio::open_edge_watch(scene_->device.lines.chip, options_.loop_back);
+    auto edges =
+        hal::gpio::open_edge_watch(scene_->device.lines.chip, options_.loop_back, "tact-jitter");
     if (!edges) return edges.error();
     loop_back_.emplace(std::move(*edges), loop_period_ns());
   }

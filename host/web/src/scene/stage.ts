@@ -10,9 +10,6 @@ import { kSteel, look_material, paint } from "./look";
 import { snapshot } from "./snapshot";
 
 const kSlow_fps = 40; // below this the picture gets coarser, because smooth matters more than sharp
-// A processor that draws has other work, too: of 60 pictures a second every other one is left out, of 40 none.
-const kSoftwareApart_ms = 24;
-const kSlowSoftware_fps = 24;
 const kCoarsest = 0.6;
 const kSight_deg = 32;
 const kHome_aspect = 0.95; // in a narrower picture the first view is from farther off, and shows the same
@@ -46,7 +43,6 @@ export class Stage {
   private readonly looks_at = new THREE.Vector3();
   private drawn_ms = 0;
   private readonly adapts: boolean;
-  private readonly spares: boolean;
   private sharpness = Math.min(window.devicePixelRatio, 2);
   private frames = 0;
   private counted_since_ms = performance.now();
@@ -56,8 +52,7 @@ export class Stage {
     const sharp = location.hash.slice(1).split("&").includes("sharp");
     const software = draws_in_software();
     this.adapts = !sharp;
-    this.spares = software && !sharp;
-    if (this.spares) this.sharpness = 0.8;
+    if (software && !sharp) this.sharpness = 0.8;
     this.renderer = new THREE.WebGLRenderer({
       canvas,
       alpha: true, // the page's own gradient is the background
@@ -80,7 +75,6 @@ export class Stage {
     this.resize();
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.renderer.setAnimationLoop((now_ms) => {
-      if (this.spares && !this.wearer && now_ms - this.drawn_ms < kSoftwareApart_ms) return;
       draw(now_ms);
       if (this.eyes) this.see_with(this.eyes, follow_share((now_ms - this.drawn_ms) / 1000, kEyes_s));
       else if (!this.wearer) this.controls.update();
@@ -185,8 +179,7 @@ export class Stage {
     this.frames = 0;
     this.counted_since_ms = now_ms;
     const hidden = elapsed_ms > 3000; // a page in the background is not slow
-    const slow_fps = this.spares ? kSlowSoftware_fps : kSlow_fps;
-    if (this.adapts && this.fps < slow_fps && !hidden && !this.wearer && this.sharpness > kCoarsest) {
+    if (this.adapts && this.fps < kSlow_fps && !hidden && !this.wearer && this.sharpness > kCoarsest) {
       this.sharpness = Math.max(kCoarsest, this.sharpness * 0.85);
       this.resize();
     }

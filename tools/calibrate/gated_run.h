@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// gated_run.h - a device at 1 kHz without a scene's loop, its force through the gate
+// (firmware/gate/gate.h): at most 6 N, faded in, none outside the device's workspace, none above
+// 0.3 m/s, none without fresh samples.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/gate/gate.h"
+#include "firmware/gate/limits_for.h"
+#include "firmware/loop/clock.h"
+#include "hal/device.h"
+#include "model/fault.h"
+#include "model/limits.h"
+
+namespace tact::tools::calibrate {
+
+inline constexpr std::int64_t kPeriod_ns = 1'000'000;
+
+/// What a balanced weight needs: 0.5 kg by 2 mm are 10 mJ. The device bounds the workspace.
+inline constexpr model::Limits kLimits{.force_N = 6.0,
+                                       .slew_N_per_s = 100.0,
+                                       .ramp_s = 0.1,
+                                       .workspace_radius_m = 1.0,
+                                       .workspace_half_length_m = 1.0,
+                                       .speed_mps = 0.3,
+                                       .energy_J = 0.15,
+                                       .continuous_force_N = 6.0,
+                                       .power_W = 2.0};
+
+/// Calls `tick(up_N)` once a period, after a sample was read, until it returns false. up_N is the
+/// force that it wants, upwards; 0 is no force. The first fault of device or gate ends it. The last
+/// write is zero.
+template <typename Tick>
+model::Fault run_gated(hal::Device& device, firmware::loop::Clock& clock, hal::Sample& sample,
+                       Tick tick) {
+  using model::Fault;
+  firmware::gate::Gate gate(firmware::gate::limits_for(kLimits, device.info()), 1e-9 * kPeriod_ns,
+                            1.0);
+  std::int64_t due_ns = clock.now_ns() + kPeriod_ns;
+  std::int64_t skipped = 0;
+  Fault fault = Fault::kNone;
+  const auto note = [&fault](Fault next) {
+    if (fault == Fault::kNone) fault = next;
+  };
+  for (bool more = true; more && fault == Fault::kNone;) {
+    clock.sleep_until_ns(due_ns);
+    sample.fresh = false;
+    note(device.read(sample, clock.now_ns()));
+    double up_N = 0.0;
+    more = tick(up_N) && fault == Fault::kNone;
+    const firmware::gate::GateVerdict verdict =
+        gate.judge({.wanted = {.force_N = {0.0, 0.0, up_N}, .torque_Nm = {}},
+                    .tool = sample.tool,
+                    .fresh = sample.fresh,
+                    .armed = more && up_N != 0.0,
+                    .skipped_periods = static_cast<std::uint32_t>(skipped)});
+    note(verdict.fault);
+    note(device.write(verdict.wrench));
+    due_ns += kPeriod_ns;  // a late tick skips whole periods, as in tactd
+    const std::int64_t behind_ns = clock.now_ns() - due_ns;
+    skipped = behind_ns >= 0 ? behind_ns / kPeriod_ns + 1 : 0;
+    due_ns += skipped * kPeriod_ns;
+  }
+  note(device.write({}));
+  return fault;
+}
+
+}  // namespace tact::tools::calibrate
