@@ -9,7 +9,7 @@
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import {
-  build, check, distance, folder, play, root, sharp, size, start, start_browser, start_tactd, start_view, stop, waits,
+  build, check, distance, folder, numbers, play, root, sharp, size, start, start_browser, start_tactd, start_view, stop, waits,
 } from "./stage.mjs";
 import { free_udp_port } from "./marker_body.mjs";
 
@@ -253,9 +253,11 @@ async function take_picture(browser) {
   const all = await start_all(browser, "picture", description);
   await all.page.goto(sharp(all.url));
   await all.page.keyboard.press("v"); // from outside, whoever's head is tracked
-  check("shows the operator pressing", await waits(all.page, () =>
+  const presses = await waits(all.page, () =>
     window.tact.figure_m !== null && window.tact.tracking_words === "" && window.tact.tick > 10000 &&
-    Math.hypot(...(window.tact.force_N ?? [0])) > 0.9, 60000));
+    Math.hypot(...(window.tact.force_N ?? [0])) > 0.9, null, 60000);
+  const { link, tick, tracking_words, fps } = await numbers(all.page);
+  check("shows the operator pressing", presses, `${link}, tick ${tick}, "${tracking_words}", ${fps.toFixed(1)} frames/s`);
   await all.page.screenshot({ path: join(build, "page-maintenance.png") });
   await stop_all(all);
 }
