@@ -40,4 +40,10 @@ constexpr std::int64_t next_half_way_ns(std::int64_t from_ns, std::int64_t perio
   return next_in_phase_ns(from_ns, period_ns, after_kernel_tick_ns(period_ns) + period_ns / 2);
 }
 
+/// Deadlines that have passed at now_ns, from due_ns on: a loop skips them all.
+constexpr std::int64_t periods_missed(std::int64_t due_ns, std::int64_t now_ns,
+                                      std::int64_t period_ns) RT_SAFE {
+  return now_ns < due_ns ? 0 : (now_ns - due_ns) / period_ns + 1;
+}
+
 }  // namespace tact::firmware::loop

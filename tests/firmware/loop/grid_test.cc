@@ -43,4 +43,11 @@ TEST(Grid, OtherThreadsWakeHalfAPeriodAwayFromEveryDeadline) {
     }
 }
 
+TEST(Grid, ADeadlineIsMissedFromItsOwnInstantOn) {
+  EXPECT_EQ(periods_missed(5'000, 4'999, 1'000), 0);
+  EXPECT_EQ(periods_missed(5'000, 5'000, 1'000), 1);
+  EXPECT_EQ(periods_missed(5'000, 5'999, 1'000), 1);
+  EXPECT_EQ(periods_missed(5'000, 7'500, 1'000), 3);
+}
+
 }  // namespace tact::firmware::loop::grid_test

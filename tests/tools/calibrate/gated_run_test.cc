@@ -89,8 +89,20 @@ TEST(GatedRun, EndsWithoutForceWhenTheDeviceFallsSilent) {
 TEST(GatedRun, GivesNoForceOutsideTheWorkspace) {
   Bench b;
   b.grip.height_m = 0.2;
-  EXPECT_EQ(b.want(5.0, 1000, [](int) {}), Fault::kNone);
-  EXPECT_EQ(b.grip.up_N[900], 0.0);
+  EXPECT_EQ(b.want(5.0, 1000, [](int) {}), Fault::kOutsideWorkspace);
+  EXPECT_EQ(b.ticks, 1);
+  EXPECT_EQ(b.most_N(), 0.0);
+}
+
+TEST(GatedRun, ALateTickKeepsTheGrid) {
+  Bench b;
+  std::int64_t last_ns = 0;
+  b.want(1.0, 20, [&](int tick) {
+    if (tick == 10) b.clock.sleep_until_ns(b.clock.now_ns() + 2'500'000);
+    last_ns = b.clock.now_ns();
+  });
+  // 20 ticks; the one that took 2.5 periods has skipped two.
+  EXPECT_EQ(last_ns, 22 * kPeriod_ns);
 }
 
 TEST(GatedRun, WaitsForADeviceThatIsNotHomedAsLongAsNoForceIsWanted) {

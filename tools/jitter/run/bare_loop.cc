@@ -36,8 +36,7 @@ void BareLoop::step() RT_SAFE {
     record_.phase_ns[static_cast<std::size_t>(phase)] = clipped(end_ns - wake_ns);
   ++record_.tick;
   due_ns_ += period_ns_;
-  const std::int64_t behind_ns = end_ns - due_ns_;
-  const std::int64_t skipped = behind_ns >= 0 ? behind_ns / period_ns_ + 1 : 0;
+  const std::int64_t skipped = firmware::loop::periods_missed(due_ns_, end_ns, period_ns_);
   due_ns_ += skipped * period_ns_;
   record_.input.skipped_periods = static_cast<std::uint32_t>(std::min(skipped, kMax_ns));
   periods_ += 1 + static_cast<std::uint64_t>(skipped);
