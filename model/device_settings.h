@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // device_settings.h - what a scene says about the device and the lines beside it.
 //
-// Plain numbers and names; what they mean to a device is said in hal/. Defaults are those of the
-// example delta (hal/sim/sim_delta_model.h) and of the makers' manuals, so a scene names what
-// differs. Set-up code only.
+// Plain numbers and names; what they mean to a device is said in hal/. What only the owner of a
+// device can know has no default: a scene must name it (model/scene/scene_device.cc). Other
+// defaults are those of the makers' manuals. Set-up code only.
 #pragma once
 
 #include <array>
 #include <string>
 
-#include "model/types.h"
-
 namespace tact::model {
+
+using PerArm = std::array<double, 3>;  // one value an arm or its motor, 1 to 3
 
 /// The simulated Delta's imperfections; its geometry is fixed in hal/sim.
 struct SimDeviceSettings {
@@ -24,24 +24,24 @@ struct SimDeviceSettings {
 
 /// A delta of one's own, on its side: its z axis points at the operator (types.h, frame W).
 struct DeltaSettings {
-  double base_radius_m = 0.180;      // shoulder axes
-  double platform_radius_m = 0.050;  // ends of the rods
-  double upper_arm_m = 0.260;
-  double forearm_m = 0.400;
-  Vec3 azimuth_rad{0.0, 2.0943951023931953, 4.1887902047863905};  // of arms 1, 2, 3
-  double theta_min_rad = -0.8727, theta_max_rad = 1.6581;         // stops of an arm
-  double arm_kg = 0.25, arm_com_m = 0.09, arm_inertia_kgm2 = 0.0056;
-  double rotor_inertia_kgm2 = 6e-5;
-  double gear_ratio = 10.0;   // motor turns per turn of an arm
-  double forearm_kg = 0.08;   // both rods of one arm
-  double platform_kg = 0.20;  // with the handle
-  double middle_m = 0.345;    // origin of W, from the plane of the motors
-  double workspace_radius_m = 0.18, workspace_half_length_m = 0.15;
-  double max_force_N = 20.0;
-  double max_joint_torque_Nm = 7.4;
-  double joint_friction_Nm = 0.01;          // Coulomb
-  double joint_damping_Nms_per_rad = 0.05;  // viscous, what the device really has
-  double counts_per_turn = 100'000.0;       // of an arm
+  double base_radius_m = 0.0;      // shoulder axes
+  double platform_radius_m = 0.0;  // ends of the rods
+  double upper_arm_m = 0.0;
+  double forearm_m = 0.0;
+  PerArm azimuth_rad{};
+  double theta_min_rad = 0.0, theta_max_rad = 0.0;  // stops of an arm
+  double arm_kg = 0.0, arm_com_m = 0.0, arm_inertia_kgm2 = 0.0;
+  double rotor_inertia_kgm2 = 0.0;
+  double gear_ratio = 0.0;   // motor turns per turn of an arm
+  double forearm_kg = 0.0;   // both rods of one arm
+  double platform_kg = 0.0;  // with the handle
+  double middle_m = 0.0;     // origin of W, from the plane of the motors
+  double workspace_radius_m = 0.0, workspace_half_length_m = 0.0;
+  double max_force_N = 0.0;
+  double max_joint_torque_Nm = 0.0;
+  double joint_friction_Nm = 0.0;          // Coulomb
+  double joint_damping_Nms_per_rad = 0.0;  // viscous, what the device really has
+  double counts_per_turn = 0.0;            // of an arm
   double observer_bandwidth_Hz = 40.0;
 };
 
@@ -57,9 +57,9 @@ struct CanSettings {
   std::string interface = "can0";
   std::array<int, 3> node{1, 2, 3};
   Homing homing = Homing::kJig;
-  Vec3 zero_turns;                // of the motor, where the arm is at 0 rad
-  Vec3 direction{1.0, 1.0, 1.0};  // 1 or -1: sign of the motor's turn for a rising arm
-  Vec3 home_rad;                  // of the arms on the jig
+  PerArm zero_turns{};  // of the motor, where the arm is at 0 rad
+  PerArm direction{};   // 1 or -1: sign of the motor's turn for a rising arm
+  PerArm home_rad{};    // of the arms on the jig
   // ODrive
   double max_velocity_turns_per_s = 0.0;  // of the motor, where the drive gives up
   double max_current_A = 0.0;             // both or none; 0: the drive's own limits stay
@@ -79,8 +79,8 @@ struct FalconSettings {
   std::string firmware_sha256;  // empty: only images that are known
   bool event_character = true;  // the USB chip answers at once, without its 1 ms timer
   bool keep_homing = true;      // the homing request stays set while it runs
-  Vec3 gain_words_per_Nm{10'000.0, 10'000.0, 10'000.0};  // by tact-calibrate, axis 1, 2, 3
-  Vec3 dead_band_words;                                  // before an axis moves at all
+  PerArm gain_words_per_Nm{10'000.0, 10'000.0, 10'000.0};  // by tact-calibrate
+  PerArm dead_band_words{};                                // before an axis moves at all
   double moving_mass_kg = 0.0;  // held up by the motors, at the grip; 0: not held
   double observer_bandwidth_Hz = 40.0;
   double joint_friction_Nm = 0.02, joint_damping_Nms_per_rad = 0.01;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// gate.h - the one way from the model to the device. Every force passes the stages, in this order,
-// until one makes it zero:
+// gate.h - the one way from the model to the device. Every force of a law passes the stages, in
+// this order, until one makes it zero:
 //
 //   finite     NaN or infinity in force or sample: zero, latches
 //   fresh      one missed sample holds, from the second the force fades to zero in 10 ms, and so

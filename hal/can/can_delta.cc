@@ -24,8 +24,6 @@ constexpr double kStopSlack_rad = 2_deg;  // stops give, encoders are not exact
 constexpr double kJump_m = 5e-3;          // between two samples: a new start of the velocity
 constexpr std::int64_t kLongGap_ns = 20'000'000;
 
-delta::Joints joints_of(const Vec3& v) { return {v.x, v.y, v.z}; }
-
 double in_deg(double angle_rad) { return angle_rad * 360.0 / kTurn_rad; }
 
 }  // namespace
@@ -35,7 +33,7 @@ delta::DeltaGeometry delta_geometry(const model::DeltaSettings& delta) {
           .platform_radius_m = delta.platform_radius_m,
           .upper_arm_m = delta.upper_arm_m,
           .forearm_m = delta.forearm_m,
-          .azimuth_rad = joints_of(delta.azimuth_rad),
+          .azimuth_rad = delta.azimuth_rad,
           .theta_min_rad = delta.theta_min_rad,
           .theta_max_rad = delta.theta_max_rad};
 }
@@ -54,9 +52,9 @@ CanDelta::CanDelta(const model::DeltaSettings& delta, const model::CanSettings& 
     : settings_(delta),
       masses_(delta_masses(delta)),
       delta_(delta_geometry(delta)),
-      direction_(joints_of(can.direction)),
-      zero_turns_(joints_of(can.zero_turns)),
-      home_rad_(joints_of(can.home_rad)),
+      direction_(can.direction),
+      zero_turns_(can.zero_turns),
+      home_rad_(can.home_rad),
       velocity_(delta.observer_bandwidth_Hz, kJump_m) {}
 
 void CanDelta::home_on_jig(const delta::Joints& motor_turns) {

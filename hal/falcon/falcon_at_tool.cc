@@ -47,11 +47,9 @@ model::DeviceAtTool falcon_at_tool(const FalconKinematics& falcon,
 }
 
 double falcon_max_force_N(const FalconKinematics& falcon, const model::FalconSettings& settings) {
-  const Vec3& gain = settings.gain_words_per_Nm;
-  const Vec3& dead = settings.dead_band_words;
-  const delta::Joints torque_Nm{(kFalconMotorMax - dead.x) / gain.x,
-                                (kFalconMotorMax - dead.y) / gain.y,
-                                (kFalconMotorMax - dead.z) / gain.z};
+  delta::Joints torque_Nm{};
+  for (std::size_t i = 0; i < 3; ++i)
+    torque_Nm[i] = (kFalconMotorMax - settings.dead_band_words[i]) / settings.gain_words_per_Nm[i];
   double force_N = kFalconMaxForce_N;
   visit_workspace(falcon, [&](const model::Mat3& jacobian) {
     const model::Mat3 torque_of_force = model::transpose(jacobian);  // tau = J^T F

@@ -169,13 +169,13 @@ Result<FalconCalibration> fit_falcon(std::span<const FalconBalance> samples) {
 }
 
 std::string scene_lines(const FalconCalibration& c) {
-  const model::Vec3 &gain = c.gain_words_per_Nm, &dead = c.dead_band_words;
+  const auto &gain = c.gain_words_per_Nm, &dead = c.dead_band_words;
   return fmt::format(
       "[device.falcon]\n"
       "gain_words_per_Nm = [{:.0f}.0, {:.0f}.0, {:.0f}.0]\n"
       "dead_band_words = [{:.0f}.0, {:.0f}.0, {:.0f}.0]\n"
       "moving_mass_kg = {:.3f}\n",
-      gain.x, gain.y, gain.z, dead.x, dead.y, dead.z, c.moving_mass_kg);
+      gain[0], gain[1], gain[2], dead[0], dead[1], dead[2], c.moving_mass_kg);
 }
 
 }  // namespace tact::hal::falcon

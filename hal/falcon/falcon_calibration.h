@@ -28,8 +28,7 @@ struct FalconBalance {
 };
 
 struct FalconCalibration {
-  model::Vec3 gain_words_per_Nm;
-  model::Vec3 dead_band_words;
+  std::array<double, 3> gain_words_per_Nm{}, dead_band_words{};  // of axis 1, 2, 3
   double moving_mass_kg = 0.0;
   double residual_words = 0.0;  // root of the mean square
 };

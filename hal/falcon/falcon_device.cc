@@ -30,8 +30,6 @@ constexpr const char* kUnguarded =
     "device.falcon.transport = \"usbfs\"";
 constexpr int kLastCommands = 3;  // nobody sees whether the first has come
 
-double component(const Vec3& v, std::size_t i) RT_SAFE { return i == 0 ? v.x : i == 1 ? v.y : v.z; }
-
 bool is_pressed(const FalconReport& report, std::uint8_t button) RT_SAFE {
   return (report.buttons & button) != 0;
 }
@@ -196,8 +194,8 @@ FalconWords FalconDevice::words_for(const Vec3& force_W_N) const RT_SAFE {
   delta::Joints held{}, wanted{};  // 1 is all that an axis can do
   for (std::size_t i = 0; i < 3; ++i) {
     // The dead band takes its words first: only the rest makes torque.
-    const double most_words = kFalconMotorMax - component(settings_.dead_band_words, i);
-    const double per_Nm = component(settings_.gain_words_per_Nm, i) / most_words;
+    const double most_words = kFalconMotorMax - settings_.dead_band_words[i];
+    const double per_Nm = settings_.gain_words_per_Nm[i] / most_words;
     held[i] = per_Nm * held_Nm[i];
     wanted[i] = per_Nm * wanted_Nm[i];
   }
@@ -206,9 +204,9 @@ FalconWords FalconDevice::words_for(const Vec3& force_W_N) const RT_SAFE {
   std::array<double, 3> words{};
   for (std::size_t i = 0; i < 3; ++i) {
     const double torque_Nm = held_Nm[i] + ratio * wanted_Nm[i];
-    const double useful = component(settings_.gain_words_per_Nm, i) * torque_Nm;
+    const double useful = settings_.gain_words_per_Nm[i] * torque_Nm;
     const double share = std::clamp(useful / kDeadBandRamp_words, -1.0, 1.0);
-    words[i] = -(useful + component(settings_.dead_band_words, i) * share);
+    words[i] = -(useful + settings_.dead_band_words[i] * share);
   }
   return falcon_motor_words(words);
 }

@@ -184,6 +184,8 @@ void Contact::couple_new_spheres() RT_SAFE {
       else if (!before[i] || !before[j])
         couple_pair(i, j);
   shear_.solve();
+  // MC-4 for f_i = 0:  t_i <- t_i + sum over j != i of c_ij P_ij f_j, by the forces f of the tick
+  // before; then exactly  t_i <- t_i - K_ii^-1 f_i,  f = K t,  K = (diag(G) + c P)^-1
   for (std::size_t i = 0; i < kMaxSpheres; ++i)
     if (in_contact_[i] && !before[i]) {
       shift_m_[i] = shift_m_[i] + shear_.unloaded_m(shear_N_, i);

@@ -2,6 +2,7 @@
 #include "model/reader/scene_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <tuple>
@@ -89,6 +90,15 @@ void Keys::vector(std::string_view key, Range each, std::string_view meaning, Ve
       need == Need::kOptional ? fmt::format("[{:.5g}, {:.5g}, {:.5g}]", out.x, out.y, out.z) : "";
   const toml::node* node = take(key, "[x, y, z], each " + range_text(each, key), meaning, fallback);
   if (node) store(*node, key, as_vector(*node, each), out);
+}
+
+void Keys::per_arm(std::string_view key, Range each, std::string_view meaning,
+                   std::array<double, 3>& out, Need need) {
+  const std::string fallback =
+      need == Need::kOptional ? fmt::format("[{:.5g}]", fmt::join(out, ", ")) : "";
+  const toml::node* node =
+      take(key, "[a, b, c], each " + range_text(each, key), meaning, fallback);
+  if (node) store(*node, key, as_per_arm(*node, each), out);
 }
 
 void Keys::choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning,

@@ -8,6 +8,7 @@
 // other, in the order of the file, overrides first. Set-up code only.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <initializer_list>
 #include <optional>
@@ -84,6 +85,8 @@ class Keys {
              Need need = Need::kRequired);
   void vector(std::string_view key, Range each, std::string_view meaning, Vec3& out,
               Need need = Need::kRequired);
+  void per_arm(std::string_view key, Range each, std::string_view meaning,
+               std::array<double, 3>& out, Need need = Need::kRequired);
   /// `out` becomes the index of the choice. Many choices get a row each in the reference.
   void choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning,
               std::size_t& out, Need need = Need::kRequired);

@@ -8,6 +8,23 @@
 #include "model/reader/scene_words.h"
 
 namespace tact::model::reader {
+namespace {
+
+/// `names`: one letter for each of the three.
+Result<std::array<double, 3>> as_three(const toml::node& node, Range each, std::string_view names) {
+  const toml::array* array = node.as_array();
+  if (!array) return Error{fmt::format("is {}, not three numbers", type_name(node))};
+  if (array->size() != 3) return Error{fmt::format("has {} elements, not three", array->size())};
+  std::array<double, 3> value{};
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    const Result<double> given = as_number(*array->get(i), each);
+    if (!given) return Error{fmt::format("{} {}", names[i], given.error().sentence)};
+    value[i] = *given;
+  }
+  return value;
+}
+
+}  // namespace
 
 std::string_view type_name(const toml::node& node) {
   switch (node.type()) {
@@ -58,18 +75,13 @@ Result<std::size_t> as_count(const toml::node& node, CountRange range) {
 }
 
 Result<Vec3> as_vector(const toml::node& node, Range each) {
-  const toml::array* array = node.as_array();
-  if (!array) return Error{fmt::format("is {}, not three numbers", type_name(node))};
-  if (array->size() != 3) return Error{fmt::format("has {} elements, not three", array->size())};
-  Vec3 value;
-  std::size_t index = 0;
-  for (double* component : {&value.x, &value.y, &value.z}) {
-    const Result<double> given = as_number(*array->get(index), each);
-    if (!given) return Error{fmt::format("{} {}", "xyz"[index], given.error().sentence)};
-    *component = *given;
-    ++index;
-  }
-  return value;
+  const Result<std::array<double, 3>> xyz = as_three(node, each, "xyz");
+  if (!xyz) return xyz.error();
+  return Vec3{(*xyz)[0], (*xyz)[1], (*xyz)[2]};
+}
+
+Result<std::array<double, 3>> as_per_arm(const toml::node& node, Range each) {
+  return as_three(node, each, "123");
 }
 
 Result<std::string> as_text(const toml::node& node) {

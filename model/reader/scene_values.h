@@ -8,6 +8,7 @@
 
 #include <toml++/toml.h>
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -35,6 +36,7 @@ std::string_view type_name(const toml::node& node);
 Result<double> as_number(const toml::node& node, Range range);
 Result<std::size_t> as_count(const toml::node& node, CountRange range);
 Result<Vec3> as_vector(const toml::node& node, Range each);
+Result<std::array<double, 3>> as_per_arm(const toml::node& node, Range each);
 Result<std::string> as_text(const toml::node& node);
 Result<bool> as_flag(const toml::node& node);
 

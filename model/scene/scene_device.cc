@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -36,53 +37,48 @@ void visit_sim(reader::Keys& k, SimDeviceSettings& sim) {
            sim.observer_bandwidth_Hz);
 }
 
-/// Optional: the defaults are the reference device (model/device_settings.h).
+/// Required: with another device's arm length or mass every force is wrong.
 void visit_delta(reader::Keys& k, DeltaSettings& d) {
-  k.number("base_radius_m", {0.01, 1.0}, "motor axes from the middle", d.base_radius_m, kOptional);
+  k.number("base_radius_m", {0.01, 1.0}, "motor axes from the middle", d.base_radius_m);
   k.number("platform_radius_m", {0.0, 1.0}, "rod ends from the middle of the platform",
-           d.platform_radius_m, kOptional);
-  k.number("upper_arm_m", {0.01, 1.0}, "motor axis to elbow", d.upper_arm_m, kOptional);
-  k.number("forearm_m", {0.01, 2.0}, "elbow to platform", d.forearm_m, kOptional);
-  k.vector("azimuth_rad", {-6.3, 6.3}, "of arms 1, 2, 3 about the device's axis", d.azimuth_rad,
-           kOptional);
-  k.number("theta_min_rad", {-3.2, 3.2}, "lower stop of an arm", d.theta_min_rad, kOptional);
-  k.number("theta_max_rad", {-3.2, 3.2}, "upper stop of an arm", d.theta_max_rad, kOptional);
-  k.number("arm_kg", {0.0, 10.0}, "one upper arm", d.arm_kg, kOptional);
-  k.number("arm_com_m", {0.0, 1.0}, "its centre of mass from the motor axis", d.arm_com_m,
-           kOptional);
-  k.number("arm_inertia_kgm2", {0.0, 1.0}, "its inertia about the motor axis", d.arm_inertia_kgm2,
-           kOptional);
-  k.number("rotor_inertia_kgm2", {0.0, 0.1}, "of one motor", d.rotor_inertia_kgm2, kOptional);
-  k.number("gear_ratio", {1.0, 200.0}, "motor turns per turn of an arm", d.gear_ratio, kOptional);
-  k.number("forearm_kg", {0.0, 10.0}, "both rods of one arm", d.forearm_kg, kOptional);
-  k.number("platform_kg", {0.0, 10.0}, "platform and handle", d.platform_kg, kOptional);
-  k.number("middle_m", {0.01, 2.0}, "plane of the motors to the origin of W", d.middle_m,
-           kOptional);
-  k.number("workspace_radius_m", {0.01, 1.0}, "of the cylinder it may reach", d.workspace_radius_m,
-           kOptional);
-  k.number("workspace_half_length_m", {0.01, 1.0}, "of that cylinder", d.workspace_half_length_m,
-           kOptional);
-  k.number("max_force_N", {0.1, 100.0}, "what it can show without pause", d.max_force_N, kOptional);
-  k.number("max_joint_torque_Nm", {0.01, 100.0}, "of one arm", d.max_joint_torque_Nm, kOptional);
-  k.number("joint_friction_Nm", {0.0, 1.0}, "Coulomb friction of an arm", d.joint_friction_Nm,
-           kOptional);
+           d.platform_radius_m);
+  k.number("upper_arm_m", {0.01, 1.0}, "motor axis to elbow", d.upper_arm_m);
+  k.number("forearm_m", {0.01, 2.0}, "elbow to platform", d.forearm_m);
+  k.per_arm("azimuth_rad", {-6.3, 6.3}, "of arms 1, 2, 3 about the device's axis", d.azimuth_rad);
+  k.number("theta_min_rad", {-3.2, 3.2}, "lower stop of an arm", d.theta_min_rad);
+  k.number("theta_max_rad", {-3.2, 3.2}, "upper stop of an arm", d.theta_max_rad);
+  k.number("arm_kg", {0.0, 10.0}, "one upper arm", d.arm_kg);
+  k.number("arm_com_m", {0.0, 1.0}, "its centre of mass from the motor axis", d.arm_com_m);
+  k.number("arm_inertia_kgm2", {0.0, 1.0}, "its inertia about the motor axis", d.arm_inertia_kgm2);
+  k.number("rotor_inertia_kgm2", {0.0, 0.1}, "of one motor", d.rotor_inertia_kgm2);
+  k.number("gear_ratio", {1.0, 200.0}, "motor turns per turn of an arm", d.gear_ratio);
+  k.number("forearm_kg", {0.0, 10.0}, "both rods of one arm", d.forearm_kg);
+  k.number("platform_kg", {0.0, 10.0}, "platform and handle", d.platform_kg);
+  k.number("middle_m", {0.01, 2.0}, "plane of the motors to the origin of W", d.middle_m);
+  k.number("workspace_radius_m", {0.01, 1.0}, "of the cylinder it may reach", d.workspace_radius_m);
+  k.number("workspace_half_length_m", {0.01, 1.0}, "of that cylinder", d.workspace_half_length_m);
+  k.number("max_force_N", {0.1, 100.0}, "what it can show without pause", d.max_force_N);
+  k.number("max_joint_torque_Nm", {0.01, 100.0}, "of one arm", d.max_joint_torque_Nm);
+  k.number("joint_friction_Nm", {0.0, 1.0}, "Coulomb friction of an arm", d.joint_friction_Nm);
   k.number("joint_damping_Nms_per_rad", {0.0, 1.0}, "viscous friction of an arm",
-           d.joint_damping_Nms_per_rad, kOptional);
+           d.joint_damping_Nms_per_rad);
   k.number("counts_per_turn", {100.0, 1e8}, "encoder counts of one turn of an arm",
-           d.counts_per_turn, kOptional);
+           d.counts_per_turn);
   k.number("observer_bandwidth_Hz", {1.0, 500.0}, "of the velocity observer",
            d.observer_bandwidth_Hz, kOptional);
 }
 
 void visit_nodes(reader::Keys& k, CanSettings& can) {
-  Vec3 node{static_cast<double>(can.node[0]), static_cast<double>(can.node[1]),
-            static_cast<double>(can.node[2])};
+  PerArm node{};
+  for (std::size_t i = 0; i < node.size(); ++i) node[i] = can.node[i];
   // A CANopen drive has node 1 to 126, an ODrive 0 to 63: each device refuses the rest by itself.
-  k.vector("node", {0.0, 127.0}, "of the drives of arms 1, 2, 3", node, kOptional);
-  can.node = {static_cast<int>(node.x), static_cast<int>(node.y), static_cast<int>(node.z)};
-  const bool whole =
-      node.x == std::floor(node.x) && node.y == std::floor(node.y) && node.z == std::floor(node.z);
-  if (!whole || node.x == node.y || node.y == node.z || node.z == node.x)
+  k.per_arm("node", {0.0, 127.0}, "of the drives of arms 1, 2, 3", node, kOptional);
+  bool is_whole = true;
+  for (std::size_t i = 0; i < node.size(); ++i) {
+    can.node[i] = static_cast<int>(node[i]);
+    is_whole = is_whole && can.node[i] == node[i];
+  }
+  if (!is_whole || node[0] == node[1] || node[1] == node[2] || node[2] == node[0])
     k.refuse({"node"}, "device.can.node needs three different whole numbers, as [1, 2, 3]");
 }
 
@@ -110,16 +106,18 @@ void visit_can(reader::Keys& k, std::string_view kind, CanSettings& can) {
   k.text("interface", "of the bus, as ip link shows it", can.interface, kOptional);
   visit_nodes(k, can);
   auto homing = static_cast<std::size_t>(can.homing);
-  k.choice("homing", kHoming, "how the arms' angles are known", homing, kOptional);
+  k.choice("homing", kHoming, "how the arms' angles are known", homing);
   can.homing = static_cast<Homing>(homing);
-  k.vector("zero_turns", {-1e6, 1e6}, "of the motors, where the arms are at 0 rad", can.zero_turns,
-           kOptional);
-  k.vector("direction", {-1.0, 1.0}, "1 or -1: sign of a motor's turn for a rising arm",
-           can.direction, kOptional);
-  for (const double sign : {can.direction.x, can.direction.y, can.direction.z})
-    if (std::abs(sign) != 1.0)
-      k.refuse({"direction"}, "device.can.direction takes 1 or -1 for each arm");
-  k.vector("home_rad", {-3.2, 3.2}, "of the arms on the jig", can.home_rad, kOptional);
+  // Each homing needs one of the two; describing has no homing yet.
+  const bool on_jig = can.homing == Homing::kJig;
+  k.per_arm("zero_turns", {-1e6, 1e6}, "of the motors, where the arms are at 0 rad", can.zero_turns,
+            on_jig ? kOptional : reader::Need::kRequired);
+  k.per_arm("direction", {-1.0, 1.0}, "1 or -1: sign of a motor's turn for a rising arm",
+            can.direction);
+  if (std::ranges::any_of(can.direction, [](double sign) { return std::abs(sign) != 1.0; }))
+    k.refuse({"direction"}, "device.can.direction takes 1 or -1 for each arm");
+  k.per_arm("home_rad", {-3.2, 3.2}, "of the arms on the jig", can.home_rad,
+            on_jig ? reader::Need::kRequired : kOptional);
   k.number("max_velocity_turns_per_s", {0.0, 1000.0}, "of an ODrive's motor; 0: the drive's own",
            can.max_velocity_turns_per_s, kOptional);
   k.number("max_current_A", {0.0, 200.0}, "of an ODrive's motor; 0: the drive's own",
@@ -154,10 +152,10 @@ void visit_falcon(reader::Keys& k, FalconSettings& f) {
   k.flag("event_character", "answers without the USB chip's 1 ms timer", f.event_character,
          kOptional);
   k.flag("keep_homing", "the homing request stays set while it runs", f.keep_homing, kOptional);
-  k.vector("gain_words_per_Nm", {100.0, 1e6}, "of axis 1, 2, 3, by tact-calibrate",
-           f.gain_words_per_Nm, kOptional);
-  k.vector("dead_band_words", {0.0, 1000.0}, "before an axis moves, by tact-calibrate",
-           f.dead_band_words, kOptional);
+  k.per_arm("gain_words_per_Nm", {100.0, 1e6}, "of axis 1, 2, 3, by tact-calibrate",
+            f.gain_words_per_Nm, kOptional);
+  k.per_arm("dead_band_words", {0.0, 1000.0}, "before an axis moves, by tact-calibrate",
+            f.dead_band_words, kOptional);
   k.number("moving_mass_kg", {0.0, 1.0}, "at the grip, held up by the motors, by tact-calibrate",
            f.moving_mass_kg, kOptional);
   k.number("observer_bandwidth_Hz", {1.0, 500.0}, "of the velocity observer",
@@ -220,12 +218,13 @@ void visit_device(reader::Keys& k, DeviceSettings& out) {
       "sim", "imperfections of the simulated device",
       [&](reader::Keys& sim) { visit_sim(sim, out.sim); },
       simulated ? reader::Need::kRequired : kOptional);
+  const reader::Need on_can = out.is_on_can() ? reader::Need::kRequired : kOptional;
   k.section(
-      "delta", "a delta on CAN", [&](reader::Keys& delta) { visit_delta(delta, out.delta); },
-      kOptional);
+      "delta", "a delta on CAN: yours, as you measure it",
+      [&](reader::Keys& delta) { visit_delta(delta, out.delta); }, on_can);
   k.section(
       "can", "its drives, can-odrive, can-cia402 or can-moteus",
-      [&](reader::Keys& can) { visit_can(can, out.kind, out.can); }, kOptional);
+      [&](reader::Keys& can) { visit_can(can, out.kind, out.can); }, on_can);
   k.section(
       "falcon", "a Novint Falcon", [&](reader::Keys& falcon) { visit_falcon(falcon, out.falcon); },
       kOptional);

@@ -15,6 +15,8 @@ bool is_usable(const Oscillator& o, const OscillatorState& s, const Method& meth
          std::isfinite(method.alpha);
 }
 
+// MA-8  x+ = x + h (v_1 + 2 v_2 + 2 v_3 + v_4)/6,   v+ = v + h (a_1 + 2 a_2 + 2 a_3 + a_4)/6
+//       v_i = v + p h a_(i-1),   a_i = a(x + p h v_(i-1), v_i),   p = 0, 1/2, 1/2, 1
 OscillatorState step_rk4(const Oscillator& o, double x, double v, double h) RT_SAFE {
   const auto acceleration = [&o](double at, double speed) RT_SAFE {
     return (o.force_N - o.stiffness_N_per_m * at - o.damping_Ns_per_m * speed) / o.mass_kg;

@@ -62,7 +62,9 @@ double SpringStepper::step(const SpringNetwork& network, const StepRule& rule) R
   return energy_J;
 }
 
-// MA-8; force_N_ holds the forces of the start. sum_ and direction_ gather dx and dv.
+// MA-8  x+ = x + h (v_1 + 2 v_2 + 2 v_3 + v_4)/6,   v+ = v + h (a_1 + 2 a_2 + 2 a_3 + a_4)/6
+//       v_i = v + p h a_(i-1),   a_i = a(x + p h v_(i-1), v_i),   p = 0, 1/2, 1/2, 1
+// force_N_ holds the forces of the start. sum_ and direction_ gather x+ - x and v+ - v.
 void SpringStepper::step_rk4(const SpringNetwork& network, double h) RT_SAFE {
   const SpringNodes& node = network.node;
   const std::size_t n = node.position_m.size();

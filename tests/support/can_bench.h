@@ -19,6 +19,7 @@
 #include "hal/device.h"
 #include "model/device_settings.h"
 #include "model/result.h"
+#include "tests/support/example_delta.h"
 #include "tests/support/no_alloc.h"
 
 namespace tact::tests {
@@ -39,9 +40,9 @@ inline DeltaPoseCase published_pose(std::size_t index = 0) {
 }
 
 inline model::DeviceSettings jig_settings(const DeltaPoseCase& pose) {
-  model::DeviceSettings settings;
+  model::DeviceSettings settings = example_delta();
   settings.can.homing = model::Homing::kJig;
-  settings.can.home_rad = {pose.theta_rad[0], pose.theta_rad[1], pose.theta_rad[2]};
+  settings.can.home_rad = pose.theta_rad;
   settings.can.direction = {1.0, -1.0, 1.0};
   return settings;
 }
@@ -56,11 +57,9 @@ inline hal::delta::Joints expected_motor_Nm(const model::DeviceSettings& setting
   const auto push = hal::delta::joint_torques_Nm(at, force_D);
   const auto hold = hal::delta::gravity_torques_Nm(
       delta.geometry(), hal::can::delta_masses(settings.delta), at, {-9.81, 0.0, 0.0});
-  const double direction[] = {settings.can.direction.x, settings.can.direction.y,
-                              settings.can.direction.z};
   hal::delta::Joints out{};
   for (std::size_t i = 0; i < 3; ++i)
-    out[i] = direction[i] * (push[i] + hold[i]) / settings.delta.gear_ratio;
+    out[i] = settings.can.direction[i] * (push[i] + hold[i]) / settings.delta.gear_ratio;
   return out;
 }
 

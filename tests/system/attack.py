@@ -106,8 +106,8 @@ def without_token(view):
             for header in ("", "Authorization: Bearer 0\r\n", "Authorization: Bearer\r\n", "Cookie: token=\r\n")}
     check("nothing is shown without the token", {status for _, status in seen} == {401}, sorted(seen)[:3])
     check("all is shown with it", view.status("scene.json", view.bearer) == 200)
-    check("a foreign name is refused", view.say(b"GET /scene.json HTTP/1.1\r\nHost: evil.example\r\n"
-                                                + view.bearer.encode() + b"\r\n", 0.3)[9:12] == b"403")
+    check("a foreign name is refused", view.say(b"GET /scene.json HTTP/1.1\r\nHost: evil.example\r\n" +
+                                                view.bearer.encode() + b"\r\n", 0.3)[9:12] == b"403")
 
 
 def requests_that_are_none(view):

@@ -2,6 +2,7 @@
 // tactd as systemd starts it: NOTIFY_SOCKET, runtime and state folder, no terminal.
 #include <gtest/gtest.h>
 
+#include "tests/support/device_scene.h"
 #include "tests/system/tactd_fixture.h"
 
 namespace tact::tests::service_test {
@@ -54,8 +55,10 @@ TEST_F(ServiceProgram, RefusesToArmAtItsStart) {
 }
 
 TEST_F(ServiceProgram, DoesNotHomeOnAJigThatNobodySees) {
+  const std::string scene = in_folder("jig.toml");
+  std::ofstream(scene) << scene_on_real_devices();
   const Outcome out = run_command("NOTIFY_SOCKET=" + in_folder("n") + " " + program_path("tactd") +
-                                  " " + kLiver + " --set 'device.kind=\"can-odrive\"' --ticks 10");
+                                  " " + scene + " --ticks 10");
   EXPECT_EQ(out.status, 2);
   EXPECT_TRUE(has(out, "start tactd by hand")) << out.output;
 }

@@ -18,10 +18,7 @@ using tests::published_pose;
 
 /// Turns of the motors for these angles, by the header's first line.
 delta::Joints turns_for(const delta::Joints& theta_rad, const model::DeviceSettings& settings) {
-  const double zero[] = {settings.can.zero_turns.x, settings.can.zero_turns.y,
-                         settings.can.zero_turns.z};
-  const double sign[] = {settings.can.direction.x, settings.can.direction.y,
-                         settings.can.direction.z};
+  const auto &zero = settings.can.zero_turns, &sign = settings.can.direction;
   delta::Joints out{};
   for (std::size_t i = 0; i < 3; ++i)
     out[i] = zero[i] + sign[i] * theta_rad[i] * settings.delta.gear_ratio / 2 / std::numbers::pi;
@@ -29,25 +26,11 @@ delta::Joints turns_for(const delta::Joints& theta_rad, const model::DeviceSetti
 }
 
 model::DeviceSettings absolute_settings() {
-  model::DeviceSettings settings;
+  model::DeviceSettings settings = tests::example_delta();
   settings.can.homing = model::Homing::kAbsolute;
   settings.can.zero_turns = {0.25, -3.0, 100.0};
   settings.can.direction = {1.0, -1.0, -1.0};
   return settings;
-}
-
-TEST(CanDelta, TheExampleDeviceIsThatOfTheSimulation) {
-  const delta::DeltaGeometry g = delta_geometry({});
-  EXPECT_EQ(g.base_radius_m, sim::kGeometry.base_radius_m);
-  EXPECT_EQ(g.platform_radius_m, sim::kGeometry.platform_radius_m);
-  EXPECT_EQ(g.upper_arm_m, sim::kGeometry.upper_arm_m);
-  EXPECT_EQ(g.forearm_m, sim::kGeometry.forearm_m);
-  EXPECT_NEAR(g.theta_min_rad, sim::kGeometry.theta_min_rad, 1e-4);
-  EXPECT_NEAR(g.theta_max_rad, sim::kGeometry.theta_max_rad, 1e-4);
-  for (std::size_t i = 0; i < 3; ++i)
-    EXPECT_NEAR(g.azimuth_rad[i], sim::kGeometry.azimuth_rad[i], 1e-15);
-  EXPECT_EQ(delta_masses({}).platform_kg, sim::kMasses.platform_kg);
-  EXPECT_EQ(delta_masses({}).forearm_kg, sim::kMasses.forearm_kg);
 }
 
 TEST(CanDelta, TurnsBecomeThePublishedPoses) {

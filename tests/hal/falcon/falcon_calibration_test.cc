@@ -46,12 +46,12 @@ TEST(FalconCalibration, FindsGainsDeadBandsAndTheMovingMass) {
   const auto samples = balances(kPoses_W, kMasses_kg);
   const auto fit = fit_falcon(samples);
   ASSERT_TRUE(fit) << fit.error().sentence;
-  EXPECT_NEAR(fit->gain_words_per_Nm.x, kGain[0], 1.0);
-  EXPECT_NEAR(fit->gain_words_per_Nm.y, kGain[1], 1.0);
-  EXPECT_NEAR(fit->gain_words_per_Nm.z, kGain[2], 1.0);
-  EXPECT_NEAR(fit->dead_band_words.x, kDead[0], 0.1);
-  EXPECT_NEAR(fit->dead_band_words.y, kDead[1], 0.1);
-  EXPECT_NEAR(fit->dead_band_words.z, kDead[2], 0.1);
+  EXPECT_NEAR(fit->gain_words_per_Nm[0], kGain[0], 1.0);
+  EXPECT_NEAR(fit->gain_words_per_Nm[1], kGain[1], 1.0);
+  EXPECT_NEAR(fit->gain_words_per_Nm[2], kGain[2], 1.0);
+  EXPECT_NEAR(fit->dead_band_words[0], kDead[0], 0.1);
+  EXPECT_NEAR(fit->dead_band_words[1], kDead[1], 0.1);
+  EXPECT_NEAR(fit->dead_band_words[2], kDead[2], 0.1);
   EXPECT_NEAR(fit->moving_mass_kg, kMoving_kg, 1e-5);
   EXPECT_LT(fit->residual_words, 0.01);
 }
@@ -59,9 +59,9 @@ TEST(FalconCalibration, FindsGainsDeadBandsAndTheMovingMass) {
 TEST(FalconCalibration, StandsNoiseOfAFewWords) {
   const auto fit = fit_falcon(balances(kPoses_W, kMasses_kg, 8.0));
   ASSERT_TRUE(fit) << fit.error().sentence;
-  EXPECT_NEAR(fit->gain_words_per_Nm.x, kGain[0], 0.05 * kGain[0]);
-  EXPECT_NEAR(fit->gain_words_per_Nm.y, kGain[1], 0.05 * kGain[1]);
-  EXPECT_NEAR(fit->gain_words_per_Nm.z, kGain[2], 0.05 * kGain[2]);
+  EXPECT_NEAR(fit->gain_words_per_Nm[0], kGain[0], 0.05 * kGain[0]);
+  EXPECT_NEAR(fit->gain_words_per_Nm[1], kGain[1], 0.05 * kGain[1]);
+  EXPECT_NEAR(fit->gain_words_per_Nm[2], kGain[2], 0.05 * kGain[2]);
   EXPECT_GT(fit->residual_words, 1.0);
   EXPECT_LT(fit->residual_words, 8.0);
 }

@@ -91,8 +91,8 @@ Vec3 force_of(const falcon::FalconWords& words, const model::FalconSettings& s, 
   const falcon::FalconKinematics kinematics;
   const model::Mat3 k =
       kinematics.joint_rate_matrix(kinematics.inverse(falcon::falcon_point_D(p_W)));
-  const Vec3 torque_Nm{-words[0] / s.gain_words_per_Nm.x, -words[1] / s.gain_words_per_Nm.y,
-                       -words[2] / s.gain_words_per_Nm.z};
+  const Vec3 torque_Nm{-words[0] / s.gain_words_per_Nm[0], -words[1] / s.gain_words_per_Nm[1],
+                       -words[2] / s.gain_words_per_Nm[2]};
   const Vec3 force_D = model::transpose(k) * torque_Nm;
   return {force_D.z, force_D.x, force_D.y};
 }

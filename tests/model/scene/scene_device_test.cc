@@ -1,34 +1,113 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a scene says of its device is taken by that device, or refused.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <fstream>
 #include <string>
 #include <vector>
 
 #include "model/scene/scene.h"
+#include "tests/support/device_scene.h"
 
 namespace tact::model::scene::scene_device_test {
 
-const std::string kLiver = TACT_SOURCE_DIR "/model/scenes/liver.toml";
-
+using tests::scene_on_real_devices;
+using tests::without_line;
 using Overrides = std::vector<std::string>;
 
-bool is_refused_for(const Overrides& overrides, const std::string& words) {
-  const Result<Scene> scene = load_scene(kLiver, overrides);
-  return !scene && scene.error().sentence.find(words) != std::string::npos;
+Result<Scene> load(const std::string& text, const Overrides& overrides = {}) {
+  const std::string path =
+      testing::TempDir() + "scene_device_" + std::to_string(getpid()) + ".toml";
+  std::ofstream(path) << text;
+  return load_scene(path, overrides);
+}
+
+/// Empty where the scene is taken.
+std::string why_refused(const std::string& text, const Overrides& overrides = {}) {
+  const Result<Scene> scene = load(text, overrides);
+  return scene ? "" : scene.error().sentence;
+}
+
+bool is_told(const std::string& sentence, const std::string& words) {
+  return sentence.find(words) != std::string::npos;
 }
 
 TEST(SceneDevice, RefusesALimitThatItsDrivesWouldNotKeep) {
-  const std::string moteus = "device.kind=can-moteus";
+  const std::string can = scene_on_real_devices(), moteus = "device.kind=can-moteus";
   const std::string current = "device.can.max_current_A=10",
                     velocity = "device.can.max_velocity_turns_per_s=20";
-  EXPECT_TRUE(is_refused_for({moteus, current, velocity}, "max_current_A is for an ODrive"));
-  EXPECT_TRUE(load_scene(kLiver, {"device.kind=can-odrive", current, velocity}));
-  EXPECT_TRUE(load_scene(kLiver, {current, velocity})) << "a simulated device has no drives";
+  EXPECT_TRUE(
+      is_told(why_refused(can, {moteus, current, velocity}), "max_current_A is for an ODrive"));
+  EXPECT_EQ(why_refused(can, {"device.kind=can-odrive", current, velocity}), "");
+  EXPECT_EQ(why_refused(can, {"device.kind=falcon", current, velocity}), "") << "has no drives";
   for (const std::string key : {"rated_torque_Nm=0.3", "command_at_sync=true"}) {
-    EXPECT_TRUE(is_refused_for({moteus, "device.can." + key}, "is for a CiA 402 drive"));
-    EXPECT_TRUE(load_scene(kLiver, {"device.kind=can-cia402", "device.can." + key}));
+    const std::string set = "device.can." + key;
+    EXPECT_TRUE(is_told(why_refused(can, {moteus, set}), "is for a CiA 402 drive"));
+    EXPECT_EQ(why_refused(can, {"device.kind=can-cia402", set}), "");
   }
+}
+
+TEST(SceneDevice, ADeltaOfOnesOwnHasNoLengthOrMassThatNobodyNamed) {
+  const std::string can = scene_on_real_devices();
+  EXPECT_EQ(why_refused(can), "");
+  for (const std::string key : {"base_radius_m",
+                                "platform_radius_m",
+                                "upper_arm_m",
+                                "forearm_m",
+                                "azimuth_rad",
+                                "theta_min_rad",
+                                "theta_max_rad",
+                                "arm_kg",
+                                "arm_com_m",
+                                "arm_inertia_kgm2",
+                                "rotor_inertia_kgm2",
+                                "gear_ratio",
+                                "forearm_kg",
+                                "platform_kg",
+                                "middle_m",
+                                "workspace_radius_m",
+                                "workspace_half_length_m",
+                                "max_force_N",
+                                "max_joint_torque_Nm",
+                                "joint_friction_Nm",
+                                "joint_damping_Nms_per_rad",
+                                "counts_per_turn"})
+    EXPECT_TRUE(
+        is_told(why_refused(without_line(can, key + " =")), "device.delta." + key + " is missing"))
+        << key;
+  EXPECT_TRUE(
+      is_told(why_refused(without_line(can, "direction =")), "device.can.direction is missing"));
+  EXPECT_TRUE(is_told(why_refused(without_line(can, "homing =")), "device.can.homing is missing"));
+}
+
+TEST(SceneDevice, EachHomingNeedsWhatSaysWhereTheArmsAre) {
+  const std::string can = scene_on_real_devices(), absolute = "device.can.homing=absolute";
+  EXPECT_TRUE(
+      is_told(why_refused(without_line(can, "home_rad =")), "device.can.home_rad is missing"));
+  EXPECT_EQ(why_refused(without_line(can, "zero_turns =")), "");
+  EXPECT_TRUE(is_told(why_refused(without_line(can, "zero_turns ="), {absolute}),
+                      "device.can.zero_turns is missing"));
+  EXPECT_EQ(why_refused(without_line(can, "home_rad ="), {absolute}), "");
+}
+
+TEST(SceneDevice, ASceneOfTheSimulationSetToDrivesNeedsTheirSections) {
+  const std::string liver = TACT_SOURCE_DIR "/model/scenes/liver.toml";
+  const Result<Scene> scene = load_scene(liver, {"device.kind=can-odrive"});
+  ASSERT_FALSE(scene);
+  EXPECT_TRUE(is_told(scene.error().sentence, "device.delta is missing")) << scene.error().sentence;
+}
+
+TEST(SceneDevice, OneValueAnArmIsThreeNumbersAndSaysWhichIsWrong) {
+  const std::string can = scene_on_real_devices();
+  EXPECT_TRUE(is_told(why_refused(can, {"device.can.home_rad=[0.0, 9.0, 0.0]"}),
+                      "device.can.home_rad 2 = 9 is out of range"));
+  EXPECT_TRUE(
+      is_told(why_refused(can, {"device.can.home_rad=[0.0, 0.0]"}), "has 2 elements, not three"));
+  EXPECT_TRUE(
+      is_told(why_refused(can, {"device.can.node=[1, 2, 2.5]"}), "three different whole numbers"));
+  EXPECT_TRUE(is_told(why_refused(can, {"device.can.direction=[1, 1, 0.5]"}),
+                      "takes 1 or -1 for each arm"));
 }
 
 }  // namespace tact::model::scene::scene_device_test

@@ -8,12 +8,13 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
-#include <iterator>
 #include <limits>
 #include <set>
 
 #include "model/reader/scene_words.h"
 #include "model/scene/tissue_law.h"
+#include "tests/support/device_scene.h"
+#include "tests/support/example_delta.h"
 
 namespace tact::model::scene::scene_keys_test {
 
@@ -70,23 +71,25 @@ TEST(SceneReference, HasEveryKeyOfTheShippedScenesAndTheyHaveEveryKey) {
 }
 
 TEST(SceneReference, TheSectionsOfRealDevicesHoldTheDefaultsAndFitAScene) {
-  std::ifstream liver(kLiver), devices(kDevices);
-  std::string text{std::istreambuf_iterator<char>(liver), {}};
-  const std::string sections{std::istreambuf_iterator<char>(devices), {}};
   const std::string path = testing::TempDir() + "on_real_devices.toml";
-  constexpr const char* kMeshes = "\"meshes/";  // named from another folder
-  for (auto at = text.find(kMeshes); at != text.npos; at = text.find(kMeshes, at + kScenes.size()))
-    text.insert(at + 1, kScenes);
-  const auto section = text.find("[device]"), next = text.find("# Soft tissue needs");
-  ASSERT_NE(section, text.npos);
-  ASSERT_NE(next, text.npos);
-  std::ofstream(path) << text.substr(0, section) << sections << text.substr(next);
+  std::ofstream(path) << tests::scene_on_real_devices();
   const Result<Scene> scene = load_scene(path, {});
   ASSERT_TRUE(scene) << scene.error().sentence;
   const DeviceSettings fresh;
   EXPECT_EQ(scene->device.kind, "can-odrive");
-  EXPECT_EQ(scene->device.delta.forearm_m, fresh.delta.forearm_m);
-  EXPECT_NEAR(scene->device.delta.azimuth_rad.z, fresh.delta.azimuth_rad.z, 1e-6);
+  const DeltaSettings& said = scene->device.delta;
+  const DeltaSettings simulated = tests::example_delta().delta;
+  EXPECT_EQ(said.base_radius_m, simulated.base_radius_m);
+  EXPECT_EQ(said.platform_radius_m, simulated.platform_radius_m);
+  EXPECT_EQ(said.upper_arm_m, simulated.upper_arm_m);
+  EXPECT_EQ(said.forearm_m, simulated.forearm_m);
+  EXPECT_NEAR(said.theta_min_rad, simulated.theta_min_rad, 1e-4);
+  EXPECT_NEAR(said.theta_max_rad, simulated.theta_max_rad, 1e-4);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(said.azimuth_rad[i], simulated.azimuth_rad[i], 1e-7);
+  EXPECT_EQ(said.platform_kg, simulated.platform_kg);
+  EXPECT_EQ(said.forearm_kg, simulated.forearm_kg);
+  EXPECT_EQ(said.max_joint_torque_Nm, simulated.max_joint_torque_Nm);
   EXPECT_EQ(scene->device.can.node, fresh.can.node);
   EXPECT_EQ(scene->device.can.homing, fresh.can.homing);
   EXPECT_EQ(scene->device.falcon.gain_words_per_Nm, fresh.falcon.gain_words_per_Nm);

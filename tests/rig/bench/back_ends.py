@@ -2,6 +2,9 @@
 """The devices of the bench. One entry names what the scene says, what the guest starts before
 tactd, which programs it needs, and the system calls of every FIFO thread, at most, per tick."""
 import dataclasses
+import json
+import pathlib
+import tomllib
 
 from bench.case import BackEnd
 
@@ -61,16 +64,27 @@ def drives(protocol, options=""):
     return f"can up\nstart_emulator tact-rig-drives --protocol {protocol} {options} $EMULATOR"
 
 
+# The delta of the simulation, as the example of a scene has it.
+DELTA = tuple(f"device.delta.{key}={json.dumps(value)}" for key, value in tomllib.loads(
+    (pathlib.Path(__file__).resolve().parents[3] / "tools/deploy/devices.toml").read_text())["device"]["delta"].items())
+
+
+def on_can(kind):
+    """Its drives have absolute encoders that tell zero where the arms do."""
+    return (f'device.kind="{kind}"', 'device.can.homing="absolute"', "device.can.zero_turns=[0.0, 0.0, 0.0]",
+            "device.can.direction=[1.0, 1.0, 1.0]", *DELTA, SLIDE)
+
+
 def odrive(protocol):
-    return BackEnd(protocol, settings=('device.kind="can-odrive"', 'device.can.homing="absolute"', SLIDE),
+    return BackEnd(protocol, settings=on_can("can-odrive"),
                    setup=drives(protocol), programs=("tact-rig-drives",), system_calls=CAN_CALLS)
 
 
 ODRIVE06, ODRIVE05 = odrive("odrive06"), odrive("odrive05")
-CIA402 = BackEnd("cia402", settings=('device.kind="can-cia402"', 'device.can.homing="absolute"', SLIDE),
+CIA402 = BackEnd("cia402", settings=on_can("can-cia402"),
                  setup=drives("cia402"), programs=("tact-rig-drives",), system_calls=CAN_CALLS)
 # Their watchdog lets go, as hal/moteus/README.md has it set.
-MOTEUS = BackEnd("moteus", settings=('device.kind="can-moteus"', 'device.can.homing="absolute"', SLIDE),
+MOTEUS = BackEnd("moteus", settings=on_can("can-moteus"),
                  setup=drives("moteus", "--timeout-mode 0"), programs=("tact-rig-drives",), system_calls=CAN_CALLS)
 
 
