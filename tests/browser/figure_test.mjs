@@ -8,7 +8,18 @@
 // passed, M failed"; exit status 0 or 1.
 import { join } from "node:path";
 import {
-  build, check, distance, folder, measure_fps, numbers, play, size, start_browser, start_tactd, start_view, stop,
+  build,
+  check,
+  distance,
+  folder,
+  measure_fps,
+  numbers,
+  play,
+  size,
+  start_browser,
+  start_tactd,
+  start_view,
+  stop,
   waits,
 } from "./stage.mjs";
 
@@ -37,16 +48,24 @@ async function watch(page, seconds) {
 
 async function check_holding(page) {
   const seen = await watch(page, 8);
-  check("the finger tips are at the tool's grip in every picture", seen.worst_m < kHold_m,
-    `${(seen.worst_m * 1e3).toFixed(2)} mm at most`);
+  check(
+    "the finger tips are at the tool's grip in every picture",
+    seen.worst_m < kHold_m,
+    `${(seen.worst_m * 1e3).toFixed(2)} mm at most`,
+  );
   const hand_m = seen.high_m - seen.low_m;
   const tool_m = seen.tool_high_m - seen.tool_low_m;
-  check("the hand goes up and down with the tool", tool_m > 0.005 && Math.abs(hand_m - tool_m) < 0.002,
-    `${(hand_m * 1e3).toFixed(0)} mm of ${(tool_m * 1e3).toFixed(0)} mm`);
+  check(
+    "the hand goes up and down with the tool",
+    tool_m > 0.005 && Math.abs(hand_m - tool_m) < 0.002,
+    `${(hand_m * 1e3).toFixed(0)} mm of ${(tool_m * 1e3).toFixed(0)} mm`,
+  );
   const { largest_frame_bytes, largest_figure_bytes } = await numbers(page);
-  check("a figure's message is small, and a frame's as before",
+  check(
+    "a figure's message is small, and a frame's as before",
     largest_figure_bytes > 400 && largest_figure_bytes <= kMaxBytes && largest_frame_bytes <= 4096,
-    `${largest_figure_bytes} bytes`);
+    `${largest_figure_bytes} bytes`,
+  );
 }
 
 async function check_keys(page) {
@@ -54,24 +73,37 @@ async function check_keys(page) {
   await page.keyboard.press("f");
   await page.waitForTimeout(300);
   const without = await numbers(page);
-  check("F hides it and goes near to the tissue", !without.figure_on && with_it.figure_on &&
-    distance(without.camera_m, [0, 0, 0]) < 0.7 * distance(with_it.camera_m, [0, 0, 0]));
+  check(
+    "F hides it and goes near to the tissue",
+    !without.figure_on &&
+      with_it.figure_on &&
+      distance(without.camera_m, [0, 0, 0]) < 0.7 * distance(with_it.camera_m, [0, 0, 0]),
+  );
   const fps_without = await measure_fps(page, 4);
   await page.keyboard.press("f");
   await page.waitForTimeout(300);
   check("F brings it back", (await numbers(page)).figure_on);
   const fps = await measure_fps(page, 4);
   // How fast is a fact about this machine: tools/bench holds it against its goal of 30.
-  check("draws picture after picture with the figure", fps > 1,
-    `${fps.toFixed(1)} frames/s with the figure, ${fps_without.toFixed(1)} without`);
+  check(
+    "draws picture after picture with the figure",
+    fps > 1,
+    `${fps.toFixed(1)} frames/s with the figure, ${fps_without.toFixed(1)} without`,
+  );
   const before = await numbers(page);
-  check("the view stays where it is while no head is tracked", !before.eyes_on && distance(before.camera_m, with_it.camera_m) < 1e-3);
+  check(
+    "the view stays where it is while no head is tracked",
+    !before.eyes_on && distance(before.camera_m, with_it.camera_m) < 1e-3,
+  );
   const title = await page.locator("#eyes").getAttribute("title");
   await page.keyboard.press("e");
   await page.waitForTimeout(800);
   const eyes = await numbers(page);
   check("E says whose head it follows", /tracked head.*figure's when none is tracked/.test(title), title);
-  check("E looks through the figure's eyes when no head is tracked", eyes.eyes_on && distance(eyes.camera_m, eyes.figure_m.head) < 0.15);
+  check(
+    "E looks through the figure's eyes when no head is tracked",
+    eyes.eyes_on && distance(eyes.camera_m, eyes.figure_m.head) < 0.15,
+  );
   await page.screenshot({ path: join(build, "page_eyes.png") });
   await page.keyboard.press("v");
   await page.waitForTimeout(300);
@@ -93,21 +125,33 @@ async function run() {
   await page.screenshot({ path: join(build, "page_figure.png") });
   await check_holding(page);
   await check_keys(page);
-  check("nothing is lost without a tracker", (await page.locator("#tracking").isHidden()) &&
-    (await numbers(page)).tracking_words === "");
-  await page.evaluate(() => { document.getElementById("tracking").hidden = false; });
+  check(
+    "nothing is lost without a tracker",
+    (await page.locator("#tracking").isHidden()) && (await numbers(page)).tracking_words === "",
+  );
+  await page.evaluate(() => {
+    document.getElementById("tracking").hidden = false;
+  });
   await stop(tactd);
-  check("the tracking chip goes when tactd does", await waits(page, () =>
-    window.tact.link === "lost" && document.getElementById("tracking").hidden));
+  check(
+    "the tracking chip goes when tactd does",
+    await waits(page, () => window.tact.link === "lost" && document.getElementById("tracking").hidden),
+  );
   tactd = start_tactd("liver", socket);
-  check("the figure is there again when tactd is", await waits(page, () =>
-    window.tact.link === "live" && window.tact.figure_on && window.tact.grip_error_m < 0.001));
+  check(
+    "the figure is there again when tactd is",
+    await waits(page, () => window.tact.link === "live" && window.tact.figure_on && window.tact.grip_error_m < 0.001),
+  );
   check("has no error on the console", complaints.length === 0, complaints.slice(0, 3).join("; "));
-  await page.evaluate(() => { document.getElementById("tracking").hidden = false; });
+  await page.evaluate(() => {
+    document.getElementById("tracking").hidden = false;
+  });
   check("tactd ends cleanly", (await stop(tactd)) === 0);
   check("tact-view ends cleanly", (await stop(viewer)) === 0);
-  check("the tracking chip goes with tact-view", await waits(page, () =>
-    window.tact.link === "gone" && document.getElementById("tracking").hidden));
+  check(
+    "the tracking chip goes with tact-view",
+    await waits(page, () => window.tact.link === "gone" && document.getElementById("tracking").hidden),
+  );
   await page.close();
   await browser.close();
 }

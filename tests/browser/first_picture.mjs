@@ -23,10 +23,16 @@ async function one_run(browser, number) {
   await page.goto(url, { waitUntil: "commit" });
   await waits(page, () => window.tact?.first_drawn_ms);
   const told = await page.evaluate(() => ({
-    drawn_ms: window.tact.first_drawn_ms, opened_ms: performance.timeOrigin,
+    drawn_ms: window.tact.first_drawn_ms,
+    opened_ms: performance.timeOrigin,
     steps: performance.getEntriesByType("mark").map((mark) => [mark.name, performance.timeOrigin + mark.startTime]),
-    loads: performance.getEntriesByType("resource").map((one) =>
-      [one.name.replace(/.*\//, ""), performance.timeOrigin + one.startTime, performance.timeOrigin + one.responseEnd]),
+    loads: performance
+      .getEntriesByType("resource")
+      .map((one) => [
+        one.name.replace(/.*\//, ""),
+        performance.timeOrigin + one.startTime,
+        performance.timeOrigin + one.responseEnd,
+      ]),
   }));
   await page.close();
   await stop(tactd);
@@ -42,7 +48,9 @@ async function run() {
   const browser = await start_browser();
   const all_ms = [];
   for (let i = 0; i < runs; ++i) all_ms.push(await one_run(browser, i));
-  console.log(`first picture, ms: ${round(all_ms)}; median ${Math.round(median(all_ms))}, worst ${Math.round(Math.max(...all_ms))}`);
+  console.log(
+    `first picture, ms: ${round(all_ms)}; median ${Math.round(median(all_ms))}, worst ${Math.round(Math.max(...all_ms))}`,
+  );
   await browser.close();
 }
 

@@ -7,61 +7,45 @@
 // No real headset: that a picture comes to lenses in time is not tested. CHROMIUM names another browser. Pictures:
 // BUILD_DIR/page_headset.png, page_headset_stop.png. Prints "N passed, M failed"; exit status 0 or 1.
 import { readFileSync } from "node:fs";
-import { createRequire } from "node:module";
 import { join } from "node:path";
 
+import { distance_of, emulate_headset, look_down, place_of, seen_by, times } from "./emulated_headset.mjs";
 import {
-  build, check, distance, folder, numbers, play, root, size, start_browser, start_tactd, start_view, stop, waits,
+  check,
+  distance,
+  folder,
+  numbers,
+  play,
+  root,
+  size,
+  start_browser,
+  start_tactd,
+  start_view,
+  stop,
+  waits,
 } from "./stage.mjs";
 
-const iwer = createRequire(join(root, "host/web/package.json")).resolve("iwer").replace(/lib.index\.js$/, "build/iwer.min.js");
 const socket = join(folder, "headset.sock");
 const kEyes_m = [0.45, 0, 0.35]; // host/web/README.md
 const kNear_m = 1e-4;
 
-function emulate_headset() {
-  window.emulated = new window.IWER.XRDevice(window.IWER.metaQuest3);
-  window.emulated.stereoEnabled = true;
-  window.emulated.installRuntime({ forceInstall: true });
-  // A headset that nobody wears asks for no pictures; iwer's goes on.
-  const ask = window.XRSession.prototype.requestAnimationFrame;
-  let waiting = null;
-  window.lay_aside = (aside) => {
-    window.XRSession.prototype.requestAnimationFrame = aside ? function (callback) { return (waiting = [this, callback]).length; } : ask;
-    if (!aside && waiting) ask.call(...waiting);
-  };
-}
-
 /** The liver's least and greatest corner as its file has it, m. */
 function true_corners_m() {
   const at_m = [0, 0, -0.03]; // organ.position_m of liver.toml
-  const least = [Infinity, Infinity, Infinity], most = [-Infinity, -Infinity, -Infinity];
+  const least = [Infinity, Infinity, Infinity];
+  const most = [-Infinity, -Infinity, -Infinity];
   for (const line of readFileSync(join(root, "model/scenes/meshes/liver_3116.obj"), "utf8").split("\n")) {
     if (!line.startsWith("v ")) continue;
-    line.split(/\s+/).slice(1, 4).map(Number).forEach((mm, i) => {
-      least[i] = Math.min(least[i], mm * 1e-3 + at_m[i]);
-      most[i] = Math.max(most[i], mm * 1e-3 + at_m[i]);
-    });
+    line
+      .split(/\s+/)
+      .slice(1, 4)
+      .map(Number)
+      .forEach((mm, i) => {
+        least[i] = Math.min(least[i], mm * 1e-3 + at_m[i]);
+        most[i] = Math.max(most[i], mm * 1e-3 + at_m[i]);
+      });
   }
   return [least, most];
-}
-
-/** A column-major 4 x 4 matrix on a place. */
-const times = (m, p) => [0, 1, 2, 3].map((row) => m[row] * p[0] + m[4 + row] * p[1] + m[8 + row] * p[2] + m[12 + row]);
-
-const distance_of = (a, b) => Math.hypot(...a.map((value, i) => value - b[i]));
-
-/** What an eye sees of a place: tangents to the right and up, and the depth before it, m. */
-function seen_by(eye, place_m) {
-  const at = times(eye.view, place_m);
-  const [x, y, , w] = times(eye.projection, at);
-  return { right: (x / w + eye.projection[8]) / eye.projection[0], up: (y / w + eye.projection[9]) / eye.projection[5], depth_m: -at[2] };
-}
-
-/** Where an eye is: -R' t of its view matrix. */
-function place_of(eye) {
-  const v = eye.view;
-  return [0, 1, 2].map((i) => -(v[4 * i] * v[12] + v[4 * i + 1] * v[13] + v[4 * i + 2] * v[14]));
 }
 
 async function check_size(page) {
@@ -70,46 +54,32 @@ async function check_size(page) {
   const [least, most] = true_corners_m();
   const middle_m = least.map((at_m, i) => (at_m + most[i]) / 2);
   check("two eyes look", headset.eyes.length === 2);
-  for (const [name, eye, side] of [["left", headset.eyes[0], -0.5], ["right", headset.eyes[1], 0.5]]) {
+  for (const [name, eye, side] of [
+    ["left", headset.eyes[0], -0.5],
+    ["right", headset.eyes[1], 0.5],
+  ]) {
     const true_m = [kEyes_m[0], side * ipd_m, kEyes_m[2]];
-    check(`the ${name} eye is where a person's is`, distance(place_of(eye), true_m) < kNear_m, place_of(eye).map((m) => m.toFixed(4)));
-    const left = seen_by(eye, [middle_m[0], organ_m[0][1], 0]), right = seen_by(eye, [middle_m[0], organ_m[1][1], 0]);
+    check(
+      `the ${name} eye is where a person's is`,
+      distance(place_of(eye), true_m) < kNear_m,
+      place_of(eye).map((m) => m.toFixed(4)),
+    );
+    const left = seen_by(eye, [middle_m[0], organ_m[0][1], 0]);
+    const right = seen_by(eye, [middle_m[0], organ_m[1][1], 0]);
     const wide_m = (right.right - left.right) * (true_m[0] - middle_m[0]);
-    check(`... the organ before it has its width`, Math.abs(wide_m - (most[1] - least[1])) < kNear_m &&
-      most[1] - least[1] > 0.09, `${(wide_m * 1e3).toFixed(2)} of ${((most[1] - least[1]) * 1e3).toFixed(2)} mm`);
+    check(
+      `... the organ before it has its width`,
+      Math.abs(wide_m - (most[1] - least[1])) < kNear_m && most[1] - least[1] > 0.09,
+      `${(wide_m * 1e3).toFixed(2)} of ${((most[1] - least[1]) * 1e3).toFixed(2)} mm`,
+    );
     const origin = seen_by(eye, [0, 0, 0]);
-    check(`... at an arm's reach before and below it`, Math.abs(origin.depth_m - kEyes_m[0]) < kNear_m &&
-      Math.abs(origin.up * origin.depth_m + kEyes_m[2]) < kNear_m && Math.abs(origin.right * origin.depth_m + true_m[1]) < kNear_m);
+    check(
+      `... at an arm's reach before and below it`,
+      Math.abs(origin.depth_m - kEyes_m[0]) < kNear_m &&
+        Math.abs(origin.up * origin.depth_m + kEyes_m[2]) < kNear_m &&
+        Math.abs(origin.right * origin.depth_m + true_m[1]) < kNear_m,
+    );
   }
-}
-
-/** The head looks down at the organ; what each half of the picture has of red tissue and of the panel's ground. */
-async function look_down(page, file) {
-  await page.evaluate(() => {
-    const half_rad = -0.24;
-    window.emulated.quaternion.set(Math.sin(half_rad), 0, 0, Math.cos(half_rad));
-  });
-  const bare = (on) => page.evaluate((only) => { // the emulated lenses lie over the page
-    document.getElementById("desk").style.visibility = only ? "hidden" : "";
-    document.getElementById("view").style.opacity = only ? 1 : "";
-  }, on);
-  await bare(true);
-  await page.waitForTimeout(700);
-  const png = await page.screenshot({ path: join(build, file) });
-  await bare(false);
-  return page.evaluate(async (base64) => {
-    const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
-    const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
-    const pen = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
-    pen.drawImage(bitmap, 0, 0);
-    const half = Math.floor(bitmap.width / 2);
-    return [0, half].map((left) => {
-      const { data } = pen.getImageData(left, 0, half, bitmap.height);
-      let tissue = 0;
-      for (let i = 0; i < data.length; i += 4) if (data[i] > 90 && data[i] > 1.6 * data[i + 2]) ++tissue;
-      return tissue / (data.length / 4);
-    });
-  }, png.toString("base64"));
 }
 
 /** Who went aside and turned has the scene before the eyes again. */
@@ -125,28 +95,41 @@ async function check_recentring(page) {
   await page.evaluate(() => window.emulated.recenter());
   await page.waitForTimeout(300);
   const after = (await numbers(page)).headset.eyes;
-  check("the headset's recentring brings the scene before the eyes again", after.every((eye, i) =>
-    distance_of(eye.view, before[i].view) < kNear_m));
+  check(
+    "the headset's recentring brings the scene before the eyes again",
+    after.every((eye, i) => distance_of(eye.view, before[i].view) < kNear_m),
+  );
 }
 
 async function check_picture(page) {
   const tissue = await look_down(page, "page_headset.png");
-  check("both eyes see tissue", tissue.every((share) => share > 0.003), tissue.map((s) => `${(100 * s).toFixed(1)} %`).join(", "));
+  check(
+    "both eyes see tissue",
+    tissue.every((share) => share > 0.003),
+    tissue.map((s) => `${(100 * s).toFixed(1)} %`).join(", "),
+  );
   const { headset } = await numbers(page);
-  const in_view = headset.eyes.every((eye) => headset.panel_m.every((corner_m) => {
-    const [x, y, , w] = times(eye.projection, times(eye.view, corner_m));
-    return w > 0 && Math.abs(x / w) < 1 && Math.abs(y / w) < 1;
-  }));
+  const in_view = headset.eyes.every((eye) =>
+    headset.panel_m.every((corner_m) => {
+      const [x, y, , w] = times(eye.projection, times(eye.view, corner_m));
+      return w > 0 && Math.abs(x / w) < 1 && Math.abs(y / w) < 1;
+    }),
+  );
   check("who looks at the organ has the panel in view, with both eyes", in_view);
-  check("the panel says state and force", await waits(page, () => {
-    const { told } = window.tact.headset;
-    return told.includes("armed") && told.includes("live") && told.some((line) => /^\d+\.\d\d N$/.test(line));
-  }), headset.told.join(" | "));
+  check(
+    "the panel says state and force",
+    await waits(page, () => {
+      const { told } = window.tact.headset;
+      return told.includes("armed") && told.includes("live") && told.some((line) => /^\d+\.\d\d N$/.test(line));
+    }),
+    headset.told.join(" | "),
+  );
 }
 
 /** Trigger, grip, stick and fingers: nothing goes to tact-view but how many frames were seen. */
 async function check_hands(page, sent) {
-  const state = ({ link, wireframe, paused, figure_on, camera }) => JSON.stringify({ link, wireframe, paused, figure_on, camera });
+  const state = ({ link, wireframe, paused, figure_on, camera }) =>
+    JSON.stringify({ link, wireframe, paused, figure_on, camera });
   const before = await numbers(page);
   const from = sent.length;
   await page.evaluate(async () => {
@@ -179,24 +162,40 @@ async function check_hands(page, sent) {
 
 async function check_silence(page, tactd) {
   tactd.kill("SIGSTOP");
-  check("the panel tells a silence, and marks what is old", await waits(page, () => {
-    const { told, alarm } = window.tact.headset;
-    return alarm && told.some((line) => line.startsWith("no news for")) && told.some((line) => line.startsWith("old: ")) &&
-      told.includes("silent") && !told.includes("armed");
-  }), (await numbers(page)).headset.told.join(" | "));
+  check(
+    "the panel tells a silence, and marks what is old",
+    await waits(page, () => {
+      const { told, alarm } = window.tact.headset;
+      return (
+        alarm &&
+        told.some((line) => line.startsWith("no news for")) &&
+        told.some((line) => line.startsWith("old: ")) &&
+        told.includes("silent") &&
+        !told.includes("armed")
+      );
+    }),
+    (await numbers(page)).headset.told.join(" | "),
+  );
   tactd.kill("SIGCONT");
   check("... and its end", await waits(page, () => !window.tact.headset.alarm && window.tact.headset.told.includes("armed")));
   await page.evaluate(() => window.lay_aside(true));
   await page.waitForTimeout(600);
   tactd.kill("SIGSTOP");
-  check("with the headset laid aside the desk tells a silence all the same", await waits(page, () =>
-    document.getElementById("state").textContent.startsWith("no news for"), null, 5000));
+  check(
+    "with the headset laid aside the desk tells a silence all the same",
+    await waits(page, () => document.getElementById("state").textContent.startsWith("no news for"), null, 5000),
+  );
   tactd.kill("SIGCONT");
   await page.evaluate(() => window.lay_aside(false));
   await waits(page, () => !window.tact.headset.alarm && window.tact.headset.told.includes("armed")); // what is frozen then
   await page.keyboard.press("p");
-  check("a frozen display is told as such", await waits(page, () => window.tact.headset.told.some((line) => /frozen/.test(line)) &&
-    window.tact.headset.told.includes("old: armed")));
+  check(
+    "a frozen display is told as such",
+    await waits(
+      page,
+      () => window.tact.headset.told.some((line) => /frozen/.test(line)) && window.tact.headset.told.includes("old: armed"),
+    ),
+  );
   await page.keyboard.press("p");
   await waits(page, () => window.tact.headset.told.includes("armed"));
 }
@@ -208,8 +207,12 @@ async function check_end(page, before) {
   await page.waitForTimeout(500);
   const after = await numbers(page);
   const off = ["projection", "view"].map((name) => distance_of(after.camera[name], before.camera[name]));
-  check("... and the desk sees what it saw before", off.every((much) => much < 1e-9), off.join(", "));
-  check("... and says so", (await page.textContent("#headset_word")) === "Enter VR" && await page.isHidden("#headset_words"));
+  check(
+    "... and the desk sees what it saw before",
+    off.every((much) => much < 1e-9),
+    off.join(", "),
+  );
+  check("... and says so", (await page.textContent("#headset_word")) === "Enter VR" && (await page.isHidden("#headset_words")));
   check("... and the picture goes on", await waits(page, (tick) => window.tact.tick > tick, after.tick));
 }
 
@@ -217,10 +220,16 @@ async function check_stop(page, tactd) {
   await page.click("#headset");
   await waits(page, () => window.tact.headset.on);
   check("tactd ends", (await stop(tactd)) !== null);
-  check("the panel tells that tactd went away", await waits(page, () => {
-    const { told, alarm } = window.tact.headset;
-    return alarm && told.includes("connection lost") && told.some((line) => /tactd went away/.test(line)) && !told.includes("armed");
-  }), (await numbers(page)).headset.told.join(" | "));
+  check(
+    "the panel tells that tactd went away",
+    await waits(page, () => {
+      const { told, alarm } = window.tact.headset;
+      return (
+        alarm && told.includes("connection lost") && told.some((line) => /tactd went away/.test(line)) && !told.includes("armed")
+      );
+    }),
+    (await numbers(page)).headset.told.join(" | "),
+  );
   await look_down(page, "page_headset_stop.png");
   await page.keyboard.press("x");
   check("X leaves it", await waits(page, () => !window.tact.headset.on));
@@ -243,15 +252,22 @@ async function run() {
   const browser = await start_browser();
   await check_without(browser, url);
   const page = await browser.newPage({ viewport: size });
-  const complaints = [], sent = [];
+  const complaints = [];
+  const sent = [];
   page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
   page.on("pageerror", (error) => complaints.push(String(error)));
   page.on("websocket", (web) => web.on("framesent", ({ payload }) => sent.push(String(payload))));
-  await page.addInitScript({ path: iwer });
-  await page.addInitScript(emulate_headset);
+  await emulate_headset(page);
   await page.goto(url);
-  check("a headset is offered by a button with its words", await waits(page, () =>
-    document.getElementById("headset").checkVisibility() && document.getElementById("headset").innerText.startsWith("Enter VR")));
+  check(
+    "a headset is offered by a button with its words",
+    await waits(
+      page,
+      () =>
+        document.getElementById("headset").checkVisibility() &&
+        document.getElementById("headset").innerText.startsWith("Enter VR"),
+    ),
+  );
   await page.waitForTimeout(500);
   const before = await numbers(page);
   await page.click("#headset");

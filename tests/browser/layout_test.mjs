@@ -38,8 +38,8 @@ function faults_of_layout(least_px) {
   const overlay = getComputedStyle(picture).position === "absolute"; // the picture lies behind the panels
   const parts = [...desk.querySelectorAll(".panel, .banner, .notice")].filter(seen);
   if (!overlay) parts.push(picture);
-  const cover = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 &&
-    Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1;
+  const cover = (a, b) =>
+    Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1;
   const pairs = (all) => all.flatMap((a, i) => all.slice(i + 1).map((b) => [a, b]));
   for (const [a, b] of pairs(parts)) if (cover(box(a), box(b))) out.push(`${name(a)} covers ${name(b)}`);
   const root = document.documentElement;
@@ -74,8 +74,19 @@ async function check_page(page, name, least_px) {
   check(`${name}: nothing covers or cuts anything`, faults.length === 0, faults.slice(0, 6).join("; "));
   await page.evaluate(axe);
   const { violations } = await page.evaluate(() => window.axe.run(document));
-  check(`${name}: axe-core finds nothing`, violations.length === 0,
-    violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.target.join(" ")).slice(0, 3).join(", ")}`).join("; "));
+  check(
+    `${name}: axe-core finds nothing`,
+    violations.length === 0,
+    violations
+      .map(
+        (v) =>
+          `${v.id}: ${v.nodes
+            .map((n) => n.target.join(" "))
+            .slice(0, 3)
+            .join(", ")}`,
+      )
+      .join("; "),
+  );
   await page.screenshot({ path: join(build, `layout_${name}.png`), fullPage: true });
 }
 
@@ -98,7 +109,8 @@ async function check_screen(browser, url, name, screen, condition, is_live) {
   if (is_live) await page.addInitScript(offer_headset);
   await page.goto(url);
   await waits(page, condition);
-  if (is_live) check(`${name}: a headset is offered`, await waits(page, () => document.getElementById("headset").checkVisibility()));
+  if (is_live)
+    check(`${name}: a headset is offered`, await waits(page, () => document.getElementById("headset").checkVisibility()));
   await page.waitForTimeout(1500);
   const least_px = screen.hasTouch ? kFinger_px : 20;
   await check_page(page, name, least_px);
@@ -108,8 +120,11 @@ async function check_screen(browser, url, name, screen, condition, is_live) {
   if (is_live) {
     await open_picker(page);
     await check_page(page, `${name}_picker`, least_px);
-    const ends = await page.evaluate(() => ["picker_title", "wish_end"].map((id) => document.getElementById(id).getBoundingClientRect())
-      .every(({ top, bottom }) => top >= 0 && bottom <= innerHeight + 1));
+    const ends = await page.evaluate(() =>
+      ["picker_title", "wish_end"]
+        .map((id) => document.getElementById(id).getBoundingClientRect())
+        .every(({ top, bottom }) => top >= 0 && bottom <= innerHeight + 1),
+    );
     check(`${name}: the choice of scenes opens with its head and its buttons in sight`, ends);
   }
   await context.close();
@@ -121,24 +136,32 @@ async function check_keyboard(browser, url, is_live) {
   await page.goto(url);
   await waits(page, () => window.tact.tick > 0);
   if (is_live) await open_picker(page);
-  const wanted = await page.evaluate(() => [...document.querySelectorAll("button, .button, select, input")]
-    .filter((one) => one.checkVisibility()).map((one) => one.id));
+  const wanted = await page.evaluate(() =>
+    [...document.querySelectorAll("button, .button, select, input")].filter((one) => one.checkVisibility()).map((one) => one.id),
+  );
   const reached = new Set();
   let unseen = [];
   for (let i = 0; i < wanted.length + 5; ++i) {
     await page.keyboard.press("Tab");
-    const { id, outline } = await page.evaluate(() => ({ id: document.activeElement.id,
-      outline: getComputedStyle(document.activeElement).outlineStyle }));
+    const { id, outline } = await page.evaluate(() => ({
+      id: document.activeElement.id,
+      outline: getComputedStyle(document.activeElement).outlineStyle,
+    }));
     if (wanted.includes(id) && outline === "none") unseen.push(id);
     reached.add(id);
   }
-  check("the tab key reaches all that can be pressed", wanted.every((id) => reached.has(id)),
-    wanted.filter((id) => !reached.has(id)).join(" "));
+  check(
+    "the tab key reaches all that can be pressed",
+    wanted.every((id) => reached.has(id)),
+    wanted.filter((id) => !reached.has(id)).join(" "),
+  );
   check("... and shows where it is", unseen.length === 0, unseen.join(" "));
   await page.focus("#wire");
   await page.keyboard.press("Enter");
-  check("Enter presses what has the focus, and leaves it there", await page.evaluate(() =>
-    window.tact.wireframe && document.activeElement.id === "wire"));
+  check(
+    "Enter presses what has the focus, and leaves it there",
+    await page.evaluate(() => window.tact.wireframe && document.activeElement.id === "wire"),
+  );
   await page.close();
 }
 
@@ -158,7 +181,8 @@ async function check_silence(browser, url, tactd) {
 async function run() {
   mkdirSync(scenes);
   for (const scene of ["liver", "gum"])
-    await start("tactd", [join(root, `model/scenes/${scene}.toml`), "--parameters", "--json", join(scenes, `${scene}.json`)]).ended;
+    await start("tactd", [join(root, `model/scenes/${scene}.toml`), "--parameters", "--json", join(scenes, `${scene}.json`)])
+      .ended;
   const { viewer, url } = await start_view(["--socket", socket, "--record", recording, "--figure", "--scenes", scenes]);
   const tactd = start_tactd("liver", socket);
   const browser = await start_browser();

@@ -9,7 +9,18 @@ import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { MarkerBody, description, free_udp_port } from "./marker_body.mjs";
 import {
-  build, check, distance, folder, play, sharp, size, start_browser, start_tactd, start_view, stop, waits,
+  build,
+  check,
+  distance,
+  folder,
+  play,
+  sharp,
+  size,
+  start_browser,
+  start_tactd,
+  start_view,
+  stop,
+  waits,
 } from "./stage.mjs";
 
 const kHome_m = [0.1, -0.3, 0.05];
@@ -20,18 +31,23 @@ const drawn_m = (page) => page.evaluate(() => window.tact.drawn_figure_m);
 async function raise(page, body) {
   const before = await drawn_m(page);
   for (let i = 1; i <= 100; ++i) {
-    body.at_m = kHome_m.map((m, k) => m + kWay_m[k] * i / 100);
+    body.at_m = kHome_m.map((m, k) => m + (kWay_m[k] * i) / 100);
     await page.waitForTimeout(10);
   }
   const there = before["left wrist"].map((m, k) => m + kWay_m[k]);
   await waits(page, (goal) => Math.hypot(...goal.map((m, k) => window.tact.drawn_figure_m["left wrist"][k] - m)) < 0.005, there);
   const raised = await drawn_m(page);
   for (const part of ["left wrist", "left fingers"]) {
-    const off_m = distance(raised[part], before[part].map((m, k) => m + kWay_m[k]));
+    const off_m = distance(
+      raised[part],
+      before[part].map((m, k) => m + kWay_m[k]),
+    );
     check(`${part}: goes with the tracker`, off_m < 0.01, `${mm(off_m)} from where it is`);
   }
-  check("the elbow hangs below wrist and shoulder", raised["left elbow"][2] <
-    Math.min(raised["left wrist"][2], raised["left shoulder"][2]) - 0.02);
+  check(
+    "the elbow hangs below wrist and shoulder",
+    raised["left elbow"][2] < Math.min(raised["left wrist"][2], raised["left shoulder"][2]) - 0.02,
+  );
   check("the right hand stays at the tool", (await page.evaluate(() => window.tact.grip_error_m)) < 0.002);
   await page.screenshot({ path: join(build, "page_left_hand.png") });
   return before;
@@ -52,10 +68,15 @@ await play(async () => {
   await page.waitForTimeout(1500);
   const before = await raise(page, body);
   body.stop();
-  check("says that it is lost", await waits(page, () =>
-    document.getElementById("tracking").textContent.includes("left hand lost (silent)")));
-  await waits(page, (home) => Math.hypot(...home.map((m, k) => window.tact.drawn_figure_m["left wrist"][k] - m)) < 0.002,
-    before["left wrist"]);
+  check(
+    "says that it is lost",
+    await waits(page, () => document.getElementById("tracking").textContent.includes("left hand lost (silent)")),
+  );
+  await waits(
+    page,
+    (home) => Math.hypot(...home.map((m, k) => window.tact.drawn_figure_m["left wrist"][k] - m)) < 0.002,
+    before["left wrist"],
+  );
   const rest_m = distance((await drawn_m(page))["left wrist"], before["left wrist"]);
   check("then it rests again", rest_m < 0.005, mm(rest_m));
   check("tactd ends cleanly", (await stop(tactd)) === 0);

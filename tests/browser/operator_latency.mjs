@@ -35,7 +35,8 @@ const at_share = (list, share) => [...list].sort((a, b) => a - b)[Math.floor(sha
 /** Hears what the page hears, in a thread that draws nothing: when which y of the left wrist came. */
 function listen_beside() {
   const told = [];
-  let wrist = -1, frames = 0;
+  let wrist = -1;
+  let frames = 0;
   self.onmessage = ({ data }) => {
     if (data === "tell") return self.postMessage(told);
     const socket = new WebSocket(data);
@@ -87,7 +88,8 @@ function latency_ms({ told, drawn }, sent_ms, next_ms) {
   const mean = (list) => list.reduce((sum, [, y]) => sum + y, 0) / list.length;
   const [before, after] = [between(told, sent_ms - 200, sent_ms), between(told, next_ms - 200, next_ms)];
   if (before.length === 0 || after.length === 0) return null;
-  const from_m = mean(before), way_m = mean(after) - from_m;
+  const from_m = mean(before);
+  const way_m = mean(after) - from_m;
   if (Math.abs(way_m) < 0.9 * kStep_m) return null;
   const first = (list, share) => between(list, sent_ms, next_ms).find(([, y]) => (y - from_m) / way_m > share)?.[0];
   const [moves, half, picture] = [first(told, 0.05), first(told, 0.5), first(drawn, 0.5)];
@@ -109,7 +111,11 @@ await play(async () => {
   await page.evaluate(`(${watch_page})(${JSON.stringify(listen_beside.toString())})`);
   await sleep(3000);
   const [least_ms, most_ms] = await clock_ahead_ms(page);
-  check("page and script have one clock", least_ms < 1 && most_ms > -1, `${least_ms.toFixed(1)} .. ${most_ms.toFixed(1)} ms ahead`);
+  check(
+    "page and script have one clock",
+    least_ms < 1 && most_ms > -1,
+    `${least_ms.toFixed(1)} .. ${most_ms.toFixed(1)} ms ahead`,
+  );
   const sent_ms = [];
   for (let i = 0; i < steps; ++i) {
     const [x, y, z] = kHome_m;
@@ -127,13 +133,21 @@ await play(async () => {
   const good = all.filter((one) => one);
   check("every step was seen", good.length === steps, `${good.length} of ${steps}`);
   const during = ([at_ms]) => at_ms > sent_ms[0] && at_ms < end_ms;
-  const per_s = (list) => 1000 * list.filter(during).length / (end_ms - sent_ms[0]);
-  const values = { steps, tracker_Hz: kRate_Hz, frames_per_s: per_s(seen.told), pictures_per_s: per_s(seen.drawn), load: loadavg()[0] };
+  const per_s = (list) => (1000 * list.filter(during).length) / (end_ms - sent_ms[0]);
+  const values = {
+    steps,
+    tracker_Hz: kRate_Hz,
+    frames_per_s: per_s(seen.told),
+    pictures_per_s: per_s(seen.drawn),
+    load: loadavg()[0],
+  };
   for (const part of ["all", "told", "filter", "drawn"]) {
     const list = good.map((one) => one[part]);
     values[part] = { median_ms: at_share(list, 0.5), p95_ms: at_share(list, 0.95) };
     console.log(`${part.padEnd(6)} median ${values[part].median_ms.toFixed(1)} ms, p95 ${values[part].p95_ms.toFixed(1)} ms`);
   }
-  console.log(`${values.frames_per_s.toFixed(1)} frames and ${values.pictures_per_s.toFixed(1)} pictures a second; load ${values.load.toFixed(1)}`);
+  console.log(
+    `${values.frames_per_s.toFixed(1)} frames and ${values.pictures_per_s.toFixed(1)} pictures a second; load ${values.load.toFixed(1)}`,
+  );
   if (out) writeFileSync(out, JSON.stringify(values));
 });

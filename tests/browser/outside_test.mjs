@@ -9,7 +9,20 @@ import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
 
-import { build, check, folder, numbers, play, root, size, start_browser, start_tactd, start_view, stop, waits } from "./stage.mjs";
+import {
+  build,
+  check,
+  folder,
+  numbers,
+  play,
+  root,
+  size,
+  start_browser,
+  start_tactd,
+  start_view,
+  stop,
+  waits,
+} from "./stage.mjs";
 
 const axe = readFileSync(createRequire(join(root, "host/web/package.json")).resolve("axe-core/axe.min.js"), "utf8");
 const socket = join(folder, "outside.sock");
@@ -37,24 +50,34 @@ async function shift(page, [from_x, from_y], [by_x, by_y], often) {
 }
 
 /** What an arrow covers, and whether it leaves the picture. */
-const faults_of = (page, id) => page.evaluate((name) => {
-  const box = (one) => one.getBoundingClientRect();
-  const at = box(document.getElementById(name)), picture = box(document.getElementById("view"));
-  const out = [];
-  if (at.left < picture.left || at.right > picture.right || at.top < picture.top || at.bottom > picture.bottom) out.push("leaves the picture");
-  for (const other of document.querySelectorAll(".panel, .banner, .notice, .arrow")) {
-    const its = box(other);
-    if (other.id !== name && Math.min(its.right, at.right) > Math.max(its.left, at.left) + 1 &&
-      Math.min(its.bottom, at.bottom) > Math.max(its.top, at.top) + 1) out.push(`lies on ${other.id}`);
-  }
-  return out;
-}, id);
+const faults_of = (page, id) =>
+  page.evaluate((name) => {
+    const box = (one) => one.getBoundingClientRect();
+    const at = box(document.getElementById(name));
+    const picture = box(document.getElementById("view"));
+    const out = [];
+    if (at.left < picture.left || at.right > picture.right || at.top < picture.top || at.bottom > picture.bottom)
+      out.push("leaves the picture");
+    for (const other of document.querySelectorAll(".panel, .banner, .notice, .arrow")) {
+      const its = box(other);
+      if (
+        other.id !== name &&
+        Math.min(its.right, at.right) > Math.max(its.left, at.left) + 1 &&
+        Math.min(its.bottom, at.bottom) > Math.max(its.top, at.top) + 1
+      )
+        out.push(`lies on ${other.id}`);
+    }
+    return out;
+  }, id);
 
 /** An arrow that is there says where its thing is, and points to it. */
 async function check_arrow(page, word, where, place_m) {
   const arrow = page.getByRole("img", { name: `the ${word} is outside the picture, ${where}` });
-  check(`an arrow says that the ${word} is outside, ${where}`, await arrow.isVisible(),
-    await page.locator(`#to_${word}`).getAttribute("aria-label") ?? "no name");
+  check(
+    `an arrow says that the ${word} is outside, ${where}`,
+    await arrow.isVisible(),
+    (await page.locator(`#to_${word}`).getAttribute("aria-label")) ?? "no name",
+  );
   check("... in a word that is seen", (await page.locator(`#to_${word}`).innerText()).includes(word));
   const faults = await faults_of(page, `to_${word}`);
   check("... and covers nothing", faults.length === 0, faults.join(", "));
@@ -66,7 +89,8 @@ async function check_arrow(page, word, where, place_m) {
   check("... and points there", along > 0.97, `${along.toFixed(3)}, ${off_px.map((px) => px.toFixed(0))} px off`);
 }
 
-const hidden = (page) => waits(page, () => document.getElementById("to_organ").hidden && document.getElementById("to_tool").hidden, null, 5000);
+const hidden = (page) =>
+  waits(page, () => document.getElementById("to_organ").hidden && document.getElementById("to_tool").hidden, null, 5000);
 const middle_of = ([least, most]) => least.map((at_m, i) => (at_m + most[i]) / 2);
 
 async function check_desk(page) {

@@ -5,14 +5,26 @@
 //
 // CHROMIUM names another browser. Pictures: BUILD_DIR/page.png, and page_hand.png with the mouse in
 // use. Prints "N passed, M failed"; exit status 0 or 1.
-import { spawn } from "node:child_process";
-import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
-import { setTimeout as pause } from "node:timers/promises";
 
+import { check_black_box } from "./black_box.mjs";
 import {
-  build, check, distance, first_line, folder, measure_fps, numbers, play, sharp, size, start, start_browser,
-  start_tactd, start_view, stop, waits,
+  build,
+  check,
+  distance,
+  first_line,
+  folder,
+  measure_fps,
+  numbers,
+  play,
+  sharp,
+  size,
+  start,
+  start_browser,
+  start_tactd,
+  start_view,
+  stop,
+  waits,
 } from "./stage.mjs";
 
 const socket = join(folder, "telemetry.sock");
@@ -22,28 +34,49 @@ const kMaxFrameBytes = 4096;
 /** The page before, while and after the controller runs. */
 async function check_view(page, url) {
   await page.goto(url);
-  check("waits for tactd in words", await waits(page, () =>
-    document.getElementById("notice").textContent.includes("waiting for tactd")));
+  check(
+    "waits for tactd in words",
+    await waits(page, () => document.getElementById("notice").textContent.includes("waiting for tactd")),
+  );
   const tactd = start_tactd("liver", socket);
   check("finds tactd by itself", await waits(page, () => window.tact.link === "live"));
-  check("shows the scene's name", await waits(page, () =>
-    document.getElementById("scene").textContent === "liver" && document.title === "tact: liver"));
-  check("shows the checksum of its limits", await waits(page, () =>
-    /^[0-9a-f]{8}$/.test(document.getElementById("limits").textContent)), await page.textContent("#limits"));
-  check("shows the liver", await waits(page, () => window.tact.vertex_count > 0) &&
-    (await numbers(page)).vertex_count === kVertices, `${(await numbers(page)).vertex_count} vertices`);
+  check(
+    "shows the scene's name",
+    await waits(page, () => document.getElementById("scene").textContent === "liver" && document.title === "tact: liver"),
+  );
+  check(
+    "shows the checksum of its limits",
+    await waits(page, () => /^[0-9a-f]{8}$/.test(document.getElementById("limits").textContent)),
+    await page.textContent("#limits"),
+  );
+  check(
+    "shows the liver",
+    (await waits(page, () => window.tact.vertex_count > 0)) && (await numbers(page)).vertex_count === kVertices,
+    `${(await numbers(page)).vertex_count} vertices`,
+  );
   const before = await numbers(page);
-  check("deforms it by more than a millimetre within 20 s",
+  check(
+    "deforms it by more than a millimetre within 20 s",
     await waits(page, () => window.tact.most_ever_m > 0.001),
-    `${((await numbers(page)).most_ever_m * 1e3).toFixed(2)} mm`);
+    `${((await numbers(page)).most_ever_m * 1e3).toFixed(2)} mm`,
+  );
   check("moves the vertices around the tool", await waits(page, () => window.tact.moved_vertices > 10));
   const { moved_vertices } = await numbers(page);
   check("and no others", moved_vertices < 0.9 * kVertices, moved_vertices);
-  check("moves the tool", await waits(page, (from_m) => Math.hypot(
-    ...from_m.map((at_m, axis) => window.tact.tool_m[axis] - at_m)) > 0.005, before.tool_m));
+  check(
+    "moves the tool",
+    await waits(
+      page,
+      (from_m) => Math.hypot(...from_m.map((at_m, axis) => window.tact.tool_m[axis] - at_m)) > 0.005,
+      before.tool_m,
+    ),
+  );
   check("shows a force", await waits(page, () => Number(document.getElementById("force").textContent) > 0.05));
-  check("says the state in words", await waits(page, () => document.getElementById("state").textContent === "armed"),
-    await page.textContent("#state"));
+  check(
+    "says the state in words",
+    await waits(page, () => document.getElementById("state").textContent === "armed"),
+    await page.textContent("#state"),
+  );
   return tactd;
 }
 
@@ -52,9 +85,11 @@ async function check_speed(page) {
   // How fast is a question for tools/bench; that it draws at all is one for a test.
   check("draws picture after picture", fps > 1 && fps < 250, `${fps.toFixed(1)} frames/s`);
   const { frames, bytes, largest_frame_bytes } = await numbers(page);
-  check(`gets frames of at most ${kMaxFrameBytes} bytes`,
+  check(
+    `gets frames of at most ${kMaxFrameBytes} bytes`,
     frames > 100 && largest_frame_bytes <= kMaxFrameBytes,
-    `largest ${largest_frame_bytes} bytes, mean ${(bytes / frames).toFixed(0)} of ${frames}`);
+    `largest ${largest_frame_bytes} bytes, mean ${(bytes / frames).toFixed(0)} of ${frames}`,
+  );
 }
 
 async function check_looking(page) {
@@ -83,8 +118,11 @@ async function check_pause(page) {
   check("freezes the picture on pause", second.paused && first.tick === second.tick);
   check("still hears tactd on pause", second.frames > first.frames);
   await page.click("#pause");
-  check("goes on after pause", await waits(page, () => !window.tact.paused && window.tact.tick > 0) &&
-    (await page.waitForFunction((tick) => window.tact.tick > tick, second.tick).then(() => true)));
+  check(
+    "goes on after pause",
+    (await waits(page, () => !window.tact.paused && window.tact.tick > 0)) &&
+      (await page.waitForFunction((tick) => window.tact.tick > tick, second.tick).then(() => true)),
+  );
 }
 
 async function check_recording(page) {
@@ -96,8 +134,11 @@ async function check_recording(page) {
   const table = join(folder, "page.csv");
   const convert = start("tact-view", ["--open", path, "--export", table, "--json"]);
   const summary = JSON.parse(await first_line(convert));
-  check("records what it shows into a sound file",
-    summary.damage === "" && summary.length_s > 0.5 && summary.frames > 20, `${summary.frames} frames`);
+  check(
+    "records what it shows into a sound file",
+    summary.damage === "" && summary.length_s > 0.5 && summary.frames > 20,
+    `${summary.frames} frames`,
+  );
   return path;
 }
 
@@ -118,20 +159,27 @@ async function check_hand(page) {
   const after = await numbers(page);
   const up_m = after.tool_m[2] - before.tool_m[2];
   const right_m = after.tool_m[1] - before.tool_m[1];
-  check("moves the hand with the mouse, up and to the right", up_m > 0.01 && right_m > 0.01,
-    `${(right_m * 1e3).toFixed(0)} mm right, ${(up_m * 1e3).toFixed(0)} mm up`);
+  check(
+    "moves the hand with the mouse, up and to the right",
+    up_m > 0.01 && right_m > 0.01,
+    `${(right_m * 1e3).toFixed(0)} mm right, ${(up_m * 1e3).toFixed(0)} mm up`,
+  );
   const held = await numbers(page);
   await page.waitForTimeout(500);
   check("leaves the hand where the mouse left it", distance(held.tool_m, (await numbers(page)).tool_m) < 0.003);
   await page.keyboard.press("g");
-  check("closes the grip", await waits(page, () => ["closed", "holds tissue"].includes(
-    document.getElementById("grip").textContent)));
+  check(
+    "closes the grip",
+    await waits(page, () => ["closed", "holds tissue"].includes(document.getElementById("grip").textContent)),
+  );
 }
 
 async function check_loss(page, tactd) {
   check("tactd ends cleanly", (await stop(tactd)) === 0);
-  check("says that the connection is lost", await waits(page, () =>
-    document.getElementById("notice").textContent.includes("connection lost")));
+  check(
+    "says that the connection is lost",
+    await waits(page, () => document.getElementById("notice").textContent.includes("connection lost")),
+  );
   const again = start_tactd("liver", socket);
   check("comes back when tactd does", await waits(page, () => window.tact.link === "live"));
   return again;
@@ -141,8 +189,15 @@ async function check_loss(page, tactd) {
 async function take_picture(browser, url) {
   const page = await browser.newPage({ viewport: size });
   await page.goto(sharp(url));
-  check("shows the tissue being pressed to a second browser", await waits(page, () =>
-    window.tact.most_m > 0.006 && parseFloat(document.getElementById("depth").textContent) > 8.5, null, 60000));
+  check(
+    "shows the tissue being pressed to a second browser",
+    await waits(
+      page,
+      () => window.tact.most_m > 0.006 && parseFloat(document.getElementById("depth").textContent) > 8.5,
+      null,
+      60000,
+    ),
+  );
   await page.screenshot({ path: join(build, "page.png") });
   await page.close();
 }
@@ -154,8 +209,17 @@ async function check_scene(browser, name, sentence, condition) {
   const tactd = start_tactd(name, own_socket);
   const page = await browser.newPage({ viewport: size });
   await page.goto(sharp(url));
-  check(sentence, await waits(page, condition, null, 60000), JSON.stringify(await page.evaluate(() =>
-    ({ moved: window.tact.moved_vertices, most_mm: 1e3 * window.tact.most_ever_m, cut: window.tact.cut_triangles }))));
+  check(
+    sentence,
+    await waits(page, condition, null, 60000),
+    JSON.stringify(
+      await page.evaluate(() => ({
+        moved: window.tact.moved_vertices,
+        most_mm: 1e3 * window.tact.most_ever_m,
+        cut: window.tact.cut_triangles,
+      })),
+    ),
+  );
   await page.screenshot({ path: join(build, `page_${name}.png`) });
   await page.close();
   await stop(tactd);
@@ -166,55 +230,13 @@ async function check_replay(browser, recording) {
   const { viewer, url } = await start_view(["--open", recording]);
   const page = await browser.newPage({ viewport: size });
   await page.goto(url);
-  check("replays the recording", await waits(page, () => window.tact.link === "replay" && window.tact.tick > 0) &&
-    (await page.textContent("#link")).includes("page.tact"));
+  check(
+    "replays the recording",
+    (await waits(page, () => window.tact.link === "replay" && window.tact.tick > 0)) &&
+      (await page.textContent("#link")).includes("page.tact"),
+  );
   await page.close();
   check("tact-view ends cleanly", (await stop(viewer)) === 0);
-}
-
-/** What the kernel calls a thread; nothing when it has ended meanwhile, as tactd's checks of the PC do. */
-function name_of(task) {
-  try {
-    return readFileSync(join(task, "comm"), "utf8").trim();
-  } catch {
-    return "";
-  }
-}
-
-/** The thread of tactd that has the loop, once it runs. */
-async function loop_of(tactd) {
-  const tasks = `/proc/${tactd.pid}/task`;
-  for (let i = 0; i < 400 && existsSync(tasks); ++i) {
-    const loop = readdirSync(tasks).find((id) => name_of(join(tasks, id)) === "tact-loop");
-    if (loop) return loop;
-    await pause(50);
-  }
-  throw new Error("tactd has no thread called tact-loop");
-}
-
-/** A loop that strace holds in its sleep, as a driver would that hangs; its last seconds stay. */
-async function check_black_box(browser) {
-  const boxes = join(folder, "boxes");
-  const tactd = start_tactd("liver", join(folder, "stalled.sock"), ["--black-box", boxes]);
-  const loop = await loop_of(tactd);
-  await pause(3000);
-  spawn("timeout", ["-s", "INT", "6", "strace", "-qq", "-o", "/dev/null", "-p", loop, "-e",
-    "inject=clock_nanosleep:delay_exit=400000:when=20"], { stdio: "ignore" });
-  const kept = () => (existsSync(boxes) ? readdirSync(boxes) : []);
-  for (let i = 0; i < 100 && kept().length === 0; ++i) await pause(100);
-  check("a fault leaves a black box", kept().length === 1, kept().join(" "));
-  await pause(500);
-  await stop(tactd);
-  const { viewer, url } = await start_view(["--open", join(boxes, kept()[0])]);
-  const page = await browser.newPage({ viewport: size });
-  await page.goto(url);
-  check("shows the black box up to its fault", await waits(page, () => window.tact.link === "replay" &&
-    document.getElementById("fault_name").textContent.includes("loop stalled")),
-    await page.textContent("#fault_name"));
-  check("names the file it shows", (await page.textContent("#link")).includes(kept()[0]));
-  await page.screenshot({ path: join(build, "page_black_box.png") });
-  await page.close();
-  await stop(viewer);
 }
 
 async function run() {
@@ -236,11 +258,19 @@ async function run() {
   await take_picture(browser, url);
   await check_replay(browser, recording);
   await check_black_box(browser);
-  await check_scene(browser, "heart", "shows the heart dented by a finger", () =>
-    window.tact.most_m > 0.003 && window.tact.vertex_count === 10026);
+  await check_scene(
+    browser,
+    "heart",
+    "shows the heart dented by a finger",
+    () => window.tact.most_m > 0.003 && window.tact.vertex_count === 10026,
+  );
   await check_scene(browser, "skin", "shows the skin dented by an injector", () => window.tact.most_m > 0.003);
-  await check_scene(browser, "gum", "shows a cut that opens in the gum", () =>
-    window.tact.cut_triangles >= 8 && window.tact.most_m > 0.0005);
+  await check_scene(
+    browser,
+    "gum",
+    "shows a cut that opens in the gum",
+    () => window.tact.cut_triangles >= 8 && window.tact.most_m > 0.0005,
+  );
   await browser.close();
   await stop(tactd);
   await stop(viewer);

@@ -8,22 +8,45 @@
 import { spawn } from "node:child_process";
 import { join } from "node:path";
 
-import { build, check, first_line, folder, numbers, play, root, size, start_at, start_browser, start_tactd, start_view, stop, waits } from "./stage.mjs";
+import {
+  build,
+  check,
+  first_line,
+  folder,
+  numbers,
+  play,
+  root,
+  size,
+  start_at,
+  start_browser,
+  start_tactd,
+  start_view,
+  stop,
+  waits,
+} from "./stage.mjs";
 
 const kScenes = ["gum", "heart", "liver", "maintenance", "skin"];
 const kSoft_Pa = "set_disc_stack.youngs_modulus_Pa";
 
 const words = (page) => page.textContent("#picker_words");
 const says = (page, text) => waits(page, (wanted) => document.getElementById("picker_words").textContent.includes(wanted), text);
-const runs = (page, name) => waits(page, (wanted) => window.tact.link === "live" && window.tact.scene_name === wanted &&
-  window.tact.state === 2 && window.tact.tick > 0, name);
+const runs = (page, name) =>
+  waits(
+    page,
+    (wanted) =>
+      window.tact.link === "live" && window.tact.scene_name === wanted && window.tact.state === 2 && window.tact.tick > 0,
+    name,
+  );
 
 /** Wholly on the screen, and nothing lies over it. */
-const in_sight = (page, id) => page.evaluate((wanted) => {
-  const element = document.getElementById(wanted);
-  const { left, right, top, bottom } = element.getBoundingClientRect();
-  return top >= 0 && bottom <= innerHeight && element.contains(document.elementFromPoint((left + right) / 2, (top + bottom) / 2));
-}, id);
+const in_sight = (page, id) =>
+  page.evaluate((wanted) => {
+    const element = document.getElementById(wanted);
+    const { left, right, top, bottom } = element.getBoundingClientRect();
+    return (
+      top >= 0 && bottom <= innerHeight && element.contains(document.elementFromPoint((left + right) / 2, (top + bottom) / 2))
+    );
+  }, id);
 
 /** The largest force of this many seconds, N. */
 async function peak_N(page, seconds) {
@@ -50,9 +73,9 @@ async function check_scenes(page) {
   await page.keyboard.press("l");
   const offered = await page.$$eval("#wished_scene option", (all) => all.map((one) => one.value));
   check("... all that are shipped", offered.join() === kScenes.join(), offered.join(" "));
-  check("... with the numbers of the law that runs", await page.locator(".parameter").count() === 7);
+  check("... with the numbers of the law that runs", (await page.locator(".parameter").count()) === 7);
   await page.selectOption("#wished_scene", "heart");
-  check("what is chosen and not applied is told", await words(page) === "heart is not applied yet", await words(page));
+  check("what is chosen and not applied is told", (await words(page)) === "heart is not applied yet", await words(page));
   await page.keyboard.press("Escape");
   await page.keyboard.press("p");
   await page.keyboard.press("l");
@@ -68,19 +91,25 @@ async function check_numbers(page) {
   await set(page, kSoft_Pa, String(shipped_Pa / 4));
   check("a number of the law is changed from its field", await says(page, "heart runs, 1 changed"), await words(page));
   const soft_N = await peak_N(page, 8);
-  check("... and the force is another", soft_N > 0.01 && soft_N < 0.7 * shipped_N,
-    `${shipped_N.toFixed(2)} N, then ${soft_N.toFixed(2)} N with a quarter of the modulus`);
+  check(
+    "... and the force is another",
+    soft_N > 0.01 && soft_N < 0.7 * shipped_N,
+    `${shipped_N.toFixed(2)} N, then ${soft_N.toFixed(2)} N with a quarter of the modulus`,
+  );
   await page.screenshot({ path: join(build, "page_picker.png") });
 }
 
 async function check_refusals(page) {
   const scene_before = await page.evaluate(() => window.tact.tick);
   await set(page, kSoft_Pa, "1e14");
-  check("a number out of its range is refused with its range", await says(page, "is out of range; allowed: 1 .. "),
-    await words(page));
-  check("... in sight, with the button", await in_sight(page, "picker_words") && await in_sight(page, "apply"));
+  check(
+    "a number out of its range is refused with its range",
+    await says(page, "is out of range; allowed: 1 .. "),
+    await words(page),
+  );
+  check("... in sight, with the button", (await in_sight(page, "picker_words")) && (await in_sight(page, "apply")));
   await page.locator(`[id="${kSoft_Pa}"]`).fill("2000");
-  check("... until a number is edited", await words(page) === "1 change not applied yet", await words(page));
+  check("... until a number is edited", (await words(page)) === "1 change not applied yet", await words(page));
   await set(page, kSoft_Pa, "1e12");
   check("what tactd refuses is told in its words", await says(page, "law disc_stack is too stiff"), await words(page));
   await page.reload();
@@ -92,9 +121,18 @@ async function check_refusals(page) {
   await page.locator(`[id="${kSoft_Pa}"]`).fill("1,5");
   await page.click("#apply");
   check("... a decimal comma is told", await says(page, "youngs_modulus_Pa: 1,5 is no number: write 1.5"), await words(page));
-  check("... where it stands", await page.evaluate(() => document.activeElement.id) === kSoft_Pa && await in_sight(page, kSoft_Pa));
-  check("... and the scene before has gone on", await waits(page, (before) => window.tact.link === "live" &&
-    window.tact.scene_name === "heart" && window.tact.tick > before, scene_before));
+  check(
+    "... where it stands",
+    (await page.evaluate(() => document.activeElement.id)) === kSoft_Pa && (await in_sight(page, kSoft_Pa)),
+  );
+  check(
+    "... and the scene before has gone on",
+    await waits(
+      page,
+      (before) => window.tact.link === "live" && window.tact.scene_name === "heart" && window.tact.tick > before,
+      scene_before,
+    ),
+  );
 }
 
 /** Another page, by touch. */
@@ -103,9 +141,12 @@ async function check_phone(browser, url, page) {
   await phone.goto(url);
   await waits(phone, () => document.getElementById("pick").checkVisibility());
   await phone.tap("#pick");
-  check("on a phone the panel opens at its top", await in_sight(phone, "picker_title") && await in_sight(phone, "wished_scene"));
+  check(
+    "on a phone the panel opens at its top",
+    (await in_sight(phone, "picker_title")) && (await in_sight(phone, "wished_scene")),
+  );
   await set(phone, kSoft_Pa, "1e14");
-  check("... and a refusal is in sight there", await says(phone, "is out of range") && await in_sight(phone, "picker_words"));
+  check("... and a refusal is in sight there", (await says(phone, "is out of range")) && (await in_sight(phone, "picker_words")));
   await phone.screenshot({ path: join(build, "page_picker_phone.png") });
   await phone.tap("#as_shipped");
   check("as shipped gives the scene back", await says(phone, "heart runs, as shipped"), await words(phone));
@@ -121,14 +162,16 @@ async function check_slider(page) {
   await page.keyboard.press("ArrowRight");
   const after = Number(await page.inputValue(`[id="${kSoft_Pa}"]`));
   check("an arrow key moves a slider and its field", after > before, `${before} Pa, then ${after} Pa`);
-  check("... and it is read with its unit", await page.getAttribute(`[id="${id}"]`, "aria-valuetext") === `${after} Pa`);
+  check("... and it is read with its unit", (await page.getAttribute(`[id="${id}"]`, "aria-valuetext")) === `${after} Pa`);
   await page.focus(`[id="${kSoft_Pa}"]`);
   await page.keyboard.press("End");
   await page.keyboard.type("e1");
-  check("letters in a field are no keys of the page", !(await numbers(page)).eyes_on && await page.isVisible("#picker"));
+  check("letters in a field are no keys of the page", !(await numbers(page)).eyes_on && (await page.isVisible("#picker")));
   await page.keyboard.press("Escape");
-  check("Escape closes the panel, and the focus is where it was opened", !(await page.isVisible("#picker")) &&
-    await page.evaluate(() => document.activeElement.id) === "pick");
+  check(
+    "Escape closes the panel, and the focus is where it was opened",
+    !(await page.isVisible("#picker")) && (await page.evaluate(() => document.activeElement.id)) === "pick",
+  );
 }
 
 /** Where nobody could start another scene, none is offered. */
@@ -138,7 +181,7 @@ async function check_nothing_offered(browser) {
   const tactd = start_tactd("liver", socket);
   const page = await browser.newPage({ viewport: size });
   await page.goto(url);
-  check("without a launcher nothing is offered", await runs(page, "liver") && !(await page.isVisible("#pick")));
+  check("without a launcher nothing is offered", (await runs(page, "liver")) && !(await page.isVisible("#pick")));
   await page.keyboard.press("l");
   check("... by the key neither", !(await page.isVisible("#picker")));
   await page.close();

@@ -13,22 +13,29 @@ import { build, check, folder, play, size, start_browser, start_tactd, start_vie
 const socket = join(folder, "silence.sock");
 
 /** What a person reads, and how grey the numbers are. */
-const seen = (page) => page.evaluate(() => ({
-  words: document.body.innerText,
-  state: document.getElementById("state").textContent,
-  grey: getComputedStyle(document.querySelector("#now .big")).filter === "grayscale(1)",
-  plots: getComputedStyle(document.querySelector("#plots canvas")).opacity < 0.5,
-  silence_s: window.tact.silence_s,
-}));
-const is_alive = (page) => waits(page, () => window.tact.silence_s === 0 &&
-  /^(armed|ready|stopped)$/.test(document.getElementById("state").textContent) &&
-  getComputedStyle(document.querySelector("#now .big")).filter === "none");
+const seen = (page) =>
+  page.evaluate(() => ({
+    words: document.body.innerText,
+    state: document.getElementById("state").textContent,
+    grey: getComputedStyle(document.querySelector("#now .big")).filter === "grayscale(1)",
+    plots: getComputedStyle(document.querySelector("#plots canvas")).opacity < 0.5,
+    silence_s: window.tact.silence_s,
+  }));
+const is_alive = (page) =>
+  waits(
+    page,
+    () =>
+      window.tact.silence_s === 0 &&
+      /^(armed|ready|stopped)$/.test(document.getElementById("state").textContent) &&
+      getComputedStyle(document.querySelector("#now .big")).filter === "none",
+  );
 
 /** `child` stands still for a while: what does the page say meanwhile, and how soon? */
 async function halt(page, child, name, link_words) {
   await page.evaluate(() => {
     const state = document.getElementById("state");
-    new MutationObserver(() => { // to the ms, whatever the machine does besides
+    new MutationObserver(() => {
+      // to the ms, whatever the machine does besides
       if (state.textContent.startsWith("no news")) window.told_s ??= window.tact.silence_s;
     }).observe(state, { childList: true, characterData: true, subtree: true });
     window.told_s = undefined;
@@ -44,11 +51,18 @@ async function halt(page, child, name, link_words) {
   child.kill("SIGSTOP");
   check(`${name} that stands still is told`, await waits(page, () => window.told_s !== undefined, null, 5000));
   const { told_s, slowest_s } = await page.evaluate(() => ({ told_s: window.told_s, slowest_s: window.slowest_s }));
-  check("... 0.3 s after the last frame", told_s > 0.3 && told_s < 0.5 + 4 * slowest_s,
-    `${told_s.toFixed(2)} s, the slowest picture took ${slowest_s.toFixed(2)} s`);
+  check(
+    "... 0.3 s after the last frame",
+    told_s > 0.3 && told_s < 0.5 + 4 * slowest_s,
+    `${told_s.toFixed(2)} s, the slowest picture took ${slowest_s.toFixed(2)} s`,
+  );
   const first = await seen(page);
-  check("... and how long it lasts", /^no news for \d+\.\d s$/.test(first.state) &&
-    await waits(page, (than_s) => window.tact.silence_s > than_s + 0.5, first.silence_s), first.state);
+  check(
+    "... and how long it lasts",
+    /^no news for \d+\.\d s$/.test(first.state) &&
+      (await waits(page, (than_s) => window.tact.silence_s > than_s + 0.5, first.silence_s)),
+    first.state,
+  );
   check("... with grey numbers and plots", first.grey && first.plots);
   check("... nothing says that it is armed", !/\barmed\b/i.test(first.words), first.words.match(/.*armed.*/i)?.[0]);
   check("... and in words", link_words.test((await seen(page)).words));
@@ -60,8 +74,14 @@ async function run() {
   const browser = await start_browser();
   const page = await browser.newPage({ viewport: size });
   await page.goto(url);
-  check("is armed, and says so", await waits(page, () => document.getElementById("state").textContent === "armed" &&
-    Number(document.getElementById("force").textContent) > 0.05));
+  check(
+    "is armed, and says so",
+    await waits(
+      page,
+      () =>
+        document.getElementById("state").textContent === "armed" && Number(document.getElementById("force").textContent) > 0.05,
+    ),
+  );
   await halt(page, tactd, "a tactd", /tactd is silent: what is shown is old/);
   await page.waitForTimeout(1500);
   await page.screenshot({ path: join(build, "page_silence.png") });
@@ -72,8 +92,13 @@ async function run() {
   viewer.kill("SIGCONT");
   check("news ends that, too", await is_alive(page));
   check("tactd ends", (await stop(tactd)) !== null);
-  check("after its end nothing looks alive either", await waits(page, () =>
-    window.tact.link === "lost" && document.getElementById("state").textContent.startsWith("no news for")));
+  check(
+    "after its end nothing looks alive either",
+    await waits(
+      page,
+      () => window.tact.link === "lost" && document.getElementById("state").textContent.startsWith("no news for"),
+    ),
+  );
   await page.close();
   await browser.close();
   await stop(viewer);

@@ -32,10 +32,12 @@ export const start = (program, args) => start_at(join(build, program), args);
 export function start_at(path, args, env = process.env) {
   const child = spawn(path, args, { stdio: ["ignore", "pipe", "inherit"], env });
   children.add(child);
-  child.ended = new Promise((done) => child.on("exit", (status) => {
-    children.delete(child);
-    done(status);
-  }));
+  child.ended = new Promise((done) =>
+    child.on("exit", (status) => {
+      children.delete(child);
+      done(status);
+    }),
+  );
   return child;
 }
 
@@ -57,7 +59,10 @@ export function first_line(child, beginning = "") {
     let text = "";
     child.stdout.on("data", (data) => {
       text += data;
-      const line = text.split("\n").slice(0, -1).find((one) => one.startsWith(beginning));
+      const line = text
+        .split("\n")
+        .slice(0, -1)
+        .find((one) => one.startsWith(beginning));
       if (line !== undefined) done(line);
     });
     child.ended.then((status) => fail(new Error(`${child.spawnfile} left with status ${status}`)));
@@ -78,8 +83,14 @@ export async function start_browser() {
   return chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
     args: [
-      "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
-      "--disable-background-networking", "--disable-component-update", "--disable-sync",
+      "--no-sandbox",
+      "--disable-gpu",
+      "--enable-unsafe-swiftshader",
+      "--disable-quic",
+      "--no-first-run",
+      "--disable-background-networking",
+      "--disable-component-update",
+      "--disable-sync",
     ],
   });
 }
@@ -89,7 +100,10 @@ export const numbers = (page) => page.evaluate(() => ({ ...window.tact }));
 /** True when the condition holds in time. */
 /** `condition(value)` in the page. */
 export const waits = (page, condition, value = null, timeout = 20000) =>
-  page.waitForFunction(condition, value, { timeout, polling: 50 }).then(() => true, () => false);
+  page.waitForFunction(condition, value, { timeout, polling: 50 }).then(
+    () => true,
+    () => false,
+  );
 export const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 
 export async function measure_fps(page, seconds) {

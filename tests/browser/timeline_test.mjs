@@ -26,16 +26,23 @@ const lands_s = (at_s) => frame_at_s.find((one_s) => one_s >= at_s - 1e-6) ?? fr
 function read_frames() {
   const table = join(folder, "run.csv");
   execFileSync(join(build, "tact-view"), ["--open", recording, "--export", table]);
-  const [head, ...rows] = readFileSync(table, "utf8").trim().split("\n")
-    .filter((line) => !line.startsWith("#")).map((line) => line.split(","));
+  const [head, ...rows] = readFileSync(table, "utf8")
+    .trim()
+    .split("\n")
+    .filter((line) => !line.startsWith("#"))
+    .map((line) => line.split(","));
   const time_s = rows.map((row) => Number(row[head.indexOf("time_s")]));
   frame_at_s = time_s.map((one_s) => one_s - time_s[0]);
 }
 
 /** At this time, and there it stays. */
 async function rests_at(page, at_s, slack_s = 0.06) {
-  const came = await waits(page, ([wanted_s, most_s]) =>
-    Math.abs(Number(document.getElementById("seek").value) - wanted_s) < most_s, [at_s, slack_s], 5000);
+  const came = await waits(
+    page,
+    ([wanted_s, most_s]) => Math.abs(Number(document.getElementById("seek").value) - wanted_s) < most_s,
+    [at_s, slack_s],
+    5000,
+  );
   await page.waitForTimeout(300);
   return came && Math.abs((await seen_s(page)) - at_s) < slack_s;
 }
@@ -45,12 +52,20 @@ async function check_grip(browser, url) {
   const context = await browser.newContext({ viewport: { width: 820, height: 1180 }, hasTouch: true, isMobile: true });
   const page = await context.newPage();
   await page.goto(url);
-  check("a simulated hand is offered", await waits(page, () => window.tact.link === "live" && window.tact.tick > 0 &&
-    document.getElementById("close_grip").checkVisibility()));
+  check(
+    "a simulated hand is offered",
+    await waits(
+      page,
+      () => window.tact.link === "live" && window.tact.tick > 0 && document.getElementById("close_grip").checkVisibility(),
+    ),
+  );
   check("has no timeline while it is live", !(await page.isVisible("#timeline")));
   await page.tap("#close_grip");
-  check("a finger closes the grip", await waits(page, () =>
-    ["closed", "holds tissue"].includes(document.getElementById("grip").textContent)), await text(page, "grip"));
+  check(
+    "a finger closes the grip",
+    await waits(page, () => ["closed", "holds tissue"].includes(document.getElementById("grip").textContent)),
+    await text(page, "grip"),
+  );
   await page.tap("#open_grip");
   check("... and lets go", await waits(page, () => document.getElementById("grip").textContent === "open"));
   await page.tap("#hand");
@@ -66,8 +81,11 @@ async function check_grip(browser, url) {
 
 async function check_words(page) {
   const { words } = await page.evaluate(() => ({ words: document.body.innerText }));
-  check("says nothing as if it were so now", /was armed/.test(words) && /force was on/.test(words) &&
-    !/force is on|\blive\b|(?<!was )armed/.test(words), words.match(/.*(armed|\blive\b).*/)?.[0]);
+  check(
+    "says nothing as if it were so now",
+    /was armed/.test(words) && /force was on/.test(words) && !/force is on|\blive\b|(?<!was )armed/.test(words),
+    words.match(/.*(armed|\blive\b).*/)?.[0],
+  );
   check("offers no hand", !(await page.isVisible("#hand")) && !(await page.isVisible("#close_grip")));
   check("its title says what it is", /replay/.test(await page.title()));
 }
@@ -100,9 +118,12 @@ async function check_keys(page) {
   await waits(page, () => document.getElementById("speed").value === "1");
   await page.keyboard.press("End");
   check("End is its end", await rests_at(page, Number(await page.getAttribute("#seek", "max"))));
-  check("a stop on request is not one by a fault", await waits(page, () =>
-    document.getElementById("state_words").textContent === "force was off: stopped on request") &&
-    !/fault/.test(await page.evaluate(() => document.body.innerText)), await text(page, "state_words"));
+  check(
+    "a stop on request is not one by a fault",
+    (await waits(page, () => document.getElementById("state_words").textContent === "force was off: stopped on request")) &&
+      !/fault/.test(await page.evaluate(() => document.body.innerText)),
+    await text(page, "state_words"),
+  );
   await page.keyboard.press("Home");
   await rests_at(page, 0);
   await page.keyboard.press("n");
@@ -116,7 +137,8 @@ async function check_mouse(page) {
   check("a click on the bar goes there", await rests_at(page, lands_s(length_s / 2), 0.1));
   await page.click("#play");
   await page.selectOption("#speed", "4");
-  const begin_s = await seen_s(page), begin_ms = Date.now();
+  const begin_s = await seen_s(page);
+  const begin_ms = Date.now();
   await page.waitForTimeout(600);
   const ratio = (1000 * ((await seen_s(page)) - begin_s)) / (Date.now() - begin_ms);
   check("plays four times as fast", ratio > 2.5 && ratio < 5.5, ratio.toFixed(1));
@@ -125,12 +147,16 @@ async function check_mouse(page) {
   check("rests at its end", await waits(page, () => document.getElementById("play_word").textContent === "Play"));
   await page.click("#repeat");
   await page.keyboard.press("Space");
-  check("or begins anew", await waits(page, () => window.seen_start ||= Number(document.getElementById("seek").value) < 1) &&
-    await waits(page, () => { // to its end, and there it is young again
-      const at_s = Number(document.getElementById("seek").value);
-      window.far ||= at_s > 3;
-      return window.far && at_s < 2 && document.getElementById("play_word").textContent === "Pause";
-    }));
+  check(
+    "or begins anew",
+    (await waits(page, () => (window.seen_start ||= Number(document.getElementById("seek").value) < 1))) &&
+      (await waits(page, () => {
+        // to its end, and there it is young again
+        const at_s = Number(document.getElementById("seek").value);
+        window.far ||= at_s > 3;
+        return window.far && at_s < 2 && document.getElementById("play_word").textContent === "Pause";
+      })),
+  );
   await page.click("#repeat");
   await page.selectOption("#speed", "1");
 }
@@ -142,21 +168,30 @@ async function check_plots(page) {
   await page.keyboard.press("Space");
   await page.waitForTimeout(900);
   const captions = await page.locator("figcaption").allTextContents();
-  check("plots say their units", ["mm", "N", "µs"].every((unit, i) => captions[i].includes(`, ${unit}`)), captions.join(" | "));
+  check(
+    "plots say their units",
+    ["mm", "N", "µs"].every((unit, i) => captions[i].includes(`, ${unit}`)),
+    captions.join(" | "),
+  );
   check("... and which line is which", /asked by the law/.test(captions[1]) && /given/.test(captions[1]));
   const over = await page.locator("#plot_force .u-over").boundingBox();
   await page.mouse.move(over.x + over.width - 4, over.y + over.height / 2);
-  check("pointing at one tells its values and their time", await waits(page, () =>
-    /at \d+\.\d\d s: \d\.\d\d · \d\.\d\d N/.test(document.getElementById("plot_force").textContent)),
-    await page.textContent("#plot_force b"));
+  check(
+    "pointing at one tells its values and their time",
+    await waits(page, () => /at \d+\.\d\d s: \d\.\d\d · \d\.\d\d N/.test(document.getElementById("plot_force").textContent)),
+    await page.textContent("#plot_force b"),
+  );
   check("... in all of them", /at \d+\.\d\d s/.test(await page.textContent("#plot_margin b")));
   await page.mouse.move(640, 300);
 }
 
 async function check_saving(page) {
   const [picture] = await Promise.all([page.waitForEvent("download", { timeout: 10000 }), page.keyboard.press("s")]);
-  check("S saves the picture by its scene and date", /^tact-liver-\d{4}-\d\d-\d\d-\d{6}\.png$/.test(picture.suggestedFilename()),
-    picture.suggestedFilename());
+  check(
+    "S saves the picture by its scene and date",
+    /^tact-liver-\d{4}-\d\d-\d\d-\d{6}\.png$/.test(picture.suggestedFilename()),
+    picture.suggestedFilename(),
+  );
   await picture.saveAs(join(build, "page_saved.png"));
   const bytes = readFileSync(join(build, "page_saved.png"));
   check("... as a PNG", bytes.subarray(1, 4).toString() === "PNG" && bytes.length > 5000, `${bytes.length} bytes`);
@@ -175,9 +210,11 @@ async function check_stall(browser) {
   tactd.kill("SIGSTOP");
   await pause(100);
   tactd.kill("SIGCONT");
-  check("one stall is marked at the edge of the plot, with its size", await waits(page, () =>
-    /▼ \d+, to -\d{5,} µs/.test(document.querySelector("#plot_margin .clipped").textContent)),
-    await page.textContent("#plot_margin figcaption"));
+  check(
+    "one stall is marked at the edge of the plot, with its size",
+    await waits(page, () => /▼ \d+, to -\d{5,} µs/.test(document.querySelector("#plot_margin .clipped").textContent)),
+    await page.textContent("#plot_margin figcaption"),
+  );
   await page.screenshot({ path: join(build, "page_stall.png") });
   await page.close();
   await stop(tactd);
@@ -200,8 +237,13 @@ async function run() {
   page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
   page.on("pageerror", (error) => complaints.push(String(error)));
   await page.goto(replay.url);
-  check("begins when somebody looks", await waits(page, () => window.tact.link === "replay" &&
-    window.tact.tick > 0 && document.getElementById("state").textContent === "was armed") && (await seen_s(page)) < 3);
+  check(
+    "begins when somebody looks",
+    (await waits(
+      page,
+      () => window.tact.link === "replay" && window.tact.tick > 0 && document.getElementById("state").textContent === "was armed",
+    )) && (await seen_s(page)) < 3,
+  );
   await check_words(page);
   await check_keys(page);
   await check_mouse(page);

@@ -25,11 +25,30 @@ function free_port() {
 
 /** stunnel with the recipe, between `outer` and `inner`. */
 function start_stunnel(outer, inner) {
-  spawnSync("openssl", ["req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "1", "-subj", "/CN=localhost",
-    "-keyout", join(folder, "tact.key"), "-out", join(folder, "tact.pem")], { stdio: "ignore" });
+  spawnSync(
+    "openssl",
+    [
+      "req",
+      "-x509",
+      "-newkey",
+      "rsa:2048",
+      "-nodes",
+      "-days",
+      "1",
+      "-subj",
+      "/CN=localhost",
+      "-keyout",
+      join(folder, "tact.key"),
+      "-out",
+      join(folder, "tact.pem"),
+    ],
+    { stdio: "ignore" },
+  );
   const recipe = readFileSync(join(root, "tools/deploy/stunnel.conf"), "utf8");
-  writeFileSync(join(folder, "stunnel.conf"),
-    recipe.replace("accept = 8443", `accept = ${outer}`).replace("127.0.0.1:8321", `127.0.0.1:${inner}`));
+  writeFileSync(
+    join(folder, "stunnel.conf"),
+    recipe.replace("accept = 8443", `accept = ${outer}`).replace("127.0.0.1:8321", `127.0.0.1:${inner}`),
+  );
   return spawn("stunnel", ["stunnel.conf"], { cwd: folder, stdio: "ignore" });
 }
 
@@ -42,9 +61,20 @@ await play(async () => {
   const browser = await start_browser();
   const page = await browser.newPage({ viewport: size, ignoreHTTPSErrors: true }); // it signed itself
   check("the printed link is that of the proxy", url.startsWith(`https://localhost:${outer}/#token=`));
-  for (let i = 0; i < 50 && !(await page.goto(url).then(() => true, () => false)); ++i) await page.waitForTimeout(100);
-  check("the page is live through TLS", await waits(page, () =>
-    location.protocol === "https:" && window.tact.link === "live" && window.tact.vertex_count > 0));
+  for (
+    let i = 0;
+    i < 50 &&
+    !(await page.goto(url).then(
+      () => true,
+      () => false,
+    ));
+    ++i
+  )
+    await page.waitForTimeout(100);
+  check(
+    "the page is live through TLS",
+    await waits(page, () => location.protocol === "https:" && window.tact.link === "live" && window.tact.vertex_count > 0),
+  );
   const [cookie] = await page.context().cookies();
   check("its cookie never goes without TLS", cookie?.secure && cookie?.httpOnly && cookie?.sameSite === "Strict");
   const { status } = await fetch(`http://127.0.0.1:${inner}/scene.json`);

@@ -19,8 +19,10 @@ async function check_owner(page, url) {
   check("the token leaves the address bar", page.url() === address, page.url().replace(token, "TOKEN"));
   const [cookie, ...more] = await page.context().cookies();
   check("a cookie keeps it", cookie?.value === token && more.length === 0);
-  check("... that no script reads and no foreign page sends", cookie?.httpOnly && cookie?.sameSite === "Strict" &&
-    (await page.evaluate(() => document.cookie)) === "");
+  check(
+    "... that no script reads and no foreign page sends",
+    cookie?.httpOnly && cookie?.sameSite === "Strict" && (await page.evaluate(() => document.cookie)) === "",
+  );
   await page.goto(address);
   check("the address alone is enough from then on", await is_live(page));
 }
@@ -28,9 +30,16 @@ async function check_owner(page, url) {
 async function check_stranger(page, url) {
   const [address, token] = url.split("#token=");
   await page.goto(address);
-  check("without the token the page shows nothing", await waits(page, () =>
-    document.getElementById("link").textContent === "not allowed" && window.tact.link === "gone" &&
-    window.tact.vertex_count === 0));
+  check(
+    "without the token the page shows nothing",
+    await waits(
+      page,
+      () =>
+        document.getElementById("link").textContent === "not allowed" &&
+        window.tact.link === "gone" &&
+        window.tact.vertex_count === 0,
+    ),
+  );
   const words = await page.textContent("#notice");
   check("... and says what to do", /open the whole link that tact-view printed/.test(words), words);
   for (const path of ["live", "session", "scene.json", "mesh.bin", "recording.csv", "recording.tact"]) {
@@ -39,8 +48,10 @@ async function check_stranger(page, url) {
   }
   await page.goto(`${address}#token=${token.replace(/./g, "0")}`);
   await page.waitForTimeout(1500);
-  check("a wrong token is as good as none", await waits(page, () =>
-    document.getElementById("link").textContent === "not allowed"));
+  check(
+    "a wrong token is as good as none",
+    await waits(page, () => document.getElementById("link").textContent === "not allowed"),
+  );
   await page.goto(url); // in the same page: only its fragment changes
   check("the whole link, opened in that page, is taken", await is_live(page));
   check("... and leaves the address bar", page.url() === address);

@@ -172,7 +172,8 @@ class Small:
 def small_table(**changes):
     table = {"format": "tact-hazards", "version": 1,
              "hazard": [{"id": "HZ-01", "hazard": "h", "cause": "c"}],
-             "requirement": [{"id": "REQ-01", "hazards": ["HZ-01"], "text": "t", "by": "gate", "stages": ["slew"], "faults": [7]}],
+             "requirement": [{"id": "REQ-01", "hazards": ["HZ-01"], "text": "t", "by": "gate",
+                              "stages": ["slew"], "faults": [7]}],
              "test": [{"id": f"TEST-0{i}", "proves": ["REQ-01"], "by": by, "names": [name]} for i, (by, name) in enumerate(
                  (("build/tests/a_test", "A.IsSo"), (PROOF, "slew: it is so"), (BENCH, "jump"), (LIMITS, "step")))]}
     for place, value in changes.items():

@@ -160,8 +160,8 @@ def tree():
     files = {}
     for folder, folders, names in os.walk(ROOT):
         top = pathlib.Path(folder) == ROOT
-        folders[:] = [name for name in folders if name not in ("node_modules", "__pycache__", ".git")
-                      and not (top and name.startswith("build"))]
+        folders[:] = [name for name in folders if name not in ("node_modules", "__pycache__", ".git") and
+                      not (top and name.startswith("build"))]
         for path in (pathlib.Path(folder) / name for name in ["", *names]):
             files[path.relative_to(ROOT).as_posix()] = path.read_text() if path.suffix == ".md" else None
     return dict(sorted(files.items()))

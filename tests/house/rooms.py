@@ -270,9 +270,10 @@ def blind_rules():
             "a folder without a row": include_breaches("hal/new/x.h", ""),
             "a tool without a row": include_breaches("tools/new/x.h", ""),
             "a folder that is no part": part_breaches("tests/rig/emulators/new/x.h", ""),
-            "a part knows few others": part_breaches("tests/rig/emulators/can/x.h", '#include "tests/rig/emulators/odrive/y.h"\n'),
-            "no part knows what its room itself holds": part_breaches("tests/rig/emulators/can/x.h",
-                                                                     '#include "tests/rig/emulators/y.h"\n'),
+            "a part knows few others": part_breaches(
+                "tests/rig/emulators/can/x.h", '#include "tests/rig/emulators/odrive/y.h"\n'),
+            "no part knows what its room itself holds": part_breaches(
+                "tests/rig/emulators/can/x.h", '#include "tests/rig/emulators/y.h"\n'),
             "a folder of the page without a row": page_breaches(f"{PAGE}new/x.ts", ""),
             "a folder of the page knows few others": page_breaches(f"{PAGE}scene/x.ts", 'import { y } from "../organ/y";\n'),
             "no folder of the page knows main.ts": page_breaches(f"{PAGE}scene/x.ts", 'await import("../main");\n'),

@@ -56,7 +56,8 @@ def stage_breaches(check, push, night):
 def blind_rules():
     """Each rule against a breach of it: the names of those that do not see theirs."""
     check = "quick='format tests browser'\nmore='asan'\nhours='soak'\n"
-    push = '        arguments: ["", --only tidy, --only asan, --only rtsan, --only tsan]\n      - run: ./tools/check ${{ matrix.arguments }}\n'
+    push = '        arguments: ["", --only tidy, --only asan, --only rtsan, --only tsan]\n' \
+           '      - run: ./tools/check ${{ matrix.arguments }}\n'
     run = "      - run: ./tools/check --long --only ${{ matrix.stage }}\n"
     night = "        stage: [asan, soak]\n" + run
     cases = {

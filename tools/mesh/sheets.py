@@ -90,7 +90,10 @@ def parted(points, triangles):
 def parted_sheets(points, triangles):
     """Each vertex once for each sheet that meets there, a little into that sheet's own solid."""
     half, twin = sheet_pairs(points, triangles)
-    onward = lambda h: h // 3 * 3 + (h + 1) % 3
+
+    def onward(h):
+        return h // 3 * 3 + (h + 1) % 3
+
     corner, same = np.concatenate((half, onward(half))), np.concatenate((onward(twin), twin))
     least = np.arange(triangles.size)  # of each corner: the first corner of its fan
     while True:

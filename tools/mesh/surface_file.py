@@ -83,14 +83,16 @@ def read(path, ending=None):
     surface = triangulated(surface)
     points, triangles = to_numpy(surface)
     if len(triangles) == 0 and surface.GetNumberOfPoints() > 0:
-        raise Refused(f"{path}: no faces in it, {surface.GetNumberOfPoints()} points alone; make a surface of them in a mesh editor")
+        raise Refused(f"{path}: no faces in it, {surface.GetNumberOfPoints()} points alone; "
+                      "make a surface of them in a mesh editor")
     if len(triangles) == 0:
         raise Refused(f"{path}: no faces in it; export the mesh with faces")
     if triangles.min() < 0 or triangles.max() >= len(points):
         raise Refused(f"{path}: a face names vertex {triangles.max() + 1} of {len(points)}{AGAIN}")
     sane = (np.abs(points) <= MOST_COORDINATE).all(1)  # a NaN is not
     if not sane.all():
-        raise Refused(f"{path}{line_of_no_number(path, ending)}: vertex {np.argmin(sane) + 1} is not finite, or beyond 1e12{AGAIN}")
+        raise Refused(f"{path}{line_of_no_number(path, ending)}: "
+                      f"vertex {np.argmin(sane) + 1} is not finite, or beyond 1e12{AGAIN}")
     return surface
 
 
@@ -129,7 +131,8 @@ def check_gltf(path):
     for uri, name, size_bytes in named:
         buffer = pathlib.Path(path).parent / name
         if not buffer.is_file():
-            raise Refused(f"{path}: its buffer file {name!r} is missing beside it; copy it there, or export as GLB, which is one file")
+            raise Refused(f"{path}: its buffer file {name!r} is missing beside it; "
+                          "copy it there, or export as GLB, which is one file")
         if buffer.stat().st_size < size_bytes:
             raise Refused(f"{path}: its buffer file {name!r} is cut short, {buffer.stat().st_size} of {size_bytes} bytes{AGAIN}")
         if name != uri:
@@ -141,7 +144,8 @@ def line_of_no_number(path, ending):
     if ending != ".stl":
         return ""
     with open(path, encoding="ascii", errors="replace") as file:
-        return next((f":{number}" for number, line in enumerate(file, 1) if re.match(r"\s*vertex\b.*\b(nan|inf)", line, re.I)), "")
+        return next((f":{number}" for number, line in enumerate(file, 1)
+                     if re.match(r"\s*vertex\b.*\b(nan|inf)", line, re.I)), "")
 
 
 def read_by_vtk(path, reader):

@@ -180,4 +180,4 @@ def image():
 
 
 MEASURED = {f.__name__: f for f in (bench, limits, verify, size, chart, tool, stability, tracking,
-                                   coupling, measured, image)}
+                                    coupling, measured, image)}

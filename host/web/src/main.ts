@@ -10,7 +10,7 @@ import type { Headset } from "./operator/headset";
 import { by_id } from "./document/dom";
 import { Hud } from "./panels/hud";
 import { bind_keys } from "./controls/keys";
-import { split_link } from "./link/link";
+import { take_token } from "./link/link";
 import { News } from "./link/news";
 import { Operator } from "./operator/operator";
 import { OrganView } from "./organ/organ_view";
@@ -23,13 +23,6 @@ import { ScenePicker } from "./controls/scene_picker";
 import { Stage } from "./scene/stage";
 import { Timeline } from "./controls/timeline";
 import { ToolView } from "./scene/tool_view";
-
-/** Takes the token out of the address bar: no bookmark, history or screenshot keeps it. */
-function take_token(): string | null {
-  const { token, rest } = split_link(location.hash);
-  if (token !== null) history.replaceState(null, "", location.pathname + location.search + rest);
-  return token;
-}
 
 const token = take_token();
 const canvas = by_id<HTMLCanvasElement>("view");
@@ -58,7 +51,7 @@ let first_drawn_ms: number | null = null; // the first picture of tissue, since 
 let headset: Headset | null = null;
 
 // First: the network has its turn while the picture is set up.
-const connection = new Connection({
+const connection = new Connection(token, {
   status: (now) => {
     status = now;
     hud.link(now);
@@ -85,12 +78,15 @@ const connection = new Connection({
     hud.tracking(null); // what a chip said last is not known any more
     recorder.stop();
   },
-}, token);
+});
 const stage = new Stage(canvas, draw);
 const operator = new Operator(stage, hud);
 const outside = new Outside(canvas, stage.camera);
 const timeline = new Timeline((wish) => connection.steer(wish));
-const picker = new ScenePicker((wish) => connection.choose(wish), () => connection.offered());
+const picker = new ScenePicker(
+  (wish) => connection.choose(wish),
+  () => connection.offered(),
+);
 const hand = new HandControl(canvas, stage, may_move_hand, (position_m, grip_ratio) =>
   connection.move_hand(position_m, grip_ratio),
 );
@@ -250,7 +246,8 @@ bind_keys((key, shift) => timeline.key(key, shift), actions);
 
 stage.controls.addEventListener("start", () => (operator.view_chosen = true));
 
-/** Read-only numbers for tests and for curious people in the console. */
+/** Read-only numbers for tests and for curious people in the console: a table, one a line. */
+// prettier-ignore
 const numbers = {
   get fps() { return stage.fps; },
   get link() { return status?.link ?? "gone"; },
@@ -288,6 +285,8 @@ const numbers = {
 };
 export type TactNumbers = Readonly<typeof numbers>;
 declare global {
-  interface Window { readonly tact: TactNumbers; }
+  interface Window {
+    readonly tact: TactNumbers;
+  }
 }
 Object.defineProperty(window, "tact", { value: Object.freeze(numbers) });

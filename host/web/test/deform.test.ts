@@ -18,7 +18,10 @@ function profile(rings: (number | null)[] = kRings): Profile {
 function slab(): { rest_m: Float32Array; normal: Float32Array } {
   const rest_m: number[] = [];
   const normal: number[] = [];
-  for (const [z, up] of [[0, 1], [-0.03, -1]]) {
+  for (const [z, up] of [
+    [0, 1],
+    [-0.03, -1],
+  ]) {
     for (let x = -20; x <= 20; ++x) {
       for (let y = -20; y <= 20; ++y) {
         rest_m.push(x * 1e-3, y * 1e-3, z);
@@ -30,7 +33,17 @@ function slab(): { rest_m: Float32Array; normal: Float32Array } {
 }
 
 function site(changes: Partial<Site> = {}): Site {
-  return { site: 0, state: 1, point_m: [0, 0, 0], normal: [0, 0, 1], shift_m: [0, 0, 0], depth_m: 0.01, u_m: kRings, tilt: [0, 0, 0], ...changes };
+  return {
+    site: 0,
+    state: 1,
+    point_m: [0, 0, 0],
+    normal: [0, 0, 1],
+    shift_m: [0, 0, 0],
+    depth_m: 0.01,
+    u_m: kRings,
+    tilt: [0, 0, 0],
+    ...changes,
+  };
 }
 
 function pressed(sites: Site[]): { rest_m: Float32Array; out_m: Float32Array; moved: number; most_m: number } {
@@ -101,8 +114,7 @@ test("Of two sideways shifts the larger is shown", () => {
     site({ shift_m: [0.002, 0, 0], u_m: kRings.map((u) => u / 2) }),
     site({ site: 1, shift_m: [0.001, 0, 0], u_m: kRings.map((u) => u / 2) }),
   ]);
-  for (let i = 0; i < both.out_m.length; i += 3)
-    assert.ok(Math.abs(both.out_m[i] - shifted.out_m[i]) < 1e-8);
+  for (let i = 0; i < both.out_m.length; i += 3) assert.ok(Math.abs(both.out_m[i] - shifted.out_m[i]) < 1e-8);
 });
 
 test("A dent that leans is deeper on one side by as much as it is shallower on the other", () => {

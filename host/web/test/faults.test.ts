@@ -18,7 +18,10 @@ test("a number of a newer tactd is shown as a number, with what to do", () => {
 });
 
 test("each state has tactd's name and words, and another number is shown as a number", () => {
-  assert.deepEqual([0, 1, 2, 3].map((n) => describe_state(n, 131).name), ["off", "ready", "armed", "stopped"]);
+  assert.deepEqual(
+    [0, 1, 2, 3].map((n) => describe_state(n, 131).name),
+    ["off", "ready", "armed", "stopped"],
+  );
   for (const n of [0, 1, 2, 3]) assert.match(describe_state(n, 131).words, /force/);
   assert.equal(describe_state(9, 0).name, "state 9");
 });

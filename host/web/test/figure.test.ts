@@ -7,8 +7,19 @@ import type { FigureFrame, Skeleton } from "../src/link/protocol";
 
 const kSkeleton: Skeleton = { joints: ["pelvis", "head", "hand"], capsules: [], sides: [0, 1], hand: 2, head: 1 };
 const kFrame: FigureFrame = {
-  kind: "figure", tick: 1, joint_m: [0, 0, 0, 0.4, -0.1, 0.5, 0, 0, 0.08], grip_m: [0, 0.003, 0.084],
-  head: [1, 0, 0, 0], reached: true, error_mm: 0, sweeps: 1, updates: 2, full_chain: false, trouble: 0, words: "", head_tracked: false,
+  kind: "figure",
+  tick: 1,
+  joint_m: [0, 0, 0, 0.4, -0.1, 0.5, 0, 0, 0.08],
+  grip_m: [0, 0.003, 0.084],
+  head: [1, 0, 0, 0],
+  reached: true,
+  error_mm: 0,
+  sweeps: 1,
+  updates: 2,
+  full_chain: false,
+  trouble: 0,
+  words: "",
+  head_tracked: false,
 };
 const near = (a: number, b: number): void => assert.ok(Math.abs(a - b) < 1e-9, `${a} is not ${b}`);
 
@@ -17,7 +28,11 @@ test("joints are three numbers each", () => {
 });
 
 test("a capsule along the body's side has a way across it, whatever rounding leaves", () => {
-  for (const along of [[1e-9, -1, 0], [0, 1, 1e-17], [1e-17, -1 + 1e-16, 1e-17]] as const) {
+  for (const along of [
+    [1e-9, -1, 0],
+    [0, 1, 1e-17],
+    [1e-17, -1 + 1e-16, 1e-17],
+  ] as const) {
     const x = across([...along], [1e-12, 1, 1e-17]);
     near(Math.hypot(...x), 1);
     assert.ok(Math.abs(x[0] * along[0] + x[1] * along[1] + x[2] * along[2]) < 1e-6, String(x));

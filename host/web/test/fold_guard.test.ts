@@ -117,7 +117,10 @@ function pressed(skin: Skin, deformer: Deformer, sites: Site[]): { folded: numbe
   return { folded, most_m: result.most_m };
 }
 
-for (const [name, skin, step] of [["the liver", liver(), 13], ["a hill of fine skin", hill(), 7]] as const) {
+for (const [name, skin, step] of [
+  ["the liver", liver(), 13],
+  ["a hill of fine skin", hill(), 7],
+] as const) {
   test(`Pressed deeply, ${name} has no triangle that turned over`, () => {
     const deformer = new Deformer(skin.vertex_m, skin.normal, 32, kPitch_m, skin.triangle);
     for (let v = 0; v < skin.vertex_m.length / 3; v += step) {

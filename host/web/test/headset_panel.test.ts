@@ -12,14 +12,25 @@ const words = (count: number): string => Array.from({ length: count }, (_, i) =>
 function tell(warnings: string[]): { told: string[]; painted: string[] } {
   const painted: string[] = [];
   const pen = {
-    font: "", fillRect() {}, strokeRect() {}, fillText: (text: string) => void painted.push(text),
+    font: "",
+    fillRect() {},
+    strokeRect() {},
+    fillText: (text: string) => void painted.push(text),
     measureText: (text: string) => ({ width: (text.length * Number(/(\d+)px/.exec(pen.font)![1])) / 2 }),
   };
   Object.assign(globalThis, { document: { createElement: () => ({ getContext: () => pen }) } });
   const panel = new HeadsetPanel(new THREE.Vector3(0.45, 0, 0.35));
   const said: Said = {
-    state: "armed", state_tone: "good", state_words: "", link: "live", link_tone: "good", force_N: "0.50", force_of: "of 8 N",
-    old: false, alarm: false, warnings: warnings.map((text) => ({ text, tone: "bad" })),
+    state: "armed",
+    state_tone: "good",
+    state_words: "",
+    link: "live",
+    link_tone: "good",
+    force_N: "0.50",
+    force_of: "of 8 N",
+    old: false,
+    alarm: false,
+    warnings: warnings.map((text) => ({ text, tone: "bad" })),
   };
   panel.tell(said);
   return { told: panel.told, painted };

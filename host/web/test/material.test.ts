@@ -28,7 +28,10 @@ test("organ and tool look as the scene says, else like tissue and steel", () => 
 
 test("each piece has its colour, and those that have none that of the last", () => {
   const three = mesh(9, [0, 1, 2, 3, 4, 5, 6, 7, 8]);
-  const tints = piece_tints(three, [[1, 0.5, 0.25], [2, 2, 2]]);
+  const tints = piece_tints(three, [
+    [1, 0.5, 0.25],
+    [2, 2, 2],
+  ]);
   assert.deepEqual([...tints.slice(0, 3)], [1, 0.5, 0.25]);
   assert.deepEqual([...tints.slice(9, 12)], [2, 2, 2]);
   assert.deepEqual([...tints.slice(24, 27)], [2, 2, 2]);
@@ -54,5 +57,8 @@ test("vertices have the colours of their mesh, over no colour of the material", 
 test("the page has a picture of each material that a scene may name, and of no other", () => {
   const keys = readFileSync("../../model/scene/scene_keys.cc", "utf8");
   const list = /kMaterials\{([^;]*)\};/.exec(keys)![1];
-  assert.deepEqual([...list.matchAll(/Choice\{"(\w+)"/g)].map((found) => found[1]), [...kMaterials.keys()]);
+  assert.deepEqual(
+    [...list.matchAll(/Choice\{"(\w+)"/g)].map((found) => found[1]),
+    [...kMaterials.keys()],
+  );
 });

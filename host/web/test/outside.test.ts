@@ -42,11 +42,20 @@ test("what is behind the camera is on the side to which one turns", () => {
 });
 
 test("an arrow stays in the free part, however small that is", () => {
-  for (const [right_m, up_m] of [[3, 1], [-3, 1], [1, 9], [-1, -9], [5, 5]]) {
+  for (const [right_m, up_m] of [
+    [3, 1],
+    [-3, 1],
+    [1, 9],
+    [-1, -9],
+    [5, 5],
+  ]) {
     const at = edge(right_m, up_m, -1)!;
     assert.ok(at.x_px >= free.left && at.x_px <= free.right && at.y_px >= free.top && at.y_px <= free.bottom);
   }
-  const tiny = edge_of([3, 1, -1], 0.01, [800, 800],
-    { picture, panels: [], free: { left: 10, top: 10, right: 30, bottom: 20 } })!;
+  const tiny = edge_of([3, 1, -1], 0.01, [800, 800], {
+    picture,
+    panels: [],
+    free: { left: 10, top: 10, right: 30, bottom: 20 },
+  })!;
   assert.ok(tiny.x_px >= 10 && tiny.x_px <= 30 && tiny.y_px >= 10 && tiny.y_px <= 20);
 });

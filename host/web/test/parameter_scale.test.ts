@@ -7,8 +7,15 @@ import { test } from "node:test";
 import { number_in, range_words, share_of, value_at, why_no_number } from "../src/controls/parameter_scale";
 import type { Parameter } from "../src/link/protocol";
 
-const number = (value: number, low: number, high: number, whole = false): Parameter =>
-  ({ key: "law.it_N_per_m", unit: "N/m", value, low, high, whole, meaning: "" });
+const number = (value: number, low: number, high: number, whole = false): Parameter => ({
+  key: "law.it_N_per_m",
+  unit: "N/m",
+  value,
+  low,
+  high,
+  whole,
+  meaning: "",
+});
 
 test("the shipped value is in the middle of two decades, and comes back from there", () => {
   const stiffness = number(1.604, 0.01, 1e5);
@@ -42,8 +49,15 @@ test("a range is told as tactd tells it", () => {
 });
 
 test("a text is a number as a whole, or none: a decimal comma is told, and never another number", () => {
-  for (const [text, value] of [["1.5", 1.5], [" 1.5 ", 1.5], ["-2e3", -2000], ["0", 0]] as const) assert.equal(number_in(text), value);
-  for (const text of ["1,5", "1,000.5", "", " ", "1.5 m", "soft", "1e999", "Infinity"]) assert.ok(Number.isNaN(number_in(text)), text);
+  for (const [text, value] of [
+    ["1.5", 1.5],
+    [" 1.5 ", 1.5],
+    ["-2e3", -2000],
+    ["0", 0],
+  ] as const)
+    assert.equal(number_in(text), value);
+  for (const text of ["1,5", "1,000.5", "", " ", "1.5 m", "soft", "1e999", "Infinity"])
+    assert.ok(Number.isNaN(number_in(text)), text);
   assert.equal(why_no_number("rod_length_m", " 1,5 "), "rod_length_m: 1,5 is no number: write 1.5");
   assert.equal(why_no_number("rod_length_m", "1,000,000"), "rod_length_m: 1,000,000 is no number");
   assert.equal(why_no_number("rod_length_m", "soft"), "rod_length_m: soft is no number");

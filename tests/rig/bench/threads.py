@@ -13,6 +13,7 @@ def table(runs):
                               if what.startswith("sys_"))
             lines.append(f"| {run.case.back_end.name} | {thread} | {calls} | {per_tick['switch']:.2f} | "
                          f"{per_tick['page_fault']:g} | {per_tick['migration']:g} |")
-    head = ["| back end | thread | system calls a tick | switches a tick | page faults | migrations (the guest has one CPU: always 0) |",
+    head = ["| back end | thread | system calls a tick | switches a tick | page faults | "
+            "migrations (the guest has one CPU: always 0) |",
             "|---|---|---|---|---|---|"]
     return "\n".join(head + lines) + "\n" if lines else ""

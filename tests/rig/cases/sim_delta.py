@@ -16,7 +16,8 @@ CASES = [
     Case("liver-sweep", "no interleaving with other work changes a force or makes a tick late",
          SIM_DELTA, "noise $SEED\ncontrol $SECONDS_OF_RUN\nfinish",
          (*SOUND, checks.same_forces), sweep=True, seconds=6),
-    *(Case(f"law-{back_end.name.partition(', spring')[0].replace(', law=', '-')}", "every law keeps hard real time, and its longest path is known",
+    *(Case(f"law-{back_end.name.partition(', spring')[0].replace(', law=', '-')}",
+           "every law keeps hard real time, and its longest path is known",
            back_end, "control $SECONDS_OF_RUN\nfinish\nmeasure_peer 3", (*SOUND, checks.same_forces), timed=True)
       for back_end in LAWS),
     Case("liver-threads", "the loop asks the kernel for nothing but sleep",

@@ -14,17 +14,20 @@ const { MessageReader } = from_page("@foxglove/rosmsg2-serialization");
 
 const bytes = readFileSync(process.argv[2]);
 const plain = (key, value) =>
-  typeof value === "bigint" ? String(value)
-  : Number.isNaN(value) ? "NaN"
-  : value instanceof Map ? Object.fromEntries(value)
-  : value;
+  typeof value === "bigint"
+    ? String(value)
+    : Number.isNaN(value)
+      ? "NaN"
+      : value instanceof Map
+        ? Object.fromEntries(value)
+        : value;
 const say = (kind, fact) => console.log(JSON.stringify({ kind, ...fact }, plain));
 
 // From the start to the end, with every checksum of a chunk.
 const stream = new McapStreamReader({ validateCrcs: true });
 stream.append(bytes);
 const counts = {};
-for (let record; (record = stream.nextRecord()); ) {
+for (let record; (record = stream.nextRecord());) {
   counts[record.type] = (counts[record.type] ?? 0) + 1;
   if (record.type === "DataEnd") say("data_end", { crc: record.dataSectionCrc });
 }
@@ -48,6 +51,13 @@ for await (const message of indexed.readMessages()) {
     readers.set(channel.schemaId, new MessageReader(parse(text, { ros2: true })));
   }
   const said = readers.get(channel.schemaId).readMessage(message.data);
-  say("message", { topic: channel.topic, encoding: channel.messageEncoding, sequence: message.sequence,
-                   log_time: message.logTime, publish_time: message.publishTime, bytes: message.data.byteLength, said });
+  say("message", {
+    topic: channel.topic,
+    encoding: channel.messageEncoding,
+    sequence: message.sequence,
+    log_time: message.logTime,
+    publish_time: message.publishTime,
+    bytes: message.data.byteLength,
+    said,
+  });
 }

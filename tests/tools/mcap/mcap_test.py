@@ -56,6 +56,10 @@ def read(path):
     return facts, messages
 
 
+def vector(fields, names="xyz"):
+    return [float(fields[name]) for name in names]
+
+
 def rows(messages, under):
     """Of one rate: [(log_time in ns, fields by name)], as the client names them."""
     out = []
@@ -67,7 +71,6 @@ def rows(messages, under):
         assert {m["said"]["header"]["frame_id"] for m in said} == {"tact_device"}
         assert {m["sequence"] for m in said} == {len(out)}
         pose, force, wanted, state = (m["said"] for m in said)
-        vector = lambda v, names="xyz": [float(v[name]) for name in names]  # noqa: E731
         out.append((stamps.pop(), {
             "position": vector(pose["pose"]["position"]), "orientation": vector(pose["pose"]["orientation"], "wxyz"),
             "force": vector(force["wrench"]["force"]), "torque": vector(force["wrench"]["torque"]),

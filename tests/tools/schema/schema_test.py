@@ -149,7 +149,8 @@ def viewer_documents(build, folder):
     (page / "index.html").write_text("<!doctype html>")
     view = str(build / "tact-view")
     with subprocess.Popen([view, "--socket", str(path), "--port", "0", "--record", str(recording), "--figure",
-                           "--scenes", str(scenes), "--page", str(page), "--json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as viewer:
+                           "--scenes", str(scenes), "--page", str(page), "--json"],
+                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as viewer:
         try:
             ready = json.loads(viewer.stdout.readline())
             with subprocess.Popen([str(build / "tactd"), str(LIVER), "--seconds", "20", "--no-black-box", "--socket", str(path)],

@@ -73,16 +73,17 @@ export class HandControl {
     const from = this.fingers.get(event.pointerId);
     if (!from) return;
     event.stopImmediatePropagation();
-    const right_px = event.clientX - from[0], up_px = from[1] - event.clientY;
+    const right_px = event.clientX - from[0];
+    const up_px = from[1] - event.clientY;
     this.fingers.set(event.pointerId, [event.clientX, event.clientY]);
     const camera = this.stage.camera;
     const at = this.target ?? (this.tool_m ? new THREE.Vector3(...this.tool_m) : null);
     if (!at) return;
     // One pixel at the tool's distance: 2 d tan(fov / 2) / height
     const distance_m = at.clone().sub(camera.position).dot(camera.getWorldDirection(new THREE.Vector3()));
-    const per_pixel_m =
-      (2 * distance_m * Math.tan((camera.fov * Math.PI) / 360)) / this.canvas.clientHeight;
-    if (this.fingers.size > 1) { // each of them tells its half
+    const per_pixel_m = (2 * distance_m * Math.tan((camera.fov * Math.PI) / 360)) / this.canvas.clientHeight;
+    if (this.fingers.size > 1) {
+      // each of them tells its half
       const into = camera.getWorldDirection(new THREE.Vector3());
       return this.move(into.multiplyScalar((up_px * per_pixel_m) / this.fingers.size));
     }

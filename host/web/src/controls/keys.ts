@@ -5,8 +5,20 @@ import { by_id } from "../document/dom";
 
 /** Buttons of the page, and the key that does the same. */
 const kButtons: Record<string, string> = {
-  pause: "p", hand: "m", close_grip: "grip", open_grip: "let go", record: "r", csv: "c", snap: "s", wire: "w", home: "v",
-  figure: "f", eyes: "e", headset: "x", pick: "l", help: "h",
+  pause: "p",
+  hand: "m",
+  close_grip: "grip",
+  open_grip: "let go",
+  record: "r",
+  csv: "c",
+  snap: "s",
+  wire: "w",
+  home: "v",
+  figure: "f",
+  eyes: "e",
+  headset: "x",
+  pick: "l",
+  help: "h",
 };
 
 /** Who has the focus may want the key for itself: then it is not ours. */

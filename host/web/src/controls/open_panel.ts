@@ -5,7 +5,10 @@ import { by_id } from "../document/dom";
 
 /** Opens it, or closes it; null closes both. */
 export function toggle_panel(id: "keys" | "picker" | null): void {
-  for (const [panel, button] of [["keys", "help"], ["picker", "pick"]]) {
+  for (const [panel, button] of [
+    ["keys", "help"],
+    ["picker", "pick"],
+  ]) {
     const open = panel === id && by_id(panel).hidden;
     by_id(panel).hidden = !open;
     by_id(button).classList.toggle("on", open);

@@ -30,10 +30,7 @@ export class Recorder {
   /** Ends the recording and saves it; nothing if none runs. */
   stop(): void {
     if (this.first && this.last) {
-      save(
-        `recording.tact?from_tick=${this.first.tick}&to_tick=${this.last.tick}`,
-        dated_name(this.scene, "tact"),
-      );
+      save(`recording.tact?from_tick=${this.first.tick}&to_tick=${this.last.tick}`, dated_name(this.scene, "tact"));
     }
     this.first = null;
     const button = by_id("record");

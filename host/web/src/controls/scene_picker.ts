@@ -6,7 +6,10 @@ import { by_id } from "../document/dom";
 import type { OfferedScene, Parameter, Picker, SceneWish } from "../link/protocol";
 import { number_in, range_words, share_of, value_at, why_no_number } from "./parameter_scale";
 
-function element<K extends keyof HTMLElementTagNameMap>(tag: K, set: Partial<HTMLElementTagNameMap[K]>): HTMLElementTagNameMap[K] {
+function element<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  set: Partial<HTMLElementTagNameMap[K]>,
+): HTMLElementTagNameMap[K] {
   return Object.assign(document.createElement(tag), set);
 }
 
@@ -21,9 +24,17 @@ class Row {
   private readonly slider = element("input", { type: "range", min: "0", max: "1", step: "0.002" });
 
   /** `runs`: the value that it has in the simulation, if this scene runs. */
-  constructor(readonly of: Parameter, value: number, readonly runs: number) {
+  constructor(
+    readonly of: Parameter,
+    value: number,
+    readonly runs: number,
+  ) {
     const { name } = this;
-    const small = element("small", { className: "soft", id: `about_${of.key}`, textContent: `${of.meaning}; ${range_words(of)}` });
+    const small = element("small", {
+      className: "soft",
+      id: `about_${of.key}`,
+      textContent: `${of.meaning}; ${range_words(of)}`,
+    });
     this.field.id = `set_${of.key}`;
     this.slider.id = `slide_${of.key}`;
     for (const input of [this.field, this.slider]) input.setAttribute("aria-describedby", small.id);
@@ -76,7 +87,10 @@ export class ScenePicker {
   private rows: Row[] = [];
   private readonly select = by_id<HTMLSelectElement>("wished_scene");
 
-  constructor(private readonly ask: (wish: SceneWish) => void, private readonly offered: () => Promise<OfferedScene[]>) {
+  constructor(
+    private readonly ask: (wish: SceneWish) => void,
+    private readonly offered: () => Promise<OfferedScene[]>,
+  ) {
     this.select.addEventListener("change", () => {
       this.show(this.select.value === this.now?.scene ? this.now.set : {});
       this.edited();

@@ -128,7 +128,9 @@ export class Timeline {
       return mark;
     });
     by_id("stops").replaceChildren(...marks);
-    const names = replay.stops.map((stop) => `${stop.at_s.toFixed(1)} s: ${stop.fault > 0 ? describe(stop.fault).name : "stopped on request"}`);
+    const names = replay.stops.map(
+      (stop) => `${stop.at_s.toFixed(1)} s: ${stop.fault > 0 ? describe(stop.fault).name : "stopped on request"}`,
+    );
     by_id("next_stop").hidden = marks.length === 0;
     by_id("next_stop").title = `The next place where the force was stopped (${names.join("; ")})`;
   }

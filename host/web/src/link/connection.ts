@@ -2,7 +2,18 @@
 // connection.ts - the WebSocket to tact-view: comes back by itself, answers every frame with a count
 // so that the server never sends more than this page can draw.
 
-import { split_meshes, type FigureFrame, type Frame, type Mesh, type OfferedScene, type ReplayWish, type Scene, type SceneWish, type Status, type Vec } from "./protocol";
+import {
+  split_meshes,
+  type FigureFrame,
+  type Frame,
+  type Mesh,
+  type OfferedScene,
+  type ReplayWish,
+  type Scene,
+  type SceneWish,
+  type Status,
+  type Vec,
+} from "./protocol";
 
 export interface ConnectionEvents {
   status(status: Status): void;
@@ -24,7 +35,10 @@ export class Connection {
   private scene_number = 0;
   private seen = 0; // frames of this socket
 
-  constructor(private readonly events: ConnectionEvents, private token: string | null) {
+  constructor(
+    private token: string | null,
+    private readonly events: ConnectionEvents,
+  ) {
     void this.open();
   }
 

@@ -8,3 +8,10 @@ export function split_link(hash: string): { token: string | null; rest: string }
   const rest = parts.filter((part) => part !== "" && !part.startsWith("token=")).join("&");
   return { token, rest: rest && `#${rest}` };
 }
+
+/** Takes the token out of the address bar: no bookmark, history or screenshot keeps it. */
+export function take_token(): string | null {
+  const { token, rest } = split_link(location.hash);
+  if (token !== null) history.replaceState(null, "", location.pathname + location.search + rest);
+  return token;
+}

@@ -63,11 +63,7 @@ export function hides(camera_m: Vec, a_m: Vec, b_m: Vec, radius_m: number): bool
 export function turned(q: readonly number[], v: Vec): Vec {
   const [w, x, y, z] = q;
   const t: Vec = [2 * (y * v[2] - z * v[1]), 2 * (z * v[0] - x * v[2]), 2 * (x * v[1] - y * v[0])];
-  return [
-    v[0] + w * t[0] + y * t[2] - z * t[1],
-    v[1] + w * t[1] + z * t[0] - x * t[2],
-    v[2] + w * t[2] + x * t[1] - y * t[0],
-  ];
+  return [v[0] + w * t[0] + y * t[2] - z * t[1], v[1] + w * t[1] + z * t[0] - x * t[2], v[2] + w * t[2] + x * t[1] - y * t[0]];
 }
 
 /** Where the figure's eyes are and look. */

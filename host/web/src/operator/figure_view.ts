@@ -12,7 +12,10 @@ class Part {
   readonly mesh: THREE.Mesh<THREE.BufferGeometry, THREE.ShaderMaterial>;
   private length_m = 0;
 
-  constructor(readonly capsule: Capsule, material: THREE.ShaderMaterial) {
+  constructor(
+    readonly capsule: Capsule,
+    material: THREE.ShaderMaterial,
+  ) {
     this.mesh = new THREE.Mesh(new THREE.BufferGeometry(), material);
     this.mesh.frustumCulled = false;
     this.mesh.matrixAutoUpdate = false;
@@ -32,8 +35,7 @@ class Part {
 
   /** Its two ends as they are drawn. */
   get ends_m(): [Vec, Vec] {
-    const end = (along_m: number): Vec =>
-      new THREE.Vector3(0, along_m, 0).applyMatrix4(this.mesh.matrixWorld).toArray();
+    const end = (along_m: number): Vec => new THREE.Vector3(0, along_m, 0).applyMatrix4(this.mesh.matrixWorld).toArray();
     return [end(0), end(this.length_m)];
   }
 
@@ -57,9 +59,7 @@ export class FigureView {
 
   constructor(private readonly skeleton: Skeleton) {
     this.materials = this.textures.map((texture) => look_material(texture));
-    this.parts = skeleton.capsules.map(
-      (capsule) => new Part(capsule, this.materials[capsule.holds_tool ? 1 : 0]),
-    );
+    this.parts = skeleton.capsules.map((capsule) => new Part(capsule, this.materials[capsule.holds_tool ? 1 : 0]));
     this.object.add(...this.parts.map((part) => part.mesh));
   }
 

@@ -34,7 +34,10 @@ export class Headset {
   private offered = false;
 
   /** `draw` is the page's picture, as the stage calls it. */
-  constructor(private readonly stage: Stage, private readonly draw: (now_ms: number) => void) {
+  constructor(
+    private readonly stage: Stage,
+    private readonly draw: (now_ms: number) => void,
+  ) {
     this.camera = new THREE.PerspectiveCamera(90, 1, 0.02, 12); // the session says its angles
     // A headset's x is to the right, y up, z backwards.
     this.place.matrix.makeBasis(new THREE.Vector3(0, 1, 0), new THREE.Vector3(0, 0, 1), new THREE.Vector3(1, 0, 0));
@@ -103,7 +106,10 @@ export class Headset {
 
   /** The headset may be gone already: then its end is told all the same. */
   private async leave(): Promise<void> {
-    await this.stage.renderer.xr.getSession()?.end().catch(() => undefined);
+    await this.stage.renderer.xr
+      .getSession()
+      ?.end()
+      .catch(() => undefined);
   }
 
   private begin(): void {

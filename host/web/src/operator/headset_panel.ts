@@ -17,7 +17,8 @@ const kWide_m = 0.32;
 const kHigh_m = (kWide_m * kHigh_px) / kWide_px;
 // To the left of the organ, behind it and above: the tool's handle does not cover it, and who looks at the organ sees it.
 const kAt_m = new THREE.Vector3(-0.12, -0.22, 0.12);
-const kInk = "#e8edf2", kSoft = "#93a1af";
+const kInk = "#e8edf2";
+const kSoft = "#93a1af";
 const kTones: Record<string, string> = { good: "#7fd1c7", wait: "#f2b04e", bad: "#ff6f64" };
 
 const font = (px: number, weight = 400): string => `${weight} ${px}px system-ui, "Segoe UI", "DejaVu Sans", sans-serif`;
@@ -35,7 +36,8 @@ function wrapped(text: string, fits: (line: string) => boolean): string[] {
 
 /** What of each text is shown in so many rows, the first texts first. Where a row is missing the last one ends with "…". */
 export function shown_lines(texts: readonly string[], rows: number, fits: (line: string) => boolean): string[][] {
-  let free = rows, cut = false;
+  let free = rows;
+  let cut = false;
   let last: string[] = []; // of the text that has the last row
   const shown = texts.map((text) => {
     const wanted = wrapped(text, fits);
@@ -77,8 +79,14 @@ export class HeadsetPanel {
   }
 
   get corners_m(): Vec[] {
-    return [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([right, up]) =>
-      new THREE.Vector3((right * kWide_m) / 2, (up * kHigh_m) / 2, 0).applyMatrix4(this.object.matrixWorld).toArray());
+    return [
+      [-1, -1],
+      [1, -1],
+      [1, 1],
+      [-1, 1],
+    ].map(([right, up]) =>
+      new THREE.Vector3((right * kWide_m) / 2, (up * kHigh_m) / 2, 0).applyMatrix4(this.object.matrixWorld).toArray(),
+    );
   }
 
   tell(said: Said): void {
@@ -104,7 +112,8 @@ export class HeadsetPanel {
     const pen = this.pen;
     pen.fillStyle = "#10151c";
     pen.fillRect(0, 0, kWide_px, kHigh_px);
-    if (said.old) { // hatched, as on the page
+    if (said.old) {
+      // hatched, as on the page
       pen.strokeStyle = "rgb(160 180 200 / 14%)";
       pen.lineWidth = 9;
       pen.beginPath();
@@ -133,7 +142,11 @@ export class HeadsetPanel {
     this.pen.font = font(kLine_px);
     const fits = (line: string): boolean => this.pen.measureText(line).width <= kWide_px - 2 * kMargin_px;
     let y_px = kRows_px;
-    shown_lines(warnings.map(({ text }) => text), kRows, fits).forEach((lines, i) => {
+    shown_lines(
+      warnings.map(({ text }) => text),
+      kRows,
+      fits,
+    ).forEach((lines, i) => {
       this.pen.fillStyle = kTones[warnings[i].tone] ?? kInk;
       for (const line of lines) {
         this.pen.fillText(line, kMargin_px, y_px, kWide_px - 2 * kMargin_px);

@@ -18,7 +18,10 @@ export class Operator {
   private skeleton: Skeleton | null = null;
   private known = ""; // what the figure was made of
 
-  constructor(private readonly stage: Stage, private readonly hud: Hud) {}
+  constructor(
+    private readonly stage: Stage,
+    private readonly hud: Hud,
+  ) {}
 
   get there(): boolean {
     return this.figure !== null;
@@ -83,13 +86,15 @@ export class Operator {
 
   /** Joints by name, m. */
   get joints_m(): Record<string, number[]> | null {
-    const names = this.skeleton?.joints, at = this.shown?.joint_m;
+    const names = this.skeleton?.joints;
+    const at = this.shown?.joint_m;
     return names && at ? Object.fromEntries(names.map((name, i) => [name, at.slice(3 * i, 3 * i + 3)])) : null;
   }
 
   /** The same from what is drawn; null while the figure is not visible. */
   get drawn_m(): Record<string, Vec> | null {
-    const names = this.skeleton?.joints, drawn_m = this.figure?.drawn_m;
+    const names = this.skeleton?.joints;
+    const drawn_m = this.figure?.drawn_m;
     return names && drawn_m ? Object.fromEntries([...drawn_m].map(([index, at_m]) => [names[index], at_m])) : null;
   }
 

@@ -115,10 +115,8 @@ export class Deformer {
       if (Math.abs(height_m) >= reach_m) continue;
       const rho_m = Math.sqrt(Math.max(0, x * x + y * y + z * z - height_m * height_m));
       if (rho_m >= reach_m) continue;
-      const facing =
-        this.rest_normal[i] * nx + this.rest_normal[i + 1] * ny + this.rest_normal[i + 2] * nz;
-      const fade =
-        (1 - smoothstep(0.4 * reach_m, reach_m, Math.abs(height_m))) * smoothstep(-0.4, 0.2, facing);
+      const facing = this.rest_normal[i] * nx + this.rest_normal[i + 1] * ny + this.rest_normal[i + 2] * nz;
+      const fade = (1 - smoothstep(0.4 * reach_m, reach_m, Math.abs(height_m))) * smoothstep(-0.4, 0.2, facing);
       const mean_m = this.profile.at(rho_m) * fade;
       const lean_m = fade * (1 - smoothstep(kTaperStart * reach_m, reach_m, rho_m)) * (x * tx + y * ty + z * tz);
       const u_m = no_further_than_0(mean_m, lean_m);

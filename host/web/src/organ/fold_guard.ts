@@ -84,8 +84,5 @@ export class FoldGuard {
 
 /** One component of (b - a) x (c - a); a, b, c begin a vertex. */
 function turn(at_m: Float32Array, a: number, b: number, c: number, j: number, k: number): number {
-  return (
-    (at_m[b + j] - at_m[a + j]) * (at_m[c + k] - at_m[a + k]) -
-    (at_m[b + k] - at_m[a + k]) * (at_m[c + j] - at_m[a + j])
-  );
+  return (at_m[b + j] - at_m[a + j]) * (at_m[c + k] - at_m[a + k]) - (at_m[b + k] - at_m[a + k]) * (at_m[c + j] - at_m[a + j]);
 }

@@ -39,7 +39,10 @@ export class OrganView {
   private readonly cuts = new Cuts();
   private readonly wound: Wound;
 
-  constructor(private readonly mesh: Mesh, scene: Scene) {
+  constructor(
+    private readonly mesh: Mesh,
+    scene: Scene,
+  ) {
     this.made_of = organ_material(scene, mesh);
     this.picture = paint(this.made_of.look);
     const position = new THREE.BufferAttribute(mesh.vertex_m.slice(), 3);
@@ -48,9 +51,11 @@ export class OrganView {
     this.geometry.setIndex(new THREE.BufferAttribute(mesh.triangle.slice(), 1));
     this.geometry.computeVertexNormals();
     this.geometry.computeBoundingSphere();
-    this.rest_tint = mesh.color ? vertex_tints(mesh.color)
-      : this.made_of.mottled > 0 ? OrganView.tints(mesh, this.made_of.mottled)
-      : piece_tints(mesh, scene.look.pieces);
+    this.rest_tint = mesh.color
+      ? vertex_tints(mesh.color)
+      : this.made_of.mottled > 0
+        ? OrganView.tints(mesh, this.made_of.mottled)
+        : piece_tints(mesh, scene.look.pieces);
     const tint = new THREE.BufferAttribute(this.rest_tint.slice(), 3);
     tint.setUsage(THREE.DynamicDrawUsage);
     this.geometry.setAttribute("tint", tint);
@@ -63,13 +68,7 @@ export class OrganView {
     this.object.add(this.lines, this.wound.object);
     this.object.frustumCulled = false; // its bounds move; it is nearly always in view
     const rest_normal = (this.geometry.getAttribute("normal").array as Float32Array).slice();
-    this.deformer = new Deformer(
-      mesh.vertex_m,
-      rest_normal,
-      scene.ring_count,
-      scene.ring_pitch_m,
-      mesh.triangle,
-    );
+    this.deformer = new Deformer(mesh.vertex_m, rest_normal, scene.ring_count, scene.ring_pitch_m, mesh.triangle);
   }
 
   get vertex_count(): number {

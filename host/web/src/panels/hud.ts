@@ -69,8 +69,12 @@ export class Hud {
     if (!scene) return;
     document.title = `tact: ${scene.scene}${this.is_replay ? " (replay)" : ""}`;
     by_id("banner").hidden = !scene.non_rt;
-    write("banner", this.is_replay ? "recorded without hard real time: force capped at 25\u00a0%"
-      : "no hard real time on this PC: force capped at 25\u00a0%");
+    write(
+      "banner",
+      this.is_replay
+        ? "recorded without hard real time: force capped at 25\u00a0%"
+        : "no hard real time on this PC: force capped at 25\u00a0%",
+    );
   }
 
   /** No status: tact-view is gone, or it `refused` this page. */
@@ -121,7 +125,7 @@ export class Hud {
     const share = Math.min(1, force_N / (this.force_limit_N || 1));
     const state = (this.is_replay ? describe_past_state : describe_state)(frame.state, frame.fault);
     const tones = ["plain", "wait", "good", frame.fault > 0 ? "bad" : "wait"];
-    pill("state", state.name, this.is_replay ? "plain" : tones[frame.state] ?? "bad");
+    pill("state", state.name, this.is_replay ? "plain" : (tones[frame.state] ?? "bad"));
     write("state_words", state.words);
     write("force", force_N.toFixed(2));
     const bar = by_id("force_bar");
@@ -156,7 +160,7 @@ export class Hud {
 
   /** After `silence`. `frozen`: a key holds the display. */
   said(frozen: boolean): Said {
-    const text = (id: string): string => (by_id(id).hidden ? "" : by_id(id).textContent ?? "");
+    const text = (id: string): string => (by_id(id).hidden ? "" : (by_id(id).textContent ?? ""));
     const tone = (id: string): string => by_id(id).dataset.tone ?? "plain";
     const warnings: Said["warnings"] = [];
     const warn = (words: string, of: string): void => void (words && warnings.push({ text: words, tone: of }));
@@ -169,10 +173,16 @@ export class Hud {
     warn(text("banner"), "wait");
     const held = frozen && !this.silent;
     return {
-      state: held ? `old: ${text("state")}` : text("state"), state_tone: held ? "wait" : tone("state"),
-      state_words: text("state_words"), link: text("link"), link_tone: tone("link"),
-      force_N: text("force"), force_of: text("force_of"), old: frozen || this.silent,
-      alarm: [tone("state"), tone("link")].includes("bad"), warnings,
+      state: held ? `old: ${text("state")}` : text("state"),
+      state_tone: held ? "wait" : tone("state"),
+      state_words: text("state_words"),
+      link: text("link"),
+      link_tone: tone("link"),
+      force_N: text("force"),
+      force_of: text("force_of"),
+      old: frozen || this.silent,
+      alarm: [tone("state"), tone("link")].includes("bad"),
+      warnings,
     };
   }
 

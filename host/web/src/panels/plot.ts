@@ -49,7 +49,10 @@ export class Plot {
   private pointed: number | null = null; // index of a time
   private used: number;
 
-  constructor(private readonly parent: HTMLElement, private readonly settings: PlotSettings) {
+  constructor(
+    private readonly parent: HTMLElement,
+    private readonly settings: PlotSettings,
+  ) {
     const { lines, title, unit } = settings;
     const caption = span(parent, "figcaption");
     span(caption, "span", `${title}, ${unit}`);
@@ -97,9 +100,11 @@ export class Plot {
     const now = this.values.slice(0, this.used).map((line) => line[index] ?? 0);
     const when = at === null ? "" : `at ${this.times_s[at].toFixed(2)} s: `;
     // Of many one says enough, but who points wants them all.
-    this.value.textContent = when + (at === null
-      ? this.words(this.settings.headline(now))
-      : `${now.map((value) => value.toFixed(this.settings.digits)).join(" · ")} ${this.settings.unit}`);
+    this.value.textContent =
+      when +
+      (at === null
+        ? this.words(this.settings.headline(now))
+        : `${now.map((value) => value.toFixed(this.settings.digits)).join(" · ")} ${this.settings.unit}`);
   }
 
   private words(value: number): string {
@@ -132,15 +137,22 @@ export class Plot {
       series: [
         {},
         ...this.settings.lines.map((line) => ({
-          label: line.label, stroke: line.color, fill: line.fill, dash: line.dash, width: 1.6, points: { show: false },
+          label: line.label,
+          stroke: line.color,
+          fill: line.fill,
+          dash: line.dash,
+          width: 1.6,
+          points: { show: false },
         })),
       ],
       hooks: {
         draw: [(plot) => this.mark(plot)],
-        setCursor: [(plot) => {
-          this.pointed = plot.cursor.idx ?? null;
-          if (this.times_s.length > 0) this.write();
-        }],
+        setCursor: [
+          (plot) => {
+            this.pointed = plot.cursor.idx ?? null;
+            if (this.times_s.length > 0) this.write();
+          },
+        ],
       },
     };
   }

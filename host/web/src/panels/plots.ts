@@ -24,11 +24,18 @@ export class Plots {
 
   constructor(byId: (id: string) => HTMLElement) {
     this.depth = new Plot(byId("plot_depth"), {
-      title: "depth", unit: "mm", digits: 1, range: (values) => whole_range(values, 5), headline: largest,
+      title: "depth",
+      unit: "mm",
+      digits: 1,
+      range: (values) => whole_range(values, 5),
+      headline: largest,
       lines: kSites.map((color, i) => ({ label: `sphere ${i + 1}`, color })),
     });
     this.force = new Plot(byId("plot_force"), {
-      title: "force", unit: "N", digits: 2, range: (values) => whole_range(values, 0.5),
+      title: "force",
+      unit: "N",
+      digits: 2,
+      range: (values) => whole_range(values, 0.5),
       headline: ([, given_N]) => given_N,
       lines: [
         { label: "asked by the law", color: "#8c99a8", dash: [4, 4] },
@@ -36,7 +43,10 @@ export class Plots {
       ],
     });
     this.margin = new Plot(byId("plot_margin"), {
-      title: "time left", unit: "µs", digits: 0, range: (values) => robust_range(values, 50),
+      title: "time left",
+      unit: "µs",
+      digits: 0,
+      range: (values) => robust_range(values, 50),
       headline: largest,
       lines: [{ label: "least", color: "#8fb8ff", fill: "rgba(143,184,255,0.12)" }],
     });

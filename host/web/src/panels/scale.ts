@@ -20,9 +20,11 @@ export function robust_range(values: readonly (number | null)[], least: number):
   const known = values.filter((value) => value !== null).sort((a, b) => a - b);
   if (known.length === 0) return widen(0, 0, least);
   const rare = Math.floor(kRare * known.length);
-  const low = Math.min(0, known[rare]), high = Math.max(0, known[known.length - 1 - rare]);
+  const low = Math.min(0, known[rare]);
+  const high = Math.max(0, known[known.length - 1 - rare]);
   const room = Math.max(least, high - low); // what is no farther off than this is shown
-  const least_value = Math.min(0, known[0]), most = Math.max(0, known[known.length - 1]);
+  const least_value = Math.min(0, known[0]);
+  const most = Math.max(0, known[known.length - 1]);
   return widen(low - least_value > room ? low : least_value, most - high > room ? high : most, least);
 }
 

@@ -27,8 +27,8 @@ export const kSkin: Look = { base: [0.5, 0.27, 0.18], glow: [0.2, 0.06, 0.03], c
 export const kGlove: Look = { base: [0.12, 0.3, 0.5], glow: [0.04, 0.1, 0.16], coat: 0.5, metal: 0 };
 export const kSteel: Look = { base: [0.56, 0.6, 0.65], glow: [0, 0, 0], coat: 1.0, metal: 1 };
 export const kCover: Look = { base: [0.2, 0.2, 0.2], glow: [0.02, 0.02, 0.02], coat: 0.75, metal: 0 };
-export const kFigure: Look = { base: [0.40, 0.42, 0.45], glow: [0.05, 0.06, 0.08], coat: 0.35, metal: 0 };
-export const kAccent: Look = { base: [0.13, 0.40, 0.36], glow: [0.03, 0.09, 0.08], coat: 0.45, metal: 0 };
+export const kFigure: Look = { base: [0.4, 0.42, 0.45], glow: [0.05, 0.06, 0.08], coat: 0.35, metal: 0 };
+export const kAccent: Look = { base: [0.13, 0.4, 0.36], glow: [0.03, 0.09, 0.08], coat: 0.45, metal: 0 };
 
 interface Window {
   towards: Vec;
@@ -74,9 +74,11 @@ export function shade(look: Look, n: Vec): Vec {
     const bright = bright_of[c];
     const diffuse = look.base[c] * (sky + 1.35 * key * key) + look.glow[c] * thin;
     const mirror = look.coat * fresnel * bright;
-    const cool = [0.30, 0.48, 0.80][c] * rim * 0.9;
-    out[c] = look.metal * (look.base[c] * (0.25 * sky + 0.16 * key) + 0.55 * mirror * look.base[c]) +
-      (1 - look.metal) * (diffuse + mirror) + cool * (0.35 + 0.65 * look.metal);
+    const cool = [0.3, 0.48, 0.8][c] * rim * 0.9;
+    out[c] =
+      look.metal * (look.base[c] * (0.25 * sky + 0.16 * key) + 0.55 * mirror * look.base[c]) +
+      (1 - look.metal) * (diffuse + mirror) +
+      cool * (0.35 + 0.65 * look.metal);
   }
   return out;
 }

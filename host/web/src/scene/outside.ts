@@ -39,12 +39,15 @@ export function edge_of(ball_m: Vec, radius_m: number, focal_px: [number, number
   const [right_m, up_m, back_m] = ball_m;
   const from_px = [(free.left + free.right) / 2, (free.top + free.bottom) / 2];
   let towards = [right_m * focal_px[0], -up_m * focal_px[1]]; // on the screen, of any length: which way to turn
-  if (back_m < -1e-3) { // before the camera
+  if (back_m < -1e-3) {
+    // before the camera
     const x_px = (picture.left + picture.right) / 2 + towards[0] / -back_m;
     const y_px = (picture.top + picture.bottom) / 2 + towards[1] / -back_m;
     const radius_px = (radius_m * focal_px[1]) / -back_m;
-    const inside = [picture, ...view.panels].map((box) => // how far its middle is from the nearest edge
-      Math.min(x_px - box.left, box.right - x_px, y_px - box.top, box.bottom - y_px));
+    const inside = [picture, ...view.panels].map((box) =>
+      // how far its middle is from the nearest edge
+      Math.min(x_px - box.left, box.right - x_px, y_px - box.top, box.bottom - y_px),
+    );
     const [in_picture_px, ...in_panels_px] = inside;
     if (in_picture_px > -radius_px && in_panels_px.every((px) => px < radius_px)) return null;
     towards = [x_px - from_px[0], y_px - from_px[1]];
@@ -54,7 +57,9 @@ export function edge_of(ball_m: Vec, radius_m: number, focal_px: [number, number
   const half_px = [(free.right - free.left) / 2 - kHalf_px[0], (free.bottom - free.top) / 2 - kHalf_px[1]];
   const t = Math.min(Math.max(0, half_px[0]) / Math.abs(towards[0]), Math.max(0, half_px[1]) / Math.abs(towards[1]));
   return {
-    x_px: from_px[0] + t * towards[0], y_px: from_px[1] + t * towards[1], angle_rad: Math.atan2(towards[1], towards[0]),
+    x_px: from_px[0] + t * towards[0],
+    y_px: from_px[1] + t * towards[1],
+    angle_rad: Math.atan2(towards[1], towards[0]),
   };
 }
 
@@ -73,7 +78,10 @@ export class Outside {
   private view: View = { picture: kNothing, panels: [], free: kNothing };
   private asked_ms = -Infinity;
 
-  constructor(private readonly canvas: HTMLCanvasElement, private readonly camera: THREE.PerspectiveCamera) {}
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly camera: THREE.PerspectiveCamera,
+  ) {}
 
   /** Once per picture; null: not known, or nothing to point at. */
   draw(now_ms: number, organ: Target | null, tool: Target | null): void {
@@ -81,9 +89,15 @@ export class Outside {
       this.asked_ms = now_ms;
       this.view = this.look();
     }
-    const to_organ = organ && this.edge(organ), to_tool = tool && this.edge(tool);
-    if (to_organ && to_tool && Math.abs(to_organ.x_px - to_tool.x_px) < 2 * kHalf_px[0] &&
-      Math.abs(to_organ.y_px - to_tool.y_px) < 2 * kHalf_px[1]) { // side by side, towards the middle
+    const to_organ = organ && this.edge(organ);
+    const to_tool = tool && this.edge(tool);
+    if (
+      to_organ &&
+      to_tool &&
+      Math.abs(to_organ.x_px - to_tool.x_px) < 2 * kHalf_px[0] &&
+      Math.abs(to_organ.y_px - to_tool.y_px) < 2 * kHalf_px[1]
+    ) {
+      // side by side, towards the middle
       to_tool.y_px = to_organ.y_px + (to_organ.y_px > (this.view.free.top + this.view.free.bottom) / 2 ? -2 : 2) * kHalf_px[1];
     }
     this.show("organ", to_organ);
@@ -104,10 +118,13 @@ export class Outside {
       const { left, right, top, bottom } = by_id(id).getBoundingClientRect();
       return { left: left - from.left, right: right - from.left, top: top - from.top, bottom: bottom - from.top };
     };
-    const picture = box("view"), middle = box("middle");
+    const picture = box("view");
+    const middle = box("middle");
     const free = {
-      left: Math.max(0, middle.left), right: Math.min(picture.right, middle.right),
-      top: Math.max(0, middle.top, box("banner").bottom), bottom: Math.min(picture.bottom, middle.bottom),
+      left: Math.max(0, middle.left),
+      right: Math.min(picture.right, middle.right),
+      top: Math.max(0, middle.top, box("banner").bottom),
+      bottom: Math.min(picture.bottom, middle.bottom),
     };
     const on_desk = free.right - free.left > 2 * kHalf_px[0] && free.bottom - free.top > 4 * kHalf_px[1];
     return { picture, panels: kPanels.map(box), free: on_desk ? free : picture };

@@ -16,6 +16,8 @@ export function snapshot(canvas: HTMLCanvasElement, lines: readonly string[]): P
   pen.drawImage(canvas, 0, 0);
   pen.fillStyle = "#e8edf2";
   pen.font = "14px system-ui, sans-serif";
-  lines.forEach((line, i) => pen.fillText(line, kMargin_px, canvas.height + kMargin_px + (i + 0.7) * kLine_px, page.width - 2 * kMargin_px));
+  lines.forEach((line, i) =>
+    pen.fillText(line, kMargin_px, canvas.height + kMargin_px + (i + 0.7) * kLine_px, page.width - 2 * kMargin_px),
+  );
   return new Promise((done) => page.toBlob(done, "image/png"));
 }
