@@ -7,7 +7,7 @@
 //     destructor lets go, after the device is off: the guardian ends and has sent nothing
 //
 // It is spawned, not forked: a fork would make the loop's locked pages faults again. Nothing of it
-// is in the loop: the watch looks at lost() (watch/loop_watch.h).
+// is in the loop: the watch looks at is_lost() (watch/loop_watch.h).
 #pragma once
 
 #include <atomic>
@@ -38,7 +38,7 @@ class Guardian {
   Guardian& operator=(const Guardian&) = delete;
 
   /// It has ended, and not because it was let go: nobody zeroes the device any more. Any thread.
-  const std::atomic<bool>& lost() const { return lost_; }
+  const std::atomic<bool>& is_lost() const { return lost_; }
   pid_t process() const { return process_; }
 
  private:

@@ -39,7 +39,7 @@ void LoopExecutor::take(const LoopTurn& turn) {
   // It starts before the loop's thread and stops after it: no tick is without its watch.
   watch::LoopWatch watch(watch::StallWatch(guarded_.period_ns, guarded_.hard_real_time),
                          turn.progress, guarded_.requests, guarded_.lines,
-                         guarded_.guardian == nullptr ? nullptr : &guarded_.guardian->lost());
+                         guarded_.guardian == nullptr ? nullptr : &guarded_.guardian->is_lost());
   watch.start(guarded_.rt);
   std::thread([&] {
     add_to(costs_, run_as_loop_thread(guarded_.rt, turn.run, guarded_.filter));

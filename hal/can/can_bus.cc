@@ -47,8 +47,8 @@ std::optional<CanFdFrame> unpack(const CanFdFrameBytes& bytes) RT_SAFE {
 template <class Frame>
 auto BasicCanBus<Frame>::receive() RT_SAFE -> std::span<const Received> {
   const int n = socket_->receive(arrivals_);
-  cut_ = n == static_cast<int>(arrivals_.size());
-  counts_.cut_reads += cut_ ? 1 : 0;
+  was_cut_short_ = n == static_cast<int>(arrivals_.size());
+  counts_.cut_reads += was_cut_short_ ? 1 : 0;
   if (n < 0) {
     latch_.set({.fault = Fault::kBusDown,
                 .kind = kind_of(CanCause::kCall),

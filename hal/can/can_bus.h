@@ -55,7 +55,7 @@ class BasicCanBus {
   /// Data frames and requests since the last call, oldest first; valid until the next call.
   std::span<const Received> receive() RT_SAFE;
   /// The last receive() was full: newer frames may still wait.
-  bool cut() const RT_SAFE { return cut_; }
+  bool was_cut_short() const RT_SAFE { return was_cut_short_; }
 
   /// For the batch of this tick; what cannot be a frame, or is more than 16, is a missed cycle.
   void push(const std::optional<Frame>& frame) RT_SAFE;
@@ -82,7 +82,7 @@ class BasicCanBus {
   std::array<Bytes, Socket::kMaxSent> batch_{};
   std::size_t batched_ = 0;
   bool batch_whole_ = true;
-  bool cut_ = false;
+  bool was_cut_short_ = false;
   int missed_in_a_row_ = 0;
   std::uint32_t classes_seen_ = 0;
   std::uint8_t controller_seen_ = 0;

@@ -149,7 +149,7 @@ class CanDevice final : public Device {
     // After a read that was cut short the heartbeat may still lie in the kernel's queue.
     for (std::size_t i = 0; i < 3; ++i) {
       const std::int64_t silent_ns = loop_.now_ns - loop_.axes[i].heartbeat_ns;
-      if (silent_ns > start_.most_silent_ns && !bus_->cut()) {
+      if (silent_ns > start_.most_silent_ns && !bus_->was_cut_short()) {
         loop_.fail(i, CanCause::kSilent,
                    static_cast<std::uint32_t>(silent_ns / model::kMillisecond_ns),
                    Fault::kDriveSilent);
@@ -182,7 +182,7 @@ class CanDevice final : public Device {
 
   void judge_gap(bool fresh) RT_SAFE {
     gap_.step(fresh);
-    if (!gap_.lost()) return;
+    if (!gap_.is_lost()) return;
     std::size_t oldest = 0;  // the drive that the words name
     for (std::size_t i = 1; i < 3; ++i)
       if (loop_.axes[i].arrival_ns < loop_.axes[oldest].arrival_ns) oldest = i;

@@ -31,7 +31,7 @@ class SampleGap {
     left_ticks_ = std::clamp(left_ticks_ + change, 0, fade_ticks_);
   }
   double torque_ratio() const RT_SAFE { return static_cast<double>(left_ticks_) / fade_ticks_; }
-  bool lost() const RT_SAFE { return missing_ >= kMaxMissing; }
+  bool is_lost() const RT_SAFE { return missing_ >= kMaxMissing; }
 
  private:
   static constexpr double kFade_s = 0.010 * (1.0 + 1e-9);  // ten periods of 1 ms are ten

@@ -45,12 +45,12 @@ class GpioLines final : public SafetyLines {
   Fault read(std::int64_t now_ns) RT_SAFE override {
     // A failed read leaves zeros: every contact open, which is a stop.
     Levels values{};
-    if (!lost() && !lines_.inputs.empty() && !lines_.inputs.get(values)) lose();
+    if (!is_lost() && !lines_.inputs.empty() && !lines_.inputs.get(values)) lose();
     const Fault fault = logic_.judge({.estop_a = level(values, lines_.estop_a),
                                       .estop_b = level(values, lines_.estop_b),
                                       .dead_man = level(values, lines_.dead_man)},
                                      now_ns);
-    return lost() ? Fault::kLinesLost : fault;
+    return is_lost() ? Fault::kLinesLost : fault;
   }
 
   Fault write(const LinesTick& tick) RT_SAFE override {
@@ -60,11 +60,11 @@ class GpioLines final : public SafetyLines {
     set_level(values, lines_.enable, outputs.enable && !dropped());
     set_level(values, lines_.heartbeat, outputs.heartbeat && !dropped());
     set_level(values, lines_.led, outputs.led);
-    if (!lost() && !lines_.outputs.empty() && !lines_.outputs.set(values)) lose();
-    return lost() ? Fault::kLinesLost : Fault::kNone;
+    if (!is_lost() && !lines_.outputs.empty() && !lines_.outputs.set(values)) lose();
+    return is_lost() ? Fault::kLinesLost : Fault::kNone;
   }
 
-  bool enabled() const RT_SAFE override { return !lost() && !dropped() && logic_.enabled(); }
+  bool enabled() const RT_SAFE override { return !is_lost() && !dropped() && logic_.enabled(); }
 
   // libgpiod 1.6 keeps the last level of each line in plain memory that nobody reads: two threads
   // here disturb no more than that.
@@ -72,7 +72,7 @@ class GpioLines final : public SafetyLines {
     // Before the levels, so that a write after this cannot raise them; one under way may, hence
     // "again" in safety_lines.h.
     dropped_.store(true, std::memory_order_relaxed);
-    if (!lost() && !lines_.outputs.empty()) lines_.outputs.set({});
+    if (!is_lost() && !lines_.outputs.empty()) lines_.outputs.set({});
   }
 
   std::span<const int> loop_calls() const override {
@@ -81,11 +81,11 @@ class GpioLines final : public SafetyLines {
   }
 
   void scope(bool up) RT_SAFE override {
-    if (!lost() && !lines_.scope.empty()) lines_.scope.set({up ? 1 : 0});
+    if (!is_lost() && !lines_.scope.empty()) lines_.scope.set({up ? 1 : 0});
   }
 
   std::string trouble() const override {
-    return words(lost() ? LinesCause::kChipLost : logic_.cause());
+    return words(is_lost() ? LinesCause::kChipLost : logic_.cause());
   }
 
   void stop() override { release(); }
@@ -97,7 +97,7 @@ class GpioLines final : public SafetyLines {
   static void set_level(Levels& values, int place, bool high) RT_SAFE {
     if (place >= 0) values[static_cast<std::size_t>(place)] = high ? 1 : 0;
   }
-  bool lost() const RT_SAFE { return lost_.load(std::memory_order_relaxed); }
+  bool is_lost() const RT_SAFE { return lost_.load(std::memory_order_relaxed); }
   void lose() RT_SAFE { lost_.store(true, std::memory_order_relaxed); }
   bool dropped() const RT_SAFE { return dropped_.load(std::memory_order_relaxed); }
 

@@ -96,7 +96,7 @@ ContactResponse Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
   // The force of this tick is that of the tissue before the cut; the cut is felt from the next on.
   use_blade(tool, blade_may_cut);
   scene_.law->advance();
-  felt.is_broken = scene_.law->broke();
+  felt.is_broken = scene_.law->is_broken();
   return felt;
 }
 

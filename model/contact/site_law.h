@@ -85,7 +85,7 @@ class SiteLaw : public DentView {
   /// The end of a tick; its length is fixed when the law is made.
   virtual void advance() RT_SAFE = 0;
   /// The law left the finite numbers and gives zero force; true until every sphere has left.
-  virtual bool broke() const RT_SAFE { return false; }
+  virtual bool is_broken() const RT_SAFE { return false; }
   /// What a law shows instead of a profile; false: the profile says all.
   virtual bool shape(PatchShape& out) RT_SAFE {
     (void)out;

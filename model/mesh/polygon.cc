@@ -15,7 +15,7 @@ class EarClipper {
     normal_ = normalized(normal_);
   }
 
-  void cut(std::vector<contact::TriangleCorners>& triangle) {
+  void clip(std::vector<contact::TriangleCorners>& triangle) {
     while (left_.size() > 3) {
       std::size_t ear = left_.size();
       double best = 0.0;  // an ear turns with the polygon
@@ -78,7 +78,7 @@ void cut_polygon(std::span<const std::uint32_t> corner, std::span<const Vec3> ve
   if (corner.size() == 3)
     triangle.push_back({corner[0], corner[1], corner[2]});
   else
-    EarClipper(corner, vertex).cut(triangle);
+    EarClipper(corner, vertex).clip(triangle);
 }
 
 }  // namespace tact::model::mesh

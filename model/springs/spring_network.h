@@ -105,10 +105,10 @@ class SpringStepper {
     double across = 0.0;  // of h^2 k (1 - L0 / |D|), not below 0
   };
 
-  void step_rk4(const SpringNetwork& network, double h) RT_SAFE;
-  void step_implicit(const SpringNetwork& network, double h, int iterations) RT_SAFE;
-  void linearise(const SpringNetwork& network, double h) RT_SAFE;
-  void apply(const SpringNetwork& network, double h, std::span<const Vec3> in,
+  void step_rk4(const SpringNetwork& network, double step_s) RT_SAFE;
+  void step_implicit(const SpringNetwork& network, double step_s, int iterations) RT_SAFE;
+  void linearise(const SpringNetwork& network, double step_s) RT_SAFE;
+  void apply(const SpringNetwork& network, double step_s, std::span<const Vec3> in,
              std::span<Vec3> out) const RT_SAFE;
 
   std::vector<Vec3> force_N_, position_m_, velocity_mps_, sum_, direction_, product_;

@@ -57,7 +57,7 @@ class SpringPatch final : public contact::SiteLaw {
   void leave(std::size_t sphere) RT_SAFE override;
   void cut(const contact::BladeSweep& sweep) RT_SAFE override { region_.cut(sweep); }
   void advance() RT_SAFE override;
-  bool broke() const RT_SAFE override { return broke_; }
+  bool is_broken() const RT_SAFE override { return broke_; }
   std::size_t profile(const contact::Indentation&, std::span<double>) const RT_SAFE override {
     return 0;
   }

@@ -65,7 +65,8 @@ double SpringStepper::step(const SpringNetwork& network, const StepRule& rule) R
 // MA-8  x+ = x + h (v_1 + 2 v_2 + 2 v_3 + v_4)/6,   v+ = v + h (a_1 + 2 a_2 + 2 a_3 + a_4)/6
 //       v_i = v + p h a_(i-1),   a_i = a(x + p h v_(i-1), v_i),   p = 0, 1/2, 1/2, 1
 // force_N_ holds the forces of the start. sum_ and direction_ gather x+ - x and v+ - v.
-void SpringStepper::step_rk4(const SpringNetwork& network, double h) RT_SAFE {
+void SpringStepper::step_rk4(const SpringNetwork& network, double step_s) RT_SAFE {
+  const double h = step_s;  // of the equations
   const SpringNodes& node = network.node;
   const std::size_t n = node.position_m.size();
   constexpr std::array kWeight{1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
@@ -90,7 +91,9 @@ void SpringStepper::step_rk4(const SpringNetwork& network, double h) RT_SAFE {
 }
 
 // (M + h C + h^2 K) v+ = M v + h f(x, 0), solved by conjugate gradients from v+ = 0; x+ = x + h v+.
-void SpringStepper::step_implicit(const SpringNetwork& network, double h, int iterations) RT_SAFE {
+void SpringStepper::step_implicit(const SpringNetwork& network, double step_s,
+                                  int iterations) RT_SAFE {
+  const double h = step_s;  // of the equations
   const SpringNodes& node = network.node;
   const std::size_t n = node.position_m.size();
   const std::span<const double> w = node.inverse_mass_per_kg;
@@ -129,7 +132,8 @@ void SpringStepper::step_implicit(const SpringNetwork& network, double h, int it
   }
 }
 
-void SpringStepper::linearise(const SpringNetwork& network, double h) RT_SAFE {
+void SpringStepper::linearise(const SpringNetwork& network, double step_s) RT_SAFE {
+  const double h = step_s;  // of the equations
   const SpringNodes& node = network.node;
   const std::size_t n = node.position_m.size();
   for (std::size_t i = 0; i < n; ++i)
@@ -170,8 +174,9 @@ void SpringStepper::linearise(const SpringNetwork& network, double h) RT_SAFE {
 }
 
 // out = (M + h C + h^2 K) in; a node that never moves takes no part.
-void SpringStepper::apply(const SpringNetwork& network, double h, std::span<const Vec3> in,
+void SpringStepper::apply(const SpringNetwork& network, double step_s, std::span<const Vec3> in,
                           std::span<Vec3> out) const RT_SAFE {
+  const double h = step_s;  // of the equations
   const SpringNodes& node = network.node;
   const std::span<const double> w = node.inverse_mass_per_kg;
   for (std::size_t i = 0; i < in.size(); ++i) {

@@ -143,9 +143,9 @@ TEST(Guardian, ItsOwnDeathIsNoticed) {
   const Wire wire;
   auto guardian = start(wire.words);
   ASSERT_TRUE(guardian);
-  EXPECT_FALSE(guardian->lost().load());
+  EXPECT_FALSE(guardian->is_lost().load());
   kill(guardian->process(), SIGKILL);
-  EXPECT_TRUE(soon([&] { return guardian->lost().load(); }));
+  EXPECT_TRUE(soon([&] { return guardian->is_lost().load(); }));
   guardian.reset();
   EXPECT_EQ(wire.hear(1, kSilence_ms), Words{});
 }

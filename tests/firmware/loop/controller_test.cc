@@ -25,7 +25,7 @@ class PuppetLaw final : public model::contact::SiteLaw {
   void leave(std::size_t) RT_SAFE override {}
   void cut(const model::contact::BladeSweep&) RT_SAFE override { ++cuts; }
   void advance() RT_SAFE override {}
-  bool broke() const RT_SAFE override { return is_broken; }
+  bool is_broken() const RT_SAFE override { return is_broken; }
   std::size_t profile(const model::contact::Indentation&,
                       std::span<double>) const RT_SAFE override {
     return 0;

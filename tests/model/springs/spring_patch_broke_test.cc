@@ -40,7 +40,7 @@ TEST(SpringPatchBroke, GivesNoForceUntilEverySphereHasLeft) {
       patch.respond(beside);
       pressed.advance();
     }
-    EXPECT_FALSE(patch.broke());
+    EXPECT_FALSE(patch.is_broken());
     throw_first_node(patch, thrown_m);
     const tests::NoAlloc guard;
     for (int i = 0; i < 50; ++i) {
@@ -49,13 +49,13 @@ TEST(SpringPatchBroke, GivesNoForceUntilEverySphereHasLeft) {
         EXPECT_TRUE(is_silent(patch.respond(beside))) << "tick " << i;
       }
       pressed.advance();
-      EXPECT_EQ(patch.broke(), i > 0 || !std::isfinite(thrown_m.x) || thrown_m.z < -1e100);
+      EXPECT_EQ(patch.is_broken(), i > 0 || !std::isfinite(thrown_m.x) || thrown_m.z < -1e100);
     }
     patch.leave(0);
-    EXPECT_TRUE(patch.broke()) << "one sphere still presses";
+    EXPECT_TRUE(patch.is_broken()) << "one sphere still presses";
     EXPECT_TRUE(is_silent(patch.respond(beside)));
     patch.leave(1);
-    EXPECT_FALSE(patch.broke());
+    EXPECT_FALSE(patch.is_broken());
     const contact::SiteResponse fresh = pressed.move_to(0.001, 0.002, 0.002);
     EXPECT_EQ(fresh.law.status, law::LawStatus::kOk);
     EXPECT_NEAR(fresh.law.force_N, 0.6, 1e-12) << "300 N/m * 2 mm, nothing remembered";
@@ -68,7 +68,7 @@ TEST(SpringPatchBroke, ASoundPatchNeverTellsThatItBroke) {
   for (int i = 0; i < 500; ++i) {
     pressed.move_to(0.0, 0.0, 0.01 * std::sin(0.2 * i), true);
     pressed.advance();
-    EXPECT_FALSE(pressed.patch().broke());
+    EXPECT_FALSE(pressed.patch().is_broken());
   }
 }
 

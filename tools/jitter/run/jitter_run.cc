@@ -255,7 +255,7 @@ void Run::follow(const std::atomic<bool>& ended) {
   looked_ = SteadyClock::now();
   while (!ended.load()) {
     if (program::is_interrupted()) requests_.stop.store(true);
-    if (parts_.guardian && parts_.guardian->lost()) requests_.trip(model::Fault::kGuardianLost);
+    if (parts_.guardian && parts_.guardian->is_lost()) requests_.trip(model::Fault::kGuardianLost);
     drain();
     if (SteadyClock::now() - looked_ >= kCostPeriod) explain();
     if (live_) live_->show(*result_.sink);
