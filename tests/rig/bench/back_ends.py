@@ -65,27 +65,26 @@ def drives(protocol, options=""):
 
 
 # The delta of the simulation, as the example of a scene has it.
-DELTA = tuple(f"device.delta.{key}={json.dumps(value)}" for key, value in tomllib.loads(
-    (pathlib.Path(__file__).resolve().parents[3] / "tools/deploy/devices.toml").read_text())["device"]["delta"].items())
+DEVICES = pathlib.Path(__file__).resolve().parents[3] / "tools/deploy/devices.toml"
+DELTA = "[device.delta]\n" + "".join(
+    f"{key} = {json.dumps(value)}\n" for key, value in tomllib.loads(DEVICES.read_text())["device"]["delta"].items())
+# Absolute encoders that tell zero where the arms do.
+DRIVES = '[device.can]\nhoming = "absolute"\nzero_turns = [0.0, 0.0, 0.0]\ndirection = [1.0, 1.0, 1.0]\n'
 
 
-def on_can(kind):
-    """Its drives have absolute encoders that tell zero where the arms do."""
-    return (f'device.kind="{kind}"', 'device.can.homing="absolute"', "device.can.zero_turns=[0.0, 0.0, 0.0]",
-            "device.can.direction=[1.0, 1.0, 1.0]", *DELTA, SLIDE)
+def on_can(name, kind, setup):
+    return BackEnd(name, settings=(f'device.kind="{kind}"', SLIDE), sections=DELTA + DRIVES, setup=setup,
+                   programs=("tact-rig-drives",), system_calls=CAN_CALLS)
 
 
 def odrive(protocol):
-    return BackEnd(protocol, settings=on_can("can-odrive"),
-                   setup=drives(protocol), programs=("tact-rig-drives",), system_calls=CAN_CALLS)
+    return on_can(protocol, "can-odrive", drives(protocol))
 
 
 ODRIVE06, ODRIVE05 = odrive("odrive06"), odrive("odrive05")
-CIA402 = BackEnd("cia402", settings=on_can("can-cia402"),
-                 setup=drives("cia402"), programs=("tact-rig-drives",), system_calls=CAN_CALLS)
+CIA402 = on_can("cia402", "can-cia402", drives("cia402"))
 # Their watchdog lets go, as hal/moteus/README.md has it set.
-MOTEUS = BackEnd("moteus", settings=on_can("can-moteus"),
-                 setup=drives("moteus", "--timeout-mode 0"), programs=("tact-rig-drives",), system_calls=CAN_CALLS)
+MOTEUS = on_can("moteus", "can-moteus", drives("moteus", "--timeout-mode 0"))
 
 
 # The bus's own thread waits, reaps and submits; libusb's needs more for the same.

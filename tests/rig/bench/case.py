@@ -14,6 +14,7 @@ class BackEnd:
     """A device that tactd can drive in the guest, and what stands on its other side."""
     name: str
     settings: tuple = ()        # KEY=VALUE of the scene
+    sections: str = ""          # that its file needs besides
     options: tuple = ()         # of every program that opens it
     setup: str = ""             # bash, before tactd
     programs: tuple = ()        # of the build, besides tactd
@@ -44,8 +45,8 @@ class Case:
                            *(f"--set '{setting}'" for setting in self.back_end.settings)])
         variables = "".join(f'{name}="{value}"\n' for name, value in self.variables.items())
         return (f". /tact/guest/bench.sh\nSEED={seed} SECONDS_OF_RUN={self.seconds}\n"
-                f"SCENE=/tact/{self.back_end.scene}\nDEVICE=({device})\n{variables}shift_phase\n"
-                f"{self.back_end.setup}\n{self.script}\n")
+                f"SCENE=/tact/{self.back_end.scene}\nadd_sections <<'END'\n{self.back_end.sections}END\n"
+                f"DEVICE=({device})\n{variables}shift_phase\n{self.back_end.setup}\n{self.script}\n")
 
 
 @dataclasses.dataclass

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # bench.sh - what the script of a case may call; sourced by it in the guest.
 #
+#   add_sections <<<TEXT                the scene with further sections of its file, beside what it names
 #   control SECONDS [tactd option...]   starts tactd on $SCENE, back when its loop ticks; pid $tactd
 #   inject COMMAND...                   notes the time, then does the harm (builtins cost no fork)
 #   prove WORDS COMMAND...              that the harm was done, for checks.proved
@@ -19,6 +20,17 @@ background=() injected=0
 # First of all: another seed, another phase of emulators and other work against the kernel's clocks and
 # the loop, whose deadlines are a fixed grid of them.
 shift_phase() { sleep "$(printf '.000%03d' $((SEED * 137 % 1000)))"; }
+
+add_sections() {
+  local text
+  text=$(cat)
+  [ -n "$text" ] || return 0
+  mkdir /tmp/scenes
+  ln -s "${SCENE%/*}"/* /tmp/scenes/
+  rm "/tmp/scenes/${SCENE##*/}"
+  printf '%s\n' "$(<"$SCENE")" "$text" >"/tmp/scenes/${SCENE##*/}"
+  SCENE=/tmp/scenes/${SCENE##*/}
+}
 
 control() {
   clock_offset_ns=$(tact-rig-ticks --clock-offset)
