@@ -25,14 +25,14 @@ class PuppetLaw final : public model::contact::SiteLaw {
   void leave(std::size_t) RT_SAFE override {}
   void cut(const model::contact::BladeSweep&) RT_SAFE override { ++cuts; }
   void advance() RT_SAFE override {}
-  bool is_broken() const RT_SAFE override { return is_broken; }
+  bool is_broken() const RT_SAFE override { return breaks; }
   std::size_t profile(const model::contact::Indentation&,
                       std::span<double>) const RT_SAFE override {
     return 0;
   }
   double ring_pitch_m() const RT_SAFE override { return 1e-3; }
 
-  bool is_broken = false, is_beyond = false;
+  bool breaks = false, is_beyond = false;
   int cuts = 0;
 };
 
@@ -78,19 +78,19 @@ class ControllerTest : public testing::Test {
 TEST_F(ControllerTest, ALawThatBreaksStopsTheForceInTheSameTick) {
   press();
   const tests::NoAlloc guard;
-  law.is_broken = true;
+  law.breaks = true;
   const TickOutput broken = tick();
   EXPECT_EQ(broken.written, model::Wrench{});
   EXPECT_EQ(broken.fault, Fault::kLawBroke);
   EXPECT_EQ(broken.state, State::kStopped);
-  law.is_broken = false;
+  law.breaks = false;
   EXPECT_EQ(tick().fault, Fault::kLawBroke) << "latched";
   EXPECT_EQ(tick().written, model::Wrench{});
   EXPECT_EQ(guard.calls(), 0u);
 }
 
 TEST_F(ControllerTest, ABrokenLawIsNeverArmed) {
-  law.is_broken = true;
+  law.breaks = true;
   depth_m = 0.003;
   tick();
   input.commands.arm = true;

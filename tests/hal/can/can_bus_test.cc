@@ -53,9 +53,9 @@ TEST(CanBus, MoreThanOneReadTakesIsLeftForTheNextAndTold) {
   for (int i = 0; i < 70; ++i) b.wire.say(frame(1));
   std::size_t heard = b.bus->receive().size();
   EXPECT_EQ(heard, 64u);
-  EXPECT_TRUE(b.bus->cut());
+  EXPECT_TRUE(b.bus->was_cut_short());
   heard += b.bus->receive().size();
-  EXPECT_FALSE(b.bus->cut());
+  EXPECT_FALSE(b.bus->was_cut_short());
   EXPECT_EQ(heard, 70u);
 }
 
