@@ -156,20 +156,4 @@ std::string make_summary(const RunFacts& facts, const loop::LoopStatistics& loop
   return out;
 }
 
-std::string make_check_line(const model::scene::Scene& scene, const std::string& device_name,
-                            const model::scene::TissueLaw& law,
-                            const admission::StiffnessMargin& stiffness,
-                            const std::optional<admission::TimeMargin>& time) {
-  std::string out = fmt::format(
-      "{}: sound. {} on {}, {} vertices; law {}, range {:.1f} to {:.1f} mm, stiffness {:.4g} of "
-      "{:.4g} N/m",
-      scene.path, scene.name, device_name, scene.organ_mesh.vertex_m.size(), law.title(),
-      1e3 * law.range().pull_m, 1e3 * law.range().press_m, stiffness.needed_N_per_m,
-      stiffness.limit_N_per_m);
-  if (time)
-    out += fmt::format(", {:.3g} of {:g} us a tick ({})", time->judged_us, time->budget_us,
-                       time->tail_counts ? "p99.9" : "median");
-  return out;
-}
-
 }  // namespace tact::firmware::run

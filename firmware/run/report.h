@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "firmware/admission/stiffness_check.h"
-#include "firmware/admission/tick_budget.h"
 #include "firmware/loop/rt_loop.h"
 #include "firmware/pc/environment.h"
 #include "firmware/pc/rt_setup.h"
@@ -46,10 +44,5 @@ nlohmann::json to_json(const ThreadCosts& costs);
 std::string make_report(const RunFacts& facts, const loop::LoopStatistics& loop,
                         const gate::Gate& gate, const pc::Environment& environment);
 std::string make_summary(const RunFacts& facts, const loop::LoopStatistics& loop);
-/// What --check found; without a time where none was measured.
-std::string make_check_line(const model::scene::Scene& scene, const std::string& device_name,
-                            const model::scene::TissueLaw& law,
-                            const admission::StiffnessMargin& stiffness,
-                            const std::optional<admission::TimeMargin>& time);
 
 }  // namespace tact::firmware::run

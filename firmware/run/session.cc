@@ -9,8 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "firmware/admission/inertia_note.h"
-#include "firmware/admission/reach_note.h"
 #include "firmware/console/operator_desk.h"
 #include "firmware/console/say.h"
 #include "firmware/console/service_manager.h"
@@ -19,10 +17,10 @@
 #include "firmware/run/loop_parts.h"
 #include "firmware/run/real_time.h"
 #include "firmware/run/report.h"
+#include "firmware/run/start_words.h"
 #include "firmware/run/telemetry_setup.h"
 #include "firmware/run/thread_costs.h"
 #include "model/io/file_writer.h"
-#include "model/scene/accuracy_file.h"
 #include "model/time_ns.h"
 
 namespace tact::firmware::run {
@@ -59,6 +57,10 @@ class Session {
   model::Fault last_fault() const {
     const model::Fault latched = parts_.controller->newest().fault;
     return latched != model::Fault::kNone ? latched : requests_.fault.load();
+  }
+  // A stop request that comes after a tick's look is in no tick.
+  loop::State last_state() const {
+    return requests_.stop.load() ? loop::State::kStopped : parts_.controller->newest().state;
   }
   int report();
   RunFacts collect_facts(model::Fault fault, const std::string& trouble) const;
@@ -102,15 +104,10 @@ int Session::run() {
     say(stderr, "tactd: no hard real time: force capped to {:g} %, records stamped non-rt\n",
         100.0 * gate::kNonRtForceShare);
   if (const auto error = open()) return fail(error->sentence, 2);
-  for (const std::string& note :
-       {admission::inertia_note(scene_, parts_.tissue->law()), parts_.device->info().caution,
-        options_.check ? admission::reach_note(scene_) : std::string()})
-    if (!note.empty()) say(stderr, "tactd: {}\n", note);
+  for (const std::string& note : start_notes(scene_, parts_, options_.check))
+    say(stderr, "tactd: {}\n", note);
   if (options_.check) {
-    say(stdout, "{}\n",
-        make_check_line(scene_, parts_.device->info().name, parts_.tissue->law(), parts_.stiffness,
-                        parts_.time));
-    say(stdout, "{}\n", model::scene::accuracy_line(scene_, parts_.tissue->law()));
+    say(stdout, "{}\n", check_lines(scene_, parts_));
     return 0;
   }
   if (options_.has_json_file())
@@ -279,7 +276,7 @@ RunFacts Session::collect_facts(model::Fault fault, const std::string& trouble) 
           .device_counts = parts_.device->tally(),
           .dropped_records = parts_.ring->dropped(),
           .dropped_frames = telemetry_->dropped_frames(),
-          .state = parts_.controller->newest().state,
+          .state = last_state(),
           .fault = fault,
           .trouble = trouble,
           .refused_requests = requests_.refused.load(),
