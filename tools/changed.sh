@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+# changed.sh - sourced by check: what a stage need not try again, as nothing has changed since it passed here.
+#
+# A stage that passes leaves $build/passed.STAGE, of the time at which it began. A file that is newer has changed.
+
+# begin_stage STAGE; then pass_stage STAGE, where it has passed
+begin_stage() { touch "$build/began.$1"; }
+pass_stage() { mv "$build/began.$1" "$build/passed.$1"; }
+
+# any_newer STAGE FILE...: files or folders; yes, too, where the stage has not passed yet
+any_newer() {
+  local passed="$build/passed.$1"
+  [ -e "$passed" ] || return 0
+  [ -n "$(find "${@:2}" -newer "$passed" -type f -print -quit 2>/dev/null)" ]
+}
+
+# changed_tests: what ctest -L takes for the rooms whose program has changed, and, if a program that tests
+# run has changed, for those that run programs. "." for all, nothing for none.
+changed_tests() {
+  local data=() labels=() test
+  # What any test may read: not sources, whose programs are newer then, and not texts.
+  mapfile -d '' -t data < <(tracked ls-files -z -co --exclude-standard |
+    grep -zvE '\.(cc|h|md|ts|mjs|css|html)$|^tests/(rig|browser|mutations|house)/' | sed -z "s|^|$root/|")
+  any_newer tests "${data[@]}" && { echo .; return; }
+  for test in "$build"/tests/*_test; do
+    any_newer tests "$test" && labels+=("^$(basename "${test%_test}")([+]|\$)")
+  done
+  any_newer tests "$build"/*tact* && labels+=('[+]programs')
+  (IFS='|'; echo "${labels[*]}")
+}
