@@ -10,7 +10,7 @@
 
 namespace tact::firmware::run {
 
-/// What a person should know, though it hinders nothing. `is_check`: also what takes longer to find.
+/// What a person should know, though it hinders nothing; with --check also what takes long to find.
 std::vector<std::string> start_notes(const model::scene::Scene& scene, const LoopParts& parts,
                                      bool is_check);
 /// What --check found, in two lines.

@@ -40,8 +40,8 @@ def stage_breaches(check, push, night):
         yield "tools/check: its lists of stages are not where this test looks for them"
         return
     if not re.search(r"^\s*- run: \./tools/check \$\{\{ matrix.arguments \}\}$", push, re.M) or \
-            not re.search(r'^\s*arguments: \["", --only tidy, --only asan, --only rtsan, --only tsan\]$', push, re.M):
-        yield f"{PUSH}: does not run ./tools/check, and its stages tidy, asan, rtsan and tsan"
+            not re.search(r'^\s*arguments: \["", --only tests, --only browser, --only tidy, --only asan, --only rtsan, --only tsan\]$', push, re.M):
+        yield f"{PUSH}: does not run ./tools/check, and its stages tests, browser, tidy, asan, rtsan and tsan"
     if "./tools/check --long --only ${{ matrix.stage }}" not in night:
         yield f"{NIGHT}: does not run ./tools/check --long --only STAGE"
     found = re.search(r"^\s*stage: \[([^\]]*)\]", night, re.M)
