@@ -33,8 +33,9 @@ constexpr Limits limits_in_use(Limits limits, double force_share) {
 /// Without a sample the force fades to zero in this time (RT-15), and no slew may hold that up.
 inline constexpr double kStaleFade_s = 0.010;
 
-/// Change of force in a period that the ramp leaves for everything else, so that the written force
-/// keeps |dF| <= slew dt. A slew that is too slow for its ramp keeps a tenth.
+/// GT-6: |d(r F)| <= r |dF| + F dr <= s dt. The change of force in a period that the ramp,
+/// dr = dt/tr, leaves for everything else: (s - Fm/tr) dt. A scene whose slew is too slow for its
+/// ramp is refused (scene/scene_limits.cc); it would keep a tenth.
 inline double slew_beside_ramp_N(const Limits& limits, double force_limit_N, double period_s) {
   const double step_N = limits.slew_N_per_s * period_s;
   const double ramp_step_N = force_limit_N * period_s / limits.ramp_s;

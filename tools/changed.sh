@@ -2,6 +2,7 @@
 # changed.sh - sourced by check: what a stage need not try again, as nothing has changed since it passed here.
 #
 # A stage that passes leaves $build/passed.STAGE, of the time at which it began. A file that is newer has changed.
+# The caller has $root, $build and a function `tracked`: git in $root.
 
 # begin_stage STAGE; then pass_stage STAGE, where it has passed
 begin_stage() { touch "$build/began.$1"; }
@@ -17,14 +18,17 @@ any_newer() {
 # changed_tests: what ctest -L takes for the rooms whose program has changed, and, if a program that tests
 # run has changed, for those that run programs. "." for all, nothing for none.
 changed_tests() {
-  local data=() labels=() test
-  # What any test may read: not sources, whose programs are newer then, and not texts.
+  local data=() programs=() labels=() test
+  # Any test may read any file but these: sources, as their programs are newer then; what other stages try;
+  # and texts that no test reads (tests/house/changed_test.py looks).
   mapfile -d '' -t data < <(tracked ls-files -z -co --exclude-standard |
-    grep -zvE '\.(cc|h|md|ts|mjs|css|html)$|^tests/(rig|browser|mutations|house)/' | sed -z "s|^|$root/|")
+    grep -zvE '\.(cc|h)$|(^|/)(README|CHANGELOG|CONTRIBUTING|decisions)\.md$|^host/web/|^tests/(rig|browser|mutations|house)/' |
+    sed -z "s|^|$root/|")
   any_newer tests "${data[@]}" && { echo .; return; }
   for test in "$build"/tests/*_test; do
     any_newer tests "$test" && labels+=("^$(basename "${test%_test}")([+]|\$)")
   done
-  any_newer tests "$build"/*tact* && labels+=('[+]programs')
+  mapfile -d '' -t programs < <(find "$build" -maxdepth 1 -type f -perm -u+x -print0)
+  any_newer tests "${programs[@]}" && labels+=('[+]programs')
   (IFS='|'; echo "${labels[*]}")
 }

@@ -137,3 +137,32 @@ build_page() {
   echo "$stamp" >"$page/.stamp"
   rm -f "$log"
 }
+
+# packages_of STAGE: what a stage of tools/check needs, without the lab where $lab is OFF
+packages_of() {
+  local clang=(clang-22 libclang-rt-22-dev) tests=("${LIGHT_TOOL_PACKAGES[@]}" "${TEST_PACKAGES[@]}")
+  [ "$lab" = OFF ] || tests+=("${TOOL_PACKAGES[@]}")
+  case $1 in
+    format) echo clang-format-22=clang-format-22 ;;
+    layering) echo python3=python3 git=git shellcheck=shellcheck pyflakes3=pyflakes3 pycodestyle=pycodestyle optional:similarity-tester=sim_c++ ;;
+    spin) echo spin python3=python3 gcc=gcc ;;
+    page) echo "${BUILD_PACKAGES[@]}" "${PAGE_PACKAGES[@]}" ;;
+    build | tests | vectors) echo "${BUILD_PACKAGES[@]}" "${tests[@]}" python3=python3 ;;
+    browser) echo "${BUILD_PACKAGES[@]}" "${PAGE_PACKAGES[@]}" "${tests[@]}" chromium stunnel4=stunnel openssl=openssl python3-numpy ;;
+    run) echo "${BUILD_PACKAGES[@]}" ;;
+    size) echo "${BUILD_PACKAGES[@]}" libgtest-dev "${clang[@]}" llvm-22 python3=python3 ;;
+    ladder) echo "${BUILD_PACKAGES[@]}" libgtest-dev python3=python3 git=git ;;
+    canaries) echo "${clang[@]}" ;;
+    proof) echo clang-22 g++ gappa mmdebstrap python3=python3 ;;
+    asan | bits | tsan | rtsan | fuzz | soak) echo "${BUILD_PACKAGES[@]}" "${tests[@]}" "${clang[@]}" ;;
+    coverage) echo "${BUILD_PACKAGES[@]}" "${tests[@]}" "${clang[@]}" llvm-22 python3=python3 ;;
+    tidy) echo "${BUILD_PACKAGES[@]}" "${tests[@]}" "${clang[@]}" clang-tidy-22 ;;
+    mutations) echo "${BUILD_PACKAGES[@]}" "${tests[@]}" git=git python3=python3 ;;
+    rig) echo "${BUILD_PACKAGES[@]}" "${RIG_PACKAGES[@]}" python3=python3 ;;
+    truth) echo "${BUILD_PACKAGES[@]}" "${TOOL_PACKAGES[@]}" calculix-ccx ;;
+    packages) echo "${BUILD_PACKAGES[@]}" "${TOOL_PACKAGES[@]}" "${PAGE_PACKAGES[@]}" "${DEB_PACKAGES[@]}" ;;
+    installed) packages_of packages; echo mmdebstrap ;;
+    image) packages_of packages; echo "${IMAGE_PACKAGES[@]}" "${IMAGE_TEST_PACKAGES[@]}" python3=python3 ;;
+    fresh) echo debootstrap ;;
+  esac
+}

@@ -200,7 +200,7 @@ void Gate::limit_power(const model::Tool& tool, const Magnitude& most, double pe
     step_towards(w, periods, most);
   }
   // What the slew of the next tick is measured from. The ramp is no part of it: it has a slew of
-  // its own (slew_step_N).
+  // its own (slew_beside_ramp_N).
   before_ramp_ = w;
 }
 

@@ -20,7 +20,7 @@ struct StateEntry {
 inline constexpr std::array<StateEntry, 4> kStateTable{{{"off", "no force"},
                                                         {"ready", "no tissue force until armed"},
                                                         {"armed", "force is on"},
-                                                        {"stopped", "force is off after a fault"}}};
+                                                        {"stopped", "force is off until a reset"}}};
 
 /// A number that came from elsewhere may be none of these: "unknown".
 constexpr const char* name_of(State state) {

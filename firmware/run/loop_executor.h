@@ -5,7 +5,7 @@
 //     tact-loop    the loop behind its call filter (watch/call_filter.h)
 //     tact-watch   above it (watch/loop_watch.h)
 //     keeper       starts the loop; stops the device as soon as it has ended
-//     main         signals, status line, hangs (Session::watch)
+//     main         signals, status line, hangs (serve_operator in session.cc)
 //
 // Loops may follow each other on one device, each in a thread of its own behind the same filter.
 // A loop that does not end when it is asked to is left behind: the process ends without it.

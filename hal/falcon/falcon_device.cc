@@ -204,9 +204,9 @@ FalconWords FalconDevice::words_for(const Vec3& force_W_N) const RT_SAFE {
   std::array<double, 3> words{};
   for (std::size_t i = 0; i < 3; ++i) {
     const double torque_Nm = held_Nm[i] + ratio * wanted_Nm[i];
-    const double useful = settings_.gain_words_per_Nm[i] * torque_Nm;
-    const double share = std::clamp(useful / kDeadBandRamp_words, -1.0, 1.0);
-    words[i] = -(useful + settings_.dead_band_words[i] * share);
+    const double useful_words = settings_.gain_words_per_Nm[i] * torque_Nm;
+    const double share = std::clamp(useful_words / kDeadBandRamp_words, -1.0, 1.0);
+    words[i] = -(useful_words + settings_.dead_band_words[i] * share);
   }
   return falcon_motor_words(words);
 }

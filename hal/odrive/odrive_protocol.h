@@ -57,7 +57,8 @@ struct OdriveAddress {
 };
 OdriveAddress odrive_address(const can::CanFrame& frame) RT_SAFE;
 
-// --- To the drive. Nothing if the node or a number is outside its range. ---
+// --- To the drive. Nothing if the node or a number is outside its range. Velocity and position are
+// for tact-verify and the fuzzer alone, as the published vectors have them. ---
 
 /// Eight bytes as the maker's own tools send it, or the first four of them, which save 32 us.
 enum class OdriveTorqueLength : std::uint8_t { kShort = 4, kPadded = 8 };
@@ -130,6 +131,8 @@ struct OdriveCount05 {     // 0.5: of the encoder itself, whatever the estimates
   std::int32_t in_circle;  // within a turn
 };
 std::optional<OdriveCount05> decode_odrive_count_05(const can::CanFrame& frame, int node) RT_SAFE;
+
+// From here on for tact-verify and the fuzzer alone, as the published vectors have them.
 
 struct OdriveIq {
   double setpoint_A;

@@ -81,7 +81,7 @@ struct SphereTouch {
 struct ContactResponse {
   Wrench wrench;
   bool is_saturated = false;  // a sphere is beyond its law (LawStatus::kSaturated)
-  bool is_broken = false;     // see SiteLaw::broke
+  bool is_broken = false;     // see SiteLaw::is_broken
 };
 
 /// What contact is made of; everything outlives it.

@@ -60,7 +60,8 @@ class Law {
     return 0.0;
   }
   virtual LawRange range() const RT_SAFE = 0;
-  /// Fills u_0 .. u_N and returns how many: N + 1, or as many as the span takes.
+  /// Fills u_0 .. u_N and returns how many: N + 1, or as many as the span takes. No tick calls it;
+  /// RT_SAFE, as telemetry calls it beside the loop.
   virtual std::size_t profile(double depth_m, std::span<double> ring_m) const RT_SAFE = 0;
   virtual double ring_pitch_m() const RT_SAFE = 0;
 };

@@ -20,7 +20,7 @@ class TabulatedLaw final : public Law {
   LawResponse respond(double depth_m) const RT_SAFE override;
   double damping_Ns_per_m(double depth_m) const RT_SAFE override;
   LawRange range() const RT_SAFE override { return {can_pull_ ? pull_.end() : 0.0, press_.end()}; }
-  /// Solved directly, not from a table: for telemetry and tools, outside the loop.
+  /// Solved directly, not from a table.
   std::size_t profile(double depth_m, std::span<double> ring_m) const RT_SAFE override {
     return source_->profile(depth_m, ring_m);
   }

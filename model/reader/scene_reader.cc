@@ -96,8 +96,7 @@ void Keys::per_arm(std::string_view key, Range each, std::string_view meaning,
                    std::array<double, 3>& out, Need need) {
   const std::string fallback =
       need == Need::kOptional ? fmt::format("[{:.5g}]", fmt::join(out, ", ")) : "";
-  const toml::node* node =
-      take(key, "[a, b, c], each " + range_text(each, key), meaning, fallback);
+  const toml::node* node = take(key, "[a, b, c], each " + range_text(each, key), meaning, fallback);
   if (node) store(*node, key, as_per_arm(*node, each), out);
 }
 

@@ -178,12 +178,19 @@ def blind_rules():
     return [name for name, breaches in cases.items() if not list(breaches)]
 
 
+def is_judged(path):
+    """By its ending; a script without one by its first bytes."""
+    if path.suffix in SOURCES + CONFIGURATION:
+        return True
+    return path.suffix == "" and path.is_file() and path.read_bytes()[:2] == b"#!"
+
+
 def main():
     breaches, files, marks, texts = [], 0, 0, {}
     for top in (*TOPS, ".github"):
         for path in sorted((ROOT / top).rglob("*")):
             name = str(path.relative_to(ROOT))
-            if "node_modules" in path.parts or path.suffix not in SOURCES + CONFIGURATION:
+            if "node_modules" in path.parts or not is_judged(path):
                 continue
             text = path.read_text()
             if path.suffix in CONFIGURATION:

@@ -89,7 +89,8 @@ void Promises::check_heat(const firmware::loop::TickRecord& record) {
   expect(overheated_ || !warm, "RMS <= continuous_force_N", record.tick);
   expect(overheated_ || !torque_warm, "RMS of T <= continuous_force_N torque_Nm / force_N",
          record.tick);
-  // gate.h's third exception; until the force has come down at the slew another 10 ms pass
+  // The third exception of firmware/gate/README.md; until the force has come down at the slew
+  // another 10 ms pass.
   const double more = (2.0 * longest_s_ + 0.010) / limits_.thermal_time_s;
   const double late_N =
       std::sqrt(continuous_N * continuous_N + more * limits_.force_N * limits_.force_N);

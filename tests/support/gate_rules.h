@@ -126,7 +126,8 @@ class GateRules {
     if (!is_overheated_ && heat_ratio() > 1.0 + kRounding) return "RMS <= continuous_force_N";
     if (!is_overheated_ && torque_heat_ratio() > 1.0 + kRounding)
       return "RMS of T <= continuous_force_N torque_Nm / force_N";
-    // gate.h's third exception; until the force has come down at the slew another 10 ms pass
+    // The third exception of firmware/gate/README.md; until the force has come down at the slew
+    // another 10 ms pass.
     const double more = (2.0 * longest_s_ + 0.010) / limits_.thermal_time_s;
     const double bound = continuous_N_ * continuous_N_ + more * force_N_ * force_N_;
     if (heat_ > bound * (1.0 + kRounding) ||

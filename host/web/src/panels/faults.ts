@@ -28,7 +28,12 @@ export interface State {
   words: string;
 }
 
-const kStopped = 3;
+export const kStopped = 3;
+
+/** A fault, which stays until a reset, not a limit that acts. */
+export function latches(number: number): boolean {
+  return table.faults.find((fault) => fault.number === number)?.latches ?? true;
+}
 
 /** In the state "stopped", no fault means that somebody asked for it. */
 export function describe_state(number: number, fault: number): State {

@@ -2,7 +2,7 @@
 // hud.ts - the panels: everything that is said in words and numbers.
 
 import { by_id } from "../document/dom";
-import { describe, describe_past_state, describe_state } from "./faults";
+import { describe, describe_past_state, describe_state, kStopped, latches } from "./faults";
 import { Pace } from "../link/pace";
 import { length_of, type FigureFrame, type Frame, type Scene, type Status } from "../link/protocol";
 
@@ -108,7 +108,7 @@ export class Hud {
   }
 
   frame(frame: Frame, now_ms: number): void {
-    const over = this.limit >= 100 && frame.fault === 0 && frame.state !== 3;
+    const over = latches(this.limit) && frame.fault === 0 && frame.state !== kStopped;
     if (over) this.limit = 0; // reset, or a replay went back
     if (frame.limit > 0 || frame.fault > 0) {
       this.limit = frame.fault > 0 ? frame.fault : frame.limit;
@@ -202,7 +202,7 @@ export class Hud {
   }
 
   private fault(now_ms: number): void {
-    const latched = this.limit >= 100;
+    const latched = latches(this.limit);
     const shown = this.limit > 0 && (latched || now_ms - this.limit_seen_ms < kHold_ms);
     const box = by_id("fault");
     box.hidden = !shown;
