@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "hal/falcon/falcon_boot.h"
 #include "hal/falcon/falcon_packets.h"
 #include "hal/falcon/falcon_stream.h"
 #include "hal/falcon/ftdi_requests.h"
