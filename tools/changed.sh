@@ -15,10 +15,22 @@ any_newer() {
   [ -n "$(find "${@:2}" -newer "$passed" -type f -print -quit 2>/dev/null)" ]
 }
 
+# objects_of PROGRAM...: what they are linked from, but for the revision, which is another after each commit
+objects_of() {
+  ninja -C "$build" -t inputs "${@#"$build"/}" | grep '\.o$' | grep -v '/revision\.cc\.o$' | sed "s|^|$build/|"
+}
+
+# program_newer STAGE PROGRAM...
+program_newer() {
+  local objects
+  mapfile -t objects < <(objects_of "${@:2}")
+  any_newer "$1" "${objects[@]}"
+}
+
 # changed_tests: what ctest -L takes for the rooms whose program has changed, and, if a program that tests
 # run has changed, for those that run programs. "." for all, nothing for none.
 changed_tests() {
-  local data=() programs=() labels=() test
+  local data=() programs=() rooms=() labels=() test
   # Any test may read any file but these: sources, as their programs are newer then; what other stages try;
   # and texts that no test reads (tests/house/changed_test.py looks).
   mapfile -d '' -t data < <(tracked ls-files -z -co --exclude-standard |
@@ -26,9 +38,11 @@ changed_tests() {
     sed -z "s|^|$root/|")
   any_newer tests "${data[@]}" && { echo .; return; }
   for test in "$build"/tests/*_test; do
-    any_newer tests "$test" && labels+=("^$(basename "${test%_test}")([+]|\$)")
+    program_newer tests "$test" && rooms+=("$(basename "${test%_test}")")
   done
+  # ctest takes few parentheses.
+  [ ${#rooms[@]} -eq 0 ] || labels+=("^($(IFS='|'; echo "${rooms[*]}"))([+]|\$)")
   mapfile -d '' -t programs < <(find "$build" -maxdepth 1 -type f -perm -u+x -print0)
-  any_newer tests "${programs[@]}" && labels+=('[+]programs')
+  [ ${#programs[@]} -gt 0 ] && program_newer tests "${programs[@]}" && labels+=('[+]programs')
   (IFS='|'; echo "${labels[*]}")
 }

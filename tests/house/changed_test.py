@@ -13,13 +13,14 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-ASK = 'root=$PWD build=$PWD/build; tracked() { git -C "$root" "$@"; }; . "$0"; changed_tests'
-LAW, GATE, PROGRAMS = "^model_law([+]|$)", "^firmware_gate([+]|$)", "[+]programs"
+ASK = "root=$PWD build=$PWD/build; tracked() { git -C \"$root\" \"$@\"; }; . \"$0\"; " \
+    "objects_of() { printf '%s\\n' \"$@\"; }; changed_tests"
+LAW, PROGRAMS = "^(model_law)([+]|$)", "[+]programs"
 # A file that is newer than the last pass, and what must be tried then.
 CHANGES = {
     (): "",
     ("build/tests/model_law_test",): LAW,
-    ("build/tests/model_law_test", "build/tests/firmware_gate_test"): f"{GATE}|{LAW}",
+    ("build/tests/model_law_test", "build/tests/firmware_gate_test"): "^(firmware_gate|model_law)([+]|$)",
     ("build/tactd",): PROGRAMS,
     ("build/libtact-stub-dhd.so", "build/tests/model_law_test"): f"{LAW}|{PROGRAMS}",
     ("build/install_manifest.txt",): "",
