@@ -30,7 +30,7 @@ program_newer() {
 # changed_tests: what ctest -L takes for the rooms whose program has changed, and, if a program that tests
 # run has changed, for those that run programs. "." for all, nothing for none.
 changed_tests() {
-  local data=() programs=() rooms=() labels=() test
+  local data=() programs=() changed_rooms=() labels=() test
   # Any test may read any file but these: sources, as their programs are newer then; what other stages try;
   # and texts that no test reads (tests/house/changed_test.py looks).
   mapfile -d '' -t data < <(tracked ls-files -z -co --exclude-standard |
@@ -38,10 +38,10 @@ changed_tests() {
     sed -z "s|^|$root/|")
   any_newer tests "${data[@]}" && { echo .; return; }
   for test in "$build"/tests/*_test; do
-    program_newer tests "$test" && rooms+=("$(basename "${test%_test}")")
+    program_newer tests "$test" && changed_rooms+=("$(basename "${test%_test}")")
   done
   # ctest takes few parentheses.
-  [ ${#rooms[@]} -eq 0 ] || labels+=("^($(IFS='|'; echo "${rooms[*]}"))([+]|\$)")
+  [ ${#changed_rooms[@]} -eq 0 ] || labels+=("^($(IFS='|'; echo "${changed_rooms[*]}"))([+]|\$)")
   mapfile -d '' -t programs < <(find "$build" -maxdepth 1 -type f -perm -u+x -print0)
   [ ${#programs[@]} -gt 0 ] && program_newer tests "${programs[@]}" && labels+=('[+]programs')
   (IFS='|'; echo "${labels[*]}")
