@@ -27,8 +27,8 @@ program_newer() {
   any_newer "$1" "${objects[@]}"
 }
 
-# changed_tests: what ctest -L takes for the rooms whose program has changed, and, if a program that tests
-# run has changed, for those that run programs. "." for all, nothing for none.
+# changed_tests: what ctest -L takes for the rooms whose test program has changed, or a program that it runs;
+# and, if any program has changed, for the tests that are scripts. "." for all, nothing for none.
 changed_tests() {
   local data=() programs=() changed_rooms=() labels=() test
   # Any test may read any file but these: sources, as their programs are newer then; what other stages try;
@@ -38,7 +38,8 @@ changed_tests() {
     sed -z "s|^|$root/|")
   any_newer tests "${data[@]}" && { echo .; return; }
   for test in "$build"/tests/*_test; do
-    program_newer tests "$test" && changed_rooms+=("$(basename "${test%_test}")")
+    read -ra programs <"$test.programs"
+    program_newer tests "$test" "${programs[@]/#/$build/}" && changed_rooms+=("$(basename "${test%_test}")")
   done
   # ctest takes few parentheses.
   [ ${#changed_rooms[@]} -eq 0 ] || labels+=("^($(IFS='|'; echo "${changed_rooms[*]}"))([+]|\$)")

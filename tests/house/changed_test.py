@@ -15,14 +15,14 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 ASK = "root=$PWD build=$PWD/build; tracked() { git -C \"$root\" \"$@\"; }; . \"$0\"; " \
     "objects_of() { printf '%s\\n' \"$@\"; }; changed_tests"
-LAW, PROGRAMS = "^(model_law)([+]|$)", "[+]programs"
+LAW, GATE, SCRIPTS = "^(model_law)([+]|$)", "^(firmware_gate)([+]|$)", "[+]programs"
 # A file that is newer than the last pass, and what must be tried then.
 CHANGES = {
     (): "",
     ("build/tests/model_law_test",): LAW,
     ("build/tests/model_law_test", "build/tests/firmware_gate_test"): "^(firmware_gate|model_law)([+]|$)",
-    ("build/tactd",): PROGRAMS,
-    ("build/libtact-stub-dhd.so", "build/tests/model_law_test"): f"{LAW}|{PROGRAMS}",
+    ("build/tactd",): f"{GATE}|{SCRIPTS}",  # which the tests of firmware_gate run
+    ("build/libtact-stub-dhd.so", "build/tests/model_law_test"): f"{LAW}|{SCRIPTS}",
     ("build/install_manifest.txt",): "",
     ("model/law/law.h",): "",  # its programs are newer as soon as they are built
     ("model/scenes/liver.toml",): ".",
@@ -43,6 +43,8 @@ def asked(folder, newer, passed=True):
         file.write_text("")
         file.chmod(0o755 if name.startswith("build/") and not name.endswith(".txt") else 0o644)
         os.utime(file, (3000, 3000) if name in newer else (1000, 1000))
+    for room, programs in (("model_law", ""), ("firmware_gate", "tactd")):
+        (folder / f"build/tests/{room}_test.programs").write_text(programs + "\n")
     (folder / ".gitignore").write_text("build/\n")
     os.utime(folder / ".gitignore", (1000, 1000))
     subprocess.run(["git", "-C", folder, "init", "-q"], check=True)

@@ -92,7 +92,7 @@ endif()
 # All tests of a room as one program, tests/model/law as model_law_test. PROGRAMS are run by it, so
 # they are built with it; tests/support/program.h runs no other. LABELS: what tools/check runs again
 # under the thread sanitizer (threads) or the real-time sanitizer (loop): ctest -L '[+]loop' finds
-# those, -L '[+]programs' those with PROGRAMS, -L model_law the room. REAL_CLOCK: suites that wait for a real clock.
+# those, -L model_law the room. REAL_CLOCK: suites that wait for a real clock.
 # OPTIMISED: those of SOURCES that compute for seconds.
 function(tact_test)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINKS;PROGRAMS;LABELS;REAL_CLOCK;OPTIMISED" ${ARGN})
@@ -105,6 +105,7 @@ function(tact_test)
   # The code under test is optimised; gtest's checks hold an if of their own.
   target_compile_options(${test} PRIVATE -O0 -Wno-dangling-else)
   list(JOIN ARG_PROGRAMS " " programs)
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/tests/${test}.programs CONTENT "${programs}\n")  # for tools/changed.sh
   target_compile_definitions(${test} PRIVATE TACT_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                              TACT_BINARY_DIR="${PROJECT_BINARY_DIR}"
                              TACT_PROGRAMS="${programs}")
@@ -123,9 +124,6 @@ function(tact_test)
   set_source_files_properties(${ARG_OPTIMISED} PROPERTIES COMPILE_OPTIONS -O1 SKIP_PRECOMPILE_HEADERS ON)
   list(TRANSFORM ARG_REAL_CLOCK APPEND ".*")
   list(JOIN ARG_REAL_CLOCK ":" real_clock)
-  if(ARG_PROGRAMS)
-    list(APPEND ARG_LABELS programs)
-  endif()
   list(TRANSFORM ARG_LABELS PREPEND "+")  # one word, as gtest_discover_tests takes no list
   list(JOIN ARG_LABELS "" labels)
   gtest_discover_tests(${test} DISCOVERY_TIMEOUT 60 TEST_FILTER "*-${real_clock}"
