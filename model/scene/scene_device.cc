@@ -110,13 +110,13 @@ void visit_can(reader::Keys& k, std::string_view kind, CanSettings& can) {
   can.homing = static_cast<Homing>(homing);
   // Each homing needs one of the two; describing has no homing yet.
   const bool on_jig = can.homing == Homing::kJig;
-  k.per_arm("zero_turns", {-1e6, 1e6}, "of the motors, where the arms are at 0 rad", can.zero_turns,
-            on_jig ? kOptional : reader::Need::kRequired);
+  k.per_arm("zero_turns", {-1e6, 1e6}, "of the motors, arms at 0 rad; the jig finds it",
+            can.zero_turns, on_jig ? kOptional : reader::Need::kRequired);
   k.per_arm("direction", {-1.0, 1.0}, "1 or -1: sign of a motor's turn for a rising arm",
             can.direction);
   if (std::ranges::any_of(can.direction, [](double sign) { return std::abs(sign) != 1.0; }))
     k.refuse({"direction"}, "device.can.direction takes 1 or -1 for each arm");
-  k.per_arm("home_rad", {-3.2, 3.2}, "of the arms on the jig", can.home_rad,
+  k.per_arm("home_rad", {-3.2, 3.2}, "of the arms on the jig; \"jig\" alone needs it", can.home_rad,
             on_jig ? reader::Need::kRequired : kOptional);
   k.number("max_velocity_turns_per_s", {0.0, 1000.0}, "of an ODrive's motor; 0: the drive's own",
            can.max_velocity_turns_per_s, kOptional);

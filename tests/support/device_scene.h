@@ -2,27 +2,22 @@
 // device_scene.h - the liver on a delta on CAN, as a person writes it: tools/deploy/devices.toml.
 #pragma once
 
-#include <fstream>
-#include <iterator>
 #include <string>
 
-namespace tact::tests {
+#include "tests/support/files.h"
 
-inline std::string text_of_file(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+namespace tact::tests {
 
 /// The scene with the sections of all real devices in place of its [device]; kind = "can-odrive".
 inline std::string scene_on_real_devices() {
   const std::string root = TACT_SOURCE_DIR, scenes = root + "/model/scenes/";
-  std::string text = text_of_file(scenes + "liver.toml");
+  std::string text = content(scenes + "liver.toml");
   const std::string meshes = "\"meshes/";  // named from another folder
   for (auto at = text.find(meshes); at != text.npos; at = text.find(meshes, at + scenes.size()))
     text.insert(at + 1, scenes);
   const auto section = text.find("[device]"), next = text.find("# Soft tissue needs");
   if (section == text.npos || next == text.npos) return {};
-  return text.substr(0, section) + text_of_file(root + "/tools/deploy/devices.toml") +
+  return text.substr(0, section) + content(root + "/tools/deploy/devices.toml") +
          text.substr(next);
 }
 

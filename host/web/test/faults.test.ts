@@ -27,8 +27,8 @@ test("each state has tactd's name and words, and another number is shown as a nu
 });
 
 test("stopped on request is not stopped by a fault", () => {
-  assert.match(describe_state(3, 131).words, /until a reset/);
-  assert.doesNotMatch(describe_state(3, 0).words, /until a reset/);
+  assert.match(describe_state(3, 131).words, /until a person acts/);
+  assert.doesNotMatch(describe_state(3, 0).words, /until a person acts/);
   assert.match(describe_state(3, 0).words, /on request/);
 });
 
