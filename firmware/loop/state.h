@@ -17,10 +17,11 @@ struct StateEntry {
 };
 
 /// By number of the state.
-inline constexpr std::array<StateEntry, 4> kStateTable{{{"off", "no force"},
-                                                        {"ready", "no tissue force until armed"},
-                                                        {"armed", "force is on"},
-                                                        {"stopped", "force is off until a person acts"}}};
+inline constexpr std::array<StateEntry, 4> kStateTable{
+    {{"off", "no force"},
+     {"ready", "no tissue force until armed"},
+     {"armed", "force is on"},
+     {"stopped", "force is off until a person acts"}}};
 
 /// A number that came from elsewhere may be none of these: "unknown".
 constexpr const char* name_of(State state) {

@@ -17,8 +17,7 @@ inline std::string scene_on_real_devices() {
     text.insert(at + 1, scenes);
   const auto section = text.find("[device]"), next = text.find("# Soft tissue needs");
   if (section == text.npos || next == text.npos) return {};
-  return text.substr(0, section) + content(root + "/tools/deploy/devices.toml") +
-         text.substr(next);
+  return text.substr(0, section) + content(root + "/tools/deploy/devices.toml") + text.substr(next);
 }
 
 /// The same without a line, as one that was forgotten.
