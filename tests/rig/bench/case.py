@@ -21,6 +21,11 @@ class BackEnd:
     system_calls: dict = dataclasses.field(default_factory=dict)  # call: at most so many a tick
     scene: str = "model/scenes/liver.toml"
 
+    @property
+    def hand_meets(self):
+        """The scene without its device: back ends with the same have the same work in a tick."""
+        return self.scene, tuple(setting for setting in self.settings if not setting.startswith("device."))
+
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Case:
