@@ -87,12 +87,13 @@ else()
   set(TACT_REAL_CLOCK RESOURCE_LOCK real_clock COST 1000)
 endif()
 
-# tact_test(SOURCES a_test.cc... LINKS room... [PROGRAMS tactd...] [LABELS threads loop]
+# tact_test(SOURCES a_test.cc... LINKS room... [PROGRAMS tactd...] [LABELS threads loop parse]
 #           [REAL_CLOCK Suite...] [OPTIMISED a_test.cc...])
 # All tests of a room as one program, tests/model/law as model_law_test. PROGRAMS are run by it, so
 # they are built with it; tests/support/program.h runs no other. LABELS: what tools/check runs again
-# under the thread sanitizer (threads) or the real-time sanitizer (loop): ctest -L '[+]loop' finds
-# those, -L model_law the room. REAL_CLOCK: suites that wait for a real clock.
+# under the thread sanitizer (threads), the real-time sanitizer (loop: what a tick reaches) or that of
+# addresses (parse: what reads files and bytes of others): ctest -L '[+]loop' finds those, -L model_law
+# the room. REAL_CLOCK: suites that wait for a real clock.
 # OPTIMISED: those of SOURCES that compute for seconds.
 function(tact_test)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINKS;PROGRAMS;LABELS;REAL_CLOCK;OPTIMISED" ${ARGN})

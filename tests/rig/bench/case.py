@@ -22,6 +22,12 @@ class BackEnd:
     scene: str = "model/scenes/liver.toml"
 
     @property
+    def bus(self):
+        """What carries the forces: "can", "falcon", "sim", a maker's library."""
+        kind = next((setting for setting in self.settings if setting.startswith("device.kind=")), "")
+        return kind.removeprefix('device.kind="').rstrip('"').partition("-")[0]
+
+    @property
     def hand_meets(self):
         """The scene without its device: back ends with the same have the same work in a tick."""
         return self.scene, tuple(setting for setting in self.settings if not setting.startswith("device."))
