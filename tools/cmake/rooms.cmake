@@ -79,13 +79,19 @@ function(tact_program name)
   endif()
 endfunction()
 
-# What a test that waits for a real clock bears beside it: under a sanitizer nothing, else no other such test. It starts
-# first, as it takes long and needs little of a core.
-if(TACT_SANITIZE)
-  set(TACT_REAL_CLOCK RUN_SERIAL ON)
-else()
-  set(TACT_REAL_CLOCK RESOURCE_LOCK real_clock COST 1000)
-endif()
+# What a test that waits for a real clock bears beside it: under a sanitizer nothing, else one other such test, as every
+# second suite shares a lock. It starts first, as it takes long and needs little of a core.
+function(tact_real_clock properties)
+  get_property(suites GLOBAL PROPERTY TACT_REAL_CLOCK_SUITES)
+  set_property(GLOBAL APPEND PROPERTY TACT_REAL_CLOCK_SUITES suite)
+  list(LENGTH suites number)
+  math(EXPR lock "${number} % 2")
+  if(TACT_SANITIZE)
+    set(${properties} RUN_SERIAL ON PARENT_SCOPE)
+  else()
+    set(${properties} RESOURCE_LOCK real_clock_${lock} COST 1000 PARENT_SCOPE)
+  endif()
+endfunction()
 
 # tact_test(SOURCES a_test.cc... LINKS room... [PROGRAMS tactd...] [LABELS threads loop parse]
 #           [REAL_CLOCK Suite...] [OPTIMISED a_test.cc...])
@@ -123,14 +129,15 @@ function(tact_test)
   endforeach()
   # Without the precompiled header, as that was not optimised.
   set_source_files_properties(${ARG_OPTIMISED} PROPERTIES COMPILE_OPTIONS -O1 SKIP_PRECOMPILE_HEADERS ON)
-  list(TRANSFORM ARG_REAL_CLOCK APPEND ".*")
-  list(JOIN ARG_REAL_CLOCK ":" real_clock)
+  list(TRANSFORM ARG_REAL_CLOCK APPEND ".*" OUTPUT_VARIABLE real_clock)
+  list(JOIN real_clock ":" real_clock)
   list(TRANSFORM ARG_LABELS PREPEND "+")  # one word, as gtest_discover_tests takes no list
   list(JOIN ARG_LABELS "" labels)
   gtest_discover_tests(${test} DISCOVERY_TIMEOUT 60 TEST_FILTER "*-${real_clock}"
     PROPERTIES LABELS "${room}${labels}")
-  if(real_clock)
-    gtest_discover_tests(${test} DISCOVERY_TIMEOUT 60 TEST_FILTER "${real_clock}"
-      PROPERTIES LABELS "${room}${labels}" ${TACT_REAL_CLOCK})
-  endif()
+  foreach(suite ${ARG_REAL_CLOCK})
+    tact_real_clock(properties)
+    gtest_discover_tests(${test} DISCOVERY_TIMEOUT 60 TEST_FILTER "${suite}.*"
+      PROPERTIES LABELS "${room}${labels}" ${properties})
+  endforeach()
 endfunction()
