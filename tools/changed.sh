@@ -2,7 +2,7 @@
 # changed.sh - sourced by check: what a stage need not try again, as nothing has changed since it passed here.
 #
 # A stage that passes leaves $build/passed.STAGE, of the time at which it began. A file that is newer has changed.
-# The caller has $root, $build, $lab (ON: try everything) and a function `tracked`: git in $root.
+# The caller has $root, $build and a function `tracked`: git in $root.
 
 # begin_stage STAGE; then pass_stage STAGE, where it has passed
 begin_stage() { touch "$build/began.$1"; }
@@ -13,12 +13,6 @@ any_newer() {
   local passed="$build/passed.$1"
   [ -e "$passed" ] || return 0
   [ -n "$(find "${@:2}" -newer "$passed" -type f -print -quit 2>/dev/null)" ]
-}
-
-# unless_passed STAGE FILE...: begins the stage; fails where none of these has changed since it passed
-unless_passed() {
-  if [ "$lab" = OFF ] && ! any_newer "$@"; then echo "nothing has changed since it passed"; return 1; fi
-  begin_stage "$1"
 }
 
 # What this build links, as ninja calls it; a program of other options that lies about is none of it.

@@ -4,7 +4,7 @@
 //
 //     node tests/browser/figure_test.mjs BUILD_DIR   (tactd, tact-view, page/)
 //
-// Takes long: with tools/check --long and --only browser alone.
+// Takes long: run only by tools/check --long and --only browser.
 // CHROMIUM names another browser. Pictures: BUILD_DIR/page_figure.png, page_eyes.png. Prints "N
 // passed, M failed"; exit status 0 or 1.
 import { join } from "node:path";

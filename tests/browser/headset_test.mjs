@@ -4,7 +4,7 @@
 //
 //     node tests/browser/headset_test.mjs BUILD_DIR   (tactd, tact-view, page/)
 //
-// Takes long: with tools/check --long and --only browser alone.
+// Takes long: run only by tools/check --long and --only browser.
 // No real headset: that a picture comes to lenses in time is not tested. CHROMIUM names another browser. Pictures:
 // BUILD_DIR/page_headset.png, page_headset_stop.png. Prints "N passed, M failed"; exit status 0 or 1.
 import { readFileSync } from "node:fs";

@@ -4,7 +4,7 @@
 //
 //     node tests/browser/layout_test.mjs BUILD_DIR   (tactd, tact-view, page/)
 //
-// Takes long: with tools/check --long and --only browser alone.
+// Takes long: run only by tools/check --long and --only browser.
 // CHROMIUM names another browser. Pictures: BUILD_DIR/layout_NAME.png, the whole page of each screen, live,
 // with help, with the choice of scenes, and of a replay. Prints "N passed, M failed"; exit status 0 or 1.
 import { mkdirSync, readFileSync } from "node:fs";

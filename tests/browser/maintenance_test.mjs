@@ -4,7 +4,7 @@
 //
 //     node tests/browser/maintenance_test.mjs BUILD_DIR   (tactd, tact-view, tact-track-send, page/)
 //
-// Takes long: with tools/check --long and --only browser alone.
+// Takes long: run only by tools/check --long and --only browser.
 // CHROMIUM names another browser. Picture: BUILD_DIR/page-maintenance.png. Prints "N passed, M
 // failed"; exit status 0 or 1.
 import { readFileSync, writeFileSync } from "node:fs";

@@ -4,7 +4,7 @@
 //
 //     node tests/browser/picker_test.mjs BUILD_DIR   (tools/run builds what is missing, there)
 //
-// Takes long: with tools/check --long and --only browser alone.
+// Takes long: run only by tools/check --long and --only browser.
 // CHROMIUM names another browser. Pictures: BUILD_DIR/page_picker*.png. Prints "N passed, M failed"; exit status 0 or 1.
 import { spawn } from "node:child_process";
 import { join } from "node:path";

@@ -79,19 +79,25 @@ function(tact_program name)
   endif()
 endfunction()
 
-# What a test that waits for a real clock bears beside it: under a sanitizer nothing, else one other such test, as every
-# second suite shares a lock. It starts first, as it takes long and needs little of a core.
-function(tact_real_clock properties)
-  get_property(suites GLOBAL PROPERTY TACT_REAL_CLOCK_SUITES)
-  set_property(GLOBAL APPEND PROPERTY TACT_REAL_CLOCK_SUITES suite)
-  list(LENGTH suites number)
-  math(EXPR lock "${number} % 2")
-  if(TACT_SANITIZE)
-    set(${properties} RUN_SERIAL ON PARENT_SCOPE)
-  else()
-    set(${properties} RESOURCE_LOCK real_clock_${lock} COST 1000 PARENT_SCOPE)
+# Of the suites that wait for a real clock two run at a time: they get one of two locks in turn.
+function(tact_next_clock clock)
+  get_property(turn GLOBAL PROPERTY TACT_CLOCK)
+  if(NOT turn)
+    set(turn 0)
   endif()
+  set(${clock} ${turn} PARENT_SCOPE)
+  math(EXPR turn "1 - ${turn}")
+  set_property(GLOBAL PROPERTY TACT_CLOCK ${turn})
 endfunction()
+
+# Such a test starts first, as it takes long and needs little of a core. Under a sanitizer nothing runs beside it.
+foreach(clock 0 1)
+  if(TACT_SANITIZE)
+    set(TACT_REAL_CLOCK_${clock} RUN_SERIAL ON)
+  else()
+    set(TACT_REAL_CLOCK_${clock} RESOURCE_LOCK real_clock_${clock} COST 1000)
+  endif()
+endforeach()
 
 # tact_test(SOURCES a_test.cc... LINKS room... [PROGRAMS tactd...] [LABELS threads loop parse]
 #           [REAL_CLOCK Suite...] [OPTIMISED a_test.cc...])
@@ -129,15 +135,21 @@ function(tact_test)
   endforeach()
   # Without the precompiled header, as that was not optimised.
   set_source_files_properties(${ARG_OPTIMISED} PROPERTIES COMPILE_OPTIONS -O1 SKIP_PRECOMPILE_HEADERS ON)
-  list(TRANSFORM ARG_REAL_CLOCK APPEND ".*" OUTPUT_VARIABLE real_clock)
+  foreach(suite ${ARG_REAL_CLOCK})
+    tact_next_clock(clock)
+    list(APPEND suites_${clock} ${suite}.*)
+  endforeach()
+  set(real_clock ${suites_0} ${suites_1})
   list(JOIN real_clock ":" real_clock)
   list(TRANSFORM ARG_LABELS PREPEND "+")  # one word, as gtest_discover_tests takes no list
   list(JOIN ARG_LABELS "" labels)
   gtest_discover_tests(${test} DISCOVERY_TIMEOUT 60 TEST_FILTER "*-${real_clock}"
     PROPERTIES LABELS "${room}${labels}")
-  foreach(suite ${ARG_REAL_CLOCK})
-    tact_real_clock(properties)
-    gtest_discover_tests(${test} DISCOVERY_TIMEOUT 60 TEST_FILTER "${suite}.*"
-      PROPERTIES LABELS "${room}${labels}" ${properties})
+  foreach(clock 0 1)
+    if(suites_${clock})
+      list(JOIN suites_${clock} ":" filter)
+      gtest_discover_tests(${test} DISCOVERY_TIMEOUT 60 TEST_FILTER "${filter}"
+        PROPERTIES LABELS "${room}${labels}" ${TACT_REAL_CLOCK_${clock}})
+    endif()
   endforeach()
 endfunction()

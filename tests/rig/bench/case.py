@@ -23,13 +23,12 @@ class BackEnd:
 
     @property
     def bus(self):
-        """What carries the forces: "can", "falcon", "sim", a maker's library."""
-        kind = next((setting for setting in self.settings if setting.startswith("device.kind=")), "")
-        return kind.removeprefix('device.kind="').rstrip('"').partition("-")[0]
+        """Of drives on CAN "can", of another device its own name: each Falcon transport is a bus."""
+        return "can" if any(setting.startswith('device.kind="can-') for setting in self.settings) else self.name
 
     @property
     def hand_meets(self):
-        """The scene without its device: back ends with the same have the same work in a tick."""
+        """The scene and its settings without the device: the same law, pressed by hands that do much the same."""
         return self.scene, tuple(setting for setting in self.settings if not setting.startswith("device."))
 
 

@@ -16,6 +16,7 @@
 # $SCENE, DEVICE=(tactd options) and $SEED are set by the case; results are files in $RESULTS.
 SOCKET=/tmp/telemetry.sock
 background=() injected=0
+exec {silence}<> <(:)
 
 # First of all: another seed, another phase of emulators and other work against the kernel's clocks and
 # the loop, whose deadlines are a fixed grid of them.
@@ -51,9 +52,7 @@ has_loop() {
   return 1
 }
 
-# Nobody writes there, so a read waits. No program is started: starting two in each turn of a loop was half of
-# what a case takes on its host.
-exec {silence}<> <(:)
+# Nobody writes there, so a read waits, without a fork.
 wait_10_ms() { read -rt .01 -u $silence || return 0; }
 
 inject() {
