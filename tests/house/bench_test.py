@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What the virtual bench judges by, without a guest: the longest tick of a law is held against all devices of its scene,
+everything else against the device's own baseline; --once leaves out no kind of fault, no phase of an e-stop, nothing timed.
+
+Prints every breach as file:line: sentence. Exit status 0 or 1.
+"""
+import importlib.machinery
+import importlib.util
+import json
+import pathlib
+import sys
+import tempfile
+
+RIG = pathlib.Path(__file__).resolve().parent.parent / "rig"
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(RIG))
+from bench import baseline  # noqa: E402
+from bench.case import all_cases  # noqa: E402
+
+KERNEL = "6.1.0-rt"
+SCENE_OF = {"one": "liver", "other": "liver", "alone": "gum"}
+# What grew, of which back end, to how many thousandths of its baseline of 1000; `other` has 1200 as its longest of feel.
+GROWN = {
+    ("one", "feel", "longest_ns", 1040): False,
+    ("one", "feel", "longest_ns", 1250): False,   # as long as the other device's was
+    ("one", "feel", "longest_ns", 1270): True,
+    ("one", "feel", "p99.9_ns", 1060): True,
+    ("one", "read", "longest_ns", 1060): True,    # a call: of the device, not of the scene
+    ("alone", "feel", "longest_ns", 1060): True,
+    ("one", "total", "longest_ns", 1250): False,  # by the difference of feel
+    ("one", "total", "longest_ns", 1270): True,
+}
+
+
+def known():
+    back_ends = {name: {phase: dict.fromkeys(baseline.MEASURES, 1000) for phase in baseline.PHASES} for name in SCENE_OF}
+    back_ends["other"]["feel"]["longest_ns"] = 1200
+    return back_ends
+
+
+def bounds(folder):
+    path = folder / "baseline.json"
+    path.write_text(json.dumps({"kernel": KERNEL, "back_ends": known()}))
+    for (name, phase, measure, value), wanted in GROWN.items():
+        measured = known()
+        measured[name][phase][measure] = value
+        if bool(baseline.compare(measured, path, KERNEL, SCENE_OF)) != wanted:
+            yield f"tests/rig/bench/baseline.py:1: {name}: {phase} {measure} of {value} is {'good' if wanted else 'refused'}"
+    short = known()
+    del short["alone"]["tell"]
+    path.write_text(json.dumps({"kernel": KERNEL, "back_ends": short}))
+    if len(baseline.incomplete(path)) != 1:
+        yield "tests/rig/bench/baseline.py:1: a baseline without a phase is taken for whole"
+
+
+def once():
+    loader = importlib.machinery.SourceFileLoader("rig_run", str(RIG / "run"))
+    run = importlib.util.module_from_spec(importlib.util.spec_from_loader("rig_run", loader))
+    loader.exec_module(run)
+    cases = [case for case in all_cases() if not case.long_only]
+    kept = run.each_fault_once(cases)
+
+    def kinds(of):
+        return {(case.back_end.bus, case.name.removeprefix(f"{case.back_end.name}-")) for case in of}
+    if kinds(kept) != kinds(cases):
+        yield f"tests/rig/run:1: --once leaves out {sorted(kinds(cases) - kinds(kept))}"
+    for case in cases:
+        if case not in kept and (case.timed or not case.fault or case.back_end.bus != "can"):
+            yield f"tests/rig/run:1: --once leaves out {case.name}, no fault of other drives on CAN"
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        found = [*bounds(pathlib.Path(folder)), *once()]
+    print(*found, sep="\n", end="\n" if found else "")
+    print(f"bench: {len(GROWN)} kinds of growth, {len(all_cases())} cases, {len(found)} breaches")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
