@@ -3,81 +3,12 @@
 
 #include <gtest/gtest.h>
 #include <sched.h>
-#include <sys/socket.h>
 
 #include "hal/monotonic.h"
-#include "tests/hal/falcon_usb/fake_libusb.h"
+#include "tests/hal/falcon_usb/libusb_pipe_fixture.h"
 #include "tests/support/no_alloc.h"
 
 namespace tact::hal::falcon_usb::libusb_pipe_test {
-
-class LibusbPipeTest : public testing::Test {
- protected:
-  LibusbPipeTest() {
-    tests::fake_usb = &usb;
-    int ends[2];
-    EXPECT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends), 0);
-    usb.event_fd = ends[0];
-    usb.other_end = ends[1];
-    open();
-  }
-  ~LibusbPipeTest() override {
-    pipe.reset();
-    EXPECT_EQ(usb.transfers, 0);  // everything was given back
-    EXPECT_EQ(usb.claims, 0);
-    EXPECT_EQ(usb.handles, 0);
-    EXPECT_EQ(usb.contexts, 0);
-    close(usb.event_fd);
-    if (!usb.hang_up) close(usb.other_end);
-    tests::fake_usb = nullptr;
-  }
-  void open() {
-    auto opened = FalconUsb::open("");
-    EXPECT_TRUE(opened);
-    auto started = LibusbPipe::start(std::move(*opened));
-    EXPECT_TRUE(started) << started.error().sentence;
-    pipe = std::move(*started);
-  }
-  template <typename Condition>
-  static bool wait_for(Condition condition) {
-    for (int i = 0; i < 3000; ++i, usb_pause_ns(1'000'000))
-      if (condition()) return true;
-    return false;
-  }
-  template <typename Look>
-  auto locked(Look look) {
-    const std::lock_guard lock(usb.mutex);
-    return look();
-  }
-  void send(const tests::Bytes& bytes, libusb_transfer_status status = LIBUSB_TRANSFER_COMPLETED) {
-    ASSERT_TRUE(wait_for([&] { return locked([&] { return !usb.in.empty(); }); }));
-    locked([&] {
-      libusb_transfer* transfer = usb.in.front();
-      usb.in.pop_front();
-      usb.complete(transfer, status, bytes);
-    });
-  }
-  static tests::Bytes transfer_of(const falcon::FalconReport& report) {
-    const falcon::FalconPacket packet = encode(report);
-    tests::Bytes bytes{0x01, 0x60};
-    bytes.insert(bytes.end(), packet.begin(), packet.end());
-    return bytes;
-  }
-  /// An end by an error: the thread stays.
-  bool wait_for_fault() {
-    return wait_for([&] { return pipe->health().end != falcon::FalconPipeEnd::kOpen; });
-  }
-  /// The thread has run.
-  void warm_up() {
-    send(transfer_of({}));
-    falcon::FalconReply reply;
-    ASSERT_TRUE(wait_for([&] { return pipe->newest(reply); }));
-  }
-  const UsbThread& thread() const { return dynamic_cast<const LibusbPipe&>(*pipe).thread(); }
-
-  tests::FakeUsb usb;
-  std::unique_ptr<falcon::FalconPipe> pipe;
-};
 
 const falcon::FalconPacket zero_command = encode(falcon::FalconCommand{});
 const falcon::FalconPacket last_command =
@@ -105,7 +36,7 @@ TEST_F(LibusbPipeTest, TheLoopsSideOfACommandLeavesTheHeapAlone) {
     calls = guard.calls();
   }
   EXPECT_EQ(calls, 0u);
-  ASSERT_TRUE(wait_for([&] { return locked([&] { return usb.commands.size() == 1; }); }));
+  ASSERT_TRUE(wait_for([&] { return locked([&] { return !usb.commands.empty(); }); }));
   EXPECT_TRUE(std::ranges::equal(usb.commands[0], packet));
 }
 
@@ -118,7 +49,7 @@ TEST_F(LibusbPipeTest, ALoopThatFallsSilentIsReplacedByZerosWhichIsTold) {
     EXPECT_TRUE(pipe->submit(push));
     EXPECT_TRUE(wait_for([&] {
       if (answers) send({0x01, 0x60});
-      return locked([&] { return usb.taken.size() == before + 2; });
+      return locked([&] { return usb.taken.size() >= before + 2; });
     }));
     EXPECT_GE(monotonic_ns() - before_ns, kLoopGone_ns);
     locked([&] {
@@ -130,32 +61,41 @@ TEST_F(LibusbPipeTest, ALoopThatFallsSilentIsReplacedByZerosWhichIsTold) {
 }
 
 TEST_F(LibusbPipeTest, SilenceIsCountedFromTheCommandAndNotFromTheReplyBefore) {
-  EXPECT_TRUE(pipe->submit(encode(falcon::FalconCommand{.motor = {900, 900, 900}})));
-  EXPECT_TRUE(wait_for([&] { return locked([&] { return usb.taken.size() == 1; }); }));
-  for (int i = 0; i < 5; ++i) {  // the first replies ever, some milliseconds later
-    send({0x01, 0x60});
-    usb_pause_ns(2'000'000);
+  for (int i = 0; i < 10; ++i, pipe.reset(), open()) {
+    locked([&] { usb.taken.clear(); });
+    const std::int64_t before_ns = monotonic_ns();
+    EXPECT_TRUE(pipe->submit(numbered(900)));
+    EXPECT_TRUE(wait_for([&] { return locked([&] { return !usb.taken.empty(); }); }));
+    for (int k = 0; k < 5; ++k) {  // the first replies ever, some milliseconds later
+      send({0x01, 0x60});
+      usb_pause_ns(2'000'000);
+    }
+    const bool stood_in = pipe->health().stood_in;
+    const std::size_t taken = locked([&] { return usb.taken.size(); });
+    if (monotonic_ns() - before_ns >= kLoopGone_ns) continue;  // a busy PC: silent indeed
+    EXPECT_FALSE(stood_in);
+    EXPECT_EQ(taken, 1u);
+    return;
   }
-  EXPECT_FALSE(pipe->health().stood_in);
-  EXPECT_EQ(locked([&] { return usb.taken.size(); }), 1u);
+  FAIL() << "ten times slower than " << kLoopGone_ns << " ns";
 }
 
 TEST_F(LibusbPipeTest, TwoCommandsAreUnderWayAndTheNewestOfTheOthersFollows) {
   locked([&] { usb.keeps_out = true; });
   for (int i = 1; i <= 6; ++i) {
-    EXPECT_TRUE(pipe->submit(encode(falcon::FalconCommand{.motor = {i, 0, 0}})));
+    EXPECT_TRUE(pipe->submit(numbered(i)));
     const auto expected = static_cast<std::size_t>(std::min(i, 2));
     ASSERT_TRUE(wait_for([&] { return locked([&] { return usb.commands.size() >= expected; }); }));
     usb_pause_ns(2'000'000);
   }
-  EXPECT_EQ(locked([&] { return usb.commands.size(); }), 2u);
+  EXPECT_EQ(locked([&] { return of_loop(usb.commands).size(); }), 2u);
   locked([&] {
     usb.keeps_out = false;
     usb.complete(usb.out.front(), LIBUSB_TRANSFER_COMPLETED, tests::Bytes(16));
     usb.out.pop_front();
   });
-  ASSERT_TRUE(wait_for([&] { return locked([&] { return usb.commands.size() == 3; }); }));
-  EXPECT_EQ(falcon::decode_falcon_command(usb.commands[2])->motor[0], 6);
+  ASSERT_TRUE(wait_for([&] { return locked([&] { return of_loop(usb.commands).size() == 3; }); }));
+  EXPECT_EQ(of_loop(usb.commands)[2], bytes_of(numbered(6)));
 }
 
 TEST_F(LibusbPipeTest, StoppingSendsTheLastCommandAndEndsTheThreadQuietly) {
@@ -206,13 +146,15 @@ TEST_F(LibusbPipeTest, AStallIsNamed) {
 TEST_F(LibusbPipeTest, AfterAStallCommandsStillReachTheDeviceAndStoppingSendsTheLast) {
   send({}, LIBUSB_TRANSFER_STALL);
   ASSERT_TRUE(wait_for_fault());
-  for (std::size_t i = 1; i <= 4; ++i) {
-    EXPECT_TRUE(pipe->submit(zero_command));
-    ASSERT_TRUE(wait_for([&] { return locked([&] { return usb.taken.size() == i; }); }));
+  std::vector<tests::Bytes> expected;
+  for (int i = 1; i <= 4; ++i) {
+    EXPECT_TRUE(pipe->submit(numbered(i)));
+    expected.push_back(bytes_of(numbered(i)));
+    ASSERT_TRUE(wait_for([&] { return locked([&] { return of_loop(usb.taken) == expected; }); }));
   }
-  pipe->stop(last_command);
-  ASSERT_EQ(usb.taken.size(), 5u);
-  EXPECT_TRUE(std::ranges::equal(usb.taken[4], last_command));
+  pipe->stop(numbered(5));
+  expected.push_back(bytes_of(numbered(5)));
+  EXPECT_EQ(of_loop(usb.taken), expected);
   EXPECT_EQ(usb.cleared,
             std::vector<unsigned>{falcon::kFalconEndpointIn});  // for whoever opens it next
 }
@@ -283,7 +225,7 @@ TEST_F(LibusbPipeTest, ReadinessWithoutEndAndWithoutResultIsLeftWithoutSpinning)
   const std::int64_t paused = (monotonic_ns() - before_ns) / FalconTurns::kPause_ns;
   EXPECT_LE(calls, FalconTurns::kFree + 2 + paused);
   EXPECT_TRUE(pipe->submit(zero_command));
-  EXPECT_TRUE(wait_for([&] { return locked([&] { return usb.taken.size() == 1; }); }));
+  EXPECT_TRUE(wait_for([&] { return locked([&] { return !usb.taken.empty(); }); }));
   EXPECT_EQ(pipe->health().end, falcon::FalconPipeEnd::kBroken);
 }
 

@@ -65,14 +65,17 @@ TEST(UsbfsPipeEnd, AfterAStallCommandsStillReachTheDeviceAndStoppingSendsTheLast
   for (std::size_t i = 0; i < falcon_usb::UsbfsPipe::kIn; ++i)
     bus.send({}, -EPIPE);  // nothing is under way
   ASSERT_TRUE(wait_for_fault(*pipe));
-  for (std::size_t i = 1; i <= 4; ++i) {
-    EXPECT_TRUE(pipe->submit(zero_command));
-    ASSERT_TRUE(bus.wait_for([&] { return bus.taken.size() == i && bus.done.empty(); }));
+  std::vector<falcon::FalconPacket> expected;
+  for (int i = 1; i <= 4; ++i) {
+    expected.push_back(encode(falcon::FalconCommand{.motor = {i, -i, 7}}));
+    EXPECT_TRUE(pipe->submit(expected.back()));
+    ASSERT_TRUE(
+        bus.wait_for([&] { return Bus::of_loop(bus.taken) == expected && bus.done.empty(); }));
     falcon_usb::usb_pause_ns(2'000'000);
   }
-  pipe->stop(last_command);
-  ASSERT_EQ(bus.taken.size(), 5u);
-  EXPECT_EQ(bus.taken[4], last_command);
+  expected.push_back(encode(falcon::FalconCommand{.motor = {5, -5, 7}}));
+  pipe->stop(expected.back());
+  EXPECT_EQ(Bus::of_loop(bus.taken), expected);
   EXPECT_EQ(bus.cleared,
             std::vector<unsigned>{falcon::kFalconEndpointIn});  // for whoever opens it next
 }
@@ -83,7 +86,7 @@ TEST(UsbfsPipeEnd, AfterAStallASilentLoopIsReplacedByZerosToo) {
   EXPECT_TRUE(pipe->submit(encode(falcon::FalconCommand{.motor = {900, 900, 900}})));
   for (std::size_t i = 0; i < falcon_usb::UsbfsPipe::kIn; ++i)
     bus.send({}, -EPIPE);  // nothing is under way
-  ASSERT_TRUE(bus.wait_for([&] { return bus.taken.size() == 2; }));
+  ASSERT_TRUE(bus.wait_for([&] { return bus.taken.size() >= 2; }));
   EXPECT_EQ(bus.taken[1], falcon_usb::LoopSilence::zero());
 }
 
@@ -184,7 +187,8 @@ TEST(UsbfsPipeEnd, ABusThatAnswersNothingAtOnceForEverIsLeftWithoutSpinning) {
     bus.change([&] { reaps = bus.reaps; });
     EXPECT_LE(reaps, falcon_usb::FalconTurns::kMaxEmpty + in_urbs + 2);
     EXPECT_TRUE(pipe->submit(zero_command));
-    EXPECT_TRUE(bus.wait_for([&] { return bus.taken.size() == 1; }));
+    EXPECT_TRUE(bus.wait_for([&] { return !bus.taken.empty(); }));
+    EXPECT_EQ(bus.taken[0], zero_command);
   }
 }
 

@@ -45,9 +45,9 @@ TEST(UsbfsPipe, CommandsLeaveUnchangedAndInOrder) {
     for (int tries = 0; !pipe->submit(packet) && tries < 1000; ++tries)
       falcon_usb::usb_pause_ns(100'000);
   }
-  ASSERT_TRUE(bus.wait_for([&] { return bus.commands.size() == 50; }));
+  ASSERT_TRUE(bus.wait_for([&] { return Bus::of_loop(bus.commands).size() == 50; }));
   for (int i = 0; i < 50; ++i)
-    EXPECT_EQ(bus.commands[static_cast<std::size_t>(i)],
+    EXPECT_EQ(Bus::of_loop(bus.commands)[static_cast<std::size_t>(i)],
               encode(falcon::FalconCommand{.motor = {i, -i, 7}}));
 }
 
@@ -107,12 +107,11 @@ TEST(UsbfsPipe, ALoopThatFallsSilentIsReplacedByZerosWhichIsTold) {
     falcon_usb::usb_pause_ns(1'000'000);
   }
   EXPECT_GE(monotonic_ns() - before_ns, kLoopGone_ns);
-  ASSERT_EQ(taken(), 2u);
+  ASSERT_GE(taken(), 2u);
   EXPECT_EQ(bus.taken[1], falcon_usb::LoopSilence::zero());
   EXPECT_TRUE(pipe->health().stood_in);
   EXPECT_TRUE(pipe->submit(push));
-  ASSERT_TRUE(bus.wait_for([&] { return bus.taken.size() == 3; }));
-  EXPECT_EQ(bus.taken[2], push);
+  EXPECT_TRUE(bus.wait_for([&] { return Bus::of_loop(bus.taken) == std::vector{push, push}; }));
 }
 
 TEST(UsbfsPipe, ZerosNeedNoTransferOfTheLoops) {
