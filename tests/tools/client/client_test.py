@@ -140,12 +140,13 @@ class Client(unittest.TestCase):
         time.sleep(1.5)
         run.send_signal(signal.SIGXCPU)  # as if the loop had run away
         run.wait(30)
-        box = tact.read_ticks(next(boxes.glob("*.tactlog")))
+        newest = max(boxes.glob("*.tactlog"), key=lambda path: path.stat().st_mtime_ns)  # a busy PC's late tick has its own
+        box = tact.read_ticks(newest)
         self.assertEqual(box.damage, "")
         self.assertGreater(len(box.ticks), 100)
         self.assertGreater(len(box.recording.frames), 0)
         self.assertNotEqual(box.ticks["fault"][-1], 0)
-        data, broken = bytearray(next(boxes.glob("*.tactlog")).read_bytes()), self.folder / "box.tactlog"
+        data, broken = bytearray(newest.read_bytes()), self.folder / "box.tactlog"
         pictures = tact.LOG_HEADER.itemsize + len(box.ticks) * tact.LOG_RECORD.itemsize
         broken.write_bytes(data[:pictures + 1000])
         cut = tact.read_ticks(broken)
