@@ -15,7 +15,6 @@ namespace {
 
 using model::Error;
 
-constexpr std::size_t kHeader = 16, kLinkHeader = 16;
 constexpr std::uint16_t kLinkInfo = 18, kInfoKind = 1, kInfoData = 2;
 constexpr std::uint16_t kMtu = 4;
 constexpr std::uint16_t kCanBitTiming = 1, kCanState = 4, kCanRestartMs = 6, kCanFastTiming = 9;
@@ -130,11 +129,11 @@ CanRate CanLink::rate() const {
 }
 
 std::optional<CanLink> decode_can_link(std::span<const std::uint8_t> message) {
-  if (message.size() < kHeader + kLinkHeader) return std::nullopt;
+  if (message.size() < kNetlinkHeader + kNetlinkLinkHeader) return std::nullopt;
   const std::size_t length = get_u32(message, 0);
-  if (length < kHeader + kLinkHeader || length > message.size()) return std::nullopt;
+  if (length < kNetlinkHeader + kNetlinkLinkHeader || length > message.size()) return std::nullopt;
   if (get_u16(message, 4) != RTM_NEWLINK) return std::nullopt;
-  const auto body = message.subspan(kHeader, length - kHeader);
+  const auto body = message.subspan(kNetlinkHeader, length - kNetlinkHeader);
   CanLink link{.index = get_i32(body, 4),
                .is_can = get_u16(body, 2) == kCanHardware,
                .up = (get_u32(body, 8) & IFF_UP) != 0,
@@ -145,7 +144,7 @@ std::optional<CanLink> decode_can_link(std::span<const std::uint8_t> message) {
                .fast_bitrate = {},
                .state = {},
                .restart_ms = {}};
-  for (const Attribute& one : attributes(body.subspan(kLinkHeader))) {
+  for (const Attribute& one : attributes(body.subspan(kNetlinkLinkHeader))) {
     if (one.type == kLinkInfo) take_link_info(one.value, link);
     if (one.type == kMtu && one.value.size() == 4)
       link.carries_fd = get_u32(one.value, 0) >= kCanFdFrameBytes;

@@ -24,6 +24,9 @@
 
 namespace tact::hal::can {
 
+/// Bytes before a netlink message's body (nlmsghdr), and before a link's attributes in it (ifinfomsg).
+inline constexpr std::size_t kNetlinkHeader = 16, kNetlinkLinkHeader = 16;
+
 /// Of the controller, in the kernel's order.
 enum class CanLinkState : std::uint32_t {
   kActive,

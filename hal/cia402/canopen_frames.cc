@@ -8,8 +8,8 @@
 namespace tact::hal::cia402 {
 namespace {
 
-// CN-1. SYNC and EMCY share 0x080 and never meet: SYNC has no node, a node is at least 1.
-constexpr std::uint32_t kNmtId = 0x000, kSyncId = 0x080, kEmergencyId = 0x080, kSdoReplyId = 0x580,
+// CN-1
+constexpr std::uint32_t kNmtId = 0x000, kEmergencyId = 0x080, kSdoReplyId = 0x580,
                         kSdoRequestId = 0x600, kHeartbeatId = 0x700;
 
 /// CiA 301's connection set: the message's base, and the node in the lower seven bits.
@@ -41,7 +41,7 @@ std::optional<can::CanFrame> canopen_nmt(NmtCommand command, int node_or_all) RT
   return frame;
 }
 
-can::CanFrame canopen_sync() RT_SAFE { return can::make_can_frame(kSyncId, 0); }
+can::CanFrame canopen_sync() RT_SAFE { return can::make_can_frame(kCanopenSyncId, 0); }
 
 std::optional<can::CanFrame> canopen_heartbeat(int node, NmtState state) RT_SAFE {
   if (!is_canopen_node(node)) return std::nullopt;

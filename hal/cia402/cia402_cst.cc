@@ -10,8 +10,7 @@ namespace {
 
 // RPDO1 and TPDO1 of CiA 301's connection set.
 constexpr std::uint32_t kCommandId = 0x200, kSampleId = 0x180;
-constexpr std::uint32_t kMessageOff = 1u << 31;      // of the identifier in 1400 and 1800
-constexpr std::uint32_t kWithoutRequest = 1u << 30;  // of that in 1800
+constexpr std::uint32_t kMessageOff = 1u << 31;  // of the identifier in 1400 and 1800
 
 /// An entry of a mapping: index, sub 0, length in bits.
 constexpr std::uint32_t mapped(std::uint32_t index, std::uint32_t bits) {
@@ -62,7 +61,8 @@ std::optional<CstWrites> cst_configuration(int node, const CstConfiguration& wan
   if (!two || node == wanted.host_node || !timed) return std::nullopt;
   const auto n = static_cast<std::uint32_t>(node);
   // Bit 30 stays as read: drives that serve no remote request insist on it (CN-3).
-  const std::uint32_t sample_id = (wanted.sample_without_request ? kWithoutRequest : 0) | kSampleId;
+  const std::uint32_t sample_id =
+      (wanted.sample_without_request ? kCanopenWithoutRequest : 0) | kSampleId;
   // CiA 301's order for a mapping: message off, count 0, entries, count, message on. Drives refuse
   // an entry of a mapping that counts.
   return CstWrites{{

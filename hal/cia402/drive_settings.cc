@@ -11,9 +11,7 @@ namespace {
 
 // Chosen: 0.2 s for a mode to show in 6061.
 constexpr int kModeLooks = 20, kModeLook_ms = 10;
-constexpr std::uint32_t kTorqueMode = 10;
-constexpr std::uint32_t kWithoutRequest = 1u << 30;
-constexpr std::uint32_t kSyncId = 0x80;
+constexpr std::uint32_t kModeCst = 10;  // in 6060 and 6061
 constexpr std::uint32_t kNoObject = 0x06020000, kNoSubIndex = 0x06090011;
 
 }  // namespace
@@ -22,7 +20,7 @@ std::optional<std::string> DriveSettings::write(int node, CstConfiguration wante
   SdoFailure failure;
   const auto sample_id = sdo_.read(node, {0x1800, 1, 4}, failure);
   if (!sample_id) return sdo_failure_words(failure, 0x1800, 1);
-  wanted.sample_without_request = (*sample_id & kWithoutRequest) != 0;
+  wanted.sample_without_request = (*sample_id & kCanopenWithoutRequest) != 0;
   const auto writes = cst_configuration(node, wanted);
   if (!writes) return "cannot have this node: device.can.node takes 1 to 126";
   // First: a drive that is refused for it keeps what another host has set.
@@ -121,10 +119,10 @@ std::optional<std::string> DriveSettings::expect_sync(int node, const CstConfigu
     if (refused) return sdo_failure_words(*refused, what.index, what.sub);
     return std::nullopt;
   };
-  auto words = write({.index = 0x1005, .sub = 0, .value = kSyncId, .size = 4});
+  auto words = write({.index = 0x1005, .sub = 0, .value = kCanopenSyncId, .size = 4});
   // One that cannot be written may be right already, or not there.
-  const std::uint32_t has = sdo_.read(node, {0x1005, 0, 4}, failure).value_or(kSyncId);
-  if (words && (has & 0x7FFF'FFFFu) != kSyncId) return words;
+  const std::uint32_t has = sdo_.read(node, {0x1005, 0, 4}, failure).value_or(kCanopenSyncId);
+  if (words && (has & 0x7FFF'FFFFu) != kCanopenSyncId) return words;
   const std::uint32_t period_us = 1000u * wanted.period_ms;
   const std::uint32_t counter = sdo_.read(node, {0x1019, 0, 1}, failure).value_or(0);
   const std::uint32_t told_us = sdo_.read(node, {0x1006, 0, 4}, failure).value_or(0);
@@ -144,7 +142,7 @@ std::optional<std::string> DriveSettings::check_mode(int node) {
   std::uint32_t mode = 0;
   for (int looks = 0; looks < kModeLooks; ++looks) {
     const auto shown = sdo_.read(node, {0x6061, 0, 1}, failure);
-    if (!shown || *shown == kTorqueMode) return std::nullopt;
+    if (!shown || *shown == kModeCst) return std::nullopt;
     mode = *shown;
     sdo_.wait(kModeLook_ms);
   }
@@ -153,7 +151,7 @@ std::optional<std::string> DriveSettings::check_mode(int node) {
   return fmt::format(
       "stays in mode {} of operation (object 6061) and does not take cyclic synchronous torque, "
       "{}: set it with its maker's program",
-      static_cast<std::int8_t>(mode), kTorqueMode);
+      static_cast<std::int8_t>(mode), kModeCst);
 }
 
 bool DriveSettings::may_lack(int node, std::uint16_t index) {

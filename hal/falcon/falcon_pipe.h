@@ -15,6 +15,9 @@
 
 namespace tact::hal::falcon {
 
+/// For the last command of a pipe that stops.
+inline constexpr std::int64_t kFalconLastCommand_ns = 50'000'000;
+
 struct FalconReply {
   FalconReport report;
   std::int64_t stamp_ns = 0;   // CLOCK_MONOTONIC when it came off the bus
@@ -55,7 +58,7 @@ class FalconPipe {
   /// Any thread.
   virtual FalconPipeHealth health() const RT_SAFE = 0;
   /// Sends one last command, after any end but kUnplugged too, until the device has it, for at most
-  /// 50 ms; ends the thread, gives the interface back. Safe to call twice.
+  /// kFalconLastCommand_ns; ends the thread, gives the interface back. Safe to call twice.
   virtual void stop(const FalconPacket& last) = 0;
 };
 

@@ -14,8 +14,7 @@ namespace tact::hal::falcon_usb {
 namespace {
 
 constexpr int kPollWait_ms = 100;  // as LoopSilence: on a mute bus its end looks after the loop
-constexpr std::int64_t kLastCommand_ns = 50'000'000;
-constexpr int kDrainTurns = 400;  // of FalconTurns::kPause_ns: 0.2 s
+constexpr int kDrainTurns = 400;   // of FalconTurns::kPause_ns: 0.2 s
 
 int error_of(libusb_transfer_status status) {
   switch (status) {
@@ -233,7 +232,7 @@ bool LibusbPipe::drain() {
 
 /// Has the device taken it?
 bool LibusbPipe::send_last(const falcon::FalconPacket& last) {
-  const std::int64_t until_ns = monotonic_ns() + kLastCommand_ns;
+  const std::int64_t until_ns = monotonic_ns() + falcon::kFalconLastCommand_ns;
   const auto may_wait = [&] {
     return !receiver_.gone() && !thread_.ended() && monotonic_ns() < until_ns;
   };

@@ -13,8 +13,6 @@
 namespace tact::hal::falcon_usb {
 namespace {
 
-// 50 ms as falcon_pipe.h promises.
-constexpr std::int64_t kLastCommand_ns = 50'000'000;
 constexpr std::int64_t kStopPause_ns = 1'000'000;
 
 bool is_gone(int error) RT_SAFE { return error == ENODEV || error == ESHUTDOWN; }
@@ -169,7 +167,7 @@ bool UsbfsPipe::any_busy(std::size_t from) const {
 
 /// Has the device taken it? Commands come back in the order they left.
 bool UsbfsPipe::send_last(const falcon::FalconPacket& last) {
-  const std::int64_t until_ns = monotonic_ns() + kLastCommand_ns;
+  const std::int64_t until_ns = monotonic_ns() + falcon::kFalconLastCommand_ns;
   const auto wait = [&](auto done) {
     for (;;) {
       if (done()) return true;

@@ -14,7 +14,7 @@ namespace {
 
 // Of the doublings, and of Newton and bisection together,
 // which need 60 for the last bit of a double.
-constexpr int kMaxIterations = 100;
+constexpr int kMaxTipSteps = 100;
 
 const char* parameter_error(const ComplianceCurveParameters& p) {
   if (!is_positive(p.tip.youngs_modulus_Pa)) return "youngs_modulus_Pa must be finite and above 0";
@@ -77,10 +77,10 @@ TipState ComplianceCurve::exact(double depth_m) const RT_SAFE {
   // R s tanh s grows without limit, and CL-3 keeps the
   // slope above zero: some doubling is deep enough.
   double low = 0.0, high = 1.0;
-  for (int i = 0; i < kMaxIterations && below(tip_state(tip_, high)) > 0.0; ++i)
+  for (int i = 0; i < kMaxTipSteps && below(tip_state(tip_, high)) > 0.0; ++i)
     low = high, high *= 2.0;
   double s = 0.5 * (low + high);
-  for (int i = 0; i < kMaxIterations; ++i) {
+  for (int i = 0; i < kMaxTipSteps; ++i) {
     const TipState at = tip_state(tip_, s);
     const double miss_m = below(at);
     (miss_m > 0.0 ? low : high) = s;

@@ -12,7 +12,7 @@ namespace tact::model::indent {
 namespace {
 
 // 20 steps are enough for every sheet that the tests try.
-constexpr int kMaxIterations = 60;
+constexpr int kMaxSheetSteps = 60;
 constexpr int kMaxHalvings = 30;
 // HX-28: the force settles with a few rings; this many stand for a sheet without end.
 constexpr std::size_t kEndlessRings = 255;
@@ -62,7 +62,7 @@ class Solver {
       w_[i] = depth_m * left * left * left;
     }
     energy_J_ = assemble();
-    for (iterations_ = 0; iterations_ < kMaxIterations; ++iterations_)
+    for (iterations_ = 0; iterations_ < kMaxSheetSteps; ++iterations_)
       // A step below the rounding of the depth: nothing moves any more.
       if (newton_step() <= 1e-13 * depth_m) break;
   }

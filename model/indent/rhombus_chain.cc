@@ -11,7 +11,7 @@ namespace {
 
 // Of the doublings, and of Newton and bisection together,
 // which need 60 for the last bit of a double.
-constexpr int kMaxIterations = 100;
+constexpr int kMaxChainSteps = 100;
 
 const char* parameter_error(const RhombusChainParameters& p) {
   if (!is_positive(p.rod_length_m)) return "rod_length_m must be finite and above 0";
@@ -104,11 +104,11 @@ ChainState RhombusChain::at_depth(double depth_m) const RT_SAFE {
   double low = 0.0, high = force_limit_N();
   if (depth_m < 0.0) {
     high = 0.0, low = -force_limit_N();
-    for (int i = 0; i < kMaxIterations && solve_force(low).depth_m > depth_m; ++i) low *= 2.0;
+    for (int i = 0; i < kMaxChainSteps && solve_force(low).depth_m > depth_m; ++i) low *= 2.0;
   }
   double force_N = solve_force(0.0).stiffness_N_per_m * depth_m;
   if (!(force_N > low && force_N < high)) force_N = 0.5 * (low + high);
-  for (int i = 0; i < kMaxIterations; ++i) {
+  for (int i = 0; i < kMaxChainSteps; ++i) {
     const ChainState at = solve_force(force_N);
     (at.depth_m < depth_m ? low : high) = force_N;
     double next = force_N - (at.depth_m - depth_m) * at.stiffness_N_per_m;

@@ -7,7 +7,7 @@
 namespace tact::model::indent {
 namespace {
 
-constexpr int kMaxIterations = 100;  // bisection alone needs 60 to reach the last bit
+constexpr int kMaxUnitSteps = 100;  // bisection alone needs 60 to reach the last bit
 
 struct InitialSides {
   double s0, c0;  // sin and cos of theta0
@@ -106,7 +106,7 @@ double shortening_at(const RhombusUnit& unit, const UnitPressLimit& limit, doubl
   const InitialSides initial = initial_sides(unit);
   double x = force_N / force_and_slope(unit, initial, 0.0).k, before = x;
   if (!(x > low && x < high)) x = 0.5 * (low + high);
-  for (int i = 0; i < kMaxIterations; ++i) {
+  for (int i = 0; i < kMaxUnitSteps; ++i) {
     const auto [f, k] = force_and_slope(unit, initial, x);
     (f < force_N ? low : high) = x;
     double next = x - (f - force_N) / k;

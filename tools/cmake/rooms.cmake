@@ -1,20 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
 # What a folder can declare: tact_room, tact_part, tact_program, tact_test.
 
-# tact_room([SOURCES a.cc...] [PARTS folder...] LINKS target... [MOSTLY_LIBRARY])
+# tact_room([SOURCES a.cc...] [ALONE a.cc...] [PARTS folder...] LINKS target... [MOSTLY_LIBRARY])
 # This folder as a library: model/law is the target tact_model_law. LINKS names the rooms that it
 # may include (tests/house/layering_test.py holds it to them) and the libraries that it uses. PARTS:
-# its own folders, each with a tact_part of its sources.
+# its own folders, each with a tact_part of its sources. ALONE: those of SOURCES that no unity build takes up, as
+# a test defines their functions in their place, or they define the heap's.
 # MOSTLY_LIBRARY: more code of libraries' templates than computing. It is optimised less (-O1: host/server compiles
 # in half the time), and not at all under a sanitizer.
 function(tact_room)
-  cmake_parse_arguments(ARG "MOSTLY_LIBRARY" "" "SOURCES;PARTS;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "MOSTLY_LIBRARY" "" "SOURCES;ALONE;PARTS;LINKS" ${ARGN})
   tact_room_name(room)
   if(ARG_SOURCES OR ARG_PARTS)
     add_library(tact_${room} STATIC ${ARG_SOURCES})
+    set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     target_link_libraries(tact_${room} PUBLIC tact_flags ${ARG_LINKS})
-    set_target_properties(tact_${room} PROPERTIES TACT_MOSTLY_LIBRARY ${ARG_MOSTLY_LIBRARY})
-    if(ARG_MOSTLY_LIBRARY AND NOT TACT_SANITIZE)
+    if(ARG_MOSTLY_LIBRARY AND TACT_SANITIZE)
+      target_compile_options(tact_${room} PRIVATE -O0)
+    elseif(ARG_MOSTLY_LIBRARY)
       target_compile_options(tact_${room} PRIVATE -O1)
     endif()
     set(TACT_ROOM ${room})  # for tact_part
