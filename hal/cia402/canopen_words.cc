@@ -7,7 +7,7 @@ namespace {
 constexpr std::uint32_t kExact = 0xFFFFFFFF, kFamily = 0xFF00, kGroup = 0xF000;
 
 // The first entry that fits is told: a group before its exact codes would hide them.
-constexpr CanopenWords kEmergency[] = {
+constexpr CanopenWords kEmergencyWords[] = {
     {0x3210, kExact, "DC bus voltage too high: brake more gently or fit a brake resistor."},
     {0x3220, kExact, "DC bus voltage too low: is the drive's supply on?"},
     {0x4210, kExact, "The drive is too hot: let it cool and check its cooling."},
@@ -97,10 +97,10 @@ const char* sentence_of(std::uint32_t code, std::span<const CanopenWords> words)
 
 }  // namespace
 
-std::span<const CanopenWords> emergency_words() RT_SAFE { return kEmergency; }
+std::span<const CanopenWords> emergency_words() RT_SAFE { return kEmergencyWords; }
 std::span<const CanopenWords> sdo_abort_words() RT_SAFE { return kAbort; }
 
-const char* emergency_sentence(std::uint16_t code) RT_SAFE { return sentence_of(code, kEmergency); }
+const char* emergency_sentence(std::uint16_t code) RT_SAFE { return sentence_of(code, kEmergencyWords); }
 const char* sdo_abort_sentence(std::uint32_t code) RT_SAFE { return sentence_of(code, kAbort); }
 
 const char* nmt_sentence(NmtState state) {
