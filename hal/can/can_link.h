@@ -24,7 +24,8 @@
 
 namespace tact::hal::can {
 
-/// Bytes before a netlink message's body (nlmsghdr), and before a link's attributes in it (ifinfomsg).
+/// Bytes before a netlink message's body (nlmsghdr), and in it before a link's attributes
+/// (ifinfomsg).
 inline constexpr std::size_t kNetlinkHeader = 16, kNetlinkLinkHeader = 16;
 
 /// Of the controller, in the kernel's order.

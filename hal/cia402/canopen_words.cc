@@ -100,7 +100,9 @@ const char* sentence_of(std::uint32_t code, std::span<const CanopenWords> words)
 std::span<const CanopenWords> emergency_words() RT_SAFE { return kEmergencyWords; }
 std::span<const CanopenWords> sdo_abort_words() RT_SAFE { return kAbort; }
 
-const char* emergency_sentence(std::uint16_t code) RT_SAFE { return sentence_of(code, kEmergencyWords); }
+const char* emergency_sentence(std::uint16_t code) RT_SAFE {
+  return sentence_of(code, kEmergencyWords);
+}
 const char* sdo_abort_sentence(std::uint32_t code) RT_SAFE { return sentence_of(code, kAbort); }
 
 const char* nmt_sentence(NmtState state) {

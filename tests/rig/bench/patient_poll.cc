@@ -8,9 +8,9 @@
 // the run is no longer the same. A busy host makes that happen every few seconds. So here
 //   - a time-out becomes one second: the CPU thread wakes the main loop each time it goes idle;
 //   - a poll returns once the CPU thread waits on its condition, or after a second;
-//   - or once, when the CPU thread tells it twice at the same guest time that a timer is due: that one
-//     is the main loop's to run, and no instruction runs before it has. Without this each such timer
-//     cost a second of this host's time, half of the bench's.
+//   - or once, when the CPU thread tells it twice at the same guest time that a timer is due: that
+//     one is the main loop's to run, and no instruction runs before it has. Without this each such
+//     timer cost a second of this host's time, half of the bench's.
 // The CPU thread holds QEMU's big lock when it says that it is idle and gives it up in the wait
 // itself, so the main loop, which takes that lock next, finds all instructions accounted.
 //
