@@ -33,7 +33,7 @@ constexpr int kSeccompCode = 1;
 
 // Read by a signal handler in the loop's thread: lock-free, and
 // in the default order, as nothing here is in a hurry.
-std::atomic<loop::Requests*> of_filter{nullptr};
+std::atomic<loop::Requests*> filter_requests{nullptr};
 std::atomic<int> refused{-1};  // number of the first refused call
 thread_local bool in_loop = false;
 
@@ -57,7 +57,7 @@ void answer([[maybe_unused]] ucontext_t& context, [[maybe_unused]] long long res
 void on_refused(int, siginfo_t* info, void* context) {
   if (info->si_code != kSeccompCode) return;  // somebody sent it; nothing was called
   answer(*static_cast<ucontext_t*>(context), info->si_syscall == SYS_futex ? -EAGAIN : -EPERM);
-  loop::Requests* requests = of_filter.load();
+  loop::Requests* requests = filter_requests.load();
   if (requests == nullptr || !in_loop) return;
   int none = -1;
   // The first call is the one to tell: what is refused after it may follow from it.
@@ -93,14 +93,14 @@ class Filter final : public CallFilter {
  public:
   Filter(Context context, loop::Requests& requests) : context_(std::move(context)) {
     refused.store(-1);
-    of_filter.store(&requests);
+    filter_requests.store(&requests);
     struct sigaction action{};
     action.sa_sigaction = on_refused;
     // SIGSYS tells which call it was (si_syscall); without a handler it would end the process.
     action.sa_flags = SA_SIGINFO;
     sigaction(SIGSYS, &action, nullptr);
   }
-  ~Filter() override { of_filter.store(nullptr); }
+  ~Filter() override { filter_requests.store(nullptr); }
 
   int enter_thread() override {
     const int refused_by_kernel = -seccomp_load(context_.get());  // frees memory behind the filter

@@ -10,13 +10,13 @@
 namespace tact::firmware::watch {
 namespace {
 
-std::atomic<loop::Requests*> of_runaway{nullptr};
+std::atomic<loop::Requests*> runaway_requests{nullptr};
 static_assert(std::atomic<loop::Requests*>::is_always_lock_free);
 
 // In whatever thread; lock-free stores only. A loop that does not sleep must end: nothing else
 // would give its core back.
 void on_runaway(int) {
-  loop::Requests* requests = of_runaway.load();
+  loop::Requests* requests = runaway_requests.load();
   if (requests == nullptr) return;
   requests->trip(model::Fault::kLoopRanAway);
   requests->stop.store(true);
@@ -42,7 +42,7 @@ std::optional<pc::Shortfall> lift_rttime_limit() {
 }
 
 RunawayGuard::RunawayGuard(loop::Requests& requests, rlim_t longest_us) {
-  of_runaway.store(&requests);
+  runaway_requests.store(&requests);
   struct sigaction action{};
   action.sa_handler = on_runaway;
   // The signal may meet any thread: its calls go on as if nothing had been.
@@ -58,7 +58,7 @@ RunawayGuard::RunawayGuard(loop::Requests& requests, rlim_t longest_us) {
 // The handler stays: a signal that is still on its way must not end the process.
 RunawayGuard::~RunawayGuard() {
   setrlimit(RLIMIT_RTTIME, &before_);
-  of_runaway.store(nullptr);
+  runaway_requests.store(nullptr);
 }
 
 }  // namespace tact::firmware::watch

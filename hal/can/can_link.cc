@@ -129,11 +129,12 @@ CanRate CanLink::rate() const {
 }
 
 std::optional<CanLink> decode_can_link(std::span<const std::uint8_t> message) {
-  if (message.size() < kNetlinkHeader + kNetlinkLinkHeader) return std::nullopt;
+  if (message.size() < kNetlinkHeader_bytes + kNetlinkLinkHeader_bytes) return std::nullopt;
   const std::size_t length = get_u32(message, 0);
-  if (length < kNetlinkHeader + kNetlinkLinkHeader || length > message.size()) return std::nullopt;
+  if (length < kNetlinkHeader_bytes + kNetlinkLinkHeader_bytes || length > message.size())
+    return std::nullopt;
   if (get_u16(message, 4) != RTM_NEWLINK) return std::nullopt;
-  const auto body = message.subspan(kNetlinkHeader, length - kNetlinkHeader);
+  const auto body = message.subspan(kNetlinkHeader_bytes, length - kNetlinkHeader_bytes);
   CanLink link{.index = get_i32(body, 4),
                .is_can = get_u16(body, 2) == kCanHardware,
                .up = (get_u32(body, 8) & IFF_UP) != 0,
@@ -144,7 +145,7 @@ std::optional<CanLink> decode_can_link(std::span<const std::uint8_t> message) {
                .fast_bitrate = {},
                .state = {},
                .restart_ms = {}};
-  for (const Attribute& one : attributes(body.subspan(kNetlinkLinkHeader))) {
+  for (const Attribute& one : attributes(body.subspan(kNetlinkLinkHeader_bytes))) {
     if (one.type == kLinkInfo) take_link_info(one.value, link);
     if (one.type == kMtu && one.value.size() == 4)
       link.carries_fd = get_u32(one.value, 0) >= kCanFdFrameBytes;

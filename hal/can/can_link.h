@@ -26,7 +26,7 @@ namespace tact::hal::can {
 
 /// Bytes before a netlink message's body (nlmsghdr), and in it before a link's attributes
 /// (ifinfomsg).
-inline constexpr std::size_t kNetlinkHeader = 16, kNetlinkLinkHeader = 16;
+inline constexpr std::size_t kNetlinkHeader_bytes = 16, kNetlinkLinkHeader_bytes = 16;
 
 /// Of the controller, in the kernel's order.
 enum class CanLinkState : std::uint32_t {

@@ -121,11 +121,11 @@ Result<CanLink> read_can_link(const std::string& name) {
   };
   const timeval patience{.tv_sec = kReplyTimeout_ms / 1000, .tv_usec = 0};
   setsockopt(file.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-  std::array<std::uint8_t, kNetlinkHeader + kNetlinkLinkHeader> request{};
+  std::array<std::uint8_t, kNetlinkHeader_bytes + kNetlinkLinkHeader_bytes> request{};
   put_unsigned(request, 0, 4, request.size());
   put_unsigned(request, 4, 2, RTM_GETLINK);
   put_unsigned(request, 6, 2, NLM_F_REQUEST);
-  put_unsigned(request, kNetlinkHeader + 4, 4, if_nametoindex(name.c_str()));
+  put_unsigned(request, kNetlinkHeader_bytes + 4, 4, if_nametoindex(name.c_str()));
   if (send(file.get(), request.data(), request.size(), 0) < 0)
     return refused(name, "cannot ask for its state", errno, kLookAtLink);
   std::vector<std::uint8_t> reply(32768);

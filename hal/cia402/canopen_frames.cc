@@ -8,7 +8,7 @@
 namespace tact::hal::cia402 {
 namespace {
 
-// CN-1  each message has a base; a node adds its number
+// CN-1  the identifiers; those of a node are a base and its number
 constexpr std::uint32_t kNmtId = 0x000, kEmergencyId = 0x080, kSdoReplyId = 0x580,
                         kSdoRequestId = 0x600, kHeartbeatId = 0x700;
 

@@ -18,8 +18,6 @@ namespace tact::hal::cia402 {
 
 /// CN-1. EMCY has it as its base, too, and they never meet: SYNC has no node, a node is at least 1.
 inline constexpr std::uint32_t kCanopenSyncId = 0x080;
-/// Bit of the identifier in 1800.
-inline constexpr std::uint32_t kCanopenWithoutRequest = 1u << 30;
 inline constexpr int kCanopenLargestNode = 127;
 inline constexpr int kCanopenAllNodes = 0;  // for NMT alone
 

@@ -24,7 +24,7 @@ constexpr int kSettle_ms = 1000, kRest_ms = 100;
 // Turns of a motor between two looks at resting arms; a free arm of DK-8 falls by 0.3.
 constexpr double kRest_turns = 0.02;
 // The profile is the lower half of object 1000. Bit 9 of 6502: cyclic synchronous torque.
-constexpr std::uint32_t kProfile402 = 402, kCanDoCst = 1u << 9;
+constexpr std::uint32_t kProfile402 = 402, kCstModeBit = 1u << 9;
 constexpr SdoEntry kDeviceType{0x1000, 0, 4};
 
 class BringUp {
@@ -83,7 +83,7 @@ class BringUp {
     // Not every drive has 6502 (CN-5); DriveSettings looks at 6061 besides.
     SdoFailure none;  // an optional setting
     const auto modes = sdo_.read(can_.node[i], {0x6502, 0, 4}, none);
-    if (modes && (*modes & kCanDoCst) == 0) {
+    if (modes && (*modes & kCstModeBit) == 0) {
       return wrong(i,
                    "cannot do cyclic synchronous torque: update its firmware, or take a drive "
                    "that can");

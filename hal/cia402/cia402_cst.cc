@@ -62,7 +62,7 @@ std::optional<CstWrites> cst_configuration(int node, const CstConfiguration& wan
   const auto n = static_cast<std::uint32_t>(node);
   // Bit 30 stays as read: drives that serve no remote request insist on it (CN-3).
   const std::uint32_t sample_id =
-      (wanted.sample_without_request ? kCanopenWithoutRequest : 0) | kSampleId;
+      (wanted.sample_without_request ? kCstWithoutRequest : 0) | kSampleId;
   // CiA 301's order for a mapping: message off, count 0, entries, count, message on. Drives refuse
   // an entry of a mapping that counts.
   return CstWrites{{

@@ -32,6 +32,9 @@ struct CstSample {
 };
 std::optional<CstSample> decode_cst_sample(const can::CanFrame& frame, int node) RT_SAFE;
 
+/// Bit 30 of 1800:01: no remote request.
+inline constexpr std::uint32_t kCstWithoutRequest = 1u << 30;
+
 struct CstConfiguration {
   int host_node = 127;
   std::uint16_t host_timeout_ms = 20;  // without the host's heartbeat the drive stops
@@ -40,7 +43,7 @@ struct CstConfiguration {
   /// 255: torque is applied as it arrives; 1: at the next SYNC, a cycle later, if the drive
   /// insists.
   std::uint8_t command_transmission_type = 255;
-  /// Bit 30 of 1800:01, "no remote request", as the drive has it: some insist on it.
+  /// kCstWithoutRequest as the drive has it: some insist on it.
   bool sample_without_request = false;
 };
 inline constexpr std::size_t kCstWrites = 21;

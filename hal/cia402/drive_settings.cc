@@ -20,7 +20,7 @@ std::optional<std::string> DriveSettings::write(int node, CstConfiguration wante
   SdoFailure failure;
   const auto sample_id = sdo_.read(node, {0x1800, 1, 4}, failure);
   if (!sample_id) return sdo_failure_words(failure, 0x1800, 1);
-  wanted.sample_without_request = (*sample_id & kCanopenWithoutRequest) != 0;
+  wanted.sample_without_request = (*sample_id & kCstWithoutRequest) != 0;
   const auto writes = cst_configuration(node, wanted);
   if (!writes) return "cannot have this node: device.can.node takes 1 to 126";
   // First: a drive that is refused for it keeps what another host has set.

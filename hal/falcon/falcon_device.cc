@@ -12,8 +12,6 @@
 namespace tact::hal::falcon {
 namespace {
 
-using Trouble = FalconTrouble::What;
-
 constexpr double kJump_m = 5e-3;              // between two samples: a new start
 constexpr double kDeadBandRamp_words = 20.0;  // a force near zero does not chatter
 // Silent means both: in a loop above 1 kHz an answer takes several ticks.
@@ -40,7 +38,7 @@ FalconDevice::FalconDevice(const model::FalconSettings& settings, std::unique_pt
     : settings_(settings),
       pipe_(std::move(pipe)),
       velocity_(settings.observer_bandwidth_Hz, kJump_m),
-      trouble_(FalconTrouble{.what = Trouble::kNotHomed}.packed()) {}
+      trouble_(FalconTrouble{.what = FalconTrouble::What::kNotHomed}.packed()) {}
 
 FalconDevice::~FalconDevice() { stop(); }
 
@@ -96,10 +94,11 @@ bool FalconDevice::take(const FalconReply& reply, std::int64_t now_ns) RT_SAFE {
 bool FalconDevice::follow_homing(const FalconReport& report) RT_SAFE {
   const bool homed = report.all_homed();
   if (homed_ && !homed)
-    latch(Fault::kHomingLost, {.what = Trouble::kHomingLost, .homed = report.homed});
+    latch(Fault::kHomingLost, {.what = FalconTrouble::What::kHomingLost, .homed = report.homed});
   if (homed_ || fault_ != Fault::kNone) return homed;
-  const FalconTrouble state{.what = homed ? Trouble::kNone : Trouble::kNotHomed,
-                            .homed = report.homed};
+  const FalconTrouble state{
+      .what = homed ? FalconTrouble::What::kNone : FalconTrouble::What::kNotHomed,
+      .homed = report.homed};
   // Relaxed: one word that says all; nothing else is published by it. The same in latch().
   trouble_.store(state.packed(), std::memory_order_relaxed);
   if (!homed) return false;
@@ -138,25 +137,27 @@ void FalconDevice::judge_silence(std::int64_t now_ns) RT_SAFE {
   // Who sends rubbish is named as garbled, before the longer silence would name it mute.
   const bool babbles = misfits_ > 0 || health.dropped_bytes != dropped_before_;
   if (babbles && silence_ns >= kGarbled_ns)
-    latch(Fault::kDeviceGarbled, {.what = Trouble::kGarbled, .line_errors = health.line_errors});
+    latch(Fault::kDeviceGarbled,
+          {.what = FalconTrouble::What::kGarbled, .line_errors = health.line_errors});
   if (silence_ns >= kMute_ns && misses_ >= kMuteTicks)
-    latch(Fault::kDeviceLost, {.what = Trouble::kSilent});
+    latch(Fault::kDeviceLost, {.what = FalconTrouble::What::kSilent});
 }
 
 void FalconDevice::check_pipe() RT_SAFE {
   const FalconPipeHealth health = pipe_->health();
   const auto error = static_cast<std::uint16_t>(health.error);
   // The hand has felt zero since; what the gate would go on with is the force from before.
-  if (health.stood_in) return latch(Fault::kLoopStalled, {.what = Trouble::kStoodIn});
+  if (health.stood_in) return latch(Fault::kLoopStalled, {.what = FalconTrouble::What::kStoodIn});
   switch (health.end) {
     case FalconPipeEnd::kOpen:
       return;
     case FalconPipeEnd::kUnplugged:
-      return latch(Fault::kDeviceUnplugged, {.what = Trouble::kUnplugged, .error = error});
+      return latch(Fault::kDeviceUnplugged,
+                   {.what = FalconTrouble::What::kUnplugged, .error = error});
     case FalconPipeEnd::kStalled:
-      return latch(Fault::kDeviceFailed, {.what = Trouble::kStalled, .error = error});
+      return latch(Fault::kDeviceFailed, {.what = FalconTrouble::What::kStalled, .error = error});
     case FalconPipeEnd::kBroken:
-      return latch(Fault::kDeviceFailed, {.what = Trouble::kBroken, .error = error});
+      return latch(Fault::kDeviceFailed, {.what = FalconTrouble::What::kBroken, .error = error});
   }
 }
 

@@ -11,7 +11,7 @@
 namespace tact::model::springs {
 namespace {
 
-constexpr double kNoLimit_s = std::numeric_limits<double>::infinity();
+constexpr double kUnlimited_s = std::numeric_limits<double>::infinity();
 // MA-20 bounds the fastest mode from above; of the step that it allows this much is taken.
 constexpr double kMargin = 0.8;
 
@@ -19,8 +19,8 @@ constexpr double kMargin = 0.8;
 struct Bounds {
   double omega_radps = 0.0;
   std::size_t fastest_node = 0;
-  double low_s = kNoLimit_s, high_s = 0.0;  // tau
-  double drag_per_s = 0.0;                  // max g / m
+  double low_s = kUnlimited_s, high_s = 0.0;  // tau
+  double drag_per_s = 0.0;                    // max g / m
 
   void add_ratio(double damping, double stiffness) {
     if (!(stiffness > 0.0)) return;
@@ -67,7 +67,7 @@ std::string text(const char* format, double v) {
 
 /// The shortest step that some mode allows: 12 octaves down, by quarters, and five dampings each.
 StepLimit limit_of(const Bounds& bounds, const Method& method) {
-  StepLimit out{.step_s = kNoLimit_s,
+  StepLimit out{.step_s = kUnlimited_s,
                 .omega_radps = bounds.omega_radps,
                 .critical_radps = bounds.omega_radps,
                 .fastest_node = bounds.fastest_node};

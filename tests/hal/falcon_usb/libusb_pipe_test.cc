@@ -37,25 +37,28 @@ TEST_F(LibusbPipeTest, TheLoopsSideOfACommandLeavesTheHeapAlone) {
   }
   EXPECT_EQ(calls, 0u);
   ASSERT_TRUE(wait_for([&] { return locked([&] { return !usb.commands.empty(); }); }));
-  EXPECT_TRUE(std::ranges::equal(usb.commands[0], packet));
+  EXPECT_EQ(locked([&] { return usb.commands[0]; }), bytes_of(packet));
 }
 
 TEST_F(LibusbPipeTest, ALoopThatFallsSilentIsReplacedByZerosWhichIsTold) {
   const falcon::FalconPacket push = encode(falcon::FalconCommand{.motor = {900, 900, 900}});
   EXPECT_FALSE(pipe->health().stood_in);
   for (const bool answers : {true, false}) {  // the adapter's latency timer, or nothing at all
-    const std::size_t before = locked([&] { return usb.taken.size(); });
+    pipe.reset();
+    open();
+    locked([&] { usb.taken.clear(); });
     const std::int64_t before_ns = monotonic_ns();
     EXPECT_TRUE(pipe->submit(push));
     EXPECT_TRUE(wait_for([&] {
       if (answers) send({0x01, 0x60});
-      return locked([&] { return usb.taken.size() >= before + 2; });
+      return locked([&] { return usb.taken.size() >= 2; });
     }));
     EXPECT_GE(monotonic_ns() - before_ns, kLoopGone_ns);
-    locked([&] {
-      EXPECT_TRUE(std::ranges::equal(usb.taken[before], push));
-      EXPECT_TRUE(std::ranges::equal(usb.taken[before + 1], LoopSilence::zero()));
-    });
+    const std::vector<tests::Bytes> taken = locked([&] { return usb.taken; });
+    ASSERT_GE(taken.size(), 2u);
+    if (monotonic_ns() - before_ns < 2 * kLoopGone_ns) EXPECT_EQ(taken.size(), 2u);
+    EXPECT_EQ(taken[0], bytes_of(push));
+    EXPECT_EQ(taken[1], bytes_of(LoopSilence::zero()));
     EXPECT_TRUE(pipe->health().stood_in);
   }
 }
@@ -81,21 +84,31 @@ TEST_F(LibusbPipeTest, SilenceIsCountedFromTheCommandAndNotFromTheReplyBefore) {
 }
 
 TEST_F(LibusbPipeTest, TwoCommandsAreUnderWayAndTheNewestOfTheOthersFollows) {
-  locked([&] { usb.keeps_out = true; });
-  for (int i = 1; i <= 6; ++i) {
-    EXPECT_TRUE(pipe->submit(numbered(i)));
-    const auto expected = static_cast<std::size_t>(std::min(i, 2));
-    ASSERT_TRUE(wait_for([&] { return locked([&] { return usb.commands.size() >= expected; }); }));
-    usb_pause_ns(2'000'000);
+  for (int i = 0; i < 10; ++i, pipe.reset(), open()) {
+    locked([&] { usb.commands.clear(), usb.keeps_out = true; });
+    const std::int64_t before_ns = monotonic_ns();
+    for (int k = 1; k <= 6; ++k) {
+      EXPECT_TRUE(pipe->submit(numbered(k)));
+      const auto expected = static_cast<std::size_t>(std::min(k, 2));
+      ASSERT_TRUE(
+          wait_for([&] { return locked([&] { return usb.commands.size() >= expected; }); }));
+      usb_pause_ns(2'000'000);
+    }
+    const std::size_t under_way = locked([&] { return usb.commands.size(); });
+    locked([&] {
+      usb.keeps_out = false;
+      usb.complete(usb.out.front(), LIBUSB_TRANSFER_COMPLETED, tests::Bytes(16));
+      usb.out.pop_front();
+    });
+    ASSERT_TRUE(wait_for([&] { return locked([&] { return usb.commands.size() >= 3; }); }));
+    const std::vector<tests::Bytes> commands = locked([&] { return usb.commands; });
+    if (monotonic_ns() - before_ns >= kLoopGone_ns) continue;  // a busy PC: silent indeed
+    EXPECT_EQ(under_way, 2u);
+    ASSERT_EQ(commands.size(), 3u);
+    EXPECT_EQ(commands[2], bytes_of(numbered(6)));
+    return;
   }
-  EXPECT_EQ(locked([&] { return of_loop(usb.commands).size(); }), 2u);
-  locked([&] {
-    usb.keeps_out = false;
-    usb.complete(usb.out.front(), LIBUSB_TRANSFER_COMPLETED, tests::Bytes(16));
-    usb.out.pop_front();
-  });
-  ASSERT_TRUE(wait_for([&] { return locked([&] { return of_loop(usb.commands).size() == 3; }); }));
-  EXPECT_EQ(of_loop(usb.commands)[2], bytes_of(numbered(6)));
+  FAIL() << "ten times slower than " << kLoopGone_ns << " ns";
 }
 
 TEST_F(LibusbPipeTest, StoppingSendsTheLastCommandAndEndsTheThreadQuietly) {
@@ -147,6 +160,7 @@ TEST_F(LibusbPipeTest, AfterAStallCommandsStillReachTheDeviceAndStoppingSendsThe
   send({}, LIBUSB_TRANSFER_STALL);
   ASSERT_TRUE(wait_for_fault());
   std::vector<tests::Bytes> expected;
+  const std::int64_t before_ns = monotonic_ns();
   for (int i = 1; i <= 4; ++i) {
     EXPECT_TRUE(pipe->submit(numbered(i)));
     expected.push_back(bytes_of(numbered(i)));
@@ -155,6 +169,7 @@ TEST_F(LibusbPipeTest, AfterAStallCommandsStillReachTheDeviceAndStoppingSendsThe
   pipe->stop(numbered(5));
   expected.push_back(bytes_of(numbered(5)));
   EXPECT_EQ(of_loop(usb.taken), expected);
+  if (monotonic_ns() - before_ns < kLoopGone_ns) EXPECT_EQ(usb.taken, expected);
   EXPECT_EQ(usb.cleared,
             std::vector<unsigned>{falcon::kFalconEndpointIn});  // for whoever opens it next
 }
@@ -226,6 +241,7 @@ TEST_F(LibusbPipeTest, ReadinessWithoutEndAndWithoutResultIsLeftWithoutSpinning)
   EXPECT_LE(calls, FalconTurns::kFree + 2 + paused);
   EXPECT_TRUE(pipe->submit(zero_command));
   EXPECT_TRUE(wait_for([&] { return locked([&] { return !usb.taken.empty(); }); }));
+  EXPECT_EQ(locked([&] { return usb.taken[0]; }), bytes_of(zero_command));
   EXPECT_EQ(pipe->health().end, falcon::FalconPipeEnd::kBroken);
 }
 

@@ -43,6 +43,11 @@ struct Bus {
     std::erase(all, falcon_usb::LoopSilence::zero());
     return all;
   }
+  /// A copy: the thread may be adding to it.
+  std::vector<falcon::FalconPacket> taken_now() {
+    const std::lock_guard lock(mutex);
+    return taken;
+  }
   template <typename Condition>
   bool wait_for(Condition condition) {
     std::unique_lock lock(mutex);

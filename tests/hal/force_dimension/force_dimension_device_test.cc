@@ -24,7 +24,7 @@ class ForceDimension : public tests::DeviceLoop {
   struct Calls {
     long reads = 0, forces = 0, switches = 0;
   };
-  /// Of one moment: the worker has read nothing meanwhile.
+  /// Of the same cycle of the worker: it has read and switched nothing meanwhile.
   Calls calls() const {
     const auto reads = [&] { return stub.calls("dhdGetPositionAndOrientationFrame"); };
     Calls c;
@@ -32,7 +32,7 @@ class ForceDimension : public tests::DeviceLoop {
       c = {.reads = reads(),
            .forces = stub.calls("dhdSetForceAndTorqueAndGripperForce"),
            .switches = stub.calls("dhdEnableForce")};
-    } while (reads() != c.reads);
+    } while (reads() != c.reads || stub.calls("dhdEnableForce") != c.switches);
     return c;
   }
 
