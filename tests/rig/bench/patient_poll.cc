@@ -74,9 +74,9 @@ extern "C" int pthread_cond_wait(pthread_cond_t* condition, pthread_mutex_t* mut
   return result;
 }
 
-/// When a timer is due the CPU thread writes to each eventfd of the main loop, then runs those timers
-/// that it may: to be stuck is to write to the first one again. It writes so outside of guest code,
-/// or in an instruction of its own, where QEMU lets the clock be read.
+/// When a timer is due the CPU thread writes to each eventfd of the main loop, then runs those
+/// timers that it may: to be stuck is to write to the first one again. It writes outside of guest
+/// code, or in an instruction of its own, where QEMU lets the clock be read.
 extern "C" ssize_t write(int file, const void* data, std::size_t size) {
   using Function = ssize_t (*)(int, const void*, std::size_t);
   using Now = std::int64_t (*)(int);
