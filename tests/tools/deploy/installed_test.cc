@@ -90,9 +90,9 @@ TEST_F(Installed, TheFilesOfAPCLieWhereSystemdLooks) {
 }
 
 TEST_F(Installed, AMeshIsJudgedByTheToolsAndRepairedWithTheLab) {
-  for (const char* program : {"tact-calibrate", "tact-stability"})
-    if (!fs::exists(TACT_BINARY_DIR "/" + std::string(program)))
-      GTEST_SKIP() << "built without " << program;
+  // Not by its programs: those of an earlier build with the lab may lie there.
+  if (run_command("grep -qx TACT_LAB:BOOL=ON " TACT_BINARY_DIR "/CMakeCache.txt").status != 0)
+    GTEST_SKIP() << "built without the lab";
   const std::string mesh = "tact-mesh " TACT_SOURCE_DIR "/model/scenes/meshes/liver_3116.obj";
   install("tact-tools");
   EXPECT_EQ(run(mesh).status, 0);
