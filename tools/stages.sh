@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: Apache-2.0
+# stages.sh - sourced by check: runs its stages, tells of each in a line, and counts.
+#
+# A stage is a function of its name. The caller has $logs, a folder.
+
+# skipped_in LOG: names of the tests that ctest or a test program has skipped, one a line
+skipped_in() {
+  sed -nE -e 's/^[[:space:]]+[0-9]+ - (.*) \(Skipped\)$/\1/p' \
+    -e 's/^\[  SKIPPED \] ([[:alnum:]_/]+\.[[:alnum:]_/]+)$/\1/p' "$1"
+}
+
+# tell_stage NAME STATUS SECONDS: one line a stage; ctest stages count their tests, others count as one.
+tell_stage() {
+  local name=$1 status=$2 seconds=$3 log="$logs/$1.log" good bad skipped
+  # "100% tests passed, 0 tests failed out of 123"
+  read -r bad good < <(sed -n 's/.* \([0-9]*\) tests failed out of \([0-9]*\).*/\1 \2/p' "$log" |
+    awk '{print $1, $2 - $1}')
+  skipped=$(skipped_in "$log" | sort -u)
+  if [ -z "${good:-}" ]; then good=1 bad=0; elif [ -n "$skipped" ]; then good=$((good - $(wc -l <<<"$skipped"))); fi
+  if [ "$status" -ne 0 ] && [ "$bad" -eq 0 ]; then bad=1 good=$((good - 1)); fi
+  echo "$good $bad" >>"$logs/counts"
+  printf '%-10s %4d passed, %d failed  (%d s)%s\n' "$name" "$good" "$bad" "$seconds" \
+    "${skipped:+  ($(wc -l <<<"$skipped") skipped)}"
+  # shellcheck disable=SC2086  # a list of names
+  [ -n "$skipped" ] && printf '           skipped: %s\n' $skipped
+  [ "$status" -eq 0 ] && return
+  echo "---- the end of build/logs/$name.log"
+  grep -A3 -E 'FAILED|error:|warning:|\*\*\*Failed|Failure$' "$log" | head -n 40  # and why
+  tail -n 25 "$log"
+  echo "----"
+}
+
+# run_stage NAME: its function, its output to its log; then one line
+run_stage() {
+  local start=$SECONDS status told
+  [ -t 1 ] && printf '%s ...\r' "$1"
+  (set -e; "$1") >"$logs/$1.log" 2>&1 &
+  wait $!  # ends when the trap is called, too
+  status=$?
+  told=$(tell_stage "$1" $status $((SECONDS - start)))
+  [ -t 1 ] && printf '\033[K'
+  printf '%s\n' "$told"  # at once, as a stage beside it may end now
+}
+
+# run_beside NAME...: these stages one after the other, with the CPU time that others leave; the caller waits
+run_beside() {
+  local name
+  {
+    chrt --idle --pid 0 "$BASHPID"
+    for name in "$@"; do run_stage "$name"; done
+  } &
+}
+
+# begin_counts; at the end tell_counts: of all stages; fails if a test did
+begin_counts() { : >"$logs/counts"; }
+tell_counts() { awk '{good += $1; bad += $2} END {print good + 0 " passed, " bad + 0 " failed"; exit bad > 0}' "$logs/counts"; }
