@@ -18,7 +18,7 @@ tell_stage() {
   skipped=$(skipped_in "$log" | sort -u)
   if [ -z "${good:-}" ]; then good=1 bad=0; elif [ -n "$skipped" ]; then good=$((good - $(wc -l <<<"$skipped"))); fi
   if [ "$status" -ne 0 ] && [ "$bad" -eq 0 ]; then bad=1 good=$((good - 1)); fi
-  echo "$good $bad" >>"$logs/counts"
+  echo "$name $good $bad" >>"$logs/counts"
   printf '%-10s %4d passed, %d failed  (%d s)%s\n' "$name" "$good" "$bad" "$seconds" \
     "${skipped:+  ($(wc -l <<<"$skipped") skipped)}"
   # shellcheck disable=SC2086  # a list of names
@@ -51,6 +51,12 @@ run_beside() {
   } &
 }
 
-# begin_counts; at the end tell_counts: of all stages; fails if a test did
 begin_counts() { : >"$logs/counts"; }
-tell_counts() { awk '{good += $1; bad += $2} END {print good + 0 " passed, " bad + 0 " failed"; exit bad > 0}' "$logs/counts"; }
+# tell_counts NAME...: of these stages; fails if a test did, or if a stage never ended
+tell_counts() {
+  local name
+  for name in "$@"; do
+    grep -q "^$name " "$logs/counts" || { echo "$name did not end: it counts as failed"; echo "$name 0 1" >>"$logs/counts"; }
+  done
+  awk '{good += $2; bad += $3} END {print good + 0 " passed, " bad + 0 " failed"; exit bad > 0}' "$logs/counts"
+}
