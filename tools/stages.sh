@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # stages.sh - sourced by check: runs its stages, tells of each in a line, and counts.
 #
-# A stage is a function of its name. The caller has $logs, a folder.
+# A stage is a shell function of that name; what it prints goes to $logs/NAME.log. The caller has $logs, a folder.
 
 # skipped_in LOG: names of the tests that ctest or a test program has skipped, one a line
 skipped_in() {
@@ -18,7 +18,7 @@ tell_stage() {
   skipped=$(skipped_in "$log" | sort -u)
   if [ -z "${good:-}" ]; then good=1 bad=0; elif [ -n "$skipped" ]; then good=$((good - $(wc -l <<<"$skipped"))); fi
   if [ "$status" -ne 0 ] && [ "$bad" -eq 0 ]; then bad=1 good=$((good - 1)); fi
-  echo "$name $good $bad" >>"$logs/counts"
+  echo "$name $good $bad" >>"$counts"
   printf '%-10s %4d passed, %d failed  (%d s)%s\n' "$name" "$good" "$bad" "$seconds" \
     "${skipped:+  ($(wc -l <<<"$skipped") skipped)}"
   # shellcheck disable=SC2086  # a list of names
@@ -33,30 +33,32 @@ tell_stage() {
 # run_stage NAME: its function, its output to its log; then one line
 run_stage() {
   local start=$SECONDS status told
-  [ -t 1 ] && printf '%s ...\r' "$1"
+  [ -t 1 ] && [ -z "${is_beside:-}" ] && printf '%s ...\r' "$1"
   (set -e; "$1") >"$logs/$1.log" 2>&1 &
   wait $!  # ends when the trap is called, too
   status=$?
   told=$(tell_stage "$1" $status $((SECONDS - start)))
   [ -t 1 ] && printf '\033[K'
-  printf '%s\n' "$told"  # at once, as a stage beside it may end now
+  printf '%s\n' "$told"  # in one piece: a stage beside it may print now
 }
 
-# run_beside NAME...: these stages one after the other, with the CPU time that others leave; the caller waits
+# run_beside NAME...: these stages one after the other, with the CPU time that others leave. Returns at once; the
+# caller must wait.
 run_beside() {
-  local name
+  local name is_beside=yes
   {
+    trap 'kill $(jobs -p) 2>/dev/null; exit 143' TERM
     chrt --idle --pid 0 "$BASHPID"
     for name in "$@"; do run_stage "$name"; done
   } &
 }
 
-begin_counts() { : >"$logs/counts"; }
-# tell_counts NAME...: of these stages; fails if a test did, or if a stage never ended
+begin_counts() { counts=$(mktemp) && trap 'rm -f "$counts"' EXIT; }
+# tell_counts NAME...: the sum; fails if a test failed, or if one of these stages told nothing
 tell_counts() {
   local name
   for name in "$@"; do
-    grep -q "^$name " "$logs/counts" || { echo "$name did not end: it counts as failed"; echo "$name 0 1" >>"$logs/counts"; }
+    grep -q "^$name " "$counts" || { echo "$name did not end: it counts as failed"; echo "$name 0 1" >>"$counts"; }
   done
-  awk '{good += $2; bad += $3} END {print good + 0 " passed, " bad + 0 " failed"; exit bad > 0}' "$logs/counts"
+  awk '{good += $2; bad += $3} END {print good + 0 " passed, " bad + 0 " failed"; exit bad > 0}' "$counts"
 }

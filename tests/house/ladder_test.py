@@ -37,10 +37,12 @@ def breaches():
 
 def not_compiled():
     """In a copy of the tree, each patch after the other: the sources that g++ refuses."""
+    # What no C++ source reads, and what another stage may write meanwhile.
+    unread = shutil.ignore_patterns("node_modules", "dist", "*.obj", "faults.json*", "__pycache__")
     with tempfile.TemporaryDirectory() as folder:
         copy = pathlib.Path(folder)
         for top in ("firmware", "hal", "host", "model", "tests", "tools"):
-            shutil.copytree(ROOT / top, copy / top, ignore=shutil.ignore_patterns("node_modules", "dist", "*.obj"))
+            shutil.copytree(ROOT / top, copy / top, ignore=unread)
         for name in NAMES:
             patch = ROOT / ".github/ladder" / name
             subprocess.run(["git", "apply", "--include=*/*", str(patch)], cwd=copy, check=True, capture_output=True)
