@@ -43,7 +43,6 @@ std::vector<Vec3> dent_tilt(const ComplianceMap& map, const contact::SurfaceView
     for (auto near = first; near != by_x.end() && x_m(*near) <= at_m.x + kTiltReach_m; ++near) {
       const std::size_t w = *near;
       const Vec3 away_m = surface.vertex_m[w] - at_m;
-      if (std::abs(away_m.y) > kTiltReach_m) continue;  // cheap, for most of the slab
       if (dot(away_m, away_m) > kTiltReach_m * kTiltReach_m ||
           dot(surface.vertex_normal[w], n) < contact::kFacing)
         continue;
