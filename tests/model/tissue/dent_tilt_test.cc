@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "model/units.h"
 #include "tests/support/shapes.h"
 
@@ -27,6 +29,26 @@ TEST(DentTilt, IsHalfTheSlopeOfTheGive) {
     EXPECT_NEAR(t.y, -50.0, 1e-3);
     EXPECT_NEAR(t.z, 0.0, 1e-9);
   }
+}
+
+TEST(DentTilt, IsOfAllSkinWithinItsReachAndOfNoOther) {
+  const mesh::SurfaceMesh plate = tests::make_plate(100_mm, 20);
+  const auto nearest = [&](const Vec3& to_m) {
+    const auto away_m = [&](const Vec3& at_m) { return norm(at_m - to_m); };
+    return static_cast<std::size_t>(std::ranges::min_element(plate.vertex_m, {}, away_m) -
+                                    plate.vertex_m.begin());
+  };
+  const std::size_t middle = nearest({});
+  for (const Vec3& way : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}})
+    for (const double away_m : {15_mm, 25_mm}) {
+      ComplianceMap map = sloping_map(plate);
+      map.regular_times_E_per_m[nearest(plate.vertex_m[middle] + away_m * way)] += 100.0F;
+      const Vec3 more = dent_tilt(map, plate.view())[middle] - Vec3{150.0, -50.0, 0.0};
+      if (away_m < kTiltReach_m)
+        EXPECT_GT(dot(more, way), 10.0);
+      else
+        EXPECT_NEAR(norm(more), 0.0, 1e-3);
+    }
 }
 
 TEST(DentTilt, DoesNotLookThroughALobe) {
