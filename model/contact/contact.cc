@@ -23,60 +23,20 @@ Vec3 movable(const SurfaceView& s, const Place& place, const Vec3& v) RT_SAFE {
 
 }  // namespace
 
-void Contact::reset() RT_SAFE {
-  // The law remembers by sphere (relaxation, a stepped patch): it must forget, too.
-  for (std::size_t i = 0; i < kMaxSpheres; ++i) scene_.law->leave(i);
-  probe_ = {};
-  touch_ = {};
-  pressing_ = {};
-  in_contact_ = {};
-  coupling_ = {};
-  energy_J_ = 0.0;
-  shear_ = {};
-  shift_m_ = shear_N_ = {};
-  closed_ = closing_ = false;
-  blade_tool_before_.reset();
-}
-
-void Contact::touch(const Tool& tool) RT_SAFE {
-  for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
-    Probe& probe = probe_[i];
-    const Vec3 centre_m = tool.position_m + rotate(tool.orientation, scene_.spheres[i].offset_m);
-    // A pose that is no number touches nothing, and leaves no memory that could be no number.
-    if (!is_finite(centre_m)) {
-      probe = {};
-      touch_[i] = {};
-      shift_m_[i] = shear_N_[i] = {};
-      scene_.law->leave(i);
-      continue;
-    }
-    probe.moved_m = probe.seen ? centre_m - probe.centre_m : Vec3{};
-    probe.velocity_mps =
-        tool.velocity_mps + cross(tool.angular_velocity_radps, centre_m - tool.position_m);
-    probe.centre_m = centre_m;
-    // A free sphere looks over both sheets near it; one in contact follows its own place, or a thin
-    // lobe would push it out on the other side.
-    const double radius_m = scene_.spheres[i].radius_m;
-    if (touch_[i].state == TouchState::kFree)
-      probe.proxy.restart(search(probe, radius_m), radius_m);
-    else
-      probe.proxy.follow(scene_.surface, centre_m, probe.moved_m, radius_m,
-                         touch_[i].law_status == law::LawStatus::kSaturated);
-    const double depth_m = radius_m - probe.proxy.site().distance_m;
-    // A distance cannot change by more than the movement: the rest is a nearest point that jumped.
-    const double before_m = probe.seen ? probe.depth_m : 0.0;
-    probe.deepened_m = std::max(0.0, depth_m - before_m - norm(probe.moved_m));
-    probe.depth_m = depth_m;
-    probe.seen = true;
-  }
-}
-
 ContactResponse Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
+  ContactResponse felt = respond(tool);
+  felt.is_lost = is_lost_;
+  // The force of this tick is that of the tissue before the cut; the cut is felt from the next on.
+  use_blade(tool, blade_may_cut);
+  return felt;
+}
+
+ContactResponse Contact::respond(const Tool& tool) RT_SAFE {
   // This order holds: depths before couplings, couplings before forces; what tears is let go before
   // the grip takes hold; friction last, as its cap is the force of the press.
   watch_grip(tool.grip_ratio);
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
-    if (probe_[i].seen) find_depth(i);
+    if (probe_[i].is_known) find_depth(i);
   couple_new_spheres();
   keep_definite();
   press();
@@ -87,14 +47,14 @@ ContactResponse Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
   resist_sliding();
   ContactResponse felt;
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
-    if (!probe_[i].seen) continue;
+    if (!probe_[i].is_known) continue;
     sum_up(i);
     felt.wrench.force_N += touch_[i].force_N;
     felt.wrench.torque_Nm += cross(probe_[i].centre_m - tool.position_m, touch_[i].force_N);
-    if (touch_[i].law_status == law::LawStatus::kSaturated) felt.is_saturated = true;
+    if (touch_[i].law_status == law::LawStatus::kSaturated || probe_[i].lets_go)
+      felt.is_saturated = true;
+    if (touch_[i].state == TouchState::kInside) felt.is_inside = true;
   }
-  // The force of this tick is that of the tissue before the cut; the cut is felt from the next on.
-  use_blade(tool, blade_may_cut);
   scene_.law->advance();
   felt.is_broken = scene_.law->is_broken();
   return felt;
@@ -107,11 +67,13 @@ void Contact::use_blade(const Tool& tool, bool may_cut) RT_SAFE {
   blade_tool_before_ = tool;
 }
 
-void Contact::leave(std::size_t i) RT_SAFE {
-  touch_[i] = {.place = probe_[i].proxy.site().place,
-               .surface_point_m = probe_[i].proxy.site().point_m,
-               .normal = probe_[i].proxy.site().normal};
-  probe_[i].axes = {};
+void Contact::leave(std::size_t i, TouchState state) RT_SAFE {
+  touch_[i] = {};
+  touch_[i].state = state;
+  Probe& probe = probe_[i];
+  probe.axes = {};
+  probe.clear_m = 0.0;
+  probe.lets_go = false;
   shift_m_[i] = shear_N_[i] = {};
   scene_.law->leave(i);
 }
@@ -126,14 +88,15 @@ void Contact::find_depth(std::size_t i) RT_SAFE {
     const Vec3 moved_m = probe.centre_m - probe.held_centre_m;
     touch.normal = probe.held_normal;
     touch.depth_m = probe.held_depth_m - dot(moved_m, touch.normal);
-  } else if (probe.depth_m > 0.0) {
-    touch.state = TouchState::kTouching;
+  } else if (touch.state == TouchState::kTouching) {
     move_to_proxy(i);
     // d = r - phi - slack
-    touch.slack_m = std::min(touch.slack_m + probe.deepened_m, probe.depth_m);
+    touch.slack_m = std::min(touch.slack_m + probe.deepened_m, std::max(probe.depth_m, 0.0));
+    let_go(i);
     touch.depth_m = probe.depth_m - touch.slack_m;
+    if (!(probe.depth_m > 0.0) || (probe.lets_go && !(touch.depth_m > 0.0)))
+      return leave(i, TouchState::kFree);
   } else {
-    leave(i);
     return;
   }
   shift_m_[i] = shift_m_[i] + probe.axes.of(probe.moved_m);
@@ -167,8 +130,7 @@ Indentation Contact::indentation(std::size_t i) const RT_SAFE {
 // tissue that they have dragged along: its own spring is at rest there.
 void Contact::couple_new_spheres() RT_SAFE {
   const std::array<bool, kMaxSpheres> before = in_contact_;
-  for (std::size_t i = 0; i < kMaxSpheres; ++i)
-    in_contact_[i] = touch_[i].state != TouchState::kFree;
+  for (std::size_t i = 0; i < kMaxSpheres; ++i) in_contact_[i] = in_contact(i);
   // Couplings stay from touch to release: MC-3 is a potential only while C is constant. Own springs
   // come first, as couple() bounds each pair by both of them.
   if (in_contact_ == before) return;
@@ -220,7 +182,7 @@ void Contact::add_slack(std::size_t i, double depth_m) RT_SAFE {
 
 double Contact::press() RT_SAFE {
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
-    pressing_[i] = {.presses = touch_[i].state != TouchState::kFree,
+    pressing_[i] = {.presses = in_contact(i),
                     .depth_m = touch_[i].depth_m,
                     .in = indentation(i),
                     .response = {}};
@@ -260,7 +222,7 @@ void Contact::keep_definite() RT_SAFE {
 // F = (F(e) + b d') n - f - dU/ds
 void Contact::sum_up(std::size_t i) RT_SAFE {
   SphereTouch& touch = touch_[i];
-  if (touch.state == TouchState::kFree) return;
+  if (!in_contact(i)) return;
   const SiteResponse& site = pressing_[i].response;
   touch.law_status = site.law.status;
   const double push_N =
@@ -268,8 +230,8 @@ void Contact::sum_up(std::size_t i) RT_SAFE {
   const Axes& axes = probe_[i].axes;
   touch.shift_m = axes.vector(shift_m_[i]);
   touch.force_N = push_N * touch.normal - axes.vector(shear_N_[i]);
-  // dU/ds belongs to a place that follows the tool; held tissue and a proxy that stays do not.
-  if (touch.state == TouchState::kTouching && !probe_[i].proxy.stays())
+  // dU/ds belongs to a place that follows the tool; held tissue and a proxy that lags do not.
+  if (touch.state == TouchState::kTouching && !probe_[i].proxy.lags())
     touch.force_N -= movable(scene_.surface, touch.place, site.slope_N);
   touch.energy_J = site.law.energy_J + 0.5 * site.law.force_N * sunk_m(coupling_, pressing(), i) +
                    0.5 * dot(shear_N_[i], shift_m_[i]);

@@ -23,26 +23,32 @@
 // is added last: b of the dent, times the speed of the sphere's own depth, so that each sphere
 // takes energy by itself.
 //
-// A change of state never adds energy. Slack takes up the depth that would come for free (arming
-// inside the organ, letting go over a bump or stiffer tissue, a nearest point that jumps). It
-// shrinks only as the tool withdraws.
+// A fourth state has no contact: *inside*, a sphere that was found in the organ (start, loss) or whose
+// centre came into it unfelt. It feels nothing until it has been wholly outside. A contact begins
+// from outside only, and ends where the sphere is outside: on the side where it went in or, beyond
+// the law's range, on any (detect.cc).
 //
-// Bodies: contact.cc (how deep, how hard), contact_search.cc (which site), contact_grip.cc (hold,
+// A change of state never adds energy. Slack takes up the depth that would come for free (letting go
+// over a bump or stiffer tissue, a nearest point that jumps, a contact that ends on another side).
+// It shrinks only as the tool withdraws.
+//
+// Bodies: detect.cc (where each sphere is), contact.cc (how deep, how hard), contact_grip.cc (hold,
 // tear, let go), contact_slide.cc (forces along the surface).
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 
 #include "model/contact/blade.h"
 #include "model/contact/coupling.h"
 #include "model/contact/proxy.h"
-#include "model/contact/seed_grid.h"
 #include "model/contact/shear.h"
 #include "model/contact/site_law.h"
+#include "model/contact/triangle_tree.h"
 #include "model/types.h"
 
 namespace tact::model::contact {
@@ -60,7 +66,7 @@ struct ContactParameters {
   double grip_open_ratio = 0.5;            // opening below this lets go
 };
 
-enum class TouchState : std::uint8_t { kFree, kTouching, kHeld };
+enum class TouchState : std::uint8_t { kFree, kTouching, kHeld, kInside };
 
 /// One sphere's share of a tick.
 struct SphereTouch {
@@ -80,8 +86,11 @@ struct SphereTouch {
 /// What the tool feels in a tick.
 struct ContactResponse {
   Wrench wrench;
-  bool is_saturated = false;  // a sphere is beyond its law (LawStatus::kSaturated)
-  bool is_broken = false;     // see SiteLaw::is_broken
+  bool is_saturated =
+      false;               // a sphere is beyond its law (LawStatus::kSaturated), or lets go of it
+  bool is_broken = false;  // see SiteLaw::is_broken
+  bool is_inside = false;  // a sphere is inside the organ and feels nothing
+  bool is_lost = false;    // in this tick: the tool moved unseen, farther than can be followed
 };
 
 /// What contact is made of; everything outlives it.
@@ -90,16 +99,20 @@ struct ContactScene {
   ContactParameters parameters;
   std::span<const ProbeSphere> spheres;  // 1 to kMaxSpheres
   SurfaceView surface;
-  SeedGridView seeds;
+  TriangleTreeView tree;       // of the surface
   std::optional<Blade> blade;  // cuts what it passes through
+  double period_s = 1e-3;      // of the loop
 };
 
 class Contact {
  public:
   explicit Contact(const ContactScene& scene) : scene_(scene) { reset(); }
 
-  /// Where the spheres meet the surface: follows each site.
-  void touch(const Tool& tool) RT_SAFE;
+  /// Where the spheres meet the surface. The tool's way since the last call, `periods` ago, is
+  /// followed as a straight line, period by period. What moves farther than reach_m, or than can be
+  /// followed, is lost: its contact ends, and it is found anew.
+  void touch(const Tool& tool, std::uint32_t periods = 1,
+             double reach_m = std::numeric_limits<double>::infinity()) RT_SAFE;
   /// What the tool feels there: states, laws, forces. Call after touch. A blade cuts only if it
   /// may.
   ContactResponse feel(const Tool& tool, bool blade_may_cut) RT_SAFE;
@@ -115,15 +128,17 @@ class Contact {
 
  private:
   struct Probe {
-    Vec3 centre_m;            // c
-    Vec3 moved_m;             // since the last tick
-    Vec3 velocity_mps;        // of c, as the device tells it
-    double depth_m = 0.0;     // r - phi
-    double deepened_m = 0.0;  // beyond what the movement explains: free depth
-    Proxy proxy;
-    Seeds candidate{kNoTriangle, kNoTriangle};  // sheets watched while free
-    std::uint32_t cell = kNoTriangle;
-    bool seen = false;  // there was a tick before
+    bool is_known = false;             // else it must be found: at the start, after a loss
+    Vec3 centre_m;                     // c
+    Vec3 moved_m;                      // since the last tick
+    Vec3 velocity_mps;                 // of c, as the device tells it
+    double depth_m = 0.0;              // r - phi
+    double deepened_m = 0.0;           // beyond what the movement explains: free depth
+    double clear_m = 0.0;              // so far c may go before its last search must be repeated
+    std::uint32_t near = kNoTriangle;  // found by that search
+    Proxy proxy;                       // touching or held
+    double within_law_m = 0.0;         // d of the last tick within the range of the law
+    bool lets_go = false;
     Vec3 held_centre_m, held_normal;
     double held_depth_m = 0.0;
     Axes axes;                 // of t and f
@@ -131,10 +146,20 @@ class Contact {
     std::uint32_t give_triangle = kNoTriangle;
   };
 
-  Site search(Probe& probe, double radius_m) RT_SAFE;
+  // detect.cc
+  void detect(const Tool& tool) RT_SAFE;
+  void forget() RT_SAFE;
+  bool is_reached(const Tool& tool, double reach_m) const RT_SAFE;
+  void step(std::size_t i, const Vec3& moved_m) RT_SAFE;
+  void find(std::size_t i) RT_SAFE;
+  void begin_from_outside(std::size_t i) RT_SAFE;
+  bool is_outside(std::size_t i) RT_SAFE;
+  void let_go(std::size_t i) RT_SAFE;
+
+  ContactResponse respond(const Tool& tool) RT_SAFE;
   void use_blade(const Tool& tool, bool may_cut) RT_SAFE;
   void watch_grip(double grip_ratio) RT_SAFE;
-  void leave(std::size_t i) RT_SAFE;
+  void leave(std::size_t i, TouchState state) RT_SAFE;
   void find_depth(std::size_t i) RT_SAFE;
   void move_to_proxy(std::size_t i) RT_SAFE;
   Indentation indentation(std::size_t i) const RT_SAFE;
@@ -153,6 +178,9 @@ class Contact {
   void stiffen() RT_SAFE;
   void resist_sliding() RT_SAFE;
   void sum_up(std::size_t i) RT_SAFE;
+  bool in_contact(std::size_t i) const RT_SAFE {
+    return touch_[i].state == TouchState::kTouching || touch_[i].state == TouchState::kHeld;
+  }
   std::span<PressingSphere> pressing() RT_SAFE { return {pressing_.data(), scene_.spheres.size()}; }
 
   ContactScene scene_;
@@ -166,7 +194,9 @@ class Contact {
   double energy_J_ = 0.0;                  // of all presses
   bool closed_ = false;                    // the grip, with hysteresis
   bool closing_ = false;                   // it closed in this tick
-  std::optional<Tool> blade_tool_before_;  // of the last tick: where the blade was
+  bool is_lost_ = false;                   // in this tick
+  std::optional<Tool> tool_before_;        // of the last tick
+  std::optional<Tool> blade_tool_before_;  // where the blade was
 };
 
 }  // namespace tact::model::contact

@@ -64,7 +64,7 @@ void Contact::release_sphere(std::size_t i) RT_SAFE {
   const double held_J = energy_J_, held_m = touch.depth_m;
   // Pulled out already: nothing to go back to.
   if (!(probe.depth_m > 0.0)) {
-    leave(i);
+    leave(i, TouchState::kFree);
     couple_new_spheres();
     press();
     return;

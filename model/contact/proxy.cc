@@ -5,39 +5,38 @@
 
 namespace tact::model::contact {
 
-namespace {
-constexpr double kSameSide_cosine = 0.7;  // between outward normals; 45 degrees, chosen
-}  // namespace
-
 void Proxy::restart(const Site& site, double radius_m) RT_SAFE {
-  site_ = entry_ = site;
-  may_slide_m_ = radius_m;
-  stays_ = false;
+  site_ = site;
+  offset_m_ = site.point_m + radius_m * site.normal;
+  lags_ = false;
 }
 
 void Proxy::follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& moved_m,
-                   double radius_m, bool is_beyond_the_law) RT_SAFE {
-  if (dot(p_m - entry_.point_m, entry_.outward) >= 0.0)
-    return restart(contact::follow(surface, entry_.place.triangle, p_m), radius_m);
+                   double radius_m) RT_SAFE {
   const Site nearest = contact::follow(surface, site_.place.triangle, p_m);
-  Site here = seen_from(site_, p_m);
-  // The centre is above the proxy's own tangent plane, and not above that of the entry.
-  if (!(here.distance_m < 0.0)) {
-    if (here.distance_m <= radius_m) return restart(nearest, radius_m);
-    here.distance_m = -here.distance_m;  // it came out on another side
-    here.normal = -here.normal;
-  }
-  // PX-1  |q' - q| <= saved,   saved <- min(saved + 1.5 |sideways|, radius)
-  const double sideways_m = norm(tangential(moved_m, site_.normal));
-  may_slide_m_ = std::min(may_slide_m_ + kSlide_ratio * sideways_m, radius_m);
-  const double way_m = norm(nearest.point_m - site_.point_m);
-  stays_ = is_beyond_the_law || way_m > may_slide_m_;
-  site_ = stays_ ? here : nearest;
-  if (stays_) return;
-  may_slide_m_ -= way_m;
-  // While it is shallow the place where it goes in slides with the tool.
-  if (site_.distance_m > -0.5 * radius_m && dot(site_.outward, entry_.outward) > kSameSide_cosine)
-    entry_ = site_;
+  const Vec3 goal_m = nearest.point_m + radius_m * nearest.normal;
+  const double most_m = kSlide_ratio * norm(tangential(moved_m, site_.normal));
+  lags_ = norm(goal_m - offset_m_) > most_m;
+  if (!lags_) return restart(nearest, radius_m);
+  slide(surface, goal_m, most_m, radius_m);
+  // Of the line to g, what lies along the surface, and what points out of the organ.
+  const Vec3 outward = site_.normal, line_m = offset_m_ - p_m;
+  const Vec3 depth_m = tangential(line_m, outward) + std::max(dot(line_m, outward), 0.0) * outward;
+  const double length_m = norm(depth_m);
+  site_.distance_m = radius_m - length_m;
+  if (length_m > 0.0) site_.normal = depth_m / length_m;
+}
+
+// Along the offset surface; site_.normal is then its normal.
+void Proxy::slide(const SurfaceView& surface, const Vec3& goal_m, double way_m,
+                  double radius_m) RT_SAFE {
+  const Vec3 outward = normalized(offset_m_ - site_.point_m);
+  const Vec3 along_m = tangential(goal_m - offset_m_, outward);
+  const double length_m = norm(along_m);
+  Vec3 moved_m = offset_m_;
+  if (length_m > 0.0) moved_m += (std::min(way_m, length_m) / length_m) * along_m;
+  site_ = contact::follow(surface, site_.place.triangle, moved_m);
+  offset_m_ = site_.point_m + radius_m * site_.normal;
 }
 
 }  // namespace tact::model::contact

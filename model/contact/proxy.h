@@ -1,44 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
-// proxy.h - the point of the surface that a pressing sphere belongs to, with memory.
+// proxy.h - the god object of a sphere: where its centre would be if the organ were rigid.
 //
-// The nearest point of the surface is no anchor for a deep press: beyond the middle of a lobe it
-// jumps to the other side and pushes the tool out there. A proxy stays where the tool went in and
-// leaves only by sliding [C. Zilles, J. Salisbury, IROS 1995; W. Harwin, N. Melder, EuroHaptics
-// 2002]. It goes to the nearest point as long as that
+// The proxy g is a point at the distance r from the surface, outside, r the radius of the sphere
+// [C. Zilles, J. Salisbury, IROS 1995; D. Ruspini, K. Kolarov, O. Khatib, SIGGRAPH 1997]. The
+// sphere's depth is |g - p|, p its centre, and the force points from p to g. g is the point of that
+// offset surface that is nearest to p, found from where g was, so it never passes through the
+// organ. It gets there no faster than
 //
-//     PX-1   moves at most kSlide_ratio times as far as the tool moves sideways; what it has not
-//            used is saved, up to one radius of the sphere, so that it can cross a facet
+//     PX-1   |g' - g| <= kSlide_ratio |s|,   s the part of p' - p that is across g - p
 //
-// and else stays: then distance and normal are those of the line from the sphere's centre to it. A
-// law beyond its range keeps the proxy where it is. Moves only ever shorten the line: where the law
-// is the same everywhere, none makes energy. The tool is out again where it is above the tangent
-// plane of the place where it went in; outside the surface the proxy is the nearest point.
+// Where the nearest point moves faster (at an edge, beyond the middle of a thin part) g lags: it
+// slides along the offset surface towards that point, so the force turns at a bounded rate, and a
+// push straight in turns nothing. While it lags, what of g - p points out of the organ is at least
+// 0, so a lagging proxy never pulls in.
 #pragma once
 
 #include "model/contact/site.h"
 
 namespace tact::model::contact {
 
-/// A nearest point d below a surface of radius R goes R / (R - d) times as far.
-inline constexpr double kSlide_ratio = 1.5;
+/// Chosen: at the depth d in a body of curvature radius R the goal of g goes (R + r) / (R + r - d)
+/// times as far as p.
+inline constexpr double kSlide_ratio = 2.0;
 
 class Proxy {
  public:
+  /// The surface point that g is above. normal points from the centre to g, distance_m is r less the
+  /// depth.
   const Site& site() const RT_SAFE { return site_; }
-  /// It does not follow the tool: what differs from place to place is not felt.
-  bool stays() const RT_SAFE { return stays_; }
+  /// It is not at the nearest point.
+  bool lags() const RT_SAFE { return lags_; }
 
-  /// Forget where it went in: the sphere is free, or its centre is outside again.
+  /// The sphere comes from outside, to this site.
   void restart(const Site& site, double radius_m) RT_SAFE;
-  /// The sphere's centre is at p now and has moved there since the last tick.
-  void follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& moved_m, double radius_m,
-              bool is_beyond_the_law) RT_SAFE;
+  /// The sphere's centre is at p now and has moved there since the last call.
+  void follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& moved_m,
+              double radius_m) RT_SAFE;
 
  private:
+  void slide(const SurfaceView& surface, const Vec3& goal_m, double way_m, double radius_m) RT_SAFE;
+
   Site site_;
-  Site entry_;                // the last one on this side, less than half a radius deep
-  double may_slide_m_ = 0.0;  // saved
-  bool stays_ = false;
+  Vec3 offset_m_;  // g
+  bool lags_ = false;
 };
 
 }  // namespace tact::model::contact

@@ -3,20 +3,12 @@
 
 #include <cmath>
 
+#include "model/contact/nearest.h"
+
 namespace tact::model::contact {
 namespace {
 
-enum class Feature : std::uint8_t { kFace, kEdge, kCorner };
-
 using Weights = std::array<double, 3>;  // of the corners, sum 1
-
-struct Nearest {
-  Vec3 point_m;
-  double squared_m2 = 0.0;
-  Place place;
-  Feature feature = Feature::kFace;
-  std::uint32_t index = 0;  // of the edge or corner
-};
 
 struct Spot {
   Vec3 point_m;
@@ -26,38 +18,6 @@ struct Spot {
 /// The spot, with its squared distance to p: comparing needs no root.
 Nearest at(const Spot& q, const Vec3& p, std::uint32_t t, Feature f, std::uint32_t i) RT_SAFE {
   return {q.point_m, dot(p - q.point_m, p - q.point_m), {t, q.weight}, f, i};
-}
-
-// Voronoi regions of a triangle [C. Ericson, Real-Time Collision Detection (2005) 5.1.5].
-Nearest nearest_on(const SurfaceView& s, std::uint32_t t, const Vec3& p) RT_SAFE {
-  const auto& [a, b, c] = s.record[t].corner_m;
-  const Vec3 ab = b - a, ac = c - a, ap = p - a;
-  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
-  // A weight that does not count is exactly 0, so that contact knows edges and corners (Place).
-  if (d1 <= 0.0 && d2 <= 0.0) return at({a, {1, 0, 0}}, p, t, Feature::kCorner, 0);
-  const Vec3 bp = p - b;
-  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
-  if (d3 >= 0.0 && d4 <= d3) return at({b, {0, 1, 0}}, p, t, Feature::kCorner, 1);
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
-    const double w = d1 / (d1 - d3);
-    return at({a + w * ab, {1.0 - w, w, 0}}, p, t, Feature::kEdge, 0);
-  }
-  const Vec3 cp = p - c;
-  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
-  if (d6 >= 0.0 && d5 <= d6) return at({c, {0, 0, 1}}, p, t, Feature::kCorner, 2);
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
-    const double w = d2 / (d2 - d6);
-    return at({a + w * ac, {1.0 - w, 0, w}}, p, t, Feature::kEdge, 2);
-  }
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
-    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return at({b + w * (c - b), {0, 1.0 - w, w}}, p, t, Feature::kEdge, 1);
-  }
-  const double sum = va + vb + vc, v = vb / sum, w = vc / sum;
-  return at({a + v * ab + w * ac, {1.0 - v - w, v, w}}, p, t, Feature::kFace, 0);
 }
 
 void try_triangle(const SurfaceView& s, std::uint32_t t, const Vec3& p, Nearest& best) RT_SAFE {
@@ -130,22 +90,55 @@ Site facing(Site site, const Vec3& p_m, bool is_outside) RT_SAFE {
 
 }  // namespace
 
-Site follow(const SurfaceView& surface, std::uint32_t start, const Vec3& p_m,
-            int most_steps) RT_SAFE {
+// Voronoi regions of a triangle [C. Ericson, Real-Time Collision Detection (2005) 5.1.5].
+Nearest nearest_on(const SurfaceView& s, std::uint32_t t, const Vec3& p) RT_SAFE {
+  const auto& [a, b, c] = s.record[t].corner_m;
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+  // A weight that does not count is exactly 0, so that contact knows edges and corners (Place).
+  if (d1 <= 0.0 && d2 <= 0.0) return at({a, {1, 0, 0}}, p, t, Feature::kCorner, 0);
+  const Vec3 bp = p - b;
+  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+  if (d3 >= 0.0 && d4 <= d3) return at({b, {0, 1, 0}}, p, t, Feature::kCorner, 1);
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
+    const double w = d1 / (d1 - d3);
+    return at({a + w * ab, {1.0 - w, w, 0}}, p, t, Feature::kEdge, 0);
+  }
+  const Vec3 cp = p - c;
+  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+  if (d6 >= 0.0 && d5 <= d6) return at({c, {0, 0, 1}}, p, t, Feature::kCorner, 2);
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
+    const double w = d2 / (d2 - d6);
+    return at({a + w * ac, {1.0 - w, 0, w}}, p, t, Feature::kEdge, 2);
+  }
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
+    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return at({b + w * (c - b), {0, 1.0 - w, w}}, p, t, Feature::kEdge, 1);
+  }
+  const double sum = va + vb + vc, v = vb / sum, w = vc / sum;
+  return at({a + v * ab + w * ac, {1.0 - v - w, v, w}}, p, t, Feature::kFace, 0);
+}
+
+Site site_of(const SurfaceView& surface, const Nearest& nearest, const Vec3& p_m) RT_SAFE {
+  return facing({.place = nearest.place,
+                 .point_m = nearest.point_m,
+                 .normal = {},
+                 .outward = pseudo_normal(surface, nearest),
+                 .distance_m = 0.0},
+                p_m, is_on_rim(surface, nearest));
+}
+
+Site follow(const SurfaceView& surface, std::uint32_t start, const Vec3& p_m) RT_SAFE {
   Nearest here = nearest_on(surface, start, p_m);
-  for (int i = 0; i < most_steps; ++i) {
+  for (int i = 0; i < kMaxWalkSteps; ++i) {
     const Nearest next = step_from(surface, here, p_m);
     if (next.place.triangle == here.place.triangle) break;
     here = next;
   }
-  return facing({.place = here.place,
-                 .point_m = here.point_m,
-                 .normal = {},
-                 .outward = pseudo_normal(surface, here),
-                 .distance_m = 0.0},
-                p_m, is_on_rim(surface, here));
+  return site_of(surface, here, p_m);
 }
-
-Site seen_from(const Site& site, const Vec3& p_m) RT_SAFE { return facing(site, p_m, false); }
 
 }  // namespace tact::model::contact

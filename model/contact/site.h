@@ -41,11 +41,8 @@ struct Site {
   double distance_m = 0.0;  // phi
 };
 
-/// The same q, which need not be the nearest point, seen from another p: phi is +-|p - q|.
-Site seen_from(const Site& site, const Vec3& p_m) RT_SAFE;
-/// Nearest point near `start`, which must be a triangle of the surface; after most_steps, the
+/// Nearest point near `start`, which must be a triangle of the surface; after kMaxWalkSteps, the
 /// nearest so far.
-Site follow(const SurfaceView& surface, std::uint32_t start, const Vec3& p_m,
-            int most_steps = kMaxWalkSteps) RT_SAFE;
+Site follow(const SurfaceView& surface, std::uint32_t start, const Vec3& p_m) RT_SAFE;
 
 }  // namespace tact::model::contact

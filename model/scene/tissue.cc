@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace tact::model::scene {
 
 Result<std::unique_ptr<Tissue>> make_tissue(const Scene& scene) {
@@ -26,17 +24,14 @@ Result<std::unique_ptr<Tissue>> make_tissue(const Scene& scene) {
                                scene.organ.mesh_path, fans[v + 1] - fans[v], contact::kMaxFan)};
 
   std::unique_ptr<Tissue> tissue(new Tissue(std::move(*law)));
-  // Cells as far out as a sphere that comes near: its diameter.
-  double reach_m = 0.0;
-  for (const contact::ProbeSphere& sphere : scene.tool.spheres)
-    reach_m = std::max(reach_m, 2.0 * sphere.radius_m);
-  tissue->seeds_ = make_seed_grid(scene.organ_mesh.view(), reach_m);
+  tissue->tree_ = contact::make_triangle_tree(scene.organ_mesh.view());
   tissue->contact_ = {.law = &tissue->law_->site_law(),
                       .parameters = scene.contact,
                       .spheres = scene.tool.spheres,
                       .surface = scene.organ_mesh.view(),
-                      .seeds = tissue->seeds_.view(),
-                      .blade = scene.tool.blade};
+                      .tree = tissue->tree_.view(),
+                      .blade = scene.tool.blade,
+                      .period_s = 1.0 / scene.rate_Hz};
   return tissue;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tissue.h - a loaded scene made ready to touch: law, surface and seeds in one owner.
+// tissue.h - a loaded scene made ready to touch: law, surface and its triangle tree in one owner.
 #pragma once
 
 #include <memory>
@@ -23,7 +23,7 @@ class Tissue {
   explicit Tissue(std::unique_ptr<TissueLaw> law) : law_(std::move(law)) {}
 
   std::unique_ptr<TissueLaw> law_;
-  contact::SeedGrid seeds_;
+  contact::TriangleTree tree_;
   contact::ContactScene contact_;
 };
 

@@ -28,14 +28,14 @@ inline indent::RhombusChain soft_chain() {
 // A soft surface with everything that a Contact borrows.
 struct Bench {
   explicit Bench(mesh::SurfaceMesh m, std::vector<ProbeSphere> s = {{{}, kRadius_m}})
-      : mesh(std::move(m)), seeds(make_seed_grid(mesh.view(), 20_mm)), spheres(std::move(s)) {}
+      : mesh(std::move(m)), tree(make_triangle_tree(mesh.view())), spheres(std::move(s)) {}
 
   Contact contact() {
     return Contact({.law = &field,
                     .parameters = parameters,
                     .spheres = spheres,
                     .surface = mesh.view(),
-                    .seeds = seeds.view(),
+                    .tree = tree.view(),
                     .blade = {}});
   }
 
@@ -48,7 +48,7 @@ struct Bench {
                               .surface = {},
                               .relaxation = {}}};
   mesh::SurfaceMesh mesh;
-  SeedGrid seeds;
+  TriangleTree tree;
   std::vector<ProbeSphere> spheres;
   ContactParameters parameters{
       .friction_ratio = 0.4, .sliding_stiffness_N_per_m = 100.0, .tear_force_N = 0.6};

@@ -48,13 +48,13 @@ struct Bench {
   const law::Law* curve = &law;
   tissue::ElasticField field;
   mesh::SurfaceMesh mesh = tests::make_plate(100_mm, 20);
-  SeedGrid seeds = make_seed_grid(mesh.view(), 20_mm);
+  TriangleTree tree = make_triangle_tree(mesh.view());
   std::vector<ProbeSphere> spheres{{{0, -5_mm, 0}, kRadius_m}, {{0, 5_mm, 0}, kRadius_m}};
   Contact contact{{.law = &field,
                    .parameters = {.tear_force_N = 0.6},
                    .spheres = spheres,
                    .surface = mesh.view(),
-                   .seeds = seeds.view(),
+                   .tree = tree.view(),
                    .blade = {}}};
 };
 

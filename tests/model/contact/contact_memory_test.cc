@@ -24,13 +24,13 @@ struct RelaxingBench {
                     .parameters = parameters,
                     .spheres = {&sphere, 1},
                     .surface = mesh.view(),
-                    .seeds = seeds.view(),
+                    .tree = tree.view(),
                     .blade = {}});
   }
   indent::RhombusChain chain = contact_bench::soft_chain();
   const law::Law* curve = &chain;
   mesh::SurfaceMesh mesh = tests::make_plate(100_mm, 20);
-  SeedGrid seeds = make_seed_grid(mesh.view(), 20_mm);
+  TriangleTree tree = make_triangle_tree(mesh.view());
   ProbeSphere sphere{{}, kRadius_m};
   std::vector<law::PronyTerm> terms{{.share = 0.3, .time_s = 0.2}, {.share = 0.4, .time_s = 2.0}};
   tissue::ElasticField field{{.curves = {&curve, 1},

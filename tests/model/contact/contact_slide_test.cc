@@ -36,13 +36,13 @@ class Slide : public testing::Test {
 
   tests::SoftHalfSpace tissue;
   mesh::SurfaceMesh mesh = tests::make_plate(160_mm, 32);
-  SeedGrid seeds = make_seed_grid(mesh.view(), 20_mm);
+  TriangleTree tree = make_triangle_tree(mesh.view());
   ProbeSphere sphere{{}, kRadius_m};
   Contact contact{{.law = &tissue.field,
                    .parameters = {.friction_ratio = 5.0, .tear_force_N = 0.3},
                    .spheres = {&sphere, 1},
                    .surface = mesh.view(),
-                   .seeds = seeds.view(),
+                   .tree = tree.view(),
                    .blade = {}}};
 };
 
@@ -81,7 +81,7 @@ TEST_F(Slide, AStiffnessOfTheSceneCountsBeforeTheTissuesOwn) {
                                 .tear_force_N = 0.3},
                  .spheres = {&sphere, 1},
                  .surface = mesh.view(),
-                 .seeds = seeds.view(),
+                 .tree = tree.view(),
                  .blade = {}});
   Wrench felt;
   for (const Vec3& at : {Vec3{0, 0, kRadius_m}, Vec3{0, 0, 2_mm}, Vec3{0.1_mm, 0, 2_mm}}) {
@@ -122,7 +122,7 @@ class Grain : public Slide {
                     .parameters = {.friction_ratio = friction_ratio, .tear_force_N = 10.0},
                     .spheres = {&sphere, 1},
                     .surface = mesh.view(),
-                    .seeds = seeds.view(),
+                    .tree = tree.view(),
                     .blade = {}});
   }
   static Wrench feel_at(Contact& contact, const Vec3& centre_m) {

@@ -133,15 +133,75 @@ TEST(Contact, BeyondTheRimOfAnOpenSurfaceNothingPullsTheToolBack) {
   EXPECT_EQ(feel_at(contact, {60_mm, 0, -10_mm}), Wrench{});
 }
 
-TEST(Contact, StartingInsideTheOrganPushesNothing) {
+TEST(Contact, FoundInsideFeelsNothingUntilOutsideOnce) {
   Bench bench = plate_bench();
   Contact contact = bench.contact();
   EXPECT_EQ(feel_at(contact, {0, 0, -8_mm}), Wrench{});
-  // Withdrawing pays the slack back; pressing again from there is felt.
-  glide(contact, {0, 0, -8_mm}, {0, 0, -2_mm});
-  EXPECT_EQ(feel_at(contact, {0, 0, -2_mm}), Wrench{});
-  const Wrench w = feel_at(contact, {0, 0, -2.5_mm});
-  EXPECT_NEAR(w.force_N.z, bench.law.respond(0.5_mm).force_N, 1e-9);
+  EXPECT_EQ(contact.touches()[0].state, TouchState::kInside);
+  glide(contact, {0, 0, -8_mm}, {0, 0, 3_mm});
+  glide(contact, {0, 0, 3_mm}, {0, 0, -2_mm});
+  EXPECT_EQ(feel_at(contact, {0, 0, -2.5_mm}), Wrench{}) << "its lower end has never been out";
+  glide(contact, {0, 0, -2.5_mm}, {0, 0, 4.1_mm});
+  EXPECT_EQ(contact.touches()[0].state, TouchState::kFree);
+  glide(contact, {0, 0, 4.1_mm}, {0, 0, 3.5_mm});
+  EXPECT_NEAR(feel_at(contact, {0, 0, 3.5_mm}).force_N.z, bench.law.respond(0.5_mm).force_N, 1e-9);
+}
+
+TEST(Contact, PausedToolIsFollowedAlongItsWay) {
+  Bench bench = plate_bench();
+  for (const std::uint32_t periods : {2u, 5u, 20u}) {
+    Contact steady = bench.contact(), paused = bench.contact();
+    glide(steady, {0, 0, 6_mm}, {0, 0, 2_mm}), glide(paused, {0, 0, 6_mm}, {0, 0, 2_mm});
+    const Vec3 from_m{0, 0, 2_mm}, to_m{1.5_mm, 0.5_mm, -1_mm};
+    for (std::uint32_t k = 1; k <= periods; ++k)
+      feel_at(steady, from_m + (static_cast<double>(k) / periods) * (to_m - from_m));
+    paused.touch({.position_m = to_m}, periods);
+    const ContactResponse felt = paused.feel({.position_m = to_m}, true);
+    EXPECT_FALSE(felt.is_lost);
+    EXPECT_NEAR(norm(felt.wrench.force_N - feel_at(steady, to_m).force_N), 0.0, 1e-9);
+    EXPECT_GT(norm(tangential(felt.wrench.force_N, {0, 0, 1})), 1e-3) << "friction goes on";
+  }
+}
+
+TEST(Contact, HeldTissueIsHeldOverAPause) {
+  Bench bench = plate_bench();
+  Contact contact = bench.contact();
+  glide(contact, {0, 0, 6_mm}, {0, 0, 2_mm});
+  feel_at(contact, {0, 0, 2_mm}, 1.0);
+  const Tool tool{.position_m = {0, 0, 5_mm}, .grip_ratio = 1.0};
+  contact.touch(tool, 10);
+  EXPECT_LT(contact.feel(tool, true).wrench.force_N.z, 0.0) << "it pulls";
+  EXPECT_EQ(contact.touches()[0].state, TouchState::kHeld);
+}
+
+TEST(Contact, ToolThatMovedTooFarUnseenIsLostAndFoundAgain) {
+  Bench bench = plate_bench();
+  Contact contact = bench.contact();
+  glide(contact, {0, 0, 6_mm}, {0, 0, 2_mm});
+  const Tool inside{.position_m = {0, 0, -3_mm}}, outside{.position_m = {0, 0, 9_mm}};
+  contact.touch(inside, 1, 4_mm);
+  ContactResponse felt = contact.feel(inside, true);
+  EXPECT_TRUE(felt.is_lost);
+  EXPECT_TRUE(felt.is_inside);
+  EXPECT_EQ(felt.wrench, Wrench{});
+  contact.touch(inside, 1, 4_mm);
+  EXPECT_FALSE(contact.feel(inside, true).is_lost) << "told once";
+  contact.touch(outside, 1, 4_mm);
+  EXPECT_TRUE(contact.feel(outside, true).is_lost);
+  EXPECT_EQ(contact.touches()[0].state, TouchState::kFree);
+}
+
+TEST(Contact, PushedThroughAFlapIsHeldBackWithinTheLawAndThenLetGo) {
+  Bench bench(tests::make_flap(100_mm, 4_mm, 20));
+  Contact contact = bench.contact();
+  glide(contact, {0, 0, 8_mm}, {0, 0, -5_mm});
+  EXPECT_GT(feel_at(contact, {0, 0, -5_mm}).force_N.z, 0.1) << "the flap is pushed ahead";
+  glide(contact, {0, 0, -5_mm}, {0, 0, -60_mm});
+  EXPECT_EQ(feel_at(contact, {0, 0, -60_mm}), Wrench{});
+  EXPECT_EQ(contact.touches()[0].state, TouchState::kFree);
+  glide(contact, {0, 0, -60_mm}, {0, 0, -5_mm});
+  EXPECT_LT(feel_at(contact, {0, 0, -5_mm}).force_N.z, -1e-3)
+      << "from below it is met as from above";
 }
 
 TEST(Contact, NaNFromTheDeviceGivesNoForceAndForgetsTheSite) {

@@ -26,12 +26,12 @@ struct Bench {
                     .parameters = parameters,
                     .spheres = spheres,
                     .surface = mesh.view(),
-                    .seeds = seeds.view(),
+                    .tree = tree.view(),
                     .blade = {}});
   }
   tests::SoftHalfSpace tissue;
   mesh::SurfaceMesh mesh;
-  SeedGrid seeds = make_seed_grid(mesh.view(), 20_mm);
+  TriangleTree tree = make_triangle_tree(mesh.view());
   std::vector<ProbeSphere> spheres;
   ContactParameters parameters{
       .friction_ratio = 0.4, .sliding_stiffness_N_per_m = 20.0, .tear_force_N = 0.3};

@@ -41,18 +41,17 @@ std::vector<float> wavy(const mesh::SurfaceMesh& mesh) {
 
 // Springs of 50, 100 and 200 N/m; kappa varies over the surface as a smooth function of the place.
 struct Bench {
-  explicit Bench(mesh::SurfaceMesh m)
-      : mesh(std::move(m)), seeds(make_seed_grid(mesh.view(), 20_mm)) {}
+  explicit Bench(mesh::SurfaceMesh m) : mesh(std::move(m)), tree(make_triangle_tree(mesh.view())) {}
   contact::Contact contact() {
     return contact::Contact({.law = &field,
                              .parameters = {.sliding_stiffness_N_per_m = 0.0, .tear_force_N = 10.0},
                              .spheres = {&sphere, 1},
                              .surface = mesh.view(),
-                             .seeds = seeds.view(),
+                             .tree = tree.view(),
                              .blade = {}});
   }
   mesh::SurfaceMesh mesh;
-  contact::SeedGrid seeds;
+  contact::TriangleTree tree;
   contact::ProbeSphere sphere{{}, 4_mm};
   Spring soft{50.0}, middle{100.0}, stiff{200.0};
   std::array<const law::Law*, 3> curves{&soft, &middle, &stiff};

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/contact/triangle_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "model/units.h"
+#include "tests/support/no_alloc.h"
+#include "tests/support/shapes.h"
+
+namespace tact::model::contact::triangle_tree_test {
+
+constexpr double kAnywhere_m = std::numeric_limits<double>::infinity();
+
+// The same question asked of every triangle.
+double nearest_by_brute_force_m(const SurfaceView& surface, const Vec3& p) {
+  double best_m = 1e300;
+  for (std::uint32_t t = 0; t < surface.triangle.size(); ++t) {
+    mesh::SurfaceMesh one;  // a mesh of a single triangle cannot be walked away from
+    for (const std::uint32_t v : surface.triangle[t]) one.vertex_m.push_back(surface.vertex_m[v]);
+    one.triangle = {{0, 1, 2}};
+    one.neighbour = {{kNoTriangle, kNoTriangle, kNoTriangle}};
+    one.face_normal = {surface.face_normal[t]};
+    one.vertex_normal.assign(3, surface.face_normal[t]);
+    one.fan_start = {0, 1, 2, 3};
+    one.fan = {0, 0, 0};
+    mesh::fill_records(one);
+    best_m = std::min(best_m, std::abs(follow(one.view(), 0, p).distance_m));
+  }
+  return best_m;
+}
+
+Vec3 random_unit(std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  return normalized(Vec3{uniform(random), uniform(random), uniform(random)});
+}
+
+TEST(TriangleTree, FindsWhatBruteForceFinds) {
+  const mesh::SurfaceMesh ball = tests::make_ball(50_mm, 3);
+  const TriangleTree tree = make_triangle_tree(ball.view());
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 p = (50_mm + 40_mm * uniform(random)) * random_unit(random);
+    const double truth_m = nearest_by_brute_force_m(ball.view(), p);
+    const auto near = static_cast<std::uint32_t>(random() % ball.triangle.size());
+    for (const std::uint32_t start : {kNoTriangle, near})
+      EXPECT_NEAR(
+          std::abs(nearest_site(tree.view(), ball.view(), p, kAnywhere_m, start).distance_m),
+          truth_m, 1e-12);
+    const Site within = nearest_site(tree.view(), ball.view(), p, 5_mm, kNoTriangle);
+    EXPECT_EQ(within.place.triangle != kNoTriangle, truth_m < 5_mm);
+    EXPECT_EQ(std::isinf(within.distance_m), truth_m >= 5_mm);
+  }
+}
+
+TEST(TriangleTree, ThinClosedFlapHasTheRightSideEverywhere) {
+  const mesh::SurfaceMesh flap = tests::make_flap(60_mm, 0.2_mm, 12);
+  const TriangleTree tree = make_triangle_tree(flap.view());
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> across(-40_mm, 40_mm), height(-0.3_mm, 0.3_mm);
+  int inside = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const Vec3 p{across(random), across(random), height(random)};
+    const bool is_inside = std::abs(p.x) < 30_mm && std::abs(p.y) < 30_mm && std::abs(p.z) < 0.1_mm;
+    const Site site = nearest_site(tree.view(), flap.view(), p, kAnywhere_m, kNoTriangle);
+    EXPECT_EQ(site.distance_m < 0.0, is_inside) << p.x << ' ' << p.y << ' ' << p.z;
+    inside += is_inside ? 1 : 0;
+  }
+  EXPECT_GT(inside, 500);
+}
+
+TEST(TriangleTree, BesideTheBoundaryOfAnOpenSurfaceIsOutside) {
+  const mesh::SurfaceMesh plate = tests::make_plate(40_mm, 4);
+  const TriangleTree tree = make_triangle_tree(plate.view());
+  const auto distance_m = [&](const Vec3& p) {
+    return nearest_site(tree.view(), plate.view(), p, kAnywhere_m, kNoTriangle).distance_m;
+  };
+  EXPECT_NEAR(distance_m({5_mm, 3_mm, -7_mm}), -7_mm, 1e-12) << "behind the middle";
+  EXPECT_NEAR(distance_m({23_mm, 0, -4_mm}), 5_mm, 1e-12) << "behind and beside";
+}
+
+TEST(TriangleTree, LeavesTheHeapAlone) {
+  const mesh::SurfaceMesh ball = tests::make_ball(50_mm, 3);
+  const TriangleTree tree = make_triangle_tree(ball.view());
+  const tests::NoAlloc guard;
+  (void)nearest_site(tree.view(), ball.view(), {0, 0, 52_mm}, kAnywhere_m, kNoTriangle);
+  (void)nearest_site(tree.view(), ball.view(), {0, 0, 0}, kAnywhere_m, kNoTriangle);
+  EXPECT_EQ(guard.calls(), 0u);
+}
+
+}  // namespace tact::model::contact::triangle_tree_test
