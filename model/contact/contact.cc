@@ -38,8 +38,17 @@ void Contact::reset() RT_SAFE {
   blade_tool_before_.reset();
 }
 
-void Contact::touch(const Tool& tool) RT_SAFE {
+void Contact::touch(const Tool& tool, std::uint32_t periods, double reach_m) RT_SAFE {
+  static_cast<void>(periods);
+  lost_ = false;
+  if (probe_[0].seen) {
+    const Vec3 first_m = tool.position_m + rotate(tool.orientation, scene_.spheres[0].offset_m);
+    const bool is_lost = norm(first_m - probe_[0].centre_m) > reach_m;
+    if (is_lost) reset();
+    lost_ = is_lost;
+  }
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
+    if (touch_[i].state == TouchState::kInside) touch_[i].state = TouchState::kFree;
     Probe& probe = probe_[i];
     const Vec3 centre_m = tool.position_m + rotate(tool.orientation, scene_.spheres[i].offset_m);
     // A pose that is no number touches nothing, and leaves no memory that could be no number.
@@ -65,6 +74,7 @@ void Contact::touch(const Tool& tool) RT_SAFE {
     const double depth_m = radius_m - probe.proxy.site().distance_m;
     // A distance cannot change by more than the movement: the rest is a nearest point that jumped.
     const double before_m = probe.seen ? probe.depth_m : 0.0;
+    probe.is_inside = depth_m > 0.0 && (!probe.seen || probe.is_inside);
     probe.deepened_m = std::max(0.0, depth_m - before_m - norm(probe.moved_m));
     probe.depth_m = depth_m;
     probe.seen = true;
@@ -92,7 +102,11 @@ ContactResponse Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
     felt.wrench.force_N += touch_[i].force_N;
     felt.wrench.torque_Nm += cross(probe_[i].centre_m - tool.position_m, touch_[i].force_N);
     if (touch_[i].law_status == law::LawStatus::kSaturated) felt.is_saturated = true;
+    if (!probe_[i].is_inside) continue;
+    touch_[i].state = TouchState::kInside;
+    felt.is_inside = true;
   }
+  felt.is_lost = lost_;
   // The force of this tick is that of the tissue before the cut; the cut is felt from the next on.
   use_blade(tool, blade_may_cut);
   scene_.law->advance();
@@ -122,6 +136,10 @@ void Contact::find_depth(std::size_t i) RT_SAFE {
   SphereTouch& touch = touch_[i];
   // e moves by what d moves: the guess from which MC-1 is solved is then near.
   const double before_m = touch.depth_m;
+  if (probe.is_inside) {
+    leave(i);
+    return;
+  }
   if (touch.state == TouchState::kHeld) {
     const Vec3 moved_m = probe.centre_m - probe.held_centre_m;
     touch.normal = probe.held_normal;

@@ -34,6 +34,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -60,7 +61,9 @@ struct ContactParameters {
   double grip_open_ratio = 0.5;            // opening below this lets go
 };
 
-enum class TouchState : std::uint8_t { kFree, kTouching, kHeld };
+/// kInside: the sphere was found in the organ, or came into it unseen. It has no contact and no
+/// force until it has once been outside.
+enum class TouchState : std::uint8_t { kFree, kTouching, kHeld, kInside };
 
 /// One sphere's share of a tick.
 struct SphereTouch {
@@ -82,6 +85,8 @@ struct ContactResponse {
   Wrench wrench;
   bool is_saturated = false;  // a sphere is beyond its law (LawStatus::kSaturated)
   bool is_broken = false;     // see SiteLaw::is_broken
+  bool is_inside = false;     // a sphere is inside the organ and feels nothing
+  bool is_lost = false;       // in this tick: the tool moved unseen, farther than can be followed
 };
 
 /// What contact is made of; everything outlives it.
@@ -92,14 +97,18 @@ struct ContactScene {
   SurfaceView surface;
   SeedGridView seeds;
   std::optional<Blade> blade;  // cuts what it passes through
+  double period_s = 1e-3;
 };
 
 class Contact {
  public:
   explicit Contact(const ContactScene& scene) : scene_(scene) { reset(); }
 
-  /// Where the spheres meet the surface: follows each site.
-  void touch(const Tool& tool) RT_SAFE;
+  /// Where the spheres meet the surface: follows each site. `periods` have passed since the last
+  /// call, at least 1; the way between is followed as a straight line. A movement of more than
+  /// reach_m is a loss: contact ends.
+  void touch(const Tool& tool, std::uint32_t periods = 1,
+             double reach_m = std::numeric_limits<double>::infinity()) RT_SAFE;
   /// What the tool feels there: states, laws, forces. Call after touch. A blade cuts only if it
   /// may.
   ContactResponse feel(const Tool& tool, bool blade_may_cut) RT_SAFE;
@@ -124,6 +133,7 @@ class Contact {
     Seeds candidate{kNoTriangle, kNoTriangle};  // sheets watched while free
     std::uint32_t cell = kNoTriangle;
     bool seen = false;  // there was a tick before
+    bool is_inside = false;
     Vec3 held_centre_m, held_normal;
     double held_depth_m = 0.0;
     Axes axes;                 // of t and f
@@ -166,6 +176,7 @@ class Contact {
   double energy_J_ = 0.0;                  // of all presses
   bool closed_ = false;                    // the grip, with hysteresis
   bool closing_ = false;                   // it closed in this tick
+  bool lost_ = false;                      // in this tick
   std::optional<Tool> blade_tool_before_;  // of the last tick: where the blade was
 };
 
