@@ -37,6 +37,7 @@ Result<std::unique_ptr<Tissue>> make_tissue(const Scene& scene) {
                       .surface = scene.organ_mesh.view(),
                       .seeds = tissue->seeds_.view(),
                       .blade = scene.tool.blade};
+  if (scene.rate_Hz > 0.0) tissue->contact_.period_s = 1.0 / scene.rate_Hz;
   return tissue;
 }
 
