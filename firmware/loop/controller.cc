@@ -13,7 +13,7 @@ bool lets_go(Fault limit) RT_SAFE {
 }
 
 // More latch on hard real time (late_watch.h), and each period that is followed costs time.
-constexpr std::uint32_t kMostPeriods = 20;
+constexpr std::uint32_t kMaxPeriods = 20;
 // The reach of a tool goes beyond its speed limit by 5 %, as a period may be longer by the jitter
 // of the device's samples, and by 0.1 mm, the noise and the steps of its encoders.
 constexpr double kReachRatio = 1.05;
@@ -46,7 +46,7 @@ double Controller::reach_m(std::uint64_t periods) const RT_SAFE {
 // samples are missing it stays where the last one was.
 void Controller::touch(const TickInput& input) RT_SAFE {
   const std::uint64_t passed = std::uint64_t{input.skipped_periods} + 1;  // since the last tick
-  const auto periods = static_cast<std::uint32_t>(std::min<std::uint64_t>(passed, kMostPeriods));
+  const auto periods = static_cast<std::uint32_t>(std::min<std::uint64_t>(passed, kMaxPeriods));
   if (input.sample.fresh) {
     contact_.touch(input.sample.tool, periods, reach_m(unseen_ + passed));
     seen_ = true;

@@ -43,8 +43,8 @@ void put(Frame& frame, const loop::TickInput& input, const loop::TickOutput& out
   put(frame.wanted_force_N, output.wanted.force_N);
   frame.fault = static_cast<std::uint16_t>(output.fault);
   frame.state = output.state;
-  constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
-  frame.contact_losses = static_cast<std::uint32_t>(std::min(output.contact_losses, kMost));
+  constexpr std::uint64_t kMax_count = std::numeric_limits<std::uint32_t>::max();
+  frame.contact_losses = static_cast<std::uint32_t>(std::min(output.contact_losses, kMax_count));
 }
 
 float to_us(std::int64_t ns) { return static_cast<float>(static_cast<double>(ns) * 1e-3); }
