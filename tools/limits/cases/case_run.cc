@@ -184,8 +184,8 @@ bool CaseRun::play() {
   return going;
 }
 
-// Between two ticks, before arming. The sphere comes from outside, no faster than the gate allows: one
-// that is found in the tissue feels nothing.
+// Between two ticks, before arming. The sphere comes from outside, no faster than the gate allows:
+// one that is found in the tissue feels nothing.
 void CaseRun::approach(const firmware::loop::TickInput& at) {
   constexpr std::uint32_t kPeriods = 20;
   const double reach_m = kPeriods * controller_->gate().speed_limit_mps() * moment_.period_s;
