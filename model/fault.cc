@@ -47,6 +47,15 @@ constexpr std::array kTable{
     FaultEntry{Fault::kPowerLimited, "power limited",
                "force times speed of the tool nears limits.power_W",
                "let the tool go back slower, or soften the law"},
+    FaultEntry{
+        Fault::kToolInside, "inside the organ",
+        "the tool was found inside the organ: no contact and no force until it has once been "
+        "outside",
+        "take it out of the organ"},
+    FaultEntry{Fault::kContactLost, "contact lost",
+               "the tool moved unseen, farther than limits.speed_mps allows for the pause; contact "
+               "ends, held tissue is let go",
+               "check for lost samples and long pauses"},
     FaultEntry{Fault::kUnknown, "unknown", "a fault of another version of tact, or a broken record",
                "use programs and recordings of one build"},
     FaultEntry{Fault::kForceNotFinite, "force not finite", "the model produced NaN or infinity",

@@ -28,6 +28,8 @@ enum class Fault : std::uint16_t {
   kEnergyLimited = 11,
   kContinuousLimited = 12,
   kPowerLimited = 13,
+  kToolInside = 14,
+  kContactLost = 15,
   kUnknown = 100,  // never raised: what is said of a number that the table does not have
   kForceNotFinite = 101,
   kSampleNotFinite = 102,

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -57,11 +58,23 @@ bool OperatorView::show(const telemetry::Frame& newest) {
         "ready, force is off: hold the device, then arm it (tactctl {} arm, or kill -USR2 {})",
         scene_path_, getpid()));
   }
+  tell_inside(newest);
   if (terminal_) say(stdout, "\r\033[K{}", status_line(newest, before_));
   // A live line has no line end that would send it.
   std::fflush(stdout);
   before_ = newest;
   return told_ready_ && !was_told;
+}
+
+// Each time the tool is found inside: nothing else says why an armed device has no force.
+void OperatorView::tell_inside(const telemetry::Frame& newest) {
+  const auto is_inside = [](const telemetry::FrameSite& site) {
+    return site.state == telemetry::SiteState::kInside;
+  };
+  const bool was_inside = std::exchange(inside_, std::ranges::any_of(newest.site, is_inside));
+  if (!inside_ || was_inside) return;
+  const model::FaultEntry& limit = model::describe(Fault::kToolInside);
+  tell(fmt::format("{}: {}; {}", limit.name, limit.cause, limit.cure));
 }
 
 std::string OperatorView::why_not_arm() const {
@@ -91,6 +104,9 @@ std::string OperatorView::status() const {
   if (before_.fault != 0)
     out += fmt::format(", fault {}, {}", before_.fault,
                        model::describe(static_cast<Fault>(before_.fault)).name);
+  if (inside_) out += ", inside the organ: take the tool out";
+  if (before_.contact_losses > 0)
+    out += fmt::format(", contact lost {} times", before_.contact_losses);
   if (before_.state == loop::State::kOff && !waits_for_.empty()) out += ": " + waits_for_;
   return out;
 }

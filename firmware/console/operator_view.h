@@ -23,7 +23,8 @@ class OperatorView {
   /// Empty where the person may ask for it, by what was told last.
   std::string why_not_arm() const;
   std::string why_not_reset() const;
-  /// One sentence: device, state, force, and the fault if there is one.
+  /// One sentence: device, state, force, the fault if there is one, a tool inside the organ, and
+  /// how often contact was lost.
   std::string status() const;
   const std::string& device() const { return name_; }
   /// One sentence to standard error, beside the live line.
@@ -32,10 +33,13 @@ class OperatorView {
   void end() const;
 
  private:
+  void tell_inside(const telemetry::Frame& newest);
+
   const hal::Device& device_;
   const hal::SafetyLines& lines_;
   std::string name_, scene_path_;
   bool terminal_, arms_itself_, told_ready_ = false;
+  bool inside_ = false;  // the tool, in the organ, without force
   telemetry::Frame before_;
   std::string waits_for_;
 };

@@ -18,10 +18,12 @@ std::string status_line(const telemetry::Frame& frame, const telemetry::Frame& b
   const model::Fault shown =
       static_cast<model::Fault>(frame.fault != 0 ? frame.fault : frame.limit);
   const char* reason = shown == model::Fault::kNone ? "" : model::describe(shown).name;
+  std::string losses;
+  if (frame.contact_losses > 0) losses = fmt::format("  contact lost {}", frame.contact_losses);
   return fmt::format(
-      "{:7.1f} s  {:4.0f} Hz  late {}  skipped {}  tick {:5.1f} us  force {:6.3f} N  {}  {}",
+      "{:7.1f} s  {:4.0f} Hz  late {}  skipped {}  tick {:5.1f} us  force {:6.3f} N  {}  {}{}",
       static_cast<double>(frame.time_ns) * 1e-9, rate_Hz, frame.late_ticks, frame.skipped_ticks,
-      frame.median_tick_us, force_N, name_of(frame.state), reason);
+      frame.median_tick_us, force_N, name_of(frame.state), reason, losses);
 }
 
 }  // namespace tact::firmware::console

@@ -8,7 +8,8 @@
 
 namespace tact::firmware::console {
 
-/// Time, rate, late ticks, force, state, and the fault or limit that acts. The rate is measured:
+/// Time, rate, late ticks, force, state, the fault or limit that acts, and how often contact was
+/// lost. The rate is measured:
 /// ticks over time since `before`; 0 when no time has passed.
 std::string status_line(const telemetry::Frame& frame, const telemetry::Frame& before);
 

@@ -91,6 +91,9 @@ class Gate {
   /// Since arming, more than was taken; below zero: more was taken.
   double given_energy_J() const RT_SAFE { return tank_.given_J(); }
   double rms_force_N() const RT_SAFE { return warm_force_.rms(); }
+  double speed_limit_mps() const RT_SAFE { return limits_.speed_mps; }
+  double turn_limit_radps() const RT_SAFE { return limits_.turn_radps; }
+  double period_s() const RT_SAFE { return period_s_; }
 
  private:
   struct Magnitude {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/loop/controller.h"
 
+#include <algorithm>
+
 namespace tact::firmware::loop {
 namespace {
 
@@ -10,20 +12,56 @@ bool lets_go(Fault limit) RT_SAFE {
          limit == Fault::kOutsideWorkspace || limit == Fault::kTooFast;
 }
 
+// More latch on hard real time (late_watch.h), and each period that is followed costs time.
+constexpr std::uint32_t kMaxPeriods = 20;
+// The reach of a tool goes beyond its speed limit by 5 %, as a period may be longer by the jitter
+// of the device's samples, and by 0.1 mm, the noise and the steps of its encoders.
+constexpr double kReachRatio = 1.05;
+constexpr double kReachMargin_m = 1e-4;
+
+// v + w l: the speed limit of the tool, and its turn about its origin at the farthest sphere.
+double fastest_sphere_mps(const model::contact::ContactScene& scene, const gate::Gate& gate) {
+  double lever_m = 0.0;
+  for (const model::contact::ProbeSphere& sphere : scene.spheres)
+    lever_m = std::max(lever_m, norm(sphere.offset_m));
+  // Without a lever a turn moves nothing, even where it has no limit.
+  return gate.speed_limit_mps() + (lever_m > 0.0 ? gate.turn_limit_radps() * lever_m : 0.0);
+}
+
 }  // namespace
 
-// A tool that moved unseen starts anew: whatever depth it has by then comes without force.
+Controller::Controller(const model::contact::ContactScene& scene, const gate::Gate& gate,
+                       bool hard_real_time)
+    : contact_(scene),
+      gate_(gate),
+      late_watch_(hard_real_time),
+      fastest_mps_(fastest_sphere_mps(scene, gate)) {}
+
+double Controller::reach_m(std::uint64_t periods) const RT_SAFE {
+  const double pause_s = static_cast<double>(periods) * gate_.period_s();
+  return kReachRatio * fastest_mps_ * pause_s + kReachMargin_m;
+}
+
+// Neither arming nor a pause changes contact: it follows the tool from its first sample on. While
+// samples are missing it stays where the last one was.
 void Controller::touch(const TickInput& input) RT_SAFE {
-  unseen_ += input.skipped_periods;
-  // One period unseen is what the gate holds, too (RT-15); after two the tool may be anywhere.
-  if (input.sample.fresh && unseen_ >= 2) contact_.reset();
-  unseen_ = input.sample.fresh ? 0 : unseen_ + 1;
-  contact_.touch(input.sample.tool);
+  const std::uint64_t passed = std::uint64_t{input.skipped_periods} + 1;  // since the last tick
+  const auto periods = static_cast<std::uint32_t>(std::min<std::uint64_t>(passed, kMaxPeriods));
+  if (input.sample.fresh) {
+    contact_.touch(input.sample.tool, periods, reach_m(unseen_ + passed));
+    seen_ = true;
+    unseen_ = 0;
+  } else if (seen_) {
+    contact_.touch(input.sample.tool, periods);
+    unseen_ += passed;
+  }
 }
 
 void Controller::feel(const TickInput& input) RT_SAFE {
+  if (!seen_) return;  // before the first sample there is no pose
   // A blade cuts only what a hand can feel: armed, as the tick before left it.
   felt_ = contact_.feel(input.sample.tool, supervisor_.armed());
+  if (felt_.is_lost) ++contact_losses_;
 }
 
 void Controller::tell_shape() RT_SAFE {
@@ -40,20 +78,27 @@ Fault Controller::find_fault(const TickInput& input, bool finite, bool too_late)
   return Fault::kNone;
 }
 
+// A force that is no longer the tissue's is told before what the gate does with it, unless the gate
+// lets go. A loss is told then, too: what makes it, missed samples and jumps, often makes the gate
+// let go. A person must learn before arming that the tool is inside.
+Fault Controller::find_limit(Fault acting) const RT_SAFE {
+  const bool open = !lets_go(acting);
+  const State state = supervisor_.state();
+  if (felt_.is_lost && state == State::kArmed) return Fault::kContactLost;
+  if (felt_.is_inside && (open || state == State::kOff || state == State::kReady))
+    return Fault::kToolInside;
+  if (felt_.is_saturated && open) return Fault::kLawSaturated;
+  return acting;
+}
+
 TickOutput Controller::judge(const TickInput& input) RT_SAFE {
   const bool finite = is_finite(input.sample.tool);
   const bool too_late = late_watch_.step(input.skipped_periods);
   const Fault fault = find_fault(input, finite, too_late);
   // The supervisor before the gate: a fault found in this tick has zero force in this tick.
-  const bool armed_before = supervisor_.armed();
   supervisor_.step(
       input.commands,
       {.sample_good = input.sample.fresh && finite, .ready = input.ready, .fault = fault});
-  if (supervisor_.armed() && !armed_before) {  // arming inside the organ pushes nothing
-    contact_.reset();
-    felt_ = {};
-  }
-
   // Where the gate latches it makes the force zero by itself; the state follows.
   const gate::GateVerdict verdict = gate_.judge({.wanted = felt_.wrench,
                                                  .tool = input.sample.tool,
@@ -61,16 +106,14 @@ TickOutput Controller::judge(const TickInput& input) RT_SAFE {
                                                  .armed = supervisor_.armed(),
                                                  .skipped_periods = input.skipped_periods});
   supervisor_.trip(verdict.fault);
-  Fault limit = verdict.acting;
-  // A force that is no longer the tissue's is told before what the gate does with it.
-  if (felt_.is_saturated && !lets_go(limit)) limit = Fault::kLawSaturated;
   newest_ = {.wanted = felt_.wrench,
              .written = verdict.wrench,
              .state = supervisor_.state(),
-             .limit = limit,
+             .limit = find_limit(verdict.acting),
              .fault = supervisor_.fault(),
              .given_energy_J = gate_.given_energy_J(),
-             .rms_force_N = gate_.rms_force_N()};
+             .rms_force_N = gate_.rms_force_N(),
+             .contact_losses = contact_losses_};
   return newest_;
 }
 

@@ -29,9 +29,10 @@ struct TickOutput {
   model::Wrench written;  // after the gate
   State state = State::kOff;
   Fault limit = Fault::kNone;
-  Fault fault = Fault::kNone;   // latched
-  double given_energy_J = 0.0;  // by the device since arming, more than it took
-  double rms_force_N = 0.0;     // written, over limits.thermal_time_s
+  Fault fault = Fault::kNone;        // latched
+  double given_energy_J = 0.0;       // by the device since arming, more than it took
+  double rms_force_N = 0.0;          // written, over limits.thermal_time_s
+  std::uint64_t contact_losses = 0;  // so far: the tool moved unseen, farther than its speed allows
 };
 
 using ShapeSlot = hal::LatestSlot<model::contact::PatchShape>;
@@ -39,8 +40,8 @@ using ShapeSlot = hal::LatestSlot<model::contact::PatchShape>;
 class Controller {
  public:
   /// Without hard real time the late watch bears single stalls.
-  Controller(const model::contact::ContactScene& scene, const gate::Gate& gate, bool hard_real_time)
-      : contact_(scene), gate_(gate), late_watch_(hard_real_time) {}
+  Controller(const model::contact::ContactScene& scene, const gate::Gate& gate,
+             bool hard_real_time);
 
   void touch(const TickInput& input) RT_SAFE;
   void feel(const TickInput& input) RT_SAFE;
@@ -60,12 +61,16 @@ class Controller {
   std::span<const model::contact::SphereTouch> touches() const RT_SAFE {
     return contact_.touches();
   }
+  /// A sphere is inside the organ, as of this tick.
+  bool is_inside() const RT_SAFE { return felt_.is_inside; }
   const gate::Gate& gate() const RT_SAFE { return gate_; }
   /// Of the last tick; for after the loop.
   const TickOutput& newest() const { return newest_; }
 
  private:
   Fault find_fault(const TickInput& input, bool finite, bool too_late) const RT_SAFE;
+  Fault find_limit(Fault acting) const RT_SAFE;
+  double reach_m(std::uint64_t periods) const RT_SAFE;
 
   model::contact::Contact contact_;
   gate::Gate gate_;
@@ -75,7 +80,10 @@ class Controller {
   TickOutput newest_;
   model::contact::PatchShape shape_;
   ShapeSlot shapes_;
+  double fastest_mps_;        // that a sphere may move
+  bool seen_ = false;         // there was a fresh sample
   std::uint64_t unseen_ = 0;  // periods in a row without a sample
+  std::uint64_t contact_losses_ = 0;
 };
 
 }  // namespace tact::firmware::loop

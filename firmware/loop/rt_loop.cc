@@ -116,6 +116,8 @@ void RtLoop::tell() RT_SAFE {
   statistics_.max_rms_force_N = std::max(statistics_.max_rms_force_N, record_.output.rms_force_N);
   statistics_.max_given_energy_J =
       std::max(statistics_.max_given_energy_J, record_.output.given_energy_J);
+  statistics_.contact_losses = record_.output.contact_losses;
+  if (controller_.is_inside()) ++statistics_.inside_ticks;
   record_.late_ticks = statistics_.late_ticks;
   record_.skipped_ticks = statistics_.skipped_ticks;
   record_.touches.assign(controller_.touches());

@@ -42,6 +42,8 @@ struct LoopStatistics {
   std::uint64_t ticks = 0;
   std::uint64_t late_ticks = 0;     // ended after their own period
   std::uint64_t skipped_ticks = 0;  // grid points that had no tick
+  std::uint64_t contact_losses = 0;
+  std::uint64_t inside_ticks = 0;   // a sphere was inside the organ and felt nothing
   double max_force_N = 0.0;         // written
   double max_rms_force_N = 0.0;     // written, over limits.thermal_time_s
   double max_given_energy_J = 0.0;  // since arming, more than was taken

@@ -97,6 +97,8 @@ std::string make_report(const RunFacts& facts, const loop::LoopStatistics& loop,
                        {"ticks", loop.ticks},
                        {"late", loop.late_ticks},
                        {"skipped", loop.skipped_ticks},
+                       {"contact_lost", loop.contact_losses},
+                       {"inside_ticks", loop.inside_ticks},
                        {"thread", to_json(facts.costs)},
                        {"phases", phases(loop)},
                        {"force_max_N", loop.max_force_N},
@@ -143,6 +145,12 @@ std::string make_summary(const RunFacts& facts, const loop::LoopStatistics& loop
   if (facts.costs.heap_calls_known)
     out += fmt::format(", {} allocations, {} page faults", facts.costs.heap_calls,
                        facts.costs.minor_faults + facts.costs.major_faults);
+  if (loop.contact_losses > 0)
+    out += fmt::format("\n  contact lost {} times: the tool moved unseen; {}", loop.contact_losses,
+                       model::describe(model::Fault::kContactLost).cure);
+  if (loop.inside_ticks > 0)
+    out += fmt::format("\n  the tool was inside the organ, without force, in {} of {} ticks",
+                       loop.inside_ticks, loop.ticks);
   // Five seconds: time to touch something; the usual cause is an organ that stands elsewhere.
   if (loop.max_force_N == 0.0 && facts.duration_s > 5.0 && facts.fault == model::Fault::kNone)
     out +=

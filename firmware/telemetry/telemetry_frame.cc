@@ -43,6 +43,8 @@ void put(Frame& frame, const loop::TickInput& input, const loop::TickOutput& out
   put(frame.wanted_force_N, output.wanted.force_N);
   frame.fault = static_cast<std::uint16_t>(output.fault);
   frame.state = output.state;
+  constexpr std::uint64_t kMax_count = std::numeric_limits<std::uint32_t>::max();
+  frame.contact_losses = static_cast<std::uint32_t>(std::min(output.contact_losses, kMax_count));
 }
 
 float to_us(std::int64_t ns) { return static_cast<float>(static_cast<double>(ns) * 1e-3); }
@@ -207,7 +209,8 @@ void FrameBuilder::add_site(const model::contact::SphereTouch& touch, FrameSite&
   site.state = static_cast<SiteState>(touch.state);
   // Its own dent, as the page adds the dents up; what lies in another's dent has none.
   const bool is_held = touch.state == model::contact::TouchState::kHeld;
-  if (touch.state == model::contact::TouchState::kFree || !(is_held || touch.dent_m > 0.0)) return;
+  const bool presses = touch.state == model::contact::TouchState::kTouching && touch.dent_m > 0.0;
+  if (!is_held && !presses) return;
   std::array<double, kMaxRings> ring_m{};
   const model::contact::Indentation in{
       .place = touch.place, .normal = touch.normal, .dent_m = touch.dent_m};

@@ -27,7 +27,8 @@ inline constexpr std::size_t kMaxCutsTold = 32;        // in one frame
 inline constexpr std::size_t kMaxPieces = 4;           // of the organ's mesh, with a colour each
 
 enum class MessageKind : std::uint16_t { kHello = 1, kFrame = 2 };
-enum class SiteState : std::uint8_t { kFree = 0, kTouching = 1, kHeld = 2 };
+// kInside: the sphere is inside the organ and feels nothing until it has once been outside.
+enum class SiteState : std::uint8_t { kFree = 0, kTouching = 1, kHeld = 2, kInside = 3 };
 
 struct MessageHeader {
   std::uint32_t magic = kTelemetryMagic;
@@ -105,7 +106,8 @@ struct Frame {
   std::uint16_t limit = 0;       // last limit that acted since the last frame, 0 none
   loop::State state = loop::State::kOff;
   std::uint8_t non_rt = 0;  // stamped on every record of a PC without hard real time
-  std::uint8_t pad[6] = {};
+  std::uint8_t pad[2] = {};
+  std::uint32_t contact_losses = 0;  // so far; 0 in what was recorded before there was a count
   FrameSite site[kMaxSites] = {};
   FramePatch patch;
 };
@@ -115,7 +117,7 @@ static_assert(std::is_trivially_copyable_v<Hello> && std::is_trivially_copyable_
 static_assert(sizeof(FrameSite) == (13 + kMaxRings) * sizeof(float) + 4);
 static_assert(sizeof(FramePatch) == 16 + kMaxPatchVertices * 10 + kMaxCutsTold * 4);
 static_assert(sizeof(Frame) ==
-              48 + 25 * sizeof(float) + 12 + kMaxSites * sizeof(FrameSite) + sizeof(FramePatch));
+              48 + 25 * sizeof(float) + 8 + 4 + kMaxSites * sizeof(FrameSite) + sizeof(FramePatch));
 static_assert(sizeof(Frame) <= 4096);
 static_assert(sizeof(Hello) == 122 + 53 + 9 + 64 + 64 + 108 + 24 + 4 + 48);
 

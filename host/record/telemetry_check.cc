@@ -135,7 +135,7 @@ std::optional<Error> check_frame(const Frame& frame, const Hello& hello) {
   if (frame.state > firmware::loop::State::kStopped)
     return Error{"a frame has a state that is none"};
   for (const firmware::telemetry::FrameSite& site : frame.site)
-    if (site.state > firmware::telemetry::SiteState::kHeld)
+    if (site.state > firmware::telemetry::SiteState::kInside)
       return Error{"a frame has a site whose state is none"};
   return check_patch(frame.patch, hello);
 }

@@ -89,10 +89,10 @@ std::string frame_json(const record::Frame& frame, const record::Hello& hello) {
   out.reserve(kMaxFrameJsonBytes);
   fmt::format_to(std::back_inserter(out),
                  "{{\"kind\":\"frame\",\"tick\":{},\"time_s\":{:.4f},\"state\":{},\"fault\":{},"
-                 "\"limit\":{},\"late\":{},\"skipped\":{},\"dropped\":{}",
+                 "\"limit\":{},\"late\":{},\"skipped\":{},\"dropped\":{},\"contact_losses\":{}",
                  frame.tick, static_cast<double>(frame.time_ns) * 1e-9,
                  static_cast<int>(frame.state), frame.fault, frame.limit, frame.late_ticks,
-                 frame.skipped_ticks, frame.dropped_records);
+                 frame.skipped_ticks, frame.dropped_records, frame.contact_losses);
   put(out, "tool_m", frame.tool_position_m, kPositionDigits);
   put(out, "turn", frame.tool_orientation, kPositionDigits);
   put(out, "velocity_mps", frame.tool_velocity_mps);

@@ -35,8 +35,17 @@ TEST(Fault, NumbersAscendAndAreNeverShared) {
 TEST(Fault, LatchesFromOneHundred) {
   EXPECT_FALSE(latches(Fault::kNone));
   EXPECT_FALSE(latches(Fault::kLawSaturated));
+  EXPECT_FALSE(latches(Fault::kToolInside));
+  EXPECT_FALSE(latches(Fault::kContactLost));
   EXPECT_TRUE(latches(Fault::kUnknown));
   EXPECT_TRUE(latches(Fault::kDeviceLost));
+}
+
+TEST(Fault, AToolInsideAndLostContactHaveTheirWords) {
+  EXPECT_EQ(static_cast<int>(Fault::kToolInside), 14);
+  EXPECT_STREQ(describe(Fault::kToolInside).name, "inside the organ");
+  EXPECT_EQ(static_cast<int>(Fault::kContactLost), 15);
+  EXPECT_STREQ(describe(Fault::kContactLost).name, "contact lost");
 }
 
 TEST(Fault, ANumberThatTheTableDoesNotHaveIsToldAsUnknown) {

@@ -28,7 +28,7 @@ except ImportError:
 
 MAGIC, TELEMETRY_VERSION = 0x74636174, 5
 RECORDING_VERSIONS = {7: 0, 8: 1304, 9: 1496}  # bytes of the operator behind each frame
-LOG_MAGIC, RECORDING_MAGIC = b"tactlog7", b"tactrec\n"
+LOG_MAGIC, RECORDING_MAGIC = b"tactlog8", b"tactrec\n"
 SEAL = b"tactseal"
 PHASES = ("wake", "read", "touch", "feel", "judge", "write", "tell", "total")
 STATES = ("off", "ready", "armed", "stopped")
@@ -63,7 +63,7 @@ FRAME = np.dtype([
     ("tool_velocity_mps", "<f4", 3), ("grip_ratio", "<f4"), ("force_N", "<f4", 3), ("torque_Nm", "<f4", 3),
     ("wanted_force_N", "<f4", 3), ("worst_margin_us", "<f4"), ("median_tick_us", "<f4"), ("peak_force_N", "<f4"),
     ("rms_force_N", "<f4"), ("given_energy_J", "<f4"), ("fault", "<u2"), ("limit", "<u2"), ("state", "u1"),
-    ("non_rt", "u1"), ("pad", "u1", 6), ("site", FRAME_SITE, 4), ("patch", FRAME_PATCH)])
+    ("non_rt", "u1"), ("pad", "u1", 2), ("contact_losses", "<u4"), ("site", FRAME_SITE, 4), ("patch", FRAME_PATCH)])
 FILE_HEADER = np.dtype([
     ("magic", "S8"), ("version", "<u4"), ("hello_bytes", "<u4"), ("frame_bytes", "<u4"), ("setup_crc", "<u4"),
     ("mesh_bytes", "<u8")])
@@ -73,7 +73,7 @@ LOG_HEADER = np.dtype([
     ("limits", "<f8", 13), ("force_share", "<f8"), ("non_rt", "u1"), ("scene_hash", "S23"), ("overrides", "S1024"),
     ("scene_name", "S64"), ("law", "S64"), ("revision", "S64"), ("host", "S64"), ("began_utc", "S24"),
     ("header_crc", "<u4"), ("pad", "<u4")])
-LOGGED_TICK = _placed(336, [
+LOGGED_TICK = _placed(344, [
     ("tick", "<u8", None, 0), ("non_rt", "u1", None, 8), ("due_ns", "<i8", None, 16), ("margin_ns", "<i8", None, 24),
     ("phase_ns", "<i4", 8, 32), ("tool_position_m", "<f8", 3, 64), ("tool_orientation", "<f8", 4, 88),
     ("tool_velocity_mps", "<f8", 3, 120), ("tool_angular_velocity_radps", "<f8", 3, 144),
@@ -83,7 +83,7 @@ LOGGED_TICK = _placed(336, [
     ("skipped_periods", "<u4", None, 208), ("wanted_force_N", "<f8", 3, 216), ("wanted_torque_Nm", "<f8", 3, 240),
     ("written_force_N", "<f8", 3, 264), ("written_torque_Nm", "<f8", 3, 288), ("state", "u1", None, 312),
     ("limit", "<u2", None, 314), ("fault", "<u2", None, 316), ("given_energy_J", "<f8", None, 320),
-    ("rms_force_N", "<f8", None, 328)])
+    ("rms_force_N", "<f8", None, 328), ("contact_losses", "<u8", None, 336)])
 LOG_RECORD = np.dtype([("tick", LOGGED_TICK), ("crc", "<u4"), ("pad", "<u4")])
 
 

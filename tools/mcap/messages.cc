@@ -42,7 +42,8 @@ constexpr const char* kState =
     "float64 margin_us  # time left before the deadline\n"
     "float64 grip_ratio  # 0 open, 1 closed\n"
     "float64 rms_force_newton\n"
-    "float64 given_energy_joule\n" TACT_HEADER;
+    "float64 given_energy_joule\n"
+    "uint64 contact_losses  # so far\n" TACT_HEADER;
 
 #undef TACT_HEADER
 #undef TACT_PART
@@ -95,7 +96,8 @@ Moment Moment::of(const LoggedTick& tick, std::uint64_t time_ns) {
              .margin_us = 1e-3 * static_cast<double>(tick.margin_ns),
              .grip_ratio = tool.grip_ratio,
              .rms_force_N = o.rms_force_N,
-             .given_energy_J = o.given_energy_J};
+             .given_energy_J = o.given_energy_J,
+             .contact_losses = o.contact_losses};
   set(out.position_m, tool.position_m);
   set(out.written.force_N, o.written.force_N);
   set(out.written.torque_Nm, o.written.torque_Nm);
@@ -117,7 +119,8 @@ Moment Moment::of(const Frame& frame, std::uint64_t time_ns) {
              .margin_us = frame.worst_margin_us,
              .grip_ratio = frame.grip_ratio,
              .rms_force_N = frame.rms_force_N,
-             .given_energy_J = frame.given_energy_J};
+             .given_energy_J = frame.given_energy_J,
+             .contact_losses = frame.contact_losses};
   std::ranges::copy(frame.tool_position_m, out.position_m);
   std::ranges::copy(frame.tool_orientation, out.rotation_wxyz);
   std::ranges::copy(frame.force_N, out.written.force_N);
@@ -155,6 +158,7 @@ std::string state_message(const Moment& moment) {
       .real(moment.grip_ratio)
       .real(moment.rms_force_N)
       .real(moment.given_energy_J)
+      .put(moment.contact_losses)
       .str();
 }
 

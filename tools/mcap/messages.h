@@ -34,6 +34,7 @@ struct Moment {
   std::uint16_t fault = 0, limit = 0;
   double margin_us = 0.0;
   double grip_ratio = 0.0, rms_force_N = 0.0, given_energy_J = 0.0;
+  std::uint64_t contact_losses = 0;
 
   static Moment of(const firmware::telemetry::LoggedTick& tick, std::uint64_t time_ns);
   static Moment of(const firmware::telemetry::Frame& frame, std::uint64_t time_ns);

@@ -58,6 +58,26 @@ TEST_F(View, FaultsOfTheLinesAreWordedByTheLines) {
   EXPECT_EQ(first.find("all is well here"), std::string::npos) << first;
 }
 
+TEST_F(View, AToolInsideTheOrganIsToldOnceEachTime) {
+  telemetry::Frame inside = frame(loop::State::kArmed, model::Fault::kNone);
+  inside.site[1].state = telemetry::SiteState::kInside;
+  EXPECT_NE(told(inside).find("inside the organ"), std::string::npos);
+  EXPECT_EQ(told(inside), "");
+  EXPECT_NE(view.status().find("inside the organ: take the tool out"), std::string::npos);
+  EXPECT_EQ(told(frame(loop::State::kArmed, model::Fault::kNone)), "");
+  EXPECT_EQ(view.status().find("inside"), std::string::npos);
+  EXPECT_NE(told(inside), "");
+}
+
+TEST_F(View, TheStatusCountsLossesOfContact) {
+  telemetry::Frame lost = frame(loop::State::kArmed, model::Fault::kNone);
+  EXPECT_EQ(told(lost), "");
+  EXPECT_EQ(view.status().find("contact lost"), std::string::npos);
+  lost.contact_losses = 3;
+  EXPECT_EQ(told(lost), "");
+  EXPECT_NE(view.status().find("contact lost 3 times"), std::string::npos) << view.status();
+}
+
 TEST_F(View, WhoMustArmIsToldWhenTheDeviceIsReady) {
   EXPECT_NE(told(frame(loop::State::kReady, model::Fault::kNone)).find("tactctl SCENE arm"),
             std::string::npos);

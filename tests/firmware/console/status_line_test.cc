@@ -25,6 +25,19 @@ TEST(StatusLine, SaysBeyondTheLaw) {
   EXPECT_NE(status_line(frame, frame).find("beyond the law"), std::string::npos);
 }
 
+TEST(StatusLine, SaysInsideTheOrgan) {
+  telemetry::Frame frame;
+  frame.limit = static_cast<std::uint16_t>(model::Fault::kToolInside);
+  EXPECT_NE(status_line(frame, frame).find("inside the organ"), std::string::npos);
+}
+
+TEST(StatusLine, CountsLossesOfContactOnceThereIsOne) {
+  telemetry::Frame frame;
+  EXPECT_EQ(status_line(frame, frame).find("contact lost"), std::string::npos);
+  frame.contact_losses = 2;
+  EXPECT_NE(status_line(frame, frame).find("contact lost 2"), std::string::npos);
+}
+
 TEST(StatusLine, NamesTheFaultBeforeTheLimit) {
   telemetry::Frame frame;
   frame.limit = 7;

@@ -112,27 +112,115 @@ TEST_F(ControllerTest, BeyondTheLawIsToldBeforeALimitThatLeavesTheForceOn) {
   for (int i = 0; i < 20; ++i) EXPECT_NE(tick().limit, Fault::kLawSaturated);
 }
 
-TEST_F(ControllerTest, OneSkippedPeriodChangesNothing) {
+TEST_F(ControllerTest, ArmingChangesNothingOfContact) {
+  for (depth_m = -0.002; depth_m < 0.003; depth_m += 5e-5) tick();
+  const TickOutput before = tick();
+  EXPECT_GT(before.wanted.force_N.z, 0.5);
+  EXPECT_EQ(before.written, model::Wrench{});
+  input.commands.arm = true;
+  const TickOutput armed = tick();
+  EXPECT_EQ(armed.state, State::kArmed);
+  EXPECT_EQ(armed.wanted, before.wanted);
+  EXPECT_LT(armed.written.force_N.z, 0.02) << "the ramp fades it in";
+  for (int i = 0; i < 600; ++i) tick();
+  EXPECT_NEAR(tick().written.force_N.z, before.wanted.force_N.z, 1e-9);
+}
+
+TEST_F(ControllerTest, SkippedPeriodsAndMissedSamplesKeepContact) {
   press();
   const model::Wrench before = tick().written;
   EXPECT_NEAR(tick(1).written.force_N.z, before.force_N.z, 1e-9);
-}
-
-TEST_F(ControllerTest, WhatIsPressedAfterAGapComesWithoutForce) {
-  press();
-  tick(2);
+  EXPECT_NEAR(tick(9).wanted.force_N.z, before.force_N.z, 1e-9);
+  input.sample.fresh = false;
+  input.skipped_periods = 0;
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(controller->tick(input).wanted.force_N.z, before.force_N.z, 1e-9);
   for (int i = 0; i < 20; ++i) tick();
-  EXPECT_EQ(tick().written, model::Wrench{}) << "two periods unseen: the contact starts anew";
-  EXPECT_EQ(tick().state, State::kArmed);
+  EXPECT_NEAR(tick().written.force_N.z, before.force_N.z, 1e-9);
+  EXPECT_EQ(tick().contact_losses, 0u);
 }
 
-TEST_F(ControllerTest, AMissingSampleAndASkippedPeriodMakeAGapTogether) {
+// 1.5 m/s and a period of 1 ms, 5 % and 0.1 mm more: 1.675 mm a period.
+TEST_F(ControllerTest, AJumpBeyondSpeedTimesPauseIsContactLost) {
+  press();
+  depth_m -= 0.0016;
+  EXPECT_EQ(tick().contact_losses, 0u);
+  depth_m += 0.0016;
+  EXPECT_EQ(tick().contact_losses, 0u);
+  depth_m -= 0.010;
+  const TickOutput lost = tick();
+  EXPECT_EQ(lost.contact_losses, 1u);
+  EXPECT_EQ(lost.limit, Fault::kContactLost);
+  EXPECT_EQ(lost.wanted, model::Wrench{});
+  EXPECT_EQ(lost.fault, Fault::kNone);
+  const TickOutput after = tick();
+  EXPECT_EQ(after.contact_losses, 1u);
+  EXPECT_NE(after.limit, Fault::kContactLost) << "it is told in its tick alone";
+}
+
+TEST_F(ControllerTest, ContactLostIsToldWhereTheGateLetsGo) {
+  press();
+  depth_m -= 0.010;
+  input.sample.tool.velocity_mps.z = 10.0;
+  EXPECT_EQ(tick().limit, Fault::kContactLost);
+  EXPECT_EQ(tick().limit, Fault::kTooFast);
+}
+
+TEST_F(ControllerTest, SkippedPeriodsExtendTheReach) {
+  press();
+  depth_m -= 0.010;
+  EXPECT_EQ(tick(6).contact_losses, 0u) << "7 periods: 11.1 mm";
+  depth_m += 0.010;
+  EXPECT_EQ(tick(4).contact_losses, 1u) << "5 periods: 8.0 mm";
+}
+
+TEST_F(ControllerTest, MissedSamplesExtendTheReach) {
   press();
   input.sample.fresh = false;
+  for (int i = 0; i < 3; ++i) controller->tick(input);
+  depth_m -= 0.010;
+  EXPECT_EQ(tick(3).contact_losses, 0u) << "3 missed, 3 skipped and this one";
+  depth_m += 0.010;
+  EXPECT_EQ(tick(3).contact_losses, 1u) << "they count once";
+}
+
+TEST_F(ControllerTest, AToolInsideIsToldBeforeArmingAndFeelsNothingUntilOutside) {
+  depth_m = 0.010;  // the centre of the ball 6 mm below the skin
+  EXPECT_EQ(tick().limit, Fault::kToolInside);
+  EXPECT_EQ(tick().state, State::kReady);
+  EXPECT_TRUE(controller->is_inside());
+  input.commands.arm = true;
+  for (int i = 0; i < 600; ++i) tick();
+  EXPECT_EQ(tick().state, State::kArmed);
+  EXPECT_EQ(tick().limit, Fault::kToolInside);
+  EXPECT_EQ(tick().wanted, model::Wrench{});
+  for (; depth_m > -0.002; depth_m -= 5e-5) EXPECT_EQ(tick().written, model::Wrench{});
+  EXPECT_EQ(tick().limit, Fault::kNone);
+  EXPECT_FALSE(controller->is_inside());
+  for (; depth_m < 0.003; depth_m += 5e-5) tick();
+  EXPECT_GT(tick().wanted.force_N.z, 0.5);
+  EXPECT_EQ(tick().contact_losses, 0u);
+}
+
+TEST_F(ControllerTest, ContactLostIsToldBeforeInsideAndInsideBeforeBeyondTheLaw) {
+  press();
+  law.is_beyond = true;
+  EXPECT_EQ(tick().limit, Fault::kLawSaturated);
+  depth_m = 0.012;
+  EXPECT_EQ(tick().limit, Fault::kContactLost);
+  EXPECT_EQ(tick().limit, Fault::kToolInside);
+  input.sample.fresh = false;
   controller->tick(input);
-  tick(1);
-  for (int i = 0; i < 20; ++i) tick();
-  EXPECT_EQ(tick().written, model::Wrench{});
+  EXPECT_EQ(controller->tick(input).limit, Fault::kSampleStale) << "the gate lets go";
+}
+
+TEST_F(ControllerTest, ContactSeesNoPoseBeforeTheFirstSample) {
+  input.sample.tool.position_m.z = -0.006;  // what a device may hold before it knows
+  for (int i = 0; i < 30; ++i) EXPECT_EQ(controller->tick(input).limit, Fault::kNotArmed);
+  EXPECT_FALSE(controller->is_inside());
+  depth_m = -0.1;
+  EXPECT_EQ(tick().contact_losses, 0u);
+  EXPECT_EQ(tick().limit, Fault::kNotArmed);
 }
 
 TEST_F(ControllerTest, TwentyPeriodsSkippedAtOnceLatchInTheSameTick) {
@@ -159,7 +247,7 @@ TEST_F(ControllerTest, WithoutHardRealTimeAStallIsBorneAndOnlyTheRowLatches) {
   EXPECT_EQ(tick(5000).fault, Fault::kNone);
   EXPECT_EQ(tick().state, State::kArmed);
   for (int i = 0; i < 20; ++i) tick();
-  EXPECT_EQ(tick().written, model::Wrench{}) << "the contact starts anew";
+  EXPECT_GT(tick().written.force_N.z, 0.5) << "the tool has not moved: contact goes on";
   for (int i = 0; i < 99; ++i) EXPECT_EQ(tick(80).fault, Fault::kNone);
   const TickOutput late = tick(80);
   EXPECT_EQ(late.fault, Fault::kLoopLate);

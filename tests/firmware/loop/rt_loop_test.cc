@@ -30,19 +30,6 @@ TEST_F(RtLoopTest, GivesNoForceUntilArmed) {
   EXPECT_EQ(newest().output.limit, Fault::kNotArmed);
 }
 
-TEST_F(RtLoopTest, ArmingInsideTheOrganPushesNothing) {
-  device.height_m = 0.006;
-  run_ticks(5);
-  for (; device.height_m > 0.001; device.height_m -= 0.0001) loop.step();
-  requests.arm_at_start.store(true);
-  run_ticks(1000);
-  EXPECT_EQ(newest().output.state, State::kArmed);
-  EXPECT_EQ(device.last, model::Wrench{}) << "the depth from before arming comes without force";
-  device.height_m -= 0.0005;
-  run_ticks(100);
-  EXPECT_NEAR(device.last.force_N.z, tissue->law().curve()->respond(0.0005).force_N, 1e-6);
-}
-
 TEST_F(RtLoopTest, ADeviceThatWakesSlowlyIsNotLost) {
   device.silent = true;
   run_ticks(100);

@@ -136,8 +136,9 @@ TEST_F(ReplayTest, TheTableHasEveryTickAndSaysWhichRunItWas) {
   std::remove(csv.c_str());
   EXPECT_EQ(comments, 8);
   EXPECT_EQ(rows, 3000);
-  for (const char* name : {"tick,time_s,", ",tool_x_m,", ",tool_z_m,", ",wanted_x_N,",
-                           ",force_x_N,", ",acted,", ",given_energy_J,", ",judge_us,"})
+  for (const char* name :
+       {"tick,time_s,", ",tool_x_m,", ",tool_z_m,", ",wanted_x_N,", ",force_x_N,", ",acted,",
+        ",given_energy_J,contact_losses,", ",judge_us,"})
     EXPECT_NE(names.find(name), std::string::npos) << name;
   EXPECT_EQ(std::count(names.begin(), names.end(), ','), std::count(row.begin(), row.end(), ','));
   EXPECT_EQ(row.find("1800,"), 0u) << row;
@@ -173,7 +174,7 @@ TEST_F(ReplayTest, ALogOfAnotherVersionIsRefusedByItsNumber) {
   file.close();
   const auto outcome = replay(path, scene, *tissue);
   ASSERT_FALSE(outcome);
-  EXPECT_NE(outcome.error().sentence.find("version 2, this tactd reads version 7"),
+  EXPECT_NE(outcome.error().sentence.find("version 2, this tactd reads version 8"),
             std::string::npos)
       << outcome.error().sentence;
 }

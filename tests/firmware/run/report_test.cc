@@ -22,4 +22,22 @@ TEST(Report, IsJsonWhateverBytesADeviceHasForItsName) {
   EXPECT_EQ(report.at("device"), "Touch \uFFFD\uFFFD");
 }
 
+TEST(Report, TellsLossesOfContactAndTicksInsideTheOrgan) {
+  const gate::Gate gate(model::Limits{.force_N = 1.0, .slew_N_per_s = 500.0, .ramp_s = 0.5}, 1e-3,
+                        1.0);
+  loop::LoopStatistics loop;
+  loop.ticks = 1000;
+  const std::string without = make_summary(RunFacts{}, loop);
+  EXPECT_EQ(without.find("contact lost"), std::string::npos) << without;
+  EXPECT_EQ(without.find("inside the organ"), std::string::npos) << without;
+  loop.contact_losses = 3;
+  loop.inside_ticks = 40;
+  const auto report = nlohmann::json::parse(make_report(RunFacts{}, loop, gate, pc::Environment{}));
+  EXPECT_EQ(report.at("contact_lost"), 3);
+  EXPECT_EQ(report.at("inside_ticks"), 40);
+  const std::string summary = make_summary(RunFacts{}, loop);
+  EXPECT_NE(summary.find("contact lost 3 times: the tool moved unseen"), std::string::npos);
+  EXPECT_NE(summary.find("inside the organ, without force, in 40 of 1000"), std::string::npos);
+}
+
 }  // namespace tact::firmware::run::report_test

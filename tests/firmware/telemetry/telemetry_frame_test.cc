@@ -45,6 +45,26 @@ TEST(TelemetryFrame, CarriesHowTheDentOfATouchedSiteLeans) {
   for (const float of_a_free_one : frame.site[1].tilt) EXPECT_EQ(of_a_free_one, 0.0F);
 }
 
+TEST(TelemetryFrame, CarriesLossesOfContactAndASphereInsideWithoutADent) {
+  const LeaningLaw law;
+  const auto shapes = std::make_unique<loop::ShapeSlot>();
+  FrameBuilder builder(law, *shapes, false);
+  std::array<model::contact::SphereTouch, 1> touches;
+  touches[0].state = TouchState::kInside;
+  touches[0].dent_m = 0.004;
+  loop::TickRecord record;
+  record.touches.assign(touches);
+  record.output.contact_losses = 7;
+  builder.add(record);
+  const Frame frame = builder.take(0);
+  EXPECT_EQ(frame.contact_losses, 7u);
+  EXPECT_EQ(frame.site[0].state, SiteState::kInside);
+  EXPECT_EQ(frame.site[0].tilt[0], 0.0F);
+  record.output.contact_losses = 5'000'000'000;
+  const LoggedTick tick = LoggedTick::of(record, false);
+  EXPECT_EQ(frame_of_tick(frame, tick, 0).contact_losses, 4'294'967'295u);
+}
+
 TEST(TelemetryFrame, TheMeshFileEndsWithTheColoursOfTheOrgansVertices) {
   model::scene::Scene scene;
   scene.organ_mesh = tests::make_plate(0.1, 1);

@@ -28,6 +28,7 @@ record::Frame longest_frame() {
   frame.tick = frame.late_ticks = frame.skipped_ticks = frame.dropped_records = UINT64_MAX;
   frame.time_ns = INT64_MIN;
   frame.fault = frame.limit = UINT16_MAX;
+  frame.contact_losses = UINT32_MAX;
   return frame;
 }
 
@@ -57,6 +58,17 @@ TEST(FrameJson, ListsOnlySitesInContactWithTheRingsInUse) {
   EXPECT_EQ(json["sites"][0]["site"], 1);
   EXPECT_EQ(json["sites"][0]["state"], 2);
   EXPECT_EQ(json["sites"][0]["u_m"].size(), 11u);
+}
+
+TEST(FrameJson, ListsASphereInsideAndCountsLossesOfContact) {
+  record::Frame frame = test::make_frame(0.0f, firmware::telemetry::SiteState::kFree);
+  frame.site[0].state = firmware::telemetry::SiteState::kInside;
+  frame.contact_losses = 4;
+  const auto json =
+      nlohmann::json::parse(frame_json(frame, test::make_hello(3, 1, 3, 1)), nullptr, false);
+  ASSERT_EQ(json["sites"].size(), 1u);
+  EXPECT_EQ(json["sites"][0]["state"], 3);
+  EXPECT_EQ(json["contact_losses"], 4);
 }
 
 TEST(FrameJson, KeepsForceToFourDigitsAndPositionToAMicrometre) {
@@ -181,7 +193,7 @@ TEST(CheckFrame, RefusesPatchesThatNameWhatIsNotThere) {
   EXPECT_TRUE(refuses([](record::Frame& f) { f.patch.cut_total = 3; }));
   EXPECT_TRUE(refuses([](record::Frame& f) { f.state = firmware::loop::State{4}; }));
   EXPECT_TRUE(
-      refuses([](record::Frame& f) { f.site[3].state = firmware::telemetry::SiteState{3}; }));
+      refuses([](record::Frame& f) { f.site[3].state = firmware::telemetry::SiteState{4}; }));
 }
 
 }  // namespace tact::host::server::frame_json_test

@@ -21,6 +21,7 @@ constexpr double kSimulatedWait_s = 2.0, kRealWait_s = 60.0;
 constexpr double kLeverWithoutTorque_m = 0.05;
 // The sphere of 2 m around a tool within some tenths of a metre always reaches a plate 1 m below.
 constexpr double kHalfPlate_m = 4.0, kPlate_m = -1.0, kReach_m = 2.0;
+constexpr double kClear_m = 1.5;  // so far up it does not touch
 
 /// A plate far below and a sphere so large that it always touches: contact adds nothing to the
 /// command but its own way.
@@ -155,8 +156,8 @@ CaseRun::CaseRun(const Case& c, const LimitsBench& bench)
 
 bool CaseRun::play() {
   const int ticks = static_cast<int>(std::lround(case_.duration_s / moment_.period_s));
-  requests_.arm_at_start.store(true);
   firmware::loop::TickRecord record;
+  bool touches = false;
   int waited = 0, open = 0;
   bool going = true;
   while (going && waited < most_wait_ticks_ && open < lead_ticks_ + ticks) {
@@ -165,6 +166,11 @@ bool CaseRun::play() {
     const bool cause = in_trouble(case_, moment_);
     loop_->step();
     while (ring_->pop(record)) keep(record, cause);
+    if (!touches && record.input.sample.fresh) {
+      approach(record.input);
+      touches = true;
+      requests_.arm_at_start.store(true);
+    }
     rows_.empty() ? ++waited : ++open;
     // a device keeps its own fault until it is opened again: no use to wait
     if (rows_.empty() && latches(record.output.fault)) {
@@ -176,6 +182,21 @@ bool CaseRun::play() {
   // Zero force and power off, whatever ended it.
   loop_->release_device();
   return going;
+}
+
+// Between two ticks, before arming. The sphere comes from outside, no faster than the gate allows:
+// one that is found in the tissue feels nothing.
+void CaseRun::approach(const firmware::loop::TickInput& at) {
+  constexpr std::uint32_t kPeriods = 20;
+  const double reach_m = kPeriods * controller_->gate().speed_limit_mps() * moment_.period_s;
+  const double step_m = std::clamp(reach_m, 1e-4, kClear_m);
+  firmware::loop::TickInput above = at;
+  above.skipped_periods = kPeriods - 1;
+  for (double height_m = kClear_m; height_m > -step_m; height_m -= step_m) {
+    above.sample.tool.position_m.z = at.sample.tool.position_m.z + std::max(height_m, 0.0);
+    controller_->touch(above);
+    controller_->feel(above);
+  }
 }
 
 void CaseRun::keep(const firmware::loop::TickRecord& record, bool cause) {

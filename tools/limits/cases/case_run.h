@@ -71,6 +71,7 @@ class CaseRun {
   Fault refused() const { return refused_; }
 
  private:
+  void approach(const firmware::loop::TickInput& at);
   void keep(const firmware::loop::TickRecord& record, bool cause);
 
   Case case_;

@@ -29,10 +29,12 @@ export interface Scene {
   look: { organ: string; tool: string; pieces: Vec[] }; // [look] of the scene
 }
 
-/** A probe sphere in contact. */
+export const kSiteInside = 3;
+
+/** A probe sphere in contact, or inside the organ. */
 export interface Site {
   site: number;
-  state: number; // 1 touching, 2 held
+  state: number; // 1 touching, 2 held, 3 inside the organ: no force until it has once been outside
   point_m: Vec; // on the undeformed surface
   normal: Vec; // outward, unit
   shift_m: Vec; // tangential displacement of the tissue
@@ -59,6 +61,7 @@ export interface Frame {
   late: number;
   skipped: number;
   dropped: number;
+  contact_losses: number; // so far
   tool_m: Vec;
   turn: [number, number, number, number]; // w, x, y, z
   velocity_mps: Vec;

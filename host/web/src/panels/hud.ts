@@ -2,11 +2,11 @@
 // hud.ts - the panels: everything that is said in words and numbers.
 
 import { by_id } from "../document/dom";
-import { describe, describe_past_state, describe_state, kStopped, latches } from "./faults";
+import { describe, describe_past_state, describe_state, latches } from "./faults";
+import { LimitNews } from "./limit_news";
 import { Pace } from "../link/pace";
-import { length_of, type FigureFrame, type Frame, type Scene, type Status } from "../link/protocol";
+import { kSiteInside, length_of, type FigureFrame, type Frame, type Scene, type Status } from "../link/protocol";
 
-const kHold_ms = 1500; // a limit that acted for one tick stays readable this long
 const kRewrite_ms = 100; // numbers that change faster cannot be read
 
 function write(id: string, text: string): void {
@@ -34,8 +34,7 @@ export interface Said {
 }
 
 export class Hud {
-  private limit = 0;
-  private limit_seen_ms = -Infinity;
+  private readonly limits = new LimitNews();
   private readonly unwritten = new Pace<Frame>(kRewrite_ms);
   private force_limit_N = 0;
   private continuous_force_N = 0;
@@ -108,12 +107,7 @@ export class Hud {
   }
 
   frame(frame: Frame, now_ms: number): void {
-    const over = latches(this.limit) && frame.fault === 0 && frame.state !== kStopped;
-    if (over) this.limit = 0; // reset, or a replay went back
-    if (frame.limit > 0 || frame.fault > 0) {
-      this.limit = frame.fault > 0 ? frame.fault : frame.limit;
-      this.limit_seen_ms = now_ms;
-    }
+    this.limits.frame(frame, now_ms);
     this.unwritten.add(frame);
   }
 
@@ -202,17 +196,13 @@ export class Hud {
   }
 
   private fault(now_ms: number): void {
-    const latched = latches(this.limit);
-    const shown = this.limit > 0 && (latched || now_ms - this.limit_seen_ms < kHold_ms);
+    const limit = this.limits.shown(now_ms);
     const box = by_id("fault");
-    box.hidden = !shown;
-    if (!shown) {
-      this.limit = 0;
-      return;
-    }
-    const words = describe(this.limit);
-    box.dataset.tone = latched ? "bad" : "wait";
-    write("fault_name", `${this.is_replay ? "in the recording: " : ""}${words.name} (${this.limit})`);
+    box.hidden = limit === 0;
+    if (limit === 0) return;
+    const words = describe(limit);
+    box.dataset.tone = latches(limit) ? "bad" : "wait";
+    write("fault_name", `${this.is_replay ? "in the recording: " : ""}${this.limits.name(now_ms)}`);
     write("fault_cause", words.cause);
     write("fault_cure", words.cure);
   }
@@ -224,6 +214,7 @@ export class Hud {
 
   private static depth(frame: Frame): string {
     if (frame.sites.length === 0) return "free";
+    if (frame.sites.some((site) => site.state === kSiteInside)) return "inside the organ";
     return frame.sites.map((site) => (site.depth_m * 1e3).toFixed(1)).join(" · ") + " mm";
   }
 

@@ -6,10 +6,11 @@ import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
 import { look_material, paint } from "./look";
 import { kMaterials, tool_material } from "./material";
 import type { Target } from "./outside";
-import { dot, length_of, type Frame, type Mesh, type Scene, type Vec } from "../link/protocol";
+import { dot, kSiteInside, length_of, type Frame, type Mesh, type Scene, type Vec } from "../link/protocol";
 
 const kTouch = new THREE.Color("#7fd1c7");
 const kHeld = new THREE.Color("#f2b04e");
+const kInside = new THREE.Color("#c58bff"); // in the organ, without force
 const kCalm = new THREE.Color("#7fd1c7");
 const kStrong = new THREE.Color("#f2b04e");
 const kLimit = new THREE.Color("#ff5d52");
@@ -95,7 +96,7 @@ export class ToolView {
     this.spheres.forEach((sphere, index) => {
       const site = frame.sites.find((candidate) => candidate.site === index);
       sphere.material.opacity = site ? 0.42 : 0.16;
-      sphere.material.color.copy(site?.state === 2 ? kHeld : kTouch);
+      sphere.material.color.copy(site?.state === 2 ? kHeld : site?.state === kSiteInside ? kInside : kTouch);
     });
     const share = length_of(frame.force_N) / (this.scene.force_limit_N || 1);
     const into_tissue = frame.sites.some((site) => dot(site.normal, frame.force_N) < 0);

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is shown of limits, of a tool inside the organ and of lost contact.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import type { Frame, Site } from "../src/link/protocol";
+import { LimitNews } from "../src/panels/limit_news";
+
+function frame(told: Partial<Frame>): Frame {
+  return { state: 2, fault: 0, limit: 0, contact_losses: 0, sites: [], ...told } as Frame;
+}
+
+const inside = [{ site: 0, state: 3 } as Site];
+
+test("a limit of one frame stays readable for 1.5 s", () => {
+  const news = new LimitNews();
+  news.frame(frame({ limit: 7 }), 1000);
+  news.frame(frame({}), 1016);
+  assert.equal(news.shown(2400), 7);
+  assert.match(news.name(2400), /^slew limited \(7\)$/);
+  assert.equal(news.shown(2600), 0);
+});
+
+test("a fault stays until a reset", () => {
+  const news = new LimitNews();
+  news.frame(frame({ state: 3, fault: 103 }), 1000);
+  assert.equal(news.shown(60_000), 103);
+  news.frame(frame({ state: 1 }), 61_000);
+  assert.equal(news.shown(61_000), 0);
+});
+
+test("while a sphere is inside the organ it is said, whatever the gate limits", () => {
+  const news = new LimitNews();
+  for (const limit of [0, 3, 10, 14]) {
+    news.frame(frame({ limit, sites: inside }), 1000);
+    assert.equal(news.shown(1000), 14);
+    assert.match(news.name(1000), /^Inside the organ: take the tool out/);
+  }
+});
+
+test("a fault is shown before a tool inside", () => {
+  const news = new LimitNews();
+  news.frame(frame({ state: 3, fault: 104, sites: inside }), 1000);
+  assert.equal(news.shown(1000), 104);
+});
+
+test("contact lost is said for four seconds after the count has grown", () => {
+  const news = new LimitNews();
+  news.frame(frame({ contact_losses: 2 }), 1000);
+  assert.equal(news.shown(1000), 0, "what was lost before the page looked is old");
+  news.frame(frame({ contact_losses: 3 }), 2000);
+  assert.equal(news.shown(5900), 15);
+  assert.match(news.name(5900), /^contact lost \(15\)$/);
+  assert.equal(news.shown(6100), 0);
+});
+
+test("contact lost and inside are said together", () => {
+  const news = new LimitNews();
+  news.frame(frame({}), 1000);
+  news.frame(frame({ contact_losses: 1, limit: 15, sites: inside }), 2000);
+  assert.match(news.name(2000), /^contact lost · Inside the organ: take the tool out/);
+});
+
+test("a count that falls, as in a replay that goes back, is no loss", () => {
+  const news = new LimitNews();
+  news.frame(frame({ contact_losses: 5 }), 1000);
+  news.frame(frame({ contact_losses: 0 }), 2000);
+  assert.equal(news.shown(2000), 0);
+});
