@@ -19,6 +19,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "model/contact/contact.h"
 #include "tests/support/brute_force.h"
@@ -47,20 +48,19 @@ class ContactRules {
 
   ContactRules(const BruteForce& body, const RuleSettings& settings) : body_(body), s_(settings) {}
 
-  /// The first rule that the tick breaks.
-  std::optional<Breach> check(const Tick& now) {
-    if (!is_finite(now.touch.force_N)) return Breach{'f', "force is no number"};
+  /// The rules that the tick breaks.
+  std::vector<Breach> check(const Tick& now) {
+    if (!is_finite(now.touch.force_N)) return {{'f', "force is no number"}};
     force_N_ = norm(now.touch.force_N);
     moved_m_ = before_ && !now.is_lost ? norm(now.centre_m - before_->centre_m) : 0.0;
     find_side(now);
-    std::optional<Breach> breach;
+    std::vector<Breach> breaches;
     for (const auto rule : {&ContactRules::a, &ContactRules::b, &ContactRules::c, &ContactRules::d,
                             &ContactRules::e, &ContactRules::f, &ContactRules::h})
-      // Each keeps its own account of the tick, broken or not.
-      if (auto found = (this->*rule)(now); found && !breach) breach = std::move(found);
+      if (auto found = (this->*rule)(now)) breaches.push_back(*found);
     before_ = now;
     was_outside_ = is_outside_;
-    return breach;
+    return breaches;
   }
 
   int lags() const { return lags_; }  // how often b's allowance was used

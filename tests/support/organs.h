@@ -124,10 +124,18 @@ inline model::mesh::SurfaceMesh make_bladder(const model::Vec3& half_m, double w
               make_ellipsoid(half_m - model::Vec3{wall_m, wall_m, wall_m}, levels, true));
 }
 
-/// A surface with one elastic law everywhere and the spheres of a tool.
+/// A surface and what contact searches it by: made once for many bodies.
+struct ContactSurface {
+  explicit ContactSurface(model::mesh::SurfaceMesh m) : mesh(std::move(m)) {}
+
+  model::mesh::SurfaceMesh mesh;
+  model::contact::SeedGrid seeds = model::contact::make_seed_grid(mesh.view(), 8e-3);
+};
+
+/// One elastic law everywhere on a surface, and the spheres of a tool.
 struct SoftBody {
-  SoftBody(model::mesh::SurfaceMesh m, std::vector<model::contact::ProbeSphere> s, double friction)
-      : mesh(std::move(m)),
+  SoftBody(const ContactSurface& on, std::vector<model::contact::ProbeSphere> s, double friction)
+      : surface(on),
         spheres(std::move(s)),
         parameters{.friction_ratio = friction,
                    .sliding_stiffness_N_per_m = friction > 0.0 ? 20.0 : 0.0,
@@ -140,20 +148,24 @@ struct SoftBody {
     scene.law = &field;
     scene.parameters = parameters;
     scene.spheres = spheres;
-    scene.surface = mesh.view();
-    scene.seeds = seeds.view();
+    scene.surface = surface.mesh.view();
+    scene.seeds = surface.seeds.view();
     scene.period_s = 1e-3;
     return scene;
   }
   double limit_N() const { return curve.respond(kRange_m).force_N; }
   double max_slope_N_per_m() const { return tip.stiffest_press_N_per_m(); }
+  model::tissue::ElasticNeighbours neighbours() const {
+    if (spheres.size() < 2) return {};
+    return {.youngs_modulus_Pa = tip.youngs_modulus_Pa,
+            .contact_modulus_Pa = tip.contact_modulus_Pa(),
+            .poisson_ratio = tip.poisson_ratio};
+  }
 
   static constexpr double kRange_m = 12e-3;
-  model::mesh::SurfaceMesh mesh;
+  const ContactSurface& surface;
   std::vector<model::contact::ProbeSphere> spheres;
   model::contact::ContactParameters parameters;
-  model::contact::SeedGrid seeds =
-      model::contact::make_seed_grid(mesh.view(), 2.0 * spheres[0].radius_m);
   model::indent::ElasticTip tip{
       .youngs_modulus_Pa = 5000.0, .poisson_ratio = 0.45, .radius_m = spheres[0].radius_m};
   std::vector<double> flat{0.0};
@@ -164,7 +176,8 @@ struct SoftBody {
                                      .coordinate = {},
                                      .pull_coordinate = {},
                                      .surface = {},
-                                     .relaxation = {}}};
+                                     .relaxation = {},
+                                     .neighbours = neighbours()}};
 };
 
 }  // namespace tact::tests

@@ -106,23 +106,24 @@ inline PathResult run_path(SoftBody& soft, const BruteForce& body, const Path& p
     }
     contact.touch(tool, periods);
     const model::contact::ContactResponse felt = contact.feel(tool, false);
-    const auto note = [&](const std::optional<Breach>& breach, std::size_t sphere) {
-      if (breach)
-        out.broken.try_emplace(
-            breach->rule, PathResult::At{i, ticks[i].leg,
-                                         "sphere " + std::to_string(sphere) + ", " + breach->what});
+    const auto note = [&](const Breach& breach, std::size_t sphere) {
+      out.broken.try_emplace(
+          breach.rule,
+          PathResult::At{i, ticks[i].leg, "sphere " + std::to_string(sphere) + ", " + breach.what});
     };
     for (std::size_t k = 0; k < rules.size(); ++k) {
       const model::contact::SphereTouch& touch = contact.touches()[k];
       const bool is_beyond = touch.law_status == model::law::LawStatus::kSaturated;
-      note(rules[k].check({.centre_m = tool.position_m + soft.spheres[k].offset_m,
+      for (const Breach& breach :
+           rules[k].check({.centre_m = tool.position_m + soft.spheres[k].offset_m,
                            .periods = periods,
                            .touch = touch,
                            .is_saturated = is_beyond || (is_alone && felt.is_saturated),
-                           .is_lost = felt.is_lost}),
-           k);
+                           .is_lost = felt.is_lost}))
+        note(breach, k);
     }
-    note(pause.go_on(tool, felt.wrench.force_N, soft.spheres[0].radius_m), 0);
+    if (const auto breach = pause.go_on(tool, felt.wrench.force_N, soft.spheres[0].radius_m))
+      note(*breach, 0);
     periods = 0;
   }
   out.ticks = ticks.size();
@@ -179,11 +180,11 @@ struct PathCounts {
   std::map<char, int> broken;  // paths, by rule
   std::string first;           // of each rule, for people
 
-  void run(const PathCase& c, const model::mesh::SurfaceMesh& mesh, const BruteForce& body) {
+  void run(const PathCase& c, const ContactSurface& surface, const BruteForce& body) {
     std::vector<model::contact::ProbeSphere> spheres{{{}, c.radius_m}};
     if (c.is_forceps) spheres = {{{0, -4e-3, 0}, c.radius_m}, {{0, 4e-3, 0}, c.radius_m}};
-    SoftBody soft(mesh, spheres, c.friction);
-    PathMaker maker(mesh.vertex_m, mesh.triangle, body, c.radius_m, c.seed);
+    SoftBody soft(surface, spheres, c.friction);
+    PathMaker maker(surface.mesh.vertex_m, surface.mesh.triangle, body, c.radius_m, c.seed);
     const Path path = maker.make(6);
     const PathResult result = run_path(soft, body, path);
     ++paths;
@@ -214,9 +215,10 @@ struct PathCounts {
 };
 
 /// Seeds in a row until so many ticks have run: one sphere or two, smooth or rough.
-inline PathCounts run_random_paths(const std::string& name, const model::mesh::SurfaceMesh& mesh,
+inline PathCounts run_random_paths(const std::string& name, model::mesh::SurfaceMesh mesh,
                                    std::size_t ticks) {
-  const BruteForce body(mesh.vertex_m, mesh.triangle);
+  const ContactSurface surface(std::move(mesh));
+  const BruteForce body(surface.mesh.vertex_m, surface.mesh.triangle);
   PathCounts counts;
   for (std::uint32_t seed = 1; counts.ticks < ticks; ++seed) {
     std::mt19937 random(seed);
@@ -225,7 +227,7 @@ inline PathCounts run_random_paths(const std::string& name, const model::mesh::S
     c.is_forceps = seed % 5 == 0;
     if (c.is_forceps) c.radius_m = 4e-3;
     c.friction = seed % 2 == 0 ? 0.4 : 0.0;
-    counts.run(c, mesh, body);
+    counts.run(c, surface, body);
   }
   return counts;
 }

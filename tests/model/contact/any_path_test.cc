@@ -51,9 +51,8 @@ mesh::SurfaceMesh body_of(const std::string& name) {
 class AnyPath : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(AnyPath, KeepsTheRulesOfContact) {
-  const mesh::SurfaceMesh mesh = body_of(GetParam());
-  const tests::PathCounts counts =
-      tests::run_random_paths(GetParam(), mesh, tests::is_long() ? 5'000'000 : 50'000);
+  const tests::PathCounts counts = tests::run_random_paths(GetParam(), body_of(GetParam()),
+                                                           tests::is_long() ? 6'000'000 : 100'000);
   RecordProperty("counts", counts.summary());
   EXPECT_TRUE(counts.broken.empty()) << counts.summary() << "\n" << counts.first;
   EXPECT_GT(counts.pauses, 5);
