@@ -192,7 +192,7 @@ struct PathCounts {
     lags += result.lags;
     pauses += result.pauses;
     for (const auto& [rule, at] : result.broken) {
-      if (broken[rule]++ > 0) continue;
+      if (broken[rule]++ > 0 || std::getenv("NOSHRINK")) continue;
       const Path small = shrink(soft, body, path, rule);
       const PathResult again = run_path(soft, body, small);
       const auto found = again.broken.find(rule);
