@@ -41,15 +41,23 @@ Vec3 nearest_on_triangle(const Triangle& t, const Vec3& p) {
   return best;
 }
 
+// The half angles add up as the argument of a product of complex numbers: one atan2 for all.
 double winding_of(std::span<const Triangle> triangles, const Vec3& p) {
-  double sum = 0.0;
+  double re = 1.0, im = 0.0;
+  int turns = 0;
   for (const Triangle& t : triangles) {
     const Vec3 a = t[0] - p, b = t[1] - p, c = t[2] - p;
     const double la = norm(a), lb = norm(b), lc = norm(c);
-    sum += std::atan2(dot(a, cross(b, c)),
-                      la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+    const double x = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+    const double y = dot(a, cross(b, c));
+    const double next_re = re * x - im * y, next_im = re * y + im * x;
+    if (im >= 0.0 && y >= 0.0 && next_im < 0.0) ++turns;
+    if (im < 0.0 && y < 0.0 && next_im >= 0.0) --turns;
+    const double size = std::abs(next_re) + std::abs(next_im);
+    re = next_re / size;
+    im = next_im / size;
   }
-  return sum / (2.0 * std::numbers::pi);
+  return std::atan2(im, re) / (2.0 * std::numbers::pi) + turns;
 }
 
 /// +1: the segment enters through the triangle, -1: it leaves, 0: it misses.

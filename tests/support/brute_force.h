@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// brute_force.h - distance, inside and line of sight of a triangle mesh, by loops over its triangles.
+// brute_force.h - distance, inside and line of sight of a mesh, by loops over its triangles.
 //
 // The reference for model/contact, of which it uses no code. Everything exists twice: as a plain
 // loop over all triangles, and by a uniform grid of triangle lists for the many points of a test.
