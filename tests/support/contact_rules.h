@@ -71,6 +71,7 @@ class ContactRules {
   enum class Side { kIn, kOut, kUnknown };
 
   Side side_of(const model::Vec3& p_m, const BruteForce::Nearest& nearest) const {
+    if (!body_.is_near(p_m)) return Side::kOut;
     const double w = body_.winding(p_m);
     if (body_.is_closed()) return w > 0.5 ? Side::kIn : Side::kOut;
     // Near the holes of an open surface, inside is no fact.

@@ -2,8 +2,8 @@
 // path_run.h - random paths through one body's contact against contact_rules.h, and the smallest
 // path that still breaks a rule.
 //
-//   g  after a pause of skipped periods in which the tool went straight on by less than r, the force
-//      is within 5 % + 1 mN of that without the pause, 10 ticks later
+//   g  after a pause of skipped periods in which the tool went straight on by less than r, force is
+//      within 5 % + 1 mN of that without the pause, 10 ticks later
 #pragma once
 
 #include <cstdlib>
