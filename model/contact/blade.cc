@@ -11,7 +11,8 @@ double side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) RT_SAFE 
   return dot(cross(b - a, c - a), d - a);
 }
 
-/// Does the segment p-q pass through the triangle a, b, c, its border included?
+}  // namespace
+
 bool passes(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const Vec3& q) RT_SAFE {
   const double above = side(a, b, c, p), below = side(a, b, c, q);
   if (above * below > 0.0 || above == below) return false;  // one side, or in the plane
@@ -19,8 +20,6 @@ bool passes(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const Ve
   const double u = side(p, q, a, b), v = side(p, q, b, c), w = side(p, q, c, a);
   return (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
 }
-
-}  // namespace
 
 BladeSweep sweep(const Blade& blade, const Tool& from, const Tool& to) RT_SAFE {
   return {.from_a_m = from.position_m + rotate(from.orientation, blade.a_m),

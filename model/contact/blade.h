@@ -31,6 +31,9 @@ SweepBox box_around(const BladeSweep& sweep) RT_SAFE;
 /// six comparisons in place of ten volumes. False for anything not finite.
 bool misses(const SweepBox& box, const Vec3& p_m, const Vec3& q_m) RT_SAFE;
 
+/// Does the segment p-q pass through the triangle a, b, c, its border included?
+bool passes(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const Vec3& q) RT_SAFE;
+
 /// Does the segment p-q pass through the sweep? False for anything not finite.
 bool crosses(const BladeSweep& sweep, const Vec3& p_m, const Vec3& q_m) RT_SAFE;
 

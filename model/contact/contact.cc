@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tact::model::contact {
 namespace {
@@ -72,7 +73,7 @@ void Contact::leave(std::size_t i, TouchState state) RT_SAFE {
   touch_[i].state = state;
   Probe& probe = probe_[i];
   probe.axes = {};
-  probe.clear_m = 0.0;
+  probe.clear_m = -std::numeric_limits<double>::infinity();  // nothing is known
   probe.lets_go = false;
   shift_m_[i] = shear_N_[i] = {};
   scene_.law->leave(i);
@@ -94,8 +95,7 @@ void Contact::find_depth(std::size_t i) RT_SAFE {
     touch.slack_m = std::min(touch.slack_m + probe.deepened_m, std::max(probe.depth_m, 0.0));
     let_go(i);
     touch.depth_m = probe.depth_m - touch.slack_m;
-    if (!(probe.depth_m > 0.0) || (probe.lets_go && !(touch.depth_m > 0.0)))
-      return leave(i, TouchState::kFree);
+    if (probe.lets_go && !(touch.depth_m > 0.0)) return leave(i, TouchState::kFree);
   } else {
     return;
   }

@@ -23,10 +23,10 @@
 // is added last: b of the dent, times the speed of the sphere's own depth, so that each sphere
 // takes energy by itself.
 //
-// A fourth state has no contact: *inside*, a sphere that was found in the organ (start, loss) or whose
-// centre came into it unfelt. It feels nothing until it has been wholly outside. A contact begins
-// from outside only, and ends where the sphere is outside: on the side where it went in or, beyond
-// the law's range, on any (detect.cc).
+// A fourth state has no contact: *inside*, a sphere that was found in the organ (start, loss). It
+// feels nothing until it has been wholly outside. A contact begins from outside only, and ends where
+// the sphere is outside: on the side where it went in or, beyond the law's range, on any
+// (detect.cc).
 //
 // A change of state never adds energy. Slack takes up the depth that would come for free (letting go
 // over a bump or stiffer tissue, a nearest point that jumps, a contact that ends on another side).
@@ -133,11 +133,13 @@ class Contact {
     Vec3 moved_m;                      // since the last tick
     Vec3 velocity_mps;                 // of c, as the device tells it
     double depth_m = 0.0;              // r - phi
+    double unfelt_m = 0.0;             // depth at which it began: no movement led there
     double deepened_m = 0.0;           // beyond what the movement explains: free depth
     double clear_m = 0.0;              // so far c may go before its last search must be repeated
+    bool was_outside = false;          // what that search said of the whole sphere
     std::uint32_t near = kNoTriangle;  // found by that search
     Proxy proxy;                       // touching or held
-    double within_law_m = 0.0;         // d of the last tick within the range of the law
+    double within_law_m = 0.0;         // e of the last tick within the range of the law
     bool lets_go = false;
     Vec3 held_centre_m, held_normal;
     double held_depth_m = 0.0;
@@ -152,8 +154,16 @@ class Contact {
   bool is_reached(const Tool& tool, double reach_m) const RT_SAFE;
   void step(std::size_t i, const Vec3& moved_m) RT_SAFE;
   void find(std::size_t i) RT_SAFE;
-  void begin_from_outside(std::size_t i) RT_SAFE;
+  void begin_from_outside(std::size_t i, const Vec3& moved_m) RT_SAFE;
+  bool is_near(std::size_t i) const RT_SAFE {
+    return probe_[i].proxy.site().distance_m < scene_.spheres[i].radius_m;
+  }
+  /// Slack takes up all of its depth: what it touches may be another part of the organ by now.
+  bool is_all_slack(std::size_t i) const RT_SAFE {
+    return touch_[i].slack_m > 0.0 && !(touch_[i].depth_m > 0.0);
+  }
   bool is_outside(std::size_t i) RT_SAFE;
+  bool must_let_go(std::size_t i) RT_SAFE;
   void let_go(std::size_t i) RT_SAFE;
 
   ContactResponse respond(const Tool& tool) RT_SAFE;

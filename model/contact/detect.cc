@@ -2,11 +2,13 @@
 // Where each sphere is, from tick to tick, on any path: see contact.h.
 //
 //     found outside   -> free        found overlapping the organ -> inside
-//     free            -> touching    c is outside and nearer than r
-//     free            -> inside      c is inside: it came there unfelt
+//     free            -> touching    the nearest point of all is nearer than r
 //     inside          -> free        wholly outside: phi >= r
-//     touching        -> free        r - phi <= 0 at the proxy
-//     touching beyond its law and wholly outside -> lets go: its depth shrinks to 0, then free
+//     touching        -> free        r - phi - slack <= 0 at the proxy; at once touching again, with
+//                                    slack, where some part of the organ is nearer than r
+//     touching        -> lets go     wholly outside, and either beyond its law or with nothing of
+//                                    the organ between it and its place: its depth shrinks to 0
+//     lets go         -> free
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,7 +22,8 @@ namespace {
 constexpr double kStep_ratio = 0.5;
 constexpr int kMaxSteps = 64;         // of a tick, for each period
 constexpr double kAhead_ratio = 4.0;  // of a radius: a free sphere searches so far ahead
-constexpr double kLetGo_s = 0.1;      // chosen: the time in which a contact beyond its law ends
+constexpr double kAnywhere_m = std::numeric_limits<double>::infinity();
+constexpr double kLetGo_s = 0.1;  // chosen: the time in which a contact beyond its law ends
 
 /// On the straight way between two poses.
 Tool between(const Tool& from, const Tool& to, double share) RT_SAFE {
@@ -101,19 +104,19 @@ void Contact::detect(const Tool& tool) RT_SAFE {
     probe.velocity_mps =
         tool.velocity_mps + cross(tool.angular_velocity_radps, centre_m - tool.position_m);
     const double before_m = in_contact(i) ? probe.depth_m : 0.0;
+    probe.unfelt_m = 0.0;
     const double way_m = norm(probe.moved_m);
+    const double radius_m = scene_.spheres[i].radius_m;
     const int steps =
-        std::clamp(static_cast<int>(std::ceil(way_m / (kStep_ratio * scene_.spheres[i].radius_m))),
-                   1, kMaxSteps);
+        std::clamp(static_cast<int>(std::ceil(way_m / (kStep_ratio * radius_m))), 1, kMaxSteps);
     for (int left = steps; left > 0; --left) {
       const Vec3 to_go_m = probe.is_known ? centre_m - probe.centre_m : Vec3{};
       probe.centre_m = left > 1 ? probe.centre_m + to_go_m / left : centre_m;
       step(i, to_go_m / left);
     }
     // A distance cannot change by more than the movement: the rest is a nearest point that jumped.
-    probe.depth_m =
-        in_contact(i) ? scene_.spheres[i].radius_m - probe.proxy.site().distance_m : 0.0;
-    probe.deepened_m = std::max(0.0, probe.depth_m - before_m - way_m);
+    probe.depth_m = in_contact(i) ? radius_m - probe.proxy.site().distance_m : 0.0;
+    probe.deepened_m = std::max({0.0, probe.depth_m - before_m - way_m, probe.unfelt_m});
   }
 }
 
@@ -124,14 +127,16 @@ void Contact::step(std::size_t i, const Vec3& moved_m) RT_SAFE {
   if (!probe.is_known) return find(i);
   switch (touch_[i].state) {
     case TouchState::kFree:
-      return begin_from_outside(i);
+      return begin_from_outside(i, moved_m);
     case TouchState::kInside:
       if (is_outside(i)) leave(i, TouchState::kFree);
       return;
     case TouchState::kTouching:
     case TouchState::kHeld:
       probe.proxy.follow(scene_.surface, probe.centre_m, moved_m, scene_.spheres[i].radius_m);
-      return;
+      if (touch_[i].state == TouchState::kHeld || (is_near(i) && !is_all_slack(i))) return;
+      leave(i, TouchState::kFree);
+      return begin_from_outside(i, moved_m);
   }
 }
 
@@ -144,49 +149,65 @@ void Contact::find(std::size_t i) RT_SAFE {
 }
 
 // Where no sheet was near, the search rests until the sphere may have come to one.
-void Contact::begin_from_outside(std::size_t i) RT_SAFE {
+void Contact::begin_from_outside(std::size_t i, const Vec3& moved_m) RT_SAFE {
   Probe& probe = probe_[i];
   if (probe.clear_m > 0.0) return;
   const double radius_m = scene_.spheres[i].radius_m;
-  const double within_m = (1.0 + kAhead_ratio) * radius_m;
+  const bool is_new_place = std::isinf(probe.clear_m);  // it has just left another
+  const double within_m = is_new_place ? kAnywhere_m : (1.0 + kAhead_ratio) * radius_m;
   const Site site = nearest_site(scene_.tree, scene_.surface, probe.centre_m, within_m, probe.near);
-  probe.clear_m = std::min(std::abs(site.distance_m), within_m) - radius_m;
+  probe.clear_m = std::min(site.distance_m, within_m) - radius_m;
   probe.near = site.place.triangle;
   if (probe.clear_m > 0.0) return;
+  // From where it is known to have been clear, its movement explains all of the depth.
+  if (is_new_place)
+    probe.unfelt_m = std::max(0.0, -probe.clear_m - std::max(0.0, -dot(moved_m, site.normal)));
   probe.clear_m = 0.0;
-  if (site.distance_m > 0.0) {
-    touch_[i].state = TouchState::kTouching;
-    probe.proxy.restart(site, radius_m);
-  } else {
-    touch_[i].state = TouchState::kInside;
-  }
+  touch_[i].state = TouchState::kTouching;
+  probe.proxy.restart(site, radius_m);
 }
 
-// Is the whole sphere outside? Else the answer stands until it may have moved out.
+// Is the whole sphere outside? The answer stands until it may have moved out, or in.
 bool Contact::is_outside(std::size_t i) RT_SAFE {
   Probe& probe = probe_[i];
-  if (probe.clear_m > 0.0) return false;
-  const Site site = nearest_site(scene_.tree, scene_.surface, probe.centre_m,
-                                 std::numeric_limits<double>::infinity(), probe.near);
+  if (probe.clear_m > 0.0) return probe.was_outside;
+  const Site site =
+      nearest_site(scene_.tree, scene_.surface, probe.centre_m, kAnywhere_m, probe.near);
   probe.near = site.place.triangle;
   const double out_m = site.distance_m - scene_.spheres[i].radius_m;
   probe.clear_m = std::abs(out_m);
-  return out_m >= 0.0;
+  return probe.was_outside = out_m >= 0.0;
 }
 
-// Beyond its law a contact has no anchor left: outside, on whichever side, its depth shrinks to 0.
-// The force is that of the law's limit until the depth is back in its range.
+// Outside, a contact ends: beyond its law on whichever side, else only where nothing of the organ
+// is left between the sphere and its place (a thin part that it has pushed ahead stays between).
+bool Contact::must_let_go(std::size_t i) RT_SAFE {
+  const Probe& probe = probe_[i];
+  const bool is_beyond = touch_[i].law_status == law::LawStatus::kSaturated;
+  const Site& site = probe.proxy.site();
+  // At the nearest point of the side it came from, and nearer than its radius.
+  if (!is_beyond && !probe.proxy.lags() && site.distance_m > 0.0) return false;
+  if (!is_outside(i)) return false;
+  constexpr double kOffSurface_ratio = 1e-3;  // of the way: the place itself is on the surface
+  return is_beyond ||
+         !is_between(scene_.tree, scene_.surface,
+                     site.point_m + kOffSurface_ratio * (probe.centre_m - site.point_m),
+                     probe.centre_m);
+}
+
+// Its depth shrinks to 0. The force is that of the law's limit until the depth is in its range.
 void Contact::let_go(std::size_t i) RT_SAFE {
   Probe& probe = probe_[i];
   SphereTouch& touch = touch_[i];
-  const bool is_beyond = touch.law_status == law::LawStatus::kSaturated;
-  if (!is_beyond && !probe.lets_go) probe.within_law_m = touch.depth_m;
-  probe.lets_go = probe.lets_go || (is_beyond && is_outside(i));
+  if (touch.law_status != law::LawStatus::kSaturated && !probe.lets_go)
+    probe.within_law_m = touch.dent_m;
+  probe.lets_go = probe.lets_go || must_let_go(i);
   if (!probe.lets_go) return;
   const double less_m =
       kSlide_ratio * norm(probe.moved_m) + probe.within_law_m * scene_.period_s / kLetGo_s;
-  const double left_m = std::max(0.0, std::min(touch.depth_m, probe.within_law_m) - less_m);
-  touch.slack_m = std::max(touch.slack_m, probe.depth_m - left_m);
+  const double left_m = std::max(0.0, std::min(touch.dent_m, probe.within_law_m) - less_m);
+  const double sunk_m = left_m > 0.0 ? touch.depth_m - touch.dent_m : 0.0;  // by the others
+  touch.slack_m = std::max(touch.slack_m, probe.depth_m - left_m - sunk_m);
 }
 
 }  // namespace tact::model::contact

@@ -20,23 +20,27 @@ void Proxy::follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& move
   if (!lags_) return restart(nearest, radius_m);
   slide(surface, goal_m, most_m, radius_m);
   // Of the line to g, what lies along the surface, and what points out of the organ.
-  const Vec3 outward = site_.normal, line_m = offset_m_ - p_m;
+  const Vec3 outward = normalized(offset_m_ - site_.point_m), line_m = offset_m_ - p_m;
   const Vec3 depth_m = tangential(line_m, outward) + std::max(dot(line_m, outward), 0.0) * outward;
   const double length_m = norm(depth_m);
   site_.distance_m = radius_m - length_m;
-  if (length_m > 0.0) site_.normal = depth_m / length_m;
+  site_.normal = length_m > 0.0 ? depth_m / length_m : outward;
 }
 
-// Along the offset surface; site_.normal is then its normal.
+// Along the offset surface. In a crease g stays where a step would throw it over to the other side.
 void Proxy::slide(const SurfaceView& surface, const Vec3& goal_m, double way_m,
                   double radius_m) RT_SAFE {
+  constexpr double kThrown_ratio = 1.5;  // of the step
   const Vec3 outward = normalized(offset_m_ - site_.point_m);
   const Vec3 along_m = tangential(goal_m - offset_m_, outward);
   const double length_m = norm(along_m);
-  Vec3 moved_m = offset_m_;
-  if (length_m > 0.0) moved_m += (std::min(way_m, length_m) / length_m) * along_m;
-  site_ = contact::follow(surface, site_.place.triangle, moved_m);
-  offset_m_ = site_.point_m + radius_m * site_.normal;
+  if (!(length_m > 0.0)) return;
+  const Vec3 moved_m = offset_m_ + (std::min(way_m, length_m) / length_m) * along_m;
+  const Site site = contact::follow(surface, site_.place.triangle, moved_m);
+  const Vec3 offset_m = site.point_m + radius_m * site.normal;
+  if (norm(offset_m - offset_m_) > kThrown_ratio * way_m) return;
+  site_ = site;
+  offset_m_ = offset_m;
 }
 
 }  // namespace tact::model::contact

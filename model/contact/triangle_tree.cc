@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "model/contact/blade.h"
 #include "model/contact/nearest.h"
 
 namespace tact::model::contact {
@@ -90,6 +91,25 @@ double squared_distance_m2(const BoxNode& box, const Vec3& p) RT_SAFE {
   return sum_m2;
 }
 
+// Does the segment meet the box? By the intervals in which it is between each two faces.
+bool meets(const BoxNode& box, const Vec3& from_m, const Vec3& to_m) RT_SAFE {
+  const std::array<double, 3> from{from_m.x, from_m.y, from_m.z};
+  const std::array<double, 3> way{to_m.x - from_m.x, to_m.y - from_m.y, to_m.z - from_m.z};
+  double begin = 0.0, end = 1.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double low_m = static_cast<double>(box.low_m[a]) - from[a];
+    const double high_m = static_cast<double>(box.high_m[a]) - from[a];
+    if (way[a] == 0.0) {
+      if (low_m > 0.0 || high_m < 0.0) return false;
+      continue;
+    }
+    const double one = low_m / way[a], two = high_m / way[a];
+    begin = std::max(begin, std::min(one, two));
+    end = std::min(end, std::max(one, two));
+  }
+  return begin <= end;
+}
+
 }  // namespace
 
 TriangleTree make_triangle_tree(const SurfaceView& surface) {
@@ -133,6 +153,26 @@ Site nearest_site(const TriangleTreeView& tree, const SurfaceView& surface, cons
   Site none;
   none.distance_m = std::numeric_limits<double>::infinity();
   return none;
+}
+
+bool is_between(const TriangleTreeView& tree, const SurfaceView& surface, const Vec3& from_m,
+                const Vec3& to_m) RT_SAFE {
+  std::array<std::uint32_t, kMaxDepth> later;
+  std::size_t waiting = 0;
+  later[waiting++] = 0;
+  for (int visit = 0; waiting > 0 && visit < kMaxVisits; ++visit) {
+    const std::uint32_t here = later[--waiting];
+    const BoxNode& node = tree.node[here];
+    if (!meets(node, from_m, to_m)) continue;
+    for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
+      const auto& [a, b, c] = surface.record[tree.triangle[k]].corner_m;
+      if (passes(a, b, c, from_m, to_m)) return true;
+    }
+    if (node.count > 0 || waiting + 2 > kMaxDepth) continue;
+    later[waiting++] = here + 1;
+    later[waiting++] = node.first;
+  }
+  return false;
 }
 
 }  // namespace tact::model::contact

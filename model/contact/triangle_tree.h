@@ -7,7 +7,7 @@
 // whose nearest point is on the boundary of an open surface is outside.
 //
 // A search visits the nearer box first and at most kMaxVisits boxes; after those the nearest point
-// so far stands. 20 bytes a triangle.
+// so far stands. 20 to 24 bytes a triangle.
 #pragma once
 
 #include <vector>
@@ -46,5 +46,9 @@ TriangleTree make_triangle_tree(const SurfaceView& surface);
 /// triangle that may be near (or kNoTriangle) shortens the search.
 Site nearest_site(const TriangleTreeView& tree, const SurfaceView& surface, const Vec3& p_m,
                   double within_m, std::uint32_t near) RT_SAFE;
+
+/// Does the straight line between two points pass through the surface?
+bool is_between(const TriangleTreeView& tree, const SurfaceView& surface, const Vec3& from_m,
+                const Vec3& to_m) RT_SAFE;
 
 }  // namespace tact::model::contact

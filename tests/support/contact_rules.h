@@ -2,13 +2,15 @@
 // contact_rules.h - what must hold of every tick of a sphere's contact, whatever its path.
 //
 //   a  overlapping from the first tick on: kInside and no force until it has once been outside
-//   b  outside, and nothing of the body between it and its contact point: no force, after 2 r of
-//      way in which the contact point may still slide round an edge
+//   b  outside, and nothing of the body between it and its contact point: no force, after one range
+//      of the law of way, or 0.2 s, in which the contact lets go
 //   c  outside and beyond the law's range: no force after 2 ranges of way, or after 0.2 s
-//   d  came from outside and not let go: going deeper with its centre inside gives force, and only
-//      saturation or a loss lets it go
-//   e  |dF| <= 5.5 K way + 1 uN, and F_limit dt / 50 ms while a saturated contact is let go outside
-//   f  finite; with its centre outside and its contact point nearest: never pulls it in
+//   d  came from outside and not let go: going deeper with its centre inside gives force, by the
+//      third tick, and only saturation or a loss lets it go
+//   e  |dF| <= 6 K way + 1 uN; while a contact lets go, the way grows by the range in 0.1 s;
+//      twice as much where two spheres press one tissue
+//   f  finite; with its centre outside and its contact point nearest: never pulls it in, unless it
+//      lets go
 //   h  from free to free the tool is given no more than the largest force times the largest step
 //
 // (g, pauses, is in path_run.h.) Outside: distance >= r and winding number 0, by brute_force.h.
@@ -67,7 +69,7 @@ class ContactRules {
 
  private:
   using TouchState = model::contact::TouchState;
-  static constexpr double kTiny_m = 1e-9, kLetGo_s = 0.05, kAfter_s = 0.2;
+  static constexpr double kTiny_m = 1e-9, kLetGo_s = 0.1, kAfter_s = 0.2;
   enum class Side { kIn, kOut, kUnknown };
 
   Side side_of(const model::Vec3& p_m, const BruteForce::Nearest& nearest) const {
@@ -136,7 +138,7 @@ class ContactRules {
     }
     lag_m_ += moved_m_;
     lag_s_ += now.periods * s_.period_s;
-    if (lag_m_ > 2 * s_.radius_m || lag_s_ > kAfter_s)
+    if (lag_m_ > s_.range_m || lag_s_ > kAfter_s)
       return say('b', "force outside, with nothing between it and the contact point");
     return {};
   }
@@ -161,23 +163,31 @@ class ContactRules {
     if (was_entered && !now.is_lost && !now.is_saturated && !is_outside_ &&
         now.touch.state == TouchState::kInside)
       return say('d', "let go though neither lost nor saturated");
-    if (!entered_ || !was_entered || force_N_ > 0.0 || side_ != Side::kIn) return {};
+    if (!entered_ || !was_entered || force_N_ > 0.0 || side_ != Side::kIn) {
+      without_ = 0;
+      return {};
+    }
     // Only where it seems broken: the search is wide.
     const double wide_m = s_.radius_m + s_.range_m;
     const double here_m = body_.nearest(now.centre_m, wide_m).distance_m;
     const bool was_in = before_ && body_.winding(before_->centre_m) > 0.5;
     const double there_m = was_in ? body_.nearest(before_->centre_m, wide_m).distance_m : 0.0;
-    if (here_m > there_m + kTiny_m) return say('d', "goes deeper without force");
+    // From one piece of the organ to another the contact changes within two ticks.
+    without_ = here_m > there_m + kTiny_m ? without_ + 1 : 0;
+    if (without_ > 2) return say('d', "goes deeper without force");
     return {};
   }
 
   std::optional<Breach> e(const Tick& now) {
     if (s_.has_friction || !before_ || now.is_lost) return {};
     const double jump_N = norm(now.touch.force_N - before_->touch.force_N);
-    const bool is_let_go =
-        (now.is_saturated || before_->is_saturated) && (is_outside_ || was_outside_);
-    const double most_N = 5.5 * s_.max_slope_N_per_m * moved_m_ + 1e-6 +
-                          (is_let_go ? s_.limit_N * now.periods * s_.period_s / kLetGo_s : 0.0);
+    // Once begun, it goes on until there is no force.
+    lets_go_ = (lets_go_ && before_->is_saturated) ||
+               ((now.is_saturated || before_->is_saturated) && (is_outside_ || was_outside_));
+    const double fade_m = lets_go_ ? s_.range_m * now.periods * s_.period_s / kLetGo_s : 0.0;
+    // One sphere feels what the others' force does to the tissue, too.
+    const double most_N =
+        (s_.is_alone ? 6.0 : 12.0) * s_.max_slope_N_per_m * (moved_m_ + fade_m) + 1e-6;
     if (jump_N <= most_N) return {};
     return say('e', "force jumps by " + std::to_string(1e3 * jump_N) + " mN, at most " +
                         std::to_string(1e3 * most_N));
@@ -186,7 +196,7 @@ class ContactRules {
   std::optional<Breach> f(const Tick& now) {
     const bool is_nearest = norm(now.touch.surface_point_m - nearest_.point_m) < 1e-6;
     if (now.touch.state != TouchState::kTouching || side_ != Side::kOut || !is_nearest ||
-        !(nearest_.distance_m > 1e-6) || !std::isfinite(nearest_.distance_m))
+        !(nearest_.distance_m > 1e-6) || !std::isfinite(nearest_.distance_m) || now.is_saturated)
       return {};
     const model::Vec3 outward = (now.centre_m - nearest_.point_m) / nearest_.distance_m;
     if (dot(now.touch.force_N, outward) >= -1e-6 * (1.0 + force_N_)) return {};
@@ -230,7 +240,9 @@ class ContactRules {
   model::Vec3 last_m_;
   bool is_outside_ = false, was_outside_ = false;
   bool has_overlapped_ = false;  // surely, ever since the start
-  bool entered_ = false;         // from outside, and not let go since
+  bool lets_go_ = false;
+  int without_ = 0;       // ticks in a row, deeper and without force
+  bool entered_ = false;  // from outside, and not let go since
   double lag_m_ = -1.0, lag_s_ = -1.0, beyond_m_ = 0.0, beyond_s_ = 0.0;
   int lags_ = 0;
   bool in_stroke_ = false;

@@ -85,10 +85,10 @@ TEST_F(Rules, BSeesForceOutside) {
   EXPECT_EQ(right(10_mm, 4.5_mm), "");
   std::string broken;
   double z_m = 4.5_mm;
-  for (; broken.empty() && z_m < 30_mm; z_m += 0.5_mm)
+  for (; broken.empty() && z_m < 60_mm; z_m += 0.5_mm)
     broken = at(z_m, 1e-7, TouchState::kTouching);
   EXPECT_EQ(broken, "b");
-  EXPECT_NEAR(z_m, 4.5_mm + 2 * kRadius_m + 1_mm, 0.6_mm);
+  EXPECT_NEAR(z_m, 4.5_mm + kRange_m + 1_mm, 0.6_mm);
   EXPECT_EQ(rules_.lags(), 1);
 }
 
@@ -118,7 +118,9 @@ TEST_F(Rules, CSeesForceThatStaysBehindTheBody) {
 TEST_F(Rules, DSeesAFallThrough) {
   EXPECT_EQ(right(10_mm, 4.1_mm), "");
   EXPECT_EQ(at(2_mm, 0.0, TouchState::kFree), "");  // its centre is outside
-  EXPECT_EQ(at(-1_mm, 0.0, TouchState::kFree), "d");
+  EXPECT_EQ(at(-1_mm, 0.0, TouchState::kFree), "");
+  EXPECT_EQ(at(-1.5_mm, 0.0, TouchState::kFree), "");
+  EXPECT_EQ(at(-2_mm, 0.0, TouchState::kFree), "d");
 }
 
 TEST_F(Rules, DSeesALetGoWithoutCause) {

@@ -96,7 +96,7 @@ Felt feel(const contact::ContactScene& scene, const Push& push, const Vec3& tip_
   const auto ticks = static_cast<int>((kDeep_m + kBefore_m) / (push.speed_mps * kTick_s));
   Felt felt;
   bool has_come_out = false;  // on another side: what it feels from there on is another contact
-  double depth_before_m = 0.0, sphere_before_N = 0.0;
+  double depth_before_m = 0.0, slack_before_m = 0.0, sphere_before_N = 0.0;
   Vec3 before_m, force_before_N;
   for (int i = 0; i <= 2 * ticks; ++i) {
     const double t_s = (i <= ticks ? i : 2 * ticks - i) * kTick_s;
@@ -116,11 +116,13 @@ Felt feel(const contact::ContactScene& scene, const Push& push, const Vec3& tip_
                                                scene.spheres[0].radius_m));
     const double depth_m = touch.depth_m + touch.slack_m, sphere_N = norm(touch.force_N);
     constexpr double kRounding_N = 1e-9;
-    if (!has_come_out && depth_m > depth_before_m && sphere_N < sphere_before_N - kRounding_N)
+    const bool is_another = touch.slack_m > slack_before_m;  // contact, or what it touches jumped
+    if (!has_come_out && !is_another && depth_m > depth_before_m &&
+        sphere_N < sphere_before_N - kRounding_N)
       ++felt.falls;
     if (!has_come_out && i <= ticks && dot(touch.force_N, push.along) > kRounding_N)
       felt.is_drawn_in = true;
-    depth_before_m = depth_m, sphere_before_N = sphere_N;
+    depth_before_m = depth_m, slack_before_m = touch.slack_m, sphere_before_N = sphere_N;
   }
   return felt;
 }
