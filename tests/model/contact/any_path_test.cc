@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Random paths of a tool through thin, hollow, near, sharp and round bodies: contact_rules.h holds.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "tests/support/path_run.h"
+
+namespace tact::model::contact::any_path_test {
+
+mesh::SurfaceMesh flap(double thickness_m, double edge_m, double bend_radius_m = 0.0,
+                       double gap_m = 0.0) {
+  // As long as it takes about 5000 triangles, at most 100 mm.
+  const double side_m = std::min(100_mm, 34 * edge_m);
+  return tests::make_flap({.length_m = side_m,
+                           .width_m = 0.8 * side_m,
+                           .thickness_m = thickness_m,
+                           .edge_m = edge_m,
+                           .bend_radius_m = bend_radius_m,
+                           .gap_m = gap_m});
+}
+
+mesh::SurfaceMesh body_of(const std::string& name) {
+  using tests::join, tests::shifted, tests::make_ellipsoid;
+  if (name == "flap_1mm") return flap(1_mm, 1.2_mm);
+  if (name == "flap_2mm") return flap(2_mm, 5_mm);
+  if (name == "flap_4mm") return flap(4_mm, 5_mm);
+  if (name == "flap_8mm") return flap(8_mm, 5_mm);
+  if (name == "flap_12mm_bent") return flap(12_mm, 4_mm, 40_mm);
+  if (name == "flap_3mm_bent") return flap(3_mm, 2.5_mm, 25_mm);
+  if (name == "flap_folded") return flap(6_mm, 3_mm, 0.0, 5_mm);
+  if (name == "two_sheets")
+    return join(flap(1_mm, 1.2_mm), shifted(flap(1_mm, 1.2_mm), {0, 0, -2_mm}));
+  if (name == "two_lobes")
+    return join(make_ellipsoid({35_mm, 25_mm, 12_mm}, 4),
+                shifted(make_ellipsoid({30_mm, 25_mm, 10_mm}, 4), {8_mm, 0, -24_mm}));
+  if (name == "torus") return tests::make_torus(28_mm, 9_mm, 72, 36);
+  if (name == "bladder") return tests::make_bladder({35_mm, 30_mm, 25_mm}, 4_mm, 4);
+  if (name == "ball") return tests::make_ball(30_mm, 4);
+  if (name == "box")
+    return tests::make_flap(
+        {.length_m = 60_mm, .width_m = 50_mm, .thickness_m = 40_mm, .edge_m = 5_mm});
+  if (name == "box_of_few")  // triangles
+    return tests::make_flap(
+        {.length_m = 60_mm, .width_m = 60_mm, .thickness_m = 30_mm, .edge_m = 60_mm});
+  ADD_FAILURE() << name;
+  return {};
+}
+
+class AnyPath : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(AnyPath, KeepsTheRulesOfContact) {
+  const tests::PathCounts counts = tests::run_random_paths(GetParam(), body_of(GetParam()),
+                                                           tests::is_long() ? 6'000'000 : 100'000);
+  RecordProperty("counts", counts.summary());
+  EXPECT_TRUE(counts.broken.empty()) << counts.summary() << "\n" << counts.first;
+  EXPECT_GT(counts.pauses, 5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bodies, AnyPath,
+                         ::testing::Values("flap_1mm", "flap_2mm", "flap_4mm", "flap_8mm",
+                                           "flap_12mm_bent", "flap_3mm_bent", "flap_folded",
+                                           "two_sheets", "two_lobes", "torus", "bladder", "ball",
+                                           "box", "box_of_few"));
+
+}  // namespace tact::model::contact::any_path_test
