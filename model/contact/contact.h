@@ -24,13 +24,13 @@
 // takes energy by itself.
 //
 // A fourth state has no contact: *inside*, a sphere that was found in the organ (start, loss). It
-// feels nothing until it has been wholly outside. A contact begins from outside only, and ends where
-// the sphere is outside: on the side where it went in or, beyond the law's range, on any
+// feels nothing until it has been wholly outside. A contact begins from outside only, and ends
+// where the sphere is outside: on the side where it went in or, beyond the law's range, on any
 // (detect.cc).
 //
-// A change of state never adds energy. Slack takes up the depth that would come for free (letting go
-// over a bump or stiffer tissue, a nearest point that jumps, a contact that ends on another side).
-// It shrinks only as the tool withdraws.
+// A change of state never adds energy. Slack takes up the depth that would come for free (letting
+// go over a bump or stiffer tissue, a nearest point that jumps, a contact that ends on another
+// side). It shrinks only as the tool withdraws.
 //
 // Bodies: detect.cc (where each sphere is), contact.cc (how deep, how hard), contact_grip.cc (hold,
 // tear, let go), contact_slide.cc (forces along the surface).

@@ -25,8 +25,8 @@ inline constexpr double kSlide_ratio = 2.0;
 
 class Proxy {
  public:
-  /// The surface point that g is above. normal points from the centre to g, distance_m is r less the
-  /// depth.
+  /// The surface point that g is above. normal points from the centre to g, distance_m is r less
+  /// the depth.
   const Site& site() const RT_SAFE { return site_; }
   /// It is not at the nearest point.
   bool lags() const RT_SAFE { return lags_; }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // triangle_tree.h - the nearest point of a whole surface, however many sheets are near.
 //
-// A tree of boxes over the triangles, at most kLeafTriangles in each leaf. With the nearest point of
-// all, its pseudo-normal tells on which side of the surface a point lies [Baerentzen, Aanaes 2005]:
+// A tree of boxes over the triangles, at most kLeafTriangles in each leaf. The pseudo-normal at the
+// nearest point of all tells on which side of the surface a point lies [Baerentzen, Aanaes 2005]:
 // exactly, for a closed surface that does not cross itself, however thin its parts are. A point
 // whose nearest point is on the boundary of an open surface is outside.
 //

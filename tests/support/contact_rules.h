@@ -7,8 +7,7 @@
 //   c  outside and beyond the law's range: no force after 2 ranges of way, or after 0.2 s
 //   d  came from outside and not let go: going deeper with its centre inside gives force, by the
 //      third tick, and only saturation or a loss lets it go
-//   e  |dF| <= 6 K way + 1 uN; while a contact lets go, the way grows by the range in 0.1 s;
-//      twice as much where two spheres press one tissue
+//   e  |dF| <= 6 K way + 1 uN; while a contact lets go, the way grows by the range in 0.1 s
 //   f  finite; with its centre outside and its contact point nearest: never pulls it in, unless it
 //      lets go
 //   h  from free to free the tool is given no more than the largest force times the largest step
@@ -30,7 +29,7 @@ namespace tact::tests {
 
 struct RuleSettings {
   double radius_m = 0.0, max_slope_N_per_m = 0.0, limit_N = 0.0, range_m = 0.0, period_s = 1e-3;
-  bool is_alone = true;       // no other sphere presses the tissue: d, h
+  bool is_alone = true;       // no other sphere presses the tissue: d, e, f, h
   bool has_friction = false;  // without it: e
 };
 
@@ -179,21 +178,20 @@ class ContactRules {
   }
 
   std::optional<Breach> e(const Tick& now) {
-    if (s_.has_friction || !before_ || now.is_lost) return {};
+    if (!s_.is_alone || s_.has_friction || !before_ || now.is_lost) return {};
     const double jump_N = norm(now.touch.force_N - before_->touch.force_N);
     // Once begun, it goes on until there is no force.
     lets_go_ = (lets_go_ && before_->is_saturated) ||
                ((now.is_saturated || before_->is_saturated) && (is_outside_ || was_outside_));
     const double fade_m = lets_go_ ? s_.range_m * now.periods * s_.period_s / kLetGo_s : 0.0;
-    // One sphere feels what the others' force does to the tissue, too.
-    const double most_N =
-        (s_.is_alone ? 6.0 : 12.0) * s_.max_slope_N_per_m * (moved_m_ + fade_m) + 1e-6;
+    const double most_N = 6.0 * s_.max_slope_N_per_m * (moved_m_ + fade_m) + 1e-6;
     if (jump_N <= most_N) return {};
     return say('e', "force jumps by " + std::to_string(1e3 * jump_N) + " mN, at most " +
                         std::to_string(1e3 * most_N));
   }
 
   std::optional<Breach> f(const Tick& now) {
+    if (!s_.is_alone) return {};
     const bool is_nearest = norm(now.touch.surface_point_m - nearest_.point_m) < 1e-6;
     if (now.touch.state != TouchState::kTouching || side_ != Side::kOut || !is_nearest ||
         !(nearest_.distance_m > 1e-6) || !std::isfinite(nearest_.distance_m) || now.is_saturated)

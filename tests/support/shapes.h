@@ -30,26 +30,6 @@ inline model::mesh::SurfaceMesh make_plate(double width_m, std::uint32_t cells) 
   return *model::mesh::make_surface_mesh(vertices, triangles);
 }
 
-/// Closed square flap about the origin, its faces to +z and -z: cells x cells quads on each.
-inline model::mesh::SurfaceMesh make_flap(double width_m, double thickness_m, std::uint32_t cells) {
-  const model::mesh::SurfaceMesh plate = make_plate(width_m, cells);
-  const auto n = static_cast<std::uint32_t>(plate.vertex_m.size());
-  std::vector<model::Vec3> vertices;
-  std::vector<model::contact::TriangleCorners> triangles = plate.triangle;
-  for (const double z_m : {0.5 * thickness_m, -0.5 * thickness_m})
-    for (const model::Vec3& v : plate.vertex_m) vertices.push_back({v.x, v.y, z_m});
-  for (const auto& [a, b, c] : plate.triangle) triangles.push_back({a + n, c + n, b + n});
-  // A wall below each edge of the upper face that has no neighbour.
-  for (std::size_t t = 0; t < plate.triangle.size(); ++t)
-    for (std::size_t e = 0; e < 3; ++e) {
-      if (plate.neighbour[t][e] != model::contact::kNoTriangle) continue;
-      const std::uint32_t a = plate.triangle[t][e], b = plate.triangle[t][(e + 1) % 3];
-      triangles.push_back({b, a, a + n});
-      triangles.push_back({b, a + n, b + n});
-    }
-  return *model::mesh::make_surface_mesh(vertices, triangles);
-}
-
 /// Octahedron, every triangle split in four `levels` times, on a ball about the origin.
 inline model::mesh::SurfaceMesh make_ball(double radius_m, int levels) {
   std::vector<model::Vec3> v{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};

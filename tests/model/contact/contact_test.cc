@@ -9,6 +9,7 @@
 #include "model/units.h"
 #include "tests/model/contact/contact_bench.h"
 #include "tests/support/no_alloc.h"
+#include "tests/support/organs.h"
 
 namespace tact::model::contact::contact_test {
 
@@ -192,7 +193,8 @@ TEST(Contact, ToolThatMovedTooFarUnseenIsLostAndFoundAgain) {
 }
 
 TEST(Contact, PushedThroughAFlapIsHeldBackWithinTheLawAndThenLetGo) {
-  Bench bench(tests::make_flap(100_mm, 4_mm, 20));
+  Bench bench(tests::make_flap(
+      {.length_m = 100_mm, .width_m = 80_mm, .thickness_m = 4_mm, .edge_m = 5_mm}));
   Contact contact = bench.contact();
   glide(contact, {0, 0, 8_mm}, {0, 0, -5_mm});
   EXPECT_GT(feel_at(contact, {0, 0, -5_mm}).force_N.z, 0.1) << "the flap is pushed ahead";
