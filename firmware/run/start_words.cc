@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "firmware/admission/inertia_note.h"
+#include "firmware/admission/open_organ_note.h"
 #include "firmware/admission/reach_note.h"
 #include "model/scene/accuracy_file.h"
 
@@ -13,8 +14,11 @@ std::vector<std::string> start_notes(const model::scene::Scene& scene, const Loo
                                      bool is_check) {
   std::vector<std::string> notes{admission::inertia_note(scene, parts.tissue->law()),
                                  parts.device->info().caution};
-  if (is_check) notes.push_back(admission::reach_note(scene));
-  if (is_check && parts.presses) notes.push_back(parts.presses->note);
+  if (is_check) {
+    notes.push_back(admission::reach_note(scene));
+    notes.push_back(admission::open_organ_note(scene));
+    if (parts.presses) notes.push_back(parts.presses->note);
+  }
   std::erase(notes, std::string());
   return notes;
 }
