@@ -57,10 +57,7 @@ export class Hud {
     write("law", scene.law);
     write("device", `${scene.device} · ${Math.round(scene.rate_Hz)} Hz`);
     by_id("open_organ").hidden = boundary_edges === 0;
-    write(
-      "open_organ",
-      `open organ, ${boundary_edges} boundary edges: no inside beside them. A tool that comes in through a hole feels nothing until it has once been outside.`,
-    );
+    write("boundary_edges", `open organ, ${boundary_edges} boundary edges`);
     write("limits", scene.limits_checksum);
     write("force_of", `of ${Number(scene.force_limit_N.toPrecision(3))} N`);
     this.tell_kind();
