@@ -2,6 +2,7 @@
 #include "firmware/loop/controller.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tact::firmware::loop {
 namespace {
@@ -28,6 +29,10 @@ double fastest_sphere_mps(const model::contact::ContactScene& scene, const gate:
   return gate.speed_limit_mps() + (lever_m > 0.0 ? gate.turn_limit_radps() * lever_m : 0.0);
 }
 
+std::uint32_t bounded(std::uint64_t periods) RT_SAFE {
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(periods, kMaxPeriods));
+}
+
 }  // namespace
 
 Controller::Controller(const model::contact::ContactScene& scene, const gate::Gate& gate,
@@ -46,15 +51,29 @@ double Controller::reach_m(std::uint64_t periods) const RT_SAFE {
 // samples are missing it stays where the last one was.
 void Controller::touch(const TickInput& input) RT_SAFE {
   const std::uint64_t passed = std::uint64_t{input.skipped_periods} + 1;  // since the last tick
-  const auto periods = static_cast<std::uint32_t>(std::min<std::uint64_t>(passed, kMaxPeriods));
+  const std::uint64_t followed = std::exchange(ahead_, 0);
+  const std::uint64_t told = passed - std::min(passed - 1, followed);
   if (input.sample.fresh) {
-    contact_.touch(input.sample.tool, periods, reach_m(unseen_ + passed));
+    // A tick that woke late has a sample of then; what was skipped is told in the next one.
+    const std::uint64_t by_stamp = periods_since_sample(input.sample.stamp_ns);
+    const std::uint64_t periods = std::max(told, by_stamp - std::min(by_stamp, unseen_));
+    contact_.touch(input.sample.tool, bounded(periods),
+                   reach_m(std::max(unseen_ + passed, by_stamp)));
+    ahead_ = periods - told;
+    stamp_ns_ = input.sample.stamp_ns;
     seen_ = true;
     unseen_ = 0;
   } else if (seen_) {
-    contact_.touch(input.sample.tool, periods);
+    contact_.touch(input.sample.tool, bounded(told));
     unseen_ += passed;
   }
+}
+
+// By the device's own times, at most as many as are followed.
+std::uint64_t Controller::periods_since_sample(std::int64_t stamp_ns) const RT_SAFE {
+  if (!seen_ || stamp_ns <= stamp_ns_) return 0;
+  const double periods = 1e-9 * static_cast<double>(stamp_ns - stamp_ns_) / gate_.period_s();
+  return static_cast<std::uint64_t>(std::min(periods + 0.5, double{kMaxPeriods}));
 }
 
 void Controller::feel(const TickInput& input) RT_SAFE {

@@ -19,8 +19,8 @@ namespace tact::model::contact {
 namespace {
 
 // The way of one step, of a radius: no sphere passes a sheet between two steps.
-constexpr double kStep_ratio = 0.5;
-constexpr int kMaxSteps = 64;         // of a tick, for each period
+constexpr double kSubstep_ratio = 0.5;
+constexpr int kMaxSubsteps = 64;      // of a tick, for each period
 constexpr double kAhead_ratio = 4.0;  // of a radius: a free sphere searches so far ahead
 constexpr double kAnywhere_m = std::numeric_limits<double>::infinity();
 constexpr double kLetGo_s = 0.1;  // chosen: the time in which a contact beyond its law ends
@@ -91,7 +91,7 @@ bool Contact::is_reached(const Tool& tool, double reach_m) const RT_SAFE {
   if (!(norm(tool.position_m - tool_before_->position_m) <= reach_m)) return false;
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
     const double way_m = norm(centre_of(scene_.spheres[i], tool) - probe_[i].centre_m);
-    if (!(way_m <= kMaxSteps * kStep_ratio * scene_.spheres[i].radius_m)) return false;
+    if (!(way_m <= kMaxSubsteps * kSubstep_ratio * scene_.spheres[i].radius_m)) return false;
   }
   return true;
 }
@@ -107,8 +107,8 @@ void Contact::detect(const Tool& tool) RT_SAFE {
     probe.unfelt_m = 0.0;
     const double way_m = norm(probe.moved_m);
     const double radius_m = scene_.spheres[i].radius_m;
-    const int steps =
-        std::clamp(static_cast<int>(std::ceil(way_m / (kStep_ratio * radius_m))), 1, kMaxSteps);
+    const int steps = std::clamp(static_cast<int>(std::ceil(way_m / (kSubstep_ratio * radius_m))),
+                                 1, kMaxSubsteps);
     for (int left = steps; left > 0; --left) {
       const Vec3 to_go_m = probe.is_known ? centre_m - probe.centre_m : Vec3{};
       probe.centre_m = left > 1 ? probe.centre_m + to_go_m / left : centre_m;

@@ -38,6 +38,20 @@ TEST_F(LoopContact, AToolFoundInsideTheOrganFeelsNothingAndIsCounted) {
   EXPECT_EQ(loop.statistics().contact_losses, 0u);
 }
 
+// A device that is real has a sample of then; what was skipped is told to the tick after it.
+TEST_F(LoopContact, AToolThatMovesWhileTheLoopWakesLateKeepsItsContact) {
+  device.height_m = 0.006;
+  requests.arm_at_start.store(true);
+  run_ticks(600);
+  for (; device.height_m > 0.002; device.height_m -= 0.00005) loop.step();
+  tests::pass_ns(clock, 20'000'000);
+  device.height_m -= 0.002;  // 0.1 m/s for 20 ms: more than 1.5 m/s for one
+  run_ticks(2);
+  EXPECT_EQ(loop.statistics().skipped_ticks, 19u);
+  EXPECT_EQ(loop.statistics().contact_losses, 0u);
+  EXPECT_GT(device.last.force_N.z, 0.15);
+}
+
 TEST_F(LoopContact, ContactLossesAreCounted) {
   press();
   device.height_m = 0.030;
