@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "model/law/haptic_limit.h"
 
@@ -81,9 +82,15 @@ Error damps_too_much(const model::scene::Scene& scene, const Demand& demand, dou
                    demand.spheres))};
 }
 
+std::string damping_hint(const hal::DeviceInfo& device) {
+  return device.damping_key.empty()
+             ? std::string()
+             : fmt::format(" ({} says what this one has)", device.damping_key);
+}
+
 /// Names the spring that decides, the key that softens it and to what number.
 Error too_stiff(const model::scene::Scene& scene, const model::scene::TissueLaw& law,
-                const Demand& demand, const std::string& damping_key) {
+                const Demand& demand, const hal::DeviceInfo& device) {
   const bool is_law =
       !(demand.law_N_per_m < demand.sliding_N_per_m);  // the stiffer one; NaN is the law's
   const bool is_set = scene.contact.sliding_stiffness_N_per_m > 0.0;
@@ -99,12 +106,45 @@ Error too_stiff(const model::scene::Scene& scene, const model::scene::TissueLaw&
       "{:g} Hz; {} to {:.4g} N/m or less, raise rate_Hz, or take a device with more damping{}",
       scene.path, what, one_N_per_m, spheres_in_words(scene.tool.spheres.size()),
       demand.spheres * one_N_per_m, demand.limit_N_per_m, scene.rate_Hz, cure,
-      rounded_down(demand.limit_N_per_m / demand.spheres),
-      damping_key.empty() ? std::string()
-                          : fmt::format(" ({} says what this one has)", damping_key))};
+      rounded_down(demand.limit_N_per_m / demand.spheres), damping_hint(device))};
+}
+
+// HL-1. All spheres may stand on the stiffest place and damp at once.
+double limit_with_N_per_m(const model::scene::Scene& scene, const hal::DeviceInfo& device,
+                          double all_Ns_per_m) {
+  return model::law::haptic_limit(*device.at_tool, scene.rate_Hz, all_Ns_per_m).grow_N_per_m;
+}
+
+constexpr std::size_t kSampled = 16;  // vertices each way; chosen: 50 ms
+
+/// Where the scene's own hand presses.
+model::scene::PressPlace hand_place(const model::scene::Scene& scene) {
+  const auto& vertices_m = scene.organ_mesh.vertex_m;
+  const auto nearest = std::ranges::min_element(
+      vertices_m, {}, [&](const model::Vec3& v) { return norm(v - scene.hand_site_m); });
+  return {static_cast<std::uint32_t>(nearest - vertices_m.begin()),
+          model::scene::PressWay::kUpright};
+}
+
+/// Names a place where the force is not sound; the remedy is one of the mesh.
+std::string note_of(const model::scene::Scene& scene, const model::scene::PressSweep& sweep) {
+  const auto flawed = sweep.flawed();
+  if (flawed.empty()) return {};
+  return fmt::format(
+      "{}: {} of {} presses of the whole tool are not sound, the worst at {}: {}; smooth or refine "
+      "the organ's mesh there (tact-mesh), or keep the tool from it; tact-sweep tries every vertex",
+      scene.path, flawed.size(), sweep.results.size(), name_of(flawed.front()->place),
+      describe_flaws(*flawed.front(), sweep.settings));
 }
 
 }  // namespace
+
+double stiffness_limit_N_per_m(const model::scene::Scene& scene, const model::scene::TissueLaw& law,
+                               const hal::DeviceInfo& device) {
+  if (!device.at_tool) return 0.0;
+  const auto spheres = static_cast<double>(scene.tool.spheres.size());
+  return limit_with_N_per_m(scene, device, spheres * law.damping_Ns_per_m());
+}
 
 model::Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene,
                                                 const model::scene::Tissue& tissue,
@@ -115,23 +155,54 @@ model::Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene
         "device {} does not tell its damping at the tool: fill DeviceInfo::at_tool", device.name)};
   const auto spheres = static_cast<double>(scene.tool.spheres.size());
   const double damping_Ns_per_m = tissue.law().damping_Ns_per_m();
-  // HL-1. All spheres may stand on the stiffest place and damp at once.
-  const auto limit_with = [&](double all_Ns_per_m) {
-    return model::law::haptic_limit(*device.at_tool, scene.rate_Hz, all_Ns_per_m).grow_N_per_m;
-  };
   const Demand demand{.law_N_per_m = tissue.law().stiffness_N_per_m(),
                       .sliding_N_per_m = stiffest_sideways_N_per_m(scene, tissue.law().site_law()),
                       .damping_Ns_per_m = damping_Ns_per_m,
                       .spheres = spheres,
-                      .limit_N_per_m = limit_with(spheres * damping_Ns_per_m),
-                      .undamped_limit_N_per_m = limit_with(0.0)};
+                      .limit_N_per_m = stiffness_limit_N_per_m(scene, tissue.law(), device),
+                      .undamped_limit_N_per_m = limit_with_N_per_m(scene, device, 0.0)};
   const double needed_N_per_m = demand.needed_N_per_m();
   if (demand.fits(demand.law_N_per_m) && demand.fits(demand.sliding_N_per_m))
     return StiffnessMargin{.needed_N_per_m = needed_N_per_m, .limit_N_per_m = demand.limit_N_per_m};
   // Stiff enough without its damping: then the damping is what must change.
   if (damping_Ns_per_m > 0.0 && needed_N_per_m <= demand.undamped_limit_N_per_m)
     return damps_too_much(scene, demand, device.at_tool->damping_Ns_per_m);
-  return too_stiff(scene, tissue.law(), demand, device.damping_key);
+  return too_stiff(scene, tissue.law(), demand, device);
+}
+
+model::Result<PressCheck> check_sweep(const model::scene::Scene& scene,
+                                      const model::scene::TissueLaw& law,
+                                      const hal::DeviceInfo& device,
+                                      const model::scene::PressSweep& sweep) {
+  const double limit_N_per_m = sweep.settings.limit_N_per_m;
+  const model::scene::PressResult& hand = sweep.results.front();
+  if (!(hand.slope_N_per_m.value <= limit_N_per_m))  // NaN is too stiff
+    return Error{fmt::format(
+        "{}: the whole tool is too stiff where the hand presses: {:.4g} N/m at {}, {:.3g} mm deep; "
+        "this device is stable to {:.4g} N/m at {:g} Hz; soften {}, raise rate_Hz, or take a "
+        "device with more damping{}",
+        scene.path, hand.slope_N_per_m.value, name_of(hand.place), 1e3 * hand.slope_N_per_m.depth_m,
+        limit_N_per_m, scene.rate_Hz, stiff_key(scene, law), damping_hint(device))};
+  PressCheck out{.presses = sweep.results.size(), .note = note_of(scene, sweep)};
+  if (const model::scene::PressResult* stiffest = sweep.stiffest()) {
+    out.slope_N_per_m = stiffest->slope_N_per_m.value;
+    out.place = name_of(stiffest->place);
+  }
+  return out;
+}
+
+model::Result<PressCheck> check_presses(const model::scene::Scene& scene,
+                                        const model::scene::TissueLaw& law,
+                                        const hal::DeviceInfo& device, double limit_N_per_m) {
+  std::vector<model::scene::PressPlace> places{hand_place(scene)};
+  if (law.curve() != nullptr) {
+    const auto others = press_places(scene, kSampled, true, true);
+    places.insert(places.end(), others.begin(), others.end());
+  }
+  const auto sweep =
+      sweep_presses(scene, places, {.limit_N_per_m = limit_N_per_m, .checks_energy = false});
+  if (!sweep) return sweep.error();
+  return check_sweep(scene, law, device, *sweep);
 }
 
 }  // namespace tact::firmware::admission

@@ -44,6 +44,11 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
         admission::check_budget(scene, setup.non_rt ? std::nullopt : std::optional(setup.rt));
     if (!time) return time.error();
     parts.time = *time;
+    // After its time is known: a law that is too slow would be pressed for minutes.
+    auto presses = admission::check_presses(scene, parts.tissue->law(), parts.device->info(),
+                                            parts.stiffness.limit_N_per_m);
+    if (!presses) return presses.error();
+    parts.presses = std::move(*presses);
   }
   parts.limits = gate::limits_for(scene.limits, parts.device->info());
   if (auto error = admission::check_heat(scene, parts.limits)) return *error;

@@ -37,6 +37,7 @@ struct LoopParts {
   hal::registry::OpenDevice device;              // off when the parts go, whatever ended them
   admission::StiffnessMargin stiffness;
   std::optional<admission::TimeMargin> time;
+  std::optional<admission::PressCheck> presses;
   model::Limits limits;         // of scene and device together
   std::string limits_checksum;  // in use, the PC's share counted
   std::unique_ptr<loop::Controller> controller;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "firmware/admission/inertia_note.h"
+#include "firmware/admission/open_organ_note.h"
 #include "firmware/admission/reach_note.h"
 #include "model/scene/accuracy_file.h"
 
@@ -13,7 +14,11 @@ std::vector<std::string> start_notes(const model::scene::Scene& scene, const Loo
                                      bool is_check) {
   std::vector<std::string> notes{admission::inertia_note(scene, parts.tissue->law()),
                                  parts.device->info().caution};
-  if (is_check) notes.push_back(admission::reach_note(scene));
+  if (is_check) {
+    notes.push_back(admission::reach_note(scene));
+    notes.push_back(admission::open_organ_note(scene));
+    if (parts.presses) notes.push_back(parts.presses->note);
+  }
   std::erase(notes, std::string());
   return notes;
 }
@@ -29,6 +34,12 @@ std::string check_lines(const model::scene::Scene& scene, const LoopParts& parts
   if (const auto& time = parts.time)
     out += fmt::format(", {:.3g} of {:g} us a tick ({})", time->judged_us, time->budget_us,
                        time->tail_counts ? "p99.9" : "median");
+  if (const auto& presses = parts.presses)
+    out += fmt::format("\nlargest felt slope {:.4g} N/m at {}, of {} presses of the whole tool{}",
+                       presses->slope_N_per_m, presses->place, presses->presses,
+                       presses->slope_N_per_m > parts.stiffness.limit_N_per_m
+                           ? ": more than the device shows"
+                           : "");
   return out + "\n" + model::scene::accuracy_line(scene, law);
 }
 

@@ -13,7 +13,7 @@ namespace tact::firmware::run {
 /// What a person should know, though it hinders nothing; with --check also what takes long to find.
 std::vector<std::string> start_notes(const model::scene::Scene& scene, const LoopParts& parts,
                                      bool is_check);
-/// What --check found, in two lines.
+/// What --check found, in a few lines.
 std::string check_lines(const model::scene::Scene& scene, const LoopParts& parts);
 
 }  // namespace tact::firmware::run

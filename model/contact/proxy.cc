@@ -4,6 +4,11 @@
 #include <algorithm>
 
 namespace tact::model::contact {
+namespace {
+
+constexpr double kRounding_m = 1e-9;  // the same point, found from two triangles
+
+}  // namespace
 
 void Proxy::restart(const Site& site, double radius_m) RT_SAFE {
   site_ = site;
@@ -16,7 +21,7 @@ void Proxy::follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& move
   const Site nearest = contact::follow(surface, site_.place.triangle, p_m);
   const Vec3 goal_m = nearest.point_m + radius_m * nearest.normal;
   const double most_m = kSlide_ratio * norm(tangential(moved_m, site_.normal));
-  lags_ = norm(goal_m - offset_m_) > most_m;
+  lags_ = norm(goal_m - offset_m_) > most_m + kRounding_m;
   if (!lags_) return restart(nearest, radius_m);
   slide(surface, goal_m, most_m, radius_m);
   // Of the line to g, what lies along the surface, and what points out of the organ.

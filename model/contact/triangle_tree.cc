@@ -33,8 +33,8 @@ class Builder {
 
   /// The least box of floats around the triangles from first to last.
   BoxNode box_of(std::uint32_t first, std::uint32_t last) const {
-    constexpr float kMost = std::numeric_limits<float>::max();
-    BoxNode box{.low_m = {kMost, kMost, kMost}, .high_m = {-kMost, -kMost, -kMost}};
+    constexpr float kMaxFloat = std::numeric_limits<float>::max();
+    BoxNode box{.low_m = {kMaxFloat, kMaxFloat, kMaxFloat}, .high_m = {-kMaxFloat, -kMaxFloat, -kMaxFloat}};
     for (std::uint32_t k = first; k < last; ++k)
       for (const std::uint32_t v : surface_.triangle[tree_.triangle[k]]) {
         const Vec3& p = surface_.vertex_m[v];
@@ -42,8 +42,8 @@ class Builder {
         for (std::size_t a = 0; a < 3; ++a) {
           // A double that is rounded to a float must stay within.
           const auto rounded = static_cast<float>(axis[a]);
-          box.low_m[a] = std::min(box.low_m[a], std::nextafter(rounded, -kMost));
-          box.high_m[a] = std::max(box.high_m[a], std::nextafter(rounded, kMost));
+          box.low_m[a] = std::min(box.low_m[a], std::nextafter(rounded, -kMaxFloat));
+          box.high_m[a] = std::max(box.high_m[a], std::nextafter(rounded, kMaxFloat));
         }
       }
     return box;

@@ -71,7 +71,7 @@ ROOMS = {
 TOOLS = {
     **dict.fromkeys(["make_meshes", "make_tracking", "mcap", "printed", "program", "track_send"], []),
     **dict.fromkeys(["calibrate", "doctor", "ground_truth", "mesh", "report", "tracking_bench"], ["program"]),
-    **dict.fromkeys(["jitter", "limits"], ["program", "report"]),
+    **dict.fromkeys(["jitter", "limits", "sweep"], ["program", "report"]),
     "condense": ["program", "ground_truth", "mesh"],
     "reference": ["program", "ground_truth", "mesh"],
     "fit": ["program", "report", "ground_truth"],

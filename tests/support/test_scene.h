@@ -39,6 +39,7 @@ inline model::scene::Scene make_plate_scene() {
                      {.time_s = 1.0, .position_m = {0, 0, -0.006}},
                      {.time_s = 2.0, .position_m = {0, 0.01, -0.006}},
                      {.time_s = 3.0, .position_m = {0, 0, 0.02}}};
+  scene.hand_inward = {0, 0, -1};
   scene.limits = {.force_N = 8.0,
                   .torque_Nm = 0.2,
                   .slew_N_per_s = 1000.0,

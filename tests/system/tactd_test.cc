@@ -20,9 +20,11 @@ using nlohmann::json;
 TEST_F(Tactd, ChecksAGoodSceneAndLeaves) {
   const Outcome outcome = tactd(kLiver + " --check");
   EXPECT_EQ(outcome.status, 0) << outcome.output;
-  for (const char* part : {"sound", "force of the whole tool: ", " % of the peak off (RMS)",
-                           "against linear finite elements at 9 places; measured 20", ", hash ",
-                           "law rhombus chain", "stiffness ", " of 354.", " of 50 us a tick"})
+  for (const char* part :
+       {"sound", "force of the whole tool: ", " % of the peak off (RMS)",
+        "against linear finite elements at 9 places; measured 20", ", hash ", "law rhombus chain",
+        "stiffness ", " of 354.", " of 50 us a tick", "largest felt slope ", " N/m at vertex ",
+        " of 33 presses of the whole tool"})
     EXPECT_TRUE(has(outcome, part)) << part << " in: " << outcome.output;
 }
 

@@ -29,8 +29,15 @@ void show_progress(const std::string& label, const std::atomic<std::size_t>& don
                    std::size_t all) {
   using namespace std::chrono_literals;
   if (isatty(STDERR_FILENO) == 0) return;
+  const auto begun = std::chrono::steady_clock::now();
   while (done.load() < all && !is_interrupted()) {
-    fmt::print(stderr, "\r{}: {} of {} ({} %) ", label, done.load(), all, 100 * done.load() / all);
+    const std::size_t now = done.load();
+    fmt::print(stderr, "\r\033[K{}: {} of {} ({} %) ", label, now, all, 100 * now / all);
+    if (now > 0) {
+      const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+      fmt::print(stderr, "about {:.0f} s left ",
+                 took.count() * static_cast<double>(all - now) / static_cast<double>(now));
+    }
     std::fflush(stderr);
     std::this_thread::sleep_for(200ms);
   }

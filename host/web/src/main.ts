@@ -13,6 +13,7 @@ import { bind_keys } from "./controls/keys";
 import { take_token } from "./link/link";
 import { News } from "./link/news";
 import { Operator } from "./operator/operator";
+import { count_boundary_edges } from "./organ/boundary";
 import { OrganView } from "./organ/organ_view";
 import { Outside } from "./scene/outside";
 import { Plots } from "./panels/plots";
@@ -120,7 +121,7 @@ function take_scene(next: Scene, organ_mesh: Mesh, tool_mesh: Mesh): void {
   let floor_m = Infinity;
   for (let i = 2; i < organ_mesh.vertex_m.length; i += 3) floor_m = Math.min(floor_m, organ_mesh.vertex_m[i]);
   stage.set_home(organ.bounds, floor_m - 0.004);
-  hud.scene(next);
+  hud.scene(next, count_boundary_edges(organ_mesh.triangle));
   plots.spheres = next.spheres.length;
   recorder.scene = next.scene;
   tell_hand();

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tests/support/test_scene.h"
 
 namespace tact::firmware::admission::stiffness_check_test {
@@ -126,6 +129,72 @@ TEST(StiffnessCheck, RefusesADampingThatLeavesTheDeviceTooLittle) {
             "plate.toml: law hunt_crossley damps too much: 0.057 N s/m on 2 spheres, where this "
             "device has 0.2 N s/m of its own and 100 N/m to show at 1000 Hz; lower the damping of "
             "[hunt_crossley] to 0.05 N s/m or less");
+}
+
+TEST(PressCheck, TellsTheLargestSlopeAndWhereTheSameEachTime) {
+  const model::scene::Scene scene = tests::make_plate_scene();
+  const auto tissue = std::move(*model::scene::make_tissue(scene));
+  const model::scene::TissueLaw& law = tissue->law();
+  const auto check = check_presses(scene, law, device_with(0.3), 300.0);
+  ASSERT_TRUE(check) << check.error().sentence;
+  // One sphere on a plate: the steepest press of the law.
+  double steepest_N_per_m = 0.0;
+  for (double d_m = 0.0; d_m < law.range().press_m; d_m += 1e-5)
+    steepest_N_per_m = std::max(steepest_N_per_m, law.curve()->respond(d_m).stiffness_N_per_m);
+  EXPECT_NEAR(check->slope_N_per_m, steepest_N_per_m, 0.01 * steepest_N_per_m);
+  EXPECT_EQ(check->presses, 33U) << "the hand's, 16 square and 16 upright";
+  EXPECT_TRUE(check->place.starts_with("vertex ")) << check->place;
+  EXPECT_EQ(check->note, "");
+  const auto again = check_presses(scene, law, device_with(0.3), 300.0);
+  EXPECT_EQ(again->slope_N_per_m, check->slope_N_per_m);
+  EXPECT_EQ(again->place, check->place);
+}
+
+model::scene::PressResult pressed(std::uint32_t vertex, double slope_N_per_m, double change_N) {
+  model::scene::PressResult r;
+  r.place = {vertex, model::scene::PressWay::kUpright};
+  r.state = model::scene::PressState::kPressed;
+  r.slope_N_per_m = {slope_N_per_m, 0.0032};
+  r.change_N = {change_N, 0.0073};
+  return r;
+}
+
+TEST(PressCheck, RefusesASlopeAboveTheLimitWhereTheHandPresses) {
+  const model::scene::Scene scene = tests::make_plate_scene();
+  const auto tissue = std::move(*model::scene::make_tissue(scene));
+  model::scene::PressSweep sweep{.settings = {.limit_N_per_m = 300.0}, .results = {}};
+  sweep.results = {pressed(7, 299.0, 0.001), pressed(9, 200.0, 0.001)};
+  EXPECT_TRUE(check_sweep(scene, tissue->law(), device_with(0.3), sweep));
+  sweep.results = {pressed(7, 301.0, 0.001), pressed(9, 200.0, 0.001)};
+  const auto refused = check_sweep(scene, tissue->law(), device_with(0.3), sweep);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(
+      refused.error().sentence,
+      "plate.toml: the whole tool is too stiff where the hand presses: 301 N/m at vertex 7, "
+      "upright, 3.2 mm deep; this device is stable to 300 N/m at 1000 Hz; soften [rhombus], raise "
+      "rate_Hz, or take a device with more damping (device.sim.joint_damping_Nms_per_rad says what "
+      "this one has)");
+  // A force that is no number is not stable.
+  sweep.results.front().slope_N_per_m.value = std::nan("");
+  EXPECT_FALSE(check_sweep(scene, tissue->law(), device_with(0.3), sweep));
+}
+
+// A place where the force changes all at once, or too stiff a one that the hand does not press.
+TEST(PressCheck, NamesABadPlaceWithTheRemedyAndDoesNotRefuseIt) {
+  const model::scene::Scene scene = tests::make_plate_scene();
+  const auto tissue = std::move(*model::scene::make_tissue(scene));
+  model::scene::PressSweep sweep{.settings = {.limit_N_per_m = 300.0}, .results = {}};
+  sweep.results = {pressed(7, 200.0, 0.001), pressed(3080, 200.0, 0.262), pressed(5, 310.0, 0.001)};
+  const auto check = check_sweep(scene, tissue->law(), device_with(0.3), sweep);
+  ASSERT_TRUE(check) << check.error().sentence;
+  EXPECT_EQ(check->slope_N_per_m, 310.0);
+  EXPECT_EQ(check->place, "vertex 5, upright");
+  EXPECT_EQ(
+      check->note,
+      "plate.toml: 2 of 3 presses of the whole tool are not sound, the worst at vertex 3080, "
+      "upright: the force changes by 0.262 N in 0.02 mm at 7.30 mm (allowed: 0.006 N); smooth "
+      "or refine the organ's mesh there (tact-mesh), or keep the tool from it; tact-sweep "
+      "tries every vertex");
 }
 
 }  // namespace tact::firmware::admission::stiffness_check_test

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What other programs and people do to tactd while it pushes on the hand, 3.5 s into the liver."""
+import dataclasses
+import math
+
 from bench import checks
 from bench.back_ends import FALCON_USBFS, ODRIVE06, SIM_DELTA
 from bench.case import Case
@@ -23,12 +26,40 @@ PRESSURE = ("inject true; stress-ng -q --seed 1 --vm 1 --vm-bytes 90% --vm-keep 
             "sleep 1.7; prove 'memory was short' awk '/MemTotal/ {all = $2} /MemAvailable/ {left = $2} "
             "END {exit 8 * left > all}' /proc/meminfo\n"
             "wait $load; prove 'the load ran' [ $? = 0 ]")
+STANDS = "stand 3; sleep .2; stand 19"
+# Grip and pull, so quickly that the hand holds the pull while it would hold the press.
+PULLING = dataclasses.replace(SIM_DELTA, settings=(*SIM_DELTA.settings, *(
+    f"hand.stroke.{i}.duration_s={s}" for i, s in enumerate((.5, .2, .05, .2, .4, .5, .3, .8, 1.1)))))
 SHORT = (checks.proved("memory was short", "the load ran"),)
 
 
 def frames_dropped(run):
     """The viewer's queue was full: else nothing would have stalled."""
     return [] if run.report.get("dropped_frames", 0) > 0 else ["no frame was dropped: the viewer was not stalled"]
+
+
+@dataclasses.dataclass(frozen=True)
+class FeltOn:
+    """tactd stood for these numbers of periods and no others, lost no contact, and wrote the force before each in
+    the late tick and the eleven after it. `pulls`: the tissue is pulled, not pressed."""
+    skipped: tuple
+    pulls: bool = False
+
+    def __call__(self, run):
+        pauses, lost = run.ticks.get("pauses", []), run.report.get("contact_lost")
+        wrong = [] if lost == 0 else [f"contact was lost {lost} times"]
+        have = tuple(pause["skipped"] for pause in pauses)
+        if have != self.skipped:
+            wrong.append(f"{have} periods were skipped, not {self.skipped}")
+        for pause in pauses:
+            before_N, after_N = pause["before_N"], pause["after_N"]
+            force_N = math.hypot(*before_N)
+            if force_N < 0.2 or (before_N[2] < 0.0) != self.pulls:
+                wrong.append(f"force {before_N} N before the pause: it proves nothing")
+            farthest_N = max(after_N, key=lambda later_N: math.dist(before_N, later_N))
+            if len(after_N) < 12 or math.dist(before_N, farthest_N) > 0.05 * force_N:
+                wrong.append(f"force {farthest_N} N after a pause of {pause['skipped']} periods, {before_N} N before")
+        return wrong
 
 
 def on_hardware(back_end, name, sentence, harm, proofs):
@@ -40,9 +71,9 @@ def on_hardware(back_end, name, sentence, harm, proofs):
                 fault=RidesThrough(), seconds=3.5, long_only=True, variables={"EMULATOR": quick})
 
 
-def fault(name, sentence, harm, required, also=()):
+def fault(name, sentence, harm, required, also=(), back_end=SIM_DELTA):
     """A case of 6 s: run deep into the tissue, do the harm, wait for the end."""
-    return Case(name, sentence, SIM_DELTA, f"{DEEP}{harm}\n{attempt(required)}\nfinish", also, fault=required, seconds=6)
+    return Case(name, sentence, back_end, f"{DEEP}{harm}\n{attempt(required)}\nfinish", also, fault=required, seconds=6)
 
 
 CASES = [
@@ -61,6 +92,10 @@ CASES = [
           "inject timeout 1 chrt -f 84 strace -qq -o /dev/null -p ${held##*/} "
           "-e inject=clock_nanosleep:delay_exit=60000:when=1",
           Latches("loop stalled", detect_ms=150), (checks.hard_real_time,)),
+    fault("stands-pressing", "what is pressed is felt after a pause as before it", STANDS,
+          RidesThrough(most_skipped=19), (checks.hard_real_time, FeltOn((3, 19)))),
+    fault("stands-pulling", "what is held is held after a pause, and pulls as before it", STANDS,
+          RidesThrough(most_skipped=19), (checks.hard_real_time, FeltOn((3, 19), pulls=True)), PULLING),
     fault("hog-cpu", "ordinary load takes nothing from the loop", HOG,
           RidesThrough(), (*UNMOVED, checks.proved("the load ran"))),
     fault("memory-pressure", "memory that is short elsewhere is never short in the loop", PRESSURE,

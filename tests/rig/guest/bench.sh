@@ -4,6 +4,7 @@
 #   add_sections <<<TEXT                the scene with further sections of its file, beside what it names
 #   control SECONDS [tactd option...]   starts tactd on $SCENE, back when its loop ticks; pid $tactd
 #   inject COMMAND...                   notes the time, then does the harm (builtins cost no fork)
+#   stand PERIODS                       stops tactd for so many periods of its grid: injected when it goes on
 #   prove WORDS COMMAND...              that the harm was done, for checks.proved
 #   pull LINE up|down                   a switch on a line of the simulated chip, without a fork
 #   refused                             runs a tactd that must not start
@@ -58,6 +59,19 @@ wait_10_ms() { read -rt .01 -u $silence || return 0; }
 inject() {
   injected=$((${EPOCHREALTIME/./} * 1000 + clock_offset_ns))
   "$@"
+}
+
+# stand PERIODS: so many skipped periods and the late tick before them. Stopped and continued in the
+# same part of a period, behind its tick; nothing is forked in between. The thread of tactd that is
+# sent the signal stops the others, so it gets the CPU.
+stand() {
+  local grid_us=$((($(tact-rig-ticks /tmp/ticks --grid) - clock_offset_ns) / 1000)) end_us
+  until ((((${EPOCHREALTIME/./} - grid_us) % 1000) / 50 == 7)); do :; done
+  end_us=$((${EPOCHREALTIME/./} + 1000 * ($1 + 1)))
+  kill -STOP $tactd
+  read -rt .002 -u $silence
+  while ((${EPOCHREALTIME/./} < end_us)); do :; done
+  inject kill -CONT $tactd
 }
 
 # prove WORDS COMMAND...: the words, if the command succeeds; checks.proved asks for them.

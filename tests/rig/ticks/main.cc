@@ -47,6 +47,7 @@ class FaultStory {
 
   void add(const LoggedTick& tick) {
     ++ticks_;
+    add_pause(tick);
     skipped_ += tick.input.skipped_periods;
     most_skipped_ = std::max(most_skipped_, tick.input.skipped_periods);
     last_ = tick;
@@ -79,6 +80,7 @@ class FaultStory {
              {"pushed_before", pushed_before_},
              {"moved_after_N", moved_after_N_},
              {"armed_ticks_after", armed_after_}};
+    out["pauses"] = pauses_;
     tell(out, "first_tick_after", first_after_);
     tell(out, "limited", limited_);
     tell(out, "detected", detected_);
@@ -95,6 +97,21 @@ class FaultStory {
            tick.output.limit == model::Fault::kSampleStale;
   }
 
+  // The late tick tells the next one what was skipped: the force before it, its own, later ones.
+  void add_pause(const LoggedTick& tick) {
+    if (tick.input.skipped_periods > 0 && last_ && pauses_.size() < kPausesTold)
+      pauses_.push_back({{"skipped", tick.input.skipped_periods},
+                         {"before_N", before_last_N_},
+                         {"after_N", {force_json(*last_)}}});
+    if (!pauses_.empty() && pauses_.back()["after_N"].size() < kTicksTold)
+      pauses_.back()["after_N"].push_back(force_json(tick));
+    if (last_) before_last_N_ = force_json(*last_);
+  }
+  static json force_json(const LoggedTick& tick) {
+    const model::Vec3& force_N = tick.output.written.force_N;
+    return {force_N.x, force_N.y, force_N.z};
+  }
+
   void tell(json& out, const char* what, const std::optional<LoggedTick>& tick) const {
     if (!tick) {
       out[what] = nullptr;
@@ -108,7 +125,11 @@ class FaultStory {
                  {"limit", model::describe(tick->output.limit).name}};
   }
 
+  static constexpr std::size_t kPausesTold = 8, kTicksTold = 12;
+
   std::int64_t injected_ns_;
+  json pauses_ = json::array();  // the first ones
+  json before_last_N_ = json::array({0.0, 0.0, 0.0});
   std::uint64_t ticks_ = 0, skipped_ = 0, armed_after_ = 0;
   std::uint32_t most_skipped_ = 0;
   double force_before_N_ = 0.0, moved_after_N_ = 0.0;

@@ -28,7 +28,7 @@ const std::vector<std::string> kPrograms{
     "tactd",           "tact-view",     "tact-jitter",    "tact-fit",       "tact-plan",
     "tact-chart",      "tact-condense", "tact-mesh",      "tact-doctor",    "tact-limits",
     "tact-verify",     "tactctl",       "tact-calibrate", "tact-reference", "tact-stability",
-    "tact-track-send", "tact-mcap",     "tact-new-scene"};
+    "tact-track-send", "tact-mcap",     "tact-new-scene", "tact-sweep"};
 
 class BadInput : public testing::Test {
  protected:

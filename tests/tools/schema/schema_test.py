@@ -45,6 +45,8 @@ COMMANDS = {
                   f"tact-mesh --json {ROOT}/{{mesh}} --weld --out {{t}}/welded.obj --place {LIVER}"],
     "tact-verify": [f"tact-verify {VECTORS}/{{vectors}} --json"],
     "tact-stability": ["tact-stability --out {t}/maps --quick --only loss --no-pictures --json"],
+    "tact-sweep": [f"tact-sweep {ROOT}/tests/data/scenes/plain.toml --depth-m 0.002 --limit-N-per-m 1 --no-pictures "
+                   "--out {t}/sweep --json"],
     "tact-doctor": ["tact-doctor --json"],
     "tact-figure-bench": [f"tact-figure-bench {SCENES}/maintenance.toml --seconds 0.5 --json"],
     "tact-arm-bench": ["tact-arm-bench --json"],

@@ -48,7 +48,7 @@ export class Hud {
     return this.status?.link === "replay";
   }
 
-  scene(scene: Scene): void {
+  scene(scene: Scene, boundary_edges: number): void {
     this.scene_known = scene;
     this.force_limit_N = scene.force_limit_N;
     this.continuous_force_N = scene.continuous_force_N;
@@ -56,6 +56,8 @@ export class Hud {
     write("scene", scene.scene);
     write("law", scene.law);
     write("device", `${scene.device} · ${Math.round(scene.rate_Hz)} Hz`);
+    by_id("open_organ").hidden = boundary_edges === 0;
+    write("boundary_edges", `open organ, ${boundary_edges} boundary edges`);
     write("limits", scene.limits_checksum);
     write("force_of", `of ${Number(scene.force_limit_N.toPrecision(3))} N`);
     this.tell_kind();

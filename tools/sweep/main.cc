@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// tact-sweep: the whole tool of a scene pressed into its organ at every vertex.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <filesystem>
+
+#include "firmware/admission/stiffness_check.h"
+#include "hal/registry/open_device.h"
+#include "model/io/file_writer.h"
+#include "model/io/program/within.h"
+#include "model/scene/tissue.h"
+#include "tools/program/program.h"
+#include "tools/sweep/all_cores.h"
+#include "tools/sweep/sweep_report.h"
+
+namespace {
+
+using namespace tact::tools;
+using tact::model::Error;
+using tact::model::Result;
+using tact::model::scene::PressPlace;
+using tact::model::scene::PressSettings;
+using tact::model::scene::PressStep;
+using tact::model::scene::PressSweep;
+using tact::model::scene::PressWay;
+using tact::model::scene::Scene;
+
+constexpr std::size_t kWorst = 10;  // told by name
+
+struct Options {
+  program::SceneArguments scene;
+  std::string out, vertices = "300";
+  std::vector<std::uint32_t> vertex;
+  double step_m = 2e-5, depth_m = 0.0, limit_N_per_m = 0.0;
+  bool square = false, upright = false, no_pictures = false, json = false;
+};
+
+/// 0: all.
+std::optional<std::size_t> count_in(const std::string& word) {
+  if (word == "all") return 0;
+  std::size_t count = 0;
+  const auto [end, wrong] = std::from_chars(word.data(), word.data() + word.size(), count);
+  if (wrong != std::errc{} || end != word.data() + word.size() || count == 0) return std::nullopt;
+  return count;
+}
+
+void add_options(CLI::App& app, Options& o) {
+  o.scene.add_to(app);
+  app.add_option("--out", o.out, "folder for table and picture; made if need be")->required();
+  app.add_option("--vertices", o.vertices,
+                 "how many vertices of the organ each way, spread over all, or \"all\" (default "
+                 "300)")
+      ->check([](const std::string& word) {
+        return count_in(word) ? "" : fmt::format("\"{}\" is no number above 0 and not all", word);
+      });
+  app.add_option("--vertex", o.vertex,
+                 "this vertex alone, counted from 0; repeatable. Of one press press.csv has the "
+                 "force along the way")
+      ->check(tact::model::io::within(0, 4294967294.0));
+  app.add_option("--step-m", o.step_m, "of the tool along its way, m (default 2e-5)")
+      ->check(tact::model::io::within(1e-7, 1e-3));
+  app.add_option("--depth-m", o.depth_m,
+                 "of the tool's lowest point, m (default: the working range of the law)")
+      ->check(tact::model::io::within(1e-5, 1.0));
+  app.add_option("--limit-N-per-m", o.limit_N_per_m,
+                 "stiffness that is admitted, N/m (default: that of the scene's device, if it is "
+                 "simulated)")
+      ->check(tact::model::io::above_zero());
+  app.add_flag("--square", o.square, "along the inward normal of the vertex, the tool turned so");
+  app.add_flag("--upright", o.upright,
+               "along hand.inward, the tool as at rest, at vertices that face the hand (default: "
+               "both ways)");
+  app.add_flag("--no-pictures", o.no_pictures, "tables alone; needs no gnuplot");
+  app.add_flag("--json", o.json, "print one JSON document, SI units");
+}
+
+Result<double> limit_N_per_m(const Options& o, const Scene& scene) {
+  if (o.limit_N_per_m > 0.0) return o.limit_N_per_m;
+  if (!tact::hal::registry::is_simulated(scene.device))
+    return Error{
+        fmt::format("{}: device.kind \"{}\" is hardware, which this program does not open; give "
+                    "--limit-N-per-m, the limit that tactd {} --check prints",
+                    scene.path, scene.device.kind, scene.path)};
+  const auto tissue = tact::model::scene::make_tissue(scene);
+  if (!tissue) return tissue.error();
+  const auto device = tact::hal::registry::open_device(scene);
+  if (!device) return device.error();
+  return tact::firmware::admission::stiffness_limit_N_per_m(scene, (*tissue)->law(),
+                                                            (*device)->info());
+}
+
+Result<std::vector<PressPlace>> places_of(const Options& o, const Scene& scene) {
+  const bool both = o.square == o.upright;
+  if (o.vertex.empty())
+    return press_places(scene, *count_in(o.vertices), o.square || both, o.upright || both);
+  std::vector<PressPlace> out;
+  for (const std::uint32_t vertex : o.vertex) {
+    if (vertex >= scene.organ_mesh.vertex_m.size())
+      return Error{fmt::format("--vertex {}: the organ has the vertices 0 to {}", vertex,
+                               scene.organ_mesh.vertex_m.size() - 1)};
+    if (o.square || both) out.push_back({vertex, PressWay::kSquare});
+    if (o.upright || both) out.push_back({vertex, PressWay::kUpright});
+  }
+  return out;
+}
+
+/// The force along one way, step by step.
+std::optional<Error> write_way(const Scene& scene, const PressSweep& sweep,
+                               const std::string& path) {
+  const auto tissue = tact::model::scene::make_tissue(scene);
+  if (!tissue) return tissue.error();
+  std::string csv = "depth_m,force_N,force_x_N,force_y_N,force_z_N,stored_J,work_J\n";
+  press_once((*tissue)->contact_scene(), scene.hand_inward, sweep.results.front().place,
+             sweep.settings, [&csv](const PressStep& step) {
+               const tact::model::Vec3& f = step.force_N;
+               csv +=
+                   fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", step.depth_m,
+                               step.along_N, f.x, f.y, f.z, step.stored_J, step.work_J);
+             });
+  return tact::model::io::write_file(path, csv);
+}
+
+/// Table and picture; of a single press its force along the way, too.
+Result<std::vector<std::string>> write_all(const Options& o, const Scene& scene,
+                                           const PressSweep& sweep) {
+  auto files = sweep::presses_table(scene, sweep).write(o.out);
+  if (!files) return files.error();
+  if (sweep.results.size() == 1) {
+    const std::string path = (std::filesystem::path(o.out) / "press.csv").string();
+    if (auto error = write_way(scene, sweep, path)) return *error;
+    files->push_back(path);
+    return files;
+  }
+  if (o.no_pictures) return files;
+  const auto drawn = draw(sweep::presses_picture(sweep), o.out);
+  if (!drawn) return drawn.error();
+  files->insert(files->end(), drawn->begin(), drawn->end());
+  return files;
+}
+
+/// Without what chooses the places: those of one press are added.
+std::string command_for(const Options& o) {
+  std::string out = fmt::format("tact-sweep {} --out {}", o.scene.path, o.out);
+  for (const std::string& set : o.scene.overrides) out += fmt::format(" --set '{}'", set);
+  if (o.step_m != Options{}.step_m) out += fmt::format(" --step-m {:g}", o.step_m);
+  if (o.depth_m > 0.0) out += fmt::format(" --depth-m {:g}", o.depth_m);
+  if (o.limit_N_per_m > 0.0) out += fmt::format(" --limit-N-per-m {:g}", o.limit_N_per_m);
+  return out;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  program::Program program(
+      "tact-sweep",
+      "Press the whole tool of a scene into its organ at many vertices, from free outside to the\n"
+      "working range of the law, and check the force in every step: it never draws the tool in,\n"
+      "never jumps, is no stiffer than the device can show, and stores the work of the hand.",
+      "Example:  tact-sweep model/scenes/liver.toml --vertices all --out sweep\n"
+      "\n"
+      "Checks: along the way the force is at least -1 mN; the force vector changes by at most the\n"
+      "admitted stiffness times the step; the slope dF/dd (median of three steps, N/m) is at most\n"
+      "the admitted stiffness (HL-1: damping of the device at this rate); without friction and\n"
+      "relaxation the stored energy is the work of the hand within 2 % and the largest force\n"
+      "times the step. The force may fall along the way: on a steep flank the true one does.\n"
+      "Depths are those of the tool's lowest point beyond the vertex, m.");
+  Options o;
+  add_options(program.options(), o);
+  if (const auto status = program.parse(argc, argv)) return *status;
+  const auto scene = o.scene.load();
+  if (!scene) return program.fail(scene.error());
+  const auto places = places_of(o, *scene);
+  if (!places) return program.fail(places.error());
+  const auto limit = limit_N_per_m(o, *scene);
+  if (!limit) return program.fail(limit.error());
+  if (const auto error = program::prepare_folder(o.out)) return program.fail(*error);
+  const PressSettings settings{
+      .step_m = o.step_m, .depth_m = o.depth_m, .limit_N_per_m = *limit, .checks_energy = true};
+  const auto sweep = sweep::sweep_on_all_cores(*scene, *places, settings);
+  if (!sweep) return program.fail(sweep.error());
+  const auto files = write_all(o, *scene, *sweep);
+  if (!files) return program.fail(files.error());
+  const std::string command = command_for(o);
+  if (o.json)
+    fmt::print("{}\n", sweep::json_of(*scene, *sweep, command, *files));
+  else
+    fmt::print("{}", sweep::text_of(*sweep, command, kWorst));
+  return sweep->flawed().empty() ? 0 : 1;
+}

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/sweep/sweep_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "model/io/json.h"
+
+namespace tact::tools::sweep {
+namespace {
+
+using model::scene::PressPlace;
+using model::scene::PressResult;
+using model::scene::PressState;
+using model::scene::PressSweep;
+using model::scene::PressWay;
+
+const char* word_of(PressWay way) { return way == PressWay::kSquare ? "square" : "upright"; }
+
+const char* word_of(PressState state) {
+  switch (state) {
+    case PressState::kPressed:
+      return "pressed";
+    case PressState::kMissed:
+      return "missed";
+    case PressState::kBlocked:
+      return "blocked";
+  }
+  return "?";
+}
+
+/// "changes+draws_in", or "none"
+std::string flaw_words(const PressResult& result, const PressSweep& sweep) {
+  const auto flaws = flaws_of(result, sweep.settings);
+  std::string out;
+  const auto add = [&out](bool holds, const char* word) {
+    if (holds) out += (out.empty() ? "" : "+") + std::string(word);
+  };
+  add(flaws.changes_too_fast, "changes");
+  add(flaws.draws_in, "draws_in");
+  add(flaws.is_too_stiff, "too_stiff");
+  add(flaws.is_unfelt, "unfelt");
+  add(flaws.energy_differs, "energy");
+  return out.empty() ? "none" : out;
+}
+
+nlohmann::json to_json(const PressResult& r) {
+  return {{"vertex", r.place.vertex},
+          {"way", word_of(r.place.way)},
+          {"slope_N_per_m", r.slope_N_per_m.value},
+          {"depth_m", r.slope_N_per_m.depth_m}};
+}
+
+}  // namespace
+
+report::Table presses_table(const model::scene::Scene& scene, const PressSweep& sweep) {
+  constexpr auto kWord = report::CellKind::kWord;
+  report::Table table("presses",
+                      {{"vertex"},
+                       {"way", kWord},
+                       {"x_m"},
+                       {"y_m"},
+                       {"z_m"},
+                       {"state", kWord},
+                       {"flaws", kWord},
+                       {"deepest_m"},
+                       {"force_N"},
+                       {"slope_N_per_m"},
+                       {"slope_at_m"},
+                       {"change_N"},
+                       {"change_at_m"},
+                       {"least_N"},
+                       {"least_at_m"},
+                       {"energy_ratio"},
+                       {"energy_at_m"}},
+                      sweep.results.size());
+  for (const PressResult& r : sweep.results) {
+    const model::Vec3& at_m = scene.organ_mesh.vertex_m[r.place.vertex];
+    table.add({static_cast<double>(r.place.vertex), word_of(r.place.way), at_m.x, at_m.y, at_m.z,
+               word_of(r.state), flaw_words(r, sweep), r.deepest_m, r.force_N,
+               r.slope_N_per_m.value, r.slope_N_per_m.depth_m, r.change_N.value, r.change_N.depth_m,
+               r.least_N.value, r.least_N.depth_m, r.energy_ratio.value, r.energy_ratio.depth_m});
+  }
+  return table;
+}
+
+report::Picture presses_picture(const PressSweep& sweep) {
+  constexpr std::size_t kBins = 40;
+  const PressResult* stiffest = sweep.stiffest();
+  const bool has_slope = stiffest && stiffest->slope_N_per_m.value > 0.0;
+  const double most_N_per_m = has_slope ? stiffest->slope_N_per_m.value : 1.0;
+  std::array<std::size_t, kBins + 1> count{};
+  for (const PressResult& r : sweep.results)
+    if (r.state == PressState::kPressed)
+      ++count[static_cast<std::size_t>(kBins * r.slope_N_per_m.value / most_N_per_m)];
+  return {.name = "presses",
+          .width_px = 1400,
+          .height_px = 700,
+          .script = fmt::format("w = {:.6g}\nxmost = {:.6g}\nymost = {:.6g}\n",
+                                most_N_per_m / kBins, 1.05 * most_N_per_m,
+                                1.05 * static_cast<double>(1 + *std::ranges::max_element(count))) +
+                    R"gp(
+f = 'presses.csv'
+pressed(v) = strcol('state') eq 'pressed' ? v : NaN
+flawed(v) = strcol('flaws') ne 'none' ? v : NaN
+set multiplot layout 1,2 title "The whole tool pressed at vertices of the organ"
+set title "largest slope dF/dd, seen from above; circles: a check fails"
+set xlabel "x, mm"
+set ylabel "y, mm"
+set cblabel "N/m"
+set size ratio -1
+set key off
+set palette defined (0 '#0072B2', 0.5 '#E69F00', 1 '#D55E00')
+plot f using (1e3*column('x_m')):(1e3*column('y_m')):(pressed(column('slope_N_per_m'))) \
+  with points pt 7 ps 0.6 lc palette, \
+  f using (1e3*column('x_m')):(flawed(1e3*column('y_m'))) with points pt 6 ps 1.6 lw 1.5 lc rgb '#000000'
+set title "how often which largest slope occurs"
+set size noratio
+set xlabel "largest slope dF/dd of a press, N/m"
+set ylabel "presses"
+set xrange [0:xmost]
+set yrange [0:ymost]
+set style fill solid 0.6
+bin(x) = w * (floor(x / w) + 0.5)
+plot f using (bin(pressed(column('slope_N_per_m')))):(1.0) smooth frequency with boxes lc rgb '#0072B2'
+unset multiplot
+)gp"};
+}
+
+std::string command_to_repeat(const std::string& command, const PressPlace& place) {
+  return fmt::format("{} --vertex {} --{}", command, place.vertex, word_of(place.way));
+}
+
+std::string text_of(const PressSweep& sweep, const std::string& command, std::size_t worst) {
+  const auto& s = sweep.settings;
+  std::string out = fmt::format(
+      "{} presses of {:g} mm in steps of {:g} mm, limit of the device {:.4g} N/m: {} pressed, {} "
+      "passed the organ, {} could not start: another part of the tool is in the organ\n",
+      sweep.results.size(), 1e3 * s.depth_m, 1e3 * s.step_m, s.limit_N_per_m,
+      sweep.count(PressState::kPressed), sweep.count(PressState::kMissed),
+      sweep.count(PressState::kBlocked));
+  if (const PressResult* most = sweep.stiffest())
+    out +=
+        fmt::format("largest slope  {:.4g} N/m at {}, {:.2f} mm deep\n", most->slope_N_per_m.value,
+                    name_of(most->place), 1e3 * most->slope_N_per_m.depth_m);
+  out += s.checks_energy ? "energy         checked without friction and relaxation\n"
+                         : "energy         not checked: the law is stepped\n";
+  const auto flawed = sweep.flawed();
+  out += fmt::format("failed         {} presses\n", flawed.size());
+  for (std::size_t i = 0; i < std::min(worst, flawed.size()); ++i)
+    out += fmt::format("  {}: {}\n    {}\n", name_of(flawed[i]->place),
+                       describe_flaws(*flawed[i], s), command_to_repeat(command, flawed[i]->place));
+  if (flawed.size() > worst)
+    out += fmt::format("  and {} more, in presses.csv\n", flawed.size() - worst);
+  return out;
+}
+
+std::string json_of(const model::scene::Scene& scene, const PressSweep& sweep,
+                    const std::string& command, const std::vector<std::string>& files) {
+  const auto& s = sweep.settings;
+  nlohmann::json flawed = nlohmann::json::array();
+  for (const PressResult* r : sweep.flawed())
+    flawed.push_back({{"vertex", r->place.vertex},
+                      {"way", word_of(r->place.way)},
+                      {"sentence", describe_flaws(*r, s)},
+                      {"command", command_to_repeat(command, r->place)}});
+  const PressResult* stiffest = sweep.stiffest();
+  const nlohmann::json out{{"format", "tact-sweep"},
+                           {"version", 1},
+                           {"scene", scene.path},
+                           {"law", name_of(scene.law)},
+                           {"limit_N_per_m", s.limit_N_per_m},
+                           {"step_m", s.step_m},
+                           {"depth_m", s.depth_m},
+                           {"energy_checked", s.checks_energy},
+                           {"pressed", sweep.count(PressState::kPressed)},
+                           {"missed", sweep.count(PressState::kMissed)},
+                           {"blocked", sweep.count(PressState::kBlocked)},
+                           {"stiffest", stiffest ? to_json(*stiffest) : nlohmann::json(nullptr)},
+                           {"flawed", std::move(flawed)},
+                           {"files", files}};
+  return model::io::text_of(out, 2);
+}
+
+}  // namespace tact::tools::sweep
