@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/contact/moved_organ.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tact::model::contact {
+namespace {
+
+constexpr std::size_t kMaxUnknowns = 3 * kMaxSpheres;
+using Square = std::array<std::array<double, kMaxUnknowns>, kMaxUnknowns>;
+using Column = std::array<double, kMaxUnknowns>;
+
+constexpr Mat3 outer(const Vec3& a, const Vec3& b) RT_SAFE { return {{a.x * b, a.y * b, a.z * b}}; }
+
+// A' v
+Vec3 times_transposed(const Mat3& a, const Vec3& v) RT_SAFE {
+  return v.x * a.row[0] + v.y * a.row[1] + v.z * a.row[2];
+}
+
+Mat3 matrix_of(const SineCosine& by, const Vec3& axis) RT_SAFE {
+  return transpose(
+      {{rotated(by, axis, {1, 0, 0}), rotated(by, axis, {0, 1, 0}), rotated(by, axis, {0, 0, 1})}});
+}
+
+bool presses(const OrganSphere& b) RT_SAFE { return b.tip.force_N > 0.0 || b.is_held; }
+
+// ML-1   l_i = F(d_i) n_i - k_w w_i
+void fill_load(const law::Law& tip, OrganSphere& b) RT_SAFE {
+  const LocalPosition at = local_position(b.at, b.y_m);
+  const double indentation_m = b.radius_m - at.height_m;
+  b.height_m = at.height_m;
+  b.tip = indentation_m > 0.0 || b.is_held ? tip.respond(indentation_m) : law::LawResponse{};
+  b.tangential_m = presses(b) ? at.tangential_m - b.rest_m : Vec3{};
+  b.load_N = b.tip.force_N * b.at.normal - b.tangential_N_per_m * b.tangential_m;
+}
+
+// ML-2, ML-6 and the moment of ML-4 by the present slopes and shifts.
+void turn_load(OrganSphere& b, double chord_ratio) RT_SAFE {
+  b.rotation = rotation_of_slope(b.at.normal, b.slope, chord_ratio);
+  const Rotation& q = b.rotation;
+  b.force_N = rotated(q.whole, q.axis, b.load_N);
+  b.organ_N = -rotated(q.rest, q.axis, b.load_N);
+  b.moment_Nm = moment_on_slope(q, chord_ratio, b.force_N, rotated(q.chord, q.axis, b.shift_m),
+                                rotated(q.whole, q.axis, b.y_m - b.at.point_m));
+}
+
+// ML-2 to ML-4 once; returns by how much slopes and shifts have changed, m.
+double pass(MovedOrgan& organ) RT_SAFE {
+  for (std::size_t i = 0; i < organ.count; ++i) turn_load(organ.sphere[i], organ.chord_ratio);
+  double change_m = 0.0;
+  for (std::size_t i = 0; i < organ.count; ++i) {
+    OrganSphere& b = organ.sphere[i];
+    Vec3 t, v_m;
+    for (std::size_t j = 0; j < organ.count; ++j) {
+      const OrganSphere& o = organ.sphere[j];
+      t += organ.slope_per_N[i][j] * o.organ_N;
+      v_m += organ.compliance_m_per_N[i][j] * o.organ_N +
+             times_transposed(organ.slope_per_N[j][i], o.moment_Nm);
+    }
+    change_m = std::max({change_m, norm(v_m - b.shift_m), b.radius_m * norm(t - b.slope)});
+    b.slope = t, b.shift_m = v_m;
+  }
+  return change_m;
+}
+
+// dl/dy, of a point that sticks:
+//     -K n n' - k_w (1 - n n')
+// of one that slides, B = dn/dy, e = w / |w|, the last two terms with friction mu alone:
+//     -K n n' + F B + (mu K e + k_w n) n' - k_w (1 - e e')
+Mat3 load_slope(const OrganSphere& b) RT_SAFE {
+  if (!presses(b)) return {};
+  const Vec3& n = b.at.normal;
+  const double k_N_per_m = b.tip.stiffness_N_per_m, side_N_per_m = b.tangential_N_per_m;
+  const Mat3 push = outer(-k_N_per_m * n, n);
+  if (!b.slides) return push + outer(side_N_per_m * n, n) + diagonal(-side_N_per_m);
+  const Mat3 normal_turns = b.tip.force_N * normal_slope_per_m(b.at, b.height_m);
+  const double w_m = norm(b.tangential_m);
+  if (!(b.friction_ratio > 0.0 && w_m > 0.0)) return push + normal_turns;
+  const Vec3 along = b.tangential_m / w_m;
+  return push + normal_turns + outer((b.friction_ratio * k_N_per_m) * along + side_N_per_m * n, n) +
+         outer(side_N_per_m * along, along) + diagonal(-side_N_per_m);
+}
+
+void put(Square& a, std::size_t i, std::size_t j, const Mat3& m) RT_SAFE {
+  for (std::size_t k = 0; k < 3; ++k) {
+    a[3 * i + k][3 * j] = m.row[k].x;
+    a[3 * i + k][3 * j + 1] = m.row[k].y;
+    a[3 * i + k][3 * j + 2] = m.row[k].z;
+  }
+}
+
+// dc_i/dy_j = Q_i delta_ij - (Q_i^k G_ij + A_i T_ij) Q_j^(1-k) dl_j/dy_j, with
+// A dt = (n x dt) x (k Q^k v + Q (y - p)); without the second order of the rotations.
+void fill_slope(const MovedOrgan& organ, Square& a) RT_SAFE {
+  std::array<Mat3, kMaxSpheres> load, chord, whole, tilt;
+  for (std::size_t j = 0; j < organ.count; ++j) {
+    const OrganSphere& b = organ.sphere[j];
+    const Rotation& q = b.rotation;
+    whole[j] = matrix_of(q.whole, q.axis);
+    chord[j] = matrix_of(q.chord, q.axis);
+    load[j] = -1.0 * (matrix_of(q.rest, q.axis) * load_slope(b));
+    const Vec3 lever_m =
+        organ.chord_ratio * (chord[j] * b.shift_m) + whole[j] * (b.y_m - b.at.point_m);
+    // (n x dt) x L = dt (n . L) - n (dt . L)
+    tilt[j] = diagonal(dot(q.normal, lever_m)) + outer(-1.0 * q.normal, lever_m);
+  }
+  for (std::size_t i = 0; i < organ.count; ++i)
+    for (std::size_t j = 0; j < organ.count; ++j) {
+      const Mat3 m =
+          (chord[i] * organ.compliance_m_per_N[i][j] + tilt[i] * organ.slope_per_N[i][j]) * load[j];
+      put(a, i, j, i == j ? m + whole[i] : m);
+    }
+}
+
+// a x = b by elimination with exchange of rows, x in b; false without a pivot.
+bool solve_in_place(Square& a, Column& b, std::size_t n) RT_SAFE {
+  constexpr double kMinDivisor = 1e-6;
+  for (std::size_t k = 0; k < n; ++k) {
+    std::size_t best = k;
+    for (std::size_t i = k + 1; i < n; ++i)
+      if (std::abs(a[i][k]) > std::abs(a[best][k])) best = i;
+    if (!(std::abs(a[best][k]) > kMinDivisor)) return false;
+    if (best != k) std::swap(a[best], a[k]), std::swap(b[best], b[k]);
+    const double inverse = 1.0 / a[k][k];
+    for (std::size_t i = k + 1; i < n; ++i) {
+      const double f = a[i][k] * inverse;
+      for (std::size_t j = k + 1; j < n; ++j) a[i][j] -= f * a[k][j];
+      b[i] -= f * b[k];
+    }
+  }
+  for (std::size_t k = n; k-- > 0;) {
+    b[k] /= a[k][k];
+    for (std::size_t i = 0; i < k; ++i) b[i] -= a[i][k] * b[k];
+  }
+  return true;
+}
+
+}  // namespace
+
+// It goes to 0 where r falls below a tenth of the tip's own compliance: b / r has no limit there.
+double structural_ratio(const MovedOrgan& organ, std::size_t i, std::size_t j,
+                        double structural_m_per_N) RT_SAFE {
+  const auto normal_m_per_N = [](const SurfaceFrame& at) RT_SAFE {
+    return dot(at.normal, at.compliance_m_per_N * at.normal);
+  };
+  const double r_1 = normal_m_per_N(organ.sphere[i].at), r_2 = normal_m_per_N(organ.sphere[j].at);
+  const double less = std::min(r_1, r_2);
+  const double least = 0.05 / (organ.contact_modulus_Pa * organ.sphere[i].radius_m);
+  if (!(less > 0.0 && structural_m_per_N > 0.0)) return 0.0;
+  return std::min(2.0 * structural_m_per_N / (r_1 + r_2), 1.0) * std::min(less / least, 1.0);
+}
+
+void fill_matrices(MovedOrgan& organ) RT_SAFE {
+  auto& g = organ.compliance_m_per_N;
+  auto& t = organ.slope_per_N;
+  for (std::size_t i = 0; i < organ.count; ++i) {
+    const SurfaceFrame& a = organ.sphere[i].at;
+    g[i][i] = a.compliance_m_per_N;
+    t[i][i] = a.slope_per_N;
+    for (std::size_t j = 0; j < i; ++j) {
+      const SurfaceFrame& b = organ.sphere[j].at;
+      const PairCompliance& pair = organ.pair[i][j];
+      g[i][j] = outer(pair.near_field_m_per_N * a.normal, b.normal) +
+                0.5 * pair.structural_ratio * (a.compliance_m_per_N + b.compliance_m_per_N);
+      g[j][i] = transpose(g[i][j]);
+      t[i][j] = pair.structural_ratio * a.slope_per_N;
+      t[j][i] = pair.structural_ratio * b.slope_per_N;
+    }
+  }
+}
+
+double evaluate(MovedOrgan& organ) RT_SAFE {
+  constexpr int kMaxPasses = 3;
+  constexpr double kSettled_m = 3e-7;
+  for (std::size_t i = 0; i < organ.count; ++i) fill_load(*organ.tip, organ.sphere[i]);
+  double worst_m = 0.0;
+  for (int i = 0; i < kMaxPasses; ++i) {
+    worst_m = pass(organ);
+    if (worst_m < kSettled_m) break;
+  }
+  for (std::size_t i = 0; i < organ.count; ++i) {
+    OrganSphere& b = organ.sphere[i];
+    const Rotation& q = b.rotation;
+    b.residual_m = b.centre_m - b.at.point_m - rotated(q.chord, q.axis, b.shift_m) -
+                   rotated(q.whole, q.axis, b.y_m - b.at.point_m);
+    worst_m = std::max(worst_m, norm(b.residual_m));
+  }
+  return worst_m;
+}
+
+bool newton_step(MovedOrgan& organ, double max_step_m, double share) RT_SAFE {
+  constexpr double kLost_m = 1.0;  // farther than this, or NaN: no step at all
+  Square a;
+  fill_slope(organ, a);
+  Column x{};
+  for (std::size_t i = 0; i < organ.count; ++i) {
+    const Vec3& r_m = organ.sphere[i].residual_m;
+    x[3 * i] = r_m.x, x[3 * i + 1] = r_m.y, x[3 * i + 2] = r_m.z;
+  }
+  if (!solve_in_place(a, x, 3 * organ.count)) return false;
+  for (std::size_t i = 0; i < organ.count; ++i)
+    if (!(norm(Vec3{x[3 * i], x[3 * i + 1], x[3 * i + 2]}) < kLost_m)) return false;
+  for (std::size_t i = 0; i < organ.count; ++i) {
+    const Vec3 step_m = share * Vec3{x[3 * i], x[3 * i + 1], x[3 * i + 2]};
+    const double length_m = norm(step_m);
+    organ.sphere[i].y_m += (length_m > max_step_m ? max_step_m / length_m : 1.0) * step_m;
+  }
+  return true;
+}
+
+// ML-7   W = sum (U(d_i) + k_w w_i^2 / 2 + (a_i . v_i + m_i . t_i) / 2)
+double stored_energy_J(const MovedOrgan& organ) RT_SAFE {
+  double sum_J = 0.0;
+  for (std::size_t i = 0; i < organ.count; ++i) {
+    const OrganSphere& b = organ.sphere[i];
+    sum_J += b.tip.energy_J + 0.5 * b.tangential_N_per_m * dot(b.tangential_m, b.tangential_m) +
+             0.5 * (dot(b.organ_N, b.shift_m) + dot(b.moment_Nm, b.slope));
+  }
+  return sum_J;
+}
+
+}  // namespace tact::model::contact

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// moved_organ.h - an organ that the spheres of one tool have moved, with finite rotations: where
+// each sphere stands to the surface at rest, the forces, and one potential for all of it.
+//
+// i, j: spheres. c_i centre; p_i, n_i, G_i, T_i of the surface point s_i that the sphere belongs to
+// (smooth_surface.h). Unknown is y_i, the centre moved back with the organ. Its height over the
+// surface is R - d_i, with d the indentation of the tip alone; w_i is what is across n_i, by which
+// friction or a bond stretches the surface. Q and Q^k of rotation.h; R radius of a sphere, m.
+//
+//     ML-1   l_i = F(d_i) n_i - k_w w_i                   load on the sphere, unturned
+//     ML-2   a_i = -Q_i^(1-k) l_i                         load on the organ
+//     ML-3   t_i = sum T_ij a_j                           slope of the moved surface
+//     ML-4   v_i = sum (G_ij a_j + T_ji' m_j)             shift of the surface point, m
+//            m_j = -d/dt_j (Q_j l_j) . (Q_j^k v_j + Q_j (y_j - p_j))   moment on the slope, N m
+//     ML-5   c_i = p_i + Q_i^k v_i + Q_i (y_i - p_i)      solved for y
+//     ML-6   f_i = Q_i l_i                                force on the tool
+//     ML-7   W = sum (U(d_i) + k_w w_i^2 / 2 + (a_i . v_i + m_i . t_i) / 2)
+//     ML-8   G_ij = h n_i n_j' + q (G_i + G_j) / 2,   T_ij = q T_i,   q = min(b / r, 1)
+//
+// F, U of the law of the tip; k_w tangential stiffness, N/m; h, b of MC-2; r the mean of n' G n.
+// With the surface points fixed f = -dW/dc exactly: (v, t) follow from (a, m) by one symmetric
+// matrix. moved_contact.h decides how the surface points move.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "model/contact/dent_view.h"
+#include "model/contact/rotation.h"
+#include "model/contact/smooth_surface.h"
+#include "model/law/law.h"
+
+namespace tact::model::contact {
+
+/// k, chosen: the pressed liver is then within 5.2 % of finite elements at finite strain.
+inline constexpr double kChord_ratio = 0.4;
+
+/// ML-8 of two spheres: h and q.
+struct PairCompliance {
+  double near_field_m_per_N = 0.0, structural_ratio = 0.0;
+};
+
+/// One sphere of the system.
+struct OrganSphere {
+  bool slides = true;    // its surface point follows y; else it sticks
+  bool is_held = false;  // bonded: it may pull, and nothing slips
+  double friction_ratio = 0.0;
+  double radius_m = 0.0;
+  SurfaceFrame at;                  // s
+  Vec3 centre_m;                    // c
+  double tangential_N_per_m = 0.0;  // k_w
+  Vec3 rest_m;                      // w without force
+  Vec3 y_m;                         // first a guess, then the answer
+  Vec3 slope;                       // t, likewise
+  Vec3 shift_m;                     // v, likewise
+  // Answers
+  double height_m = 0.0;
+  Vec3 tangential_m;  // w
+  law::LawResponse tip;
+  Vec3 load_N;     // l
+  Vec3 organ_N;    // a
+  Vec3 moment_Nm;  // m
+  Rotation rotation;
+  Vec3 residual_m;  // c less ML-5
+  Vec3 force_N;     // f
+};
+
+struct MovedOrgan {
+  const law::Law* tip = nullptr;    // force of the indentation alone
+  double contact_modulus_Pa = 0.0;  // E*
+  double chord_ratio = kChord_ratio;
+  std::size_t count = 0;
+  std::array<OrganSphere, kMaxSpheres> sphere;
+  std::array<std::array<PairCompliance, kMaxSpheres>, kMaxSpheres> pair{};      // [i][j], j < i
+  std::array<std::array<Mat3, kMaxSpheres>, kMaxSpheres> compliance_m_per_N{};  // G_ij
+  std::array<std::array<Mat3, kMaxSpheres>, kMaxSpheres> slope_per_N{};         // T_ij
+};
+
+/// ML-8 of all spheres, from their surface points and pairs.
+void fill_matrices(MovedOrgan& organ) RT_SAFE;
+
+/// q of ML-8 from MC-2's b: 0 where one of the two hardly gives.
+double structural_ratio(const MovedOrgan& organ, std::size_t i, std::size_t j,
+                        double structural_m_per_N) RT_SAFE;
+
+/// ML-1 to ML-6 at y: fills the answers; returns the largest residual, m.
+double evaluate(MovedOrgan& organ) RT_SAFE;
+
+/// `share` of a Newton step on y after evaluate(), at most max_step_m. False: no step; y stays.
+bool newton_step(MovedOrgan& organ, double max_step_m, double share) RT_SAFE;
+
+/// ML-7 at the last evaluate().
+double stored_energy_J(const MovedOrgan& organ) RT_SAFE;
+
+}  // namespace tact::model::contact

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// smooth_surface.h - a triangle mesh as one smooth surface, and the compliance of the organ at any
+// of its points.
+//
+// b: weights of the corners x_i, q = sum b_i x_i. At every corner the value and its slope are
+// known. Half of what the slope says is added to the linear value: this meets value and slope at
+// the corners and is exact for a quadratic.
+//
+//     SF-1   x = q + sum b_i ((x_i - q) . n_i) n_i / 2          surface point, m
+//     SF-2   n = sum b_i n_i / |sum b_i n_i|                    normal
+//     SF-3   G = sum b_i (G_i + (x - x_i) . dG_i / 2)           compliance, 3 by 3, m/N
+//     SF-4   T = -(1 - n n') (sum b_i dG_i) n / 2               slope of the surface per load, 1/N
+//
+// All are continuous over the edges. n . dx is of second order in the angle between the corners'
+// normals, so a frictionless sphere that slides over x with a force along n does almost no work.
+// The corners are those of fair_surface.h, G_i and dG_i those of tissue/vertex_compliance.h.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "model/contact/site.h"
+#include "model/contact/surface.h"
+#include "model/mat3.h"
+
+namespace tact::model::contact {
+
+/// A corner of the smooth surface, near the vertex of the mesh.
+struct SurfaceCorner {
+  Vec3 point_m, normal;
+};
+
+/// Regular compliance of the organ at a vertex, times E: symmetric, in W.
+struct VertexCompliance {
+  std::array<float, 6> times_E_per_m{};                        // xx yy zz yz zx xy
+  std::array<std::array<float, 3>, 6> slope_times_E_per_m2{};  // of each along the surface
+};
+
+struct SmoothSurface {
+  SurfaceView mesh;
+  std::span<const SurfaceCorner> corner;         // of each vertex
+  std::span<const VertexCompliance> compliance;  // of each vertex, or empty: a rigid organ
+  double youngs_modulus_Pa = 1.0;
+};
+
+/// A surface point with all that contact asks of it.
+struct SurfaceFrame {
+  Place place;
+  Vec3 point_m, normal;                             // SF-1, SF-2
+  std::array<Vec3, 2> axis;                         // unit, along the triangle
+  std::array<Vec3, 2> point_m_per_m, normal_per_m;  // dx and dn for a unit way along each axis
+  Mat3 compliance_m_per_N;                          // SF-3
+  Mat3 slope_per_N;                                 // SF-4
+};
+
+/// SF-1 and SF-2 at frame.place.
+void fill_geometry(const SmoothSurface& surface, SurfaceFrame& frame) RT_SAFE;
+/// SF-3 and SF-4, after fill_geometry().
+void fill_compliance(const SmoothSurface& surface, SurfaceFrame& frame) RT_SAFE;
+
+/// A point in the axes of a surface frame: its height along n, and the rest across n.
+struct LocalPosition {
+  double height_m = 0.0;
+  Vec3 tangential_m;
+};
+LocalPosition local_position(const SurfaceFrame& frame, const Vec3& point_m) RT_SAFE;
+
+/// Least ratio of the way of the point x + h n to that of x. It is 0 at a centre of curvature.
+double offset_ratio(const SurfaceFrame& frame, double height_m) RT_SAFE;
+
+/// The way of the surface point that takes `tangential_m` away: one Newton step.
+Vec3 way_to_foot(const SurfaceFrame& frame, double height_m, const Vec3& tangential_m) RT_SAFE;
+
+/// dn/dy of a point y at this height whose foot follows, 1/m.
+Mat3 normal_slope_per_m(const SurfaceFrame& frame, double height_m) RT_SAFE;
+
+/// Moves a surface point along a way in the plane of its triangle, over up to eight edges. It stops
+/// at a boundary.
+void move_along(const SurfaceView& mesh, Place& place, Vec3 way_m) RT_SAFE;
+
+}  // namespace tact::model::contact

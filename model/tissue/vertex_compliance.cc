@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/tissue/vertex_compliance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "model/contact/fair_surface.h"
+#include "model/contact/tangent.h"
+
+namespace tact::model::tissue {
+namespace {
+
+using contact::SurfaceCorner;
+using contact::SurfaceView;
+using contact::VertexCompliance;
+using Six = std::array<double, 6>;  // xx yy zz yz zx xy
+
+// r n n' + n1 (n a' + a n') + n2 (n b' + b n') + s1 a a' + s2 b b', times E; a, b the map's axes.
+Six tensor_of(const ComplianceMap& map, const Vec3& n, std::size_t v,
+              const VertexComplianceParameters& p) {
+  const SidewaysGive& g = map.sideways_times_E_per_m[v];
+  const Vec3 axis{static_cast<double>(g.axis[0]), static_cast<double>(g.axis[1]),
+                  static_cast<double>(g.axis[2])};
+  const Vec3 a = normalized(tangential(axis, n)), b = cross(n, a);
+  const double r =
+      std::max(static_cast<double>(map.regular_times_E_per_m[v]), p.min_normal_times_E_per_m);
+  const double s1 = std::max(static_cast<double>(g.s1), p.min_sideways_times_E_per_m);
+  const double s2 = std::max(static_cast<double>(g.s2), p.min_sideways_times_E_per_m);
+  const auto n1 = static_cast<double>(g.n1), n2 = static_cast<double>(g.n2);
+  const Vec3 of_n = r * n + n1 * a + n2 * b, of_a = n1 * n + s1 * a, of_b = n2 * n + s2 * b;
+  const auto column = [&](double x, double y, double z) { return x * of_n + y * of_a + z * of_b; };
+  const Vec3 x = column(n.x, a.x, b.x), y = column(n.y, a.y, b.y), z = column(n.z, a.z, b.z);
+  return {x.x, y.y, z.z, z.y, z.x, y.x};
+}
+
+// v and the vertices of two rings around it.
+std::vector<std::uint32_t> two_rings(const SurfaceView& mesh, std::uint32_t v) {
+  std::vector<std::uint32_t> out{v};
+  std::size_t next = 0;
+  for (int ring = 0; ring < 2; ++ring)
+    for (const std::size_t end = out.size(); next < end; ++next)
+      for (const std::uint32_t w : contact::neighbours_of(mesh, out[next]))
+        if (std::ranges::find(out, w) == out.end()) out.push_back(w);
+  return out;
+}
+
+Vec3 slope_of(const VertexCompliance& v, std::size_t k) {
+  const std::array<float, 3>& s = v.slope_times_E_per_m2[k];
+  return {static_cast<double>(s[0]), static_cast<double>(s[1]), static_cast<double>(s[2])};
+}
+void set_slope(VertexCompliance& v, std::size_t k, const Vec3& s) {
+  v.slope_times_E_per_m2[k] = {static_cast<float>(s.x), static_cast<float>(s.y),
+                               static_cast<float>(s.z)};
+}
+
+// Weighted moments of the plane a + b x + c y through the values around a vertex.
+struct Moments {
+  double m = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+  Six g{}, gx{}, gy{};
+
+  void add(double weight, double at_x, double at_y, const Six& value) {
+    m += weight, x += weight * at_x, y += weight * at_y;
+    xx += weight * at_x * at_x, xy += weight * at_x * at_y, yy += weight * at_y * at_y;
+    for (std::size_t k = 0; k < 6; ++k) {
+      g[k] += weight * value[k];
+      gx[k] += weight * at_x * value[k];
+      gy[k] += weight * at_y * value[k];
+    }
+  }
+  /// b, c of the k-th value; 0 where the vertices lie on a line.
+  contact::Vec2 slope(std::size_t k) const {
+    const double cxx = xx - x * x / m, cyy = yy - y * y / m, cxy = xy - x * y / m;
+    const double det = cxx * cyy - cxy * cxy;
+    if (!(det > 0.0)) return {};
+    const double rx = gx[k] - x * g[k] / m, ry = gy[k] - y * g[k] / m;
+    return {(cyy * rx - cxy * ry) / det, (cxx * ry - cxy * rx) / det};
+  }
+};
+
+// Value of the map, slope of the plane.
+VertexCompliance first_guess(const std::vector<Six>& tensor, const SurfaceView& mesh,
+                             std::uint32_t v, double reach_m) {
+  constexpr double kMinFacing = 0.1;
+  const Vec3& n = mesh.vertex_normal[v];
+  const auto [e1, e2] = contact::axes_across(n);
+  Moments moments;
+  for (const std::uint32_t w : two_rings(mesh, v)) {
+    if (!(dot(mesh.vertex_normal[w], n) > kMinFacing)) continue;
+    const Vec3 away_m = mesh.vertex_m[w] - mesh.vertex_m[v];
+    const double weight = std::exp(-0.5 * dot(away_m, away_m) / (reach_m * reach_m));
+    moments.add(weight, dot(away_m, e1), dot(away_m, e2), tensor[w]);
+  }
+  VertexCompliance out;
+  for (std::size_t k = 0; k < 6; ++k) {
+    const contact::Vec2 slope = moments.slope(k);
+    out.times_E_per_m[k] = static_cast<float>(tensor[v][k]);
+    set_slope(out, k, slope.x * e1 + slope.y * e2);
+  }
+  return out;
+}
+
+struct Fit {
+  std::span<const SurfaceCorner> corner;
+  const VertexComplianceParameters& p;
+  const std::vector<VertexCompliance>& first;
+  std::vector<VertexCompliance>& now;
+};
+
+// One least-squares step on the vertex v alone: slope along two axes, value over the mean edge.
+void fit_vertex(const Fit& fit, std::uint32_t v, const std::vector<std::uint32_t>& near) {
+  if (near.empty()) return;
+  const auto [e1, e2] = contact::axes_across(fit.corner[v].normal);
+  double edge_m = 0.0;
+  for (const std::uint32_t w : near) edge_m += norm(fit.corner[w].point_m - fit.corner[v].point_m);
+  edge_m /= static_cast<double>(near.size());
+  const double by_slope = fit.p.slope_weight_ratio, by_value = fit.p.value_weight_ratio;
+  Mat3 a{{Vec3{by_slope, 0, 0}, Vec3{0, by_slope, 0}, Vec3{0, 0, by_value}}};
+  std::array<Vec3, 6> b;
+  VertexCompliance& now = fit.now[v];
+  const VertexCompliance& first = fit.first[v];
+  for (std::size_t k = 0; k < 6; ++k) {
+    const Vec3 change = slope_of(now, k) - slope_of(first, k);
+    const auto value = static_cast<double>(now.times_E_per_m[k] - first.times_E_per_m[k]);
+    b[k] = {-by_slope * dot(change, e1), -by_slope * dot(change, e2), -by_value * value / edge_m};
+  }
+  for (const std::uint32_t w : near) {
+    const Vec3 way_m = fit.corner[w].point_m - fit.corner[v].point_m;
+    const double length_m = norm(way_m);
+    const VertexCompliance& other = fit.now[w];
+    const Vec3 d{0.5 * dot(e1, way_m) / length_m, 0.5 * dot(e2, way_m) / length_m,
+                 edge_m / length_m};
+    a = a + Mat3{{d.x * d, d.y * d, d.z * d}};
+    for (std::size_t k = 0; k < 6; ++k) {
+      const auto value = static_cast<double>(now.times_E_per_m[k] - other.times_E_per_m[k]);
+      const double by_slopes = 0.5 * dot(slope_of(now, k) + slope_of(other, k), way_m);
+      b[k] -= ((value + by_slopes) / length_m) * d;
+    }
+  }
+  const Mat3 inverted = inverse(a);
+  for (std::size_t k = 0; k < 6; ++k) {
+    const Vec3 step = inverted * b[k];
+    set_slope(now, k, slope_of(now, k) + step.x * e1 + step.y * e2);
+    now.times_E_per_m[k] += static_cast<float>(step.z * edge_m);
+  }
+}
+
+}  // namespace
+
+std::vector<VertexCompliance> vertex_compliance(const ComplianceMap& map, const SurfaceView& mesh,
+                                                std::span<const SurfaceCorner> corner,
+                                                const VertexComplianceParameters& p) {
+  const std::size_t count = map.vertices();
+  std::vector<Six> tensor(count);
+  for (std::size_t v = 0; v < count; ++v) tensor[v] = tensor_of(map, mesh.vertex_normal[v], v, p);
+  std::vector<VertexCompliance> out(count);
+  std::vector<std::vector<std::uint32_t>> near(count);
+  for (std::uint32_t v = 0; v < count; ++v) {
+    out[v] = first_guess(tensor, mesh, v, p.reach_m);
+    near[v] = contact::neighbours_of(mesh, v);
+  }
+  const std::vector<VertexCompliance> first = out;
+  const Fit fit{corner, p, first, out};
+  for (int sweep = 0; sweep < p.sweeps; ++sweep)
+    for (std::uint32_t v = 0; v < count; ++v) fit_vertex(fit, v, near[v]);
+  return out;
+}
+
+}  // namespace tact::model::tissue
