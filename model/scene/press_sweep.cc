@@ -40,8 +40,10 @@ std::vector<const PressResult*> PressSweep::flawed() const {
   std::vector<const PressResult*> out;
   for (const PressResult& r : results)
     if (flaws_of(r, settings).any()) out.push_back(&r);
-  std::ranges::stable_sort(out, [this](const PressResult* a, const PressResult* b) {
-    return severity(*a, settings) > severity(*b, settings);
+  // Equals in the order in which they were pressed: all point into one vector.
+  std::ranges::sort(out, [this](const PressResult* a, const PressResult* b) {
+    const double one = severity(*a, settings), other = severity(*b, settings);
+    return one > other || (one == other && a < b);
   });
   return out;
 }

@@ -55,7 +55,7 @@ void set_slope(VertexCompliance& v, std::size_t k, const Vec3& s) {
 }
 
 // Weighted moments of the plane a + b x + c y through the values around a vertex.
-struct Moments {
+struct PlaneMoments {
   double m = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
   Six g{}, gx{}, gy{};
 
@@ -84,7 +84,7 @@ VertexCompliance first_guess(const std::vector<Six>& tensor, const SurfaceView& 
   constexpr double kMinFacing = 0.1;
   const Vec3& n = mesh.vertex_normal[v];
   const auto [e1, e2] = contact::axes_across(n);
-  Moments moments;
+  PlaneMoments moments;
   for (const std::uint32_t w : two_rings(mesh, v)) {
     if (!(dot(mesh.vertex_normal[w], n) > kMinFacing)) continue;
     const Vec3 away_m = mesh.vertex_m[w] - mesh.vertex_m[v];
