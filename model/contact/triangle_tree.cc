@@ -34,7 +34,8 @@ class Builder {
   /// The least box of floats around the triangles from first to last.
   BoxNode box_of(std::uint32_t first, std::uint32_t last) const {
     constexpr float kMaxFloat = std::numeric_limits<float>::max();
-    BoxNode box{.low_m = {kMaxFloat, kMaxFloat, kMaxFloat}, .high_m = {-kMaxFloat, -kMaxFloat, -kMaxFloat}};
+    BoxNode box{.low_m = {kMaxFloat, kMaxFloat, kMaxFloat},
+                .high_m = {-kMaxFloat, -kMaxFloat, -kMaxFloat}};
     for (std::uint32_t k = first; k < last; ++k)
       for (const std::uint32_t v : surface_.triangle[tree_.triangle[k]]) {
         const Vec3& p = surface_.vertex_m[v];
