@@ -56,16 +56,16 @@ void Contact::reset() RT_SAFE {
   energy_J_ = 0.0;
   shear_ = {};
   closed_ = closing_ = false;
-  blade_tool_before_.reset();
 }
 
-// No sphere is known to be anywhere.
+// No sphere is known to be anywhere, nor the blade: it cuts nothing on a way that nobody saw.
 void Contact::forget() RT_SAFE {
   for (std::size_t i = 0; i < kMaxSpheres; ++i) {
     probe_[i] = {};
     leave(i, TouchState::kFree);
   }
   tool_before_.reset();
+  blade_tool_before_.reset();
 }
 
 void Contact::touch(const Tool& tool, std::uint32_t periods, double reach_m) RT_SAFE {
