@@ -259,6 +259,16 @@ TEST_F(ControllerTest, ALateLoopThatPushesNothingIsNoFault) {
   EXPECT_EQ(tick().state, State::kReady);
 }
 
+TEST_F(ControllerTest, BladeOfALostToolCutsNothing) {
+  press();
+  const int cuts = law.cuts;
+  depth_m = -0.1;
+  ASSERT_EQ(tick().limit, Fault::kContactLost);
+  EXPECT_EQ(law.cuts, cuts) << "on a way that nobody saw";
+  tick();
+  EXPECT_EQ(law.cuts, cuts + 1);
+}
+
 TEST_F(ControllerTest, ABladeCutsOnlyWhileArmed) {
   for (int i = 0; i < 10; ++i) tick();
   EXPECT_EQ(law.cuts, 0);
