@@ -132,12 +132,13 @@ TEST(ElasticField, ForceOnTheToolIsTheSlopeOfOnePotentialAlongTheSurfaceToo) {
     expect_slope_of_energy(ball, {x, 0.4 * x, 51.5_mm - 0.3 * x});
 }
 
-TEST(ElasticField, AClosedStrokeOverSoftAndStiffPlacesReturnsNoEnergy) {
+/// Work of the hand over a closed stroke, and the size of its parts, J.
+std::pair<double, double> closed_stroke_J(double deepest_m) {
   Bench bench(tests::make_ball(50_mm, 3));
   contact::Contact contact = bench.contact();
-  const auto path = [](double phase) {  // down, along a loop over the cap, up
+  const auto path = [deepest_m](double phase) {  // down, along a loop over the cap, up
     const double angle = 2.0 * std::numbers::pi * phase;
-    const double r = 53.0_mm - 4.0_mm * std::sin(std::numbers::pi * phase);
+    const double r = 53.0_mm - deepest_m * std::sin(std::numbers::pi * phase);
     const Vec3 away{0.3 * std::sin(angle), 0.3 * (1.0 - std::cos(angle)), 1.0};
     return r / norm(away) * away + Vec3{0, 0, 1.5_mm};
   };
@@ -154,9 +155,20 @@ TEST(ElasticField, AClosedStrokeOverSoftAndStiffPlacesReturnsNoEnergy) {
     before_m = at_m;
     before_N = force_N;
   }
-  // Where the centre crosses an edge of the ball's coarse facets the proxy lags: that takes some.
+  return {work_J, size_J};
+}
+
+TEST(ElasticField, AClosedStrokeOverSoftAndStiffPlacesReturnsNoEnergy) {
+  const auto [work_J, size_J] = closed_stroke_J(1.0_mm);
+  EXPECT_NEAR(work_J, 0.0, 1e-3 * size_J);
+  EXPECT_GT(size_J, 1e-5);
+}
+
+// Where the centre crosses an edge of the ball's coarse facets the proxy lags: that takes some.
+TEST(ElasticField, ClosedStrokeOverFacetEdgesReturnsNoEnergy) {
+  const auto [work_J, size_J] = closed_stroke_J(4.0_mm);
   EXPECT_GE(work_J, -1e-3 * size_J);
-  EXPECT_LE(work_J, 0.1 * size_J);
+  EXPECT_LE(work_J, 0.08 * size_J);
   EXPECT_GT(size_J, 1e-5);
 }
 
