@@ -10,13 +10,9 @@
 #include <vector>
 
 #include "firmware/loop/alloc_counter.h"
-#include "firmware/loop/rt_loop.h"
-#include "firmware/pc/rt_setup.h"
 #include "firmware/run/replay.h"
 #include "firmware/telemetry/force_hash.h"
-#include "hal/registry/open_device.h"
-#include "model/scene/tissue.h"
-#include "model/time_ns.h"
+#include "tests/support/scene_loop.h"
 
 namespace tact::firmware::run::closed_loop_test {
 
@@ -31,11 +27,7 @@ struct Summary {
   std::uint64_t heap_calls = 0;
 };
 
-bool any_in(const loop::TickRecord& r, model::contact::TouchState state) {
-  for (const auto& touch : r.touches.all())
-    if (touch.state == state) return true;
-  return false;
-}
+using tests::any_in;
 
 void add(Summary& s, const loop::TickRecord& r, const loop::TickRecord& before) {
   ++s.ticks;
@@ -65,37 +57,18 @@ void add(Summary& s, const loop::TickRecord& r, const loop::TickRecord& before) 
   if (r.output.fault != model::Fault::kNone) s.fault = r.output.fault;
 }
 
-model::scene::Scene load(const std::string& name) {
-  const auto scene =
-      model::scene::load_scene(TACT_SOURCE_DIR "/model/scenes/" + name + ".toml", {});
-  EXPECT_TRUE(scene) << scene.error().sentence;
-  return *scene;
-}
-
 Summary run(const model::scene::Scene& scene, double seconds) {
-  pc::flush_denormals();
-  const auto tissue = std::move(*model::scene::make_tissue(scene));
-  const auto device = std::move(*hal::registry::open_device(scene));
-  loop::Controller controller(tissue->contact_scene(),
-                              gate::Gate(scene.limits, 1.0 / scene.rate_Hz, 1.0),
-                              /*hard_real_time=*/true);
-  loop::SimulatedClock clock;
-  loop::Requests requests;
-  hal::NoSafetyLines lines;
-  requests.arm_at_start.store(true);
-  const auto ring = std::make_unique<loop::TickRing>();
-  loop::RtLoop loop({.period_ns = model::period_ns(scene.rate_Hz), .ticks_per_shape = 16}, *device,
-                    lines, controller, clock, requests, *ring);
+  tests::SceneLoop rig(scene, 16);
   Summary summary;
   loop::TickRecord record, before;
   const auto ticks = static_cast<int>(seconds * scene.rate_Hz);
   for (int i = 0; i < ticks; ++i) {
     {
       const loop::HeapCallCounter watch;
-      loop.step();
+      rig.loop.step();
       summary.heap_calls += watch.calls();
     }
-    while (ring->pop(record)) {
+    while (rig.ring->pop(record)) {
       add(summary, record, before);
       before = record;
     }
@@ -104,7 +77,7 @@ Summary run(const model::scene::Scene& scene, double seconds) {
 }
 
 TEST(ClosedLoop, SixtySecondsOfLiverStayWithinBoundsOnBothSides) {
-  const model::scene::Scene liver = load("liver");
+  const model::scene::Scene liver = tests::shipped_scene("liver");
   const double tear_N = liver.contact.tear_force_N;
   const Summary s = run(liver, 60.0);
   EXPECT_EQ(s.ticks, 60000);
@@ -134,7 +107,7 @@ TEST(ClosedLoop, SixtySecondsOfLiverStayWithinBoundsOnBothSides) {
 class EveryScene : public testing::TestWithParam<const char*> {};
 
 TEST_P(EveryScene, IsTouchedWithinItsLimitsAndLeavesTheHeapAlone) {
-  const model::scene::Scene scene = load(GetParam());
+  const model::scene::Scene scene = tests::shipped_scene(GetParam());
   const Summary s = run(scene, 9.0);  // the gum is cut from 6 s on
   EXPECT_EQ(s.fault, model::Fault::kNone);
   EXPECT_GT(s.touching, 200);
@@ -153,7 +126,7 @@ TEST_P(EveryScene, IsTouchedWithinItsLimitsAndLeavesTheHeapAlone) {
 }
 
 TEST_P(EveryScene, TheSameRunGivesTheSameBits) {
-  const model::scene::Scene scene = load(GetParam());
+  const model::scene::Scene scene = tests::shipped_scene(GetParam());
   const Summary a = run(scene, 8.0), b = run(scene, 8.0);
   EXPECT_GT(a.touching, 100);
   EXPECT_EQ(a.hash, b.hash);

@@ -8,12 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include "firmware/loop/rt_loop.h"
-#include "firmware/pc/rt_setup.h"
-#include "hal/registry/open_device.h"
-#include "model/scene/tissue.h"
-#include "model/time_ns.h"
 #include "tests/support/pass_time.h"
+#include "tests/support/scene_loop.h"
 #include "tools/stability/loop/random.h"
 
 namespace tact::firmware::run::paused_strokes_test {
@@ -36,33 +32,9 @@ struct FeltTick {
   loop::TickOutput output;
 };
 
-model::scene::Scene load_liver() {
-  const auto scene = model::scene::load_scene(TACT_SOURCE_DIR "/model/scenes/liver.toml", {});
-  EXPECT_TRUE(scene) << scene.error().sentence;
-  return *scene;
-}
-
-bool any_held(const loop::TickRecord& record) {
-  for (const auto& touch : record.touches.all())
-    if (touch.state == TouchState::kHeld) return true;
-  return false;
-}
-
 /// The strokes once, with these pauses in ascending order.
 std::vector<FeltTick> run(const model::scene::Scene& scene, const std::vector<Pause>& pauses) {
-  pc::flush_denormals();
-  const auto tissue = std::move(*model::scene::make_tissue(scene));
-  const auto device = std::move(*hal::registry::open_device(scene));
-  loop::Controller controller(tissue->contact_scene(),
-                              gate::Gate(scene.limits, 1.0 / scene.rate_Hz, 1.0),
-                              /*hard_real_time=*/true);
-  loop::SimulatedClock clock;
-  loop::Requests requests;
-  hal::NoSafetyLines lines;
-  requests.arm_at_start.store(true);
-  const auto ring = std::make_unique<loop::TickRing>();
-  const std::int64_t period_ns = model::period_ns(scene.rate_Hz);
-  loop::RtLoop loop({.period_ns = period_ns}, *device, lines, controller, clock, requests, *ring);
+  tests::SceneLoop rig(scene);
   const auto periods = static_cast<int>(scene.hand.path.back().time_s * scene.rate_Hz);
   std::vector<FeltTick> felt;
   loop::TickRecord record;
@@ -72,11 +44,13 @@ std::vector<FeltTick> run(const model::scene::Scene& scene, const std::vector<Pa
     // A tick that takes so long: the periods after it are skipped, the hand moves on.
     const bool pauses_now = pause != pauses.end() && period >= pause->at_period;
     const int skipped = pauses_now ? (pause++)->skipped : 0;
-    if (pauses_now) tests::pass_ns(clock, (skipped + 1) * period_ns);
-    loop.step();
-    EXPECT_TRUE(ring->pop(record));
+    if (pauses_now) tests::pass_ns(rig.clock, (skipped + 1) * rig.period_ns);
+    rig.loop.step();
+    EXPECT_TRUE(rig.ring->pop(record));
     EXPECT_EQ(record.input.skipped_periods, skipped_before);
-    felt.push_back({.period = period, .held = any_held(record), .output = record.output});
+    felt.push_back({.period = period,
+                    .held = tests::any_in(record, TouchState::kHeld),
+                    .output = record.output});
     skipped_before = static_cast<std::uint32_t>(skipped);
     period += 1 + skipped;
   }
@@ -142,13 +116,15 @@ void expect_undisturbed(const std::vector<FeltTick>& felt) {
 
 class PausedStrokes : public testing::Test {
  protected:
-  static void SetUpTestSuite() { undisturbed_ = new std::vector(run(load_liver(), {})); }
+  static void SetUpTestSuite() {
+    undisturbed_ = new std::vector(run(tests::shipped_scene("liver"), {}));
+  }
   static void TearDownTestSuite() { delete undisturbed_; }
 
   int starts(std::size_t waypoint) const { return period_of(scene_.hand.path[waypoint].time_s); }
   int period_of(double time_s) const { return static_cast<int>(time_s * scene_.rate_Hz); }
 
-  model::scene::Scene scene_ = load_liver();
+  model::scene::Scene scene_ = tests::shipped_scene("liver");
   static inline const std::vector<FeltTick>* undisturbed_ = nullptr;
 };
 
