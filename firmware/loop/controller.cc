@@ -2,7 +2,6 @@
 #include "firmware/loop/controller.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace tact::firmware::loop {
 namespace {
@@ -29,10 +28,6 @@ double fastest_sphere_mps(const model::contact::ContactScene& scene, const gate:
   return gate.speed_limit_mps() + (lever_m > 0.0 ? gate.turn_limit_radps() * lever_m : 0.0);
 }
 
-std::uint32_t bounded(std::uint64_t periods) RT_SAFE {
-  return static_cast<std::uint32_t>(std::min<std::uint64_t>(periods, kMaxPeriods));
-}
-
 }  // namespace
 
 Controller::Controller(const model::contact::ContactScene& scene, const gate::Gate& gate,
@@ -42,38 +37,29 @@ Controller::Controller(const model::contact::ContactScene& scene, const gate::Ga
       late_watch_(hard_real_time),
       fastest_mps_(fastest_sphere_mps(scene, gate)) {}
 
-double Controller::reach_m(std::uint64_t periods) const RT_SAFE {
-  const double pause_s = static_cast<double>(periods) * gate_.period_s();
-  return kReachRatio * fastest_mps_ * pause_s + kReachMargin_m;
+// In the periods since the last sample, or in the time between both samples: a tick that woke late
+// has a sample of then, and what was skipped is told in the next one.
+double Controller::reach_m(std::uint64_t periods, std::int64_t stamp_ns) const RT_SAFE {
+  const double by_ticks_s = static_cast<double>(periods) * gate_.period_s();
+  const double by_stamps_s = seen_ ? 1e-9 * static_cast<double>(stamp_ns - stamp_ns_) : 0.0;
+  return kReachRatio * fastest_mps_ * std::max(by_ticks_s, by_stamps_s) + kReachMargin_m;
 }
 
 // Neither arming nor a pause changes contact: it follows the tool from its first sample on. While
 // samples are missing it stays where the last one was.
 void Controller::touch(const TickInput& input) RT_SAFE {
   const std::uint64_t passed = std::uint64_t{input.skipped_periods} + 1;  // since the last tick
-  const std::uint64_t followed = std::exchange(ahead_, 0);
-  const std::uint64_t told = passed - std::min(passed - 1, followed);
-  if (input.sample.fresh) {
-    // A tick that woke late has a sample of then; what was skipped is told in the next one.
-    const std::uint64_t by_stamp = periods_since_sample(input.sample.stamp_ns);
-    const std::uint64_t periods = std::max(told, by_stamp - std::min(by_stamp, unseen_));
-    contact_.touch(input.sample.tool, bounded(periods),
-                   reach_m(std::max(unseen_ + passed, by_stamp)));
-    ahead_ = periods - told;
-    stamp_ns_ = input.sample.stamp_ns;
+  const auto periods = static_cast<std::uint32_t>(std::min<std::uint64_t>(passed, kMaxPeriods));
+  const hal::Sample& sample = input.sample;
+  if (sample.fresh) {
+    contact_.touch(sample.tool, periods, reach_m(unseen_ + passed, sample.stamp_ns));
+    stamp_ns_ = sample.stamp_ns;
     seen_ = true;
     unseen_ = 0;
   } else if (seen_) {
-    contact_.touch(input.sample.tool, bounded(told));
+    contact_.touch(sample.tool, periods);
     unseen_ += passed;
   }
-}
-
-// By the device's own times, at most as many as are followed.
-std::uint64_t Controller::periods_since_sample(std::int64_t stamp_ns) const RT_SAFE {
-  if (!seen_ || stamp_ns <= stamp_ns_) return 0;
-  const double periods = 1e-9 * static_cast<double>(stamp_ns - stamp_ns_) / gate_.period_s();
-  return static_cast<std::uint64_t>(std::min(periods + 0.5, double{kMaxPeriods}));
 }
 
 void Controller::feel(const TickInput& input) RT_SAFE {

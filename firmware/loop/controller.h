@@ -70,8 +70,7 @@ class Controller {
  private:
   Fault find_fault(const TickInput& input, bool finite, bool too_late) const RT_SAFE;
   Fault find_limit(Fault acting) const RT_SAFE;
-  double reach_m(std::uint64_t periods) const RT_SAFE;
-  std::uint64_t periods_since_sample(std::int64_t stamp_ns) const RT_SAFE;
+  double reach_m(std::uint64_t periods, std::int64_t stamp_ns) const RT_SAFE;
 
   model::contact::Contact contact_;
   gate::Gate gate_;
@@ -84,7 +83,6 @@ class Controller {
   double fastest_mps_;         // that a sphere may move
   bool seen_ = false;          // there was a fresh sample
   std::uint64_t unseen_ = 0;   // periods in a row without a sample
-  std::uint64_t ahead_ = 0;    // periods that were followed before they were told as skipped
   std::int64_t stamp_ns_ = 0;  // of the last sample
   std::uint64_t contact_losses_ = 0;
 };

@@ -86,11 +86,10 @@ struct SphereTouch {
 /// What the tool feels in a tick.
 struct ContactResponse {
   Wrench wrench;
-  bool is_saturated =
-      false;               // a sphere is beyond its law (LawStatus::kSaturated), or lets go of it
-  bool is_broken = false;  // see SiteLaw::is_broken
-  bool is_inside = false;  // a sphere is inside the organ and feels nothing
-  bool is_lost = false;    // in this tick: the tool moved unseen, farther than can be followed
+  bool is_saturated = false;  // a sphere is beyond its law (LawStatus::kSaturated), or lets go
+  bool is_broken = false;     // see SiteLaw::is_broken
+  bool is_inside = false;     // a sphere is inside the organ and feels nothing
+  bool is_lost = false;       // in this tick: the tool moved unseen, farther than can be followed
 };
 
 /// What contact is made of; everything outlives it.
