@@ -92,7 +92,7 @@ void Contact::find_depth(std::size_t i) RT_SAFE {
   } else if (touch.state == TouchState::kTouching) {
     move_to_proxy(i);
     // d = r - phi - slack
-    touch.slack_m = std::min(touch.slack_m + probe.deepened_m, std::max(probe.depth_m, 0.0));
+    touch.slack_m = std::clamp(touch.slack_m + probe.unpaid_m, 0.0, std::max(probe.depth_m, 0.0));
     let_go(i);
     touch.depth_m = probe.depth_m - touch.slack_m;
     if (probe.lets_go && !(touch.depth_m > 0.0)) return leave(i, TouchState::kFree);

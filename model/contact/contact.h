@@ -30,7 +30,7 @@
 //
 // A change of state never adds energy. Slack takes up the depth that would come for free (letting
 // go over a bump or stiffer tissue, a nearest point that jumps, a contact that ends on another
-// side). It shrinks only as the tool withdraws.
+// side). It shrinks as the tool withdraws, and by what the proxy comes nearer: the depth stays.
 //
 // Bodies: detect.cc (where each sphere is), contact.cc (how deep, how hard), contact_grip.cc (hold,
 // tear, let go), contact_slide.cc (forces along the surface).
@@ -132,8 +132,7 @@ class Contact {
     Vec3 moved_m;                      // since the last tick
     Vec3 velocity_mps;                 // of c, as the device tells it
     double depth_m = 0.0;              // r - phi
-    double unfelt_m = 0.0;             // depth at which it began: no movement led there
-    double deepened_m = 0.0;           // beyond what the movement explains: free depth
+    double unpaid_m = 0.0;             // of depth_m, since the last tick: no movement led there
     double clear_m = 0.0;              // so far c may go before its last search must be repeated
     bool was_outside = false;          // what that search said of the whole sphere
     std::uint32_t near = kNoTriangle;  // found by that search

@@ -103,20 +103,17 @@ void Contact::detect(const Tool& tool) RT_SAFE {
     probe.moved_m = probe.is_known ? centre_m - probe.centre_m : Vec3{};
     probe.velocity_mps =
         tool.velocity_mps + cross(tool.angular_velocity_radps, centre_m - tool.position_m);
-    const double before_m = in_contact(i) ? probe.depth_m : 0.0;
-    probe.unfelt_m = 0.0;
-    const double way_m = norm(probe.moved_m);
+    probe.unpaid_m = 0.0;
     const double radius_m = scene_.spheres[i].radius_m;
-    const int steps = std::clamp(static_cast<int>(std::ceil(way_m / (kSubstep_ratio * radius_m))),
-                                 1, kMaxSubsteps);
+    const int steps =
+        std::clamp(static_cast<int>(std::ceil(norm(probe.moved_m) / (kSubstep_ratio * radius_m))),
+                   1, kMaxSubsteps);
     for (int left = steps; left > 0; --left) {
       const Vec3 to_go_m = probe.is_known ? centre_m - probe.centre_m : Vec3{};
       probe.centre_m = left > 1 ? probe.centre_m + to_go_m / left : centre_m;
       step(i, to_go_m / left);
     }
-    // A distance cannot change by more than the movement: the rest is a nearest point that jumped.
     probe.depth_m = in_contact(i) ? radius_m - probe.proxy.site().distance_m : 0.0;
-    probe.deepened_m = std::max({0.0, probe.depth_m - before_m - way_m, probe.unfelt_m});
   }
 }
 
@@ -134,6 +131,7 @@ void Contact::step(std::size_t i, const Vec3& moved_m) RT_SAFE {
     case TouchState::kTouching:
     case TouchState::kHeld:
       probe.proxy.follow(scene_.surface, probe.centre_m, moved_m, scene_.spheres[i].radius_m);
+      probe.unpaid_m += probe.proxy.lengthened_m();
       if (touch_[i].state == TouchState::kHeld || (is_near(i) && !is_all_slack(i))) return;
       leave(i, TouchState::kFree);
       return begin_from_outside(i, moved_m);
@@ -161,7 +159,7 @@ void Contact::begin_from_outside(std::size_t i, const Vec3& moved_m) RT_SAFE {
   if (probe.clear_m > 0.0) return;
   // From where it is known to have been clear, its movement explains all of the depth.
   if (is_new_place)
-    probe.unfelt_m = std::max(0.0, -probe.clear_m - std::max(0.0, -dot(moved_m, site.normal)));
+    probe.unpaid_m = std::max(0.0, -probe.clear_m - std::max(0.0, -dot(moved_m, site.normal)));
   probe.clear_m = 0.0;
   touch_[i].state = TouchState::kTouching;
   probe.proxy.restart(site, radius_m);

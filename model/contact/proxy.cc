@@ -12,8 +12,10 @@ constexpr double kRounding_m = 1e-9;  // the same point, found from two triangle
 
 void Proxy::restart(const Site& site, double radius_m) RT_SAFE {
   site_ = site;
-  offset_m_ = site.point_m + radius_m * site.normal;
+  outward_ = site.normal;
+  offset_m_ = site.point_m + radius_m * outward_;
   lags_ = false;
+  lengthened_m_ = 0.0;
 }
 
 void Proxy::follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& moved_m,
@@ -21,23 +23,32 @@ void Proxy::follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& move
   const Site nearest = contact::follow(surface, site_.place.triangle, p_m);
   const Vec3 goal_m = nearest.point_m + radius_m * nearest.normal;
   const double most_m = kSlide_ratio * norm(tangential(moved_m, site_.normal));
-  lags_ = norm(goal_m - offset_m_) > most_m + kRounding_m;
-  if (!lags_) return restart(nearest, radius_m);
+  const double before_m = norm(depth_m(p_m));
+  if (norm(goal_m - offset_m_) <= most_m + kRounding_m) {
+    restart(nearest, radius_m);
+    lengthened_m_ = radius_m - nearest.distance_m - before_m;
+    return;
+  }
   slide(surface, goal_m, most_m, radius_m);
-  // Of the line to g, what lies along the surface, and what points out of the organ.
-  const Vec3 outward = normalized(offset_m_ - site_.point_m), line_m = offset_m_ - p_m;
-  const Vec3 depth_m = tangential(line_m, outward) + std::max(dot(line_m, outward), 0.0) * outward;
-  const double length_m = norm(depth_m);
+  const Vec3 line_m = depth_m(p_m);
+  const double length_m = norm(line_m);
   site_.distance_m = radius_m - length_m;
-  site_.normal = length_m > 0.0 ? depth_m / length_m : outward;
+  site_.normal = length_m > 0.0 ? line_m / length_m : outward_;
+  lags_ = true;
+  lengthened_m_ = length_m - before_m;
+}
+
+// Of the line from p to g, what lies along the surface, and what points out of the organ.
+Vec3 Proxy::depth_m(const Vec3& p_m) const RT_SAFE {
+  const Vec3 line_m = offset_m_ - p_m;
+  return tangential(line_m, outward_) + std::max(dot(line_m, outward_), 0.0) * outward_;
 }
 
 // Along the offset surface. In a crease g stays where a step would throw it over to the other side.
 void Proxy::slide(const SurfaceView& surface, const Vec3& goal_m, double way_m,
                   double radius_m) RT_SAFE {
   constexpr double kThrown_ratio = 1.5;  // of the step
-  const Vec3 outward = normalized(offset_m_ - site_.point_m);
-  const Vec3 along_m = tangential(goal_m - offset_m_, outward);
+  const Vec3 along_m = tangential(goal_m - offset_m_, outward_);
   const double length_m = norm(along_m);
   if (!(length_m > 0.0)) return;
   const Vec3 moved_m = offset_m_ + (std::min(way_m, length_m) / length_m) * along_m;
@@ -45,6 +56,7 @@ void Proxy::slide(const SurfaceView& surface, const Vec3& goal_m, double way_m,
   const Vec3 offset_m = site.point_m + radius_m * site.normal;
   if (norm(offset_m - offset_m_) > kThrown_ratio * way_m) return;
   site_ = site;
+  outward_ = site.normal;
   offset_m_ = offset_m;
 }
 

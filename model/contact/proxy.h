@@ -30,6 +30,8 @@ class Proxy {
   const Site& site() const RT_SAFE { return site_; }
   /// It is not at the nearest point.
   bool lags() const RT_SAFE { return lags_; }
+  /// By how much the last move of g made the depth larger, m, the sphere at rest; below 0: smaller.
+  double lengthened_m() const RT_SAFE { return lengthened_m_; }
 
   /// The sphere comes from outside, to this site.
   void restart(const Site& site, double radius_m) RT_SAFE;
@@ -38,11 +40,14 @@ class Proxy {
               double radius_m) RT_SAFE;
 
  private:
+  Vec3 depth_m(const Vec3& p_m) const RT_SAFE;
   void slide(const SurfaceView& surface, const Vec3& goal_m, double way_m, double radius_m) RT_SAFE;
 
   Site site_;
   Vec3 offset_m_;  // g
+  Vec3 outward_;   // of the offset surface in g, unit
   bool lags_ = false;
+  double lengthened_m_ = 0.0;
 };
 
 }  // namespace tact::model::contact

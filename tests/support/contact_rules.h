@@ -9,8 +9,9 @@
 //      third tick, and only saturation or a loss lets it go
 //   e  |dF| <= 10 K way + 1 uN; while a contact lets go, the way grows by the range in 0.1 s. The
 //      depth changes by the way, the direction by what the proxy slides; 7.3 K is the most seen
-//   f  finite; with its centre outside and its contact point nearest: never pulls it in, unless it
-//      lets go
+//   f  finite; with its centre outside and its contact point nearest: pulls it in by friction at
+//      most (the line to the proxy is not beside the surface, the force in the cone about it),
+//      unless it lets go
 //   h  from free to free the tool is given no more than the largest force times the largest step
 //
 // (g, pauses, is in path_run.h.) Outside: distance >= r and winding number 0, by brute_force.h.
@@ -30,8 +31,8 @@ namespace tact::tests {
 
 struct RuleSettings {
   double radius_m = 0.0, max_slope_N_per_m = 0.0, limit_N = 0.0, range_m = 0.0, period_s = 1e-3;
-  bool is_alone = true;       // no other sphere presses the tissue: d, e, f, h
-  bool has_friction = false;  // without it: e
+  bool is_alone = true;         // no other sphere presses the tissue: d, e, f, h
+  double friction_ratio = 0.0;  // mu; where it is 0: e
 };
 
 struct Breach {
@@ -179,7 +180,7 @@ class ContactRules {
   }
 
   std::optional<Breach> e(const Tick& now) {
-    if (!s_.is_alone || s_.has_friction || !before_ || now.is_lost) return {};
+    if (!s_.is_alone || s_.friction_ratio > 0.0 || !before_ || now.is_lost) return {};
     const double jump_N = norm(now.touch.force_N - before_->touch.force_N);
     // Once begun, it goes on until there is no force.
     lets_go_ = (lets_go_ && before_->is_saturated) ||
@@ -198,7 +199,9 @@ class ContactRules {
         !(nearest_.distance_m > 1e-6) || !std::isfinite(nearest_.distance_m) || now.is_saturated)
       return {};
     const model::Vec3 outward = (now.centre_m - nearest_.point_m) / nearest_.distance_m;
-    if (dot(now.touch.force_N, outward) >= -1e-6 * (1.0 + force_N_)) return {};
+    // sin(atan(mu)) |F|
+    const double sine = s_.friction_ratio / std::hypot(1.0, s_.friction_ratio);
+    if (dot(now.touch.force_N, outward) >= -sine * force_N_ - 1e-6 * (1.0 + force_N_)) return {};
     return say('f', "pulls a free sphere in");
   }
 

@@ -93,7 +93,7 @@ inline PathResult run_path(SoftBody& soft, const BruteForce& body, const Path& p
                                           .limit_N = soft.limit_N(),
                                           .range_m = SoftBody::kRange_m,
                                           .is_alone = is_alone,
-                                          .has_friction = soft.parameters.friction_ratio > 0.0});
+                                          .friction_ratio = soft.parameters.friction_ratio});
   PauseRule pause;
   std::uint32_t periods = 0;
   const std::vector<PathTick> ticks = ticks_of(path);

@@ -56,7 +56,7 @@ class Shipped {
                                                       .range_m = 20_mm,
                                                       .period_s = period_s(),
                                                       .is_alone = false,
-                                                      .has_friction = true});
+                                                      .friction_ratio = 0.4});
     broken_.clear();
     at_m_ = at_m;
     tick(at_m, {}, 1);
