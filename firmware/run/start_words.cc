@@ -40,7 +40,7 @@ std::string check_lines(const model::scene::Scene& scene, const LoopParts& parts
                        presses->slope_N_per_m > parts.stiffness.limit_N_per_m
                            ? ": more than the device shows"
                            : "");
-  return out + "\n" + model::scene::accuracy_line(scene, law);
+  return out + "\n" + model::scene::accuracy_line(scene);
 }
 
 }  // namespace tact::firmware::run

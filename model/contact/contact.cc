@@ -24,6 +24,16 @@ Vec3 movable(const SurfaceView& s, const Place& place, const Vec3& v) RT_SAFE {
 
 }  // namespace
 
+Contact::Contact(const ContactScene& scene)
+    : scene_(scene),
+      moved_({.organ = scene.organ,
+              .law = scene.law,
+              .friction_ratio = scene.parameters.friction_ratio,
+              .sliding_N_per_m = scene.parameters.sliding_stiffness_N_per_m,
+              .spheres = scene.spheres}) {
+  reset();
+}
+
 ContactResponse Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
   ContactResponse felt = respond(tool);
   felt.is_lost = is_lost_;
@@ -33,9 +43,29 @@ ContactResponse Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
 }
 
 ContactResponse Contact::respond(const Tool& tool) RT_SAFE {
-  // This order holds: depths before couplings, couplings before forces; what tears is let go before
-  // the grip takes hold; friction last, as its cap is the force of the press.
   watch_grip(tool.grip_ratio);
+  if (bends())
+    respond_moved();
+  else
+    respond_at_rest();
+  ContactResponse felt;
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
+    if (!probe_[i].is_known) continue;
+    felt.wrench.force_N += touch_[i].force_N;
+    felt.wrench.torque_Nm += cross(probe_[i].centre_m - tool.position_m, touch_[i].force_N);
+    if (touch_[i].law_status == law::LawStatus::kSaturated || probe_[i].lets_go ||
+        probe_[i].unsolved_ratio > 0.0 || probe_[i].force_lags)
+      felt.is_saturated = true;
+    if (touch_[i].state == TouchState::kInside) felt.is_inside = true;
+  }
+  scene_.law->advance();
+  felt.is_broken = scene_.law->is_broken();
+  return felt;
+}
+
+// This order holds: depths before couplings, couplings before forces; what tears is let go before
+// the grip takes hold; friction last, as its cap is the force of the press.
+void Contact::respond_at_rest() RT_SAFE {
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
     if (probe_[i].is_known) find_depth(i);
   couple_new_spheres();
@@ -46,19 +76,7 @@ ContactResponse Contact::respond(const Tool& tool) RT_SAFE {
   if (closing_ && hold()) press();
   stiffen();
   resist_sliding();
-  ContactResponse felt;
-  for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
-    if (!probe_[i].is_known) continue;
-    sum_up(i);
-    felt.wrench.force_N += touch_[i].force_N;
-    felt.wrench.torque_Nm += cross(probe_[i].centre_m - tool.position_m, touch_[i].force_N);
-    if (touch_[i].law_status == law::LawStatus::kSaturated || probe_[i].lets_go)
-      felt.is_saturated = true;
-    if (touch_[i].state == TouchState::kInside) felt.is_inside = true;
-  }
-  scene_.law->advance();
-  felt.is_broken = scene_.law->is_broken();
-  return felt;
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i) sum_up(i);
 }
 
 void Contact::use_blade(const Tool& tool, bool may_cut) RT_SAFE {
@@ -75,8 +93,12 @@ void Contact::leave(std::size_t i, TouchState state) RT_SAFE {
   probe.axes = {};
   probe.clear_m = -std::numeric_limits<double>::infinity();  // nothing is known
   probe.lets_go = false;
+  probe.unsolved_ratio = 0.0;
+  probe.told_N = {};
+  probe.force_lags = probe.was_held = false;
   shift_m_[i] = shear_N_[i] = {};
   scene_.law->leave(i);
+  moved_.leave(i);
 }
 
 // d and t of this tick; e follows d as a first guess.

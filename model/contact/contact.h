@@ -32,8 +32,12 @@
 // go over a bump or stiffer tissue, a nearest point that jumps, a contact that ends on another
 // side). It shrinks as the tool withdraws, and by what the proxy comes nearer: the depth stays.
 //
+// Where the organ bends far (ContactScene.organ) the potential of what touches or is held is that
+// of moved_organ.h: contact is then with the organ as its spheres have moved it.
+//
 // Bodies: detect.cc (where each sphere is), contact.cc (how deep, how hard), contact_grip.cc (hold,
-// tear, let go), contact_slide.cc (forces along the surface).
+// tear, let go), contact_slide.cc (forces along the surface), contact_moved.cc (an organ that
+// bends far).
 #pragma once
 
 #include <array>
@@ -45,6 +49,8 @@
 
 #include "model/contact/blade.h"
 #include "model/contact/coupling.h"
+#include "model/contact/moved_contact.h"
+#include "model/contact/probe_sphere.h"
 #include "model/contact/proxy.h"
 #include "model/contact/shear.h"
 #include "model/contact/site_law.h"
@@ -53,10 +59,8 @@
 
 namespace tact::model::contact {
 
-struct ProbeSphere {
-  Vec3 offset_m;          // from the tool's origin, tool frame
-  double radius_m = 0.0;  // > 0
-};
+/// Chosen: the time in which a contact beyond its law, or without an answer, ends.
+inline constexpr double kLetGo_s = 0.1;
 
 struct ContactParameters {
   double friction_ratio = 0.0;             // mu, >= 0
@@ -98,14 +102,15 @@ struct ContactScene {
   ContactParameters parameters;
   std::span<const ProbeSphere> spheres;  // 1 to kMaxSpheres
   SurfaceView surface;
-  TriangleTreeView tree;       // of the surface
-  std::optional<Blade> blade;  // cuts what it passes through
-  double period_s = 1e-3;      // of the loop
+  TriangleTreeView tree;                // of the surface
+  const BendingOrgan* organ = nullptr;  // its law is then that of the tip alone; else it stays
+  std::optional<Blade> blade;           // cuts what it passes through
+  double period_s = 1e-3;               // of the loop
 };
 
 class Contact {
  public:
-  explicit Contact(const ContactScene& scene) : scene_(scene) { reset(); }
+  explicit Contact(const ContactScene& scene);
 
   /// Where the spheres meet the surface. The tool's way since the last call, `periods` ago, is
   /// followed as a straight line, period by period. What moves farther than reach_m, or than can be
@@ -124,6 +129,8 @@ class Contact {
   std::span<const SphereTouch> touches() const RT_SAFE {
     return {touch_.data(), scene_.spheres.size()};
   }
+  /// The organ as its spheres have moved it, where it bends far.
+  const MovedContact& moved() const RT_SAFE { return moved_; }
 
  private:
   struct Probe {
@@ -139,6 +146,12 @@ class Contact {
     Proxy proxy;                       // touching or held
     double within_law_m = 0.0;         // e of the last tick within the range of the law
     bool lets_go = false;
+    bool is_pressing = false;                   // of an organ that bends
+    Vec3 organ_shift_m, y_m;                    // v and y of the last tick, likewise
+    Vec3 told_N;                                // its force, likewise
+    bool force_lags = false, was_held = false;  // told_N is not what the organ answers, likewise
+    double unsolved_ratio = 0.0;                // of its last force that it has lost, likewise
+    double deep_m = 0.0;  // so far y may go before it can be outside, likewise
     Vec3 held_centre_m, held_normal;
     double held_depth_m = 0.0;
     Axes axes;                 // of t and f
@@ -165,6 +178,7 @@ class Contact {
   void let_go(std::size_t i) RT_SAFE;
 
   ContactResponse respond(const Tool& tool) RT_SAFE;
+  void respond_at_rest() RT_SAFE;
   void use_blade(const Tool& tool, bool may_cut) RT_SAFE;
   void watch_grip(double grip_ratio) RT_SAFE;
   void leave(std::size_t i, TouchState state) RT_SAFE;
@@ -174,6 +188,21 @@ class Contact {
   void couple_new_spheres() RT_SAFE;
   void couple_pair(std::size_t i, std::size_t j) RT_SAFE;
   void add_slack(std::size_t i, double depth_m) RT_SAFE;
+  // contact_moved.cc
+  bool bends() const RT_SAFE { return scene_.organ != nullptr; }
+  void respond_moved() RT_SAFE;
+  void step_moved(std::size_t i, const Vec3& moved_m) RT_SAFE;
+  void begin_moved(std::size_t i, const Site& site, double paid_m) RT_SAFE;
+  bool is_free_at_rest(std::size_t i) RT_SAFE;
+  bool is_beyond_moved(const OrganSphere& sphere) const RT_SAFE;
+  bool must_let_go_moved(std::size_t i, const OrganSphere& sphere) RT_SAFE;
+  void let_go_moved(std::size_t i) RT_SAFE;
+  bool release_moved() RT_SAFE;
+  void hold_moved() RT_SAFE;
+  void fade_unsolved(std::size_t i) RT_SAFE;
+  void tell_force(std::size_t i, const Vec3& wanted_N) RT_SAFE;
+  void sum_up_moved(std::size_t i) RT_SAFE;
+
   double press() RT_SAFE;
   void keep_definite() RT_SAFE;
   bool hold() RT_SAFE;
@@ -196,6 +225,7 @@ class Contact {
   std::array<SphereTouch, kMaxSpheres> touch_{};
   std::array<PressingSphere, kMaxSpheres> pressing_{};
   std::array<bool, kMaxSpheres> in_contact_{};  // touching or held
+  MovedContact moved_;                          // touching or held, where the organ bends
   Coupling coupling_{};                         // C as it is felt
   Shear shear_;
   Shear::Shifts shift_m_{}, shear_N_{};    // t, f

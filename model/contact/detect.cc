@@ -23,7 +23,6 @@ constexpr double kSubstep_ratio = 0.5;
 constexpr int kMaxSubsteps = 64;      // of a tick, for each period
 constexpr double kAhead_ratio = 4.0;  // of a radius: a free sphere searches so far ahead
 constexpr double kAnywhere_m = std::numeric_limits<double>::infinity();
-constexpr double kLetGo_s = 0.1;  // chosen: the time in which a contact beyond its law ends
 
 /// On the straight way between two poses.
 Tool between(const Tool& from, const Tool& to, double share) RT_SAFE {
@@ -55,6 +54,7 @@ void Contact::reset() RT_SAFE {
   coupling_ = {};
   energy_J_ = 0.0;
   shear_ = {};
+  moved_.reset();
   closed_ = closing_ = false;
 }
 
@@ -113,6 +113,10 @@ void Contact::detect(const Tool& tool) RT_SAFE {
       probe.centre_m = left > 1 ? probe.centre_m + to_go_m / left : centre_m;
       step(i, to_go_m / left);
     }
+    if (bends()) {
+      moved_.move(i, centre_m, probe.velocity_mps);
+      continue;
+    }
     probe.depth_m = in_contact(i) ? radius_m - probe.proxy.site().distance_m : 0.0;
   }
 }
@@ -130,6 +134,7 @@ void Contact::step(std::size_t i, const Vec3& moved_m) RT_SAFE {
       return;
     case TouchState::kTouching:
     case TouchState::kHeld:
+      if (bends()) return step_moved(i, moved_m);
       probe.proxy.follow(scene_.surface, probe.centre_m, moved_m, scene_.spheres[i].radius_m);
       probe.unpaid_m += probe.proxy.lengthened_m();
       if (touch_[i].state == TouchState::kHeld || (is_near(i) && !is_all_slack(i))) return;
@@ -162,6 +167,9 @@ void Contact::begin_from_outside(std::size_t i, const Vec3& moved_m) RT_SAFE {
     probe.unpaid_m = std::max(0.0, -probe.clear_m - std::max(0.0, -dot(moved_m, site.normal)));
   probe.clear_m = 0.0;
   touch_[i].state = TouchState::kTouching;
+  if (bends())
+    return begin_moved(i, site,
+                       is_new_place ? std::max(0.0, -dot(moved_m, site.normal)) : norm(moved_m));
   probe.proxy.restart(site, radius_m);
 }
 

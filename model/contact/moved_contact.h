@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// moved_contact.h - the spheres of one tool on one moved organ, tick by tick. Not yet used by
-// Contact.
+// moved_contact.h - the spheres of one tool on one moved organ, tick by tick.
 //
-// State: a surface point s for each sphere (the god object), and y, t, v of the last tick
-// (moved_organ.h). Each tick the surface points follow y: without friction all the way, with
+// State of each sphere that touches: a surface point s (the god object), and y, t, v of the last
+// tick (moved_organ.h). Each tick the surface points follow y: without friction all the way, with
 // friction by what Coulomb's cone does not hold, held not at all. At most kMaxNewtonSteps on y
 // solve ML-5. If they do not end, the surface points stay, and ML-5 is solved for these: I + G K is
 // well posed, and the force is the slope of W there. If that fails too, the tissue stays as it was,
@@ -23,23 +22,27 @@
 #include <cstdint>
 #include <span>
 
-#include "model/contact/contact.h"
 #include "model/contact/moved_organ.h"
-#include "model/contact/site_law.h"
-#include "model/types.h"
+#include "model/contact/probe_sphere.h"
 
 namespace tact::model::contact {
 
-/// What it refers to must outlive the contact.
-struct MovedContactScene {
+/// An organ that bends far. What it refers to must outlive the contact.
+struct BendingOrgan {
   SmoothSurface surface;
-  const law::Law* tip = nullptr;      // of the indentation alone, the same at every surface point
-  const SiteLaw* coupling = nullptr;  // MC-2; none: the spheres do not feel each other
-  double contact_modulus_Pa = 0.0;    // E*
+  double contact_modulus_Pa = 0.0;  // E*
   double poisson_ratio = 0.5;
-  double friction_ratio = 0.0;
   double held_N_per_m = 0.0;  // tangential stiffness of a bonded disc, 1/c_side of CT-6
+  double range_m = 0.0;       // moved farther than this, it is beyond its law
   double chord_ratio = kChord_ratio;
+  law::Creep creep;
+};
+
+struct MovedContactScene {
+  const BendingOrgan* organ = nullptr;
+  SiteLaw* law = nullptr;  // of the tip alone; MC-2
+  double friction_ratio = 0.0;
+  double sliding_N_per_m = 0.0;          // k_w; 0: the tissue's own
   std::span<const ProbeSphere> spheres;  // 1 to kMaxSpheres
 };
 
@@ -52,44 +55,52 @@ struct MovedContactStatus {
 
 class MovedContact {
  public:
-  explicit MovedContact(const MovedContactScene& scene) : scene_(scene) {}
+  explicit MovedContact(const MovedContactScene& scene);
 
-  /// Begins at a tool outside of the organ, each sphere near a triangle.
-  void start(const Tool& tool, std::span<const std::uint32_t> triangle) RT_SAFE;
+  /// No sphere touches.
+  void reset() RT_SAFE;
+  /// A sphere begins to touch near a triangle. Its depth there beyond `paid_m` is slack.
+  void begin(std::size_t sphere, const Vec3& centre_m, std::uint32_t triangle,
+             double paid_m) RT_SAFE;
+  void leave(std::size_t sphere) RT_SAFE;
+  /// nullptr: it does not touch.
+  const OrganSphere* find(std::size_t sphere) const RT_SAFE;
+  /// ML-7 of a sphere that touches.
+  double energy_J(std::size_t sphere) const RT_SAFE;
 
-  /// Once a tick, after start(). A tool that is not finite gives no force and changes nothing.
-  Wrench respond(const Tool& tool) RT_SAFE;
-
-  /// Bonds every sphere that presses, or releases all; no force changes by it.
-  void hold(bool held) RT_SAFE;
+  /// Where a sphere that touches is now.
+  void move(std::size_t sphere, const Vec3& centre_m, const Vec3& velocity_mps) RT_SAFE;
+  /// Its depth becomes smaller, and so it stays.
+  void add_slack(std::size_t sphere, double depth_m) RT_SAFE;
+  /// Once a tick, when all have moved: forces and what the organ has become.
+  void respond() RT_SAFE;
+  /// Bonds a sphere that presses; no force changes by it.
+  void hold(std::size_t sphere) RT_SAFE;
+  /// Lets a held sphere go, back to the surface, with no more energy than there was.
+  void release(std::size_t sphere) RT_SAFE;
+  /// The end of a tick.
+  void advance() RT_SAFE;
 
   const MovedOrgan& organ() const RT_SAFE { return organ_; }
   const MovedContactStatus& status() const RT_SAFE { return status_; }
 
  private:
-  struct Movement {
-    Vec3 moved_m;              // of the centre in this tick
-    double may_slide_m = 0.0;  // rest of what the surface point may move in this tick
-    Vec3 brake_N;              // ML-9
-  };
-
-  void move_centres(const Tool& tool) RT_SAFE;
+  OrganSphere* at(std::size_t sphere) RT_SAFE;
   void couple() RT_SAFE;
-  void stiffen(OrganSphere& sphere) const RT_SAFE;
+  void stiffen(OrganSphere& sphere) RT_SAFE;
   void follow_feet() RT_SAFE;
-  bool follow_foot(OrganSphere& sphere, double& may_slide_m) const RT_SAFE;
+  bool follow_foot(OrganSphere& sphere) const RT_SAFE;
   bool solve_sliding() RT_SAFE;
   bool solve_fixed() RT_SAFE;
   void keep_last_state() RT_SAFE;
-  double lost_J(double stored_before_J) const RT_SAFE;
-  void brake(double lost_J) RT_SAFE;
-  Wrench wrench_about(const Vec3& origin_m) const RT_SAFE;
+  void brake() RT_SAFE;
 
   MovedContactScene scene_;
   MovedOrgan organ_;
   std::array<OrganSphere, kMaxSpheres> before_;  // of the last tick
-  std::array<Movement, kMaxSpheres> movement_;
-  double tank_J_ = 0.0;  // lost so far, at most a share of W; below 0: made
+  bool is_changed_ = true;  // something beside the centres, since the last answer
+  double stored_J_ = 0.0;   // ML-7 of the last answer
+  double tank_J_ = 0.0;     // lost so far, at most a share of W; below 0: made
   MovedContactStatus status_;
 };
 

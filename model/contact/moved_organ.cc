@@ -7,9 +7,8 @@
 namespace tact::model::contact {
 namespace {
 
-constexpr std::size_t kMaxUnknowns = 3 * kMaxSpheres;
-using Square = std::array<std::array<double, kMaxUnknowns>, kMaxUnknowns>;
-using Column = std::array<double, kMaxUnknowns>;
+using Square = SmallLu<kMaxUnknowns>::Square;
+using Column = SmallLu<kMaxUnknowns>::Column;
 
 constexpr Mat3 outer(const Vec3& a, const Vec3& b) RT_SAFE { return {{a.x * b, a.y * b, a.z * b}}; }
 
@@ -26,11 +25,13 @@ Mat3 matrix_of(const SineCosine& by, const Vec3& axis) RT_SAFE {
 bool presses(const OrganSphere& b) RT_SAFE { return b.tip.force_N > 0.0 || b.is_held; }
 
 // ML-1   l_i = F(d_i) n_i - k_w w_i
-void fill_load(const law::Law& tip, OrganSphere& b) RT_SAFE {
+void fill_load(SiteLaw& law, OrganSphere& b) RT_SAFE {
   const LocalPosition at = local_position(b.at, b.y_m);
-  const double indentation_m = b.radius_m - at.height_m;
   b.height_m = at.height_m;
-  b.tip = indentation_m > 0.0 || b.is_held ? tip.respond(indentation_m) : law::LawResponse{};
+  b.indentation_m = b.radius_m - at.height_m - b.slack_m;
+  b.tip = b.indentation_m > 0.0 || b.is_held
+              ? law.respond(indentation_of(b)).law
+              : law::LawResponse{.status = law::LawStatus::kNoContact};
   b.tangential_m = presses(b) ? at.tangential_m - b.rest_m : Vec3{};
   b.load_N = b.tip.force_N * b.at.normal - b.tangential_N_per_m * b.tangential_m;
 }
@@ -54,8 +55,9 @@ double pass(MovedOrgan& organ) RT_SAFE {
     Vec3 t, v_m;
     for (std::size_t j = 0; j < organ.count; ++j) {
       const OrganSphere& o = organ.sphere[j];
-      t += organ.slope_per_N[i][j] * o.organ_N;
-      v_m += organ.compliance_m_per_N[i][j] * o.organ_N +
+      const Vec3 load_N = o.organ_N + o.crept_N;
+      t += organ.slope_per_N[i][j] * load_N;
+      v_m += organ.compliance_m_per_N[i][j] * load_N +
              times_transposed(organ.slope_per_N[j][i], o.moment_Nm);
     }
     change_m = std::max({change_m, norm(v_m - b.shift_m), b.radius_m * norm(t - b.slope)});
@@ -113,29 +115,6 @@ void fill_slope(const MovedOrgan& organ, Square& a) RT_SAFE {
     }
 }
 
-// a x = b by elimination with exchange of rows, x in b; false without a pivot.
-bool solve_in_place(Square& a, Column& b, std::size_t n) RT_SAFE {
-  constexpr double kMinDivisor = 1e-6;
-  for (std::size_t k = 0; k < n; ++k) {
-    std::size_t best = k;
-    for (std::size_t i = k + 1; i < n; ++i)
-      if (std::abs(a[i][k]) > std::abs(a[best][k])) best = i;
-    if (!(std::abs(a[best][k]) > kMinDivisor)) return false;
-    if (best != k) std::swap(a[best], a[k]), std::swap(b[best], b[k]);
-    const double inverse = 1.0 / a[k][k];
-    for (std::size_t i = k + 1; i < n; ++i) {
-      const double f = a[i][k] * inverse;
-      for (std::size_t j = k + 1; j < n; ++j) a[i][j] -= f * a[k][j];
-      b[i] -= f * b[k];
-    }
-  }
-  for (std::size_t k = n; k-- > 0;) {
-    b[k] /= a[k][k];
-    for (std::size_t i = 0; i < k; ++i) b[i] -= a[i][k] * b[k];
-  }
-  return true;
-}
-
 }  // namespace
 
 // It goes to 0 where r falls below a tenth of the tip's own compliance: b / r has no limit there.
@@ -173,7 +152,7 @@ void fill_matrices(MovedOrgan& organ) RT_SAFE {
 double evaluate(MovedOrgan& organ) RT_SAFE {
   constexpr int kMaxPasses = 3;
   constexpr double kSettled_m = 3e-7;
-  for (std::size_t i = 0; i < organ.count; ++i) fill_load(*organ.tip, organ.sphere[i]);
+  for (std::size_t i = 0; i < organ.count; ++i) fill_load(*organ.law, organ.sphere[i]);
   double worst_m = 0.0;
   for (int i = 0; i < kMaxPasses; ++i) {
     worst_m = pass(organ);
@@ -189,16 +168,21 @@ double evaluate(MovedOrgan& organ) RT_SAFE {
   return worst_m;
 }
 
+bool find_slope(MovedOrgan& organ) RT_SAFE {
+  Square a{};
+  fill_slope(organ, a);
+  organ.has_slope = organ.slope.factorise(a, 3 * organ.count);
+  return organ.has_slope;
+}
+
 bool newton_step(MovedOrgan& organ, double max_step_m, double share) RT_SAFE {
   constexpr double kLost_m = 1.0;  // farther than this, or NaN: no step at all
-  Square a;
-  fill_slope(organ, a);
   Column x{};
   for (std::size_t i = 0; i < organ.count; ++i) {
     const Vec3& r_m = organ.sphere[i].residual_m;
     x[3 * i] = r_m.x, x[3 * i + 1] = r_m.y, x[3 * i + 2] = r_m.z;
   }
-  if (!solve_in_place(a, x, 3 * organ.count)) return false;
+  organ.slope.solve(x);
   for (std::size_t i = 0; i < organ.count; ++i)
     if (!(norm(Vec3{x[3 * i], x[3 * i + 1], x[3 * i + 2]}) < kLost_m)) return false;
   for (std::size_t i = 0; i < organ.count; ++i) {
@@ -212,12 +196,24 @@ bool newton_step(MovedOrgan& organ, double max_step_m, double share) RT_SAFE {
 // ML-7   W = sum (U(d_i) + k_w w_i^2 / 2 + (a_i . v_i + m_i . t_i) / 2)
 double stored_energy_J(const MovedOrgan& organ) RT_SAFE {
   double sum_J = 0.0;
-  for (std::size_t i = 0; i < organ.count; ++i) {
-    const OrganSphere& b = organ.sphere[i];
-    sum_J += b.tip.energy_J + 0.5 * b.tangential_N_per_m * dot(b.tangential_m, b.tangential_m) +
-             0.5 * (dot(b.organ_N, b.shift_m) + dot(b.moment_Nm, b.slope));
-  }
+  for (std::size_t i = 0; i < organ.count; ++i) sum_J += stored_energy_J(organ, i);
   return sum_J;
+}
+
+// b takes no part in the energy of the compliance at once; each term of the creep has its own.
+double stored_energy_J(const MovedOrgan& organ, std::size_t i) RT_SAFE {
+  const OrganSphere& b = organ.sphere[i];
+  double twice_J = b.tangential_N_per_m * dot(b.tangential_m, b.tangential_m) +
+                   dot(b.organ_N, b.shift_m) + dot(b.moment_Nm, b.slope);
+  for (std::size_t j = 0; organ.creep.terms() > 0 && j < organ.count; ++j) {
+    const OrganSphere& o = organ.sphere[j];
+    const Mat3& g = organ.compliance_m_per_N[i][j];
+    twice_J -=
+        dot(b.organ_N, g * o.crept_N) + dot(b.moment_Nm, organ.slope_per_N[i][j] * o.crept_N);
+    for (std::size_t k = 0; k < organ.creep.terms(); ++k)
+      twice_J += organ.creep.ratio(k) * dot(b.creep[k], g * o.creep[k]);
+  }
+  return b.tip.energy_J + 0.5 * twice_J;
 }
 
 }  // namespace tact::model::contact

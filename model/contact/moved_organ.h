@@ -9,15 +9,16 @@
 //
 //     ML-1   l_i = F(d_i) n_i - k_w w_i                   load on the sphere, unturned
 //     ML-2   a_i = -Q_i^(1-k) l_i                         load on the organ
-//     ML-3   t_i = sum T_ij a_j                           slope of the moved surface
-//     ML-4   v_i = sum (G_ij a_j + T_ji' m_j)             shift of the surface point, m
+//     ML-3   t_i = sum T_ij (a_j + b_j)                   slope of the moved surface
+//     ML-4   v_i = sum (G_ij (a_j + b_j) + T_ji' m_j)     shift of the surface point, m
 //            m_j = -d/dt_j (Q_j l_j) . (Q_j^k v_j + Q_j (y_j - p_j))   moment on the slope, N m
 //     ML-5   c_i = p_i + Q_i^k v_i + Q_i (y_i - p_i)      solved for y
 //     ML-6   f_i = Q_i l_i                                force on the tool
 //     ML-7   W = sum (U(d_i) + k_w w_i^2 / 2 + (a_i . v_i + m_i . t_i) / 2)
 //     ML-8   G_ij = h n_i n_j' + q (G_i + G_j) / 2,   T_ij = q T_i,   q = min(b / r, 1)
 //
-// F, U of the law of the tip; k_w tangential stiffness, N/m; h, b of MC-2; r the mean of n' G n.
+// F, U of the site's law, which is the tip's alone; k_w tangential stiffness, N/m; h, b of MC-2; r
+// the mean of n' G n; b_j what the organ has crept by (creep.h).
 // With the surface points fixed f = -dW/dc exactly: (v, t) follow from (a, m) by one symmetric
 // matrix. moved_contact.h decides how the surface points move.
 #pragma once
@@ -25,15 +26,18 @@
 #include <array>
 #include <cstddef>
 
-#include "model/contact/dent_view.h"
 #include "model/contact/rotation.h"
+#include "model/contact/site_law.h"
+#include "model/contact/small_lu.h"
 #include "model/contact/smooth_surface.h"
-#include "model/law/law.h"
+#include "model/law/creep.h"
 
 namespace tact::model::contact {
 
 /// k, chosen: the pressed liver is then within 5.2 % of finite elements at finite strain.
 inline constexpr double kChord_ratio = 0.4;
+
+inline constexpr std::size_t kMaxUnknowns = 3 * kMaxSpheres;
 
 /// ML-8 of two spheres: h and q.
 struct PairCompliance {
@@ -42,20 +46,26 @@ struct PairCompliance {
 
 /// One sphere of the system.
 struct OrganSphere {
-  bool slides = true;    // its surface point follows y; else it sticks
-  bool is_held = false;  // bonded: it may pull, and nothing slips
+  std::size_t index = 0;  // of the tool's spheres
+  bool slides = true;     // its surface point follows y; else it sticks
+  bool is_held = false;   // bonded: it may pull, and nothing slips
   double friction_ratio = 0.0;
   double radius_m = 0.0;
+  double slack_m = 0.0;             // of the depth, without force
   SurfaceFrame at;                  // s
   Vec3 centre_m;                    // c
+  double speed_mps = 0.0;           // pressing
   double tangential_N_per_m = 0.0;  // k_w
   Vec3 rest_m;                      // w without force
   Vec3 y_m;                         // first a guess, then the answer
   Vec3 slope;                       // t, likewise
   Vec3 shift_m;                     // v, likewise
+  law::CreepState creep;            // of a
+  Vec3 crept_N;                     // b
   // Answers
   double height_m = 0.0;
-  Vec3 tangential_m;  // w
+  double indentation_m = 0.0;  // d
+  Vec3 tangential_m;           // w
   law::LawResponse tip;
   Vec3 load_N;     // l
   Vec3 organ_N;    // a
@@ -63,10 +73,16 @@ struct OrganSphere {
   Rotation rotation;
   Vec3 residual_m;  // c less ML-5
   Vec3 force_N;     // f
+  // Of this tick (moved_contact.h)
+  Vec3 moved_m;              // dc
+  double may_slide_m = 0.0;  // rest of what the surface point may move
+  double may_slip_m = 0.0;   // and of what the sphere may slip where it sticks
+  Vec3 brake_N;              // ML-9
 };
 
 struct MovedOrgan {
-  const law::Law* tip = nullptr;    // force of the indentation alone
+  SiteLaw* law = nullptr;           // force of the indentation alone
+  law::Creep creep;                 // of the organ
   double contact_modulus_Pa = 0.0;  // E*
   double chord_ratio = kChord_ratio;
   std::size_t count = 0;
@@ -74,7 +90,19 @@ struct MovedOrgan {
   std::array<std::array<PairCompliance, kMaxSpheres>, kMaxSpheres> pair{};      // [i][j], j < i
   std::array<std::array<Mat3, kMaxSpheres>, kMaxSpheres> compliance_m_per_N{};  // G_ij
   std::array<std::array<Mat3, kMaxSpheres>, kMaxSpheres> slope_per_N{};         // T_ij
+  SmallLu<kMaxUnknowns> slope;                                                  // dc/dy
+  bool has_slope = false;
 };
+
+/// What ML-1 asks the law.
+inline Indentation indentation_of(const OrganSphere& b) RT_SAFE {
+  return {.sphere = b.index,
+          .place = b.at.place,
+          .normal = b.at.normal,
+          .dent_m = b.indentation_m,
+          .held = b.is_held,
+          .speed_mps = b.speed_mps};
+}
 
 /// ML-8 of all spheres, from their surface points and pairs.
 void fill_matrices(MovedOrgan& organ) RT_SAFE;
@@ -86,10 +114,15 @@ double structural_ratio(const MovedOrgan& organ, std::size_t i, std::size_t j,
 /// ML-1 to ML-6 at y: fills the answers; returns the largest residual, m.
 double evaluate(MovedOrgan& organ) RT_SAFE;
 
-/// `share` of a Newton step on y after evaluate(), at most max_step_m. False: no step; y stays.
+/// dc/dy at the last evaluate(), for newton_step(). False: there is none to step by.
+bool find_slope(MovedOrgan& organ) RT_SAFE;
+
+/// `share` of a step on y by the last slope, at most max_step_m. False: no step; y stays.
 bool newton_step(MovedOrgan& organ, double max_step_m, double share) RT_SAFE;
 
 /// ML-7 at the last evaluate().
 double stored_energy_J(const MovedOrgan& organ) RT_SAFE;
+/// One sphere's share of it.
+double stored_energy_J(const MovedOrgan& organ, std::size_t i) RT_SAFE;
 
 }  // namespace tact::model::contact

@@ -138,13 +138,19 @@ std::size_t ComplianceCurve::profile(double depth_m, std::span<double> ring_m) c
 
 Result<ComplianceCurve> half_space_under(double radius_m, double working_depth_m) {
   constexpr double kRingsARadius = 3.0;  // LW-4: the dent bends most at the rim of the touch
-  constexpr std::array<double, 23> kNothingRegular{};
+  constexpr std::size_t kRings = 23;
+  return half_space_under(radius_m, working_depth_m, radius_m / kRingsARadius, kRings);
+}
+
+Result<ComplianceCurve> half_space_under(double radius_m, double working_depth_m,
+                                         double ring_pitch_m, std::size_t rings) {
+  constexpr std::array<double, kMaxComplianceRings> kNothingRegular{};
   return make_compliance_curve(
       // nu = 0, so that E* is E, 1 Pa: its force is scaled by who asks.
       {.tip = {.youngs_modulus_Pa = 1.0, .poisson_ratio = 0.0, .radius_m = radius_m},
        .working_depth_m = working_depth_m,
-       .ring_pitch_m = radius_m / kRingsARadius,
-       .ring_m_per_N = kNothingRegular});
+       .ring_pitch_m = ring_pitch_m,
+       .ring_m_per_N = std::span(kNothingRegular).first(rings)});
 }
 
 }  // namespace tact::model::indent

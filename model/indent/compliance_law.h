@@ -73,5 +73,8 @@ Result<ComplianceCurve> make_compliance_curve(const ComplianceCurveParameters& p
 
 /// A half-space of E* = 1 Pa under a ball: what a law of springs does not know of the dent.
 Result<ComplianceCurve> half_space_under(double radius_m, double working_depth_m);
+/// The same with rings of its own, 1 to kMaxComplianceRings.
+Result<ComplianceCurve> half_space_under(double radius_m, double working_depth_m,
+                                         double ring_pitch_m, std::size_t rings);
 
 }  // namespace tact::model::indent

@@ -53,6 +53,8 @@ class Relaxation {
   std::size_t terms() const RT_SAFE { return count_; }
   /// g_0 for `term` 0, g_i after it.
   double share(std::size_t term) const RT_SAFE { return share_[term]; }
+  /// dt / tau of the term g_(i + 1).
+  double rate_per_tick(std::size_t i) const RT_SAFE { return tick_share_[i]; }
   /// One tick later at this depth; `held` tissue may be stretched outward. The flow ratios are for
   /// the caller to set, who knows the law; left alone, they are those of a spring.
   RelaxationState after(const RelaxationState& before, double depth_m, bool held) const RT_SAFE;

@@ -57,8 +57,6 @@ Result<Accuracy> accuracy_of(const toml::table& table, const std::string& law) {
   return out;
 }
 
-}  // namespace
-
 std::string hash_of_forces(const Scene& scene, const TissueLaw& law) {
   // Chosen: enough that another law, parameter, organ or tool
   // changes some force, few enough for every --check.
@@ -93,6 +91,16 @@ std::string hash_of_forces(const Scene& scene, const TissueLaw& law) {
   return hash.hex();
 }
 
+}  // namespace
+
+Result<std::string> hash_of_linear_forces(const Scene& scene, LawKind kind) {
+  Scene linear = scene;
+  linear.compliance.large_strain = false;
+  const auto law = make_tissue_law(linear, kind);
+  if (!law) return law.error();
+  return hash_of_forces(linear, **law);
+}
+
 std::string accuracy_path(const Scene& scene) {
   return fs::path(scene.path).replace_extension(".accuracy").string();
 }
@@ -113,7 +121,7 @@ std::string accuracy_text(const std::vector<Accuracy>& laws) {
   return out;
 }
 
-Result<Accuracy> read_accuracy(const Scene& scene, const TissueLaw& law) {
+Result<Accuracy> read_accuracy(const Scene& scene) {
   const std::string path = accuracy_path(scene), name(name_of(scene.law));
   if (!scene.elastic)
     return Error{fmt::format("{} has no [elastic], so there is nothing to solve and compare with",
@@ -135,7 +143,9 @@ Result<Accuracy> read_accuracy(const Scene& scene, const TissueLaw& law) {
   auto out = accuracy_of(*table, name);
   if (!out)
     return Error{fmt::format("{}: [{}]: {}; {}", path, name, out.error().sentence, cure(scene))};
-  if (out->law_hash != hash_of_forces(scene, law))
+  const auto hash = hash_of_linear_forces(scene, scene.law);
+  if (!hash) return hash.error();
+  if (out->law_hash != *hash)
     return Error{fmt::format("{} is of another law, organ or tool; {}", path, cure(scene))};
   return out;
 }
@@ -152,8 +162,8 @@ bool keeps(const Accuracy& accuracy, const ToleranceSettings& tolerance) {
   return std::max(accuracy.rms_ratio, own_ratio) <= tolerance.force_error_ratio;
 }
 
-std::string accuracy_line(const Scene& scene, const TissueLaw& law) {
-  const auto found = read_accuracy(scene, law);
+std::string accuracy_line(const Scene& scene) {
+  const auto found = read_accuracy(scene);
   if (!found) return "force of the whole tool: not known: " + found.error().sentence;
   const auto own_percent = [&](std::size_t i) {
     return 100.0 * std::abs(found->own_worst_ratio[i]);
@@ -167,7 +177,7 @@ std::string accuracy_line(const Scene& scene, const TissueLaw& law) {
       "there; {:.0f} % of all places and depths within the 7 % that people notice; against {}{}; "
       "measured {}, hash {}",
       100.0 * found->rms_ratio, own, 100.0 * found->within_noticeable_ratio, found->reference,
-      found->large_strain_off ? ", with the large-strain factor off, which this scene has on" : "",
+      found->large_strain_off ? ", with compliance.large_strain off, which this scene has on" : "",
       found->date, found->law_hash);
   if (!scene.tolerance) return out;
   const double allowed_percent = 100.0 * scene.tolerance->force_error_ratio;

@@ -19,7 +19,7 @@ namespace tact::model::scene {
 /// Of one law against a reference.
 struct Accuracy {
   std::string law;                       // its name in a scene
-  std::string law_hash;                  // hash_of_forces()
+  std::string law_hash;                  // hash_of_linear_forces()
   std::string reference;                 // what it was measured against, for people
   std::string date;                      // YYYY-MM-DD
   bool large_strain_off = false;         // it was measured without, and the law has it
@@ -33,17 +33,17 @@ std::size_t worst_depth(const Accuracy& accuracy);
 bool keeps(const Accuracy& accuracy, const ToleranceSettings& tolerance);
 
 /// Of what the law answers at places and depths spread over the organ, of how they couple, and of
-/// the tool's spheres: 16 hex digits.
-std::string hash_of_forces(const Scene& scene, const TissueLaw& law);
+/// the tool's spheres: 16 hex digits. As a linear reference judges it: compliance.large_strain off.
+Result<std::string> hash_of_linear_forces(const Scene& scene, LawKind kind);
 
 /// "model/scenes/liver.accuracy"
 std::string accuracy_path(const Scene& scene);
 std::string accuracy_text(const std::vector<Accuracy>& laws);
 /// The figure of this scene's law. An error says that there is none, or that it is of something
 /// else, and the cure.
-Result<Accuracy> read_accuracy(const Scene& scene, const TissueLaw& law);
+Result<Accuracy> read_accuracy(const Scene& scene);
 
 /// For people: the figure, and whether it is within the tolerance of the scene.
-std::string accuracy_line(const Scene& scene, const TissueLaw& law);
+std::string accuracy_line(const Scene& scene);
 
 }  // namespace tact::model::scene

@@ -61,7 +61,7 @@ struct ComplianceSettings {
   std::string map_path;          // absolute; written by tact-condense
   double working_depth_m = 0.0;  // press and pull
   std::size_t curves = 17;       // of the family, soft to stiff
-  bool large_strain = true;      // under the tip; false: small strain, as a linear reference
+  bool large_strain = true;      // organ and tip; false: small strain, as a linear reference
 };
 
 /// What the scene accepts, for tact-plan and for tactd's start.

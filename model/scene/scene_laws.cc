@@ -156,7 +156,7 @@ void visit_compliance(reader::Keys& k, SceneText& out) {
          out.compliance_map.file);
   k.number("working_depth_m", kDepth_m, "press and pull up to here", c.working_depth_m);
   k.count("curves", {2, 65}, "of the family, soft to stiff", c.curves, reader::Need::kOptional);
-  k.flag("large_strain", "under the tip; false: small strain, as a linear reference",
+  k.flag("large_strain", "organ and tip; false: small strain, as a linear reference",
          c.large_strain, reader::Need::kOptional);
 }
 

@@ -30,6 +30,7 @@ Result<std::unique_ptr<Tissue>> make_tissue(const Scene& scene) {
                       .spheres = scene.tool.spheres,
                       .surface = scene.organ_mesh.view(),
                       .tree = tissue->tree_.view(),
+                      .organ = tissue->law_->organ(),
                       .blade = scene.tool.blade,
                       .period_s = 1.0 / scene.rate_Hz};
   return tissue;

@@ -6,9 +6,11 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "model/contact/moved_contact.h"
 #include "model/contact/site_law.h"
 #include "model/result.h"
 #include "model/scene/scene.h"
@@ -38,6 +40,8 @@ class TissueLaw {
   }
   /// Largest damping of a sphere, N s/m; 0: the law does not depend on speed.
   double damping_Ns_per_m() const { return damping_Ns_per_m_; }
+  /// The organ, where it bends far; else null. Its curve() is then that of the tip alone.
+  const contact::BendingOrgan* organ() const { return organ_ ? &*organ_ : nullptr; }
   /// Bytes that the loop may touch.
   std::size_t memory_bytes() const { return memory_bytes_; }
   /// For people.
@@ -54,6 +58,10 @@ class TissueLaw {
   std::vector<float> curve_rings_times_E_per_m_;
   std::vector<tissue::TangentTensors> tangent_times_E_per_m_;
   std::vector<Vec3> tilt_times_E_per_m2_;
+  std::vector<float> regular_times_E_per_m_;
+  std::vector<contact::SurfaceCorner> corner_;         // of the smooth surface
+  std::vector<contact::VertexCompliance> compliance_;  // of each vertex, where the organ bends
+  std::optional<contact::BendingOrgan> organ_;
   std::unique_ptr<contact::SiteLaw> site_law_;
   law::LawRange range_;
   double pull_limit_N_ = 0.0;

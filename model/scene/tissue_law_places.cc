@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/contact/fair_surface.h"
 #include "model/law/law_bounds.h"
 #include "model/law/series_law.h"
 #include "model/law/tabulated_law.h"
@@ -10,6 +11,7 @@
 #include "model/scene/tissue_map.h"
 #include "model/tissue/compliance_family.h"
 #include "model/tissue/dent_tilt.h"
+#include "model/tissue/vertex_compliance.h"
 
 namespace tact::model::scene {
 namespace {
@@ -25,7 +27,8 @@ double stiffer_N_per_m(double a, double b) { return a >= b || std::isnan(a) ? a 
 
 /// One law everywhere, or in series with the give of each place.
 TissueLawBuilder::Step TissueLawBuilder::finish_curve(const law::Law& curve) {
-  if (scene_.varies_by_place) return vary_by_place(curve);
+  if (scene_.varies_by_place)
+    return scene_.compliance.large_strain ? bend(curve) : vary_by_place(curve);
   law_->curves_.push_back(&curve);
   if (draws_tissue_) return finish_field();
   auto shape = indent::half_space_under(scene_.tool.spheres[0].radius_m, curve.range().press_m);
@@ -58,6 +61,43 @@ TissueLawBuilder::Step TissueLawBuilder::vary_by_place(const law::Law& curve) {
   return finish_field();
 }
 
+// The law is the tip's own dent; the organ moves with its compliance, by finite rotations.
+TissueLawBuilder::Step TissueLawBuilder::bend(const law::Law& curve) {
+  const auto tip_radius_m = scene_tip_radius_m(scene_);
+  if (!tip_radius_m) return tip_radius_m.error();
+  auto map = read_scene_map(scene_);
+  if (!map) return map.error();
+  const ElasticSettings& elastic = *scene_.elastic;
+  const indent::ElasticTip ball{.youngs_modulus_Pa = elastic.youngs_modulus_Pa,
+                                .poisson_ratio = elastic.poisson_ratio,
+                                .radius_m = *tip_radius_m};
+  const law::LawRange range = curve.range();
+  const double stiffest_N_per_m = law::stiffest_N_per_m(curve, range.pull_m, range.press_m);
+  const contact::SurfaceView surface = scene_.organ_mesh.view();
+  const double E_Pa = elastic.youngs_modulus_Pa, held_N_per_m = ball.sideways_stiffness_N_per_m();
+  law_->corner_ = contact::fair_corners(surface);
+  law_->compliance_ = tissue::vertex_compliance(
+      *map, surface, law_->corner_,
+      {.min_normal_times_E_per_m = (1.0 / kStiffestTip_ratio - 1.0) * E_Pa / stiffest_N_per_m,
+       .min_sideways_times_E_per_m = (1.0 / contact::kStiffestPlace - 1.0) * E_Pa / held_N_per_m});
+  auto relaxation = make_relaxation(scene_.relaxation, 1.0 / scene_.rate_Hz);
+  if (!relaxation) return blame(relaxation.error());
+  law_->organ_ = {.surface = {surface, law_->corner_, law_->compliance_, E_Pa},
+                  .contact_modulus_Pa = ball.contact_modulus_Pa(),
+                  .poisson_ratio = elastic.poisson_ratio,
+                  .held_N_per_m = held_N_per_m,
+                  .range_m = range.press_m,
+                  .creep = law::Creep(*relaxation)};
+  law_->title_ += ", on an organ that bends";
+  law_->curves_.push_back(&curve);
+  law_->memory_bytes_ += law_->corner_.size() * sizeof(contact::SurfaceCorner) +
+                         law_->compliance_.size() * sizeof(contact::VertexCompliance);
+  auto shape =
+      indent::half_space_under(*tip_radius_m, range.press_m, map->ring_pitch_m, map->rings);
+  if (!shape) return blame(shape.error());
+  return finish_field(&keep(std::move(*shape)));
+}
+
 TissueLawBuilder::Step TissueLawBuilder::finish_field(const law::Law* shape) {
   auto relaxation = make_relaxation(scene_.relaxation, 1.0 / scene_.rate_Hz);
   if (!relaxation) return blame(relaxation.error());
@@ -65,6 +105,7 @@ TissueLawBuilder::Step TissueLawBuilder::finish_field(const law::Law* shape) {
       (law_->press_coordinate_.size() + law_->pull_coordinate_.size()) * sizeof(float);
   // Before the field is made: it asks whether a curve damps.
   for (const law::Law* curve : law_->curves_) measure(*curve);
+  if (law_->organ_) law_->press_stiffness_N_per_m_ *= kStiffestTip_ratio;
   law_->range_ = law_->curve()->range();
   law_->site_law_ = std::make_unique<tissue::ElasticField>(
       tissue::ElasticFieldParts{.curves = law_->curves_,
@@ -96,7 +137,7 @@ tissue::ElasticNeighbours TissueLawBuilder::neighbours() {
   out.contact_modulus_Pa =
       elastic.youngs_modulus_Pa / (1.0 - elastic.poisson_ratio * elastic.poisson_ratio);
   out.poisson_ratio = elastic.poisson_ratio;
-  if (law_->press_coordinate_.empty()) return out;  // a law that knows no place
+  if (law_->press_coordinate_.empty() && !law_->organ_) return out;  // it knows no place
   auto map = read_scene_map(scene_);
   if (!map) return out;
   // Nothing of the tip is wider: with it S is limited for every sphere.
@@ -107,6 +148,10 @@ tissue::ElasticNeighbours TissueLawBuilder::neighbours() {
   out.tangent_times_E_per_m = law_->tangent_times_E_per_m_;
   law_->tilt_times_E_per_m2_ = tissue::dent_tilt(*map, scene_.organ_mesh.view());
   out.tilt_times_E_per_m2 = law_->tilt_times_E_per_m2_;
+  if (law_->organ_) {
+    law_->regular_times_E_per_m_ = std::move(map->regular_times_E_per_m);
+    out.regular_times_E_per_m = law_->regular_times_E_per_m_;
+  }
   law_->rings_times_E_per_m_ = std::move(map->ring_times_E_per_m);
   out.ring_times_E_per_m = law_->rings_times_E_per_m_;
   out.rings = map->rings;

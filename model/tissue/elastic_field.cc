@@ -185,7 +185,11 @@ std::size_t ElasticField::profile(const contact::Indentation& in,
                                   std::span<double> ring_m) const RT_SAFE {
   if (!is_known(in)) return 0;
   // The curves are springs without a shape (LW-4).
-  if (parts_.dent_shape != nullptr) return parts_.dent_shape->profile(in.dent_m, ring_m);
+  if (parts_.dent_shape != nullptr) {
+    const std::size_t rings = parts_.dent_shape->profile(in.dent_m, ring_m);
+    add_organ(in, ring_m.first(rings));
+    return rings;
+  }
   const Blend blend = blend_at(in.place, in.dent_m);
   const std::size_t count = parts_.curves[blend.low]->profile(in.dent_m, ring_m);
   if (parts_.curves.size() < 2) return count;
@@ -195,6 +199,27 @@ std::size_t ElasticField::profile(const contact::Indentation& in,
     ring_m[j] += blend.fraction * (stiff_m[j] - ring_m[j]);
   tell_own_rings(in, ring_m.first(count));
   return count;
+}
+
+// CL-4 where the curve is the tip's alone: u_0 = d + F r, u_j + F g_j.
+void ElasticField::add_organ(const contact::Indentation& in,
+                             std::span<double> ring_m) const RT_SAFE {
+  const ElasticNeighbours& near = parts_.neighbours;
+  if (near.regular_times_E_per_m.empty() || ring_m.empty()) return;
+  const double force_N = parts_.curves[0]->respond(in.dent_m).force_N;
+  const contact::TriangleCorners& corner = parts_.surface.triangle[in.place.triangle];
+  double regular_m_per_N = 0.0;
+  for (std::size_t i = 0; i < 3; ++i)
+    regular_m_per_N += in.place.weight[i] / near.youngs_modulus_Pa *
+                       static_cast<double>(near.regular_times_E_per_m[corner[i]]);
+  const double sign = in.dent_m < 0.0 ? -1.0 : 1.0;
+  ring_m[0] += force_N * regular_m_per_N;
+  for (std::size_t j = 1; j < ring_m.size(); ++j) {
+    const double more_m =
+        force_N * this->regular_m_per_N(in.place, static_cast<double>(j) * near.ring_pitch_m);
+    const double u_m = ring_m[j] + law::ring_taper(j, near.rings) * more_m;
+    ring_m[j] = sign * std::clamp(sign * u_m, 0.0, std::abs(ring_m[j - 1]));
+  }
 }
 
 // CL-4 with the rings of this place: those of a curve are the mean of all places that give as much

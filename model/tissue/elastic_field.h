@@ -43,6 +43,7 @@ struct ElasticNeighbours {
   double contact_modulus_Pa = 0.0;              // E*; 0: nothing is known, sites do not couple
   double poisson_ratio = 0.5;                   // nu
   std::span<const float> ring_times_E_per_m{};  // g_j E of vertex v at [v rings + j - 1]; or empty
+  std::span<const float> regular_times_E_per_m{};  // r E, where the curves are the tip's alone
   std::size_t rings = 0;
   double ring_pitch_m = 0.0;
   std::span<const TangentTensors> tangent_times_E_per_m{};  // S E of each vertex; or empty
@@ -101,6 +102,7 @@ class ElasticField final : public contact::SiteLaw {
   Blend blend_at(const contact::Place& place, double depth_m) const RT_SAFE;
   Part part_at(const contact::Place& place, double depth_m) const RT_SAFE;
   double regular_m_per_N(const contact::Place& place, double distance_m) const RT_SAFE;
+  void add_organ(const contact::Indentation& in, std::span<double> ring_m) const RT_SAFE;
   void tell_own_rings(const contact::Indentation& in, std::span<double> ring_m) const RT_SAFE;
   Vec3 coordinate_slope(std::uint32_t triangle, double depth_m) const RT_SAFE;
 

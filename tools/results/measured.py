@@ -179,5 +179,16 @@ def image():
         "ready_s": float(ready_s), "ready_of_linux_s": float(linux_s)}
 
 
+def finite_strain():
+    """The shipped liver under its whole tool against finite elements at finite strain."""
+    command = ["build/tact-sweep", LIVER, "--reference", "tests/data/reference/finite_strain_liver.json"]
+    places = {
+        place: {"worst_percent": 100.0 * told["worst_ratio"], "worst_mm": 1e3 * told["worst_depth_m"],
+                "sphere_percent": 100.0 * told["worst_sphere_ratio"]}
+        for place, told in json.loads(told_by(*command, "--json")).items()}
+    return " ".join(command), {
+        "worst_percent": max(abs(told["worst_percent"]) for told in places.values()), "place": places}
+
+
 MEASURED = {f.__name__: f for f in (bench, limits, verify, size, chart, tool, stability, tracking,
-                                    coupling, measured, image)}
+                                    coupling, measured, image, finite_strain)}

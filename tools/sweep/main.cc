@@ -13,6 +13,7 @@
 #include "model/scene/tissue.h"
 #include "tools/program/program.h"
 #include "tools/sweep/all_cores.h"
+#include "tools/sweep/reference_presses.h"
 #include "tools/sweep/sweep_report.h"
 
 namespace {
@@ -31,7 +32,7 @@ constexpr std::size_t kWorst = 10;  // told by name
 
 struct Options {
   program::SceneArguments scene;
-  std::string out, vertices = "300";
+  std::string out, vertices = "300", reference;
   std::vector<std::uint32_t> vertex;
   double step_m = 2e-5, depth_m = 0.0, limit_N_per_m = 0.0;
   bool square = false, upright = false, no_pictures = false, json = false;
@@ -48,7 +49,11 @@ std::optional<std::size_t> count_in(const std::string& word) {
 
 void add_options(CLI::App& app, Options& o) {
   o.scene.add_to(app);
-  app.add_option("--out", o.out, "folder for table and picture; made if need be")->required();
+  auto* out = app.add_option("--out", o.out, "folder for table and picture; made if need be");
+  app.add_option("--reference", o.reference,
+                 "hold the scene against the presses of this file instead, as "
+                 "tests/data/reference/finite_strain_liver.json")
+      ->excludes(out);
   app.add_option("--vertices", o.vertices,
                  "how many vertices of the organ each way, spread over all, or \"all\" (default "
                  "300)")
@@ -171,6 +176,14 @@ int main(int argc, char** argv) {
   if (const auto status = program.parse(argc, argv)) return *status;
   const auto scene = o.scene.load();
   if (!scene) return program.fail(scene.error());
+  if (!o.reference.empty()) {
+    const auto presses = sweep::press_reference(*scene, o.reference);
+    if (!presses) return program.fail(presses.error());
+    fmt::print("{}\n", o.json ? sweep::json_of(*presses) : sweep::text_of(*presses));
+    return 0;
+  }
+  if (o.out.empty())
+    return program.fail(Error{"give --out FOLDER for the table, or --reference FILE"});
   const auto places = places_of(o, *scene);
   if (!places) return program.fail(places.error());
   const auto limit = limit_N_per_m(o, *scene);

@@ -16,12 +16,12 @@ constexpr double kRadius_m = 4_mm, kSlope_N_per_m = 50.0, kRange_m = 12_mm, kLim
 /// A box of 40 x 30 x 20 mm with its top at z = 0, and a sphere over the middle of it.
 class Rules : public ::testing::Test {
  protected:
-  explicit Rules(bool has_friction = false)
+  explicit Rules(double friction_ratio = 0.0)
       : rules_(body_, {.radius_m = kRadius_m,
                        .max_slope_N_per_m = kSlope_N_per_m,
                        .limit_N = kLimit_N,
                        .range_m = kRange_m,
-                       .has_friction = has_friction}) {}
+                       .friction_ratio = friction_ratio}) {}
 
   /// The rules that a tick at this height breaks.
   std::string at(double z_m, double force_N, TouchState state, bool is_saturated = false,
@@ -57,7 +57,7 @@ class Rules : public ::testing::Test {
 };
 
 struct RoughRules : Rules {
-  RoughRules() : Rules(true) {}
+  RoughRules() : Rules(0.4) {}
 };
 
 TEST_F(Rules, LetAPressPass) {

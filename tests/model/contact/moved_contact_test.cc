@@ -4,13 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
+#include "model/contact/contact.h"
 #include "model/contact/fair_surface.h"
 #include "model/contact/rotation.h"
 #include "model/indent/compliance_law.h"
+#include "model/tissue/elastic_field.h"
 #include "model/units.h"
 #include "tests/support/no_alloc.h"
 #include "tests/support/shapes.h"
@@ -32,14 +33,20 @@ struct Body {
       }
   }
   SmoothSurface surface() const { return {mesh.view(), corner, compliance, kE_Pa}; }
-  MovedContactScene scene(double friction_ratio = 0.0) const {
-    return {.surface = surface(),
-            .tip = &tip,
-            .contact_modulus_Pa = kE_Pa / (1.0 - kNu * kNu),
-            .poisson_ratio = kNu,
-            .friction_ratio = friction_ratio,
-            .held_N_per_m = 100.0,
-            .spheres = spheres};
+  ContactScene scene(double friction_ratio = 0.0) {
+    organ = {.surface = surface(),
+             .contact_modulus_Pa = kE_Pa / (1.0 - kNu * kNu),
+             .poisson_ratio = kNu,
+             .held_N_per_m = 100.0,
+             .range_m = 12_mm,
+             .creep = {}};
+    return {.law = &field,
+            .parameters = {.friction_ratio = friction_ratio, .tear_force_N = 1.0},
+            .spheres = spheres,
+            .surface = mesh.view(),
+            .tree = tree.view(),
+            .organ = &organ,
+            .blade = {}};
   }
 
   mesh::SurfaceMesh mesh;
@@ -51,50 +58,57 @@ struct Body {
        .working_depth_m = 12_mm,
        .ring_pitch_m = 2_mm,
        .ring_m_per_N = flat});
+  std::array<const law::Law*, 1> curve{&tip};
+  tissue::ElasticField field{{.curves = curve,
+                              .coordinate = {},
+                              .pull_coordinate = {},
+                              .surface = mesh.view(),
+                              .relaxation = {}}};
+  TriangleTree tree = make_triangle_tree(mesh.view());
+  BendingOrgan organ;
   std::vector<ProbeSphere> spheres{{{}, kRadius_m}};
 };
 
 Body rigid_plate() { return {tests::make_plate(100_mm, 20), {}, 0.0F}; }
 
-/// A contact above the middle of a plate, 5 mm over its surface.
-MovedContact over_plate(const MovedContactScene& scene) {
-  MovedContact out(scene);
-  const std::vector<std::uint32_t> triangle(scene.spheres.size(), 20U * 20U);
-  out.start({.position_m = {1_mm, 2_mm, kRadius_m + 5_mm}}, triangle);
-  return out;
+Wrench feel(Contact& contact, const Tool& tool) {
+  contact.touch(tool);
+  return contact.feel(tool, false).wrench;
 }
-Wrench glide(MovedContact& contact, const Vec3& from_m, const Vec3& to_m) {
+Wrench glide(Contact& contact, const Vec3& from_m, const Vec3& to_m, double grip_ratio = 0.0) {
   Wrench out;
   for (int i = 0; i <= 200; ++i)
-    out = contact.respond({.position_m = from_m + (i / 200.0) * (to_m - from_m)});
+    out = feel(contact,
+               {.position_m = from_m + (i / 200.0) * (to_m - from_m), .grip_ratio = grip_ratio});
   return out;
 }
-Wrench pressed(MovedContact& contact, double depth_m) {
+/// From 5 mm over the middle of a plate.
+Wrench pressed(Contact& contact, double depth_m) {
   return glide(contact, {1_mm, 2_mm, kRadius_m + 5_mm}, {1_mm, 2_mm, kRadius_m - depth_m});
 }
 
 TEST(MovedContact, OnARigidPlateIsTheLawOfTheTip) {
-  const Body body = rigid_plate();
-  MovedContact contact = over_plate(body.scene());
+  Body body = rigid_plate();
+  Contact contact(body.scene());
   const Wrench w = pressed(contact, 3_mm);
   EXPECT_NEAR(w.force_N.z, body.tip.respond(3_mm).force_N, 1e-9);
   EXPECT_NEAR(norm(tangential(w.force_N, {0, 0, 1})), 0.0, 1e-9);
-  EXPECT_TRUE(contact.status().is_solved);
-  EXPECT_FALSE(contact.status().is_fixed);
+  EXPECT_TRUE(contact.moved().status().is_solved);
+  EXPECT_FALSE(contact.moved().status().is_fixed);
 }
 
 // d = d_tip(F) + r F, r = 50 / E.
 TEST(MovedContact, OnAFlatOrganIsTipAndOrganInSeries) {
-  const Body body(tests::make_plate(100_mm, 20), {0, 0, 50, 0, 0, 0}, 0.0F);
-  MovedContact contact = over_plate(body.scene());
+  Body body(tests::make_plate(100_mm, 20), {0, 0, 50, 0, 0, 0}, 0.0F);
+  Contact contact(body.scene());
   const double force_N = pressed(contact, 4_mm).force_N.z;
   EXPECT_NEAR(body.tip.respond(4_mm - 50.0 / kE_Pa * force_N).force_N, force_N, 1e-4);
   EXPECT_GT(force_N, 0.01);
 }
 
 TEST(MovedContact, FrictionHoldsUpToCoulombsCone) {
-  const Body body = rigid_plate();
-  MovedContact contact = over_plate(body.scene(0.4));
+  Body body = rigid_plate();
+  Contact contact(body.scene(0.4));
   const double press_N = pressed(contact, 3_mm).force_N.z;
   const Vec3 at_m{1_mm, 2_mm, kRadius_m - 3_mm};
   const Wrench little = glide(contact, at_m, at_m + Vec3{0.05_mm, 0, 0});
@@ -106,46 +120,83 @@ TEST(MovedContact, FrictionHoldsUpToCoulombsCone) {
 }
 
 TEST(MovedContact, HoldingKeepsTheForceAndPullsBack) {
-  const Body body(tests::make_plate(100_mm, 20), {50, 50, 50, 0, 0, 0}, 500.0F);
-  MovedContact contact = over_plate(body.scene(0.4));
+  Body body(tests::make_plate(100_mm, 20), {50, 50, 50, 0, 0, 0}, 500.0F);
+  Contact contact(body.scene(0.4));
   const Vec3 at_m{1_mm, 2_mm, kRadius_m - 2_mm};
   pressed(contact, 2_mm);
   const Vec3 before_N = glide(contact, at_m, at_m + Vec3{0.5_mm, 0, 0}).force_N;
-  contact.hold(true);
-  const Vec3 after_N = contact.respond({.position_m = at_m + Vec3{0.5_mm, 0, 0}}).force_N;
+  const Tool held{.position_m = at_m + Vec3{0.5_mm, 0, 0}, .grip_ratio = 1.0};
+  feel(contact, held);  // from the next tick on it is held
+  const Vec3 after_N = feel(contact, held).force_N;
   EXPECT_LT(norm(after_N - before_N), 1e-4);
   const Vec3 up_m = at_m + Vec3{0.5_mm, 0, 4_mm};
-  EXPECT_LT(glide(contact, at_m + Vec3{0.5_mm, 0, 0}, up_m).force_N.z, -0.01) << "pulls back";
-  contact.hold(false);
-  EXPECT_EQ(norm(contact.respond({.position_m = up_m}).force_N), 0.0) << "let go, it does not";
+  EXPECT_LT(glide(contact, at_m + Vec3{0.5_mm, 0, 0}, up_m, 1.0).force_N.z, -0.01) << "pulls back";
+  EXPECT_EQ(norm(feel(contact, {.position_m = up_m}).force_N), 0.0) << "let go, it does not";
 }
 
-TEST(MovedContact, NanGivesNoForceAndKeepsTheState) {
-  const Body body = rigid_plate();
-  MovedContact contact = over_plate(body.scene());
-  const Wrench before = pressed(contact, 3_mm);
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(contact.respond({.position_m = {nan, 0, 0}}), Wrench{});
-  EXPECT_NEAR(contact.respond({.position_m = {1_mm, 2_mm, 1_mm}}).force_N.z, before.force_N.z,
-              1e-9);
+// Dragged 12 mm towards where the organ is stiffer.
+TEST(MovedContact, LettingGoStoresNoMoreThanWasHeld) {
+  Body body(tests::make_plate(100_mm, 20), {400, 400, 400, 0, 0, 0}, -8000.0F);
+  Contact contact(body.scene(0.4));
+  pressed(contact, 3_mm);
+  const Vec3 at_m{1_mm, 2_mm, kRadius_m - 3_mm}, there_m = at_m + Vec3{-12_mm, 0, -2_mm};
+  feel(contact, {.position_m = at_m, .grip_ratio = 1.0});
+  glide(contact, at_m, there_m, 1.0);
+  ASSERT_EQ(contact.touches()[0].state, TouchState::kHeld);
+  const double held_J = contact.touches()[0].energy_J;
+  feel(contact, {.position_m = there_m});
+  ASSERT_EQ(contact.touches()[0].state, TouchState::kTouching);
+  EXPECT_LE(contact.touches()[0].energy_J, held_J);
+  EXPECT_GT(contact.touches()[0].energy_J, 0.0);
+}
+
+TEST(MovedContact, BeginsWithoutTheDepthThatNoWayExplains) {
+  Body body = rigid_plate();
+  const ContactScene scene = body.scene();
+  MovedContact moved({.organ = scene.organ, .law = scene.law, .spheres = scene.spheres});
+  const Vec3 centre_m{1_mm, 2_mm, kRadius_m - 3_mm};
+  moved.begin(0, centre_m, 20U * 20U, 0.5_mm);
+  moved.move(0, centre_m, {});
+  moved.respond();
+  EXPECT_NEAR(moved.find(0)->slack_m, 2.5_mm, 1e-6);
+  EXPECT_NEAR(moved.find(0)->force_N.z, body.tip.respond(0.5_mm).force_N, 1e-6);
+}
+
+// Tip and organ in series, of one material: half of the force is left.
+TEST(MovedContact, HeldDepthRelaxesAsTheMaterialDoes) {
+  const std::vector<law::PronyTerm> terms{{.share = 0.5, .time_s = 0.05}};
+  const law::Relaxation relaxation = *law::make_relaxation(terms, 1e-3);
+  Body body(tests::make_plate(100_mm, 20), {0, 0, 200, 0, 0, 0}, 0.0F);
+  tissue::ElasticField field({.curves = body.curve,
+                              .coordinate = {},
+                              .pull_coordinate = {},
+                              .surface = body.mesh.view(),
+                              .relaxation = relaxation});
+  const auto held_N = [&](bool relaxes) {
+    ContactScene scene = body.scene();
+    body.organ.creep = relaxes ? law::Creep(relaxation) : law::Creep();
+    if (relaxes) scene.law = &field;
+    Contact contact(scene);
+    Wrench last = pressed(contact, 4_mm);
+    for (int i = 0; i < 1000; ++i) last = feel(contact, {.position_m = {1_mm, 2_mm, 0}});
+    return last.force_N.z;
+  };
+  EXPECT_NEAR(held_N(true) / held_N(false), 0.5, 0.005);
 }
 
 TEST(MovedContact, DoesNotAllocate) {
   Body body(tests::make_ball(40_mm, 3), {30, 40, 50, 1, 2, 3}, 900.0F);
   body.spheres = {{{-4_mm, 0, 0}, kRadius_m}, {{4_mm, 0, 0}, kRadius_m}};
-  MovedContact contact(body.scene(0.4));
-  const std::vector<std::uint32_t> triangle{0, 0};
+  Contact contact(body.scene(0.4));
   const tests::NoAlloc guard;
-  contact.start({.position_m = {0, 0, 50_mm}}, triangle);
   for (int i = 0; i <= 500; ++i) {
     const double t = i / 500.0;
-    contact.respond({.position_m = {5_mm * t, 3_mm * t, 50_mm - 12_mm * t},
-                     .orientation = quat_from_rotation_vector({0.2 * t, 0, 0.1 * t})});
-    if (i == 400) contact.hold(true);
+    feel(contact, {.position_m = {5_mm * t, 3_mm * t, 50_mm - 12_mm * t},
+                   .orientation = quat_from_rotation_vector({0.2 * t, 0, 0.1 * t}),
+                   .grip_ratio = i > 400 && i < 490 ? 1.0 : 0.0});
   }
-  contact.hold(false);
   EXPECT_EQ(guard.calls(), 0U);
-  EXPECT_GT(norm(contact.organ().sphere[0].slope), 0.0) << "it has leaned";
+  EXPECT_GT(norm(contact.moved().organ().sphere[0].slope), 0.0) << "it has leaned";
 }
 
 // -d/dt of load . (Q^k shift + Q arm), by differences.
@@ -170,7 +221,7 @@ TEST(Rotation, MomentIsTheSlopeOfTheLoadsWork) {
 }
 
 TEST(SmoothSurface, IsContinuousOverEveryEdge) {
-  const Body body(tests::make_ball(40_mm, 2), {30, 40, 50, 1, 2, 3}, 900.0F);
+  Body body(tests::make_ball(40_mm, 2), {30, 40, 50, 1, 2, 3}, 900.0F);
   const SmoothSurface surface = body.surface();
   const auto frame_of = [&](const Place& place) {
     SurfaceFrame f;
@@ -202,7 +253,7 @@ TEST(SmoothSurface, IsContinuousOverEveryEdge) {
 
 // As large as the mesh, and the normal across the surface: n . dx is of second order.
 TEST(SmoothSurface, OfABallIsAsLargeAsItsMeshAndRounder) {
-  const Body body(tests::make_ball(40_mm, 3), {}, 0.0F);
+  Body body(tests::make_ball(40_mm, 3), {}, 0.0F);
   double smooth_m = 0.0, flat_m = 0.0, tilt = 0.0;
   for (std::uint32_t t = 0; t < body.mesh.triangle.size(); ++t) {
     for (const std::array<double, 3>& w :

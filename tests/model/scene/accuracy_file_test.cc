@@ -24,7 +24,7 @@ class AccuracyFile : public testing::Test {
 
   Accuracy figure() const {
     return {.law = "rhombus",
-            .law_hash = hash_of_forces(scene, *law()),
+            .law_hash = *hash_of_linear_forces(scene, scene.law),
             .reference = "linear finite elements",
             .date = "2026-11-24",
             .large_strain_off = false,
@@ -33,9 +33,8 @@ class AccuracyFile : public testing::Test {
             .depth_m = {0.001, 0.01},
             .own_worst_ratio = {-0.088, 0.139}};
   }
-  std::unique_ptr<TissueLaw> law() const { return std::move(*make_tissue_law(scene, scene.law)); }
   void write(const std::string& text) const { std::ofstream(accuracy_path(scene)) << text; }
-  std::string line() const { return accuracy_line(scene, *law()); }
+  std::string line() const { return accuracy_line(scene); }
   void expect_unknown(const std::string& why) const {
     EXPECT_NE(line().find("not known"), std::string::npos) << line();
     EXPECT_NE(line().find(why), std::string::npos) << line();
@@ -46,7 +45,7 @@ class AccuracyFile : public testing::Test {
 
 TEST_F(AccuracyFile, ComesBackAsItWasWritten) {
   write(accuracy_text({figure()}));
-  const auto back = read_accuracy(scene, *law());
+  const auto back = read_accuracy(scene);
   ASSERT_TRUE(back) << back.error().sentence;
   EXPECT_EQ(back->rms_ratio, 0.0126);
   EXPECT_EQ(back->own_worst_ratio, (std::vector<double>{-0.088, 0.139}));
@@ -63,7 +62,7 @@ TEST_F(AccuracyFile, SaysThatTheLargeStrainOfTheSceneWasOff) {
   Accuracy off = figure();
   off.large_strain_off = true;
   write(accuracy_text({off}));
-  EXPECT_NE(line().find("against linear finite elements, with the large-strain factor off, which "
+  EXPECT_NE(line().find("against linear finite elements, with compliance.large_strain off, which "
                         "this scene has on; measured"),
             std::string::npos)
       << line();
@@ -125,7 +124,7 @@ TEST(Shipped, TheFigureOfTheLiverIsOfTheLiverThatIsShipped) {
     ASSERT_EQ(tests::sentence_of(scene), "");
     const auto tissue_law = make_tissue_law(*scene, scene->law);
     ASSERT_EQ(tests::sentence_of(tissue_law), "");
-    const auto figure = read_accuracy(*scene, **tissue_law);
+    const auto figure = read_accuracy(*scene);
     EXPECT_TRUE(figure) << (figure ? "" : figure.error().sentence);
   }
 }

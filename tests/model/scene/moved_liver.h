@@ -13,16 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include "model/contact/fair_surface.h"
-#include "model/contact/moved_contact.h"
+#include "model/contact/contact.h"
 #include "model/contact/triangle_tree.h"
-#include "model/indent/compliance_law.h"
-#include "model/law/law_bounds.h"
 #include "model/mesh/turn.h"
 #include "model/scene/scene.h"
 #include "model/scene/tissue.h"
-#include "model/scene/tissue_map.h"
-#include "model/tissue/vertex_compliance.h"
 #include "model/units.h"
 
 namespace tact::model::scene::moved_liver {
@@ -31,54 +26,26 @@ inline constexpr double kStep_m = 0.02_mm;   // a tick
 inline constexpr double kBefore_m = 0.5_mm;  // above the first touch
 inline constexpr double kDeep_m = 10_mm;
 
-/// The liver with its rhombus law, its whole tool, and what a moved contact needs of it.
+/// The shipped liver, with the friction that a test wants.
 struct Liver {
-  Liver() {
+  explicit Liver(double friction_ratio) {
     const std::string path = TACT_SOURCE_DIR "/model/scenes/liver.toml";
-    scene = *load_scene(path, {"law=\"rhombus\""});
-    same_everywhere = *load_scene(path, {"law=\"rhombus\"", "varies_by_place=false"});
+    scene = *load_scene(path, {"contact.friction_ratio=" + std::to_string(friction_ratio)});
     tissue = std::move(*make_tissue(scene));
-    tip_tissue = std::move(*make_tissue(same_everywhere));
-    tree = contact::make_triangle_tree(mesh());
-    const law::Law& tip = *tip_tissue->law().curve();
-    const ElasticSettings& e = *scene.elastic;
-    const indent::ElasticTip ball{.youngs_modulus_Pa = e.youngs_modulus_Pa,
-                                  .poisson_ratio = e.poisson_ratio,
-                                  .radius_m = scene.tool.spheres[0].radius_m};
-    const double stiffest_N_per_m = law::stiffest_N_per_m(tip, 0.0, tip.range().press_m);
-    const double E = e.youngs_modulus_Pa;
-    corner = contact::fair_corners(mesh());
-    compliance = tissue::vertex_compliance(
-        *read_scene_map(scene), mesh(), corner,
-        {.min_normal_times_E_per_m = (1.0 / 1.5 - 1.0) * E / stiffest_N_per_m,
-         .min_sideways_times_E_per_m =
-             (1.0 / contact::kStiffestPlace - 1.0) * E / ball.sideways_stiffness_N_per_m()});
-    contact_scene = {.surface = {mesh(), corner, compliance, E},
-                     .tip = &tip,
-                     .coupling = &tissue->law().site_law(),
-                     .contact_modulus_Pa = E / (1.0 - e.poisson_ratio * e.poisson_ratio),
-                     .poisson_ratio = e.poisson_ratio,
-                     .friction_ratio = 0.0,
-                     .held_N_per_m = ball.sideways_stiffness_N_per_m(),
-                     .spheres = scene.tool.spheres};
   }
   contact::SurfaceView mesh() const { return scene.organ_mesh.view(); }
-  contact::MovedContactScene with_friction(double ratio) const {
-    contact::MovedContactScene out = contact_scene;
-    out.friction_ratio = ratio;
-    return out;
-  }
+  contact::TriangleTreeView tree() const { return tissue->contact_scene().tree; }
 
-  Scene scene, same_everywhere;
-  std::unique_ptr<Tissue> tissue, tip_tissue;
-  contact::TriangleTree tree;
-  std::vector<contact::SurfaceCorner> corner;
-  std::vector<contact::VertexCompliance> compliance;
-  contact::MovedContactScene contact_scene;
+  Scene scene;
+  std::unique_ptr<Tissue> tissue;
 };
 
 inline const Liver& liver() {
-  static const Liver instance;
+  static const Liver instance(0.0);
+  return instance;
+}
+inline const Liver& rough_liver() {
+  static const Liver instance(0.4);
   return instance;
 }
 
@@ -95,7 +62,7 @@ struct Press {
 inline std::vector<contact::Site> nearest(const Tool& tool) {
   std::vector<contact::Site> out;
   for (const contact::ProbeSphere& s : liver().scene.tool.spheres)
-    out.push_back(contact::nearest_site(liver().tree.view(), liver().mesh(),
+    out.push_back(contact::nearest_site(liver().tree(), liver().mesh(),
                                         tool.position_m + rotate(tool.orientation, s.offset_m), 1.0,
                                         contact::kNoTriangle));
   return out;
@@ -131,21 +98,13 @@ inline Press press_at_vertex(std::size_t v, double about_deg = 0.0) {
   return press_at(m.vertex_m[v], -m.vertex_normal[v], about_deg);
 }
 
-inline contact::MovedContact started(const contact::MovedContactScene& scene, const Tool& tool) {
-  contact::MovedContact out(scene);
-  std::vector<std::uint32_t> triangle;
-  for (const contact::Site& site : nearest(tool)) triangle.push_back(site.place.triangle);
-  out.start(tool, triangle);
-  return out;
-}
-
 /// Force and work of the tool, tick by tick.
 struct Stroke {
-  Stroke(const contact::MovedContactScene& scene, const Tool& tool)
-      : contact(started(scene, tool)), before(tool) {}
+  Stroke(const Liver& on, const Tool& tool) : contact(on.tissue->contact_scene()), before(tool) {}
 
   void go(const Tool& tool) {
-    const Wrench now = contact.respond(tool);
+    contact.touch(tool);
+    const Wrench now = contact.feel(tool, false).wrench;
     const Quat turn = tool.orientation * conjugate(before.orientation);
     const Vec3 way_m = tool.position_m - before.position_m;
     const Vec3 turn_rad = 2.0 * Vec3{turn.x, turn.y, turn.z};
@@ -154,13 +113,15 @@ struct Stroke {
     work_J += work_of_tick_J;
     max_tick_J = std::max(max_tick_J, std::abs(work_of_tick_J));
     max_change_N = std::max(max_change_N, norm(now.force_N - force_N));
-    max_steps = std::max(max_steps, contact.status().steps);
-    if (!contact.status().is_solved) ++unsolved;
+    max_steps = std::max(max_steps, moved().status().steps);
+    if (!moved().status().is_solved) ++unsolved;
     before = tool, force_N = now.force_N, torque_Nm = now.torque_Nm;
   }
-  double stored_ratio() const { return stored_energy_J(contact.organ()) / work_J; }
+  const contact::MovedContact& moved() const { return contact.moved(); }
+  double stored_ratio() const { return stored_energy_J(moved().organ()) / work_J; }
+  Vec3 force_of_N(std::size_t sphere) const { return contact.touches()[sphere].force_N; }
 
-  contact::MovedContact contact;
+  contact::Contact contact;
   Tool before;
   Vec3 force_N, torque_Nm;
   double work_J = 0.0, max_tick_J = 0.0, max_change_N = 0.0;

@@ -4,9 +4,8 @@
 //
 // Must hold at every place: what the row of the scene below does not except. The exceptions are
 // measured, of all vertices, and shall not grow:
-//   liver        the nearest point is sought on the organ as it was drawn, not as the tool has
-//                moved it: at edges the force jumps (by 152 mN at most), elsewhere it turns where
-//                the nearest point crosses a facet; work and potential differ. Goal: none of it.
+//   liver        where a jaw slips past a rim, energy is lost (at most 41 %, at 54 of 4386
+//                presses); at 5 the force changes faster than the device shows.
 //   heart        a shell with openings (645 vertices on rims). Within 10 mm of a rim or of an edge
 //                of more than 30 degrees the sphere of 6.5 mm slips through or round: it may be
 //                drawn in and lose energy. Elsewhere it is not; 1 % of the presses lose energy.
@@ -52,7 +51,7 @@ struct Case {
 };
 
 const Case kCases[] = {
-    {"liver", 10_mm, 0.0, 150, {.changes = 0.32, .energy = 0.13}, {}},
+    {"liver", 10_mm, 0.0, 150, {.changes = 0.004, .energy = 0.02}, {}},
     {"heart",
      10_mm,
      10_mm,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -44,6 +45,29 @@ TEST_F(Sweep, HelpSaysUnitsAnExampleAndWhatIsChecked) {
   for (const char* word : {"--vertices", "--vertex", "--step-m", "--depth-m", "--square",
                            "--upright", "Example:", "N/m", "within 2 %", "Exit status"})
     EXPECT_TRUE(has(out, word)) << word;
+}
+
+TEST_F(Sweep, TheShippedLiverIsHeldAgainstSolvedPresses) {
+  const std::string truth = TACT_SOURCE_DIR "/tests/data/reference/finite_strain_liver.json";
+  const Outcome out = tests::run_program("tact-sweep", kLiver + " --json --reference " + truth);
+  ASSERT_EQ(out.status, 0) << out.output;
+  const auto told = nlohmann::json::parse(out.output);
+  ASSERT_EQ(told.size(), 3U);
+  for (const auto& [place, press] : told.items()) {
+    EXPECT_LT(std::abs(press.at("worst_ratio").get<double>()), 0.07) << place;
+    EXPECT_GT(std::abs(press.at("worst_ratio").get<double>()), 1e-4) << place;
+    EXPECT_LT(press.at("worst_sphere_ratio").get<double>(), 0.10) << place;
+  }
+  EXPECT_TRUE(has(tests::run_program("tact-sweep", kLiver + " --reference " + truth), "hand_site"));
+}
+
+TEST_F(Sweep, AFileOfNoPressesIsRefused) {
+  const Outcome out = tests::run_program("tact-sweep", kLiver + " --reference " + kLiver);
+  EXPECT_EQ(out.status, 2);
+  EXPECT_TRUE(has(out, "not JSON")) << out.output;
+  const Outcome none = tests::run_program("tact-sweep", kLiver);
+  EXPECT_EQ(none.status, 2);
+  EXPECT_TRUE(has(none, "--out FOLDER")) << none.output;
 }
 
 TEST_F(Sweep, CoarseSceneIsPressedWithTableAndPicture) {

@@ -130,15 +130,18 @@ model::Result<std::vector<model::scene::Accuracy>> accuracy_of(
     if (!row.failure.empty()) continue;
     const auto law = model::scene::make_tissue_law(scene, row.law);
     if (!law) return law.error();
+    const auto hash = model::scene::hash_of_linear_forces(scene, row.law);
+    if (!hash) return hash.error();
     model::scene::Accuracy a{
         .law = std::string(model::scene::name_of(row.law)),
         // By its forces, not by the file: tactd knows the law again whatever else of the scene
         // changes.
-        .law_hash = hash_of_forces(scene, **law),
+        .law_hash = *hash,
         .reference = fmt::format("linear finite elements at {} places", reference.places.size()),
         .date = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))),
         .large_strain_off =
-            scene.compliance.large_strain && row.law == model::scene::LawKind::kCompliance,
+            scene.compliance.large_strain &&
+            ((*law)->organ() != nullptr || row.law == model::scene::LawKind::kCompliance),
         .rms_ratio = row.errors.rms_ratio,
         .within_noticeable_ratio = row.errors.within_jnd_ratio,
         .depth_m = {},

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// The answer of a tick: surface points, springs along the surface, ML-5. See moved_contact.h.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "model/contact/moved_contact.h"
+
+namespace tact::model::contact {
+namespace {
+
+constexpr int kMaxNewtonSteps = 8;
+constexpr int kMaxFixedSteps = 8;
+constexpr double kSolved_m = 2e-6;  // 0.1 mN at 50 N/m
+constexpr double kNearly_m = 5e-5;  // enough where the steps end
+constexpr double kMaxStep_m = 5e-4;
+constexpr double kMaxFixedStep_m = 2e-3;
+
+// What of w friction does not hold: |w| <= mu F / k_w.
+Vec3 beyond_friction(const OrganSphere& b, const Vec3& tangential_m) RT_SAFE {
+  constexpr double kRounding = 1e-9;
+  const double cap_m = b.friction_ratio * b.tip.force_N / b.tangential_N_per_m;
+  const double w_m = norm(tangential_m);
+  return w_m > cap_m * (1.0 + kRounding) ? (1.0 - cap_m / w_m) * tangential_m : Vec3{};
+}
+
+}  // namespace
+
+// ML-8's h and q are set where one of the two does not press, as that moves no energy. Where both
+// do, they follow the surface points over a way of the tool along the surface: ML-3 knows nothing
+// of how they change.
+void MovedContact::couple() RT_SAFE {
+  constexpr double kWay_m = 0.01;
+  for (std::size_t i = 0; i < organ_.count; ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const OrganSphere &a = organ_.sphere[i], &b = organ_.sphere[j];
+      const SiteCoupling now = scene_.law->coupling({.place = a.at.place}, {.place = b.at.place},
+                                                    norm(a.centre_m - b.centre_m));
+      const bool both = a.tip.force_N != 0.0 && b.tip.force_N != 0.0;
+      const Vec3 way_m = 0.5 * (a.moved_m + b.moved_m);
+      const double along_m = norm(tangential(way_m, normalized(a.at.normal + b.at.normal)));
+      const double share = both ? std::min(along_m / kWay_m, 1.0) : 1.0;
+      const double ratio = structural_ratio(organ_, i, j, now.lobe_m_per_N);
+      PairCompliance& pair = organ_.pair[i][j];
+      pair.near_field_m_per_N += share * (now.skin_m_per_N - pair.near_field_m_per_N);
+      pair.structural_ratio += share * (ratio - pair.structural_ratio);
+    }
+}
+
+// k_w = a / c of MC-5. With friction it stiffens as the contact grows and keeps its force, as MC-7
+// has it: the surface point comes nearer.
+void MovedContact::stiffen(OrganSphere& b) RT_SAFE {
+  constexpr double kMinGrowth = 1.01, kMinRadius_ratio = 0.1;
+  if (b.is_held) return;
+  const double nu = scene_.organ->poisson_ratio;
+  const double c = (2.0 - nu) / (4.0 * (1.0 - nu) * scene_.organ->contact_modulus_Pa);
+  const double indentation_m = std::max(b.indentation_m, 0.0);
+  const double a_m =
+      std::clamp(std::sqrt(b.radius_m * indentation_m), kMinRadius_ratio * b.radius_m, b.radius_m);
+  const double now = scene_.sliding_N_per_m > 0.0 ? scene_.sliding_N_per_m : a_m / c;
+  const double before = b.tangential_N_per_m;
+  b.friction_ratio = scene_.friction_ratio;
+  if (!(indentation_m > 0.0) || before == 0.0 || !(b.friction_ratio > 0.0)) {
+    b.tangential_N_per_m = now;
+    b.rest_m = {};
+    return;
+  }
+  if (!(now > kMinGrowth * before)) return;
+  is_changed_ = true;
+  b.tangential_N_per_m = now;
+  const SmoothSurface& surface = scene_.organ->surface;
+  move_along(surface.mesh, b.at.place,
+             way_to_foot(b.at, b.height_m, (1.0 - before / now) * b.tangential_m));
+  fill_geometry(surface, b.at);
+  fill_compliance(surface, b.at);
+}
+
+// Moves a surface point as far as it slides, within its budget; returns whether it has moved.
+bool MovedContact::follow_foot(OrganSphere& b) const RT_SAFE {
+  constexpr int kMaxFootSteps = 2;
+  constexpr double kOnFoot_m = 2e-9;
+  const bool has_friction = scene_.friction_ratio > 0.0;
+  const SmoothSurface& surface = scene_.organ->surface;
+  bool has_moved = false;
+  b.slides = !b.is_held && b.may_slide_m > 0.0 && !(has_friction && b.tip.force_N > 0.0);
+  if (b.is_held) return false;
+  for (int k = 0; k < kMaxFootSteps && b.may_slide_m > 0.0; ++k) {
+    const LocalPosition at = local_position(b.at, b.y_m);
+    const Vec3 slip_m =
+        has_friction ? beyond_friction(b, at.tangential_m - b.rest_m) : at.tangential_m - b.rest_m;
+    // What had to slip without the surface point is made up for.
+    Vec3 way_m = way_to_foot(b.at, at.height_m, slip_m == Vec3{} ? slip_m : slip_m + b.rest_m);
+    const double length_m = norm(way_m);
+    if (!(length_m >= kOnFoot_m)) break;
+    if (length_m > b.may_slide_m) way_m *= b.may_slide_m / length_m;
+    b.may_slide_m -= std::min(length_m, b.may_slide_m);
+    move_along(surface.mesh, b.at.place, way_m);
+    fill_geometry(surface, b.at);
+    has_moved = true;
+    b.slides = b.may_slide_m > 0.0;
+  }
+  if (has_moved) fill_compliance(surface, b.at);
+  // It may slide no further, but friction holds no more than its cone.
+  if (!(b.may_slide_m > 0.0)) {
+    const Vec3 w_m = local_position(b.at, b.y_m).tangential_m - b.rest_m;
+    const Vec3 slip_m = has_friction ? beyond_friction(b, w_m) : w_m;
+    const double length_m = norm(slip_m), now_m = std::min(length_m, b.may_slip_m);
+    if (now_m > 0.0) b.rest_m += (now_m / length_m) * slip_m;
+    b.may_slip_m -= now_m;
+  }
+  return has_moved;
+}
+
+void MovedContact::follow_feet() RT_SAFE {
+  bool has_moved = false;
+  for (std::size_t i = 0; i < organ_.count; ++i)
+    if (follow_foot(organ_.sphere[i])) has_moved = true;
+  if (has_moved) fill_matrices(organ_);
+}
+
+// Where nothing but the centres has changed, the residual is known before the first step. The slope
+// is that of an earlier tick as long as it leads to the answer fast enough.
+bool MovedContact::solve_sliding() RT_SAFE {
+  constexpr double kFast_ratio = 0.4;  // of the residual, after a step
+  double before_m = 0.0;
+  for (std::size_t i = 0; i < organ_.count; ++i) {
+    OrganSphere& b = organ_.sphere[i];
+    b.residual_m += b.moved_m;
+    before_m = std::max(before_m, norm(b.residual_m));
+  }
+  if (!is_changed_ && before_m < kSolved_m) return true;
+  if (is_changed_) {
+    follow_feet();
+    before_m = evaluate(organ_);
+    if (before_m < kSolved_m) return true;
+    organ_.has_slope = false;
+  }
+  for (int i = 0; i < kMaxNewtonSteps; ++i, ++status_.steps) {
+    if (!organ_.has_slope && !find_slope(organ_)) return false;
+    if (!newton_step(organ_, kMaxStep_m, 1.0)) return false;
+    follow_feet();
+    const double now_m = evaluate(organ_);
+    organ_.has_slope = now_m < std::max(kFast_ratio * before_m, kSolved_m);
+    if (now_m < kSolved_m) {
+      ++status_.steps;
+      return true;
+    }
+    before_m = now_m;
+  }
+  return false;
+}
+
+bool MovedContact::solve_fixed() RT_SAFE {
+  constexpr double kProgress = 0.7;
+  status_.is_fixed = true;
+  organ_.has_slope = false;
+  for (std::size_t i = 0; i < organ_.count; ++i) organ_.sphere[i].slides = false;
+  double before_m = std::numeric_limits<double>::infinity(), share = 1.0;
+  for (int i = 0; i <= kMaxFixedSteps; ++i) {
+    const double residual_m = evaluate(organ_);
+    if (residual_m < kSolved_m) return true;
+    // A sphere that touches after one step and not after the next would alternate for ever.
+    share = residual_m < kProgress * before_m ? std::min(2.0 * share, 1.0) : 0.5 * share;
+    before_m = residual_m;
+    if (i == kMaxFixedSteps || !find_slope(organ_) || !newton_step(organ_, kMaxFixedStep_m, share))
+      break;
+    ++status_.steps;
+  }
+  return before_m < kNearly_m;
+}
+
+}  // namespace tact::model::contact

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// small_lu.h - linear equations of at most N unknowns, factorised once and solved often, without
+// allocation: P A = L U by elimination with exchange of rows.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "model/rt.h"
+
+namespace tact::model::contact {
+
+template <std::size_t N>
+class SmallLu {
+ public:
+  using Square = std::array<std::array<double, N>, N>;  // [row][column]
+  using Column = std::array<double, N>;
+
+  /// Of the first n rows and columns of a; false without a pivot: solve() is then not to be called.
+  bool factorise(const Square& a, std::size_t n) RT_SAFE {
+    constexpr double kMinPivot = 1e-6;
+    n_ = n;
+    for (std::size_t i = 0; i < n; ++i) std::copy_n(a[i].begin(), n, lu_[i].begin());
+    for (std::size_t k = 0; k < n; ++k) {
+      std::size_t best = k;
+      for (std::size_t i = k + 1; i < n; ++i)
+        if (std::abs(lu_[i][k]) > std::abs(lu_[best][k])) best = i;
+      if (!(std::abs(lu_[best][k]) > kMinPivot)) return false;
+      if (best != k) std::swap(lu_[best], lu_[k]);
+      row_[k] = best;
+      const double inverse = 1.0 / lu_[k][k];
+      for (std::size_t i = k + 1; i < n; ++i) {
+        lu_[i][k] *= inverse;
+        for (std::size_t j = k + 1; j < n; ++j) lu_[i][j] -= lu_[i][k] * lu_[k][j];
+      }
+    }
+    return true;
+  }
+
+  /// A x = b, x in place of b.
+  void solve(Column& b) const RT_SAFE {
+    for (std::size_t k = 0; k < n_; ++k) std::swap(b[k], b[row_[k]]);
+    for (std::size_t k = 1; k < n_; ++k)
+      for (std::size_t j = 0; j < k; ++j) b[k] -= lu_[k][j] * b[j];
+    for (std::size_t k = n_; k-- > 0;) {
+      for (std::size_t j = k + 1; j < n_; ++j) b[k] -= lu_[k][j] * b[j];
+      b[k] /= lu_[k][k];
+    }
+  }
+
+ private:
+  Square lu_{};
+  std::array<std::size_t, N> row_{};  // exchanged with k
+  std::size_t n_ = 0;
+};
+
+}  // namespace tact::model::contact
