@@ -27,7 +27,7 @@ void Contact::begin_moved(std::size_t i, const Site& site, double paid_m) RT_SAF
 void Contact::step_moved(std::size_t i, const Vec3& moved_m) RT_SAFE {
   Probe& probe = probe_[i];
   const OrganSphere& sphere = *moved_.find(i);
-  if (probe.unsolved_ratio >= 1.0) {
+  if (probe.unsolved_ratio >= 1.0 && probe.told_N == Vec3{}) {
     leave(i, TouchState::kFree);
     return find(i);
   }

@@ -172,7 +172,7 @@ TEST(AnyPathMoved, TheShippedLiverKeepsTheRulesOfContact) {
                                std::to_string(counts.unsolved) + " unsolved, " +
                                std::to_string(counts.strokes) + " strokes, broken: " + told);
   EXPECT_TRUE(counts.broken.empty()) << told << "\n" << counts.first;
-  EXPECT_LT(static_cast<double>(counts.unsolved), 0.02 * static_cast<double>(counts.ticks));
+  EXPECT_LT(static_cast<double>(counts.unsolved), 0.01 * static_cast<double>(counts.ticks));
   EXPECT_GT(counts.strokes, 20U);
 }
 
