@@ -107,7 +107,7 @@ class RidesThrough:
             wrong.append("nothing was injected while tactd ran: it proves nothing")
         if any(fault.get("acts") == 0 for fault in run.emulator.get("faults") or ()):
             wrong.append("the emulator changed nothing: it proves nothing")
-        if self.fades and not ticks.get("limited"):
+        if self.fades and not ticks.get("missed"):
             wrong.append("no sample was missed: it proves nothing")
         if ticks.get("detected") or ticks.get("end_state") != "armed":
             wrong.append(f"stopped by '{ticks.get('end_fault')}', ended {ticks.get('end_state')}")

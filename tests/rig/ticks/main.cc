@@ -59,7 +59,7 @@ class FaultStory {
     }
     if (!first_after_) first_after_ = tick;
     if (!detected_ && tick.output.fault != model::Fault::kNone) detected_ = tick;
-    if (!limited_ && limits(tick)) limited_ = tick;
+    if (!missed_ && misses(tick)) missed_ = tick;
     if (pushes(tick)) {
       zero_.reset();
       last_push_ = tick;
@@ -82,7 +82,7 @@ class FaultStory {
              {"armed_ticks_after", armed_after_}};
     out["pauses"] = pauses_;
     tell(out, "first_tick_after", first_after_);
-    tell(out, "limited", limited_);
+    tell(out, "missed", missed_);
     tell(out, "detected", detected_);
     tell(out, "zero", zero_);
     if (last_) out["end_state"] = firmware::loop::name_of(last_->output.state);
@@ -91,9 +91,9 @@ class FaultStory {
   }
 
  private:
-  // A sample that is missing, before anything latches.
-  static bool limits(const LoggedTick& tick) {
-    return tick.output.limit == model::Fault::kSampleHeld ||
+  // The limit of a tick is told of the last stage alone: a sample that is missing may be behind it.
+  static bool misses(const LoggedTick& tick) {
+    return !tick.input.sample.fresh || tick.output.limit == model::Fault::kSampleHeld ||
            tick.output.limit == model::Fault::kSampleStale;
   }
 
@@ -134,8 +134,7 @@ class FaultStory {
   std::uint32_t most_skipped_ = 0;
   double force_before_N_ = 0.0, moved_after_N_ = 0.0;
   bool pushed_before_ = false;
-  std::optional<LoggedTick> first_after_, limited_, detected_, zero_, first_zero_, last_push_,
-      last_;
+  std::optional<LoggedTick> first_after_, missed_, detected_, zero_, first_zero_, last_push_, last_;
 };
 
 int tell_story(const std::string& path, std::int64_t injected_ns) {
