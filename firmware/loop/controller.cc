@@ -92,7 +92,7 @@ Fault Controller::find_limit(Fault acting) const RT_SAFE {
   if (felt_.is_lost && state == State::kArmed) return Fault::kContactLost;
   if (felt_.is_inside && (open || state == State::kOff || state == State::kReady))
     return Fault::kToolInside;
-  if (felt_.is_saturated && open) return Fault::kLawSaturated;
+  if ((felt_.is_saturated || felt_.is_unsettled) && open) return Fault::kLawSaturated;
   return acting;
 }
 

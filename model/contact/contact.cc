@@ -53,9 +53,9 @@ ContactResponse Contact::respond(const Tool& tool) RT_SAFE {
     if (!probe_[i].is_known) continue;
     felt.wrench.force_N += touch_[i].force_N;
     felt.wrench.torque_Nm += cross(probe_[i].centre_m - tool.position_m, touch_[i].force_N);
-    if (touch_[i].law_status == law::LawStatus::kSaturated || probe_[i].lets_go ||
-        probe_[i].unsolved_ratio > 0.0 || probe_[i].force_lags)
+    if (touch_[i].law_status == law::LawStatus::kSaturated || probe_[i].lets_go)
       felt.is_saturated = true;
+    if (probe_[i].unsolved_ratio > 0.0 || probe_[i].force_lags) felt.is_unsettled = true;
     if (touch_[i].state == TouchState::kInside) felt.is_inside = true;
   }
   scene_.law->advance();

@@ -91,6 +91,7 @@ struct SphereTouch {
 struct ContactResponse {
   Wrench wrench;
   bool is_saturated = false;  // a sphere is beyond its law (LawStatus::kSaturated), or lets go
+  bool is_unsettled = false;  // the force of a sphere lags: its place has no answer, or snaps
   bool is_broken = false;     // see SiteLaw::is_broken
   bool is_inside = false;     // a sphere is inside the organ and feels nothing
   bool is_lost = false;       // in this tick: the tool moved unseen, farther than can be followed
@@ -102,10 +103,11 @@ struct ContactScene {
   ContactParameters parameters;
   std::span<const ProbeSphere> spheres;  // 1 to kMaxSpheres
   SurfaceView surface;
-  TriangleTreeView tree;                // of the surface
-  const BendingOrgan* organ = nullptr;  // its law is then that of the tip alone; else it stays
-  std::optional<Blade> blade;           // cuts what it passes through
-  double period_s = 1e-3;               // of the loop
+  TriangleTreeView tree;  // of the surface
+  // Not null: the organ bends, and `law` is that of the tip alone. Null: it stays as drawn.
+  const BendingOrgan* organ = nullptr;
+  std::optional<Blade> blade;  // cuts what it passes through
+  double period_s = 1e-3;      // of the loop
 };
 
 class Contact {

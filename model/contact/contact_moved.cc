@@ -22,8 +22,8 @@ void Contact::begin_moved(std::size_t i, const Site& site, double paid_m) RT_SAF
   moved_.begin(i, probe_[i].centre_m, site.place.triangle, paid_m);
 }
 
-// A sphere with force goes on. One without may stand in the dent of another, or meet another part
-// of the organ, or have left it.
+// A sphere that presses stays. One without force is searched for again: it may be in the dent of
+// another sphere, at another part of the organ, or outside.
 void Contact::step_moved(std::size_t i, const Vec3& moved_m) RT_SAFE {
   Probe& probe = probe_[i];
   const OrganSphere& sphere = *moved_.find(i);
@@ -33,6 +33,7 @@ void Contact::step_moved(std::size_t i, const Vec3& moved_m) RT_SAFE {
   }
   if (touch_[i].state == TouchState::kHeld || sphere.indentation_m > 0.0 ||
       probe.told_N != Vec3{}) {
+    if (!probe.is_pressing) probe.clear_m = kUnknown_m;  // from now on of the organ at rest
     probe.is_pressing = true;
     return;
   }
@@ -44,7 +45,7 @@ void Contact::step_moved(std::size_t i, const Vec3& moved_m) RT_SAFE {
   if (probe.clear_m > 0.0 && !probe.lets_go) return;
   const double radius_m = scene_.spheres[i].radius_m;
   const double within_m = (1.0 + kAhead_ratio) * radius_m;
-  const Vec3 y_m = sphere.y_m + moved_m;
+  const Vec3 y_m = sphere.y_m + (probe.centre_m - sphere.centre_m);
   const Site on_organ =
       nearest_site(scene_.tree, scene_.surface, y_m, within_m, sphere.at.place.triangle);
   probe.clear_m = std::min(on_organ.distance_m, within_m) - radius_m;
@@ -169,9 +170,10 @@ void Contact::sum_up_moved(std::size_t i) RT_SAFE {
                      resistance_N * rotated(b.rotation.whole, b.rotation.axis, b.at.normal)));
 }
 
-// A place that snaps, or that has an answer again, would change the force in one tick. It changes
-// by the way at ten times the stiffness at most, and at rest within the time of letting go: what
-// the hand gets of a force that is gone is a tenth of what was lost.
+// The force may jump where the organ snaps to another shape or a solution is found again. The told
+// force follows: per tick by at most ten times the stiffest slope times the way, plus that slope
+// times the range in 0.1 s. While it lags behind a force that is gone, the hand gets at most a
+// tenth of the energy that was lost.
 void Contact::tell_force(std::size_t i, const Vec3& wanted_N) RT_SAFE {
   constexpr double kSteepest_ratio = 10.0;
   Probe& probe = probe_[i];
@@ -182,9 +184,9 @@ void Contact::tell_force(std::size_t i, const Vec3& wanted_N) RT_SAFE {
                                             scene_.organ->range_m * scene_.period_s / kLetGo_s);
   const Vec3 change_N = wanted_N - probe.told_N;
   const double length_N = norm(change_N);
-  // Held tissue that tears is gone at once.
-  const bool is_torn = probe.was_held && !is_held;
-  probe.force_lags = length_N > most_N && !is_torn;
+  // Held tissue that is let go or tears is gone at once.
+  const bool is_gone = probe.was_held && !is_held && norm(wanted_N) <= norm(probe.told_N);
+  probe.force_lags = length_N > most_N && !is_gone;
   probe.told_N = probe.force_lags ? probe.told_N + (most_N / length_N) * change_N : wanted_N;
   probe.was_held = is_held;
   touch.force_N = probe.told_N;

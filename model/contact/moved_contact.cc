@@ -68,6 +68,7 @@ void MovedContact::begin(std::size_t sphere, const Vec3& centre_m, std::uint32_t
   OrganSphere& b = organ_.sphere[organ_.count++];
   b = {};
   is_changed_ = true;
+  organ_.has_slope = false;
   b.index = sphere;
   b.radius_m = b.height_m = scene_.spheres[sphere].radius_m;
   b.centre_m = b.y_m = centre_m;
@@ -91,11 +92,19 @@ void MovedContact::leave(std::size_t sphere) RT_SAFE {
   const OrganSphere* gone = find(sphere);
   if (gone == nullptr) return;
   const auto slot = static_cast<std::size_t>(gone - organ_.sphere.data());
+  // What has crept under it lifts the others: that depth is slack.
+  for (std::size_t i = 0; i < organ_.count; ++i) {
+    OrganSphere& b = organ_.sphere[i];
+    const Vec3 lifted_m = organ_.compliance_m_per_N[i][slot] * gone->crept_N;
+    if (i != slot && !b.is_held) b.slack_m += std::max(0.0, -dot(b.at.normal, lifted_m));
+  }
   for (std::size_t i = slot; i + 1 < organ_.count; ++i) organ_.sphere[i] = organ_.sphere[i + 1];
   // pair[i][j] with j < i: each moves up by as many of its two as come after the one that is gone.
   const auto old = [slot](std::size_t i) RT_SAFE { return i < slot ? i : i + 1; };
   --organ_.count;
+  if (organ_.count == 0) tank_J_ = stored_J_ = 0.0;  // the next contact begins at zero
   is_changed_ = true;
+  organ_.has_slope = false;
   for (std::size_t i = 0; i < organ_.count; ++i)
     for (std::size_t j = 0; j < i; ++j) organ_.pair[i][j] = organ_.pair[old(i)][old(j)];
   fill_matrices(organ_);
@@ -108,7 +117,11 @@ void MovedContact::move(std::size_t sphere, const Vec3& centre_m,
   const double share = std::clamp((offset_ratio(b->at, b->height_m) - kStuckOffset_ratio) /
                                       (kFreeOffset_ratio - kStuckOffset_ratio),
                                   0.0, 1.0);
-  b->slack_m = std::clamp(b->slack_m, 0.0, std::max(b->radius_m - b->height_m, 0.0));
+  const double most_m = std::max(b->radius_m - b->height_m, 0.0);
+  if (!b->is_held && b->slack_m > most_m) {
+    b->slack_m = most_m;
+    is_changed_ = true;
+  }
   b->moved_m = centre_m - b->centre_m;
   b->may_slip_m = kFollow_ratio * norm(b->moved_m) + kCreep_m;
   b->may_slide_m = share * b->may_slip_m;
@@ -126,16 +139,18 @@ void MovedContact::add_slack(std::size_t sphere, double depth_m) RT_SAFE {
 void MovedContact::hold(std::size_t sphere) RT_SAFE {
   OrganSphere* b = at(sphere);
   if (b == nullptr || !(b->tip.force_N > 0.0)) return;
-  const double held_N_per_m = scene_.organ->held_N_per_m;
+  // Never softer: at the same force that would store more.
+  const double before = b->tangential_N_per_m, now = std::max(scene_.organ->held_N_per_m, before);
   b->is_held = true;
   is_changed_ = true;
-  b->rest_m += (1.0 - b->tangential_N_per_m / held_N_per_m) * b->tangential_m;
-  b->tangential_N_per_m = held_N_per_m;
+  b->rest_m += (1.0 - before / now) * b->tangential_m;
+  b->tangential_m *= before / now;
+  b->tangential_N_per_m = now;
 }
 
 // W(d) <= W_held, d no larger than it was held
-// At the nearest surface point and without a spring along the surface; where that stores more, it
-// is less deep.
+// It goes back to the nearest surface point, without a tangential spring. If that stores more than
+// before, slack halves the depth until it does not.
 void MovedContact::release(std::size_t sphere) RT_SAFE {
   constexpr int kHalvings = 12;  // each one solves the whole tool
   OrganSphere* b = at(sphere);
@@ -150,13 +165,13 @@ void MovedContact::release(std::size_t sphere) RT_SAFE {
   fill_matrices(organ_);
   const double deepest_m = b->radius_m - local_position(b->at, b->y_m).height_m;
   double share = 1.0;
-  for (int i = 0; i < kHalvings; ++i, share *= 0.5) {
+  for (int i = 0; i <= kHalvings; ++i, share = i < kHalvings ? 0.5 * share : 0.0) {
     // y moves while it is solved: what it gains on the way is slack, too.
     b->slack_m = std::max(deepest_m - share * held_m, 0.0);
-    solve_fixed();
+    status_.is_solved = solve_fixed();
     b->slack_m += std::max(b->indentation_m - share * held_m, 0.0);
-    solve_fixed();
-    if (stored_energy_J(organ_) <= held_J) break;
+    status_.is_solved = solve_fixed() && status_.is_solved;
+    if (status_.is_solved && stored_energy_J(organ_) <= held_J) break;
   }
 }
 
@@ -169,6 +184,8 @@ void MovedContact::keep_last_state() RT_SAFE {
     b.centre_m = centre_m, b.moved_m = moved_m;
     const Vec3 along = normalized(moved_m);
     b.force_N -= std::max(dot(b.force_N, along), 0.0) * along;
+    // A law that remembers shall not remember a depth that was only tried.
+    if (b.indentation_m > 0.0 || b.is_held) scene_.law->respond(indentation_of(b));
   }
 }
 
@@ -201,6 +218,11 @@ void MovedContact::brake() RT_SAFE {
     const Vec3 change_N = wanted_N - b.brake_N;
     const double length_N = norm(change_N);
     b.brake_N += (length_N > kMaxChange_N ? kMaxChange_N / length_N : 1.0) * change_N;
+    // It follows slowly, but never pushes, and is no more than its share of the force.
+    const Vec3 along = normalized(b.moved_m);
+    b.brake_N -= std::max(dot(b.brake_N, along), 0.0) * along;
+    const double brake_N = norm(b.brake_N), most_N = kMaxBrake_ratio * norm(b.force_N);
+    if (brake_N > most_N) b.brake_N *= most_N / brake_N;
   }
 }
 
@@ -212,7 +234,7 @@ void MovedContact::respond() RT_SAFE {
   for (std::size_t i = 0; i < organ_.count; ++i) stiffen(organ_.sphere[i]);
   fill_matrices(organ_);
   status_.is_solved = solve_sliding() || solve_fixed();
-  is_changed_ = !status_.is_solved || organ_.creep.terms() > 0;
+  is_changed_ = !status_.is_solved || is_nearly_ || organ_.creep.terms() > 0;
   if (!status_.is_solved) keep_last_state();
   brake();
 }

@@ -4,14 +4,14 @@
 // State of each sphere that touches: a surface point s (the god object), and y, t, v of the last
 // tick (moved_organ.h). Each tick the surface points follow y: without friction all the way, with
 // friction by what Coulomb's cone does not hold, held not at all. At most kMaxNewtonSteps on y
-// solve ML-5. If they do not end, the surface points stay, and ML-5 is solved for these: I + G K is
-// well posed, and the force is the slope of W there. If that fails too, the tissue stays as it was,
-// and each sphere has its last force without what of it goes along its movement: this gives no
-// energy.
+// solve ML-5; what is left below 10 um is left to the next tick. If they do not end, the surface
+// points stay where these steps left them, and ML-5 is solved for these: I + G K is well posed, and
+// the force is the slope of W there. If that fails too, the tissue stays as it was, and each sphere
+// has its last force without what of it goes along its movement: this gives no energy.
 //
 // A slide may make a little energy, as SF-1 to SF-4 are one potential up to their third order only.
-// What was lost before compensates for it, and a share of W is tolerated. Beyond, each force
-// resists its movement until the excess is dissipated:
+// Energy that slides lost earlier (at most 5 % of W) and 2 % of W are set off against it. What is
+// made beyond is dissipated:
 //
 //     ML-9   brake_i = -rho F_i dc_i / |dc_i|,   rho = excess / sum F_i |dc_i|
 //
@@ -99,6 +99,7 @@ class MovedContact {
   MovedOrgan organ_;
   std::array<OrganSphere, kMaxSpheres> before_;  // of the last tick
   bool is_changed_ = true;  // something beside the centres, since the last answer
+  bool is_nearly_ = false;  // the last answer leaves work for the next tick
   double stored_J_ = 0.0;   // ML-7 of the last answer
   double tank_J_ = 0.0;     // lost so far, at most a share of W; below 0: made
   MovedContactStatus status_;

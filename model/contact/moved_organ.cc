@@ -60,7 +60,8 @@ double pass(MovedOrgan& organ) RT_SAFE {
       v_m += organ.compliance_m_per_N[i][j] * load_N +
              times_transposed(organ.slope_per_N[j][i], o.moment_Nm);
     }
-    change_m = std::max({change_m, norm(v_m - b.shift_m), b.radius_m * norm(t - b.slope)});
+    const double now_m = std::max(norm(v_m - b.shift_m), b.radius_m * norm(t - b.slope));
+    if (!(now_m <= change_m)) change_m = now_m;  // NaN is not small
     b.slope = t, b.shift_m = v_m;
   }
   return change_m;
@@ -163,7 +164,8 @@ double evaluate(MovedOrgan& organ) RT_SAFE {
     const Rotation& q = b.rotation;
     b.residual_m = b.centre_m - b.at.point_m - rotated(q.chord, q.axis, b.shift_m) -
                    rotated(q.whole, q.axis, b.y_m - b.at.point_m);
-    worst_m = std::max(worst_m, norm(b.residual_m));
+    const double residual_m = norm(b.residual_m);
+    if (!(residual_m <= worst_m)) worst_m = residual_m;
   }
   return worst_m;
 }

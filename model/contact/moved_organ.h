@@ -34,7 +34,7 @@
 
 namespace tact::model::contact {
 
-/// k, chosen: the pressed liver is then within 5.2 % of finite elements at finite strain.
+/// k, chosen: the pressed liver is then within 5.3 % of finite elements at finite strain.
 inline constexpr double kChord_ratio = 0.4;
 
 inline constexpr std::size_t kMaxUnknowns = 3 * kMaxSpheres;

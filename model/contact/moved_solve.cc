@@ -9,10 +9,11 @@
 namespace tact::model::contact {
 namespace {
 
-constexpr int kMaxNewtonSteps = 8;
+constexpr int kMaxNewtonSteps = 5;
 constexpr int kMaxFixedSteps = 8;
 constexpr double kSolved_m = 2e-6;  // 0.1 mN at 50 N/m
-constexpr double kNearly_m = 5e-5;  // enough where the steps end
+// Enough where the steps end: the next tick goes on from there. 0.6 and 3 mN at 60 N/m.
+constexpr double kNearly_m = 1e-5, kNearlyFixed_m = 5e-5;
 constexpr double kMaxStep_m = 5e-4;
 constexpr double kMaxFixedStep_m = 2e-3;
 
@@ -36,7 +37,8 @@ void MovedContact::couple() RT_SAFE {
       const OrganSphere &a = organ_.sphere[i], &b = organ_.sphere[j];
       const SiteCoupling now = scene_.law->coupling({.place = a.at.place}, {.place = b.at.place},
                                                     norm(a.centre_m - b.centre_m));
-      const bool both = a.tip.force_N != 0.0 && b.tip.force_N != 0.0;
+      const bool both = (a.tip.force_N != 0.0 || a.crept_N != Vec3{}) &&
+                        (b.tip.force_N != 0.0 || b.crept_N != Vec3{});
       const Vec3 way_m = 0.5 * (a.moved_m + b.moved_m);
       const double along_m = norm(tangential(way_m, normalized(a.at.normal + b.at.normal)));
       const double share = both ? std::min(along_m / kWay_m, 1.0) : 1.0;
@@ -60,11 +62,12 @@ void MovedContact::stiffen(OrganSphere& b) RT_SAFE {
   const double now = scene_.sliding_N_per_m > 0.0 ? scene_.sliding_N_per_m : a_m / c;
   const double before = b.tangential_N_per_m;
   b.friction_ratio = scene_.friction_ratio;
-  if (!(indentation_m > 0.0) || before == 0.0 || !(b.friction_ratio > 0.0)) {
+  if (!(indentation_m > 0.0) || before == 0.0) {
     b.tangential_N_per_m = now;
     b.rest_m = {};
     return;
   }
+  if (!(b.friction_ratio > 0.0)) return;
   if (!(now > kMinGrowth * before)) return;
   is_changed_ = true;
   b.tangential_N_per_m = now;
@@ -88,11 +91,13 @@ bool MovedContact::follow_foot(OrganSphere& b) const RT_SAFE {
     const LocalPosition at = local_position(b.at, b.y_m);
     const Vec3 slip_m =
         has_friction ? beyond_friction(b, at.tangential_m - b.rest_m) : at.tangential_m - b.rest_m;
-    // What had to slip without the surface point is made up for.
+    // rest_m, what slipped while the surface point could not move, is added to its way now.
     Vec3 way_m = way_to_foot(b.at, at.height_m, slip_m == Vec3{} ? slip_m : slip_m + b.rest_m);
     const double length_m = norm(way_m);
     if (!(length_m >= kOnFoot_m)) break;
-    if (length_m > b.may_slide_m) way_m *= b.may_slide_m / length_m;
+    const double share = std::min(1.0, b.may_slide_m / length_m);
+    way_m *= share;
+    b.rest_m *= 1.0 - share;
     b.may_slide_m -= std::min(length_m, b.may_slide_m);
     move_along(surface.mesh, b.at.place, way_m);
     fill_geometry(surface, b.at);
@@ -118,15 +123,17 @@ void MovedContact::follow_feet() RT_SAFE {
   if (has_moved) fill_matrices(organ_);
 }
 
-// Where nothing but the centres has changed, the residual is known before the first step. The slope
-// is that of an earlier tick as long as it leads to the answer fast enough.
+// If only the centres moved, the residual is the last one plus their way: no evaluate() is needed
+// before the first step. The slope is that of an earlier tick as long as its steps are fast enough.
 bool MovedContact::solve_sliding() RT_SAFE {
+  is_nearly_ = false;
   constexpr double kFast_ratio = 0.4;  // of the residual, after a step
   double before_m = 0.0;
   for (std::size_t i = 0; i < organ_.count; ++i) {
     OrganSphere& b = organ_.sphere[i];
     b.residual_m += b.moved_m;
-    before_m = std::max(before_m, norm(b.residual_m));
+    const double residual_m = norm(b.residual_m);
+    if (!(residual_m <= before_m)) before_m = residual_m;  // NaN is not small
   }
   if (!is_changed_ && before_m < kSolved_m) return true;
   if (is_changed_) {
@@ -147,7 +154,8 @@ bool MovedContact::solve_sliding() RT_SAFE {
     }
     before_m = now_m;
   }
-  return false;
+  is_nearly_ = before_m < kNearly_m;
+  return is_nearly_;
 }
 
 bool MovedContact::solve_fixed() RT_SAFE {
@@ -166,7 +174,7 @@ bool MovedContact::solve_fixed() RT_SAFE {
       break;
     ++status_.steps;
   }
-  return before_m < kNearly_m;
+  return before_m < kNearlyFixed_m;
 }
 
 }  // namespace tact::model::contact

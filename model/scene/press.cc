@@ -139,6 +139,7 @@ PressResult press_once(const contact::ContactScene& contact, const Vec3& inward,
     touching.touch(tool);
     const contact::ContactResponse felt = touching.feel(tool, false);
     out.is_unfelt = felt.is_inside || felt.is_lost;
+    out.is_unsettled = out.is_unsettled || felt.is_unsettled;
     // Deeper than the law reaches nothing is promised of its slope.
     if (felt.is_saturated) break;
     const PressStep step =
@@ -181,13 +182,11 @@ PressResult Presser::press(const PressPlace& place) {
 
 PressFlaws flaws_of(const PressResult& r, const PressSettings& s) {
   if (r.state != PressState::kPressed) return {};
-  return {
-      .draws_in =
-          r.least_N.value<-kDrawTolerance_N, .changes_too_fast = r.change_N.value> s.limit_N_per_m *
-          s.step_m,
-      .is_too_stiff = r.slope_N_per_m.value > s.limit_N_per_m,
-      .is_unfelt = r.is_unfelt,
-      .energy_differs = std::abs(r.energy_ratio.value) > kEnergyTolerance_ratio};
+  return {.draws_in = r.least_N.value < -kDrawTolerance_N,
+          .changes_too_fast = r.is_unsettled || r.change_N.value > s.limit_N_per_m * s.step_m,
+          .is_too_stiff = r.slope_N_per_m.value > s.limit_N_per_m,
+          .is_unfelt = r.is_unfelt,
+          .energy_differs = std::abs(r.energy_ratio.value) > kEnergyTolerance_ratio};
 }
 
 std::string name_of(const PressPlace& place) {
@@ -205,7 +204,8 @@ std::string describe_flaws(const PressResult& r, const PressSettings& s) {
       fmt::format("a sphere comes into the organ without force at {:.2f} mm", 1e3 * r.deepest_m));
   say(flaws.draws_in, fmt::format("the force draws the tool in by {:.3g} N at {:.2f} mm",
                                   -r.least_N.value, 1e3 * r.least_N.depth_m));
-  say(flaws.changes_too_fast,
+  say(r.is_unsettled, "the force would jump and is slowed down");
+  say(r.change_N.value > s.limit_N_per_m * s.step_m,
       fmt::format("the force changes by {:.3g} N in {:g} mm at {:.2f} mm (allowed: "
                   "{:.3g} N)",
                   r.change_N.value, 1e3 * s.step_m, 1e3 * r.change_N.depth_m,

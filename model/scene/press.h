@@ -72,6 +72,7 @@ struct PressResult {
   PressExtreme least_N;       // F
   PressExtreme energy_ratio;  // W / A - 1, less what rounding to steps explains; 0: not checked
   bool is_unfelt = false;     // a sphere came into the organ and feels nothing
+  bool is_unsettled = false;  // its force would have jumped and was slowed down
 };
 
 inline constexpr double kDrawTolerance_N = 1e-3;        // of F below 0; chosen: nobody feels it

@@ -105,7 +105,10 @@ TissueLawBuilder::Step TissueLawBuilder::finish_field(const law::Law* shape) {
       (law_->press_coordinate_.size() + law_->pull_coordinate_.size()) * sizeof(float);
   // Before the field is made: it asks whether a curve damps.
   for (const law::Law* curve : law_->curves_) measure(*curve);
-  if (law_->organ_) law_->press_stiffness_N_per_m_ *= kStiffestTip_ratio;
+  if (law_->organ_) {
+    law_->press_stiffness_N_per_m_ *= kStiffestTip_ratio;
+    law_->pull_stiffness_N_per_m_ *= kStiffestTip_ratio;
+  }
   law_->range_ = law_->curve()->range();
   law_->site_law_ = std::make_unique<tissue::ElasticField>(
       tissue::ElasticFieldParts{.curves = law_->curves_,

@@ -201,7 +201,8 @@ std::size_t ElasticField::profile(const contact::Indentation& in,
   return count;
 }
 
-// CL-4 where the curve is the tip's alone: u_0 = d + F r, u_j + F g_j.
+// CL-4 where the curve is the tip's alone: the organ's part is added, F r in the middle and F g_j
+// at ring j.
 void ElasticField::add_organ(const contact::Indentation& in,
                              std::span<double> ring_m) const RT_SAFE {
   const ElasticNeighbours& near = parts_.neighbours;
