@@ -31,8 +31,8 @@ constexpr std::array kTable{
     FaultEntry{Fault::kRampingUp, "ramping up", "the force is being faded in after arming",
                "wait for limits.ramp_s"},
     FaultEntry{Fault::kLawSaturated, "beyond the law",
-               "the tissue is pressed or pulled beyond the law's working range: the force stays at "
-               "its limit",
+               "the tissue is pressed or pulled beyond what its law answers: the force stays at its "
+               "limit, or follows slowly where it would jump",
                "press less, or give the law more range in the scene"},
     FaultEntry{Fault::kTooFast, "too fast",
                "the tool is faster than limits.speed_mps or turn_radps, the force fades to zero",

@@ -61,6 +61,9 @@ namespace tact::model::contact {
 
 /// Chosen: the time in which a contact beyond its law, or without an answer, ends.
 inline constexpr double kLetGo_s = 0.1;
+/// Of a radius: a sphere without force searches so far ahead.
+inline constexpr double kAhead_ratio = 4.0;
+inline constexpr double kAnywhere_m = std::numeric_limits<double>::infinity();
 
 struct ContactParameters {
   double friction_ratio = 0.0;             // mu, >= 0

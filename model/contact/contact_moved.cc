@@ -10,9 +10,7 @@
 namespace tact::model::contact {
 namespace {
 
-constexpr double kAnywhere_m = std::numeric_limits<double>::infinity();
 constexpr double kUnknown_m = -kAnywhere_m;
-constexpr double kAhead_ratio = 4.0;  // of a radius: so far a sphere without force searches
 
 }  // namespace
 

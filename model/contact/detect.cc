@@ -20,9 +20,7 @@ namespace {
 
 // The way of one step, of a radius: no sphere passes a sheet between two steps.
 constexpr double kSubstep_ratio = 0.5;
-constexpr int kMaxSubsteps = 64;      // of a tick, for each period
-constexpr double kAhead_ratio = 4.0;  // of a radius: a free sphere searches so far ahead
-constexpr double kAnywhere_m = std::numeric_limits<double>::infinity();
+constexpr int kMaxSubsteps = 64;  // of a tick, for each period
 
 /// On the straight way between two poses.
 Tool between(const Tool& from, const Tool& to, double share) RT_SAFE {
