@@ -39,8 +39,7 @@ def tick_size(load):
     size, goal = load("size"), 2500
     lines = {name: size[device]["lines"] for name, device in
              (("simulated delta", "sim"), ("ODrives", "odrive"), ("Falcon", "falcon"))}
-    told = ", ".join(f"{count} ({name})" for name, count in lines.items())
-    told = judged(max(lines.values()), goal, told)
+    told = ", ".join(judged(count, goal, f"{count} ({name})") for name, count in lines.items())
     yield f"Everything between read and write, in lines: {told}; goal {goal}; `tools/tick_size`."
 
 
