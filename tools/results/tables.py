@@ -40,7 +40,7 @@ def tick_size(load):
     lines = {name: size[device]["lines"] for name, device in
              (("simulated delta", "sim"), ("ODrives", "odrive"), ("Falcon", "falcon"))}
     told = ", ".join(judged(count, goal, f"{count} ({name})") for name, count in lines.items())
-    yield f"Everything between read and write, in lines: {told}; goal {goal}; `tools/tick_size`."
+    yield f"Lines between read and write: {told}; goal {goal} (`tools/tick_size`)."
 
 
 SCENES = {"compliance": "`liver.toml` with `--set 'law=\"compliance\"'`", "hex_sheet": "`skin.toml`, `maintenance.toml`",
