@@ -30,10 +30,11 @@ constexpr std::array kTable{
                "harmless at a tear or a release; if it stays, soften the law"},
     FaultEntry{Fault::kRampingUp, "ramping up", "the force is being faded in after arming",
                "wait for limits.ramp_s"},
-    FaultEntry{Fault::kLawSaturated, "beyond the law",
-               "the tissue is pressed or pulled beyond what its law answers: the force stays at its "
-               "limit, or follows slowly where it would jump",
-               "press less, or give the law more range in the scene"},
+    FaultEntry{
+        Fault::kLawSaturated, "beyond the law",
+        "the tissue is pressed or pulled beyond what its law answers: the force stays at its "
+        "limit, or follows slowly where it would jump",
+        "press less, or give the law more range in the scene"},
     FaultEntry{Fault::kTooFast, "too fast",
                "the tool is faster than limits.speed_mps or turn_radps, the force fades to zero",
                "move slower, or raise the limit in the scene"},

@@ -74,15 +74,17 @@ TissueLawBuilder::Step TissueLawBuilder::bend(const law::Law& curve) {
   const law::LawRange range = curve.range();
   const double stiffest_N_per_m = law::stiffest_N_per_m(curve, range.pull_m, range.press_m);
   const contact::SurfaceView surface = scene_.organ_mesh.view();
-  const double E_Pa = elastic.youngs_modulus_Pa, held_N_per_m = ball.sideways_stiffness_N_per_m();
+  const double modulus_Pa = elastic.youngs_modulus_Pa,
+               held_N_per_m = ball.sideways_stiffness_N_per_m();
   law_->corner_ = contact::fair_corners(surface);
   law_->compliance_ = tissue::vertex_compliance(
       *map, surface, law_->corner_,
-      {.min_normal_times_E_per_m = (1.0 / kStiffestTip_ratio - 1.0) * E_Pa / stiffest_N_per_m,
-       .min_sideways_times_E_per_m = (1.0 / contact::kStiffestPlace - 1.0) * E_Pa / held_N_per_m});
+      {.min_normal_times_E_per_m = (1.0 / kStiffestTip_ratio - 1.0) * modulus_Pa / stiffest_N_per_m,
+       .min_sideways_times_E_per_m =
+           (1.0 / contact::kStiffestPlace - 1.0) * modulus_Pa / held_N_per_m});
   auto relaxation = make_relaxation(scene_.relaxation, 1.0 / scene_.rate_Hz);
   if (!relaxation) return blame(relaxation.error());
-  law_->organ_ = {.surface = {surface, law_->corner_, law_->compliance_, E_Pa},
+  law_->organ_ = {.surface = {surface, law_->corner_, law_->compliance_, modulus_Pa},
                   .contact_modulus_Pa = ball.contact_modulus_Pa(),
                   .poisson_ratio = elastic.poisson_ratio,
                   .held_N_per_m = held_N_per_m,
