@@ -67,7 +67,7 @@ TEST(MovedOrgan, ForceIsTheSlopeOfTheEnergyAtFixedSurfacePoints) {
     }
     worst = std::max(worst, worst_slope_error(stroke.moved()));
   }
-  EXPECT_LT(worst, 2e-4);
+  EXPECT_LT(worst, 1e-5);
   EXPECT_GT(leans, 0.1) << "an organ that hardly leans shows nothing";
   EXPECT_GT(sticks_m, 0.1_mm);
   RecordProperty("worst", std::to_string(worst * 1e9) + "e-9");
