@@ -14,6 +14,31 @@ namespace tact::firmware::run {
 using model::Error;
 using model::Result;
 
+namespace {
+
+// What a scene must keep to on this device and PC, told before a loop starts.
+std::optional<Error> admit(const model::scene::Scene& scene, const PartsSetup& setup,
+                           LoopParts& parts) {
+  // After the device is open: its damping decides, and it may tell it only then.
+  const auto stiffness = admission::check_renderable(scene, *parts.tissue, parts.device->info());
+  if (!stiffness) return stiffness.error();
+  parts.stiffness = *stiffness;
+  // Simulated time waits: there no law is too slow.
+  if (setup.simulated_time) return {};
+  const auto time =
+      admission::check_budget(scene, setup.non_rt ? std::nullopt : std::optional(setup.rt));
+  if (!time) return time.error();
+  parts.time = *time;
+  // After its time is known: a law that is too slow would be pressed for minutes.
+  auto presses = admission::check_presses(scene, parts.tissue->law(), parts.device->info(),
+                                          parts.stiffness.limit_N_per_m);
+  if (!presses) return presses.error();
+  parts.presses = std::move(*presses);
+  return {};
+}
+
+}  // namespace
+
 Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsSetup& setup) {
   LoopParts parts;
   auto tissue = model::scene::make_tissue(scene);
@@ -34,22 +59,7 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
   auto guardian = start_guardian(*parts.device, setup.rt);
   if (!guardian) return guardian.error();
   parts.guardian = std::move(*guardian);
-  // After the device is open: its damping decides, and it may tell it only then.
-  const auto stiffness = admission::check_renderable(scene, *parts.tissue, parts.device->info());
-  if (!stiffness) return stiffness.error();
-  parts.stiffness = *stiffness;
-  // Simulated time waits: there no law is too slow.
-  if (!setup.simulated_time) {
-    const auto time =
-        admission::check_budget(scene, setup.non_rt ? std::nullopt : std::optional(setup.rt));
-    if (!time) return time.error();
-    parts.time = *time;
-    // After its time is known: a law that is too slow would be pressed for minutes.
-    auto presses = admission::check_presses(scene, parts.tissue->law(), parts.device->info(),
-                                            parts.stiffness.limit_N_per_m);
-    if (!presses) return presses.error();
-    parts.presses = std::move(*presses);
-  }
+  if (auto error = admit(scene, setup, parts)) return *error;
   parts.limits = gate::limits_for(scene.limits, parts.device->info());
   if (auto error = admission::check_heat(scene, parts.limits)) return *error;
   // Of the limits as they act: a quarter of the force on this PC is another checksum.

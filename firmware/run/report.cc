@@ -78,6 +78,11 @@ json to_json(const ThreadCosts& c) {
           {"involuntary_context_switches", c.involuntary_switches}};
 }
 
+// CLOCK_MONOTONIC; 0: never
+json to_json(const loop::StopTimes& t) {
+  return {{"missed_ns", t.missed_ns}, {"fault_ns", t.fault_ns}, {"zero_ns", t.zero_ns}};
+}
+
 std::string make_report(const RunFacts& facts, const loop::LoopStatistics& loop,
                         const gate::Gate& gate, const pc::Environment& environment) {
   json shortfalls = json::array(), counts = json::object();
@@ -111,10 +116,7 @@ std::string make_report(const RunFacts& facts, const loop::LoopStatistics& loop,
                        {"gate", stages(gate)},
                        {"state", name_of(facts.state)},
                        {"fault", fault_entry(facts)},
-                       {"stop",  // CLOCK_MONOTONIC; 0: never
-                        {{"missed_ns", loop.stop.missed_ns},
-                         {"fault_ns", loop.stop.fault_ns},
-                         {"zero_ns", loop.stop.zero_ns}}},
+                       {"stop", to_json(loop.stop)},
                        {"call_filter", facts.call_filter},
                        {"black_boxes", facts.black_boxes},
                        {"dropped_records", facts.dropped_records},

@@ -40,7 +40,8 @@ TEST_F(Control, ArmsTheTactdOfItsSceneAloneAndStopsIt) {
       "ctl liver.toml stop; wait $a; ctl liver.toml status; ctl skin.toml stop; wait $b\n"
       "ls run/tact; cat a.told");
   EXPECT_TRUE(has(out, "armed, force is on\nstatus 0")) << out.output;
-  EXPECT_TRUE(has(out, ": ready, 0.000 N\nstatus 0")) << out.output;
+  // Where the stand-in's tool is by then depends on how long the start took: it may say more.
+  EXPECT_TRUE(has(out, ": ready, 0.000 N")) << out.output;
   EXPECT_TRUE(has(out, "force to zero, then tactd ends\nstatus 0")) << out.output;
   EXPECT_TRUE(has(out, "tactctl: no tactd runs liver.toml")) << out.output;
   EXPECT_TRUE(has(out, "status 2")) << out.output;
@@ -66,7 +67,8 @@ TEST_F(Control, OfTwoOnOneSceneWantsToKnowWhichAndAKilledOneIsNone) {
       "start c skin.toml; c=$!; ready c; ls run/tact | wc -l\n"
       "ctl liver.toml stop; ctl skin.toml stop; wait $b $c");
   EXPECT_TRUE(has(out, "say which one by --pid\nstatus 2")) << out.output;
-  EXPECT_TRUE(has(out, ": ready, 0.000 N\nstatus 0")) << out.output;
+  EXPECT_TRUE(has(out, ": ready, 0.000 N")) << out.output;
+  EXPECT_FALSE(has(out, "status 1")) << out.output;
   EXPECT_TRUE(has(out, "\n2\n")) << "what the killed one left is gone: " << out.output;
 }
 
