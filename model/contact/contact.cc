@@ -37,6 +37,7 @@ Contact::Contact(const ContactScene& scene)
 ContactResponse Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
   ContactResponse felt = respond(tool);
   felt.is_lost = is_lost_;
+  if (was_unsettled_) felt.is_unsettled = true;
   // The force of this tick is that of the tissue before the cut; the cut is felt from the next on.
   use_blade(tool, blade_may_cut);
   return felt;
@@ -55,7 +56,7 @@ ContactResponse Contact::respond(const Tool& tool) RT_SAFE {
     felt.wrench.torque_Nm += cross(probe_[i].centre_m - tool.position_m, touch_[i].force_N);
     if (touch_[i].law_status == law::LawStatus::kSaturated || probe_[i].lets_go)
       felt.is_saturated = true;
-    if (probe_[i].unsolved_ratio > 0.0 || probe_[i].force_lags) felt.is_unsettled = true;
+    if (probe_[i].unsolved_ratio > 0.0 || probe_[i].lag_N > 0.0) felt.is_unsettled = true;
     if (touch_[i].state == TouchState::kInside) felt.is_inside = true;
   }
   scene_.law->advance();
@@ -94,8 +95,6 @@ void Contact::leave(std::size_t i, TouchState state) RT_SAFE {
   probe.clear_m = -std::numeric_limits<double>::infinity();  // nothing is known
   probe.lets_go = false;
   probe.unsolved_ratio = 0.0;
-  probe.told_N = {};
-  probe.force_lags = probe.was_held = false;
   shift_m_[i] = shear_N_[i] = {};
   scene_.law->leave(i);
   moved_.leave(i);
@@ -244,17 +243,18 @@ void Contact::keep_definite() RT_SAFE {
 // F = (F(e) + b d') n - f - dU/ds
 void Contact::sum_up(std::size_t i) RT_SAFE {
   SphereTouch& touch = touch_[i];
-  if (!in_contact(i)) return;
+  if (!in_contact(i)) return tell_force(i, {});
   const SiteResponse& site = pressing_[i].response;
   touch.law_status = site.law.status;
   const double push_N =
       site.law.force_N + scene_.law->resistance_N(pressing_[i].in, site.law.force_N);
   const Axes& axes = probe_[i].axes;
   touch.shift_m = axes.vector(shift_m_[i]);
-  touch.force_N = push_N * touch.normal - axes.vector(shear_N_[i]);
+  Vec3 force_N = push_N * touch.normal - axes.vector(shear_N_[i]);
   // dU/ds belongs to a place that follows the tool; held tissue and a proxy that lags do not.
   if (touch.state == TouchState::kTouching && !probe_[i].proxy.lags())
-    touch.force_N -= movable(scene_.surface, touch.place, site.slope_N);
+    force_N -= movable(scene_.surface, touch.place, site.slope_N);
+  tell_force(i, force_N);
   touch.energy_J = site.law.energy_J + 0.5 * site.law.force_N * sunk_m(coupling_, pressing(), i) +
                    0.5 * dot(shear_N_[i], shift_m_[i]);
 }

@@ -151,12 +151,14 @@ class Contact {
     Proxy proxy;                       // touching or held
     double within_law_m = 0.0;         // e of the last tick within the range of the law
     bool lets_go = false;
-    bool is_pressing = false;                   // of an organ that bends
-    Vec3 organ_shift_m, y_m;                    // v and y of the last tick, likewise
-    Vec3 told_N;                                // its force, likewise
-    bool force_lags = false, was_held = false;  // told_N is not what the organ answers, likewise
-    double unsolved_ratio = 0.0;                // of its last force that it has lost, likewise
-    double deep_m = 0.0;  // so far y may go before it can be outside, likewise
+    bool is_pressing = false;  // of an organ that bends
+    Vec3 organ_shift_m, y_m;   // v and y of the last tick, likewise
+    Vec3 told_N;               // its force, likewise
+    double lag_N = 0.0;        // what told_N lacked most of what the organ answers
+    double stiffest_N_per_m = 0.0;  // of its law, when it touched last
+    bool was_held = false;
+    double unsolved_ratio = 0.0;  // of its last force that it has lost, likewise
+    double deep_m = 0.0;          // so far y may go before it can be outside, likewise
     Vec3 held_centre_m, held_normal;
     double held_depth_m = 0.0;
     Axes axes;                 // of t and f
@@ -238,6 +240,7 @@ class Contact {
   bool closed_ = false;                    // the grip, with hysteresis
   bool closing_ = false;                   // it closed in this tick
   bool is_lost_ = false;                   // in this tick
+  bool was_unsettled_ = false;             // in a period before it that was skipped
   std::optional<Tool> tool_before_;        // of the last tick
   std::optional<Tool> blade_tool_before_;  // where the blade was
 };

@@ -25,12 +25,11 @@ void Contact::begin_moved(std::size_t i, const Site& site, double paid_m) RT_SAF
 void Contact::step_moved(std::size_t i, const Vec3& moved_m) RT_SAFE {
   Probe& probe = probe_[i];
   const OrganSphere& sphere = *moved_.find(i);
-  if (probe.unsolved_ratio >= 1.0 && probe.told_N == Vec3{}) {
+  if (probe.unsolved_ratio >= 1.0) {
     leave(i, TouchState::kFree);
     return find(i);
   }
-  if (touch_[i].state == TouchState::kHeld || sphere.indentation_m > 0.0 ||
-      probe.told_N != Vec3{}) {
+  if (touch_[i].state == TouchState::kHeld || sphere.indentation_m > 0.0) {
     if (!probe.is_pressing) probe.clear_m = kUnknown_m;  // from now on of the organ at rest
     probe.is_pressing = true;
     return;
@@ -130,11 +129,14 @@ void Contact::respond_moved() RT_SAFE {
   for (std::size_t i = 0; i < scene_.spheres.size() && release_moved(); ++i) {
   }
   if (closing_) hold_moved();
-  for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
     if (in_contact(i)) {
       fade_unsolved(i);
       sum_up_moved(i);
+    } else {
+      tell_force(i, {});
     }
+  }
   moved_.advance();
 }
 
@@ -168,24 +170,30 @@ void Contact::sum_up_moved(std::size_t i) RT_SAFE {
                      resistance_N * rotated(b.rotation.whole, b.rotation.axis, b.at.normal)));
 }
 
-// The force may jump where the organ snaps to another shape or a solution is found again. The told
-// force follows: per tick by at most ten times the stiffest slope times the way, plus that slope
-// times the range in 0.1 s. While it lags behind a force that is gone, the hand gets at most a
-// tenth of the energy that was lost.
+// The force may jump where the organ snaps to another shape, a solution is found again, or the proxy
+// meets another side. The told force follows: per tick by at most ten times the stiffest slope times
+// the way, plus all of the jump in 0.1 s. While it lags behind a force that is gone, the hand gets
+// at most a tenth of the energy that was lost.
 void Contact::tell_force(std::size_t i, const Vec3& wanted_N) RT_SAFE {
   constexpr double kSteepest_ratio = 10.0;
+  constexpr double kRounding_N = 1e-7;
   Probe& probe = probe_[i];
   SphereTouch& touch = touch_[i];
   const bool is_held = touch.state == TouchState::kHeld;
-  const double stiffest_N_per_m = scene_.law->stiffest_N_per_m(touch.place, is_held);
-  const double most_N = stiffest_N_per_m * (kSteepest_ratio * norm(probe.moved_m) +
-                                            scene_.organ->range_m * scene_.period_s / kLetGo_s);
+  // 0: the law does not tell it.
+  if (in_contact(i)) probe.stiffest_N_per_m = scene_.law->stiffest_N_per_m(touch.place, is_held);
   const Vec3 change_N = wanted_N - probe.told_N;
   const double length_N = norm(change_N);
+  const double of_way_N = kRounding_N + probe.stiffest_N_per_m * kSteepest_ratio * norm(probe.moved_m);
   // Held tissue that is let go or tears is gone at once.
   const bool is_gone = probe.was_held && !is_held && norm(wanted_N) <= norm(probe.told_N);
-  probe.force_lags = length_N > most_N && !is_gone;
-  probe.told_N = probe.force_lags ? probe.told_N + (most_N / length_N) * change_N : wanted_N;
+  probe.lag_N = length_N > of_way_N && probe.stiffest_N_per_m > 0.0 && !is_gone
+                    ? std::max(probe.lag_N, length_N)
+                    : 0.0;
+  const double most_N = of_way_N + probe.lag_N * scene_.period_s / kLetGo_s;
+  probe.told_N = probe.lag_N > 0.0 && length_N > most_N
+                     ? probe.told_N + (most_N / length_N) * change_N
+                     : wanted_N;
   probe.was_held = is_held;
   touch.force_N = probe.told_N;
 }

@@ -21,6 +21,7 @@ namespace {
 // The way of one step, of a radius: no sphere passes a sheet between two steps.
 constexpr double kSubstep_ratio = 0.5;
 constexpr int kMaxSubsteps = 64;  // of a tick, for each period
+constexpr double kRounding_m = 1e-9;
 
 /// On the straight way between two poses.
 Tool between(const Tool& from, const Tool& to, double share) RT_SAFE {
@@ -67,7 +68,7 @@ void Contact::forget() RT_SAFE {
 }
 
 void Contact::touch(const Tool& tool, std::uint32_t periods, double reach_m) RT_SAFE {
-  is_lost_ = false;
+  is_lost_ = was_unsettled_ = false;
   // A pose that is no number touches nothing, and leaves no memory that could be no number.
   if (!is_finite(tool)) return forget();
   if (tool_before_ && !is_reached(tool, reach_m)) {
@@ -78,7 +79,7 @@ void Contact::touch(const Tool& tool, std::uint32_t periods, double reach_m) RT_
   for (std::uint32_t k = 1; k < periods; ++k) {
     const Tool way = between(from, tool, static_cast<double>(k) / periods);
     detect(way);
-    respond(way);
+    if (respond(way).is_unsettled) was_unsettled_ = true;
   }
   detect(tool);
   tool_before_ = tool;
@@ -155,11 +156,14 @@ void Contact::begin_from_outside(std::size_t i, const Vec3& moved_m) RT_SAFE {
   if (probe.clear_m > 0.0) return;
   const double radius_m = scene_.spheres[i].radius_m;
   const bool is_new_place = std::isinf(probe.clear_m);  // it has just left another
+  const double most_m = -probe.clear_m;                 // as deep as its movement may have led it
   const double within_m = is_new_place ? kAnywhere_m : (1.0 + kAhead_ratio) * radius_m;
   const Site site = nearest_site(scene_.tree, scene_.surface, probe.centre_m, within_m, probe.near);
   probe.clear_m = std::min(site.distance_m, within_m) - radius_m;
   probe.near = site.place.triangle;
   if (probe.clear_m > 0.0) return;
+  // Deeper: it came through a hole of an open surface, to the inner side.
+  if (-probe.clear_m > most_m + kRounding_m) return leave(i, TouchState::kInside);
   // From where it is known to have been clear, its movement explains all of the depth.
   if (is_new_place)
     probe.unpaid_m = std::max(0.0, -probe.clear_m - std::max(0.0, -dot(moved_m, site.normal)));

@@ -14,7 +14,7 @@ void Proxy::restart(const Site& site, double radius_m) RT_SAFE {
   site_ = site;
   outward_ = site.normal;
   offset_m_ = site.point_m + radius_m * outward_;
-  lags_ = false;
+  lags_ = is_turned_ = false;
   lengthened_m_ = 0.0;
 }
 
@@ -23,25 +23,37 @@ void Proxy::follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& move
   const Site nearest = contact::follow(surface, site_.place.triangle, p_m);
   const Vec3 goal_m = nearest.point_m + radius_m * nearest.normal;
   const double most_m = kSlide_ratio * norm(tangential(moved_m, site_.normal));
-  const double before_m = norm(depth_m(p_m));
+  // A depth that is turned is no distance: by the work of its force.
+  const double explained_m = radius_m - site_.distance_m - dot(moved_m, site_.normal);
+  const double before_m = is_turned_ ? explained_m : norm(depth_m(p_m));
   if (norm(goal_m - offset_m_) <= most_m + kRounding_m) {
     restart(nearest, radius_m);
     lengthened_m_ = radius_m - nearest.distance_m - before_m;
     return;
   }
   slide(surface, goal_m, most_m, radius_m);
-  const Vec3 line_m = depth_m(p_m);
+  const Vec3 whole_m = depth_m(p_m), line_m = outward_of(nearest, whole_m, radius_m);
+  is_turned_ = line_m != whole_m;
   const double length_m = norm(line_m);
   site_.distance_m = radius_m - length_m;
   site_.normal = length_m > 0.0 ? line_m / length_m : outward_;
   lags_ = true;
-  lengthened_m_ = length_m - before_m;
+  lengthened_m_ = length_m - (is_turned_ ? explained_m : before_m);
 }
 
 // Of the line from p to g, what lies along the surface, and what points out of the organ.
 Vec3 Proxy::depth_m(const Vec3& p_m) const RT_SAFE {
   const Vec3 line_m = offset_m_ - p_m;
   return tangential(line_m, outward_) + std::max(dot(line_m, outward_), 0.0) * outward_;
+}
+
+// A sphere outside is not drawn towards the point that is nearest to it, where g is above that
+// point, too: round an edge g may stand on the other side.
+Vec3 Proxy::outward_of(const Site& nearest, const Vec3& line_m, double radius_m) const RT_SAFE {
+  const double inward_m = std::min(dot(line_m, nearest.normal), 0.0);
+  if (!(nearest.distance_m > 0.0) || !(inward_m < 0.0)) return line_m;
+  const double apart_ratio = norm(nearest.point_m - site_.point_m) / radius_m;
+  return line_m - std::max(1.0 - apart_ratio, 0.0) * inward_m * nearest.normal;
 }
 
 // Along the offset surface. In a crease g stays where a step would throw it over to the other side.

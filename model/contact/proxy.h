@@ -12,7 +12,7 @@
 // Where the nearest point moves faster (at an edge, beyond the middle of a thin part) g lags: it
 // slides along the offset surface towards that point, so the force turns at a bounded rate, and a
 // push straight in turns nothing. While it lags, what of g - p points out of the organ is at least
-// 0, so a lagging proxy never pulls in.
+// 0, at g and where p is nearest, so a lagging proxy never pulls in.
 #pragma once
 
 #include "model/contact/site.h"
@@ -41,12 +41,13 @@ class Proxy {
 
  private:
   Vec3 depth_m(const Vec3& p_m) const RT_SAFE;
+  Vec3 outward_of(const Site& nearest, const Vec3& line_m, double radius_m) const RT_SAFE;
   void slide(const SurfaceView& surface, const Vec3& goal_m, double way_m, double radius_m) RT_SAFE;
 
   Site site_;
   Vec3 offset_m_;  // g
   Vec3 outward_;   // of the offset surface in g, unit
-  bool lags_ = false;
+  bool lags_ = false, is_turned_ = false;
   double lengthened_m_ = 0.0;
 };
 

@@ -7,12 +7,16 @@
 //   c  outside and beyond the law's range: no force after 2 ranges of way, or after 0.2 s
 //   d  came from outside and not let go: going deeper with its centre inside gives force, by the
 //      third tick, and only saturation or a loss lets it go
-//   e  |dF| <= 10 K way + 1 uN; while a contact lets go, the way grows by the range in 0.1 s. The
-//      depth changes by the way, the direction by what the proxy slides; 7.3 K is the most seen
+//   e  |dF| <= 10 K way + 1 uN; while a contact lets go, or its force lags, the way grows by the
+//      range in 0.1 s
 //   f  finite; with its centre outside and its contact point nearest: pulls it in by friction at
 //      most (the line to the proxy is not beside the surface, the force in the cone about it),
-//      unless it lets go
-//   h  from free to free the tool is given no more than the largest force times the largest step
+//      unless it lets go or its force lags
+//   h  from free to free the tool is given no more than a sum over steps can be wrong by: the
+//      largest force times the largest step, or half of the sum of |dF| |dc|; and for each time
+//      that its force lags, F F / (20 K), a tenth of what the largest force can store
+//
+//   i  a force lags for at most 0.2 s in a row
 //
 // (g, pauses, is in path_run.h.) Outside: distance >= r and winding number 0, by brute_force.h.
 #pragma once
@@ -46,7 +50,7 @@ class ContactRules {
     model::Vec3 centre_m;
     std::uint32_t periods = 1;  // since the last
     model::contact::SphereTouch touch;
-    bool is_saturated = false, is_lost = false;
+    bool is_saturated = false, is_lost = false, is_unsettled = false;
   };
 
   ContactRules(const BruteForce& body, const RuleSettings& settings) : body_(body), s_(settings) {}
@@ -59,7 +63,7 @@ class ContactRules {
     find_side(now);
     std::vector<Breach> breaches;
     for (const auto rule : {&ContactRules::a, &ContactRules::b, &ContactRules::c, &ContactRules::d,
-                            &ContactRules::e, &ContactRules::f, &ContactRules::h})
+                            &ContactRules::e, &ContactRules::f, &ContactRules::h, &ContactRules::i})
       if (auto found = (this->*rule)(now)) breaches.push_back(*found);
     before_ = now;
     was_outside_ = is_outside_;
@@ -185,7 +189,9 @@ class ContactRules {
     // Once begun, it goes on until there is no force.
     lets_go_ = (lets_go_ && before_->is_saturated) ||
                ((now.is_saturated || before_->is_saturated) && (is_outside_ || was_outside_));
-    const double fade_m = lets_go_ ? s_.range_m * now.periods * s_.period_s / kLetGo_s : 0.0;
+    const double fade_m = lets_go_ || now.is_unsettled || before_->is_unsettled
+                              ? s_.range_m * now.periods * s_.period_s / kLetGo_s
+                              : 0.0;
     const double most_N = 10.0 * s_.max_slope_N_per_m * (moved_m_ + fade_m) + 1e-6;
     if (jump_N <= most_N) return {};
     return say('e', "force jumps by " + std::to_string(1e3 * jump_N) + " mN, at most " +
@@ -196,7 +202,8 @@ class ContactRules {
     if (!s_.is_alone) return {};
     const bool is_nearest = norm(now.touch.surface_point_m - nearest_.point_m) < 1e-6;
     if (now.touch.state != TouchState::kTouching || side_ != Side::kOut || !is_nearest ||
-        !(nearest_.distance_m > 1e-6) || !std::isfinite(nearest_.distance_m) || now.is_saturated)
+        !(nearest_.distance_m > 1e-6) || !std::isfinite(nearest_.distance_m) || now.is_saturated ||
+        now.is_unsettled)
       return {};
     const model::Vec3 outward = (now.centre_m - nearest_.point_m) / nearest_.distance_m;
     // sin(atan(mu)) |F|
@@ -213,16 +220,27 @@ class ContactRules {
           0.5 * dot(now.touch.force_N + before_->touch.force_N, now.centre_m - before_->centre_m);
       most_N_ = std::max(most_N_, force_N_);
       most_m_ = std::max(most_m_, moved_m_);
+      if (now.is_unsettled && !before_->is_unsettled) ++lagged_;
+      wrong_J_ += 0.5 * norm(now.touch.force_N - before_->touch.force_N) * moved_m_;
     }
     if (now.is_lost) in_stroke_ = false;
     if (!is_free) return {};
-    const bool is_over = in_stroke_ && given_J_ > most_N_ * most_m_ + 1e-12;
+    const double most_J = std::max(most_N_ * most_m_, wrong_J_) +
+                          lagged_ * most_N_ * most_N_ / (20.0 * s_.max_slope_N_per_m);
+    const bool is_over = in_stroke_ && given_J_ > most_J + 1e-12;
     std::ostringstream what;
-    what << "given " << given_J_ << " J; one step's work is " << most_N_ * most_m_ << " J";
+    what << "given " << given_J_ << " J; the sum may be wrong by " << most_J << " J";
     in_stroke_ = true;
-    given_J_ = most_N_ = most_m_ = 0.0;
+    given_J_ = most_N_ = most_m_ = wrong_J_ = 0.0;
+    lagged_ = 0;
     if (is_over) return say('h', what.str());
     return {};
+  }
+
+  std::optional<Breach> i(const Tick& now) {
+    unsettled_s_ = now.is_unsettled ? unsettled_s_ + now.periods * s_.period_s : 0.0;
+    if (unsettled_s_ <= kAfter_s) return {};
+    return say('i', "the force lags for too long");
   }
 
   std::optional<Breach> say(char rule, const std::string& what) const {
@@ -245,10 +263,12 @@ class ContactRules {
   bool lets_go_ = false;
   int without_ = 0;       // ticks in a row, deeper and without force
   bool entered_ = false;  // from outside, and not let go since
+  double unsettled_s_ = 0.0;
   double lag_m_ = -1.0, lag_s_ = -1.0, beyond_m_ = 0.0, beyond_s_ = 0.0;
   int lags_ = 0;
   bool in_stroke_ = false;
-  double given_J_ = 0.0, most_N_ = 0.0, most_m_ = 0.0;
+  int lagged_ = 0;
+  double given_J_ = 0.0, most_N_ = 0.0, most_m_ = 0.0, wrong_J_ = 0.0;
 };
 
 }  // namespace tact::tests

@@ -154,7 +154,7 @@ struct SoftBody {
     return scene;
   }
   double limit_N() const { return curve.respond(kRange_m).force_N; }
-  double max_slope_N_per_m() const { return tip.stiffest_press_N_per_m(); }
+  double max_slope_N_per_m() const { return field.stiffest_N_per_m({}, false); }
   model::tissue::ElasticNeighbours neighbours() const {
     if (spheres.size() < 2) return {};
     return {.youngs_modulus_Pa = tip.youngs_modulus_Pa,
