@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "model/contact/small_lu.h"
+
 namespace tact::model::contact {
 namespace {
 
@@ -38,28 +40,17 @@ double stiffness_N_per_m(const PressingSphere& sphere) RT_SAFE {
   return sphere.presses ? std::max(sphere.response.law.stiffness_N_per_m, 0.0) : 0.0;
 }
 
-// (I + C K) step = miss, by elimination; every pivot is positive where diag(1 / K) + C is, else a
-// plain step is taken.
+// (I + C K) step = miss; every pivot is positive where diag(1 / K) + C is, else a plain step is
+// taken.
 Vector newton_step(const Coupling& c, std::span<const PressingSphere> spheres,
                    Vector miss) RT_SAFE {
   const std::size_t n = spheres.size();
-  const Vector plain = miss;
   Coupling a{};
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j)
       a[i][j] = (i == j ? 1.0 : 0.0) + c[i][j] * stiffness_N_per_m(spheres[j]);
-  for (std::size_t k = 0; k < n; ++k) {
-    if (!(a[k][k] > kMinPivot)) return plain;
-    for (std::size_t i = k + 1; i < n; ++i) {
-      const double f = a[i][k] / a[k][k];
-      for (std::size_t j = k; j < n; ++j) a[i][j] -= f * a[k][j];
-      miss[i] -= f * miss[k];
-    }
-  }
-  for (std::size_t k = n; k-- > 0;) {
-    for (std::size_t j = k + 1; j < n; ++j) miss[k] -= a[k][j] * miss[j];
-    miss[k] /= a[k][k];
-  }
+  SmallLu<kMaxSpheres> lu;
+  if (lu.factorise(a, n, Pivot::kDiagonal, kMinPivot)) lu.solve(miss);
   return miss;
 }
 
@@ -99,18 +90,6 @@ bool is_solved(SiteLaw& law, const Coupling& c, std::span<PressingSphere> sphere
   return false;
 }
 
-/// By elimination, in place.
-bool is_positive_definite(Coupling& a, std::size_t n) RT_SAFE {
-  for (std::size_t k = 0; k < n; ++k) {
-    if (!(a[k][k] > 0.0)) return false;
-    for (std::size_t i = k + 1; i < n; ++i) {
-      const double f = a[i][k] / a[k][k];
-      for (std::size_t j = k; j < n; ++j) a[i][j] -= f * a[k][j];
-    }
-  }
-  return true;
-}
-
 }  // namespace
 
 double coupling_m_per_N(const SiteCoupling& c, const Vec3& n_i, const Vec3& n_j) RT_SAFE {
@@ -148,7 +127,7 @@ double definite_share(const Coupling& c,
   while (n > 0 && stiffest_N_per_m[n - 1] == 0.0) --n;
   // MC-6. Scaled by the stiffnesses, which may be 0: margin I + factor sqrt(K) C sqrt(K)
   const auto is_definite = [&](double factor) RT_SAFE {
-    Coupling a;  // n rows of it
+    Coupling a{};
     for (std::size_t i = 0; i < n; ++i) {
       a[i][i] = kMargin;
       for (std::size_t j = 0; j < i; ++j) {
@@ -156,7 +135,7 @@ double definite_share(const Coupling& c,
         a[i][j] = a[j][i] = factor * c[i][j] * stiffness_N_per_m;
       }
     }
-    return is_positive_definite(a, n);
+    return SmallLu<kMaxSpheres>().factorise(a, n, Pivot::kDiagonal, 0.0);
   };
   if (is_definite(1.0)) return 1.0;
   constexpr int kHalvings = 10;

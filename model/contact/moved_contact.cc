@@ -31,7 +31,7 @@ void find_foot(const SmoothSurface& surface, OrganSphere& b) RT_SAFE {
 
 }  // namespace
 
-MovedContact::MovedContact(const MovedContactScene& scene) : scene_(scene) { reset(); }
+MovedContact::MovedContact(const ContactScene& scene) : scene_(scene) { reset(); }
 
 void MovedContact::reset() RT_SAFE {
   organ_ = {};
@@ -56,23 +56,16 @@ const OrganSphere* MovedContact::find(std::size_t sphere) const RT_SAFE {
   return nullptr;
 }
 
-double MovedContact::energy_J(std::size_t sphere) const RT_SAFE {
-  const OrganSphere* b = find(sphere);
-  if (b == nullptr) return 0.0;
-  return stored_energy_J(organ_, static_cast<std::size_t>(b - organ_.sphere.data()));
-}
-
 // It stands on the organ as the others have moved it.
-void MovedContact::begin(std::size_t sphere, const Vec3& centre_m, std::uint32_t triangle,
-                         double paid_m) RT_SAFE {
+void MovedContact::begin(const Sphere& sphere, const Site& site, double paid_m) RT_SAFE {
   OrganSphere& b = organ_.sphere[organ_.count++];
   b = {};
   is_changed_ = true;
   organ_.has_slope = false;
-  b.index = sphere;
-  b.radius_m = b.height_m = scene_.spheres[sphere].radius_m;
-  b.centre_m = b.y_m = centre_m;
-  b.at.place = {.triangle = triangle, .weight = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}};
+  b.index = sphere.index;
+  b.radius_m = b.height_m = sphere.radius_m;
+  b.centre_m = b.y_m = sphere.centre_m;
+  b.at.place = {.triangle = site.place.triangle, .weight = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}};
   find_foot(scene_.organ->surface, b);
   couple();
   fill_matrices(organ_);
@@ -80,7 +73,7 @@ void MovedContact::begin(std::size_t sphere, const Vec3& centre_m, std::uint32_t
   for (std::size_t j = 0; j < i; ++j)
     b.shift_m +=
         organ_.compliance_m_per_N[i][j] * (organ_.sphere[j].organ_N + organ_.sphere[j].crept_N);
-  b.y_m = centre_m - b.shift_m;
+  b.y_m = sphere.centre_m - b.shift_m;
   find_foot(scene_.organ->surface, b);
   couple();
   fill_matrices(organ_);
@@ -110,9 +103,8 @@ void MovedContact::leave(std::size_t sphere) RT_SAFE {
   fill_matrices(organ_);
 }
 
-void MovedContact::move(std::size_t sphere, const Vec3& centre_m,
-                        const Vec3& velocity_mps) RT_SAFE {
-  OrganSphere* b = at(sphere);
+void MovedContact::move(const Sphere& sphere) RT_SAFE {
+  OrganSphere* b = at(sphere.index);
   if (b == nullptr) return;
   const double share = std::clamp((offset_ratio(b->at, b->height_m) - kStuckOffset_ratio) /
                                       (kFreeOffset_ratio - kStuckOffset_ratio),
@@ -122,11 +114,11 @@ void MovedContact::move(std::size_t sphere, const Vec3& centre_m,
     b->slack_m = most_m;
     is_changed_ = true;
   }
-  b->moved_m = centre_m - b->centre_m;
+  b->moved_m = sphere.centre_m - b->centre_m;
   b->may_slip_m = kFollow_ratio * norm(b->moved_m) + kCreep_m;
   b->may_slide_m = share * b->may_slip_m;
-  b->centre_m = centre_m;
-  b->speed_mps = -dot(velocity_mps, b->at.normal);
+  b->centre_m = sphere.centre_m;
+  b->speed_mps = -dot(sphere.velocity_mps, b->at.normal);
 }
 
 void MovedContact::add_slack(std::size_t sphere, double depth_m) RT_SAFE {
@@ -136,9 +128,9 @@ void MovedContact::add_slack(std::size_t sphere, double depth_m) RT_SAFE {
   is_changed_ = true;
 }
 
-void MovedContact::hold(std::size_t sphere) RT_SAFE {
+bool MovedContact::hold(std::size_t sphere) RT_SAFE {
   OrganSphere* b = at(sphere);
-  if (b == nullptr || !(b->tip.force_N > 0.0)) return;
+  if (b == nullptr || !(b->tip.force_N > 0.0)) return false;
   // Never softer: at the same force that would store more.
   const double before = b->tangential_N_per_m, now = std::max(scene_.organ->held_N_per_m, before);
   b->is_held = true;
@@ -146,15 +138,21 @@ void MovedContact::hold(std::size_t sphere) RT_SAFE {
   b->rest_m += (1.0 - before / now) * b->tangential_m;
   b->tangential_m *= before / now;
   b->tangential_N_per_m = now;
+  return true;
+}
+
+double MovedContact::pull_N(std::size_t sphere) const RT_SAFE {
+  const OrganSphere& b = *find(sphere);
+  return std::hypot(std::max(0.0, -b.tip.force_N), b.tangential_N_per_m * norm(b.tangential_m));
 }
 
 // W(d) <= W_held, d no larger than it was held
 // It goes back to the nearest surface point, without a tangential spring. If that stores more than
 // before, slack halves the depth until it does not.
-void MovedContact::release(std::size_t sphere) RT_SAFE {
+bool MovedContact::release(std::size_t sphere) RT_SAFE {
   constexpr int kHalvings = 12;  // each one solves the whole tool
   OrganSphere* b = at(sphere);
-  if (b == nullptr) return;
+  if (b == nullptr) return false;
   const double held_J = stored_energy_J(organ_);
   const double held_m = std::max(b->indentation_m, 0.0);
   b->is_held = false;
@@ -173,6 +171,7 @@ void MovedContact::release(std::size_t sphere) RT_SAFE {
     status_.is_solved = solve_fixed() && status_.is_solved;
     if (status_.is_solved && stored_energy_J(organ_) <= held_J) break;
   }
+  return true;
 }
 
 // Neither way has an answer: everything as before, but for the force along the movement.
@@ -189,43 +188,6 @@ void MovedContact::keep_last_state() RT_SAFE {
   }
 }
 
-// ML-9   brake_i = -rho F_i dc_i / |dc_i|,   rho = excess / sum F_i |dc_i|
-// What was lost is the work of the spheres in this tick, by the trapezium rule, less what W has
-// gained.
-void MovedContact::brake() RT_SAFE {
-  constexpr double kFree_J = 2e-7;                               // of one contact, in all
-  constexpr double kTank_ratio = 0.05, kTolerated_ratio = 0.02;  // of W
-  constexpr double kMaxBrake_ratio = 0.1;                        // of F
-  constexpr double kMaxChange_N = 5e-4;                          // a tick
-  double braked_J = 0.0, way_J = 0.0, press_N = 0.0, work_J = 0.0;
-  for (std::size_t i = 0; i < organ_.count; ++i) {
-    const OrganSphere& b = organ_.sphere[i];
-    const double force_N = norm(b.force_N);
-    braked_J -= dot(b.brake_N, b.moved_m);
-    way_J += force_N * norm(b.moved_m);
-    work_J -= 0.5 * dot(b.force_N + before_[i].force_N, b.moved_m);
-    press_N += force_N;
-  }
-  const double stored_J = stored_energy_J(organ_), lost_J = work_J - (stored_J - stored_J_);
-  stored_J_ = stored_J;
-  tank_J_ = std::min(tank_J_ + lost_J + braked_J, kTank_ratio * stored_J);
-  if (!(press_N > 0.0)) tank_J_ = 0.0;  // the next contact begins at zero
-  const double excess_J = std::max(-(tank_J_ + kFree_J + kTolerated_ratio * stored_J), 0.0);
-  const double rho = way_J > 0.0 ? std::min(excess_J / way_J, kMaxBrake_ratio) : 0.0;
-  for (std::size_t i = 0; i < organ_.count; ++i) {
-    OrganSphere& b = organ_.sphere[i];
-    const Vec3 wanted_N = -rho * norm(b.force_N) * normalized(b.moved_m);
-    const Vec3 change_N = wanted_N - b.brake_N;
-    const double length_N = norm(change_N);
-    b.brake_N += (length_N > kMaxChange_N ? kMaxChange_N / length_N : 1.0) * change_N;
-    // It follows slowly, but never pushes, and is no more than its share of the force.
-    const Vec3 along = normalized(b.moved_m);
-    b.brake_N -= std::max(dot(b.brake_N, along), 0.0) * along;
-    const double brake_N = norm(b.brake_N), most_N = kMaxBrake_ratio * norm(b.force_N);
-    if (brake_N > most_N) b.brake_N *= most_N / brake_N;
-  }
-}
-
 void MovedContact::respond() RT_SAFE {
   status_ = {};
   if (organ_.count == 0) return;
@@ -237,6 +199,22 @@ void MovedContact::respond() RT_SAFE {
   is_changed_ = !status_.is_solved || is_nearly_ || organ_.creep.terms() > 0;
   if (!status_.is_solved) keep_last_state();
   brake();
+}
+
+OrganForce MovedContact::tell(const Sphere& sphere, SphereTouch& told) const RT_SAFE {
+  const OrganSphere& b = *find(sphere.index);
+  told.place = b.at.place;
+  told.surface_point_m = b.at.point_m;
+  told.normal = b.at.normal;
+  told.dent_m = b.indentation_m;
+  told.slack_m = b.slack_m;
+  told.depth_m = b.indentation_m - dot(b.shift_m, b.at.normal);
+  told.shift_m = tangential(b.shift_m, b.at.normal);
+  told.law_status = is_beyond(b) ? law::LawStatus::kSaturated : b.tip.status;
+  told.energy_J = stored_energy_J(organ_, static_cast<std::size_t>(&b - organ_.sphere.data()));
+  const double resistance_N = scene_.law->resistance_N(indentation_of(b), b.tip.force_N);
+  return {b.force_N + b.brake_N,
+          resistance_N * rotated(b.rotation.whole, b.rotation.axis, b.at.normal)};
 }
 
 void MovedContact::advance() RT_SAFE {

@@ -22,8 +22,9 @@
 #include <cstdint>
 #include <span>
 
+#include "model/contact/contact_scene.h"
 #include "model/contact/moved_organ.h"
-#include "model/contact/probe_sphere.h"
+#include "model/contact/organ_contact.h"
 
 namespace tact::model::contact {
 
@@ -38,14 +39,6 @@ struct BendingOrgan {
   law::Creep creep;
 };
 
-struct MovedContactScene {
-  const BendingOrgan* organ = nullptr;
-  SiteLaw* law = nullptr;  // of the tip alone; MC-2
-  double friction_ratio = 0.0;
-  double sliding_N_per_m = 0.0;          // k_w; 0: the tissue's own
-  std::span<const ProbeSphere> spheres;  // 1 to kMaxSpheres
-};
-
 /// What the last tick took.
 struct MovedContactStatus {
   int steps = 0;          // of Newton, all together
@@ -53,39 +46,36 @@ struct MovedContactStatus {
   bool is_solved = true;
 };
 
-class MovedContact {
+class MovedContact final : public OrganContact {
  public:
-  explicit MovedContact(const MovedContactScene& scene);
+  /// Of a scene without an organ that bends: never to be called.
+  explicit MovedContact(const ContactScene& scene);
 
-  /// No sphere touches.
-  void reset() RT_SAFE;
-  /// A sphere begins to touch near a triangle. Its depth there beyond `paid_m` is slack.
-  void begin(std::size_t sphere, const Vec3& centre_m, std::uint32_t triangle,
-             double paid_m) RT_SAFE;
-  void leave(std::size_t sphere) RT_SAFE;
+  void reset() RT_SAFE override;
+  void begin(const Sphere& sphere, const Site& site, double paid_m) RT_SAFE override;
+  void leave(std::size_t sphere) RT_SAFE override;
+  Step step(Sphere& sphere, const Vec3& moved_m) RT_SAFE override;
+  void move(const Sphere& sphere) RT_SAFE override;
+  bool must_let_go(Sphere& sphere) RT_SAFE override;
+  double cut_to_law_m(std::size_t sphere) RT_SAFE override;
+  void add_slack(std::size_t sphere, double depth_m) RT_SAFE override;
+  void respond() RT_SAFE override;
+  double pull_N(std::size_t sphere) const RT_SAFE override;
+  bool release(std::size_t sphere) RT_SAFE override;
+  bool hold(std::size_t sphere) RT_SAFE override;
+  void finish() RT_SAFE override {}
+  bool is_solved() const RT_SAFE override { return status_.is_solved; }
+  OrganForce tell(const Sphere& sphere, SphereTouch& told) const RT_SAFE override;
+  void advance() RT_SAFE override;
+
   /// nullptr: it does not touch.
   const OrganSphere* find(std::size_t sphere) const RT_SAFE;
-  /// ML-7 of a sphere that touches.
-  double energy_J(std::size_t sphere) const RT_SAFE;
-
-  /// Where a sphere that touches is now.
-  void move(std::size_t sphere, const Vec3& centre_m, const Vec3& velocity_mps) RT_SAFE;
-  /// Its depth becomes smaller, and so it stays.
-  void add_slack(std::size_t sphere, double depth_m) RT_SAFE;
-  /// Once a tick, when all have moved: forces and what the organ has become.
-  void respond() RT_SAFE;
-  /// Bonds a sphere that presses; no force changes by it.
-  void hold(std::size_t sphere) RT_SAFE;
-  /// Lets a held sphere go, back to the surface, with no more energy than there was.
-  void release(std::size_t sphere) RT_SAFE;
-  /// The end of a tick.
-  void advance() RT_SAFE;
-
   const MovedOrgan& organ() const RT_SAFE { return organ_; }
   const MovedContactStatus& status() const RT_SAFE { return status_; }
 
  private:
   OrganSphere* at(std::size_t sphere) RT_SAFE;
+  bool is_beyond(const OrganSphere& sphere) const RT_SAFE;
   void couple() RT_SAFE;
   void stiffen(OrganSphere& sphere) RT_SAFE;
   void follow_feet() RT_SAFE;
@@ -95,7 +85,7 @@ class MovedContact {
   void keep_last_state() RT_SAFE;
   void brake() RT_SAFE;
 
-  MovedContactScene scene_;
+  ContactScene scene_;
   MovedOrgan organ_;
   std::array<OrganSphere, kMaxSpheres> before_;  // of the last tick
   bool is_changed_ = true;  // something beside the centres, since the last answer

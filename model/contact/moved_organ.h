@@ -78,6 +78,10 @@ struct OrganSphere {
   double may_slide_m = 0.0;  // rest of what the surface point may move
   double may_slip_m = 0.0;   // and of what the sphere may slip where it sticks
   Vec3 brake_N;              // ML-9
+  // Where it was seen last (moved_detect.cc)
+  bool is_pressing = false;
+  Vec3 seen_shift_m, seen_y_m;  // v and y then
+  double deep_m = 0.0;          // so far y may go before it can be outside
 };
 
 struct MovedOrgan {

@@ -59,9 +59,11 @@ void MovedContact::stiffen(OrganSphere& b) RT_SAFE {
   const double indentation_m = std::max(b.indentation_m, 0.0);
   const double a_m =
       std::clamp(std::sqrt(b.radius_m * indentation_m), kMinRadius_ratio * b.radius_m, b.radius_m);
-  const double now = scene_.sliding_N_per_m > 0.0 ? scene_.sliding_N_per_m : a_m / c;
+  const double now = scene_.parameters.sliding_stiffness_N_per_m > 0.0
+                         ? scene_.parameters.sliding_stiffness_N_per_m
+                         : a_m / c;
   const double before = b.tangential_N_per_m;
-  b.friction_ratio = scene_.friction_ratio;
+  b.friction_ratio = scene_.parameters.friction_ratio;
   if (!(indentation_m > 0.0) || before == 0.0) {
     b.tangential_N_per_m = now;
     b.rest_m = {};
@@ -82,7 +84,7 @@ void MovedContact::stiffen(OrganSphere& b) RT_SAFE {
 bool MovedContact::follow_foot(OrganSphere& b) const RT_SAFE {
   constexpr int kMaxFootSteps = 2;
   constexpr double kOnFoot_m = 2e-9;
-  const bool has_friction = scene_.friction_ratio > 0.0;
+  const bool has_friction = scene_.parameters.friction_ratio > 0.0;
   const SmoothSurface& surface = scene_.organ->surface;
   bool has_moved = false;
   b.slides = !b.is_held && b.may_slide_m > 0.0 && !(has_friction && b.tip.force_N > 0.0);
@@ -175,6 +177,43 @@ bool MovedContact::solve_fixed() RT_SAFE {
     ++status_.steps;
   }
   return before_m < kNearlyFixed_m;
+}
+
+// ML-9   brake_i = -rho F_i dc_i / |dc_i|,   rho = excess / sum F_i |dc_i|
+// What was lost is the work of the spheres in this tick, by the trapezium rule, less what W has
+// gained.
+void MovedContact::brake() RT_SAFE {
+  constexpr double kFree_J = 2e-7;                               // of one contact, in all
+  constexpr double kTank_ratio = 0.05, kTolerated_ratio = 0.02;  // of W
+  constexpr double kMaxBrake_ratio = 0.1;                        // of F
+  constexpr double kMaxChange_N = 5e-4;                          // a tick
+  double braked_J = 0.0, way_J = 0.0, press_N = 0.0, work_J = 0.0;
+  for (std::size_t i = 0; i < organ_.count; ++i) {
+    const OrganSphere& b = organ_.sphere[i];
+    const double force_N = norm(b.force_N);
+    braked_J -= dot(b.brake_N, b.moved_m);
+    way_J += force_N * norm(b.moved_m);
+    work_J -= 0.5 * dot(b.force_N + before_[i].force_N, b.moved_m);
+    press_N += force_N;
+  }
+  const double stored_J = stored_energy_J(organ_), lost_J = work_J - (stored_J - stored_J_);
+  stored_J_ = stored_J;
+  tank_J_ = std::min(tank_J_ + lost_J + braked_J, kTank_ratio * stored_J);
+  if (!(press_N > 0.0)) tank_J_ = 0.0;  // the next contact begins at zero
+  const double excess_J = std::max(-(tank_J_ + kFree_J + kTolerated_ratio * stored_J), 0.0);
+  const double rho = way_J > 0.0 ? std::min(excess_J / way_J, kMaxBrake_ratio) : 0.0;
+  for (std::size_t i = 0; i < organ_.count; ++i) {
+    OrganSphere& b = organ_.sphere[i];
+    const Vec3 wanted_N = -rho * norm(b.force_N) * normalized(b.moved_m);
+    const Vec3 change_N = wanted_N - b.brake_N;
+    const double length_N = norm(change_N);
+    b.brake_N += (length_N > kMaxChange_N ? kMaxChange_N / length_N : 1.0) * change_N;
+    // It follows slowly, but never pushes, and is no more than its share of the force.
+    const Vec3 along = normalized(b.moved_m);
+    b.brake_N -= std::max(dot(b.brake_N, along), 0.0) * along;
+    const double brake_N = norm(b.brake_N), most_N = kMaxBrake_ratio * norm(b.force_N);
+    if (brake_N > most_N) b.brake_N *= most_N / brake_N;
+  }
 }
 
 }  // namespace tact::model::contact

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "model/contact/small_lu.h"
+
 namespace tact::model::contact {
 
 void Shear::leave(std::size_t i) RT_SAFE {
@@ -23,30 +25,29 @@ void Shear::couple(std::size_t i, std::size_t j, double m_per_N, const Axes& of_
           c * dot(of_i.unit[p], of_j.unit[q]);
 }
 
-// Gauss and Jordan, in place, over the rows that take force.
+// Of the rows that take force, column by column.
 void Shear::solve() RT_SAFE {
+  using Lu = SmallLu<2 * kMaxSpheres>;
   std::array<std::size_t, 2 * kMaxSpheres> row{};
   std::size_t n = 0;
-  Matrix& a = stiffness_N_per_m_ = coupling_m_per_N_;
+  Matrix whole = coupling_m_per_N_;
   for (std::size_t i = 0; i < kMaxSpheres; ++i) {
     const Tensor2& give = own_[i].m_per_N;
-    a[2 * i][2 * i] = give.xx, a[2 * i + 1][2 * i + 1] = give.yy;
-    a[2 * i][2 * i + 1] = a[2 * i + 1][2 * i] = give.xy;
+    whole[2 * i][2 * i] = give.xx, whole[2 * i + 1][2 * i + 1] = give.yy;
+    whole[2 * i][2 * i + 1] = whole[2 * i + 1][2 * i] = give.xy;
     if (own_[i].least_m_per_N > 0.0) row[n++] = 2 * i, row[n++] = 2 * i + 1;
   }
-  for (std::size_t s = 0; s < n; ++s) {
-    const std::size_t k = row[s];
-    // No search for pivots: the matrix is positive definite.
-    const double pivot = a[k][k];
-    a[k][k] = 1.0;
-    for (std::size_t j = 0; j < n; ++j) a[k][row[j]] /= pivot;
-    for (std::size_t r = 0; r < n; ++r) {
-      if (r == s) continue;
-      auto& to = a[row[r]];
-      const double f = to[k];
-      to[k] = 0.0;
-      for (std::size_t j = 0; j < n; ++j) to[row[j]] -= f * a[k][row[j]];
-    }
+  Lu::Square a{};
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) a[i][j] = whole[row[i]][row[j]];
+  stiffness_N_per_m_ = {};
+  Lu lu;
+  if (!lu.factorise(a, n, Pivot::kDiagonal, 0.0)) return;
+  for (std::size_t j = 0; j < n; ++j) {
+    Lu::Column unit{};
+    unit[j] = 1.0;
+    lu.solve(unit);
+    for (std::size_t i = 0; i < n; ++i) stiffness_N_per_m_[row[i]][row[j]] = unit[i];
   }
 }
 

@@ -72,6 +72,8 @@ class SiteLaw : public DentView {
     (void)place, (void)held;
     return 0.0;
   }
+  /// The most of a force at once that its memory takes away in a tick at rest, as a share.
+  virtual double fade_ratio() const RT_SAFE { return 0.0; }
   /// MC-5: how far the site gives way along the surface under a unit force, in these axes. All 0:
   /// not known.
   virtual TangentGive tangent_give(const Place& place, bool held, const Axes& axes) const RT_SAFE {

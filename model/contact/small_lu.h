@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // small_lu.h - linear equations of at most N unknowns, factorised once and solved often, without
-// allocation: P A = L U by elimination with exchange of rows.
+// allocation: P A = L U by elimination, with exchange of rows where it is asked for.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 
 #include "model/rt.h"
 
 namespace tact::model::contact {
+
+/// The largest of its column, by exchange of rows; or the diagonal as it is, which is above 0 in
+/// every step if and only if a symmetric matrix is positive definite.
+enum class Pivot : std::uint8_t { kLargest, kDiagonal };
 
 template <std::size_t N>
 class SmallLu {
@@ -19,16 +24,17 @@ class SmallLu {
   using Square = std::array<std::array<double, N>, N>;  // [row][column]
   using Column = std::array<double, N>;
 
-  /// Of the first n rows and columns of a; false without a pivot: solve() is then not to be called.
-  bool factorise(const Square& a, std::size_t n) RT_SAFE {
-    constexpr double kMinPivot = 1e-6;
+  /// Of the first n rows and columns of a; false without a pivot above the least: solve() is then
+  /// not to be called.
+  bool factorise(const Square& a, std::size_t n, Pivot pivot, double least_pivot) RT_SAFE {
     n_ = n;
     for (std::size_t i = 0; i < n; ++i) std::copy_n(a[i].begin(), n, lu_[i].begin());
     for (std::size_t k = 0; k < n; ++k) {
       std::size_t best = k;
-      for (std::size_t i = k + 1; i < n; ++i)
+      for (std::size_t i = k + 1; pivot == Pivot::kLargest && i < n; ++i)
         if (std::abs(lu_[i][k]) > std::abs(lu_[best][k])) best = i;
-      if (!(std::abs(lu_[best][k]) > kMinPivot)) return false;
+      const double least = pivot == Pivot::kLargest ? std::abs(lu_[best][k]) : lu_[best][k];
+      if (!(least > least_pivot)) return false;
       if (best != k) std::swap(lu_[best], lu_[k]);
       row_[k] = best;
       const double inverse = 1.0 / lu_[k][k];

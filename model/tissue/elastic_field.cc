@@ -147,6 +147,13 @@ contact::SiteCoupling ElasticField::coupling(const contact::Indentation& a,
           .lobe_m_per_N = std::max(map_m_per_N, 0.0)};
 }
 
+double ElasticField::fade_ratio() const RT_SAFE {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < parts_.relaxation.terms(); ++i)
+    sum += parts_.relaxation.share(i + 1) * parts_.relaxation.rate_per_tick(i);
+  return sum;
+}
+
 double ElasticField::stiffest_N_per_m(const contact::Place& place, bool held) const RT_SAFE {
   if (parts_.curves.size() < 2) return stiffest_N_per_m_[0];
   if (!is_a_place(place, parts_.surface)) return 0.0;

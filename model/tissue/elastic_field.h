@@ -73,6 +73,7 @@ class ElasticField final : public contact::SiteLaw {
   contact::SiteCoupling coupling(const contact::Indentation& a, const contact::Indentation& b,
                                  double distance_m) const RT_SAFE override;
   double stiffest_N_per_m(const contact::Place& place, bool held) const RT_SAFE override;
+  double fade_ratio() const RT_SAFE override;
   contact::TangentGive tangent_give(const contact::Place& place, bool held,
                                     const contact::Axes& axes) const RT_SAFE override;
   void leave(std::size_t sphere) RT_SAFE override { now_[sphere] = next_[sphere] = {}; }

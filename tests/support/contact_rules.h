@@ -7,7 +7,7 @@
 //   c  outside and beyond the law's range: no force after 2 ranges of way, or after 0.2 s
 //   d  came from outside and not let go: going deeper with its centre inside gives force, by the
 //      third tick, and only saturation or a loss lets it go
-//   e  |dF| <= 10 K way + 1 uN; while a contact lets go, or its force lags, the way grows by the
+//   e  |dF| <= 10 K way + 0.1 mN; while a contact lets go, or its force lags, the way grows by the
 //      range in 0.1 s
 //   f  finite; with its centre outside and its contact point nearest: pulls it in by friction at
 //      most (the line to the proxy is not beside the surface, the force in the cone about it),
@@ -192,7 +192,7 @@ class ContactRules {
     const double fade_m = lets_go_ || now.is_unsettled || before_->is_unsettled
                               ? s_.range_m * now.periods * s_.period_s / kLetGo_s
                               : 0.0;
-    const double most_N = 10.0 * s_.max_slope_N_per_m * (moved_m_ + fade_m) + 1e-6;
+    const double most_N = 10.0 * s_.max_slope_N_per_m * (moved_m_ + fade_m) + 1e-4 * now.periods;
     if (jump_N <= most_N) return {};
     return say('e', "force jumps by " + std::to_string(1e3 * jump_N) + " mN, at most " +
                         std::to_string(1e3 * most_N));

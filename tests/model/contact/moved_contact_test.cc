@@ -153,10 +153,12 @@ TEST(MovedContact, LettingGoStoresNoMoreThanWasHeld) {
 TEST(MovedContact, BeginsWithoutTheDepthThatNoWayExplains) {
   Body body = rigid_plate();
   const ContactScene scene = body.scene();
-  MovedContact moved({.organ = scene.organ, .law = scene.law, .spheres = scene.spheres});
-  const Vec3 centre_m{1_mm, 2_mm, kRadius_m - 3_mm};
-  moved.begin(0, centre_m, 20U * 20U, 0.5_mm);
-  moved.move(0, centre_m, {});
+  MovedContact moved(scene);
+  const Sphere sphere{.radius_m = kRadius_m, .centre_m = {1_mm, 2_mm, kRadius_m - 3_mm}};
+  Site site;
+  site.place.triangle = 20U * 20U;
+  moved.begin(sphere, site, 0.5_mm);
+  moved.move(sphere);
   moved.respond();
   EXPECT_NEAR(moved.find(0)->slack_m, 2.5_mm, 1e-6);
   EXPECT_NEAR(moved.find(0)->force_N.z, body.tip.respond(0.5_mm).force_N, 1e-6);

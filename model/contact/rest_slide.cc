@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tissue's springs along the surface, and when a sphere slips: see contact.h.
+// The tissue's springs along the surface, and when a sphere slips: see rest_contact.h.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "model/contact/contact.h"
+#include "model/contact/rest_contact.h"
 
 namespace tact::model::contact {
 namespace {
@@ -41,47 +41,60 @@ Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N)
 
 // By the contact radius of its own dent, sqrt(R d): CT-1 for a << R. A held patch is as wide as the
 // sphere.
-Tensor2 Contact::give_m_per_N(std::size_t i) const RT_SAFE {
+Tensor2 RestContact::give_m_per_N(std::size_t i) const RT_SAFE {
   // Of the sphere, chosen: G of MC-5 grows without limit as a contact closes.
   constexpr double kMinRadius_ratio = 0.1;
   const double radius_m = scene_.spheres[i].radius_m;
-  if (touch_[i].state == TouchState::kHeld) return probe_[i].tangent_give.at(radius_m);
-  return probe_[i].tangent_give.at(std::clamp(std::sqrt(radius_m * std::max(touch_[i].dent_m, 0.0)),
-                                              kMinRadius_ratio * radius_m, radius_m));
+  if (sphere_[i].is_held) return sphere_[i].tangent_give.at(radius_m);
+  return sphere_[i].tangent_give.at(
+      std::clamp(std::sqrt(radius_m * std::max(pressing_[i].in.dent_m, 0.0)),
+                 kMinRadius_ratio * radius_m, radius_m));
 }
 
-TangentGive Contact::ask_tangent_give(std::size_t i, bool held) const RT_SAFE {
+TangentGive RestContact::ask_tangent_give(std::size_t i, bool held) const RT_SAFE {
   const double fixed_N_per_m = scene_.parameters.sliding_stiffness_N_per_m;
   if (!(fixed_N_per_m > 0.0))
-    return scene_.law->tangent_give(touch_[i].place, held, probe_[i].axes);
+    return scene_.law->tangent_give(sphere_[i].place, held, sphere_[i].axes);
   return {.rest_m_per_N = {.xx = 1.0 / fixed_N_per_m, .yy = 1.0 / fixed_N_per_m}};
 }
 
 // A sphere without force: any spring is free.
-void Contact::start_tangent_spring(std::size_t i) RT_SAFE {
-  probe_[i].give_triangle = touch_[i].place.triangle;
+void RestContact::start_tangent_spring(std::size_t i) RT_SAFE {
+  sphere_[i].give_triangle = sphere_[i].place.triangle;
   // The least that this spring can become, held and as wide as the sphere,
   // bounds its couplings: they stay definite however it stiffens.
-  probe_[i].tangent_give = ask_tangent_give(i, false);
+  sphere_[i].tangent_give = ask_tangent_give(i, false);
   const double least_m_per_N =
       ask_tangent_give(i, true).at(scene_.spheres[i].radius_m).least_eigenvalue();
   shear_.set_own(i, {at_least(give_m_per_N(i), least_m_per_N), least_m_per_N});
 }
 
+// Without it the others share the shift; it goes where they have dragged it.
+void RestContact::drop_shift(std::size_t i) RT_SAFE {
+  Shear without = shear_;
+  without.leave(i);
+  without.solve();
+  Shear::Shifts f_N{};
+  for (std::size_t j = 0; j < kMaxSpheres; ++j) f_N[j] = without.force_N(shift_m_, j);
+  shift_m_[i] = shear_.unloaded_m(f_N, i);
+  start_tangent_spring(i);
+  shear_.solve();
+}
+
 // MC-7   t_i <- t_i + (G_i' - G_i) f_i,   G_i' < G_i
 // In steps of 1 %, and from triangle to triangle. Each keeps its force, so it needs less shift;
 // where it would need more, the spring stays as it is.
-void Contact::stiffen() RT_SAFE {
+void RestContact::stiffen() RT_SAFE {
   constexpr double kStep_ratio = 0.99;
   Shear::Shifts change_m{};
   bool is_stiffer = false;
-  for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
-    if (!in_contact_[i]) continue;
+  for (std::size_t i = 0; i < count(); ++i) {
+    if (!is_coupled_[i]) continue;
     const OwnGive before = shear_.own(i);
     double most_m_per_N = kStep_ratio * before.m_per_N.trace();
-    if (probe_[i].give_triangle != touch_[i].place.triangle) {
-      probe_[i].give_triangle = touch_[i].place.triangle;
-      probe_[i].tangent_give = ask_tangent_give(i, touch_[i].state == TouchState::kHeld);
+    if (sphere_[i].give_triangle != sphere_[i].place.triangle) {
+      sphere_[i].give_triangle = sphere_[i].place.triangle;
+      sphere_[i].tangent_give = ask_tangent_give(i, sphere_[i].is_held);
       most_m_per_N = std::numeric_limits<double>::infinity();
     }
     const Tensor2 now_m_per_N = give_m_per_N(i);
@@ -102,16 +115,16 @@ void Contact::stiffen() RT_SAFE {
 
 // t up to |f| = mu F; held tissue has no cap. One sphere's slip changes what the next one carries:
 // kSweeps over all, and what they leave above the cap is cut from the force alone.
-void Contact::resist_sliding() RT_SAFE {
+void RestContact::resist_sliding() RT_SAFE {
   constexpr int kSweeps = 4;
   for (int sweep = 0; sweep <= kSweeps; ++sweep) {
     bool slipped = false;
-    for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
-      if (!in_contact_[i]) continue;
+    for (std::size_t i = 0; i < count(); ++i) {
+      if (!is_coupled_[i]) continue;
       const Vec2 spring_N = shear_.force_N(shift_m_, i);
       shear_N_[i] = spring_N;
       const double cap_N = scene_.parameters.friction_ratio * pressing_[i].response.law.force_N;
-      if (touch_[i].state == TouchState::kHeld || !(norm(spring_N) > cap_N * kAboveCap)) continue;
+      if (sphere_[i].is_held || !(norm(spring_N) > cap_N * kAboveCap)) continue;
       slipped = true;
       const Tensor2 own_N_per_m = shear_.own_N_per_m(i);
       shear_N_[i] = slipping_N(spring_N, own_N_per_m, cap_N);

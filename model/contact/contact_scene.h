@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// contact_scene.h - what contact is made of.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "model/contact/blade.h"
+#include "model/contact/site_law.h"
+#include "model/contact/sphere.h"
+#include "model/contact/triangle_tree.h"
+
+namespace tact::model::contact {
+
+struct BendingOrgan;  // moved_contact.h
+
+struct ContactParameters {
+  double friction_ratio = 0.0;             // mu, >= 0
+  double sliding_stiffness_N_per_m = 0.0;  // 1 / G, >= 0; 0: the tissue's own, by its law
+  double tear_force_N = 0.0;               // of one sphere, > 0
+  double grip_close_ratio = 0.7;           // closing above this holds
+  double grip_open_ratio = 0.5;            // opening below this lets go
+};
+
+/// Everything outlives the contact.
+struct ContactScene {
+  SiteLaw* law = nullptr;  // may remember: one contact each
+  ContactParameters parameters;
+  std::span<const ProbeSphere> spheres;  // 1 to kMaxSpheres
+  SurfaceView surface;
+  TriangleTreeView tree;  // of the surface
+  // Not null: the organ bends, and `law` is that of the tip alone. Null: it stays as drawn.
+  const BendingOrgan* organ = nullptr;
+  std::optional<Blade> blade;  // cuts what it passes through
+  double period_s = 1e-3;      // of the loop
+};
+
+}  // namespace tact::model::contact

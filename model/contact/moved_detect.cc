@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the spheres on a moved organ are: what stays, what leaves, what must let go.
+#include <algorithm>
+
+#include "model/contact/detect.h"
+#include "model/contact/moved_contact.h"
+
+namespace tact::model::contact {
+namespace {
+
+// Of the organ at rest, which does not move under a sphere that is alone.
+bool is_free_at_rest(const ContactScene& scene, const Sphere& sphere) RT_SAFE {
+  const Site site =
+      nearest_site(scene.tree, scene.surface, sphere.centre_m, sphere.radius_m, sphere.near);
+  return !(site.distance_m < sphere.radius_m);
+}
+
+}  // namespace
+
+// A sphere that presses stays. One without force is searched for again: it may be in the dent of
+// another sphere, at another part of the organ, or outside.
+Step MovedContact::step(Sphere& sphere, const Vec3&) RT_SAFE {
+  OrganSphere& b = *at(sphere.index);
+  if (sphere.unsolved_ratio >= 1.0) return Step::kLost;
+  if (b.is_held || b.indentation_m > 0.0) {
+    if (!b.is_pressing) sphere.clear_m = -kAnywhere_m;  // from now on of the organ at rest
+    b.is_pressing = true;
+    return Step::kTouches;
+  }
+  if (b.is_pressing) sphere.clear_m = -kAnywhere_m;
+  b.is_pressing = false;
+  // The organ moves under it, too.
+  sphere.clear_m -= norm(b.shift_m - b.seen_shift_m);
+  b.seen_shift_m = b.shift_m;
+  if (sphere.lets_go) return Step::kLeaves;
+  if (sphere.clear_m > 0.0) return Step::kTouches;
+  const double within_m = (1.0 + kAhead_ratio) * b.radius_m;
+  const Vec3 y_m = b.y_m + (sphere.centre_m - b.centre_m);
+  const Site on_organ =
+      nearest_site(scene_.tree, scene_.surface, y_m, within_m, b.at.place.triangle);
+  sphere.clear_m = std::min(on_organ.distance_m, within_m) - b.radius_m;
+  const bool is_elsewhere = norm(on_organ.point_m - b.at.point_m) > b.radius_m;
+  const bool leaves = sphere.clear_m > 0.0 ? is_free_at_rest(scene_, sphere) : is_elsewhere;
+  return leaves ? Step::kLeaves : Step::kTouches;
+}
+
+bool MovedContact::is_beyond(const OrganSphere& b) const RT_SAFE {
+  return b.tip.status == law::LawStatus::kSaturated || norm(b.shift_m) > scene_.organ->range_m;
+}
+
+// Outside of the organ at rest and beyond its law; or outside of the organ as it is moved, with
+// nothing of it between the sphere and its place.
+bool MovedContact::must_let_go(Sphere& sphere) RT_SAFE {
+  OrganSphere& b = *at(sphere.index);
+  if (!(b.indentation_m > 0.0)) return false;
+  if (is_beyond(b) && is_outside(scene_, sphere)) return true;
+  // Over its place.
+  if (b.height_m > -b.radius_m && norm(b.tangential_m) < b.radius_m) return false;
+  b.deep_m -= norm(b.y_m - b.seen_y_m);
+  b.seen_y_m = b.y_m;
+  if (b.deep_m > 0.0) return false;
+  const Site site =
+      nearest_site(scene_.tree, scene_.surface, b.y_m, kAnywhere_m, b.at.place.triangle);
+  b.deep_m = b.radius_m - site.distance_m;
+  return !(b.deep_m > 0.0) && is_open_way(scene_, b.at.point_m, b.y_m);
+}
+
+// Its depth and the organ's shift shrink to 0 together.
+double MovedContact::cut_to_law_m(std::size_t sphere) RT_SAFE {
+  const OrganSphere& b = *at(sphere);
+  const double range_m = scene_.organ->range_m;
+  const double left_m = std::min(b.indentation_m, range_m) + norm(b.shift_m);
+  add_slack(sphere, std::max(0.0, b.indentation_m - range_m));
+  return left_m;
+}
+
+}  // namespace tact::model::contact

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/contact/rest_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/contact/detect.h"
+
+namespace tact::model::contact {
+namespace {
+
+// The part of a tangential vector along which the nearest point can move: all of it on a face, the
+// edge's share on an edge, nothing in a vertex.
+Vec3 movable(const SurfaceView& s, const Place& place, const Vec3& v) RT_SAFE {
+  const TriangleCorners& corner = s.triangle[place.triangle];
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (place.weight[i] != 0.0) continue;
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    if (place.weight[j] == 0.0 || place.weight[k] == 0.0) return {};
+    const Vec3 along = normalized(s.vertex_m[corner[k]] - s.vertex_m[corner[j]]);
+    return dot(v, along) * along;
+  }
+  return v;
+}
+
+}  // namespace
+
+void RestContact::reset() RT_SAFE {
+  sphere_ = {};
+  pressing_ = {};
+  is_coupled_ = {};
+  coupling_ = {};
+  shear_ = {};
+  shift_m_ = shear_N_ = {};
+  energy_J_ = 0.0;
+}
+
+void RestContact::begin(const Sphere& sphere, const Site& site, double paid_m) RT_SAFE {
+  constexpr double kRounding_m = 1e-12;
+  RestSphere& s = sphere_[sphere.index];
+  s.centre_m = sphere.centre_m;
+  s.proxy.restart(site, sphere.radius_m);
+  const double unpaid_m = sphere.radius_m - site.distance_m - paid_m;
+  s.unpaid_m = unpaid_m > kRounding_m ? unpaid_m : 0.0;
+  pressing_[sphere.index].presses = true;
+}
+
+void RestContact::leave(std::size_t i) RT_SAFE {
+  sphere_[i] = {};
+  pressing_[i] = {};
+  shift_m_[i] = shear_N_[i] = {};
+}
+
+Step RestContact::step(Sphere& sphere, const Vec3& moved_m) RT_SAFE {
+  RestSphere& s = sphere_[sphere.index];
+  s.proxy.follow(scene_.surface, sphere.centre_m, moved_m, sphere.radius_m);
+  s.unpaid_m += s.proxy.lengthened_m();
+  if (s.is_held) return Step::kTouches;
+  // Slack takes up all of its depth: what it touches may be another part of the organ by now.
+  const bool is_all_slack = s.slack_m > 0.0 && !(pressing_[sphere.index].depth_m > 0.0);
+  return s.proxy.site().distance_m < sphere.radius_m && !is_all_slack ? Step::kTouches
+                                                                      : Step::kLeaves;
+}
+
+// d and t of this tick; e follows d as a first guess.
+void RestContact::move(const Sphere& sphere) RT_SAFE {
+  const std::size_t i = sphere.index;
+  RestSphere& s = sphere_[i];
+  PressingSphere& pressing = pressing_[i];
+  s.centre_m = sphere.centre_m;
+  s.moved_m = sphere.moved_m;
+  s.velocity_mps = sphere.velocity_mps;
+  s.reach_m = sphere.radius_m - s.proxy.site().distance_m;
+  // e moves by what d moves: the guess from which MC-1 is solved is then near.
+  const double before_m = pressing.depth_m;
+  if (s.is_held) {
+    pressing.depth_m = s.held_depth_m - dot(sphere.centre_m - s.held_centre_m, s.normal);
+  } else {
+    move_to_proxy(i);
+    // d = r - phi - slack
+    s.slack_m = std::clamp(s.slack_m + s.unpaid_m, 0.0, std::max(s.reach_m, 0.0));
+    pressing.depth_m = s.reach_m - s.slack_m;
+    if (pressing.response.law.status != law::LawStatus::kSaturated)
+      s.within_law_m = pressing.in.dent_m;
+  }
+  s.unpaid_m = 0.0;
+  shift_m_[i] = shift_m_[i] + s.axes.of(sphere.moved_m);
+  pressing.in.dent_m += pressing.depth_m - before_m;
+}
+
+// Where the proxy is. The axes turn with the normal, t and f with them: that takes no energy.
+void RestContact::move_to_proxy(std::size_t i) RT_SAFE {
+  RestSphere& s = sphere_[i];
+  const Site& site = s.proxy.site();
+  s.place = site.place;
+  s.point_m = site.point_m;
+  // A press straight down turns nothing: axes that are not made anew do not drift.
+  if (site.normal == s.normal && s.axes.unit[0] != Vec3{}) return;
+  s.normal = site.normal;
+  s.axes = axes_of(s.normal, s.axes);
+}
+
+// A thin part that the sphere has pushed ahead stays between it and its place.
+bool RestContact::must_let_go(Sphere& sphere) RT_SAFE {
+  const RestSphere& s = sphere_[sphere.index];
+  const bool is_beyond = pressing_[sphere.index].response.law.status == law::LawStatus::kSaturated;
+  const Site& site = s.proxy.site();
+  // At the nearest point of the side it came from, and nearer than its radius.
+  if (!is_beyond && !s.proxy.lags() && site.distance_m > 0.0) return false;
+  return is_outside(scene_, sphere) &&
+         (is_beyond || is_open_way(scene_, site.point_m, sphere.centre_m));
+}
+
+double RestContact::cut_to_law_m(std::size_t i) RT_SAFE {
+  const double dent_m = pressing_[i].in.dent_m;
+  const double within_m = std::clamp(sphere_[i].within_law_m, 0.0, std::max(dent_m, 0.0));
+  add_slack(i, dent_m > 0.0 ? dent_m - within_m : pressing_[i].depth_m);
+  return within_m;
+}
+
+// d becomes smaller, and so it stays.
+void RestContact::add_slack(std::size_t i, double depth_m) RT_SAFE {
+  RestSphere& s = sphere_[i];
+  PressingSphere& pressing = pressing_[i];
+  if (!pressing.presses) return;
+  if (s.is_held) {
+    s.held_depth_m -= depth_m;
+    pressing.depth_m -= depth_m;
+  } else {
+    s.slack_m = std::clamp(s.slack_m + depth_m, 0.0, std::max(s.reach_m, 0.0));
+    pressing.depth_m = s.reach_m - s.slack_m;
+  }
+}
+
+// This order holds: couplings before forces.
+void RestContact::respond() RT_SAFE {
+  couple_new_spheres();
+  keep_definite();
+  press();
+}
+
+// A sphere that has just come couples with those that are there, for as long as it stays. It meets
+// tissue that they have dragged along: its own spring is at rest there.
+void RestContact::couple_new_spheres() RT_SAFE {
+  const std::array<bool, kMaxSpheres> before = is_coupled_;
+  for (std::size_t i = 0; i < kMaxSpheres; ++i) is_coupled_[i] = pressing_[i].presses;
+  // Couplings stay from touch to release: MC-3 is a potential only while C is constant. Own springs
+  // come first, as couple() bounds each pair by both of them.
+  if (is_coupled_ == before) return;
+  for (std::size_t i = 0; i < kMaxSpheres; ++i)
+    if (!is_coupled_[i])
+      shear_.leave(i);
+    else if (!before[i])
+      start_tangent_spring(i);
+  for (std::size_t i = 0; i < kMaxSpheres; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (!is_coupled_[i] || !is_coupled_[j])
+        coupling_[i][j] = coupling_[j][i] = 0.0;
+      else if (!before[i] || !before[j])
+        couple_pair(i, j);
+  shear_.solve();
+  // MC-4 for f_i = 0:  t_i <- t_i + sum over j != i of c_ij P_ij f_j, by the forces f of the tick
+  // before; then exactly  t_i <- t_i - K_ii^-1 f_i,  f = K t,  K = (diag(G) + c P)^-1
+  for (std::size_t i = 0; i < kMaxSpheres; ++i)
+    if (is_coupled_[i] && !before[i]) {
+      shift_m_[i] = shift_m_[i] + shear_.unloaded_m(shear_N_, i);
+      shift_m_[i] =
+          shift_m_[i] - contact::solve(shear_.own_N_per_m(i), shear_.force_N(shift_m_, i));
+    }
+}
+
+// On the other's bulge the one that has just come would meet energy that nobody gave: that much is
+// slack. Of the two, only one presses yet.
+void RestContact::couple_pair(std::size_t i, std::size_t j) RT_SAFE {
+  const SiteCoupling along = scene_.law->coupling(indentation(i), indentation(j),
+                                                  norm(sphere_[i].centre_m - sphere_[j].centre_m));
+  shear_.couple(i, j, along.skin_m_per_N + along.lobe_m_per_N, sphere_[i].axes, sphere_[j].axes);
+  const double c = coupling_m_per_N(along, sphere_[i].normal, sphere_[j].normal);
+  coupling_[i][j] = coupling_[j][i] = c;
+  add_slack(i, std::max(0.0, -c * pressing_[j].response.law.force_N));
+  add_slack(j, std::max(0.0, -c * pressing_[i].response.law.force_N));
+}
+
+Indentation RestContact::indentation(std::size_t i) const RT_SAFE {
+  const RestSphere& s = sphere_[i];
+  return {.sphere = i,
+          .place = s.place,
+          .normal = s.normal,
+          .dent_m = pressing_[i].in.dent_m,
+          .held = s.is_held,
+          .speed_mps = -dot(s.velocity_mps, s.normal)};
+}
+
+void RestContact::press() RT_SAFE {
+  for (std::size_t i = 0; i < count(); ++i) pressing_[i].in = indentation(i);
+  energy_J_ = press_together(*scene_.law, coupling_, pressing());
+}
+
+// MC-6   C <- q C,   slack_i <- slack_i + (1 - q) sum over j of C_ij F_j
+// Sites that are too stiff for their coupling could have two solutions at some depth. Then C
+// becomes smaller, and what presses gets slack for it: its force stays, and the change gives no
+// energy.
+void RestContact::keep_definite() RT_SAFE {
+  if (std::count(is_coupled_.begin(), is_coupled_.end(), true) < 2) return;
+  std::array<double, kMaxSpheres> stiffest_N_per_m{};
+  for (std::size_t i = 0; i < count(); ++i)
+    if (is_coupled_[i])
+      stiffest_N_per_m[i] = scene_.law->stiffest_N_per_m(sphere_[i].place, sphere_[i].is_held);
+  const double share = definite_share(coupling_, stiffest_N_per_m);
+  if (share >= 1.0) return;
+  std::array<double, kMaxSpheres> spared_m{};
+  double spared_J = 0.0;
+  for (std::size_t i = 0; i < count(); ++i) {
+    if (!pressing_[i].presses) continue;
+    spared_m[i] = (1.0 - share) * sunk_m(coupling_, pressing(), i);
+    spared_J += pressing_[i].response.law.force_N * spared_m[i];
+  }
+  // A pull beside a press: scaling C would give energy here.
+  if (!(spared_J >= 0.0)) return;
+  for (std::size_t i = 0; i < count(); ++i) add_slack(i, spared_m[i]);
+  for (auto& row : coupling_)
+    for (double& m_per_N : row) m_per_N *= share;
+}
+
+// A sphere that hangs in the dent of another has nothing to hold.
+bool RestContact::hold(std::size_t i) RT_SAFE {
+  RestSphere& s = sphere_[i];
+  if (!(pressing_[i].in.dent_m > 0.0)) return false;
+  // The frame of this moment: the depth goes on from what it is, so gripping itself moves nothing.
+  s.held_centre_m = s.centre_m;
+  s.give_triangle = kNoTriangle;  // held, it gives less
+  s.held_depth_m = pressing_[i].depth_m;
+  s.is_held = is_held_anew_ = true;
+  return true;
+}
+
+double RestContact::pull_N(std::size_t i) const RT_SAFE {
+  return std::hypot(std::max(0.0, -pressing_[i].response.law.force_N),
+                    norm(shear_.force_N(shift_m_, i)));
+}
+
+// MC-8   d' = max d in 0 .. min(d_now, d_held) with W(d) <= W_held
+// Back to the surface, with no stored shift and no deeper than it was held. Tissue may be stiffer
+// where the tool has been dragged to. So the depth is the largest at which the whole tool stores no
+// more than before. Pressed tissue keeps its memory: relaxation that was forgotten would come back
+// as a stiffer push.
+bool RestContact::release(std::size_t i) RT_SAFE {
+  // MC-8: 1/4096 of the depth. Each one solves the whole tool, so they are few.
+  constexpr int kHalvings = 12;
+  RestSphere& s = sphere_[i];
+  PressingSphere& pressing = pressing_[i];
+  const double held_J = energy_J_, held_m = pressing.depth_m;
+  // Pulled out already: nothing to go back to.
+  if (!(s.reach_m > 0.0)) {
+    leave(i);
+    scene_.law->leave(i);
+    couple_new_spheres();
+    press();
+    return false;
+  }
+  s.is_held = false;
+  move_to_proxy(i);
+  const auto affords = [&](double depth_m) RT_SAFE {
+    pressing.in.dent_m += depth_m - pressing.depth_m;
+    pressing.depth_m = depth_m;
+    press();
+    return energy_J_ <= held_J;
+  };
+  double low_m = 0.0, high_m = std::max(0.0, std::min(s.reach_m, held_m));
+  if (affords(high_m)) low_m = high_m;
+  for (int k = 0; k < kHalvings && low_m < high_m; ++k) {
+    const double middle_m = 0.5 * (low_m + high_m);
+    (affords(middle_m) ? low_m : high_m) = middle_m;
+  }
+  s.slack_m = s.reach_m - low_m;
+  if (!(low_m > 0.0)) scene_.law->leave(i);
+  // Once more, as the last depth tried may be another: answers and dents become those of low_m.
+  affords(low_m);
+  drop_shift(i);
+  return true;
+}
+
+// Friction last, as its cap is the force of the press.
+void RestContact::finish() RT_SAFE {
+  if (is_held_anew_) press();
+  is_held_anew_ = false;
+  stiffen();
+  resist_sliding();
+}
+
+// F = (F(e) + b d') n - f - dU/ds
+OrganForce RestContact::tell(const Sphere& sphere, SphereTouch& told) const RT_SAFE {
+  const std::size_t i = sphere.index;
+  const RestSphere& s = sphere_[i];
+  const SiteResponse& site = pressing_[i].response;
+  const Vec2 &f_N = shear_N_[i], &t_m = shift_m_[i];
+  told.law_status = site.law.status;
+  told.place = s.place;
+  told.surface_point_m = s.point_m;
+  told.normal = s.normal;
+  told.shift_m = s.axes.vector(t_m);
+  told.depth_m = pressing_[i].depth_m;
+  told.dent_m = pressing_[i].in.dent_m;
+  told.slack_m = s.slack_m;
+  told.energy_J = site.law.energy_J + 0.5 * site.law.force_N * sunk_m(coupling_, pressing(), i) +
+                  0.5 * dot(f_N, t_m);
+  Vec3 force_N = site.law.force_N * s.normal - s.axes.vector(f_N);
+  // dU/ds belongs to a place that follows the tool; held tissue and a proxy that lags do not.
+  if (!s.is_held && !s.proxy.lags()) force_N -= movable(scene_.surface, s.place, site.slope_N);
+  return {force_N, scene_.law->resistance_N(pressing_[i].in, site.law.force_N) * s.normal};
+}
+
+}  // namespace tact::model::contact

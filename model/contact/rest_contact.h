@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// rest_contact.h - spheres of one tool on an organ that stays as it was drawn.
+//
+// One potential for each sphere (c: centre, r: radius, phi: signed distance of c to the surface,
+// n = grad phi; of the surface at the proxy, proxy.h):
+//
+//   touching  W = U(e, s) + f . t / 2,   d = r - phi - slack,   |f| <= mu F  (Coulomb cap)
+//   held      W = U(e, s) + f . t / 2,   d, s and t measured in the frame of the moment of
+//             gripping, no cap, d may be negative (pull)
+//
+// U is the site law's (site_law.h), s the place on the surface; as s follows the tool, the slope of
+// U along the surface is felt too. t: tangential displacement of the tissue, m, f = K t (shear.h),
+// in axes that turn with n. The springs stiffen as the contact grows and stay so until the sphere
+// leaves; stiffening keeps the force and lowers the stored energy. On another triangle the springs
+// are those of the new place, if that stores no more energy at the same force.
+//
+// The law is asked with the sphere's own dent e: d less what the other spheres have sunk the site
+// (coupling.h). How they couple is kept from a sphere's first touch until it leaves. Damping (LW-3)
+// is added last: b of the dent, times the speed of the sphere's own depth, so that each sphere
+// takes energy by itself.
+//
+// rest_contact.cc: how deep, how hard, held and let go. rest_slide.cc: forces along the surface.
+#pragma once
+
+#include "model/contact/contact_scene.h"
+#include "model/contact/coupling.h"
+#include "model/contact/organ_contact.h"
+#include "model/contact/proxy.h"
+#include "model/contact/shear.h"
+
+namespace tact::model::contact {
+
+/// A sphere that touches.
+struct RestSphere {
+  bool is_held = false;
+  Vec3 centre_m, moved_m, velocity_mps;  // of this tick
+  Proxy proxy;
+  double unpaid_m = 0.0;  // of the depth, since the last tick: no movement led there
+  double reach_m = 0.0;   // r - phi
+  double slack_m = 0.0;
+  double within_law_m = 0.0;  // e of the last tick within the range of the law
+  // Frame of d and t
+  Place place;
+  Vec3 point_m, normal;
+  Axes axes;
+  Vec3 held_centre_m;
+  double held_depth_m = 0.0;
+  TangentGive tangent_give;  // of give_triangle
+  std::uint32_t give_triangle = kNoTriangle;
+};
+
+class RestContact final : public OrganContact {
+ public:
+  explicit RestContact(const ContactScene& scene) : scene_(scene) {}
+
+  void reset() RT_SAFE override;
+  void begin(const Sphere& sphere, const Site& site, double paid_m) RT_SAFE override;
+  void leave(std::size_t i) RT_SAFE override;
+  Step step(Sphere& sphere, const Vec3& moved_m) RT_SAFE override;
+  void move(const Sphere& sphere) RT_SAFE override;
+  bool must_let_go(Sphere& sphere) RT_SAFE override;
+  double cut_to_law_m(std::size_t i) RT_SAFE override;
+  void add_slack(std::size_t i, double depth_m) RT_SAFE override;
+  void respond() RT_SAFE override;
+  double pull_N(std::size_t i) const RT_SAFE override;
+  bool release(std::size_t i) RT_SAFE override;
+  bool hold(std::size_t i) RT_SAFE override;
+  void finish() RT_SAFE override;
+  bool is_solved() const RT_SAFE override { return true; }
+  OrganForce tell(const Sphere& sphere, SphereTouch& told) const RT_SAFE override;
+  void advance() RT_SAFE override {}
+
+ private:
+  std::size_t count() const RT_SAFE { return scene_.spheres.size(); }
+  std::span<PressingSphere> pressing() RT_SAFE { return {pressing_.data(), count()}; }
+  std::span<const PressingSphere> pressing() const RT_SAFE { return {pressing_.data(), count()}; }
+  void move_to_proxy(std::size_t i) RT_SAFE;
+  void couple_new_spheres() RT_SAFE;
+  void couple_pair(std::size_t i, std::size_t j) RT_SAFE;
+  void keep_definite() RT_SAFE;
+  Indentation indentation(std::size_t i) const RT_SAFE;
+  void press() RT_SAFE;
+  // rest_slide.cc
+  Tensor2 give_m_per_N(std::size_t i) const RT_SAFE;
+  TangentGive ask_tangent_give(std::size_t i, bool held) const RT_SAFE;
+  void start_tangent_spring(std::size_t i) RT_SAFE;
+  void drop_shift(std::size_t i) RT_SAFE;
+  void stiffen() RT_SAFE;
+  void resist_sliding() RT_SAFE;
+
+  ContactScene scene_;
+  std::array<RestSphere, kMaxSpheres> sphere_{};
+  std::array<PressingSphere, kMaxSpheres> pressing_{};  // d and e
+  std::array<bool, kMaxSpheres> is_coupled_{};          // with those that touched before
+  Coupling coupling_{};                                 // C as it is felt
+  Shear shear_;
+  Shear::Shifts shift_m_{}, shear_N_{};  // t, f
+  double energy_J_ = 0.0;                // of all presses
+  bool is_held_anew_ = false;            // in this tick
+};
+
+}  // namespace tact::model::contact
