@@ -14,31 +14,34 @@ void Proxy::restart(const Site& site, double radius_m) RT_SAFE {
   site_ = site;
   outward_ = site.normal;
   offset_m_ = site.point_m + radius_m * outward_;
-  lags_ = is_turned_ = false;
+  lags_ = false;
   lengthened_m_ = 0.0;
 }
 
 void Proxy::follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& moved_m,
                    double radius_m) RT_SAFE {
+  const double before_m = radius_m - site_.distance_m;
+  const Vec3 normal_before = site_.normal;
+  const bool lagged = lags_;
+  place(surface, p_m, norm(tangential(moved_m, normal_before)), radius_m);
+  // Where g is nearest, the depth is a function of p alone. Else its work decides: the trapezium
+  // rule over both normals.
+  const double led_m = -0.5 * dot(normal_before + site_.normal, moved_m);
+  lengthened_m_ = lagged || lags_ ? radius_m - site_.distance_m - before_m - led_m : 0.0;
+}
+
+void Proxy::place(const SurfaceView& surface, const Vec3& p_m, double across_m,
+                  double radius_m) RT_SAFE {
   const Site nearest = contact::follow(surface, site_.place.triangle, p_m);
   const Vec3 goal_m = nearest.point_m + radius_m * nearest.normal;
-  const double most_m = kSlide_ratio * norm(tangential(moved_m, site_.normal));
-  // A depth that is turned is no distance: by the work of its force.
-  const double explained_m = radius_m - site_.distance_m - dot(moved_m, site_.normal);
-  const double before_m = is_turned_ ? explained_m : norm(depth_m(p_m));
-  if (norm(goal_m - offset_m_) <= most_m + kRounding_m) {
-    restart(nearest, radius_m);
-    lengthened_m_ = radius_m - nearest.distance_m - before_m;
-    return;
-  }
+  const double most_m = kSlide_ratio * across_m;
+  if (norm(goal_m - offset_m_) <= most_m + kRounding_m) return restart(nearest, radius_m);
   slide(surface, goal_m, most_m, radius_m);
-  const Vec3 whole_m = depth_m(p_m), line_m = outward_of(nearest, whole_m, radius_m);
-  is_turned_ = line_m != whole_m;
+  const Vec3 line_m = outward_of(nearest, depth_m(p_m), radius_m);
   const double length_m = norm(line_m);
   site_.distance_m = radius_m - length_m;
   site_.normal = length_m > 0.0 ? line_m / length_m : outward_;
   lags_ = true;
-  lengthened_m_ = length_m - (is_turned_ ? explained_m : before_m);
 }
 
 // Of the line from p to g, what lies along the surface, and what points out of the organ.

@@ -30,7 +30,8 @@ class Proxy {
   const Site& site() const RT_SAFE { return site_; }
   /// It is not at the nearest point.
   bool lags() const RT_SAFE { return lags_; }
-  /// By how much the last move of g made the depth larger, m, the sphere at rest; below 0: smaller.
+  /// By how much the depth became larger in the last move than the work of its force explains, m;
+  /// below 0: smaller.
   double lengthened_m() const RT_SAFE { return lengthened_m_; }
 
   /// The sphere comes from outside, to this site.
@@ -40,6 +41,7 @@ class Proxy {
               double radius_m) RT_SAFE;
 
  private:
+  void place(const SurfaceView& surface, const Vec3& p_m, double across_m, double radius_m) RT_SAFE;
   Vec3 depth_m(const Vec3& p_m) const RT_SAFE;
   Vec3 outward_of(const Site& nearest, const Vec3& line_m, double radius_m) const RT_SAFE;
   void slide(const SurfaceView& surface, const Vec3& goal_m, double way_m, double radius_m) RT_SAFE;
@@ -47,7 +49,7 @@ class Proxy {
   Site site_;
   Vec3 offset_m_;  // g
   Vec3 outward_;   // of the offset surface in g, unit
-  bool lags_ = false, is_turned_ = false;
+  bool lags_ = false;
   double lengthened_m_ = 0.0;
 };
 
