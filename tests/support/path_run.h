@@ -193,8 +193,8 @@ struct PathCase {
 struct PathCounts {
   std::size_t paths = 0, ticks = 0;
   int lags = 0, pauses = 0, forks = 0, unsettled = 0;
-  std::map<char, int> broken;  // paths, by rule
-  std::string first;           // of each rule, for people
+  std::map<char, std::vector<std::uint32_t>> broken;  // seeds of the paths, by rule
+  std::string first;                                  // of each rule, for people
 
   void run(const PathCase& c, const ContactSurface& surface, const BruteForce& body) {
     std::vector<model::contact::ProbeSphere> spheres{{{}, c.radius_m}};
@@ -210,9 +210,6 @@ struct PathCounts {
     forks += result.forks;
     unsettled += result.unsettled;
     for (const auto& [rule, at] : result.broken) {
-      if (std::getenv("TACT_DBG"))
-        std::fprintf(stderr, "BREACH %s %c seed %u fr %g forceps %d tick %zu %s\n", c.name.c_str(),
-                     rule, c.seed, c.friction, c.is_forceps, at.tick, at.what.c_str());
       if (broken[rule]++ > 0) continue;
       const Path small = shrink(soft, body, path, rule);
       const PathResult again = run_path(soft, body, small);
@@ -230,34 +227,43 @@ struct PathCounts {
                       std::to_string(pauses) + " pauses, " + std::to_string(forks) + " forks, " +
                       std::to_string(unsettled) + " unsettled, " + std::to_string(lags) +
                       " lags; paths that break a rule:";
-    for (const auto& [rule, n] : broken)
-      out += " " + std::string(1, rule) + " " + std::to_string(n);
+    for (const auto& [rule, seeds] : broken) {
+      out += std::string(" ") + rule + " by seeds";
+      for (const std::uint32_t seed : seeds) out += " " + std::to_string(seed);
+    }
     return out;
   }
 };
 
-/// Seeds in a row until so many ticks have run: one sphere or two, smooth or rough.
+/// One sphere or two, smooth or rough.
+inline PathCase case_of(const std::string& name, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  PathCase c{.name = name, .seed = seed};
+  c.radius_m = std::uniform_real_distribution<double>(1e-3, 6e-3)(random);
+  c.is_forceps = seed % 5 == 0;
+  if (c.is_forceps) c.radius_m = 4e-3;
+  c.friction = seed % 2 == 0 ? 0.4 : 0.0;
+  return c;
+}
+
+/// Seeds in a row until so many ticks have run.
 inline PathCounts run_random_paths(const std::string& name, model::mesh::SurfaceMesh mesh,
                                    std::size_t ticks) {
   const ContactSurface surface(std::move(mesh));
   const BruteForce body(surface.mesh.vertex_m, surface.mesh.triangle);
   PathCounts counts;
-  const char* only = std::getenv("TACT_SEEDS");
-  for (std::uint32_t seed = 1; counts.ticks < ticks; ++seed) {
-    if (only != nullptr) {
-      if (seed > 5000) break;
-      if ((std::string(",") + only + ",").find("," + std::to_string(seed) + ",") ==
-          std::string::npos)
-        continue;
-    }
-    std::mt19937 random(seed);
-    PathCase c{.name = name, .seed = seed};
-    c.radius_m = std::uniform_real_distribution<double>(1e-3, 6e-3)(random);
-    c.is_forceps = seed % 5 == 0;
-    if (c.is_forceps) c.radius_m = 4e-3;
-    c.friction = seed % 2 == 0 ? 0.4 : 0.0;
-    counts.run(c, surface, body);
-  }
+  for (std::uint32_t seed = 1; counts.ticks < ticks; ++seed)
+    counts.run(case_of(name, seed), surface, body);
+  return counts;
+}
+
+/// Paths that once broke a rule.
+inline PathCounts run_paths_of(const std::string& name, model::mesh::SurfaceMesh mesh,
+                               const std::vector<std::uint32_t>& seeds) {
+  const ContactSurface surface(std::move(mesh));
+  const BruteForce body(surface.mesh.vertex_m, surface.mesh.triangle);
+  PathCounts counts;
+  for (const std::uint32_t seed : seeds) counts.run(case_of(name, seed), surface, body);
   return counts;
 }
 

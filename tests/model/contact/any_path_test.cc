@@ -64,4 +64,31 @@ INSTANTIATE_TEST_SUITE_P(Bodies, AnyPath,
                                            "two_sheets", "two_lobes", "torus", "bladder", "ball",
                                            "box", "box_of_few"));
 
+// Paths of earlier long runs, each of which broke a rule.
+void expect_kept(const std::string& name, const std::vector<std::uint32_t>& seeds) {
+  const tests::PathCounts counts = tests::run_paths_of(name, body_of(name), seeds);
+  EXPECT_TRUE(counts.broken.empty()) << name << ": " << counts.summary() << "\n" << counts.first;
+}
+
+TEST(AnyPathFound, RoundAnEdgeALaggingProxyPullsNothingIn) {
+  expect_kept("flap_1mm", {272, 416, 739, 824, 1156, 1244});
+  expect_kept("flap_2mm", {1257});
+  expect_kept("flap_3mm_bent", {736});
+  expect_kept("flap_12mm_bent", {864});
+  expect_kept("box", {527});
+}
+
+TEST(AnyPathFound, DepthOffsetDoesNotShrinkBySliding) {
+  expect_kept("two_lobes", {269, 807, 843, 1157});
+  expect_kept("two_sheets", {1167});
+  expect_kept("bladder", {437});
+}
+
+TEST(AnyPathFound, AForceThatWouldJumpFollows) {
+  expect_kept("flap_4mm", {871, 889, 921});
+  expect_kept("two_lobes", {837, 1263, 1291});
+}
+
+TEST(AnyPathFound, APauseBesideAForkIsNoPauseOfItsOwn) { expect_kept("flap_12mm_bent", {704}); }
+
 }  // namespace tact::model::contact::any_path_test

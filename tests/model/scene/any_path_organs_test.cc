@@ -25,4 +25,28 @@ TEST_P(AnyPathOrgan, KeepsTheRulesOfContact) {
 INSTANTIATE_TEST_SUITE_P(Shipped, AnyPathOrgan,
                          ::testing::Values("liver", "heart", "skin", "gum", "maintenance"));
 
+// Paths of earlier long runs, each of which broke a rule.
+void expect_kept(const std::string& name, const std::vector<std::uint32_t>& seeds) {
+  auto scene = load_scene(TACT_SOURCE_DIR "/model/scenes/" + name + ".toml", {});
+  ASSERT_EQ(tests::sentence_of(scene), "");
+  const tests::PathCounts counts = tests::run_paths_of(name, std::move(scene->organ_mesh), seeds);
+  EXPECT_TRUE(counts.broken.empty()) << name << ": " << counts.summary() << "\n" << counts.first;
+}
+
+TEST(AnyPathOrganFound, ThroughAHoleOfTheHeartTheToolComesInside) {
+  expect_kept("heart", {79, 81, 89, 93, 111, 113, 137, 142, 219, 249, 329, 508, 576, 596});
+}
+
+TEST(AnyPathOrganFound, AForceThatWouldJumpFollows) {
+  expect_kept("heart", {47, 227, 267, 413, 587, 741});
+  expect_kept("maintenance", {39, 49, 101, 837});
+}
+
+TEST(AnyPathOrganFound, WhatTurnsTheForceMakesNoEnergy) {
+  expect_kept("gum", {437, 449, 597});
+  expect_kept("maintenance", {71, 91, 269, 853});
+}
+
+TEST(AnyPathOrganFound, APauseBesideAForkIsNoPauseOfItsOwn) { expect_kept("maintenance", {145}); }
+
 }  // namespace tact::model::scene::any_path_organs_test
