@@ -197,10 +197,10 @@ OrganForce Contact::ask(Sphere& sphere) RT_SAFE {
   return {share * answer.elastic_N, share * answer.resistance_N};
 }
 
-// The force may jump where the organ snaps to another shape, a solution is found again, or the proxy
-// meets another side. The told force follows: per tick by at most ten times the stiffest slope times
-// the way and twice what the law's memory may take, plus all of the jump in 0.1 s. While it lags
-// behind a force that is gone, the hand gets at most a tenth of the energy that was lost.
+// The force may jump where the organ snaps to another shape, a solution is found again, or the
+// proxy meets another side. The told force follows: per tick by at most ten times the stiffest
+// slope times the way and twice what the law's memory may take, plus all of the jump in 0.1 s. While
+// it lags behind a force that is gone, the hand gets at most a tenth of the energy that was lost.
 void Contact::follow_force(Sphere& sphere, const Vec3& wanted_N) RT_SAFE {
   constexpr double kSteepest_ratio = 10.0, kFade_ratio = 2.0;
   constexpr double kNoise_N = 1e-4;  // of a solution

@@ -50,7 +50,7 @@ Vector newton_step(const Coupling& c, std::span<const PressingSphere> spheres,
     for (std::size_t j = 0; j < n; ++j)
       a[i][j] = (i == j ? 1.0 : 0.0) + c[i][j] * stiffness_N_per_m(spheres[j]);
   SmallLu<kMaxSpheres> lu;
-  if (lu.factorise(a, n, Pivot::kDiagonal, kMinPivot)) lu.solve(miss);
+  if (lu.factorise(a, n, Pivot::kOfDiagonal, kMinPivot)) lu.solve(miss);
   return miss;
 }
 
@@ -135,7 +135,7 @@ double definite_share(const Coupling& c,
         a[i][j] = a[j][i] = factor * c[i][j] * stiffness_N_per_m;
       }
     }
-    return SmallLu<kMaxSpheres>().factorise(a, n, Pivot::kDiagonal, 0.0);
+    return SmallLu<kMaxSpheres>().factorise(a, n, Pivot::kOfDiagonal, 0.0);
   };
   if (is_definite(1.0)) return 1.0;
   constexpr int kHalvings = 10;

@@ -3,8 +3,8 @@
 //
 //     found outside   -> free        found overlapping the organ -> inside
 //     free            -> touching    the nearest point of all is nearer than r
-//     free            -> inside      deeper than its movement explains: it came through a hole of an
-//                                    open surface
+//     free            -> inside      deeper than its movement explains: it came through a hole of
+//                                    an open surface
 //     inside          -> free        wholly outside: phi >= r
 //     touching        -> free        r - phi - slack <= 0 at the proxy; at once touching again,
 //                                    with slack, where some part of the organ is nearer than r

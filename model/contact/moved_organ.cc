@@ -171,10 +171,10 @@ double evaluate(MovedOrgan& organ) RT_SAFE {
 }
 
 bool find_slope(MovedOrgan& organ) RT_SAFE {
-  constexpr double kLeastPivot = 1e-6;
+  constexpr double kMinPivot = 1e-6;
   Square a{};
   fill_slope(organ, a);
-  organ.has_slope = organ.slope.factorise(a, 3 * organ.count, Pivot::kLargest, kLeastPivot);
+  organ.has_slope = organ.slope.factorise(a, 3 * organ.count, Pivot::kOfColumn, kMinPivot);
   return organ.has_slope;
 }
 

@@ -19,7 +19,8 @@
 // is added last: b of the dent, times the speed of the sphere's own depth, so that each sphere
 // takes energy by itself.
 //
-// rest_contact.cc: how deep, how hard, held and let go. rest_slide.cc: forces along the surface.
+// rest_contact.cc: how deep, how hard. rest_grip.cc: held and let go. rest_slide.cc: forces along
+// the surface.
 #pragma once
 
 #include "model/contact/contact_scene.h"

@@ -42,7 +42,7 @@ void Shear::solve() RT_SAFE {
     for (std::size_t j = 0; j < n; ++j) a[i][j] = whole[row[i]][row[j]];
   stiffness_N_per_m_ = {};
   Lu lu;
-  if (!lu.factorise(a, n, Pivot::kDiagonal, 0.0)) return;
+  if (!lu.factorise(a, n, Pivot::kOfDiagonal, 0.0)) return;
   for (std::size_t j = 0; j < n; ++j) {
     Lu::Column unit{};
     unit[j] = 1.0;

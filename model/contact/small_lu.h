@@ -16,7 +16,7 @@ namespace tact::model::contact {
 
 /// The largest of its column, by exchange of rows; or the diagonal as it is, which is above 0 in
 /// every step if and only if a symmetric matrix is positive definite.
-enum class Pivot : std::uint8_t { kLargest, kDiagonal };
+enum class Pivot : std::uint8_t { kOfColumn, kOfDiagonal };
 
 template <std::size_t N>
 class SmallLu {
@@ -31,9 +31,9 @@ class SmallLu {
     for (std::size_t i = 0; i < n; ++i) std::copy_n(a[i].begin(), n, lu_[i].begin());
     for (std::size_t k = 0; k < n; ++k) {
       std::size_t best = k;
-      for (std::size_t i = k + 1; pivot == Pivot::kLargest && i < n; ++i)
+      for (std::size_t i = k + 1; pivot == Pivot::kOfColumn && i < n; ++i)
         if (std::abs(lu_[i][k]) > std::abs(lu_[best][k])) best = i;
-      const double least = pivot == Pivot::kLargest ? std::abs(lu_[best][k]) : lu_[best][k];
+      const double least = pivot == Pivot::kOfColumn ? std::abs(lu_[best][k]) : lu_[best][k];
       if (!(least > least_pivot)) return false;
       if (best != k) std::swap(lu_[best], lu_[k]);
       row_[k] = best;
