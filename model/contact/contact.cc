@@ -34,7 +34,8 @@ Vec3 centre_of(const ProbeSphere& sphere, const Tool& tool) RT_SAFE {
 
 }  // namespace
 
-Contact::Contact(const ContactScene& scene) : scene_(scene), rest_(scene), moved_(scene) {
+Contact::Contact(const ContactScene& scene)
+    : scene_(scene), rest_(scene), moved_(scene), fade_ratio_(scene.law->fade_ratio()) {
   for (std::size_t i = 0; i < scene.spheres.size(); ++i)
     sphere_[i] = {.index = i, .radius_m = scene.spheres[i].radius_m};
   reset();
@@ -199,8 +200,9 @@ OrganForce Contact::ask(Sphere& sphere) RT_SAFE {
 
 // The force may jump where the organ snaps to another shape, a solution is found again, or the
 // proxy meets another side. The told force follows: per tick by at most ten times the stiffest
-// slope times the way and twice what the law's memory may take, plus all of the jump in 0.1 s. While
-// it lags behind a force that is gone, the hand gets at most a tenth of the energy that was lost.
+// slope times the way and twice what the law's memory may take, plus all of the jump in 0.1 s.
+// While it lags behind a force that is gone, the hand gets at most a tenth of the energy that was
+// lost.
 void Contact::follow_force(Sphere& sphere, const Vec3& wanted_N) RT_SAFE {
   constexpr double kSteepest_ratio = 10.0, kFade_ratio = 2.0;
   constexpr double kNoise_N = 1e-4;  // of a solution
@@ -209,7 +211,7 @@ void Contact::follow_force(Sphere& sphere, const Vec3& wanted_N) RT_SAFE {
   sphere.largest_N = sphere.touches() ? std::max(sphere.largest_N, norm(wanted_N)) : 0.0;
   const double smooth_N = kNoise_N +
                           kSteepest_ratio * sphere.stiffest_N_per_m * norm(sphere.moved_m) +
-                          kFade_ratio * scene_.law->fade_ratio() * sphere.largest_N;
+                          kFade_ratio * fade_ratio_ * sphere.largest_N;
   const bool is_held = sphere.state == TouchState::kHeld;
   // Held tissue that is let go or tears is gone at once.
   const bool is_let_go = sphere.was_held && !is_held;

@@ -90,6 +90,7 @@ class Contact {
   ContactScene scene_;
   RestContact rest_;    // of the two, the one that
   MovedContact moved_;  // scene_.organ chooses
+  double fade_ratio_;   // SiteLaw::fade_ratio
   std::array<Sphere, kMaxSpheres> sphere_{};
   std::array<SphereTouch, kMaxSpheres> touch_{};  // told
   bool closed_ = false;                           // the grip, with hysteresis
