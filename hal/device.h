@@ -33,6 +33,20 @@ struct Sample {
   bool fresh = false;
 };
 
+/// How the hand tells the device to close the jaws of the tool.
+enum class GripKind : std::uint8_t {
+  kNone,    // it has nothing for it: device.lines.grip may stand in
+  kButton,  // open or closed
+  kAngle,   // a gripper that tells how far it is closed
+  kForce,   // the same, and its motor can press against the fingers
+};
+
+/// Without a default: each back end says it.
+struct DeviceGrip {
+  constexpr DeviceGrip(GripKind of) : kind(of) {}  // NOLINT(google-explicit-constructor)
+  GripKind kind;
+};
+
 /// What the hardware can do; the gate takes the smaller of this and the scene.
 struct DeviceInfo {
   std::string name;
@@ -41,6 +55,7 @@ struct DeviceInfo {
   double max_continuous_force_N = 0.0;  // largest RMS that its motors bear; 0: not told
   double workspace_radius_m = 0.0;      // cylinder about the W x axis, centred on the origin of W
   double workspace_half_length_m = 0.0;
+  DeviceGrip grip;
   /// What bounds the stiffness it can show; a device without it is never felt.
   std::optional<model::DeviceAtTool> at_tool{};
   std::string damping_key{};  // of the scene, where the damping was entered; empty: nowhere

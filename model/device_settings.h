@@ -92,6 +92,7 @@ struct ForceDimensionSettings {
   double watchdog_s = 0.004;            // the device lets go by itself; at most 0.0318
   double effector_mass_kg = 0.0;        // 0: the maker's value
   double damping_Ns_per_m = 1.0;        // what the device itself has, at the handle
+  double gripper_open_rad = 0.0;        // its gripper, fully open; 0: the maker's value
 };
 
 struct PhantomSettings {
@@ -107,6 +108,8 @@ struct LinesSettings {
   int estop_a = -1, estop_b = -1;
   int dead_man = -1;
   int enable = -1, heartbeat = -1, led = -1, scope = -1;
+  int grip = -1;                 // foot or hand switch that closes the jaws
+  bool grip_closes_low = false;  // at the low level; else at the high one
   bool wired() const { return !chip.empty(); }
 };
 

@@ -84,9 +84,13 @@ Fault RtLoop::read(std::int64_t now_ns) RT_SAFE {
   const Fault lines_fault = lines_.read(now_ns);
   // A device with nothing new leaves the rest untouched
   // (hal/device.h): the old sample must not pass for a new one.
-  record_.input.sample.fresh = false;
+  hal::Sample& sample = record_.input.sample;
+  sample.fresh = false;
+  sample.tool.grip_ratio = device_grip_ratio_;
   progress_.enter(Callee::kDevice);
-  const Fault read_fault = device_.read(record_.input.sample, now_ns);
+  const Fault read_fault = device_.read(sample, now_ns);
+  device_grip_ratio_ = sample.tool.grip_ratio;
+  sample.tool.grip_ratio = grip_.step(device_grip_ratio_, lines_.grip());
   progress_.enter(Callee::kOwn);
   const Fault watch_fault = requests_.fault.load(std::memory_order_relaxed);
   for (const Fault fault : {watch_fault, lines_fault, read_fault, write_fault_})

@@ -12,6 +12,7 @@
 
 #include "firmware/loop/clock.h"
 #include "firmware/loop/controller.h"
+#include "firmware/loop/grip_input.h"
 #include "firmware/loop/latency_histogram.h"
 #include "firmware/loop/progress.h"
 #include "firmware/loop/ring.h"
@@ -56,6 +57,7 @@ struct LoopSettings {
   std::uint64_t max_ticks = 0;        // 0: until a stop request
   std::uint64_t max_periods = 0;      // ticks and skipped periods together; 0: no limit
   std::uint64_t ticks_per_shape = 0;  // 0: never
+  GripSettings grip{};
 };
 
 class RtLoop {
@@ -68,7 +70,8 @@ class RtLoop {
         controller_(controller),
         clock_(clock),
         requests_(requests),
-        ring_(ring) {
+        ring_(ring),
+        grip_(settings.grip) {
     record_.margin_ns = settings.period_ns;  // before the first tick nothing is used up
   }
 
@@ -106,6 +109,8 @@ class RtLoop {
   Clock& clock_;
   Requests& requests_;
   TickRing& ring_;
+  GripInput grip_;
+  double device_grip_ratio_ = 0.0;  // of its last sample
   LoopStatistics statistics_;
   TickRecord record_;
   MarkedTime marked_;

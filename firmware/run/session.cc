@@ -135,7 +135,10 @@ std::optional<Error> Session::open() {
   loop_.emplace(loop::LoopSettings{.period_ns = period_ns(),
                                    .max_ticks = options_.ticks,
                                    .max_periods = asked_periods,
-                                   .ticks_per_shape = ticks_per_shape()},
+                                   .ticks_per_shape = ticks_per_shape(),
+                                   .grip = {.toggles = scene_.grip_toggles,
+                                            .close_ratio = scene_.contact.grip_close_ratio,
+                                            .open_ratio = scene_.contact.grip_open_ratio}},
                 *parts_.device, *parts_.lines, *parts_.controller, clock, requests_, *parts_.ring);
   return std::nullopt;
 }

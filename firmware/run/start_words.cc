@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "firmware/admission/grip_note.h"
 #include "firmware/admission/inertia_note.h"
 #include "firmware/admission/open_organ_note.h"
 #include "firmware/admission/reach_note.h"
@@ -13,7 +14,8 @@ namespace tact::firmware::run {
 std::vector<std::string> start_notes(const model::scene::Scene& scene, const LoopParts& parts,
                                      bool is_check) {
   std::vector<std::string> notes{admission::inertia_note(scene, parts.tissue->law()),
-                                 parts.device->info().caution};
+                                 parts.device->info().caution,
+                                 admission::grip_note(scene, parts.device->info())};
   if (is_check) {
     notes.push_back(admission::reach_note(scene));
     notes.push_back(admission::open_organ_note(scene));

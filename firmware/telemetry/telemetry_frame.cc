@@ -88,6 +88,7 @@ Hello make_hello(const model::scene::Scene& scene, const model::scene::Tissue& t
     put(hello.sphere_offset_m[i], scene.tool.spheres[i].offset_m);
   }
   hello.non_rt = facts.non_rt ? 1 : 0;
+  hello.cannot_grip = facts.cannot_grip ? 1 : 0;
   hello.simulated = facts.hand_socket.empty() ? 0 : 1;
   put(hello.scene_name, scene.name);
   put(hello.limits_checksum, facts.limits_checksum);

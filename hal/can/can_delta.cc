@@ -134,6 +134,7 @@ DeviceInfo CanDelta::info(std::string name, double counts_per_turn, double delay
           .max_torque_Nm = 0.0,
           .workspace_radius_m = settings_.workspace_radius_m,
           .workspace_half_length_m = settings_.workspace_half_length_m,
+          .grip = GripKind::kNone,
           .at_tool = delta_at_tool(
               delta_,
               {.viscous_Nms_per_rad = settings_.joint_damping_Nms_per_rad,

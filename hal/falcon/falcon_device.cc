@@ -48,6 +48,7 @@ DeviceInfo FalconDevice::info() const {
           .max_torque_Nm = 0.0,
           .workspace_radius_m = kFalconRadius_m,
           .workspace_half_length_m = kFalconHalfLength_m,
+          .grip = GripKind::kButton,
           .at_tool = falcon_at_tool(kinematics_, settings_),
           .damping_key = "device.falcon.joint_damping_Nms_per_rad",
           .caution = pipe_->descriptor() < 0 ? kUnguarded : ""};

@@ -113,12 +113,19 @@ std::string name_of_lock(const SdkSession& s) {
 
 }  // namespace
 
+GripKind grip_of(const SdkSession& s) {
+  const bool told = s.type.grip == GripKind::kButton ? s.sdk.button_mask != nullptr
+                                                     : s.sdk.gripper_angle != nullptr;
+  return told ? s.type.grip : GripKind::kNone;
+}
+
 Result<SdkSession> open_sdk_session(const ForceDimensionSettings& settings, bool trust_library) {
   const auto sdk = load_sdk(settings.library, trust_library);
   if (!sdk) return sdk.error();
   const auto id = open_device(*sdk, settings.id);
   if (!id) return id.error();
   SdkSession session{.sdk = *sdk, .id = *id, .type = {}};
+  if (settings.gripper_open_rad > 0.0) session.gripper_open_rad = settings.gripper_open_rad;
   unsigned short number = 0;
   // By serial number where it is known: two programs may count devices differently.
   if (sdk->serial_number != nullptr && sdk->serial_number(&number, *id) >= 0)

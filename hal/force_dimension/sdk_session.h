@@ -17,8 +17,12 @@ struct SdkSession {
   SdkFunctions sdk;
   char id = 0;
   ForceDimensionType type;
+  double gripper_open_rad = kGripperOpen_rad;
   int serial_number = 0;  // 0: the library does not tell
 };
+
+/// How the hand closes the jaws: what type and library have for it.
+GripKind grip_of(const SdkSession& session);
 
 /// Leaves nothing open when it fails.
 model::Result<SdkSession> open_sdk_session(const model::ForceDimensionSettings& settings,

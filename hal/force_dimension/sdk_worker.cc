@@ -29,6 +29,7 @@ using model::Wrench;
 constexpr std::int64_t kLongestCycle_ns = 250'000;
 constexpr std::int64_t kMinPause_ns = 50'000;  // a slow library must not starve the PC
 constexpr int kTimeGuard = 1;                  // pose: nothing new
+constexpr unsigned kSdkUserButton = 1;         // of dhdGetButtonMask: the first button
 constexpr auto kStatusPeriod = std::chrono::milliseconds(50);
 
 void sleep_until_ns(std::int64_t deadline_ns) {
@@ -45,6 +46,8 @@ std::string words_of_sdk_trouble(const LibraryTrouble& t) {
       return {};
     case SdkTroubleSource::kPose:
       return fmt::format("the device does not tell its pose: {}", words_of_sdk_error(t.code));
+    case SdkTroubleSource::kGrip:
+      return fmt::format("the device does not tell its gripper: {}", words_of_sdk_error(t.code));
     case SdkTroubleSource::kForce:
       return fmt::format("the device does not take a force: {}", words_of_sdk_error(t.code));
     case SdkTroubleSource::kEnable:
@@ -122,7 +125,23 @@ bool SdkWorker::read_pose(std::int64_t now_ns) {
   // No sample: the loop counts the gap by the stamp of the last one.
   if (answer == kTimeGuard) return true;
   pose.orientation = session_.type.wrist ? maker_library::quat_from_rotation(rotation) : Quat{};
+  if (!read_grip(pose.grip_ratio)) return false;
   publish(pose);
+  return true;
+}
+
+/// The angle's sign is that of the hand for which the gripper is built.
+bool SdkWorker::read_grip(double& ratio) {
+  if (grip_ == GripKind::kNone) return true;
+  if (grip_ == GripKind::kButton) {
+    ratio = (session_.sdk.button_mask(session_.id) & kSdkUserButton) != 0 ? 1.0 : 0.0;
+    return true;
+  }
+  double angle_rad = 0.0;
+  if (session_.sdk.gripper_angle(&angle_rad, session_.id) < 0) return fail(SdkTroubleSource::kGrip);
+  // Not std::clamp: an angle that is no number stays one, and the loop tells it.
+  const double open = std::abs(angle_rad) / session_.gripper_open_rad;
+  ratio = open < 1.0 ? 1.0 - open : 0.0 * open;
   return true;
 }
 

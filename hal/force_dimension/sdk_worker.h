@@ -23,6 +23,7 @@ namespace tact::hal::force_dimension {
 enum class SdkTroubleSource : std::uint8_t {
   kNone,
   kPose,
+  kGrip,
   kForce,
   kEnable,
   kWatch,
@@ -47,6 +48,7 @@ class SdkWorker final : public maker_library::LibraryWorker {
   void run();
   bool cycle();
   bool read_pose(std::int64_t now_ns);
+  bool read_grip(double& ratio);
   bool switch_forces(bool on) override;
   void close() override { close_sdk_session(session_); }
   bool send(const model::Wrench& wrench);
@@ -56,6 +58,7 @@ class SdkWorker final : public maker_library::LibraryWorker {
   void keep_trouble(model::Fault fault, SdkTroubleSource source, int code);
 
   SdkSession session_;
+  GripKind grip_ = grip_of(session_);
 };
 
 }  // namespace tact::hal::force_dimension

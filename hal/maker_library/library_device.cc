@@ -44,6 +44,7 @@ Fault LibraryDevice::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
   if (now_ns - pose.stamp_ns > kOldest_ns) return Fault::kNone;
   sample.tool.position_m = pose.position_m;
   sample.tool.orientation = pose.orientation;
+  sample.tool.grip_ratio = pose.grip_ratio;
   observe(pose, sample.tool);
   sample.stamp_ns = pose.stamp_ns;
   sample.sequence = pose.sequence;

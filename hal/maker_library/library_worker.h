@@ -29,6 +29,7 @@ namespace tact::hal::maker_library {
 struct LibraryPose {
   model::Vec3 position_m;
   model::Quat orientation;
+  double grip_ratio = 0.0;        // 0 open, 1 closed
   std::int64_t stamp_ns = 0;      // CLOCK_MONOTONIC before the library was asked
   std::uint64_t sequence = 0;     // of poses
   bool follows_commands = false;  // forces are on, zero force has been shown first

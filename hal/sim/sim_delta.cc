@@ -70,6 +70,7 @@ DeviceInfo SimDelta::info() const {
           .max_torque_Nm = kMaxTorque_Nm,
           .workspace_radius_m = kWorkspaceRadius_m,
           .workspace_half_length_m = kWorkspaceHalfLength_m,
+          .grip = GripKind::kAngle,
           .at_tool = delta_at_tool(
               delta_,
               {.viscous_Nms_per_rad = settings_.joint_damping_Nms_per_rad,

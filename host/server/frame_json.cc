@@ -150,6 +150,7 @@ std::string scene_json(const record::Hello& hello) {
       {"limits_checksum", record::text_of(hello.limits_checksum)},
       {"non_rt", hello.non_rt != 0},
       {"simulated", hello.simulated != 0},
+      {"cannot_grip", hello.cannot_grip != 0},
       {"spheres", spheres},
       {"look",
        {{"organ", record::text_of(hello.organ_material)},

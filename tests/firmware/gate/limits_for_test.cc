@@ -16,7 +16,7 @@ model::Limits scene() {
   return limits;
 }
 hal::DeviceInfo device(double times) {
-  hal::DeviceInfo info;
+  hal::DeviceInfo info{.name = {}, .grip = hal::GripKind::kNone};
   info.max_force_N = times * 4.0;
   info.max_torque_Nm = times * 0.2;
   info.workspace_radius_m = times * 0.10;

@@ -49,6 +49,7 @@ const std::map<std::string, Layout> kStructs{
       FIELD(Hello, non_rt),
       FIELD(Hello, simulated),
       FIELD(Hello, scene_name),
+      FIELD(Hello, cannot_grip),
       FIELD(Hello, limits_checksum),
       FIELD(Hello, device_name),
       FIELD(Hello, law_name),

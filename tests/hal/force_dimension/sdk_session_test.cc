@@ -44,6 +44,20 @@ TEST_F(Session, OpensADelta3) {
   EXPECT_FALSE(stub.is_open());
 }
 
+TEST_F(Session, GripsByWhatTheLibraryHas) {
+  const auto session = open_sdk_session(settings, true);
+  ASSERT_TRUE(session);
+  SdkSession s = *session;
+  EXPECT_EQ(grip_of(s), GripKind::kButton);
+  s.sdk.button_mask = nullptr;
+  EXPECT_EQ(grip_of(s), GripKind::kNone);
+  s.type.grip = GripKind::kForce;
+  EXPECT_EQ(grip_of(s), GripKind::kForce);
+  s.sdk.gripper_angle = nullptr;
+  EXPECT_EQ(grip_of(s), GripKind::kNone);
+  close_sdk_session(*session);
+}
+
 TEST_F(Session, IsConfiguredOnceAndWarmWithoutForce) {
   settings.watchdog_s = 0.004;
   const auto session = open_sdk_session(settings, true);

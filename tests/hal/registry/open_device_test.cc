@@ -21,7 +21,7 @@ model::scene::Scene scene(const char* kind) {
 
 class RealDevice final : public Device {
  public:
-  DeviceInfo info() const override { return {.name = "a real one"}; }
+  DeviceInfo info() const override { return {.name = "a real one", .grip = GripKind::kNone}; }
   Fault read(Sample&, std::int64_t) RT_SAFE override { return Fault::kNone; }
   Fault write(const Wrench&) RT_SAFE override { return Fault::kNone; }
   void stop() override {

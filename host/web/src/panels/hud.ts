@@ -69,13 +69,16 @@ export class Hud {
     const scene = this.scene_known;
     if (!scene) return;
     document.title = `tact: ${scene.scene}${this.is_replay ? " (replay)" : ""}`;
-    by_id("banner").hidden = !scene.non_rt;
-    write(
-      "banner",
-      this.is_replay
-        ? "recorded without hard real time: force capped at 25\u00a0%"
-        : "no hard real time on this PC: force capped at 25\u00a0%",
-    );
+    const notes: string[] = [];
+    if (scene.non_rt)
+      notes.push(
+        this.is_replay
+          ? "recorded without hard real time: force capped at 25\u00a0%"
+          : "no hard real time on this PC: force capped at 25\u00a0%",
+      );
+    if (scene.cannot_grip) notes.push("this scene grips; this device cannot: connect device.lines.grip");
+    by_id("banner").hidden = notes.length === 0;
+    write("banner", notes.join(" · "));
   }
 
   /** No status: tact-view is gone, or it `refused` this page. */
