@@ -28,8 +28,10 @@ using model::Wrench;
 /// One reading. A device that has nothing new leaves `fresh` false and the rest untouched.
 struct Sample {
   Tool tool;
-  std::int64_t stamp_ns = 0;   // CLOCK_MONOTONIC when the device state was taken
-  std::uint64_t sequence = 0;  // counts device samples, never repeats
+  double grip_gap_m = 0.0;      // between the fingers, where the device can press against them
+  double grip_speed_mps = 0.0;  // of the gap, opening positive
+  std::int64_t stamp_ns = 0;    // CLOCK_MONOTONIC when the device state was taken
+  std::uint64_t sequence = 0;   // counts device samples, never repeats
   bool fresh = false;
 };
 
@@ -43,8 +45,10 @@ enum class GripKind : std::uint8_t {
 
 /// Without a default: each back end says it.
 struct DeviceGrip {
-  constexpr DeviceGrip(GripKind of) : kind(of) {}  // NOLINT(google-explicit-constructor)
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  constexpr DeviceGrip(GripKind of, double most_N = 0.0) : kind(of), max_force_N(most_N) {}
   GripKind kind;
+  double max_force_N;  // that it can press against the fingers; 0: none
 };
 
 /// What the hardware can do; the gate takes the smaller of this and the scene.
@@ -105,6 +109,9 @@ class Device {
 
   /// Hand this wrench to the hardware, on top of its own gravity compensation.
   [[nodiscard]] virtual Fault write(const Wrench& wrench) RT_SAFE = 0;
+
+  /// What the gripper does to the fingers, opening positive; holds from the next write on.
+  virtual void set_grip_force(double opening_N) RT_SAFE { (void)opening_N; }
 
   /// What happens to a simulated device while the loop sleeps: one or more periods of physics.
   /// Hardware lives by itself and does nothing here. Not part of the tick's measured time.

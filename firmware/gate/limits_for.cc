@@ -19,6 +19,7 @@ model::Limits limits_for(const model::Limits& scene, const hal::DeviceInfo& devi
   if (device.max_continuous_force_N != 0.0)
     limits.continuous_force_N = smaller(scene.continuous_force_N, device.max_continuous_force_N);
   limits.torque_Nm = smaller(scene.torque_Nm, device.max_torque_Nm);
+  limits.grip_force_N = smaller(scene.grip_force_N, device.grip.max_force_N);
   limits.workspace_radius_m = smaller(scene.workspace_radius_m, device.workspace_radius_m);
   limits.workspace_half_length_m =
       smaller(scene.workspace_half_length_m, device.workspace_half_length_m);

@@ -4,6 +4,7 @@
 #include "firmware/loop/rt_loop.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -45,6 +46,7 @@ void RtLoop::release_device() RT_SAFE {
   const Fault lines_fault = lines_.write({.healthy = false, .armed = false, .faulted = true});
   progress_.enter(Callee::kDevice);
   device_.permit(false);
+  device_.set_grip_force(0.0);
   const Fault device_fault = device_.write(model::Wrench{});
   progress_.enter(Callee::kOwn);
   progress_.end();
@@ -109,6 +111,7 @@ void RtLoop::write() RT_SAFE {
                                           .faulted = stopped});
   progress_.enter(Callee::kDevice);
   device_.permit(lines_.enabled());
+  device_.set_grip_force(output.written_grip_N);
   const Fault device_fault = device_.write(output.written);
   progress_.enter(Callee::kOwn);
   write_fault_ = lines_fault != Fault::kNone ? lines_fault : device_fault;
@@ -117,6 +120,8 @@ void RtLoop::write() RT_SAFE {
 // The record is dropped when nobody has read the last ones.
 void RtLoop::tell() RT_SAFE {
   statistics_.max_force_N = std::max(statistics_.max_force_N, norm(record_.output.written.force_N));
+  statistics_.max_grip_force_N =
+      std::max(statistics_.max_grip_force_N, std::abs(record_.output.written_grip_N));
   statistics_.max_rms_force_N = std::max(statistics_.max_rms_force_N, record_.output.rms_force_N);
   statistics_.max_given_energy_J =
       std::max(statistics_.max_given_energy_J, record_.output.given_energy_J);

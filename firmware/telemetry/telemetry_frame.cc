@@ -41,6 +41,9 @@ void put(Frame& frame, const loop::TickInput& input, const loop::TickOutput& out
   put(frame.force_N, output.written.force_N);
   put(frame.torque_Nm, output.written.torque_Nm);
   put(frame.wanted_force_N, output.wanted.force_N);
+  // The gate lets 8 N through at the most, and 32 N have room.
+  frame.grip_force_mN =
+      static_cast<std::int16_t>(std::clamp(1e3 * output.written_grip_N, -32'000.0, 32'000.0));
   frame.fault = static_cast<std::uint16_t>(output.fault);
   frame.state = output.state;
   constexpr std::uint64_t kMax_count = std::numeric_limits<std::uint32_t>::max();

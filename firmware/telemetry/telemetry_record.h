@@ -106,8 +106,8 @@ struct Frame {
   std::uint16_t fault = 0;       // number in the fault table
   std::uint16_t limit = 0;       // last limit that acted since the last frame, 0 none
   loop::State state = loop::State::kOff;
-  std::uint8_t non_rt = 0;  // stamped on every record of a PC without hard real time
-  std::uint8_t pad[2] = {};
+  std::uint8_t non_rt = 0;           // stamped on every record of a PC without hard real time
+  std::int16_t grip_force_mN = 0;    // written to the fingers, opening positive
   std::uint32_t contact_losses = 0;  // so far; 0 in what was recorded before there was a count
   FrameSite site[kMaxSites] = {};
   FramePatch patch;

@@ -12,16 +12,17 @@ using model::Error;
 
 // Force, torque and radius: FD-1; the lengths and 1e-5 m are the data sheets'.
 constexpr GripKind kButton = GripKind::kButton, kGripper = GripKind::kForce;
-constexpr ForceDimensionType omega(int code, const char* name, bool wrist, GripKind grip) {
-  return {code, name, 12.0, 0.0, 0.075, 0.055, 1e-5, wrist, grip};
+constexpr ForceDimensionType omega(int code, const char* name, bool wrist, GripKind grip,
+                                   bool left = false) {
+  return {code, name, 12.0, 0.0, 0.075, 0.055, 1e-5, wrist, grip, left};
 }
 constexpr ForceDimensionType sigma(int code, const char* name, double torque_Nm, bool wrist,
-                                   GripKind grip) {
-  return {code, name, 12.0, torque_Nm, 0.095, 0.065, 1e-5, wrist, grip};
+                                   GripKind grip, bool left = false) {
+  return {code, name, 12.0, torque_Nm, 0.095, 0.065, 1e-5, wrist, grip, left};
 }
 constexpr ForceDimensionType lambda(int code, const char* name, double torque_Nm, bool wrist,
-                                    GripKind grip) {
-  return {code, name, 12.0, torque_Nm, 0.1125, 0.085, 1e-5, wrist, grip};
+                                    GripKind grip, bool left = false) {
+  return {code, name, 12.0, torque_Nm, 0.1125, 0.085, 1e-5, wrist, grip, left};
 }
 
 // Code, name, N, N m, radius m, half length m, resolution m, wrist, grip.
@@ -31,15 +32,15 @@ constexpr std::array kTypes{
     omega(34, "omega.6 right", true, kButton),
     omega(36, "omega.6 left", true, kButton),
     omega(35, "omega.7 right", true, kGripper),
-    omega(37, "omega.7 left", true, kGripper),
+    omega(37, "omega.7 left", true, kGripper, true),
     sigma(206, "sigma.3", 0.0, false, kButton),
     sigma(104, "sigma.7 right", 0.2, true, kGripper),
-    sigma(105, "sigma.7 left", 0.2, true, kGripper),
+    sigma(105, "sigma.7 left", 0.2, true, kGripper, true),
     sigma(106, "sigma.6+ right", 0.2, true, kButton),
     sigma(107, "sigma.6+ left", 0.2, true, kButton),
     lambda(203, "lambda.3", 0.0, false, kButton),
     lambda(108, "lambda.7 right", 0.2, true, kGripper),
-    lambda(109, "lambda.7 left", 0.2, true, kGripper),
+    lambda(109, "lambda.7 left", 0.2, true, kGripper, true),
 };
 
 struct Refused {

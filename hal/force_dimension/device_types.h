@@ -22,10 +22,13 @@ struct ForceDimensionType {
   double resolution_m = 0.0;
   bool wrist = false;  // it measures an orientation
   GripKind grip = GripKind::kButton;
+  bool left = false;  // for a left hand: its gripper counts the other way
 };
 
 /// Its gripper, fully open (FD-4).
 inline constexpr double kGripperOpen_rad = 0.5236;
+/// What its motor presses (FD-4).
+inline constexpr double kGripperForce_N = 8.0;
 
 /// The type of this code, or why it cannot be used and what can.
 model::Result<ForceDimensionType> force_dimension_type(int code);

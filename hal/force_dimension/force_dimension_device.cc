@@ -21,7 +21,7 @@ DeviceInfo info_of(const SdkSession& session, const model::ForceDimensionSetting
           .max_torque_Nm = type.max_torque_Nm,
           .workspace_radius_m = type.radius_m,
           .workspace_half_length_m = type.half_length_m,
-          .grip = grip_of(session),
+          .grip = {grip_of(session), grip_of(session) == GripKind::kForce ? kGripperForce_N : 0.0},
           .at_tool = model::DeviceAtTool{.damping_Ns_per_m = settings.damping_Ns_per_m,
                                          .friction_N = 0.0,  // the maker tells none
                                          .position_step_m = type.resolution_m,

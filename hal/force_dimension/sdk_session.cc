@@ -114,9 +114,11 @@ std::string name_of_lock(const SdkSession& s) {
 }  // namespace
 
 GripKind grip_of(const SdkSession& s) {
-  const bool told = s.type.grip == GripKind::kButton ? s.sdk.button_mask != nullptr
-                                                     : s.sdk.gripper_angle != nullptr;
-  return told ? s.type.grip : GripKind::kNone;
+  if (s.type.grip == GripKind::kButton)
+    return s.sdk.button_mask != nullptr ? GripKind::kButton : GripKind::kNone;
+  if (s.sdk.gripper_angle == nullptr) return GripKind::kNone;
+  // Without the gap nobody could judge what energy the fingers get.
+  return s.sdk.gripper_gap != nullptr ? s.type.grip : GripKind::kAngle;
 }
 
 Result<SdkSession> open_sdk_session(const ForceDimensionSettings& settings, bool trust_library) {

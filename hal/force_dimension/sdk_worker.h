@@ -48,10 +48,10 @@ class SdkWorker final : public maker_library::LibraryWorker {
   void run();
   bool cycle();
   bool read_pose(std::int64_t now_ns);
-  bool read_grip(double& ratio);
+  bool read_grip(maker_library::LibraryPose& pose);
   bool switch_forces(bool on) override;
   void close() override { close_sdk_session(session_); }
-  bool send(const model::Wrench& wrench);
+  bool send(const maker_library::LibraryForce& force);
   void watch();
   void check_status();
   bool fail(SdkTroubleSource source);

@@ -134,8 +134,8 @@ void PhantomWorker::exchange() {
   session_.hd.begin_frame(session_.id);
   const bool sound = judge(pose);
   // The time once more: the library may have waited for the state, and the command has aged.
-  const auto wrench = sound ? next_wrench(monotonic_ns()) : std::nullopt;
-  const Vec3 force_N = wrench ? wrench->force_N : Vec3{};
+  const auto force = sound ? next_force(monotonic_ns()) : std::nullopt;
+  const Vec3 force_N = force ? force->wrench.force_N : Vec3{};
   send(force_N);
   if (!sound) return;
   if (force_N == Vec3{}) switch_output();

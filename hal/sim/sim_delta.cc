@@ -27,6 +27,7 @@ constexpr double kMaxDelay_s = 0.1;
 constexpr double kWristCountsPerTurn = 65536.0;
 constexpr double kJump_m = 5e-3, kJump_rad = 0.1;  // between two samples: a new start
 constexpr double kGripHalfWidth_m = 0.05;          // the hand holds the handle here, at both sides
+constexpr double kGripperForce_N = 8.0, kGripperOpen_m = 0.025;  // as an omega.7's
 
 double counted_rad(double angle_rad, double counts_per_turn) RT_SAFE {
   const double rad_per_count = 2.0 * std::numbers::pi / counts_per_turn;
@@ -70,7 +71,7 @@ DeviceInfo SimDelta::info() const {
           .max_torque_Nm = kMaxTorque_Nm,
           .workspace_radius_m = kWorkspaceRadius_m,
           .workspace_half_length_m = kWorkspaceHalfLength_m,
-          .grip = GripKind::kAngle,
+          .grip = {GripKind::kForce, kGripperForce_N},
           .at_tool = delta_at_tool(
               delta_,
               {.viscous_Nms_per_rad = settings_.joint_damping_Nms_per_rad,
@@ -95,6 +96,8 @@ Fault SimDelta::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
   const State state = state_at(time_s_ - settings_.sample_delay_s);
   // Fails where the rods cannot meet (DK-3): no pose of this device.
   if (!measure(state, sample.tool)) return Fault::kDeviceFailed;
+  sample.grip_gap_m = kGripperOpen_m * (1.0 - state.grip_ratio);
+  sample.grip_speed_mps = kGripperOpen_m * -state.grip_rate_per_s;
   if (faults_.nan_sample.load(std::memory_order_relaxed)) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     sample.tool.position_m = {nan, nan, nan};
@@ -133,9 +136,11 @@ Fault SimDelta::write(const Wrench& wrench) RT_SAFE {
   if (!powered_ || !permitted_) {  // motors without power hold nothing
     motor_Nm_ = {};
     wrist_Nm_ = {};
+    grip_N_ = 0.0;
     return Fault::kNone;
   }
-  const bool sound = is_finite(wrench.force_N) && is_finite(wrench.torque_Nm);
+  const bool sound = is_finite(wrench) && std::isfinite(wanted_grip_N_);
+  grip_N_ = sound ? std::clamp(wanted_grip_N_, -kGripperForce_N, kGripperForce_N) : 0.0;
   const Wrench limited = sound ? Wrench{saturated(wrench.force_N, kMaxForce_N),
                                         saturated(wrench.torque_Nm, kMaxTorque_Nm)}
                                : Wrench{};
@@ -163,7 +168,9 @@ void SimDelta::steer_hand() RT_SAFE {
 }
 
 void SimDelta::step_physics(double dt_s) RT_SAFE {
+  const double grip_before = hand_.grip_ratio();
   hand_.step(dt_s);
+  grip_rate_per_s_ = (hand_.grip_ratio() - grip_before) / dt_s;
   const model::HandSettings& hand = hand_.settings();
   plant_.step(dt_s, motor_Nm_,
               {.mass_kg = hand.mass_kg,
@@ -186,7 +193,8 @@ SimDelta::State SimDelta::state_now() const RT_SAFE {
   return {.time_s = time_s_,
           .theta_rad = plant_.theta_rad(),
           .wrist_rad = wrist_.angles_rad(),
-          .grip_ratio = hand_.grip_ratio()};
+          .grip_ratio = hand_.grip_ratio(),
+          .grip_rate_per_s = grip_rate_per_s_};
 }
 
 const SimDelta::State& SimDelta::remembered(std::size_t steps_ago) const RT_SAFE {

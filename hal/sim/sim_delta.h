@@ -39,6 +39,7 @@ class SimDelta final : public Device {
 
   DeviceInfo info() const override;
   [[nodiscard]] Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
+  void set_grip_force(double opening_N) RT_SAFE override { wanted_grip_N_ = opening_N; }
   [[nodiscard]] Fault write(const Wrench& wrench) RT_SAFE override;
   void permit(bool powered) RT_SAFE override { permitted_ = powered; }
   bool ready() const RT_SAFE override { return permitted_; }
@@ -51,6 +52,8 @@ class SimDelta final : public Device {
   /// The truth behind the encoders.
   const DeltaPlant& plant() const { return plant_; }
   const SimHand& hand() const { return hand_; }
+  /// On its fingers, opening positive; they are held as the hand wants them.
+  double grip_force_N() const { return grip_N_; }
   Vec3 true_position_W_m() const RT_SAFE;
 
  private:
@@ -58,7 +61,7 @@ class SimDelta final : public Device {
     double time_s = 0.0;
     delta::Joints theta_rad{};
     Vec3 wrist_rad;
-    double grip_ratio = 0.0;
+    double grip_ratio = 0.0, grip_rate_per_s = 0.0;
   };
   static constexpr std::size_t kHistory = 1024;  // 0.1 s of steps of 0.1 ms
 
@@ -83,8 +86,10 @@ class SimDelta final : public Device {
   delta::DeltaPose measured_;  // of the last sample
   delta::Joints motor_Nm_{};   // held until the next write
   Vec3 wrist_Nm_;
-  bool powered_ = true;    // until stop()
-  bool permitted_ = true;  // by the safety lines, in this tick
+  double wanted_grip_N_ = 0.0, grip_N_ = 0.0;
+  double grip_rate_per_s_ = 0.0;  // of the hand
+  bool powered_ = true;           // until stop()
+  bool permitted_ = true;         // by the safety lines, in this tick
   std::uint64_t sequence_ = 0;
   LatestSlot<HandTarget> hand_targets_;
   SimFaults faults_;

@@ -24,6 +24,15 @@ hal::DeviceInfo device(double times) {
   return info;
 }
 
+TEST(LimitsFor, TheFingersBearWhatBothAllow) {
+  hal::DeviceInfo info = device(2.0);
+  EXPECT_EQ(limits_for(scene(), info).grip_force_N, 0.0) << "a device without a motor there";
+  info.grip = {hal::GripKind::kForce, 8.0};
+  EXPECT_EQ(limits_for(scene(), info).grip_force_N, scene().grip_force_N);
+  info.grip = {hal::GripKind::kForce, 1.0};
+  EXPECT_EQ(limits_for(scene(), info).grip_force_N, 1.0);
+}
+
 TEST(LimitsFor, AWeakerDeviceLimitsTheScene) {
   const model::Limits limits = limits_for(scene(), device(0.5));
   EXPECT_DOUBLE_EQ(limits.force_N, 2.0);

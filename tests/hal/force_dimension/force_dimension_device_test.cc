@@ -4,9 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <utility>
 
-#include "hal/force_dimension/device_types.h"
 #include "tests/support/device_loop.h"
 #include "tests/support/stub_dhd/stub_client.h"
 
@@ -204,58 +202,6 @@ TEST_F(ForceDimension, InfoIsThatOfItsType) {
   ASSERT_TRUE(info.at_tool);
   EXPECT_EQ(info.at_tool->damping_Ns_per_m, 1.0);
   EXPECT_EQ(info.damping_key, "device.force_dimension.damping_Ns_per_m");
-}
-
-TEST_F(ForceDimension, AGripperTellsHowFarItIsClosedOnEitherHand) {
-  for (const int type : {35, 37, 104, 109}) {
-    stub.reset();
-    open(type);
-    EXPECT_EQ(device->info().grip.kind, GripKind::kForce);
-    const double sign = type == 37 ? -1.0 : 1.0;
-    ASSERT_TRUE(ready());
-    for (const auto& [share, ratio] : {std::pair{1.0, 0.0}, {0.25, 0.75}, {0.0, 1.0}, {1.3, 0.0}}) {
-      stub.grip(sign * share * kGripperOpen_rad, 1);
-      EXPECT_TRUE(tick_until([&] { return std::abs(sample.tool.grip_ratio - ratio) < 1e-12; }))
-          << type << ": " << sample.tool.grip_ratio << " for " << share;
-    }
-    device.reset();
-  }
-}
-
-TEST_F(ForceDimension, TheSceneMaySayHowFarTheGripperOpens) {
-  stub.set_type(35);
-  auto scene = tests::stub_scene();
-  scene.device.force_dimension.gripper_open_rad = 0.4;
-  DeviceLoop::open(scene);
-  stub.grip(0.1, 0);
-  ASSERT_TRUE(ready());
-  EXPECT_TRUE(tick_until([&] { return std::abs(sample.tool.grip_ratio - 0.75) < 1e-12; }));
-}
-
-TEST_F(ForceDimension, TheUserButtonGripsWhereThereIsNoGripper) {
-  open(63);
-  EXPECT_EQ(device->info().grip.kind, GripKind::kButton);
-  stub.grip(0.0, 2);  // another button, and an angle of 0, which a gripper has when closed
-  ASSERT_TRUE(ready());
-  EXPECT_EQ(sample.tool.grip_ratio, 0.0);
-  stub.grip(0.0, 3);
-  EXPECT_TRUE(tick_until([&] { return sample.tool.grip_ratio == 1.0; }));
-  stub.grip(0.0, 0);
-  EXPECT_TRUE(tick_until([&] { return sample.tool.grip_ratio == 0.0; }));
-}
-
-TEST_F(ForceDimension, AGripperThatIsNoNumberIsToldToTheLoop) {
-  open(35);
-  stub.grip(std::nan(""), 0);
-  EXPECT_TRUE(tick_until([&] { return std::isnan(sample.tool.grip_ratio); }));
-}
-
-TEST_F(ForceDimension, AGripperThatFailsIsATrouble) {
-  open(35);
-  ASSERT_TRUE(ready());
-  stub.fail("dhdGetGripperAngleRad", 2);
-  EXPECT_TRUE(tick_until([&] { return fault != Fault::kNone; }));
-  EXPECT_TRUE(told("the device does not tell its gripper: ")) << device->trouble();
 }
 
 TEST_F(ForceDimension, StopSwitchesOffAndClosesTwiceWithoutHarm) {

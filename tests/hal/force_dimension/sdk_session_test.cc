@@ -53,6 +53,8 @@ TEST_F(Session, GripsByWhatTheLibraryHas) {
   EXPECT_EQ(grip_of(s), GripKind::kNone);
   s.type.grip = GripKind::kForce;
   EXPECT_EQ(grip_of(s), GripKind::kForce);
+  s.sdk.gripper_gap = nullptr;
+  EXPECT_EQ(grip_of(s), GripKind::kAngle) << "it tells, and nobody could judge its force";
   s.sdk.gripper_angle = nullptr;
   EXPECT_EQ(grip_of(s), GripKind::kNone);
   close_sdk_session(*session);

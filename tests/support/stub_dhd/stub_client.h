@@ -28,6 +28,7 @@ class StubDhd : public StubLibrary {
     find("stub_dhd_ignore_watchdog", ignore_watchdog);
     find("stub_dhd_calls", calls);
     find("stub_dhd_last_force", last_force);
+    find("stub_dhd_last_grip_N", last_grip_N);
     find("stub_dhd_settings", settings);
     find("stub_dhd_strongest_N", strongest_N);
     find("stub_dhd_switched_with_force", switched_with_force);
@@ -49,6 +50,7 @@ class StubDhd : public StubLibrary {
   decltype(&stub_dhd_ignore_watchdog) ignore_watchdog = nullptr;
   decltype(&stub_dhd_calls) calls = nullptr;
   decltype(&stub_dhd_last_force) last_force = nullptr;
+  decltype(&stub_dhd_last_grip_N) last_grip_N = nullptr;
   decltype(&stub_dhd_settings) settings = nullptr;
   decltype(&stub_dhd_strongest_N) strongest_N = nullptr;
   decltype(&stub_dhd_switched_with_force) switched_with_force = nullptr;

@@ -136,12 +136,12 @@ int dhdGetPositionAndOrientationFrame(double* x_m, double* y_m, double* z_m, dou
 }
 
 int dhdSetForceAndTorqueAndGripperForce(double fx, double fy, double fz, double tx, double ty,
-                                        double tz, double, char) {
+                                        double tz, double grip, char) {
   const Locked locked;
   if (enter("dhdSetForceAndTorqueAndGripperForce") < 0) return -1;
   catch_up();
-  const double force[6] = {fx, fy, fz, tx, ty, tz};
-  std::copy(force, force + 6, state.force);
+  const double force[7] = {fx, fy, fz, tx, ty, tz, grip};
+  std::copy(force, force + 7, state.force);
   state.fed_s = monotonic_s();
   if (state.status[kForce] != 0)
     state.strongest_N = std::max(state.strongest_N, std::hypot(fx, fy, fz));
@@ -153,7 +153,7 @@ int dhdEnableForce(unsigned char on, char) {
   if (enter("dhdEnableForce") < 0) return -1;
   catch_up();
   const auto is_set = [](double part) { return part != 0.0; };
-  if (std::any_of(state.force, state.force + 6, is_set)) ++state.switched_with_force;
+  if (std::any_of(state.force, state.force + 7, is_set)) ++state.switched_with_force;
   state.status[kForce] = on != 0 ? 1 : 0;
   state.status[kForceOffCause] = on != 0 ? 0 : kCausedBySoftware;
   state.fed_s = monotonic_s();
@@ -196,6 +196,13 @@ int dhdGetGripperAngleRad(double* rad, char) {
   const Locked locked;
   *rad = state.handle.grips() ? 0.0 : state.gripper_rad;
   return enter("dhdGetGripperAngleRad");
+}
+
+int dhdGetGripperGap(double* gap_m, char) {
+  const Locked locked;
+  constexpr double kFinger_m = 0.05;
+  *gap_m = kFinger_m * std::abs(state.handle.grips() ? 0.0 : state.gripper_rad);
+  return enter("dhdGetGripperGap");
 }
 
 unsigned dhdGetButtonMask(char) {

@@ -30,6 +30,8 @@ void stub_dhd_ignore_watchdog(int ignore);
 long stub_dhd_calls(const char* function);
 /// fx fy fz tx ty tz of the last force call; its last argument tells whether it can be felt.
 int stub_dhd_last_force(double force[6]);
+/// The same of the gripper.
+double stub_dhd_last_grip_N();
 /// Last value given to dhdSetWatchdog, dhdSetTimeGuard, dhdSetGravityCompensation.
 void stub_dhd_settings(int* watchdog, int* time_guard, int* gravity);
 /// Largest force that was felt in newtons since the reset.

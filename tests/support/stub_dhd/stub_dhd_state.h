@@ -21,7 +21,7 @@ struct State {
   bool open = false, expert = false;
   int pose_answer = 0, delay_us = 0;
   int watchdog = 0, time_guard = -1, gravity = 0;
-  double force[6] = {};
+  double force[7] = {};
   LedHandle handle;
   double fed_s = monotonic_s();
   double spin_radps = 0.0, strongest_N = 0.0, gripper_rad = 0.5236;

@@ -66,6 +66,10 @@ void stub_dhd_settings(int* watchdog, int* time_guard, int* gravity) {
   const Locked locked;
   *watchdog = state.watchdog, *time_guard = state.time_guard, *gravity = state.gravity;
 }
+double stub_dhd_last_grip_N() {
+  const Locked locked;
+  return state.force[6];
+}
 long stub_dhd_switched_with_force() {
   const Locked locked;
   return state.switched_with_force;

@@ -75,6 +75,7 @@ export interface Frame {
   peak_N: number;
   rms_N: number;
   given_J: number; // more than was taken
+  grip_N: number; // on the fingers, opening positive
   sites: Site[];
   patch?: Patch;
 }

@@ -224,8 +224,9 @@ export class Hud {
   }
 
   private static grip(frame: Frame): string {
-    if (frame.sites.some((site) => site.state === 2)) return "holds tissue";
+    const force = Math.abs(frame.grip_N ?? 0) >= 0.05 ? `, ${frame.grip_N.toFixed(1)}\u00a0N` : "";
+    if (frame.sites.some((site) => site.state === 2)) return `holds tissue${force}`;
     const percent = Math.round((frame.grip_ratio ?? 0) * 100);
-    return percent < 2 ? "open" : percent > 98 ? "closed" : `${percent} %`;
+    return (percent < 2 ? "open" : percent > 98 ? "closed" : `${percent} %`) + force;
   }
 }
