@@ -60,6 +60,8 @@ struct DeviceInfo {
   double workspace_radius_m = 0.0;      // cylinder about the W x axis, centred on the origin of W
   double workspace_half_length_m = 0.0;
   DeviceGrip grip;
+  bool turns_with_base = false;  // it senses how its handle is turned, from its base
+  double motion_scale = 1.0;     // way of the tool for a way of the handle (mounting.h)
   /// What bounds the stiffness it can show; a device without it is never felt.
   std::optional<model::DeviceAtTool> at_tool{};
   std::string damping_key{};  // of the scene, where the damping was entered; empty: nowhere

@@ -9,6 +9,8 @@
 #include <array>
 #include <string>
 
+#include "model/types.h"
+
 namespace tact::model {
 
 using PerArm = std::array<double, 3>;  // one value an arm or its motor, 1 to 3
@@ -114,8 +116,11 @@ struct LinesSettings {
 };
 
 struct DeviceSettings {
-  std::string kind;            // "sim-delta", or another that hal/registry knows
-  bool trust_library = false;  // the maker's may be anybody's file; a person says so, no scene can
+  std::string kind;             // "sim-delta", or another that hal/registry knows
+  Vec3 base_orientation_deg{};  // turn of its base, axis times angle; 0: as hal/ draws it
+  Vec3 base_position_m{};       // of its base, W
+  double motion_scale = 1.0;    // way of the tool for a way of the handle
+  bool trust_library = false;   // the maker's may be anybody's file; a person says so, no scene can
   SimDeviceSettings sim{};
   DeltaSettings delta{};
   CanSettings can{};

@@ -7,6 +7,7 @@
 #include "firmware/admission/inertia_note.h"
 #include "firmware/admission/open_organ_note.h"
 #include "firmware/admission/reach_note.h"
+#include "hal/mounting.h"
 #include "model/scene/accuracy_file.h"
 
 namespace tact::firmware::run {
@@ -42,6 +43,7 @@ std::string check_lines(const model::scene::Scene& scene, const LoopParts& parts
                        presses->slope_N_per_m > parts.stiffness.limit_N_per_m
                            ? ": more than the device shows"
                            : "");
+  out += "\n" + hal::words_of(hal::mounting_of(scene.device));
   return out + "\n" + model::scene::accuracy_line(scene);
 }
 

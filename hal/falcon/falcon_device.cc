@@ -191,8 +191,8 @@ Fault FalconDevice::write(const Wrench& wrench) RT_SAFE {
 
 /// tau = tau_gravity + s K^-T F, one s for all axes; then words.
 FalconWords FalconDevice::words_for(const Vec3& force_W_N) const RT_SAFE {
-  const Vec3 weight_N{0.0, 0.0, model::kGravity_mps2 * settings_.moving_mass_kg};
-  const delta::Joints held_Nm = falcon_torques_Nm(rates_, falcon_direction_D(weight_N));
+  const Vec3 held_N = -settings_.moving_mass_kg * gravity_mps2_;
+  const delta::Joints held_Nm = falcon_torques_Nm(rates_, falcon_direction_D(held_N));
   const delta::Joints wanted_Nm = falcon_torques_Nm(rates_, falcon_direction_D(force_W_N));
   delta::Joints held{}, wanted{};  // 1 is all that an axis can do
   for (std::size_t i = 0; i < 3; ++i) {

@@ -35,6 +35,13 @@ double counted_rad(double angle_rad, double counts_per_turn) RT_SAFE {
   return std::floor(angle_rad / rad_per_count + 0.5) * rad_per_count;
 }
 
+/// The way of the hand as its base sees it. How it turns the handle stays as the scene says.
+model::HandSettings hand_of_base(model::HandSettings hand, const Mounting& mounting) {
+  for (model::HandWaypoint& point : hand.path)
+    point.position_m = mounting.point_B(point.position_m);
+  return hand;
+}
+
 /// The nearest point of the workspace cylinder.
 Vec3 inside_workspace_m(const Vec3& p_W) RT_SAFE {
   const double radius_m = std::hypot(p_W.y, p_W.z);
@@ -45,13 +52,16 @@ Vec3 inside_workspace_m(const Vec3& p_W) RT_SAFE {
 
 }  // namespace
 
-SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::HandSettings& hand)
+SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::HandSettings& hand,
+                   const Mounting& mounting)
     : settings_(device),
+      mounting_(mounting),
+      gravity_D_mps2_(direction_D(mounting.gravity_B_mps2())),
       delta_(kGeometry),
-      hand_(hand),
+      hand_(hand_of_base(hand, mounting)),
       plant_({.coulomb_Nm = device.joint_friction_Nm,
               .viscous_Nms_per_rad = device.joint_damping_Nms_per_rad},
-             point_D(inside_workspace_m(hand_.position_W_m()))),
+             point_D(inside_workspace_m(hand_.position_W_m())), gravity_D_mps2_),
       wrist_(wrist_angles_rad(hand_.rotation_rad())),
       velocity_(device.observer_bandwidth_Hz, kJump_m),
       angular_velocity_(device.observer_bandwidth_Hz, kJump_rad),
@@ -61,8 +71,7 @@ SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::HandSett
   history_[kHistory - 1].time_s = -2.0 * kMaxDelay_s;
   measured_ = delta_.pose(plant_.position_D_m(), plant_.theta_rad());
   // The motors hold the arms from the start, or they would fall before the first write.
-  motor_Nm_ =
-      gravity_torques_Nm(kGeometry, kMasses, measured_, direction_D(delta::kGravity_W_mps2));
+  motor_Nm_ = gravity_torques_Nm(kGeometry, kMasses, measured_, gravity_D_mps2_);
 }
 
 DeviceInfo SimDelta::info() const {
@@ -145,8 +154,8 @@ Fault SimDelta::write(const Wrench& wrench) RT_SAFE {
                                         saturated(wrench.torque_Nm, kMaxTorque_Nm)}
                                : Wrench{};
   // From the pose it has measured, not the true one: a real device knows no better.
-  motor_Nm_ = delta::drive_torques_Nm(kGeometry, kMasses, measured_, direction_D(limited.force_N),
-                                      kMaxJointTorque_Nm);
+  motor_Nm_ = delta::drive_torques_Nm(kGeometry, kMasses, measured_, gravity_D_mps2_,
+                                      direction_D(limited.force_N), kMaxJointTorque_Nm);
   wrist_Nm_ = limited.torque_Nm;
   return sound ? Fault::kNone : Fault::kForceNotFinite;
 }
@@ -164,7 +173,7 @@ void SimDelta::steer_hand() RT_SAFE {
   HandTarget target;
   if (!hand_targets_.read(target)) return;
   const double* p = target.position_m;
-  hand_.steer(inside_workspace_m({p[0], p[1], p[2]}), target.grip_ratio);
+  hand_.steer(inside_workspace_m(mounting_.point_B({p[0], p[1], p[2]})), target.grip_ratio);
 }
 
 void SimDelta::step_physics(double dt_s) RT_SAFE {
@@ -227,7 +236,8 @@ void SimDelta::stop() {
 }
 
 model::Result<std::unique_ptr<SimDelta>> make_sim_delta(const model::SimDeviceSettings& device,
-                                                        const model::HandSettings& hand) {
+                                                        const model::HandSettings& hand,
+                                                        const Mounting& mounting) {
   // What the device cannot work with; a scene's own ranges are narrower (model/scene).
   const auto refuse = [](const char* key, double value, const char* allowed) {
     return model::Error{fmt::format("{} is {}; it must be {}", key, value, allowed)};
@@ -249,7 +259,7 @@ model::Result<std::unique_ptr<SimDelta>> make_sim_delta(const model::SimDeviceSe
   if (device.sample_delay_s > kMaxDelay_s)
     return refuse("sample_delay_s", device.sample_delay_s, "at most 0.1 s");
   if (hand.path.empty()) return model::Error{"the hand has no waypoint; give it at least one"};
-  return std::make_unique<SimDelta>(device, hand);
+  return std::make_unique<SimDelta>(device, hand, mounting);
 }
 
 }  // namespace tact::hal::sim

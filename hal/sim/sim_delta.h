@@ -15,6 +15,7 @@
 #include "hal/delta/delta_kinematics.h"
 #include "hal/device.h"
 #include "hal/latest_slot.h"
+#include "hal/mounting.h"
 #include "hal/sim/delta_plant.h"
 #include "hal/sim/hand_target.h"
 #include "hal/sim/sim_hand.h"
@@ -35,7 +36,9 @@ struct SimFaults {
 class SimDelta final : public Device {
  public:
   /// Settings as checked by make_sim_delta().
-  SimDelta(const model::SimDeviceSettings& device, const model::HandSettings& hand);
+  /// The hand is led in W; its base stands as mounted, and MountedDevice turns what it tells.
+  SimDelta(const model::SimDeviceSettings& device, const model::HandSettings& hand,
+           const Mounting& mounting = {});
 
   DeviceInfo info() const override;
   [[nodiscard]] Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
@@ -49,7 +52,7 @@ class SimDelta final : public Device {
   /// For the thread that receives steering (hand_socket.h).
   LatestSlot<HandTarget>& hand_targets() { return hand_targets_; }
   SimFaults& faults() { return faults_; }
-  /// The truth behind the encoders.
+  /// The truth behind the encoders, in the axes of its base.
   const DeltaPlant& plant() const { return plant_; }
   const SimHand& hand() const { return hand_; }
   /// On its fingers, opening positive; they are held as the hand wants them.
@@ -73,6 +76,8 @@ class SimDelta final : public Device {
   bool measure(const State& state, Tool& tool) RT_SAFE;
 
   model::SimDeviceSettings settings_;
+  Mounting mounting_;
+  Vec3 gravity_D_mps2_;
   delta::DeltaKinematics delta_;
   SimHand hand_;
   DeltaPlant plant_;
@@ -97,6 +102,7 @@ class SimDelta final : public Device {
 
 /// Refuses settings that no device can have.
 model::Result<std::unique_ptr<SimDelta>> make_sim_delta(const model::SimDeviceSettings& device,
-                                                        const model::HandSettings& hand);
+                                                        const model::HandSettings& hand,
+                                                        const Mounting& mounting = {});
 
 }  // namespace tact::hal::sim

@@ -220,6 +220,13 @@ void visit_lines(reader::Keys& k, LinesSettings& lines) {
 
 void visit_device(reader::Keys& k, DeviceSettings& out) {
   k.text("kind", "sim-delta is the simulated device; tactd --list-devices", out.kind);
+  k.vector("base_orientation_deg", {-360.0, 360.0},
+           "turn of its base, axis times angle; 0: axis towards you", out.base_orientation_deg,
+           kOptional);
+  k.vector("base_position_m", {-0.5, 0.5}, "where the middle of its workspace is, in W",
+           out.base_position_m, kOptional);
+  k.number("motion_scale", {0.1, 10.0}, "way of the tool for a way of the handle", out.motion_scale,
+           kOptional);
   // Without a kind, as where the reference is written, the simulated device is the one to show.
   const bool simulated = out.kind.empty() || out.kind == "sim-delta";
   k.section(

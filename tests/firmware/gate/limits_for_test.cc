@@ -24,6 +24,17 @@ hal::DeviceInfo device(double times) {
   return info;
 }
 
+TEST(LimitsFor, AScaleOfTheMotionLimitsWhatTheHandFeels) {
+  hal::DeviceInfo info = device(100.0);
+  info.motion_scale = 4.0;
+  const model::Limits limits = limits_for(scene(), info);
+  EXPECT_DOUBLE_EQ(limits.force_N, 0.25 * scene().force_N) << "the hand feels four times of it";
+  EXPECT_DOUBLE_EQ(limits.slew_N_per_s, 0.25 * scene().slew_N_per_s);
+  EXPECT_DOUBLE_EQ(limits.continuous_force_N, 0.25 * scene().continuous_force_N);
+  info.motion_scale = 0.5;
+  EXPECT_DOUBLE_EQ(limits_for(scene(), info).force_N, scene().force_N) << "it feels half of it";
+}
+
 TEST(LimitsFor, TheFingersBearWhatBothAllow) {
   hal::DeviceInfo info = device(2.0);
   EXPECT_EQ(limits_for(scene(), info).grip_force_N, 0.0) << "a device without a motor there";

@@ -44,6 +44,20 @@ TEST_F(Session, OpensADelta3) {
   EXPECT_FALSE(stub.is_open());
 }
 
+TEST_F(Session, BalancesItsWeightOnlyWhereItStandsAsDelivered) {
+  for (const bool hangs : {false, true}) {
+    model::DeviceSettings device;
+    if (hangs) device.base_orientation_deg = {0.0, 90.0, 0.0};
+    const auto session = open_sdk_session(settings, true, mounting_of(device));
+    ASSERT_TRUE(session) << session.error().sentence;
+    int watchdog = 0, time_guard = 0, gravity = 7;
+    stub.settings(&watchdog, &time_guard, &gravity);
+    EXPECT_EQ(gravity, hangs ? 0 : 1) << "along a wrong axis it would push";
+    EXPECT_EQ(session->balances_weight, !hangs);
+    close_sdk_session(*session);
+  }
+}
+
 TEST_F(Session, GripsByWhatTheLibraryHas) {
   const auto session = open_sdk_session(settings, true);
   ASSERT_TRUE(session);

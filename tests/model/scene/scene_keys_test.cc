@@ -108,7 +108,7 @@ TEST(SceneReference, SaysOfEveryKeyWhatIsAllowedAndWhatItMeans) {
     const bool named =
         row.key.ends_with("_ratio") || row.allowed.ends_with("whole") || row.key == "growth" ||
         row.key == "inward" || row.key.starts_with("counts_per_") || row.key == "sphere" ||
-        row.key == "node" || row.key == "exponent" || row.key == "direction" || row.key == "id" ||
+        row.key == "node" || row.key == "motion_scale" || row.key == "exponent" || row.key == "direction" || row.key == "id" ||
         row.section == "device.lines" || row.key == "reference_site" || row.key == "relaxation";
     EXPECT_EQ(reader::unit_of_key(row.key).empty(), named) << row.section << "." << row.key;
   }
