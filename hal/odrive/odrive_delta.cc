@@ -27,9 +27,8 @@ using can::CanPower;
 using model::Error;
 using model::Result;
 
-constexpr std::int64_t kSilence_ns = 350'000'000;  // three heartbeats of 100 ms and a little
-constexpr int kFeedTicks = 5;                      // of zero torque before closed loop is asked for
-constexpr int kRepeatTicks = 100;                  // a request may have been lost
+constexpr int kFeedTicks = 5;      // of zero torque before closed loop is asked for
+constexpr int kRepeatTicks = 100;  // a request may have been lost
 constexpr std::uint32_t kWatchdog06 = 0x1000000, kWatchdog05 = 0x800;
 
 /// Kinds of FaultCause, after those that all drives have.
@@ -164,7 +163,7 @@ class Odrives final : public can::CanDrives {
     axes_[at].state = beat->axis_state;
     // Between opening and the first tick nobody fed the watchdogs; the first batch clears that.
     const bool was_silent =
-        arrival_ns < loop.first_ns + kSilence_ns && loop.power != CanPower::kReady;
+        arrival_ns < loop.first_ns + kOdriveSilence_ns && loop.power != CanPower::kReady;
     const bool is_06 = generation_ == OdriveGeneration::k06;
     const std::uint32_t error = beat->axis_error;
     if (error != 0 && !(was_silent && error == (is_06 ? kWatchdog06 : kWatchdog05)))
@@ -226,7 +225,7 @@ Result<std::unique_ptr<Device>> start_odrive_delta(std::unique_ptr<can::CanBus> 
        .name = "delta with three ODrives on CAN",
        .position = "new position",
        .one_sync = false,
-       .most_silent_ns = kSilence_ns,
+       .most_silent_ns = kOdriveSilence_ns,
        .counts_per_turn = settings.delta.counts_per_turn,
        .delay_s = 1e-9 * period_ns + can::bus_time_s(odrive_cycle_bits(settings.can), rate),
        .motor_turns = start->motor_turns,

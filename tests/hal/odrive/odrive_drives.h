@@ -21,7 +21,7 @@ struct PlayedOdrive {
   bool obeys = true;         // goes where Set_Axis_State says
   bool stuck_error = false;  // Clear_Errors does not help
   bool v06 = true;
-  int position_every_ms = 1;
+  int position_every_ms = 1, heartbeat_every_ms = 100;
   std::uint32_t error = 0;
   std::uint32_t state = 1;
   std::uint8_t parts = 0;               // byte 6 of the heartbeat of 0.5: the encoder's error
@@ -47,7 +47,8 @@ class PlayedOdrives {
       if (!one.powered) continue;
       one.turns += 1e-3 * one.turns_per_s;
       if (one.state == 6 && ++one.searched_ms > one.index_ms) one.state = 1, one.turns = 0.1;
-      if (one.says_heartbeat && (time_ms + 7 * one.node) % 100 == 0) say_heartbeat(one);
+      if (one.says_heartbeat && (time_ms + 7 * one.node) % one.heartbeat_every_ms == 0)
+        say_heartbeat(one);
       if (one.says_position && time_ms % one.position_every_ms == 0) say_position(one);
     }
   }
