@@ -60,7 +60,8 @@ bool RtLoop::hear_requests() RT_SAFE {
   const bool asked_before = std::exchange(asked_, requests_.arm.load(std::memory_order_relaxed));
   record_.input.commands = {.arm = asked_ || arms_at_start(),
                             .stop = requests_.stop.load(std::memory_order_relaxed),
-                            .reset = requests_.reset.load(std::memory_order_relaxed)};
+                            .reset = requests_.reset.load(std::memory_order_relaxed),
+                            .disarm = requests_.disarm.load(std::memory_order_relaxed)};
   return asked_ && !asked_before;
 }
 

@@ -29,6 +29,7 @@ struct Requests {
   std::atomic<bool> arm_at_start{false};  // once, as soon as it is ready: the loop's own request
   std::atomic<bool> stop{false};          // force to zero, then leave
   std::atomic<bool> reset{false};
+  std::atomic<bool> disarm{false};         // force to zero, ready to be armed again
   std::atomic<Fault> fault{Fault::kNone};  // of the watch; the first stays to the end of the run
   std::atomic<std::uint32_t> refused{0};   // edges of arm that armed nothing
 

@@ -132,6 +132,7 @@ const std::map<std::string, Layout> kStructs{
       FIELD(LoggedTick, input.commands.arm),
       FIELD(LoggedTick, input.commands.stop),
       FIELD(LoggedTick, input.commands.reset),
+      FIELD(LoggedTick, input.commands.disarm),
       FIELD(LoggedTick, input.ready),
       FIELD(LoggedTick, input.skipped_periods),
       FIELD(LoggedTick, output.wanted.force_N),
