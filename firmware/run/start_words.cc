@@ -7,6 +7,7 @@
 #include "firmware/admission/inertia_note.h"
 #include "firmware/admission/open_organ_note.h"
 #include "firmware/admission/reach_note.h"
+#include "firmware/admission/torque_note.h"
 #include "hal/mounting.h"
 #include "model/scene/accuracy_file.h"
 
@@ -20,6 +21,7 @@ std::vector<std::string> start_notes(const model::scene::Scene& scene, const Loo
   if (is_check) {
     notes.push_back(admission::reach_note(scene));
     notes.push_back(admission::open_organ_note(scene));
+    notes.push_back(admission::torque_note(scene, parts.device->info()));
     if (parts.presses) notes.push_back(parts.presses->note);
   }
   std::erase(notes, std::string());

@@ -25,9 +25,20 @@ constexpr ForceDimensionType lambda(int code, const char* name, double torque_Nm
   return {code, name, 12.0, torque_Nm, 0.1125, 0.085, 1e-5, wrist, grip, left};
 }
 
+// As published: 360 x 300 mm, 20 N, 0.2 N m, a wrist of +-20 degrees. Older SDKs drove these;
+// current ones list them as no longer supported (FD-1). The library decides.
+constexpr ForceDimensionType old_delta_6(int code, const char* name) {
+  return {code, name, 20.0, 0.2, 0.18, 0.15, 3e-5, true, kButton, false, true};
+}
+
 // Code, name, N, N m, radius m, half length m, resolution m, wrist, grip.
 constexpr std::array kTypes{
     ForceDimensionType{63, "delta.3", 20.0, 0.0, 0.15, 0.13, 2e-5, false, kButton},
+    old_delta_6(61, "6-DOF"),
+    old_delta_6(62, "6-DOF 500"),
+    old_delta_6(64, "delta.6"),
+    ForceDimensionType{31, "3-DOF", 20.0, 0.0, 0.15, 0.13, 3e-5, false, kButton, false, true},
+    ForceDimensionType{32, "OMEGA", 12.0, 0.0, 0.075, 0.055, 1e-5, false, kButton, false, true},
     omega(33, "omega.3", false, kButton),
     omega(34, "omega.6 right", true, kButton),
     omega(36, "omega.6 left", true, kButton),
@@ -48,9 +59,6 @@ struct Refused {
   const char* name;
   const char* why;
 };
-constexpr const char* kDropped =
-    "current SDKs list it among the devices that they no longer support, so no library can read it "
-    "safely; use a delta.3, omega, sigma or lambda";
 constexpr const char* kController =
     "it is a bare controller, whose mechanism and limits tact cannot know; use a delta.3, omega, "
     "sigma or lambda";
@@ -60,11 +68,6 @@ constexpr const char* kNoLimits =
 constexpr std::array kRefused{
     Refused{131, "lambda.6 right", kNoLimits},
     Refused{132, "lambda.6 left", kNoLimits},
-    Refused{31, "3-DOF", kDropped},
-    Refused{32, "OMEGA", kDropped},
-    Refused{61, "6-DOF", kDropped},
-    Refused{62, "6-DOF 500", kDropped},
-    Refused{64, "delta.6", kDropped},
     Refused{60, "Novint Falcon", "tact drives it by itself; set device.kind = \"falcon\""},
     Refused{81, "controller", kController},
     Refused{82, "controller HR", kController},

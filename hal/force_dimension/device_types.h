@@ -23,6 +23,7 @@ struct ForceDimensionType {
   bool wrist = false;  // it measures an orientation
   GripKind grip = GripKind::kButton;
   bool left = false;  // for a left hand: its gripper counts the other way
+  bool old = false;   // current SDKs no longer support it
 };
 
 /// Its gripper, fully open (FD-4).

@@ -10,6 +10,8 @@ namespace tact::hal::force_dimension {
 namespace {
 
 constexpr double kDelay_s = 0.75e-3;  // a cycle of the thread before the loop, one after, and USB
+constexpr const char* kOldType =
+    "; needs a library that still knows this type; tact has met no such device";
 constexpr const char* kWeightFelt =
     "; its weight is felt, as the library balances it only where the base stands as delivered";
 constexpr const char* kDampingKey = "device.force_dimension.damping_Ns_per_m";
@@ -31,7 +33,7 @@ DeviceInfo info_of(const SdkSession& session, const model::ForceDimensionSetting
                                          .delay_s = kDelay_s},
           .damping_key = kDampingKey,
           .caution = std::string(maker_library::kNoGuardian) +
-                     (session.balances_weight ? "" : kWeightFelt) +
+                     (session.balances_weight ? "" : kWeightFelt) + (type.old ? kOldType : "") +
                      maker_library::words_of_assumed_damping(
                          settings.damping_Ns_per_m,
                          model::ForceDimensionSettings{}.damping_Ns_per_m, kDampingKey)};

@@ -62,8 +62,8 @@ std::optional<Error> find_shortfall(const SdkSession& s) {
   const bool wrist_lost =
       s.type.wrist && status[kSdkWristDetected] != 0 && status[kSdkWristInit] == 0;
   if (status[kSdkReset] != 0 || wrist_lost) {
-    // A delta.3 is swept by hand; the others move by themselves, so the person starts that.
-    const bool by_hand = s.type.code == 63;
+    // A delta is swept by hand; the others move by themselves, so the person starts that.
+    const bool by_hand = s.type.code == 63 || s.type.old;
     return Error{fmt::format(
         "the {} is not calibrated; {}, then start tactd again", s.type.name,
         by_hand ? "sweep each axis by hand from stop to stop until its status light is steady"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grippers and user buttons: how far the jaws are closed, and the force on the fingers.
+// Grippers and user buttons: how far the jaws are closed, the force on the fingers; torque.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -108,6 +108,38 @@ TEST_F(ForceDimensionGrip, AGripperThatFailsIsATrouble) {
   stub.fail("dhdGetGripperAngleRad", 2);
   EXPECT_TRUE(tick_until([&] { return fault != Fault::kNone; }));
   EXPECT_TRUE(told("the device does not tell its gripper: ")) << device->trouble();
+}
+
+/// Torque, of each type that has motors for it.
+TEST_F(ForceDimensionGrip, TheTorqueArrivesToTheLastDigitAndKeepsItsDirectionAtTheLimit) {
+  for (const int type : {61, 62, 64, 104, 105, 106, 107, 108, 109}) {
+    stub.reset();
+    open(type);
+    const DeviceInfo info = device->info();
+    EXPECT_EQ(info.max_torque_Nm, 0.2) << type;
+    EXPECT_EQ(info.caution.find("still knows this type") != std::string::npos, type < 70) << type;
+    ASSERT_TRUE(ready());
+    double force[6] = {};
+    const auto arrives = [&](const Vec3& wanted_Nm) {
+      return tick_until(
+          [&] {
+            stub.last_force(force);
+            return force[3] == wanted_Nm.x && force[4] == wanted_Nm.y && force[5] == wanted_Nm.z;
+          },
+          {.force_N = {0.5, 0.0, 0.0}, .torque_Nm = wanted_Nm});
+    };
+    EXPECT_TRUE(arrives({0.0279, -0.0123456789012345, 0.1})) << type;
+    EXPECT_TRUE(tick_until(
+        [&] {
+          stub.last_force(force);
+          return std::abs(std::hypot(force[3], force[4], force[5]) - 0.2) < 1e-15;
+        },
+        {.force_N = {}, .torque_Nm = {0.3, 0.0, 0.4}}))
+        << type;
+    EXPECT_NEAR(force[3], 0.12, 1e-15);
+    EXPECT_NEAR(force[5], 0.16, 1e-15);
+    device.reset();
+  }
 }
 
 }  // namespace tact::hal::force_dimension::force_dimension_grip_test
