@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "hal/can/can_open.h"
 #include "hal/cia402/cia402_delta.h"
 #include "hal/falcon_usb/falcon_open.h"
 #include "hal/force_dimension/force_dimension_device.h"
@@ -81,6 +82,12 @@ Opened open_device(const model::scene::Scene& scene) {
   }
   return Error{fmt::format("{}: device.kind is \"{}\", which this build does not know; use {}",
                            scene.path, scene.device.kind, known)};
+}
+
+std::string missing_interface(const model::DeviceSettings& settings) {
+  if (!settings.is_on_can()) return {};
+  const auto link = can::read_can_link(settings.can.interface);
+  return link && link->up ? std::string() : settings.can.interface;
 }
 
 bool is_simulated(const model::DeviceSettings& settings) {
