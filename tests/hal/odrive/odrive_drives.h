@@ -20,6 +20,7 @@ struct PlayedOdrive {
   bool says_heartbeat = true;
   bool obeys = true;         // goes where Set_Axis_State says
   bool stuck_error = false;  // Clear_Errors does not help
+  bool no_supply = false;    // of its motor
   bool v06 = true;
   int position_every_ms = 1, heartbeat_every_ms = 100;
   std::uint32_t error = 0;
@@ -96,6 +97,7 @@ class PlayedOdrives {
     if (command == kClearErrors && !one.stuck_error) one.error = 0;
     if (command == kEstop) one.error |= 0x2000000, one.state = 1;
     if (command == kSetAxisState && one.obeys) one.state = hal::can::get_u32(frame.data, 0);
+    if (one.state == 8 && one.no_supply) one.error |= one.v06 ? 0x200u : 0x2u, one.state = 1;
     if (command == kSetControllerMode) {
       one.control = hal::can::get_u32(frame.data, 0);
       one.input = hal::can::get_u32(frame.data, 4);
