@@ -28,9 +28,27 @@ using model::Wrench;
 /// One reading. A device that has nothing new leaves `fresh` false and the rest untouched.
 struct Sample {
   Tool tool;
-  std::int64_t stamp_ns = 0;   // CLOCK_MONOTONIC when the device state was taken
-  std::uint64_t sequence = 0;  // counts device samples, never repeats
+  double grip_gap_m = 0.0;      // between the fingers, where the device can press against them
+  double grip_speed_mps = 0.0;  // of the gap, opening positive
+  std::int64_t stamp_ns = 0;    // CLOCK_MONOTONIC when the device state was taken
+  std::uint64_t sequence = 0;   // counts device samples, never repeats
   bool fresh = false;
+};
+
+/// How the hand tells the device to close the jaws of the tool.
+enum class GripKind : std::uint8_t {
+  kNone,    // it has nothing for it: device.lines.grip may stand in
+  kButton,  // open or closed
+  kAngle,   // a gripper that tells how far it is closed
+  kForce,   // the same, and its motor can press against the fingers
+};
+
+/// Without a default: each back end says it.
+struct DeviceGrip {
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  constexpr DeviceGrip(GripKind of, double most_N = 0.0) : kind(of), max_force_N(most_N) {}
+  GripKind kind;
+  double max_force_N;  // that it can press against the fingers; 0: none
 };
 
 /// What the hardware can do; the gate takes the smaller of this and the scene.
@@ -41,6 +59,9 @@ struct DeviceInfo {
   double max_continuous_force_N = 0.0;  // largest RMS that its motors bear; 0: not told
   double workspace_radius_m = 0.0;      // cylinder about the W x axis, centred on the origin of W
   double workspace_half_length_m = 0.0;
+  DeviceGrip grip;
+  bool turns_with_base = false;  // it senses how its handle is turned, from its base
+  double motion_scale = 1.0;     // way of the tool for a way of the handle (mounting.h)
   /// What bounds the stiffness it can show; a device without it is never felt.
   std::optional<model::DeviceAtTool> at_tool{};
   std::string damping_key{};  // of the scene, where the damping was entered; empty: nowhere
@@ -90,6 +111,9 @@ class Device {
 
   /// Hand this wrench to the hardware, on top of its own gravity compensation.
   [[nodiscard]] virtual Fault write(const Wrench& wrench) RT_SAFE = 0;
+
+  /// What the gripper does to the fingers, opening positive; holds from the next write on.
+  virtual void set_grip_force(double opening_N) RT_SAFE { (void)opening_N; }
 
   /// What happens to a simulated device while the loop sleeps: one or more periods of physics.
   /// Hardware lives by itself and does nothing here. Not part of the tick's measured time.

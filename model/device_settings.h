@@ -9,6 +9,8 @@
 #include <array>
 #include <string>
 
+#include "model/types.h"
+
 namespace tact::model {
 
 using PerArm = std::array<double, 3>;  // one value an arm or its motor, 1 to 3
@@ -92,6 +94,7 @@ struct ForceDimensionSettings {
   double watchdog_s = 0.004;            // the device lets go by itself; at most 0.0318
   double effector_mass_kg = 0.0;        // 0: the maker's value
   double damping_Ns_per_m = 1.0;        // what the device itself has, at the handle
+  double gripper_open_rad = 0.0;        // its gripper, fully open; 0: the maker's value
 };
 
 struct PhantomSettings {
@@ -107,12 +110,17 @@ struct LinesSettings {
   int estop_a = -1, estop_b = -1;
   int dead_man = -1;
   int enable = -1, heartbeat = -1, led = -1, scope = -1;
+  int grip = -1;                 // foot or hand switch that closes the jaws
+  bool grip_closes_low = false;  // at the low level; else at the high one
   bool wired() const { return !chip.empty(); }
 };
 
 struct DeviceSettings {
-  std::string kind;            // "sim-delta", or another that hal/registry knows
-  bool trust_library = false;  // the maker's may be anybody's file; a person says so, no scene can
+  std::string kind;             // "sim-delta", or another that hal/registry knows
+  Vec3 base_orientation_deg{};  // turn of its base, axis times angle; 0: as hal/ draws it
+  Vec3 base_position_m{};       // of its base, W
+  double motion_scale = 1.0;    // way of the tool for a way of the handle
+  bool trust_library = false;   // the maker's may be anybody's file; a person says so, no scene can
   SimDeviceSettings sim{};
   DeltaSettings delta{};
   CanSettings can{};

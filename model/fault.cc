@@ -128,6 +128,9 @@ constexpr std::array kTable{
     FaultEntry{Fault::kGuardianLost, "guardian lost",
                "tact-guardian, the process that zeroes the device if tactd dies, has ended",
                "find out who ended it (dmesg), then start tactd again"},
+    FaultEntry{Fault::kGripFlaps, "grip flaps",
+               "the line of the grip switch changed faster than a foot or a hand can",
+               "mend the switch or its wire (device.lines.grip), then reset and arm"},
     FaultEntry{Fault::kEnergyOverdrawn, "energy overdrawn",
                "the device gave more energy to the hand than limits.energy_J: the tool jumped, or "
                "the loop paused, under force",

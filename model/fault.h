@@ -55,6 +55,7 @@ enum class Fault : std::uint16_t {
   kLoopRanAway = 122,
   kForbiddenCall = 123,
   kGuardianLost = 124,
+  kGripFlaps = 125,
   kEnergyOverdrawn = 130,
   kPowerExceeded = 131,
 };

@@ -20,6 +20,7 @@ struct Limits {
   double continuous_force_N = 20.0;      // largest RMS of the force; torque in proportion
   double thermal_time_s = 10.0;          // of that RMS
   double power_W = 20.0;                 // given to the hand
+  double grip_force_N = 4.0;             // on the fingers; all else in proportion to force_N
 };
 
 /// As they act where the PC allows this share of the force: 1 with hard real time.
@@ -27,6 +28,7 @@ constexpr Limits limits_in_use(Limits limits, double force_share) {
   limits.force_N *= force_share;
   limits.torque_Nm *= force_share;
   limits.continuous_force_N *= force_share;
+  limits.grip_force_N *= force_share;
   return limits;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tactctl: arms, resets, stops or asks the tactd that runs a scene.
+// tactctl: arms, disarms, resets, stops or asks the tactd that runs a scene.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -35,10 +35,11 @@ int main(int argc, char** argv) {
   console::ControlQuestion question;
   app.add_option("SCENE", question.scene_path, "the scene file that tactd was given")->required();
   app.add_option("WORD", question.word,
-                 "arm: force, after the words \"ready, force is off\"; reset: leave a stop whose "
-                 "cause is gone; stop: force to zero, then end; status: how it is")
+                 "arm: force, after the words \"ready, force is off\"; disarm: no force, and ready "
+                 "to be armed again; reset: leave a stop whose cause is gone; stop: force to zero, "
+                 "then end; status: how it is")
       ->required()
-      ->check(CLI::IsMember({"arm", "reset", "stop", "status"}));
+      ->check(CLI::IsMember({"arm", "disarm", "reset", "stop", "status"}));
   app.add_option("--pid", question.process, "of several tactds that run it, the one of this pid")
       ->check(tact::model::io::within(1, 4'194'304));
   app.add_option("--folder", question.folder,

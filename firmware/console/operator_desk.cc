@@ -41,9 +41,10 @@ bool OperatorDesk::show() {
 Answer OperatorDesk::do_word(const std::string& word, bool too_early) {
   if (word == "arm") return arm(too_early);
   if (word == "reset") return reset(too_early);
+  if (word == "disarm") return disarm();
   if (word == "stop") return stop();
   if (word == "status") return {.done = true, .sentence = view_.status()};
-  return {.done = false, .sentence = "arm, reset, stop and status are known, nothing else"};
+  return {.done = false, .sentence = "arm, disarm, reset, stop and status are known, nothing else"};
 }
 
 Answer OperatorDesk::arm(bool too_early) {
@@ -67,6 +68,13 @@ Answer OperatorDesk::reset(bool too_early) {
   signals_.raise_edge(requests_.reset);
   return {.done = true,
           .sentence = view_.device() + ": reset; it is ready when its cause is gone, then arm it"};
+}
+
+// Force goes away by it: never too early, and asked of the loop whatever was shown last.
+Answer OperatorDesk::disarm() {
+  signals_.raise_edge(requests_.disarm);
+  return {.done = true,
+          .sentence = view_.device() + ": no force; arm it again when it shall have one"};
 }
 
 Answer OperatorDesk::stop() {

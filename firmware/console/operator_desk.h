@@ -34,6 +34,7 @@ class OperatorDesk {
   Answer do_word(const std::string& word, bool too_early);
   Answer arm(bool too_early);
   Answer reset(bool too_early);
+  Answer disarm();
   Answer stop();
   Answer refuse(const char* what, const std::string& why) const;
 

@@ -21,8 +21,9 @@ using model::Fault;
 std::string trouble_behind(Fault fault, const hal::Device& device, const hal::SafetyLines& lines) {
   if (fault == Fault::kNone) return {};
   if (fault == Fault::kForbiddenCall) return watch::refused_call();
-  // By their numbers, 107 to 110 (model/fault.h).
-  const bool of_lines = fault >= Fault::kEmergencyStop && fault <= Fault::kDeadManReleased;
+  // By their numbers, 107 to 110 (model/fault.h), and the grip line.
+  const bool of_lines = (fault >= Fault::kEmergencyStop && fault <= Fault::kDeadManReleased) ||
+                        fault == Fault::kGripFlaps;
   return of_lines ? lines.trouble() : device.trouble();
 }
 
@@ -48,11 +49,12 @@ bool OperatorView::show(const telemetry::Frame& newest) {
     const std::string trouble = trouble_behind(number, device_, lines_);
     tell(fmt::format("fault {}, {}: {}{}{}; {}", newest.fault, fault.name, fault.cause,
                      trouble.empty() ? "" : ": ", trouble, fault.cure));
-  } else if (newest.fault == 0 && newest.state == loop::State::kOff) {
+  } else if (newest.fault == 0 && waits(newest.state)) {
     const std::string now = device_.trouble();
     if (!now.empty() && now != waits_for_) tell(now);
     waits_for_ = now;
   } else if (newest.state == loop::State::kReady && !told_ready_ && !arms_itself_) {
+    waits_for_.clear();
     told_ready_ = true;
     tell(fmt::format(
         "ready, force is off: hold the device, then arm it (tactctl {} arm, or kill -USR2 {})",
@@ -64,6 +66,14 @@ bool OperatorView::show(const telemetry::Frame& newest) {
   std::fflush(stdout);
   before_ = newest;
   return told_ready_ && !was_told;
+}
+
+// A device may tell where it is while its motors have no power yet: it is not ready then.
+bool OperatorView::waits(loop::State state) {
+  if (state == loop::State::kOff) return true;
+  const bool without_power = state == loop::State::kReady && !device_.trouble().empty();
+  if (without_power) told_ready_ = false;
+  return without_power;
 }
 
 // Each time the tool is found inside: nothing else says why an armed device has no force.
@@ -82,6 +92,7 @@ std::string OperatorView::why_not_arm() const {
     case loop::State::kOff:
       return waits_for_.empty() ? "the device is not ready yet" : waits_for_;
     case loop::State::kReady:
+      if (!waits_for_.empty()) return waits_for_;
       return told_ready_ ? "" : "it arms itself as soon as it has power";
     case loop::State::kArmed:
       return "it is armed already";
@@ -107,7 +118,7 @@ std::string OperatorView::status() const {
   if (inside_) out += ", inside the organ: take the tool out";
   if (before_.contact_losses > 0)
     out += fmt::format(", contact lost {} times", before_.contact_losses);
-  if (before_.state == loop::State::kOff && !waits_for_.empty()) out += ": " + waits_for_;
+  if (before_.state <= loop::State::kReady && !waits_for_.empty()) out += ": " + waits_for_;
   return out;
 }
 

@@ -33,6 +33,7 @@ class OperatorView {
   void end() const;
 
  private:
+  bool waits(loop::State state);
   void tell_inside(const telemetry::Frame& newest);
 
   const hal::Device& device_;

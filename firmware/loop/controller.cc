@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "firmware/loop/jaw_force.h"
+
 namespace tact::firmware::loop {
 namespace {
 
@@ -31,9 +33,10 @@ double fastest_sphere_mps(const model::contact::ContactScene& scene, const gate:
 }  // namespace
 
 Controller::Controller(const model::contact::ContactScene& scene, const gate::Gate& gate,
-                       bool hard_real_time)
+                       bool hard_real_time, const std::optional<gate::GripGate>& grip_gate)
     : contact_(scene),
       gate_(gate),
+      grip_gate_(grip_gate),
       late_watch_(hard_real_time),
       fastest_mps_(fastest_sphere_mps(scene, gate)) {}
 
@@ -67,6 +70,7 @@ void Controller::feel(const TickInput& input) RT_SAFE {
   // A blade cuts only what a hand can feel: armed, as the tick before left it.
   felt_ = contact_.feel(input.sample.tool, supervisor_.armed());
   if (felt_.is_lost) ++contact_losses_;
+  jaw_force_N_ = jaw_force_N(contact_.touches(), input.sample.tool.grip_ratio);
 }
 
 void Controller::tell_shape() RT_SAFE {
@@ -96,6 +100,18 @@ Fault Controller::find_limit(Fault acting) const RT_SAFE {
   return acting;
 }
 
+// Where the gate lets the hand go, it lets the fingers go, too.
+gate::GripVerdict Controller::limit_grip(const TickInput& input) RT_SAFE {
+  if (!grip_gate_) return {};
+  const hal::Sample& sample = input.sample;
+  return grip_gate_->limit({.wanted_N = lets_go(acting_) ? 0.0 : jaw_force_N_,
+                            .gap_m = sample.grip_gap_m,
+                            .speed_mps = sample.grip_speed_mps,
+                            .fresh = sample.fresh,
+                            .armed = supervisor_.armed(),
+                            .skipped_periods = input.skipped_periods});
+}
+
 TickOutput Controller::judge(const TickInput& input) RT_SAFE {
   const bool finite = is_finite(input.sample.tool);
   const bool too_late = late_watch_.step(input.skipped_periods);
@@ -104,6 +120,9 @@ TickOutput Controller::judge(const TickInput& input) RT_SAFE {
   supervisor_.step(
       input.commands,
       {.sample_good = input.sample.fresh && finite, .ready = input.ready, .fault = fault});
+  // The fingers first: a fault found there has zero force on the hand in this tick.
+  const gate::GripVerdict grip = limit_grip(input);
+  supervisor_.trip(grip.fault);
   // Where the gate latches it makes the force zero by itself; the state follows.
   const gate::GateVerdict verdict = gate_.judge({.wanted = felt_.wrench,
                                                  .tool = input.sample.tool,
@@ -111,14 +130,18 @@ TickOutput Controller::judge(const TickInput& input) RT_SAFE {
                                                  .armed = supervisor_.armed(),
                                                  .skipped_periods = input.skipped_periods});
   supervisor_.trip(verdict.fault);
+  acting_ = verdict.acting;
+  const Fault acting = verdict.acting != Fault::kNone ? verdict.acting : grip.acting;
   newest_ = {.wanted = felt_.wrench,
              .written = verdict.wrench,
              .state = supervisor_.state(),
-             .limit = find_limit(verdict.acting),
+             .limit = find_limit(acting),
              .fault = supervisor_.fault(),
              .given_energy_J = gate_.given_energy_J(),
              .rms_force_N = gate_.rms_force_N(),
-             .contact_losses = contact_losses_};
+             .contact_losses = contact_losses_,
+             .wanted_grip_N = grip_gate_ ? jaw_force_N_ : 0.0,
+             .written_grip_N = latches(verdict.fault) ? 0.0 : grip.force_N};
   return newest_;
 }
 

@@ -5,7 +5,10 @@
 // (replay.h). The loop (rt_loop.h) calls the three phases and measures them.
 #pragma once
 
+#include <optional>
+
 #include "firmware/gate/gate.h"
+#include "firmware/gate/grip_gate.h"
 #include "firmware/loop/late_watch.h"
 #include "firmware/loop/supervisor.h"
 #include "hal/device.h"
@@ -33,6 +36,7 @@ struct TickOutput {
   double given_energy_J = 0.0;       // by the device since arming, more than it took
   double rms_force_N = 0.0;          // written, over limits.thermal_time_s
   std::uint64_t contact_losses = 0;  // so far: the tool moved unseen, farther than its speed allows
+  double wanted_grip_N = 0.0, written_grip_N = 0.0;  // on the fingers, opening positive
 };
 
 using ShapeSlot = hal::LatestSlot<model::contact::PatchShape>;
@@ -40,8 +44,8 @@ using ShapeSlot = hal::LatestSlot<model::contact::PatchShape>;
 class Controller {
  public:
   /// Without hard real time the late watch bears single stalls.
-  Controller(const model::contact::ContactScene& scene, const gate::Gate& gate,
-             bool hard_real_time);
+  Controller(const model::contact::ContactScene& scene, const gate::Gate& gate, bool hard_real_time,
+             const std::optional<gate::GripGate>& grip_gate = std::nullopt);
 
   void touch(const TickInput& input) RT_SAFE;
   void feel(const TickInput& input) RT_SAFE;
@@ -70,13 +74,17 @@ class Controller {
  private:
   Fault find_fault(const TickInput& input, bool finite, bool too_late) const RT_SAFE;
   Fault find_limit(Fault acting) const RT_SAFE;
+  gate::GripVerdict limit_grip(const TickInput& input) RT_SAFE;
   double reach_m(std::uint64_t periods, std::int64_t stamp_ns) const RT_SAFE;
 
   model::contact::Contact contact_;
   gate::Gate gate_;
+  std::optional<gate::GripGate> grip_gate_;  // where the device presses against the fingers
   LateWatch late_watch_;
   Supervisor supervisor_;
   model::contact::ContactResponse felt_;  // of this tick
+  double jaw_force_N_ = 0.0;              // of this tick
+  Fault acting_ = Fault::kNone;           // in the gate, in the last tick
   TickOutput newest_;
   model::contact::PatchShape shape_;
   ShapeSlot shapes_;

@@ -4,6 +4,7 @@
 #include "firmware/loop/rt_loop.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -45,6 +46,7 @@ void RtLoop::release_device() RT_SAFE {
   const Fault lines_fault = lines_.write({.healthy = false, .armed = false, .faulted = true});
   progress_.enter(Callee::kDevice);
   device_.permit(false);
+  device_.set_grip_force(0.0);
   const Fault device_fault = device_.write(model::Wrench{});
   progress_.enter(Callee::kOwn);
   progress_.end();
@@ -58,7 +60,8 @@ bool RtLoop::hear_requests() RT_SAFE {
   const bool asked_before = std::exchange(asked_, requests_.arm.load(std::memory_order_relaxed));
   record_.input.commands = {.arm = asked_ || arms_at_start(),
                             .stop = requests_.stop.load(std::memory_order_relaxed),
-                            .reset = requests_.reset.load(std::memory_order_relaxed)};
+                            .reset = requests_.reset.load(std::memory_order_relaxed),
+                            .disarm = requests_.disarm.load(std::memory_order_relaxed)};
   return asked_ && !asked_before;
 }
 
@@ -84,9 +87,13 @@ Fault RtLoop::read(std::int64_t now_ns) RT_SAFE {
   const Fault lines_fault = lines_.read(now_ns);
   // A device with nothing new leaves the rest untouched
   // (hal/device.h): the old sample must not pass for a new one.
-  record_.input.sample.fresh = false;
+  hal::Sample& sample = record_.input.sample;
+  sample.fresh = false;
+  sample.tool.grip_ratio = device_grip_ratio_;
   progress_.enter(Callee::kDevice);
-  const Fault read_fault = device_.read(record_.input.sample, now_ns);
+  const Fault read_fault = device_.read(sample, now_ns);
+  device_grip_ratio_ = sample.tool.grip_ratio;
+  sample.tool.grip_ratio = grip_.step(device_grip_ratio_, lines_.grip());
   progress_.enter(Callee::kOwn);
   const Fault watch_fault = requests_.fault.load(std::memory_order_relaxed);
   for (const Fault fault : {watch_fault, lines_fault, read_fault, write_fault_})
@@ -105,6 +112,7 @@ void RtLoop::write() RT_SAFE {
                                           .faulted = stopped});
   progress_.enter(Callee::kDevice);
   device_.permit(lines_.enabled());
+  device_.set_grip_force(output.written_grip_N);
   const Fault device_fault = device_.write(output.written);
   progress_.enter(Callee::kOwn);
   write_fault_ = lines_fault != Fault::kNone ? lines_fault : device_fault;
@@ -113,6 +121,8 @@ void RtLoop::write() RT_SAFE {
 // The record is dropped when nobody has read the last ones.
 void RtLoop::tell() RT_SAFE {
   statistics_.max_force_N = std::max(statistics_.max_force_N, norm(record_.output.written.force_N));
+  statistics_.max_grip_force_N =
+      std::max(statistics_.max_grip_force_N, std::abs(record_.output.written_grip_N));
   statistics_.max_rms_force_N = std::max(statistics_.max_rms_force_N, record_.output.rms_force_N);
   statistics_.max_given_energy_J =
       std::max(statistics_.max_given_energy_J, record_.output.given_energy_J);

@@ -12,6 +12,7 @@
 
 #include "firmware/loop/clock.h"
 #include "firmware/loop/controller.h"
+#include "firmware/loop/grip_input.h"
 #include "firmware/loop/latency_histogram.h"
 #include "firmware/loop/progress.h"
 #include "firmware/loop/ring.h"
@@ -28,6 +29,7 @@ struct Requests {
   std::atomic<bool> arm_at_start{false};  // once, as soon as it is ready: the loop's own request
   std::atomic<bool> stop{false};          // force to zero, then leave
   std::atomic<bool> reset{false};
+  std::atomic<bool> disarm{false};         // force to zero, ready to be armed again
   std::atomic<Fault> fault{Fault::kNone};  // of the watch; the first stays to the end of the run
   std::atomic<std::uint32_t> refused{0};   // edges of arm that armed nothing
 
@@ -45,6 +47,7 @@ struct LoopStatistics {
   std::uint64_t contact_losses = 0;
   std::uint64_t inside_ticks = 0;   // a sphere was inside the organ and felt nothing
   double max_force_N = 0.0;         // written
+  double max_grip_force_N = 0.0;    // written, on the fingers
   double max_rms_force_N = 0.0;     // written, over limits.thermal_time_s
   double max_given_energy_J = 0.0;  // since arming, more than was taken
   StopTimes stop;
@@ -56,6 +59,7 @@ struct LoopSettings {
   std::uint64_t max_ticks = 0;        // 0: until a stop request
   std::uint64_t max_periods = 0;      // ticks and skipped periods together; 0: no limit
   std::uint64_t ticks_per_shape = 0;  // 0: never
+  GripSettings grip{};
 };
 
 class RtLoop {
@@ -68,7 +72,8 @@ class RtLoop {
         controller_(controller),
         clock_(clock),
         requests_(requests),
-        ring_(ring) {
+        ring_(ring),
+        grip_(settings.grip) {
     record_.margin_ns = settings.period_ns;  // before the first tick nothing is used up
   }
 
@@ -106,6 +111,8 @@ class RtLoop {
   Clock& clock_;
   Requests& requests_;
   TickRing& ring_;
+  GripInput grip_;
+  double device_grip_ratio_ = 0.0;  // of its last sample
   LoopStatistics statistics_;
   TickRecord record_;
   MarkedTime marked_;

@@ -6,7 +6,9 @@ namespace tact::firmware::loop {
 State Supervisor::step(const Commands& commands, const Findings& found) RT_SAFE {
   const bool arm_edge = commands.arm && !arm_before_;
   const bool reset_edge = commands.reset && !reset_before_;
+  const bool disarm_edge = commands.disarm && !disarm_before_;
   arm_before_ = commands.arm;
+  disarm_before_ = commands.disarm;
   reset_before_ = commands.reset;
   // Levels are taken in every state, so a request that came too early is spent (RT-16). A fault
   // goes before a stop request: it stays as the cause.
@@ -17,10 +19,13 @@ State Supervisor::step(const Commands& commands, const Findings& found) RT_SAFE 
       if (found.sample_good) state_ = State::kReady;
       break;
     case State::kReady:
-      if (arm_edge && found.sample_good && found.ready) state_ = State::kArmed;
+      if (arm_edge && found.sample_good && found.ready && !commands.disarm) state_ = State::kArmed;
       break;
     case State::kArmed:  // power that comes back must not bring a force with it
-      if (!found.ready) trip(Fault::kPowerLost);
+      if (!found.ready)
+        trip(Fault::kPowerLost);
+      else if (disarm_edge)
+        state_ = State::kReady;
       break;
     // Reset and arm are two acts: a request to arm that stands keeps the stop.
     case State::kStopped:

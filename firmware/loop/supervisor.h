@@ -4,13 +4,15 @@
 //     Off      nothing known of the device    -> Ready    a good sample
 //     Ready    device good, tissue force zero -> Armed    rising edge of arm, good sample, power on
 //     Armed    force passes the gate          -> Stopped  power lost
+//                                             -> Ready    rising edge of disarm
 //     Stopped  force zero, fault kept         -> Ready    rising edge of reset, good sample, no
 //                                                         fault that latches, no arm request
 //     any                                     -> Stopped  stop request, or a fault that latches
 //
 // What the gate writes is zero but in Armed; the device may carry its own weight while its drives
 // have power. Reset never re-arms: arming is a request of its own (RT-16). A request that comes
-// before Ready, or while there is no power, is spent: none is kept for later.
+// before Ready, or while there is no power, is spent: none is kept for later. Nothing arms while a
+// request to disarm stands.
 #pragma once
 
 #include "firmware/loop/state.h"
@@ -25,6 +27,7 @@ struct Commands {
   bool arm = false;
   bool stop = false;
   bool reset = false;
+  bool disarm = false;
 
   friend bool operator==(const Commands&, const Commands&) = default;
 };
@@ -52,7 +55,7 @@ class Supervisor {
  private:
   State state_ = State::kOff;
   Fault fault_ = Fault::kNone;
-  bool arm_before_ = false, reset_before_ = false;
+  bool arm_before_ = false, reset_before_ = false, disarm_before_ = false;
 };
 
 }  // namespace tact::firmware::loop

@@ -65,11 +65,10 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
   // Of the limits as they act: a quarter of the force on this PC is another checksum.
   parts.limits_checksum =
       model::io::limits_checksum(model::limits_in_use(parts.limits, setup.force_share()));
+  const double period_s = static_cast<double>(model::period_ns(scene.rate_Hz)) * 1e-9;
   parts.controller = std::make_unique<loop::Controller>(
-      parts.tissue->contact_scene(),
-      gate::Gate(parts.limits, static_cast<double>(model::period_ns(scene.rate_Hz)) * 1e-9,
-                 setup.force_share()),
-      !setup.non_rt);
+      parts.tissue->contact_scene(), gate::Gate(parts.limits, period_s, setup.force_share()),
+      !setup.non_rt, gate::GripGate::make(parts.limits, period_s, setup.force_share()));
   parts.ring = std::make_unique<loop::TickRing>(scene.rate_Hz);
   return parts;
 }

@@ -45,9 +45,9 @@ model::Result<ReplayOutcome> replay(const std::string& path, const model::scene:
   if (auto error = check_header(header, path, scene)) return *error;
   pc::flush_denormals();  // as in the loop's thread
   const double period_s = static_cast<double>(header.period_ns) * 1e-9;
-  loop::Controller controller(tissue.contact_scene(),
-                              gate::Gate(header.limits, period_s, header.force_share),
-                              header.non_rt == 0);
+  loop::Controller controller(
+      tissue.contact_scene(), gate::Gate(header.limits, period_s, header.force_share),
+      header.non_rt == 0, gate::GripGate::make(header.limits, period_s, header.force_share));
   ReplayOutcome outcome;
   outcome.force_hash = model::kFnvStart;
   telemetry::LoggedTick tick;
@@ -60,7 +60,10 @@ model::Result<ReplayOutcome> replay(const std::string& path, const model::scene:
     const loop::TickOutput output = controller.tick(tick.input);
     outcome.force_hash = telemetry::hash_wrench(outcome.force_hash, output.written);
     // Bits, so that -0 and NaN count, too.
-    if (telemetry::bits_of(output.written) == telemetry::bits_of(tick.output.written)) continue;
+    if (telemetry::bits_of(output.written) == telemetry::bits_of(tick.output.written) &&
+        std::bit_cast<std::uint64_t>(output.written_grip_N) ==
+            std::bit_cast<std::uint64_t>(tick.output.written_grip_N))
+      continue;
     if (outcome.different++ == 0) outcome.first_different = tick.tick;
   }
   while (log->next(tick)) continue;  // what is behind a gap counts as good all the same

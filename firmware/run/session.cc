@@ -13,6 +13,7 @@
 #include "firmware/console/say.h"
 #include "firmware/console/service_manager.h"
 #include "firmware/loop/grid.h"
+#include "firmware/run/bus_wait.h"
 #include "firmware/run/loop_executor.h"
 #include "firmware/run/loop_parts.h"
 #include "firmware/run/real_time.h"
@@ -27,7 +28,6 @@ namespace tact::firmware::run {
 namespace {
 
 using console::say;
-using model::Error;
 
 constexpr std::int64_t kStatusPeriod_ns = 200'000'000;
 
@@ -47,9 +47,9 @@ class Session {
   int run();
 
  private:
-  std::optional<Error> open();
-  std::optional<Error> open_telemetry();
-  std::optional<Error> open_call_filter();
+  std::optional<model::Error> open();
+  std::optional<model::Error> open_telemetry();
+  std::optional<model::Error> open_call_filter();
   void run_real_time();
   void run_free();
   void serve_operator(LoopExecutor& executor);
@@ -103,6 +103,7 @@ int Session::run() {
   if (non_rt_)
     say(stderr, "tactd: no hard real time: force capped to {:g} %, records stamped non-rt\n",
         100.0 * gate::kNonRtForceShare);
+  if (console::is_service() && !wait_for_bus(scene_, *operator_)) return 0;
   if (const auto error = open()) return fail(error->sentence, 2);
   for (const std::string& note : start_notes(scene_, parts_, options_.check))
     say(stderr, "tactd: {}\n", note);
@@ -124,7 +125,7 @@ int Session::run() {
   return report();
 }
 
-std::optional<Error> Session::open() {
+std::optional<model::Error> Session::open() {
   auto parts = open_loop_parts(scene_, parts_setup());
   if (!parts) return parts.error();
   parts_ = std::move(*parts);
@@ -135,12 +136,15 @@ std::optional<Error> Session::open() {
   loop_.emplace(loop::LoopSettings{.period_ns = period_ns(),
                                    .max_ticks = options_.ticks,
                                    .max_periods = asked_periods,
-                                   .ticks_per_shape = ticks_per_shape()},
+                                   .ticks_per_shape = ticks_per_shape(),
+                                   .grip = {.toggles = scene_.grip_toggles,
+                                            .close_ratio = scene_.contact.grip_close_ratio,
+                                            .open_ratio = scene_.contact.grip_open_ratio}},
                 *parts_.device, *parts_.lines, *parts_.controller, clock, requests_, *parts_.ring);
   return std::nullopt;
 }
 
-std::optional<Error> Session::open_telemetry() {
+std::optional<model::Error> Session::open_telemetry() {
   auto outlets = open_outlets({.scene = scene_,
                                .options = options_,
                                .parts = parts_,
@@ -159,7 +163,7 @@ std::optional<Error> Session::open_telemetry() {
   return std::nullopt;
 }
 
-std::optional<Error> Session::open_call_filter() {
+std::optional<model::Error> Session::open_call_filter() {
   if (options_.free_run || options_.no_seccomp) return std::nullopt;
   auto filter =
       watch::CallFilter::make(parts_.device->loop_calls(), parts_.lines->loop_calls(), requests_);
@@ -167,7 +171,7 @@ std::optional<Error> Session::open_call_filter() {
     filter_ = std::move(*filter);
     return std::nullopt;
   }
-  if (options_.seccomp) return Error{"refused by --seccomp: " + filter.error().sentence};
+  if (options_.seccomp) return model::Error{"refused by --seccomp: " + filter.error().sentence};
   say(stderr, "tactd: {}; --no-seccomp says that this is meant\n", filter.error().sentence);
   return std::nullopt;
 }

@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include "firmware/admission/grip_note.h"
 #include "firmware/admission/inertia_note.h"
 #include "firmware/admission/open_organ_note.h"
 #include "firmware/admission/reach_note.h"
+#include "firmware/admission/torque_note.h"
+#include "hal/mounting.h"
 #include "model/scene/accuracy_file.h"
 
 namespace tact::firmware::run {
@@ -13,10 +16,12 @@ namespace tact::firmware::run {
 std::vector<std::string> start_notes(const model::scene::Scene& scene, const LoopParts& parts,
                                      bool is_check) {
   std::vector<std::string> notes{admission::inertia_note(scene, parts.tissue->law()),
-                                 parts.device->info().caution};
+                                 parts.device->info().caution,
+                                 admission::grip_note(scene, parts.device->info())};
   if (is_check) {
     notes.push_back(admission::reach_note(scene));
     notes.push_back(admission::open_organ_note(scene));
+    notes.push_back(admission::torque_note(scene, parts.device->info()));
     if (parts.presses) notes.push_back(parts.presses->note);
   }
   std::erase(notes, std::string());
@@ -40,6 +45,7 @@ std::string check_lines(const model::scene::Scene& scene, const LoopParts& parts
                        presses->slope_N_per_m > parts.stiffness.limit_N_per_m
                            ? ": more than the device shows"
                            : "");
+  out += "\n" + hal::words_of(hal::mounting_of(scene.device));
   return out + "\n" + model::scene::accuracy_line(scene);
 }
 

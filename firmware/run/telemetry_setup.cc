@@ -7,6 +7,7 @@
 
 #include <ctime>
 
+#include "firmware/admission/grip_note.h"
 #include "firmware/pc/environment.h"
 #include "model/io/socket_file.h"
 
@@ -27,13 +28,15 @@ Result<std::string> socket_path(const RunSetup& run) {
 /// What a viewer is told first; with limits as they act on this PC.
 telemetry::Hello hello_of(const RunSetup& run, const std::string& hand_path) {
   const gate::Gate& gate = run.parts.controller->gate();
-  const telemetry::HelloFacts facts{.device = run.parts.device->info(),
-                                    .force_limit_N = gate.force_limit_N(),
-                                    .continuous_force_N = gate.continuous_force_N(),
-                                    .energy_budget_J = gate.energy_budget_J(),
-                                    .limits_checksum = run.parts.limits_checksum,
-                                    .non_rt = run.non_rt,
-                                    .hand_socket = hand_path};
+  const telemetry::HelloFacts facts{
+      .device = run.parts.device->info(),
+      .force_limit_N = gate.force_limit_N(),
+      .continuous_force_N = gate.continuous_force_N(),
+      .energy_budget_J = gate.energy_budget_J(),
+      .limits_checksum = run.parts.limits_checksum,
+      .non_rt = run.non_rt,
+      .cannot_grip = admission::cannot_grip(run.scene, run.parts.device->info()),
+      .hand_socket = hand_path};
   return make_hello(run.scene, *run.parts.tissue, facts);
 }
 

@@ -41,6 +41,9 @@ void put(Frame& frame, const loop::TickInput& input, const loop::TickOutput& out
   put(frame.force_N, output.written.force_N);
   put(frame.torque_Nm, output.written.torque_Nm);
   put(frame.wanted_force_N, output.wanted.force_N);
+  // The gate lets 8 N through at the most, and 32 N have room.
+  frame.grip_force_mN =
+      static_cast<std::int16_t>(std::clamp(1e3 * output.written_grip_N, -32'000.0, 32'000.0));
   frame.fault = static_cast<std::uint16_t>(output.fault);
   frame.state = output.state;
   constexpr std::uint64_t kMax_count = std::numeric_limits<std::uint32_t>::max();
@@ -88,6 +91,7 @@ Hello make_hello(const model::scene::Scene& scene, const model::scene::Tissue& t
     put(hello.sphere_offset_m[i], scene.tool.spheres[i].offset_m);
   }
   hello.non_rt = facts.non_rt ? 1 : 0;
+  hello.cannot_grip = facts.cannot_grip ? 1 : 0;
   hello.simulated = facts.hand_socket.empty() ? 0 : 1;
   put(hello.scene_name, scene.name);
   put(hello.limits_checksum, facts.limits_checksum);

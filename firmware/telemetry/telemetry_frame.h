@@ -21,6 +21,7 @@ struct HelloFacts {
   double energy_budget_J = 0.0;
   std::string limits_checksum;
   bool non_rt = false;
+  bool cannot_grip = false;
   std::string hand_socket;  // empty: the device is not simulated
 };
 

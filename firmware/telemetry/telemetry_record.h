@@ -52,7 +52,8 @@ struct Hello {
   float sphere_offset_m[kMaxSites][3] = {};  // tool frame
   std::uint8_t non_rt = 0;                   // 1: this PC gives no hard real time, force is capped
   std::uint8_t simulated = 0;                // 1: the device is simulated, the hand may be moved
-  char scene_name[53] = {};
+  char scene_name[52] = {};
+  std::uint8_t cannot_grip = 0;  // 1: the scene grips, and the device has nothing to close the jaws
   char limits_checksum[9] = {};  // of the limits in use (model/io/limits_checksum.h)
   char device_name[64] = {};
   char law_name[64] = {};
@@ -105,8 +106,8 @@ struct Frame {
   std::uint16_t fault = 0;       // number in the fault table
   std::uint16_t limit = 0;       // last limit that acted since the last frame, 0 none
   loop::State state = loop::State::kOff;
-  std::uint8_t non_rt = 0;  // stamped on every record of a PC without hard real time
-  std::uint8_t pad[2] = {};
+  std::uint8_t non_rt = 0;           // stamped on every record of a PC without hard real time
+  std::int16_t grip_force_mN = 0;    // written to the fingers, opening positive
   std::uint32_t contact_losses = 0;  // so far; 0 in what was recorded before there was a count
   FrameSite site[kMaxSites] = {};
   FramePatch patch;
@@ -119,6 +120,6 @@ static_assert(sizeof(FramePatch) == 16 + kMaxPatchVertices * 10 + kMaxCutsTold *
 static_assert(sizeof(Frame) ==
               48 + 25 * sizeof(float) + 8 + 4 + kMaxSites * sizeof(FrameSite) + sizeof(FramePatch));
 static_assert(sizeof(Frame) <= 4096);
-static_assert(sizeof(Hello) == 122 + 53 + 9 + 64 + 64 + 108 + 24 + 4 + 48);
+static_assert(sizeof(Hello) == 122 + 52 + 1 + 9 + 64 + 64 + 108 + 24 + 4 + 48);
 
 }  // namespace tact::firmware::telemetry

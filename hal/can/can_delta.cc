@@ -48,9 +48,11 @@ delta::DeltaMasses delta_masses(const model::DeltaSettings& delta) {
           .platform_kg = delta.platform_kg};
 }
 
-CanDelta::CanDelta(const model::DeltaSettings& delta, const model::CanSettings& can)
+CanDelta::CanDelta(const model::DeltaSettings& delta, const model::CanSettings& can,
+                   const Vec3& gravity_mps2)
     : settings_(delta),
       masses_(delta_masses(delta)),
+      gravity_D_mps2_(delta::direction_D(gravity_mps2)),
       delta_(delta_geometry(delta)),
       direction_(can.direction),
       zero_turns_(can.zero_turns),
@@ -119,7 +121,7 @@ delta::Joints CanDelta::motor_torques_Nm(const Vec3& force_N, double ratio) cons
   if (!has_pose_) return torque_Nm;
   const Vec3 borne_N = is_finite(force_N) ? saturated(force_N, settings_.max_force_N) : Vec3{};
   const double most_Nm = settings_.max_joint_torque_Nm;
-  torque_Nm = delta::drive_torques_Nm(delta_.geometry(), masses_, pose_,
+  torque_Nm = delta::drive_torques_Nm(delta_.geometry(), masses_, pose_, gravity_D_mps2_,
                                       delta::direction_D(borne_N), most_Nm);
   for (std::size_t i = 0; i < 3; ++i) {
     const double joint_Nm = std::clamp(torque_Nm[i], -most_Nm, most_Nm);  // gravity may be above
@@ -134,6 +136,7 @@ DeviceInfo CanDelta::info(std::string name, double counts_per_turn, double delay
           .max_torque_Nm = 0.0,
           .workspace_radius_m = settings_.workspace_radius_m,
           .workspace_half_length_m = settings_.workspace_half_length_m,
+          .grip = GripKind::kNone,
           .at_tool = delta_at_tool(
               delta_,
               {.viscous_Nms_per_rad = settings_.joint_damping_Nms_per_rad,

@@ -28,7 +28,9 @@ delta::DeltaMasses delta_masses(const model::DeltaSettings& delta);
 
 class CanDelta {
  public:
-  CanDelta(const model::DeltaSettings& delta, const model::CanSettings& can);
+  /// `gravity_mps2`: where down is for the base (hal/mounting.h).
+  CanDelta(const model::DeltaSettings& delta, const model::CanSettings& can,
+           const Vec3& gravity_mps2 = delta::kGravity_W_mps2);
 
   /// Set-up: the arms rest at home_rad now, so zero is where that says.
   void home_on_jig(const delta::Joints& motor_turns);
@@ -53,6 +55,7 @@ class CanDelta {
 
   model::DeltaSettings settings_;
   delta::DeltaMasses masses_;
+  Vec3 gravity_D_mps2_;
   delta::DeltaKinematics delta_;
   delta::Joints direction_{}, zero_turns_{}, home_rad_{};
   VelocityObserver velocity_;

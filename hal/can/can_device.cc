@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "hal/can/sample_gap.h"
+#include "hal/mounting.h"
 #include "model/time_ns.h"
 
 namespace tact::hal::can {
@@ -24,7 +25,7 @@ class CanDevice final : public Device {
             double rate_Hz, BasicCanStart<Frame> start)
       : bus_(std::move(bus)),
         settings_(settings),
-        delta_(settings.delta, settings.can),
+        delta_(settings.delta, settings.can, mounting_of(settings).gravity_B_mps2()),
         start_(std::move(start)),
         drives_(*start_.drives),
         period_ns_(model::period_ns(rate_Hz)),
@@ -73,6 +74,7 @@ class CanDevice final : public Device {
     }
     follow_permission();
     const bool ready = loop_.power == CanPower::kReady;
+    loop_.felt = loop_.felt || (ready && wrench.force_N != Vec3{});
     drives_.push(loop_, ready ? delta_.motor_torques_Nm(wrench.force_N, gap_.torque_ratio())
                               : delta::Joints{});
     bus_->send();
@@ -106,7 +108,8 @@ class CanDevice final : public Device {
 
   std::string trouble() const override {
     const FaultCause cause = loop_.latch.cause();
-    if (cause.fault == Fault::kNone || cause.axis > 2) return {};
+    if (cause.fault == Fault::kNone) return words_of_wait();
+    if (cause.axis > 2) return {};
     if (auto words = can_bus_trouble(cause, settings_.can.interface, Frame::kLinkType);
         !words.empty())
       return words;
@@ -210,6 +213,13 @@ class CanDevice final : public Device {
     if (!permitted_ || loop_.power != CanPower::kOff) return;
     loop_.power = CanPower::kStarting;
     loop_.asked_ns = 0;
+  }
+
+  std::string words_of_wait() const {
+    const FaultCause wait = loop_.waits.cause();
+    if (wait.kind == 0 || wait.axis > 2) return {};
+    return fmt::format("waiting for power of {}: {}", can_arm_name(wait.axis, settings_.can),
+                       drives_.words(wait));
   }
 
   std::string words(const FaultCause& cause) const {

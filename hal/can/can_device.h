@@ -71,7 +71,9 @@ struct BasicCanLoop {
   std::int64_t before_ns = 0;  // of the read before
   std::int64_t first_ns = 0;   // of the first one
   std::int64_t asked_ns = 0;   // for torque, since starting; 0: not yet
+  bool felt = false;           // a force has reached the drives: power that goes is a fault now
   FaultLatch latch{};
+  WaitNote waits{};  // for power, before that
 
   /// Latches; `kind` is a CanCause, or of the drives' own list.
   template <class Kind>

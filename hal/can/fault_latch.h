@@ -46,21 +46,38 @@ class FaultLatch {
     if (old.fault == cause.fault && old.axis == cause.axis)
       word_.store(packed(cause), std::memory_order_relaxed);
   }
-  FaultCause cause() const RT_SAFE {
-    const std::uint64_t word = word_.load(std::memory_order_relaxed);
+  FaultCause cause() const RT_SAFE { return unpacked(word_.load(std::memory_order_relaxed)); }
+
+ private:
+  friend class WaitNote;
+  static FaultCause unpacked(std::uint64_t word) RT_SAFE {
     return {.fault = static_cast<model::Fault>(word >> 48),
             .axis = static_cast<std::uint8_t>(word >> 40),
             .kind = static_cast<std::uint8_t>(word >> 32),
             .code = static_cast<std::uint32_t>(word)};
   }
-
- private:
   static constexpr std::uint64_t packed(const FaultCause& cause) RT_SAFE {
     return static_cast<std::uint64_t>(cause.fault) << 48 |
            static_cast<std::uint64_t>(cause.axis) << 40 |
            static_cast<std::uint64_t>(cause.kind) << 32 | cause.code;
   }
   static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
+  std::atomic<std::uint64_t> word_{0};
+};
+
+/// What the device waits for, which is no fault: the loop notes it, any thread reads it.
+class WaitNote {
+ public:
+  void set(const FaultCause& cause) RT_SAFE {
+    word_.store(FaultLatch::packed(cause), std::memory_order_relaxed);
+  }
+  void clear() RT_SAFE { word_.store(0, std::memory_order_relaxed); }
+  /// Of kind 0: nothing is waited for.
+  FaultCause cause() const RT_SAFE {
+    return FaultLatch::unpacked(word_.load(std::memory_order_relaxed));
+  }
+
+ private:
   std::atomic<std::uint64_t> word_{0};
 };
 

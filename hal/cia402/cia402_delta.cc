@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/cia402/cia402_delta.h"
 
-#include <fmt/core.h>
-
 #include <array>
 #include <cmath>
 #include <utility>
@@ -11,8 +9,8 @@
 #include "hal/can/can_lock.h"
 #include "hal/can/can_open.h"
 #include "hal/cia402/canopen_frames.h"
-#include "hal/cia402/canopen_words.h"
 #include "hal/cia402/cia402_bring_up.h"
+#include "hal/cia402/cia402_cause.h"
 #include "hal/cia402/cia402_state.h"
 #include "hal/cia402/heartbeat_guard.h"
 #include "model/time_ns.h"
@@ -28,17 +26,6 @@ using model::Result;
 constexpr double kHostHeartbeat_Hz = 200.0;
 // As many as the gate bears without a sample (gate.h): 20 ms at 1 kHz.
 constexpr int kMaxIdleTicks = 20;
-
-/// Kinds of FaultCause, after those that all drives have.
-enum class Cia402Cause : std::uint8_t {
-  kEmergency = static_cast<std::uint8_t>(can::CanCause::kFirstOwn),  // code: of the EMCY message
-  kStatus,                                                           // code: Cia402State, a fault
-  kLeftEnabled,                                                      // code: Cia402State it is in
-  kNotStarted,                                                       // code: Cia402State it is in
-  kNotFollowing,     // enabled, but bit 12 says that it does not take the torque
-  kLeftOperational,  // code: NmtState
-  kUnguarded,        // would not notice that the host is gone
-};
 
 class Cia402s final : public can::CanDrives {
  public:
@@ -79,17 +66,23 @@ class Cia402s final : public can::CanDrives {
   }
 
   void update_power(CanLoop& loop) RT_SAFE override {
-    if (loop.power == CanPower::kStarting && all_enabled(loop)) loop.power = CanPower::kReady;
+    if (loop.power == CanPower::kStarting && all_enabled(loop)) {
+      loop.power = CanPower::kReady;
+      loop.waits.clear();
+    }
     for (std::size_t i = 0; i < 3; ++i) {
       const Axis& axis = axes_[i];
-      const auto state = static_cast<std::uint32_t>(axis.state);
-      const bool enabled = axis.state == Cia402State::kOperationEnabled;
-      if (loop.power == CanPower::kReady && !enabled)
-        loop.fail(i, Cia402Cause::kLeftEnabled, state);
       if (loop.power == CanPower::kReady && axis.idle_ticks >= kMaxIdleTicks)
         loop.fail(i, Cia402Cause::kNotFollowing, 0);
-      if (!enabled && loop.start_is_late())
-        loop.fail(i, axis.guard.on() ? Cia402Cause::kNotStarted : Cia402Cause::kUnguarded, state);
+      if (axis.state == Cia402State::kOperationEnabled) continue;
+      const auto state = static_cast<std::uint32_t>(axis.state);
+      if (loop.power == CanPower::kReady) lose_power(loop, i, state);
+      if (!loop.start_is_late()) continue;
+      if (!axis.guard.on()) loop.fail(i, Cia402Cause::kUnguarded, state);
+      if (loop.felt)
+        loop.fail(i, Cia402Cause::kNotStarted, state);
+      else
+        note_wait(loop, i);
     }
   }
 
@@ -132,32 +125,7 @@ class Cia402s final : public can::CanDrives {
   }
 
   std::string words(const can::FaultCause& cause) const override {
-    const char* state = cia402_state_name(static_cast<Cia402State>(cause.code));
-    switch (static_cast<Cia402Cause>(cause.kind)) {
-      case Cia402Cause::kEmergency:
-        return fmt::format("{} (code 0x{:04X})",
-                           emergency_sentence(static_cast<std::uint16_t>(cause.code)), cause.code);
-      case Cia402Cause::kStatus:
-        return "the drive is in its fault state: read object 603F with its maker's program";
-      case Cia402Cause::kLeftEnabled:
-        return fmt::format(
-            "the drive left operation by itself and is {}: check its enable and safety inputs",
-            state);
-      case Cia402Cause::kNotStarted:
-        return fmt::format(
-            "the drive does not enable operation and is {}: check motor supply, enable and safety "
-            "inputs",
-            state);
-      case Cia402Cause::kNotFollowing:
-        return "the drive is enabled but does not follow the torque: does it support cyclic "
-               "synchronous torque, and does a limit act?";
-      case Cia402Cause::kUnguarded:
-        return "the drive does not take up its watch over the controller's heartbeat again (object "
-               "1016): start tactd again";
-      case Cia402Cause::kLeftOperational:
-        return nmt_sentence(static_cast<NmtState>(cause.code));
-    }
-    return {};
+    return words_of_cia402_cause(cause);
   }
 
   std::vector<DeviceCount> tally() const override { return {{"old", old_}, {"extra", extra_}}; }
@@ -167,10 +135,24 @@ class Cia402s final : public can::CanDrives {
     int node = 0;
     double rated_torque_Nm = 0.0;
     Cia402State state = Cia402State::kUnknown;
+    std::uint16_t statusword = 0;
     std::uint16_t controlword = kControlDisableVoltage;  // sent last
     int idle_ticks = 0;  // enabled without following, in a row, since ready
     HeartbeatGuard guard;
   };
+
+  /// Before any force reached the hand: the drive is asked again until it has power.
+  void lose_power(CanLoop& loop, std::size_t at, std::uint32_t state) RT_SAFE {
+    if (loop.felt) return loop.fail(at, Cia402Cause::kLeftEnabled, state);
+    loop.power = CanPower::kStarting;
+    loop.asked_ns = 0;
+    note_wait(loop, at);
+  }
+  void note_wait(CanLoop& loop, std::size_t at) const RT_SAFE {
+    loop.waits.set({.axis = static_cast<std::uint8_t>(at),
+                    .kind = static_cast<std::uint8_t>(Cia402Cause::kWaits),
+                    .code = axes_[at].statusword});
+  }
 
   void take_sample(CanLoop& loop, std::size_t at, const CstSample& sample,
                    std::int64_t arrival_ns) RT_SAFE {
@@ -181,6 +163,7 @@ class Cia402s final : public can::CanDrives {
     extra_ += loop.axes[at].sampled ? 1 : 0;
     loop.axes[at].sample(sample.position_increments / counts_per_motor_turn_, arrival_ns);
     Axis& axis = axes_[at];
+    axis.statusword = sample.statusword;
     axis.state = cia402_state(sample.statusword);
     const bool idle = loop.power == CanPower::kReady &&
                       axis.state == Cia402State::kOperationEnabled &&

@@ -26,8 +26,9 @@ Joints gravity_torques_Nm(const DeltaGeometry& geometry, const DeltaMasses& mass
 }
 
 Joints drive_torques_Nm(const DeltaGeometry& geometry, const DeltaMasses& masses,
-                        const DeltaPose& pose, const Vec3& force_N, double most_Nm) RT_SAFE {
-  Joints torque_Nm = gravity_torques_Nm(geometry, masses, pose, direction_D(kGravity_W_mps2));
+                        const DeltaPose& pose, const Vec3& gravity_mps2, const Vec3& force_N,
+                        double most_Nm) RT_SAFE {
+  Joints torque_Nm = gravity_torques_Nm(geometry, masses, pose, gravity_mps2);
   const Joints wanted_Nm = joint_torques_Nm(pose, force_N);
   // Gravity first: a force that is cut is weaker, an arm that is not held would fall.
   const double ratio = saturation_ratio(torque_Nm, wanted_Nm, most_Nm);

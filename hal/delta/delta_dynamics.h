@@ -17,6 +17,7 @@
 
 namespace tact::hal::delta {
 
+/// Of a delta that lies on its side (hal/mounting.h).
 inline constexpr Vec3 kGravity_W_mps2{0.0, 0.0, -model::kGravity_mps2};
 
 struct DeltaMasses {
@@ -33,11 +34,13 @@ double joint_inertia_kgm2(const DeltaGeometry& geometry, const DeltaMasses& mass
 /// Torque that holds the device against gravity_mps2, frame D.
 Joints gravity_torques_Nm(const DeltaGeometry& geometry, const DeltaMasses& masses,
                           const DeltaPose& pose, const Vec3& gravity_mps2) RT_SAFE;
-/// tau = tau_g + s J^T F at the joints: holds the device and pushes the hand with force_N, frame D.
+/// tau = tau_g + s J^T F at the joints: holds the device against gravity_mps2 and pushes the hand
+/// with force_N, frame D.
 /// One s for all joints, 1 or the largest below that keeps each within most_Nm; where gravity
 /// leaves no room, s is 0.
 Joints drive_torques_Nm(const DeltaGeometry& geometry, const DeltaMasses& masses,
-                        const DeltaPose& pose, const Vec3& force_N, double most_Nm) RT_SAFE;
+                        const DeltaPose& pose, const Vec3& gravity_mps2, const Vec3& force_N,
+                        double most_Nm) RT_SAFE;
 /// V up to a constant; the torque above is its slope.
 double gravity_energy_J(const DeltaGeometry& geometry, const DeltaMasses& masses,
                         const DeltaPose& pose, const Vec3& gravity_mps2) RT_SAFE;

@@ -48,6 +48,7 @@ DeviceInfo FalconDevice::info() const {
           .max_torque_Nm = 0.0,
           .workspace_radius_m = kFalconRadius_m,
           .workspace_half_length_m = kFalconHalfLength_m,
+          .grip = GripKind::kButton,
           .at_tool = falcon_at_tool(kinematics_, settings_),
           .damping_key = "device.falcon.joint_damping_Nms_per_rad",
           .caution = pipe_->descriptor() < 0 ? kUnguarded : ""};
@@ -190,8 +191,8 @@ Fault FalconDevice::write(const Wrench& wrench) RT_SAFE {
 
 /// tau = tau_gravity + s K^-T F, one s for all axes; then words.
 FalconWords FalconDevice::words_for(const Vec3& force_W_N) const RT_SAFE {
-  const Vec3 weight_N{0.0, 0.0, model::kGravity_mps2 * settings_.moving_mass_kg};
-  const delta::Joints held_Nm = falcon_torques_Nm(rates_, falcon_direction_D(weight_N));
+  const Vec3 held_N = -settings_.moving_mass_kg * gravity_mps2_;
+  const delta::Joints held_Nm = falcon_torques_Nm(rates_, falcon_direction_D(held_N));
   const delta::Joints wanted_Nm = falcon_torques_Nm(rates_, falcon_direction_D(force_W_N));
   delta::Joints held{}, wanted{};  // 1 is all that an axis can do
   for (std::size_t i = 0; i < 3; ++i) {

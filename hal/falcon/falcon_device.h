@@ -21,6 +21,7 @@
 #include "hal/velocity_observer.h"
 #include "model/device_settings.h"
 #include "model/result.h"
+#include "model/units.h"
 
 namespace tact::hal::falcon {
 
@@ -29,6 +30,9 @@ class FalconDevice final : public Device {
   /// A Falcon whose firmware runs.
   FalconDevice(const model::FalconSettings& settings, std::unique_ptr<FalconPipe> pipe);
   ~FalconDevice() override;
+
+  /// Before the loop: where down is for its base, else as for one that lies (hal/mounting.h).
+  void set_gravity(const Vec3& gravity_mps2) { gravity_mps2_ = gravity_mps2; }
 
   DeviceInfo info() const override;
   [[nodiscard]] Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
@@ -55,6 +59,7 @@ class FalconDevice final : public Device {
   FalconCommand command(const FalconWords& words) const RT_SAFE;
 
   model::FalconSettings settings_;
+  Vec3 gravity_mps2_{0.0, 0.0, -model::kGravity_mps2};
   FalconKinematics kinematics_;
   std::unique_ptr<FalconPipe> pipe_;
   FalconExchange exchange_;

@@ -8,6 +8,7 @@
 #include "hal/falcon_usb/falcon_wake.h"
 #include "hal/falcon_usb/libusb_pipe.h"
 #include "hal/falcon_usb/usbfs_pipe.h"
+#include "hal/mounting.h"
 
 namespace tact::hal::falcon_usb {
 namespace {
@@ -60,6 +61,7 @@ Result<std::unique_ptr<Device>> open_falcon(const model::DeviceSettings& setting
                                             double /*rate_Hz*/) {
   auto device = open_falcon_device(settings.falcon);
   if (!device) return device.error();
+  (*device)->set_gravity(mounting_of(settings).gravity_B_mps2());
   return std::unique_ptr<Device>(std::move(*device));
 }
 

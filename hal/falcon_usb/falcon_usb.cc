@@ -4,7 +4,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
+#include <thread>
 
 #include "hal/device_lock.h"
 #include "hal/udev_rules.h"
@@ -89,6 +91,19 @@ Error open_error(int error, const std::string& node) {
                            node, libusb_strerror(static_cast<libusb_error>(error)))};
 }
 
+/// For a moment after it is plugged in the node is root's alone, until udev has given it away: a
+/// refusal counts once it has lasted.
+int open_when_permitted(libusb_device* device, libusb_device_handle** handle) {
+  constexpr auto kPause = std::chrono::milliseconds(20);
+  constexpr int kTries = 11;  // 200 ms
+  int error = libusb_open(device, handle);
+  for (int i = 1; i < kTries && error == LIBUSB_ERROR_ACCESS; ++i) {
+    std::this_thread::sleep_for(kPause);
+    error = libusb_open(device, handle);
+  }
+  return error;
+}
+
 Error claim_error(int error, bool driver_bound, const std::string& node) {
   if (driver_bound)
     return Error{
@@ -125,7 +140,7 @@ Result<std::unique_ptr<FalconUsb>> FalconUsb::open(const std::string& bus_path) 
   usb->node_ = node_of(*device);
   // Before it is opened: nothing of another tactd's device is touched.
   if (auto error = lock_device("the Falcon at USB " + usb->bus_path_)) return *error;
-  if (const int error = libusb_open(*device, &usb->handle_); error != 0)
+  if (const int error = open_when_permitted(*device, &usb->handle_); error != 0)
     return open_error(error, usb->node_);
   libusb_set_auto_detach_kernel_driver(usb->handle_, 1);
   const bool driver_bound =

@@ -10,6 +10,10 @@ namespace tact::hal::force_dimension {
 namespace {
 
 constexpr double kDelay_s = 0.75e-3;  // a cycle of the thread before the loop, one after, and USB
+constexpr const char* kOldType =
+    "; needs a library that still knows this type; tact has met no such device";
+constexpr const char* kWeightFelt =
+    "; its weight is felt, as the library balances it only where the base stands as delivered";
 constexpr const char* kDampingKey = "device.force_dimension.damping_Ns_per_m";
 
 DeviceInfo info_of(const SdkSession& session, const model::ForceDimensionSettings& settings) {
@@ -21,12 +25,15 @@ DeviceInfo info_of(const SdkSession& session, const model::ForceDimensionSetting
           .max_torque_Nm = type.max_torque_Nm,
           .workspace_radius_m = type.radius_m,
           .workspace_half_length_m = type.half_length_m,
+          .grip = {grip_of(session), grip_of(session) == GripKind::kForce ? kGripperForce_N : 0.0},
+          .turns_with_base = type.wrist,
           .at_tool = model::DeviceAtTool{.damping_Ns_per_m = settings.damping_Ns_per_m,
                                          .friction_N = 0.0,  // the maker tells none
                                          .position_step_m = type.resolution_m,
                                          .delay_s = kDelay_s},
           .damping_key = kDampingKey,
-          .caution = maker_library::kNoGuardian +
+          .caution = std::string(maker_library::kNoGuardian) +
+                     (session.balances_weight ? "" : kWeightFelt) + (type.old ? kOldType : "") +
                      maker_library::words_of_assumed_damping(
                          settings.damping_Ns_per_m,
                          model::ForceDimensionSettings{}.damping_Ns_per_m, kDampingKey)};
@@ -36,7 +43,8 @@ DeviceInfo info_of(const SdkSession& session, const model::ForceDimensionSetting
 
 model::Result<std::unique_ptr<Device>> open_force_dimension(const model::DeviceSettings& settings,
                                                             double rate_Hz) {
-  const auto session = open_sdk_session(settings.force_dimension, settings.trust_library);
+  const auto session =
+      open_sdk_session(settings.force_dimension, settings.trust_library, mounting_of(settings));
   if (!session) return session.error();
   return std::unique_ptr<Device>(new maker_library::LibraryDevice(
       info_of(*session, settings.force_dimension), SdkWorker::start(*session, rate_Hz)));

@@ -36,6 +36,9 @@ model::Result<SdkFunctions> load_sdk(const std::string& name, bool trusted) {
   // Not needed for a force: an old library may lack them.
   library->find("dhdSetEffectorMass", sdk.set_effector_mass);
   library->find("dhdGetSerialNumber", sdk.serial_number);
+  library->find("dhdGetGripperAngleRad", sdk.gripper_angle);
+  library->find("dhdGetGripperGap", sdk.gripper_gap);
+  library->find("dhdGetButtonMask", sdk.button_mask);
   return sdk;
 }
 

@@ -35,6 +35,9 @@ struct SdkFunctions {
   int (*error_get_last)() = nullptr;
   // A library may lack these.
   int (*set_effector_mass)(double kg, char id) = nullptr;
+  int (*gripper_angle)(double* angle_rad, char id) = nullptr;
+  int (*gripper_gap)(double* gap_m, char id) = nullptr;
+  unsigned (*button_mask)(char id) = nullptr;
   int (*serial_number)(unsigned short* number, char id) = nullptr;
 };
 

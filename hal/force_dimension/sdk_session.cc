@@ -62,8 +62,8 @@ std::optional<Error> find_shortfall(const SdkSession& s) {
   const bool wrist_lost =
       s.type.wrist && status[kSdkWristDetected] != 0 && status[kSdkWristInit] == 0;
   if (status[kSdkReset] != 0 || wrist_lost) {
-    // A delta.3 is swept by hand; the others move by themselves, so the person starts that.
-    const bool by_hand = s.type.code == 63;
+    // A delta is swept by hand; the others move by themselves, so the person starts that.
+    const bool by_hand = s.type.code == 63 || s.type.old;
     return Error{fmt::format(
         "the {} is not calibrated; {}, then start tactd again", s.type.name,
         by_hand ? "sweep each axis by hand from stop to stop until its status light is steady"
@@ -91,7 +91,9 @@ std::optional<Error> configure(const SdkSession& s, const ForceDimensionSettings
     if (s.sdk.set_effector_mass(settings.effector_mass_kg, s.id) < 0)
       return failed(s.sdk, "take device.force_dimension.effector_mass_kg");
   }
-  if (s.sdk.set_gravity_compensation(1, s.id) < 0) return failed(s.sdk, "balance its own weight");
+  // Along a wrong axis it would push the hand: better is a weight that is felt.
+  if (s.sdk.set_gravity_compensation(s.balances_weight ? 1 : 0, s.id) < 0)
+    return failed(s.sdk, "balance its own weight");
   return std::nullopt;
 }
 
@@ -113,12 +115,23 @@ std::string name_of_lock(const SdkSession& s) {
 
 }  // namespace
 
-Result<SdkSession> open_sdk_session(const ForceDimensionSettings& settings, bool trust_library) {
+GripKind grip_of(const SdkSession& s) {
+  if (s.type.grip == GripKind::kButton)
+    return s.sdk.button_mask != nullptr ? GripKind::kButton : GripKind::kNone;
+  if (s.sdk.gripper_angle == nullptr) return GripKind::kNone;
+  // Without the gap nobody could judge what energy the fingers get.
+  return s.sdk.gripper_gap != nullptr ? s.type.grip : GripKind::kAngle;
+}
+
+Result<SdkSession> open_sdk_session(const ForceDimensionSettings& settings, bool trust_library,
+                                    const Mounting& mounting) {
   const auto sdk = load_sdk(settings.library, trust_library);
   if (!sdk) return sdk.error();
   const auto id = open_device(*sdk, settings.id);
   if (!id) return id.error();
   SdkSession session{.sdk = *sdk, .id = *id, .type = {}};
+  if (settings.gripper_open_rad > 0.0) session.gripper_open_rad = settings.gripper_open_rad;
+  session.balances_weight = norm(mounting.gravity_B_mps2() - Mounting{}.gravity_B_mps2()) < 0.1;
   unsigned short number = 0;
   // By serial number where it is known: two programs may count devices differently.
   if (sdk->serial_number != nullptr && sdk->serial_number(&number, *id) >= 0)

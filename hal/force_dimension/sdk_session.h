@@ -9,6 +9,7 @@
 
 #include "hal/force_dimension/device_types.h"
 #include "hal/force_dimension/sdk_library.h"
+#include "hal/mounting.h"
 #include "model/device_settings.h"
 
 namespace tact::hal::force_dimension {
@@ -17,12 +18,17 @@ struct SdkSession {
   SdkFunctions sdk;
   char id = 0;
   ForceDimensionType type;
-  int serial_number = 0;  // 0: the library does not tell
+  double gripper_open_rad = kGripperOpen_rad;
+  bool balances_weight = true;  // the library, for a base that stands as delivered
+  int serial_number = 0;        // 0: the library does not tell
 };
+
+/// How the hand closes the jaws: what type and library have for it.
+GripKind grip_of(const SdkSession& session);
 
 /// Leaves nothing open when it fails.
 model::Result<SdkSession> open_sdk_session(const model::ForceDimensionSettings& settings,
-                                           bool trust_library);
+                                           bool trust_library, const Mounting& mounting = {});
 
 /// Zero force, forces off, closed. May block.
 void close_sdk_session(const SdkSession& session);

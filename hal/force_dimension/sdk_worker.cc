@@ -17,18 +17,19 @@
 namespace tact::hal::force_dimension {
 namespace {
 
+using maker_library::LibraryForce;
 using maker_library::LibraryPose;
 using maker_library::LibraryTrouble;
 using model::Fault;
 using model::Quat;
 using model::Vec3;
-using model::Wrench;
 
 // 4 kHz, the rate that the maker claims: the pose is young, and the watchdog fed, whatever the
 // loop's rate.
 constexpr std::int64_t kLongestCycle_ns = 250'000;
 constexpr std::int64_t kMinPause_ns = 50'000;  // a slow library must not starve the PC
 constexpr int kTimeGuard = 1;                  // pose: nothing new
+constexpr unsigned kSdkUserButton = 1;         // of dhdGetButtonMask: the first button
 constexpr auto kStatusPeriod = std::chrono::milliseconds(50);
 
 void sleep_until_ns(std::int64_t deadline_ns) {
@@ -45,6 +46,8 @@ std::string words_of_sdk_trouble(const LibraryTrouble& t) {
       return {};
     case SdkTroubleSource::kPose:
       return fmt::format("the device does not tell its pose: {}", words_of_sdk_error(t.code));
+    case SdkTroubleSource::kGrip:
+      return fmt::format("the device does not tell its gripper: {}", words_of_sdk_error(t.code));
     case SdkTroubleSource::kForce:
       return fmt::format("the device does not take a force: {}", words_of_sdk_error(t.code));
     case SdkTroubleSource::kEnable:
@@ -106,9 +109,9 @@ bool SdkWorker::cycle() {
   if (first_trouble().fault != Fault::kNone) return false;
   if (!read_pose(monotonic_ns())) return false;
   // The time once more: the library may have waited for the pose, and the command has aged.
-  const auto wrench = next_wrench(monotonic_ns());
-  if (!wrench) return false;
-  if (!send(*wrench)) return fail(SdkTroubleSource::kForce);
+  const auto force = next_force(monotonic_ns());
+  if (!force) return false;
+  if (!send(*force)) return fail(SdkTroubleSource::kForce);
   cycle_ended(monotonic_ns());
   return true;
 }
@@ -122,7 +125,25 @@ bool SdkWorker::read_pose(std::int64_t now_ns) {
   // No sample: the loop counts the gap by the stamp of the last one.
   if (answer == kTimeGuard) return true;
   pose.orientation = session_.type.wrist ? maker_library::quat_from_rotation(rotation) : Quat{};
+  if (!read_grip(pose)) return false;
   publish(pose);
+  return true;
+}
+
+/// The angle's sign is that of the hand for which the gripper is built.
+bool SdkWorker::read_grip(LibraryPose& pose) {
+  if (grip_ == GripKind::kNone) return true;
+  if (grip_ == GripKind::kButton) {
+    pose.grip_ratio = (session_.sdk.button_mask(session_.id) & kSdkUserButton) != 0 ? 1.0 : 0.0;
+    return true;
+  }
+  double angle_rad = 0.0;
+  if (session_.sdk.gripper_angle(&angle_rad, session_.id) < 0) return fail(SdkTroubleSource::kGrip);
+  // Not std::clamp: an angle that is no number stays one, and the loop tells it.
+  const double open = std::abs(angle_rad) / session_.gripper_open_rad;
+  pose.grip_ratio = open < 1.0 ? 1.0 - open : 0.0 * open;
+  if (grip_ == GripKind::kForce && session_.sdk.gripper_gap(&pose.grip_gap_m, session_.id) < 0)
+    return fail(SdkTroubleSource::kGrip);
   return true;
 }
 
@@ -132,9 +153,10 @@ bool SdkWorker::switch_forces(bool on) {
   return session_.sdk.enable_force(on ? 1 : 0, session_.id) >= 0 || fail(SdkTroubleSource::kEnable);
 }
 
-bool SdkWorker::send(const Wrench& w) {
-  const auto& [f, t] = w;
-  return session_.sdk.set_force(f.x, f.y, f.z, t.x, t.y, t.z, 0.0, session_.id) >= 0;
+bool SdkWorker::send(const LibraryForce& force) {
+  const auto& [f, t] = force.wrench;
+  const double grip_N = session_.type.left ? -force.grip_N : force.grip_N;
+  return session_.sdk.set_force(f.x, f.y, f.z, t.x, t.y, t.z, grip_N, session_.id) >= 0;
 }
 
 void SdkWorker::watch() {

@@ -23,6 +23,7 @@ namespace tact::hal::force_dimension {
 enum class SdkTroubleSource : std::uint8_t {
   kNone,
   kPose,
+  kGrip,
   kForce,
   kEnable,
   kWatch,
@@ -47,15 +48,17 @@ class SdkWorker final : public maker_library::LibraryWorker {
   void run();
   bool cycle();
   bool read_pose(std::int64_t now_ns);
+  bool read_grip(maker_library::LibraryPose& pose);
   bool switch_forces(bool on) override;
   void close() override { close_sdk_session(session_); }
-  bool send(const model::Wrench& wrench);
+  bool send(const maker_library::LibraryForce& force);
   void watch();
   void check_status();
   bool fail(SdkTroubleSource source);
   void keep_trouble(model::Fault fault, SdkTroubleSource source, int code);
 
   SdkSession session_;
+  GripKind grip_ = grip_of(session_);
 };
 
 }  // namespace tact::hal::force_dimension

@@ -28,8 +28,9 @@ constexpr const char* kConsumer = "tactd";
 /// The requested lines, and the place of each in its request; -1: not wired.
 struct Groups {
   LineRequest inputs, outputs, scope;
-  int estop_a = -1, estop_b = -1, dead_man = -1;
+  int estop_a = -1, estop_b = -1, dead_man = -1, grip = -1;
   int enable = -1, heartbeat = -1, led = -1;
+  bool grip_closes_low = false;
 };
 
 class GpioLines final : public SafetyLines {
@@ -37,7 +38,9 @@ class GpioLines final : public SafetyLines {
   GpioLines(Chip chip, Groups lines)
       : chip_(std::move(chip)),
         lines_(std::move(lines)),
-        logic_({.estop = lines_.estop_a >= 0, .dead_man = lines_.dead_man >= 0}) {}
+        logic_({.estop = lines_.estop_a >= 0,
+                .dead_man = lines_.dead_man >= 0,
+                .grip = lines_.grip >= 0}) {}
   ~GpioLines() override { release(); }
   GpioLines(const GpioLines&) = delete;
   GpioLines& operator=(const GpioLines&) = delete;
@@ -48,7 +51,8 @@ class GpioLines final : public SafetyLines {
     if (!is_lost() && !lines_.inputs.empty() && !lines_.inputs.get(values)) lose();
     const Fault fault = logic_.judge({.estop_a = level(values, lines_.estop_a),
                                       .estop_b = level(values, lines_.estop_b),
-                                      .dead_man = level(values, lines_.dead_man)},
+                                      .dead_man = level(values, lines_.dead_man),
+                                      .grip = grip_pressed(values)},
                                      now_ns);
     return is_lost() ? Fault::kLinesLost : fault;
   }
@@ -64,6 +68,7 @@ class GpioLines final : public SafetyLines {
     return is_lost() ? Fault::kLinesLost : Fault::kNone;
   }
 
+  std::optional<bool> grip() const RT_SAFE override { return logic_.grip(); }
   bool enabled() const RT_SAFE override { return !is_lost() && !dropped() && logic_.enabled(); }
 
   // libgpiod 1.6 keeps the last level of each line in plain memory that nobody reads: two threads
@@ -94,6 +99,10 @@ class GpioLines final : public SafetyLines {
   static bool level(const Levels& values, int place) RT_SAFE {
     return place >= 0 && values[static_cast<std::size_t>(place)] != 0;
   }
+  // A chip that does not answer closes no jaws.
+  bool grip_pressed(const Levels& values) const RT_SAFE {
+    return !is_lost() && level(values, lines_.grip) != lines_.grip_closes_low;
+  }
   static void set_level(Levels& values, int place, bool high) RT_SAFE {
     if (place >= 0) values[static_cast<std::size_t>(place)] = high ? 1 : 0;
   }
@@ -120,10 +129,11 @@ struct NamedOffset {
   const char* key;
   int offset;
 };
-std::array<NamedOffset, 7> offsets_of(const LinesSettings& s) {
+std::array<NamedOffset, 8> offsets_of(const LinesSettings& s) {
   return {{{"estop_a", s.estop_a},
            {"estop_b", s.estop_b},
            {"dead_man", s.dead_man},
+           {"grip", s.grip},
            {"enable", s.enable},
            {"heartbeat", s.heartbeat},
            {"led", s.led},
@@ -188,6 +198,8 @@ std::optional<Groups> request(Chip& chip, const LinesSettings& s) {
   lines.estop_a = inputs.add(s.estop_a);
   lines.estop_b = inputs.add(s.estop_b);
   lines.dead_man = inputs.add(s.dead_man);
+  lines.grip = inputs.add(s.grip);
+  lines.grip_closes_low = s.grip_closes_low;
   lines.enable = outputs.add(s.enable);
   lines.heartbeat = outputs.add(s.heartbeat);
   lines.led = outputs.add(s.led);

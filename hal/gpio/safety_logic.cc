@@ -9,6 +9,9 @@ const char* words(LinesCause cause) {
   switch (cause) {
     case LinesCause::kNone:
       break;
+    case LinesCause::kGripFlaps:
+      return "the grip line changes faster than a foot can press: a wire is loose or the switch is "
+             "broken; mend it (device.lines.grip), then reset and arm";
     case LinesCause::kDeadManOpen:
       return "the dead-man switch is open; hold it, then reset and arm";
     case LinesCause::kOneOpen:
@@ -62,7 +65,14 @@ Fault SafetyLogic::judge(const SafetyLevels& levels, std::int64_t now_ns) RT_SAF
   LinesCause cause = LinesCause::kNone;
   const bool stood = fault_ != Fault::kNone;
   fault_ = Fault::kNone;
-  // The dead-man first: an e-stop that is open as well takes its place below.
+  // From the least to the most urgent: what comes below takes the place of what is above.
+  if (wiring_.grip) {
+    grip_.step(levels.grip, now_ns);
+    if (grip_.flaps()) {
+      fault_ = Fault::kGripFlaps;
+      cause = LinesCause::kGripFlaps;
+    }
+  }
   if (wiring_.dead_man && !levels.dead_man) {
     fault_ = Fault::kDeadManReleased;
     cause = LinesCause::kDeadManOpen;

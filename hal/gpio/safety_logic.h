@@ -6,6 +6,7 @@
 //   channels differ for more than 50 ms    -> kLinesDiffer, until both have been open together:
 //                                             only then a contact that sticks is mended
 //   dead-man low                           -> kDeadManReleased, at once
+//   grip switch flaps (grip_switch.h)      -> kGripFlaps, until it has been quiet for a second
 //   heartbeat   toggles after every healthy tick; the relay beside it drops some 10 ms without
 //   enable      100 ms after the heartbeat has begun; gone in the tick of a fault, or when the
 //               heartbeat has paused for more than 10 ms: lines need well over 100 ticks a second
@@ -16,7 +17,9 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 
+#include "hal/gpio/grip_switch.h"
 #include "hal/safety_lines.h"
 
 namespace tact::hal::gpio {
@@ -29,10 +32,12 @@ inline constexpr std::int64_t kHeartbeatPause_ns = 10'000'000;
 struct SafetyWiring {
   bool estop = false;  // both channels
   bool dead_man = false;
+  bool grip = false;
 };
 
 struct SafetyLevels {
   bool estop_a = false, estop_b = false, dead_man = false;
+  bool grip = false;  // pressed, whichever level that is
 };
 
 struct SafetyOutputs {
@@ -42,6 +47,7 @@ struct SafetyOutputs {
 /// Why the lines stop the force. Ascending: the more telling cause replaces the one before.
 enum class LinesCause : std::uint8_t {
   kNone,
+  kGripFlaps,
   kDeadManOpen,
   kOneOpen,  // for now: a channel of a good switch opens a little before the other
   kBothOpen,
@@ -64,6 +70,10 @@ class SafetyLogic {
   /// Outputs of this tick, after judge().
   SafetyOutputs drive(const LinesTick& tick) RT_SAFE;
 
+  /// Of the last judge(); nothing where none is wired.
+  std::optional<bool> grip() const RT_SAFE {
+    return wiring_.grip ? std::optional(grip_.pressed()) : std::nullopt;
+  }
   bool enabled() const RT_SAFE { return outputs_.enable && fault_ == model::Fault::kNone; }
   /// The most telling cause of the fault that stands, or of the last one. Any thread.
   LinesCause cause() const RT_SAFE { return cause_.load(std::memory_order_relaxed); }
@@ -74,6 +84,7 @@ class SafetyLogic {
   SafetyWiring wiring_;
   model::Fault fault_ = model::Fault::kNone;
   std::atomic<LinesCause> cause_{LinesCause::kNone};
+  GripSwitch grip_;
   SafetyOutputs outputs_;
   std::int64_t now_ns_ = 0;
   std::int64_t differ_since_ns_ = 0;

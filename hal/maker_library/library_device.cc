@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "hal/maker_library/rotation.h"
@@ -27,7 +29,8 @@ LibraryDevice::LibraryDevice(DeviceInfo info, std::shared_ptr<LibraryWorker> wor
     : info_(std::move(info)),
       worker_(std::move(worker)),
       linear_(kObserver_Hz, kJump_m),
-      angular_(kObserver_Hz, kJump_rad) {}
+      angular_(kObserver_Hz, kJump_rad),
+      gap_(kObserver_Hz, kJump_m) {}
 
 LibraryDevice::~LibraryDevice() { stop(); }
 
@@ -44,29 +47,35 @@ Fault LibraryDevice::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
   if (now_ns - pose.stamp_ns > kOldest_ns) return Fault::kNone;
   sample.tool.position_m = pose.position_m;
   sample.tool.orientation = pose.orientation;
-  observe(pose, sample.tool);
+  sample.tool.grip_ratio = pose.grip_ratio;
+  sample.grip_gap_m = pose.grip_gap_m;
+  observe(pose, sample);
   sample.stamp_ns = pose.stamp_ns;
   sample.sequence = pose.sequence;
   sample.fresh = true;
   return Fault::kNone;
 }
 
-void LibraryDevice::observe(const LibraryPose& pose, Tool& tool) RT_SAFE {
+void LibraryDevice::observe(const LibraryPose& pose, Sample& sample) RT_SAFE {
   const double elapsed_s = 1e-9 * static_cast<double>(pose.stamp_ns - before_.stamp_ns);
   const Vec3 turn_rad = rotation_vector_rad(pose.orientation * conjugate(before_.orientation));
   // Turns add up: the observer needs a line, and a quaternion's coordinates are none.
   turned_rad_ = is_finite(turn_rad) ? turned_rad_ + turn_rad : Vec3{};
-  tool.velocity_mps = linear_.step(pose.position_m, elapsed_s);
-  tool.angular_velocity_radps = angular_.step(turned_rad_, elapsed_s);
+  sample.tool.velocity_mps = linear_.step(pose.position_m, elapsed_s);
+  sample.tool.angular_velocity_radps = angular_.step(turned_rad_, elapsed_s);
+  sample.grip_speed_mps = gap_.step({pose.grip_gap_m, 0.0, 0.0}, elapsed_s).x;
   before_ = pose;
 }
 
 Fault LibraryDevice::write(const Wrench& wrench) RT_SAFE {
-  const bool sound = is_finite(wrench);
-  const Wrench within{.force_N = saturated(wrench.force_N, info_.max_force_N),
-                      .torque_Nm = saturated(wrench.torque_Nm, info_.max_torque_Nm)};
+  const bool sound = is_finite(wrench) && std::isfinite(grip_N_);
+  const double most_N = info_.grip.max_force_N;
+  const LibraryForce within{
+      .wrench = {.force_N = saturated(wrench.force_N, info_.max_force_N),
+                 .torque_Nm = saturated(wrench.torque_Nm, info_.max_torque_Nm)},
+      .grip_N = std::clamp(grip_N_, -most_N, most_N)};
   worker_->commands().write(
-      {.wrench = sound ? within : Wrench{}, .stamp_ns = now_ns_, .powered = permitted_});
+      {.force = sound ? within : LibraryForce{}, .stamp_ns = now_ns_, .powered = permitted_});
   return sound ? worker_->first_trouble().fault : Fault::kForceNotFinite;
 }
 

@@ -38,20 +38,22 @@ class LibraryDevice final : public Device {
   [[nodiscard]] Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
   bool ready() const RT_SAFE override { return permitted_ && follows_; }
   void permit(bool powered) RT_SAFE override { permitted_ = powered; }
+  void set_grip_force(double opening_N) RT_SAFE override { grip_N_ = opening_N; }
   [[nodiscard]] Fault write(const Wrench& wrench) RT_SAFE override;
   std::string trouble() const override;
   void stop() override;
   std::string why_not_off() const override;
 
  private:
-  void observe(const LibraryPose& pose, Tool& tool) RT_SAFE;
+  void observe(const LibraryPose& pose, Sample& sample) RT_SAFE;
 
   DeviceInfo info_;
   std::shared_ptr<LibraryWorker> worker_;
-  VelocityObserver linear_, angular_;
+  VelocityObserver linear_, angular_, gap_;
   LibraryPose before_;
   Vec3 turned_rad_;  // all rotations since the start, added up
   std::int64_t now_ns_ = 0;
+  double grip_N_ = 0.0;
   bool permitted_ = false;
   bool follows_ = false;  // the newest pose: forces are on
   std::atomic<bool> stopped_{false}, stuck_{false};

@@ -18,7 +18,6 @@ namespace {
 
 using namespace std::chrono_literals;
 using model::Fault;
-using model::Wrench;
 
 constexpr int kPriority = 78;                             // the loop has 80
 constexpr std::int64_t kZeroFirst_ns = 2'000'000;         // of zero force after the forces went on
@@ -52,13 +51,13 @@ void LibraryWorker::publish(LibraryPose pose) {
   poses_.write(pose);
 }
 
-std::optional<Wrench> LibraryWorker::next_wrench(std::int64_t now_ns) {
+std::optional<LibraryForce> LibraryWorker::next_force(std::int64_t now_ns) {
   // Nothing new keeps the last one; its age then tells that the loop is late.
   commands_.read(command_);
   const std::int64_t age_ns = now_ns - command_.stamp_ns;
   if (!follow_power(command_.powered && age_ns <= kLoopGone_ns)) return std::nullopt;
   const bool follow = power_ == Power::kOn && age_ns <= command_life_ns_;
-  return follow ? command_.wrench : Wrench{};
+  return follow ? command_.force : LibraryForce{};
 }
 
 bool LibraryWorker::follow_power(bool wanted) {

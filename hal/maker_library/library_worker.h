@@ -29,13 +29,20 @@ namespace tact::hal::maker_library {
 struct LibraryPose {
   model::Vec3 position_m;
   model::Quat orientation;
+  double grip_ratio = 0.0;        // 0 open, 1 closed
+  double grip_gap_m = 0.0;        // between the fingers
   std::int64_t stamp_ns = 0;      // CLOCK_MONOTONIC before the library was asked
   std::uint64_t sequence = 0;     // of poses
   bool follows_commands = false;  // forces are on, zero force has been shown first
 };
 
-struct LibraryCommand {
+struct LibraryForce {
   model::Wrench wrench;
+  double grip_N = 0.0;  // on the fingers, opening positive
+};
+
+struct LibraryCommand {
+  LibraryForce force;
   std::int64_t stamp_ns = 0;  // of the tick that made it
   bool powered = false;
 };
@@ -80,10 +87,10 @@ class LibraryWorker {
   // The thread of the cycle.
   /// Passes on what the library told in this cycle.
   void publish(LibraryPose pose);
-  /// Switches the forces as the loop wants them; the wrench of this cycle, or nothing when the
+  /// Switches the forces as the loop wants them; the force of this cycle, or nothing when the
   /// forces did not switch.
-  std::optional<model::Wrench> next_wrench(std::int64_t now_ns);
-  /// Switches the forces, or notes that they shall be; the wrench is zero in this cycle and, after
+  std::optional<LibraryForce> next_force(std::int64_t now_ns);
+  /// Switches the forces, or notes that they shall be; the force is zero in this cycle and, after
   /// "on", in the next ones. False: they do not switch.
   virtual bool switch_forces(bool on) = 0;
   virtual void close() = 0;

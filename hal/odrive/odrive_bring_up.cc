@@ -8,6 +8,7 @@
 
 #include "hal/can/can_delta.h"
 #include "hal/odrive/odrive_listener.h"
+#include "model/time_ns.h"
 
 namespace tact::hal::odrive {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 using model::Error;
 using model::Result;
 
-constexpr int kHeartbeatWait_ms = 1000, kVersionWait_ms = 300, kIdleWait_ms = 1000;
+constexpr int kHeartbeatWait_ms = 2500, kVersionWait_ms = 300, kIdleWait_ms = 2500;
 constexpr int kPositions_ms = 200, kIndexSearch_ms = 20'000, kIndexStart_ms = 300;
 constexpr int kAsleep_ms = 50, kCount_ms = 300, kWake_ms = 1500;
 constexpr std::uint32_t kNeverEntered05 = 0x1 | 0x800;  // INVALID_STATE, the watchdog's
@@ -77,7 +78,9 @@ class BringUp {
     drives_.forget_heartbeats();
     // The first heartbeat may have been on its way; the second one tells.
     const auto told = [](const Axis& a) { return a.heartbeats > 1; };
-    if (!drives_.run_until(told, kIdleWait_ms)) {
+    const bool all_told = drives_.run_until(told, kIdleWait_ms);
+    if (auto error = slow_heartbeat()) return error;
+    if (!all_told) {
       return drives_.wrong([&](const Axis& a) { return !told(a); },
                            "stopped sending its heartbeat: check its supply and the CAN cable");
     }
@@ -85,6 +88,23 @@ class BringUp {
     return drives_.wrong(
         [](const Axis& a) { return !a.is_in(OdriveAxisState::kIdle); },
         "does not go idle: end the program that drives it, then start tactd again");
+  }
+
+  /// Of one that the loop would take for silence.
+  std::optional<Error> slow_heartbeat() const {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const OdriveHeard& axis = drives_.axes[i];
+      if (axis.longest_beat_ns <= kSlowestHeartbeat_ns) continue;
+      return Error{
+          fmt::format("{} sends its heartbeat every {} ms, and after {} ms without one it counts "
+                      "as silent: set "
+                      "axis.config.can.{} = 100 in odrivetool, save, restart the drive",
+                      can::can_arm_name(i, can_), axis.longest_beat_ns / model::kMillisecond_ns,
+                      kOdriveSilence_ns / model::kMillisecond_ns,
+                      drives_.generation == OdriveGeneration::k06 ? "heartbeat_msg_rate_ms"
+                                                                  : "heartbeat_rate_ms")};
+    }
+    return std::nullopt;
   }
 
   /// Of the first axis that reports one, in words.

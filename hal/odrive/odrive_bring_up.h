@@ -2,7 +2,7 @@
 // odrive_bring_up.h - three ODrives from power-on to ready for the loop, which alone arms them.
 //
 //     hear three heartbeats -> Idle -> Get_Version (0.6 answers, 0.5 does not) -> Clear_Errors ->
-//     three heartbeats without error, idle -> Set_Controller_Mode(torque, pass-through) ->
+//     heartbeats without error, idle, often enough -> Set_Controller_Mode(torque, pass-through) ->
 //     Set_Limits -> [index search] -> 0.5: [each axis alone: closed loop at zero torque, Idle] ->
 //     positions of all three at the loop's rate
 //
@@ -13,6 +13,7 @@
 // some seconds; with an index search up to 20 s, while the arms move.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "hal/can/can_bus.h"
@@ -22,6 +23,11 @@
 #include "model/result.h"
 
 namespace tact::hal::odrive {
+
+/// The loop takes a drive for silent after this: three heartbeats of 100 ms and a little.
+inline constexpr std::int64_t kOdriveSilence_ns = 350'000'000;
+/// What opening refuses above: a beat that is a little late must not look like silence.
+inline constexpr std::int64_t kSlowestHeartbeat_ns = 300'000'000;
 
 struct OdriveStart {
   OdriveGeneration generation = OdriveGeneration::k06;

@@ -27,10 +27,10 @@ using can::CanPower;
 using model::Error;
 using model::Result;
 
-constexpr std::int64_t kSilence_ns = 350'000'000;  // three heartbeats of 100 ms and a little
-constexpr int kFeedTicks = 5;                      // of zero torque before closed loop is asked for
-constexpr int kRepeatTicks = 100;                  // a request may have been lost
+constexpr int kFeedTicks = 5;      // of zero torque before closed loop is asked for
+constexpr int kRepeatTicks = 100;  // a request may have been lost
 constexpr std::uint32_t kWatchdog06 = 0x1000000, kWatchdog05 = 0x800;
+constexpr std::uint32_t kUnderVoltage06 = 0x200, kUnderVoltage05 = 0x2;
 
 /// Kinds of FaultCause, after those that all drives have.
 enum class OdriveCause : std::uint8_t {
@@ -39,6 +39,7 @@ enum class OdriveCause : std::uint8_t {
   kParts05,         // code: 1 motor, 2 encoder, 4 controller; the axis itself reports nothing
   kLeftClosedLoop,  // code: the state it is in
   kNotStarted,      // code: the state it is in
+  kNoSupply,        // waited for, before any force
 };
 
 const char* state_name(std::uint32_t state) {
@@ -79,8 +80,10 @@ class Odrives final : public can::CanDrives {
   }
 
   void update_power(CanLoop& loop) RT_SAFE override {
-    if (loop.power == CanPower::kStarting && loop.asked_ns != 0 && all_in_closed_loop(loop))
+    if (loop.power == CanPower::kStarting && loop.asked_ns != 0 && all_in_closed_loop(loop)) {
       loop.power = CanPower::kReady;
+      loop.waits.clear();
+    }
     for (std::size_t i = 0; i < 3; ++i) {
       if (axes_[i].is_in(OdriveAxisState::kClosedLoop)) continue;
       if (loop.power == CanPower::kReady)
@@ -107,6 +110,12 @@ class Odrives final : public can::CanDrives {
       });
       if (ignored && ticks_ % kRepeatTicks == 0) push_state(loop.bus, OdriveAxisState::kIdle);
       if (loop.power == CanPower::kStarting) ticks_ = 0;
+      return;
+    }
+    if (loop.waits.cause().kind != 0 && loop.now_ns >= ask_again_ns_) {
+      ask_again_ns_ = loop.now_ns + model::kSecond_ns;
+      for (const int node : nodes_) loop.bus.push(odrive_clear_errors(node, false));
+      ticks_ = 0;
       return;
     }
     if (ticks_ % kRepeatTicks != kFeedTicks) return;
@@ -139,6 +148,8 @@ class Odrives final : public can::CanDrives {
         return fmt::format(
             "the drive left torque control by itself and is {}: read its errors with odrivetool",
             state_name(cause.code));
+      case OdriveCause::kNoSupply:
+        return "the voltage of its motor supply is too low: switch the supply on";
       case OdriveCause::kNotStarted:
         return fmt::format(
             "the drive does not enter closed loop and is {}: calibrate it with odrivetool "
@@ -164,15 +175,25 @@ class Odrives final : public can::CanDrives {
     axes_[at].state = beat->axis_state;
     // Between opening and the first tick nobody fed the watchdogs; the first batch clears that.
     const bool was_silent =
-        arrival_ns < loop.first_ns + kSilence_ns && loop.power != CanPower::kReady;
+        arrival_ns < loop.first_ns + kOdriveSilence_ns && loop.power != CanPower::kReady;
     const bool is_06 = generation_ == OdriveGeneration::k06;
     const std::uint32_t error = beat->axis_error;
+    if (error == (is_06 ? kUnderVoltage06 : kUnderVoltage05) && !loop.felt)
+      return wait_for_supply(loop, at);
     if (error != 0 && !(was_silent && error == (is_06 ? kWatchdog06 : kWatchdog05)))
       loop.fail(at, is_06 ? OdriveCause::kErrors06 : OdriveCause::kErrors05, error);
     if (is_06) return;
     const auto beat05 = decode_odrive_heartbeat_05(frame, node);
     const std::uint32_t parts = beat05 ? odrive_parts_05(*beat05) : 0;
     if (parts != 0) loop.fail(at, OdriveCause::kParts05, parts);
+  }
+
+  /// Asked again once a second.
+  static void wait_for_supply(CanLoop& loop, std::size_t at) RT_SAFE {
+    if (loop.power == CanPower::kReady) loop.power = CanPower::kStarting;
+    loop.asked_ns = 0;
+    loop.waits.set({.axis = static_cast<std::uint8_t>(at),
+                    .kind = static_cast<std::uint8_t>(OdriveCause::kNoSupply)});
   }
 
   bool all_in_closed_loop(const CanLoop& loop) const RT_SAFE {
@@ -198,6 +219,7 @@ class Odrives final : public can::CanDrives {
   CanPower power_ = CanPower::kOff;      // of the last push
   bool cleared_ = false;                 // errors of the time between opening and the first tick
   int ticks_ = 0;                        // since off, or starting
+  std::int64_t ask_again_ns_ = 0;        // a drive without supply
   std::array<std::uint64_t, 4> news_{};  // by OdriveNews
 };
 
@@ -226,7 +248,7 @@ Result<std::unique_ptr<Device>> start_odrive_delta(std::unique_ptr<can::CanBus> 
        .name = "delta with three ODrives on CAN",
        .position = "new position",
        .one_sync = false,
-       .most_silent_ns = kSilence_ns,
+       .most_silent_ns = kOdriveSilence_ns,
        .counts_per_turn = settings.delta.counts_per_turn,
        .delay_s = 1e-9 * period_ns + can::bus_time_s(odrive_cycle_bits(settings.can), rate),
        .motor_turns = start->motor_turns,

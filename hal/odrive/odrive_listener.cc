@@ -28,7 +28,8 @@ bool OdriveListener::run_until(const Condition& fits, int time_ms) {
   can::CanSocket& socket = bus_.socket();
   const std::int64_t end_ns = socket.now_ns() + time_ms * model::kMillisecond_ns;
   while (bus_.fault() == Fault::kNone) {
-    for (const can::CanReceived& one : bus_.receive()) take(one.frame);
+    for (const can::CanReceived& one : bus_.receive())
+      take(one.frame, socket.now_ns() - one.age_ns);
     if (std::all_of(axes.begin(), axes.end(), fits)) return true;
     const std::int64_t now_ns = socket.now_ns();
     if (now_ns >= end_ns) return false;
@@ -47,9 +48,12 @@ std::optional<model::Error> OdriveListener::wrong(const Condition& fits, const c
   return std::nullopt;
 }
 
-void OdriveListener::take(const can::CanFrame& frame) {
+void OdriveListener::take(const can::CanFrame& frame, std::int64_t arrival_ns) {
   for (OdriveHeard& axis : axes) {
     if (const auto beat = decode_odrive_heartbeat(frame, axis.node)) {
+      if (axis.beat_ns != 0)
+        axis.longest_beat_ns = std::max(axis.longest_beat_ns, arrival_ns - axis.beat_ns);
+      axis.beat_ns = arrival_ns;
       take_heartbeat(axis, frame, *beat);
     } else if (const auto version = decode_odrive_version(frame, axis.node)) {
       axis.version = *version;

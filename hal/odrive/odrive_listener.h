@@ -22,6 +22,7 @@ OdriveTorqueLength odrive_torque_length(const model::CanSettings& can);
 struct OdriveHeard {
   int node = 0;
   int heartbeats = 0;
+  std::int64_t beat_ns = 0, longest_beat_ns = 0;  // when the last one came; between two, so far
   std::uint32_t error = 0, parts = 0;
   std::uint8_t state = 0, result = 0;
   bool searched = false;  // for its index pulse
@@ -71,7 +72,7 @@ class OdriveListener {
   std::optional<model::Error> wrong(const Condition& fits, const char* words) const;
 
  private:
-  void take(const can::CanFrame& frame);
+  void take(const can::CanFrame& frame, std::int64_t arrival_ns);
   void take_heartbeat(OdriveHeard& axis, const can::CanFrame& frame, const OdriveHeartbeat& beat);
 
   can::CanBus& bus_;

@@ -24,6 +24,7 @@ struct HdError {
 };
 
 // What is asked for.
+inline constexpr unsigned kHdCurrentButtons = 0x2000;    // bits (HD-8)
 inline constexpr unsigned kHdCurrentTransform = 0x2052;  // 16 doubles, by columns
 inline constexpr unsigned kHdModel = 0x2501, kHdSerialNumber = 0x2504;
 inline constexpr unsigned kHdUsableWorkspace = 0x2551;  // least x y z, greatest x y z
@@ -35,6 +36,7 @@ inline constexpr unsigned kHdMaxForce = 0x2603, kHdContinuousForce = 0x2604;
 inline constexpr unsigned kHdCurrentForce = 0x2700;
 // What is switched.
 inline constexpr unsigned kHdForceOutput = 0x4000, kHdMaxForceClamping = 0x4001;
+inline constexpr int kHdButton1 = 1;  // of kHdCurrentButtons
 // What a check of the calibration answers.
 inline constexpr unsigned kHdCalibrated = 0x5000, kHdNeedsUpdate = 0x5001, kHdNeedsHand = 0x5002;
 // Styles of calibration.

@@ -37,6 +37,8 @@ DeviceInfo info_of(const PhantomSession& session, const model::PhantomSettings& 
           .max_continuous_force_N = session.continuous_force_N,
           .workspace_radius_m = session.radius_m,
           .workspace_half_length_m = session.half_length_m,
+          .grip = GripKind::kButton,
+          .turns_with_base = session.wrist,
           .at_tool = model::DeviceAtTool{.damping_Ns_per_m = settings.damping_Ns_per_m,
                                          .friction_N = 0.0,  // the library tells none
                                          .position_step_m = settings.position_step_m,

@@ -134,8 +134,8 @@ void PhantomWorker::exchange() {
   session_.hd.begin_frame(session_.id);
   const bool sound = judge(pose);
   // The time once more: the library may have waited for the state, and the command has aged.
-  const auto wrench = sound ? next_wrench(monotonic_ns()) : std::nullopt;
-  const Vec3 force_N = wrench ? wrench->force_N : Vec3{};
+  const auto force = sound ? next_force(monotonic_ns()) : std::nullopt;
+  const Vec3 force_N = force ? force->wrench.force_N : Vec3{};
   send(force_N);
   if (!sound) return;
   if (force_N == Vec3{}) switch_output();
@@ -152,6 +152,8 @@ bool PhantomWorker::judge(LibraryPose& pose) {
   const HdFunctions& hd = session_.hd;
   double transform[16] = {};
   hd.get_doubles(kHdCurrentTransform, transform);
+  int buttons = 0;
+  hd.get_integers(kHdCurrentButtons, &buttons);
   const unsigned calibration = hd.check_calibration();
   // Before any force alone: an update during a run might move the position under the force (HD-4).
   // Encoders that a person resets by hand are left to the maker's program.
@@ -165,6 +167,7 @@ bool PhantomWorker::judge(LibraryPose& pose) {
   if (calibration == kHdCalibrated) calibrated_ = true;
   if (!calibrated_) return true;
   pose.position_m = to_w(transform + 12, 1e-3) - session_.middle_m;
+  pose.grip_ratio = (buttons & kHdButton1) != 0 ? 1.0 : 0.0;
   if (session_.wrist) pose.orientation = orientation_of(transform);
   const bool told = is_finite(pose.position_m) && std::isfinite(pose.orientation.w);
   return told || fail(Fault::kSampleNotFinite, Source::kPose, 0);

@@ -22,6 +22,9 @@ using OpenDevice = std::unique_ptr<Device, StopAndDelete>;
 /// Opens what scene.device names. Set-up only; may take as long as the hardware needs.
 model::Result<OpenDevice> open_device(const model::scene::Scene& scene);
 
+/// The network interface that this device needs, while it is not there or not up; else empty.
+std::string missing_interface(const model::DeviceSettings& settings);
+
 /// True for a kind that is no hardware: it may be run on simulated time.
 bool is_simulated(const model::DeviceSettings& settings);
 /// True for a device whose hand is simulated and may be moved by a person.

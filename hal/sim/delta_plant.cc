@@ -39,8 +39,12 @@ struct DeltaPlant::Implicit {
   }
 };
 
-DeltaPlant::DeltaPlant(const JointFriction& friction, const model::Vec3& start_m)
-    : delta_(kGeometry), friction_(friction), position_m_(start_m) {
+DeltaPlant::DeltaPlant(const JointFriction& friction, const model::Vec3& start_m,
+                       const model::Vec3& gravity_D_mps2)
+    : delta_(kGeometry),
+      friction_(friction),
+      gravity_D_mps2_(gravity_D_mps2),
+      position_m_(start_m) {
   if (!delta_.inverse(start_m).reachable) position_m_ = {0.0, 0.0, kMiddle_D_m};
   theta_rad_ = delta_.inverse(position_m_).theta_rad;
 }
@@ -51,8 +55,7 @@ void DeltaPlant::step(double dt_s, const delta::Joints& motor_Nm, const HandPull
   const double inertia_kgm2 = joint_inertia_kgm2(kGeometry, kMasses);
   const model::Mat3 mass_kg =
       task_inertia_kg(kGeometry, kMasses, pose) + model::diagonal(hand.mass_kg);
-  const delta::Joints gravity_Nm =
-      gravity_torques_Nm(kGeometry, kMasses, pose, direction_D(delta::kGravity_W_mps2));
+  const delta::Joints gravity_Nm = gravity_torques_Nm(kGeometry, kMasses, pose, gravity_D_mps2_);
   const delta::Joints drift = joint_drift_radps2(pose, velocity_mps_);
   // K^T (tau - tau_g - I dK/dt v)
   const auto torque_Nm = [&](std::size_t i) RT_SAFE {
@@ -146,7 +149,7 @@ double DeltaPlant::energy_J() const RT_SAFE {
   const delta::DeltaPose pose = delta_.pose(position_m_, theta_rad_);
   const model::Vec3 momentum_Ns = task_inertia_kg(kGeometry, kMasses, pose) * velocity_mps_;
   return 0.5 * dot(velocity_mps_, momentum_Ns) +
-         gravity_energy_J(kGeometry, kMasses, pose, direction_D(delta::kGravity_W_mps2));
+         gravity_energy_J(kGeometry, kMasses, pose, gravity_D_mps2_);
 }
 
 }  // namespace tact::hal::sim

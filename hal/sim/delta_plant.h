@@ -19,6 +19,7 @@
 #pragma once
 
 #include "hal/delta/delta_dynamics.h"
+#include "hal/delta/delta_frame.h"
 #include "hal/delta/delta_kinematics.h"
 
 namespace tact::hal::sim {
@@ -40,7 +41,8 @@ struct HandPull {
 class DeltaPlant {
  public:
   /// At rest at start_m, or in the middle of the workspace if that is out of reach.
-  DeltaPlant(const JointFriction& friction, const model::Vec3& start_m);
+  DeltaPlant(const JointFriction& friction, const model::Vec3& start_m,
+             const model::Vec3& gravity_D_mps2 = delta::direction_D(delta::kGravity_W_mps2));
 
   void step(double dt_s, const delta::Joints& motor_Nm, const HandPull& hand) RT_SAFE;
 
@@ -61,6 +63,7 @@ class DeltaPlant {
 
   delta::DeltaKinematics delta_;
   JointFriction friction_;
+  model::Vec3 gravity_D_mps2_;
   model::Vec3 position_m_;
   model::Vec3 velocity_mps_;
   delta::Joints theta_rad_{};

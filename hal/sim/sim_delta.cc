@@ -27,11 +27,19 @@ constexpr double kMaxDelay_s = 0.1;
 constexpr double kWristCountsPerTurn = 65536.0;
 constexpr double kJump_m = 5e-3, kJump_rad = 0.1;  // between two samples: a new start
 constexpr double kGripHalfWidth_m = 0.05;          // the hand holds the handle here, at both sides
+constexpr double kGripperForce_N = 8.0, kGripperOpen_m = 0.025;  // as an omega.7's
 
 double counted_rad(double angle_rad, double counts_per_turn) RT_SAFE {
   const double rad_per_count = 2.0 * std::numbers::pi / counts_per_turn;
   // The nearest count: a plain floor would be half a count low.
   return std::floor(angle_rad / rad_per_count + 0.5) * rad_per_count;
+}
+
+/// The way of the hand as its base sees it. How it turns the handle stays as the scene says.
+model::HandSettings hand_of_base(model::HandSettings hand, const Mounting& mounting) {
+  for (model::HandWaypoint& point : hand.path)
+    point.position_m = mounting.point_B(point.position_m);
+  return hand;
 }
 
 /// The nearest point of the workspace cylinder.
@@ -44,13 +52,16 @@ Vec3 inside_workspace_m(const Vec3& p_W) RT_SAFE {
 
 }  // namespace
 
-SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::HandSettings& hand)
+SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::HandSettings& hand,
+                   const Mounting& mounting)
     : settings_(device),
+      mounting_(mounting),
+      gravity_D_mps2_(direction_D(mounting.gravity_B_mps2())),
       delta_(kGeometry),
-      hand_(hand),
+      hand_(hand_of_base(hand, mounting)),
       plant_({.coulomb_Nm = device.joint_friction_Nm,
               .viscous_Nms_per_rad = device.joint_damping_Nms_per_rad},
-             point_D(inside_workspace_m(hand_.position_W_m()))),
+             point_D(inside_workspace_m(hand_.position_W_m())), gravity_D_mps2_),
       wrist_(wrist_angles_rad(hand_.rotation_rad())),
       velocity_(device.observer_bandwidth_Hz, kJump_m),
       angular_velocity_(device.observer_bandwidth_Hz, kJump_rad),
@@ -60,8 +71,7 @@ SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::HandSett
   history_[kHistory - 1].time_s = -2.0 * kMaxDelay_s;
   measured_ = delta_.pose(plant_.position_D_m(), plant_.theta_rad());
   // The motors hold the arms from the start, or they would fall before the first write.
-  motor_Nm_ =
-      gravity_torques_Nm(kGeometry, kMasses, measured_, direction_D(delta::kGravity_W_mps2));
+  motor_Nm_ = gravity_torques_Nm(kGeometry, kMasses, measured_, gravity_D_mps2_);
 }
 
 DeviceInfo SimDelta::info() const {
@@ -70,6 +80,7 @@ DeviceInfo SimDelta::info() const {
           .max_torque_Nm = kMaxTorque_Nm,
           .workspace_radius_m = kWorkspaceRadius_m,
           .workspace_half_length_m = kWorkspaceHalfLength_m,
+          .grip = {GripKind::kForce, kGripperForce_N},
           .at_tool = delta_at_tool(
               delta_,
               {.viscous_Nms_per_rad = settings_.joint_damping_Nms_per_rad,
@@ -94,6 +105,8 @@ Fault SimDelta::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
   const State state = state_at(time_s_ - settings_.sample_delay_s);
   // Fails where the rods cannot meet (DK-3): no pose of this device.
   if (!measure(state, sample.tool)) return Fault::kDeviceFailed;
+  sample.grip_gap_m = kGripperOpen_m * (1.0 - state.grip_ratio);
+  sample.grip_speed_mps = kGripperOpen_m * -state.grip_rate_per_s;
   if (faults_.nan_sample.load(std::memory_order_relaxed)) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     sample.tool.position_m = {nan, nan, nan};
@@ -132,15 +145,17 @@ Fault SimDelta::write(const Wrench& wrench) RT_SAFE {
   if (!powered_ || !permitted_) {  // motors without power hold nothing
     motor_Nm_ = {};
     wrist_Nm_ = {};
+    grip_N_ = 0.0;
     return Fault::kNone;
   }
-  const bool sound = is_finite(wrench.force_N) && is_finite(wrench.torque_Nm);
+  const bool sound = is_finite(wrench) && std::isfinite(wanted_grip_N_);
+  grip_N_ = sound ? std::clamp(wanted_grip_N_, -kGripperForce_N, kGripperForce_N) : 0.0;
   const Wrench limited = sound ? Wrench{saturated(wrench.force_N, kMaxForce_N),
                                         saturated(wrench.torque_Nm, kMaxTorque_Nm)}
                                : Wrench{};
   // From the pose it has measured, not the true one: a real device knows no better.
-  motor_Nm_ = delta::drive_torques_Nm(kGeometry, kMasses, measured_, direction_D(limited.force_N),
-                                      kMaxJointTorque_Nm);
+  motor_Nm_ = delta::drive_torques_Nm(kGeometry, kMasses, measured_, gravity_D_mps2_,
+                                      direction_D(limited.force_N), kMaxJointTorque_Nm);
   wrist_Nm_ = limited.torque_Nm;
   return sound ? Fault::kNone : Fault::kForceNotFinite;
 }
@@ -158,11 +173,13 @@ void SimDelta::steer_hand() RT_SAFE {
   HandTarget target;
   if (!hand_targets_.read(target)) return;
   const double* p = target.position_m;
-  hand_.steer(inside_workspace_m({p[0], p[1], p[2]}), target.grip_ratio);
+  hand_.steer(inside_workspace_m(mounting_.point_B({p[0], p[1], p[2]})), target.grip_ratio);
 }
 
 void SimDelta::step_physics(double dt_s) RT_SAFE {
+  const double grip_before = hand_.grip_ratio();
   hand_.step(dt_s);
+  grip_rate_per_s_ = (hand_.grip_ratio() - grip_before) / dt_s;
   const model::HandSettings& hand = hand_.settings();
   plant_.step(dt_s, motor_Nm_,
               {.mass_kg = hand.mass_kg,
@@ -185,7 +202,8 @@ SimDelta::State SimDelta::state_now() const RT_SAFE {
   return {.time_s = time_s_,
           .theta_rad = plant_.theta_rad(),
           .wrist_rad = wrist_.angles_rad(),
-          .grip_ratio = hand_.grip_ratio()};
+          .grip_ratio = hand_.grip_ratio(),
+          .grip_rate_per_s = grip_rate_per_s_};
 }
 
 const SimDelta::State& SimDelta::remembered(std::size_t steps_ago) const RT_SAFE {
@@ -218,7 +236,8 @@ void SimDelta::stop() {
 }
 
 model::Result<std::unique_ptr<SimDelta>> make_sim_delta(const model::SimDeviceSettings& device,
-                                                        const model::HandSettings& hand) {
+                                                        const model::HandSettings& hand,
+                                                        const Mounting& mounting) {
   // What the device cannot work with; a scene's own ranges are narrower (model/scene).
   const auto refuse = [](const char* key, double value, const char* allowed) {
     return model::Error{fmt::format("{} is {}; it must be {}", key, value, allowed)};
@@ -240,7 +259,7 @@ model::Result<std::unique_ptr<SimDelta>> make_sim_delta(const model::SimDeviceSe
   if (device.sample_delay_s > kMaxDelay_s)
     return refuse("sample_delay_s", device.sample_delay_s, "at most 0.1 s");
   if (hand.path.empty()) return model::Error{"the hand has no waypoint; give it at least one"};
-  return std::make_unique<SimDelta>(device, hand);
+  return std::make_unique<SimDelta>(device, hand, mounting);
 }
 
 }  // namespace tact::hal::sim

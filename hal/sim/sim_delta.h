@@ -15,6 +15,7 @@
 #include "hal/delta/delta_kinematics.h"
 #include "hal/device.h"
 #include "hal/latest_slot.h"
+#include "hal/mounting.h"
 #include "hal/sim/delta_plant.h"
 #include "hal/sim/hand_target.h"
 #include "hal/sim/sim_hand.h"
@@ -35,10 +36,13 @@ struct SimFaults {
 class SimDelta final : public Device {
  public:
   /// Settings as checked by make_sim_delta().
-  SimDelta(const model::SimDeviceSettings& device, const model::HandSettings& hand);
+  /// The hand is led in W; its base stands as mounted, and MountedDevice turns what it tells.
+  SimDelta(const model::SimDeviceSettings& device, const model::HandSettings& hand,
+           const Mounting& mounting = {});
 
   DeviceInfo info() const override;
   [[nodiscard]] Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
+  void set_grip_force(double opening_N) RT_SAFE override { wanted_grip_N_ = opening_N; }
   [[nodiscard]] Fault write(const Wrench& wrench) RT_SAFE override;
   void permit(bool powered) RT_SAFE override { permitted_ = powered; }
   bool ready() const RT_SAFE override { return permitted_; }
@@ -48,9 +52,11 @@ class SimDelta final : public Device {
   /// For the thread that receives steering (hand_socket.h).
   LatestSlot<HandTarget>& hand_targets() { return hand_targets_; }
   SimFaults& faults() { return faults_; }
-  /// The truth behind the encoders.
+  /// The truth behind the encoders, in the axes of its base.
   const DeltaPlant& plant() const { return plant_; }
   const SimHand& hand() const { return hand_; }
+  /// On its fingers, opening positive; they are held as the hand wants them.
+  double grip_force_N() const { return grip_N_; }
   Vec3 true_position_W_m() const RT_SAFE;
 
  private:
@@ -58,7 +64,7 @@ class SimDelta final : public Device {
     double time_s = 0.0;
     delta::Joints theta_rad{};
     Vec3 wrist_rad;
-    double grip_ratio = 0.0;
+    double grip_ratio = 0.0, grip_rate_per_s = 0.0;
   };
   static constexpr std::size_t kHistory = 1024;  // 0.1 s of steps of 0.1 ms
 
@@ -70,6 +76,8 @@ class SimDelta final : public Device {
   bool measure(const State& state, Tool& tool) RT_SAFE;
 
   model::SimDeviceSettings settings_;
+  Mounting mounting_;
+  Vec3 gravity_D_mps2_;
   delta::DeltaKinematics delta_;
   SimHand hand_;
   DeltaPlant plant_;
@@ -83,8 +91,10 @@ class SimDelta final : public Device {
   delta::DeltaPose measured_;  // of the last sample
   delta::Joints motor_Nm_{};   // held until the next write
   Vec3 wrist_Nm_;
-  bool powered_ = true;    // until stop()
-  bool permitted_ = true;  // by the safety lines, in this tick
+  double wanted_grip_N_ = 0.0, grip_N_ = 0.0;
+  double grip_rate_per_s_ = 0.0;  // of the hand
+  bool powered_ = true;           // until stop()
+  bool permitted_ = true;         // by the safety lines, in this tick
   std::uint64_t sequence_ = 0;
   LatestSlot<HandTarget> hand_targets_;
   SimFaults faults_;
@@ -92,6 +102,7 @@ class SimDelta final : public Device {
 
 /// Refuses settings that no device can have.
 model::Result<std::unique_ptr<SimDelta>> make_sim_delta(const model::SimDeviceSettings& device,
-                                                        const model::HandSettings& hand);
+                                                        const model::HandSettings& hand,
+                                                        const Mounting& mounting = {});
 
 }  // namespace tact::hal::sim

@@ -15,6 +15,7 @@ class SimLines final : public SafetyLines {
  public:
   struct Inputs {
     std::atomic<bool> estop_a{true}, estop_b{true}, dead_man{true};
+    std::atomic<bool> grip{false};       // pressed
     std::atomic<bool> chip_lost{false};  // every call fails from now on
   };
 
@@ -26,7 +27,8 @@ class SimLines final : public SafetyLines {
     const model::Fault fault =
         logic_.judge({.estop_a = inputs_.estop_a.load(std::memory_order_relaxed),
                       .estop_b = inputs_.estop_b.load(std::memory_order_relaxed),
-                      .dead_man = inputs_.dead_man.load(std::memory_order_relaxed)},
+                      .dead_man = inputs_.dead_man.load(std::memory_order_relaxed),
+                      .grip = inputs_.grip.load(std::memory_order_relaxed)},
                      now_ns);
     return lost_ ? model::Fault::kLinesLost : fault;
   }
@@ -36,6 +38,7 @@ class SimLines final : public SafetyLines {
     outputs_ = logic_.drive(tick);
     return model::Fault::kNone;
   }
+  std::optional<bool> grip() const RT_SAFE override { return logic_.grip(); }
   bool enabled() const RT_SAFE override { return !lost_ && !dropped_ && logic_.enabled(); }
   void drop() RT_SAFE override { dropped_ = true; }
   void scope(bool) RT_SAFE override {}

@@ -113,7 +113,7 @@ std::string csv_header(const Hello& hello, const std::vector<tracking::BodyRole>
       "tool_x_m,tool_y_m,tool_z_m,tool_qw,tool_qx,tool_qy,tool_qz,"
       "tool_vx_mps,tool_vy_mps,tool_vz_mps,grip_ratio,force_x_N,force_y_N,force_z_N,"
       "torque_x_Nm,torque_y_Nm,torque_z_Nm,wanted_x_N,wanted_y_N,wanted_z_N,"
-      "worst_margin_us,median_tick_us,peak_force_N,rms_force_N,given_energy_J,"
+      "worst_margin_us,median_tick_us,peak_force_N,rms_force_N,given_energy_J,grip_force_N,"
       "contact_losses,cut_triangles,patch_vertices,patch_most_m";
   // Counted from 1, as people do; the rings from 0, which is the contact itself.
   for (std::size_t i = 1; i <= sites_of(hello); ++i) {
@@ -168,6 +168,7 @@ void append_csv_row(std::string& out, const Frame& frame, const Hello& hello,
   put(out, frame.peak_force_N);
   put(out, frame.rms_force_N);
   put(out, frame.given_energy_J);
+  put(out, 1e-3f * static_cast<float>(frame.grip_force_mN));
   fmt::format_to(std::back_inserter(out), ",{}", frame.contact_losses);
   put_patch(out, frame.patch);
   for (std::size_t i = 0; i < sites_of(hello); ++i) {

@@ -105,6 +105,7 @@ std::string frame_json(const record::Frame& frame, const record::Hello& hello) {
   put(out, "peak_N", frame.peak_force_N);
   put(out, "rms_N", frame.rms_force_N);
   put(out, "given_J", frame.given_energy_J);
+  put(out, "grip_N", 1e-3f * static_cast<float>(frame.grip_force_mN));
   out += ",\"sites\":[";
   const std::size_t sites = std::min<std::size_t>(hello.site_count, firmware::telemetry::kMaxSites);
   const std::size_t rings = std::min<std::size_t>(hello.ring_count, firmware::telemetry::kMaxRings);
@@ -150,6 +151,7 @@ std::string scene_json(const record::Hello& hello) {
       {"limits_checksum", record::text_of(hello.limits_checksum)},
       {"non_rt", hello.non_rt != 0},
       {"simulated", hello.simulated != 0},
+      {"cannot_grip", hello.cannot_grip != 0},
       {"spheres", spheres},
       {"look",
        {{"organ", record::text_of(hello.organ_material)},

@@ -9,7 +9,7 @@ namespace tact::model::io {
 
 std::string limits_text(const Limits& limits) {
   // A limit that is not in the text could change without the digits.
-  static_assert(sizeof(Limits) == 13 * sizeof(double), "a limit without a line below");
+  static_assert(sizeof(Limits) == 14 * sizeof(double), "a limit without a line below");
   std::string out;
   const auto add = [&out](const char* name, double value) {
     out += fmt::format("{} = {}\n", name, value);  // the shortest text that is this number alone
@@ -27,6 +27,7 @@ std::string limits_text(const Limits& limits) {
   add("continuous_force_N", limits.continuous_force_N);
   add("thermal_time_s", limits.thermal_time_s);
   add("power_W", limits.power_W);
+  add("grip_force_N", limits.grip_force_N);
   return out;
 }
 

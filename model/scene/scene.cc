@@ -57,6 +57,17 @@ std::optional<Error> load_meshes(const SceneText& text, Scene& scene) {
   return std::nullopt;
 }
 
+/// The device holds the tool there: force and torque are taken at this point. The hand leads it.
+void put_origin_at(const Vec3& handle_m, Scene& scene) {
+  for (contact::ProbeSphere& sphere : scene.tool.spheres) sphere.offset_m -= handle_m;
+  if (scene.tool.blade) {
+    scene.tool.blade->a_m -= handle_m;
+    scene.tool.blade->b_m -= handle_m;
+  }
+  mesh::shift(scene.tool_mesh, -handle_m);
+  for (HandWaypoint& point : scene.hand.path) point.position_m += handle_m;
+}
+
 /// Would another map give other forces?
 bool needs_compliance(const Scene& scene) {
   return scene.varies_by_place || scene.law == LawKind::kCompliance || scene.law == LawKind::kAuto;
@@ -129,6 +140,7 @@ Result<Scene> load_scene(const std::string& path, const std::vector<std::string>
   scene.hand.path = way_points(text.script, tool_reach_m, scene.limits, visit);
   if (auto problem = visit.problem()) return *problem;
   if (auto failed = load_meshes(text, scene)) return *failed;
+  put_origin_at(text.tool_handle_m, scene);
   vary_on_the_own_organ_only(scene);
   scene.hash = whole_hash(document->hash, scene);
   return std::move(scene);

@@ -62,6 +62,7 @@ struct Scene {
   std::vector<ReferenceSite> reference_sites;
   std::optional<ToleranceSettings> tolerance;
   contact::ContactParameters contact;
+  bool grip_toggles = false;  // one press closes the jaws, the next opens them
   OrganSettings organ;
   ToolSettings tool;
   LookSettings look;

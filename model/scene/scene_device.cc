@@ -175,6 +175,8 @@ void visit_force_dimension(reader::Keys& k, ForceDimensionSettings& f) {
   k.number("effector_mass_kg", {0.0, 5.0}, "0: the maker's value", f.effector_mass_kg, kOptional);
   k.number("damping_Ns_per_m", {0.0, 50.0}, "that the device has at the handle", f.damping_Ns_per_m,
            kOptional);
+  k.number("gripper_open_rad", {0.0, 1.6}, "of its gripper, fully open; 0: the maker's value",
+           f.gripper_open_rad, kOptional);
 }
 
 void visit_phantom(reader::Keys& k, PhantomSettings& p) {
@@ -198,6 +200,12 @@ void visit_lines(reader::Keys& k, LinesSettings& lines) {
   visit_line(k, "estop_a", "in, high = good, channel A of the e-stop; -1: none", lines.estop_a);
   visit_line(k, "estop_b", "in, high = good, channel B", lines.estop_b);
   visit_line(k, "dead_man", "in, high = held", lines.dead_man);
+  visit_line(k, "grip", "in, a foot or hand switch that closes the jaws", lines.grip);
+  constexpr std::array kGripLevels{reader::Choice{"high", "the jaws close at the high level"},
+                                   reader::Choice{"low", "at the low level"}};
+  std::size_t level = lines.grip_closes_low ? 1 : 0;
+  k.choice("grip_closes", kGripLevels, "polarity of the grip line", level, kOptional);
+  lines.grip_closes_low = level == 1;
   visit_line(k, "enable", "out, high = the drives may have power", lines.enable);
   visit_line(k, "heartbeat", "out, toggles after every healthy tick", lines.heartbeat);
   visit_line(k, "led", "out, high = armed", lines.led);
@@ -212,6 +220,13 @@ void visit_lines(reader::Keys& k, LinesSettings& lines) {
 
 void visit_device(reader::Keys& k, DeviceSettings& out) {
   k.text("kind", "sim-delta is the simulated device; tactd --list-devices", out.kind);
+  k.vector("base_orientation_deg", {-360.0, 360.0},
+           "turn of its base, axis times angle; 0: axis towards you", out.base_orientation_deg,
+           kOptional);
+  k.vector("base_position_m", {-0.5, 0.5}, "where the middle of its workspace is, in W",
+           out.base_position_m, kOptional);
+  k.number("motion_scale", {0.1, 10.0}, "way of the tool for a way of the handle", out.motion_scale,
+           kOptional);
   // Without a kind, as where the reference is written, the simulated device is the one to show.
   const bool simulated = out.kind.empty() || out.kind == "sim-delta";
   k.section(

@@ -27,6 +27,8 @@ void visit_mesh(reader::Keys& k, MeshText& mesh) {
 
 void visit_tool(reader::Keys& k, SceneText& out) {
   visit_mesh(k, out.tool_mesh);
+  k.vector("handle_m", {-0.3, 0.3}, "its point at the device's reference point, tool frame",
+           out.tool_handle_m, reader::Need::kOptional);
   k.entries("sphere", {1, contact::kMaxSpheres}, "what touches the organ",
             [&](reader::Keys& sphere) {
               contact::ProbeSphere& probe = out.scene.tool.spheres.emplace_back();
@@ -81,7 +83,8 @@ void visit_look(reader::Keys& k, SceneText& out) {
              "look.vertex_colors and look.piece both colour the organ; leave one of them out");
 }
 
-void visit_contact(reader::Keys& k, contact::ContactParameters& c) {
+void visit_contact(reader::Keys& k, Scene& scene) {
+  contact::ContactParameters& c = scene.contact;
   k.number("friction_ratio", {0.0, 2.0}, "largest sliding force over normal force",
            c.friction_ratio);
   k.number("sliding_stiffness_N_per_m", {0.0, 5000.0}, "of tissue along the surface; 0: its own",
@@ -92,6 +95,13 @@ void visit_contact(reader::Keys& k, contact::ContactParameters& c) {
            c.grip_close_ratio, reader::Need::kOptional);
   k.number("grip_open_ratio", {0.0, 0.95}, "opening the grip below it lets go; < grip_close_ratio",
            c.grip_open_ratio, reader::Need::kOptional);
+  constexpr std::array kGrips{
+      reader::Choice{"hold", "the jaws are closed while the hand presses"},
+      reader::Choice{"toggle", "one press closes them, the next opens them"}};
+  std::size_t grip = scene.grip_toggles ? 1 : 0;
+  k.choice("grip", kGrips, "what a press of the grip, button or switch does", grip,
+           reader::Need::kOptional);
+  scene.grip_toggles = grip == 1;
   // Without a gap between them a trembling hand would grip and let go many times a second.
   if (!(c.grip_open_ratio < c.grip_close_ratio)) {
     k.refuse(
@@ -145,7 +155,7 @@ void visit_scene(reader::Keys& k, SceneText& out) {
       "look", "what the viewer paints; no force depends on it",
       [&](reader::Keys& look) { visit_look(look, out); }, reader::Need::kOptional);
   k.section("contact", "between tool and organ",
-            [&](reader::Keys& contact) { visit_contact(contact, scene.contact); });
+            [&](reader::Keys& contact) { visit_contact(contact, scene); });
   k.section("device", "what the hand holds",
             [&](reader::Keys& device) { visit_device(device, scene.device); });
   k.section("hand", "the simulated hand", [&](reader::Keys& hand) { visit_hand(hand, out); });

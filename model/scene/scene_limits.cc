@@ -33,6 +33,9 @@ void visit_keys(reader::Keys& k, Limits& limits) {
            reader::Need::kOptional);
   k.number("power_W", {0.1, 100.0}, "largest power on the hand; held to three quarters of it",
            limits.power_W, reader::Need::kOptional);
+  k.number("grip_force_N", {0.0, 8.0},
+           "on the fingers of a gripper; all else in proportion to force_N", limits.grip_force_N,
+           reader::Need::kOptional);
 }
 
 /// Rounded up to what a person would write.

@@ -23,7 +23,7 @@ TABLE = "tests/safety/hazards.toml"
 KEYS = {"hazard": ({"id", "hazard", "cause"}, {"remains"}),
         "requirement": ({"id", "hazards", "text", "by"}, {"stages", "faults"}),
         "test": ({"id", "proves", "by", "names"}, set())}
-IDS = {"hazard": r"HZ-\d\d", "requirement": r"REQ-\d\d", "test": r"TEST-\d\d"}
+IDS = {"hazard": r"HZ-\d\d", "requirement": r"REQ-\d\d", "test": r"TEST-\d\d\d?"}
 PROOF, BENCH, LIMITS = "tests/proof/run", "tests/rig/run", "build/tact-limits"
 SAFETY_GROUPS = ("gate", "loop")  # of tests/mutations, and whatever group names a program of
 SAFETY_PROGRAMS = ("firmware_guardian_test", "firmware_watch_test")

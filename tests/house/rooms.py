@@ -43,7 +43,7 @@ ROOMS = {
     "hal/phantom": ["model", "hal", "hal/maker_library"],
     "hal/sim": [*DELTA, "model/io", "hal/gpio"],
     "hal/list": ["model/io", "hal", "hal/can", "hal/gpio"],
-    "hal/registry": ["model", "hal", *DEVICES, "model/scene"],
+    "hal/registry": ["model", "hal", "hal/can", *DEVICES, "model/scene"],
     "firmware/pc": ["model/io", "hal/list"],
     "firmware/gate": ["model", "hal"],
     "firmware/loop": LOOP,

@@ -31,6 +31,7 @@ PLAIN = {
     "direction", "product", "preconditioner", "sum",  # of a linear solver, a mean
     "printed", "ours",  # of a quantity whose name says the unit
     "row", "words", "fade", "strain", "cos_azimuth", "sin_azimuth", "sine", "cosine", "tangent", "push",  # push: a direction
+    "motion_scale",  # way of the tool for a way of the handle
     "vertex",  # of an OBJ file, in its units
     "n1", "n2", "s1", "s2",  # barycentric and normal parts of a map
     "xx", "xy", "yy",  # of a tensor, which has the unit

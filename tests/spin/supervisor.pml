@@ -19,8 +19,8 @@ mtype = { KEEP, FIRST, POWER_LOST, CLEAR };
 mtype state = OFF;
 mtype before;            /* the state of the tick before */
 bool latched;            /* a fault is kept */
-bool arm, stop, reset, sample_good, ready, fault_found, gate_fault;
-bool arm_before, arm_edge, reset_before, reset_edge;
+bool arm, stop, reset, disarm, sample_good, ready, fault_found, gate_fault;
+bool arm_before, arm_edge, reset_before, reset_edge, disarm_before, disarm_edge;
 byte missed, level = FADE;
 bool force;
 bool released = true;    /* arm was let go since the last stop, or nothing was stopped yet */
@@ -48,6 +48,8 @@ inline supervise() {
     arm_before = arm;
     reset_edge = reset && !reset_before;
     reset_before = reset;
+    disarm_edge = disarm && !disarm_before;
+    disarm_before = disarm;
     done = false;
     next = state;
     effect = KEEP;
@@ -122,7 +124,10 @@ inline check() {
   MUST(6, !(before == STOPPED && state == ARMED));
   MUST(6, !(before != ARMED && state == ARMED) || (arm && released && sample_good && ready));
   /* 7: a request arms in its own tick, of a state that was ready, or never */
-  MUST(7, !(before != ARMED && state == ARMED) || (arm_edge && before == READY))
+  MUST(7, !(before != ARMED && state == ARMED) || (arm_edge && before == READY));
+  /* 8: a request to disarm takes the force in its own tick, and nothing arms while it stands */
+  MUST(8, !(before == ARMED && disarm_edge && state == ARMED));
+  MUST(8, !(before != ARMED && state == ARMED && disarm))
 }
 
 inline remember() {
@@ -146,7 +151,7 @@ active proctype tick() {
   mtype next, effect;
   do
   :: atomic {
-       draw(arm); draw(stop); draw(reset); draw(sample_good); draw(ready);
+       draw(arm); draw(stop); draw(reset); draw(disarm); draw(sample_good); draw(ready);
        draw(fault_found); draw(gate_fault);
        before = state;
        supervise();

@@ -20,7 +20,9 @@ class PuppetDevice : public hal::Device {
  public:
   explicit PuppetDevice(loop::SimulatedClock& clock) : clock_(clock) {}
 
-  hal::DeviceInfo info() const override { return {.name = "puppet", .max_force_N = 20.0}; }
+  hal::DeviceInfo info() const override {
+    return {.name = "puppet", .max_force_N = 20.0, .grip = hal::GripKind::kNone};
+  }
   model::Fault read(hal::Sample& sample, std::int64_t now_ns) RT_SAFE override {
     tests::pass_ns(clock_, slow_ns);
     slow_ns = 0;
@@ -63,12 +65,14 @@ class PuppetLines final : public hal::SafetyLines {
     writes_of_device_before = device_writes != nullptr ? *device_writes : 0;
     return write_fault;
   }
+  std::optional<bool> grip() const RT_SAFE override { return grip_pressed; }
   bool enabled() const RT_SAFE override { return enable; }
   void scope(bool up) RT_SAFE override { up ? ++ups : ++downs; }
   void stop() override {}
 
   model::Fault fault = model::Fault::kNone, write_fault = model::Fault::kNone;
   bool enable = true;
+  std::optional<bool> grip_pressed;
   hal::LinesTick last;
   const int* device_writes = nullptr;
   int writes_of_device_before = 0, ups = 0, downs = 0;

@@ -51,6 +51,17 @@ TEST_F(Control, ArmsTheTactdOfItsSceneAloneAndStopsIt) {
   EXPECT_EQ(report("b").at("force_max_N"), 0.0);
 }
 
+TEST_F(Control, DisarmsWithoutEndingItAndItCanBeArmedAgain) {
+  const Outcome out = in_bash(
+      "start a liver.toml; a=$!; ready a; ctl liver.toml arm; ctl liver.toml disarm\n"
+      "until ctl liver.toml status | grep -q ': ready, 0.000 N'; do sleep .1; done\n"
+      "ctl liver.toml arm; ctl liver.toml stop; wait $a");
+  EXPECT_TRUE(has(out, "no force; arm it again when it shall have one\nstatus 0")) << out.output;
+  EXPECT_FALSE(has(out, "status 1")) << out.output;
+  ASSERT_FALSE(report("a").is_discarded()) << out.output;
+  EXPECT_EQ(report("a").at("refused_requests"), 0);
+}
+
 TEST_F(Control, RefusesWithTheReason) {
   const Outcome out = in_bash(
       "start a liver.toml; a=$!; ready a; ctl liver.toml reset\n"

@@ -63,4 +63,18 @@ TEST_F(ServiceProgram, DoesNotHomeOnAJigThatNobodySees) {
   EXPECT_TRUE(has(out, "start tactd by hand")) << out.output;
 }
 
+TEST_F(ServiceProgram, WaitsForTheBusOfItsDeviceAndEndsByASignal) {
+  const std::string scene = in_folder("bus.toml");
+  std::ofstream(scene) << scene_on_real_devices();
+  const Outcome out = run_command(
+      "export NOTIFY_SOCKET=" + in_folder("n") + "; " + program_path("tactd") + " " + scene +
+      " --set 'device.can.homing=\"absolute\"' --set 'device.can.interface=\"tact-none\"' >" +
+      in_folder("told") + " 2>&1 & tactd=$!; until grep -qs 'waiting for' " + in_folder("told") +
+      "; do kill -0 $tactd || break; sleep .05; done; kill -TERM $tactd; wait $tactd; "
+      "status=$?; cat " +
+      in_folder("told") + "; exit $status");
+  EXPECT_EQ(out.status, 0) << out.output;
+  EXPECT_TRUE(has(out, "tactd: waiting for tact-none: it is not there, or not up")) << out.output;
+}
+
 }  // namespace tact::tests::service_test

@@ -28,7 +28,7 @@ except ImportError:
 
 MAGIC, TELEMETRY_VERSION = 0x74636174, 5
 RECORDING_VERSIONS = {7: 0, 8: 1304, 9: 1496}  # bytes of the operator behind each frame
-LOG_MAGIC, RECORDING_MAGIC = b"tactlog8", b"tactrec\n"
+LOG_MAGIC, RECORDING_MAGIC = b"tactlog9", b"tactrec\n"
 SEAL = b"tactseal"
 PHASES = ("wake", "read", "touch", "feel", "judge", "write", "tell", "total")
 STATES = ("off", "ready", "armed", "stopped")
@@ -49,8 +49,9 @@ HELLO = np.dtype([
     ("tool_triangles", "<u4"), ("site_count", "<u4"), ("ring_count", "<u4"), ("ring_pitch_m", "<f4"), ("rate_Hz", "<f4"),
     ("frame_rate_Hz", "<f4"), ("force_limit_N", "<f4"), ("continuous_force_N", "<f4"), ("energy_budget_J", "<f4"),
     ("sphere_radius_m", "<f4", 4), ("sphere_offset_m", "<f4", (4, 3)), ("non_rt", "u1"), ("simulated", "u1"),
-    ("scene_name", "S53"), ("limits_checksum", "S9"), ("device_name", "S64"), ("law_name", "S64"), ("hand_socket", "S108"),
-    ("organ_material", "S12"), ("tool_material", "S12"), ("piece_count", "<u4"), ("piece_color_ratio", "<f4", (4, 3))])
+    ("scene_name", "S52"), ("cannot_grip", "u1"), ("limits_checksum", "S9"), ("device_name", "S64"), ("law_name", "S64"),
+    ("hand_socket", "S108"), ("organ_material", "S12"), ("tool_material", "S12"), ("piece_count", "<u4"),
+    ("piece_color_ratio", "<f4", (4, 3))])
 FRAME_SITE = np.dtype([
     ("surface_point_m", "<f4", 3), ("normal", "<f4", 3), ("shift_m", "<f4", 3), ("depth_m", "<f4"),
     ("profile_m", "<f4", 32), ("tilt", "<f4", 3), ("state", "u1"), ("pad", "u1", 3)])
@@ -59,31 +60,31 @@ FRAME_PATCH = np.dtype([
     ("cut_triangle", "<u4", 32), ("displacement_um", "<i2", (180, 3))])
 FRAME = np.dtype([
     ("header", MESSAGE_HEADER), ("tick", "<u8"), ("time_ns", "<i8"), ("late_ticks", "<u8"), ("skipped_ticks", "<u8"),
-    ("dropped_records", "<u8"), ("tool_position_m", "<f4", 3), ("tool_orientation", "<f4", 4),
-    ("tool_velocity_mps", "<f4", 3), ("grip_ratio", "<f4"), ("force_N", "<f4", 3), ("torque_Nm", "<f4", 3),
-    ("wanted_force_N", "<f4", 3), ("worst_margin_us", "<f4"), ("median_tick_us", "<f4"), ("peak_force_N", "<f4"),
-    ("rms_force_N", "<f4"), ("given_energy_J", "<f4"), ("fault", "<u2"), ("limit", "<u2"), ("state", "u1"),
-    ("non_rt", "u1"), ("pad", "u1", 2), ("contact_losses", "<u4"), ("site", FRAME_SITE, 4), ("patch", FRAME_PATCH)])
-FILE_HEADER = np.dtype([
-    ("magic", "S8"), ("version", "<u4"), ("hello_bytes", "<u4"), ("frame_bytes", "<u4"), ("setup_crc", "<u4"),
-    ("mesh_bytes", "<u8")])
+    ("dropped_records", "<u8"), ("tool_position_m", "<f4", 3), ("tool_orientation", "<f4", 4), ("tool_velocity_mps", "<f4", 3),
+    ("grip_ratio", "<f4"), ("force_N", "<f4", 3), ("torque_Nm", "<f4", 3), ("wanted_force_N", "<f4", 3),
+    ("worst_margin_us", "<f4"), ("median_tick_us", "<f4"), ("peak_force_N", "<f4"), ("rms_force_N", "<f4"),
+    ("given_energy_J", "<f4"), ("fault", "<u2"), ("limit", "<u2"), ("state", "u1"), ("non_rt", "u1"), ("grip_force_mN", "<i2"),
+    ("contact_losses", "<u4"), ("site", FRAME_SITE, 4), ("patch", FRAME_PATCH)])
+FILE_HEADER = np.dtype([("magic", "S8"), ("version", "<u4"), ("hello_bytes", "<u4"), ("frame_bytes", "<u4"),
+                        ("setup_crc", "<u4"), ("mesh_bytes", "<u8")])
 FRAME_RECORD = np.dtype([("frame", FRAME), ("crc", "<u4"), ("pad", "<u4")])
 LOG_HEADER = np.dtype([
     ("magic", "S8"), ("header_bytes", "<u4"), ("tick_bytes", "<u4"), ("ticks", "<u8"), ("period_ns", "<i8"),
-    ("limits", "<f8", 13), ("force_share", "<f8"), ("non_rt", "u1"), ("scene_hash", "S23"), ("overrides", "S1024"),
-    ("scene_name", "S64"), ("law", "S64"), ("revision", "S64"), ("host", "S64"), ("began_utc", "S24"),
-    ("header_crc", "<u4"), ("pad", "<u4")])
-LOGGED_TICK = _placed(344, [
+    ("limits", "<f8", 14), ("force_share", "<f8"), ("non_rt", "u1"), ("scene_hash", "S23"), ("overrides", "S1024"),
+    ("scene_name", "S64"), ("law", "S64"), ("revision", "S64"), ("host", "S64"), ("began_utc", "S24"), ("header_crc", "<u4"),
+    ("pad", "<u4")])
+LOGGED_TICK = _placed(376, [
     ("tick", "<u8", None, 0), ("non_rt", "u1", None, 8), ("due_ns", "<i8", None, 16), ("margin_ns", "<i8", None, 24),
     ("phase_ns", "<i4", 8, 32), ("tool_position_m", "<f8", 3, 64), ("tool_orientation", "<f8", 4, 88),
-    ("tool_velocity_mps", "<f8", 3, 120), ("tool_angular_velocity_radps", "<f8", 3, 144),
-    ("tool_grip_ratio", "<f8", None, 168), ("sample_stamp_ns", "<i8", None, 176), ("sample_sequence", "<u8", None, 184),
-    ("sample_fresh", "u1", None, 192), ("device_fault", "<u2", None, 200), ("command_arm", "u1", None, 202),
-    ("command_stop", "u1", None, 203), ("command_reset", "u1", None, 204), ("ready", "u1", None, 205),
-    ("skipped_periods", "<u4", None, 208), ("wanted_force_N", "<f8", 3, 216), ("wanted_torque_Nm", "<f8", 3, 240),
-    ("written_force_N", "<f8", 3, 264), ("written_torque_Nm", "<f8", 3, 288), ("state", "u1", None, 312),
-    ("limit", "<u2", None, 314), ("fault", "<u2", None, 316), ("given_energy_J", "<f8", None, 320),
-    ("rms_force_N", "<f8", None, 328), ("contact_losses", "<u8", None, 336)])
+    ("tool_velocity_mps", "<f8", 3, 120), ("tool_angular_velocity_radps", "<f8", 3, 144), ("tool_grip_ratio", "<f8", None, 168),
+    ("grip_gap_m", "<f8", None, 176), ("grip_speed_mps", "<f8", None, 184), ("sample_stamp_ns", "<i8", None, 192),
+    ("sample_sequence", "<u8", None, 200), ("sample_fresh", "u1", None, 208), ("device_fault", "<u2", None, 216),
+    ("command_arm", "u1", None, 218), ("command_stop", "u1", None, 219), ("command_reset", "u1", None, 220),
+    ("command_disarm", "u1", None, 221), ("ready", "u1", None, 222), ("skipped_periods", "<u4", None, 224), ("wanted_force_N", "<f8", 3, 232),
+    ("wanted_torque_Nm", "<f8", 3, 256), ("written_force_N", "<f8", 3, 280), ("written_torque_Nm", "<f8", 3, 304),
+    ("state", "u1", None, 328), ("limit", "<u2", None, 330), ("fault", "<u2", None, 332), ("given_energy_J", "<f8", None, 336),
+    ("rms_force_N", "<f8", None, 344), ("contact_losses", "<u8", None, 352), ("wanted_grip_N", "<f8", None, 360),
+    ("written_grip_N", "<f8", None, 368)])
 LOG_RECORD = np.dtype([("tick", LOGGED_TICK), ("crc", "<u4"), ("pad", "<u4")])
 
 

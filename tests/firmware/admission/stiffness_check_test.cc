@@ -12,7 +12,7 @@
 namespace tact::firmware::admission::stiffness_check_test {
 
 hal::DeviceInfo device_with(double damping_Ns_per_m) {
-  hal::DeviceInfo device;
+  hal::DeviceInfo device{.name = {}, .grip = hal::GripKind::kNone};
   device.at_tool = model::DeviceAtTool{.damping_Ns_per_m = damping_Ns_per_m, .delay_s = 0.0005};
   device.damping_key = "device.sim.joint_damping_Nms_per_rad";
   return device;
@@ -101,7 +101,8 @@ TEST(StiffnessCheck, NamesTheLawWhereItIsTheStifferOne) {
 TEST(StiffnessCheck, RefusesADeviceThatDoesNotTellItsDamping) {
   const model::scene::Scene scene = tests::make_plate_scene();
   const auto tissue = std::move(*model::scene::make_tissue(scene));
-  const auto refused = check_renderable(scene, *tissue, {.name = "mute"});
+  const auto refused =
+      check_renderable(scene, *tissue, {.name = "mute", .grip = hal::GripKind::kNone});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().sentence,
             "device mute does not tell its damping at the tool: fill DeviceInfo::at_tool");

@@ -33,12 +33,15 @@ class BlackBoxTest : public testing::Test {
 
   std::unique_ptr<BlackBox> make() const {
     const auto tissue = std::move(*model::scene::make_tissue(scene));
-    BlackBoxRun run{.folder = folder + "/kept",
-                    .scene_name = "plate / 2",
-                    .header = {},
-                    .hello = telemetry::make_hello(
-                        scene, *tissue, {.device = {}, .limits_checksum = "", .hand_socket = ""}),
-                    .mesh_fd = *telemetry::make_mesh_file(scene)};
+    BlackBoxRun run{
+        .folder = folder + "/kept",
+        .scene_name = "plate / 2",
+        .header = {},
+        .hello = telemetry::make_hello(scene, *tissue,
+                                       {.device = {.name = {}, .grip = hal::GripKind::kNone},
+                                        .limits_checksum = "",
+                                        .hand_socket = ""}),
+        .mesh_fd = *telemetry::make_mesh_file(scene)};
     run.header.period_ns = 1'000'000;
     return std::make_unique<BlackBox>(std::move(run), 1000.0, 50.0);
   }

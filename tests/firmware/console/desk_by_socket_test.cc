@@ -95,6 +95,14 @@ TEST_F(DeskBySocket, ResetsAStopAlone) {
   EXPECT_EQ(edges, (std::vector<std::string>{"reset"}));
 }
 
+TEST_F(DeskBySocket, DisarmsAtAnyTime) {
+  EXPECT_TRUE(ask("disarm").done);
+  show(State::kReady);
+  show(State::kArmed);
+  EXPECT_EQ(ask("disarm").sentence, "puppet: no force; arm it again when it shall have one");
+  EXPECT_EQ(edges, (std::vector<std::string>{"disarm", "disarm"}));
+}
+
 TEST_F(DeskBySocket, StopsAtAnyTimeEvenInTheMomentOfTheWords) {
   const int fd = say("stop");
   show(State::kReady);

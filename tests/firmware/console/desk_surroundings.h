@@ -22,6 +22,7 @@ class DeskSurroundings : public testing::Test {
   OperatorSignals signals{[this] {
     if (requests.arm.load()) edges.emplace_back("arm");
     if (requests.reset.load()) edges.emplace_back("reset");
+    if (requests.disarm.load()) edges.emplace_back("disarm");
   }};
   OperatorView view{device, lines, false};
   telemetry::Frame frame;

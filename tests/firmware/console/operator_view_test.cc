@@ -53,9 +53,30 @@ TEST_F(View, AFaultIsToldOnceWithWhatLiesBehindIt) {
 
 TEST_F(View, FaultsOfTheLinesAreWordedByTheLines) {
   device.words = "all is well here";
-  const std::string first = told(frame(loop::State::kStopped, model::Fault::kLinesDiffer));
-  EXPECT_NE(first.find("channel B sticks"), std::string::npos) << first;
-  EXPECT_EQ(first.find("all is well here"), std::string::npos) << first;
+  for (const model::Fault fault :
+       {model::Fault::kEmergencyStop, model::Fault::kLinesDiffer, model::Fault::kLinesLost,
+        model::Fault::kDeadManReleased, model::Fault::kGripFlaps}) {
+    const std::string first = told(frame(loop::State::kStopped, fault));
+    EXPECT_NE(first.find("channel B sticks"), std::string::npos) << first;
+    EXPECT_EQ(first.find("all is well here"), std::string::npos) << first;
+  }
+}
+
+TEST_F(View, ADeviceWithoutPowerIsNotReadyAndSaysWhatItWaitsFor) {
+  device.words = "waiting for power of arm 2";
+  const telemetry::Frame ready = frame(loop::State::kReady, model::Fault::kNone);
+  EXPECT_NE(told(ready).find("tactd: waiting for power of arm 2"), std::string::npos);
+  EXPECT_EQ(told(ready), "") << "once";
+  EXPECT_EQ(view.why_not_arm(), "waiting for power of arm 2");
+  EXPECT_NE(view.status().find(": waiting for power of arm 2"), std::string::npos);
+  device.words.clear();
+  EXPECT_NE(told(ready).find("ready, force is off"), std::string::npos);
+  EXPECT_EQ(view.why_not_arm(), "");
+  device.words = "waiting for power of arm 1";  // it goes again before it is armed
+  EXPECT_NE(told(ready).find("waiting for power of arm 1"), std::string::npos);
+  EXPECT_EQ(view.why_not_arm(), "waiting for power of arm 1");
+  device.words.clear();
+  EXPECT_NE(told(ready).find("ready, force is off"), std::string::npos) << "told again";
 }
 
 TEST_F(View, AToolInsideTheOrganIsToldOnceEachTime) {

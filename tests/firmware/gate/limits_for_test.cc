@@ -16,12 +16,32 @@ model::Limits scene() {
   return limits;
 }
 hal::DeviceInfo device(double times) {
-  hal::DeviceInfo info;
+  hal::DeviceInfo info{.name = {}, .grip = hal::GripKind::kNone};
   info.max_force_N = times * 4.0;
   info.max_torque_Nm = times * 0.2;
   info.workspace_radius_m = times * 0.10;
   info.workspace_half_length_m = times * 0.08;
   return info;
+}
+
+TEST(LimitsFor, AScaleOfTheMotionLimitsWhatTheHandFeels) {
+  hal::DeviceInfo info = device(100.0);
+  info.motion_scale = 4.0;
+  const model::Limits limits = limits_for(scene(), info);
+  EXPECT_DOUBLE_EQ(limits.force_N, 0.25 * scene().force_N) << "the hand feels four times of it";
+  EXPECT_DOUBLE_EQ(limits.slew_N_per_s, 0.25 * scene().slew_N_per_s);
+  EXPECT_DOUBLE_EQ(limits.continuous_force_N, 0.25 * scene().continuous_force_N);
+  info.motion_scale = 0.5;
+  EXPECT_DOUBLE_EQ(limits_for(scene(), info).force_N, scene().force_N) << "it feels half of it";
+}
+
+TEST(LimitsFor, TheFingersBearWhatBothAllow) {
+  hal::DeviceInfo info = device(2.0);
+  EXPECT_EQ(limits_for(scene(), info).grip_force_N, 0.0) << "a device without a motor there";
+  info.grip = {hal::GripKind::kForce, 8.0};
+  EXPECT_EQ(limits_for(scene(), info).grip_force_N, scene().grip_force_N);
+  info.grip = {hal::GripKind::kForce, 1.0};
+  EXPECT_EQ(limits_for(scene(), info).grip_force_N, 1.0);
 }
 
 TEST(LimitsFor, AWeakerDeviceLimitsTheScene) {

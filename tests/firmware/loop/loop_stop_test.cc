@@ -40,6 +40,29 @@ TEST_F(LoopStop, AReleasedEmergencyStopMovesNothingWithoutAResetAndAnArmEdge) {
   EXPECT_TRUE(lines.last.healthy);
 }
 
+TEST_F(LoopStop, DisarmingTakesTheForceInTheSameTickAndNoStopComesOfIt) {
+  press();
+  EXPECT_GT(device.last.force_N.z, 0.05);
+  requests.disarm.store(true);
+  run_ticks(1);
+  EXPECT_EQ(device.last, model::Wrench{});
+  EXPECT_EQ(newest().output.state, State::kReady);
+  EXPECT_EQ(newest().output.fault, Fault::kNone);
+  EXPECT_TRUE(lines.last.healthy) << "the drives keep their power";
+  requests.arm.store(true);  // while disarm stands
+  run_ticks(3);
+  EXPECT_EQ(newest().output.state, State::kReady);
+  requests.arm.store(false);
+  requests.disarm.store(false);
+  run_ticks(2);
+  requests.arm.store(true);
+  run_ticks(1);
+  EXPECT_EQ(newest().output.state, State::kArmed);
+  EXPECT_LT(device.last.force_N.z, 0.01) << "it fades in again";
+  run_ticks(600);
+  EXPECT_GT(device.last.force_N.z, 0.05);
+}
+
 TEST_F(LoopStop, ThePermissionGoesBeforeTheForce) {
   press();
   lines.device_writes = &device.writes;

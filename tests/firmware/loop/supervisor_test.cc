@@ -51,6 +51,16 @@ TEST(Supervisor, StopsOnRequestWithoutAFault) {
   EXPECT_EQ(s.fault(), Fault::kNone);
 }
 
+TEST(Supervisor, DisarmsToReadyAndCanBeArmedAgain) {
+  Supervisor s = armed_supervisor();
+  EXPECT_EQ(s.step({.disarm = true}, {.sample_good = true}), State::kReady);
+  EXPECT_EQ(s.fault(), Fault::kNone);
+  EXPECT_EQ(s.step({.arm = true, .disarm = true}, {.sample_good = true}), State::kReady);
+  s.step(kIdle, {.sample_good = true});
+  EXPECT_EQ(s.step(kArm, {.sample_good = true}), State::kArmed);
+  EXPECT_EQ(s.step({.arm = true, .disarm = true}, {.sample_good = true}), State::kReady);
+}
+
 TEST(Supervisor, LatchesTheFirstFault) {
   Supervisor s = armed_supervisor();
   s.step(kIdle, {.sample_good = true, .ready = true, .fault = Fault::kDeviceFailed});
@@ -200,17 +210,19 @@ Supervisor supervisor_in(State state, bool faulty, const Commands& before) {
 
 TEST(Supervisor, DoesWhatItsRulesSayInEveryStateForEveryInput) {
   const std::vector<Rule> rules = load_rules();
-  ASSERT_EQ(rules.size(), 6u);
+  ASSERT_EQ(rules.size(), 7u);
   int cases = 0;
   for (const auto& [name, from] : kStates)
-    for (int bits = 0; bits < 512; ++bits) {
+    for (int bits = 0; bits < 2048; ++bits) {
       const auto bit = [bits](int i) { return (bits >> i & 1) != 0; };
       const bool faulty = bit(8);
-      const Commands before{.arm = bit(7), .reset = bit(6)};
+      const Commands before{.arm = bit(7), .reset = bit(6), .disarm = bit(10)};
       if (faulty && from != State::kStopped) continue;  // a kept fault is a stop
+      // A request to disarm leaves Armed in its own tick, and nothing arms while it stands.
+      if (before.disarm && from == State::kArmed) continue;
       Supervisor s = supervisor_in(from, faulty, before);
       ASSERT_EQ(s.state(), from);
-      const Commands commands{.arm = bit(0), .stop = bit(1), .reset = bit(2)};
+      const Commands commands{.arm = bit(0), .stop = bit(1), .reset = bit(2), .disarm = bit(9)};
       const Findings found{.sample_good = bit(3),
                            .ready = bit(4),
                            .fault = bit(5) ? Fault::kDeviceFailed : Fault::kForceLimited};
@@ -219,6 +231,8 @@ TEST(Supervisor, DoesWhatItsRulesSayInEveryStateForEveryInput) {
                                            {"arm_edge", commands.arm && !before.arm},
                                            {"stop", commands.stop},
                                            {"reset_edge", commands.reset && !before.reset},
+                                           {"disarm", commands.disarm},
+                                           {"disarm_edge", commands.disarm && !before.disarm},
                                            {"sample_good", found.sample_good},
                                            {"ready", found.ready},
                                            {"fault_found", bit(5)}});
@@ -227,7 +241,7 @@ TEST(Supervisor, DoesWhatItsRulesSayInEveryStateForEveryInput) {
       ASSERT_EQ(s.fault(), wanted.fault) << name << ", bits " << bits;
       ++cases;
     }
-  EXPECT_EQ(cases, 4 * 256 + 256);
+  EXPECT_EQ(cases, 4 * 1024 + 1024 - 512);
 }
 
 int model_constant(const std::string& name) {

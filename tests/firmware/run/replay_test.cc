@@ -174,7 +174,7 @@ TEST_F(ReplayTest, ALogOfAnotherVersionIsRefusedByItsNumber) {
   file.close();
   const auto outcome = replay(path, scene, *tissue);
   ASSERT_FALSE(outcome);
-  EXPECT_NE(outcome.error().sentence.find("version 2, this tactd reads version 8"),
+  EXPECT_NE(outcome.error().sentence.find("version 2, this tactd reads version 9"),
             std::string::npos)
       << outcome.error().sentence;
 }

@@ -7,8 +7,11 @@
 #include <limits>
 #include <numbers>
 
+#include "hal/mounting.h"
 #include "hal/sim/sim_delta_model.h"
+#include "model/units.h"
 #include "tests/support/can_bench.h"
+#include "tests/support/mountings.h"
 #include "tests/support/no_alloc.h"
 
 namespace tact::hal::can::can_delta_test {
@@ -45,6 +48,28 @@ TEST(CanDelta, TurnsBecomeThePublishedPoses) {
     EXPECT_NEAR(tool.position_m.z, pose.position_D_m.x, 1e-9);
     EXPECT_EQ(tool.orientation, model::Quat{});
     EXPECT_EQ(tool.grip_ratio, 0.0);
+  }
+}
+
+TEST(CanDelta, HoldsItsArmsAgainstGravityInSixMountings) {
+  const auto settings = absolute_settings();
+  const auto pose = published_pose();
+  const delta::DeltaKinematics kinematics(delta_geometry(settings.delta));
+  for (const auto& one : tests::kMountings) {
+    CanDelta delta(settings.delta, settings.can,
+                   mounting_of(tests::settings_of(one)).gravity_B_mps2());
+    Tool tool;
+    ASSERT_FALSE(delta.measure(turns_for(pose.theta_rad, settings), 1'000'000, tool));
+    const delta::Joints motors_Nm = delta.motor_torques_Nm({});
+    // Down in the axes of D, by hand: x of the base is z of D, z is x, y is -y.
+    const Vec3 down_D{one.down_B.z, -one.down_B.y, one.down_B.x};
+    const delta::Joints held_Nm = gravity_torques_Nm(
+        kinematics.geometry(), delta_masses(settings.delta),
+        kinematics.pose(pose.position_D_m, pose.theta_rad), model::kGravity_mps2 * down_D);
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_NEAR(motors_Nm[i], settings.can.direction[i] * held_Nm[i] / settings.delta.gear_ratio,
+                  1e-9)
+          << one.words << ", arm " << i;
   }
 }
 

@@ -67,9 +67,10 @@ TEST(Cia402Faults, AnEmergencyIsAFaultAndItsEndIsNone) {
   bench.expect_latched(Fault::kDriveFault);
 }
 
-TEST(Cia402Faults, LeavingOperationEnabledIsAFault) {
+TEST(Cia402Faults, LeavingOperationEnabledAfterAForceIsAFault) {
   Bench bench;
   bench.run();
+  EXPECT_EQ(bench.tick({0.0, 0.0, 1.0}), Fault::kNone);
   bench.drives.axis[0].status = 0x23;
   bench.drives.axis[0].obeys = false;
   EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 3), 0);
@@ -111,14 +112,34 @@ TEST(Cia402Faults, ADriveThatRestartsIsNamed) {
   EXPECT_TRUE(bench.says("arm 1 (node 1 on can0): the drive restarted")) << bench.device->trouble();
 }
 
-TEST(Cia402Faults, ADriveThatNeverEnablesIsNamed) {
+TEST(Cia402Faults, ADriveWithoutPowerAtTheStartIsWaitedForAndNamed) {
   Bench bench;
   ASSERT_EQ(bench.open(), "");
   bench.drives.axis[1].obeys = false;
-  const int ticks = bench.ticks_until(Fault::kDriveFault, 4000);
-  EXPECT_GT(ticks, 2900);
-  EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): the drive does not enable operation"))
+  for (int i = 0; i < 20'000; ++i) {
+    ASSERT_EQ(bench.tick(), Fault::kNone) << i << ": " << bench.device->trouble();
+    ASSERT_FALSE(bench.device->ready());
+  }
+  EXPECT_TRUE(
+      bench.says("waiting for power of arm 2 (node 2 on can0): the drive is "
+                 "switch_on_disabled (statusword 0x0040)"))
       << bench.device->trouble();
+  bench.drives.axis[1].obeys = true;
+  EXPECT_GT(bench.ticks_until_ready(), 0);
+  EXPECT_EQ(bench.device->trouble(), "");
+}
+
+TEST(Cia402Faults, PowerThatGoesBeforeAnyForceIsWaitedForAgain) {
+  Bench bench;
+  bench.run();
+  bench.drives.axis[0].status = 0x40;
+  bench.drives.axis[0].obeys = false;
+  for (int i = 0; i < 5000; ++i) ASSERT_EQ(bench.tick(), Fault::kNone) << i;
+  EXPECT_FALSE(bench.device->ready());
+  EXPECT_TRUE(bench.says("waiting for power of arm 1 (node 1 on can0): the drive is "))
+      << bench.device->trouble();
+  bench.drives.axis[0].obeys = true;
+  EXPECT_GT(bench.ticks_until_ready(), 0);
 }
 
 TEST(Cia402Faults, TheBusIsJudgedAsWithEveryDrive) {

@@ -69,8 +69,10 @@ TEST(DeltaDynamics, DrivesHoldTheDeviceAndPushAsFarAsAJointMay) {
     const Joints held_Nm =
         gravity_torques_Nm(kGeometry, kMasses, pose, direction_D(kGravity_W_mps2));
     const Joints pushed_Nm = joint_torques_Nm(pose, force_N);
-    const Joints free_Nm = drive_torques_Nm(kGeometry, kMasses, pose, force_N, 1e3);
-    const Joints tight_Nm = drive_torques_Nm(kGeometry, kMasses, pose, 100.0 * force_N, 7.4);
+    const Joints free_Nm =
+        drive_torques_Nm(kGeometry, kMasses, pose, direction_D(kGravity_W_mps2), force_N, 1e3);
+    const Joints tight_Nm = drive_torques_Nm(kGeometry, kMasses, pose, direction_D(kGravity_W_mps2),
+                                             100.0 * force_N, 7.4);
     double most_Nm = 0.0;
     for (std::size_t i = 0; i < 3; ++i) {
       EXPECT_EQ(free_Nm[i], held_Nm[i] + pushed_Nm[i]);

@@ -2,6 +2,8 @@
 // A delta on CiA 402 drives as several makers have them, the virtual bench's emulators.
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "hal/cia402/cia402_cst.h"
 #include "hal/cia402/cia402_state.h"
 #include "hal/cia402/heartbeat_guard.h"
@@ -231,6 +233,54 @@ TEST(Cia402Emulated, AWatchThatWasLeftOpenIsSwitchedOffBeforeItIsAskedForAgain) 
   EXPECT_EQ(asks(true), 20);
   answer(kDownloadDone);
   EXPECT_TRUE(guard.on());
+}
+
+/// While its STO is low, the controlword has no effect.
+struct StoDrive final : rig::Drive {
+  StoDrive(int axis, int at, const std::pair<rig::Cia402Settings, const bool*>& of,
+           rig::CanBus& bus, const rig::Motor& motor, const rig::FaultPlan& faults)
+      : drive(axis, at, of.first, bus, motor, faults), node(at), low(of.second) {}
+  bool receive(const canfd_frame& frame, std::int64_t now_ns) override {
+    canfd_frame heard = frame;
+    const bool is_command = (heard.can_id & CAN_SFF_MASK) == 0x200u + static_cast<unsigned>(node);
+    if (*low && is_command) heard.data[0] = heard.data[1] = 0;
+    return drive.receive(heard, now_ns);
+  }
+  void tick(std::int64_t now_ns) override { drive.tick(now_ns); }
+  void fail(std::int64_t now_ns) override { drive.fail(now_ns); }
+  bool warn(std::int64_t now_ns) override { return drive.warn(now_ns); }
+  bool is_enabled() const override { return drive.is_enabled(); }
+  double torque_Nm() const override { return drive.torque_Nm(); }
+  bool tripped() override { return drive.tripped(); }
+
+  rig::Cia402Drive drive;
+  int node;
+  const bool* low;
+};
+
+TEST(Cia402Emulated, ThreeDrivesWithTheirStoLowAtBootAreWaitedForAndThenTakeForce) {
+  bool low = true;
+  tests::CanBench<Cia402Drives> bench(tests::jig_settings(published_pose()));
+  bench.drives.install<StoDrive>(
+      std::pair<rig::Cia402Settings, const bool*>{{.rated_torque_Nm = kRated_Nm}, &low});
+  for (int i = 0; i < 50; ++i) bench.drives.millisecond();
+  ASSERT_EQ(bench.open(&cia402::start_cia402_delta), "");
+  for (int i = 0; i < 10'000; ++i) {
+    ASSERT_EQ(bench.tick(), Fault::kNone) << i << ": " << bench.device->trouble();
+    ASSERT_FALSE(bench.device->ready()) << i;
+    for (const auto& drive : bench.drives.drive) ASSERT_EQ(drive->torque_Nm(), 0.0);
+  }
+  EXPECT_NE(bench.device->trouble().find("waiting for power of arm "), std::string::npos)
+      << bench.device->trouble();
+  low = false;
+  EXPECT_GT(bench.ticks_until_ready(1000), 0) << bench.device->trouble();
+  EXPECT_EQ(bench.device->trouble(), "");
+  for (int i = 0; i < 100; ++i) ASSERT_EQ(bench.tick({0.0, 0.0, 1.0}), Fault::kNone);
+  low = true;  // after a force it is a fault, as ever
+  int ticks = 0;
+  while (ticks < 200 && bench.tick({0.0, 0.0, 1.0}) == Fault::kNone) ++ticks;
+  EXPECT_LT(ticks, 20);
+  EXPECT_EQ(bench.read_fault, Fault::kDriveFault);
 }
 
 }  // namespace tact::hal::emulated::cia402_emulated_test

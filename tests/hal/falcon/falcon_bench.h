@@ -66,6 +66,18 @@ inline falcon::FalconReport homed_at(const Vec3& p_W) {
   return report;
 }
 
+/// What the hand feels of these words: K^T tau, tau = -(word / gain).
+inline Vec3 force_of(const falcon::FalconWords& words, const model::FalconSettings& s,
+                     const Vec3& p_W) {
+  const falcon::FalconKinematics kinematics;
+  const model::Mat3 k =
+      kinematics.joint_rate_matrix(kinematics.inverse(falcon::falcon_point_D(p_W)));
+  const Vec3 torque_Nm{-words[0] / s.gain_words_per_Nm[0], -words[1] / s.gain_words_per_Nm[1],
+                       -words[2] / s.gain_words_per_Nm[2]};
+  const Vec3 force_D = model::transpose(k) * torque_Nm;
+  return {force_D.z, force_D.x, force_D.y};
+}
+
 struct FalconBench {
   explicit FalconBench(const model::FalconSettings& settings = falcon_settings())
       : owned(std::make_unique<ScriptedPipe>()),

@@ -86,17 +86,6 @@ TEST(FalconDevice, VelocityIsThatOfTheGrip) {
   EXPECT_NEAR(bench.sample.tool.velocity_mps.x, 0.0, 0.01);
 }
 
-/// What the hand feels of these words: K^T tau, tau = -(word / gain).
-Vec3 force_of(const falcon::FalconWords& words, const model::FalconSettings& s, const Vec3& p_W) {
-  const falcon::FalconKinematics kinematics;
-  const model::Mat3 k =
-      kinematics.joint_rate_matrix(kinematics.inverse(falcon::falcon_point_D(p_W)));
-  const Vec3 torque_Nm{-words[0] / s.gain_words_per_Nm[0], -words[1] / s.gain_words_per_Nm[1],
-                       -words[2] / s.gain_words_per_Nm[2]};
-  const Vec3 force_D = model::transpose(k) * torque_Nm;
-  return {force_D.z, force_D.x, force_D.y};
-}
-
 TEST(FalconDevice, MakesTheForceItIsAskedForThroughTheGainOfEachAxis) {
   FalconBench bench;
   for (const Vec3& p_W : {Vec3{}, Vec3{0.03, 0.02, -0.01}, Vec3{-0.03, -0.02, 0.02}}) {

@@ -57,7 +57,9 @@ int LIBUSB_CALL libusb_get_port_numbers(libusb_device* d, std::uint8_t* ports, i
   return static_cast<int>(from.size());
 }
 int LIBUSB_CALL libusb_open(libusb_device*, libusb_device_handle** handle) {
-  if (fake_usb->open_error != 0) return fake_usb->open_error;
+  ++fake_usb->opens;
+  const bool refuses = fake_usb->refused_opens == 0 || fake_usb->opens <= fake_usb->refused_opens;
+  if (fake_usb->open_error != 0 && refuses) return fake_usb->open_error;
   ++fake_usb->handles;
   *handle = reinterpret_cast<libusb_device_handle*>(fake_usb);
   return 0;

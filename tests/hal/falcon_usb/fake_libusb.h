@@ -27,6 +27,8 @@ struct FakePlug {
 struct FakeUsb {
   std::vector<FakePlug> plugs{FakePlug{}};
   FalconDevice falcon{.runs = true};
+  int refused_opens = 0;  // so many end with open_error; 0: all, while there is one
+  int opens = 0;
   int open_error = 0, claim_error = 0, driver_active = 0, control_error = 0, bulk_error = 0;
   std::vector<hal::falcon::FtdiRequest> controls;
   bool another_has_it = false;

@@ -68,6 +68,20 @@ TEST_F(FalconUsbTest, WithoutPermissionTheRuleAndItsCureAreNamed) {
   expect_refusal({kFalconRule, kRuleCure, "/dev/bus/usb/001/004"});
 }
 
+TEST_F(FalconUsbTest, ARefusalThatUdevEndsIsNotTold) {
+  usb.open_error = LIBUSB_ERROR_ACCESS;
+  usb.refused_opens = 5;
+  const auto opened = FalconUsb::open("");
+  ASSERT_TRUE(opened) << opened.error().sentence;
+  EXPECT_EQ(usb.opens, 6);
+}
+
+TEST_F(FalconUsbTest, AnErrorThatIsNoRefusalIsToldAtOnce) {
+  usb.open_error = LIBUSB_ERROR_NO_DEVICE;
+  expect_refusal({"cannot be opened"});
+  EXPECT_EQ(usb.opens, 1);
+}
+
 TEST_F(FalconUsbTest, AnotherProgramIsToldFromAKernelDriver) {
   usb.claim_error = LIBUSB_ERROR_BUSY;
   expect_refusal({"another program", "fuser /dev/bus/usb/001/004"});

@@ -44,6 +44,36 @@ TEST_F(Session, OpensADelta3) {
   EXPECT_FALSE(stub.is_open());
 }
 
+TEST_F(Session, BalancesItsWeightOnlyWhereItStandsAsDelivered) {
+  for (const bool hangs : {false, true}) {
+    model::DeviceSettings device;
+    if (hangs) device.base_orientation_deg = {0.0, 90.0, 0.0};
+    const auto session = open_sdk_session(settings, true, mounting_of(device));
+    ASSERT_TRUE(session) << session.error().sentence;
+    int watchdog = 0, time_guard = 0, gravity = 7;
+    stub.settings(&watchdog, &time_guard, &gravity);
+    EXPECT_EQ(gravity, hangs ? 0 : 1) << "along a wrong axis it would push";
+    EXPECT_EQ(session->balances_weight, !hangs);
+    close_sdk_session(*session);
+  }
+}
+
+TEST_F(Session, GripsByWhatTheLibraryHas) {
+  const auto session = open_sdk_session(settings, true);
+  ASSERT_TRUE(session);
+  SdkSession s = *session;
+  EXPECT_EQ(grip_of(s), GripKind::kButton);
+  s.sdk.button_mask = nullptr;
+  EXPECT_EQ(grip_of(s), GripKind::kNone);
+  s.type.grip = GripKind::kForce;
+  EXPECT_EQ(grip_of(s), GripKind::kForce);
+  s.sdk.gripper_gap = nullptr;
+  EXPECT_EQ(grip_of(s), GripKind::kAngle) << "it tells, and nobody could judge its force";
+  s.sdk.gripper_angle = nullptr;
+  EXPECT_EQ(grip_of(s), GripKind::kNone);
+  close_sdk_session(*session);
+}
+
 TEST_F(Session, IsConfiguredOnceAndWarmWithoutForce) {
   settings.watchdog_s = 0.004;
   const auto session = open_sdk_session(settings, true);
@@ -106,14 +136,22 @@ TEST_F(Session, OneOfSeveralDevicesMustBeNamed) {
   EXPECT_TRUE(has(refusal(), "device.force_dimension.id is 2")) << refusal();
 }
 
-TEST_F(Session, ADelta6IsNamedWithTheReason) {
-  stub.set_type(64);
-  EXPECT_TRUE(has(refusal(), "delta.6 (type 64): current SDKs list it among")) << refusal();
-  EXPECT_TRUE(has(refusal(), "use a delta.3, omega, sigma or lambda")) << refusal();
+TEST_F(Session, ADelta6IsDrivenWhereTheLibraryOpensItWithThePublishedLimits) {
+  for (const int type : {61, 62, 64}) {
+    stub.set_type(type);
+    const auto session = open_sdk_session(settings, true);
+    ASSERT_TRUE(session) << session.error().sentence;
+    EXPECT_EQ(session->type.max_force_N, 20.0);
+    EXPECT_EQ(session->type.max_torque_Nm, 0.2);
+    EXPECT_EQ(session->type.radius_m, 0.18);
+    EXPECT_EQ(session->type.half_length_m, 0.15);
+    EXPECT_TRUE(session->type.wrist && session->type.old);
+    close_sdk_session(*session);
+  }
 }
 
 TEST_F(Session, WhatHasNoKnownLimitsIsRefused) {
-  for (const int type : {31, 32, 61, 62, 60, 81, 82, 91, 131, 132, 7777}) {
+  for (const int type : {60, 81, 82, 91, 131, 132, 7777}) {
     stub.set_type(type);
     EXPECT_TRUE(has(refusal(), std::to_string(type))) << type;
   }
@@ -124,7 +162,8 @@ TEST_F(Session, WhatHasNoKnownLimitsIsRefused) {
 }
 
 TEST_F(Session, EveryTypeOfTheMakerOpensWithForceAndRoom) {
-  for (const int type : {63, 33, 34, 35, 36, 37, 206, 104, 105, 106, 107, 203, 108, 109}) {
+  for (const int type :
+       {31, 32, 61, 62, 63, 64, 33, 34, 35, 36, 37, 206, 104, 105, 106, 107, 203, 108, 109}) {
     const auto known = force_dimension_type(type);
     ASSERT_TRUE(known) << type;
     EXPECT_GE(known->max_force_N, 12.0);

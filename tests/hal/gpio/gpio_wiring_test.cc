@@ -80,7 +80,7 @@ LineRequest Chip::request(LineUse /*use*/, std::span<const int> offsets, const c
 namespace {
 
 constexpr int kEstopA = 16, kEstopB = 17, kDeadMan = 18, kEnable = 0, kHeartbeat = 1, kLed = 2,
-              kScope = 3;
+              kScope = 3, kGrip = 19;
 
 class GpioWiring : public testing::Test {
  protected:
@@ -89,7 +89,7 @@ class GpioWiring : public testing::Test {
     settings_.chip = "board";
     settings_.estop_a = kEstopA, settings_.estop_b = kEstopB, settings_.dead_man = kDeadMan;
     settings_.enable = kEnable, settings_.heartbeat = kHeartbeat;
-    settings_.led = kLed, settings_.scope = kScope;
+    settings_.led = kLed, settings_.scope = kScope, settings_.grip = kGrip;
     for (const int input : {kEstopA, kEstopB, kDeadMan}) set(input, 1);
   }
   static void set(int offset, int level) {
@@ -109,13 +109,14 @@ class GpioWiring : public testing::Test {
 };
 
 TEST_F(GpioWiring, ALineThatTheChipDoesNotGiveIsAnErrorAndNeverALineThatIsNotWired) {
-  const std::array<std::pair<int, const char*>, 7> lines{{{kEstopA, "estop_a"},
+  const std::array<std::pair<int, const char*>, 8> lines{{{kEstopA, "estop_a"},
                                                           {kEstopB, "estop_b"},
                                                           {kDeadMan, "dead_man"},
                                                           {kEnable, "enable"},
                                                           {kHeartbeat, "heartbeat"},
                                                           {kLed, "led"},
-                                                          {kScope, "scope"}}};
+                                                          {kScope, "scope"},
+                                                          {kGrip, "grip"}}};
   for (const auto& [offset, key] : lines) {
     played().not_given = {offset};
     const auto opened = open();
@@ -144,12 +145,35 @@ TEST_F(GpioWiring, EachInputStopsTheForceByItself) {
   }
 }
 
+TEST_F(GpioWiring, TheGripLineClosesTheJawsAtTheLevelThatTheSceneSays) {
+  for (const bool closes_low : {false, true}) {
+    settings_.grip_closes_low = closes_low;
+    const auto opened = open();
+    ASSERT_TRUE(opened) << opened.error().sentence;
+    std::int64_t now_ns = 0;
+    const auto after_20ms = [&](int level) {
+      set(kGrip, level);
+      for (int i = 0; i < 20; ++i, now_ns += 1'000'000)
+        EXPECT_EQ((*opened)->read(now_ns), model::Fault::kNone);
+      return (*opened)->grip();
+    };
+    EXPECT_EQ(after_20ms(closes_low ? 1 : 0), false);
+    EXPECT_EQ(after_20ms(closes_low ? 0 : 1), true);
+    EXPECT_EQ(after_20ms(closes_low ? 1 : 0), false);
+    (*opened)->stop();  // the chip does not answer: open, whichever level that is
+    for (int i = 0; i < 20; ++i, now_ns += 1'000'000)
+      EXPECT_EQ((*opened)->read(now_ns), model::Fault::kLinesLost);
+    EXPECT_EQ((*opened)->grip(), false);
+  }
+}
+
 TEST_F(GpioWiring, WhatIsNotWiredIsLeftAlone) {
-  settings_.estop_a = settings_.estop_b = settings_.dead_man = -1;
-  played().not_given = {kEstopA, kEstopB, kDeadMan};
+  settings_.estop_a = settings_.estop_b = settings_.dead_man = settings_.grip = -1;
+  played().not_given = {kEstopA, kEstopB, kDeadMan, kGrip};
   const auto opened = open();
   ASSERT_TRUE(opened) << opened.error().sentence;
   EXPECT_EQ((*opened)->read(1'000'000), model::Fault::kNone);
+  EXPECT_FALSE((*opened)->grip());
 }
 
 TEST_F(GpioWiring, ALineInUseIsToldWithItsUserAndTheOthersAreFreeAgain) {
@@ -170,7 +194,7 @@ TEST_F(GpioWiring, OutputsAreLowAndAllLinesFreeAfterStop) {
   EXPECT_EQ((*opened)->write({.healthy = true, .armed = true}), model::Fault::kNone);
   for (const int output : {kHeartbeat, kLed, kScope})
     EXPECT_EQ(played().level.at(static_cast<std::size_t>(output)), 1) << "line " << output;
-  EXPECT_EQ(played().requested.size(), 7u);
+  EXPECT_EQ(played().requested.size(), 8u);
   (*opened)->stop();
   for (const int output : {kEnable, kHeartbeat, kLed, kScope})
     EXPECT_EQ(played().level.at(static_cast<std::size_t>(output)), 0) << "line " << output;

@@ -7,10 +7,9 @@ namespace tact::hal::maker_library::library_worker_test {
 
 using namespace std::chrono_literals;
 using model::Fault;
-using model::Wrench;
 
 constexpr std::int64_t kMs = 1'000'000;
-constexpr Wrench kPush{.force_N = {0, 0, 2}, .torque_Nm = {}};
+constexpr LibraryForce kPush{.wrench = {.force_N = {0, 0, 2}, .torque_Nm = {}}, .grip_N = 1.0};
 
 /// A library that does all at once, a cycle each millisecond, in the test's own time.
 class Worker final : public LibraryWorker {
@@ -25,14 +24,16 @@ class Worker final : public LibraryWorker {
 
   bool on = false, switches = true, closed = false;
   std::int64_t now_ns = 1000 * kMs;
+  double grip_N = 0.0;  // of the last cycle
 
   void want(bool powered) { commands().write({kPush, now_ns, powered}); }
   /// The force up of the next cycle; -1 when the forces do not switch.
   double cycle_N() {
     now_ns += kMs;
-    const auto wrench = next_wrench(now_ns);
+    const auto force = next_force(now_ns);
     publish({.position_m = {}, .orientation = {}, .stamp_ns = now_ns});
-    return wrench ? wrench->force_N.z : -1.0;
+    if (force) grip_N = force->grip_N;
+    return force ? force->wrench.force_N.z : -1.0;
   }
   bool follows() {
     LibraryPose pose;
@@ -62,7 +63,9 @@ TEST(LibraryWorker, TheForcesComeThroughTwoMillisecondsOfZero) {
   EXPECT_TRUE(worker.on);
   EXPECT_FALSE(worker.follows());
   EXPECT_EQ(worker.cycle_N(), 0.0);
+  EXPECT_EQ(worker.grip_N, 0.0);
   EXPECT_EQ(worker.cycle_N(), 2.0);
+  EXPECT_EQ(worker.grip_N, 1.0) << "the fingers with the hand";
   EXPECT_TRUE(worker.follows());
 }
 
@@ -71,6 +74,7 @@ TEST(LibraryWorker, WithoutPowerTheForcesGoOffAndComeBackThroughZero) {
   worker.arm();
   worker.want(false);
   EXPECT_EQ(worker.cycle_N(), 0.0);
+  EXPECT_EQ(worker.grip_N, 0.0);
   EXPECT_FALSE(worker.on);
   worker.want(true);
   EXPECT_EQ(worker.cycle_N(), 0.0);

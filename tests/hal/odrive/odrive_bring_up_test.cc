@@ -119,6 +119,31 @@ TEST(OdriveBringUp, ADriveThatTellsItsPositionTooSeldomIsNamed) {
   mute.expect_refused("sends its position 0 times a second");
 }
 
+TEST(OdriveBringUp, AHeartbeatSlowerThanItsWatchIsNamedWithTheKeyToSet) {
+  for (const int slow_ms : {340, 400, 500, 1000, 2000}) {
+    for (const bool v06 : {true, false}) {
+      Bench bench;
+      for (auto& one : bench.drives.axis) one.v06 = v06;
+      bench.drives.axis[1].heartbeat_every_ms = slow_ms;
+      const std::string said = bench.open();
+      EXPECT_TRUE(said.starts_with("arm 2 (node 2 on can0) sends its heartbeat every ")) << said;
+      EXPECT_NE(said.find(v06 ? "set axis.config.can.heartbeat_msg_rate_ms = 100"
+                              : "set axis.config.can.heartbeat_rate_ms = 100"),
+                std::string::npos)
+          << said;
+      EXPECT_EQ(bench.device, nullptr);
+    }
+  }
+}
+
+TEST(OdriveBringUp, AHeartbeatThatItsWatchBearsIsTaken) {
+  for (const int ms : {10, 100, 200, 290}) {
+    Bench bench;
+    for (auto& one : bench.drives.axis) one.heartbeat_every_ms = ms;
+    EXPECT_EQ(bench.open(), "") << ms;
+  }
+}
+
 TEST(OdriveBringUp, ADriveThatSomebodyElseHoldsIsNamed) {
   Bench bench;
   bench.drives.axis[1].state = 3;

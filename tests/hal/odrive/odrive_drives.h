@@ -20,8 +20,9 @@ struct PlayedOdrive {
   bool says_heartbeat = true;
   bool obeys = true;         // goes where Set_Axis_State says
   bool stuck_error = false;  // Clear_Errors does not help
+  bool no_supply = false;    // of its motor
   bool v06 = true;
-  int position_every_ms = 1;
+  int position_every_ms = 1, heartbeat_every_ms = 100;
   std::uint32_t error = 0;
   std::uint32_t state = 1;
   std::uint8_t parts = 0;               // byte 6 of the heartbeat of 0.5: the encoder's error
@@ -47,7 +48,8 @@ class PlayedOdrives {
       if (!one.powered) continue;
       one.turns += 1e-3 * one.turns_per_s;
       if (one.state == 6 && ++one.searched_ms > one.index_ms) one.state = 1, one.turns = 0.1;
-      if (one.says_heartbeat && (time_ms + 7 * one.node) % 100 == 0) say_heartbeat(one);
+      if (one.says_heartbeat && (time_ms + 7 * one.node) % one.heartbeat_every_ms == 0)
+        say_heartbeat(one);
       if (one.says_position && time_ms % one.position_every_ms == 0) say_position(one);
     }
   }
@@ -95,6 +97,7 @@ class PlayedOdrives {
     if (command == kClearErrors && !one.stuck_error) one.error = 0;
     if (command == kEstop) one.error |= 0x2000000, one.state = 1;
     if (command == kSetAxisState && one.obeys) one.state = hal::can::get_u32(frame.data, 0);
+    if (one.state == 8 && one.no_supply) one.error |= one.v06 ? 0x200u : 0x2u, one.state = 1;
     if (command == kSetControllerMode) {
       one.control = hal::can::get_u32(frame.data, 0);
       one.input = hal::can::get_u32(frame.data, 4);

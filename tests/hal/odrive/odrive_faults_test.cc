@@ -257,4 +257,31 @@ TEST(OdriveFaults, TheFirstFaultIsTheOneThatIsTold) {
   EXPECT_TRUE(bench.says("DC bus voltage too low"));
 }
 
+TEST(OdriveFaults, AMotorSupplyThatIsOffAtTheStartIsWaitedFor) {
+  for (const bool v06 : {true, false}) {
+    Bench bench(v06);
+    for (auto& one : bench.drives.axis) one.no_supply = true, one.turns = 0.1;
+    ASSERT_EQ(bench.open(&start_odrive_delta), "");
+    for (int i = 0; i < 8000; ++i) {
+      ASSERT_EQ(bench.tick(), Fault::kNone) << i << ": " << bench.device->trouble();
+      ASSERT_FALSE(bench.device->ready());
+    }
+    EXPECT_NE(bench.device->trouble().find("waiting for power of arm "), std::string::npos);
+    EXPECT_NE(bench.device->trouble().find("motor supply is too low"), std::string::npos);
+    for (auto& one : bench.drives.axis) one.no_supply = false;
+    EXPECT_GT(bench.ticks_until_ready(2000), 0) << bench.device->trouble();
+    EXPECT_EQ(bench.device->trouble(), "");
+  }
+}
+
+TEST(OdriveFaults, AMotorSupplyThatGoesAfterAForceIsAFault) {
+  Bench bench;
+  bench.run();
+  bench.drives.axis[1].error = 0x200;
+  bench.drives.axis[1].state = 1;
+  Fault fault = Fault::kNone;
+  for (int i = 0; i < 200 && fault == Fault::kNone; ++i) fault = bench.tick({0.0, 0.0, 1.0});
+  EXPECT_EQ(fault, Fault::kDriveFault);
+}
+
 }  // namespace tact::hal::odrive::odrive_faults_test

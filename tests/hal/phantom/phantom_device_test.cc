@@ -206,6 +206,18 @@ TEST_F(Phantom, VelocityFollowsTheHandle) {
   expect_velocity_of_the_led_handle();
 }
 
+TEST_F(Phantom, ItsFirstButtonClosesTheJaws) {
+  open();
+  EXPECT_EQ(device->info().grip.kind, GripKind::kButton);
+  stub.set_number(kHdCurrentButtons, 2);  // the second one
+  ASSERT_TRUE(ready());
+  EXPECT_EQ(sample.tool.grip_ratio, 0.0);
+  stub.set_number(kHdCurrentButtons, 3);
+  EXPECT_TRUE(tick_until([&] { return sample.tool.grip_ratio == 1.0; }));
+  stub.set_number(kHdCurrentButtons, 0);
+  EXPECT_TRUE(tick_until([&] { return sample.tool.grip_ratio == 0.0; }));
+}
+
 TEST_F(Phantom, InfoIsWhatTheLibraryTells) {
   open();
   const DeviceInfo info = device->info();

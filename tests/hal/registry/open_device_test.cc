@@ -21,7 +21,7 @@ model::scene::Scene scene(const char* kind) {
 
 class RealDevice final : public Device {
  public:
-  DeviceInfo info() const override { return {.name = "a real one"}; }
+  DeviceInfo info() const override { return {.name = "a real one", .grip = GripKind::kNone}; }
   Fault read(Sample&, std::int64_t) RT_SAFE override { return Fault::kNone; }
   Fault write(const Wrench&) RT_SAFE override { return Fault::kNone; }
   void stop() override {
@@ -35,6 +35,23 @@ TEST(OpenDevice, OpensTheSimulatedDelta) {
   ASSERT_TRUE(device) << device.error().sentence;
   EXPECT_EQ((*device)->info().name, "simulated delta 360 x 300 mm");
   EXPECT_TRUE(is_simulated(**device));
+}
+
+TEST(OpenDevice, ABaseThatHangsIsTurnedBetweenLoopAndDevice) {
+  model::scene::Scene hanging = scene("sim-delta");
+  hanging.device.base_orientation_deg = {0.0, 90.0, 0.0};
+  hanging.hand.path = {{.position_m = {0.0, 0.0, 0.05}}};
+  const auto device = open_device(hanging);
+  ASSERT_TRUE(device) << device.error().sentence;
+  EXPECT_EQ((*device)->info().name, "simulated delta 360 x 300 mm");
+  EXPECT_LT((*device)->info().workspace_radius_m, 0.15);
+  EXPECT_TRUE(is_simulated(**device)) << "its hand can be moved";
+  Sample sample;
+  for (int i = 0; i < 3; ++i) (*device)->between_ticks(1e-3);
+  EXPECT_EQ((*device)->read(sample, 3'000'000), Fault::kNone);
+  EXPECT_NEAR(sample.tool.position_m.z, 0.05, 1e-3);
+  EXPECT_TRUE(start_hand_socket(
+      **device, testing::TempDir() + "tact-hang-" + std::to_string(getpid()) + ".sock"));
 }
 
 TEST(OpenDevice, IsStoppedWhateverEndsItsHolder) {

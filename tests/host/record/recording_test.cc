@@ -200,7 +200,7 @@ TEST(RecordingCsv, HasOneNameForEveryColumn) {
   std::string row;
   append_csv_row(row, test::make_frame(1.0f, firmware::telemetry::SiteState::kHeld), hello);
   EXPECT_EQ(columns(row), columns(csv_header(hello)));
-  EXPECT_EQ(columns(row), 38 + 2 * (11 + 11 + 3));
+  EXPECT_EQ(columns(row), 39 + 2 * (11 + 11 + 3));
   EXPECT_EQ(std::count(row.begin(), row.end(), '\n'), 1);
 }
 
@@ -211,7 +211,7 @@ TEST(RecordingCsv, TellsASphereInsideAndLossesOfContact) {
   append_csv_row(row, frame, test::make_hello(3, 1, 3, 1));
   EXPECT_NE(row.find(",inside,"), std::string::npos) << row;
   EXPECT_NE(row.find(",21,0,"), std::string::npos) << row;
-  EXPECT_NE(csv_header({}).find(",given_energy_J,contact_losses,cut_triangles,"),
+  EXPECT_NE(csv_header({}).find(",given_energy_J,grip_force_N,contact_losses,cut_triangles,"),
             std::string::npos);
 }
 

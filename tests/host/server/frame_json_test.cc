@@ -102,6 +102,9 @@ TEST(SceneJson, SaysWhatTheHelloSays) {
   EXPECT_EQ(json["spheres"].size(), 2u);
   EXPECT_EQ(json["simulated"], true);
   EXPECT_EQ(json["non_rt"], false);
+  EXPECT_EQ(json["cannot_grip"], false);
+  hello.cannot_grip = 1;
+  EXPECT_EQ(nlohmann::json::parse(scene_json(hello))["cannot_grip"], true);
 }
 
 TEST(SceneJson, SaysWhatOrganAndToolLookLike) {

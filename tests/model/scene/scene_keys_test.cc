@@ -105,11 +105,12 @@ TEST(SceneReference, SaysOfEveryKeyWhatIsAllowedAndWhatItMeans) {
     EXPECT_FALSE(row.meaning.empty()) << row.section << "." << row.key;
     if (row.allowed.find(" .. ") == std::string::npos || row.key.empty()) continue;
     // A number without a unit is a ratio, a count, or one of these.
-    const bool named =
-        row.key.ends_with("_ratio") || row.allowed.ends_with("whole") || row.key == "growth" ||
-        row.key == "inward" || row.key.starts_with("counts_per_") || row.key == "sphere" ||
-        row.key == "node" || row.key == "exponent" || row.key == "direction" || row.key == "id" ||
-        row.section == "device.lines" || row.key == "reference_site" || row.key == "relaxation";
+    const bool named = row.key.ends_with("_ratio") || row.allowed.ends_with("whole") ||
+                       row.key == "growth" || row.key == "inward" ||
+                       row.key.starts_with("counts_per_") || row.key == "sphere" ||
+                       row.key == "node" || row.key == "motion_scale" || row.key == "exponent" ||
+                       row.key == "direction" || row.key == "id" || row.section == "device.lines" ||
+                       row.key == "reference_site" || row.key == "relaxation";
     EXPECT_EQ(reader::unit_of_key(row.key).empty(), named) << row.section << "." << row.key;
   }
 }
@@ -244,6 +245,21 @@ class UpAndDown {
   std::optional<contact::Contact> contact_;
   double depth_m_ = -0.01;
 };
+
+TEST_F(Liver, AHandleMovesTheToolsOriginAndNothingOfTheToolInTheRoom) {
+  const Vec3 handle_m{0.0, 0.01, 0.093};
+  const auto held = load_scene(kLiver, {"tool.handle_m=[0.0, 0.01, 0.093]"});
+  ASSERT_TRUE(held) << held.error().sentence;
+  ASSERT_EQ(held->hand.path.size(), scene_->hand.path.size());
+  for (std::size_t i = 0; i < scene_->hand.path.size(); ++i)
+    EXPECT_LT(norm(held->hand.path[i].position_m - scene_->hand.path[i].position_m - handle_m),
+              1e-12);
+  for (std::size_t i = 0; i < scene_->tool.spheres.size(); ++i)
+    EXPECT_LT(norm(held->tool.spheres[i].offset_m + handle_m - scene_->tool.spheres[i].offset_m),
+              1e-12);
+  EXPECT_LT(norm(held->tool_mesh.vertex_m[7] + handle_m - scene_->tool_mesh.vertex_m[7]), 1e-12);
+  EXPECT_NE(held->hash, scene_->hash);
+}
 
 TEST_F(Liver, TearsWhenItSaysTearAndHoldsWhenItSaysPull) {
   const double hand_N_per_m = scene_->hand.stiffness_N_per_m;

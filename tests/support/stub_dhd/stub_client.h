@@ -23,10 +23,12 @@ class StubDhd : public StubLibrary {
     find("stub_dhd_set_pose_answer", set_pose_answer);
     find("stub_dhd_hold", hold);
     find("stub_dhd_spin", spin);
+    find("stub_dhd_grip", grip);
     find("stub_dhd_set_delay_us", set_delay_us);
     find("stub_dhd_ignore_watchdog", ignore_watchdog);
     find("stub_dhd_calls", calls);
     find("stub_dhd_last_force", last_force);
+    find("stub_dhd_last_grip_N", last_grip_N);
     find("stub_dhd_settings", settings);
     find("stub_dhd_strongest_N", strongest_N);
     find("stub_dhd_switched_with_force", switched_with_force);
@@ -43,10 +45,12 @@ class StubDhd : public StubLibrary {
   decltype(&stub_dhd_set_pose_answer) set_pose_answer = nullptr;
   decltype(&stub_dhd_hold) hold = nullptr;
   decltype(&stub_dhd_spin) spin = nullptr;
+  decltype(&stub_dhd_grip) grip = nullptr;
   decltype(&stub_dhd_set_delay_us) set_delay_us = nullptr;
   decltype(&stub_dhd_ignore_watchdog) ignore_watchdog = nullptr;
   decltype(&stub_dhd_calls) calls = nullptr;
   decltype(&stub_dhd_last_force) last_force = nullptr;
+  decltype(&stub_dhd_last_grip_N) last_grip_N = nullptr;
   decltype(&stub_dhd_settings) settings = nullptr;
   decltype(&stub_dhd_strongest_N) strongest_N = nullptr;
   decltype(&stub_dhd_switched_with_force) switched_with_force = nullptr;

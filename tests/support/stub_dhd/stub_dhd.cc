@@ -17,44 +17,25 @@
 #include <mutex>
 #include <string>
 
-#include "tests/support/led_handle.h"
+#include "tests/support/stub_dhd/stub_dhd_state.h"
+
+namespace tact::tests::stub_dhd {
+
+std::mutex mutex;
+State state;
+bool watchdog_sleeps = std::getenv("TACT_STUB_DHD_NO_WATCHDOG") != nullptr;
+
+}  // namespace tact::tests::stub_dhd
 
 namespace {
 
-using tact::tests::LedHandle;
+using namespace tact::tests::stub_dhd;
 using tact::tests::monotonic_s;
 
 constexpr double kWatchdogUnit_s = 125e-6;
 constexpr int kErrorCode = 1, kNotEnabled = 9, kBadId = 15;
-constexpr int kPower = 0, kConnected = 1, kStarted = 2, kForce = 5, kWristDetected = 8;
-constexpr int kGravity = 10, kWristInit = 12, kForceOffCause = 14;
 constexpr int kCausedByWatchdog = 3, kCausedBySoftware = 4;
 
-struct State {
-  int count = 1, type = 63;
-  bool open = false, expert = false;
-  int pose_answer = 0, delay_us = 0;
-  int watchdog = 0, time_guard = -1, gravity = 0;
-  double force[6] = {};
-  LedHandle handle;
-  double fed_s = monotonic_s();
-  double spin_radps = 0.0, strongest_N = 0.0;
-  long switched_with_force = 0;
-  std::array<int, 17> status{};
-  std::map<int, int> fixed_status;
-  std::map<std::string, int> failing;
-  std::map<std::string, long> calls;
-
-  State() {
-    if (const char* wanted = std::getenv("TACT_STUB_DHD_TYPE")) type = std::atoi(wanted);
-    status[kPower] = status[kConnected] = status[kStarted] = 1;
-    status[kWristDetected] = status[kWristInit] = 1;
-  }
-};
-
-std::mutex mutex;
-State state;
-bool watchdog_sleeps = std::getenv("TACT_STUB_DHD_NO_WATCHDOG") != nullptr;  // through a reset
 thread_local int last_error = 0;
 
 /// Counts the call; the error that it must give, or 0.
@@ -80,10 +61,6 @@ void catch_up() {
     return state.status[kForce] != 0 ? std::array{f[0], f[1], f[2]} : std::array<double, 3>{};
   });
 }
-
-struct Locked {
-  std::lock_guard<std::mutex> lock{mutex};
-};
 
 }  // namespace
 
@@ -159,12 +136,12 @@ int dhdGetPositionAndOrientationFrame(double* x_m, double* y_m, double* z_m, dou
 }
 
 int dhdSetForceAndTorqueAndGripperForce(double fx, double fy, double fz, double tx, double ty,
-                                        double tz, double, char) {
+                                        double tz, double grip, char) {
   const Locked locked;
   if (enter("dhdSetForceAndTorqueAndGripperForce") < 0) return -1;
   catch_up();
-  const double force[6] = {fx, fy, fz, tx, ty, tz};
-  std::copy(force, force + 6, state.force);
+  const double force[7] = {fx, fy, fz, tx, ty, tz, grip};
+  std::copy(force, force + 7, state.force);
   state.fed_s = monotonic_s();
   if (state.status[kForce] != 0)
     state.strongest_N = std::max(state.strongest_N, std::hypot(fx, fy, fz));
@@ -176,7 +153,7 @@ int dhdEnableForce(unsigned char on, char) {
   if (enter("dhdEnableForce") < 0) return -1;
   catch_up();
   const auto is_set = [](double part) { return part != 0.0; };
-  if (std::any_of(state.force, state.force + 6, is_set)) ++state.switched_with_force;
+  if (std::any_of(state.force, state.force + 7, is_set)) ++state.switched_with_force;
   state.status[kForce] = on != 0 ? 1 : 0;
   state.status[kForceOffCause] = on != 0 ? 0 : kCausedBySoftware;
   state.fed_s = monotonic_s();
@@ -215,72 +192,24 @@ int dhdSetEffectorMass(double kg, char) {
   return enter("dhdSetEffectorMass");
 }
 
+int dhdGetGripperAngleRad(double* rad, char) {
+  const Locked locked;
+  *rad = state.handle.grips() ? 0.0 : state.gripper_rad;
+  return enter("dhdGetGripperAngleRad");
+}
+
+int dhdGetGripperGap(double* gap_m, char) {
+  const Locked locked;
+  constexpr double kFinger_m = 0.05;
+  *gap_m = kFinger_m * std::abs(state.handle.grips() ? 0.0 : state.gripper_rad);
+  return enter("dhdGetGripperGap");
+}
+
+unsigned dhdGetButtonMask(char) {
+  const Locked locked;
+  return state.handle.grips() ? 1 : state.buttons;
+}
+
 int dhdErrorGetLast() { return last_error; }
 // NOLINTEND(readability-identifier-naming)
-
-void stub_dhd_reset() {
-  const Locked locked;
-  state = State();
-}
-void stub_dhd_set_type(int type) {
-  const Locked locked;
-  state.type = type;
-}
-void stub_dhd_set_count(int devices) {
-  const Locked locked;
-  state.count = devices;
-}
-void stub_dhd_set_status(int word, int value) {
-  const Locked locked;
-  state.fixed_status[word] = value;
-}
-void stub_dhd_fail(const char* function, int error) {
-  const Locked locked;
-  state.failing[function] = error;
-}
-void stub_dhd_set_pose_answer(int answer) {
-  const Locked locked;
-  state.pose_answer = answer;
-}
-void stub_dhd_hold(double x_m, double y_m, double z_m) {
-  const Locked locked;
-  state.handle.hold(x_m, y_m, z_m);
-}
-void stub_dhd_spin(double radps) {
-  const Locked locked;
-  state.spin_radps = radps;
-}
-void stub_dhd_set_delay_us(int us) {
-  const Locked locked;
-  state.delay_us = us;
-}
-void stub_dhd_ignore_watchdog(int ignore) {
-  const Locked locked;
-  watchdog_sleeps = ignore != 0;
-}
-long stub_dhd_calls(const char* function) {
-  const Locked locked;
-  return state.calls[function];
-}
-int stub_dhd_last_force(double force[6]) {
-  const Locked locked;
-  std::copy(state.force, state.force + 6, force);
-  return state.status[kForce];
-}
-void stub_dhd_settings(int* watchdog, int* time_guard, int* gravity) {
-  const Locked locked;
-  *watchdog = state.watchdog, *time_guard = state.time_guard, *gravity = state.gravity;
-}
-long stub_dhd_switched_with_force() {
-  const Locked locked;
-  return state.switched_with_force;
-}
-double stub_dhd_strongest_N() {
-  const Locked locked;
-  return state.strongest_N;
-}
-int stub_dhd_is_open() {
-  const Locked locked;
-  return state.open ? 1 : 0;
-}
 }

@@ -20,6 +20,8 @@ void stub_dhd_set_pose_answer(int answer);
 void stub_dhd_hold(double x_m, double y_m, double z_m);
 /// Turns the wrist at this rate about z.
 void stub_dhd_spin(double radps);
+/// The gripper's angle and the mask of the buttons.
+void stub_dhd_grip(double gripper_rad, unsigned buttons);
 /// dhdGetPositionAndOrientationFrame takes so long.
 void stub_dhd_set_delay_us(int us);
 /// The watchdog never fires: a PC that builds and tests stalls longer than it allows.
@@ -28,6 +30,8 @@ void stub_dhd_ignore_watchdog(int ignore);
 long stub_dhd_calls(const char* function);
 /// fx fy fz tx ty tz of the last force call; its last argument tells whether it can be felt.
 int stub_dhd_last_force(double force[6]);
+/// The same of the gripper.
+double stub_dhd_last_grip_N();
 /// Last value given to dhdSetWatchdog, dhdSetTimeGuard, dhdSetGravityCompensation.
 void stub_dhd_settings(int* watchdog, int* time_guard, int* gravity);
 /// Largest force that was felt in newtons since the reset.

@@ -33,7 +33,8 @@ using namespace tact::tests::stub_hd;
 constexpr unsigned kInvalidHandle = 0xFFFF'FFFF, kDevice = 7;
 constexpr unsigned kBadHandle = 0x0104, kIllegalBegin = 0x0400, kIllegalEnd = 0x0401,
                    kFrameError = 0x0402;
-constexpr unsigned kTransform = 0x2052, kUsableWorkspace = 0x2551, kForce = 0x2700;
+constexpr unsigned kButtons = 0x2000, kTransform = 0x2052, kUsableWorkspace = 0x2551,
+                   kForce = 0x2700;
 constexpr unsigned kForceOutput = 0x4000;
 constexpr unsigned kCalibrated = 0x5000, kNeedsUpdate = 0x5001;
 
@@ -215,7 +216,7 @@ void hdGetDoublev(unsigned what, double* values) {
 void hdGetIntegerv(unsigned what, int* values) {
   const Locked locked;
   enter("hdGetIntegerv");
-  *values = static_cast<int>(number_of(what));
+  *values = static_cast<int>(what == kButtons && state.handle.grips() ? 1.0 : number_of(what));
 }
 
 const char* hdGetString(unsigned what) {

@@ -20,7 +20,8 @@ class Grip final : public hal::Device {
     return {.name = "grip",
             .max_force_N = 9.0,
             .workspace_radius_m = 0.05,
-            .workspace_half_length_m = 0.05};
+            .workspace_half_length_m = 0.05,
+            .grip = hal::GripKind::kNone};
   }
   Fault read(hal::Sample& sample, std::int64_t now_ns) RT_SAFE override {
     sample.fresh = !silent;

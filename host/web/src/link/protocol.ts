@@ -25,6 +25,7 @@ export interface Scene {
   limits_checksum: string;
   non_rt: boolean;
   simulated: boolean;
+  cannot_grip: boolean; // the scene grips, the device has nothing to close the jaws
   spheres: Sphere[];
   look: { organ: string; tool: string; pieces: Vec[] }; // [look] of the scene
 }
@@ -74,6 +75,7 @@ export interface Frame {
   peak_N: number;
   rms_N: number;
   given_J: number; // more than was taken
+  grip_N: number; // on the fingers, opening positive
   sites: Site[];
   patch?: Patch;
 }

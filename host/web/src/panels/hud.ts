@@ -69,13 +69,16 @@ export class Hud {
     const scene = this.scene_known;
     if (!scene) return;
     document.title = `tact: ${scene.scene}${this.is_replay ? " (replay)" : ""}`;
-    by_id("banner").hidden = !scene.non_rt;
-    write(
-      "banner",
-      this.is_replay
-        ? "recorded without hard real time: force capped at 25\u00a0%"
-        : "no hard real time on this PC: force capped at 25\u00a0%",
-    );
+    const notes: string[] = [];
+    if (scene.non_rt)
+      notes.push(
+        this.is_replay
+          ? "recorded without hard real time: force capped at 25\u00a0%"
+          : "no hard real time on this PC: force capped at 25\u00a0%",
+      );
+    if (scene.cannot_grip) notes.push("this scene grips; this device cannot: connect device.lines.grip");
+    by_id("banner").hidden = notes.length === 0;
+    write("banner", notes.join(" · "));
   }
 
   /** No status: tact-view is gone, or it `refused` this page. */
@@ -221,8 +224,9 @@ export class Hud {
   }
 
   private static grip(frame: Frame): string {
-    if (frame.sites.some((site) => site.state === 2)) return "holds tissue";
+    const force = Math.abs(frame.grip_N ?? 0) >= 0.05 ? `, ${frame.grip_N.toFixed(1)}\u00a0N` : "";
+    if (frame.sites.some((site) => site.state === 2)) return `holds tissue${force}`;
     const percent = Math.round((frame.grip_ratio ?? 0) * 100);
-    return percent < 2 ? "open" : percent > 98 ? "closed" : `${percent} %`;
+    return (percent < 2 ? "open" : percent > 98 ? "closed" : `${percent} %`) + force;
   }
 }

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// jaw_force.h - how hard the tissue between the jaws pushes them apart.
+//
+//     f = c (N1 + N2) / 2     c: how far they are closed, 0 to 1; N: force on the sphere of a jaw
+//                             along the outward normal of the tissue, N, not below 0
+//
+// Of a tool with two spheres, one a jaw; any other tool has no jaws. Positive opens the fingers.
+// Nothing between open jaws: what presses on their outside is no grip.
+#pragma once
+
+#include <cmath>
+#include <span>
+
+#include "model/contact/contact.h"
+
+namespace tact::firmware::loop {
+
+inline double jaw_force_N(std::span<const model::contact::SphereTouch> jaws,
+                          double grip_ratio) RT_SAFE {
+  if (jaws.size() != 2 || !(grip_ratio > 0.0)) return 0.0;
+  double sum_N = 0.0;
+  for (const model::contact::SphereTouch& jaw : jaws) {
+    const double normal_N = dot(jaw.force_N, jaw.normal);
+    if (std::isnan(normal_N)) return normal_N;  // for the gate to find
+    sum_N += std::fmax(normal_N, 0.0);
+  }
+  // f = c (N1 + N2) / 2
+  return std::fmin(grip_ratio, 1.0) * 0.5 * sum_N;
+}
+
+}  // namespace tact::firmware::loop
