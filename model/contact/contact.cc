@@ -9,7 +9,7 @@
 namespace tact::model::contact {
 namespace {
 
-constexpr int kMaxSteps = 64;  // of a tick, for each period
+constexpr int kMaxTickSteps = 64;  // of a tick, for each period
 
 /// On the straight way between two poses.
 Tool between(const Tool& from, const Tool& to, double share) RT_SAFE {
@@ -82,7 +82,7 @@ bool Contact::is_reached(const Tool& tool, double reach_m) const RT_SAFE {
   if (!(norm(tool.position_m - tool_before_->position_m) <= reach_m)) return false;
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
     const double way_m = norm(centre_of(scene_.spheres[i], tool) - sphere_[i].centre_m);
-    if (!(way_m <= kMaxSteps * kStep_ratio * sphere_[i].radius_m)) return false;
+    if (!(way_m <= kMaxTickSteps * kWay_ratio * sphere_[i].radius_m)) return false;
   }
   return true;
 }
@@ -95,7 +95,7 @@ void Contact::detect(const Tool& tool) RT_SAFE {
         tool.velocity_mps + cross(tool.angular_velocity_radps, centre_m - tool.position_m);
     const double way_m = norm(sphere.moved_m);
     const int steps = std::clamp(
-        static_cast<int>(std::ceil(way_m / (kStep_ratio * sphere.radius_m))), 1, kMaxSteps);
+        static_cast<int>(std::ceil(way_m / (kWay_ratio * sphere.radius_m))), 1, kMaxTickSteps);
     for (int left = steps; left > 0; --left) {
       const Vec3 to_go_m = sphere.is_known ? centre_m - sphere.centre_m : Vec3{};
       sphere.centre_m = left > 1 ? sphere.centre_m + to_go_m / left : centre_m;

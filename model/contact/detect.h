@@ -20,8 +20,8 @@
 
 namespace tact::model::contact {
 
-/// Of a radius: no sphere passes a sheet between two steps of this length.
-inline constexpr double kStep_ratio = 0.5;
+/// Of a radius, the way of a step: no sphere passes a sheet between two of them.
+inline constexpr double kWay_ratio = 0.5;
 /// Of a radius: a sphere without force searches so far ahead.
 inline constexpr double kAhead_ratio = 4.0;
 

@@ -171,10 +171,10 @@ double evaluate(MovedOrgan& organ) RT_SAFE {
 }
 
 bool find_slope(MovedOrgan& organ) RT_SAFE {
-  constexpr double kMinPivot = 1e-6;
+  constexpr double kMinSlopePivot = 1e-6;
   Square a{};
   fill_slope(organ, a);
-  organ.has_slope = organ.slope.factorise(a, 3 * organ.count, Pivot::kOfColumn, kMinPivot);
+  organ.has_slope = organ.slope.factorise(a, 3 * organ.count, Pivot::kOfColumn, kMinSlopePivot);
   return organ.has_slope;
 }
 

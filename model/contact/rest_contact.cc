@@ -36,12 +36,12 @@ void RestContact::reset() RT_SAFE {
 }
 
 void RestContact::begin(const Sphere& sphere, const Site& site, double paid_m) RT_SAFE {
-  constexpr double kRounding_m = 1e-12;
+  constexpr double kUnpaidRounding_m = 1e-12;
   RestSphere& s = sphere_[sphere.index];
   s.centre_m = sphere.centre_m;
   s.proxy.restart(site, sphere.radius_m);
   const double unpaid_m = sphere.radius_m - site.distance_m - paid_m;
-  s.unpaid_m = unpaid_m > kRounding_m ? unpaid_m : 0.0;
+  s.unpaid_m = unpaid_m > kUnpaidRounding_m ? unpaid_m : 0.0;
   pressing_[sphere.index].presses = true;
 }
 

@@ -210,7 +210,8 @@ struct PathCounts {
     forks += result.forks;
     unsettled += result.unsettled;
     for (const auto& [rule, at] : result.broken) {
-      if (broken[rule]++ > 0) continue;
+      broken[rule].push_back(c.seed);
+      if (broken[rule].size() > 1) continue;
       const Path small = shrink(soft, body, path, rule);
       const PathResult again = run_path(soft, body, small);
       const auto found = again.broken.find(rule);
