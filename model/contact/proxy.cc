@@ -37,7 +37,8 @@ void Proxy::place(const SurfaceView& surface, const Vec3& p_m, double across_m,
   const double most_m = kSlide_ratio * across_m;
   if (norm(goal_m - offset_m_) <= most_m + kRounding_m) return restart(nearest, radius_m);
   slide(surface, goal_m, most_m, radius_m);
-  const Vec3 line_m = outward_of(nearest, depth_m(p_m), radius_m);
+  const Site from_here = contact::follow(surface, site_.place.triangle, p_m);
+  const Vec3 line_m = outward_of(from_here, depth_m(p_m), radius_m);
   const double length_m = norm(line_m);
   site_.distance_m = radius_m - length_m;
   site_.normal = length_m > 0.0 ? line_m / length_m : outward_;
@@ -55,8 +56,9 @@ Vec3 Proxy::depth_m(const Vec3& p_m) const RT_SAFE {
 Vec3 Proxy::outward_of(const Site& nearest, const Vec3& line_m, double radius_m) const RT_SAFE {
   const double inward_m = std::min(dot(line_m, nearest.normal), 0.0);
   if (!(nearest.distance_m > 0.0) || !(inward_m < 0.0)) return line_m;
+  // Whole at less than a tenth of the radius from that point, not at all at more than the radius.
   const double apart_ratio = norm(nearest.point_m - site_.point_m) / radius_m;
-  return line_m - std::max(1.0 - apart_ratio, 0.0) * inward_m * nearest.normal;
+  return line_m - std::clamp((1.0 - apart_ratio) / 0.9, 0.0, 1.0) * inward_m * nearest.normal;
 }
 
 // Along the offset surface. In a crease g stays where a step would throw it over to the other side.

@@ -150,25 +150,6 @@ TEST(MovedContact, LettingGoStoresNoMoreThanWasHeld) {
   EXPECT_GT(contact.touches()[0].energy_J, 0.0);
 }
 
-// A weak bond stores hardly anything: what the stiffer place would store more has no other source.
-TEST(MovedContact, LettingGoOverStifferTissueTakesDepth) {
-  Body body(tests::make_plate(100_mm, 20), {400, 400, 400, 0, 0, 0}, -8000.0F);
-  ContactScene scene = body.scene(0.4);
-  scene.parameters.sliding_stiffness_N_per_m = body.organ.held_N_per_m = 0.01;
-  Contact contact(scene);
-  pressed(contact, 3_mm);
-  const Vec3 at_m{1_mm, 2_mm, kRadius_m - 3_mm}, there_m = at_m + Vec3{30_mm, 0, 0};
-  feel(contact, {.position_m = at_m, .grip_ratio = 1.0});
-  glide(contact, at_m, there_m, 1.0);
-  ASSERT_EQ(contact.touches()[0].state, TouchState::kHeld);
-  const double held_J = contact.touches()[0].energy_J, held_m = contact.touches()[0].dent_m;
-  feel(contact, {.position_m = there_m});
-  ASSERT_EQ(contact.touches()[0].state, TouchState::kTouching);
-  EXPECT_LE(contact.touches()[0].energy_J, held_J);
-  EXPECT_GT(contact.touches()[0].energy_J, 0.0);
-  EXPECT_LT(contact.touches()[0].dent_m, held_m);
-}
-
 TEST(MovedContact, BeginsWithoutTheDepthThatNoWayExplains) {
   Body body = rigid_plate();
   const ContactScene scene = body.scene();
