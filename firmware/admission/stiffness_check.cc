@@ -36,7 +36,7 @@ std::string spheres_in_words(std::size_t n) {
 // Of a held sphere at the stiffest place; 0: the law does not tell.
 double stiffest_sideways_N_per_m(const model::scene::Scene& scene,
                                  const model::contact::SiteLaw& law) {
-  // Set by hand: the tissue's own does not count (contact/contact.h).
+  // Set by hand: the tissue's own does not count (contact/contact_scene.h).
   if (scene.contact.sliding_stiffness_N_per_m > 0.0) return scene.contact.sliding_stiffness_N_per_m;
   double most_N_per_m = 0.0;
   const auto ask = [&](const model::contact::Place& place, const model::contact::Axes& axes) {

@@ -123,18 +123,22 @@ ContactResponse Contact::respond(const Tool& tool) RT_SAFE {
   }
   if (closing_)
     for (Sphere& sphere : spheres())
-      if (sphere.state == TouchState::kTouching && organ().hold(sphere.index))
+      if (sphere.state == TouchState::kTouching && organ().hold(sphere.index)) {
         sphere.state = TouchState::kHeld;
+        sphere.lets_go = false;
+      }
   organ().finish();
   ContactResponse felt;
   for (Sphere& sphere : spheres()) {
     if (!sphere.is_known) continue;
     SphereTouch& touch = touch_[sphere.index];
+    const Vec3 last_normal = touch.normal;
     touch = {};
     const OrganForce answer = ask(sphere);
     follow_force(sphere, answer.elastic_N);
+    if (!sphere.touches() && sphere.told_N != Vec3{}) touch.normal = last_normal;
     touch.state = sphere.state;
-    touch.force_N = sphere.told_N + answer.resistance_N;
+    touch.force_N = sphere.told_N + resistance_N(sphere, answer.resistance_N);
     felt.wrench.force_N += touch.force_N;
     felt.wrench.torque_Nm += cross(sphere.centre_m - tool.position_m, touch.force_N);
     if (touch.law_status == law::LawStatus::kSaturated || sphere.lets_go) felt.is_saturated = true;
@@ -198,6 +202,15 @@ OrganForce Contact::ask(Sphere& sphere) RT_SAFE {
   return {share * answer.elastic_N, share * answer.resistance_N};
 }
 
+// A sphere that is not held is not pulled in, by however little of its force has arrived.
+Vec3 Contact::resistance_N(const Sphere& sphere, const Vec3& answer_N) const RT_SAFE {
+  const double size_N = norm(answer_N);
+  if (!(sphere.lag_N > 0.0) || sphere.state == TouchState::kHeld || !(size_N > 0.0))
+    return answer_N;
+  const double along_N = dot(sphere.told_N, answer_N) / size_N;
+  return along_N > 0.0 ? answer_N : std::min(-along_N / size_N, 1.0) * answer_N;
+}
+
 // The force may jump where the organ snaps to another shape, a solution is found again, or the
 // proxy meets another side. The told force follows: per tick by at most ten times the stiffest
 // slope times the way and twice what the law's memory may take, plus all of the jump in 0.1 s.
@@ -205,16 +218,19 @@ OrganForce Contact::ask(Sphere& sphere) RT_SAFE {
 // lost.
 void Contact::follow_force(Sphere& sphere, const Vec3& wanted_N) RT_SAFE {
   constexpr double kSteepest_ratio = 10.0, kFade_ratio = 2.0;
-  constexpr double kNoise_N = 1e-4;  // of a solution
+  constexpr double kNoise_N = 1e-3;  // of a solution
   const Vec3 change_N = wanted_N - sphere.told_N;
   const double length_N = norm(change_N);
   sphere.largest_N = sphere.touches() ? std::max(sphere.largest_N, norm(wanted_N)) : 0.0;
-  const double smooth_N = kNoise_N +
-                          kSteepest_ratio * sphere.stiffest_N_per_m * norm(sphere.moved_m) +
+  // Spheres that are coupled change each other's force.
+  double way_m = 0.0;
+  for (const Sphere& one : spheres()) way_m = std::max(way_m, norm(one.moved_m));
+  const double smooth_N = kNoise_N + kSteepest_ratio * sphere.stiffest_N_per_m * way_m +
                           kFade_ratio * fade_ratio_ * sphere.largest_N;
   const bool is_held = sphere.state == TouchState::kHeld;
   // Held tissue that is let go or tears is gone at once.
-  const bool is_let_go = sphere.was_held && !is_held;
+  const bool is_let_go =
+      sphere.was_held && !is_held && organ().is_solved() && norm(wanted_N) <= norm(sphere.told_N);
   const bool is_lag = length_N > smooth_N && sphere.stiffest_N_per_m > 0.0 && !is_let_go;
   sphere.lag_N = is_lag ? std::max(sphere.lag_N, length_N) : 0.0;
   const double most_N = smooth_N + sphere.lag_N * scene_.period_s / kLetGo_s;

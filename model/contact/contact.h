@@ -17,7 +17,8 @@
 //
 // A change of state never adds energy. Slack takes up the depth that would come for free (letting
 // go over a bump or stiffer tissue, a nearest point that jumps, a contact that ends on another
-// side). It shrinks as the tool withdraws, and by what the proxy comes nearer: the depth stays.
+// side). It shrinks as the tool withdraws, and where a proxy that lagged comes nearer: the depth
+// stays.
 #pragma once
 
 #include <array>
@@ -84,6 +85,7 @@ class Contact {
   void let_go(Sphere& sphere) RT_SAFE;
   bool release_first() RT_SAFE;
   OrganForce ask(Sphere& sphere) RT_SAFE;
+  Vec3 resistance_N(const Sphere& sphere, const Vec3& answer_N) const RT_SAFE;
   void follow_force(Sphere& sphere, const Vec3& wanted_N) RT_SAFE;
   void use_blade(const Tool& tool, bool may_cut) RT_SAFE;
 

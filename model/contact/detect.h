@@ -11,8 +11,10 @@
 //     touching        -> lets go     wholly outside, and either beyond its law or with nothing of
 //                                    the organ between it and its place: its depth shrinks to 0
 //     lets go         -> free
+//     touching        -> found anew  its place has no answer any more, or it came through a hole
 //
-// Closing and opening the grip lead from touching to held and back (contact.h).
+// Closing and opening the grip lead from touching to held and back, a pull farther than the surface
+// from held to free (contact.h).
 #pragma once
 
 #include "model/contact/contact_scene.h"

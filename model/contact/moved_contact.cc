@@ -213,8 +213,8 @@ OrganForce MovedContact::tell(const Sphere& sphere, SphereTouch& told) const RT_
   told.law_status = is_beyond(b) ? law::LawStatus::kSaturated : b.tip.status;
   told.energy_J = stored_energy_J(organ_, static_cast<std::size_t>(&b - organ_.sphere.data()));
   const double resistance_N = scene_.law->resistance_N(indentation_of(b), b.tip.force_N);
-  return {b.force_N + b.brake_N,
-          resistance_N * rotated(b.rotation.whole, b.rotation.axis, b.at.normal)};
+  return {b.force_N,
+          b.brake_N + resistance_N * rotated(b.rotation.whole, b.rotation.axis, b.at.normal)};
 }
 
 void MovedContact::advance() RT_SAFE {

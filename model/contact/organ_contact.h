@@ -16,7 +16,7 @@ namespace tact::model::contact {
 /// Forces on a sphere, N.
 struct OrganForce {
   Vec3 elastic_N;     // and of friction
-  Vec3 resistance_N;  // LW-3: by its speed, outside of the potential
+  Vec3 resistance_N;  // LW-3, ML-9: by its movement, outside of the potential
 };
 
 /// What a step did to a sphere that touches: kLost is to be found anew.

@@ -42,7 +42,7 @@ void RestContact::begin(const Sphere& sphere, const Site& site, double paid_m) R
   s.proxy.restart(site, sphere.radius_m);
   const double unpaid_m = sphere.radius_m - site.distance_m - paid_m;
   s.unpaid_m = unpaid_m > kUnpaidRounding_m ? unpaid_m : 0.0;
-  pressing_[sphere.index].presses = true;
+  s.is_new = pressing_[sphere.index].presses = true;
 }
 
 void RestContact::leave(std::size_t i) RT_SAFE {
@@ -56,8 +56,11 @@ Step RestContact::step(Sphere& sphere, const Vec3& moved_m) RT_SAFE {
   s.proxy.follow(scene_.surface, sphere.centre_m, moved_m, sphere.radius_m);
   s.unpaid_m += s.proxy.lengthened_m();
   if (s.is_held) return Step::kTouches;
+  if (s.proxy.has_changed_side()) return Step::kLost;
+  const PressingSphere& pressing = pressing_[sphere.index];
+  if (sphere.lets_go && !(pressing.in.dent_m > 0.0)) return Step::kLeaves;
   // Slack takes up all of its depth: what it touches may be another part of the organ by now.
-  const bool is_all_slack = s.slack_m > 0.0 && !(pressing_[sphere.index].depth_m > 0.0);
+  const bool is_all_slack = s.slack_m > 0.0 && !(pressing.depth_m > 0.0);
   return s.proxy.site().distance_m < sphere.radius_m && !is_all_slack ? Step::kTouches
                                                                       : Step::kLeaves;
 }
@@ -115,7 +118,7 @@ double RestContact::cut_to_law_m(std::size_t i) RT_SAFE {
   const double dent_m = pressing_[i].in.dent_m;
   const double within_m = std::clamp(sphere_[i].within_law_m, 0.0, std::max(dent_m, 0.0));
   add_slack(i, dent_m > 0.0 ? dent_m - within_m : pressing_[i].depth_m);
-  return within_m;
+  return std::max(pressing_[i].depth_m, 0.0);
 }
 
 // d becomes smaller, and so it stays.
@@ -137,6 +140,7 @@ void RestContact::respond() RT_SAFE {
   couple_new_spheres();
   keep_definite();
   press();
+  for (RestSphere& s : sphere_) s.is_new = false;
 }
 
 // A sphere that has just come couples with those that are there, for as long as it stays. It meets
@@ -211,7 +215,7 @@ void RestContact::keep_definite() RT_SAFE {
   std::array<double, kMaxSpheres> spared_m{};
   double spared_J = 0.0;
   for (std::size_t i = 0; i < count(); ++i) {
-    if (!pressing_[i].presses) continue;
+    if (!pressing_[i].presses || sphere_[i].is_new) continue;
     spared_m[i] = (1.0 - share) * sunk_m(coupling_, pressing(), i);
     spared_J += pressing_[i].response.law.force_N * spared_m[i];
   }

@@ -33,7 +33,7 @@ namespace tact::model::contact {
 
 /// A sphere that touches.
 struct RestSphere {
-  bool is_held = false;
+  bool is_held = false, is_new = false;  // new: since this tick
   Vec3 centre_m, moved_m, velocity_mps;  // of this tick
   Proxy proxy;
   double unpaid_m = 0.0;  // of the depth, since the last tick: no movement led there

@@ -20,7 +20,7 @@ struct ProbeSphere {
   double radius_m = 0.0;  // > 0
 };
 
-/// detect.h says what leads from one to another. kInside: found in the organ, without force.
+/// detect.h says what leads from one to another. kInside: found in the organ, without contact.
 enum class TouchState : std::uint8_t { kFree, kTouching, kHeld, kInside };
 
 /// One sphere's share of a tick.
@@ -29,13 +29,13 @@ struct SphereTouch {
   law::LawStatus law_status = law::LawStatus::kNoContact;
   Place place;             // of surface_point_m
   Vec3 surface_point_m{};  // nearest (touching) or held point of the undeformed surface
-  Vec3 normal{};           // outward, unit
+  Vec3 normal{};           // outward, unit; free: of its last contact
   Vec3 shift_m{};          // t
   double depth_m = 0.0;    // d
   double dent_m = 0.0;     // e
   double slack_m = 0.0;
   double energy_J = 0.0;  // its share of W
-  Vec3 force_N{};         // on the tool
+  Vec3 force_N{};         // on the tool; of a contact that has ended it fades
 };
 
 /// What contact knows of a sphere, whatever the organ's form (organ_contact.h knows the rest).

@@ -7,8 +7,8 @@
 //   c  outside and beyond the law's range: no force after 2 ranges of way, or after 0.2 s
 //   d  came from outside and not let go: going deeper with its centre inside gives force, by the
 //      third tick, and only saturation or a loss lets it go
-//   e  |dF| <= 10 K way + 0.1 mN; while a contact lets go, or its force lags, the way grows by the
-//      range in 0.1 s
+//   e  |dF| <= 10 K way + 1 mN; while a contact lets go, the way grows by the range in 0.1 s, while
+//      its force lags, in 0.5 s
 //   f  finite; with its centre outside and its contact point nearest: pulls it in by friction at
 //      most (the line to the proxy is not beside the surface, the force in the cone about it),
 //      unless it lets go or its force lags
@@ -16,7 +16,8 @@
 //      largest force times the largest step, or half of the sum of |dF| |dc|; and for each time
 //      that its force lags, F F / (20 K), a tenth of what the largest force can store
 //
-//   i  a force lags for at most 0.2 s in a row
+//   i  a force lags for at most 0.11 s in a row
+//   j  come through a hole of an open body, and inside: no force after one range of way, or 0.2 s
 //
 // (g, pauses, is in path_run.h.) Outside: distance >= r and winding number 0, by brute_force.h.
 #pragma once
@@ -62,8 +63,9 @@ class ContactRules {
     moved_m_ = before_ && !now.is_lost ? norm(now.centre_m - before_->centre_m) : 0.0;
     find_side(now);
     std::vector<Breach> breaches;
-    for (const auto rule : {&ContactRules::a, &ContactRules::b, &ContactRules::c, &ContactRules::d,
-                            &ContactRules::e, &ContactRules::f, &ContactRules::h, &ContactRules::i})
+    for (const auto rule :
+         {&ContactRules::a, &ContactRules::b, &ContactRules::c, &ContactRules::d, &ContactRules::e,
+          &ContactRules::f, &ContactRules::h, &ContactRules::j, &ContactRules::i})
       if (auto found = (this->*rule)(now)) breaches.push_back(*found);
     before_ = now;
     was_outside_ = is_outside_;
@@ -107,9 +109,10 @@ class ContactRules {
       const double most_m = is_first ? phi_m : 0.5 * (phi_m + phi_m_ + moved_m_ / n);
       if (side == Side::kUnknown || !(most_m < s_.radius_m - kTiny_m)) has_overlapped_ = false;
       // Through a hole it comes in without contact.
-      if (side == Side::kUnknown || (side == Side::kIn && side_ == Side::kOut && !is_first &&
-                                     !body_.is_closed() && !body_.crosses(last_m_, p_m)))
-        entered_ = false;
+      const bool is_hole = side == Side::kIn && side_ == Side::kOut && !is_first &&
+                           !body_.is_closed() && !body_.crosses(last_m_, p_m);
+      if (side == Side::kUnknown || is_hole) entered_ = false;
+      through_hole_ = is_hole || (through_hole_ && side == Side::kIn && !now.is_lost);
       side_ = side;
       phi_m_ = phi_m;
       last_m_ = p_m;
@@ -126,8 +129,10 @@ class ContactRules {
 
   std::optional<Breach> b(const Tick& now) {
     const model::Vec3& q_m = now.touch.surface_point_m;
+    const bool touches =
+        now.touch.state == TouchState::kTouching || now.touch.state == TouchState::kHeld;
     bool is_lag = is_outside_ && force_N_ > 0.0;
-    if (is_lag) {
+    if (is_lag && touches) {
       const double way_m = norm(now.centre_m - q_m);
       const double share = way_m > 0.0 ? std::min(1.0, 1e-6 / way_m) : 1.0;
       is_lag = !body_.crosses(q_m + share * (now.centre_m - q_m), now.centre_m);
@@ -189,10 +194,11 @@ class ContactRules {
     // Once begun, it goes on until there is no force.
     lets_go_ = (lets_go_ && before_->is_saturated) ||
                ((now.is_saturated || before_->is_saturated) && (is_outside_ || was_outside_));
-    const double fade_m = lets_go_ || now.is_unsettled || before_->is_unsettled
-                              ? s_.range_m * now.periods * s_.period_s / kLetGo_s
-                              : 0.0;
-    const double most_N = 10.0 * s_.max_slope_N_per_m * (moved_m_ + fade_m) + 1e-4 * now.periods;
+    const bool is_lag = now.is_unsettled || before_->is_unsettled;
+    const double fade_s = lets_go_ ? kLetGo_s : 5.0 * kLetGo_s;
+    const double fade_m =
+        lets_go_ || is_lag ? s_.range_m * now.periods * s_.period_s / fade_s : 0.0;
+    const double most_N = 10.0 * s_.max_slope_N_per_m * (moved_m_ + fade_m) + 1e-3 * now.periods;
     if (jump_N <= most_N) return {};
     return say('e', "force jumps by " + std::to_string(1e3 * jump_N) + " mN, at most " +
                         std::to_string(1e3 * most_N));
@@ -239,8 +245,20 @@ class ContactRules {
 
   std::optional<Breach> i(const Tick& now) {
     unsettled_s_ = now.is_unsettled ? unsettled_s_ + now.periods * s_.period_s : 0.0;
-    if (unsettled_s_ <= kAfter_s) return {};
+    constexpr double kLongest_s = 0.11;
+    if (unsettled_s_ <= kLongest_s + now.periods * s_.period_s) return {};
     return say('i', "the force lags for too long");
+  }
+
+  std::optional<Breach> j(const Tick& now) {
+    if (!through_hole_ || force_N_ == 0.0) {
+      hole_m_ = hole_s_ = 0.0;
+      return {};
+    }
+    hole_m_ += moved_m_;
+    hole_s_ += now.periods * s_.period_s;
+    if (hole_m_ <= s_.range_m && hole_s_ <= kAfter_s) return {};
+    return say('j', "force inside, where it came through a hole");
   }
 
   std::optional<Breach> say(char rule, const std::string& what) const {
@@ -259,6 +277,8 @@ class ContactRules {
   double phi_m_ = 0.0;  // signed distance, as far as nearest_ was searched
   model::Vec3 last_m_;
   bool is_outside_ = false, was_outside_ = false;
+  bool through_hole_ = false;  // and inside ever since
+  double hole_m_ = 0.0, hole_s_ = 0.0;
   bool has_overlapped_ = false;  // surely, ever since the start
   bool lets_go_ = false;
   int without_ = 0;       // ticks in a row, deeper and without force

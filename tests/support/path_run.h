@@ -133,7 +133,7 @@ inline PathResult run_path(SoftBody& soft, const BruteForce& body, const Path& p
                            .touch = touch,
                            .is_saturated = is_beyond || (is_alone && felt.is_saturated),
                            .is_lost = felt.is_lost,
-                           .is_unsettled = is_alone && felt.is_unsettled}))
+                           .is_unsettled = felt.is_unsettled}))
         note(breach, k);
     }
     if (const auto breach = pause.go_on(tool, felt.wrench.force_N, soft.spheres[0].radius_m))

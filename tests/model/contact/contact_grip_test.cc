@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When a closed grip holds tissue and when it loses it: contact_grip.cc.
+// When a closed grip holds tissue and when it loses it: rest_grip.cc.
 #include <gtest/gtest.h>
 
 #include <cmath>

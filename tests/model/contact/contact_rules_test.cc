@@ -25,12 +25,13 @@ class Rules : public ::testing::Test {
 
   /// The rules that a tick at this height breaks.
   std::string at(double z_m, double force_N, TouchState state, bool is_saturated = false,
-                 std::uint32_t periods = 1) {
+                 std::uint32_t periods = 1, bool is_unsettled = false) {
     ContactTick tick{.centre_m = {1_mm, 2_mm, z_m}, .periods = periods, .touch = {}};
     tick.touch.state = state;
     tick.touch.surface_point_m = {1_mm, 2_mm, 0};
     tick.touch.force_N = {0, 0, force_N};
     tick.is_saturated = is_saturated;
+    tick.is_unsettled = is_unsettled;
     std::string broken;
     for (const tests::Breach& breach : rules_.check(tick)) broken += breach.rule;
     return broken;
@@ -131,7 +132,20 @@ TEST_F(Rules, DSeesALetGoWithoutCause) {
 TEST_F(Rules, ESeesAJump) {
   EXPECT_EQ(right(10_mm, 2_mm), "");
   EXPECT_EQ(at(1.9_mm, 0.16, TouchState::kTouching), "e");
-  EXPECT_EQ(at(1.9_mm, 0.1599, TouchState::kTouching), "e");  // 0.1 mN, at rest
+  EXPECT_EQ(at(1.9_mm, 0.158, TouchState::kTouching), "e");  // 2 mN, at rest
+}
+
+TEST_F(Rules, ELetsAForceLagAndSeesAJumpAllTheSame) {
+  EXPECT_EQ(right(10_mm, 2_mm), "");
+  EXPECT_EQ(at(2_mm, 0.105, TouchState::kTouching, false, 1, true), "");
+  EXPECT_EQ(at(2_mm, 0.12, TouchState::kTouching, false, 1, true), "e");
+}
+
+TEST_F(Rules, ISeesAForceThatLagsForTooLong) {
+  EXPECT_EQ(right(10_mm, 2_mm), "");
+  int ticks = 0;
+  while (at(2_mm, 0.1, TouchState::kTouching, false, 1, true).empty() && ticks < 1000) ++ticks;
+  EXPECT_NEAR(ticks, 110, 3);
 }
 
 TEST_F(Rules, ELetsASaturatedContactGoOutside) {

@@ -20,6 +20,8 @@ TEST_P(AnyPathOrgan, KeepsTheRulesOfContact) {
   RecordProperty("counts", counts.summary());
   EXPECT_TRUE(counts.broken.empty()) << counts.summary() << "\n" << counts.first;
   EXPECT_GT(counts.pauses, 5);
+  EXPECT_LT(counts.forks, 2 + counts.pauses / 50);
+  EXPECT_LT(static_cast<double>(counts.unsettled), 0.03 * static_cast<double>(counts.ticks));
 }
 
 INSTANTIATE_TEST_SUITE_P(Shipped, AnyPathOrgan,
