@@ -21,9 +21,9 @@ Fault MountedDevice::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
 }
 
 Fault MountedDevice::write(const Wrench& wrench) RT_SAFE {
-  return device_->write(
-      {.force_N = mounting_.force_B(wrench.force_N),
-       .torque_Nm = turns_tool_ ? mounting_.direction_B(wrench.torque_Nm) : wrench.torque_Nm});
+  return device_->write({.force_N = mounting_.force_in_base(wrench.force_N),
+                         .torque_Nm = turns_tool_ ? mounting_.direction_in_base(wrench.torque_Nm)
+                                                  : wrench.torque_Nm});
 }
 
 }  // namespace tact::hal

@@ -41,8 +41,8 @@ std::string standing(const Vec3& axis_W) {
 
 }  // namespace
 
-Vec3 Mounting::gravity_B_mps2() const RT_SAFE {
-  return direction_B({0.0, 0.0, -model::kGravity_mps2});
+Vec3 Mounting::gravity_in_base_mps2() const RT_SAFE {
+  return direction_in_base({0.0, 0.0, -model::kGravity_mps2});
 }
 
 Mounting mounting_of(const model::DeviceSettings& settings) {
@@ -55,7 +55,7 @@ Mounting mounting_of(const model::DeviceSettings& settings) {
 std::string words_of(const Mounting& m) {
   std::string out =
       fmt::format("the base {}; down is {} in its own axes", standing(m.direction_W({1, 0, 0})),
-                  text_of(m.direction_B({0, 0, -1})));
+                  text_of(m.direction_in_base({0, 0, -1})));
   if (m.shift_m != Vec3{}) out += fmt::format("; its origin is at {} m of W", text_of(m.shift_m));
   if (m.scale != 1.0)
     out += fmt::format(

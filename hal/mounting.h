@@ -25,17 +25,21 @@ struct Mounting {
   Vec3 shift_m;      // t
   double scale = 1.0;
 
-  Vec3 point_W(const Vec3& p_B) const RT_SAFE { return scale * rotate(turn, p_B) + shift_m; }
-  Vec3 point_B(const Vec3& p_W) const RT_SAFE {
+  Vec3 point_W(const Vec3& in_base_m) const RT_SAFE {
+    return scale * rotate(turn, in_base_m) + shift_m;
+  }
+  Vec3 point_in_base(const Vec3& p_W) const RT_SAFE {
     return rotate(conjugate(turn), p_W - shift_m) / scale;
   }
-  Vec3 velocity_W(const Vec3& v_B) const RT_SAFE { return scale * rotate(turn, v_B); }
-  Vec3 force_B(const Vec3& f_W) const RT_SAFE { return scale * rotate(conjugate(turn), f_W); }
+  Vec3 velocity_W(const Vec3& in_base_mps) const RT_SAFE {
+    return scale * rotate(turn, in_base_mps);
+  }
+  Vec3 force_in_base(const Vec3& f_W) const RT_SAFE { return scale * rotate(conjugate(turn), f_W); }
   /// A direction without a size in m or N: an axis, an angular velocity, a torque.
-  Vec3 direction_W(const Vec3& d_B) const RT_SAFE { return rotate(turn, d_B); }
-  Vec3 direction_B(const Vec3& d_W) const RT_SAFE { return rotate(conjugate(turn), d_W); }
+  Vec3 direction_W(const Vec3& in_base) const RT_SAFE { return rotate(turn, in_base); }
+  Vec3 direction_in_base(const Vec3& d_W) const RT_SAFE { return rotate(conjugate(turn), d_W); }
   /// g_B: where down is for the base.
-  Vec3 gravity_B_mps2() const RT_SAFE;
+  Vec3 gravity_in_base_mps2() const RT_SAFE;
 
   friend bool operator==(const Mounting&, const Mounting&) = default;
 };

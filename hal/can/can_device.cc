@@ -25,7 +25,7 @@ class CanDevice final : public Device {
             double rate_Hz, BasicCanStart<Frame> start)
       : bus_(std::move(bus)),
         settings_(settings),
-        delta_(settings.delta, settings.can, mounting_of(settings).gravity_B_mps2()),
+        delta_(settings.delta, settings.can, mounting_of(settings).gravity_in_base_mps2()),
         start_(std::move(start)),
         drives_(*start_.drives),
         period_ns_(model::period_ns(rate_Hz)),

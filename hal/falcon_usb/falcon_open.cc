@@ -61,7 +61,7 @@ Result<std::unique_ptr<Device>> open_falcon(const model::DeviceSettings& setting
                                             double /*rate_Hz*/) {
   auto device = open_falcon_device(settings.falcon);
   if (!device) return device.error();
-  (*device)->set_gravity(mounting_of(settings).gravity_B_mps2());
+  (*device)->set_gravity(mounting_of(settings).gravity_in_base_mps2());
   return std::unique_ptr<Device>(std::move(*device));
 }
 

@@ -131,7 +131,8 @@ Result<SdkSession> open_sdk_session(const ForceDimensionSettings& settings, bool
   if (!id) return id.error();
   SdkSession session{.sdk = *sdk, .id = *id, .type = {}};
   if (settings.gripper_open_rad > 0.0) session.gripper_open_rad = settings.gripper_open_rad;
-  session.balances_weight = norm(mounting.gravity_B_mps2() - Mounting{}.gravity_B_mps2()) < 0.1;
+  session.balances_weight =
+      norm(mounting.gravity_in_base_mps2() - Mounting{}.gravity_in_base_mps2()) < 0.1;
   unsigned short number = 0;
   // By serial number where it is known: two programs may count devices differently.
   if (sdk->serial_number != nullptr && sdk->serial_number(&number, *id) >= 0)

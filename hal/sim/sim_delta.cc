@@ -38,7 +38,7 @@ double counted_rad(double angle_rad, double counts_per_turn) RT_SAFE {
 /// The way of the hand as its base sees it. How it turns the handle stays as the scene says.
 model::HandSettings hand_of_base(model::HandSettings hand, const Mounting& mounting) {
   for (model::HandWaypoint& point : hand.path)
-    point.position_m = mounting.point_B(point.position_m);
+    point.position_m = mounting.point_in_base(point.position_m);
   return hand;
 }
 
@@ -56,7 +56,7 @@ SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::HandSett
                    const Mounting& mounting)
     : settings_(device),
       mounting_(mounting),
-      gravity_D_mps2_(direction_D(mounting.gravity_B_mps2())),
+      gravity_D_mps2_(direction_D(mounting.gravity_in_base_mps2())),
       delta_(kGeometry),
       hand_(hand_of_base(hand, mounting)),
       plant_({.coulomb_Nm = device.joint_friction_Nm,
@@ -173,7 +173,7 @@ void SimDelta::steer_hand() RT_SAFE {
   HandTarget target;
   if (!hand_targets_.read(target)) return;
   const double* p = target.position_m;
-  hand_.steer(inside_workspace_m(mounting_.point_B({p[0], p[1], p[2]})), target.grip_ratio);
+  hand_.steer(inside_workspace_m(mounting_.point_in_base({p[0], p[1], p[2]})), target.grip_ratio);
 }
 
 void SimDelta::step_physics(double dt_s) RT_SAFE {

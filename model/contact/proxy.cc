@@ -8,27 +8,13 @@ namespace {
 
 constexpr double kRounding_m = 1e-9;  // the same point, found from two triangles
 
-// On the boundary of an open surface?
-bool is_on_rim(const SurfaceView& surface, const Place& place) RT_SAFE {
-  const TriangleRecord& t = surface.record[place.triangle];
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    if (place.weight[i] != 0.0) continue;
-    if (t.neighbour[j] == kNoTriangle) return true;  // edge j joins the corners j and k
-    if (place.weight[j] == 0.0 && t.on_rim[k]) return true;
-    if (place.weight[k] == 0.0 && t.on_rim[j]) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 void Proxy::restart(const Site& site, double radius_m) RT_SAFE {
   site_ = site;
   outward_ = site.normal;
   offset_m_ = site.point_m + radius_m * outward_;
-  nearest_m_ = site.distance_m;
-  lags_ = has_changed_side_ = is_on_rim_ = false;
+  lags_ = false;
   lengthened_m_ = 0.0;
 }
 
@@ -37,15 +23,10 @@ void Proxy::follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& move
   const double before_m = radius_m - site_.distance_m;
   const Vec3 normal_before = site_.normal;
   const bool lagged = lags_;
-  const double nearest_before_m = nearest_m_;
-  const bool was_on_rim = is_on_rim_;
   place(surface, p_m, norm(tangential(moved_m, normal_before)), radius_m);
   // Where g is nearest, the depth is a function of p alone. Else its work decides: the trapezium
   // rule over both normals.
   const double led_m = -0.5 * dot(normal_before + site_.normal, moved_m);
-  // A distance changes by no more than the way.
-  has_changed_side_ =
-      was_on_rim && nearest_m_ < 0.0 && nearest_before_m - nearest_m_ > norm(moved_m) + kRounding_m;
   lengthened_m_ = lagged || lags_ ? radius_m - site_.distance_m - before_m - led_m : 0.0;
 }
 
@@ -54,14 +35,7 @@ void Proxy::place(const SurfaceView& surface, const Vec3& p_m, double across_m,
   const Site nearest = contact::follow(surface, site_.place.triangle, p_m);
   const Vec3 goal_m = nearest.point_m + radius_m * nearest.normal;
   const double most_m = kSlide_ratio * across_m;
-  const bool on_rim = is_on_rim(surface, nearest.place);
-  if (norm(goal_m - offset_m_) <= most_m + kRounding_m) {
-    restart(nearest, radius_m);
-    is_on_rim_ = on_rim;
-    return;
-  }
-  is_on_rim_ = on_rim;
-  nearest_m_ = nearest.distance_m;
+  if (norm(goal_m - offset_m_) <= most_m + kRounding_m) return restart(nearest, radius_m);
   slide(surface, goal_m, most_m, radius_m);
   const Site from_here = contact::follow(surface, site_.place.triangle, p_m);
   const Vec3 line_m = outward_of(from_here, depth_m(p_m), radius_m);

@@ -30,9 +30,6 @@ class Proxy {
   const Site& site() const RT_SAFE { return site_; }
   /// It is not at the nearest point.
   bool lags() const RT_SAFE { return lags_; }
-  /// In the last move p came to the other side of the surface, without a way through it: through a
-  /// hole of an open surface.
-  bool has_changed_side() const RT_SAFE { return has_changed_side_; }
   /// By how much the depth became larger in the last move than the work of its force explains, m;
   /// below 0: smaller.
   double lengthened_m() const RT_SAFE { return lengthened_m_; }
@@ -50,11 +47,9 @@ class Proxy {
   void slide(const SurfaceView& surface, const Vec3& goal_m, double way_m, double radius_m) RT_SAFE;
 
   Site site_;
-  Vec3 offset_m_;           // g
-  Vec3 outward_;            // of the offset surface in g, unit
-  double nearest_m_ = 0.0;  // signed distance of p
-  bool is_on_rim_ = false;  // its nearest point is on the boundary of an open surface
-  bool lags_ = false, has_changed_side_ = false;
+  Vec3 offset_m_;  // g
+  Vec3 outward_;   // of the offset surface in g, unit
+  bool lags_ = false;
   double lengthened_m_ = 0.0;
 };
 

@@ -56,7 +56,6 @@ Step RestContact::step(Sphere& sphere, const Vec3& moved_m) RT_SAFE {
   s.proxy.follow(scene_.surface, sphere.centre_m, moved_m, sphere.radius_m);
   s.unpaid_m += s.proxy.lengthened_m();
   if (s.is_held) return Step::kTouches;
-  if (s.proxy.has_changed_side()) return Step::kLost;
   const PressingSphere& pressing = pressing_[sphere.index];
   if (sphere.lets_go && !(pressing.in.dent_m > 0.0)) return Step::kLeaves;
   // Slack takes up all of its depth: what it touches may be another part of the organ by now.

@@ -57,7 +57,7 @@ double distance(const Vec3& a, const Vec3& b) { return norm(a - b); }
 TEST(Mounting, SixMountingsHaveDownWhereTheyStand) {
   for (const auto& one : kMountings) {
     const Mounting m = mounting_of(settings_of(one));
-    EXPECT_LT(distance(m.gravity_B_mps2(), kG_mps2 * one.down_B), 1e-3) << one.words;
+    EXPECT_LT(distance(m.gravity_in_base_mps2(), kG_mps2 * one.down_B), 1e-3) << one.words;
     EXPECT_NE(words_of(m).find(one.words), std::string::npos) << words_of(m);
   }
 }
@@ -90,9 +90,9 @@ TEST(Mounting, PowerAgreesOnBothSides) {
                      .shift_m = 0.1 * vec(),
                      .scale = 0.2 + std::abs(draw(random)) * 5.0};
     const Vec3 p = vec(), v = vec(), f = vec();
-    EXPECT_LT(distance(m.point_B(m.point_W(p)), p), 1e-12);
-    EXPECT_NEAR(dot(m.force_B(f), v), dot(f, m.velocity_W(v)), 1e-12);
-    EXPECT_NEAR(dot(m.direction_B(f), v), dot(f, m.direction_W(v)), 1e-12);
+    EXPECT_LT(distance(m.point_in_base(m.point_W(p)), p), 1e-12);
+    EXPECT_NEAR(dot(m.force_in_base(f), v), dot(f, m.velocity_W(v)), 1e-12);
+    EXPECT_NEAR(dot(m.direction_in_base(f), v), dot(f, m.direction_W(v)), 1e-12);
     const Vec3 way = (m.point_W(p + 1e-6 * v) - m.point_W(p)) / 1e-6;
     EXPECT_LT(distance(way, m.velocity_W(v)), 1e-8);
   }
@@ -114,7 +114,7 @@ TEST(Mounting, TheWorkspaceIsReachedFromEveryMounting) {
       const Vec3 rim_W{k % 2 == 0 ? info.workspace_half_length_m : -info.workspace_half_length_m,
                        info.workspace_radius_m * std::cos(angle),
                        info.workspace_radius_m * std::sin(angle)};
-      const Vec3 p = m.point_B(rim_W);
+      const Vec3 p = m.point_in_base(rim_W);
       ASSERT_LE(std::hypot(p.y, p.z), own.workspace_radius_m * (1.0 + 1e-9)) << i;
       ASSERT_LE(std::abs(p.x), own.workspace_half_length_m * (1.0 + 1e-9)) << i;
     }

@@ -17,7 +17,6 @@
 //      that its force lags, F F / (20 K), a tenth of what the largest force can store
 //
 //   i  a force lags for at most 0.11 s in a row
-//   j  come through a hole of an open body, and inside: no force after one range of way, or 0.2 s
 //
 // (g, pauses, is in path_run.h.) Outside: distance >= r and winding number 0, by brute_force.h.
 #pragma once
@@ -63,9 +62,8 @@ class ContactRules {
     moved_m_ = before_ && !now.is_lost ? norm(now.centre_m - before_->centre_m) : 0.0;
     find_side(now);
     std::vector<Breach> breaches;
-    for (const auto rule :
-         {&ContactRules::a, &ContactRules::b, &ContactRules::c, &ContactRules::d, &ContactRules::e,
-          &ContactRules::f, &ContactRules::h, &ContactRules::j, &ContactRules::i})
+    for (const auto rule : {&ContactRules::a, &ContactRules::b, &ContactRules::c, &ContactRules::d,
+                            &ContactRules::e, &ContactRules::f, &ContactRules::h, &ContactRules::i})
       if (auto found = (this->*rule)(now)) breaches.push_back(*found);
     before_ = now;
     was_outside_ = is_outside_;
@@ -109,10 +107,9 @@ class ContactRules {
       const double most_m = is_first ? phi_m : 0.5 * (phi_m + phi_m_ + moved_m_ / n);
       if (side == Side::kUnknown || !(most_m < s_.radius_m - kTiny_m)) has_overlapped_ = false;
       // Through a hole it comes in without contact.
-      const bool is_hole = side == Side::kIn && side_ == Side::kOut && !is_first &&
-                           !body_.is_closed() && !body_.crosses(last_m_, p_m);
-      if (side == Side::kUnknown || is_hole) entered_ = false;
-      through_hole_ = is_hole || (through_hole_ && side == Side::kIn && !now.is_lost);
+      if (side == Side::kUnknown || (side == Side::kIn && side_ == Side::kOut && !is_first &&
+                                     !body_.is_closed() && !body_.crosses(last_m_, p_m)))
+        entered_ = false;
       side_ = side;
       phi_m_ = phi_m;
       last_m_ = p_m;
@@ -250,17 +247,6 @@ class ContactRules {
     return say('i', "the force lags for too long");
   }
 
-  std::optional<Breach> j(const Tick& now) {
-    if (!through_hole_ || force_N_ == 0.0) {
-      hole_m_ = hole_s_ = 0.0;
-      return {};
-    }
-    hole_m_ += moved_m_;
-    hole_s_ += now.periods * s_.period_s;
-    if (hole_m_ <= s_.range_m && hole_s_ <= kAfter_s) return {};
-    return say('j', "force inside, where it came through a hole");
-  }
-
   std::optional<Breach> say(char rule, const std::string& what) const {
     std::ostringstream out;
     out << what << "; force " << force_N_ << " N, centre " << 1e3 * phi_m_
@@ -277,8 +263,6 @@ class ContactRules {
   double phi_m_ = 0.0;  // signed distance, as far as nearest_ was searched
   model::Vec3 last_m_;
   bool is_outside_ = false, was_outside_ = false;
-  bool through_hole_ = false;  // and inside ever since
-  double hole_m_ = 0.0, hole_s_ = 0.0;
   bool has_overlapped_ = false;  // surely, ever since the start
   bool lets_go_ = false;
   int without_ = 0;       // ticks in a row, deeper and without force

@@ -57,7 +57,7 @@ TEST(CanDelta, HoldsItsArmsAgainstGravityInSixMountings) {
   const delta::DeltaKinematics kinematics(delta_geometry(settings.delta));
   for (const auto& one : tests::kMountings) {
     CanDelta delta(settings.delta, settings.can,
-                   mounting_of(tests::settings_of(one)).gravity_B_mps2());
+                   mounting_of(tests::settings_of(one)).gravity_in_base_mps2());
     Tool tool;
     ASSERT_FALSE(delta.measure(turns_for(pose.theta_rad, settings), 1'000'000, tool));
     const delta::Joints motors_Nm = delta.motor_torques_Nm({});

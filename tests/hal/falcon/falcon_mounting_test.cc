@@ -13,7 +13,7 @@ TEST(FalconMounting, HoldsItsOwnWeightInSixMountings) {
   settings.moving_mass_kg = 0.1;
   for (const auto& one : kMountings) {
     FalconBench bench(settings);
-    bench.device.set_gravity(mounting_of(settings_of(one)).gravity_B_mps2());
+    bench.device.set_gravity(mounting_of(settings_of(one)).gravity_in_base_mps2());
     bench.home({0.01, 0.0, 0.0});
     bench.run(60);
     const Vec3 felt_N = force_of(bench.words(), settings, {0.01, 0.0, 0.0});
