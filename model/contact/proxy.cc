@@ -55,7 +55,9 @@ Vec3 Proxy::depth_m(const Vec3& p_m) const RT_SAFE {
 // point, too: round an edge g may stand on the other side.
 Vec3 Proxy::outward_of(const Site& nearest, const Vec3& line_m, double radius_m) const RT_SAFE {
   const double inward_m = std::min(dot(line_m, nearest.normal), 0.0);
-  if (!(nearest.distance_m > 0.0) || !(inward_m < 0.0)) return line_m;
+  // Beyond the boundary of an open surface, and behind it, is no outside to be kept in.
+  const bool is_in_front = nearest.distance_m > 0.0 && dot(nearest.normal, nearest.outward) > 0.0;
+  if (!is_in_front || !(inward_m < 0.0)) return line_m;
   // Whole at less than a tenth of the radius from that point, not at all at more than the radius.
   const double apart_ratio = norm(nearest.point_m - site_.point_m) / radius_m;
   return line_m - std::clamp((1.0 - apart_ratio) / 0.9, 0.0, 1.0) * inward_m * nearest.normal;
