@@ -129,26 +129,36 @@ ContactResponse Contact::respond(const Tool& tool) RT_SAFE {
       }
   organ().finish();
   ContactResponse felt;
-  for (Sphere& sphere : spheres()) {
-    if (!sphere.is_known) continue;
-    SphereTouch& touch = touch_[sphere.index];
-    const Vec3 last_normal = touch.normal;
-    touch = {};
-    const OrganForce answer = ask(sphere);
-    follow_force(sphere, answer.elastic_N);
-    if (!sphere.touches() && sphere.told_N != Vec3{}) touch.normal = last_normal;
-    touch.state = sphere.state;
-    touch.force_N = sphere.told_N + resistance_N(sphere, answer.resistance_N);
-    felt.wrench.force_N += touch.force_N;
-    felt.wrench.torque_Nm += cross(sphere.centre_m - tool.position_m, touch.force_N);
-    if (touch.law_status == law::LawStatus::kSaturated || sphere.lets_go) felt.is_saturated = true;
-    if (sphere.unsolved_ratio > 0.0 || sphere.lag_N > 0.0) felt.is_unsettled = true;
-    if (sphere.state == TouchState::kInside) felt.is_inside = true;
-  }
+  // Spheres that are coupled change each other's force.
+  double way_m = 0.0;
+  for (const Sphere& sphere : spheres()) way_m = std::max(way_m, norm(sphere.moved_m));
+  for (Sphere& sphere : spheres())
+    if (sphere.is_known) tell(sphere, tool, way_m, felt);
   organ().advance();
   scene_.law->advance();
   felt.is_broken = scene_.law->is_broken();
   return felt;
+}
+
+void Contact::tell(Sphere& sphere, const Tool& tool, double way_m, ContactResponse& felt) RT_SAFE {
+  SphereTouch& touch = touch_[sphere.index];
+  const Vec3 last_normal = touch.normal;
+  touch = {};
+  touch.state = sphere.state;
+  if (sphere.state == TouchState::kInside) felt.is_inside = true;
+  if (!sphere.touches() && sphere.told_N == Vec3{}) {
+    sphere.largest_N = sphere.lag_N = 0.0;
+    sphere.was_held = false;
+    return;
+  }
+  const OrganForce answer = ask(sphere);
+  follow_force(sphere, answer.elastic_N, way_m);
+  if (!sphere.touches() && sphere.told_N != Vec3{}) touch.normal = last_normal;
+  touch.force_N = sphere.told_N + resistance_N(sphere, answer.resistance_N);
+  felt.wrench.force_N += touch.force_N;
+  felt.wrench.torque_Nm += cross(sphere.centre_m - tool.position_m, touch.force_N);
+  if (touch.law_status == law::LawStatus::kSaturated || sphere.lets_go) felt.is_saturated = true;
+  if (sphere.unsolved_ratio > 0.0 || sphere.lag_N > 0.0) felt.is_unsettled = true;
 }
 
 void Contact::watch_grip(double grip_ratio) RT_SAFE {
@@ -216,15 +226,12 @@ Vec3 Contact::resistance_N(const Sphere& sphere, const Vec3& answer_N) const RT_
 // slope times the way and twice what the law's memory may take, plus all of the jump in 0.1 s.
 // While it lags behind a force that is gone, the hand gets at most a tenth of the energy that was
 // lost.
-void Contact::follow_force(Sphere& sphere, const Vec3& wanted_N) RT_SAFE {
+void Contact::follow_force(Sphere& sphere, const Vec3& wanted_N, double way_m) RT_SAFE {
   constexpr double kSteepest_ratio = 10.0, kFade_ratio = 2.0;
   constexpr double kNoise_N = 1e-3;  // of a solution
   const Vec3 change_N = wanted_N - sphere.told_N;
   const double length_N = norm(change_N);
   sphere.largest_N = sphere.touches() ? std::max(sphere.largest_N, norm(wanted_N)) : 0.0;
-  // Spheres that are coupled change each other's force.
-  double way_m = 0.0;
-  for (const Sphere& one : spheres()) way_m = std::max(way_m, norm(one.moved_m));
   const double smooth_N = kNoise_N + kSteepest_ratio * sphere.stiffest_N_per_m * way_m +
                           kFade_ratio * fade_ratio_ * sphere.largest_N;
   const bool is_held = sphere.state == TouchState::kHeld;
