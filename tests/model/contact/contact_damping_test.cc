@@ -106,4 +106,42 @@ TEST(ContactDamping, PressesHarderTheFaster) {
   EXPECT_NEAR(fast_N / damped.contact.feel(tool, true).wrench.force_N.z, 1.2, 1e-12);
 }
 
+/// A force that is set by hand, and a resistance that takes all of it away.
+class SetForce final : public SiteLaw {
+ public:
+  double force_N = 0.0;
+
+  SiteResponse respond(const Indentation&) RT_SAFE override {
+    return {.law = {.force_N = force_N, .stiffness_N_per_m = 40.0}};
+  }
+  double resistance_N(const Indentation&, double answer_N) const RT_SAFE override {
+    return -answer_N;
+  }
+  double stiffest_N_per_m(const Place&, bool) const RT_SAFE override { return 40.0; }
+  void leave(std::size_t) RT_SAFE override {}
+  void advance() RT_SAFE override {}
+  std::size_t profile(const Indentation&, std::span<double>) const RT_SAFE override { return 0; }
+  double ring_pitch_m() const RT_SAFE override { return 0.0; }
+};
+
+TEST(ContactDamping, DoesNotPullInWhileTheForceFollowsAJump) {
+  Bench bench(0.0);
+  SetForce law;
+  Contact contact({.law = &law,
+                   .parameters = {.tear_force_N = 0.6},
+                   .spheres = bench.spheres,
+                   .surface = bench.mesh.view(),
+                   .tree = bench.tree.view(),
+                   .blade = {}});
+  const auto force_N = [&](double z_m) {
+    contact.touch({.position_m = {0, 0, z_m}});
+    return contact.feel({.position_m = {0, 0, z_m}}, true).wrench.force_N.z;
+  };
+  force_N(5_mm);
+  law.force_N = 0.1;
+  EXPECT_NEAR(force_N(2_mm), 0.0, 1e-12);
+  law.force_N = 1.0;  // at rest
+  for (int i = 0; i < 120; ++i) ASSERT_GE(force_N(2_mm), -1e-12) << i;
+}
+
 }  // namespace tact::model::contact::contact_damping_test
