@@ -80,11 +80,11 @@ LOGGED_TICK = _placed(376, [
     ("grip_gap_m", "<f8", None, 176), ("grip_speed_mps", "<f8", None, 184), ("sample_stamp_ns", "<i8", None, 192),
     ("sample_sequence", "<u8", None, 200), ("sample_fresh", "u1", None, 208), ("device_fault", "<u2", None, 216),
     ("command_arm", "u1", None, 218), ("command_stop", "u1", None, 219), ("command_reset", "u1", None, 220),
-    ("command_disarm", "u1", None, 221), ("ready", "u1", None, 222), ("skipped_periods", "<u4", None, 224), ("wanted_force_N", "<f8", 3, 232),
-    ("wanted_torque_Nm", "<f8", 3, 256), ("written_force_N", "<f8", 3, 280), ("written_torque_Nm", "<f8", 3, 304),
-    ("state", "u1", None, 328), ("limit", "<u2", None, 330), ("fault", "<u2", None, 332), ("given_energy_J", "<f8", None, 336),
-    ("rms_force_N", "<f8", None, 344), ("contact_losses", "<u8", None, 352), ("wanted_grip_N", "<f8", None, 360),
-    ("written_grip_N", "<f8", None, 368)])
+    ("command_disarm", "u1", None, 221), ("ready", "u1", None, 222), ("skipped_periods", "<u4", None, 224),
+    ("wanted_force_N", "<f8", 3, 232), ("wanted_torque_Nm", "<f8", 3, 256), ("written_force_N", "<f8", 3, 280),
+    ("written_torque_Nm", "<f8", 3, 304), ("state", "u1", None, 328), ("limit", "<u2", None, 330), ("fault", "<u2", None, 332),
+    ("given_energy_J", "<f8", None, 336), ("rms_force_N", "<f8", None, 344), ("contact_losses", "<u8", None, 352),
+    ("wanted_grip_N", "<f8", None, 360), ("written_grip_N", "<f8", None, 368)])
 LOG_RECORD = np.dtype([("tick", LOGGED_TICK), ("crc", "<u4"), ("pad", "<u4")])
 
 
