@@ -174,21 +174,23 @@ std::optional<Error> check_given(const Chip& handle, const GpioChip& chip,
 /// Lines of one direction on their way into a request.
 class Wanted {
  public:
-  /// Its place; -1 if it is not wired.
+  /// Its place; -1 if it is not wired. More lines than Levels has places end the set-up here, not
+  /// behind an array in the loop.
   int add(int offset) {
     if (offset < 0) return -1;
-    offsets_.push_back(offset);
-    return static_cast<int>(offsets_.size()) - 1;
+    offsets_.at(count_) = offset;
+    return static_cast<int>(count_++);
   }
   /// False, with errno, if the kernel refuses. No line, no request.
   bool request(Chip& chip, LineUse use, LineRequest& out) const {
-    if (offsets_.empty()) return true;
-    out = chip.request(use, offsets_, kConsumer);
+    if (count_ == 0) return true;
+    out = chip.request(use, std::span(offsets_).first(count_), kConsumer);
     return !out.empty();
   }
 
  private:
-  std::vector<int> offsets_;
+  std::array<int, kMaxRequestLines> offsets_{};
+  std::size_t count_ = 0;
 };
 
 /// All lines that the scene wires; nothing, with errno and all lines free, if one is refused.

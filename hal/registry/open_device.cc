@@ -58,9 +58,9 @@ OpenDevice on_its_base(OpenDevice device, const Mounting& mounting) {
   return OpenDevice(new MountedDevice(std::unique_ptr<Device>(device.release()), mounting));
 }
 
-const Device& on_base(const Device& device) {
-  const auto* mounted = dynamic_cast<const MountedDevice*>(&device);
-  return mounted != nullptr ? mounted->inner() : device;
+const Device* on_base(const Device* device) {
+  const auto* mounted = dynamic_cast<const MountedDevice*>(device);
+  return mounted != nullptr ? &mounted->inner() : device;
 }
 
 }  // namespace
@@ -97,7 +97,7 @@ bool is_simulated(const model::DeviceSettings& settings) {
 
 /// By type, not by name: only this class has a hand to move.
 bool is_simulated(const Device& device) {
-  return dynamic_cast<const sim::SimDelta*>(&on_base(device)) != nullptr;
+  return dynamic_cast<const sim::SimDelta*>(on_base(&device)) != nullptr;
 }
 
 Result<std::unique_ptr<sim::HandSocket>> start_hand_socket(Device& device,
