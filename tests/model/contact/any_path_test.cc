@@ -91,6 +91,13 @@ TEST(AnyPathFound, AForceThatWouldJumpFollows) {
   expect_kept("two_lobes", {837, 1263, 1291});
 }
 
+TEST(AnyPathFound, AContactThatLetsGoIsGoneIn100ms) {
+  expect_kept("flap_1mm", {105, 226, 1280});
+  expect_kept("flap_4mm", {116, 1153});
+  expect_kept("torus", {375});
+  expect_kept("bladder", {60, 590});
+}
+
 TEST(AnyPathFound, APauseBesideAForkIsNoPauseOfItsOwn) { expect_kept("flap_12mm_bent", {704}); }
 
 }  // namespace tact::model::contact::any_path_test

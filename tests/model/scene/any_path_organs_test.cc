@@ -49,6 +49,12 @@ TEST(AnyPathOrganFound, WhatTurnsTheForceMakesNoEnergy) {
   expect_kept("maintenance", {71, 91, 269, 853});
 }
 
+TEST(AnyPathOrganFound, AContactThatLetsGoIsGoneIn100ms) {
+  expect_kept("skin", {596, 662});
+  expect_kept("gum", {213, 526, 667, 860});
+  expect_kept("maintenance", {646, 715, 860});
+}
+
 TEST(AnyPathOrganFound, APauseBesideAForkIsNoPauseOfItsOwn) { expect_kept("maintenance", {145}); }
 
 }  // namespace tact::model::scene::any_path_organs_test
