@@ -227,16 +227,15 @@ Vec3 Contact::resistance_N(const Sphere& sphere, const Vec3& answer_N) const RT_
 // While it lags behind a force that is gone, the hand gets at most a tenth of the energy that was
 // lost.
 void Contact::follow_force(Sphere& sphere, const Vec3& wanted_N, double way_m) RT_SAFE {
-  constexpr double kSteepest_ratio = 10.0, kShrink_ratio = 2.0, kFade_ratio = 2.0;
+  constexpr double kSteepest_ratio = 10.0, kFade_ratio = 2.0, kLetGo_ratio = 2.0;
   constexpr double kNoise_N = 1e-3;  // of a solution
   const Vec3 change_N = wanted_N - sphere.told_N;
   const double length_N = norm(change_N);
   sphere.largest_N = sphere.touches() ? std::max(sphere.largest_N, norm(wanted_N)) : 0.0;
-  // A contact that lets go loses depth without a way.
-  const double shrinks_m = sphere.lets_go ? sphere.shrinks_m * scene_.period_s / kLetGo_s : 0.0;
-  const double way_and_shrink_m = kSteepest_ratio * way_m + kShrink_ratio * shrinks_m;
-  const double smooth_N = kNoise_N + sphere.stiffest_N_per_m * way_and_shrink_m +
-                          kFade_ratio * fade_ratio_ * sphere.largest_N;
+  // A contact that lets go loses its force in 0.1 s, faster where its law is steep.
+  const double let_go_ratio = sphere.lets_go ? kLetGo_ratio * scene_.period_s / kLetGo_s : 0.0;
+  const double smooth_N = kNoise_N + kSteepest_ratio * sphere.stiffest_N_per_m * way_m +
+                          (kFade_ratio * fade_ratio_ + let_go_ratio) * sphere.largest_N;
   const bool is_held = sphere.state == TouchState::kHeld;
   // Held tissue that is let go or tears is gone at once.
   const bool is_let_go =
