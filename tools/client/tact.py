@@ -218,7 +218,7 @@ def read_ticks(path):
     torn = count < told or not told and len(body) % LOG_RECORD.itemsize
     count = min(count, told or count)
     ticks, bad = _good(body, LOG_RECORD, count, "tick", LOGGED_TICK.itemsize)
-    recording, words = None, f"cut off in tick number {count}" if torn else ""
+    recording, words = None, f"cut off in tick number {count + 1}" if torn else ""
     if told and not torn:
         try:
             recording = _recording(body[count * LOG_RECORD.itemsize:], str(path), "")
