@@ -154,7 +154,7 @@ packages_of() {
     ladder) echo "${BUILD_PACKAGES[@]}" libgtest-dev python3=python3 git=git ;;
     canaries) echo "${clang[@]}" ;;
     proof) echo clang-22 g++ gappa mmdebstrap python3=python3 ;;
-    asan | bits | tsan | rtsan | fuzz | soak) echo "${BUILD_PACKAGES[@]}" "${tests[@]}" "${clang[@]}" ;;
+    asan | bits | tsan | rtsan | fuzz | soak) echo "${BUILD_PACKAGES[@]}" "${tests[@]}" "${clang[@]}" xz-utils=xz ;;
     coverage) echo "${BUILD_PACKAGES[@]}" "${tests[@]}" "${clang[@]}" llvm-22 python3=python3 ;;
     tidy) echo "${BUILD_PACKAGES[@]}" "${tests[@]}" "${clang[@]}" clang-tidy-22 ;;
     mutations) echo "${BUILD_PACKAGES[@]}" "${tests[@]}" git=git python3=python3 ;;
