@@ -94,7 +94,7 @@ build_programs() {
   for target in "$@"; do  # the measuring tools need more packages than the controller
     case $target in
       tactd | tactctl | tact-guardian | tact-view | tact-track-send | tact-mesh | tact-rig-*) ;;
-      tact-doctor | tact-jitter | tact-limits | tact-mcap | tact-verify | tact-calibrate) tools=ON ;;
+      tact-doctor | tact-jitter | tact-limits | tact-verify | tact-calibrate) tools=ON ;;
       *) tools=ON lab=ON ;;
     esac
   done

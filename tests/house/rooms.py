@@ -69,7 +69,7 @@ ROOMS = {
 }
 # A tool measures every room above; of the other tools it may include these.
 TOOLS = {
-    **dict.fromkeys(["mcap", "printed", "program", "track_send"], []),
+    **dict.fromkeys(["printed", "program", "track_send"], []),
     **dict.fromkeys(["calibrate", "doctor", "ground_truth", "mesh", "report", "tracking_bench"], ["program"]),
     **dict.fromkeys(["jitter", "limits", "sweep"], ["program", "report"]),
     "condense": ["program", "ground_truth", "mesh"],

@@ -251,10 +251,10 @@ def _recording(data, where, damage):
 def _good(data, layout, count, name, size):
     """The first part of each record that has the right checksum, and the words for the others."""
     records, step = np.frombuffer(data, layout, count), layout.itemsize
-    right = [i for i in range(count) if zlib.crc32(data[i * step:i * step + size]) == records["crc"][i]]
-    if len(right) == count:
+    wrong = [i for i in range(count) if zlib.crc32(data[i * step:i * step + size]) != records["crc"][i]]
+    if not wrong:
         return records[name], ""
-    return records[name][right], f"{count - len(right)} of {count} {name}s are damaged"
+    return np.delete(records[name], wrong), f"{len(wrong)} of {count} {name}s are damaged, the first is number {wrong[0] + 1}"
 
 
 def _kind_of(data):

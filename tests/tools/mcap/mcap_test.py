@@ -9,7 +9,9 @@ The readers are npm packages of host/web (tests/tools/mcap/mcap_read.mjs). Needs
 import calendar
 import collections
 import json
+import os
 import pathlib
+import re
 import signal
 import struct
 import subprocess
@@ -198,7 +200,7 @@ class Mcap(unittest.TestCase):
         cut.write_bytes(data[:pictures + 1000])
         status, told, words = tact_mcap(cut, target)
         self.assertEqual((status, told["ticks"], told["frames"]), (1, len(box.ticks), 0))
-        self.assertIn("the file ends before its first frame", words)
+        self.assertIn("ends before its first frame", words)
 
     def test_of_a_damaged_log_the_good_ticks_are_there(self):
         data, broken = bytearray(self.log.read_bytes()), self.folder / "broken.tactlog"
@@ -214,6 +216,24 @@ class Mcap(unittest.TestCase):
         self.assertEqual((status, told["ticks"]), (1, whole - 1))
         self.assertIn(f"cut off in tick number {whole + 1}", words)
         self.assertEqual(len(rows(read(self.mcap)[1], "/tact/tick")), whole - 1)
+
+    def test_refuses_what_it_cannot_read_or_write(self):
+        pipe, empty, out = self.folder / "pipe", self.folder / "empty", self.folder / "no.mcap"
+        os.mkfifo(pipe)
+        empty.write_bytes(b"")
+        for source, target, words in ((self.folder, out, "is no regular file"), (pipe, out, "is no regular file"),
+                                      (self.folder / "none", out, "No such file"), (empty, out, "no file of tact"),
+                                      (self.log, self.folder / "none" / "no.mcap", "No such file")):
+            status, told, said = tact_mcap(source, target)
+            self.assertEqual((status, told), (2, None), said)
+            self.assertIn(words, said)
+            self.assertFalse(target.exists())
+        self.assertEqual(list(self.folder.glob("*.part")), [])
+
+    def test_is_of_this_version(self):
+        version = re.search(r"project\(tact VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text())[1]
+        done = subprocess.run([BUILD / "tact-mcap", "--version"], capture_output=True, text=True, check=True)
+        self.assertEqual(done.stdout, f"tact-mcap {version}\n")
 
 
 if __name__ == "__main__":

@@ -28,7 +28,7 @@ const std::vector<std::string> kPrograms{
     "tactd",           "tact-view",     "tact-jitter",    "tact-fit",       "tact-plan",
     "tact-chart",      "tact-condense", "tact-mesh",      "tact-doctor",    "tact-limits",
     "tact-verify",     "tactctl",       "tact-calibrate", "tact-reference", "tact-stability",
-    "tact-track-send", "tact-mcap",     "tact-new-scene", "tact-sweep"};
+    "tact-track-send", "tact-new-scene", "tact-sweep"};
 
 class BadInput : public testing::Test {
  protected:
@@ -103,7 +103,6 @@ TEST_F(BadInput, AFolderOrPipeWhereAFileBelongsGetsASentence) {
     refuses("tact-mesh", path, words);
     refuses("tact-new-scene", path + " --out " + folder_ + "/new.toml", words);
     refuses("tact-view", "--open " + path, words);
-    refuses("tact-mcap", path + " " + folder_ + "/out.mcap", words);
     refuses("tactd", path, words);
     refuses("tactd", kScene + " --replay " + path, words);
   }
