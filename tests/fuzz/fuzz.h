@@ -2,9 +2,9 @@
 // fuzz.h - what every fuzzer shares: bytes from anywhere, and rules that must hold.
 //
 // A fuzzer is tests/fuzz/NAME_fuzz.cc with libFuzzer's entry point; its corpus, the inputs that
-// reach new code, is tests/fuzz/corpus/NAME.tar.xz. A rule that breaks traps, so that libFuzzer keeps
-// the input. tools/check replays every corpus; with --long each fuzzer looks for new inputs for a
-// minute. New ones come into an archive by
+// reach new code, is tests/fuzz/corpus/NAME.tar.xz. A rule that breaks traps, so that libFuzzer
+// keeps the input. tools/check replays every corpus; with --long each fuzzer looks for new inputs
+// for a minute. New ones come into an archive by
 //   tar --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner -cJf NAME.tar.xz -C FOLDER .
 #pragma once
 

@@ -95,7 +95,8 @@ class Client(unittest.TestCase):
         broken.write_bytes(data)
         log = tact.read_ticks(broken)
         self.assertEqual(len(log.ticks), 4999)
-        self.assertEqual(log.damage, "its bytes are not those that were written; 1 of 5000 ticks are damaged, the first is number 101")
+        self.assertEqual(log.damage, "its bytes are not those that were written; 1 of 5000 ticks are damaged, "
+                                     "the first is number 101")
         broken.write_bytes(data[:tact.LOG_HEADER.itemsize + 250 * tact.LOG_RECORD.itemsize + 9])
         self.assertRegex(tact.read_ticks(broken).damage, "it has no end.*; 1 of 250 .*; cut off in tick number 251")
         broken.write_bytes(b"tactlog6" + data[8:])

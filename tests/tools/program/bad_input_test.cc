@@ -25,9 +25,9 @@ using tests::run_program;
 
 const std::string kScene = TACT_SOURCE_DIR "/model/scenes/liver.toml";
 const std::vector<std::string> kPrograms{
-    "tactd",           "tact-view",     "tact-jitter",    "tact-fit",       "tact-plan",
-    "tact-chart",      "tact-condense", "tact-mesh",      "tact-doctor",    "tact-limits",
-    "tact-verify",     "tactctl",       "tact-calibrate", "tact-reference", "tact-stability",
+    "tactd",           "tact-view",      "tact-jitter",    "tact-fit",       "tact-plan",
+    "tact-chart",      "tact-condense",  "tact-mesh",      "tact-doctor",    "tact-limits",
+    "tact-verify",     "tactctl",        "tact-calibrate", "tact-reference", "tact-stability",
     "tact-track-send", "tact-new-scene", "tact-sweep"};
 
 class BadInput : public testing::Test {
