@@ -80,7 +80,7 @@ void add_run_options(CLI::App& app, Options& o) {
   app.add_flag("--arm", o.run.arm, "hardware: with force; without it the force is always zero");
   app.add_option("--out", o.out,
                  "folder for jitter.json, report.html, histogram.svg and .csv, and "
-                 "ticks.perfetto-trace for ui.perfetto.dev; made if need be");
+                 "ticks.trace.json for ui.perfetto.dev; made if need be");
   app.add_flag("--no-pictures", o.no_pictures, "no histogram; needs no gnuplot");
   app.add_option("--json", o.json_path, "write the result to this file too, - for stdout alone");
   app.add_option("--submit", o.submit,
@@ -122,7 +122,7 @@ std::optional<Error> write_folder(const JitterResult& result, const Options& o,
   }
   const std::pair<const char*, std::string> files[] = {
       {"report.html", make_page(result, command, svg)},
-      {"ticks.perfetto-trace", make_tick_trace(result.sink->kept_ticks(), boottime_offset_ns())}};
+      {"ticks.trace.json", make_tick_trace(result.sink->kept_ticks(), boottime_offset_ns())}};
   for (const auto& [name, content] : files)
     if (auto error = tact::model::io::write_file(o.out + "/" + name, content)) return error;
   return std::nullopt;

@@ -213,7 +213,7 @@ TEST_F(JitterProgram, WritesAReportOfARealLoopThatComparesWithItself) {
   const std::string page = read_file(out + "/report.html");
   EXPECT_TRUE(has(page, "<svg"));
   EXPECT_TRUE(has(page, "</b> on <b>" + result["host"].get<std::string>()));
-  EXPECT_GT(fs::file_size(out + "/ticks.perfetto-trace"), 1000u);
+  EXPECT_GT(fs::file_size(out + "/ticks.trace.json"), 1000u);
   const std::string itself = out + "/jitter.json " + out + "/jitter.json";
   EXPECT_EQ(run_program("tact-jitter", "compare " + itself + " --gate 1").status, 0);
 }
