@@ -7,7 +7,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 
 #include "firmware/loop/clock.h"
@@ -15,6 +14,7 @@
 #include "firmware/loop/grip_input.h"
 #include "firmware/loop/latency_histogram.h"
 #include "firmware/loop/progress.h"
+#include "firmware/loop/requests.h"
 #include "firmware/loop/ring.h"
 #include "firmware/loop/stop_times.h"
 #include "firmware/loop/tick_record.h"
@@ -22,22 +22,6 @@
 #include "hal/safety_lines.h"
 
 namespace tact::firmware::loop {
-
-/// What people and the watch ask of a running loop; written by other threads and signal handlers.
-struct Requests {
-  std::atomic<bool> arm{false};           // by its rising edge, when ready
-  std::atomic<bool> arm_at_start{false};  // once, as soon as it is ready: the loop's own request
-  std::atomic<bool> stop{false};          // force to zero, then leave
-  std::atomic<bool> reset{false};
-  std::atomic<bool> disarm{false};         // force to zero, ready to be armed again
-  std::atomic<Fault> fault{Fault::kNone};  // of the watch; the first stays to the end of the run
-  std::atomic<std::uint32_t> refused{0};   // edges of arm that armed nothing
-
-  void trip(Fault found) RT_SAFE {
-    Fault none = Fault::kNone;
-    fault.compare_exchange_strong(none, found, std::memory_order_relaxed);
-  }
-};
 
 /// What a run leaves behind. Read it after run() has returned.
 struct LoopStatistics {
@@ -90,9 +74,9 @@ class RtLoop {
 
  private:
   void cycle(std::int64_t due_ns) RT_SAFE;
-  /// What others ask goes into this tick; true: to arm, and it was not asked a tick ago.
-  bool hear_requests() RT_SAFE;
-  void answer_requests(bool asks_anew) RT_SAFE;
+  /// What others ask goes into this tick.
+  void hear_requests() RT_SAFE;
+  void answer_requests() RT_SAFE;
   bool arms_at_start() const RT_SAFE;
   Fault read(std::int64_t now_ns) RT_SAFE;
   void write() RT_SAFE;
@@ -117,7 +101,8 @@ class RtLoop {
   TickRecord record_;
   MarkedTime marked_;
   std::int64_t due_ns_ = 0;
-  bool asked_ = false;                // requests_.arm, in the tick before
+  std::uint32_t heard_ = 0;           // the newest request of a person that a tick has taken
+  bool answers_ = false;              // this tick has taken it
   Fault write_fault_ = Fault::kNone;  // judged in the next tick
   StopWatch stop_watch_;
   Progress progress_;
