@@ -243,7 +243,7 @@ Result<bool> check_offsets(const LinesSettings& settings, const GpioChip& chip) 
 Result<std::unique_ptr<SafetyLines>> open_safety_lines(const LinesSettings& settings,
                                                        const SystemRoots& roots) {
   if (!settings.wired()) return std::unique_ptr<SafetyLines>(new NoSafetyLines);
-  const auto chip = choose_chip(find_gpio_chips(roots), settings.chip);
+  const auto chip = choose_chip(find_permitted_chips(roots), settings.chip);
   if (!chip) return chip.error();
   if (const auto good = check_offsets(settings, *chip); !good) return good.error();
   return open_lines_of(*chip, settings);
