@@ -8,19 +8,18 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 
 #include "hal/udev_rules.h"
+#include "model/io/input_file.h"
 
 namespace tact::hal {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string first_word(const fs::path& file) {
-  std::string word;
-  std::ifstream(file) >> word;
-  return word;
+std::string first_line(const fs::path& file) {
+  const auto text = model::io::read_file(file.string());
+  return text ? text->substr(0, text->find('\n')) : std::string();
 }
 
 }  // namespace
@@ -54,10 +53,10 @@ std::optional<Refusal> refused_usb_device(const char* vendor, const char* produc
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(sys_root + "/bus/usb/devices", none)) {
     const fs::path& device = entry.path();
-    if (first_word(device / "idVendor") != vendor) continue;
-    if (product != nullptr && first_word(device / "idProduct") != product) continue;
+    if (first_line(device / "idVendor") != vendor) continue;
+    if (product != nullptr && first_line(device / "idProduct") != product) continue;
     const auto number = [&](const char* file) {
-      return std::strtoul(first_word(device / file).c_str(), nullptr, 10);
+      return std::strtoul(first_line(device / file).c_str(), nullptr, 10);
     };
     const std::string node =
         fmt::format("{}/bus/usb/{:03}/{:03}", dev_root, number("busnum"), number("devnum"));
