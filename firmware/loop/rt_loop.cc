@@ -103,11 +103,21 @@ Fault RtLoop::read(std::int64_t now_ns) RT_SAFE {
   const Fault read_fault = device_.read(sample, now_ns);
   device_grip_ratio_ = sample.tool.grip_ratio;
   sample.tool.grip_ratio = grip_.step(device_grip_ratio_, lines_.grip());
+  if (const auto pressed = lines_.clutch()) use_clutch(*pressed);
   progress_.enter(Callee::kOwn);
   const Fault watch_fault = requests_.fault.load(std::memory_order_relaxed);
   for (const Fault fault : {watch_fault, lines_fault, read_fault, write_fault_})
     if (fault != Fault::kNone) return fault;
   return Fault::kNone;
+}
+
+void RtLoop::use_clutch(bool pressed) RT_SAFE {
+  const TickOutput& before = record_.output;
+  const bool has_force = before.written != model::Wrench{} || before.written_grip_N != 0.0;
+  TickInput& input = record_.input;
+  input.clutch = clutch_.step(pressed, has_force, input.sample);
+  input.clutch_shift_m = clutch_.shift_m();
+  input.clutches = statistics_.clutches = clutch_.count();
 }
 
 // A fault takes the drives' permission before it takes their force. The heartbeat of this tick

@@ -10,6 +10,7 @@
 #include <cstdint>
 
 #include "firmware/loop/clock.h"
+#include "firmware/loop/clutch.h"
 #include "firmware/loop/controller.h"
 #include "firmware/loop/grip_input.h"
 #include "firmware/loop/latency_histogram.h"
@@ -29,6 +30,7 @@ struct LoopStatistics {
   std::uint64_t late_ticks = 0;     // ended after their own period
   std::uint64_t skipped_ticks = 0;  // grid points that had no tick
   std::uint64_t contact_losses = 0;
+  std::uint32_t clutches = 0;       // times that the clutch has opened
   std::uint64_t inside_ticks = 0;   // a sphere was inside the organ and felt nothing
   double max_force_N = 0.0;         // written
   double max_grip_force_N = 0.0;    // written, on the fingers
@@ -79,6 +81,7 @@ class RtLoop {
   void answer_requests() RT_SAFE;
   bool arms_at_start() const RT_SAFE;
   Fault read(std::int64_t now_ns) RT_SAFE;
+  void use_clutch(bool pressed) RT_SAFE;
   void write() RT_SAFE;
   void tell() RT_SAFE;
   /// Reads the clock; marked_ns() the time since then by marks, for phases alone.
@@ -96,6 +99,7 @@ class RtLoop {
   Requests& requests_;
   TickRing& ring_;
   GripInput grip_;
+  Clutch clutch_;
   double device_grip_ratio_ = 0.0;  // of its last sample
   LoopStatistics statistics_;
   TickRecord record_;
