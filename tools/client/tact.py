@@ -68,8 +68,7 @@ FRAME = np.dtype([
 FILE_HEADER = np.dtype([("magic", "S8"), ("version", "<u4"), ("hello_bytes", "<u4"), ("frame_bytes", "<u4"),
                         ("setup_crc", "<u4"), ("mesh_bytes", "<u8")])
 FRAME_RECORD = np.dtype([("frame", FRAME), ("crc", "<u4"), ("pad", "<u4")])
-LOG_HEADER = np.dtype([
-    ("magic", "S8"), ("header_bytes", "<u4"), ("tick_bytes", "<u4"), ("ticks", "<u8"), ("period_ns", "<i8"),
+LOG_HEADER = np.dtype([("magic", "S8"), ("header_bytes", "<u4"), ("tick_bytes", "<u4"), ("ticks", "<u8"), ("period_ns", "<i8"),
     ("limits", "<f8", 14), ("force_share", "<f8"), ("non_rt", "u1"), ("scene_hash", "S23"), ("overrides", "S1024"),
     ("scene_name", "S64"), ("law", "S64"), ("revision", "S64"), ("host", "S64"), ("began_utc", "S24"), ("header_crc", "<u4"),
     ("pad", "<u4")])

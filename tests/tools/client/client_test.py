@@ -97,7 +97,7 @@ class Client(unittest.TestCase):
         self.assertEqual(len(log.ticks), 4999)
         self.assertEqual(log.damage, "its bytes are not those that were written; 1 of 5000 ticks are damaged")
         broken.write_bytes(data[:tact.LOG_HEADER.itemsize + 250 * tact.LOG_RECORD.itemsize + 9])
-        self.assertRegex(tact.read_ticks(broken).damage, "it has no end.*; 1 of 251 .*; cut off in tick number 251")
+        self.assertRegex(tact.read_ticks(broken).damage, "it has no end.*; 1 of 250 .*; cut off in tick number 250")
         broken.write_bytes(b"tactlog6" + data[8:])
         with self.assertRaisesRegex(tact.Error, "a tick log of version 6, no tick log or black box of this version"):
             tact.read_ticks(broken)
