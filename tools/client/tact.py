@@ -68,7 +68,8 @@ FRAME = np.dtype([
 FILE_HEADER = np.dtype([("magic", "S8"), ("version", "<u4"), ("hello_bytes", "<u4"), ("frame_bytes", "<u4"),
                         ("setup_crc", "<u4"), ("mesh_bytes", "<u8")])
 FRAME_RECORD = np.dtype([("frame", FRAME), ("crc", "<u4"), ("pad", "<u4")])
-LOG_HEADER = np.dtype([("magic", "S8"), ("header_bytes", "<u4"), ("tick_bytes", "<u4"), ("ticks", "<u8"), ("period_ns", "<i8"),
+LOG_HEADER = np.dtype([
+    ("magic", "S8"), ("header_bytes", "<u4"), ("tick_bytes", "<u4"), ("ticks", "<u8"), ("period_ns", "<i8"),
     ("limits", "<f8", 14), ("force_share", "<f8"), ("non_rt", "u1"), ("scene_hash", "S23"), ("overrides", "S1024"),
     ("scene_name", "S64"), ("law", "S64"), ("revision", "S64"), ("host", "S64"), ("began_utc", "S24"), ("header_crc", "<u4"),
     ("pad", "<u4")])
@@ -216,12 +217,11 @@ def read_ticks(path):
     body, told = data[LOG_HEADER.itemsize:], int(header["ticks"])
     count = len(body) // LOG_RECORD.itemsize
     torn = count < told or not told and len(body) % LOG_RECORD.itemsize
-    count = min(count, told or count)
-    ticks, bad = _good(body, LOG_RECORD, count, "tick", LOGGED_TICK.itemsize)
+    ticks, bad = _good(body, LOG_RECORD, min(count, told or count), "tick", LOGGED_TICK.itemsize)
     recording, words = None, f"cut off in tick number {count}" if torn else ""
     if told and not torn:
         try:
-            recording = _recording(body[count * LOG_RECORD.itemsize:], str(path), "")
+            recording = _recording(body[told * LOG_RECORD.itemsize:], str(path), "")
         except Error as error:
             words = f"its pictures: {str(error).removeprefix(f'{path}: ')}"
     return TickLog(header, ticks, recording, "; ".join(filter(None, (damage, bad, words))))
